@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/canopen/302/boot_plan.hpp"
+
+#include <stdexcept>
+
+#include "firmware_if/canopen/402/objects.hpp"
+
+namespace servogate::canopen {
+namespace {
+
+using Kind = BootAction::Kind;
+using Keep = BootAction::Keep;
+
+class Plan {
+ public:
+  explicit Plan(std::vector<BootAction>& actions) : actions_(actions) {}
+  void step(BootStep step) { step_ = step; }
+  void nmt(Kind kind) { actions_.push_back({kind, step_}); }
+  void write(std::uint16_t index, std::uint8_t subindex, std::uint8_t bytes, std::uint32_t value,
+             bool optional = false) {
+    actions_.push_back({Kind::write, step_, index, subindex, bytes, value, 0, optional, Keep::nothing});
+  }
+  void check(std::uint16_t index, std::uint8_t subindex, std::uint8_t bytes, std::uint32_t value,
+             std::uint32_t mask = 0xFFFF'FFFF, bool optional = false) {
+    actions_.push_back({Kind::read, step_, index, subindex, bytes, value, mask, optional, Keep::nothing});
+  }
+  void write_and_check(std::uint16_t index, std::uint8_t subindex, std::uint8_t bytes, std::uint32_t value,
+                       bool optional = false) {
+    write(index, subindex, bytes, value, optional);
+    check(index, subindex, bytes, value, 0xFFFF'FFFF, optional);
+  }
+  void learn(std::uint16_t index, std::uint8_t subindex, Keep keep, std::optional<std::uint32_t> wanted,
+             std::uint32_t mask, bool optional) {
+    actions_.push_back({Kind::read, step_, index, subindex, 4, wanted.value_or(0), wanted ? mask : 0,
+                        optional && !wanted, keep});
+  }
+
+ private:
+  std::vector<BootAction>& actions_;
+  BootStep step_ = BootStep::reset;
+};
+
+void add_identity(Plan& plan, const DriveProfile& profile) {
+  plan.step(BootStep::device_type);
+  plan.learn(object::kDeviceType, 0, Keep::device_type, profile.device_type, profile.device_type_mask, false);
+  plan.step(BootStep::identity);
+  constexpr std::uint32_t kAll = 0xFFFF'FFFF;
+  plan.learn(object::kIdentity, 1, Keep::vendor_id, profile.vendor_id, kAll, false);
+  plan.learn(object::kIdentity, 2, Keep::product_code, profile.product_code, kAll, true);
+  plan.learn(object::kIdentity, 3, Keep::revision, profile.revision, kAll, true);
+  plan.learn(object::kIdentity, 4, Keep::serial, std::nullopt, kAll, true);
+  if (profile.check_modes) {
+    plan.step(BootStep::supported_modes);
+    plan.check(object::kSupportedDriveModes, 0, 4, profile.modes, profile.modes);
+  }
+}
+
+void add_guarding(Plan& plan, const DriveProfile& profile, const SegmentConfig& segment) {
+  if (profile.has_heartbeat_consumer) {
+    plan.step(BootStep::heartbeat_consumer);
+    const auto time = static_cast<std::uint32_t>(segment.heartbeat_timeout_ms) & 0xFFFF;
+    plan.write_and_check(object::kConsumerHeartbeatTime, 1, 4,
+                         static_cast<std::uint32_t>(segment.own_node) << 16 | time);
+  }
+  if (profile.abort_connection_option) {
+    plan.step(BootStep::abort_connection);
+    plan.write_and_check(object::kAbortConnectionOption, 0, 2,
+                         static_cast<std::uint16_t>(*profile.abort_connection_option));
+  }
+}
+
+void add_sync(Plan& plan, const DriveProfile& profile, const SegmentConfig& segment) {
+  plan.step(BootStep::sync);
+  plan.write(object::kCobIdSync, 0, 4, cob::kSync, true);
+  plan.check(object::kCobIdSync, 0, 4, cob::kSync, 0x1FFF'FFFF, true);
+  if (profile.has_cycle_period)
+    plan.write_and_check(object::kCommunicationCyclePeriod, 0, 4,
+                         static_cast<std::uint32_t>(segment.cycle_ns / image::kMicrosecond));
+}
+
+struct PdoPlace {
+  std::uint16_t parameter;
+  std::uint16_t mapping;
+  std::uint32_t id;
+  bool transmit;
+};
+
+void check_map(Plan& plan, const PdoPlace& place, const PdoWanted& pdo) {
+  plan.check(place.mapping, 0, 1, pdo.mapping.count);
+  for (std::uint8_t i = 0; i < pdo.mapping.count; ++i)
+    plan.check(place.mapping, static_cast<std::uint8_t>(i + 1), 4, pdo.mapping.entries[i].word());
+}
+
+void write_map(Plan& plan, const PdoPlace& place, const PdoWanted& pdo) {
+  plan.write(place.mapping, 0, 1, 0);
+  for (std::uint8_t i = 0; i < pdo.mapping.count; ++i)
+    plan.write(place.mapping, static_cast<std::uint8_t>(i + 1), 4, pdo.mapping.entries[i].word());
+  plan.write(place.mapping, 0, 1, pdo.mapping.count);
+}
+
+void add_pdo(Plan& plan, const PdoPlace& place, const PdoWanted& pdo, bool fixed) {
+  const std::uint32_t flags = place.transmit ? cob::kNoRemote : 0;
+  const std::uint32_t off = cob::kInvalid | flags | place.id;
+  constexpr std::uint32_t kIdAndValid = cob::kInvalid | 0x1FFF'FFFF;
+  if (!pdo.used()) {
+    // A device may have fewer PDOs than we know of.
+    plan.write(place.parameter, 1, 4, off, true);
+    return;
+  }
+  plan.write(place.parameter, 1, 4, off);
+  if (!fixed) write_map(plan, place, pdo);
+  plan.write_and_check(place.parameter, 2, 1, pdo.transmission_type);
+  if (pdo.inhibit_100us && place.transmit) plan.write_and_check(place.parameter, 3, 2, pdo.inhibit_100us);
+  if (pdo.event_ms) plan.write_and_check(place.parameter, 5, 2, pdo.event_ms);
+  plan.write(place.parameter, 1, 4, flags | place.id);
+  check_map(plan, place, pdo);
+  plan.check(place.parameter, 1, 4, place.id, kIdAndValid);
+}
+
+void add_pdos(Plan& plan, const NodeConfig& node) {
+  for (int transmit = 0; transmit < 2; ++transmit) {
+    plan.step(transmit ? BootStep::tpdo : BootStep::rpdo);
+    for (std::uint16_t n = 0; n < 4; ++n) {
+      const auto parameter = transmit ? object::kTpdoParameter : object::kRpdoParameter;
+      const auto mapping = transmit ? object::kTpdoMapping : object::kRpdoMapping;
+      const PdoPlace place{static_cast<std::uint16_t>(parameter + n), static_cast<std::uint16_t>(mapping + n),
+                           transmit ? cob::tpdo(n + 1, node.node) : cob::rpdo(n + 1, node.node),
+                           transmit != 0};
+      add_pdo(plan, place, transmit ? node.profile.tpdo[n] : node.profile.rpdo[n],
+              node.profile.pdo_map_fixed);
+    }
+  }
+}
+
+void add_mode(Plan& plan, const NodeConfig& node, const SegmentConfig& segment) {
+  const DriveProfile& profile = node.profile;
+  if (profile.interpolation_base) {
+    plan.step(BootStep::interpolation_time);
+    std::uint8_t value = 0;
+    std::int8_t exponent = 0;
+    if (!interpolation_time(segment.cycle_ns, *profile.interpolation_base, value, exponent))
+      throw std::invalid_argument("cycle time cannot be written into 60C2h");
+    plan.write_and_check(object::kInterpolationTimePeriod, 2, 1, static_cast<std::uint8_t>(exponent));
+    plan.write_and_check(object::kInterpolationTimePeriod, 1, 1, value);
+  }
+  plan.step(BootStep::mode);
+  const OperationMode mode =
+      node.target == DriveTarget::axis ? OperationMode::cyclic_sync_position : profile.velocity_mode;
+  plan.write(object::kModesOfOperation, 0, 1, static_cast<std::uint8_t>(mode));
+}
+
+}  // namespace
+
+bool interpolation_time(image::Nanoseconds cycle_ns, std::int8_t base, std::uint8_t& value,
+                        std::int8_t& exponent) {
+  for (exponent = base; exponent >= -9; --exponent) {
+    image::Nanoseconds unit = 1;
+    for (int i = -9; i < exponent; ++i) unit *= 10;
+    if (cycle_ns < unit || cycle_ns % unit != 0) continue;
+    if (cycle_ns / unit > 255) return false;
+    value = static_cast<std::uint8_t>(cycle_ns / unit);
+    return true;
+  }
+  return false;
+}
+
+std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& segment) {
+  std::vector<BootAction> actions;
+  Plan plan(actions);
+  plan.nmt(Kind::reset);
+  add_identity(plan, node.profile);
+  plan.step(BootStep::settings);
+  // The brake must be engaged before anything, a mask in the settings for one, can hand it to the output.
+  if (node.profile.brake_bit >= 0)
+    plan.write_and_check(object::kDigitalOutputs, 1, 4,
+                         node.profile.brake_bit_releases ? 0 : 1u << node.profile.brake_bit);
+  for (const SdoSetting& setting : node.profile.settings) {
+    plan.write(setting.index, setting.subindex, setting.bytes, setting.value);
+    if (setting.read_back) plan.check(setting.index, setting.subindex, setting.bytes, setting.value);
+  }
+  add_guarding(plan, node.profile, segment);
+  add_sync(plan, node.profile, segment);
+  add_pdos(plan, node);
+  add_mode(plan, node, segment);
+  plan.step(BootStep::heartbeat_producer);
+  plan.write_and_check(object::kProducerHeartbeatTime, 0, 2,
+                       static_cast<std::uint16_t>(heartbeat_ms(node, segment)));
+  plan.step(BootStep::start);
+  plan.nmt(Kind::start);
+  return actions;
+}
+
+}  // namespace servogate::canopen

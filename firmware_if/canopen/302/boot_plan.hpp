@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "firmware_if/canopen/302/boot_step.hpp"
+#include "firmware_if/canopen/402/drive_profile.hpp"
+#include "firmware_if/canopen/master/segment_config.hpp"
+
+namespace servogate::canopen {
+
+/// One thing to do while a node boots.
+struct BootAction {
+  enum class Kind : std::uint8_t {
+    reset,  ///< NMT reset communication, then wait for the boot-up message
+    write,  ///< download `value`
+    read,   ///< upload; keep it in `keep`, compare it under `mask` (0: any value is right)
+    start,  ///< NMT start, then wait for a heartbeat with state Operational
+  };
+  /// Where a read value goes.
+  enum class Keep : std::uint8_t { nothing, device_type, vendor_id, product_code, revision, serial };
+
+  Kind kind = Kind::write;
+  BootStep step = BootStep::settings;
+  std::uint16_t index = 0;
+  std::uint8_t subindex = 0;
+  std::uint8_t bytes = 0;  ///< of the object: 1, 2 or 4
+  std::uint32_t value = 0;
+  std::uint32_t mask = 0;
+  bool optional = false;  ///< "object (or subindex) does not exist" is no failure
+  Keep keep = Keep::nothing;
+};
+
+/// The boot of one drive as a list: identity first, then configuration with every value read back, then
+/// start. PDOs are written in the order of CiA 301, 7.5.2.36: switch off, count 0, entries, count,
+/// communication, switch on. Not real-time safe.
+std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& segment);
+
+/// Value and exponent of 60C2h for a cycle: value * 10^exponent seconds, value at most 255. Starts at the
+/// drive's base exponent and takes a finer one where that cannot hold the cycle (0.5 ms: 5 * 10^-4). False:
+/// no exponent does.
+bool interpolation_time(image::Nanoseconds cycle_ns, std::int8_t base, std::uint8_t& value,
+                        std::int8_t& exponent);
+
+}  // namespace servogate::canopen

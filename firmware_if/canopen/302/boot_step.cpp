@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/canopen/302/boot_step.hpp"
+
+#include <iterator>
+
+namespace servogate::canopen {
+namespace {
+
+constexpr text::Entry kSteps[] = {
+    {"boot-reset", "reset of communication and boot-up message", "сброс связи и сообщение о загрузке"},
+    {"boot-device-type", "device type", "тип устройства"},
+    {"boot-identity", "identity", "идентификация"},
+    {"boot-modes", "supported drive modes", "поддерживаемые режимы привода"},
+    {"boot-settings", "settings of the device file", "настройки из файла устройства"},
+    {"boot-heartbeat-consumer", "supervision of the control's heartbeat", "контроль heartbeat управления"},
+    {"boot-abort-connection", "reaction to a lost connection", "реакция на потерю связи"},
+    {"boot-sync", "SYNC", "SYNC"},
+    {"boot-rpdo", "process data from control to drive (RPDO)", "данные процесса от ЧПУ к приводу (RPDO)"},
+    {"boot-tpdo", "process data from drive to control (TPDO)", "данные процесса от привода к ЧПУ (TPDO)"},
+    {"boot-interpolation-time", "interpolation time period", "период интерполяции"},
+    {"boot-mode", "mode of operation", "режим работы"},
+    {"boot-heartbeat-producer", "heartbeat of the drive", "heartbeat привода"},
+    {"boot-start", "NMT start and state Operational", "команда NMT Start и состояние Operational"},
+    {"boot-done", "done", "завершено"},
+};
+static_assert(std::size(kSteps) == static_cast<std::size_t>(BootStep::done) + 1);
+
+}  // namespace
+
+const text::Entry& boot_step_text(BootStep step) noexcept { return kSteps[static_cast<int>(step)]; }
+
+}  // namespace servogate::canopen

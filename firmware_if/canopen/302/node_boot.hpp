@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "firmware_if/canopen/301/nmt.hpp"
+#include "firmware_if/canopen/301/sdo_client.hpp"
+#include "firmware_if/canopen/302/boot_plan.hpp"
+
+namespace servogate::canopen {
+
+/// Identity as read at boot.
+struct NodeIdentity {
+  std::uint32_t device_type = 0;
+  std::uint32_t vendor_id = 0, product_code = 0, revision = 0, serial = 0;
+};
+
+/// Carries out a boot plan for one node, one action after another. All but the constructor is real-time safe.
+class NodeBoot {
+ public:
+  enum class State : std::uint8_t { idle, running, done, failed };
+
+  NodeBoot(NodeId node, std::vector<BootAction> plan, image::Nanoseconds timeout_ns)
+      : node_(node), plan_(std::move(plan)), timeout_ns_(timeout_ns) {}
+
+  /// Starts from the first action (NMT reset communication).
+  void begin(SdoClient& sdo) noexcept;
+  /// The node has just said by itself that it is up: starts behind the reset.
+  void begin_after_boot_up(SdoClient& sdo) noexcept;
+
+  void on_boot_up() noexcept { boot_up_seen_ = true; }
+  void on_heartbeat(NmtState state) noexcept { nmt_state_ = state; }
+
+  /// Goes on as far as it can without waiting; sends at most one frame. True when it sent one. `sdo` is the
+  /// node's client, which nobody else may use meanwhile.
+  bool poll(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) noexcept;
+
+  State state() const noexcept { return state_; }
+  /// The action in hand; after a failure the one that failed, with what was expected and what came.
+  const BootReport& report() const noexcept { return report_; }
+  const NodeIdentity& identity() const noexcept { return identity_; }
+
+ private:
+  void restart_at(std::size_t action, SdoClient& sdo) noexcept;
+  bool command_and_wait(image::Nanoseconds now, image::CanBus& bus, NmtCommand command,
+                        bool arrived) noexcept;
+  bool access(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) noexcept;
+  void on_result(const SdoClient& sdo) noexcept;
+  void judge_value(const SdoClient& sdo) noexcept;
+  void keep(std::uint32_t value) noexcept;
+  void next() noexcept;
+  void fail(BootProblem problem) noexcept;
+  void describe_action() noexcept;
+
+  NodeId node_;
+  std::vector<BootAction> plan_;
+  image::Nanoseconds timeout_ns_;
+  State state_ = State::idle;
+  std::size_t action_ = 0;
+  bool entered_ = false;  ///< the action has begun: command sent or transfer started
+  image::Nanoseconds deadline_ns_ = 0;
+  bool boot_up_seen_ = false;
+  NmtState nmt_state_ = NmtState::boot_up;
+  BootReport report_;
+  NodeIdentity identity_;
+};
+
+}  // namespace servogate::canopen

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "firmware_if/canopen/301/cob_id.hpp"
+#include "firmware_if/canopen/device/object_dictionary.hpp"
+
+namespace servogate::canopen {
+
+/// Guarding objects, which have no name in the shared vocabulary.
+inline constexpr std::uint16_t kGuardTimeObject = 0x100C, kLifeTimeFactorObject = 0x100D;
+
+/// What a device says of itself in 1000h and 1018h.
+struct DeviceIdentity {
+  std::uint32_t device_type = 0;
+  std::uint32_t vendor_id = 0, product_code = 0, revision = 0, serial_number = 0;
+};
+
+/// The rows 1000h-1FFFh of a device with four PDOs of each direction; PDO 1 is valid with the given mapping
+/// word, the others exist and are switched off. Not real-time safe.
+std::vector<ObjectSpec> communication_objects(NodeId node, const DeviceIdentity& identity);
+
+}  // namespace servogate::canopen

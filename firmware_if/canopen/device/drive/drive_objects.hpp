@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/device/object_dictionary.hpp"
+
+namespace servogate::canopen {
+
+/// Objects that the shared vocabulary does not name.
+namespace object {
+inline constexpr std::uint16_t kVelocityDemand = 0x606B, kPositionWindowTime = 0x6068,
+                               kVelocityWindow = 0x606D, kVelocityWindowTime = 0x606E,
+                               kVelocityThreshold = 0x606F, kVelocityThresholdTime = 0x6070,
+                               kEndVelocity = 0x6082, kTorqueSlope = 0x6087,
+                               kProbeCounter = 0x60D5,  ///< 60D5h-60D8h
+    kPositiveTorqueLimit = 0x60E0, kNegativeTorqueLimit = 0x60E1, kSupportedHomingMethods = 0x60E3;
+}  // namespace object
+
+/// Values of the name plate that the defaults of the objects depend on.
+struct DriveRatings {
+  std::uint32_t counts_per_rev = 262'144;
+  std::uint32_t rated_torque_mnm = 2'400;
+  std::uint32_t rated_current_ma = 3'000;
+  std::uint16_t peak_torque_permille = 3'000;
+  std::uint32_t max_speed_rpm = 5'000;
+};
+
+/// The rows 6000h-67FFh of a servo drive. Position unit: encoder count; velocity: counts/s; acceleration:
+/// counts/s^2. Not real-time safe.
+std::vector<ObjectSpec> drive_objects(const DriveRatings& ratings);
+
+/// The variables behind those rows, by name, so that the cyclic path searches nothing.
+struct DriveVariables {
+  explicit DriveVariables(ObjectDictionary& od);
+  std::int64_t &abort_connection_option, &error_code, &controlword, &statusword, &quick_stop_option,
+      &shutdown_option, &disable_operation_option, &halt_option, &fault_reaction_option, &mode, &mode_display,
+      &position_demand, &position_internal, &position_actual, &following_window, &following_timeout,
+      &position_window, &position_window_time, &velocity_demand, &velocity_actual, &velocity_window,
+      &velocity_window_time, &velocity_threshold, &velocity_threshold_time, &target_torque, &max_torque,
+      &torque_demand, &torque_actual, &current_actual, &dc_link, &target_position, &home_offset, &limit_min,
+      &limit_max, &max_profile_velocity, &max_motor_speed, &profile_velocity, &end_velocity,
+      &profile_acceleration, &profile_deceleration, &quick_stop_deceleration, &torque_slope, &homing_method,
+      &homing_speed_switch, &homing_speed_zero, &homing_acceleration, &position_offset, &velocity_offset,
+      &torque_offset, &probe_function, &probe_status, &interpolation_time, &interpolation_exponent,
+      &max_acceleration, &max_deceleration, &torque_limit_positive, &torque_limit_negative, &following_actual,
+      &digital_inputs, &digital_outputs, &digital_output_mask, &target_velocity, &supported_modes;
+};
+
+}  // namespace servogate::canopen

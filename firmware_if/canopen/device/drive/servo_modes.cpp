@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// The modes of operation of ServoProfile.
+#include <cmath>
+
+#include "firmware_if/canopen/402/statusword.hpp"
+#include "firmware_if/canopen/device/drive/servo_profile.hpp"
+
+namespace servogate::canopen {
+namespace {
+
+constexpr std::uint16_t kStart = controlword::kModeSpecific4,
+                        kChangeImmediately = controlword::kModeSpecific5,
+                        kRelative = controlword::kModeSpecific6;
+
+}  // namespace
+
+void ServoProfile::select_mode() noexcept {
+  const auto wanted = static_cast<OperationMode>(v_.mode);
+  if (wanted == mode_) return;
+  // Values that came by PDO are checked here, those by SDO were before.
+  if (v_.mode != 0 && !(v_.mode > 0 && (v_.supported_modes & supported_bit(wanted)))) return;
+  mode_ = wanted;
+  homing_.cancel();
+  homing_attained_ = homing_error_ = false;
+  set_point_active_ = set_point_waiting_ = set_point_acknowledged_ = false;
+  start_bit_ = v_.controlword & kStart;
+  window_time_ = 0.0;
+  new_target_ = false;
+  if (command_.loop != ServoCommand::Loop::position) {
+    const double velocity = servo_.velocity;
+    hold_actual();
+    demand_.velocity = power_.energised() ? velocity : 0.0;
+  }
+  cyclic_target_ = demand_.position;
+  ticks_left_ = 0;
+}
+
+void ServoProfile::run_mode() noexcept {
+  switch (mode_) {
+    case OperationMode::cyclic_sync_position:
+      return cyclic_position();
+    case OperationMode::cyclic_sync_velocity:
+      return cyclic_velocity();
+    case OperationMode::cyclic_sync_torque:
+      return cyclic_torque();
+    case OperationMode::profile_position:
+      return profile_position();
+    case OperationMode::profile_velocity:
+      return profile_velocity();
+    case OperationMode::profile_torque:
+      return profile_torque();
+    case OperationMode::homing:
+      return homing();
+    default:
+      // No mode: stay where we are.
+      ramp_velocity(demand_, 0.0, slow_down(), slow_down(), h_);
+      return command_position();
+  }
+}
+
+// The nearest unwrapped position whose low 32 bits are the object's value, so that an axis may turn without
+// end.
+double ServoProfile::target_from_object(std::int64_t object_value) noexcept {
+  const auto here = static_cast<std::int64_t>(std::floor(demand_.position + 0.5)) - origin_;
+  const auto difference =
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(object_value) - static_cast<std::uint32_t>(here));
+  return static_cast<double>(here + difference + origin_);
+}
+
+double ServoProfile::limited_target(double target) noexcept {
+  // The whole range of the object, or an empty one, is no limit: the axis may turn without end.
+  constexpr std::int64_t kWholeRange = 0xFFFF'FFFF;
+  const std::int64_t width = v_.limit_max - v_.limit_min;
+  if (width <= 0 || width == kWholeRange) return target;
+  const auto low = static_cast<double>(v_.limit_min + origin_),
+             high = static_cast<double>(v_.limit_max + origin_);
+  if (target >= low && target <= high) return target;
+  internal_limit_ = true;
+  return target < low ? low : high;
+}
+
+void ServoProfile::plan_cyclic_segment(double target) noexcept {
+  segment_target_ = target;
+  ticks_left_ = segment_ticks_;
+  const double velocity = (target - demand_.position) / (segment_ticks_ * h_);
+  demand_.acceleration = (velocity - previous_segment_velocity_) / (segment_ticks_ * h_);
+  demand_.velocity = previous_segment_velocity_ = velocity;
+}
+
+// Straight from the present demand to the target within one interpolation period 60C2h.
+void ServoProfile::cyclic_position() noexcept {
+  if (new_target_) cyclic_target_ = target_from_object(v_.target_position + v_.position_offset);
+  const double target = limited_target(cyclic_target_);
+  if (stopped_by_limit_switch(target - demand_.position)) {
+    const double d = static_cast<double>(v_.quick_stop_deceleration);
+    ramp_velocity(demand_, 0.0, d, d, h_);
+    ticks_left_ = 0;
+    previous_segment_velocity_ = 0.0;
+    internal_limit_ = true;
+  } else {
+    if (new_target_) plan_cyclic_segment(target);
+    if (ticks_left_ > 0) {
+      demand_.position += (segment_target_ - demand_.position) / ticks_left_;
+      --ticks_left_;
+    } else {
+      demand_.velocity = demand_.acceleration = 0.0;
+      previous_segment_velocity_ = 0.0;
+    }
+  }
+  new_target_ = false;
+  command_position();
+  command_.velocity += static_cast<double>(v_.velocity_offset);
+  command_.torque = static_cast<double>(v_.torque_offset);
+}
+
+void ServoProfile::cyclic_velocity() noexcept {
+  const double most = max_speed();
+  double velocity = static_cast<double>(v_.target_velocity + v_.velocity_offset);
+  if (std::abs(velocity) > most || stopped_by_limit_switch(velocity)) {
+    internal_limit_ = true;
+    velocity =
+        std::abs(velocity) > most && !stopped_by_limit_switch(velocity) ? std::copysign(most, velocity) : 0.0;
+  }
+  command_.loop = ServoCommand::Loop::velocity;
+  command_.velocity = velocity;
+  command_.acceleration = 0.0;
+  command_.torque = static_cast<double>(v_.torque_offset);
+}
+
+void ServoProfile::cyclic_torque() noexcept {
+  double torque = static_cast<double>(v_.target_torque + v_.torque_offset);
+  if (stopped_by_limit_switch(torque)) {
+    internal_limit_ = true;
+    torque = 0.0;
+  }
+  command_.loop = ServoCommand::Loop::torque;
+  command_.torque = torque;
+}
+
+void ServoProfile::profile_torque() noexcept {
+  if (command_.loop != ServoCommand::Loop::torque) torque_demand_ = servo_.torque;
+  const double step = static_cast<double>(v_.torque_slope) * h_;
+  torque_demand_ += std::clamp(static_cast<double>(v_.target_torque) - torque_demand_, -step, step);
+  command_.loop = ServoCommand::Loop::torque;
+  command_.torque = torque_demand_;
+}
+
+double ServoProfile::profile_speed() const noexcept {
+  return std::min(static_cast<double>(v_.max_profile_velocity), max_speed());
+}
+
+void ServoProfile::profile_velocity() noexcept {
+  if (command_.loop == ServoCommand::Loop::position && power_.following() && demand_.velocity == 0.0)
+    demand_.velocity = servo_.velocity;
+  const double most = profile_speed();
+  double target = static_cast<double>(v_.target_velocity);
+  if (std::abs(target) > most) {
+    target = std::copysign(most, target);
+    internal_limit_ = true;
+  }
+  if (stopped_by_limit_switch(target)) {
+    target = 0.0;
+    internal_limit_ = true;
+  }
+  ramp_velocity(demand_, target, static_cast<double>(v_.profile_acceleration),
+                static_cast<double>(v_.profile_deceleration), h_);
+  command_.loop = ServoCommand::Loop::velocity;
+  command_.velocity = demand_.velocity;
+  command_.acceleration = demand_.acceleration;
+  command_.torque = 0.0;
+  const double off = std::abs(static_cast<double>(v_.target_velocity) - servo_.velocity);
+  window_time_ = off <= static_cast<double>(v_.velocity_window) ? window_time_ + h_ : 0.0;
+}
+
+// The handshake of bit 4 and status bit 12 with one set-point in work and one waiting.
+// Source: CiA 402-2, "Profile position mode", figures of the set-point handshake.
+void ServoProfile::take_set_points() noexcept {
+  const auto word = static_cast<std::uint16_t>(v_.controlword);
+  const bool start = word & kStart;
+  if (start && !start_bit_) {
+    const bool room = !set_point_waiting_ || (word & kChangeImmediately);
+    if (room) {
+      waiting_target_ = v_.target_position;
+      waiting_relative_ = word & kRelative;
+      set_point_waiting_ = true;
+      set_point_acknowledged_ = true;
+      if (word & kChangeImmediately) start_set_point();
+    }
+  }
+  start_bit_ = start;
+  if (!set_point_active_ && set_point_waiting_) start_set_point();
+  if (!start && !set_point_waiting_) set_point_acknowledged_ = false;
+}
+
+void ServoProfile::start_set_point() noexcept {
+  const double from = set_point_active_ ? active_target_ : demand_.position;
+  active_target_ =
+      waiting_relative_ ? from + static_cast<double>(waiting_target_) : target_from_object(waiting_target_);
+  set_point_active_ = true;
+  set_point_waiting_ = false;
+  window_time_ = 0.0;
+}
+
+void ServoProfile::profile_position() noexcept {
+  if (command_.loop != ServoCommand::Loop::position) {
+    const double velocity = servo_.velocity;
+    hold_actual();
+    demand_.velocity = velocity;
+  }
+  take_set_points();
+  const double deceleration = static_cast<double>(v_.profile_deceleration);
+  if (set_point_active_) {
+    const double target = limited_target(active_target_);
+    if (stopped_by_limit_switch(target - demand_.position)) {
+      internal_limit_ = true;
+      const double d = static_cast<double>(v_.quick_stop_deceleration);
+      ramp_velocity(demand_, 0.0, d, d, h_);
+    } else if (approach_position(demand_, target,
+                                 std::min(static_cast<double>(v_.profile_velocity), profile_speed()),
+                                 static_cast<double>(v_.profile_acceleration), deceleration, h_)) {
+      const double off = std::abs(target - static_cast<double>(servo_.position));
+      window_time_ = off <= static_cast<double>(v_.position_window) ? window_time_ + h_ : 0.0;
+      if (set_point_waiting_) set_point_active_ = false;
+    }
+  } else {
+    ramp_velocity(demand_, 0.0, deceleration, deceleration, h_);
+  }
+  command_position();
+}
+
+void ServoProfile::homing() noexcept {
+  const bool start = v_.controlword & kStart;
+  if (start && !start_bit_) {
+    homing_attained_ = homing_error_ = false;
+    homing_error_ = !homing_.start(static_cast<int>(v_.homing_method), inputs_, servo_);
+  }
+  if (!start) homing_.cancel();
+  start_bit_ = start;
+  const bool resting = demand_.velocity == 0.0 && standstill();
+  const double speed = homing_.tick(inputs_, servo_, static_cast<double>(v_.homing_speed_switch),
+                                    static_cast<double>(v_.homing_speed_zero), resting);
+  const auto acceleration = static_cast<double>(v_.homing_acceleration);
+  ramp_velocity(demand_, speed, acceleration, acceleration, h_);
+  if (homing_.state() == HomingSequence::State::done) finish_homing();
+  if (homing_.state() == HomingSequence::State::failed) homing_error_ = true;
+  command_position();
+}
+
+// Zero position = home position + home offset (607Ch), so that home itself is at minus the offset.
+void ServoProfile::finish_homing() noexcept {
+  origin_ = homing_.home() + v_.home_offset;
+  homing_.cancel();
+  homing_attained_ = true;
+}
+
+std::uint16_t ServoProfile::mode_bits() const noexcept {
+  using namespace statusword;
+  const bool rests = demand_.velocity == 0.0 && standstill();
+  std::uint16_t word = 0;
+  if (halted() && rests && mode_ != OperationMode::none) word |= kTargetReached;
+  switch (mode_) {
+    case OperationMode::profile_position:
+      if (set_point_acknowledged_) word |= kModeSpecific12;
+      if (following_exceeded_) word |= kModeSpecific13;
+      if (!set_point_active_ || window_time_ * 1e3 >= static_cast<double>(v_.position_window_time))
+        word |= kTargetReached;
+      return word;
+    case OperationMode::profile_velocity:
+      if (!halted() && window_time_ * 1e3 >= static_cast<double>(v_.velocity_window_time))
+        word |= kTargetReached;
+      if (std::abs(servo_.velocity) <= static_cast<double>(v_.velocity_threshold)) word |= kModeSpecific12;
+      return word;
+    case OperationMode::homing:
+      if (homing_attained_) word |= kModeSpecific12;
+      if (homing_error_) word |= kModeSpecific13;
+      if (homing_.state() != HomingSequence::State::running && rests) word |= kTargetReached;
+      return word;
+    case OperationMode::cyclic_sync_position:
+      if (following_exceeded_) word |= kModeSpecific13;
+      [[fallthrough]];
+    case OperationMode::cyclic_sync_velocity:
+    case OperationMode::cyclic_sync_torque:
+      if (power_.following() && !halted() && !internal_limit_) word |= kModeSpecific12;
+      return word;
+    default:
+      return word;
+  }
+}
+
+}  // namespace servogate::canopen

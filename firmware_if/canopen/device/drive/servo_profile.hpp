@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "firmware_if/canopen/402/mode.hpp"
+#include "firmware_if/canopen/device/drive/drive_objects.hpp"
+#include "firmware_if/canopen/device/drive/homing.hpp"
+#include "firmware_if/canopen/device/drive/motion_profile.hpp"
+#include "firmware_if/canopen/device/drive/power_state.hpp"
+#include "firmware_if/canopen/device/drive/probe_latch.hpp"
+#include "firmware_if/canopen/device/drive/servo.hpp"
+#include "firmware_if/canopen/device/slave.hpp"
+
+namespace servogate::canopen {
+
+/// How a drive is built.
+struct ServoProfileSettings {
+  image::Nanoseconds servo_period = 250'000;
+  std::int64_t counts_per_rev = 262'144;
+  image::Nanoseconds brake_release = 0, brake_engage = 0;  ///< 0: no holding brake
+  bool limit_switches_stop = true;  ///< the drive itself stops at its limit inputs, outside of homing
+};
+
+/// A CiA 402 servo drive between object dictionary and servo loops: state machine, modes pp, pv, tq, hm, csp,
+/// csv and cst, halt and stop ramps, touch probe, supervision. One tick() a servo period turns what the servo
+/// measures into what it shall do. No knowledge of CAN. real-time safe but for the constructor.
+class ServoProfile final : public DeviceProfile {
+ public:
+  ServoProfile(ObjectDictionary& dictionary, const ServoProfileSettings& settings);
+  /// Where errors are told; to be called before the first tick.
+  void connect(EmcyProducer& emcy) noexcept { emcy_ = &emcy; }
+  /// Power-on: the encoder shows `encoder`, which the drive calls `position`.
+  void power_on(std::int64_t encoder, std::int64_t position) noexcept;
+
+  /// One servo period.
+  const ServoCommand& tick(const ServoState& servo, const DriveInputs& inputs) noexcept;
+
+  /// An error of the drive: EMCY, 603Fh, fault reaction. `coast`: the power stage must go off at once.
+  void fault(std::uint16_t error_code, bool coast, std::uint32_t detail = 0) noexcept;
+  /// While true a fault cannot be reset.
+  void hold_fault(bool cause_present) noexcept { fault_cause_ = cause_present; }
+  image::DriveState state() const noexcept { return power_.state(); }
+  std::uint16_t statusword() const noexcept;
+  std::uint16_t error_code() const noexcept { return static_cast<std::uint16_t>(v_.error_code); }
+  /// Position of 6064h before it is cut to 32 bits.
+  std::int64_t position() const noexcept { return servo_.position - origin_; }
+
+  AbortCode before_write(ObjectDictionary::Slot slot, std::int64_t value) noexcept override;
+  void after_write(ObjectDictionary::Slot slot) noexcept override;
+  void refresh() noexcept override;
+  void on_abort_connection(std::uint16_t error_code) noexcept override;
+  void on_reset() noexcept override;
+
+ private:
+  void decide() noexcept;
+  void state_changed(image::DriveState before) noexcept;
+  void supervise() noexcept;
+  void select_mode() noexcept;
+  void generate() noexcept;
+  void run_mode() noexcept;
+  void hold_actual() noexcept;
+  void command_position() noexcept;
+  void stop_motion(StopKind kind, double slow_down) noexcept;
+  double slow_down() const noexcept;
+  bool stopped_by_limit_switch(double direction) const noexcept;
+  bool halted() const noexcept { return v_.controlword & controlword::kHalt; }
+
+  void cyclic_position() noexcept;
+  void plan_cyclic_segment(double target) noexcept;
+  void cyclic_velocity() noexcept;
+  void cyclic_torque() noexcept;
+  void profile_velocity() noexcept;
+  void profile_torque() noexcept;
+  void profile_position() noexcept;
+  void take_set_points() noexcept;
+  void start_set_point() noexcept;
+  void homing() noexcept;
+  void finish_homing() noexcept;
+
+  double target_from_object(std::int64_t object_value) noexcept;
+  double limited_target(double target) noexcept;
+  double profile_speed() const noexcept;
+  double max_speed() const noexcept;
+  void interpolation_period_changed() noexcept;
+  bool standstill() const noexcept;
+  std::uint16_t mode_bits() const noexcept;
+
+  ObjectDictionary& dictionary_;
+  ServoProfileSettings settings_;
+  DriveVariables v_;
+  double h_;
+  EmcyProducer* emcy_ = nullptr;
+  PowerState power_;
+  ProbeLatch probe_;
+  HomingSequence homing_;
+  OperationMode mode_ = OperationMode::none;
+
+  ServoState servo_;
+  DriveInputs inputs_;
+  ServoCommand command_;
+  std::int64_t origin_ = 0;  ///< encoder position of the drive's zero
+  DriveSetpoint demand_;     ///< encoder counts
+  double torque_demand_ = 0.0;
+  std::uint16_t active_error_ = 0;
+  bool fault_cause_ = false;
+  bool internal_limit_ = false;
+  bool at_rest_ = true;           ///< the stop under way has come to its end
+  double following_error_ = 0.0;  ///< demand minus actual, both of the last tick
+  double following_time_ = 0.0;
+  bool following_exceeded_ = false;
+  double window_time_ = 0.0;  ///< how long the target (pp, pv) has been inside its window
+
+  // csp
+  ObjectDictionary::Slot target_position_slot_, controlword_slot_;
+  bool new_target_ = false;
+  int segment_ticks_ = 4, ticks_left_ = 0;
+  double cyclic_target_ = 0.0;   ///< as commanded, unwrapped
+  double segment_target_ = 0.0;  ///< where the segment under way ends
+  double previous_segment_velocity_ = 0.0;
+  // pp
+  bool start_bit_ = false;
+  bool set_point_active_ = false, set_point_waiting_ = false, set_point_acknowledged_ = false;
+  bool waiting_relative_ = false;
+  std::int64_t waiting_target_ = 0;
+  double active_target_ = 0.0;
+  // hm
+  bool homing_attained_ = false, homing_error_ = false;
+};
+
+}  // namespace servogate::canopen

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/canopen/device/slave.hpp"
+
+#include <algorithm>
+
+#include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/device/communication_objects.hpp"
+
+namespace servogate::canopen {
+namespace {
+
+constexpr std::uint16_t kHeartbeatLost = 0x8130, kBusOff = 0x8140, kPdoTooShort = 0x8210,
+                        kRpdoTimeout = 0x8250;
+constexpr ObjectDictionary::Range kCommunication{0x1000, 0x1FFF}, kApplication{0x2000, 0xFFFF};
+
+}  // namespace
+
+Slave::Slave(NodeId node, ObjectDictionary& dictionary, DeviceProfile& profile)
+    : node_(node),
+      dictionary_(dictionary),
+      profile_(profile),
+      sdo_(*this),
+      emcy_(dictionary),
+      monitor_(dictionary, node),
+      cob_id_sync_(dictionary.variable(object::kCobIdSync)) {
+  configure_pdos();
+}
+
+void Slave::power_on(image::CanBus& bus, image::Nanoseconds now, image::Nanoseconds boot_time) noexcept {
+  bus_ = &bus;
+  now_ = now;
+  emcy_.connect(&bus);
+  monitor_.connect(&bus);
+  boot_at_ = now + boot_time;
+  booting_ = true;
+  enter(NmtState::boot_up);
+}
+
+bool Slave::concerned(const image::CanFrame& frame) const noexcept {
+  if (frame.extended || frame.error || booting_) return false;
+  const std::uint32_t id = frame.id;
+  if (id == cob::kNmt || id == sync_id() || id == cob::sdo_request(node_))
+    return true;
+  if ((id & 0x780) == 0x700) return true;
+  for (const ReceivePdo& p : receive_)
+    if (p.valid() && p.id() == id) return true;
+  if (!frame.remote) return false;
+  return std::any_of(transmit_.begin(), transmit_.end(), [id](const TransmitPdo& p) { return p.id() == id; });
+}
+
+bool Slave::immediate(const image::CanFrame& frame) const noexcept {
+  if ((frame.id & 0x780) == 0x700) return false;
+  for (const ReceivePdo& p : receive_)
+    if (p.valid() && p.id() == frame.id) return !p.synchronous();
+  return true;
+}
+
+void Slave::on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexcept {
+  if (!concerned(frame)) return;
+  now_ = now;
+  if (frame.id == sync_id() && !frame.remote) return on_sync(frame);
+  if (frame.id == cob::kNmt) {
+    const auto request = parse_nmt(frame);
+    if (request && (request->node == 0 || request->node == node_)) command(request->command);
+    return;
+  }
+  if ((frame.id & 0x780) == 0x700) return monitor_.on_frame(frame, state_, now);
+  if (frame.id == cob::sdo_request(node_)) return on_sdo(frame);
+  if (frame.remote) return answer_remote(frame);
+  on_pdo_frame(frame);
+}
+
+void Slave::on_sdo(const image::CanFrame& frame) noexcept {
+  if (!alive() || frame.remote) return;
+  SdoBytes answer{};
+  if (sdo_.handle(std::span(frame.data).first(frame.length), answer))
+    bus_->send(make_frame(cob::sdo_response(node_), answer));
+}
+
+void Slave::on_pdo_frame(const image::CanFrame& frame) noexcept {
+  if (state_ != NmtState::operational) return;
+  for (ReceivePdo& p : receive_) {
+    if (!p.valid() || p.id() != frame.id) continue;
+    switch (p.accept(frame, now_)) {
+      case ReceivePdo::Result::too_short:
+        emcy_.raise(kPdoTooShort, error_register::kCommunication, frame.length);
+        return;
+      case ReceivePdo::Result::apply_now:
+        p.apply(dictionary_, *this);
+        break;
+      case ReceivePdo::Result::kept:
+        break;
+    }
+    if (emcy_.any()) {
+      emcy_.clear(kPdoTooShort);
+      emcy_.clear(kRpdoTimeout);
+    }
+  }
+}
+
+void Slave::answer_remote(const image::CanFrame& frame) noexcept {
+  if (state_ != NmtState::operational) return;
+  for (TransmitPdo& p : transmit_) {
+    if (!p.valid() || p.id() != frame.id || !p.remote_allowed()) continue;
+    profile_.refresh();
+    p.send(dictionary_, *bus_, now_);
+  }
+}
+
+void Slave::on_sync(const image::CanFrame& frame) noexcept {
+  if (state_ == NmtState::operational) {
+    const std::uint8_t counter = frame.length == 1 ? frame.data[0] : 0;
+    // Actual values are latched before the new set-points act, so that both belong to this SYNC.
+    profile_.refresh();
+    for (TransmitPdo& p : transmit_)
+      if (p.due_at_sync(dictionary_, counter)) p.send(dictionary_, *bus_, now_);
+    for (ReceivePdo& p : receive_)
+      if (p.pending()) p.apply(dictionary_, *this);
+  }
+  if (alive()) profile_.on_sync(now_);
+}
+
+void Slave::tick(image::Nanoseconds now) noexcept {
+  now_ = now;
+  if (booting_) {
+    if (now < boot_at_) return;
+    booting_ = false;
+    monitor_.start(now);
+    enter(NmtState::pre_operational);
+    return;
+  }
+  monitor_.tick(state_, now);
+  emcy_.tick(now);
+  watch_connection();
+  if (state_ != NmtState::operational || !any_event_driven_) return;
+  profile_.refresh();
+  for (TransmitPdo& p : transmit_)
+    if (p.due_by_event(dictionary_, now)) p.send(dictionary_, *bus_, now);
+}
+
+void Slave::watch_connection() noexcept {
+  const bool bus_off = bus_->state() == image::CanState::bus_off;
+  const bool lost = monitor_.lost() || bus_off;
+  if (lost && !lost_) connection_lost(bus_off ? kBusOff : kHeartbeatLost);
+  if (!lost && lost_) {
+    emcy_.clear(kHeartbeatLost);
+    emcy_.clear(kBusOff);
+    profile_.on_connection_restored();
+  }
+  lost_ = lost;
+  if (state_ != NmtState::operational) return;
+  for (ReceivePdo& p : receive_) {
+    if (!p.valid() || !p.late(now_)) continue;
+    p.stop_deadline();
+    connection_lost(kRpdoTimeout);
+  }
+}
+
+void Slave::connection_lost(std::uint16_t error_code) noexcept {
+  emcy_.raise(error_code, error_register::kCommunication);
+  profile_.on_abort_connection(error_code);
+  // Error behaviour 1029h:01. Source: CiA 301, 7.5.2.31.
+  switch (dictionary_.get(object::kErrorBehaviour, 1)) {
+    case 0:
+      if (state_ == NmtState::operational) enter(NmtState::pre_operational);
+      break;
+    case 2:
+      enter(NmtState::stopped);
+      break;
+    default:
+      break;
+  }
+}
+
+void Slave::command(NmtCommand command) noexcept {
+  switch (command) {
+    case NmtCommand::start:
+      return enter(NmtState::operational);
+    case NmtCommand::stop:
+      if (state_ != NmtState::stopped) profile_.on_abort_connection(0);
+      return enter(NmtState::stopped);
+    case NmtCommand::enter_pre_operational:
+      return enter(NmtState::pre_operational);
+    case NmtCommand::reset_node:
+      return reset_node(now_);
+    case NmtCommand::reset_communication:
+      profile_.on_abort_connection(0);
+      return reset_communication();
+  }
+}
+
+void Slave::enter(NmtState state) noexcept {
+  if (state == NmtState::operational && state_ != NmtState::operational) {
+    for (TransmitPdo& p : transmit_) p.start(now_);
+    for (ReceivePdo& p : receive_) {
+      p.drop();
+      p.stop_deadline();
+    }
+  }
+  if (state == NmtState::stopped) sdo_.reset();
+  state_ = state;
+  emcy_.set_allowed(alive());
+}
+
+void Slave::reset_node(image::Nanoseconds now) noexcept {
+  now_ = now;
+  profile_.on_abort_connection(0);
+  dictionary_.reset(kApplication);
+  profile_.on_reset();
+  reset_communication();
+}
+
+void Slave::reset_communication() noexcept {
+  dictionary_.reset(kCommunication);
+  sdo_.reset();
+  emcy_.reset();
+  monitor_.stop();
+  configure_pdos();
+  lost_ = false;
+  booting_ = true;
+  boot_at_ = now_ + image::kMillisecond;
+  enter(NmtState::boot_up);
+}
+
+void Slave::configure_pdos() noexcept {
+  any_event_driven_ = false;
+  for (int n = 0; n < kPdos; ++n) {
+    receive_[static_cast<std::size_t>(n)].configure(dictionary_, n);
+    transmit_[static_cast<std::size_t>(n)].configure(dictionary_, n, now_);
+    any_event_driven_ |= transmit_[static_cast<std::size_t>(n)].event_driven();
+  }
+}
+
+}  // namespace servogate::canopen

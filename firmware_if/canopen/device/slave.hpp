@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "firmware_if/canopen/301/nmt.hpp"
+#include "firmware_if/canopen/device/emcy_producer.hpp"
+#include "firmware_if/canopen/device/node_monitor.hpp"
+#include "firmware_if/canopen/device/object_dictionary.hpp"
+#include "firmware_if/canopen/device/pdo_channel.hpp"
+#include "firmware_if/canopen/device/sdo_server.hpp"
+
+namespace servogate::canopen {
+
+/// What stands behind the objects 2000h-FFFFh of a device: its device profile. All are called from within the
+/// slave's functions and must be real-time safe.
+class DeviceProfile {
+ public:
+  virtual ~DeviceProfile() = default;
+  /// May this object take this value now? The type's and the row's range have been checked.
+  virtual AbortCode before_write(ObjectDictionary::Slot, std::int64_t) noexcept { return AbortCode::none; }
+  /// An SDO or a PDO has written it.
+  virtual void after_write(ObjectDictionary::Slot) noexcept {}
+  /// Live values are about to be read: bring them up to date.
+  virtual void refresh() noexcept {}
+  /// A SYNC has come; synchronous RPDOs are applied and TPDOs sampled.
+  virtual void on_sync(image::Nanoseconds) noexcept {}
+  /// The connection to the master is broken: heartbeat, life guarding, RPDO deadline or bus-off (`error_code`
+  /// 8130h, 8250h, 8140h), or an NMT command took it away (0).
+  virtual void on_abort_connection(std::uint16_t /*error_code*/) noexcept {}
+  /// The connection is back.
+  virtual void on_connection_restored() noexcept {}
+  /// 2000h-FFFFh have their defaults or stored values again.
+  virtual void on_reset() noexcept {}
+};
+
+/// A CiA 301 device without a profile: NMT slave with boot-up, heartbeat and guarding, SDO server, EMCY, SYNC
+/// consumer, four PDOs of each direction with variable mapping, store and restore. A pure state machine on
+/// frames and time: the owner passes in frames and calls tick() every millisecond.
+class Slave final : private SdoObjects, private PdoSink {
+ public:
+  /// `dictionary` holds communication_objects() of this node and the profile's. Not real-time safe.
+  Slave(NodeId node, ObjectDictionary& dictionary, DeviceProfile& profile);
+
+  NodeId node() const noexcept { return node_; }
+  /// Everything below is real-time safe.
+  NmtState state() const noexcept { return state_; }
+  EmcyProducer& emcy() noexcept { return emcy_; }
+
+  /// Power-on: the boot-up message comes after boot_time.
+  void power_on(image::CanBus& bus, image::Nanoseconds now, image::Nanoseconds boot_time) noexcept;
+  /// Whether a frame can mean anything to this device; false lets the owner skip it.
+  bool concerned(const image::CanFrame& frame) const noexcept;
+  /// Whether a frame takes effect at once, so that the profile must be brought to its time first. A PDO that
+  /// waits for SYNC does not.
+  bool immediate(const image::CanFrame& frame) const noexcept;
+  void on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexcept;
+  /// Timers; call every millisecond.
+  void tick(image::Nanoseconds now) noexcept;
+  /// The device's own restart (a firmware reset), as NMT "reset node".
+  void reset_node(image::Nanoseconds now) noexcept;
+
+ private:
+  AbortCode read(std::uint16_t index, std::uint8_t subindex, std::span<std::uint8_t> bytes,
+                 std::size_t& size) noexcept override;
+  AbortCode write(std::uint16_t index, std::uint8_t subindex,
+                  std::span<const std::uint8_t> bytes) noexcept override;
+  AbortCode may_write(std::uint16_t index, std::uint8_t subindex, std::size_t& size) noexcept override;
+  void pdo_wrote(ObjectDictionary::Slot slot) noexcept override { profile_.after_write(slot); }
+
+  AbortCode check_communication_write(std::uint16_t index, std::uint8_t subindex,
+                                      std::int64_t value) const noexcept;
+  void communication_written(std::uint16_t index, std::uint8_t subindex, std::int64_t value) noexcept;
+  void store_or_restore(std::uint16_t index, std::uint8_t subindex) noexcept;
+  void command(NmtCommand command) noexcept;
+  void enter(NmtState state) noexcept;
+  void reset_communication() noexcept;
+  void configure_pdos() noexcept;
+  void on_sync(const image::CanFrame& frame) noexcept;
+  void on_pdo_frame(const image::CanFrame& frame) noexcept;
+  void answer_remote(const image::CanFrame& frame) noexcept;
+  void on_sdo(const image::CanFrame& frame) noexcept;
+  void watch_connection() noexcept;
+  void connection_lost(std::uint16_t error_code) noexcept;
+  std::uint32_t sync_id() const noexcept { return static_cast<std::uint32_t>(cob_id_sync_) & 0x7FF; }
+  bool alive() const noexcept {
+    return state_ == NmtState::operational || state_ == NmtState::pre_operational;
+  }
+
+  NodeId node_;
+  ObjectDictionary& dictionary_;
+  DeviceProfile& profile_;
+  SdoServer sdo_;
+  EmcyProducer emcy_;
+  NodeMonitor monitor_;
+  std::array<ReceivePdo, kPdos> receive_;
+  std::array<TransmitPdo, kPdos> transmit_;
+  bool any_event_driven_ = false;
+  std::int64_t& cob_id_sync_;
+  image::CanBus* bus_ = nullptr;
+  NmtState state_ = NmtState::boot_up;
+  image::Nanoseconds now_ = 0;
+  image::Nanoseconds boot_at_ = 0;
+  bool booting_ = false;
+  bool lost_ = false;
+};
+
+}  // namespace servogate::canopen

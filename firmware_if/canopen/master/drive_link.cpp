@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/canopen/master/drive_link.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "firmware_if/canopen/402/objects.hpp"
+
+namespace servogate::canopen {
+
+using image::DriveMode;
+using image::DriveState;
+
+namespace {
+
+/// vl: enable ramp, unlock ramp, reference ramp; without them the drive ramps to zero. Source: CiA 402-2,
+/// "vl".
+constexpr std::uint16_t kVlRampBits =
+    controlword::kModeSpecific4 | controlword::kModeSpecific5 | controlword::kModeSpecific6;
+
+std::uint64_t clamped(double value, double limit = 2147483647.0) noexcept {
+  if (!(value == value)) return 0;
+  return static_cast<std::uint64_t>(std::llround(std::clamp(value, -limit, limit)));
+}
+
+DriveControl::Timing timing_of(const DriveProfile& profile) {
+  return {profile.fault_reset, profile.fault_reset_hold_ms * image::kMillisecond,
+          profile.transition_timeout_ms * image::kMillisecond};
+}
+
+}  // namespace
+
+DriveLink::DriveLink(const NodeConfig& node, image::Nanoseconds cycle_ns)
+    : profile_(node.profile),
+      target_(node.target),
+      cycle_ns_(cycle_ns),
+      handover_counts_(profile_.handover_counts ? profile_.handover_counts
+                                                : std::max<std::int64_t>(1, profile_.counts_per_rev / 4)),
+      data_(profile_),
+      control_(timing_of(profile_)) {
+  const auto& rpdo = profile_.rpdo;
+  out_.controlword = find_field(rpdo, object::kControlword);
+  out_.target_position = find_field(rpdo, object::kTargetPosition);
+  out_.target_velocity = find_field(rpdo, object::kTargetVelocity);
+  out_.target_torque = find_field(rpdo, object::kTargetTorque);
+  out_.mode = find_field(rpdo, object::kModesOfOperation);
+  out_.probe_function = find_field(rpdo, object::kTouchProbeFunction);
+  out_.velocity_offset = find_field(rpdo, object::kVelocityOffset);
+  out_.vl_velocity = find_field(rpdo, object::kVlTargetVelocity);
+  out_.digital_outputs = find_field(rpdo, object::kDigitalOutputs, 1);
+  const auto& tpdo = profile_.tpdo;
+  in_.statusword = find_field(tpdo, object::kStatusword);
+  in_.position = find_field(tpdo, object::kPositionActual);
+  in_.velocity = find_field(tpdo, object::kVelocityActual);
+  if (!in_.velocity.mapped()) in_.velocity = find_field(tpdo, object::kVlVelocityActual);
+  in_.torque = find_field(tpdo, object::kTorqueActual);
+  in_.inputs = find_field(tpdo, object::kDigitalInputs);
+  in_.error_code = find_field(tpdo, object::kErrorCode);
+  in_.mode = find_field(tpdo, object::kModesOfOperationDisplay);
+  in_.probe_status = find_field(tpdo, object::kTouchProbeStatus);
+  restart();
+}
+
+void DriveLink::restart() noexcept {
+  data_.clear();
+  control_.restart();
+  probe_.restart();
+  statusword_ = 0;
+  position_known_ = false;
+  cycles_since_position_ = 0;
+  velocity_counts_s_ = 0.0;
+  last_state_ = DriveState::offline;
+  error_code_ = 0;
+  error_code_wanted_ = false;
+  mode_wanted_ = mode_of(DriveMode::none);
+  // The boot has written this mode; whether the drive shows it is still to be read.
+  mode_written_ = mode_wanted_;
+  mode_shown_ = 0;
+  mode_read_ns_ = 0;
+  mode_refused_ = false;
+  probe_function_known_ = false;
+  probe_refused_ = false;
+  following_ = false;
+  handover_difference_ = 0;
+  access_ = Access::none;
+}
+
+OperationMode DriveLink::mode_of(DriveMode mode) const noexcept {
+  switch (mode) {
+    case DriveMode::csp:
+      return OperationMode::cyclic_sync_position;
+    case DriveMode::csv:
+      return profile_.velocity_mode;
+    case DriveMode::cst:
+      return OperationMode::cyclic_sync_torque;
+    case DriveMode::homing:
+      return OperationMode::homing;
+    case DriveMode::none:
+      break;
+  }
+  return target_ == DriveTarget::axis ? OperationMode::cyclic_sync_position : profile_.velocity_mode;
+}
+
+bool DriveLink::update() noexcept {
+  ++cycles_since_position_;
+  const bool status_fresh = data_.fresh(in_.statusword);
+  if (status_fresh) {
+    statusword_ = static_cast<std::uint16_t>(data_.raw(in_.statusword));
+    control_.on_statusword(statusword_);
+  }
+  if (data_.fresh(in_.position)) take_position();
+  take_velocity();
+  if (data_.fresh(in_.mode)) mode_shown_ = static_cast<std::int8_t>(data_.number(in_.mode));
+  if (data_.fresh(in_.probe_status)) take_probe_by_pdo();
+  follow_state();
+  data_.end_of_cycle();
+  return status_fresh;
+}
+
+// 6064h has 32 bits and wraps; the machine counts on in 64.
+void DriveLink::take_position() noexcept {
+  const auto raw = static_cast<std::int32_t>(data_.number(in_.position));
+  if (!position_known_) {
+    position_counts_ = raw;
+    last_position_counts_ = raw;
+    cycles_since_position_ = 0;
+    position_known_ = true;
+    return;
+  }
+  position_counts_ += static_cast<std::int32_t>(static_cast<std::uint32_t>(raw) -
+                                                static_cast<std::uint32_t>(position_counts_));
+}
+
+void DriveLink::take_velocity() noexcept {
+  if (in_.velocity.mapped()) {
+    if (data_.fresh(in_.velocity))
+      velocity_counts_s_ = static_cast<double>(data_.number(in_.velocity)) * profile_.velocity_unit_counts_s;
+    return;
+  }
+  if (!data_.fresh(in_.position) || cycles_since_position_ == 0) return;
+  const auto time_s = static_cast<double>(cycles_since_position_ * cycle_ns_) * 1e-9;
+  velocity_counts_s_ = static_cast<double>(position_counts_ - last_position_counts_) / time_s;
+  last_position_counts_ = position_counts_;
+  cycles_since_position_ = 0;
+}
+
+void DriveLink::follow_state() noexcept {
+  const DriveState state = control_.state();
+  const auto in_fault = [](DriveState s) {
+    return s == DriveState::fault || s == DriveState::fault_reaction_active;
+  };
+  if (in_fault(state)) {
+    if (!in_fault(last_state_)) error_code_wanted_ = !in_.error_code.mapped();
+  } else {
+    if (in_fault(last_state_)) error_code_ = 0;
+    error_code_wanted_ = false;
+  }
+  if (data_.fresh(in_.error_code)) error_code_ = static_cast<std::uint16_t>(data_.raw(in_.error_code));
+  last_state_ = state;
+}
+
+// Status and value must be of the same SYNC; where they are not in one PDO the value is read by SDO.
+void DriveLink::take_probe_by_pdo() noexcept {
+  probe_.on_status(static_cast<std::uint16_t>(data_.raw(in_.probe_status)));
+  if (!probe_.wants_value()) return;
+  const PdoField value = find_field(profile_.tpdo, probe_.wants_value());
+  if (value.mapped() && value.pdo == in_.probe_status.pdo)
+    probe_.on_value(static_cast<std::int32_t>(data_.number(value)), position_counts_);
+}
+
+void DriveLink::on_emcy(std::uint16_t error_code) noexcept { error_code_ = error_code; }
+
+void DriveLink::fill(image::DriveFeedback& feedback) const noexcept {
+  feedback.state = control_.state();
+  const auto shown = static_cast<OperationMode>(mode_shown_);
+  feedback.mode = DriveMode::none;
+  for (const DriveMode mode : {DriveMode::csp, DriveMode::csv, DriveMode::cst, DriveMode::homing})
+    if (mode_of(mode) == shown) feedback.mode = mode;
+  feedback.statusword = statusword_;
+  feedback.error_code = error_code_;
+  feedback.position_counts = position_counts_;
+  feedback.velocity_counts_s = velocity_counts_s_;
+  feedback.torque_permille = static_cast<double>(data_.number(in_.torque)) * profile_.torque_unit_permille;
+  feedback.digital_inputs = static_cast<std::uint32_t>(data_.raw(in_.inputs));
+  feedback.latch_counts = probe_.latch_counts();
+  feedback.latch_sequence = probe_.sequence();
+  feedback.refusal = control_.refusal();
+}
+
+void DriveLink::apply(image::Nanoseconds now, const image::DriveCommand& command, bool blocked) noexcept {
+  const OperationMode mode = mode_of(command.mode);
+  if (mode != mode_wanted_) {
+    mode_wanted_ = mode;
+    mode_refused_ = false;
+  }
+  if (!command.latch_arm) probe_refused_ = false;
+  probe_.command(command.latch_arm && !probe_refused_, command.latch_source, command.latch_negative);
+
+  DriveControl::Wish wish;
+  wish.power = !command.power                  ? PowerWish::off
+               : command.quick_stop || blocked ? PowerWish::quick_stop
+                                               : PowerWish::on;
+  wish.reset_fault = command.reset_fault;
+  wish.mode_ready = mode_ready();
+  wish.start_homing = mode == OperationMode::homing && mode_ready();
+  std::uint16_t word = control_.step(now, wish);
+  if (mode == OperationMode::velocity && control_.state() == DriveState::operation_enabled)
+    word |= kVlRampBits;
+  data_.set(out_.controlword, word);
+  data_.set(out_.mode, static_cast<std::uint8_t>(mode));
+  data_.set(out_.probe_function, probe_.function());
+  if (profile_.brake_bit >= 0) {
+    const bool level = command.brake_release == profile_.brake_bit_releases;
+    data_.set(out_.digital_outputs, level ? std::uint64_t{1} << profile_.brake_bit : 0);
+  }
+  set_targets(command);
+}
+
+// Until the drive holds the axis its target is where it stands, so that nothing jumps when it begins to
+// follow (CiA 402-2, csp: the target position is used from the first SYNC in Operation enabled on).
+std::int64_t DriveLink::target_position(const image::DriveCommand& command) noexcept {
+  handover_difference_ = 0;
+  if (control_.state() != DriveState::operation_enabled) {
+    following_ = false;
+    held_target_ = position_counts_;
+    return held_target_;
+  }
+  if (!following_) {
+    const std::int64_t difference = command.position_counts - held_target_;
+    following_ = std::abs(difference) <= handover_counts_;
+    if (!following_) handover_difference_ = difference;
+  }
+  return following_ ? command.position_counts : held_target_;
+}
+
+void DriveLink::set_targets(const image::DriveCommand& command) noexcept {
+  const bool enabled = control_.state() == DriveState::operation_enabled;
+  const bool by_velocity = mode_wanted_ == profile_.velocity_mode && enabled;
+  const bool by_torque = mode_wanted_ == OperationMode::cyclic_sync_torque && enabled;
+  data_.set(out_.target_position, static_cast<std::uint64_t>(target_position(command)));
+  const double velocity = command.velocity_counts_s / profile_.velocity_unit_counts_s;
+  data_.set(out_.vl_velocity, by_velocity ? clamped(velocity, 32767.0) : 0);
+  data_.set(out_.target_velocity, by_velocity ? clamped(velocity) : 0);
+  data_.set(out_.velocity_offset, following_ && !by_velocity ? clamped(velocity) : 0);
+  data_.set(out_.target_torque,
+            by_torque ? clamped(command.torque_permille / profile_.torque_unit_permille) : 0);
+}
+
+}  // namespace servogate::canopen

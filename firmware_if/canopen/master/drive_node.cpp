@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/canopen/master/drive_node.hpp"
+
+#include <algorithm>
+
+#include "firmware_if/canopen/402/objects.hpp"
+
+namespace servogate::canopen {
+namespace {
+
+/// Cycles between two TPDOs of this kind; 0: they come when they like.
+std::int64_t cycles_between(const PdoWanted& pdo, image::Nanoseconds cycle_ns) noexcept {
+  if (pdo.transmission_type >= 1 && pdo.transmission_type <= 240) return pdo.transmission_type;
+  return pdo.event_ms * image::kMillisecond / cycle_ns;
+}
+
+/// Cycles between two PDOs with the statusword; 0: not known.
+std::int64_t status_interval(const NodeConfig& node, const SegmentConfig& segment) noexcept {
+  const PdoField status = find_field(node.profile.tpdo, object::kStatusword);
+  if (!status.mapped()) return 0;
+  const auto& pdo = node.profile.tpdo[static_cast<std::size_t>(status.pdo)];
+  return cycles_between(pdo, segment.cycle_ns);
+}
+
+bool same_failure(const BootReport& a, const BootReport& b) noexcept {
+  return a.step == b.step && a.problem == b.problem && a.index == b.index && a.subindex == b.subindex;
+}
+
+}  // namespace
+
+DriveNode::DriveNode(const NodeConfig& config, const SegmentConfig& segment)
+    : config_(config),
+      heartbeat_timeout_ns_(heartbeat_timeout_ms(config, segment) * image::kMillisecond),
+      boot_pause_ns_(segment.boot_pause_ms * image::kMillisecond),
+      status_every_(std::max<std::int64_t>(1, status_interval(config, segment))),
+      missed_limit_(status_interval(config, segment) * max_missed_pdo(config, segment)),
+      first_limit_(segment.boot_timeout_ms * image::kMillisecond / segment.cycle_ns),
+      boot_attempts_(segment.boot_attempts),
+      sdo_(config.node, segment.sdo_timeout_ms * image::kMillisecond,
+           static_cast<std::uint32_t>(std::max(0, segment.sdo_retries))),
+      boot_(config.node, boot_plan(config, segment), segment.boot_timeout_ms * image::kMillisecond),
+      link_(config, segment.cycle_ns) {
+  start_boot();
+}
+
+BusEvent DriveNode::event(BusEventKind kind, const NodeContext& context) const noexcept {
+  BusEvent e;
+  e.kind = kind;
+  e.segment = context.segment;
+  e.node = config_.node;
+  e.cycle = context.cycle;
+  e.t_ns = context.now;
+  e.statusword = link_.statusword();
+  return e;
+}
+
+void DriveNode::start_boot() noexcept {
+  phase_ = Phase::booting;
+  boot_.begin(sdo_);
+}
+
+void DriveNode::go_offline() noexcept {
+  if (online_) blocked_ = true;
+  online_ = false;
+}
+
+void DriveNode::on_frame(Service service, const image::CanFrame& frame, const NodeContext& context) noexcept {
+  switch (service) {
+    case Service::tpdo1:
+      return on_tpdo(1, frame, context);
+    case Service::tpdo2:
+      return on_tpdo(2, frame, context);
+    case Service::tpdo3:
+      return on_tpdo(3, frame, context);
+    case Service::tpdo4:
+      return on_tpdo(4, frame, context);
+    case Service::heartbeat:
+      return on_heartbeat(frame, context);
+    case Service::emcy:
+      return on_emcy(frame, context);
+    case Service::sdo_response:
+      sdo_.on_frame(frame);
+      return;
+    default:
+      return;
+  }
+}
+
+void DriveNode::on_tpdo(int number, const image::CanFrame& frame, const NodeContext& context) noexcept {
+  // What a node sends by an old configuration before it has booted means nothing.
+  if (phase_ != Phase::running) return;
+  if (link_.process_data().take(number, frame) != ProcessData::Taken::too_short) return;
+  BusEvent e = event(BusEventKind::pdo_short, context);
+  e.expected = link_.process_data().tpdo_bytes(number);
+  e.got = frame.length;
+  e.frame.id = frame.id;
+  e.frame.length = frame.length;
+  std::copy_n(frame.data.begin(), std::min<std::size_t>(frame.length, 8), e.frame.data.begin());
+  context.events.push(e);
+}
+
+void DriveNode::on_emcy(const image::CanFrame& frame, const NodeContext& context) noexcept {
+  const auto emcy = parse_emcy(frame);
+  if (!emcy) return;
+  emcy_.add(*emcy, context.now);
+  link_.on_emcy(emcy->error_code);
+  BusEvent e = event(BusEventKind::emcy, context);
+  e.emcy = *emcy;
+  context.events.push(e);
+}
+
+void DriveNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& context) noexcept {
+  const auto state = parse_heartbeat(frame);
+  if (!state) return;
+  if (*state == NmtState::boot_up) return on_boot_up(context);
+  heartbeat_deadline_ns_ = context.now + heartbeat_timeout_ns_;
+  if (phase_ == Phase::booting) {
+    boot_.on_heartbeat(*state);
+  } else if (phase_ == Phase::lost) {
+    attempts_ = 0;
+    start_boot();
+  } else if (phase_ == Phase::running && *state != NmtState::operational) {
+    BusEvent e = event(BusEventKind::node_left, context);
+    e.expected = static_cast<int>(NmtState::operational);
+    e.got = static_cast<int>(*state);
+    context.events.push(e);
+    go_offline();
+    attempts_ = 0;
+    start_boot();
+  }
+}
+
+void DriveNode::on_boot_up(const NodeContext& context) noexcept {
+  if (phase_ == Phase::booting && boot_.report().step == BootStep::reset) return boot_.on_boot_up();
+  if (phase_ == Phase::running) {
+    context.events.push(event(BusEventKind::node_restarted, context));
+    go_offline();
+  }
+  if (phase_ != Phase::booting) attempts_ = 0;
+  phase_ = Phase::booting;
+  boot_.begin_after_boot_up(sdo_);
+}
+
+void DriveNode::follow_boot(const NodeContext& context) noexcept {
+  if (boot_.state() == NodeBoot::State::done) return start_operation(context);
+  if (boot_.state() != NodeBoot::State::failed) return;
+  ++attempts_;
+  const BootReport& report = boot_.report();
+  const bool silent = report.problem == BootProblem::no_answer;
+  phase_ = silent ? Phase::pausing : Phase::refused;
+  pause_until_ns_ = context.now + boot_pause_ns_;
+  if ((silent && attempts_ < boot_attempts_) || same_failure(report, reported_)) return;
+  reported_ = report;
+  BusEvent e = event(BusEventKind::boot_failed, context);
+  e.boot = report;
+  context.events.push(e);
+}
+
+void DriveNode::start_operation(const NodeContext& context) noexcept {
+  phase_ = Phase::running;
+  attempts_ = 0;
+  reported_ = {};
+  missed_ = 0;
+  seen_status_ = false;
+  refusal_said_ = false;
+  handover_said_ = false;
+  heartbeat_deadline_ns_ = context.now + heartbeat_timeout_ns_;
+  link_.restart();
+  BusEvent e = event(BusEventKind::node_booted, context);
+  e.boot = boot_.report();
+  context.events.push(e);
+}
+
+void DriveNode::supervise(bool status_fresh, const NodeContext& context) noexcept {
+  missed_ = status_fresh ? 0 : missed_ + 1;
+  if (status_fresh) seen_status_ = online_ = true;
+  if (context.now > heartbeat_deadline_ns_) {
+    BusEvent e = event(BusEventKind::heartbeat_lost, context);
+    e.got = (context.now - heartbeat_deadline_ns_ + heartbeat_timeout_ns_) / image::kMillisecond;
+    context.events.push(e);
+    go_offline();
+    sdo_.cancel();
+    phase_ = Phase::lost;
+    return;
+  }
+  const std::int64_t limit = seen_status_ ? missed_limit_ : first_limit_;
+  if (limit == 0 || missed_ != limit) return;
+  BusEvent e = event(BusEventKind::pdo_missing, context);
+  e.expected = limit;
+  e.got = missed_;
+  context.events.push(e);
+  go_offline();
+}
+
+void DriveNode::report_link(const NodeContext& context) noexcept {
+  const bool refused = link_.refusal().waited_ms != 0;
+  if (refused && !refusal_said_) {
+    BusEvent e = event(BusEventKind::refused, context);
+    e.refusal = link_.refusal();
+    context.events.push(e);
+  }
+  refusal_said_ = refused;
+  const bool held = link_.handover_difference() != 0;
+  if (held && !handover_said_) {
+    BusEvent e = event(BusEventKind::handover_held, context);
+    e.got = link_.handover_difference();
+    context.events.push(e);
+  }
+  handover_said_ = held;
+}
+
+void DriveNode::evaluate(image::DriveFeedback& feedback, const NodeContext& context) noexcept {
+  if (phase_ == Phase::booting) follow_boot(context);
+  if (phase_ == Phase::pausing && context.now >= pause_until_ns_) start_boot();
+  if (phase_ == Phase::running) {
+    supervise(link_.update(), context);
+    report_link(context);
+  }
+  link_.fill(feedback);
+  feedback.online = online_;
+  // In PDOs that should have come, so that one on every n-th SYNC is not missed in between.
+  feedback.missed = static_cast<std::uint32_t>(missed_ / status_every_);
+  if (!online_) feedback.state = image::DriveState::offline;
+}
+
+int DriveNode::send_process_data(const image::DriveCommand& command, const NodeContext& context,
+                                 image::CanFrame& dropped) noexcept {
+  if (!command.power) blocked_ = false;
+  if (phase_ != Phase::running) return 0;
+  link_.apply(context.now, command, blocked_);
+  int lost = 0;
+  for (int number = 1; number <= 4; ++number) {
+    image::CanFrame frame;
+    if (!link_.process_data().due(number, config_.node, context.cycle, context.now, frame)) continue;
+    if (context.bus.send(frame)) {
+      link_.process_data().sent(number, context.now);
+    } else {
+      dropped = frame;
+      ++lost;
+    }
+  }
+  return lost;
+}
+
+bool DriveNode::send_acyclic(const NodeContext& context) noexcept {
+  if (phase_ == Phase::booting) return boot_.poll(context.now, sdo_, context.bus);
+  if (phase_ == Phase::running && !sdo_.busy()) {
+    if (link_.access_running()) finish_access(context);
+    link_.start_access(context.now, sdo_);
+  }
+  return sdo_.poll(context.now, context.bus);
+}
+
+void DriveNode::finish_access(const NodeContext& context) noexcept {
+  if (link_.finish_access(sdo_)) return;
+  const SdoResult& result = sdo_.result();
+  BusEvent e = event(BusEventKind::sdo_failed, context);
+  e.boot.index = result.index;
+  e.boot.subindex = result.subindex;
+  e.boot.writing = result.download;
+  e.boot.abort = result.abort;
+  e.boot.problem = result.status == SdoStatus::aborted     ? BootProblem::aborted
+                   : result.status == SdoStatus::no_answer ? BootProblem::no_answer
+                                                           : BootProblem::bad_protocol;
+  context.events.push(e);
+}
+
+}  // namespace servogate::canopen

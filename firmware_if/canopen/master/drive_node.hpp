@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "firmware_if/canopen/301/cob_id.hpp"
+#include "firmware_if/canopen/301/emcy_history.hpp"
+#include "firmware_if/canopen/301/sdo_client.hpp"
+#include "firmware_if/canopen/302/node_boot.hpp"
+#include "firmware_if/canopen/master/bus_event.hpp"
+#include "firmware_if/canopen/master/drive_link.hpp"
+#include "firmware_if/canopen/master/segment_config.hpp"
+
+namespace servogate::canopen {
+
+/// What a node needs of its surroundings in one cycle.
+struct NodeContext {
+  std::int16_t segment = 0;
+  std::int64_t cycle = 0;
+  image::Nanoseconds now = 0;
+  image::CanBus& bus;
+  BusEventRing& events;
+};
+
+/// One configured node through its life: boot, operation under supervision, loss, boot again. All but the
+/// constructor is real-time safe.
+class DriveNode {
+ public:
+  DriveNode(const NodeConfig& config, const SegmentConfig& segment);
+
+  NodeId id() const noexcept { return config_.node; }
+  const NodeConfig& config() const noexcept { return config_; }
+  bool online() const noexcept { return online_; }
+  const BootReport& boot_report() const noexcept { return boot_.report(); }
+  const NodeIdentity& identity() const noexcept { return boot_.identity(); }
+  const EmcyHistory& emcy_history() const noexcept { return emcy_; }
+
+  /// A frame of this node: TPDO, SDO answer, heartbeat or emergency.
+  void on_frame(Service service, const image::CanFrame& frame, const NodeContext& context) noexcept;
+  /// After all frames of the cycle: supervision, then the feedback.
+  void evaluate(image::DriveFeedback& feedback, const NodeContext& context) noexcept;
+  /// Sends the RPDOs. Returns the number of frames the bus did not take; `dropped` is the last of them.
+  int send_process_data(const image::DriveCommand& command, const NodeContext& context,
+                        image::CanFrame& dropped) noexcept;
+  /// Sends at most one frame of boot or SDO. True when it did.
+  bool send_acyclic(const NodeContext& context) noexcept;
+
+ private:
+  enum class Phase : std::uint8_t {
+    booting,
+    pausing,  ///< between two attempts to boot
+    refused,  ///< the node answered, and not as it should: waits until it restarts
+    running,
+    lost,  ///< silent: waits for a sign of life
+  };
+
+  void on_heartbeat(const image::CanFrame& frame, const NodeContext& context) noexcept;
+  void on_boot_up(const NodeContext& context) noexcept;
+  void on_emcy(const image::CanFrame& frame, const NodeContext& context) noexcept;
+  void on_tpdo(int number, const image::CanFrame& frame, const NodeContext& context) noexcept;
+  void start_boot() noexcept;
+  void follow_boot(const NodeContext& context) noexcept;
+  void start_operation(const NodeContext& context) noexcept;
+  void go_offline() noexcept;
+  void supervise(bool status_fresh, const NodeContext& context) noexcept;
+  void report_link(const NodeContext& context) noexcept;
+  void finish_access(const NodeContext& context) noexcept;
+  BusEvent event(BusEventKind kind, const NodeContext& context) const noexcept;
+
+  NodeConfig config_;
+  image::Nanoseconds heartbeat_timeout_ns_, boot_pause_ns_;
+  std::int64_t status_every_, missed_limit_, first_limit_;
+  std::int32_t boot_attempts_;
+
+  SdoClient sdo_;
+  NodeBoot boot_;
+  DriveLink link_;
+  EmcyHistory emcy_;
+
+  Phase phase_ = Phase::booting;
+  std::int32_t attempts_ = 0;
+  BootReport reported_;  ///< failure said last, so that a repetition is not said again
+  image::Nanoseconds pause_until_ns_ = 0;
+  image::Nanoseconds heartbeat_deadline_ns_ = 0;
+  bool online_ = false;
+  bool seen_status_ = false;
+  std::int64_t missed_ = 0;
+  bool blocked_ = false;  ///< lost while it ran: power must be withdrawn once before it is given again
+  bool refusal_said_ = false;
+  bool handover_said_ = false;
+};
+
+}  // namespace servogate::canopen

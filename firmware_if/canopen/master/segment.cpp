@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/canopen/master/segment.hpp"
+
+#include <algorithm>
+#include <bitset>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/master/bus_meter.hpp"
+#include "firmware_if/canopen/master/drive_node.hpp"
+#include "firmware_if/canopen/master/segment_load.hpp"
+
+namespace servogate::canopen {
+namespace {
+
+using image::ProcessImage;
+
+/// More than a bus of 1 Mbit/s carries in 10 ms; what is left over waits for the next cycle.
+constexpr int kMaxFramesPerCycle = 256;
+/// The same trouble is said again after so long.
+constexpr image::Nanoseconds kRepeatNs = image::kSecond;
+/// Request and answer of a service data transfer.
+constexpr double kExchangeBits = 2.0 * image::worst_case_bits(8);
+/// However full the bus is planned, one exchange in so many cycles goes through.
+constexpr double kCyclesPerExchange = 20.0;
+constexpr int kServices = static_cast<int>(Service::other) + 1;
+
+/// Lets one event in a second through.
+class Throttle {
+ public:
+  bool pass(image::Nanoseconds now) noexcept {
+    if (armed_ && now - last_ < kRepeatNs) return false;
+    armed_ = true;
+    last_ = now;
+    return true;
+  }
+
+ private:
+  bool armed_ = false;
+  image::Nanoseconds last_ = 0;
+};
+
+void require(bool condition, const char* what) {
+  if (!condition) throw std::invalid_argument(what);
+}
+
+void check_node(const NodeConfig& node) {
+  require(node.node >= 1 && node.node <= kMaxNode, "node-ID outside 1-127");
+  const int targets = node.target == DriveTarget::axis ? image::kMaxAxes : image::kMaxSpindles;
+  require(node.target_index >= 0 && node.target_index < targets, "target of a node out of range");
+  const DriveProfile& profile = node.profile;
+  require(find_field(profile.rpdo, object::kControlword).mapped(), "6040h is not mapped");
+  require(find_field(profile.tpdo, object::kStatusword).mapped(), "6041h is not mapped");
+  require(profile.velocity_unit_counts_s != 0.0 && profile.torque_unit_permille != 0.0, "a unit is zero");
+  require(profile.brake_bit < 32, "no such bit in 60FEh");
+  require(profile.brake_bit < 0 || find_field(profile.rpdo, object::kDigitalOutputs, 1).mapped(),
+          "60FEh:01 is not mapped for the brake");
+  if (node.target == DriveTarget::spindle) return;
+  require(find_field(profile.rpdo, object::kTargetPosition).mapped(), "607Ah is not mapped");
+  require(find_field(profile.tpdo, object::kPositionActual).mapped(), "6064h is not mapped");
+}
+
+SegmentConfig checked(SegmentConfig config) {
+  require(config.index >= 0 && config.index < image::kMaxSegments, "segment index out of range");
+  require(config.cycle_ns > 0, "cycle time is not positive");
+  require(config.heartbeat_ms > 0 && config.heartbeat_timeout_ms > config.heartbeat_ms, "heartbeat times");
+  require(config.own_node >= 1 && config.own_node <= kMaxNode, "own node-ID outside 1-127");
+  std::bitset<128> used;
+  used.set(config.own_node);
+  for (const NodeConfig& node : config.nodes) {
+    check_node(node);
+    require(!used.test(node.node), "two nodes with one ID");
+    used.set(node.node);
+  }
+  return config;
+}
+
+}  // namespace
+
+/// What service data may take of the bus: what the planned load of the nodes that run, and a reserve, leave.
+/// A bucket that holds a cycle's share, one exchange at least.
+class SdoBudget {
+ public:
+  SdoBudget(const SegmentConfig& config, std::uint32_t bit_rate)
+      : cycle_bits_(static_cast<double>(bit_rate) * static_cast<double>(config.cycle_ns) * 1e-9),
+        most_(kExchangeBits * config.sdo_frames_per_cycle) {
+    const auto bits = [&](std::span<const NodeConfig> nodes) {
+      return cycle_bits_ <= 0.0
+                 ? 0.0
+                 : cycle_bits_ * segment_load(bit_rate, config.cycle_ns, nodes, config.heartbeat_ms).load;
+    };
+    const double own = bits({});
+    free_ = cycle_bits_ * (1.0 - config.sdo_reserve) - own;
+    for (const NodeConfig& node : config.nodes) node_bits_.push_back(bits({&node, 1}) - own);
+  }
+  /// A cycle begins. real-time safe.
+  void refill(std::span<const DriveNode> nodes) noexcept {
+    double free = free_;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (nodes[i].online()) free -= node_bits_[i];
+    // An unknown bit rate is no limit.
+    const double share = cycle_bits_ <= 0.0
+                             ? most_
+                             : std::clamp(free, std::min(kExchangeBits / kCyclesPerExchange, most_), most_);
+    bits_ = std::min(bits_ + share, std::max(share, kExchangeBits));
+  }
+  bool enough() const noexcept { return bits_ >= kExchangeBits; }
+  void take() noexcept { bits_ -= kExchangeBits; }
+
+ private:
+  double cycle_bits_, most_;
+  double free_ = 0.0;              ///< bits of a cycle without any node
+  std::vector<double> node_bits_;  ///< of a cycle, by node
+  double bits_ = 0.0;
+};
+
+struct Segment::Impl {
+  Impl(image::CanBus& can, SegmentConfig segment)
+      : config(checked(std::move(segment))), bus(can), sdo(config, can.bit_rate()) {
+    nodes.reserve(config.nodes.size());
+    index_of.fill(-1);
+    for (const NodeConfig& node : config.nodes) {
+      index_of[node.node] = static_cast<std::int8_t>(nodes.size());
+      nodes.emplace_back(node, config);
+    }
+  }
+
+  NodeContext context(const ProcessImage& image) noexcept {
+    return {static_cast<std::int16_t>(config.index), image.now.number, image.now.t_ns, bus, ring};
+  }
+  static image::DriveFeedback& feedback(ProcessImage& image, const NodeConfig& node) noexcept {
+    const auto i = static_cast<std::size_t>(node.target_index);
+    return node.target == DriveTarget::axis ? image.axes[i].drive : image.spindles[i].drive;
+  }
+  static const image::DriveCommand& command(const ProcessImage& image, const NodeConfig& node) noexcept {
+    const auto i = static_cast<std::size_t>(node.target_index);
+    return node.target == DriveTarget::axis ? image.axes[i].drive_command : image.spindles[i].drive_command;
+  }
+
+  BusEvent event(BusEventKind kind, const ProcessImage& image, NodeId node = 0) const noexcept;
+  void say_frame(BusEventKind kind, const ProcessImage& image, const image::CanFrame& frame,
+                 NodeId node) noexcept;
+  bool send_own(const ProcessImage& image, const image::CanFrame& frame) noexcept;
+  void dispatch(const image::CanFrame& frame, const ProcessImage& image) noexcept;
+  void on_foreign(const CobId& cob, const image::CanFrame& frame, const ProcessImage& image) noexcept;
+  void watch_bus(const ProcessImage& image) noexcept;
+  void drain(ProcessImage& image) noexcept;
+  void send_heartbeat(const ProcessImage& image) noexcept;
+  void send_acyclic(const ProcessImage& image) noexcept;
+  void fill_status(image::SegmentStatus& status) const noexcept;
+
+  // Everything sent is counted where it is sent.
+  class CountingBus final : public image::CanBus {
+   public:
+    explicit CountingBus(image::CanBus& bus) : bus_(bus) {}
+    bool send(const image::CanFrame& frame) noexcept override {
+      if (!bus_.send(frame)) return false;
+      ++sent;
+      meter.add(frame);
+      return true;
+    }
+    bool receive(image::CanFrame& frame) noexcept override {
+      if (!bus_.receive(frame)) return false;
+      if (frame.error) {
+        ++errors;
+      } else {
+        ++received;
+        meter.add(frame);
+      }
+      return true;
+    }
+    image::CanState state() const noexcept override { return bus_.state(); }
+    std::uint32_t bit_rate() const noexcept override { return bus_.bit_rate(); }
+
+    std::uint64_t sent = 0, received = 0, errors = 0;
+    BusMeter meter;
+
+   private:
+    image::CanBus& bus_;
+  };
+
+  SegmentConfig config;
+  CountingBus bus;
+  std::vector<DriveNode> nodes;
+  std::array<std::int8_t, 128> index_of{};
+  BusEventRing ring;
+  image::CanState bus_state = image::CanState::error_active;
+  image::Nanoseconds heartbeat_due_ns = 0;
+  bool started = false;
+  std::size_t next_acyclic = 0;
+  SdoBudget sdo;
+  std::uint64_t send_failures = 0;
+  Throttle send_failed;
+  std::array<Throttle, kServices> foreign;
+  std::bitset<128> unknown_said;
+};
+
+BusEvent Segment::Impl::event(BusEventKind kind, const ProcessImage& image, NodeId node) const noexcept {
+  BusEvent e;
+  e.kind = kind;
+  e.segment = static_cast<std::int16_t>(config.index);
+  e.node = node;
+  e.cycle = image.now.number;
+  e.t_ns = image.now.t_ns;
+  return e;
+}
+
+void Segment::Impl::say_frame(BusEventKind kind, const ProcessImage& image, const image::CanFrame& frame,
+                              NodeId node) noexcept {
+  BusEvent e = event(kind, image, node);
+  e.frame.id = frame.id;
+  e.frame.length = frame.length;
+  for (std::size_t i = 0; i < frame.length && i < e.frame.data.size(); ++i) e.frame.data[i] = frame.data[i];
+  ring.push(e);
+}
+
+bool Segment::Impl::send_own(const ProcessImage& image, const image::CanFrame& frame) noexcept {
+  if (bus.send(frame)) return true;
+  ++send_failures;
+  if (send_failed.pass(image.now.t_ns)) say_frame(BusEventKind::send_failed, image, frame, 0);
+  return false;
+}
+
+// Only the control speaks on these identifiers, and a bus does not give us our own frames back.
+void Segment::Impl::on_foreign(const CobId& cob, const image::CanFrame& frame,
+                               const ProcessImage& image) noexcept {
+  if (foreign[static_cast<std::size_t>(cob.service)].pass(image.now.t_ns))
+    say_frame(BusEventKind::foreign_frame, image, frame, cob.node);
+}
+
+void Segment::Impl::dispatch(const image::CanFrame& frame, const ProcessImage& image) noexcept {
+  if (frame.error || frame.remote || frame.fd) return;
+  const CobId cob = classify(frame.id, frame.extended);
+  switch (cob.service) {
+    case Service::nmt:
+    case Service::sync:
+      return on_foreign(cob, frame, image);
+    case Service::rpdo1:
+    case Service::rpdo2:
+    case Service::rpdo3:
+    case Service::rpdo4:
+    case Service::sdo_request:
+      if (index_of[cob.node] >= 0) on_foreign(cob, frame, image);
+      return;
+    case Service::tpdo1:
+    case Service::tpdo2:
+    case Service::tpdo3:
+    case Service::tpdo4:
+    case Service::sdo_response:
+    case Service::emcy:
+    case Service::heartbeat:
+      break;
+    default:
+      return;
+  }
+  if (const int i = index_of[cob.node]; i >= 0)
+    return nodes[static_cast<std::size_t>(i)].on_frame(cob.service, frame, context(image));
+  if (cob.service != Service::emcy && cob.service != Service::heartbeat) return;
+  if (cob.node == config.own_node) return on_foreign(cob, frame, image);
+  if (unknown_said.test(cob.node)) return;
+  unknown_said.set(cob.node);
+  say_frame(BusEventKind::unknown_node, image, frame, cob.node);
+}
+
+void Segment::Impl::watch_bus(const ProcessImage& image) noexcept {
+  const image::CanState now = bus.state();
+  if (now == bus_state) return;
+  bus_state = now;
+  BusEvent e = event(BusEventKind::bus_state, image);
+  e.bus_state = now;
+  ring.push(e);
+}
+
+void Segment::Impl::drain(ProcessImage& image) noexcept {
+  image::CanFrame frame;
+  for (int n = 0; n < kMaxFramesPerCycle && bus.receive(frame); ++n) dispatch(frame, image);
+  for (DriveNode& node : nodes) node.evaluate(feedback(image, node.config()), context(image));
+}
+
+void Segment::Impl::send_heartbeat(const ProcessImage& image) noexcept {
+  if (image.now.t_ns < heartbeat_due_ns) return;
+  if (!send_own(image, heartbeat_frame(config.own_node, NmtState::operational))) return;
+  const image::Nanoseconds period = config.heartbeat_ms * image::kMillisecond;
+  heartbeat_due_ns += period;
+  // After a gap in time the rhythm starts anew instead of catching up.
+  if (heartbeat_due_ns <= image.now.t_ns) heartbeat_due_ns = image.now.t_ns + period;
+}
+
+void Segment::Impl::send_acyclic(const ProcessImage& image) noexcept {
+  int budget = config.sdo_frames_per_cycle;
+  sdo.refill(nodes);
+  const std::size_t count = nodes.size();
+  for (std::size_t i = 0; i < count && budget > 0 && sdo.enough(); ++i) {
+    const std::size_t turn = (next_acyclic + i) % count;
+    if (!nodes[turn].send_acyclic(context(image))) continue;
+    --budget;
+    sdo.take();
+    // Whoever did not come to its turn is first in the next cycle.
+    if (budget == 0 || !sdo.enough()) next_acyclic = (turn + 1) % count;
+  }
+}
+
+void Segment::Impl::fill_status(image::SegmentStatus& status) const noexcept {
+  status.load = bus.meter.load();
+  status.load_worst_cycle = bus.meter.worst_cycle();
+  status.frames_sent = bus.sent;
+  status.frames_received = bus.received;
+  status.errors = bus.errors + send_failures;
+  status.operational = !nodes.empty();
+  for (const DriveNode& node : nodes) status.operational = status.operational && node.online();
+}
+
+Segment::Segment(image::CanBus& bus, SegmentConfig config)
+    : impl_(std::make_unique<Impl>(bus, std::move(config))) {}
+Segment::~Segment() = default;
+
+void Segment::receive(ProcessImage& image) noexcept {
+  Impl& my = *impl_;
+  if (my.started) my.bus.meter.close_cycle(image.now.period_ns, my.bus.bit_rate());
+  if (!my.started) my.heartbeat_due_ns = image.now.t_ns;
+  my.started = true;
+  my.send_own(image, make_frame(cob::kSync, {}));
+  my.watch_bus(image);
+  my.drain(image);
+  my.fill_status(image.segments[static_cast<std::size_t>(my.config.index)]);
+}
+
+void Segment::send(ProcessImage& image) noexcept {
+  Impl& my = *impl_;
+  for (DriveNode& node : my.nodes) {
+    image::CanFrame dropped;
+    const int lost = node.send_process_data(Impl::command(image, node.config()), my.context(image), dropped);
+    my.send_failures += static_cast<std::uint64_t>(lost);
+    if (lost && my.send_failed.pass(image.now.t_ns))
+      my.say_frame(BusEventKind::send_failed, image, dropped, node.id());
+  }
+  my.send_heartbeat(image);
+  my.send_acyclic(image);
+}
+
+BusEventRing& Segment::events() noexcept { return impl_->ring; }
+const SegmentConfig& Segment::config() const noexcept { return impl_->config; }
+
+NodeStatus Segment::node_status(std::size_t i) const noexcept {
+  const DriveNode& node = impl_->nodes[i];
+  const NodeIdentity& identity = node.identity();
+  return {node.id(),
+          node.online(),
+          node.boot_report(),
+          identity.device_type,
+          identity.vendor_id,
+          identity.product_code,
+          identity.revision,
+          identity.serial,
+          node.emcy_history().count()};
+}
+
+}  // namespace servogate::canopen

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+
+#include "firmware_if/canopen/master/bus_event.hpp"
+#include "firmware_if/canopen/master/segment_config.hpp"
+#include "firmware_if/image/can_bus.hpp"
+#include "firmware_if/image/process_image.hpp"
+
+namespace servogate::canopen {
+
+/// What is known of a node, for pages and reports.
+struct NodeStatus {
+  NodeId node = 0;
+  bool online = false;
+  BootReport boot;  ///< step `done` once it runs
+  std::uint32_t device_type = 0;
+  std::uint32_t vendor_id = 0, product_code = 0, revision = 0, serial = 0;
+  std::uint32_t emcy_count = 0;
+};
+
+/// CANopen master of one CAN bus with its CiA 402 drives, as a device of the cycle.
+///
+/// SYNC k opens cycle k: it is the first frame receive() sends. A drive latches its actual values and applies
+/// the RPDO it got before at SYNC; the TPDOs it answers after SYNC k are read in cycle k + 1. Nodes boot, are
+/// lost and come back while the cycle runs; everything that is not process data goes over SDO in a bounded
+/// number of frames per cycle.
+class Segment final : public image::CycleDevice {
+ public:
+  /// The bus must live longer. Copies and prepares everything; allocates here and never again. Throws
+  /// std::invalid_argument for a configuration that cannot run (two nodes with one ID, a target out of range,
+  /// a statusword or controlword that is not mapped); the machine file's check says that earlier and better.
+  Segment(image::CanBus& bus, SegmentConfig config);
+  ~Segment() override;
+  Segment(const Segment&) = delete;
+  Segment& operator=(const Segment&) = delete;
+
+  /// SYNC, then all received frames, then AxisImage::drive and SpindleImage::drive. real-time safe.
+  void receive(image::ProcessImage& image) noexcept override;
+  /// RPDOs of drive_command, then heartbeat, NMT and SDO. real-time safe.
+  void send(image::ProcessImage& image) noexcept override;
+
+  /// What happened; one reader. real-time safe.
+  BusEventRing& events() noexcept;
+  const SegmentConfig& config() const noexcept;
+  /// Status of the i-th configured node. Written by the cycle: read it from the cycle's thread or between
+  /// cycles.
+  NodeStatus node_status(std::size_t i) const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace servogate::canopen

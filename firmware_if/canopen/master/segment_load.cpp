@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/canopen/master/segment_load.hpp"
+
+#include <algorithm>
+
+#include "firmware_if/canopen/301/cob_id.hpp"
+#include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/image/can_bus.hpp"
+
+namespace servogate::canopen {
+namespace {
+
+constexpr std::uint8_t kLastSyncType = 240;
+
+/// How often a PDO comes in a cycle, on average; one on event at most once a cycle.
+double per_cycle(const PdoWanted& pdo, image::Nanoseconds cycle_ns, bool transmit) {
+  if (pdo.transmission_type <= kLastSyncType) return 1.0 / std::max<int>(1, pdo.transmission_type);
+  if (!transmit || pdo.inhibit_100us == 0) return 1.0;
+  const double inhibit_ns = pdo.inhibit_100us * 100'000.0;
+  return std::min(1.0, static_cast<double>(cycle_ns) / inhibit_ns);
+}
+
+class Sum {
+ public:
+  Sum(std::uint32_t bit_rate, image::Nanoseconds cycle_ns)
+      : bits_per_cycle_(static_cast<double>(bit_rate) * static_cast<double>(cycle_ns) * 1e-9) {}
+  void add(std::uint32_t id, NodeId node, std::string what, std::uint8_t bytes, double often) {
+    const std::uint32_t bits = image::worst_case_bits(bytes);
+    total_.frames.push_back({id, node, std::move(what), bytes, bits, often});
+    total_.load += bits * often / bits_per_cycle_;
+    total_.worst_cycle += bits * std::max(often, 1.0) / bits_per_cycle_;
+  }
+  SegmentLoad take() {
+    std::ranges::stable_sort(total_.frames, {}, &FrameLoad::id);
+    return std::move(total_);
+  }
+
+ private:
+  double bits_per_cycle_;
+  SegmentLoad total_;
+};
+
+image::Nanoseconds next_cycle_of_series(image::Nanoseconds cycle_ns) {
+  image::Nanoseconds step = image::kMillisecond / 4;
+  while (step < cycle_ns) step *= 2;
+  return step;
+}
+
+double load_of_part(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,
+                    std::size_t part, std::size_t parts, std::int32_t heartbeat_ms) {
+  std::vector<NodeConfig> mine;
+  for (std::size_t i = part; i < nodes.size(); i += parts) mine.push_back(nodes[i]);
+  return segment_load(bit_rate, cycle_ns, mine, heartbeat_ms).load;
+}
+
+int segments_that_fit(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,
+                      std::int32_t heartbeat_ms) {
+  for (std::size_t parts = 1; parts <= nodes.size(); ++parts) {
+    bool fits = true;
+    for (std::size_t part = 0; part < parts && fits; ++part)
+      fits = load_of_part(bit_rate, cycle_ns, nodes, part, parts, heartbeat_ms) <= kLoadWarning;
+    if (fits) return static_cast<int>(parts);
+  }
+  return 0;
+}
+
+/// Every cycle only the set-point and the actual position; all else rides in a second PDO every 10th SYNC.
+NodeConfig with_four_byte_pdo(NodeConfig node) {
+  const bool velocity = node.target == DriveTarget::spindle;
+  PdoWanted target, actual, rest_out, rest_in;
+  target.mapping.add({velocity ? object::kTargetVelocity : object::kTargetPosition, 0, 32});
+  actual.mapping.add({object::kPositionActual, 0, 32});
+  rest_out.mapping.add({object::kControlword, 0, 16});
+  rest_in.mapping.add({object::kStatusword, 0, 16});
+  rest_out.transmission_type = rest_in.transmission_type = 10;
+  node.profile.rpdo = {target, rest_out};
+  node.profile.tpdo = {actual, rest_in};
+  return node;
+}
+
+constexpr text::Entry kTooFull{"can-load-error",
+                               "CAN segment {0}: load {1} % is above {2} %; it fits with a cycle of {3} ms, "
+                               "or with the drives on {4} segments "
+                               "(0: on none); with 4-byte process data it would be {5} %",
+                               "сегмент CAN {0}: загрузка {1} % выше {2} %; поместится при цикле {3} мс или "
+                               "при разделении приводов на {4} "
+                               "сегмента(ов) (0: ни на сколько); с 4-байтными PDO загрузка была бы {5} %"};
+constexpr text::Entry kNearlyFull{
+    "can-load-warning",
+    "CAN segment {0}: load {1} % is above {2} %, little is left for service data; a cycle of {3} ms or {4} "
+    "segments "
+    "(0: none would do) would relieve it; with 4-byte process data it would be {5} %",
+    "сегмент CAN {0}: загрузка {1} % выше {2} %, для сервисных данных остаётся мало; поможет цикл {3} мс или "
+    "{4} "
+    "сегмента(ов) (0: не поможет); с 4-байтными PDO загрузка была бы {5} %"};
+
+}  // namespace
+
+SegmentLoad segment_load(std::uint32_t bit_rate, image::Nanoseconds cycle_ns,
+                         std::span<const NodeConfig> nodes, std::int32_t heartbeat_ms) {
+  Sum sum(bit_rate, cycle_ns);
+  const double heartbeat = static_cast<double>(cycle_ns) / (static_cast<double>(heartbeat_ms) * 1e6);
+  sum.add(cob::kSync, 0, "SYNC", 0, 1.0);
+  sum.add(cob::heartbeat(0), 0, "heartbeat", 1, heartbeat);
+  for (const NodeConfig& node : nodes) {
+    for (int n = 1; n <= 4; ++n) {
+      const auto i = static_cast<std::size_t>(n - 1);
+      const PdoWanted &rpdo = node.profile.rpdo[i], &tpdo = node.profile.tpdo[i];
+      if (rpdo.used())
+        sum.add(cob::rpdo(n, node.node), node.node, "RPDO" + std::to_string(n), rpdo.mapping.bytes(),
+                per_cycle(rpdo, cycle_ns, false));
+      if (tpdo.used())
+        sum.add(cob::tpdo(n, node.node), node.node, "TPDO" + std::to_string(n), tpdo.mapping.bytes(),
+                per_cycle(tpdo, cycle_ns, true));
+    }
+    sum.add(cob::heartbeat(node.node), node.node, "heartbeat", 1, heartbeat);
+  }
+  return sum.take();
+}
+
+LoadAdvice advise(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,
+                  std::int32_t heartbeat_ms) {
+  LoadAdvice advice;
+  advice.cycle_ns = next_cycle_of_series(cycle_ns);
+  while (advice.cycle_ns < image::kSecond &&
+         segment_load(bit_rate, advice.cycle_ns, nodes, heartbeat_ms).load > kLoadWarning)
+    advice.cycle_ns *= 2;
+  advice.segments = segments_that_fit(bit_rate, cycle_ns, nodes, heartbeat_ms);
+  std::vector<NodeConfig> small;
+  for (const NodeConfig& node : nodes) small.push_back(with_four_byte_pdo(node));
+  advice.load_with_4_byte_pdo = segment_load(bit_rate, cycle_ns, small, heartbeat_ms).load;
+  return advice;
+}
+
+const text::Entry* load_text(double load) noexcept {
+  if (load > kLoadError) return &kTooFull;
+  return load > kLoadWarning ? &kNearlyFull : nullptr;
+}
+
+}  // namespace servogate::canopen

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware_if/canopen/master/segment_config.hpp"
+#include "firmware_if/text/finding.hpp"
+
+namespace servogate::canopen {
+
+/// One frame of the plan.
+struct FrameLoad {
+  std::uint32_t id = 0;
+  NodeId node = 0;   ///< 0: SYNC and the control's heartbeat
+  std::string what;  ///< "SYNC", "RPDO1", "TPDO2", "heartbeat"
+  std::uint8_t bytes = 0;
+  std::uint32_t bits = 0;  ///< worst case with stuff bits and interframe space
+  double per_cycle = 0.0;  ///< how often in a cycle, on average
+};
+
+/// Planned load of a segment, from the real mapping. 1.0 = the bus is full.
+struct SegmentLoad {
+  double load = 0.0;  ///< mean over time; what the limits of kLoadWarning and kLoadError apply to
+  double worst_cycle =
+      0.0;  ///< when everything falls into one cycle; above 1 the least urgent frames are a cycle late
+  std::vector<FrameLoad> frames;
+};
+
+inline constexpr double kLoadWarning = 0.80;
+inline constexpr double kLoadError = 0.90;
+
+/// Load of the cyclic traffic (SYNC, PDOs, heartbeats; SDO uses what is left). bit_rate in bit/s. Not
+/// real-time safe.
+SegmentLoad segment_load(std::uint32_t bit_rate, image::Nanoseconds cycle_ns,
+                         std::span<const NodeConfig> nodes, std::int32_t heartbeat_ms = 100);
+
+/// What would bring the load to at most kLoadWarning.
+struct LoadAdvice {
+  image::Nanoseconds cycle_ns = 0;  ///< shortest cycle of the series 0.25 0.5 1 2 4 8 ... ms that fits
+  int segments =
+      1;  ///< number of segments of the same bit rate that fit, nodes shared evenly; 0: no number does
+  double load_with_4_byte_pdo =
+      0.0;  ///< with 607Ah alone and 6064h alone every cycle, the rest every 10th SYNC
+};
+LoadAdvice advise(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,
+                  std::int32_t heartbeat_ms = 100);
+
+/// Sentence for the machine file's check: {0} segment, {1} load in per cent, {2} limit, {3} cycle that fits
+/// in ms, {4} number of segments that fit, {5} load in per cent with 4-byte PDOs. nullptr when the load is
+/// fine. Severity: error above kLoadError, otherwise warning.
+const text::Entry* load_text(double load) noexcept;
+
+}  // namespace servogate::canopen

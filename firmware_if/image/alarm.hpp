@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "firmware_if/image/time.hpp"
+
+namespace servogate::image {
+
+/// What a fault makes the machine do, in rising severity (docs/architecture.md, rule 8).
+enum class Reaction : std::uint8_t {
+  none,
+  warn,
+  stop_at_block_end,
+  stop_on_path,  ///< controlled stop of all axes of the process together, on the programmed path
+  stop_axes,     ///< controlled stop of each axis at its own limits
+  quick_stop,    ///< the drives' own quick stop
+  power_off,     ///< brakes engage, power goes
+};
+
+/// Number of an alarm: the key of the one alarm table (kernel/cycle/alarm_table.hpp).
+using AlarmNumber = std::uint16_t;
+
+/// One fault as it happened. Plain data, so that the cycle can write it; texts come from the table.
+struct AlarmRecord {
+  std::uint32_t sequence = 0;  ///< rises by one with every record
+  std::uint32_t first_fault =
+      0;  ///< sequence of the fault this one is a consequence of; own sequence = first
+  AlarmNumber number = 0;
+  Reaction reaction = Reaction::none;
+  bool active = true;
+  std::int64_t cycle = 0;
+  Nanoseconds t_ns = 0;
+  std::int8_t process = -1;
+  std::int8_t axis = -1;  ///< index in the machine file's order, -1: none
+  std::int16_t segment = -1;
+  std::int16_t node = -1;
+  std::uint16_t object_index = 0;
+  std::uint8_t object_subindex = 0;
+  std::uint16_t statusword = 0;
+  std::uint16_t error_code = 0;
+  std::int32_t line = 0;    ///< line of the block in motion, 0: none
+  std::int32_t block = -1;  ///< its N number
+  double limit = 0.0;       ///< what was allowed ...
+  double value = 0.0;       ///< ... and what was met, in the unit the table names
+  double detail1 = 0.0;     ///< further figures that the table names, e.g. the velocity of a following error
+  double detail2 = 0.0;
+};
+
+}  // namespace servogate::image

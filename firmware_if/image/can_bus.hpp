@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "firmware_if/image/time.hpp"
+
+namespace servogate::image {
+
+/// One CAN frame, classic or FD. `id` has 11 bits, or 29 when `extended`.
+struct CanFrame {
+  std::uint32_t id = 0;
+  bool extended = false;
+  bool remote = false;
+  bool fd = false;
+  bool error = false;  ///< an error frame of the interface, not data
+  std::uint8_t length = 0;
+  std::array<std::uint8_t, 64> data{};
+  Nanoseconds timestamp_ns = 0;  ///< end of frame on the wire, as the transport knows it
+};
+
+/// Health of a bus as its transport sees it.
+enum class CanState : std::uint8_t { error_active, error_warning, error_passive, bus_off, down };
+
+/// The one interface of every CAN transport: mock, SocketCAN, user-space, USB adapter.
+class CanBus {
+ public:
+  virtual ~CanBus() = default;
+  /// Queues a frame. False: the queue is full, nothing was queued. real-time safe.
+  virtual bool send(const CanFrame& frame) noexcept = 0;
+  /// Takes the oldest received frame. False: none is waiting. Own frames are not received. real-time safe.
+  virtual bool receive(CanFrame& frame) noexcept = 0;
+  virtual CanState state() const noexcept = 0;
+  /// Nominal bit rate in bit/s. real-time safe.
+  virtual std::uint32_t bit_rate() const noexcept = 0;
+};
+
+/// Worst-case length on the wire in bits of a classic data frame, stuff bits and the interframe space
+/// included. Source: ISO 11898-1; 8n + 47 + floor((34 + 8n - 1) / 4) for 11-bit, 8n + 67 + floor((54 + 8n -
+/// 1) / 4) for 29-bit.
+constexpr std::uint32_t worst_case_bits(std::uint32_t payload_bytes, bool extended = false) noexcept {
+  const std::uint32_t stuffed = (extended ? 54 : 34) + 8 * payload_bytes;
+  return 8 * payload_bytes + (extended ? 67 : 47) + (stuffed - 1) / 4;
+}
+
+}  // namespace servogate::image

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/image/packets.hpp"
+
+namespace servogate::image {
+
+/// Who writes a place. Declared once; another writer is an error that names both.
+enum class Writer : std::uint8_t { nc, plc, input, program };
+
+/// A named place of packet A or K: an I/O point of the machine file, or a place of the interface below.
+struct Symbol {
+  std::string name;  ///< "NC.m_strobe", "X.homed", "door_closed"; matched without case
+  Place place;
+  Writer writer = Writer::nc;
+  std::string comment;
+};
+
+/// First byte in K of the interface between NC and PLC. Part programs of old machines keep the bytes below.
+inline constexpr std::uint32_t kInterfaceBase = 512;
+inline constexpr std::uint32_t kProcessBlock = 48;
+inline constexpr std::uint32_t kAxisBlock = 12;
+inline constexpr std::uint32_t kSpindleBlock = 24;
+inline constexpr std::uint32_t process_base(int process) {
+  return kInterfaceBase + kProcessBlock * static_cast<std::uint32_t>(process);
+}
+inline constexpr std::uint32_t axis_base(int axis) {
+  return kInterfaceBase + kProcessBlock * 5 + kAxisBlock * static_cast<std::uint32_t>(axis);
+}
+inline constexpr std::uint32_t spindle_base(int spindle) {
+  return kInterfaceBase + kProcessBlock * 5 + kAxisBlock * 16 +
+         kSpindleBlock * static_cast<std::uint32_t>(spindle);
+}
+inline constexpr std::uint32_t kMachineBase =
+    kInterfaceBase + kProcessBlock * 5 + kAxisBlock * 16 + kSpindleBlock * 2;
+
+/// One row of the interface: byte offset inside its block, bit (BL only), format, writer, meaning.
+struct InterfaceField {
+  std::string_view name;
+  std::uint32_t byte;
+  std::uint8_t bit;
+  Format format;
+  Writer writer;
+  std::string_view comment;
+};
+
+/// The blocks, as tables; the generated documentation and the symbols come from them.
+inline constexpr InterfaceField kProcessFields[] = {
+    {"mode", 0, 0, Format::by, Writer::nc, "0 off, 1 MDI, 2 AUTO, 3 STEP, 4 MANU, 5 MANJ, 6 PROF, 7 HOME"},
+    {"state", 1, 0, Format::by, Writer::nc,
+     "0 idle, 1 running, 2 held, 3 waiting, 4 stopped by alarm, 5 ended"},
+    {"m_strobe", 2, 0, Format::bl, Writer::nc, "an M code stands in m_code; stays until m_ack"},
+    {"s_strobe", 2, 1, Format::bl, Writer::nc, "a spindle word stands in s_value; stays until s_ack"},
+    {"t_strobe", 2, 2, Format::bl, Writer::nc, "a tool word stands in t_number; stays until t_ack"},
+    {"h_strobe", 2, 3, Format::bl, Writer::nc, "an H word stands in h_code; stays until h_ack"},
+    {"running", 2, 4, Format::bl, Writer::nc, "a program runs"},
+    {"held", 2, 5, Format::bl, Writer::nc, "feed hold is in force"},
+    {"in_position", 2, 6, Format::bl, Writer::nc, "all axes of the process are in position"},
+    {"rapid", 2, 7, Format::bl, Writer::nc, "the block in motion is a rapid"},
+    {"program_end", 3, 0, Format::bl, Writer::nc, "the program has ended (M02, M30)"},
+    {"m_code", 4, 0, Format::in, Writer::nc, "M code handed over"},
+    {"h_code", 6, 0, Format::in, Writer::nc, "H code handed over"},
+    {"t_number", 8, 0, Format::li, Writer::nc, "tool number handed over"},
+    {"t_corrector", 12, 0, Format::li, Writer::nc, "corrector number handed over"},
+    {"s_value", 16, 0, Format::re, Writer::nc, "spindle word handed over, rpm"},
+    {"line", 20, 0, Format::li, Writer::nc, "line of the block in motion"},
+    {"feed", 24, 0, Format::re, Writer::nc, "path speed, mm/min"},
+    {"override", 28, 0, Format::by, Writer::nc, "feed override in force, per cent"},
+    {"alarm", 30, 0, Format::in, Writer::nc, "number of the first active alarm, 0: none"},
+    {"m_ack", 32, 0, Format::bl, Writer::plc, "the M code is carried out"},
+    {"s_ack", 32, 1, Format::bl, Writer::plc, "the spindle word is carried out"},
+    {"t_ack", 32, 2, Format::bl, Writer::plc, "the tool word is carried out"},
+    {"h_ack", 32, 3, Format::bl, Writer::plc, "the H code is carried out"},
+    {"start", 32, 4, Format::bl, Writer::plc, "rising edge: cycle start"},
+    {"stop", 32, 5, Format::bl, Writer::plc, "TRUE: feed hold"},
+    {"reset", 32, 6, Format::bl, Writer::plc, "rising edge: reset"},
+    {"m_unknown", 32, 7, Format::bl, Writer::plc, "with m_ack: the PLC does not know this M code"},
+    {"feed_enable", 33, 0, Format::bl, Writer::plc, "TRUE permits feed; FALSE holds"},
+    {"read_in_enable", 33, 1, Format::bl, Writer::plc, "TRUE permits the next block"},
+    {"block_skip", 33, 2, Format::bl, Writer::plc, "blocks with / are executed (USB=1)"},
+    {"optional_stop", 33, 3, Format::bl, Writer::plc, "M01 stops"},
+    {"dry_run", 33, 4, Format::bl, Writer::plc, "run without axis motion"},
+    {"single_block", 33, 5, Format::bl, Writer::plc, "stop at each block end"},
+    {"feed_override", 34, 0, Format::by, Writer::plc, "per cent 1-150; 0: the operator's value"},
+    {"external_alarm", 36, 0, Format::in, Writer::plc, "number of an alarm the PLC raises, 0: none"},
+};
+inline constexpr InterfaceField kAxisFields[] = {
+    {"enabled", 0, 0, Format::bl, Writer::nc, "the drive is in Operation enabled"},
+    {"homed", 0, 1, Format::bl, Writer::nc, "the axis is referenced"},
+    {"in_position", 0, 2, Format::bl, Writer::nc, "inside the in-position window at standstill"},
+    {"moving", 0, 3, Format::bl, Writer::nc, "the set-point moves"},
+    {"alarm", 0, 4, Format::bl, Writer::nc, "an alarm names this axis"},
+    {"on_limit_plus", 0, 5, Format::bl, Writer::nc, "on the positive hard limit"},
+    {"on_limit_minus", 0, 6, Format::bl, Writer::nc, "on the negative hard limit"},
+    {"brake_release", 0, 7, Format::bl, Writer::nc, "TRUE: the holding brake is to be open"},
+    {"owner", 1, 0, Format::by, Writer::nc, "0 none, 1 process, 2 manual, 3 homing, 4 PLC, 5 bench"},
+    {"position", 4, 0, Format::re, Writer::nc, "measured position, machine coordinates, mm or degrees"},
+    {"enable", 8, 0, Format::bl, Writer::plc, "TRUE permits the drive to be on"},
+    {"limit_plus", 8, 1, Format::bl, Writer::plc, "TRUE: on the positive limit, beside the axis' own input"},
+    {"limit_minus", 8, 2, Format::bl, Writer::plc, "TRUE: on the negative limit"},
+    {"home_switch", 8, 3, Format::bl, Writer::plc, "TRUE: on the home switch, beside the axis' own input"},
+    {"feed_enable", 8, 4, Format::bl, Writer::plc, "TRUE permits motion of this axis"},
+    {"jog_plus", 8, 5, Format::bl, Writer::plc, "jogs while TRUE"},
+    {"jog_minus", 8, 6, Format::bl, Writer::plc, "jogs while TRUE"},
+};
+inline constexpr InterfaceField kSpindleFields[] = {
+    {"run", 0, 0, Format::bl, Writer::nc, "the program wants the spindle to turn"},
+    {"cw", 0, 1, Format::bl, Writer::nc, "clockwise"},
+    {"ccw", 0, 2, Format::bl, Writer::nc, "counter-clockwise"},
+    {"orient", 0, 3, Format::bl, Writer::nc, "oriented stop is wanted"},
+    {"at_speed", 0, 4, Format::bl, Writer::nc, "measured speed inside the window"},
+    {"zero_speed", 0, 5, Format::bl, Writer::nc, "standstill"},
+    {"command", 4, 0, Format::re, Writer::nc, "commanded speed, rpm, + clockwise"},
+    {"actual", 8, 0, Format::re, Writer::nc, "measured speed, rpm"},
+    {"enable", 12, 0, Format::bl, Writer::plc, "TRUE permits the spindle to turn"},
+    {"override", 16, 0, Format::by, Writer::plc, "per cent 50-125; 0: 100"},
+};
+inline constexpr InterfaceField kMachineFields[] = {
+    {"control_alive", 0, 0, Format::bl, Writer::nc, "toggles while the control runs, for the safety relay"},
+    {"ready", 0, 1, Format::bl, Writer::nc, "no alarm, drives may be switched on"},
+    {"alarm", 0, 2, Format::bl, Writer::nc, "any alarm is active"},
+    {"power_request", 0, 3, Format::bl, Writer::nc, "the operator wants the drives on"},
+    {"estop_ok", 4, 0, Format::bl, Writer::plc, "TRUE: the emergency-stop chain is closed; FALSE: power off"},
+    {"power_on", 4, 1, Format::bl, Writer::plc, "TRUE permits drive power"},
+};
+
+/// All symbols of the interface for a machine: `NC.` (process 1), `NC2.` ... , `<letter>.` per axis, `S.` and
+/// `S2.` per spindle, `MC.` for the machine. Not real-time safe.
+std::vector<Symbol> interface_symbols(int processes, const std::vector<std::string>& axis_letters,
+                                      int spindles);
+
+/// The page docs/interface.md: every place of the interface with its meaning. Not real-time safe.
+std::string interface_page();
+
+/// Place of one field, for code inside the cycle. A misspelt name does not compile. real-time safe.
+template <std::size_t N>
+consteval Place field(const InterfaceField (&table)[N], std::string_view name, std::uint32_t base = 0) {
+  for (const InterfaceField& f : table)
+    if (f.name == name) {
+      const std::uint32_t byte = base + f.byte;
+      return {Packet::k, f.format, f.format == Format::bl ? byte * 8 + f.bit : byte / format_size(f.format),
+              1};
+    }
+  throw "no such interface field";
+}
+/// The same place moved by whole bytes (a block base is a multiple of 4). real-time safe.
+constexpr Place at(Place p, std::uint32_t base) noexcept {
+  p.index += p.format == Format::bl ? base * 8 : base / format_size(p.format);
+  return p;
+}
+
+}  // namespace servogate::image

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "firmware_if/image/drive_link.hpp"
+#include "firmware_if/image/packets.hpp"
+#include "firmware_if/image/time.hpp"
+
+namespace servogate::image {
+
+inline constexpr int kMaxAxes = 16;
+inline constexpr int kMaxPathAxes = 9;
+inline constexpr int kMaxSpindles = 2;
+inline constexpr int kMaxProcesses = 5;
+inline constexpr int kMaxSources = 32;
+inline constexpr int kMaxSegments = 4;
+
+/// Who may command an axis; exactly one at a time, hand-over at standstill only (docs/architecture.md,
+/// "Owners").
+enum class AxisOwner : std::uint8_t { none, process, manual, homing, plc, bench };
+
+/// One axis as everybody sees it. Units: mm or degrees, seconds. A lathe's X is a radius.
+struct AxisImage {
+  double command = 0.0;  ///< set-point before compensation, machine coordinates
+  double command_velocity = 0.0;
+  double command_acceleration = 0.0;
+  double actual = 0.0;           ///< measured position read in this cycle
+  double following_error = 0.0;  ///< command minus actual compared at equal times
+  double distance_to_go = 0.0;
+  AxisOwner owner = AxisOwner::none;
+  bool enabled = false;  ///< drive in Operation enabled and following
+  bool homed = false;
+  bool in_position = false;
+  bool moving = false;
+  bool limit_plus = false;  ///< on the hard limit switch
+  bool limit_minus = false;
+  bool home_switch = false;
+  bool brake_released = false;
+  DriveCommand drive_command;
+  DriveFeedback drive;
+};
+
+/// A spindle; angle is measured, 0-360 degrees, where an encoder exists.
+struct SpindleImage {
+  double command_rpm = 0.0;  ///< signed: + clockwise (M3)
+  double actual_rpm = 0.0;
+  double angle_deg = 0.0;
+  bool running = false;
+  bool at_speed = false;
+  DriveCommand drive_command;
+  DriveFeedback drive;
+};
+
+/// Health of one source of points (a Modbus station, a GPIO chip, a drive's inputs).
+enum class Quality : std::uint8_t { never, good, stale, bad };
+struct IoSource {
+  Quality quality = Quality::never;
+  Nanoseconds updated_ns = 0;  ///< time of the newest data
+  std::uint32_t errors = 0;
+};
+
+/// Load and health of one bus segment, for reports.
+struct SegmentStatus {
+  double load = 0.0;  ///< 0-1, over the last second
+  double load_worst_cycle = 0.0;
+  std::uint64_t frames_sent = 0;
+  std::uint64_t frames_received = 0;
+  std::uint64_t errors = 0;
+  bool operational = false;
+};
+
+/// Modes of a process, in the order of the K place `NC.mode`.
+enum class Mode : std::uint8_t { off, mdi, automatic, step, manual, increment, profile, home };
+/// States of a process, in the order of the K place `NC.state`.
+enum class ProcessState : std::uint8_t { idle, running, held, waiting, stopped_by_alarm, ended };
+
+/// One process (part program) as everybody sees it.
+struct ProcessStatus {
+  Mode mode = Mode::off;
+  ProcessState state = ProcessState::idle;
+  std::int32_t line = 0;  ///< line of the block in motion
+  std::int32_t file = 0;
+  std::int64_t blocks_done = 0;
+  double feed_mm_s = 0.0;       ///< speed of the set-point along the path
+  double override_ratio = 1.0;  ///< 0-1.5
+  bool rapid = false;           ///< the block in motion is a rapid
+  std::uint16_t tool = 0;
+  std::uint32_t starved = 0;  ///< cycles in which planning was late and the path law ran into its rest
+};
+
+/// Everything the machine knows, written only inside Cycle::step() in the order: driver inputs, force, PLC,
+/// program, kernel, force. Trivially copyable, so a whole-cycle snapshot is a copy.
+struct ProcessImage {
+  CycleTime now;
+  Packets packets;
+  int axis_count = 0;
+  int spindle_count = 0;
+  int process_count = 1;
+  std::array<AxisImage, kMaxAxes> axes;
+  std::array<SpindleImage, kMaxSpindles> spindles;
+  std::array<ProcessStatus, kMaxProcesses> processes;
+  std::array<IoSource, kMaxSources> sources;
+  std::array<SegmentStatus, kMaxSegments> segments;
+  std::uint32_t alarms_active = 0;  ///< number of unacknowledged alarms
+};
+static_assert(std::is_trivially_copyable_v<ProcessImage>);
+
+/// Something the cycle receives from and sends to: a bus with its nodes, an I/O chip. Suppliers of axes fill
+/// AxisImage::drive and consume AxisImage::drive_command; suppliers of points fill packet A.
+class CycleDevice {
+ public:
+  virtual ~CycleDevice() = default;
+  /// First act of a cycle: opens it on the bus (SYNC) and takes in what has come. real-time safe.
+  virtual void receive(ProcessImage& image) noexcept = 0;
+  /// Last act of a cycle: sends the commands computed in it. real-time safe.
+  virtual void send(ProcessImage& image) noexcept = 0;
+};
+
+/// Something that evolves with time beside the control: simulated devices on mock buses. Called by whoever
+/// owns the loop before each cycle; never by the cycle itself.
+class Simulated {
+ public:
+  virtual ~Simulated() = default;
+  /// Brings the simulation to time t (never backwards).
+  virtual void advance_to(Nanoseconds t) = 0;
+};
+
+}  // namespace servogate::image

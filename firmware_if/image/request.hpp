@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+namespace servogate::image {
+
+/// Who asks. Every request names its asker; the gate to motion decides by it.
+enum class Asker : std::uint8_t { command_line, page, pendant, plc, scenario, modbus, program, bench };
+
+enum class RequestKind : std::uint8_t {
+  none,
+  power,           ///< value 1: drives on, 0: off
+  home,            ///< axis, or -1 for all in the machine's order
+  jog_increment,   ///< axis, value = signed distance in mm or degrees
+  jog_continuous,  ///< axis, value = +1 or -1; needs keep_alive at least every 100 ms
+  keep_alive,
+  jog_stop,
+  zero,  ///< axis, value = the value the present position gets in the active origin
+  mode,  ///< value = image::Mode
+  start,
+  step,
+  hold,
+  resume,
+  stop,  ///< controlled stop on the path, program ends
+  reset,
+  override_feed,  ///< value = ratio 0-1.5
+  quick_stop,
+  acknowledge,  ///< alarms
+  set_place,    ///< place (packed) and value: an operator's write into packet K, a force, a simulated input
+  force,
+  release_force,
+};
+
+/// A wish from outside, posted to the cycle through one bounded queue. Plain data.
+struct Request {
+  std::uint64_t id = 0;  ///< chosen by the asker, returned in the answer
+  Asker asker = Asker::command_line;
+  RequestKind kind = RequestKind::none;
+  std::int8_t axis = -1;
+  std::int8_t process = 0;
+  std::uint8_t packet = 0, format = 0, length = 1;  ///< image::Place of set_place and force
+  std::uint32_t index = 0;
+  double value = 0.0;
+};
+
+/// The gate's answer. `refusal` is 0 when accepted, otherwise a key of the gate's table of sentences
+/// (kernel/cycle/gate.hpp); axis, limit and value fill its placeholders.
+struct Answer {
+  std::uint64_t id = 0;
+  std::uint16_t refusal = 0;
+  std::int8_t axis = -1;
+  double limit = 0.0;
+  double value = 0.0;
+};
+
+}  // namespace servogate::image

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/text/finding.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace servogate::text {
+
+Language user_language() {
+  for (const char* name : {"LC_ALL", "LC_MESSAGES", "LANG"}) {
+    const char* value = std::getenv(name);
+    if (value != nullptr && *value != '\0')
+      return std::string_view(value).starts_with("ru") ? Language::russian : Language::english;
+  }
+  return Language::english;
+}
+
+namespace {
+// ASCII unit separator: cannot stand in a name or a number.
+constexpr char kBetweenLanguages = '\x1f';
+
+std::string_view in_language(std::string_view argument, Language language) {
+  const std::size_t cut = argument.find(kBetweenLanguages);
+  if (cut == std::string_view::npos) return argument;
+  return language == Language::russian ? argument.substr(cut + 1) : argument.substr(0, cut);
+}
+}  // namespace
+
+std::string both(std::string_view english, std::string_view russian) {
+  return std::string(english) + kBetweenLanguages + std::string(russian);
+}
+
+std::string render(const Entry& entry, std::span<const std::string> arguments, Language language) {
+  const std::string_view pattern = language == Language::russian ? entry.russian : entry.english;
+  std::string out;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const bool placeholder = pattern[i] == '{' && i + 2 < pattern.size() && pattern[i + 2] == '}' &&
+                             pattern[i + 1] >= '0' && pattern[i + 1] <= '9';
+    const std::size_t which = placeholder ? static_cast<std::size_t>(pattern[i + 1] - '0') : 0;
+    if (placeholder && which < arguments.size()) {
+      out += in_language(arguments[which], language);
+      i += 2;
+    } else {
+      out += pattern[i];
+    }
+  }
+  return out;
+}
+
+std::string Finding::str(Language language) const {
+  std::string out = file;
+  if (line > 0) out += ":" + std::to_string(line);
+  if (line > 0 && column > 0) out += ":" + std::to_string(column);
+  out += severity == Severity::error ? ": error: " : ": warning: ";
+  if (entry != nullptr) {
+    out += render(*entry, arguments, language);
+    out += " [" + std::string(entry->id) + "]";
+  }
+  return out;
+}
+
+std::string number(double value, int digits) {
+  if (!std::isfinite(value)) return value > 0 ? "inf" : value < 0 ? "-inf" : "nan";
+  char buffer[400];
+  std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+  std::string out = buffer;
+  if (out.find('.') != std::string::npos) {
+    while (out.back() == '0') out.pop_back();
+    if (out.back() == '.') out.pop_back();
+  }
+  return out == "-0" ? "0" : out;
+}
+
+}  // namespace servogate::text

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace servogate::text {
+
+enum class Language { english, russian };
+
+/// Language of the user by LC_ALL, LC_MESSAGES, LANG: Russian when it starts with "ru". Not real-time safe.
+Language user_language();
+
+/// A text of the product: an id, and the sentence in both languages with placeholders {0}, {1} ...
+/// Every room keeps one table of these; the id is what `[code]` shows and what documents refer to.
+struct Entry {
+  std::string_view id;
+  std::string_view english;
+  std::string_view russian;
+};
+
+/// The sentence with its placeholders filled. A placeholder without an argument stays visible. Not real-time
+/// safe.
+std::string render(const Entry& entry, std::span<const std::string> arguments, Language language);
+
+/// An argument that is itself words: render() takes the half of its language.
+std::string both(std::string_view english, std::string_view russian);
+
+enum class Severity { error, warning };
+
+/// Something wrong in a file that a person wrote. Line and column count from 1; 0 = not known.
+struct Finding {
+  Severity severity = Severity::error;
+  std::string file;
+  int line = 0;
+  int column = 0;
+  const Entry* entry = nullptr;
+  std::vector<std::string> arguments;
+
+  /// `file:line:col: error: text [code]`, the form every command prints (severity stays English for editors).
+  std::string str(Language language = user_language()) const;
+};
+
+/// A number as people write it: shortest form that reads back, at most `digits` decimals, never in exponent
+/// form.
+std::string number(double value, int digits = 6);
+
+}  // namespace servogate::text

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+// The master against the simulated drives of drivers/mock on a simulated wire: two implementations that share
+// only the vocabulary of CiA 301 and CiA 402.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "drivers/mock/can/can_segment.hpp"
+#include "drivers/mock/drive/simulated_drive.hpp"
+#include "firmware_if/canopen/master/segment.hpp"
+
+namespace servogate::canopen {
+namespace {
+
+using image::DriveState;
+using mock::DriveFault;
+using mock::DriveFaultKind;
+
+constexpr std::int64_t kCountsPerRev = 262'144;
+
+/// Drives on one wire of 1 Mbit/s at 1 ms, run in virtual time.
+struct Machine {
+  explicit Machine(int axes, void (*map)(DriveProfile&) = use_short_position_map,
+                   image::Nanoseconds cycle_ns = image::kMillisecond)
+      : bus(wire.add_endpoint("master")) {
+    config.cycle_ns = cycle_ns;
+    for (int i = 0; i < axes; ++i) {
+      NodeConfig node;
+      node.node = static_cast<NodeId>(i + 1);
+      node.target_index = i;
+      node.profile.counts_per_rev = kCountsPerRev;
+      map(node.profile);
+      config.nodes.push_back(node);
+      mock::SimulatedDriveConfig drive;
+      drive.node_id = node.node;
+      drive.plant.counts_per_rev = kCountsPerRev;
+      drive.plant.start_rev = 0.3 + 0.1 * i;
+      drive.plant.zero_mark_counts = 10'000;
+      drives.push_back(std::make_unique<mock::SimulatedDrive>(drive));
+      wire.attach(*drives.back());
+    }
+    segment = std::make_unique<Segment>(bus, config);
+    image->now.period_ns = cycle_ns;
+  }
+
+  void step() {
+    wire.advance_to(image->now.t_ns);
+    segment->receive(*image);
+    if (control) control(*image);
+    segment->send(*image);
+    ++image->now.number;
+    image->now.t_ns += config.cycle_ns;
+    BusEvent e;
+    while (segment->events().pop(e)) events.push_back(e);
+  }
+  void run(int cycles) {
+    for (int i = 0; i < cycles; ++i) step();
+  }
+  template <class Condition>
+  bool run_until(Condition condition, int limit = 5000) {
+    for (int i = 0; i < limit && !condition(); ++i) step();
+    return condition();
+  }
+  bool all(DriveState state) const {
+    for (std::size_t i = 0; i < drives.size(); ++i)
+      if (image->axes[i].drive.state != state) return false;
+    return true;
+  }
+  bool enable() {
+    control = [](image::ProcessImage& im) {
+      for (auto& axis : im.axes) {
+        axis.drive_command.power = true;
+        axis.drive_command.mode = image::DriveMode::csp;
+        if (axis.drive.state != DriveState::operation_enabled)
+          axis.drive_command.position_counts = axis.drive.position_counts;
+      }
+    };
+    return run_until([this] { return all(DriveState::operation_enabled); });
+  }
+  int count(BusEventKind kind) const {
+    int n = 0;
+    for (const BusEvent& e : events) n += e.kind == kind;
+    return n;
+  }
+  std::string story() const {
+    std::string all_events;
+    for (const BusEvent& e : events)
+      all_events += std::to_string(e.t_ns / 1'000'000) + " ms node " + std::to_string(e.node) + ": " +
+                    describe(e, "drive", nullptr, text::Language::english) + "\n";
+    return all_events;
+  }
+
+  mock::CanSegment wire;
+  image::CanBus& bus;
+  SegmentConfig config;
+  std::vector<std::unique_ptr<mock::SimulatedDrive>> drives;
+  std::unique_ptr<Segment> segment;
+  std::unique_ptr<image::ProcessImage> image = std::make_unique<image::ProcessImage>();
+  std::function<void(image::ProcessImage&)> control;
+  std::vector<BusEvent> events;
+};
+
+TEST(SimulatedDrives, three_come_to_operation_enabled_without_a_jump) {
+  Machine machine(3);
+  std::array<double, 3> start{};
+  for (std::size_t i = 0; i < 3; ++i) start[i] = machine.drives[i]->revolutions();
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  machine.run(500);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(machine.drives[i]->state(), DriveState::operation_enabled);
+    EXPECT_NEAR(machine.drives[i]->revolutions(), start[i], 1e-3);
+  }
+  EXPECT_EQ(machine.count(BusEventKind::node_booted), 3);
+  EXPECT_EQ(machine.events.size(), 3u) << machine.story();
+}
+
+TEST(SimulatedDrives, three_follow_a_sine_in_csp) {
+  Machine machine(3);
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  machine.run(100);
+  std::array<std::int64_t, 3> origin{};
+  for (std::size_t i = 0; i < 3; ++i) origin[i] = machine.image->axes[i].drive.position_counts;
+  const std::int64_t first = machine.image->now.number;
+  std::array<std::int64_t, 3> worst{}, largest{};
+  std::array<std::vector<std::int64_t>, 3> targets;
+  machine.control = [&](image::ProcessImage& image) {
+    const double t = static_cast<double>(image.now.number - first) * image.now.period_s();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double amplitude = 0.5 * kCountsPerRev;
+      const double frequency = 0.5 + 0.5 * static_cast<double>(i);
+      const double swing = 1.0 - std::cos(2.0 * std::numbers::pi * frequency * t);
+      auto& axis = image.axes[i];
+      axis.drive_command.position_counts = origin[i] + std::llround(amplitude * swing);
+      targets[i].push_back(axis.drive_command.position_counts);
+      largest[i] = std::max(largest[i], axis.drive.position_counts - origin[i]);
+      if (targets[i].size() > 2)
+        worst[i] =
+            std::max(worst[i], std::abs(axis.drive.position_counts - targets[i][targets[i].size() - 3]));
+    }
+  };
+  machine.run(4000);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_GT(largest[i], kCountsPerRev * 9 / 10) << "it has really moved";
+    EXPECT_LT(worst[i], kCountsPerRev / 10) << "following error of the drive's position loop";
+    EXPECT_EQ(machine.image->axes[i].drive.missed, 0u);
+  }
+  EXPECT_EQ(machine.events.size(), 3u) << machine.story();
+  EXPECT_LT(machine.image->segments[0].load, 0.80);
+  EXPECT_EQ(machine.image->segments[0].errors, 0u);
+  EXPECT_NEAR(machine.image->segments[0].load, machine.wire.load(), 0.02) << "the wire counts the same bits";
+}
+
+TEST(SimulatedDrives, sync_is_answered_within_the_cycle_and_nothing_is_ever_missed) {
+  Machine machine(3);
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  for (int i = 0; i < 2000; ++i) {
+    machine.step();
+    for (std::size_t axis = 0; axis < 3; ++axis) ASSERT_EQ(machine.image->axes[axis].drive.missed, 0u) << i;
+  }
+}
+
+void expect_zero_mark(void (*map)(DriveProfile&), image::Nanoseconds cycle_ns) {
+  Machine machine(1, map, cycle_ns);
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  auto& axis = machine.image->axes[0];
+  std::int64_t target = axis.drive.position_counts;
+  const auto offset =
+      machine.drives[0]->position_counts() - machine.drives[0]->reported_position();  // world to drive, fixed
+  machine.control = [&](image::ProcessImage& image) {
+    auto& command = image.axes[0].drive_command;
+    command.latch_arm = image.axes[0].drive.latch_sequence == 0;
+    command.position_counts = target += image.now.period_ns / 10'000;
+  };
+  ASSERT_TRUE(machine.run_until([&] { return axis.drive.latch_sequence == 1; }, 8000)) << machine.story();
+  const std::int64_t in_world = axis.drive.latch_counts + offset;
+  const std::int64_t in_turn = ((in_world - 10'000) % kCountsPerRev + kCountsPerRev) % kCountsPerRev;
+  EXPECT_LE(std::min(in_turn, kCountsPerRev - in_turn), 2) << "captured at " << in_world;
+  machine.run(50);
+  EXPECT_EQ(machine.drives[0]->object(0x60B8), 0);
+}
+
+TEST(SimulatedDrives, capture_the_zero_mark_over_sdo) {
+  expect_zero_mark(use_short_position_map, image::kMillisecond);
+}
+TEST(SimulatedDrives, capture_the_zero_mark_over_pdo) {
+  expect_zero_mark(use_full_position_map, 2 * image::kMillisecond);
+}
+
+TEST(SimulatedDrives, a_fault_is_told_and_reset) {
+  Machine machine(2);
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  machine.events.clear();
+  DriveFault fault;
+  fault.kind = DriveFaultKind::over_current;
+  machine.drives[0]->inject(fault);
+  auto& axis = machine.image->axes[0];
+  ASSERT_TRUE(machine.run_until([&] { return axis.drive.state == DriveState::fault; }, 2000))
+      << machine.story();
+  EXPECT_EQ(axis.drive.error_code, 0x2310);
+  EXPECT_EQ(machine.count(BusEventKind::emcy), 1) << machine.story();
+  EXPECT_EQ(machine.image->axes[1].drive.state, DriveState::operation_enabled);
+  machine.control = nullptr;
+  axis.drive_command.power = false;
+  machine.run(100);
+  EXPECT_EQ(axis.drive.state, DriveState::fault);
+  axis.drive_command.reset_fault = true;
+  ASSERT_TRUE(machine.run_until([&] { return axis.drive.state == DriveState::switch_on_disabled; }, 200))
+      << machine.story();
+  axis.drive_command.reset_fault = false;
+  machine.run(2);
+  EXPECT_TRUE(machine.enable()) << machine.story();
+}
+
+TEST(SimulatedDrives, a_lost_heartbeat_is_seen_and_the_others_go_on) {
+  Machine machine(3);
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  machine.events.clear();
+  DriveFault fault;
+  fault.kind = DriveFaultKind::heartbeat_lost;
+  machine.drives[1]->inject(fault);
+  ASSERT_TRUE(machine.run_until([&] { return !machine.image->axes[1].drive.online; }, 500))
+      << machine.story();
+  EXPECT_EQ(machine.count(BusEventKind::heartbeat_lost), 1);
+  EXPECT_TRUE(machine.image->axes[0].drive.online);
+  EXPECT_TRUE(machine.image->axes[2].drive.online);
+}
+
+TEST(SimulatedDrives, dropped_pdos_are_counted_and_the_drive_comes_back) {
+  Machine machine(2);
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  machine.events.clear();
+  DriveFault fault;
+  fault.kind = DriveFaultKind::pdo_dropped;
+  fault.duration_ns = 50 * image::kMillisecond;
+  machine.drives[0]->inject(fault);
+  ASSERT_TRUE(machine.run_until([&] { return !machine.image->axes[0].drive.online; }, 10)) << machine.story();
+  EXPECT_EQ(machine.count(BusEventKind::pdo_missing), 1);
+  ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; }, 200)) << machine.story();
+  machine.control = nullptr;
+  machine.image->axes[0].drive_command.power = false;
+  machine.run(2);
+  EXPECT_TRUE(machine.enable()) << machine.story();
+}
+
+TEST(SimulatedDrives, a_stuck_state_is_a_refusal_with_its_name) {
+  Machine machine(1);
+  machine.config.nodes[0].profile.transition_timeout_ms = 300;
+  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
+  DriveFault fault;
+  fault.kind = DriveFaultKind::stuck_state;
+  fault.state = DriveState::switched_on;
+  machine.drives[0]->inject(fault);
+  EXPECT_FALSE(machine.enable());
+  const auto& refusal = machine.image->axes[0].drive.refusal;
+  EXPECT_EQ(refusal.from, DriveState::switched_on) << machine.story();
+  EXPECT_EQ(refusal.wanted, DriveState::operation_enabled);
+  EXPECT_EQ(machine.count(BusEventKind::refused), 1);
+}
+
+TEST(SimulatedDrives, a_drive_that_restarts_is_booted_again_and_enabled_after_power_was_withdrawn) {
+  Machine machine(2);
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  machine.events.clear();
+  DriveFault fault;
+  fault.kind = DriveFaultKind::reset;
+  machine.drives[0]->inject(fault);
+  auto& axis = machine.image->axes[0];
+  ASSERT_TRUE(machine.run_until([&] { return !axis.drive.online; }, 500)) << machine.story();
+  ASSERT_TRUE(machine.run_until([&] { return axis.drive.online; }, 2000)) << machine.story();
+  machine.run(200);
+  EXPECT_EQ(axis.drive.state, DriveState::switch_on_disabled);
+  machine.control = nullptr;
+  axis.drive_command.power = false;
+  machine.run(2);
+  EXPECT_TRUE(machine.enable()) << machine.story();
+}
+
+TEST(SimulatedDrives, a_drive_that_does_not_answer_one_object_is_named_with_it) {
+  Machine machine(1);
+  DriveFault fault;
+  fault.kind = DriveFaultKind::sdo_abort;
+  fault.index = 0x60C2;
+  fault.abort = AbortCode::object_does_not_exist;
+  machine.drives[0]->inject(fault);
+  machine.run(1000);
+  ASSERT_EQ(machine.count(BusEventKind::boot_failed), 1);
+  EXPECT_NE(machine.story().find(
+                "boot stopped at step \"interpolation time period\": writing 60C2h:02 Interpolation "
+                "time period: refused by the device, the object does not exist in the device"),
+            std::string::npos)
+      << machine.story();
+}
+
+TEST(SimulatedDrives, two_runs_are_equal_to_the_bit) {
+  const auto trace = [] {
+    Machine machine(3);
+    std::vector<std::int64_t> positions;
+    machine.control = [&positions](image::ProcessImage& image) {
+      for (auto& axis : image.axes) {
+        axis.drive_command.power = true;
+        axis.drive_command.position_counts = axis.drive.state == DriveState::operation_enabled
+                                                 ? axis.drive_command.position_counts + 17
+                                                 : axis.drive.position_counts;
+        positions.push_back(axis.drive.position_counts);
+      }
+    };
+    machine.run(1500);
+    return positions;
+  };
+  EXPECT_EQ(trace(), trace());
+}
+
+}  // namespace
+}  // namespace servogate::canopen

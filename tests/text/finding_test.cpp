@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/text/finding.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace servogate::text {
+namespace {
+
+constexpr Entry kSample{"sample.limit", "{0} leaves the travel at {1} mm",
+                        "{0} выходит за пределы хода: {1} мм"};
+
+TEST(Finding, prints_file_line_column_severity_text_and_code) {
+  Finding f{Severity::error, "bracket.nc", 12, 7, &kSample, {"X", "301"}};
+  EXPECT_EQ(f.str(Language::english), "bracket.nc:12:7: error: X leaves the travel at 301 mm [sample.limit]");
+  f.severity = Severity::warning;
+  f.line = 0;
+  EXPECT_EQ(f.str(Language::russian),
+            "bracket.nc: warning: X выходит за пределы хода: 301 мм [sample.limit]");
+}
+
+TEST(Render, keeps_a_placeholder_without_an_argument_visible) {
+  EXPECT_EQ(render(kSample, std::vector<std::string>{"X"}, Language::english),
+            "X leaves the travel at {1} mm");
+}
+
+TEST(UserLanguage, follows_the_first_variable_that_is_set) {
+  setenv("LC_ALL", "", 1);
+  setenv("LC_MESSAGES", "", 1);
+  setenv("LANG", "ru_RU.UTF-8", 1);
+  EXPECT_EQ(user_language(), Language::russian);
+  setenv("LC_ALL", "C", 1);
+  EXPECT_EQ(user_language(), Language::english);
+}
+
+TEST(Number, is_plain_decimal_without_trailing_zeros_or_minus_zero) {
+  EXPECT_EQ(number(26214.4), "26214.4");
+  EXPECT_EQ(number(500), "500");
+  EXPECT_EQ(number(-0.0000001), "0");
+  EXPECT_EQ(number(1e12), "1000000000000");
+}
+
+}  // namespace
+}  // namespace servogate::text
