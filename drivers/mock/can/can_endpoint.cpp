@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/mock/can/can_endpoint.hpp"
+
+namespace servogate::mock {
+namespace {
+constexpr std::uint32_t kWarning = 96, kPassive = 128, kBusOff = 256;  // ISO 11898-1, 12.1.4
+constexpr std::uint64_t kRecoveryBits = 128 * 11;
+constexpr std::uint32_t kSuspendBits = 8;
+}  // namespace
+
+bool CanSegment::Endpoint::send(const CanFrame& frame) noexcept {
+  if (frame.fd || frame.error || frame.length > 8 || bus_off() || pending_.size() == pending_.capacity()) {
+    ++segment_.statistics_.refused;
+    return false;
+  }
+  Pending& p = pending_.emplace_back();
+  p.frame = frame;
+  p.key = arbitration_key(frame);
+  p.not_before = segment_.now_;
+  if (!segment_.faults_.empty())
+    if (const CanFault* fault = segment_.fault_for(frame, number_, true)) p.not_before += fault->delay_ns;
+  return true;
+}
+
+bool CanSegment::Endpoint::receive(CanFrame& frame) noexcept {
+  if (count_ == 0) return false;
+  frame = received_[head_];
+  head_ = head_ + 1 == received_.size() ? 0 : head_ + 1;
+  --count_;
+  return true;
+}
+
+void CanSegment::Endpoint::push(const CanFrame& frame) noexcept {
+  if (count_ == received_.size()) {
+    ++segment_.statistics_.lost;
+    return;
+  }
+  std::size_t tail = head_ + count_++;
+  if (tail >= received_.size()) tail -= received_.size();
+  received_[tail] = frame;
+}
+
+image::CanState CanSegment::Endpoint::state() const noexcept {
+  if (!connected_) return image::CanState::down;
+  if (bus_off()) return image::CanState::bus_off;
+  const std::uint32_t worst = std::max(transmit_errors_, receive_errors_);
+  if (worst >= kPassive) return image::CanState::error_passive;
+  return worst >= kWarning ? image::CanState::error_warning : image::CanState::error_active;
+}
+
+Nanoseconds CanSegment::Endpoint::ready_at() const noexcept {
+  if (pending_.empty() || !on_bus()) return kNever;
+  Nanoseconds earliest = pending_.front().not_before;
+  if (segment_.config_.priority_mailboxes)
+    for (const Pending& p : pending_) earliest = std::min(earliest, p.not_before);
+  return std::max(earliest, suspended_until_);
+}
+
+int CanSegment::Endpoint::offer() const noexcept {
+  if (!on_bus() || suspended_until_ > segment_.now_) return -1;
+  int best = -1;
+  for (std::size_t i = 0; i < pending_.size(); ++i) {
+    if (pending_[i].not_before <= segment_.now_ &&
+        (best < 0 || pending_[i].key < pending_[static_cast<std::size_t>(best)].key))
+      best = static_cast<int>(i);
+    if (!segment_.config_.priority_mailboxes) break;
+  }
+  return best;
+}
+
+void CanSegment::Endpoint::drop_pending(const CanFrame& frame) noexcept {
+  const auto it = std::find_if(pending_.begin(), pending_.end(), [&frame](const Pending& p) {
+    return p.key == arbitration_key(frame) && same_content(p.frame, frame);
+  });
+  if (it != pending_.end()) pending_.erase(it);
+}
+
+void CanSegment::Endpoint::sent() noexcept {
+  if (transmit_errors_ >= kPassive)
+    suspended_until_ = segment_.now_ + segment_.bit_time(kIntermissionBits + kSuspendBits);
+  if (transmit_errors_ > 0) --transmit_errors_;
+}
+
+void CanSegment::Endpoint::transmit_error(bool count) noexcept {
+  if (count) transmit_errors_ += 8;
+  if (transmit_errors_ >= kBusOff) {
+    go_bus_off();
+  } else if (transmit_errors_ >= kPassive) {
+    suspended_until_ = segment_.now_ + segment_.bit_time(kIntermissionBits + kSuspendBits);
+  }
+}
+
+void CanSegment::Endpoint::go_bus_off() noexcept {
+  pending_.clear();
+  transmit_errors_ = 0;
+  receive_errors_ = 0;
+  recover_at_ = kNever;
+  if (segment_.config_.automatic_restart) recover();
+}
+
+void CanSegment::Endpoint::recover() noexcept {
+  if (recover_at_ == kNever) recover_at_ = segment_.now_ + segment_.bit_time(kRecoveryBits);
+}
+
+}  // namespace servogate::mock

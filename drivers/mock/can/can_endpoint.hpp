@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "drivers/mock/can/can_segment.hpp"
+
+namespace servogate::mock {
+
+inline constexpr Nanoseconds kNever = std::numeric_limits<Nanoseconds>::max();
+
+/// The bits by which frames compete, in their order on the wire: base identifier, RTR or SRR, IDE, identifier
+/// extension, RTR. The smaller number wins. Source: ISO 11898-1, 10.4.2. real-time safe.
+constexpr std::uint32_t arbitration_key(const CanFrame& f) noexcept {
+  const std::uint32_t rtr = f.remote ? 1 : 0;
+  if (!f.extended) return (f.id & 0x7FF) << 21 | rtr << 20;
+  return (f.id >> 18 & 0x7FF) << 21 | 3u << 19 | (f.id & 0x3FFFF) << 1 | rtr;
+}
+
+/// Equal but for the identifier, which the caller has compared. real-time safe.
+inline bool same_content(const CanFrame& a, const CanFrame& b) noexcept {
+  return a.length == b.length && a.remote == b.remote &&
+         std::equal(a.data.begin(), a.data.begin() + (a.remote ? 0 : a.length), b.data.begin());
+}
+
+/// One controller on a segment: its mailboxes, receive queue and error counters. Inside of CanSegment.
+class CanSegment::Endpoint final : public image::CanBus {
+ public:
+  Endpoint(CanSegment& segment, int number, std::string name, CanNode* node)
+      : segment_(segment), number_(number), name_(std::move(name)), node_(node) {
+    pending_.reserve(segment.config_.send_queue);
+    if (!node) received_.resize(std::max<std::size_t>(1, segment.config_.receive_queue));
+  }
+
+  bool send(const CanFrame& frame) noexcept override;
+  bool receive(CanFrame& frame) noexcept override;
+  image::CanState state() const noexcept override;
+  std::uint32_t bit_rate() const noexcept override { return segment_.config_.bit_rate; }
+
+  /// Takes part in the traffic: plugged in and not bus-off.
+  bool on_bus() const noexcept { return connected_ && !bus_off(); }
+  bool bus_off() const noexcept { return segment_.now_ < recover_at_; }
+  /// Earliest time at which it offers a frame.
+  Nanoseconds ready_at() const noexcept;
+  /// Index of the frame it offers now, -1: none.
+  int offer() const noexcept;
+  const CanFrame& pending(int index) const noexcept {
+    return pending_[static_cast<std::size_t>(index)].frame;
+  }
+  /// Takes the frame that was on the wire out of its mailbox; nothing happens when it has gone meanwhile.
+  void drop_pending(const CanFrame& frame) noexcept;
+
+  void push(const CanFrame& frame) noexcept;
+  void sent() noexcept;
+  void transmit_error(bool count) noexcept;
+  void receive_error() noexcept {
+    if (receive_errors_ < 128) ++receive_errors_;
+  }
+  void received_well() noexcept {
+    if (receive_errors_ > 0) --receive_errors_;
+  }
+  void go_bus_off() noexcept;
+  void recover() noexcept;
+
+  CanNode* node() const noexcept { return node_; }
+  Nanoseconds due() const noexcept { return due_; }
+  void plan(Nanoseconds now) noexcept { due_ = std::max(node_->next_action_ns(), now + 1); }
+  void set_connected(bool connected) noexcept { connected_ = connected; }
+
+ private:
+  struct Pending {
+    CanFrame frame;
+    Nanoseconds not_before = 0;
+    std::uint32_t key = 0;
+  };
+
+  CanSegment& segment_;
+  int number_;
+  std::string name_;
+  CanNode* node_;
+  Nanoseconds due_ = kNever;
+  std::vector<Pending> pending_;  ///< in the order of send(); never grows beyond its reservation
+  std::vector<CanFrame> received_;
+  std::size_t head_ = 0, count_ = 0;
+  bool connected_ = true;
+  std::uint32_t transmit_errors_ = 0, receive_errors_ = 0;
+  Nanoseconds recover_at_ = std::numeric_limits<Nanoseconds>::min();
+  Nanoseconds suspended_until_ = 0;  ///< error-passive senders wait eight more bits
+};
+
+}  // namespace servogate::mock

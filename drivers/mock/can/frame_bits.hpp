@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "firmware_if/image/can_bus.hpp"
+
+namespace servogate::mock {
+
+/// Bits after the stuffed part of a frame that reaches the bus: CRC delimiter, acknowledge slot and
+/// delimiter, seven bits end of frame. Source: ISO 11898-1, 10.4.2.
+inline constexpr std::uint32_t kTrailerBits = 10;
+/// Bits of rest between a frame and the next one (intermission). Source: ISO 11898-1, 10.4.6.
+inline constexpr std::uint32_t kIntermissionBits = 3;
+
+/// CRC-15 of a classic frame over start of frame, arbitration, control and data field, unstuffed; generator
+/// 4599h. Source: ISO 11898-1, 10.4.2.6. real-time safe.
+std::uint16_t frame_crc(const image::CanFrame& frame) noexcept;
+
+/// Number of stuff bits that the very bits of this frame need, its CRC included. real-time safe.
+std::uint32_t stuff_bits(const image::CanFrame& frame) noexcept;
+
+/// Exact length of a classic frame on the wire, from start of frame to the end of the end-of-frame field; the
+/// intermission is not included. At most 8 bytes count. real-time safe.
+std::uint32_t frame_bits(const image::CanFrame& frame) noexcept;
+
+}  // namespace servogate::mock

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/mock/drive/drive_inside.hpp"
+
+#include <algorithm>
+
+namespace servogate::mock {
+namespace {
+
+constexpr std::string_view kNames[kFaultKinds] = {"silent",
+                                                  "deaf",
+                                                  "heartbeat_lost",
+                                                  "pdo_dropped",
+                                                  "pdo_late",
+                                                  "pdo_corrupted",
+                                                  "pdo_repeated",
+                                                  "sdo_silent",
+                                                  "sdo_abort",
+                                                  "stuck_state",
+                                                  "frozen",
+                                                  "encoder_loss",
+                                                  "emcy",
+                                                  "emcy_only",
+                                                  "over_current",
+                                                  "encoder_fault",
+                                                  "encoder_jump",
+                                                  "following_error",
+                                                  "over_temperature",
+                                                  "under_voltage",
+                                                  "reset"};
+
+constexpr bool lasts(DriveFaultKind kind) noexcept { return kind <= DriveFaultKind::encoder_loss; }
+
+}  // namespace
+
+std::optional<DriveFaultKind> drive_fault_kind(std::string_view name) noexcept {
+  const auto found = std::find(std::begin(kNames), std::end(kNames), name);
+  if (found == std::end(kNames)) return std::nullopt;
+  return static_cast<DriveFaultKind>(found - std::begin(kNames));
+}
+std::string_view name_of(DriveFaultKind kind) noexcept { return kNames[static_cast<std::size_t>(kind)]; }
+
+void SimulatedDrive::Inside::power_on(Nanoseconds t) noexcept {
+  now = t;
+  next_servo = t + config.servo_period_ns;
+  next_communication = t + kCommunicationPeriod;
+  const std::int64_t encoder = plant.state().position;
+  profile.power_on(encoder, config.absolute_encoder ? encoder : 0);
+  slave.power_on(gate, t, static_cast<Nanoseconds>(config.boot_time_s * 1e9));
+}
+
+void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
+  while (next_servo <= t || next_communication <= t) {
+    if (spoiled(DriveFaultKind::frozen)) {
+      // Time passes it by.
+      next_servo += next_servo <= t ? config.servo_period_ns : 0;
+      if (next_communication > t) continue;
+      expire(next_communication);
+      next_communication += kCommunicationPeriod;
+    } else if (next_servo <= next_communication) {
+      servo_tick();
+      next_servo += config.servo_period_ns;
+    } else {
+      if (any_lasting) expire(next_communication);
+      gate.advance_to(next_communication);
+      slave.tick(next_communication);
+      next_communication += kCommunicationPeriod;
+    }
+  }
+  now = std::max(now, t);
+}
+
+void SimulatedDrive::Inside::servo_tick() noexcept {
+  const std::int64_t before = plant.counts();
+  plant.step(command);
+  read_inputs(before);
+  canopen::ServoState servo = plant.state();
+  if (any_lasting && spoiled(DriveFaultKind::encoder_loss)) {
+    servo.position = lost_encoder_position;
+    servo.zero_mark = false;
+  }
+  inputs.hold_state = any_lasting && spoiled(DriveFaultKind::stuck_state) &&
+                      profile.state() == fault(DriveFaultKind::stuck_state).state;
+  command = profile.tick(servo, inputs);
+}
+
+// Levels of the inputs; where the shaft itself moved a switch, the edge lies on the switch's boundary.
+void SimulatedDrive::Inside::read_inputs(std::int64_t before) noexcept {
+  if (config.switches.empty() && outside_level == inputs.active) return;
+  const std::int64_t error = plant.state().position - plant.counts();
+  auto level = outside_level;
+  auto edge = inputs.edge_position;
+  edge.fill(plant.state().position);
+  for (const DriveSwitch& s : config.switches) {
+    const auto i = static_cast<std::size_t>(s.input);
+    const bool was = before >= s.from && before <= s.to, is = inside(s);
+    level[i] = level[i] || is;
+    if (was == is) continue;
+    const bool at_from = is ? before < s.from : plant.counts() < s.from;
+    edge[i] = (at_from ? s.from : s.to) + error;
+  }
+  for (std::size_t i = 0; i < canopen::kDriveInputs; ++i)
+    if (level[i] != inputs.active[i]) inputs.edge_position[i] = edge[i];
+  inputs.active = level;
+}
+
+bool SimulatedDrive::Inside::answer_with_abort(const CanFrame& frame) noexcept {
+  if (!any_lasting || !spoiled(DriveFaultKind::sdo_abort)) return false;
+  if (frame.id != canopen::cob::sdo_request(config.node_id) || frame.length != 8) return false;
+  const DriveFault& f = fault(DriveFaultKind::sdo_abort);
+  const auto index = static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8);
+  if (f.index != 0 && f.index != index) return false;
+  const auto answer = canopen::sdo_abort(index, frame.data[3], f.abort);
+  gate.send(canopen::make_frame(canopen::cob::sdo_response(config.node_id), answer));
+  return true;
+}
+
+void SimulatedDrive::Inside::inject(const DriveFault& f) noexcept {
+  if (!lasts(f.kind)) return happen(f);
+  lasting[static_cast<std::size_t>(f.kind)] = {f, f.duration_ns > 0 ? now + f.duration_ns : 0, true};
+  if (f.kind == DriveFaultKind::encoder_loss) lost_encoder_position = plant.state().position;
+  apply_to_gate();
+}
+
+void SimulatedDrive::Inside::clear(DriveFaultKind kind) noexcept {
+  lasting[static_cast<std::size_t>(kind)].active = false;
+  apply_to_gate();
+}
+
+void SimulatedDrive::Inside::expire(Nanoseconds t) noexcept {
+  bool changed = false;
+  for (Lasting& l : lasting) {
+    if (!l.active || l.until == 0 || t < l.until) continue;
+    l.active = false;
+    changed = true;
+  }
+  if (changed) apply_to_gate();
+}
+
+void SimulatedDrive::Inside::apply_to_gate() noexcept {
+  any_lasting = std::any_of(lasting.begin(), lasting.end(), [](const Lasting& l) { return l.active; });
+  BusGate::Spoil& s = gate.spoil();
+  s.silent = spoiled(DriveFaultKind::silent) || spoiled(DriveFaultKind::frozen);
+  s.heartbeat_lost = spoiled(DriveFaultKind::heartbeat_lost);
+  s.sdo_silent = spoiled(DriveFaultKind::sdo_silent);
+  s.pdo_repeated = spoiled(DriveFaultKind::pdo_repeated);
+  const DriveFault& dropped = fault(DriveFaultKind::pdo_dropped);
+  s.pdo_dropped_every = spoiled(DriveFaultKind::pdo_dropped) ? std::max<std::uint32_t>(1, dropped.every) : 0;
+  s.pdo_delay_ns = spoiled(DriveFaultKind::pdo_late) ? fault(DriveFaultKind::pdo_late).delay_ns : 0;
+  s.pdo_flip = spoiled(DriveFaultKind::pdo_corrupted)
+                   ? static_cast<std::uint64_t>(fault(DriveFaultKind::pdo_corrupted).value)
+                   : 0;
+}
+
+void SimulatedDrive::Inside::happen(const DriveFault& f) noexcept {
+  switch (f.kind) {
+    case DriveFaultKind::emcy:
+      return profile.fault(f.error_code, false);
+    case DriveFaultKind::emcy_only:
+      return slave.emcy().notify(f.error_code);
+    case DriveFaultKind::over_current:
+      return profile.fault(0x2310, true);
+    case DriveFaultKind::encoder_fault:
+      return profile.fault(0x7305, true);
+    case DriveFaultKind::encoder_jump:
+      return plant.jump_encoder(f.value);
+    case DriveFaultKind::following_error:
+      return profile.fault(0x8611, false);
+    case DriveFaultKind::over_temperature:
+      return profile.fault(0x4310, false);
+    case DriveFaultKind::under_voltage:
+      return profile.fault(0x3220, true);
+    case DriveFaultKind::reset:
+      slave.reset_node(now);
+      return power_on(now);
+    default:
+      return;
+  }
+}
+
+}  // namespace servogate::mock

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "drivers/mock/drive/bus_gate.hpp"
+#include "drivers/mock/drive/simulated_drive.hpp"
+#include "firmware_if/canopen/device/communication_objects.hpp"
+#include "firmware_if/canopen/device/drive/servo_profile.hpp"
+
+namespace servogate::mock {
+
+inline constexpr std::size_t kFaultKinds = static_cast<std::size_t>(DriveFaultKind::reset) + 1;
+inline constexpr Nanoseconds kCommunicationPeriod = image::kMillisecond;
+
+/// The parts of a simulated drive and how time and faults pass through them.
+struct SimulatedDrive::Inside {
+  explicit Inside(const SimulatedDriveConfig& c);
+
+  void power_on(Nanoseconds t) noexcept;
+  void advance_to(Nanoseconds t) noexcept;
+  void servo_tick() noexcept;
+  void read_inputs(std::int64_t before) noexcept;
+  bool inside(const DriveSwitch& s) const noexcept {
+    return plant.counts() >= s.from && plant.counts() <= s.to;
+  }
+  bool answer_with_abort(const CanFrame& frame) noexcept;
+
+  void inject(const DriveFault& fault) noexcept;
+  void happen(const DriveFault& fault) noexcept;
+  void clear(DriveFaultKind kind) noexcept;
+  void expire(Nanoseconds t) noexcept;
+  void apply_to_gate() noexcept;
+  bool spoiled(DriveFaultKind kind) const noexcept { return lasting[static_cast<std::size_t>(kind)].active; }
+  const DriveFault& fault(DriveFaultKind kind) const noexcept {
+    return lasting[static_cast<std::size_t>(kind)].fault;
+  }
+
+  struct Lasting {
+    DriveFault fault;
+    Nanoseconds until = 0;  ///< 0: until cleared
+    bool active = false;
+  };
+
+  SimulatedDriveConfig config;
+  canopen::ObjectDictionary dictionary;
+  canopen::ServoProfile profile;
+  canopen::Slave slave;
+  Plant plant;
+  BusGate gate;
+  canopen::ServoCommand command;
+  canopen::DriveInputs inputs;
+  std::array<bool, canopen::kDriveInputs> outside_level{};
+  std::int64_t lost_encoder_position = 0;
+  std::array<Lasting, kFaultKinds> lasting{};
+  bool any_lasting = false;
+  Nanoseconds now = 0;
+  Nanoseconds next_servo = 0;
+  Nanoseconds next_communication = 0;
+};
+
+}  // namespace servogate::mock

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "firmware_if/canopen/device/drive/servo.hpp"
+#include "firmware_if/image/time.hpp"
+
+namespace servogate::mock {
+
+/// Motor, load and servo loops of a simulated axis, all at the motor shaft. SI units.
+struct PlantConfig {
+  std::int64_t counts_per_rev = 262'144;  ///< resolution of the encoder
+  double inertia_kg_m2 = 1.0e-3;          ///< rotor and load
+  double coulomb_friction_nm = 0.1;       ///< dry friction, also what holds at rest
+  double viscous_friction_nm_s = 5.0e-4;  ///< per rad/s
+  double load_torque_nm = 0.0;     ///< constant, e.g. gravity of a vertical axis; + pulls towards minus
+  double rated_torque_nm = 2.4;    ///< 1000 permille of 6071h, 6077h
+  double peak_torque_nm = 7.2;     ///< what the power stage can give
+  double max_speed_rad_s = 524.0;  ///< no torque beyond it in that direction (voltage limit); 5000 rpm
+  double current_time_constant_s = 3.0e-4;  ///< torque follows its command as a first-order lag
+  double position_gain = 120.0;             ///< 1/s
+  double velocity_gain = 0.0;               ///< N m s/rad; 0: inertia * 600/s
+  double velocity_integral = 60.0;          ///< 1/s, reciprocal of the integral time
+  double brake_torque_nm = 0.0;             ///< of a closed holding brake; 0: there is no brake
+  std::int64_t zero_mark_counts =
+      0;  ///< place of the zero mark inside a revolution, 0 ... counts_per_rev - 1
+  double end_stop_min_rev = -1.0e12;  ///< rigid stops, revolutions of the shaft from the world's zero
+  double end_stop_max_rev = 1.0e12;
+  double start_rev = 0.0;  ///< where the shaft stands at the start
+};
+
+/// The motor with its load, integrated semi-implicitly with a fixed step: dry friction is exact (it holds,
+/// and it never reverses a motion), viscous friction is unconditionally stable. Deterministic. real-time
+/// safe.
+class Plant {
+ public:
+  Plant(const PlantConfig& config, image::Nanoseconds step_ns);
+
+  /// One step under a command. Positions of the command are encoder counts (see encoder_counts()).
+  void step(const canopen::ServoCommand& command) noexcept;
+
+  /// What the drive's electronics measure. real-time safe.
+  const canopen::ServoState& state() const noexcept { return state_; }
+  /// True angle in revolutions from the world's zero. real-time safe.
+  double revolutions() const noexcept { return counts_ * revolutions_per_count_; }
+  /// True position in counts from the world's zero, rounded down. real-time safe.
+  std::int64_t counts() const noexcept { return whole_counts_; }
+  double velocity_rad_s() const noexcept { return omega_; }
+  double torque_nm() const noexcept { return torque_; }
+  bool at_end_stop() const noexcept { return at_stop_; }
+  /// Kinetic energy in J. real-time safe.
+  double kinetic_energy() const noexcept;
+
+  /// Replaces the constant load. real-time safe.
+  void set_load_torque(double nm) noexcept { load_torque_ = nm; }
+  /// Moves the shaft (a hand on the handwheel, a crash): position only, at rest.
+  void place_at(double revolutions) noexcept;
+  /// Adds an error to what the encoder says from now on (lost counts). real-time safe.
+  void jump_encoder(std::int64_t counts) noexcept { encoder_error_ += counts; }
+
+ private:
+  double loop_torque(const canopen::ServoCommand& command) noexcept;
+  void integrate(double torque_command, bool brake_closed) noexcept;
+  void measure() noexcept;
+  void find_marks() noexcept;
+
+  PlantConfig config_;
+  double h_;
+  // Derived once.
+  double revolutions_per_count_, rad_per_count_, counts_per_rad_;
+  double lag_, h_over_j_, viscous_divisor_, friction_step_, brake_step_;
+  double permille_to_nm_, nm_to_permille_, velocity_gain_, integral_step_;
+  double stop_min_counts_, stop_max_counts_;
+  // State.
+  double counts_ = 0.0;  ///< true position, counts with fraction
+  std::int64_t whole_counts_ = 0;
+  double omega_ = 0.0;
+  double torque_ = 0.0;
+  double integral_ = 0.0;
+  double load_torque_;
+  bool at_stop_ = false;
+  std::int64_t mark_below_ = 0, mark_above_ = 0;  ///< zero marks around the shaft, true counts
+  std::int64_t encoder_error_ = 0;
+  canopen::ServoState state_;
+};
+
+}  // namespace servogate::mock

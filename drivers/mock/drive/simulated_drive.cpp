@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/mock/drive/simulated_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "drivers/mock/drive/drive_inside.hpp"
+
+namespace servogate::mock {
+namespace {
+
+canopen::DriveRatings ratings_of(const SimulatedDriveConfig& c) {
+  canopen::DriveRatings r;
+  r.counts_per_rev = static_cast<std::uint32_t>(c.plant.counts_per_rev);
+  r.rated_torque_mnm = static_cast<std::uint32_t>(std::lround(c.plant.rated_torque_nm * 1000.0));
+  r.peak_torque_permille =
+      static_cast<std::uint16_t>(std::lround(c.plant.peak_torque_nm / c.plant.rated_torque_nm * 1000.0));
+  r.max_speed_rpm =
+      static_cast<std::uint32_t>(std::lround(c.plant.max_speed_rad_s * 60.0 / (2.0 * std::numbers::pi)));
+  return r;
+}
+
+canopen::DeviceIdentity identity_of(const SimulatedDriveConfig& c) {
+  constexpr std::uint32_t kServoDrive = 0x0002'0192;  // CiA 402-1: servo drive, profile 402
+  return {kServoDrive, c.vendor_id, c.product_code, c.revision, c.serial_number};
+}
+
+canopen::ServoProfileSettings settings_of(const SimulatedDriveConfig& c) {
+  const bool brake = c.plant.brake_torque_nm > 0.0;
+  const auto ns = [brake](double s) { return brake ? static_cast<Nanoseconds>(std::llround(s * 1e9)) : 0; };
+  canopen::ServoProfileSettings s;
+  s.servo_period = c.servo_period_ns;
+  s.counts_per_rev = c.plant.counts_per_rev;
+  s.brake_release = ns(c.brake_release_s);
+  s.brake_engage = ns(c.brake_engage_s);
+  return s;
+}
+
+}  // namespace
+
+SimulatedDrive::Inside::Inside(const SimulatedDriveConfig& c)
+    : config(c),
+      dictionary(
+          {canopen::communication_objects(c.node_id, identity_of(c)), canopen::drive_objects(ratings_of(c))}),
+      profile(dictionary, settings_of(c)),
+      slave(c.node_id, dictionary, profile),
+      plant(c.plant, c.servo_period_ns) {
+  profile.connect(slave.emcy());
+  dictionary.set_text(dictionary.find(canopen::object::kDeviceName, 0), c.name);
+  inputs.main_voltage = c.main_voltage;
+  for (const DriveSwitch& s : config.switches) inputs.active[static_cast<std::size_t>(s.input)] |= inside(s);
+}
+
+SimulatedDrive::SimulatedDrive(const SimulatedDriveConfig& config)
+    : inside_(std::make_unique<Inside>(config)) {}
+SimulatedDrive::~SimulatedDrive() = default;
+
+void SimulatedDrive::connect(image::CanBus& bus, Nanoseconds now) {
+  inside_->gate.connect(bus, inside_->config.node_id);
+  inside_->power_on(now);
+}
+
+void SimulatedDrive::on_frame(const CanFrame& frame) noexcept {
+  Inside& in = *inside_;
+  if (!in.slave.concerned(frame) || in.spoiled(DriveFaultKind::deaf) || in.spoiled(DriveFaultKind::frozen))
+    return;
+  if (in.slave.immediate(frame)) in.advance_to(frame.timestamp_ns);
+  if (in.answer_with_abort(frame)) return;
+  in.slave.on_frame(frame, frame.timestamp_ns);
+}
+
+void SimulatedDrive::advance_to(Nanoseconds t) noexcept { inside_->advance_to(t); }
+Nanoseconds SimulatedDrive::next_action_ns() const noexcept { return inside_->next_communication; }
+
+canopen::NodeId SimulatedDrive::node_id() const noexcept { return inside_->config.node_id; }
+image::DriveState SimulatedDrive::state() const noexcept { return inside_->profile.state(); }
+canopen::NmtState SimulatedDrive::nmt_state() const noexcept { return inside_->slave.state(); }
+std::uint16_t SimulatedDrive::statusword() const noexcept { return inside_->profile.statusword(); }
+std::uint16_t SimulatedDrive::error_code() const noexcept { return inside_->profile.error_code(); }
+bool SimulatedDrive::brake_released() const noexcept { return inside_->command.brake_released; }
+double SimulatedDrive::revolutions() const noexcept { return inside_->plant.revolutions(); }
+std::int64_t SimulatedDrive::position_counts() const noexcept { return inside_->plant.counts(); }
+double SimulatedDrive::velocity_counts_s() const noexcept { return inside_->plant.state().velocity; }
+double SimulatedDrive::torque_permille() const noexcept { return inside_->plant.state().torque; }
+std::int64_t SimulatedDrive::reported_position() const noexcept { return inside_->profile.position(); }
+
+void SimulatedDrive::set_input(DriveSwitch::Input input, bool active) noexcept {
+  inside_->outside_level[static_cast<std::size_t>(input)] = active;
+}
+void SimulatedDrive::set_general_inputs(std::uint16_t bits) noexcept { inside_->inputs.general = bits; }
+std::uint32_t SimulatedDrive::digital_outputs() const noexcept {
+  const auto& od = inside_->dictionary;
+  return static_cast<std::uint32_t>(od.get(canopen::object::kDigitalOutputs, 1) &
+                                    od.get(canopen::object::kDigitalOutputs, 2));
+}
+void SimulatedDrive::set_load_torque(double nm) noexcept { inside_->plant.set_load_torque(nm); }
+void SimulatedDrive::set_main_voltage(bool present) noexcept { inside_->inputs.main_voltage = present; }
+void SimulatedDrive::set_safe_torque_off(bool torque_allowed) noexcept {
+  inside_->inputs.torque_allowed = torque_allowed;
+}
+
+void SimulatedDrive::inject(const DriveFault& fault) noexcept { inside_->inject(fault); }
+void SimulatedDrive::clear(DriveFaultKind kind) noexcept { inside_->clear(kind); }
+void SimulatedDrive::clear_faults() noexcept {
+  for (std::size_t i = 0; i < kFaultKinds; ++i) inside_->clear(static_cast<DriveFaultKind>(i));
+}
+bool SimulatedDrive::faulted_with(DriveFaultKind kind) const noexcept { return inside_->spoiled(kind); }
+
+std::int64_t SimulatedDrive::object(std::uint16_t index, std::uint8_t subindex) noexcept {
+  inside_->profile.refresh();
+  return inside_->dictionary.get(index, subindex);
+}
+
+void PolledDrive::advance_to(Nanoseconds t) {
+  CanFrame frame;
+  while (bus_.receive(frame)) {
+    frame.timestamp_ns = std::min(frame.timestamp_ns, t);
+    drive_.on_frame(frame);
+  }
+  drive_.advance_to(t);
+}
+
+}  // namespace servogate::mock

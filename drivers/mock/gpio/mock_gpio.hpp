@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "firmware_if/image/process_image.hpp"
+
+namespace servogate::mock {
+
+/// Real position of a simulated axis in mm or degrees, machine coordinates: where the slide is, not where the
+/// control believes it to be. `axis` = index in the machine file's order.
+using AxisPosition = std::function<double(int axis)>;
+
+/// Limit switch: active at and beyond `mm`, towards + or -.
+struct LimitSwitch {
+  int axis = 0;
+  double mm = 0.0;
+  bool positive = true;
+};
+/// Home switch: active in [mm, mm + width].
+struct HomeSwitch {
+  int axis = 0;
+  double mm = 0.0;
+  double width_mm = 5.0;
+};
+/// An input that an operator or a test sets.
+struct SetInput {
+  bool on = false;
+};
+using InputSource = std::variant<SetInput, LimitSwitch, HomeSwitch>;
+
+/// Contact bounce: after a change the line flickers for half of `time_ns` to all of it, by the seed.
+struct Bounce {
+  image::Nanoseconds time_ns = 0;  ///< 0: none
+  std::uint64_t seed = 1;
+};
+
+/// One input line and its place in packet A.
+struct GpioInput {
+  std::string name;
+  InputSource source;
+  image::Place place;
+  bool inverted = false;  ///< the place is TRUE while the contact is open (a normally closed switch)
+  Bounce bounce;
+};
+/// One output line.
+struct GpioOutput {
+  std::string name;
+  image::Place place;
+  bool inverted = false;
+};
+
+/// A simulated GPIO chip. As Simulated it follows the axes; as CycleDevice it moves lines to and from packet
+/// A.
+class MockGpio final : public image::CycleDevice, public image::Simulated {
+ public:
+  /// `source` = index in image.sources, -1: none. Without `position` switches stay off.
+  MockGpio(std::vector<GpioInput> inputs, std::vector<GpioOutput> outputs, AxisPosition position = {},
+           int source = -1);
+
+  /// Sets where switches find the axes. Not while the loop runs.
+  void follow(AxisPosition position) { position_ = std::move(position); }
+
+  /// real-time safe.
+  void receive(image::ProcessImage& image) noexcept override;
+  /// real-time safe.
+  void send(image::ProcessImage& image) noexcept override;
+  void advance_to(image::Nanoseconds t) override;
+
+  /// Index of a line by name, -1: none.
+  int input_index(std::string_view name) const noexcept;
+  int output_index(std::string_view name) const noexcept;
+  /// Sets an operator's input; false for a switch that follows an axis.
+  bool set_input(std::size_t n, bool on);
+  /// Holds a line at a level whatever drives it (a stuck contact), and lets it go.
+  void force_input(std::size_t n, bool on);
+  void release_input(std::size_t n);
+  /// The contact itself, before inversion, bounce included.
+  bool input(std::size_t n) const noexcept { return lines_[n].level; }
+  /// The physical level of an output, after inversion.
+  bool output(std::size_t n) const noexcept { return driven_[n]; }
+  /// Changes of a line since the start, bounces included.
+  std::uint64_t edges(std::size_t n) const noexcept { return lines_[n].edges; }
+  std::uint64_t output_edges(std::size_t n) const noexcept { return output_edges_[n]; }
+  /// The chip answers (true) or is unplugged: then its places keep their values and its quality is bad.
+  void plug(bool plugged) noexcept { plugged_ = plugged; }
+
+ private:
+  struct Line {
+    bool contact = false;  ///< as driven
+    bool level = false;    ///< as seen, with bounce
+    bool started = false;
+    bool forced = false;
+    bool forced_level = false;
+    image::Nanoseconds settle_ns = 0;
+    image::Nanoseconds next_flip_ns = 0;
+    std::uint64_t edges = 0;
+    std::mt19937_64 random;
+  };
+  bool contact(const GpioInput& input) const;
+  void move(Line& line, const GpioInput& input, image::Nanoseconds t);
+
+  std::vector<GpioInput> inputs_;
+  std::vector<GpioOutput> outputs_;
+  AxisPosition position_;
+  int source_;
+  std::vector<Line> lines_;
+  std::vector<bool> driven_;
+  std::vector<std::uint64_t> output_edges_;
+  image::Nanoseconds t_ns_ = 0;
+  bool plugged_ = true;
+};
+
+}  // namespace servogate::mock

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/mock/modbus/station.hpp"
+
+#include <algorithm>
+
+namespace servogate::mock {
+
+using modbus::Exception;
+using modbus::Function;
+
+ModbusStation::ModbusStation(StationSettings settings) : settings_(std::move(settings)) {
+  inputs_.assign(settings_.digital_inputs, false);
+  coils_.assign(settings_.digital_outputs, false);
+  analog_in_.assign(settings_.analog_inputs, 0);
+  holding_.assign(settings_.analog_outputs, 0);
+  std::copy_n(settings_.initial_inputs.begin(), std::min(settings_.initial_inputs.size(), inputs_.size()),
+              inputs_.begin());
+  std::copy_n(settings_.initial_analog.begin(), std::min(settings_.initial_analog.size(), analog_in_.size()),
+              analog_in_.begin());
+}
+
+void ModbusStation::add_loopback(const Loopback& wire) {
+  wires_.push_back({wire, false, false, 0});
+  drive(wires_.back(), output(wire.output), now_ns_);
+  advance_to(now_ns_);
+}
+
+image::Nanoseconds ModbusStation::answer_delay_ns() const noexcept {
+  return settings_.answer_delay_ns + (fault_.kind == StationFault::Kind::slow ? fault_.extra_ns : 0);
+}
+
+bool ModbusStation::serve(image::Nanoseconds t, const modbus::Pdu& request, modbus::Pdu& answer) {
+  advance_to(t);
+  if (fault_.kind == StationFault::Kind::silence) return false;
+  ++served_;
+  last_request_ns_ = t;
+  modbus::Request asked;
+  modbus::Response response;
+  response.exception =
+      fault_.kind == StationFault::Kind::exception ? fault_.exception : decode_request(request.view(), asked);
+  if (response.exception == Exception::none)
+    response = answer_to(asked);
+  else
+    response.function = static_cast<Function>(request.size > 0 ? request.bytes[0] & 0x7F : 0);
+  return encode(response, answer);
+}
+
+modbus::Response ModbusStation::answer_to(const modbus::Request& asked) {
+  modbus::Response r;
+  r.function = asked.function;
+  r.address = asked.address;
+  r.count = asked.count;
+  const std::size_t from = asked.address, end = from + asked.count;
+  const auto covers = [&](std::size_t size) {
+    if (end > size) r.exception = Exception::illegal_data_address;
+    return end <= size;
+  };
+  const auto bits = [&](const std::vector<bool>& source) {
+    for (std::size_t i = from; i < end; ++i) r.data.set_bit(i - from, source[i]);
+  };
+  const auto words = [&](const std::vector<std::uint16_t>& source) {
+    for (std::size_t i = from; i < end; ++i) r.data.words[i - from] = source[i];
+  };
+  switch (asked.function) {
+    case Function::read_coils:
+      if (covers(coils_.size())) bits(coils_);
+      break;
+    case Function::read_discrete_inputs:
+      if (covers(inputs_.size())) bits(inputs_);
+      break;
+    case Function::read_holding_registers:
+      if (covers(holding_.size())) words(holding_);
+      break;
+    case Function::read_input_registers:
+      if (covers(analog_in_.size())) words(analog_in_);
+      break;
+    case Function::write_single_coil:
+    case Function::write_multiple_coils:
+      r.data = asked.data;
+      if (covers(coils_.size()))
+        for (std::size_t i = from; i < end; ++i)
+          write_coil(static_cast<std::uint16_t>(i), asked.data.bit(i - from), now_ns_);
+      break;
+    case Function::write_single_register:
+    case Function::write_multiple_registers:
+      r.data = asked.data;
+      if (covers(holding_.size()))
+        for (std::size_t i = from; i < end; ++i) holding_[i] = asked.data.words[i - from];
+      break;
+  }
+  return r;
+}
+
+void ModbusStation::write_coil(std::uint16_t n, bool on, image::Nanoseconds t) {
+  if (coils_[n] == on) return;
+  coils_[n] = on;
+  for (Wire& wire : wires_)
+    if (wire.settings.output == n) drive(wire, on, t);
+}
+
+void ModbusStation::drive(Wire& wire, bool out, image::Nanoseconds t) {
+  wire.pending = true;
+  wire.target = out != wire.settings.inverted;
+  wire.due_ns = t + wire.settings.delay_ns;
+}
+
+void ModbusStation::advance_to(image::Nanoseconds t) {
+  now_ns_ = std::max(now_ns_, t);
+  if (settings_.watchdog_ns > 0 && now_ns_ - last_request_ns_ > settings_.watchdog_ns)
+    for (std::size_t n = 0; n < coils_.size(); ++n)
+      write_coil(static_cast<std::uint16_t>(n), false, last_request_ns_ + settings_.watchdog_ns);
+  for (Wire& wire : wires_) {
+    if (!wire.pending || now_ns_ < wire.due_ns) continue;
+    wire.pending = false;
+    set_input(wire.settings.input, wire.target);
+  }
+}
+
+bool ModbusStation::set_input(std::uint16_t n, bool on) {
+  if (n >= inputs_.size()) return false;
+  inputs_[n] = on;
+  return true;
+}
+
+bool ModbusStation::set_analog_input(std::uint16_t n, std::uint16_t raw) {
+  if (n >= analog_in_.size()) return false;
+  analog_in_[n] = raw;
+  return true;
+}
+
+}  // namespace servogate::mock

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "firmware_if/image/time.hpp"
+#include "firmware_if/modbus/pdu.hpp"
+
+namespace servogate::mock {
+
+/// Sizes and initial values of a simulated I/O station: discrete inputs and coils from address 0, input
+/// registers (AI) and holding registers (AO) from address 0.
+struct StationSettings {
+  std::uint8_t unit = 1;
+  std::uint16_t digital_inputs = 16, digital_outputs = 16, analog_inputs = 4, analog_outputs = 2;
+  std::vector<bool> initial_inputs;           ///< missing ones: off
+  std::vector<std::uint16_t> initial_analog;  ///< missing ones: 0
+  image::Nanoseconds answer_delay_ns =
+      2 * image::kMillisecond;  ///< from the request's last byte to the answer's first
+  /// Coils fall to off when no request came for so long; 0: they stay.
+  image::Nanoseconds watchdog_ns = 0;
+};
+
+/// A wire from an output back to an input. A pulse shorter than the delay is swallowed, as a contactor does.
+struct Loopback {
+  std::uint16_t output = 0;  ///< coil
+  std::uint16_t input = 0;   ///< discrete input
+  image::Nanoseconds delay_ns = 0;
+  bool inverted = false;
+};
+
+/// What a station does wrong.
+struct StationFault {
+  enum class Kind : std::uint8_t {
+    none,
+    silence,    ///< no answer
+    exception,  ///< answers every request with `exception`
+    slow,       ///< answers `extra_ns` later
+    garbled,    ///< the answer's checksum is wrong
+  } kind = Kind::none;
+  modbus::Exception exception = modbus::Exception::server_device_failure;
+  image::Nanoseconds extra_ns = 0;
+};
+
+/// A Modbus I/O station in process: a server on bytes, with wires, a watchdog and faults. Times are
+/// simulated.
+class ModbusStation {
+ public:
+  explicit ModbusStation(StationSettings settings);
+
+  const StationSettings& settings() const noexcept { return settings_; }
+  void add_loopback(const Loopback& wire);
+  void inject(const StationFault& fault) noexcept { fault_ = fault; }
+  const StationFault& fault() const noexcept { return fault_; }
+
+  /// Serves one request that was complete at time t. False: no answer will come.
+  bool serve(image::Nanoseconds t, const modbus::Pdu& request, modbus::Pdu& answer);
+  /// Time from the request's end to the answer's start, faults included.
+  image::Nanoseconds answer_delay_ns() const noexcept;
+  /// Moves loop-back wires and the watchdog on to time t.
+  void advance_to(image::Nanoseconds t);
+
+  /// Sets a simulated input from outside; false when there is none. A looped input follows its wire again at
+  /// the wire's next change.
+  bool set_input(std::uint16_t input, bool on);
+  bool set_analog_input(std::uint16_t input, std::uint16_t raw);
+  bool input(std::uint16_t n) const noexcept { return n < inputs_.size() && inputs_[n]; }
+  bool output(std::uint16_t n) const noexcept { return n < coils_.size() && coils_[n]; }
+  std::uint16_t analog_input(std::uint16_t n) const noexcept {
+    return n < analog_in_.size() ? analog_in_[n] : 0;
+  }
+  std::uint16_t analog_output(std::uint16_t n) const noexcept {
+    return n < holding_.size() ? holding_[n] : 0;
+  }
+  std::uint64_t requests_served() const noexcept { return served_; }
+
+ private:
+  struct Wire {
+    Loopback settings;
+    bool pending = false;
+    bool target = false;
+    image::Nanoseconds due_ns = 0;
+  };
+  modbus::Response answer_to(const modbus::Request& request);
+  void write_coil(std::uint16_t n, bool on, image::Nanoseconds t);
+  void drive(Wire& wire, bool output, image::Nanoseconds t);
+
+  StationSettings settings_;
+  std::vector<bool> inputs_, coils_;
+  std::vector<std::uint16_t> analog_in_, holding_;
+  std::vector<Wire> wires_;
+  StationFault fault_;
+  image::Nanoseconds now_ns_ = 0;
+  image::Nanoseconds last_request_ns_ = 0;
+  std::uint64_t served_ = 0;
+};
+
+}  // namespace servogate::mock

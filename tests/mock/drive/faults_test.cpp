@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "tests/mock/drive/drive_bench.hpp"
+
+namespace servogate::mock {
+namespace {
+
+using image::DriveState;
+using image::kMillisecond;
+
+struct DriveFaults : testing::Test {
+  DriveBench b;
+  void SetUp() override {
+    b.write(0x1017, 0, 10, 2);
+    b.start_cyclic_position();
+    for (const int word : {0x06, 0x07, 0x0F})
+      for (int i = 0; i < 5; ++i) b.cycle(static_cast<std::uint16_t>(word), 0);
+    b.seen.clear();
+  }
+  void cycles(int n) {
+    for (int i = 0; i < n; ++i) b.cycle(0x0F, 0);
+  }
+};
+
+TEST_F(DriveFaults, names_and_kinds_belong_together) {
+  for (int i = 0; i <= static_cast<int>(DriveFaultKind::reset); ++i) {
+    const auto kind = static_cast<DriveFaultKind>(i);
+    EXPECT_EQ(drive_fault_kind(name_of(kind)), kind);
+    EXPECT_FALSE(name_of(kind).empty());
+  }
+  EXPECT_FALSE(drive_fault_kind("gremlins"));
+}
+
+TEST_F(DriveFaults, silent_sends_nothing_until_its_time_is_over) {
+  b.drive.inject({.kind = DriveFaultKind::silent, .duration_ns = 50 * kMillisecond});
+  cycles(45);
+  EXPECT_TRUE(b.seen.empty());
+  cycles(20);
+  EXPECT_GT(b.count(0x185), 10);
+  EXPECT_EQ(b.drive.state(), DriveState::operation_enabled) << "it worked on";
+}
+
+TEST_F(DriveFaults, deaf_hears_nothing) {
+  b.drive.inject({.kind = DriveFaultKind::deaf});
+  cycles(10);
+  EXPECT_EQ(b.count(0x185), 0);
+  b.nmt(0x02);
+  EXPECT_EQ(b.drive.nmt_state(), canopen::NmtState::operational);
+  b.drive.clear_faults();
+  cycles(10);
+  EXPECT_EQ(b.count(0x185), 10);
+}
+
+TEST_F(DriveFaults, a_lost_heartbeat_takes_nothing_else_away) {
+  b.drive.inject({.kind = DriveFaultKind::heartbeat_lost});
+  cycles(100);
+  EXPECT_EQ(b.count(0x705), 0);
+  EXPECT_EQ(b.count(0x185), 100);
+  b.drive.clear(DriveFaultKind::heartbeat_lost);
+  cycles(100);
+  EXPECT_NEAR(b.count(0x705), 10, 1);
+}
+
+TEST_F(DriveFaults, every_nth_pdo_can_be_dropped) {
+  b.drive.inject({.kind = DriveFaultKind::pdo_dropped, .every = 4});
+  cycles(100);
+  EXPECT_EQ(b.count(0x185), 75);
+}
+
+TEST_F(DriveFaults, late_pdos_come_in_the_next_cycle_with_the_old_content) {
+  b.drive.inject({.kind = DriveFaultKind::pdo_late, .delay_ns = 1500 * image::kMicrosecond});
+  cycles(10);
+  EXPECT_GE(b.count(0x185), 7);
+  EXPECT_LT(b.count(0x185), 10);
+}
+
+TEST_F(DriveFaults, corrupted_and_repeated_pdos) {
+  b.drive.inject({.kind = DriveFaultKind::pdo_corrupted, .value = 0xFF});
+  cycles(1);
+  const auto good = static_cast<std::uint8_t>(b.drive.statusword());
+  EXPECT_EQ(b.take(0x185)->data[0], good ^ 0xFF);
+  b.drive.clear_faults();
+  cycles(1);
+  b.drive.inject({.kind = DriveFaultKind::pdo_repeated});
+  const auto before = b.take(0x185);
+  for (int i = 1; i < 20; ++i) b.cycle(0x0F, 500 * i);
+  while (const auto f = b.take(0x185)) EXPECT_EQ(f->data, before->data);
+}
+
+TEST_F(DriveFaults, sdo_requests_can_be_refused_or_left_without_an_answer) {
+  b.drive.inject(
+      {.kind = DriveFaultKind::sdo_abort, .index = 0x6085, .abort = canopen::AbortCode::hardware_error});
+  EXPECT_EQ(b.write(0x6085, 0, 1000, 4), 0x06060000u);
+  EXPECT_EQ(b.write(0x6084, 0, 1000, 4), 0u) << "another object";
+  b.drive.clear_faults();
+  b.drive.inject({.kind = DriveFaultKind::sdo_silent});
+  EXPECT_TRUE(b.sdo({0x40, 0, 0x10, 0, 0, 0, 0, 0}).empty());
+}
+
+TEST_F(DriveFaults, each_fault_of_the_drive_has_its_error_code_and_register_bit) {
+  struct Case {
+    DriveFaultKind kind;
+    int code, bits;
+  };
+  for (const Case c : {Case{DriveFaultKind::over_current, 0x2310, 0x03},
+                       {DriveFaultKind::encoder_fault, 0x7305, 0x21},
+                       {DriveFaultKind::following_error, 0x8611, 0x21},
+                       {DriveFaultKind::over_temperature, 0x4310, 0x09},
+                       {DriveFaultKind::under_voltage, 0x3220, 0x05}}) {
+    b.seen.clear();
+    b.drive.inject({.kind = c.kind});
+    for (int i = 0; i < 50; ++i) b.cycle(0x0F, 0);
+    const auto emcy = b.take(0x085);
+    ASSERT_TRUE(emcy);
+    EXPECT_EQ(emcy->data[0] | emcy->data[1] << 8, c.code);
+    EXPECT_EQ(emcy->data[2], c.bits) << std::hex << c.code;
+    EXPECT_EQ(b.drive.state(), DriveState::fault);
+    EXPECT_EQ(b.drive.error_code(), c.code);
+    for (const int word : {0x80, 0x06, 0x07, 0x0F})
+      for (int i = 0; i < 5; ++i) b.cycle(static_cast<std::uint16_t>(word), 0);
+    EXPECT_EQ(b.drive.state(), DriveState::operation_enabled);
+    const auto cleared = b.take(0x085);
+    ASSERT_TRUE(cleared);
+    EXPECT_EQ(cleared->data[0] | cleared->data[1] << 8, 0);
+  }
+}
+
+TEST_F(DriveFaults, an_encoder_jump_beyond_the_window_is_a_following_error) {
+  b.write(0x6065, 0, 5000, 4);
+  b.drive.inject({.kind = DriveFaultKind::encoder_jump, .value = 400'000});
+  cycles(200);
+  EXPECT_EQ(b.drive.error_code(), 0x8611);
+}
+
+TEST_F(DriveFaults, a_small_encoder_jump_moves_the_shaft_unnoticed) {
+  const auto true_position = b.drive.position_counts();
+  b.drive.inject({.kind = DriveFaultKind::encoder_jump, .value = 300});
+  cycles(500);
+  EXPECT_EQ(b.drive.state(), DriveState::operation_enabled);
+  EXPECT_NEAR(static_cast<double>(b.drive.position_counts() - true_position), -300, 3);
+}
+
+TEST_F(DriveFaults, a_frozen_drive_stands_still_in_every_respect_and_goes_on_afterwards) {
+  for (int i = 1; i < 100; ++i) b.cycle(0x0F, 1000 * i);
+  b.drive.inject({.kind = DriveFaultKind::frozen, .duration_ns = 100 * kMillisecond});
+  const auto held = b.drive.position_counts();
+  b.seen.clear();
+  b.run(90);
+  EXPECT_EQ(b.drive.position_counts(), held);
+  EXPECT_TRUE(b.seen.empty());
+  b.run(50);
+  EXPECT_GT(b.count(0x705), 0);
+}
+
+TEST_F(DriveFaults, a_reset_boots_again_and_an_incremental_encoder_begins_at_zero) {
+  for (int i = 1; i < 100; ++i) b.cycle(0x0F, 1000 * i);
+  const auto there = b.drive.position_counts();
+  b.drive.inject({.kind = DriveFaultKind::reset});
+  b.seen.clear();
+  b.run(100);
+  EXPECT_EQ(b.take(0x705)->data[0], 0x00);
+  EXPECT_EQ(b.drive.nmt_state(), canopen::NmtState::pre_operational);
+  EXPECT_EQ(b.drive.state(), DriveState::switch_on_disabled);
+  EXPECT_GT(b.drive.position_counts(), 90'000);
+  EXPECT_EQ(b.drive.reported_position(), b.drive.position_counts() - there) << "what it coasted since";
+}
+
+TEST(DriveBusOff, a_drive_off_the_bus_falls_into_a_fault_by_itself) {
+  DriveBench b;
+  b.enable();
+  b.segment.force_bus_off(1);
+  b.run(50);
+  EXPECT_EQ(b.drive.state(), DriveState::fault);
+  EXPECT_EQ(b.drive.error_code(), 0x8140);
+}
+
+// A polled endpoint, as a socket is: the drive must be the same device there.
+TEST(DrivePolled, a_drive_on_a_polled_bus_answers_and_keeps_its_heartbeat) {
+  CanSegment segment;
+  auto& master = segment.add_endpoint();
+  auto& socket = segment.add_endpoint();
+  SimulatedDriveConfig config;
+  config.node_id = 3;
+  SimulatedDrive drive(config);
+  PolledDrive polled(drive, socket, 0);
+  CanFrame request;
+  request.id = 0x603;
+  request.length = 8;
+  request.data = {0x2B, 0x17, 0x10, 0x00, 0x0A, 0x00};
+  int beats = 0, answers = 0;
+  for (Nanoseconds t = 0; t < 300 * kMillisecond; t += 250'000) {
+    segment.advance_to(t);
+    polled.advance_to(t);
+    if (t == 50 * kMillisecond) master.send(request);
+    CanFrame f;
+    while (master.receive(f)) {
+      answers += f.id == 0x583;
+      beats += f.id == 0x703;
+    }
+  }
+  EXPECT_EQ(answers, 1);
+  EXPECT_NEAR(beats, 1 + 25, 2);
+}
+
+// Everything that happens on the wire of a segment with eight moving drives.
+struct Recorder final : CanMonitor {
+  std::vector<std::uint8_t> bytes;
+  void on_wire(const CanFrame& f, int sender, Nanoseconds start, Nanoseconds end,
+               Outcome outcome) noexcept override {
+    const auto put = [this](std::int64_t x) {
+      for (int i = 0; i < 8; ++i) bytes.push_back(static_cast<std::uint8_t>(x >> (8 * i)));
+    };
+    put(start);
+    put(end);
+    put(f.id | static_cast<std::int64_t>(sender) << 32 | static_cast<std::int64_t>(outcome) << 48);
+    bytes.insert(bytes.end(), f.data.begin(), f.data.begin() + f.length);
+  }
+};
+
+struct Eight {
+  explicit Eight(int count, CanMonitor* monitor = nullptr) {
+    segment.set_monitor(monitor);
+    for (int n = 1; n <= count; ++n) {
+      SimulatedDriveConfig config;
+      config.node_id = static_cast<canopen::NodeId>(n);
+      config.plant.start_rev = 0.37 * n;
+      drives.push_back(std::make_unique<SimulatedDrive>(config));
+      segment.attach(*drives.back());
+    }
+    run(20);
+    for (int n = 1; n <= count; ++n) configure(n);
+    send(0x000, {0x01, 0x00});
+    for (const int word : {0x06, 0x07, 0x0F})
+      for (int i = 0; i < 5; ++i) cycle(word, 0);
+  }
+  void send(std::uint32_t id, std::initializer_list<std::int64_t> bytes) {
+    CanFrame f;
+    f.id = id;
+    for (const std::int64_t x : bytes) f.data[f.length++] = static_cast<std::uint8_t>(x);
+    master.send(f);
+  }
+  void run(int ms) {
+    for (int i = 0; i < ms; ++i) {
+      segment.advance_to(now += kMillisecond);
+      CanFrame f;
+      while (master.receive(f)) received += f.id >= 0x181 && f.id <= 0x1FF;
+    }
+  }
+  void write(int n, int index, int sub, std::uint32_t v, int size) {
+    send(static_cast<std::uint32_t>(0x600 + n), {0x23 | (4 - size) << 2, index & 255, index >> 8, sub,
+                                                 v & 255, v >> 8 & 255, v >> 16 & 255, v >> 24});
+    run(2);
+  }
+  // Short PDOs, or eight drives do not fit into 1 ms: six bytes there (6040 + 607A), four back (6064).
+  void configure(int n) {
+    const auto id = static_cast<std::uint32_t>(n);
+    write(n, 0x1400, 1, 0x80000200 + id, 4);
+    write(n, 0x1800, 1, 0xC0000180 + id, 4);
+    write(n, 0x1600, 0, 0, 1);
+    write(n, 0x1600, 1, 0x60400010, 4);
+    write(n, 0x1600, 2, 0x607A0020, 4);
+    write(n, 0x1600, 0, 2, 1);
+    write(n, 0x1A00, 0, 0, 1);
+    write(n, 0x1A00, 1, 0x60640020, 4);
+    write(n, 0x1A00, 0, 1, 1);
+    write(n, 0x1400, 2, 1, 1);
+    write(n, 0x1800, 2, 1, 1);
+    write(n, 0x1400, 1, 0x200 + id, 4);
+    write(n, 0x1800, 1, 0x40000180 + id, 4);
+    write(n, 0x6060, 0, 8, 1);
+  }
+  void cycle(int word, std::int64_t p) {
+    send(0x080, {});
+    for (std::size_t n = 1; n <= drives.size(); ++n)
+      send(static_cast<std::uint32_t>(0x200 + n),
+           {word & 255, word >> 8, p & 255, p >> 8 & 255, p >> 16 & 255, p >> 24});
+    run(1);
+  }
+  CanSegment segment;
+  image::CanBus& master = segment.add_endpoint();
+  std::vector<std::unique_ptr<SimulatedDrive>> drives;
+  Nanoseconds now = 0;
+  int received = 0;
+};
+
+TEST(DriveFleet, four_drives_hold_a_sync_of_1_ms_at_1_mbit_with_every_pdo_in_its_cycle) {
+  Eight e(4);
+  e.received = 0;
+  for (int i = 0; i < 500; ++i) e.cycle(0x0F, 200 * i);
+  EXPECT_EQ(e.received, 4 * 500);
+  EXPECT_EQ(e.segment.statistics().refused, 0u);
+  for (auto& d : e.drives) EXPECT_EQ(d->state(), DriveState::operation_enabled);
+}
+
+TEST(DriveFleet, eight_drives_run_in_one_process_at_a_sync_of_1_ms_on_two_segments) {
+  Eight a(4), b(4);
+  for (int i = 0; i < 500; ++i) {
+    a.cycle(0x0F, 200 * i);
+    b.cycle(0x0F, -200 * i);
+  }
+  for (auto& d : a.drives) EXPECT_NEAR(static_cast<double>(d->reported_position()), 200 * 498, 300);
+  for (auto& d : b.drives) EXPECT_NEAR(static_cast<double>(d->reported_position()), -200 * 498, 300);
+}
+
+TEST(DriveFleet, two_runs_are_equal_to_the_byte) {
+  Recorder first, second;
+  for (Recorder* r : {&first, &second}) {
+    Eight e(3, r);
+    e.segment.inject({.kind = CanFault::Kind::corrupt, .skip = 100, .count = 3});
+    for (int i = 0; i < 400; ++i) {
+      if (i == 200) e.drives[1]->inject({.kind = DriveFaultKind::over_current});
+      e.cycle(0x0F, static_cast<std::int64_t>(5'000.0 * i));
+    }
+  }
+  ASSERT_GT(first.bytes.size(), 50'000u);
+  EXPECT_EQ(first.bytes, second.bytes);
+}
+
+TEST(DriveFleet, three_drives_and_their_bus_run_far_faster_than_real_time) {
+  Eight e(3);
+  double best = 1e9;
+  for (int round = 0; round < 5; ++round) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < 2000; ++i) e.cycle(0x0F, 1000 * i);
+    const std::chrono::duration<double> d = std::chrono::steady_clock::now() - start;
+    best = std::min(best, d.count() / 2000);
+  }
+  std::printf("           3 drives, 7 frames: %.2f us a millisecond, %.0f x real time\n", best * 1e6,
+              1e-3 / best);
+  // Sanitizers and a loaded machine are slower; a broken loop would be slower by far more.
+  EXPECT_LT(best, 200e-6);
+}
+
+}  // namespace
+}  // namespace servogate::mock

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "tests/mock/drive/drive_bench.hpp"
+
+namespace servogate::mock {
+namespace {
+
+struct DrivePdo : testing::Test {
+  DriveBench b;
+  void switch_off_first_pdos() {
+    ASSERT_EQ(b.write(0x1400, 1, 0x80000205, 4), 0u);
+    ASSERT_EQ(b.write(0x1800, 1, 0xC0000185, 4), 0u);
+  }
+};
+
+TEST_F(DrivePdo, a_mapping_cannot_be_changed_while_the_pdo_is_valid) {
+  EXPECT_EQ(b.write(0x1600, 0, 0, 1), 0x06010000u);
+  EXPECT_EQ(b.write(0x1A00, 1, 0x60640020, 4), 0x06010000u);
+}
+
+TEST_F(DrivePdo, an_entry_cannot_be_changed_while_the_count_is_not_zero) {
+  switch_off_first_pdos();
+  EXPECT_EQ(b.write(0x1600, 1, 0x60400010, 4), 0x06010000u);
+  EXPECT_EQ(b.write(0x1600, 0, 0, 1), 0u);
+  EXPECT_EQ(b.write(0x1600, 1, 0x60400010, 4), 0u);
+}
+
+TEST_F(DrivePdo, wrong_mappings_are_refused_each_with_its_code) {
+  switch_off_first_pdos();
+  b.write(0x1600, 0, 0, 1);
+  b.write(0x1A00, 0, 0, 1);
+  EXPECT_EQ(b.write(0x1600, 1, 0x55550010, 4), 0x06020000u) << "no object";
+  EXPECT_EQ(b.write(0x1600, 1, 0x607A0120, 4), 0x06090011u) << "no sub-index";
+  EXPECT_EQ(b.write(0x1600, 1, 0x60410010, 4), 0x06040041u) << "statusword cannot be received";
+  EXPECT_EQ(b.write(0x1A00, 1, 0x60850020, 4), 0x06040041u) << "quick stop deceleration is in no PDO";
+  EXPECT_EQ(b.write(0x1600, 1, 0x607A0010, 4), 0x06070010u) << "32 bits mapped as 16";
+  EXPECT_EQ(b.write(0x1600, 0, 9, 1), 0x06040042u) << "nine objects";
+  EXPECT_EQ(b.write(0x1600, 0, 1, 1), 0u) << "the entry of the default mapping is still there";
+  b.write(0x1600, 0, 0, 1);
+  for (std::uint8_t i = 1; i <= 2; ++i) EXPECT_EQ(b.write(0x1600, i, 0x607A0020, 4), 0u);
+  EXPECT_EQ(b.write(0x1600, 3, 0x60400010, 4), 0u);
+  EXPECT_EQ(b.write(0x1600, 0, 3, 1), 0x06040042u) << "80 bits";
+  EXPECT_EQ(b.write(0x1600, 0, 2, 1), 0u);
+}
+
+TEST_F(DrivePdo, counting_an_entry_that_names_nothing_is_refused) {
+  switch_off_first_pdos();
+  b.write(0x1600, 0, 0, 1);
+  b.write(0x1600, 2, 0, 4);
+  EXPECT_EQ(b.write(0x1600, 0, 2, 1), 0x06020000u);
+}
+
+TEST_F(DrivePdo, the_identifier_changes_only_while_invalid_and_never_to_a_restricted_one) {
+  EXPECT_EQ(b.write(0x1400, 1, 0x206, 4), 0x06090030u);
+  switch_off_first_pdos();
+  for (const std::uint32_t id : {0x000u, 0x07Fu, 0x101u, 0x180u, 0x581u, 0x601u, 0x6E0u, 0x701u, 0x7FFu})
+    EXPECT_EQ(b.write(0x1400, 1, id, 4), 0x06090030u) << std::hex << id;
+  EXPECT_EQ(b.write(0x1400, 1, 0x20000205, 4), 0x06090030u) << "29-bit identifiers";
+  EXPECT_EQ(b.write(0x1400, 1, 0x80000333, 4), 0u);
+  EXPECT_EQ(b.write(0x1400, 1, 0x333, 4), 0u);
+}
+
+TEST_F(DrivePdo, reserved_transmission_types_are_refused) {
+  for (const int type : {241, 251, 252, 253}) {
+    EXPECT_EQ(b.write(0x1400, 2, type, 1), 0x06090030u) << type;
+    EXPECT_EQ(b.write(0x1800, 2, type, 1), 0x06090030u) << type;
+  }
+  for (const int type : {0, 1, 240, 254, 255}) EXPECT_EQ(b.write(0x1800, 2, type, 1), 0u) << type;
+}
+
+TEST_F(DrivePdo, the_inhibit_time_changes_only_while_the_pdo_is_invalid) {
+  EXPECT_EQ(b.write(0x1800, 3, 100, 2), 0x06090030u);
+  switch_off_first_pdos();
+  EXPECT_EQ(b.write(0x1800, 3, 100, 2), 0u);
+}
+
+TEST_F(DrivePdo, pdos_live_only_in_operational) {
+  b.write(0x1800, 2, 1, 1);
+  b.send(0x205, {0x06, 0x00});
+  b.send(0x080, {});
+  b.run(5);
+  EXPECT_EQ(b.count(0x185), 0);
+  EXPECT_EQ(b.status() & 0x6F, 0x40) << "the control word did not act";
+  b.nmt(0x01);
+  b.send(0x205, {0x06, 0x00});
+  b.send(0x080, {});
+  b.run(5);
+  EXPECT_EQ(b.count(0x185), 1);
+  EXPECT_EQ(b.status() & 0x6F, 0x21);
+}
+
+TEST_F(DrivePdo, a_synchronous_rpdo_waits_for_the_next_sync) {
+  b.write(0x1400, 2, 1, 1);
+  b.nmt(0x01);
+  b.send(0x205, {0x06, 0x00});
+  b.run(10);
+  EXPECT_EQ(b.read(0x6040), 0u);
+  b.send(0x080, {});
+  b.run(1);
+  EXPECT_EQ(b.read(0x6040), 6u);
+}
+
+TEST_F(DrivePdo, an_event_driven_rpdo_acts_at_once) {
+  b.nmt(0x01);
+  b.send(0x205, {0x06, 0x00});
+  b.run(1);
+  EXPECT_EQ(b.read(0x6040), 6u);
+}
+
+TEST_F(DrivePdo, every_nth_sync_samples_a_cyclic_tpdo) {
+  b.write(0x1800, 2, 3, 1);
+  b.nmt(0x01);
+  for (int i = 0; i < 9; ++i) {
+    b.send(0x080, {});
+    b.run(1);
+  }
+  EXPECT_EQ(b.count(0x185), 3);
+}
+
+TEST_F(DrivePdo, an_acyclic_synchronous_tpdo_comes_at_sync_only_after_a_change) {
+  b.write(0x1800, 2, 0, 1);
+  b.nmt(0x01);
+  const auto sync = [this] {
+    b.send(0x080, {});
+    b.run(2);
+    const int n = b.count(0x185);
+    b.seen.clear();
+    return n;
+  };
+  EXPECT_EQ(sync(), 1);
+  EXPECT_EQ(sync(), 0);
+  b.control(0x0006);
+  b.seen.clear();
+  EXPECT_EQ(sync(), 1);
+  EXPECT_EQ(sync(), 0);
+}
+
+TEST_F(DrivePdo, an_event_driven_tpdo_comes_on_entering_operational_and_on_change) {
+  b.nmt(0x01);
+  b.run(50);
+  EXPECT_EQ(b.count(0x185), 1);
+  b.control(0x0006);
+  EXPECT_EQ(b.count(0x185), 2);
+}
+
+TEST_F(DrivePdo, the_event_timer_repeats_and_the_inhibit_time_holds_back) {
+  switch_off_first_pdos();
+  b.write(0x1800, 5, 10, 2);
+  b.write(0x1800, 1, 0x40000185, 4);
+  b.nmt(0x01);
+  b.run(100);
+  EXPECT_NEAR(b.count(0x185), 10, 1);
+  b.nmt(0x80);
+  switch_off_first_pdos();
+  b.write(0x1800, 5, 0, 2);
+  b.write(0x1800, 3, 500, 2);  // 50 ms
+  b.write(0x1800, 1, 0x40000185, 4);
+  b.write(0x1400, 1, 0x205, 4);
+  b.nmt(0x01);
+  b.seen.clear();
+  b.send(0x205, {0x06, 0x00});
+  b.run(20);
+  b.send(0x205, {0x07, 0x00});
+  b.run(20);
+  EXPECT_EQ(b.count(0x185), 0);
+  b.run(20);
+  EXPECT_EQ(b.count(0x185), 1);
+}
+
+TEST_F(DrivePdo, a_tpdo_holds_what_was_true_at_sync_and_little_endian) {
+  b.start_cyclic_position();
+  b.cycle(0, 0);
+  const auto f = b.take(0x185);
+  ASSERT_TRUE(f);
+  EXPECT_EQ(f->length, 6);
+  EXPECT_EQ(f->data[0] | f->data[1] << 8, 0x0250);
+}
+
+TEST_F(DrivePdo, an_rpdo_that_is_too_short_is_not_processed_and_told_by_emcy_8210) {
+  b.nmt(0x01);
+  b.seen.clear();
+  b.send(0x205, {0x06});
+  b.run(2);
+  EXPECT_EQ(b.read(0x6040), 0u);
+  const auto emcy = b.take(0x085);
+  ASSERT_TRUE(emcy);
+  EXPECT_EQ(emcy->data[0] | emcy->data[1] << 8, 0x8210);
+  EXPECT_EQ(emcy->data[2], 0x11);
+  b.send(0x205, {0x06, 0x00, 0x55});
+  b.run(2);
+  EXPECT_EQ(b.read(0x6040), 6u) << "a longer one is processed";
+  const auto reset = b.take(0x085);
+  ASSERT_TRUE(reset);
+  EXPECT_EQ(reset->data[0] | reset->data[1] << 8, 0x0000);
+  EXPECT_EQ(reset->data[2], 0x00);
+}
+
+TEST_F(DrivePdo, an_rpdo_past_its_deadline_is_an_abort_of_the_connection) {
+  b.write(0x1400, 5, 20, 2);
+  b.nmt(0x01);
+  b.send(0x205, {0x06, 0x00});
+  b.run(15);
+  EXPECT_EQ(b.count(0x085), 0);
+  b.run(10);
+  const auto emcy = b.take(0x085);
+  ASSERT_TRUE(emcy);
+  EXPECT_EQ(emcy->data[0] | emcy->data[1] << 8, 0x8250);
+  EXPECT_EQ(b.drive.state(), image::DriveState::fault) << "6007h = 1";
+}
+
+TEST_F(DrivePdo, dummy_entries_leave_gaps_in_an_rpdo) {
+  switch_off_first_pdos();
+  b.write(0x1600, 0, 0, 1);
+  EXPECT_EQ(b.write(0x1600, 1, 0x00070020, 4), 0u);
+  EXPECT_EQ(b.write(0x1600, 2, 0x60400010, 4), 0u);
+  EXPECT_EQ(b.write(0x1600, 3, 0x00060020, 4), 0x06070010u) << "UNSIGNED16 is not 32 bits";
+  EXPECT_EQ(b.write(0x1600, 0, 2, 1), 0u);
+  b.write(0x1A00, 0, 0, 1);
+  EXPECT_EQ(b.write(0x1A00, 1, 0x00070020, 4), 0x06040041u) << "nothing to send there";
+  b.write(0x1400, 1, 0x205, 4);
+  b.nmt(0x01);
+  b.send(0x205, {0xAA, 0xAA, 0xAA, 0xAA, 0x06, 0x00});
+  b.run(1);
+  EXPECT_EQ(b.read(0x6040), 6u);
+}
+
+TEST_F(DrivePdo, a_remote_request_is_answered_only_where_bit_30_allows_it) {
+  b.nmt(0x01);
+  b.seen.clear();
+  CanFrame request;
+  request.id = 0x185;
+  request.remote = true;
+  b.master.send(request);
+  b.run(2);
+  EXPECT_EQ(b.count(0x185), 0);
+  b.write(0x1800, 1, 0xC0000185, 4);
+  b.write(0x1800, 1, 0x00000185, 4);
+  b.run(5);
+  b.seen.clear();
+  b.master.send(request);
+  b.run(2);
+  EXPECT_EQ(b.count(0x185), 1);
+}
+
+}  // namespace
+}  // namespace servogate::mock
