@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/axis/axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/image/interface_map.hpp"
+
+namespace servogate::axis {
+
+using image::AxisOwner;
+using image::Reaction;
+
+void Axis::configure(const AxisConfig& config, int index) {
+  *this = Axis{};
+  config_ = config;
+  index_ = index;
+  scale_ = {config.counts_numerator, config.counts_denominator, config.count_direction, 0, 0.0};
+  compensation_.configure(config);
+  power_.configure(config.brake);
+  homing_.configure(config.homing, config.limits);
+  if (config.homing.method == HomingMethod::none) set_reference(config.reference_counts);
+}
+
+void Axis::read(image::ProcessImage& image) noexcept {
+  events_.clear();
+  image::AxisImage& shared = image.axes[static_cast<std::size_t>(index_)];
+  read_places(image);
+  read_feedback(shared.drive, image.now.period_s());
+  supervise_drive();
+  supervise_position();
+  shared.actual = actual_;
+  shared.following_error = following_error_;
+  shared.limit_plus = limit_plus_;
+  shared.limit_minus = limit_minus_;
+  shared.home_switch = home_switch_;
+  shared.homed = homed_;
+}
+
+void Axis::set_process(const Setpoint& setpoint) noexcept {
+  process_ = setpoint;
+  process_given_ = true;
+}
+
+void Axis::command(image::ProcessImage& image) noexcept {
+  const double dt = image.now.period_s();
+  PowerSequence::Outputs power;
+  step_power(dt, power);
+  if (!power_.holding() || !held_) follow_feedback();
+  if (power_.holding()) advance(dt, image.now.t_ns);
+  held_ = power_.holding();
+  process_given_ = false;
+  if (release_pending_ && !moving_ && !own_motion_) {
+    release_pending_ = false;
+    owner_ = AxisOwner::none;
+  }
+  supervise_setpoint();
+  supervise_brake();
+  if (held_) {
+    const double compensation = compensation_.step(set_.x, dt);
+    compensation_value_ = homed_ ? compensation : 0.0;
+    head_ = (head_ + 1) % kHistory;
+    history_[static_cast<std::size_t>(head_)] = {set_.x, compensation_value_};
+  }
+  update_in_position(dt);
+  write_drive(image, power);
+  write_image(image, power);
+}
+
+void Axis::step_power(double dt, PowerSequence::Outputs& out) noexcept {
+  const PowerSequence::State before = power_.state();
+  if (power_requested_ && !power_permitted_ && moving_) raise(alarm::kEnableWithdrawn, 0.0, set_.v);
+  PowerSequence::Inputs in;
+  in.wanted = power_requested_ && power_permitted_;
+  in.at_rest = held_ ? !moving_ : actual_standing_;
+  in.drive = drive_.online ? drive_.state : image::DriveState::offline;
+  in.reaction = reaction_;
+  in.dt = dt;
+  out = power_.step(in);
+  supervise_power(before);
+  if (reaction_ >= Reaction::quick_stop) power_requested_ = false;
+}
+
+/// The set-point of this cycle, by the owner or, where the motion was taken from it, by the axis itself.
+void Axis::advance(double dt, image::Nanoseconds now) noexcept {
+  const bool by_itself = owner_ != AxisOwner::process;
+  const bool stop_now = reaction_ >= Reaction::stop_axes || !power_.motion_permitted() ||
+                        (by_itself && reaction_ >= Reaction::stop_on_path);
+  if (stop_now && !stopped_by_reaction_) take_away();
+  const double before = set_.x;
+  if (own_motion_)
+    advance_own(dt, now);
+  else if (owner_ == AxisOwner::process)
+    advance_process(dt);
+  moving_ = set_.v != 0.0 || set_.a != 0.0 || set_.x != before || (own_motion_ && !ramp_.done()) ||
+            homing_.active();
+  if (stopped_by_reaction_ && !stop_now && !moving_ && rest_s_ > 0.01) stopped_by_reaction_ = false;
+}
+
+void Axis::advance_process(double dt) noexcept {
+  if (!process_given_) {
+    if (set_.v == 0.0 && set_.a == 0.0) return;
+    take_away();  // the path ended in motion: stop at the axis' own limits
+    advance_own(dt, 0);
+    return;
+  }
+  const double permitted = config_.limits.velocity * dt * 1.05 + 1e-6;
+  const double jump = process_.position - set_.x;
+  if (std::abs(jump) > permitted) {
+    raise(alarm::kSetpointStep, permitted, jump);
+    take_away();
+    advance_own(dt, 0);
+    return;
+  }
+  const MotionState next{process_.position, process_.velocity, process_.acceleration};
+  if (leaves_travel(next)) {
+    take_away();
+    advance_own(dt, 0);
+    return;
+  }
+  set_ = next;
+}
+
+void Axis::advance_own(double dt, image::Nanoseconds now) noexcept {
+  if (!stopped_by_reaction_) {
+    if (homing_.active())
+      advance_homing(dt);
+    else if (manual_ != Manual::rest)
+      advance_manual(now);
+    if (!homing_reported_ && homing_.state() == Homing::State::failed)
+      raise(homing_.failure(), homing_.failure_limit(), homing_.failure_value());
+    homing_reported_ = homing_reported_ || !homing_.active();
+  }
+  set_ = ramp_.step(dt);
+  if (!ramp_.done() || homing_.active()) return;
+  set_.v = set_.a = 0.0;
+  own_motion_ = false;
+  manual_ = Manual::rest;
+  if (owner_ == AxisOwner::manual || owner_ == AxisOwner::homing) owner_ = AxisOwner::none;
+}
+
+void Axis::advance_homing(double dt) noexcept {
+  if (!feed_enable_) {
+    homing_.abort(ramp_);
+    raise(alarm::kHomingInterrupted, 0.0, set_.x);
+    return;
+  }
+  homing_.step(ramp_, homing_inputs(dt));
+  if (!homing_.take_reference()) return;
+  set_machine_position(homing_.captured_counts());
+  check_index_place();
+}
+
+/// A zero mark close to the edge of the switch is taken today and missed tomorrow.
+void Axis::check_index_place() noexcept {
+  const HomingData& data = config_.homing;
+  if (data.method != HomingMethod::switch_and_index || !(data.index_spacing > 0.0)) return;
+  const double way = std::abs(scale_.velocity(static_cast<double>(homing_.index_distance_counts())));
+  const double margin = 0.1 * data.index_spacing;
+  if (way < margin || way > data.index_spacing - margin) raise(alarm::kHomingIndexNearEdge, margin, way);
+}
+
+void Axis::advance_manual(image::Nanoseconds now) noexcept {
+  const auto silence_ns = static_cast<double>(now - keep_alive_ns_);
+  const bool silent = manual_ == Manual::continuous && silence_ns >= config_.keep_alive_s * 1e9;
+  if (!feed_enable_ || silent) return jog_stop();
+  if (manual_ != Manual::continuous) return;
+  const MotionLimits lim = limits_with(jog_speed());
+  if (homed_ && config_.travel_limited)
+    ramp_.move_to(
+        jog_direction_ > 0 ? std::max(config_.travel_max, set_.x) : std::min(config_.travel_min, set_.x),
+        lim);
+  else
+    ramp_.move_at(jog_direction_ * lim.velocity, lim);
+}
+
+/// Ends whatever motion there is, at the axis' own limits.
+void Axis::take_away() noexcept {
+  if (homing_.active()) {
+    homing_.abort(ramp_);
+    raise(alarm::kHomingInterrupted, 0.0, set_.x);
+  }
+  manual_ = Manual::rest;
+  ramp_.reset(set_, config_.limits);
+  own_motion_ = true;
+  stopped_by_reaction_ = true;
+}
+
+void Axis::fill_history() noexcept { history_.fill({set_.x, compensation_value_}); }
+
+/// The drive does not hold the axis: the set-point is where the axis is.
+void Axis::follow_feedback() noexcept {
+  if (homing_.active()) {
+    homing_.abort(ramp_);
+    raise(alarm::kHomingInterrupted, 0.0, set_.x);
+  }
+  if (homed_) compensation_value_ = compensation_.at(motor_ - compensation_value_);
+  actual_ = motor_ - compensation_value_;
+  set_ = {actual_, 0.0, 0.0};
+  compensation_.seat(actual_, 0);
+  ramp_.reset(set_, config_.limits);
+  fill_history();
+  manual_ = Manual::rest;
+  own_motion_ = moving_ = false;
+  stopped_by_reaction_ = false;
+  following_error_ = 0.0;
+  if (owner_ != AxisOwner::process) owner_ = AxisOwner::none;
+}
+
+/// Makes `counts` the home position without moving the drive.
+void Axis::set_machine_position(std::int64_t counts) noexcept {
+  const double old_motor = scale_.position(drive_.position_counts);
+  const double target = set_.x + compensation_value_;
+  scale_.reference_counts = counts;
+  scale_.reference_position = config_.homing.position;
+  motor_ = scale_.position(drive_.position_counts);
+  const double motor_target = target + (motor_ - old_motor);
+  homed_ = true;
+  double x = motor_target;
+  for (int i = 0; i < 4; ++i) x = motor_target - compensation_.at(x);
+  compensation_value_ = compensation_.at(x);
+  set_ = {x, 0.0, 0.0};
+  compensation_.seat(x, 0);
+  ramp_.reset(set_, config_.limits);
+  fill_history();
+  actual_ = motor_ - compensation_value_;
+}
+
+/// Not homed any more: the compensation goes from the drive command into the set-point, so nothing moves.
+void Axis::drop_reference() noexcept {
+  if (!homed_ || config_.homing.method == HomingMethod::none ||
+      config_.homing.method == HomingMethod::absolute)
+    return;
+  homed_ = false;
+  ramp_.shift(compensation_value_);
+  set_.x += compensation_value_;
+  for (Sent& s : history_) s = {s.command + s.compensation, 0.0};
+  compensation_value_ = 0.0;
+}
+
+void Axis::write_drive(image::ProcessImage& image, const PowerSequence::Outputs& power) const noexcept {
+  image::DriveCommand& out = image.axes[static_cast<std::size_t>(index_)].drive_command;
+  out.power = power.power;
+  out.quick_stop = power.quick_stop;
+  out.reset_fault = reset_pending_;
+  out.brake_release = power.brake_release && config_.brake.output == BrakeOutput::drive;
+  out.mode = image::DriveMode::csp;
+  out.latch_source = image::LatchSource::zero_mark;
+  out.latch_arm = homing_.latch_arm();
+  out.position_counts = held_ ? scale_.counts(set_.x + compensation_value_) : drive_.position_counts;
+  out.velocity_counts_s = held_ ? scale_.velocity_counts(set_.v) : 0.0;
+  if (config_.brake.output == BrakeOutput::place)
+    image.packets.set_bit(config_.brake.place.place, power.brake_release != config_.brake.place.inverted);
+}
+
+void Axis::write_image(image::ProcessImage& image, const PowerSequence::Outputs& power) const noexcept {
+  image::AxisImage& out = image.axes[static_cast<std::size_t>(index_)];
+  out.command = set_.x;
+  out.command_velocity = set_.v;
+  out.command_acceleration = set_.a;
+  out.actual = actual_;
+  out.following_error = following_error_;
+  out.distance_to_go = own_motion_                               ? ramp_.target() - set_.x
+                       : owner_ == AxisOwner::process && moving_ ? process_.distance_to_go
+                                                                 : 0.0;
+  out.owner = owner_;
+  out.enabled = power_.motion_permitted();
+  out.homed = homed_;
+  out.in_position = in_position_;
+  out.moving = moving_;
+  out.brake_released = power.brake_release;
+
+  using image::field;
+  using image::kAxisFields;
+  const std::uint32_t base = image::axis_base(index_);
+  auto put = [&](const image::Place& p, double value) {
+    image.packets.set_number(image::at(p, base), value);
+  };
+  put(field(kAxisFields, "enabled"), drive_.online && drive_.state == image::DriveState::operation_enabled);
+  put(field(kAxisFields, "homed"), homed_);
+  put(field(kAxisFields, "in_position"), in_position_);
+  put(field(kAxisFields, "moving"), moving_);
+  put(field(kAxisFields, "on_limit_plus"), limit_plus_);
+  put(field(kAxisFields, "on_limit_minus"), limit_minus_);
+  put(field(kAxisFields, "brake_release"), power.brake_release);
+  put(field(kAxisFields, "owner"), static_cast<double>(owner_));
+  put(field(kAxisFields, "position"), actual_);
+}
+
+}  // namespace servogate::axis

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/process_image.hpp"
+#include "kernel/axis/axis_alarms.hpp"
+#include "kernel/axis/axis_config.hpp"
+#include "kernel/axis/compensation.hpp"
+#include "kernel/axis/homing/homing.hpp"
+#include "kernel/axis/power_sequence.hpp"
+#include "kernel/axis/ramp.hpp"
+#include "kernel/axis/scale.hpp"
+
+namespace servogate::axis {
+
+/// The set-point of a process for one cycle, machine coordinates.
+struct Setpoint {
+  double position = 0.0;
+  double velocity = 0.0;
+  double acceleration = 0.0;
+  double distance_to_go = 0.0;
+};
+
+/// One axis: feedback to position, supervision, set-point of its owner, compensation, command to the drive.
+///
+/// In each cycle, in this order, everything real-time safe:
+///   read(image)                 after the PLC scan: feedback, switches, K places
+///   set_process(setpoint)       interpolation, where a process owns the axis
+///   react(reaction)             the strongest reaction in force
+///   command(image)              set-point, supervision, drive command, K places
+/// Events found in a cycle stand in events() until the next read().
+class Axis {
+ public:
+  /// Takes the configuration; `index` is the axis' place in the image. Not for the cycle (allocates).
+  void configure(const AxisConfig& config, int index);
+  const AxisConfig& config() const noexcept { return config_; }
+  int index() const noexcept { return index_; }
+
+  // -- phases of a cycle
+  void read(image::ProcessImage& image) noexcept;
+  void set_process(const Setpoint& setpoint) noexcept;
+  void react(image::Reaction reaction) noexcept { reaction_ = reaction; }
+  void command(image::ProcessImage& image) noexcept;
+  const Events& events() const noexcept { return events_; }
+  /// True while the cause of an alarm of this axis is still there: its reset condition is not met.
+  bool present(image::AlarmNumber number) const noexcept;
+
+  // -- owner
+  /// Makes `owner` the one owner. False (nothing changed) unless the axis stands still or has that owner
+  /// already.
+  bool acquire(image::AxisOwner owner) noexcept;
+  /// Gives the axis back. False when it is another's, or still moving; then it goes back as soon as it
+  /// stands.
+  bool release(image::AxisOwner owner) noexcept;
+  image::AxisOwner owner() const noexcept { return owner_; }
+
+  // -- orders (after the gate); false when the axis may not move now or belongs to somebody else
+  /// Operator's wish for drive power; in force while MC.power_on and <axis>.enable permit it. It falls by
+  /// itself when the drive lets go, and with the reactions quick stop and power off: nothing comes on again
+  /// unasked.
+  void request_power(bool on) noexcept { power_requested_ = on; }
+  /// Moves on by `distance` from the target in force, at jog speed; clipped at the software limits.
+  bool jog_increment(double distance) noexcept;
+  /// Runs in `direction` (+1, -1) until jog_stop, a limit, or the keep-alive fails; `now` = time of the
+  /// cycle.
+  bool jog_continuous(int direction, image::Nanoseconds now) noexcept;
+  void keep_alive(image::Nanoseconds now) noexcept { keep_alive_ns_ = now; }
+  void jog_stop() noexcept;
+  /// Moves to a machine position at `velocity` (at most the limit), for manual, PLC or bench owners.
+  bool move_to(double position, double velocity) noexcept;
+  /// Starts homing (method of the configuration); the axis becomes the homing's own until it ends.
+  bool home() noexcept;
+  /// Stops whatever this axis does by itself (jog, homing), at its limits.
+  void stop() noexcept;
+  /// Operator's reset: the drive's fault is reset, a reaction's stop is taken back.
+  void reset() noexcept;
+
+  // -- reference
+  /// Takes over a kept reference (state directory): these counts are the home position, the axis is homed.
+  /// Only while the axis does not hold (before power). Methods absolute and none.
+  void set_reference(std::int64_t reference_counts) noexcept;
+  /// Counts at the home position, to be kept; meaningful while homed().
+  std::int64_t reference_counts() const noexcept { return scale_.reference_counts; }
+  bool homed() const noexcept { return homed_; }
+
+  // -- state for channel, gate, reports
+  bool motion_permitted() const noexcept { return power_.motion_permitted() && !stopped_by_reaction_; }
+  /// The set-point moves or a motion is under way.
+  bool moving() const noexcept { return moving_; }
+  /// Set-point at rest and measured speed below the standstill window.
+  bool standstill() const noexcept { return !moving_ && actual_standing_; }
+  bool in_position() const noexcept { return in_position_; }
+  bool on_limit_plus() const noexcept { return limit_plus_; }
+  bool on_limit_minus() const noexcept { return limit_minus_; }
+  /// The axis took the motion away from its owner (reaction, limit, power); cleared by reset().
+  bool stopped_by_reaction() const noexcept { return stopped_by_reaction_; }
+  /// <axis>.feed_enable as the PLC wrote it.
+  bool feed_enabled() const noexcept { return feed_enable_; }
+  /// Jog wish of the PLC: +1, -1 or 0 (both or none).
+  int plc_jog() const noexcept { return plc_jog_; }
+  const Homing& homing() const noexcept { return homing_; }
+  const MotionState& setpoint() const noexcept { return set_; }
+  double actual() const noexcept { return actual_; }
+  double following_error() const noexcept { return following_error_; }
+  PowerSequence::State power_state() const noexcept { return power_.state(); }
+  const CountScale& scale() const noexcept { return scale_; }
+
+ private:
+  static constexpr int kHistory = 16;
+  struct Sent {
+    double command = 0.0, compensation = 0.0;
+  };
+  enum class Manual : std::uint8_t { rest, increment, continuous, position };
+
+  // axis.cpp: the owner's set-point and the way to the drive
+  void advance(double dt, image::Nanoseconds now) noexcept;
+  void advance_process(double dt) noexcept;
+  void advance_own(double dt, image::Nanoseconds now) noexcept;
+  void advance_homing(double dt) noexcept;
+  void advance_manual(image::Nanoseconds now) noexcept;
+  void check_index_place() noexcept;
+  void take_away() noexcept;
+  void follow_feedback() noexcept;
+  void set_machine_position(std::int64_t counts) noexcept;
+  void drop_reference() noexcept;
+  void fill_history() noexcept;
+  void step_power(double dt, PowerSequence::Outputs& out) noexcept;
+  void write_drive(image::ProcessImage& image, const PowerSequence::Outputs& power) const noexcept;
+  void write_image(image::ProcessImage& image, const PowerSequence::Outputs& power) const noexcept;
+  // axis_orders.cpp: jog, home, owner
+  MotionLimits limits_with(double velocity) const noexcept;
+  double jog_speed() const noexcept;
+  double clipped(double target) const noexcept;
+  bool begin_own(image::AxisOwner owner) noexcept;
+  bool into_limit(double direction) const noexcept;
+  HomingInputs homing_inputs(double dt) const noexcept;
+  // axis_supervision.cpp: feedback, switches, limits
+  void read_places(const image::ProcessImage& image) noexcept;
+  void read_feedback(const image::DriveFeedback& in, double dt) noexcept;
+  void supervise_drive() noexcept;
+  void supervise_position() noexcept;
+  void supervise_setpoint() noexcept;
+  bool leaves_travel(const MotionState& state) noexcept;
+  void supervise_power(PowerSequence::State before) noexcept;
+  void supervise_brake() noexcept;
+  void update_in_position(double dt) noexcept;
+  void raise(image::AlarmNumber number, double limit, double value, double d1 = 0.0,
+             double d2 = 0.0) noexcept;
+  const Sent& sent(int cycles_ago) const noexcept;
+
+  AxisConfig config_;
+  int index_ = 0;
+  CountScale scale_;
+  Compensation compensation_;
+  PowerSequence power_;
+  Homing homing_;
+  Ramp ramp_;
+  Events events_;
+  std::array<image::AlarmNumber, 16> raised_{};  ///< since the last reset, so that each comes once
+  int raised_count_ = 0;
+
+  image::AxisOwner owner_ = image::AxisOwner::none;
+  image::Reaction reaction_ = image::Reaction::none;
+  Manual manual_ = Manual::rest;
+  int jog_direction_ = 0;
+  image::Nanoseconds keep_alive_ns_ = 0;
+  bool power_requested_ = false;
+  bool power_permitted_ = false;
+  bool feed_enable_ = false;
+  bool reset_pending_ = false;
+  double reset_left_s_ = 0.0;  ///< so long the drive is asked to take its fault back
+  int plc_jog_ = 0;
+
+  bool limit_plus_ = false, limit_minus_ = false, home_switch_ = false;
+  bool homed_ = false;
+  bool own_motion_ = false;  ///< the ramp moves the axis, not the process
+  bool stopped_by_reaction_ = false;
+  bool homing_reported_ = true;  ///< the end of the homing that was asked for
+  bool held_ = false;            ///< the drive held the axis in the last cycle
+  bool process_given_ = false;
+  bool release_pending_ = false;
+  Setpoint process_;
+
+  MotionState set_;
+  double compensation_value_ = 0.0;
+  std::array<Sent, kHistory> history_{};
+  int head_ = 0;
+  image::DriveFeedback drive_;
+  bool seen_online_ = false;
+  bool seen_counts_ = false;
+  std::uint32_t last_missed_ = 0;
+  std::int64_t last_counts_ = 0;
+  double motor_ = 0.0;  ///< drive position in machine units, compensation included
+  double actual_ = 0.0;
+  double actual_velocity_ = 0.0;
+  double following_error_ = 0.0;
+  double following_limit_ = 0.0;  ///< at the speed of this cycle
+  double rest_s_ = 0.0;           ///< the set-point has stood for so long
+  double inside_s_ = 0.0;         ///< and the feedback inside the window for so long
+  double brake_mark_ = 0.0;       ///< motor position at which the brake closed
+  bool brake_marked_ = false;
+  bool moving_ = false;
+  bool actual_standing_ = true;
+  bool in_position_ = false;
+};
+
+}  // namespace servogate::axis

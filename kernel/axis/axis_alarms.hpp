@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "firmware_if/image/alarm.hpp"
+
+/// Numbers of the alarms that this room raises; their texts stand in kernel/cycle/alarm_table.cpp.
+namespace servogate::axis::alarm {
+
+using image::AlarmNumber;
+
+inline constexpr AlarmNumber kFollowingError = 1001;
+inline constexpr AlarmNumber kSoftLimitPlus = 1002;
+inline constexpr AlarmNumber kSoftLimitMinus = 1003;
+inline constexpr AlarmNumber kHardLimitPlus = 1004;
+inline constexpr AlarmNumber kHardLimitMinus = 1005;
+inline constexpr AlarmNumber kBothLimits = 1006;
+inline constexpr AlarmNumber kEncoderJump = 1007;
+inline constexpr AlarmNumber kInPositionTimeout = 1008;
+inline constexpr AlarmNumber kPowerLostInMotion = 1009;
+inline constexpr AlarmNumber kEnableWithdrawn = 1010;
+inline constexpr AlarmNumber kBrakeNoTorque = 1011;
+inline constexpr AlarmNumber kBrakeSlips = 1012;
+inline constexpr AlarmNumber kSetpointStep = 1013;
+inline constexpr AlarmNumber kNotHomed = 1014;
+
+inline constexpr AlarmNumber kHomingSwitchNotFound = 1101;
+inline constexpr AlarmNumber kHomingSwitchNotReleased = 1102;
+inline constexpr AlarmNumber kHomingIndexNotFound = 1103;
+inline constexpr AlarmNumber kHomingTimeout = 1104;
+inline constexpr AlarmNumber kHomingLimitAgain = 1105;
+inline constexpr AlarmNumber kHomingNoReference = 1106;
+inline constexpr AlarmNumber kHomingInterrupted = 1107;
+inline constexpr AlarmNumber kHomingIndexNearEdge = 1108;
+
+inline constexpr AlarmNumber kSpindleNotAtSpeed = 1201;
+inline constexpr AlarmNumber kSpindleOrientTimeout = 1202;
+inline constexpr AlarmNumber kSpindleDriveFault = 1203;
+
+inline constexpr AlarmNumber kDriveFault = 2001;
+inline constexpr AlarmNumber kDriveRefuses = 2002;
+inline constexpr AlarmNumber kDriveOffline = 2003;
+inline constexpr AlarmNumber kPdoMissing = 2004;
+
+}  // namespace servogate::axis::alarm
+
+namespace servogate::axis {
+
+/// Something an axis or spindle found wrong in this cycle; the executive makes an alarm record of it.
+struct Event {
+  image::AlarmNumber number = 0;
+  double limit = 0.0;    ///< what was allowed, in the unit of the alarm table
+  double value = 0.0;    ///< what was met
+  double detail1 = 0.0;  ///< further figures that the table names (following error: velocity ...)
+  double detail2 = 0.0;  ///< ... (following error: torque in per mille of the rated one)
+};
+
+/// Bounded list of the events of one cycle. real-time safe.
+class Events {
+ public:
+  static constexpr int kCapacity = 8;
+  /// Adds an event; drops it when the list is full (the first ones matter).
+  void add(const Event& e) noexcept {
+    if (count_ < kCapacity) items_[count_++] = e;
+  }
+  void clear() noexcept { count_ = 0; }
+  const Event* begin() const noexcept { return items_; }
+  const Event* end() const noexcept { return items_ + count_; }
+  int size() const noexcept { return count_; }
+  bool empty() const noexcept { return count_ == 0; }
+
+ private:
+  Event items_[kCapacity];
+  int count_ = 0;
+};
+
+}  // namespace servogate::axis

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/axis/axis.hpp"
+
+namespace servogate::axis {
+
+using image::AxisOwner;
+
+bool Axis::acquire(AxisOwner owner) noexcept {
+  if (owner_ != owner && (moving_ || own_motion_)) return false;
+  owner_ = owner;
+  release_pending_ = false;
+  return true;
+}
+
+bool Axis::release(AxisOwner owner) noexcept {
+  if (owner_ != owner) return false;
+  release_pending_ = moving_ || own_motion_;
+  if (!release_pending_) owner_ = AxisOwner::none;
+  return !release_pending_;
+}
+
+MotionLimits Axis::limits_with(double velocity) const noexcept {
+  MotionLimits lim = config_.limits;
+  lim.velocity = std::min(lim.velocity, velocity);
+  return lim;
+}
+
+double Axis::jog_speed() const noexcept {
+  const bool slow = !homed_ || limit_plus_ || limit_minus_;
+  return slow ? std::min(config_.slow_velocity, config_.jog_velocity) : config_.jog_velocity;
+}
+
+/// Inside the travel; an axis that stands outside may come back but not go further out.
+double Axis::clipped(double target) const noexcept {
+  if (!homed_ || !config_.travel_limited) return target;
+  return std::clamp(target, std::min(config_.travel_min, set_.x), std::max(config_.travel_max, set_.x));
+}
+
+bool Axis::into_limit(double direction) const noexcept {
+  return direction > 0 ? limit_plus_ : direction < 0 && limit_minus_;
+}
+
+/// The axis begins a motion of its own for `owner`.
+bool Axis::begin_own(AxisOwner owner) noexcept {
+  if (!motion_permitted() || !feed_enable_ || homing_.active() || !acquire(owner)) return false;
+  if (!own_motion_) ramp_.reset(set_, config_.limits);
+  own_motion_ = true;
+  moving_ = true;
+  return true;
+}
+
+bool Axis::jog_increment(double distance) noexcept {
+  if (!std::isfinite(distance) || into_limit(distance)) return false;
+  const double from = own_motion_ && manual_ == Manual::increment ? ramp_.target() : set_.x;
+  const double target = clipped(from + distance);
+  if (target == set_.x && !own_motion_) return false;
+  if (!begin_own(AxisOwner::manual)) return false;
+  manual_ = Manual::increment;
+  ramp_.move_to(target, limits_with(jog_speed()));
+  return true;
+}
+
+bool Axis::jog_continuous(int direction, image::Nanoseconds now) noexcept {
+  if (direction == 0 || into_limit(direction)) return false;
+  if (clipped(set_.x + direction) == set_.x) return false;
+  if (own_motion_ && manual_ == Manual::continuous && direction != jog_direction_) jog_stop();
+  if (own_motion_ && manual_ != Manual::continuous) return false;
+  if (!begin_own(AxisOwner::manual)) return false;
+  manual_ = Manual::continuous;
+  jog_direction_ = direction > 0 ? 1 : -1;
+  keep_alive_ns_ = now;
+  return true;
+}
+
+void Axis::jog_stop() noexcept {
+  if (owner_ != AxisOwner::manual || manual_ == Manual::rest) return;
+  manual_ = Manual::rest;
+  ramp_.stop(config_.limits);
+}
+
+bool Axis::move_to(double position, double velocity) noexcept {
+  const bool free = owner_ != AxisOwner::process && owner_ != AxisOwner::homing;
+  if (!free || !(velocity > 0.0) || !std::isfinite(position) || clipped(position) != position) return false;
+  if (!homed_ || into_limit(position - set_.x)) return false;
+  if (!begin_own(owner_ == AxisOwner::none ? AxisOwner::manual : owner_)) return false;
+  manual_ = Manual::position;
+  ramp_.move_to(position, limits_with(velocity));
+  return true;
+}
+
+HomingInputs Axis::homing_inputs(double dt) const noexcept {
+  HomingInputs in;
+  in.dt = dt;
+  in.home_switch = home_switch_;
+  in.limit_plus = limit_plus_;
+  in.limit_minus = limit_minus_;
+  in.settled = in_position_ && rest_s_ >= (config_.feedback_delay + 1) * dt;
+  in.referenced = homed_;
+  in.counts = drive_.position_counts;
+  in.latch_counts = drive_.latch_counts;
+  in.latch_sequence = drive_.latch_sequence;
+  return in;
+}
+
+bool Axis::home() noexcept {
+  if (!motion_permitted() || !feed_enable_ || homing_.active() || !standstill()) return false;
+  if (!acquire(AxisOwner::homing)) return false;
+  drop_reference();
+  ramp_.reset(set_, config_.limits);
+  homing_.start(ramp_, homing_inputs(0.0));
+  own_motion_ = true;
+  moving_ = homing_.active();
+  homing_reported_ = false;
+  return homing_.state() != Homing::State::failed;
+}
+
+void Axis::stop() noexcept {
+  if (!own_motion_) return;
+  if (homing_.active()) homing_.abort(ramp_);
+  manual_ = Manual::rest;
+  ramp_.stop(config_.limits);
+}
+
+void Axis::reset() noexcept {
+  raised_count_ = 0;
+  brake_marked_ = false;
+  reset_pending_ = drive_.state == image::DriveState::fault;
+  reset_left_s_ = 1.0;
+}
+
+void Axis::set_reference(std::int64_t reference_counts) noexcept {
+  if (power_.holding()) return;
+  scale_.reference_counts = reference_counts;
+  scale_.reference_position = config_.homing.position;
+  homed_ = true;
+  motor_ = scale_.position(drive_.position_counts);
+  follow_feedback();
+}
+
+}  // namespace servogate::axis

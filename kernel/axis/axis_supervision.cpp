@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "firmware_if/image/interface_map.hpp"
+#include "kernel/axis/axis.hpp"
+
+namespace servogate::axis {
+
+using image::DriveState;
+
+namespace {
+
+constexpr double kVelocityFilter = 0.01;  // s
+
+bool on(const image::ProcessImage& image, const std::optional<SwitchPlace>& s) noexcept {
+  return s && image.packets.bit(s->place) != s->inverted;
+}
+
+}  // namespace
+
+const Axis::Sent& Axis::sent(int cycles_ago) const noexcept {
+  return history_[static_cast<std::size_t>((head_ + kHistory + 1 - std::clamp(cycles_ago, 1, kHistory)) %
+                                           kHistory)];
+}
+
+void Axis::raise(image::AlarmNumber number, double limit, double value, double d1, double d2) noexcept {
+  for (int i = 0; i < raised_count_; ++i)
+    if (raised_[static_cast<std::size_t>(i)] == number) return;
+  if (raised_count_ < std::ssize(raised_)) raised_[static_cast<std::size_t>(raised_count_++)] = number;
+  events_.add({number, limit, value, d1, d2});
+}
+
+void Axis::read_places(const image::ProcessImage& image) noexcept {
+  using image::field;
+  using image::kAxisFields;
+  const std::uint32_t base = image::axis_base(index_);
+  auto bit = [&](const image::Place& p) { return image.packets.bit(image::at(p, base)); };
+  limit_plus_ = on(image, config_.limit_plus) || bit(field(kAxisFields, "limit_plus"));
+  limit_minus_ = on(image, config_.limit_minus) || bit(field(kAxisFields, "limit_minus"));
+  home_switch_ = on(image, config_.home_switch) || bit(field(kAxisFields, "home_switch"));
+  feed_enable_ = bit(field(kAxisFields, "feed_enable"));
+  power_permitted_ = bit(field(kAxisFields, "enable")) &&
+                     image.packets.bit(field(image::kMachineFields, "power_on", image::kMachineBase));
+  plc_jog_ = static_cast<int>(bit(field(kAxisFields, "jog_plus"))) -
+             static_cast<int>(bit(field(kAxisFields, "jog_minus")));
+}
+
+void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
+  const std::int64_t before = last_counts_;
+  drive_ = in;
+  reset_left_s_ -= dt;
+  const bool faulty = in.state == DriveState::fault || in.state == DriveState::fault_reaction_active;
+  if (!faulty || reset_left_s_ <= 0.0) reset_pending_ = false;
+  if (!in.online) {
+    drive_.position_counts = before;  // what stands in it is not fresh
+    following_error_ = 0.0;
+    return;
+  }
+  last_counts_ = in.position_counts;
+  motor_ = scale_.position(in.position_counts);
+  if (seen_counts_) {
+    const double step = scale_.velocity(static_cast<double>(in.position_counts - before));
+    const double permitted =
+        2.0 * config_.limits.velocity * dt * (1.0 + last_missed_) + 20.0 / scale_.per_unit();
+    if (std::abs(step) > permitted) {
+      raise(alarm::kEncoderJump, permitted, step);
+      drop_reference();
+    }
+    actual_velocity_ += (step / dt - actual_velocity_) * std::min(1.0, dt / kVelocityFilter);
+  }
+  seen_counts_ = true;
+  last_missed_ = in.missed;
+  actual_standing_ = std::abs(actual_velocity_) <= config_.standstill_velocity;
+  const Sent& then = sent(config_.feedback_delay);
+  actual_ = motor_ - then.compensation;
+  following_error_ = held_ ? then.command - actual_ : 0.0;
+  const double speed = std::abs(then.command - sent(config_.feedback_delay + 1).command) / dt;
+  following_limit_ = config_.following_error_limit + config_.following_error_velocity * speed;
+}
+
+void Axis::supervise_drive() noexcept {
+  if (!drive_.online) {
+    if (seen_online_) {
+      raise(alarm::kDriveOffline, 0.0, 0.0);
+      drop_reference();
+      seen_counts_ = false;
+    }
+    seen_online_ = false;
+    return;
+  }
+  seen_online_ = true;
+  if (drive_.state == DriveState::fault || drive_.state == DriveState::fault_reaction_active) {
+    if (!reset_pending_) raise(alarm::kDriveFault, 0.0, drive_.error_code);
+  } else if (drive_.refusal.waited_ms > 0) {
+    raise(alarm::kDriveRefuses, static_cast<double>(drive_.refusal.wanted),
+          static_cast<double>(drive_.refusal.from), drive_.refusal.waited_ms);
+  }
+  if (config_.missed_limit > 0 && drive_.missed >= config_.missed_limit)
+    raise(alarm::kPdoMissing, config_.missed_limit, drive_.missed);
+}
+
+void Axis::supervise_position() noexcept {
+  if (held_ && std::abs(following_error_) > following_limit_)
+    raise(alarm::kFollowingError, following_limit_, following_error_, actual_velocity_,
+          drive_.torque_permille);
+  if (held_ && limit_plus_ && limit_minus_) raise(alarm::kBothLimits, 0.0, actual_);
+}
+
+void Axis::supervise_setpoint() noexcept {
+  if (!held_ || set_.v == 0.0) return;
+  const bool forward = set_.v > 0.0;
+  if (owner_ != image::AxisOwner::homing && into_limit(set_.v)) {
+    raise(forward ? alarm::kHardLimitPlus : alarm::kHardLimitMinus, 0.0, actual_);
+    if (!stopped_by_reaction_) take_away();
+  }
+  if (!stopped_by_reaction_ && own_motion_ && leaves_travel(set_)) take_away();
+}
+
+/// The state could not come to rest inside the travel any more; raises the alarm.
+bool Axis::leaves_travel(const MotionState& state) noexcept {
+  if (!homed_ || !config_.travel_limited || state.v == 0.0) return false;
+  // The path keeps its limits to 0.1 %, so its own stop may be a little longer than the shortest one.
+  const double way = Ramp::stopping_distance(state, config_.limits);
+  const double rest = state.x + way, slack = 1e-4 + 0.002 * std::abs(way);
+  const bool forward = state.v > 0.0;
+  const double limit = forward ? config_.travel_max : config_.travel_min;
+  if (forward ? rest <= limit + slack : rest >= limit - slack) return false;
+  raise(forward ? alarm::kSoftLimitPlus : alarm::kSoftLimitMinus, limit, rest);
+  return true;
+}
+
+/// What it means that the drive let go.
+void Axis::supervise_power(PowerSequence::State before) noexcept {
+  using State = PowerSequence::State;
+  if (before < State::torque || power_.state() != State::off || reaction_ >= image::Reaction::quick_stop)
+    return;
+  if (before == State::engaging || (before == State::stopping && !moving_)) return;  // as it was told
+  power_requested_ = false;
+  if (!drive_.online || drive_.state == DriveState::fault ||
+      drive_.state == DriveState::fault_reaction_active)
+    return;
+  const bool opening = before == State::torque || before == State::releasing;
+  if (opening && config_.brake.output != BrakeOutput::none)
+    raise(alarm::kBrakeNoTorque, 0.0, 0.0);
+  else
+    raise(alarm::kPowerLostInMotion, 0.0, moving_ ? set_.v : 0.0);
+}
+
+/// A closed brake has to hold.
+void Axis::supervise_brake() noexcept {
+  using State = PowerSequence::State;
+  if (config_.brake.output == BrakeOutput::none || !drive_.online) return;
+  const bool closed = power_.state() == State::off || power_.state() == State::powering;
+  if (closed && brake_marked_) {
+    const double slipped = scale_.velocity(static_cast<double>(drive_.position_counts) - brake_mark_);
+    if (std::abs(slipped) > config_.brake.slip_window)
+      raise(alarm::kBrakeSlips, config_.brake.slip_window, slipped);
+  } else {
+    brake_mark_ = static_cast<double>(drive_.position_counts);
+    brake_marked_ = closed && actual_standing_;
+  }
+}
+
+void Axis::update_in_position(double dt) noexcept {
+  rest_s_ = moving_ && !(homing_.active() && ramp_.done()) ? 0.0 : rest_s_ + dt;
+  const double error = set_.x - actual_;
+  const bool inside = held_ && rest_s_ > 0.0 && std::abs(error) <= config_.in_position_window;
+  inside_s_ = inside ? inside_s_ + dt : 0.0;
+  in_position_ = inside && inside_s_ >= config_.in_position_time;
+  if (!held_) rest_s_ = 0.0;
+  if (held_ && !inside && config_.in_position_timeout > 0.0 && rest_s_ > config_.in_position_timeout)
+    raise(alarm::kInPositionTimeout, config_.in_position_window, error);
+}
+
+bool Axis::present(image::AlarmNumber number) const noexcept {
+  switch (number) {
+    case alarm::kFollowingError:
+      return held_ && std::abs(following_error_) > following_limit_;
+    case alarm::kBothLimits:
+      return limit_plus_ && limit_minus_;
+    case alarm::kDriveFault:
+      return drive_.online &&
+             (drive_.state == DriveState::fault || drive_.state == DriveState::fault_reaction_active) &&
+             !reset_pending_;
+    case alarm::kDriveRefuses:
+      return drive_.refusal.waited_ms > 0;
+    case alarm::kDriveOffline:
+      return !drive_.online;
+    case alarm::kPdoMissing:
+      return config_.missed_limit > 0 && drive_.missed >= config_.missed_limit;
+    case alarm::kInPositionTimeout:
+      return held_ && rest_s_ > 0.0 && inside_s_ == 0.0;
+    default:
+      return false;
+  }
+}
+
+}  // namespace servogate::axis

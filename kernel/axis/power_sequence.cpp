@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/axis/power_sequence.hpp"
+
+namespace servogate::axis {
+
+using image::DriveState;
+using image::Reaction;
+
+void PowerSequence::configure(const BrakeData& brake) noexcept {
+  brake_ = brake;
+  state_ = State::off;
+  in_state_s_ = 0.0;
+  drive_on_ = quick_ = false;
+}
+
+void PowerSequence::enter(State s) noexcept {
+  state_ = s;
+  in_state_s_ = 0.0;
+}
+
+/// The way out that does not wait for a ramp.
+void PowerSequence::drop(const Inputs& in) noexcept {
+  if (in.reaction == Reaction::power_off) {
+    quick_ = has_brake();
+    enter(has_brake() ? State::engaging : State::off);
+  } else if (in.reaction == Reaction::quick_stop && !quick_) {
+    quick_ = true;
+    enter(State::stopping);
+  } else if (!drive_on_ && state_ >= State::torque && !quick_) {
+    enter(State::off);  // the drive let go by itself: the brake closes at once
+  }
+}
+
+PowerSequence::Outputs PowerSequence::step(const Inputs& in) noexcept {
+  in_state_s_ += in.dt;
+  drive_on_ = in.drive == DriveState::operation_enabled;
+  const bool forced = in.reaction == Reaction::power_off && state_ == State::engaging;
+  if (state_ != State::off && !forced) {
+    drop(in);
+    if (state_ == State::off) return {};
+  }
+  switch (state_) {
+    case State::off:
+      quick_ = false;
+      if (in.wanted && in.reaction < Reaction::quick_stop) enter(State::powering);
+      break;
+    case State::powering:
+      if (!in.wanted)
+        enter(State::off);
+      else if (drive_on_)
+        enter(State::torque);
+      break;
+    case State::torque:
+      if (!in.wanted)
+        enter(State::engaging);
+      else if (!has_brake())
+        enter(State::ready);
+      else if (in_state_s_ >= brake_.torque_delay)
+        enter(State::releasing);
+      break;
+    case State::releasing:
+      if (!in.wanted)
+        enter(State::engaging);
+      else if (in_state_s_ >= brake_.release_delay)
+        enter(State::ready);
+      break;
+    case State::ready:
+      if (!in.wanted) enter(State::stopping);
+      break;
+    case State::stopping:
+      if (in.at_rest) enter(State::engaging);
+      break;
+    case State::engaging:
+      break;
+  }
+  if (state_ == State::engaging && (!has_brake() || in_state_s_ >= brake_.engage_delay)) enter(State::off);
+  const bool open = state_ == State::releasing || state_ == State::ready || state_ == State::stopping;
+  return {state_ != State::off, open && has_brake(), quick_ && state_ != State::off};
+}
+
+}  // namespace servogate::axis

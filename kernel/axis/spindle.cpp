@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/axis/spindle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/image/interface_map.hpp"
+
+namespace servogate::axis {
+
+using image::DriveState;
+using image::Reaction;
+
+namespace {
+
+constexpr double kSpeedFilter = 0.01;    // s
+constexpr double kPowerAfterStop = 1.0;  // s
+
+/// Angle difference in -180 ... 180 degrees.
+double wrapped(double degrees) noexcept { return degrees - 360.0 * std::round(degrees / 360.0); }
+
+}  // namespace
+
+void Spindle::configure(const SpindleConfig& config, int index) {
+  *this = Spindle{};
+  config_ = config;
+  index_ = index;
+  scale_ = {config.counts_numerator, config.counts_denominator, config.count_direction, 0, 0.0};
+}
+
+void Spindle::order(SpindleMode mode, double rpm) noexcept {
+  mode_ = mode;
+  const double wish = std::isfinite(rpm) ? std::abs(rpm) : 0.0;
+  ordered_rpm_ = wish > 0.0 ? std::clamp(wish, config_.min_rpm, config_.max_rpm) : 0.0;
+  wait_s_ = 0.0;
+  orienting_ = oriented_ = at_speed_ = false;
+  raised_speed_ = raised_orient_ = false;
+}
+
+void Spindle::read(image::ProcessImage& image) noexcept {
+  events_.clear();
+  using image::field;
+  using image::kSpindleFields;
+  const std::uint32_t base = image::spindle_base(index_);
+  enable_ = image.packets.bit(image::at(field(kSpindleFields, "enable"), base)) &&
+            image.packets.bit(field(image::kMachineFields, "power_on", image::kMachineBase));
+  const double percent = image.packets.number(image::at(field(kSpindleFields, "override"), base));
+  override_ratio_ = percent > 0.0 ? std::clamp(percent, 50.0, 125.0) / 100.0 : 1.0;
+
+  const double dt = image.now.period_s();
+  image::SpindleImage& shared = image.spindles[static_cast<std::size_t>(index_)];
+  const image::DriveFeedback& in = shared.drive;
+  if (in.online && drive_.online) {
+    // A drive that supplies only one of speed and position leaves the other one standing still.
+    const double counts_s = in.velocity_counts_s != 0.0
+                                ? in.velocity_counts_s
+                                : static_cast<double>(in.position_counts - drive_.position_counts) / dt;
+    const double turns_s = scale_.velocity(counts_s);
+    actual_rpm_ += (turns_s * 60.0 - actual_rpm_) * std::min(1.0, dt / kSpeedFilter);
+    if (in.latch_sequence != drive_.latch_sequence && !marked_) {
+      scale_.reference_counts = in.latch_counts;
+      marked_ = true;
+    }
+  }
+  drive_ = in;
+  if (!in.online) {
+    actual_rpm_ = 0.0;
+    marked_ = false;
+    return;
+  }
+  // Whole turns go out as integers: the angle stays exact however long the spindle runs.
+  const std::int64_t span = config_.counts_numerator;
+  const std::int64_t counts = (in.position_counts - scale_.reference_counts) % span;
+  const double turns = scale_.direction * static_cast<double>(counts) *
+                       static_cast<double>(config_.counts_denominator) / static_cast<double>(span);
+  angle_deg_ = 360.0 * (turns - std::floor(turns));
+  shared.actual_rpm = actual_rpm_;
+  shared.angle_deg = angle_deg_;
+}
+
+/// Speed of the position loop of the oriented stop.
+double Spindle::orient_rpm() noexcept {
+  const double error = wrapped(config_.orient_angle - angle_deg_);
+  const double braking = std::sqrt(2.0 * config_.acceleration * std::abs(error) / 6.0) * 0.7;
+  const double speed = std::min({config_.orient_gain * std::abs(error) / 6.0, braking, config_.orient_rpm});
+  oriented_ = std::abs(error) <= config_.orient_window && std::abs(actual_rpm_) <= config_.zero_speed_rpm;
+  return std::copysign(speed, error);
+}
+
+double Spindle::wanted_rpm() noexcept {
+  if (!enable_ || reaction_ >= Reaction::quick_stop) return 0.0;
+  switch (mode_) {
+    case SpindleMode::stop:
+      return 0.0;
+    case SpindleMode::cw:
+      return std::min(ordered_rpm_ * override_ratio_, config_.max_rpm);
+    case SpindleMode::ccw:
+      return -std::min(ordered_rpm_ * override_ratio_, config_.max_rpm);
+    case SpindleMode::orient:
+      break;
+  }
+  orienting_ = orienting_ || (marked_ && std::abs(command_rpm_) <= config_.orient_rpm);
+  return orienting_ ? orient_rpm() : std::copysign(config_.orient_rpm, command_rpm_);
+}
+
+void Spindle::command(image::ProcessImage& image) noexcept {
+  const double dt = image.now.period_s();
+  if (reaction_ >= Reaction::quick_stop) order(SpindleMode::stop, 0.0);
+  oriented_ = false;
+  const bool on = drive_.online && drive_.state == DriveState::operation_enabled;
+  const double wanted = wanted_rpm();
+  const double step = config_.acceleration * dt;
+  command_rpm_ = on ? command_rpm_ + std::clamp(wanted - command_rpm_, -step, step) : actual_rpm_;
+  const bool reached = on && command_rpm_ == wanted;
+  zero_speed_ = std::abs(actual_rpm_) <= config_.zero_speed_rpm;
+  const bool turning = mode_ == SpindleMode::cw || mode_ == SpindleMode::ccw;
+  at_speed_ = turning && enable_ && reached &&
+              std::abs(actual_rpm_ - wanted) <= config_.at_speed_window * std::abs(wanted);
+  supervise(dt, reached && turning);
+
+  off_s_ = mode_ == SpindleMode::stop && zero_speed_ ? off_s_ + dt : 0.0;
+  const bool needed = mode_ != SpindleMode::stop ? enable_ || !zero_speed_ : off_s_ < kPowerAfterStop && on;
+  image::SpindleImage& out = image.spindles[static_cast<std::size_t>(index_)];
+  out.command_rpm = on ? command_rpm_ : 0.0;
+  out.running = mode_ != SpindleMode::stop || !zero_speed_;
+  out.at_speed = at_speed_;
+  image::DriveCommand& drive = out.drive_command;
+  drive.power = needed && reaction_ < Reaction::power_off;
+  drive.quick_stop = reaction_ == Reaction::quick_stop;
+  drive.reset_fault = reset_pending_;
+  drive.mode = image::DriveMode::csv;
+  drive.latch_source = image::LatchSource::zero_mark;
+  drive.latch_arm = !marked_ && drive_.online;
+  drive.position_counts = drive_.position_counts;
+  drive.velocity_counts_s = on ? scale_.velocity_counts(command_rpm_ / 60.0) : 0.0;
+  write_interface(image);
+}
+
+void Spindle::supervise(double dt, bool speed_due) noexcept {
+  const bool fault = drive_.state == DriveState::fault || drive_.state == DriveState::fault_reaction_active;
+  reset_left_s_ -= dt;
+  if (!fault || reset_left_s_ <= 0.0) reset_pending_ = false;
+  if (fault && !reset_pending_ && drive_.online && !raised_fault_) {
+    raised_fault_ = true;
+    events_.add({alarm::kSpindleDriveFault, 0.0, static_cast<double>(drive_.error_code)});
+  }
+  const bool orient_due = mode_ == SpindleMode::orient && enable_ && !oriented_;
+  wait_s_ = (speed_due && !at_speed_) || orient_due ? wait_s_ + dt : 0.0;
+  if (speed_due && config_.at_speed_timeout > 0.0 && wait_s_ > config_.at_speed_timeout && !raised_speed_) {
+    raised_speed_ = true;
+    events_.add({alarm::kSpindleNotAtSpeed, command_rpm_, actual_rpm_});
+  }
+  if (orient_due && config_.orient_timeout > 0.0 && wait_s_ > config_.orient_timeout && !raised_orient_) {
+    raised_orient_ = true;
+    events_.add({alarm::kSpindleOrientTimeout, config_.orient_angle, angle_deg_});
+  }
+}
+
+void Spindle::write_interface(image::ProcessImage& image) const noexcept {
+  using image::field;
+  using image::kSpindleFields;
+  const std::uint32_t base = image::spindle_base(index_);
+  auto put = [&](const image::Place& p, double value) {
+    image.packets.set_number(image::at(p, base), value);
+  };
+  put(field(kSpindleFields, "run"), mode_ != SpindleMode::stop);
+  put(field(kSpindleFields, "cw"), mode_ == SpindleMode::cw);
+  put(field(kSpindleFields, "ccw"), mode_ == SpindleMode::ccw);
+  put(field(kSpindleFields, "orient"), mode_ == SpindleMode::orient);
+  put(field(kSpindleFields, "at_speed"), at_speed_);
+  put(field(kSpindleFields, "zero_speed"), zero_speed_);
+  put(field(kSpindleFields, "command"), image.spindles[static_cast<std::size_t>(index_)].command_rpm);
+  put(field(kSpindleFields, "actual"), actual_rpm_);
+}
+
+bool Spindle::settled() const noexcept {
+  switch (mode_) {
+    case SpindleMode::stop:
+      return zero_speed_;
+    case SpindleMode::orient:
+      return oriented_;
+    default:
+      return at_speed_;
+  }
+}
+
+bool Spindle::present(image::AlarmNumber number) const noexcept {
+  const bool fault = drive_.state == DriveState::fault || drive_.state == DriveState::fault_reaction_active;
+  return number == alarm::kSpindleDriveFault && drive_.online && fault && !reset_pending_;
+}
+
+void Spindle::reset() noexcept {
+  raised_fault_ = raised_speed_ = raised_orient_ = false;
+  wait_s_ = 0.0;
+  reset_pending_ = drive_.state == DriveState::fault;
+  reset_left_s_ = 1.0;
+}
+
+}  // namespace servogate::axis

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/process_image.hpp"
+#include "kernel/axis/axis_alarms.hpp"
+#include "kernel/axis/axis_config.hpp"
+#include "kernel/axis/scale.hpp"
+
+namespace servogate::axis {
+
+enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient };
+
+/// A spindle: ramped speed command, at-speed and standstill, oriented stop. It sees its supplier (CSV drive,
+/// later an analog output or a VFD) only through SpindleImage. In each cycle: read(image), react(reaction),
+/// command(image); all real-time safe.
+class Spindle {
+ public:
+  /// `index` is the spindle's place in the image. Not for the cycle.
+  void configure(const SpindleConfig& config, int index);
+  const SpindleConfig& config() const noexcept { return config_; }
+
+  /// What the program wants; `rpm` without sign, clamped to the configured range. real-time safe.
+  void order(SpindleMode mode, double rpm) noexcept;
+  SpindleMode mode() const noexcept { return mode_; }
+  double ordered_rpm() const noexcept { return ordered_rpm_; }
+
+  void read(image::ProcessImage& image) noexcept;
+  void react(image::Reaction reaction) noexcept { reaction_ = reaction; }
+  void command(image::ProcessImage& image) noexcept;
+  const Events& events() const noexcept { return events_; }
+  bool present(image::AlarmNumber number) const noexcept;
+  void reset() noexcept;
+
+  /// Commanded state reached: at speed, standing, or oriented. real-time safe.
+  bool settled() const noexcept;
+  bool at_speed() const noexcept { return at_speed_; }
+  bool zero_speed() const noexcept { return zero_speed_; }
+  bool oriented() const noexcept { return oriented_; }
+  double actual_rpm() const noexcept { return actual_rpm_; }
+  /// Measured angle, 0-360 degrees, + clockwise; from the zero mark once it has been passed. real-time safe.
+  double angle_deg() const noexcept { return angle_deg_; }
+
+ private:
+  double wanted_rpm() noexcept;
+  double orient_rpm() noexcept;
+  void supervise(double dt, bool speed_due) noexcept;
+  void write_interface(image::ProcessImage& image) const noexcept;
+
+  SpindleConfig config_;
+  int index_ = 0;
+  CountScale scale_;  ///< counts to revolutions
+  Events events_;
+  SpindleMode mode_ = SpindleMode::stop;
+  double ordered_rpm_ = 0.0;
+  image::Reaction reaction_ = image::Reaction::none;
+  image::DriveFeedback drive_;
+  bool enable_ = false;
+  double override_ratio_ = 1.0;
+  double command_rpm_ = 0.0;
+  double actual_rpm_ = 0.0;
+  double angle_deg_ = 0.0;
+  bool orienting_ = false;  ///< slow enough, position loop closed
+  double wait_s_ = 0.0;
+  double off_s_ = 0.0;
+  bool at_speed_ = false, zero_speed_ = true, oriented_ = false;
+  bool reset_pending_ = false;
+  double reset_left_s_ = 0.0;
+  bool raised_speed_ = false, raised_orient_ = false, raised_fault_ = false;
+  bool marked_ = false;  ///< the zero mark has been captured
+};
+
+}  // namespace servogate::axis

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "firmware_if/text/finding.hpp"
+
+namespace servogate::channel::texts {
+
+inline constexpr text::Entry kNotDriven{"channel.not-driven",
+                                        "the command '{0}' cannot be driven by this version",
+                                        "команда «{0}» в этой версии не исполняется приводами"};
+inline constexpr text::Entry kCannotDrive{"channel.cannot-drive", "this element cannot be driven: {0}",
+                                          "этот элемент нельзя отработать: {0}"};
+
+/// Why the path room cannot drive an element, index = path::Flaw.
+inline constexpr text::Entry kFlaws[] = {
+    {"channel.flaw-none", "nothing is wrong", "ошибки нет"},
+    {"channel.flaw-not-finite", "a coordinate or feed is no number, or larger than any machine",
+     "координата или подача не число либо больше любого станка"},
+    {"channel.flaw-no-feed", "no feed: program F (and S with feed per revolution) first",
+     "нет подачи: сначала задайте F (а при подаче на оборот и S)"},
+    {"channel.flaw-plane", "the axes of the plane are not two different linear axes",
+     "оси плоскости — не две разные линейные оси"},
+    {"channel.flaw-radius", "the radius is zero, or differs between start and end by more than 0.01 mm",
+     "радиус равен нулю или различается в начале и конце более чем на 0,01 мм"},
+    {"channel.flaw-sweep", "the angle does not lead to the end point", "угол не приводит в конечную точку"},
+};
+
+}  // namespace servogate::channel::texts

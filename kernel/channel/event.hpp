@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "firmware_if/image/packets.hpp"
+#include "kernel/program/canonical.hpp"
+
+namespace servogate::channel {
+
+/// What the cycle does while the path rests at an event.
+enum class EventKind : std::uint8_t {
+  m_function,
+  h_function,
+  spindle,
+  tool,
+  dwell,
+  write,
+  wait,
+  message,
+  sync,           ///< the interpreter waits for the packets as they are now
+  stop,           ///< M00
+  optional_stop,  ///< M01
+  block_end,      ///< STEP mode: waits for the operator between blocks
+  error,          ///< the interpreter found an error in the next block
+  end,            ///< M02, M30 or the last line
+};
+
+/// One command that the cycle executes at rest, in path order. Plain data; crosses the real-time line.
+struct Event {
+  std::uint32_t id = 0;  ///< the path's event, or 0: at once (asynchronous write)
+  std::uint32_t generation = 0;
+  EventKind kind = EventKind::message;
+  std::int32_t line = 0;
+  std::int32_t block = -1;
+  std::int16_t file = 0;
+  std::int32_t code = 0;    ///< M, H or tool number; index of the message or finding
+  std::int32_t code2 = 0;   ///< corrector
+  double value = 0.0;       ///< seconds, speed, value to write or to compare with
+  double limit = 0.0;       ///< rpm limit of a surface speed
+  std::uint8_t number = 0;  ///< spindle
+  program::SpindleMode mode = program::SpindleMode::keep;
+  bool flag = false;  ///< surface speed; rewind
+  program::Wait::Compare compare = program::Wait::Compare::eq;
+  image::Place place;
+  std::array<char, image::kMaxCharacters> characters{};
+  std::uint8_t length = 0;  ///< of `characters`; 0: `value` counts
+};
+
+}  // namespace servogate::channel

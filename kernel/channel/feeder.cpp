@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/channel/feeder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kernel/channel/channel_texts.hpp"
+
+namespace servogate::channel {
+
+namespace {
+
+constexpr int kCommandsPerWork = 64;
+constexpr std::uint32_t kSpareEvents = 8;
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+path::Transition transition(const program::CornerRule& corner) {
+  path::Transition t;
+  t.continuation = static_cast<path::Continuation>(corner.transition);
+  t.tolerance = corner.tolerance_mm;
+  t.erf = corner.erf_mm;
+  t.max_angle_deg = corner.max_angle_deg;
+  t.confirm = true;
+  return t;
+}
+
+}  // namespace
+
+Feeder::Feeder(path::Config config, AxisMap axes, Link& link, int process)
+    : config_(config), axes_(std::move(axes)), link_(link), planner_(config, link.track), process_(process) {}
+
+Feeder::~Feeder() = default;
+
+void Feeder::load(InterpreterFactory factory) {
+  factory_ = std::move(factory);
+  interpreter_.reset();
+  manual_.reset();
+  tables_.reset();
+  manual_runs_ = false;
+}
+
+void Feeder::load(InterpreterFactory factory, program::Tables tables) {
+  if (manual_runs_) manual_ = std::move(interpreter_);
+  std::optional<program::Interpreter> manual = std::move(manual_);
+  load(std::move(factory));
+  manual_ = std::move(manual);
+  tables_ = std::move(tables);
+}
+
+program::Interpreter Feeder::manual_interpreter(const program::Position& at) const {
+  if (!manual_ && !manual_runs_) return factory_(at);
+  program::Interpreter interpreter = manual_runs_ ? *interpreter_ : *manual_;
+  if (tables_) interpreter.adopt(*tables_);
+  interpreter.reposition(at);
+  return interpreter;
+}
+
+bool Feeder::work() {
+  take_orders();
+  // The planner wants nothing while it has something to publish: read and publish in turns.
+  int done = 0;
+  do {
+    for (; done < kCommandsPerWork && wants_more(); ++done) read_one();
+    planner_.work();
+  } while (done < kCommandsPerWork && wants_more());
+  return wants_more();
+}
+
+bool Feeder::wants_more() const {
+  return state_ == State::feeding && planner_.wants_more() &&
+         link_.events.capacity() - (link_.events.written() - link_.events.freed()) > kSpareEvents;
+}
+
+void Feeder::take_orders() {
+  for (; orders_read_ < link_.orders.written(); link_.orders.free_below(++orders_read_)) {
+    const FeederOrder& order = link_.orders[orders_read_];
+    switch (order.kind) {
+      case FeederOrder::Kind::start:
+        begin(order);
+        break;
+      case FeederOrder::Kind::abandon:
+        state_ = State::idle;
+        break;
+      case FeederOrder::Kind::sync:
+        if (order.generation != generation_ || state_ != State::syncing) break;
+        view_ = link_.packets_of(generation_);
+        synchronised_ = true;
+        state_ = State::feeding;
+        break;
+    }
+  }
+}
+
+void Feeder::begin(const FeederOrder& order) {
+  generation_ = order.generation;
+  position_ = order.position;
+  block_by_block_ = order.block_by_block;
+  moved_in_block_ = false;
+  last_line_ = 0;
+  findings_.clear();
+  view_ = link_.packets_of(generation_);
+  synchronised_ = true;
+  path::Vector at{};
+  for (std::size_t i = 0; i < axes_.machine.size(); ++i)
+    at[i] = position_[static_cast<std::size_t>(axes_.machine[i])];
+  planner_.restart(at);
+  state_ = State::feeding;
+  std::optional<program::Interpreter> manual;
+  if (order.manual_data) manual = manual_interpreter(position_);
+  if (manual_runs_) manual_ = std::move(interpreter_);
+  manual_runs_ = order.manual_data;
+  if (manual)
+    manual->mdi(manual_block_);
+  else
+    manual.emplace(factory_(position_));
+  interpreter_ = std::move(manual);
+}
+
+void Feeder::read_one() {
+  const program::Step step = interpreter_->next(view_, synchronised_);
+  synchronised_ = false;
+  if (const auto* command = std::get_if<program::Command>(&step)) {
+    accept(*command);
+  } else if (const auto* sync = std::get_if<program::NeedsSync>(&step)) {
+    program::Command at;
+    at.line = sync->line;
+    event(EventKind::sync, at, {});
+    state_ = State::syncing;
+  } else {
+    fail(std::get<program::Error>(step).finding);
+  }
+}
+
+void Feeder::fail(const text::Finding& finding) {
+  program::Command at;
+  at.line = finding.line;
+  Event e;
+  e.code = static_cast<std::int32_t>(findings_.size());
+  findings_.push_back(finding);
+  event(EventKind::error, at, e);
+  end();
+}
+
+void Feeder::end() {
+  planner_.finish();
+  state_ = State::ended;
+}
+
+text::Finding Feeder::finding(const program::Command& command, const text::Entry& entry,
+                              std::string argument) const {
+  const auto file = static_cast<std::size_t>(command.file);
+  const std::vector<std::string>& files = interpreter_->files();
+  return {text::Severity::error, file < files.size() ? files[file] : std::string(), command.line, 1, &entry,
+          {std::move(argument)}};
+}
+
+path::Tag Feeder::tag(const program::Command& command) const {
+  path::Tag t;
+  t.line = command.line;
+  t.file = command.file;
+  t.block = command.block;
+  t.process = static_cast<std::int16_t>(process_);
+  t.command = commands_;
+  return t;
+}
+
+void Feeder::event(EventKind kind, const program::Command& command, Event e) {
+  e.id = next_event_++;
+  if (next_event_ == 0) next_event_ = 1;
+  e.generation = generation_;
+  e.kind = kind;
+  e.line = command.line;
+  e.block = command.block;
+  e.file = static_cast<std::int16_t>(command.file);
+  link_.events.push(e);
+  planner_.add_event(e.id, tag(command));
+}
+
+void Feeder::accept(const program::Command& command) {
+  ++commands_;
+  if (block_by_block_ && moved_in_block_ && command.line != last_line_) {
+    event(EventKind::block_end, command, {});
+    moved_in_block_ = false;
+  }
+  last_line_ = command.line;
+  Event e;
+  std::visit(Overloaded{
+                 [&](const program::Rapid&) { move(command); },
+                 [&](const program::Line&) { move(command); },
+                 [&](const program::Arc&) { move(command); },
+                 [&](const program::Thread&) { fail(finding(command, texts::kNotDriven, "thread")); },
+                 [&](const program::Probe&) { fail(finding(command, texts::kNotDriven, "probe")); },
+                 [&](const program::Dwell& d) {
+                   e.value = d.seconds;
+                   event(EventKind::dwell, command, e);
+                 },
+                 [&](const program::Spindle& s) {
+                   if (s.surface_speed) {
+                     surface_speed_ = s.speed;
+                     surface_limit_rpm_ = s.limit_rpm;
+                   } else if (s.speed > 0.0) {
+                     surface_speed_ = 0.0;
+                     spindle_rpm_ = s.speed;
+                   }
+                   e.value = s.speed;
+                   e.limit = s.limit_rpm;
+                   e.number = s.number;
+                   e.mode = s.mode;
+                   e.flag = s.surface_speed;
+                   event(EventKind::spindle, command, e);
+                 },
+                 [&](const program::Tool& t) {
+                   if (t.activate) return;
+                   e.code = t.number;
+                   e.code2 = t.corrector;
+                   event(EventKind::tool, command, e);
+                 },
+                 [&](const program::MFunction& m) {
+                   e.code = m.code;
+                   event(EventKind::m_function, command, e);
+                 },
+                 [&](const program::HFunction& h) {
+                   e.code = h.code;
+                   event(EventKind::h_function, command, e);
+                 },
+                 [&](const program::Message& m) {
+                   e.code = static_cast<std::int32_t>(messages_.size());
+                   messages_.push_back(m.text);
+                   event(EventKind::message, command, e);
+                 },
+                 [&](const program::WritePlace& w) {
+                   e.place = w.place;
+                   e.value = w.value;
+                   e.length = static_cast<std::uint8_t>(std::min(w.characters.size(), e.characters.size()));
+                   std::copy_n(w.characters.begin(), e.length, e.characters.begin());
+                   if (e.length != 0)
+                     view_.set_characters(w.place, w.characters);
+                   else
+                     view_.set_number(w.place, w.value);
+                   if (w.synchronous) {
+                     event(EventKind::write, command, e);
+                   } else {
+                     e.kind = EventKind::write;
+                     e.generation = generation_;
+                     link_.at_once.push(e);
+                   }
+                 },
+                 [&](const program::Wait& w) {
+                   e.place = w.place;
+                   e.value = w.value;
+                   e.compare = w.compare;
+                   event(EventKind::wait, command, e);
+                 },
+                 [&](const program::Stop& s) {
+                   event(s.optional ? EventKind::optional_stop : EventKind::stop, command, e);
+                 },
+                 [&](const program::End& end_of_program) {
+                   e.flag = end_of_program.rewind;
+                   event(EventKind::end, command, e);
+                   end();
+                 },
+             },
+             command.what);
+}
+
+bool Feeder::move(const program::Command& command) {
+  const path::Element e = element(command);
+  if (planner_.add(e)) {
+    moved_in_block_ = true;
+    return true;
+  }
+  const text::Entry& flaw = texts::kFlaws[static_cast<std::size_t>(planner_.last_flaw())];
+  fail(finding(command, texts::kCannotDrive, text::render(flaw, {}, text::user_language())));
+  return false;
+}
+
+path::Element Feeder::element(const program::Command& command) const {
+  path::Element e;
+  e.tag = tag(command);
+  const auto target = [&](const program::Position& to) {
+    double square = 0.0, rotary = 0.0;
+    for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
+      e.to[i] = to[static_cast<std::size_t>(axes_.machine[i])];
+      const double d = e.to[i] - planner_.position()[i];
+      (config_.rotary[i] ? rotary : square) += d * d;
+    }
+    return std::sqrt(square > 0.0 ? square : rotary);
+  };
+  if (const auto* rapid = std::get_if<program::Rapid>(&command.what)) {
+    e.kind = path::Element::Kind::rapid;
+    target(rapid->to);
+    e.transition.confirm = true;
+  } else if (const auto* line = std::get_if<program::Line>(&command.what)) {
+    e.kind = path::Element::Kind::line;
+    e.feed = speed(line->feed, target(line->to));
+    e.transition = transition(line->corner);
+  } else if (const auto* arc = std::get_if<program::Arc>(&command.what)) {
+    e.kind = path::Element::Kind::arc;
+    target(arc->to);
+    const auto path_axis = [&](int machine_axis) {
+      const auto it = std::find(axes_.machine.begin(), axes_.machine.end(), machine_axis);
+      return static_cast<std::uint8_t>(it - axes_.machine.begin());
+    };
+    e.axis1 = path_axis(arc->axis1);
+    e.axis2 = path_axis(arc->axis2);
+    e.center1 = arc->center1;
+    e.center2 = arc->center2;
+    e.sweep_deg = arc->sweep_deg;
+    const double radius =
+        std::hypot(planner_.position()[e.axis1] - e.center1, planner_.position()[e.axis2] - e.center2);
+    const double circle = radius * std::abs(arc->sweep_deg) * std::numbers::pi / 180.0;
+    double along = circle * circle;
+    for (std::size_t i = 0; i < axes_.machine.size(); ++i)
+      if (i != e.axis1 && i != e.axis2 && !config_.rotary[i]) {
+        const double d = e.to[i] - planner_.position()[i];
+        along += d * d;
+      }
+    e.feed = speed(arc->feed, std::sqrt(along));
+    e.transition = transition(arc->corner);
+  }
+  return e;
+}
+
+double Feeder::speed(const program::Feed& feed, double length) const {
+  switch (feed.unit) {
+    case program::FeedUnit::mm_per_min:
+      return feed.value / 60.0;
+    case program::FeedUnit::inverse_time:
+      return feed.value * length / 60.0;
+    case program::FeedUnit::mm_per_rev: {
+      double rpm = spindle_rpm_;
+      if (surface_speed_ > 0.0 && axes_.surface_speed_axis >= 0) {
+        const double radius =
+            std::max(std::abs(planner_.position()[static_cast<std::size_t>(axes_.surface_speed_axis)]), 1e-3);
+        rpm = surface_speed_ * 1000.0 / (2.0 * std::numbers::pi * radius);
+        if (surface_limit_rpm_ > 0.0) rpm = std::min(rpm, surface_limit_rpm_);
+      }
+      return feed.value * rpm / 60.0;
+    }
+  }
+  return 0.0;
+}
+
+}  // namespace servogate::channel

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware_if/text/finding.hpp"
+#include "kernel/channel/event.hpp"
+#include "kernel/path/planner.hpp"
+#include "kernel/program/interpreter.hpp"
+
+namespace servogate::channel {
+
+/// Constructs the interpreter of a loaded program for the position at which it starts.
+using InterpreterFactory = std::function<program::Interpreter(const program::Position& start)>;
+
+/// What the cycle tells the feeder.
+struct FeederOrder {
+  enum class Kind : std::uint8_t {
+    start,    ///< begin at the first block, axes stand at `position`
+    abandon,  ///< drop what is under way; the next order is a start
+    sync,     ///< the sync event has been reached; packets stand in Link::packets_of()
+  };
+  Kind kind = Kind::start;
+  std::uint32_t generation = 0;  ///< of the run it speaks of
+  bool manual_data = false;      ///< start: the typed block instead of the program
+  bool block_by_block = false;   ///< start: STEP mode
+  program::Position position{};
+};
+
+/// The queues between feeder (outside) and process (in the cycle).
+struct Link {
+  explicit Link(const path::Config& config) : track(config), events(4096), at_once(1024), orders(64) {}
+  path::Track track;
+  path::Ring<Event> events;   ///< executed at rest, in path order
+  path::Ring<Event> at_once;  ///< asynchronous writes
+  path::Ring<FeederOrder> orders;
+
+  /// Written by the cycle before a start or sync order of a run, read by the feeder after it. Runs alternate,
+  /// so that a new one never writes what the feeder still reads.
+  image::Packets& packets_of(std::uint32_t generation) { return packets[generation % packets.size()]; }
+  std::array<image::Packets, 4> packets;
+};
+
+/// How path axes lie among the machine's, and what an axis order means.
+struct AxisMap {
+  std::vector<int> machine;     ///< machine axis of each path axis
+  int surface_speed_axis = -1;  ///< machine axis whose position is the radius for G96; -1: none
+};
+
+/// Pulls commands from the interpreter, turns them into path elements and events. Runs outside the cycle, on
+/// one thread; in virtual time in the cycle's own thread between two cycles. Not real-time safe.
+class Feeder {
+ public:
+  Feeder(path::Config config, AxisMap axes, Link& link, int process);
+  ~Feeder();
+
+  /// Makes a program ready for start; not while one runs.
+  void load(InterpreterFactory factory);
+  /// As load(); what MDI has in force (modes, origins) stays, with these tables from now on.
+  void load(InterpreterFactory factory, program::Tables tables);
+  /// The interpreter in which the next typed block will run, standing at `at`; a copy. Needs a loaded
+  /// program.
+  program::Interpreter manual_interpreter(const program::Position& at) const;
+  /// MDI begins with the power-on modes again.
+  void forget_manual() { manual_.reset(); }
+  /// The block that the next start in MDI mode runs.
+  void set_manual_block(std::string block) { manual_block_ = std::move(block); }
+  /// A run is being read: load() has to wait. Also after its last motion was read, false.
+  bool reads() const noexcept { return state_ == State::feeding || state_ == State::syncing; }
+  bool loaded() const noexcept { return static_cast<bool>(factory_); }
+
+  /// Takes orders, reads ahead as far as the planner wants, publishes. Bounded work a call. True: it is to be
+  /// called again soon, there is more to do.
+  bool work();
+
+  /// Findings of the run so far (the errors that ended it), index = Event::code of an error event.
+  const std::vector<text::Finding>& findings() const noexcept { return findings_; }
+  const std::vector<std::string>& messages() const noexcept { return messages_; }
+  /// Blocks executed by the interpreter (read ahead of motion) and in the main program, for progress.
+  long long executed() const noexcept { return interpreter_ ? interpreter_->executed() : 0; }
+  int block_count() const noexcept { return interpreter_ ? interpreter_->block_count() : 0; }
+  /// Tables as the running program left them (RQO ...).
+  const program::Tables* tables() const noexcept { return interpreter_ ? &interpreter_->tables() : nullptr; }
+  const program::Interpreter* interpreter() const noexcept { return interpreter_ ? &*interpreter_ : nullptr; }
+
+ private:
+  enum class State { idle, feeding, syncing, ended };
+
+  bool wants_more() const;
+  void take_orders();
+  void begin(const FeederOrder& order);
+  void read_one();
+  void accept(const program::Command& command);
+  void fail(const text::Finding& finding);
+  void end();
+  bool move(const program::Command& command);
+  path::Element element(const program::Command& command) const;
+  double speed(const program::Feed& feed, double length) const;
+  void event(EventKind kind, const program::Command& command, Event event);
+  path::Tag tag(const program::Command& command) const;
+  text::Finding finding(const program::Command& command, const text::Entry& entry,
+                        std::string argument) const;
+
+  path::Config config_;
+  AxisMap axes_;
+  Link& link_;
+  path::Planner planner_;
+  int process_;
+  InterpreterFactory factory_;
+  std::string manual_block_;
+  std::optional<program::Interpreter> interpreter_;
+  std::optional<program::Interpreter> manual_;  ///< modes that MDI left, between two blocks
+  bool manual_runs_ = false;                    ///< interpreter_ runs a typed block
+  std::optional<program::Tables> tables_;       ///< newer than those in manual_
+  State state_ = State::idle;
+  bool synchronised_ = false;
+  bool block_by_block_ = false;
+  bool moved_in_block_ = false;
+  int last_line_ = 0;
+  image::Packets view_;  ///< packets as the interpreter sees them
+  program::Position position_{};
+  double spindle_rpm_ = 0.0;
+  double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0;
+  std::uint32_t next_event_ = 1;
+  std::uint32_t generation_ = 0;
+  std::uint64_t commands_ = 0;
+  std::uint64_t orders_read_ = 0;
+  std::vector<text::Finding> findings_;
+  std::vector<std::string> messages_;
+};
+
+}  // namespace servogate::channel

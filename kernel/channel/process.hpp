@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "kernel/channel/feeder.hpp"
+#include "kernel/channel/handshake.hpp"
+#include "kernel/cycle/participants.hpp"
+#include "kernel/path/follower.hpp"
+
+namespace servogate::channel {
+
+struct ProcessConfig {
+  int index = 0;
+  path::Config path;  ///< path axes, limits, period
+  AxisMap axes;
+  double handshake_timeout_s = 10.0;
+  double in_position_timeout_s = 5.0;  ///< of the wait at exact stops, beside the axis' own alarm
+};
+
+/// One process: the feeder outside the cycle and the follower with its handshakes inside, joined by a Link.
+///
+/// Thread contract: load(), set_manual_block() and work() on one thread outside the cycle (in virtual time
+/// the cycle's own thread, between cycles); everything of ProcessInCycle on the cycle's thread.
+class Process final : public cycle::ProcessInCycle {
+ public:
+  explicit Process(const ProcessConfig& config);
+  ~Process() override;
+
+  // -- outside the cycle
+  void load(InterpreterFactory factory);
+  void load(InterpreterFactory factory, program::Tables tables);
+  program::Interpreter manual_interpreter(const program::Position& at) const {
+    return feeder_.manual_interpreter(at);
+  }
+  void forget_manual() { feeder_.forget_manual(); }
+  void set_manual_block(std::string block) { feeder_.set_manual_block(std::move(block)); }
+  /// Reads ahead and plans; see Feeder::work().
+  bool work() { return feeder_.work(); }
+  const Feeder& feeder() const noexcept { return feeder_; }
+
+  // -- in the cycle
+  void published(std::span<std::uint64_t> counts) const noexcept override;
+  void interpolate(cycle::ProcessContext& context) noexcept override;
+  bool order(const image::Request& request, cycle::ProcessContext& context) noexcept override;
+  bool loaded() const noexcept override { return loaded_.load(std::memory_order_acquire); }
+
+ private:
+  enum class Stage : std::uint8_t { none, entered, handshaking, waiting };
+
+  bool start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept;
+  void leave(image::ProcessState state, cycle::ProcessContext& c) noexcept;
+  bool acquire(cycle::ProcessContext& c) noexcept;
+  void release(cycle::ProcessContext& c) noexcept;
+  void apply_at_once(cycle::ProcessContext& c) noexcept;
+  void apply_hold(cycle::ProcessContext& c) noexcept;
+  void apply_reaction(cycle::ProcessContext& c) noexcept;
+  void drive_axes(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
+  void at_stop(cycle::ProcessContext& c) noexcept;
+  void at_event(std::uint32_t id, cycle::ProcessContext& c) noexcept;
+  bool execute(const Event& event, cycle::ProcessContext& c) noexcept;
+  bool handshake(HandshakeWord word, std::int32_t code, double value, const Event& event,
+                 cycle::ProcessContext& c) noexcept;
+  bool order_spindle(const Event& event, cycle::ProcessContext& c) noexcept;
+  bool in_position(cycle::ProcessContext& c) const noexcept;
+  void surface_speed(cycle::ProcessContext& c) noexcept;
+  void stop_spindles(cycle::ProcessContext& c) noexcept;
+  void write_status(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
+  void raise(image::AlarmNumber number, const Event& event, double value, double limit,
+             cycle::ProcessContext& c) noexcept;
+  bool operator_waits() const noexcept {
+    return stage_ == Stage::waiting &&
+           (event_.kind == EventKind::stop || event_.kind == EventKind::optional_stop ||
+            event_.kind == EventKind::block_end);
+  }
+  double seconds(const cycle::ProcessContext& c) const noexcept { return c.image.now.period_s(); }
+
+  ProcessConfig config_;
+  Link link_;
+  Feeder feeder_;
+  path::Follower follower_;
+  Handshake handshake_;
+  std::uint32_t base_;  ///< of the process' block in K
+  std::atomic<bool> loaded_{false};
+
+  bool manual_data_ = false;  ///< the run is a typed block
+  bool running_ = false;      ///< a program is under way, held or waiting
+  bool stopping_ = false;     ///< it ends as soon as the path is at rest
+  image::ProcessState after_stop_ = image::ProcessState::idle;
+  image::ProcessState state_ = image::ProcessState::idle;
+  image::Mode mode_ = image::Mode::off;
+  bool held_ = false;   ///< the operator's hold
+  bool go_on_ = false;  ///< start or step while an event waits for the operator
+  double override_ = 1.0;
+  Stage stage_ = Stage::none;
+  Event event_;
+  double waited_s_ = 0.0;
+  double surface_speed_ = 0.0, surface_limit_ = 0.0;
+  program::SpindleMode surface_mode_ = program::SpindleMode::cw;
+  double last_speed_ = -1.0;
+  std::uint64_t shown_command_ = 0;  ///< of the motion whose line the status shows
+  std::uint32_t generation_ = 0;
+  std::uint32_t starved_ = 0;
+  std::uint64_t at_once_read_ = 0, events_read_ = 0;
+  std::array<std::uint64_t, kCrossingsEach> seen_{};  ///< context's `visible`, never beyond what is there
+};
+
+}  // namespace servogate::channel

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "firmware_if/image/interface_map.hpp"
+#include "kernel/channel/process.hpp"
+#include "kernel/cycle/alarm_table.hpp"
+
+namespace servogate::channel {
+
+namespace {
+
+using image::ProcessState;
+
+constexpr image::Place kOptionalStop = image::field(image::kProcessFields, "optional_stop");
+constexpr image::Place kReadInEnable = image::field(image::kProcessFields, "read_in_enable");
+
+bool holds(double a, program::Wait::Compare compare, double b) noexcept {
+  using C = program::Wait::Compare;
+  switch (compare) {
+    case C::eq:
+      return a == b;
+    case C::ne:
+      return a != b;
+    case C::lt:
+      return a < b;
+    case C::le:
+      return a <= b;
+    case C::gt:
+      return a > b;
+    case C::ge:
+      return a >= b;
+  }
+  return false;
+}
+
+void write_place(const Event& e, image::Packets& packets) noexcept {
+  if (e.length != 0)
+    packets.set_characters(e.place, {e.characters.data(), e.length});
+  else
+    packets.set_number(e.place, e.value);
+}
+
+axis::SpindleMode spindle_mode(program::SpindleMode mode) noexcept {
+  switch (mode) {
+    case program::SpindleMode::cw:
+      return axis::SpindleMode::cw;
+    case program::SpindleMode::ccw:
+      return axis::SpindleMode::ccw;
+    case program::SpindleMode::orient:
+      return axis::SpindleMode::orient;
+    default:
+      return axis::SpindleMode::stop;
+  }
+}
+
+}  // namespace
+
+void Process::apply_at_once(cycle::ProcessContext& c) noexcept {
+  while (at_once_read_ < c.visible[2]) {
+    const Event& e = link_.at_once[at_once_read_];
+    if (e.generation == generation_ && running_) write_place(e, c.image.packets);
+    link_.at_once.free_below(++at_once_read_);
+  }
+}
+
+// True: the event is done and the path goes on.
+bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
+  const bool entered = stage_ == Stage::entered;
+  const auto wait_for_operator = [&] {
+    stage_ = Stage::waiting;
+    state_ = ProcessState::waiting;
+    return go_on_;
+  };
+  switch (e.kind) {
+    case EventKind::m_function:
+      return handshake(HandshakeWord::m, e.code, 0.0, e, c);
+    case EventKind::h_function:
+      return handshake(HandshakeWord::h, e.code, 0.0, e, c);
+    case EventKind::tool:
+      if (!handshake(HandshakeWord::t, e.code, e.code2, e, c)) return false;
+      c.image.processes[static_cast<std::size_t>(config_.index)].tool = static_cast<std::uint16_t>(e.code);
+      return true;
+    case EventKind::spindle:
+      return order_spindle(e, c);
+    case EventKind::dwell:
+      stage_ = Stage::waiting;
+      waited_s_ += seconds(c);
+      return waited_s_ >= e.value;
+    case EventKind::write:
+      if (!c.image.packets.contains(e.place)) raise(cycle::alarm::kWriteRefused, e, e.value, 0.0, c);
+      write_place(e, c.image.packets);
+      return true;
+    case EventKind::wait:
+      stage_ = Stage::waiting;
+      state_ = ProcessState::waiting;
+      return holds(c.image.packets.number(e.place), e.compare, e.value);
+    case EventKind::message:
+      return true;
+    case EventKind::sync: {
+      if (!c.image.packets.bit(image::at(kReadInEnable, base_))) {
+        stage_ = Stage::waiting;
+        return false;
+      }
+      link_.packets_of(generation_) = c.image.packets;
+      FeederOrder order;
+      order.kind = FeederOrder::Kind::sync;
+      order.generation = generation_;
+      link_.orders.push(order);
+      return true;
+    }
+    case EventKind::optional_stop:
+      if (entered && !c.image.packets.bit(image::at(kOptionalStop, base_))) return true;
+      return wait_for_operator();
+    case EventKind::stop:
+    case EventKind::block_end:
+      return wait_for_operator();
+    case EventKind::error:
+      raise(cycle::alarm::kProgramError, e, e.code, 0.0, c);
+      leave(ProcessState::stopped_by_alarm, c);
+      return true;
+    case EventKind::end:
+      if (!manual_data_) stop_spindles(c);  // a typed block leaves them as it set them
+      leave(ProcessState::ended, c);
+      return true;
+  }
+  return true;
+}
+
+bool Process::handshake(HandshakeWord word, std::int32_t code, double value, const Event& e,
+                        cycle::ProcessContext& c) noexcept {
+  constexpr image::AlarmNumber kTimeouts[] = {cycle::alarm::kMAckTimeout, cycle::alarm::kSAckTimeout,
+                                              cycle::alarm::kTAckTimeout, cycle::alarm::kHAckTimeout};
+  if (stage_ == Stage::entered) {
+    handshake_.begin(word, code, value, config_.handshake_timeout_s);
+    stage_ = Stage::handshaking;
+    state_ = ProcessState::waiting;
+  }
+  switch (handshake_.step(c.image, base_)) {
+    case Handshake::State::done:
+      return true;
+    case Handshake::State::unknown:
+      raise(cycle::alarm::kUnknownM, e, code, 0.0, c);
+      return true;
+    case Handshake::State::timed_out:
+      raise(kTimeouts[static_cast<int>(word)], e, word == HandshakeWord::s ? value : code,
+            config_.handshake_timeout_s, c);
+      leave(ProcessState::stopped_by_alarm, c);
+      return true;
+    case Handshake::State::idle:
+    case Handshake::State::waiting:
+      break;
+  }
+  return false;
+}
+
+bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
+  if (e.number >= c.spindles.size()) return true;
+  axis::Spindle& spindle = c.spindles[e.number];
+  if (stage_ == Stage::entered) {
+    if (e.flag) {
+      surface_speed_ = e.value > 0.0 ? e.value : surface_speed_;
+      surface_limit_ = e.limit;
+    } else if (e.value > 0.0) {
+      surface_speed_ = 0.0;
+    }
+    if (e.mode == program::SpindleMode::cw || e.mode == program::SpindleMode::ccw) surface_mode_ = e.mode;
+    const axis::SpindleMode mode =
+        e.mode == program::SpindleMode::keep ? spindle.mode() : spindle_mode(e.mode);
+    const double rpm = e.flag || e.value <= 0.0 ? spindle.ordered_rpm() : e.value;
+    spindle.order(mode, rpm);
+    surface_speed(c);
+    if (e.value <= 0.0 || spindle.ordered_rpm() == last_speed_) return true;
+    last_speed_ = spindle.ordered_rpm();
+  }
+  return handshake(HandshakeWord::s, 0, last_speed_, e, c);
+}
+
+void Process::stop_spindles(cycle::ProcessContext& c) noexcept {
+  for (axis::Spindle& spindle : c.spindles) spindle.order(axis::SpindleMode::stop, 0.0);
+}
+
+void Process::surface_speed(cycle::ProcessContext& c) noexcept {
+  if (surface_speed_ <= 0.0 || config_.axes.surface_speed_axis < 0 || c.spindles.empty()) return;
+  axis::Spindle& spindle = c.spindles[0];
+  const double radius = std::max(
+      std::abs(c.axes[static_cast<std::size_t>(config_.axes.surface_speed_axis)].setpoint().x), 1e-3);
+  double rpm = surface_speed_ * 1000.0 / (2.0 * std::numbers::pi * radius);
+  if (surface_limit_ > 0.0) rpm = std::min(rpm, surface_limit_);
+  spindle.order(spindle.mode(), rpm);
+}
+
+}  // namespace servogate::channel

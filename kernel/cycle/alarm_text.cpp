@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
+#include "kernel/cycle/alarms.hpp"
+
+namespace servogate::cycle {
+
+using image::AlarmRecord;
+using text::Language;
+
+namespace {
+
+constexpr std::string_view kDriveStates[][2] = {{"offline", "нет связи"},
+                                                {"not ready to switch on", "не готов к включению"},
+                                                {"switch on disabled", "включение запрещено"},
+                                                {"ready to switch on", "готов к включению"},
+                                                {"switched on", "включён"},
+                                                {"operation enabled", "работа разрешена"},
+                                                {"quick stop active", "быстрый останов"},
+                                                {"fault reaction active", "реакция на аварию"},
+                                                {"fault", "авария"}};
+constexpr int kStateCount = static_cast<int>(std::size(kDriveStates));
+
+/// detail1 of an overrun: 0 the thread woke up late, n the phase n - 1 of the cycle before (cycle::Phase).
+constexpr std::string_view kLatePhases[][2] = {
+    {"waking up (the computer was busy elsewhere)", "пробуждение (компьютер был занят другим)"},
+    {"receiving", "приём"},
+    {"PLC", "ПЛК"},
+    {"interpolation", "интерполяция"},
+    {"axes", "оси"},
+    {"sending", "передача"},
+    {"publishing", "публикация снимков"}};
+
+std::string_view phase_words(int phase, Language language) {
+  return phase >= 0 && phase < static_cast<int>(std::size(kLatePhases))
+             ? kLatePhases[phase][language == Language::russian]
+             : "?";
+}
+
+std::string_view state_words(int state, Language language) {
+  return state >= 0 && state < kStateCount ? kDriveStates[state][language == Language::russian] : "?";
+}
+
+std::string hex(unsigned value, int digits) {
+  char buffer[16];
+  std::snprintf(buffer, sizeof buffer, "0x%0*X", digits, value);
+  return buffer;
+}
+
+std::string name_at(const std::vector<std::string>& names, int index) {
+  return index >= 0 && index < std::ssize(names) ? names[static_cast<std::size_t>(index)]
+                                                 : std::to_string(index);
+}
+
+/// The figures of these alarms are lengths or angles of the axis.
+bool figures_are_lengths(image::AlarmNumber n) {
+  using namespace axis::alarm;
+  return (n >= kFollowingError && n <= kSetpointStep) ||
+         (n >= kHomingSwitchNotFound && n <= kHomingIndexNotFound) || n == kHomingLimitAgain ||
+         n == kHomingInterrupted || n == kHomingIndexNearEdge || n == alarm::kLeavesTravel;
+}
+
+/// State of CiA 402-2, table "state coding" of the status word; -1: no valid one.
+int state_of(std::uint16_t statusword) {
+  switch (statusword & 0x4F) {
+    case 0x00:
+      return 1;
+    case 0x40:
+      return 2;
+    case 0x0F:
+      return 7;
+    case 0x08:
+      return 8;
+    default:
+      break;
+  }
+  switch (statusword & 0x6F) {
+    case 0x21:
+      return 3;
+    case 0x23:
+      return 4;
+    case 0x27:
+      return 5;
+    case 0x07:
+      return 6;
+    default:
+      return -1;
+  }
+}
+
+std::string where(const AlarmRecord& r, const AlarmNames& names) {
+  if (r.number >= 3000 && r.number < 4000) return name_at(names.sources, r.segment >= 0 ? r.segment : r.node);
+  if (r.node >= 0) return std::to_string(r.node);
+  return name_at(names.segments, r.segment);
+}
+
+std::string axis_name(const AlarmRecord& r, const AlarmNames& names) {
+  const bool spindle = r.number >= 1200 && r.number < 1300;
+  if (spindle) return r.axis > 0 ? "S" + std::to_string(r.axis + 1) : "S";
+  return r.axis < 0 ? "-" : name_at(names.axes, r.axis);
+}
+
+std::string error_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
+  const bool in_value = r.number == axis::alarm::kSpindleDriveFault && r.error_code == 0;
+  const auto code = in_value ? static_cast<std::uint16_t>(r.value) : r.error_code;
+  std::string out = hex(code, 4);
+  const std::string words =
+      names.error_text ? names.error_text(r.axis, r.node, code, language) : std::string();
+  return words.empty() ? out : out + " (" + words + ")";
+}
+
+std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names, Language language) {
+  const std::string unit = !figures_are_lengths(r.number) ? ""
+                           : r.axis >= 0 && r.axis < std::ssize(names.units)
+                               ? " " + names.units[static_cast<std::size_t>(r.axis)]
+                               : (language == Language::russian ? " мм" : " mm");
+  auto figure = [&](double v) { return text::number(v, 4) + unit; };
+  std::vector<std::string> out = {axis_name(r, names),
+                                  figure(r.value),
+                                  figure(r.limit),
+                                  where(r, names),
+                                  statusword_text(r.statusword, language),
+                                  error_words(r, names, language),
+                                  figure(r.detail1),
+                                  text::number(r.detail2, 1),
+                                  hex(r.object_index, 4) + ":" + hex(r.object_subindex, 2).substr(2),
+                                  std::to_string(r.line)};
+  if (r.number == axis::alarm::kDriveRefuses) {
+    out[1] = state_words(static_cast<int>(r.value), language);
+    out[2] = state_words(static_cast<int>(r.limit), language);
+  }
+  if (r.number == alarm::kOverrunLimit) out[6] = phase_words(static_cast<int>(r.detail1), language);
+  if (r.number == alarm::kForeignFrame) out[8] = hex(static_cast<unsigned>(r.value), 3);
+  return out;
+}
+
+}  // namespace
+
+std::string statusword_text(std::uint16_t statusword, Language language) {
+  const bool russian = language == Language::russian;
+  std::string out = hex(statusword, 4) + " ";
+  const int state = state_of(statusword);
+  out += state < 0 ? (russian ? "недопустимое состояние" : "no valid state")
+                   : std::string(state_words(state, language));
+  if (statusword & 0x0080) out += russian ? ", предупреждение" : ", warning";
+  if (statusword & 0x0800) out += russian ? ", внутреннее ограничение" : ", internal limit";
+  if (state >= 3 && state <= 5 && !(statusword & 0x0010))
+    out += russian ? ", нет силового напряжения" : ", no main voltage";
+  return out;
+}
+
+std::string render(const AlarmRecord& record, const AlarmNames& names, Language language) {
+  if (record.number == alarm::kExternalAlarm && names.external_text) {
+    std::string own = names.external_text(static_cast<int>(record.value), language);
+    if (!own.empty()) return own;
+  }
+  const AlarmRow* row = find_alarm(record.number);
+  if (row == nullptr) return "alarm " + std::to_string(record.number);
+  return text::render(row->text, arguments(record, names, language), language);
+}
+
+std::string render_remedy(const AlarmRecord& record, const AlarmNames& names, Language language) {
+  const AlarmRow* row = find_alarm(record.number);
+  if (row == nullptr) return {};
+  const text::Entry remedy{row->text.id, row->remedy_en, row->remedy_ru};
+  return text::render(remedy, arguments(record, names, language), language);
+}
+
+}  // namespace servogate::cycle

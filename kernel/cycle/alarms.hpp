@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/process_image.hpp"
+#include "firmware_if/text/finding.hpp"
+#include "kernel/cycle/alarm_table.hpp"
+
+namespace servogate::cycle {
+
+/// Alarms as a reader outside the cycle sees them, oldest first. Trivially copyable.
+struct AlarmSnapshot {
+  static constexpr int kCapacity = 64;
+  int count = 0;
+  std::uint32_t raised = 0;   ///< records made since the start
+  std::uint32_t dropped = 0;  ///< records for which there was no room
+  image::Reaction reaction = image::Reaction::none;
+  std::array<image::AlarmRecord, kCapacity> records{};
+};
+
+/// Bounded store of the alarms. Written by the cycle only. The first fault is flagged, and what follows while
+/// the machine reacts to it is its consequence. Records stay until the operator's reset and their reset
+/// condition.
+class AlarmList {
+ public:
+  static constexpr int kCapacity = 256;
+
+  /// Stores a fault. From `record` are taken: number, axis, node and all that describes the place and the
+  /// figures; reaction where it is stronger than the table's. Sequence, first fault, cycle and time are set
+  /// here. The same fault (number, axis, node, segment, process, object) while active is not stored twice.
+  /// Returns the sequence. real-time safe.
+  std::uint32_t raise(const image::AlarmRecord& record, const image::CycleTime& now) noexcept;
+  /// Ends an active alarm that goes by itself (ResetCondition::by_itself); others stay. real-time safe.
+  void cause_gone(image::AlarmNumber number, int axis = -1, int node = -1, int segment = -1) noexcept;
+  /// To be told in every cycle: the machine is at rest. A quarter of a second of rest ends the reaction (at 1
+  /// ms; 250 cycles), the next fault is then a first fault again. real-time safe.
+  void note_rest(bool at_rest) noexcept;
+  /// The operator's reset. `still_present(record)` says whether the cause is there; asked only for those
+  /// whose condition is that it has gone. Returns how many stay active. real-time safe if `still_present` is.
+  template <typename Present>
+  int reset(Present&& still_present) noexcept {
+    for (int i = 0; i < stored_; ++i) {
+      image::AlarmRecord& r = records_[static_cast<std::size_t>(i)];
+      if (r.active && (!waits_for_cause(r) || !still_present(static_cast<const image::AlarmRecord&>(r))))
+        r.active = false;
+    }
+    return after_reset();
+  }
+
+  /// The strongest reaction in force. real-time safe.
+  image::Reaction reaction() const noexcept { return reaction_; }
+  int active_count() const noexcept { return active_; }
+  /// The oldest active first fault, nullptr: none. Warnings only when there is no fault. real-time safe.
+  const image::AlarmRecord* first() const noexcept;
+  /// The same among the alarms of one process and those of the machine. real-time safe.
+  const image::AlarmRecord* first_of_process(int process) const noexcept;
+  bool active(image::AlarmNumber number, int axis = -1) const noexcept;
+  /// Writes NC.alarm, <axis>.alarm, MC.alarm and image.alarms_active. real-time safe.
+  void write_interface(image::ProcessImage& image) const noexcept;
+  /// Active alarms (the oldest 64) into `out`. real-time safe.
+  void snapshot(AlarmSnapshot& out) const noexcept;
+  /// Everything kept, active or not, oldest first, for reports. Not real-time safe.
+  std::vector<image::AlarmRecord> history() const;
+
+ private:
+  static bool waits_for_cause(const image::AlarmRecord& r) noexcept;
+  int after_reset() noexcept;
+  void recount() noexcept;
+  int place_for_new() noexcept;
+
+  std::array<image::AlarmRecord, kCapacity> records_{};
+  int stored_ = 0;
+  int active_ = 0;
+  std::uint32_t sequence_ = 0;
+  std::uint32_t dropped_ = 0;
+  std::uint32_t group_ = 0;  ///< sequence of the first fault of the reaction under way, 0: none
+  int rest_cycles_ = 0;
+  image::Reaction dropped_reaction_ = image::Reaction::none;  ///< of records without room, until the reset
+  image::Reaction reaction_ = image::Reaction::none;
+};
+static_assert(std::is_trivially_copyable_v<AlarmSnapshot>);
+
+/// Names that a record holds only as numbers.
+struct AlarmNames {
+  std::vector<std::string> axes;
+  std::vector<std::string> units;  ///< of each axis; missing: mm
+  std::vector<std::string> segments;
+  std::vector<std::string> sources;
+  /// Words of a drive's own error code, from its device file; empty result: only the number is shown.
+  std::function<std::string(int axis, int node, std::uint16_t code, text::Language)> error_text;
+  /// Text of an alarm that the PLC raises (number in `value`); may be empty.
+  std::function<std::string(int number, text::Language)> external_text;
+};
+
+/// Sentence of a record, e.g. `X: following error 1.24 mm, allowed 1 mm, at 103.2 mm/s and 71 % torque`.
+/// Not real-time safe.
+std::string render(const image::AlarmRecord& record, const AlarmNames& names, text::Language language);
+/// What to do about it. Not real-time safe.
+std::string render_remedy(const image::AlarmRecord& record, const AlarmNames& names, text::Language language);
+/// A CiA 402 status word in words, e.g. `0x0218 fault, warning`. Not real-time safe.
+std::string statusword_text(std::uint16_t statusword, text::Language language);
+
+}  // namespace servogate::cycle

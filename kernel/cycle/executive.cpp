@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/cycle/executive.hpp"
+
+#include <readerwriterqueue/readerwriterqueue.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "kernel/cycle/executive_queues.hpp"
+#include "kernel/cycle/interface_places.hpp"
+
+namespace servogate::cycle {
+
+namespace {
+constexpr const char* kPhaseNames[kPhases] = {"receive", "logic", "interpolate", "axes", "send", "publish"};
+}
+
+const char* name(Phase phase) noexcept { return kPhaseNames[static_cast<int>(phase)]; }
+
+Cycle::Cycle(CycleParts parts) : parts_(std::move(parts)), queues_(std::make_unique<Queues>()) {
+  image_.axis_count = static_cast<int>(parts_.axes.size());
+  image_.spindle_count = static_cast<int>(parts_.spindles.size());
+  image_.process_count = static_cast<int>(parts_.processes.size());
+  image_.now.period_ns = parts_.period_ns;
+  image_.packets.resize(parts_.k_bytes, parts_.syvar_bytes);
+  axes_.resize(parts_.axes.size());
+  for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].configure(parts_.axes[i], static_cast<int>(i));
+  spindles_.resize(parts_.spindles.size());
+  for (std::size_t i = 0; i < spindles_.size(); ++i)
+    spindles_[i].configure(parts_.spindles[i], static_cast<int>(i));
+}
+
+Cycle::~Cycle() = default;
+
+bool Cycle::step() noexcept {
+  const image::Nanoseconds begin = parts_.stopwatch != nullptr ? parts_.stopwatch->now_ns() : 0;
+  stamp_ns_ = begin;
+  image_.now.number = count_;
+  image_.now.t_ns = count_ * parts_.period_ns;
+  if (!receive()) return false;
+  stamp(Phase::receive);
+  run_logic();
+  stamp(Phase::logic);
+  for (axis::Axis& a : axes_) a.read(image_);
+  for (axis::Spindle& s : spindles_) s.read(image_);
+  watch_machine();
+  handle_requests();
+  reaction_ = alarms_.reaction();
+  run_processes();
+  stamp(Phase::interpolate);
+  run_axes();
+  write_machine_places();
+  force();
+  stamp(Phase::axes);
+  if (source_ == nullptr)
+    for (image::CycleDevice* d : parts_.devices) d->send(image_);
+  stamp(Phase::send);
+  ++count_;
+  publish();
+  stamp(Phase::publish);
+  duration_ns_ = stamp_ns_ - begin;
+  return true;
+}
+
+void Cycle::stamp(Phase phase) noexcept {
+  if (parts_.stopwatch == nullptr) return;
+  const image::Nanoseconds now = parts_.stopwatch->now_ns();
+  phase_ns_[static_cast<std::size_t>(phase)] = now - stamp_ns_;
+  stamp_ns_ = now;
+}
+
+bool Cycle::receive() noexcept {
+  if (source_ != nullptr) {
+    if (!source_->give(inputs_)) return false;
+    apply(inputs_);
+  } else {
+    for (image::CycleDevice* d : parts_.devices) d->receive(image_);
+    capture(inputs_);
+    if (tap_ != nullptr) tap_->take(inputs_);
+  }
+  for (int i = 0; i < inputs_.notice_count; ++i) raise(inputs_.notices[static_cast<std::size_t>(i)]);
+  notices_.clear();
+  force();
+  return true;
+}
+
+void Cycle::capture(CycleInputs& in) noexcept {
+  in.number = count_;
+  for (std::size_t i = 0; i < axes_.size(); ++i) in.axes[i] = image_.axes[i].drive;
+  for (std::size_t i = 0; i < spindles_.size(); ++i) in.spindles[i] = image_.spindles[i].drive;
+  std::memcpy(in.packet_a.data(), image_.packets.data(image::Packet::a), in.packet_a.size());
+  in.sources = image_.sources;
+  for (std::size_t p = 0; p < parts_.processes.size(); ++p)
+    parts_.processes[p]->published(
+        std::span(in.visible).subspan(p * ProcessInCycle::kCrossingsEach, ProcessInCycle::kCrossingsEach));
+  in.request_count = 0;
+  while (in.request_count < kRequestsPerCycle && queues_->requests.try_dequeue(in.requests[in.request_count]))
+    ++in.request_count;
+  in.notice_count = 0;
+  for (const image::AlarmRecord& r : notices_.records()) in.notices[in.notice_count++] = r;
+}
+
+void Cycle::apply(const CycleInputs& in) noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) image_.axes[i].drive = in.axes[i];
+  for (std::size_t i = 0; i < spindles_.size(); ++i) image_.spindles[i].drive = in.spindles[i];
+  std::memcpy(image_.packets.data(image::Packet::a), in.packet_a.data(), in.packet_a.size());
+  image_.sources = in.sources;
+}
+
+void Cycle::run_logic() noexcept {
+  if (parts_.logic != nullptr) parts_.logic->scan(image_, notices_);
+  for (const image::AlarmRecord& r : notices_.records()) raise(r);
+  notices_.clear();
+}
+
+void Cycle::run_processes() noexcept {
+  homing_.step(axes_);
+  for (std::size_t p = 0; p < parts_.processes.size(); ++p) {
+    ProcessContext c = context(static_cast<int>(p));
+    parts_.processes[p]->interpolate(c);
+  }
+}
+
+ProcessContext Cycle::context(int process) noexcept {
+  return {image_,
+          axes_,
+          spindles_,
+          std::span<const std::uint64_t>(inputs_.visible)
+              .subspan(static_cast<std::size_t>(process) * ProcessInCycle::kCrossingsEach,
+                       ProcessInCycle::kCrossingsEach),
+          reaction_,
+          notices_};
+}
+
+void Cycle::run_axes() noexcept {
+  for (axis::Axis& a : axes_) {
+    a.react(reaction_);
+    a.command(image_);
+  }
+  for (axis::Spindle& s : spindles_) {
+    s.react(reaction_);
+    s.command(image_);
+  }
+  collect_events();
+}
+
+void Cycle::collect_events() noexcept {
+  for (const image::AlarmRecord& r : notices_.records()) raise(r);
+  notices_.clear();
+  const auto collect = [this](const axis::Events& events, int axis) {
+    for (const axis::Event& e : events) {
+      image::AlarmRecord r;
+      r.number = e.number;
+      r.axis = static_cast<std::int8_t>(axis);
+      r.limit = e.limit;
+      r.value = e.value;
+      r.detail1 = e.detail1;
+      r.detail2 = e.detail2;
+      if (axis >= 0) {
+        const image::DriveFeedback& drive = image_.axes[static_cast<std::size_t>(axis)].drive;
+        r.statusword = drive.statusword;
+        r.error_code = drive.error_code;
+      }
+      r.line = image_.processes[0].line;
+      raise(r);
+    }
+  };
+  bool rest = true;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    collect(axes_[i].events(), static_cast<int>(i));
+    rest = rest && axes_[i].standstill();
+  }
+  for (const axis::Spindle& s : spindles_) collect(s.events(), -1);
+  alarms_.note_rest(rest);
+  if (manual_held_ && rest && !homing_.running()) manual_held_ = false;
+}
+
+void Cycle::raise(const image::AlarmRecord& record) noexcept { alarms_.raise(record, image_.now); }
+
+void Cycle::watch_machine() noexcept {
+  if (parts_.estop_place && !image_.packets.bit(*parts_.estop_place))
+    image_.packets.set_bit(places::kEstopOk, false);
+  const bool estop_ok = image_.packets.bit(places::kEstopOk);
+  if (estop_seen_ok_ && !estop_ok) {
+    image::AlarmRecord r;
+    r.number = alarm::kEmergencyStop;
+    raise(r);
+  }
+  estop_seen_ok_ = estop_ok;
+  for (std::size_t p = 0; p < parts_.processes.size(); ++p) {
+    const auto number = static_cast<std::int16_t>(
+        image_.packets.number(image::at(places::kExternalAlarm, image::process_base(static_cast<int>(p)))));
+    if (number != external_alarm_[p] && number != 0) {
+      image::AlarmRecord r;
+      r.number = alarm::kExternalAlarm;
+      r.process = static_cast<std::int8_t>(p);
+      r.value = number;
+      raise(r);
+    }
+    external_alarm_[p] = number;
+  }
+  for (std::size_t s = 0; s < source_quality_.size(); ++s) {
+    const image::Quality q = image_.sources[s].quality;
+    if (parts_.watched_sources[s] && q != source_quality_[s] && q >= image::Quality::stale) {
+      image::AlarmRecord r;
+      r.number = q == image::Quality::stale ? alarm::kSourceStale : alarm::kSourceBad;
+      r.segment = static_cast<std::int16_t>(s);
+      r.value = static_cast<double>(image_.now.t_ns - image_.sources[s].updated_ns) / 1e6;
+      raise(r);
+    }
+    source_quality_[s] = q;
+  }
+}
+
+bool Cycle::still_present(const image::AlarmRecord& r) const noexcept {
+  switch (r.number) {
+    case alarm::kEmergencyStop:
+      return !image_.packets.bit(places::kEstopOk);
+    case alarm::kSourceStale:
+    case alarm::kSourceBad:
+      return r.segment >= 0 &&
+             image_.sources[static_cast<std::size_t>(r.segment)].quality >= image::Quality::stale;
+    case alarm::kExternalAlarm:
+      return r.process >= 0 &&
+             external_alarm_[static_cast<std::size_t>(r.process)] == static_cast<std::int16_t>(r.value);
+    default:
+      break;
+  }
+  if (r.axis >= 0) return axes_[static_cast<std::size_t>(r.axis)].present(r.number);
+  return std::any_of(spindles_.begin(), spindles_.end(),
+                     [&](const axis::Spindle& s) { return s.present(r.number); });
+}
+
+void Cycle::note_overrun(image::Nanoseconds late_ns) noexcept {
+  ++overruns_;
+  if (late_ns < 2 * parts_.period_ns) return;
+  image::AlarmRecord r;
+  r.number = alarm::kOverrunLimit;
+  r.limit = static_cast<double>(2 * parts_.period_ns) / 1e6;
+  r.value = static_cast<double>(late_ns) / 1e6;
+  if (duration_ns_ > parts_.period_ns)  // the cycle before was too long: name its longest phase
+    r.detail1 =
+        1.0 + static_cast<double>(std::max_element(phase_ns_.begin(), phase_ns_.end()) - phase_ns_.begin());
+  notices_.add(r);
+}
+
+void Cycle::write_machine_places() noexcept {
+  alarms_.write_interface(image_);
+  image::Packets& k = image_.packets;
+  k.set_bit(places::kControlAlive, (count_ / 50) % 2 != 0);
+  k.set_bit(places::kReady, reaction_ < image::Reaction::stop_at_block_end && k.bit(places::kEstopOk));
+  k.set_bit(places::kPowerRequest, power_request_);
+}
+
+void Cycle::force() noexcept {
+  for (int i = 0; i < forced_count_; ++i)
+    image_.packets.set_number(forced_[static_cast<std::size_t>(i)].place,
+                              forced_[static_cast<std::size_t>(i)].value);
+}
+
+void Cycle::publish() noexcept {
+  if (publish_every_ == 0 || count_ % publish_every_ != 0) return;
+  image_snapshot_.publish(image_);
+  alarms_.snapshot(alarm_copy_);
+  alarm_snapshot_.publish(alarm_copy_);
+  References references{};
+  for (std::size_t i = 0; i < axes_.size(); ++i) references[i] = axes_[i].reference_counts();
+  reference_snapshot_.publish(references);
+}
+
+}  // namespace servogate::cycle

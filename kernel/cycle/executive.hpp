@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "firmware_if/image/process_image.hpp"
+#include "firmware_if/image/request.hpp"
+#include "kernel/axis/axis.hpp"
+#include "kernel/axis/homing/homing_sequence.hpp"
+#include "kernel/axis/spindle.hpp"
+#include "kernel/cycle/alarms.hpp"
+#include "kernel/cycle/gate.hpp"
+#include "kernel/cycle/inputs.hpp"
+#include "kernel/cycle/participants.hpp"
+#include "kernel/cycle/snapshot.hpp"
+
+namespace servogate::cycle {
+
+/// The phases of a cycle, in their order; their times are kept apart so that a late cycle names its phase.
+enum class Phase : std::uint8_t { receive, logic, interpolate, axes, send, publish };
+inline constexpr int kPhases = 6;
+const char* name(Phase phase) noexcept;
+
+/// What a cycle is made of. All pointers outlive the cycle.
+struct CycleParts {
+  image::Nanoseconds period_ns = image::kMillisecond;
+  std::vector<image::CycleDevice*> devices;  ///< received from and sent to in this order
+  Logic* logic = nullptr;
+  std::vector<ProcessInCycle*> processes;  ///< in number order
+  std::vector<axis::AxisConfig> axes;
+  std::vector<axis::SpindleConfig> spindles;
+  std::uint32_t k_bytes = image::kPacketKDefaultSize;
+  std::uint32_t syvar_bytes = image::kSyvarDefaultSize;
+  const image::Clock* stopwatch = nullptr;  ///< measures the phases; nullptr: phases are not measured
+  std::array<bool, image::kMaxSources> watched_sources{};  ///< a stale or bad one is an alarm
+  std::optional<image::Place>
+      estop_place;  ///< emergency-stop chain: FALSE opens MC.estop_ok whatever the logic says
+  std::optional<image::Place> start_place;  ///< operator's start button: its rising edge asks for cycle start
+};
+
+/// Drive counts at each axis' home position, meaningful while the axis is homed.
+using References = std::array<std::int64_t, image::kMaxAxes>;
+
+/// One function of the image and the clock: step() takes in what the buses brought, runs logic, processes and
+/// axes, and sends the commands (docs/architecture.md, rule 1). The real-time thread calls it at absolute
+/// times; tests and virtual time call it in a plain loop.
+///
+/// Thread contract: construction, attach_*() and history() outside the running cycle; step() on one thread
+/// only; post(), take_answer() on one other thread (or under the caller's lock); read() on any.
+class Cycle {
+ public:
+  explicit Cycle(CycleParts parts);
+  ~Cycle();
+  Cycle(const Cycle&) = delete;
+  Cycle& operator=(const Cycle&) = delete;
+
+  /// One cycle at its nominal time. real-time safe. False: a replayed record has ended, nothing was done.
+  bool step() noexcept;
+
+  /// Posts a request; false: the queue is full. Answers come in order. real-time safe.
+  bool post(const image::Request& request) noexcept;
+  /// Takes the oldest answer. real-time safe.
+  bool take_answer(image::Answer& answer) noexcept;
+  /// Copies the newest published image and alarms. Not for the cycle.
+  void read(image::ProcessImage& image) const noexcept { image_snapshot_.read(image); }
+  void read(AlarmSnapshot& alarms) const noexcept { alarm_snapshot_.read(alarms); }
+  void read(References& references) const noexcept { reference_snapshot_.read(references); }
+  /// Publishes snapshots every `cycles` cycles; 0: never (a virtual run whose owner looks at image() itself).
+  void publish_every(int cycles) noexcept { publish_every_ = cycles; }
+
+  /// Where devices and the gateway report faults from inside receive().
+  Notices& notices() noexcept { return notices_; }
+  /// Hands every cycle's inputs to a tap (record), or takes them from a source (replay) instead of the
+  /// devices.
+  void attach(InputTap* tap) noexcept { tap_ = tap; }
+  void attach(InputSource* source) noexcept { source_ = source; }
+
+  /// The image as the last step() left it; only for the thread that steps.
+  const image::ProcessImage& image() const noexcept { return image_; }
+  /// For composition before the first step (initial values of simulated inputs, retained words).
+  image::ProcessImage& initial_image() noexcept { return image_; }
+  const AlarmList& alarms() const noexcept { return alarms_; }
+  std::span<const axis::Axis> axes() const noexcept { return axes_; }
+  /// Takes over a kept reference before the first step.
+  void set_reference(int axis, std::int64_t counts) noexcept {
+    axes_[static_cast<std::size_t>(axis)].set_reference(counts);
+  }
+  bool homing_failed() const noexcept { return homing_.state() == axis::HomingSequence::State::failed; }
+  const std::array<image::Nanoseconds, kPhases>& phase_ns() const noexcept { return phase_ns_; }
+  image::Nanoseconds duration_ns() const noexcept { return duration_ns_; }
+  /// Number of cycles done.
+  std::int64_t count() const noexcept { return count_; }
+  image::Nanoseconds period_ns() const noexcept { return parts_.period_ns; }
+  /// The owner of the loop reports a cycle that began late; past a limit this is an alarm. real-time safe.
+  void note_overrun(image::Nanoseconds late_ns) noexcept;
+
+ private:
+  struct Queues;
+  struct Forced {
+    image::Place place;
+    double value = 0.0;
+  };
+
+  bool receive() noexcept;
+  void capture(CycleInputs& in) noexcept;
+  void apply(const CycleInputs& in) noexcept;
+  void run_logic() noexcept;
+  void watch_machine() noexcept;
+  void handle_requests() noexcept;
+  void handle_plc_requests() noexcept;
+  image::Answer handle(const image::Request& request) noexcept;
+  Refusal carry_out(const image::Request& request) noexcept;
+  void stop_manual() noexcept;
+  void run_processes() noexcept;
+  void run_axes() noexcept;
+  void collect_events() noexcept;
+  void write_machine_places() noexcept;
+  void force() noexcept;
+  void publish() noexcept;
+  ProcessContext context(int process) noexcept;
+  void raise(const image::AlarmRecord& record) noexcept;
+  bool still_present(const image::AlarmRecord& record) const noexcept;
+  void stamp(Phase phase) noexcept;
+
+  CycleParts parts_;
+  image::ProcessImage image_;
+  std::vector<axis::Axis> axes_;
+  std::vector<axis::Spindle> spindles_;
+  axis::HomingSequence homing_;
+  AlarmList alarms_;
+  Notices notices_;
+  CycleInputs inputs_;
+  InputTap* tap_ = nullptr;
+  InputSource* source_ = nullptr;
+  std::unique_ptr<Queues> queues_;
+  Snapshot<image::ProcessImage> image_snapshot_;
+  Snapshot<AlarmSnapshot> alarm_snapshot_;
+  Snapshot<References> reference_snapshot_;
+  AlarmSnapshot alarm_copy_;
+  int publish_every_ = 0;
+  std::array<Forced, 64> forced_{};
+  int forced_count_ = 0;
+
+  image::Reaction reaction_ = image::Reaction::none;
+  bool power_request_ = false;
+  bool estop_seen_ok_ = false;
+  bool start_pressed_ = false;
+  bool manual_held_ = false;
+  image::Asker holder_ = image::Asker::command_line;
+  std::array<std::uint8_t, image::kMaxProcesses> plc_edges_{};
+  std::array<std::int8_t, image::kMaxAxes> plc_jogs_{};
+  std::array<std::int16_t, image::kMaxProcesses> external_alarm_{};
+  std::array<image::Quality, image::kMaxSources> source_quality_{};
+  std::uint32_t overruns_ = 0;
+
+  std::int64_t count_ = 0;
+  std::array<image::Nanoseconds, kPhases> phase_ns_{};
+  image::Nanoseconds duration_ns_ = 0;
+  image::Nanoseconds stamp_ns_ = 0;
+};
+
+}  // namespace servogate::cycle

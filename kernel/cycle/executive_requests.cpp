@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "kernel/cycle/executive.hpp"
+#include "kernel/cycle/executive_queues.hpp"
+#include "kernel/cycle/interface_places.hpp"
+
+namespace servogate::cycle {
+
+using image::Request;
+using image::RequestKind;
+
+bool Cycle::post(const Request& request) noexcept { return queues_->requests.try_enqueue(request); }
+bool Cycle::take_answer(image::Answer& answer) noexcept { return queues_->answers.try_dequeue(answer); }
+
+void Cycle::handle_requests() noexcept {
+  for (int i = 0; i < inputs_.request_count; ++i) {
+    const image::Answer answer = handle(inputs_.requests[static_cast<std::size_t>(i)]);
+    queues_->answers.try_enqueue(answer);
+  }
+  handle_plc_requests();
+}
+
+image::Answer Cycle::handle(const Request& request) noexcept {
+  GateContext context;
+  context.image = &image_;
+  context.axes = axes_;
+  context.reaction = alarms_.reaction();
+  if (const image::AlarmRecord* first = alarms_.first(); first != nullptr)
+    context.first_alarm = first->number;
+  const auto process = static_cast<std::size_t>(request.process);
+  context.program_loaded = process < parts_.processes.size() && parts_.processes[process]->loaded();
+  context.homing_runs = homing_.running();
+  context.manual_held = manual_held_;
+  context.holder = holder_;
+  image::Answer answer = decide(request, context);
+  if (answer.refusal == 0) answer.refusal = static_cast<std::uint16_t>(carry_out(request));
+  return answer;
+}
+
+// What the gate cannot know (an axis not yet quite at rest) makes a late refusal.
+Refusal Cycle::carry_out(const Request& request) noexcept {
+  Refusal refusal = Refusal::none;
+  const auto axis = static_cast<std::size_t>(request.axis < 0 ? 0 : request.axis);
+  const auto hold_manual = [&] {
+    manual_held_ = true;
+    holder_ = request.asker;
+  };
+  switch (request.kind) {
+    case RequestKind::none:
+      break;
+    case RequestKind::power:
+      power_request_ = request.value != 0.0;
+      for (axis::Axis& a : axes_) a.request_power(power_request_);
+      break;
+    case RequestKind::home:
+      if (homing_.start(axes_, homing_mask(request, axes_.size())))
+        hold_manual();
+      else
+        refusal = Refusal::axis_moves;
+      break;
+    case RequestKind::jog_increment:
+      if (axes_[axis].jog_increment(request.value))
+        hold_manual();
+      else
+        refusal = Refusal::axis_moves;
+      break;
+    case RequestKind::jog_continuous:
+      if (axes_[axis].jog_continuous(request.value < 0.0 ? -1 : 1, image_.now.t_ns))
+        hold_manual();
+      else
+        refusal = Refusal::axis_moves;
+      break;
+    case RequestKind::keep_alive:
+      for (axis::Axis& a : axes_) a.keep_alive(image_.now.t_ns);
+      break;
+    case RequestKind::jog_stop:
+      for (std::size_t i = 0; i < axes_.size(); ++i)
+        if (request.axis < 0 || i == axis) axes_[i].jog_stop();
+      break;
+    case RequestKind::quick_stop: {
+      image::AlarmRecord r;
+      r.number = alarm::kOperatorQuickStop;
+      raise(r);
+      break;
+    }
+    case RequestKind::reset:
+      stop_manual();
+      [[fallthrough]];
+    case RequestKind::acknowledge:
+      for (axis::Axis& a : axes_) a.reset();
+      for (axis::Spindle& s : spindles_) s.reset();
+      alarms_.reset([this](const image::AlarmRecord& r) { return still_present(r); });
+      if (request.kind == RequestKind::reset)
+        for (std::size_t p = 0; p < parts_.processes.size(); ++p) {
+          ProcessContext c = context(static_cast<int>(p));
+          parts_.processes[p]->order(request, c);
+        }
+      break;
+    case RequestKind::set_place:
+    case RequestKind::force:
+    case RequestKind::release_force: {
+      const image::Place place{static_cast<image::Packet>(request.packet),
+                               static_cast<image::Format>(request.format), request.index, request.length};
+      const auto end = forced_.begin() + forced_count_;
+      const auto found =
+          std::find_if(forced_.begin(), end, [&](const Forced& f) { return f.place == place; });
+      if (request.kind == RequestKind::set_place) {
+        image_.packets.set_number(place, request.value);
+      } else if (request.kind == RequestKind::release_force) {
+        if (found != end) *found = forced_[static_cast<std::size_t>(--forced_count_)];
+      } else if (found != end) {
+        found->value = request.value;
+      } else if (forced_count_ < static_cast<int>(forced_.size())) {
+        forced_[static_cast<std::size_t>(forced_count_++)] = {place, request.value};
+      }
+      break;
+    }
+    case RequestKind::stop:
+      stop_manual();
+      [[fallthrough]];
+    case RequestKind::zero:
+    case RequestKind::mode:
+    case RequestKind::start:
+    case RequestKind::step:
+    case RequestKind::hold:
+    case RequestKind::resume:
+    case RequestKind::override_feed: {
+      ProcessContext c = context(request.process);
+      if (!parts_.processes[static_cast<std::size_t>(request.process)]->order(request, c))
+        refusal = Refusal::axis_moves;
+      break;
+    }
+  }
+  return refusal;
+}
+
+void Cycle::stop_manual() noexcept {
+  homing_.abort(axes_);
+  for (axis::Axis& a : axes_)
+    if (a.owner() == image::AxisOwner::manual || a.owner() == image::AxisOwner::homing) a.stop();
+}
+
+void Cycle::handle_plc_requests() noexcept {
+  const bool pressed = parts_.start_place && image_.packets.bit(*parts_.start_place);
+  if (pressed && !start_pressed_) {
+    Request request;
+    request.asker = image::Asker::pendant;
+    request.kind = RequestKind::start;
+    handle(request);
+  }
+  start_pressed_ = pressed;
+  for (std::size_t p = 0; p < parts_.processes.size(); ++p) {
+    const std::uint32_t base = image::process_base(static_cast<int>(p));
+    const bool start = image_.packets.bit(image::at(places::kStart, base));
+    const bool reset = image_.packets.bit(image::at(places::kReset, base));
+    const auto now = static_cast<std::uint8_t>((start ? 1 : 0) | (reset ? 2 : 0));
+    const auto rising = static_cast<std::uint8_t>(now & ~plc_edges_[p]);
+    plc_edges_[p] = now;
+    Request request;
+    request.asker = image::Asker::plc;
+    request.process = static_cast<std::int8_t>(p);
+    if ((rising & 1) != 0) {
+      request.kind = RequestKind::start;
+      handle(request);
+    }
+    if ((rising & 2) != 0) {
+      request.kind = RequestKind::reset;
+      handle(request);
+    }
+  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const auto wish = static_cast<std::int8_t>(axes_[i].plc_jog());
+    Request request;
+    request.asker = image::Asker::plc;
+    request.axis = static_cast<std::int8_t>(i);
+    if (wish != plc_jogs_[i]) {
+      request.kind = wish == 0 ? RequestKind::jog_stop : RequestKind::jog_continuous;
+      request.value = wish;
+      handle(request);
+    } else if (wish != 0) {
+      axes_[i].keep_alive(image_.now.t_ns);
+    }
+    plc_jogs_[i] = wish;
+  }
+}
+
+}  // namespace servogate::cycle

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/cycle/gate.hpp"
+
+#include <cmath>
+
+#include "firmware_if/image/interface_map.hpp"
+#include "kernel/cycle/alarm_table.hpp"
+
+namespace servogate::cycle {
+
+using axis::Axis;
+using image::Answer;
+using image::Asker;
+using image::AxisOwner;
+using image::Mode;
+using image::ProcessState;
+using image::Reaction;
+using image::Request;
+using image::RequestKind;
+
+namespace {
+
+constexpr std::uint32_t bit(RequestKind k) { return std::uint32_t{1} << static_cast<int>(k); }
+constexpr std::uint32_t kStops = bit(RequestKind::hold) | bit(RequestKind::stop) |
+                                 bit(RequestKind::quick_stop) | bit(RequestKind::jog_stop);
+constexpr std::uint32_t kJogs =
+    bit(RequestKind::jog_increment) | bit(RequestKind::jog_continuous) | bit(RequestKind::keep_alive);
+constexpr std::uint32_t kResets = bit(RequestKind::reset) | bit(RequestKind::acknowledge);
+constexpr std::uint32_t kProgram = bit(RequestKind::start) | bit(RequestKind::step) |
+                                   bit(RequestKind::resume) | bit(RequestKind::mode) |
+                                   bit(RequestKind::override_feed);
+constexpr std::uint32_t kPlaces =
+    bit(RequestKind::set_place) | bit(RequestKind::force) | bit(RequestKind::release_force);
+constexpr std::uint32_t kPanel = kStops | kJogs | kResets | kProgram | bit(RequestKind::power) |
+                                 bit(RequestKind::home) | bit(RequestKind::zero);
+
+/// Who may ask for what at all. Stops are everybody's right.
+constexpr std::uint32_t may_ask(Asker asker) noexcept {
+  switch (asker) {
+    case Asker::command_line:
+    case Asker::page:
+    case Asker::scenario:
+      return kPanel | kPlaces;
+    case Asker::pendant:
+      return kPanel;
+    case Asker::plc:
+      return kPanel & ~bit(RequestKind::zero);
+    case Asker::modbus:
+      return kStops | bit(RequestKind::set_place);
+    case Asker::program:
+      return kStops;
+    case Asker::bench:
+      return kStops | kJogs | kResets | kPlaces | bit(RequestKind::power) | bit(RequestKind::home);
+  }
+  return 0;
+}
+
+/// One decision under way: the first refusal stands.
+class Decision {
+ public:
+  Decision(const Request& request, const GateContext& context) noexcept : r_(request), c_(context) {
+    answer_.id = request.id;
+  }
+  Answer run() noexcept;
+
+ private:
+  bool refuse(Refusal why, int axis = -1, double value = 0.0, double limit = 0.0) noexcept {
+    answer_.refusal = static_cast<std::uint16_t>(why);
+    answer_.axis = static_cast<std::int8_t>(axis);
+    answer_.value = value;
+    answer_.limit = limit;
+    return false;
+  }
+  ProcessState state(int process) const noexcept {
+    return c_.image->processes[static_cast<std::size_t>(process)].state;
+  }
+  static bool busy(ProcessState s) noexcept {
+    return s == ProcessState::running || s == ProcessState::held || s == ProcessState::waiting;
+  }
+  bool axis_known() noexcept {
+    return (r_.axis >= 0 && r_.axis < std::ssize(c_.axes)) || refuse(Refusal::no_such_axis, -1, r_.axis);
+  }
+  bool process_known() noexcept {
+    return (r_.process >= 0 && r_.process < c_.image->process_count) ||
+           refuse(Refusal::no_such_process, -1, r_.process);
+  }
+  bool no_alarm(Reaction from) noexcept {
+    if (c_.reaction < from) return true;
+    if (c_.first_alarm == alarm::kEmergencyStop) return refuse(Refusal::emergency_stop);
+    return refuse(Refusal::alarm_active, -1, c_.first_alarm);
+  }
+  bool no_program() noexcept {
+    for (int p = 0; p < c_.image->process_count; ++p)
+      if (busy(state(p))) return refuse(Refusal::program_runs, -1, p);
+    return true;
+  }
+  bool no_homing() noexcept { return !c_.homing_runs || refuse(Refusal::homing_runs); }
+  bool not_held_by_another() noexcept {
+    return !c_.manual_held || c_.holder == r_.asker ||
+           refuse(Refusal::manual_held, -1, static_cast<double>(c_.holder));
+  }
+  bool ready(const Axis& a) noexcept {
+    if (!a.motion_permitted()) return refuse(Refusal::not_powered, a.index());
+    return a.feed_enabled() || refuse(Refusal::feed_not_enabled, a.index());
+  }
+  bool free(const Axis& a) noexcept {
+    const AxisOwner o = a.owner();
+    const bool own = (o == AxisOwner::plc && r_.asker == Asker::plc) ||
+                     (o == AxisOwner::bench && r_.asker == Asker::bench);
+    const bool others = o == AxisOwner::plc || o == AxisOwner::bench;
+    return !others || own || refuse(Refusal::axis_owned, a.index(), static_cast<double>(o));
+  }
+  bool all_at_rest() noexcept {
+    for (const Axis& a : c_.axes)
+      if (a.moving()) return refuse(Refusal::axis_moves, a.index());
+    return true;
+  }
+  bool power() noexcept;
+  bool home() noexcept;
+  bool jog() noexcept;
+  bool keep_alive() noexcept;
+  bool zero() noexcept;
+  bool mode() noexcept;
+  bool start() noexcept;
+  bool resume() noexcept;
+  bool place(bool write) noexcept;
+  bool decide_kind() noexcept;
+
+  const Request& r_;
+  const GateContext& c_;
+  Answer answer_;
+};
+
+Answer Decision::run() noexcept {
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::release_force;
+  if (!known)
+    refuse(Refusal::unknown_request);
+  else if ((may_ask(r_.asker) & bit(r_.kind)) == 0)
+    refuse(Refusal::asker_may_not, -1, static_cast<double>(r_.kind));
+  else if (!std::isfinite(r_.value))
+    refuse(Refusal::bad_value, -1, r_.value);
+  else if (process_known())
+    decide_kind();
+  return answer_;
+}
+
+bool Decision::decide_kind() noexcept {
+  switch (r_.kind) {
+    case RequestKind::power:
+      return power();
+    case RequestKind::home:
+      return home();
+    case RequestKind::jog_increment:
+    case RequestKind::jog_continuous:
+      return jog();
+    case RequestKind::keep_alive:
+      return keep_alive();
+    case RequestKind::jog_stop:
+      return r_.axis < 0 || axis_known();
+    case RequestKind::zero:
+      return zero();
+    case RequestKind::mode:
+      return mode();
+    case RequestKind::start:
+    case RequestKind::step:
+      return start();
+    case RequestKind::resume:
+      return resume();
+    case RequestKind::override_feed:
+      return (r_.value >= 0.0 && r_.value <= 1.5) || refuse(Refusal::bad_value, -1, r_.value, 1.5);
+    case RequestKind::set_place:
+      return place(true);
+    case RequestKind::force:
+    case RequestKind::release_force:
+      return place(false);
+    default:
+      return true;  // hold, stop, reset, quick stop, acknowledge: always
+  }
+}
+
+bool Decision::power() noexcept { return r_.value == 0.0 || no_alarm(Reaction::stop_on_path); }
+
+bool Decision::home() noexcept {
+  if (r_.axis != -1 && !axis_known()) return false;
+  const double all = std::ldexp(1.0, static_cast<int>(c_.axes.size())) - 1.0;
+  if (r_.value < 0.0 || r_.value > all || r_.value != std::floor(r_.value))
+    return refuse(Refusal::bad_value, -1, r_.value, all);
+  const std::uint32_t mask = homing_mask(r_, c_.axes.size());
+  const bool named = r_.axis >= 0 || r_.value != 0.0;
+  if (!no_alarm(Reaction::stop_on_path) || !no_program() || !no_homing() || !not_held_by_another())
+    return false;
+  for (const Axis& a : c_.axes) {
+    if ((mask >> a.index() & 1u) == 0) continue;
+    if (named && a.config().homing.method == axis::HomingMethod::none)
+      return refuse(Refusal::no_home_needed, a.index());
+    if (!ready(a) || !free(a)) return false;
+    if (!a.standstill()) return refuse(Refusal::axis_moves, a.index());
+  }
+  return true;
+}
+
+bool Decision::jog() noexcept {
+  if (!axis_known()) return false;
+  const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
+  const bool continuous = r_.kind == RequestKind::jog_continuous;
+  if (r_.value == 0.0 || (continuous && std::abs(r_.value) != 1.0))
+    return refuse(Refusal::bad_value, r_.axis, r_.value, 1.0);
+  if (!no_alarm(Reaction::stop_on_path) || !no_program() || !no_homing() || !not_held_by_another())
+    return false;
+  if (!ready(a) || !free(a)) return false;
+  const bool forward = r_.value > 0.0;
+  if (forward ? a.on_limit_plus() : a.on_limit_minus())
+    return refuse(Refusal::on_hard_limit, r_.axis, forward ? 1 : -1);
+  if (!a.homed() || !a.config().travel_limited) return true;
+  const double limit = forward ? a.config().travel_max : a.config().travel_min, x = a.setpoint().x;
+  const bool at_limit = forward ? x >= limit - 1e-9 : x <= limit + 1e-9;
+  return !at_limit || refuse(Refusal::at_soft_limit, r_.axis, x, limit);
+}
+
+bool Decision::keep_alive() noexcept { return not_held_by_another(); }
+
+bool Decision::zero() noexcept {
+  if (!axis_known() || !no_program()) return false;
+  const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
+  if (!a.homed()) return refuse(Refusal::not_homed, r_.axis);
+  return !a.moving() || refuse(Refusal::axis_moves, r_.axis);
+}
+
+bool Decision::mode() noexcept {
+  const bool valid =
+      r_.value >= 0.0 && r_.value <= static_cast<double>(Mode::home) && r_.value == std::floor(r_.value);
+  if (!valid) return refuse(Refusal::bad_value, -1, r_.value, static_cast<double>(Mode::home));
+  return no_program() && not_held_by_another();
+}
+
+bool Decision::start() noexcept {
+  const ProcessState s = state(r_.process);
+  // A hold, M00 and the end of a block in STEP go on by the same button.
+  if (s == ProcessState::held || s == ProcessState::waiting) return resume();
+  if (busy(s)) return refuse(Refusal::program_runs, -1, r_.process);
+  if (!c_.program_loaded) return refuse(Refusal::no_program);
+  if (!c_.start_permitted) return refuse(Refusal::start_not_permitted);
+  const Mode m = c_.image->processes[static_cast<std::size_t>(r_.process)].mode;
+  if (m >= Mode::manual) return refuse(Refusal::wrong_mode, -1, static_cast<double>(m));
+  if (!no_alarm(Reaction::stop_at_block_end) || !no_homing() || !not_held_by_another()) return false;
+  for (const Axis& a : c_.axes) {
+    if (!a.homed()) return refuse(Refusal::not_homed, a.index());
+    if (!a.motion_permitted()) return refuse(Refusal::not_powered, a.index());
+    if (!free(a)) return false;
+    if (a.owner() != AxisOwner::process && a.moving()) return refuse(Refusal::axis_moves, a.index());
+  }
+  return true;
+}
+
+bool Decision::resume() noexcept {
+  const ProcessState s = state(r_.process);
+  if (!busy(s)) return refuse(Refusal::program_does_not_run, -1, r_.process);
+  if (s == ProcessState::running) return refuse(Refusal::program_not_held, -1, r_.process);
+  return no_alarm(Reaction::stop_at_block_end) && no_homing() && not_held_by_another() && all_at_rest();
+}
+
+bool Decision::place(bool write) noexcept {
+  if (r_.packet > static_cast<int>(image::Packet::v) || r_.format > static_cast<int>(image::Format::ch))
+    return refuse(Refusal::bad_value, -1, r_.packet);
+  const image::Place p{static_cast<image::Packet>(r_.packet), static_cast<image::Format>(r_.format), r_.index,
+                       r_.length};
+  // In 64 bits: an index near the end of its range must not wrap round into the packet.
+  const std::uint64_t first =
+      p.format == image::Format::bl ? p.index / 8 : std::uint64_t{p.index} * image::format_size(p.format);
+  const std::uint64_t end = first + p.bytes();
+  const std::uint32_t size = c_.image->packets.size(p.packet);
+  if (end > size) return refuse(Refusal::place_outside, -1, static_cast<double>(first), size);
+  if (!write) return true;
+  constexpr std::uint32_t kInterfaceEnd = image::kMachineBase + 8;
+  const bool interface = p.packet == image::Packet::k && first < kInterfaceEnd && end > image::kInterfaceBase;
+  const bool signal = p.packet == image::Packet::a && r_.asker != Asker::scenario;
+  return !(interface || signal) || refuse(Refusal::place_not_writable, -1, static_cast<double>(first));
+}
+
+}  // namespace
+
+std::uint32_t homing_mask(const Request& request, std::size_t axes) noexcept {
+  if (request.axis >= 0) return 1u << request.axis;
+  return request.value > 0.0 ? static_cast<std::uint32_t>(request.value) : (1u << axes) - 1u;
+}
+
+Answer decide(const Request& request, const GateContext& context) noexcept {
+  return Decision(request, context).run();
+}
+
+bool moves(RequestKind kind) noexcept {
+  return ((kJogs | bit(RequestKind::home) | bit(RequestKind::start) | bit(RequestKind::step) |
+           bit(RequestKind::resume) | bit(RequestKind::power)) &
+          bit(kind)) != 0;
+}
+
+}  // namespace servogate::cycle

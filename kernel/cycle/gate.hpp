@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/process_image.hpp"
+#include "firmware_if/image/request.hpp"
+#include "firmware_if/text/finding.hpp"
+#include "kernel/axis/axis.hpp"
+
+namespace servogate::cycle {
+
+/// Why the gate refuses; image::Answer::refusal. `value` and `limit` of the answer mean what is said here.
+enum class Refusal : std::uint16_t {
+  none,
+  unknown_request,
+  asker_may_not,    ///< value: the request's kind
+  no_such_axis,     ///< value: what was asked for
+  no_such_process,  ///< value
+  bad_value,        ///< value; limit: the largest permitted one, 0 where none can be said
+  alarm_active,     ///< value: number of the first alarm
+  emergency_stop,
+  not_powered,       ///< axis: the drive is off or the brake still closed
+  not_homed,         ///< axis
+  feed_not_enabled,  ///< axis: its feed_enable is FALSE
+  program_runs,
+  program_does_not_run,
+  program_not_held,
+  no_program,
+  wrong_mode,  ///< value: the mode in force
+  homing_runs,
+  axis_owned,           ///< axis; value: image::AxisOwner
+  axis_moves,           ///< axis
+  manual_held,          ///< value: image::Asker that holds manual control
+  on_hard_limit,        ///< axis; value: +1 or -1
+  at_soft_limit,        ///< axis; limit: the travel limit, value: the position
+  no_home_needed,       ///< axis: needs no homing
+  place_not_writable,   ///< value: byte
+  place_outside,        ///< value: byte; limit: size of the packet
+  start_not_permitted,  ///< the place that permits starting is FALSE
+};
+
+/// What the gate knows of the machine at this moment, all of it by reference.
+struct GateContext {
+  const image::ProcessImage* image = nullptr;
+  std::span<const axis::Axis> axes;
+  image::Reaction reaction = image::Reaction::none;  ///< in force
+  image::AlarmNumber first_alarm = 0;
+  bool program_loaded = false;  ///< of the request's process
+  bool homing_runs = false;
+  bool manual_held = false;  ///< somebody holds manual control (jogs, or a pendant with its dead-man)
+  image::Asker holder = image::Asker::command_line;
+  bool start_permitted = true;
+};
+
+/// Axes that a `home` request names, as bits: the one of its axis; without one those of its value, or all of
+/// the machine's when that is 0. real-time safe.
+std::uint32_t homing_mask(const image::Request& request, std::size_t axes) noexcept;
+
+/// The one gate to motion: decides on a request, changes nothing. An accepted request (refusal 0) is carried
+/// out by the executive with plain calls to axes and channel. real-time safe.
+image::Answer decide(const image::Request& request, const GateContext& context) noexcept;
+
+/// The request begins or continues motion, or makes it possible. real-time safe.
+bool moves(image::RequestKind kind) noexcept;
+
+/// The sentence for a refusal, e.g. "X is not homed: run `servogate home X` first, or jog slowly". Empty for
+/// an accepted request. Not real-time safe.
+std::string render(const image::Answer& answer, const std::vector<std::string>& axis_letters,
+                   text::Language language);
+/// Table of the sentences, index = Refusal. Placeholders {0} axis, {1} value in words, {2} limit.
+std::span<const text::Entry> refusal_texts() noexcept;
+
+}  // namespace servogate::cycle

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iterator>
+
+#include "kernel/cycle/gate.hpp"
+
+namespace servogate::cycle {
+
+using text::Language;
+
+namespace {
+
+/// Placeholders: {0} axis, {1} value (in words where it names something), {2} limit.
+constexpr text::Entry kTexts[] = {
+    {"gate.accepted", "accepted", "принято"},
+    {"gate.unknown_request", "this request is not known", "неизвестный запрос"},
+    {"gate.asker_may_not", "whoever asks here may not ask for `{1}`", "отсюда запрос «{1}» не разрешён"},
+    {"gate.no_such_axis", "there is no axis number {1}", "нет оси с номером {1}"},
+    {"gate.no_such_process", "there is no process {1}", "нет процесса {1}"},
+    {"gate.bad_value", "the value {1} is not possible here (largest: {2})",
+     "значение {1} здесь недопустимо (наибольшее: {2})"},
+    {"gate.alarm_active", "alarm {1} is active: remove its cause and reset first",
+     "действует авария {1}: устраните причину и выполните сброс"},
+    {"gate.emergency_stop", "emergency stop: unlock it and reset first",
+     "аварийный останов: отпустите кнопку и выполните сброс"},
+    {"gate.not_powered", "{0} is not ready: switch the drives on first (or wait until the brake is open)",
+     "{0} не готова: сначала включите приводы (или дождитесь отпускания тормоза)"},
+    {"gate.not_homed", "{0} is not homed: run `servogate home {0}` first, or jog slowly",
+     "{0} не выведена в ноль: сначала выполните `servogate home {0}` или перемещайте её медленно"},
+    {"gate.feed_not_enabled", "{0}: the PLC does not permit the feed (its feed_enable is FALSE)",
+     "{0}: ПЛК не разрешает подачу (feed_enable = FALSE)"},
+    {"gate.program_runs", "a program runs: stop it first", "выполняется программа: сначала остановите её"},
+    {"gate.program_does_not_run", "no program runs", "программа не выполняется"},
+    {"gate.program_not_held", "the program is not held", "программа не приостановлена"},
+    {"gate.no_program", "no program is loaded: run `servogate load PROGRAM` first",
+     "программа не загружена: сначала выполните `servogate load PROGRAM`"},
+    {"gate.wrong_mode", "not possible in mode {1}", "невозможно в режиме {1}"},
+    {"gate.homing_runs", "homing is under way: wait or stop it first",
+     "идёт выход в ноль: дождитесь конца или остановите его"},
+    {"gate.axis_owned", "{0} belongs to {1}", "осью {0} владеет {1}"},
+    {"gate.axis_moves", "{0} moves: wait until it stands", "{0} движется: дождитесь останова"},
+    {"gate.manual_held", "{1} holds manual control", "ручным управлением владеет {1}"},
+    {"gate.on_hard_limit", "{0} is on its limit switch: only motion away from it is possible ({1} is not)",
+     "{0} на концевом выключателе: возможно движение только от него (не {1})"},
+    {"gate.at_soft_limit", "{0} is at its travel limit {2} already",
+     "{0} уже на границе зоны перемещения {2}"},
+    {"gate.no_home_needed", "{0} needs no homing", "{0} не требует выхода в ноль"},
+    {"gate.place_not_writable", "byte {1} belongs to inputs, PLC or control: only `force` may overwrite it",
+     "байт {1} принадлежит входам, ПЛК или ЧПУ: его может заменить только `force`"},
+    {"gate.place_outside", "byte {1} is outside the packet of {2} bytes",
+     "байт {1} вне пакета размером {2} байт"},
+    {"gate.start_not_permitted", "the machine does not permit the start", "станок не разрешает пуск"},
+};
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::start_not_permitted) + 1);
+
+constexpr std::string_view kAskers[][2] = {{"the command line", "командная строка"},
+                                           {"the page", "страница"},
+                                           {"the pendant", "выносной пульт"},
+                                           {"the PLC", "ПЛК"},
+                                           {"the scenario", "сценарий"},
+                                           {"Modbus", "Modbus"},
+                                           {"the program", "программа"},
+                                           {"the bench", "стенд"}};
+constexpr std::string_view kOwners[][2] = {
+    {"nobody", "никто"},        {"a program", "программа"}, {"manual control", "ручное управление"},
+    {"homing", "выход в ноль"}, {"the PLC", "ПЛК"},         {"the bench", "стенд"}};
+constexpr std::string_view kModes[][2] = {{"off", "выкл."}, {"MDI", "MDI"},   {"AUTO", "AUTO"},
+                                          {"STEP", "STEP"}, {"MANU", "MANU"}, {"MANJ", "MANJ"},
+                                          {"PROF", "PROF"}, {"HOME", "HOME"}};
+constexpr std::string_view kKinds[][2] = {{"none", "нет"},
+                                          {"power", "питание"},
+                                          {"home", "выход в ноль"},
+                                          {"jog", "перемещение"},
+                                          {"jog", "перемещение"},
+                                          {"keep-alive", "подтверждение"},
+                                          {"stop jogging", "останов перемещения"},
+                                          {"zero", "обнуление"},
+                                          {"mode", "режим"},
+                                          {"start", "пуск"},
+                                          {"step", "шаг"},
+                                          {"hold", "пауза"},
+                                          {"resume", "продолжение"},
+                                          {"stop", "останов"},
+                                          {"reset", "сброс"},
+                                          {"override", "коррекция подачи"},
+                                          {"quick stop", "быстрый останов"},
+                                          {"acknowledge", "квитирование"},
+                                          {"set a place", "запись в ячейку"},
+                                          {"force", "принудительное значение"},
+                                          {"release a force", "снятие принудительного значения"}};
+
+template <std::size_t N>
+std::string word(const std::string_view (&table)[N][2], double index, Language language) {
+  const bool inside = index >= 0.0 && index < static_cast<double>(N);
+  return inside ? std::string(table[static_cast<std::size_t>(index)][language == Language::russian])
+                : text::number(index);
+}
+
+std::string value_words(const image::Answer& answer, Language language) {
+  switch (static_cast<Refusal>(answer.refusal)) {
+    case Refusal::asker_may_not:
+      return word(kKinds, answer.value, language);
+    case Refusal::wrong_mode:
+      return word(kModes, answer.value, language);
+    case Refusal::axis_owned:
+      return word(kOwners, answer.value, language);
+    case Refusal::manual_held:
+      return word(kAskers, answer.value, language);
+    case Refusal::on_hard_limit:
+      return answer.value > 0.0 ? "+" : "-";
+    case Refusal::no_such_process:
+      return text::number(answer.value + 1);
+    default:
+      return text::number(answer.value, 4);
+  }
+}
+
+}  // namespace
+
+std::span<const text::Entry> refusal_texts() noexcept { return kTexts; }
+
+std::string render(const image::Answer& answer, const std::vector<std::string>& axis_letters,
+                   Language language) {
+  if (answer.refusal == 0) return {};
+  if (answer.refusal >= std::size(kTexts)) return "refusal " + std::to_string(answer.refusal);
+  const int a = answer.axis;
+  const std::string letter =
+      a >= 0 && a < std::ssize(axis_letters) ? axis_letters[static_cast<std::size_t>(a)] : std::to_string(a);
+  const std::vector<std::string> arguments = {letter, value_words(answer, language),
+                                              text::number(answer.limit, 4)};
+  return text::render(kTexts[answer.refusal], arguments, language);
+}
+
+}  // namespace servogate::cycle

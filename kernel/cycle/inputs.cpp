@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/cycle/inputs.hpp"
+
+#include <cstring>
+
+namespace servogate::cycle {
+
+namespace {
+
+void put_varint(std::vector<std::uint8_t>& out, std::uint64_t v) {
+  for (; v >= 0x80; v >>= 7) out.push_back(static_cast<std::uint8_t>(v | 0x80));
+  out.push_back(static_cast<std::uint8_t>(v));
+}
+
+void put_raw(std::vector<std::uint8_t>& out, const void* from, std::size_t bytes) {
+  const auto* p = static_cast<const std::uint8_t*>(from);
+  out.insert(out.end(), p, p + bytes);
+}
+
+template <typename T, std::size_t N>
+void put_changed(std::vector<std::uint8_t>& out, const std::array<T, N>& now, const std::array<T, N>& last) {
+  std::uint64_t mask = 0;
+  for (std::size_t i = 0; i < N; ++i)
+    if (std::memcmp(&now[i], &last[i], sizeof(T)) != 0) mask |= std::uint64_t{1} << i;
+  put_varint(out, mask);
+  for (std::size_t i = 0; i < N; ++i)
+    if (((mask >> i) & 1) != 0) put_raw(out, &now[i], sizeof(T));
+}
+
+}  // namespace
+
+void InputEncoder::append(const CycleInputs& in, std::vector<std::uint8_t>& out) {
+  put_varint(out, static_cast<std::uint64_t>(in.number - last_.number));
+  put_changed(out, in.axes, last_.axes);
+  put_changed(out, in.spindles, last_.spindles);
+  std::uint64_t changed = 0;
+  for (std::size_t i = 0; i < in.packet_a.size(); ++i) changed += in.packet_a[i] != last_.packet_a[i];
+  put_varint(out, changed);
+  for (std::size_t i = 0; changed != 0 && i < in.packet_a.size(); ++i)
+    if (in.packet_a[i] != last_.packet_a[i]) {
+      put_varint(out, i);
+      out.push_back(in.packet_a[i]);
+    }
+  put_changed(out, in.sources, last_.sources);
+  for (std::size_t i = 0; i < in.visible.size(); ++i) put_varint(out, in.visible[i] - last_.visible[i]);
+  out.push_back(in.request_count);
+  put_raw(out, in.requests.data(), sizeof(image::Request) * in.request_count);
+  out.push_back(in.notice_count);
+  put_raw(out, in.notices.data(), sizeof(image::AlarmRecord) * in.notice_count);
+  last_ = in;
+}
+
+std::uint64_t InputDecoder::varint() noexcept {
+  std::uint64_t v = 0;
+  for (int shift = 0; shift < 64; shift += 7) {
+    if (at_ >= bytes_.size()) break;
+    const std::uint8_t b = bytes_[at_++];
+    v |= static_cast<std::uint64_t>(b & 0x7f) << shift;
+    if ((b & 0x80) == 0) return v;
+  }
+  damaged_ = true;
+  return 0;
+}
+
+void InputDecoder::raw(void* to, std::size_t bytes) noexcept {
+  if (bytes_.size() - at_ < bytes) {
+    damaged_ = true;
+    at_ = bytes_.size();
+    return;
+  }
+  if (bytes != 0) std::memcpy(to, bytes_.data() + at_, bytes);
+  at_ += bytes;
+}
+
+bool InputDecoder::give(CycleInputs& in) noexcept {
+  if (damaged_ || at_ >= bytes_.size()) return false;
+  const auto changed = [&](auto& items) {
+    const std::uint64_t mask = varint();
+    for (std::size_t i = 0; i < items.size() && !damaged_; ++i)
+      if (((mask >> i) & 1) != 0) raw(&items[i], sizeof items[i]);
+  };
+  last_.number += static_cast<std::int64_t>(varint());
+  changed(last_.axes);
+  changed(last_.spindles);
+  for (std::uint64_t n = varint(); n > 0 && !damaged_; --n) {
+    const std::uint64_t i = varint();
+    std::uint8_t value = 0;
+    raw(&value, 1);
+    if (i < last_.packet_a.size())
+      last_.packet_a[i] = value;
+    else
+      damaged_ = true;
+  }
+  changed(last_.sources);
+  for (std::uint64_t& v : last_.visible) v += varint();
+  raw(&last_.request_count, 1);
+  if (last_.request_count > kRequestsPerCycle) damaged_ = true;
+  if (!damaged_) raw(last_.requests.data(), sizeof(image::Request) * last_.request_count);
+  raw(&last_.notice_count, 1);
+  if (last_.notice_count > kNoticesPerCycle) damaged_ = true;
+  if (!damaged_) raw(last_.notices.data(), sizeof(image::AlarmRecord) * last_.notice_count);
+  in = last_;
+  return !damaged_;
+}
+
+}  // namespace servogate::cycle

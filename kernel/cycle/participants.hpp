@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/process_image.hpp"
+#include "firmware_if/image/request.hpp"
+#include "kernel/axis/axis.hpp"
+#include "kernel/axis/spindle.hpp"
+#include "kernel/cycle/inputs.hpp"
+
+namespace servogate::cycle {
+
+/// Faults that somebody reports to the cycle; the executive makes alarms of them. Bounded. real-time safe.
+class Notices {
+ public:
+  /// Reports a fault; beyond kNoticesPerCycle in one cycle it is only counted.
+  void add(const image::AlarmRecord& record) noexcept {
+    if (count_ < kNoticesPerCycle)
+      records_[static_cast<std::size_t>(count_++)] = record;
+    else
+      ++lost_;
+  }
+  std::span<const image::AlarmRecord> records() const noexcept {
+    return {records_.data(), static_cast<std::size_t>(count_)};
+  }
+  void clear() noexcept { count_ = 0; }
+  std::uint32_t lost() const noexcept { return lost_; }
+
+ private:
+  std::array<image::AlarmRecord, kNoticesPerCycle> records_{};
+  int count_ = 0;
+  std::uint32_t lost_ = 0;
+};
+
+/// The machine's logic, called once a cycle between reading inputs and moving axes. Everything real-time
+/// safe.
+class Logic {
+ public:
+  virtual ~Logic() = default;
+  /// One scan on packets A and K; faults (budget, division by zero ...) go into `notices`.
+  virtual void scan(image::ProcessImage& image, Notices& notices) noexcept = 0;
+};
+
+/// What a process sees of the machine in one cycle.
+struct ProcessContext {
+  image::ProcessImage& image;
+  std::span<axis::Axis> axes;
+  std::span<axis::Spindle> spindles;
+  std::span<const std::uint64_t> visible;  ///< how far its own crossing queues may be read in this cycle
+  image::Reaction reaction;                ///< the strongest one in force
+  Notices& notices;
+};
+
+/// A part-program process as the cycle sees it. Everything real-time safe.
+class ProcessInCycle {
+ public:
+  static constexpr int kCrossingsEach = 3;
+  virtual ~ProcessInCycle() = default;
+  /// How far its crossing queues are filled at this moment, kCrossingsEach numbers that only rise.
+  virtual void published(std::span<std::uint64_t> counts) const noexcept = 0;
+  /// One cycle: handshakes, path, set-points of the axes that the process owns.
+  virtual void interpolate(ProcessContext& context) noexcept = 0;
+  /// Carries out a request that the gate has let pass (start, step, hold, resume, stop, reset, override,
+  /// mode).
+  /// False: it cannot start because an axis is not at rest or belongs to somebody else.
+  virtual bool order(const image::Request& request, ProcessContext& context) noexcept = 0;
+  /// A program is loaded and may be started.
+  virtual bool loaded() const noexcept = 0;
+};
+
+}  // namespace servogate::cycle

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "firmware_if/image/process_image.hpp"
+
+namespace servogate::path {
+
+inline constexpr int kMaxAxes = image::kMaxPathAxes;
+
+/// One value per path axis, index 0 to Config::axis_count - 1; the channel maps path axes to the machine's.
+/// mm for a linear axis, degrees for a rotary one. Places beyond axis_count are zero.
+using Vector = std::array<double, kMaxAxes>;
+
+/// What the set-point of one axis never exceeds: mm/s, mm/s2, mm/s3 (degrees for a rotary axis). All > 0.
+struct AxisLimits {
+  double velocity = 0.0;
+  double acceleration = 0.0;
+  double jerk = 0.0;
+};
+
+/// The machine as this room sees it.
+struct Config {
+  int axis_count = 3;  ///< 1 - kMaxAxes
+  std::array<AxisLimits, kMaxAxes> limits{};
+  std::array<bool, kMaxAxes> rotary{};
+  double period_s = 0.001;              ///< length of a cycle
+  double largest_override = 1.5;        ///< feed override never exceeds this ratio
+  std::uint32_t piece_capacity = 8192;  ///< look-ahead in pieces of geometry (about 0.8 kB each), >= 1024
+};
+
+/// Where an element comes from, carried to the set-point: for displays, alarms and traces.
+struct Tag {
+  std::int32_t line = 0;  ///< 1-based line of the file, 0: none
+  std::int32_t file = 0;
+  std::int32_t block = -1;  ///< N number
+  std::int16_t process = 0;
+  std::uint64_t command = 0;  ///< running number of the canonical command
+  bool operator==(const Tag&) const = default;
+};
+
+/// How the path goes on behind an element.
+enum class Continuation : std::uint8_t {
+  exact_stop,      ///< comes to rest in the end point
+  continuous,      ///< the corner is rounded within the tolerance
+  corner_limited,  ///< as continuous, and the corner speed obeys erf and max_angle as well (NC-110 G27)
+};
+
+struct Transition {
+  Continuation continuation = Continuation::exact_stop;
+  double tolerance = 0.0;      ///< mm: largest distance of set-point path and programmed path; 0: stop
+  double erf = 0.0;            ///< mm: form error that bounds the corner speed (corner_limited); 0: stop
+  double max_angle_deg = 180;  ///< a sharper change of direction stops (corner_limited), 0 - 180
+  bool confirm = false;        ///< an exact stop waits for Follower::release_stop() (in-position check)
+};
+
+/// One element of the programmed path, from where the one before ends.
+struct Element {
+  enum class Kind : std::uint8_t { line, arc, rapid };
+  Kind kind = Kind::line;
+  Vector to{};
+  /// arc only: about (center1, center2) in the plane of path axes axis1 and axis2, sweep + from axis1 to
+  /// axis2, whole turns included; all other axes move linearly with the angle (helix).
+  std::uint8_t axis1 = 0, axis2 = 1;
+  double center1 = 0.0, center2 = 0.0;
+  double sweep_deg = 0.0;
+  /// mm/s along the linear axes, degrees/s where only rotary axes move; > 0. A rapid ignores it and is as
+  /// fast as the axis limits; it always starts and ends with an exact stop.
+  double feed = 0.0;
+  Transition transition;
+  std::uint8_t limit_set = 0;  ///< reserved: rough, finish, thread
+  Tag tag;
+};
+
+}  // namespace servogate::path

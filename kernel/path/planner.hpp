@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <span>
+
+#include "kernel/path/track.hpp"
+
+namespace servogate::path {
+
+/// Turns programmed elements into geometry and speeds that can be driven, outside the cycle: rounds the
+/// corners, bounds each piece, looks ahead. One per process; one thread calls it. What it publishes depends
+/// on the sequence of calls of add, add_event, finish and restart only, never on when they are made. Not
+/// real-time safe.
+class Planner {
+ public:
+  Planner(const Config& config, Track& track);
+  ~Planner();
+  Planner(const Planner&) = delete;
+  Planner& operator=(const Planner&) = delete;
+
+  /// Forgets everything that is not published and goes on at `at`, where the follower stands at rest. First
+  /// call of every program, and the way on after Follower::stop().
+  void restart(const Vector& at);
+
+  /// Appends an element. False: it cannot be driven, last_flaw() says why, and nothing has changed.
+  bool add(const Element& element);
+  Flaw last_flaw() const;
+
+  /// The path comes to rest after the elements before; the follower reports the event and waits there until
+  /// Follower::release_event().
+  void add_event(std::uint32_t id, const Tag& tag);
+
+  /// Nothing more for now: what was added runs to rest at its end. add() may go on later.
+  void finish();
+
+  /// False while enough is planned ahead (two seconds, or as much as the track holds): call add() when true.
+  /// add() works all the same when false; it only costs memory.
+  bool wants_more() const;
+
+  /// Publishes what is planned and has room in the track. Call it after add() and regularly while
+  /// wants_more() is false. Bounded by the capacity of the track.
+  void work();
+
+  /// End of the elements added so far.
+  const Vector& position() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What a list of elements will do, found by planning and following it at once.
+struct Estimate {
+  double seconds = 0.0;
+  std::int64_t cycles = 0;
+  Vector lowest{}, highest{};  ///< extents of the set-points, start included
+  std::size_t flawed = 0;      ///< index + 1 of the first element that cannot be driven, 0: none
+  Flaw flaw = Flaw::none;
+};
+
+/// Time at a constant feed override and extents of a program from `start`. No in-position waiting is counted.
+/// Not real-time safe.
+Estimate estimate(const Config& config, const Vector& start, std::span<const Element> elements,
+                  double override_ratio = 1.0);
+
+}  // namespace servogate::path

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+
+#include "kernel/path/geometry/piece.hpp"
+
+namespace servogate::path {
+
+/// Place, speed and acceleration along the path parameter.
+struct MotionState {
+  double s = 0.0, v = 0.0, a = 0.0;
+};
+
+/// Some phases of constant jerk, run one after the other. The whole class is real-time safe.
+class Profile {
+ public:
+  static constexpr int kMaxPhases = 8;
+  /// Begins anew at this state, with no phases.
+  void start(const MotionState& state) noexcept;
+  /// Appends `duration` seconds of `jerk`; nothing when the duration is not positive.
+  void add(double duration, double jerk) noexcept;
+  /// Fixes the state that is reached when the last phase ends, so that no rounding error stays.
+  void finish_at(const MotionState& state) noexcept { end_ = state; }
+  /// State `t` seconds after the start (0 <= t; the end state from duration() on).
+  MotionState at(double t) const noexcept;
+  double duration() const noexcept { return duration_; }
+  /// State after the last phase.
+  const MotionState& end() const noexcept { return end_; }
+  int size() const noexcept { return count_; }
+
+ private:
+  struct Phase {
+    MotionState from;
+    double begins, jerk;
+  };
+  std::array<Phase, kMaxPhases> phases_{};
+  int count_ = 0;
+  double duration_ = 0.0;
+  MotionState end_;
+};
+
+/// Distance of the fastest change of speed from (v0, a0) to (v1, 0). real-time safe.
+double ramp_distance(double v0, double a0, double v1, const Box& box) noexcept;
+
+/// Appends that change to a profile that ends in (v0, a0). real-time safe.
+void add_ramp(Profile& profile, double v0, double a0, double v1, const Box& box) noexcept;
+
+/// Highest speed from which `v1` is reached within `length`, acceleration 0 at both ends; the same, read
+/// backwards, is the highest speed that is reached from v1. real-time safe.
+double reachable_speed(double v1, double length, const Box& box) noexcept;
+
+/// What the profile over the rest of a span is asked for.
+struct Goal {
+  double length = 0.0;      ///< from the state's place to the end of the span
+  double velocity = 0.0;    ///< speed to hold, <= the box's; 0: come to rest as soon as possible
+  double exit = 0.0;        ///< wanted speed at the end, a = 0 there
+  double exit_limit = 0.0;  ///< largest speed at the end, >= exit
+};
+
+/// The fastest profile from `state` that keeps the box: it ends at the end of the span with at most `exit`,
+/// or, where that cannot be reached any more, with the next lower or else the least speed that can (at most
+/// exit_limit). With velocity 0 it ends at rest before the end where it can. False, and the profile
+/// untouched, when there is none: the one that is being followed is then the way to go on. real-time safe: at
+/// most some hundred operations of arithmetic.
+bool plan(Profile& profile, const MotionState& state, const Goal& goal, const Box& box) noexcept;
+
+}  // namespace servogate::path

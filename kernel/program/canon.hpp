@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "kernel/program/interpreter.hpp"
+
+namespace servogate::program {
+
+/// Runs an interpreter to its end without a machine and hands over every command: packets start at zero, own
+/// writes take effect in order, NeedsSync is granted at once, waits are passed, and after `block_limit`
+/// executed blocks it stops with an error. Returns the error that ended the program, nullopt when it came to
+/// its end. `on_command` returning false ends the run early (nullopt). Not real-time safe.
+std::optional<text::Finding> run_dry(Interpreter& interpreter,
+                                     const std::function<bool(const Command&)>& on_command,
+                                     long long block_limit);
+
+/// `servogate canon`: one JSON object a line (without line end) for each command, see docs/canon.md. The view
+/// is valid during the call only. Returns the error that ended the program, nullopt when it came to its end.
+std::optional<text::Finding> write_canon(Interpreter& interpreter, const MachineModel& machine,
+                                         const std::function<void(std::string_view)>& line);
+
+}  // namespace servogate::program

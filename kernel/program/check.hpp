@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kernel/program/interpreter.hpp"
+
+namespace servogate::program {
+
+/// Blocks after which a program that runs without a machine is stopped with an error.
+inline constexpr long long kDryRunBlocks = 1'000'000;
+
+/// What one run of a program without a machine has shown.
+struct CheckReport {
+  struct Extent {
+    bool moved = false;  ///< a motion command changed this axis
+    double min = 0.0;  ///< over all motion, arcs included, the start too; machine coordinates, mm or degrees
+    double max = 0.0;
+    double travel_min = 0.0;
+    double travel_max = 0.0;
+    int outside_line = 0;  ///< first line whose motion leaves the travel, 0: none
+    int outside_file = 0;  ///< its file, index into `files`
+  };
+  struct ToolUse {
+    int number = 0;
+    int corrector = 0;
+    int line = 0;  ///< where it is called first
+    int calls = 0;
+  };
+  std::vector<text::Finding>
+      findings;                 ///< all that reading gives, in file order, then the first error of execution
+  std::vector<Extent> extents;  ///< index = axis of the machine
+  std::vector<ToolUse> tools;   ///< in order of first use
+  std::vector<std::string> files;
+  double feed_seconds =
+      0.0;  ///< path length over feed, no acceleration; feed per revolution with the S in force
+  double rapid_seconds = 0.0;  ///< by the axes' rapid velocities, no acceleration
+  double dwell_seconds = 0.0;
+  double path_mm = 0.0;    ///< length of all feed motion
+  int blocks = 0;          ///< blocks in the main program
+  long long executed = 0;  ///< blocks executed, loops and subprograms counted as often as they ran
+  long long commands = 0;  ///< canonical commands
+  int waits = 0;           ///< waits that a dry run passes
+  bool finished = false;   ///< the program came to its end
+
+  /// True when nothing of severity error was found and the program came to its end.
+  bool good() const;
+};
+
+/// Runs a program to its end without a machine: packets start at zero, own writes take effect in order,
+/// NeedsSync is granted at once, waits are passed; after kDryRunBlocks executed blocks it stops with an
+/// error. A motion that leaves the travel is found and the run goes on, so that the extents are those of the
+/// whole program. Not real-time safe. Never throws on bad programs.
+CheckReport check_program(std::string_view dialect, const MachineModel& machine, const Tables& tables,
+                          const std::string& file_name, const std::string& text, const ProgramLoader& loader,
+                          const Position& start);
+
+}  // namespace servogate::program

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kernel/program/execution/state.hpp"
+#include "kernel/program/geometry/circle.hpp"
+#include "kernel/program/messages.hpp"
+#include "kernel/program/reading/operands.hpp"
+#include "kernel/program/reading/source.hpp"
+#include "kernel/program/values/expression.hpp"
+#include "kernel/program/values/packet_view.hpp"
+
+namespace servogate::program {
+
+/// What one block of words asks for, gathered before anything of it is executed.
+struct BlockWords {
+  const Block* block = nullptr;
+  bool dwell = false, exact_once = false, machine_zero = false;
+  std::uint32_t one_shot = 0;  ///< bit of each Function that holds for this block only
+  int cycle = 0;               ///< number of a G word that defines a cycle
+  const Word* cycle_word = nullptr;
+  int axes = 0;
+  std::array<const Word*, image::kMaxAxes> axis{};
+  const Word *centre1 = nullptr, *centre2 = nullptr, *pitch = nullptr, *radius = nullptr, *radius2 = nullptr;
+  const Word *feed = nullptr, *time = nullptr, *speed = nullptr, *tool = nullptr, *h = nullptr;
+  std::array<const Word*, 8> m{};
+  std::array<int, 8> m_code{};
+  int m_count = 0;
+};
+
+/// Runs the blocks of a program by a dialect's tables. The dialect's own functions (three-letter codes,
+/// variables) are written against the public part. A value: copying it copies the whole state of the run.
+class Execution : public ValueSource {
+ public:
+  Execution(const Dialect& dialect, MachineModel machine, Tables tables, std::string file_name,
+            std::string text, ProgramLoader loader, const Position& start, int process);
+
+  Step next(const image::Packets& packets, bool synchronised);
+  void mdi(std::string_view block);
+  /// See Interpreter.
+  void reposition(const Position& at);
+  void adopt(Tables tables);
+  void preset(int axis, double value);
+
+  const Dialect& dialect() const noexcept { return *dialect_; }
+  const MachineModel& machine() const noexcept { return *machine_; }
+  const AxisLetters& axes() const noexcept { return axes_; }
+  const ProgramLoader& loader() const noexcept { return loader_; }
+  const std::vector<std::string>& files() const noexcept { return files_; }
+  const Source& main_source() const noexcept { return *sources_.front(); }
+  State& state() noexcept { return state_; }
+  const State& state() const noexcept { return state_; }
+  int axis_count() const noexcept { return static_cast<int>(machine_->axes.size()); }
+  bool rotary(int axis) const noexcept { return machine_->axes[static_cast<std::size_t>(axis)].rotary; }
+
+  // --- values ---
+  double parameter(int index, int column) const override;
+  double place(const image::Place& place, int column) const override;
+  /// Number of a value, its parameter read. Throws ProgramError.
+  double resolve(const Value& value) const;
+  /// The same as a whole number of at least 0; `word` names it in messages.
+  int whole(const Value& value, std::string_view word) const;
+  /// A length of an axis in mm, degrees or as a radius, by the unit in force; `halve`: a diameter axis is
+  /// halved.
+  double length(int axis, const Value& value, bool halve = true) const;
+  double unit_factor(int axis) const noexcept;
+
+  // --- packets ---
+  void write(const image::Place& place, double value, int column);
+  void write(const image::Place& place, std::string_view characters, int column);
+  std::string characters(const image::Place& place, int column) const { return view_.text(place, column); }
+
+  void check_storable(const image::Place& place, double value, int column) const {
+    view_.storable(place, value, column);
+  }
+
+  // --- commands ---
+  template <typename What>
+  Command& emit(What&& what) {
+    queue_.push_back(
+        Command{line_number(), state_.flow.file, process_, block_.number, std::forward<What>(what)});
+    return queue_.back();
+  }
+  /// Ends a continuous profile: what follows is no feed motion.
+  void end_profile() noexcept { state_.profile_open = false; }
+
+  // --- motion of cycles ---
+  /// Rapid to the axes of a block, but for one.
+  void position(const BlockWords& words, int without_axis);
+  /// One axis to a programmed coordinate, at rapid or at the feed in force; nothing where it stands there
+  /// already.
+  void go(int axis, double programmed, bool rapid);
+  void dwell(double seconds);
+  /// TMR in seconds; with G95 it counts revolutions of the spindle.
+  double dwell_seconds() const;
+  void emit_spindle(SpindleMode mode);
+
+  // --- frames ---
+  /// After a change of the frame: the machine stands still, its programmed coordinates are new.
+  void frame_changed();
+  void set_plane(int axis1, int axis2, int normal);
+  /// Origin, mirror, rotation, scale, field and modes as after power-on; tool lengths and parameters stay.
+  void reset();
+
+  // --- flow ---
+  void jump(std::string_view label, int column);
+  void repeat(int count);
+  void end_repeat();
+  void call(std::string_view name, int column);
+  void run_part(std::string_view first, std::string_view last, int column1, int column2);
+
+  const Block& block() const noexcept { return block_; }
+
+ private:
+  // execution.cpp
+  void apply_power_on();
+  void power_on_word(const std::string& word);
+  int line_number() const noexcept { return static_cast<int>(line_) + 1; }
+  Step take();
+  std::optional<Step> advance(bool synchronised);
+  std::optional<Step> read_ahead(bool synchronised);
+  bool must_wait() const;
+  void execute();
+  void run_code();
+  void finish(bool rewind);
+  Step stop_with(const ProgramError& error);
+  text::Finding finding(const ProgramError& error) const;
+  const Source& source() const { return *sources_[static_cast<std::size_t>(state_.flow.file)]; }
+  bool leave_part_or_file();
+
+  // assignments.cpp
+  void run_assignments();
+  void assign_parameter(std::size_t& pos);
+  void assign_place(std::size_t& pos);
+  void assign_variable(std::size_t& pos);
+
+  // words.cpp
+  void run_words();
+  BlockWords gather();
+  void take_g(BlockWords& words, const GRule& rule);
+  void return_modes(std::uint32_t one_shot, const Modes& before);
+  void check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const;
+  void check_profile(const BlockWords& words) const;
+  void run_cycle_block(const BlockWords& words);
+  void refuse_stray_words(const BlockWords& words) const;
+
+  // functions.cpp
+  void before_motion(const BlockWords& words);
+  void after_motion(const BlockWords& words);
+  void spindle_word(const BlockWords& words, const MRule* start);
+  void end_function(int code, const MRule* rule, int column);
+  void change_tool();
+
+  // motion.cpp
+  void move(const BlockWords& words);
+  Position target_of(const BlockWords& words);
+  void rapid(const Position& to);
+  void line(const BlockWords& words, const Position& to);
+  void arc(const BlockWords& words, const Position& to);
+  Point find_centre(const BlockWords& words, Point start, Point end, bool counter_clockwise) const;
+  double helix_length(const Arc& arc, double radius) const;
+  Point arc_centre(const BlockWords& words) const;
+  double helix_turns(const BlockWords& words, const Position& to, double sweep_deg, double radius) const;
+  Feed feed_of(const BlockWords& words, double length_mm, bool rotary_only);
+  CornerRule corner_of(const BlockWords& words) const;
+  void check_axis(int axis, double value, int column) const;
+  void store_feed(const BlockWords& words);
+
+  const Dialect* dialect_;
+  std::shared_ptr<const MachineModel> machine_;
+  AxisLetters axes_;
+  ProgramLoader loader_;
+  int process_;
+  double resolution_ = 1e4;  ///< steps per mm or inch of a programmed coordinate, 0: not rounded
+  std::vector<std::shared_ptr<const Source>> sources_;
+  std::vector<std::string> files_;
+  State state_;
+  State before_mdi_;
+  bool mdi_ = false;
+  PacketView view_;
+  std::vector<Command> queue_;
+  std::size_t head_ = 0;
+  std::optional<Step> last_;
+  std::optional<ProgramError> power_on_error_;
+  Block block_;
+  Operands operands_;
+  std::uint32_t line_ = 0;
+  long long since_command_ = 0;
+  mutable bool snapshot_used_ = false;
+  bool want_fresh_ = false;
+};
+
+}  // namespace servogate::program

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "kernel/program/execution/execution.hpp"
+
+namespace servogate::program {
+namespace {
+
+constexpr double kMetresPerFoot = 0.3048;
+
+SpindleMode mode_of(MAction action) {
+  switch (action) {
+    case MAction::spindle_cw:
+      return SpindleMode::cw;
+    case MAction::spindle_ccw:
+      return SpindleMode::ccw;
+    case MAction::spindle_orient:
+      return SpindleMode::orient;
+    case MAction::spindle_stop:
+      return SpindleMode::stop;
+    default:
+      return SpindleMode::keep;
+  }
+}
+
+}  // namespace
+
+/// T, then the spindle, then the M functions of the class "start of motion" in the order written, then H.
+void Execution::before_motion(const BlockWords& words) {
+  if (words.tool != nullptr) {
+    state_.tool = whole(words.tool->value, "T");
+    state_.corrector = whole(block_.corrector, "T");
+    for (const int part : {state_.tool, state_.corrector})
+      if (part > 9999)
+        fail(Fault::out_of_range, words.tool->column, {"T", std::to_string(part), "0", "9999"});
+    emit(Tool{state_.tool, state_.corrector, false});
+  }
+  const MRule* start = nullptr;
+  for (int i = 0; i < words.m_count; ++i) {
+    const MRule* rule = dialect_->find_m(words.m_code[static_cast<std::size_t>(i)]);
+    if (rule == nullptr || rule->after_motion || mode_of(rule->action) == SpindleMode::keep) continue;
+    if (start != nullptr)
+      fail(Fault::spindle_conflict, words.m[static_cast<std::size_t>(i)]->column,
+           {std::to_string(start->code), std::to_string(rule->code)});
+    start = rule;
+    if (machine_->spindles == 0)
+      fail(Fault::no_spindle, words.m[static_cast<std::size_t>(i)]->column,
+           {"M" + std::to_string(rule->code)});
+  }
+  spindle_word(words, start);
+  for (int i = 0; i < words.m_count; ++i) {
+    const int code = words.m_code[static_cast<std::size_t>(i)];
+    const MRule* rule = dialect_->find_m(code);
+    if (rule == nullptr || !rule->after_motion) emit(MFunction{code, false});
+  }
+  if (words.h != nullptr) emit(HFunction{whole(words.h->value, "H")});
+}
+
+void Execution::spindle_word(const BlockWords& words, const MRule* start) {
+  if (words.speed != nullptr) {
+    if (machine_->spindles == 0)
+      fail(Fault::no_spindle, words.speed->column, {word_text(block_, *words.speed)});
+    const double speed = resolve(words.speed->value);
+    if (!(speed >= 0.0 && speed <= 99999.99))
+      fail(Fault::out_of_range, words.speed->value.column, {"S", text::number(speed), "0", "99999.99"});
+    const bool feet = state_.modes.unit == Function::inch && state_.modes.spindle == Function::surface_speed;
+    state_.speed = feet ? speed * kMetresPerFoot : speed;
+  }
+  if (start != nullptr)
+    emit_spindle(mode_of(start->action));
+  else if (words.speed != nullptr)
+    emit_spindle(state_.spindle);
+}
+
+void Execution::emit_spindle(SpindleMode mode) {
+  state_.spindle = mode;
+  Spindle spindle;
+  spindle.mode = mode;
+  spindle.speed = state_.speed;
+  spindle.surface_speed = state_.modes.spindle == Function::surface_speed;
+  emit(spindle);
+}
+
+/// Dwell, then the M functions of the class "end of motion" in the order written; what stops or ends the
+/// program last.
+void Execution::after_motion(const BlockWords& words) {
+  if (words.dwell) dwell(dwell_seconds());
+  int last = -1;
+  for (int i = 0; i < words.m_count; ++i) {
+    const int code = words.m_code[static_cast<std::size_t>(i)];
+    const MRule* rule = dialect_->find_m(code);
+    if (rule == nullptr || !rule->after_motion) continue;
+    const bool ends = rule->action >= MAction::stop && rule->action <= MAction::end_rewind;
+    if (ends && last >= 0)
+      fail(Fault::m_end_twice, words.m[static_cast<std::size_t>(i)]->column,
+           {std::to_string(words.m_code[static_cast<std::size_t>(last)]), std::to_string(code)});
+    if (ends)
+      last = i;
+    else
+      end_function(code, rule, words.m[static_cast<std::size_t>(i)]->column);
+  }
+  if (last < 0) return;
+  const int code = words.m_code[static_cast<std::size_t>(last)];
+  end_function(code, dialect_->find_m(code), words.m[static_cast<std::size_t>(last)]->column);
+}
+
+void Execution::end_function(int code, const MRule* rule, int column) {
+  const bool program_end = rule->action == MAction::end || rule->action == MAction::end_rewind;
+  if (program_end && !state_.flow.calls.empty())
+    fail(Fault::end_in_subprogram, column,
+         {std::to_string(code), files_[static_cast<std::size_t>(state_.flow.file)]});
+  if (rule->action == MAction::spindle_stop) emit_spindle(SpindleMode::stop);
+  emit(MFunction{code, true});
+  switch (rule->action) {
+    case MAction::stop:
+      emit(Stop{false});
+      break;
+    case MAction::optional_stop:
+      if (state_.optional_stop != 0) emit(Stop{state_.optional_stop < 0});
+      break;
+    case MAction::tool_change:
+      change_tool();
+      break;
+    case MAction::end:
+      finish(false);
+      break;
+    case MAction::end_rewind:
+      finish(true);
+      break;
+    default:
+      break;
+  }
+}
+
+/// M06: the lengths of the corrector that T named come into force; nothing moves by itself.
+void Execution::change_tool() {
+  const auto& correctors = state_.tables->correctors;
+  const auto entry = correctors.find(state_.corrector);
+  for (int a = 0; a < axis_count(); ++a) {
+    double length = 0.0;
+    if (state_.corrector != 0 && entry != correctors.end()) {
+      const auto at = entry->second.length.find(machine_->axes[static_cast<std::size_t>(a)].letter);
+      if (at != entry->second.length.end()) length = at->second;
+    }
+    state_.frame.set_length(a, length);
+  }
+  frame_changed();
+}
+
+double Execution::dwell_seconds() const {
+  if (state_.modes.feed != Function::feed_revolution || state_.dwell <= 0.0) return state_.dwell;
+  const int column = static_cast<int>(block_.body) + 1;
+  if (state_.modes.spindle == Function::surface_speed) fail(Fault::dwell_surface_speed, column);
+  if (state_.speed <= 0.0) fail(Fault::dwell_no_speed, column);
+  return state_.dwell * 60.0 / state_.speed;
+}
+
+void Execution::dwell(double seconds) {
+  end_profile();
+  emit(Dwell{seconds});
+}
+
+}  // namespace servogate::program

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "kernel/program/execution/execution.hpp"
+#include "kernel/program/geometry/circle.hpp"
+
+namespace servogate::program {
+namespace {
+
+constexpr double kTravelSlack = 1e-6;  ///< mm or degrees
+constexpr double kMaxTurns = 1000.0;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
+
+}  // namespace
+
+void Execution::move(const BlockWords& words) {
+  const Position to = target_of(words);
+  switch (state_.modes.motion) {
+    case Function::rapid:
+      rapid(to);
+      break;
+    case Function::line:
+      line(words, to);
+      break;
+    default:
+      arc(words, to);
+      break;
+  }
+  state_.profile_open = state_.modes.motion != Function::rapid && state_.modes.corner != Function::exact;
+  state_.machine = to;
+}
+
+/// End of the motion in machine coordinates; the programmed coordinates are kept beside it.
+Position Execution::target_of(const BlockWords& words) {
+  Position& programmed = state_.programmed;
+  Position to = state_.machine;
+  const bool incremental = state_.modes.dimension == Function::incremental && !words.machine_zero;
+  const Frame& frame = state_.frame;
+  bool turned = false;
+  for (int a = 0; a < axis_count(); ++a) {
+    const Word* word = words.axis[at(a)];
+    if (word == nullptr) continue;
+    const double value = length(a, word->value);
+    if (words.machine_zero) {
+      to[at(a)] = value + frame.length(a);
+      continue;
+    }
+    programmed[at(a)] = incremental ? programmed[at(a)] + value : value;
+    if (frame.shift_only())
+      to[at(a)] = programmed[at(a)] + frame.shift(a);
+    else if (frame.separate(a))
+      to[at(a)] = frame.to_machine(programmed, a);
+    else
+      turned = true;
+  }
+  if (turned)
+    for (const int a : {state_.modes.axis1, state_.modes.axis2}) to[at(a)] = frame.to_machine(programmed, a);
+  if (words.machine_zero)
+    for (int a = 0; a < axis_count(); ++a) programmed[at(a)] = frame.to_programmed(to, a);
+  for (int a = 0; a < axis_count(); ++a)
+    if (words.axis[at(a)] != nullptr || turned)
+      check_axis(
+          a, to[at(a)],
+          words.axis[at(a)] != nullptr ? words.axis[at(a)]->column : static_cast<int>(block_.body) + 1);
+  return to;
+}
+
+/// Travel and working field. Source: specification A 23 (checked before the motion starts), B 6.3.
+void Execution::check_axis(int axis, double value, int column) const {
+  const MachineModel::Axis& a = machine_->axes[at(axis)];
+  const double limit = value > a.travel_max ? a.travel_max : a.travel_min;
+  if (value > a.travel_max + kTravelSlack || value < a.travel_min - kTravelSlack)
+    fail(Fault::travel, column, {a.letter, text::number(value, 4), text::number(limit, 4)});
+  const double inside = value - state_.frame.length(axis);
+  const double field =
+      inside > state_.field_max[at(axis)] ? state_.field_max[at(axis)] : state_.field_min[at(axis)];
+  if (inside > state_.field_max[at(axis)] + kTravelSlack ||
+      inside < state_.field_min[at(axis)] - kTravelSlack)
+    fail(Fault::field, column, {a.letter, text::number(inside, 4), text::number(field, 4)});
+}
+
+void Execution::position(const BlockWords& words, int without_axis) {
+  BlockWords rest = words;
+  rest.axis[at(without_axis)] = nullptr;
+  const Position to = target_of(rest);
+  rapid(to);
+  state_.machine = to;
+}
+
+void Execution::go(int axis, double programmed, bool at_rapid) {
+  if (std::abs(state_.programmed[at(axis)] - programmed) < 1e-9) return;
+  state_.programmed[at(axis)] = programmed;
+  Position to = state_.machine;
+  for (const int a : {axis, state_.modes.axis1, state_.modes.axis2}) {
+    if (a != axis && (state_.frame.separate(a) || state_.frame.separate(axis))) continue;
+    to[at(a)] = state_.frame.to_machine(state_.programmed, a);
+    check_axis(a, to[at(a)], static_cast<int>(block_.body) + 1);
+  }
+  if (at_rapid)
+    rapid(to);
+  else
+    emit(Line{to, feed_of(BlockWords{}, 0.0, rotary(axis)), CornerRule{}});
+  state_.machine = to;
+}
+
+void Execution::rapid(const Position& to) { emit(Rapid{to}); }
+
+void Execution::line(const BlockWords& words, const Position& to) {
+  double square = 0.0;
+  bool linear = false, turns = false;
+  for (int a = 0; a < axis_count(); ++a) {
+    const double delta = to[at(a)] - state_.machine[at(a)];
+    square += delta * delta;
+    if (delta != 0.0) (rotary(a) ? turns : linear) = true;
+  }
+  Line line;
+  line.to = to;
+  line.feed = feed_of(words, words.time != nullptr ? std::sqrt(square) : 0.0, turns && !linear);
+  line.corner = corner_of(words);
+  emit(std::move(line));
+}
+
+/// Centre of the arc a block asks for, by R or by I and J.
+Point Execution::find_centre(const BlockWords& words, Point start, Point end, bool counter_clockwise) const {
+  const int here = static_cast<int>(block_.body) + 1;
+  if (words.radius == nullptr) {
+    if (words.centre1 == nullptr && words.centre2 == nullptr) fail(Fault::arc_words, here);
+    if (words.centre1 == nullptr || words.centre2 == nullptr)
+      fail(Fault::arc_centre_pair, here, {words.centre1 == nullptr ? "I" : "J"});
+    return arc_centre(words);
+  }
+  const int column = words.radius->column;
+  if (words.centre1 != nullptr || words.centre2 != nullptr) fail(Fault::arc_both, column);
+  const int a1 = state_.modes.axis1;
+  const double r = length(a1, words.radius->value, false) * std::abs(state_.frame.scale(a1));
+  if (r == 0.0) fail(Fault::arc_zero, column);
+  const double chord = std::hypot(end.x - start.x, end.y - start.y);
+  if (chord == 0.0) fail(Fault::arc_full_by_radius, column);
+  Point centre;
+  if (!centre_by_radius(start, end, r, counter_clockwise, centre))
+    fail(Fault::arc_too_small, column, {text::number(r, 4), text::number(chord, 4)});
+  return centre;
+}
+
+/// Length of a circular motion with all that moves beside it.
+double Execution::helix_length(const Arc& arc, double radius) const {
+  double square = std::pow(arc.sweep_deg * kDegree * radius, 2);
+  for (int a = 0; a < axis_count(); ++a)
+    if (a != arc.axis1 && a != arc.axis2) square += std::pow(arc.to[at(a)] - state_.machine[at(a)], 2);
+  return std::sqrt(square);
+}
+
+void Execution::arc(const BlockWords& words, const Position& to) {
+  const int a1 = state_.modes.axis1, a2 = state_.modes.axis2;
+  const Frame& frame = state_.frame;
+  const int here = static_cast<int>(block_.body) + 1;
+  if (words.machine_zero && !frame.shift_only()) fail(Fault::machine_zero_arc, here);
+  if (std::abs(frame.scale(a1)) != std::abs(frame.scale(a2)))
+    fail(Fault::arc_scaled, here, {machine_->axes[at(a1)].letter, machine_->axes[at(a2)].letter});
+  const bool ccw = (state_.modes.motion == Function::arc_ccw) == (frame.sense(a1, a2) > 0);
+  const Point start{state_.machine[at(a1)], state_.machine[at(a2)]}, end{to[at(a1)], to[at(a2)]};
+  const Point centre = find_centre(words, start, end, ccw);
+  const double r1 = std::hypot(start.x - centre.x, start.y - centre.y);
+  const double r2 = std::hypot(end.x - centre.x, end.y - centre.y);
+  if (std::abs(r1 - r2) > kRadiusTolerance + 1e-9)
+    fail(Fault::not_congruent, here, {text::number(r1, 4), text::number(r2, 4)});
+  if (r1 < 1e-9) fail(Fault::arc_zero, here);
+
+  Arc arc;
+  arc.to = to;
+  arc.axis1 = static_cast<std::uint8_t>(a1);
+  arc.axis2 = static_cast<std::uint8_t>(a2);
+  arc.center1 = centre.x;
+  arc.center2 = centre.y;
+  arc.sweep_deg = sweep(start, end, centre, ccw);
+  const double turns = helix_turns(words, to, arc.sweep_deg, r1);
+  arc.sweep_deg += arc.sweep_deg < 0.0 ? -360.0 * turns : 360.0 * turns;
+  const Box box = extent(start, end, centre, arc.sweep_deg);
+  for (const double x : {box.low.x, box.high.x}) check_axis(a1, x, here);
+  for (const double y : {box.low.y, box.high.y}) check_axis(a2, y, here);
+  arc.feed = feed_of(words, helix_length(arc, r1), false);
+  arc.corner = corner_of(words);
+  emit(std::move(arc));
+}
+
+/// Centre by I and J in machine coordinates: absolute in the origin with G90, from the start with G91.
+Point Execution::arc_centre(const BlockWords& words) const {
+  const int a1 = state_.modes.axis1, a2 = state_.modes.axis2;
+  const double i = length(a1, words.centre1->value), j = length(a2, words.centre2->value);
+  const Frame& frame = state_.frame;
+  if (words.machine_zero && dialect_->arc_centre == ArcCentre::as_dimensions)
+    return {i + frame.length(a1), j + frame.length(a2)};
+  Position centre{};
+  const bool incremental =
+      state_.modes.dimension == Function::incremental || dialect_->arc_centre == ArcCentre::from_start;
+  const double x = incremental ? frame.to_programmed(state_.machine, a1) : 0.0;
+  const double y = incremental ? frame.to_programmed(state_.machine, a2) : 0.0;
+  centre[at(a1)] = x + i;
+  centre[at(a2)] = y + j;
+  return {frame.to_machine(centre, a1), frame.to_machine(centre, a2)};
+}
+
+/// Whole turns beyond the programmed arc: the total angle is 360 degrees times depth over pitch.
+/// Source: specification A 9.4, A 24 decision 20.
+double Execution::helix_turns(const BlockWords& words, const Position& to, double sweep_deg,
+                              double radius) const {
+  if (words.pitch == nullptr) return 0.0;
+  int axis = state_.modes.normal;
+  if (axis < 0 || words.axis[at(axis)] == nullptr)
+    for (int a = 0; a < axis_count(); ++a)
+      if (words.axis[at(a)] != nullptr && a != state_.modes.axis1 && a != state_.modes.axis2) axis = a;
+  const int column = words.pitch->column;
+  if (axis < 0 || words.axis[at(axis)] == nullptr) fail(Fault::helix_axis, column);
+  const double pitch = length(axis, words.pitch->value) * std::abs(state_.frame.scale(axis));
+  if (pitch <= 0.0) fail(Fault::helix_pitch, words.pitch->value.column, {text::number(pitch, 4)});
+  const double total = 360.0 * std::abs(to[at(axis)] - state_.machine[at(axis)]) / pitch;
+  const double turns = std::max(0.0, std::round((total - std::abs(sweep_deg)) / 360.0));
+  if (turns > kMaxTurns) fail(Fault::helix_long, column, {text::number(turns, 0), text::number(kMaxTurns)});
+  const double slack = kRadiusTolerance / radius / kDegree + 1e-6;
+  if (std::abs(total - std::abs(sweep_deg) - 360.0 * turns) > slack)
+    fail(Fault::helix_mismatch, column, {text::number(total, 3), text::number(std::abs(sweep_deg), 3)});
+  return turns;
+}
+
+/// F that stays, unless it belongs to its block only (G93).
+void Execution::store_feed(const BlockWords& words) {
+  if (words.feed == nullptr) return;
+  const double value = resolve(words.feed->value);
+  if (!(value >= 0.01 - 1e-12 && value <= 99999.99))
+    fail(Fault::out_of_range, words.feed->value.column, {"F", text::number(value), "0.01", "99999.99"});
+  if (state_.modes.feed == Function::feed_inverse) return;
+  state_.feed = value;
+  state_.feed_inch = state_.modes.unit == Function::inch;
+}
+
+Feed Execution::feed_of(const BlockWords& words, double length_mm, bool rotary_only) {
+  const int here = static_cast<int>(block_.body) + 1;
+  if (words.time != nullptr) {
+    if (state_.modes.feed != Function::feed_minute) fail(Fault::block_time, words.time->column);
+    const double seconds = resolve(words.time->value);
+    if (!(seconds > 0.0))
+      fail(Fault::out_of_range, words.time->value.column, {"t", text::number(seconds), "0.001", "99999.999"});
+    return length_mm > 0.0 ? Feed{length_mm * 60.0 / seconds, FeedUnit::mm_per_min}
+                           : Feed{60.0 / seconds, FeedUnit::inverse_time};
+  }
+  if (state_.modes.feed == Function::feed_inverse) {
+    if (words.feed == nullptr) fail(Fault::feed_inverse, here);
+    return {resolve(words.feed->value), FeedUnit::inverse_time};
+  }
+  if (state_.feed <= 0.0) fail(Fault::feed_missing, here);
+  const double factor = state_.feed_inch && !rotary_only ? 25.4 : 1.0;
+  return {state_.feed * factor,
+          state_.modes.feed == Function::feed_revolution ? FeedUnit::mm_per_rev : FeedUnit::mm_per_min};
+}
+
+/// How this element passes into the next one. Source: specification A 13.
+CornerRule Execution::corner_of(const BlockWords& words) const {
+  CornerRule rule;
+  const Function mode = state_.modes.corner;
+  const double tolerance = machine_->contour_tolerance_mm;
+  if (mode == Function::exact || words.exact_once || words.dwell) return rule;
+  if (mode == Function::continuous) {
+    rule.transition = Transition::continuous;
+    rule.tolerance_mm = tolerance;
+  } else if (state_.erf_mm > 0.0) {
+    rule.transition = Transition::corner_limited;
+    rule.tolerance_mm = std::min(tolerance, state_.erf_mm);
+    rule.erf_mm = state_.erf_mm;
+    rule.max_angle_deg = state_.max_angle_deg;
+  }
+  return rule;
+}
+
+}  // namespace servogate::program

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "kernel/program/canonical.hpp"
+#include "kernel/program/geometry/frame.hpp"
+#include "kernel/program/interpreter.hpp"
+#include "kernel/program/reading/dialect.hpp"
+#include "kernel/program/values/parameters.hpp"
+
+namespace servogate::program {
+
+/// Modal functions in force.
+struct Modes {
+  Function motion = Function::rapid;
+  Function corner = Function::corner_limited;
+  Function unit = Function::metric;
+  Function dimension = Function::absolute;
+  Function feed = Function::feed_minute;
+  Function spindle = Function::revolutions;
+  int axis1 = 0;  ///< plane: abscissa and ordinate
+  int axis2 = 1;
+  int normal = 2;  ///< axis across the plane, -1: none
+};
+
+/// Where the program stands, and what it has to come back to.
+struct Flow {
+  struct Call {
+    int file;
+    std::uint32_t back;  ///< line at which the caller goes on
+    std::size_t loops;   ///< repeats open in the caller
+  };
+  struct Loop {
+    std::size_t depth;  ///< number of calls at the RPT
+    std::uint32_t first;
+    std::uint32_t last;
+    int left;
+  };
+  struct Part {
+    std::size_t depth;
+    std::uint32_t first;
+    std::uint32_t last;
+    std::uint32_t back;
+    std::size_t loops;
+  };
+  int file = 0;
+  std::uint32_t line = 0;  ///< next line to read
+  std::vector<Call> calls;
+  std::vector<Loop> loops;
+  std::optional<Part> part;
+  bool barrier = false;  ///< the next block is read only after the motion before it
+};
+
+/// A canned cycle in force. Lengths in programmed coordinates, mm.
+struct Cycle {
+  int number = 0;  ///< G word, 0: none
+  int axis = 2;    ///< along which it works
+  double depth = 0.0;
+  double approach = 0.0;       ///< R1: down to here at rapid
+  double retreat = 0.0;        ///< R2: back to here
+  double step = 0.0;           ///< I of G83, > 0
+  double factor = 0.0;         ///< K of G83, 0: chips are broken, not removed
+  double min_step = 0.0;       ///< J of G83
+  bool spindle_rests = false;  ///< stopped at the bottom of a hole, to start again before the next one
+};
+
+/// Everything of an interpreter that changes while a program runs; a plain value.
+struct State {
+  Modes modes;
+  Frame frame;
+  Position programmed{};  ///< end of the last motion in programmed coordinates (mm, degrees, radius)
+  Position machine{};     ///< the same in machine coordinates
+  std::array<std::int16_t, image::kMaxAxes>
+      origin{};                       ///< number of the absolute origin in force, of each axis
+  Position field_min{}, field_max{};  ///< DLO, machine coordinates without the tool length
+  double feed = 0.0;                  ///< F as programmed, 0: never
+  bool feed_inch = false;
+  double speed = 0.0;  ///< S in rpm or m/min
+  SpindleMode spindle = SpindleMode::stop;
+  std::int32_t tool = 0;  ///< last T word
+  std::int32_t corrector = 0;
+  double dwell = 0.0;  ///< TMR
+  double erf_mm = 0.0;
+  double max_angle_deg = 0.0;  ///< MCD as an angle
+  double allowance = 0.0;      ///< UOV, mm
+  bool execute_marked = true;  ///< USB: blocks with / are executed
+  int optional_stop = -1;      ///< USO, -1: left to the operator's switch
+  bool profile_open = false;   ///< inside of a running chain of feed blocks under G27 or G28
+  Cycle cycle;
+  Parameters parameters;
+  std::shared_ptr<const Tables> tables;
+  Flow flow;
+  long long executed = 0;
+};
+
+}  // namespace servogate::program

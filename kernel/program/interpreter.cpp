@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/program/interpreter.hpp"
+
+#include <utility>
+
+#include "kernel/program/execution/execution.hpp"
+#include "kernel/program/reading/findings.hpp"
+
+namespace servogate::program {
+namespace {
+
+/// A program of no block in place of one whose language this build does not read.
+const Dialect& dialect_or_first(const Dialect* dialect) {
+  return dialect != nullptr ? *dialect : *all_dialects().front();
+}
+
+}  // namespace
+
+struct Interpreter::Impl {
+  bool known;
+  std::string dialect;
+  Execution run;
+};
+
+Interpreter::Interpreter(std::string_view dialect, MachineModel machine, Tables tables, std::string file_name,
+                         std::string text, ProgramLoader loader, const Position& start, int process) {
+  const Dialect* found = find_dialect(dialect);
+  impl_ = std::make_unique<Impl>(
+      Impl{found != nullptr, std::string(dialect),
+           Execution(dialect_or_first(found), std::move(machine), std::move(tables), std::move(file_name),
+                     std::move(text), std::move(loader), start, process)});
+}
+Interpreter::Interpreter(const Interpreter& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Interpreter& Interpreter::operator=(const Interpreter& other) {
+  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  return *this;
+}
+Interpreter::Interpreter(Interpreter&&) noexcept = default;
+Interpreter& Interpreter::operator=(Interpreter&&) noexcept = default;
+Interpreter::~Interpreter() = default;
+
+Step Interpreter::next(const image::Packets& packets, bool synchronised) {
+  if (!impl_->known)
+    return Error{
+        {text::Severity::error, files().front(), 0, 0, &entry(Fault::dialect_unknown), {impl_->dialect}}};
+  return impl_->run.next(packets, synchronised);
+}
+
+std::vector<text::Finding> Interpreter::findings() const {
+  if (!impl_->known) return {};
+  return find_all(impl_->run);
+}
+
+const MachineModel& Interpreter::machine() const { return impl_->run.machine(); }
+const std::vector<std::string>& Interpreter::files() const { return impl_->run.files(); }
+const Position& Interpreter::position() const { return impl_->run.state().machine; }
+const Tables& Interpreter::tables() const { return *impl_->run.state().tables; }
+int Interpreter::block_count() const { return impl_->run.main_source().blocks(); }
+long long Interpreter::executed() const { return impl_->run.state().executed; }
+void Interpreter::mdi(std::string_view block) { impl_->run.mdi(block); }
+void Interpreter::reposition(const Position& at) { impl_->run.reposition(at); }
+void Interpreter::adopt(Tables tables) { impl_->run.adopt(std::move(tables)); }
+void Interpreter::preset(int axis, double value) { impl_->run.preset(axis, value); }
+int Interpreter::origin(int axis) const { return impl_->run.state().origin[static_cast<std::size_t>(axis)]; }
+
+std::vector<std::string> dialects() {
+  std::vector<std::string> names;
+  for (const Dialect* dialect : all_dialects()) names.emplace_back(dialect->name);
+  return names;
+}
+
+}  // namespace servogate::program

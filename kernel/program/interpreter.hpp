@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "firmware_if/image/packets.hpp"
+#include "firmware_if/text/finding.hpp"
+#include "kernel/program/canonical.hpp"
+
+namespace servogate::program {
+
+/// What an interpreter must know of the machine. Filled from the machine file by the gateway.
+struct MachineModel {
+  struct Axis {
+    std::string letter;
+    bool rotary = false;
+    bool diameter = false;
+    bool alternative_inch = false;
+    double travel_min = -1e9, travel_max = 1e9;  ///< mm or degrees; lathe X as radius
+    double rapid = 0.0;                          ///< mm/s or degrees/s
+  };
+  std::vector<Axis> axes;
+  int spindles = 1;
+  double contour_tolerance_mm = 0.01;
+  /// Power-on modes and values in the dialect's own words, e.g. {"G94", "G97", "G90", "G71", "G27"} and
+  /// {"ERF", 0.01}, {"MCD", 2}.
+  std::vector<std::string> power_on;
+  std::map<std::string, double> variables;
+  std::vector<int> synchronous_m;  ///< reserved for dialects that let the machine builder choose
+  /// A place that part programs must not write, and the name of who writes it (an input, the control).
+  struct Protected {
+    image::Place place;
+    std::string owner;
+  };
+  std::vector<Protected> protected_places;
+  std::uint32_t k_bytes = image::kPacketKDefaultSize;  ///< sizes of the packets of a dry run (check, canon)
+  std::uint32_t syvar_bytes = image::kSyvarDefaultSize;
+};
+
+/// Tables an interpreter reads and, for some words, changes; kept in the state directory by the gateway.
+struct Tables {
+  struct Corrector {
+    std::map<std::string, double> length;  ///< axis letter to mm
+    double diameter = 0.0;
+  };
+  std::map<int, std::map<std::string, double>> origins;  ///< number to axis letter to mm
+  std::map<int, Corrector> correctors;
+};
+
+/// Gives the text of another program by its name (NC-110 CLS), nullopt when there is none.
+using ProgramLoader = std::function<std::optional<std::string>(std::string_view name)>;
+
+/// The interpreter has to know packet places as they are when all motion before it has ended: finish it, take
+/// a snapshot of the packets in the cycle, then call next() again with them.
+struct NeedsSync {
+  int line = 0;
+};
+/// A program error: the commands before it stay valid, nothing after it is read.
+struct Error {
+  text::Finding finding;
+};
+using Step = std::variant<Command, NeedsSync, Error>;
+
+/// The interpreter of one process: a value that can be copied at any time (restart, retrace, look-ahead).
+class Interpreter {
+ public:
+  /// Reads the program text whole. Syntax findings come out of next() when the block is reached, and all
+  /// together from findings().
+  Interpreter(std::string_view dialect, MachineModel machine, Tables tables, std::string file_name,
+              std::string text, ProgramLoader loader, const Position& start, int process = 0);
+  Interpreter(const Interpreter&);
+  Interpreter& operator=(const Interpreter&);
+  Interpreter(Interpreter&&) noexcept;
+  Interpreter& operator=(Interpreter&&) noexcept;
+  ~Interpreter();
+
+  /// The next canonical command. `packets`: the shared memories as this process may see them now;
+  /// `synchronised`: true when all motion before this point has ended and `packets` is a snapshot taken after
+  /// that. Asynchronous writes (`&`, SYVAR without `#`) come out as WritePlace with synchronous = false. Not
+  /// real-time safe. Never throws on bad programs. After End or Error it keeps returning the same.
+  Step next(const image::Packets& packets, bool synchronised);
+
+  /// All findings that reading alone can give (syntax, unknown words, impossible combinations), for `check`.
+  std::vector<text::Finding> findings() const;
+  /// The machine it was made for.
+  const MachineModel& machine() const;
+  /// Names of the files met so far, index = Command::file.
+  const std::vector<std::string>& files() const;
+  /// Position at which the next motion starts: the end of the last motion command, absolute machine
+  /// coordinates.
+  const Position& position() const;
+  /// Tables with the changes that the program made (RQO ...).
+  const Tables& tables() const;
+  /// Blocks in the main program, and blocks executed so far, for progress.
+  int block_count() const;
+  long long executed() const;
+  /// Executes one block typed by the operator (MDI) in the present modal state; then next() returns its
+  /// commands and End.
+  void mdi(std::string_view block);
+  /// The axes stand at `at` now, whoever moved them: the next motion starts there. Modes and origins stay.
+  void reposition(const Position& at);
+  /// Takes over tables that somebody else changed; origins in force move with their rows.
+  void adopt(Tables tables);
+  /// Changes the origin in force of an axis so that the present position is `value` in programmed coordinates
+  /// (mm or degrees; of a diameter axis the radius), in the table too.
+  void preset(int axis, double value);
+  /// Number of the origin in force of an axis.
+  int origin(int axis) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Names of the dialects that this build reads: "nc110", ...
+std::vector<std::string> dialects();
+
+}  // namespace servogate::program

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware_if/text/finding.hpp"
+
+namespace servogate::program {
+
+/// Everything the program room has to say to a person. P1xx text of a block, P2xx words, P3xx values, P4xx
+/// packets, P5xx flow, P6xx three-letter codes and frames, P7xx motion, P8xx functions, P9xx limits of this
+/// version.
+enum class Fault : std::uint8_t {
+  block_too_long,
+  label_unclosed,
+  label_bad,
+  prefix_order,
+  number_missing_block,
+  label_twice,
+  trailing_comment,
+  block_number_long,
+  string_unclosed,
+  bracket_unclosed,
+  after_bracket,
+  cyrillic,
+  unknown_character,
+  unknown_word,
+  axis_missing,
+  word_twice,
+  too_many_words,
+  out_of_range,
+  whole_number,
+  parameter_type,
+  parameter_number_missing,
+  number_bad,
+  g_unknown,
+  g_conflict,
+  g_after_operand,
+  m_too_many,
+  word_without_function,
+  expected,
+  g_with_parameter,
+  expression_expected,
+  closing_expected,
+  function_unknown,
+  comma_expected,
+  division_by_zero,
+  domain,
+  parameter_absent,
+  parameter_range,
+  characters_as_number,
+  equals_expected,
+  variable_unknown,
+  not_a_number,
+  place_bad,
+  place_outside,
+  place_range,
+  text_too_long,
+  text_for_number,
+  number_for_text,
+  place_protected,
+  text_compare,
+  label_missing,
+  repeat_depth,
+  repeat_without_end,
+  end_without_repeat,
+  repeat_count,
+  call_depth,
+  program_missing,
+  program_name,
+  end_in_subprogram,
+  part_nested,
+  part_reversed,
+  jump_out_of_part,
+  endless,
+  block_limit,
+  code_unknown,
+  operand_missing,
+  operand_many,
+  operand_axis,
+  operand_axis_twice,
+  operand_axes_many,
+  text_long,
+  origin_range,
+  origin_missing,
+  origin_without_axis,
+  scale_zero,
+  plane_in_profile,
+  plane_missing,
+  dwell_range,
+  wait_form,
+  wait_format,
+  wait_bit,
+  variable_range,
+  limits_pair,
+  travel,
+  field,
+  feed_missing,
+  feed_inverse,
+  block_time,
+  not_congruent,
+  arc_words,
+  arc_centre_pair,
+  arc_both,
+  arc_full_by_radius,
+  arc_too_small,
+  arc_zero,
+  arc_scaled,
+  helix_pitch,
+  helix_axis,
+  helix_mismatch,
+  helix_long,
+  machine_zero_arc,
+  cycle_active,
+  cycle_motion,
+  cycle_depth,
+  cycle_hole,
+  cycle_step_missing,
+  cycle_step,
+  cycle_pecks,
+  function_in_profile,
+  m_end_twice,
+  spindle_conflict,
+  tool_form,
+  no_spindle,
+  dwell_no_speed,
+  dwell_surface_speed,
+  not_executed,
+  power_on_bad,
+  dialect_unknown,
+};
+
+/// All texts, in the order of Fault.
+std::span<const text::Entry> messages();
+/// The text of one message.
+const text::Entry& entry(Fault fault);
+
+/// Thrown inside of this room only, caught in Interpreter: the block cannot be read or executed. `column`
+/// counts from 1.
+struct ProgramError {
+  Fault fault;
+  int column = 0;
+  std::vector<std::string> arguments;
+};
+[[noreturn]] inline void fail(Fault fault, int column, std::vector<std::string> arguments = {}) {
+  throw ProgramError{fault, column, std::move(arguments)};
+}
+
+}  // namespace servogate::program

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/program/reading/operands.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "kernel/program/messages.hpp"
+#include "kernel/program/reading/number.hpp"
+
+namespace servogate::program {
+namespace {
+
+int column(std::size_t offset) { return static_cast<int>(offset) + 1; }
+
+/// The items between the brackets, divided by commas outside of quotes and inner brackets.
+struct Items {
+  std::array<std::pair<std::size_t, std::size_t>, Operands::kMax + 1> at;
+  std::size_t count = 0;
+};
+
+std::string_view kind_name(char kind) {
+  switch (kind) {
+    case 'n':
+      return "whole number or E";
+    case 'x':
+      return "number or E";
+    case 'a':
+      return "axis";
+    case 'v':
+      return "axis with value";
+    case 'p':
+      return "axis with two values";
+    case 'l':
+      return "label";
+    case 'f':
+      return "program name";
+    case 'w':
+      return "condition";
+    default:
+      return "value";
+  }
+}
+
+void add_item(std::string_view line, Items& items, std::size_t from, std::size_t to, std::string_view code) {
+  if (items.count == items.at.size()) fail(Fault::operand_many, column(from), {std::string(code)});
+  from = std::min(skip_spaces(line, from), to);
+  while (to > from && is_space(line[to - 1])) --to;
+  items.at[items.count++] = {from, to};
+}
+
+Items split(const Block& block) {
+  const std::string_view line = block.line.substr(0, block.end);
+  Items items;
+  std::size_t from = block.body + 1;
+  int depth = 1;
+  bool quoted = false;
+  for (std::size_t i = from; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == '(') ++depth;
+    if ((c == ',' && depth == 1) || (c == ')' && --depth == 0)) {
+      add_item(line, items, from, i, line.substr(block.body + 1, 3));
+      from = i + 1;
+      if (depth > 0) continue;
+      const std::size_t rest = skip_spaces(line, from);
+      if (rest < line.size()) fail(Fault::after_bracket, column(rest), {std::string(line.substr(rest))});
+      return items;
+    }
+  }
+  fail(Fault::bracket_unclosed, column(block.body));
+}
+
+class OperandReader {
+ public:
+  OperandReader(const AxisLetters& axes, const Items& items, Operands& out)
+      : axes_(axes), items_(items), out_(out), line_(out.block->line) {}
+
+  void run(std::string_view signature) {
+    std::size_t required = signature.find('?');
+    required = std::min(required, signature.size());
+    for (std::size_t s = 0; s < signature.size(); ++s) {
+      if (signature[s] == '?') continue;
+      const char modifier = s + 1 < signature.size() ? signature[s + 1] : '\0';
+      const bool repeated = modifier == '+' || modifier == '*';
+      const bool needed = s < required && modifier != '*';
+      if (next_ == items_.count) {
+        if (needed) missing(signature[s]);
+      } else {
+        do one(signature[s]);
+        while (repeated && next_ < items_.count);
+      }
+      if (repeated) ++s;
+    }
+    if (next_ < items_.count) fail(Fault::operand_many, column(items_.at[next_].first), {code()});
+  }
+
+ private:
+  std::string code() const { return std::string(out_.rule->name); }
+  [[noreturn]] void missing(char kind) const {
+    const std::size_t at = next_ < items_.count ? items_.at[next_].first : items_.at[items_.count - 1].second;
+    fail(Fault::operand_missing, column(at), {code(), std::to_string(next_), std::string(kind_name(kind))});
+  }
+
+  void one(char kind) {
+    Operand item;
+    item.kind = kind;
+    item.begin = items_.at[next_].first;
+    item.end = items_.at[next_].second;
+    if (item.begin == item.end) missing(kind);
+    ++next_;
+    switch (kind) {
+      case 'n':
+      case 'x':
+        number(item);
+        break;
+      case 'a':
+        axis(item, item.begin);
+        break;
+      case 'v':
+        valued(item, false);
+        break;
+      case 'p':
+        valued(item, true);
+        break;
+      default:
+        break;
+    }
+    if (out_.count == Operands::kMax) fail(Fault::operand_many, column(item.begin), {code()});
+    out_.items[out_.count++] = item;
+  }
+
+  void axis(Operand& item, std::size_t& pos) {
+    const std::size_t start = item.begin;
+    if (!is_capital(line_[start])) fail(Fault::operand_axis, column(start), {code()});
+    if (item.kind == 'a' && item.end != start + 1) fail(Fault::operand_axis, column(start), {code()});
+    item.axis = axes_.find(line_[start]);
+    if (item.axis < 0) fail(Fault::axis_missing, column(start), {std::string(1, line_[start])});
+    for (std::size_t i = 0; i < out_.count; ++i)
+      if (out_.items[i].axis == item.axis)
+        fail(Fault::operand_axis_twice, column(start), {code(), std::string(1, line_[start])});
+    std::size_t named = 1;
+    for (std::size_t i = 0; i < out_.count; ++i) named += out_.items[i].axis >= 0;
+    if (named > kMaxAxesNamed)
+      fail(Fault::operand_axes_many, column(start),
+           {code(), std::to_string(named), std::to_string(kMaxAxesNamed)});
+    pos = start;
+  }
+
+  Value value(std::size_t& pos, std::size_t end, std::string_view word, ParameterKind kind) {
+    const std::string_view text = line_.substr(0, end);
+    const Value v = read_value(text, pos, word);
+    if (v.parameter >= 0 && (kind == ParameterKind::whole) != (v.parameter < 25))
+      fail(Fault::parameter_type, v.column,
+           {code(), kind == ParameterKind::whole ? "E0-E24" : "E25-E29 / E30...",
+            std::to_string(v.parameter)});
+    return v;
+  }
+
+  void number(Operand& item) {
+    std::size_t pos = item.begin;
+    const ParameterKind kind = item.kind == 'n' ? ParameterKind::whole : ParameterKind::real;
+    item.value = value(pos, item.end, code(), kind);
+    if (pos != item.end) unexpected(pos, item.kind);
+    if (item.kind == 'n' && item.value.parameter < 0 && (item.value.fraction || item.value.negative))
+      fail(Fault::whole_number, item.value.column, {code(), std::string(out_.text(item))});
+  }
+
+  void valued(Operand& item, bool two) {
+    std::size_t pos = item.begin;
+    axis(item, pos);
+    const std::string_view letter = line_.substr(pos++, 1);
+    item.value = value(pos, item.end, letter, ParameterKind::real);
+    pos = skip_spaces(line_, pos);
+    if (two) {
+      if (pos == item.end && next_ < items_.count) {
+        pos = items_.at[next_].first;
+        item.end = items_.at[next_++].second;
+      }
+      if (pos >= item.end) fail(Fault::limits_pair, column(item.begin));
+      if (line_[pos] == letter[0]) ++pos;
+      item.second = value(pos, item.end, letter, ParameterKind::real);
+      pos = skip_spaces(line_, pos);
+    }
+    if (pos != item.end) unexpected(pos, item.kind);
+  }
+
+  [[noreturn]] void unexpected(std::size_t pos, char kind) const {
+    fail(Fault::expected, column(pos), {std::string(kind_name(kind))});
+  }
+
+  static constexpr std::size_t kMaxAxesNamed = 6;
+  const AxisLetters& axes_;
+  const Items& items_;
+  Operands& out_;
+  std::string_view line_;
+  std::size_t next_ = 1;
+};
+
+}  // namespace
+
+void read_operands(const Dialect& dialect, const AxisLetters& axes, const Block& block, Operands& out) {
+  out.block = &block;
+  out.count = 0;
+  out.column = column(block.body);
+  const Items items = split(block);
+  const auto [from, to] = items.at[0];
+  const std::string_view code = block.line.substr(from, to - from);
+  out.rule = dialect.find_code(code);
+  if (out.rule == nullptr) fail(Fault::code_unknown, column(from), {code.empty() ? "()" : std::string(code)});
+  if (out.rule->run == nullptr) fail(Fault::not_executed, column(from), {std::string(code)});
+  OperandReader(axes, items, out).run(out.rule->operands);
+}
+
+bool names_signal(std::string_view text, std::size_t pos) {
+  bool quoted = false;
+  for (std::size_t i = pos; i + 1 < text.size(); ++i) {
+    if (text[i] == '"') quoted = !quoted;
+    if (quoted || text[i] != 'S' || (text[i + 1] != 'A' && text[i + 1] != 'K')) continue;
+    if (i > pos && is_capital(text[i - 1])) continue;
+    if (i + 2 == text.size() || !is_capital(text[i + 2])) return true;
+  }
+  return false;
+}
+
+}  // namespace servogate::program

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace servogate::program {
+
+/// The text of one program file, read-only and shared by all copies of an interpreter: its lines, its labels
+/// and which repeat ends where. Lines count from 0 inside of this room, from 1 for people.
+class Source {
+ public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  Source(std::string name, std::string text);
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+
+  const std::string& name() const noexcept { return name_; }
+  std::uint32_t lines() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
+  /// One line without its line end.
+  std::string_view line(std::uint32_t index) const noexcept;
+  /// Lines that hold a block (not empty, no comment, no tape mark).
+  int blocks() const noexcept { return blocks_; }
+
+  /// Line of a label, kNone when there is none. The first one counts where a label stands twice.
+  std::uint32_t label(std::string_view name) const;
+  /// Line of the ERP that belongs to the RPT of a line and the reverse, kNone where the partner is missing.
+  std::uint32_t repeat_partner(std::uint32_t line) const;
+
+  /// A label that stands a second time.
+  struct Duplicate {
+    std::uint32_t line;
+    std::uint32_t first;
+    std::string_view label;
+  };
+  const std::vector<Duplicate>& duplicates() const noexcept { return duplicates_; }
+
+ private:
+  void index_line(std::uint32_t index, std::vector<std::uint32_t>& open);
+
+  std::string name_;
+  std::string text_;
+  std::vector<std::uint32_t> starts_;
+  std::unordered_map<std::string_view, std::uint32_t> labels_;
+  std::unordered_map<std::uint32_t, std::uint32_t> partners_;
+  std::vector<Duplicate> duplicates_;
+  int blocks_ = 0;
+};
+
+}  // namespace servogate::program

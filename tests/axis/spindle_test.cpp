@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/axis/spindle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "firmware_if/image/interface_map.hpp"
+
+namespace servogate::axis {
+namespace {
+
+/// A CSV drive with an encoder: follows the speed with a short lag, zero mark once a revolution.
+class SpindleRig {
+ public:
+  explicit SpindleRig(SpindleConfig config = {}) {
+    spindle.configure(config, 0);
+    set("enable", true);
+    image.packets.set_bit(image::field(image::kMachineFields, "power_on", image::kMachineBase), true);
+  }
+  void set(std::string_view name, double value) {
+    for (const auto& f : image::kSpindleFields)
+      if (f.name == name) image.packets.set_number(place(f), value);
+  }
+  double get(std::string_view name) const {
+    for (const auto& f : image::kSpindleFields)
+      if (f.name == name) return image.packets.number(place(f));
+    return -1e99;
+  }
+  void cycle() {
+    image.now.t_ns += image.now.period_ns;
+    image::SpindleImage& s = image.spindles[0];
+    const bool on = s.drive_command.power && !fault;
+    speed += ((on ? s.drive_command.velocity_counts_s : 0.0) - speed) * (blocked ? 0.0 : 0.2);
+    if (blocked) speed = 0.0;
+    const double before = position;
+    position += speed * 0.001;
+    const auto revolution = 4096.0;
+    if (s.drive_command.latch_arm &&
+        std::floor((before - mark) / revolution) != std::floor((position - mark) / revolution)) {
+      s.drive.latch_counts = static_cast<std::int64_t>(
+          mark + revolution * std::floor((std::max(before, position) - mark) / revolution));
+      ++s.drive.latch_sequence;
+    }
+    s.drive.online = true;
+    s.drive.state = fault ? image::DriveState::fault
+                    : on  ? image::DriveState::operation_enabled
+                          : image::DriveState::switch_on_disabled;
+    s.drive.error_code = fault ? 0x2310 : 0;
+    s.drive.position_counts = std::llround(position);
+    spindle.read(image);
+    spindle.react(reaction);
+    spindle.command(image);
+    for (const Event& e : spindle.events()) events.push_back(e);
+    const double now = image.spindles[0].command_rpm;
+    steepest = std::max(steepest, std::abs(now - last_command) / 0.001);
+    last_command = now;
+  }
+  void run(int n) {
+    while (n-- > 0) cycle();
+  }
+  static image::Place place(const image::InterfaceField& f) {
+    const std::uint32_t byte = image::spindle_base(0) + f.byte;
+    return {image::Packet::k, f.format,
+            f.format == image::Format::bl ? byte * 8 + f.bit : byte / image::format_size(f.format), 1};
+  }
+
+  image::ProcessImage image;
+  Spindle spindle;
+  image::Reaction reaction = image::Reaction::none;
+  std::vector<Event> events;
+  double speed = 0.0, position = 0.0, mark = 777.0, steepest = 0.0, last_command = 0.0;
+  bool fault = false, blocked = false;
+};
+
+TEST(Spindle, ramps_to_its_speed_and_says_when_it_is_there) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::cw, 1500.0);
+  rig.run(400);
+  EXPECT_FALSE(rig.spindle.at_speed());
+  EXPECT_EQ(rig.get("run"), 1.0);
+  EXPECT_EQ(rig.get("cw"), 1.0);
+  rig.run(400);
+  EXPECT_TRUE(rig.spindle.at_speed());
+  EXPECT_NEAR(rig.spindle.actual_rpm(), 1500.0, 5.0);
+  EXPECT_NEAR(rig.image.spindles[0].drive_command.velocity_counts_s, 1500.0 / 60.0 * 4096.0, 1e-6);
+  EXPECT_LE(rig.steepest, 3000.0 + 1e-6);
+  EXPECT_NEAR(rig.get("actual"), 1500.0, 5.0);
+  EXPECT_EQ(rig.get("at_speed"), 1.0);
+}
+
+TEST(Spindle, turns_the_other_way_through_zero_on_the_same_ramp) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::cw, 1000.0);
+  rig.run(600);
+  rig.spindle.order(SpindleMode::ccw, 1000.0);
+  rig.run(1000);
+  EXPECT_TRUE(rig.spindle.at_speed());
+  EXPECT_NEAR(rig.spindle.actual_rpm(), -1000.0, 5.0);
+  EXPECT_LE(rig.steepest, 3000.0 + 1e-6);
+  rig.spindle.order(SpindleMode::stop, 0.0);
+  rig.run(600);
+  EXPECT_TRUE(rig.spindle.settled());
+  EXPECT_EQ(rig.get("zero_speed"), 1.0);
+  rig.run(1200);
+  EXPECT_FALSE(rig.image.spindles[0].drive_command.power);
+}
+
+TEST(Spindle, takes_the_override_of_the_plc_and_the_limits_of_its_configuration) {
+  SpindleConfig c;
+  c.max_rpm = 2000.0, c.min_rpm = 100.0;
+  SpindleRig rig(c);
+  rig.set("override", 50);
+  rig.spindle.order(SpindleMode::cw, 1000.0);
+  rig.run(1000);
+  EXPECT_NEAR(rig.spindle.actual_rpm(), 500.0, 5.0);
+  rig.set("override", 125);
+  rig.spindle.order(SpindleMode::cw, 1900.0);
+  rig.run(1500);
+  EXPECT_NEAR(rig.spindle.actual_rpm(), 2000.0, 5.0);
+  rig.set("override", 0);
+  rig.spindle.order(SpindleMode::cw, 1.0);
+  EXPECT_EQ(rig.spindle.ordered_rpm(), 100.0);
+}
+
+TEST(Spindle, does_not_turn_without_the_enable_of_the_plc) {
+  SpindleRig rig;
+  rig.set("enable", false);
+  rig.spindle.order(SpindleMode::cw, 1000.0);
+  rig.run(500);
+  EXPECT_EQ(rig.position, 0.0);
+  EXPECT_FALSE(rig.spindle.at_speed());
+  rig.set("enable", true);
+  rig.run(1000);
+  EXPECT_TRUE(rig.spindle.at_speed());
+  rig.set("enable", false);
+  rig.run(1000);
+  EXPECT_TRUE(rig.spindle.zero_speed());
+  EXPECT_TRUE(rig.events.empty());
+}
+
+TEST(Spindle, stops_oriented_at_the_angle_from_standstill_and_out_of_motion) {
+  for (const double rpm : {0.0, 2000.0, -700.0}) {
+    SpindleConfig c;
+    c.orient_angle = 90.0;
+    SpindleRig rig(c);
+    rig.spindle.order(rpm < 0 ? SpindleMode::ccw : SpindleMode::cw, std::abs(rpm));
+    rig.run(1500);
+    rig.spindle.order(SpindleMode::orient, 0.0);
+    rig.run(5000);
+    EXPECT_TRUE(rig.spindle.oriented()) << rpm;
+    EXPECT_TRUE(rig.spindle.settled());
+    const double true_angle = (rig.position - rig.mark) / 4096.0 * 360.0;
+    EXPECT_NEAR(std::remainder(true_angle - 90.0, 360.0), 0.0, 0.5) << rpm;
+    EXPECT_TRUE(rig.events.empty());
+    EXPECT_LE(rig.steepest, 3000.0 + 1e-6);
+  }
+}
+
+TEST(Spindle, names_what_keeps_it_from_its_speed_or_angle) {
+  SpindleRig rig;
+  rig.blocked = true;
+  rig.spindle.order(SpindleMode::cw, 600.0);
+  rig.run(11'000);
+  ASSERT_EQ(rig.events.size(), 1u);
+  EXPECT_EQ(rig.events[0].number, alarm::kSpindleNotAtSpeed);
+  EXPECT_EQ(rig.events[0].limit, 600.0);
+  rig.events.clear();
+  rig.spindle.order(SpindleMode::orient, 0.0);
+  rig.run(11'000);
+  ASSERT_EQ(rig.events.size(), 1u);
+  EXPECT_EQ(rig.events[0].number, alarm::kSpindleOrientTimeout);
+}
+
+TEST(Spindle, reports_the_fault_of_its_drive_once_and_resets_it) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::cw, 600.0);
+  rig.run(100);
+  rig.fault = true;
+  rig.run(100);
+  ASSERT_EQ(rig.events.size(), 1u);
+  EXPECT_EQ(rig.events[0].number, alarm::kSpindleDriveFault);
+  EXPECT_EQ(rig.events[0].value, 0x2310);
+  EXPECT_TRUE(rig.spindle.present(alarm::kSpindleDriveFault));
+  rig.spindle.reset();
+  rig.run(1);
+  EXPECT_TRUE(rig.image.spindles[0].drive_command.reset_fault);
+  rig.fault = false;
+  rig.run(2);
+  EXPECT_FALSE(rig.image.spindles[0].drive_command.reset_fault);
+  EXPECT_FALSE(rig.spindle.present(alarm::kSpindleDriveFault));
+}
+
+TEST(Spindle, goes_off_with_the_reaction_power_off_and_stays_off) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::cw, 600.0);
+  rig.run(500);
+  rig.reaction = image::Reaction::power_off;
+  rig.run(1);
+  EXPECT_FALSE(rig.image.spindles[0].drive_command.power);
+  rig.reaction = image::Reaction::none;
+  rig.run(2000);
+  EXPECT_EQ(rig.spindle.mode(), SpindleMode::stop);
+  EXPECT_FALSE(rig.image.spindles[0].drive_command.power);
+}
+
+TEST(Spindle, keeps_its_angle_exact_over_a_long_run) {
+  SpindleConfig c;
+  c.counts_numerator = 8191;  // 2730.33 counts a revolution
+  c.counts_denominator = 3;
+  Spindle s;
+  s.configure(c, 0);
+  image::ProcessImage image;
+  image.spindles[0].drive.online = true;
+  for (const std::int64_t turns : {0LL, 3LL, 3'000'000'000LL, -3'000'000'000LL}) {
+    image.spindles[0].drive.position_counts = turns * 8191 / 3 + 1000;
+    s.read(image);
+    EXPECT_NEAR(s.angle_deg(), 1000.0 * 3 / 8191 * 360.0, 1e-9) << turns;
+  }
+}
+
+}  // namespace
+}  // namespace servogate::axis

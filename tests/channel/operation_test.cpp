@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+// What operator, PLC and faults do to a running program: hold, override, step, reset, alarm.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "tests/channel/rig.hpp"
+
+namespace servogate::channel::test {
+namespace {
+
+using cycle::Refusal;
+using image::ProcessState;
+using image::RequestKind;
+
+constexpr const char* kLongLine = "N10 G1 X200 Y100 F9000\nN20 X0 Y100\nN30 M30\n";
+
+TEST(Hold, stops_on_the_path_within_the_limits_and_resume_goes_on_from_there) {
+  Rig rig(kLongLine);
+  rig.start();
+  rig.run(0.6);
+  ASSERT_GT(rig.status().feed_mm_s, 100.0);
+  ASSERT_EQ(rig.ask(RequestKind::hold), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::held; }, 1.0));
+  const double stood = rig.x();
+  EXPECT_LT(off_line(rig.path.back(), 0, 0, 200, 100), 1e-6);
+  rig.run(1.0);
+  EXPECT_EQ(rig.x(), stood);
+  EXPECT_EQ(rig.state(), ProcessState::held);
+  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(), 0.0, 1e-9);
+  EXPECT_NEAR(rig.x(1), 100.0, 1e-9);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(Hold, comes_from_the_plc_from_feed_enable_and_from_a_single_axis_just_the_same) {
+  const auto try_it = [](const char* what, auto&& hold, auto&& release) {
+    Rig rig(kLongLine);
+    rig.start();
+    rig.run(0.6);
+    hold(rig.logic);
+    EXPECT_TRUE(rig.until([&] { return rig.state() == ProcessState::held; }, 1.0)) << what;
+    EXPECT_LT(off_line(rig.path.back(), 0, 0, 200, 100), 1e-6) << what;
+    rig.run(0.3);
+    release(rig.logic);
+    EXPECT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << what << rig.alarm_list();
+    EXPECT_EQ(rig.violations(), "") << what;
+  };
+  try_it(
+      "stop bit", [](TestLogic& l) { l.stop_bit = true; }, [](TestLogic& l) { l.stop_bit = false; });
+  try_it(
+      "feed_enable", [](TestLogic& l) { l.feed_enable = false; }, [](TestLogic& l) { l.feed_enable = true; });
+  try_it(
+      "Y.feed_enable", [](TestLogic& l) { l.axis_feed_enable[1] = false; },
+      [](TestLogic& l) { l.axis_feed_enable[1] = true; });
+}
+
+TEST(Hold, in_every_state_of_a_program_keeps_it_able_to_go_on) {
+  // The program waits in a handshake, dwells, moves, waits for a signal; a hold at any moment changes only
+  // times.
+  const char* program =
+      "N5 TMR=0.1\nN10 M8\nN20 G1 X10 F6000\nN30 G4\nN40 X20\nN50 SK10=1\nN60 E1=SK10.IN\nN70 X30 M9\nN80 "
+      "M30\n";
+  const unsigned seed = std::random_device{}();
+  std::printf("seed %u\n", seed);
+  std::mt19937 random(seed);
+  for (int i = 0; i < 25; ++i) {
+    Rig rig(program, "G29");
+    rig.logic.delay_cycles = 50;
+    rig.start();
+    rig.run(0.001 * static_cast<double>(random() % 1200));
+    rig.ask(RequestKind::hold);
+    rig.run(0.001 * static_cast<double>(1 + random() % 400));
+    EXPECT_NE(rig.state(), ProcessState::stopped_by_alarm) << rig.alarm_list();
+    rig.run(0.3);
+    const double stood = rig.x();
+    rig.run(0.3);
+    EXPECT_EQ(rig.x(), stood) << "moves while held, seed " << seed;
+    const Refusal refusal = rig.ask(RequestKind::resume);
+    EXPECT_TRUE(refusal == Refusal::none || rig.state() != ProcessState::held);
+    EXPECT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; }, 10.0))
+        << "seed " << seed << " state " << static_cast<int>(rig.state()) << " x " << rig.x() << ' '
+        << rig.alarm_list();
+    EXPECT_NEAR(rig.x(), 30.0, 1e-9);
+    EXPECT_EQ(rig.violations(), "") << "seed " << seed;
+  }
+}
+
+TEST(Override, acts_at_once_and_zero_holds) {
+  Rig rig("N10 G1 X290 F6000\nN20 M30\n");
+  rig.start();
+  rig.run(0.5);
+  EXPECT_NEAR(rig.status().feed_mm_s, 100.0, 1e-6);
+  for (const double ratio : {0.5, 1.2, 0.05, 1.0}) {
+    ASSERT_EQ(rig.ask(RequestKind::override_feed, ratio), Refusal::none);
+    rig.run(0.5);
+    EXPECT_NEAR(rig.status().feed_mm_s, 100.0 * ratio, 1e-6);
+    EXPECT_EQ(rig.status().override_ratio, ratio);
+  }
+  rig.ask(RequestKind::override_feed, 0.0);
+  rig.run(0.5);
+  EXPECT_EQ(rig.status().feed_mm_s, 0.0);
+  rig.ask(RequestKind::override_feed, 1.0);
+  rig.logic.feed_override = 30;
+  rig.run(0.5);
+  EXPECT_NEAR(rig.status().feed_mm_s, 30.0, 1e-6) << "the PLC's value goes before the operator's";
+  rig.logic.feed_override = 0;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(Override, above_its_limit_or_below_zero_is_refused) {
+  Rig rig(kLongLine);
+  EXPECT_EQ(rig.ask(RequestKind::override_feed, 1.51), Refusal::bad_value);
+  EXPECT_EQ(rig.ask(RequestKind::override_feed, -0.1), Refusal::bad_value);
+}
+
+TEST(Stop, ends_the_program_on_the_path_and_reset_makes_it_startable_anew) {
+  for (const RequestKind kind : {RequestKind::stop, RequestKind::reset}) {
+    Rig rig(kLongLine);
+    rig.start();
+    rig.run(0.6);
+    ASSERT_EQ(rig.ask(kind), Refusal::none);
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::idle; }, 1.0));
+    rig.run(0.002);
+    EXPECT_FALSE(rig.moving());
+    EXPECT_LT(off_line(rig.path.back(), 0, 0, 200, 100), 1e-6);
+    EXPECT_EQ(rig.image().axes[0].owner, image::AxisOwner::none);
+    ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+    EXPECT_NEAR(rig.x(1), 100.0, 1e-9);
+    EXPECT_EQ(rig.violations(), "");
+  }
+}
+
+TEST(Stop, again_and_again_at_random_moments_never_breaks_a_limit_nor_the_next_start) {
+  const unsigned seed = std::random_device{}();
+  std::printf("seed %u\n", seed);
+  std::mt19937 random(seed);
+  Rig rig(
+      "N10 M8\nN20 G1 X30 Y10 F6000\nN30 X35 Y40\nN40 G2 X45 Y50 I45 J40\nN50 SK10=1\nN60 G0 X0 Y0\nN70 "
+      "M30\n");
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_TRUE(rig.until([&] { return rig.ask(RequestKind::start) == Refusal::none; }, 3.0))
+        << "seed " << seed << rig.alarm_list();
+    rig.run(0.001 * static_cast<double>(random() % 1500));
+    rig.ask(random() % 2 == 0 ? RequestKind::stop : RequestKind::reset);
+    ASSERT_TRUE(rig.until([&] { return !rig.moving() && rig.state() != ProcessState::running; }, 3.0))
+        << "seed " << seed << " state " << static_cast<int>(rig.state());
+  }
+  ASSERT_TRUE(rig.finish()) << "seed " << seed << rig.alarm_list();
+  EXPECT_EQ(rig.violations(), "") << "seed " << seed;
+}
+
+TEST(Step, runs_one_block_with_each_press) {
+  Rig rig("N10 G1 X5 F6000\nN20 X10\nN30 M8\nN40 X15\nN50 M30\n");
+  ASSERT_EQ(rig.ask(RequestKind::mode, static_cast<double>(image::Mode::step)), Refusal::none);
+  std::vector<double> stops;
+  ASSERT_EQ(rig.ask(RequestKind::step), Refusal::none);
+  for (int i = 0; i < 10; ++i) {
+    rig.run(1.0);
+    if (stops.empty() || stops.back() != rig.x()) stops.push_back(rig.x());
+    if (rig.state() == ProcessState::ended) break;
+    EXPECT_EQ(rig.ask(RequestKind::step), Refusal::none) << "a press after block " << i;
+  }
+  EXPECT_EQ(rig.state(), ProcessState::ended) << rig.alarm_list();
+  ASSERT_GE(stops.size(), 3u);
+  EXPECT_NEAR(stops[0], 5.0, 1e-9);
+  EXPECT_NEAR(stops[1], 10.0, 1e-9);
+  EXPECT_NEAR(stops[2], 15.0, 1e-9);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(Start, takes_the_place_where_the_axes_stand_after_a_jog) {
+  Rig rig("N10 G91 G1 X10 F6000\nN20 M30\n");
+  ASSERT_EQ(rig.ask(RequestKind::mode, static_cast<double>(image::Mode::manual)), Refusal::none);
+  ASSERT_EQ(rig.ask(RequestKind::jog_increment, 7.0, 0), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return !rig.moving() && rig.x() == 7.0; }, 5.0));
+  rig.run(0.5);
+  ASSERT_EQ(rig.ask(RequestKind::mode, static_cast<double>(image::Mode::automatic)), Refusal::none);
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(), 17.0, 1e-9);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(Program, with_an_error_runs_up_to_it_and_stops_in_the_end_point_of_the_block_before) {
+  Rig rig("N10 G1 X20 F6000\nN20 X40\nN30 X60 Q\nN40 X80\nN50 M30\n");
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }, 10.0))
+      << static_cast<int>(rig.state());
+  const image::AlarmRecord* a = rig.alarm(cycle::alarm::kProgramError);
+  ASSERT_NE(a, nullptr) << rig.alarm_list();
+  EXPECT_EQ(a->line, 3);
+  rig.run(0.5);
+  EXPECT_NEAR(rig.x(), 40.0, 1e-9);
+  ASSERT_EQ(rig.process->feeder().findings().size(), 1u);
+  EXPECT_EQ(rig.process->feeder().findings()[0].line, 3);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(Fault, of_one_drive_stops_the_other_axes_together_on_the_path_and_none_of_them_steps) {
+  Rig rig(kLongLine);
+  rig.start();
+  rig.run(0.6);
+  rig.drives.fault[1] = true;
+  const double before = rig.x();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }, 3.0))
+      << rig.alarm_list();
+  EXPECT_EQ(rig.alarms(axis::alarm::kDriveFault), 1) << rig.alarm_list();
+  EXPECT_GT(rig.x(), before) << "X does not stop dead";
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(Fault, that_asks_for_a_stop_on_the_path_stays_on_it) {
+  // An external alarm of the PLC: all drives stay able.
+  Rig rig(kLongLine);
+  rig.start();
+  rig.run(0.6);
+  rig.logic.external_alarm = 701;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }, 3.0));
+  const image::AlarmRecord* a = rig.alarm(cycle::alarm::kExternalAlarm);
+  ASSERT_NE(a, nullptr) << rig.alarm_list();
+  EXPECT_EQ(a->value, 701.0);
+  for (std::size_t i = rig.path.size() - 400; i < rig.path.size(); ++i)
+    ASSERT_LT(off_line(rig.path[i], 0, 0, 200, 100), 1e-6) << i;
+  EXPECT_EQ(rig.violations(), "");
+  EXPECT_EQ(rig.ask(RequestKind::start), Refusal::alarm_active);
+  rig.ask(RequestKind::reset);
+  rig.run(0.3);
+  EXPECT_EQ(rig.ask(RequestKind::start), Refusal::alarm_active) << "the cause is still there";
+  rig.logic.external_alarm = 0;
+  rig.run(0.3);
+  rig.ask(RequestKind::reset);
+  rig.run(0.3);
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+}
+
+TEST(Fault, of_following_names_the_axis_and_stops_the_rest) {
+  Rig rig(kLongLine);
+  rig.start();
+  rig.run(0.6);
+  rig.drives.stuck[0] = true;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }, 3.0));
+  const image::AlarmRecord* a = rig.alarm(axis::alarm::kFollowingError);
+  ASSERT_NE(a, nullptr) << rig.alarm_list();
+  EXPECT_EQ(a->axis, 0);
+  EXPECT_GT(std::abs(a->value), a->limit);
+}
+
+TEST(EmergencyStop, during_motion_takes_the_power_at_once_and_gives_it_back_only_when_asked) {
+  Rig rig(kLongLine);
+  rig.start();
+  rig.run(0.6);
+  rig.logic.estop_ok = false;
+  rig.run(0.003);
+  for (int a = 0; a < kAxes; ++a)
+    EXPECT_FALSE(rig.image().axes[static_cast<std::size_t>(a)].drive_command.power) << "axis " << a;
+  EXPECT_EQ(rig.alarms(cycle::alarm::kEmergencyStop), 1) << rig.alarm_list();
+  rig.run(0.5);
+  EXPECT_EQ(rig.state(), ProcessState::stopped_by_alarm);
+  rig.logic.estop_ok = true;
+  rig.run(0.5);
+  for (int a = 0; a < kAxes; ++a)
+    EXPECT_FALSE(rig.image().axes[static_cast<std::size_t>(a)].drive_command.power)
+        << "closing the chain alone switches nothing on";
+  EXPECT_EQ(rig.ask(RequestKind::start), Refusal::emergency_stop);
+  EXPECT_EQ(rig.ask(RequestKind::reset), Refusal::none);
+  EXPECT_EQ(rig.ask(RequestKind::power, 1.0), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.image().axes[0].enabled; }, 2.0)) << rig.alarm_list();
+}
+
+}  // namespace
+}  // namespace servogate::channel::test

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/channel/rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/image/interface_map.hpp"
+
+namespace servogate::channel::test {
+
+using image::field;
+using image::Format;
+using image::Place;
+using image::RequestKind;
+
+namespace {
+
+constexpr std::uint32_t kProcess = image::process_base(0);
+constexpr Place nc(std::string_view name) {
+  for (const image::InterfaceField& f : image::kProcessFields)
+    if (f.name == name)
+      return {image::Packet::k, f.format,
+              f.format == Format::bl ? (kProcess + f.byte) * 8 + f.bit
+                                     : (kProcess + f.byte) / image::format_size(f.format),
+              1};
+  return {};
+}
+constexpr char kLetters[] = {'M', 'S', 'T', 'H'};
+constexpr Place kStrobes[] = {nc("m_strobe"), nc("s_strobe"), nc("t_strobe"), nc("h_strobe")};
+constexpr Place kAcks[] = {nc("m_ack"), nc("s_ack"), nc("t_ack"), nc("h_ack")};
+constexpr Place kCodes[] = {nc("m_code"), nc("s_value"), nc("t_number"), nc("h_code")};
+
+}  // namespace
+
+void IdealDrives::receive(image::ProcessImage& image) noexcept {
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    image::DriveFeedback& f = image.axes[i].drive;
+    const bool on = commands_[i].power && !fault[i] && !commands_[i].quick_stop;
+    if (on && !stuck[i]) counts_[i] = pipe_[i][0];
+    pipe_[i] = {pipe_[i][1], commands_[i].position_counts};
+    if (!on) pipe_[i] = {counts_[i], counts_[i]};
+    f.online = true;
+    f.state = fault[i]                  ? image::DriveState::fault
+              : commands_[i].quick_stop ? image::DriveState::quick_stop_active
+              : on                      ? image::DriveState::operation_enabled
+                                        : image::DriveState::switch_on_disabled;
+    f.error_code = fault[i] ? 0x2310 : 0;
+    f.position_counts = counts_[i];
+  }
+  image::DriveFeedback& s = image.spindles[0].drive;
+  s.online = true;
+  s.state = spindle_.power ? image::DriveState::operation_enabled : image::DriveState::switch_on_disabled;
+  s.velocity_counts_s = spindle_.power ? spindle_.velocity_counts_s : 0.0;
+  s.position_counts += static_cast<std::int64_t>(s.velocity_counts_s * image.now.period_s());
+}
+
+void IdealDrives::send(image::ProcessImage& image) noexcept {
+  for (std::size_t i = 0; i < kAxes; ++i) commands_[i] = image.axes[i].drive_command;
+  spindle_ = image.spindles[0].drive_command;
+}
+
+void TestLogic::word(image::ProcessImage& image, int n) {
+  image::Packets& k = image.packets;
+  int& waited = waited_[static_cast<std::size_t>(n)];
+  if (!k.bit(kStrobes[n])) {
+    if (waited > 0) strobes.back().acknowledged_s = waited * image.now.period_s();
+    waited = 0;
+    k.set_bit(kAcks[n], false);
+    if (n == 0) k.set_bit(nc("m_unknown"), false);
+    return;
+  }
+  const double code = k.number(kCodes[n]);
+  if (waited++ == 0) {
+    const bool moving = std::any_of(image.axes.begin(), image.axes.begin() + kAxes,
+                                    [](const image::AxisImage& a) { return a.moving; });
+    strobes.push_back({kLetters[n], code, n == 2 ? k.number(nc("t_corrector")) : 0.0, image.axes[0].command,
+                       moving, image.now.number});
+  }
+  const bool wanted = n == 0   ? !never.contains(code)
+                      : n == 1 ? acknowledge_s
+                      : n == 2 ? acknowledge_t
+                               : acknowledge_h;
+  if (wanted && waited > delay_cycles) {
+    k.set_bit(kAcks[n], true);
+    if (n == 0) k.set_bit(nc("m_unknown"), unknown.contains(code));
+  }
+}
+
+void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
+  image::Packets& k = image.packets;
+  k.set_bit(field(image::kMachineFields, "estop_ok", image::kMachineBase), estop_ok);
+  k.set_bit(field(image::kMachineFields, "power_on", image::kMachineBase), estop_ok && power_on);
+  for (int a = 0; a < kAxes; ++a) {
+    k.set_bit(image::at(field(image::kAxisFields, "enable"), image::axis_base(a)), true);
+    k.set_bit(image::at(field(image::kAxisFields, "feed_enable"), image::axis_base(a)),
+              axis_feed_enable[static_cast<std::size_t>(a)]);
+  }
+  k.set_bit(image::at(field(image::kSpindleFields, "enable"), image::spindle_base(0)), true);
+  k.set_bit(nc("feed_enable"), feed_enable);
+  k.set_bit(nc("read_in_enable"), read_in_enable);
+  k.set_bit(nc("optional_stop"), optional_stop);
+  k.set_bit(nc("start"), start_bit);
+  k.set_bit(nc("stop"), stop_bit);
+  k.set_bit(nc("reset"), reset_bit);
+  k.set_number(nc("feed_override"), feed_override);
+  k.set_number(nc("external_alarm"), external_alarm);
+  for (int n = 0; n < 4; ++n) word(image, n);
+}
+
+Rig::Rig(std::string_view program, std::string_view power_on, double handshake_timeout_s) : text_(program) {
+  ProcessConfig config;
+  config.path.axis_count = kAxes;
+  config.handshake_timeout_s = handshake_timeout_s;
+  cycle::CycleParts parts;
+  const char* letters[] = {"X", "Y", "Z"};
+  for (int a = 0; a < kAxes; ++a) {
+    config.axes.machine.push_back(a);
+    config.path.limits[static_cast<std::size_t>(a)] = {kLimits.velocity, kLimits.acceleration, kLimits.jerk};
+    axis::AxisConfig c;
+    c.letter = letters[a];
+    c.limits = kLimits;
+    c.counts_numerator = 100000;
+    c.homing.method = axis::HomingMethod::none;
+    c.homing.position = 0.0;
+    c.in_position_window = 0.002;
+    parts.axes.push_back(c);
+    program::MachineModel::Axis m;
+    m.letter = letters[a];
+    m.travel_min = -300;
+    m.travel_max = 300;
+    m.rapid = kLimits.velocity;
+    model_.axes.push_back(m);
+  }
+  model_.power_on = {"G94", "G97", "G90", "G71", std::string(power_on)};
+  model_.variables = {{"ERF", 0.01}, {"MCD", 2}};
+  process = std::make_unique<Process>(config);
+  process->load([this](const program::Position& at) {
+    return program::Interpreter("nc110", model_, {}, "test.nc", text_, {}, at);
+  });
+  parts.devices = {&drives};
+  parts.logic = &logic;
+  parts.processes = {process.get()};
+  parts.spindles.emplace_back();
+  cycle = std::make_unique<cycle::Cycle>(std::move(parts));
+  run(0.01);
+  EXPECT_EQ(ask(RequestKind::power, 1.0), cycle::Refusal::none);
+  EXPECT_TRUE(until([this] {
+    const auto axes = cycle->axes();
+    return std::all_of(axes.begin(), axes.end(), [](const axis::Axis& a) { return a.motion_permitted(); });
+  }));
+  EXPECT_EQ(ask(RequestKind::mode, static_cast<double>(image::Mode::automatic)), cycle::Refusal::none);
+}
+
+void Rig::step() {
+  process->work();
+  ASSERT_TRUE(cycle->step());
+  std::array<double, kAxes> at{};
+  for (int a = 0; a < kAxes; ++a) at[static_cast<std::size_t>(a)] = x(a);
+  path.push_back(at);
+  const std::size_t n = path.size();
+  const double dt = image().now.period_s();
+  for (std::size_t a = 0; a < kAxes && n >= 4 && violations_.size() < 400; ++a) {
+    if (!image().axes[a].enabled) continue;
+    const double p0 = path[n - 4][a], p1 = path[n - 3][a], p2 = path[n - 2][a], p3 = path[n - 1][a];
+    const double values[] = {std::abs(p3 - p2) / dt, std::abs(p3 - 2 * p2 + p1) / (dt * dt),
+                             std::abs(p3 - 3 * p2 + 3 * p1 - p0) / (dt * dt * dt)};
+    const double limits[] = {kLimits.velocity, kLimits.acceleration, kLimits.jerk};
+    for (int i = 0; i < 3; ++i)
+      if (values[i] > limits[i] * 1.001)
+        violations_ += "axis " + std::to_string(a) + " order " + std::to_string(i + 1) + " at " +
+                       std::to_string(now()) + " s: " + std::to_string(values[i]) + "; ";
+  }
+  if (each) each();
+}
+
+void Rig::run(double seconds) {
+  for (long n = std::lround(seconds * 1000.0); n > 0; --n) step();
+}
+
+bool Rig::until(const std::function<bool()>& met, double patience_s) {
+  const double end = now() + patience_s;
+  while (!met()) {
+    if (now() > end) return false;
+    step();
+  }
+  return true;
+}
+
+cycle::Refusal Rig::ask(RequestKind kind, double value, int axis) {
+  image::Request r;
+  r.id = next_id_++;
+  r.kind = kind;
+  r.value = value;
+  r.axis = static_cast<std::int8_t>(axis);
+  EXPECT_TRUE(cycle->post(r));
+  step();
+  image::Answer answer;
+  if (!cycle->take_answer(answer) || answer.id != r.id) ADD_FAILURE() << "no answer";
+  return static_cast<cycle::Refusal>(answer.refusal);
+}
+
+bool Rig::finish(double patience_s) {
+  start();
+  EXPECT_EQ(started_, cycle::Refusal::none);
+  return until([this] { return state() == image::ProcessState::ended; }, patience_s);
+}
+
+bool Rig::moving() const {
+  return std::any_of(image().axes.begin(), image().axes.begin() + kAxes,
+                     [](const image::AxisImage& a) { return a.moving; });
+}
+
+int Rig::alarms(image::AlarmNumber number) const {
+  const auto history = cycle->alarms().history();
+  return static_cast<int>(std::count_if(history.begin(), history.end(),
+                                        [&](const image::AlarmRecord& r) { return r.number == number; }));
+}
+
+const image::AlarmRecord* Rig::alarm(image::AlarmNumber number) {
+  history_ = cycle->alarms().history();
+  for (const image::AlarmRecord& r : history_)
+    if (r.number == number) return &r;
+  return nullptr;
+}
+
+std::string Rig::alarm_list() const {
+  std::string list;
+  for (const image::AlarmRecord& r : cycle->alarms().history())
+    list += std::to_string(r.number) + " line " + std::to_string(r.line) + "; ";
+  return list;
+}
+
+double off_line(const std::array<double, kAxes>& p, double ax, double ay, double bx, double by) {
+  const double dx = bx - ax, dy = by - ay;
+  return std::abs((p[0] - ax) * dy - (p[1] - ay) * dx) / std::hypot(dx, dy);
+}
+
+}  // namespace servogate::channel::test

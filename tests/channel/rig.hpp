@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kernel/channel/process.hpp"
+#include "kernel/cycle/alarm_table.hpp"
+#include "kernel/cycle/executive.hpp"
+
+namespace servogate::channel::test {
+
+inline constexpr int kAxes = 3;
+inline constexpr axis::MotionLimits kLimits{500.0, 1000.0, 10000.0};
+
+/// Drives that follow each command exactly two cycles later, like a fast bus.
+class IdealDrives final : public image::CycleDevice {
+ public:
+  void receive(image::ProcessImage& image) noexcept override;
+  void send(image::ProcessImage& image) noexcept override;
+  std::array<bool, kAxes> fault{};  ///< falls out of Operation enabled
+  std::array<bool, kAxes> stuck{};  ///< does not move any more, and says so
+
+ private:
+  std::array<std::array<std::int64_t, 2>, kAxes> pipe_{};
+  std::array<image::DriveCommand, kAxes> commands_{};
+  std::array<std::int64_t, kAxes> counts_{};
+  image::DriveCommand spindle_;
+};
+
+/// One strobe as the PLC saw it.
+struct Strobe {
+  char word;  ///< M S T H
+  double code;
+  double value;  ///< corrector of T
+  double x;      ///< set-point of X at that moment
+  bool moving;   ///< some axis was
+  std::int64_t cycle;
+  double acknowledged_s = 0.0;  ///< how long the strobe stood
+};
+
+/// The machine builder's logic: permits everything and acknowledges what it is told to.
+class TestLogic final : public cycle::Logic {
+ public:
+  void scan(image::ProcessImage& image, cycle::Notices& notices) noexcept override;
+  int delay_cycles = 3;      ///< from strobe to acknowledge
+  std::set<double> never;    ///< M codes that are never acknowledged
+  std::set<double> unknown;  ///< M codes that are acknowledged as unknown
+  bool acknowledge_s = true, acknowledge_t = true, acknowledge_h = true;
+  bool estop_ok = true, power_on = true, feed_enable = true, read_in_enable = true, optional_stop = false;
+  std::array<bool, kAxes> axis_feed_enable{true, true, true};
+  int feed_override = 0;
+  bool start_bit = false, stop_bit = false, reset_bit = false;
+  int external_alarm = 0;
+  std::vector<Strobe> strobes;
+
+ private:
+  void word(image::ProcessImage& image, int n);
+  std::array<int, 4> waited_{};
+};
+
+/// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
+/// 0.
+class Rig {
+ public:
+  explicit Rig(std::string_view program, std::string_view power_on = "G27", double handshake_timeout_s = 0.5);
+
+  void run(double seconds);
+  bool until(const std::function<bool()>& met, double patience_s = 30.0);
+  cycle::Refusal ask(image::RequestKind kind, double value = 0.0, int axis = -1);
+  void start() { started_ = ask(image::RequestKind::start); }
+  /// Starts the program and runs it to its end: true when it ends by itself.
+  bool finish(double patience_s = 60.0);
+
+  const image::ProcessImage& image() const { return cycle->image(); }
+  const image::ProcessStatus& status() const { return image().processes[0]; }
+  image::ProcessState state() const { return status().state; }
+  double x(int axis = 0) const { return image().axes[static_cast<std::size_t>(axis)].command; }
+  double now() const { return image().now.seconds(); }
+  bool moving() const;
+  int alarms(image::AlarmNumber number) const;
+  const image::AlarmRecord* alarm(image::AlarmNumber number);
+  std::string alarm_list() const;
+  bool bit(image::Place place) const { return image().packets.bit(place); }
+  /// What of the limits has been exceeded so far; empty: nothing.
+  const std::string& violations() const { return violations_; }
+  cycle::Refusal started() const { return started_; }
+
+  IdealDrives drives;
+  TestLogic logic;
+  std::unique_ptr<Process> process;
+  std::unique_ptr<cycle::Cycle> cycle;
+  std::function<void()> each;                   ///< after every cycle
+  std::vector<std::array<double, kAxes>> path;  ///< set-points of all cycles
+
+ private:
+  void step();
+  std::string violations_;
+  std::string text_;
+  program::MachineModel model_;
+  std::vector<image::AlarmRecord> history_;
+  std::uint64_t next_id_ = 1;
+  cycle::Refusal started_ = cycle::Refusal::none;
+};
+
+/// A place of packet K or A from its format and index.
+inline image::Place sk(std::uint32_t index, image::Format format = image::Format::bl) {
+  return {image::Packet::k, format, index, 1};
+}
+inline image::Place sa(std::uint32_t index) { return {image::Packet::a, image::Format::bl, index, 1}; }
+
+/// Distance of a point to the straight line from a to b in the plane of X and Y.
+double off_line(const std::array<double, kAxes>& p, double ax, double ay, double bx, double by);
+
+}  // namespace servogate::channel::test

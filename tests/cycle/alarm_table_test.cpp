@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/cycle/alarm_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "kernel/cycle/alarms.hpp"
+
+namespace servogate::cycle {
+namespace {
+
+using image::Reaction;
+
+TEST(AlarmTable, has_each_number_and_each_name_once_and_every_text_in_both_languages) {
+  std::set<std::string_view> ids;
+  image::AlarmNumber last = 0;
+  for (const AlarmRow& row : alarm_table()) {
+    EXPECT_GT(row.number, last);
+    last = row.number;
+    EXPECT_TRUE(ids.insert(row.text.id).second) << row.text.id;
+    for (const std::string_view t : {row.text.english, row.text.russian, row.remedy_en, row.remedy_ru})
+      EXPECT_FALSE(t.empty()) << row.number;
+    EXPECT_NE(row.text.english, row.text.russian) << row.number;
+    EXPECT_NE(row.reaction, Reaction::none) << row.number;
+    EXPECT_EQ(find_alarm(row.number), &row);
+  }
+  EXPECT_EQ(find_alarm(999), nullptr);
+  EXPECT_EQ(find_alarm(1099), nullptr);
+}
+
+std::multiset<std::string> placeholders(std::string_view text) {
+  std::multiset<std::string> out;
+  for (std::size_t i = 0; i + 2 < text.size(); ++i)
+    if (text[i] == '{' && text[i + 2] == '}') out.emplace(text.substr(i, 3));
+  return out;
+}
+
+TEST(AlarmTable, says_the_same_figures_in_both_languages) {
+  for (const AlarmRow& row : alarm_table()) {
+    EXPECT_EQ(placeholders(row.text.english), placeholders(row.text.russian)) << row.number;
+    EXPECT_EQ(placeholders(row.remedy_en), placeholders(row.remedy_ru)) << row.number;
+  }
+}
+
+TEST(AlarmTable, has_a_row_for_every_number_that_the_code_raises) {
+  const std::string folder = SERVOGATE_SOURCE_DIR;
+  int numbers = 0;
+  for (const char* file : {"/kernel/axis/axis_alarms.hpp", "/kernel/cycle/alarm_table.hpp"}) {
+    std::ifstream in(folder + file);
+    ASSERT_TRUE(in) << file;
+    for (std::string line; std::getline(in, line);) {
+      const std::size_t equals = line.find(" = ");
+      if (line.find("constexpr AlarmNumber") == std::string::npos || equals == std::string::npos) continue;
+      ++numbers;
+      const auto number = static_cast<image::AlarmNumber>(std::stoi(line.substr(equals + 3)));
+      EXPECT_NE(find_alarm(number), nullptr) << line;
+    }
+  }
+  EXPECT_EQ(numbers, std::ssize(alarm_table()));
+}
+
+TEST(AlarmTable, is_the_source_of_the_manual_page) {
+  std::ifstream in(std::string(SERVOGATE_SOURCE_DIR) + "/docs/alarms.md", std::ios::binary);
+  std::stringstream page;
+  page << in.rdbuf();
+  if (page.str() == alarms_page()) return;
+  const std::string made = std::string(SERVOGATE_BINARY_DIR) + "/alarms.md";
+  std::ofstream(made, std::ios::binary) << alarms_page();
+  FAIL() << "docs/alarms.md differs from the table; the page as it should be: " << made;
+}
+
+TEST(AlarmText, names_axis_value_limit_and_unit_in_both_languages) {
+  image::AlarmRecord r;
+  r.number = axis::alarm::kFollowingError;
+  r.axis = 1;
+  r.value = 1.2399;
+  r.limit = 1.0;
+  r.detail1 = 103.25;
+  r.detail2 = 710.0;
+  AlarmNames names;
+  names.axes = {"X", "Y"};
+  EXPECT_EQ(render(r, names, text::Language::english),
+            "Y: following error 1.2399 mm, allowed 1 mm, at 103.25 mm/s and 710 ‰ of the rated torque");
+  EXPECT_EQ(render(r, names, text::Language::russian),
+            "Y: ошибка слежения 1.2399 мм, допустимо 1 мм, при скорости 103.25 мм/с и моменте 710 ‰ от "
+            "номинального");
+  names.units = {"mm", "°"};
+  EXPECT_EQ(render(r, names, text::Language::english),
+            "Y: following error 1.2399 °, allowed 1 °, at 103.25 °/s and 710 ‰ of the rated torque");
+}
+
+TEST(AlarmText, decodes_status_word_and_error_code) {
+  image::AlarmRecord r;
+  r.number = axis::alarm::kDriveFault;
+  r.axis = 0;
+  r.statusword = 0x0218;
+  r.error_code = 0x8611;
+  AlarmNames names;
+  names.axes = {"X"};
+  EXPECT_EQ(render(r, names, text::Language::english),
+            "X: drive fault, error 0x8611, status word 0x0218 fault");
+  names.error_text = [](int, int, std::uint16_t code, text::Language) {
+    return code == 0x8611 ? std::string("following error") : std::string();
+  };
+  EXPECT_EQ(render(r, names, text::Language::english),
+            "X: drive fault, error 0x8611 (following error), status word 0x0218 fault");
+  r.number = axis::alarm::kDriveRefuses;
+  r.value = static_cast<double>(image::DriveState::ready_to_switch_on);
+  r.limit = static_cast<double>(image::DriveState::switched_on);
+  r.detail1 = 500;
+  r.statusword = 0x0221;
+  EXPECT_EQ(render(r, names, text::Language::english),
+            "X: the drive does not go from ready to switch on to switched on (waited 500 ms), status word "
+            "0x0221 ready to switch on, no main voltage");
+}
+
+TEST(AlarmText, knows_every_state_of_the_status_word) {
+  const std::pair<std::uint16_t, const char*> kStates[] = {
+      {0x0000, "not ready to switch on"}, {0x0040, "switch on disabled"},
+      {0x0031, "ready to switch on"},     {0x0033, "switched on"},
+      {0x0037, "operation enabled"},      {0x0017, "quick stop active"},
+      {0x001F, "fault reaction active"},  {0x0018, "fault"}};
+  for (const auto& [word, state] : kStates) {
+    const std::string text = statusword_text(word, text::Language::english);
+    EXPECT_EQ(text.substr(7), state) << text;
+  }
+  EXPECT_EQ(statusword_text(0x08B7, text::Language::english),
+            "0x08B7 operation enabled, warning, internal limit");
+}
+
+TEST(AlarmText, takes_the_machine_builders_words_for_an_alarm_of_the_plc) {
+  image::AlarmRecord r;
+  r.number = alarm::kExternalAlarm;
+  r.value = 7;
+  AlarmNames names;
+  EXPECT_EQ(render(r, names, text::Language::english), "alarm 7 of the machine");
+  names.external_text = [](int n, text::Language) {
+    return n == 7 ? std::string("no lubrication") : std::string();
+  };
+  EXPECT_EQ(render(r, names, text::Language::english), "no lubrication");
+}
+
+TEST(AlarmText, leaves_no_placeholder_open_in_any_alarm) {
+  for (const AlarmRow& row : alarm_table())
+    for (const auto language : {text::Language::english, text::Language::russian}) {
+      image::AlarmRecord r;
+      r.number = row.number;
+      EXPECT_EQ(render(r, {}, language).find('{'), std::string::npos) << row.number;
+      EXPECT_EQ(render_remedy(r, {}, language).find('{'), std::string::npos) << row.number;
+      EXPECT_FALSE(render_remedy(r, {}, language).empty());
+    }
+}
+
+}  // namespace
+}  // namespace servogate::cycle

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/cycle/executive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "firmware_if/image/interface_map.hpp"
+
+namespace servogate::cycle {
+namespace {
+
+using image::Format;
+using image::Packet;
+using image::Place;
+using image::Request;
+using image::RequestKind;
+
+/// An input and an output of packet A; says what was done in which order.
+class Io final : public image::CycleDevice {
+ public:
+  explicit Io(std::string& order) : order_(order) {}
+  void receive(image::ProcessImage& image) noexcept override {
+    order_ += 'r';
+    image.packets.set_bit({Packet::a, Format::bl, 0, 1}, input);
+  }
+  void send(image::ProcessImage& image) noexcept override {
+    order_ += 's';
+    output = image.packets.bit({Packet::a, Format::bl, 8, 1});
+  }
+  bool input = false, output = false;
+
+ private:
+  std::string& order_;
+};
+
+/// Copies the input to the output; permits everything.
+class CopyLogic final : public Logic {
+ public:
+  explicit CopyLogic(std::string& order) : order_(order) {}
+  void scan(image::ProcessImage& image, Notices&) noexcept override {
+    order_ += 'l';
+    seen = image.packets.bit({Packet::a, Format::bl, 0, 1});
+    image.packets.set_bit({Packet::a, Format::bl, 8, 1}, seen);
+    image.packets.set_bit(image::field(image::kMachineFields, "estop_ok", image::kMachineBase), estop_ok);
+  }
+  bool seen = false, estop_ok = true;
+
+ private:
+  std::string& order_;
+};
+
+/// A process with nothing to do.
+class IdleProcess final : public ProcessInCycle {
+ public:
+  void published(std::span<std::uint64_t>) const noexcept override {}
+  void interpolate(ProcessContext&) noexcept override {}
+  bool order(const Request&, ProcessContext&) noexcept override { return true; }
+  bool loaded() const noexcept override { return false; }
+};
+
+class Bench {
+ public:
+  Bench() : io(order), logic(order) {
+    CycleParts parts;
+    parts.devices = {&io};
+    parts.logic = &logic;
+    parts.processes = {&process};
+    cycle = std::make_unique<Cycle>(std::move(parts));
+  }
+  image::Answer ask(Request r) {
+    EXPECT_TRUE(cycle->post(r));
+    cycle->step();
+    image::Answer answer;
+    EXPECT_TRUE(cycle->take_answer(answer));
+    EXPECT_EQ(answer.id, r.id);
+    return answer;
+  }
+  static Request place_request(RequestKind kind, Place place, double value, image::Asker asker) {
+    Request r;
+    r.id = 77;
+    r.kind = kind;
+    r.asker = asker;
+    r.packet = static_cast<std::uint8_t>(place.packet);
+    r.format = static_cast<std::uint8_t>(place.format);
+    r.index = place.index;
+    r.length = place.length;
+    r.value = value;
+    return r;
+  }
+  int alarms(image::AlarmNumber number) const {
+    const auto history = cycle->alarms().history();
+    return static_cast<int>(std::count_if(history.begin(), history.end(),
+                                          [&](const image::AlarmRecord& r) { return r.number == number; }));
+  }
+  std::string order;
+  Io io;
+  CopyLogic logic;
+  IdleProcess process;
+  std::unique_ptr<Cycle> cycle;
+};
+
+constexpr Place kInput{Packet::a, Format::bl, 0, 1};
+constexpr Place kOutput{Packet::a, Format::bl, 8, 1};
+constexpr Place kWord{Packet::k, Format::in, 10, 1};
+
+TEST(Cycle, receives_then_runs_the_logic_then_sends_and_counts_its_time) {
+  Bench b;
+  b.io.input = true;
+  ASSERT_TRUE(b.cycle->step());
+  EXPECT_EQ(b.order, "rls");
+  EXPECT_TRUE(b.io.output) << "the input reaches the output in the same cycle";
+  ASSERT_TRUE(b.cycle->step());
+  EXPECT_EQ(b.cycle->count(), 2);
+  EXPECT_EQ(b.cycle->image().now.number, 1);
+  EXPECT_EQ(b.cycle->image().now.t_ns, image::kMillisecond);
+}
+
+TEST(Cycle, forces_an_input_before_the_logic_and_an_output_after_it_until_released) {
+  Bench b;
+  const auto scenario = image::Asker::scenario;
+  EXPECT_EQ(b.ask(Bench::place_request(RequestKind::force, kInput, 1.0, scenario)).refusal, 0);
+  b.cycle->step();
+  EXPECT_TRUE(b.logic.seen) << "forced on although the input is off";
+  EXPECT_TRUE(b.io.output);
+  EXPECT_EQ(b.ask(Bench::place_request(RequestKind::force, kOutput, 0.0, scenario)).refusal, 0);
+  b.cycle->step();
+  EXPECT_TRUE(b.logic.seen);
+  EXPECT_FALSE(b.io.output) << "forced off although the logic sets it";
+  // A second force of the same place replaces the first.
+  b.ask(Bench::place_request(RequestKind::force, kInput, 0.0, scenario));
+  b.io.input = true;
+  b.cycle->step();
+  EXPECT_FALSE(b.logic.seen);
+  b.ask(Bench::place_request(RequestKind::release_force, kInput, 0.0, scenario));
+  b.ask(Bench::place_request(RequestKind::release_force, kOutput, 0.0, scenario));
+  b.cycle->step();
+  EXPECT_TRUE(b.logic.seen);
+  EXPECT_TRUE(b.io.output);
+}
+
+TEST(Cycle, lets_an_operator_set_a_free_word_but_not_the_interface_nor_a_signal) {
+  Bench b;
+  const auto operator_ = image::Asker::command_line;
+  EXPECT_EQ(b.ask(Bench::place_request(RequestKind::set_place, kWord, 123.0, operator_)).refusal, 0);
+  EXPECT_EQ(b.cycle->image().packets.number(kWord), 123.0);
+  const Place interface = image::field(image::kMachineFields, "estop_ok", image::kMachineBase);
+  EXPECT_EQ(b.ask(Bench::place_request(RequestKind::set_place, interface, 1.0, operator_)).refusal,
+            static_cast<int>(Refusal::place_not_writable));
+  EXPECT_EQ(b.ask(Bench::place_request(RequestKind::set_place, kInput, 1.0, operator_)).refusal,
+            static_cast<int>(Refusal::place_not_writable));
+  const Place outside{Packet::k, Format::in, 0x7fffffff, 1};
+  EXPECT_EQ(b.ask(Bench::place_request(RequestKind::set_place, outside, 1.0, operator_)).refusal,
+            static_cast<int>(Refusal::place_outside));
+}
+
+TEST(Cycle, takes_a_bounded_number_of_requests_each_cycle_and_answers_all_in_order) {
+  Bench b;
+  Request r;
+  r.kind = RequestKind::acknowledge;
+  int posted = 0;
+  for (r.id = 1; b.cycle->post(r) && r.id < 100000; ++r.id) ++posted;
+  EXPECT_GE(posted, 256) << "the queue holds what its contract says";
+  EXPECT_LT(posted, 100000) << "and is bounded: post() says no";
+  std::uint64_t next = 1;
+  for (int i = 0; i < posted; ++i) {
+    b.cycle->step();
+    image::Answer answer;
+    int answers = 0;
+    for (; b.cycle->take_answer(answer); ++answers) ASSERT_EQ(answer.id, next++);
+    ASSERT_LE(answers, kRequestsPerCycle);
+  }
+  EXPECT_EQ(next, static_cast<std::uint64_t>(posted) + 1);
+}
+
+TEST(Cycle, goes_on_when_nobody_takes_its_answers) {
+  Bench b;
+  Request r;
+  r.kind = RequestKind::acknowledge;
+  for (int i = 0; i < 5000; ++i) {
+    r.id = static_cast<std::uint64_t>(i);
+    b.cycle->post(r);
+    ASSERT_TRUE(b.cycle->step());
+  }
+  EXPECT_EQ(b.cycle->count(), 5000);
+}
+
+TEST(Cycle, makes_an_alarm_of_a_long_overrun_and_none_of_a_short_one) {
+  Bench b;
+  b.cycle->step();
+  b.cycle->note_overrun(3 * image::kMillisecond / 2);
+  b.cycle->step();
+  EXPECT_EQ(b.alarms(alarm::kOverrunLimit), 0);
+  b.cycle->note_overrun(5 * image::kMillisecond);
+  b.cycle->step();
+  ASSERT_EQ(b.alarms(alarm::kOverrunLimit), 1);
+  const image::AlarmRecord r = b.cycle->alarms().history().back();
+  EXPECT_DOUBLE_EQ(r.value, 5.0);
+  EXPECT_DOUBLE_EQ(r.limit, 2.0);
+}
+
+TEST(Cycle, says_once_that_the_emergency_stop_opened_and_takes_it_back_only_when_closed) {
+  Bench b;
+  b.cycle->step();
+  b.logic.estop_ok = false;
+  for (int i = 0; i < 10; ++i) b.cycle->step();
+  EXPECT_EQ(b.alarms(alarm::kEmergencyStop), 1);
+  Request reset;
+  reset.id = 5;
+  reset.kind = RequestKind::reset;
+  b.ask(reset);
+  EXPECT_GT(b.cycle->alarms().active_count(), 0);
+  b.logic.estop_ok = true;
+  b.cycle->step();
+  b.ask(reset);
+  EXPECT_EQ(b.cycle->alarms().active_count(), 0);
+}
+
+TEST(Cycle, replays_recorded_inputs_to_the_same_image) {
+  struct Tape final : InputTap, InputSource {
+    std::vector<CycleInputs> cycles;
+    std::size_t at = 0;
+    void take(const CycleInputs& inputs) noexcept override { cycles.push_back(inputs); }
+    bool give(CycleInputs& inputs) noexcept override {
+      if (at == cycles.size()) return false;
+      inputs = cycles[at++];
+      return true;
+    }
+  } tape;
+  std::mt19937 random(3);
+  std::vector<std::pair<bool, double>> live, replayed;
+  {
+    Bench b;
+    b.cycle->attach(static_cast<InputTap*>(&tape));
+    for (int i = 0; i < 500; ++i) {
+      b.io.input = random() % 2 == 0;
+      b.cycle->post(Bench::place_request(RequestKind::set_place, kWord, static_cast<double>(random() % 1000),
+                                         image::Asker::page));
+      if (random() % 10 == 0) b.cycle->note_overrun(7 * image::kMillisecond);
+      b.cycle->step();
+      live.emplace_back(b.logic.seen, b.cycle->image().packets.number(kWord));
+      image::Answer answer;
+      while (b.cycle->take_answer(answer)) {
+      }
+    }
+    EXPECT_GT(b.alarms(alarm::kOverrunLimit), 0);
+  }
+  Bench b;
+  b.cycle->attach(static_cast<InputSource*>(&tape));
+  while (b.cycle->step()) replayed.emplace_back(b.logic.seen, b.cycle->image().packets.number(kWord));
+  EXPECT_EQ(live, replayed);
+  EXPECT_GT(live.back().second, 0.0);
+  EXPECT_GT(b.alarms(alarm::kOverrunLimit), 0) << "late cycles are inputs too";
+  EXPECT_EQ(b.order.find('r'), std::string::npos) << "no device is asked in a replay";
+}
+
+TEST(Snapshot, is_never_torn_while_one_thread_writes_and_others_read) {
+  struct Value {
+    std::array<std::uint64_t, 201> words;
+    std::uint16_t odd;  // a size that is no multiple of a word
+  };
+  Snapshot<Value> snapshot;
+  std::atomic<bool> stop{false};
+  std::atomic<long> torn{0}, backwards{0}, reads{0};
+  const auto value = [](std::uint64_t n) {
+    Value v{};
+    v.words.fill(n);
+    v.odd = static_cast<std::uint16_t>(n);
+    return v;
+  };
+  snapshot.publish(value(0));
+  std::vector<std::thread> readers;
+  for (int t = 0; t < 3; ++t)
+    readers.emplace_back([&] {
+      Value v{};
+      std::uint64_t last = 0;
+      while (!stop.load(std::memory_order_relaxed)) {
+        snapshot.read(v);
+        const std::uint64_t n = v.words[0];
+        const bool whole =
+            std::all_of(v.words.begin(), v.words.end(), [&](std::uint64_t w) { return w == n; });
+        torn += !whole || v.odd != static_cast<std::uint16_t>(n);
+        backwards += n < last;
+        last = n;
+        ++reads;
+      }
+    });
+  for (std::uint64_t n = 1; n <= 300000 || (reads.load() < 1000 && n < 100000000); ++n)
+    snapshot.publish(value(n));
+  stop = true;
+  for (std::thread& t : readers) t.join();
+  EXPECT_EQ(torn.load(), 0);
+  EXPECT_EQ(backwards.load(), 0);
+  EXPECT_GT(reads.load(), 100);
+}
+
+TEST(Cycle, publishes_whole_cycles_to_readers_on_other_threads) {
+  Bench b;
+  b.cycle->publish_every(1);
+  b.cycle->step();
+  std::atomic<bool> stop{false};
+  std::atomic<long> wrong{0}, reads{0};
+  std::thread reader([&] {
+    auto image = std::make_unique<image::ProcessImage>();
+    auto alarms = std::make_unique<AlarmSnapshot>();
+    while (!stop.load()) {
+      b.cycle->read(*image);
+      b.cycle->read(*alarms);
+      wrong += image->now.t_ns != image->now.number * image::kMillisecond;
+      wrong += image->packets.bit(kInput) != image->packets.bit(kOutput);
+      ++reads;
+    }
+  });
+  for (int i = 0; i < 3000 || reads.load() < 20; ++i) {
+    b.io.input = i % 2 == 0;
+    b.cycle->step();
+  }
+  stop = true;
+  reader.join();
+  EXPECT_EQ(wrong.load(), 0);
+}
+
+}  // namespace
+}  // namespace servogate::cycle

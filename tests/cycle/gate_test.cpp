@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/cycle/gate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+
+#include "firmware_if/image/interface_map.hpp"
+#include "kernel/cycle/alarm_table.hpp"
+
+namespace servogate::cycle {
+namespace {
+
+using image::Asker;
+using image::AxisOwner;
+using image::ProcessState;
+using image::Reaction;
+using image::Request;
+using image::RequestKind;
+
+/// Two axes with ideal drives in a machine where everything is permitted; each test takes something away.
+class Gate : public ::testing::Test {
+ protected:
+  Gate() {
+    image_.axis_count = 2;
+    image_.packets.set_bit(image::field(image::kMachineFields, "power_on", image::kMachineBase), true);
+    for (int i = 0; i < 2; ++i) {
+      axis::AxisConfig c;
+      c.letter = i == 0 ? "X" : "Y";
+      c.homing.method = axis::HomingMethod::absolute;
+      axes_[static_cast<std::size_t>(i)].configure(c, i);
+      set(i, "enable", true);
+      set(i, "feed_enable", true);
+      axes_[static_cast<std::size_t>(i)].set_reference(0);
+      axes_[static_cast<std::size_t>(i)].request_power(true);
+    }
+    run(20);
+    context_.image = &image_;
+    context_.axes = axes_;
+    context_.program_loaded = true;
+  }
+  void set(int axis, std::string_view name, bool value) {
+    for (const auto& f : image::kAxisFields)
+      if (f.name == name)
+        image_.packets.set_bit(
+            {image::Packet::k, image::Format::bl, (image::axis_base(axis) + f.byte) * 8 + f.bit, 1}, value);
+  }
+  void run(int cycles) {
+    while (cycles-- > 0) {
+      image_.now.t_ns += image_.now.period_ns;
+      for (std::size_t i = 0; i < 2; ++i) {
+        image::AxisImage& a = image_.axes[i];
+        a.drive.online = true;
+        a.drive.state =
+            a.drive_command.power ? image::DriveState::operation_enabled : image::DriveState::switched_on;
+        a.drive.position_counts = a.drive_command.position_counts;
+        axes_[i].read(image_);
+        axes_[i].command(image_);
+      }
+    }
+  }
+  Refusal ask(RequestKind kind, int axis = -1, double value = 0.0, Asker asker = Asker::command_line) {
+    Request r;
+    r.id = 4711;
+    r.kind = kind;
+    r.axis = static_cast<std::int8_t>(axis);
+    r.value = value;
+    r.asker = asker;
+    answer_ = decide(r, context_);
+    EXPECT_EQ(answer_.id, 4711u);
+    return static_cast<Refusal>(answer_.refusal);
+  }
+  Refusal ask_place(RequestKind kind, const image::Place& p, Asker asker = Asker::command_line) {
+    Request r;
+    r.kind = kind;
+    r.asker = asker;
+    r.packet = static_cast<std::uint8_t>(p.packet), r.format = static_cast<std::uint8_t>(p.format);
+    r.index = p.index, r.length = p.length;
+    answer_ = decide(r, context_);
+    return static_cast<Refusal>(answer_.refusal);
+  }
+  std::string english() const { return render(answer_, {"X", "Y"}, text::Language::english); }
+  std::string russian() const { return render(answer_, {"X", "Y"}, text::Language::russian); }
+  void not_homed(int axis) {
+    axis::AxisConfig c = axes_[static_cast<std::size_t>(axis)].config();
+    c.homing.method = axis::HomingMethod::switch_and_index;
+    axes_[static_cast<std::size_t>(axis)].configure(c, axis);
+    axes_[static_cast<std::size_t>(axis)].request_power(true);
+    run(20);
+  }
+
+  image::ProcessImage image_;
+  std::array<axis::Axis, 2> axes_;
+  GateContext context_;
+  image::Answer answer_;
+};
+
+TEST_F(Gate, lets_every_request_pass_on_a_machine_that_is_ready) {
+  EXPECT_EQ(ask(RequestKind::power, -1, 1), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::home), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::home, 1), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, -2.5), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 1), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::keep_alive, 0), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::jog_stop, 0), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::zero, 0, 12), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::mode, -1, 2), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::start), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::step), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::override_feed, -1, 1.5), Refusal::none);
+  EXPECT_EQ(english(), "");
+}
+
+TEST_F(Gate, always_lets_a_stop_pass_whoever_asks_and_whatever_is_wrong) {
+  context_.reaction = Reaction::power_off;
+  context_.first_alarm = alarm::kPlcFault;
+  context_.homing_runs = context_.manual_held = true;
+  context_.holder = Asker::pendant;
+  image_.processes[0].state = ProcessState::running;
+  for (int a = 0; a <= static_cast<int>(Asker::bench); ++a)
+    for (const RequestKind k :
+         {RequestKind::hold, RequestKind::stop, RequestKind::quick_stop, RequestKind::jog_stop})
+      EXPECT_EQ(ask(k, -1, 0, static_cast<Asker>(a)), Refusal::none) << a << " " << static_cast<int>(k);
+  for (const RequestKind k : {RequestKind::reset, RequestKind::acknowledge, RequestKind::power})
+    EXPECT_EQ(ask(k, -1, 0), Refusal::none);
+}
+
+TEST_F(Gate, refuses_auto_by_name_while_an_axis_is_not_homed_but_lets_it_jog) {
+  not_homed(1);
+  EXPECT_EQ(ask(RequestKind::start), Refusal::not_homed);
+  EXPECT_EQ(english(), "Y is not homed: run `servogate home Y` first, or jog slowly");
+  EXPECT_EQ(russian(),
+            "Y не выведена в ноль: сначала выполните `servogate home Y` или перемещайте её медленно");
+  EXPECT_EQ(ask(RequestKind::zero, 1), Refusal::not_homed);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1.0), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::home, 1), Refusal::none);
+}
+
+TEST_F(Gate, names_the_axis_that_is_without_power_or_without_feed_enable) {
+  axes_[1].request_power(false);
+  run(20);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1.0), Refusal::not_powered);
+  EXPECT_EQ(ask(RequestKind::home), Refusal::not_powered);
+  EXPECT_EQ(answer_.axis, 1);
+  EXPECT_EQ(ask(RequestKind::start), Refusal::not_powered);
+  axes_[1].request_power(true);
+  run(20);
+  set(1, "feed_enable", false);
+  run(1);
+  EXPECT_EQ(ask(RequestKind::jog_continuous, 1, 1), Refusal::feed_not_enabled);
+  EXPECT_EQ(english(), "Y: the PLC does not permit the feed (its feed_enable is FALSE)");
+}
+
+TEST_F(Gate, lets_nothing_move_while_a_fault_is_active_but_warnings_do_not_matter) {
+  context_.reaction = Reaction::warn;
+  context_.first_alarm = alarm::kStarved;
+  EXPECT_EQ(ask(RequestKind::start), Refusal::none);
+  context_.reaction = Reaction::stop_at_block_end;
+  EXPECT_EQ(ask(RequestKind::start), Refusal::alarm_active);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::none);
+  context_.reaction = Reaction::stop_axes;
+  context_.first_alarm = axis::alarm::kFollowingError;
+  for (const RequestKind k : {RequestKind::start, RequestKind::step, RequestKind::home})
+    EXPECT_EQ(ask(k), Refusal::alarm_active);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::alarm_active);
+  EXPECT_EQ(ask(RequestKind::power, -1, 1.0), Refusal::alarm_active);
+  EXPECT_EQ(english(), "alarm 1001 is active: remove its cause and reset first");
+  context_.first_alarm = alarm::kEmergencyStop;
+  EXPECT_EQ(ask(RequestKind::power, -1, 1.0), Refusal::emergency_stop);
+}
+
+TEST_F(Gate, keeps_manual_motion_and_programs_apart) {
+  for (const ProcessState s : {ProcessState::running, ProcessState::held, ProcessState::waiting}) {
+    image_.processes[0].state = s;
+    EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::program_runs);
+    EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 1.0), Refusal::program_runs);
+    EXPECT_EQ(ask(RequestKind::home), Refusal::program_runs);
+    EXPECT_EQ(ask(RequestKind::zero, 0), Refusal::program_runs);
+    EXPECT_EQ(ask(RequestKind::mode, -1, 1), Refusal::program_runs);
+    EXPECT_EQ(ask(RequestKind::start), s == ProcessState::running ? Refusal::program_runs : Refusal::none);
+  }
+  for (const ProcessState s : {ProcessState::idle, ProcessState::ended, ProcessState::stopped_by_alarm}) {
+    image_.processes[0].state = s;
+    EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::none);
+    EXPECT_EQ(ask(RequestKind::resume), Refusal::program_does_not_run);
+  }
+  ASSERT_TRUE(axes_[0].jog_increment(20.0));
+  run(30);
+  EXPECT_EQ(ask(RequestKind::start), Refusal::axis_moves);
+  EXPECT_EQ(english(), "X moves: wait until it stands");
+  EXPECT_EQ(ask(RequestKind::home), Refusal::axis_moves);
+  EXPECT_EQ(ask(RequestKind::zero, 0), Refusal::axis_moves);
+}
+
+TEST_F(Gate, lets_a_program_that_waits_at_M00_or_at_a_block_end_go_on) {
+  image_.processes[0].state = ProcessState::waiting;
+  for (const RequestKind k : {RequestKind::start, RequestKind::step, RequestKind::resume})
+    EXPECT_EQ(ask(k), Refusal::none);
+}
+
+TEST_F(Gate, homes_the_axes_of_a_mask_and_refuses_a_mask_of_axes_that_do_not_exist) {
+  EXPECT_EQ(ask(RequestKind::home, -1, 1.0), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::home, -1, 65536.0 * 65536.0), Refusal::bad_value);
+  EXPECT_EQ(ask(RequestKind::home, -1, -1.0), Refusal::bad_value);
+  EXPECT_EQ(ask(RequestKind::home, -1, 0.5), Refusal::bad_value);
+  image::Request request;
+  request.kind = RequestKind::home;
+  request.value = 5.0;
+  EXPECT_EQ(homing_mask(request, 4), 5u);
+  request.value = 0.0;
+  EXPECT_EQ(homing_mask(request, 4), 15u);
+  request.axis = 2;
+  EXPECT_EQ(homing_mask(request, 4), 4u);
+}
+
+TEST_F(Gate, resumes_and_steps_only_a_program_that_is_held) {
+  image_.processes[0].state = ProcessState::running;
+  EXPECT_EQ(ask(RequestKind::resume), Refusal::program_not_held);
+  EXPECT_EQ(ask(RequestKind::step), Refusal::program_runs);
+  image_.processes[0].state = ProcessState::held;
+  EXPECT_EQ(ask(RequestKind::resume), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::step), Refusal::none);
+  context_.reaction = Reaction::stop_on_path;
+  EXPECT_EQ(ask(RequestKind::resume), Refusal::alarm_active);
+}
+
+TEST_F(Gate, wants_a_program_the_right_mode_and_the_permission_to_start) {
+  image_.processes[0].mode = image::Mode::manual;
+  EXPECT_EQ(ask(RequestKind::start), Refusal::wrong_mode);
+  EXPECT_EQ(english(), "not possible in mode MANU");
+  image_.processes[0].mode = image::Mode::automatic;
+  EXPECT_EQ(ask(RequestKind::start), Refusal::none);
+  context_.start_permitted = false;
+  EXPECT_EQ(ask(RequestKind::start), Refusal::start_not_permitted);
+  context_.program_loaded = false;
+  EXPECT_EQ(ask(RequestKind::start), Refusal::no_program);
+}
+
+TEST_F(Gate, blocks_everybody_but_the_one_who_holds_manual_control) {
+  context_.manual_held = true;
+  context_.holder = Asker::pendant;
+  for (const Asker a : {Asker::command_line, Asker::page, Asker::plc, Asker::scenario}) {
+    EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0, a), Refusal::manual_held);
+    EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 1.0, a), Refusal::manual_held);
+    EXPECT_EQ(ask(RequestKind::keep_alive, 0, 0.0, a), Refusal::manual_held)
+        << "nobody may keep another's jog alive";
+    EXPECT_EQ(ask(RequestKind::home, -1, 0.0, a), Refusal::manual_held);
+    EXPECT_EQ(ask(RequestKind::start, -1, 0.0, a), Refusal::manual_held);
+    EXPECT_EQ(ask(RequestKind::mode, -1, 2.0, a), Refusal::manual_held);
+  }
+  EXPECT_EQ(english(), "the pendant holds manual control");
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0, Asker::pendant), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::keep_alive, 0, 0.0, Asker::pendant), Refusal::none);
+}
+
+TEST_F(Gate, permits_on_a_hard_limit_only_the_way_back) {
+  set(0, "limit_plus", true);
+  run(1);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::on_hard_limit);
+  EXPECT_EQ(english(), "X is on its limit switch: only motion away from it is possible (+ is not)");
+  EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 1.0), Refusal::on_hard_limit);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, -1.0), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1.0), Refusal::none);
+}
+
+TEST_F(Gate, permits_at_a_travel_limit_only_the_way_back) {
+  ASSERT_TRUE(axes_[0].jog_increment(-1000.0));
+  for (int i = 0; i < 20'000 && axes_[0].moving(); ++i) run(1);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, -1.0), Refusal::at_soft_limit);
+  EXPECT_EQ(english(), "X is at its travel limit -300 already");
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::none);
+}
+
+TEST_F(Gate, lets_only_one_homing_run) {
+  context_.homing_runs = true;
+  EXPECT_EQ(ask(RequestKind::home), Refusal::homing_runs);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::homing_runs);
+  EXPECT_EQ(ask(RequestKind::start), Refusal::homing_runs);
+}
+
+TEST_F(Gate, respects_an_axis_that_belongs_to_the_plc_or_the_bench) {
+  ASSERT_TRUE(axes_[1].acquire(AxisOwner::plc));
+  EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1.0), Refusal::axis_owned);
+  EXPECT_EQ(english(), "Y belongs to the PLC");
+  EXPECT_EQ(ask(RequestKind::start), Refusal::axis_owned);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1.0, Asker::plc), Refusal::none);
+}
+
+TEST_F(Gate, refuses_values_axes_and_processes_that_do_not_exist) {
+  EXPECT_EQ(ask(RequestKind::none), Refusal::unknown_request);
+  EXPECT_EQ(ask(static_cast<RequestKind>(200)), Refusal::unknown_request);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 2, 1.0), Refusal::no_such_axis);
+  EXPECT_EQ(ask(RequestKind::jog_increment, -1, 1.0), Refusal::no_such_axis);
+  EXPECT_EQ(ask(RequestKind::home, 7), Refusal::no_such_axis);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 0.0), Refusal::bad_value);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, std::numeric_limits<double>::quiet_NaN()), Refusal::bad_value);
+  EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 2.0), Refusal::bad_value);
+  EXPECT_EQ(ask(RequestKind::override_feed, -1, 1.51), Refusal::bad_value);
+  EXPECT_EQ(answer_.limit, 1.5);
+  EXPECT_EQ(ask(RequestKind::mode, -1, 8), Refusal::bad_value);
+  EXPECT_EQ(ask(RequestKind::mode, -1, 1.5), Refusal::bad_value);
+  Request r;
+  r.kind = RequestKind::start;
+  r.process = 3;
+  EXPECT_EQ(decide(r, context_).refusal, static_cast<std::uint16_t>(Refusal::no_such_process));
+}
+
+TEST_F(Gate, knows_who_may_ask_for_what) {
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0, Asker::modbus), Refusal::asker_may_not);
+  EXPECT_EQ(english(), "whoever asks here may not ask for `jog`");
+  EXPECT_EQ(ask(RequestKind::start, -1, 0.0, Asker::program), Refusal::asker_may_not);
+  EXPECT_EQ(ask(RequestKind::start, -1, 0.0, Asker::bench), Refusal::asker_may_not);
+  EXPECT_EQ(ask_place(RequestKind::force, {}, Asker::pendant), Refusal::asker_may_not);
+  EXPECT_EQ(ask_place(RequestKind::force, {}, Asker::plc), Refusal::asker_may_not);
+  EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 1.0, Asker::plc), Refusal::none);
+}
+
+TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others) {
+  using enum image::Format;
+  using image::Packet;
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, by, 100, 1}), Refusal::none);
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, by, image::kInterfaceBase, 1}),
+            Refusal::place_not_writable);
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, ch, image::kInterfaceBase - 2, 2}), Refusal::none);
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, ch, image::kInterfaceBase - 2, 3}),
+            Refusal::place_not_writable);
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, bl, (image::kMachineBase + 4) * 8, 1}),
+            Refusal::place_not_writable);
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, by, image::kMachineBase + 8, 1}), Refusal::none);
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::a, bl, 8, 1}), Refusal::place_not_writable);
+  EXPECT_EQ(ask_place(RequestKind::force, {Packet::a, bl, 8, 1}), Refusal::none);
+  EXPECT_EQ(ask_place(RequestKind::force, {Packet::a, lr, 127, 1}), Refusal::none);
+  EXPECT_EQ(ask_place(RequestKind::force, {Packet::a, lr, 128, 1}), Refusal::place_outside);
+  EXPECT_EQ(ask_place(RequestKind::force, {Packet::a, lr, 0x20000000, 1}), Refusal::place_outside)
+      << "no wrap-round";
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::v, by, 199, 1}), Refusal::none);
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::v, by, 200, 1}), Refusal::place_outside);
+}
+
+TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
+  const auto table = refusal_texts();
+  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::start_not_permitted) + 1);
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    image::Answer a;
+    a.refusal = static_cast<std::uint16_t>(i);
+    a.axis = 0;
+    for (const auto language : {text::Language::english, text::Language::russian}) {
+      const std::string sentence = render(a, {"X"}, language);
+      EXPECT_GT(sentence.size(), 10u) << i;
+      EXPECT_EQ(sentence.find('{'), std::string::npos) << sentence;
+    }
+  }
+}
+
+TEST_F(Gate, answers_any_request_in_any_state_without_going_astray) {
+  const unsigned seed = std::random_device{}();
+  std::printf("seed %u\n", seed);
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 200'000; ++i) {
+    Request r;
+    r.kind = static_cast<RequestKind>(random() % 24);
+    r.asker = static_cast<Asker>(random() % 8);
+    r.axis = static_cast<std::int8_t>(random() % 6 - 2);
+    r.process = static_cast<std::int8_t>(random() % 4 - 1);
+    r.packet = static_cast<std::uint8_t>(random() % 5), r.format = static_cast<std::uint8_t>(random() % 9);
+    r.index = static_cast<std::uint32_t>(random()), r.length = static_cast<std::uint8_t>(random());
+    r.value = std::ldexp(static_cast<double>(random() % 7) - 3.0, static_cast<int>(random() % 20) - 10);
+    context_.reaction = static_cast<Reaction>(random() % 7);
+    context_.manual_held = random() % 2 != 0;
+    context_.holder = static_cast<Asker>(random() % 8);
+    context_.homing_runs = random() % 2 != 0;
+    image_.processes[0].state = static_cast<ProcessState>(random() % 6);
+    const image::Answer a = decide(r, context_);
+    ASSERT_LE(a.refusal, static_cast<std::uint16_t>(Refusal::start_not_permitted));
+    const bool motion = r.kind == RequestKind::home || r.kind == RequestKind::jog_increment ||
+                        r.kind == RequestKind::jog_continuous || r.kind == RequestKind::start;
+    if (motion && context_.reaction >= Reaction::stop_on_path) {
+      ASSERT_NE(a.refusal, 0) << i;
+    }
+    if (motion && context_.manual_held && context_.holder != r.asker) {
+      ASSERT_NE(a.refusal, 0) << i;
+    }
+    if (motion && context_.homing_runs) {
+      ASSERT_NE(a.refusal, 0) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servogate::cycle

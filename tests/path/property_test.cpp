@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "tests/path/rig.hpp"
+
+namespace servogate::path::test {
+namespace {
+
+std::uint64_t first_seed() {
+  if (const char* given = std::getenv("SERVOGATE_PROPERTY_SEED")) return std::strtoull(given, nullptr, 10);
+  return static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+}
+
+int cases() {
+  if (const char* given = std::getenv("SERVOGATE_PROPERTY_CASES")) return std::atoi(given);
+  return 10000;
+}
+
+Scenario scenario(std::uint64_t seed) {
+  Scenario s;
+  s.seed = seed;
+  s.overrides = (seed & 1) != 0;
+  s.holds = (seed & 2) != 0;
+  s.starving = (seed & 4) != 0;
+  s.late = (seed & 8) != 0;
+  s.disturbed = 500;
+  return s;
+}
+
+TEST(RandomPrograms, keep_every_limit_the_tolerance_and_the_end_point_whatever_happens) {
+  const std::uint64_t base = first_seed();
+  std::printf("SERVOGATE_PROPERTY_SEED=%llu, %d programs\n", static_cast<unsigned long long>(base), cases());
+  int wrong = 0;
+  Worst reached;
+  std::size_t cycles = 0;
+  for (int k = 0; k < cases() && wrong < 10; ++k) {
+    const std::uint64_t seed = base + static_cast<std::uint64_t>(k);
+    const RandomProgram program = random_program(seed, {2 + static_cast<int>(seed % 11), true, true});
+    const Trip r = run(program, scenario(seed));
+    Worst w;
+    const std::string text = verdict(r, program, &w);
+    if (!text.empty()) {
+      ADD_FAILURE() << "seed " << seed << ": " << text << " (" << program.elements.size() << " elements)";
+      ++wrong;
+    }
+    reached = {std::max(reached.velocity, w.velocity), std::max(reached.acceleration, w.acceleration),
+               std::max(reached.jerk, w.jerk)};
+    cycles += r.samples.size();
+  }
+  std::printf("%zu cycles, largest share of a limit: v %.6f a %.6f j %.6f\n", cycles, reached.velocity,
+              reached.acceleration, reached.jerk);
+}
+
+TEST(RandomPrograms, on_slow_axes_keep_the_velocity_when_held_while_speeding_up) {
+  // The first ones went 1 % over while the way to rest took the jerk of a span ahead.
+  for (const std::uint64_t first : {90000652u, 90000744u, 90001490u, 90001807u, 90003028u}) {
+    for (std::uint64_t seed = first; seed < first + 10; ++seed) {
+      RandomProgram program = random_program(seed, {2 + static_cast<int>(seed % 11), true, true});
+      for (AxisLimits& limits : program.config.limits) limits.velocity *= 0.05;
+      Scenario s = scenario(seed);
+      s.holds = true;
+      s.disturbed = 3000;
+      EXPECT_EQ(verdict(run(program, s), program), "") << seed;
+    }
+  }
+}
+
+TEST(RandomPrograms, of_many_short_blocks_keep_them_too_when_held_over_and_over) {
+  const std::uint64_t base = first_seed();
+  std::printf("SERVOGATE_PROPERTY_SEED=%llu\n", static_cast<unsigned long long>(base));
+  int wrong = 0;
+  for (int k = 0; k < cases() / 100 && wrong < 10; ++k) {
+    const std::uint64_t seed = base + static_cast<std::uint64_t>(k);
+    RandomProgram program = random_program(seed, {120, false, false});
+    for (Element& e : program.elements) e.feed = std::max(e.feed, 60.0);  // so that it ends in minutes
+    Scenario s = scenario(seed | 3);
+    s.disturbed = 4000;
+    const std::string text = verdict(run(program, s), program);
+    if (!text.empty()) {
+      ADD_FAILURE() << "seed " << seed << ": " << text << " (" << program.elements.size() << " elements)";
+      ++wrong;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servogate::path::test

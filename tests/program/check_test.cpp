@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/program/check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "kernel/program/canon.hpp"
+#include "tests/program/case_file.hpp"
+
+namespace servogate::program::tests {
+namespace {
+
+std::string file_text(const std::string& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+const std::string kMill = SERVOGATE_SOURCE_DIR "/examples/mill/";
+
+std::optional<std::string> from_mill(std::string_view name) {
+  std::string text = file_text(kMill + std::string(name) + ".nc");
+  if (text.empty()) return std::nullopt;
+  return text;
+}
+
+CheckReport check(const std::string& text, const MachineModel& machine = mill(),
+                  const ProgramLoader& loader = {}) {
+  return check_program("nc110", machine, {}, "p.nc", text, loader, Position{});
+}
+
+TEST(CheckProgram, finds_nothing_wrong_with_the_example_and_keeps_it_between_one_and_two_minutes) {
+  const std::string text = file_text(kMill + "bracket.nc");
+  const CheckReport report = check_program("nc110", mill(), {}, "bracket.nc", text, from_mill, Position{});
+  for (const auto& finding : report.findings) ADD_FAILURE() << finding.str(text::Language::english);
+  EXPECT_TRUE(report.good());
+  EXPECT_GE(report.blocks, 150);
+  EXPECT_EQ(3u, report.tools.size());
+  for (const auto& extent : report.extents) {
+    EXPECT_TRUE(extent.moved);
+    EXPECT_EQ(0, extent.outside_line);
+  }
+  const double seconds = report.feed_seconds + report.rapid_seconds + report.dwell_seconds;
+  EXPECT_GT(seconds, 60.0);
+  EXPECT_LT(seconds, 120.0);
+}
+
+TEST(CheckProgram, example_uses_what_it_promises_to_show) {
+  std::set<std::string> seen;
+  Interpreter interpreter("nc110", mill(), {}, "bracket.nc", file_text(kMill + "bracket.nc"), from_mill,
+                          Position{});
+  const std::vector<std::string> letters = {"X", "Y", "Z"};
+  bool helix = false;
+  const auto error = run_dry(
+      interpreter,
+      [&](const Command& command) {
+        const std::string json = to_json(command, letters, interpreter.files());
+        seen.insert(json.substr(8, json.find('"', 8) - 8));
+        if (const auto* arc = std::get_if<Arc>(&command.what))
+          helix = helix || std::abs(arc->sweep_deg) > 720.0;
+        return true;
+      },
+      kDryRunBlocks);
+  EXPECT_FALSE(error);
+  for (const char* cmd :
+       {"rapid", "line", "arc", "dwell", "spindle", "tool", "m", "message", "write", "wait", "end"})
+    EXPECT_TRUE(seen.contains(cmd)) << cmd;
+  EXPECT_TRUE(helix);
+}
+
+TEST(CheckProgram, adds_up_feed_rapid_and_dwell_time) {
+  // T-LIN-01: rapids X 10000, Y 5000 mm/min; T-LIN-02; T-ARC-01; T-HEL-01.
+  MachineModel machine = mill();
+  machine.axes[0].rapid = 10000.0 / 60.0;
+  machine.axes[1].rapid = 5000.0 / 60.0;
+  EXPECT_NEAR(1.2, check("G0 X100 Y100", machine).rapid_seconds, 1e-9);
+  EXPECT_NEAR(25.632, check("G0 X10 Y10\nG1 X90 Y40 F200").feed_seconds, 1e-3);
+  EXPECT_NEAR(85.440, check("G0 X10 Y10\nG1 X90 Y40 F200").path_mm, 1e-3);
+  EXPECT_NEAR(9.4248, check("G0 X30\nG3 X0 Y30 I0 J0 F300").feed_seconds, 1e-4);
+  EXPECT_NEAR(339.560, check("G0 X20\nG3 X-6.1803 Y-19.0211 Z-13.5 I0 J0 K5 F500").path_mm, 1e-3);
+  EXPECT_NEAR(251.526, check("G0 X20\nG3 I0 J0 Z-10 K5 F500").path_mm, 1e-3);
+  EXPECT_NEAR(31.559, check("G0 X20\nG3 X0 Y20 Z-3 I J F500").path_mm, 1e-3);
+  EXPECT_NEAR(15.0, check("G93 G1 X50 F4").feed_seconds, 1e-9);            // T-FED-01
+  EXPECT_NEAR(60.0, check("G95 F0.2\nS500\nG1 X100").feed_seconds, 1e-9);  // T-FED-03: 100 mm/min
+  EXPECT_NEAR(3.5, check("TMR=1.5\nG4\n(DLY,2)").dwell_seconds, 1e-12);
+}
+
+TEST(CheckProgram, forms_the_vector_over_millimetres_and_degrees_alike) {
+  // T-ROT-02: X 30 with B 90 on a diameter of 40, wanted speed 200 mm/min.
+  MachineModel machine = mill();
+  machine.axes.push_back({"B", true, false, false, -1e6, 1e6, 100.0});
+  EXPECT_NEAR(13.032, check("G1 X30 B90 F436.79", machine).feed_seconds, 1e-3);
+  EXPECT_NEAR(13.032, check("G93 G1 X30 B90 F4.6041", machine).feed_seconds, 1e-3);
+}
+
+TEST(CheckProgram, goes_on_after_a_motion_out_of_the_travel_and_names_its_first_line) {
+  const CheckReport report = check("G0 X10\nX301\nX500 Y-400\nX0");
+  ASSERT_EQ(1u, report.findings.size());
+  EXPECT_EQ("p.nc:2: error: X would go to 301, the travel ends at 300 [P701]",
+            report.findings[0].str(text::Language::english));
+  EXPECT_EQ(2, report.extents[0].outside_line);
+  EXPECT_EQ(3, report.extents[1].outside_line);
+  EXPECT_EQ(0, report.extents[2].outside_line);
+  EXPECT_DOUBLE_EQ(500.0, report.extents[0].max);
+  EXPECT_DOUBLE_EQ(-400.0, report.extents[1].min);
+  EXPECT_FALSE(report.extents[2].moved);
+  EXPECT_TRUE(report.finished);
+  EXPECT_FALSE(report.good());
+}
+
+TEST(CheckProgram, counts_arcs_with_their_bulge) {
+  const CheckReport report = check("G0 X10\nG3 X-10 Y0 I0 J0 F100");
+  EXPECT_NEAR(10.0, report.extents[1].max, 1e-9);
+  EXPECT_NEAR(0.0, report.extents[1].min, 1e-9);
+  const CheckReport full = check("G0 X10\nG2 I0 J0 F100");
+  EXPECT_NEAR(-10.0, full.extents[0].min, 1e-9);
+  EXPECT_NEAR(-10.0, full.extents[1].min, 1e-9);
+}
+
+TEST(CheckProgram, stops_a_program_without_end_after_a_million_blocks) {
+  const CheckReport moving = check("\"A\" G0 X1\n(BNC,A)");
+  ASSERT_EQ(1u, moving.findings.size());
+  EXPECT_EQ("P514", moving.findings[0].entry->id);
+  EXPECT_GE(moving.executed, kDryRunBlocks);
+  const CheckReport still = check("\"A\"\n(BNC,A)");
+  ASSERT_EQ(1u, still.findings.size());
+  EXPECT_EQ("P513", still.findings[0].entry->id);
+  const CheckReport polling = check("\"A\"(BEQ,SA3,0,A)");
+  ASSERT_EQ(1u, polling.findings.size());
+  EXPECT_EQ("P514", polling.findings[0].entry->id);
+}
+
+TEST(CheckProgram, finds_all_of_a_file_and_of_its_subprograms) {
+  const auto loader = [](std::string_view name) -> std::optional<std::string> {
+    if (name == "SUB") return "G0 X1\nG99\n";
+    return std::nullopt;
+  };
+  const CheckReport report = check("G0 XX\n(CLS,SUB)\nG21\nE30=SIN(\n(BNC,NO)", mill(), loader);
+  std::vector<std::string> ids;
+  for (const auto& finding : report.findings) ids.emplace_back(finding.entry->id);
+  EXPECT_EQ((std::vector<std::string>{"P204", "P901", "P301", "P501", "P211"}), ids);
+  EXPECT_EQ("SUB", report.findings.back().file);
+  EXPECT_EQ(2, report.findings.back().line);
+}
+
+TEST(CheckProgram, lists_tools_once_with_their_calls) {
+  const CheckReport report = check("T1.1 M6\nT2.2 M6\nT1.1 M6\nT1.2 M6");
+  ASSERT_EQ(3u, report.tools.size());
+  EXPECT_EQ(2, report.tools[0].calls);
+  EXPECT_EQ(1, report.tools[0].line);
+  EXPECT_EQ(2, report.tools[2].corrector);
+}
+
+}  // namespace
+}  // namespace servogate::program::tests
