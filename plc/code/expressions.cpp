@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+
+#include "plc/code/generator.hpp"
+#include "plc/sema/analyzer.hpp"
+
+namespace servogate::plc::code {
+
+using ir::ExprKind;
+using ir::Native;
+using ir::Op;
+using vm::Code;
+
+namespace {
+constexpr std::uint32_t kTextCell = kMaxStringCapacity + 1;
+
+bool comparison(Op op) { return op >= Op::eq && op <= Op::ge; }
+
+Code first_code(Op op) {
+  switch (op) {
+    case Op::add:
+      return Code::add_i8;
+    case Op::sub:
+      return Code::sub_i8;
+    case Op::mul:
+      return Code::mul_i8;
+    case Op::div:
+      return Code::div_i8;
+    case Op::mod:
+      return Code::mod_i8;
+    case Op::min:
+      return Code::min_i8;
+    case Op::max:
+      return Code::max_i8;
+    case Op::eq:
+      return Code::eq_i8;
+    case Op::ne:
+      return Code::ne_i8;
+    case Op::lt:
+    case Op::gt:
+      return Code::lt_i8;
+    case Op::le:
+    case Op::ge:
+      return Code::le_i8;
+    case Op::and_:
+      return Code::and_w1;
+    case Op::or_:
+      return Code::or_w1;
+    case Op::xor_:
+      return Code::xor_w1;
+    case Op::neg:
+      return Code::neg_i8;
+    case Op::abs:
+      return Code::abs_i8;
+    case Op::not_:
+      return Code::not_w1;
+  }
+  return Code::add_i8;
+}
+bool bitwise(Op op) { return op == Op::and_ || op == Op::or_ || op == Op::xor_ || op == Op::not_; }
+}  // namespace
+
+bool Generator::calls(const ir::Expr& e) {
+  if (e.kind == ExprKind::call) return true;
+  for (const ir::ExprPtr& a : e.args)
+    if (calls(*a)) return true;
+  for (const ir::Step& s : e.place.steps)
+    if (calls(*s.index)) return true;
+  return false;
+}
+
+// Evaluating it costs less than a jump and neither faults nor changes anything.
+bool Generator::cheap(const ir::Expr& e, int depth) {
+  if (depth > 6) return false;
+  switch (e.kind) {
+    case ExprKind::constant:
+      return true;
+    case ExprKind::load:
+      return e.place.steps.empty();
+    case ExprKind::unary:
+    case ExprKind::binary:
+      if (e.op == Op::div || e.op == Op::mod || cell_of(*e.args[0]->type) == Cell::text) return false;
+      for (const ir::ExprPtr& a : e.args)
+        if (!cheap(*a, depth + 1)) return false;
+      return true;
+    default:
+      return false;
+  }
+}
+
+Generator::Operand Generator::destination(const ir::Expr& e, std::optional<Operand> into) {
+  return into ? *into : temporary(e.type->kind == Kind::string ? kTextCell : e.type->size);
+}
+
+Generator::Operand Generator::value(const ir::Expr& e, std::optional<Operand> into) {
+  switch (e.kind) {
+    case ExprKind::constant: {
+      const Operand c = constant(e);
+      if (!into) return c;
+      copy(*e.type, *into, c);
+      return *into;
+    }
+    case ExprKind::load:
+      return load(target(e.place), *e.type, into);
+    case ExprKind::unary:
+      return unary(e, into);
+    case ExprKind::binary:
+      return binary(e, into);
+    case ExprKind::convert:
+    case ExprKind::truncate:
+    case ExprKind::reinterpret:
+      return converted(e, into);
+    case ExprKind::call:
+      return call(e, into);
+    case ExprKind::native:
+      return native(e, into);
+    case ExprKind::choose:
+      return choose(e, into);
+  }
+  return 0;
+}
+
+Generator::Operand Generator::constant(const ir::Expr& e) {
+  std::vector<std::uint8_t> bytes(std::max<std::uint32_t>(e.type->size, 1));
+  sema::store_constant(*e.type, e.value, bytes.data());
+  const std::uint32_t size = e.type->kind == Kind::string ? 1u + bytes[0] : e.type->size;
+  return constant_bytes(bytes.data(), size);
+}
+
+// The value of a left operand; copied where the right one calls a function that might change it.
+Generator::Operand Generator::stable(const ir::Expr& e, bool keep) {
+  if (!keep || e.kind == ExprKind::constant || e.type->kind == Kind::string) return value(e);
+  return value(e, temporary(e.type->size));
+}
+
+Generator::Operand Generator::binary(const ir::Expr& e, std::optional<Operand> into) {
+  const ir::Expr &a = *e.args[0], &b = *e.args[1];
+  const Cell cell = cell_of(*a.type);
+  if (cell == Cell::text) return text_binary(e, into);
+  if (a.type->kind == Kind::boolean && (e.op == Op::and_ || e.op == Op::or_) && !cheap(b))
+    return short_circuit(e, into);
+  Operand x = stable(a, calls(b)), y = value(b);
+  if (e.op == Op::gt || e.op == Op::ge) std::swap(x, y);
+  const Operand out = destination(e, into);
+  const Code first = first_code(e.op);
+  emit(bitwise(e.op) ? vm::code_for_width(first, cell_size(cell)) : vm::code_for(first, cell), out, x, y);
+  return out;
+}
+
+Generator::Operand Generator::short_circuit(const ir::Expr& e, std::optional<Operand> into) {
+  // Not straight into a variable: the right side may read it.
+  const Operand work = temporary(1);
+  value(*e.args[0], work);
+  const std::size_t skip = emit(e.op == Op::and_ ? Code::jump_false : Code::jump_true, work);
+  value(*e.args[1], work);
+  land(skip);
+  if (!into) return work;
+  emit(Code::move_w1, *into, work);
+  return *into;
+}
+
+Generator::Operand Generator::text_binary(const ir::Expr& e, std::optional<Operand> into) {
+  Operand x = value(*e.args[0]);
+  if (calls(*e.args[1])) {
+    const Operand kept = temporary(kTextCell);
+    emit(Code::move_text, kept, x, 0, kMaxStringCapacity);
+    x = kept;
+  }
+  const Operand y = value(*e.args[1]);
+  if (!comparison(e.op)) {
+    const Operand picked = temporary(kTextCell);
+    emit(Code::native, picked, x, y, vm::pick_text_function(e.op == Op::max));
+    if (into) copy(*e.type, *into, picked);
+    return into ? *into : picked;
+  }
+  const Operand order = temporary(1);
+  emit(Code::native, order, x, y, vm::compare_text_function());
+  Operand left = order, right = constant_integer(0, Cell::i8);
+  if (e.op == Op::gt || e.op == Op::ge) std::swap(left, right);
+  const Operand out = destination(e, into);
+  emit(vm::code_for(first_code(e.op), Cell::i8), out, left, right);
+  return out;
+}
+
+Generator::Operand Generator::unary(const ir::Expr& e, std::optional<Operand> into) {
+  const Operand x = value(*e.args[0]);
+  const Operand out = destination(e, into);
+  const Cell cell = cell_of(*e.type);
+  if (e.op == Op::not_ && e.type->kind == Kind::boolean)
+    emit(Code::not_bool, out, x);
+  else if (e.op == Op::not_)
+    emit(vm::code_for_width(Code::not_w1, e.type->size), out, x);
+  else
+    emit(vm::code_for(first_code(e.op), cell), out, x);
+  return out;
+}
+
+Generator::Operand Generator::converted(const ir::Expr& e, std::optional<Operand> into) {
+  const ir::Expr& a = *e.args[0];
+  const Cell from = cell_of(*a.type), to = cell_of(*e.type);
+  const auto finish = [&](Operand x) {
+    if (into) copy(*e.type, *into, x);
+    return into ? *into : x;
+  };
+  if (e.type->kind == Kind::string) {
+    const Operand x = value(a);
+    if (a.type->kind == Kind::string) return finish(x);
+    const Operand out = temporary(2);  // a character: length one, then itself
+    const Operand one = constant_integer(1, Cell::u8);
+    const Operand wide = temporary(2);
+    emit(vm::Code::native, wide, x, 0, vm::convert_function(Cell::u8, Cell::u16));
+    emit(Code::mul_u16, wide, wide, constant_integer(256, Cell::u16));
+    const Operand length = temporary(2);
+    emit(vm::Code::native, length, one, 0, vm::convert_function(Cell::u8, Cell::u16));
+    emit(Code::or_w2, out, wide, length);
+    return finish(out);
+  }
+  if (e.kind == ExprKind::reinterpret) return finish(value(a));
+  const Operand x = value(a);
+  if (e.type->kind == Kind::boolean && a.type->kind != Kind::boolean) {
+    const Operand out = destination(e, into);
+    const std::int64_t zero = 0;
+    emit(vm::code_for(Code::ne_i8, from), out, x,
+         constant_bytes(reinterpret_cast<const std::uint8_t*>(&zero), cell_size(from)));
+    return out;
+  }
+  const bool integers = from <= Cell::u64 && to <= Cell::u64;
+  // Little-endian: the low bytes of an integer stand at its own address.
+  if (integers && cell_size(to) <= cell_size(from)) return finish(x);
+  if (from == to) return finish(x);
+  const Operand out = destination(e, into);
+  emit(Code::native, out, x, 0,
+       e.kind == ExprKind::truncate ? vm::truncate_function(from, to) : vm::convert_function(from, to));
+  return out;
+}
+
+Generator::Operand Generator::native(const ir::Expr& e, std::optional<Operand> into) {
+  std::vector<Operand> in;
+  for (std::size_t i = 0; i < e.args.size(); ++i) {
+    bool later = false;
+    for (std::size_t j = i + 1; j < e.args.size(); ++j) later = later || calls(*e.args[j]);
+    in.push_back(stable(*e.args[i], later));
+  }
+  in.resize(std::max<std::size_t>(in.size(), 4));
+  if (e.args.size() > 2) emit(Code::extra, 0, in[2], in[3]);
+  std::uint16_t function = 0;
+  if (e.native == Native::to_text)
+    function = vm::to_text_function(*e.args[0]->type);
+  else if (e.native == Native::from_text)
+    function = vm::from_text_function(*e.type);
+  else
+    function = vm::native_function(e.native, cell_of(*e.type));
+  if (e.type->kind != Kind::string) {
+    const Operand out = destination(e, into);
+    emit(Code::native, out, in[0], in[1], function);
+    return out;
+  }
+  const Operand out = temporary(kTextCell);
+  emit(Code::native, out, in[0], in[1], function);
+  if (into) copy(*e.type, *into, out);
+  return into ? *into : out;
+}
+
+Generator::Operand Generator::choose(const ir::Expr& e, std::optional<Operand> into) {
+  const Operand work = temporary(e.type->kind == Kind::string ? kTextCell : e.type->size);
+  const Operand condition = value(*e.args[0]);
+  const std::size_t otherwise = emit(Code::jump_false, condition);
+  const auto part = [&](const ir::Expr& x) {
+    if (e.type->kind == Kind::string)
+      emit(Code::move_text, work, value(x), 0, kMaxStringCapacity);
+    else
+      value(x, work);
+  };
+  part(*e.args[1]);
+  const std::size_t end = emit(Code::jump);
+  land(otherwise);
+  part(*e.args[2]);
+  land(end);
+  if (into) copy(*e.type, *into, work);
+  return into ? *into : work;
+}
+
+Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> into) {
+  const ir::Unit& u = program_.units[static_cast<std::size_t>(e.unit)];
+  const auto frame = static_cast<std::uint32_t>(u.fixed_base);
+  std::vector<Operand> values(e.parameters.size());
+  // All values first: an argument may call the same function.
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const ir::Parameter& p = e.parameters[i];
+    if (!p.value) continue;
+    bool later = false;
+    for (std::size_t j = i + 1; j < e.parameters.size(); ++j)
+      later = later || (e.parameters[j].value && calls(*e.parameters[j].value));
+    if (later && p.value->kind != ExprKind::constant) {
+      const Operand kept = temporary(p.type->size);
+      if (p.value->type->kind == Kind::string)
+        copy(*p.type, kept, value(*p.value));
+      else
+        value(*p.value, kept);
+      values[i] = kept;
+    } else {
+      values[i] = value(*p.value);
+    }
+  }
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const ir::Parameter& p = e.parameters[i];
+    if (p.value)
+      copy(*p.type, frame + p.offset, values[i]);
+    else if (p.section == syntax::Section::in_out)
+      bind(frame + p.offset, p.place);
+  }
+  const Unit& callee = units_[static_cast<std::size_t>(e.unit)];
+  emit(Code::call, callee.entry, frame, callee.length);
+  for (const ir::Parameter& p : e.parameters)
+    if (!p.value && p.section == syntax::Section::output) store(target(p.place), *p.type, frame + p.offset);
+  if (e.type->kind == Kind::none) return 0;
+  const Operand out = into ? *into : temporary(e.type->size);
+  copy(*e.type, out, frame + e.result);
+  return out;
+}
+
+}  // namespace servogate::plc::code

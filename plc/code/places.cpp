@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/code/generator.hpp"
+
+namespace servogate::plc::code {
+
+using vm::Code;
+
+// The operand of a place's own cell, before references, steps and bits.
+Generator::Operand Generator::base(const ir::Place& p) {
+  const ir::Unit& u = program_.units[static_cast<std::size_t>(current_)];
+  const bool reference = p.root == ir::Root::reference || p.root == ir::Root::pointer;
+  const std::uint32_t cell = p.cell + (reference ? 0 : p.offset);
+  switch (p.root) {
+    case ir::Root::fixed:
+    case ir::Root::pointer:
+      return cell;
+    case ir::Root::shared:
+      return program_.places[p.cell].address + p.offset;
+    default:
+      return u.fixed_base >= 0 ? static_cast<std::uint32_t>(u.fixed_base) + cell : vm::kInstanceFlag | cell;
+  }
+}
+
+Generator::Target Generator::target(const ir::Place& p) {
+  Target t;
+  t.where = base(p);
+  t.bit = p.bit;
+  if (p.root == ir::Root::shared) {
+    const ir::SharedPlace& s = program_.places[p.cell];
+    if (s.raw && s.place.format == image::Format::bl) t.bit = s.place.bit();
+  }
+  if (p.root == ir::Root::reference || p.root == ir::Root::pointer) {
+    t.indirect = true;
+    t.offset = p.offset;
+  }
+  for (const ir::Step& s : p.steps) {
+    const Operand index = value(*s.index);
+    const Operand cell = temporary(4);
+    const Code first = t.indirect ? Code::index_add_i8 : Code::index_at_i8;
+    emit(vm::code_for(first, cell_of(*s.index->type)), cell, t.where, index, bounds(s.low, s.high, s.stride));
+    t.where = cell;
+    t.indirect = true;
+  }
+  return t;
+}
+
+// A cell that holds the target's address, its offset included.
+Generator::Operand Generator::reference(const ir::Place& p) {
+  const Target t = target(p);
+  if (t.indirect && t.offset == 0) return t.where;
+  const Operand cell = temporary(4);
+  if (t.indirect)
+    emit(Code::add_u32, cell, t.where, constant_integer(t.offset, Cell::u32));
+  else
+    emit(Code::address, cell, t.where);
+  return cell;
+}
+
+void Generator::bind(Operand cell, const ir::Place& p) {
+  const Target t = target(p);
+  if (!t.indirect)
+    emit(Code::address, cell, t.where);
+  else if (t.offset == 0)
+    emit(Code::move_w4, cell, t.where);
+  else
+    emit(Code::add_u32, cell, t.where, constant_integer(t.offset, Cell::u32));
+}
+
+Generator::Operand Generator::load(const Target& t, const Type& type, std::optional<Operand> into) {
+  const Cell cell = cell_of(type);
+  if (t.bit >= 0) {
+    Operand byte = t.where;
+    if (t.indirect) {
+      byte = temporary(1);
+      emit(Code::load_w1, byte, t.where, t.offset);
+    }
+    const Operand out = into ? *into : temporary(1);
+    emit(Code::load_bit, out, byte, 0, static_cast<std::uint16_t>(t.bit));
+    return out;
+  }
+  if (!t.indirect) {
+    if (!into) return t.where;
+    copy(type, *into, t.where);
+    return *into;
+  }
+  if (cell != Cell::text && cell != Cell::blob) {
+    const Operand out = into ? *into : temporary(type.size);
+    emit(vm::code_for_width(Code::load_w1, type.size), out, t.where, t.offset);
+    return out;
+  }
+  Operand address = t.where;
+  if (t.offset != 0) {
+    address = temporary(4);
+    emit(Code::add_u32, address, t.where, constant_integer(t.offset, Cell::u32));
+  }
+  const Operand out = into && cell == Cell::blob ? *into : temporary(type.size);
+  emit(Code::load_bytes, out, address, type.size);
+  if (into && out != *into) copy(type, *into, out);
+  return into ? *into : out;
+}
+
+void Generator::store(const Target& t, const Type& type, Operand from) {
+  if (t.bit >= 0) {
+    if (!t.indirect) {
+      emit(Code::store_bit, t.where, from, 0, static_cast<std::uint16_t>(t.bit));
+      return;
+    }
+    const Operand byte = temporary(1);
+    emit(Code::load_w1, byte, t.where, t.offset);
+    emit(Code::store_bit, byte, from, 0, static_cast<std::uint16_t>(t.bit));
+    emit(Code::store_w1, t.where, byte, t.offset);
+    return;
+  }
+  if (!t.indirect) {
+    copy(type, t.where, from);
+    return;
+  }
+  const Cell cell = cell_of(type);
+  if (cell != Cell::text && cell != Cell::blob) {
+    emit(vm::code_for_width(Code::store_w1, type.size), t.where, from, t.offset);
+    return;
+  }
+  Operand address = t.where;
+  if (t.offset != 0) {
+    address = temporary(4);
+    emit(Code::add_u32, address, t.where, constant_integer(t.offset, Cell::u32));
+  }
+  Operand source = from;
+  if (cell == Cell::text) {  // cut to the capacity of the target first
+    source = temporary(type.size);
+    emit(Code::move_text, source, from, 0, static_cast<std::uint16_t>(type.capacity()));
+  }
+  emit(Code::store_bytes, address, source, type.size);
+}
+
+void Generator::copy(const Type& type, Operand to, Operand from) {
+  if (to == from) return;
+  switch (cell_of(type)) {
+    case Cell::text:
+      emit(Code::move_text, to, from, 0, static_cast<std::uint16_t>(type.capacity()));
+      return;
+    case Cell::blob:
+      emit(Code::move_bytes, to, from, type.size);
+      return;
+    default:
+      emit(vm::code_for_width(Code::move_w1, type.size), to, from);
+  }
+}
+
+}  // namespace servogate::plc::code

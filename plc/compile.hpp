@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "firmware_if/image/interface_map.hpp"
+#include "firmware_if/text/finding.hpp"
+
+namespace servogate::plc {
+
+struct Image;
+
+/// One file of PLC source as it was read: `name` appears in findings, `text` is UTF-8.
+struct SourceFile {
+  std::string name;
+  std::string text;
+};
+
+/// What the compiler has to know about the machine beside its symbols.
+struct Options {
+  std::uint32_t k_bytes = image::kPacketKDefaultSize;  ///< size of packet K, for the range check of places
+  std::uint32_t v_bytes = image::kSyvarDefaultSize;    ///< size of SYVAR
+  /// Instructions that one scan may execute, all tasks together; more is Fault::budget. 1 million take about
+  /// one to two milliseconds.
+  std::int64_t instruction_budget = 1'000'000;
+  bool warnings = true;
+  /// A source without any PROGRAM is an error unless this is set (a library checked by itself).
+  bool library_only = false;
+};
+
+/// What came out. `findings` are in the order of file, line and column; `image` is null when any is an error.
+struct CompileResult {
+  std::vector<text::Finding> findings;
+  std::shared_ptr<const Image> image;
+
+  bool ok() const noexcept { return image != nullptr; }
+};
+
+/// Compiles Structured Text (IEC 61131-3, third edition) to the compact form that plc::Engine runs. All files
+/// see each other's declarations. Every symbol is a global variable of the type of its place (BL BOOL, BY
+/// USINT, IN INT, LI DINT, RE REAL, LR LREAL, nCH STRING[n]), matched without case; writing one whose
+/// declared writer is the NC or an input is an error. Not real-time safe.
+CompileResult compile(std::vector<SourceFile> files, std::vector<image::Symbol> symbols,
+                      const Options& options = {});
+
+}  // namespace servogate::plc

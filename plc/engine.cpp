@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/engine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "plc/lookup.hpp"
+#include "plc/texts.hpp"
+#include "plc/values.hpp"
+#include "plc/vm/machine.hpp"
+
+namespace servogate::plc {
+
+struct Engine::State {
+  struct Force {
+    Handle handle;
+    std::string name, text;
+    std::array<std::uint8_t, kMaxStringCapacity + 1> bytes{};
+    std::uint32_t size = 0;
+  };
+  struct TaskState {
+    image::Nanoseconds next = std::numeric_limits<image::Nanoseconds>::min();
+    bool last = false;
+  };
+  std::vector<std::uint8_t> memory;
+  std::vector<Force> forces;
+  std::vector<TaskState> tasks;
+  ScanResult fault;
+  bool first = true;
+};
+
+Engine::Engine(std::shared_ptr<const Image> image)
+    : image_(std::move(image)), state_(std::make_unique<State>()) {
+  state_->forces.reserve(kMaxForces);
+  restart();
+}
+Engine::~Engine() = default;
+
+void Engine::restart() {
+  state_->memory = image_->memory;
+  state_->tasks.assign(image_->tasks.size(), {});
+  state_->fault = {};
+  state_->first = true;
+}
+
+namespace {
+
+void take_in(const Image::Shared& s, const image::Packets& packets, std::uint8_t* at) noexcept {
+  const std::uint8_t* from = packets.data(s.place.packet) + s.place.byte();
+  switch (s.place.format) {
+    case image::Format::bl:
+      *at = s.raw ? *from : static_cast<std::uint8_t>((*from >> s.place.bit()) & 1);
+      return;
+    case image::Format::ch: {
+      std::size_t n = s.place.length;
+      while (n > 0 && (from[n - 1] == ' ' || from[n - 1] == 0)) --n;
+      *at = static_cast<std::uint8_t>(n);
+      std::memcpy(at + 1, from, n);
+      return;
+    }
+    default:
+      std::memcpy(at, from, image::format_size(s.place.format));
+  }
+}
+
+void put_back(const Image::Shared& s, image::Packets& packets, const std::uint8_t* at) noexcept {
+  std::uint8_t* to = packets.data(s.place.packet) + s.place.byte();
+  switch (s.place.format) {
+    case image::Format::bl: {
+      const bool on = s.raw ? ((*at >> s.place.bit()) & 1) != 0 : *at != 0;
+      const auto mask = static_cast<std::uint8_t>(1u << s.place.bit());
+      *to = static_cast<std::uint8_t>(on ? (*to | mask) : (*to & ~mask));
+      return;
+    }
+    case image::Format::ch: {
+      const std::size_t n = std::min<std::size_t>(*at, s.place.length);
+      std::memcpy(to, at + 1, n);
+      std::memset(to + n, ' ', s.place.length - n);
+      return;
+    }
+    default:
+      std::memcpy(to, at, image::format_size(s.place.format));
+  }
+}
+
+void drop(const Image::Shared& s, image::Packets& packets) noexcept {
+  std::uint8_t* to = packets.data(s.place.packet) + s.place.byte();
+  if (s.place.format == image::Format::bl)
+    *to = static_cast<std::uint8_t>(*to & ~(1u << s.place.bit()));
+  else
+    std::memset(to, s.place.format == image::Format::ch ? ' ' : 0, s.place.bytes());
+}
+
+void set_bit(std::uint8_t* byte, int bit, bool on) noexcept {
+  const auto mask = static_cast<std::uint8_t>(1u << bit);
+  *byte = static_cast<std::uint8_t>(on ? (*byte | mask) : (*byte & ~mask));
+}
+
+}  // namespace
+
+ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexcept {
+  State& s = *state_;
+  const Image& im = *image_;
+  std::uint8_t* const mem = s.memory.data();
+  if (s.fault.fault == Fault::none &&
+      (packets.size(image::Packet::k) < im.k_bytes || packets.size(image::Packet::v) < im.v_bytes)) {
+    s.fault = {};
+    s.fault.fault = Fault::packet_size;
+    return s.fault;
+  }
+  if (s.fault.fault == Fault::packet_size) return s.fault;
+  if (s.fault.fault != Fault::none) {
+    for (const Image::Shared& p : im.places)
+      if (p.written) drop(p, packets);
+    return s.fault;
+  }
+  const auto apply_forces = [&] {
+    for (const State::Force& f : s.forces)
+      if (f.handle.bit >= 0)
+        set_bit(mem + f.handle.address, f.handle.bit, f.bytes[0] != 0);
+      else
+        std::memcpy(mem + f.handle.address, f.bytes.data(), f.size);
+  };
+  for (const Image::Shared& p : im.places) take_in(p, packets, mem + p.address);
+  if (s.first)
+    for (const Image::Shared& p : im.places)
+      if (p.initialised) {
+        if (p.raw && p.place.format == image::Format::bl)
+          set_bit(mem + p.address, p.place.bit(), p.initial[0] != 0);
+        else
+          std::memcpy(mem + p.address, p.initial.data(), p.initial.size());
+      }
+  s.first = false;
+  apply_forces();
+
+  vm::Machine machine;
+  machine.memory = mem;
+  machine.image = &im;
+  machine.now_ns = t_ns;
+  machine.budget = im.budget;
+  ScanResult result;
+  for (std::size_t i = 0; i < im.tasks.size(); ++i) {
+    const Image::Task& task = im.tasks[i];
+    State::TaskState& state = s.tasks[i];
+    if (task.single >= 0) {
+      const bool level = mem[task.single] != 0;
+      const bool edge = level && !state.last;
+      state.last = level;
+      if (!edge && (task.interval == 0 || level)) continue;
+      if (!edge && t_ns < state.next) continue;
+    } else if (task.interval > 0 && t_ns < state.next) {
+      continue;
+    }
+    if (task.interval > 0) {
+      // On its own grid; a grid finer than the cycle runs once a cycle.
+      if (state.next == std::numeric_limits<image::Nanoseconds>::min()) state.next = t_ns;
+      state.next += ((t_ns - state.next) / task.interval + 1) * task.interval;
+    }
+    machine.budget -= task.length;
+    const Fault fault = machine.budget < 0 ? Fault::budget : vm::execute(machine, task.entry);
+    if (fault == Fault::none) continue;
+    if (machine.budget < 0 && machine.at == 0) machine.at = task.entry;
+    result.fault = fault;
+    result.task = static_cast<std::int16_t>(i);
+    result.file = static_cast<std::int16_t>(im.lines[machine.at] >> 24);
+    result.line = static_cast<std::int32_t>(im.lines[machine.at] & 0xFFFFFF);
+    break;
+  }
+  result.instructions = im.budget - machine.budget;
+  if (result.fault != Fault::none) {
+    s.fault = result;
+    for (const Image::Shared& p : im.places)
+      if (p.written) drop(p, packets);
+    return result;
+  }
+  apply_forces();
+  for (const Image::Shared& p : im.places)
+    if (p.written) put_back(p, packets, mem + p.address);
+  return result;
+}
+
+ScanResult Engine::fault() const noexcept { return state_->fault; }
+
+text::Finding Engine::describe(const ScanResult& r) const {
+  static const text::Entry* const entries[] = {nullptr,
+                                               &texts::kFaultBudget,
+                                               &texts::kFaultDivision,
+                                               &texts::kFaultIndex,
+                                               &texts::kFaultSubrange,
+                                               &texts::kFaultConversion,
+                                               &texts::kFaultSelector,
+                                               &texts::kFaultText,
+                                               &texts::kFaultPackets};
+  text::Finding f;
+  f.file = file_name(r.file);
+  f.line = r.line;
+  f.column = r.line > 0 ? 1 : 0;
+  f.entry = entries[static_cast<int>(r.fault)];
+  f.arguments = {std::string(task_name(r.task)), std::to_string(image_->budget)};
+  return f;
+}
+
+std::string_view Engine::task_name(int task) const noexcept {
+  return task >= 0 && static_cast<std::size_t>(task) < image_->tasks.size()
+             ? std::string_view(image_->tasks[static_cast<std::size_t>(task)].name)
+             : std::string_view();
+}
+std::string_view Engine::file_name(int file) const noexcept {
+  return file >= 0 && static_cast<std::size_t>(file) < image_->files.size()
+             ? std::string_view(image_->files[static_cast<std::size_t>(file)])
+             : std::string_view();
+}
+
+std::optional<Handle> Engine::find(std::string_view name) const { return find_variable(*image_, name); }
+std::string Engine::name_of(const Handle& h) const { return variable_name(*image_, h); }
+
+std::string Engine::type_name(const Handle& h) const { return h.bit >= 0 ? "BOOL" : h.type->name; }
+
+std::string Engine::read(const Handle& h) const {
+  return to_json(*h.type, state_->memory.data() + h.address, h.bit);
+}
+
+double Engine::number(const Handle& h) const noexcept {
+  const std::uint8_t* at = state_->memory.data() + h.address;
+  return h.bit >= 0 ? (*at >> h.bit) & 1 : to_number(*h.type, at);
+}
+
+namespace {
+// Puts bytes of a value into a variable, and into the packet where it mirrors a place.
+void assign(const Image& image, std::vector<std::uint8_t>& memory, image::Packets& packets, const Handle& h,
+            const std::uint8_t* bytes) noexcept {
+  std::uint8_t* at = memory.data() + h.address;
+  const Image::Shared* s = h.place >= 0 ? &image.places[static_cast<std::size_t>(h.place)] : nullptr;
+  if (s != nullptr) take_in(*s, packets, memory.data() + s->address);
+  if (h.bit >= 0)
+    set_bit(at, h.bit, bytes[0] != 0);
+  else
+    std::memcpy(at, bytes, h.type->kind == Kind::string ? 1u + bytes[0] : h.type->size);
+  if (s != nullptr) put_back(*s, packets, memory.data() + s->address);
+}
+}  // namespace
+
+bool Engine::write(image::Packets& packets, const Handle& h, std::string_view text) {
+  std::array<std::uint8_t, kMaxStringCapacity + 1> bytes{};
+  if (!parse_value(*h.type, text, bytes.data())) return false;
+  assign(*image_, state_->memory, packets, h, bytes.data());
+  return true;
+}
+
+bool Engine::set_number(image::Packets& packets, const Handle& h, double value) noexcept {
+  std::array<std::uint8_t, 8> bytes{};
+  if (!from_number(*h.type, value, bytes.data())) return false;
+  assign(*image_, state_->memory, packets, h, bytes.data());
+  return true;
+}
+
+bool Engine::force(const Handle& h, std::string_view text) {
+  State::Force f;
+  f.handle = h;
+  f.text = text;
+  if (!parse_value(*h.type, text, f.bytes.data())) return false;
+  f.size = h.type->kind == Kind::string ? 1u + f.bytes[0] : h.type->size;
+  release(h);
+  if (state_->forces.size() >= kMaxForces) return false;
+  state_->forces.push_back(std::move(f));
+  return true;
+}
+
+void Engine::release(const Handle& h) {
+  std::erase_if(state_->forces, [&](const State::Force& f) {
+    return f.handle.address == h.address && f.handle.bit == h.bit;
+  });
+}
+void Engine::release_all() { state_->forces.clear(); }
+
+std::vector<std::pair<std::string, std::string>> Engine::forced() const {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const State::Force& f : state_->forces) out.emplace_back(name_of(f.handle), f.text);
+  return out;
+}
+
+std::size_t Engine::retain_bytes() const noexcept { return image_->retain_bytes; }
+
+bool Engine::snapshot_retained(std::span<std::uint8_t> out) const noexcept {
+  if (out.size() < image_->retain_bytes) return false;
+  for (const Image::RetainedCell& c : image_->retained)
+    std::memcpy(out.data() + c.offset, state_->memory.data() + c.address, c.type->size);
+  return true;
+}
+
+std::vector<Retained> Engine::retained(std::span<const std::uint8_t> snapshot) const {
+  std::vector<Retained> out;
+  if (snapshot.size() < image_->retain_bytes) return out;
+  for (const Image::RetainedCell& c : image_->retained)
+    out.push_back({c.name, c.type->name, to_literal(*c.type, snapshot.data() + c.offset)});
+  return out;
+}
+
+std::vector<Retained> Engine::retained() const {
+  std::vector<std::uint8_t> snapshot(image_->retain_bytes);
+  snapshot_retained(snapshot);
+  return retained(snapshot);
+}
+
+std::size_t Engine::restore(std::span<const Retained> values) {
+  std::size_t taken = 0;
+  for (const Retained& v : values)
+    for (const Image::RetainedCell& c : image_->retained) {
+      if (!same_name(c.name, v.name) || c.type->name != v.type) continue;
+      std::vector<std::uint8_t> bytes(c.type->size);
+      if (!parse_value(*c.type, v.value, bytes.data())) break;
+      std::memcpy(state_->memory.data() + c.address, bytes.data(), bytes.size());
+      ++taken;
+      break;
+    }
+  return taken;
+}
+
+}  // namespace servogate::plc

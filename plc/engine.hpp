@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/image/packets.hpp"
+#include "firmware_if/image/time.hpp"
+#include "firmware_if/text/finding.hpp"
+
+namespace servogate::plc {
+
+struct Image;
+struct Type;
+
+/// Why a scan was abandoned. From then on every place that the PLC program writes is held at FALSE or 0, so
+/// that enables and outputs drop, until Engine::restart().
+enum class Fault : std::uint8_t {
+  none,
+  budget,              ///< more instructions than Options::instruction_budget
+  division_by_zero,    ///< integer, real or TIME; MOD by zero is 0 by IEC 61131-3
+  index_out_of_range,  ///< array subscript
+  subrange,            ///< a value outside the subrange of the variable it is assigned to
+  conversion,          ///< a real that no value of the integer type stands for, or text that is no number
+  selector,            ///< K of MUX names no input
+  text_position,       ///< L or P of a string function is negative or lies outside the string
+  packet_size,         ///< packet K or SYVAR is smaller than the program was compiled for
+};
+
+/// Outcome of one scan. Plain data, so that the cycle can turn it into an alarm.
+struct ScanResult {
+  Fault fault = Fault::none;
+  std::int16_t task = -1;         ///< index for Engine::task_name
+  std::int16_t file = -1;         ///< index for Engine::file_name
+  std::int32_t line = 0;          ///< line of the statement, 0: none
+  std::int64_t instructions = 0;  ///< upper bound of the instructions executed
+};
+
+/// A variable found by name. Valid as long as the Image it came from. `type` is never null in a handle that
+/// Engine::find gave.
+struct Handle {
+  std::uint32_t address = 0;  ///< byte in the engine's memory
+  std::int32_t place = -1;    ///< index of the packet place it mirrors, -1: none
+  std::int8_t bit = -1;       ///< bit in that byte, -1: the whole variable
+  const Type* type = nullptr;
+};
+
+/// A retained elementary variable: full name, type name, value as Engine::write reads it.
+struct Retained {
+  std::string name;
+  std::string type;
+  std::string value;
+
+  bool operator==(const Retained&) const = default;
+};
+
+/// Runs a compiled program. One engine belongs to one thread (the cycle's); the functions that are not marked
+/// real-time safe are for the same thread outside the cycle, or for tools.
+///
+///     auto result = plc::compile({{"mill.st", text}}, symbols);
+///     plc::Engine engine(result.image);
+///     const plc::ScanResult scan = engine.scan(image.packets, image.now.t_ns);
+///     if (scan.fault != plc::Fault::none) raise(...);
+class Engine {
+ public:
+  explicit Engine(std::shared_ptr<const Image> image);
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  /// One scan at virtual time `t_ns`: takes the packet places in, forces, runs the tasks that are due in
+  /// order of priority, forces, puts the places that the program writes back. Time never runs backwards.
+  /// real-time safe.
+  ScanResult scan(image::Packets& packets, image::Nanoseconds t_ns) noexcept;
+
+  /// The fault that stopped the program, or Fault::none. real-time safe.
+  ScanResult fault() const noexcept;
+  /// The sentence of a fault with file and line, for people. Not real-time safe.
+  text::Finding describe(const ScanResult& result) const;
+  std::string_view task_name(int task) const noexcept;
+  std::string_view file_name(int file) const noexcept;
+  /// Cold start: all variables take their initial values (retained ones too), faults are gone; forces stay.
+  /// Not real-time safe.
+  void restart();
+
+  /// A variable by name without case: "Program.name", "Program.instance.member", "Program.list[3]", a global,
+  /// a symbol of the machine ("NC.m_strobe"); a bare name when there is one single program. nullopt: no such
+  /// variable. Not real-time safe.
+  std::optional<Handle> find(std::string_view name) const;
+  /// Name of the variable's type. Not real-time safe.
+  std::string type_name(const Handle& handle) const;
+  /// Value as JSON: true, -5, 1.25, "T#1s500ms", "text", enumeration by name, arrays and structures as such.
+  /// Not real-time safe.
+  std::string read(const Handle& handle) const;
+  /// Numeric value (BOOL 0 or 1, times in nanoseconds, enumerations by number), NaN for what is no number.
+  /// real-time safe.
+  double number(const Handle& handle) const noexcept;
+  /// Writes a value given as an IEC literal (`TRUE`, `-5`, `16#FF`, `T#30ms`, `Red`, `'text'`) or as plain
+  /// text for a STRING. The value stays until logic or another write changes it; a variable that mirrors a
+  /// packet place is written in the packet. False: not an elementary variable, or the text is no value of its
+  /// type. Not real-time safe.
+  bool write(image::Packets& packets, const Handle& handle, std::string_view text);
+  /// The same with a number; it must fit. real-time safe.
+  bool set_number(image::Packets& packets, const Handle& handle, double value) noexcept;
+
+  /// Holds an elementary variable at a value before and after every scan, whatever logic writes. At most
+  /// kMaxForces at once. False as for write(), or when the table is full. Not real-time safe.
+  bool force(const Handle& handle, std::string_view text);
+  void release(const Handle& handle);
+  void release_all();
+  /// Names and values of all forced variables. Not real-time safe.
+  std::vector<std::pair<std::string, std::string>> forced() const;
+  static constexpr std::size_t kMaxForces = 256;
+
+  /// Bytes of all VAR RETAIN together, for a snapshot taken in the cycle. real-time safe.
+  std::size_t retain_bytes() const noexcept;
+  /// Copies the retained variables. False when `out` is smaller than retain_bytes(). real-time safe.
+  bool snapshot_retained(std::span<std::uint8_t> out) const noexcept;
+  /// The retained variables of such a snapshot, by name and type. Not real-time safe.
+  std::vector<Retained> retained(std::span<const std::uint8_t> snapshot) const;
+  /// The present values. Not real-time safe.
+  std::vector<Retained> retained() const;
+  /// Takes over every value whose name and type still exist; returns how many. Not real-time safe.
+  std::size_t restore(std::span<const Retained> values);
+
+  const Image& image() const noexcept { return *image_; }
+
+ private:
+  std::string name_of(const Handle& handle) const;
+  struct State;
+  std::shared_ptr<const Image> image_;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace servogate::plc

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/lookup.hpp"
+
+#include "plc/syntax/parser.hpp"
+#include "plc/vm/image.hpp"
+
+namespace servogate::plc {
+
+namespace {
+
+using syntax::Expression;
+using syntax::ExpressionKind;
+
+/// One part of a path: a name, a subscript or a bit.
+struct Part {
+  std::string name;
+  std::int64_t number = 0;
+  bool index = false, bit = false;
+};
+
+bool take_apart(const Expression& e, std::vector<Part>& out) {
+  Part p;
+  switch (e.kind) {
+    case ExpressionKind::name:
+    case ExpressionKind::direct:
+      p.name = e.name;
+      out.push_back(p);
+      return true;
+    case ExpressionKind::member:
+      if (!take_apart(*e.operands[0], out)) return false;
+      p.name = e.name;
+      out.push_back(p);
+      return true;
+    case ExpressionKind::bit:
+      if (!take_apart(*e.operands[0], out)) return false;
+      p.bit = true;
+      p.number = static_cast<std::int64_t>(e.literal.magnitude);
+      out.push_back(p);
+      return true;
+    case ExpressionKind::index:
+      if (!take_apart(*e.operands[0], out)) return false;
+      for (std::size_t i = 1; i < e.operands.size(); ++i) {
+        const syntax::Literal& l = e.operands[i]->literal;
+        if (e.operands[i]->kind != ExpressionKind::literal || l.kind != Kind::untyped_int) return false;
+        Part index;
+        index.index = true;
+        index.number = static_cast<std::int64_t>(l.negative ? 0 - l.magnitude : l.magnitude);
+        out.push_back(index);
+      }
+      return true;
+    default:
+      return false;
+  }
+}
+
+// Follows the rest of a path from a variable.
+std::optional<Handle> follow(const Image& image, Handle h, const std::vector<Part>& parts, std::size_t at) {
+  for (; at < parts.size(); ++at) {
+    const Part& p = parts[at];
+    const Type& t = *h.type;
+    if (h.bit >= 0) return std::nullopt;
+    if (p.index) {
+      if (t.kind != Kind::array || p.number < t.range.low || p.number > t.range.high) return std::nullopt;
+      h.address += static_cast<std::uint32_t>(p.number - t.range.low) * t.base->size;
+      h.type = t.base;
+    } else if (p.bit) {
+      if (!(is_bits(t.kind) || is_integer(t.kind)) || p.number >= t.size * 8) return std::nullopt;
+      h.address += static_cast<std::uint32_t>(p.number / 8);
+      h.bit = static_cast<std::int8_t>(p.number % 8);
+      h.type = image.types->elementary(Kind::boolean);
+      return at + 1 == parts.size() ? std::optional(h) : std::nullopt;
+    } else {
+      const Field* f = t.field(p.name);
+      if (f == nullptr || f->reference) return std::nullopt;
+      h.address += f->offset;
+      h.type = f->type;
+    }
+  }
+  return h;
+}
+
+Handle handle_of(const Image& image, const ir::Global& g) {
+  Handle h;
+  h.address = g.address;
+  h.place = g.place;
+  h.type = g.type;
+  if (g.place >= 0) {
+    const Image::Shared& s = image.places[static_cast<std::size_t>(g.place)];
+    if (s.raw && s.place.format == image::Format::bl) h.bit = static_cast<std::int8_t>(s.place.bit());
+  }
+  return h;
+}
+
+std::optional<Handle> find_global(const Image& image, const std::string& prefix,
+                                  const std::vector<Part>& parts) {
+  std::string dotted = prefix + parts[0].name;
+  std::vector<std::string> names = {dotted};
+  for (std::size_t i = 1; i < parts.size() && !parts[i].index && !parts[i].bit; ++i)
+    names.push_back(dotted += "." + parts[i].name);
+  for (std::size_t n = names.size(); n-- > 0;)
+    for (const ir::Global& g : image.globals)
+      if (same_name(g.name, names[n])) return follow(image, handle_of(image, g), parts, n + 1);
+  return std::nullopt;
+}
+
+// The path below `type` that ends at an address.
+bool path_to(const Type& type, std::uint32_t base, const Handle& h, std::string& out) {
+  if (type.kind != Kind::structure && type.kind != Kind::block && type.kind != Kind::array) {
+    if (h.bit >= 0) out += "." + std::to_string((h.address - base) * 8 + static_cast<std::uint32_t>(h.bit));
+    return h.bit >= 0 || base == h.address;
+  }
+  if (h.address < base || h.address >= base + type.size) return false;
+  if (type.kind == Kind::array) {
+    const std::uint32_t i = (h.address - base) / type.base->size;
+    out += "[" + std::to_string(type.range.low + i) + "]";
+    return path_to(*type.base, base + i * type.base->size, h, out);
+  }
+  for (const Field& f : type.fields)
+    if (!f.reference && h.address >= base + f.offset && h.address < base + f.offset + f.type->size) {
+      out += "." + f.name;
+      return path_to(*f.type, base + f.offset, h, out);
+    }
+  return false;
+}
+
+}  // namespace
+
+std::optional<Handle> find_variable(const Image& image, std::string_view path) {
+  const syntax::ExpressionPtr e = syntax::parse_path(path);
+  std::vector<Part> parts;
+  if (!e || !take_apart(*e, parts)) return std::nullopt;
+  if (auto found = find_global(image, "", parts)) return found;
+  for (const ir::Global& p : image.programs)
+    if (same_name(p.name, parts[0].name) && parts.size() > 1) {
+      if (auto found = follow(image, {p.address, -1, -1, p.type}, parts, 1)) return found;
+      const std::vector<Part> rest(parts.begin() + 1, parts.end());
+      if (auto found = find_global(image, p.type->name + ".", rest)) return found;  // declared AT an address
+    }
+  if (image.programs.size() != 1) return std::nullopt;
+  const ir::Global& p = image.programs[0];
+  if (auto found = follow(image, {p.address, -1, -1, p.type}, parts, 0)) return found;
+  return find_global(image, p.type->name + ".", parts);
+}
+
+std::string variable_name(const Image& image, const Handle& h) {
+  if (h.place >= 0)
+    for (const ir::Global& g : image.globals)
+      if (g.place == h.place) return g.name;
+  for (const auto* list : {&image.globals, &image.programs})
+    for (const ir::Global& g : *list) {
+      std::string out = g.name;
+      const bool inside = h.address >= g.address && h.address < g.address + g.type->size;
+      if (g.place < 0 && inside && path_to(*g.type, g.address, h, out)) return out;
+    }
+  return {};
+}
+
+std::vector<std::string> variable_names(const Image& image) {
+  std::vector<std::string> out;
+  for (const ir::Global& g : image.globals)
+    if (g.name.find('%') == std::string::npos) out.push_back(g.name);
+  for (const ir::Global& p : image.programs)
+    for (const Field& f : p.type->fields)
+      if (!f.reference && f.name.find('$') == std::string::npos)
+        out.push_back(image.programs.size() == 1 ? f.name : p.name + "." + f.name);
+  return out;
+}
+
+}  // namespace servogate::plc

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/run.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "plc/engine.hpp"
+#include "plc/lookup.hpp"
+#include "plc/texts.hpp"
+#include "plc/values.hpp"
+#include "plc/vm/image.hpp"
+
+namespace servogate::plc {
+
+namespace {
+
+struct Set {
+  std::int64_t cycle;
+  Handle handle;
+  std::string value;
+};
+struct Print {
+  std::string name;
+  Handle handle;
+};
+
+void refuse(RunResult& out, const text::Entry& entry, std::vector<std::string> arguments) {
+  text::Finding f;
+  f.file = "plc run";
+  f.entry = &entry;
+  f.arguments = std::move(arguments);
+  out.findings.push_back(std::move(f));
+  out.end = RunResult::End::wrong_use;
+}
+
+std::vector<Set> resolve_sets(const RunRequest& r, const Engine& engine, RunResult& out) {
+  std::vector<Set> sets;
+  for (const RunSet& s : r.sets) {
+    const auto h = engine.find(s.name);
+    if (!h) {
+      refuse(out, texts::kRunName, {s.name});
+      continue;
+    }
+    std::vector<std::uint8_t> probe(std::max<std::size_t>(h->type->size, 8));
+    if (!parse_value(*h->type, s.value, probe.data()))
+      refuse(out, texts::kRunValue, {s.value, s.name, engine.type_name(*h)});
+    else if (s.cycle < 1 || s.cycle > r.cycles)
+      refuse(out, texts::kRunCycle, {std::to_string(s.cycle), std::to_string(r.cycles)});
+    else
+      sets.push_back({s.cycle, *h, s.value});
+  }
+  std::stable_sort(sets.begin(), sets.end(), [](const Set& a, const Set& b) { return a.cycle < b.cycle; });
+  return sets;
+}
+
+std::vector<Print> resolve_prints(const RunRequest& r, const Engine& engine, RunResult& out) {
+  std::vector<Print> prints;
+  for (const std::string& name : r.prints.empty() ? variable_names(engine.image()) : r.prints) {
+    if (const auto h = engine.find(name))
+      prints.push_back({name, *h});
+    else
+      refuse(out, texts::kRunName, {name});
+  }
+  return prints;
+}
+
+std::string escaped(std::string_view s) {
+  std::string out;
+  for (const char c : s) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
+bool parse_set(std::string_view text, RunSet& out) {
+  const std::size_t equal = text.find('=');
+  if (equal == std::string_view::npos || equal == 0) return false;
+  out.name = text.substr(0, equal);
+  std::string_view value = text.substr(equal + 1);
+  out.cycle = 1;
+  const std::size_t at = value.rfind('@');
+  if (at != std::string_view::npos && at + 1 < value.size()) {
+    const auto [end, error] = std::from_chars(value.data() + at + 1, value.data() + value.size(), out.cycle);
+    if (error == std::errc{} && end == value.data() + value.size())
+      value = value.substr(0, at);
+    else
+      out.cycle = 1;
+  }
+  out.value = value;
+  return true;
+}
+
+RunResult run(const RunRequest& request, const std::function<void(std::string_view)>& line) {
+  RunResult out;
+  CompileResult compiled = compile(request.files, request.symbols, request.options);
+  out.findings = std::move(compiled.findings);
+  if (compiled.image == nullptr) {
+    out.end = RunResult::End::bad_source;
+    return out;
+  }
+  Engine engine(compiled.image);
+  image::Packets packets;
+  packets.resize(request.options.k_bytes, request.options.v_bytes);
+  const std::vector<Set> sets = resolve_sets(request, engine, out);
+  const std::vector<Print> prints = resolve_prints(request, engine, out);
+  if (out.end != RunResult::End::done) return out;
+  std::size_t next = 0;
+  for (std::int64_t cycle = 1; cycle <= request.cycles; ++cycle) {
+    for (; next < sets.size() && sets[next].cycle == cycle; ++next)
+      engine.write(packets, sets[next].handle, sets[next].value);
+    const ScanResult scan = engine.scan(packets, (cycle - 1) * request.cycle_ns);
+    if (scan.fault != Fault::none) {
+      out.findings.push_back(engine.describe(scan));
+      out.end = RunResult::End::fault;
+      return out;
+    }
+    out.cycles = cycle;
+    std::string json = "{\"cycle\":" + std::to_string(cycle) + ",\"values\":{";
+    for (std::size_t i = 0; i < prints.size(); ++i)
+      json += (i == 0 ? "\"" : ",\"") + escaped(prints[i].name) + "\":" + engine.read(prints[i].handle);
+    line(json + "}}");
+  }
+  return out;
+}
+
+bool check(const std::vector<SourceFile>& files, const std::vector<image::Symbol>& symbols,
+           const Options& options, std::vector<text::Finding>& findings) {
+  CompileResult r = compile(files, symbols, options);
+  findings = std::move(r.findings);
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const text::Finding& f) { return f.severity == text::Severity::error; });
+}
+
+}  // namespace servogate::plc

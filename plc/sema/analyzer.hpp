@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/image/interface_map.hpp"
+#include "plc/compile.hpp"
+#include "plc/ir/ir.hpp"
+#include "plc/syntax/report.hpp"
+
+namespace servogate::plc::sema {
+
+using ir::Constant;
+using ir::Expr;
+using ir::ExprPtr;
+using ir::Native;
+using ir::Op;
+using syntax::Expression;
+using syntax::Location;
+
+/// A declared variable.
+struct Variable {
+  std::string name;
+  Location at;
+  syntax::Section section = syntax::Section::local;
+  const Type* type = nullptr;
+  ir::Root root = ir::Root::instance;
+  std::uint32_t cell = 0;
+  bool constant = false;
+  bool retain = false;
+  std::optional<Constant> value;  ///< of an elementary constant
+  std::vector<std::uint8_t> initial;
+  bool used = false;
+  bool written = false;
+  std::set<int> writers;  ///< units that assign it
+};
+
+struct UnitScope {
+  const syntax::Unit* source = nullptr;
+  std::vector<Variable> variables;  ///< in order of declaration
+  std::map<std::string, std::size_t> by_name;
+  Type* frame = nullptr;
+  const Type* result = nullptr;
+  int result_variable = -1;
+  std::set<int> calls;
+  int depth_state = 0;  ///< of the search for recursion
+  bool ready = false;   ///< frame laid out
+  bool laying_out = false;
+  bool library = false;
+};
+
+/// Turns the trees of all files into the typed representation and reports everything that does not hold. One
+/// object, one compilation; its parts are the .cpp files of this folder.
+class Analyzer {
+ public:
+  Analyzer(const syntax::Source& source, const std::vector<image::Symbol>& symbols, const Options& options,
+           int library_file, syntax::Report& report);
+
+  /// The program; complete only when the report has no error.
+  ir::Program run();
+
+ private:
+  friend class Scope;
+
+  // declarations.cpp: types, frames, globals.
+  void declare_names();
+  void resolve_types();
+  const Type* resolve_declared(std::size_t index);
+  const Type* resolve(const syntax::TypeReference& t, const std::string& name = {});
+  const Type* resolve_named(const syntax::TypeReference& t);
+  const Type* resolve_array(const syntax::TypeReference& t);
+  const Type* resolve_structure(const syntax::TypeReference& t, const std::string& name);
+  const Type* resolve_enumeration(const syntax::TypeReference& t, const std::string& name);
+  const Type* resolve_subrange(const syntax::TypeReference& t, const Type* base, const std::string& name);
+  std::uint32_t append(Type& owner, Field field);
+  void place_initial(std::vector<std::uint8_t>& image, std::uint32_t offset, const Type& type,
+                     const std::vector<std::uint8_t>& bytes);
+  void lay_out(int unit);
+  void declare_variable(UnitScope& u, const syntax::Variable& v);
+  void declare_edge(UnitScope& u, const syntax::Variable& v);
+  void declare_globals();
+  void declare_located(Variable& out, const syntax::Variable& v);
+  void check_sections(const UnitScope& u, const syntax::Variable& v);
+  std::uint32_t allocate(const Type& type);
+
+  // places.cpp: packet places.
+  std::optional<image::Place> parse_address(const std::string& text, const Location& at);
+  std::uint32_t shared(const std::string& name, const image::Place& place, const Type* type,
+                       const Location& at);
+  const Type* type_of(const image::Place& place);
+  const image::Symbol* symbol(std::string_view name) const;
+  void check_place_writer(std::uint32_t place, const Location& at, const std::string& shown);
+  void lay_out_places();
+
+  // constants.cpp: folding, initial values.
+  std::optional<Constant> constant(const Expression& e, const Type* type);
+  std::optional<std::int64_t> constant_integer(const Expression& e);
+  std::vector<std::uint8_t> initial_bytes(const Expression& e, const Type& type);
+  void initial_list(const Expression& e, const Type& type, std::vector<std::uint8_t>& out);
+  void initial_record(const Expression& e, const Type& type, std::vector<std::uint8_t>& out);
+  ExprPtr fold(ExprPtr e);
+  ExprPtr make_constant(const Type* type, Constant c, const Location& at);
+
+  // names.cpp: from a name to a place.
+  Variable* find_variable(std::string_view name, bool& global);
+  bool dotted_symbol(const Expression& e, std::string& name) const;
+  std::optional<ir::Place> place(const Expression& e, bool write);
+  std::optional<ir::Place> place_of_name(const Expression& e, bool write);
+  std::optional<ir::Place> place_of_member(const Expression& e, bool write);
+  std::optional<ir::Place> place_of_index(const Expression& e, bool write);
+  std::optional<ir::Place> place_of_bit(const Expression& e, bool write);
+  std::optional<ir::Place> place_of_symbol(const std::string& name, const Location& at, bool write);
+  void note_write(Variable& v, bool global, const Location& at);
+  std::vector<std::string> names_in_scope() const;
+  ExprPtr enumeration_value(std::string_view name, const Location& at, const Type* hint);
+
+  // expressions.cpp
+  ExprPtr expression(const Expression& e, const Type* hint = nullptr);
+  ExprPtr literal(const Expression& e, const Type* hint);
+  ExprPtr typed_literal(const Expression& e);
+  ExprPtr name_expression(const Expression& e, const Type* hint);
+  ExprPtr unary(const Expression& e, const Type* hint);
+  ExprPtr binary(const Expression& e, const Type* hint);
+  ExprPtr combine(Op op, ExprPtr a, ExprPtr b, const Location& at, std::string_view shown);
+  ExprPtr combine_times(Op op, ExprPtr& a, ExprPtr& b, const Location& at);
+  ExprPtr power(ExprPtr a, ExprPtr b, const Location& at);
+  ExprPtr convert(ExprPtr e, const Type* to);
+  ExprPtr scaled_time(ExprPtr e, const Type* to, const Location& at);
+  ExprPtr explicit_conversion(ExprPtr e, const Type* to, bool truncate, const Location& at);
+  /// For an assignment: reports what does not fit, warns of narrowing.
+  ExprPtr assignable(ExprPtr e, const Type* to);
+  ExprPtr settle(ExprPtr e, const Type* hint);
+  ExprPtr load(ir::Place p, const Location& at);
+  ExprPtr bad(const Location& at);
+  ExprPtr node(ir::ExprKind kind, const Type* type, const Location& at);
+  ExprPtr native(Native n, const Type* type, const Location& at, std::vector<ExprPtr> args);
+
+  // standard.cpp: functions of the standard.
+  bool is_standard(std::string_view key) const;
+  ExprPtr standard_call(const Expression& e, std::string_view key, const Type* hint);
+  ExprPtr numeric_call(std::string_view key, const Expression& e, const Type* hint);
+  ExprPtr selection_call(std::string_view key, const Expression& e, const Type* hint);
+  ExprPtr operator_call(std::string_view key, const Expression& e, const Type* hint);
+  ExprPtr shift_call(std::string_view key, const Expression& e, const Type* hint);
+  ExprPtr text_call(std::string_view key, const Expression& e);
+  ExprPtr time_call(std::string_view key, const Expression& e);
+  ExprPtr conversion_call(std::string_view key, const Expression& e);
+  /// The inputs of a standard function, converted to one common type (`fixed`, when given); empty: reported.
+  std::vector<ExprPtr> common_inputs(const std::vector<const Expression*>& in, std::string_view name,
+                                     const Type* hint, bool (*accepts)(Kind), const char* wanted);
+  std::vector<ExprPtr> typed_inputs(const std::vector<const Expression*>& in,
+                                    std::initializer_list<const Type*> types);
+  ExprPtr chain(Op op, std::vector<ExprPtr> args, const Location& at, std::string_view shown);
+  std::vector<const Expression*> inputs(const Expression& e, std::string_view name,
+                                        std::initializer_list<const char*> names, std::size_t least,
+                                        std::size_t most);
+
+  // calls.cpp
+  ExprPtr call(const Expression& e, const Type* hint, bool as_statement);
+  ExprPtr function_call(const Expression& e, int unit);
+  void block_call(const Expression& e, const ir::Place& instance, int unit, ir::Block& out);
+  void block_input(const syntax::Argument& a, const Variable& parameter, const ir::Place& instance,
+                   ir::Block& out);
+  const Variable* match(const syntax::Argument& a, std::size_t position, int unit);
+  bool check_arguments(const Expression& e, int unit, std::vector<const Variable*>& matched);
+  void output_argument(const syntax::Argument& a, const Variable& parameter, const ir::Place& from,
+                       ir::Block& out);
+
+  // statements.cpp
+  ir::Block block(const syntax::Block& b);
+  void statement(const syntax::Statement& s, ir::Block& out);
+  void assignment(const syntax::Statement& s, ir::Block& out);
+  void assign(ir::Place target, ExprPtr value, const Location& at, ir::Block& out);
+  void if_statement(const syntax::Statement& s, ir::Block& out);
+  void case_statement(const syntax::Statement& s, ir::Block& out);
+  void for_statement(const syntax::Statement& s, ir::Block& out);
+  void loop_statement(const syntax::Statement& s, ir::Block& out);
+  ExprPtr condition(const Expression& e);
+  void body(int unit);
+
+  // tasks.cpp
+  void default_task();
+  void configured_tasks();
+  ir::Task task_of(const syntax::Task& t);
+  void program_call(const syntax::ProgramInstance& p, ir::Block& out);
+  int program_unit(const syntax::ProgramInstance& p);
+  std::uint32_t instance(const std::string& name, int unit);
+  void check_recursion();
+  bool visit(int unit, std::vector<int>& path);
+  void check_usage();
+  void check_writers();
+
+  UnitScope& here() { return scopes_[static_cast<std::size_t>(current_)]; }
+  const Type* elementary(Kind k) const { return types_->elementary(k); }
+
+  const syntax::Source& source_;
+  const std::vector<image::Symbol>& symbols_;
+  const Options& options_;
+  int library_file_;
+  syntax::Report& report_;
+  ir::Program program_;
+  TypeTable* types_;
+
+  std::map<std::string, std::size_t> declared_types_;
+  std::vector<const Type*> resolved_;
+  std::vector<bool> resolving_;
+  std::vector<UnitScope> scopes_;
+  std::map<std::string, int> units_by_name_;
+  std::vector<Variable> globals_;
+  std::map<std::string, std::size_t> globals_by_name_;
+  std::map<std::string, std::vector<const Type*>> enumerations_;  ///< value name -> types
+  std::map<std::string, std::size_t> symbols_by_name_;
+  std::map<std::string, std::uint32_t> shared_by_name_;
+  struct Located {
+    std::string name, text;
+    image::Place place;
+    Location at;
+  };
+  std::vector<Located> located_;
+  std::vector<std::set<int>> place_writers_;
+  std::set<std::uint32_t> read_only_places_;  ///< declared AT %I
+  std::set<std::string> unknown_;             ///< names reported in the current unit
+  std::vector<const Variable*> for_variables_;
+  std::vector<int> instances_;  ///< programs: number of instances a unit has
+  int current_ = -1;
+  int loops_ = 0;
+  bool no_marks_ = false;  ///< reads do not count as use
+};
+
+/// The bytes of a constant as the machine holds them.
+void store_constant(const Type& type, const Constant& c, std::uint8_t* out);
+std::string constant_text(const Type& type, const Constant& c);
+
+}  // namespace servogate::plc::sema

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "plc/sema/analyzer.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::sema {
+
+using ir::ExprKind;
+using syntax::ExpressionKind;
+using syntax::Section;
+using syntax::UnitKind;
+
+ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
+  const Expression& callee = *e.operands[0];
+  if (callee.kind == ExpressionKind::name) {
+    const std::string key = key_of(callee.name);
+    bool global = false;
+    const Variable* v = find_variable(callee.name, global);
+    if (v == nullptr || v->type->kind != Kind::block) {
+      const auto unit = units_by_name_.find(key);
+      if (unit != units_by_name_.end() &&
+          scopes_[static_cast<std::size_t>(unit->second)].source->kind == UnitKind::function)
+        return function_call(e, unit->second);
+      if (is_standard(key)) return standard_call(e, key, hint);
+      if (v == nullptr) {
+        std::vector<std::string> names = names_in_scope();
+        for (const syntax::Unit& u : source_.units)
+          if (u.kind == UnitKind::function) names.push_back(u.name);
+        for (const char* n : {"ABS", "SQRT", "MIN", "MAX", "LIMIT", "SEL", "MUX", "CONCAT", "LEN", "TRUNC"})
+          names.push_back(n);
+        if (unit != units_by_name_.end())
+          report_.error(
+              callee.location, texts::kUnknownCall,
+              {callee.name, "; VAR x : " + scopes_[static_cast<std::size_t>(unit->second)].source->name});
+        else
+          report_.error(callee.location, texts::kUnknownCall,
+                        {callee.name, syntax::suggestion(callee.name, names)});
+        for (const syntax::Argument& a : e.arguments)
+          if (a.value && !a.output) expression(*a.value);
+        return bad(e.location);
+      }
+    }
+  }
+  std::string shown;
+  if (!dotted_symbol(callee, shown)) shown = "(...)";
+  report_.error(callee.location, texts::kNoValue, {shown});
+  return bad(e.location);
+}
+
+const Variable* Analyzer::match(const syntax::Argument& a, std::size_t position, int unit) {
+  const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
+  const bool named = !a.name.empty();
+  std::size_t seen = 0;
+  for (const Variable& v : u.variables) {
+    const bool input = v.section == Section::input || v.section == Section::in_out;
+    if (named ? same_name(v.name, a.name) && (a.output ? v.section == Section::output : input)
+              : input && seen++ == position)
+      return &v;
+  }
+  return nullptr;
+}
+
+// Pairs actual with formal parameters; false when something was reported.
+bool Analyzer::check_arguments(const Expression& e, int unit, std::vector<const Variable*>& matched) {
+  const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
+  const std::size_t errors = report_.errors();
+  std::size_t positional = 0, named = 0, inputs_known = 0;
+  for (const Variable& v : u.variables)
+    inputs_known += v.section == Section::input || v.section == Section::in_out;
+  for (const syntax::Argument& a : e.arguments) {
+    (a.name.empty() ? positional : named) += !a.output;
+    const Variable* v = match(a, positional - 1, unit);
+    if (v == nullptr && !a.name.empty()) {
+      std::vector<std::string> names;
+      for (const Variable& w : u.variables)
+        if (a.output ? w.section == Section::output
+                     : w.section == Section::input || w.section == Section::in_out)
+          names.push_back(w.name);
+      report_.error(
+          a.location, texts::kNoParameter,
+          {u.source->name, a.output ? "VAR_OUTPUT" : "VAR_INPUT", a.name, syntax::suggestion(a.name, names)});
+    }
+    if (v != nullptr && std::find(matched.begin(), matched.end(), v) != matched.end())
+      report_.error(a.location, texts::kTwice, {v->name});
+    matched.push_back(v);
+  }
+  if (positional > 0 && named > 0) report_.error(e.location, texts::kMixed);
+  if (positional > inputs_known || (positional > 0 && named == 0 && positional < inputs_known))
+    report_.error(e.location, texts::kCount,
+                  {u.source->name, std::to_string(inputs_known), std::to_string(positional)});
+  for (const Variable& v : u.variables)
+    if (v.section == Section::in_out && std::find(matched.begin(), matched.end(), &v) == matched.end() &&
+        report_.errors() == errors)
+      report_.error(e.location, texts::kInOutMissing, {u.source->name, v.name});
+  return report_.errors() == errors;
+}
+
+namespace {
+bool exact(const Type& actual, const Type& formal) {
+  return &actual == &formal || conversion(actual, formal) == Conversion::same;
+}
+}  // namespace
+
+ExprPtr Analyzer::function_call(const Expression& e, int unit) {
+  lay_out(unit);
+  if (current_ >= 0) here().calls.insert(unit);
+  UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
+  std::vector<const Variable*> matched;
+  if (!check_arguments(e, unit, matched)) return bad(e.location);
+  ExprPtr out = node(ExprKind::call, u.result, e.location);
+  out->unit = unit;
+  bool good = true;
+  for (std::size_t i = 0; i < e.arguments.size(); ++i) {
+    const syntax::Argument& a = e.arguments[i];
+    const Variable& v = *matched[i];
+    ir::Parameter p;
+    p.offset = v.cell;
+    p.type = v.type;
+    p.section = v.section;
+    if (v.section == Section::input) {
+      p.value = assignable(expression(*a.value, v.type), v.type);
+      good = good && p.value->type->kind != Kind::error;
+    } else if (a.value) {
+      auto target = place(*a.value, true);
+      if (!target) {
+        good = false;
+      } else if (target->bit >= 0 && v.section == Section::in_out) {
+        report_.error(a.location, texts::kBitReference);
+        good = false;
+      } else if (!exact(*target->type, *v.type)) {
+        report_.error(a.value->location, texts::kInOutType, {v.name, v.type->name, target->type->name});
+        good = false;
+      } else {
+        if (target->root == ir::Root::shared && v.section == Section::in_out)
+          program_.places[target->cell].referenced = true;
+        p.place = std::move(*target);
+      }
+    } else {
+      continue;
+    }
+    out->parameters.push_back(std::move(p));
+  }
+  for (const Variable& v : u.variables) {  // inputs that are not given take their initial value
+    if (v.section != Section::input || std::find(matched.begin(), matched.end(), &v) != matched.end())
+      continue;
+    if (!is_elementary(v.type->kind) || v.type->kind == Kind::error) continue;
+    Constant c;
+    if (!v.initial.empty()) {
+      const syntax::Variable* s = nullptr;
+      for (const syntax::Variable& w : u.source->variables)
+        if (same_name(w.name, v.name)) s = &w;
+      if (s != nullptr && s->initial)
+        if (const auto given = constant(*s->initial, v.type)) c = *given;
+    }
+    ir::Parameter p;
+    p.offset = v.cell;
+    p.type = v.type;
+    p.value = make_constant(v.type, c, e.location);
+    out->parameters.push_back(std::move(p));
+  }
+  if (!good) return bad(e.location);
+  if (u.result_variable >= 0) out->result = u.variables[static_cast<std::size_t>(u.result_variable)].cell;
+  return out;
+}
+
+void Analyzer::output_argument(const syntax::Argument& a, const Variable& parameter, const ir::Place& from,
+                               ir::Block& out) {
+  if (!a.value) return;
+  auto target = place(*a.value, true);
+  if (!target) return;
+  ExprPtr value = load(from.copy(), a.location);
+  if (a.inverted) {
+    ExprPtr inverse = node(ExprKind::unary, value->type, a.location);
+    inverse->op = Op::not_;
+    inverse->args.push_back(std::move(value));
+    value = std::move(inverse);
+  }
+  value->at = a.value->location;
+  (void)parameter;
+  assign(std::move(*target), std::move(value), a.location, out);
+}
+
+void Analyzer::block_input(const syntax::Argument& a, const Variable& v, const ir::Place& instance,
+                           ir::Block& out) {
+  ir::Place formal = instance.copy();
+  formal.offset += v.cell;
+  formal.type = v.type;
+  if (v.section == Section::input) {
+    assign(std::move(formal), expression(*a.value, v.type), a.location, out);
+    return;
+  }
+  auto target = place(*a.value, true);
+  if (!target) return;
+  if (target->bit >= 0) {
+    report_.error(a.location, texts::kBitReference);
+    return;
+  }
+  if (!exact(*target->type, *v.type)) {
+    report_.error(a.value->location, texts::kInOutType, {v.name, v.type->name, target->type->name});
+    return;
+  }
+  if (target->root == ir::Root::shared) program_.places[target->cell].referenced = true;
+  ir::Stmt bind;
+  bind.kind = ir::StmtKind::bind;
+  bind.at = a.location;
+  formal.type = elementary(Kind::udint);
+  bind.place = std::move(formal);
+  bind.other = std::move(*target);
+  out.push_back(std::move(bind));
+}
+
+void Analyzer::block_call(const Expression& e, const ir::Place& named, int unit, ir::Block& out) {
+  if (current_ >= 0) here().calls.insert(unit);
+  std::vector<const Variable*> matched;
+  if (!check_arguments(e, unit, matched)) return;
+  ir::Place instance = named.copy();
+  if (!named.steps.empty()) {  // subscripts are computed once, whatever the call changes
+    ir::Stmt choose;
+    choose.kind = ir::StmtKind::bind;
+    choose.at = e.location;
+    choose.place.cell = allocate(*elementary(Kind::udint));
+    choose.place.type = elementary(Kind::udint);
+    instance = {};
+    instance.root = ir::Root::pointer;
+    instance.cell = choose.place.cell;
+    instance.type = named.type;
+    choose.other = named.copy();
+    out.push_back(std::move(choose));
+  }
+  for (std::size_t i = 0; i < e.arguments.size(); ++i)
+    if (!e.arguments[i].output) block_input(e.arguments[i], *matched[i], instance, out);
+  ir::Stmt invoke;
+  invoke.kind = ir::StmtKind::invoke;
+  invoke.at = e.location;
+  invoke.place = instance.copy();
+  invoke.unit = unit;
+  out.push_back(std::move(invoke));
+  for (std::size_t i = 0; i < e.arguments.size(); ++i) {
+    if (!e.arguments[i].output) continue;
+    ir::Place from = instance.copy();
+    from.offset += matched[i]->cell;
+    from.type = matched[i]->type;
+    output_argument(e.arguments[i], *matched[i], from, out);
+  }
+}
+
+}  // namespace servogate::plc::sema

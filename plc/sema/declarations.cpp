@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstring>
+
+#include "plc/sema/analyzer.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::sema {
+
+using syntax::Section;
+using syntax::UnitKind;
+
+namespace {
+constexpr std::uint32_t kMaxBytes = 16u << 20;
+
+std::string line_of(const Location& at) { return std::to_string(at.line); }
+std::uint32_t aligned(std::uint32_t at, std::uint32_t to) { return (at + to - 1) / to * to; }
+}  // namespace
+
+Analyzer::Analyzer(const syntax::Source& source, const std::vector<image::Symbol>& symbols,
+                   const Options& options, int library_file, syntax::Report& report)
+    : source_(source), symbols_(symbols), options_(options), library_file_(library_file), report_(report) {
+  program_.types = std::make_shared<TypeTable>();
+  types_ = program_.types.get();
+  program_.files = report.files();
+  program_.memory.assign(16, 0);
+  for (std::size_t i = 0; i < symbols.size(); ++i) symbols_by_name_.emplace(key_of(symbols[i].name), i);
+}
+
+ir::Program Analyzer::run() {
+  declare_names();
+  resolve_types();
+  declare_globals();
+  for (std::size_t u = 0; u < scopes_.size(); ++u) lay_out(static_cast<int>(u));
+  if (source_.configurations.empty())
+    default_task();
+  else
+    configured_tasks();
+  for (std::size_t u = 0; u < scopes_.size(); ++u)
+    if (scopes_[u].source != nullptr) body(static_cast<int>(u));
+  check_recursion();
+  check_writers();
+  check_usage();
+  lay_out_places();
+  return std::move(program_);
+}
+
+void Analyzer::declare_names() {
+  for (std::size_t i = 0; i < source_.types.size(); ++i) {
+    const auto& d = source_.types[i];
+    if (types_->find(d.name) != nullptr)
+      report_.error(d.location, texts::kReserved, {d.name});
+    else if (const auto [at, fresh] = declared_types_.emplace(key_of(d.name), i); !fresh)
+      report_.error(d.location, texts::kDuplicate, {d.name, line_of(source_.types[at->second].location)});
+  }
+  resolved_.resize(source_.types.size());
+  resolving_.resize(source_.types.size());
+  for (std::size_t i = 0; i < source_.units.size(); ++i) {
+    const syntax::Unit& s = source_.units[i];
+    UnitScope u;
+    u.source = &s;
+    u.library = s.location.file == library_file_;
+    const auto known = units_by_name_.find(key_of(s.name));
+    if (types_->find(s.name) != nullptr) {
+      report_.error(s.location, texts::kReserved, {s.name});
+    } else if (declared_types_.contains(key_of(s.name))) {
+      report_.error(s.location, texts::kDuplicate,
+                    {s.name, line_of(source_.types[declared_types_[key_of(s.name)]].location)});
+    } else if (known != units_by_name_.end() && !u.library) {
+      report_.error(s.location, texts::kDuplicate,
+                    {s.name, line_of(source_.units[static_cast<std::size_t>(known->second)].location)});
+    } else if (known == units_by_name_.end()) {
+      units_by_name_[key_of(s.name)] = static_cast<int>(i);
+    }
+    scopes_.push_back(std::move(u));
+    ir::Unit unit;
+    unit.kind = s.kind;
+    unit.name = s.name;
+    unit.at = s.location;
+    program_.units.push_back(std::move(unit));
+  }
+  instances_.assign(scopes_.size(), 0);
+}
+
+void Analyzer::resolve_types() {
+  for (const auto& [key, index] : declared_types_) resolve_declared(index);
+}
+
+const Type* Analyzer::resolve_declared(std::size_t index) {
+  if (resolved_[index] != nullptr) return resolved_[index];
+  const syntax::TypeDeclaration& d = source_.types[index];
+  if (resolving_[index]) {
+    report_.error(d.location, texts::kTypeCycle, {d.name});
+    return elementary(Kind::error);
+  }
+  resolving_[index] = true;
+  const Type* t = resolve(d.type, d.name);
+  if (d.initial && t->kind != Kind::error) {
+    // Own identity, so that the initial value belongs to the name only.
+    const std::vector<std::uint8_t> bytes = initial_bytes(*d.initial, *t);
+    Type* own = types_->add(t->kind, d.name);
+    const std::string name = own->name;
+    *own = *t;
+    own->name = name;
+    own->image = bytes;
+    if (t->kind == Kind::enumeration)
+      for (auto& [value, owners] : enumerations_)
+        std::replace(owners.begin(), owners.end(), t, static_cast<const Type*>(own));
+    t = is_elementary(own->kind) && own->kind != Kind::enumeration && !own->bounded ? own : own;
+  }
+  resolved_[index] = t;
+  return t;
+}
+
+const Type* Analyzer::resolve(const syntax::TypeReference& t, const std::string& name) {
+  if (!t.values.empty()) return resolve_enumeration(t, name);
+  if (key_of(t.name) == "ARRAY") return resolve_array(t);
+  if (key_of(t.name) == "STRUCT") return resolve_structure(t, name);
+  const Type* named = resolve_named(t);
+  if (t.low) return resolve_subrange(t, named, name);
+  if (t.length && named->kind == Kind::string) {
+    const auto n = constant_integer(*t.length);
+    if (!n) return elementary(Kind::error);
+    if (*n >= 1 && *n <= kMaxStringCapacity) return types_->string(static_cast<std::uint32_t>(*n));
+    report_.error(t.location, texts::kStringLength, {std::to_string(*n)});
+    return elementary(Kind::error);
+  }
+  return named;
+}
+
+const Type* Analyzer::resolve_named(const syntax::TypeReference& t) {
+  if (const Type* found = types_->find(t.name)) return found;
+  const std::string key = key_of(t.name);
+  if (const auto at = declared_types_.find(key); at != declared_types_.end())
+    return resolve_declared(at->second);
+  if (const auto at = units_by_name_.find(key);
+      at != units_by_name_.end() &&
+      scopes_[static_cast<std::size_t>(at->second)].source->kind == UnitKind::function_block) {
+    UnitScope& u = scopes_[static_cast<std::size_t>(at->second)];
+    if (u.laying_out) {
+      report_.error(t.location, texts::kTypeCycle, {u.source->name});
+      return elementary(Kind::error);
+    }
+    const int outer = current_;
+    lay_out(at->second);
+    current_ = outer;
+    return u.frame;
+  }
+  if (key == "WSTRING" || key == "WCHAR") {
+    report_.error(t.location, texts::kUnsupported, {key});
+    return elementary(Kind::error);
+  }
+  std::vector<std::string> names = {"BOOL",  "SINT",  "INT",  "DINT", "LINT",  "USINT", "UINT",
+                                    "UDINT", "ULINT", "BYTE", "WORD", "DWORD", "LWORD", "REAL",
+                                    "LREAL", "TIME",  "DATE", "TOD",  "DT",    "STRING"};
+  for (const auto& d : source_.types) names.push_back(d.name);
+  for (const auto& u : source_.units)
+    if (u.kind == UnitKind::function_block) names.push_back(u.name);
+  report_.error(t.location, texts::kUnknownType, {t.name, syntax::suggestion(t.name, names)});
+  return elementary(Kind::error);
+}
+
+const Type* Analyzer::resolve_array(const syntax::TypeReference& t) {
+  const Type* element = resolve(*t.element);
+  if (element->kind == Kind::error) return element;
+  for (auto r = t.ranges.rbegin(); r != t.ranges.rend(); ++r) {
+    const auto low = constant_integer(*r->first), high = constant_integer(*r->second);
+    if (!low || !high) return elementary(Kind::error);
+    if (*high < *low) {
+      report_.error(r->first->location, texts::kEmptyRange, {std::to_string(*low), std::to_string(*high)});
+      return elementary(Kind::error);
+    }
+    const double bytes = (static_cast<double>(*high) - static_cast<double>(*low) + 1) * element->size;
+    if (bytes > kMaxBytes) {
+      report_.error(t.location, texts::kTooLarge,
+                    {"ARRAY", text::number(bytes, 0), std::to_string(kMaxBytes)});
+      return elementary(Kind::error);
+    }
+    element = types_->array(element, {*low, *high});
+  }
+  return element;
+}
+
+std::uint32_t Analyzer::append(Type& owner, Field field) {
+  const std::uint32_t align = field.reference ? 4 : std::max<std::uint32_t>(1, field.type->align);
+  const std::uint32_t size = field.reference ? 4 : field.type->size;
+  field.offset = aligned(owner.size, align);
+  owner.size = field.offset + size;
+  owner.align = std::max(owner.align, align);
+  if (owner.size > kMaxBytes) {
+    report_.error({}, texts::kTooLarge, {owner.name, std::to_string(owner.size), std::to_string(kMaxBytes)});
+    owner.size = 0;
+  }
+  const std::uint32_t offset = field.offset;
+  if (!field.reference) place_initial(owner.image, offset, *field.type, field.type->image);
+  owner.fields.push_back(std::move(field));
+  return offset;
+}
+
+void Analyzer::place_initial(std::vector<std::uint8_t>& image, std::uint32_t offset, const Type& type,
+                             const std::vector<std::uint8_t>& bytes) {
+  if (bytes.empty()) return;
+  if (image.size() < offset + type.size) image.resize(offset + type.size);
+  std::copy(bytes.begin(), bytes.end(), image.begin() + offset);
+}
+
+const Type* Analyzer::resolve_structure(const syntax::TypeReference& t, const std::string& name) {
+  Type* s = types_->add(Kind::structure, name.empty() ? "STRUCT" : name);
+  for (const syntax::Variable& m : t.members) {
+    if (s->field(m.name) != nullptr) {
+      report_.error(m.location, texts::kDuplicate, {m.name, line_of(t.location)});
+      continue;
+    }
+    const Type* type = resolve(*m.type);
+    const std::uint32_t offset = append(*s, {m.name, type, 0, false, false});
+    if (m.initial && type->kind != Kind::error)
+      place_initial(s->image, offset, *type, initial_bytes(*m.initial, *type));
+  }
+  s->size = std::max<std::uint32_t>(1, aligned(s->size, s->align));
+  if (!s->image.empty()) s->image.resize(s->size);
+  return s;
+}
+
+const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const std::string& name) {
+  const Type* base = elementary(Kind::int_);
+  if (!t.name.empty()) base = resolve_named(t);
+  if (!is_integer(base->kind) && base->kind != Kind::error) {
+    report_.error(t.location, texts::kSubrangeBase, {base->name});
+    return elementary(Kind::error);
+  }
+  if (base->kind == Kind::error) return base;
+  Type* e = types_->add(Kind::enumeration, name.empty() ? "enumeration" : name);
+  e->base = base;
+  e->size = e->align = base->size;
+  std::int64_t next = 0;
+  for (std::size_t i = 0; i < t.values.size(); ++i) {
+    const auto& [value_name, value] = t.values[i];
+    if (e->value_named(value_name) != nullptr)
+      report_.error(t.value_locations[i], texts::kDuplicate, {value_name, line_of(t.location)});
+    if (value)
+      if (const auto given = constant_integer(*value)) next = *given;
+    std::int64_t low = 0;
+    std::uint64_t high = 0;
+    integer_limits(base->kind, low, high);
+    if (next < low || (next > 0 && static_cast<std::uint64_t>(next) > high))
+      report_.error(t.value_locations[i], texts::kLiteralRange,
+                    {std::to_string(next), base->name, std::to_string(low), std::to_string(high)});
+    e->values.push_back({value_name, next++});
+    enumerations_[key_of(value_name)].push_back(e);
+  }
+  // The initial value of an enumeration is its first one (IEC 61131-3, 6.4.4.2).
+  if (!e->values.empty() && e->values[0].value != 0) {
+    e->image.resize(e->size);
+    std::memcpy(e->image.data(), &e->values[0].value, e->size);
+  }
+  return e;
+}
+
+const Type* Analyzer::resolve_subrange(const syntax::TypeReference& t, const Type* base,
+                                       const std::string& name) {
+  const auto low = constant_integer(*t.low), high = constant_integer(*t.high);
+  if (base->kind == Kind::error || !low || !high) return elementary(Kind::error);
+  if (!is_integer(base->kind)) {
+    report_.error(t.location, texts::kSubrangeBase, {base->name});
+    return elementary(Kind::error);
+  }
+  if (*high < *low) {
+    report_.error(t.low->location, texts::kEmptyRange, {std::to_string(*low), std::to_string(*high)});
+    return elementary(Kind::error);
+  }
+  const std::string shown = base->name + "(" + std::to_string(*low) + ".." + std::to_string(*high) + ")";
+  std::int64_t least = 0;
+  std::uint64_t most = 0;
+  integer_limits(base->kind, least, most);
+  for (const std::int64_t v : {*low, *high})
+    if (v < least || (v > 0 && static_cast<std::uint64_t>(v) > most)) {
+      report_.error(t.low->location, texts::kLiteralRange,
+                    {std::to_string(v), base->name, std::to_string(least), std::to_string(most)});
+      return elementary(Kind::error);
+    }
+  Type* s = types_->add(base->kind, name.empty() ? shown : name);
+  s->size = s->align = base->size;
+  s->bounded = true;
+  s->limits = {*low, *high};
+  s->base = elementary(base->kind);
+  if (*low > 0 || *high < 0) {  // the initial value is the lower limit (6.4.4.4)
+    s->image.resize(s->size);
+    std::memcpy(s->image.data(), &s->limits.low, s->size);
+  }
+  return s;
+}
+
+std::uint32_t Analyzer::allocate(const Type& type) {
+  const std::uint32_t address =
+      aligned(static_cast<std::uint32_t>(program_.memory.size()), std::max<std::uint32_t>(type.align, 1));
+  if (address + type.size > 4 * kMaxBytes) {
+    report_.error({}, texts::kTooLarge,
+                  {type.name, std::to_string(address + type.size), std::to_string(4 * kMaxBytes)});
+    return 0;
+  }
+  program_.memory.resize(address + type.size);
+  std::copy(type.image.begin(), type.image.end(), program_.memory.begin() + address);
+  return address;
+}
+
+void Analyzer::check_sections(const UnitScope& u, const syntax::Variable& v) {
+  const char* names[] = {"PROGRAM", "FUNCTION", "FUNCTION_BLOCK"};
+  const char* kind = names[static_cast<int>(u.source->kind)];
+  if (!v.address.empty() && v.section != Section::local)
+    report_.error(v.address_location, texts::kAddressSection);
+  if (u.source->kind == UnitKind::function && v.retain)
+    report_.error(v.location, texts::kSectionPlace, {"RETAIN", kind});
+  if (u.source->kind == UnitKind::function && !v.address.empty())
+    report_.error(v.address_location, texts::kSectionPlace, {"AT", kind});
+}
+
+void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
+  const auto [at, fresh] = u.by_name.emplace(key_of(s.name), u.variables.size());
+  if (!fresh) {
+    report_.error(s.location, texts::kDuplicate, {s.name, line_of(u.variables[at->second].at)});
+    return;
+  }
+  check_sections(u, s);
+  Variable v;
+  v.name = s.name;
+  v.at = s.location;
+  v.section = s.section;
+  v.constant = s.constant;
+  v.retain = s.retain;
+  v.type = s.type ? resolve(*s.type) : elementary(Kind::error);
+  const bool alias = s.section == Section::external;
+  if (alias) {
+    const auto g = globals_by_name_.find(key_of(s.name));
+    const image::Symbol* sym = g == globals_by_name_.end() ? symbol(s.name) : nullptr;
+    if (g == globals_by_name_.end() && sym == nullptr) {
+      report_.error(s.location, texts::kNoExternal, {s.name});
+      v.type = elementary(Kind::error);
+    } else {
+      const Type* real = sym != nullptr ? type_of(sym->place) : globals_[g->second].type;
+      if (real != v.type && v.type->kind != Kind::error && real->kind != Kind::error)
+        report_.error(s.location, texts::kExternalType, {s.name, real->name, v.type->name});
+      v.type = real;
+    }
+  } else if (v.type->kind != Kind::error) {
+    if (s.edge != 0 && (s.section != Section::input || v.type->kind != Kind::boolean))
+      report_.error(s.location, texts::kEdgeType);
+    if (s.initial) v.initial = initial_bytes(*s.initial, *v.type);
+    if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
+    if (!s.address.empty()) {
+      declare_located(v, s);
+    } else {
+      const bool reference = s.section == Section::in_out;
+      v.root = reference ? ir::Root::reference : ir::Root::instance;
+      v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference});
+      if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
+    }
+  }
+  if (v.constant && !s.initial) report_.error(s.location, texts::kExpected, {"':='", "no value"});
+  u.variables.push_back(std::move(v));
+}
+
+// R_EDGE and F_EDGE: the value of the last call, beside the input (6.5.3).
+void Analyzer::declare_edge(UnitScope& u, const syntax::Variable& s) {
+  if (s.edge == 0 || s.section != Section::input) return;
+  Variable v;
+  v.name = s.name + "$last";
+  v.at = s.location;
+  v.type = elementary(Kind::boolean);
+  v.used = v.written = true;
+  u.by_name[key_of(v.name)] = u.variables.size();
+  v.cell = append(*u.frame, {v.name, v.type, 0, false, false});
+  u.variables.push_back(std::move(v));
+}
+
+void Analyzer::lay_out(int index) {
+  UnitScope& u = scopes_[static_cast<std::size_t>(index)];
+  if (u.ready || u.laying_out || u.source == nullptr) return;
+  u.laying_out = true;
+  const int outer = current_;
+  current_ = index;
+  u.frame = types_->add(Kind::block, u.source->name);
+  u.frame->block = index;
+  ir::Unit& unit = program_.units[static_cast<std::size_t>(index)];
+  unit.frame = u.frame;
+  const bool function = u.source->kind == UnitKind::function;
+  for (const syntax::Variable& v : u.source->variables) {
+    declare_variable(u, v);
+    declare_edge(u, v);
+  }
+  if (function) {
+    u.result = u.source->result ? resolve(*u.source->result) : elementary(Kind::none);
+    if (u.result->kind != Kind::none) {
+      u.result_variable = static_cast<int>(u.variables.size());
+      Variable r;
+      r.name = u.source->name;
+      r.at = u.source->location;
+      r.type = u.result;
+      r.used = true;
+      u.by_name[key_of(r.name)] = u.variables.size();
+      r.cell = append(*u.frame, {r.name, r.type, 0, false, false});
+      u.variables.push_back(std::move(r));
+    }
+  }
+  u.frame->size = std::max<std::uint32_t>(1, aligned(u.frame->size, u.frame->align));
+  if (!u.frame->image.empty()) u.frame->image.resize(u.frame->size);
+  for (const Variable& v : u.variables) {
+    const bool own = v.section == Section::temp ||
+                     (function && (v.section == Section::local || v.section == Section::output));
+    if (own && v.root == ir::Root::instance && !v.constant && v.type->kind != Kind::error)
+      unit.resets.push_back({v.cell, v.type->size});
+  }
+  if (function) unit.fixed_base = allocate(*u.frame);
+  u.laying_out = false;
+  u.ready = true;
+  current_ = outer;
+}
+
+void Analyzer::declare_globals() {
+  current_ = -1;
+  for (const bool constants : {true, false})
+    for (const syntax::Variable& s : source_.globals) {
+      if (s.constant != constants) continue;
+      const auto [at, fresh] = globals_by_name_.emplace(key_of(s.name), globals_.size());
+      if (!fresh) {
+        report_.error(s.location, texts::kDuplicate, {s.name, line_of(globals_[at->second].at)});
+        continue;
+      }
+      Variable v;
+      v.name = s.name;
+      v.at = s.location;
+      v.section = Section::global;
+      v.constant = s.constant;
+      v.retain = s.retain;
+      v.root = ir::Root::fixed;
+      v.type = resolve(*s.type);
+      if (v.type->kind != Kind::error) {
+        if (s.initial) v.initial = initial_bytes(*s.initial, *v.type);
+        if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
+        if (!s.address.empty()) {
+          declare_located(v, s);
+        } else {
+          v.cell = allocate(*v.type);
+          std::copy(v.initial.begin(), v.initial.end(), program_.memory.begin() + v.cell);
+          program_.globals.push_back({v.name, v.type, v.cell, -1, v.retain});
+        }
+      }
+      globals_.push_back(std::move(v));
+    }
+}
+
+}  // namespace servogate::plc::sema

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/sema/analyzer.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::sema {
+
+using syntax::ExpressionKind;
+using syntax::Section;
+
+Variable* Analyzer::find_variable(std::string_view name, bool& global) {
+  const std::string key = key_of(name);
+  global = false;
+  if (current_ >= 0) {
+    UnitScope& u = here();
+    if (const auto at = u.by_name.find(key); at != u.by_name.end() && at->second < u.variables.size()) {
+      Variable& v = u.variables[at->second];
+      if (v.section != Section::external) return &v;
+      v.used = true;
+    }
+  }
+  if (const auto at = globals_by_name_.find(key);
+      at != globals_by_name_.end() && at->second < globals_.size()) {
+    global = true;
+    return &globals_[at->second];
+  }
+  return nullptr;
+}
+
+// "NC.m_strobe": the longest chain of names that is a symbol of the machine, unless a local variable with
+// members has the first name.
+bool Analyzer::dotted_symbol(const Expression& e, std::string& name) const {
+  if (e.kind == ExpressionKind::name) {
+    name = e.name;
+    return true;
+  }
+  if (e.kind != ExpressionKind::member || !dotted_symbol(*e.operands[0], name)) return false;
+  name += "." + e.name;
+  return true;
+}
+
+std::vector<std::string> Analyzer::names_in_scope() const {
+  std::vector<std::string> out;
+  if (current_ >= 0)
+    for (const Variable& v : scopes_[static_cast<std::size_t>(current_)].variables) out.push_back(v.name);
+  for (const Variable& v : globals_) out.push_back(v.name);
+  for (const image::Symbol& s : symbols_) out.push_back(s.name);
+  return out;
+}
+
+void Analyzer::note_write(Variable& v, bool global, const Location& at) {
+  v.written = true;
+  if (v.constant) {
+    report_.error(at, texts::kWriteConstant, {v.name});
+    return;
+  }
+  for (const Variable* f : for_variables_)
+    if (f == &v) report_.error(at, texts::kWriteFor, {v.name});
+  if (!global && v.section == Section::input) report_.warning(at, texts::kWriteInput, {v.name});
+  if (global) v.writers.insert(current_);
+  if (v.root == ir::Root::shared) check_place_writer(v.cell, at, v.name);
+}
+
+std::optional<ir::Place> Analyzer::place(const Expression& e, bool write) {
+  switch (e.kind) {
+    case ExpressionKind::name:
+      return place_of_name(e, write);
+    case ExpressionKind::member:
+      return place_of_member(e, write);
+    case ExpressionKind::index:
+      return place_of_index(e, write);
+    case ExpressionKind::bit:
+      return place_of_bit(e, write);
+    case ExpressionKind::direct: {
+      const auto p = parse_address(e.name, e.location);
+      if (!p) return std::nullopt;
+      ir::Place out;
+      out.root = ir::Root::shared;
+      out.type = type_of(*p);
+      const Kind bits[] = {Kind::boolean, Kind::byte, Kind::word, Kind::dword, Kind::real, Kind::lword};
+      out.type = elementary(bits[static_cast<int>(p->format)]);
+      out.cell = shared(key_of(e.name), *p, out.type, e.location);
+      if (key_of(e.name).starts_with("%I")) read_only_places_.insert(out.cell);
+      if (write) check_place_writer(out.cell, e.location, e.name);
+      return out;
+    }
+    default:
+      report_.error(e.location, texts::kNotVariable);
+      return std::nullopt;
+  }
+}
+
+std::optional<ir::Place> Analyzer::place_of_symbol(const std::string& name, const Location& at, bool write) {
+  const image::Symbol* s = symbol(name);
+  if (s == nullptr) return std::nullopt;
+  image::Packets sizes;
+  sizes.resize(options_.k_bytes, options_.v_bytes);
+  if (!sizes.contains(s->place)) {
+    report_.error(at, texts::kAddressRange, {s->name, std::to_string(sizes.size(s->place.packet))});
+    return std::nullopt;
+  }
+  ir::Place out;
+  out.root = ir::Root::shared;
+  out.type = type_of(s->place);
+  out.cell = shared(s->name, s->place, out.type, at);
+  if (write) check_place_writer(out.cell, at, s->name);
+  return out;
+}
+
+std::optional<ir::Place> Analyzer::place_of_name(const Expression& e, bool write) {
+  bool global = false;
+  Variable* v = find_variable(e.name, global);
+  if (v == nullptr) {
+    if (auto p = place_of_symbol(e.name, e.location, write)) return p;
+    if (unknown_.insert(key_of(e.name)).second && symbol(e.name) == nullptr)
+      report_.error(e.location, texts::kUnknownName, {e.name, syntax::suggestion(e.name, names_in_scope())});
+    return std::nullopt;
+  }
+  if (!no_marks_) v->used = true;
+  if (write) note_write(*v, global, e.location);
+  if (v->type->kind == Kind::error) return std::nullopt;
+  ir::Place out;
+  out.root = v->root;
+  out.cell = v->cell;
+  out.type = v->type;
+  return out;
+}
+
+std::optional<ir::Place> Analyzer::place_of_member(const Expression& e, bool write) {
+  std::string name;
+  if (dotted_symbol(e, name)) {
+    const Expression* first = &e;
+    while (first->kind == ExpressionKind::member) first = first->operands[0].get();
+    bool global = false;
+    const Variable* v = find_variable(first->name, global);
+    const bool structured = v != nullptr && !v->type->fields.empty();
+    if (!structured) {
+      if (auto p = place_of_symbol(name, first->location, write)) return p;
+      if (symbol(name) != nullptr) return std::nullopt;  // reported
+      if (v == nullptr) {
+        if (unknown_.insert(key_of(name)).second)
+          report_.error(first->location, texts::kUnknownName,
+                        {name, syntax::suggestion(name, names_in_scope())});
+        return std::nullopt;
+      }
+    }
+  }
+  const bool through_block = write;
+  auto base = place(*e.operands[0], false);
+  if (!base) return std::nullopt;
+  const Type& t = *base->type;
+  if (t.kind != Kind::structure && t.kind != Kind::block) {
+    std::string shown;
+    if (!dotted_symbol(*e.operands[0], shown)) shown = "[...]";
+    report_.error(e.location, texts::kNotStructured, {shown, t.name});
+    return std::nullopt;
+  }
+  const Field* f = t.field(e.name);
+  if (f == nullptr || f->name.find('$') != std::string::npos) {
+    std::vector<std::string> names;
+    for (const Field& g : t.fields) names.push_back(g.name);
+    report_.error(e.location, texts::kNoMember, {t.name, e.name, syntax::suggestion(e.name, names)});
+    return std::nullopt;
+  }
+  if (t.kind == Kind::block) {
+    UnitScope& u = scopes_[static_cast<std::size_t>(t.block)];
+    const Variable& v = u.variables[u.by_name.at(key_of(e.name))];
+    if (v.section != Section::input && v.section != Section::output) {
+      report_.error(e.location, texts::kPrivate, {v.name, t.name});
+      return std::nullopt;
+    }
+    if (through_block && v.section == Section::output) {
+      report_.error(e.location, texts::kWriteOutput, {v.name, t.name});
+      return std::nullopt;
+    }
+  } else if (write) {
+    place(*e.operands[0], true);  // a member of a constant or an input is one itself
+  }
+  base->offset += f->offset;
+  base->type = f->type;
+  return base;
+}
+
+std::optional<ir::Place> Analyzer::place_of_index(const Expression& e, bool write) {
+  auto base = place(*e.operands[0], write);
+  if (!base) {
+    for (std::size_t i = 1; i < e.operands.size(); ++i) expression(*e.operands[i]);
+    return std::nullopt;
+  }
+  std::size_t dimensions = 0;
+  for (const Type* t = base->type; t->kind == Kind::array; t = t->base) ++dimensions;
+  const std::size_t given = e.operands.size() - 1;
+  if (dimensions == 0) {
+    report_.error(e.operands[1]->location, texts::kNotArray, {base->type->name});
+    return std::nullopt;
+  }
+  if (given > dimensions) {
+    report_.error(e.operands[1]->location, texts::kDimensions,
+                  {std::to_string(dimensions), std::to_string(given)});
+    return std::nullopt;
+  }
+  for (std::size_t i = 1; i <= given; ++i) {
+    const Type& t = *base->type;
+    ExprPtr index = settle(expression(*e.operands[i], elementary(Kind::dint)), elementary(Kind::dint));
+    base->type = t.base;
+    if (index->type->kind == Kind::error) return std::nullopt;
+    if (is_bits(index->type->kind)) index = convert(std::move(index), elementary(Kind::ulint));
+    if (!is_integer(index->type->kind)) {
+      report_.error(e.operands[i]->location, texts::kIndexType, {index->type->name});
+      return std::nullopt;
+    }
+    if (index->kind == ir::ExprKind::constant) {
+      if (index->value.i < t.range.low || index->value.i > t.range.high) {
+        report_.error(
+            e.operands[i]->location, texts::kIndexRange,
+            {std::to_string(index->value.i), std::to_string(t.range.low), std::to_string(t.range.high)});
+        return std::nullopt;
+      }
+      base->offset += static_cast<std::uint32_t>(index->value.i - t.range.low) * t.base->size;
+    } else {
+      base->steps.push_back({std::move(index), t.range.low, t.range.high, t.base->size});
+    }
+  }
+  return base;
+}
+
+std::optional<ir::Place> Analyzer::place_of_bit(const Expression& e, bool write) {
+  auto base = place(*e.operands[0], write);
+  if (!base) return std::nullopt;
+  const Type& t = *base->type;
+  if (!(is_bits(t.kind) || is_integer(t.kind)) || base->bit >= 0) {
+    report_.error(e.location, texts::kOperand, {".", t.name});
+    return std::nullopt;
+  }
+  std::uint64_t bit = e.literal.magnitude;
+  if (e.name.starts_with("%")) {  // .%X3
+    const std::string key = key_of(e.name);
+    if (key[1] != 'X' || key.size() > 4) {
+      report_.error(e.location, texts::kUnsupported, {e.name});
+      return std::nullopt;
+    }
+    bit = static_cast<std::uint64_t>(std::stoi("0" + key.substr(2)));
+  }
+  if (bit >= t.size * 8) {
+    report_.error(e.location, texts::kBitRange, {t.name, std::to_string(t.size * 8 - 1)});
+    return std::nullopt;
+  }
+  base->offset += static_cast<std::uint32_t>(bit / 8);
+  base->bit = static_cast<std::int8_t>(bit % 8);
+  base->type = elementary(Kind::boolean);
+  return base;
+}
+
+ExprPtr Analyzer::enumeration_value(std::string_view name, const Location& at, const Type* hint) {
+  if (hint != nullptr && hint->kind == Kind::enumeration)
+    if (const EnumValue* v = hint->value_named(name)) return make_constant(hint, {v->value, 0, {}}, at);
+  const auto found = enumerations_.find(key_of(name));
+  if (found == enumerations_.end()) return nullptr;
+  const Type* t = found->second.front();
+  return make_constant(t, {t->value_named(name)->value, 0, {}}, at);
+}
+
+}  // namespace servogate::plc::sema

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+
+#include "plc/sema/analyzer.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::sema {
+
+using image::Format;
+using image::Packet;
+
+namespace {
+
+// Half of packet A belongs to %I, the other to %Q, so that %IX0.0 and %QX0.0 are two places; %M is packet K.
+constexpr std::uint32_t kOutputBase = image::kPacketASize / 2;
+
+std::optional<image::Place> parse_direct(std::string_view text, bool& input) {
+  const std::string key = key_of(text);
+  if (key.size() < 3) return std::nullopt;
+  const char area = key[1];
+  if (area != 'I' && area != 'Q' && area != 'M') return std::nullopt;
+  input = area == 'I';
+  std::size_t at = 2;
+  char size = 'X';
+  if (key[at] >= 'A') size = key[at++];
+  const Format format = size == 'X'   ? Format::bl
+                        : size == 'B' ? Format::by
+                        : size == 'W' ? Format::in
+                        : size == 'D' ? Format::li
+                                      : Format::lr;
+  if (std::string_view("XBWDL").find(size) == std::string_view::npos) return std::nullopt;
+  std::uint32_t number = 0, bit = 0;
+  const char* end = key.data() + key.size();
+  auto [next, error] = std::from_chars(key.data() + at, end, number);
+  if (error != std::errc{} || number > 100'000) return std::nullopt;
+  if (size == 'X') {
+    if (next == end || *next != '.') return std::nullopt;
+    const auto [last, bit_error] = std::from_chars(next + 1, end, bit);
+    if (bit_error != std::errc{} || bit > 7) return std::nullopt;
+    next = last;
+  }
+  if (next != end) return std::nullopt;
+  image::Place p{area == 'M' ? Packet::k : Packet::a, format, size == 'X' ? number * 8 + bit : number, 1};
+  if (area == 'Q') p.index += size == 'X' ? kOutputBase * 8 : kOutputBase / image::format_size(format);
+  return p;
+}
+
+}  // namespace
+
+std::optional<image::Place> Analyzer::parse_address(const std::string& text, const Location& at) {
+  bool input = false;
+  const std::optional<image::Place> p =
+      text.starts_with("%") ? parse_direct(text, input) : image::parse_place(text);
+  if (!p) {
+    report_.error(at, texts::kBadAddress, {text});
+    return std::nullopt;
+  }
+  std::uint32_t limit = p->packet == Packet::a   ? image::kPacketASize
+                        : p->packet == Packet::k ? options_.k_bytes
+                                                 : options_.v_bytes;
+  if (input) limit = kOutputBase;
+  if (p->byte() + p->bytes() > limit) {
+    report_.error(at, texts::kAddressRange, {text, std::to_string(limit)});
+    return std::nullopt;
+  }
+  return p;
+}
+
+const Type* Analyzer::type_of(const image::Place& place) {
+  switch (place.format) {
+    case Format::bl:
+      return elementary(Kind::boolean);
+    case Format::by:
+      return elementary(Kind::usint);
+    case Format::in:
+      return elementary(Kind::int_);
+    case Format::li:
+      return elementary(Kind::dint);
+    case Format::re:
+      return elementary(Kind::real);
+    case Format::lr:
+      return elementary(Kind::lreal);
+    case Format::ch:
+      return types_->string(place.length);
+  }
+  return elementary(Kind::error);
+}
+
+const image::Symbol* Analyzer::symbol(std::string_view name) const {
+  const auto at = symbols_by_name_.find(key_of(name));
+  return at == symbols_by_name_.end() ? nullptr : &symbols_[at->second];
+}
+
+std::uint32_t Analyzer::shared(const std::string& name, const image::Place& place, const Type* type,
+                               const Location& at) {
+  const auto known = shared_by_name_.find(key_of(name));
+  if (known != shared_by_name_.end()) return known->second;
+  auto index = static_cast<std::uint32_t>(program_.places.size());
+  for (std::uint32_t i = 0; i < index; ++i)
+    if (program_.places[i].place == place && program_.places[i].type == type) {
+      shared_by_name_[key_of(name)] = i;
+      return i;
+    }
+  ir::SharedPlace s;
+  s.name = name;
+  s.place = place;
+  s.type = type;
+  s.at = at;
+  program_.places.push_back(std::move(s));
+  place_writers_.emplace_back();
+  shared_by_name_[key_of(name)] = index;
+  return index;
+}
+
+void Analyzer::declare_located(Variable& out, const syntax::Variable& v) {
+  const auto place = parse_address(v.address, v.address_location);
+  if (!place) {
+    out.type = elementary(Kind::error);
+    return;
+  }
+  const Type& t = *out.type;
+  const bool text = place->format == Format::ch;
+  const bool fits = text ? t.kind == Kind::string && t.capacity() == place->length
+                         : is_elementary(t.kind) && t.kind != Kind::string && t.kind != Kind::enumeration &&
+                               t.size == image::format_size(place->format) &&
+                               (place->format == Format::bl) == (t.kind == Kind::boolean);
+  if (!fits) {
+    report_.error(v.address_location, texts::kAddressType, {v.address, type_of(*place)->name, t.name});
+    out.type = elementary(Kind::error);
+    return;
+  }
+  const std::string unit = current_ >= 0 ? here().source->name + "." : "";
+  out.root = ir::Root::shared;
+  out.cell = shared(unit + v.name, *place, out.type, v.location);
+  ir::SharedPlace& s = program_.places[out.cell];
+  if (v.address.starts_with("%I") || v.address.starts_with("%i")) read_only_places_.insert(out.cell);
+  if (v.initial && !read_only_places_.contains(out.cell)) {
+    if (const auto c = constant(*v.initial, out.type)) {
+      s.initial = *c;
+      s.initialised = true;
+      check_place_writer(out.cell, v.address_location, v.name);
+    }
+  }
+  for (const Located& l : located_)
+    if (l.place.overlaps(*place))
+      report_.warning(v.address_location, texts::kAddressOverlap,
+                      {v.address, l.text, l.name, std::to_string(l.at.line)});
+  located_.push_back({v.name, v.address, *place, v.location});
+  if (current_ < 0)
+    program_.globals.push_back({v.name, out.type, 0, static_cast<std::int32_t>(out.cell), false});
+}
+
+// A place that the NC or an input writes is read-only here (one declared writer for each place).
+void Analyzer::check_place_writer(std::uint32_t index, const Location& at, const std::string& shown) {
+  ir::SharedPlace& s = program_.places[index];
+  s.written = true;
+  if (current_ >= 0) place_writers_[index].insert(current_);
+  if (read_only_places_.contains(index)) {
+    report_.error(at, texts::kWritePlaceInput, {shown});
+    return;
+  }
+  for (const image::Symbol& symbol : symbols_) {
+    if (symbol.writer != image::Writer::nc && symbol.writer != image::Writer::input) continue;
+    if (!symbol.place.overlaps(s.place)) continue;
+    report_.error(at, symbol.writer == image::Writer::nc ? texts::kWritePlaceNc : texts::kWritePlaceInput,
+                  {symbol.name});
+    return;
+  }
+}
+
+// Places that share memory are laid out as they lie in the packet; all others get a cell of their own type.
+void Analyzer::lay_out_places() {
+  std::vector<ir::SharedPlace>& places = program_.places;
+  for (const auto& [key, index] : shared_by_name_) {
+    const ir::SharedPlace& s = places[index];
+    program_.globals.push_back(
+        {same_name(key, s.name) ? s.name : key, s.type, 0, static_cast<std::int32_t>(index), false});
+  }
+  std::vector<std::size_t> order(places.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const image::Place &p = places[a].place, &q = places[b].place;
+    return std::tuple(p.packet, p.byte(), a) < std::tuple(q.packet, q.byte(), b);
+  });
+  for (std::size_t i = 0; i < order.size();) {
+    const image::Place& first = places[order[i]].place;
+    std::uint32_t end = first.byte() + first.bytes();
+    std::size_t j = i + 1;
+    bool overlapping = false;
+    for (; j < order.size(); ++j) {
+      const image::Place& p = places[order[j]].place;
+      if (p.packet != first.packet || p.byte() >= end) break;
+      end = std::max(end, p.byte() + p.bytes());
+      for (std::size_t k = i; k < j; ++k)
+        overlapping = overlapping || (p.overlaps(places[order[k]].place) && p.format != Format::ch &&
+                                      places[order[k]].place.format != Format::ch);
+    }
+    if (overlapping) {
+      program_.memory.resize((program_.memory.size() + 7) / 8 * 8);
+      const auto base = static_cast<std::uint32_t>(program_.memory.size());
+      program_.memory.resize(base + (end - first.byte()));
+      for (std::size_t k = i; k < j; ++k) {
+        ir::SharedPlace& s = places[order[k]];
+        s.address = s.place.format == Format::ch ? allocate(*s.type) : base + s.place.byte() - first.byte();
+        s.raw = s.place.format != Format::ch;
+        if (s.raw && s.referenced && s.place.format == Format::bl) report_.error(s.at, texts::kBitReference);
+      }
+    } else {
+      for (std::size_t k = i; k < j; ++k) places[order[k]].address = allocate(*places[order[k]].type);
+    }
+    i = j;
+  }
+}
+
+}  // namespace servogate::plc::sema

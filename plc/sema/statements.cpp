@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "plc/sema/analyzer.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::sema {
+
+using ir::ExprKind;
+using ir::StmtKind;
+using syntax::ExpressionKind;
+using syntax::Section;
+using syntax::StatementKind;
+using syntax::UnitKind;
+
+namespace {
+ir::Stmt make(StmtKind kind, const Location& at) {
+  ir::Stmt s;
+  s.kind = kind;
+  s.at = at;
+  return s;
+}
+}  // namespace
+
+void Analyzer::body(int unit) {
+  current_ = unit;
+  unknown_.clear();
+  for_variables_.clear();
+  loops_ = 0;
+  UnitScope& u = here();
+  ir::Unit& out = program_.units[static_cast<std::size_t>(unit)];
+  for (const Variable& v : u.variables) {  // R_EDGE, F_EDGE: the input becomes its edge
+    const auto last = u.by_name.find(key_of(v.name + "$last"));
+    if (last == u.by_name.end()) continue;
+    const Variable& before = u.variables[last->second];
+    int edge = 1;
+    for (const syntax::Variable& s : u.source->variables)
+      if (same_name(s.name, v.name)) edge = s.edge;
+    ir::Place now, then;
+    now.root = then.root = ir::Root::instance;
+    now.type = then.type = elementary(Kind::boolean);
+    now.cell = v.cell;
+    then.cell = before.cell;
+    const auto inverse = [&](ExprPtr e, bool wanted) {
+      if (!wanted) return e;
+      ExprPtr n = node(ExprKind::unary, e->type, v.at);
+      n->op = Op::not_;
+      n->args.push_back(std::move(e));
+      return n;
+    };
+    ExprPtr changed = combine(Op::xor_, load(now.copy(), v.at), load(then.copy(), v.at), v.at, "XOR");
+    ExprPtr pulse =
+        combine(Op::and_, std::move(changed), inverse(load(now.copy(), v.at), edge < 0), v.at, "AND");
+    ir::Stmt set = make(StmtKind::if_, v.at);
+    ir::Branch b;
+    b.condition = std::move(pulse);
+    assign(then.copy(), load(now.copy(), v.at), v.at, b.body);
+    Constant one;
+    one.i = 1;
+    assign(now.copy(), make_constant(now.type, one, v.at), v.at, b.body);
+    set.branches.push_back(std::move(b));
+    assign(then.copy(), load(now.copy(), v.at), v.at, set.body);
+    assign(now.copy(), make_constant(now.type, {}, v.at), v.at, set.body);
+    out.body.push_back(std::move(set));
+  }
+  ir::Block rest = block(u.source->body);
+  for (ir::Stmt& s : rest) out.body.push_back(std::move(s));
+  if (u.source->kind == UnitKind::function && u.result_variable >= 0 &&
+      !u.variables[static_cast<std::size_t>(u.result_variable)].written)
+    report_.warning(u.source->location, texts::kNoResult, {u.source->name});
+}
+
+ir::Block Analyzer::block(const syntax::Block& b) {
+  ir::Block out;
+  for (const syntax::StatementPtr& s : b) statement(*s, out);
+  return out;
+}
+
+void Analyzer::statement(const syntax::Statement& s, ir::Block& out) {
+  switch (s.kind) {
+    case StatementKind::assign:
+      return assignment(s, out);
+    case StatementKind::call: {
+      if (s.value->kind != ExpressionKind::call) return;  // reported while reading
+      const Expression& callee = *s.value->operands[0];
+      bool global = false;
+      Variable* v = callee.kind == ExpressionKind::name ? find_variable(callee.name, global) : nullptr;
+      if (v != nullptr) v->used = true;
+      if (callee.kind != ExpressionKind::name || (v != nullptr && v->type->kind == Kind::block)) {
+        const auto instance = place(callee, false);
+        if (!instance) return;
+        if (instance->type->kind == Kind::block)
+          return block_call(*s.value, *instance, instance->type->block, out);
+      }
+      if (v != nullptr && v->type->kind == Kind::error) return;
+      ir::Stmt call_stmt = make(StmtKind::evaluate, s.location);
+      call_stmt.value = call(*s.value, nullptr, true);
+      if (call_stmt.value->type->kind == Kind::error) return;
+      if (call_stmt.value->kind != ExprKind::call) {
+        report_.error(s.location, texts::kUseless);
+        return;
+      }
+      out.push_back(std::move(call_stmt));
+      return;
+    }
+    case StatementKind::if_:
+      return if_statement(s, out);
+    case StatementKind::case_:
+      return case_statement(s, out);
+    case StatementKind::for_:
+      return for_statement(s, out);
+    case StatementKind::while_:
+    case StatementKind::repeat:
+      return loop_statement(s, out);
+    case StatementKind::exit:
+    case StatementKind::continue_:
+      if (loops_ == 0)
+        report_.error(s.location, texts::kExitOutside, {s.kind == StatementKind::exit ? "EXIT" : "CONTINUE"});
+      out.push_back(make(s.kind == StatementKind::exit ? StmtKind::exit : StmtKind::continue_, s.location));
+      return;
+    case StatementKind::return_:
+      out.push_back(make(StmtKind::return_, s.location));
+      return;
+    case StatementKind::empty:
+      return;
+  }
+}
+
+void Analyzer::assignment(const syntax::Statement& s, ir::Block& out) {
+  if (s.target->kind == ExpressionKind::call) {
+    report_.error(s.target->location, texts::kNotVariable);
+    return;
+  }
+  auto target = place(*s.target, true);
+  ExprPtr value =
+      expression(*s.value, target ? (target->type->bounded ? target->type->base : target->type) : nullptr);
+  if (target) assign(std::move(*target), std::move(value), s.location, out);
+}
+
+void Analyzer::assign(ir::Place target, ExprPtr value, const Location& at, ir::Block& out) {
+  const Type* type = target.type;
+  value = assignable(std::move(value), type);
+  if (value->type->kind == Kind::error || value->type->kind == Kind::none) {
+    if (value->type->kind == Kind::none) report_.error(value->at, texts::kNoValue, {"()"});
+    return;
+  }
+  ir::Stmt s = make(StmtKind::assign, at);
+  s.check_range = type->bounded && value->kind != ExprKind::constant;
+  s.place = std::move(target);
+  s.value = std::move(value);
+  out.push_back(std::move(s));
+}
+
+ExprPtr Analyzer::condition(const Expression& e) {
+  ExprPtr c = expression(e, elementary(Kind::boolean));
+  if (c->type->kind == Kind::error) return c;
+  return assignable(std::move(c), elementary(Kind::boolean));
+}
+
+void Analyzer::if_statement(const syntax::Statement& s, ir::Block& out) {
+  ir::Stmt stmt = make(StmtKind::if_, s.location);
+  for (const syntax::Branch& b : s.branches) {
+    ir::Branch branch;
+    branch.condition = condition(*b.condition);
+    branch.body = block(b.body);
+    stmt.branches.push_back(std::move(branch));
+  }
+  stmt.body = block(s.body);
+  out.push_back(std::move(stmt));
+}
+
+void Analyzer::case_statement(const syntax::Statement& s, ir::Block& out) {
+  ir::Stmt stmt = make(StmtKind::case_, s.location);
+  stmt.value = settle(expression(*s.target), nullptr);
+  const Type* type = stmt.value->type;
+  const bool good = is_integer(type->kind) || is_bits(type->kind) || type->kind == Kind::enumeration;
+  if (!good && type->kind != Kind::error) report_.error(s.target->location, texts::kCaseType, {type->name});
+  struct Seen {
+    ir::Range range;
+    int line;
+  };
+  std::vector<Seen> seen;
+  for (const syntax::Branch& b : s.branches) {
+    ir::Branch branch;
+    for (const syntax::Label& l : b.labels) {
+      if (!good) continue;
+      const auto low = constant(*l.low, type), high = l.high ? constant(*l.high, type) : low;
+      if (!low || !high) continue;
+      if (high->i < low->i) {
+        report_.error(l.low->location, texts::kEmptyRange,
+                      {constant_text(*type, *low), constant_text(*type, *high)});
+        continue;
+      }
+      const ir::Range r{low->i, high->i};
+      for (const Seen& x : seen)
+        if (r.low <= x.range.high && x.range.low <= r.high)
+          report_.error(
+              l.low->location, texts::kCaseTwice,
+              {constant_text(*type, {std::max(r.low, x.range.low), 0, {}}), std::to_string(x.line)});
+      seen.push_back({r, l.low->location.line});
+      branch.ranges.push_back(r);
+    }
+    branch.body = block(b.body);
+    stmt.branches.push_back(std::move(branch));
+  }
+  stmt.body = block(s.body);
+  if (good) out.push_back(std::move(stmt));
+}
+
+void Analyzer::for_statement(const syntax::Statement& s, ir::Block& out) {
+  ir::Stmt stmt = make(StmtKind::for_, s.location);
+  auto control = place(*s.target, true);
+  bool global = false;
+  const Variable* v = find_variable(s.target->name, global);
+  bool good = control.has_value();
+  if (control && !is_integer(control->type->kind)) {
+    report_.error(s.target->location, texts::kForType, {control->type->name});
+    good = false;
+  }
+  const Type* type =
+      good ? (control->type->bounded ? control->type->base : control->type) : elementary(Kind::dint);
+  const auto limit = [&](const Expression& e) {
+    ExprPtr x = assignable(expression(e, type), type);
+    return x->type->kind == Kind::error
+               ? std::move(x)
+               : explicit_conversion(std::move(x), elementary(Kind::lint), false, e.location);
+  };
+  stmt.value = limit(*s.value);
+  stmt.to = limit(*s.to);
+  Constant one;
+  one.i = 1;
+  // A step may be negative although the variable is unsigned.
+  stmt.by = s.by ? assignable(settle(expression(*s.by, elementary(Kind::lint)), elementary(Kind::lint)),
+                              elementary(Kind::lint))
+                 : make_constant(elementary(Kind::lint), one, s.location);
+  if (stmt.by->kind == ExprKind::constant && stmt.by->type->kind != Kind::error && stmt.by->value.i == 0)
+    report_.error(s.by->location, texts::kForZero);
+  if (v != nullptr) for_variables_.push_back(v);
+  ++loops_;
+  stmt.body = block(s.body);
+  --loops_;
+  if (v != nullptr) for_variables_.pop_back();
+  if (!good) return;
+  stmt.place = std::move(*control);
+  out.push_back(std::move(stmt));
+}
+
+void Analyzer::loop_statement(const syntax::Statement& s, ir::Block& out) {
+  ir::Stmt stmt = make(s.kind == StatementKind::while_ ? StmtKind::while_ : StmtKind::repeat, s.location);
+  stmt.value = condition(*s.value);
+  ++loops_;
+  stmt.body = block(s.body);
+  --loops_;
+  out.push_back(std::move(stmt));
+}
+
+}  // namespace servogate::plc::sema

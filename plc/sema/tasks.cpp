@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "plc/sema/analyzer.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::sema {
+
+using syntax::Section;
+using syntax::UnitKind;
+
+// Memory of a program's instance; the only one makes its addresses fixed.
+std::uint32_t Analyzer::instance(const std::string& name, int unit) {
+  lay_out(unit);
+  const auto index = static_cast<std::size_t>(unit);
+  const std::uint32_t base = allocate(*scopes_[index].frame);
+  ir::Unit& u = program_.units[index];
+  u.fixed_base = ++instances_[index] == 1 ? static_cast<std::int64_t>(base) : -1;
+  program_.programs.push_back({name, scopes_[index].frame, base, -1, false});
+  return base;
+}
+
+namespace {
+ir::Stmt invoke_at(std::uint32_t base, const Type* frame, int unit, const Location& at) {
+  ir::Stmt s;
+  s.kind = ir::StmtKind::invoke;
+  s.at = at;
+  s.place.root = ir::Root::fixed;
+  s.place.cell = base;
+  s.place.type = frame;
+  s.unit = unit;
+  return s;
+}
+}  // namespace
+
+void Analyzer::default_task() {
+  ir::Unit body_unit;
+  body_unit.name = "cycle";
+  for (std::size_t i = 0; i < source_.units.size(); ++i) {
+    const syntax::Unit& u = source_.units[i];
+    if (u.kind != UnitKind::program || scopes_[i].frame == nullptr) continue;
+    const std::uint32_t base = instance(u.name, static_cast<int>(i));
+    body_unit.body.push_back(invoke_at(base, scopes_[i].frame, static_cast<int>(i), u.location));
+  }
+  if (body_unit.body.empty() && !options_.library_only) report_.error({0, 1, 1}, texts::kNoProgram);
+  ir::Task task;
+  task.name = "cycle";
+  task.unit = static_cast<int>(program_.units.size());
+  body_unit.fixed_base = 0;
+  program_.units.push_back(std::move(body_unit));
+  program_.tasks.push_back(std::move(task));
+}
+
+int Analyzer::program_unit(const syntax::ProgramInstance& p) {
+  const auto at = units_by_name_.find(key_of(p.type));
+  if (at != units_by_name_.end() &&
+      scopes_[static_cast<std::size_t>(at->second)].source->kind == UnitKind::program)
+    return at->second;
+  std::vector<std::string> names;
+  for (const syntax::Unit& u : source_.units)
+    if (u.kind == UnitKind::program) names.push_back(u.name);
+  report_.error(p.type_location, texts::kUnknownType, {p.type, syntax::suggestion(p.type, names)});
+  return -1;
+}
+
+ir::Task Analyzer::task_of(const syntax::Task& t) {
+  ir::Task task;
+  task.name = t.name;
+  current_ = -1;
+  if (!t.interval && !t.single) report_.error(t.location, texts::kTaskInterval);
+  if (t.interval)
+    if (const auto ns = constant(*t.interval, elementary(Kind::time))) {
+      task.interval = ns->i;
+      if (ns->i <= 0) report_.error(t.location, texts::kTaskInterval);
+    }
+  if (t.single)
+    if (auto p = place(*t.single, false)) {
+      if (p->type->kind != Kind::boolean || !p->steps.empty() || p->bit >= 0)
+        report_.error(t.location, texts::kMismatch, {"BOOL", p->type->name, ""});
+      task.has_single = true;
+      task.single = std::move(*p);
+    }
+  if (t.priority)
+    if (const auto n = constant_integer(*t.priority)) {
+      task.priority = static_cast<std::int32_t>(std::clamp<std::int64_t>(*n, 0, 65535));
+      if (*n != task.priority) report_.error(t.location, texts::kFastTask, {std::to_string(*n)});
+    }
+  return task;
+}
+
+// The instance's inputs, its call, its outputs.
+void Analyzer::program_call(const syntax::ProgramInstance& p, ir::Block& out) {
+  const int unit = program_unit(p);
+  if (unit < 0) return;
+  ir::Place where;
+  where.root = ir::Root::fixed;
+  where.cell = instance(p.name, unit);
+  where.type = scopes_[static_cast<std::size_t>(unit)].frame;
+  current_ = -1;
+  std::vector<const Variable*> matched;
+  for (const syntax::Argument& a : p.arguments) {
+    const Variable* v = a.name.empty() ? nullptr : match(a, 0, unit);
+    if (v == nullptr)
+      report_.error(a.location, texts::kNoParameter,
+                    {p.type, a.output ? "VAR_OUTPUT" : "VAR_INPUT", a.name, ""});
+    matched.push_back(v);
+  }
+  if (std::find(matched.begin(), matched.end(), nullptr) != matched.end()) return;
+  for (std::size_t i = 0; i < matched.size(); ++i)
+    if (!p.arguments[i].output) block_input(p.arguments[i], *matched[i], where, out);
+  out.push_back(invoke_at(where.cell, where.type, unit, p.location));
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    if (!p.arguments[i].output) continue;
+    ir::Place from = where.copy();
+    from.offset += matched[i]->cell;
+    from.type = matched[i]->type;
+    output_argument(p.arguments[i], *matched[i], from, out);
+  }
+}
+
+// Calls and actual parameters of each task are a body of their own. A program without a task runs every
+// cycle, after all others.
+void Analyzer::configured_tasks() {
+  for (const syntax::Configuration& c : source_.configurations) {
+    std::vector<ir::Task> tasks;
+    const auto find = [&](const std::string& name) {
+      return static_cast<std::size_t>(
+          std::find_if(tasks.begin(), tasks.end(),
+                       [&](const ir::Task& t) { return same_name(t.name, name); }) -
+          tasks.begin());
+    };
+    for (const syntax::Task& t : c.tasks) {
+      if (find(t.name) != tasks.size())
+        report_.error(t.location, texts::kDuplicate, {t.name, std::to_string(c.location.line)});
+      tasks.push_back(task_of(t));
+    }
+    constexpr const char* kUnnamed = "cycle";
+    std::vector<ir::Unit> bodies(tasks.size());
+    for (const syntax::ProgramInstance& p : c.programs) {
+      const std::size_t index = find(p.task.empty() ? kUnnamed : p.task);
+      if (index == tasks.size() && !p.task.empty()) {
+        report_.error(p.task_location, texts::kNoTask, {p.task});
+        continue;
+      }
+      if (index == tasks.size()) {
+        ir::Task task;
+        task.name = kUnnamed;
+        task.priority = 65536;
+        tasks.push_back(std::move(task));
+        bodies.emplace_back();
+      }
+      program_call(p, bodies[index].body);
+    }
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      tasks[i].unit = static_cast<int>(program_.units.size());
+      bodies[i].name = tasks[i].name;
+      bodies[i].fixed_base = 0;
+      program_.units.push_back(std::move(bodies[i]));
+      program_.tasks.push_back(std::move(tasks[i]));
+    }
+  }
+  std::stable_sort(program_.tasks.begin(), program_.tasks.end(),
+                   [](const ir::Task& a, const ir::Task& b) { return a.priority < b.priority; });
+  if (program_.programs.empty() && !report_.failed()) report_.error({0, 1, 1}, texts::kNoProgram);
+}
+
+void Analyzer::check_recursion() {
+  for (std::size_t u = 0; u < scopes_.size(); ++u) {
+    std::vector<int> path;
+    if (visit(static_cast<int>(u), path)) return;
+  }
+}
+
+bool Analyzer::visit(int unit, std::vector<int>& path) {
+  UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
+  if (u.depth_state == 2) return false;
+  if (u.depth_state == 1) {
+    std::string shown;
+    for (auto at = std::find(path.begin(), path.end(), unit); at != path.end(); ++at)
+      shown += scopes_[static_cast<std::size_t>(*at)].source->name + " -> ";
+    report_.error(u.source->location, texts::kRecursion, {u.source->name, shown + u.source->name});
+    return true;
+  }
+  u.depth_state = 1;
+  path.push_back(unit);
+  for (const int callee : u.calls)
+    if (visit(callee, path)) return true;
+  path.pop_back();
+  u.depth_state = 2;
+  return false;
+}
+
+void Analyzer::check_usage() {
+  for (const UnitScope& u : scopes_) {
+    if (u.library) continue;
+    for (const Variable& v : u.variables)
+      if (!v.used &&
+          (v.section == Section::local || v.section == Section::temp || v.section == Section::external))
+        report_.warning(v.at, texts::kUnused, {v.name});
+  }
+}
+
+void Analyzer::check_writers() {
+  const auto name_of = [&](int unit) { return scopes_[static_cast<std::size_t>(unit)].source->name; };
+  for (const Variable& v : globals_)
+    if (v.writers.size() > 1 && *v.writers.begin() >= 0)
+      report_.warning(v.at, texts::kTwoWriters,
+                      {v.name, name_of(*v.writers.begin()), name_of(*std::next(v.writers.begin()))});
+  for (std::size_t i = 0; i < place_writers_.size(); ++i)
+    if (place_writers_[i].size() > 1)
+      report_.warning(program_.places[i].at, texts::kTwoWriters,
+                      {program_.places[i].name, name_of(*place_writers_[i].begin()),
+                       name_of(*std::next(place_writers_[i].begin()))});
+}
+
+}  // namespace servogate::plc::sema

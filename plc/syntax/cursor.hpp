@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+#include "plc/syntax/lexer.hpp"
+#include "plc/syntax/parser.hpp"
+
+namespace servogate::plc::syntax {
+
+/// Thrown inside the parser after a finding was reported; caught where reading can go on.
+struct SyntaxError {};
+
+/// Reads the tokens of one file in order. The parser is this class with its three halves: declarations,
+/// statements and expressions, one file each.
+class Parser {
+ public:
+  Parser(std::string_view text, int file, Source& source, Report& report)
+      : text_(text), list_(tokens(text, file, report)), source_(source), report_(report) {}
+
+  void file();
+  ExpressionPtr expression();
+  bool at_end() const { return list_[at_].kind == TokenKind::end; }
+
+ private:
+  // Tokens.
+  const Token& now() const { return list_[at_]; }
+  const Token& ahead(std::size_t n = 1) const { return list_[std::min(at_ + n, list_.size() - 1)]; }
+  const Token& take() { return at_ + 1 < list_.size() ? list_[at_++] : list_[at_]; }
+  bool at(std::string_view key) const { return now().is(key); }
+  bool at_any(std::initializer_list<std::string_view> keys) const;
+  bool accept(std::string_view key);
+  void expect(std::string_view key);
+  void expect_closing(std::string_view key, std::string_view opener, const Location& begin);
+  std::string identifier(const char* what);
+  [[noreturn]] void fail(std::string wanted);
+  std::string found() const;
+  void recover(std::initializer_list<std::string_view> stops);
+
+  // Declarations.
+  void declaration();
+  void unit(UnitKind kind);
+  void variables(std::vector<Variable>& out, Section section, bool in_unit);
+  void variable_list(std::vector<Variable>& out, const Variable& prototype);
+  void address(Variable& v);
+  TypeReference type_reference();
+  void array_type(TypeReference& t);
+  void structure_type(TypeReference& t);
+  void enumeration_type(TypeReference& t);
+  void types();
+  void configuration();
+  void task(Configuration& c);
+  void program_instance(Configuration& c);
+  ExpressionPtr initializer();
+  ExpressionPtr list_initializer();
+  ExpressionPtr record_initializer();
+  bool at_record() const;
+
+  // Statements.
+  Block block(std::initializer_list<std::string_view> ends);
+  StatementPtr statement();
+  StatementPtr simple_statement();
+  StatementPtr if_statement();
+  StatementPtr case_statement();
+  StatementPtr for_statement();
+  StatementPtr while_statement();
+  StatementPtr repeat_statement();
+  std::vector<Label> labels();
+  bool at_label() const;
+
+  // Expressions.
+  ExpressionPtr binary(int level);
+  ExpressionPtr unary();
+  ExpressionPtr primary();
+  ExpressionPtr postfix(ExpressionPtr e);
+  ExpressionPtr typed();
+  void arguments(Expression& call);
+  static ExpressionPtr make(ExpressionKind kind, const Location& at);
+
+  struct Nesting {
+    Parser& p;
+    explicit Nesting(Parser& parser);
+    ~Nesting() { --p.depth_; }
+  };
+
+  std::string_view text_;
+  std::vector<Token> list_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+  Source& source_;
+  Report& report_;
+};
+
+/// Words that cannot be names.
+bool is_keyword(std::string_view key);
+
+}  // namespace servogate::plc::syntax

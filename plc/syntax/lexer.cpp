@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/syntax/lexer.hpp"
+
+#include <cctype>
+#include <charconv>
+
+#include "plc/syntax/time_literal.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::syntax {
+
+namespace {
+
+bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool digit(char c) { return c >= '0' && c <= '9'; }
+bool word_part(char c) { return letter(c) || digit(c); }
+
+class Lexer {
+ public:
+  Lexer(std::string_view text, int file, Report& report) : text_(text), file_(file), report_(report) {}
+
+  std::vector<Token> run() {
+    std::vector<Token> out;
+    while (skip_blank()) {
+      out.push_back(next());
+      out.back().end = at_;
+      out.back().text = text_.substr(out.back().offset, at_ - out.back().offset);
+    }
+    out.push_back(start(TokenKind::end));
+    return out;
+  }
+
+ private:
+  char peek(std::size_t ahead = 0) const { return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0'; }
+  Location here() const { return {static_cast<std::int16_t>(file_), line_, column_}; }
+  void step() {
+    const auto c = static_cast<unsigned char>(text_[at_++]);
+    if (c == '\n')
+      ++line_, column_ = 1;
+    else if ((c & 0xC0) != 0x80)
+      ++column_;
+  }
+  void step(std::size_t n) {
+    for (; n > 0; --n) step();
+  }
+  Token start(TokenKind kind) const {
+    Token t;
+    t.kind = kind;
+    t.location = here();
+    t.offset = t.end = at_;
+    return t;
+  }
+
+  // Blanks, comments and pragmas. False at the end of the text.
+  bool skip_blank() {
+    while (at_ < text_.size()) {
+      const char c = peek();
+      if (std::isspace(static_cast<unsigned char>(c)) || text_.substr(at_, 3) == "\xEF\xBB\xBF")
+        step(c == '\xEF' ? 3 : 1);
+      else if (c == '/' && peek(1) == '/')
+        while (at_ < text_.size() && peek() != '\n') step();
+      else if ((c == '(' || c == '/') && peek(1) == '*')
+        skip_comment(c == '(' ? "(*" : "/*", c == '(' ? "*)" : "*/");
+      else if (c == '{')
+        skip_comment("{", "}");
+      else
+        return true;
+    }
+    return false;
+  }
+  void skip_comment(std::string_view open, std::string_view close) {
+    const Location begin = here();
+    int depth = 0;
+    do {
+      if (at_ >= text_.size()) return report_.error(begin, texts::kOpenComment, {std::string(close)});
+      if (text_.substr(at_, open.size()) == open)
+        ++depth, step(open.size());
+      else if (text_.substr(at_, close.size()) == close)
+        --depth, step(close.size());
+      else
+        step();
+    } while (depth > 0);
+  }
+
+  Token next() {
+    const char c = peek();
+    if (letter(c)) return word();
+    if (digit(c)) return number();
+    if (c == '\'' || c == '"') return string();
+    if (c == '%') return direct();
+    return symbol();
+  }
+
+  Token word() {
+    Token t = start(TokenKind::word);
+    while (word_part(peek())) step();
+    t.key = key_of(text_.substr(t.offset, at_ - t.offset));
+    if (t.key == "TRUE" || t.key == "FALSE") {
+      t.kind = TokenKind::literal;
+      t.literal.kind = Kind::boolean;
+      t.literal.magnitude = t.key == "TRUE";
+      return t;
+    }
+    if (peek() != '#') return t;
+    step();
+    const Kind time = time_prefix(t.key);
+    if (time == Kind::none) {
+      t.kind = TokenKind::typed;
+      return t;
+    }
+    return time_literal(std::move(t), time);
+  }
+
+  Token time_literal(Token t, Kind kind) {
+    const std::size_t begin = at_;
+    if (peek() == '-' || peek() == '+') step();
+    while (word_part(peek()) || (peek() == '.' && digit(peek(1))) ||
+           (kind != Kind::time && ((peek() == ':' && digit(peek(1))) || (peek() == '-' && digit(peek(1))))))
+      step();
+    t.kind = TokenKind::literal;
+    t.literal.kind = kind;
+    std::int64_t ns = 0;
+    const std::string_view body = text_.substr(begin, at_ - begin);
+    if (!parse_time(kind, body, ns)) {
+      const char* name = kind == Kind::time   ? "TIME"
+                         : kind == Kind::date ? "DATE"
+                         : kind == Kind::tod  ? "TIME_OF_DAY"
+                                              : "DATE_AND_TIME";
+      report_.error(
+          t.location, texts::kBadTime,
+          {std::string(text_.substr(t.offset, at_ - t.offset)), name, std::string(time_example(kind))});
+    }
+    t.literal.negative = ns < 0;
+    t.literal.magnitude = ns < 0 ? 0 - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
+    return t;
+  }
+
+  Token number() {
+    Token t = start(TokenKind::literal);
+    while (digit(peek()) || (peek() == '_' && digit(peek(1)))) step();
+    if (peek() == '#') return based(std::move(t));
+    const bool real = peek() == '.' && digit(peek(1));
+    if (real) {
+      step();
+      while (digit(peek()) || (peek() == '_' && digit(peek(1)))) step();
+    }
+    const std::size_t sign = peek(1) == '-' || peek(1) == '+' ? 1 : 0;
+    const bool exponent = (peek() == 'e' || peek() == 'E') && digit(peek(1 + sign));
+    if (exponent) {
+      step(1 + sign);
+      while (digit(peek())) step();
+    }
+    std::string body = clean(t.offset);
+    if (letter(peek())) {
+      while (word_part(peek())) step();
+      report_.error(t.location, texts::kBadNumber, {std::string(text_.substr(t.offset, at_ - t.offset))});
+      t.literal.magnitude = 1;
+      return t;
+    }
+    if (real || exponent) {
+      t.literal.kind = Kind::untyped_real;
+      if (std::from_chars(body.data(), body.data() + body.size(), t.literal.real).ec != std::errc{})
+        report_.error(t.location, texts::kHugeNumber, {body});
+    } else if (std::from_chars(body.data(), body.data() + body.size(), t.literal.magnitude).ec !=
+               std::errc{}) {
+      report_.error(t.location, texts::kHugeNumber, {body});
+    }
+    return t;
+  }
+  Token based(Token t) {
+    const std::string base_text = clean(t.offset);
+    const int base = base_text == "2" ? 2 : base_text == "8" ? 8 : base_text == "16" ? 16 : 0;
+    step();
+    const std::size_t begin = at_;
+    while (word_part(peek())) step();
+    const std::string body = clean(begin);
+    const std::string whole(text_.substr(t.offset, at_ - t.offset));
+    if (base == 0) {
+      report_.error(t.location, texts::kBadNumber, {whole});
+      return t;
+    }
+    const auto [end, error] =
+        std::from_chars(body.data(), body.data() + body.size(), t.literal.magnitude, base);
+    if (error == std::errc::result_out_of_range)
+      report_.error(t.location, texts::kHugeNumber, {whole});
+    else if (error != std::errc{} || end != body.data() + body.size())
+      report_.error(t.location, texts::kBadNumber, {whole});
+    return t;
+  }
+  std::string clean(std::size_t begin) const {
+    std::string out;
+    for (const char c : text_.substr(begin, at_ - begin))
+      if (c != '_') out += c;
+    return out;
+  }
+
+  Token string() {
+    Token t = start(TokenKind::literal);
+    t.literal.kind = Kind::string;
+    const char quote = peek();
+    step();
+    while (peek() != quote) {
+      if (at_ >= text_.size() || peek() == '\n') {
+        report_.error(t.location, texts::kOpenString, {std::string(1, quote)});
+        return t;
+      }
+      if (peek() == '$')
+        escape(t.literal.text);
+      else
+        t.literal.text += peek(), step();
+    }
+    step();
+    return t;
+  }
+  void escape(std::string& out) {
+    const Location begin = here();
+    const char c = static_cast<char>(std::toupper(static_cast<unsigned char>(peek(1))));
+    constexpr std::pair<char, char> plain[] = {{'$', '$'},  {'\'', '\''}, {'"', '"'},  {'L', '\n'},
+                                               {'N', '\n'}, {'P', '\f'},  {'R', '\r'}, {'T', '\t'}};
+    for (const auto& [name, value] : plain)
+      if (c == name) {
+        out += value;
+        return step(2);
+      }
+    if (std::isxdigit(static_cast<unsigned char>(peek(1))) &&
+        std::isxdigit(static_cast<unsigned char>(peek(2)))) {
+      out += static_cast<char>(std::stoi(std::string(text_.substr(at_ + 1, 2)), nullptr, 16));
+      return step(3);
+    }
+    std::string shown = "$";
+    step();
+    if (at_ < text_.size() && peek() != '\n') shown += peek();
+    report_.error(begin, texts::kBadEscape, {shown});
+  }
+
+  Token direct() {
+    Token t = start(TokenKind::direct);
+    step();
+    while (word_part(peek()) || (peek() == '.' && digit(peek(1)))) step();
+    return t;
+  }
+
+  Token symbol() {
+    Token t = start(TokenKind::symbol);
+    constexpr std::string_view known[] = {":=", "=>", "<=", ">=", "<>", "**", "..", "+", "-", "*", "/", "=",
+                                          "<",  ">",  "(",  ")",  "[",  "]",  ",",  ";", ":", ".", "&"};
+    for (const std::string_view s : known)
+      if (text_.substr(at_, s.size()) == s) {
+        t.key = s;
+        step(s.size());
+        return t;
+      }
+    std::size_t n = 1;
+    while (at_ + n < text_.size() && (static_cast<unsigned char>(text_[at_ + n]) & 0xC0) == 0x80) ++n;
+    report_.error(t.location, texts::kBadCharacter, {std::string(text_.substr(at_, n))});
+    step(n);
+    t.kind = TokenKind::bad;
+    return t;
+  }
+
+  std::string_view text_;
+  int file_;
+  Report& report_;
+  std::size_t at_ = 0;
+  int line_ = 1, column_ = 1;
+};
+
+}  // namespace
+
+std::vector<Token> tokens(std::string_view text, int file, Report& report) {
+  return Lexer(text, file, report).run();
+}
+
+bool parse_literal(std::string_view text, Literal& out) {
+  Report report({"value"});
+  std::vector<Token> list = tokens(text, 0, report);
+  std::size_t at = 0;
+  if (list[at].kind == TokenKind::typed) ++at;
+  bool negative = false;
+  if (list[at].is("-") || list[at].is("+")) negative = list[at++].is("-");
+  if (report.failed() || list[at].kind != TokenKind::literal || list[at + 1].kind != TokenKind::end)
+    return false;
+  out = list[at].literal;
+  if (negative && (out.kind == Kind::boolean || out.kind == Kind::string || is_temporal(out.kind)))
+    return false;
+  if (negative) out.negative = !out.negative, out.real = -out.real;
+  return true;
+}
+
+}  // namespace servogate::plc::syntax

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cctype>
+
+#include "plc/syntax/cursor.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::syntax {
+
+void Parser::file() {
+  while (!at_end()) {
+    const std::size_t before = at_;
+    try {
+      declaration();
+    } catch (const SyntaxError&) {
+      recover({"PROGRAM", "FUNCTION", "FUNCTION_BLOCK", "TYPE", "VAR_GLOBAL", "CONFIGURATION"});
+      if (at_ == before) take();
+    }
+  }
+}
+
+void Parser::declaration() {
+  if (at("PROGRAM")) return unit(UnitKind::program);
+  if (at("FUNCTION")) return unit(UnitKind::function);
+  if (at("FUNCTION_BLOCK")) return unit(UnitKind::function_block);
+  if (at("TYPE")) return types();
+  if (at("VAR_GLOBAL")) return variables(source_.globals, Section::global, false);
+  if (at("CONFIGURATION")) return configuration();
+  if (accept(";")) return;
+  fail("PROGRAM, FUNCTION, FUNCTION_BLOCK, TYPE, VAR_GLOBAL or CONFIGURATION");
+}
+
+void Parser::unit(UnitKind kind) {
+  const char* names[] = {"PROGRAM", "FUNCTION", "FUNCTION_BLOCK"};
+  const std::string opener = names[static_cast<int>(kind)];
+  const Location begin = take().location;
+  Unit u;
+  u.kind = kind;
+  u.location = now().location;
+  u.name = identifier("a name");
+  if (kind == UnitKind::function && accept(":")) u.result = std::make_unique<TypeReference>(type_reference());
+  struct {
+    std::string_view key;
+    Section section;
+  } const sections[] = {{"VAR", Section::local},         {"VAR_TEMP", Section::temp},
+                        {"VAR_INPUT", Section::input},   {"VAR_OUTPUT", Section::output},
+                        {"VAR_IN_OUT", Section::in_out}, {"VAR_EXTERNAL", Section::external}};
+  for (bool more = true; more;) {
+    more = false;
+    for (const auto& s : sections)
+      if (at(s.key)) variables(u.variables, s.section, true), more = true;
+    if (at_any({"VAR_GLOBAL", "VAR_ACCESS", "VAR_CONFIG"})) {
+      report_.error(now().location, texts::kSectionPlace, {now().key, opener});
+      recover({"END_VAR"});
+      accept("END_VAR");
+      more = true;
+    }
+  }
+  const std::string closer = "END_" + opener;
+  u.body = block({closer});
+  source_.units.push_back(std::move(u));
+  expect_closing(closer, opener, begin);
+}
+
+void Parser::variables(std::vector<Variable>& out, Section section, bool in_unit) {
+  const Token& head = take();
+  const Location begin = head.location;
+  const std::string opener = head.key;
+  Variable prototype;
+  prototype.section = section;
+  for (;; take())
+    if (at("RETAIN"))
+      prototype.retain = true;
+    else if (at("CONSTANT"))
+      prototype.constant = true;
+    else if (!at("NON_RETAIN") && !at("PERSISTENT"))
+      break;
+  while (!at_end() && !at("END_VAR")) {
+    if (now().kind == TokenKind::word && is_keyword(now().key) && in_unit) break;
+    const std::size_t before = at_;
+    try {
+      variable_list(out, prototype);
+    } catch (const SyntaxError&) {
+      recover({";", "END_VAR", "END_PROGRAM", "END_FUNCTION", "END_FUNCTION_BLOCK", "VAR", "VAR_INPUT",
+               "VAR_OUTPUT", "IF", "FOR", "CASE", "WHILE"});
+      accept(";");
+      if (at_ == before) take();
+    }
+  }
+  expect_closing("END_VAR", opener, begin);
+  accept(";");
+}
+
+void Parser::variable_list(std::vector<Variable>& out, const Variable& prototype) {
+  std::vector<Variable> list;
+  do {
+    Variable v = prototype;
+    v.location = now().location;
+    v.name = identifier("the name of a variable");
+    if (at("AT")) address(v);
+    list.push_back(std::move(v));
+  } while (accept(","));
+  expect(":");
+  const auto type = std::make_shared<TypeReference>(type_reference());
+  const int edge = at("R_EDGE") ? 1 : at("F_EDGE") ? -1 : 0;
+  if (edge != 0) take();
+  std::shared_ptr<Expression> initial;
+  if (at("=")) {
+    report_.error(now().location, texts::kAssignEqual);
+    throw SyntaxError{};
+  }
+  if (accept(":=")) initial = initializer();
+  expect(";");
+  for (Variable& v : list) {
+    v.type = type;
+    v.edge = edge;
+    v.initial = initial;
+    out.push_back(std::move(v));
+  }
+}
+
+// Behind AT: %IX0.0, or a place of a packet such as SK7.3CH, which is no sequence of IEC tokens.
+void Parser::address(Variable& v) {
+  take();
+  v.address_location = now().location;
+  if (now().kind == TokenKind::direct) {
+    v.address = take().text;
+    return;
+  }
+  if (now().kind != TokenKind::word) fail("an address such as %QX0.0 or SA128");
+  std::size_t end = now().offset;
+  while (end < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[end])) || text_[end] == '.'))
+    ++end;
+  v.address = key_of(text_.substr(now().offset, end - now().offset));
+  while (!at_end() && now().offset < end) take();
+}
+
+TypeReference Parser::type_reference() {
+  const Nesting nesting(*this);
+  TypeReference t;
+  t.location = now().location;
+  if (at("ARRAY")) {
+    array_type(t);
+    return t;
+  }
+  if (at("STRUCT")) {
+    structure_type(t);
+    return t;
+  }
+  if (at("(")) {
+    enumeration_type(t);
+    return t;
+  }
+  t.name = identifier("a type");
+  if (t.name.empty()) fail("a type");
+  const std::string key = key_of(t.name);
+  if ((key == "STRING" || key == "WSTRING") && at_any({"[", "("})) {
+    const bool square = take().key == "[";
+    t.length = expression();
+    expect(square ? "]" : ")");
+  } else if (at("(")) {
+    const Token& inside = ahead();
+    const bool names =
+        inside.kind == TokenKind::word && (ahead(2).is(",") || ahead(2).is(":=") || ahead(2).is(")"));
+    if (names) {  // an enumeration with its own base: INT (red, green)
+      const std::string base = t.name;
+      enumeration_type(t);
+      t.name = base;
+      return t;
+    }
+    take();
+    t.low = expression();
+    expect("..");
+    t.high = expression();
+    expect(")");
+  }
+  return t;
+}
+
+void Parser::array_type(TypeReference& t) {
+  t.name = take().key;
+  expect("[");
+  do {
+    ExpressionPtr low = expression();
+    expect("..");
+    t.ranges.emplace_back(std::move(low), expression());
+  } while (accept(","));
+  expect("]");
+  expect("OF");
+  t.element = std::make_unique<TypeReference>(type_reference());
+}
+
+void Parser::structure_type(TypeReference& t) {
+  const Location begin = now().location;
+  t.name = take().key;
+  while (!at_end() && !at("END_STRUCT")) variable_list(t.members, Variable{});
+  expect_closing("END_STRUCT", "STRUCT", begin);
+}
+
+void Parser::enumeration_type(TypeReference& t) {
+  t.name.clear();
+  expect("(");
+  do {
+    t.value_locations.push_back(now().location);
+    std::string name = identifier("a name for the value");
+    t.values.emplace_back(std::move(name), accept(":=") ? expression() : nullptr);
+  } while (accept(","));
+  expect(")");
+}
+
+void Parser::types() {
+  const Location begin = take().location;
+  while (!at_end() && !at("END_TYPE")) {
+    try {
+      TypeDeclaration d;
+      d.location = now().location;
+      d.name = identifier("the name of a type");
+      expect(":");
+      d.type = type_reference();
+      if (at("(") && !d.type.name.empty() && d.type.values.empty()) fail("';'");
+      if (accept(":=")) d.initial = initializer();
+      // After END_STRUCT the semicolon is often forgotten and nothing is unclear without it.
+      if (d.type.members.empty() || at(";")) expect(";");
+      source_.types.push_back(std::move(d));
+    } catch (const SyntaxError&) {
+      recover({";", "END_TYPE", "PROGRAM", "FUNCTION", "FUNCTION_BLOCK"});
+      if (!accept(";")) break;
+    }
+  }
+  expect_closing("END_TYPE", "TYPE", begin);
+  accept(";");
+}
+
+ExpressionPtr Parser::initializer() {
+  const Nesting nesting(*this);
+  if (at("[")) return list_initializer();
+  if (at_record()) return record_initializer();
+  return expression();
+}
+
+bool Parser::at_record() const { return at("(") && ahead().kind == TokenKind::word && ahead(2).is(":="); }
+
+ExpressionPtr Parser::list_initializer() {
+  ExpressionPtr e = make(ExpressionKind::list, take().location);
+  while (!at("]")) {
+    // 3(0): three times; 2([1, 2]) likewise.
+    if (now().kind == TokenKind::literal && now().literal.kind == Kind::untyped_int && ahead().is("(")) {
+      const std::uint64_t times = take().literal.magnitude;
+      expect("(");
+      e->repeats.push_back(times > 10'000'000 ? 10'000'000 : static_cast<std::int64_t>(times));
+      e->operands.push_back(at(")") ? nullptr : initializer());
+      expect(")");
+    } else {
+      e->repeats.push_back(1);
+      e->operands.push_back(initializer());
+    }
+    if (!accept(",")) break;
+  }
+  expect_closing("]", "'['", e->location);
+  return e;
+}
+
+ExpressionPtr Parser::record_initializer() {
+  ExpressionPtr e = make(ExpressionKind::record, take().location);
+  do {
+    Argument a;
+    a.location = now().location;
+    a.name = identifier("the name of a member");
+    expect(":=");
+    a.value = initializer();
+    e->arguments.push_back(std::move(a));
+  } while (accept(","));
+  expect_closing(")", "'('", e->location);
+  return e;
+}
+
+void Parser::configuration() {
+  const Location begin = take().location;
+  Configuration c;
+  c.location = now().location;
+  c.name = identifier("a name");
+  int resources = 0;
+  Location resource = begin;
+  while (!at_end() && !at("END_CONFIGURATION")) {
+    if (at("VAR_GLOBAL")) {
+      variables(source_.globals, Section::global, false);
+    } else if (at("RESOURCE")) {
+      resource = take().location;
+      identifier("a name");
+      expect("ON");
+      identifier("a processor");
+      ++resources;
+    } else if (accept("END_RESOURCE")) {
+      --resources;
+    } else if (at("TASK")) {
+      task(c);
+    } else if (at("PROGRAM")) {
+      program_instance(c);
+    } else if (at_any({"VAR_ACCESS", "VAR_CONFIG"})) {
+      report_.error(now().location, texts::kUnsupported, {now().key});
+      recover({"END_VAR"});
+      accept("END_VAR");
+    } else if (!accept(";")) {
+      fail("VAR_GLOBAL, RESOURCE, TASK, PROGRAM or END_CONFIGURATION");
+    }
+  }
+  if (resources > 0) expect_closing("END_RESOURCE", "RESOURCE", resource);
+  source_.configurations.push_back(std::move(c));
+  expect_closing("END_CONFIGURATION", "CONFIGURATION", begin);
+  accept(";");
+}
+
+void Parser::task(Configuration& c) {
+  take();
+  Task t;
+  t.location = now().location;
+  t.name = identifier("the name of a task");
+  expect("(");
+  do {
+    const std::string key = now().key;
+    if (key != "INTERVAL" && key != "PRIORITY" && key != "SINGLE") fail("INTERVAL, PRIORITY or SINGLE");
+    take();
+    expect(":=");
+    (key == "INTERVAL" ? t.interval : key == "PRIORITY" ? t.priority : t.single) = expression();
+  } while (accept(","));
+  expect(")");
+  expect(";");
+  c.tasks.push_back(std::move(t));
+}
+
+void Parser::program_instance(Configuration& c) {
+  take();
+  if (at_any({"RETAIN", "NON_RETAIN"})) take();
+  ProgramInstance p;
+  p.location = now().location;
+  p.name = identifier("the name of a program");
+  if (accept("WITH")) {
+    p.task_location = now().location;
+    p.task = identifier("the name of a task");
+  }
+  expect(":");
+  p.type_location = now().location;
+  p.type = identifier("a PROGRAM");
+  if (at("(")) {
+    Expression call;
+    arguments(call);
+    p.arguments = std::move(call.arguments);
+  }
+  expect(";");
+  c.programs.push_back(std::move(p));
+}
+
+}  // namespace servogate::plc::syntax

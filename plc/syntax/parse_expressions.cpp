@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/syntax/cursor.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::syntax {
+
+namespace {
+
+struct Binary {
+  std::string_view key;
+  Operator op;
+  int level;
+};
+// IEC 61131-3:2013, table 71: the higher level binds tighter; all combine from left to right.
+constexpr Binary kBinary[] = {
+    {"OR", Operator::or_, 1},   {"XOR", Operator::xor_, 2}, {"AND", Operator::and_, 3},
+    {"&", Operator::and_, 3},   {"=", Operator::eq, 4},     {"<>", Operator::ne, 4},
+    {"<", Operator::lt, 5},     {">", Operator::gt, 5},     {"<=", Operator::le, 5},
+    {">=", Operator::ge, 5},    {"+", Operator::add, 6},    {"-", Operator::sub, 6},
+    {"*", Operator::mul, 7},    {"/", Operator::div, 7},    {"MOD", Operator::mod, 7},
+    {"**", Operator::power, 8},
+};
+constexpr int kTightest = 8;
+
+}  // namespace
+
+ExpressionPtr Parser::make(ExpressionKind kind, const Location& at) {
+  auto e = std::make_unique<Expression>();
+  e->kind = kind;
+  e->location = at;
+  return e;
+}
+
+ExpressionPtr Parser::expression() {
+  const Nesting nesting(*this);
+  return binary(1);
+}
+
+ExpressionPtr Parser::binary(int level) {
+  if (level > kTightest) return unary();
+  ExpressionPtr left = binary(level + 1);
+  for (int chain = 0;; ++chain) {
+    const Binary* found = nullptr;
+    for (const Binary& b : kBinary)
+      if (b.level == level && at(b.key)) found = &b;
+    if (found == nullptr) return left;
+    constexpr int kMaxChain = 1000;  // the tree of a chain is as deep as it is long
+    if (chain == kMaxChain) {
+      report_.error(now().location, texts::kTooDeep, {std::to_string(kMaxChain)});
+      throw SyntaxError{};
+    }
+    ExpressionPtr e = make(ExpressionKind::binary, take().location);
+    e->op = found->op;
+    e->operands.push_back(std::move(left));
+    e->operands.push_back(binary(level + 1));
+    left = std::move(e);
+  }
+}
+
+ExpressionPtr Parser::unary() {
+  const Operator op = at("-")     ? Operator::negate
+                      : at("+")   ? Operator::plus
+                      : at("NOT") ? Operator::not_
+                                  : Operator::none;
+  if (op == Operator::none) return primary();
+  const Nesting nesting(*this);
+  const Location begin = take().location;
+  ExpressionPtr operand = unary();
+  // -5 is one literal, so that the least value of each type can be written.
+  if (op == Operator::negate && operand->kind == ExpressionKind::literal && !operand->literal.negative &&
+      is_untyped(operand->literal.kind)) {
+    operand->literal.negative = true;
+    operand->literal.real = -operand->literal.real;
+    operand->location = begin;
+    return operand;
+  }
+  ExpressionPtr e = make(ExpressionKind::unary, begin);
+  e->op = op;
+  e->operands.push_back(std::move(operand));
+  return e;
+}
+
+ExpressionPtr Parser::primary() {
+  const Token& t = now();
+  if (t.kind == TokenKind::literal) {
+    ExpressionPtr e = make(ExpressionKind::literal, t.location);
+    e->literal = take().literal;
+    return e;
+  }
+  if (t.kind == TokenKind::typed) return typed();
+  if (t.kind == TokenKind::direct) {
+    ExpressionPtr e = make(ExpressionKind::direct, t.location);
+    e->name = take().text;
+    return e;
+  }
+  if (at("(")) {
+    const Location begin = take().location;
+    ExpressionPtr e = expression();
+    expect_closing(")", "'('", begin);
+    return e;
+  }
+  // AND, OR, XOR, MOD and NOT are functions too.
+  const bool operator_function = at_any({"AND", "OR", "XOR", "MOD"}) && ahead().is("(");
+  if (t.kind != TokenKind::word || (is_keyword(t.key) && !operator_function)) fail("an expression");
+  ExpressionPtr e = make(ExpressionKind::name, t.location);
+  e->name = take().text;
+  return postfix(std::move(e));
+}
+
+ExpressionPtr Parser::postfix(ExpressionPtr e) {
+  for (int chain = 0;; ++chain) {
+    if (chain > kMaxNesting) fail("fewer parts");
+    const Location where = now().location;
+    if (at("(")) {
+      ExpressionPtr call = make(ExpressionKind::call, e->location);
+      call->operands.push_back(std::move(e));
+      arguments(*call);
+      e = std::move(call);
+    } else if (accept("[")) {
+      ExpressionPtr index = make(ExpressionKind::index, e->location);
+      index->operands.push_back(std::move(e));
+      do index->operands.push_back(expression());
+      while (accept(","));
+      expect_closing("]", "'['", where);
+      e = std::move(index);
+    } else if (at(".")) {
+      take();
+      const bool bit = now().kind == TokenKind::literal && now().literal.kind == Kind::untyped_int;
+      const bool direct_bit = now().kind == TokenKind::direct && now().text.size() > 2;
+      if (!bit && !direct_bit && now().kind != TokenKind::word) fail("a member");
+      ExpressionPtr member =
+          make(bit || direct_bit ? ExpressionKind::bit : ExpressionKind::member, now().location);
+      member->name = now().text;
+      member->literal = now().literal;
+      member->operands.push_back(std::move(e));
+      take();
+      e = std::move(member);
+    } else {
+      return e;
+    }
+  }
+}
+
+ExpressionPtr Parser::typed() {
+  ExpressionPtr e = make(ExpressionKind::typed, now().location);
+  e->name = take().text;
+  e->name.pop_back();
+  const bool negative = at("-");
+  if (negative || at("+")) take();
+  if (now().kind == TokenKind::literal) {
+    ExpressionPtr value = make(ExpressionKind::literal, now().location);
+    value->literal = take().literal;
+    if (negative) value->literal.negative = true, value->literal.real = -value->literal.real;
+    e->operands.push_back(std::move(value));
+  } else if (now().kind == TokenKind::word && !negative) {
+    e->literal.text = take().text;
+  } else {
+    fail("a value");
+  }
+  return e;
+}
+
+void Parser::arguments(Expression& call) {
+  const Location begin = now().location;
+  expect("(");
+  while (!at(")")) {
+    Argument a;
+    a.location = now().location;
+    const bool inverted = at("NOT") && ahead().kind == TokenKind::word && ahead(2).is("=>");
+    if (inverted) take();
+    if (now().kind == TokenKind::word && (ahead().is(":=") || ahead().is("=>"))) {
+      a.name = take().text;
+      a.output = take().key == "=>";
+      a.inverted = inverted;
+    }
+    if (!(a.output && at_any({",", ")"}))) a.value = expression();
+    call.arguments.push_back(std::move(a));
+    if (!accept(",")) break;
+    if (at(")")) fail("an argument");
+  }
+  expect_closing(")", "'('", begin);
+}
+
+}  // namespace servogate::plc::syntax

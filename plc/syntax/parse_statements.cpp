@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/syntax/cursor.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::syntax {
+
+namespace {
+StatementPtr make_statement(StatementKind kind, const Location& at) {
+  auto s = std::make_unique<Statement>();
+  s->kind = kind;
+  s->location = at;
+  return s;
+}
+}  // namespace
+
+Block Parser::block(std::initializer_list<std::string_view> ends) {
+  Block out;
+  while (!at_end() && !at_any(ends)) {
+    // A closing word of something outside ends this block too; the caller says what is missing.
+    if (now().kind == TokenKind::word && is_keyword(now().key) &&
+        (now().key.starts_with("END_") || at_any({"ELSE", "ELSIF", "UNTIL", "PROGRAM", "FUNCTION",
+                                                  "FUNCTION_BLOCK", "TYPE", "CONFIGURATION"})))
+      break;
+    const std::size_t before = at_;
+    try {
+      StatementPtr s = statement();
+      if (s->kind != StatementKind::empty) out.push_back(std::move(s));
+    } catch (const SyntaxError&) {
+      if (depth_ >= kMaxNesting - 1) throw;
+      recover({";",
+               "END_IF",
+               "END_CASE",
+               "END_FOR",
+               "END_WHILE",
+               "END_REPEAT",
+               "END_PROGRAM",
+               "END_FUNCTION",
+               "END_FUNCTION_BLOCK",
+               "ELSE",
+               "ELSIF",
+               "UNTIL",
+               "IF",
+               "CASE",
+               "FOR",
+               "WHILE",
+               "REPEAT",
+               "PROGRAM",
+               "FUNCTION",
+               "FUNCTION_BLOCK",
+               "TYPE",
+               "CONFIGURATION",
+               "VAR_GLOBAL"});
+      accept(";");
+      if (at_ == before) take();
+    }
+  }
+  return out;
+}
+
+StatementPtr Parser::statement() {
+  const Nesting nesting(*this);
+  const Location begin = now().location;
+  if (accept(";")) return make_statement(StatementKind::empty, begin);
+  if (at("IF")) return if_statement();
+  if (at("CASE")) return case_statement();
+  if (at("FOR")) return for_statement();
+  if (at("WHILE")) return while_statement();
+  if (at("REPEAT")) return repeat_statement();
+  StatementPtr s;
+  if (accept("EXIT"))
+    s = make_statement(StatementKind::exit, begin);
+  else if (accept("CONTINUE"))
+    s = make_statement(StatementKind::continue_, begin);
+  else if (accept("RETURN"))
+    s = make_statement(StatementKind::return_, begin);
+  else
+    s = simple_statement();
+  expect(";");
+  return s;
+}
+
+StatementPtr Parser::simple_statement() {
+  const Location begin = now().location;
+  if (now().kind != TokenKind::word && now().kind != TokenKind::direct) fail("a statement");
+  if (now().kind == TokenKind::word && is_keyword(now().key)) fail("a statement");
+  ExpressionPtr target = primary();
+  StatementPtr s = make_statement(StatementKind::call, begin);
+  if (at("=")) {
+    report_.error(now().location, texts::kAssignEqual);
+    throw SyntaxError{};
+  }
+  if (accept(":=")) {
+    s->kind = StatementKind::assign;
+    s->target = std::move(target);
+    s->value = expression();
+    if (at(":=")) fail("';'");
+    return s;
+  }
+  if (target->kind != ExpressionKind::call) {
+    if (!at(";")) fail("':=' or '('");
+    report_.error(begin, texts::kUseless);
+  }
+  s->value = std::move(target);
+  return s;
+}
+
+StatementPtr Parser::if_statement() {
+  StatementPtr s = make_statement(StatementKind::if_, now().location);
+  do {
+    take();
+    Branch& b = s->branches.emplace_back();
+    b.condition = expression();
+    expect("THEN");
+    b.body = block({"ELSIF", "ELSE", "END_IF"});
+  } while (at("ELSIF"));
+  if (accept("ELSE")) {
+    s->has_else = true;
+    s->body = block({"END_IF"});
+  }
+  expect_closing("END_IF", "IF", s->location);
+  accept(";");
+  return s;
+}
+
+// A label list begins here: something up to a colon, with no ':=' or ';' before it.
+bool Parser::at_label() const {
+  if (at_any({"ELSE", "END_CASE"})) return true;
+  if (now().kind == TokenKind::word && is_keyword(now().key)) return false;
+  for (std::size_t n = at_; n < list_.size() && n < at_ + 4000; ++n) {
+    if (list_[n].is(":")) return true;
+    if (list_[n].kind == TokenKind::end || list_[n].is(";") || list_[n].is(":=") || list_[n].is("("))
+      return false;
+  }
+  return false;
+}
+
+std::vector<Label> Parser::labels() {
+  std::vector<Label> out;
+  do {
+    Label l;
+    l.low = expression();
+    if (accept("..")) l.high = expression();
+    out.push_back(std::move(l));
+  } while (accept(","));
+  expect(":");
+  return out;
+}
+
+StatementPtr Parser::case_statement() {
+  StatementPtr s = make_statement(StatementKind::case_, take().location);
+  s->target = expression();
+  expect("OF");
+  while (!at_end() && !at_any({"ELSE", "END_CASE"})) {
+    Branch b;
+    b.labels = labels();
+    while (!at_label() && !at_end()) {
+      const std::size_t before = at_;
+      if (now().kind == TokenKind::word && now().key.starts_with("END_")) break;
+      try {
+        StatementPtr inner = statement();
+        if (inner->kind != StatementKind::empty) b.body.push_back(std::move(inner));
+      } catch (const SyntaxError&) {
+        if (depth_ >= kMaxNesting - 1) throw;
+        recover({";", "ELSE", "END_CASE", "END_PROGRAM", "END_FUNCTION", "END_FUNCTION_BLOCK", "END_IF"});
+        accept(";");
+        if (at_ == before) take();
+      }
+    }
+    s->branches.push_back(std::move(b));
+    if (now().kind == TokenKind::word && now().key.starts_with("END_")) break;
+  }
+  if (accept("ELSE")) {
+    s->has_else = true;
+    s->body = block({"END_CASE"});
+  }
+  expect_closing("END_CASE", "CASE", s->location);
+  accept(";");
+  return s;
+}
+
+StatementPtr Parser::for_statement() {
+  StatementPtr s = make_statement(StatementKind::for_, take().location);
+  s->target = make(ExpressionKind::name, now().location);
+  s->target->name = identifier("the variable that counts");
+  expect(":=");
+  s->value = expression();
+  expect("TO");
+  s->to = expression();
+  if (accept("BY")) s->by = expression();
+  expect("DO");
+  s->body = block({"END_FOR"});
+  expect_closing("END_FOR", "FOR", s->location);
+  accept(";");
+  return s;
+}
+
+StatementPtr Parser::while_statement() {
+  StatementPtr s = make_statement(StatementKind::while_, take().location);
+  s->value = expression();
+  expect("DO");
+  s->body = block({"END_WHILE"});
+  expect_closing("END_WHILE", "WHILE", s->location);
+  accept(";");
+  return s;
+}
+
+StatementPtr Parser::repeat_statement() {
+  StatementPtr s = make_statement(StatementKind::repeat, take().location);
+  s->body = block({"UNTIL"});
+  expect_closing("UNTIL", "REPEAT", s->location);
+  s->value = expression();
+  accept(";");
+  expect_closing("END_REPEAT", "REPEAT", s->location);
+  accept(";");
+  return s;
+}
+
+}  // namespace servogate::plc::syntax

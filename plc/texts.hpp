@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "firmware_if/text/finding.hpp"
+
+/// Every sentence the compiler, the engine and the runner can say.
+namespace servogate::plc::texts {
+using text::Entry;
+
+// Reading the text.
+inline constexpr Entry kBadCharacter{"plc-character", "'{0}' does not belong in a program",
+                                     "символ '{0}' в программе недопустим"};
+inline constexpr Entry kOpenComment{"plc-open-comment", "this comment never ends; expected '{0}'",
+                                    "комментарий не закрыт; ожидается '{0}'"};
+inline constexpr Entry kOpenString{"plc-open-string", "this string does not end on its line; expected {0}",
+                                   "строка не закрыта до конца строки файла; ожидается {0}"};
+inline constexpr Entry kBadEscape{
+    "plc-escape", "'{0}' is no escape in a string; $$ writes a dollar sign",
+    "'{0}' не является управляющей последовательностью; знак доллара пишется $$"};
+inline constexpr Entry kBadNumber{"plc-number", "'{0}' is no number", "'{0}' не является числом"};
+inline constexpr Entry kHugeNumber{"plc-number-range", "{0} does not fit into 64 bits",
+                                   "{0} не помещается в 64 бита"};
+inline constexpr Entry kBadTime{"plc-time", "'{0}' is no {1}; write {2}",
+                                "'{0}' не является значением {1}; пишите {2}"};
+inline constexpr Entry kExpected{"plc-expected", "expected {0}, found {1}", "ожидается {0}, встречено {1}"};
+inline constexpr Entry kUnclosed{"plc-unclosed", "expected {0} for the {1} in line {2}, found {3}",
+                                 "ожидается {0} для {1} в строке {2}, встречено {3}"};
+inline constexpr Entry kAssignEqual{"plc-assign", "'=' compares; write ':=' to assign",
+                                    "'=' сравнивает; для присваивания пишите ':='"};
+inline constexpr Entry kTooDeep{"plc-depth", "nested deeper than {0} levels",
+                                "вложенность больше {0} уровней"};
+
+// Declarations.
+inline constexpr Entry kDuplicate{"plc-duplicate", "'{0}' is already declared in line {1}",
+                                  "'{0}' уже объявлено в строке {1}"};
+inline constexpr Entry kReserved{"plc-reserved", "'{0}' is a standard name and cannot be declared again",
+                                 "'{0}' является стандартным именем, повторно объявлять его нельзя"};
+inline constexpr Entry kUnknownType{"plc-unknown-type", "there is no type '{0}'{1}", "типа '{0}' нет{1}"};
+inline constexpr Entry kTypeCycle{"plc-type-cycle", "'{0}' contains itself", "'{0}' содержит само себя"};
+inline constexpr Entry kNotConstant{"plc-not-constant", "expected a constant here", "здесь нужна константа"};
+inline constexpr Entry kEmptyRange{"plc-empty-range",
+                                   "the range {0}..{1} is empty; the lower limit comes first",
+                                   "диапазон {0}..{1} пуст; первой пишется нижняя граница"};
+inline constexpr Entry kTooLarge{"plc-too-large", "'{0}' needs {1} bytes; at most {2} are possible",
+                                 "'{0}' занимает {1} байт; допустимо не более {2}"};
+inline constexpr Entry kStringLength{"plc-string-length", "a STRING holds 1 to 254 characters, not {0}",
+                                     "длина STRING от 1 до 254 символов, а не {0}"};
+inline constexpr Entry kSubrangeBase{"plc-subrange-base", "a subrange needs an integer type, not {0}",
+                                     "поддиапазон возможен только для целого типа, а не {0}"};
+inline constexpr Entry kSectionPlace{"plc-section", "{0} has no place in a {1}", "{0} недопустимо в {1}"};
+inline constexpr Entry kNoExternal{"plc-external", "there is no global variable '{0}' for this VAR_EXTERNAL",
+                                   "для VAR_EXTERNAL нет глобальной переменной '{0}'"};
+inline constexpr Entry kExternalType{"plc-external-type", "'{0}' is {1} where it is declared, not {2}",
+                                     "'{0}' объявлена как {1}, а не {2}"};
+inline constexpr Entry kEdgeType{"plc-edge", "R_EDGE and F_EDGE belong to a BOOL input",
+                                 "R_EDGE и F_EDGE возможны только у входа типа BOOL"};
+inline constexpr Entry kBadAddress{"plc-address",
+                                   "'{0}' is no address; write %IX0.0, %QW4, %MD2, SA128 or SK10.IN",
+                                   "'{0}' не является адресом; пишите %IX0.0, %QW4, %MD2, SA128 или SK10.IN"};
+inline constexpr Entry kAddressRange{"plc-address-range", "{0} lies outside its memory of {1} bytes",
+                                     "{0} лежит вне своей памяти ({1} байт)"};
+inline constexpr Entry kAddressType{"plc-address-type", "{0} holds {1}, not {2}", "{0} хранит {1}, а не {2}"};
+inline constexpr Entry kAddressOverlap{"plc-overlap", "{0} shares memory with {1} of '{2}' in line {3}",
+                                       "{0} занимает ту же память, что {1} переменной '{2}' в строке {3}"};
+inline constexpr Entry kAddressSection{"plc-address-section",
+                                       "only VAR and VAR_GLOBAL can stand AT an address",
+                                       "AT возможно только в VAR и VAR_GLOBAL"};
+inline constexpr Entry kNoProgram{"plc-no-program", "there is no PROGRAM to run", "нет ни одной PROGRAM"};
+inline constexpr Entry kRecursion{"plc-recursion", "'{0}' calls itself ({1}); IEC 61131-3 forbids recursion",
+                                  "'{0}' вызывает само себя ({1}); МЭК 61131-3 запрещает рекурсию"};
+inline constexpr Entry kNoTask{"plc-no-task", "there is no TASK '{0}' in this resource",
+                               "в этом ресурсе нет TASK '{0}'"};
+inline constexpr Entry kTaskInterval{"plc-task-interval",
+                                     "a task needs a positive INTERVAL or a SINGLE variable",
+                                     "задаче нужен положительный INTERVAL или переменная SINGLE"};
+inline constexpr Entry kNoResult{"plc-no-result", "the function '{0}' never assigns its result",
+                                 "функция '{0}' нигде не присваивает свой результат"};
+
+// Names and types in statements.
+inline constexpr Entry kUnknownName{"plc-unknown-name", "there is no variable '{0}'{1}",
+                                    "переменной '{0}' нет{1}"};
+inline constexpr Entry kUnknownCall{"plc-unknown-call", "there is no function or instance '{0}'{1}",
+                                    "функции или экземпляра '{0}' нет{1}"};
+inline constexpr Entry kNoMember{"plc-no-member", "{0} has no member '{1}'{2}",
+                                 "у {0} нет элемента '{1}'{2}"};
+inline constexpr Entry kNotStructured{"plc-not-structured", "'{0}' is {1} and has no members",
+                                      "'{0}' имеет тип {1}, элементов у него нет"};
+inline constexpr Entry kNotArray{"plc-not-array", "{0} is no array", "{0} не является массивом"};
+inline constexpr Entry kDimensions{"plc-dimensions", "this array has {0} dimensions, not {1}",
+                                   "размерность массива {0}, а не {1}"};
+inline constexpr Entry kIndexType{"plc-index-type", "a subscript is an integer, not {0}",
+                                  "индекс должен быть целым, а не {0}"};
+inline constexpr Entry kIndexRange{"plc-index-range", "subscript {0} lies outside {1}..{2}",
+                                   "индекс {0} вне границ {1}..{2}"};
+inline constexpr Entry kBitRange{"plc-bit-range", "{0} has bits 0 to {1}", "у {0} биты от 0 до {1}"};
+inline constexpr Entry kMismatch{"plc-type", "expected {0}, found {1}{2}", "ожидается {0}, встречено {1}{2}"};
+inline constexpr Entry kMismatchWrite{"plc-type", "expected {0}, found {1}; write {2}",
+                                      "ожидается {0}, встречено {1}; пишите {2}"};
+inline constexpr Entry kOperands{"plc-operands", "'{0}' does not combine {1} and {2}",
+                                 "'{0}' не применимо к {1} и {2}"};
+inline constexpr Entry kOperand{"plc-operand", "'{0}' does not apply to {1}", "'{0}' не применимо к {1}"};
+inline constexpr Entry kLiteralRange{"plc-literal-range", "{0} does not fit into {1} ({2}..{3})",
+                                     "{0} не помещается в {1} ({2}..{3})"};
+inline constexpr Entry kNarrowing{"plc-narrowing",
+                                  "{0} may not fit into {1}; write {2} to say that it is meant",
+                                  "{0} может не поместиться в {1}; если так задумано, пишите {2}"};
+inline constexpr Entry kNotVariable{"plc-not-variable", "expected a variable", "ожидается переменная"};
+inline constexpr Entry kWriteConstant{"plc-write-constant", "'{0}' is a constant",
+                                      "'{0}' является константой"};
+inline constexpr Entry kWriteInput{"plc-write-input",
+                                   "'{0}' is an input; assigning it here changes only the copy",
+                                   "'{0}' является входом; присваивание меняет лишь его копию"};
+inline constexpr Entry kWriteOutput{"plc-write-output",
+                                    "'{0}' is an output of {1}; only the block itself sets it",
+                                    "'{0}' является выходом {1}; его задаёт только сам блок"};
+inline constexpr Entry kPrivate{"plc-private", "'{0}' is internal to {1}",
+                                "'{0}' является внутренней переменной {1}"};
+inline constexpr Entry kWritePlaceNc{"plc-write-nc", "'{0}' is written by the NC; the PLC only reads it",
+                                     "'{0}' записывает ЧПУ; ПЛК её только читает"};
+inline constexpr Entry kWritePlaceInput{"plc-write-input-point", "'{0}' is an input; the PLC only reads it",
+                                        "'{0}' является входом; ПЛК его только читает"};
+inline constexpr Entry kWriteFor{"plc-write-for", "'{0}' counts this FOR loop and cannot be assigned in it",
+                                 "'{0}' является счётчиком цикла FOR, присваивать ей в нём нельзя"};
+inline constexpr Entry kExitOutside{"plc-exit", "{0} stands outside a loop", "{0} вне цикла"};
+inline constexpr Entry kForType{"plc-for-type", "FOR counts with an integer variable, not {0}",
+                                "счётчиком FOR может быть только целая переменная, а не {0}"};
+inline constexpr Entry kForZero{"plc-for-zero", "BY 0 would never end", "с шагом 0 цикл не кончится"};
+inline constexpr Entry kCaseType{"plc-case-type", "CASE needs an integer, bit string or enumeration, not {0}",
+                                 "CASE возможен для целого, битовой строки или перечисления, а не {0}"};
+inline constexpr Entry kCaseTwice{"plc-case-twice", "{0} was already chosen in line {1}",
+                                  "значение {0} уже встречалось в строке {1}"};
+inline constexpr Entry kNoValue{"plc-no-value", "'{0}' gives no value", "'{0}' не возвращает значения"};
+inline constexpr Entry kUseless{"plc-useless",
+                                "this statement does nothing; a call or an assignment is expected",
+                                "оператор ничего не делает; ожидается вызов или присваивание"};
+inline constexpr Entry kCount{"plc-arguments", "{0} takes {1} inputs, not {2}", "у {0} входов {1}, а не {2}"};
+inline constexpr Entry kNoParameter{"plc-no-parameter", "{0} has no {1} '{2}'{3}",
+                                    "у {0} нет параметра ({1}) '{2}'{3}"};
+inline constexpr Entry kTwice{"plc-parameter-twice", "'{0}' is given twice", "'{0}' задано дважды"};
+inline constexpr Entry kMixed{"plc-mixed-arguments", "name either all inputs or none",
+                              "имена указываются либо у всех входов, либо ни у одного"};
+inline constexpr Entry kInOutMissing{"plc-in-out", "{0} needs a variable for its VAR_IN_OUT '{1}'",
+                                     "{0} требует переменную для VAR_IN_OUT '{1}'"};
+inline constexpr Entry kInOutType{"plc-in-out-type", "'{0}' is VAR_IN_OUT and needs exactly {1}, not {2}",
+                                  "'{0}' (VAR_IN_OUT) требует в точности {1}, а не {2}"};
+inline constexpr Entry kBitReference{"plc-bit-reference", "a single bit cannot be passed as VAR_IN_OUT",
+                                     "отдельный бит нельзя передать как VAR_IN_OUT"};
+inline constexpr Entry kInstanceCopy{
+    "plc-instance", "{0} is a function block; its instance is called, not assigned",
+    "{0} является функциональным блоком: экземпляр вызывают, а не присваивают"};
+inline constexpr Entry kNotEnumValue{"plc-enum-value", "{0} has no value '{1}'{2}",
+                                     "у {0} нет значения '{1}'{2}"};
+inline constexpr Entry kConstantFault{"plc-constant", "this constant cannot be computed: {0}",
+                                      "константу нельзя вычислить: {0}"};
+inline constexpr Entry kListLength{"plc-list-length", "{0} values for {1} elements",
+                                   "значений {0}, элементов {1}"};
+inline constexpr Entry kUnsupported{"plc-unsupported", "{0} is not supported", "{0} не поддерживается"};
+
+// Warnings.
+inline constexpr Entry kUnused{"plc-unused", "'{0}' is never used", "'{0}' нигде не используется"};
+inline constexpr Entry kTwoWriters{"plc-two-writers", "'{0}' is written in {1} and in {2}",
+                                   "'{0}' записывается и в {1}, и в {2}"};
+inline constexpr Entry kFastTask{"plc-task-range", "priority {0}; 0 to 65535 is possible",
+                                 "приоритет {0}; возможны значения от 0 до 65535"};
+
+// Running.
+inline constexpr Entry kFaultBudget{"plc-fault-budget", "task {0} exceeded its {1} instructions a scan here",
+                                    "задача {0} превысила здесь {1} команд за цикл"};
+inline constexpr Entry kFaultDivision{"plc-fault-division", "task {0} divided by zero",
+                                      "задача {0}: деление на нуль"};
+inline constexpr Entry kFaultIndex{"plc-fault-index", "task {0}: subscript outside its array",
+                                   "задача {0}: индекс вне границ массива"};
+inline constexpr Entry kFaultSubrange{"plc-fault-subrange", "task {0}: value outside its subrange",
+                                      "задача {0}: значение вне поддиапазона"};
+inline constexpr Entry kFaultConversion{"plc-fault-conversion", "task {0}: the value cannot be converted",
+                                        "задача {0}: значение не преобразуется"};
+inline constexpr Entry kFaultSelector{"plc-fault-selector", "task {0}: the selector of MUX names no input",
+                                      "задача {0}: селектор MUX не указывает ни на один вход"};
+inline constexpr Entry kFaultText{"plc-fault-text", "task {0}: position outside the string",
+                                  "задача {0}: позиция вне строки"};
+inline constexpr Entry kFaultPackets{"plc-fault-packets", "packet K or SYVAR is smaller than compiled for",
+                                     "пакет K или SYVAR меньше, чем при трансляции"};
+inline constexpr Entry kRunName{"plc-run-name", "there is no variable '{0}'", "переменной '{0}' нет"};
+inline constexpr Entry kRunValue{"plc-run-value", "'{0}' is no value for '{1}' of type {2}",
+                                 "'{0}' не является значением для '{1}' типа {2}"};
+inline constexpr Entry kRunCycle{"plc-run-cycle", "cycle {0} is outside 1..{1}",
+                                 "цикл {0} вне диапазона 1..{1}"};
+
+}  // namespace servogate::plc::texts

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/types/type.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+
+namespace servogate::plc {
+
+namespace {
+
+struct Elementary {
+  Kind kind;
+  const char* name;
+  std::uint32_t size;
+};
+constexpr Elementary kElementary[] = {
+    {Kind::error, "?", 1},
+    {Kind::none, "nothing", 1},
+    {Kind::boolean, "BOOL", 1},
+    {Kind::sint, "SINT", 1},
+    {Kind::int_, "INT", 2},
+    {Kind::dint, "DINT", 4},
+    {Kind::lint, "LINT", 8},
+    {Kind::usint, "USINT", 1},
+    {Kind::uint, "UINT", 2},
+    {Kind::udint, "UDINT", 4},
+    {Kind::ulint, "ULINT", 8},
+    {Kind::byte, "BYTE", 1},
+    {Kind::word, "WORD", 2},
+    {Kind::dword, "DWORD", 4},
+    {Kind::lword, "LWORD", 8},
+    {Kind::real, "REAL", 4},
+    {Kind::lreal, "LREAL", 8},
+    {Kind::time, "TIME", 8},
+    {Kind::date, "DATE", 8},
+    {Kind::tod, "TIME_OF_DAY", 8},
+    {Kind::dt, "DATE_AND_TIME", 8},
+    {Kind::character, "CHAR", 1},
+    {Kind::untyped_int, "integer literal", 8},
+    {Kind::untyped_real, "real literal", 8},
+};
+constexpr std::pair<const char*, Kind> kOtherNames[] = {
+    {"LTIME", Kind::time},       {"LDATE", Kind::date}, {"TOD", Kind::tod}, {"LTOD", Kind::tod},
+    {"LTIME_OF_DAY", Kind::tod}, {"DT", Kind::dt},      {"LDT", Kind::dt},  {"LDATE_AND_TIME", Kind::dt}};
+
+int rank(Kind k) noexcept {
+  switch (k) {
+    case Kind::boolean:
+      return 0;
+    case Kind::sint:
+    case Kind::usint:
+    case Kind::byte:
+      return 1;
+    case Kind::int_:
+    case Kind::uint:
+    case Kind::word:
+      return 2;
+    case Kind::dint:
+    case Kind::udint:
+    case Kind::dword:
+      return 3;
+    case Kind::lint:
+    case Kind::ulint:
+    case Kind::lword:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+// IEC 61131-3:2013, figure 11: implicit conversions; what is explicit there but keeps the sort of number is
+// "narrowing" here and warned of.
+Conversion between(Kind from, Kind to) noexcept {
+  if (from == to) return Conversion::same;
+  const auto wider = [](bool yes) { return yes ? Conversion::widening : Conversion::narrowing; };
+  if (from == Kind::untyped_int && (is_integer(to) || is_bits(to) || is_real(to) || to == Kind::boolean))
+    return Conversion::widening;
+  if (from == Kind::untyped_int && to == Kind::untyped_real) return Conversion::widening;
+  if (from == Kind::untyped_real && is_real(to)) return Conversion::widening;
+  if (is_integer(from) && is_integer(to)) {
+    if (is_signed(from) == is_signed(to)) return wider(rank(to) > rank(from));
+    return wider(is_unsigned(from) && rank(to) > rank(from));
+  }
+  if (is_integer(from) && is_real(to)) return wider(rank(from) <= (to == Kind::real ? 2 : 3));
+  if (is_real(from) && is_real(to)) return wider(from == Kind::real);
+  const bool from_bits = is_bits(from) || from == Kind::boolean;
+  if (from_bits && is_bits(to)) return wider(rank(to) > rank(from));
+  // Extension: a bit string and the unsigned integer of its size are the same bits (packet bytes are both).
+  if (is_bits(from) && is_unsigned(to)) return wider(rank(to) >= rank(from));
+  if (is_unsigned(from) && is_bits(to)) return wider(rank(to) >= rank(from));
+  if (from == Kind::character && to == Kind::string) return Conversion::widening;
+  return Conversion::none;
+}
+
+}  // namespace
+
+std::string key_of(std::string_view name) {
+  std::string out(name);
+  for (char& c : out) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return out;
+}
+
+bool same_name(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
+    return std::toupper(static_cast<unsigned char>(x)) == std::toupper(static_cast<unsigned char>(y));
+  });
+}
+
+const Field* Type::field(std::string_view key) const {
+  for (const Field& f : fields)
+    if (same_name(f.name, key)) return &f;
+  return nullptr;
+}
+
+const EnumValue* Type::value_named(std::string_view key) const {
+  for (const EnumValue& v : values)
+    if (same_name(v.name, key)) return &v;
+  return nullptr;
+}
+
+bool is_signed(Kind k) noexcept { return k >= Kind::sint && k <= Kind::lint; }
+bool is_unsigned(Kind k) noexcept { return k >= Kind::usint && k <= Kind::ulint; }
+bool is_bits(Kind k) noexcept { return k >= Kind::byte && k <= Kind::lword; }
+bool is_real(Kind k) noexcept { return k == Kind::real || k == Kind::lreal; }
+bool is_temporal(Kind k) noexcept { return k >= Kind::time && k <= Kind::dt; }
+bool is_untyped(Kind k) noexcept { return k == Kind::untyped_int || k == Kind::untyped_real; }
+bool is_elementary(Kind k) noexcept {
+  return (k >= Kind::boolean && k <= Kind::enumeration) || is_untyped(k) || k == Kind::error;
+}
+
+Cell cell_of(const Type& t) noexcept {
+  switch (t.kind) {
+    case Kind::sint:
+      return Cell::i8;
+    case Kind::int_:
+      return Cell::i16;
+    case Kind::dint:
+      return Cell::i32;
+    case Kind::lint:
+    case Kind::untyped_int:
+    case Kind::time:
+    case Kind::date:
+    case Kind::tod:
+    case Kind::dt:
+      return Cell::i64;
+    case Kind::uint:
+    case Kind::word:
+      return Cell::u16;
+    case Kind::udint:
+    case Kind::dword:
+      return Cell::u32;
+    case Kind::ulint:
+    case Kind::lword:
+      return Cell::u64;
+    case Kind::real:
+      return Cell::f32;
+    case Kind::lreal:
+    case Kind::untyped_real:
+      return Cell::f64;
+    case Kind::string:
+      return Cell::text;
+    case Kind::enumeration:
+      return cell_of(*t.base);
+    case Kind::array:
+    case Kind::structure:
+    case Kind::block:
+      return Cell::blob;
+    default:
+      return Cell::u8;
+  }
+}
+
+std::uint32_t cell_size(Cell c) noexcept {
+  constexpr std::uint32_t sizes[] = {1, 2, 4, 8, 1, 2, 4, 8, 4, 8, 0, 0};
+  return sizes[static_cast<int>(c)];
+}
+
+void integer_limits(Kind k, std::int64_t& low, std::uint64_t& high) noexcept {
+  const int bits = k == Kind::boolean ? 1 : 8 << (rank(k) - 1);
+  if (is_signed(k)) {
+    high = (std::uint64_t{1} << (bits - 1)) - 1;
+    low = -static_cast<std::int64_t>(high) - 1;
+  } else {
+    low = 0;
+    high = bits == 64 ? std::numeric_limits<std::uint64_t>::max() : (std::uint64_t{1} << bits) - 1;
+  }
+}
+
+Conversion conversion(const Type& from, const Type& to) noexcept {
+  if (&from == &to || from.kind == Kind::error || to.kind == Kind::error) return Conversion::same;
+  if (from.kind == Kind::enumeration || to.kind == Kind::enumeration) return Conversion::none;
+  if (is_elementary(from.kind) && is_elementary(to.kind)) return between(from.kind, to.kind);
+  if (from.kind == Kind::array && to.kind == Kind::array && from.range.count() == to.range.count() &&
+      from.range.low == to.range.low)
+    return conversion(*from.base, *to.base) == Conversion::same ? Conversion::same : Conversion::none;
+  return Conversion::none;
+}
+
+TypeTable::TypeTable() {
+  for (const Elementary& e : kElementary) {
+    Type* t = add(e.kind, e.name);
+    t->size = t->align = e.size;
+    by_kind_[static_cast<std::size_t>(e.kind)] = t;
+    if (e.kind >= Kind::boolean && e.kind <= Kind::character) named_[e.name] = t;
+  }
+  for (const auto& [name, kind] : kOtherNames) named_[name] = elementary(kind);
+  by_kind_[static_cast<std::size_t>(Kind::string)] = string(kDefaultStringCapacity);
+  named_["STRING"] = elementary(Kind::string);
+}
+
+const Type* TypeTable::string(std::uint32_t capacity) {
+  for (const Type& t : all_)
+    if (t.kind == Kind::string && t.size == capacity + 1) return &t;
+  Type* t = add(Kind::string,
+                capacity == kDefaultStringCapacity ? "STRING" : "STRING[" + std::to_string(capacity) + "]");
+  t->size = capacity + 1;
+  return t;
+}
+
+const Type* TypeTable::array(const Type* element, Dimension range) {
+  for (const Type& t : all_)
+    if (t.kind == Kind::array && t.base == element && t.range.low == range.low && t.range.high == range.high)
+      return &t;
+  Type* t = add(Kind::array, "ARRAY[" + std::to_string(range.low) + ".." + std::to_string(range.high) +
+                                 "] OF " + element->name);
+  t->base = element;
+  t->range = range;
+  t->align = element->align;
+  t->size = static_cast<std::uint32_t>(range.count()) * element->size;
+  if (!element->image.empty())
+    for (std::int64_t i = 0; i < range.count(); ++i)
+      t->image.insert(t->image.end(), element->image.begin(), element->image.end());
+  return t;
+}
+
+Type* TypeTable::add(Kind k, std::string name) {
+  Type& t = all_.emplace_back();
+  t.kind = k;
+  t.name = std::move(name);
+  return &t;
+}
+
+bool TypeTable::name(std::string_view name, const Type* type) {
+  return named_.emplace(key_of(name), type).second;
+}
+
+const Type* TypeTable::find(std::string_view name) const {
+  const auto at = named_.find(key_of(name));
+  return at == named_.end() ? nullptr : at->second;
+}
+
+const Type* TypeTable::common(const Type& a, const Type& b) const noexcept {
+  const auto fits = [](const Type& from, const Type& to) {
+    const Conversion c = conversion(from, to);
+    return c == Conversion::same || c == Conversion::widening;
+  };
+  if (a.kind == Kind::string && b.kind == Kind::string) return a.size >= b.size ? &a : &b;
+  if (fits(b, a)) return a.bounded ? a.base : &a;
+  if (fits(a, b)) return b.bounded ? b.base : &b;
+  static constexpr Kind order[] = {Kind::sint,  Kind::usint, Kind::int_, Kind::uint, Kind::dint,
+                                   Kind::udint, Kind::lint,  Kind::real, Kind::lreal};
+  for (const Kind k : order)
+    if (fits(a, *elementary(k)) && fits(b, *elementary(k))) return elementary(k);
+  return nullptr;
+}
+
+}  // namespace servogate::plc

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace servogate::plc {
+
+/// What a value is. `error` silences follow-up findings; the two untyped kinds are literals that have not met
+/// their context yet. Times are int64 nanoseconds, dates since 1970-01-01.
+enum class Kind : std::uint8_t {
+  error,
+  none,
+  boolean,
+  sint,
+  int_,
+  dint,
+  lint,
+  usint,
+  uint,
+  udint,
+  ulint,
+  byte,
+  word,
+  dword,
+  lword,
+  real,
+  lreal,
+  time,
+  date,
+  tod,
+  dt,
+  character,
+  string,
+  enumeration,
+  array,
+  structure,
+  block,
+  untyped_int,
+  untyped_real,
+};
+
+/// How the machine holds an elementary value.
+enum class Cell : std::uint8_t { i8, i16, i32, i64, u8, u16, u32, u64, f32, f64, text, blob };
+
+struct Type;
+
+/// A member of a structure or an instance variable of a function block.
+struct Field {
+  std::string name;
+  const Type* type = nullptr;
+  std::uint32_t offset = 0;
+  bool retain = false;
+  bool reference = false;  ///< VAR_IN_OUT: the cell holds the address of the variable
+};
+
+struct Dimension {
+  std::int64_t low = 0;
+  std::int64_t high = 0;
+  std::int64_t count() const noexcept { return high - low + 1; }
+};
+
+struct EnumValue {
+  std::string name;
+  std::int64_t value = 0;
+};
+
+/// A type. Identity is the address; the table that owns it lives as long as the compiled image.
+struct Type {
+  Kind kind = Kind::error;
+  std::string name;
+  std::uint32_t size = 0;
+  std::uint32_t align = 1;
+  bool bounded = false;  ///< subrange: low..high of `limits`
+  Dimension limits;
+  const Type* base = nullptr;  ///< element of an array, integer under an enumeration or subrange
+  Dimension range;             ///< of an array (several dimensions are arrays of arrays)
+  std::vector<Field> fields;   ///< of a structure or function block
+  std::vector<EnumValue> values;
+  std::int32_t block = -1;          ///< function block: index of its body
+  std::vector<std::uint8_t> image;  ///< initial value; empty: all zero
+
+  std::uint32_t capacity() const noexcept { return size - 1; }  ///< of a STRING, in characters
+  const Field* field(std::string_view key) const;
+  const EnumValue* value_named(std::string_view key) const;
+};
+
+/// Names are matched without case: this is the form they are stored under.
+std::string key_of(std::string_view name);
+bool same_name(std::string_view a, std::string_view b);
+
+bool is_signed(Kind k) noexcept;
+bool is_unsigned(Kind k) noexcept;
+inline bool is_integer(Kind k) noexcept { return is_signed(k) || is_unsigned(k); }
+bool is_bits(Kind k) noexcept;  ///< BYTE WORD DWORD LWORD
+bool is_real(Kind k) noexcept;
+bool is_temporal(Kind k) noexcept;  ///< TIME DATE TOD DT
+bool is_untyped(Kind k) noexcept;
+bool is_elementary(Kind k) noexcept;
+inline bool is_number(Kind k) noexcept { return is_integer(k) || is_real(k) || is_untyped(k); }
+
+/// Machine form of an elementary type; blob for arrays, structures and blocks.
+Cell cell_of(const Type& t) noexcept;
+std::uint32_t cell_size(Cell c) noexcept;
+/// Least and greatest value of an integer, bit string or enumeration base as the machine holds it.
+void integer_limits(Kind k, std::int64_t& low, std::uint64_t& high) noexcept;
+
+/// How a value of one type gets into a variable of another.
+enum class Conversion : std::uint8_t { same, widening, narrowing, none };
+Conversion conversion(const Type& from, const Type& to) noexcept;
+
+/// All types of a compilation.
+class TypeTable {
+ public:
+  TypeTable();
+  TypeTable(const TypeTable&) = delete;
+  TypeTable& operator=(const TypeTable&) = delete;
+
+  const Type* elementary(Kind k) const noexcept { return by_kind_[static_cast<std::size_t>(k)]; }
+  /// STRING[capacity], 1 to 254 characters.
+  const Type* string(std::uint32_t capacity);
+  const Type* array(const Type* element, Dimension range);
+  /// A new type that the caller fills; named types are found again by find().
+  Type* add(Kind k, std::string name);
+  /// Declares a name for a type; false when the name is taken.
+  bool name(std::string_view name, const Type* type);
+  const Type* find(std::string_view name) const;
+
+  /// The smallest elementary type into which both go without loss; null: there is none.
+  const Type* common(const Type& a, const Type& b) const noexcept;
+
+ private:
+  std::deque<Type> all_;
+  std::map<std::string, const Type*> named_;
+  const Type* by_kind_[static_cast<std::size_t>(Kind::untyped_real) + 1] = {};
+};
+
+inline constexpr std::uint32_t kDefaultStringCapacity = 80;
+inline constexpr std::uint32_t kMaxStringCapacity = 254;
+
+}  // namespace servogate::plc

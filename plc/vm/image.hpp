@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plc/ir/ir.hpp"
+#include "plc/vm/opcodes.hpp"
+
+namespace servogate::plc {
+
+/// A compiled program: code, initial memory, and what is needed to find and show variables. Immutable and
+/// shared between engines.
+struct Image {
+  struct Bounds {
+    std::int64_t low = 0, high = 0;
+    std::uint32_t stride = 0;
+    bool operator==(const Bounds&) const = default;
+  };
+  struct Task {
+    std::string name;
+    image::Nanoseconds interval = 0;
+    std::uint32_t entry = 0;
+    std::uint32_t length = 0;  ///< instructions of its body, charged at its start
+    std::int64_t single = -1;  ///< address of the BOOL whose rising edge starts it
+  };
+  struct Shared {
+    std::string name;
+    image::Place place;
+    const Type* type = nullptr;
+    std::uint32_t address = 0;
+    bool raw = false;
+    bool written = false;
+    bool initialised = false;
+    std::vector<std::uint8_t> initial;
+  };
+  struct Range {
+    std::uint32_t address = 0, size = 0;
+  };
+  /// A retained variable of elementary type.
+  struct RetainedCell {
+    std::string name;
+    const Type* type = nullptr;
+    std::uint32_t address = 0;
+    std::uint32_t offset = 0;  ///< in a snapshot
+  };
+
+  std::shared_ptr<const TypeTable> types;
+  std::vector<vm::Instruction> code;
+  std::vector<std::uint32_t> lines;  ///< parallel to code: file number << 24 | line
+  std::vector<Bounds> bounds;
+  std::vector<std::uint8_t> memory;
+  std::vector<Task> tasks;
+  std::vector<Shared> places;
+  std::vector<ir::Global> globals;
+  std::vector<ir::Global> programs;
+  std::vector<RetainedCell> retained;
+  std::uint32_t retain_bytes = 0;
+  std::vector<std::string> files;
+  std::int64_t budget = 0;
+  std::uint32_t k_bytes = 0, v_bytes = 0;  ///< least sizes of the packets
+};
+
+}  // namespace servogate::plc

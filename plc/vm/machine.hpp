@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "plc/engine.hpp"
+#include "plc/vm/image.hpp"
+#include "plc/vm/opcodes.hpp"
+
+namespace servogate::plc::vm {
+
+/// What a run needs beside the code: memory, time, the rest of the budget.
+struct Machine {
+  std::uint8_t* memory = nullptr;
+  const Image* image = nullptr;
+  std::int64_t now_ns = 0;
+  std::int64_t budget = 0;
+  const std::uint8_t* extra[2] = {nullptr, nullptr};  ///< third and fourth input of a native function
+  std::uint32_t at = 0;                               ///< instruction of a fault
+};
+
+/// Runs from `entry` to the return of that body. real-time safe.
+Fault execute(Machine& machine, std::uint32_t entry) noexcept;
+
+/// A function of the machine: reads a and b (and extra), writes d. real-time safe.
+using NativeFunction = Fault (*)(Machine& m, std::uint8_t* d, const std::uint8_t* a,
+                                 const std::uint8_t* b) noexcept;
+
+/// Numbers for Instruction::aux of Code::native.
+std::uint16_t convert_function(Cell from, Cell to) noexcept;
+std::uint16_t truncate_function(Cell from, Cell to) noexcept;
+std::uint16_t native_function(ir::Native n, Cell cell) noexcept;
+/// To and from text depend on the type, not only on its cell.
+std::uint16_t to_text_function(const Type& type) noexcept;
+std::uint16_t from_text_function(const Type& type) noexcept;
+std::uint16_t compare_text_function() noexcept;
+std::uint16_t pick_text_function(bool greatest) noexcept;
+NativeFunction native_at(std::uint16_t number) noexcept;
+
+}  // namespace servogate::plc::vm

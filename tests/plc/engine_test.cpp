@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plc/engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "plc/compile.hpp"
+#include "plc/run.hpp"
+#include "tests/plc/allocation_count.hpp"
+
+namespace servogate::plc {
+namespace {
+
+using image::Format;
+using image::Packet;
+using image::Writer;
+
+std::shared_ptr<const Image> build(const std::string& text, std::vector<image::Symbol> symbols = {},
+                                   Options options = {}) {
+  const CompileResult r = compile({{"t.st", text}}, std::move(symbols), options);
+  for (const text::Finding& f : r.findings)
+    EXPECT_EQ(f.severity, text::Severity::warning) << f.str(text::Language::english);
+  return r.image;
+}
+
+const std::vector<image::Symbol> kSymbols = {
+    {"bit_in", {Packet::a, Format::bl, 3, 1}, Writer::input, ""},
+    {"Panel.byte", {Packet::k, Format::by, 100, 1}, Writer::program, ""},
+    {"word", {Packet::k, Format::in, 60, 1}, Writer::plc, ""},
+    {"long", {Packet::k, Format::li, 40, 1}, Writer::plc, ""},
+    {"real", {Packet::k, Format::re, 50, 1}, Writer::plc, ""},
+    {"wide", {Packet::k, Format::lr, 30, 1}, Writer::plc, ""},
+    {"text", {Packet::k, Format::ch, 300, 6}, Writer::plc, ""},
+    {"bit_out", {Packet::a, Format::bl, 64, 1}, Writer::plc, ""},
+    {"never_written", {Packet::a, Format::bl, 65, 1}, Writer::plc, ""},
+};
+
+TEST(Engine, carries_every_format_of_a_place_in_and_out) {
+  Engine e(build(R"(PROGRAM Main
+VAR n : INT; t : STRING; END_VAR
+bit_out := bit_in AND NOT never_written;
+word := word + PANEL.BYTE + 1;
+long := long * 2;
+real := real / 2;
+wide := wide + 0.25;
+t := text;
+text := CONCAT(LEFT(text, 2), '!');
+n := LEN(t);
+END_PROGRAM)",
+                 kSymbols));
+  image::Packets p;
+  p.set_bit(kSymbols[0].place, true);
+  p.set_number(kSymbols[1].place, 200);
+  p.set_number(kSymbols[2].place, -5);
+  p.set_number(kSymbols[3].place, -70000);
+  p.set_number(kSymbols[4].place, 3);
+  p.set_number(kSymbols[5].place, 1.5);
+  p.set_characters(kSymbols[6].place, "abcd");
+  EXPECT_EQ(e.scan(p, 0).fault, Fault::none);
+  EXPECT_TRUE(p.bit(kSymbols[7].place));
+  EXPECT_EQ(p.number(kSymbols[2].place), 196);
+  EXPECT_EQ(p.number(kSymbols[3].place), -140000);
+  EXPECT_EQ(p.number(kSymbols[4].place), 1.5);
+  EXPECT_EQ(p.number(kSymbols[5].place), 1.75);
+  EXPECT_EQ(p.characters(kSymbols[6].place), "ab!   ");
+  EXPECT_EQ(e.read(*e.find("n")), "4");
+  EXPECT_EQ(e.read(*e.find("panel.byte")), "200");
+}
+
+TEST(Engine, leaves_neighbouring_bits_alone) {
+  Engine e(build("PROGRAM Main\nbit_out := TRUE;\nEND_PROGRAM", kSymbols));
+  image::Packets p;
+  p.data(Packet::a)[8] = 0xAA;
+  e.scan(p, 0);
+  EXPECT_EQ(p.data(Packet::a)[8], 0xAB);
+}
+
+TEST(Engine, drops_everything_the_program_writes_at_a_fault_until_it_is_started_again) {
+  Engine e(build(
+      "PROGRAM Main\nVAR d : INT := 1; END_VAR\nbit_out := TRUE;\nlong := 7;\nlong := 10 / d;\nEND_PROGRAM",
+      kSymbols));
+  image::Packets p;
+  e.scan(p, 0);
+  EXPECT_TRUE(p.bit(kSymbols[7].place));
+  EXPECT_TRUE(e.write(p, *e.find("Main.d"), "0"));
+  const ScanResult r = e.scan(p, 1);
+  EXPECT_EQ(r.fault, Fault::division_by_zero);
+  EXPECT_EQ(r.line, 5);
+  EXPECT_EQ(e.describe(r).str(text::Language::english),
+            "t.st:5:1: error: task cycle divided by zero [plc-fault-division]");
+  EXPECT_FALSE(p.bit(kSymbols[7].place));
+  EXPECT_EQ(p.number(kSymbols[3].place), 0);
+  p.set_bit(kSymbols[7].place, true);
+  EXPECT_EQ(e.scan(p, 2).fault, Fault::division_by_zero);
+  EXPECT_FALSE(p.bit(kSymbols[7].place)) << "held while the fault stands";
+  e.restart();
+  EXPECT_EQ(e.scan(p, 3).fault, Fault::none);
+  EXPECT_TRUE(p.bit(kSymbols[7].place));
+}
+
+TEST(Engine, stops_an_endless_loop_at_its_budget_and_names_task_and_line) {
+  Options options;
+  options.instruction_budget = 5000;
+  Engine e(build("PROGRAM Main\nVAR n : DINT; END_VAR\nWHILE TRUE DO\nn := n + 1;\nEND_WHILE;\nEND_PROGRAM",
+                 {}, options));
+  image::Packets p;
+  const ScanResult r = e.scan(p, 0);
+  EXPECT_EQ(r.fault, Fault::budget);
+  EXPECT_EQ(e.task_name(r.task), "cycle");
+  EXPECT_EQ(e.file_name(r.file), "t.st");
+  EXPECT_EQ(r.line, 3);
+  EXPECT_LE(e.number(*e.find("n")), 5000);
+  EXPECT_GT(e.number(*e.find("n")), 1000);
+}
+
+TEST(Engine, refuses_packets_smaller_than_it_was_compiled_for) {
+  Engine e(build("PROGRAM Main\nword := 1;\nEND_PROGRAM", kSymbols));
+  image::Packets p;
+  p.resize(64, 200);
+  EXPECT_EQ(e.scan(p, 0).fault, Fault::packet_size);
+}
+
+TEST(Engine, writes_by_name_until_logic_writes_again) {
+  Engine e(build(R"(TYPE C : (Red, Green); R : STRUCT a : ARRAY[1..3] OF INT; END_STRUCT; END_TYPE
+PROGRAM Main
+VAR c : C; r : R; s : STRING[5]; t : TIME; w : WORD; f : LREAL; k : INT; END_VAR
+k := 5;
+END_PROGRAM)"));
+  image::Packets p;
+  const auto put = [&](const char* name, const char* value) { return e.write(p, *e.find(name), value); };
+  EXPECT_TRUE(put("c", "green"));
+  EXPECT_TRUE(put("Main.R.A[2]", "-7"));
+  EXPECT_TRUE(put("s", "hello"));
+  EXPECT_TRUE(put("t", "T#1m"));
+  EXPECT_TRUE(put("w", "16#8001"));
+  EXPECT_TRUE(put("w.3", "TRUE"));
+  EXPECT_TRUE(put("f", "1e3"));
+  EXPECT_TRUE(put("k", "9"));
+  EXPECT_FALSE(put("s", "longer than five"));
+  EXPECT_FALSE(put("c", "Blue"));
+  EXPECT_FALSE(put("k", "40000"));
+  EXPECT_FALSE(put("k", "TRUE"));
+  EXPECT_FALSE(put("t", "5"));
+  EXPECT_FALSE(put("r", "1"));
+  EXPECT_EQ(e.find("Main.nothing"), std::nullopt);
+  EXPECT_EQ(e.find("r.a[4]"), std::nullopt);
+  EXPECT_EQ(e.find("k.16"), std::nullopt);
+  e.scan(p, 0);
+  EXPECT_EQ(e.read(*e.find("c")), "\"Green\"");
+  EXPECT_EQ(e.read(*e.find("r")), "{\"a\":[0,-7,0]}");
+  EXPECT_EQ(e.read(*e.find("s")), "\"hello\"");
+  EXPECT_EQ(e.read(*e.find("t")), "\"T#1m\"");
+  EXPECT_EQ(e.read(*e.find("w")), "32777");
+  EXPECT_EQ(e.number(*e.find("f")), 1000.0);
+  EXPECT_TRUE(std::isnan(e.number(*e.find("s"))));
+  EXPECT_EQ(e.read(*e.find("k")), "5");
+  EXPECT_TRUE(e.set_number(p, *e.find("r.a[3]"), 12));
+  EXPECT_FALSE(e.set_number(p, *e.find("r.a[3]"), 40000));
+  EXPECT_EQ(e.number(*e.find("r.a[3]")), 12);
+}
+
+TEST(Engine, forces_variables_and_places_against_logic_and_machine) {
+  Engine e(build(
+      "PROGRAM Main\nVAR n, seen : INT; END_VAR\nseen := n;\nn := n + 1;\nbit_out := bit_in;\nEND_PROGRAM",
+      kSymbols));
+  image::Packets p;
+  EXPECT_TRUE(e.force(*e.find("n"), "100"));
+  EXPECT_TRUE(e.force(*e.find("bit_in"), "TRUE"));
+  EXPECT_FALSE(e.force(*e.find("n"), "x"));
+  for (int i = 0; i < 3; ++i) e.scan(p, i);
+  EXPECT_EQ(e.read(*e.find("seen")), "100");
+  EXPECT_EQ(e.read(*e.find("n")), "100");
+  EXPECT_TRUE(p.bit(kSymbols[7].place));
+  EXPECT_EQ(e.forced(),
+            (std::vector<std::pair<std::string, std::string>>{{"Main.n", "100"}, {"bit_in", "TRUE"}}));
+  e.release(*e.find("n"));
+  e.scan(p, 3);
+  EXPECT_EQ(e.read(*e.find("n")), "101");
+  e.release_all();
+  e.scan(p, 4);
+  EXPECT_FALSE(p.bit(kSymbols[7].place));
+  EXPECT_TRUE(e.force(*e.find("bit_out"), "TRUE"));
+  e.scan(p, 5);
+  EXPECT_TRUE(p.bit(kSymbols[7].place)) << "a forced output reaches the packet";
+}
+
+TEST(Engine, keeps_retained_values_by_name_and_type_over_a_changed_program) {
+  Engine first(build(R"(VAR_GLOBAL RETAIN total : LREAL; END_VAR
+PROGRAM Main
+VAR RETAIN n : DINT; kind : INT; list : ARRAY[0..1] OF INT; name : STRING; when : TIME; END_VAR
+VAR lost : DINT; END_VAR
+n := n + 1; lost := n; list[1] := 5; name := 'it$'s'; kind := 3; total := 1.0 / 3; when := T#90s;
+END_PROGRAM)"));
+  image::Packets p;
+  for (int i = 0; i < 4; ++i) first.scan(p, i);
+  std::vector<std::uint8_t> snapshot(first.retain_bytes());
+  ASSERT_TRUE(first.snapshot_retained(snapshot));
+  EXPECT_FALSE(first.snapshot_retained(std::span(snapshot).first(3)));
+  const std::vector<Retained> kept = first.retained(snapshot);
+  EXPECT_EQ(kept, first.retained());
+  EXPECT_EQ(kept.size(), 7u);
+  Engine second(build(R"(VAR_GLOBAL RETAIN total : LREAL; END_VAR
+PROGRAM Main
+VAR fresh : INT; END_VAR
+VAR RETAIN kind : LREAL; name : STRING; n : DINT; when : TIME; list : ARRAY[0..1] OF INT; END_VAR
+fresh := 1;
+END_PROGRAM)"));
+  EXPECT_EQ(second.restore(kept), 6u) << "kind has another type now";
+  EXPECT_EQ(second.read(*second.find("n")), "4");
+  EXPECT_EQ(second.read(*second.find("name")), "\"it's\"");
+  EXPECT_EQ(second.read(*second.find("list")), "[0,5]");
+  EXPECT_EQ(second.read(*second.find("when")), "\"T#1m30s\"");
+  EXPECT_EQ(second.number(*second.find("total")), 1.0 / 3);
+  EXPECT_EQ(second.number(*second.find("kind")), 0);
+}
+
+TEST(Engine, scans_without_allocating) {
+  Engine e(build(R"(FUNCTION f : DINT VAR_INPUT x : DINT; END_VAR f := x * 2; END_FUNCTION
+PROGRAM Main
+VAR t : TON; c : CTU; s : STRING; a : ARRAY[0..9] OF LREAL; i : INT; r : LREAL; d : DINT; END_VAR
+t(IN := NOT t.Q, PT := T#5ms);
+c(CU := t.Q, PV := 10);
+FOR i := 0 TO 9 DO a[i] := SIN(a[i] + 0.1); END_FOR;
+s := CONCAT(INT_TO_STRING(i), LREAL_TO_STRING(a[3]), TIME_TO_STRING(t.ET));
+r := STRING_TO_LREAL(LREAL_TO_STRING(a[4]));
+d := f(f(d)) + LEN(s) + FIND(s, 'T#');
+bit_out := t.Q; text := s;
+END_PROGRAM)",
+                 kSymbols));
+  image::Packets p;
+  ASSERT_TRUE(e.force(*e.find("i"), "3"));
+  e.scan(p, 0);
+  const Handle h = *e.find("d");
+  const std::uint64_t before = allocations();
+  double sum = 0;
+  for (int i = 1; i < 1000; ++i) {
+    EXPECT_EQ(e.scan(p, i * image::kMillisecond).fault, Fault::none);
+    sum += e.number(h);
+  }
+  EXPECT_EQ(allocations(), before);
+  EXPECT_NE(sum, 0);
+  std::vector<int> probe(10);
+  EXPECT_GT(allocations(), before) << "the count counts";
+}
+
+TEST(Engine, faults_without_allocating) {
+  Engine e(build("PROGRAM Main\nVAR d : INT; END_VAR\nbit_out := 1 / d = 0;\nEND_PROGRAM", kSymbols));
+  image::Packets p;
+  const std::uint64_t before = allocations();
+  EXPECT_EQ(e.scan(p, 0).fault, Fault::division_by_zero);
+  EXPECT_EQ(e.scan(p, 1).fault, Fault::division_by_zero);
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST(Engine, runs_two_engines_of_one_image_apart) {
+  const auto image = build("PROGRAM Main\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM");
+  Engine a(image), b(image);
+  image::Packets p;
+  a.scan(p, 0);
+  a.scan(p, 1);
+  b.scan(p, 0);
+  EXPECT_EQ(a.number(*a.find("n")), 2);
+  EXPECT_EQ(b.number(*b.find("n")), 1);
+}
+
+TEST(Engine, resolves_bare_names_only_where_one_program_runs) {
+  const auto one = build("PROGRAM A\nVAR x : INT; END_VAR\nx := 1;\nEND_PROGRAM");
+  const auto two = build(
+      "PROGRAM A\nVAR x : INT; END_VAR\nx := 1;\nEND_PROGRAM\nPROGRAM B\nVAR x : INT; END_VAR\nx := "
+      "2;\nEND_PROGRAM");
+  EXPECT_TRUE(Engine(one).find("X"));
+  EXPECT_FALSE(Engine(two).find("x"));
+  EXPECT_TRUE(Engine(two).find("b.X"));
+}
+
+TEST(Run, prints_one_object_a_cycle_as_requested_and_takes_sets_at_their_cycle) {
+  RunRequest r;
+  r.files = {
+      {"a.st",
+       "PROGRAM Main\nVAR a, b : BOOL; t : TON; END_VAR\nt(IN := a, PT := T#20ms);\nb := t.Q;\nEND_PROGRAM"}};
+  r.cycles = 4;
+  r.prints = {"MAIN.b", "t.ET", "a"};
+  RunSet set;
+  ASSERT_TRUE(parse_set("a=TRUE@2", set));
+  r.sets = {set};
+  std::vector<std::string> lines;
+  const RunResult out = run(r, [&](std::string_view l) { lines.emplace_back(l); });
+  EXPECT_EQ(out.end, RunResult::End::done);
+  EXPECT_EQ(lines,
+            (std::vector<std::string>{R"({"cycle":1,"values":{"MAIN.b":false,"t.ET":"T#0ms","a":false}})",
+                                      R"({"cycle":2,"values":{"MAIN.b":false,"t.ET":"T#0ms","a":true}})",
+                                      R"({"cycle":3,"values":{"MAIN.b":false,"t.ET":"T#10ms","a":true}})",
+                                      R"({"cycle":4,"values":{"MAIN.b":true,"t.ET":"T#20ms","a":true}})"}));
+}
+
+TEST(Run, refuses_names_values_and_cycles_that_cannot_be) {
+  RunRequest r;
+  r.files = {{"a.st", "PROGRAM Main\nVAR a : BOOL; END_VAR\na := a;\nEND_PROGRAM"}};
+  r.cycles = 2;
+  r.sets = {{"x", "1", 1}, {"a", "7", 1}, {"a", "TRUE", 3}};
+  r.prints = {"y"};
+  const RunResult out = run(r, [](std::string_view) { FAIL() << "nothing runs"; });
+  EXPECT_EQ(out.end, RunResult::End::wrong_use);
+  std::vector<std::string> said;
+  for (const text::Finding& f : out.findings) said.push_back(f.str(text::Language::english));
+  EXPECT_EQ(said,
+            (std::vector<std::string>{"plc run: error: there is no variable 'x' [plc-run-name]",
+                                      "plc run: error: '7' is no value for 'a' of type BOOL [plc-run-value]",
+                                      "plc run: error: cycle 3 is outside 1..2 [plc-run-cycle]",
+                                      "plc run: error: there is no variable 'y' [plc-run-name]"}));
+}
+
+TEST(Run, takes_a_set_apart) {
+  RunSet s;
+  EXPECT_TRUE(parse_set("Main.text=a@b@12", s));
+  EXPECT_EQ(s.name, "Main.text");
+  EXPECT_EQ(s.value, "a@b");
+  EXPECT_EQ(s.cycle, 12);
+  EXPECT_TRUE(parse_set("m=x@home", s));
+  EXPECT_EQ(s.value, "x@home");
+  EXPECT_EQ(s.cycle, 1);
+  EXPECT_FALSE(parse_set("=5", s));
+  EXPECT_FALSE(parse_set("name", s));
+}
+
+TEST(Compile, reads_several_files_and_names_the_right_one) {
+  const CompileResult r =
+      compile({{"one.st", "FUNCTION f : INT VAR_INPUT x : INT; END_VAR f := x; END_FUNCTION"},
+               {"two.st", "PROGRAM Main\nVAR a : INT; END_VAR\na := f(TRUE);\nEND_PROGRAM"}},
+              {});
+  ASSERT_EQ(r.findings.size(), 1u);
+  EXPECT_EQ(r.findings[0].str(text::Language::english),
+            "two.st:3:8: error: expected INT, found BOOL; write BOOL_TO_INT [plc-type]");
+  EXPECT_EQ(r.findings[0].str(text::Language::russian),
+            "two.st:3:8: error: ожидается INT, встречено BOOL; пишите BOOL_TO_INT [plc-type]");
+}
+
+}  // namespace
+}  // namespace servogate::plc

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "plc/compile.hpp"
+#include "tests/plc/data_files.hpp"
+
+namespace servogate::plc {
+namespace {
+
+/// The machine the wrong programs are written for.
+std::vector<image::Symbol> symbols() {
+  std::vector<image::Symbol> out = image::interface_symbols(1, {"X"}, 1);
+  const auto point = [&](const char* name, std::uint32_t bit, image::Writer w) {
+    out.push_back({name, {image::Packet::a, image::Format::bl, bit, 1}, w, ""});
+  };
+  point("door_closed", 16, image::Writer::input);
+  point("lamp", 64, image::Writer::plc);
+  return out;
+}
+
+class WrongPrograms : public testing::TestWithParam<std::string> {};
+
+/// Behind `---`: every finding, as printed, in order, without the file's name. Nothing else may be said.
+TEST_P(WrongPrograms, get_exactly_these_messages) {
+  for (const DataCase& c : cases_of(GetParam())) {
+    SCOPED_TRACE(stem(GetParam()) + ":" + std::to_string(c.line) + " " + c.title);
+    const CompileResult r = compile({{"a.st", c.source}}, symbols());
+    std::vector<std::string> said;
+    for (const text::Finding& f : r.findings) said.push_back(f.str(text::Language::english).substr(5));
+    EXPECT_EQ(said, c.rest);
+    ASSERT_FALSE(c.rest.empty());
+    const bool errors = std::any_of(c.rest.begin(), c.rest.end(), [](const std::string& s) {
+      return s.find(": error: ") != std::string::npos;
+    });
+    EXPECT_EQ(r.ok(), !errors);
+    for (const text::Finding& f : r.findings)
+      EXPECT_NE(f.str(text::Language::russian), f.str(text::Language::english)) << "no Russian text";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, WrongPrograms, testing::ValuesIn(data_files("wrong", ".wrong")),
+                         [](const auto& i) { return stem(i.param); });
+
+}  // namespace
+}  // namespace servogate::plc
