@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/cli/messages.hpp"
+
+#include <cstdio>
+
+namespace servogate::gateway {
+
+const text::Entry kCannotRead{"cli.cannot-read", "cannot read the file: {0}", "файл не читается: {0}"};
+const text::Entry kUnknownDialect{"cli.unknown-dialect", "dialect '{0}' is not known; known: {1}",
+                                  "диалект «{0}» неизвестен; известны: {1}"};
+const text::Entry kVirtualNeedsMock{
+    "cli.virtual-needs-mock", "'{0}' is a real bus: virtual time is for mock buses only; use --realtime",
+    "«{0}» — настоящая шина: виртуальное время только для имитаций; нужен --realtime"};
+const text::Entry kStartNowForbidden{
+    "cli.start-now-forbidden",
+    "--start-now is not allowed by this machine file ([run] allow_start_now = true allows it)",
+    "--start-now не разрешён файлом станка (разрешает [run] allow_start_now = true)"};
+const text::Entry kLeavesTravel{"cli.leaves-travel", "{0} moves from {1} to {2}; its travel is {3} to {4}",
+                                "{0} движется от {1} до {2}; ход оси от {3} до {4}"};
+
+int print_findings(const std::vector<text::Finding>& findings) {
+  int errors = 0;
+  for (const text::Finding& f : findings) {
+    std::fprintf(stderr, "%s\n", f.str().c_str());
+    errors += f.severity == text::Severity::error ? 1 : 0;
+  }
+  return errors;
+}
+
+void complain(const text::Entry& entry, const std::vector<std::string>& arguments) {
+  std::fprintf(stderr, "servogate: %s [%s]\n", text::render(entry, arguments, text::user_language()).c_str(),
+               std::string(entry.id).c_str());
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "firmware_if/text/finding.hpp"
+
+namespace servogate::gateway {
+
+/// Sentences of the command line itself.
+extern const text::Entry kCannotRead;        ///< {0} system's words
+extern const text::Entry kUnknownDialect;    ///< {0} name, {1} known ones
+extern const text::Entry kVirtualNeedsMock;  ///< {0} bus
+extern const text::Entry kStartNowForbidden;
+extern const text::Entry kLeavesTravel;  ///< {0} axis, {1} from, {2} to, {3} travel min, {4} travel max
+
+/// Prints findings, one a line, on stderr; returns the number of errors.
+int print_findings(const std::vector<text::Finding>& findings);
+/// Prints one sentence as `servogate: text [code]` on stderr.
+void complain(const text::Entry& entry, const std::vector<std::string>& arguments);
+
+}  // namespace servogate::gateway

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace servogate::gateway {
+
+/// Exit codes of every command: a contract (docs/command-line.md).
+enum ExitCode : int { kDone = 0, kAlarm = 1, kWrongUse = 2, kStopped = 3, kInfrastructure = 4 };
+
+/// How time passes.
+enum class ClockKind { unset, virtual_time, realtime, realtime_best_effort };
+
+struct RunOptions {
+  std::string machine, program, dialect;
+  ClockKind clock = ClockKind::unset;
+  std::string trace, report, html, record, state;
+  double override_percent = 100.0;
+  bool quiet = false;
+  bool start_now = false;
+  bool json = false;
+};
+
+struct UpOptions {
+  std::string machine, state, socket;
+  ClockKind clock = ClockKind::unset;
+  double speed = 1.0;
+};
+
+/// A client of a running control: `servogate status`, `home X Z`, `jog X +1mm` ...
+struct ClientOptions {
+  std::string command;
+  std::vector<std::string> arguments;
+  std::string socket;
+  bool json = false;
+  bool wait = false;  ///< until what was begun has ended
+};
+
+struct CheckOptions {
+  std::string machine, dialect;
+  std::vector<std::string> programs;
+  bool json = false;
+};
+
+struct CanonOptions {
+  std::string machine, program, dialect;
+};
+
+struct ReplayOptions {
+  std::string record, trace, against;
+  bool json = false;
+};
+
+struct PlcRunOptions {
+  std::vector<std::string> files;
+  int cycles = 1;
+  double cycle_ms = 1.0;
+  std::vector<std::string> sets, prints;
+};
+
+struct PlcCheckOptions {
+  std::vector<std::string> files;
+  std::string machine;
+};
+
+/// The parsed command line: the name of the command and its options.
+struct CommandLine {
+  std::string command;
+  RunOptions run;
+  UpOptions up;
+  ClientOptions client;
+  CheckOptions check;
+  CanonOptions canon;
+  ReplayOptions replay;
+  PlcRunOptions plc_run;
+  PlcCheckOptions plc_check;
+  bool json = false;  ///< of `version`
+  std::string text;   ///< the whole line, for the report
+};
+
+/// Reads the command line. nullopt: help or an error was printed, `exit_code` tells which.
+std::optional<CommandLine> parse_command_line(int argc, char** argv, int& exit_code);
+
+}  // namespace servogate::gateway

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/program/canon.hpp"
+
+#include <cstdio>
+
+#include "gateway/command/commands.hpp"
+#include "gateway/compose/program_file.hpp"
+
+namespace servogate::gateway::command {
+
+int canon(const CanonOptions& options) {
+  const machine::LoadResult loaded = machine::load(options.machine);
+  if (print_findings(loaded.findings) > 0) return kWrongUse;
+  ProgramFile program;
+  if (const int code = open_program(loaded.machine, options.program, options.dialect, program); code != kDone)
+    return code;
+  program::Interpreter interpreter(program.dialect, program.model, {}, options.program, program.text,
+                                   program.loader, {});
+  const auto error = program::write_canon(interpreter, program.model, [](std::string_view line) {
+    std::fwrite(line.data(), 1, line.size(), stdout);
+    std::fputc('\n', stdout);
+  });
+  std::fflush(stdout);
+  if (!error) return kDone;
+  print_findings({*error});
+  return kAlarm;
+}
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "gateway/cli/options.hpp"
+
+/// The commands of `servogate`; each returns its exit code.
+namespace servogate::gateway::command {
+
+int version(bool json);
+int run(const RunOptions& options, const std::string& command_line);
+int up(const UpOptions& options, const std::string& command_line);
+int client(const ClientOptions& options);
+int check(const CheckOptions& options);
+int canon(const CanonOptions& options);
+int replay(const ReplayOptions& options);
+int plc_run(const PlcRunOptions& options);
+int plc_check(const PlcCheckOptions& options);
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstdio>
+#include <fstream>
+
+#include "gateway/command/commands.hpp"
+#include "gateway/compose/program_file.hpp"
+#include "gateway/run/record_file.hpp"
+#include "gateway/run/session.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+const text::Entry kNoRecord{"replay.no-record", "cannot read the record: {0}", "запись не читается: {0}"};
+const text::Entry kDamaged{"replay.damaged", "the record is damaged after cycle {0}",
+                           "запись повреждена после цикла {0}"};
+const text::Entry kChanged{"replay.changed",
+                           "{0} has changed since the record was made; the replay may differ",
+                           "{0} изменён после записи; повтор может отличаться"};
+const text::Entry kSame{"replay.same", "{0} cycles replayed, the trace is equal byte by byte",
+                        "повторено циклов: {0}, трасса совпадает побайтно"};
+const text::Entry kReplayed{"replay.done", "{0} cycles replayed", "повторено циклов: {0}"};
+const text::Entry kNoTrace{"replay.no-trace", "cannot read {0}", "не читается {0}"};
+const text::Entry kDiffers{"replay.differs", "line {0} of the trace differs", "строка {0} трассы отличается"};
+
+/// First line in which two files differ, 0: none.
+long first_difference(const std::string& a, const std::string& b) {
+  std::ifstream fa(a, std::ios::binary), fb(b, std::ios::binary);
+  std::string la, lb;
+  for (long line = 1;; ++line) {
+    const bool ga = static_cast<bool>(std::getline(fa, la)), gb = static_cast<bool>(std::getline(fb, lb));
+    if (ga != gb || (ga && la != lb) || fa.eof() != fb.eof()) return line;
+    if (!ga) return 0;
+  }
+}
+
+/// Reads ahead until everything is published that the cycle saw at this point of the record, or nothing more
+/// can be: what a reader had still published while its program was already given up has no meaning.
+void catch_up(Control& control, const cycle::CycleInputs& inputs) {
+  const int processes = control.machine().control.processes;
+  for (;;) {
+    const bool more = control.read_ahead();
+    bool enough = true;
+    for (int p = 0; p < processes; ++p) {
+      std::array<std::uint64_t, cycle::ProcessInCycle::kCrossingsEach> filled{};
+      control.process(p).published(filled);
+      for (std::size_t i = 0; i < filled.size(); ++i)
+        enough = enough && filled[i] >= inputs.visible[static_cast<std::size_t>(p) * filled.size() + i];
+    }
+    if (enough || !more) return;
+  }
+}
+
+}  // namespace
+
+int replay(const ReplayOptions& options) {
+  RecordReader record;
+  std::string error;
+  if (!record.open(options.record, error)) {
+    complain(kNoRecord, {error});
+    return kWrongUse;
+  }
+  if (!options.against.empty() && !std::ifstream(options.against)) {
+    complain(kNoTrace, {options.against});
+    return kWrongUse;
+  }
+  const RecordHeader& header = record.header();
+  const machine::LoadResult loaded = machine::load(header.machine);
+  if (print_findings(loaded.findings) > 0) return kWrongUse;
+  if (report::identify(header.machine).sha256 != header.machine_sha256) complain(kChanged, {header.machine});
+  ProgramFile program;
+  if (!header.program.empty()) {
+    if (const int code = open_program(loaded.machine, header.program, header.dialect, program); code != kDone)
+      return code;
+    if (report::identify(header.program).sha256 != header.program_sha256)
+      complain(kChanged, {header.program});
+  }
+  std::vector<text::Finding> findings;
+  const std::unique_ptr<Control> control = Control::compose(loaded, findings, &record);
+  if (print_findings(findings) > 0 || control == nullptr) return kWrongUse;
+  if (!header.program.empty())
+    control->process(0).load([&](const program::Position& start) {
+      return program::Interpreter(program.dialect, program.model, header.state.tables, header.program,
+                                  program.text, program.loader, start);
+    });
+  const std::string trace = !options.trace.empty()    ? options.trace
+                            : options.against.empty() ? ""
+                                                      : options.against + ".replay";
+  Session session(*control, {trace, {}, {}}, false);
+  while (const cycle::CycleInputs* next = record.next()) {
+    catch_up(*control, *next);
+    session.wait_for_room();
+    if (!control->cycle().step()) break;
+    session.after_cycle(0);
+  }
+  if (const std::string problem = session.close(); !problem.empty()) {
+    std::fprintf(stderr, "servogate: %s: %s\n", trace.c_str(), problem.c_str());
+    return kInfrastructure;
+  }
+  const std::string cycles = std::to_string(control->cycle().count());
+  if (record.damaged()) complain(kDamaged, {cycles});
+  long difference = 0;
+  if (!options.against.empty()) {
+    difference = first_difference(options.against, trace);
+    if (options.trace.empty()) std::remove(trace.c_str());
+  }
+  if (options.json)
+    std::printf("{\"schema\":1,\"cycles\":%s,\"damaged\":%s,\"first_difference\":%ld}\n", cycles.c_str(),
+                record.damaged() ? "true" : "false", difference);
+  else if (difference == 0)
+    std::fprintf(stderr, "%s\n",
+                 text::render(options.against.empty() ? kReplayed : kSame, std::vector<std::string>{cycles},
+                              text::user_language())
+                     .c_str());
+  if (difference != 0) complain(kDiffers, {std::to_string(difference)});
+  return difference != 0 || record.damaged() ? kAlarm : kDone;
+}
+
+}  // namespace servogate::gateway::command

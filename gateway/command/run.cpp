@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+
+#include "gateway/command/commands.hpp"
+#include "gateway/compose/program_file.hpp"
+#include "gateway/machine/state.hpp"
+#include "gateway/run/operator_script.hpp"
+#include "gateway/run/realtime_loop.hpp"
+#include "gateway/run/record_file.hpp"
+#include "gateway/run/session.hpp"
+#include "kernel/program/check.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+const text::Entry kRefused{"run.refused", "the control refuses: {0}", "управление отказывает: {0}"};
+const text::Entry kNotReady{"run.not-ready", "these axes did not become ready: {0}",
+                            "эти оси не пришли в готовность: {0}"};
+const text::Entry kNoRights{
+    "run.no-realtime", "real time was refused: {0}: {1}. Grant it with: {2}  (or use --realtime=best-effort)",
+    "нет реального времени: {0}: {1}. Разрешить: {2}  (или --realtime=best-effort)"};
+const text::Entry kCannotWrite{"run.cannot-write", "cannot write {0}: {1}", "не удаётся записать {0}: {1}"};
+const text::Entry kAlarmLine{"run.alarm", "alarm {0}: {1}", "авария {0}: {1}"};
+const text::Entry kDone1{"run.done", "done: {0} blocks in {1} s of machine time",
+                         "готово: кадров {0}, машинное время {1} с"};
+const text::Entry kProgress{"run.progress", "{0} of {1} blocks, {2} s, about {3} s left",
+                            "кадров {0} из {1}, {2} с, осталось около {3} с"};
+
+std::atomic<int> interrupts{0};
+void on_interrupt(int) { interrupts.fetch_add(1); }
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+std::string say(const text::Entry& entry, const std::vector<std::string>& arguments) {
+  return text::render(entry, arguments, text::user_language());
+}
+
+/// One run from the command line: everything between "machine loaded" and the exit code.
+class Run {
+ public:
+  Run(const RunOptions& options, const machine::LoadResult& loaded) : options_(options), loaded_(loaded) {}
+
+  int prepare();
+  int execute(const std::string& command_line);
+
+ private:
+  bool realtime() const { return options_.clock != ClockKind::virtual_time; }
+  OperatorScript::Wishes wishes() const;
+  bool virtual_loop(OperatorScript& script, Session& session);
+  bool realtime_loop(OperatorScript& script, Session& session);
+  void take_answers(OperatorScript& script);
+  void progress(const image::ProcessImage& image, bool last);
+  int finish(const OperatorScript& script, Session& session, const std::string& command_line);
+  void explain(const OperatorScript& script, const report::Report& report);
+  bool save_state();
+
+  const RunOptions& options_;
+  const machine::LoadResult& loaded_;
+  ProgramFile program_;
+  machine::MachineState state_;
+  std::unique_ptr<Control> control_;
+  std::unique_ptr<RecordWriter> record_;
+  double estimate_s_ = 0.0;
+  long long estimate_blocks_ = 0;
+  Clock::time_point begin_;
+  double wall_s_ = 0.0;
+  double last_progress_ = -1.0;
+  std::int64_t overruns_ = 0;
+  bool infrastructure_ = false;
+};
+
+int Run::prepare() {
+  const machine::MachineConfig& m = loaded_.machine;
+  if (!options_.state.empty()) {
+    const machine::StateDirectory::Loaded kept = machine::StateDirectory(options_.state).load();
+    if (print_findings(kept.findings) > 0) return kWrongUse;
+    state_ = kept.state;
+  }
+  if (!options_.program.empty()) {
+    if (const int code = open_program(m, options_.program, options_.dialect, program_); code != kDone)
+      return code;
+    const program::CheckReport check =
+        program::check_program(program_.dialect, program_.model, state_.tables, options_.program,
+                               program_.text, program_.loader, {});
+    const program::Interpreter reader(program_.dialect, program_.model, state_.tables, options_.program,
+                                      program_.text, program_.loader, {});
+    if (print_findings(reader.findings()) > 0) return kAlarm;
+    estimate_s_ = check.feed_seconds + check.rapid_seconds + check.dwell_seconds;
+    estimate_blocks_ = check.executed;
+  }
+  std::vector<text::Finding> findings;
+  control_ = Control::compose(loaded_, findings);
+  const int errors = print_findings(findings);
+  if (control_ == nullptr) return errors > 0 ? kWrongUse : kInfrastructure;
+  if (!options_.program.empty())
+    control_->process(0).load([this](const program::Position& start) {
+      return program::Interpreter(program_.dialect, program_.model, state_.tables, options_.program,
+                                  program_.text, program_.loader, start);
+    });
+  return kDone;
+}
+
+OperatorScript::Wishes Run::wishes() const {
+  OperatorScript::Wishes w;
+  w.program = !options_.program.empty();
+  w.override_ratio = options_.override_percent / 100.0;
+  w.wait_for_start = !loaded_.machine.all_mock() && !options_.start_now;
+  w.letters = loaded_.machine.letters();
+  for (const machine::AxisConfig& a : loaded_.machine.axes)
+    w.needs_homing.push_back(a.home.method != machine::HomingMethod::none);
+  return w;
+}
+
+int Run::execute(const std::string& command_line) {
+  if (!options_.record.empty()) {
+    RecordHeader header;
+    header.machine = std::filesystem::absolute(options_.machine).string();
+    header.machine_sha256 = report::identify(options_.machine).sha256;
+    if (!options_.program.empty()) {
+      header.program = std::filesystem::absolute(options_.program).string();
+      header.program_sha256 = report::identify(options_.program).sha256;
+    }
+    header.dialect = program_.dialect;
+    header.state = state_;
+    header.period_ns = loaded_.machine.cycle_ns();
+    record_ = std::make_unique<RecordWriter>(options_.record, header);
+    control_->cycle().attach(record_.get());
+  }
+  Session session(*control_, {options_.trace, options_.report, options_.html}, realtime());
+  OperatorScript script(wishes(), [this](const image::Request& r) { return control_->cycle().post(r); });
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  control_->world().close_operator_points();
+  begin_ = Clock::now();
+  const bool ran = realtime() ? realtime_loop(script, session) : virtual_loop(script, session);
+  if (!ran) return kInfrastructure;
+  wall_s_ = seconds_since(begin_);
+  return finish(script, session, command_line);
+}
+
+void Run::take_answers(OperatorScript& script) {
+  image::Answer answer;
+  while (control_->cycle().take_answer(answer)) script.take(answer);
+  for (static int seen = 0; seen < interrupts.load(); ++seen) script.interrupt();
+}
+
+bool Run::virtual_loop(OperatorScript& script, Session& session) {
+  while (!script.done()) {
+    session.wait_for_room();
+    if (record_ != nullptr) record_->wait_for_room();
+    control_->step();
+    session.after_cycle(0);
+    take_answers(script);
+    script.poll(control_->cycle().image());
+    if (control_->cycle().count() % 256 == 0) progress(control_->cycle().image(), false);
+  }
+  return true;
+}
+
+bool Run::realtime_loop(OperatorScript& script, Session& session) {
+  cycle::RealtimeSettings settings;
+  settings.priority = loaded_.machine.realtime.priority;
+  settings.cpu = loaded_.machine.realtime.cpu;
+  settings.best_effort = options_.clock == ClockKind::realtime_best_effort;
+  control_->cycle().publish_every(5);
+  RealtimeLoop loop(*control_, settings,
+                    [&session](Control&, image::Nanoseconds late) noexcept { session.after_cycle(late); });
+  const bool started = loop.start();
+  for (const cycle::RealtimeRefusal& r : loop.refusals())
+    if (!started ? r.needed : !options_.quiet) complain(kNoRights, {r.what, r.cause, r.remedy});
+  if (!started) return false;
+  auto image = std::make_unique<image::ProcessImage>();
+  while (!script.done()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    control_->cycle().read(*image);
+    take_answers(script);
+    script.poll(*image);
+    progress(*image, false);
+  }
+  loop.stop();
+  overruns_ = loop.overruns();
+  return true;
+}
+
+void Run::progress(const image::ProcessImage& image, bool last) {
+  if (options_.quiet || estimate_blocks_ == 0) return;
+  const double wall = seconds_since(begin_);
+  if (!last && wall - last_progress_ < 0.25) return;
+  const std::unique_lock reading(control_->reading(), std::try_to_lock);
+  if (!reading.owns_lock()) return;  // the reader is at work; the next call shows it
+  last_progress_ = wall;
+  const long long done = control_->process(0).feeder().executed();
+  const double part = static_cast<double>(done) / static_cast<double>(estimate_blocks_);
+  const bool terminal = isatty(2) != 0;
+  if (!terminal && !last) return;
+  const std::string line = say(kProgress, {std::to_string(done), std::to_string(estimate_blocks_),
+                                           text::number(image.now.seconds(), 1),
+                                           text::number(std::max(0.0, estimate_s_ * (1.0 - part)), 0)});
+  std::fprintf(stderr, terminal ? "\r%s   " : "%s\n", line.c_str());
+  if (last && terminal) std::fputc('\n', stderr);
+}
+
+int Run::finish(const OperatorScript& script, Session& session, const std::string& command_line) {
+  const auto written = [this](const std::string& path, const std::string& error) {
+    if (error.empty()) return;
+    complain(kCannotWrite, {path, error});
+    infrastructure_ = true;
+  };
+  progress(control_->cycle().image(), true);
+  written(options_.trace, session.close());
+  if (record_ != nullptr) written(options_.record, record_->close());
+  report::Report report = session.make_report(wall_s_, overruns_);
+  report.finished = script.outcome() == OperatorScript::Outcome::finished;
+  report::Provenance& p = report.provenance;
+  report::fill_host(p);
+  p.machine = report::identify(options_.machine);
+  if (!options_.program.empty()) p.program = report::identify(options_.program);
+  for (const std::string& source : loaded_.machine.plc.sources)
+    p.plc.push_back(report::identify(loaded_.machine.resolve(source)));
+  p.dialect = program_.dialect;
+  p.clock = options_.clock == ClockKind::virtual_time ? "virtual"
+            : options_.clock == ClockKind::realtime   ? "realtime"
+                                                      : "realtime=best-effort";
+  p.command_line = {command_line};
+  if (!options_.report.empty())
+    written(options_.report, report::write_file(options_.report, report::to_json(report)));
+  if (!options_.html.empty()) {
+    report::HtmlOptions html;
+    html.program_name = std::filesystem::path(options_.program).filename().string();
+    html.title = loaded_.machine.name + (html.program_name.empty() ? "" : " · " + html.program_name);
+    html.program_text = program_.text;
+    html.language = text::user_language();
+    written(options_.html,
+            report::write_file(options_.html, report::to_html(report, *session.picture(), html)));
+  }
+  if (options_.json) std::fputs(report::to_json(report).c_str(), stdout);
+  explain(script, report);
+  if (!options_.state.empty() && !save_state()) infrastructure_ = true;
+  if (infrastructure_) return kInfrastructure;
+  switch (script.outcome()) {
+    case OperatorScript::Outcome::finished:
+      return kDone;
+    case OperatorScript::Outcome::stopped:
+      return kStopped;
+    default:
+      return kAlarm;
+  }
+}
+
+void Run::explain(const OperatorScript& script, const report::Report& report) {
+  for (const report::AlarmEntry& a : report.alarms)
+    std::fprintf(stderr, "%s\n  %s\n", say(kAlarmLine, {std::to_string(a.record.number), a.text}).c_str(),
+                 a.remedy.c_str());
+  print_findings(control_->process(0).feeder().findings());
+  if (script.outcome() == OperatorScript::Outcome::refused)
+    complain(kRefused, {cycle::render(script.refusal(), loaded_.machine.letters(), text::user_language())});
+  if (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()) {
+    std::string axes;
+    for (const std::string& a : script.waiting_for()) axes += (axes.empty() ? "" : ", ") + a;
+    complain(kNotReady, {axes});
+  }
+  if (script.outcome() == OperatorScript::Outcome::finished && !options_.quiet)
+    std::fprintf(stderr, "%s\n",
+                 say(kDone1, {std::to_string(report.blocks), text::number(report.time_s, 3)}).c_str());
+}
+
+bool Run::save_state() {
+  if (const program::Tables* tables = control_->process(0).feeder().tables(); tables != nullptr)
+    state_.tables = *tables;
+  const image::ProcessImage& image = control_->cycle().image();
+  const auto axes = control_->cycle().axes();
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    machine::HomingRecord& record = state_.homing[loaded_.machine.axes[a].letter];
+    record.valid = image.axes[a].homed;
+    record.offset_counts = axes[a].reference_counts();
+  }
+  state_.tool_in_spindle = image.processes[0].tool;
+  std::string error;
+  if (machine::StateDirectory(options_.state).save_all(state_, error)) return true;
+  complain(kCannotWrite, {options_.state, error});
+  return false;
+}
+
+}  // namespace
+
+int run(const RunOptions& given, const std::string& command_line) {
+  RunOptions options = given;
+  const machine::LoadResult loaded = machine::load(options.machine);
+  if (print_findings(loaded.findings) > 0) return kWrongUse;
+  if (options.clock == ClockKind::unset)
+    options.clock = loaded.machine.all_mock() ? ClockKind::virtual_time : ClockKind::realtime;
+  if (options.clock == ClockKind::virtual_time)
+    for (const machine::BusConfig& bus : loaded.machine.buses)
+      if (!bus.mock()) {
+        complain(kVirtualNeedsMock, {bus.url});
+        return kWrongUse;
+      }
+  if (options.start_now && !loaded.machine.all_mock() && !loaded.machine.run.allow_start_now) {
+    complain(kStartNowForbidden, {});
+    return kWrongUse;
+  }
+  Run run(options, loaded);
+  if (const int code = run.prepare(); code != kDone) return code;
+  return run.execute(command_line);
+}
+
+}  // namespace servogate::gateway::command

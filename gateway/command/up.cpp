@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include "gateway/cli/messages.hpp"
+#include "gateway/command/commands.hpp"
+#include "gateway/machine/state.hpp"
+#include "gateway/run/realtime_loop.hpp"
+#include "gateway/server/socket_path.hpp"
+#include "gateway/server/socket_server.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+const text::Entry kListening{"up.listening", "{0} is up; control socket {1}",
+                             "{0} работает; сокет управления {1}"};
+const text::Entry kNoSocket{"up.no-socket", "cannot listen on {0}: {1}", "не удаётся слушать {0}: {1}"};
+const text::Entry kStateLost{"up.state-not-saved", "the state was not saved: {0}",
+                             "состояние не сохранено: {0}"};
+const text::Entry kNoRights{
+    "up.no-realtime", "real time was refused: {0}: {1}. Grant it with: {2}  (or use --realtime=best-effort)",
+    "нет реального времени: {0}: {1}. Разрешить: {2}  (или --realtime=best-effort)"};
+
+std::atomic<bool> ended{false};
+void on_end(int) { ended = true; }
+
+/// Virtual time paced against the wall clock on a thread of its own.
+class VirtualLoop {
+ public:
+  VirtualLoop(Control& control, double speed)
+      : control_(control), speed_(speed), thread_([this] { run(); }) {}
+  ~VirtualLoop() {
+    stop_ = true;
+    thread_.join();
+  }
+
+ private:
+  void run() {
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point begin = Clock::now();
+    const double period_s = static_cast<double>(control_.cycle().period_ns()) * 1e-9;
+    while (!stop_) {
+      const double due_s = static_cast<double>(control_.cycle().count()) * period_s / speed_;
+      const Clock::time_point due = begin + std::chrono::nanoseconds(static_cast<std::int64_t>(due_s * 1e9));
+      const Clock::time_point now = Clock::now();
+      // A sleep a millisecond: faster than real time several cycles share one.
+      if (due > now) std::this_thread::sleep_until(due);
+      // What was lost (a slow computer, a laptop that slept) is not made up for in a burst.
+      if (now > due + std::chrono::milliseconds(100)) begin += now - due;
+      if (control_.cycle().count() % 64 == 0) std::this_thread::yield();
+      control_.step();
+    }
+  }
+  Control& control_;
+  double speed_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+image::Request request(image::RequestKind kind, double value = 0.0) {
+  image::Request r;
+  r.kind = kind;
+  r.value = value;
+  return r;
+}
+
+/// Stops the axes on the path, switches the drives off, at most a few seconds each.
+void shut_down(Resident& resident) {
+  image::Answer answer;
+  const auto wait = [&](auto&& done) {
+    for (int i = 0; i < 500 && !done(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  };
+  resident.ask(request(image::RequestKind::stop), answer);
+  wait([&] {
+    const image::ProcessImage& image = resident.image();
+    for (int a = 0; a < image.axis_count; ++a)
+      if (image.axes[static_cast<std::size_t>(a)].moving) return false;
+    return true;
+  });
+  resident.ask(request(image::RequestKind::power, 0.0), answer);
+  wait([&] {
+    const image::ProcessImage& image = resident.image();
+    for (int a = 0; a < image.axis_count; ++a)
+      if (image.axes[static_cast<std::size_t>(a)].enabled) return false;
+    return true;
+  });
+}
+
+}  // namespace
+
+int up(const UpOptions& options, const std::string&) {
+  const machine::LoadResult loaded = machine::load(options.machine);
+  if (print_findings(loaded.findings) > 0) return kWrongUse;
+  const machine::MachineConfig& m = loaded.machine;
+  const ClockKind clock = options.clock != ClockKind::unset ? options.clock
+                          : m.all_mock()                    ? ClockKind::virtual_time
+                                                            : ClockKind::realtime;
+  const bool is_virtual = clock == ClockKind::virtual_time;
+  for (const machine::BusConfig& bus : m.buses)
+    if (is_virtual && !bus.mock()) {
+      complain(kVirtualNeedsMock, {bus.url});
+      return kWrongUse;
+    }
+  // A virtual run leaves no state behind unless told to.
+  const std::string state_path = !options.state.empty() ? options.state
+                                 : is_virtual           ? std::string()
+                                                        : m.resolve(m.run.state);
+  machine::MachineState state;
+  if (!state_path.empty()) {
+    machine::StateDirectory::Loaded kept = machine::StateDirectory(state_path).load();
+    if (print_findings(kept.findings) > 0) return kWrongUse;
+    state = std::move(kept.state);
+  }
+  std::vector<text::Finding> findings;
+  const std::unique_ptr<Control> control = Control::compose(loaded, findings);
+  const int errors = print_findings(findings);
+  if (control == nullptr) return errors > 0 ? kWrongUse : kInfrastructure;
+  for (std::size_t a = 0; a < m.axes.size(); ++a)
+    if (const auto kept = state.homing.find(m.axes[a].letter);
+        kept != state.homing.end() && kept->second.valid &&
+        m.axes[a].home.method == machine::HomingMethod::absolute)
+      control->cycle().set_reference(static_cast<int>(a), kept->second.offset_counts);
+  control->cycle().publish_every(is_virtual ? 1 : 5);
+  control->world().close_operator_points();
+
+  Resident resident(*control, std::move(state), state_path, is_virtual ? options.speed : 1.0);
+  const std::string socket = !options.socket.empty() ? options.socket
+                             : !m.run.socket.empty() ? m.resolve(m.run.socket)
+                                                     : default_socket(m.name);
+  SocketServer server(resident, socket);
+  if (const std::string problem = server.bind(); !problem.empty()) {
+    complain(kNoSocket, {socket, problem});
+    return kInfrastructure;
+  }
+  std::signal(SIGINT, on_end);
+  std::signal(SIGTERM, on_end);
+  std::signal(SIGHUP, on_end);
+
+  std::unique_ptr<VirtualLoop> virtual_loop;
+  std::unique_ptr<RealtimeLoop> realtime_loop;
+  if (is_virtual) {
+    virtual_loop = std::make_unique<VirtualLoop>(*control, options.speed);
+  } else {
+    cycle::RealtimeSettings settings{m.realtime.priority, m.realtime.cpu,
+                                     clock == ClockKind::realtime_best_effort};
+    realtime_loop =
+        std::make_unique<RealtimeLoop>(*control, settings, [](Control&, image::Nanoseconds) noexcept {});
+    const bool started = realtime_loop->start();
+    for (const cycle::RealtimeRefusal& r : realtime_loop->refusals())
+      if (started || r.needed) complain(kNoRights, {r.what, r.cause, r.remedy});
+    if (!started) return kInfrastructure;
+  }
+  server.start();
+  std::fprintf(
+      stderr, "%s\n",
+      text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()).c_str());
+  while (!ended && !server.down_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the answer to `down` leaves first
+  server.stop();
+  shut_down(resident);
+  const std::string problem = resident.save();
+  virtual_loop.reset();
+  if (realtime_loop != nullptr) realtime_loop->stop();
+  if (problem.empty()) return kDone;
+  complain(kStateLost, {problem});
+  return kInfrastructure;
+}
+
+}  // namespace servogate::gateway::command

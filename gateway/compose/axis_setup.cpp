@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/compose/axis_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace servogate::gateway {
+
+namespace {
+
+int sign(machine::Direction d) { return d == machine::Direction::plus ? 1 : -1; }
+
+axis::HomingMethod method(machine::HomingMethod m) {
+  switch (m) {
+    case machine::HomingMethod::switch_and_index:
+      return axis::HomingMethod::switch_and_index;
+    case machine::HomingMethod::switch_only:
+      return axis::HomingMethod::switch_only;
+    case machine::HomingMethod::index:
+      return axis::HomingMethod::index_only;
+    case machine::HomingMethod::absolute:
+      return axis::HomingMethod::absolute;
+    case machine::HomingMethod::none:
+      return axis::HomingMethod::none;
+  }
+  return axis::HomingMethod::none;
+}
+
+axis::HomingData homing(const machine::AxisConfig& a) {
+  axis::HomingData h;
+  h.method = method(a.home.method);
+  h.direction = sign(a.home.direction);
+  h.release_direction = sign(a.home.index_direction);
+  if (a.home.fast > 0.0) h.fast = a.home.fast;
+  if (a.home.slow > 0.0) h.slow = a.home.slow;
+  h.position = a.home.position;
+  h.final_move = a.home.final_move;
+  h.final_position = a.home.final_position;
+  h.max_travel = a.home.max_travel > 0.0 ? a.home.max_travel : 1.2 * (a.travel_max - a.travel_min);
+  h.max_index_travel = a.home.index_max_travel > 0.0
+                           ? a.home.index_max_travel
+                           : 1.5 * a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
+  h.timeout_s = a.home.timeout;
+  h.order = a.home.order;
+  h.index_spacing = a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
+  return h;
+}
+
+std::optional<axis::SwitchPlace> switch_place(const machine::MachineConfig& m, const std::string& point) {
+  const machine::PointConfig* p = point.empty() ? nullptr : m.point(point);
+  if (p == nullptr) return std::nullopt;
+  return axis::SwitchPlace{p->place, false};
+}
+
+/// Exact ratio counts : units from whole counts, a gear of whole numbers, and a lead known to 1e-6.
+void exact_ratio(std::int64_t counts, std::int64_t gear_motor, std::int64_t gear_screw, double lead,
+                 std::int64_t& numerator, std::int64_t& denominator) {
+  constexpr std::int64_t kLeadSteps = 1'000'000;
+  std::int64_t lead_steps = std::llround(lead * kLeadSteps);
+  std::int64_t steps = kLeadSteps;
+  const std::int64_t common = std::gcd(lead_steps, steps);
+  lead_steps /= common;
+  steps /= common;
+  numerator = counts * gear_motor * steps;
+  denominator = gear_screw * lead_steps;
+  const std::int64_t divisor = std::gcd(numerator, denominator);
+  numerator /= divisor;
+  denominator /= divisor;
+}
+
+}  // namespace
+
+axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& a) {
+  const machine::MachineConfig& m = loaded.machine;
+  axis::AxisConfig c;
+  c.letter = a.letter;
+  c.rotary = a.type == machine::AxisType::rotary;
+  exact_ratio(a.counts_per_rev, a.gear[0], a.gear[1], a.lead, c.counts_numerator, c.counts_denominator);
+  c.count_direction = sign(a.direction);
+  c.limits = {a.max_velocity, a.max_acceleration, a.max_jerk};
+  c.travel_limited = !a.endless();
+  c.travel_min = a.travel_min;
+  c.travel_max = a.travel_max;
+  if (a.following_error_stop > 0.0) c.following_error_limit = a.following_error_stop;
+  c.following_error_velocity = a.following_error_velocity;
+  c.in_position_window = a.in_position_window;
+  c.in_position_time = a.in_position_time;
+  c.in_position_timeout = a.in_position_timeout;
+  c.homing = homing(a);
+  c.limit_plus = switch_place(m, a.limit_plus);
+  c.limit_minus = switch_place(m, a.limit_minus);
+  c.home_switch = switch_place(m, a.home.switch_point);
+  c.backlash = a.backlash;
+  for (const auto& point : a.pitch_table) c.pitch.push_back({point[0], point[1], point[1]});
+  c.vertical = a.vertical;
+  if (a.brake.present()) {
+    c.brake.output = a.brake.drive_output ? axis::BrakeOutput::drive : axis::BrakeOutput::place;
+    if (const machine::PointConfig* p = m.point(a.brake.point); p != nullptr) c.brake.place.place = p->place;
+    c.brake.torque_delay = a.brake.torque_delay;
+    c.brake.slip_window = a.brake.slip_window;
+    c.brake.release_delay = a.brake.release_delay;
+    c.brake.engage_delay = a.brake.engage_delay;
+  }
+  c.jog_velocity = a.jog();
+  c.slow_velocity = a.jog_not_homed();
+  if (const machine::NodeConfig* node = m.node(a.drive); node != nullptr) {
+    // A target of cycle k leaves in k, acts at SYNC k + 1 and is read back one cycle after it was latched.
+    if (const machine::DeviceConfig* device = loaded.device(node->device); device != nullptr)
+      c.feedback_delay = 2 + device->behaviour.command_delay;
+    c.missed_limit = static_cast<std::uint32_t>(node->loss_cycles);
+  }
+  return c;
+}
+
+axis::SpindleConfig spindle_config(const machine::LoadResult&, const machine::SpindleConfig& s) {
+  axis::SpindleConfig c;
+  if (s.has_encoder()) {
+    c.counts_numerator = s.counts_per_rev;
+    c.counts_denominator = 1;
+  }
+  c.count_direction = sign(s.direction);
+  c.max_rpm = s.max_speed;
+  c.min_rpm = s.min_speed;
+  c.acceleration = s.acceleration;
+  c.at_speed_window = s.at_speed_window / 100.0;
+  c.at_speed_timeout = s.at_speed_timeout;
+  c.orient_angle = s.orient_angle;
+  c.orient_rpm = s.orient_speed;
+  return c;
+}
+
+channel::ProcessConfig process_config(const machine::MachineConfig& m, int index) {
+  channel::ProcessConfig c;
+  c.index = index;
+  c.path.period_s = m.control.cycle_time;
+  c.path.axis_count = std::min<int>(static_cast<int>(m.axes.size()), path::kMaxAxes);
+  for (int i = 0; i < c.path.axis_count; ++i) {
+    const machine::AxisConfig& a = m.axes[static_cast<std::size_t>(i)];
+    c.axes.machine.push_back(i);
+    c.path.limits[static_cast<std::size_t>(i)] = {a.max_velocity, a.max_acceleration, a.max_jerk};
+    c.path.rotary[static_cast<std::size_t>(i)] = a.type == machine::AxisType::rotary;
+    if (a.diameter) c.axes.surface_speed_axis = i;
+  }
+  c.handshake_timeout_s = m.plc.handshake_timeout;
+  return c;
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "gateway/machine/load.hpp"
+#include "kernel/axis/axis_config.hpp"
+#include "kernel/channel/process.hpp"
+
+/// The machine file's axes and spindles in the terms of the kernel. Not real-time safe.
+namespace servogate::gateway {
+
+axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& axis);
+axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& spindle);
+/// Process `index` with all axes of the machine as its path axes (the first kMaxPathAxes).
+channel::ProcessConfig process_config(const machine::MachineConfig& machine, int index);
+
+}  // namespace servogate::gateway

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "firmware_if/canopen/master/segment.hpp"
+#include "kernel/cycle/participants.hpp"
+
+namespace servogate::gateway {
+
+/// A CANopen segment as a device of the cycle whose bus events become alarms. Events are also kept for
+/// people, who want more words than a record holds.
+class CanSupplier final : public image::CycleDevice {
+ public:
+  CanSupplier(image::CanBus& bus, canopen::SegmentConfig config) : segment_(bus, std::move(config)) {}
+  /// Where faults are reported; set before the first cycle.
+  void report_to(cycle::Notices& notices) noexcept { notices_ = &notices; }
+
+  /// real-time safe.
+  void receive(image::ProcessImage& image) noexcept override;
+  /// real-time safe.
+  void send(image::ProcessImage& image) noexcept override { segment_.send(image); }
+
+  const canopen::Segment& segment() const noexcept { return segment_; }
+  /// Takes the oldest event kept for people; one reader outside the cycle. real-time safe.
+  bool take_event(canopen::BusEvent& event) noexcept { return kept_.pop(event); }
+
+ private:
+  void report(const canopen::BusEvent& event, const image::ProcessImage& image) noexcept;
+
+  canopen::Segment segment_;
+  canopen::BusEventRing kept_;
+  cycle::Notices* notices_ = nullptr;
+};
+
+}  // namespace servogate::gateway

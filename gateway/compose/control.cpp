@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/compose/control.hpp"
+
+#include "gateway/compose/axis_setup.hpp"
+#include "gateway/compose/canopen_setup.hpp"
+#include "gateway/compose/program_model.hpp"
+#include "plc/compile.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+const text::Entry kNoDriver{"compose.no-driver",
+                            "bus '{0}': no driver for '{1}' in this version; mock:NAME works",
+                            "шина «{0}»: для «{1}» в этой версии нет драйвера; работает mock:ИМЯ"};
+const text::Entry kUnreadable{"compose.plc-unreadable", "cannot read the PLC source: {0}",
+                              "исходный текст ПЛК не читается: {0}"};
+
+}  // namespace
+
+Control::Control(const machine::LoadResult& loaded) : loaded_(loaded) {}
+Control::~Control() = default;
+
+std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
+                                          std::vector<text::Finding>& findings, cycle::InputSource* source) {
+  std::unique_ptr<Control> c(new Control(loaded));
+  const machine::MachineConfig& m = c->loaded_.machine;
+  bool good = c->compile_logic(findings);
+  const auto refuse = [&](const std::string& path, const std::string& name, const std::string& url) {
+    const machine::Where where = m.where(path);
+    findings.push_back({text::Severity::error, m.file, where.line, where.column, &kNoDriver, {name, url}});
+    good = false;
+  };
+  for (std::size_t b = 0; b < m.buses.size(); ++b)
+    if (!m.buses[b].mock()) refuse("bus." + std::to_string(b) + ".url", m.buses[b].name, m.buses[b].url);
+  for (std::size_t s = 0; s < m.stations.size(); ++s)
+    if (!m.stations[s].mock())
+      refuse("station." + std::to_string(s) + ".url", m.stations[s].name, m.stations[s].url);
+  if (!good) return nullptr;
+
+  c->world_ = std::make_unique<MockWorld>(c->loaded_);
+  cycle::CycleParts parts;
+  parts.period_ns = m.cycle_ns();
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    c->suppliers_.push_back(
+        std::make_unique<CanSupplier>(*c->world_->bus(b), segment_config(c->loaded_, static_cast<int>(b))));
+    parts.devices.push_back(c->suppliers_.back().get());
+  }
+  for (image::CycleDevice* device : c->world_->io()) parts.devices.push_back(device);
+  for (std::size_t s = 0; s < m.stations.size(); ++s)
+    parts.watched_sources[s] = m.stations[s].kind != machine::StationKind::drive;
+  parts.logic = c->logic_.get();
+  for (int p = 0; p < m.control.processes; ++p) {
+    c->processes_.push_back(std::make_unique<channel::Process>(process_config(m, p)));
+    parts.processes.push_back(c->processes_.back().get());
+  }
+  for (const machine::AxisConfig& a : m.axes) parts.axes.push_back(axis_config(c->loaded_, a));
+  for (const machine::SpindleConfig& s : m.spindles) parts.spindles.push_back(spindle_config(c->loaded_, s));
+  parts.k_bytes = static_cast<std::uint32_t>(m.control.k_size);
+  parts.syvar_bytes = static_cast<std::uint32_t>(m.control.syvar_size);
+  if (const machine::PointConfig* estop = m.point(m.safety.estop); estop != nullptr)
+    parts.estop_place = estop->place;
+  if (const machine::PointConfig* start = m.point(m.run.start_point); start != nullptr)
+    parts.start_place = start->place;
+  parts.stopwatch = &c->stopwatch_;
+  c->cycle_ = std::make_unique<cycle::Cycle>(std::move(parts));
+  c->cycle_->attach(source);
+  for (const auto& supplier : c->suppliers_) supplier->report_to(c->cycle_->notices());
+  return c;
+}
+
+bool Control::compile_logic(std::vector<text::Finding>& findings) {
+  const machine::MachineConfig& m = loaded_.machine;
+  if (m.plc.sources.empty()) return true;
+  std::vector<plc::SourceFile> files;
+  for (std::size_t i = 0; i < m.plc.sources.size(); ++i) {
+    plc::SourceFile file{m.resolve(m.plc.sources[i]), {}};
+    std::string error;
+    if (!read_file(file.name, file.text, error)) {
+      const machine::Where where = m.where("plc.sources");
+      findings.push_back({text::Severity::error, m.file, where.line, where.column, &kUnreadable, {error}});
+      return false;
+    }
+    files.push_back(std::move(file));
+  }
+  plc::Options options;
+  options.k_bytes = static_cast<std::uint32_t>(m.control.k_size);
+  options.v_bytes = static_cast<std::uint32_t>(m.control.syvar_size);
+  plc::CompileResult compiled = plc::compile(std::move(files), m.symbol_table(), options);
+  findings.insert(findings.end(), compiled.findings.begin(), compiled.findings.end());
+  if (!compiled.ok()) return false;
+  logic_ = std::make_unique<PlcLogic>(compiled.image);
+  return true;
+}
+
+void Control::advance_world() { world_->advance_to(cycle_->count() * cycle_->period_ns()); }
+
+bool Control::read_ahead() {
+  const std::scoped_lock lock(reading_);
+  bool more = false;
+  for (const auto& process : processes_) more = process->work() || more;
+  return more;
+}
+
+bool Control::step() {
+  advance_world();
+  read_ahead();
+  return cycle_->step();
+}
+
+cycle::AlarmNames Control::alarm_names() const {
+  const machine::MachineConfig& m = loaded_.machine;
+  cycle::AlarmNames names;
+  names.axes = m.letters();
+  for (const machine::AxisConfig& a : m.axes)
+    names.units.push_back(a.type == machine::AxisType::rotary ? "deg" : "mm");
+  for (const machine::BusConfig& b : m.buses) names.segments.push_back(b.name);
+  for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
+  names.error_text = [this](int axis, int node, std::uint16_t code, text::Language language) -> std::string {
+    const machine::MachineConfig& config = loaded_.machine;
+    for (std::size_t b = 0; b < config.buses.size(); ++b)
+      for (const machine::NodeConfig& n : config.buses[b].nodes) {
+        const std::string reference = config.buses[b].name + "." + n.name;
+        const bool mine =
+            axis >= 0 ? config.axes[static_cast<std::size_t>(axis)].drive == reference : n.id == node;
+        const machine::DeviceConfig* device = mine ? loaded_.device(n.device) : nullptr;
+        if (device != nullptr) return std::string(device->error_text(code, language));
+      }
+    return {};
+  };
+  return names;
+}
+
+}  // namespace servogate::gateway

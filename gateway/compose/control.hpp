@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "gateway/compose/can_supplier.hpp"
+#include "gateway/compose/mock_world.hpp"
+#include "gateway/compose/plc_logic.hpp"
+#include "gateway/machine/load.hpp"
+#include "kernel/channel/process.hpp"
+#include "kernel/cycle/clocks.hpp"
+#include "kernel/cycle/executive.hpp"
+
+namespace servogate::gateway {
+
+/// A whole machine put together from its file: cycle, axes, PLC, processes, buses real or simulated. The one
+/// place where rooms meet. Who owns a Control owns its loop: step() in virtual time, or run() of
+/// RealtimeLoop.
+class Control {
+ public:
+  /// Puts the machine together. nullptr when something is wrong with it (`findings` says what: PLC program, a
+  /// bus that this build cannot open). With `source` devices are not opened: the inputs come from a record.
+  static std::unique_ptr<Control> compose(const machine::LoadResult& loaded,
+                                          std::vector<text::Finding>& findings,
+                                          cycle::InputSource* source = nullptr);
+  ~Control();
+
+  /// One cycle in virtual time: the simulated world up to it, reading ahead, then the cycle. False: a
+  /// replayed record has ended.
+  bool step();
+  /// Brings the simulated world to the beginning of the next cycle; part of step(), and of the real-time
+  /// loop.
+  void advance_world();
+  /// Reads ahead in all processes. Part of step(); in real time its own thread calls it again and again.
+  /// False: nothing more can be read before the cycle goes on.
+  bool read_ahead();
+
+  /// Held while processes read ahead; whoever changes a program from another thread holds it too.
+  std::mutex& reading() noexcept { return reading_; }
+
+  cycle::Cycle& cycle() noexcept { return *cycle_; }
+  const machine::MachineConfig& machine() const noexcept { return loaded_.machine; }
+  channel::Process& process(int index) { return *processes_[static_cast<std::size_t>(index)]; }
+  MockWorld& world() noexcept { return *world_; }
+  PlcLogic* logic() noexcept { return logic_.get(); }
+  const std::vector<std::unique_ptr<CanSupplier>>& suppliers() const noexcept { return suppliers_; }
+  /// Names for the sentences of alarms.
+  cycle::AlarmNames alarm_names() const;
+  /// True when everything that moves is simulated.
+  bool all_mock() const { return loaded_.machine.all_mock(); }
+
+ private:
+  explicit Control(const machine::LoadResult& loaded);
+  bool compile_logic(std::vector<text::Finding>& findings);
+
+  machine::LoadResult loaded_;
+  std::unique_ptr<MockWorld> world_;
+  std::vector<std::unique_ptr<CanSupplier>> suppliers_;
+  std::unique_ptr<PlcLogic> logic_;
+  std::vector<std::unique_ptr<channel::Process>> processes_;
+  std::mutex reading_;
+  cycle::MonotonicClock stopwatch_;
+  std::unique_ptr<cycle::Cycle> cycle_;
+};
+
+}  // namespace servogate::gateway

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/compose/mock_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace servogate::gateway {
+
+namespace {
+
+/// Axis units per turn of the motor, with the sign of the axis' direction.
+double units_per_revolution(const machine::AxisConfig& a) {
+  const double units = a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
+  return a.direction == machine::Direction::plus ? units : -units;
+}
+
+std::int64_t positive_modulo(std::int64_t value, std::int64_t modulus) {
+  const std::int64_t rest = value % modulus;
+  return rest < 0 ? rest + modulus : rest;
+}
+
+mock::PlantConfig plant_of(const machine::DeviceConfig* device, const machine::SimulatedDrive* extra,
+                           const machine::AxisConfig* axis, const machine::SpindleConfig* spindle) {
+  mock::PlantConfig p;
+  if (device != nullptr) {
+    const machine::MotorConfig& m = device->motor;
+    if (m.counts_per_rev > 0) p.counts_per_rev = m.counts_per_rev;
+    if (m.inertia > 0.0) p.inertia_kg_m2 = m.inertia;
+    if (m.rated_torque > 0.0) p.rated_torque_nm = m.rated_torque;
+    if (m.peak_torque > 0.0) p.peak_torque_nm = m.peak_torque;
+    if (m.max_speed > 0.0) p.max_speed_rad_s = 1.2 * m.max_speed * 2.0 * M_PI / 60.0;
+  }
+  if (axis != nullptr && axis->counts_per_rev > 0) p.counts_per_rev = axis->counts_per_rev;
+  if (spindle != nullptr && spindle->counts_per_rev > 0) p.counts_per_rev = spindle->counts_per_rev;
+  if (extra != nullptr) {
+    if (extra->inertia > 0.0) p.inertia_kg_m2 = extra->inertia;
+    if (extra->friction_coulomb > 0.0) p.coulomb_friction_nm = extra->friction_coulomb;
+    if (extra->friction_viscous > 0.0) p.viscous_friction_nm_s = extra->friction_viscous;
+    if (extra->max_torque > 0.0) p.peak_torque_nm = extra->max_torque;
+    if (axis != nullptr) {
+      const double direction = axis->direction == machine::Direction::plus ? 1.0 : -1.0;
+      p.load_torque_nm = extra->gravity_torque * direction;
+      p.start_rev = extra->start / units_per_revolution(*axis);
+      p.zero_mark_counts = positive_modulo(std::llround(extra->zero_mark * direction), p.counts_per_rev);
+    }
+  }
+  if (axis != nullptr && axis->brake.present() && axis->brake.drive_output)
+    p.brake_torque_nm = p.peak_torque_nm;
+  return p;
+}
+
+}  // namespace
+
+MockWorld::MockWorld(const machine::LoadResult& loaded) {
+  const machine::MachineConfig& m = loaded.machine;
+  axes_.resize(m.axes.size());
+  add_drives(loaded);
+  int source = 0;
+  for (const machine::StationConfig& station : m.stations) {
+    if (station.mock() && station.kind == machine::StationKind::gpio) add_gpio(loaded, station, source);
+    if (station.mock() && station.kind == machine::StationKind::modbus) add_modbus(loaded, station, source);
+    ++source;
+  }
+  add_turrets(m);
+  operator_points_ = m.simulation.operator_closes;
+}
+
+MockWorld::~MockWorld() = default;
+
+void MockWorld::add_drives(const machine::LoadResult& loaded) {
+  const machine::MachineConfig& m = loaded.machine;
+  for (const machine::BusConfig& bus : m.buses) {
+    if (!bus.mock()) {
+      segments_.push_back(nullptr);
+      endpoints_.push_back(nullptr);
+      continue;
+    }
+    mock::CanSegmentConfig config;
+    config.bit_rate = static_cast<std::uint32_t>(bus.bit_rate);
+    segments_.push_back(std::make_unique<mock::CanSegment>(config));
+    endpoints_.push_back(&segments_.back()->add_endpoint("control"));
+    for (const machine::NodeConfig& node : bus.nodes) {
+      const std::string reference = bus.name + "." + node.name;
+      const machine::AxisConfig* axis = nullptr;
+      const machine::SpindleConfig* spindle = nullptr;
+      const machine::SimulatedDrive* extra = nullptr;
+      std::size_t axis_index = 0;
+      for (std::size_t a = 0; a < m.axes.size(); ++a)
+        if (m.axes[a].drive == reference) {
+          axis = &m.axes[a];
+          axis_index = a;
+        }
+      for (const machine::SpindleConfig& s : m.spindles)
+        if (s.drive == reference) spindle = &s;
+      for (const machine::SimulatedDrive& s : m.simulation.drives)
+        if (s.node == reference) extra = &s;
+      const machine::DeviceConfig* device = loaded.device(node.device);
+      mock::SimulatedDriveConfig drive;
+      drive.node_id = static_cast<canopen::NodeId>(node.id);
+      if (device != nullptr && device->vendor_id != 0)
+        drive.vendor_id = static_cast<std::uint32_t>(device->vendor_id);
+      if (device != nullptr && device->product_code != 0)
+        drive.product_code = static_cast<std::uint32_t>(device->product_code);
+      if (extra != nullptr) drive.absolute_encoder = extra->absolute_encoder;
+      drive.serial_number = static_cast<std::uint32_t>(node.id);
+      drive.plant = plant_of(device, extra, axis, spindle);
+      drives_.push_back({reference, std::make_unique<mock::SimulatedDrive>(drive)});
+      segments_.back()->attach(*drives_.back().device, node.name);
+      if (axis != nullptr) axes_[axis_index] = {drives_.back().device.get(), units_per_revolution(*axis)};
+    }
+  }
+}
+
+void MockWorld::add_gpio(const machine::LoadResult& loaded, const machine::StationConfig& station,
+                         int source) {
+  const machine::MachineConfig& m = loaded.machine;
+  std::vector<mock::GpioInput> inputs;
+  std::vector<mock::GpioOutput> outputs;
+  for (const machine::PointConfig& p : station.points) {
+    if (!p.is_input()) {
+      outputs_.push_back({p.name, gpios_.size(), outputs.size(), true, p.inverted});
+      outputs.push_back({p.name, p.place, p.inverted});
+      continue;
+    }
+    mock::GpioInput input;
+    input.name = p.name;
+    input.place = p.place;
+    input.inverted = p.inverted;
+    const auto initial = m.simulation.initial.find(p.name);
+    input.source = mock::SetInput{initial != m.simulation.initial.end() && initial->second != 0.0};
+    for (const machine::SimulatedSwitch& s : m.simulation.switches) {
+      if (s.point != p.name) continue;
+      const int axis = m.axis_index(s.axis);
+      if (std::isinf(s.to))
+        input.source = mock::LimitSwitch{axis, s.from, true};
+      else if (std::isinf(s.from))
+        input.source = mock::LimitSwitch{axis, s.to, false};
+      else
+        input.source = mock::HomeSwitch{axis, s.from, s.to - s.from};
+    }
+    const bool switched = !std::holds_alternative<mock::SetInput>(input.source);
+    inputs_.push_back({p.name, gpios_.size(), inputs.size(), true, p.inverted, false, switched});
+    inputs.push_back(std::move(input));
+  }
+  gpios_.push_back(std::make_unique<mock::MockGpio>(
+      std::move(inputs), std::move(outputs), [this](int axis) { return axis_position(axis); }, source));
+  io_.push_back(gpios_.back().get());
+}
+
+void MockWorld::add_modbus(const machine::LoadResult& loaded, const machine::StationConfig& station,
+                           int source) {
+  const machine::MachineConfig& m = loaded.machine;
+  const machine::DeviceConfig* device = loaded.device(station.device);
+  const machine::ModbusMap layout = device != nullptr ? device->modbus : machine::ModbusMap{};
+  mock::StationSettings settings;
+  settings.unit = static_cast<std::uint8_t>(station.unit);
+  settings.digital_inputs = static_cast<std::uint16_t>(layout.di_count);
+  settings.digital_outputs = static_cast<std::uint16_t>(layout.dq_count);
+  settings.analog_inputs = static_cast<std::uint16_t>(layout.ai_count);
+  settings.analog_outputs = static_cast<std::uint16_t>(layout.aq_count);
+  settings.initial_inputs.resize(settings.digital_inputs);
+  settings.initial_analog.resize(settings.analog_inputs);
+  settings.watchdog_ns = 20 * static_cast<image::Nanoseconds>(station.period * 1e9);
+
+  modbus::Map map;
+  const auto period = static_cast<image::Nanoseconds>(std::llround(station.period * 1e9));
+  const auto block = [&](modbus::Function function, int count) {
+    if (count <= 0) return std::size_t{0};
+    map.blocks.push_back({settings.unit, function, 0, static_cast<std::uint16_t>(count), period});
+    return map.blocks.size() - 1;
+  };
+  const std::size_t blocks[] = {block(modbus::Function::read_discrete_inputs, layout.di_count),
+                                block(modbus::Function::write_multiple_coils, layout.dq_count),
+                                block(modbus::Function::read_input_registers, layout.ai_count),
+                                block(modbus::Function::write_multiple_registers, layout.aq_count)};
+  for (const machine::PointConfig& p : station.points) {
+    modbus::Point point;
+    point.block = blocks[static_cast<int>(p.channel)];
+    point.offset = static_cast<std::uint16_t>(p.number);
+    point.place = p.place;
+    point.inverted = p.inverted;
+    point.on_loss = p.hold ? modbus::OnLoss::hold : modbus::OnLoss::value;
+    point.loss_value = p.loss;
+    point.scale = p.scale;
+    point.shift = p.shift;
+    map.points.push_back(point);
+    const auto initial = m.simulation.initial.find(p.name);
+    const double value = initial != m.simulation.initial.end() ? initial->second : 0.0;
+    const auto number = static_cast<std::size_t>(p.number);
+    if (p.channel == machine::ChannelKind::di && number < settings.initial_inputs.size()) {
+      settings.initial_inputs[number] = value != 0.0;
+      inputs_.push_back({p.name, lines_.size(), number, false, p.inverted});
+    } else if (p.channel == machine::ChannelKind::ai && number < settings.initial_analog.size()) {
+      settings.initial_analog[number] = static_cast<std::uint16_t>(value);
+      inputs_.push_back({p.name, lines_.size(), number, false, false, true, false, p.scale, p.shift});
+    } else if (p.channel == machine::ChannelKind::dq) {
+      outputs_.push_back({p.name, lines_.size(), number, false, p.inverted});
+    }
+  }
+  lines_.push_back(std::make_unique<mock::MockModbusLine>(
+      mock::LineSettings{}, std::move(map), std::vector<mock::StationSettings>{settings}, source));
+  for (const machine::SimulatedLoop& loop : m.simulation.loops) {
+    const machine::PointConfig* out = m.point(loop.output);
+    const machine::PointConfig* in = m.point(loop.input);
+    const auto here = [&](const machine::PointConfig* p) {
+      return p != nullptr && p >= station.points.data() && p < station.points.data() + station.points.size();
+    };
+    if (here(out) && here(in))
+      lines_.back()->station(0).add_loopback(
+          {static_cast<std::uint16_t>(out->number), static_cast<std::uint16_t>(in->number),
+           static_cast<image::Nanoseconds>(std::llround(loop.delay * 1e9)), loop.inverted});
+  }
+  io_.push_back(lines_.back().get());
+}
+
+void MockWorld::add_turrets(const machine::MachineConfig& machine) {
+  for (const machine::SimulatedIndexer& config : machine.simulation.indexers) {
+    std::vector<std::size_t> inputs;
+    int start = 0;
+    for (const std::string& name : config.inputs)
+      for (std::size_t i = 0; i < inputs_.size(); ++i) {
+        if (inputs_[i].name != name) continue;
+        const auto initial = machine.simulation.initial.find(name);
+        if (initial != machine.simulation.initial.end() && initial->second != 0.0)
+          start = static_cast<int>(inputs.size());
+        inputs.push_back(i);
+      }
+    for (std::size_t o = 0; o < outputs_.size(); ++o)
+      if (outputs_[o].name == config.output && inputs.size() == config.inputs.size())
+        turrets_.push_back(
+            {mock::Indexer(static_cast<int>(inputs.size()),
+                           static_cast<image::Nanoseconds>(std::llround(config.step * 1e9)), start),
+             o, inputs});
+  }
+}
+
+void MockWorld::turn(Turret& turret, image::Nanoseconds t) {
+  turret.indexer.advance_to(t, motor_on(outputs_[turret.motor]));
+  const int position = turret.indexer.position();
+  if (position == turret.shown) return;
+  turret.shown = position;
+  for (std::size_t i = 0; i < turret.inputs.size(); ++i)
+    drive_input(inputs_[turret.inputs[i]], static_cast<int>(i) == position);
+}
+
+void MockWorld::advance_to(image::Nanoseconds t) {
+  if (wished_.load(std::memory_order_acquire)) apply_wishes();
+  for (Turret& turret : turrets_) turn(turret, t);
+  for (const auto& segment : segments_)
+    if (segment != nullptr) segment->advance_to(t);
+  for (const auto& gpio : gpios_) gpio->advance_to(t);
+  for (const auto& line : lines_) line->advance_to(t);
+}
+
+image::CanBus* MockWorld::bus(std::size_t index) { return endpoints_[index]; }
+
+bool MockWorld::drive_input(const Input& i, bool on) {
+  const bool contact = on != i.inverted;
+  return i.gpio ? gpios_[i.device]->set_input(i.number, contact)
+                : lines_[i.device]->station(0).set_input(static_cast<std::uint16_t>(i.number), contact);
+}
+
+bool MockWorld::motor_on(const Output& o) const {
+  const bool level = o.gpio ? gpios_[o.device]->output(o.number)
+                            : lines_[o.device]->station(0).output(static_cast<std::uint16_t>(o.number));
+  return level != o.inverted;
+}
+
+bool MockWorld::set_input(std::string_view point, bool on) {
+  for (const Input& i : inputs_)
+    if (i.name == point && !i.analog) return drive_input(i, on);
+  return false;
+}
+
+MockWorld::Played MockWorld::play_input(std::string_view point, Play play) {
+  for (std::size_t n = 0; n < inputs_.size(); ++n) {
+    if (inputs_[n].name != point) continue;
+    if (!play.value && !inputs_[n].switched) return Played::follows_nothing;
+    const std::scoped_lock lock(wishes_lock_);
+    wishes_.push_back({n, play});
+    wished_.store(true, std::memory_order_release);
+    return Played::done;
+  }
+  return Played::no_such_input;
+}
+
+void MockWorld::apply_wishes() {
+  const std::scoped_lock lock(wishes_lock_);
+  wished_.store(false, std::memory_order_relaxed);
+  for (const Wish& wish : wishes_) {
+    const Input& i = inputs_[wish.input];
+    const double value = wish.play.value.value_or(0.0);
+    if (i.analog) {
+      const double raw = i.scale != 0.0 ? (value - i.shift) / i.scale : value;
+      lines_[i.device]->station(0).set_analog_input(
+          static_cast<std::uint16_t>(i.number),
+          static_cast<std::uint16_t>(std::lround(std::clamp(raw, 0.0, 65535.0))));
+    } else if (!i.switched) {
+      drive_input(i, value != 0.0);
+    } else if (wish.play.value) {
+      gpios_[i.device]->force_input(i.number, (value != 0.0) != i.inverted);
+    } else {
+      gpios_[i.device]->release_input(i.number);
+    }
+  }
+  wishes_.clear();
+}
+
+void MockWorld::close_operator_points() {
+  for (const std::string& point : operator_points_) set_input(point, true);
+}
+
+mock::SimulatedDrive* MockWorld::drive(std::string_view reference) {
+  for (Drive& d : drives_)
+    if (d.reference == reference) return d.device.get();
+  return nullptr;
+}
+
+double MockWorld::axis_position(int axis) const {
+  const AxisDrive& a = axes_[static_cast<std::size_t>(axis)];
+  return a.drive == nullptr ? 0.0 : a.drive->revolutions() * a.units_per_revolution;
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "drivers/mock/can/can_segment.hpp"
+#include "drivers/mock/drive/simulated_drive.hpp"
+#include "drivers/mock/gpio/mock_gpio.hpp"
+#include "drivers/mock/indexer/indexer.hpp"
+#include "drivers/mock/modbus/modbus_line.hpp"
+#include "gateway/machine/load.hpp"
+
+namespace servogate::gateway {
+
+/// Everything simulated that a machine file asks for: CAN segments with their drives, Modbus stations, GPIO
+/// chips whose switches follow the simulated axes, wires from outputs to inputs, turrets. Time passes in
+/// advance_to() only.
+class MockWorld {
+ public:
+  explicit MockWorld(const machine::LoadResult& loaded);
+  ~MockWorld();
+
+  /// Brings everything to time t, buses first. Not called by the cycle but before it.
+  void advance_to(image::Nanoseconds t);
+
+  /// The control's endpoint on the mock bus with this index in the machine file; nullptr: that bus is no
+  /// mock.
+  image::CanBus* bus(std::size_t index);
+  /// I/O devices for the cycle, in the order of the machine file.
+  const std::vector<image::CycleDevice*>& io() const noexcept { return io_; }
+  /// Sets a simulated input as the world does, after `inverted`: TRUE makes the point TRUE. False: no such
+  /// input.
+  bool set_input(std::string_view point, bool on);
+  /// What a person playing the world does to an input.
+  struct Play {
+    std::optional<double> value;  ///< digital: not 0 makes the point TRUE; analog: the point's value;
+                                  ///< nullopt: a switch follows its axis again
+  };
+  enum class Played { done, no_such_input, follows_nothing };
+  /// Plays an input from any thread; it takes effect with the next advance_to(). A switch that follows an
+  /// axis is held at the level until it is let go.
+  Played play_input(std::string_view point, Play play);
+  /// The operator of `run`: closes what the machine file names (the emergency-stop chain).
+  void close_operator_points();
+
+  mock::CanSegment* segment(std::size_t index) { return segments_[index].get(); }
+  /// Drive of a node "bus.node"; nullptr: it is not simulated.
+  mock::SimulatedDrive* drive(std::string_view reference);
+  /// True position of a simulated axis, machine coordinates.
+  double axis_position(int axis) const;
+
+ private:
+  struct Drive {
+    std::string reference;
+    std::unique_ptr<mock::SimulatedDrive> device;
+  };
+  struct Input {
+    std::string name;
+    std::size_t device;
+    std::size_t number;
+    bool gpio;
+    bool inverted;
+    bool analog = false;
+    bool switched = false;  ///< follows an axis
+    double scale = 1.0, shift = 0.0;
+  };
+  struct Output {
+    std::string name;
+    std::size_t device;
+    std::size_t number;
+    bool gpio;
+    bool inverted;
+  };
+  struct Turret {
+    mock::Indexer indexer;
+    std::size_t motor;                ///< of outputs_
+    std::vector<std::size_t> inputs;  ///< of inputs_
+    int shown = -2;                   ///< position that the inputs show
+  };
+  struct Wish {
+    std::size_t input;
+    Play play;
+  };
+  void add_drives(const machine::LoadResult& loaded);
+  void add_gpio(const machine::LoadResult& loaded, const machine::StationConfig& station, int source);
+  void add_modbus(const machine::LoadResult& loaded, const machine::StationConfig& station, int source);
+  void add_turrets(const machine::MachineConfig& machine);
+  void apply_wishes();
+  void turn(Turret& turret, image::Nanoseconds t);
+  bool drive_input(const Input& input, bool on);
+  bool motor_on(const Output& output) const;
+
+  std::vector<std::unique_ptr<mock::CanSegment>> segments_;
+  std::vector<image::CanBus*> endpoints_;
+  std::vector<Drive> drives_;
+  struct AxisDrive {
+    const mock::SimulatedDrive* drive = nullptr;
+    double units_per_revolution = 0.0;
+  };
+  std::vector<AxisDrive> axes_;
+  std::vector<std::unique_ptr<mock::MockGpio>> gpios_;
+  std::vector<std::unique_ptr<mock::MockModbusLine>> lines_;
+  std::vector<image::CycleDevice*> io_;
+  std::vector<Input> inputs_;
+  std::vector<Output> outputs_;
+  std::vector<Turret> turrets_;
+  std::vector<std::string> operator_points_;
+  std::mutex wishes_lock_;
+  std::vector<Wish> wishes_;
+  std::atomic<bool> wished_{false};
+};
+
+}  // namespace servogate::gateway

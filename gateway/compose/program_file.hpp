@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/options.hpp"
+#include "gateway/compose/program_model.hpp"
+#include "gateway/machine/load.hpp"
+#include "kernel/program/interpreter.hpp"
+
+namespace servogate::gateway {
+
+/// A part program opened for a machine: everything an interpreter is constructed from but the start position.
+struct ProgramFile {
+  std::string dialect, text;
+  program::MachineModel model;
+  program::ProgramLoader loader;
+};
+
+/// Reads the program and settles its dialect. Complains and returns kWrongUse when it cannot.
+int open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
+                 ProgramFile& out);
+
+}  // namespace servogate::gateway

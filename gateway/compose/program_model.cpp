@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/compose/program_model.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace servogate::gateway {
+
+program::MachineModel program_model(const machine::MachineConfig& machine) {
+  program::MachineModel model;
+  for (const machine::AxisConfig& a : machine.axes) {
+    program::MachineModel::Axis axis;
+    axis.letter = a.letter;
+    axis.rotary = a.type == machine::AxisType::rotary;
+    axis.diameter = a.diameter;
+    if (!a.endless()) {
+      axis.travel_min = a.travel_min;
+      axis.travel_max = a.travel_max;
+    }
+    axis.rapid = a.max_velocity;
+    model.axes.push_back(axis);
+  }
+  model.spindles = static_cast<int>(machine.spindles.size());
+  model.contour_tolerance_mm = machine.control.contour_tolerance;
+  model.k_bytes = static_cast<std::uint32_t>(machine.control.k_size);
+  model.syvar_bytes = static_cast<std::uint32_t>(machine.control.syvar_size);
+  model.power_on = machine.control.power_on;
+  model.variables = machine.control.variables;
+  for (const image::Symbol& s : machine.symbol_table())
+    if (s.writer != image::Writer::program) model.protected_places.push_back({s.place, s.name});
+  return model;
+}
+
+program::ProgramLoader program_loader(const std::string& main_program) {
+  const std::filesystem::path folder = std::filesystem::path(main_program).parent_path();
+  return [folder](std::string_view name) -> std::optional<std::string> {
+    std::string lower(name);
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    for (const std::string& base : {std::string(name), lower})
+      for (const char* extension : {"", ".nc", ".NC"}) {
+        std::string content, error;
+        const auto path = folder / (base + extension);
+        std::error_code ignored;
+        if (std::filesystem::is_regular_file(path, ignored) && read_file(path.string(), content, error))
+          return content;
+      }
+    return std::nullopt;
+  };
+}
+
+bool read_file(const std::string& path, std::string& content, std::string& error) {
+  errno = 0;
+  std::error_code code;
+  if (std::filesystem::is_directory(path, code)) {
+    error = std::strerror(EISDIR);
+    return false;
+  }
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  if (in) out << in.rdbuf();
+  if (!in || in.bad()) {
+    error = std::strerror(errno != 0 ? errno : EIO);
+    return false;
+  }
+  content = std::move(out).str();
+  return true;
+}
+
+}  // namespace servogate::gateway

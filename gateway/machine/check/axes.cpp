@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "gateway/machine/check/check.hpp"
+#include "gateway/machine/check/findings_motion.hpp"
+#include "gateway/machine/keys/sections.hpp"
+
+namespace servogate::machine {
+
+namespace {
+
+/// One axis under check, with the words its findings need.
+class AxisCheck {
+ public:
+  AxisCheck(const MachineConfig& machine, std::size_t index, Reading& reading)
+      : machine_(machine),
+        a_(machine.axes[index]),
+        path_("axis." + std::to_string(index) + "."),
+        reading_(reading) {
+    unit_ = a_.type == AxisType::rotary ? "deg" : "mm";
+  }
+
+  void all() {
+    travel();
+    homing();
+    speeds();
+    limits();
+    brake();
+    pitch();
+    rest();
+  }
+
+ private:
+  Where at(std::string_view key) const { return machine_.where(path_ + std::string(key)); }
+  /// The key is there and was readable.
+  bool has(std::string_view key) const {
+    const std::string path = path_ + std::string(key);
+    return machine_.places.contains(path) && !machine_.unread.contains(path);
+  }
+  bool unread(std::string_view key) const { return machine_.unread.contains(path_ + std::string(key)); }
+  bool has_travel() const { return has("travel_min") && has("travel_max"); }
+  std::string length(double v) const { return text::number(v) + " " + unit_; }
+  std::string speed(double v) const { return text::number(v) + " " + unit_ + "/s"; }
+  void error(std::string_view key, const text::Entry& entry, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), a_.letter);
+    reading_.error(at(key), entry, std::move(arguments));
+  }
+  void warning(std::string_view key, const text::Entry& entry, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), a_.letter);
+    reading_.warning(at(key), entry, std::move(arguments));
+  }
+
+  void travel() {
+    if (!has_travel()) return;
+    if (!a_.endless() && a_.travel_min >= a_.travel_max)
+      error("travel_max", finding::kTravelOrder, {length(a_.travel_min), length(a_.travel_max)});
+    if (a_.diameter && a_.type == AxisType::rotary) error("diameter", finding::kDiameter, {});
+  }
+
+  void inside(std::string_view key, double value) {
+    if (!has_travel() || a_.endless() || a_.travel_min >= a_.travel_max) return;
+    if (value < a_.travel_min || value > a_.travel_max)
+      error(key, finding::kHomeOutside,
+            {std::string(key), length(value), length(a_.travel_min), length(a_.travel_max)});
+  }
+
+  void homing() {
+    const HomingConfig& h = a_.home;
+    const std::string method(choices_of<HomingMethod>()[static_cast<std::size_t>(h.method)]);
+    if (!has("home")) warning("letter", finding::kNoHoming, {});
+    if (has("home")) inside("home.position", h.position);
+    const bool moves = h.method != HomingMethod::none && h.method != HomingMethod::absolute;
+    if (!moves) return;
+    if (h.final_move) inside("home.final_position", h.final_position);
+    const bool by_switch = h.method != HomingMethod::index;
+    if (by_switch && h.switch_point.empty() && !unread("home.switch"))
+      error("home", finding::kHomeSwitchMissing, {method});
+    if (by_switch && h.fast <= 0.0 && !unread("home.fast"))
+      error("home", finding::kHomeSpeedMissing, {method, "fast"});
+    if (h.slow <= 0.0 && !unread("home.slow")) error("home", finding::kHomeSpeedMissing, {method, "slow"});
+    if (by_switch && h.fast > 0.0 && h.slow > h.fast)
+      error("home.slow", finding::kHomeSpeedOrder, {speed(h.slow), speed(h.fast)});
+  }
+
+  void not_above(std::string_view key, double value) {
+    if (a_.max_velocity > 0.0 && value > a_.max_velocity)
+      error(key, finding::kSpeedAboveLimit, {std::string(key), speed(value), speed(a_.max_velocity)});
+  }
+  void speeds() {
+    not_above("jog_velocity", a_.jog_velocity);
+    not_above("jog_velocity_not_homed", a_.jog_velocity_not_homed);
+    not_above("home.fast", a_.home.fast);
+    not_above("home.slow", a_.home.slow);
+  }
+
+  void limits() {
+    if (!has_travel()) return;
+    if (a_.endless()) {
+      if (!a_.limit_plus.empty()) error("limit_plus", finding::kEndlessHoming, {});
+      if (!a_.limit_minus.empty()) error("limit_minus", finding::kEndlessHoming, {});
+      return;
+    }
+    if (a_.limit_plus.empty()) warning("letter", finding::kNoLimitSwitch, {"limit_plus"});
+    if (a_.limit_minus.empty()) warning("letter", finding::kNoLimitSwitch, {"limit_minus"});
+    same("limit_plus", a_.limit_plus, "limit_minus", a_.limit_minus);
+    same("home.switch", a_.home.switch_point, "limit_plus", a_.limit_plus);
+    same("home.switch", a_.home.switch_point, "limit_minus", a_.limit_minus);
+    if (a_.hard_limit_plus < a_.travel_max)
+      error("hard_limit_plus", finding::kLimitInside,
+            {"hard_limit_plus", length(a_.hard_limit_plus), length(a_.travel_min), length(a_.travel_max)});
+    if (a_.hard_limit_minus > a_.travel_min)
+      error("hard_limit_minus", finding::kLimitInside,
+            {"hard_limit_minus", length(a_.hard_limit_minus), length(a_.travel_min), length(a_.travel_max)});
+    over_modbus("limit_plus", a_.limit_plus);
+    over_modbus("limit_minus", a_.limit_minus);
+  }
+  void same(std::string_view key, const std::string& one, std::string_view other_key,
+            const std::string& other) {
+    if (!one.empty() && one == other)
+      error(key, finding::kSamePoint, {std::string(key), std::string(other_key), one});
+  }
+  void over_modbus(std::string_view key, const std::string& point) {
+    int station = -1;
+    if (machine_.point(point, &station) == nullptr) return;
+    const StationConfig& s = machine_.stations[static_cast<std::size_t>(station)];
+    if (s.kind == StationKind::modbus)
+      warning(key, finding::kLimitModbus, {point, text::number(a_.max_velocity * s.period, 3)});
+  }
+
+  void brake() {
+    const BrakeConfig& b = a_.brake;
+    if (a_.vertical && !b.present()) error("vertical", finding::kVerticalBrake, {});
+    if (!b.present()) return;
+    if (!b.point.empty() && b.drive_output) error("brake.drive_output", finding::kBrakeTwo, {});
+    if (a_.vertical && b.engage_delay <= 0.0) error("brake.engage_delay", finding::kBrakeDelay, {});
+    int station = -1;
+    if (machine_.point(b.point, &station) == nullptr) return;
+    const StationConfig& s = machine_.stations[static_cast<std::size_t>(station)];
+    if (s.kind == StationKind::modbus)
+      warning("brake.point", finding::kBrakeModbus, {b.point, text::number(s.period * 1000.0)});
+  }
+
+  void pitch() {
+    const auto& t = a_.pitch_table;
+    for (std::size_t i = 1; i < t.size(); ++i) {
+      const std::string key = "pitch_table." + std::to_string(i);
+      const double step = t[i][0] - t[i - 1][0], rise = std::abs(t[i][1] - t[i - 1][1]);
+      if (step <= 0.0)
+        error(key, finding::kPitchOrder, {length(t[i][0]), length(t[i - 1][0])});
+      else if (rise > 0.02 * step)
+        error(key, finding::kPitchSteep, {length(rise), length(step)});
+    }
+  }
+
+  void rest() {
+    if (a_.following_error_warn > 0.0 && a_.following_error_stop > 0.0 &&
+        a_.following_error_warn >= a_.following_error_stop)
+      error("following_error_warn", finding::kWarnAboveStop,
+            {length(a_.following_error_warn), length(a_.following_error_stop)});
+    if (a_.control == ControlMode::csv && a_.position_gain <= 0.0) error("control", finding::kCsvGain, {});
+    if (a_.lead > 0.0 && a_.counts_per_rev > 0 && a_.in_position_window * a_.counts_per_unit() < 1.0)
+      error("in_position_window", finding::kWindowBelowCount,
+            {text::number(a_.in_position_window, 9) + " " + unit_,
+             text::number(1.0 / a_.counts_per_unit(), 9) + " " + unit_});
+  }
+
+  const MachineConfig& machine_;
+  const AxisConfig& a_;
+  std::string path_;
+  Reading& reading_;
+  std::string unit_;
+};
+
+}  // namespace
+
+void check_axes(const MachineConfig& machine, Reading& reading) {
+  if (machine.axes.empty() && machine.places.contains("axis") && !machine.unread.contains("axis"))
+    reading.error(machine.where("axis"), finding::kNoAxes, {});
+  if (machine.axes.size() > static_cast<std::size_t>(image::kMaxAxes))
+    reading.error(machine.where("axis." + std::to_string(image::kMaxAxes)), finding::kTooMany,
+                  {std::to_string(machine.axes.size()), text::both("axes", "Осей слишком много"),
+                   std::to_string(image::kMaxAxes)});
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) AxisCheck(machine, i, reading).all();
+}
+
+void check_spindles(const MachineConfig& machine, Reading& reading) {
+  if (machine.spindles.size() > static_cast<std::size_t>(image::kMaxSpindles))
+    reading.error(machine.where("spindle." + std::to_string(image::kMaxSpindles)), finding::kTooMany,
+                  {std::to_string(machine.spindles.size()), text::both("spindles", "Шпинделей слишком много"),
+                   std::to_string(image::kMaxSpindles)});
+  for (std::size_t i = 0; i < machine.spindles.size(); ++i) {
+    const SpindleConfig& s = machine.spindles[i];
+    const std::string path = "spindle." + std::to_string(i), number = std::to_string(i + 1);
+    if (s.drive.empty() == s.speed_output.empty())
+      reading.error(machine.where(path), finding::kSpindleSource, {number});
+    if (s.max_speed > 0.0 && s.min_speed >= s.max_speed)
+      reading.error(machine.where(path + ".min_speed"), finding::kSpindleSpeeds,
+                    {number, text::number(s.min_speed) + " rpm", text::number(s.max_speed) + " rpm"});
+  }
+}
+
+}  // namespace servogate::machine

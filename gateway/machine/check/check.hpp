@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "gateway/machine/keys/reader.hpp"
+#include "gateway/machine/load.hpp"
+
+/// What single keys cannot tell: one function a subject, each adds its findings. All of them take any machine
+/// that the reader could make, however wrong.
+namespace servogate::machine {
+
+/// Names that are twice or not of the right form: letters, nodes, points, symbols, stations, buses.
+void check_names(MachineConfig& machine, Reading& reading);
+/// Names that lead nowhere: points, nodes, axes, PLC files, simulated things that are no mock.
+void check_references(const MachineConfig& machine, Reading& reading);
+/// Places: inside their packet, not shared, not inside the interface of packet K, one writer.
+void check_places(const MachineConfig& machine, Reading& reading);
+/// Axes: travel, homing, limits, brakes, compensation tables.
+void check_axes(const MachineConfig& machine, Reading& reading);
+/// Spindles.
+void check_spindles(const MachineConfig& machine, Reading& reading);
+/// Emergency stop, start point, control alive: choices that are dangerous.
+void check_safety(const MachineConfig& machine, Reading& reading);
+/// Cycle time, dialect words, transports and channels of stations.
+void check_control(const MachineConfig& machine, Reading& reading);
+/// Bus load and speed of motors against the device files.
+void check_devices(const LoadResult& loaded, Reading& reading);
+
+}  // namespace servogate::machine

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "gateway/machine/check/check.hpp"
+#include "gateway/machine/check/findings.hpp"
+#include "gateway/machine/check/findings_motion.hpp"
+#include "gateway/machine/keys/sections.hpp"
+
+namespace servogate::machine {
+
+namespace {
+
+/// "scheme:" of a transport and whether something has to follow the colon in a form with a port.
+struct Transport {
+  std::string_view scheme;
+  bool port;
+};
+constexpr Transport kCan[] = {
+    {"mock:", false}, {"socketcan:", false}, {"socketcand:", true}, {"udp:", true}, {"gsusb:", false}};
+constexpr Transport kModbus[] = {{"mock:", false}, {"tcp:", true}, {"rtu:", false}};
+constexpr Transport kGpio[] = {{"mock:", false}, {"chip:", false}};
+
+bool port_fits(std::string_view rest) {
+  rest = rest.substr(0, rest.find('/'));
+  const std::size_t colon = rest.rfind(':');
+  if (colon == std::string_view::npos || colon == 0) return false;
+  const std::string_view port = rest.substr(colon + 1);
+  return !port.empty() && port.size() <= 5 &&
+         port.find_first_not_of("0123456789") == std::string_view::npos &&
+         std::stoi(std::string(port)) >= 1 && std::stoi(std::string(port)) <= 65535;
+}
+
+void check_url(const std::string& url, const std::string& path, std::span<const Transport> known,
+               std::string_view expected, const MachineConfig& machine, Reading& reading) {
+  const bool fits = std::any_of(known.begin(), known.end(), [&](const Transport& t) {
+    return url.starts_with(t.scheme) && url.size() > t.scheme.size() &&
+           (!t.port || port_fits(std::string_view(url).substr(t.scheme.size())));
+  });
+  if (!fits) reading.error(machine.where(path), finding::kBadUrl, {"url", url, std::string(expected)});
+}
+
+void check_buses(const MachineConfig& machine, Reading& reading) {
+  static constexpr int kRates[] = {10, 20, 50, 125, 250, 500, 800, 1000};
+  if (machine.buses.size() > static_cast<std::size_t>(image::kMaxSegments))
+    reading.error(machine.where("bus." + std::to_string(image::kMaxSegments)), finding::kTooMany,
+                  {std::to_string(machine.buses.size()), text::both("buses", "Шин слишком много"),
+                   std::to_string(image::kMaxSegments)});
+  for (std::size_t i = 0; i < machine.buses.size(); ++i) {
+    const BusConfig& bus = machine.buses[i];
+    const std::string path = "bus." + std::to_string(i);
+    if (!bus.url.empty())
+      check_url(bus.url, path + ".url", kCan,
+                "mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL", machine,
+                reading);
+    const bool known = std::any_of(std::begin(kRates), std::end(kRates),
+                                   [&](int k) { return bus.bit_rate == std::int64_t{k} * 1000; });
+    if (bus.bit_rate != 0 && !known)
+      reading.error(machine.where(path + ".bit_rate"), finding::kBitRate,
+                    {std::to_string(bus.bit_rate), "10, 20, 50, 125, 250, 500, 800, 1000"});
+  }
+}
+
+class StationCheck {
+ public:
+  StationCheck(const MachineConfig& machine, std::size_t index, Reading& reading)
+      : machine_(machine),
+        s_(machine.stations[index]),
+        path_("station." + std::to_string(index) + "."),
+        reading_(reading) {
+    kind_ = std::string(choices_of<StationKind>()[static_cast<std::size_t>(s_.kind)]);
+  }
+
+  void all() {
+    if (!machine_.places.contains(path_ + "kind")) return;  // unknown kind: said by the reader
+    if (s_.kind == StationKind::drive) {
+      needed("node", s_.node);
+      not_here("url", s_.url);
+      not_here("device", s_.device);
+    } else {
+      needed("url", s_.url);
+      not_here("node", s_.node);
+    }
+    if (s_.kind == StationKind::modbus) needed("device", s_.device);
+    if (!s_.url.empty() && s_.kind == StationKind::modbus)
+      check_url(s_.url, path_ + "url", kModbus, "mock:NAME, tcp:HOST:PORT, rtu:/dev/...", machine_, reading_);
+    if (!s_.url.empty() && s_.kind == StationKind::gpio)
+      check_url(s_.url, path_ + "url", kGpio, "mock:NAME, chip:LABEL", machine_, reading_);
+    if (s_.kind == StationKind::modbus) return;
+    for (std::size_t i = 0; i < s_.points.size(); ++i)
+      if (s_.points[i].is_analog())
+        reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".channel"),
+                       finding::kAnalogOnGpio, {s_.points[i].channel_text, kind_});
+  }
+
+ private:
+  void needed(const std::string& key, const std::string& value) {
+    if (value.empty()) reading_.error(machine_.where(path_ + "kind"), finding::kKeyNeeded, {key, kind_});
+  }
+  void not_here(const std::string& key, const std::string& value) {
+    if (!value.empty()) reading_.error(machine_.where(path_ + key), finding::kKeyNotHere, {key, kind_});
+  }
+
+  const MachineConfig& machine_;
+  const StationConfig& s_;
+  std::string path_;
+  Reading& reading_;
+  std::string kind_;
+};
+
+void check_simulation(const MachineConfig& machine, Reading& reading) {
+  for (std::size_t i = 0; i < machine.simulation.switches.size(); ++i) {
+    const SimulatedSwitch& s = machine.simulation.switches[i];
+    const Where at = machine.where("simulation.switch." + std::to_string(i));
+    if (!std::isfinite(s.from) && !std::isfinite(s.to))
+      reading.error(at, finding::kSwitchZoneMissing, {s.point});
+    else if (s.from >= s.to)
+      reading.error(at, finding::kSwitchZone, {s.point, text::number(s.from), text::number(s.to)});
+  }
+}
+
+void check_estop(const MachineConfig& machine, Reading& reading) {
+  if (machine.safety.estop.empty()) {
+    reading.warning(machine.where("safety"), finding::kNoEstop, {});
+    return;
+  }
+  int station = -1;
+  const PointConfig* point = machine.point(machine.safety.estop, &station);
+  if (point == nullptr) return;
+  const StationConfig& s = machine.stations[static_cast<std::size_t>(station)];
+  const Where at = machine.where("safety.estop");
+  if (s.kind == StationKind::modbus) reading.error(at, finding::kEstopModbus, {point->name, s.name});
+  if (point->inverted) reading.error(at, finding::kEstopInverted, {point->name});
+  if (point->loss != 0.0 || point->hold) reading.error(at, finding::kEstopLoss, {point->name});
+}
+
+}  // namespace
+
+void check_safety(const MachineConfig& machine, Reading& reading) {
+  check_estop(machine, reading);
+  const bool broken = std::any_of(reading.findings.begin(), reading.findings.end(),
+                                  [](const text::Finding& f) { return f.severity == text::Severity::error; });
+  if (broken || machine.all_mock()) return;  // a transport that cannot be read says nothing about the bus
+  if (machine.run.start_point.empty()) reading.warning(machine.where("run"), finding::kNoStartPoint, {});
+  if (machine.run.allow_start_now)
+    reading.warning(machine.where("run.allow_start_now"), finding::kStartNow, {});
+}
+
+void check_control(const MachineConfig& machine, Reading& reading) {
+  // The steps of 60C2h with base 10^-3 and 10^-4 that drives have in common.
+  static constexpr std::int64_t kStepNs = 250'000;
+  if (machine.cycle_ns() % kStepNs != 0)
+    reading.error(machine.where("control.cycle_time"), finding::kCycleStep,
+                  {text::number(machine.control.cycle_time * 1000.0), std::to_string(kStepNs / 1000)});
+  static constexpr std::string_view kDialects[] = {"nc110"};
+  if (std::find(std::begin(kDialects), std::end(kDialects), machine.control.dialect) == std::end(kDialects))
+    reading.error(machine.where("control.dialect"), finding::kUnknownDialect,
+                  {machine.control.dialect, "nc110"});
+  check_buses(machine, reading);
+  for (std::size_t i = 0; i < machine.stations.size(); ++i) StationCheck(machine, i, reading).all();
+  check_simulation(machine, reading);
+}
+
+}  // namespace servogate::machine

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "gateway/machine/check/check.hpp"
+#include "gateway/machine/check/findings.hpp"
+#include "gateway/machine/check/findings_motion.hpp"
+#include "gateway/machine/consequences.hpp"
+#include "gateway/machine/keys/sections.hpp"
+
+namespace servogate::machine {
+
+namespace {
+
+std::string kind_name(DeviceKind kind) {
+  return std::string(choices_of<DeviceKind>()[static_cast<std::size_t>(kind)]);
+}
+
+class DeviceUse {
+ public:
+  DeviceUse(const LoadResult& loaded, Reading& reading)
+      : loaded_(loaded), m_(loaded.machine), reading_(reading) {}
+
+  void nodes() {
+    for (std::size_t b = 0; b < m_.buses.size(); ++b)
+      for (std::size_t n = 0; n < m_.buses[b].nodes.size(); ++n) {
+        const NodeConfig& node = m_.buses[b].nodes[n];
+        const std::string path = "bus." + std::to_string(b) + ".node." + std::to_string(n);
+        const DeviceConfig* device = loaded_.device(node.device);
+        if (device != nullptr && known(*device) && !device->drive())
+          reading_.error(m_.where(path + ".device"), finding::kWrongDevice,
+                         {node.device, kind_name(device->kind), "servo, stepper, spindle"});
+        objects(node, path);
+      }
+  }
+
+  void axes() {
+    for (std::size_t i = 0; i < m_.axes.size(); ++i) {
+      const AxisConfig& a = m_.axes[i];
+      const std::string path = "axis." + std::to_string(i);
+      const DeviceConfig* device = of_node(a.drive);
+      if (device == nullptr || a.lead <= 0.0 || a.counts_per_rev <= 0) continue;
+      const std::string speed =
+          text::number(a.max_velocity) + (a.type == AxisType::rotary ? " deg/s" : " mm/s");
+      motor(*device, m_.node(a.drive)->device, a.letter, speed, a.motor_rpm(a.max_velocity),
+            path + ".max_velocity");
+      if (device->motor.counts_per_rev > 0 && device->motor.counts_per_rev != a.counts_per_rev)
+        reading_.error(m_.where(path + ".counts_per_rev"), finding::kDeviceCounts,
+                       {a.letter, std::to_string(a.counts_per_rev),
+                        std::to_string(device->motor.counts_per_rev), m_.node(a.drive)->device});
+      if (a.brake.drive_output && !device->motor.brake_output)
+        reading_.error(m_.where(path + ".brake.drive_output"), finding::kNoBrakeOutput,
+                       {a.letter, m_.node(a.drive)->device});
+    }
+  }
+
+  void spindles() {
+    for (std::size_t i = 0; i < m_.spindles.size(); ++i) {
+      const SpindleConfig& s = m_.spindles[i];
+      const DeviceConfig* device = of_node(s.drive);
+      if (device == nullptr) continue;
+      const double rpm = s.max_speed * static_cast<double>(s.gear[0]) / static_cast<double>(s.gear[1]);
+      motor(*device, m_.node(s.drive)->device,
+            text::both("spindle " + std::to_string(i + 1), "шпиндель " + std::to_string(i + 1)),
+            text::number(s.max_speed) + " rpm", rpm, "spindle." + std::to_string(i) + ".max_speed");
+    }
+  }
+
+  void stations() {
+    for (std::size_t s = 0; s < m_.stations.size(); ++s) {
+      const StationConfig& station = m_.stations[s];
+      const std::string path = "station." + std::to_string(s);
+      const DeviceConfig* device = loaded_.device(station.device);
+      const DeviceKind wanted =
+          station.kind == StationKind::modbus ? DeviceKind::modbus_io : DeviceKind::gpio;
+      if (device != nullptr && known(*device) && device->kind != wanted) {
+        reading_.error(m_.where(path + ".device"), finding::kWrongDevice,
+                       {station.device, kind_name(device->kind), kind_name(wanted)});
+        continue;
+      }
+      for (std::size_t p = 0; p < station.points.size(); ++p)
+        channel(station, device, station.points[p], path + ".points." + std::to_string(p) + ".channel");
+    }
+  }
+
+  void load() {
+    for (std::size_t b = 0; b < m_.buses.size(); ++b) {
+      const BusConfig& bus = m_.buses[b];
+      if (bus.bit_rate <= 0 || bus.nodes.empty()) continue;
+      const std::vector<canopen::NodeConfig> nodes = planned_nodes(loaded_, bus);
+      const auto rate = static_cast<std::uint32_t>(bus.bit_rate);
+      const canopen::SegmentLoad load = canopen::segment_load(rate, m_.cycle_ns(), nodes);
+      const text::Entry* entry = canopen::load_text(load.load);
+      if (entry == nullptr) continue;
+      const canopen::LoadAdvice advice = canopen::advise(rate, m_.cycle_ns(), nodes);
+      const bool error = load.load > canopen::kLoadError;
+      const double limit = error ? canopen::kLoadError : canopen::kLoadWarning;
+      const std::vector<std::string> arguments{bus.name,
+                                               text::number(load.load * 100.0, 1),
+                                               text::number(limit * 100.0, 1),
+                                               text::number(static_cast<double>(advice.cycle_ns) * 1e-6),
+                                               std::to_string(advice.segments),
+                                               text::number(advice.load_with_4_byte_pdo * 100.0, 1)};
+      const Where at = m_.where("bus." + std::to_string(b) + ".bit_rate");
+      if (error)
+        reading_.error(at, *entry, arguments);
+      else
+        reading_.warning(at, *entry, arguments);
+    }
+  }
+
+ private:
+  /// Its kind was read; otherwise its own findings say enough.
+  static bool known(const DeviceConfig& device) { return device.places.contains("kind"); }
+
+  const DeviceConfig* of_node(const std::string& reference) const {
+    const NodeConfig* node = m_.node(reference);
+    return node == nullptr ? nullptr : loaded_.device(node->device);
+  }
+
+  void objects(const NodeConfig& node, const std::string& path) {
+    for (const auto& [name, value] : node.objects) {
+      const Where at = m_.where(path + ".objects." + name);
+      const auto object = parse_object(name);
+      const int bits = object && object->bits != 0 ? object->bits : 32;
+      if (!object || (bits != 8 && bits != 16 && bits != 32))
+        reading_.error(at, finding::kBadObject, {name, "6065:00/32"});
+      else if (value != std::nearbyint(value) || value < -std::ldexp(1.0, bits - 1) ||
+               value >= std::ldexp(1.0, bits))
+        reading_.error(at, finding::kObjectValue, {name, text::number(value), std::to_string(bits)});
+    }
+  }
+
+  void motor(const DeviceConfig& device, const std::string& name, const std::string& who,
+             const std::string& speed, double rpm, const std::string& path) {
+    if (device.motor.max_speed > 0.0 && rpm > device.motor.max_speed * (1.0 + 1e-9))
+      reading_.warning(m_.where(path), finding::kMotorTooFast,
+                       {who, speed, text::number(rpm, 1), name, text::number(device.motor.max_speed, 1)});
+  }
+
+  void channel(const StationConfig& station, const DeviceConfig* device, const PointConfig& point,
+               const std::string& path) {
+    int count = 0;
+    if (station.kind == StationKind::drive) {
+      count = 32;  // 60FDh and 60FEh have 32 bits
+    } else if (station.kind == StationKind::modbus && device != nullptr && known(*device)) {
+      const ModbusMap& map = device->modbus;
+      const int counts[] = {map.di_count, map.dq_count, map.ai_count, map.aq_count};
+      count = counts[static_cast<std::size_t>(point.channel)];
+    } else {
+      return;
+    }
+    if (point.number >= count)
+      reading_.error(m_.where(path), finding::kChannelOutside,
+                     {point.channel_text, station.device.empty() ? station.node : station.device,
+                      std::to_string(count)});
+  }
+
+  const LoadResult& loaded_;
+  const MachineConfig& m_;
+  Reading& reading_;
+};
+
+}  // namespace
+
+void check_devices(const LoadResult& loaded, Reading& reading) {
+  DeviceUse use(loaded, reading);
+  use.nodes();
+  use.axes();
+  use.spindles();
+  use.stations();
+  use.load();
+}
+
+}  // namespace servogate::machine

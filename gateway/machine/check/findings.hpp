@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "firmware_if/text/finding.hpp"
+
+/// Texts of everything that the checks of a whole machine can find.
+namespace servogate::machine::finding {
+
+// Names
+inline constexpr text::Entry kBadName{
+    "machine.bad_name",
+    "\"{0}\" is no name: letters A-Z a-z, digits and _ are allowed, not beginning with a digit",
+    "«{0}» не годится как имя: допустимы буквы A-Z a-z, цифры и _, первой не может быть цифра"};
+inline constexpr text::Entry kBadLetter{"machine.bad_letter",
+                                        "axis letter \"{0}\": one of A to Z is expected",
+                                        "буква оси «{0}»: ожидалась одна из A ... Z"};
+inline constexpr text::Entry kTwice{"machine.twice", "{0} \"{1}\" is already declared in line {2}",
+                                    "{0} «{1}»: уже описано в строке {2}"};
+inline constexpr text::Entry kBadChannel{"machine.bad_channel",
+                                         "channel \"{0}\": expected di, dq, ai or aq with a number, like di3",
+                                         "канал «{0}»: ожидалось di, dq, ai или aq с номером, например di3"};
+inline constexpr text::Entry kChannelOutside{"machine.channel_outside",
+                                             "channel \"{0}\": the device file {1} has {2} such channels",
+                                             "канал «{0}»: в файле устройства {1} таких каналов {2}"};
+inline constexpr text::Entry kAnalogOnGpio{"machine.analog_on_gpio",
+                                           "channel \"{0}\": a {1} station has digital channels only",
+                                           "канал «{0}»: у станции вида {1} только дискретные каналы"};
+// References
+inline constexpr text::Entry kNoSuch{"machine.no_such", "`{0}`: there is no {1} \"{2}\"{3}",
+                                     "«{0}»: {1} «{2}» не существует{3}"};
+inline constexpr text::Entry kWrongPoint{"machine.wrong_point", "`{0}`: \"{1}\" is {2}, expected {3}",
+                                         "«{0}»: «{1}» — {2}, ожидался {3}"};
+inline constexpr text::Entry kNoFile{"machine.no_file", "`{0}`: file \"{1}\" does not exist",
+                                     "«{0}»: файла «{1}» нет"};
+inline constexpr text::Entry kNoDevice{"machine.no_device",
+                                       "device file \"{0}.toml\" is not found; looked in {1}",
+                                       "файл устройства «{0}.toml» не найден; просмотрены: {1}"};
+inline constexpr text::Entry kDeviceBroken{"machine.device_broken", "device file {0} has errors",
+                                           "в файле устройства {0} есть ошибки"};
+inline constexpr text::Entry kWrongDevice{"machine.wrong_device",
+                                          "device \"{0}\" is a {1}, {2} is expected here",
+                                          "устройство «{0}» — {1}, здесь ожидалось: {2}"};
+inline constexpr text::Entry kNodeTwice{"machine.node_used_twice", "drive \"{0}\" already belongs to {1}",
+                                        "привод «{0}» уже принадлежит: {1}"};
+inline constexpr text::Entry kNotSimulated{"machine.not_simulated",
+                                           "`{0}`: \"{1}\" is not on a mock; nothing simulates it",
+                                           "«{0}»: «{1}» не на имитаторе; его нечем имитировать"};
+// Places
+inline constexpr text::Entry kOverlap{"machine.overlap", "{0} of \"{1}\" overlaps {2} of \"{3}\" (line {4})",
+                                      "{0} сигнала «{1}» перекрывает {2} сигнала «{3}» (строка {4})"};
+inline constexpr text::Entry kInterface{
+    "machine.interface_area", "{0} of \"{1}\" lies in the interface of packet K: {2} is {3}",
+    "{0} сигнала «{1}» лежит в области обмена пакета K: {2} занимает {3}"};
+inline constexpr text::Entry kInterfaceReserved{
+    "machine.interface_area", "{0} of \"{1}\" lies in bytes {2} to {3} of packet K, which the control keeps",
+    "{0} сигнала «{1}» лежит в байтах {2}-{3} пакета K, занятых системой"};
+inline constexpr text::Entry kOutside{"machine.outside_packet",
+                                      "{0} of \"{1}\" is outside its packet of {2} bytes",
+                                      "{0} сигнала «{1}» вне своего пакета из {2} байт"};
+inline constexpr text::Entry kPointPacket{"machine.point_packet",
+                                          "{0} of \"{1}\": a signal lies in packet A (SA...)",
+                                          "{0} сигнала «{1}»: сигнал лежит в пакете A (SA...)"};
+inline constexpr text::Entry kPointFormat{"machine.point_format", "{0} of \"{1}\": {2} needs {3}",
+                                          "{0} сигнала «{1}»: {2}: нужен {3}"};
+inline constexpr text::Entry kInputWriter{"machine.writer", "\"{0}\" is an input; its writer cannot be {1}",
+                                          "«{0}» — вход; писать его не может {1}"};
+inline constexpr text::Entry kOutputWriter{"machine.writer",
+                                           "\"{0}\" is an output; its writer is nc, plc or program",
+                                           "«{0}» — выход; пишет его nc, plc или program"};
+inline constexpr text::Entry kFreeWriter{
+    "machine.writer", "\"{0}\" is a free symbol; nothing reads it in, so its writer cannot be input",
+    "«{0}» — свободный символ; его ничто не вводит, поэтому input невозможен"};
+
+}  // namespace servogate::machine::finding

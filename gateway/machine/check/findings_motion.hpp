@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "firmware_if/text/finding.hpp"
+
+/// Texts of what the checks of axes, spindles, safety and control can find.
+namespace servogate::machine::finding {
+
+// Axes
+inline constexpr text::Entry kNoAxes{"machine.no_axes", "the machine has no axis",
+                                     "у станка нет ни одной оси"};
+inline constexpr text::Entry kTooMany{"machine.too_many", "{0} {1}: at most {2} are possible",
+                                      "{1}: {0}, возможно не больше {2}"};
+inline constexpr text::Entry kTravelOrder{"machine.travel_order",
+                                          "{0}: travel_min {1} is not below travel_max {2}",
+                                          "{0}: travel_min {1} не меньше travel_max {2}"};
+inline constexpr text::Entry kHomeOutside{"machine.home_outside",
+                                          "{0}: {1} {2} is outside the travel {3} to {4}",
+                                          "{0}: {1} {2} вне хода от {3} до {4}"};
+inline constexpr text::Entry kNoHoming{"machine.no_homing",
+                                       "{0}: no [axis.home]: the zero is where the axis is switched on",
+                                       "{0}: нет [axis.home]: нулём будет место, где ось включена"};
+inline constexpr text::Entry kHomeSwitchMissing{"machine.home_switch_missing",
+                                                "{0}: homing by {1} needs `home.switch`",
+                                                "{0}: для способа {1} нужен `home.switch`"};
+inline constexpr text::Entry kHomeSpeedMissing{"machine.home_speed_missing",
+                                               "{0}: homing by {1} needs `home.{2}` above 0",
+                                               "{0}: для способа {1} нужен `home.{2}` больше 0"};
+inline constexpr text::Entry kHomeSpeedOrder{"machine.home_speed_order",
+                                             "{0}: home.slow {1} is above home.fast {2}",
+                                             "{0}: home.slow {1} больше home.fast {2}"};
+inline constexpr text::Entry kSpeedAboveLimit{"machine.speed_above_limit",
+                                              "{0}: {1} {2} is above max_velocity {3}",
+                                              "{0}: {1} {2} больше max_velocity {3}"};
+inline constexpr text::Entry kNoLimitSwitch{
+    "machine.no_limit_switch", "{0}: no {1}: only the software limit stops the axis at that end",
+    "{0}: нет {1}: на этом конце ось остановит только программный предел"};
+inline constexpr text::Entry kLimitInside{"machine.limit_inside",
+                                          "{0}: {1} {2} lies inside the travel {3} to {4}",
+                                          "{0}: {1} {2} лежит внутри хода от {3} до {4}"};
+inline constexpr text::Entry kSamePoint{"machine.same_point",
+                                        "{0}: `{1}` and `{2}` are the same point \"{3}\"",
+                                        "{0}: «{1}» и «{2}» — один и тот же сигнал «{3}»"};
+inline constexpr text::Entry kVerticalBrake{
+    "machine.vertical_without_brake", "{0} is vertical and has no brake: it falls when power goes",
+    "{0}: вертикальная ось без тормоза: при снятии питания она упадёт"};
+inline constexpr text::Entry kBrakeModbus{
+    "machine.brake_over_modbus", "{0}: the brake \"{1}\" is switched over Modbus, up to {2} ms late",
+    "{0}: тормоз «{1}» переключается через Modbus с опозданием до {2} мс"};
+inline constexpr text::Entry kBrakeDelay{
+    "machine.brake_delay", "{0}: brake.engage_delay is 0: power goes before the brake holds",
+    "{0}: brake.engage_delay равен 0: питание снимется раньше, чем тормоз зажмёт"};
+inline constexpr text::Entry kBrakeTwo{"machine.brake_twice",
+                                       "{0}: the brake has both `point` and `drive_output`",
+                                       "{0}: у тормоза заданы и `point`, и `drive_output`"};
+inline constexpr text::Entry kPitchOrder{"machine.pitch_order",
+                                         "{0}: pitch_table: coordinate {1} does not rise above {2}",
+                                         "{0}: pitch_table: координата {1} не больше предыдущей {2}"};
+inline constexpr text::Entry kPitchSteep{
+    "machine.pitch_steep", "{0}: pitch_table: error changes by {1} over {2}; a screw is not that bad",
+    "{0}: pitch_table: погрешность меняется на {1} на пути {2}; настолько плохих винтов не бывает"};
+inline constexpr text::Entry kWarnAboveStop{
+    "machine.warn_above_stop", "{0}: following_error_warn {1} is not below following_error_stop {2}",
+    "{0}: following_error_warn {1} не меньше following_error_stop {2}"};
+inline constexpr text::Entry kCsvGain{"machine.csv_gain",
+                                      "{0}: control = \"csv\" needs position_gain above 0",
+                                      "{0}: для control = \"csv\" нужен position_gain больше 0"};
+inline constexpr text::Entry kDiameter{"machine.diameter",
+                                       "{0}: only a linear axis can be shown as a diameter",
+                                       "{0}: в диаметрах показывается только линейная ось"};
+inline constexpr text::Entry kWindowBelowCount{"machine.window_below_count",
+                                               "{0}: in_position_window {1} is below one count ({2})",
+                                               "{0}: in_position_window {1} меньше одной дискреты ({2})"};
+inline constexpr text::Entry kEndlessHoming{"machine.endless_travel",
+                                            "{0}: an endless axis has no limit switches",
+                                            "{0}: у бесконечной оси не бывает концевых выключателей"};
+// Spindles
+inline constexpr text::Entry kSpindleSource{"machine.spindle_source",
+                                            "spindle {0}: either `drive` or `speed_output` is needed",
+                                            "шпиндель {0}: нужен либо `drive`, либо `speed_output`"};
+inline constexpr text::Entry kSpindleSpeeds{"machine.spindle_speeds",
+                                            "spindle {0}: min_speed {1} is not below max_speed {2}",
+                                            "шпиндель {0}: min_speed {1} не меньше max_speed {2}"};
+// Safety
+inline constexpr text::Entry kEstopModbus{"machine.estop_over_modbus",
+                                          "the emergency-stop chain \"{0}\" comes over Modbus ({1}): a line "
+                                          "that is polled and may be lost; use GPIO or a drive input",
+                                          "цепь аварийного останова «{0}» приходит через Modbus ({1}): линия "
+                                          "опрашивается и может пропасть; нужен GPIO или вход привода"};
+inline constexpr text::Entry kEstopInverted{
+    "machine.estop_inverted",
+    "\"{0}\" is inverted: a broken wire would read as a closed emergency-stop chain",
+    "«{0}» инвертирован: обрыв провода читался бы как замкнутая цепь аварийного останова"};
+inline constexpr text::Entry kEstopLoss{
+    "machine.estop_loss", "\"{0}\": on loss the emergency-stop chain must read 0 (loss = 0, hold = false)",
+    "«{0}»: при потере станции цепь аварийного останова должна читаться как 0 (loss = 0, hold = false)"};
+inline constexpr text::Entry kNoEstop{"machine.no_estop",
+                                      "no emergency-stop chain is declared (safety.estop)",
+                                      "цепь аварийного останова не описана (safety.estop)"};
+inline constexpr text::Entry kLimitModbus{
+    "machine.limit_over_modbus",
+    "{0}: limit switch \"{1}\" comes over Modbus: up to {2} mm further at full speed",
+    "{0}: концевик «{1}» приходит через Modbus: до {2} мм лишнего пути на полной скорости"};
+inline constexpr text::Entry kNoStartPoint{
+    "machine.no_start_point", "real buses and no run.start_point: programs start only by `servogate start`",
+    "настоящие шины без run.start_point: программу запустит только `servogate start`"};
+inline constexpr text::Entry kStartNow{
+    "machine.start_now", "run.allow_start_now: a command can move real drives without the operator's button",
+    "run.allow_start_now: команда сможет двигать настоящие приводы без кнопки оператора"};
+// Control, transports
+inline constexpr text::Entry kCycleStep{"machine.cycle_step", "cycle_time {0} ms is no multiple of {1} us",
+                                        "cycle_time {0} мс не кратно {1} мкс"};
+inline constexpr text::Entry kBadUrl{"machine.bad_url", "`{0}`: \"{1}\" is no transport; expected {2}",
+                                     "«{0}»: «{1}» не транспорт; ожидалось {2}"};
+inline constexpr text::Entry kBitRate{"machine.bit_rate", "bit_rate {0} bit/s is none of CiA 301: {1} kbit/s",
+                                      "bit_rate {0} бит/с нет в CiA 301: {1} кбит/с"};
+inline constexpr text::Entry kUnknownDialect{"machine.unknown_dialect", "dialect \"{0}\" is not one of {1}",
+                                             "язык «{0}» не входит в список: {1}"};
+inline constexpr text::Entry kKeyNotHere{"machine.key_not_here", "`{0}` has no meaning for a {1} station",
+                                         "«{0}» не имеет смысла для станции вида {1}"};
+inline constexpr text::Entry kKeyNeeded{"machine.key_needed", "a {1} station needs `{0}`",
+                                        "для станции вида {1} нужен `{0}`"};
+inline constexpr text::Entry kSwitchZone{"machine.switch_zone", "\"{0}\": from {1} is not below to {2}",
+                                         "«{0}»: from {1} не меньше to {2}"};
+inline constexpr text::Entry kSwitchZoneMissing{"machine.switch_zone", "\"{0}\" needs `from`, `to` or both",
+                                                "«{0}»: нужен `from`, `to` или оба"};
+inline constexpr text::Entry kBadObject{"machine.bad_object",
+                                        "\"{0}\" is no object; expected a form like {1}",
+                                        "«{0}» не объект; ожидался вид {1}"};
+inline constexpr text::Entry kObjectValue{"machine.object_value",
+                                          "object {0}: {1} does not fit into {2} bits",
+                                          "объект {0}: {1} не помещается в {2} бит"};
+// Devices
+inline constexpr text::Entry kMotorTooFast{
+    "machine.motor_too_fast", "{0}: {1} needs {2} rpm of the motor; {3} allows {4} rpm",
+    "{0}: для {1} двигатель должен вращаться {2} об/мин; {3} допускает {4} об/мин"};
+inline constexpr text::Entry kDeviceCounts{
+    "machine.device_counts", "{0}: counts_per_rev {1} differs from {2} of the device file {3}",
+    "{0}: counts_per_rev {1} отличается от {2} в файле устройства {3}"};
+inline constexpr text::Entry kNoBrakeOutput{"machine.no_brake_output",
+                                            "{0}: brake.drive_output, but {1} has no brake output",
+                                            "{0}: задан brake.drive_output, но у {1} нет выхода тормоза"};
+inline constexpr text::Entry kPdoSize{"machine.pdo_size", "{0} {1} maps {2} bits; 64 fit",
+                                      "{0} {1}: отображено {2} бит; помещается 64"};
+inline constexpr text::Entry kPdoTwice{"machine.pdo_twice", "{0} {1} is already declared in line {2}",
+                                       "{0} {1}: уже описан в строке {2}"};
+inline constexpr text::Entry kPdoNoWord{"machine.pdo_no_word", "no {0} maps {1} ({2})",
+                                        "ни один {0} не содержит {1} ({2})"};
+inline constexpr text::Entry kPdoTransmission{"machine.pdo_transmission",
+                                              "transmission {0} is reserved: 0 to 240, 254, 255",
+                                              "тип передачи {0} зарезервирован: 0-240, 254, 255"};
+
+}  // namespace servogate::machine::finding

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/machine/config.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "gateway/machine/keys/reader.hpp"
+
+namespace servogate::machine {
+
+Where MachineConfig::where(std::string_view path) const { return find_place(places, path); }
+
+std::string MachineConfig::resolve(std::string_view relative) const {
+  return (std::filesystem::path(file).parent_path() / std::filesystem::path(relative)).string();
+}
+
+std::int64_t MachineConfig::cycle_ns() const { return std::llround(control.cycle_time * 1e9); }
+
+int MachineConfig::axis_index(std::string_view letter) const {
+  const auto it =
+      std::find_if(axes.begin(), axes.end(), [&](const AxisConfig& a) { return a.letter == letter; });
+  return it == axes.end() ? -1 : static_cast<int>(it - axes.begin());
+}
+
+const PointConfig* MachineConfig::point(std::string_view wanted, int* station) const {
+  for (std::size_t s = 0; s < stations.size(); ++s)
+    for (const PointConfig& p : stations[s].points)
+      if (p.name == wanted) {
+        if (station != nullptr) *station = static_cast<int>(s);
+        return &p;
+      }
+  return nullptr;
+}
+
+const NodeConfig* MachineConfig::node(std::string_view reference, int* bus, int* index) const {
+  const std::size_t dot = reference.find('.');
+  if (dot == std::string_view::npos) return nullptr;
+  for (std::size_t b = 0; b < buses.size(); ++b) {
+    if (buses[b].name != reference.substr(0, dot)) continue;
+    for (std::size_t n = 0; n < buses[b].nodes.size(); ++n)
+      if (buses[b].nodes[n].name == reference.substr(dot + 1)) {
+        if (bus != nullptr) *bus = static_cast<int>(b);
+        if (index != nullptr) *index = static_cast<int>(n);
+        return &buses[b].nodes[n];
+      }
+  }
+  return nullptr;
+}
+
+bool MachineConfig::all_mock() const {
+  return std::all_of(buses.begin(), buses.end(), [](const BusConfig& b) { return b.mock(); }) &&
+         std::all_of(stations.begin(), stations.end(), [](const StationConfig& s) { return s.mock(); });
+}
+
+std::vector<std::string> MachineConfig::letters() const {
+  std::vector<std::string> out;
+  for (const AxisConfig& a : axes) out.push_back(a.letter);
+  return out;
+}
+
+std::vector<image::Symbol> MachineConfig::symbol_table() const {
+  std::vector<image::Symbol> out =
+      image::interface_symbols(control.processes, letters(), static_cast<int>(spindles.size()));
+  for (const StationConfig& s : stations)
+    for (const PointConfig& p : s.points) out.push_back({p.name, p.place, p.writer, p.comment});
+  for (const SymbolConfig& s : symbols) out.push_back({s.name, s.place, s.writer, s.comment});
+  return out;
+}
+
+}  // namespace servogate::machine

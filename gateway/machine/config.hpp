@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/image/interface_map.hpp"
+#include "firmware_if/image/packets.hpp"
+#include "firmware_if/image/process_image.hpp"
+
+/// The machine file as plain values: what everything else is composed from. One struct a table of the file,
+/// one member a key; defaults are the initialisers here, and validation, JSON schema and reference come from
+/// keys.cpp. Units: mm or degrees (rotary axis), seconds, rpm for spindles; an X in diameter is described as
+/// a radius. Nothing here is real-time safe (strings); the gateway copies what the cycle needs.
+namespace servogate::machine {
+
+/// A place in the machine file, counted from 1; 0 = not known.
+struct Where {
+  int line = 0;
+  int column = 0;
+};
+
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+enum class AxisType : std::uint8_t { linear, rotary };
+enum class Direction : std::uint8_t { plus, minus };
+/// How an axis finds its zero. `absolute`: the kept reference of an absolute encoder; `none`: zero where it
+/// is switched on.
+enum class HomingMethod : std::uint8_t { switch_and_index, switch_only, index, absolute, none };
+/// Which side closes the position loop: `csp` the drive, `csv` the kernel.
+enum class ControlMode : std::uint8_t { csp, csv };
+
+/// [axis.home]
+struct HomingConfig {
+  HomingMethod method = HomingMethod::none;
+  Direction direction = Direction::minus;  ///< of the search for the switch
+  std::string switch_point;                ///< key `switch`: name of an input point
+  double fast = 0.0;                       ///< search for the switch, mm/s
+  double slow = 0.0;                       ///< leaving the switch and search for the index, mm/s
+  /// The decisive edge is crossed slowly and the index sought in this direction; opposite to `direction`:
+  /// leaving the switch, equal: driving onto it.
+  Direction index_direction = Direction::plus;
+  double index_max_travel = 0.0;  ///< give up the search for the index after this, 0: one and a half turns
+  double position = 0.0;          ///< machine coordinate of the index (of the switch edge without one), mm
+  double max_travel = 0.0;        ///< give up the search for the switch after this, 0: 1.2 x travel
+  bool final_move = true;         ///< drives to final_position after referencing
+  double final_position = 0.0;    ///< machine coordinate, mm
+  double timeout = 60.0;          ///< s for the whole of it
+  int order = 1;                  ///< axes of the same order home together, lower ones first
+};
+
+/// [axis.brake]: holding brake, opened by an output point or by the drive's own brake output.
+struct BrakeConfig {
+  std::string point;           ///< name of an output point, TRUE = open
+  bool drive_output = false;   ///< the drive's own output (60FEh bit 0)
+  double release_delay = 0.0;  ///< s from the output to an open brake; no motion before
+  double torque_delay = 0.05;  ///< s from Operation enabled until the drive surely holds the load
+  double slip_window = 0.5;    ///< mm of movement permitted while the brake opens or closes
+  double engage_delay = 0.0;   ///< s from the output to a closed brake; power stays on that long
+  bool present() const { return drive_output || !point.empty(); }
+};
+
+/// [[axis]]
+struct AxisConfig {
+  std::string letter;  ///< "X", one of A-Z
+  std::string name;    ///< for people
+  AxisType type = AxisType::linear;
+  bool diameter = false;  ///< programs and displays show twice the machine coordinate
+  std::string drive;      ///< "bus.node"
+
+  double lead = 0.0;                          ///< mm (degrees) per turn of the screw (output of the gear)
+  std::array<std::int64_t, 2> gear = {1, 1};  ///< motor turns : screw turns, exact
+  std::int64_t counts_per_rev = 0;            ///< counts per turn of the motor
+  Direction direction = Direction::plus;      ///< minus: rising counts are falling coordinates
+  ControlMode control = ControlMode::csp;
+  double position_gain = 0.0;  ///< 1/s, csv only
+
+  double max_velocity = 0.0;      ///< mm/s
+  double max_acceleration = 0.0;  ///< mm/s2
+  double max_jerk = 0.0;          ///< mm/s3
+  double travel_min = 0.0;        ///< machine coordinates, mm; rotary with both 0: endless
+  double travel_max = 0.0;
+  double following_error_warn = 0.0;      ///< mm at standstill, 0: no warning
+  double following_error_stop = 0.0;      ///< mm at standstill
+  double following_error_velocity = 0.0;  ///< s: allowed in addition per mm/s of set-point speed
+  double in_position_window = 0.01;       ///< mm
+  double in_position_time = 0.01;         ///< s inside the window
+  double in_position_timeout = 2.0;       ///< s from the set-point's rest to an alarm, 0: none
+  double jog_velocity = 0.0;              ///< mm/s, 0: a tenth of max_velocity
+  double jog_velocity_not_homed = 0.0;    ///< mm/s, also off a hard limit; 0: a hundredth of max_velocity
+  std::string limit_plus;                 ///< input points, TRUE = on the limit
+  std::string limit_minus;
+  double hard_limit_plus =
+      kNoLimit;  ///< machine coordinate at which the switch works, for the braking margin
+  double hard_limit_minus = -kNoLimit;
+  double backlash = 0.0;                           ///< mm, taken up when moving in minus direction
+  std::vector<std::array<double, 2>> pitch_table;  ///< machine coordinate mm -> error mm, rising coordinates
+  bool vertical = false;
+  HomingConfig home;
+  BrakeConfig brake;
+
+  bool endless() const { return type == AxisType::rotary && travel_min == 0.0 && travel_max == 0.0; }
+  /// Drive counts per mm (degree), without sign.
+  double counts_per_unit() const {
+    return static_cast<double>(counts_per_rev) * static_cast<double>(gear[0]) /
+           (static_cast<double>(gear[1]) * lead);
+  }
+  /// Motor speed in rpm at a speed of the axis in mm/s (degrees/s).
+  double motor_rpm(double velocity) const {
+    return velocity / lead * static_cast<double>(gear[0]) / static_cast<double>(gear[1]) * 60.0;
+  }
+  double jog() const { return jog_velocity > 0.0 ? jog_velocity : max_velocity / 10.0; }
+  double jog_not_homed() const {
+    return jog_velocity_not_homed > 0.0 ? jog_velocity_not_homed : max_velocity / 100.0;
+  }
+};
+
+/// [[spindle]]: a CANopen drive, or an analog output with relay points.
+struct SpindleConfig {
+  std::string name;
+  std::string drive;         ///< "bus.node", or empty
+  std::string speed_output;  ///< analog output point, full scale = max_speed
+  std::string cw_output;     ///< output points of the relays
+  std::string ccw_output;
+  double min_speed = 0.0;                     ///< rpm
+  double max_speed = 0.0;                     ///< rpm
+  double acceleration = 1000.0;               ///< rpm/s
+  std::array<std::int64_t, 2> gear = {1, 1};  ///< motor turns : spindle turns
+  std::int64_t counts_per_rev = 0;            ///< encoder counts per turn of the spindle, 0: no encoder
+  Direction direction = Direction::plus;
+  double at_speed_window = 5.0;    ///< per cent
+  double at_speed_timeout = 10.0;  ///< s from the ramp's end to an alarm, 0: none
+  double orient_angle = 0.0;       ///< degrees, oriented stop
+  double orient_speed = 60.0;      ///< rpm
+  bool has_encoder() const { return counts_per_rev > 0; }
+};
+
+/// [[bus.node]]
+struct NodeConfig {
+  std::string name;
+  int id = 0;                             ///< CANopen node-ID 1-127
+  std::string device;                     ///< device file without .toml
+  double heartbeat = 0.1;                 ///< s, producer time of the node; 0: none
+  int loss_cycles = 3;                    ///< cycles without process data until the node counts as lost
+  std::map<std::string, double> objects;  ///< "6065:00" -> value, written at boot after the device file's own
+};
+
+/// [[bus]]
+struct BusConfig {
+  std::string name;
+  std::string
+      url;  ///< "mock:NAME", "socketcan:IF", "socketcand:HOST:PORT/NAME", "udp:GROUP:PORT", "gsusb:SERIAL"
+  std::int64_t bit_rate = 0;  ///< bit/s
+  std::vector<NodeConfig> nodes;
+  bool mock() const { return url.starts_with("mock:"); }
+};
+
+enum class StationKind : std::uint8_t { modbus, gpio, drive };
+enum class ChannelKind : std::uint8_t { di, dq, ai, aq };
+
+/// One of [[station]] points: a wire of the machine with its place in packet A.
+struct PointConfig {
+  std::string name;
+  std::string channel_text;               ///< key `channel`: "di3", "do0", "ai1", "ao0"
+  ChannelKind channel = ChannelKind::di;  ///< taken apart by the loader; its kind is the direction
+  int number = -1;                        ///< -1: the channel could not be read
+  image::Place place;
+  bool inverted = false;
+  double loss =
+      0.0;  ///< value in packet A (input) or on the wire (output) while the station is lost, as written
+  image::Writer writer = image::Writer::plc;  ///< of an output; an input's is `input`
+  bool hold = false;   ///< keeps the last value while the station is lost, instead of `loss`
+  double scale = 1.0;  ///< analog: value in packet A = raw * scale + shift
+  double shift = 0.0;
+  double debounce = 0.0;  ///< s
+  std::string comment;
+  bool is_input() const { return channel == ChannelKind::di || channel == ChannelKind::ai; }
+  bool is_analog() const { return channel == ChannelKind::ai || channel == ChannelKind::aq; }
+};
+
+/// [[station]]: a Modbus station, a GPIO chip, or the digital inputs and outputs of a drive.
+struct StationConfig {
+  std::string name;
+  StationKind kind = StationKind::gpio;
+  std::string url;  ///< modbus: "mock:NAME", "tcp:HOST:PORT", "rtu:/dev/..."; gpio: "mock:NAME", "chip:LABEL"
+  std::string node;      ///< drive: "bus.node"
+  std::string device;    ///< device file without .toml, modbus
+  int unit = 1;          ///< modbus unit identifier
+  double period = 0.02;  ///< s between polls, modbus; GPIO is read every cycle
+  double timeout = 0.1;  ///< s until an answer is late
+  std::vector<PointConfig> points;
+  bool mock() const { return kind == StationKind::drive || url.starts_with("mock:"); }
+};
+
+/// [[symbol]]: a free place with a name.
+struct SymbolConfig {
+  std::string name;
+  image::Place place;
+  image::Writer writer = image::Writer::plc;
+  std::string comment;
+};
+
+/// [plc]
+struct PlcConfig {
+  std::vector<std::string> sources;  ///< as written; resolve() makes paths of them
+  double handshake_timeout = 10.0;   ///< s until an M, S, T or H word that is not acknowledged is an alarm
+};
+
+/// [safety]
+struct SafetyConfig {
+  std::string estop;          ///< input point: TRUE = the chain is closed. Never over Modbus.
+  std::string control_alive;  ///< output point that toggles while the control runs
+};
+
+/// [run]
+struct RunConfig {
+  bool allow_start_now = false;  ///< `run --start-now` may move real drives without the operator's start
+  std::string start_point;       ///< input point of the operator's start button, for buses that are no mock
+  std::string socket;            ///< control socket; empty: $XDG_RUNTIME_DIR/servogate/NAME.sock
+  std::string state = "state";   ///< state directory, relative to the machine file
+};
+
+/// [realtime]
+struct RealtimeConfig {
+  int cpu = -1;  ///< -1: not bound
+  int priority = 80;
+};
+
+/// [[simulation.switch]]: a mock input that follows a simulated axis; TRUE while from <= position <= to.
+struct SimulatedSwitch {
+  std::string point;
+  std::string axis;
+  double from = -kNoLimit;
+  double to = kNoLimit;
+};
+/// [[simulation.loop]]: a mock input that follows an output after a delay.
+struct SimulatedLoop {
+  std::string output;
+  std::string input;
+  bool inverted = false;
+  double delay = 0.0;  ///< s
+};
+/// [[simulation.indexer]]: a turret or magazine on mock inputs: while `output` is on, the next of `inputs` is
+/// TRUE after every `step`, between two of them none for the first half of it.
+struct SimulatedIndexer {
+  std::string output;
+  std::vector<std::string> inputs;
+  double step = 0.5;  ///< s from one position to the next
+};
+/// [[simulation.drive]]: the plant behind a simulated drive. Masses are seen from the motor shaft.
+struct SimulatedDrive {
+  std::string node;                 ///< "bus.node"
+  double start = 0.0;               ///< where the axis stands at power-on, mm from machine zero
+  double zero_mark = 0.0;           ///< counts from machine zero to the nearest zero mark in plus direction
+  double inertia = 0.0;             ///< kg m2, 0: the device file's
+  double friction_coulomb = 0.0;    ///< N m
+  double friction_viscous = 0.0;    ///< N m s/rad
+  double gravity_torque = 0.0;      ///< N m, vertical axis
+  double max_torque = 0.0;          ///< N m, 0: the device file's
+  bool absolute_encoder = false;    ///< false: the encoder reads 0 at power-on wherever the axis stands
+  double end_stop_min = -kNoLimit;  ///< rigid stops, machine coordinates, mm
+  double end_stop_max = kNoLimit;
+};
+/// [simulation]: what the mocks do. Without effect on anything that is not a mock.
+struct SimulationConfig {
+  std::map<std::string, double> initial;  ///< point -> value at start (before `inverted`)
+  std::vector<std::string>
+      operator_closes;  ///< points that the operator of `run` sets: the emergency-stop chain
+  std::vector<SimulatedSwitch> switches;
+  std::vector<SimulatedLoop> loops;
+  std::vector<SimulatedIndexer> indexers;
+  std::vector<SimulatedDrive> drives;
+};
+
+/// [control]
+struct ControlConfig {
+  double cycle_time = 0.001;  ///< s
+  std::string dialect = "nc110";
+  std::vector<std::string> power_on;        ///< in the dialect's words: "G94", ...
+  std::map<std::string, double> variables;  ///< "ERF" -> mm, "MCD" -> 2, ...
+  double contour_tolerance = 0.01;          ///< mm
+  int processes = 1;
+  int k_size = static_cast<int>(image::kPacketKDefaultSize);  ///< bytes of packet K
+  int syvar_size = static_cast<int>(image::kSyvarDefaultSize);
+};
+
+/// The whole machine file.
+struct MachineConfig {
+  int schema = 0;
+  std::string name;
+  ControlConfig control;
+  RunConfig run;
+  RealtimeConfig realtime;
+  SafetyConfig safety;
+  PlcConfig plc;
+  std::vector<BusConfig> buses;
+  std::vector<AxisConfig> axes;
+  std::vector<SpindleConfig> spindles;
+  std::vector<StationConfig> stations;
+  std::vector<SymbolConfig> symbols;
+  SimulationConfig simulation;
+
+  std::string file;  ///< path as given to load(), the `file` of every finding
+  /// Place of every key that the file has, by path: "axis.0.home.position", "bus.0.node.2.id", "control".
+  std::map<std::string, Where, std::less<>> places;
+  /// Paths of keys that the file has but whose value was wrong: already said, their members hold defaults.
+  std::set<std::string, std::less<>> unread;
+
+  /// Place of a key, or of the nearest table around it when the file does not have it.
+  Where where(std::string_view path) const;
+  /// Path of a name in this file (PLC source, state directory) seen from the machine file's folder.
+  std::string resolve(std::string_view relative) const;
+  std::int64_t cycle_ns() const;
+  /// Index of the axis with this letter, -1: none.
+  int axis_index(std::string_view letter) const;
+  /// A point by name (case as written), nullptr: none. `station` gets its station's index where asked for.
+  const PointConfig* point(std::string_view name, int* station = nullptr) const;
+  /// A node by "bus.node", nullptr: none. The out-parameters get the indices where asked for.
+  const NodeConfig* node(std::string_view reference, int* bus = nullptr, int* index = nullptr) const;
+  /// True when every bus and station is a mock.
+  bool all_mock() const;
+  /// Letters in axis order.
+  std::vector<std::string> letters() const;
+  /// Every name the PLC, the part program and the operator can use: points, free symbols, interface of packet
+  /// K.
+  std::vector<image::Symbol> symbol_table() const;
+};
+
+}  // namespace servogate::machine

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/machine/consequences.hpp"
+
+#include <cmath>
+
+#include "gateway/machine/keys/json.hpp"
+
+namespace servogate::machine {
+
+namespace {
+
+constexpr text::Entry kScale{"consequence.scale", "{0}: {1} = {2} counts; {3} = {4} rpm",
+                             "{0}: {1} = {2} дискрет; {3} = {4} об/мин"};
+constexpr text::Entry kStop{"consequence.stop", "{0}: stops from {1} within {2}, in {3} s",
+                            "{0}: останавливается с {1} на пути {2} за {3} с"};
+constexpr text::Entry kMargin{"consequence.limit_margin",
+                              "{0}: hard limits lie {1} and {2} outside the travel; a stop that begins on "
+                              "the switch ends within them from {3}",
+                              "{0}: аварийные концевики на {1} и {2} за ходом; остановка, начатая от "
+                              "концевика, укладывается в этот путь с {3}"};
+constexpr text::Entry kHome{"consequence.home", "home {0} on {1}, {2} ms: ±{3} at {4}{5}",
+                            "выход в ноль {0} по {1}, {2} мс: ±{3} на {4}{5}"};
+constexpr text::Entry kFollowing{"consequence.following_error",
+                                 "{0}: stops at a following error of {1} at rest, {2} at {3}",
+                                 "{0}: останов при рассогласовании {1} в покое, {2} на {3}"};
+constexpr text::Entry kSpindle{"consequence.spindle",
+                               "{0}: {1} to {2} rpm, {3} s to full speed; the motor turns at {4} rpm",
+                               "{0}: от {1} до {2} об/мин, {3} с до полной частоты; двигатель {4} об/мин"};
+constexpr text::Entry kBus{
+    "consequence.bus_load",
+    "bus {0}: {1} nodes load it by {2} % on average, {3} % if everything falls into one cycle",
+    "шина {0}: узлов {1}, загрузка в среднем {2} %, {3} %, если всё совпадёт в одном цикле"};
+constexpr text::Entry kStation{"consequence.station", "{0}: {1} signals, up to {2} ms old",
+                               "{0}: сигналов {1}, возраст до {2} мс"};
+constexpr text::Entry kBrake{"consequence.brake", "{0}: power goes {1} ms after the brake is told to engage",
+                             "{0}: питание снимается через {1} мс после команды на зажатие тормоза"};
+
+/// Way and time of a jerk-limited stop from speed v to rest. Where the acceleration is not reached, the
+/// profile is two ramps of jerk.
+struct Stop {
+  double way = 0.0;
+  double time = 0.0;
+};
+Stop stop_from(double v, double a, double j) {
+  const double time = v * j >= a * a ? v / a + a / j : 2.0 * std::sqrt(v / j);
+  return {v * time / 2.0, time};
+}
+
+/// Greatest speed from which a stop fits into `way`.
+double speed_for(double way, double a, double j) {
+  double low = 0.0, high = 1e6;
+  for (int i = 0; i < 80; ++i) {
+    const double middle = (low + high) / 2.0;
+    (stop_from(middle, a, j).way <= way ? low : high) = middle;
+  }
+  return low;
+}
+
+class Sentences {
+ public:
+  explicit Sentences(const LoadResult& loaded) : loaded_(loaded), m_(loaded.machine) {}
+
+  std::vector<Consequence> all() {
+    for (const BusConfig& bus : m_.buses) this->bus(bus);
+    for (const AxisConfig& a : m_.axes)
+      if (a.lead > 0.0 && a.counts_per_rev > 0 && a.max_velocity > 0.0 && a.max_acceleration > 0.0 &&
+          a.max_jerk > 0.0)
+        axis(a);
+    for (std::size_t i = 0; i < m_.spindles.size(); ++i) spindle(m_.spindles[i], static_cast<int>(i));
+    for (const StationConfig& s : m_.stations) station(s);
+    return std::move(lines_);
+  }
+
+ private:
+  void say(std::string subject, const text::Entry& entry, std::vector<std::string> arguments,
+           std::map<std::string, double> figures) {
+    lines_.push_back({std::move(subject), &entry, std::move(arguments), std::move(figures)});
+  }
+
+  void bus(const BusConfig& bus) {
+    if (bus.bit_rate <= 0) return;
+    const canopen::SegmentLoad load = segment_load(loaded_, bus);
+    say("bus " + bus.name, kBus,
+        {bus.name, std::to_string(bus.nodes.size()), text::number(load.load * 100.0, 1),
+         text::number(load.worst_cycle * 100.0, 1)},
+        {{"load", load.load},
+         {"worst_cycle", load.worst_cycle},
+         {"nodes", static_cast<double>(bus.nodes.size())}});
+  }
+
+  void axis(const AxisConfig& a) {
+    unit_ = a.type == AxisType::rotary ? "deg" : "mm";
+    const double counts = a.counts_per_unit(), rpm = a.motor_rpm(a.max_velocity);
+    say(a.letter, kScale,
+        {a.letter, "1 " + unit_, text::number(counts, 4), speed(a.max_velocity), text::number(rpm, 1)},
+        {{"counts_per_unit", counts}, {"max_velocity", a.max_velocity}, {"motor_rpm", rpm}});
+    const Stop stop = stop_from(a.max_velocity, a.max_acceleration, a.max_jerk);
+    say(a.letter, kStop, {a.letter, speed(a.max_velocity), length(stop.way), text::number(stop.time, 3)},
+        {{"stop_distance", stop.way}, {"stop_time", stop.time}});
+    margin(a);
+    const double moving = a.following_error_stop + a.following_error_velocity * a.max_velocity;
+    say(a.letter, kFollowing,
+        {a.letter, length(a.following_error_stop), length(moving), speed(a.max_velocity)},
+        {{"at_rest", a.following_error_stop}, {"at_max_velocity", moving}});
+    home(a);
+    if (a.brake.present())
+      say(a.letter, kBrake, {a.letter, text::number(a.brake.engage_delay * 1e3)},
+          {{"engage_delay", a.brake.engage_delay}});
+  }
+
+  void margin(const AxisConfig& a) {
+    if (!std::isfinite(a.hard_limit_plus) || !std::isfinite(a.hard_limit_minus)) return;
+    const double plus = a.hard_limit_plus - a.travel_max, minus = a.travel_min - a.hard_limit_minus;
+    const double way = std::max(0.0, std::min(plus, minus));
+    const double v = speed_for(way, a.max_acceleration, a.max_jerk);
+    say(a.letter, kMargin, {a.letter, length(minus), length(plus), speed(std::floor(v * 10.0) / 10.0)},
+        {{"margin_minus", minus}, {"margin_plus", plus}, {"safe_velocity", v}});
+  }
+
+  /// The switch is seen once in the period of its station: that long the axis moves on unseen.
+  void home(const AxisConfig& a) {
+    const HomingConfig& h = a.home;
+    int station = -1;
+    if (h.switch_point.empty() || m_.point(h.switch_point, &station) == nullptr) return;
+    const StationConfig& s = m_.stations[static_cast<std::size_t>(station)];
+    const bool modbus = s.kind == StationKind::modbus;
+    const double period = modbus ? s.period : m_.control.cycle_time;
+    const bool index = h.method == HomingMethod::switch_and_index;
+    // Without an index the slow edge is the zero; with one it only has to find the right turn.
+    const double v = h.method == HomingMethod::switch_only ? h.slow : h.fast;
+    if (v <= 0.0) return;
+    static constexpr const char* kNames[] = {"Modbus", "GPIO", "CAN"};
+    say(a.letter, kHome,
+        {a.letter, kNames[static_cast<std::size_t>(s.kind)], text::number(period * 1e3), length(v * period),
+         speed(v), index ? text::both(", the index makes it exact", ", точность даёт нулевая метка") : ""},
+        {{"uncertainty", v * period}, {"velocity", v}, {"period", period}});
+  }
+
+  void spindle(const SpindleConfig& s, int index) {
+    const double motor = s.max_speed * static_cast<double>(s.gear[0]) / static_cast<double>(s.gear[1]);
+    const std::string who = s.name.empty() ? "S" + (index == 0 ? "" : std::to_string(index + 1)) : s.name;
+    say("S" + (index == 0 ? std::string() : std::to_string(index + 1)), kSpindle,
+        {who, text::number(s.min_speed), text::number(s.max_speed),
+         text::number(s.max_speed / s.acceleration, 2), text::number(motor, 1)},
+        {{"max_speed", s.max_speed},
+         {"motor_rpm", motor},
+         {"time_to_full_speed", s.max_speed / s.acceleration}});
+  }
+
+  void station(const StationConfig& s) {
+    // A poll may just have passed when a signal changes, and the answer then waits for its cycle.
+    const double age = (s.kind == StationKind::modbus ? s.period : 0.0) + m_.control.cycle_time;
+    say(s.name, kStation, {s.name, std::to_string(s.points.size()), text::number(age * 1e3)},
+        {{"signals", static_cast<double>(s.points.size())}, {"age", age}});
+  }
+
+  std::string length(double v) const { return text::number(v, 3) + " " + unit_; }
+  std::string speed(double v) const { return text::number(v, 3) + " " + unit_ + "/s"; }
+
+  const LoadResult& loaded_;
+  const MachineConfig& m_;
+  std::vector<Consequence> lines_;
+  std::string unit_;
+};
+
+}  // namespace
+
+std::string Consequence::str(text::Language language) const {
+  return text::render(*entry, arguments, language);
+}
+
+std::vector<canopen::NodeConfig> planned_nodes(const LoadResult& loaded, const BusConfig& bus) {
+  std::vector<canopen::NodeConfig> out;
+  for (const NodeConfig& node : bus.nodes) {
+    const DeviceConfig* device = loaded.device(node.device);
+    if (device == nullptr) continue;
+    canopen::NodeConfig planned;
+    planned.node = static_cast<canopen::NodeId>(node.id);
+    planned.name = node.name;
+    planned.profile = drive_profile(*device, node, 0);
+    out.push_back(std::move(planned));
+  }
+  return out;
+}
+
+canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus) {
+  return canopen::segment_load(static_cast<std::uint32_t>(bus.bit_rate), loaded.machine.cycle_ns(),
+                               planned_nodes(loaded, bus));
+}
+
+std::vector<Consequence> consequences(const LoadResult& loaded) { return Sentences(loaded).all(); }
+
+std::string to_json(const LoadResult& loaded, const std::vector<Consequence>& lines,
+                    text::Language language) {
+  std::string out = "{\"schema\":1,\"machine\":" + json_string(loaded.machine.name) + ",\"consequences\":[";
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    out += i == 0 ? "" : ",";
+    out += "{\"subject\":" + json_string(lines[i].subject) + ",\"id\":" + json_string(lines[i].entry->id) +
+           ",\"text\":" + json_string(lines[i].str(language)) + ",\"figures\":{";
+    bool first = true;
+    for (const auto& [name, value] : lines[i].figures) {
+      out += (first ? "" : ",") + json_string(name) + ":" + json_number(value);
+      first = false;
+    }
+    out += "}}";
+  }
+  return out + "]}";
+}
+
+std::string to_json(const std::vector<text::Finding>& findings, text::Language language) {
+  std::string out = "[";
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    const text::Finding& f = findings[i];
+    out += i == 0 ? "" : ",";
+    out += "{\"file\":" + json_string(f.file) + ",\"line\":" + std::to_string(f.line) +
+           ",\"column\":" + std::to_string(f.column) +
+           ",\"severity\":" + (f.severity == text::Severity::error ? "\"error\"" : "\"warning\"") +
+           ",\"code\":" + json_string(f.entry->id) +
+           ",\"text\":" + json_string(text::render(*f.entry, f.arguments, language)) + "}";
+  }
+  return out + "]";
+}
+
+}  // namespace servogate::machine

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "firmware_if/canopen/master/segment_load.hpp"
+#include "firmware_if/text/finding.hpp"
+#include "gateway/machine/load.hpp"
+
+namespace servogate::machine {
+
+/// What the numbers of a machine file mean, one sentence: "X: 1 mm = 26214.4 counts; 500 mm/s = 3000 rpm".
+struct Consequence {
+  std::string subject;  ///< axis letter, "bus can", point name
+  const text::Entry* entry = nullptr;
+  std::vector<std::string> arguments;
+  std::map<std::string, double> figures;  ///< the numbers behind the sentence, for --json
+  std::string str(text::Language language = text::user_language()) const;
+};
+
+/// Nodes of a bus as the CANopen master wants them, in the order of the file, without targets.
+/// Nodes whose device file could not be read are left out.
+std::vector<canopen::NodeConfig> planned_nodes(const LoadResult& loaded, const BusConfig& bus);
+
+/// Planned load of a segment with its devices' PDO maps.
+canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus);
+
+/// Sentences for `servogate check MACHINE`, in the order of the file. Takes any result, also one with errors.
+std::vector<Consequence> consequences(const LoadResult& loaded);
+/// {"schema":1,"machine":"...","consequences":[{"subject":...,"text":...,"figures":{...}}]}
+std::string to_json(const LoadResult& loaded, const std::vector<Consequence>& lines,
+                    text::Language language = text::user_language());
+/// Findings as JSON objects {"file","line","column","severity","code","text"}, for --json of every command.
+std::string to_json(const std::vector<text::Finding>& findings,
+                    text::Language language = text::user_language());
+
+}  // namespace servogate::machine

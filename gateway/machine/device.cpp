@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/machine/device.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "gateway/machine/check/findings_motion.hpp"
+#include "gateway/machine/keys/findings.hpp"
+#include "gateway/machine/keys/reader.hpp"
+#include "gateway/machine/keys/sections.hpp"
+
+namespace servogate::machine {
+
+namespace {
+
+/// A whole number of the given base from the front of `text`.
+template <typename Number>
+bool take(std::string_view& text, int base, Number& out) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out, base);
+  if (error != std::errc{} || end == text.data()) return false;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+class DeviceCheck {
+ public:
+  DeviceCheck(DeviceConfig& device, Reading& reading) : d_(device), reading_(reading) {}
+
+  void all() {
+    objects();
+    pdos("rpdo", d_.rpdos);
+    pdos("tpdo", d_.tpdos);
+    if (!d_.drive() || !d_.places.contains("kind")) return;  // unknown kind: said by the reader
+    word("RPDO", d_.rpdos, 0x6040, "controlword");
+    word("TPDO", d_.tpdos, 0x6041, "statusword");
+    modes();
+  }
+
+ private:
+  Where at(const std::string& path) const { return find_place(d_.places, path); }
+
+  void objects() {
+    for (const auto& [text, value] : d_.objects) {
+      const Where where = at("objects." + text);
+      const auto object = parse_object(text);
+      const int bits = object && object->bits != 0 ? object->bits : 32;
+      if (!object || (bits != 8 && bits != 16 && bits != 32))
+        reading_.error(where, finding::kBadObject, {text, "6065:00/32"});
+      else if (value != std::nearbyint(value) || value < -std::ldexp(1.0, bits - 1) ||
+               value >= std::ldexp(1.0, bits))
+        reading_.error(where, finding::kObjectValue, {text, text::number(value), std::to_string(bits)});
+    }
+  }
+
+  void pdos(const std::string& key, std::vector<PdoConfig>& list) {
+    std::map<int, int> numbers;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      PdoConfig& pdo = list[i];
+      const std::string path = key + "." + std::to_string(i);
+      if (pdo.transmission > 240 && pdo.transmission < 254)
+        reading_.error(at(path + ".transmission"), finding::kPdoTransmission,
+                       {std::to_string(pdo.transmission)});
+      const auto [it, fresh] = numbers.try_emplace(pdo.number, at(path + ".number").line);
+      if (!fresh)
+        reading_.error(at(path + ".number"), finding::kPdoTwice,
+                       {key, std::to_string(pdo.number), std::to_string(it->second)});
+      mapping(key, path, pdo);
+    }
+  }
+
+  void mapping(const std::string& key, const std::string& path, PdoConfig& pdo) {
+    int bits = 0;
+    for (std::size_t k = 0; k < pdo.object_texts.size(); ++k) {
+      const auto object = parse_object(pdo.object_texts[k]);
+      if (!object || object->bits == 0 || object->bits > 64) {
+        reading_.error(at(path + ".objects." + std::to_string(k)), finding::kBadObject,
+                       {pdo.object_texts[k], "6040:00/16"});
+        continue;
+      }
+      bits += object->bits;
+      pdo.objects.push_back(*object);
+    }
+    if (bits > 64)
+      reading_.error(at(path + ".objects"), finding::kPdoSize,
+                     {key, std::to_string(pdo.number), std::to_string(bits)});
+  }
+
+  void word(const std::string& what, const std::vector<PdoConfig>& list, std::uint16_t index,
+            const std::string& name) {
+    for (const PdoConfig& pdo : list)
+      for (const PdoObject& o : pdo.objects)
+        if (o.index == index) return;
+    char hex[8];
+    std::snprintf(hex, sizeof hex, "%04Xh", index);
+    reading_.error(at(what == "RPDO" ? "rpdo" : "tpdo"), finding::kPdoNoWord, {what, hex, name});
+  }
+
+  void modes();
+
+  DeviceConfig& d_;
+  Reading& reading_;
+};
+
+struct ModeName {
+  std::string_view name;
+  canopen::OperationMode mode;
+};
+constexpr ModeName kModes[] = {
+    {"pp", canopen::OperationMode::profile_position},
+    {"vl", canopen::OperationMode::velocity},
+    {"pv", canopen::OperationMode::profile_velocity},
+    {"tq", canopen::OperationMode::profile_torque},
+    {"hm", canopen::OperationMode::homing},
+    {"ip", canopen::OperationMode::interpolated_position},
+    {"csp", canopen::OperationMode::cyclic_sync_position},
+    {"csv", canopen::OperationMode::cyclic_sync_velocity},
+    {"cst", canopen::OperationMode::cyclic_sync_torque},
+};
+
+canopen::OperationMode mode_of(std::string_view name) {
+  for (const ModeName& m : kModes)
+    if (m.name == name) return m.mode;
+  return canopen::OperationMode::none;
+}
+
+void DeviceCheck::modes() {
+  for (std::size_t i = 0; i < d_.behaviour.modes.size(); ++i)
+    if (mode_of(d_.behaviour.modes[i]) == canopen::OperationMode::none)
+      reading_.error(at("behaviour.modes." + std::to_string(i)), finding::kUnknownChoice,
+                     {"behaviour.modes", d_.behaviour.modes[i], "pp, vl, pv, tq, hm, ip, csp, csv, cst"});
+}
+
+void put_pdos(const std::vector<PdoConfig>& from, std::array<canopen::PdoWanted, 4>& to) {
+  for (const PdoConfig& pdo : from) {
+    if (pdo.number < 1 || pdo.number > 4) continue;
+    canopen::PdoWanted& wanted = to[static_cast<std::size_t>(pdo.number - 1)];
+    wanted.transmission_type = static_cast<std::uint8_t>(pdo.transmission);
+    wanted.inhibit_100us = static_cast<std::uint16_t>(std::lround(pdo.inhibit * 1e4));
+    wanted.event_ms = static_cast<std::uint16_t>(std::lround(pdo.event * 1e3));
+    for (const PdoObject& o : pdo.objects) wanted.mapping.add({o.index, o.subindex, o.bits});
+  }
+}
+
+void put_settings(const std::map<std::string, double>& from, std::vector<canopen::SdoSetting>& to) {
+  for (const auto& [text, value] : from) {
+    const auto object = parse_object(text);
+    if (!object) continue;
+    canopen::SdoSetting setting;
+    setting.index = object->index;
+    setting.subindex = object->subindex;
+    setting.bytes = static_cast<std::uint8_t>(object->bits == 0 ? 4 : object->bits / 8);
+    setting.value = static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+    to.push_back(setting);
+  }
+}
+
+std::optional<std::uint32_t> given(std::int64_t value) {
+  if (value == 0) return std::nullopt;
+  return static_cast<std::uint32_t>(value);
+}
+
+void put_behaviour(const BehaviourConfig& b, canopen::DriveProfile& p) {
+  p.torque_unit_permille = b.torque_unit;
+  p.velocity_unit_counts_s =
+      b.velocity_in_rpm ? static_cast<double>(p.counts_per_rev) / 60.0 : b.velocity_unit;
+  p.modes = 0;
+  for (const std::string& m : b.modes) p.modes |= canopen::supported_bit(mode_of(m));
+  p.check_modes = b.check_modes;
+  static constexpr std::string_view kSpeed[] = {"csv", "pv", "vl"};
+  p.velocity_mode = mode_of(kSpeed[static_cast<std::size_t>(b.speed_mode)]);
+  p.fault_reset =
+      b.fault_reset == FaultResetBy::level ? canopen::FaultReset::level : canopen::FaultReset::edge;
+  p.fault_reset_hold_ms = static_cast<std::int32_t>(std::lround(b.fault_reset_hold * 1e3));
+  p.transition_timeout_ms = static_cast<std::int32_t>(std::lround(b.transition_timeout * 1e3));
+  p.handover_counts = b.handover_counts;
+  p.brake_bit = static_cast<std::int8_t>(b.brake_bit);
+  p.brake_bit_releases = b.brake_bit_releases;
+  p.pdo_map_fixed = b.fixed_pdo_map;
+  p.interpolation_base = b.interpolation_period
+                             ? std::optional<std::int8_t>(static_cast<std::int8_t>(b.interpolation_base))
+                             : std::nullopt;
+  p.command_delay_cycles = static_cast<std::uint8_t>(b.command_delay);
+  p.has_cycle_period = b.cycle_period;
+  p.has_heartbeat_consumer = b.heartbeat_consumer;
+  p.abort_connection_option = b.connection_loss == ConnectionLoss::none
+                                  ? std::nullopt
+                                  : std::optional<std::int16_t>(static_cast<std::int16_t>(b.connection_loss));
+}
+
+}  // namespace
+
+int PdoConfig::bytes() const {
+  int bits = 0;
+  for (const PdoObject& o : objects) bits += o.bits;
+  return (bits + 7) / 8;
+}
+
+Where DeviceConfig::where(std::string_view path) const { return find_place(places, path); }
+
+std::string_view DeviceConfig::error_text(std::uint16_t code, text::Language language) const {
+  for (const DeviceError& e : errors)
+    if (e.code == code) return language == text::Language::russian ? e.russian : e.english;
+  return {};
+}
+
+bool DeviceResult::ok() const {
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const text::Finding& f) { return f.severity == text::Severity::error; });
+}
+
+std::optional<PdoObject> parse_object(std::string_view text) {
+  PdoObject out;
+  if (text.size() < 4 || !take(text, 16, out.index)) return std::nullopt;
+  if (text.starts_with(':')) {
+    text.remove_prefix(1);
+    if (!take(text, 16, out.subindex)) return std::nullopt;
+  }
+  if (text.starts_with('/')) {
+    text.remove_prefix(1);
+    if (!take(text, 10, out.bits) || out.bits == 0) return std::nullopt;
+  }
+  if (!text.empty()) return std::nullopt;
+  return out;
+}
+
+canopen::DriveProfile drive_profile(const DeviceConfig& device, const NodeConfig& node,
+                                    std::int64_t counts_per_rev) {
+  canopen::DriveProfile p;
+  p.name = node.device;
+  p.manufacturer = device.manufacturer;
+  p.description = device.description;
+  p.vendor_id = given(device.vendor_id);
+  p.product_code = given(device.product_code);
+  p.revision = given(device.revision);
+  p.counts_per_rev = counts_per_rev > 0 ? counts_per_rev : device.motor.counts_per_rev;
+  put_behaviour(device.behaviour, p);
+  put_pdos(device.rpdos, p.rpdo);
+  put_pdos(device.tpdos, p.tpdo);
+  put_settings(device.objects, p.settings);
+  put_settings(node.objects, p.settings);
+  for (const DeviceError& e : device.errors)
+    p.error_texts.push_back({static_cast<std::uint16_t>(e.code), e.english, e.russian});
+  return p;
+}
+
+DeviceResult parse_device(std::string_view text, const std::string& file) {
+  DeviceResult out;
+  Reading reading;
+  reading.file = file;
+  out.device.file = file;
+  if (read_file_text(text, section_of<DeviceConfig>(), &out.device, reading)) {
+    if (reading.unread.contains("kind")) reading.places.erase("kind");
+    out.device.places = std::move(reading.places);
+    DeviceCheck(out.device, reading).all();
+  }
+  sort_findings(reading.findings);
+  out.findings = std::move(reading.findings);
+  return out;
+}
+
+DeviceResult load_device(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (!in.is_open() || in.bad()) {
+    DeviceResult out;
+    out.findings.push_back({text::Severity::error, path, 0, 0, &finding::kFileMissing, {path}});
+    return out;
+  }
+  return parse_device(text, path);
+}
+
+}  // namespace servogate::machine

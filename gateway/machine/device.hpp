@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/canopen/402/drive_profile.hpp"
+#include "firmware_if/text/finding.hpp"
+#include "gateway/machine/config.hpp"
+
+namespace servogate::machine {
+
+/// What a device file describes; which of the tables below have a meaning follows from it.
+enum class DeviceKind : std::uint8_t { servo, stepper, spindle, modbus_io, gpio };
+
+/// One mapped object: "6040:00/16" = index, subindex, bits.
+struct PdoObject {
+  std::uint16_t index = 0;
+  std::uint8_t subindex = 0;
+  std::uint8_t bits = 0;
+};
+/// [[rpdo]] (to the device) and [[tpdo]] (from the device).
+struct PdoConfig {
+  int number = 1;        ///< 1-4, with predefined identifiers
+  int transmission = 1;  ///< CiA 301 transmission type: 0-240 by SYNC (n: every n-th), 254/255 on event
+  double inhibit = 0.0;  ///< s between two frames of an event-driven PDO
+  double event = 0.0;    ///< s: TPDO on event is sent at least this often; RPDO: deadline
+  std::vector<std::string> object_texts;  ///< key `objects`
+  std::vector<PdoObject> objects;         ///< taken apart by the loader
+  int bytes() const;
+  bool synchronous() const { return transmission <= 240; }
+};
+
+/// [motor]: what the drive and its motor can do; the simulated drive takes its plant from here.
+struct MotorConfig {
+  double max_speed = 0.0;           ///< rpm, 0: not stated
+  double rated_torque = 0.0;        ///< N m
+  double peak_torque = 0.0;         ///< N m
+  double inertia = 0.0;             ///< kg m2, rotor
+  std::int64_t counts_per_rev = 0;  ///< as the drive reports them, 0: set in the machine file
+  bool brake_output = false;        ///< has an output for a holding brake (60FEh bit 0)
+};
+
+/// What a drive does when its master falls silent (6007h).
+enum class ConnectionLoss : std::uint8_t { none, fault, disable_voltage, quick_stop };
+enum class FaultResetBy : std::uint8_t { edge, level };
+enum class SpeedMode : std::uint8_t { csv, pv, vl };
+
+/// [behaviour]: where a drive differs from CiA 402, in the names of canopen::DriveProfile.
+struct BehaviourConfig {
+  double velocity_unit = 1.0;                ///< one unit of 60FFh and 606Ch in counts/s
+  bool velocity_in_rpm = false;              ///< 60FFh and 606Ch are in rpm; velocity_unit is computed
+  double torque_unit = 1.0;                  ///< one unit of 6071h and 6077h in per mille
+  std::vector<std::string> modes = {"csp"};  ///< modes of 6502h that must be there
+  bool check_modes = true;                   ///< false: the drive has no 6502h
+  SpeedMode speed_mode = SpeedMode::csv;     ///< the drive's mode for csv of the kernel
+  FaultResetBy fault_reset = FaultResetBy::edge;
+  double fault_reset_hold = 0.02;    ///< s that controlword bit 7 stays set
+  double transition_timeout = 2.0;   ///< s, then a transition counts as refused
+  std::int64_t handover_counts = 0;  ///< 0: a quarter of a turn
+  int brake_bit = -1;                ///< bit of 60FEh:01, -1: none
+  bool brake_bit_releases = true;
+  bool fixed_pdo_map = false;        ///< the map cannot be written: it is read and compared
+  bool interpolation_period = true;  ///< the drive has 60C2h
+  int interpolation_base = -3;       ///< exponent of 60C2h:02
+  int command_delay = 1;             ///< cycles from a target's SYNC to the actual value that follows it
+  bool cycle_period = false;         ///< 1006h is to be written
+  bool heartbeat_consumer = true;    ///< has 1016h
+  ConnectionLoss connection_loss = ConnectionLoss::fault;
+};
+
+/// [[error]]: one error code (603Fh, EMCY) in words.
+struct DeviceError {
+  std::int64_t code = 0;
+  std::string english;
+  std::string russian;
+};
+
+/// [modbus]: registers of an I/O station; -1: the station has none of this kind.
+struct ModbusMap {
+  int di_count = 0, dq_count = 0, ai_count = 0, aq_count = 0;
+  int di_address = 0, dq_address = 0, ai_address = 0, aq_address = 0;
+  bool di_as_registers = false;  ///< inputs as bits of input registers (function 4) instead of function 2
+};
+
+/// One device file of devices/ or of the machine file's folder.
+struct DeviceConfig {
+  int schema = 0;
+  std::string name;  ///< for people
+  DeviceKind kind = DeviceKind::servo;
+  std::string manufacturer;
+  std::string description;
+  std::int64_t vendor_id = 0;     ///< 1018h:01, 0: not checked
+  std::int64_t product_code = 0;  ///< 1018h:02, 0: not checked
+  std::int64_t revision = 0;      ///< 1018h:03, 0: not checked
+  MotorConfig motor;
+  BehaviourConfig behaviour;
+  std::vector<PdoConfig> rpdos;
+  std::vector<PdoConfig> tpdos;
+  std::map<std::string, double>
+      objects;  ///< "6065:00/32" -> value, written at boot; bits 8, 16 or 32 (default)
+  std::vector<DeviceError> errors;
+  ModbusMap modbus;
+
+  std::string file;  ///< path it was read from
+  std::map<std::string, Where, std::less<>> places;
+  Where where(std::string_view path) const;
+  bool drive() const {
+    return kind == DeviceKind::servo || kind == DeviceKind::stepper || kind == DeviceKind::spindle;
+  }
+  /// Text of an error code in the language, empty: unknown.
+  std::string_view error_text(std::uint16_t code, text::Language language) const;
+};
+
+/// "6065:00/32", "6065:00", "6065" -> index (hexadecimal), subindex, bits (0 when not given); nullopt: not of
+/// that form.
+std::optional<PdoObject> parse_object(std::string_view text);
+
+/// The device file as the CANopen master wants it: a node's own objects after the device's; counts_per_rev of
+/// the axis.
+canopen::DriveProfile drive_profile(const DeviceConfig& device, const NodeConfig& node,
+                                    std::int64_t counts_per_rev);
+
+struct DeviceResult {
+  DeviceConfig device;
+  std::vector<text::Finding> findings;
+  bool ok() const;
+};
+/// Reads a device file; every finding of the file at once.
+DeviceResult load_device(const std::string& path);
+/// The same from memory; `file` is the name in findings.
+DeviceResult parse_device(std::string_view text, const std::string& file);
+
+}  // namespace servogate::machine

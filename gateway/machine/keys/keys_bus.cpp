@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/machine/keys/key.hpp"
+#include "gateway/machine/keys/sections.hpp"
+
+namespace servogate::machine {
+
+template <>
+std::span<const std::string_view> choices_of<StationKind>() {
+  static constexpr std::string_view kNames[] = {"modbus", "gpio", "drive"};
+  return kNames;
+}
+template <>
+std::span<const std::string_view> choices_of<image::Writer>() {
+  static constexpr std::string_view kNames[] = {"nc", "plc", "input", "program"};
+  return kNames;
+}
+
+template <>
+const Section& section_of<NodeConfig>() {
+  using C = NodeConfig;
+  static const Key keys[] = {
+      key<&C::name>("name", {.required = true}, "name; others refer to the node as \"bus.name\"",
+                    "имя; на узел ссылаются как \"шина.имя\""),
+      key<&C::id>("id", {.min = 1, .max = 127, .required = true}, "CANopen node-ID",
+                  "номер узла CANopen (Node-ID)"),
+      key<&C::device>("device", {.required = true, .refers = Refers::device}, "device file, without .toml",
+                      "файл устройства, без .toml"),
+      key<&C::heartbeat>("heartbeat", {.unit = Unit::second, .min = 0, .max = 60},
+                         "period of the node's heartbeat; 0: none", "период heartbeat узла; 0: нет"),
+      key<&C::loss_cycles>("loss_cycles", {.min = 1, .max = 1000},
+                           "cycles without process data until the node counts as lost",
+                           "число циклов без данных процесса, после которого узел считается потерянным"),
+      key<&C::objects>(
+          "objects", {}, "objects written at boot after the device file's own: \"6065:00/32\" = value",
+          "объекты, записываемые при запуске после объектов файла устройства: \"6065:00/32\" = значение"),
+  };
+  static const Section section{"a node of the bus", "узел шины", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<BusConfig>() {
+  using C = BusConfig;
+  static const Key keys[] = {
+      key<&C::name>("name", {.required = true}, "name of the segment", "имя сегмента"),
+      key<&C::url>(
+          "url", {.required = true},
+          "transport: mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
+          "транспорт: mock:ИМЯ, socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ"),
+      key<&C::bit_rate>("bit_rate", {.unit = Unit::bit_per_s, .min = 10000, .max = 1000000, .required = true},
+                        "bit rate of the segment", "скорость сегмента"),
+      key<&C::nodes>("node", {}, "nodes", "узлы"),
+  };
+  static const Section section{"a CAN segment", "сегмент CAN", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<PointConfig>() {
+  using C = PointConfig;
+  static const Key keys[] = {
+      key<&C::name>("name", {.required = true}, "symbol of the signal", "символьное имя сигнала"),
+      key<&C::channel_text>(
+          "channel", {.required = true},
+          "channel of the station: di0, dq0 (digital), ai0, aq0 (analog); i = input, q = output",
+          "канал станции: di0, dq0 (дискретные), ai0, aq0 (аналоговые); i = вход, q = выход"),
+      key<&C::place>("place", {.required = true}, "place in packet A: SA16, analog as a word: SA16.IN",
+                     "место в пакете A: SA16, аналоговый сигнал словом: SA16.IN"),
+      key<&C::inverted>("inverted", {}, "the wire's 1 is 0 in packet A", "1 на проводе есть 0 в пакете A"),
+      key<&C::loss>("loss", {},
+                    "value while the station is lost: in packet A for an input, on the wire for an output",
+                    "значение при потере станции: для входа в пакете A, для выхода на проводе"),
+      key<&C::writer>("writer", {.computed = true}, "who writes it; input for inputs, plc for outputs",
+                      "кто пишет; input для входов, plc для выходов"),
+      key<&C::hold>("hold", {}, "keep the last value while the station is lost, instead of `loss`",
+                    "при потере станции сохранять последнее значение вместо `loss`"),
+      key<&C::scale>("scale", {}, "analog: value in packet A = raw * scale + shift",
+                     "аналоговый: значение в пакете A = код * scale + shift"),
+      key<&C::shift>("shift", {}, "see scale", "см. scale"),
+      key<&C::debounce>("debounce", {.unit = Unit::second, .min = 0, .max = 1}, "time a change must last",
+                        "время, которое изменение должно продержаться"),
+      key<&C::comment>("comment", {}, "meaning for people", "пояснение для людей"),
+  };
+  static const Section section{"a wire of the machine", "сигнал станка", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<StationConfig>() {
+  using C = StationConfig;
+  static const Key keys[] = {
+      key<&C::name>("name", {.required = true}, "name of the station", "имя станции"),
+      key<&C::kind>("kind", {.required = true}, "what carries the signals", "чем передаются сигналы"),
+      key<&C::url>("url", {}, "modbus: mock:NAME, tcp:HOST:PORT, rtu:/dev/...; gpio: mock:NAME, chip:LABEL",
+                   "modbus: mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/...; gpio: mock:ИМЯ, chip:МЕТКА"),
+      key<&C::node>("node", {.refers = Refers::node}, "kind drive: the drive as \"bus.node\"",
+                    "вид drive: привод в виде \"шина.узел\""),
+      key<&C::device>("device", {.refers = Refers::device}, "device file, without .toml",
+                      "файл устройства, без .toml"),
+      key<&C::unit>("unit", {.min = 0, .max = 255}, "Modbus unit identifier", "адрес устройства Modbus"),
+      key<&C::period>("period", {.unit = Unit::second, .min = 0.001, .max = 10}, "time between polls, modbus",
+                      "период опроса, modbus"),
+      key<&C::timeout>("timeout", {.unit = Unit::second, .min = 0.001, .max = 60},
+                       "an answer later than this is lost", "ответ позже этого времени считается потерянным"),
+      key<&C::points>("points", {}, "the signals", "сигналы"),
+  };
+  static const Section section{"a source of signals", "источник сигналов", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<SymbolConfig>() {
+  using C = SymbolConfig;
+  static const Key keys[] = {
+      key<&C::name>("name", {.required = true}, "symbol", "символьное имя"),
+      key<&C::place>("place", {.required = true}, "place: SA200, SK8.RE", "адрес: SA200, SK8.RE"),
+      key<&C::writer>("writer", {}, "who writes it", "кто пишет"),
+      key<&C::comment>("comment", {}, "meaning for people", "пояснение для людей"),
+  };
+  static const Section section{"a free place with a name", "именованный свободный адрес", keys,
+                               &default_object<C>};
+  return section;
+}
+
+}  // namespace servogate::machine

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/text/finding.hpp"
+#include "gateway/machine/config.hpp"
+#include "gateway/machine/device.hpp"
+
+namespace servogate::machine {
+
+/// A machine file read, with the device files it names.
+struct LoadResult {
+  MachineConfig machine;
+  std::map<std::string, DeviceConfig, std::less<>> devices;  ///< by name in the machine file
+  std::vector<text::Finding>
+      findings;  ///< all of the file and its device files, errors and warnings, by place
+  /// No error; warnings are allowed.
+  bool ok() const;
+  /// Device of a node or station, nullptr when it could not be read.
+  const DeviceConfig* device(std::string_view name) const;
+};
+
+/// Where device files are looked for after the machine file's own folder and its devices/.
+/// $SERVOGATE_DEVICES, then the build's devices/ folder.
+std::vector<std::string> device_folders();
+
+/// Reads and checks a machine file: keys, units, ranges, references, places, dangerous choices, consequences.
+/// Never throws on a bad file; a file that cannot be read is a finding. Findings end at the first TOML syntax
+/// error.
+LoadResult load(const std::string& path);
+/// The same from memory; `path` gives the folder for names in the file and the name in findings.
+LoadResult parse(std::string_view text, const std::string& path);
+
+/// The published JSON schema (docs/machine.schema.json) and reference (docs/machine-file.md) of the machine
+/// file, from the same table of keys that validates it.
+std::string json_schema();
+std::string reference_markdown();
+
+}  // namespace servogate::machine

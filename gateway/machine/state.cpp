@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/machine/state.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <system_error>
+
+#include "gateway/machine/state_text.hpp"
+
+namespace servogate::machine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr StatePart kParts[] = {StatePart::origins,  StatePart::tools, StatePart::homing,
+                                StatePart::counters, StatePart::gains, StatePart::retained};
+
+std::string words(int code) { return std::system_category().message(code); }
+
+/// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+bool write_whole(int fd, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t n = ::write(fd, text.data(), text.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return true;
+}
+
+bool sync_folder(const std::string& folder) {
+  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return fd.get() >= 0 && ::fsync(fd.get()) == 0;
+}
+
+/// Temporary file, fsync, the present generation kept under another name, rename, fsync of the folder: at
+/// every point of time one whole generation has a name that load() looks at.
+bool write_generation(const std::string& folder, const std::string& file, const std::string& previous,
+                      std::string_view text) {
+  const std::string temporary = file + ".new";
+  {
+    const Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+    if (fd.get() < 0 || !write_whole(fd.get(), text) || ::fsync(fd.get()) != 0) return false;
+  }
+  if (::unlink(previous.c_str()) != 0 && errno != ENOENT) return false;
+  if (::link(file.c_str(), previous.c_str()) != 0 && errno != ENOENT) return false;
+  if (::rename(temporary.c_str(), file.c_str()) != 0) return false;
+  return sync_folder(folder);
+}
+
+std::optional<std::string> contents(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
+  std::ifstream in(path, std::ios::binary);
+  return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+}
+
+bool any_error(const std::vector<text::Finding>& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const text::Finding& f) { return f.severity == text::Severity::error; });
+}
+
+std::string previous_of(const std::string& file) {
+  return file.substr(0, file.size() - 5) + ".previous.toml";
+}
+
+/// One part from its newest whole generation.
+void load_part(const std::string& file, StatePart part, MachineState& state,
+               std::vector<text::Finding>& findings) {
+  const std::string previous = previous_of(file);
+  const auto newest = contents(file), older = contents(previous);
+  if (!newest && !older) return;
+  std::vector<text::Finding> problems;
+  if (newest) {
+    problems = read_part(*newest, file, part, state);
+    if (!any_error(problems)) {
+      findings.insert(findings.end(), problems.begin(), problems.end());
+      return;
+    }
+  }
+  if (older && !any_error(read_part(*older, previous, part, state))) {
+    for (text::Finding& f : problems) f.severity = text::Severity::warning;
+    findings.insert(findings.end(), problems.begin(), problems.end());
+    findings.push_back({text::Severity::warning, file, 0, 0, &finding::kPreviousTaken, {previous}});
+    return;
+  }
+  findings.insert(findings.end(), problems.begin(), problems.end());
+  if (!newest) findings.push_back({text::Severity::error, previous, 0, 0, &finding::kNoGeneration, {}});
+}
+
+}  // namespace
+
+bool StateDirectory::Loaded::ok() const { return !any_error(findings); }
+
+StateDirectory::StateDirectory(std::string path) : path_(std::move(path)) {}
+
+std::string StateDirectory::file(StatePart part) const {
+  return (fs::path(path_) / (std::string(part_name(part)) + ".toml")).string();
+}
+
+StateDirectory::Loaded StateDirectory::load() const {
+  Loaded out;
+  for (const StatePart part : kParts) load_part(file(part), part, out.state, out.findings);
+  return out;
+}
+
+bool StateDirectory::save(const MachineState& state, StatePart part, std::string& error) const {
+  std::error_code code;
+  fs::create_directories(path_, code);
+  if (code) {
+    error = path_ + ": " + code.message();
+    return false;
+  }
+  ::chmod(path_.c_str(), 0700);
+  const std::string name = file(part);
+  if (write_generation(path_, name, previous_of(name), write_part(state, part))) return true;
+  error = name + ": " + words(errno);
+  return false;
+}
+
+bool StateDirectory::save_all(const MachineState& state, std::string& error) const {
+  return std::all_of(std::begin(kParts), std::end(kParts),
+                     [&](StatePart part) { return save(state, part, error); });
+}
+
+}  // namespace servogate::machine

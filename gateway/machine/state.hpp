@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "firmware_if/text/finding.hpp"
+#include "kernel/program/interpreter.hpp"
+
+namespace servogate::machine {
+
+/// Result of homing an axis, for drives with absolute encoders and for the commissioning record.
+struct HomingRecord {
+  bool valid = false;
+  std::int64_t offset_counts = 0;  ///< drive counts at machine coordinate 0
+  double switch_to_index =
+      0.0;  ///< mm from the switch edge to the index: near 0 or a whole turn is a bad adjustment
+  bool operator==(const HomingRecord&) const = default;
+};
+
+/// One retained PLC variable, kept by name and type; the same three as plc::Retained.
+struct RetainedVariable {
+  std::string name;   ///< "Mill.tool_in_spindle"
+  std::string type;   ///< IEC 61131-3 name: "DINT"
+  std::string value;  ///< as plc::Engine::read writes it
+  bool operator==(const RetainedVariable&) const = default;
+};
+
+/// What the machine learns and the operator enters; the machine file is never rewritten.
+struct MachineState {
+  program::Tables tables;                        ///< origins and correctors; mm
+  std::map<std::string, HomingRecord> homing;    ///< by axis letter
+  std::map<std::string, std::int64_t> counters;  ///< "power_on_s", "parts", "X.distance_mm" ...
+  std::map<std::string, double> gains;           ///< "X.position_gain" ... found by the bench
+  std::int32_t tool_in_spindle = 0;
+  std::vector<RetainedVariable> retained;
+};
+
+/// The parts of the state, one file each: NAME.toml, readable, `schema = 1`, with a checksum in its head.
+enum class StatePart : std::uint8_t { origins, tools, homing, counters, gains, retained };
+
+/// A state directory. Files are written whole (temporary file, fsync, rename, fsync of the folder); the
+/// generation before stays as NAME.previous.toml and is taken when the newest is damaged. Not real-time safe.
+class StateDirectory {
+ public:
+  explicit StateDirectory(std::string path);
+
+  struct Loaded {
+    MachineState state;
+    std::vector<text::Finding>
+        findings;  ///< damaged files (warning when the previous one is taken, else error)
+    bool ok() const;
+  };
+  /// Reads all parts. A missing folder or file is an empty part and no finding. A file that a person edited
+  /// says `checksum = "none"` and is taken with a warning.
+  Loaded load() const;
+  /// Writes one part, creating the folder (owner only). False: `error` holds the system's words.
+  bool save(const MachineState& state, StatePart part, std::string& error) const;
+  bool save_all(const MachineState& state, std::string& error) const;
+  /// Path of a part's file.
+  std::string file(StatePart part) const;
+
+ private:
+  std::string path_;
+};
+
+/// The file of one part as text, and back; for tests and for showing.
+std::string write_part(const MachineState& state, StatePart part);
+/// Findings name `file`; on an error the part in `state` is unchanged.
+std::vector<text::Finding> read_part(std::string_view text, const std::string& file, StatePart part,
+                                     MachineState& state);
+
+}  // namespace servogate::machine

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+#include "firmware_if/text/finding.hpp"
+#include "gateway/machine/state.hpp"
+
+namespace servogate::machine {
+
+/// "origins", "tools" ...: name of the file and of its `part` key.
+std::string_view part_name(StatePart part);
+
+/// CRC-32 of IEEE 802.3.
+std::uint32_t crc32(std::string_view bytes);
+
+namespace finding {
+inline constexpr text::Entry kPreviousTaken{"state.previous_taken",
+                                            "damaged; the generation before is taken from {0}",
+                                            "повреждён; взято предыдущее поколение из {0}"};
+inline constexpr text::Entry kNoGeneration{"state.no_generation", "the newest generation is missing",
+                                           "нет последнего поколения"};
+inline constexpr text::Entry kChecksum{
+    "state.checksum", "checksum {0} does not fit the content ({1}): cut off or changed",
+    "контрольная сумма {0} не подходит к содержимому ({1}): обрезан или изменён"};
+inline constexpr text::Entry kEdited{"state.edited",
+                                     "edited by hand (checksum = \"none\"); taken as it stands",
+                                     "изменён вручную (checksum = \"none\"); взят как есть"};
+inline constexpr text::Entry kStateSyntax{"state.syntax", "TOML syntax: {0}", "синтаксис TOML: {0}"};
+inline constexpr text::Entry kStateSchema{"state.schema", "schema {0} is not 1", "schema {0}, а не 1"};
+inline constexpr text::Entry kStatePart{"state.part", "this file holds `{0}`, not `{1}`",
+                                        "этот файл содержит «{0}», а не «{1}»"};
+inline constexpr text::Entry kStateHead{"state.head", "does not begin with checksum = \"...\"",
+                                        "не начинается с checksum = \"...\""};
+inline constexpr text::Entry kStateValue{"state.value", "`{0}`: {1} is expected", "«{0}»: ожидалось {1}"};
+}  // namespace finding
+
+}  // namespace servogate::machine

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Texts of the page in both languages; data-t attributes and tr() refer to the keys.
+const TEXTS = {
+  finished: ["Finished", "Выполнено"],
+  unfinished: ["Not finished", "Не завершено"],
+  alarms: ["Alarms", "Аварии"],
+  noAlarms: ["No alarms.", "Аварий нет."],
+  time: ["Machine time", "Машинное время"],
+  blocks: ["Blocks", "Кадры"],
+  cyclesOf: ["{0} cycles of {1}", "циклов: {0} по {1}"],
+  extents: ["Extents", "Габариты"],
+  timing: ["Timing and buses", "Время цикла и шины"],
+  cycle: ["Cycle", "Цикл"],
+  lateness: ["Wake-up lateness", "Опоздание пробуждения"],
+  segment: ["Bus segment", "Сегмент шины"],
+  load: ["Load", "Загрузка"],
+  sent: ["Sent", "Передано"],
+  received: ["Received", "Принято"],
+  errors: ["Errors", "Ошибки"],
+  virtual: ["virtual time", "виртуальное время"],
+  speed: ["Virtual speed", "Виртуальная скорость"],
+  timesReal: ["× real time", "× реального времени"],
+  cycleTime: ["Cycle time p99", "Время цикла p99"],
+  late: ["Wake-up lateness p99", "Опоздание пробуждения p99"],
+  overruns: ["Overruns", "Превышения цикла"],
+  starved: ["Planning starved", "Нехватка планирования"],
+  busLoad: ["Bus load", "Загрузка шины"],
+  worst: ["worst cycle", "худший цикл"],
+  max: ["max", "макс."],
+  pathLength: ["Path", "Путь"],
+  feedPath: ["feed", "подача"],
+  rapidPath: ["rapid", "быстрый ход"],
+  homingPath: ["homing, by hand", "выход в ноль, вручную"],
+  still: ["standing", "стоянка"],
+  moving: ["Where the time went", "На что ушло время"],
+  limits: ["Axes against their limits", "Оси относительно пределов"],
+  velocity: ["Velocity", "Скорость"],
+  acceleration: ["Acceleration", "Ускорение"],
+  jerk: ["Jerk", "Рывок"],
+  error: ["Following error", "Ошибка слежения"],
+  noLimit: ["no limit given", "предел не задан"],
+  path: ["Path", "Траектория"],
+  plan: ["Plan", "План"],
+  view3: ["3-D view", "Объёмный вид"],
+  fit: ["Fit", "Вписать"],
+  top: ["Top", "Сверху"],
+  iso: ["Isometric", "Изометрия"],
+  rapids: ["Rapids and homing", "Быстрый ход и выход в ноль"],
+  wholePath: ["Everything in view", "Показать весь путь"],
+  hintPlan: ["Drag to move · Ctrl + wheel to zoom (plain wheel after a click) · double click to fit",
+    "Тянуть — сдвиг · Ctrl + колесо — масштаб (после щелчка — просто колесо) · двойной щелчок — вписать"],
+  hint3: ["Drag to turn · Shift + drag to move · Ctrl + wheel to zoom", "Тянуть — поворот · Shift + тянуть — сдвиг · Ctrl + колесо — масштаб"],
+  motion: ["Motion over time", "Движение во времени"],
+  hintTime: ["Drag to zoom into a stretch · Shift + drag to move · Ctrl + wheel to zoom · double click for all",
+    "Тянуть — увеличить участок · Shift + тянуть — сдвиг · Ctrl + колесо — масштаб · двойной щелчок — всё"],
+  all: ["All", "Всё"],
+  pathSpeed: ["Path speed", "Скорость по пути"],
+  spindle: ["Spindle", "Шпиндель"],
+  signals: ["Signals", "Сигналы"],
+  noSignals: ["No signals were chosen for this run.", "Для этого прогона сигналы не выбраны."],
+  constant: ["Show signals that never change", "Показать неизменные сигналы"],
+  steady: ["never changed", "не менялись"],
+  on: ["on", "вкл"],
+  off: ["off", "выкл"],
+  line: ["Line", "Строка"],
+  program: ["Program", "Программа"],
+  noProgram: ["No program text.", "Текста программы нет."],
+  follow: ["Follow the cursor", "Следовать за курсором"],
+  provenance: ["Where this report comes from", "Происхождение отчёта"],
+  number: ["No.", "№"],
+  at: ["At", "Время"],
+  what: ["What happened", "Что произошло"],
+  where: ["Where", "Где"],
+  reaction: ["Reaction", "Реакция"],
+  remedy: ["Remedy", "Что делать"],
+  consequence: ["consequence of", "следствие"],
+  version: ["Version", "Версия"],
+  commit: ["Commit", "Ревизия"],
+  machine: ["Machine file", "Файл станка"],
+  programFile: ["Program", "Программа"],
+  plc: ["PLC", "ПЛК"],
+  dialect: ["Dialect", "Диалект"],
+  seed: ["Seed", "Начальное число"],
+  clock: ["Clock", "Часы"],
+  buses: ["Buses", "Шины"],
+  kernel: ["Kernel", "Ядро ОС"],
+  processor: ["Processor", "Процессор"],
+  nodes: ["Nodes", "Узлы"],
+  command: ["Command line", "Командная строка"],
+  resolution: ["Resolution", "Разрешение"],
+  resolutionText: ["series {0} per bucket (least and greatest kept), path within {1}",
+    "графики {0} на отрезок (с минимумом и максимумом), путь в пределах {1}"],
+  dropped: ["{0} cycles were lost by the recorder; the plots have gaps.", "Регистратор потерял циклов: {0}; на графиках есть пропуски."],
+  play: ["Play", "Пуск"],
+  pause: ["Pause", "Пауза"],
+  theme: ["Theme", "Тема"],
+  none: ["none", "нет"],
+  warn: ["warning", "предупреждение"],
+  stop_at_block_end: ["stop at block end", "останов в конце кадра"],
+  stop_on_path: ["stop on the path", "останов на траектории"],
+  stop_axes: ["stop of the axes", "останов осей"],
+  quick_stop: ["quick stop", "быстрый останов"],
+  power_off: ["power off", "отключение питания"],
+  axis: ["axis", "ось"],
+  node: ["node", "узел"],
+  block: ["block", "кадр"],
+};
+const UNITS_RU = {"mm": "мм", "mm/s": "мм/с", "mm/s²": "мм/с²", "mm/s³": "мм/с³", "deg": "°", "deg/s": "°/с",
+  "deg/s²": "°/с²", "deg/s³": "°/с³", "µm": "мкм", "rpm": "об/мин", "s": "с", "ms": "мс", "µs": "мкс", "m": "м", "mdeg": "0,001°"};
+const UNITS_EN = {"deg": "°", "deg/s": "°/s", "deg/s²": "°/s²", "deg/s³": "°/s³", "mdeg": "0.001°"};
+
+function tr(key, ...values) {
+  const entry = TEXTS[key];
+  const text = entry ? entry[S.lang === "ru" ? 1 : 0] : key;
+  return text.replace(/\{(\d)\}/g, (_, n) => values[+n]);
+}
+function unit(u) { return (S.lang === "ru" ? UNITS_RU : UNITS_EN)[u] || u; }
+/** A number for people: at most `digits` significant ones and three decimals, thin spaces between thousands, comma in Russian. */
+function num(v, digits = 4) {
+  if (v === null || v === undefined || !isFinite(v)) return "–";
+  const a = Math.abs(v);
+  const decimals = a === 0 ? 0 : Math.max(0, Math.min(3, digits - 1 - Math.floor(Math.log10(a))));
+  return fixed(v, Math.min(decimals, a >= 1e4 ? 0 : 6), true);
+}
+/** A number with exactly `decimals`, or at most when `trim`. */
+function fixed(v, decimals, trim) {
+  let text = v.toFixed(decimals);
+  if (trim && text.includes(".")) text = text.replace(/\.?0+$/, "");
+  if (/^-0(\.0*)?$/.test(text)) text = text.slice(1);
+  let [whole, part] = text.split(".");
+  whole = whole.replace(/^-/, "−").replace(/\B(?=(\d{3})+$)/g, "\u202f");
+  return part === undefined ? whole : whole + (S.lang === "ru" ? "," : ".") + part;
+}

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/report/report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "gateway/report/report_json.hpp"
+
+namespace servogate::report {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kReactions[] = {"none",      "warn",       "stop_at_block_end", "stop_on_path",
+                                      "stop_axes", "quick_stop", "power_off"};
+
+std::string hex(std::uint32_t value, int digits) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%0*X", digits, value);
+  return text;
+}
+
+Json to_json(const FileIdentity& f) { return {{"path", f.path}, {"sha256", f.sha256}}; }
+Json to_json(const Quantiles& q) {
+  return {{"p50", q.p50}, {"p99", q.p99}, {"p999", q.p999}, {"max", q.max}};
+}
+
+Json to_json(const Provenance& p) {
+  Json out;
+  out["version"] = p.version;
+  out["commit"] = p.commit;
+  out["machine"] = p.machine ? to_json(*p.machine) : Json();
+  out["program"] = p.program ? to_json(*p.program) : Json();
+  out["plc"] = Json::array();
+  for (const FileIdentity& f : p.plc) out["plc"].push_back(to_json(f));
+  out["dialect"] = p.dialect;
+  out["seed"] = p.seed;
+  out["clock"] = p.clock;
+  out["buses"] = Json::array();
+  for (const BusProvenance& b : p.buses)
+    out["buses"].push_back(
+        {{"name", b.name}, {"transport", b.transport}, {"kind", b.mock ? "mock" : "real"}});
+  out["kernel"] = p.kernel;
+  out["processor"] = p.processor;
+  out["nodes"] = Json::array();
+  for (const NodeIdentity& n : p.nodes)
+    out["nodes"].push_back({{"bus", n.bus},
+                            {"node", n.node},
+                            {"name", n.name},
+                            {"vendor", hex(n.vendor, 8)},
+                            {"product", hex(n.product, 8)},
+                            {"revision", hex(n.revision, 8)},
+                            {"serial", hex(n.serial, 8)}});
+  out["command_line"] = p.command_line;
+  return out;
+}
+
+Json to_json(const AlarmEntry& a) {
+  const image::AlarmRecord& r = a.record;
+  Json out;
+  out["number"] = r.number;
+  out["id"] = a.id;
+  out["text"] = a.text;
+  out["remedy"] = a.remedy;
+  out["sequence"] = r.sequence;
+  out["first_fault"] = r.first_fault;
+  out["reaction"] = kReactions[std::min<std::size_t>(static_cast<std::size_t>(r.reaction), 6)];
+  out["active"] = r.active;
+  out["cycle"] = r.cycle;
+  out["t"] = static_cast<double>(r.t_ns) * 1e-9;
+  if (!a.axis.empty()) out["axis"] = a.axis;
+  if (r.process >= 0) out["process"] = r.process + 1;
+  if (r.segment >= 0) out["segment"] = r.segment;
+  if (r.node >= 0) out["node"] = r.node;
+  if (r.object_index != 0) out["object"] = hex(r.object_index, 4) + ":" + std::to_string(r.object_subindex);
+  if (r.statusword != 0) out["statusword"] = hex(r.statusword, 4);
+  if (r.error_code != 0) out["error_code"] = hex(r.error_code, 4);
+  if (r.line > 0) out["line"] = r.line;
+  if (r.block >= 0) out["block"] = r.block;
+  if (r.limit != 0.0 || r.value != 0.0) {
+    out["limit"] = r.limit;
+    out["value"] = r.value;
+  }
+  return out;
+}
+
+Json to_json(const AxisReport& a) {
+  Json out{{"unit", a.unit},
+           {"max_velocity", a.max_velocity},
+           {"max_acceleration", a.max_acceleration},
+           {"max_jerk", a.max_jerk},
+           {"max_following_error", a.max_following_error}};
+  Json limits = Json::object();
+  if (a.limit_velocity > 0) limits["velocity"] = a.limit_velocity;
+  if (a.limit_acceleration > 0) limits["acceleration"] = a.limit_acceleration;
+  if (a.limit_jerk > 0) limits["jerk"] = a.limit_jerk;
+  if (a.limit_following_error > 0) limits["following_error"] = a.limit_following_error;
+  out["limits"] = limits;
+  return out;
+}
+
+Json to_json(const SegmentReport& s) {
+  return {{"name", s.name},
+          {"load", s.load},
+          {"load_worst_cycle", s.load_worst_cycle},
+          {"frames_sent", s.frames_sent},
+          {"frames_received", s.frames_received},
+          {"errors", s.errors}};
+}
+
+}  // namespace
+
+Json json_of(const Report& r) {
+  Json out;
+  out["schema"] = kReportSchema;
+  out["provenance"] = to_json(r.provenance);
+  out["finished"] = r.finished;
+  out["time_s"] = r.time_s;
+  out["cycles"] = r.cycles;
+  out["overruns"] = r.overruns;
+  out["starved"] = r.starved;
+  out["blocks"] = r.blocks;
+  out["alarms"] = Json::array();
+  for (const AlarmEntry& a : r.alarms) out["alarms"].push_back(to_json(a));
+  out["axes"] = Json::object();
+  for (const AxisReport& a : r.axes) out["axes"][a.letter] = to_json(a);
+  out["virtual_speed"] = r.virtual_speed;
+  out["cycle_us"] = to_json(r.cycle_us);
+  if (r.lateness_us) out["lateness_us"] = to_json(*r.lateness_us);
+  out["phases_us"] = Json::object();
+  for (const PhaseReport& p : r.phases) out["phases_us"][p.name] = to_json(p.us);
+  out["segments"] = Json::array();
+  for (const SegmentReport& s : r.segments) out["segments"].push_back(to_json(s));
+  out["trace_dropped"] = r.trace_dropped;
+  return out;
+}
+
+std::string to_json(const Report& report) {
+  return json_of(report).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Quantiles quantiles_us(const Histogram& h) {
+  const auto us = [&](double q) { return static_cast<double>(h.quantile(q)) / 1000.0; };
+  return {us(0.5), us(0.99), us(0.999), us(1.0)};
+}
+
+void fill_axes(Report& report, const TraceLayout& layout, const RunStatistics& statistics) {
+  const auto& axes = statistics.axes();
+  if (report.axes.size() < axes.size()) report.axes.resize(axes.size());
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    AxisReport& out = report.axes[a];
+    if (out.letter.empty()) out.letter = layout.axes[a];
+    out.max_velocity = axes[a].max_velocity();
+    out.max_acceleration = axes[a].max_acceleration();
+    out.max_jerk = axes[a].max_jerk();
+    out.max_following_error = axes[a].max_following_error();
+  }
+}
+
+void fill_cycle_times(Report& report, const CycleTimes& times, bool realtime) {
+  report.cycle_us = quantiles_us(times.duration());
+  report.lateness_us.reset();
+  if (realtime) report.lateness_us = quantiles_us(times.lateness());
+  report.phases.clear();
+  for (std::size_t n = 0; n < times.phase_names().size(); ++n)
+    report.phases.push_back({times.phase_names()[n], quantiles_us(times.phase(n))});
+}
+
+}  // namespace servogate::report

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/image/alarm.hpp"
+#include "gateway/report/statistics.hpp"
+
+namespace servogate::report {
+
+inline constexpr int kReportSchema = 1;
+
+/// A file that took part, and the SHA-256 of its bytes (64 hex digits; empty when it could not be read).
+struct FileIdentity {
+  std::string path;
+  std::string sha256;
+};
+
+/// One bus as it was wired.
+struct BusProvenance {
+  std::string name;       ///< as in the machine file
+  std::string transport;  ///< "mock:can0", "socketcan:can0", ...
+  bool mock = true;
+};
+
+/// Identity object 1018h of a node, or its like.
+struct NodeIdentity {
+  std::string bus;
+  int node = 0;
+  std::string name;
+  std::uint32_t vendor = 0, product = 0, revision = 0, serial = 0;
+};
+
+/// Where a report comes from (docs/architecture.md, rule 12).
+struct Provenance {
+  std::string version;  ///< see build_identity()
+  std::string commit;
+  std::optional<FileIdentity> machine;
+  std::optional<FileIdentity> program;
+  std::vector<FileIdentity> plc;
+  std::string dialect;
+  std::uint64_t seed = 0;
+  std::string clock;  ///< "virtual", "realtime", "realtime=best-effort"
+  std::vector<BusProvenance> buses;
+  std::string kernel;  ///< see fill_host()
+  std::string processor;
+  std::vector<NodeIdentity> nodes;
+  std::vector<std::string> command_line;
+};
+
+/// An alarm with the words of the one table, already in the reader's language.
+struct AlarmEntry {
+  image::AlarmRecord record;
+  std::string id;
+  std::string text;
+  std::string remedy;
+  std::string axis;  ///< letter, empty: none
+};
+
+/// One axis: what was met, and what the machine file allows (0: no limit known).
+struct AxisReport {
+  std::string letter;
+  std::string unit = "mm";  ///< "mm" or "deg"
+  double max_velocity = 0.0, max_acceleration = 0.0, max_jerk = 0.0, max_following_error = 0.0;
+  double limit_velocity = 0.0, limit_acceleration = 0.0, limit_jerk = 0.0, limit_following_error = 0.0;
+};
+
+/// Quantiles of a histogram in microseconds.
+struct Quantiles {
+  double p50 = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0;
+};
+Quantiles quantiles_us(const Histogram& histogram);
+
+struct PhaseReport {
+  std::string name;
+  Quantiles us;
+};
+
+/// Load of one bus segment; ratios 0-1.
+struct SegmentReport {
+  std::string name;
+  double load = 0.0;
+  double load_worst_cycle = 0.0;
+  std::uint64_t frames_sent = 0, frames_received = 0, errors = 0;
+};
+
+/// One run, from the first cycle to the last.
+struct Report {
+  Provenance provenance;
+  bool finished = false;  ///< the program came to its end (M02, M30, last line)
+  double time_s = 0.0;    ///< machine time from cycle 0
+  std::int64_t cycles = 0;
+  std::int64_t overruns = 0;
+  std::int64_t starved = 0;
+  std::int64_t blocks = 0;
+  std::vector<AlarmEntry> alarms;
+  std::vector<AxisReport> axes;
+  double virtual_speed = 0.0;  ///< simulated seconds per second
+  Quantiles cycle_us;
+  std::optional<Quantiles> lateness_us;  ///< real time only
+  std::vector<PhaseReport> phases;
+  std::vector<SegmentReport> segments;
+  std::uint64_t trace_dropped = 0;
+};
+
+/// Copies the maxima of a run into report.axes (same order, at least as many axes as `statistics` has are
+/// made).
+void fill_axes(Report& report, const TraceLayout& layout, const RunStatistics& statistics);
+/// Copies durations, lateness and phases into the report. `realtime` false leaves lateness out.
+void fill_cycle_times(Report& report, const CycleTimes& times, bool realtime);
+
+/// The report as JSON, `schema` first, indented, ended by a newline. Numbers that are not finite become null.
+std::string to_json(const Report& report);
+
+/// SHA-256 as 64 hex digits.
+std::string sha256(std::string_view bytes);
+/// The same of a file; nullopt when it cannot be read.
+std::optional<std::string> sha256_of_file(const std::string& path);
+/// Path and hash together; the hash is empty when the file cannot be read.
+FileIdentity identify(const std::string& path);
+
+/// Version and commit of this build; a commit ends with "+" when the tree was changed beside it, and is empty
+/// for a build outside version control.
+struct BuildIdentity {
+  std::string_view version;
+  std::string_view commit;
+};
+BuildIdentity build_identity();
+
+/// Fills version, commit, kernel and processor from this build and this computer.
+void fill_host(Provenance& provenance);
+
+}  // namespace servogate::report

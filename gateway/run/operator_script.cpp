@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/run/operator_script.hpp"
+
+#include "kernel/cycle/gate.hpp"
+
+namespace servogate::gateway {
+
+using image::ProcessImage;
+using image::ProcessState;
+using image::RequestKind;
+
+namespace {
+constexpr double kBootPatience_s = 15.0;
+constexpr double kHomingPatience_s = 300.0;
+constexpr double kPowerOffPatience_s = 5.0;
+constexpr double kRestPatience_s = 10.0;
+}  // namespace
+
+OperatorScript::OperatorScript(Wishes wishes, Post post)
+    : wishes_(std::move(wishes)), post_(std::move(post)) {}
+
+void OperatorScript::send(RequestKind kind, double value, int axis) {
+  image::Request r;
+  r.id = next_id_++;
+  r.asker = image::Asker::command_line;
+  r.kind = kind;
+  r.axis = static_cast<std::int8_t>(axis);
+  r.value = value;
+  post_(r);
+}
+
+double OperatorScript::in_stage(const ProcessImage& image) const {
+  return static_cast<double>(image.now.t_ns - entered_ns_) * 1e-9;
+}
+
+void OperatorScript::enter(Stage stage, const ProcessImage& image) {
+  stage_ = stage;
+  entered_ns_ = image.now.t_ns;
+  asked_ = false;
+  last_refusal_ = {};
+}
+
+void OperatorScript::power_down(Outcome outcome, const ProcessImage& image) {
+  outcome_ = outcome;
+  enter(Stage::power_off, image);
+}
+
+void OperatorScript::interrupt() { ++interrupts_; }
+
+void OperatorScript::take(const image::Answer& answer) {
+  if (answer.refusal == 0 || stage_ >= Stage::power_off || refusal_.refusal != 0) return;
+  const auto refusal = static_cast<cycle::Refusal>(answer.refusal);
+  if (refusal == cycle::Refusal::axis_moves || refusal == cycle::Refusal::not_powered) {
+    asked_ = stage_ == Stage::power;  // not quite at rest yet: ask again
+    last_refusal_ = answer;
+    return;
+  }
+  refusal_ = answer;
+}
+
+void OperatorScript::poll(const ProcessImage& image) {
+  if (interrupts_ > interrupts_done_ && stage_ < Stage::power_off) {
+    ++interrupts_done_;
+    send(RequestKind::stop);
+    outcome_ = Outcome::stopped;
+  }
+  if (interrupts_ > interrupts_done_ && interrupts_done_ > 0) {
+    ++interrupts_done_;
+    send(RequestKind::quick_stop);
+  }
+  bool standing = true;
+  for (int a = 0; a < image.axis_count; ++a)
+    standing = standing && !image.axes[static_cast<std::size_t>(a)].moving;
+  if (outcome_ == Outcome::stopped && stage_ < Stage::power_off) {
+    if (standing && image.processes[0].state != ProcessState::running) power_down(Outcome::stopped, image);
+    return;
+  }
+  if (refusal_.refusal != 0 && stage_ < Stage::running) return power_down(Outcome::refused, image);
+  const auto missing = [&](auto&& good) {
+    waiting_for_.clear();
+    for (int a = 0; a < image.axis_count; ++a)
+      if (!good(image.axes[static_cast<std::size_t>(a)], static_cast<std::size_t>(a)))
+        waiting_for_.push_back(wishes_.letters[static_cast<std::size_t>(a)]);
+    return !waiting_for_.empty();
+  };
+  if (last_refusal_.refusal != 0 && !asked_ && in_stage(image) > kRestPatience_s) {
+    refusal_ = last_refusal_;
+    return power_down(Outcome::refused, image);
+  }
+  switch (stage_) {
+    case Stage::power: {
+      const bool offline = missing([](const image::AxisImage& a, std::size_t) { return a.drive.online; });
+      if (!offline && !asked_) {
+        asked_ = true;
+        send(RequestKind::reset);
+        send(RequestKind::power, 1.0);
+        entered_ns_ = image.now.t_ns;
+      }
+      const bool off = missing([](const image::AxisImage& a, std::size_t) { return a.enabled; });
+      if (!off) return enter(Stage::homing, image);
+      if (asked_ && image.alarms_active > 0 && in_stage(image) > 0.5)
+        return power_down(Outcome::alarm, image);
+      if (in_stage(image) > kBootPatience_s) return power_down(Outcome::alarm, image);
+      break;
+    }
+    case Stage::homing: {
+      const bool open = missing(
+          [&](const image::AxisImage& a, std::size_t i) { return a.homed || !wishes_.needs_homing[i]; });
+      if (open && !asked_) {
+        asked_ = true;
+        send(RequestKind::mode, static_cast<double>(image::Mode::home));
+        send(RequestKind::home);
+      }
+      const bool busy =
+          missing([](const image::AxisImage& a, std::size_t) { return a.owner != image::AxisOwner::homing; });
+      if (!open && !busy && standing) {
+        waiting_for_.clear();
+        return wishes_.program ? enter(Stage::start, image) : power_down(Outcome::finished, image);
+      }
+      if (image.alarms_active > 0 && standing && in_stage(image) > 0.5)
+        return power_down(Outcome::alarm, image);
+      if (in_stage(image) > kHomingPatience_s) return power_down(Outcome::alarm, image);
+      break;
+    }
+    case Stage::start:
+      if (!asked_) {
+        asked_ = true;
+        send(RequestKind::override_feed, wishes_.override_ratio);
+        send(RequestKind::mode, static_cast<double>(image::Mode::automatic));
+        if (!wishes_.wait_for_start) send(RequestKind::start);
+      }
+      if (image.processes[0].state != ProcessState::idle) enter(Stage::running, image);
+      break;
+    case Stage::running:
+      switch (image.processes[0].state) {
+        case ProcessState::ended:
+          return power_down(Outcome::finished, image);
+        case ProcessState::stopped_by_alarm:
+          return power_down(Outcome::alarm, image);
+        case ProcessState::idle:
+          return power_down(Outcome::stopped, image);
+        default:
+          break;
+      }
+      break;
+    case Stage::power_off: {
+      if (!asked_ && standing) {
+        asked_ = true;
+        send(RequestKind::power, 0.0);
+      }
+      bool on = false;
+      for (int a = 0; a < image.axis_count; ++a) on = on || image.axes[static_cast<std::size_t>(a)].enabled;
+      if ((asked_ && !on) || in_stage(image) > kPowerOffPatience_s) stage_ = Stage::done;
+      break;
+    }
+    case Stage::done:
+      break;
+  }
+}
+
+}  // namespace servogate::gateway

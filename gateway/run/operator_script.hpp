@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "firmware_if/image/process_image.hpp"
+#include "firmware_if/image/request.hpp"
+#include "firmware_if/text/finding.hpp"
+
+namespace servogate::gateway {
+
+/// What `servogate run` does in an operator's place, one step after the other, by requests like anybody's:
+/// drives on, home what is not homed, AUTO, start, wait for the end, drives off.
+class OperatorScript {
+ public:
+  enum class Stage { power, homing, start, running, power_off, done };
+  /// How it went.
+  enum class Outcome { under_way, finished, alarm, stopped, refused };
+
+  struct Wishes {
+    bool program = true;  ///< false: only drives on and homing
+    double override_ratio = 1.0;
+    bool wait_for_start = false;  ///< loads and waits for somebody else's start
+    std::vector<std::string> letters;
+    std::vector<bool> needs_homing;
+  };
+  using Post = std::function<bool(const image::Request&)>;
+
+  OperatorScript(Wishes wishes, Post post);
+
+  /// Looks at the image of a cycle and posts what comes next. `homing_failed`: the sequence ended without
+  /// success.
+  void poll(const image::ProcessImage& image);
+  /// An answer of the gate to one of its requests.
+  void take(const image::Answer& answer);
+  /// Ctrl-C: the first time a controlled stop on the path, then drives off; the second time a quick stop.
+  void interrupt();
+
+  bool done() const noexcept { return stage_ == Stage::done; }
+  Stage stage() const noexcept { return stage_; }
+  Outcome outcome() const noexcept { return outcome_; }
+  const image::Answer& refusal() const noexcept { return refusal_; }
+  /// Axes that never came to what the stage waits for, with the state of their drives, for the message.
+  const std::vector<std::string>& waiting_for() const noexcept { return waiting_for_; }
+
+ private:
+  void send(image::RequestKind kind, double value = 0.0, int axis = -1);
+  void enter(Stage stage, const image::ProcessImage& image);
+  void power_down(Outcome outcome, const image::ProcessImage& image);
+  double in_stage(const image::ProcessImage& image) const;
+
+  Wishes wishes_;
+  Post post_;
+  Stage stage_ = Stage::power;
+  Outcome outcome_ = Outcome::under_way;
+  image::Answer refusal_;
+  image::Answer last_refusal_;  ///< of a request that is asked again
+  std::vector<std::string> waiting_for_;
+  image::Nanoseconds entered_ns_ = 0;
+  std::uint64_t next_id_ = 1;
+  bool asked_ = false;
+  bool started_ = false;
+  int interrupts_ = 0, interrupts_done_ = 0;
+};
+
+}  // namespace servogate::gateway

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/run/record_file.hpp"
+
+#include <readerwriterqueue/readerwriterqueue.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "gateway/compose/program_model.hpp"
+#include "gateway/machine/state_text.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+constexpr int kRecordSchema = 2;
+constexpr std::size_t kQueued = 2048;
+constexpr std::size_t kChunk = 1 << 16;
+constexpr std::size_t kChunkHead = 8;  // length, checksum
+constexpr machine::StatePart kParts[] = {machine::StatePart::origins, machine::StatePart::tools,
+                                         machine::StatePart::homing,  machine::StatePart::counters,
+                                         machine::StatePart::gains,   machine::StatePart::retained};
+
+const text::Entry kLost{"record.lost", "{0} cycles could not be kept: the file is too slow",
+                        "не записано циклов: {0}; носитель не успевает"};
+const text::Entry kNotRecord{"record.not-record", "not a record of servogate", "это не запись servogate"};
+const text::Entry kOtherVersion{"record.other-version", "record of another version or processor",
+                                "запись другой версии или другого процессора"};
+const text::Entry kDamagedHead{"record.damaged", "the record is damaged before its first cycle",
+                               "запись повреждена до первого цикла"};
+
+std::string say(const text::Entry& entry, const std::vector<std::string>& arguments = {}) {
+  return text::render(entry, arguments, text::user_language());
+}
+
+std::uint32_t word_at(std::string_view bytes) {
+  std::uint32_t v = 0;
+  for (std::size_t i = 4; i-- > 0;) v = v << 8 | static_cast<std::uint8_t>(bytes[i]);
+  return v;
+}
+
+void put_word(std::string& out, std::uint32_t v) {
+  for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>(v >> (8 * i)));
+}
+
+/// Checksum of a chunk that also speaks for everything before it.
+std::uint32_t chained(std::uint32_t before, std::string_view bytes) {
+  std::string all;
+  all.reserve(bytes.size() + 4);
+  put_word(all, before);
+  all.append(bytes);
+  return machine::crc32(all);
+}
+
+}  // namespace
+
+struct RecordWriter::Queue {
+  explicit Queue(const std::string& path) : file(std::fopen(path.c_str(), "wb")) {}
+  moodycamel::ReaderWriterQueue<cycle::CycleInputs> cycles{kQueued};
+  std::FILE* file;
+  std::uint32_t checksum = 0;
+};
+
+RecordWriter::RecordWriter(const std::string& path, const RecordHeader& header)
+    : queue_(std::make_unique<Queue>(path)) {
+  if (queue_->file == nullptr) {
+    error_ = std::strerror(errno);
+    return;
+  }
+  nlohmann::json head{{"servogate", "record"},
+                      {"schema", kRecordSchema},
+                      {"layout", sizeof(cycle::CycleInputs)},
+                      {"machine", header.machine},
+                      {"machine_sha256", header.machine_sha256},
+                      {"program", header.program},
+                      {"program_sha256", header.program_sha256},
+                      {"dialect", header.dialect},
+                      {"period_ns", header.period_ns}};
+  for (const machine::StatePart part : kParts)
+    head["state"][std::string(machine::part_name(part))] = machine::write_part(header.state, part);
+  const std::string line = head.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (std::fwrite(line.data(), 1, line.size(), queue_->file) != line.size()) error_ = std::strerror(errno);
+  queue_->checksum = machine::crc32(line);
+  thread_ = std::thread([this] { drain(); });
+}
+
+RecordWriter::~RecordWriter() { close(); }
+
+void RecordWriter::take(const cycle::CycleInputs& inputs) noexcept {
+  if (!queue_->cycles.try_enqueue(inputs)) lost_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void RecordWriter::wait_for_room() {
+  while (thread_.joinable() && queue_->cycles.size_approx() >= kQueued - 1) std::this_thread::yield();
+}
+
+void RecordWriter::write_chunk(std::vector<std::uint8_t>& bytes) {
+  const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  queue_->checksum = chained(queue_->checksum, content);
+  std::string chunk;
+  put_word(chunk, static_cast<std::uint32_t>(bytes.size()));
+  put_word(chunk, queue_->checksum);
+  chunk.append(content);
+  if (std::fwrite(chunk.data(), 1, chunk.size(), queue_->file) != chunk.size()) error_ = std::strerror(errno);
+  bytes.clear();
+}
+
+void RecordWriter::drain() {
+  cycle::InputEncoder encoder;
+  std::vector<std::uint8_t> bytes;
+  cycle::CycleInputs inputs;
+  for (bool last = false; !last;) {
+    last = stop_.load();
+    while (queue_->cycles.try_dequeue(inputs)) {
+      encoder.append(inputs, bytes);
+      if (bytes.size() >= kChunk) write_chunk(bytes);
+    }
+    if (!last) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  if (!bytes.empty()) write_chunk(bytes);
+  write_chunk(bytes);
+}
+
+std::string RecordWriter::close() {
+  if (thread_.joinable()) {
+    stop_ = true;
+    thread_.join();
+    if (std::fclose(queue_->file) != 0 && error_.empty()) error_ = std::strerror(errno);
+    queue_->file = nullptr;
+  }
+  if (error_.empty() && lost() != 0) error_ = say(kLost, {std::to_string(lost())});
+  return error_;
+}
+
+bool RecordReader::read_head(const std::string& line, std::string& error) {
+  const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
+  try {
+    if (!json.is_object() || json.value("servogate", "") != "record") {
+      error = say(kNotRecord);
+      return false;
+    }
+    if (json.value("schema", 0) != kRecordSchema ||
+        json.value("layout", std::size_t{0}) != sizeof(cycle::CycleInputs)) {
+      error = say(kOtherVersion);
+      return false;
+    }
+    header_.machine = json.value("machine", "");
+    header_.machine_sha256 = json.value("machine_sha256", "");
+    header_.program = json.value("program", "");
+    header_.program_sha256 = json.value("program_sha256", "");
+    header_.dialect = json.value("dialect", "");
+    header_.period_ns = json.value("period_ns", image::Nanoseconds{0});
+    for (const machine::StatePart part : kParts) {
+      const std::string name(machine::part_name(part));
+      machine::read_part(json.at("state").value(name, ""), name, part, header_.state);
+    }
+  } catch (const nlohmann::json::exception&) {
+    error = say(kDamagedHead);
+    return false;
+  }
+  checksum_ = machine::crc32(line);
+  return true;
+}
+
+void RecordReader::read_chunks(const std::string& content, std::size_t at) {
+  const std::string_view all(content);
+  while (all.size() - at >= kChunkHead) {
+    const std::size_t length = word_at(all.substr(at));
+    if (length > all.size() - at - kChunkHead) return;
+    const std::string_view bytes = all.substr(at + kChunkHead, length);
+    checksum_ = chained(checksum_, bytes);
+    if (checksum_ != word_at(all.substr(at + 4))) return;
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    at += kChunkHead + length;
+    if (length == 0) {
+      whole_ = at == all.size();
+      return;
+    }
+  }
+}
+
+bool RecordReader::open(const std::string& path, std::string& error) {
+  std::string content;
+  if (!read_file(path, content, error)) return false;
+  const std::size_t end = content.find('\n');
+  if (!read_head(content.substr(0, end == std::string::npos ? end : end + 1), error)) return false;
+  if (end != std::string::npos) read_chunks(content, end + 1);
+  decoder_ = std::make_unique<cycle::InputDecoder>(bytes_);
+  look_ahead();
+  if (!has_next_ && damaged_) error = say(kDamagedHead);
+  return has_next_ || !damaged_;
+}
+
+void RecordReader::look_ahead() noexcept {
+  has_next_ = decoder_->give(next_) && next_.number == expected_++;
+  damaged_ = !has_next_ && (!whole_ || decoder_->damaged() || !decoder_->at_end());
+}
+
+bool RecordReader::give(cycle::CycleInputs& inputs) noexcept {
+  if (!has_next_) return false;
+  inputs = next_;
+  look_ahead();
+  return true;
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/run/session.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "kernel/cycle/alarms.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+constexpr std::string_view kFollowed[] = {
+    "running", "held",     "m_strobe", "m_ack",       "s_strobe",      "s_ack",          "t_strobe",
+    "t_ack",   "enabled",  "homed",    "in_position", "on_limit_plus", "on_limit_minus", "brake_release",
+    "run",     "at_speed", "estop_ok", "power_on",    "ready",         "alarm"};
+
+report::TraceLayout layout_of(const Control& control) {
+  const machine::MachineConfig& m = control.machine();
+  report::TraceLayout layout;
+  layout.period_ns = m.cycle_ns();
+  layout.axes = m.letters();
+  layout.spindles = static_cast<int>(m.spindles.size());
+  layout.signals = trace_signals(m);
+  return layout;
+}
+
+std::vector<std::string> phase_names() {
+  std::vector<std::string> names;
+  for (int p = 0; p < cycle::kPhases; ++p) names.emplace_back(cycle::name(static_cast<cycle::Phase>(p)));
+  return names;
+}
+
+report::RunRecorderOptions picture_options(const machine::MachineConfig& m) {
+  report::RunRecorderOptions options;
+  const int x = m.axis_index("X"), z = m.axis_index("Z");
+  if (x >= 0 && z >= 0 && m.axes[static_cast<std::size_t>(x)].diameter) options.view_axes = {z, x, -1};
+  for (const machine::AxisConfig& a : m.axes)
+    options.axis_units.push_back(a.type == machine::AxisType::rotary ? "deg" : "mm");
+  return options;
+}
+
+}  // namespace
+
+std::vector<report::TraceSignal> trace_signals(const machine::MachineConfig& machine) {
+  std::vector<report::TraceSignal> signals;
+  for (const machine::StationConfig& station : machine.stations)
+    for (const machine::PointConfig& p : station.points)
+      if (!p.is_analog()) signals.push_back({p.name, p.place});
+  for (const image::Symbol& s : machine.symbol_table()) {
+    const std::size_t dot = s.name.find('.');
+    if (dot == std::string::npos || s.place.format != image::Format::bl) continue;
+    const std::string_view field = std::string_view(s.name).substr(dot + 1);
+    if (std::find(std::begin(kFollowed), std::end(kFollowed), field) != std::end(kFollowed))
+      signals.push_back({s.name, s.place});
+  }
+  if (signals.size() > report::kMaxTraceSignals) signals.resize(report::kMaxTraceSignals);
+  return signals;
+}
+
+Session::Session(Control& control, const Outputs& outputs, bool realtime)
+    : control_(control),
+      layout_(layout_of(control)),
+      realtime_(realtime),
+      statistics_(layout_),
+      times_(phase_names()) {
+  std::vector<std::unique_ptr<report::TraceSink>> sinks;
+  if (!outputs.trace.empty()) sinks.push_back(std::make_unique<report::CsvSink>(outputs.trace));
+  if (!outputs.html.empty()) {
+    auto picture = std::make_unique<report::RunRecorder>(picture_options(control.machine()));
+    picture_ = picture.get();
+    sinks.push_back(std::move(picture));
+  }
+  if (!sinks.empty()) recorder_ = std::make_unique<report::TraceRecorder>(layout_, std::move(sinks));
+}
+
+Session::~Session() = default;
+
+void Session::wait_for_room() {
+  if (recorder_ != nullptr) recorder_->wait_for_room();
+}
+
+void Session::after_cycle(image::Nanoseconds late_ns) noexcept {
+  const cycle::Cycle& cycle = control_.cycle();
+  report::sample(cycle.image(), layout_, row_);
+  statistics_.add(row_);
+  times_.add(cycle.duration_ns(), late_ns, cycle.phase_ns().data());
+  if (recorder_ != nullptr) recorder_->record(row_);
+}
+
+std::string Session::close() {
+  if (recorder_ == nullptr) return {};
+  recorder_->close();
+  for (const auto& sink : recorder_->sinks())
+    if (std::string error = sink->error(); !error.empty()) return error;
+  return {};
+}
+
+const report::RecordedRun* Session::picture() const {
+  return picture_ != nullptr ? &picture_->run() : nullptr;
+}
+
+report::Report Session::make_report(double wall_s, std::int64_t overruns) const {
+  report::Report r;
+  const cycle::Cycle& cycle = control_.cycle();
+  const machine::MachineConfig& m = control_.machine();
+  const image::ProcessImage& image = cycle.image();
+  r.cycles = cycle.count();
+  r.time_s = static_cast<double>(cycle.count() * cycle.period_ns()) * 1e-9;
+  r.overruns = overruns;
+  r.starved = image.processes[0].starved;
+  r.blocks = control_.process(0).feeder().executed();
+  r.finished = image.processes[0].state == image::ProcessState::ended;
+  r.virtual_speed = wall_s > 0.0 ? r.time_s / wall_s : 0.0;
+  const cycle::AlarmNames names = control_.alarm_names();
+  const text::Language language = text::user_language();
+  for (const image::AlarmRecord& record : cycle.alarms().history()) {
+    report::AlarmEntry entry;
+    entry.record = record;
+    if (const cycle::AlarmRow* row = cycle::find_alarm(record.number); row != nullptr)
+      entry.id = std::string(row->text.id);
+    entry.text = cycle::render(record, names, language);
+    entry.remedy = cycle::render_remedy(record, names, language);
+    if (record.axis >= 0) entry.axis = m.axes[static_cast<std::size_t>(record.axis)].letter;
+    r.alarms.push_back(std::move(entry));
+  }
+  report::fill_axes(r, layout_, statistics_);
+  for (std::size_t a = 0; a < r.axes.size() && a < m.axes.size(); ++a) {
+    const machine::AxisConfig& axis = m.axes[a];
+    r.axes[a].unit = axis.type == machine::AxisType::rotary ? "deg" : "mm";
+    r.axes[a].limit_velocity = axis.max_velocity;
+    r.axes[a].limit_acceleration = axis.max_acceleration;
+    r.axes[a].limit_jerk = axis.max_jerk;
+    r.axes[a].limit_following_error =
+        axis.following_error_stop + axis.following_error_velocity * axis.max_velocity;
+  }
+  report::fill_cycle_times(r, times_, realtime_);
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    const image::SegmentStatus& s = image.segments[b];
+    r.segments.push_back(
+        {m.buses[b].name, s.load, s.load_worst_cycle, s.frames_sent, s.frames_received, s.errors});
+    r.provenance.buses.push_back({m.buses[b].name, m.buses[b].url, m.buses[b].mock()});
+  }
+  for (std::size_t s = 0; s < control_.suppliers().size(); ++s) {
+    const canopen::Segment& segment = control_.suppliers()[s]->segment();
+    for (std::size_t n = 0; n < segment.config().nodes.size(); ++n) {
+      const canopen::NodeStatus status = segment.node_status(n);
+      r.provenance.nodes.push_back({segment.config().name, status.node, segment.config().nodes[n].name,
+                                    status.vendor_id, status.product_code, status.revision, status.serial});
+    }
+  }
+  if (recorder_ != nullptr) r.trace_dropped = recorder_->dropped();
+  return r;
+}
+
+}  // namespace servogate::gateway

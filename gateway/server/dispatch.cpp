@@ -1,0 +1,438 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/server/dispatch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "gateway/machine/consequences.hpp"
+#include "gateway/server/status.hpp"
+#include "gateway/server/texts.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+using image::RequestKind;
+using nlohmann::json;
+
+constexpr double kKeepAlive_ms = 30.0;  ///< of machine time, between two keep-alives of a jog
+
+constexpr std::size_t kFindingsSaid = 10;  ///< of a bad program; all of them stand in the answer's "findings"
+
+constexpr struct {
+  std::string_view name;
+  image::Asker asker;
+} kAskers[] = {{"command_line", image::Asker::command_line},
+               {"page", image::Asker::page},
+               {"pendant", image::Asker::pendant},
+               {"scenario", image::Asker::scenario},
+               {"modbus", image::Asker::modbus},
+               {"bench", image::Asker::bench}};
+
+/// Commands that are one request each, and what is said when it was accepted.
+constexpr struct {
+  std::string_view name;
+  RequestKind kind;
+  const text::Entry* said;
+} kRequests[] = {{"resume", RequestKind::resume, &says::kResumed},
+                 {"stop", RequestKind::stop, &says::kStopped},
+                 {"quick_stop", RequestKind::quick_stop, &says::kStopped}};
+
+std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+std::string signed_number(double value) { return (value > 0.0 ? "+" : "") + text::number(value, 4); }
+
+class Dispatch {
+ public:
+  Dispatch(Resident& resident, const json& request, Connection& connection)
+      : resident_(resident), request_(request), connection_(connection) {}
+
+  Reply run();
+
+ private:
+  using Handler = Reply (Dispatch::*)();
+  struct Row {
+    std::string_view name;
+    Handler handler;
+  };
+  static const Row kRows[];
+
+  /// An accepted request; `more` is added to the answer.
+  Reply good(const text::Entry& entry, const std::vector<std::string>& arguments = {},
+             json more = json::object()) const {
+    more["ok"] = true;
+    more["exit"] = kDone;
+    more["text"] = text::render(entry, arguments, language_);
+    return {text_of(more)};
+  }
+  Reply fail(const text::Entry& entry, const std::vector<std::string>& arguments, int exit) const {
+    return refuse(entry, arguments, exit, language_);
+  }
+
+  /// Puts a request to the gate. True: accepted; otherwise `refusal_` holds the answer.
+  bool ask(RequestKind kind, int axis = -1, double value = 0.0);
+  bool set_mode(image::Mode mode);
+  /// Index of the axis that `name` says; -1: `refusal_` holds the answer.
+  int axis(const json& name);
+  /// A number of the request; false: `refusal_` holds the answer.
+  bool number(const char* key, double& value, bool needed);
+  bool unit_is_own(int axis);
+  bool read_head();
+
+  Reply status() { return {status_json(resident_, language_)}; }
+  Reply alarms() { return {alarms_json(resident_, language_)}; }
+  Reply power();
+  Reply home();
+  Reply jog();
+  Reply jog_continuous();
+  Reply keep_alive();
+  Reply jog_stop();
+  Reply zero();
+  Reply override_feed();
+  Reply load();
+  Reply start() { return begin(false); }
+  Reply step() { return begin(true); }
+  Reply begin(bool step);
+  Reply mdi();
+  Reply hold();
+  Reply reset();
+  Reply input();
+  Reply down() {
+    Reply reply = good(says::kDown);
+    reply.down = true;
+    return reply;
+  }
+
+  const machine::MachineConfig& machine() const { return resident_.control().machine(); }
+  const machine::AxisConfig& axis_config(int index) const {
+    return machine().axes[static_cast<std::size_t>(index)];
+  }
+  static const char* unit(const machine::AxisConfig& a) {
+    return a.type == machine::AxisType::rotary ? "deg" : "mm";
+  }
+
+  Resident& resident_;
+  const json& request_;
+  Connection& connection_;
+  image::Asker asker_ = image::Asker::command_line;
+  text::Language language_ = text::user_language();
+  Reply refusal_;
+};
+
+const Dispatch::Row Dispatch::kRows[] = {{"status", &Dispatch::status},
+                                         {"alarms", &Dispatch::alarms},
+                                         {"power", &Dispatch::power},
+                                         {"home", &Dispatch::home},
+                                         {"jog", &Dispatch::jog},
+                                         {"jog_continuous", &Dispatch::jog_continuous},
+                                         {"keep_alive", &Dispatch::keep_alive},
+                                         {"jog_stop", &Dispatch::jog_stop},
+                                         {"zero", &Dispatch::zero},
+                                         {"override", &Dispatch::override_feed},
+                                         {"load", &Dispatch::load},
+                                         {"start", &Dispatch::start},
+                                         {"step", &Dispatch::step},
+                                         {"mdi", &Dispatch::mdi},
+                                         {"hold", &Dispatch::hold},
+                                         {"reset", &Dispatch::reset},
+                                         {"acknowledge", &Dispatch::reset},
+                                         {"input", &Dispatch::input},
+                                         {"down", &Dispatch::down}};
+
+Reply Dispatch::run() {
+  if (!read_head()) return refusal_;
+  const std::string command = request_.value("cmd", "");
+  for (const auto& row : kRequests)
+    if (row.name == command) return ask(row.kind) ? good(*row.said) : refusal_;
+  for (const Row& row : kRows)
+    if (row.name == command) return (this->*row.handler)();
+  return fail(says::kUnknown, {command}, kWrongUse);
+}
+
+bool Dispatch::read_head() {
+  const std::string language = request_.value("language", "");
+  if (language == "ru") language_ = text::Language::russian;
+  if (language == "en") language_ = text::Language::english;
+  const std::string name = request_.value("asker", "command_line");
+  std::string known;
+  for (const auto& row : kAskers) {
+    if (row.name == name) {
+      asker_ = row.asker;
+      return true;
+    }
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+  }
+  refusal_ = fail(says::kUnknownAsker, {name, known}, kWrongUse);
+  return false;
+}
+
+bool Dispatch::ask(RequestKind kind, int axis, double value) {
+  image::Request r;
+  r.asker = asker_;
+  r.kind = kind;
+  r.axis = static_cast<std::int8_t>(axis);
+  r.value = value;
+  image::Answer answer;
+  if (!resident_.ask(r, answer)) {
+    refusal_ = fail(says::kNoAnswer, {}, kInfrastructure);
+    return false;
+  }
+  if (answer.refusal == 0) return true;
+  refusal_ = {text_of({{"ok", false},
+                       {"code", cycle::refusal_texts()[answer.refusal].id},
+                       {"text", cycle::render(answer, machine().letters(), language_)},
+                       {"exit", kAlarm}})};
+  return false;
+}
+
+bool Dispatch::set_mode(image::Mode mode) {
+  if (resident_.image().processes[0].mode == mode) return true;
+  return ask(RequestKind::mode, -1, static_cast<double>(mode));
+}
+
+int Dispatch::axis(const json& name) {
+  const std::string letter = name.is_string() ? name.get<std::string>() : "";
+  const int index = machine().axis_index(letter);
+  if (index >= 0) return index;
+  std::string list;
+  for (const std::string& l : machine().letters()) list += (list.empty() ? "" : ", ") + l;
+  refusal_ = fail(says::kNoAxis, {letter, list}, kWrongUse);
+  return -1;
+}
+
+bool Dispatch::number(const char* key, double& value, bool needed) {
+  if (request_.contains(key) && request_[key].is_number()) {
+    value = request_[key].get<double>();
+    return true;
+  }
+  if (!request_.contains(key) && !needed) return true;
+  refusal_ = fail(says::kNoNumber, {key}, kWrongUse);
+  return false;
+}
+
+bool Dispatch::unit_is_own(int axis) {
+  const machine::AxisConfig& a = axis_config(axis);
+  const std::string said = request_.value("unit", "");
+  if (said.empty() || said == unit(a)) return true;
+  refusal_ = fail(says::kNotUnit, {said, a.letter, unit(a)}, kWrongUse);
+  return false;
+}
+
+Reply Dispatch::power() {
+  double value = 0.0;
+  if (!number("value", value, true) || !ask(RequestKind::power, -1, value)) return refusal_;
+  return good(value != 0.0 ? says::kPowerOn : says::kPowerOff);
+}
+
+Reply Dispatch::home() {
+  const json axes = request_.value("axes", json::array());
+  std::uint32_t mask = 0;
+  std::string names;
+  if (axes.is_array())
+    for (const json& name : axes) {
+      const int index = axis(name);
+      if (index < 0) return refusal_;
+      mask |= 1u << index;
+      names += (names.empty() ? "" : ", ") + axis_config(index).letter;
+    }
+  if (!set_mode(image::Mode::home) || !ask(RequestKind::home, -1, mask)) return refusal_;
+  return mask == 0 ? good(says::kHomingAll) : good(says::kHoming, {names});
+}
+
+Reply Dispatch::jog() {
+  double value = 0.0;
+  const int index = axis(request_.value("axis", json()));
+  if (index < 0 || !unit_is_own(index) || !number("value", value, true)) return refusal_;
+  const machine::AxisConfig& a = axis_config(index);
+  const double distance = a.diameter ? value / 2.0 : value;
+  const image::AxisImage& before = resident_.image().axes[static_cast<std::size_t>(index)];
+  const double target = before.command + before.distance_to_go + distance;
+  if (!set_mode(image::Mode::manual) || !ask(RequestKind::jog_increment, index, distance)) return refusal_;
+  const bool homed = resident_.image().axes[static_cast<std::size_t>(index)].homed;
+  const double limit = std::clamp(target, a.travel_min, a.travel_max);
+  if (homed && !a.endless() && std::abs(limit - target) > 1e-9)
+    return good(says::kJogClipped, {a.letter, text::number(limit * (a.diameter ? 2.0 : 1.0), 4), unit(a)});
+  if (a.diameter) return good(says::kJogDiameter, {a.letter, signed_number(value), signed_number(distance)});
+  return good(says::kJog, {a.letter, signed_number(value), unit(a)});
+}
+
+Reply Dispatch::jog_continuous() {
+  double value = 0.0;
+  const int index = axis(request_.value("axis", json()));
+  if (index < 0 || !number("value", value, true)) return refusal_;
+  if (!set_mode(image::Mode::manual) || !ask(RequestKind::jog_continuous, index, value)) return refusal_;
+  connection_.jogs = index;
+  connection_.asker = asker_;
+  return good(says::kJogs, {axis_config(index).letter, value > 0.0 ? "+" : "-"},
+              {{"keep_alive_ms", std::max(1.0, kKeepAlive_ms / std::max(resident_.speed(), 1.0))}});
+}
+
+Reply Dispatch::keep_alive() {
+  if (connection_.jogs < 0) return fail(says::kNoJog, {}, kWrongUse);
+  const image::AxisOwner owner = resident_.image().axes[static_cast<std::size_t>(connection_.jogs)].owner;
+  if (owner != image::AxisOwner::manual) {
+    const std::string letter = axis_config(connection_.jogs).letter;
+    connection_.jogs = -1;
+    return good(says::kJogEnds, {letter}, {{"moving", false}});
+  }
+  image::Request r;
+  r.kind = RequestKind::keep_alive;
+  r.asker = connection_.asker;
+  resident_.tell(r);
+  return {text_of({{"ok", true}, {"exit", kDone}, {"moving", true}})};
+}
+
+Reply Dispatch::jog_stop() {
+  int index = -1;
+  if (request_.contains("axis") && (index = axis(request_["axis"])) < 0) return refusal_;
+  if (index < 0 || index == connection_.jogs) connection_.jogs = -1;
+  return ask(RequestKind::jog_stop, index) ? good(says::kStopped) : refusal_;
+}
+
+Reply Dispatch::zero() {
+  double value = 0.0;
+  const int index = axis(request_.value("axis", json()));
+  if (index < 0 || !unit_is_own(index) || !number("value", value, false)) return refusal_;
+  if (!ask(RequestKind::zero, index, value)) return refusal_;
+  const Resident::Zeroed zeroed = resident_.zero(index, value);
+  if (const std::string problem = resident_.save(); !problem.empty())
+    return fail(says::kNotSaved, {problem}, kInfrastructure);
+  const machine::AxisConfig& a = axis_config(index);
+  return good(a.diameter ? says::kZeroDiameter : says::kZero,
+              {a.letter, text::number(value, 4), unit(a), std::to_string(zeroed.origin),
+               text::number(zeroed.place, 4)},
+              {{"origin", zeroed.origin}, {"place", zeroed.place}});
+}
+
+Reply Dispatch::override_feed() {
+  double value = 0.0;
+  if (!number("value", value, true) || !ask(RequestKind::override_feed, -1, value / 100.0)) return refusal_;
+  return good(says::kOverride, {text::number(value, 1)});
+}
+
+Reply Dispatch::load() {
+  if (resident_.busy()) return fail(says::kBusy, {}, kAlarm);
+  std::vector<text::Finding> findings;
+  const std::string program = request_.value("program", "");
+  const bool loaded = resident_.load(program, request_.value("dialect", ""), findings);
+  json more{{"findings", json::parse(machine::to_json(findings), nullptr, false)}};
+  if (loaded)
+    return good(says::kLoaded, {program, std::to_string(resident_.blocks()), std::to_string(findings.size())},
+                more);
+  std::string words = text::render(says::kNotLoaded, std::vector<std::string>{program}, language_);
+  for (std::size_t i = 0; i < findings.size() && i < kFindingsSaid; ++i)
+    words += "\n" + findings[i].str(language_);
+  if (findings.size() > kFindingsSaid)
+    words += "\n" + text::render(says::kMoreFindings,
+                                 std::vector<std::string>{std::to_string(findings.size() - kFindingsSaid)},
+                                 language_);
+  more.update({{"ok", false}, {"exit", kAlarm}, {"code", says::kNotLoaded.id}, {"text", words}});
+  return {text_of(more)};
+}
+
+Reply Dispatch::begin(bool step) {
+  if (!resident_.busy()) {
+    if (!set_mode(step ? image::Mode::step : image::Mode::automatic)) return refusal_;
+    if (resident_.program().empty())
+      return refuse(cycle::refusal_texts()[static_cast<std::size_t>(cycle::Refusal::no_program)], {}, kAlarm,
+                    language_);
+    resident_.take_tables();
+  }
+  if (!ask(step ? RequestKind::step : RequestKind::start)) return refusal_;
+  return step ? good(says::kStepped) : good(says::kStarted, {resident_.program()});
+}
+
+Reply Dispatch::mdi() {
+  const std::string block = request_.value("block", "");
+  if (block.find_first_not_of(" \t") == std::string::npos) return fail(says::kBlockEmpty, {}, kWrongUse);
+  if (resident_.busy()) return fail(says::kBusy, {}, kAlarm);
+  resident_.take_tables();
+  if (const auto finding = resident_.check_block(block); finding)
+    return fail(says::kBlockWrong, {finding->str(language_)}, kAlarm);
+  if (!set_mode(image::Mode::mdi)) return refusal_;
+  resident_.set_manual_block(block);
+  return ask(RequestKind::start) ? good(says::kBlockRuns) : refusal_;
+}
+
+Reply Dispatch::hold() {
+  const bool busy = resident_.busy();
+  if (!ask(RequestKind::hold)) return refusal_;
+  return good(busy ? says::kHeld : says::kNothingHeld);
+}
+
+Reply Dispatch::reset() {
+  const bool whole = request_.value("cmd", "") == "reset";
+  if (!ask(whole ? RequestKind::reset : RequestKind::acknowledge)) return refusal_;
+  if (whole && !resident_.busy()) resident_.forget_modes();
+  const std::string left = alarms_in_words(resident_, language_);
+  return left.empty() ? good(says::kReset) : good(says::kResetLeft, {left});
+}
+
+Reply Dispatch::input() {
+  const std::string name = request_.value("point", "");
+  int station = -1;
+  const machine::PointConfig* point = machine().point(name, &station);
+  if (point == nullptr) {
+    std::string list;
+    for (const machine::StationConfig& s : machine().stations)
+      for (const machine::PointConfig& p : s.points)
+        if (p.is_input() && s.mock()) list += (list.empty() ? "" : ", ") + p.name;
+    return fail(says::kNoPoint, {name, list}, kWrongUse);
+  }
+  if (!point->is_input()) return fail(says::kOutput, {name}, kWrongUse);
+  const machine::StationConfig& s = machine().stations[static_cast<std::size_t>(station)];
+  if (!s.mock()) return fail(says::kRealPoint, {name, s.name, s.url}, kAlarm);
+  MockWorld::Play play;
+  const json value = request_.value("value", json());
+  if (value.is_number()) play.value = value.get<double>();
+  if (value.is_boolean()) play.value = value.get<bool>() ? 1.0 : 0.0;
+  if (point->is_analog() && !value.is_number()) return fail(says::kAnalogPoint, {name}, kWrongUse);
+  const bool automatic = value.is_string() && value.get<std::string>() == "auto";
+  if (!play.value && !automatic) return fail(says::kNoNumber, {"value"}, kWrongUse);
+  switch (resident_.control().world().play_input(name, play)) {
+    case MockWorld::Played::follows_nothing:
+      return fail(says::kFollowsNothing, {name}, kWrongUse);
+    case MockWorld::Played::no_such_input:
+      return fail(says::kRealPoint, {name, s.name, s.url}, kAlarm);
+    case MockWorld::Played::done:
+      break;
+  }
+  if (!play.value) return good(says::kInputFollows, {name});
+  return good(says::kInput, {name, point->is_analog()   ? text::number(*play.value)
+                                   : *play.value != 0.0 ? "on"
+                                                        : "off"});
+}
+
+}  // namespace
+
+Reply refuse(const text::Entry& entry, const std::vector<std::string>& arguments, int exit,
+             text::Language language) {
+  return {text_of({{"ok", false},
+                   {"code", entry.id},
+                   {"text", text::render(entry, arguments, language)},
+                   {"exit", exit}})};
+}
+
+Reply dispatch(Resident& resident, std::string_view line, Connection& connection) {
+  const json request = json::parse(line, nullptr, false);
+  if (request.is_discarded() || !request.is_object())
+    return refuse(says::kBadLine, {std::string(line.substr(0, 80))}, kWrongUse, text::user_language());
+  try {
+    return Dispatch(resident, request, connection).run();
+  } catch (const json::exception& e) {
+    return refuse(says::kBadLine, {e.what()}, kWrongUse, text::user_language());
+  }
+}
+
+void end_connection(Resident& resident, Connection& connection) {
+  if (connection.jogs < 0) return;
+  image::Request r;
+  r.kind = RequestKind::jog_stop;
+  r.asker = connection.asker;
+  r.axis = static_cast<std::int8_t>(connection.jogs);
+  resident.tell(r);
+  connection.jogs = -1;
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gateway/server/resident.hpp"
+
+namespace servogate::gateway {
+
+/// What a line on the control socket leads to.
+struct Reply {
+  std::string line;   ///< one JSON object without a line end
+  bool down = false;  ///< the control is to end
+};
+
+/// What the server remembers of a connection.
+struct Connection {
+  int jogs = -1;  ///< axis of the continuous jog that this client keeps alive, -1: none
+  image::Asker asker = image::Asker::command_line;  ///< who began it
+};
+
+/// Carries out one line of the control socket's protocol (docs/control-socket.md): a JSON object
+/// `{"cmd":"jog","asker":"command_line","axis":"X","value":1.0}`; the answer is `{"ok":true,...}` or
+/// `{"ok":false,"code":"...","text":"..."}` with an exit code under "exit". Never throws on bad input.
+Reply dispatch(Resident& resident, std::string_view line, Connection& connection);
+
+/// The client is gone: what only its keep-alive permitted ends now.
+void end_connection(Resident& resident, Connection& connection);
+
+/// A refusal as a line.
+Reply refuse(const text::Entry& entry, const std::vector<std::string>& arguments, int exit,
+             text::Language language);
+
+}  // namespace servogate::gateway

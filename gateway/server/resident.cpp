@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/server/resident.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+namespace servogate::gateway {
+
+namespace {
+
+constexpr int kBlockPatience = 10'000;  ///< commands of a typed block that are looked at before it runs
+
+std::string dialect_list() {
+  std::string list;
+  for (const std::string& d : program::dialects()) list += (list.empty() ? "" : ", ") + d;
+  return list;
+}
+
+bool known_dialect(const std::string& name) {
+  const std::vector<std::string> known = program::dialects();
+  return std::find(known.begin(), known.end(), name) != known.end();
+}
+
+}  // namespace
+
+Resident::Resident(Control& control, machine::MachineState state, std::string state_path, double speed)
+    : control_(control), state_(std::move(state)), state_path_(std::move(state_path)), speed_(speed) {
+  file_.dialect = control.machine().control.dialect;
+  file_.model = program_model(control.machine());
+  file_.loader = program_loader({});
+  arm();
+}
+
+bool Resident::ask(image::Request request, image::Answer& answer, int patience_ms) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end = Clock::now() + std::chrono::milliseconds(patience_ms);
+  request.id = next_id_++;
+  while (control_.cycle().take_answer(answer)) {
+  }  // of those that nobody waited for
+  if (!control_.cycle().post(request)) return false;
+  while (Clock::now() < end) {
+    while (control_.cycle().take_answer(answer))
+      if (answer.id == request.id) {
+        catch_up();
+        return true;
+      }
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
+  }
+  return false;
+}
+
+/// Waits for the next whole image, which holds what the answered request did.
+void Resident::catch_up() {
+  const std::int64_t before = image().now.number;
+  for (int n = 0; n < 100 && image().now.number == before; ++n)
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
+}
+
+bool Resident::busy() {
+  const image::ProcessState state = image().processes[0].state;
+  return state == image::ProcessState::running || state == image::ProcessState::held ||
+         state == image::ProcessState::waiting;
+}
+
+void Resident::tell(image::Request request) {
+  image::Answer unread;
+  while (control_.cycle().take_answer(unread)) {
+  }
+  request.id = next_id_++;
+  control_.cycle().post(request);
+}
+
+/// False: a program is being read just now, nothing was changed.
+bool Resident::arm() {
+  // The factory keeps its own copies: the program may be replaced while an interpreter of the old one still
+  // exists.
+  const std::scoped_lock lock(control_.reading());
+  if (control_.process(0).feeder().reads()) return false;
+  control_.process(0).load(
+      [file = file_, path = program_path_, tables = state_.tables](const program::Position& start) {
+        return program::Interpreter(file.dialect, file.model, tables, path.empty() ? "MDI" : path, file.text,
+                                    file.loader, start);
+      },
+      state_.tables);
+  return true;
+}
+
+bool Resident::load(const std::string& path, const std::string& dialect,
+                    std::vector<text::Finding>& findings) {
+  ProgramFile file;
+  file.dialect = dialect.empty() ? control_.machine().control.dialect : dialect;
+  std::string error;
+  if (!known_dialect(file.dialect))
+    findings.push_back({text::Severity::error, path, 0, 0, &kUnknownDialect, {file.dialect, dialect_list()}});
+  else if (!read_file(path, file.text, error))
+    findings.push_back({text::Severity::error, path, 0, 0, &kCannotRead, {error}});
+  if (!findings.empty()) return false;
+  file.model = program_model(control_.machine());
+  file.loader = program_loader(path);
+  take_tables();
+  const program::Interpreter reader(file.dialect, file.model, state_.tables, path, file.text, file.loader,
+                                    {});
+  findings = reader.findings();
+  for (const text::Finding& f : findings)
+    if (f.severity == text::Severity::error) return false;
+  std::swap(file_, file);
+  std::string before = std::exchange(program_path_, path);
+  if (arm()) {
+    blocks_ = reader.block_count();
+    return true;
+  }
+  std::swap(file_, file);  // a program began meanwhile
+  program_path_ = std::move(before);
+  return false;
+}
+
+void Resident::take_tables() {
+  {
+    const std::scoped_lock lock(control_.reading());
+    const program::Tables* tables = control_.process(0).feeder().tables();
+    if (tables == nullptr || control_.process(0).feeder().reads()) return;
+    state_.tables = *tables;
+  }
+  arm();
+}
+
+program::Position Resident::position() {
+  const image::ProcessImage& now = image();
+  program::Position at{};
+  for (int a = 0; a < now.axis_count; ++a) {
+    const auto i = static_cast<std::size_t>(a);
+    at[i] = now.axes[i].command;
+  }
+  return at;
+}
+
+std::optional<text::Finding> Resident::check_block(const std::string& block) {
+  const program::Position at = position();
+  std::optional<program::Interpreter> trial;
+  {
+    const std::scoped_lock lock(control_.reading());
+    trial = control_.process(0).manual_interpreter(at);
+  }
+  trial->mdi(block);
+  for (int n = 0; n < kBlockPatience; ++n) {
+    const program::Step step = trial->next(image_.packets, true);
+    if (const auto* error = std::get_if<program::Error>(&step)) return error->finding;
+    const auto* command = std::get_if<program::Command>(&step);
+    if (command == nullptr || std::holds_alternative<program::End>(command->what)) break;
+  }
+  return std::nullopt;
+}
+
+void Resident::set_manual_block(const std::string& block) {
+  const std::scoped_lock lock(control_.reading());
+  control_.process(0).set_manual_block(block);
+}
+
+void Resident::forget_modes() {
+  take_tables();
+  const std::scoped_lock lock(control_.reading());
+  control_.process(0).forget_manual();
+}
+
+Resident::Zeroed Resident::zero(int axis, double value) {
+  take_tables();
+  const program::Position at = position();
+  std::optional<program::Interpreter> manual;
+  {
+    const std::scoped_lock lock(control_.reading());
+    manual = control_.process(0).manual_interpreter(at);
+  }
+  const machine::AxisConfig& a = control_.machine().axes[static_cast<std::size_t>(axis)];
+  manual->preset(axis, a.diameter ? value / 2.0 : value);
+  state_.tables = manual->tables();
+  arm();
+  const int origin = manual->origin(axis);
+  return {origin, state_.tables.origins[origin][a.letter]};
+}
+
+std::string Resident::save() {
+  if (state_path_.empty()) return {};
+  {
+    const std::scoped_lock lock(control_.reading());
+    if (const program::Tables* tables = control_.process(0).feeder().tables(); tables != nullptr)
+      state_.tables = *tables;
+  }
+  const image::ProcessImage& now = image();
+  if (now.axis_count == 0) return {};  // no cycle yet: nothing was learned
+  cycle::References references;
+  control_.cycle().read(references);
+  for (std::size_t a = 0; a < control_.machine().axes.size(); ++a) {
+    machine::HomingRecord& record = state_.homing[control_.machine().axes[a].letter];
+    record.valid = now.axes[a].homed;
+    record.offset_counts = references[a];
+  }
+  state_.tool_in_spindle = now.processes[0].tool;
+  std::string error;
+  return machine::StateDirectory(state_path_).save_all(state_, error) ? std::string() : error;
+}
+
+std::uint32_t Resident::homed() {
+  const image::ProcessImage& now = image();
+  std::uint32_t bits = 0;
+  for (int a = 0; a < now.axis_count; ++a)
+    if (now.axes[static_cast<std::size_t>(a)].homed) bits |= 1u << a;
+  return bits;
+}
+
+std::string Resident::look_after() {
+  const std::uint32_t now = homed();
+  const bool found = (now & ~homed_seen_) != 0;
+  homed_seen_ = now;
+  const bool busy_now = busy();
+  const bool ended = busy_seen_ && !busy_now;
+  busy_seen_ = busy_now;
+  if (ended) take_tables();
+  return found || ended ? save() : std::string();
+}
+
+const image::ProcessImage& Resident::image() {
+  control_.cycle().read(image_);
+  return image_;
+}
+
+const cycle::AlarmSnapshot& Resident::alarms() {
+  control_.cycle().read(alarms_);
+  return alarms_;
+}
+
+}  // namespace servogate::gateway

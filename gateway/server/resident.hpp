@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/compose/control.hpp"
+#include "gateway/compose/program_file.hpp"
+#include "gateway/machine/state.hpp"
+
+namespace servogate::gateway {
+
+/// A Control that stays: its program, its learned state, and who speaks to it. Everything here is for one
+/// thread outside the cycle (the server's), except that the loop's owner runs the Control itself.
+class Resident {
+ public:
+  /// `speed`: machine seconds per wall-clock second.
+  Resident(Control& control, machine::MachineState state, std::string state_path, double speed = 1.0);
+
+  /// Posts one request and waits for the gate's answer, at most `patience_ms`. False: no answer in time.
+  bool ask(image::Request request, image::Answer& answer, int patience_ms = 2000);
+  /// Posts without waiting for the answer (keep-alive, stops).
+  void tell(image::Request request);
+
+  /// Loads a program; findings of reading are returned, nothing is loaded when one is an error.
+  bool load(const std::string& path, const std::string& dialect, std::vector<text::Finding>& findings);
+  /// Takes over what the last run changed in the tables, before the next one starts.
+  void take_tables();
+  /// The error that this block gives in the present modal state of MDI, before anything moves.
+  std::optional<text::Finding> check_block(const std::string& block);
+  /// The block that the next start in MDI mode runs.
+  void set_manual_block(const std::string& block);
+  /// MDI begins with the power-on modes again.
+  void forget_modes();
+
+  /// What zero() did.
+  struct Zeroed {
+    int origin = 0;      ///< number of the origin in force
+    double place = 0.0;  ///< machine coordinate of its zero now, mm or degrees (radius)
+  };
+  /// Gives the present position of an axis a value (as programs write it: a diameter on a diameter axis) in
+  /// the origin in force, after the gate has agreed.
+  Zeroed zero(int axis, double value);
+
+  /// Writes what has been learned (homing, origins, tool); empty: done, otherwise what went wrong.
+  std::string save();
+  /// Called now and then by the server's thread: saves when an axis has found its reference or a program has
+  /// ended. Empty: fine.
+  std::string look_after();
+
+  /// A program is under way (running, held or waiting).
+  bool busy();
+  const std::string& program() const noexcept { return program_path_; }
+  int blocks() const noexcept { return blocks_; }
+  double speed() const noexcept { return speed_; }
+  Control& control() noexcept { return control_; }
+  /// Newest whole image and alarms.
+  const image::ProcessImage& image();
+  const cycle::AlarmSnapshot& alarms();
+
+ private:
+  bool arm();
+  void catch_up();
+  program::Position position();
+  std::uint32_t homed();
+
+  Control& control_;
+  machine::MachineState state_;
+  std::string state_path_;
+  double speed_;
+  ProgramFile file_;
+  std::string program_path_;
+  int blocks_ = 0;
+  std::uint32_t homed_seen_ = 0;
+  bool busy_seen_ = false;
+  std::uint64_t next_id_ = 1;
+  image::ProcessImage image_;
+  cycle::AlarmSnapshot alarms_;
+};
+
+}  // namespace servogate::gateway

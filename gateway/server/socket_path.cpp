@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/server/socket_path.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+
+#include "gateway/server/socket_client.hpp"
+#include "gateway/server/texts.hpp"
+
+namespace servogate::gateway {
+
+namespace fs = std::filesystem;
+
+std::string socket_folder() {
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  if (runtime != nullptr && *runtime != '\0') return std::string(runtime) + "/servogate";
+  return "/tmp/servogate-" + std::to_string(getuid());
+}
+
+std::string default_socket(const std::string& machine_name) {
+  std::string name;
+  for (const char c : machine_name)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (!name.empty() && name.back() != '-')
+      name += '-';
+  while (!name.empty() && name.back() == '-') name.pop_back();
+  return socket_folder() + "/" + (name.empty() ? "control" : name) + ".sock";
+}
+
+std::vector<std::string> known_sockets() {
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(socket_folder(), error)) {
+    const std::string path = entry.path().string();
+    if (entry.path().extension() != ".sock" || !entry.is_socket(error)) continue;
+    SocketClient probe;
+    if (probe.connect(path).empty())
+      found.push_back(path);
+    else
+      unlink(path.c_str());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::string clear_way(const std::string& path, text::Language language) {
+  const auto say = [&](const text::Entry& entry, std::vector<std::string> arguments = {}) {
+    return text::render(entry, arguments, language);
+  };
+  std::error_code error;
+  const fs::path folder = fs::path(path).parent_path();
+  if (!folder.empty() && fs::create_directories(folder, error)) chmod(folder.c_str(), 0700);
+  if (error) return error.message();
+  struct stat seen {};
+  if (folder == fs::path(socket_folder()) && lstat(folder.c_str(), &seen) == 0) {
+    if (seen.st_uid != getuid() || !S_ISDIR(seen.st_mode))
+      return say(says::kForeignFolder, {folder.string()});
+    if ((seen.st_mode & 077) != 0) chmod(folder.c_str(), 0700);
+  }
+  if (lstat(path.c_str(), &seen) != 0) return {};
+  if (!S_ISSOCK(seen.st_mode)) return say(says::kNoSocketFile);
+  if (SocketClient probe; probe.connect(path).empty()) return say(says::kAnotherListens);
+  unlink(path.c_str());
+  return {};
+}
+
+}  // namespace servogate::gateway

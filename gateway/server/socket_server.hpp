@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "gateway/server/dispatch.hpp"
+#include "gateway/server/resident.hpp"
+
+namespace servogate::gateway {
+
+/// The control socket: a Unix stream socket (owner only), one JSON object a line each way, served by one
+/// thread that never waits for a client: what a client does not read is kept up to a limit, then the client
+/// is let go. The axis that a client jogs stops when its connection ends.
+class SocketServer {
+ public:
+  static constexpr std::size_t kMostClients = 32;
+  static constexpr std::size_t kLongestLine = 64 * 1024;
+  static constexpr std::size_t kMostUnread = 1024 * 1024;
+
+  SocketServer(Resident& resident, std::string path);
+  ~SocketServer();
+
+  /// Takes the socket's name; nothing is served yet. Empty: done; otherwise what went wrong (another control
+  /// already listens there ...).
+  std::string bind();
+  /// Starts the thread; only after bind().
+  void start();
+  /// A client asked the control to end.
+  bool down_requested() const noexcept { return down_.load(); }
+  /// Ends the thread and removes the socket.
+  void stop();
+
+ private:
+  struct Client {
+    int fd = -1;
+    std::string input, output;
+    Connection connection;
+    bool backlog = false;  ///< whole lines are left from the last turn
+    bool closing = false;  ///< to be closed as soon as its answers have left
+  };
+  void serve();
+  void accept_client();
+  bool read_client(Client& client);
+  bool write_client(Client& client);
+  void answer_lines(Client& client);
+  void let_go(Client& client);
+
+  Resident& resident_;
+  std::string path_;
+  int listener_ = -1;
+  int wake_[2] = {-1, -1};
+  std::vector<Client> clients_;
+  std::atomic<bool> stop_{false}, down_{false};
+  std::thread thread_;
+};
+
+}  // namespace servogate::gateway

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "gateway/server/resident.hpp"
+
+namespace servogate::gateway {
+
+/// State of a running control as one JSON object: modes, program, axes, spindles, first alarm.
+std::string status_json(Resident& resident, text::Language language);
+/// Active alarms with cause and remedy as one JSON object.
+std::string alarms_json(Resident& resident, text::Language language);
+/// The same in a few words: "alarm 201 X: ...; alarm ...". Empty: none.
+std::string alarms_in_words(Resident& resident, text::Language language);
+
+}  // namespace servogate::gateway

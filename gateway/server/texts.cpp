@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/server/texts.hpp"
+
+namespace servogate::gateway::says {
+
+using text::Entry;
+
+const Entry kBadLine{"socket.bad-line", "not a request: {0}", "это не запрос: {0}"};
+const Entry kLongLine{"socket.long-line", "a request is at most {0} bytes long",
+                      "запрос не может быть длиннее {0} байт"};
+const Entry kFull{"socket.full", "{0} clients are connected already", "уже подключено клиентов: {0}"};
+const Entry kUnknown{"socket.unknown-command", "no such command: '{0}'", "нет такой команды: «{0}»"};
+const Entry kUnknownAsker{"socket.unknown-asker", "'{0}' may not ask here; askers are {1}",
+                          "«{0}» не может спрашивать здесь; возможны {1}"};
+const Entry kNoAxis{"socket.no-axis", "the machine has no axis '{0}'; it has {1}",
+                    "у станка нет оси «{0}»; есть {1}"};
+const Entry kNotUnit{"socket.not-unit", "'{0}' is not the unit of {1}: it moves in {2}",
+                     "«{0}» — не единица оси {1}: она измеряется в {2}"};
+const Entry kNoNumber{"socket.no-number", "'{0}' must be a number", "«{0}» должно быть числом"};
+const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
+                      "цикл не ответил; работает ли он?"};
+const Entry kNotLoaded{"socket.not-loaded", "{0} was not loaded", "программа {0} не загружена"};
+const Entry kMoreFindings{"socket.more-findings", "and {0} more; `servogate check` shows all of them",
+                          "и ещё {0}; все показывает `servogate check`"};
+const Entry kBusy{"socket.program-runs", "a program runs; stop it first (`servogate reset`)",
+                  "программа выполняется; сначала остановите её (`servogate reset`)"};
+const Entry kBlockWrong{"socket.block-wrong", "the block was not run: {0}", "кадр не выполнен: {0}"};
+const Entry kBlockEmpty{"socket.block-empty", "the block is empty", "кадр пуст"};
+const Entry kNoJog{"socket.no-jog", "nothing jogs for this client", "для этого клиента ничего не движется"};
+const Entry kNoPoint{"socket.no-point", "the machine has no input '{0}'; it has {1}",
+                     "у станка нет входа «{0}»; есть {1}"};
+const Entry kOutput{"socket.output", "'{0}' is an output: the PLC drives it, not the world",
+                    "«{0}» — выход: им управляет ПЛК, а не внешний мир"};
+const Entry kRealPoint{
+    "socket.real-point",
+    "'{0}' is a real input (station '{1}', {2}): only inputs of mock stations can be played",
+    "«{0}» — настоящий вход (станция «{1}», {2}): разыгрывать можно только входы имитаций"};
+const Entry kAnalogPoint{"socket.analog-point", "'{0}' is analog: give it a number, not on or off",
+                         "«{0}» — аналоговый вход: нужно число, а не on или off"};
+const Entry kFollowsNothing{"socket.follows-nothing",
+                            "'{0}' follows nothing by itself: `auto` is for switches that axes operate",
+                            "«{0}» ни за чем не следит: `auto` — для выключателей, которыми управляют оси"};
+const Entry kNotSaved{"socket.not-saved", "done, but the state was not saved: {0}",
+                      "выполнено, но состояние не сохранено: {0}"};
+
+const Entry kPowerOn{"said.power-on", "the drives are being switched on", "приводы включаются"};
+const Entry kPowerOff{"said.power-off", "the drives are being switched off", "приводы выключаются"};
+const Entry kHomingAll{"said.homing-all", "homing all axes in the machine's order",
+                       "выход в ноль всех осей в порядке станка"};
+const Entry kHoming{"said.homing", "homing {0}", "выход в ноль: {0}"};
+const Entry kJog{"said.jog", "{0} moves by {1} {2}", "{0} перемещается на {1} {2}"};
+const Entry kJogDiameter{"said.jog-diameter", "{0} moves by {1} mm in diameter (the slide by {2} mm)",
+                         "{0} перемещается на {1} мм по диаметру (суппорт на {2} мм)"};
+const Entry kJogClipped{"said.jog-clipped", "{0} moves to its travel limit only, {1} {2}",
+                        "{0} перемещается только до границы зоны, {1} {2}"};
+const Entry kJogs{"said.jogs", "{0} jogs {1}: it goes on while this client keeps asking",
+                  "{0} движется в направлении {1}, пока клиент это подтверждает"};
+const Entry kJogEnds{"said.jog-ends", "{0} stopped by itself (limit, alarm or PLC)",
+                     "{0} остановилась сама (предел, авария или ПЛК)"};
+const Entry kZero{"said.zero", "{0} is {1} {2} here (origin {3} at {4})",
+                  "{0} здесь равна {1} {2} (начало {3} в {4})"};
+const Entry kZeroDiameter{"said.zero-diameter", "{0} is {1} {2} in diameter here (origin {3} at radius {4})",
+                          "{0} здесь равна {1} {2} по диаметру (начало {3} на радиусе {4})"};
+const Entry kBlockRuns{"said.block-runs", "the block runs", "кадр выполняется"};
+const Entry kLoaded{"said.loaded", "{0} is loaded: {1} blocks, {2} warnings",
+                    "{0} загружена: кадров {1}, предупреждений {2}"};
+const Entry kStarted{"said.started", "{0} runs", "{0} выполняется"};
+const Entry kStepped{"said.stepped", "one block runs", "выполняется один кадр"};
+const Entry kHeld{"said.held", "feed hold: the axes stop on the path",
+                  "пауза подачи: оси останавливаются на контуре"};
+const Entry kNothingHeld{"said.nothing-held", "no program runs: there is nothing to hold",
+                         "программа не выполняется: приостанавливать нечего"};
+const Entry kResumed{"said.resumed", "the program goes on", "программа продолжается"};
+const Entry kStopped{"said.stopped", "everything stops", "всё останавливается"};
+const Entry kReset{"said.reset", "reset; no alarm is active", "сброс; активных аварий нет"};
+const Entry kResetLeft{"said.reset-left", "reset, but still active: {0}", "сброс, но ещё активны: {0}"};
+const Entry kOverride{"said.override", "feed override {0} %", "коррекция подачи {0} %"};
+const Entry kInput{"said.input", "input {0} is {1}", "вход {0}: {1}"};
+const Entry kInputFollows{"said.input-follows", "input {0} follows its axis again",
+                          "вход {0} снова следует за осью"};
+const Entry kDown{"said.down", "the control stops the axes, switches the drives off and ends",
+                  "управление останавливает оси, выключает приводы и завершает работу"};
+
+const Entry kPathTooLong{"socket.path-too-long", "the path is longer than a socket's name may be",
+                         "путь длиннее, чем допускает имя сокета"};
+const Entry kAnotherListens{
+    "socket.another-listens",
+    "another control listens there; end it with `servogate down`, or choose --socket",
+    "там уже работает другое управление; завершите его (`servogate down`) или укажите --socket"};
+const Entry kNoSocketFile{"socket.not-a-socket", "there is a file of that name that is no socket",
+                          "файл с таким именем есть, и это не сокет"};
+const Entry kForeignFolder{"socket.foreign-folder", "folder {0} belongs to somebody else",
+                           "каталог {0} принадлежит другому пользователю"};
+
+}  // namespace servogate::gateway::says

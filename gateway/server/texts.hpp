@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "firmware_if/text/finding.hpp"
+
+/// Sentences of the control socket: what it refuses by itself (the gate has its own), and what it says when
+/// something was accepted.
+namespace servogate::gateway::says {
+
+// refusals; ids begin with "socket."
+extern const text::Entry kBadLine;         ///< {0} the line or what is wrong with it
+extern const text::Entry kLongLine;        ///< {0} bytes
+extern const text::Entry kFull;            ///< {0} clients
+extern const text::Entry kUnknown;         ///< {0} command
+extern const text::Entry kUnknownAsker;    ///< {0} asker, {1} known ones
+extern const text::Entry kNoAxis;          ///< {0} axis, {1} axes of the machine
+extern const text::Entry kNotUnit;         ///< {0} unit, {1} axis, {2} its unit
+extern const text::Entry kNoNumber;        ///< {0} key
+extern const text::Entry kNoAnswer;        ///< the cycle stands
+extern const text::Entry kNotLoaded;       ///< {0} program
+extern const text::Entry kMoreFindings;    ///< {0} how many
+extern const text::Entry kBusy;            ///< a program runs
+extern const text::Entry kBlockWrong;      ///< {0} what is wrong
+extern const text::Entry kBlockEmpty;      ///< nothing typed
+extern const text::Entry kNoJog;           ///< keep-alive without a jog
+extern const text::Entry kNoPoint;         ///< {0} point, {1} inputs of the machine
+extern const text::Entry kOutput;          ///< {0} point
+extern const text::Entry kRealPoint;       ///< {0} point, {1} station, {2} its url
+extern const text::Entry kAnalogPoint;     ///< {0} point
+extern const text::Entry kFollowsNothing;  ///< {0} point
+extern const text::Entry kNotSaved;        ///< {0} the system's words
+
+// accepted
+extern const text::Entry kPowerOn, kPowerOff;
+extern const text::Entry kHomingAll;
+extern const text::Entry kHoming;       ///< {0} axes
+extern const text::Entry kJog;          ///< {0} axis, {1} distance, {2} unit
+extern const text::Entry kJogDiameter;  ///< {0} axis, {1} diameter, {2} radius
+extern const text::Entry kJogClipped;   ///< {0} axis, {1} limit, {2} unit
+extern const text::Entry kJogs;         ///< {0} axis, {1} direction
+extern const text::Entry kJogEnds;      ///< {0} axis
+extern const text::Entry kZero;         ///< {0} axis, {1} value, {2} unit, {3} origin, {4} machine coordinate
+extern const text::Entry kZeroDiameter;  ///< as kZero
+extern const text::Entry kBlockRuns;
+extern const text::Entry kLoaded;   ///< {0} program, {1} blocks, {2} warnings
+extern const text::Entry kStarted;  ///< {0} program
+extern const text::Entry kStepped, kHeld, kNothingHeld, kResumed, kStopped;
+extern const text::Entry kReset;
+extern const text::Entry kResetLeft;     ///< {0} alarms still active
+extern const text::Entry kOverride;      ///< {0} per cent
+extern const text::Entry kInput;         ///< {0} point, {1} level
+extern const text::Entry kInputFollows;  ///< {0} point
+extern const text::Entry kDown;
+
+// the socket itself
+extern const text::Entry kPathTooLong;
+extern const text::Entry kAnotherListens;
+extern const text::Entry kNoSocketFile;   ///< {0} path
+extern const text::Entry kForeignFolder;  ///< {0} folder
+
+}  // namespace servogate::gateway::says

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/machine/consequences.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/machine/files.hpp"
+
+namespace servogate::machine {
+namespace {
+
+LoadResult mill(const std::string& from = {}, const std::string& to = {}) {
+  std::string text = test::example("mill");
+  if (!from.empty()) text.replace(text.find(from), from.size(), to);
+  return parse(text, test::source("examples/mill/machine.toml"));
+}
+
+std::vector<std::string> said(const LoadResult& loaded, text::Language language = text::Language::english) {
+  std::vector<std::string> out;
+  for (const Consequence& c : consequences(loaded)) out.push_back(c.str(language));
+  return out;
+}
+
+bool has(const std::vector<std::string>& lines, const std::string& line) {
+  return std::find(lines.begin(), lines.end(), line) != lines.end();
+}
+
+TEST(Consequences, say_what_a_millimetre_is) {
+  EXPECT_TRUE(has(said(mill()), "X: 1 mm = 26214.4 counts; 500 mm/s = 3000 rpm"));
+  EXPECT_TRUE(
+      has(said(mill(), text::Language::russian), "X: 1 mm = 26214.4 дискрет; 500 mm/s = 3000 об/мин"));
+}
+
+TEST(Consequences, say_how_far_a_home_switch_on_modbus_is_off) {
+  std::string text = test::example("mill");
+  const std::string home = "{ name = \"x_home\", channel = \"di6\", place = \"SA6\" },";
+  text.erase(text.find(home), home.size());
+  const std::string door = "  { name = \"door_closed\"";
+  text.insert(text.find(door), "  { name = \"x_home\", channel = \"di6\", place = \"SA6\" },\n");
+  const LoadResult loaded = parse(text, test::source("examples/mill/machine.toml"));
+  ASSERT_TRUE(loaded.ok()) << test::lines_of(loaded.findings, text::Language::english);
+  EXPECT_TRUE(has(said(loaded), "home X on Modbus, 20 ms: ±1 mm at 50 mm/s, the index makes it exact"));
+}
+
+TEST(Consequences, without_an_index_the_slow_edge_counts) {
+  const LoadResult loaded = mill("method = \"switch_and_index\"", "method = \"switch\"");
+  EXPECT_TRUE(has(said(loaded), "home X on GPIO, 1 ms: ±0.005 mm at 5 mm/s"));
+}
+
+/// 250 ms of rising and falling jerk-limited deceleration by hand: v / a + a / j = 0.5 + 0.1 s, way v * t
+/// / 2.
+TEST(Consequences, say_the_stopping_distance) {
+  EXPECT_TRUE(has(said(mill()), "X: stops from 500 mm/s within 150 mm, in 0.6 s"));
+}
+
+TEST(Consequences, stopping_distance_agrees_with_an_integration_of_the_jerk_profile) {
+  for (const auto& [v, a, j] :
+       std::vector<std::array<double, 3>>{{500, 1000, 10000}, {20, 1000, 10000}, {100, 2000, 5000}}) {
+    LoadResult loaded = mill();
+    loaded.machine.axes[0].max_velocity = v;
+    loaded.machine.axes[0].max_acceleration = a;
+    loaded.machine.axes[0].max_jerk = j;
+    double figure = 0.0;
+    for (const Consequence& c : consequences(loaded))
+      if (c.subject == "X" && c.figures.contains("stop_distance")) figure = c.figures.at("stop_distance");
+    // Reference: jerk -j until -a or until the mirrored ramp ends at rest, integrated in small steps.
+    const double peak = std::min(a, std::sqrt(v * j)), ramp = peak / j, hold = v / peak - ramp;
+    const double dt = 1e-6;
+    double speed = v, acceleration = 0.0, way = 0.0;
+    for (double t = 0.0; t < 2 * ramp + hold; t += dt) {
+      acceleration += (t < ramp ? -j : t < ramp + hold ? 0.0 : j) * dt;
+      speed += acceleration * dt;
+      way += speed * dt;
+    }
+    EXPECT_NEAR(figure, way, 1e-3 * way + 1e-3) << v;
+  }
+}
+
+TEST(Consequences, bus_load_of_the_mill_is_below_eighty_per_cent) {
+  const LoadResult loaded = mill();
+  const canopen::SegmentLoad load = segment_load(loaded, loaded.machine.buses.at(0));
+  EXPECT_LT(load.load, canopen::kLoadWarning);
+  EXPECT_GT(load.load, 0.7);
+}
+
+TEST(Consequences, half_the_bit_rate_is_refused_with_what_would_fit) {
+  const LoadResult loaded = mill("bit_rate = \"1 Mbit/s\"", "bit_rate = \"500 kbit/s\"");
+  EXPECT_FALSE(loaded.ok());
+  const std::string lines = test::lines_of(loaded.findings, text::Language::english);
+  EXPECT_NE(lines.find("it fits with a cycle of 2 ms"), std::string::npos) << lines;
+}
+
+TEST(Consequences, a_margin_between_travel_and_switch_gives_a_safe_speed) {
+  for (const Consequence& c : consequences(mill())) {
+    if (c.subject != "X" || !c.figures.contains("safe_velocity")) continue;
+    EXPECT_EQ(c.figures.at("margin_plus"), 5.0);
+    const double v = c.figures.at("safe_velocity");
+    // 62.99 mm/s: below the speed at which the acceleration limit is reached, two ramps of jerk: v * sqrt(v /
+    // j) = 5 mm.
+    EXPECT_NEAR(v * std::sqrt(v / 10000.0), 5.0, 1e-6);
+    return;
+  }
+  FAIL() << "no margin said";
+}
+
+TEST(Consequences, json_carries_sentence_and_figures) {
+  const LoadResult loaded = mill();
+  const std::string json = to_json(loaded, consequences(loaded), text::Language::english);
+  EXPECT_TRUE(json.starts_with(
+      "{\"schema\":1,\"machine\":\"Three-axis mill\",\"consequences\":[{\"subject\":\"bus can\""));
+  EXPECT_NE(
+      json.find("\"id\":\"consequence.scale\",\"text\":\"X: 1 mm = 26214.4 counts; 500 mm/s = 3000 rpm\","
+                "\"figures\":{\"counts_per_unit\":26214.4,\"max_velocity\":500,\"motor_rpm\":3000}"),
+      std::string::npos);
+}
+
+TEST(Consequences, findings_as_json_escape_what_a_file_says) {
+  const LoadResult loaded = parse("\"a\\\"\\u0001\" = 1\n", "m.toml");
+  const std::string json = to_json(loaded.findings, text::Language::english);
+  EXPECT_NE(json.find("{\"file\":\"m.toml\",\"line\":1,\"column\":1,\"severity\":\"error\",\"code\":"
+                      "\"machine.unknown_key\""),
+            std::string::npos)
+      << json;
+  EXPECT_NE(json.find("a\\\"\\u0001"), std::string::npos) << json;
+  EXPECT_EQ(json.find('\x01'), std::string::npos);
+}
+
+TEST(Consequences, are_said_for_a_file_with_errors_too) {
+  const LoadResult loaded = mill("contour_tolerance = \"0.01 mm\"", "contour_tolerance = 0");
+  EXPECT_FALSE(loaded.ok());
+  EXPECT_TRUE(has(said(loaded), "Y: 1 mm = 26214.4 counts; 500 mm/s = 3000 rpm"));
+}
+
+}  // namespace
+}  // namespace servogate::machine

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/machine/state.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "gateway/machine/state_text.hpp"
+#include "tests/machine/files.hpp"
+
+namespace servogate::machine {
+namespace {
+
+constexpr StatePart kParts[] = {StatePart::origins,  StatePart::tools, StatePart::homing,
+                                StatePart::counters, StatePart::gains, StatePart::retained};
+
+bool same(const MachineState& a, const MachineState& b) {
+  const auto correctors = [](const MachineState& s) {
+    std::map<int, std::pair<std::map<std::string, double>, double>> out;
+    for (const auto& [n, c] : s.tables.correctors) out[n] = {c.length, c.diameter};
+    return out;
+  };
+  return a.tables.origins == b.tables.origins && correctors(a) == correctors(b) && a.homing == b.homing &&
+         a.counters == b.counters && a.gains == b.gains && a.tool_in_spindle == b.tool_in_spindle &&
+         a.retained == b.retained;
+}
+
+MachineState sample() {
+  MachineState s;
+  s.tables.origins = {
+      {0, {{"X", 0.0}, {"Y", -0.1}}}, {1, {{"X", 100.123456789012}, {"Z", 1.0 / 3.0}}}, {12, {}}};
+  s.tables.correctors[1] = {{{"Z", 120.5}}, 10.0};
+  s.tables.correctors[99] = {{{"X", -3.25}, {"Z", 1e-9}}, 0.4};
+  s.homing["X"] = {true, -123456789012345, 3.25};
+  s.homing["Z"] = {};
+  s.counters = {{"power_on_s", 86400}, {"X.distance_mm", 9007199254740993}, {"parts", 0}};
+  s.gains = {{"X.position_gain", 33.5}};
+  s.tool_in_spindle = 7;
+  s.retained = {{"Mill.count", "DINT", "-5"}, {"Mill.text", "STRING", "\"a\\\"b\\\\ Ж\x01\""}};
+  return s;
+}
+
+MachineState random_state(std::mt19937_64& random) {
+  const auto number = [&] {
+    double value = 0.0;
+    do {
+      const std::uint64_t bits = random();
+      std::memcpy(&value, &bits, sizeof value);
+    } while (!std::isfinite(value));
+    return value;
+  };
+  const auto name = [&] {
+    std::string out;
+    for (std::size_t i = random() % 8 + 1; i > 0; --i) out += static_cast<char>(1 + random() % 126);
+    return out;
+  };
+  MachineState s;
+  for (std::size_t i = random() % 4; i > 0; --i)
+    s.tables.origins[static_cast<int>(random() % 100)][name()] = number();
+  for (std::size_t i = random() % 4; i > 0; --i)
+    s.tables.correctors[static_cast<int>(random() % 300)] = {{{name(), number()}}, number()};
+  for (std::size_t i = random() % 4; i > 0; --i)
+    s.homing[name()] = {random() % 2 == 0, static_cast<std::int64_t>(random()), number()};
+  for (std::size_t i = random() % 4; i > 0; --i) s.counters[name()] = static_cast<std::int64_t>(random());
+  for (std::size_t i = random() % 4; i > 0; --i) s.gains[name()] = number();
+  s.tool_in_spindle = static_cast<std::int32_t>(random() % 1000);
+  for (std::size_t i = random() % 4; i > 0; --i) s.retained.push_back({name(), name(), name()});
+  return s;
+}
+
+TEST(StateDirectory, gives_back_what_was_saved) {
+  const StateDirectory directory(test::scratch("round") + "/state");
+  std::string error;
+  ASSERT_TRUE(directory.save_all(sample(), error)) << error;
+  const StateDirectory::Loaded loaded = directory.load();
+  EXPECT_TRUE(loaded.findings.empty()) << test::lines_of(loaded.findings, text::Language::english);
+  EXPECT_TRUE(same(loaded.state, sample()));
+}
+
+TEST(StateDirectory, gives_back_any_state_bit_for_bit) {
+  std::mt19937_64 random(20240612);
+  for (int i = 0; i < 300; ++i) {
+    const MachineState saved = random_state(random);
+    MachineState read;
+    for (const StatePart part : kParts) {
+      const auto findings = read_part(write_part(saved, part), "s.toml", part, read);
+      ASSERT_TRUE(findings.empty()) << i << test::lines_of(findings, text::Language::english)
+                                    << write_part(saved, part);
+    }
+    ASSERT_TRUE(same(saved, read)) << i;
+  }
+}
+
+TEST(StateDirectory, an_empty_or_missing_one_is_no_finding) {
+  const StateDirectory::Loaded loaded = StateDirectory(test::scratch("empty") + "/none").load();
+  EXPECT_TRUE(loaded.findings.empty());
+  EXPECT_TRUE(same(loaded.state, MachineState{}));
+}
+
+TEST(StateDirectory, belongs_to_its_owner_only) {
+  const std::string path = test::scratch("owner") + "/state";
+  const StateDirectory directory(path);
+  std::string error;
+  ASSERT_TRUE(directory.save(sample(), StatePart::tools, error)) << error;
+  struct stat info {};
+  ASSERT_EQ(::stat(path.c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0700u);
+  ASSERT_EQ(::stat(directory.file(StatePart::tools).c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0600u);
+}
+
+TEST(StateDirectory, files_are_readable_by_people) {
+  EXPECT_EQ(
+      write_part(sample(), StatePart::tools).substr(write_part(sample(), StatePart::tools).find('\n') + 1),
+      "schema = 1\npart = \"tools\"\ntool_in_spindle = 7\n\n[[corrector]]\nnumber = 1\nlength = { \"Z\" = "
+      "120.5 }\n"
+      "diameter = 10.0\n\n[[corrector]]\nnumber = 99\nlength = { \"X\" = -3.25, \"Z\" = 1e-09 }\ndiameter = "
+      "0.4\n");
+}
+
+/// Cut at every byte, alone in its folder: an error with its place and an empty part, never half a table.
+TEST(StateDirectory, a_file_cut_at_any_byte_is_an_error_without_a_generation_before) {
+  for (const StatePart part : kParts) {
+    const std::string whole = write_part(sample(), part);
+    for (std::size_t n = 0; n < whole.size(); ++n) {
+      MachineState state;
+      const auto findings = read_part(whole.substr(0, n), "s.toml", part, state);
+      ASSERT_FALSE(findings.empty()) << part_name(part) << " " << n;
+      ASSERT_EQ(findings[0].severity, text::Severity::error) << n;
+      ASSERT_GE(findings[0].line, 1);
+      ASSERT_TRUE(same(state, MachineState{})) << n;
+    }
+  }
+}
+
+TEST(StateDirectory, any_flipped_bit_is_found) {
+  std::mt19937_64 random(20240613);
+  for (const StatePart part : kParts) {
+    const std::string whole = write_part(sample(), part);
+    for (int i = 0; i < 400; ++i) {
+      std::string text = whole;
+      text[random() % text.size()] ^= static_cast<char>(1u << (random() % 8));
+      MachineState state;
+      const auto findings = read_part(text, "s.toml", part, state);
+      ASSERT_FALSE(findings.empty()) << text;
+      ASSERT_EQ(findings[0].severity, text::Severity::error) << text;
+      ASSERT_TRUE(same(state, MachineState{}));
+    }
+  }
+}
+
+TEST(StateDirectory, takes_the_generation_before_when_the_newest_is_cut_anywhere) {
+  const StateDirectory directory(test::scratch("generation"));
+  MachineState old = sample(), fresh = sample();
+  fresh.tables.origins[1]["X"] = 55.0;
+  std::string error;
+  ASSERT_TRUE(directory.save(old, StatePart::origins, error)) << error;
+  ASSERT_TRUE(directory.save(fresh, StatePart::origins, error)) << error;
+  const std::string whole = test::read_text(directory.file(StatePart::origins));
+  for (std::size_t n = 0; n <= whole.size(); ++n) {
+    test::write_text(directory.file(StatePart::origins), whole.substr(0, n));
+    const StateDirectory::Loaded loaded = directory.load();
+    ASSERT_TRUE(loaded.ok()) << n;
+    const MachineState& expected = n == whole.size() ? fresh : old;
+    ASSERT_EQ(loaded.state.tables.origins, expected.tables.origins) << n;
+    ASSERT_EQ(loaded.findings.empty(), n == whole.size()) << n;
+  }
+}
+
+/// The steps of a save one by one, as a power cut leaves them.
+TEST(StateDirectory, a_save_broken_off_between_its_steps_leaves_a_whole_generation) {
+  MachineState old = sample(), fresh = sample();
+  fresh.counters["parts"] = 1;
+  const std::string before = write_part(old, StatePart::counters),
+                    after = write_part(fresh, StatePart::counters);
+  for (int step = 0; step < 4; ++step) {
+    const StateDirectory directory(test::scratch("step"));
+    const std::string file = directory.file(StatePart::counters);
+    const std::string previous = file.substr(0, file.size() - 5) + ".previous.toml";
+    test::write_text(file, before);
+    if (step != 1) test::write_text(previous, before);  // 1: the old link is gone, the new one not yet made
+    if (step <= 1) test::write_text(file + ".new", after.substr(0, after.size() / 2));  // not yet whole
+    if (step == 2) test::write_text(file + ".new", after);  // whole, not yet renamed
+    if (step == 3) test::write_text(file, after);           // renamed
+    const StateDirectory::Loaded loaded = directory.load();
+    EXPECT_TRUE(loaded.findings.empty()) << step;
+    EXPECT_EQ(loaded.state.counters, step == 3 ? fresh.counters : old.counters) << step;
+  }
+}
+
+TEST(StateDirectory, a_file_edited_by_hand_says_so_and_is_taken) {
+  std::string text = write_part(sample(), StatePart::gains);
+  text = "checksum = \"none\"\n" + text.substr(text.find('\n') + 1) + "\"Y.position_gain\" = 20\n";
+  MachineState state;
+  const auto findings = read_part(text, "gains.toml", StatePart::gains, state);
+  EXPECT_EQ(
+      test::lines_of(findings, text::Language::english),
+      "gains.toml:1:1: warning: edited by hand (checksum = \"none\"); taken as it stands [state.edited]\n");
+  EXPECT_EQ(state.gains.at("Y.position_gain"), 20.0);
+}
+
+TEST(StateDirectory, wrong_values_of_an_edited_file_are_named_with_their_place) {
+  MachineState state;
+  const auto findings = read_part(
+      "checksum = \"none\"\nschema = 1\npart = \"tools\"\ntool_in_spindle = 1.5\n[[corrector]]\nnumber = "
+      "1\nlength = 3\ndiameter = nan\n",
+      "tools.toml", StatePart::tools, state);
+  EXPECT_EQ(
+      test::lines_of(findings, text::Language::english),
+      "tools.toml:1:1: warning: edited by hand (checksum = \"none\"); taken as it stands [state.edited]\n"
+      "tools.toml:4:19: error: `tool_in_spindle`: an integer is expected [state.value]\n"
+      "tools.toml:7:10: error: `length`: a table axis = mm is expected [state.value]\n"
+      "tools.toml:8:12: error: `diameter`: a finite number is expected [state.value]\n");
+}
+
+TEST(StateDirectory, another_schema_or_part_is_refused) {
+  MachineState state;
+  const auto schema = read_part("checksum = \"none\"\nschema = 2\npart = \"gains\"\n[gains]\n", "g.toml",
+                                StatePart::gains, state);
+  EXPECT_EQ(schema.back().entry->id, "state.schema");
+  const auto part = read_part(write_part(sample(), StatePart::tools), "g.toml", StatePart::gains, state);
+  EXPECT_EQ(part.back().str(text::Language::english),
+            "g.toml:3:1: error: this file holds `tools`, not `gains` [state.part]");
+}
+
+TEST(StateDirectory, a_folder_that_cannot_be_written_is_said_in_words) {
+  const std::string folder = test::scratch("blocked");
+  test::write_text(folder + "/state", "a file in the way");
+  std::string error;
+  EXPECT_FALSE(StateDirectory(folder + "/state").save(sample(), StatePart::tools, error));
+  EXPECT_NE(error.find(folder + "/state"), std::string::npos) << error;
+}
+
+TEST(Checksum, is_the_crc_of_ieee_802_3) { EXPECT_EQ(crc32("123456789"), 0xCBF43926u); }
+
+}  // namespace
+}  // namespace servogate::machine

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// Faults of the example mill with its simulated drives: what stops, how, in which order, and what it says.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/machine_run/mill.hpp"
+
+namespace servogate::machine_run {
+namespace {
+
+using cycle::Refusal;
+using image::Mode;
+using image::ProcessState;
+using image::RequestKind;
+
+// A straight line in space, long enough to be in full motion after half a second.
+constexpr const char* kLine = "N10 G90 G94 G71\nN20 G1 X200 Y100 Z-50 F9000\nN30 X0 Y0 Z0\nN40 M30\n";
+
+double off_line(const image::ProcessImage& image) {
+  const double d[] = {200, 100, -50};
+  const double length2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  double dot = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    dot += image.axes[i].command * d[i];
+    square += image.axes[i].command * image.axes[i].command;
+  }
+  return std::sqrt(std::max(0.0, square - dot * dot / length2));
+}
+
+/// A mill in full motion along kLine.
+class Moving : public Mill {
+ public:
+  Moving() : Mill(kLine) {
+    EXPECT_TRUE(make_ready()) << alarm_list();
+    EXPECT_EQ(ask(RequestKind::start), Refusal::none);
+    run(0.6);
+    EXPECT_GT(process().feed_mm_s, 100.0) << alarm_list();
+  }
+};
+
+TEST(Faults, emergency_stop_in_motion_closes_the_brake_of_z_before_its_power_goes) {
+  Moving mill;
+  mill.control().world().set_input("estop_chain_ok", false);
+  ASSERT_TRUE(mill.until([&] { return mill.alarms(cycle::alarm::kEmergencyStop) > 0; }, 0.1));
+  mill.run(0.002);
+  EXPECT_FALSE(mill.axis("X").drive_command.power) << "an axis without a brake loses its power at once";
+  EXPECT_FALSE(mill.axis("Y").drive_command.power);
+  EXPECT_FALSE(mill.axis("Z").drive_command.brake_release) << "the brake closes at once";
+  EXPECT_TRUE(mill.axis("Z").drive_command.power) << "and the drive holds until it has closed";
+  const double z = mill.true_position(2);
+  ASSERT_TRUE(mill.until([&] { return !mill.axis("Z").drive_command.power; }, 0.5));
+  mill.run(1.0);
+  EXPECT_NEAR(mill.true_position(2), z, 60.0);
+  const double rest = mill.true_position(2);
+  mill.run(1.0);
+  EXPECT_NEAR(mill.true_position(2), rest, 0.01) << "the load does not drop";
+  EXPECT_EQ(mill.process().state, ProcessState::stopped_by_alarm);
+  // One fault with one cause: everything else is its consequence.
+  const auto history = mill.control().cycle().alarms().history();
+  ASSERT_FALSE(history.empty());
+  for (const image::AlarmRecord& r : history)
+    EXPECT_EQ(r.first_fault, history.front().sequence) << mill.alarm_list();
+  EXPECT_EQ(history.front().number, cycle::alarm::kEmergencyStop) << mill.alarm_list();
+}
+
+TEST(Faults, after_an_emergency_stop_the_machine_is_made_ready_and_works_again) {
+  Moving mill;
+  mill.control().world().set_input("estop_chain_ok", false);
+  mill.run(1.0);
+  EXPECT_NE(mill.ask(RequestKind::power, 1.0), Refusal::none);
+  mill.control().world().set_input("estop_chain_ok", true);
+  mill.run(0.2);
+  EXPECT_FALSE(mill.axis("X").drive_command.power) << "nothing comes on unasked";
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
+  EXPECT_TRUE(mill.until([&] { return mill.process().state == ProcessState::ended; })) << mill.alarm_list();
+}
+
+TEST(Faults, of_one_drive_stops_the_healthy_axes_together_within_their_limits) {
+  Moving mill;
+  mill.inject("can.y", mock::DriveFaultKind::over_current);
+  ASSERT_TRUE(mill.until([&] { return mill.process().state == ProcessState::stopped_by_alarm; }, 2.0))
+      << mill.alarm_list();
+  ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 1.0));
+  EXPECT_EQ(mill.alarms(axis::alarm::kDriveFault), 1) << mill.alarm_list();
+  const auto history = mill.control().cycle().alarms().history();
+  for (const image::AlarmRecord& r : history)
+    if (r.number == axis::alarm::kDriveFault) {
+      EXPECT_EQ(r.axis, 1);
+      EXPECT_EQ(r.error_code, 0x2310);
+      EXPECT_EQ(r.line, 2);
+    }
+  // X and Z on one line still: their ways keep the ratio of the programmed line.
+  EXPECT_NEAR(mill.axis("Z").command / mill.axis("X").command, -50.0 / 200.0, 1e-3);
+  EXPECT_EQ(mill.judge().verdict(), "");
+}
+
+TEST(Faults, node_that_falls_silent_stops_the_program_and_is_named) {
+  Moving mill;
+  mill.inject("can.y", mock::DriveFaultKind::silent);
+  ASSERT_TRUE(mill.until([&] { return mill.process().state == ProcessState::stopped_by_alarm; }, 2.0))
+      << mill.alarm_list();
+  mill.run(1.0);
+  EXPECT_TRUE(mill.alarms(axis::alarm::kPdoMissing) + mill.alarms(axis::alarm::kDriveOffline) +
+                  mill.alarms(cycle::alarm::kNodeLost) >
+              0)
+      << mill.alarm_list();
+  for (const image::AlarmRecord& r : mill.control().cycle().alarms().history())
+    EXPECT_TRUE(r.axis < 0 || r.axis == 1) << r.number;
+  EXPECT_TRUE(mill.standing());
+  EXPECT_EQ(mill.judge().verdict(), "");
+}
+
+TEST(Faults, open_door_holds_the_feed_on_the_path_and_closing_it_goes_on) {
+  Moving mill;
+  mill.control().world().set_input("door_closed", false);
+  ASSERT_TRUE(mill.until([&] { return mill.process().state == ProcessState::held; }, 2.0))
+      << mill.alarm_list();
+  EXPECT_LT(off_line(mill.image()), 1e-4);
+  mill.control().world().set_input("door_closed", true);
+  EXPECT_TRUE(mill.until([&] { return mill.process().state == ProcessState::ended; })) << mill.alarm_list();
+  EXPECT_EQ(mill.judge().verdict(), "");
+}
+
+TEST(Faults, stop_of_the_operator_leaves_the_axes_on_the_path) {
+  Moving mill;
+  ASSERT_EQ(mill.ask(RequestKind::stop), Refusal::none);
+  ASSERT_TRUE(mill.until([&] { return mill.process().state == ProcessState::idle && mill.standing(); }, 2.0));
+  EXPECT_LT(off_line(mill.image()), 1e-4);
+  EXPECT_GT(mill.axis("X").command, 10.0);
+  EXPECT_EQ(mill.judge().verdict(), "");
+  EXPECT_EQ(mill.alarms(axis::alarm::kFollowingError), 0);
+}
+
+TEST(Faults, quick_stop_of_the_operator_is_an_alarm_and_takes_the_drives_own_way) {
+  Moving mill;
+  ASSERT_EQ(mill.ask(RequestKind::quick_stop), Refusal::none);
+  ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 2.0));
+  mill.run(0.5);
+  EXPECT_EQ(mill.alarms(cycle::alarm::kOperatorQuickStop), 1) << mill.alarm_list();
+  EXPECT_EQ(mill.process().state, ProcessState::stopped_by_alarm);
+  const double x = mill.true_position(0);
+  mill.run(0.5);
+  EXPECT_NEAR(mill.true_position(0), x, 0.01);
+}
+
+TEST(Faults, hard_limit_permits_motion_only_away_from_it_and_slowly) {
+  Mill mill(kLine);
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  mill.ask(RequestKind::mode, static_cast<double>(Mode::manual));
+  ASSERT_EQ(mill.ask(RequestKind::jog_increment, 50.0, 0), Refusal::none);
+  mill.run(0.3);
+  ASSERT_EQ(mill.control().world().play_input("x_limit_plus", {1.0}), gateway::MockWorld::Played::done);
+  ASSERT_TRUE(mill.until([&] { return mill.alarms(axis::alarm::kHardLimitPlus) > 0; }, 0.5))
+      << mill.alarm_list();
+  ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 1.0));
+  EXPECT_LT(mill.axis("X").command, 45.0);
+  mill.ask(RequestKind::reset);
+  mill.run(0.3);
+  EXPECT_EQ(mill.ask(RequestKind::jog_increment, 1.0, 0), Refusal::on_hard_limit);
+  ASSERT_EQ(mill.ask(RequestKind::jog_increment, -2.0, 0), Refusal::none) << mill.alarm_list();
+  double fastest = 0.0;
+  mill.after_cycle = [&] { fastest = std::max(fastest, std::abs(mill.axis("X").command_velocity)); };
+  mill.run(0.5);
+  EXPECT_GT(fastest, 1.0);
+  EXPECT_LE(fastest, 10.0 * 1.001) << "slowly away from the limit";
+  EXPECT_EQ(mill.judge().verdict(), "");
+}
+
+TEST(Faults, axis_that_is_not_homed_jogs_slowly_and_refuses_auto_by_name) {
+  Mill mill(kLine);
+  ASSERT_TRUE(mill.power_on()) << mill.alarm_list();
+  mill.ask(RequestKind::mode, static_cast<double>(Mode::automatic));
+  EXPECT_EQ(mill.ask(RequestKind::start), Refusal::not_homed);
+  mill.ask(RequestKind::mode, static_cast<double>(Mode::manual));
+  ASSERT_EQ(mill.ask(RequestKind::jog_increment, 3.0, 1), Refusal::none);
+  double fastest = 0.0;
+  mill.after_cycle = [&] { fastest = std::max(fastest, std::abs(mill.axis("Y").command_velocity)); };
+  mill.run(1.0);
+  EXPECT_GT(fastest, 5.0);
+  EXPECT_LE(fastest, 10.0 * 1.001);
+}
+
+TEST(Faults, continuous_jog_without_keep_alive_begins_to_stop_within_100_ms) {
+  Mill mill(kLine);
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  mill.ask(RequestKind::mode, static_cast<double>(Mode::manual));
+  ASSERT_EQ(mill.ask(RequestKind::jog_continuous, 1.0, 0), Refusal::none);
+  for (int i = 0; i < 20; ++i) {
+    mill.post(RequestKind::keep_alive);
+    mill.run(0.05);
+  }
+  EXPECT_NEAR(mill.axis("X").command_velocity, 100.0, 1e-6) << "kept alive it runs on";
+  mill.run(0.11);
+  EXPECT_LT(mill.axis("X").command_velocity, 100.0);
+  ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 1.0));
+  EXPECT_EQ(mill.judge().verdict(), "");
+}
+
+}  // namespace
+}  // namespace servogate::machine_run

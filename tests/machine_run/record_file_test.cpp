@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/run/record_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstring>
+#include <random>
+
+#include "tests/machine_run/program.hpp"
+
+namespace servogate::machine_run {
+namespace {
+
+std::string small_record(const Scratch& scratch, int cycles) {
+  const std::string path = scratch.path("record");
+  gateway::RecordHeader header;
+  header.machine = "/m.toml";
+  header.dialect = "nc110";
+  header.state.tables.origins[3]["X"] = 1.5;
+  header.period_ns = 1000000;
+  gateway::RecordWriter writer(path, header);
+  std::mt19937 random(7);
+  cycle::CycleInputs in;
+  for (int i = 0; i < cycles; ++i) {
+    in.number = i;
+    in.axes[0].position_counts += static_cast<std::int64_t>(random() % 100);
+    in.packet_a[random() % 20] = static_cast<std::uint8_t>(random());
+    in.visible[0] += random() % 5;
+    writer.wait_for_room();
+    writer.take(in);
+  }
+  EXPECT_EQ(writer.close(), "");
+  return path;
+}
+
+/// Number of cycles that a reader gives before it ends; `sound`: the record says it is whole.
+int cycles_of(const std::string& path, bool& sound, std::string& error) {
+  gateway::RecordReader reader;
+  error.clear();
+  sound = false;
+  if (!reader.open(path, error)) {
+    EXPECT_NE(error, "");
+    return 0;
+  }
+  cycle::CycleInputs in;
+  int n = 0;
+  for (; reader.give(in); ++n) EXPECT_EQ(in.number, n);
+  EXPECT_EQ(reader.next(), nullptr);
+  sound = !reader.damaged();
+  return n;
+}
+
+TEST(RecordFile, gives_back_header_and_cycles) {
+  const Scratch scratch;
+  const std::string path = small_record(scratch, 100);
+  gateway::RecordReader reader;
+  std::string error;
+  ASSERT_TRUE(reader.open(path, error)) << error;
+  EXPECT_EQ(reader.header().machine, "/m.toml");
+  EXPECT_EQ(reader.header().period_ns, 1000000);
+  EXPECT_EQ(reader.header().state.tables.origins.at(3).at("X"), 1.5);
+  bool sound = false;
+  EXPECT_EQ(cycles_of(path, sound, error), 100);
+  EXPECT_TRUE(sound);
+}
+
+TEST(RecordFile, cut_at_any_byte_is_noticed) {
+  const Scratch scratch;
+  const std::string whole = read_all(small_record(scratch, 8));
+  bool sound = false;
+  std::string error;
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const int cycles = cycles_of(scratch.write("cut", whole.substr(0, length)), sound, error);
+    ASSERT_FALSE(sound) << length << " of " << whole.size();
+    ASSERT_LE(cycles, 8);
+  }
+}
+
+TEST(RecordFile, changed_at_any_byte_is_noticed) {
+  const Scratch scratch;
+  const std::string whole = read_all(small_record(scratch, 8));
+  const unsigned seed = std::random_device{}();
+  std::printf("seed %u\n", seed);
+  std::mt19937 random(seed);
+  bool sound = false;
+  std::string error;
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ (1 << random() % 8));
+    cycles_of(scratch.write("changed", changed), sound, error);
+    ASSERT_FALSE(sound) << "byte " << at << " of " << whole.size() << ", seed " << seed;
+  }
+}
+
+TEST(RecordFile, bytes_behind_the_end_are_noticed) {
+  const Scratch scratch;
+  const std::string whole = read_all(small_record(scratch, 8));
+  bool sound = true;
+  std::string error;
+  cycles_of(scratch.write("longer", whole + "x"), sound, error);
+  EXPECT_FALSE(sound);
+}
+
+TEST(RecordFile, says_how_many_cycles_a_slow_disk_lost) {
+  const Scratch scratch;
+  gateway::RecordWriter writer(scratch.path("r"), {});
+  cycle::CycleInputs in;
+  for (int i = 0; i < 200000 && writer.lost() == 0; ++i) {
+    in.number = i;
+    for (auto& axis : in.axes) ++axis.position_counts;  // much to write
+    writer.take(in);
+  }
+  ASSERT_GT(writer.lost(), 0u) << "the writer is faster than memory";
+  EXPECT_NE(writer.close().find("could not be kept"), std::string::npos);
+}
+
+TEST(RecordFile, that_cannot_be_opened_says_why) {
+  gateway::RecordWriter writer("/nonexistent/folder/r", {});
+  EXPECT_EQ(writer.close(), std::strerror(ENOENT));
+}
+
+}  // namespace
+}  // namespace servogate::machine_run

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The example lathe end to end: turret through the PLC, constant cutting speed, diameters outside and radii
+// inside.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "tests/server/rig.hpp"
+
+namespace servogate::gateway::testing {
+namespace {
+
+using nlohmann::json;
+
+/// A trace by column name.
+struct Trace {
+  explicit Trace(const std::string& file) {
+    std::ifstream in(file);
+    std::string line;
+    std::getline(in, line);
+    std::stringstream head(line);
+    for (std::string name; std::getline(head, name, ',');) columns.push_back(name);
+    for (std::size_t i = 0; i < columns.size(); ++i) index[columns[i]] = i;
+    while (std::getline(in, line)) {
+      std::vector<double> row;
+      for (const char* at = line.c_str(); *at != '\0';) {
+        char* end = nullptr;
+        row.push_back(std::strtod(at, &end));
+        at = *end == ',' ? end + 1 : end;
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+  double at(std::size_t row, const std::string& column) const { return rows[row][index.at(column)]; }
+  std::vector<std::string> columns;
+  std::map<std::string, std::size_t> index;
+  std::vector<std::vector<double>> rows;
+};
+
+TEST(Lathe, turns_a_bush_with_three_tools_at_constant_cutting_speed) {
+  Shell shell;
+  const auto file = [&](const char* name) { return (shell.folder() / name).string(); };
+  const Outcome o =
+      shell.run({"run", Shell::example("lathe/machine.toml"), Shell::example("lathe/bush.nc"), "--virtual",
+                 "--trace", file("t.csv"), "--report", file("r.json"), "--html", file("r.html")});
+  ASSERT_EQ(o.exit, 0) << o.err;
+  const json report = json::parse(shell.text("r.json"));
+  EXPECT_TRUE(report["finished"].get<bool>());
+  EXPECT_TRUE(report["alarms"].empty());
+  const Trace trace(file("t.csv"));
+  const std::vector<std::string> head(trace.columns.begin(), trace.columns.begin() + 9);
+  EXPECT_EQ(head, (std::vector<std::string>{"t", "feed", "line", "X.cmd", "X.act", "Z.cmd", "Z.act",
+                                            "spindle.cmd", "spindle.act"}));
+  // A line once begun stays until the next one begins.
+  bool begun = false;
+  for (std::size_t r = 0; r < trace.rows.size(); ++r) {
+    const double line = trace.at(r, "line");
+    ASSERT_FALSE(begun && line == 0.0) << r;
+    begun = begun || line > 0.0;
+  }
+  std::string stations;
+  double smallest = 1e9, fastest = 0.0;
+  for (std::size_t r = 0; r < trace.rows.size(); ++r) {
+    for (int station = 1; station <= 3; ++station)
+      if (trace.at(r, "turret_pos_" + std::to_string(station)) == 1.0) {
+        const char digit = static_cast<char>('0' + station);
+        if (stations.empty() || stations.back() != digit) stations += digit;
+      }
+    smallest = std::min(smallest, r > 5000 ? trace.at(r, "X.cmd") : 1e9);
+    fastest = std::max(fastest, trace.at(r, "spindle.cmd"));
+  }
+  EXPECT_EQ(stations, "1231");
+  // X14 is the smallest diameter: 7 mm in the trace, where 150 m/min are 3410 rpm.
+  EXPECT_NEAR(smallest, 7.0, 0.01);
+  EXPECT_NEAR(fastest, 150'000.0 / (2.0 * M_PI * 7.0), 40.0);
+  EXPECT_NE(shell.text("r.html").find("</html>"), std::string::npos);
+}
+
+TEST(Lathe, says_that_X_is_a_diameter_when_it_is_jogged_shown_and_zeroed) {
+  Shell shell;
+  shell.up("lathe");
+  shell.ready();
+  const Outcome jog = shell.run({"jog", "X", "-10mm"});
+  EXPECT_NE(jog.out.find("-10 mm in diameter (the slide by -5 mm)"), std::string::npos) << jog.out;
+  ASSERT_TRUE(shell.until([](const json& s) { return !s["axes"][0]["moving"].get<bool>(); }));
+  EXPECT_NEAR(shell.status()["axes"][0]["command"].get<double>(), 210.0, 1e-6);
+  EXPECT_NE(shell.run({"status"}).out.find("mm (diameter)"), std::string::npos);
+  const Outcome zero = shell.run({"zero", "X", "50"});
+  EXPECT_NE(zero.out.find("X is 50 mm in diameter here (origin 0 at radius 80)"), std::string::npos)
+      << zero.out;
+  ASSERT_EQ(shell.run({"mdi", "G0 X40", "--wait"}).exit, 0);
+  EXPECT_NEAR(shell.status()["axes"][0]["command"].get<double>(), 200.0, 1e-6);
+  ASSERT_EQ(shell.run({"mdi", "T3.3 M6", "--wait"}).exit, 0);
+  EXPECT_EQ(shell.status()["tool"], 3);
+}
+
+}  // namespace
+}  // namespace servogate::gateway::testing

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/server/rig.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace servogate::gateway::testing {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+pid_t launch(const fs::path& folder, const std::string& name, std::vector<std::string> arguments,
+             const std::string& language) {
+  arguments.insert(arguments.begin(), SERVOGATE_BINARY);
+  const std::string out = (folder / (name + ".out")).string(), err = (folder / (name + ".err")).string();
+  const std::string runtime = folder.string();
+  const pid_t pid = fork();
+  if (pid != 0) return pid;
+  const int out_fd = open(out.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
+  const int err_fd = open(err.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
+  dup2(out_fd, STDOUT_FILENO);
+  dup2(err_fd, STDERR_FILENO);
+  // A standard input that stays open and silent, as a terminal's.
+  int silent[2];
+  if (pipe(silent) == 0) dup2(silent[0], STDIN_FILENO);
+  setenv("XDG_RUNTIME_DIR", runtime.c_str(), 1);
+  for (const char* variable : {"LC_ALL", "LC_MESSAGES", "SERVOGATE_SOCKET"}) unsetenv(variable);
+  setenv("LANG", language.c_str(), 1);
+  std::vector<char*> argv;
+  for (std::string& a : arguments) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  execv(argv[0], argv.data());
+  _exit(127);
+}
+
+int exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
+
+}  // namespace
+
+Shell::Shell() {
+  std::string pattern = (fs::temp_directory_path() / "servogate-test-XXXXXX").string();
+  folder_ = mkdtemp(pattern.data());
+}
+
+Shell::~Shell() {
+  if (up_ > 0) {
+    kill(up_, SIGKILL);
+    waitpid(up_, nullptr, 0);
+  }
+  if (::testing::Test::HasFailure()) std::fprintf(stderr, "%s", text("up.err").c_str());
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+std::string Shell::example(const std::string& path) {
+  return std::string(SERVOGATE_SOURCE_DIR) + "/examples/" + path;
+}
+
+std::string Shell::text(const std::string& file) const {
+  std::ifstream in(folder_ / file);
+  std::stringstream content;
+  content << in.rdbuf();
+  return content.str();
+}
+
+Outcome Shell::run(const std::vector<std::string>& arguments, const std::string& language) {
+  int status = 0;
+  waitpid(launch(folder_, "run", arguments, language), &status, 0);
+  return {exit_code(status), text("run.out"), text("run.err")};
+}
+
+pid_t Shell::spawn(const std::vector<std::string>& arguments, const std::string& name) {
+  return launch(folder_, name, arguments, "C");
+}
+
+void Shell::up(const std::string& machine, const std::vector<std::string>& more) {
+  name_ = machine == "mill" ? "three-axis-mill.sock" : "lathe-with-turret.sock";
+  std::vector<std::string> arguments{"up", example(machine + "/machine.toml")};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  up_ = spawn(arguments, "up");
+  const bool online = until([](const json& s) {
+    for (const json& a : s.value("axes", json::array()))
+      if (a["drive"] == "offline") return false;
+    return s.contains("axes");
+  });
+  ASSERT_TRUE(online) << text("up.err");
+}
+
+int Shell::wait() {
+  int status = 0;
+  waitpid(up_, &status, 0);
+  up_ = -1;
+  return exit_code(status);
+}
+
+int Shell::end(int signal) {
+  kill(up_, signal);
+  return wait();
+}
+
+json Shell::ask(const json& request) {
+  SocketClient client;
+  std::string answer;
+  if (!client.connect(socket()).empty() || !client.exchange(request.dump(), answer)) return json::object();
+  return json::parse(answer, nullptr, false);
+}
+
+bool Shell::until(const std::function<bool(const json&)>& good, double patience_s) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience_s));
+  for (; Clock::now() < end; std::this_thread::sleep_for(std::chrono::milliseconds(5)))
+    if (good(status())) return true;
+  return false;
+}
+
+void Shell::ready() {
+  ASSERT_EQ(run({"power", "on", "--wait"}).exit, 0);
+  ASSERT_EQ(run({"home", "--wait"}).exit, 0);
+}
+
+}  // namespace servogate::gateway::testing

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <sys/types.h>
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "gateway/server/socket_client.hpp"
+
+namespace servogate::gateway::testing {
+
+/// What a command left behind.
+struct Outcome {
+  int exit = -1;
+  std::string out, err;
+};
+
+/// The program in a folder of its own; whatever it started is ended with it.
+class Shell {
+ public:
+  Shell();
+  ~Shell();
+  Shell(const Shell&) = delete;
+
+  /// Runs `servogate ARGUMENTS` to its end. `language`: value of LANG.
+  Outcome run(const std::vector<std::string>& arguments, const std::string& language = "C");
+  /// Starts it and goes on.
+  pid_t spawn(const std::vector<std::string>& arguments, const std::string& name);
+  /// `servogate up` of an example, ready to be asked. More arguments follow the machine file.
+  void up(const std::string& machine = "mill",
+          const std::vector<std::string>& more = {"--virtual", "--speed", "20"});
+  /// Ends the control by a signal and gives its exit code.
+  int end(int signal);
+  /// Waits for the control's own end and gives its exit code.
+  int wait();
+  pid_t pid() const { return up_; }
+
+  /// One request on the socket, answered.
+  nlohmann::json ask(const nlohmann::json& request);
+  nlohmann::json status() { return ask({{"cmd", "status"}}); }
+  /// Asks for the status until `good` says so; false after `patience_s`.
+  bool until(const std::function<bool(const nlohmann::json&)>& good, double patience_s = 30.0);
+  /// Switched on and homed.
+  void ready();
+
+  std::string socket() const { return (folder_ / "servogate" / name_).string(); }
+  std::filesystem::path folder() const { return folder_; }
+  std::string text(const std::string& file) const;
+  static std::string example(const std::string& path);
+
+ private:
+  std::filesystem::path folder_;
+  std::string name_ = "three-axis-mill.sock";
+  pid_t up_ = -1;
+};
+
+}  // namespace servogate::gateway::testing

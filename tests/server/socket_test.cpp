@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// The control socket as programs use it, and misuse it.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <memory>
+#include <random>
+#include <thread>
+
+#include "tests/server/rig.hpp"
+
+namespace servogate::gateway::testing {
+namespace {
+
+using nlohmann::json;
+
+struct Point {
+  double t_s, x;
+};
+
+/// Machine time and set-point of X for `wall_s`, as fast as the socket answers.
+std::vector<Point> follow_x(SocketClient& client, double wall_s) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<Point> points;
+  std::string answer;
+  const Clock::time_point end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s));
+  while (Clock::now() < end && client.exchange(R"({"cmd":"status"})", answer)) {
+    const json s = json::parse(answer, nullptr, false);
+    points.push_back({s["time_s"], s["axes"][0]["command"]});
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return points;
+}
+
+double speed(const Point& from, const Point& to) {
+  return to.t_s > from.t_s ? (to.x - from.x) / (to.t_s - from.t_s) : 0.0;
+}
+
+/// Machine time at which the axis is first seen slower than it jogged; and where it stands in the end.
+double slower_from(const std::vector<Point>& points, double jog_speed) {
+  for (std::size_t i = 8; i < points.size(); ++i)
+    if (speed(points[i - 8], points[i]) < 0.95 * jog_speed) return points[i - 8].t_s;
+  return 1e9;
+}
+
+class Jog : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    shell_.up("mill", {"--virtual"});
+    ASSERT_EQ(shell_.run({"power", "on", "--wait"}).exit, 0);
+    ASSERT_TRUE(watcher_.connect(shell_.socket()).empty());
+  }
+  /// Steady speed of a jog that is under way.
+  double steady() {
+    follow_x(watcher_, 0.25);
+    const std::vector<Point> points = follow_x(watcher_, 0.1);
+    return speed(points.front(), points.back());
+  }
+  Shell shell_;
+  SocketClient watcher_;
+};
+
+TEST_F(Jog, stops_within_100_ms_when_its_client_is_killed) {
+  const pid_t client = shell_.spawn({"jog", "X", "+"}, "jog");
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["moving"].get<bool>(); }));
+  const double v = steady();
+  ASSERT_GT(v, 1.0);
+  const double killed_s = follow_x(watcher_, 0.01).back().t_s;
+  kill(client, SIGKILL);
+  waitpid(client, nullptr, 0);
+  const std::vector<Point> points = follow_x(watcher_, 1.0);
+  const double delay_s = slower_from(points, v) - killed_s;
+  std::printf("jogged at %.1f mm/s, slower %.1f ms after the last look before the kill\n", v, delay_s * 1e3);
+  EXPECT_LE(delay_s, 0.1);
+  EXPECT_DOUBLE_EQ(points.back().x, points[points.size() - 2].x);
+}
+
+TEST_F(Jog, stops_within_100_ms_when_its_client_falls_silent) {
+  SocketClient client;
+  std::string answer;
+  ASSERT_TRUE(client.connect(shell_.socket()).empty());
+  ASSERT_TRUE(client.exchange(R"({"cmd":"jog_continuous","axis":"X","value":-1})", answer));
+  EXPECT_TRUE(json::parse(answer)["ok"].get<bool>()) << answer;
+  EXPECT_NEAR(json::parse(answer)["keep_alive_ms"].get<double>(), 30.0, 1e-9);
+  const std::vector<Point> points = follow_x(watcher_, 1.5);
+  EXPECT_DOUBLE_EQ(points.back().x, points[points.size() - 2].x);
+  double last_motion_s = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (points[i].x != points[i - 1].x) last_motion_s = points[i].t_s;
+  // 100 ms of silence and the time to speed up and down again at the slow jog of an axis without reference.
+  EXPECT_LE(last_motion_s - points.front().t_s, 0.1 + 0.35);
+  ASSERT_TRUE(client.exchange(R"({"cmd":"keep_alive"})", answer));
+  EXPECT_FALSE(json::parse(answer).value("moving", true)) << "its end is said";
+}
+
+TEST_F(Jog, goes_on_while_its_client_keeps_asking_and_nobody_else_may_do_that_for_it) {
+  SocketClient client;
+  std::string answer;
+  ASSERT_TRUE(client.connect(shell_.socket()).empty());
+  ASSERT_TRUE(watcher_.exchange(R"({"cmd":"keep_alive"})", answer));
+  EXPECT_EQ(json::parse(answer)["code"], "socket.no-jog");
+  ASSERT_TRUE(client.exchange(R"({"cmd":"jog_continuous","axis":"X","value":1})", answer));
+  for (int n = 0; n < 40; ++n) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ASSERT_TRUE(client.exchange(R"({"cmd":"keep_alive"})", answer));
+    ASSERT_TRUE(json::parse(answer)["moving"].get<bool>()) << n;
+  }
+  ASSERT_TRUE(client.exchange(R"({"cmd":"jog_stop","axis":"X"})", answer));
+  EXPECT_TRUE(shell_.until([](const json& s) { return !s["axes"][0]["moving"].get<bool>(); }, 2.0));
+}
+
+TEST_F(Jog, names_who_holds_manual_control) {
+  const json pendant = shell_.ask({{"cmd", "jog"}, {"asker", "pendant"}, {"axis", "X"}, {"value", 20.0}});
+  ASSERT_TRUE(pendant["ok"].get<bool>()) << pendant;
+  const json refused = shell_.ask({{"cmd", "jog"}, {"axis", "Y"}, {"value", 1.0}});
+  EXPECT_EQ(refused["code"], "gate.manual_held");
+  EXPECT_EQ(refused["text"], "the pendant holds manual control");
+  const json russian = shell_.ask({{"cmd", "home"}, {"language", "ru"}});
+  EXPECT_EQ(russian["text"], "ручным управлением владеет выносной пульт");
+  EXPECT_EQ(shell_.ask({{"cmd", "status"}, {"asker", "plc"}})["code"], "socket.unknown-asker");
+  EXPECT_EQ(shell_.ask({{"cmd", "power"}, {"asker", "modbus"}, {"value", 1}})["code"], "gate.asker_may_not");
+}
+
+std::string random_line(std::mt19937_64& random) {
+  static const std::vector<std::string> seeds = {R"({"cmd":"status"})",
+                                                 R"({"cmd":"jog","axis":"X","value":1e999})",
+                                                 R"({"cmd":"zero","axis":["X"],"value":{}})",
+                                                 R"({"cmd":"home","axes":[1,null,"X",["Y"]]})",
+                                                 R"({"cmd":"mdi","block":"G1 X1 F1"})",
+                                                 R"({"cmd":"load","program":"/dev/null"})",
+                                                 R"({"cmd":"load","program":"/"})",
+                                                 R"({"cmd":"override","value":-1})",
+                                                 R"({"cmd":"input","point":"door_closed","value":[]})",
+                                                 R"({"cmd":"keep_alive"})",
+                                                 R"({"cmd":17,"asker":null})",
+                                                 R"([[[[[[[[[[]]]]]]]]]])",
+                                                 R"("cmd")",
+                                                 "{}"};
+  std::string line = seeds[random() % seeds.size()];
+  for (std::size_t edits = random() % 6; edits-- > 0;) {
+    const std::size_t at = line.empty() ? 0 : random() % line.size();
+    const char byte = static_cast<char>(random() % 256);
+    switch (random() % 3) {
+      case 0:
+        line.insert(at, 1, byte);
+        break;
+      case 1:
+        if (!line.empty()) line[at] = byte;
+        break;
+      default:
+        if (!line.empty()) line.erase(at, 1 + random() % 4);
+        break;
+    }
+  }
+  for (char& c : line)
+    if (c == '\n') c = ' ';
+  return line.find_first_not_of('\r') == std::string::npos ? "x" : line;
+}
+
+TEST(Socket, answers_every_line_of_garbage_with_one_object_and_stays_up) {
+  Shell shell;
+  shell.up();
+  const std::uint64_t seed = std::random_device{}();
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  std::mt19937_64 random(seed);
+  SocketClient client;
+  ASSERT_TRUE(client.connect(shell.socket()).empty());
+  for (int n = 0; n < 3000; ++n) {
+    const std::string line = random_line(random);
+    std::string answer;
+    ASSERT_TRUE(client.exchange(line, answer)) << n << ": " << line;
+    const json reply = json::parse(answer, nullptr, false);
+    ASSERT_TRUE(reply.is_object() && reply.contains("ok") && reply.contains("exit")) << line << answer;
+    if (!reply["ok"].get<bool>()) {
+      ASSERT_FALSE(reply.value("text", "").empty()) << line;
+    }
+  }
+  EXPECT_EQ(shell.run({"status"}).exit, 0);
+}
+
+TEST(Socket, lets_a_client_go_whose_line_never_ends) {
+  Shell shell;
+  shell.up();
+  SocketClient client;
+  ASSERT_TRUE(client.connect(shell.socket()).empty());
+  const std::string endless(200'000, '[');
+  client.send(endless);
+  std::string answer;
+  ASSERT_TRUE(client.receive(answer, 5000));
+  EXPECT_EQ(json::parse(answer)["code"], "socket.long-line");
+  EXPECT_FALSE(client.receive(answer, 5000)) << "closed";
+  EXPECT_EQ(shell.run({"status"}).exit, 0);
+}
+
+TEST(Socket, serves_32_clients_and_tells_the_33rd) {
+  Shell shell;
+  shell.up();
+  std::vector<std::unique_ptr<SocketClient>> clients;
+  std::string answer;
+  for (int n = 0; n < 32; ++n) {
+    clients.push_back(std::make_unique<SocketClient>());
+    ASSERT_TRUE(clients.back()->connect(shell.socket()).empty());
+    ASSERT_TRUE(clients.back()->exchange(R"({"cmd":"status"})", answer)) << n;
+  }
+  SocketClient late;
+  ASSERT_TRUE(late.connect(shell.socket()).empty());
+  ASSERT_TRUE(late.receive(answer, 5000));
+  EXPECT_EQ(json::parse(answer)["code"], "socket.full");
+  for (auto& client : clients) ASSERT_TRUE(client->exchange(R"({"cmd":"alarms"})", answer));
+  clients.pop_back();
+  EXPECT_TRUE(shell.until([](const json& s) { return s.contains("axes"); }, 5.0));
+}
+
+TEST(Socket, does_not_wait_for_a_client_that_does_not_read) {
+  Shell shell;
+  shell.up();
+  SocketClient slow;
+  ASSERT_TRUE(slow.connect(shell.socket()).empty());
+  std::thread flood([&] {
+    for (int n = 0; n < 20'000 && slow.send("{\"cmd\":\"status\"}\n"); ++n) {
+    }
+  });
+  for (int n = 0; n < 50; ++n) {
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_TRUE(shell.status().contains("axes"));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(500));
+  }
+  // It is let go when too much is unread, which also ends its flood.
+  flood.join();
+  EXPECT_EQ(shell.run({"status"}).exit, 0);
+}
+
+}  // namespace
+}  // namespace servogate::gateway::testing
