@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// libFuzzer target: any bytes as an NC-110 program. It must end, throw nothing, keep every axis inside of its
+// travel and write JSON for every command. fuzz_program [-dict=tests/fuzz/program/nc110.dict] [CORPUS]
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "kernel/program/canon.hpp"
+#include "kernel/program/check.hpp"
+
+using namespace servogate::program;
+
+namespace {
+
+MachineModel machine() {
+  MachineModel model;
+  for (const char* letter : {"X", "Y", "Z", "C"})
+    model.axes.push_back({letter, letter[0] == 'C', false, false, -300.0, 300.0, 500.0});
+  model.power_on = {"G94", "G97", "G90", "G71", "G27"};
+  model.variables = {{"ERF", 0.01}, {"MCD", 2.0}};
+  return model;
+}
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const MachineModel model = machine();
+  const std::vector<std::string> letters = {"X", "Y", "Z", "C"};
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  Tables tables;
+  tables.origins[1] = {{"X", 10.0}, {"Y", 20.0}};
+  tables.correctors[1].length["Z"] = 50.0;
+  const auto loader = [&](std::string_view name) -> std::optional<std::string> {
+    if (name == "SUB") return text;
+    return std::nullopt;
+  };
+  Interpreter run("nc110", model, tables, "fuzz.nc", text, loader, Position{});
+  for (const auto& finding : run.findings()) require(finding.entry != nullptr && !finding.str().empty());
+  std::string json;
+  const auto on_command = [&](const Command& command) {
+    json.clear();
+    append_json(json, command, letters, run.files());
+    require(json.front() == '{' && json.back() == '}');
+    for (std::size_t a = 0; a < letters.size(); ++a) require(std::abs(run.position()[a]) <= 300.0 + 1e-5);
+    return true;
+  };
+  const auto error = run_dry(run, on_command, 20'000);
+  if (error) require(error->entry != nullptr && !error->str().empty());
+  return 0;
+}
