@@ -11,7 +11,7 @@
 #include "bench/cycle/cycle_times.hpp"
 #include "gateway/benchmark/eight_axes.hpp"
 #include "gateway/compose/control.hpp"
-#include "gateway/compose/program_file.hpp"
+#include "gateway/compose/program/program_file.hpp"
 
 namespace {
 

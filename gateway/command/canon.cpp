@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "gateway/command/commands.hpp"
-#include "gateway/compose/program_file.hpp"
+#include "gateway/compose/program/program_file.hpp"
 
 namespace servogate::gateway::command {
 

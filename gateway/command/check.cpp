@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gateway/command/commands.hpp"
-#include "gateway/compose/program_file.hpp"
+#include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/machine/state.hpp"
 #include "plc/run.hpp"

@@ -4,7 +4,7 @@
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/compose/program_model.hpp"
+#include "gateway/compose/program/program_model.hpp"
 #include "gateway/machine/load.hpp"
 #include "plc/run.hpp"
 

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "gateway/command/commands.hpp"
-#include "gateway/compose/program_file.hpp"
+#include "gateway/compose/program/program_file.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/session.hpp"
 

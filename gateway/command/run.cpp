@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "gateway/command/commands.hpp"
-#include "gateway/compose/program_file.hpp"
+#include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/state.hpp"
 #include "gateway/run/operator_script.hpp"
 #include "gateway/run/realtime_loop.hpp"

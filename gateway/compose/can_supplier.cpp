@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/compose/can_supplier.hpp"
 
-#include "kernel/cycle/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::gateway {
 

@@ -3,7 +3,7 @@
 
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/canopen_setup.hpp"
-#include "gateway/compose/program_model.hpp"
+#include "gateway/compose/program/program_model.hpp"
 #include "plc/compile.hpp"
 
 namespace servogate::gateway {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/run/operator_script.hpp"
 
-#include "kernel/cycle/gate.hpp"
+#include "kernel/cycle/gate/gate.hpp"
 
 namespace servogate::gateway {
 

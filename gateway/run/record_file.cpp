@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "gateway/compose/program_model.hpp"
+#include "gateway/compose/program/program_model.hpp"
 #include "gateway/machine/state_text.hpp"
 
 namespace servogate::gateway {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "kernel/cycle/alarms.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::gateway {
 

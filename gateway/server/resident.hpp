@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gateway/compose/control.hpp"
-#include "gateway/compose/program_file.hpp"
+#include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/state.hpp"
 
 namespace servogate::gateway {

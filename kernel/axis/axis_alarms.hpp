@@ -2,7 +2,7 @@
 #pragma once
 #include "firmware_if/image/alarm.hpp"
 
-/// Numbers of the alarms that this room raises; their texts stand in kernel/cycle/alarm_table.cpp.
+/// Numbers of the alarms that this room raises; their texts stand in kernel/cycle/alarm/alarm_table.cpp.
 namespace servogate::axis::alarm {
 
 using image::AlarmNumber;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/cycle/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarm_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "kernel/cycle/alarms.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::cycle {
 namespace {
@@ -48,7 +48,7 @@ TEST(AlarmTable, says_the_same_figures_in_both_languages) {
 TEST(AlarmTable, has_a_row_for_every_number_that_the_code_raises) {
   const std::string folder = SERVOGATE_SOURCE_DIR;
   int numbers = 0;
-  for (const char* file : {"/kernel/axis/axis_alarms.hpp", "/kernel/cycle/alarm_table.hpp"}) {
+  for (const char* file : {"/kernel/axis/axis_alarms.hpp", "/kernel/cycle/alarm/alarm_table.hpp"}) {
     std::ifstream in(folder + file);
     ASSERT_TRUE(in) << file;
     for (std::string line; std::getline(in, line);) {

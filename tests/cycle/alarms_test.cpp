@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/cycle/alarms.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 
 #include <gtest/gtest.h>
 

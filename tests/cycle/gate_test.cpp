@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/cycle/gate.hpp"
+#include "kernel/cycle/gate/gate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "firmware_if/image/interface_map.hpp"
-#include "kernel/cycle/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::cycle {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/compose/program_model.hpp"
+#include "gateway/compose/program/program_model.hpp"
 #include "tests/machine_run/program.hpp"
 
 namespace servogate::machine_run {

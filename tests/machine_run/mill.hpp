@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gateway/compose/control.hpp"
-#include "kernel/cycle/gate.hpp"
+#include "kernel/cycle/gate/gate.hpp"
 
 namespace servogate::machine_run {
 

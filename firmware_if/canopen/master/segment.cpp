@@ -9,7 +9,7 @@
 
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/master/bus_meter.hpp"
-#include "firmware_if/canopen/master/drive_node.hpp"
+#include "firmware_if/canopen/master/drive/drive_node.hpp"
 #include "firmware_if/canopen/master/segment_load.hpp"
 
 namespace servogate::canopen {

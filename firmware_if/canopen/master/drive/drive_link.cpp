@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/canopen/master/drive_link.hpp"
+#include "firmware_if/canopen/master/drive/drive_link.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iterator>
 
-#include "kernel/cycle/gate.hpp"
+#include "kernel/cycle/gate/gate.hpp"
 
 namespace servogate::cycle {
 

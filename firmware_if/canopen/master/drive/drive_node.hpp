@@ -8,7 +8,7 @@
 #include "firmware_if/canopen/301/sdo_client.hpp"
 #include "firmware_if/canopen/302/node_boot.hpp"
 #include "firmware_if/canopen/master/bus_event.hpp"
-#include "firmware_if/canopen/master/drive_link.hpp"
+#include "firmware_if/canopen/master/drive/drive_link.hpp"
 #include "firmware_if/canopen/master/segment_config.hpp"
 
 namespace servogate::canopen {

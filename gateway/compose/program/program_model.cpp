@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/program_model.hpp"
+#include "gateway/compose/program/program_model.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/cycle/gate.hpp"
+#include "kernel/cycle/gate/gate.hpp"
 
 #include <cmath>
 
 #include "firmware_if/image/interface_map.hpp"
-#include "kernel/cycle/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::cycle {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/cycle/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarm_table.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -455,7 +455,7 @@ std::string_view words(ResetCondition condition, text::Language language) {
 std::string alarms_page() {
   const std::vector<std::string> names(std::begin(kPlaceholders), std::end(kPlaceholders));
   std::string page =
-      "# Alarms\n\nMade from the alarm table (`kernel/cycle/alarm_table.cpp`); do not edit. The reaction is "
+      "# Alarms\n\nMade from the alarm table (`kernel/cycle/alarm/alarm_table.cpp`); do not edit. The reaction is "
       "the default; a\n"
       "machine file may ask for a stronger one. While the machine reacts to a first fault, further faults "
       "are its\n"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "kernel/cycle/alarms.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::cycle {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/program_file.hpp"
+#include "gateway/compose/program/program_file.hpp"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
-#include "gateway/compose/program_model.hpp"
+#include "gateway/compose/program/program_model.hpp"
 #include "gateway/machine/load.hpp"
 #include "kernel/program/interpreter.hpp"
 

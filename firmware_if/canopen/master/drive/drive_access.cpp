@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of DriveLink that goes over SDO: every object the cycle needs and no PDO carries.
 #include "firmware_if/canopen/402/objects.hpp"
-#include "firmware_if/canopen/master/drive_link.hpp"
+#include "firmware_if/canopen/master/drive/drive_link.hpp"
 
 namespace servogate::canopen {
 namespace {

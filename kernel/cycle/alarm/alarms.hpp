@@ -10,7 +10,7 @@
 #include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/text/finding.hpp"
-#include "kernel/cycle/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::cycle {
 
