@@ -2,24 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
-#include <new>
 
 #include "kernel/axis/spindle.hpp"
 #include "tests/axis/rig.hpp"
-
-namespace {
-long allocations = 0;
-bool counting = false;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  if (counting) ++allocations;
-  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+#include "tests/counting/allocations.hpp"
 
 namespace servogate::axis {
 namespace {
@@ -33,13 +19,14 @@ TEST(RealTime, axis_and_spindle_allocate_nothing_in_any_phase_of_any_motion) {
   Spindle spindle;
   spindle.configure({}, 0);
   long cycles = 0;
+  std::uint64_t allocated = 0;
   double spent_ns = 0.0;
   auto run = [&](int n) {
     for (; n > 0; --n, ++cycles) {
       rig.image.now.t_ns += rig.image.now.period_ns;
       rig.drive.cycle(rig.shared().drive_command, rig.shared().drive);
       rig.set_switches();
-      counting = true;
+      const counting::Tally tally(allocated);
       const auto begin = std::chrono::steady_clock::now();
       rig.axis.read(rig.image);
       rig.axis.react(rig.reaction);
@@ -47,13 +34,11 @@ TEST(RealTime, axis_and_spindle_allocate_nothing_in_any_phase_of_any_motion) {
       spent_ns += std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count();
       spindle.read(rig.image);
       spindle.command(rig.image);
-      counting = false;
     }
   };
   auto order = [&](auto&& what) {
-    counting = true;
+    const counting::Tally tally(allocated);
     what();
-    counting = false;
   };
   order([&] { rig.axis.request_power(true), spindle.order(SpindleMode::cw, 1000.0); });
   run(100);
@@ -72,7 +57,7 @@ TEST(RealTime, axis_and_spindle_allocate_nothing_in_any_phase_of_any_motion) {
   run(100);
   order([&] { rig.axis.reset(); });
   run(100);
-  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(allocated, 0u);
   std::printf("one axis: %.0f ns a cycle (clock calls included)\n", spent_ns / static_cast<double>(cycles));
 }
 

@@ -2,24 +2,11 @@
 // receive() and send() of the simulated I/O run inside the cycle and may not allocate.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <memory>
-#include <new>
 
 #include "drivers/mock/gpio/mock_gpio.hpp"
 #include "drivers/mock/modbus/modbus_line.hpp"
-
-namespace {
-thread_local std::uint64_t allocations = 0;
-}
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+#include "tests/counting/allocations.hpp"
 
 namespace servogate::mock {
 namespace {
@@ -45,16 +32,15 @@ TEST(SimulatedIo, receives_and_sends_without_allocating) {
     image->now = {n, n * image::kMillisecond, image::kMillisecond};
     line.advance_to(image->now.t_ns);
     chip.advance_to(image->now.t_ns);
-    const std::uint64_t before = allocations;
+    const counting::Tally tally(inside);
     line.receive(*image);
     chip.receive(*image);
     image->packets.set_bit(map.points[1].place, n / 100 % 2 == 1);
     line.send(*image);
     chip.send(*image);
-    inside += allocations - before;
   }
   EXPECT_EQ(inside, 0u);
-  EXPECT_GT(allocations, 0u) << "the counter itself works";
+  EXPECT_GT(counting::allocations(), 0u) << "the counter itself works";
   EXPECT_GT(line.transactions(), 100u);
 }
 

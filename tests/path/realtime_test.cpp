@@ -1,30 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
+#include "tests/counting/allocations.hpp"
 #include "tests/path/rig.hpp"
-
-namespace {
-
-thread_local bool counting = false;
-thread_local int allocations = 0;
-
-void* allocate(std::size_t size) {
-  if (counting) ++allocations;
-  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return allocate(size); }
-void* operator new[](std::size_t size) { return allocate(size); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 
 namespace servogate::path::test {
 namespace {
@@ -42,7 +20,7 @@ TEST(RealTime, a_step_allocates_nothing_whatever_happens_in_it) {
     planner.finish();
     for (int cycle = 0; cycle < 3000; ++cycle) {
       planner.work();
-      counting = true;
+      const std::uint64_t before = counting::allocations();
       if (cycle % 300 == 100) follower.hold();
       if (cycle % 300 == 250) follower.resume();
       if (cycle % 70 == 0) follower.set_override(0.2 + 0.01 * (cycle % 130));
@@ -50,18 +28,17 @@ TEST(RealTime, a_step_allocates_nothing_whatever_happens_in_it) {
       follower.release_stop();
       follower.release_event();
       const Sample s = follower.step(track.visible());
-      counting = false;
-      ASSERT_EQ(allocations, 0) << "cycle " << cycle << " state " << static_cast<int>(s.state);
+      ASSERT_EQ(counting::allocations(), before)
+          << "cycle " << cycle << " state " << static_cast<int>(s.state);
     }
   }
 }
 
 TEST(RealTime, the_count_of_allocations_counts) {
-  counting = true;
-  delete new int(1);
-  counting = false;
-  EXPECT_EQ(allocations, 1);
-  allocations = 0;
+  const std::uint64_t before = counting::allocations();
+  int* volatile memory = new int(1);  // volatile: the compiler may otherwise leave the pair out
+  delete memory;
+  EXPECT_EQ(counting::allocations(), before + 1);
 }
 
 }  // namespace

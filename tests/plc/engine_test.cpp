@@ -7,7 +7,7 @@
 
 #include "plc/compile.hpp"
 #include "plc/run.hpp"
-#include "tests/plc/allocation_count.hpp"
+#include "tests/counting/allocations.hpp"
 
 namespace servogate::plc {
 namespace {
@@ -232,25 +232,25 @@ END_PROGRAM)",
   ASSERT_TRUE(e.force(*e.find("i"), "3"));
   e.scan(p, 0);
   const Handle h = *e.find("d");
-  const std::uint64_t before = allocations();
+  const std::uint64_t before = counting::allocations();
   double sum = 0;
   for (int i = 1; i < 1000; ++i) {
     EXPECT_EQ(e.scan(p, i * image::kMillisecond).fault, Fault::none);
     sum += e.number(h);
   }
-  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(counting::allocations(), before);
   EXPECT_NE(sum, 0);
   std::vector<int> probe(10);
-  EXPECT_GT(allocations(), before) << "the count counts";
+  EXPECT_GT(counting::allocations(), before) << "the count counts";
 }
 
 TEST(Engine, faults_without_allocating) {
   Engine e(build("PROGRAM Main\nVAR d : INT; END_VAR\nbit_out := 1 / d = 0;\nEND_PROGRAM", kSymbols));
   image::Packets p;
-  const std::uint64_t before = allocations();
+  const std::uint64_t before = counting::allocations();
   EXPECT_EQ(e.scan(p, 0).fault, Fault::division_by_zero);
   EXPECT_EQ(e.scan(p, 1).fault, Fault::division_by_zero);
-  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(counting::allocations(), before);
 }
 
 TEST(Engine, runs_two_engines_of_one_image_apart) {

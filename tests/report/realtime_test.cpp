@@ -9,16 +9,16 @@
 
 #include "gateway/report/statistics.hpp"
 #include "gateway/report/trace.hpp"
-#include "tests/report/allocation_counter.hpp"
+#include "tests/counting/allocations.hpp"
 #include "tests/report/demo_run.hpp"
 
 namespace servogate::report {
 namespace {
 
 TEST(RealTime, the_guard_of_this_test_sees_an_allocation) {
-  const std::uint64_t before = allocations();
+  const std::uint64_t before = counting::allocations();
   auto value = std::make_unique<int>(1);
-  EXPECT_EQ(*value + static_cast<int>(allocations() - before), 2);
+  EXPECT_EQ(*value + static_cast<int>(counting::allocations() - before), 2);
 }
 
 TEST(RealTime, a_cycle_samples_counts_and_records_without_allocating) {
@@ -29,7 +29,7 @@ TEST(RealTime, a_cycle_samples_counts_and_records_without_allocating) {
   CycleTimes times({"receive", "plc", "axes"});
   const std::int64_t phases[] = {100, 200, 300};
   TraceRow row;
-  const std::uint64_t before = allocations();
+  const std::uint64_t before = counting::allocations();
   for (int n = 0; n < 5000; ++n) {  // more than fits, so that dropping is covered too
     image->now.number = n;
     image->axes[0].command = n * 1e-3;
@@ -38,7 +38,7 @@ TEST(RealTime, a_cycle_samples_counts_and_records_without_allocating) {
     times.add(3000 + n, n, phases);
     recorder.record(row);
   }
-  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(counting::allocations(), before);
   EXPECT_EQ(recorder.recorded() + recorder.dropped(), 5000u);
 }
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proof that a segment allocates nothing once it is built: operator new is replaced in this program and
-// counts.
+// Proof that a segment allocates nothing once it is built.
 #include <gtest/gtest.h>
 
-#include "tests/canopen/allocation_counter.hpp"
 #include "tests/canopen/master/segment_fixture.hpp"
+#include "tests/counting/allocations.hpp"
 
 namespace servogate::canopen {
 namespace {
 
-using testing::allocations;
+using counting::allocations;
 using testing::SegmentRig;
 
 /// Steps a rig like SegmentRig::step, counting only what receive() and send() allocate. The fake network
@@ -18,7 +17,7 @@ struct CountingRig : SegmentRig {
   using SegmentRig::SegmentRig;
   void counted_step() {
     network.sent.reserve(256);
-    const long before = allocations();
+    const std::uint64_t before = allocations();
     segment->receive(*image);
     segment->send(*image);
     counted += allocations() - before;
@@ -28,11 +27,11 @@ struct CountingRig : SegmentRig {
     BusEvent e;
     while (segment->events().pop(e)) events.push_back(e);
   }
-  long counted = 0;
+  std::uint64_t counted = 0;
 };
 
 TEST(SegmentAllocation, the_counter_counts) {
-  const long before = allocations();
+  const std::uint64_t before = allocations();
   int* volatile memory = new int(1);  // volatile: the compiler may otherwise leave the pair out
   delete memory;
   EXPECT_GT(allocations(), before);

@@ -2,28 +2,8 @@
 // Once everything is attached, neither the segment nor a drive takes memory, whatever happens.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "tests/counting/allocations.hpp"
 #include "tests/mock/drive/drive_bench.hpp"
-
-namespace {
-std::atomic<bool> g_watch{false};
-std::atomic<int> g_allocations{0};
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  if (g_watch) ++g_allocations;
-  if (void* p = std::malloc(size ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  if (g_watch) ++g_allocations;
-  return std::malloc(size ? size : 1);
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace servogate::mock {
 namespace {
@@ -41,7 +21,7 @@ TEST(DriveMemory, nothing_is_allocated_by_cycles_faults_or_sdo_traffic) {
   sdo.id = 0x605;
   sdo.length = 8;
   sdo.data = {0x40, 0x08, 0x10};
-  g_watch = true;
+  const std::uint64_t before = counting::allocations();
   for (int i = 0; i < 2000; ++i) {
     b.master.send(sync);
     b.master.send(pdo);
@@ -53,13 +33,10 @@ TEST(DriveMemory, nothing_is_allocated_by_cycles_faults_or_sdo_traffic) {
     while (b.master.receive(got)) {
     }
   }
-  g_watch = false;
-  EXPECT_EQ(g_allocations, 0);
+  EXPECT_EQ(counting::allocations(), before);
   EXPECT_EQ(b.drive.state(), image::DriveState::fault);
-  g_watch = true;
   ::operator delete(::operator new(8));
-  g_watch = false;
-  EXPECT_EQ(g_allocations, 1) << "the counter itself works";
+  EXPECT_EQ(counting::allocations(), before + 1) << "the counter itself works";
 }
 
 }  // namespace
