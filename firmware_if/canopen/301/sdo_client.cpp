@@ -4,21 +4,20 @@
 #include <algorithm>
 
 namespace servogate::canopen {
-namespace {
-constexpr std::uint32_t kSegmentBytes = 7;
-}
-
 bool SdoClient::start(bool is_download, std::uint16_t index, std::uint8_t subindex) noexcept {
   result_ = {SdoStatus::busy, AbortCode::none, index, subindex, is_download, 0, 0};
+  blocks_refused_ = false;
   restart();
   return true;
 }
 
 void SdoClient::restart() noexcept {
-  phase_ = Phase::initiate;
+  phase_ = wants_blocks() ? Phase::block_initiate : Phase::initiate;
   request_due_ = true;
-  toggle_ = false;
-  position_ = 0;
+  toggle_ = progress_ = last_segment_ = false;
+  position_ = crc_position_ = stalls_ = 0;
+  sequence_ = 0;
+  crc_ = 0;
   last_answer_ = {};
   if (!result_.download) length_ = 0;
 }
@@ -27,6 +26,8 @@ bool SdoClient::download(std::uint16_t index, std::uint8_t subindex,
                          std::span<const std::uint8_t> data) noexcept {
   if (busy() || data.empty() || data.size() > kBuffer) return false;
   std::ranges::copy(data, buffer_.begin());
+  source_ = nullptr;
+  target_ = nullptr;
   length_ = static_cast<std::uint32_t>(data.size());
   return start(true, index, subindex);
 }
@@ -39,8 +40,30 @@ bool SdoClient::download(std::uint16_t index, std::uint8_t subindex, std::uint64
   return download(index, subindex, std::span(raw).first(bytes));
 }
 
+bool SdoClient::download_from(std::uint16_t index, std::uint8_t subindex,
+                              std::span<const std::uint8_t> data) noexcept {
+  if (busy() || data.empty() || data.size() > 0xFFFF'FFFFu) return false;
+  source_ = data.data();
+  target_ = nullptr;
+  length_ = static_cast<std::uint32_t>(data.size());
+  return start(true, index, subindex);
+}
+
 bool SdoClient::upload(std::uint16_t index, std::uint8_t subindex) noexcept {
-  return !busy() && start(false, index, subindex);
+  if (busy()) return false;
+  source_ = nullptr;
+  target_ = nullptr;
+  capacity_ = kBuffer;
+  return start(false, index, subindex);
+}
+
+bool SdoClient::upload_into(std::uint16_t index, std::uint8_t subindex,
+                            std::span<std::uint8_t> memory) noexcept {
+  if (busy()) return false;
+  source_ = nullptr;
+  target_ = memory.data();
+  capacity_ = static_cast<std::uint32_t>(std::min<std::size_t>(memory.size(), 0xFFFF'FFFFu));
+  return start(false, index, subindex);
 }
 
 void SdoClient::cancel() noexcept {
@@ -50,16 +73,21 @@ void SdoClient::cancel() noexcept {
   finish(SdoStatus::idle, AbortCode::none);
 }
 
+SdoBytes SdoClient::request() noexcept {
+  if (in_block()) return block_request();
+  return phase_ == Phase::initiate ? initiate_request() : segment_request();
+}
+
 SdoBytes SdoClient::initiate_request() const noexcept {
   if (!result_.download) return sdo_request::upload(result_.index, result_.subindex);
   if (length_ > 4) return sdo_request::download_segmented(result_.index, result_.subindex, length_);
-  return sdo_request::download_expedited(result_.index, result_.subindex, std::span(buffer_).first(length_));
+  return sdo_request::download_expedited(result_.index, result_.subindex, std::span(memory(), length_));
 }
 
 SdoBytes SdoClient::segment_request() const noexcept {
   if (!result_.download) return sdo_request::upload_segment(toggle_);
-  const std::uint32_t size = std::min(length_ - position_, kSegmentBytes);
-  return sdo_request::download_segment(toggle_, std::span(buffer_).subspan(position_, size),
+  const std::uint32_t size = std::min(length_ - position_, kSegmentData);
+  return sdo_request::download_segment(toggle_, std::span(memory() + position_, size),
                                        position_ + size == length_);
 }
 
@@ -77,27 +105,39 @@ void SdoClient::break_off(AbortCode code) noexcept {
   finish(SdoStatus::bad_protocol, code);
 }
 
+bool SdoClient::repeat() noexcept {
+  if (result_.retries >= retries_) return false;
+  ++result_.retries;
+  restart();
+  return true;
+}
+
+void SdoClient::on_timeout() noexcept {
+  if (block_stalled()) return;
+  // A device that has never done one may simply keep silent about what it does not know.
+  blocks_refused_ |= phase_ == Phase::block_initiate && !blocks_known_;
+  if (!repeat()) finish(SdoStatus::no_answer, AbortCode::timed_out);
+  abort_due_ = true;
+  abort_code_ = AbortCode::timed_out;
+}
+
+bool SdoClient::send_abort(image::CanBus& bus) noexcept {
+  const SdoBytes bytes = sdo_abort(result_.index, result_.subindex, abort_code_);
+  abort_due_ = !bus.send(make_frame(cob::sdo_request(node_), bytes));
+  return !abort_due_;
+}
+
 bool SdoClient::poll(image::Nanoseconds now, image::CanBus& bus) noexcept {
-  if (busy() && !request_due_ && now >= deadline_ns_) {
-    if (result_.retries < retries_) {
-      ++result_.retries;
-      restart();
-    } else {
-      finish(SdoStatus::no_answer, AbortCode::timed_out);
-    }
-    abort_due_ = true;
-    abort_code_ = AbortCode::timed_out;
-  }
-  if (abort_due_) {
-    const SdoBytes bytes = sdo_abort(result_.index, result_.subindex, abort_code_);
-    abort_due_ = !bus.send(make_frame(cob::sdo_request(node_), bytes));
-    return !abort_due_;
-  }
+  if (progress_) deadline_ns_ = now + timeout_ns_;
+  progress_ = false;
+  if (busy() && !request_due_ && now >= deadline_ns_) on_timeout();
+  if (abort_due_) return send_abort(bus);
   if (!request_due_) return false;
-  const SdoBytes bytes = phase_ == Phase::initiate ? initiate_request() : segment_request();
+  const SdoBytes bytes = request();
   if (!bus.send(make_frame(cob::sdo_request(node_), bytes))) return false;
   request_due_ = false;
   deadline_ns_ = now + timeout_ns_;
+  if (in_block()) block_sent();
   return true;
 }
 
@@ -106,7 +146,7 @@ bool SdoClient::poll(image::Nanoseconds now, image::CanBus& bus) noexcept {
 bool SdoClient::expects(const SdoFrame& answer) const noexcept {
   const bool object_matches = answer.index == result_.index && answer.subindex == result_.subindex;
   if (answer.command == SdoCommand::abort) return object_matches;
-  if (phase_ == Phase::initiate)
+  if (phase_ == Phase::initiate || phase_ == Phase::block_initiate)
     return object_matches &&
            answer.command == (result_.download ? SdoCommand::download_initiate : SdoCommand::upload_initiate);
   return answer.command == (result_.download ? SdoCommand::download_segment : SdoCommand::upload_segment);
@@ -114,19 +154,24 @@ bool SdoClient::expects(const SdoFrame& answer) const noexcept {
 
 bool SdoClient::on_frame(const image::CanFrame& frame) noexcept {
   if (frame.extended || frame.remote || frame.id != cob::sdo_response(node_)) return false;
-  // Nothing can be answered before it was asked: a request still waiting for the bus has no answer yet.
-  if (!busy() || request_due_ || abort_due_ || frame.length != 8) return false;
+  if (!busy() || abort_due_ || frame.length != 8) return false;
   SdoBytes bytes;
   std::copy_n(frame.data.begin(), bytes.size(), bytes.begin());
+  if (in_block()) return on_block_frame(bytes);
+  // Nothing can be answered before it was asked: a request still waiting for the bus has no answer yet.
+  return !request_due_ && on_plain_frame(bytes);
+}
+
+bool SdoClient::on_plain_frame(const SdoBytes& bytes) noexcept {
   const SdoFrame answer = parse_sdo_response(bytes);
   if (!expects(answer) || bytes == last_answer_) return false;
   last_answer_ = bytes;
   if (answer.command == SdoCommand::abort) {
     finish(SdoStatus::aborted, answer.abort);
-  } else if (phase_ == Phase::initiate) {
-    on_initiate(answer);
-  } else {
+  } else if (phase_ == Phase::segments) {
     on_segment(answer);
+  } else {
+    on_initiate(answer);
   }
   return true;
 }
@@ -138,12 +183,13 @@ void SdoClient::on_initiate(const SdoFrame& answer) noexcept {
       return finish(SdoStatus::done, AbortCode::none);
     }
   } else if (answer.expedited) {
-    std::copy_n(answer.data.begin(), answer.size, buffer_.begin());
+    if (answer.size > capacity_) return break_off(AbortCode::out_of_memory);
+    std::copy_n(answer.data.begin(), answer.size, writable());
     position_ = answer.size;
     return finish(SdoStatus::done, AbortCode::none);
   } else {
     length_ = answer.total;
-    if (length_ > kBuffer) return break_off(AbortCode::out_of_memory);
+    if (length_ > capacity_) return break_off(AbortCode::out_of_memory);
   }
   phase_ = Phase::segments;
   request_due_ = true;
@@ -153,11 +199,11 @@ void SdoClient::on_segment(const SdoFrame& answer) noexcept {
   if (answer.toggle != toggle_) return break_off(AbortCode::toggle_not_alternated);
   bool last = answer.last;
   if (result_.download) {
-    position_ += std::min(length_ - position_, kSegmentBytes);
+    position_ += std::min(length_ - position_, kSegmentData);
     last = position_ == length_;
   } else {
-    if (position_ + answer.size > kBuffer) return break_off(AbortCode::out_of_memory);
-    std::copy_n(answer.data.begin(), answer.size, buffer_.begin() + position_);
+    if (position_ + answer.size > capacity_) return break_off(AbortCode::out_of_memory);
+    std::copy_n(answer.data.begin(), answer.size, writable() + position_);
     position_ += answer.size;
     if (last && length_ != 0 && position_ != length_) return break_off(AbortCode::length_mismatch);
     // A device that neither ends nor sends data would keep us here for ever.
