@@ -32,8 +32,8 @@ struct SdoResult {
   std::uint32_t retries = 0;  ///< repetitions this transfer needed
 };
 
-/// Client of the default SDO of one node: one transfer at a time, expedited, segmented or in blocks. Driven by
-/// frames and time only; all members are real-time safe. Source: CiA 301, 7.2.4.3.
+/// Client of the default SDO of one node: one transfer at a time, expedited, segmented or in blocks. Driven
+/// by frames and time only; all members are real-time safe. Source: CiA 301, 7.2.4.3.
 ///
 /// A lost answer repeats the whole transfer, `retries` times; a segment lost within a block repeats what
 /// follows it only. Answers of another object, exact repetitions of a frame (CAN may deliver one twice) and
@@ -58,8 +58,8 @@ class SdoClient {
   bool download(std::uint16_t index, std::uint8_t subindex, std::span<const std::uint8_t> data) noexcept;
   /// The same for a little-endian integer of 1, 2, 4 or 8 bytes.
   bool download(std::uint16_t index, std::uint8_t subindex, std::uint64_t value, std::uint8_t bytes) noexcept;
-  /// Starts writing any number of bytes (0 excepted) out of the caller's memory, which must stay as it is until
-  /// the transfer has ended. False when busy.
+  /// Starts writing any number of bytes (0 excepted) out of the caller's memory, which must stay as it is
+  /// until the transfer has ended. False when busy.
   bool download_from(std::uint16_t index, std::uint8_t subindex, std::span<const std::uint8_t> data) noexcept;
   /// Starts reading. False when busy. A longer object than kBuffer ends with AbortCode::out_of_memory.
   bool upload(std::uint16_t index, std::uint8_t subindex) noexcept;
@@ -87,7 +87,8 @@ class SdoClient {
   /// Bytes of the object: of a download always, of an upload once the device has told; 0: not known.
   std::uint32_t length() const noexcept { return length_; }
 
-  /// Sends what is due: a request, a segment, a repetition or an abort. True when a frame was given to the bus.
+  /// Sends what is due: a request, a segment, a repetition or an abort. True when a frame was given to the
+  /// bus.
   bool poll(image::Nanoseconds now, image::CanBus& bus) noexcept;
   /// Takes a frame with the identifier 580h + node; any other is ignored. True when it belonged to the
   /// transfer.

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::uint16_t kHeartbeatLost = 0x8130, kBusOff = 0x8140, kPdoTooShort = 0x8210,
                         kRpdoTimeout = 0x8250;
+constexpr int kSegmentsPerTick = 2;
 constexpr ObjectDictionary::Range kCommunication{0x1000, 0x1FFF}, kApplication{0x2000, 0xFFFF};
 
 }  // namespace
@@ -39,8 +40,7 @@ void Slave::power_on(image::CanBus& bus, image::Nanoseconds now, image::Nanoseco
 bool Slave::concerned(const image::CanFrame& frame) const noexcept {
   if (frame.extended || frame.error || booting_) return false;
   const std::uint32_t id = frame.id;
-  if (id == cob::kNmt || id == sync_id() || id == cob::sdo_request(node_))
-    return true;
+  if (id == cob::kNmt || id == sync_id() || id == cob::sdo_request(node_)) return true;
   if ((id & 0x780) == 0x700) return true;
   for (const ReceivePdo& p : receive_)
     if (p.valid() && p.id() == id) return true;
@@ -73,8 +73,19 @@ void Slave::on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexc
 void Slave::on_sdo(const image::CanFrame& frame) noexcept {
   if (!alive() || frame.remote) return;
   SdoBytes answer{};
-  if (sdo_.handle(std::span(frame.data).first(frame.length), answer))
+  if (sdo_.handle(std::span(frame.data).first(frame.length), now_, answer))
     bus_->send(make_frame(cob::sdo_response(node_), answer));
+}
+
+// Segments of a block upload leave the bus to what has a deadline: a few in a millisecond, and none that
+// would wait behind a full queue.
+void Slave::serve_sdo() noexcept {
+  SdoBytes bytes{};
+  if (sdo_.tick(now_, bytes)) bus_->send(make_frame(cob::sdo_response(node_), bytes));
+  for (int n = 0; n < kSegmentsPerTick && sdo_.segment(bytes); ++n) {
+    if (!bus_->send(make_frame(cob::sdo_response(node_), bytes))) return;
+    sdo_.segment_sent();
+  }
 }
 
 void Slave::on_pdo_frame(const image::CanFrame& frame) noexcept {
@@ -131,6 +142,7 @@ void Slave::tick(image::Nanoseconds now) noexcept {
   }
   monitor_.tick(state_, now);
   emcy_.tick(now);
+  if (alive()) serve_sdo();
   watch_connection();
   if (state_ != NmtState::operational || !any_event_driven_) return;
   profile_.refresh();

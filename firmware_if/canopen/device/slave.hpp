@@ -79,6 +79,7 @@ class Slave final : private SdoObjects, private PdoSink {
   void on_sync(const image::CanFrame& frame) noexcept;
   void on_pdo_frame(const image::CanFrame& frame) noexcept;
   void answer_remote(const image::CanFrame& frame) noexcept;
+  void serve_sdo() noexcept;
   void on_sdo(const image::CanFrame& frame) noexcept;
   void watch_connection() noexcept;
   void connection_lost(std::uint16_t error_code) noexcept;

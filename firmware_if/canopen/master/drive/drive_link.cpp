@@ -182,6 +182,7 @@ void DriveLink::fill(image::DriveFeedback& feedback) const noexcept {
   feedback.position_counts = position_counts_;
   feedback.velocity_counts_s = velocity_counts_s_;
   feedback.torque_permille = static_cast<double>(data_.number(in_.torque)) * profile_.torque_unit_permille;
+  feedback.torque_known = in_.torque.mapped();
   feedback.digital_inputs = static_cast<std::uint32_t>(data_.raw(in_.inputs));
   feedback.latch_counts = probe_.latch_counts();
   feedback.latch_sequence = probe_.sequence();
