@@ -82,10 +82,34 @@ TEST(DriveSdo, a_toggle_that_does_not_alternate_is_aborted) {
   EXPECT_EQ(b.sdo({0x70, 0, 0, 0, 0, 0, 0, 0})[0], 0x80) << "the transfer is over";
 }
 
-TEST(DriveSdo, block_transfers_and_unknown_commands_are_refused_with_0504_0001) {
+TEST(DriveSdo, a_string_comes_in_a_block_to_a_client_that_asks_for_one) {
+  SimulatedDriveConfig config;
+  config.name = "Axis X drive";  // 12 characters
+  DriveBench b(config);
+  EXPECT_EQ(b.sdo({0xA4, 0x08, 0x10, 0x00, 127, 0, 0, 0}), (Bytes{0xC6, 0x08, 0x10, 0x00, 12, 0, 0, 0}));
+  EXPECT_EQ(b.sdo({0xA3, 0, 0, 0, 0, 0, 0, 0}), (Bytes{0x01, 'A', 'x', 'i', 's', ' ', 'X', ' '}));
+  b.run(2);
+  const auto second = b.take(0x585);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(Bytes(second->data.begin(), second->data.begin() + 8),
+            (Bytes{0x82, 'd', 'r', 'i', 'v', 'e', 0, 0}));
+  const Bytes end = b.sdo({0xA2, 2, 127, 0, 0, 0, 0, 0});
+  EXPECT_EQ(end[0], 0xC1 | 2 << 2) << "two bytes of the last segment are no data";
+  b.send(0x605, {0xA1, 0, 0, 0, 0, 0, 0, 0});
+  EXPECT_EQ(b.read(0x1000), 0x00020192u) << "and the server is free again";
+}
+
+TEST(DriveSdo, a_name_is_written_in_a_block) {
   DriveBench b;
-  EXPECT_EQ(b.sdo({0xA4, 0x08, 0x10, 0x00, 127, 0, 0, 0}), aborted(0x1008, 0, 0x05040001));
-  EXPECT_EQ(b.sdo({0xC6, 0x00, 0x21, 0x00, 9, 0, 0, 0}), aborted(0x2100, 0, 0x05040001));
+  EXPECT_EQ(b.sdo({0xC2, 0x00, 0x21, 0x00, 9, 0, 0, 0}), (Bytes{0xA4, 0x00, 0x21, 0x00, 127, 0, 0, 0}));
+  b.send(0x605, {0x01, 'T', 'u', 'r', 'n', 't', 'a', 'b'});
+  EXPECT_EQ(b.sdo({0x82, 'l', 'e', 0, 0, 0, 0, 0}), (Bytes{0xA2, 2, 127, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(b.sdo({0xD5, 0, 0, 0, 0, 0, 0, 0}), (Bytes{0xA1, 0, 0, 0, 0, 0, 0, 0})) << "without a checksum";
+  EXPECT_EQ(b.sdo(upload(0x2100, 0)), (Bytes{0x41, 0x00, 0x21, 0x00, 9, 0, 0, 0}));
+}
+
+TEST(DriveSdo, an_unknown_command_is_refused_with_0504_0001) {
+  DriveBench b;
   EXPECT_EQ(b.sdo({0xE0, 0x08, 0x10, 0x00, 0, 0, 0, 0}), aborted(0x1008, 0, 0x05040001));
 }
 
@@ -164,7 +188,7 @@ TEST(DriveSdo, stored_parameters_survive_a_reset_and_restoring_brings_the_defaul
   EXPECT_EQ(b.read(0x6085), 12345u) << "only the communication part was restored";
 }
 
-TEST(DriveSdo, random_requests_always_get_one_well_formed_answer_and_never_stop_the_server) {
+TEST(DriveSdo, random_requests_get_well_formed_answers_and_never_stop_the_server) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -180,17 +204,15 @@ TEST(DriveSdo, random_requests_always_get_one_well_formed_answer_and_never_stop_
       request[2] = static_cast<std::uint8_t>(index >> 8);
       request[3] = static_cast<std::uint8_t>(random() % 3);
     }
-    const int before = b.count(0x585);
     b.send(0x605, request);
     b.run(1);
-    const int answers = b.count(0x585) - before;
-    ASSERT_EQ(answers, (request[0] >> 5) == 4 ? 0 : 1);
-    const auto answer = b.take(0x585);
-    if (answer) {
-      ASSERT_EQ(answer->length, 8);
-    }
+    // One answer; within a block none, or as many segments as a millisecond takes.
+    ASSERT_LE(b.count(0x585), 3);
+    while (const auto answer = b.take(0x585)) ASSERT_EQ(answer->length, 8);
     b.seen.clear();
   }
+  b.send(0x605, {0x80, 0, 0, 0, 0, 0, 0, 0});
+  b.run(1);
   EXPECT_EQ(b.read(0x1000), 0x00020192u);
 }
 
