@@ -56,7 +56,11 @@ void add_identity(Plan& plan, const DriveProfile& profile) {
 }
 
 void add_guarding(Plan& plan, const DriveProfile& profile, const SegmentConfig& segment) {
-  if (profile.has_heartbeat_consumer) {
+  if (profile.guard_time_ms > 0) {
+    plan.step(BootStep::node_guarding);
+    plan.write_and_check(object::kGuardTime, 0, 2, profile.guard_time_ms);
+    plan.write_and_check(object::kLifeTimeFactor, 0, 1, profile.life_time_factor);
+  } else if (profile.has_heartbeat_consumer) {
     plan.step(BootStep::heartbeat_consumer);
     const auto time = static_cast<std::uint32_t>(segment.heartbeat_timeout_ms) & 0xFFFF;
     plan.write_and_check(object::kConsumerHeartbeatTime, 1, 4,
@@ -73,6 +77,14 @@ void add_sync(Plan& plan, const DriveProfile& profile, const SegmentConfig& segm
   plan.step(BootStep::sync);
   plan.write(object::kCobIdSync, 0, 4, cob::kSync, true);
   plan.check(object::kCobIdSync, 0, 4, cob::kSync, 0x1FFF'FFFF, true);
+  // 1019h may change only while 1006h is 0 (CiA 301, 7.5.2.22).
+  if (segment.sync_counter_overflow > 0) {
+    if (profile.has_cycle_period) plan.write(object::kCommunicationCyclePeriod, 0, 4, 0);
+    plan.write_and_check(object::kSyncCounterOverflow, 0, 1, segment.sync_counter_overflow);
+  }
+  if (segment.sync_window_us > 0)
+    plan.write_and_check(object::kSynchronousWindowLength, 0, 4,
+                         static_cast<std::uint32_t>(segment.sync_window_us));
   if (profile.has_cycle_period)
     plan.write_and_check(object::kCommunicationCyclePeriod, 0, 4,
                          static_cast<std::uint32_t>(segment.cycle_ns / image::kMicrosecond));
@@ -183,8 +195,11 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
   add_pdos(plan, node);
   add_mode(plan, node, segment);
   plan.step(BootStep::heartbeat_producer);
-  plan.write_and_check(object::kProducerHeartbeatTime, 0, 2,
-                       static_cast<std::uint16_t>(heartbeat_ms(node, segment)));
+  if (node.profile.guard_time_ms > 0)  // a heartbeat producer would not answer guarding
+    plan.write(object::kProducerHeartbeatTime, 0, 2, 0, true);
+  else
+    plan.write_and_check(object::kProducerHeartbeatTime, 0, 2,
+                         static_cast<std::uint16_t>(heartbeat_ms(node, segment)));
   plan.step(BootStep::start);
   plan.nmt(Kind::start);
   return actions;

@@ -12,6 +12,7 @@ constexpr text::Entry kSteps[] = {
     {"boot-identity", "identity", "идентификация"},
     {"boot-modes", "supported drive modes", "поддерживаемые режимы привода"},
     {"boot-settings", "settings of the device file", "настройки из файла устройства"},
+    {"boot-node-guarding", "node guarding", "опрос узла (node guarding)"},
     {"boot-heartbeat-consumer", "supervision of the control's heartbeat", "контроль heartbeat управления"},
     {"boot-abort-connection", "reaction to a lost connection", "реакция на потерю связи"},
     {"boot-sync", "SYNC", "SYNC"},

@@ -15,6 +15,7 @@ enum class BootStep : std::uint8_t {
   identity,            ///< 1018h:01-04
   supported_modes,     ///< 6502h
   settings,            ///< the device file's own values
+  node_guarding,       ///< 100Ch, 100Dh, for a node without heartbeat
   heartbeat_consumer,  ///< 1016h:01, our heartbeat
   abort_connection,    ///< 6007h
   sync,                ///< 1005h, 1006h

@@ -84,6 +84,10 @@ struct DriveProfile {
 
   // If the computer dies. A drive with neither is named by the machine file's check.
   bool has_heartbeat_consumer = true;  ///< 1016h
+  /// Period of node guarding in ms (100Ch) for a drive that has no heartbeat; 0: it has one. The drive
+  /// watches the control by life guarding then: guard time times life time factor (100Dh).
+  std::uint16_t guard_time_ms = 0;
+  std::uint8_t life_time_factor = 3;
   std::optional<std::int16_t> abort_connection_option =
       1;  ///< 6007h: 1 fault, 2 disable voltage, 3 quick stop
 

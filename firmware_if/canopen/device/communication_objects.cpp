@@ -31,6 +31,7 @@ constexpr ObjectSpec kGeneral[] = {
     {0x1011, 1, unsigned32, rw, Mappable::no, 1},
     {0x1011, 2, unsigned32, rw, Mappable::no, 1},
     {0x1011, 3, unsigned32, rw, Mappable::no, 1},
+    {0x1012, 0, unsigned32, rw, Mappable::no, cob::kInvalid | cob::kTime},  // bit 31: TIME is consumed
     {0x1015, 0, unsigned16, rw},
     {0x1016, 0, unsigned8, constant, Mappable::no, NodeMonitor::kConsumers},
     {0x1017, 0, unsigned16, rw},

@@ -8,9 +8,6 @@
 
 namespace servogate::canopen {
 
-/// Guarding objects, which have no name in the shared vocabulary.
-inline constexpr std::uint16_t kGuardTimeObject = 0x100C, kLifeTimeFactorObject = 0x100D;
-
 /// What a device says of itself in 1000h and 1018h.
 struct DeviceIdentity {
   std::uint32_t device_type = 0;

@@ -6,8 +6,6 @@
 namespace servogate::canopen {
 namespace {
 
-constexpr std::uint16_t kGuardTime = 0x100C, kLifeTimeFactor = 0x100D;
-
 constexpr NodeId node_of(std::int64_t entry) noexcept { return static_cast<NodeId>(entry >> 16 & 0xFF); }
 constexpr image::Nanoseconds time_of(std::int64_t entry) noexcept {
   return (entry & 0xFFFF) * image::kMillisecond;
@@ -21,8 +19,8 @@ constexpr bool active(std::int64_t entry) noexcept {
 NodeMonitor::NodeMonitor(ObjectDictionary& dictionary, NodeId node)
     : node_(node),
       producer_ms_(dictionary.variable(object::kProducerHeartbeatTime)),
-      guard_ms_(dictionary.variable(kGuardTime)),
-      life_factor_(dictionary.variable(kLifeTimeFactor)) {
+      guard_ms_(dictionary.variable(object::kGuardTime)),
+      life_factor_(dictionary.variable(object::kLifeTimeFactor)) {
   for (int i = 0; i < kConsumers; ++i)
     entries_[static_cast<std::size_t>(i)] =
         &dictionary.variable(object::kConsumerHeartbeatTime, static_cast<std::uint8_t>(i + 1));

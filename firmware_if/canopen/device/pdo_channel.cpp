@@ -16,6 +16,7 @@ std::uint16_t nth(std::uint16_t base, int number) noexcept {
   return static_cast<std::uint16_t>(base + number);
 }
 
+constexpr std::uint8_t kRemoteSynchronous = 252;
 constexpr std::uint32_t kExtended = 0x2000'0000u;
 constexpr std::uint32_t kAllButValid = 0x3FFF'FFFFu;
 
@@ -23,6 +24,12 @@ constexpr std::uint32_t kAllButValid = 0x3FFF'FFFFu;
 constexpr bool restricted(std::uint32_t id) noexcept {
   return id <= 0x07F || (id >= 0x101 && id <= 0x180) || (id >= 0x581 && id <= 0x5FF) ||
          (id >= 0x601 && id <= 0x67F) || id >= 0x6E0;
+}
+
+// 241-251 are reserved, and so are for an RPDO the two types that only a remote request can make. Source: CiA
+// 301, tables "Description of RPDO/TPDO transmission types".
+constexpr bool reserved_type(std::uint32_t type, bool transmit) noexcept {
+  return type > 240 && type < (transmit ? kRemoteSynchronous : 254u);
 }
 
 AbortCode check_communication(const ObjectDictionary& od, std::uint16_t index, std::uint8_t subindex,
@@ -37,7 +44,8 @@ AbortCode check_communication(const ObjectDictionary& od, std::uint16_t index, s
       return becomes_valid && restricted(value & 0x7FF) ? AbortCode::value_invalid : AbortCode::none;
     }
     case 2:
-      return value > 240 && value < 254 ? AbortCode::value_invalid : AbortCode::none;
+      return reserved_type(value, index >= object::kTpdoParameter) ? AbortCode::value_invalid
+                                                                   : AbortCode::none;
     case 3:
     case 6:
       return valid ? AbortCode::value_invalid : AbortCode::none;
@@ -165,7 +173,7 @@ void TransmitPdo::configure(const ObjectDictionary& dictionary, int number, imag
 void TransmitPdo::start(image::Nanoseconds now) noexcept {
   syncs_ = 0;
   waiting_for_start_ = sync_start_ != 0;
-  sent_once_ = false;
+  sent_once_ = stored_once_ = false;
   last_sent_ = now;
 }
 
@@ -178,7 +186,12 @@ std::uint64_t TransmitPdo::sample(const ObjectDictionary& dictionary) const noex
 }
 
 bool TransmitPdo::due_at_sync(const ObjectDictionary& dictionary, std::uint8_t counter) noexcept {
-  if (!valid_ || type_ > 240) return false;
+  if (!valid_) return false;
+  if (type_ == kRemoteSynchronous) {
+    stored_ = sample(dictionary);
+    stored_once_ = true;
+  }
+  if (type_ > 240) return false;
   if (type_ == 0) return !sent_once_ || sample(dictionary) != last_content_;
   if (waiting_for_start_ && counter != 0) {
     // The SYNC whose counter is the start value counts as the first one. Source: CiA 301, 7.5.2.37,
@@ -205,7 +218,7 @@ void TransmitPdo::send(const ObjectDictionary& dictionary, image::CanBus& bus,
   image::CanFrame frame;
   frame.id = id_;
   frame.length = objects_.bytes();
-  last_content_ = sample(dictionary);
+  last_content_ = type_ == kRemoteSynchronous ? stored_ : sample(dictionary);
   store_le(last_content_, std::span(frame.data).first(8));
   last_sent_ = now;
   sent_once_ = true;

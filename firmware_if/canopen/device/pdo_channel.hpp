@@ -90,28 +90,29 @@ class TransmitPdo {
   void configure(const ObjectDictionary& dictionary, int number, image::Nanoseconds now) noexcept;
   bool valid() const noexcept { return valid_; }
   std::uint32_t id() const noexcept { return id_; }
-  bool remote_allowed() const noexcept { return remote_allowed_; }
+  /// A remote request is answered: bit 30 of the COB-ID allows it, and type 252 has something to send.
+  bool remote_allowed() const noexcept { return remote_allowed_ && (type_ != 252 || stored_once_); }
   bool event_driven() const noexcept { return valid_ && type_ >= 254; }
 
   /// Entering Operational: counters begin anew and an event-driven PDO is due.
   void start(image::Nanoseconds now) noexcept;
-  /// SYNC with its counter (0: none). True: to be sent now.
+  /// SYNC with its counter (0: none). True: to be sent now. Type 252 stores what a remote request will get.
   bool due_at_sync(const ObjectDictionary& dictionary, std::uint8_t counter) noexcept;
   /// Every millisecond. True: an event or the event timer makes it due and the inhibit time is over.
   bool due_by_event(const ObjectDictionary& dictionary, image::Nanoseconds now) noexcept;
-  /// Samples and sends.
+  /// Samples and sends; of type 252 what the last SYNC has stored.
   void send(const ObjectDictionary& dictionary, image::CanBus& bus, image::Nanoseconds now) noexcept;
 
  private:
   std::uint64_t sample(const ObjectDictionary& dictionary) const noexcept;
 
   MappedObjects objects_;
-  bool valid_ = false, remote_allowed_ = false, sent_once_ = false;
+  bool valid_ = false, remote_allowed_ = false, sent_once_ = false, stored_once_ = false;
   std::uint32_t id_ = 0;
   std::uint8_t type_ = 255, sync_start_ = 0, syncs_ = 0;
   bool waiting_for_start_ = false;
   image::Nanoseconds inhibit_ = 0, event_timer_ = 0, last_sent_ = 0;
-  std::uint64_t last_content_ = 0;
+  std::uint64_t last_content_ = 0, stored_ = 0;
 };
 
 }  // namespace servogate::canopen

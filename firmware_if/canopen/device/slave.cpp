@@ -10,7 +10,7 @@ namespace servogate::canopen {
 namespace {
 
 constexpr std::uint16_t kHeartbeatLost = 0x8130, kBusOff = 0x8140, kPdoTooShort = 0x8210,
-                        kRpdoTimeout = 0x8250;
+                        kSyncLength = 0x8240, kRpdoTimeout = 0x8250;
 constexpr int kSegmentsPerTick = 2;
 constexpr ObjectDictionary::Range kCommunication{0x1000, 0x1FFF}, kApplication{0x2000, 0xFFFF};
 
@@ -23,7 +23,10 @@ Slave::Slave(NodeId node, ObjectDictionary& dictionary, DeviceProfile& profile)
       sdo_(*this),
       emcy_(dictionary),
       monitor_(dictionary, node),
-      cob_id_sync_(dictionary.variable(object::kCobIdSync)) {
+      cob_id_sync_(dictionary.variable(object::kCobIdSync)),
+      cob_id_time_(dictionary.variable(object::kCobIdTime)),
+      sync_overflow_(dictionary.variable(object::kSyncCounterOverflow)),
+      sync_window_(dictionary.variable(object::kSynchronousWindowLength)) {
   configure_pdos();
 }
 
@@ -41,7 +44,7 @@ bool Slave::concerned(const image::CanFrame& frame) const noexcept {
   if (frame.extended || frame.error || booting_) return false;
   const std::uint32_t id = frame.id;
   if (id == cob::kNmt || id == sync_id() || id == cob::sdo_request(node_)) return true;
-  if ((id & 0x780) == 0x700) return true;
+  if ((id & 0x780) == 0x700 || (consumes_time() && id == time_id())) return true;
   for (const ReceivePdo& p : receive_)
     if (p.valid() && p.id() == id) return true;
   if (!frame.remote) return false;
@@ -67,7 +70,16 @@ void Slave::on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexc
   if ((frame.id & 0x780) == 0x700) return monitor_.on_frame(frame, state_, now);
   if (frame.id == cob::sdo_request(node_)) return on_sdo(frame);
   if (frame.remote) return answer_remote(frame);
+  if (consumes_time() && frame.id == time_id()) return on_time(frame);
   on_pdo_frame(frame);
+}
+
+void Slave::on_time(const image::CanFrame& frame) noexcept {
+  const auto time = parse_time(frame);
+  if (!time) return;
+  time_ = *time;
+  time_at_ = now_;
+  time_known_ = true;
 }
 
 void Slave::on_sdo(const image::CanFrame& frame) noexcept {
@@ -92,6 +104,8 @@ void Slave::on_pdo_frame(const image::CanFrame& frame) noexcept {
   if (state_ != NmtState::operational) return;
   for (ReceivePdo& p : receive_) {
     if (!p.valid() || p.id() != frame.id) continue;
+    // After the synchronous window 1007h it is too late for this cycle, and the next has its own.
+    if (p.synchronous() && window_closed()) continue;
     switch (p.accept(frame, now_)) {
       case ReceivePdo::Result::too_short:
         emcy_.raise(kPdoTooShort, error_register::kCommunication, frame.length);
@@ -119,6 +133,11 @@ void Slave::answer_remote(const image::CanFrame& frame) noexcept {
 }
 
 void Slave::on_sync(const image::CanFrame& frame) noexcept {
+  // With a counter the message has one byte, without one none. Source: CiA 301, 7.2.5.
+  if (frame.length != (sync_overflow_ ? 1 : 0))
+    return emcy_.raise(kSyncLength, error_register::kCommunication);
+  emcy_.clear(kSyncLength);
+  window_end_ = now_ + sync_window_ * image::kMicrosecond;
   if (state_ == NmtState::operational) {
     const std::uint8_t counter = frame.length == 1 ? frame.data[0] : 0;
     // Actual values are latched before the new set-points act, so that both belong to this SYNC.

@@ -2,8 +2,10 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "firmware_if/canopen/301/nmt.hpp"
+#include "firmware_if/canopen/301/time_of_day.hpp"
 #include "firmware_if/canopen/device/emcy_producer.hpp"
 #include "firmware_if/canopen/device/node_monitor.hpp"
 #include "firmware_if/canopen/device/object_dictionary.hpp"
@@ -46,6 +48,12 @@ class Slave final : private SdoObjects, private PdoSink {
   /// Everything below is real-time safe.
   NmtState state() const noexcept { return state_; }
   EmcyProducer& emcy() noexcept { return emcy_; }
+  /// Time of day as the TIME producer said it, gone on since; nullopt before its first message. Source: CiA
+  /// 301, 7.2.6.
+  std::optional<TimeOfDay> time_of_day(image::Nanoseconds now) const noexcept {
+    if (!time_known_) return std::nullopt;
+    return time_.after(now - time_at_);
+  }
 
   /// Power-on: the boot-up message comes after boot_time.
   void power_on(image::CanBus& bus, image::Nanoseconds now, image::Nanoseconds boot_time) noexcept;
@@ -84,6 +92,10 @@ class Slave final : private SdoObjects, private PdoSink {
   void watch_connection() noexcept;
   void connection_lost(std::uint16_t error_code) noexcept;
   std::uint32_t sync_id() const noexcept { return static_cast<std::uint32_t>(cob_id_sync_) & 0x7FF; }
+  bool consumes_time() const noexcept { return static_cast<std::uint32_t>(cob_id_time_) & cob::kInvalid; }
+  std::uint32_t time_id() const noexcept { return static_cast<std::uint32_t>(cob_id_time_) & 0x7FF; }
+  void on_time(const image::CanFrame& frame) noexcept;
+  bool window_closed() const noexcept { return sync_window_ > 0 && now_ > window_end_; }
   bool alive() const noexcept {
     return state_ == NmtState::operational || state_ == NmtState::pre_operational;
   }
@@ -97,7 +109,12 @@ class Slave final : private SdoObjects, private PdoSink {
   std::array<ReceivePdo, kPdos> receive_;
   std::array<TransmitPdo, kPdos> transmit_;
   bool any_event_driven_ = false;
-  std::int64_t& cob_id_sync_;
+  std::int64_t &cob_id_sync_, &cob_id_time_;
+  std::int64_t &sync_overflow_, &sync_window_;  ///< 1019h; 1007h in us
+  image::Nanoseconds window_end_ = 0;
+  TimeOfDay time_;
+  image::Nanoseconds time_at_ = 0;
+  bool time_known_ = false;
   image::CanBus* bus_ = nullptr;
   NmtState state_ = NmtState::boot_up;
   image::Nanoseconds now_ = 0;

@@ -75,6 +75,8 @@ AbortCode Slave::check_communication_write(std::uint16_t index, std::uint8_t sub
       return value == 0 ? AbortCode::none : AbortCode::value_invalid;
     case object::kCobIdSync:  // a consumer only, 11-bit identifiers
       return word & ~0x8000'07FFu ? AbortCode::value_invalid : AbortCode::none;
+    case object::kCobIdTime:  // a consumer only, 11-bit identifiers
+      return word & ~0x8000'07FFu ? AbortCode::value_invalid : AbortCode::none;
     case object::kCobIdEmcy: {
       const auto old = static_cast<std::uint32_t>(dictionary_.get(index));
       const bool stays_valid = !(old & cob::kInvalid) && !(word & cob::kInvalid);

@@ -66,6 +66,7 @@ SegmentConfig checked(SegmentConfig config) {
   require(config.index >= 0 && config.index < image::kMaxSegments, "segment index out of range");
   require(config.cycle_ns > 0, "cycle time is not positive");
   require(config.heartbeat_ms > 0 && config.heartbeat_timeout_ms > config.heartbeat_ms, "heartbeat times");
+  require(config.sync_counter_overflow != 1 && config.sync_counter_overflow <= 240, "SYNC counter");
   require(config.own_node >= 1 && config.own_node <= kMaxNode, "own node-ID outside 1-127");
   std::bitset<128> used;
   used.set(config.own_node);
@@ -147,6 +148,8 @@ struct Segment::Impl {
   void on_foreign(const CobId& cob, const image::CanFrame& frame, const ProcessImage& image) noexcept;
   void watch_bus(const ProcessImage& image) noexcept;
   void drain(ProcessImage& image) noexcept;
+  image::CanFrame next_sync() noexcept;
+  void send_time(const ProcessImage& image) noexcept;
   void send_heartbeat(const ProcessImage& image) noexcept;
   void send_acyclic(const ProcessImage& image) noexcept;
   void fill_status(image::SegmentStatus& status) const noexcept;
@@ -187,7 +190,8 @@ struct Segment::Impl {
   std::array<std::int8_t, 128> index_of{};
   BusEventRing ring;
   image::CanState bus_state = image::CanState::error_active;
-  image::Nanoseconds heartbeat_due_ns = 0;
+  image::Nanoseconds heartbeat_due_ns = 0, time_due_ns = 0;
+  std::uint8_t sync_counter = 0;
   bool started = false;
   std::size_t next_acyclic = 0;
   SdoBudget sdo;
@@ -288,6 +292,19 @@ void Segment::Impl::send_heartbeat(const ProcessImage& image) noexcept {
   if (heartbeat_due_ns <= image.now.t_ns) heartbeat_due_ns = image.now.t_ns + period;
 }
 
+// Source: CiA 301, 7.2.5: the counter begins with 1 and goes to the overflow value.
+image::CanFrame Segment::Impl::next_sync() noexcept {
+  if (config.sync_counter_overflow == 0) return make_frame(cob::kSync, {});
+  sync_counter = static_cast<std::uint8_t>(sync_counter % config.sync_counter_overflow + 1);
+  return make_frame(cob::kSync, {&sync_counter, 1});
+}
+
+void Segment::Impl::send_time(const ProcessImage& image) noexcept {
+  if (config.time_ms <= 0 || image.now.t_ns < time_due_ns) return;
+  if (!send_own(image, time_frame(config.time_at_start.after(image.now.t_ns)))) return;
+  time_due_ns = image.now.t_ns + config.time_ms * image::kMillisecond;
+}
+
 void Segment::Impl::send_acyclic(const ProcessImage& image) noexcept {
   int budget = config.sdo_frames_per_cycle;
   sdo.refill(nodes);
@@ -321,7 +338,7 @@ void Segment::receive(ProcessImage& image) noexcept {
   if (my.started) my.bus.meter.close_cycle(image.now.period_ns, my.bus.bit_rate());
   if (!my.started) my.heartbeat_due_ns = image.now.t_ns;
   my.started = true;
-  my.send_own(image, make_frame(cob::kSync, {}));
+  my.send_own(image, my.next_sync());
   my.watch_bus(image);
   my.drain(image);
   my.fill_status(image.segments[static_cast<std::size_t>(my.config.index)]);
@@ -337,6 +354,7 @@ void Segment::send(ProcessImage& image) noexcept {
       my.say_frame(BusEventKind::send_failed, image, dropped, node.id());
   }
   my.send_heartbeat(image);
+  my.send_time(image);
   my.send_acyclic(image);
 }
 

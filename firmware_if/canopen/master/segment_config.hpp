@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware_if/canopen/301/cob_id.hpp"
+#include "firmware_if/canopen/301/time_of_day.hpp"
 #include "firmware_if/canopen/402/drive_profile.hpp"
 #include "firmware_if/image/time.hpp"
 
@@ -35,6 +35,11 @@ struct SegmentConfig {
   std::int32_t heartbeat_ms = 100;          ///< producer time of every node and of the control
   std::int32_t heartbeat_timeout_ms = 300;  ///< consumer time on both sides
   std::int32_t max_missed_pdo = 3;          ///< cycles without TPDO1 after which a node is offline
+  /// SYNC counter runs from 1 to this and begins anew (1019h); 0: SYNC has no counter. 2-240.
+  std::uint8_t sync_counter_overflow = 0;
+  std::int32_t sync_window_us = 0;  ///< 1007h of every node: later synchronous PDOs are dropped; 0: no window
+  std::int32_t time_ms = 0;         ///< period of the TIME message; 0: none is sent
+  TimeOfDay time_at_start;          ///< time of day at t = 0 of the machine's clock
   std::int32_t sdo_timeout_ms = 200;
   std::int32_t sdo_retries = 2;         ///< repetitions of a transfer after a time-out
   std::int32_t boot_timeout_ms = 2000;  ///< wait for the boot-up message and for Operational
@@ -52,6 +57,7 @@ constexpr std::int32_t heartbeat_ms(const NodeConfig& node, const SegmentConfig&
 }
 /// Silence after which a node is lost, ms. real-time safe.
 constexpr std::int32_t heartbeat_timeout_ms(const NodeConfig& node, const SegmentConfig& segment) noexcept {
+  if (node.profile.guard_time_ms > 0) return node.profile.guard_time_ms * node.profile.life_time_factor;
   return node.heartbeat_ms > 0 ? 3 * node.heartbeat_ms : segment.heartbeat_timeout_ms;
 }
 /// Cycles without TPDO1 after which a node is offline. real-time safe.

@@ -312,5 +312,53 @@ TEST(SimulatedDrives, two_runs_are_equal_to_the_bit) {
   EXPECT_EQ(trace(), trace());
 }
 
+TEST(SimulatedDrives, a_drive_without_heartbeat_is_guarded_and_its_loss_is_seen) {
+  Machine machine(1, [](DriveProfile& profile) {
+    use_short_position_map(profile);
+    profile.guard_time_ms = 20;
+    profile.life_time_factor = 3;
+  });
+  ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; }));
+  EXPECT_EQ(machine.drives[0]->object(0x1017), 0);
+  EXPECT_EQ(machine.drives[0]->object(0x100C), 20);
+  EXPECT_EQ(machine.drives[0]->object(0x100D), 3);
+  machine.run(2000);
+  EXPECT_TRUE(machine.image->axes[0].drive.online);
+  EXPECT_EQ(machine.drives[0]->object(0x1001), 0) << "and the drive sees its master";
+  machine.drives[0]->inject({.kind = DriveFaultKind::heartbeat_lost});
+  EXPECT_TRUE(machine.run_until([&] { return !machine.image->axes[0].drive.online; }, 62 + 20))
+      << "after guard time times life time factor";
+  machine.drives[0]->clear_faults();
+  EXPECT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; }));
+}
+
+TEST(SimulatedDrives, run_with_a_sync_counter_and_a_synchronous_window) {
+  Machine machine(2);
+  machine.config.sync_counter_overflow = 10;
+  machine.config.sync_window_us = 900;
+  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
+  ASSERT_TRUE(machine.enable());
+  EXPECT_EQ(machine.drives[0]->object(0x1019), 10);
+  EXPECT_EQ(machine.drives[1]->object(0x1007), 900);
+  machine.run(500);
+  EXPECT_TRUE(machine.all(DriveState::operation_enabled));
+}
+
+TEST(SimulatedDrives, hear_the_time_of_day) {
+  Machine machine(1);
+  machine.config.time_ms = 100;
+  machine.config.time_at_start = {3'600'000, 15'000};
+  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
+  image::CanBus& listener = machine.wire.add_endpoint("listener");
+  machine.run(1050);
+  std::vector<TimeOfDay> heard;
+  image::CanFrame frame;
+  while (listener.receive(frame))
+    if (frame.id == cob::kTime) heard.push_back(*parse_time(frame));
+  ASSERT_GE(heard.size(), 2u);
+  EXPECT_EQ(heard[0], (TimeOfDay{3'600'000, 15'000}));
+  EXPECT_EQ(heard[1], (TimeOfDay{3'600'100, 15'000}));
+}
+
 }  // namespace
 }  // namespace servogate::canopen

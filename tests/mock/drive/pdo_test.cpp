@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+
 #include "tests/mock/drive/drive_bench.hpp"
 
 namespace servogate::mock {
@@ -62,11 +65,9 @@ TEST_F(DrivePdo, the_identifier_changes_only_while_invalid_and_never_to_a_restri
 }
 
 TEST_F(DrivePdo, reserved_transmission_types_are_refused) {
-  for (const int type : {241, 251, 252, 253}) {
-    EXPECT_EQ(b.write(0x1400, 2, type, 1), 0x06090030u) << type;
-    EXPECT_EQ(b.write(0x1800, 2, type, 1), 0x06090030u) << type;
-  }
-  for (const int type : {0, 1, 240, 254, 255}) EXPECT_EQ(b.write(0x1800, 2, type, 1), 0u) << type;
+  for (const int type : {241, 251, 252, 253}) EXPECT_EQ(b.write(0x1400, 2, type, 1), 0x06090030u) << type;
+  for (const int type : {241, 251}) EXPECT_EQ(b.write(0x1800, 2, type, 1), 0x06090030u) << type;
+  for (const int type : {0, 1, 240, 252, 253, 254, 255}) EXPECT_EQ(b.write(0x1800, 2, type, 1), 0u) << type;
 }
 
 TEST_F(DrivePdo, the_inhibit_time_changes_only_while_the_pdo_is_invalid) {
@@ -241,6 +242,108 @@ TEST_F(DrivePdo, a_remote_request_is_answered_only_where_bit_30_allows_it) {
   b.master.send(request);
   b.run(2);
   EXPECT_EQ(b.count(0x185), 1);
+}
+
+/// TPDO1 on remote request: 6041h and 6064h by transmission type 252 or 253.
+struct DriveRemotePdo : testing::Test {
+  DriveBench b;
+  void start(int type) {
+    b.write(0x1800, 1, 0xC0000185, 4);
+    b.write(0x1A00, 0, 0, 1);
+    b.write(0x1A00, 1, 0x60FD0020, 4);
+    b.write(0x1A00, 0, 1, 1);
+    b.write(0x1800, 2, type, 1);
+    b.write(0x1800, 1, 0x00000185, 4);
+    b.nmt(0x01);
+    b.seen.clear();
+  }
+  std::optional<CanFrame> ask() {
+    CanFrame request;
+    request.id = 0x185;
+    request.remote = true;
+    b.master.send(request);
+    b.run(2);
+    return b.take(0x185);
+  }
+};
+
+TEST_F(DriveRemotePdo, type_253_answers_with_the_values_of_now_and_with_nothing_else) {
+  start(253);
+  b.drive.set_general_inputs(0x0001);
+  b.send(0x080, {});
+  b.run(5);
+  EXPECT_EQ(b.count(0x185), 0) << "neither SYNC nor a change sends it";
+  const auto answer = ask();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->data[2], 0x01);
+}
+
+TEST_F(DriveRemotePdo, type_252_answers_with_what_the_last_sync_found) {
+  start(252);
+  EXPECT_FALSE(ask()) << "there was no SYNC yet";
+  b.drive.set_general_inputs(0x0001);
+  b.run(2);
+  b.send(0x080, {});
+  b.run(2);
+  b.drive.set_general_inputs(0x0002);
+  b.run(2);
+  const auto answer = ask();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->data[2], 0x01);
+  EXPECT_EQ(b.count(0x185), 0);
+}
+
+TEST(DriveSync, a_message_of_the_wrong_length_is_told_by_emcy_8240_and_not_used) {
+  DriveBench b;
+  b.start_cyclic_position();
+  b.seen.clear();
+  b.send(0x080, {1});
+  b.run(2);
+  EXPECT_EQ(b.count(0x185), 0);
+  const auto emcy = b.take(0x085);
+  ASSERT_TRUE(emcy);
+  EXPECT_EQ(emcy->data[0] | emcy->data[1] << 8, 0x8240);
+  b.send(0x080, {});
+  b.run(2);
+  EXPECT_EQ(b.count(0x185), 1);
+}
+
+TEST(DriveSync, with_a_counter_the_message_has_one_byte_and_1800_06_names_the_first_one) {
+  DriveBench b;
+  b.start_cyclic_position();
+  b.nmt(0x80);
+  ASSERT_EQ(b.write(0x1019, 0, 4, 1), 0u);
+  b.write(0x1800, 1, 0xC0000185, 4);
+  b.write(0x1800, 2, 4, 1);
+  ASSERT_EQ(b.write(0x1800, 6, 2, 1), 0u);
+  b.write(0x1800, 1, 0x40000185, 4);
+  b.nmt(0x01);
+  b.seen.clear();
+  std::string sent;
+  for (int i = 0; i < 12; ++i) {
+    b.send(0x080, {static_cast<std::uint8_t>(i % 4 + 1)});
+    b.run(2);
+    sent += b.take(0x185) ? '1' : '0';
+  }
+  EXPECT_EQ(sent, "010001000100");
+}
+
+TEST(DriveSync, an_rpdo_after_the_synchronous_window_is_dropped) {
+  DriveBench b;
+  b.start_cyclic_position();
+  ASSERT_EQ(b.write(0x1007, 0, 3000, 4), 0u);
+  b.send(0x080, {});
+  b.run(1);
+  b.send(0x205, {0x06, 0, 0x10, 0, 0, 0});
+  b.run(5);
+  b.send(0x080, {});
+  b.run(5);
+  EXPECT_EQ(b.read(0x607A), 0x10u) << "it came within the window";
+  b.send(0x205, {0x06, 0, 0x20, 0, 0, 0});
+  b.run(1);
+  b.send(0x080, {});
+  b.run(2);
+  EXPECT_EQ(b.read(0x607A), 0x10u) << "this one came 5 ms after SYNC";
 }
 
 }  // namespace

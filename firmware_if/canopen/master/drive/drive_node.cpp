@@ -40,6 +40,9 @@ DriveNode::DriveNode(const NodeConfig& config, const SegmentConfig& segment)
            static_cast<std::uint32_t>(std::max(0, segment.sdo_retries))),
       boot_(config.node, boot_plan(config, segment), segment.boot_timeout_ms * image::kMillisecond),
       link_(config, segment.cycle_ns) {
+  const DriveProfile& profile = config_.profile;
+  if (profile.guard_time_ms > 0)
+    guard_.emplace(config_.node, profile.guard_time_ms * image::kMillisecond, profile.life_time_factor);
   start_boot();
 }
 
@@ -113,6 +116,7 @@ void DriveNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& co
   const auto state = parse_heartbeat(frame);
   if (!state) return;
   if (*state == NmtState::boot_up) return on_boot_up(context);
+  if (guard_ && guard_->on_answer(frame, context.now) == NodeGuard::Verdict::wrong_toggle) return;
   heartbeat_deadline_ns_ = context.now + heartbeat_timeout_ns_;
   if (phase_ == Phase::booting) {
     boot_.on_heartbeat(*state);
@@ -131,6 +135,7 @@ void DriveNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& co
 }
 
 void DriveNode::on_boot_up(const NodeContext& context) noexcept {
+  if (guard_) guard_->start(context.now);
   if (phase_ == Phase::booting && boot_.report().step == BootStep::reset) return boot_.on_boot_up();
   if (phase_ == Phase::running) {
     context.events.push(event(BusEventKind::node_restarted, context));
@@ -242,7 +247,15 @@ int DriveNode::send_process_data(const image::DriveCommand& command, const NodeC
   return lost;
 }
 
+// A guarded node says nothing by itself: its state Operational and its return after a loss are asked for.
+bool DriveNode::send_guarding(const NodeContext& context) noexcept {
+  const bool starting = phase_ == Phase::booting && boot_.report().step == BootStep::start;
+  if (!guard_ || !(starting || phase_ == Phase::running || phase_ == Phase::lost)) return false;
+  return guard_->poll(context.now, context.bus);
+}
+
 bool DriveNode::send_acyclic(const NodeContext& context) noexcept {
+  if (send_guarding(context)) return true;
   if (phase_ == Phase::booting) return boot_.poll(context.now, sdo_, context.bus);
   if (phase_ == Phase::running && !sdo_.busy()) {
     if (link_.access_running()) finish_access(context);

@@ -2,9 +2,11 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/301/emcy_history.hpp"
+#include "firmware_if/canopen/301/node_guard.hpp"
 #include "firmware_if/canopen/301/sdo_client.hpp"
 #include "firmware_if/canopen/302/node_boot.hpp"
 #include "firmware_if/canopen/master/bus_event.hpp"
@@ -62,6 +64,7 @@ class DriveNode {
   void follow_boot(const NodeContext& context) noexcept;
   void start_operation(const NodeContext& context) noexcept;
   void go_offline() noexcept;
+  bool send_guarding(const NodeContext& context) noexcept;
   void supervise(bool status_fresh, const NodeContext& context) noexcept;
   void report_link(const NodeContext& context) noexcept;
   void finish_access(const NodeContext& context) noexcept;
@@ -71,6 +74,7 @@ class DriveNode {
   image::Nanoseconds heartbeat_timeout_ns_, boot_pause_ns_;
   std::int64_t status_every_, missed_limit_, first_limit_;
   std::int32_t boot_attempts_;
+  std::optional<NodeGuard> guard_;  ///< of a node without heartbeat
 
   SdoClient sdo_;
   NodeBoot boot_;
