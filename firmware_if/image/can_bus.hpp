@@ -16,8 +16,18 @@ struct CanFrame {
   bool error = false;  ///< an error frame of the interface, not data
   std::uint8_t length = 0;
   std::array<std::uint8_t, 64> data{};
-  Nanoseconds timestamp_ns = 0;  ///< end of frame on the wire, as the transport knows it
+  /// End of frame on the wire as the transport knows it: simulated time on a mock bus, CLOCK_MONOTONIC on a
+  /// transport of the computer (a time stamp of another clock is converted when the frame is read).
+  Nanoseconds timestamp_ns = 0;
 };
+
+/// The bits by which frames compete, in their order on the wire: base identifier, RTR or SRR, IDE, identifier
+/// extension, RTR. The smaller number wins. Source: ISO 11898-1, 10.4.2. real-time safe.
+constexpr std::uint32_t arbitration_key(const CanFrame& f) noexcept {
+  const std::uint32_t rtr = f.remote ? 1 : 0;
+  if (!f.extended) return (f.id & 0x7FF) << 21 | rtr << 20;
+  return (f.id >> 18 & 0x7FF) << 21 | 3u << 19 | (f.id & 0x3FFFF) << 1 | rtr;
+}
 
 /// Health of a bus as its transport sees it.
 enum class CanState : std::uint8_t { error_active, error_warning, error_passive, bus_off, down };
@@ -33,6 +43,9 @@ class CanBus {
   virtual CanState state() const noexcept = 0;
   /// Nominal bit rate in bit/s. real-time safe.
   virtual std::uint32_t bit_rate() const noexcept = 0;
+  /// Frames that this transport knows to be lost on the computer's side, sent or received: an overflowing
+  /// buffer, a queue emptied when the link went down. Never a frame that send() refused. real-time safe.
+  virtual std::uint64_t lost() const noexcept { return 0; }
 };
 
 /// Worst-case length on the wire in bits of a classic data frame, stuff bits and the interframe space

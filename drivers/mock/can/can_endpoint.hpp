@@ -13,14 +13,6 @@ namespace servogate::mock {
 
 inline constexpr Nanoseconds kNever = std::numeric_limits<Nanoseconds>::max();
 
-/// The bits by which frames compete, in their order on the wire: base identifier, RTR or SRR, IDE, identifier
-/// extension, RTR. The smaller number wins. Source: ISO 11898-1, 10.4.2. real-time safe.
-constexpr std::uint32_t arbitration_key(const CanFrame& f) noexcept {
-  const std::uint32_t rtr = f.remote ? 1 : 0;
-  if (!f.extended) return (f.id & 0x7FF) << 21 | rtr << 20;
-  return (f.id >> 18 & 0x7FF) << 21 | 3u << 19 | (f.id & 0x3FFFF) << 1 | rtr;
-}
-
 /// Equal but for the identifier, which the caller has compared. real-time safe.
 inline bool same_content(const CanFrame& a, const CanFrame& b) noexcept {
   return a.length == b.length && a.remote == b.remote &&

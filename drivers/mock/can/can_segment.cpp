@@ -71,6 +71,10 @@ void CanSegment::advance_to(Nanoseconds t) {
   }
 }
 
+Nanoseconds CanSegment::next_event_ns() const noexcept {
+  return std::min(busy_ ? attempt_.end : earliest_start(), earliest_node());
+}
+
 Nanoseconds CanSegment::earliest_start() const noexcept {
   Nanoseconds earliest = kNever;
   for (const auto& e : endpoints_) earliest = std::min(earliest, e->ready_at());

@@ -99,6 +99,11 @@ class CanSegment final : public image::Simulated {
   /// Moves the wire and all nodes on to t; times before now() are ignored. real-time safe.
   void advance_to(Nanoseconds t) override;
   Nanoseconds now() const noexcept { return now_; }
+  /// Earliest time at which something happens on the wire or in a node although nobody sends; the largest
+  /// number when nothing will. For whoever waits between two calls of advance_to(). real-time safe.
+  Nanoseconds next_event_ns() const noexcept;
+  /// A frame is on the wire: the next event is its end. real-time safe.
+  bool busy() const noexcept { return busy_; }
   /// Time of so many bits, rounded down. real-time safe.
   Nanoseconds bit_time(std::uint64_t bits) const noexcept {
     return static_cast<Nanoseconds>(bits * 1'000'000'000u / config_.bit_rate);

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of the bus server that grants time.
+#include <algorithm>
+#include <ctime>
+#include <limits>
+
+#include "drivers/usercan/server/bus_server.hpp"
+
+namespace servogate::usercan {
+namespace {
+
+using Turn = Participant::Turn;
+
+const text::Entry kLeft{"usercan.left-lockstep", "participant {0} left at {1} s; the others go on without it",
+                        "участник {0} вышел на {1} с; остальные продолжают без него"};
+const text::Entry kStalled{"usercan.stalled",
+                           "time stands still at {0} s: participant {1} does not say that it is done",
+                           "время стоит на {0} с: участник {1} не сообщает о готовности"};
+const text::Entry kNobodyWantsTime{
+    "usercan.nobody-wants-time", "time ends at {0} s: the bus is idle and no participant wants to go on",
+    "время кончилось на {0} с: шина свободна и ни один участник не хочет продолжать"};
+
+constexpr Nanoseconds kNever = std::numeric_limits<Nanoseconds>::max();
+constexpr Nanoseconds kPatience = 5 * image::kSecond;
+
+Nanoseconds monotonic() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return t.tv_sec * image::kSecond + t.tv_nsec;
+}
+
+std::string seconds(Nanoseconds t) { return text::number(static_cast<double>(t) * 1e-9, 9); }
+
+}  // namespace
+
+void BusServer::join_lockstep(Participant& who, std::string_view name) {
+  const auto taken = [&](const auto& p) { return p->turn != Turn::none && p->name() == name; };
+  if (config_.lockstep == 0) return refuse(who, "this bus runs in real time");
+  if (begun_) return refuse(who, "time has begun without you");
+  if (name.empty() || std::any_of(participants_.begin(), participants_.end(), taken))
+    return refuse(who, "lockstep needs a name of your own");
+  who.set_name(name);
+  who.release();
+  who.say("< ok >");
+  who.turn = Turn::waiting;
+}
+
+/// Everybody for whom time waits has said that it is done.
+bool BusServer::all_done() const {
+  int joined = 0;
+  const Participant* late = nullptr;
+  for (const auto& p : participants_) {
+    joined += p->turn != Turn::none ? 1 : 0;
+    if (p->turn == Turn::working && !p->closed) late = p.get();
+  }
+  return begun_ ? late == nullptr : joined >= config_.lockstep;
+}
+
+/// The earliest instant at which somebody wants time or a frame ends; frames that begin before it have begun.
+Nanoseconds BusServer::next_time() {
+  for (;;) {
+    Nanoseconds next = kNever;
+    for (const auto& p : participants_)
+      if (p->turn != Turn::none && !p->closed) next = std::min(next, p->wish);
+    bool begins = false;
+    for (const auto& bus : buses_) {
+      const Nanoseconds event = bus->segment().next_event_ns();
+      if (event >= next) continue;
+      next = event;
+      begins = !bus->segment().busy();
+    }
+    if (next == kNever) return kNever;
+    if (!begins) return std::max(next, now_ + 1);
+    advance(next + 1);
+  }
+}
+
+void BusServer::grant() {
+  if (!begun_) {
+    // Whoever came first is not served first: order is by name, so that a run repeats.
+    std::stable_sort(participants_.begin(), participants_.end(), [](const auto& a, const auto& b) {
+      const bool first = a->turn != Turn::none, second = b->turn != Turn::none;
+      return first != second ? first : first && a->name() < b->name();
+    });
+    for (const auto& p : participants_)
+      if (p->bus >= 0 && !buses_[static_cast<std::size_t>(p->bus)]->join(*p)) {
+        refuse(*p, "all places are taken");
+        p->closed = true;
+      }
+    begun_ = true;
+  } else {
+    for (const auto& p : participants_)
+      if (p->closed && p->turn != Turn::none) {
+        report_({&kLeft, {p->name(), seconds(now_)}});
+        p->turn = Turn::none;
+      }
+    const auto here = [](const auto& p) { return p->turn != Turn::none; };
+    if (std::none_of(participants_.begin(), participants_.end(), here)) {
+      return end_lockstep();
+    }
+    for (const auto& p : participants_)
+      while (!p->said.empty() && buses_[static_cast<std::size_t>(p->bus)]->offer(*p, p->said.front()))
+        p->said.pop_front();
+    advance(now_ + 1);  // what was sent at this instant has begun
+    const Nanoseconds next = next_time();
+    if (next == kNever) report_({&kNobodyWantsTime, {seconds(now_)}});
+    if (next == kNever || (config_.until > 0 && next > config_.until)) {
+      return end_lockstep();
+    }
+    advance(next);
+  }
+  const std::string element = " < grant " + std::to_string(now_) + " >";
+  for (const auto& p : participants_)
+    if (p->turn != Turn::none) {
+      p->say(element);
+      p->turn = Turn::working;
+    }
+  stalled_since_ = monotonic();
+  stall_said_ = false;
+}
+
+void BusServer::end_lockstep() {
+  for (const auto& p : participants_)
+    if (p->turn != Turn::none && !p->closed) p->say(" < end >");
+  ended_ = true;
+}
+
+void BusServer::watch_for_stall() {
+  if (!begun_ || stall_said_ || monotonic() - stalled_since_ < kPatience) return;
+  for (const auto& p : participants_)
+    if (p->turn == Turn::working) report_({&kStalled, {seconds(now_), p->name()}});
+  stall_said_ = true;
+}
+
+}  // namespace servogate::usercan

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/socketcan/vcan.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+
+namespace servogate::socketcan {
+
+bool shell(const std::string& command) { return std::system((command + " 2>/dev/null").c_str()) == 0; }
+
+std::string output_of(const std::string& command) {
+  std::string text;
+  if (FILE* pipe = popen(command.c_str(), "r"); pipe != nullptr) {
+    std::array<char, 256> part;
+    while (std::fgets(part.data(), part.size(), pipe) != nullptr) text += part.data();
+    pclose(pipe);
+  }
+  return text;
+}
+
+void Vcan::SetUp() {
+  static int count = 0;
+  name_ = "vt" + std::to_string(getpid() % 100000) + "x" + std::to_string(count++);
+  if (!shell("ip link add " + name_ + " type vcan && ip link set " + name_ + " mtu 72 up"))
+    GTEST_SKIP() << "no vcan here; run it so: tests/lab/lab run ctest --test-dir build/release -R socketcan";
+}
+
+void Vcan::TearDown() { shell("ip link del " + name_); }
+
+std::unique_ptr<SocketCanBus> Vcan::open(SocketCanConfig config) {
+  config.interface = name_;
+  drivers::Notice why;
+  auto bus = SocketCanBus::open(config, why);
+  EXPECT_NE(bus, nullptr) << why.str(text::Language::english);
+  return bus;
+}
+
+bool Vcan::wait_for(SocketCanBus& bus, image::CanFrame& frame) {
+  for (int i = 0; i < 20; ++i) {
+    if (bus.receive(frame)) return true;
+    pollfd p{bus.descriptor(), POLLIN, 0};
+    poll(&p, 1, 100);
+  }
+  return false;
+}
+
+bool Vcan::reaches(SocketCanBus& bus, image::CanState state) {
+  image::CanFrame frame;
+  for (int i = 0; i < 200; ++i) {
+    while (bus.receive(frame)) {
+    }
+    if (bus.state() == state) return true;
+    usleep(10'000);
+  }
+  return false;
+}
+
+}  // namespace servogate::socketcan

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <sched.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "drivers/usercan/message_pack.hpp"
+#include "drivers/usercan/udp_bus.hpp"
+#include "tests/counting/allocations.hpp"
+#include "tests/usercan/running_server.hpp"
+
+namespace servogate::usercan {
+namespace {
+
+using image::CanFrame;
+
+bool write_file(const std::string& file, const std::string& text) {
+  return static_cast<bool>(std::ofstream(file) << text << std::flush);
+}
+
+/// A network of the test program's own: root's right, or that of a user namespace.
+bool own_network() {
+  static const bool made = [] {
+    const std::string user = std::to_string(getuid()), group = std::to_string(getgid());
+    if (unshare(CLONE_NEWNET) != 0) {
+      if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
+      write_file("/proc/self/setgroups", "deny");
+      write_file("/proc/self/uid_map", "0 " + user + " 1");
+      write_file("/proc/self/gid_map", "0 " + group + " 1");
+    }
+    return shell("ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo") == 0;
+  }();
+  return made;
+}
+
+class Udp : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!own_network())
+      GTEST_SKIP() << "no network namespace here; run it as root, or: tests/lab/lab run ...";
+  }
+  static std::unique_ptr<UdpBus> open(std::uint16_t port) {
+    drivers::Notice why;
+    auto bus = UdpBus::open({"239.74.163.2", port, 1'000'000}, why);
+    EXPECT_NE(bus, nullptr) << why.str(text::Language::english);
+    return bus;
+  }
+};
+
+TEST_F(Udp, frames_reach_every_participant_but_their_sender) {
+  auto a = open(43201);
+  auto b = open(43201);
+  auto c = open(43201);
+  ASSERT_TRUE(a->send(make(0x181, {1, 2, 3})));
+  CanFrame f;
+  for (UdpBus* bus : {b.get(), c.get()}) {
+    ASSERT_TRUE(wait_for(*bus, f));
+    EXPECT_EQ(f.id, 0x181u);
+    EXPECT_EQ(f.length, 3);
+    EXPECT_EQ(f.data[2], 3);
+  }
+  EXPECT_FALSE(a->receive(f));
+}
+
+TEST_F(Udp, runs_with_ports_of_their_own_do_not_hear_each_other) {
+  auto a = open(43202);
+  auto b = open(43203);
+  auto c = open(43202);
+  ASSERT_TRUE(a->send(make(0x1, {})));
+  CanFrame f;
+  ASSERT_TRUE(wait_for(*c, f));
+  EXPECT_FALSE(b->receive(f));
+}
+
+TEST_F(Udp, datagrams_that_nobody_read_in_time_are_counted) {
+  auto a = open(43204);
+  auto b = open(43204);
+  int sent = 0;
+  for (; sent < 200'000; ++sent) ASSERT_TRUE(a->send(make(0x1, {1})));
+  CanFrame f;
+  std::uint64_t read = 0;
+  while (b->receive(f)) ++read;
+  ASSERT_LT(read, 200'000u) << "the kernel's buffer held everything";
+  ASSERT_TRUE(a->send(make(0x2, {})));
+  ASSERT_TRUE(wait_for(*b, f));
+  EXPECT_EQ(read + b->lost(), 200'000u);
+}
+
+TEST_F(Udp, python_can_brings_the_simulated_drive_through_its_states) {
+  if (shell("/usr/bin/python3 -c 'import can, msgpack' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no python-can here; install it so: .ci/packages --tests";
+  const LivingDrive drive(open(43205), 6);
+  EXPECT_EQ(shell("/usr/bin/python3 " + counterpart("drive_master.py") +
+                  " 6 udp_multicast 239.74.163.2 port=43205 hop_limit=0"),
+            0);
+}
+
+TEST_F(Udp, nothing_is_allocated_while_frames_pass) {
+  auto a = open(43206);
+  auto b = open(43206);
+  CanFrame f = make(0x181, {1, 2, 3});
+  const std::uint64_t before = counting::allocations();
+  for (int i = 0; i < 100; ++i) {
+    a->send(f);
+    b->receive(f);
+  }
+  EXPECT_EQ(counting::allocations(), before);
+}
+
+TEST(UdpBus, an_address_that_is_no_group_is_refused) {
+  drivers::Notice why;
+  EXPECT_EQ(UdpBus::open({"127.0.0.1", 43207, 0}, why), nullptr);
+  EXPECT_NE(why.str(text::Language::english).find("127.0.0.1 is no multicast address"), std::string::npos);
+}
+
+TEST(MessagePack, what_is_packed_is_read_by_python_can_and_back) {
+  if (shell("/usr/bin/python3 -c 'import can, msgpack' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no python-can here; install it so: .ci/packages --tests";
+  CanFrame remote = make(0x701, {});
+  remote.remote = true;
+  remote.length = 1;
+  CanFrame fd = make(0x18FF0001, {1});
+  fd.fd = true;
+  fd.length = 64;
+  for (const CanFrame& frame : {make(0x181, {1, 2, 3}), make(0, {}), make(0x1FFFFFFF, {9}), remote, fd}) {
+    std::array<std::uint8_t, kMaxPacket> packet;
+    const std::size_t size = pack(frame, 12.5, packet);
+    const std::string file = scratch("packet");
+    write_file(file, std::string(reinterpret_cast<const char*>(packet.data()), size));
+    ASSERT_EQ(shell("/usr/bin/python3 -c \"from can.interfaces.udp_multicast.utils import *\n"
+                    "m = unpack_message(open('" +
+                    file +
+                    "','rb').read(), check=True)\n"
+                    "assert m.timestamp == 12.5\n"
+                    "open('" +
+                    file + "','wb').write(pack_message(m))\""),
+              0);
+    const std::string back = content(file);
+    CanFrame again;
+    ASSERT_TRUE(unpack({reinterpret_cast<const std::uint8_t*>(back.data()), back.size()}, again));
+    EXPECT_EQ(again.id, frame.id);
+    EXPECT_EQ(again.extended, frame.extended);
+    EXPECT_EQ(again.remote, frame.remote);
+    EXPECT_EQ(again.fd, frame.fd);
+    EXPECT_EQ(again.length, frame.length);
+    EXPECT_EQ(again.data, frame.data);
+  }
+}
+
+TEST(MessagePack, a_packet_cut_short_anywhere_or_with_a_wrong_byte_is_refused_or_read_but_never_overrun) {
+  std::array<std::uint8_t, kMaxPacket> packet;
+  const std::size_t size = pack(make(0x181, {1, 2, 3, 4, 5, 6, 7, 8}), 1.0, packet);
+  CanFrame f;
+  for (std::size_t n = 0; n < size; ++n) {
+    const std::vector<std::uint8_t> cut(packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(n));
+    EXPECT_FALSE(unpack(cut, f)) << n;
+  }
+  for (std::size_t n = 0; n < size; ++n)
+    for (int b = 0; b < 256; ++b) {
+      std::vector<std::uint8_t> bent(packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(size));
+      bent[n] = static_cast<std::uint8_t>(b);
+      EXPECT_TRUE(!unpack(bent, f) || f.length <= 64);
+    }
+}
+
+}  // namespace
+}  // namespace servogate::usercan
