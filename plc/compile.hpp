@@ -38,7 +38,8 @@ struct CompileResult {
   bool ok() const noexcept { return image != nullptr; }
 };
 
-/// Compiles Structured Text (IEC 61131-3, third edition) to the compact form that plc::Engine runs. All files
+/// Compiles Structured Text, Instruction List, ladders drawn in text and PLCopen XML (IEC 61131-3, third
+/// edition) to the compact form that plc::Engine runs. A file that begins with '<' is XML. All files
 /// see each other's declarations. Every symbol is a global variable of the type of its place (BL BOOL, BY
 /// USINT, IN INT, LI DINT, RE REAL, LR LREAL, nCH STRING[n]), matched without case; writing one whose
 /// declared writer is the NC or an input is an error. Not real-time safe.

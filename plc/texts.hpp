@@ -75,6 +75,44 @@ inline constexpr Entry kTaskInterval{"plc-task-interval",
 inline constexpr Entry kNoResult{"plc-no-result", "the function '{0}' never assigns its result",
                                  "функция '{0}' нигде не присваивает свой результат"};
 
+// Instruction List.
+inline constexpr Entry kNoInstruction{"plc-instruction", "'{0}' is no instruction{1}",
+                                      "инструкции '{0}' нет{1}"};
+inline constexpr Entry kNoCurrent{"plc-no-result-yet",
+                                  "'{0}' needs a current result, and there is none here; begin with LD",
+                                  "'{0}' требует текущего результата, а здесь его нет; начните с LD"};
+inline constexpr Entry kEndOfLine{"plc-end-of-line", "expected the end of the line, found {0}",
+                                  "ожидается конец строки, встречено {0}"};
+inline constexpr Entry kInParentheses{"plc-in-parentheses", "{0} cannot stand between '(' and ')'",
+                                      "{0} недопустимо между '(' и ')'"};
+inline constexpr Entry kLabelTwice{"plc-label-twice", "there is already a label '{0}'",
+                                   "метка '{0}' уже есть"};
+inline constexpr Entry kNoLabel{"plc-no-label", "there is no label '{0}'{1}", "метки '{0}' нет{1}"};
+
+// Ladder.
+inline constexpr Entry kNotConnected{"plc-not-connected", "nothing is connected to this input",
+                                     "к этому входу ничего не подключено"};
+inline constexpr Entry kNoPower{"plc-no-power", "this element gives nothing to its right",
+                                "этот элемент ничего не выдаёт вправо"};
+inline constexpr Entry kLoop{"plc-loop",
+                             "this connection leads back to itself without a function block between",
+                             "эта связь ведёт к самой себе без функционального блока между ними"};
+inline constexpr Entry kNoConnector{"plc-no-connector", "there is no connector '{0}' for this continuation",
+                                    "для этого продолжения нет соединителя '{0}'"};
+inline constexpr Entry kLadderCharacter{
+    "plc-ladder-character", "'{0}' is no part of a rung; elements stand on a wire: --| a |--( b )--",
+    "'{0}' не является частью цепи; элементы стоят на проводе: --| a |--( b )--"};
+inline constexpr Entry kLadderOpen{"plc-ladder-open",
+                                   "this element is not closed in its line; expected '{0}'",
+                                   "элемент не закрыт в своей строке; ожидается '{0}'"};
+
+// PLCopen XML.
+inline constexpr Entry kXml{"plc-xml", "this is no XML: {0}", "это не XML: {0}"};
+inline constexpr Entry kXmlMissing{"plc-xml-missing", "<{0}> needs '{1}'", "<{0}> требует '{1}'"};
+inline constexpr Entry kXmlTwice{"plc-xml-twice", "localId {0} is given twice", "localId {0} задан дважды"};
+inline constexpr Entry kXmlNoElement{"plc-xml-element", "there is no element with localId {0}",
+                                     "элемента с localId {0} нет"};
+
 // Names and types in statements.
 inline constexpr Entry kUnknownName{"plc-unknown-name", "there is no variable '{0}'{1}",
                                     "переменной '{0}' нет{1}"};
@@ -132,6 +170,9 @@ inline constexpr Entry kNoValue{"plc-no-value", "'{0}' gives no value", "'{0}' �
 inline constexpr Entry kUseless{"plc-useless",
                                 "this statement does nothing; a call or an assignment is expected",
                                 "оператор ничего не делает; ожидается вызов или присваивание"};
+inline constexpr Entry kEnableNested{
+    "plc-enable", "a call with EN or ENO stands alone, as 'x := F(EN := ...);' or 'f(EN := ...);'",
+    "вызов с EN или ENO пишется отдельно: 'x := F(EN := ...);' или 'f(EN := ...);'"};
 inline constexpr Entry kCount{"plc-arguments", "{0} takes {1} inputs, not {2}", "у {0} входов {1}, а не {2}"};
 inline constexpr Entry kNoParameter{"plc-no-parameter", "{0} has no {1} '{2}'{3}",
                                     "у {0} нет параметра ({1}) '{2}'{3}"};

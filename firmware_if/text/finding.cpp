@@ -61,6 +61,25 @@ std::string Finding::str(Language language) const {
 }
 
 std::string number(double value, int digits) {
+std::string Finding::excerpt() const {
+  if (source.empty() || line <= 0 || column <= 0) return {};
+  constexpr int kShown = 160;  // characters; more of a long line is left out on both sides
+  std::string shown, below;
+  int at = 0;
+  const int first = column > kShown / 2 ? column - kShown / 2 : 1;
+  for (const char c : source) {
+    if ((static_cast<unsigned char>(c) & 0xC0) != 0x80) ++at;  // a character of UTF-8 begins
+    if (at < first || at >= first + kShown) continue;
+    shown += c;
+    if (at < column && (static_cast<unsigned char>(c) & 0xC0) != 0x80) below += c == '\t' ? '\t' : ' ';
+  }
+  const std::string number = std::to_string(line);
+  return " " + number + " | " + shown + "\n " + std::string(number.size(), ' ') + " | " + below + "^\n";
+}
+
+/// From here on the digits before the point say nothing to a person.
+constexpr double kLongest = 1e15;
+
   if (!std::isfinite(value)) return value > 0 ? "inf" : value < 0 ? "-inf" : "nan";
   char buffer[400];
   std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);

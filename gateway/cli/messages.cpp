@@ -21,7 +21,7 @@ const text::Entry kLeavesTravel{"cli.leaves-travel", "{0} moves from {1} to {2};
 int print_findings(const std::vector<text::Finding>& findings) {
   int errors = 0;
   for (const text::Finding& f : findings) {
-    std::fprintf(stderr, "%s\n", f.str().c_str());
+    std::fprintf(stderr, "%s\n%s", f.str().c_str(), f.excerpt().c_str());
     errors += f.severity == text::Severity::error ? 1 : 0;
   }
   return errors;

@@ -130,6 +130,8 @@ void Generator::unit(int index) {
   current_ = index;
   top_ = most_ = 0;
   returns_.clear();
+  labels_.clear();
+  forward_.clear();
   out.entry = static_cast<std::uint32_t>(here());
   line_ = static_cast<std::uint32_t>(u.at.file) << 24 | static_cast<std::uint32_t>(u.at.line & 0xFFFFFF);
   resets(u);

@@ -92,6 +92,8 @@ class Generator {
   void repeat_statement(const ir::Stmt& s);
   void for_statement(const ir::Stmt& s);
   void finish_loop(std::size_t continue_at);
+  void label(std::int32_t number);
+  void jump(std::int32_t number);
 
   ir::Program program_;
   const Options& options_;
@@ -100,6 +102,8 @@ class Generator {
   std::vector<Unit> units_;
   std::vector<Loop> loops_;
   std::vector<std::size_t> returns_;
+  std::map<std::int32_t, std::size_t> labels_;                ///< of the current unit: where they stand
+  std::map<std::int32_t, std::vector<std::size_t>> forward_;  ///< jumps to labels not yet met
   int current_ = -1;
   std::uint32_t line_ = 0;
   std::uint32_t top_ = 0, most_ = 0;  ///< temporaries of the current unit

@@ -45,6 +45,10 @@ void Generator::statement(const ir::Stmt& s) {
     case StmtKind::return_:
       returns_.push_back(emit(Code::jump));
       return;
+    case StmtKind::label:
+      return label(s.label);
+    case StmtKind::jump:
+      return jump(s.label);
   }
 }
 
@@ -145,6 +149,23 @@ void Generator::finish_loop(std::size_t continue_at) {
       image_->code[c].op = static_cast<std::uint16_t>(static_cast<int>(Code::jump_back) * 2);
   }
   for (const std::size_t e : loop.exits) land(e);
+}
+
+void Generator::label(std::int32_t number) {
+  labels_[number] = here();
+  for (const std::size_t j : forward_[number]) land(j);
+  forward_[number].clear();
+}
+
+void Generator::jump(std::int32_t number) {
+  const auto back = labels_.find(number);
+  if (back == labels_.end()) {
+    forward_[number].push_back(emit(Code::jump));
+    return;
+  }
+  // A jump back is charged what it repeats, which must not be nothing.
+  if (back->second == here()) emit(Code::jump, 0, 0, static_cast<Operand>(here() + 1));
+  emit(Code::jump_back, 0, 0, static_cast<Operand>(back->second));
 }
 
 void Generator::while_statement(const ir::Stmt& s) {

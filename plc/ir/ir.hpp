@@ -164,7 +164,9 @@ enum class StmtKind : std::uint8_t {
   for_,
   exit,
   continue_,
-  return_
+  return_,
+  label,  ///< number `label`; only in the outermost block of a body
+  jump
 };
 
 struct Stmt;
@@ -188,6 +190,7 @@ struct Stmt {
   std::vector<Branch> branches;
   Block body;  ///< of a loop; the ELSE part
   std::int32_t unit = -1;
+  std::int32_t label = -1;
   bool check_range = false;  ///< assign: the value must lie in the subrange of the place
 };
 

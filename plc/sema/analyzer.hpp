@@ -82,7 +82,7 @@ class Analyzer {
   void lay_out(int unit);
   void declare_variable(UnitScope& u, const syntax::Variable& v);
   void declare_edge(UnitScope& u, const syntax::Variable& v);
-  void declare_globals();
+  void declare_globals(bool constants);
   void declare_located(Variable& out, const syntax::Variable& v);
   void check_sections(const UnitScope& u, const syntax::Variable& v);
   std::uint32_t allocate(const Type& type);
@@ -113,6 +113,7 @@ class Analyzer {
   std::optional<ir::Place> place_of_member(const Expression& e, bool write);
   std::optional<ir::Place> place_of_index(const Expression& e, bool write);
   std::optional<ir::Place> place_of_bit(const Expression& e, bool write);
+  std::optional<ir::Place> character_of(ir::Place base, const Expression& subscript);
   std::optional<ir::Place> place_of_symbol(const std::string& name, const Location& at, bool write);
   void note_write(Variable& v, bool global, const Location& at);
   std::vector<std::string> names_in_scope() const;
@@ -148,6 +149,8 @@ class Analyzer {
   ExprPtr shift_call(std::string_view key, const Expression& e, const Type* hint);
   ExprPtr text_call(std::string_view key, const Expression& e);
   ExprPtr time_call(std::string_view key, const Expression& e);
+  ExprPtr bound_call(std::string_view key, const Expression& e);
+  std::vector<const Expression*> numbered_inputs(const Expression& e, std::string_view name);
   ExprPtr conversion_call(std::string_view key, const Expression& e);
   /// The inputs of a standard function, converted to one common type (`fixed`, when given); empty: reported.
   std::vector<ExprPtr> common_inputs(const std::vector<const Expression*>& in, std::string_view name,
@@ -165,10 +168,11 @@ class Analyzer {
   void block_call(const Expression& e, const ir::Place& instance, int unit, ir::Block& out);
   void block_input(const syntax::Argument& a, const Variable& parameter, const ir::Place& instance,
                    ir::Block& out);
-  const Variable* match(const syntax::Argument& a, std::size_t position, int unit);
+  const Variable* match(const syntax::Argument& a, std::size_t position, int unit, bool with_outputs = false);
   bool check_arguments(const Expression& e, int unit, std::vector<const Variable*>& matched);
-  void output_argument(const syntax::Argument& a, const Variable& parameter, const ir::Place& from,
-                       ir::Block& out);
+  void output_argument(const syntax::Argument& a, const ir::Place& from, ir::Block& out);
+  bool guarded(const syntax::Statement& s, ir::Block& out);
+  ExprPtr enabled_value(const Expression& e);
 
   // statements.cpp
   ir::Block block(const syntax::Block& b);
@@ -179,6 +183,10 @@ class Analyzer {
   void case_statement(const syntax::Statement& s, ir::Block& out);
   void for_statement(const syntax::Statement& s, ir::Block& out);
   void loop_statement(const syntax::Statement& s, ir::Block& out);
+  void hold(const syntax::Statement& s, ir::Block& out);
+  void set_statement(const syntax::Statement& s, ir::Block& out);
+  std::int32_t label(const syntax::Statement& s);
+  void collect_labels(const syntax::Block& b);
   ExprPtr condition(const Expression& e);
   void body(int unit);
 
@@ -189,6 +197,8 @@ class Analyzer {
   void program_call(const syntax::ProgramInstance& p, ir::Block& out);
   int program_unit(const syntax::ProgramInstance& p);
   std::uint32_t instance(const std::string& name, int unit);
+  void configured_paths(const syntax::Configuration& c);
+  std::optional<ir::Place> path_place(const syntax::Configuration& c, const syntax::PathDeclaration& p);
   void check_recursion();
   bool visit(int unit, std::vector<int>& path);
   void check_usage();
@@ -228,7 +238,10 @@ class Analyzer {
   std::vector<int> instances_;  ///< programs: number of instances a unit has
   int current_ = -1;
   int loops_ = 0;
-  bool no_marks_ = false;  ///< reads do not count as use
+  std::map<std::uint64_t, ir::Place> held_;  ///< of the current body
+  std::map<std::string, std::int32_t> labels_;
+  const Expression* guarded_ = nullptr;  ///< the call whose EN and ENO are being dealt with
+  bool no_marks_ = false;                ///< reads do not count as use
 };
 
 /// The bytes of a constant as the machine holds them.

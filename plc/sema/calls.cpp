@@ -13,6 +13,7 @@ using syntax::UnitKind;
 
 ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
   const Expression& callee = *e.operands[0];
+  if ((e.enable || e.enabled) && guarded_ != &e) report_.error(e.location, texts::kEnableNested);
   if (callee.kind == ExpressionKind::name) {
     const std::string key = key_of(callee.name);
     bool global = false;
@@ -48,29 +49,40 @@ ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
   return bad(e.location);
 }
 
-const Variable* Analyzer::match(const syntax::Argument& a, std::size_t position, int unit) {
+const Variable* Analyzer::match(const syntax::Argument& a, std::size_t position, int unit,
+                                bool with_outputs) {
   const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
   const bool named = !a.name.empty();
   std::size_t seen = 0;
   for (const Variable& v : u.variables) {
     const bool input = v.section == Section::input || v.section == Section::in_out;
+    const bool listed = input || (with_outputs && v.section == Section::output);
     if (named ? same_name(v.name, a.name) && (a.output ? v.section == Section::output : input)
-              : input && seen++ == position)
+              : listed && seen++ == position)
       return &v;
   }
   return nullptr;
 }
 
-// Pairs actual with formal parameters; false when something was reported.
+// Pairs actual with formal parameters; false when something was reported. A list without names gives either
+// the inputs, or inputs and outputs as they are declared (IEC 61131-3:2013, 6.6.1.4.2).
 bool Analyzer::check_arguments(const Expression& e, int unit, std::vector<const Variable*>& matched) {
   const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
   const std::size_t errors = report_.errors();
-  std::size_t positional = 0, named = 0, inputs_known = 0;
-  for (const Variable& v : u.variables)
-    inputs_known += v.section == Section::input || v.section == Section::in_out;
+  std::size_t positional = 0, named = 0, inputs_known = 0, all_known = 0, position = 0;
+  for (const Variable& v : u.variables) {
+    const bool input = v.section == Section::input || v.section == Section::in_out;
+    inputs_known += input;
+    all_known += input || v.section == Section::output;
+  }
+  for (const syntax::Argument& a : e.arguments)
+    if (a.name.empty())
+      ++positional;
+    else if (!a.output)
+      ++named;
+  const bool with_outputs = positional > inputs_known && positional == all_known;
   for (const syntax::Argument& a : e.arguments) {
-    (a.name.empty() ? positional : named) += !a.output;
-    const Variable* v = match(a, positional - 1, unit);
+    const Variable* v = match(a, a.name.empty() ? position++ : 0, unit, with_outputs);
     if (v == nullptr && !a.name.empty()) {
       std::vector<std::string> names;
       for (const Variable& w : u.variables)
@@ -86,7 +98,8 @@ bool Analyzer::check_arguments(const Expression& e, int unit, std::vector<const 
     matched.push_back(v);
   }
   if (positional > 0 && named > 0) report_.error(e.location, texts::kMixed);
-  if (positional > inputs_known || (positional > 0 && named == 0 && positional < inputs_known))
+  if (!with_outputs && positional > 0 &&
+      (positional > inputs_known || (named == 0 && positional < inputs_known)))
     report_.error(e.location, texts::kCount,
                   {u.source->name, std::to_string(inputs_known), std::to_string(positional)});
   for (const Variable& v : u.variables)
@@ -164,8 +177,7 @@ ExprPtr Analyzer::function_call(const Expression& e, int unit) {
   return out;
 }
 
-void Analyzer::output_argument(const syntax::Argument& a, const Variable& parameter, const ir::Place& from,
-                               ir::Block& out) {
+void Analyzer::output_argument(const syntax::Argument& a, const ir::Place& from, ir::Block& out) {
   if (!a.value) return;
   auto target = place(*a.value, true);
   if (!target) return;
@@ -177,7 +189,6 @@ void Analyzer::output_argument(const syntax::Argument& a, const Variable& parame
     value = std::move(inverse);
   }
   value->at = a.value->location;
-  (void)parameter;
   assign(std::move(*target), std::move(value), a.location, out);
 }
 
@@ -210,6 +221,66 @@ void Analyzer::block_input(const syntax::Argument& a, const Variable& v, const i
   out.push_back(std::move(bind));
 }
 
+// What ENO gets after the call: the output of that name where the unit declares one, else TRUE.
+ExprPtr Analyzer::enabled_value(const Expression& e) {
+  Constant one;
+  one.i = 1;
+  ExprPtr yes = make_constant(elementary(Kind::boolean), one, e.enabled->location);
+  const Expression& callee = *e.operands[0];
+  bool global = false;
+  const Variable* v = callee.kind == ExpressionKind::name ? find_variable(callee.name, global) : nullptr;
+  const auto unit = units_by_name_.find(key_of(callee.name));
+  const bool function = callee.kind == ExpressionKind::name && v == nullptr && unit != units_by_name_.end();
+  ir::Place from;
+  int index = -1;
+  if (function) {
+    index = unit->second;
+    from.cell = static_cast<std::uint32_t>(
+        std::max<std::int64_t>(0, program_.units[static_cast<std::size_t>(index)].fixed_base));
+  } else if (callee.kind != ExpressionKind::name || v != nullptr) {
+    auto instance = place(callee, false);
+    if (!instance || instance->type->kind != Kind::block) return yes;
+    index = instance->type->block;
+    from = std::move(*instance);
+  }
+  if (index < 0) return yes;
+  const UnitScope& u = scopes_[static_cast<std::size_t>(index)];
+  const auto eno = u.by_name.find("ENO");
+  if (eno == u.by_name.end() || u.variables[eno->second].section != Section::output) return yes;
+  from.offset += u.variables[eno->second].cell;
+  from.type = u.variables[eno->second].type;
+  return load(std::move(from), e.enabled->location);
+}
+
+// EN and ENO (6.6.1.5): with EN false nothing is called, assigned or stored, and ENO is false.
+bool Analyzer::guarded(const syntax::Statement& s, ir::Block& out) {
+  if (s.value == nullptr || s.value->kind != ExpressionKind::call || guarded_ == s.value.get()) return false;
+  const Expression& e = *s.value;
+  if (!e.enable && !e.enabled) return false;
+  const Expression* outer = guarded_;
+  guarded_ = &e;
+  ir::Stmt test;
+  test.kind = ir::StmtKind::if_;
+  test.at = s.location;
+  ir::Branch yes;
+  Constant one;
+  one.i = 1;
+  yes.condition = e.enable ? condition(*e.enable) : make_constant(elementary(Kind::boolean), one, s.location);
+  statement(s, yes.body);
+  guarded_ = outer;
+  if (e.enabled) {
+    auto first = place(*e.enabled, true), second = place(*e.enabled, true);
+    if (first && second) {
+      assign(std::move(*first), enabled_value(e), e.enabled->location, yes.body);
+      assign(std::move(*second), make_constant(elementary(Kind::boolean), {}, e.enabled->location),
+             e.enabled->location, test.body);
+    }
+  }
+  test.branches.push_back(std::move(yes));
+  out.push_back(std::move(test));
+  return true;
+}
+
 void Analyzer::block_call(const Expression& e, const ir::Place& named, int unit, ir::Block& out) {
   if (current_ >= 0) here().calls.insert(unit);
   std::vector<const Variable*> matched;
@@ -229,7 +300,7 @@ void Analyzer::block_call(const Expression& e, const ir::Place& named, int unit,
     out.push_back(std::move(choose));
   }
   for (std::size_t i = 0; i < e.arguments.size(); ++i)
-    if (!e.arguments[i].output) block_input(e.arguments[i], *matched[i], instance, out);
+    if (matched[i]->section != Section::output) block_input(e.arguments[i], *matched[i], instance, out);
   ir::Stmt invoke;
   invoke.kind = ir::StmtKind::invoke;
   invoke.at = e.location;
@@ -237,11 +308,11 @@ void Analyzer::block_call(const Expression& e, const ir::Place& named, int unit,
   invoke.unit = unit;
   out.push_back(std::move(invoke));
   for (std::size_t i = 0; i < e.arguments.size(); ++i) {
-    if (!e.arguments[i].output) continue;
+    if (matched[i]->section != Section::output) continue;
     ir::Place from = instance.copy();
     from.offset += matched[i]->cell;
     from.type = matched[i]->type;
-    output_argument(e.arguments[i], *matched[i], from, out);
+    output_argument(e.arguments[i], from, out);
   }
 }
 

@@ -99,6 +99,12 @@ ExprPtr Analyzer::conversion_call(std::string_view key, const Expression& e) {
   if (key == "TRUNC") {
     truncate = true;
     to_name = "DINT";
+  } else if (key.starts_with("BCD_TO_")) {
+    from_bcd = true;
+    to_name = key.substr(7);
+  } else if (key.starts_with("TO_BCD_")) {
+    to_bcd = true;
+    to_name = key.substr(7);
   } else if (key.starts_with("TO_")) {
     to_name = key.substr(3);
   } else if (key.starts_with("TRUNC_")) {

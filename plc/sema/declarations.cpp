@@ -29,8 +29,9 @@ Analyzer::Analyzer(const syntax::Source& source, const std::vector<image::Symbol
 
 ir::Program Analyzer::run() {
   declare_names();
+  declare_globals(true);  // limits of types may be global constants
   resolve_types();
-  declare_globals();
+  declare_globals(false);
   for (std::size_t u = 0; u < scopes_.size(); ++u) lay_out(static_cast<int>(u));
   if (source_.configurations.empty())
     default_task();
@@ -355,7 +356,7 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
       if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
     }
   }
-  if (v.constant && !s.initial) report_.error(s.location, texts::kExpected, {"':='", "no value"});
+  if (v.constant && !s.initial && !alias) report_.error(s.location, texts::kExpected, {"':='", "no value"});
   u.variables.push_back(std::move(v));
 }
 
@@ -415,37 +416,36 @@ void Analyzer::lay_out(int index) {
   current_ = outer;
 }
 
-void Analyzer::declare_globals() {
+void Analyzer::declare_globals(bool constants) {
   current_ = -1;
-  for (const bool constants : {true, false})
-    for (const syntax::Variable& s : source_.globals) {
-      if (s.constant != constants) continue;
-      const auto [at, fresh] = globals_by_name_.emplace(key_of(s.name), globals_.size());
-      if (!fresh) {
-        report_.error(s.location, texts::kDuplicate, {s.name, line_of(globals_[at->second].at)});
-        continue;
-      }
-      Variable v;
-      v.name = s.name;
-      v.at = s.location;
-      v.section = Section::global;
-      v.constant = s.constant;
-      v.retain = s.retain;
-      v.root = ir::Root::fixed;
-      v.type = resolve(*s.type);
-      if (v.type->kind != Kind::error) {
-        if (s.initial) v.initial = initial_bytes(*s.initial, *v.type);
-        if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
-        if (!s.address.empty()) {
-          declare_located(v, s);
-        } else {
-          v.cell = allocate(*v.type);
-          std::copy(v.initial.begin(), v.initial.end(), program_.memory.begin() + v.cell);
-          program_.globals.push_back({v.name, v.type, v.cell, -1, v.retain});
-        }
-      }
-      globals_.push_back(std::move(v));
+  for (const syntax::Variable& s : source_.globals) {
+    if (s.constant != constants) continue;
+    const auto [at, fresh] = globals_by_name_.emplace(key_of(s.name), globals_.size());
+    if (!fresh) {
+      report_.error(s.location, texts::kDuplicate, {s.name, line_of(globals_[at->second].at)});
+      continue;
     }
+    Variable v;
+    v.name = s.name;
+    v.at = s.location;
+    v.section = Section::global;
+    v.constant = s.constant;
+    v.retain = s.retain;
+    v.root = ir::Root::fixed;
+    v.type = resolve(*s.type);
+    if (v.type->kind != Kind::error) {
+      if (s.initial) v.initial = initial_bytes(*s.initial, *v.type);
+      if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
+      if (!s.address.empty()) {
+        declare_located(v, s);
+      } else {
+        v.cell = allocate(*v.type);
+        std::copy(v.initial.begin(), v.initial.end(), program_.memory.begin() + v.cell);
+        program_.globals.push_back({v.name, v.type, v.cell, -1, v.retain});
+      }
+    }
+    globals_.push_back(std::move(v));
+  }
 }
 
 }  // namespace servogate::plc::sema

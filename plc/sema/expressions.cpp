@@ -43,6 +43,7 @@ ExprPtr Analyzer::expression(const Expression& e, const Type* hint) {
       return literal(e, hint);
     case ExpressionKind::typed:
       return typed_literal(e);
+    case ExpressionKind::held:
     case ExpressionKind::name:
     case ExpressionKind::member:
     case ExpressionKind::index:

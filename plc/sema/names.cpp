@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cctype>
+
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
 
@@ -70,6 +72,11 @@ std::optional<ir::Place> Analyzer::place(const Expression& e, bool write) {
       return place_of_index(e, write);
     case ExpressionKind::bit:
       return place_of_bit(e, write);
+    case ExpressionKind::held: {
+      const auto held = held_.find(e.literal.magnitude);
+      if (held == held_.end()) return std::nullopt;  // reported where it was to be kept
+      return held->second.copy();
+    }
     case ExpressionKind::direct: {
       const auto p = parse_address(e.name, e.location);
       if (!p) return std::nullopt;
@@ -189,6 +196,8 @@ std::optional<ir::Place> Analyzer::place_of_index(const Expression& e, bool writ
   std::size_t dimensions = 0;
   for (const Type* t = base->type; t->kind == Kind::array; t = t->base) ++dimensions;
   const std::size_t given = e.operands.size() - 1;
+  if (base->type->kind == Kind::string && given == 1 && base->root != ir::Root::shared)
+    return character_of(std::move(*base), *e.operands[1]);
   if (dimensions == 0) {
     report_.error(e.operands[1]->location, texts::kNotArray, {base->type->name});
     return std::nullopt;
@@ -223,6 +232,30 @@ std::optional<ir::Place> Analyzer::place_of_index(const Expression& e, bool writ
   return base;
 }
 
+// One character of a string, counted from 1 (6.3.3); beyond the capacity is an index fault.
+std::optional<ir::Place> Analyzer::character_of(ir::Place base, const Expression& subscript) {
+  const std::int64_t last = base.type->capacity();
+  ExprPtr index = settle(expression(subscript, elementary(Kind::dint)), elementary(Kind::dint));
+  if (index->type->kind == Kind::error) return std::nullopt;
+  if (!is_integer(index->type->kind)) {
+    report_.error(subscript.location, texts::kIndexType, {index->type->name});
+    return std::nullopt;
+  }
+  base.type = elementary(Kind::character);
+  base.offset += 1;
+  if (index->kind != ir::ExprKind::constant) {
+    base.steps.push_back({std::move(index), 1, last, 1});
+    return base;
+  }
+  if (index->value.i < 1 || index->value.i > last) {
+    report_.error(subscript.location, texts::kIndexRange,
+                  {std::to_string(index->value.i), "1", std::to_string(last)});
+    return std::nullopt;
+  }
+  base.offset += static_cast<std::uint32_t>(index->value.i - 1);
+  return base;
+}
+
 std::optional<ir::Place> Analyzer::place_of_bit(const Expression& e, bool write) {
   auto base = place(*e.operands[0], write);
   if (!base) return std::nullopt;
@@ -232,13 +265,27 @@ std::optional<ir::Place> Analyzer::place_of_bit(const Expression& e, bool write)
     return std::nullopt;
   }
   std::uint64_t bit = e.literal.magnitude;
-  if (e.name.starts_with("%")) {  // .%X3
+  if (e.name.starts_with("%")) {  // .%X3, .%B1, .%W0, .%D0 (6.5.2.2, partial access)
+    constexpr std::string_view kSizes = "XBWD";
+    constexpr Kind kParts[] = {Kind::boolean, Kind::byte, Kind::word, Kind::dword};
     const std::string key = key_of(e.name);
-    if (key[1] != 'X' || key.size() > 4) {
+    const std::size_t part = kSizes.find(key[1]);
+    const bool number = key.size() > 2 && key.size() <= 4 && std::isdigit(static_cast<unsigned char>(key[2]));
+    if (part == std::string_view::npos || !number || key.find('.') != std::string::npos) {
       report_.error(e.location, texts::kUnsupported, {e.name});
       return std::nullopt;
     }
-    bit = static_cast<std::uint64_t>(std::stoi("0" + key.substr(2)));
+    bit = static_cast<std::uint64_t>(std::stoi(key.substr(2)));
+    if (part > 0) {
+      const Type* type = elementary(kParts[part]);
+      if (type->size >= t.size || (bit + 1) * type->size > t.size) {
+        report_.error(e.location, texts::kNoMember, {t.name, e.name, ""});
+        return std::nullopt;
+      }
+      base->offset += static_cast<std::uint32_t>(bit) * type->size;
+      base->type = type;
+      return base;
+    }
   }
   if (bit >= t.size * 8) {
     report_.error(e.location, texts::kBitRange, {t.name, std::to_string(t.size * 8 - 1)});

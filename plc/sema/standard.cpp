@@ -19,6 +19,8 @@ bool conversion_name(std::string_view key, const TypeTable& types) {
     const Type* t = types.find(n);
     return t != nullptr && is_elementary(t->kind);
   };
+  if (key.starts_with("BCD_TO_")) return known(key.substr(7));
+  if (key.starts_with("TO_BCD_")) return known(key.substr(7));
   if (key.starts_with("TO_")) return known(key.substr(3));
   if (key.starts_with("TRUNC_")) return known(key.substr(6));
   for (const std::string_view mark : {"_BCD_TO_", "_TO_BCD_", "_TRUNC_", "_TO_"})
@@ -69,9 +71,11 @@ bool Analyzer::is_standard(std::string_view key) const {
     if (f.name == key) return true;
   for (const auto& f : kTimes)
     if (f.name == key) return true;
-  return listed(key, {"ABS",    "ATAN2",  "EXPT",   "MOVE",    "NOT",  "SEL",  "LIMIT",          "MUX",
-                      "SHL",    "SHR",    "ROL",    "ROR",     "LEN",  "LEFT", "RIGHT",          "MID",
-                      "CONCAT", "INSERT", "DELETE", "REPLACE", "FIND", "TIME", "CONCAT_DATE_TOD"}) ||
+  return listed(key,
+                {"ABS",         "ATAN2",      "EXPT",   "MOVE",    "NOT",  "SEL",  "LIMIT", "MUX",
+                 "SHL",         "SHR",        "ROL",    "ROR",     "LEN",  "LEFT", "RIGHT", "MID",
+                 "CONCAT",      "INSERT",     "DELETE", "REPLACE", "FIND", "TIME", "LTIME", "CONCAT_DATE_TOD",
+                 "LOWER_BOUND", "UPPER_BOUND"}) ||
          conversion_name(key, *types_);
 }
 
@@ -100,12 +104,41 @@ std::vector<const Expression*> Analyzer::inputs(const Expression& e, std::string
     }
     return out;
   }
+  if (named && names.size() == 0) return numbered_inputs(e, name);
   for (const syntax::Argument& a : e.arguments) {
     if (!a.value || a.output) {
       report_.error(a.location, texts::kNoParameter, {std::string(name), "VAR_OUTPUT", a.name, ""});
       return {};
     }
     out.push_back(a.value.get());
+  }
+  return out;
+}
+
+// IN1, IN2 ... of an extensible function in any order; MUX counts from IN0 and has K before them.
+std::vector<const Expression*> Analyzer::numbered_inputs(const Expression& e, std::string_view name) {
+  const bool mux = name == "MUX";
+  std::vector<const Expression*> out(e.arguments.size());
+  for (const syntax::Argument& a : e.arguments) {
+    const std::string key = key_of(a.name);
+    std::size_t at = out.size();
+    if (mux && key == "K") {
+      at = 0;
+    } else if (key.size() > 2 && key.size() < 6 && key.starts_with("IN") &&
+               key.find_first_not_of("0123456789", 2) == std::string::npos) {
+      const std::size_t number = std::stoul(key.substr(2));
+      at = mux ? number + 1 : number - 1;
+    }
+    if (a.output || at >= out.size()) {
+      report_.error(a.location, a.name.empty() ? texts::kMixed : texts::kNoParameter,
+                    {std::string(name), a.output ? "VAR_OUTPUT" : "VAR_INPUT", a.name, ""});
+      return {};
+    }
+    if (out[at] != nullptr) {
+      report_.error(a.location, texts::kTwice, {a.name});
+      return {};
+    }
+    out[at] = a.value.get();
   }
   return out;
 }
@@ -171,7 +204,8 @@ ExprPtr Analyzer::standard_call(const Expression& e, std::string_view key, const
     return text_call(key, e);
   for (const auto& f : kTimes)
     if (f.name == key) return time_call(key, e);
-  if (key == "TIME" || key == "CONCAT_DATE_TOD") return time_call(key, e);
+  if (listed(key, {"TIME", "LTIME", "CONCAT_DATE_TOD"})) return time_call(key, e);
+  if (key == "LOWER_BOUND" || key == "UPPER_BOUND") return bound_call(key, e);
   for (const auto& f : kOperators)
     if (f.name == key) return operator_call(key, e, hint);
   return numeric_call(key, e, hint);
@@ -386,8 +420,26 @@ ExprPtr Analyzer::text_call(std::string_view key, const Expression& e) {
   return native(which, result, e.location, std::move(args));
 }
 
+// Limits of an array as constants (IEC 61131-3:2013, 6.5.3.3).
+ExprPtr Analyzer::bound_call(std::string_view key, const Expression& e) {
+  const auto in = inputs(e, key, {"ARR", "DIM"}, 2, 2);
+  if (in.empty()) return bad(e.location);
+  const auto array = place(*in[0], false);
+  const auto dimension = constant_integer(*in[1]);
+  if (!array || !dimension) return bad(e.location);
+  const Type* t = array->type;
+  for (std::int64_t i = 1; i < *dimension && t->kind == Kind::array; ++i) t = t->base;
+  if (t->kind != Kind::array || *dimension < 1) {
+    report_.error(in[0]->location, texts::kNotArray, {t->name});
+    return bad(e.location);
+  }
+  Constant c;
+  c.i = key == "LOWER_BOUND" ? t->range.low : t->range.high;
+  return make_constant(elementary(Kind::dint), c, e.location);
+}
+
 ExprPtr Analyzer::time_call(std::string_view key, const Expression& e) {
-  if (key == "TIME") {
+  if (key == "TIME" || key == "LTIME") {
     if (!e.arguments.empty())
       report_.error(e.location, texts::kCount, {"TIME", "0", std::to_string(e.arguments.size())});
     return native(Native::now, elementary(Kind::time), e.location, {});

@@ -27,6 +27,8 @@ void Analyzer::body(int unit) {
   unknown_.clear();
   for_variables_.clear();
   loops_ = 0;
+  held_.clear();
+  labels_.clear();
   UnitScope& u = here();
   ir::Unit& out = program_.units[static_cast<std::size_t>(unit)];
   for (const Variable& v : u.variables) {  // R_EDGE, F_EDGE: the input becomes its edge
@@ -63,6 +65,7 @@ void Analyzer::body(int unit) {
     assign(now.copy(), make_constant(now.type, {}, v.at), v.at, set.body);
     out.body.push_back(std::move(set));
   }
+  collect_labels(u.source->body);
   ir::Block rest = block(u.source->body);
   for (ir::Stmt& s : rest) out.body.push_back(std::move(s));
   if (u.source->kind == UnitKind::function && u.result_variable >= 0 &&
@@ -77,6 +80,7 @@ ir::Block Analyzer::block(const syntax::Block& b) {
 }
 
 void Analyzer::statement(const syntax::Statement& s, ir::Block& out) {
+  if (guarded(s, out)) return;
   switch (s.kind) {
     case StatementKind::assign:
       return assignment(s, out);
@@ -101,6 +105,18 @@ void Analyzer::statement(const syntax::Statement& s, ir::Block& out) {
         return;
       }
       out.push_back(std::move(call_stmt));
+      return;
+    }
+    case StatementKind::hold:
+      return hold(s, out);
+    case StatementKind::set:
+    case StatementKind::reset:
+      return set_statement(s, out);
+    case StatementKind::label:
+    case StatementKind::jump: {
+      ir::Stmt mark = make(s.kind == StatementKind::label ? StmtKind::label : StmtKind::jump, s.location);
+      mark.label = label(s);
+      if (mark.label >= 0) out.push_back(std::move(mark));
       return;
     }
     case StatementKind::if_:
@@ -149,6 +165,58 @@ void Analyzer::assign(ir::Place target, ExprPtr value, const Location& at, ir::B
   s.place = std::move(target);
   s.value = std::move(value);
   out.push_back(std::move(s));
+}
+
+// The first hold of a number gives the type; its cell is fixed, because no value outlives the run of a body.
+void Analyzer::hold(const syntax::Statement& s, ir::Block& out) {
+  const auto known = held_.find(s.number);
+  const Type* hint = known == held_.end() ? nullptr : known->second.type;
+  ExprPtr value = settle(expression(*s.value, hint), hint);
+  if (value->type->kind == Kind::error) return;
+  if (value->type->kind == Kind::none || value->type->kind == Kind::block) {
+    report_.error(value->at, texts::kNoValue, {value->type->name});
+    return;
+  }
+  if (known == held_.end()) {
+    ir::Place p;
+    p.type = value->type;
+    p.cell = allocate(*p.type);
+    held_[s.number] = std::move(p);
+  }
+  assign(held_[s.number].copy(), std::move(value), s.location, out);
+}
+
+// S and R of IL, (S) and (R) of a ladder. The same letters are inputs of bistables and counters.
+void Analyzer::set_statement(const syntax::Statement& s, ir::Block& out) {
+  auto target = place(*s.target, false);
+  if (!target) return;
+  if (target->type->kind == Kind::block && s.alternative) return statement(*s.alternative, out);
+  target = place(*s.target, true);
+  if (!target) return;
+  ir::Stmt test = make(StmtKind::if_, s.location);
+  ir::Branch b;
+  b.condition = condition(*s.value);
+  Constant c;
+  c.i = s.kind == StatementKind::set;
+  assign(std::move(*target), make_constant(elementary(Kind::boolean), c, s.location), s.location, b.body);
+  test.branches.push_back(std::move(b));
+  out.push_back(std::move(test));
+}
+
+void Analyzer::collect_labels(const syntax::Block& b) {
+  for (const syntax::StatementPtr& s : b)
+    if (s->kind == StatementKind::label)
+      if (!labels_.emplace(key_of(s->name), static_cast<std::int32_t>(labels_.size())).second)
+        report_.error(s->location, texts::kLabelTwice, {s->name});
+}
+
+std::int32_t Analyzer::label(const syntax::Statement& s) {
+  const auto at = labels_.find(key_of(s.name));
+  if (at != labels_.end()) return at->second;
+  std::vector<std::string> names;
+  for (const auto& [name, number] : labels_) names.push_back(name);
+  report_.error(s.location, texts::kNoLabel, {s.name, syntax::suggestion(s.name, names)});
+  return -1;
 }
 
 ExprPtr Analyzer::condition(const Expression& e) {

@@ -114,7 +114,7 @@ void Analyzer::program_call(const syntax::ProgramInstance& p, ir::Block& out) {
     ir::Place from = where.copy();
     from.offset += matched[i]->cell;
     from.type = matched[i]->type;
-    output_argument(p.arguments[i], *matched[i], from, out);
+    output_argument(p.arguments[i], from, out);
   }
 }
 
@@ -151,6 +151,7 @@ void Analyzer::configured_tasks() {
       }
       program_call(p, bodies[index].body);
     }
+    configured_paths(c);
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       tasks[i].unit = static_cast<int>(program_.units.size());
       bodies[i].name = tasks[i].name;
@@ -162,6 +163,62 @@ void Analyzer::configured_tasks() {
   std::stable_sort(program_.tasks.begin(), program_.tasks.end(),
                    [](const ir::Task& a, const ir::Task& b) { return a.priority < b.priority; });
   if (program_.programs.empty() && !report_.failed()) report_.error({0, 1, 1}, texts::kNoProgram);
+}
+
+// A variable of a configured program, or a global one, by its path; the name of the resource may lead it.
+std::optional<ir::Place> Analyzer::path_place(const syntax::Configuration& c,
+                                              const syntax::PathDeclaration& p) {
+  std::size_t at = 0;
+  for (const std::string& r : c.resources)
+    if (p.path.size() > 1 && same_name(p.path[0], r)) at = 1;
+  const auto programs = std::find_if(program_.programs.begin(), program_.programs.end(),
+                                     [&](const ir::Global& g) { return same_name(g.name, p.path[at]); });
+  const auto globals =
+      std::find_if(program_.globals.begin(), program_.globals.end(),
+                   [&](const ir::Global& g) { return g.place < 0 && same_name(g.name, p.path[at]); });
+  const bool program = programs != program_.programs.end();
+  if (!program && globals == program_.globals.end()) {
+    report_.error(p.path_location, texts::kUnknownName, {p.path[at], ""});
+    return std::nullopt;
+  }
+  ir::Place out;
+  out.cell = program ? programs->address : globals->address;
+  out.type = program ? programs->type : globals->type;
+  for (++at; at < p.path.size(); ++at) {
+    const Field* f = out.type->field(p.path[at]);
+    if (f == nullptr || f->reference) {
+      report_.error(p.path_location, texts::kNoMember, {out.type->name, p.path[at], ""});
+      return std::nullopt;
+    }
+    out.cell += f->offset;
+    out.type = f->type;
+  }
+  const Type* declared = resolve(p.type);
+  if (declared->kind == Kind::error) return std::nullopt;
+  if (conversion(*declared, *out.type) != Conversion::same) {
+    report_.error(p.path_location, texts::kExternalType, {p.path.back(), out.type->name, declared->name});
+    return std::nullopt;
+  }
+  return out;
+}
+
+// VAR_ACCESS gives a variable a second name; VAR_CONFIG an initial value of this one instance.
+void Analyzer::configured_paths(const syntax::Configuration& c) {
+  current_ = -1;
+  for (const syntax::PathDeclaration& p : c.paths) {
+    if (!p.address.empty()) {
+      report_.error(p.path_location, texts::kUnsupported, {"VAR_CONFIG ... AT"});
+      continue;
+    }
+    const auto where = path_place(c, p);
+    if (!where) continue;
+    if (!p.name.empty()) {
+      program_.globals.push_back({p.name, where->type, where->cell, -1, false});
+    } else if (p.initial) {
+      const std::vector<std::uint8_t> bytes = initial_bytes(*p.initial, *where->type);
+      std::copy(bytes.begin(), bytes.end(), program_.memory.begin() + where->cell);
+    }
+  }
 }
 
 void Analyzer::check_recursion() {

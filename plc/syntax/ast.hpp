@@ -7,7 +7,7 @@
 
 #include "plc/types/type.hpp"
 
-/// The tree of a source file: the one form that every front end (ST now; IL and LD map onto it) delivers.
+/// The tree of a source file: the one form that every front end (ST, IL, ladder, PLCopen XML) delivers.
 namespace servogate::plc::syntax {
 
 struct Location {
@@ -72,6 +72,7 @@ enum class ExpressionKind : std::uint8_t {
   call,    ///< name or operands[0] ( arguments )
   unary,
   binary,
+  held,    ///< the value that the statement hold number `literal.magnitude` kept
   list,    ///< [ ... ] with `repeats`
   record,  ///< ( a := ..., b := ... ) in `arguments`
 };
@@ -85,7 +86,12 @@ struct Expression {
   std::vector<ExpressionPtr> operands;
   std::vector<std::int64_t> repeats;  ///< of a list, parallel to operands
   std::vector<Argument> arguments;
+  ExpressionPtr enable;   ///< of a call: EN := ...
+  ExpressionPtr enabled;  ///< of a call: ENO => ...
 };
+
+/// The same tree once more.
+ExpressionPtr copy(const Expression& e);
 
 enum class StatementKind : std::uint8_t {
   assign,
@@ -98,6 +104,12 @@ enum class StatementKind : std::uint8_t {
   exit,
   continue_,
   return_,
+  hold,   ///< keeps `value` as number `number` until the body ends (the current result of IL, power in a
+          ///< ladder)
+  label,  ///< `name`; only in the outermost block of a body
+  jump,   ///< to label `name`
+  set,    ///< target := TRUE when `value`; where the target is a block, `alternative` instead
+  reset,
   empty,
 };
 
@@ -121,6 +133,9 @@ struct Statement {
   ExpressionPtr target;  ///< of an assignment; the control variable of FOR; the selector of CASE
   ExpressionPtr value;   ///< right side, call, condition, FOR start
   ExpressionPtr to, by;
+  std::string name;
+  std::uint64_t number = 0;
+  StatementPtr alternative;
   std::vector<Branch> branches;
   Block body;  ///< of a loop; ELSE of IF and CASE
   bool has_else = false;
@@ -163,6 +178,8 @@ struct Unit {
   std::unique_ptr<TypeReference> result;  ///< of a function
   std::vector<Variable> variables;
   Block body;
+  std::string ladder;  ///< a body between LADDER and END_LADDER as written, not read yet
+  Location ladder_location;
 };
 
 struct TypeDeclaration {
@@ -184,11 +201,22 @@ struct ProgramInstance {
   Location task_location, type_location;
   std::vector<Argument> arguments;
 };
+/// A line of VAR_ACCESS (`name` set) or VAR_CONFIG: the path of a variable as its parts.
+struct PathDeclaration {
+  std::string name;
+  std::vector<std::string> path;
+  Location location, path_location;
+  TypeReference type;
+  std::string address;  ///< AT, of VAR_CONFIG
+  ExpressionPtr initial;
+};
 struct Configuration {
   std::string name;
   Location location;
   std::vector<Task> tasks;
   std::vector<ProgramInstance> programs;
+  std::vector<std::string> resources;
+  std::vector<PathDeclaration> paths;
 };
 
 /// All files of a compilation together.
@@ -197,6 +225,7 @@ struct Source {
   std::vector<TypeDeclaration> types;
   std::vector<Variable> globals;
   std::vector<Configuration> configurations;
+  std::size_t body_errors = 0;  ///< syntax errors inside bodies, where the declarations are whole
 };
 
 }  // namespace servogate::plc::syntax

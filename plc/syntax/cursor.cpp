@@ -113,15 +113,72 @@ Parser::Nesting::Nesting(Parser& parser) : p(parser) {
   throw SyntaxError{};
 }
 
+ExpressionPtr Parser::whole(ExpressionPtr e) {
+  if (!at_end()) fail("the end of the expression");
+  return e;
+}
+
+StatementPtr Parser::whole_statement() {
+  StatementPtr s = simple_statement();
+  accept(";");
+  if (!at_end()) fail("the end of the statement");
+  return s;
+}
+
+Block Parser::whole_body(bool instructions, const std::vector<Variable>& variables) {
+  Block out;
+  while (!at_end()) {
+    Block some = instructions ? instruction_list(variables) : block({});
+    for (StatementPtr& s : some) out.push_back(std::move(s));
+    if (at_end()) break;
+    report_.error(now().location, texts::kExpected, {"a statement", found()});
+    take();
+  }
+  return out;
+}
+
 void parse_st(std::string_view text, int file, Source& source, Report& report) {
-  Parser(text, file, source, report).file();
+  Parser(text, {static_cast<std::int16_t>(file), 1, 1}, source, report).file();
+}
+
+ExpressionPtr parse_expression(std::string_view text, const Location& begin, Report& report, bool initial) {
+  Source none;
+  try {
+    Parser p(text, begin, none, report);
+    return p.whole(initial ? p.initializer() : p.expression());
+  } catch (const SyntaxError&) {
+    auto bad = std::make_unique<Expression>();
+    bad->location = begin;
+    return bad;
+  }
+}
+
+StatementPtr parse_statement(std::string_view text, const Location& begin, Report& report) {
+  Source none;
+  try {
+    return Parser(text, begin, none, report).whole_statement();
+  } catch (const SyntaxError&) {
+    auto empty = std::make_unique<Statement>();
+    empty->location = begin;
+    return empty;
+  }
+}
+
+Block parse_body(std::string_view text, const Location& begin, bool instructions,
+                 const std::vector<Variable>& variables, Report& report) {
+  Source none;
+  try {
+    return Parser(text, begin, none, report).whole_body(instructions, variables);
+  } catch (const SyntaxError&) {
+    return {};
+  }
 }
 
 ExpressionPtr parse_path(std::string_view text) {
   Report report({"name"});
   Source none;
   try {
-    Parser p(text, 0, none, report);
+    Parser p(text, {0, 1, 1}, none, report);
     ExpressionPtr e = p.expression();
     return report.failed() || !p.at_end() ? nullptr : std::move(e);
   } catch (const SyntaxError&) {

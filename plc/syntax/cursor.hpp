@@ -16,11 +16,15 @@ struct SyntaxError {};
 /// statements and expressions, one file each.
 class Parser {
  public:
-  Parser(std::string_view text, int file, Source& source, Report& report)
-      : text_(text), list_(tokens(text, file, report)), source_(source), report_(report) {}
+  Parser(std::string_view text, const Location& begin, Source& source, Report& report)
+      : text_(text), list_(tokens(text, begin, report)), source_(source), report_(report) {}
 
   void file();
   ExpressionPtr expression();
+  ExpressionPtr initializer();
+  ExpressionPtr whole(ExpressionPtr e);
+  StatementPtr whole_statement();
+  Block whole_body(bool instructions, const std::vector<Variable>& variables);
   bool at_end() const { return list_[at_].kind == TokenKind::end; }
 
  private:
@@ -52,7 +56,7 @@ class Parser {
   void configuration();
   void task(Configuration& c);
   void program_instance(Configuration& c);
-  ExpressionPtr initializer();
+  void paths(Configuration& c, bool access);
   ExpressionPtr list_initializer();
   ExpressionPtr record_initializer();
   bool at_record() const;
@@ -68,6 +72,11 @@ class Parser {
   StatementPtr repeat_statement();
   std::vector<Label> labels();
   bool at_label() const;
+
+  // Instruction List.
+  friend class InstructionList;
+  bool at_instruction_list() const;
+  Block instruction_list(const std::vector<Variable>& variables);
 
   // Expressions.
   ExpressionPtr binary(int level);
@@ -88,6 +97,7 @@ class Parser {
   std::vector<Token> list_;
   std::size_t at_ = 0;
   int depth_ = 0;
+  std::uint64_t holds_ = 0;
   Source& source_;
   Report& report_;
 };

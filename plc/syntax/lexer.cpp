@@ -17,7 +17,8 @@ bool word_part(char c) { return letter(c) || digit(c); }
 
 class Lexer {
  public:
-  Lexer(std::string_view text, int file, Report& report) : text_(text), file_(file), report_(report) {}
+  Lexer(std::string_view text, const Location& begin, Report& report)
+      : text_(text), file_(begin.file), report_(report), line_(begin.line), column_(begin.column) {}
 
   std::vector<Token> run() {
     std::vector<Token> out;
@@ -101,6 +102,7 @@ class Lexer {
       t.literal.magnitude = t.key == "TRUE";
       return t;
     }
+    if (t.key == "LADDER" && alone_on_line(t.offset)) return ladder(std::move(t));
     if (peek() != '#') return t;
     step();
     const Kind time = time_prefix(t.key);
@@ -109,6 +111,35 @@ class Lexer {
       return t;
     }
     return time_literal(std::move(t), time);
+  }
+
+  // A ladder is drawn, not written: its lines are taken as they are.
+  bool alone_on_line(std::size_t begin) const {
+    while (begin > 0 && (text_[begin - 1] == ' ' || text_[begin - 1] == '\t')) --begin;
+    std::size_t end = at_;
+    while (end < text_.size() && (text_[end] == ' ' || text_[end] == '\t' || text_[end] == '\r')) ++end;
+    return (begin == 0 || text_[begin - 1] == '\n') && end < text_.size() && text_[end] == '\n';
+  }
+  Token ladder(Token t) {
+    while (at_ < text_.size() && peek() != '\n') step();
+    const std::size_t begin = at_;
+    while (at_ < text_.size()) {
+      step();  // the end of the line before
+      std::size_t first = at_;
+      while (first < text_.size() && (text_[first] == ' ' || text_[first] == '\t')) ++first;
+      constexpr std::string_view kEnd = "END_LADDER";
+      if (same_name(text_.substr(first, kEnd.size()), kEnd)) {
+        t.kind = TokenKind::ladder;
+        t.literal.text = text_.substr(begin, at_ - begin);
+        step(first + kEnd.size() - at_);
+        return t;
+      }
+      while (at_ < text_.size() && peek() != '\n') step();
+    }
+    report_.error(t.location, texts::kUnclosed,
+                  {"'END_LADDER'", "LADDER", std::to_string(t.location.line), "the end of the file"});
+    t.kind = TokenKind::bad;
+    return t;
   }
 
   Token time_literal(Token t, Kind kind) {
@@ -262,18 +293,18 @@ class Lexer {
   int file_;
   Report& report_;
   std::size_t at_ = 0;
-  int line_ = 1, column_ = 1;
+  int line_, column_;
 };
 
 }  // namespace
 
-std::vector<Token> tokens(std::string_view text, int file, Report& report) {
-  return Lexer(text, file, report).run();
+std::vector<Token> tokens(std::string_view text, const Location& begin, Report& report) {
+  return Lexer(text, begin, report).run();
 }
 
 bool parse_literal(std::string_view text, Literal& out) {
   Report report({"value"});
-  std::vector<Token> list = tokens(text, 0, report);
+  std::vector<Token> list = tokens(text, {0, 1, 1}, report);
   std::size_t at = 0;
   if (list[at].kind == TokenKind::typed) ++at;
   bool negative = false;

@@ -14,6 +14,7 @@ enum class TokenKind : std::uint8_t {
   literal,  ///< number, string, time, date
   typed,    ///< `NAME#` before a literal or an enumeration value
   direct,   ///< %IX0.0
+  ladder,   ///< the lines between LADDER and END_LADDER
   symbol,   ///< operator or punctuation in `key`
   bad,      ///< a finding was reported
 };
@@ -34,7 +35,8 @@ struct Token {
 
 /// Takes a text apart; the last token is `end`. Comments `(* *)` (nested), `/* */`, `//` and pragmas `{ }`
 /// are skipped. Never fails: what cannot be read is reported and becomes a bad token.
-std::vector<Token> tokens(std::string_view text, int file, Report& report);
+/// `begin`: where the text stands in its file.
+std::vector<Token> tokens(std::string_view text, const Location& begin, Report& report);
 
 /// A literal as people type it at `--set` or `force`: TRUE, -5, 16#FF, T#30ms, 'text', INT#3. False: it is
 /// none.

@@ -56,7 +56,15 @@ void Parser::unit(UnitKind kind) {
     }
   }
   const std::string closer = "END_" + opener;
-  u.body = block({closer});
+  const std::size_t errors = report_.errors();
+  if (now().kind == TokenKind::ladder) {
+    u.ladder_location = now().location;
+    u.ladder = take().literal.text;
+    accept(";");
+  } else {
+    u.body = at_instruction_list() ? instruction_list(u.variables) : block({closer});
+  }
+  source_.body_errors += report_.errors() - errors;
   source_.units.push_back(std::move(u));
   expect_closing(closer, opener, begin);
 }
@@ -285,7 +293,7 @@ void Parser::configuration() {
       variables(source_.globals, Section::global, false);
     } else if (at("RESOURCE")) {
       resource = take().location;
-      identifier("a name");
+      c.resources.push_back(identifier("a name"));
       expect("ON");
       identifier("a processor");
       ++resources;
@@ -296,9 +304,7 @@ void Parser::configuration() {
     } else if (at("PROGRAM")) {
       program_instance(c);
     } else if (at_any({"VAR_ACCESS", "VAR_CONFIG"})) {
-      report_.error(now().location, texts::kUnsupported, {now().key});
-      recover({"END_VAR"});
-      accept("END_VAR");
+      paths(c, at("VAR_ACCESS"));
     } else if (!accept(";")) {
       fail("VAR_GLOBAL, RESOURCE, TASK, PROGRAM or END_CONFIGURATION");
     }
@@ -306,6 +312,42 @@ void Parser::configuration() {
   if (resources > 0) expect_closing("END_RESOURCE", "RESOURCE", resource);
   source_.configurations.push_back(std::move(c));
   expect_closing("END_CONFIGURATION", "CONFIGURATION", begin);
+  accept(";");
+}
+
+// VAR_ACCESS name : path : type READ_WRITE; and VAR_CONFIG path AT %QX0.0 : type := value;
+void Parser::paths(Configuration& c, bool access) {
+  const std::string opener = now().key;
+  const Location begin = take().location;
+  while (!at_end() && !at("END_VAR")) {
+    try {
+      PathDeclaration p;
+      p.location = now().location;
+      if (access) {
+        p.name = identifier("the name of the access path");
+        expect(":");
+      }
+      p.path_location = now().location;
+      do p.path.push_back(identifier("the path of a variable"));
+      while (accept("."));
+      if (!access && at("AT")) {
+        Variable v;
+        address(v);
+        p.address = v.address;
+      }
+      expect(":");
+      p.type = type_reference();
+      if (access && now().kind == TokenKind::word && (now().key == "READ_ONLY" || now().key == "READ_WRITE"))
+        take();
+      if (!access && accept(":=")) p.initial = initializer();
+      expect(";");
+      c.paths.push_back(std::move(p));
+    } catch (const SyntaxError&) {
+      recover({";", "END_VAR", "END_CONFIGURATION"});
+      if (!accept(";")) break;
+    }
+  }
+  expect_closing("END_VAR", opener, begin);
   accept(";");
 }
 

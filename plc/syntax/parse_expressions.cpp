@@ -174,7 +174,13 @@ void Parser::arguments(Expression& call) {
       a.inverted = inverted;
     }
     if (!(a.output && at_any({",", ")"}))) a.value = expression();
-    call.arguments.push_back(std::move(a));
+    const std::string key = key_of(a.name);
+    if (key == "EN" && !a.output)
+      call.enable = std::move(a.value);
+    else if (key == "ENO" && a.output && !a.inverted)
+      call.enabled = std::move(a.value);
+    else
+      call.arguments.push_back(std::move(a));
     if (!accept(",")) break;
     if (at(")")) fail("an argument");
   }

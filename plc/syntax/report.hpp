@@ -20,6 +20,8 @@ class Report {
   std::size_t errors() const noexcept { return errors_; }
   /// The findings in the order of file, line and column.
   std::vector<text::Finding> take();
+  /// After syntax errors: a variable may only seem unused.
+  void no_warnings() { warnings_ = false; }
   /// Findings in the standard library's own source are dropped: its file number.
   void hide(int file) { hidden_ = file; }
   const std::vector<std::string>& files() const noexcept { return files_; }

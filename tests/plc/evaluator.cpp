@@ -52,7 +52,17 @@ void Evaluator::run(int unit, std::uint32_t self) {
       const std::uint32_t at = r.offset + b;
       memory[self + at] = at < u.frame->image.size() ? u.frame->image[at] : 0;
     }
-  block(u.body, self);
+  // Labels stand in the outermost block only.
+  for (std::size_t at = 0; at < u.body.size(); ++at) {
+    if (++steps_ > 3'000'000) throw Stopped{Fault::budget};
+    const Flow f = statement(u.body[at], self);
+    if (f == Flow::jump) {
+      const std::int32_t wanted = target_;
+      for (at = 0; u.body[at].kind != StmtKind::label || u.body[at].label != wanted;) ++at;
+    } else if (f != Flow::next) {
+      return;
+    }
+  }
 }
 
 Evaluator::Address Evaluator::address(const ir::Place& p, std::uint32_t self) {
@@ -347,6 +357,11 @@ Evaluator::Flow Evaluator::statement(const ir::Stmt& s, std::uint32_t self) {
           if (!less(c, v.i, r.low) && !less(c, r.high, v.i)) return block(b.body, self);
       return block(s.body, self);
     }
+    case StmtKind::label:
+      return Flow::next;
+    case StmtKind::jump:
+      target_ = s.label;
+      return Flow::jump;
     case StmtKind::exit:
       return Flow::exit;
     case StmtKind::continue_:
@@ -365,7 +380,7 @@ Evaluator::Flow Evaluator::loop(const ir::Stmt& s, std::uint32_t self) {
       if (s.kind == StmtKind::while_ && evaluate(*s.value, self).i == 0) break;
       const Flow f = block(s.body, self);
       if (f == Flow::exit) break;
-      if (f == Flow::return_) return f;
+      if (f == Flow::return_ || f == Flow::jump) return f;
     } while (s.kind == StmtKind::while_ || evaluate(*s.value, self).i == 0);
     return Flow::next;
   }
@@ -380,7 +395,7 @@ Evaluator::Flow Evaluator::loop(const ir::Stmt& s, std::uint32_t self) {
     if (++steps_ > 3'000'000) throw Stopped{Fault::budget};
     const Flow f = block(s.body, self);
     if (f == Flow::exit) break;
-    if (f == Flow::return_) return f;
+    if (f == Flow::return_ || f == Flow::jump) return f;
     n.i += by;
     show();
   }

@@ -28,7 +28,7 @@ class Evaluator {
     std::uint32_t at = 0;
     int bit = -1;
   };
-  enum class Flow { next, exit, continue_, return_ };
+  enum class Flow { next, exit, continue_, return_, jump };
 
   Value evaluate(const ir::Expr& e, std::uint32_t self);
   Value binary(const ir::Expr& e, std::uint32_t self);
@@ -46,6 +46,7 @@ class Evaluator {
 
   ir::Program program_;
   std::int64_t steps_ = 0;
+  std::int32_t target_ = -1;  ///< label of a jump under way
 
  public:
   std::vector<std::uint8_t> memory;

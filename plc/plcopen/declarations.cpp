@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "plc/plcopen/reader.hpp"
+#include "plc/syntax/parser.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::plcopen {
+
+using syntax::ExpressionKind;
+using syntax::ExpressionPtr;
+using syntax::TypeReference;
+using syntax::Variable;
+
+ExpressionPtr Reader::expression(const pugi::xml_attribute& a, const pugi::xml_node& n) {
+  return syntax::parse_expression(a.value(), where(n), report_);
+}
+
+void Reader::variables(const pugi::xml_node& list, syntax::Section section, std::vector<Variable>& out) {
+  for (const pugi::xml_node& n : list.children()) {
+    if (local_name(n) != "variable") continue;
+    Variable v;
+    v.section = section;
+    v.location = v.address_location = where(n);
+    v.name = attribute(n, "name");
+    v.constant = list.attribute("constant").as_bool();
+    v.retain = list.attribute("retain").as_bool();
+    v.address = key_of(n.attribute("address").value());
+    v.type = std::make_shared<TypeReference>(type(child(n, "type")));
+    if (const pugi::xml_node value = child(n, "initialValue")) v.initial = initial(value);
+    out.push_back(std::move(v));
+  }
+}
+
+TypeReference Reader::type(const pugi::xml_node& holder, int depth) {
+  TypeReference t;
+  pugi::xml_node n;
+  for (const pugi::xml_node& c : holder.children())
+    if (!n && c.type() == pugi::node_element) n = c;
+  t.location = where(n ? n : holder);
+  const std::string_view name = local_name(n);
+  t.name = name;
+  if (!n || depth > kMaxTypeNesting) {
+    report_.error(t.location, texts::kExpected, {"a type", n ? "'" + t.name + "'" : "nothing"});
+    t.name = "BOOL";
+  } else if (name == "derived") {
+    t.name = attribute(n, "name");
+  } else if (name == "string" || name == "wstring") {
+    t.name = name == "string" ? "STRING" : "WSTRING";
+    if (const pugi::xml_attribute length = n.attribute("length"); length && *length.value() != '\0')
+      t.length = expression(length, n);
+  } else if (name == "array") {
+    array(n, t, depth);
+  } else if (name == "enum") {
+    enumeration(n, t);
+  } else if (name == "struct") {
+    structure(n, t, depth);
+  } else if (name == "subrangeSigned" || name == "subrangeUnsigned") {
+    t = type(child(n, "baseType"), depth + 1);
+    const pugi::xml_node range = child(n, "range");
+    t.low = expression(range.attribute("lower"), n);
+    t.high = expression(range.attribute("upper"), n);
+  } else if (name == "pointer") {
+    report_.error(t.location, texts::kUnsupported, {"POINTER"});
+    t.name = "BOOL";
+  }
+  return t;
+}
+
+void Reader::array(const pugi::xml_node& n, TypeReference& t, int depth) {
+  t.name = "ARRAY";
+  for (const pugi::xml_node& d : n.children())
+    if (local_name(d) == "dimension") {
+      ExpressionPtr low = expression(d.attribute("lower"), d);
+      t.ranges.emplace_back(std::move(low), expression(d.attribute("upper"), d));
+    }
+  if (t.ranges.empty()) report_.error(t.location, texts::kXmlMissing, {"array", "dimension"});
+  t.element = std::make_unique<TypeReference>(type(child(n, "baseType"), depth + 1));
+}
+
+void Reader::enumeration(const pugi::xml_node& n, TypeReference& t) {
+  t.name.clear();
+  for (const pugi::xml_node& v : child(n, "values").children()) {
+    if (local_name(v) != "value") continue;
+    t.value_locations.push_back(where(v));
+    std::string name = attribute(v, "name");
+    const pugi::xml_attribute value = v.attribute("value");
+    t.values.emplace_back(std::move(name), value ? expression(value, v) : nullptr);
+  }
+  if (!t.values.empty()) return;
+  report_.error(t.location, texts::kXmlMissing, {"enum", "value"});
+  t.name = "BOOL";
+}
+
+void Reader::structure(const pugi::xml_node& n, TypeReference& t, int depth) {
+  t.name = "STRUCT";
+  for (const pugi::xml_node& m : n.children()) {
+    if (local_name(m) != "variable") continue;
+    Variable v;
+    v.location = where(m);
+    v.name = attribute(m, "name");
+    v.type = std::make_shared<TypeReference>(type(child(m, "type"), depth + 1));
+    if (const pugi::xml_node value = child(m, "initialValue")) v.initial = initial(value);
+    t.members.push_back(std::move(v));
+  }
+}
+
+ExpressionPtr Reader::initial(const pugi::xml_node& value, int depth) {
+  auto out = std::make_unique<syntax::Expression>();
+  out->location = where(value);
+  if (depth > kMaxTypeNesting) return out;
+  for (const pugi::xml_node& n : value.children()) {
+    const std::string_view name = local_name(n);
+    if (name == "simpleValue")
+      return syntax::parse_expression(n.attribute("value").value(), where(n), report_, true);
+    if (name == "arrayValue") {
+      out->kind = ExpressionKind::list;
+      for (const pugi::xml_node& v : n.children()) {
+        if (local_name(v) != "value") continue;
+        out->repeats.push_back(std::max<std::int64_t>(1, v.attribute("repetitionValue").as_llong(1)));
+        out->operands.push_back(initial(v, depth + 1));
+      }
+    } else if (name == "structValue") {
+      out->kind = ExpressionKind::record;
+      for (const pugi::xml_node& v : n.children()) {
+        if (local_name(v) != "value") continue;
+        syntax::Argument a;
+        a.location = where(v);
+        a.name = attribute(v, "member");
+        a.value = initial(v, depth + 1);
+        out->arguments.push_back(std::move(a));
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace servogate::plc::plcopen

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+
+#include "plc/plcopen/reader.hpp"
+#include "plc/syntax/parser.hpp"
+#include "plc/texts.hpp"
+
+namespace servogate::plc::plcopen {
+
+using ladder::Element;
+using ladder::ElementKind;
+using ladder::Pin;
+
+namespace {
+
+struct Named {
+  std::string_view name;
+  ElementKind kind;
+};
+constexpr Named kElements[] = {
+    {"leftPowerRail", ElementKind::rail}, {"contact", ElementKind::contact},
+    {"coil", ElementKind::coil},          {"block", ElementKind::block},
+    {"inVariable", ElementKind::source},  {"outVariable", ElementKind::sink},
+    {"inOutVariable", ElementKind::sink}, {"label", ElementKind::label},
+    {"jump", ElementKind::jump},          {"return", ElementKind::leave},
+    {"connector", ElementKind::link},     {"continuation", ElementKind::continued},
+};
+// Drawn, but without meaning; and what belongs to SFC.
+constexpr std::string_view kSilent[] = {"rightPowerRail", "comment", "vendorElement",
+                                        "error",          "addData", "documentation"};
+
+int edge_of(const pugi::xml_node& n) {
+  const std::string_view edge = n.attribute("edge").value();
+  return edge == "rising" ? 1 : edge == "falling" ? -1 : 0;
+}
+
+}  // namespace
+
+void Reader::diagram(const pugi::xml_node& n, syntax::Unit& u) {
+  std::vector<Element> elements;
+  std::vector<pugi::xml_node> nodes;
+  for (const pugi::xml_node& c : n.children()) {
+    if (c.type() != pugi::node_element) continue;
+    const std::string_view name = local_name(c);
+    if (std::find(std::begin(kSilent), std::end(kSilent), name) != std::end(kSilent)) continue;
+    const auto* known = std::find_if(std::begin(kElements), std::end(kElements),
+                                     [&](const Named& k) { return k.name == name; });
+    if (known == std::end(kElements)) {
+      report_.error(where(c), texts::kUnsupported, {"<" + std::string(name) + ">"});
+      continue;
+    }
+    Element e;
+    e.kind = known->kind;
+    e.location = where(c);
+    const pugi::xml_node position = child(c, "position");
+    e.x = position.attribute("x").as_double();
+    e.y = position.attribute("y").as_double();
+    e.order = c.attribute("executionOrderId").as_int();
+    element(c, e);
+    elements.push_back(std::move(e));
+    nodes.push_back(c);
+  }
+  connect(elements, nodes);
+  ladder::lower(std::move(elements), u, report_);
+}
+
+void Reader::element(const pugi::xml_node& n, Element& e) {
+  e.inverted = n.attribute("negated").as_bool();
+  e.edge = edge_of(n);
+  const std::string_view storage = n.attribute("storage").value();
+  e.storage = storage == "set"     ? ladder::Storage::set
+              : storage == "reset" ? ladder::Storage::reset
+                                   : ladder::Storage::none;
+  switch (e.kind) {
+    case ElementKind::rail:
+      return;
+    case ElementKind::block:
+      return block(n, e);
+    case ElementKind::label:
+    case ElementKind::jump:
+      e.name = attribute(n, "label");
+      break;
+    case ElementKind::link:
+    case ElementKind::continued:
+      e.name = attribute(n, "name");
+      break;
+    case ElementKind::leave:
+      break;
+    default:
+      operand(n, e);
+  }
+  const bool takes =
+      e.kind != ElementKind::source && e.kind != ElementKind::label && e.kind != ElementKind::continued;
+  if (!takes) return;
+  e.inputs.emplace_back();
+  wires(child(n, "connectionPointIn"), e.inputs[0]);
+}
+
+// <variable> of a contact or coil, <expression> of a variable.
+void Reader::operand(const pugi::xml_node& n, Element& e) {
+  pugi::xml_node text = child(n, "variable");
+  if (!text) text = child(n, "expression");
+  Location begin;
+  const std::string written = text_of(text ? text : n, begin);
+  if (written.empty()) {
+    report_.error(e.location, texts::kXmlMissing, {std::string(n.name()), "variable"});
+    e.operand = std::make_unique<syntax::Expression>();
+    return;
+  }
+  e.operand = syntax::parse_expression(written, begin, report_);
+}
+
+// Wires keep the number of their element in the file until all are known.
+void Reader::wires(const pugi::xml_node& point, Pin& pin) {
+  pin.location = where(point);
+  for (const pugi::xml_node& c : point.children()) {
+    if (local_name(c) == "expression") {
+      Location begin;
+      const std::string written = text_of(c, begin);
+      if (!written.empty()) pin.value = syntax::parse_expression(written, begin, report_);
+    }
+    if (local_name(c) != "connection") continue;
+    pin.wires.push_back({c.attribute("refLocalId").as_int(-1), c.attribute("formalParameter").value()});
+  }
+}
+
+Pin Reader::block_pin(const pugi::xml_node& variable) {
+  Pin p;
+  p.name = attribute(variable, "formalParameter");
+  p.inverted = variable.attribute("negated").as_bool();
+  p.edge = edge_of(variable);
+  return p;
+}
+
+void Reader::block(const pugi::xml_node& n, Element& e) {
+  e.name = attribute(n, "typeName");
+  e.instance = n.attribute("instanceName").value();
+  e.inverted = false;
+  for (const char* list : {"inputVariables", "inOutVariables"})
+    for (const pugi::xml_node& v : child(n, list).children()) {
+      if (local_name(v) != "variable") continue;
+      Pin p = block_pin(v);
+      p.in_out = std::string_view(list) == "inOutVariables";
+      wires(child(v, "connectionPointIn"), p);
+      e.inputs.push_back(std::move(p));
+    }
+  for (const pugi::xml_node& v : child(n, "outputVariables").children()) {
+    if (local_name(v) != "variable") continue;
+    e.outputs.push_back(block_pin(v));
+    // A variable written at the pin itself.
+    const pugi::xml_node point = child(v, "connectionPointOut");
+    Location begin;
+    const pugi::xml_node text = child(point, "expression");
+    const std::string written = text ? text_of(text, begin) : std::string();
+    if (written.empty()) continue;
+    syntax::Argument a;
+    a.name = e.outputs.back().name;
+    a.location = begin;
+    a.output = true;
+    a.inverted = e.outputs.back().inverted;
+    a.value = syntax::parse_expression(written, begin, report_);
+    e.written.push_back(std::move(a));
+  }
+}
+
+void Reader::connect(std::vector<Element>& elements, const std::vector<pugi::xml_node>& nodes) {
+  std::map<int, int> by_number;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const int number = nodes[i].attribute("localId").as_int(-1);
+    if (!by_number.emplace(number, static_cast<int>(i)).second)
+      report_.error(where(nodes[i]), texts::kXmlTwice, {std::to_string(number)});
+  }
+  for (Element& e : elements)
+    for (Pin& p : e.inputs)
+      for (ladder::Wire& w : p.wires) {
+        const auto at = by_number.find(w.element);
+        if (at == by_number.end())
+          report_.error(p.location, texts::kXmlNoElement, {std::to_string(w.element)});
+        w.element = at == by_number.end() ? -1 : at->second;
+      }
+}
+
+}  // namespace servogate::plc::plcopen
