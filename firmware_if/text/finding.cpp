@@ -60,7 +60,6 @@ std::string Finding::str(Language language) const {
   return out;
 }
 
-std::string number(double value, int digits) {
 std::string Finding::excerpt() const {
   if (source.empty() || line <= 0 || column <= 0) return {};
   constexpr int kShown = 160;  // characters; more of a long line is left out on both sides
@@ -77,9 +76,7 @@ std::string Finding::excerpt() const {
   return " " + number + " | " + shown + "\n " + std::string(number.size(), ' ') + " | " + below + "^\n";
 }
 
-/// From here on the digits before the point say nothing to a person.
-constexpr double kLongest = 1e15;
-
+std::string number(double value, int digits) {
   if (!std::isfinite(value)) return value > 0 ? "inf" : value < 0 ? "-inf" : "nan";
   char buffer[400];
   std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);

@@ -37,13 +37,14 @@ struct Finding {
   int column = 0;
   const Entry* entry = nullptr;
   std::vector<std::string> arguments;
+  std::string source;  ///< that line of the file, without its end; empty: not known
 
   /// `file:line:col: error: text [code]`, the form every command prints (severity stays English for editors).
   std::string str(Language language = user_language()) const;
-};
   /// The line with a caret under the column, as compilers show it: two lines, each ended. Empty when the line
   /// is not known.
   std::string excerpt() const;
+};
 
 /// A number as people write it: shortest form that reads back, at most `digits` decimals, never in exponent
 /// form.
