@@ -163,10 +163,12 @@ CheckReport check_program(std::string_view dialect, const MachineModel& machine,
     survey(command);
     return true;
   };
-  const auto error = run_dry(interpreter, on_command, kDryRunBlocks);
+  const auto error = run_dry(interpreter, on_command, kDryRunBlocks + report.blocks);
   report.executed = interpreter.executed();
   report.files = interpreter.files();
   report.finished = !error;
+  const std::vector<text::Finding>& warnings = interpreter.warnings();
+  report.findings.insert(report.findings.end(), warnings.begin(), warnings.end());
   add_travel(report, machine, survey);
   const auto same = [&](const text::Finding& f) {
     return f.file == error->file && f.line == error->line && f.entry == error->entry;

@@ -9,7 +9,8 @@
 
 namespace servogate::program {
 
-/// Blocks after which a program that runs without a machine is stopped with an error.
+/// A program that runs without a machine is stopped with an error when it has executed so many blocks more
+/// than it has.
 inline constexpr long long kDryRunBlocks = 1'000'000;
 
 /// What one run of a program without a machine has shown.
@@ -29,10 +30,10 @@ struct CheckReport {
     int line = 0;  ///< where it is called first
     int calls = 0;
   };
-  std::vector<text::Finding>
-      findings;                 ///< all that reading gives, in file order, then the first error of execution
-  std::vector<Extent> extents;  ///< index = axis of the machine
-  std::vector<ToolUse> tools;   ///< in order of first use
+  std::vector<text::Finding> findings;  ///< all that reading gives, in file order, then the warnings and the
+                                        ///< first error of execution
+  std::vector<Extent> extents;          ///< index = axis of the machine
+  std::vector<ToolUse> tools;           ///< in order of first use
   std::vector<std::string> files;
   double feed_seconds =
       0.0;  ///< path length over feed, no acceleration; feed per revolution with the S in force
@@ -50,9 +51,9 @@ struct CheckReport {
 };
 
 /// Runs a program to its end without a machine: packets start at zero, own writes take effect in order,
-/// NeedsSync is granted at once, waits are passed; after kDryRunBlocks executed blocks it stops with an
-/// error. A motion that leaves the travel is found and the run goes on, so that the extents are those of the
-/// whole program. Not real-time safe. Never throws on bad programs.
+/// NeedsSync is granted at once, waits are passed; after kDryRunBlocks executed blocks more than it has it
+/// stops with an error. A motion that leaves the travel is found and the run goes on, so that the extents are
+/// those of the whole program. Not real-time safe. Never throws on bad programs.
 CheckReport check_program(std::string_view dialect, const MachineModel& machine, const Tables& tables,
                           const std::string& file_name, const std::string& text, const ProgramLoader& loader,
                           const Position& start);

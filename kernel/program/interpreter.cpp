@@ -51,6 +51,10 @@ std::vector<text::Finding> Interpreter::findings() const {
   return find_all(impl_->run);
 }
 
+std::vector<SettingFault> Interpreter::setting_faults() const {
+  return impl_->known ? impl_->run.setting_faults() : std::vector<SettingFault>{};
+}
+const std::vector<text::Finding>& Interpreter::warnings() const { return impl_->run.warnings(); }
 const MachineModel& Interpreter::machine() const { return impl_->run.machine(); }
 const std::vector<std::string>& Interpreter::files() const { return impl_->run.files(); }
 const Position& Interpreter::position() const { return impl_->run.state().machine; }

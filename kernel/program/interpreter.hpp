@@ -24,10 +24,13 @@ struct MachineModel {
     bool diameter = false;
     bool alternative_inch = false;
     double travel_min = -1e9, travel_max = 1e9;  ///< mm or degrees; lathe X as radius
-    double rapid = 0.0;                          ///< mm/s or degrees/s
+    double rapid = 0.0;                          ///< largest speed, mm/s or degrees/s; 0: not known
   };
   std::vector<Axis> axes;
   int spindles = 1;
+  double spindle_min_rpm = 0.0;  ///< of the spindle that S speaks to; 0: as slow as one likes
+  double spindle_max_rpm = 0.0;  ///< 0: not known, S is not compared with it
+  int tool_places = 0;           ///< of the magazine or turret: T takes 0 to this number; 0: not known
   double contour_tolerance_mm = 0.01;
   /// Power-on modes and values in the dialect's own words, e.g. {"G94", "G97", "G90", "G71", "G27"} and
   /// {"ERF", 0.01}, {"MCD", 2}.
@@ -56,6 +59,14 @@ struct Tables {
 
 /// Gives the text of another program by its name (NC-110 CLS), nullopt when there is none.
 using ProgramLoader = std::function<std::optional<std::string>(std::string_view name)>;
+
+/// A power-on mode or value of the machine file that the language cannot take. Its program does not run.
+struct SettingFault {
+  int mode = -1;         ///< index in MachineModel::power_on, -1: it is a variable
+  std::string variable;  ///< its name in MachineModel::variables
+  const text::Entry* entry = nullptr;
+  std::vector<std::string> arguments;
+};
 
 /// The interpreter has to know packet places as they are when all motion before it has ended: finish it, take
 /// a snapshot of the packets in the cycle, then call next() again with them.
@@ -89,6 +100,12 @@ class Interpreter {
 
   /// All findings that reading alone can give (syntax, unknown words, impossible combinations), for `check`.
   std::vector<text::Finding> findings() const;
+  /// What is wrong with the machine's power-on modes and variables in this language.
+  std::vector<SettingFault> setting_faults() const;
+  /// What the program has asked for so far and the control does otherwise: S beyond the spindle's range, F
+  /// beyond the axes' speeds, a corrector that the tool table does not hold. Each place once, in the order of
+  /// execution, at most 20 places of a kind; only grows, but for mdi(), which begins anew.
+  const std::vector<text::Finding>& warnings() const;
   /// The machine it was made for.
   const MachineModel& machine() const;
   /// Names of the files met so far, index = Command::file.

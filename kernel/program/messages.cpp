@@ -163,11 +163,31 @@ constexpr text::Entry kMessages[] = {
      "TMR при G95 считается в оборотах, но скорость шпинделя не задана"},
     {"P807", "TMR counts revolutions with G95, G96 gives no fixed speed",
      "TMR при G95 считается в оборотах, G96 не даёт постоянной скорости"},
+    {"P808", "S{0} is above the {1} rpm of the spindle: it turns at {1}",
+     "S{0} больше наибольших {1} об/мин шпинделя: он вращается с {1}"},
+    {"P809", "S{0} is below the {1} rpm of the spindle: it turns at {1}",
+     "S{0} меньше наименьших {1} об/мин шпинделя: он вращается с {1}"},
+    {"P810",
+     "{0}: a cutting speed (G96) needs an axis programmed in diameter, this machine has none; program G97, "
+     "or "
+     "name it in power_on",
+     "{0}: скорости резания (G96) нужна ось, программируемая в диаметре, на этом станке её нет; задайте G97 "
+     "в программе или в power_on"},
+    {"P811", "T{0}: the magazine of this machine has {1} places", "T{0}: в магазине этого станка мест {1}"},
+    {"P812", "the corrector {0} is not in the tool table: its lengths count as 0",
+     "корректора {0} нет в таблице инструмента: его вылеты считаются нулевыми"},
+    {"P813", "{0} asks for {1}/min; in line {2} the axes reach {3}/min ({4}), the motion is as fast as that",
+     "{0} требует {1}/мин; в строке {2} оси достигают {3}/мин ({4}), с этой скоростью и идёт движение"},
+    {"P814", "further places of {0} are not named", "остальные места с {0} не названы"},
     {"P901", "{0} is not executed in this version", "{0} в этой версии не выполняется"},
     {"P902", "the power-on mode {0} is not one of this language", "режим включения {0} не из этого языка"},
     {"P903", "there is no dialect {0}", "нет языка {0}"},
+    {"P904", "{0} is no mode: it holds for its block only", "{0} не режим: действует только в своём кадре"},
+    {"P905", "{0} and {1} exclude one another: of a group one mode is in force",
+     "{0} и {1} исключают друг друга: из группы действует один режим"},
+    {"P906", "the mode {0} stands twice", "режим {0} назван дважды"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::dialect_unknown) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::power_on_twice) + 1);
 
 }  // namespace
 

@@ -129,9 +129,19 @@ enum class Fault : std::uint8_t {
   no_spindle,
   dwell_no_speed,
   dwell_surface_speed,
+  speed_above,
+  speed_below,
+  surface_speed_axis,
+  tool_outside,
+  corrector_missing,
+  feed_above,
+  more_places,
   not_executed,
   power_on_bad,
   dialect_unknown,
+  power_on_for_block,
+  power_on_excluded,
+  power_on_twice,
 };
 
 /// All texts, in the order of Fault.

@@ -97,6 +97,12 @@ class Reader {
           if (case_.machine.axes[a].letter == letter) case_.start[a] = number;
     } else if (name[0] == "spindles") {
       case_.machine.spindles = std::stoi(value);
+    } else if (name[0] == "spindle") {
+      const auto range = words_of(value);
+      case_.machine.spindle_min_rpm = std::stod(range.at(0));
+      case_.machine.spindle_max_rpm = std::stod(range.at(1));
+    } else if (name[0] == "tool_places") {
+      case_.machine.tool_places = std::stoi(value);
     } else if (name[0] == "k_bytes") {
       case_.machine.k_bytes = static_cast<std::uint32_t>(std::stoul(value));
     } else if (name[0] == "syvar_bytes") {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "kernel/program/reading/number.hpp"
-
 namespace servogate::program {
 namespace {
 
@@ -45,31 +43,9 @@ Execution::Execution(const Dialect& dialect, MachineModel machine, Tables tables
   state_.tables = std::make_shared<const Tables>(std::move(tables));
   state_.machine = start;
   state_.frame = Frame(axis_count());
+  learn_machine();
   reset();
-  try {
-    apply_power_on();
-  } catch (const ProgramError& error) {
-    power_on_error_ = error;
-  }
-}
-
-void Execution::apply_power_on() {
-  for (const auto& word : machine_->power_on) power_on_word(word);
-  for (const auto& [name, value] : machine_->variables) {
-    if (name == "E" || name == "RESOLUTION") continue;
-    const VariableRule* rule = dialect_->find_variable(name);
-    if (rule == nullptr || rule->set == nullptr) fail(Fault::power_on_bad, 0, {name});
-    rule->set(*this, value, 0);
-  }
-}
-
-void Execution::power_on_word(const std::string& word) {
-  std::size_t pos = 1;
-  const int number = word.size() > 1 && word[0] == 'G' ? read_index(word, pos) : -1;
-  const GRule* rule = number >= 0 && pos == word.size() ? dialect_->find_g(number) : nullptr;
-  if (rule == nullptr) fail(Fault::power_on_bad, 0, {word});
-  BlockWords none;
-  take_g(none, *rule);
+  apply_power_on();
 }
 
 void Execution::reset() {
@@ -349,6 +325,8 @@ void Execution::mdi(std::string_view block) {
   last_.reset();
   before_mdi_ = state_;
   mdi_ = true;
+  warnings_.clear();
+  state_.feed_at.told = state_.speed_at.told = false;
   state_.flow = Flow{};
   const auto at = std::find(files_.begin() + 1, files_.end(), "MDI");
   state_.flow.file = static_cast<int>(at - files_.begin());

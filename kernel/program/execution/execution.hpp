@@ -16,6 +16,8 @@
 
 namespace servogate::program {
 
+class Reach;
+
 /// What one block of words asks for, gathered before anything of it is executed.
 struct BlockWords {
   const Block* block = nullptr;
@@ -51,6 +53,8 @@ class Execution : public ValueSource {
   const AxisLetters& axes() const noexcept { return axes_; }
   const ProgramLoader& loader() const noexcept { return loader_; }
   const std::vector<std::string>& files() const noexcept { return files_; }
+  const std::vector<SettingFault>& setting_faults() const noexcept { return setting_faults_; }
+  const std::vector<text::Finding>& warnings() const noexcept { return warnings_; }
   const Source& main_source() const noexcept { return *sources_.front(); }
   State& state() noexcept { return state_; }
   const State& state() const noexcept { return state_; }
@@ -116,9 +120,12 @@ class Execution : public ValueSource {
   const Block& block() const noexcept { return block_; }
 
  private:
-  // execution.cpp
+  // power_on.cpp
   void apply_power_on();
-  void power_on_word(const std::string& word);
+  void power_on_mode(std::size_t index);
+  void power_on_value(const std::string& name, double value);
+
+  // execution.cpp
   int line_number() const noexcept { return static_cast<int>(line_) + 1; }
   Step take();
   std::optional<Step> advance(bool synchronised);
@@ -151,9 +158,21 @@ class Execution : public ValueSource {
   // functions.cpp
   void before_motion(const BlockWords& words);
   void after_motion(const BlockWords& words);
-  void spindle_word(const BlockWords& words, const MRule* start);
+  void spindle_word(const BlockWords& words, const MRule* start, const Word* start_word);
   void end_function(int code, const MRule* rule, int column);
   void change_tool();
+
+  // capability.cpp
+  void learn_machine();
+  Written written(int column) const noexcept;
+  void warn(Written& place, Fault fault, std::vector<std::string> arguments);
+  void check_tool(int column);
+  void check_speed(const Word& word);
+  void check_line_feed(const BlockWords& words, const Feed& feed, const Position& to);
+  void check_arc_feed(const BlockWords& words, const Arc& arc, double radius);
+  double spindle_rpm(const Position& to) const;
+  double path_speed(const Feed& feed, double length, const Position& to) const;
+  void check_feed(const BlockWords& words, double speed, const Reach& reach, bool linear);
 
   // motion.cpp
   void move(const BlockWords& words);
@@ -182,10 +201,14 @@ class Execution : public ValueSource {
   State before_mdi_;
   bool mdi_ = false;
   PacketView view_;
+  std::vector<text::Finding> warnings_;
+  double every_rapid_ = 0.0;  ///< speed that every axis reaches, mm/s and degrees/s
+  int surface_axis_ = -1;     ///< whose coordinate is the radius for G96
   std::vector<Command> queue_;
   std::size_t head_ = 0;
   std::optional<Step> last_;
-  std::optional<ProgramError> power_on_error_;
+  std::vector<SettingFault> setting_faults_;
+  std::optional<ProgramError> power_on_error_;  ///< the first of them
   Block block_;
   Operands operands_;
   std::uint32_t line_ = 0;

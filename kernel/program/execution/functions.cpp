@@ -33,9 +33,11 @@ void Execution::before_motion(const BlockWords& words) {
     for (const int part : {state_.tool, state_.corrector})
       if (part > 9999)
         fail(Fault::out_of_range, words.tool->column, {"T", std::to_string(part), "0", "9999"});
+    check_tool(words.tool->column);
     emit(Tool{state_.tool, state_.corrector, false});
   }
   const MRule* start = nullptr;
+  const Word* start_word = nullptr;
   for (int i = 0; i < words.m_count; ++i) {
     const MRule* rule = dialect_->find_m(words.m_code[static_cast<std::size_t>(i)]);
     if (rule == nullptr || rule->after_motion || mode_of(rule->action) == SpindleMode::keep) continue;
@@ -43,11 +45,12 @@ void Execution::before_motion(const BlockWords& words) {
       fail(Fault::spindle_conflict, words.m[static_cast<std::size_t>(i)]->column,
            {std::to_string(start->code), std::to_string(rule->code)});
     start = rule;
+    start_word = words.m[static_cast<std::size_t>(i)];
     if (machine_->spindles == 0)
       fail(Fault::no_spindle, words.m[static_cast<std::size_t>(i)]->column,
            {"M" + std::to_string(rule->code)});
   }
-  spindle_word(words, start);
+  spindle_word(words, start, start_word);
   for (int i = 0; i < words.m_count; ++i) {
     const int code = words.m_code[static_cast<std::size_t>(i)];
     const MRule* rule = dialect_->find_m(code);
@@ -56,7 +59,7 @@ void Execution::before_motion(const BlockWords& words) {
   if (words.h != nullptr) emit(HFunction{whole(words.h->value, "H")});
 }
 
-void Execution::spindle_word(const BlockWords& words, const MRule* start) {
+void Execution::spindle_word(const BlockWords& words, const MRule* start, const Word* start_word) {
   if (words.speed != nullptr) {
     if (machine_->spindles == 0)
       fail(Fault::no_spindle, words.speed->column, {word_text(block_, *words.speed)});
@@ -65,7 +68,10 @@ void Execution::spindle_word(const BlockWords& words, const MRule* start) {
       fail(Fault::out_of_range, words.speed->value.column, {"S", text::number(speed), "0", "99999.99"});
     const bool feet = state_.modes.unit == Function::inch && state_.modes.spindle == Function::surface_speed;
     state_.speed = feet ? speed * kMetresPerFoot : speed;
+    state_.speed_at = written(words.speed->column);
   }
+  const bool turns = start != nullptr && start->action != MAction::spindle_orient;
+  if (words.speed != nullptr || turns) check_speed(words.speed != nullptr ? *words.speed : *start_word);
   if (start != nullptr)
     emit_spindle(mode_of(start->action));
   else if (words.speed != nullptr)

@@ -101,10 +101,13 @@ void Execution::go(int axis, double programmed, bool at_rapid) {
     to[at(a)] = state_.frame.to_machine(state_.programmed, a);
     check_axis(a, to[at(a)], static_cast<int>(block_.body) + 1);
   }
-  if (at_rapid)
+  if (at_rapid) {
     rapid(to);
-  else
-    emit(Line{to, feed_of(BlockWords{}, 0.0, rotary(axis)), CornerRule{}});
+  } else {
+    const Feed feed = feed_of(BlockWords{}, 0.0, rotary(axis));
+    check_line_feed(BlockWords{}, feed, to);
+    emit(Line{to, feed, CornerRule{}});
+  }
   state_.machine = to;
 }
 
@@ -122,6 +125,7 @@ void Execution::line(const BlockWords& words, const Position& to) {
   line.to = to;
   line.feed = feed_of(words, words.time != nullptr ? std::sqrt(square) : 0.0, turns && !linear);
   line.corner = corner_of(words);
+  check_line_feed(words, line.feed, to);
   emit(std::move(line));
 }
 
@@ -185,6 +189,7 @@ void Execution::arc(const BlockWords& words, const Position& to) {
   for (const double y : {box.low.y, box.high.y}) check_axis(a2, y, here);
   arc.feed = feed_of(words, helix_length(arc, r1), false);
   arc.corner = corner_of(words);
+  check_arc_feed(words, arc, r1);
   emit(std::move(arc));
 }
 
@@ -235,6 +240,7 @@ void Execution::store_feed(const BlockWords& words) {
     fail(Fault::out_of_range, words.feed->value.column, {"F", text::number(value), "0.01", "99999.99"});
   if (state_.modes.feed == Function::feed_inverse) return;
   state_.feed = value;
+  state_.feed_at = written(words.feed->column);
   state_.feed_inch = state_.modes.unit == Function::inch;
 }
 

@@ -68,6 +68,14 @@ struct Cycle {
   bool spindle_rests = false;  ///< stopped at the bottom of a hole, to start again before the next one
 };
 
+/// Where a modal word was written that the control may have to speak of later.
+struct Written {
+  int file = 0;
+  int line = 0;  ///< 0: nowhere, it is a power-on value
+  int column = 0;
+  bool told = false;  ///< its warning has been given
+};
+
 /// Everything of an interpreter that changes while a program runs; a plain value.
 struct State {
   Modes modes;
@@ -79,7 +87,9 @@ struct State {
   Position field_min{}, field_max{};  ///< DLO, machine coordinates without the tool length
   double feed = 0.0;                  ///< F as programmed, 0: never
   bool feed_inch = false;
+  Written feed_at;
   double speed = 0.0;  ///< S in rpm or m/min
+  Written speed_at;
   SpindleMode spindle = SpindleMode::stop;
   std::int32_t tool = 0;  ///< last T word
   std::int32_t corrector = 0;

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "kernel/program/execution/execution.hpp"
+#include "kernel/program/reading/number.hpp"
+
+namespace servogate::program {
+namespace {
+
+const GRule* mode_of(const Dialect& dialect, const std::string& word) {
+  std::size_t pos = 1;
+  const int number = word.size() > 1 && word[0] == 'G' ? read_index(word, pos) : -1;
+  return number >= 0 && pos == word.size() ? dialect.find_g(number) : nullptr;
+}
+
+/// True for what stays in force beyond its block.
+bool is_mode(Function function) {
+  switch (function) {
+    case Function::machine_zero:
+    case Function::dwell:
+    case Function::exact_once:
+    case Function::cycle:
+      return false;
+    default:
+      return true;
+  }
+}
+
+void check_range(const std::string& name, double value, double min, double max) {
+  if (!(value >= min && value <= max))
+    fail(Fault::variable_range, 0, {name, text::number(value), text::number(min), text::number(max)});
+}
+
+}  // namespace
+
+/// Modes first, since they tell the units of the values. What is wrong is kept, all of it.
+void Execution::apply_power_on() {
+  setting_faults_.clear();
+  power_on_error_.reset();
+  const auto keep = [&](int mode, const std::string& variable, const ProgramError& error) {
+    setting_faults_.push_back({mode, variable, &entry(error.fault), error.arguments});
+    if (!power_on_error_) power_on_error_ = error;
+  };
+  for (std::size_t i = 0; i < machine_->power_on.size(); ++i) {
+    try {
+      power_on_mode(i);
+    } catch (const ProgramError& error) {
+      keep(static_cast<int>(i), {}, error);
+    }
+  }
+  for (const auto& [name, value] : machine_->variables) {
+    try {
+      power_on_value(name, value);
+    } catch (const ProgramError& error) {
+      keep(-1, name, error);
+    }
+  }
+}
+
+void Execution::power_on_mode(std::size_t index) {
+  const std::string& word = machine_->power_on[index];
+  const GRule* rule = mode_of(*dialect_, word);
+  if (rule == nullptr) fail(Fault::power_on_bad, 0, {word});
+  if (rule->function == Function::later) fail(Fault::not_executed, 0, {word});
+  if (!is_mode(rule->function)) fail(Fault::power_on_for_block, 0, {word});
+  for (std::size_t i = 0; i < index; ++i) {
+    const GRule* before = mode_of(*dialect_, machine_->power_on[i]);
+    if (before == rule) fail(Fault::power_on_twice, 0, {word});
+    if (before != nullptr && before->group == rule->group)
+      fail(Fault::power_on_excluded, 0, {machine_->power_on[i], word});
+  }
+  BlockWords none;
+  none.block = &block_;
+  take_g(none, *rule);
+}
+
+void Execution::power_on_value(const std::string& name, double value) {
+  if (name == "E") return check_range(name, value, 31.0, 10000.0);
+  if (name == "RESOLUTION") return check_range(name, value, 0.0, 1.0);
+  const VariableRule* rule = dialect_->find_variable(name);
+  if (rule == nullptr) fail(Fault::variable_unknown, 0, {name});
+  if (rule->set == nullptr) fail(Fault::not_executed, 0, {name});
+  rule->set(*this, value, 0);
+}
+
+}  // namespace servogate::program
