@@ -21,6 +21,7 @@ class BusGate final : public image::CanBus {
     std::uint64_t pdo_flip = 0;
   };
 
+  void set_node(canopen::NodeId node) noexcept { node_ = node; }
   void connect(image::CanBus& bus, canopen::NodeId node) noexcept {
     bus_ = &bus;
     node_ = node;

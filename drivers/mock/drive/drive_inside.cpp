@@ -61,6 +61,7 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
       next_servo += config.servo_period_ns;
     } else {
       if (any_lasting) expire(next_communication);
+      gate.set_node(slave.node());
       gate.advance_to(next_communication);
       slave.tick(next_communication);
       next_communication += kCommunicationPeriod;
@@ -105,12 +106,12 @@ void SimulatedDrive::Inside::read_inputs(std::int64_t before) noexcept {
 
 bool SimulatedDrive::Inside::answer_with_abort(const CanFrame& frame) noexcept {
   if (!any_lasting || !spoiled(DriveFaultKind::sdo_abort)) return false;
-  if (frame.id != canopen::cob::sdo_request(config.node_id) || frame.length != 8) return false;
+  if (frame.id != canopen::cob::sdo_request(slave.node()) || frame.length != 8) return false;
   const DriveFault& f = fault(DriveFaultKind::sdo_abort);
   const auto index = static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8);
   if (f.index != 0 && f.index != index) return false;
   const auto answer = canopen::sdo_abort(index, frame.data[3], f.abort);
-  gate.send(canopen::make_frame(canopen::cob::sdo_response(config.node_id), answer));
+  gate.send(canopen::make_frame(canopen::cob::sdo_response(slave.node()), answer));
   return true;
 }
 

@@ -41,8 +41,9 @@ canopen::ServoProfileSettings settings_of(const SimulatedDriveConfig& c) {
 
 SimulatedDrive::Inside::Inside(const SimulatedDriveConfig& c)
     : config(c),
-      dictionary(
-          {canopen::communication_objects(c.node_id, identity_of(c)), canopen::drive_objects(ratings_of(c))}),
+      dictionary({canopen::communication_objects(c.node_id == canopen::kUnconfiguredNode ? 0 : c.node_id,
+                                                 identity_of(c)),
+                  canopen::drive_objects(ratings_of(c))}),
       profile(dictionary, settings_of(c)),
       slave(c.node_id, dictionary, profile),
       plant(c.plant, c.servo_period_ns) {
@@ -73,7 +74,7 @@ void SimulatedDrive::on_frame(const CanFrame& frame) noexcept {
 void SimulatedDrive::advance_to(Nanoseconds t) noexcept { inside_->advance_to(t); }
 Nanoseconds SimulatedDrive::next_action_ns() const noexcept { return inside_->next_communication; }
 
-canopen::NodeId SimulatedDrive::node_id() const noexcept { return inside_->config.node_id; }
+canopen::NodeId SimulatedDrive::node_id() const noexcept { return inside_->slave.node(); }
 image::DriveState SimulatedDrive::state() const noexcept { return inside_->profile.state(); }
 canopen::NmtState SimulatedDrive::nmt_state() const noexcept { return inside_->slave.state(); }
 std::uint16_t SimulatedDrive::statusword() const noexcept { return inside_->profile.statusword(); }

@@ -33,7 +33,7 @@ struct DriveSwitch {
 
 /// What stands on the drive's name plate and how it is mounted.
 struct SimulatedDriveConfig {
-  canopen::NodeId node_id = 1;
+  canopen::NodeId node_id = 1;  ///< canopen::kUnconfiguredNode: to be given by layer setting services
   std::string name = "Servogate simulated drive";  ///< 1008h, at most 64 characters
   std::uint32_t vendor_id = 0;                     ///< 1018h:01
   std::uint32_t product_code = 0x0001'0192;
@@ -67,6 +67,7 @@ class SimulatedDrive final : public CanNode {
   void advance_to(Nanoseconds t) noexcept override;
   Nanoseconds next_action_ns() const noexcept override;
 
+  /// As it is now; layer setting services can change it.
   canopen::NodeId node_id() const noexcept;
   image::DriveState state() const noexcept;
   canopen::NmtState nmt_state() const noexcept;

@@ -21,6 +21,8 @@ class NodeMonitor {
   /// After a reset: the boot-up message, then the producer's period begins.
   void start(image::Nanoseconds now) noexcept;
   void stop() noexcept { running_ = false; }
+  /// Another node-ID, by layer setting; before start().
+  void set_node(NodeId node) noexcept { node_ = node; }
   /// 1017h was written.
   void producer_changed(image::Nanoseconds now) noexcept;
   /// 1016h:n was written.

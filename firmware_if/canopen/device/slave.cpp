@@ -14,15 +14,30 @@ constexpr std::uint16_t kHeartbeatLost = 0x8130, kBusOff = 0x8140, kPdoTooShort 
 constexpr int kSegmentsPerTick = 2;
 constexpr ObjectDictionary::Range kCommunication{0x1000, 0x1FFF}, kApplication{0x2000, 0xFFFF};
 
+// The identifiers that hold the node-ID in their low bits. Source: CiA 301, 7.3.5.
+constexpr std::pair<std::uint16_t, std::uint8_t> kOfNode[] = {
+    {0x1014, 0}, {0x1200, 1}, {0x1200, 2}, {0x1400, 1}, {0x1401, 1}, {0x1402, 1},
+    {0x1403, 1}, {0x1800, 1}, {0x1801, 1}, {0x1802, 1}, {0x1803, 1}};
+
+LssIdentity identity_of(const ObjectDictionary& dictionary) noexcept {
+  LssIdentity identity;
+  for (std::uint8_t i = 0; i < 4; ++i)
+    identity.part[i] =
+        static_cast<std::uint32_t>(dictionary.get(object::kIdentity, static_cast<std::uint8_t>(i + 1)));
+  return identity;
+}
+
 }  // namespace
 
 Slave::Slave(NodeId node, ObjectDictionary& dictionary, DeviceProfile& profile)
     : node_(node),
+      stored_node_(node),
       dictionary_(dictionary),
       profile_(profile),
       sdo_(*this),
       emcy_(dictionary),
       monitor_(dictionary, node),
+      lss_(*this, identity_of(dictionary), node),
       cob_id_sync_(dictionary.variable(object::kCobIdSync)),
       cob_id_time_(dictionary.variable(object::kCobIdTime)),
       sync_overflow_(dictionary.variable(object::kSyncCounterOverflow)),
@@ -33,6 +48,8 @@ Slave::Slave(NodeId node, ObjectDictionary& dictionary, DeviceProfile& profile)
 void Slave::power_on(image::CanBus& bus, image::Nanoseconds now, image::Nanoseconds boot_time) noexcept {
   bus_ = &bus;
   now_ = now;
+  if (stored_node_ != node_) take_node(stored_node_);
+  lss_.power_on(stored_node_);
   emcy_.connect(&bus);
   monitor_.connect(&bus);
   boot_at_ = now + boot_time;
@@ -41,8 +58,10 @@ void Slave::power_on(image::CanBus& bus, image::Nanoseconds now, image::Nanoseco
 }
 
 bool Slave::concerned(const image::CanFrame& frame) const noexcept {
-  if (frame.extended || frame.error || booting_) return false;
+  if (frame.extended || frame.error) return false;
   const std::uint32_t id = frame.id;
+  if (id == cob::kLssMaster) return true;
+  if (booting_ || node_ == kUnconfiguredNode) return false;
   if (id == cob::kNmt || id == sync_id() || id == cob::sdo_request(node_)) return true;
   if ((id & 0x780) == 0x700 || (consumes_time() && id == time_id())) return true;
   for (const ReceivePdo& p : receive_)
@@ -61,6 +80,7 @@ bool Slave::immediate(const image::CanFrame& frame) const noexcept {
 void Slave::on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexcept {
   if (!concerned(frame)) return;
   now_ = now;
+  if (frame.id == cob::kLssMaster) return on_lss(frame);
   if (frame.id == sync_id() && !frame.remote) return on_sync(frame);
   if (frame.id == cob::kNmt) {
     const auto request = parse_nmt(frame);
@@ -73,6 +93,31 @@ void Slave::on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexc
   if (consumes_time() && frame.id == time_id()) return on_time(frame);
   on_pdo_frame(frame);
 }
+
+void Slave::on_lss(const image::CanFrame& frame) noexcept {
+  LssBytes answer{};
+  if (bus_ && lss_.on_frame(frame, now_, answer)) bus_->send(make_frame(cob::kLssSlave, answer));
+}
+
+void Slave::take_node(NodeId node) noexcept {
+  const NodeId old = node_ == kUnconfiguredNode ? NodeId{0} : node_;
+  const NodeId now = node == kUnconfiguredNode ? NodeId{0} : node;
+  for (const auto& [index, subindex] : kOfNode) {
+    const auto slot = dictionary_.find(index, subindex);
+    if (slot != ObjectDictionary::kNone && (dictionary_.spec(slot).value & kMaxNode) == old)
+      dictionary_.set_default(index, subindex, dictionary_.spec(slot).value - old + now);
+  }
+  node_ = node;
+  monitor_.set_node(node);
+}
+
+bool Slave::store(NodeId node, std::uint32_t bit_s) noexcept {
+  if (!profile_.store_node(node, bit_s)) return false;
+  stored_node_ = node;
+  return true;
+}
+
+void Slave::node_assigned() noexcept { reset_communication(); }
 
 void Slave::on_time(const image::CanFrame& frame) noexcept {
   const auto time = parse_time(frame);
@@ -152,8 +197,9 @@ void Slave::on_sync(const image::CanFrame& frame) noexcept {
 
 void Slave::tick(image::Nanoseconds now) noexcept {
   now_ = now;
+  lss_.tick(now);
   if (booting_) {
-    if (now < boot_at_) return;
+    if (now < boot_at_ || node_ == kUnconfiguredNode) return;
     booting_ = false;
     monitor_.start(now);
     enter(NmtState::pre_operational);
@@ -242,6 +288,7 @@ void Slave::reset_node(image::Nanoseconds now) noexcept {
 }
 
 void Slave::reset_communication() noexcept {
+  if (lss_.activate_node() != node_) take_node(lss_.active_node());
   dictionary_.reset(kCommunication);
   sdo_.reset();
   emcy_.reset();

@@ -6,6 +6,7 @@
 
 #include "firmware_if/canopen/301/nmt.hpp"
 #include "firmware_if/canopen/301/time_of_day.hpp"
+#include "firmware_if/canopen/305/lss_slave.hpp"
 #include "firmware_if/canopen/device/emcy_producer.hpp"
 #include "firmware_if/canopen/device/node_monitor.hpp"
 #include "firmware_if/canopen/device/object_dictionary.hpp"
@@ -32,6 +33,12 @@ class DeviceProfile {
   virtual void on_abort_connection(std::uint16_t /*error_code*/) noexcept {}
   /// The connection is back.
   virtual void on_connection_restored() noexcept {}
+  /// Layer setting services. Whether the device can do this bit rate.
+  virtual bool supports_bit_rate(std::uint32_t /*bit_s*/) noexcept { return false; }
+  /// Keeps node-ID and bit rate (0: as it is) over power-off. False: it cannot.
+  virtual bool store_node(NodeId, std::uint32_t /*bit_s*/) noexcept { return false; }
+  /// The bus changes over: be silent (0), or run at this bit rate.
+  virtual void bit_rate_changed(std::uint32_t /*bit_s*/) noexcept {}
   /// 2000h-FFFFh have their defaults or stored values again.
   virtual void on_reset() noexcept {}
 };
@@ -39,9 +46,11 @@ class DeviceProfile {
 /// A CiA 301 device without a profile: NMT slave with boot-up, heartbeat and guarding, SDO server, EMCY, SYNC
 /// consumer, four PDOs of each direction with variable mapping, store and restore. A pure state machine on
 /// frames and time: the owner passes in frames and calls tick() every millisecond.
-class Slave final : private SdoObjects, private PdoSink {
+class Slave final : private SdoObjects, private PdoSink, private LssDevice {
  public:
-  /// `dictionary` holds communication_objects() of this node and the profile's. Not real-time safe.
+  /// `dictionary` holds communication_objects() of this node and the profile's. With kUnconfiguredNode (their
+  /// node is 0 then) the device hears layer setting services only, until one of them gives it a node-ID. Not
+  /// real-time safe.
   Slave(NodeId node, ObjectDictionary& dictionary, DeviceProfile& profile);
 
   NodeId node() const noexcept { return node_; }
@@ -69,6 +78,13 @@ class Slave final : private SdoObjects, private PdoSink {
   void reset_node(image::Nanoseconds now) noexcept;
 
  private:
+  bool supports(std::uint32_t bit_s) noexcept override { return profile_.supports_bit_rate(bit_s); }
+  bool store(NodeId node, std::uint32_t bit_s) noexcept override;
+  void node_assigned() noexcept override;
+  void bit_rate_changed(std::uint32_t bit_s) noexcept override { profile_.bit_rate_changed(bit_s); }
+  void take_node(NodeId node) noexcept;
+  void on_lss(const image::CanFrame& frame) noexcept;
+
   AbortCode read(std::uint16_t index, std::uint8_t subindex, std::span<std::uint8_t> bytes,
                  std::size_t& size) noexcept override;
   AbortCode write(std::uint16_t index, std::uint8_t subindex,
@@ -101,11 +117,13 @@ class Slave final : private SdoObjects, private PdoSink {
   }
 
   NodeId node_;
+  NodeId stored_node_;  ///< that of the next power-on
   ObjectDictionary& dictionary_;
   DeviceProfile& profile_;
   SdoServer sdo_;
   EmcyProducer emcy_;
   NodeMonitor monitor_;
+  LssSlave lss_;
   std::array<ReceivePdo, kPdos> receive_;
   std::array<TransmitPdo, kPdos> transmit_;
   bool any_event_driven_ = false;

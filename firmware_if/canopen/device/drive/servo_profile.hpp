@@ -50,6 +50,7 @@ class ServoProfile final : public DeviceProfile {
   void refresh() noexcept override;
   void on_abort_connection(std::uint16_t error_code) noexcept override;
   void on_reset() noexcept override;
+  bool store_node(NodeId, std::uint32_t bit_s) noexcept override { return bit_s == 0; }
 
  private:
   void decide() noexcept;
