@@ -6,8 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
-#include <ctime>
-
+#include "drivers/clock.hpp"
 #include "drivers/socketcan/kernel_frame.hpp"
 
 namespace servogate::socketcan {
@@ -29,12 +28,6 @@ const text::Entry kBitRate{"socketcan.bit-rate",
                            "{0} runs at {1} bit/s, the segment is planned for {2}; set it with: {3}",
                            "{0} работает на {1} бит/с, сегмент рассчитан на {2}; установить: {3}"};
 const text::Entry kSystem{"socketcan.system", "{0}: {1}", "{0}: {1}"};
-
-image::Nanoseconds clock_ns(clockid_t id) noexcept {
-  timespec t{};
-  clock_gettime(id, &t);
-  return t.tv_sec * image::kSecond + t.tv_nsec;
-}
 
 std::string names() {
   std::string list;
@@ -186,7 +179,7 @@ void SocketCanBus::fill() noexcept {
   const int got = recvmmsg(socket_, b.heads.data(), kBatch, MSG_DONTWAIT, nullptr);
   if (got > 0) {
     b.count = static_cast<std::size_t>(got);
-    realtime_ahead_ = clock_ns(CLOCK_REALTIME) - clock_ns(CLOCK_MONOTONIC);
+    realtime_ahead_ = drivers::realtime_ahead();
   }
 }
 

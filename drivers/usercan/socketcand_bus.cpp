@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
-
+#include "drivers/clock.hpp"
 #include "drivers/usercan/socketcand_text.hpp"
 
 namespace servogate::usercan {
@@ -24,12 +23,6 @@ constexpr int kPatienceMs = 5000;
 /// Room for what is said besides frames, so that `done` is never refused.
 constexpr std::size_t kReserve = 1024;
 
-image::Nanoseconds clock_ns(clockid_t id) noexcept {
-  timespec t{};
-  clock_gettime(id, &t);
-  return t.tv_sec * image::kSecond + t.tv_nsec;
-}
-
 }  // namespace
 
 std::unique_ptr<SocketcandBus> SocketcandBus::open(const SocketcandConfig& config, drivers::Notice& why) {
@@ -41,7 +34,7 @@ std::unique_ptr<SocketcandBus> SocketcandBus::open(const SocketcandConfig& confi
 
 SocketcandBus::SocketcandBus(int socket, SocketcandConfig config)
     : socket_(socket), config_(std::move(config)), in_(kInput), out_(kOutput) {
-  realtime_ahead_ = clock_ns(CLOCK_REALTIME) - clock_ns(CLOCK_MONOTONIC);
+  realtime_ahead_ = drivers::realtime_ahead();
 }
 
 SocketcandBus::~SocketcandBus() {
@@ -49,9 +42,9 @@ SocketcandBus::~SocketcandBus() {
   // A socket that is closed with something unread takes back what it has sent: read on until the server,
   // which has heard everything then, closes its end.
   shutdown(socket_, SHUT_WR);
-  const image::Nanoseconds deadline = clock_ns(CLOCK_MONOTONIC) + 2 * image::kSecond;
+  const image::Nanoseconds deadline = drivers::clock_ns(CLOCK_MONOTONIC) + 2 * image::kSecond;
   in_begin_ = in_end_ = 0;
-  while (config_.lockstep.empty() && connected_ && clock_ns(CLOCK_MONOTONIC) < deadline)
+  while (config_.lockstep.empty() && connected_ && drivers::clock_ns(CLOCK_MONOTONIC) < deadline)
     if (wait_readable(100) && fill()) in_begin_ = in_end_;
   close(socket_);
 }
@@ -60,20 +53,18 @@ bool SocketcandBus::greet(drivers::Notice& why) {
   if (!expect({}, "hi", why) || !expect("< open " + config_.bus + " >", "ok", why) ||
       !expect("< rawmode >", "ok", why))
     return false;
-  if (!config_.lockstep.empty())
-    return expect("< remotemode >", "ok", why) && expect("< lockstep " + config_.lockstep + " >", "ok", why);
-  // socketcand itself has no remote frames and says so: that answer is read over like any other.
-  say("< remotemode >");
-  flush();
-  return true;
+  // socketcand itself has no remote frames and says so: that is no reason to refuse it.
+  drivers::Notice unknown;
+  simulated_ = expect("< remotemode >", "ok", unknown);
+  return config_.lockstep.empty() || expect("< lockstep " + config_.lockstep + " >", "ok", why);
 }
 
 bool SocketcandBus::expect(std::string_view said, std::string_view word, drivers::Notice& why) {
   if (!said.empty()) say(said);
   flush();
   const std::string what = said.empty() ? "connect" : std::string(said);
-  const image::Nanoseconds deadline = clock_ns(CLOCK_MONOTONIC) + kPatienceMs * image::kMillisecond;
-  while (connected_ && clock_ns(CLOCK_MONOTONIC) < deadline) {
+  const image::Nanoseconds deadline = drivers::clock_ns(CLOCK_MONOTONIC) + kPatienceMs * image::kMillisecond;
+  while (connected_ && drivers::clock_ns(CLOCK_MONOTONIC) < deadline) {
     while (const auto element = next_element()) {
       Words words(*element);
       const std::string_view first = words.next();
@@ -135,6 +126,7 @@ bool SocketcandBus::fill() noexcept {
   if (in_begin_ > 0) {
     std::memmove(in_.data(), in_.data() + in_begin_, in_end_ - in_begin_);
     in_end_ -= in_begin_;
+    grant_end_ -= std::min(grant_end_, in_begin_);
     in_begin_ = 0;
   }
   if (in_end_ == in_.size()) return false;
@@ -142,7 +134,7 @@ bool SocketcandBus::fill() noexcept {
   if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) disconnect();
   if (got <= 0) return false;
   in_end_ += static_cast<std::size_t>(got);
-  realtime_ahead_ = clock_ns(CLOCK_REALTIME) - clock_ns(CLOCK_MONOTONIC);
+  realtime_ahead_ = drivers::realtime_ahead();
   return true;
 }
 
@@ -190,11 +182,9 @@ bool SocketcandBus::done(image::Nanoseconds wish) noexcept {
 }
 
 std::optional<image::Nanoseconds> SocketcandBus::wait_grant() {
-  in_begin_ = std::max(in_begin_, grant_end_);
   while (!ended_) {
-    grant_end_ = 0;
     std::size_t taken = 0;
-    for (std::size_t at = in_begin_;
+    for (std::size_t at = std::max(in_begin_, grant_end_);
          const auto element = find_element({in_.data() + at, in_end_ - at}, taken);) {
       at += taken;
       Words words(*element);

@@ -45,20 +45,23 @@ class SocketcandBus final : public image::CanBus {
   std::uint64_t lost() const noexcept override { return lost_; }
   /// For poll(2): readable when something has come.
   int descriptor() const noexcept { return socket_; }
+  /// Served by a BusServer, behind which nothing is real; socketcand itself serves real interfaces.
+  bool simulated() const noexcept { return simulated_; }
   /// Everything sent has left this process. real-time safe.
   bool flushed() const noexcept { return out_size_ == 0; }
 
   /// Lockstep: says that everything of the granted instant is done, and that time is wanted at `wish` at the
   /// latest (the server grants every end of a frame besides). The first one comes after the first grant.
   bool done(image::Nanoseconds wish) noexcept;
-  /// Lockstep: waits for the next grant; what was heard until then is received afterwards. nullopt: time has
-  /// ended, or the server is gone. Not real-time safe.
+  /// Lockstep: waits for the next grant; everything heard until then can be received afterwards. nullopt:
+  /// time has ended, or the server is gone. Not real-time safe.
   std::optional<image::Nanoseconds> wait_grant();
   image::Nanoseconds granted() const noexcept { return granted_; }
 
  private:
   SocketcandBus(int socket, SocketcandConfig config);
   bool greet(drivers::Notice& why);
+  /// Says something and waits for an answer: true when it is this word, false with `why` otherwise.
   bool expect(std::string_view said, std::string_view word, drivers::Notice& why);
   bool wait_readable(int milliseconds) const;
   void say(std::string_view text) noexcept;
@@ -80,6 +83,7 @@ class SocketcandBus final : public image::CanBus {
   image::Nanoseconds granted_ = 0;
   std::size_t grant_end_ = 0;  ///< of the input: what was heard until the grant ends here
   bool ended_ = false;
+  bool simulated_ = false;
 };
 
 }  // namespace servogate::usercan

@@ -8,8 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
-
+#include "drivers/clock.hpp"
 #include "drivers/usercan/message_pack.hpp"
 
 namespace servogate::usercan {
@@ -23,12 +22,6 @@ const text::Entry kNoMulticast{
     "групповая рассылка на {0} здесь невозможна: {1}. Маршрут: ip route add 224.0.0.0/4 dev lo"};
 
 constexpr int kReceiveBytes = 4 << 20;
-
-image::Nanoseconds clock_ns(clockid_t id) noexcept {
-  timespec t{};
-  clock_gettime(id, &t);
-  return t.tv_sec * image::kSecond + t.tv_nsec;
-}
 
 template <typename T>
 bool set_option(int s, int level, int option, const T& value) {
@@ -96,7 +89,7 @@ UdpBus::~UdpBus() {
 bool UdpBus::send(const image::CanFrame& frame) noexcept {
   if (frame.error || frame.length > (frame.fd ? 64 : 8)) return false;
   std::array<std::uint8_t, kMaxPacket> packet;
-  const double now = static_cast<double>(clock_ns(CLOCK_REALTIME)) * 1e-9;
+  const double now = static_cast<double>(drivers::clock_ns(CLOCK_REALTIME)) * 1e-9;
   const std::size_t size = pack(frame, now, packet);
   return ::send(sender_, packet.data(), size, MSG_DONTWAIT) == static_cast<ssize_t>(size);
 }
@@ -107,7 +100,7 @@ void UdpBus::read_control(msghdr& head, image::CanFrame& frame) noexcept {
     if (c->cmsg_type == SO_TIMESTAMPNS) {
       timespec t{};
       std::memcpy(&t, CMSG_DATA(c), sizeof t);
-      const image::Nanoseconds ahead = clock_ns(CLOCK_REALTIME) - clock_ns(CLOCK_MONOTONIC);
+      const image::Nanoseconds ahead = drivers::realtime_ahead();
       frame.timestamp_ns = t.tv_sec * image::kSecond + t.tv_nsec - ahead;
     } else if (c->cmsg_type == SO_RXQ_OVFL) {
       std::uint32_t counter = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/usercan/server/bus_server.hpp"
+#include "drivers/clock.hpp"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -8,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <ctime>
 #include <limits>
 
 namespace servogate::usercan {
@@ -21,12 +21,6 @@ const text::Entry kDoesNotRead{"usercan.does-not-read",
 constexpr Nanoseconds kNever = std::numeric_limits<Nanoseconds>::max();
 /// What is said after the answer to `rawmode` waits so long, unless the participant speaks first.
 constexpr Nanoseconds kHold = 30 * image::kMillisecond;
-
-Nanoseconds clock_ns(clockid_t id) {
-  timespec t{};
-  clock_gettime(id, &t);
-  return t.tv_sec * image::kSecond + t.tv_nsec;
-}
 
 std::string display(const Participant& who) {
   return who.name().empty() ? "#" + std::to_string(who.number()) : who.name();
@@ -44,8 +38,8 @@ BusServer::BusServer(BusServerConfig config, int socket, Report report)
     : config_(std::move(config)), socket_(socket), report_(std::move(report)) {
   for (const std::string& name : config_.buses)
     buses_.push_back(std::make_unique<Bus>(name, config_.bit_rate));
-  start_ = clock_ns(CLOCK_MONOTONIC);
-  if (config_.lockstep == 0) epoch_ = clock_ns(CLOCK_REALTIME);
+  start_ = drivers::clock_ns(CLOCK_MONOTONIC);
+  if (config_.lockstep == 0) epoch_ = drivers::clock_ns(CLOCK_REALTIME);
 }
 
 BusServer::~BusServer() {
@@ -56,7 +50,7 @@ BusServer::~BusServer() {
 bool BusServer::serve(Nanoseconds at_most) {
   if (ended_) return false;
   wait(at_most);
-  if (config_.lockstep == 0) advance(clock_ns(CLOCK_MONOTONIC) - start_);
+  if (config_.lockstep == 0) advance(drivers::clock_ns(CLOCK_MONOTONIC) - start_);
   accept_new();
   for (const auto& p : participants_)
     if (!p->closed && !p->read_socket()) p->closed = true;
@@ -69,7 +63,7 @@ bool BusServer::serve(Nanoseconds at_most) {
 }
 
 void BusServer::wait(Nanoseconds at_most) {
-  const Nanoseconds wall = clock_ns(CLOCK_MONOTONIC);
+  const Nanoseconds wall = drivers::clock_ns(CLOCK_MONOTONIC);
   Nanoseconds wake = at_most;
   if (config_.lockstep == 0)
     for (const auto& bus : buses_)
@@ -165,7 +159,7 @@ void BusServer::hear_word(Participant& who, std::string_view element) {
   } else if (word == "rawmode" && who.mode != Mode::greeted) {
     who.mode = Mode::raw;
     who.say("< ok >");
-    who.hold(clock_ns(CLOCK_MONOTONIC) + kHold);
+    who.hold(drivers::clock_ns(CLOCK_MONOTONIC) + kHold);
   } else if (word == "remotemode" && who.mode == Mode::raw) {
     who.wants_remote = true;
     who.release();
@@ -203,7 +197,7 @@ void BusServer::refuse(Participant& who, std::string_view text) {
 }
 
 void BusServer::flush() {
-  const Nanoseconds wall = clock_ns(CLOCK_MONOTONIC);
+  const Nanoseconds wall = drivers::clock_ns(CLOCK_MONOTONIC);
   for (const auto& p : participants_) {
     if (!p->write_socket(wall)) {
       p->closed = true;

@@ -49,7 +49,9 @@ class BusServer {
   /// Somebody who sees the wire of a bus, by its place in the configuration.
   void set_monitor(std::size_t bus, mock::CanMonitor* monitor) { buses_[bus]->set_monitor(monitor); }
   std::size_t participants() const noexcept { return participants_.size(); }
+  /// Time of the buses, from 0; and when that was, since 1970 (in lockstep 0).
   Nanoseconds now() const noexcept { return now_; }
+  Nanoseconds epoch() const noexcept { return epoch_; }
   const mock::CanStatistics& statistics(std::size_t bus) const { return buses_[bus]->segment().statistics(); }
 
  private:

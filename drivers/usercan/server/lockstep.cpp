@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of the bus server that grants time.
 #include <algorithm>
-#include <ctime>
 #include <limits>
 
+#include "drivers/clock.hpp"
 #include "drivers/usercan/server/bus_server.hpp"
 
 namespace servogate::usercan {
@@ -22,12 +22,6 @@ const text::Entry kNobodyWantsTime{
 
 constexpr Nanoseconds kNever = std::numeric_limits<Nanoseconds>::max();
 constexpr Nanoseconds kPatience = 5 * image::kSecond;
-
-Nanoseconds monotonic() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return t.tv_sec * image::kSecond + t.tv_nsec;
-}
 
 std::string seconds(Nanoseconds t) { return text::number(static_cast<double>(t) * 1e-9, 9); }
 
@@ -115,7 +109,7 @@ void BusServer::grant() {
       p->say(element);
       p->turn = Turn::working;
     }
-  stalled_since_ = monotonic();
+  stalled_since_ = drivers::clock_ns(CLOCK_MONOTONIC);
   stall_said_ = false;
 }
 
@@ -126,7 +120,7 @@ void BusServer::end_lockstep() {
 }
 
 void BusServer::watch_for_stall() {
-  if (!begun_ || stall_said_ || monotonic() - stalled_since_ < kPatience) return;
+  if (!begun_ || stall_said_ || drivers::clock_ns(CLOCK_MONOTONIC) - stalled_since_ < kPatience) return;
   for (const auto& p : participants_)
     if (p->turn == Turn::working) report_({&kStalled, {seconds(now_), p->name()}});
   stall_said_ = true;
