@@ -93,7 +93,7 @@ bool parse_set(std::string_view text, RunSet& out) {
   return true;
 }
 
-RunResult run(const RunRequest& request, const std::function<void(std::string_view)>& line) {
+RunResult run(const RunRequest& request, const std::function<bool(std::string_view)>& line) {
   RunResult out;
   CompileResult compiled = compile(request.files, request.symbols, request.options);
   out.findings = std::move(compiled.findings);
@@ -121,7 +121,7 @@ RunResult run(const RunRequest& request, const std::function<void(std::string_vi
     std::string json = "{\"cycle\":" + std::to_string(cycle) + ",\"values\":{";
     for (std::size_t i = 0; i < prints.size(); ++i)
       json += (i == 0 ? "\"" : ",\"") + escaped(prints[i].name) + "\":" + engine.read(prints[i].handle);
-    line(json + "}}");
+    if (!line(json + "}}")) break;
   }
   return out;
 }

@@ -41,8 +41,8 @@ struct RunResult {
 
 /// Runs programs in virtual time without a machine: cycle n is scanned at time (n - 1) * cycle_ns. `line`
 /// gets one JSON object a cycle, `{"cycle":3,"values":{"Main.out":true}}`, values after the scan, in the
-/// order and spelling of `prints`. Not real-time safe.
-RunResult run(const RunRequest& request, const std::function<void(std::string_view)>& line);
+/// order and spelling of `prints`; returning false ends the run early (End::done). Not real-time safe.
+RunResult run(const RunRequest& request, const std::function<bool(std::string_view)>& line);
 
 /// `NAME=VALUE[@CYCLE]` taken apart; false when it has not that form. The last `@` followed by digits only is
 /// the cycle.

@@ -48,6 +48,20 @@ constexpr std::uint32_t format_size(Format f) noexcept {
   constexpr std::uint32_t sizes[] = {1, 1, 2, 4, 4, 8, 1};
   return sizes[static_cast<int>(f)];
 }
+/// What set_number() stores in a place of this format; nothing in characters. real-time safe.
+struct NumberRange {
+  double min = 0.0, max = 0.0;
+};
+constexpr NumberRange number_range(Format f) noexcept {
+  constexpr NumberRange ranges[] = {{0.0, 1.0},
+                                    {0.0, 255.0},
+                                    {-32768.0, 32767.0},
+                                    {-2147483648.0, 2147483647.0},
+                                    {-3.4028234663852886e38, 3.4028234663852886e38},
+                                    {-1.7976931348623157e308, 1.7976931348623157e308},
+                                    {0.0, 0.0}};
+  return ranges[static_cast<int>(f)];
+}
 constexpr std::uint32_t Place::byte() const noexcept {
   return format == Format::bl ? index / 8 : index * format_size(format);
 }

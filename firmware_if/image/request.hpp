@@ -11,7 +11,7 @@ enum class RequestKind : std::uint8_t {
   none,
   power,           ///< value 1: drives on, 0: off
   home,            ///< axis, or -1 for all in the machine's order
-  jog_increment,   ///< axis, value = signed distance in mm or degrees
+  jog_increment,   ///< axis, value = signed distance in mm or degrees, at most the axis' whole travel
   jog_continuous,  ///< axis, value = +1 or -1; needs keep_alive at least every 100 ms
   keep_alive,
   jog_stop,
@@ -38,6 +38,9 @@ struct Request {
   RequestKind kind = RequestKind::none;
   std::int8_t axis = -1;
   std::int8_t process = 0;
+  /// image::Mode in which the process is to be for this request (home, jogs, start, step), -1: as it is.
+  /// Decided and done together with the request; a refused one leaves the mode as it was.
+  std::int8_t mode = -1;
   std::uint8_t packet = 0, format = 0, length = 1;  ///< image::Place of set_place and force
   std::uint32_t index = 0;
   double value = 0.0;

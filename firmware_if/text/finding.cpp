@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/text/finding.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -76,10 +77,17 @@ std::string Finding::excerpt() const {
   return " " + number + " | " + shown + "\n " + std::string(number.size(), ' ') + " | " + below + "^\n";
 }
 
+/// From here on the digits before the point say nothing to a person.
+constexpr double kLongest = 1e15;
+
 std::string number(double value, int digits) {
   if (!std::isfinite(value)) return value > 0 ? "inf" : value < 0 ? "-inf" : "nan";
-  char buffer[400];
-  std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+  char buffer[64];
+  if (std::abs(value) >= kLongest) {
+    std::snprintf(buffer, sizeof buffer, "%.6g", value);
+    return buffer;
+  }
+  std::snprintf(buffer, sizeof buffer, "%.*f", std::min(digits, 30), value);
   std::string out = buffer;
   if (out.find('.') != std::string::npos) {
     while (out.back() == '0') out.pop_back();

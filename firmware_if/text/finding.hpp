@@ -37,7 +37,7 @@ struct Finding {
   int column = 0;
   const Entry* entry = nullptr;
   std::vector<std::string> arguments;
-  std::string source;  ///< that line of the file, without its end; empty: not known
+  std::string source = {};  ///< that line of the file, without its end; empty: not known
 
   /// `file:line:col: error: text [code]`, the form every command prints (severity stays English for editors).
   std::string str(Language language = user_language()) const;
@@ -46,8 +46,8 @@ struct Finding {
   std::string excerpt() const;
 };
 
-/// A number as people write it: shortest form that reads back, at most `digits` decimals, never in exponent
-/// form.
+/// A number as people write it: at most `digits` decimals without zeros at the end; in exponent form only
+/// from 1e15 on ("1e+300").
 std::string number(double value, int digits = 6);
 
 }  // namespace servogate::text

@@ -34,7 +34,8 @@ struct ClientOptions {
   std::vector<std::string> arguments;
   std::string socket;
   bool json = false;
-  bool wait = false;  ///< until what was begun has ended
+  bool wait = false;     ///< until what was begun has ended
+  bool no_wait = false;  ///< of `power`, which waits of itself
 };
 
 struct CheckOptions {
@@ -75,8 +76,8 @@ struct CommandLine {
   ReplayOptions replay;
   PlcRunOptions plc_run;
   PlcCheckOptions plc_check;
-  bool json = false;  ///< of `version`
-  std::string text;   ///< the whole line, for the report
+  bool json = false;               ///< of `version`
+  std::vector<std::string> words;  ///< the whole line, for the report
 };
 
 /// Reads the command line. nullopt: help or an error was printed, `exit_code` tells which.

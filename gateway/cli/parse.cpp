@@ -2,7 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "firmware_if/text/finding.hpp"
 #include "gateway/cli/options.hpp"
+#include "gateway/cli/quantities.hpp"
+#include "gateway/cli/standard_output.hpp"
+#include "gateway/cli/wrong_use.hpp"
 
 namespace servogate::gateway {
 
@@ -11,46 +15,37 @@ namespace {
 struct ClientCommand {
   const char* name;
   const char* meaning;
-  const char* arguments;  ///< nullptr: takes none
+  const char* arguments;  ///< in their order; [OPTIONAL], MANY...
   const char* example;
   bool waits = false;  ///< takes --wait
 };
 
 constexpr ClientCommand kClients[] = {
-    {"status", "Shows modes, axes, program and alarms of the running control.", nullptr,
+    {"status", "Shows modes, axes, program and alarms of the running control.", "",
      "servogate status --json"},
-    {"home", "References axes; without a name all of them, in the machine's order.", "AXIS...",
+    {"home", "References axes; without a name all of them, in the machine's order.", "[AXIS...]",
      "servogate home Z --wait", true},
     {"jog", "Moves one axis: a distance (+1mm, -0.5deg) or a direction (+ or -) until Enter or Ctrl-C.",
      "AXIS DISTANCE", "servogate jog X -1mm", true},
     {"zero", "Gives the present position of an axis a value in the active origin (0 if none is said).",
      "AXIS [VALUE]", "servogate zero X 0"},
-    {"mdi", "Runs one block typed by hand.", "BLOCK", "servogate mdi \"G0 X10\" --wait", true},
+    {"mdi", "Runs one block typed by hand.", "BLOCK...", "servogate mdi \"G0 X10\" --wait", true},
     {"load", "Loads a part program.", "PROGRAM", "servogate load bracket.nc"},
-    {"start", "Starts the loaded program.", nullptr, "servogate start --wait", true},
-    {"step", "Runs one block.", nullptr, "servogate step", true},
-    {"hold", "Feed hold: stops on the path.", nullptr, "servogate hold"},
-    {"resume", "Goes on after a hold.", nullptr, "servogate resume"},
-    {"reset", "Ends the program and clears alarms whose cause is gone.", nullptr, "servogate reset"},
+    {"start", "Starts the loaded program.", "", "servogate start --wait", true},
+    {"step", "Runs one block.", "", "servogate step", true},
+    {"hold", "Feed hold: stops on the path.", "", "servogate hold"},
+    {"resume", "Goes on after a hold.", "", "servogate resume"},
+    {"reset", "Ends the program and clears alarms whose cause is gone.", "", "servogate reset"},
     {"override", "Feed override in per cent, 0 to 150.", "PCT", "servogate override 80"},
-    {"power", "Switches the drives on or off.", "on|off", "servogate power on --wait", true},
+    {"power", "Switches the drives on or off, and waits until they are.", "on|off", "servogate power on",
+     true},
     {"input",
      "Plays an input of a mock machine: on, off, a number, or auto (a switch follows its axis again).",
-     "POINT on|off|auto", "servogate input estop_chain_ok off"},
-    {"alarms", "Lists the alarms with cause and remedy.", nullptr, "servogate alarms"},
-    {"down", "Stops the axes in a controlled way, switches the drives off, ends the control.", nullptr,
+     "POINT on|off|auto|NUMBER", "servogate input estop_chain_ok off"},
+    {"alarms", "Lists the alarms with cause and remedy.", "", "servogate alarms"},
+    {"down", "Stops the axes in a controlled way, switches the drives off, ends the control.", "",
      "servogate down"},
 };
-
-void add_clock(CLI::App& app, bool& is_virtual, std::string& realtime) {
-  auto* v = app.add_flag("--virtual", is_virtual, "Virtual time (mock buses only)");
-  auto* r =
-      app.add_option("--realtime", realtime, "Real time; =best-effort goes on without the rights for it")
-          ->expected(0, 1)
-          ->default_str("strict")
-          ->check(CLI::IsMember({"strict", "best-effort"}));
-  v->excludes(r);
-}
 
 /// Put before `-`, `-1mm`, `-5`, so that the parser takes them for the arguments that they are.
 constexpr char kShield = '\x01';
@@ -59,137 +54,260 @@ bool negative(std::string_view a) {
   return a == "-" || (a.size() > 1 && a[0] == '-' && (a[1] == '.' || (a[1] >= '0' && a[1] <= '9')));
 }
 
+void unshield(std::string& word) {
+  if (word.starts_with(kShield)) word.erase(0, 1);
+}
+
 /// The arguments as CLI11 wants them: last one first, without the program's name.
 std::vector<std::string> shielded(int argc, char** argv) {
   const bool client =
       argc > 1 && std::any_of(std::begin(kClients), std::end(kClients),
                               [&](const ClientCommand& c) { return c.name == std::string_view(argv[1]); });
   std::vector<std::string> arguments;
-  for (int i = argc; i-- > 1;)
-    arguments.push_back(client && negative(argv[i]) ? kShield + std::string(argv[i]) : argv[i]);
+  for (int i = argc; i-- > 1;) {
+    const std::string word = argv[i];
+    // Its value may be missing, and what follows is then no value.
+    if (word == "--realtime")
+      arguments.push_back(word + "=strict");
+    else
+      arguments.push_back(client && negative(word) ? kShield + word : word);
+  }
   return arguments;
+}
+
+/// All commands and their options, filling a CommandLine.
+class Commands {
+ public:
+  explicit Commands(CommandLine& line) : line_(line) {
+    app_.name("servogate");
+    app_.require_subcommand(1);
+    app_.footer(
+        "Exit codes: 0 done, 1 alarm, program error or failed check, 2 wrong use or bad file,\n"
+        "3 stopped by the operator, 4 infrastructure (bus, rights, lost frames, output that cannot be "
+        "written).\n"
+        "`servogate COMMAND --help` shows each command with an example.");
+    version();
+    run();
+    up();
+    for (const ClientCommand& c : kClients) client(c);
+    check();
+    canon();
+    replay();
+    plc();
+  }
+
+  CLI::App& app() { return app_; }
+
+  /// After the parse: the command's name, and what several options make together.
+  void settle() {
+    const CLI::App* chosen = app_.get_subcommands().front();
+    line_.command = chosen->get_name();
+    if (line_.command == "plc" || line_.command == "can")
+      line_.command += " " + chosen->get_subcommands().front()->get_name();
+    line_.client.command = line_.command;
+    for (std::string& argument : line_.client.arguments) unshield(argument);
+    line_.run.clock = line_.up.clock = virtual_time_           ? ClockKind::virtual_time
+                                       : realtime_ == "strict" ? ClockKind::realtime
+                                       : realtime_.empty()     ? ClockKind::unset
+                                                               : ClockKind::realtime_best_effort;
+  }
+
+ private:
+  CLI::App& command(const char* name, const char* meaning, const std::string& example) {
+    CLI::App& app = *app_.add_subcommand(name, meaning);
+    app.footer("Example: " + example);
+    return app;
+  }
+
+  void clock(CLI::App& app) {
+    CLI::Option* v = app.add_flag("--virtual", virtual_time_, "Virtual time (mock buses only)");
+    CLI::Option* r =
+        app.add_option("--realtime", realtime_, "Real time; =best-effort goes on without the rights for it")
+            ->type_name("[=best-effort]")
+            ->check(one_of({"strict", "best-effort"}));
+    v->excludes(r);
+  }
+
+  void version() {
+    CLI::App& app = command("version", "Shows version and commit.", "servogate version --json");
+    app.add_flag("--json", line_.json, "As JSON");
+  }
+
+  void run() {
+    RunOptions& o = line_.run;
+    CLI::App& app = command(
+        "run", "Runs a part program on a machine: up, load, start, down in one.",
+        "servogate run examples/mill/machine.toml examples/mill/bracket.nc --virtual --html out.html");
+    app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
+    app.add_option("PROGRAM", o.program,
+                   "Part program; without one the machine is only switched on and homed");
+    clock(app);
+    app.add_option("--trace", o.trace, "Writes one row a cycle to this CSV file");
+    app.add_option("--report", o.report, "Writes the report to this JSON file");
+    app.add_option("--html", o.html, "Writes the report to this HTML file");
+    app.add_option("--record", o.record, "Records inputs and requests for `servogate replay`");
+    app.add_option("--dialect", o.dialect, "Language of the program instead of the machine's own");
+    app.add_option("--override", o.override_percent, "Feed override in per cent, 0 to 150")
+        ->type_name("PCT")
+        ->check(number_within({0.0, 150.0, "%"}));
+    app.add_option("--state", o.state, "State directory; without one a virtual run leaves no state behind");
+    app.add_flag("--start-now", o.start_now,
+                 "Start without the operator's start, where the machine file allows it");
+    app.add_flag("--json", o.json, "Prints the report as JSON on standard output");
+    app.add_flag("-q,--quiet", o.quiet, "No progress");
+  }
+
+  void up() {
+    UpOptions& o = line_.up;
+    CLI::App& app = command("up", "Starts the resident control; the other commands are its clients.",
+                            "servogate up examples/mill/machine.toml --virtual --speed 10");
+    app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
+    clock(app);
+    app.add_option("--speed", o.speed, "Virtual seconds per wall-clock second, 0.001 to 100000")
+        ->type_name("TIMES")
+        ->check(number_within({0.001, 100000.0, text::both("times real time", "× реального времени")}));
+    app.add_option("--state", o.state, "State directory instead of the machine file's");
+    app.add_option("--socket", o.socket, "Control socket instead of the default");
+  }
+
+  void client(const ClientCommand& c) {
+    ClientOptions& o = line_.client;
+    CLI::App& app = command(c.name, c.meaning, c.example);
+    std::string name;
+    for (const char* at = c.arguments;; ++at) {
+      if (*at != ' ' && *at != '\0') {
+        name += *at;
+        continue;
+      }
+      if (!name.empty()) positional(app, name);
+      name.clear();
+      if (*at == '\0') break;
+    }
+    app.add_option("--socket", o.socket, "Control socket instead of the default");
+    app.add_flag("--json", o.json, "As JSON");
+    if (!c.waits) return;
+    app.add_flag("--wait", o.wait, "Waits until it has ended; exit 1 after an alarm, 3 when it was stopped");
+    if (std::string_view(c.name) == "power")
+      app.add_flag("--no-wait", o.no_wait, "Returns as soon as the control has agreed");
+  }
+
+  /// NAME, [NAME], NAME... or [NAME...]; the words go into the client's arguments in their order.
+  void positional(CLI::App& app, std::string name) {
+    const bool optional = name.starts_with('[');
+    if (optional) name = name.substr(1, name.size() - 2);
+    const bool many = name.ends_with("...");
+    if (many) name.resize(name.size() - 3);
+    std::vector<std::string>& words = line_.client.arguments;
+    CLI::Option* option = many
+                              ? app.add_option_function<std::vector<std::string>>(
+                                    name,
+                                    [&words](const std::vector<std::string>& given) {
+                                      words.insert(words.end(), given.begin(), given.end());
+                                    },
+                                    "")
+                              : app.add_option_function<std::string>(
+                                    name, [&words](const std::string& given) { words.push_back(given); }, "");
+    option->required(!optional)->type_name("");
+  }
+
+  void check() {
+    CheckOptions& o = line_.check;
+    CLI::App& app = command("check", "Validates a machine file, and programs against it, without moving.",
+                            "servogate check examples/mill/machine.toml examples/mill/bracket.nc");
+    app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
+    app.add_option("PROGRAM", o.programs, "Part programs");
+    app.add_option("--dialect", o.dialect, "Language of the programs instead of the machine's own");
+    app.add_flag("--json", o.json, "As JSON");
+  }
+
+  void canon() {
+    CanonOptions& o = line_.canon;
+    CLI::App& app = command("canon", "Prints the canonical commands of a program, one JSON object a line.",
+                            "servogate canon examples/mill/machine.toml examples/mill/bracket.nc | head");
+    app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
+    app.add_option("PROGRAM", o.program, "Part program")->required();
+    app.add_option("--dialect", o.dialect, "Language of the program instead of the machine's own");
+  }
+
+  void replay() {
+    ReplayOptions& o = line_.replay;
+    CLI::App& app = command("replay", "Runs a record again in virtual time and compares the set-points.",
+                            "servogate replay run.record --against run.csv");
+    app.add_option("RECORD", o.record, "File written by --record")->required();
+    app.add_option("--trace", o.trace, "Writes the trace of the replay to this CSV file");
+    app.add_option("--against", o.against, "Compares with this trace, byte by byte");
+    app.add_flag("--json", o.json, "As JSON");
+  }
+
+  void plc() {
+    CLI::App& app = *app_.add_subcommand("plc", "PLC programs without a machine.");
+    app.require_subcommand(1);
+    PlcRunOptions& o = line_.plc_run;
+    CLI::App& r =
+        *app.add_subcommand("run", "Runs Structured Text in virtual time, one JSON object a cycle.");
+    r.add_option("FILE", o.files, "Source files")->required();
+    r.add_option("--cycles", o.cycles, "Number of cycles, 1 to 1000000000")
+        ->type_name("N")
+        ->check(number_within({1.0, 1e9, text::both("cycles", "циклов"), true}));
+    r.add_option("--cycle-ms", o.cycle_ms, "Length of a cycle in ms, 0.001 to 60000")
+        ->type_name("MS")
+        ->check(number_within({0.001, 60000.0, text::both("ms", "мс")}));
+    r.add_option("--set", o.sets, "NAME=VALUE[@CYCLE], may be repeated")->allow_extra_args(false);
+    r.add_option("--print", o.prints, "NAME,... to print")->delimiter(',')->allow_extra_args(false);
+    r.footer("Example: servogate plc run blink.st --cycles 100 --set start=TRUE@5 --print lamp,timer.ET");
+    CLI::App& c = *app.add_subcommand("check", "Compiles Structured Text and prints what is wrong.");
+    c.add_option("FILE", line_.plc_check.files, "Source files")->required();
+    c.add_option("--machine", line_.plc_check.machine, "Machine file whose symbols the program uses");
+    c.footer("Example: servogate plc check mill.st --machine machine.toml");
+  }
+
+  CommandLine& line_;
+  CLI::App app_{"servogate: a Linux computer becomes the control of a machine"};
+  bool virtual_time_ = false;
+  std::string realtime_;
+};
+
+const CLI::App* subcommand(const CLI::App& app, std::string_view name) {
+  const auto found = app.get_subcommands([&](const CLI::App* c) { return c->get_name() == name; });
+  return found.empty() ? nullptr : found.front();
+}
+
+/// True when the word in a command's place is none of `app`'s commands; it has been said then.
+bool unknown_command(const CLI::App& app, const std::string& prefix, const char* word) {
+  const std::string_view name = word == nullptr ? "" : word;
+  if (name.empty() || name == "-h" || name == "--help" || subcommand(app, name) != nullptr) return false;
+  complain_of_command(prefix, word, app);
+  return true;
 }
 
 }  // namespace
 
 std::optional<CommandLine> parse_command_line(int argc, char** argv, int& exit_code) {
   CommandLine line;
-  for (int i = 0; i < argc; ++i)
-    line.text += (i == 0 ? "" : " ") + std::string(i == 0 ? "servogate" : argv[i]);
-
-  CLI::App app{"servogate: a Linux computer becomes the control of a machine"};
-  app.name("servogate");
-  app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 done, 1 alarm, program error or failed check, 2 wrong use or bad file,\n"
-      "3 stopped by the operator, 4 infrastructure (bus, rights).\n"
-      "`servogate COMMAND --help` shows each command with an example.");
-
-  bool is_virtual = false;
-  std::string realtime;
-
-  auto* version = app.add_subcommand("version", "Shows version and commit.");
-  version->add_flag("--json", line.json, "As JSON");
-  version->footer("Example: servogate version --json");
-
-  RunOptions& run = line.run;
-  auto* r = app.add_subcommand("run", "Runs a part program on a machine: up, load, start, down in one.");
-  r->add_option("MACHINE", run.machine, "Machine file (TOML)")->required();
-  r->add_option("PROGRAM", run.program,
-                "Part program; without one the machine is only switched on and homed");
-  add_clock(*r, is_virtual, realtime);
-  r->add_option("--trace", run.trace, "Writes one row a cycle to this CSV file");
-  r->add_option("--report", run.report, "Writes the report to this JSON file");
-  r->add_option("--html", run.html, "Writes the report to this HTML file");
-  r->add_option("--record", run.record, "Records inputs and requests for `servogate replay`");
-  r->add_option("--dialect", run.dialect, "Language of the program instead of the machine's own");
-  r->add_option("--override", run.override_percent, "Feed override in per cent")
-      ->check(CLI::Range(0.0, 150.0));
-  r->add_option("--state", run.state, "State directory; without one a virtual run leaves no state behind");
-  r->add_flag("--start-now", run.start_now,
-              "Start without the operator's start, where the machine file allows it");
-  r->add_flag("--json", run.json, "Prints the report as JSON on standard output");
-  r->add_flag("-q,--quiet", run.quiet, "No progress");
-  r->footer(
-      "Example: servogate run examples/mill/machine.toml examples/mill/bracket.nc --virtual --html out.html");
-
-  UpOptions& up = line.up;
-  auto* u = app.add_subcommand("up", "Starts the resident control; the other commands are its clients.");
-  u->add_option("MACHINE", up.machine, "Machine file (TOML)")->required();
-  add_clock(*u, is_virtual, realtime);
-  u->add_option("--speed", up.speed, "Virtual seconds per wall-clock second")->check(CLI::PositiveNumber);
-  u->add_option("--state", up.state, "State directory instead of the machine file's");
-  u->add_option("--socket", up.socket, "Control socket instead of the default");
-  u->footer("Example: servogate up examples/mill/machine.toml --virtual --speed 10");
-
-  for (const ClientCommand& c : kClients) {
-    auto* s = app.add_subcommand(c.name, c.meaning);
-    if (c.arguments != nullptr) s->add_option(c.arguments, line.client.arguments, "");
-    s->add_option("--socket", line.client.socket, "Control socket instead of the default");
-    s->add_flag("--json", line.client.json, "As JSON");
-    if (c.waits)
-      s->add_flag("--wait", line.client.wait,
-                  "Waits until it has ended; exit 1 after an alarm, 3 when it was stopped");
-    s->footer(std::string("Example: ") + c.example);
-  }
-
-  CheckOptions& check = line.check;
-  auto* k = app.add_subcommand("check", "Validates a machine file, and programs against it, without moving.");
-  k->add_option("MACHINE", check.machine, "Machine file (TOML)")->required();
-  k->add_option("PROGRAM", check.programs, "Part programs");
-  k->add_option("--dialect", check.dialect, "Language of the programs instead of the machine's own");
-  k->add_flag("--json", check.json, "As JSON");
-  k->footer("Example: servogate check examples/mill/machine.toml examples/mill/bracket.nc");
-
-  CanonOptions& canon = line.canon;
-  auto* c =
-      app.add_subcommand("canon", "Prints the canonical commands of a program, one JSON object a line.");
-  c->add_option("MACHINE", canon.machine, "Machine file (TOML)")->required();
-  c->add_option("PROGRAM", canon.program, "Part program")->required();
-  c->add_option("--dialect", canon.dialect, "Language of the program instead of the machine's own");
-  c->footer("Example: servogate canon examples/mill/machine.toml examples/mill/bracket.nc | head");
-
-  ReplayOptions& replay = line.replay;
-  auto* p = app.add_subcommand("replay", "Runs a record again in virtual time and compares the set-points.");
-  p->add_option("RECORD", replay.record, "File written by --record")->required();
-  p->add_option("--trace", replay.trace, "Writes the trace of the replay to this CSV file");
-  p->add_option("--against", replay.against, "Compares with this trace, byte by byte");
-  p->add_flag("--json", replay.json, "As JSON");
-  p->footer("Example: servogate replay run.record --against run.csv");
-
-  auto* plc = app.add_subcommand("plc", "PLC programs without a machine.");
-  plc->require_subcommand(1);
-  auto* pr = plc->add_subcommand("run", "Runs Structured Text in virtual time, one JSON object a cycle.");
-  pr->add_option("FILE", line.plc_run.files, "Source files")->required();
-  pr->add_option("--cycles", line.plc_run.cycles, "Number of cycles")->check(CLI::PositiveNumber);
-  pr->add_option("--cycle-ms", line.plc_run.cycle_ms, "Length of a cycle in ms")->check(CLI::PositiveNumber);
-  pr->add_option("--set", line.plc_run.sets, "NAME=VALUE[@CYCLE], may be repeated")->allow_extra_args(false);
-  pr->add_option("--print", line.plc_run.prints, "NAME,... to print")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  pr->footer("Example: servogate plc run blink.st --cycles 100 --set start=TRUE@5 --print lamp,timer.ET");
-  auto* pc = plc->add_subcommand("check", "Compiles Structured Text and prints what is wrong.");
-  pc->add_option("FILE", line.plc_check.files, "Source files")->required();
-  pc->add_option("--machine", line.plc_check.machine, "Machine file whose symbols the program uses");
-  pc->footer("Example: servogate plc check mill.st --machine machine.toml");
-
+  line.words.emplace_back("servogate");
+  line.words.insert(line.words.end(), argv + std::min(argc, 1), argv + argc);
+  Commands commands(line);
+  CLI::App& app = commands.app();
+  exit_code = kWrongUse;
+  const char* first = argc > 1 ? argv[1] : nullptr;
+  if (unknown_command(app, "", first)) return std::nullopt;
+  for (const char* group : {"plc", "can"})
+    if (first != nullptr && std::string_view(first) == group &&
+        unknown_command(*subcommand(app, group), group + std::string(" "), argc > 2 ? argv[2] : nullptr))
+      return std::nullopt;
   try {
     app.parse(shielded(argc, argv));
-  } catch (const CLI::ParseError& e) {
-    exit_code = app.exit(e) == 0 ? kDone : kWrongUse;
+  } catch (const CLI::Success&) {
+    print(app.help());
+    exit_code = kDone;
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    std::vector<std::string> unread = app.remaining(true);
+    for (std::string& word : unread) unshield(word);
+    complain_of_use(error, app, unread);
     return std::nullopt;
   }
-  const ClockKind clock = is_virtual                  ? ClockKind::virtual_time
-                          : realtime == "best-effort" ? ClockKind::realtime_best_effort
-                          : r->count("--realtime") + u->count("--realtime") > 0 ? ClockKind::realtime
-                                                                                : ClockKind::unset;
-  line.run.clock = line.up.clock = clock;
-  const CLI::App* chosen = app.get_subcommands().front();
-  line.command = chosen->get_name();
-  if (line.command == "plc") line.command += " " + chosen->get_subcommands().front()->get_name();
-  line.client.command = line.command;
-  for (std::string& argument : line.client.arguments)
-    if (argument.starts_with(kShield)) argument.erase(0, 1);
+  commands.settle();
   return line;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/canon.hpp"
 
-#include <cstdio>
-
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/compose/program/program_file.hpp"
 
@@ -16,11 +15,8 @@ int canon(const CanonOptions& options) {
     return code;
   program::Interpreter interpreter(program.dialect, program.model, {}, options.program, program.text,
                                    program.loader, {});
-  const auto error = program::write_canon(interpreter, program.model, [](std::string_view line) {
-    std::fwrite(line.data(), 1, line.size(), stdout);
-    std::fputc('\n', stdout);
-  });
-  std::fflush(stdout);
+  const auto error = program::write_canon(interpreter, program.model, print_line);
+  print_findings(interpreter.warnings());
   if (!error) return kDone;
   print_findings({*error});
   return kAlarm;

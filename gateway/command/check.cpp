@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/check.hpp"
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/compose/program/program_file.hpp"
+#include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/machine/state.hpp"
 #include "plc/run.hpp"
@@ -27,10 +28,13 @@ std::string sentence(const text::Entry& entry, const std::vector<std::string>& a
 void check_logic(const machine::MachineConfig& machine, std::vector<text::Finding>& findings) {
   std::vector<plc::SourceFile> sources;
   for (const std::string& name : machine.plc.sources) {
-    plc::SourceFile source{machine.resolve(name), {}};
-    std::string error;
-    if (!read_file(source.name, source.text, error)) return;  // the machine file's check says it
-    sources.push_back(std::move(source));
+    std::string reason;
+    auto content = files::read_file(machine.resolve(name), files::kMostOfSource, reason);
+    if (!content) {
+      findings.push_back({text::Severity::error, machine.resolve(name), 0, 0, &kCannotRead, {reason}});
+      return;
+    }
+    sources.push_back({machine.resolve(name), std::move(*content)});
   }
   if (sources.empty()) return;
   plc::Options options;
@@ -62,25 +66,58 @@ nlohmann::json describe(const program::CheckReport& report, const program::Machi
 
 void print_report(const program::CheckReport& report, const program::MachineModel& model,
                   const std::string& name) {
-  std::printf(
-      "%s\n",
+  print_line(
       sentence(kTimeLine, {name, std::to_string(report.blocks),
                            text::number(report.feed_seconds + report.rapid_seconds + report.dwell_seconds, 1),
-                           text::number(report.path_mm, 1)})
-          .c_str());
+                           text::number(report.path_mm, 1)}));
   for (std::size_t a = 0; a < report.extents.size(); ++a) {
     const auto& e = report.extents[a];
     if (!e.moved) continue;
-    std::printf("  %s\n",
-                sentence(kTravelLine, {model.axes[a].letter, text::number(e.min, 3), text::number(e.max, 3),
-                                       text::number(e.travel_min, 3), text::number(e.travel_max, 3),
-                                       model.axes[a].rotary ? "deg" : "mm"})
-                    .c_str());
+    print_line("  " +
+               sentence(kTravelLine, {model.axes[a].letter, text::number(e.min, 3), text::number(e.max, 3),
+                                      text::number(e.travel_min, 3), text::number(e.travel_max, 3),
+                                      model.axes[a].rotary ? "deg" : "mm"}));
   }
   for (const auto& t : report.tools)
-    std::printf("  %s\n", sentence(kToolLine, {std::to_string(t.number), std::to_string(t.corrector),
-                                               std::to_string(t.line), std::to_string(t.calls)})
-                              .c_str());
+    print_line("  " + sentence(kToolLine, {std::to_string(t.number), std::to_string(t.corrector),
+                                           std::to_string(t.line), std::to_string(t.calls)}));
+}
+
+/// What the programs of a command line came to.
+struct ProgramErrors {
+  int found = 0;
+  bool unreadable = false;
+};
+
+ProgramErrors check_programs(const CheckOptions& options, const machine::MachineConfig& machine,
+                             nlohmann::json& json) {
+  ProgramErrors errors;
+  // The origins and tools in force, where the machine has been used; a damaged state is the running
+  // control's matter.
+  const program::Tables tables =
+      machine::StateDirectory(machine.resolve(machine.run.state)).load().state.tables;
+  for (const std::string& name : options.programs) {
+    ProgramFile program;
+    std::vector<text::Finding> found;
+    nlohmann::json entry{{"program", name}};
+    if (open_program(machine, name, options.dialect, program, found)) {
+      const program::CheckReport report = program::check_program(program.dialect, program.model, tables, name,
+                                                                 program.text, program.loader, {});
+      found = report.findings;
+      errors.found += print_findings(found);
+      if (options.json)
+        entry = describe(report, program.model, name);
+      else
+        print_report(report, program.model, name);
+    } else {
+      errors.unreadable = true;
+      print_findings(found);
+    }
+    if (!options.json) continue;
+    entry["findings"] = nlohmann::json::parse(machine::to_json(found));
+    json["programs"].push_back(entry);
+  }
+  return errors;
 }
 
 }  // namespace
@@ -89,40 +126,20 @@ int check(const CheckOptions& options) {
   const machine::LoadResult loaded = machine::load(options.machine);
   std::vector<text::Finding> findings = loaded.findings;
   if (loaded.ok()) check_logic(loaded.machine, findings);
-  int machine_errors = print_findings(findings);
+  const int machine_errors = print_findings(findings);
   nlohmann::json json;
   if (options.json) {
     json["schema"] = 1;
     json["machine"] = nlohmann::json::parse(machine::to_json(loaded, machine::consequences(loaded)));
     json["findings"] = nlohmann::json::parse(machine::to_json(findings));
   } else {
-    for (const machine::Consequence& c : machine::consequences(loaded)) std::printf("%s\n", c.str().c_str());
+    for (const machine::Consequence& c : machine::consequences(loaded)) print_line(c.str());
   }
-  int program_errors = 0;
-  if (machine_errors == 0) {
-    // The origins and tools in force, where the machine has been used; a damaged state is the running
-    // control's matter.
-    const program::Tables tables =
-        machine::StateDirectory(loaded.machine.resolve(loaded.machine.run.state)).load().state.tables;
-    for (const std::string& name : options.programs) {
-      ProgramFile program;
-      if (const int code = open_program(loaded.machine, name, options.dialect, program); code != kDone)
-        return code;
-      program::CheckReport report = program::check_program(program.dialect, program.model, tables, name,
-                                                           program.text, program.loader, {});
-      const std::vector<text::Finding>& found = report.findings;
-      program_errors += print_findings(found);
-      if (options.json) {
-        nlohmann::json entry = describe(report, program.model, name);
-        entry["findings"] = nlohmann::json::parse(machine::to_json(found));
-        json["programs"].push_back(entry);
-      } else {
-        print_report(report, program.model, name);
-      }
-    }
-  }
-  if (options.json) std::printf("%s\n", json.dump(1).c_str());
-  return machine_errors + program_errors > 0 ? kAlarm : kDone;
+  ProgramErrors programs;
+  if (machine_errors == 0) programs = check_programs(options, loaded.machine, json);
+  if (options.json) print_line(json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (!loaded.readable || programs.unreadable) return kWrongUse;
+  return machine_errors + programs.found > 0 ? kAlarm : kDone;
 }
 
 }  // namespace servogate::gateway::command

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
+#include <vector>
+
 #include "gateway/cli/options.hpp"
 
 /// The commands of `servogate`; each returns its exit code.
 namespace servogate::gateway::command {
 
 int version(bool json);
-int run(const RunOptions& options, const std::string& command_line);
-int up(const UpOptions& options, const std::string& command_line);
+/// `command_line`: its words, for the report.
+int run(const RunOptions& options, const std::vector<std::string>& command_line);
+int up(const UpOptions& options);
 int client(const ClientOptions& options);
 int check(const CheckOptions& options);
 int canon(const CanonOptions& options);

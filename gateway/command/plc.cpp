@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <cstdio>
 
 #include "gateway/cli/messages.hpp"
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/compose/program/program_model.hpp"
+#include "gateway/files/read_file.hpp"
 #include "gateway/machine/load.hpp"
 #include "plc/run.hpp"
 
@@ -17,13 +17,13 @@ const text::Entry kBadSet{"cli.plc-set", "'{0}' is not of the form NAME=VALUE or
 
 bool read_sources(const std::vector<std::string>& files, std::vector<plc::SourceFile>& out) {
   for (const std::string& name : files) {
-    plc::SourceFile source{name, {}};
-    std::string error;
-    if (!read_file(name, source.text, error)) {
-      print_findings({{text::Severity::error, name, 0, 0, &kCannotRead, {error}}});
+    std::string reason;
+    auto content = files::read_file(name, files::kMostOfSource, reason);
+    if (!content) {
+      print_findings({{text::Severity::error, name, 0, 0, &kCannotRead, {reason}}});
       return false;
     }
-    out.push_back(std::move(source));
+    out.push_back({name, std::move(*content)});
   }
   return true;
 }
@@ -44,11 +44,7 @@ int plc_run(const PlcRunOptions& options) {
     request.sets.push_back(set);
   }
   request.prints = options.prints;
-  const plc::RunResult result = plc::run(request, [](std::string_view line) {
-    std::fwrite(line.data(), 1, line.size(), stdout);
-    std::fputc('\n', stdout);
-  });
-  std::fflush(stdout);
+  const plc::RunResult result = plc::run(request, print_line);
   print_findings(result.findings);
   switch (result.end) {
     case plc::RunResult::End::done:
@@ -77,7 +73,7 @@ int plc_check(const PlcCheckOptions& options) {
   std::vector<text::Finding> findings;
   const bool good = plc::check(files, symbols, plc_options, findings);
   print_findings(findings);
-  return good ? kDone : kWrongUse;
+  return good ? kDone : kAlarm;
 }
 
 }  // namespace servogate::gateway::command

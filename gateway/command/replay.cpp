@@ -3,8 +3,11 @@
 #include <cstdio>
 #include <fstream>
 
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/outputs.hpp"
 #include "gateway/compose/program/program_file.hpp"
+#include "gateway/files/read_file.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/session.hpp"
 
@@ -12,16 +15,17 @@ namespace servogate::gateway::command {
 
 namespace {
 
-const text::Entry kNoRecord{"replay.no-record", "cannot read the record: {0}", "запись не читается: {0}"};
-const text::Entry kDamaged{"replay.damaged", "the record is damaged after cycle {0}",
-                           "запись повреждена после цикла {0}"};
+const text::Entry kNoRecord{"replay.no-record", "cannot replay {0}: {1}", "не удаётся повторить {0}: {1}"};
+const text::Entry kDamaged{"replay.damaged",
+                           "{0} is damaged at byte {1}: the {2} cycles before were replayed",
+                           "{0}: запись повреждена с байта {1}; повторено циклов до этого места: {2}"};
 const text::Entry kChanged{"replay.changed",
                            "{0} has changed since the record was made; the replay may differ",
                            "{0} изменён после записи; повтор может отличаться"};
 const text::Entry kSame{"replay.same", "{0} cycles replayed, the trace is equal byte by byte",
                         "повторено циклов: {0}, трасса совпадает побайтно"};
 const text::Entry kReplayed{"replay.done", "{0} cycles replayed", "повторено циклов: {0}"};
-const text::Entry kNoTrace{"replay.no-trace", "cannot read {0}", "не читается {0}"};
+const text::Entry kNoTrace{"replay.no-trace", "cannot read {0}: {1}", "не читается {0}: {1}"};
 const text::Entry kDiffers{"replay.differs", "line {0} of the trace differs", "строка {0} трассы отличается"};
 
 /// First line in which two files differ, 0: none.
@@ -58,16 +62,24 @@ int replay(const ReplayOptions& options) {
   RecordReader record;
   std::string error;
   if (!record.open(options.record, error)) {
-    complain(kNoRecord, {error});
+    complain(kNoRecord, {options.record, error});
     return kWrongUse;
   }
-  if (!options.against.empty() && !std::ifstream(options.against)) {
-    complain(kNoTrace, {options.against});
+  if (const std::string why = options.against.empty() ? "" : files::why_unreadable(options.against);
+      !why.empty()) {
+    complain(kNoTrace, {options.against, why});
     return kWrongUse;
   }
   const RecordHeader& header = record.header();
   const machine::LoadResult loaded = machine::load(header.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
+  if (const int code =
+          check_outputs({{"--trace", options.trace}}, "", loaded,
+                        {{text::both("the record", "запись"), options.record},
+                         {"--against", options.against},
+                         {text::both("the part program", "управляющую программу"), header.program}});
+      code != kDone)
+    return code;
   if (report::identify(header.machine).sha256 != header.machine_sha256) complain(kChanged, {header.machine});
   ProgramFile program;
   if (!header.program.empty()) {
@@ -84,9 +96,12 @@ int replay(const ReplayOptions& options) {
       return program::Interpreter(program.dialect, program.model, header.state.tables, header.program,
                                   program.text, program.loader, start);
     });
-  const std::string trace = !options.trace.empty()    ? options.trace
-                            : options.against.empty() ? ""
-                                                      : options.against + ".replay";
+  std::string trace = options.trace;
+  if (trace.empty() && !options.against.empty()) trace = files::nameless_file(options.against, error);
+  if (!error.empty()) {
+    complain(kCannotWrite, {text::both("the replay's trace", "трассу повтора"), error});
+    return kInfrastructure;
+  }
   Session session(*control, {trace, {}, {}}, false);
   while (const cycle::CycleInputs* next = record.next()) {
     catch_up(*control, *next);
@@ -99,22 +114,26 @@ int replay(const ReplayOptions& options) {
     return kInfrastructure;
   }
   const std::string cycles = std::to_string(control->cycle().count());
-  if (record.damaged()) complain(kDamaged, {cycles});
   long difference = 0;
-  if (!options.against.empty()) {
-    difference = first_difference(options.against, trace);
-    if (options.trace.empty()) std::remove(trace.c_str());
-  }
+  if (!options.against.empty()) difference = first_difference(options.against, trace);
   if (options.json)
-    std::printf("{\"schema\":1,\"cycles\":%s,\"damaged\":%s,\"first_difference\":%ld}\n", cycles.c_str(),
-                record.damaged() ? "true" : "false", difference);
-  else if (difference == 0)
+    print_formatted("{\"schema\":1,\"cycles\":%s,\"damaged\":%s,\"first_difference\":%ld}\n", cycles.c_str(),
+                    record.damaged() ? "true" : "false", difference);
+  if (record.damaged()) {
+    // How far a trace that ends here agrees says nothing new.
+    complain(kDamaged, {options.record, std::to_string(record.damaged_at()), cycles});
+    return kWrongUse;
+  }
+  if (difference != 0) {
+    complain(kDiffers, {std::to_string(difference)});
+    return kAlarm;
+  }
+  if (!options.json)
     std::fprintf(stderr, "%s\n",
                  text::render(options.against.empty() ? kReplayed : kSame, std::vector<std::string>{cycles},
                               text::user_language())
                      .c_str());
-  if (difference != 0) complain(kDiffers, {std::to_string(difference)});
-  return difference != 0 || record.damaged() ? kAlarm : kDone;
+  return kDone;
 }
 
 }  // namespace servogate::gateway::command

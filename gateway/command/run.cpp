@@ -9,7 +9,9 @@
 #include <mutex>
 #include <thread>
 
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/outputs.hpp"
 #include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/state.hpp"
 #include "gateway/run/operator_script.hpp"
@@ -25,10 +27,6 @@ namespace {
 const text::Entry kRefused{"run.refused", "the control refuses: {0}", "управление отказывает: {0}"};
 const text::Entry kNotReady{"run.not-ready", "these axes did not become ready: {0}",
                             "эти оси не пришли в готовность: {0}"};
-const text::Entry kNoRights{
-    "run.no-realtime", "real time was refused: {0}: {1}. Grant it with: {2}  (or use --realtime=best-effort)",
-    "нет реального времени: {0}: {1}. Разрешить: {2}  (или --realtime=best-effort)"};
-const text::Entry kCannotWrite{"run.cannot-write", "cannot write {0}: {1}", "не удаётся записать {0}: {1}"};
 const text::Entry kAlarmLine{"run.alarm", "alarm {0}: {1}", "авария {0}: {1}"};
 const text::Entry kDone1{"run.done", "done: {0} blocks in {1} s of machine time",
                          "готово: кадров {0}, машинное время {1} с"};
@@ -53,7 +51,7 @@ class Run {
   Run(const RunOptions& options, const machine::LoadResult& loaded) : options_(options), loaded_(loaded) {}
 
   int prepare();
-  int execute(const std::string& command_line);
+  int execute(const std::vector<std::string>& command_line);
 
  private:
   bool realtime() const { return options_.clock != ClockKind::virtual_time; }
@@ -62,7 +60,7 @@ class Run {
   bool realtime_loop(OperatorScript& script, Session& session);
   void take_answers(OperatorScript& script);
   void progress(const image::ProcessImage& image, bool last);
-  int finish(const OperatorScript& script, Session& session, const std::string& command_line);
+  int finish(const OperatorScript& script, Session& session, const std::vector<std::string>& command_line);
   void explain(const OperatorScript& script, const report::Report& report);
   bool save_state();
 
@@ -123,7 +121,7 @@ OperatorScript::Wishes Run::wishes() const {
   return w;
 }
 
-int Run::execute(const std::string& command_line) {
+int Run::execute(const std::vector<std::string>& command_line) {
   if (!options_.record.empty()) {
     RecordHeader header;
     header.machine = std::filesystem::absolute(options_.machine).string();
@@ -178,8 +176,7 @@ bool Run::realtime_loop(OperatorScript& script, Session& session) {
   RealtimeLoop loop(*control_, settings,
                     [&session](Control&, image::Nanoseconds late) noexcept { session.after_cycle(late); });
   const bool started = loop.start();
-  for (const cycle::RealtimeRefusal& r : loop.refusals())
-    if (!started ? r.needed : !options_.quiet) complain(kNoRights, {r.what, r.cause, r.remedy});
+  if (!started || !options_.quiet) loop.complain_of_refusals(started);
   if (!started) return false;
   auto image = std::make_unique<image::ProcessImage>();
   while (!script.done()) {
@@ -212,10 +209,13 @@ void Run::progress(const image::ProcessImage& image, bool last) {
   if (last && terminal) std::fputc('\n', stderr);
 }
 
-int Run::finish(const OperatorScript& script, Session& session, const std::string& command_line) {
+int Run::finish(const OperatorScript& script, Session& session,
+                const std::vector<std::string>& command_line) {
   const auto written = [this](const std::string& path, const std::string& error) {
     if (error.empty()) return;
-    complain(kCannotWrite, {path, error});
+    // Where the writer names its file, too, only the system's words are left to be said.
+    const bool named = error.starts_with(path + ": ");
+    complain(kCannotWrite, {path, named ? error.substr(error.rfind(": ") + 2) : error});
     infrastructure_ = true;
   };
   progress(control_->cycle().image(), true);
@@ -233,7 +233,7 @@ int Run::finish(const OperatorScript& script, Session& session, const std::strin
   p.clock = options_.clock == ClockKind::virtual_time ? "virtual"
             : options_.clock == ClockKind::realtime   ? "realtime"
                                                       : "realtime=best-effort";
-  p.command_line = {command_line};
+  p.command_line = command_line;
   if (!options_.report.empty())
     written(options_.report, report::write_file(options_.report, report::to_json(report)));
   if (!options_.html.empty()) {
@@ -245,7 +245,7 @@ int Run::finish(const OperatorScript& script, Session& session, const std::strin
     written(options_.html,
             report::write_file(options_.html, report::to_html(report, *session.picture(), html)));
   }
-  if (options_.json) std::fputs(report::to_json(report).c_str(), stdout);
+  if (options_.json) print(report::to_json(report));
   explain(script, report);
   if (!options_.state.empty() && !save_state()) infrastructure_ = true;
   if (infrastructure_) return kInfrastructure;
@@ -295,7 +295,7 @@ bool Run::save_state() {
 
 }  // namespace
 
-int run(const RunOptions& given, const std::string& command_line) {
+int run(const RunOptions& given, const std::vector<std::string>& command_line) {
   RunOptions options = given;
   const machine::LoadResult loaded = machine::load(options.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
@@ -311,6 +311,15 @@ int run(const RunOptions& given, const std::string& command_line) {
     complain(kStartNowForbidden, {});
     return kWrongUse;
   }
+  if (const int code =
+          check_outputs({{"--trace", options.trace},
+                         {"--report", options.report},
+                         {"--html", options.html},
+                         {"--record", options.record}},
+                        options.state, loaded,
+                        {{text::both("the part program", "управляющую программу"), options.program}});
+      code != kDone)
+    return code;
   Run run(options, loaded);
   if (const int code = run.prepare(); code != kDone) return code;
   return run.execute(command_line);

@@ -7,6 +7,7 @@
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/outputs.hpp"
 #include "gateway/machine/state.hpp"
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/server/socket_path.hpp"
@@ -21,9 +22,6 @@ const text::Entry kListening{"up.listening", "{0} is up; control socket {1}",
 const text::Entry kNoSocket{"up.no-socket", "cannot listen on {0}: {1}", "не удаётся слушать {0}: {1}"};
 const text::Entry kStateLost{"up.state-not-saved", "the state was not saved: {0}",
                              "состояние не сохранено: {0}"};
-const text::Entry kNoRights{
-    "up.no-realtime", "real time was refused: {0}: {1}. Grant it with: {2}  (or use --realtime=best-effort)",
-    "нет реального времени: {0}: {1}. Разрешить: {2}  (или --realtime=best-effort)"};
 
 std::atomic<bool> ended{false};
 void on_end(int) { ended = true; }
@@ -92,7 +90,7 @@ void shut_down(Resident& resident) {
 
 }  // namespace
 
-int up(const UpOptions& options, const std::string&) {
+int up(const UpOptions& options) {
   const machine::LoadResult loaded = machine::load(options.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
   const machine::MachineConfig& m = loaded.machine;
@@ -109,6 +107,7 @@ int up(const UpOptions& options, const std::string&) {
   const std::string state_path = !options.state.empty() ? options.state
                                  : is_virtual           ? std::string()
                                                         : m.resolve(m.run.state);
+  if (const int code = check_outputs({}, state_path, loaded, {}); code != kDone) return code;
   machine::MachineState state;
   if (!state_path.empty()) {
     machine::StateDirectory::Loaded kept = machine::StateDirectory(state_path).load();
@@ -150,8 +149,7 @@ int up(const UpOptions& options, const std::string&) {
     realtime_loop =
         std::make_unique<RealtimeLoop>(*control, settings, [](Control&, image::Nanoseconds) noexcept {});
     const bool started = realtime_loop->start();
-    for (const cycle::RealtimeRefusal& r : realtime_loop->refusals())
-      if (started || r.needed) complain(kNoRights, {r.what, r.cause, r.remedy});
+    realtime_loop->complain_of_refusals(started);
     if (!started) return kInfrastructure;
   }
   server.start();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
 #include <string>
 
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/report/report.hpp"
 
@@ -11,9 +11,9 @@ int version(bool json) {
   const report::BuildIdentity id = report::build_identity();
   const std::string v(id.version), c(id.commit);
   if (json)
-    std::printf("{\"schema\":1,\"version\":\"%s\",\"commit\":\"%s\"}\n", v.c_str(), c.c_str());
+    print_line("{\"schema\":1,\"version\":\"" + v + "\",\"commit\":\"" + c + "\"}");
   else
-    std::printf("servogate %s%s%s%s\n", v.c_str(), c.empty() ? "" : " (", c.c_str(), c.empty() ? "" : ")");
+    print_line("servogate " + v + (c.empty() ? "" : " (" + c + ")"));
   return kDone;
 }
 

@@ -4,6 +4,7 @@
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/canopen_setup.hpp"
 #include "gateway/compose/program/program_model.hpp"
+#include "gateway/files/read_file.hpp"
 #include "plc/compile.hpp"
 
 namespace servogate::gateway {
@@ -72,21 +73,23 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
 bool Control::compile_logic(std::vector<text::Finding>& findings) {
   const machine::MachineConfig& m = loaded_.machine;
   if (m.plc.sources.empty()) return true;
-  std::vector<plc::SourceFile> files;
+  std::vector<plc::SourceFile> sources;
   for (std::size_t i = 0; i < m.plc.sources.size(); ++i) {
     plc::SourceFile file{m.resolve(m.plc.sources[i]), {}};
     std::string error;
-    if (!read_file(file.name, file.text, error)) {
+    auto content = files::read_file(file.name, files::kMostOfSource, error);
+    if (!content) {
       const machine::Where where = m.where("plc.sources");
       findings.push_back({text::Severity::error, m.file, where.line, where.column, &kUnreadable, {error}});
       return false;
     }
-    files.push_back(std::move(file));
+    file.text = std::move(*content);
+    sources.push_back(std::move(file));
   }
   plc::Options options;
   options.k_bytes = static_cast<std::uint32_t>(m.control.k_size);
   options.v_bytes = static_cast<std::uint32_t>(m.control.syvar_size);
-  plc::CompileResult compiled = plc::compile(std::move(files), m.symbol_table(), options);
+  plc::CompileResult compiled = plc::compile(std::move(sources), m.symbol_table(), options);
   findings.insert(findings.end(), compiled.findings.begin(), compiled.findings.end());
   if (!compiled.ok()) return false;
   logic_ = std::make_unique<PlcLogic>(compiled.image);

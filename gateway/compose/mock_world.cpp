@@ -294,7 +294,7 @@ void MockWorld::apply_wishes() {
       const double raw = i.scale != 0.0 ? (value - i.shift) / i.scale : value;
       lines_[i.device]->station(0).set_analog_input(
           static_cast<std::uint16_t>(i.number),
-          static_cast<std::uint16_t>(std::lround(std::clamp(raw, 0.0, 65535.0))));
+          static_cast<std::uint16_t>(std::lround(std::clamp(raw, 0.0, kLargestRegister))));
     } else if (!i.switched) {
       drive_input(i, value != 0.0);
     } else if (wish.play.value) {

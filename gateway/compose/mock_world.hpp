@@ -44,6 +44,8 @@ class MockWorld {
   /// Plays an input from any thread; it takes effect with the next advance_to(). A switch that follows an
   /// axis is held at the level until it is let go.
   Played play_input(std::string_view point, Play play);
+  /// Largest value of a simulated analog register; they begin at 0.
+  static constexpr double kLargestRegister = 65535.0;
   /// The operator of `run`: closes what the machine file names (the emergency-stop chain).
   void close_operator_points();
 

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
+#include "gateway/files/read_file.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
 #include "gateway/machine/keys/findings.hpp"
 #include "gateway/machine/keys/reader.hpp"
@@ -262,14 +261,12 @@ DeviceResult parse_device(std::string_view text, const std::string& file) {
 }
 
 DeviceResult load_device(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in.is_open() || in.bad()) {
-    DeviceResult out;
-    out.findings.push_back({text::Severity::error, path, 0, 0, &finding::kFileMissing, {path}});
-    return out;
-  }
-  return parse_device(text, path);
+  std::string reason;
+  if (const auto text = files::read_file(path, files::kMostOfSettings, reason))
+    return parse_device(*text, path);
+  DeviceResult out;
+  out.findings.push_back({text::Severity::error, path, 0, 0, &finding::kFileMissing, {reason}});
+  return out;
 }
 
 }  // namespace servogate::machine

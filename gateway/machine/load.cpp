@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
+#include "gateway/files/read_file.hpp"
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings.hpp"
 #include "gateway/machine/keys/findings.hpp"
@@ -18,15 +17,6 @@ namespace servogate::machine {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<std::string> file_text(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) return std::nullopt;
-  std::ifstream in(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in.is_open() || in.bad()) return std::nullopt;
-  return text;
-}
 
 /// Names of device files with the place that names them first.
 std::vector<std::pair<std::string, Where>> device_names(const MachineConfig& machine) {
@@ -59,7 +49,7 @@ void load_devices(LoadResult& result, Reading& reading, std::vector<text::Findin
     for (const std::string& folder : folders) {
       const std::string path = (fs::path(folder) / (name + ".toml")).string();
       std::error_code error;
-      if (found.empty() && fs::is_regular_file(path, error)) found = path;
+      if (found.empty() && fs::exists(path, error)) found = path;
       looked += (looked.empty() ? "" : ", ") + folder;
     }
     if (found.empty()) {
@@ -101,6 +91,11 @@ std::vector<std::string> device_folders() {
   std::vector<std::string> out;
   if (const char* folder = std::getenv("SERVOGATE_DEVICES"); folder != nullptr && *folder != '\0')
     out.emplace_back(folder);
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (const fs::path installed = program.parent_path().parent_path() / "share/servogate/devices";
+      !error && fs::is_directory(installed, error))
+    out.push_back(installed.string());
 #ifdef SERVOGATE_DEVICE_FOLDER
   out.emplace_back(SERVOGATE_DEVICE_FOLDER);
 #endif
@@ -127,11 +122,11 @@ LoadResult parse(std::string_view text, const std::string& path) {
 }
 
 LoadResult load(const std::string& path) {
-  if (const auto text = file_text(path)) return parse(*text, path);
+  std::string reason;
+  if (const auto text = files::read_file(path, files::kMostOfSettings, reason)) return parse(*text, path);
   LoadResult result;
+  result.readable = false;
   result.machine.file = path;
-  const std::string reason = fs::exists(path) ? text::both("not a readable file", "не читаемый файл")
-                                              : text::both("it does not exist", "его нет");
   result.findings.push_back({text::Severity::error, path, 0, 0, &finding::kFileMissing, {reason}});
   return result;
 }

@@ -16,7 +16,8 @@ struct LoadResult {
   MachineConfig machine;
   std::map<std::string, DeviceConfig, std::less<>> devices;  ///< by name in the machine file
   std::vector<text::Finding>
-      findings;  ///< all of the file and its device files, errors and warnings, by place
+      findings;          ///< all of the file and its device files, errors and warnings, by place
+  bool readable = true;  ///< false: there was no content to judge (missing, no regular file, too large)
   /// No error; warnings are allowed.
   bool ok() const;
   /// Device of a node or station, nullptr when it could not be read.
@@ -24,7 +25,8 @@ struct LoadResult {
 };
 
 /// Where device files are looked for after the machine file's own folder and its devices/.
-/// $SERVOGATE_DEVICES, then the build's devices/ folder.
+/// $SERVOGATE_DEVICES, then ../share/servogate/devices of an installed program, then the source tree's
+/// devices/.
 std::vector<std::string> device_folders();
 
 /// Reads and checks a machine file: keys, units, ranges, references, places, dangerous choices, consequences.

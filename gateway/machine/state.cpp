@@ -10,11 +10,11 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <system_error>
 
+#include "gateway/files/read_file.hpp"
+#include "gateway/machine/keys/findings.hpp"
 #include "gateway/machine/state_text.hpp"
 
 namespace servogate::machine {
@@ -73,11 +73,14 @@ bool write_generation(const std::string& folder, const std::string& file, const 
   return sync_folder(folder);
 }
 
-std::optional<std::string> contents(const std::string& path) {
+/// A generation's content; nullopt: there is no such file, or a finding says why it cannot be read.
+std::optional<std::string> contents(const std::string& path, std::vector<text::Finding>& findings) {
+  std::string reason;
+  if (auto content = files::read_file(path, files::kMostOfSettings, reason)) return content;
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) return std::nullopt;
-  std::ifstream in(path, std::ios::binary);
-  return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (fs::exists(path, error) || error)
+    findings.push_back({text::Severity::error, path, 0, 0, &finding::kFileMissing, {reason}});
+  return std::nullopt;
 }
 
 bool any_error(const std::vector<text::Finding>& findings) {
@@ -93,9 +96,9 @@ std::string previous_of(const std::string& file) {
 void load_part(const std::string& file, StatePart part, MachineState& state,
                std::vector<text::Finding>& findings) {
   const std::string previous = previous_of(file);
-  const auto newest = contents(file), older = contents(previous);
-  if (!newest && !older) return;
-  std::vector<text::Finding> problems;
+  std::vector<text::Finding> problems, of_previous;
+  const auto newest = contents(file, problems), older = contents(previous, of_previous);
+  if (!newest && !older && problems.empty() && of_previous.empty()) return;
   if (newest) {
     problems = read_part(*newest, file, part, state);
     if (!any_error(problems)) {
@@ -110,7 +113,9 @@ void load_part(const std::string& file, StatePart part, MachineState& state,
     return;
   }
   findings.insert(findings.end(), problems.begin(), problems.end());
-  if (!newest) findings.push_back({text::Severity::error, previous, 0, 0, &finding::kNoGeneration, {}});
+  findings.insert(findings.end(), of_previous.begin(), of_previous.end());
+  if (!newest && older)
+    findings.push_back({text::Severity::error, previous, 0, 0, &finding::kNoGeneration, {}});
 }
 
 }  // namespace

@@ -41,8 +41,10 @@ Json to_json(const Provenance& p) {
   out["clock"] = p.clock;
   out["buses"] = Json::array();
   for (const BusProvenance& b : p.buses)
-    out["buses"].push_back(
-        {{"name", b.name}, {"transport", b.transport}, {"kind", b.mock ? "mock" : "real"}});
+    out["buses"].push_back({{"name", b.name},
+                            {"protocol", b.protocol},
+                            {"transport", b.transport},
+                            {"kind", b.mock ? "mock" : "real"}});
   out["kernel"] = p.kernel;
   out["processor"] = p.processor;
   out["nodes"] = Json::array();

@@ -19,11 +19,12 @@ struct FileIdentity {
   std::string sha256;
 };
 
-/// One bus as it was wired.
+/// One bus as it was wired: a CAN segment, a Modbus station, a GPIO chip.
 struct BusProvenance {
   std::string name;       ///< as in the machine file
-  std::string transport;  ///< "mock:can0", "socketcan:can0", ...
+  std::string transport;  ///< "mock:can0", "socketcan:can0", "tcp:10.0.0.7:502", "chip:gpiochip0" ...
   bool mock = true;
+  std::string protocol = "canopen";  ///< "canopen", "modbus", "gpio"
 };
 
 /// Identity object 1018h of a node, or its like.

@@ -3,7 +3,19 @@
 
 #include <algorithm>
 
+#include "gateway/cli/messages.hpp"
+
 namespace servogate::gateway {
+
+namespace {
+
+const text::Entry kRefused{
+    "run.no-realtime", "real time was refused: {0}: {1}. Grant it with: {2}  (or use --realtime=best-effort)",
+    "нет реального времени: {0}: {1}. Разрешить: {2}  (или --realtime=best-effort)"};
+const text::Entry kWithout{"run.without", "goes on without {0}: {1}. What grants it: {2}",
+                           "работает без этого: {0}: {1}. Разрешить: {2}"};
+
+}  // namespace
 
 RealtimeLoop::RealtimeLoop(Control& control, cycle::RealtimeSettings settings, AfterCycle after)
     : control_(control), settings_(settings), after_(std::move(after)) {}
@@ -43,14 +55,20 @@ void RealtimeLoop::cycle_thread() {
     const image::Nanoseconds late = clock_.now_ns() - due;
     if (late > period) {
       overruns_.fetch_add(1, std::memory_order_relaxed);
-      // Best effort on simulated drives is a demonstration: late cycles are counted, nothing can be hurt by them.
-      if (!settings_.best_effort || !control_.all_mock()) control_.cycle().note_overrun(late);
+      // Best effort on simulated drives is a demonstration: late cycles are counted, nothing can be hurt by
+      // them.
+      if (!settings_.best_effort || !control_.nothing_real()) control_.cycle().note_overrun(late);
       // Cycles that are lost are not made up for: the next one is a period after this one.
       base += late;
     }
     if (!control_.cycle().step()) break;
     after_(control_, late);
   }
+}
+
+void RealtimeLoop::complain_of_refusals(bool started) const {
+  for (const cycle::RealtimeRefusal& r : refusals_)
+    if (started || r.needed) complain(started ? kWithout : kRefused, {r.what, r.cause, r.remedy});
 }
 
 void RealtimeLoop::stop() {

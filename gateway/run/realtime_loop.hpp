@@ -27,7 +27,9 @@ class RealtimeLoop {
   bool start();
   /// Ends both threads after the cycle under way.
   void stop();
-  const std::vector<cycle::RealtimeRefusal>& refusals() const noexcept { return refusals_; }
+  /// After start(): says on standard error what the system refused, and the command that grants it: as what
+  /// kept the loop from starting, or as what it goes on without.
+  void complain_of_refusals(bool started) const;
   std::int64_t overruns() const noexcept { return overruns_.load(std::memory_order_relaxed); }
 
  private:

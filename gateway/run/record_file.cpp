@@ -10,14 +10,14 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "gateway/compose/program/program_model.hpp"
+#include "gateway/files/read_file.hpp"
 #include "gateway/machine/state_text.hpp"
 
 namespace servogate::gateway {
 
 namespace {
 
-constexpr int kRecordSchema = 2;
+constexpr int kRecordSchema = 3;
 constexpr std::size_t kQueued = 2048;
 constexpr std::size_t kChunk = 1 << 16;
 constexpr std::size_t kChunkHead = 8;  // length, checksum
@@ -28,10 +28,17 @@ constexpr machine::StatePart kParts[] = {machine::StatePart::origins, machine::S
 const text::Entry kLost{"record.lost", "{0} cycles could not be kept: the file is too slow",
                         "не записано циклов: {0}; носитель не успевает"};
 const text::Entry kNotRecord{"record.not-record", "not a record of servogate", "это не запись servogate"};
-const text::Entry kOtherVersion{"record.other-version", "record of another version or processor",
-                                "запись другой версии или другого процессора"};
-const text::Entry kDamagedHead{"record.damaged", "the record is damaged before its first cycle",
-                               "запись повреждена до первого цикла"};
+const text::Entry kEmpty{"record.empty", "the file is empty", "файл пуст"};
+const text::Entry kOtherSchema{"record.other-schema",
+                               "it is of schema {0}, this version of servogate reads schema {1}",
+                               "у неё схема {0}, эта версия servogate читает схему {1}"};
+const text::Entry kOtherLayout{
+    "record.other-layout",
+    "it was made by another version or on another kind of processor (a cycle of {0} "
+    "bytes, here {1})",
+    "она сделана другой версией или на другом процессоре (цикл в {0} байт, здесь {1})"};
+const text::Entry kDamagedHead{"record.damaged", "it is damaged before its first cycle, at byte {0}",
+                               "она повреждена до первого цикла, байт {0}"};
 
 std::string say(const text::Entry& entry, const std::vector<std::string>& arguments = {}) {
   return text::render(entry, arguments, text::user_language());
@@ -140,12 +147,16 @@ bool RecordReader::read_head(const std::string& line, std::string& error) {
   const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
   try {
     if (!json.is_object() || json.value("servogate", "") != "record") {
-      error = say(kNotRecord);
+      const bool broken = json.is_discarded() && line.starts_with("{\"");
+      error = line.empty() ? say(kEmpty) : broken ? say(kDamagedHead, {"0"}) : say(kNotRecord);
       return false;
     }
-    if (json.value("schema", 0) != kRecordSchema ||
-        json.value("layout", std::size_t{0}) != sizeof(cycle::CycleInputs)) {
-      error = say(kOtherVersion);
+    const int schema = json.value("schema", 0);
+    const std::size_t layout = json.value("layout", std::size_t{0});
+    if (schema != kRecordSchema || layout != sizeof(cycle::CycleInputs)) {
+      error = schema != kRecordSchema
+                  ? say(kOtherSchema, {std::to_string(schema), std::to_string(kRecordSchema)})
+                  : say(kOtherLayout, {std::to_string(layout), std::to_string(sizeof(cycle::CycleInputs))});
       return false;
     }
     header_.machine = json.value("machine", "");
@@ -159,7 +170,7 @@ bool RecordReader::read_head(const std::string& line, std::string& error) {
       machine::read_part(json.at("state").value(name, ""), name, part, header_.state);
     }
   } catch (const nlohmann::json::exception&) {
-    error = say(kDamagedHead);
+    error = say(kDamagedHead, {"0"});
     return false;
   }
   checksum_ = machine::crc32(line);
@@ -168,7 +179,7 @@ bool RecordReader::read_head(const std::string& line, std::string& error) {
 
 void RecordReader::read_chunks(const std::string& content, std::size_t at) {
   const std::string_view all(content);
-  while (all.size() - at >= kChunkHead) {
+  for (damaged_at_ = at; all.size() - at >= kChunkHead; damaged_at_ = at) {
     const std::size_t length = word_at(all.substr(at));
     if (length > all.size() - at - kChunkHead) return;
     const std::string_view bytes = all.substr(at + kChunkHead, length);
@@ -177,6 +188,7 @@ void RecordReader::read_chunks(const std::string& content, std::size_t at) {
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
     at += kChunkHead + length;
     if (length == 0) {
+      damaged_at_ = at;
       whole_ = at == all.size();
       return;
     }
@@ -184,14 +196,15 @@ void RecordReader::read_chunks(const std::string& content, std::size_t at) {
 }
 
 bool RecordReader::open(const std::string& path, std::string& error) {
-  std::string content;
-  if (!read_file(path, content, error)) return false;
+  const auto read = files::read_file(path, files::kMostOfRecord, error);
+  if (!read) return false;
+  const std::string& content = *read;
   const std::size_t end = content.find('\n');
   if (!read_head(content.substr(0, end == std::string::npos ? end : end + 1), error)) return false;
   if (end != std::string::npos) read_chunks(content, end + 1);
   decoder_ = std::make_unique<cycle::InputDecoder>(bytes_);
   look_ahead();
-  if (!has_next_ && damaged_) error = say(kDamagedHead);
+  if (!has_next_ && damaged_) error = say(kDamagedHead, {std::to_string(damaged_at_)});
   return has_next_ || !damaged_;
 }
 

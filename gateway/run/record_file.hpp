@@ -50,7 +50,8 @@ class RecordWriter final : public cycle::InputTap {
 /// A record read back: its header, and its cycles with the next one to look at before it is given.
 class RecordReader final : public cycle::InputSource {
  public:
-  /// False: `error` says why (not readable, not a record, damaged before its first cycle).
+  /// False: `error` says why, in both languages or the user's (not readable, not a record, of another schema,
+  /// damaged before its first cycle).
   bool open(const std::string& path, std::string& error);
   const RecordHeader& header() const noexcept { return header_; }
   /// The next cycle's inputs; nullptr: the record has ended.
@@ -58,6 +59,8 @@ class RecordReader final : public cycle::InputSource {
   bool give(cycle::CycleInputs& inputs) noexcept override;
   /// True once next() has met the place where the record is cut off or changed.
   bool damaged() const noexcept { return damaged_; }
+  /// Byte of the file at which the first unsound chunk begins; meaningful when damaged().
+  std::size_t damaged_at() const noexcept { return damaged_at_; }
 
  private:
   bool read_head(const std::string& line, std::string& error);
@@ -70,6 +73,7 @@ class RecordReader final : public cycle::InputSource {
   cycle::CycleInputs next_;
   std::int64_t expected_ = 0;  ///< number of the next cycle
   std::uint32_t checksum_ = 0;
+  std::size_t damaged_at_ = 0;
   bool whole_ = false;  ///< the end mark was there
   bool has_next_ = false;
   bool damaged_ = false;

@@ -141,6 +141,10 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
         {m.buses[b].name, s.load, s.load_worst_cycle, s.frames_sent, s.frames_received, s.errors});
     r.provenance.buses.push_back({m.buses[b].name, m.buses[b].url, m.buses[b].mock()});
   }
+  for (const machine::StationConfig& s : m.stations)  // a drive's own points come over its segment
+    if (s.kind != machine::StationKind::drive)
+      r.provenance.buses.push_back(
+          {s.name, s.url, s.mock(), s.kind == machine::StationKind::modbus ? "modbus" : "gpio"});
   for (std::size_t s = 0; s < control_.suppliers().size(); ++s) {
     const canopen::Segment& segment = control_.suppliers()[s]->segment();
     for (std::size_t n = 0; n < segment.config().nodes.size(); ++n) {

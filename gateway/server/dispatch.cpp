@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "gateway/machine/consequences.hpp"
 #include "gateway/server/status.hpp"
@@ -71,8 +72,9 @@ class Dispatch {
   }
 
   /// Puts a request to the gate. True: accepted; otherwise `refusal_` holds the answer.
-  bool ask(RequestKind kind, int axis = -1, double value = 0.0);
-  bool set_mode(image::Mode mode);
+  /// `mode`: the mode that belongs to it; a refused request leaves the machine in the one it was in.
+  bool ask(RequestKind kind, int axis = -1, double value = 0.0, std::optional<image::Mode> mode = {});
+  void as_people_write(image::Answer& answer) const;
   /// Index of the axis that `name` says; -1: `refusal_` holds the answer.
   int axis(const json& name);
   /// A number of the request; false: `refusal_` holds the answer.
@@ -98,6 +100,8 @@ class Dispatch {
   Reply hold();
   Reply reset();
   Reply input();
+  /// What the request plays on a point; false: `refusal_` holds the answer.
+  bool input_value(const machine::PointConfig& point, MockWorld::Play& play);
   Reply down() {
     Reply reply = good(says::kDown);
     reply.down = true;
@@ -167,28 +171,36 @@ bool Dispatch::read_head() {
   return false;
 }
 
-bool Dispatch::ask(RequestKind kind, int axis, double value) {
+bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image::Mode> mode) {
   image::Request r;
   r.asker = asker_;
   r.kind = kind;
   r.axis = static_cast<std::int8_t>(axis);
   r.value = value;
+  if (mode) r.mode = static_cast<std::int8_t>(*mode);
   image::Answer answer;
   if (!resident_.ask(r, answer)) {
     refusal_ = fail(says::kNoAnswer, {}, kInfrastructure);
     return false;
   }
   if (answer.refusal == 0) return true;
+  as_people_write(answer);
+  std::vector<std::string> units;
+  for (const machine::AxisConfig& a : machine().axes) units.emplace_back(unit(a));
   refusal_ = {text_of({{"ok", false},
                        {"code", cycle::refusal_texts()[answer.refusal].id},
-                       {"text", cycle::render(answer, machine().letters(), language_)},
+                       {"text", cycle::render(answer, machine().letters(), language_, units)},
                        {"exit", kAlarm}})};
   return false;
 }
 
-bool Dispatch::set_mode(image::Mode mode) {
-  if (resident_.image().processes[0].mode == mode) return true;
-  return ask(RequestKind::mode, -1, static_cast<double>(mode));
+/// The cycle knows radii only; of a diameter axis people see the diameter.
+void Dispatch::as_people_write(image::Answer& answer) const {
+  const auto refusal = static_cast<cycle::Refusal>(answer.refusal);
+  const bool of_radius = refusal == cycle::Refusal::jog_range || refusal == cycle::Refusal::at_soft_limit;
+  if (!of_radius || answer.axis < 0 || !axis_config(answer.axis).diameter) return;
+  answer.value *= 2.0;
+  answer.limit *= 2.0;
 }
 
 int Dispatch::axis(const json& name) {
@@ -236,7 +248,7 @@ Reply Dispatch::home() {
       mask |= 1u << index;
       names += (names.empty() ? "" : ", ") + axis_config(index).letter;
     }
-  if (!set_mode(image::Mode::home) || !ask(RequestKind::home, -1, mask)) return refusal_;
+  if (!ask(RequestKind::home, -1, mask, image::Mode::home)) return refusal_;
   return mask == 0 ? good(says::kHomingAll) : good(says::kHoming, {names});
 }
 
@@ -248,7 +260,7 @@ Reply Dispatch::jog() {
   const double distance = a.diameter ? value / 2.0 : value;
   const image::AxisImage& before = resident_.image().axes[static_cast<std::size_t>(index)];
   const double target = before.command + before.distance_to_go + distance;
-  if (!set_mode(image::Mode::manual) || !ask(RequestKind::jog_increment, index, distance)) return refusal_;
+  if (!ask(RequestKind::jog_increment, index, distance, image::Mode::manual)) return refusal_;
   const bool homed = resident_.image().axes[static_cast<std::size_t>(index)].homed;
   const double limit = std::clamp(target, a.travel_min, a.travel_max);
   if (homed && !a.endless() && std::abs(limit - target) > 1e-9)
@@ -261,7 +273,7 @@ Reply Dispatch::jog_continuous() {
   double value = 0.0;
   const int index = axis(request_.value("axis", json()));
   if (index < 0 || !number("value", value, true)) return refusal_;
-  if (!set_mode(image::Mode::manual) || !ask(RequestKind::jog_continuous, index, value)) return refusal_;
+  if (!ask(RequestKind::jog_continuous, index, value, image::Mode::manual)) return refusal_;
   connection_.jogs = index;
   connection_.asker = asker_;
   return good(says::kJogs, {axis_config(index).letter, value > 0.0 ? "+" : "-"},
@@ -315,9 +327,10 @@ Reply Dispatch::load() {
   if (resident_.busy()) return fail(says::kBusy, {}, kAlarm);
   std::vector<text::Finding> findings;
   const std::string program = request_.value("program", "");
-  const bool loaded = resident_.load(program, request_.value("dialect", ""), findings);
+  const Resident::Load loaded = resident_.load(program, request_.value("dialect", ""), findings);
+  if (loaded == Resident::Load::busy) return fail(says::kBusy, {}, kAlarm);
   json more{{"findings", json::parse(machine::to_json(findings), nullptr, false)}};
-  if (loaded)
+  if (loaded == Resident::Load::done)
     return good(says::kLoaded, {program, std::to_string(resident_.blocks()), std::to_string(findings.size())},
                 more);
   std::string words = text::render(says::kNotLoaded, std::vector<std::string>{program}, language_);
@@ -327,19 +340,21 @@ Reply Dispatch::load() {
     words += "\n" + text::render(says::kMoreFindings,
                                  std::vector<std::string>{std::to_string(findings.size() - kFindingsSaid)},
                                  language_);
-  more.update({{"ok", false}, {"exit", kAlarm}, {"code", says::kNotLoaded.id}, {"text", words}});
+  const int exit = loaded == Resident::Load::not_opened ? kWrongUse : kAlarm;
+  more.update({{"ok", false}, {"exit", exit}, {"code", says::kNotLoaded.id}, {"text", words}});
   return {text_of(more)};
 }
 
 Reply Dispatch::begin(bool step) {
+  std::optional<image::Mode> mode;
   if (!resident_.busy()) {
-    if (!set_mode(step ? image::Mode::step : image::Mode::automatic)) return refusal_;
     if (resident_.program().empty())
       return refuse(cycle::refusal_texts()[static_cast<std::size_t>(cycle::Refusal::no_program)], {}, kAlarm,
                     language_);
     resident_.take_tables();
+    mode = step ? image::Mode::step : image::Mode::automatic;
   }
-  if (!ask(step ? RequestKind::step : RequestKind::start)) return refusal_;
+  if (!ask(step ? RequestKind::step : RequestKind::start, -1, 0.0, mode)) return refusal_;
   return step ? good(says::kStepped) : good(says::kStarted, {resident_.program()});
 }
 
@@ -350,9 +365,10 @@ Reply Dispatch::mdi() {
   resident_.take_tables();
   if (const auto finding = resident_.check_block(block); finding)
     return fail(says::kBlockWrong, {finding->str(language_)}, kAlarm);
-  if (!set_mode(image::Mode::mdi)) return refusal_;
   resident_.set_manual_block(block);
-  return ask(RequestKind::start) ? good(says::kBlockRuns) : refusal_;
+  if (ask(RequestKind::start, -1, 0.0, image::Mode::mdi)) return good(says::kBlockRuns);
+  resident_.set_manual_block({});  // a start button must not find it later
+  return refusal_;
 }
 
 Reply Dispatch::hold() {
@@ -367,6 +383,36 @@ Reply Dispatch::reset() {
   if (whole && !resident_.busy()) resident_.forget_modes();
   const std::string left = alarms_in_words(resident_, language_);
   return left.empty() ? good(says::kReset) : good(says::kResetLeft, {left});
+}
+
+/// What a point can be: what a register holds, as far as its place in the packet holds it.
+image::NumberRange playable(const machine::PointConfig& point) {
+  if (!point.is_analog()) return {0.0, 1.0};
+  const image::NumberRange place = image::number_range(point.place.format);
+  const double end = MockWorld::kLargestRegister * point.scale + point.shift;
+  return {std::max(place.min, std::min(point.shift, end)), std::min(place.max, std::max(point.shift, end))};
+}
+
+bool Dispatch::input_value(const machine::PointConfig& point, MockWorld::Play& play) {
+  const json value = request_.value("value", json());
+  const auto wrong = [&](const text::Entry& entry, const std::vector<std::string>& arguments) {
+    refusal_ = fail(entry, arguments, kWrongUse);
+    return false;
+  };
+  if (value.is_string() && value.get<std::string>() == "auto") return true;
+  if (point.is_analog() && !value.is_number()) return wrong(says::kAnalogPoint, {point.name});
+  if (value.is_boolean())
+    play.value = value.get<bool>() ? 1.0 : 0.0;
+  else if (value.is_number())
+    play.value = value.get<double>();
+  else
+    return wrong(says::kNoNumber, {"value"});
+  const image::NumberRange range = playable(point);
+  const bool inside = *play.value >= range.min && *play.value <= range.max;
+  if (inside && (point.is_analog() || *play.value == range.min || *play.value == range.max)) return true;
+  if (!point.is_analog()) return wrong(says::kDigitalPoint, {point.name, text::number(*play.value)});
+  return wrong(says::kInputRange,
+               {point.name, text::number(*play.value), text::number(range.min), text::number(range.max)});
 }
 
 Reply Dispatch::input() {
@@ -384,12 +430,7 @@ Reply Dispatch::input() {
   const machine::StationConfig& s = machine().stations[static_cast<std::size_t>(station)];
   if (!s.mock()) return fail(says::kRealPoint, {name, s.name, s.url}, kAlarm);
   MockWorld::Play play;
-  const json value = request_.value("value", json());
-  if (value.is_number()) play.value = value.get<double>();
-  if (value.is_boolean()) play.value = value.get<bool>() ? 1.0 : 0.0;
-  if (point->is_analog() && !value.is_number()) return fail(says::kAnalogPoint, {name}, kWrongUse);
-  const bool automatic = value.is_string() && value.get<std::string>() == "auto";
-  if (!play.value && !automatic) return fail(says::kNoNumber, {"value"}, kWrongUse);
+  if (!input_value(*point, play)) return refusal_;
   switch (resident_.control().world().play_input(name, play)) {
     case MockWorld::Played::follows_nothing:
       return fail(says::kFollowsNothing, {name}, kWrongUse);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/server/resident.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -11,17 +10,6 @@ namespace servogate::gateway {
 namespace {
 
 constexpr int kBlockPatience = 10'000;  ///< commands of a typed block that are looked at before it runs
-
-std::string dialect_list() {
-  std::string list;
-  for (const std::string& d : program::dialects()) list += (list.empty() ? "" : ", ") + d;
-  return list;
-}
-
-bool known_dialect(const std::string& name) {
-  const std::vector<std::string> known = program::dialects();
-  return std::find(known.begin(), known.end(), name) != known.end();
-}
 
 }  // namespace
 
@@ -87,33 +75,25 @@ bool Resident::arm() {
   return true;
 }
 
-bool Resident::load(const std::string& path, const std::string& dialect,
-                    std::vector<text::Finding>& findings) {
+Resident::Load Resident::load(const std::string& path, const std::string& dialect,
+                              std::vector<text::Finding>& findings) {
   ProgramFile file;
-  file.dialect = dialect.empty() ? control_.machine().control.dialect : dialect;
-  std::string error;
-  if (!known_dialect(file.dialect))
-    findings.push_back({text::Severity::error, path, 0, 0, &kUnknownDialect, {file.dialect, dialect_list()}});
-  else if (!read_file(path, file.text, error))
-    findings.push_back({text::Severity::error, path, 0, 0, &kCannotRead, {error}});
-  if (!findings.empty()) return false;
-  file.model = program_model(control_.machine());
-  file.loader = program_loader(path);
+  if (!open_program(control_.machine(), path, dialect, file, findings)) return Load::not_opened;
   take_tables();
   const program::Interpreter reader(file.dialect, file.model, state_.tables, path, file.text, file.loader,
                                     {});
   findings = reader.findings();
   for (const text::Finding& f : findings)
-    if (f.severity == text::Severity::error) return false;
+    if (f.severity == text::Severity::error) return Load::has_errors;
   std::swap(file_, file);
   std::string before = std::exchange(program_path_, path);
   if (arm()) {
     blocks_ = reader.block_count();
-    return true;
+    return Load::done;
   }
   std::swap(file_, file);  // a program began meanwhile
   program_path_ = std::move(before);
-  return false;
+  return Load::busy;
 }
 
 void Resident::take_tables() {

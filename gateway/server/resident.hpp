@@ -22,8 +22,15 @@ class Resident {
   /// Posts without waiting for the answer (keep-alive, stops).
   void tell(image::Request request);
 
-  /// Loads a program; findings of reading are returned, nothing is loaded when one is an error.
-  bool load(const std::string& path, const std::string& dialect, std::vector<text::Finding>& findings);
+  /// How a load went.
+  enum class Load {
+    done,
+    not_opened,  ///< the file cannot be read, or its language is not known
+    has_errors,  ///< of the program
+    busy         ///< a program has begun meanwhile
+  };
+  /// Loads a program; findings of reading are returned. Unless `done`, the one loaded before stays.
+  Load load(const std::string& path, const std::string& dialect, std::vector<text::Finding>& findings);
   /// Takes over what the last run changed in the tables, before the next one starts.
   void take_tables();
   /// The error that this block gives in the present modal state of MDI, before anything moves.

@@ -113,6 +113,7 @@ class Cycle {
   void handle_plc_requests() noexcept;
   image::Answer handle(const image::Request& request) noexcept;
   Refusal carry_out(const image::Request& request) noexcept;
+  void change_mode(int process, image::Mode mode) noexcept;
   void stop_manual() noexcept;
   void run_processes() noexcept;
   void run_axes() noexcept;

@@ -34,8 +34,22 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   context.manual_held = manual_held_;
   context.holder = holder_;
   image::Answer answer = decide(request, context);
-  if (answer.refusal == 0) answer.refusal = static_cast<std::uint16_t>(carry_out(request));
+  if (answer.refusal != 0) return answer;
+  const image::Mode before = image_.processes[process].mode;
+  if (request.mode >= 0) change_mode(request.process, static_cast<image::Mode>(request.mode));
+  answer.refusal = static_cast<std::uint16_t>(carry_out(request));
+  if (answer.refusal != 0 && request.mode >= 0) change_mode(request.process, before);
   return answer;
+}
+
+void Cycle::change_mode(int process, image::Mode mode) noexcept {
+  if (image_.processes[static_cast<std::size_t>(process)].mode == mode) return;
+  Request request;
+  request.kind = RequestKind::mode;
+  request.process = static_cast<std::int8_t>(process);
+  request.value = static_cast<double>(mode);
+  ProcessContext c = context(process);
+  parts_.processes[static_cast<std::size_t>(process)]->order(request, c);
 }
 
 // What the gate cannot know (an axis not yet quite at rest) makes a late refusal.

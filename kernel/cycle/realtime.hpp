@@ -12,7 +12,8 @@ struct RealtimeSettings {
   bool best_effort = false;  ///< run without what the system refuses
 };
 
-/// One thing the system refused, with the command that grants it.
+/// One thing the system refused, with the command that grants it; its words may be of both languages
+/// (text::both).
 struct RealtimeRefusal {
   std::string what;    ///< "SCHED_FIFO priority 80", "locked memory", "processor 3", "/dev/cpu_dma_latency"
   std::string cause;   ///< the system's words

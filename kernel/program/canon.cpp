@@ -48,17 +48,16 @@ std::optional<text::Finding> run_dry(Interpreter& interpreter,
 }
 
 std::optional<text::Finding> write_canon(Interpreter& interpreter, const MachineModel& machine,
-                                         const std::function<void(std::string_view)>& line) {
+                                         const std::function<bool(std::string_view)>& line) {
   std::vector<std::string> letters;
   for (const auto& axis : machine.axes) letters.push_back(axis.letter);
   std::string text;
   const auto on_command = [&](const Command& command) {
     text.clear();
     append_json(text, command, letters, interpreter.files());
-    line(text);
-    return true;
+    return line(text);
   };
-  return run_dry(interpreter, on_command, kDryRunBlocks);
+  return run_dry(interpreter, on_command, kDryRunBlocks + interpreter.block_count());
 }
 
 }  // namespace servogate::program

@@ -18,8 +18,9 @@ std::optional<text::Finding> run_dry(Interpreter& interpreter,
                                      long long block_limit);
 
 /// `servogate canon`: one JSON object a line (without line end) for each command, see docs/canon.md. The view
-/// is valid during the call only. Returns the error that ended the program, nullopt when it came to its end.
+/// is valid during the call only; `line` returning false ends it early. Returns the error that ended the
+/// program, nullopt when it came to its end.
 std::optional<text::Finding> write_canon(Interpreter& interpreter, const MachineModel& machine,
-                                         const std::function<void(std::string_view)>& line);
+                                         const std::function<bool(std::string_view)>& line);
 
 }  // namespace servogate::program

@@ -114,8 +114,8 @@ TEST(Override, acts_at_once_and_zero_holds) {
 
 TEST(Override, above_its_limit_or_below_zero_is_refused) {
   Rig rig(kLongLine);
-  EXPECT_EQ(rig.ask(RequestKind::override_feed, 1.51), Refusal::bad_value);
-  EXPECT_EQ(rig.ask(RequestKind::override_feed, -0.1), Refusal::bad_value);
+  EXPECT_EQ(rig.ask(RequestKind::override_feed, 1.51), Refusal::override_range);
+  EXPECT_EQ(rig.ask(RequestKind::override_feed, -0.1), Refusal::override_range);
 }
 
 TEST(Stop, ends_the_program_on_the_path_and_reset_makes_it_startable_anew) {

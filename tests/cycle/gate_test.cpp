@@ -271,7 +271,7 @@ TEST_F(Gate, permits_at_a_travel_limit_only_the_way_back) {
   ASSERT_TRUE(axes_[0].jog_increment(-1000.0));
   for (int i = 0; i < 20'000 && axes_[0].moving(); ++i) run(1);
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, -1.0), Refusal::at_soft_limit);
-  EXPECT_EQ(english(), "X is at its travel limit -300 already");
+  EXPECT_EQ(english(), "X is at its travel limit -300 mm already");
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::none);
 }
 
@@ -299,7 +299,7 @@ TEST_F(Gate, refuses_values_axes_and_processes_that_do_not_exist) {
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, 0.0), Refusal::bad_value);
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, std::numeric_limits<double>::quiet_NaN()), Refusal::bad_value);
   EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 2.0), Refusal::bad_value);
-  EXPECT_EQ(ask(RequestKind::override_feed, -1, 1.51), Refusal::bad_value);
+  EXPECT_EQ(ask(RequestKind::override_feed, -1, 1.51), Refusal::override_range);
   EXPECT_EQ(answer_.limit, 1.5);
   EXPECT_EQ(ask(RequestKind::mode, -1, 8), Refusal::bad_value);
   EXPECT_EQ(ask(RequestKind::mode, -1, 1.5), Refusal::bad_value);
@@ -307,6 +307,50 @@ TEST_F(Gate, refuses_values_axes_and_processes_that_do_not_exist) {
   r.kind = RequestKind::start;
   r.process = 3;
   EXPECT_EQ(decide(r, context_).refusal, static_cast<std::uint16_t>(Refusal::no_such_process));
+}
+
+TEST_F(Gate, names_the_range_of_a_jog_a_zero_and_an_override_in_the_units_that_people_use) {
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 600.0), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, -600.1), Refusal::jog_range);
+  EXPECT_EQ(english(), "X cannot jog by -600.1 mm: from -600 to 600 mm is possible");
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1e300), Refusal::jog_range);
+  EXPECT_EQ(english(), "X cannot jog by 1e+300 mm: from -600 to 600 mm is possible");
+  EXPECT_EQ(ask(RequestKind::zero, 1, 99'999.999), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::zero, 1, -1e300), Refusal::zero_range);
+  EXPECT_EQ(english(), "Y cannot be given the value -1e+300 mm: from -99999.999 to 99999.999 mm is possible");
+  EXPECT_EQ(render(answer_, {"X", "C"}, text::Language::russian, {"mm", "deg"}),
+            "C не может получить значение -1e+300 deg: возможно от -99999.999 до 99999.999 deg");
+  EXPECT_EQ(ask(RequestKind::override_feed, -1, 2.0), Refusal::override_range);
+  EXPECT_EQ(english(), "a feed override of 200 % is not possible: 0 to 150 %");
+  axis::AxisConfig endless = axes_[0].config();
+  endless.rotary = true;
+  endless.travel_limited = false;
+  axes_[0].configure(endless, 0);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1e6), Refusal::jog_range);
+}
+
+TEST_F(Gate, decides_on_a_mode_together_with_the_request_that_needs_it) {
+  const auto with_mode = [&](RequestKind kind, image::Mode mode, int axis = -1, double value = 0.0) {
+    Request r;
+    r.kind = kind;
+    r.mode = static_cast<std::int8_t>(mode);
+    r.axis = static_cast<std::int8_t>(axis);
+    r.value = value;
+    answer_ = decide(r, context_);
+    return static_cast<Refusal>(answer_.refusal);
+  };
+  image_.processes[0].mode = image::Mode::manual;
+  EXPECT_EQ(ask(RequestKind::start), Refusal::wrong_mode);
+  EXPECT_EQ(with_mode(RequestKind::start, image::Mode::automatic), Refusal::none);
+  EXPECT_EQ(with_mode(RequestKind::start, image::Mode::home), Refusal::wrong_mode);
+  EXPECT_EQ(with_mode(RequestKind::jog_increment, image::Mode::manual, 0, 1.0), Refusal::none);
+  EXPECT_EQ(with_mode(RequestKind::home, image::Mode::home), Refusal::none);
+  EXPECT_EQ(with_mode(RequestKind::hold, image::Mode::home), Refusal::bad_value) << "a stop needs no mode";
+  EXPECT_EQ(with_mode(RequestKind::home, static_cast<image::Mode>(9)), Refusal::bad_value);
+  image_.processes[0].state = ProcessState::held;
+  EXPECT_EQ(with_mode(RequestKind::start, image::Mode::automatic), Refusal::program_runs)
+      << "the mode does not change under a program";
+  EXPECT_EQ(with_mode(RequestKind::start, image::Mode::manual), Refusal::none) << "it is the mode in force";
 }
 
 TEST_F(Gate, knows_who_may_ask_for_what) {

@@ -193,9 +193,9 @@ TEST(MachineFile, a_file_that_does_not_exist_is_a_finding) {
   const LoadResult r = load("/nowhere/machine.toml");
   ASSERT_EQ(r.findings.size(), 1u);
   EXPECT_FALSE(r.ok());
-  EXPECT_EQ(
-      r.findings[0].str(text::Language::english),
-      "/nowhere/machine.toml: error: the file cannot be read: it does not exist [machine.file_missing]");
+  EXPECT_EQ(r.findings[0].str(text::Language::english),
+            "/nowhere/machine.toml: error: the file cannot be read: No such file or directory "
+            "[machine.file_missing]");
 }
 
 TEST(MachineFile, a_folder_is_no_machine_file) {

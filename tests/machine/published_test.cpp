@@ -100,14 +100,5 @@ TEST(TableOfKeys, every_unit_reads_its_own_name) {
     }
 }
 
-TEST(Spelling, near_words_are_found_and_far_ones_are_not) {
-  const std::vector<std::string> names = {"max_velocity", "max_acceleration", "lead", "home"};
-  EXPECT_EQ(nearest("max_velosity", names), "max_velocity");
-  EXPECT_EQ(nearest("maxvelocity", names), "max_velocity");
-  EXPECT_EQ(nearest("led", names), "lead");
-  EXPECT_EQ(nearest("colour", names), "");
-  EXPECT_EQ(nearest(std::string(10000, 'x'), names), "");
-}
-
 }  // namespace
 }  // namespace servogate::machine

@@ -119,7 +119,8 @@ TEST(Replay, of_what_is_no_record_or_compared_with_nothing_is_wrong_use) {
                               "{\"servogate\":\"record\",\"schema\":\"x\"}\n"}) {
     const Ending e = servogate({"replay", scratch.write("r", content)});
     EXPECT_EQ(e.code, 2) << content << e.err;
-    EXPECT_NE(e.err.find("cannot read the record"), std::string::npos) << e.err;
+    EXPECT_NE(e.err.find("cannot replay " + scratch.path("r") + ": "), std::string::npos) << e.err;
+    EXPECT_EQ(std::count(e.err.begin(), e.err.end(), '\n'), 1) << e.err;
   }
   EXPECT_EQ(servogate({"replay", scratch.path("none")}).code, 2);
   const Recorded run = record(scratch, "--virtual");
@@ -128,7 +129,17 @@ TEST(Replay, of_what_is_no_record_or_compared_with_nothing_is_wrong_use) {
   EXPECT_NE(against_nothing.err.find("none.csv"), std::string::npos) << against_nothing.err;
 }
 
-TEST(Replay, of_a_cut_or_changed_record_says_after_which_cycle_and_fails) {
+TEST(Replay, says_which_schema_a_record_of_another_version_has) {
+  const Scratch scratch;
+  const Ending e = servogate({"replay", scratch.write("r", "{\"servogate\":\"record\",\"schema\":1}\n")});
+  EXPECT_EQ(e.code, 2);
+  EXPECT_NE(e.err.find("it is of schema 1, this version of servogate reads schema 3"), std::string::npos)
+      << e.err;
+  const Ending empty = servogate({"replay", scratch.write("empty", "")});
+  EXPECT_NE(empty.err.find("the file is empty"), std::string::npos) << empty.err;
+}
+
+TEST(Replay, of_a_cut_or_changed_record_says_in_one_sentence_where_and_is_wrong_use) {
   const Scratch scratch;
   const Recorded run = record(scratch, "--virtual");
   ASSERT_EQ(run.ending.code, 0) << run.ending.err;
@@ -137,9 +148,11 @@ TEST(Replay, of_a_cut_or_changed_record_says_after_which_cycle_and_fails) {
   changed[whole.size() / 2] ^= 0x10;
   for (const std::string& damaged : {whole.substr(0, whole.size() / 2), changed,
                                      whole.substr(0, whole.size() - 1), whole.substr(0, whole.size() - 8)}) {
-    const Ending e = servogate({"replay", scratch.write("damaged", damaged), "--json"});
-    EXPECT_EQ(e.code, 1) << e.err;
-    EXPECT_NE(e.err.find("damaged after cycle"), std::string::npos) << e.err;
+    const Ending e =
+        servogate({"replay", scratch.write("damaged", damaged), "--against", run.trace, "--json"});
+    EXPECT_EQ(e.code, 2) << e.err;
+    EXPECT_NE(e.err.find("damaged is damaged at byte "), std::string::npos) << e.err;
+    EXPECT_EQ(std::count(e.err.begin(), e.err.end(), '\n'), 1) << "one sentence, not two: " << e.err;
     EXPECT_NE(e.out.find("\"damaged\":true"), std::string::npos) << e.out;
   }
 }

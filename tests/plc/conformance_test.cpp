@@ -19,7 +19,10 @@ std::string trimmed(std::string s) {
 /// The lines of a run, or its findings when it did not end well.
 std::vector<std::string> run_lines(const RunRequest& request) {
   std::vector<std::string> out;
-  const RunResult r = run(request, [&](std::string_view l) { out.emplace_back(l); });
+  const RunResult r = run(request, [&](std::string_view l) {
+    out.emplace_back(l);
+    return true;
+  });
   if (r.end != RunResult::End::done)
     for (const text::Finding& f : r.findings)
       if (f.severity == text::Severity::error) out.push_back(f.str(text::Language::english));

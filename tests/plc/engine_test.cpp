@@ -285,7 +285,10 @@ TEST(Run, prints_one_object_a_cycle_as_requested_and_takes_sets_at_their_cycle) 
   ASSERT_TRUE(parse_set("a=TRUE@2", set));
   r.sets = {set};
   std::vector<std::string> lines;
-  const RunResult out = run(r, [&](std::string_view l) { lines.emplace_back(l); });
+  const RunResult out = run(r, [&](std::string_view l) {
+    lines.emplace_back(l);
+    return true;
+  });
   EXPECT_EQ(out.end, RunResult::End::done);
   EXPECT_EQ(lines,
             (std::vector<std::string>{R"({"cycle":1,"values":{"MAIN.b":false,"t.ET":"T#0ms","a":false}})",
@@ -294,13 +297,27 @@ TEST(Run, prints_one_object_a_cycle_as_requested_and_takes_sets_at_their_cycle) 
                                       R"({"cycle":4,"values":{"MAIN.b":true,"t.ET":"T#20ms","a":true}})"}));
 }
 
+TEST(Run, ends_when_nobody_wants_its_lines_any_more) {
+  RunRequest r;
+  r.files = {{"a.st", "PROGRAM Main\nVAR a : INT; END_VAR\na := a + 1;\nEND_PROGRAM"}};
+  r.cycles = 1'000'000'000;
+  int lines = 0;
+  const RunResult out = run(r, [&](std::string_view) { return ++lines < 3; });
+  EXPECT_EQ(out.end, RunResult::End::done);
+  EXPECT_EQ(lines, 3);
+  EXPECT_EQ(out.cycles, 3);
+}
+
 TEST(Run, refuses_names_values_and_cycles_that_cannot_be) {
   RunRequest r;
   r.files = {{"a.st", "PROGRAM Main\nVAR a : BOOL; END_VAR\na := a;\nEND_PROGRAM"}};
   r.cycles = 2;
   r.sets = {{"x", "1", 1}, {"a", "7", 1}, {"a", "TRUE", 3}};
   r.prints = {"y"};
-  const RunResult out = run(r, [](std::string_view) { FAIL() << "nothing runs"; });
+  const RunResult out = run(r, [](std::string_view line) {
+    ADD_FAILURE() << "nothing runs: " << line;
+    return true;
+  });
   EXPECT_EQ(out.end, RunResult::End::wrong_use);
   std::vector<std::string> said;
   for (const text::Finding& f : out.findings) said.push_back(f.str(text::Language::english));

@@ -44,8 +44,10 @@ TEST(CanonDocument, shows_what_the_program_really_prints) {
   for (const Sample& sample : samples) {
     Interpreter run("nc110", mill(), {}, "sample.nc", sample.program, {}, Position{});
     std::string output;
-    const auto error =
-        write_canon(run, mill(), [&](std::string_view line) { output += std::string(line) + "\n"; });
+    const auto error = write_canon(run, mill(), [&](std::string_view line) {
+      output += std::string(line) + "\n";
+      return true;
+    });
     EXPECT_FALSE(error) << sample.line;
     EXPECT_EQ(sample.output, output) << "docs/canon.md:" << sample.line;
     all += output;

@@ -35,8 +35,10 @@ ProgramLoader loader_of(const CaseFile& c) {
 Outcome run(const CaseFile& c) {
   Outcome outcome;
   Interpreter interpreter("nc110", c.machine, c.tables, c.name + ".nc", c.program, loader_of(c), c.start);
-  const auto error = write_canon(
-      interpreter, c.machine, [&](std::string_view line) { outcome.commands.push_back(json::parse(line)); });
+  const auto error = write_canon(interpreter, c.machine, [&](std::string_view line) {
+    outcome.commands.push_back(json::parse(line));
+    return true;
+  });
   if (error) outcome.error = error->str(text::Language::english);
   return outcome;
 }

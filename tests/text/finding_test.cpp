@@ -39,6 +39,9 @@ TEST(Number, is_plain_decimal_without_trailing_zeros_or_minus_zero) {
   EXPECT_EQ(number(500), "500");
   EXPECT_EQ(number(-0.0000001), "0");
   EXPECT_EQ(number(1e12), "1000000000000");
+  EXPECT_EQ(number(-123456789012345.0), "-123456789012345");
+  EXPECT_EQ(number(1e300), "1e+300") << "not three hundred digits";
+  EXPECT_EQ(number(-1.7976931348623157e308), "-1.79769e+308");
 }
 
 }  // namespace

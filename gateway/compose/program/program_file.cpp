@@ -3,27 +3,38 @@
 
 #include <algorithm>
 
+#include "gateway/files/read_file.hpp"
+
 namespace servogate::gateway {
 
-int open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
-                 ProgramFile& out) {
+bool open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
+                  ProgramFile& out, std::vector<text::Finding>& findings) {
+  const auto error = [&](const text::Entry& entry, std::vector<std::string> arguments) {
+    findings.push_back({text::Severity::error, path, 0, 0, &entry, std::move(arguments)});
+    return false;
+  };
   out.dialect = dialect.empty() ? machine.control.dialect : dialect;
   const std::vector<std::string> known = program::dialects();
   if (std::find(known.begin(), known.end(), out.dialect) == known.end()) {
     std::string list;
     for (const std::string& d : known) list += (list.empty() ? "" : ", ") + d;
-    complain(kUnknownDialect, {out.dialect, list});
-    return kWrongUse;
+    return error(kUnknownDialect, {out.dialect, list});
   }
-  std::string error;
-  if (!read_file(path, out.text, error)) {
-    text::Finding f{text::Severity::error, path, 0, 0, &kCannotRead, {error}};
-    print_findings({f});
-    return kWrongUse;
-  }
+  std::string reason;
+  auto content = files::read_file(path, files::kMostOfProgram, reason);
+  if (!content) return error(kCannotRead, {reason});
+  out.text = std::move(*content);
   out.model = program_model(machine);
   out.loader = program_loader(path);
-  return kDone;
+  return true;
+}
+
+int open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
+                 ProgramFile& out) {
+  std::vector<text::Finding> findings;
+  if (open_program(machine, path, dialect, out, findings)) return kDone;
+  print_findings(findings);
+  return kWrongUse;
 }
 
 }  // namespace servogate::gateway

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <vector>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
@@ -17,7 +18,11 @@ struct ProgramFile {
   program::ProgramLoader loader;
 };
 
-/// Reads the program and settles its dialect. Complains and returns kWrongUse when it cannot.
+/// Reads the program and settles its dialect (`dialect`, empty: the machine's own). False: a finding says why
+/// not, `out` is unchanged but for its dialect. The program's own errors are the interpreter's.
+bool open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
+                  ProgramFile& out, std::vector<text::Finding>& findings);
+/// The same for a command: prints the finding, and gives kDone or kWrongUse.
 int open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
                  ProgramFile& out);
 

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+
+#include "gateway/files/read_file.hpp"
 
 namespace servogate::gateway {
 
@@ -26,6 +24,11 @@ program::MachineModel program_model(const machine::MachineConfig& machine) {
     model.axes.push_back(axis);
   }
   model.spindles = static_cast<int>(machine.spindles.size());
+  if (!machine.spindles.empty()) {
+    model.spindle_min_rpm = machine.spindles[0].min_speed;
+    model.spindle_max_rpm = machine.spindles[0].max_speed;
+  }
+  model.tool_places = machine.control.tool_places;
   model.contour_tolerance_mm = machine.control.contour_tolerance;
   model.k_bytes = static_cast<std::uint32_t>(machine.control.k_size);
   model.syvar_bytes = static_cast<std::uint32_t>(machine.control.syvar_size);
@@ -44,32 +47,12 @@ program::ProgramLoader program_loader(const std::string& main_program) {
                    [](unsigned char c) { return std::tolower(c); });
     for (const std::string& base : {std::string(name), lower})
       for (const char* extension : {"", ".nc", ".NC"}) {
-        std::string content, error;
-        const auto path = folder / (base + extension);
-        std::error_code ignored;
-        if (std::filesystem::is_regular_file(path, ignored) && read_file(path.string(), content, error))
-          return content;
+        std::string ignored;
+        const std::filesystem::path path = folder / (base + extension);
+        if (auto content = files::read_file(path.string(), files::kMostOfProgram, ignored)) return content;
       }
     return std::nullopt;
   };
-}
-
-bool read_file(const std::string& path, std::string& content, std::string& error) {
-  errno = 0;
-  std::error_code code;
-  if (std::filesystem::is_directory(path, code)) {
-    error = std::strerror(EISDIR);
-    return false;
-  }
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  if (in) out << in.rdbuf();
-  if (!in || in.bad()) {
-    error = std::strerror(errno != 0 ? errno : EIO);
-    return false;
-  }
-  content = std::move(out).str();
-  return true;
 }
 
 }  // namespace servogate::gateway

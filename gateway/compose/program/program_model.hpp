@@ -13,7 +13,4 @@ program::MachineModel program_model(const machine::MachineConfig& machine);
 /// Subprograms by name: NAME, NAME.nc, name.nc ... in the folder of the main program.
 program::ProgramLoader program_loader(const std::string& main_program);
 
-/// Whole content of a file. False: `error` holds the system's words.
-bool read_file(const std::string& path, std::string& content, std::string& error);
-
 }  // namespace servogate::gateway

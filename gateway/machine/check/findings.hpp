@@ -31,6 +31,9 @@ inline constexpr text::Entry kWrongPoint{"machine.wrong_point", "`{0}`: \"{1}\" 
                                          "«{0}»: «{1}» — {2}, ожидался {3}"};
 inline constexpr text::Entry kNoFile{"machine.no_file", "`{0}`: file \"{1}\" does not exist",
                                      "«{0}»: файла «{1}» нет"};
+inline constexpr text::Entry kUnreadableFile{"machine.unreadable_file",
+                                             "`{0}`: file \"{1}\" cannot be read: {2}",
+                                             "«{0}»: файл «{1}» не читается: {2}"};
 inline constexpr text::Entry kNoDevice{"machine.no_device",
                                        "device file \"{0}.toml\" is not found; looked in {1}",
                                        "файл устройства «{0}.toml» не найден; просмотрены: {1}"};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 
+#include "firmware_if/text/nearest.hpp"
+#include "gateway/files/read_file.hpp"
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings.hpp"
 #include "gateway/machine/keys/sections.hpp"
@@ -24,7 +26,7 @@ Names all_names(const MachineConfig& machine) {
 }
 
 std::string hint(const std::string& word, const std::vector<std::string>& candidates) {
-  const std::string near = nearest(word, candidates);
+  const std::string near = text::nearest(word, candidates);
   if (!near.empty())
     return text::both("; did you mean \"" + near + "\"?", "; имелось в виду «" + near + "»?");
   return "";
@@ -101,9 +103,12 @@ class ReferenceCheck {
                          {name, text::both("node", "узла"), value, hint(value, names_.nodes)});
         return;
       case Refers::file: {
+        const std::string source = machine_.resolve(value);
         std::error_code error;
-        if (!std::filesystem::is_regular_file(machine_.resolve(value), error))
+        if (!std::filesystem::exists(source, error))
           reading_.error(at, finding::kNoFile, {name, value});
+        else if (const std::string why = files::why_unreadable(source); !why.empty())
+          reading_.error(at, finding::kUnreadableFile, {name, value, why});
         return;
       }
       default:

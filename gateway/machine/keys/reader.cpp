@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "firmware_if/text/nearest.hpp"
 #include "gateway/machine/keys/findings.hpp"
 
 namespace servogate::machine {
@@ -85,14 +86,20 @@ void wrong_type(const Slot& slot, const Element& e) {
   slot.error(e, finding::kWrongType, expected_name(slot), element_name(e));
 }
 
-bool in_range(const Slot& slot, const Element& e, double value) {
+/// `written`: the value as a person wrote it, with its unit; nullptr: a plain number.
+bool in_range(const Slot& slot, const Element& e, double value, const Quantity* written = nullptr) {
   const Rule& rule = slot.key.rule;
   if (!std::isfinite(value)) {
     slot.error(e, finding::kNotFinite);
     return false;
   }
   if (value < rule.min || value > rule.max || (rule.above_min && value == rule.min)) {
-    slot.error(e, finding::kOutOfRange, text::number(value, 9), range_text(rule, slot.axis));
+    if (written == nullptr)
+      slot.error(e, finding::kOutOfRange, text::number(value, 9), range_text(rule, slot.axis));
+    else
+      slot.error(e, finding::kOutOfRange,
+                 text::number(value * written->per_unit, 9) + " " + std::string(written->unit),
+                 range_text(rule, *written));
     return false;
   }
   return true;
@@ -101,9 +108,9 @@ bool in_range(const Slot& slot, const Element& e, double value) {
 /// A number, or a string with a unit where the key has one.
 bool read_number(const Slot& slot, const Element& e, double& out) {
   const Unit unit = slot.key.rule.unit;
-  double value = 0.0;
   if (e.numeric()) {
-    value = e.number();
+    if (!in_range(slot, e, e.number())) return false;
+    out = e.number();
   } else if (e.kind == Element::Kind::string && unit != Unit::none) {
     const Quantity q = parse_quantity(e.string, unit, slot.axis);
     const std::string name = unit_name(unit, slot.axis);
@@ -119,13 +126,12 @@ bool read_number(const Slot& slot, const Element& e, double& out) {
       slot.error(e, finding::kWrongUnit, e.string, name, unit_spellings(unit, slot.axis));
       return false;
     }
-    value = q.value;
+    if (!in_range(slot, e, q.value, &q)) return false;
+    out = q.value;
   } else {
     wrong_type(slot, e);
     return false;
   }
-  if (!in_range(slot, e, value)) return false;
-  out = value;
   return true;
 }
 
@@ -299,7 +305,7 @@ std::string report_unknown(const Element& child, const Section& section, const s
     names.emplace_back(key.name);
     all += (all.empty() ? "" : ", ") + std::string(key.name);
   }
-  const std::string near = nearest(child.key, names);
+  const std::string near = text::nearest(child.key, names);
   const Slot slot{section.keys[0], path.empty() ? child.key : path + "." + child.key, AxisUnits::linear,
                   reading};
   if (near.empty())
@@ -339,21 +345,6 @@ void read_table(const Element& table, const Section& section, void* object, cons
       reading.error(table.at, finding::kMissingKey, {slot.shown(), text::both(key.english, key.russian)});
     }
   }
-}
-
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t keep = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({keep, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
 }
 
 }  // namespace
@@ -411,25 +402,12 @@ void sort_findings(std::vector<text::Finding>& findings) {
   findings.erase(std::unique(findings.begin(), findings.end(), same), findings.end());
 }
 
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
-  if (word.size() > 64) return best;
-  for (const std::string& candidate : candidates) {
-    const std::size_t d = distance(word, candidate);
-    if (d < best_distance && d < candidate.size()) {
-      best = candidate;
-      best_distance = d;
-    }
-  }
-  return best;
-}
+namespace {
 
-std::string range_text(const Rule& rule, AxisUnits axis) {
-  const std::string unit = unit_name(rule.unit, axis);
+std::string range_text(const Rule& rule, const std::string& unit, double per_unit) {
   const std::string tail = unit.empty() ? "" : " " + unit;
   const bool low = std::isfinite(rule.min), high = std::isfinite(rule.max);
-  const std::string min = text::number(rule.min, 9), max = text::number(rule.max, 9);
+  const std::string min = text::number(rule.min * per_unit, 9), max = text::number(rule.max * per_unit, 9);
   if (low && rule.min == rule.max) return text::both("only " + min + tail, "только " + min + tail);
   if (low && high && rule.above_min)
     return text::both("above " + min + " up to " + max + tail,
@@ -439,6 +417,16 @@ std::string range_text(const Rule& rule, AxisUnits axis) {
   if (low) return text::both("at least " + min + tail, "не меньше " + min + tail);
   if (high) return text::both("at most " + max + tail, "не больше " + max + tail);
   return text::both("any number" + tail, "любое число" + tail);
+}
+
+}  // namespace
+
+std::string range_text(const Rule& rule, AxisUnits axis) {
+  return range_text(rule, unit_name(rule.unit, axis), 1.0);
+}
+
+std::string range_text(const Rule& rule, const Quantity& written) {
+  return range_text(rule, std::string(written.unit), written.per_unit);
 }
 
 }  // namespace servogate::machine

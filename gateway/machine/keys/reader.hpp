@@ -42,9 +42,9 @@ void visit_keys(const Section& section, void* object, const Visitor& visit, cons
 Where find_place(const Places& places, std::string_view path);
 /// Sorts by place, keeping the order of equal ones, and drops doubles.
 void sort_findings(std::vector<text::Finding>& findings);
-/// The candidate nearest in spelling, empty when none is near.
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 /// "0 to 10 mm", "above 0 mm/s", "at least 1", in both languages (text::both).
 std::string range_text(const Rule& rule, AxisUnits axis);
+/// The same in the unit in which a value was written: "0.25 to 20 ms".
+std::string range_text(const Rule& rule, const Quantity& written);
 
 }  // namespace servogate::machine

@@ -113,7 +113,8 @@ Quantity parse_quantity(std::string_view text, Unit unit, AxisUnits axis) {
   if (error != std::errc{} || !std::isfinite(number)) return {0.0, QuantityError::not_a_number};
   const std::string_view name = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
   for (const Spelling& s : kSpellings)
-    if (fits(s, unit, axis) && s.name == name) return {number * s.times / s.by, QuantityError::none};
+    if (fits(s, unit, axis) && s.name == name)
+      return {number * s.times / s.by, QuantityError::none, s.name, s.by / s.times};
   return {0.0, name.empty() ? QuantityError::no_unit : QuantityError::wrong_unit};
 }
 

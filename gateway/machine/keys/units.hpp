@@ -39,6 +39,8 @@ enum class QuantityError : std::uint8_t { none, not_a_number, no_unit, wrong_uni
 struct Quantity {
   double value = 0.0;  ///< in the key's unit
   QuantityError error = QuantityError::none;
+  std::string_view unit = {};  ///< as it was written
+  double per_unit = 1.0;       ///< written units in one unit of the key
 };
 /// "500 mm/s", "0.5 m/s", "30 m/min": a decimal number, a unit of the right kind.
 Quantity parse_quantity(std::string_view text, Unit unit, AxisUnits axis);

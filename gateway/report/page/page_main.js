@@ -96,7 +96,7 @@ function provenance() {
   add("dialect", p.dialect);
   add("seed", String(p.seed));
   add("clock", p.clock);
-  list("buses", p.buses.map(b => `${b.name}: ${b.transport} (${b.kind})`));
+  list("buses", p.buses.map(b => `${b.name}: ${b.protocol}, ${b.transport} (${b.kind})`));
   list("nodes", p.nodes.map(n => `${n.bus} ${n.node}: ${n.name} ${n.vendor} ${n.product} ${n.revision} ${n.serial}`));
   add("kernel", p.kernel);
   add("processor", p.processor);

@@ -121,6 +121,11 @@ class Decision {
   bool keep_alive() noexcept;
   bool zero() noexcept;
   bool mode() noexcept;
+  bool mode_of_request() noexcept;
+  image::Mode mode_in_force() const noexcept {
+    return r_.mode >= 0 ? static_cast<Mode>(r_.mode)
+                        : c_.image->processes[static_cast<std::size_t>(r_.process)].mode;
+  }
   bool start() noexcept;
   bool resume() noexcept;
   bool place(bool write) noexcept;
@@ -139,7 +144,7 @@ Answer Decision::run() noexcept {
     refuse(Refusal::asker_may_not, -1, static_cast<double>(r_.kind));
   else if (!std::isfinite(r_.value))
     refuse(Refusal::bad_value, -1, r_.value);
-  else if (process_known())
+  else if (process_known() && mode_of_request())
     decide_kind();
   return answer_;
 }
@@ -167,7 +172,7 @@ bool Decision::decide_kind() noexcept {
     case RequestKind::resume:
       return resume();
     case RequestKind::override_feed:
-      return (r_.value >= 0.0 && r_.value <= 1.5) || refuse(Refusal::bad_value, -1, r_.value, 1.5);
+      return (r_.value >= 0.0 && r_.value <= 1.5) || refuse(Refusal::override_range, -1, r_.value, 1.5);
     case RequestKind::set_place:
       return place(true);
     case RequestKind::force:
@@ -205,14 +210,18 @@ bool Decision::jog() noexcept {
   const bool continuous = r_.kind == RequestKind::jog_continuous;
   if (r_.value == 0.0 || (continuous && std::abs(r_.value) != 1.0))
     return refuse(Refusal::bad_value, r_.axis, r_.value, 1.0);
+  const axis::AxisConfig& config = a.config();
+  const double longest = config.travel_limited ? config.travel_max - config.travel_min : kLargestCoordinate;
+  if (!continuous && std::abs(r_.value) > longest)
+    return refuse(Refusal::jog_range, r_.axis, r_.value, longest);
   if (!no_alarm(Reaction::stop_on_path) || !no_program() || !no_homing() || !not_held_by_another())
     return false;
   if (!ready(a) || !free(a)) return false;
   const bool forward = r_.value > 0.0;
   if (forward ? a.on_limit_plus() : a.on_limit_minus())
     return refuse(Refusal::on_hard_limit, r_.axis, forward ? 1 : -1);
-  if (!a.homed() || !a.config().travel_limited) return true;
-  const double limit = forward ? a.config().travel_max : a.config().travel_min, x = a.setpoint().x;
+  if (!a.homed() || !config.travel_limited) return true;
+  const double limit = forward ? config.travel_max : config.travel_min, x = a.setpoint().x;
   const bool at_limit = forward ? x >= limit - 1e-9 : x <= limit + 1e-9;
   return !at_limit || refuse(Refusal::at_soft_limit, r_.axis, x, limit);
 }
@@ -220,7 +229,10 @@ bool Decision::jog() noexcept {
 bool Decision::keep_alive() noexcept { return not_held_by_another(); }
 
 bool Decision::zero() noexcept {
-  if (!axis_known() || !no_program()) return false;
+  if (!axis_known()) return false;
+  if (std::abs(r_.value) > kLargestCoordinate)
+    return refuse(Refusal::zero_range, r_.axis, r_.value, kLargestCoordinate);
+  if (!no_program()) return false;
   const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
   if (!a.homed()) return refuse(Refusal::not_homed, r_.axis);
   return !a.moving() || refuse(Refusal::axis_moves, r_.axis);
@@ -233,6 +245,18 @@ bool Decision::mode() noexcept {
   return no_program() && not_held_by_another();
 }
 
+/// A request that brings its mode along is one decision: what would refuse the mode refuses the request.
+bool Decision::mode_of_request() noexcept {
+  constexpr std::uint32_t kWithMode = bit(RequestKind::home) | bit(RequestKind::jog_increment) |
+                                      bit(RequestKind::jog_continuous) | bit(RequestKind::start) |
+                                      bit(RequestKind::step);
+  if (r_.mode < 0) return true;
+  const bool possible = (kWithMode & bit(r_.kind)) != 0 && r_.mode <= static_cast<int>(Mode::home);
+  if (!possible) return refuse(Refusal::bad_value, -1, r_.mode, static_cast<double>(Mode::home));
+  const bool same = c_.image->processes[static_cast<std::size_t>(r_.process)].mode == mode_in_force();
+  return same || (no_program() && not_held_by_another());
+}
+
 bool Decision::start() noexcept {
   const ProcessState s = state(r_.process);
   // A hold, M00 and the end of a block in STEP go on by the same button.
@@ -240,7 +264,7 @@ bool Decision::start() noexcept {
   if (busy(s)) return refuse(Refusal::program_runs, -1, r_.process);
   if (!c_.program_loaded) return refuse(Refusal::no_program);
   if (!c_.start_permitted) return refuse(Refusal::start_not_permitted);
-  const Mode m = c_.image->processes[static_cast<std::size_t>(r_.process)].mode;
+  const Mode m = mode_in_force();
   if (m >= Mode::manual) return refuse(Refusal::wrong_mode, -1, static_cast<double>(m));
   if (!no_alarm(Reaction::stop_at_block_end) || !no_homing() || !not_held_by_another()) return false;
   for (const Axis& a : c_.axes) {

@@ -41,7 +41,14 @@ enum class Refusal : std::uint16_t {
   place_not_writable,   ///< value: byte
   place_outside,        ///< value: byte; limit: size of the packet
   start_not_permitted,  ///< the place that permits starting is FALSE
+  jog_range,            ///< axis; value: the distance; limit: the longest one
+  zero_range,           ///< axis; value: what the position was to be; limit: the largest magnitude
+  override_range,       ///< value: the ratio; limit: the largest one
 };
+
+/// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis
+/// without travel limits: what the displays of the old controls hold.
+inline constexpr double kLargestCoordinate = 99'999.999;
 
 /// What the gate knows of the machine at this moment, all of it by reference.
 struct GateContext {
@@ -68,10 +75,12 @@ image::Answer decide(const image::Request& request, const GateContext& context) 
 bool moves(image::RequestKind kind) noexcept;
 
 /// The sentence for a refusal, e.g. "X is not homed: run `servogate home X` first, or jog slowly". Empty for
-/// an accepted request. Not real-time safe.
+/// an accepted request. `axis_units`: "mm" or "deg" of each axis, mm where there are none. Not real-time
+/// safe.
 std::string render(const image::Answer& answer, const std::vector<std::string>& axis_letters,
-                   text::Language language);
-/// Table of the sentences, index = Refusal. Placeholders {0} axis, {1} value in words, {2} limit.
+                   text::Language language, const std::vector<std::string>& axis_units = {});
+/// Table of the sentences, index = Refusal. Placeholders {0} axis, {1} value in words, {2} limit, {3} unit of
+/// the axis.
 std::span<const text::Entry> refusal_texts() noexcept;
 
 }  // namespace servogate::cycle

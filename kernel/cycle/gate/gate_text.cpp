@@ -9,7 +9,7 @@ using text::Language;
 
 namespace {
 
-/// Placeholders: {0} axis, {1} value (in words where it names something), {2} limit.
+/// Placeholders: {0} axis, {1} value (in words where it names something), {2} limit, {3} unit of the axis.
 constexpr text::Entry kTexts[] = {
     {"gate.accepted", "accepted", "принято"},
     {"gate.unknown_request", "this request is not known", "неизвестный запрос"},
@@ -41,16 +41,22 @@ constexpr text::Entry kTexts[] = {
     {"gate.manual_held", "{1} holds manual control", "ручным управлением владеет {1}"},
     {"gate.on_hard_limit", "{0} is on its limit switch: only motion away from it is possible ({1} is not)",
      "{0} на концевом выключателе: возможно движение только от него (не {1})"},
-    {"gate.at_soft_limit", "{0} is at its travel limit {2} already",
-     "{0} уже на границе зоны перемещения {2}"},
+    {"gate.at_soft_limit", "{0} is at its travel limit {2} {3} already",
+     "{0} уже на границе зоны перемещения {2} {3}"},
     {"gate.no_home_needed", "{0} needs no homing", "{0} не требует выхода в ноль"},
     {"gate.place_not_writable", "byte {1} belongs to inputs, PLC or control: only `force` may overwrite it",
      "байт {1} принадлежит входам, ПЛК или ЧПУ: его может заменить только `force`"},
     {"gate.place_outside", "byte {1} is outside the packet of {2} bytes",
      "байт {1} вне пакета размером {2} байт"},
     {"gate.start_not_permitted", "the machine does not permit the start", "станок не разрешает пуск"},
+    {"gate.jog_range", "{0} cannot jog by {1} {3}: from -{2} to {2} {3} is possible",
+     "{0} не может переместиться на {1} {3}: возможно от -{2} до {2} {3}"},
+    {"gate.zero_range", "{0} cannot be given the value {1} {3}: from -{2} to {2} {3} is possible",
+     "{0} не может получить значение {1} {3}: возможно от -{2} до {2} {3}"},
+    {"gate.override_range", "a feed override of {1} % is not possible: 0 to {2} %",
+     "коррекция подачи {1} % невозможна: от 0 до {2} %"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::start_not_permitted) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::override_range) + 1);
 
 constexpr std::string_view kAskers[][2] = {{"the command line", "командная строка"},
                                            {"the page", "страница"},
@@ -109,6 +115,8 @@ std::string value_words(const image::Answer& answer, Language language) {
       return answer.value > 0.0 ? "+" : "-";
     case Refusal::no_such_process:
       return text::number(answer.value + 1);
+    case Refusal::override_range:
+      return text::number(answer.value * 100.0, 4);
     default:
       return text::number(answer.value, 4);
   }
@@ -119,14 +127,17 @@ std::string value_words(const image::Answer& answer, Language language) {
 std::span<const text::Entry> refusal_texts() noexcept { return kTexts; }
 
 std::string render(const image::Answer& answer, const std::vector<std::string>& axis_letters,
-                   Language language) {
+                   Language language, const std::vector<std::string>& axis_units) {
   if (answer.refusal == 0) return {};
   if (answer.refusal >= std::size(kTexts)) return "refusal " + std::to_string(answer.refusal);
   const int a = answer.axis;
   const std::string letter =
       a >= 0 && a < std::ssize(axis_letters) ? axis_letters[static_cast<std::size_t>(a)] : std::to_string(a);
+  const std::string unit =
+      a >= 0 && a < std::ssize(axis_units) ? axis_units[static_cast<std::size_t>(a)] : "mm";
+  const double scale = static_cast<Refusal>(answer.refusal) == Refusal::override_range ? 100.0 : 1.0;
   const std::vector<std::string> arguments = {letter, value_words(answer, language),
-                                              text::number(answer.limit, 4)};
+                                              text::number(answer.limit * scale, 4), unit};
   return text::render(kTexts[answer.refusal], arguments, language);
 }
 

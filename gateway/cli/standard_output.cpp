@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/cli/standard_output.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdarg>
+#include <cstdio>
+
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/options.hpp"
+#include "gateway/files/system_words.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+/// errno of the first write that failed, 0: none.
+int failure = 0;
+
+bool note(bool written) {
+  if (!written && failure == 0) failure = errno != 0 ? errno : EIO;
+  return written;
+}
+
+}  // namespace
+
+void prepare_streams() {
+  std::signal(SIGPIPE, SIG_IGN);
+  // Opened the wrong way round, so that using it stays the error that it is. open() takes the lowest number.
+  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd)
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd) return;
+}
+
+bool print(std::string_view text) {
+  if (failure != 0) return false;
+  errno = 0;
+  return note(std::fwrite(text.data(), 1, text.size(), stdout) == text.size());
+}
+
+bool print_line(std::string_view line) { return print(line) && print("\n"); }
+
+bool print_formatted(const char* format, ...) {
+  if (failure != 0) return false;
+  std::va_list arguments;
+  va_start(arguments, format);
+  errno = 0;
+  const int written = std::vfprintf(stdout, format, arguments);
+  va_end(arguments);
+  return note(written >= 0);
+}
+
+int end_output(int code) {
+  errno = 0;
+  if (failure == 0) note(std::fflush(stdout) == 0);
+  if (failure == 0 || failure == EPIPE) return code;
+  complain(kOutputLost, {files::words_of(failure)});
+  return kInfrastructure;
+}
+
+}  // namespace servogate::gateway

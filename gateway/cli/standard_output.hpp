@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string_view>
+
+namespace servogate::gateway {
+
+/// Standard output of the commands. Every command prints through this and through nothing else, so that what
+/// was lost is said, and a reader who has seen enough (`| head`) ends it quietly.
+
+/// Before anything is opened: keeps the numbers 0 to 2 for the standard streams where the caller closed them,
+/// and makes a closed pipe an error of the write instead of the end of a process that moves a machine.
+void prepare_streams();
+
+/// Appends to standard output. False: the rest is in vain, nobody reads it or it cannot be written.
+bool print(std::string_view text);
+/// The same with a line end.
+bool print_line(std::string_view line);
+
+/// The same as printf has it.
+[[gnu::format(printf, 1, 2)]] bool print_formatted(const char* format, ...);
+
+/// At the end of a command: writes what is still buffered. Returns `code`, or kInfrastructure after saying
+/// what could not be written. A closed pipe changes nothing.
+int end_output(int code);
+
+}  // namespace servogate::gateway

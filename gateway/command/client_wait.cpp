@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/command/client_wait.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <string>
+#include <thread>
+
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/options.hpp"
+
+namespace servogate::gateway::command {
+
+using nlohmann::json;
+
+namespace {
+
+const text::Entry kHeld{"client.held",
+                        "held on the path: `servogate resume` goes on, `servogate reset` ends the program",
+                        "остановлено на контуре: `servogate resume` продолжает, `servogate reset` завершает "
+                        "программу"};
+const text::Entry kNotOn{"client.not-on", "not switched on within {0} s: {1}", "не включились за {0} с: {1}"};
+const text::Entry kNotOff{"client.not-off", "not switched off within {0} s: {1}",
+                          "не выключились за {0} с: {1}"};
+const text::Entry kNoCycle{"client.no-cycle", "the control answers, but its cycle does not run",
+                           "управление отвечает, но его цикл не работает"};
+
+constexpr auto kLook = std::chrono::milliseconds(50);
+constexpr double kPowerPatience_s = 15.0;  ///< of machine time: boot of a drive, brakes
+constexpr double kAlarmPatience_s = 2.0;   ///< the same while an alarm is active
+constexpr std::chrono::seconds kCyclePatience{10};
+
+std::atomic<int> interrupts{0};
+void on_interrupt(int) { interrupts.fetch_add(1); }
+
+std::string of(const json& object, const char* key) { return object.value(key, std::string()); }
+
+/// What was asked for, as far as waiting has to tell it apart.
+enum class Kind { power_on, power_off, home, jog, step, program };
+
+Kind kind_of(const json& request) {
+  const std::string command = request["cmd"];
+  if (command == "power") return request["value"] == 0 ? Kind::power_off : Kind::power_on;
+  if (command == "home") return Kind::home;
+  if (command == "jog") return Kind::jog;
+  return command == "step" ? Kind::step : Kind::program;
+}
+
+/// Waiting for one request. The exit code is known once under_way() is false.
+class Wait {
+ public:
+  Wait(SocketClient& client, const json& request)
+      : client_(client), request_(request), kind_(kind_of(request)) {}
+  int run(json& status);
+
+ private:
+  bool under_way(const json& status);
+  bool homing_under_way(const json& status);
+  bool program_under_way(const json& status);
+  bool too_late(const json& status);
+  bool cycle_stands(const json& status);
+  void interrupt();
+  json simple(const char* command) const { return {{"cmd", command}, {"language", request_["language"]}}; }
+  template <typename Is>
+  static bool any_axis(const json& status, Is&& is) {
+    const json axes = status.value("axes", json::array());
+    return std::any_of(axes.begin(), axes.end(), is);
+  }
+  static bool on(const json& axis) { return axis.value("enabled", false); }
+  static bool moving(const json& axis) { return axis.value("moving", false); }
+  double in_wait_s(const json& status) const { return status.value("time_s", 0.0) - begun_s_; }
+  /// A warning keeps nothing from being done.
+  static bool alarm(const json& status) {
+    const json alarms = status.value("alarms", json::array());
+    return std::any_of(alarms.begin(), alarms.end(),
+                       [](const json& a) { return !a.value("warning", false); });
+  }
+
+  SocketClient& client_;
+  const json& request_;
+  Kind kind_;
+  int code_ = kDone;
+  int interrupts_done_ = 0;
+  double begun_s_ = -1.0;  ///< machine time of the first status
+  double seen_s_ = -1.0;
+  std::chrono::steady_clock::time_point moved_on_ = std::chrono::steady_clock::now();
+};
+
+bool Wait::homing_under_way(const json& status) {
+  if (status.value("homing", false)) return true;
+  const json named = request_.value("axes", json::array());
+  const bool open = any_axis(status, [&](const json& a) {
+    return !a.value("homed", false) &&
+           (named.empty() || std::find(named.begin(), named.end(), a["letter"]) != named.end());
+  });
+  if (open && !alarm(status)) code_ = kStopped;
+  return false;
+}
+
+bool Wait::program_under_way(const json& status) {
+  const std::string state = of(status, "state");
+  if (state == "running") return true;
+  if (interrupts_done_ > 0 && state != "ended" && state != "stopped_by_alarm")
+    return any_axis(status, moving);  // held, or ended by the second interrupt
+  if (state == "waiting") return true;
+  if (state == "held") return kind_ != Kind::step;
+  if (state == "stopped_by_alarm") code_ = kAlarm;
+  if (state == "idle" && !alarm(status)) code_ = kStopped;
+  return false;
+}
+
+bool Wait::under_way(const json& status) {
+  code_ = alarm(status) ? kAlarm : kDone;
+  switch (kind_) {
+    case Kind::power_on: {
+      const bool off = any_axis(status, [](const json& a) { return !on(a); });
+      if (!off) code_ = kDone;  // a warning that is active did not keep them off
+      return off && !(alarm(status) && in_wait_s(status) > kAlarmPatience_s);
+    }
+    case Kind::power_off:
+      code_ = kDone;
+      return any_axis(status, on);
+    case Kind::home:
+      return homing_under_way(status);
+    case Kind::jog:
+      return any_axis(status, moving);
+    case Kind::step:
+    case Kind::program:
+      return program_under_way(status);
+  }
+  return false;
+}
+
+/// Drives that do not come or go are named with their states.
+bool Wait::too_late(const json& status) {
+  if (kind_ != Kind::power_on && kind_ != Kind::power_off) return false;
+  if (in_wait_s(status) < kPowerPatience_s) return false;
+  std::string late;
+  for (const json& a : status.value("axes", json::array()))
+    if (on(a) != (kind_ == Kind::power_on))
+      late += (late.empty() ? "" : ", ") + of(a, "letter") + " (" + of(a, "drive") + ")";
+  complain(kind_ == Kind::power_on ? kNotOn : kNotOff, {text::number(kPowerPatience_s, 0), late});
+  return true;
+}
+
+bool Wait::cycle_stands(const json& status) {
+  const double now_s = status.value("time_s", 0.0);
+  const auto now = std::chrono::steady_clock::now();
+  if (now_s != seen_s_) moved_on_ = now;
+  seen_s_ = now_s;
+  if (begun_s_ < 0.0) begun_s_ = now_s;
+  if (now - moved_on_ < kCyclePatience) return false;
+  complain(kNoCycle, {});
+  return true;
+}
+
+void Wait::interrupt() {
+  ++interrupts_done_;
+  switch (kind_) {
+    case Kind::power_on: {
+      json off = simple("power");
+      off["value"] = 0;
+      ask(client_, off);
+      kind_ = Kind::power_off;
+      break;
+    }
+    case Kind::power_off:
+      break;
+    case Kind::home:
+    case Kind::jog:
+      ask(client_, simple("stop"));
+      break;
+    case Kind::step:
+    case Kind::program:
+      ask(client_, simple(interrupts_done_ == 1 ? "hold" : "stop"));
+      break;
+  }
+}
+
+int Wait::run(json& status) {
+  const json question = simple("status");
+  for (;; std::this_thread::sleep_for(kLook)) {
+    status = ask(client_, question);
+    if (status.is_null() || cycle_stands(status)) return kInfrastructure;
+    if (interrupts > interrupts_done_) {
+      interrupt();
+      continue;
+    }
+    if (!under_way(status)) break;
+    if (too_late(status)) return kAlarm;
+  }
+  const std::string state = of(status, "state");
+  const bool own_end = kind_ == Kind::program && (state == "ended" || state == "stopped_by_alarm");
+  if (interrupts_done_ == 0 || own_end) return code_;
+  if (state == "held") complain(kHeld, {});
+  return kStopped;
+}
+
+}  // namespace
+
+json ask(SocketClient& client, const json& request) {
+  std::string answer;
+  if (!client.exchange(request.dump(-1, ' ', false, json::error_handler_t::replace), answer)) return {};
+  json reply = json::parse(answer, nullptr, false);
+  return reply.is_object() ? reply : json();
+}
+
+void watch_operator() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+json hold_jog(SocketClient& client, const json& request, const json& begun) {
+  const int pause_ms = std::max(1, static_cast<int>(begun.value("keep_alive_ms", 30.0)));
+  while (interrupts == 0) {
+    pollfd in{STDIN_FILENO, POLLIN, 0};
+    if (poll(&in, 1, pause_ms) > 0) break;
+    json reply = ask(client, {{"cmd", "keep_alive"}, {"language", request["language"]}});
+    if (!reply.value("moving", false)) return reply;
+  }
+  return ask(client, {{"cmd", "jog_stop"}, {"axis", request["axis"]}, {"language", request["language"]}});
+}
+
+int wait_for_end(SocketClient& client, const json& request, json& status) {
+  return Wait(client, request).run(status);
+}
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the control refuses, it refuses with a sentence that names the range, and without having changed
+// anything.
+#include <gtest/gtest.h>
+
+#include "tests/server/rig.hpp"
+
+namespace servogate::gateway::testing {
+namespace {
+
+using nlohmann::json;
+
+struct Refused {
+  std::vector<std::string> arguments;
+  int exit;
+  std::string said;
+};
+
+class Refusals : public ::testing::Test {
+ protected:
+  Refusals() {
+    shell_.up();
+    shell_.ready();
+    EXPECT_EQ(shell_.run({"mdi", "G0 X10", "--wait"}).exit, 0);
+  }
+  /// Mode, positions, origin: what a refusal must not touch.
+  json kept() {
+    const json s = shell_.status();
+    json out{s["mode"], s["state"], s["program"]};
+    for (const json& a : s["axes"]) out.push_back(a["command"]);
+    return out;
+  }
+  void expect(const Refused& r) {
+    const json before = kept();
+    const Outcome o = shell_.run(r.arguments);
+    EXPECT_EQ(o.exit, r.exit) << r.said << ": " << o.err;
+    EXPECT_NE(o.err.find(r.said), std::string::npos) << o.err;
+    EXPECT_LT(o.err.size(), 300u) << o.err;
+    EXPECT_EQ(kept(), before) << r.said;
+  }
+  Shell shell_;
+};
+
+TEST_F(Refusals, name_the_range_of_a_number_that_is_too_large_or_none) {
+  const Refused refused[] = {
+      {{"zero", "X", "1e300"}, 1, "X cannot be given the value 1e+300 mm: from -99999.999 to 99999.999 mm"},
+      {{"zero", "X", "-1e300"}, 1, "from -99999.999 to 99999.999 mm"},
+      {{"zero", "X", "nan"}, 2, "'nan' is not a number"},
+      {{"zero", "X", "inf"}, 2, "'inf' is not a number"},
+      {{"zero", "X", "1e999"}, 2, "'1e999' is not a number"},
+      {{"jog", "X", "+1e300"}, 1, "X cannot jog by 1e+300 mm: from -600 to 600 mm is possible"},
+      {{"jog", "X", "-601mm"}, 1, "from -600 to 600 mm is possible"},
+      {{"jog", "X", "+nan"}, 2, "'+nan' is not a distance"},
+      {{"jog", "X", "+inf"}, 2, "'+inf' is not a distance"},
+      {{"input", "air_pressure", "1e99"}, 2, "'air_pressure' cannot be 1e+99: from 0 to 32767 is possible"},
+      {{"input", "air_pressure", "-1"}, 2, "from 0 to 32767 is possible"},
+      {{"input", "air_pressure", "40000"}, 2, "from 0 to 32767 is possible"},
+      {{"input", "air_pressure", "nan"}, 2, "takes: POINT on | off | auto | NUMBER"},
+      {{"input", "door_closed", "5"}, 2, "'door_closed' is on or off (1 or 0), not 5"},
+      {{"override", "200"}, 1, "a feed override of 200 % is not possible: 0 to 150 %"},
+      {{"override", "1e300"}, 1, "0 to 150 %"},
+      {{"override", "-1"}, 1, "0 to 150 %"},
+  };
+  for (const Refused& r : refused) expect(r);
+  EXPECT_EQ(shell_.run({"input", "air_pressure", "32767"}).exit, 0);
+  EXPECT_EQ(shell_.run({"input", "door_closed", "1"}).exit, 0);
+}
+
+TEST_F(Refusals, leave_the_mode_as_it_was) {
+  ASSERT_EQ(shell_.status()["mode"], "mdi");
+  ASSERT_EQ(shell_.run({"input", "x_limit_plus", "on"}).exit, 0);
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["on_limit"] == 1; }));
+  expect({{"jog", "X", "+1mm"}, 1, "X is on its limit switch"});
+  expect({{"jog", "X", "+"}, 1, "X is on its limit switch"});
+  expect({{"start"}, 1, "no program is loaded"});
+  expect({{"step"}, 1, "no program is loaded"});
+  ASSERT_EQ(shell_.run({"power", "off"}).exit, 0);
+  expect({{"home"}, 1, "is not ready"});
+  expect({{"jog", "Y", "+1mm"}, 1, "Y is not ready"});
+  ASSERT_EQ(shell_.ask({{"cmd", "jog"}, {"axis", "Y"}, {"value", 1e300}})["code"], "gate.jog_range");
+  EXPECT_EQ(shell_.status()["mode"], "mdi");
+}
+
+TEST_F(Refusals, of_a_typed_block_do_not_leave_it_for_a_later_start) {
+  ASSERT_EQ(shell_.run({"jog", "Y", "+1mm", "--wait"}).exit, 0);
+  ASSERT_EQ(shell_.run({"power", "off"}).exit, 0);
+  expect({{"mdi", "G0 X20"}, 1, "is not ready"});
+  EXPECT_EQ(shell_.status()["mode"], "manual");
+}
+
+TEST_F(Refusals, of_a_program_that_is_not_there_are_wrong_use) {
+  const std::string none = (shell_.folder() / "none.nc").string();
+  expect({{"load", none}, 2, "none.nc: error: cannot read the file: No such file or directory"});
+  expect({{"load", "/dev/zero"}, 2, "not a regular file but a device"});
+  const json answer = shell_.ask({{"cmd", "load"}, {"program", none}, {"dialect", "klingon"}});
+  EXPECT_EQ(answer["exit"], 2);
+}
+
+}  // namespace
+}  // namespace servogate::gateway::testing

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands that wait for what they began: until when, what they say, and what Ctrl-C does meanwhile.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <fstream>
+
+#include "tests/server/rig.hpp"
+
+namespace servogate::gateway::testing {
+namespace {
+
+using nlohmann::json;
+
+bool all_on(const json& status) {
+  for (const json& a : status["axes"])
+    if (!a["enabled"].get<bool>()) return false;
+  return true;
+}
+
+int ending_of(pid_t pid) {
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST(Power, is_on_when_the_command_has_ended_brakes_included) {
+  Shell shell;
+  shell.up("mill", {"--virtual", "--speed", "2"});
+  const Outcome on = shell.run({"power", "on"});
+  EXPECT_EQ(on.exit, 0) << on.err;
+  EXPECT_NE(on.out.find("the drives are on"), std::string::npos) << on.out;
+  EXPECT_TRUE(all_on(shell.status()));
+  EXPECT_EQ(shell.run({"home", "Z"}).exit, 0) << "the axis with the brake is ready at once";
+  ASSERT_TRUE(shell.until([](const json& s) { return !s["homing"].get<bool>(); }));
+  EXPECT_EQ(shell.run({"power", "off"}).exit, 0);
+  EXPECT_FALSE(shell.status()["axes"][2]["enabled"].get<bool>());
+}
+
+TEST(Power, does_not_wait_when_it_is_told_so) {
+  Shell shell;
+  shell.up("mill", {"--virtual", "--speed", "0.05"});
+  const Outcome on = shell.run({"power", "on", "--no-wait"});
+  EXPECT_EQ(on.exit, 0) << on.err;
+  EXPECT_NE(on.out.find("the drives are being switched on"), std::string::npos) << on.out;
+  EXPECT_FALSE(all_on(shell.status())) << "at a twentieth of real time the brake takes seconds";
+}
+
+TEST(Power, that_does_not_come_names_the_axes_and_the_states_of_their_drives) {
+  Shell shell;
+  // A PLC that never permits the power.
+  std::ifstream in(Shell::example("mill/machine.toml"));
+  std::string machine((std::istreambuf_iterator<char>(in)), {});
+  const std::size_t at = machine.find("\"mill.st\"");
+  ASSERT_NE(at, std::string::npos);
+  machine.replace(at, 9, "\"off.st\"");
+  std::ofstream(shell.folder() / "machine.toml") << machine;
+  std::ofstream(shell.folder() / "off.st")
+      << "PROGRAM Off\nMC.estop_ok := TRUE;\nMC.power_on := FALSE;\nEND_PROGRAM\n";
+  const pid_t up =
+      shell.spawn({"up", (shell.folder() / "machine.toml").string(), "--virtual", "--speed", "20"}, "up");
+  ASSERT_TRUE(shell.until([](const json& s) { return s.contains("axes"); }));
+  const Outcome on = shell.run({"power", "on"});
+  EXPECT_EQ(on.exit, 1);
+  EXPECT_NE(on.err.find("not switched on within 15 s: X ("), std::string::npos) << on.err;
+  EXPECT_NE(on.err.find("Z ("), std::string::npos) << on.err;
+  kill(up, SIGTERM);
+  EXPECT_EQ(ending_of(up), 0);
+}
+
+class Program : public ::testing::Test {
+ protected:
+  Program() {
+    shell_.up("mill", {"--virtual", "--speed", "5"});
+    shell_.ready();
+    std::ofstream(shell_.folder() / "long.nc") << "N10 G1 X200 F1000\nN20 X-200\nN30 M2\n";
+    EXPECT_EQ(shell_.run({"load", (shell_.folder() / "long.nc").string()}).exit, 0);
+  }
+  /// `start --wait` while the program moves.
+  pid_t started() {
+    const pid_t client = shell_.spawn({"start", "--wait"}, "start");
+    EXPECT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 100.0; }));
+    return client;
+  }
+  Shell shell_;
+};
+
+TEST_F(Program, is_held_on_its_path_by_Ctrl_C_in_start_wait_and_can_go_on) {
+  const pid_t client = started();
+  kill(client, SIGINT);
+  EXPECT_EQ(ending_of(client), 3);
+  const json held = shell_.status();
+  EXPECT_EQ(held["state"], "held");
+  EXPECT_EQ(held["feed_mm_min"], 0.0) << "it stands when the command has ended";
+  EXPECT_NE(shell_.text("start.err").find("`servogate resume` goes on"), std::string::npos)
+      << shell_.text("start.err");
+  EXPECT_EQ(shell_.run({"resume"}).exit, 0);
+  EXPECT_TRUE(shell_.until([](const json& s) { return s["state"] == "ended"; }));
+  EXPECT_NEAR(shell_.status()["axes"][0]["command"].get<double>(), -200.0, 1e-6);
+}
+
+TEST_F(Program, is_ended_by_a_second_Ctrl_C) {
+  const pid_t client = started();
+  kill(client, SIGINT);
+  kill(client, SIGTERM);
+  EXPECT_EQ(ending_of(client), 3);
+  EXPECT_EQ(shell_.status()["state"], "idle");
+}
+
+TEST_F(Program, goes_on_when_its_client_is_killed) {
+  const pid_t client = started();
+  kill(client, SIGKILL);
+  ending_of(client);
+  EXPECT_TRUE(shell_.until([](const json& s) { return s["state"] == "ended"; }));
+}
+
+TEST(Homing, is_stopped_by_Ctrl_C) {
+  Shell shell;
+  shell.up("mill", {"--virtual", "--speed", "2"});
+  ASSERT_EQ(shell.run({"power", "on"}).exit, 0);
+  const pid_t client = shell.spawn({"home", "--wait"}, "home");
+  ASSERT_TRUE(shell.until([](const json& s) { return s["homing"].get<bool>(); }));
+  kill(client, SIGINT);
+  EXPECT_EQ(ending_of(client), 3);
+  EXPECT_FALSE(shell.status()["homing"].get<bool>());
+}
+
+}  // namespace
+}  // namespace servogate::gateway::testing

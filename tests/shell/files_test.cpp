@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Paths of the command line that lead to no sensible file.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/shell/line.hpp"
+
+namespace servogate::shell {
+namespace {
+
+/// What stands where a file is expected, and what is said of it.
+constexpr struct {
+  const char* name;
+  const char* said;
+} kStrange[] = {{"/dev/zero", "not a regular file but a device"},
+                {"pipe", "not a regular file but a pipe"},
+                {"folder", "not a regular file but a folder"},
+                {"nothing", "No such file or directory"}};
+
+class Files : public ::testing::Test {
+ protected:
+  Files() {
+    EXPECT_EQ(desk_.line("mkfifo pipe && mkdir folder && cp ${MILL%/*}/mill.st .").code, 0);
+    desk_.write("one.nc", "N10 G0 X1\nN20 M30\n");
+  }
+  void expect(const std::string& line, const std::string& said) {
+    const Ended e = desk_.line(line, "C", 20.0);
+    EXPECT_EQ(e.code, 2) << line << ": " << e.err;
+    EXPECT_TRUE(e.err_has(said)) << line << ": " << e.err.substr(0, 500);
+  }
+  Desk desk_;
+};
+
+TEST_F(Files, that_are_devices_pipes_or_folders_are_refused_as_machine_files) {
+  for (const auto& strange : kStrange)
+    for (const char* command : {"check @", "run @ --virtual", "up @ --virtual", "canon @ one.nc",
+                                "plc check mill.st --machine @"}) {
+      std::string line = std::string("$SG ") + command;
+      line.replace(line.find('@'), 1, strange.name);
+      expect(line, strange.said);
+    }
+}
+
+TEST_F(Files, that_are_devices_pipes_or_folders_are_refused_as_programs_sources_and_records) {
+  for (const auto& strange : kStrange)
+    for (const char* command : {"check $MILL @", "run $MILL @ --virtual", "canon $MILL @", "plc run @",
+                                "plc check @", "replay @"}) {
+      std::string line = std::string("$SG ") + command;
+      line.replace(line.find('@'), 1, strange.name);
+      expect(line, strange.said);
+    }
+}
+
+TEST_F(Files, that_are_too_large_are_refused_before_they_are_read) {
+  ASSERT_EQ(desk_
+                .line("truncate -s 5M machine.toml && truncate -s 300M big.nc && truncate -s 20M big.st && "
+                      "truncate -s 5G big.record")
+                .code,
+            0);
+  expect("$SG check machine.toml", "larger than 4 MiB");
+  expect("$SG run $MILL big.nc --virtual", "larger than 256 MiB");
+  expect("$SG plc check big.st", "larger than 16 MiB");
+  expect("$SG replay big.record", "larger than 4096 MiB");
+}
+
+TEST_F(Files, that_a_machine_file_names_are_met_with_the_same_care) {
+  ASSERT_EQ(desk_
+                .line("cp $MILL m.toml && mkdir devices && mkfifo devices/servo-cia402.toml && "
+                      "sed 's/\"mill.st\"/\"pipe\"/' m.toml > n.toml && rm -r devices.none 2>/dev/null; true")
+                .code,
+            0);
+  const Ended device = desk_.line("$SG check m.toml", "C", 20.0);
+  EXPECT_EQ(device.code, 1) << "the machine file itself can be read: " << device.err;
+  EXPECT_TRUE(
+      device.err_has("servo-cia402.toml: error: the file cannot be read: not a regular file but a pipe"))
+      << device.err;
+  ASSERT_EQ(desk_.line("rm -r devices").code, 0);
+  const Ended logic = desk_.line("$SG check n.toml", "C", 20.0);
+  EXPECT_EQ(logic.code, 1);
+  EXPECT_TRUE(logic.err_has("file \"pipe\" cannot be read: not a regular file but a pipe")) << logic.err;
+}
+
+TEST_F(Files, of_a_replay_that_compares_with_an_endless_trace_is_refused) {
+  ASSERT_EQ(desk_.line("$SG run $MILL one.nc --virtual --quiet --record r").code, 0);
+  expect("$SG replay r --against /dev/zero", "cannot read /dev/zero: not a regular file but a device");
+}
+
+TEST_F(Files, that_may_not_be_read_are_told_from_those_that_are_wrong) {
+  desk_.write("broken.toml", "schema = \n");
+  EXPECT_EQ(desk_.line("$SG check broken.toml").code, 1) << "a check that failed";
+  for (const char* command :
+       {"run broken.toml --virtual", "up broken.toml --virtual", "canon broken.toml one.nc"})
+    EXPECT_EQ(desk_.line(std::string("$SG ") + command).code, 2) << command;
+  desk_.write("bad.st", "PROGRAM P\nVAR n : INT; END_VAR\nn := TRUE;\nEND_PROGRAM\n");
+  EXPECT_EQ(desk_.line("$SG plc check bad.st").code, 1) << "a check that failed";
+  EXPECT_EQ(desk_.line("$SG plc run bad.st").code, 2);
+  const Ended json = desk_.line("$SG check $MILL nothing.nc one.nc --json");
+  EXPECT_EQ(json.code, 2) << json.err;
+  EXPECT_TRUE(json.out_has("\"one.nc\"")) << "the others are checked all the same";
+  if (geteuid() == 0) return;  // who may read everything
+  EXPECT_EQ(desk_.line("chmod 0 one.nc; $SG check $MILL one.nc").code, 2);
+}
+
+TEST_F(Files, are_complained_of_in_russian_to_a_russian) {
+  const Ended e = desk_.line("$SG check pipe", "ru_RU.UTF-8", 20.0);
+  EXPECT_TRUE(e.err_has("файл не читается: не обычный файл, а канал")) << e.err;
+  const Ended missing = desk_.line("$SG check $MILL none.nc", "ru_RU.UTF-8");
+  EXPECT_TRUE(missing.err_has("нет такого файла или каталога")) << missing.err;
+}
+
+}  // namespace
+}  // namespace servogate::shell

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "tests/shell/line.hpp"
+
+namespace servogate::shell {
+namespace {
+
+TEST(Installed, it_runs_from_its_own_folder_and_finds_the_device_files_beside_it) {
+  const Desk desk;
+  const std::string install = std::string(CMAKE_PROGRAM) + " --install " SERVOGATE_BINARY_DIR
+                                                           " --prefix \"$PWD/there\" > install.log 2>&1";
+  ASSERT_EQ(desk.line(install).code, 0) << desk.text("install.log");
+  EXPECT_EQ(desk.line("there/bin/servogate check there/share/servogate/examples/mill/machine.toml").code, 0);
+  // A device file that only the installed folder has.
+  ASSERT_EQ(desk.line("cd there/share/servogate && cp devices/servo-cia402.toml devices/only-here.toml && "
+                      "sed 's/\"servo-cia402\"/\"only-here\"/' examples/mill/machine.toml > m.toml && "
+                      "cp examples/mill/mill.st .")
+                .code,
+            0);
+  const Ended e = desk.line("there/bin/servogate check there/share/servogate/m.toml");
+  EXPECT_EQ(e.code, 0) << e.err;
+  EXPECT_NE(desk.line("$SG check there/share/servogate/m.toml").code, 0) << "found elsewhere";
+}
+
+TEST(RealTime, that_is_refused_names_the_program_itself_in_the_command_that_grants_it) {
+  const Desk desk;
+  const Ended e = desk.line(
+      "mkdir 'a b'; cp $SG 'a b/servogate'; ulimit -r 0 2>/dev/null; 'a b/servogate' run $MILL "
+      "--realtime -q");
+  if (e.code == 0) GTEST_SKIP() << "this user may do everything";
+  EXPECT_EQ(e.code, 4) << e.err;
+  EXPECT_TRUE(e.err_has("sudo setcap cap_sys_nice,cap_ipc_lock=ep '" + desk.path("a b/servogate'"))) << e.err;
+}
+
+}  // namespace
+}  // namespace servogate::shell
