@@ -26,6 +26,8 @@ inline constexpr Entry kUnclosed{"plc-unclosed", "expected {0} for the {1} in li
                                  "ожидается {0} для {1} в строке {2}, встречено {3}"};
 inline constexpr Entry kAssignEqual{"plc-assign", "'=' compares; write ':=' to assign",
                                     "'=' сравнивает; для присваивания пишите ':='"};
+inline constexpr Entry kForeign{"plc-foreign", "'{0}' is not known here; write '{1}'",
+                                "'{0}' здесь не применяется; пишите '{1}'"};
 inline constexpr Entry kTooDeep{"plc-depth", "nested deeper than {0} levels",
                                 "вложенность больше {0} уровней"};
 
@@ -81,6 +83,10 @@ inline constexpr Entry kNoInstruction{"plc-instruction", "'{0}' is no instructio
 inline constexpr Entry kNoCurrent{"plc-no-result-yet",
                                   "'{0}' needs a current result, and there is none here; begin with LD",
                                   "'{0}' требует текущего результата, а здесь его нет; начните с LD"};
+inline constexpr Entry kListOnly{
+    "plc-list-only",
+    "this body is Instruction List because of how it begins; '{0}' belongs to Structured Text",
+    "это тело написано на IL (так оно начинается); '{0}' относится к ST"};
 inline constexpr Entry kEndOfLine{"plc-end-of-line", "expected the end of the line, found {0}",
                                   "ожидается конец строки, встречено {0}"};
 inline constexpr Entry kInParentheses{"plc-in-parentheses", "{0} cannot stand between '(' and ')'",
@@ -118,6 +124,11 @@ inline constexpr Entry kUnknownName{"plc-unknown-name", "there is no variable '{
                                     "переменной '{0}' нет{1}"};
 inline constexpr Entry kUnknownCall{"plc-unknown-call", "there is no function or instance '{0}'{1}",
                                     "функции или экземпляра '{0}' нет{1}"};
+inline constexpr Entry kNotCallable{"plc-not-callable", "'{0}' is {1} and cannot be called",
+                                    "'{0}' имеет тип {1}, вызвать его нельзя"};
+inline constexpr Entry kProgramCall{"plc-program-call",
+                                    "'{0}' is a PROGRAM; tasks run it, other code cannot call it",
+                                    "'{0}' является PROGRAM: её запускают задачи, вызвать её нельзя"};
 inline constexpr Entry kNoMember{"plc-no-member", "{0} has no member '{1}'{2}",
                                  "у {0} нет элемента '{1}'{2}"};
 inline constexpr Entry kNotStructured{"plc-not-structured", "'{0}' is {1} and has no members",

@@ -92,7 +92,16 @@ Generator::Operand Generator::destination(const ir::Expr& e, std::optional<Opera
   return into ? *into : temporary(e.type->kind == Kind::string ? kTextCell : e.type->size);
 }
 
+// Faults name the line of the operation, not of the statement that it belongs to.
 Generator::Operand Generator::value(const ir::Expr& e, std::optional<Operand> into) {
+  const std::uint32_t outer = line_;
+  if (e.at.line > 0) line_ = line_mark(e.at);
+  const Operand out = value_of(e, into);
+  line_ = outer;
+  return out;
+}
+
+Generator::Operand Generator::value_of(const ir::Expr& e, std::optional<Operand> into) {
   switch (e.kind) {
     case ExprKind::constant: {
       const Operand c = constant(e);

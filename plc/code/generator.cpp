@@ -133,7 +133,7 @@ void Generator::unit(int index) {
   labels_.clear();
   forward_.clear();
   out.entry = static_cast<std::uint32_t>(here());
-  line_ = static_cast<std::uint32_t>(u.at.file) << 24 | static_cast<std::uint32_t>(u.at.line & 0xFFFFFF);
+  line_ = line_mark(u.at);
   resets(u);
   block(u.body);
   for (const std::size_t r : returns_) land(r);

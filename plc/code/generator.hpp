@@ -66,6 +66,10 @@ class Generator {
 
   // expressions.cpp
   Operand value(const ir::Expr& e, std::optional<Operand> into = std::nullopt);
+  Operand value_of(const ir::Expr& e, std::optional<Operand> into);
+  static std::uint32_t line_mark(const ir::Location& at) {
+    return static_cast<std::uint32_t>(at.file) << 24 | static_cast<std::uint32_t>(at.line & 0xFFFFFF);
+  }
   Operand constant(const ir::Expr& e);
   Operand binary(const ir::Expr& e, std::optional<Operand> into);
   Operand text_binary(const ir::Expr& e, std::optional<Operand> into);

@@ -9,7 +9,7 @@ using vm::Code;
 void Generator::block(const ir::Block& b) {
   for (const ir::Stmt& s : b) {
     const std::uint32_t mark = top_;
-    line_ = static_cast<std::uint32_t>(s.at.file) << 24 | static_cast<std::uint32_t>(s.at.line & 0xFFFFFF);
+    line_ = line_mark(s.at);
     statement(s);
     top_ = mark;
   }
@@ -93,8 +93,7 @@ void Generator::if_statement(const ir::Stmt& s) {
   std::vector<std::size_t> ends;
   for (std::size_t i = 0; i < s.branches.size(); ++i) {
     const std::uint32_t mark = top_;
-    line_ = static_cast<std::uint32_t>(s.branches[i].condition->at.file) << 24 |
-            static_cast<std::uint32_t>(s.branches[i].condition->at.line & 0xFFFFFF);
+    line_ = line_mark(s.branches[i].condition->at);
     const Operand c = value(*s.branches[i].condition);
     const std::size_t skip = emit(Code::jump_false, c);
     top_ = mark;

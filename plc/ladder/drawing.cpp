@@ -77,23 +77,30 @@ class Drawing {
   }
 
   // Comments become blanks; columns are characters, not bytes.
-  Row row(std::string text, int line) {
+  Row row(const std::string& text, int line) {
+    std::string shown;
     for (std::size_t i = 0; i < text.size(); ++i) {
-      if (!comment_ && text.compare(i, 2, "//") == 0) {
-        text.resize(i);
-        break;
+      if (!comment_ && text.compare(i, 2, "//") == 0) break;
+      if (!comment_ && text.compare(i, 2, "(*") == 0) {
+        comment_ = true;
+        shown += "  ";
+        ++i;
+      } else if (comment_ && text.compare(i, 2, "*)") == 0) {
+        comment_ = false;
+        shown += "  ";
+        ++i;
+      } else if (!comment_) {
+        shown += text[i];
+      } else if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) {
+        shown += ' ';
       }
-      if (!comment_ && text.compare(i, 2, "(*") == 0) comment_ = true, text[i] = ' ', ++i;
-      const bool closes = comment_ && text.compare(i, 2, "*)") == 0 && text[i] == '*';
-      if (comment_) text[i] = (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80 ? text[i] : ' ';
-      if (closes) comment_ = false, text[++i] = ' ';
     }
     Row r;
     r.line = line;
-    for (std::size_t i = 0; i < text.size(); ++i)
-      if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) r.at.push_back(i);
-    r.at.push_back(text.size());
-    r.text = std::move(text);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      if ((static_cast<unsigned char>(shown[i]) & 0xC0) != 0x80) r.at.push_back(i);
+    r.at.push_back(shown.size());
+    r.text = std::move(shown);
     return r;
   }
 
@@ -103,7 +110,8 @@ class Drawing {
     const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
     if (!same_name(text.substr(0, end), "RUNG")) {
       report_.error(where(r, column), texts::kExpected,
-                    {"RUNG, '|' or END_LADDER", "'" + text.substr(0, end) + "'"});
+                    {text::both("RUNG, '|' or END_LADDER", "RUNG, '|' или END_LADDER"),
+                     "'" + text.substr(0, end) + "'"});
       return;
     }
     const std::string name = trimmed(text.substr(end));
@@ -112,7 +120,8 @@ class Drawing {
       return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
     });
     if (!plain) {
-      report_.error(where(r, column + end + 1), texts::kExpected, {"the name of the rung", "'" + name + "'"});
+      report_.error(where(r, column + end + 1), texts::kExpected,
+                    {text::both("the name of the rung", "имя цепи"), "'" + name + "'"});
       return;
     }
     Element e;
@@ -167,12 +176,13 @@ class Drawing {
     for (std::size_t c = 0; c < row.columns();) {
       const char x = row[c];
       const bool wired = last >= 0;
-      const bool goes_on = x == '|' && wired && c != rail_ && !rest_blank(row, c + 1);
+      const bool behind_wire = c > 0 && row[c - 1] == '-';
+      const bool goes_on = x == '|' && wired && behind_wire && !rest_blank(row, c + 1);
       if (x == '-' || x == '+' || (x == '|' && !goes_on)) {
         const int n = node(r, c);
-        if (wired) join(last, n);
-        const char next = row[c + 1];
-        last = x == '|' && next != '-' && next != '+' ? -1 : n;
+        // An upright meets what stands beside it only by '-'.
+        if (wired && (x != '|' || behind_wire)) join(last, n);
+        last = x == '|' && row[c + 1] != '-' ? -1 : n;
         ++c;
       } else if (goes_on || ((x == '(' || x == '[' || x == '>') && wired)) {
         c = element(r, c, last);
@@ -235,7 +245,8 @@ class Drawing {
     std::size_t begin = c + 1;
     while (begin < end && blank(row[begin])) ++begin;
     if (begin == end) {
-      report_.error(where(row, c), texts::kExpected, {"a name", "nothing"});
+      report_.error(where(row, c), texts::kExpected,
+                    {text::both("a name", "имя"), text::both("nothing", "ничего")});
       e.operand = syntax::parse_expression("FALSE", e.location, report_);
       e.kind = ElementKind::contact;
     } else if (open == '[') {
@@ -354,7 +365,9 @@ class Drawing {
     e.inputs.emplace_back();
     e.name = row.between(begin, end);
     e.kind = same_name(e.name, "RETURN") ? ElementKind::leave : ElementKind::jump;
-    if (e.name.empty()) report_.error(e.location, texts::kExpected, {"a label", "nothing"});
+    if (e.name.empty())
+      report_.error(e.location, texts::kExpected,
+                    {text::both("a label", "метка"), text::both("nothing", "ничего")});
     while (end < row.columns() && (blank(row[end]) || row[end] == '-')) ++end;
     right_ = node(r, end);
     drawn_.push_back({left, right_, static_cast<int>(elements_.size()), "", ""});

@@ -104,8 +104,7 @@ class Lowering {
           });
           if (link == elements_.end())
             report_.error(at(w.element).location, texts::kNoConnector, {at(w.element).name});
-          else
-            w = {static_cast<int>(link - elements_.begin()), ""};
+          w = {link == elements_.end() ? -1 : static_cast<int>(link - elements_.begin()), ""};
         }
   }
 
@@ -281,7 +280,8 @@ class Lowering {
         one = joined(Operator::and_, held(state(w.element).enabled, e.location), std::move(one), e.location);
       out = out ? joined(Operator::or_, std::move(out), std::move(one), e.location) : std::move(one);
     }
-    return out;
+    // What is wired to something that is not there was reported.
+    return out || p.wires.empty() ? std::move(out) : expression_of(ExpressionKind::bad, e.location);
   }
   // The result of a function is worth something only when its EN was TRUE.
   bool only_when_enabled(const Wire& w) {

@@ -26,10 +26,20 @@ void Reader::variables(const pugi::xml_node& list, syntax::Section section, std:
     v.constant = list.attribute("constant").as_bool();
     v.retain = list.attribute("retain").as_bool();
     v.address = key_of(n.attribute("address").value());
-    v.type = std::make_shared<TypeReference>(type(child(n, "type")));
+    v.type = std::make_shared<TypeReference>(type_of(n, 0));
     if (const pugi::xml_node value = child(n, "initialValue")) v.initial = initial(value);
     out.push_back(std::move(v));
   }
+}
+
+// The type of a variable.
+TypeReference Reader::type_of(const pugi::xml_node& variable, int depth) {
+  if (const pugi::xml_node t = child(variable, "type")) return type(t, depth);
+  report_.error(where(variable), texts::kXmlMissing, {std::string(variable.name()), "type"});
+  TypeReference none;
+  none.location = where(variable);
+  none.name = "BOOL";
+  return none;
 }
 
 TypeReference Reader::type(const pugi::xml_node& holder, int depth) {
@@ -41,7 +51,8 @@ TypeReference Reader::type(const pugi::xml_node& holder, int depth) {
   const std::string_view name = local_name(n);
   t.name = name;
   if (!n || depth > kMaxTypeNesting) {
-    report_.error(t.location, texts::kExpected, {"a type", n ? "'" + t.name + "'" : "nothing"});
+    report_.error(t.location, texts::kExpected,
+                  {text::both("a type", "тип"), n ? "'" + t.name + "'" : text::both("nothing", "ничего")});
     t.name = "BOOL";
   } else if (name == "derived") {
     t.name = attribute(n, "name");
@@ -99,7 +110,7 @@ void Reader::structure(const pugi::xml_node& n, TypeReference& t, int depth) {
     Variable v;
     v.location = where(m);
     v.name = attribute(m, "name");
-    v.type = std::make_shared<TypeReference>(type(child(m, "type"), depth + 1));
+    v.type = std::make_shared<TypeReference>(type_of(m, depth + 1));
     if (const pugi::xml_node value = child(m, "initialValue")) v.initial = initial(value);
     t.members.push_back(std::move(v));
   }

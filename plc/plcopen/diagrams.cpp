@@ -58,6 +58,10 @@ void Reader::diagram(const pugi::xml_node& n, syntax::Unit& u) {
     e.y = position.attribute("y").as_double();
     e.order = c.attribute("executionOrderId").as_int();
     element(c, e);
+    if (name == "inOutVariable" && e.inputs[0].wires.empty()) {  // only read
+      e.kind = ElementKind::source;
+      e.inputs.clear();
+    }
     elements.push_back(std::move(e));
     nodes.push_back(c);
   }

@@ -132,7 +132,9 @@ void Reader::pou(const pugi::xml_node& n) {
   else if (kind == "functionBlock")
     u.kind = UnitKind::function_block;
   else if (kind != "program")
-    report_.error(u.location, texts::kExpected, {"program, function or functionBlock", "'" + kind + "'"});
+    report_.error(u.location, texts::kExpected,
+                  {text::both("program, function or functionBlock", "program, function или functionBlock"),
+                   "'" + kind + "'"});
   constexpr std::pair<std::string_view, Section> kSections[] = {
       {"localVars", Section::local},   {"tempVars", Section::temp},    {"inputVars", Section::input},
       {"outputVars", Section::output}, {"inOutVars", Section::in_out}, {"externalVars", Section::external}};
@@ -169,7 +171,9 @@ void Reader::body(const pugi::xml_node& n, Unit& u) {
       return;
     }
   }
-  report_.error(where(n), texts::kExpected, {"<ST>, <IL>, <LD> or <FBD>", "nothing"});
+  report_.error(where(n), texts::kExpected,
+                {text::both("<ST>, <IL>, <LD> or <FBD>", "<ST>, <IL>, <LD> или <FBD>"),
+                 text::both("nothing", "ничего")});
 }
 
 void Reader::configuration(const pugi::xml_node& n) {

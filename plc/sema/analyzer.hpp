@@ -203,6 +203,7 @@ class Analyzer {
   bool visit(int unit, std::vector<int>& path);
   void check_usage();
   void check_writers();
+  void reach(int unit, std::set<int>& out) const;
 
   UnitScope& here() { return scopes_[static_cast<std::size_t>(current_)]; }
   const Type* elementary(Kind k) const { return types_->elementary(k); }

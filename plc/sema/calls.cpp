@@ -30,7 +30,12 @@ ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
           if (u.kind == UnitKind::function) names.push_back(u.name);
         for (const char* n : {"ABS", "SQRT", "MIN", "MAX", "LIMIT", "SEL", "MUX", "CONCAT", "LEN", "TRUNC"})
           names.push_back(n);
-        if (unit != units_by_name_.end())
+        const bool program =
+            unit != units_by_name_.end() &&
+            scopes_[static_cast<std::size_t>(unit->second)].source->kind == UnitKind::program;
+        if (program)
+          report_.error(callee.location, texts::kProgramCall, {callee.name});
+        else if (unit != units_by_name_.end())
           report_.error(
               callee.location, texts::kUnknownCall,
               {callee.name, "; VAR x : " + scopes_[static_cast<std::size_t>(unit->second)].source->name});
@@ -45,7 +50,12 @@ ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
   }
   std::string shown;
   if (!dotted_symbol(callee, shown)) shown = "(...)";
-  report_.error(callee.location, texts::kNoValue, {shown});
+  bool global = false;
+  const Variable* v = callee.kind == ExpressionKind::name ? find_variable(callee.name, global) : nullptr;
+  if (v != nullptr && v->type->kind != Kind::block)
+    report_.error(callee.location, texts::kNotCallable, {shown, v->type->name});
+  else
+    report_.error(callee.location, texts::kNoValue, {shown});
   return bad(e.location);
 }
 

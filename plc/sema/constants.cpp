@@ -250,7 +250,8 @@ void Analyzer::initial_list(const Expression& e, const Type& type, std::vector<s
         return;
       }
     }
-    report_.error(e.location, texts::kExpected, {"'[' (" + type.name + ")", "a single value"});
+    report_.error(e.location, texts::kExpected,
+                  {"'[' (" + type.name + ")", text::both("a single value", "одно значение")});
     return;
   }
   // Several dimensions take nested lists or one flat list (IEC 61131-3, 6.4.4.5).
@@ -282,7 +283,8 @@ void Analyzer::initial_list(const Expression& e, const Type& type, std::vector<s
 
 void Analyzer::initial_record(const Expression& e, const Type& type, std::vector<std::uint8_t>& out) {
   if (e.kind != syntax::ExpressionKind::record) {
-    report_.error(e.location, texts::kExpected, {"'(' (" + type.name + ")", "a single value"});
+    report_.error(e.location, texts::kExpected,
+                  {"'(' (" + type.name + ")", text::both("a single value", "одно значение")});
     return;
   }
   for (const syntax::Argument& a : e.arguments) {

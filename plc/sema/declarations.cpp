@@ -356,7 +356,8 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
       if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
     }
   }
-  if (v.constant && !s.initial && !alias) report_.error(s.location, texts::kExpected, {"':='", "no value"});
+  if (v.constant && !s.initial && !alias)
+    report_.error(s.location, texts::kExpected, {"':='", text::both("no value", "его отсутствие")});
   u.variables.push_back(std::move(v));
 }
 
@@ -390,6 +391,10 @@ void Analyzer::lay_out(int index) {
   }
   if (function) {
     u.result = u.source->result ? resolve(*u.source->result) : elementary(Kind::none);
+    if (u.result->kind == Kind::block) {
+      report_.error(u.source->result->location, texts::kInstanceCopy, {u.result->name});
+      u.result = elementary(Kind::error);
+    }
     if (u.result->kind != Kind::none) {
       u.result_variable = static_cast<int>(u.variables.size());
       Variable r;

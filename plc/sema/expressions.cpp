@@ -57,7 +57,9 @@ ExprPtr Analyzer::expression(const Expression& e, const Type* hint) {
     case ExpressionKind::binary:
       return binary(e, hint);
     default:
-      if (e.kind != ExpressionKind::bad) report_.error(e.location, texts::kExpected, {"a value", "a list"});
+      if (e.kind != ExpressionKind::bad)
+        report_.error(e.location, texts::kExpected,
+                      {text::both("a value", "значение"), text::both("a list", "список")});
       return bad(e.location);
   }
 }
@@ -409,6 +411,12 @@ ExprPtr Analyzer::convert(ExprPtr e, const Type* to) {
 ExprPtr Analyzer::assignable(ExprPtr e, const Type* to) {
   const Type& from = *e->type;
   if (from.kind == Kind::error || to->kind == Kind::error) return e;
+  if (from.kind == Kind::none) {
+    report_.error(
+        e->at, texts::kNoValue,
+        {e->kind == ExprKind::call ? program_.units[static_cast<std::size_t>(e->unit)].name : "()"});
+    return bad(e->at);
+  }
   if (to->kind == Kind::block) {
     report_.error(e->at, texts::kInstanceCopy, {to->name});
     return bad(e->at);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <limits>
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
@@ -68,7 +69,7 @@ void Analyzer::body(int unit) {
   collect_labels(u.source->body);
   ir::Block rest = block(u.source->body);
   for (ir::Stmt& s : rest) out.body.push_back(std::move(s));
-  if (u.source->kind == UnitKind::function && u.result_variable >= 0 &&
+  if (u.source->kind == UnitKind::function && u.result_variable >= 0 && u.result->kind != Kind::error &&
       !u.variables[static_cast<std::size_t>(u.result_variable)].written)
     report_.warning(u.source->location, texts::kNoResult, {u.source->name});
 }
@@ -214,7 +215,8 @@ std::int32_t Analyzer::label(const syntax::Statement& s) {
   const auto at = labels_.find(key_of(s.name));
   if (at != labels_.end()) return at->second;
   std::vector<std::string> names;
-  for (const auto& [name, number] : labels_) names.push_back(name);
+  for (const syntax::StatementPtr& other : here().source->body)
+    if (other->kind == StatementKind::label) names.push_back(other->name);
   report_.error(s.location, texts::kNoLabel, {s.name, syntax::suggestion(s.name, names)});
   return -1;
 }
@@ -248,23 +250,27 @@ void Analyzer::case_statement(const syntax::Statement& s, ir::Block& out) {
     int line;
   };
   std::vector<Seen> seen;
+  const bool huge = cell_of(*type) == Cell::u64;
+  const auto less = [&](std::int64_t a, std::int64_t b) {
+    return huge ? static_cast<std::uint64_t>(a) < static_cast<std::uint64_t>(b) : a < b;
+  };
   for (const syntax::Branch& b : s.branches) {
     ir::Branch branch;
     for (const syntax::Label& l : b.labels) {
       if (!good) continue;
       const auto low = constant(*l.low, type), high = l.high ? constant(*l.high, type) : low;
       if (!low || !high) continue;
-      if (high->i < low->i) {
+      if (less(high->i, low->i)) {
         report_.error(l.low->location, texts::kEmptyRange,
                       {constant_text(*type, *low), constant_text(*type, *high)});
         continue;
       }
       const ir::Range r{low->i, high->i};
       for (const Seen& x : seen)
-        if (r.low <= x.range.high && x.range.low <= r.high)
-          report_.error(
-              l.low->location, texts::kCaseTwice,
-              {constant_text(*type, {std::max(r.low, x.range.low), 0, {}}), std::to_string(x.line)});
+        if (!less(x.range.high, r.low) && !less(r.high, x.range.low))
+          report_.error(l.low->location, texts::kCaseTwice,
+                        {constant_text(*type, {less(r.low, x.range.low) ? x.range.low : r.low, 0, {}}),
+                         std::to_string(x.line)});
       seen.push_back({r, l.low->location.line});
       branch.ranges.push_back(r);
     }
@@ -285,14 +291,29 @@ void Analyzer::for_statement(const syntax::Statement& s, ir::Block& out) {
     report_.error(s.target->location, texts::kForType, {control->type->name});
     good = false;
   }
-  const Type* type =
-      good ? (control->type->bounded ? control->type->base : control->type) : elementary(Kind::dint);
+  const Type* type = !good ? nullptr : control->type->bounded ? control->type->base : control->type;
   const auto limit = [&](const Expression& e) {
     ExprPtr x = assignable(expression(e, type), type);
-    return x->type->kind == Kind::error
-               ? std::move(x)
-               : explicit_conversion(std::move(x), elementary(Kind::lint), false, e.location);
+    if (x->type->kind == Kind::error) return x;
+    x = explicit_conversion(std::move(x), elementary(Kind::lint), false, e.location);
+    if (cell_of(*type) != Cell::u64) return x;
+    // Moved down by 2^63: as a signed number in the right order. The machine moves it back.
+    Constant half;
+    half.i = std::numeric_limits<std::int64_t>::min();
+    ExprPtr moved = node(ExprKind::binary, elementary(Kind::lint), e.location);
+    moved->op = Op::add;
+    moved->args.push_back(std::move(x));
+    moved->args.push_back(make_constant(elementary(Kind::lint), half, e.location));
+    return fold(std::move(moved));
   };
+  if (!good) {  // reported; its limits have no type to be compared with
+    for (const Expression* e : {s.value.get(), s.to.get(), s.by.get()})
+      if (e != nullptr) expression(*e);
+    ++loops_;
+    block(s.body);
+    --loops_;
+    return;
+  }
   stmt.value = limit(*s.value);
   stmt.to = limit(*s.to);
   Constant one;
@@ -308,7 +329,6 @@ void Analyzer::for_statement(const syntax::Statement& s, ir::Block& out) {
   stmt.body = block(s.body);
   --loops_;
   if (v != nullptr) for_variables_.pop_back();
-  if (!good) return;
   stmt.place = std::move(*control);
   out.push_back(std::move(stmt));
 }

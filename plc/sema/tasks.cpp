@@ -247,7 +247,9 @@ bool Analyzer::visit(int unit, std::vector<int>& path) {
   return false;
 }
 
+// Behind an error a variable may only seem unused.
 void Analyzer::check_usage() {
+  if (report_.failed()) return;
   for (const UnitScope& u : scopes_) {
     if (u.library) continue;
     for (const Variable& v : u.variables)
@@ -257,17 +259,31 @@ void Analyzer::check_usage() {
   }
 }
 
+void Analyzer::reach(int unit, std::set<int>& out) const {
+  if (!out.insert(unit).second) return;
+  for (const int callee : scopes_[static_cast<std::size_t>(unit)].calls) reach(callee, out);
+}
+
+// A variable or place written by two units; or by one that two instances of programs come to.
 void Analyzer::check_writers() {
+  std::vector<std::set<int>> reached;
+  for (const ir::Global& p : program_.programs) reach(p.type->block, reached.emplace_back());
   const auto name_of = [&](int unit) { return scopes_[static_cast<std::size_t>(unit)].source->name; };
-  for (const Variable& v : globals_)
-    if (v.writers.size() > 1 && *v.writers.begin() >= 0)
-      report_.warning(v.at, texts::kTwoWriters,
-                      {v.name, name_of(*v.writers.begin()), name_of(*std::next(v.writers.begin()))});
+  const auto check = [&](const std::set<int>& writers, const Location& at, const std::string& name) {
+    if (writers.empty() || *writers.begin() < 0) return;
+    if (writers.size() > 1) {
+      report_.warning(at, texts::kTwoWriters,
+                      {name, name_of(*writers.begin()), name_of(*std::next(writers.begin()))});
+      return;
+    }
+    std::vector<std::string> by;
+    for (std::size_t i = 0; i < reached.size(); ++i)
+      if (reached[i].contains(*writers.begin())) by.push_back(program_.programs[i].name);
+    if (by.size() > 1) report_.warning(at, texts::kTwoWriters, {name, by[0], by[1]});
+  };
+  for (const Variable& v : globals_) check(v.writers, v.at, v.name);
   for (std::size_t i = 0; i < place_writers_.size(); ++i)
-    if (place_writers_[i].size() > 1)
-      report_.warning(program_.places[i].at, texts::kTwoWriters,
-                      {program_.places[i].name, name_of(*place_writers_[i].begin()),
-                       name_of(*std::next(place_writers_[i].begin()))});
+    check(place_writers_[i], program_.places[i].at, program_.places[i].name);
 }
 
 }  // namespace servogate::plc::sema

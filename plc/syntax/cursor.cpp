@@ -88,12 +88,15 @@ void Parser::expect_closing(std::string_view key, std::string_view opener, const
   throw SyntaxError{};
 }
 
-std::string Parser::identifier(const char* what) {
-  if (now().kind != TokenKind::word || is_keyword(now().key)) fail(what);
+std::string Parser::identifier(std::string what) {
+  if (now().kind != TokenKind::word || is_keyword(now().key)) fail(std::move(what));
   return take().text;
 }
 
-std::string Parser::found() const { return at_end() ? "the end of the file" : "'" + now().text + "'"; }
+std::string Parser::found() const {
+  if (!at_end()) return "'" + now().text + "'";
+  return piece_ ? text::both("the end", "конец") : text::both("the end of the file", "конец файла");
+}
 
 void Parser::fail(std::string wanted) {
   // A bad token has been reported by its reader; saying it again helps nobody.
@@ -114,14 +117,14 @@ Parser::Nesting::Nesting(Parser& parser) : p(parser) {
 }
 
 ExpressionPtr Parser::whole(ExpressionPtr e) {
-  if (!at_end()) fail("the end of the expression");
+  if (!at_end()) fail(text::both("the end of the expression", "конец выражения"));
   return e;
 }
 
 StatementPtr Parser::whole_statement() {
   StatementPtr s = simple_statement();
   accept(";");
-  if (!at_end()) fail("the end of the statement");
+  if (!at_end()) fail(text::both("the end of the statement", "конец оператора"));
   return s;
 }
 
@@ -131,7 +134,7 @@ Block Parser::whole_body(bool instructions, const std::vector<Variable>& variabl
     Block some = instructions ? instruction_list(variables) : block({});
     for (StatementPtr& s : some) out.push_back(std::move(s));
     if (at_end()) break;
-    report_.error(now().location, texts::kExpected, {"a statement", found()});
+    report_.error(now().location, texts::kExpected, {text::both("a statement", "оператор"), found()});
     take();
   }
   return out;
@@ -145,6 +148,7 @@ ExpressionPtr parse_expression(std::string_view text, const Location& begin, Rep
   Source none;
   try {
     Parser p(text, begin, none, report);
+    p.piece();
     return p.whole(initial ? p.initializer() : p.expression());
   } catch (const SyntaxError&) {
     auto bad = std::make_unique<Expression>();
@@ -156,7 +160,9 @@ ExpressionPtr parse_expression(std::string_view text, const Location& begin, Rep
 StatementPtr parse_statement(std::string_view text, const Location& begin, Report& report) {
   Source none;
   try {
-    return Parser(text, begin, none, report).whole_statement();
+    Parser p(text, begin, none, report);
+    p.piece();
+    return p.whole_statement();
   } catch (const SyntaxError&) {
     auto empty = std::make_unique<Statement>();
     empty->location = begin;
@@ -168,7 +174,9 @@ Block parse_body(std::string_view text, const Location& begin, bool instructions
                  const std::vector<Variable>& variables, Report& report) {
   Source none;
   try {
-    return Parser(text, begin, none, report).whole_body(instructions, variables);
+    Parser p(text, begin, none, report);
+    p.piece();
+    return p.whole_body(instructions, variables);
   } catch (const SyntaxError&) {
     return {};
   }

@@ -25,6 +25,8 @@ class Parser {
   ExpressionPtr whole(ExpressionPtr e);
   StatementPtr whole_statement();
   Block whole_body(bool instructions, const std::vector<Variable>& variables);
+  /// The text is a piece of something else: it ends, but no file does.
+  void piece() { piece_ = true; }
   bool at_end() const { return list_[at_].kind == TokenKind::end; }
 
  private:
@@ -37,7 +39,7 @@ class Parser {
   bool accept(std::string_view key);
   void expect(std::string_view key);
   void expect_closing(std::string_view key, std::string_view opener, const Location& begin);
-  std::string identifier(const char* what);
+  std::string identifier(std::string what);
   [[noreturn]] void fail(std::string wanted);
   std::string found() const;
   void recover(std::initializer_list<std::string_view> stops);
@@ -54,6 +56,7 @@ class Parser {
   void enumeration_type(TypeReference& t);
   void types();
   void configuration();
+  void configuration_part(Configuration& c, int& resources, Location& resource);
   void task(Configuration& c);
   void program_instance(Configuration& c);
   void paths(Configuration& c, bool access);
@@ -65,6 +68,7 @@ class Parser {
   Block block(std::initializer_list<std::string_view> ends);
   StatementPtr statement();
   StatementPtr simple_statement();
+  ExpressionPtr header(std::string_view closer);
   StatementPtr if_statement();
   StatementPtr case_statement();
   StatementPtr for_statement();
@@ -97,6 +101,7 @@ class Parser {
   std::vector<Token> list_;
   std::size_t at_ = 0;
   int depth_ = 0;
+  bool piece_ = false;
   std::uint64_t holds_ = 0;
   Source& source_;
   Report& report_;

@@ -163,7 +163,7 @@ class InstructionList {
       if (n) take();
       return instruction(*known(n ? "&N" : "&"), t);
     }
-    if (t.kind != TokenKind::word) p_.fail("an instruction");
+    if (t.kind != TokenKind::word) p_.fail(text::both("an instruction", "инструкция"));
     take();
     if (const Known* k = known(t.key)) return instruction(*k, t);
     function_or_input(t);
@@ -215,8 +215,9 @@ class InstructionList {
   // A constant or a variable; not what stands in the next line.
   ExpressionPtr operand() {
     if (end_of_line()) {
-      p_.report_.error({p_.now().location.file, last_line_, column_behind()}, texts::kExpected,
-                       {"an operand", "the end of the line"});
+      p_.report_.error(
+          {p_.now().location.file, last_line_, column_behind()}, texts::kExpected,
+          {text::both("an operand", "операнд"), text::both("the end of the line", "конец строки")});
       throw SyntaxError{};
     }
     ExpressionPtr e = p_.at("-") || p_.at("+") ? p_.unary() : p_.primary();
@@ -306,7 +307,7 @@ class InstructionList {
   void close() {
     const Token& t = take();
     if (open_.empty()) {
-      p_.report_.error(t.location, texts::kExpected, {"an instruction", "')'"});
+      p_.report_.error(t.location, texts::kExpected, {text::both("an instruction", "инструкция"), "')'"});
       throw SyntaxError{};
     }
     ExpressionPtr right = need(t);
@@ -354,6 +355,9 @@ class InstructionList {
       --p_.at_;
       result_ = p_.primary();
       last_line_ = p_.list_[p_.at_ - 1].location.line;
+    } else if (p_.at(":=") || p_.at(".") || p_.at("[")) {
+      p_.report_.error(p_.now().location, texts::kListOnly, {p_.now().text});
+      throw SyntaxError{};
     } else if (end_of_line() && result_ == nullptr) {
       unknown(t);
     } else if (input_name(t.key)) {
@@ -393,7 +397,7 @@ class InstructionList {
     StatementPtr s = statement_of(StatementKind::label, p_.now().location);
     s->name = take().text;
     take();
-    outside_parentheses(s->location, "a label");
+    outside_parentheses(s->location, text::both("a label", "метка"));
     const auto carried = carried_.find(key_of(s->name));
     if (carried == carried_.end()) {
       drop();
@@ -407,7 +411,7 @@ class InstructionList {
   void jump(const Known& k, const Token& t) {
     outside_parentheses(t.location, t.text);
     if (p_.now().kind != TokenKind::word || end_of_line()) {
-      p_.fail("a label");
+      p_.fail(text::both("a label", "метка"));
     }
     StatementPtr s = statement_of(StatementKind::jump, p_.now().location);
     s->name = take().text;

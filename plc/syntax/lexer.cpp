@@ -120,6 +120,13 @@ class Lexer {
     while (end < text_.size() && (text_[end] == ' ' || text_[end] == '\t' || text_[end] == '\r')) ++end;
     return (begin == 0 || text_[begin - 1] == '\n') && end < text_.size() && text_[end] == '\n';
   }
+  std::string found() const {
+    std::size_t end = at_;
+    while (end < text_.size() && (word_part(text_[end]) || text_[end] == ' ')) ++end;
+    const std::string word(text_.substr(at_, end - at_));
+    return at_ >= text_.size() ? text::both("the end of the file", "конец файла")
+                               : "'" + word.substr(word.find_first_not_of(' ')) + "'";
+  }
   Token ladder(Token t) {
     while (at_ < text_.size() && peek() != '\n') step();
     const std::size_t begin = at_;
@@ -128,6 +135,9 @@ class Lexer {
       std::size_t first = at_;
       while (first < text_.size() && (text_[first] == ' ' || text_[first] == '\t')) ++first;
       constexpr std::string_view kEnd = "END_LADDER";
+      const std::string_view rest = text_.substr(first);
+      if (same_name(rest.substr(0, 11), "END_PROGRAM") || same_name(rest.substr(0, 12), "END_FUNCTION"))
+        break;
       if (same_name(text_.substr(first, kEnd.size()), kEnd)) {
         t.kind = TokenKind::ladder;
         t.literal.text = text_.substr(begin, at_ - begin);
@@ -137,8 +147,8 @@ class Lexer {
       while (at_ < text_.size() && peek() != '\n') step();
     }
     report_.error(t.location, texts::kUnclosed,
-                  {"'END_LADDER'", "LADDER", std::to_string(t.location.line), "the end of the file"});
-    t.kind = TokenKind::bad;
+                  {"'END_LADDER'", "LADDER", std::to_string(t.location.line), found()});
+    t.kind = TokenKind::ladder;
     return t;
   }
 
@@ -271,16 +281,29 @@ class Lexer {
     return t;
   }
 
+  // Operators of other languages: what was meant is read.
+  static constexpr std::pair<std::string_view, std::string_view> kForeignOperators[] = {{"!=", "<>"},
+                                                                                        {"||", "OR"}};
+  Token foreign_operator(Token t, std::string_view foreign, std::string_view own) {
+    report_.error(t.location, texts::kForeign, {std::string(foreign), std::string(own)});
+    t.key = own;
+    step(foreign.size());
+    return t;
+  }
   Token symbol() {
     Token t = start(TokenKind::symbol);
     constexpr std::string_view known[] = {":=", "=>", "<=", ">=", "<>", "**", "..", "+", "-", "*", "/", "=",
                                           "<",  ">",  "(",  ")",  "[",  "]",  ",",  ";", ":", ".", "&"};
+    if (text_.substr(at_, 2) == "==") return foreign_operator(std::move(t), "==", "=");
+    if (text_.substr(at_, 2) == "&&") return foreign_operator(std::move(t), "&&", "AND");
     for (const std::string_view s : known)
       if (text_.substr(at_, s.size()) == s) {
         t.key = s;
         step(s.size());
         return t;
       }
+    for (const auto& [foreign, own] : kForeignOperators)
+      if (text_.substr(at_, 2) == foreign) return foreign_operator(std::move(t), foreign, own);
     std::size_t n = 1;
     while (at_ + n < text_.size() && (static_cast<unsigned char>(text_[at_ + n]) & 0xC0) == 0x80) ++n;
     report_.error(t.location, texts::kBadCharacter, {std::string(text_.substr(at_, n))});

@@ -26,7 +26,8 @@ void Parser::declaration() {
   if (at("VAR_GLOBAL")) return variables(source_.globals, Section::global, false);
   if (at("CONFIGURATION")) return configuration();
   if (accept(";")) return;
-  fail("PROGRAM, FUNCTION, FUNCTION_BLOCK, TYPE, VAR_GLOBAL or CONFIGURATION");
+  fail(text::both("PROGRAM, FUNCTION, FUNCTION_BLOCK, TYPE, VAR_GLOBAL or CONFIGURATION",
+                  "PROGRAM, FUNCTION, FUNCTION_BLOCK, TYPE, VAR_GLOBAL или CONFIGURATION"));
 }
 
 void Parser::unit(UnitKind kind) {
@@ -36,7 +37,7 @@ void Parser::unit(UnitKind kind) {
   Unit u;
   u.kind = kind;
   u.location = now().location;
-  u.name = identifier("a name");
+  u.name = identifier(text::both("a name", "имя"));
   if (kind == UnitKind::function && accept(":")) u.result = std::make_unique<TypeReference>(type_reference());
   struct {
     std::string_view key;
@@ -84,6 +85,10 @@ void Parser::variables(std::vector<Variable>& out, Section section, bool in_unit
       break;
   while (!at_end() && !at("END_VAR")) {
     if (now().kind == TokenKind::word && is_keyword(now().key) && in_unit) break;
+    // A statement: END_VAR is missing.
+    if (in_unit && now().kind == TokenKind::word &&
+        (ahead().is(":=") || ahead().is("(") || ahead().is("[") || ahead().is(".")))
+      break;
     const std::size_t before = at_;
     try {
       variable_list(out, prototype);
@@ -103,7 +108,7 @@ void Parser::variable_list(std::vector<Variable>& out, const Variable& prototype
   do {
     Variable v = prototype;
     v.location = now().location;
-    v.name = identifier("the name of a variable");
+    v.name = identifier(text::both("the name of a variable", "имя переменной"));
     if (at("AT")) address(v);
     list.push_back(std::move(v));
   } while (accept(","));
@@ -134,7 +139,8 @@ void Parser::address(Variable& v) {
     v.address = take().text;
     return;
   }
-  if (now().kind != TokenKind::word) fail("an address such as %QX0.0 or SA128");
+  if (now().kind != TokenKind::word)
+    fail(text::both("an address such as %QX0.0 or SA128", "адрес вида %QX0.0 или SA128"));
   std::size_t end = now().offset;
   while (end < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[end])) || text_[end] == '.'))
     ++end;
@@ -158,8 +164,8 @@ TypeReference Parser::type_reference() {
     enumeration_type(t);
     return t;
   }
-  t.name = identifier("a type");
-  if (t.name.empty()) fail("a type");
+  t.name = identifier(text::both("a type", "тип"));
+  if (t.name.empty()) fail(text::both("a type", "тип"));
   const std::string key = key_of(t.name);
   if ((key == "STRING" || key == "WSTRING") && at_any({"[", "("})) {
     const bool square = take().key == "[";
@@ -209,7 +215,7 @@ void Parser::enumeration_type(TypeReference& t) {
   expect("(");
   do {
     t.value_locations.push_back(now().location);
-    std::string name = identifier("a name for the value");
+    std::string name = identifier(text::both("a name for the value", "имя значения"));
     t.values.emplace_back(std::move(name), accept(":=") ? expression() : nullptr);
   } while (accept(","));
   expect(")");
@@ -221,7 +227,7 @@ void Parser::types() {
     try {
       TypeDeclaration d;
       d.location = now().location;
-      d.name = identifier("the name of a type");
+      d.name = identifier(text::both("the name of a type", "имя типа"));
       expect(":");
       d.type = type_reference();
       if (at("(") && !d.type.name.empty() && d.type.values.empty()) fail("';'");
@@ -272,7 +278,7 @@ ExpressionPtr Parser::record_initializer() {
   do {
     Argument a;
     a.location = now().location;
-    a.name = identifier("the name of a member");
+    a.name = identifier(text::both("the name of a member", "имя элемента"));
     expect(":=");
     a.value = initializer();
     e->arguments.push_back(std::move(a));
@@ -281,32 +287,44 @@ ExpressionPtr Parser::record_initializer() {
   return e;
 }
 
+void Parser::configuration_part(Configuration& c, int& resources, Location& resource) {
+  if (at("VAR_GLOBAL")) {
+    variables(source_.globals, Section::global, false);
+  } else if (at("RESOURCE")) {
+    resource = take().location;
+    c.resources.push_back(identifier(text::both("a name", "имя")));
+    expect("ON");
+    identifier(text::both("a processor", "процессор"));
+    ++resources;
+  } else if (accept("END_RESOURCE")) {
+    --resources;
+  } else if (at("TASK")) {
+    task(c);
+  } else if (at("PROGRAM")) {
+    program_instance(c);
+  } else if (at_any({"VAR_ACCESS", "VAR_CONFIG"})) {
+    paths(c, at("VAR_ACCESS"));
+  } else if (!accept(";")) {
+    fail(text::both("VAR_GLOBAL, RESOURCE, TASK, PROGRAM or END_CONFIGURATION",
+                    "VAR_GLOBAL, RESOURCE, TASK, PROGRAM или END_CONFIGURATION"));
+  }
+}
+
 void Parser::configuration() {
   const Location begin = take().location;
   Configuration c;
   c.location = now().location;
-  c.name = identifier("a name");
+  c.name = identifier(text::both("a name", "имя"));
   int resources = 0;
   Location resource = begin;
   while (!at_end() && !at("END_CONFIGURATION")) {
-    if (at("VAR_GLOBAL")) {
-      variables(source_.globals, Section::global, false);
-    } else if (at("RESOURCE")) {
-      resource = take().location;
-      c.resources.push_back(identifier("a name"));
-      expect("ON");
-      identifier("a processor");
-      ++resources;
-    } else if (accept("END_RESOURCE")) {
-      --resources;
-    } else if (at("TASK")) {
-      task(c);
-    } else if (at("PROGRAM")) {
-      program_instance(c);
-    } else if (at_any({"VAR_ACCESS", "VAR_CONFIG"})) {
-      paths(c, at("VAR_ACCESS"));
-    } else if (!accept(";")) {
-      fail("VAR_GLOBAL, RESOURCE, TASK, PROGRAM or END_CONFIGURATION");
+    const std::size_t before = at_;
+    try {
+      configuration_part(c, resources, resource);
+    } catch (const SyntaxError&) {
+      recover({";", "END_RESOURCE", "END_CONFIGURATION"});
+      accept(";");
+      if (at_ == before) take();
     }
   }
   if (resources > 0) expect_closing("END_RESOURCE", "RESOURCE", resource);
@@ -324,11 +342,11 @@ void Parser::paths(Configuration& c, bool access) {
       PathDeclaration p;
       p.location = now().location;
       if (access) {
-        p.name = identifier("the name of the access path");
+        p.name = identifier(text::both("the name of the access path", "имя пути доступа"));
         expect(":");
       }
       p.path_location = now().location;
-      do p.path.push_back(identifier("the path of a variable"));
+      do p.path.push_back(identifier(text::both("the path of a variable", "путь к переменной")));
       while (accept("."));
       if (!access && at("AT")) {
         Variable v;
@@ -355,11 +373,12 @@ void Parser::task(Configuration& c) {
   take();
   Task t;
   t.location = now().location;
-  t.name = identifier("the name of a task");
+  t.name = identifier(text::both("the name of a task", "имя задачи"));
   expect("(");
   do {
     const std::string key = now().key;
-    if (key != "INTERVAL" && key != "PRIORITY" && key != "SINGLE") fail("INTERVAL, PRIORITY or SINGLE");
+    if (key != "INTERVAL" && key != "PRIORITY" && key != "SINGLE")
+      fail(text::both("INTERVAL, PRIORITY or SINGLE", "INTERVAL, PRIORITY или SINGLE"));
     take();
     expect(":=");
     (key == "INTERVAL" ? t.interval : key == "PRIORITY" ? t.priority : t.single) = expression();
@@ -374,14 +393,14 @@ void Parser::program_instance(Configuration& c) {
   if (at_any({"RETAIN", "NON_RETAIN"})) take();
   ProgramInstance p;
   p.location = now().location;
-  p.name = identifier("the name of a program");
+  p.name = identifier(text::both("the name of a program", "имя программы"));
   if (accept("WITH")) {
     p.task_location = now().location;
-    p.task = identifier("the name of a task");
+    p.task = identifier(text::both("the name of a task", "имя задачи"));
   }
   expect(":");
   p.type_location = now().location;
-  p.type = identifier("a PROGRAM");
+  p.type = identifier(text::both("a PROGRAM", "PROGRAM"));
   if (at("(")) {
     Expression call;
     arguments(call);

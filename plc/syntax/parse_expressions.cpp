@@ -101,7 +101,8 @@ ExpressionPtr Parser::primary() {
   }
   // AND, OR, XOR, MOD and NOT are functions too.
   const bool operator_function = at_any({"AND", "OR", "XOR", "MOD"}) && ahead().is("(");
-  if (t.kind != TokenKind::word || (is_keyword(t.key) && !operator_function)) fail("an expression");
+  if (t.kind != TokenKind::word || (is_keyword(t.key) && !operator_function))
+    fail(text::both("an expression", "выражение"));
   ExpressionPtr e = make(ExpressionKind::name, t.location);
   e->name = take().text;
   return postfix(std::move(e));
@@ -109,7 +110,7 @@ ExpressionPtr Parser::primary() {
 
 ExpressionPtr Parser::postfix(ExpressionPtr e) {
   for (int chain = 0;; ++chain) {
-    if (chain > kMaxNesting) fail("fewer parts");
+    if (chain > kMaxNesting) fail(text::both("fewer parts", "меньше частей"));
     const Location where = now().location;
     if (at("(")) {
       ExpressionPtr call = make(ExpressionKind::call, e->location);
@@ -127,7 +128,7 @@ ExpressionPtr Parser::postfix(ExpressionPtr e) {
       take();
       const bool bit = now().kind == TokenKind::literal && now().literal.kind == Kind::untyped_int;
       const bool direct_bit = now().kind == TokenKind::direct && now().text.size() > 2;
-      if (!bit && !direct_bit && now().kind != TokenKind::word) fail("a member");
+      if (!bit && !direct_bit && now().kind != TokenKind::word) fail(text::both("a member", "элемент"));
       ExpressionPtr member =
           make(bit || direct_bit ? ExpressionKind::bit : ExpressionKind::member, now().location);
       member->name = now().text;
@@ -155,7 +156,7 @@ ExpressionPtr Parser::typed() {
   } else if (now().kind == TokenKind::word && !negative) {
     e->literal.text = take().text;
   } else {
-    fail("a value");
+    fail(text::both("a value", "значение"));
   }
   return e;
 }
@@ -182,7 +183,7 @@ void Parser::arguments(Expression& call) {
     else
       call.arguments.push_back(std::move(a));
     if (!accept(",")) break;
-    if (at(")")) fail("an argument");
+    if (at(")")) fail(text::both("an argument", "аргумент"));
   }
   expect_closing(")", "'('", begin);
 }

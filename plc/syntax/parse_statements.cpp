@@ -81,8 +81,9 @@ StatementPtr Parser::statement() {
 
 StatementPtr Parser::simple_statement() {
   const Location begin = now().location;
-  if (now().kind != TokenKind::word && now().kind != TokenKind::direct) fail("a statement");
-  if (now().kind == TokenKind::word && is_keyword(now().key)) fail("a statement");
+  if (now().kind != TokenKind::word && now().kind != TokenKind::direct)
+    fail(text::both("a statement", "оператор"));
+  if (now().kind == TokenKind::word && is_keyword(now().key)) fail(text::both("a statement", "оператор"));
   ExpressionPtr target = primary();
   StatementPtr s = make_statement(StatementKind::call, begin);
   if (at("=")) {
@@ -97,11 +98,32 @@ StatementPtr Parser::simple_statement() {
     return s;
   }
   if (target->kind != ExpressionKind::call) {
-    if (!at(";")) fail("':=' or '('");
+    if (!at(";")) fail(text::both("':=' or '('", "':=' или '('"));
     report_.error(begin, texts::kUseless);
   }
   s->value = std::move(target);
   return s;
+}
+
+// An expression and the word behind it. After a mistake reading goes on behind that word, so that the
+// statement keeps its form.
+ExpressionPtr Parser::header(std::string_view closer) {
+  try {
+    ExpressionPtr e = expression();
+    if (at(":=")) {
+      report_.error(now().location, texts::kForeign, {":=", "="});
+      throw SyntaxError{};
+    }
+    expect(closer);
+    return e;
+  } catch (const SyntaxError&) {
+    if (depth_ >= kMaxNesting - 1) throw;
+    ExpressionPtr bad = make(ExpressionKind::bad, now().location);
+    const int line = list_[at_ - 1].location.line;
+    while (!at_end() && !at(closer) && !at(";") && now().location.line == line) take();
+    accept(closer);
+    return bad;
+  }
 }
 
 StatementPtr Parser::if_statement() {
@@ -109,8 +131,7 @@ StatementPtr Parser::if_statement() {
   do {
     take();
     Branch& b = s->branches.emplace_back();
-    b.condition = expression();
-    expect("THEN");
+    b.condition = header("THEN");
     b.body = block({"ELSIF", "ELSE", "END_IF"});
   } while (at("ELSIF"));
   if (accept("ELSE")) {
@@ -148,11 +169,17 @@ std::vector<Label> Parser::labels() {
 
 StatementPtr Parser::case_statement() {
   StatementPtr s = make_statement(StatementKind::case_, take().location);
-  s->target = expression();
-  expect("OF");
+  s->target = header("OF");
   while (!at_end() && !at_any({"ELSE", "END_CASE"})) {
     Branch b;
-    b.labels = labels();
+    try {
+      b.labels = labels();
+    } catch (const SyntaxError&) {
+      if (depth_ >= kMaxNesting - 1) throw;
+      recover({";", "ELSE", "END_CASE", "END_PROGRAM", "END_FUNCTION", "END_FUNCTION_BLOCK", "END_IF"});
+      if (!accept(";")) break;
+      continue;
+    }
     while (!at_label() && !at_end()) {
       const std::size_t before = at_;
       if (now().kind == TokenKind::word && now().key.starts_with("END_")) break;
@@ -181,13 +208,17 @@ StatementPtr Parser::case_statement() {
 StatementPtr Parser::for_statement() {
   StatementPtr s = make_statement(StatementKind::for_, take().location);
   s->target = make(ExpressionKind::name, now().location);
-  s->target->name = identifier("the variable that counts");
+  s->target->name = identifier(text::both("the variable that counts", "переменная-счётчик"));
   expect(":=");
   s->value = expression();
   expect("TO");
   s->to = expression();
-  if (accept("BY")) s->by = expression();
-  expect("DO");
+  if (at("BY")) {
+    take();
+    s->by = header("DO");
+  } else if (!accept("DO")) {
+    report_.error(now().location, texts::kExpected, {"'DO'", found()});
+  }
   s->body = block({"END_FOR"});
   expect_closing("END_FOR", "FOR", s->location);
   accept(";");
@@ -196,8 +227,7 @@ StatementPtr Parser::for_statement() {
 
 StatementPtr Parser::while_statement() {
   StatementPtr s = make_statement(StatementKind::while_, take().location);
-  s->value = expression();
-  expect("DO");
+  s->value = header("DO");
   s->body = block({"END_WHILE"});
   expect_closing("END_WHILE", "WHILE", s->location);
   accept(";");

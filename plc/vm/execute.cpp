@@ -139,7 +139,9 @@ inline void show(const Counter& c, std::uint8_t* variable, Cell cell) noexcept {
     const std::int64_t high = (std::int64_t{1} << bits) - 1, low = is_signed ? -high - 1 : 0;
     if (c.value < low || c.value > high) return;
   }
-  std::memcpy(variable, &c.value, bytes);
+  // ULINT counts moved down by 2^63, so that the order is that of a signed number.
+  const std::int64_t shown = cell == Cell::u64 ? c.value ^ std::numeric_limits<std::int64_t>::min() : c.value;
+  std::memcpy(variable, &shown, bytes);
 }
 
 struct Frame {

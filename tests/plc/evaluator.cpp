@@ -388,7 +388,10 @@ Evaluator::Flow Evaluator::loop(const ir::Stmt& s, std::uint32_t self) {
   Value n = evaluate(*s.value, self);
   const std::int64_t to = evaluate(*s.to, self).i, by = evaluate(*s.by, self).i;
   const auto show = [&] {
-    if (wrap(c, n.i) == n.i) store(address(s.place, self), *s.place.type, n);
+    Value shown = n;
+    if (c == Cell::u64)
+      shown.i = static_cast<std::int64_t>(static_cast<std::uint64_t>(n.i) + (std::uint64_t{1} << 63));
+    if (bits(c) == 64 || wrap(c, n.i) == n.i) store(address(s.place, self), *s.place.type, shown);
   };
   show();
   while (by >= 0 ? n.i <= to : n.i >= to) {
@@ -396,7 +399,7 @@ Evaluator::Flow Evaluator::loop(const ir::Stmt& s, std::uint32_t self) {
     const Flow f = block(s.body, self);
     if (f == Flow::exit) break;
     if (f == Flow::return_ || f == Flow::jump) return f;
-    n.i += by;
+    if (__builtin_add_overflow(n.i, by, &n.i)) break;
     show();
   }
   return Flow::next;
