@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "drivers/mock/drive/bus_gate.hpp"
 #include "drivers/mock/drive/simulated_drive.hpp"
@@ -47,6 +48,7 @@ struct SimulatedDrive::Inside {
   canopen::ObjectDictionary dictionary;
   canopen::ServoProfile profile;
   canopen::Slave slave;
+  std::optional<canopen::ProgramStore> programs;
   Plant plant;
   BusGate gate;
   canopen::ServoCommand command;

@@ -37,17 +37,26 @@ canopen::ServoProfileSettings settings_of(const SimulatedDriveConfig& c) {
   return s;
 }
 
+std::vector<canopen::ObjectSpec> program_rows(const SimulatedDriveConfig& c) {
+  if (c.program_memory == 0) return {};
+  return canopen::program_objects(c.program_identification);
+}
+
 }  // namespace
 
 SimulatedDrive::Inside::Inside(const SimulatedDriveConfig& c)
     : config(c),
       dictionary({canopen::communication_objects(c.node_id == canopen::kUnconfiguredNode ? 0 : c.node_id,
                                                  identity_of(c)),
-                  canopen::drive_objects(ratings_of(c))}),
+                  canopen::drive_objects(ratings_of(c)), program_rows(c)}),
       profile(dictionary, settings_of(c)),
       slave(c.node_id, dictionary, profile),
       plant(c.plant, c.servo_period_ns) {
   profile.connect(slave.emcy());
+  if (c.program_memory > 0) {
+    programs.emplace(dictionary, c.program_memory, canopen::ProgramStore::Times{});
+    slave.use(*programs);
+  }
   dictionary.set_text(dictionary.find(canopen::object::kDeviceName, 0), c.name);
   inputs.main_voltage = c.main_voltage;
   for (const DriveSwitch& s : config.switches) inputs.active[static_cast<std::size_t>(s.input)] |= inside(s);
@@ -105,6 +114,9 @@ void SimulatedDrive::inject(const DriveFault& fault) noexcept { inside_->inject(
 void SimulatedDrive::clear(DriveFaultKind kind) noexcept { inside_->clear(kind); }
 void SimulatedDrive::clear_faults() noexcept {
   for (std::size_t i = 0; i < kFaultKinds; ++i) inside_->clear(static_cast<DriveFaultKind>(i));
+}
+void SimulatedDrive::spoil_next_program(std::uint8_t flash_error) noexcept {
+  if (inside_->programs) inside_->programs->spoil_next_write(flash_error);
 }
 bool SimulatedDrive::faulted_with(DriveFaultKind kind) const noexcept { return inside_->spoiled(kind); }
 

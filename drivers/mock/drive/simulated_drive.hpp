@@ -47,6 +47,8 @@ struct SimulatedDriveConfig {
   double boot_time_s = 0.01;                     ///< from power-on to the boot-up message
   image::Nanoseconds servo_period_ns = 250'000;  ///< of loops and plant
   std::vector<DriveSwitch> switches;
+  std::size_t program_memory = 0;  ///< bytes for a program download (1F50h); 0: the device has none
+  std::uint32_t program_identification = 0x0001'0000;  ///< 1F56h of the program that it comes with
 };
 
 /// A complete CiA 301/402 servo drive with its motor, load and encoder, in simulated time. Attach it to a
@@ -99,6 +101,8 @@ class SimulatedDrive final : public CanNode {
   void inject(const DriveFault& fault) noexcept;
   void clear(DriveFaultKind kind) noexcept;
   void clear_faults() noexcept;
+  /// The next program that is written ends with this error of 1F57h. Nothing without program memory.
+  void spoil_next_program(std::uint8_t flash_error) noexcept;
   bool faulted_with(DriveFaultKind kind) const noexcept;
 
   /// A value of the object dictionary, 0 when there is none; for tests and displays.

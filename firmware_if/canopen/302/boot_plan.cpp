@@ -2,7 +2,9 @@
 #include "firmware_if/canopen/302/boot_plan.hpp"
 
 #include <stdexcept>
+#include <string_view>
 
+#include "firmware_if/canopen/302/concise_dcf.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 
 namespace servogate::canopen {
@@ -15,14 +17,14 @@ class Plan {
  public:
   explicit Plan(std::vector<BootAction>& actions) : actions_(actions) {}
   void step(BootStep step) { step_ = step; }
-  void nmt(Kind kind) { actions_.push_back({kind, step_}); }
+  void nmt(Kind kind) { add({kind, step_}); }
   void write(std::uint16_t index, std::uint8_t subindex, std::uint8_t bytes, std::uint32_t value,
              bool optional = false) {
-    actions_.push_back({Kind::write, step_, index, subindex, bytes, value, 0, optional, Keep::nothing});
+    add({Kind::write, step_, index, subindex, bytes, value, 0, optional});
   }
   void check(std::uint16_t index, std::uint8_t subindex, std::uint8_t bytes, std::uint32_t value,
              std::uint32_t mask = 0xFFFF'FFFF, bool optional = false) {
-    actions_.push_back({Kind::read, step_, index, subindex, bytes, value, mask, optional, Keep::nothing});
+    add({Kind::read, step_, index, subindex, bytes, value, mask, optional});
   }
   void write_and_check(std::uint16_t index, std::uint8_t subindex, std::uint8_t bytes, std::uint32_t value,
                        bool optional = false) {
@@ -31,11 +33,29 @@ class Plan {
   }
   void learn(std::uint16_t index, std::uint8_t subindex, Keep keep, std::optional<std::uint32_t> wanted,
              std::uint32_t mask, bool optional) {
-    actions_.push_back({Kind::read, step_, index, subindex, 4, wanted.value_or(0), wanted ? mask : 0,
-                        optional && !wanted, keep});
+    add({Kind::read, step_, index, subindex, 4, wanted.value_or(0), wanted ? mask : 0, optional && !wanted,
+         keep});
+  }
+  void write_data(std::uint16_t index, std::uint8_t subindex, std::vector<std::uint8_t> data) {
+    add({Kind::write, step_, index, subindex}).data = std::move(data);
+  }
+  void read_text(std::uint16_t index, std::string_view text) {
+    add({Kind::read_text, step_, index, 0}).data.assign(text.begin(), text.end());
+  }
+  void await(Kind kind, std::uint16_t index = 0, std::uint8_t subindex = 0) {
+    add({kind, step_, index, subindex, static_cast<std::uint8_t>(index ? 4 : 0)});
+  }
+  /// A comparison that leaves out what stands between it and land().
+  std::size_t jump(Kind kind, std::uint16_t index, std::uint8_t subindex, std::uint32_t value) {
+    add({kind, step_, index, subindex, 4, value, 0xFFFF'FFFF});
+    return actions_.size();
+  }
+  void land(std::size_t from) {
+    actions_[from - 1].jump = static_cast<std::uint16_t>(actions_.size() - from);
   }
 
  private:
+  BootAction& add(BootAction action) { return actions_.emplace_back(std::move(action)); }
   std::vector<BootAction>& actions_;
   BootStep step_ = BootStep::reset;
 };
@@ -49,6 +69,49 @@ void add_identity(Plan& plan, const DriveProfile& profile) {
   plan.learn(object::kIdentity, 2, Keep::product_code, profile.product_code, kAll, true);
   plan.learn(object::kIdentity, 3, Keep::revision, profile.revision, kAll, true);
   plan.learn(object::kIdentity, 4, Keep::serial, std::nullopt, kAll, true);
+}
+
+// Stop, clear, write, start, each with the flash at rest after it, and then see what runs. Source: CiA 302-3,
+// "Program download".
+void add_program(Plan& plan, const NodeProgram& program) {
+  plan.step(BootStep::program);
+  const std::uint8_t n = program.number;
+  if (program.image.empty()) return plan.check(object::kProgramIdentification, n, 4, program.identification);
+  constexpr std::uint8_t kStop = 0, kStart = 1, kClear = 3;
+  const std::size_t right =
+      plan.jump(Kind::jump_if_equal, object::kProgramIdentification, n, program.identification);
+  plan.write(object::kProgramControl, n, 1, kStop);
+  plan.write(object::kProgramControl, n, 1, kClear);
+  plan.await(Kind::await_flash, object::kFlashStatus, n);
+  plan.write_data(object::kProgramData, n, program.image);
+  plan.await(Kind::await_flash, object::kFlashStatus, n);
+  plan.write(object::kProgramControl, n, 1, kStart);
+  plan.await(Kind::await_boot_up);
+  plan.check(object::kProgramIdentification, n, 4, program.identification);
+  plan.land(right);
+}
+
+void add_configuration(Plan& plan, const NodeConfig& node) {
+  const NodeSetup& setup = node.setup;
+  if (setup.concise_dcf.empty()) return;
+  const auto entries = parse_concise_dcf(setup.concise_dcf);
+  if (!entries) throw std::invalid_argument("the concise DCF of " + node.name + " is cut off");
+  plan.step(BootStep::configuration);
+  std::size_t days = 0, time = 0;
+  if (const auto& date = setup.configuration_date) {
+    days = plan.jump(Kind::jump_unless_equal, object::kVerifyConfiguration, 1, date->days);
+    time = plan.jump(Kind::jump_if_equal, object::kVerifyConfiguration, 2, date->milliseconds);
+    plan.land(days);
+  }
+  for (const ConfigurationEntry& e : *entries) plan.write_data(e.index, e.subindex, e.data);
+  if (const auto& date = setup.configuration_date) {
+    plan.write(object::kVerifyConfiguration, 1, 4, date->days);
+    plan.write(object::kVerifyConfiguration, 2, 4, date->milliseconds);
+    plan.land(time);
+  }
+}
+
+void add_modes(Plan& plan, const DriveProfile& profile) {
   if (profile.check_modes) {
     plan.step(BootStep::supported_modes);
     plan.check(object::kSupportedDriveModes, 0, 4, profile.modes, profile.modes);
@@ -181,6 +244,13 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
   Plan plan(actions);
   plan.nmt(Kind::reset);
   add_identity(plan, node.profile);
+  if (node.setup.program) add_program(plan, *node.setup.program);
+  if (!node.setup.software_version.empty()) {
+    plan.step(BootStep::software_version);
+    plan.read_text(object::kSoftwareVersion, node.setup.software_version);
+  }
+  add_modes(plan, node.profile);
+  add_configuration(plan, node);
   plan.step(BootStep::settings);
   // The brake must be engaged before anything, a mask in the settings for one, can hand it to the output.
   if (node.profile.brake_bit >= 0)

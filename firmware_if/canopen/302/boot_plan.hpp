@@ -12,10 +12,15 @@ namespace servogate::canopen {
 /// One thing to do while a node boots.
 struct BootAction {
   enum class Kind : std::uint8_t {
-    reset,  ///< NMT reset communication, then wait for the boot-up message
-    write,  ///< download `value`
-    read,   ///< upload; keep it in `keep`, compare it under `mask` (0: any value is right)
-    start,  ///< NMT start, then wait for a heartbeat with state Operational
+    reset,          ///< NMT reset communication, then wait for the boot-up message
+    write,          ///< download `value`
+    read,           ///< upload; keep it in `keep`, compare it under `mask` (0: any value is right)
+    read_text,      ///< upload a string and compare it with `data`
+    jump_if_equal,  ///< upload; equal to `value`: leave out `jump` actions. A missing object is another value
+    jump_unless_equal,  ///< the same where it is not equal
+    await_flash,    ///< upload the flash status until it is no longer at work, and see that it has no error
+    await_boot_up,  ///< wait for the boot-up message
+    start,          ///< NMT start, then wait for a heartbeat with state Operational
   };
   /// Where a read value goes.
   enum class Keep : std::uint8_t { nothing, device_type, vendor_id, product_code, revision, serial };
@@ -29,6 +34,8 @@ struct BootAction {
   std::uint32_t mask = 0;
   bool optional = false;  ///< "object (or subindex) does not exist" is no failure
   Keep keep = Keep::nothing;
+  std::vector<std::uint8_t> data = {};  ///< write: instead of `value`, any length
+  std::uint16_t jump = 0;
 };
 
 /// The boot of one drive as a list: identity first, then configuration with every value read back, then

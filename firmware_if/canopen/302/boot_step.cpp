@@ -10,7 +10,10 @@ constexpr text::Entry kSteps[] = {
     {"boot-reset", "reset of communication and boot-up message", "сброс связи и сообщение о загрузке"},
     {"boot-device-type", "device type", "тип устройства"},
     {"boot-identity", "identity", "идентификация"},
+    {"boot-software-version", "software version", "версия программы"},
+    {"boot-program", "program of the device", "программа устройства"},
     {"boot-modes", "supported drive modes", "поддерживаемые режимы привода"},
+    {"boot-configuration", "configuration (DCF)", "конфигурация (DCF)"},
     {"boot-settings", "settings of the device file", "настройки из файла устройства"},
     {"boot-node-guarding", "node guarding", "опрос узла (node guarding)"},
     {"boot-heartbeat-consumer", "supervision of the control's heartbeat", "контроль heartbeat управления"},
@@ -26,7 +29,26 @@ constexpr text::Entry kSteps[] = {
 };
 static_assert(std::size(kSteps) == static_cast<std::size_t>(BootStep::done) + 1);
 
+constexpr text::Entry kFlashErrors[] = {
+    {"flash-none", "no error", "ошибки нет"},
+    {"flash-no-program", "no valid program in the device", "в устройстве нет годной программы"},
+    {"flash-format-unknown", "the program's format is unknown to the device",
+     "устройство не знает формата программы"},
+    {"flash-format", "the program's format or checksum is wrong",
+     "неверный формат или контрольная сумма программы"},
+    {"flash-not-cleared", "the flash was not cleared before writing", "память не стёрта перед записью"},
+    {"flash-write", "writing the flash failed", "ошибка записи памяти"},
+    {"flash-address", "wrong address in the program", "неверный адрес в программе"},
+    {"flash-secured", "the flash is write-protected", "память защищена от записи"},
+};
+constexpr text::Entry kFlashOther{"flash-other", "error {0} of the flash", "ошибка памяти {0}"};
+
 }  // namespace
+
+const text::Entry& flash_error_text(std::uint32_t status) noexcept {
+  const std::uint32_t code = status >> 1 & 0x7F;
+  return code < std::size(kFlashErrors) ? kFlashErrors[code] : kFlashOther;
+}
 
 const text::Entry& boot_step_text(BootStep step) noexcept { return kSteps[static_cast<int>(step)]; }
 

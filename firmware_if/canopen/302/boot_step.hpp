@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "firmware_if/canopen/301/sdo_codec.hpp"
 #include "firmware_if/text/finding.hpp"
 
 namespace servogate::canopen {
 
-/// Steps of the boot of a node, in order. Source: CiA 302-2, "Boot slave process", without download of
-/// programs.
+/// Steps of the boot of a node, in order. Source: CiA 302-2, "Boot slave process".
 enum class BootStep : std::uint8_t {
   reset,               ///< NMT reset communication sent, boot-up message awaited
   device_type,         ///< 1000h
   identity,            ///< 1018h:01-04
+  software_version,    ///< 100Ah
+  program,             ///< 1F56h compared; 1F51h, 1F50h, 1F57h where it is another one
   supported_modes,     ///< 6502h
+  configuration,       ///< 1020h compared; concise DCF where it is another one
   settings,            ///< the device file's own values
   node_guarding,       ///< 100Ch, 100Dh, for a node without heartbeat
   heartbeat_consumer,  ///< 1016h:01, our heartbeat
@@ -29,7 +34,27 @@ enum class BootStep : std::uint8_t {
 };
 
 /// Why a step failed.
-enum class BootProblem : std::uint8_t { none, no_answer, aborted, wrong_value, wrong_length, bad_protocol };
+enum class BootProblem : std::uint8_t {
+  none,
+  no_answer,
+  aborted,
+  wrong_value,
+  wrong_length,
+  bad_protocol,
+  wrong_text,    ///< `expected_text`, `got_text`
+  flash_error,   ///< `got`: 1F57h
+  flash_timeout  ///< the flash is still at work; `got`: 1F57h
+};
+
+/// A text of fixed size in an event; longer ones are cut off.
+struct BootText {
+  std::array<char, 32> bytes{};
+  BootText() = default;
+  explicit BootText(std::string_view text) noexcept {
+    std::copy_n(text.begin(), std::min(text.size(), bytes.size() - 1), bytes.begin());
+  }
+  std::string_view view() const noexcept { return bytes.data(); }
+};
 
 /// Where a boot stands or failed. Plain data.
 struct BootReport {
@@ -41,7 +66,11 @@ struct BootReport {
   AbortCode abort = AbortCode::none;
   std::uint32_t expected = 0;
   std::uint32_t got = 0;
+  BootText expected_text = {}, got_text = {};
 };
+
+/// Words for the error in 1F57h (bits 1-7). Source: CiA 302-3, "Flash status identification". real-time safe.
+const text::Entry& flash_error_text(std::uint32_t status) noexcept;
 
 /// Name of a step. real-time safe.
 const text::Entry& boot_step_text(BootStep step) noexcept;

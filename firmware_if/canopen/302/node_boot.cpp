@@ -2,6 +2,11 @@
 #include "firmware_if/canopen/302/node_boot.hpp"
 
 namespace servogate::canopen {
+namespace {
+// The flash is asked for its status so often.
+constexpr image::Nanoseconds kFlashPollNs = 20 * image::kMillisecond;
+constexpr std::uint32_t kFlashBusy = 1;
+}  // namespace
 
 void NodeBoot::restart_at(std::size_t action, SdoClient& sdo) noexcept {
   sdo.cancel();
@@ -36,6 +41,7 @@ void NodeBoot::describe_action() noexcept {
 void NodeBoot::next() noexcept {
   ++action_;
   entered_ = false;
+  flash_deadline_ns_ = poll_again_ns_ = 0;
   describe_action();
   if (action_ >= plan_.size()) state_ = State::done;
 }
@@ -47,6 +53,7 @@ void NodeBoot::fail(BootProblem problem) noexcept {
 
 bool NodeBoot::poll(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) noexcept {
   if (state_ != State::running) return false;
+  now_ = now;
   switch (plan_[action_].kind) {
     case BootAction::Kind::reset:
       // A message from before the command does not count.
@@ -54,9 +61,31 @@ bool NodeBoot::poll(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) 
       return command_and_wait(now, bus, NmtCommand::reset_communication, boot_up_seen_);
     case BootAction::Kind::start:
       return command_and_wait(now, bus, NmtCommand::start, nmt_state_ == NmtState::operational);
+    case BootAction::Kind::await_boot_up:
+      return await_boot_up(now);
     default:
       return access(now, sdo, bus);
   }
+}
+
+// The message may have come while the start was being confirmed.
+bool NodeBoot::await_boot_up(image::Nanoseconds now) noexcept {
+  if (!entered_) deadline_ns_ = now + timeout_ns_;
+  entered_ = true;
+  if (boot_up_seen_)
+    next();
+  else if (now >= deadline_ns_)
+    fail(BootProblem::no_answer);
+  return false;
+}
+
+bool NodeBoot::start_transfer(SdoClient& sdo) noexcept {
+  const BootAction& action = plan_[action_];
+  if (action.kind != BootAction::Kind::write) return sdo.upload(action.index, action.subindex);
+  // A boot-up from before the program control does not count.
+  boot_up_seen_ = false;
+  if (action.data.empty()) return sdo.download(action.index, action.subindex, action.value, action.bytes);
+  return sdo.download_from(action.index, action.subindex, action.data);
 }
 
 bool NodeBoot::command_and_wait(image::Nanoseconds now, image::CanBus& bus, NmtCommand command,
@@ -79,14 +108,11 @@ bool NodeBoot::command_and_wait(image::Nanoseconds now, image::CanBus& bus, NmtC
 bool NodeBoot::access(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) noexcept {
   if (entered_ && !sdo.busy()) {
     on_result(sdo);
-    if (state_ != State::running || plan_[action_].kind == BootAction::Kind::start) return false;
+    if (state_ != State::running || plan_[action_].kind == BootAction::Kind::start ||
+        plan_[action_].kind == BootAction::Kind::await_boot_up)
+      return false;
   }
-  if (!entered_) {
-    const BootAction& action = plan_[action_];
-    entered_ = action.kind == BootAction::Kind::write
-                   ? sdo.download(action.index, action.subindex, action.value, action.bytes)
-                   : sdo.upload(action.index, action.subindex);
-  }
+  if (!entered_ && now >= poll_again_ns_) entered_ = start_transfer(sdo);
   return sdo.poll(now, bus);
 }
 
@@ -96,8 +122,11 @@ void NodeBoot::on_result(const SdoClient& sdo) noexcept {
   report_.abort = result.abort;
   switch (result.status) {
     case SdoStatus::done:
-      return action.kind == BootAction::Kind::read ? judge_value(sdo) : next();
+      return action.kind == BootAction::Kind::write ? next() : judge_value(sdo);
     case SdoStatus::aborted: {
+      if (action.kind == BootAction::Kind::jump_if_equal ||
+          action.kind == BootAction::Kind::jump_unless_equal)
+        return jump(false);
       const bool missing = result.abort == AbortCode::object_does_not_exist ||
                            result.abort == AbortCode::subindex_does_not_exist;
       return action.optional && missing ? next() : fail(BootProblem::aborted);
@@ -111,6 +140,7 @@ void NodeBoot::on_result(const SdoClient& sdo) noexcept {
 
 void NodeBoot::judge_value(const SdoClient& sdo) noexcept {
   const BootAction& action = plan_[action_];
+  if (action.kind == BootAction::Kind::read_text) return judge_text(sdo);
   if (sdo.result().size < action.bytes) {
     report_.expected = action.bytes;
     report_.got = sdo.result().size;
@@ -119,10 +149,43 @@ void NodeBoot::judge_value(const SdoClient& sdo) noexcept {
   // An expedited answer without a size gives four bytes; those beyond the object mean nothing.
   const auto value = static_cast<std::uint32_t>(load_le(sdo.data().first(action.bytes)));
   keep(value);
+  if (action.kind == BootAction::Kind::await_flash) return judge_flash(sdo);
+  if (action.kind != BootAction::Kind::read) return jump(value == action.value);
   if ((value & action.mask) != (action.value & action.mask)) {
     report_.got = value;
     return fail(BootProblem::wrong_value);
   }
+  next();
+}
+
+void NodeBoot::judge_text(const SdoClient& sdo) noexcept {
+  const auto text = [](std::span<const std::uint8_t> bytes) {
+    return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  std::string_view got = text(sdo.data());
+  // Many devices end their strings with zeros.
+  got = got.substr(0, got.find('\0'));
+  const std::string_view expected = text(plan_[action_].data);
+  if (got == expected) return next();
+  report_.expected_text = BootText(expected);
+  report_.got_text = BootText(got);
+  fail(BootProblem::wrong_text);
+}
+
+void NodeBoot::judge_flash(const SdoClient& sdo) noexcept {
+  const auto status = static_cast<std::uint32_t>(sdo.value());
+  report_.got = status;
+  if (!(status & kFlashBusy)) return status >> 1 & 0x7F ? fail(BootProblem::flash_error) : next();
+  if (flash_deadline_ns_ == 0) flash_deadline_ns_ = now_ + flash_timeout_ns_;
+  if (now_ >= flash_deadline_ns_) return fail(BootProblem::flash_timeout);
+  entered_ = false;
+  poll_again_ns_ = now_ + kFlashPollNs;
+}
+
+void NodeBoot::jump(bool equal) noexcept {
+  const BootAction& action = plan_[action_];
+  const bool wanted = action.kind == BootAction::Kind::jump_if_equal;
+  if (equal == wanted) action_ += action.jump;
   next();
 }
 

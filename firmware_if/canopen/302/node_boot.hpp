@@ -20,8 +20,10 @@ class NodeBoot {
  public:
   enum class State : std::uint8_t { idle, running, done, failed };
 
-  NodeBoot(NodeId node, std::vector<BootAction> plan, image::Nanoseconds timeout_ns)
-      : node_(node), plan_(std::move(plan)), timeout_ns_(timeout_ns) {}
+  /// `timeout`: of a boot-up message and of Operational; `flash_timeout`: until the flash is at rest.
+  NodeBoot(NodeId node, std::vector<BootAction> plan, image::Nanoseconds timeout_ns,
+           image::Nanoseconds flash_timeout_ns = 60 * image::kSecond)
+      : node_(node), plan_(std::move(plan)), timeout_ns_(timeout_ns), flash_timeout_ns_(flash_timeout_ns) {}
 
   /// Starts from the first action (NMT reset communication).
   void begin(SdoClient& sdo) noexcept;
@@ -29,6 +31,10 @@ class NodeBoot {
   void begin_after_boot_up(SdoClient& sdo) noexcept;
 
   void on_boot_up() noexcept { boot_up_seen_ = true; }
+  /// A boot-up message is part of the step in hand and does not begin the boot anew.
+  bool boot_up_belongs() const noexcept {
+    return report_.step == BootStep::reset || report_.step == BootStep::program;
+  }
   void on_heartbeat(NmtState state) noexcept { nmt_state_ = state; }
 
   /// Goes on as far as it can without waiting; sends at most one frame. True when it sent one. `sdo` is the
@@ -47,6 +53,11 @@ class NodeBoot {
   bool access(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) noexcept;
   void on_result(const SdoClient& sdo) noexcept;
   void judge_value(const SdoClient& sdo) noexcept;
+  void judge_text(const SdoClient& sdo) noexcept;
+  void judge_flash(const SdoClient& sdo) noexcept;
+  void jump(bool equal) noexcept;
+  bool start_transfer(SdoClient& sdo) noexcept;
+  bool await_boot_up(image::Nanoseconds now) noexcept;
   void keep(std::uint32_t value) noexcept;
   void next() noexcept;
   void fail(BootProblem problem) noexcept;
@@ -54,7 +65,8 @@ class NodeBoot {
 
   NodeId node_;
   std::vector<BootAction> plan_;
-  image::Nanoseconds timeout_ns_;
+  image::Nanoseconds timeout_ns_, flash_timeout_ns_;
+  image::Nanoseconds now_ = 0, flash_deadline_ns_ = 0, poll_again_ns_ = 0;
   State state_ = State::idle;
   std::size_t action_ = 0;
   bool entered_ = false;  ///< the action has begun: command sent or transfer started

@@ -20,6 +20,8 @@ inline constexpr std::uint16_t kDeviceType = 0x1000, kErrorRegister = 0x1001, kP
                                kInhibitTimeEmcy = 0x1015, kConsumerHeartbeatTime = 0x1016,
                                kProducerHeartbeatTime = 0x1017, kIdentity = 0x1018,
                                kSyncCounterOverflow = 0x1019, kErrorBehaviour = 0x1029,
+                               kVerifyConfiguration = 0x1020, kProgramData = 0x1F50, kProgramControl = 0x1F51,
+                               kProgramIdentification = 0x1F56, kFlashStatus = 0x1F57,
                                kSdoServerParameter = 0x1200, kRpdoParameter = 0x1400, kRpdoMapping = 0x1600,
                                kTpdoParameter = 0x1800, kTpdoMapping = 0x1A00;
 // CiA 402-2

@@ -198,6 +198,11 @@ void Slave::on_sync(const image::CanFrame& frame) noexcept {
 void Slave::tick(image::Nanoseconds now) noexcept {
   now_ = now;
   lss_.tick(now);
+  if (programs_) programs_->tick(now);
+  if (restart_due_) {
+    restart_due_ = false;
+    return reset_communication();
+  }
   if (booting_) {
     if (now < boot_at_ || node_ == kUnconfiguredNode) return;
     booting_ = false;

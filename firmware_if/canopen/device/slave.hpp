@@ -11,6 +11,7 @@
 #include "firmware_if/canopen/device/node_monitor.hpp"
 #include "firmware_if/canopen/device/object_dictionary.hpp"
 #include "firmware_if/canopen/device/pdo_channel.hpp"
+#include "firmware_if/canopen/device/program_store.hpp"
 #include "firmware_if/canopen/device/sdo_server.hpp"
 
 namespace servogate::canopen {
@@ -53,6 +54,9 @@ class Slave final : private SdoObjects, private PdoSink, private LssDevice {
   /// real-time safe.
   Slave(NodeId node, ObjectDictionary& dictionary, DeviceProfile& profile);
 
+  /// A program memory, for a dictionary with program_objects(); to be called before power_on().
+  void use(ProgramStore& programs) noexcept { programs_ = &programs; }
+
   NodeId node() const noexcept { return node_; }
   /// Everything below is real-time safe.
   NmtState state() const noexcept { return state_; }
@@ -78,6 +82,7 @@ class Slave final : private SdoObjects, private PdoSink, private LssDevice {
   void reset_node(image::Nanoseconds now) noexcept;
 
  private:
+  std::span<std::uint8_t> room(std::uint16_t index, std::uint8_t subindex) noexcept override;
   bool supports(std::uint32_t bit_s) noexcept override { return profile_.supports_bit_rate(bit_s); }
   bool store(NodeId node, std::uint32_t bit_s) noexcept override;
   void node_assigned() noexcept override;
@@ -124,6 +129,7 @@ class Slave final : private SdoObjects, private PdoSink, private LssDevice {
   EmcyProducer emcy_;
   NodeMonitor monitor_;
   LssSlave lss_;
+  ProgramStore* programs_ = nullptr;
   std::array<ReceivePdo, kPdos> receive_;
   std::array<TransmitPdo, kPdos> transmit_;
   bool any_event_driven_ = false;
@@ -138,6 +144,7 @@ class Slave final : private SdoObjects, private PdoSink, private LssDevice {
   image::Nanoseconds now_ = 0;
   image::Nanoseconds boot_at_ = 0;
   bool booting_ = false;
+  bool restart_due_ = false;  ///< a program was started; first its confirmation goes out
   bool lost_ = false;
 };
 

@@ -30,6 +30,10 @@ AbortCode Slave::read(std::uint16_t index, std::uint8_t subindex, std::span<std:
   return AbortCode::none;
 }
 
+std::span<std::uint8_t> Slave::room(std::uint16_t index, std::uint8_t) noexcept {
+  return programs_ && index == object::kProgramData ? programs_->room() : std::span<std::uint8_t>{};
+}
+
 AbortCode Slave::may_write(std::uint16_t index, std::uint8_t subindex, std::size_t& size) noexcept {
   const auto slot = dictionary_.find(index, subindex);
   if (slot == ObjectDictionary::kNone)
@@ -37,6 +41,7 @@ AbortCode Slave::may_write(std::uint16_t index, std::uint8_t subindex, std::size
                                         : AbortCode::object_does_not_exist;
   const ObjectSpec& spec = dictionary_.spec(slot);
   size = size_of(spec.type);
+  if (programs_ && index == object::kProgramData && subindex > 0) return programs_->check_download();
   const bool writable = spec.access == Access::rw || spec.access == Access::wo;
   return writable ? AbortCode::none : AbortCode::read_only;
 }
@@ -45,6 +50,11 @@ AbortCode Slave::write(std::uint16_t index, std::uint8_t subindex,
                        std::span<const std::uint8_t> bytes) noexcept {
   const auto slot = dictionary_.find(index, subindex);
   if (slot == ObjectDictionary::kNone) return AbortCode::object_does_not_exist;
+  if (programs_ && index == object::kProgramData && subindex > 0) {
+    if (const AbortCode code = programs_->check_download(); code != AbortCode::none) return code;
+    programs_->written(bytes.size(), now_);
+    return AbortCode::none;
+  }
   std::int64_t value = 0;
   if (const AbortCode code = dictionary_.decode(slot, bytes, value); code != AbortCode::none) return code;
   const bool communication = index < kFirstApplication;
@@ -71,6 +81,8 @@ AbortCode Slave::check_communication_write(std::uint16_t index, std::uint8_t sub
   const auto word = static_cast<std::uint32_t>(value);
   if (pdo_parameter(index)) return check_pdo_parameter(dictionary_, index, subindex, word);
   switch (index) {
+    case object::kProgramControl:
+      return programs_ ? programs_->check_control(value) : AbortCode::none;
     case object::kPredefinedErrorField:
       return value == 0 ? AbortCode::none : AbortCode::value_invalid;
     case object::kCobIdSync:  // a consumer only, 11-bit identifiers
@@ -96,9 +108,14 @@ AbortCode Slave::check_communication_write(std::uint16_t index, std::uint8_t sub
   }
 }
 
-void Slave::communication_written(std::uint16_t index, std::uint8_t subindex, std::int64_t) noexcept {
+void Slave::communication_written(std::uint16_t index, std::uint8_t subindex, std::int64_t value) noexcept {
   if (pdo_parameter(index)) return configure_pdos();
   switch (index) {
+    case object::kProgramControl:
+      // Without its program the device drives nothing.
+      if (programs_ && programs_->running()) profile_.on_abort_connection(0);
+      restart_due_ = programs_ && programs_->control(value, now_);
+      return;
     case object::kPredefinedErrorField:
       return emcy_.clear_history();
     case object::kConsumerHeartbeatTime:

@@ -69,6 +69,11 @@ constexpr Entry kWrongValue{"can-wrong-value", "{0}: expected {1}, got {2}",
                             "{0}: ожидалось {1}, получено {2}"};
 constexpr Entry kWrongLength{"can-wrong-length", "{0}: expected {1} bytes, got {2}",
                              "{0}: ожидалось байтов {1}, получено {2}"};
+constexpr Entry kWrongText{"can-wrong-text", "{0}: expected \"{1}\", got \"{2}\"",
+                           "{0}: ожидалось «{1}», получено «{2}»"};
+constexpr Entry kFlashError{"can-flash-error", "{0}: {3} ({2})", "{0}: {3} ({2})"};
+constexpr Entry kFlashTimeout{"can-flash-timeout", "{0}: the flash is still at work ({2})",
+                              "{0}: память всё ещё занята ({2})"};
 constexpr Entry kBadProtocol{"can-bad-protocol", "{0}: the answer is against the SDO protocol, {3} ({1})",
                              "{0}: ответ нарушает протокол SDO, {3} ({1})"};
 
@@ -104,6 +109,18 @@ std::string problem_words(const BootReport& report, Language language) {
                   language);
     case BootProblem::bad_protocol:
       return fill(kBadProtocol, {what, code, "", words}, language);
+    case BootProblem::wrong_text:
+      return fill(kWrongText,
+                  {what, std::string(report.expected_text.view()), std::string(report.got_text.view())},
+                  language);
+    case BootProblem::flash_error:
+    case BootProblem::flash_timeout: {
+      const std::string status = hex(report.got, 8);
+      const std::string reason =
+          fill(flash_error_text(report.got), {std::to_string(report.got >> 1 & 0x7F)}, language);
+      return fill(report.problem == BootProblem::flash_error ? kFlashError : kFlashTimeout,
+                  {what, "", status, reason}, language);
+    }
     default:
       return fill(kNoAnswer, {what}, language);
   }

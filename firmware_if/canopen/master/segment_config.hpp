@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware_if/canopen/301/time_of_day.hpp"
+#include "firmware_if/canopen/302/node_setup.hpp"
 #include "firmware_if/canopen/402/drive_profile.hpp"
 #include "firmware_if/image/time.hpp"
 
@@ -22,6 +23,7 @@ struct NodeConfig {
   int target_index = 0;           ///< index in ProcessImage::axes or ::spindles
   std::int32_t heartbeat_ms = 0;  ///< producer time of this node, lost after three of them; 0: the segment's
   std::int32_t max_missed_pdo = 0;  ///< 0: the segment's
+  NodeSetup setup;                  ///< version, program and configuration of this one node
 };
 
 /// One CAN bus and how it is run.

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <stdexcept>
 
+#include "firmware_if/canopen/302/concise_dcf.hpp"
 #include "tests/canopen/fake_drive.hpp"
 
 namespace servogate::canopen {
@@ -237,6 +239,45 @@ TEST(NodeBootOnABadWire, boots_or_names_a_time_out_but_never_configures_wrongly)
     ASSERT_EQ(drive.nmt_state, 5);
   }
   EXPECT_GT(booted, kCases / 2);
+}
+
+TEST_F(NodeBootTest, a_configuration_of_the_right_date_is_not_written_again) {
+  drive.set(0x1020, 1, 4, 15'000);
+  drive.set(0x1020, 2, 4, 7);
+  drive.set(0x2000, 0, 2, 0);
+  config.setup.concise_dcf = write_concise_dcf(std::vector<ConfigurationEntry>{{0x2000, 0, {0x34, 0x12}}});
+  config.setup.configuration_date = ConfigurationDate{15'000, 7};
+  run();
+  ASSERT_EQ(boot->state(), NodeBoot::State::done);
+  EXPECT_EQ(drive.get(0x2000, 0), 0u);
+  config.setup.configuration_date = ConfigurationDate{15'000, 8};
+  run();
+  ASSERT_EQ(boot->state(), NodeBoot::State::done);
+  EXPECT_EQ(drive.get(0x2000, 0), 0x1234u);
+  EXPECT_EQ(drive.get(0x1020, 2), 8u);
+}
+
+TEST_F(NodeBootTest, a_configuration_is_written_to_a_node_that_knows_no_date_and_its_failure_is_named) {
+  drive.set(0x2000, 0, 2, 0);
+  config.setup.concise_dcf = write_concise_dcf(std::vector<ConfigurationEntry>{{0x2000, 0, {0x34, 0x12}}});
+  config.setup.configuration_date = ConfigurationDate{15'000, 7};
+  run();
+  EXPECT_EQ(drive.get(0x2000, 0), 0x1234u);
+  expect_failure(BootStep::configuration, BootProblem::aborted, 0x1020, 1);
+}
+
+TEST_F(NodeBootTest, a_program_that_may_not_be_replaced_is_a_wrong_value) {
+  drive.set(0x1F56, 1, 4, 0x1111);
+  config.setup.program = NodeProgram{{}, 0x2222, 1};
+  run();
+  expect_failure(BootStep::program, BootProblem::wrong_value, 0x1F56, 1);
+  EXPECT_EQ(boot->report().expected, 0x2222u);
+  EXPECT_EQ(boot->report().got, 0x1111u);
+}
+
+TEST_F(NodeBootTest, a_concise_dcf_that_is_cut_off_is_refused_before_anything_is_sent) {
+  config.setup.concise_dcf = {1, 0, 0, 0, 0x17};
+  EXPECT_THROW(boot_plan(config, segment), std::invalid_argument);
 }
 
 }  // namespace

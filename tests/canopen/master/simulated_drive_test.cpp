@@ -9,6 +9,8 @@
 
 #include "drivers/mock/can/can_segment.hpp"
 #include "drivers/mock/drive/simulated_drive.hpp"
+#include "firmware_if/canopen/302/concise_dcf.hpp"
+#include "firmware_if/canopen/device/program_store.hpp"
 #include "firmware_if/canopen/master/segment.hpp"
 
 namespace servogate::canopen {
@@ -22,8 +24,10 @@ constexpr std::int64_t kCountsPerRev = 262'144;
 
 /// Drives on one wire of 1 Mbit/s at 1 ms, run in virtual time.
 struct Machine {
-  explicit Machine(int axes, void (*map)(DriveProfile&) = use_short_position_map,
-                   image::Nanoseconds cycle_ns = image::kMillisecond)
+  explicit Machine(
+      int axes, void (*map)(DriveProfile&) = use_short_position_map,
+      image::Nanoseconds cycle_ns = image::kMillisecond, void (*setup)(NodeSetup&) = [](NodeSetup&) {},
+      std::size_t program_memory = 0)
       : bus(wire.add_endpoint("master")) {
     config.cycle_ns = cycle_ns;
     for (int i = 0; i < axes; ++i) {
@@ -32,12 +36,14 @@ struct Machine {
       node.target_index = i;
       node.profile.counts_per_rev = kCountsPerRev;
       map(node.profile);
+      setup(node.setup);
       config.nodes.push_back(node);
       mock::SimulatedDriveConfig drive;
       drive.node_id = node.node;
       drive.plant.counts_per_rev = kCountsPerRev;
       drive.plant.start_rev = 0.3 + 0.1 * i;
       drive.plant.zero_mark_counts = 10'000;
+      drive.program_memory = program_memory;
       drives.push_back(std::make_unique<mock::SimulatedDrive>(drive));
       wire.attach(*drives.back());
     }
@@ -358,6 +364,94 @@ TEST(SimulatedDrives, hear_the_time_of_day) {
   ASSERT_GE(heard.size(), 2u);
   EXPECT_EQ(heard[0], (TimeOfDay{3'600'000, 15'000}));
   EXPECT_EQ(heard[1], (TimeOfDay{3'600'100, 15'000}));
+}
+
+/// A program of 5000 bytes and what a drive says of it.
+const std::vector<std::uint8_t>& new_program() {
+  static const std::vector<std::uint8_t> image = [] {
+    std::vector<std::uint8_t> bytes(5000);
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i * 37 >> 3);
+    return bytes;
+  }();
+  return image;
+}
+void with_new_program(NodeSetup& setup) {
+  setup.program = NodeProgram{new_program(), program_identification(new_program()), 1};
+}
+
+struct ProgramDownload : ::testing::Test {
+  Machine machine{1, use_short_position_map, image::kMillisecond, with_new_program, 10'000};
+  std::string failure() {
+    for (const BusEvent& e : machine.events)
+      if (e.kind == BusEventKind::boot_failed) return describe(e, "X", nullptr, text::Language::english);
+    return {};
+  }
+  bool boots(int cycles = 30'000) {
+    return machine.run_until([&] { return machine.image->axes[0].drive.online || !failure().empty(); },
+                             cycles) &&
+           failure().empty();
+  }
+};
+
+TEST_F(ProgramDownload, a_drive_with_another_program_gets_the_right_one_and_runs) {
+  ASSERT_TRUE(boots()) << failure();
+  EXPECT_EQ(machine.drives[0]->object(0x1F56, 1), program_identification(new_program()));
+  EXPECT_EQ(machine.drives[0]->object(0x1F51, 1), 1);
+  EXPECT_EQ(machine.drives[0]->object(0x1F57, 1), 0);
+  EXPECT_TRUE(machine.enable());
+}
+
+TEST_F(ProgramDownload, a_drive_that_has_it_already_is_left_alone) {
+  ASSERT_TRUE(boots());
+  const auto boot_time = [&] {
+    machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
+    const auto begin = machine.image->now.t_ns;
+    machine.image->axes[0].drive.online = false;
+    EXPECT_TRUE(boots());
+    return machine.image->now.t_ns - begin;
+  };
+  EXPECT_LT(boot_time(), 500 * image::kMillisecond)
+      << "clearing the flash alone takes 200 ms, writing it longer";
+}
+
+TEST_F(ProgramDownload, an_error_of_the_flash_is_named) {
+  machine.drives[0]->spoil_next_program(5);
+  EXPECT_FALSE(boots());
+  EXPECT_EQ(failure(),
+            "X: boot stopped at step \"program of the device\": reading 1F57h:01 Flash status identification: "
+            "writing the flash failed (0000000Ah)");
+}
+
+TEST(SimulatedDrives, of_another_software_version_are_named_with_both_versions) {
+  Machine machine(1, use_short_position_map, image::kMillisecond,
+                  [](NodeSetup& setup) { setup.software_version = "2.7"; });
+  machine.run(1000);
+  ASSERT_EQ(machine.count(BusEventKind::boot_failed), 1);
+  EXPECT_EQ(machine.story(),
+            std::to_string(machine.events[0].t_ns / 1'000'000) +
+                " ms node 1: drive: boot stopped at step \"software version\": reading 100Ah:00 "
+                "Manufacturer software version: expected \"2.7\", got \"0.1\"\n");
+}
+
+TEST(SimulatedDrives, get_a_concise_dcf_where_its_date_is_another_one) {
+  Machine machine(1, use_short_position_map, image::kMillisecond, [](NodeSetup& setup) {
+    const std::vector<ConfigurationEntry> entries{{0x6065, 0, {0x10, 0x27, 0, 0}},
+                                                  {0x2100, 0, std::vector<std::uint8_t>(40, 'x')}};
+    setup.concise_dcf = write_concise_dcf(entries);
+    setup.configuration_date = ConfigurationDate{15'000, 3'600'000};
+  });
+  const auto boot = [&] {
+    machine.image->axes[0].drive.online = false;
+    machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
+    return machine.run_until([&] { return machine.image->axes[0].drive.online; });
+  };
+  ASSERT_TRUE(boot()) << machine.story();
+  EXPECT_EQ(machine.drives[0]->object(0x6065), 10'000);
+  EXPECT_EQ(machine.drives[0]->object(0x1020, 1), 15'000);
+  EXPECT_EQ(machine.drives[0]->object(0x1020, 2), 3'600'000);
+  // A reset of communication forgets 1020h, which nobody stored: the values are written again.
+  ASSERT_TRUE(boot());
+  EXPECT_EQ(machine.drives[0]->object(0x1020, 2), 3'600'000);
 }
 
 }  // namespace

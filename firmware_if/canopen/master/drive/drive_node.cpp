@@ -35,10 +35,13 @@ DriveNode::DriveNode(const NodeConfig& config, const SegmentConfig& segment)
       status_every_(std::max<std::int64_t>(1, status_interval(config, segment))),
       missed_limit_(status_interval(config, segment) * max_missed_pdo(config, segment)),
       first_limit_(segment.boot_timeout_ms * image::kMillisecond / segment.cycle_ns),
-      boot_attempts_(segment.boot_attempts),
+      boot_attempts_(config.setup.boot_attempts > 0 ? config.setup.boot_attempts : segment.boot_attempts),
       sdo_(config.node, segment.sdo_timeout_ms * image::kMillisecond,
            static_cast<std::uint32_t>(std::max(0, segment.sdo_retries))),
-      boot_(config.node, boot_plan(config, segment), segment.boot_timeout_ms * image::kMillisecond),
+      boot_(config.node, boot_plan(config, segment),
+            (config.setup.boot_timeout_ms > 0 ? config.setup.boot_timeout_ms : segment.boot_timeout_ms) *
+                image::kMillisecond,
+            config.setup.program_timeout_ms * image::kMillisecond),
       link_(config, segment.cycle_ns) {
   const DriveProfile& profile = config_.profile;
   if (profile.guard_time_ms > 0)
@@ -136,7 +139,7 @@ void DriveNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& co
 
 void DriveNode::on_boot_up(const NodeContext& context) noexcept {
   if (guard_) guard_->start(context.now);
-  if (phase_ == Phase::booting && boot_.report().step == BootStep::reset) return boot_.on_boot_up();
+  if (phase_ == Phase::booting && boot_.boot_up_belongs()) return boot_.on_boot_up();
   if (phase_ == Phase::running) {
     context.events.push(event(BusEventKind::node_restarted, context));
     go_offline();
