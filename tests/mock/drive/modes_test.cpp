@@ -17,13 +17,13 @@ struct DriveModes : testing::Test {
 };
 
 TEST_F(DriveModes, supported_modes_and_their_display_agree) {
-  EXPECT_EQ(b.read(0x6502), 0x000003ADu);  // pp, pv, tq, hm, csp, csv, cst
-  for (const int m : {1, 3, 4, 6, 8, 9, 10}) {
+  EXPECT_EQ(b.read(0x6502), 0x000003EFu);  // pp, vl, pv, tq, hm, ip, csp, csv, cst
+  for (const int m : {1, 2, 3, 4, 6, 7, 8, 9, 10}) {
     mode(m);
     b.run(2);
     EXPECT_EQ(b.read(0x6061), static_cast<std::uint32_t>(m));
   }
-  for (const int m : {2, 5, 7, 11, -1}) EXPECT_NE(b.write(0x6060, 0, m, 1), 0u) << m;
+  for (const int m : {5, 11, -1}) EXPECT_NE(b.write(0x6060, 0, m, 1), 0u) << m;
 }
 
 // ---- cyclic synchronous position ----
@@ -343,6 +343,151 @@ TEST(DriveProbeInputs, an_edge_before_arming_is_not_latched) {
   b.drive.set_input(DriveSwitch::Input::probe_1, true);
   b.run(2);
   EXPECT_EQ(b.read(0x60B9), 0x0003u);
+}
+
+// ---- velocity (vl) ----
+
+struct DriveVl : DriveModes {
+  void SetUp() override {
+    mode(2);
+    b.write(0x6048, 1, 600, 4);  // 600 rpm in 1 s
+    b.write(0x6048, 2, 1, 2);
+    b.write(0x6049, 1, 600, 4);
+    b.write(0x6049, 2, 1, 2);
+    b.enable();
+  }
+  void target(int rpm) { b.write(0x6042, 0, rpm, 2); }
+  double rpm() const { return b.drive.velocity_counts_s() * 60.0 / kTurn; }
+};
+
+TEST_F(DriveVl, the_ramp_leads_to_the_target_in_rpm_and_demand_and_actual_are_told) {
+  target(300);
+  b.control(0x7F, 0);
+  b.run(250);
+  EXPECT_NEAR(rpm(), 150, 10) << "half of the way after half of the time";
+  b.run(500);
+  EXPECT_NEAR(rpm(), 300, 3);
+  EXPECT_EQ(b.read(0x6043), 300u);
+  EXPECT_NEAR(static_cast<double>(b.read(0x6044)), 300, 3);
+}
+
+TEST_F(DriveVl, the_bits_of_the_ramp_hold_zero_and_stop_it) {
+  target(300);
+  b.control(0x7F, 700);
+  b.control(0x3F, 250);  // bit 6: reference zero
+  EXPECT_NEAR(rpm(), 150, 15);
+  b.control(0x1F, 200);  // bit 5: held where it is
+  const double held = rpm();
+  EXPECT_NEAR(held, 145, 15);
+  b.run(200);
+  EXPECT_NEAR(rpm(), held, 2);
+  b.control(0x0F, 300);  // bit 4: no ramp
+  EXPECT_NEAR(rpm(), 0, 1);
+}
+
+TEST_F(DriveVl, amounts_beyond_6046_are_cut_with_the_internal_limit_bit) {
+  b.write(0x6046, 1, 50, 4);
+  b.write(0x6046, 2, 200, 4);
+  target(-900);
+  b.control(0x7F, 800);
+  EXPECT_NEAR(rpm(), -200, 3);
+  EXPECT_TRUE(b.status() & 0x0800);
+  target(10);
+  b.run(1000);
+  EXPECT_NEAR(rpm(), 50, 2);
+  target(100);
+  b.run(500);
+  EXPECT_FALSE(b.status() & 0x0800);
+}
+
+TEST_F(DriveVl, factors_scale_the_unit_and_may_not_be_zero) {
+  EXPECT_EQ(b.write(0x604C, 2, 0, 4), 0x06090030u);
+  EXPECT_EQ(b.write(0x604C, 2, 10, 4), 0u);  // tenths of a turn a minute
+  b.write(0x6046, 2, 50'000, 4);
+  b.write(0x6048, 1, 60'000, 4);
+  target(3000);
+  b.control(0x7F, 400);
+  EXPECT_NEAR(rpm(), 300, 3);
+  EXPECT_EQ(b.read(0x6043), 3000u);
+}
+
+TEST_F(DriveVl, halt_ramps_to_rest) {
+  target(300);
+  b.control(0x7F, 700);
+  b.control(0x17F, 700);
+  EXPECT_NEAR(rpm(), 0, 1);
+  EXPECT_TRUE(b.status() & 0x0400);
+}
+
+// ---- interpolated position (ip) ----
+
+struct DriveIp : DriveModes {
+  void SetUp() override {
+    mode(7);
+    b.write(0x60C2, 1, 10, 1);  // 10 ms a record
+    b.write(0x60C4, 2, 8, 4);
+    b.enable();
+  }
+  std::uint32_t record(std::int64_t x) { return b.write(0x60C1, 1, x, 4); }
+};
+
+TEST_F(DriveIp, records_wait_in_the_buffer_until_bit_4_starts_them_one_a_period) {
+  for (int i = 1; i <= 8; ++i) EXPECT_EQ(record(i * 1000), 0u);
+  EXPECT_EQ(b.read(0x60C4, 4), 8u);
+  EXPECT_EQ(record(9000), 0x08000022u) << "a full buffer takes no more";
+  b.run(50);
+  EXPECT_NEAR(position(), 0, 5);
+  EXPECT_FALSE(b.status() & 0x1000);
+  b.control(0x1F, 0);
+  EXPECT_TRUE(b.drive.statusword() & 0x1000);
+  b.run(40);
+  EXPECT_NEAR(static_cast<double>(b.drive.reported_position()), 4000, 600);
+  b.run(80);
+  EXPECT_NEAR(position(), 8000, 20) << "the last record is held";
+  EXPECT_EQ(b.read(0x60C4, 4), 0u);
+}
+
+TEST_F(DriveIp, clearing_closes_the_buffer_until_it_is_opened) {
+  record(1000);
+  EXPECT_EQ(b.write(0x60C4, 6, 0, 1), 0u);
+  EXPECT_EQ(b.read(0x60C4, 4), 0u);
+  EXPECT_EQ(record(1000), 0x08000022u);
+  EXPECT_EQ(b.write(0x60C4, 6, 1, 1), 0u);
+  EXPECT_EQ(record(1000), 0u);
+}
+
+TEST_F(DriveIp, a_ring_gives_up_its_oldest_record_and_a_buffer_of_one_holds_the_newest) {
+  b.write(0x60C4, 3, 1, 1);
+  b.write(0x60C4, 2, 2, 4);
+  for (int i = 1; i <= 5; ++i) EXPECT_EQ(record(i * 1000), 0u);
+  EXPECT_EQ(b.read(0x60C4, 4), 2u);
+  b.control(0x1F, 15);
+  EXPECT_NEAR(position(), 4500, 1000) << "from record 4 on";
+  b.run(50);
+  EXPECT_NEAR(position(), 5000, 20);
+  b.control(0x0F);
+  b.write(0x60C4, 2, 1, 4);
+  record(6000);
+  record(7000);
+  b.control(0x1F, 60);
+  EXPECT_NEAR(position(), 7000, 20);
+}
+
+TEST_F(DriveIp, a_record_of_pdo_comes_every_sync_and_the_axis_follows) {
+  b.write(0x60C2, 1, 1, 1);
+  b.write(0x60C4, 2, 1, 4);
+  b.write(0x1400, 1, 0x80000205, 4);
+  b.write(0x1600, 0, 0, 1);
+  b.write(0x1600, 1, 0x60400010, 4);
+  b.write(0x1600, 2, 0x60C10120, 4);
+  b.write(0x1600, 0, 2, 1);
+  b.write(0x1400, 2, 1, 1);
+  b.write(0x1400, 1, 0x205, 4);
+  b.nmt(0x01);
+  for (int i = 1; i <= 200; ++i) b.cycle(0x1F, i * 100);
+  b.cycle(0x1F, 20'000);
+  b.run(30);
+  EXPECT_NEAR(position(), 20'000, 30);
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ TEST(DriveSdo, each_wrong_access_has_the_abort_code_of_the_standard) {
       {{0x2F, 0x17, 0x10, 0, 0, 0, 0, 0}, 0x06070013, "one byte into two"},
       {{0x2B, 0x5E, 0x60, 0, 5, 0, 0, 0}, 0x06090031, "fault reaction 5"},
       {{0x2B, 0x5E, 0x60, 0, 0xFF, 0xFF, 0, 0}, 0x06090032, "fault reaction -1"},
-      {{0x2F, 0x60, 0x60, 0, 7, 0, 0, 0}, 0x06090030, "a mode that 6502h does not have"},
+      {{0x2F, 0x60, 0x60, 0, 5, 0, 0, 0}, 0x06090030, "a mode that 6502h does not have"},
       {{0x2F, 0x98, 0x60, 0, 16, 0, 0, 0}, 0x06090030, "a reserved homing method"},
       {{0x2F, 0x03, 0x10, 0, 1, 0, 0, 0}, 0x06090030, "error history takes only 0"},
       {upload(0x1003, 1), 0x08000024, "no error yet"},

@@ -3,6 +3,7 @@
 
 #include "firmware_if/canopen/402/mode.hpp"
 #include "firmware_if/canopen/device/drive/homing.hpp"
+#include "firmware_if/canopen/device/drive/interpolation_buffer.hpp"
 
 namespace servogate::canopen {
 namespace {
@@ -12,7 +13,8 @@ using enum Access;
 constexpr Mappable kNo = Mappable::no, kT = Mappable::tpdo, kR = Mappable::rpdo, kB = Mappable::both;
 
 constexpr std::uint32_t kSupportedModes =
-    supported_bit(OperationMode::profile_position) | supported_bit(OperationMode::profile_velocity) |
+    supported_bit(OperationMode::profile_position) | supported_bit(OperationMode::velocity) |
+    supported_bit(OperationMode::interpolated_position) | supported_bit(OperationMode::profile_velocity) |
     supported_bit(OperationMode::profile_torque) | supported_bit(OperationMode::homing) |
     supported_bit(OperationMode::cyclic_sync_position) | supported_bit(OperationMode::cyclic_sync_velocity) |
     supported_bit(OperationMode::cyclic_sync_torque);
@@ -23,6 +25,24 @@ constexpr ObjectSpec kRows[] = {
     {0x603F, 0, unsigned16, ro, kT},
     {0x6040, 0, unsigned16, rw, kB},
     {0x6041, 0, unsigned16, ro, kT},
+    {0x6042, 0, integer16, rw, kR},
+    {0x6043, 0, integer16, ro, kT},
+    {0x6044, 0, integer16, ro, kT},
+    {0x6046, 0, unsigned8, constant, kNo, 2},
+    {0x6046, 1, unsigned32, rw},
+    {0x6046, 2, unsigned32, rw},
+    {0x6048, 0, unsigned8, constant, kNo, 2},
+    {0x6048, 1, unsigned32, rw, kNo, 0, 1},
+    {0x6048, 2, unsigned16, rw, kNo, 1},
+    {0x6049, 0, unsigned8, constant, kNo, 2},
+    {0x6049, 1, unsigned32, rw, kNo, 0, 1},
+    {0x6049, 2, unsigned16, rw, kNo, 1},
+    {0x604B, 0, unsigned8, constant, kNo, 2},
+    {0x604B, 1, integer16, rw, kNo, 1},
+    {0x604B, 2, integer16, rw, kNo, 1},
+    {0x604C, 0, unsigned8, constant, kNo, 2},
+    {0x604C, 1, integer32, rw, kNo, 1},
+    {0x604C, 2, integer32, rw, kNo, 1},
     {0x605A, 0, integer16, rw, kNo, 2, 0, 8},
     {0x605B, 0, integer16, rw, kNo, 0, 0, 1},
     {0x605C, 0, integer16, rw, kNo, 1, 0, 1},
@@ -89,9 +109,19 @@ constexpr ObjectSpec kRows[] = {
     {0x60BB, 0, integer32, ro, kT},
     {0x60BC, 0, integer32, ro, kT},
     {0x60BD, 0, integer32, ro, kT},
+    {0x60C0, 0, integer16, rw, kNo, 0, 0, 0},
+    {0x60C1, 0, unsigned8, constant, kNo, 1},
+    {0x60C1, 1, integer32, rw, kR},
     {0x60C2, 0, unsigned8, constant, kNo, 2},
     {0x60C2, 1, unsigned8, rw, kNo, 1, 0, 255},
     {0x60C2, 2, integer8, rw, kNo, -3, -6, 0},
+    {0x60C4, 0, unsigned8, constant, kNo, 6},
+    {0x60C4, 1, unsigned32, ro, kNo, InterpolationBuffer::kMost},
+    {0x60C4, 2, unsigned32, rw, kNo, 1, 1, InterpolationBuffer::kMost},
+    {0x60C4, 3, unsigned8, rw, kNo, 0, 0, 1},
+    {0x60C4, 4, unsigned16, ro},
+    {0x60C4, 5, unsigned8, wo, kNo, 4, 4, 4},
+    {0x60C4, 6, unsigned8, wo, kNo, 1, 0, 1},
     {0x60C5, 0, unsigned32, rw, kNo, 0, 1},
     {0x60C6, 0, unsigned32, rw, kNo, 0, 1},
     {0x60D5, 0, unsigned16, ro, kT},
@@ -124,6 +154,9 @@ std::vector<ObjectSpec> drive_objects(const DriveRatings& r) {
   set(object::kMaxTorque, 0, r.peak_torque_permille);
   set(0x6075, 0, r.rated_current_ma);
   set(0x6076, 0, r.rated_torque_mnm);
+  set(object::kVlMinMax, 2, r.max_speed_rpm);
+  set(object::kVlAcceleration, 1, 600);  // rpm in a second: 10 turns/s^2 as 6083h
+  set(object::kVlDeceleration, 1, 600);
   set(object::kMaxProfileVelocity, 0, top);
   set(object::kMaxMotorSpeed, 0, r.max_speed_rpm);
   set(object::kProfileVelocity, 0, turn);
@@ -209,6 +242,24 @@ DriveVariables::DriveVariables(ObjectDictionary& od)
       digital_outputs(od.variable(object::kDigitalOutputs, 1)),
       digital_output_mask(od.variable(object::kDigitalOutputs, 2)),
       target_velocity(od.variable(object::kTargetVelocity)),
-      supported_modes(od.variable(object::kSupportedDriveModes)) {}
+      supported_modes(od.variable(object::kSupportedDriveModes)),
+      vl_target(od.variable(object::kVlTargetVelocity)),
+      vl_demand(od.variable(object::kVlVelocityDemand)),
+      vl_actual(od.variable(object::kVlVelocityActual)),
+      vl_min(od.variable(object::kVlMinMax, 1)),
+      vl_max(od.variable(object::kVlMinMax, 2)),
+      vl_acceleration_speed(od.variable(object::kVlAcceleration, 1)),
+      vl_acceleration_time(od.variable(object::kVlAcceleration, 2)),
+      vl_deceleration_speed(od.variable(object::kVlDeceleration, 1)),
+      vl_deceleration_time(od.variable(object::kVlDeceleration, 2)),
+      vl_setpoint_numerator(od.variable(object::kVlSetpointFactor, 1)),
+      vl_setpoint_denominator(od.variable(object::kVlSetpointFactor, 2)),
+      vl_dimension_numerator(od.variable(object::kVlDimensionFactor, 1)),
+      vl_dimension_denominator(od.variable(object::kVlDimensionFactor, 2)),
+      ip_record(od.variable(object::kInterpolationData, 1)),
+      ip_buffer_size(od.variable(object::kInterpolationBuffer, 2)),
+      ip_buffer_organisation(od.variable(object::kInterpolationBuffer, 3)),
+      ip_buffer_position(od.variable(object::kInterpolationBuffer, 4)),
+      ip_buffer_clear(od.variable(object::kInterpolationBuffer, 6)) {}
 
 }  // namespace servogate::canopen

@@ -15,7 +15,10 @@ inline constexpr std::uint16_t kVelocityDemand = 0x606B, kPositionWindowTime = 0
                                kVelocityThreshold = 0x606F, kVelocityThresholdTime = 0x6070,
                                kEndVelocity = 0x6082, kTorqueSlope = 0x6087,
                                kProbeCounter = 0x60D5,  ///< 60D5h-60D8h
-    kPositiveTorqueLimit = 0x60E0, kNegativeTorqueLimit = 0x60E1, kSupportedHomingMethods = 0x60E3;
+    kPositiveTorqueLimit = 0x60E0, kNegativeTorqueLimit = 0x60E1, kSupportedHomingMethods = 0x60E3,
+                               kVlMinMax = 0x6046, kVlAcceleration = 0x6048, kVlDeceleration = 0x6049,
+                               kVlSetpointFactor = 0x604B, kVlDimensionFactor = 0x604C,
+                               kInterpolationSubMode = 0x60C0, kInterpolationBuffer = 0x60C4;
 }  // namespace object
 
 /// Values of the name plate that the defaults of the objects depend on.
@@ -45,7 +48,11 @@ struct DriveVariables {
       &homing_speed_switch, &homing_speed_zero, &homing_acceleration, &position_offset, &velocity_offset,
       &torque_offset, &probe_function, &probe_status, &interpolation_time, &interpolation_exponent,
       &max_acceleration, &max_deceleration, &torque_limit_positive, &torque_limit_negative, &following_actual,
-      &digital_inputs, &digital_outputs, &digital_output_mask, &target_velocity, &supported_modes;
+      &digital_inputs, &digital_outputs, &digital_output_mask, &target_velocity, &supported_modes, &vl_target,
+      &vl_demand, &vl_actual, &vl_min, &vl_max, &vl_acceleration_speed, &vl_acceleration_time,
+      &vl_deceleration_speed, &vl_deceleration_time, &vl_setpoint_numerator, &vl_setpoint_denominator,
+      &vl_dimension_numerator, &vl_dimension_denominator, &ip_record, &ip_buffer_size,
+      &ip_buffer_organisation, &ip_buffer_position, &ip_buffer_clear;
 };
 
 }  // namespace servogate::canopen

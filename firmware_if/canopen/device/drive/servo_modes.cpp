@@ -26,6 +26,7 @@ void ServoProfile::select_mode() noexcept {
   start_bit_ = v_.controlword & kStart;
   window_time_ = 0.0;
   new_target_ = false;
+  buffer_.clear();
   if (command_.loop != ServoCommand::Loop::position) {
     const double velocity = servo_.velocity;
     hold_actual();
@@ -51,6 +52,10 @@ void ServoProfile::run_mode() noexcept {
       return profile_torque();
     case OperationMode::homing:
       return homing();
+    case OperationMode::velocity:
+      return velocity_mode();
+    case OperationMode::interpolated_position:
+      return interpolated_position();
     default:
       // No mode: stay where we are.
       ramp_velocity(demand_, 0.0, slow_down(), slow_down(), h_);
@@ -274,6 +279,10 @@ std::uint16_t ServoProfile::mode_bits() const noexcept {
       if (homing_attained_) word |= kModeSpecific12;
       if (homing_error_) word |= kModeSpecific13;
       if (homing_.state() != HomingSequence::State::running && rests) word |= kTargetReached;
+      return word;
+    case OperationMode::interpolated_position:
+      if (interpolating()) word |= kModeSpecific12;
+      if (!halted() && rests && buffer_.count() == 0) word |= kTargetReached;
       return word;
     case OperationMode::cyclic_sync_position:
       if (following_exceeded_) word |= kModeSpecific13;

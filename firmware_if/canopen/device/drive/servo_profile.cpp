@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/canopen/device/drive/servo_profile.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware_if/canopen/402/statusword.hpp"
@@ -42,7 +43,8 @@ ServoProfile::ServoProfile(ObjectDictionary& dictionary, const ServoProfileSetti
       h_(static_cast<double>(settings.servo_period) * 1e-9),
       probe_(dictionary),
       target_position_slot_(dictionary.find(object::kTargetPosition, 0)),
-      controlword_slot_(dictionary.find(object::kControlword, 0)) {
+      controlword_slot_(dictionary.find(object::kControlword, 0)),
+      ip_record_slot_(dictionary.find(object::kInterpolationData, 1)) {
   power_.set_brake(settings.brake_release, settings.brake_engage);
   interpolation_period_changed();
 }
@@ -62,6 +64,8 @@ void ServoProfile::on_reset() noexcept {
   homing_attained_ = homing_error_ = false;
   set_point_active_ = set_point_waiting_ = set_point_acknowledged_ = start_bit_ = false;
   new_target_ = false;
+  buffer_ = {};
+  buffer_configured(2);
   interpolation_period_changed();
   hold_actual();
 }
@@ -81,6 +85,16 @@ AbortCode ServoProfile::before_write(ObjectDictionary::Slot slot, std::int64_t v
                  : AbortCode::value_invalid;
     case object::kHomingMethod:
       return known(supported_homing_methods()) ? AbortCode::none : AbortCode::value_invalid;
+    case object::kInterpolationData:
+      return buffer_.takes_more() ? AbortCode::none : AbortCode::device_state;
+    case object::kInterpolationBuffer:
+      // It cannot be rearranged while the axis lives on it.
+      return s.subindex <= 3 && mode_ == OperationMode::interpolated_position && interpolating()
+                 ? AbortCode::device_state
+                 : AbortCode::none;
+    case object::kVlSetpointFactor:
+    case object::kVlDimensionFactor:
+      return value == 0 ? AbortCode::value_invalid : AbortCode::none;
     case object::kSoftwarePositionLimit:
       if (s.subindex == 1 && value > v_.limit_max) return AbortCode::maximum_below_minimum;
       return s.subindex == 2 && value < v_.limit_min ? AbortCode::maximum_below_minimum : AbortCode::none;
@@ -91,11 +105,17 @@ AbortCode ServoProfile::before_write(ObjectDictionary::Slot slot, std::int64_t v
 
 void ServoProfile::after_write(ObjectDictionary::Slot slot) noexcept {
   if (slot == controlword_slot_) return;
+  if (slot == ip_record_slot_) {
+    buffer_.push(v_.ip_record);
+    return;
+  }
   if (slot == target_position_slot_) {
     new_target_ = true;
     return;
   }
-  if (dictionary_.spec(slot).index == object::kInterpolationTimePeriod) interpolation_period_changed();
+  const ObjectSpec& spec = dictionary_.spec(slot);
+  if (spec.index == object::kInterpolationTimePeriod) interpolation_period_changed();
+  if (spec.index == object::kInterpolationBuffer) buffer_configured(spec.subindex);
 }
 
 void ServoProfile::interpolation_period_changed() noexcept {
@@ -253,6 +273,7 @@ void ServoProfile::generate() noexcept {
 }
 
 double ServoProfile::slow_down() const noexcept {
+  if (mode_ == OperationMode::velocity) return vl_ramp(v_.vl_deceleration_speed, v_.vl_deceleration_time);
   return static_cast<double>(mode_ == OperationMode::homing ? v_.homing_acceleration
                                                             : v_.profile_deceleration);
 }
@@ -314,6 +335,13 @@ void ServoProfile::refresh() noexcept {
   v_.position_demand = cut(demand);
   v_.following_actual = cut(demand - actual);
   v_.velocity_demand = static_cast<std::int64_t>(power_.energised() ? command_.velocity : 0.0);
+  const double unit = vl_unit();
+  const auto speed = [unit](double counts_s) {
+    return static_cast<std::int64_t>(std::clamp(std::round(counts_s / unit), -32768.0, 32767.0));
+  };
+  v_.vl_demand = speed(power_.energised() ? command_.velocity : 0.0);
+  v_.vl_actual = speed(servo_.velocity);
+  v_.ip_buffer_position = buffer_.count();
   v_.torque_actual = v_.current_actual = static_cast<std::int64_t>(servo_.torque);
   v_.torque_demand = static_cast<std::int64_t>(command_.loop == ServoCommand::Loop::torque ? command_.torque
                                                                                            : servo_.torque);

@@ -5,6 +5,7 @@
 #include "firmware_if/canopen/402/mode.hpp"
 #include "firmware_if/canopen/device/drive/drive_objects.hpp"
 #include "firmware_if/canopen/device/drive/homing.hpp"
+#include "firmware_if/canopen/device/drive/interpolation_buffer.hpp"
 #include "firmware_if/canopen/device/drive/motion_profile.hpp"
 #include "firmware_if/canopen/device/drive/power_state.hpp"
 #include "firmware_if/canopen/device/drive/probe_latch.hpp"
@@ -21,9 +22,10 @@ struct ServoProfileSettings {
   bool limit_switches_stop = true;  ///< the drive itself stops at its limit inputs, outside of homing
 };
 
-/// A CiA 402 servo drive between object dictionary and servo loops: state machine, modes pp, pv, tq, hm, csp,
-/// csv and cst, halt and stop ramps, touch probe, supervision. One tick() a servo period turns what the servo
-/// measures into what it shall do. No knowledge of CAN. real-time safe but for the constructor.
+/// A CiA 402 servo drive between object dictionary and servo loops: state machine, modes pp, vl, pv, tq,
+/// hm, ip, csp, csv and cst, halt and stop ramps, touch probe, supervision. One tick() a servo period turns
+/// what the servo measures into what it shall do. No knowledge of CAN. real-time safe but for the
+/// constructor.
 class ServoProfile final : public DeviceProfile {
  public:
   ServoProfile(ObjectDictionary& dictionary, const ServoProfileSettings& settings);
@@ -78,6 +80,14 @@ class ServoProfile final : public DeviceProfile {
   void homing() noexcept;
   void finish_homing() noexcept;
 
+  void velocity_mode() noexcept;
+  double vl_unit() const noexcept;
+  double vl_ramp(std::int64_t delta_speed, std::int64_t delta_time) const noexcept;
+  double vl_reference() noexcept;
+  void interpolated_position() noexcept;
+  bool interpolating() const noexcept;
+  void buffer_configured(std::uint8_t subindex) noexcept;
+
   double target_from_object(std::int64_t object_value) noexcept;
   double limited_target(double target) noexcept;
   double profile_speed() const noexcept;
@@ -112,7 +122,7 @@ class ServoProfile final : public DeviceProfile {
   double window_time_ = 0.0;  ///< how long the target (pp, pv) has been inside its window
 
   // csp
-  ObjectDictionary::Slot target_position_slot_, controlword_slot_;
+  ObjectDictionary::Slot target_position_slot_, controlword_slot_, ip_record_slot_;
   bool new_target_ = false;
   int segment_ticks_ = 4, ticks_left_ = 0;
   double cyclic_target_ = 0.0;   ///< as commanded, unwrapped
@@ -124,6 +134,8 @@ class ServoProfile final : public DeviceProfile {
   bool waiting_relative_ = false;
   std::int64_t waiting_target_ = 0;
   double active_target_ = 0.0;
+  // ip
+  InterpolationBuffer buffer_;
   // hm
   bool homing_attained_ = false, homing_error_ = false;
 };

@@ -222,7 +222,11 @@ void DriveLink::apply(image::Nanoseconds now, const image::DriveCommand& command
 // follow (CiA 402-2, csp: the target position is used from the first SYNC in Operation enabled on).
 std::int64_t DriveLink::target_position(const image::DriveCommand& command) noexcept {
   handover_difference_ = 0;
-  if (control_.state() != DriveState::operation_enabled) {
+  // While the drive homes by itself it leads: the target goes along with the actual position, also over the
+  // new zero, until csp is back and the command is seated on it again.
+  const auto homing = static_cast<std::int8_t>(OperationMode::homing);
+  const bool drive_leads = mode_wanted_ == OperationMode::homing || mode_shown_ == homing;
+  if (drive_leads || control_.state() != DriveState::operation_enabled) {
     following_ = false;
     held_target_ = position_counts_;
     return held_target_;
