@@ -17,7 +17,8 @@ class Machine {
   virtual const image::ProcessImage& image() const = 0;
   /// Posts a request to the gate. False: the queue is full.
   virtual bool post(const image::Request& request) = 0;
-  /// How long Cycle::step() took in the last cycle, by the wall clock; simulated devices are not in it.
+  /// How long Cycle::step() took in the last cycle, by the wall clock; simulated devices are not in it. -1:
+  /// this cycle was not measured.
   virtual image::Nanoseconds cycle_duration_ns() const = 0;
   /// Puts a fault on a simulated device ("can.x", "over_current"); false: no such device or fault.
   virtual bool inject(std::string_view device, std::string_view fault) = 0;

@@ -14,6 +14,19 @@
 
 namespace servogate::plc {
 
+namespace {
+
+/// The way of one place between packet and memory, as short as a scan wants it.
+struct Move {
+  enum class Kind : std::uint8_t { bit, raw_bit, bytes1, bytes2, bytes4, bytes8, text } kind;
+  image::Packet packet;
+  std::uint8_t detail;  ///< number of the bit, or of the characters
+  std::uint32_t byte;
+  std::uint32_t address;
+};
+
+}  // namespace
+
 struct Engine::State {
   struct Force {
     Handle handle;
@@ -26,63 +39,93 @@ struct Engine::State {
     bool last = false;
   };
   std::vector<std::uint8_t> memory;
+  std::vector<Move> taken_in, put_back;
   std::vector<Force> forces;
   std::vector<TaskState> tasks;
   ScanResult fault;
   bool first = true;
 };
 
-Engine::Engine(std::shared_ptr<const Image> image)
-    : image_(std::move(image)), state_(std::make_unique<State>()) {
-  state_->forces.reserve(kMaxForces);
-  restart();
-}
-Engine::~Engine() = default;
-
-void Engine::restart() {
-  state_->memory = image_->memory;
-  state_->tasks.assign(image_->tasks.size(), {});
-  state_->fault = {};
-  state_->first = true;
-}
-
 namespace {
 
-void take_in(const Image::Shared& s, const image::Packets& packets, std::uint8_t* at) noexcept {
-  const std::uint8_t* from = packets.data(s.place.packet) + s.place.byte();
-  switch (s.place.format) {
+Move move_of(const Image::Shared& s) {
+  using Kind = Move::Kind;
+  const image::Place& p = s.place;
+  switch (p.format) {
     case image::Format::bl:
-      *at = s.raw ? *from : static_cast<std::uint8_t>((*from >> s.place.bit()) & 1);
+      return {s.raw ? Kind::raw_bit : Kind::bit, p.packet, p.bit(), p.byte(), s.address};
+    case image::Format::ch:
+      return {Kind::text, p.packet, p.length, p.byte(), s.address};
+    default:
+      break;
+  }
+  const std::uint32_t size = image::format_size(p.format);
+  const Kind kind = size == 1   ? Kind::bytes1
+                    : size == 2 ? Kind::bytes2
+                    : size == 4 ? Kind::bytes4
+                                : Kind::bytes8;
+  return {kind, p.packet, 0, p.byte(), s.address};
+}
+
+inline void take_in(const Move& m, const std::uint8_t* from, std::uint8_t* at) noexcept {
+  using Kind = Move::Kind;
+  switch (m.kind) {
+    case Kind::bit:
+      *at = static_cast<std::uint8_t>((*from >> m.detail) & 1);
       return;
-    case image::Format::ch: {
-      std::size_t n = s.place.length;
+    case Kind::raw_bit:
+    case Kind::bytes1:
+      *at = *from;
+      return;
+    case Kind::bytes2:
+      std::memcpy(at, from, 2);
+      return;
+    case Kind::bytes4:
+      std::memcpy(at, from, 4);
+      return;
+    case Kind::bytes8:
+      std::memcpy(at, from, 8);
+      return;
+    case Kind::text: {
+      std::size_t n = m.detail;
       while (n > 0 && (from[n - 1] == ' ' || from[n - 1] == 0)) --n;
       *at = static_cast<std::uint8_t>(n);
       std::memcpy(at + 1, from, n);
       return;
     }
-    default:
-      std::memcpy(at, from, image::format_size(s.place.format));
   }
 }
 
-void put_back(const Image::Shared& s, image::Packets& packets, const std::uint8_t* at) noexcept {
-  std::uint8_t* to = packets.data(s.place.packet) + s.place.byte();
-  switch (s.place.format) {
-    case image::Format::bl: {
-      const bool on = s.raw ? ((*at >> s.place.bit()) & 1) != 0 : *at != 0;
-      const auto mask = static_cast<std::uint8_t>(1u << s.place.bit());
-      *to = static_cast<std::uint8_t>(on ? (*to | mask) : (*to & ~mask));
+void set_bit(std::uint8_t* byte, int bit, bool on) noexcept {
+  const auto mask = static_cast<std::uint8_t>(1u << bit);
+  *byte = static_cast<std::uint8_t>(on ? (*byte | mask) : (*byte & ~mask));
+}
+
+inline void put_back(const Move& m, std::uint8_t* to, const std::uint8_t* at) noexcept {
+  using Kind = Move::Kind;
+  switch (m.kind) {
+    case Kind::bit:
+      return set_bit(to, m.detail, *at != 0);
+    case Kind::raw_bit:
+      return set_bit(to, m.detail, ((*at >> m.detail) & 1) != 0);
+    case Kind::bytes1:
+      *to = *at;
       return;
-    }
-    case image::Format::ch: {
-      const std::size_t n = std::min<std::size_t>(*at, s.place.length);
+    case Kind::bytes2:
+      std::memcpy(to, at, 2);
+      return;
+    case Kind::bytes4:
+      std::memcpy(to, at, 4);
+      return;
+    case Kind::bytes8:
+      std::memcpy(to, at, 8);
+      return;
+    case Kind::text: {
+      const std::size_t n = std::min(*at, m.detail);
       std::memcpy(to, at + 1, n);
-      std::memset(to + n, ' ', s.place.length - n);
+      std::memset(to + n, ' ', m.detail - n);
       return;
     }
-    default:
-      std::memcpy(to, at, image::format_size(s.place.format));
   }
 }
 
@@ -94,12 +137,25 @@ void drop(const Image::Shared& s, image::Packets& packets) noexcept {
     std::memset(to, s.place.format == image::Format::ch ? ' ' : 0, s.place.bytes());
 }
 
-void set_bit(std::uint8_t* byte, int bit, bool on) noexcept {
-  const auto mask = static_cast<std::uint8_t>(1u << bit);
-  *byte = static_cast<std::uint8_t>(on ? (*byte | mask) : (*byte & ~mask));
-}
-
 }  // namespace
+
+Engine::Engine(std::shared_ptr<const Image> image)
+    : image_(std::move(image)), state_(std::make_unique<State>()) {
+  state_->forces.reserve(kMaxForces);
+  for (const Image::Shared& place : image_->places) {
+    state_->taken_in.push_back(move_of(place));
+    if (place.written) state_->put_back.push_back(state_->taken_in.back());
+  }
+  restart();
+}
+Engine::~Engine() = default;
+
+void Engine::restart() {
+  state_->memory = image_->memory;
+  state_->tasks.assign(image_->tasks.size(), {});
+  state_->fault = {};
+  state_->first = true;
+}
 
 ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexcept {
   State& s = *state_;
@@ -124,7 +180,12 @@ ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexce
       else
         std::memcpy(mem + f.handle.address, f.bytes.data(), f.size);
   };
-  for (const Image::Shared& p : im.places) take_in(p, packets, mem + p.address);
+  std::uint8_t* const packet[] = {packets.data(image::Packet::a), packets.data(image::Packet::k),
+                                  packets.data(image::Packet::v)};
+  const auto in_packet = [&packet](const Move& m) {
+    return packet[static_cast<std::size_t>(m.packet)] + m.byte;
+  };
+  for (const Move& m : s.taken_in) take_in(m, in_packet(m), mem + m.address);
   if (s.first)
     for (const Image::Shared& p : im.places)
       if (p.initialised) {
@@ -177,8 +238,7 @@ ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexce
     return result;
   }
   apply_forces();
-  for (const Image::Shared& p : im.places)
-    if (p.written) put_back(p, packets, mem + p.address);
+  for (const Move& m : s.put_back) put_back(m, in_packet(m), mem + m.address);
   return result;
 }
 
@@ -234,12 +294,14 @@ void assign(const Image& image, std::vector<std::uint8_t>& memory, image::Packet
             const std::uint8_t* bytes) noexcept {
   std::uint8_t* at = memory.data() + h.address;
   const Image::Shared* s = h.place >= 0 ? &image.places[static_cast<std::size_t>(h.place)] : nullptr;
-  if (s != nullptr) take_in(*s, packets, memory.data() + s->address);
+  if (s != nullptr)
+    take_in(move_of(*s), packets.data(s->place.packet) + s->place.byte(), memory.data() + s->address);
   if (h.bit >= 0)
     set_bit(at, h.bit, bytes[0] != 0);
   else
     std::memcpy(at, bytes, h.type->kind == Kind::string ? 1u + bytes[0] : h.type->size);
-  if (s != nullptr) put_back(*s, packets, memory.data() + s->address);
+  if (s != nullptr)
+    put_back(move_of(*s), packets.data(s->place.packet) + s->place.byte(), memory.data() + s->address);
 }
 }  // namespace
 

@@ -68,12 +68,13 @@ CycleCost measure(Machine& m) {
   ask(m, RequestKind::start);
   std::vector<image::Nanoseconds> durations;
   durations.reserve(1'000'000);
+  long cycles = 0;
   const auto begin = std::chrono::steady_clock::now();
   const image::Nanoseconds from = m.image().now.t_ns;
   do {
     m.step();
-    durations.push_back(m.cycle_duration_ns());
-  } while (durations.size() < 10 || m.image().processes[0].state == image::ProcessState::running ||
+    if (const image::Nanoseconds ns = m.cycle_duration_ns(); ns >= 0) durations.push_back(ns);
+  } while (++cycles < 10 || m.image().processes[0].state == image::ProcessState::running ||
            m.image().processes[0].state == image::ProcessState::waiting);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   cost.finished = m.image().processes[0].state == image::ProcessState::ended;

@@ -16,6 +16,9 @@ struct CanFrame {
   bool error = false;  ///< an error frame of the interface, not data
   std::uint8_t length = 0;
   std::array<std::uint8_t, 64> data{};
+  /// Bits from start of frame to end of frame with its own stuff bits, where somebody has counted them
+  /// already (can_wire.hpp); 0: not counted. Whoever changes the frame sets it back to 0.
+  std::uint16_t wire_bits = 0;
   /// End of frame on the wire as the transport knows it: simulated time on a mock bus, CLOCK_MONOTONIC on a
   /// transport of the computer (a time stamp of another clock is converted when the frame is read).
   Nanoseconds timestamp_ns = 0;

@@ -97,8 +97,18 @@ class Packets {
   /// is outside or the value does not fit. real-time safe.
   bool set_number(const Place& p, double value) noexcept;
   /// Bit access, the usual case. real-time safe.
-  bool bit(const Place& p) const noexcept { return number(p) != 0.0; }
-  bool set_bit(const Place& p, bool value) noexcept { return set_number(p, value ? 1.0 : 0.0); }
+  bool bit(const Place& p) const noexcept {
+    if (p.format != Format::bl) return number(p) != 0.0;
+    return contains(p) && ((data(p.packet)[p.byte()] >> p.bit()) & 1) != 0;
+  }
+  bool set_bit(const Place& p, bool value) noexcept {
+    if (p.format != Format::bl) return set_number(p, value ? 1.0 : 0.0);
+    if (!contains(p)) return false;
+    std::uint8_t& byte = data(p.packet)[p.byte()];
+    const auto mask = static_cast<std::uint8_t>(1u << p.bit());
+    byte = static_cast<std::uint8_t>(value ? byte | mask : byte & ~mask);
+    return true;
+  }
   /// Characters of a CH place / stores them, padded with spaces to the place's length. real-time safe.
   std::string_view characters(const Place& p) const noexcept;
   bool set_characters(const Place& p, std::string_view text) noexcept;

@@ -135,9 +135,25 @@ void scatter(const Map& map, std::size_t block, const Data& data, image::Packets
     if (p.block == block) packets.set_number(p.place, value(map.blocks[block], p, data));
 }
 
-void gather(const Map& map, std::size_t block, const image::Packets& packets, Data& data) noexcept {
-  for (const Point& p : map.points)
-    if (p.block == block) set_value(map.blocks[block], p, packets.number(p.place), data);
+bool gather(const Map& map, std::size_t block, const image::Packets& packets, Data& data) noexcept {
+  const Block& b = map.blocks[block];
+  const bool bits = carries_bits(b.function);
+  bool changed = false;
+  for (const Point& p : map.points) {
+    if (p.block != block) continue;
+    if (bits) {
+      const bool on = packets.bit(p.place) != p.inverted;
+      if (data.bit(p.offset) == on) continue;
+      data.set_bit(p.offset, on);
+      changed = true;
+    } else {
+      const std::size_t last = p.offset + words_of(p.type) - 1u;
+      const std::uint16_t was[] = {data.words[p.offset], data.words[last]};
+      set_value(b, p, packets.number(p.place), data);
+      changed = changed || was[0] != data.words[p.offset] || was[1] != data.words[last];
+    }
+  }
+  return changed;
 }
 
 void apply_loss(const Map& map, std::size_t block, image::Packets& packets) noexcept {

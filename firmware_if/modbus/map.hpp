@@ -73,9 +73,9 @@ void set_value(const Block& block, const Point& point, double v, Data& data) noe
 
 /// Data of a reading block into the places of its points. real-time safe (all points are looked at).
 void scatter(const Map& map, std::size_t block, const Data& data, image::Packets& packets) noexcept;
-/// Places of a writing block's points into its data; registers without a point keep their content. real-time
-/// safe.
-void gather(const Map& map, std::size_t block, const image::Packets& packets, Data& data) noexcept;
+/// Places of a writing block's points into its data; registers without a point keep their content. True: the
+/// data are not what they were. real-time safe.
+bool gather(const Map& map, std::size_t block, const image::Packets& packets, Data& data) noexcept;
 /// Loss values of a reading block's points into their places. real-time safe.
 void apply_loss(const Map& map, std::size_t block, image::Packets& packets) noexcept;
 

@@ -39,6 +39,7 @@ class Session {
  private:
   Control& control_;
   report::TraceLayout layout_;
+  report::TraceLayout sampled_;  ///< what a row is filled with: signals only where somebody records them
   bool realtime_;
   report::RunStatistics statistics_;
   report::CycleTimes times_;

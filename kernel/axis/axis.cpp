@@ -273,8 +273,8 @@ void Axis::write_image(image::ProcessImage& image, const PowerSequence::Outputs&
   using image::field;
   using image::kAxisFields;
   const std::uint32_t base = image::axis_base(index_);
-  auto put = [&](const image::Place& p, double value) {
-    image.packets.set_number(image::at(p, base), value);
+  auto put = [&](const image::Place& p, bool value) __attribute__((always_inline)) {
+    image.packets.set_bit(image::at(p, base), value);  // a few instructions where the place is known
   };
   put(field(kAxisFields, "enabled"), drive_.online && drive_.state == image::DriveState::operation_enabled);
   put(field(kAxisFields, "homed"), homed_);
@@ -283,8 +283,8 @@ void Axis::write_image(image::ProcessImage& image, const PowerSequence::Outputs&
   put(field(kAxisFields, "on_limit_plus"), limit_plus_);
   put(field(kAxisFields, "on_limit_minus"), limit_minus_);
   put(field(kAxisFields, "brake_release"), power.brake_release);
-  put(field(kAxisFields, "owner"), static_cast<double>(owner_));
-  put(field(kAxisFields, "position"), actual_);
+  image.packets.set_number(image::at(field(kAxisFields, "owner"), base), static_cast<double>(owner_));
+  image.packets.set_number(image::at(field(kAxisFields, "position"), base), actual_);
 }
 
 }  // namespace servogate::axis

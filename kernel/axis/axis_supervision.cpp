@@ -36,7 +36,9 @@ void Axis::read_places(const image::ProcessImage& image) noexcept {
   using image::field;
   using image::kAxisFields;
   const std::uint32_t base = image::axis_base(index_);
-  auto bit = [&](const image::Place& p) { return image.packets.bit(image::at(p, base)); };
+  auto bit = [&](const image::Place& p) __attribute__((always_inline)) {
+    return image.packets.bit(image::at(p, base));  // a few instructions where the place is known
+  };
   limit_plus_ = on(image, config_.limit_plus) || bit(field(kAxisFields, "limit_plus"));
   limit_minus_ = on(image, config_.limit_minus) || bit(field(kAxisFields, "limit_minus"));
   home_switch_ = on(image, config_.home_switch) || bit(field(kAxisFields, "home_switch"));

@@ -160,8 +160,8 @@ void Spindle::write_interface(image::ProcessImage& image) const noexcept {
   using image::field;
   using image::kSpindleFields;
   const std::uint32_t base = image::spindle_base(index_);
-  auto put = [&](const image::Place& p, double value) {
-    image.packets.set_number(image::at(p, base), value);
+  auto put = [&](const image::Place& p, bool value) __attribute__((always_inline)) {
+    image.packets.set_bit(image::at(p, base), value);  // a few instructions where the place is known
   };
   put(field(kSpindleFields, "run"), mode_ != SpindleMode::stop);
   put(field(kSpindleFields, "cw"), mode_ == SpindleMode::cw);
@@ -169,8 +169,9 @@ void Spindle::write_interface(image::ProcessImage& image) const noexcept {
   put(field(kSpindleFields, "orient"), mode_ == SpindleMode::orient);
   put(field(kSpindleFields, "at_speed"), at_speed_);
   put(field(kSpindleFields, "zero_speed"), zero_speed_);
-  put(field(kSpindleFields, "command"), image.spindles[static_cast<std::size_t>(index_)].command_rpm);
-  put(field(kSpindleFields, "actual"), actual_rpm_);
+  image.packets.set_number(image::at(field(kSpindleFields, "command"), base),
+                           image.spindles[static_cast<std::size_t>(index_)].command_rpm);
+  image.packets.set_number(image::at(field(kSpindleFields, "actual"), base), actual_rpm_);
 }
 
 bool Spindle::settled() const noexcept {

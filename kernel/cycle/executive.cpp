@@ -33,8 +33,7 @@ Cycle::Cycle(CycleParts parts) : parts_(std::move(parts)), queues_(std::make_uni
 Cycle::~Cycle() = default;
 
 bool Cycle::step() noexcept {
-  const image::Nanoseconds begin = parts_.stopwatch != nullptr ? parts_.stopwatch->now_ns() : 0;
-  stamp_ns_ = begin;
+  begin_measuring();
   image_.now.number = count_;
   image_.now.t_ns = count_ * parts_.period_ns;
   if (!receive()) return false;
@@ -58,14 +57,21 @@ bool Cycle::step() noexcept {
   ++count_;
   publish();
   stamp(Phase::publish);
-  duration_ns_ = stamp_ns_ - begin;
   return true;
 }
 
+void Cycle::begin_measuring() noexcept {
+  measuring_ = parts_.stopwatch != nullptr && count_ % measure_every_ == 0;
+  if (!measuring_) return;
+  duration_ns_ = 0;
+  stamp_ns_ = parts_.stopwatch->now_ns();
+}
+
 void Cycle::stamp(Phase phase) noexcept {
-  if (parts_.stopwatch == nullptr) return;
+  if (!measuring_) return;
   const image::Nanoseconds now = parts_.stopwatch->now_ns();
   phase_ns_[static_cast<std::size_t>(phase)] = now - stamp_ns_;
+  duration_ns_ += now - stamp_ns_;
   stamp_ns_ = now;
 }
 
@@ -86,10 +92,12 @@ bool Cycle::receive() noexcept {
 
 void Cycle::capture(CycleInputs& in) noexcept {
   in.number = count_;
-  for (std::size_t i = 0; i < axes_.size(); ++i) in.axes[i] = image_.axes[i].drive;
-  for (std::size_t i = 0; i < spindles_.size(); ++i) in.spindles[i] = image_.spindles[i].drive;
-  std::memcpy(in.packet_a.data(), image_.packets.data(image::Packet::a), in.packet_a.size());
-  in.sources = image_.sources;
+  if (tap_ != nullptr) {  // the image itself has them for everybody else
+    for (std::size_t i = 0; i < axes_.size(); ++i) in.axes[i] = image_.axes[i].drive;
+    for (std::size_t i = 0; i < spindles_.size(); ++i) in.spindles[i] = image_.spindles[i].drive;
+    std::memcpy(in.packet_a.data(), image_.packets.data(image::Packet::a), in.packet_a.size());
+    in.sources = image_.sources;
+  }
   for (std::size_t p = 0; p < parts_.processes.size(); ++p)
     parts_.processes[p]->published(
         std::span(in.visible).subspan(p * ProcessInCycle::kCrossingsEach, ProcessInCycle::kCrossingsEach));
@@ -201,7 +209,8 @@ void Cycle::watch_machine() noexcept {
   }
   for (std::size_t s = 0; s < source_quality_.size(); ++s) {
     const image::Quality q = image_.sources[s].quality;
-    if (parts_.watched_sources[s] && q != source_quality_[s] && q >= image::Quality::stale) {
+    if (q == source_quality_[s]) continue;
+    if (parts_.watched_sources[s] && q >= image::Quality::stale) {
       image::AlarmRecord r;
       r.number = q == image::Quality::stale ? alarm::kSourceStale : alarm::kSourceBad;
       r.segment = static_cast<std::int16_t>(s);

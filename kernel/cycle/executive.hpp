@@ -89,6 +89,10 @@ class Cycle {
     axes_[static_cast<std::size_t>(axis)].set_reference(counts);
   }
   bool homing_failed() const noexcept { return homing_.state() == axis::HomingSequence::State::failed; }
+  /// Measures every n-th cycle only, n >= 1: in virtual time the stopwatch would cost as much as a phase.
+  void measure_every(int cycles) noexcept { measure_every_ = cycles; }
+  /// The last cycle was measured: phase_ns() and duration_ns() are its own, otherwise of one before.
+  bool measured() const noexcept { return measuring_; }
   const std::array<image::Nanoseconds, kPhases>& phase_ns() const noexcept { return phase_ns_; }
   image::Nanoseconds duration_ns() const noexcept { return duration_ns_; }
   /// Number of cycles done.
@@ -124,6 +128,7 @@ class Cycle {
   ProcessContext context(int process) noexcept;
   void raise(const image::AlarmRecord& record) noexcept;
   bool still_present(const image::AlarmRecord& record) const noexcept;
+  void begin_measuring() noexcept;
   void stamp(Phase phase) noexcept;
 
   CycleParts parts_;
@@ -161,6 +166,8 @@ class Cycle {
   std::array<image::Nanoseconds, kPhases> phase_ns_{};
   image::Nanoseconds duration_ns_ = 0;
   image::Nanoseconds stamp_ns_ = 0;
+  int measure_every_ = 1;
+  bool measuring_ = false;
 };
 
 }  // namespace servogate::cycle

@@ -109,6 +109,30 @@ constexpr Place kInput{Packet::a, Format::bl, 0, 1};
 constexpr Place kOutput{Packet::a, Format::bl, 8, 1};
 constexpr Place kWord{Packet::k, Format::in, 10, 1};
 
+/// A microsecond passes with every look at it.
+class LookedAt final : public image::Clock {
+ public:
+  image::Nanoseconds now_ns() const noexcept override { return ++looks * image::kMicrosecond; }
+  mutable int looks = 0;
+};
+
+TEST(Cycle, measures_each_phase_of_every_nth_cycle_and_asks_no_clock_in_between) {
+  LookedAt clock;
+  CycleParts parts;
+  parts.stopwatch = &clock;
+  Cycle cycle(std::move(parts));
+  cycle.measure_every(3);
+  std::string measured;
+  for (int i = 0; i < 7; ++i) {
+    cycle.step();
+    measured += cycle.measured() ? 'm' : '.';
+  }
+  EXPECT_EQ(measured, "m..m..m");
+  EXPECT_EQ(clock.looks, 3 * (kPhases + 1));
+  EXPECT_EQ(cycle.duration_ns(), kPhases * image::kMicrosecond);
+  for (const image::Nanoseconds ns : cycle.phase_ns()) EXPECT_EQ(ns, image::kMicrosecond);
+}
+
 TEST(Cycle, receives_then_runs_the_logic_then_sends_and_counts_its_time) {
   Bench b;
   b.io.input = true;

@@ -105,9 +105,10 @@ TEST(ModbusMap, a_bit_of_a_register_leaves_its_neighbours_alone) {
   data.words[1] = 0x8001;
   Packets packets;
   packets.set_bit(*parse_place("SA8"), true);
-  gather(map, 0, packets, data);
+  EXPECT_TRUE(gather(map, 0, packets, data));
   EXPECT_EQ(data.words[1], 0x8021);
   EXPECT_EQ(data.words[0], 0);
+  EXPECT_FALSE(gather(map, 0, packets, data)) << "nothing has changed since";
 }
 
 TEST(ModbusMap, gives_loss_values_to_the_points_that_declare_one) {

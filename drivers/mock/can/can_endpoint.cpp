@@ -15,7 +15,9 @@ bool CanSegment::Endpoint::send(const CanFrame& frame) noexcept {
   }
   Pending& p = pending_.emplace_back();
   p.frame = frame;
+  p.frame.wire_bits = static_cast<std::uint16_t>(image::known_bits(frame));
   p.key = arbitration_key(frame);
+  segment_.waiting_ |= bit();
   p.not_before = segment_.now_;
   if (!segment_.faults_.empty())
     if (const CanFault* fault = segment_.fault_for(frame, number_, true)) p.not_before += fault->delay_ns;
@@ -56,28 +58,27 @@ Nanoseconds CanSegment::Endpoint::ready_at() const noexcept {
   return std::max(earliest, suspended_until_);
 }
 
-int CanSegment::Endpoint::offer() const noexcept {
-  if (!on_bus() || suspended_until_ > segment_.now_) return -1;
-  int best = -1;
-  for (std::size_t i = 0; i < pending_.size(); ++i) {
-    if (pending_[i].not_before <= segment_.now_ &&
-        (best < 0 || pending_[i].key < pending_[static_cast<std::size_t>(best)].key))
-      best = static_cast<int>(i);
+const CanSegment::Endpoint::Pending* CanSegment::Endpoint::offer() const noexcept {
+  if (!on_bus() || suspended_until_ > segment_.now_) return nullptr;
+  const Pending* best = nullptr;
+  for (const Pending& p : pending_) {
+    if (p.not_before <= segment_.now_ && (best == nullptr || p.key < best->key)) best = &p;
     if (!segment_.config_.priority_mailboxes) break;
   }
   return best;
 }
 
-void CanSegment::Endpoint::drop_pending(const CanFrame& frame) noexcept {
-  const auto it = std::find_if(pending_.begin(), pending_.end(), [&frame](const Pending& p) {
-    return p.key == arbitration_key(frame) && same_content(p.frame, frame);
+void CanSegment::Endpoint::drop_pending(std::uint32_t key, const CanFrame& frame) noexcept {
+  const auto it = std::find_if(pending_.begin(), pending_.end(), [key, &frame](const Pending& p) {
+    return p.key == key && same_content(p.frame, frame);
   });
   if (it != pending_.end()) pending_.erase(it);
+  if (pending_.empty()) segment_.waiting_ &= ~bit();
 }
 
 void CanSegment::Endpoint::sent() noexcept {
   if (transmit_errors_ >= kPassive)
-    suspended_until_ = segment_.now_ + segment_.bit_time(kIntermissionBits + kSuspendBits);
+    suspended_until_ = segment_.now_ + segment_.bit_time(image::kIntermissionBits + kSuspendBits);
   if (transmit_errors_ > 0) --transmit_errors_;
 }
 
@@ -86,12 +87,13 @@ void CanSegment::Endpoint::transmit_error(bool count) noexcept {
   if (transmit_errors_ >= kBusOff) {
     go_bus_off();
   } else if (transmit_errors_ >= kPassive) {
-    suspended_until_ = segment_.now_ + segment_.bit_time(kIntermissionBits + kSuspendBits);
+    suspended_until_ = segment_.now_ + segment_.bit_time(image::kIntermissionBits + kSuspendBits);
   }
 }
 
 void CanSegment::Endpoint::go_bus_off() noexcept {
   pending_.clear();
+  segment_.waiting_ &= ~bit();
   transmit_errors_ = 0;
   receive_errors_ = 0;
   recover_at_ = kNever;

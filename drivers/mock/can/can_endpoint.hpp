@@ -15,15 +15,21 @@ inline constexpr Nanoseconds kNever = std::numeric_limits<Nanoseconds>::max();
 
 /// Equal but for the identifier, which the caller has compared. real-time safe.
 inline bool same_content(const CanFrame& a, const CanFrame& b) noexcept {
-  return a.length == b.length && a.remote == b.remote &&
-         std::equal(a.data.begin(), a.data.begin() + (a.remote ? 0 : a.length), b.data.begin());
+  if (a.length != b.length || a.remote != b.remote) return false;
+  for (std::size_t i = 0, n = a.remote ? 0 : a.length; i < n; ++i)
+    if (a.data[i] != b.data[i]) return false;
+  return true;
 }
 
 /// One controller on a segment: its mailboxes, receive queue and error counters. Inside of CanSegment.
 class CanSegment::Endpoint final : public image::CanBus {
  public:
   Endpoint(CanSegment& segment, int number, std::string name, CanNode* node)
-      : segment_(segment), number_(number), name_(std::move(name)), node_(node) {
+      : segment_(segment),
+        number_(number),
+        name_(std::move(name)),
+        node_(node),
+        filter_(node != nullptr ? node->filter() : nullptr) {
     pending_.reserve(segment.config_.send_queue);
     if (!node) received_.resize(std::max<std::size_t>(1, segment.config_.receive_queue));
   }
@@ -38,13 +44,18 @@ class CanSegment::Endpoint final : public image::CanBus {
   bool bus_off() const noexcept { return segment_.now_ < recover_at_; }
   /// Earliest time at which it offers a frame.
   Nanoseconds ready_at() const noexcept;
-  /// Index of the frame it offers now, -1: none.
-  int offer() const noexcept;
-  const CanFrame& pending(int index) const noexcept {
-    return pending_[static_cast<std::size_t>(index)].frame;
-  }
+  /// A frame in its mailbox, with its length counted.
+  struct Pending {
+    CanFrame frame;
+    Nanoseconds not_before = 0;
+    std::uint32_t key = 0;  ///< arbitration_key()
+  };
+  /// The frame it offers now, nullptr: none.
+  const Pending* offer() const noexcept;
   /// Takes the frame that was on the wire out of its mailbox; nothing happens when it has gone meanwhile.
-  void drop_pending(const CanFrame& frame) noexcept;
+  void drop_pending(std::uint32_t key, const CanFrame& frame) noexcept;
+  /// The controller's filter lets data frames of this identifier (11 bits) through to the node.
+  bool accepts(std::uint32_t id) const noexcept { return filter_ == nullptr || (*filter_)[id]; }
 
   void push(const CanFrame& frame) noexcept;
   void sent() noexcept;
@@ -60,20 +71,20 @@ class CanSegment::Endpoint final : public image::CanBus {
 
   CanNode* node() const noexcept { return node_; }
   Nanoseconds due() const noexcept { return due_; }
-  void plan(Nanoseconds now) noexcept { due_ = std::max(node_->next_action_ns(), now + 1); }
+  void plan(Nanoseconds now) noexcept {
+    due_ = std::max(node_->next_action_ns(), now + 1);
+    segment_.node_due_known_ = false;
+  }
   void set_connected(bool connected) noexcept { connected_ = connected; }
 
  private:
-  struct Pending {
-    CanFrame frame;
-    Nanoseconds not_before = 0;
-    std::uint32_t key = 0;
-  };
+  std::uint64_t bit() const noexcept { return std::uint64_t{1} << number_; }
 
   CanSegment& segment_;
   int number_;
   std::string name_;
   CanNode* node_;
+  const CanFilter* filter_;
   Nanoseconds due_ = kNever;
   std::vector<Pending> pending_;  ///< in the order of send(); never grows beyond its reservation
   std::vector<CanFrame> received_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/mock/can/can_segment.hpp"
 
+#include <bit>
 #include <stdexcept>
 
 #include "drivers/mock/can/can_endpoint.hpp"
@@ -14,10 +15,15 @@ constexpr std::size_t kMaxEndpoints = 64;
 constexpr std::uint32_t kErrorFrameBits = 6 + 6 + 8;
 constexpr std::uint32_t kBitsAfterAcknowledge = 8;
 
+std::uint64_t whole_nanoseconds_of_a_bit(std::uint32_t bit_rate) {
+  if (bit_rate == 0) throw std::invalid_argument("a CAN segment needs a bit rate above zero");
+  return image::kSecond % bit_rate == 0 ? image::kSecond / bit_rate : 0;
+}
+
 }  // namespace
 
-CanSegment::CanSegment(CanSegmentConfig config) : config_(config) {
-  if (config_.bit_rate == 0) throw std::invalid_argument("a CAN segment needs a bit rate above zero");
+CanSegment::CanSegment(CanSegmentConfig config)
+    : config_(config), bit_ns_(whole_nanoseconds_of_a_bit(config.bit_rate)) {
   faults_.reserve(kMaxFaults);
 }
 CanSegment::~CanSegment() = default;
@@ -75,16 +81,24 @@ Nanoseconds CanSegment::next_event_ns() const noexcept {
   return std::min(busy_ ? attempt_.end : earliest_start(), earliest_node());
 }
 
+CanSegment::Endpoint& CanSegment::endpoint_of(std::uint64_t set) const noexcept {
+  return *endpoints_[static_cast<std::size_t>(std::countr_zero(set))];
+}
+
 Nanoseconds CanSegment::earliest_start() const noexcept {
   Nanoseconds earliest = kNever;
-  for (const auto& e : endpoints_) earliest = std::min(earliest, e->ready_at());
+  for (std::uint64_t rest = waiting_; rest != 0; rest &= rest - 1)
+    earliest = std::min(earliest, endpoint_of(rest).ready_at());
   return earliest == kNever ? kNever : std::max({earliest, bus_free_, now_});
 }
 
 Nanoseconds CanSegment::earliest_node() const noexcept {
-  Nanoseconds earliest = kNever;
-  for (const auto& e : endpoints_) earliest = std::min(earliest, e->due());
-  return earliest;
+  if (!node_due_known_) {
+    node_due_ = kNever;
+    for (const auto& e : endpoints_) node_due_ = std::min(node_due_, e->due());
+    node_due_known_ = true;
+  }
+  return node_due_;
 }
 
 void CanSegment::run_due_nodes() noexcept {
@@ -96,27 +110,29 @@ void CanSegment::run_due_nodes() noexcept {
 }
 
 void CanSegment::start_frame() noexcept {
-  std::uint32_t best = 0;
-  attempt_ = Attempt{};
-  for (std::size_t i = 0; i < endpoints_.size(); ++i) {
-    const int offered = endpoints_[i]->offer();
-    if (offered < 0) continue;
-    const CanFrame& frame = endpoints_[i]->pending(offered);
-    const std::uint32_t key = arbitration_key(frame);
-    if (attempt_.sender >= 0 && key > best) continue;
-    if (attempt_.sender >= 0 && key == best) {
+  const Endpoint::Pending* best = nullptr;
+  attempt_.sender = -1;
+  for (std::uint64_t rest = waiting_; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const Endpoint::Pending* const offered = endpoint_of(rest).offer();
+    if (offered == nullptr || (best != nullptr && offered->key > best->key)) continue;
+    const std::uint64_t bit = std::uint64_t{1} << i;
+    if (best != nullptr && offered->key == best->key) {
       // Two senders of one identifier: equal bits pass as one frame, different ones are a bit error.
-      attempt_.error |= !same_content(frame, attempt_.frame);
+      attempt_.error |= !same_content(offered->frame, best->frame);
+      attempt_.senders |= bit;
     } else {
-      attempt_ = Attempt{};
-      attempt_.sender = static_cast<int>(i);
-      attempt_.frame = frame;
-      best = key;
+      best = offered;
+      attempt_.sender = i;
+      attempt_.senders = bit;
+      attempt_.error = false;
     }
-    attempt_.senders |= std::uint64_t{1} << i;
   }
-  if (attempt_.sender < 0) return;
-  attempt_.bits = frame_bits(attempt_.frame);
+  if (best == nullptr) return;
+  attempt_.frame = best->frame;
+  attempt_.key = best->key;
+  attempt_.bits = best->frame.wire_bits;
+  attempt_.drop = attempt_.duplicate = false;
   if (const CanFault* fault = faults_.empty() ? nullptr : fault_for(attempt_.frame, attempt_.sender, false)) {
     attempt_.error |= fault->kind == CanFault::Kind::corrupt;
     attempt_.drop = fault->kind == CanFault::Kind::drop;
@@ -132,8 +148,8 @@ void CanSegment::start_frame() noexcept {
 
 void CanSegment::finish_attempt() noexcept {
   busy_ = false;
-  bus_free_ = attempt_.end + bit_time(kIntermissionBits);
-  account(attempt_.bits + kIntermissionBits);
+  bus_free_ = attempt_.end + bit_time(image::kIntermissionBits);
+  account(attempt_.bits + image::kIntermissionBits);
   const bool failed = attempt_.error || attempt_.unacknowledged;
   if (monitor_) {
     monitor_->on_wire(attempt_.frame, attempt_.sender, attempt_.start, attempt_.end,
@@ -143,16 +159,13 @@ void CanSegment::finish_attempt() noexcept {
   }
   if (failed) return finish_error();
   ++statistics_.frames;
-  for (std::size_t i = 0; i < endpoints_.size(); ++i) {
-    if (!(attempt_.senders >> i & 1)) continue;
-    endpoints_[i]->drop_pending(attempt_.frame);
-    endpoints_[i]->sent();
+  for (std::uint64_t rest = attempt_.senders; rest != 0; rest &= rest - 1) {
+    endpoint_of(rest).drop_pending(attempt_.key, attempt_.frame);
+    endpoint_of(rest).sent();
   }
   if (attempt_.drop) return;
-  CanFrame frame = attempt_.frame;
-  frame.timestamp_ns = attempt_.end;
-  const std::uint64_t senders = attempt_.senders;
-  for (int n = attempt_.duplicate ? 2 : 1; n > 0; --n) deliver(frame, senders);
+  attempt_.frame.timestamp_ns = attempt_.end;
+  for (int n = attempt_.duplicate ? 2 : 1; n > 0; --n) deliver(attempt_.frame, attempt_.senders);
 }
 
 void CanSegment::finish_error() noexcept {
@@ -169,16 +182,18 @@ void CanSegment::finish_error() noexcept {
 }
 
 void CanSegment::deliver(const CanFrame& frame, std::uint64_t senders) noexcept {
+  const bool filtered = !frame.extended && !frame.remote && frame.id < kFilterSize;
   for (std::size_t i = 0; i < endpoints_.size(); ++i) {
     Endpoint& e = *endpoints_[i];
     if (senders >> i & 1 || !e.on_bus()) continue;
     e.received_well();
-    if (e.node()) {
-      e.node()->on_frame(frame);
-      e.plan(now_);
-    } else {
+    if (e.node() == nullptr) {
       e.push(frame);
+      continue;
     }
+    const bool accepted = !filtered || e.accepts(frame.id);
+    if (accepted) e.node()->on_frame(frame);
+    if (accepted || e.due() <= now_) e.plan(now_);
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -7,8 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/mock/can/frame_bits.hpp"
-#include "firmware_if/image/can_bus.hpp"
+#include "firmware_if/image/can_wire.hpp"
 #include "firmware_if/image/process_image.hpp"
 
 namespace servogate::mock {
@@ -16,12 +16,19 @@ namespace servogate::mock {
 using image::CanFrame;
 using image::Nanoseconds;
 
+/// Acceptance filter of a controller: a bit for each identifier of 11 bits.
+inline constexpr std::uint32_t kFilterSize = 0x800;
+using CanFilter = std::bitset<kFilterSize>;
+
 /// Something that lives on a segment and acts in the very moment a frame ends or its own time has come.
 class CanNode {
  public:
   virtual ~CanNode() = default;
   /// Called once when the node is attached: its access to the bus, and the time of day.
   virtual void connect(image::CanBus& bus, Nanoseconds now) = 0;
+  /// Data frames with an identifier of 11 bits that it does not let through are kept from the node; asked for
+  /// once, when the node is attached, and looked at for every frame. nullptr: everything comes.
+  virtual const CanFilter* filter() const noexcept { return nullptr; }
   /// A frame of somebody else has ended; frame.timestamp_ns is now. real-time safe.
   virtual void on_frame(const CanFrame& frame) noexcept = 0;
   /// Brings the node to time t. real-time safe.
@@ -106,7 +113,7 @@ class CanSegment final : public image::Simulated {
   bool busy() const noexcept { return busy_; }
   /// Time of so many bits, rounded down. real-time safe.
   Nanoseconds bit_time(std::uint64_t bits) const noexcept {
-    return static_cast<Nanoseconds>(bits * 1'000'000'000u / config_.bit_rate);
+    return static_cast<Nanoseconds>(bit_ns_ != 0 ? bits * bit_ns_ : bits * 1'000'000'000u / config_.bit_rate);
   }
 
   const CanStatistics& statistics() const noexcept { return statistics_; }
@@ -136,6 +143,7 @@ class CanSegment final : public image::Simulated {
   /// The attempt on the wire.
   struct Attempt {
     CanFrame frame;
+    std::uint32_t key = 0;      ///< arbitration_key() of the frame
     std::uint64_t senders = 0;  ///< bit per endpoint; more than one only for equal identifiers
     int sender = -1;
     Nanoseconds start = 0;
@@ -147,6 +155,8 @@ class CanSegment final : public image::Simulated {
     bool duplicate = false;
   };
 
+  /// The first endpoint of a set, a bit each.
+  Endpoint& endpoint_of(std::uint64_t set) const noexcept;
   Nanoseconds earliest_start() const noexcept;
   Nanoseconds earliest_node() const noexcept;
   void run_due_nodes() noexcept;
@@ -160,7 +170,11 @@ class CanSegment final : public image::Simulated {
   const CanFault* fault_for(const CanFrame& frame, int sender, bool queued) noexcept;
 
   CanSegmentConfig config_;
+  std::uint64_t bit_ns_;  ///< length of a bit where that is a whole number, otherwise 0
   std::vector<std::unique_ptr<Endpoint>> endpoints_;
+  std::uint64_t waiting_ = 0;            ///< bit per endpoint that has a frame in its mailboxes
+  mutable Nanoseconds node_due_ = 0;     ///< earliest_node() ...
+  mutable bool node_due_known_ = false;  ///< ... since no node has planned anew
   CanMonitor* monitor_ = nullptr;
   std::vector<ActiveFault> faults_;
   CanStatistics statistics_;

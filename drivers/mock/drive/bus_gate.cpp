@@ -30,6 +30,7 @@ bool BusGate::send_pdo(image::CanFrame frame) noexcept {
   if (spoil_.pdo_flip != 0) {
     const auto bytes = std::span(frame.data).first(frame.length);
     canopen::store_le(canopen::load_le(bytes) ^ spoil_.pdo_flip, bytes);
+    frame.wire_bits = 0;
   }
   if (spoil_.pdo_delay_ns == 0) return bus_->send(frame);
   if (late_count_ < kLate) late_[late_count_++] = {frame, now_ + spoil_.pdo_delay_ns};

@@ -74,14 +74,16 @@ void SimulatedDrive::Inside::servo_tick() noexcept {
   const std::int64_t before = plant.counts();
   plant.step(command);
   read_inputs(before);
-  canopen::ServoState servo = plant.state();
-  if (any_lasting && spoiled(DriveFaultKind::encoder_loss)) {
-    servo.position = lost_encoder_position;
-    servo.zero_mark = false;
-  }
   inputs.hold_state = any_lasting && spoiled(DriveFaultKind::stuck_state) &&
                       profile.state() == fault(DriveFaultKind::stuck_state).state;
-  command = profile.tick(servo, inputs);
+  if (any_lasting && spoiled(DriveFaultKind::encoder_loss)) {
+    canopen::ServoState servo = plant.state();
+    servo.position = lost_encoder_position;
+    servo.zero_mark = false;
+    command = profile.tick(servo, inputs);
+  } else {
+    command = profile.tick(plant.state(), inputs);
+  }
 }
 
 // Levels of the inputs; where the shaft itself moved a switch, the edge lies on the switch's boundary.

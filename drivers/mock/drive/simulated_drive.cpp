@@ -71,6 +71,8 @@ void SimulatedDrive::connect(image::CanBus& bus, Nanoseconds now) {
   inside_->power_on(now);
 }
 
+const CanFilter* SimulatedDrive::filter() const noexcept { return &inside_->slave.filter(); }
+
 void SimulatedDrive::on_frame(const CanFrame& frame) noexcept {
   Inside& in = *inside_;
   if (!in.slave.concerned(frame) || in.spoiled(DriveFaultKind::deaf) || in.spoiled(DriveFaultKind::frozen))

@@ -65,6 +65,7 @@ class SimulatedDrive final : public CanNode {
 
   /// Switches the device on; its boot-up message comes boot_time_s later.
   void connect(image::CanBus& bus, Nanoseconds now) override;
+  const CanFilter* filter() const noexcept override;
   void on_frame(const CanFrame& frame) noexcept override;
   void advance_to(Nanoseconds t) noexcept override;
   Nanoseconds next_action_ns() const noexcept override;

@@ -25,7 +25,15 @@ MockGpio::MockGpio(std::vector<GpioInput> inputs, std::vector<GpioOutput> output
       position_(std::move(position)),
       source_(source) {
   lines_.resize(inputs_.size());
-  for (std::size_t n = 0; n < inputs_.size(); ++n) lines_[n].random.seed(inputs_[n].bounce.seed);
+  for (std::size_t n = 0; n < inputs_.size(); ++n) {
+    const image::Place& place = inputs_[n].place;
+    random_.emplace_back(inputs_[n].bounce.seed);
+    lines_[n].inverted = inputs_[n].inverted;
+    if (place.packet != image::Packet::a || place.format != image::Format::bl) continue;
+    if (place.byte() >= image::kPacketASize) continue;
+    lines_[n].byte = place.byte();
+    lines_[n].mask = static_cast<std::uint8_t>(1u << place.bit());
+  }
   driven_.resize(outputs_.size());
   for (std::size_t n = 0; n < outputs_.size(); ++n) driven_[n] = outputs_[n].inverted;
   output_edges_.resize(outputs_.size());
@@ -43,25 +51,25 @@ bool MockGpio::contact(const GpioInput& input) const {
   return at >= home.mm && at <= home.mm + home.width_mm;
 }
 
-void MockGpio::move(Line& line, const GpioInput& input, image::Nanoseconds t) {
-  const bool wanted = line.forced ? line.forced_level : contact(input);
+void MockGpio::move(Line& line, bool wanted, const Bounce& settings, std::mt19937_64& random,
+                    image::Nanoseconds t) {
   if (!line.started) {
     line.started = true;
     line.contact = line.level = wanted;
     return;
   }
-  const auto bounce = static_cast<std::uint64_t>(std::max<image::Nanoseconds>(input.bounce.time_ns, 0));
+  const auto bounce = static_cast<std::uint64_t>(std::max<image::Nanoseconds>(settings.time_ns, 0));
   if (wanted != line.contact) {
     line.contact = wanted;
     line.settle_ns = t + static_cast<image::Nanoseconds>(
-                             bounce == 0 ? 0 : bounce / 2 + line.random() % (bounce - bounce / 2) + 1);
+                             bounce == 0 ? 0 : bounce / 2 + random() % (bounce - bounce / 2) + 1);
     line.next_flip_ns = t;
   }
   while (line.next_flip_ns < line.settle_ns && line.next_flip_ns <= t) {
     line.level = !line.level;
     ++line.edges;
     const std::uint64_t step = bounce / kFlipsPerBounce + 1;
-    line.next_flip_ns += static_cast<image::Nanoseconds>(step + line.random() % step);
+    line.next_flip_ns += static_cast<image::Nanoseconds>(step + random() % step);
   }
   if (t >= line.settle_ns && line.level != line.contact) {
     line.level = line.contact;
@@ -71,7 +79,11 @@ void MockGpio::move(Line& line, const GpioInput& input, image::Nanoseconds t) {
 
 void MockGpio::advance_to(image::Nanoseconds t) {
   t_ns_ = std::max(t_ns_, t);
-  for (std::size_t n = 0; n < lines_.size(); ++n) move(lines_[n], inputs_[n], t_ns_);
+  for (std::size_t n = 0; n < lines_.size(); ++n) {
+    Line& line = lines_[n];
+    const bool wanted = line.forced ? line.forced_level : contact(inputs_[n]);
+    if (!line.settled(wanted)) move(line, wanted, inputs_[n].bounce, random_[n], t_ns_);
+  }
 }
 
 void MockGpio::receive(image::ProcessImage& image) noexcept {
@@ -80,8 +92,17 @@ void MockGpio::receive(image::ProcessImage& image) noexcept {
     if (known) image.sources[static_cast<std::size_t>(source_)].quality = image::Quality::bad;
     return;
   }
-  for (std::size_t n = 0; n < lines_.size(); ++n)
-    image.packets.set_bit(inputs_[n].place, lines_[n].level != inputs_[n].inverted);
+  std::uint8_t* const packet_a = image.packets.data(image::Packet::a);
+  for (std::size_t n = 0; n < lines_.size(); ++n) {
+    const Line& line = lines_[n];
+    const bool on = line.level != line.inverted;
+    if (line.mask == 0) {
+      image.packets.set_bit(inputs_[n].place, on);
+      continue;
+    }
+    std::uint8_t& byte = packet_a[line.byte];
+    byte = static_cast<std::uint8_t>(on ? byte | line.mask : byte & ~line.mask);
+  }
   if (!known) return;
   image::IoSource& source = image.sources[static_cast<std::size_t>(source_)];
   source.quality = image::Quality::good;

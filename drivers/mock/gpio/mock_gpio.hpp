@@ -98,19 +98,26 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
     bool started = false;
     bool forced = false;
     bool forced_level = false;
+    bool inverted = false;
+    std::uint8_t mask = 0;   ///< of its bit in packet A; 0: its place is elsewhere
+    std::uint32_t byte = 0;  ///< in packet A
     image::Nanoseconds settle_ns = 0;
     image::Nanoseconds next_flip_ns = 0;
     std::uint64_t edges = 0;
-    std::mt19937_64 random;
+    /// Seen as driven, and no bounce under way.
+    bool settled(bool wanted) const noexcept {
+      return started && wanted == contact && level == contact && next_flip_ns >= settle_ns;
+    }
   };
   bool contact(const GpioInput& input) const;
-  void move(Line& line, const GpioInput& input, image::Nanoseconds t);
+  void move(Line& line, bool wanted, const Bounce& bounce, std::mt19937_64& random, image::Nanoseconds t);
 
   std::vector<GpioInput> inputs_;
   std::vector<GpioOutput> outputs_;
   AxisPosition position_;
   int source_;
   std::vector<Line> lines_;
+  std::vector<std::mt19937_64> random_;  ///< of each line; large, and asked only while it bounces
   std::vector<bool> driven_;
   std::vector<std::uint64_t> output_edges_;
   image::Nanoseconds t_ns_ = 0;

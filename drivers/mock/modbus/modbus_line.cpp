@@ -18,10 +18,6 @@ constexpr std::size_t kRtuOverhead = 3;
 constexpr int kBitsPerCharacter = 11;
 constexpr Nanoseconds kFastSilence = 1'750'000;  // fixed above 19200 baud, section 2.5.1.1
 
-bool same(const modbus::Data& a, const modbus::Data& b) noexcept {
-  return a.bits == b.bits && a.words == b.words;
-}
-
 }  // namespace
 
 MockModbusLine::MockModbusLine(LineSettings line, modbus::Map map, std::vector<StationSettings> stations,
@@ -199,13 +195,10 @@ void MockModbusLine::send(image::ProcessImage& image) noexcept {
   for (std::size_t n = 0; n < blocks_.size(); ++n) {
     if (!modbus::writes(map_.blocks[n].function)) continue;
     BlockState& state = blocks_[n];
-    modbus::Data next = state.data;
-    gather(map_, n, image.packets, next);
-    if (!state.armed || !same(next, state.data)) {
+    if (gather(map_, n, image.packets, state.data) || !state.armed) {
       state.changed = true;
       state.due_ns = std::min(state.due_ns, image.now.t_ns);
     }
-    state.data = next;
     state.armed = true;
   }
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <span>
+#include <type_traits>
 
 #include "firmware_if/image/can_bus.hpp"
 
@@ -94,11 +97,21 @@ inline image::CanFrame make_frame(std::uint32_t id, std::span<const std::uint8_t
 /// Little-endian integers, as everything in CANopen. `count` 1-8 bytes. real-time safe.
 constexpr std::uint64_t load_le(std::span<const std::uint8_t> bytes) noexcept {
   std::uint64_t value = 0;
+  if (std::endian::native == std::endian::little && !std::is_constant_evaluated() &&
+      bytes.size() >= sizeof value) {
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
   for (std::size_t i = 0; i < bytes.size() && i < 8; ++i)
     value |= static_cast<std::uint64_t>(bytes[i]) << (8 * i);
   return value;
 }
 constexpr void store_le(std::uint64_t value, std::span<std::uint8_t> bytes) noexcept {
+  if (std::endian::native == std::endian::little && !std::is_constant_evaluated() &&
+      bytes.size() == sizeof value) {
+    std::memcpy(bytes.data(), &value, sizeof value);
+    return;
+  }
   for (std::size_t i = 0; i < bytes.size(); ++i)
     bytes[i] = static_cast<std::uint8_t>(i < 8 ? value >> (8 * i) : 0);
 }

@@ -53,10 +53,10 @@ struct PdoMapping {
 /// beyond the end of `bytes` read 0. real-time safe.
 constexpr std::uint64_t extract_bits(std::span<const std::uint8_t> bytes, std::uint32_t offset,
                                      std::uint32_t bits) noexcept {
+  if (offset >= 64 || bits == 0) return 0;
   std::uint64_t word = 0;
   for (std::size_t i = 0; i < bytes.size() && i < kPdoBytes; ++i)
     word |= static_cast<std::uint64_t>(bytes[i]) << (8 * i);
-  if (offset >= 64 || bits == 0) return 0;
   word >>= offset;
   return bits >= 64 ? word : word & ((std::uint64_t{1} << bits) - 1);
 }

@@ -62,10 +62,7 @@ bool Slave::concerned(const image::CanFrame& frame) const noexcept {
   const std::uint32_t id = frame.id;
   if (id == cob::kLssMaster) return true;
   if (booting_ || node_ == kUnconfiguredNode) return false;
-  if (id == cob::kNmt || id == sync_id() || id == cob::sdo_request(node_)) return true;
-  if ((id & 0x780) == 0x700 || (consumes_time() && id == time_id())) return true;
-  for (const ReceivePdo& p : receive_)
-    if (p.valid() && p.id() == id) return true;
+  if (id < filter_.size() && filter_[id]) return true;
   if (!frame.remote) return false;
   return std::any_of(transmit_.begin(), transmit_.end(), [id](const TransmitPdo& p) { return p.id() == id; });
 }
@@ -109,6 +106,7 @@ void Slave::take_node(NodeId node) noexcept {
   }
   node_ = node;
   monitor_.set_node(node);
+  set_filter();
 }
 
 bool Slave::store(NodeId node, std::uint32_t bit_s) noexcept {
@@ -312,6 +310,17 @@ void Slave::configure_pdos() noexcept {
     transmit_[static_cast<std::size_t>(n)].configure(dictionary_, n, now_);
     any_event_driven_ |= transmit_[static_cast<std::size_t>(n)].event_driven();
   }
+  set_filter();
+}
+
+void Slave::set_filter() noexcept {
+  filter_.reset();
+  filter_.set(cob::kNmt).set(cob::kLssMaster).set(sync_id());
+  if (node_ != kUnconfiguredNode) filter_.set(cob::sdo_request(node_));
+  if (consumes_time()) filter_.set(time_id());
+  for (std::uint32_t id = 0x700; id < 0x780; ++id) filter_.set(id);
+  for (const ReceivePdo& p : receive_)
+    if (p.valid()) filter_.set(p.id());
 }
 
 }  // namespace servogate::canopen

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <optional>
 
@@ -72,6 +73,9 @@ class Slave final : private SdoObjects, private PdoSink, private LssDevice {
   void power_on(image::CanBus& bus, image::Nanoseconds now, image::Nanoseconds boot_time) noexcept;
   /// Whether a frame can mean anything to this device; false lets the owner skip it.
   bool concerned(const image::CanFrame& frame) const noexcept;
+  /// Data frames for which concerned() may be true, a bit for each identifier: what the device sets its
+  /// controller's acceptance filter to.
+  const std::bitset<0x800>& filter() const noexcept { return filter_; }
   /// Whether a frame takes effect at once, so that the profile must be brought to its time first. A PDO that
   /// waits for SYNC does not.
   bool immediate(const image::CanFrame& frame) const noexcept;
@@ -105,6 +109,7 @@ class Slave final : private SdoObjects, private PdoSink, private LssDevice {
   void enter(NmtState state) noexcept;
   void reset_communication() noexcept;
   void configure_pdos() noexcept;
+  void set_filter() noexcept;
   void on_sync(const image::CanFrame& frame) noexcept;
   void on_pdo_frame(const image::CanFrame& frame) noexcept;
   void answer_remote(const image::CanFrame& frame) noexcept;
@@ -133,6 +138,7 @@ class Slave final : private SdoObjects, private PdoSink, private LssDevice {
   std::array<ReceivePdo, kPdos> receive_;
   std::array<TransmitPdo, kPdos> transmit_;
   bool any_event_driven_ = false;
+  std::bitset<0x800> filter_;
   std::int64_t &cob_id_sync_, &cob_id_time_;
   std::int64_t &sync_overflow_, &sync_window_;  ///< 1019h; 1007h in us
   image::Nanoseconds window_end_ = 0;

@@ -116,6 +116,9 @@ void Slave::communication_written(std::uint16_t index, std::uint8_t subindex, st
       if (programs_ && programs_->running()) profile_.on_abort_connection(0);
       restart_due_ = programs_ && programs_->control(value, now_);
       return;
+    case object::kCobIdSync:
+    case object::kCobIdTime:
+      return set_filter();
     case object::kPredefinedErrorField:
       return emcy_.clear_history();
     case object::kConsumerHeartbeatTime:

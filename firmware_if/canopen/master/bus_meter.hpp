@@ -3,19 +3,18 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware_if/image/can_bus.hpp"
+#include "firmware_if/image/can_wire.hpp"
 #include "firmware_if/image/time.hpp"
 
 namespace servogate::canopen {
 
-/// Length of this very frame on the wire in bits: its own stuff bits, trailer and interframe space included.
-/// Classic frames; at most 8 bytes count. Source: ISO 11898-1. real-time safe.
-std::uint32_t wire_bits(const image::CanFrame& frame) noexcept;
-
 /// Load of a bus from the frames seen on it. All members are real-time safe.
 class BusMeter {
  public:
-  void add(const image::CanFrame& frame) noexcept { cycle_bits_ += wire_bits(frame); }
+  /// A classic frame with the intermission behind it.
+  void add(const image::CanFrame& frame) noexcept {
+    cycle_bits_ += image::known_bits(frame) + image::kIntermissionBits;
+  }
   /// Ends a cycle of `period_ns` on a bus of `bit_rate` bit/s.
   void close_cycle(image::Nanoseconds period_ns, std::uint32_t bit_rate) noexcept;
   /// Over the last second (since the start, when that is shorter), 0-1.

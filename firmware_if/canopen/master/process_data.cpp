@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/canopen/master/process_data.hpp"
 
-#include <algorithm>
 #include <span>
 
 namespace servogate::canopen {
@@ -38,7 +37,8 @@ ProcessData::Taken ProcessData::take(int number, const image::CanFrame& frame) n
   const auto i = static_cast<std::size_t>(number - 1);
   if (i >= received_.size() || tpdo_bytes_[i] == 0 || frame.remote) return Taken::not_used;
   if (frame.length < tpdo_bytes_[i]) return Taken::too_short;
-  std::copy_n(frame.data.begin(), tpdo_bytes_[i], received_[i].begin());
+  const std::uint32_t beyond = 8 * (kPdoBytes - tpdo_bytes_[i]);
+  received_[i] = load_le(std::span(frame.data).first(kPdoBytes)) << beyond >> beyond;
   fresh_[i] = true;
   return Taken::stored;
 }
@@ -47,13 +47,12 @@ void ProcessData::clear() noexcept {
   received_ = {};
   fresh_ = {};
   for (Rpdo& pdo : rpdo_) {
-    pdo.data = {};
+    pdo.data = 0;
     pdo.ever_sent = false;
   }
 }
 
-bool ProcessData::due(int number, NodeId node, std::int64_t cycle, image::Nanoseconds now,
-                      image::CanFrame& out) const noexcept {
+bool ProcessData::due(int number, NodeId node, std::int64_t cycle, image::Nanoseconds now) const noexcept {
   const Rpdo& pdo = rpdo_[static_cast<std::size_t>(number - 1)];
   if (pdo.bytes == 0) return false;
   if (pdo.type > kLastSyncType) {
@@ -61,8 +60,16 @@ bool ProcessData::due(int number, NodeId node, std::int64_t cycle, image::Nanose
   } else if (pdo.type > 1 && (cycle + node) % pdo.type != 0) {
     return false;
   }
-  out = make_frame(cob::rpdo(number, node), std::span(pdo.data).first(pdo.bytes));
   return true;
+}
+
+image::CanFrame ProcessData::frame(int number, NodeId node) const noexcept {
+  const Rpdo& pdo = rpdo_[static_cast<std::size_t>(number - 1)];
+  image::CanFrame out;
+  out.id = cob::rpdo(number, node);
+  out.length = pdo.bytes;
+  store_le(pdo.data, std::span(out.data).first(kPdoBytes));
+  return out;
 }
 
 void ProcessData::sent(int number, image::Nanoseconds now) noexcept {

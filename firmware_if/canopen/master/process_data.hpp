@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware_if/canopen/301/cob_id.hpp"
+#include "firmware_if/canopen/301/pdo_mapping.hpp"
 #include "firmware_if/canopen/402/drive_profile.hpp"
 #include "firmware_if/image/time.hpp"
 
@@ -15,6 +16,10 @@ struct PdoField {
   std::uint8_t offset = 0;  ///< first bit
   std::uint8_t bits = 0;
   bool mapped() const noexcept { return pdo >= 0; }
+  /// Its bits, right-aligned.
+  std::uint64_t mask() const noexcept {
+    return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+  }
 };
 
 /// First place of an object in a set of PDOs. real-time safe.
@@ -37,19 +42,21 @@ class ProcessData {
   /// The PDO with this field has come since end_of_cycle().
   bool fresh(const PdoField& field) const noexcept { return field.mapped() && fresh_[index_of(field)]; }
   std::uint64_t raw(const PdoField& field) const noexcept {
-    return field.mapped() ? extract_bits(received_[index_of(field)], field.offset, field.bits) : 0;
+    return field.mapped() ? received_[index_of(field)] >> field.offset & field.mask() : 0;
   }
   std::int64_t number(const PdoField& field) const noexcept { return sign_extend(raw(field), field.bits); }
 
   /// Writes a value of an RPDO; nothing happens for an object that is not mapped.
   void set(const PdoField& field, std::uint64_t value) noexcept {
-    if (field.mapped()) insert_bits(rpdo_[index_of(field)].data, field.offset, field.bits, value);
+    if (!field.mapped()) return;
+    std::uint64_t& data = rpdo_[index_of(field)].data;
+    data = (data & ~(field.mask() << field.offset)) | (value & field.mask()) << field.offset;
   }
   /// RPDO `number` (1-4) of a node when it is to be sent in this cycle: every n-th cycle by transmission type
   /// n, nodes staggered; types 254 and 255 when the data has changed, and often enough for the drive's
   /// deadline.
-  bool due(int number, NodeId node, std::int64_t cycle, image::Nanoseconds now,
-           image::CanFrame& out) const noexcept;
+  bool due(int number, NodeId node, std::int64_t cycle, image::Nanoseconds now) const noexcept;
+  image::CanFrame frame(int number, NodeId node) const noexcept;
   /// The bus has taken RPDO `number`.
   void sent(int number, image::Nanoseconds now) noexcept;
   /// Bytes mapped in TPDO `number`.
@@ -58,20 +65,19 @@ class ProcessData {
   }
 
  private:
-  using Bytes = std::array<std::uint8_t, kPdoBytes>;
   static std::size_t index_of(const PdoField& field) noexcept { return static_cast<std::size_t>(field.pdo); }
 
   struct Rpdo {
     std::uint8_t bytes = 0;
     std::uint8_t type = 1;
     image::Nanoseconds refresh_ns = 0;
-    Bytes data{}, sent{};
+    std::uint64_t data = 0, sent = 0;  ///< little-endian, as a mapping counts its bits
     bool ever_sent = false;
     image::Nanoseconds sent_ns = 0;
   };
   std::array<Rpdo, 4> rpdo_{};
   std::array<std::uint8_t, 4> tpdo_bytes_{};
-  std::array<Bytes, 4> received_{};
+  std::array<std::uint64_t, 4> received_{};
   std::array<bool, 4> fresh_{};
 };
 

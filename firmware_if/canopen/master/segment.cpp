@@ -159,9 +159,11 @@ struct Segment::Impl {
    public:
     explicit CountingBus(image::CanBus& bus) : bus_(bus) {}
     bool send(const image::CanFrame& frame) noexcept override {
-      if (!bus_.send(frame)) return false;
+      image::CanFrame counted = frame;
+      counted.wire_bits = static_cast<std::uint16_t>(image::known_bits(frame));
+      if (!bus_.send(counted)) return false;
       ++sent;
-      meter.add(frame);
+      meter.add(counted);
       return true;
     }
     bool receive(image::CanFrame& frame) noexcept override {

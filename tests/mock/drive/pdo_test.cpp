@@ -109,6 +109,25 @@ TEST_F(DrivePdo, an_event_driven_rpdo_acts_at_once) {
   EXPECT_EQ(b.read(0x6040), 6u);
 }
 
+TEST_F(DrivePdo, identifiers_of_sync_and_rpdo_written_by_sdo_are_heard_and_the_old_ones_no_more) {
+  ASSERT_EQ(b.write(0x1005, 0, 0x081, 4), 0u);
+  ASSERT_EQ(b.write(0x1800, 2, 1, 1), 0u);
+  switch_off_first_pdos();
+  ASSERT_EQ(b.write(0x1400, 1, 0x206, 4), 0u);
+  ASSERT_EQ(b.write(0x1800, 1, 0x185, 4), 0u);
+  b.nmt(0x01);
+  b.send(0x080, {});
+  b.send(0x205, {0x06, 0x00});
+  b.run(2);
+  EXPECT_EQ(b.count(0x185), 0);
+  EXPECT_EQ(b.read(0x6040), 0u);
+  b.send(0x081, {});
+  b.send(0x206, {0x06, 0x00});
+  b.run(2);
+  EXPECT_EQ(b.count(0x185), 1);
+  EXPECT_EQ(b.read(0x6040), 6u);
+}
+
 TEST_F(DrivePdo, every_nth_sync_samples_a_cyclic_tpdo) {
   b.write(0x1800, 2, 3, 1);
   b.nmt(0x01);

@@ -57,6 +57,12 @@ class PowerState {
   /// The stop under way; its end is reported back as PowerInputs::standstill.
   StopKind stop() const noexcept { return stop_; }
   bool brake_released() const noexcept { return brake_released_; }
+  /// Operation enabled goes on: a tick with this controlword would change nothing.
+  bool goes_on(std::uint16_t controlword) const noexcept {
+    return following() && brake_released_ && !fault_requested_ && energised_ &&
+           reset_level_ == ((controlword & controlword::kFaultReset) != 0) &&
+           decode_command(controlword) == ControlCommand::enable_operation;
+  }
   std::uint32_t transitions() const noexcept { return transitions_; }
 
  private:

@@ -129,7 +129,7 @@ const ServoCommand& ServoProfile::tick(const ServoState& servo, const DriveInput
   inputs_ = inputs;
   if (probe_.enabled()) probe_.tick(inputs_, servo_, origin_);
   supervise();
-  decide();
+  if (!power_.goes_on(static_cast<std::uint16_t>(v_.controlword))) decide();
   select_mode();
   generate();
   following_error_ = command_.position - static_cast<double>(servo_.position);

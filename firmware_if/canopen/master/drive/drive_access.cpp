@@ -77,7 +77,7 @@ bool DriveLink::take_result(Access access, const SdoClient& sdo) noexcept {
       mode_written_ = static_cast<OperationMode>(static_cast<std::int8_t>(access_value_));
       break;
     case Access::read_mode:
-      mode_shown_ = static_cast<std::int8_t>(sdo.value());
+      show_mode(static_cast<std::int8_t>(sdo.value()));
       break;
     case Access::write_probe:
       probe_function_written_ = access_value_;

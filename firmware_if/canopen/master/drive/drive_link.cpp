@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint16_t kVlRampBits =
     controlword::kModeSpecific4 | controlword::kModeSpecific5 | controlword::kModeSpecific6;
 
-std::uint64_t clamped(double value, double limit = 2147483647.0) noexcept {
+std::uint64_t clamped(double value, double limit) noexcept {
   if (!(value == value)) return 0;
   return static_cast<std::uint64_t>(std::llround(std::clamp(value, -limit, limit)));
 }
@@ -76,7 +76,7 @@ void DriveLink::restart() noexcept {
   mode_wanted_ = mode_of(DriveMode::none);
   // The boot has written this mode; whether the drive shows it is still to be read.
   mode_written_ = mode_wanted_;
-  mode_shown_ = 0;
+  show_mode(0);
   mode_read_ns_ = 0;
   mode_refused_ = false;
   probe_function_known_ = false;
@@ -102,6 +102,13 @@ OperationMode DriveLink::mode_of(DriveMode mode) const noexcept {
   return target_ == DriveTarget::axis ? OperationMode::cyclic_sync_position : profile_.velocity_mode;
 }
 
+void DriveLink::show_mode(std::int8_t shown) noexcept {
+  mode_shown_ = shown;
+  mode_meant_ = DriveMode::none;
+  for (const DriveMode mode : {DriveMode::csp, DriveMode::csv, DriveMode::cst, DriveMode::homing})
+    if (mode_of(mode) == static_cast<OperationMode>(shown)) mode_meant_ = mode;
+}
+
 bool DriveLink::update() noexcept {
   ++cycles_since_position_;
   const bool status_fresh = data_.fresh(in_.statusword);
@@ -111,7 +118,7 @@ bool DriveLink::update() noexcept {
   }
   if (data_.fresh(in_.position)) take_position();
   take_velocity();
-  if (data_.fresh(in_.mode)) mode_shown_ = static_cast<std::int8_t>(data_.number(in_.mode));
+  if (data_.fresh(in_.mode)) show_mode(static_cast<std::int8_t>(data_.number(in_.mode)));
   if (data_.fresh(in_.probe_status)) take_probe_by_pdo();
   follow_state();
   data_.end_of_cycle();
@@ -173,10 +180,7 @@ void DriveLink::on_emcy(std::uint16_t error_code) noexcept { error_code_ = error
 
 void DriveLink::fill(image::DriveFeedback& feedback) const noexcept {
   feedback.state = control_.state();
-  const auto shown = static_cast<OperationMode>(mode_shown_);
-  feedback.mode = DriveMode::none;
-  for (const DriveMode mode : {DriveMode::csp, DriveMode::csv, DriveMode::cst, DriveMode::homing})
-    if (mode_of(mode) == shown) feedback.mode = mode;
+  feedback.mode = mode_meant_;
   feedback.statusword = statusword_;
   feedback.error_code = error_code_;
   feedback.position_counts = position_counts_;
@@ -245,11 +249,13 @@ void DriveLink::set_targets(const image::DriveCommand& command) noexcept {
   const bool by_torque = mode_wanted_ == OperationMode::cyclic_sync_torque && enabled;
   data_.set(out_.target_position, static_cast<std::uint64_t>(target_position(command)));
   const double velocity = command.velocity_counts_s / profile_.velocity_unit_counts_s;
-  data_.set(out_.vl_velocity, by_velocity ? clamped(velocity, 32767.0) : 0);
-  data_.set(out_.target_velocity, by_velocity ? clamped(velocity) : 0);
-  data_.set(out_.velocity_offset, following_ && !by_velocity ? clamped(velocity) : 0);
-  data_.set(out_.target_torque,
-            by_torque ? clamped(command.torque_permille / profile_.torque_unit_permille) : 0);
+  const auto set = [this](const PdoField& field, bool wanted, double value, double limit = 2147483647.0) {
+    if (field.mapped()) data_.set(field, wanted ? clamped(value, limit) : 0);
+  };
+  set(out_.vl_velocity, by_velocity, velocity, 32767.0);
+  set(out_.target_velocity, by_velocity, velocity);
+  set(out_.velocity_offset, following_ && !by_velocity, velocity);
+  set(out_.target_torque, by_torque, command.torque_permille / profile_.torque_unit_permille);
 }
 
 }  // namespace servogate::canopen

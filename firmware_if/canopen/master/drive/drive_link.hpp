@@ -60,6 +60,7 @@ class DriveLink {
   void take_probe_by_pdo() noexcept;
   bool mode_ready() const noexcept { return mode_shown_ == static_cast<std::int8_t>(mode_wanted_); }
   OperationMode mode_of(image::DriveMode mode) const noexcept;
+  void show_mode(std::int8_t shown) noexcept;
   std::int64_t target_position(const image::DriveCommand& command) noexcept;
   void set_targets(const image::DriveCommand& command) noexcept;
   Access next_access(image::Nanoseconds now) const noexcept;
@@ -94,6 +95,7 @@ class DriveLink {
   OperationMode mode_wanted_ = OperationMode::none;
   OperationMode mode_written_ = OperationMode::none;
   std::int8_t mode_shown_ = 0;
+  image::DriveMode mode_meant_ = image::DriveMode::none;  ///< by mode_shown_
   image::Nanoseconds mode_read_ns_ = 0;
   bool mode_refused_ = false;
 

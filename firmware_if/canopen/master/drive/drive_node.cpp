@@ -238,8 +238,8 @@ int DriveNode::send_process_data(const image::DriveCommand& command, const NodeC
   link_.apply(context.now, command, blocked_);
   int lost = 0;
   for (int number = 1; number <= 4; ++number) {
-    image::CanFrame frame;
-    if (!link_.process_data().due(number, config_.node, context.cycle, context.now, frame)) continue;
+    if (!link_.process_data().due(number, config_.node, context.cycle, context.now)) continue;
+    const image::CanFrame frame = link_.process_data().frame(number, config_.node);
     if (context.bus.send(frame)) {
       link_.process_data().sent(number, context.now);
     } else {

@@ -4,13 +4,13 @@
 #include <random>
 #include <vector>
 
-#include "drivers/mock/can/frame_bits.hpp"
+#include "firmware_if/image/can_wire.hpp"
 
-namespace servogate::mock {
+namespace servogate::image {
 namespace {
 
-image::CanFrame frame(std::uint32_t id, std::vector<std::uint8_t> bytes, bool extended = false) {
-  image::CanFrame f;
+CanFrame frame(std::uint32_t id, std::vector<std::uint8_t> bytes, bool extended = false) {
+  CanFrame f;
   f.id = id;
   f.extended = extended;
   f.length = static_cast<std::uint8_t>(bytes.size());
@@ -24,7 +24,7 @@ struct Naive {
   void add(std::uint64_t value, int count) {
     for (int i = count - 1; i >= 0; --i) bits.push_back(static_cast<int>(value >> i & 1));
   }
-  explicit Naive(const image::CanFrame& f) {
+  explicit Naive(const CanFrame& f) {
     add(0, 1);
     if (f.extended) {
       add(f.id >> 18, 11);
@@ -77,7 +77,7 @@ TEST(FrameBits, all_zero_frames_get_a_stuff_bit_after_every_fifth_bit) {
 
 TEST(FrameBits, known_frames_have_the_length_counted_on_paper) {
   struct Known {
-    image::CanFrame frame;
+    CanFrame frame;
     std::uint16_t crc;
     std::uint32_t stuffed, length;
   };
@@ -100,10 +100,17 @@ TEST(FrameBits, known_frames_have_the_length_counted_on_paper) {
 }
 
 TEST(FrameBits, a_remote_frame_carries_its_length_code_but_no_data) {
-  image::CanFrame f = frame(0x705, {0xFF});
+  CanFrame f = frame(0x705, {0xFF});
   f.remote = true;
   EXPECT_EQ(frame_bits(f), 34u + Naive(f).stuffed() + kTrailerBits);
   EXPECT_EQ(Naive(f).bits.size(), 34u);
+}
+
+TEST(FrameBits, a_length_that_somebody_has_counted_is_taken_from_the_frame) {
+  CanFrame f = frame(0x080, {});
+  EXPECT_EQ(known_bits(f), frame_bits(f));
+  f.wire_bits = 77;
+  EXPECT_EQ(known_bits(f), 77u);
 }
 
 TEST(FrameBits, random_frames_agree_with_the_rule_bit_by_bit_and_stay_below_the_worst_case) {
@@ -111,7 +118,7 @@ TEST(FrameBits, random_frames_agree_with_the_rule_bit_by_bit_and_stay_below_the_
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
   for (int i = 0; i < 20'000; ++i) {
-    image::CanFrame f;
+    CanFrame f;
     f.extended = random() % 2;
     f.remote = random() % 8 == 0;
     f.id = random() & (f.extended ? 0x1FFFFFFF : 0x7FF);
@@ -124,7 +131,7 @@ TEST(FrameBits, random_frames_agree_with_the_rule_bit_by_bit_and_stay_below_the_
     ASSERT_EQ(stuff_bits(f), naive.stuffed());
     ASSERT_EQ(frame_bits(f), naive.bits.size() + naive.stuffed() + kTrailerBits);
     const std::uint32_t payload = f.remote ? 0u : f.length;
-    ASSERT_LE(frame_bits(f) + kIntermissionBits, image::worst_case_bits(payload, f.extended));
+    ASSERT_LE(frame_bits(f) + kIntermissionBits, worst_case_bits(payload, f.extended));
   }
 }
 
@@ -141,4 +148,4 @@ TEST(FrameBits, the_worst_case_of_the_formula_is_reached_by_some_frame) {
 }
 
 }  // namespace
-}  // namespace servogate::mock
+}  // namespace servogate::image
