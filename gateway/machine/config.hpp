@@ -294,6 +294,7 @@ struct MachineConfig {
   int schema = 0;
   std::string name;
   ControlConfig control;
+  int tool_places = 0;                      ///< of the magazine or turret; 0: T is not compared with it
   RunConfig run;
   RealtimeConfig realtime;
   SafetyConfig safety;

@@ -90,6 +90,11 @@ struct ModbusMap {
 struct DeviceConfig {
   int schema = 0;
   std::string name;  ///< for people
+/// [gpio]: a GPIO chip.
+struct GpioConfig {
+  int lines = 64;  ///< that the chip has, counted from 0
+};
+
   DeviceKind kind = DeviceKind::servo;
   std::string manufacturer;
   std::string description;
@@ -108,6 +113,7 @@ struct DeviceConfig {
   std::string file;  ///< path it was read from
   std::map<std::string, Where, std::less<>> places;
   Where where(std::string_view path) const;
+  GpioConfig gpio;
   bool drive() const {
     return kind == DeviceKind::servo || kind == DeviceKind::stepper || kind == DeviceKind::spindle;
   }

@@ -7,6 +7,7 @@
 #include "gateway/machine/check/findings.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
 #include "gateway/machine/keys/sections.hpp"
+#include "kernel/program/interpreter.hpp"
 
 namespace servogate::machine {
 
@@ -137,6 +138,20 @@ void check_estop(const MachineConfig& machine, Reading& reading) {
 
 }  // namespace
 
+/// The power-on modes and values, as the interpreter of the language will read them.
+void check_settings(const MachineConfig& machine, Reading& reading) {
+  program::MachineModel model;
+  for (const AxisConfig& a : machine.axes) model.axes.push_back({.letter = a.letter, .diameter = a.diameter});
+  model.power_on = machine.control.power_on;
+  model.variables = machine.control.variables;
+  const program::Interpreter reader(machine.control.dialect, std::move(model), {}, {}, {}, {}, {});
+  for (const program::SettingFault& fault : reader.setting_faults()) {
+    const std::string path =
+        fault.mode >= 0 ? "power_on." + std::to_string(fault.mode) : "variables." + fault.variable;
+    reading.error(machine.where("control." + path), *fault.entry, fault.arguments);
+  }
+}
+
 void check_safety(const MachineConfig& machine, Reading& reading) {
   check_estop(machine, reading);
   const bool broken = std::any_of(reading.findings.begin(), reading.findings.end(),
@@ -153,10 +168,15 @@ void check_control(const MachineConfig& machine, Reading& reading) {
   if (machine.cycle_ns() % kStepNs != 0)
     reading.error(machine.where("control.cycle_time"), finding::kCycleStep,
                   {text::number(machine.control.cycle_time * 1000.0), std::to_string(kStepNs / 1000)});
-  static constexpr std::string_view kDialects[] = {"nc110"};
-  if (std::find(std::begin(kDialects), std::end(kDialects), machine.control.dialect) == std::end(kDialects))
+  const std::vector<std::string> dialects = program::dialects();
+  if (std::find(dialects.begin(), dialects.end(), machine.control.dialect) != dialects.end()) {
+    check_settings(machine, reading);
+  } else {
+    std::string known;
+    for (const std::string& dialect : dialects) known += (known.empty() ? "" : ", ") + dialect;
     reading.error(machine.where("control.dialect"), finding::kUnknownDialect,
-                  {machine.control.dialect, "nc110"});
+                  {machine.control.dialect, known});
+  }
   check_buses(machine, reading);
   for (std::size_t i = 0; i < machine.stations.size(); ++i) StationCheck(machine, i, reading).all();
   check_simulation(machine, reading);

@@ -29,6 +29,9 @@ class DeviceUse {
         if (device != nullptr && known(*device) && !device->drive())
           reading_.error(m_.where(path + ".device"), finding::kWrongDevice,
                          {node.device, kind_name(device->kind), "servo, stepper, spindle"});
+        if (device != nullptr && known(*device) && device->drive() && !node.unsupervised &&
+            !canopen::stops_by_itself(drive_profile(*device, node, 0)))
+          reading_.error(m_.where(path + ".device"), finding::kUnsupervised, {node.name, node.device});
         objects(node, path);
       }
   }
@@ -137,22 +140,33 @@ class DeviceUse {
                        {who, speed, text::number(rpm, 1), name, text::number(device.motor.max_speed, 1)});
   }
 
+  /// How many channels of a kind a station has, numbered from 0; -1: that is not known.
+  static int channels(const StationConfig& station, const DeviceConfig* device, ChannelKind kind) {
+    if (station.kind == StationKind::drive) return 32;  // 60FDh and 60FEh have 32 bits
+    const bool readable = device != nullptr && known(*device);
+    if (!station.device.empty() && !readable) return -1;
+    if (station.kind == StationKind::gpio) return readable ? device->gpio.lines : GpioConfig{}.lines;
+    if (!readable) return -1;
+    const ModbusMap& map = device->modbus;
+    const int counts[] = {map.di_count, map.dq_count, map.ai_count, map.aq_count};
+    return counts[static_cast<std::size_t>(kind)];
+  }
+
   void channel(const StationConfig& station, const DeviceConfig* device, const PointConfig& point,
                const std::string& path) {
-    int count = 0;
-    if (station.kind == StationKind::drive) {
-      count = 32;  // 60FDh and 60FEh have 32 bits
-    } else if (station.kind == StationKind::modbus && device != nullptr && known(*device)) {
-      const ModbusMap& map = device->modbus;
-      const int counts[] = {map.di_count, map.dq_count, map.ai_count, map.aq_count};
-      count = counts[static_cast<std::size_t>(point.channel)];
-    } else {
-      return;
-    }
-    if (point.number >= count)
-      reading_.error(m_.where(path), finding::kChannelOutside,
-                     {point.channel_text, station.device.empty() ? station.node : station.device,
-                      std::to_string(count)});
+    const bool no_analog = station.kind != StationKind::modbus && point.is_analog();  // said elsewhere
+    const int count = channels(station, device, point.channel);
+    if (no_analog || count < 0 || point.number < count) return;
+    const std::string kind = point.channel_text.substr(0, 2);
+    const std::string last = kind + std::to_string(count - 1);
+    const std::string what = count == 0   ? text::both("no " + kind, "ни одного " + kind)
+                             : count == 1 ? text::both(last + " only", "только " + last)
+                                          : text::both(kind + "0 to " + last, kind + "0 ... " + last);
+    const std::string who = !station.node.empty() ? station.node
+                            : !station.device.empty()
+                                ? station.device
+                                : text::both("a chip without device file", "микросхема без файла устройства");
+    reading_.error(m_.where(path), finding::kChannelOutside, {point.channel_text, who, what});
   }
 
   const LoadResult& loaded_;

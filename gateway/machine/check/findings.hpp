@@ -18,9 +18,8 @@ inline constexpr text::Entry kTwice{"machine.twice", "{0} \"{1}\" is already dec
 inline constexpr text::Entry kBadChannel{"machine.bad_channel",
                                          "channel \"{0}\": expected di, dq, ai or aq with a number, like di3",
                                          "канал «{0}»: ожидалось di, dq, ai или aq с номером, например di3"};
-inline constexpr text::Entry kChannelOutside{"machine.channel_outside",
-                                             "channel \"{0}\": the device file {1} has {2} such channels",
-                                             "канал «{0}»: в файле устройства {1} таких каналов {2}"};
+inline constexpr text::Entry kChannelOutside{"machine.channel_outside", "channel \"{0}\": {1} has {2}",
+                                             "канал «{0}»: {1}: есть {2}"};
 inline constexpr text::Entry kAnalogOnGpio{"machine.analog_on_gpio",
                                            "channel \"{0}\": a {1} station has digital channels only",
                                            "канал «{0}»: у станции вида {1} только дискретные каналы"};

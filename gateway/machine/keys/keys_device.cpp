@@ -178,6 +178,18 @@ const Section& section_of<DeviceConfig>() {
                          "1018h:01, 0: не проверяется"),
       key<&C::product_code>("product_code", {.min = 0, .max = 4294967295.0}, "1018h:02, 0: not checked",
                             "1018h:02, 0: не проверяется"),
+template <>
+const Section& section_of<GpioConfig>() {
+  using C = GpioConfig;
+  static const Key keys[] = {
+      key<&C::lines>("lines", {.min = 1, .max = 4096},
+                     "lines of the chip; the channel numbers of the machine file are below this",
+                     "линий у микросхемы; номера каналов в файле станка меньше этого числа"),
+  };
+  static const Section section{"lines of a GPIO chip", "линии микросхемы GPIO", keys, &default_object<C>};
+  return section;
+}
+
       key<&C::revision>("revision", {.min = 0, .max = 4294967295.0}, "1018h:03, 0: not checked",
                         "1018h:03, 0: не проверяется"),
       key<&C::motor>("motor", {}, "motor and drive", "двигатель и привод"),
@@ -194,3 +206,4 @@ const Section& section_of<DeviceConfig>() {
 }
 
 }  // namespace servogate::machine
+      key<&C::gpio>("gpio", {}, "lines of a GPIO chip", "линии микросхемы GPIO"),
