@@ -68,6 +68,9 @@ struct Element {
   /// mm/s along the linear axes, degrees/s where only rotary axes move; > 0. A rapid ignores it and is as
   /// fast as the axis limits; it always starts and ends with an exact stop.
   double feed = 0.0;
+  /// Feed per revolution: `feed` is that at so many revolutions a second of the spindle, the most that it is
+  /// planned for, and it goes with the speed that Follower::set_spindle() tells; 0: feed per time.
+  double revolutions = 0.0;
   Transition transition;
   std::uint8_t limit_set = 0;  ///< reserved: rough, finish, thread
   Tag tag;

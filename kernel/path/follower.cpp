@@ -7,12 +7,13 @@
 namespace servogate::path {
 namespace {
 
-constexpr int kEntriesPerCycle = 256;  // taken over from the track
-constexpr int kMarkersPerCycle = 16;   // passed at rest
-constexpr int kSpansPerCycle = 16;     // the planner lets no more than four be passed
-constexpr int kBridgedSpans = 96;      // the longest way to rest across spans
-constexpr int kSlowSpans = 12;         // among them, slower than the motion is now
-constexpr double kSamePlace = 1e-9;    // mm
+constexpr int kEntriesPerCycle = 256;   // taken over from the track
+constexpr int kMarkersPerCycle = 16;    // passed at rest
+constexpr int kSpansPerCycle = 16;      // the planner lets no more than four be passed
+constexpr int kBridgedSpans = 96;       // the longest way to rest across spans
+constexpr int kSlowSpans = 12;          // among them, slower than the motion is now
+constexpr double kSlowestShare = 1e-6;  // of a feed; slower is rest
+constexpr double kSamePlace = 1e-9;     // mm
 
 /// Speed that is reached when the acceleration is taken back at once.
 double settled_speed(const MotionState& m, const Box& box) {
@@ -25,10 +26,28 @@ Follower::Follower(const Config& config, Track& track)
     : config_(config), track_(track), window_(track.entries.capacity()) {}
 
 void Follower::set_override(double ratio) noexcept {
-  const double r = ratio >= 1e-6 ? std::min(ratio, config_.largest_override) : 0.0;
+  const double r = ratio >= kSlowestShare ? std::min(ratio, config_.largest_override) : 0.0;
   if (r == override_) return;
   override_ = r;
   stale_ = true;
+}
+
+void Follower::set_spindle(double revolutions) noexcept {
+  if (revolutions == spindle_) return;
+  spindle_ = revolutions;
+  const auto follows = [&](std::uint64_t n) {
+    return n < last_ && entry_at(n).kind == Entry::Kind::span && entry_at(n).span.per_turn > 0.0;
+  };
+  stale_ = stale_ || follows(first_) || follows(first_ + 1);
+}
+
+/// Of the speed that the span is planned for.
+double Follower::spindle_share(const Span& span) const noexcept {
+  return span.per_turn > 0.0 && spindle_ >= 0.0 ? spindle_ / span.turns : 1.0;
+}
+
+bool Follower::spindle_stands() const noexcept {
+  return !empty() && front().kind == Entry::Kind::span && spindle_share(front().span) < kSlowestShare;
 }
 
 void Follower::release_event() noexcept {
@@ -174,8 +193,12 @@ Goal Follower::goal(const MotionState& from) const noexcept {
   g.exit_limit = span.exit_limit;
   if (wants_rest()) return g;
   const bool rapid = track_.pieces[piece_].rapid;
-  const double r = rapid ? std::min(override_, 1.0) : override_;
-  g.velocity = std::min(span.box.velocity, r * span.feed);
+  const double wish = rapid ? std::min(override_, 1.0) : override_;
+  const auto asked = [&](const Span& of) {
+    return wish * (of.per_turn > 0.0 && spindle_ >= 0.0 ? of.per_turn * spindle_ : of.feed);
+  };
+  const double r = std::min(wish * spindle_share(span), config_.largest_override);
+  g.velocity = std::min(span.box.velocity, asked(span));
   g.exit = std::min(span.exit_nominal, g.velocity);
   if (r > 1.0) {
     const double share = (r - 1.0) / std::max(config_.largest_override - 1.0, 1e-9);
@@ -183,7 +206,7 @@ Goal Follower::goal(const MotionState& from) const noexcept {
   }
   if (first_ + 1 < last_) {
     const Entry& behind = window_[(first_ + 1) % window_.size()];
-    if (behind.kind == Entry::Kind::span) g.exit = std::min(g.exit, r * behind.span.feed);
+    if (behind.kind == Entry::Kind::span) g.exit = std::min(g.exit, asked(behind.span));
   }
   return g;
 }
@@ -304,12 +327,12 @@ FollowerState Follower::report() const noexcept {
   if (wait_event_) return FollowerState::at_event;
   if (wait_stop_) return FollowerState::at_stop;
   if (in_span_) {
-    if (!wants_rest()) return FollowerState::moving;
+    if (!rest_asked()) return FollowerState::moving;
     return at_rest() ? FollowerState::held : FollowerState::holding;
   }
   if (dropping_) return FollowerState::stopped;
   if (empty()) return FollowerState::idle;
-  return wants_rest() ? FollowerState::held : FollowerState::moving;
+  return rest_asked() ? FollowerState::held : FollowerState::moving;
 }
 
 Sample Follower::sample() noexcept {

@@ -49,6 +49,12 @@ class Follower {
   /// Feed override, 0 - Config::largest_override (clamped); 0 holds. Rapids follow it up to 1.
   void set_override(double ratio) noexcept;
   double override_ratio() const noexcept { return override_; }
+  /// Commanded speed of the spindle, revolutions a second without sign: elements with a feed per revolution
+  /// follow it from the next step on, up to Config::largest_override times what they are planned for, and
+  /// rest while it is 0. Below 0, as at the beginning: no such spindle, they are driven as planned.
+  void set_spindle(double revolutions) noexcept;
+  /// The path rests only because the spindle does.
+  bool waits_for_spindle() const noexcept { return !rest_asked() && spindle_stands() && at_rest(); }
   /// Goes on behind the event that is being reported; ignored otherwise.
   void release_event() noexcept;
   /// Goes on behind an exact stop that waits; ignored otherwise.
@@ -76,7 +82,10 @@ class Follower {
   bool bridge_clears(const Profile& way, int spans, const Box& least) const noexcept;
   void pass_spans() noexcept;
   void advance() noexcept;
-  bool wants_rest() const noexcept { return hold_ || stopping_ || override_ <= 0.0; }
+  bool rest_asked() const noexcept { return hold_ || stopping_ || override_ <= 0.0; }
+  bool wants_rest() const noexcept { return rest_asked() || spindle_stands(); }
+  bool spindle_stands() const noexcept;
+  double spindle_share(const Span& span) const noexcept;
   void locate() noexcept;
   FollowerState report() const noexcept;
   Sample sample() noexcept;
@@ -109,5 +118,6 @@ class Follower {
   std::uint32_t starved_ = 0;
   Sample sample_;
 };
+  double spindle_ = -1.0;  ///< revolutions a second, below 0: as planned
 
 }  // namespace servogate::path

@@ -28,13 +28,42 @@ struct Bounded {
   Piece piece;
   Box box;
   double feed = 0.0;
+  double per_turn = 0.0;
 };
 
 /// Sum of pieces that become one span.
 struct OpenSpan {
-  double length = 0.0, time = 0.0, feed = kInfinity;
+  double length = 0.0, time = 0.0, feed = kInfinity, per_turn = 0.0, turns = 0.0;
   Box least{kInfinity, kInfinity, kInfinity};
 };
+
+/// Feed of an element as it goes into the spans: mm/s, and the revolutions a second that belong to it.
+struct FeedOf {
+  double feed = kInfinity;
+  double turns = 0.0;
+};
+
+FeedOf feed_of(const Element& e) {
+  if (e.kind == Element::Kind::rapid) return {};
+  return {e.feed, e.revolutions};
+}
+
+/// Of a blend between two elements: the slower one, by the spindle where one of them is.
+FeedOf slower(const Element& a, const Element& b) {
+  if ((a.revolutions > 0.0) != (b.revolutions > 0.0)) {
+    const Element& turned = a.revolutions > 0.0 ? a : b;
+    const double share = std::min(1.0, std::min(a.feed, b.feed) / turned.feed);
+    return {turned.feed * share, turned.revolutions};
+  }
+  return feed_of(a.feed <= b.feed ? a : b);
+}
+
+/// Stretches that may be driven as one: their feeds have the same master.
+bool same_master(double per_turn, double turns, double other_per_turn, double other_turns) {
+  if (per_turn == 0.0 || other_per_turn == 0.0) return per_turn == other_per_turn;
+  return std::abs(per_turn - other_per_turn) <= 1e-3 * per_turn &&
+         std::max(turns, other_turns) <= 1.05 * std::min(turns, other_turns);
+}
 
 double ramp_time(const Box& b) { return b.velocity / b.acceleration + b.acceleration / b.jerk; }
 
@@ -73,7 +102,8 @@ struct Planner::Impl {
 
   Smoothing run;  // of short lines; `waiting` is its last one
   struct RunLine {
-    double feed, corner;  // feed, and speed allowed at its end
+    FeedOf feed;
+    double corner;  // speed allowed at its end
   };
   std::deque<RunLine> run_lines;
   std::size_t run_done = 0;  // lines before run_lines[0]
@@ -103,7 +133,7 @@ struct Planner::Impl {
   void end_run();
   double joint_tolerance(const Element& e) const;
   void put_rest_of_waiting();
-  void put(const Piece& piece, double feed, double corner_cap);
+  void put(const Piece& piece, const FeedOf& feed, double corner_cap);
   void close_span();
   void rest(bool confirm);
   void collect();
@@ -227,13 +257,13 @@ bool Planner::Impl::join_run(const Element& e, const Piece& next) {
   if (!suits || (run.empty() && joins_smoothly(*waiting, next, n))) return false;
   if (run.empty()) {
     const double left = 0.5 * waiting->length - waiting_from;
-    if (left > 1e-12) put(part(*waiting, waiting_from, left), waiting_element.feed, kInfinity);
+    if (left > 1e-12) put(part(*waiting, waiting_from, left), feed_of(waiting_element), kInfinity);
     run.begin(*waiting, tolerance);
     run_tolerance = tolerance;
   } else if (tolerance != run_tolerance) {
     return false;
   }
-  run_lines.push_back({waiting_element.feed, corner_speed(next)});
+  run_lines.push_back({feed_of(waiting_element), corner_speed(next)});
   run.append(next);
   take_run(false);
   return true;
@@ -253,12 +283,12 @@ void Planner::Impl::join(const Element& e, const Piece& next) {
     if (auto found = blend(*waiting, next, joint_tolerance(e), n)) {
       Piece& b = found->piece;
       const double left = waiting->length - found->trim - waiting_from;
-      if (left > 1e-12) put(part(*waiting, waiting_from, left), waiting_element.feed, kInfinity);
+      if (left > 1e-12) put(part(*waiting, waiting_from, left), feed_of(waiting_element), kInfinity);
       b.tag_before = waiting->tag;
       b.tag = next.tag;
       b.target = next.target;
       b.rest = next.length - found->trim;
-      put(b, std::min(waiting_element.feed, e.feed), corner_speed(next));
+      put(b, slower(waiting_element, e), corner_speed(next));
       waiting_from = found->trim;
       return;
     }
@@ -270,18 +300,18 @@ void Planner::Impl::join(const Element& e, const Piece& next) {
 
 void Planner::Impl::end_run() {
   if (run.empty()) return;
-  run_lines.push_back({waiting_element.feed, kInfinity});
+  run_lines.push_back({feed_of(waiting_element), kInfinity});
   take_run(true);
 }
 
 void Planner::Impl::put_rest_of_waiting() {
-  const double feed = waiting_element.kind == Element::Kind::rapid ? kInfinity : waiting_element.feed;
-  put(part(*waiting, waiting_from, waiting->length - waiting_from), feed, kInfinity);
+  put(part(*waiting, waiting_from, waiting->length - waiting_from), feed_of(waiting_element), kInfinity);
   waiting_from = 0.0;
 }
 
-void Planner::Impl::put(const Piece& piece, double feed, double corner_cap) {
-  Bounded next{piece, {}, feed / path_rate(config, piece)};
+void Planner::Impl::put(const Piece& piece, const FeedOf& feed, double corner_cap) {
+  Bounded next{piece, {}, feed.feed / path_rate(config, piece), 0.0};
+  if (feed.turns > 0.0) next.per_turn = next.feed / feed.turns;
   next.box = box(config, piece, std::min(corner_cap, next.feed * config.largest_override));
   next.feed = std::min(next.feed, next.box.velocity);
   const double own_time = piece.length / next.box.velocity;
@@ -292,13 +322,16 @@ void Planner::Impl::put(const Piece& piece, double feed, double corner_cap) {
     const double scale = common.acceleration / common.jerk;
     const bool same_feed = std::abs(next.feed - open.feed) <= 1e-3 * open.feed;
     const bool short_ones = std::min(open.time, own_time) < 0.5 * scale;
-    const bool worth = lost <= 0.5 * std::min(open.time + own_time, scale) && (same_feed || short_ones);
+    const bool worth = same_master(open.per_turn, open.turns, next.per_turn, feed.turns) &&
+                       lost <= 0.5 * std::min(open.time + own_time, scale) && (same_feed || short_ones);
     if (!worth || open_pieces.size() >= std::min(kMostPieces, track.pieces.capacity() / 16)) close_span();
   }
   open.length += piece.length;
   open.time += own_time;
   open.least = least(open.least, next.box);
   open.feed = std::min(open.feed, next.feed);
+  open.per_turn = open_pieces.empty() ? next.per_turn : std::min(open.per_turn, next.per_turn);
+  open.turns = std::max(open.turns, feed.turns);
   open_pieces.push_back(next);
 }
 
@@ -312,6 +345,8 @@ void Planner::Impl::close_span() {
   const double per_cycle = std::min(kSpansPerCycle, kPiecesPerCycle / span.pieces);
   span.box.velocity = std::min(span.box.velocity, per_cycle * span.length / config.period_s);
   span.feed = std::min(open.feed, span.box.velocity);
+  span.per_turn = open.per_turn;
+  span.turns = open.turns;
   double start = 0.0;
   for (Bounded& b : open_pieces) {
     b.piece.start = start;
@@ -400,6 +435,7 @@ void Planner::restart(const Vector& at) {
   p.at = p.shaped_to = at;
   p.mark(Entry::Kind::restart, 0, {}, at);
 }
+  return begin;
 
 bool Planner::add(const Element& element) { return impl_->add(element); }
 Flaw Planner::last_flaw() const { return impl_->flaw; }

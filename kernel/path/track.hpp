@@ -52,6 +52,8 @@ struct Span {
   double time = 0.0;  ///< running sum of the shortest times up to the end, s
   Box box;
   double feed = 0.0;          ///< parameter speed at override 1
+  double per_turn = 0.0;      ///< the same in one revolution of the spindle, 0: feed per time
+  double turns = 0.0;         ///< revolutions a second that `feed` is planned for
   double exit_limit = 0.0;    ///< largest speed at the end from which all that follows can be driven
   double exit_nominal = 0.0;  ///< the same if everything that follows is driven at override 1 at most
 };
