@@ -36,7 +36,7 @@ struct Tag {
   std::int32_t file = 0;
   std::int32_t block = -1;  ///< N number
   std::int16_t process = 0;
-  std::uint64_t command = 0;  ///< running number of the canonical command
+  std::uint64_t command = 0;  ///< number of the block, rising along the path; the channel's own counting
   bool operator==(const Tag&) const = default;
 };
 

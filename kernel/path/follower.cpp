@@ -58,6 +58,17 @@ void Follower::release_event() noexcept {
 
 void Follower::release_stop() noexcept { wait_stop_ = false; }
 
+void Follower::skip_to(const Track::Begin& begin) noexcept {
+  if (taken_ >= begin.entry) return;
+  first_ = last_ = staged_;
+  taken_ = begin.entry;
+  track_.entries.free_below(taken_);
+  track_.pieces.free_below(begin.piece);
+  in_span_ = bridging_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
+  dropping_ = true;
+  state_ = {};
+}
+
 bool Follower::set_position(const Vector& at) noexcept {
   if (in_span_ || !at_rest()) return false;
   sample_.position = at;

@@ -61,6 +61,9 @@ class Follower {
   void release_stop() noexcept;
   /// Slows down on the path to rest, then drops what is left up to the next Planner::restart().
   void stop() noexcept { stopping_ = true; }
+  /// Drops at once all that lies before the begin of a new path, whose restart entry is published: how much a
+  /// given-up path had still put into the track makes no difference to the new one. Only at rest.
+  void skip_to(const Track::Begin& begin) noexcept;
   /// Moves the set-point without motion (homing, drives off). False, and nothing done, while moving or with a
   /// path begun.
   bool set_position(const Vector& at) noexcept;
@@ -115,9 +118,9 @@ class Follower {
   bool wait_stop_ = false, wait_event_ = false, fault_ = false;
   bool open_ = false;  ///< motion has begun and no finish or event was met: rest is starvation
   double override_ = 1.0;
+  double spindle_ = -1.0;  ///< revolutions a second, below 0: as planned
   std::uint32_t starved_ = 0;
   Sample sample_;
 };
-  double spindle_ = -1.0;  ///< revolutions a second, below 0: as planned
 
 }  // namespace servogate::path

@@ -420,8 +420,9 @@ bool Planner::Impl::wants_more() const {
 Planner::Planner(const Config& config, Track& track) : impl_(std::make_unique<Impl>(config, track)) {}
 Planner::~Planner() = default;
 
-void Planner::restart(const Vector& at) {
+Track::Begin Planner::restart(const Vector& at) {
   Impl& p = *impl_;
+  const Track::Begin begin{p.track.entries.written() + p.entries_out.size(), p.next_piece};
   p.left_out.reset();
   p.left_out_length = 0.0;
   p.waiting.reset();
@@ -434,8 +435,8 @@ void Planner::restart(const Vector& at) {
   p.lookahead.clear();
   p.at = p.shaped_to = at;
   p.mark(Entry::Kind::restart, 0, {}, at);
-}
   return begin;
+}
 
 bool Planner::add(const Element& element) { return impl_->add(element); }
 Flaw Planner::last_flaw() const { return impl_->flaw; }

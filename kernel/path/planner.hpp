@@ -18,9 +18,10 @@ class Planner {
   Planner(const Planner&) = delete;
   Planner& operator=(const Planner&) = delete;
 
-  /// Forgets everything that is not published and goes on at `at`, where the follower stands at rest. First
-  /// call of every program, and the way on after Follower::stop().
-  void restart(const Vector& at);
+  /// Forgets what is not yet handed to the track and goes on at `at`, where the follower stands at rest.
+  /// First call of every program, and the way on after Follower::stop(). Gives the place in the track where
+  /// the new path begins; nothing of it is published before the next work().
+  Track::Begin restart(const Vector& at);
 
   /// Appends an element. False: it cannot be driven, last_flaw() says why, and nothing has changed.
   bool add(const Element& element);

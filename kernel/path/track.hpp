@@ -80,6 +80,10 @@ struct Entry {
 struct Track {
   explicit Track(const Config& config)
       : pieces(config.piece_capacity < 1024 ? 1024 : config.piece_capacity), entries(2 * pieces.capacity()) {}
+  /// Where the entries of a path begin: numbers of its restart entry and of its first piece.
+  struct Begin {
+    std::uint64_t entry = 0, piece = 0;
+  };
   Ring<Piece> pieces;
   Ring<Entry> entries;
   /// Count for Follower::step(). real-time safe.
