@@ -220,7 +220,7 @@ void add_mode(Plan& plan, const NodeConfig& node, const SegmentConfig& segment) 
   }
   plan.step(BootStep::mode);
   const OperationMode mode =
-      node.target == DriveTarget::axis ? OperationMode::cyclic_sync_position : profile.velocity_mode;
+      node.target == DriveTarget::axis ? profile.position_mode : profile.velocity_mode;
   plan.write(object::kModesOfOperation, 0, 1, static_cast<std::uint8_t>(mode));
 }
 

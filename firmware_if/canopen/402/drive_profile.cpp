@@ -26,6 +26,13 @@ constexpr std::uint8_t kEveryTenthSync = 10;
 
 }  // namespace
 
+bool stops_by_itself(const DriveProfile& profile) noexcept {
+  for (const PdoWanted& pdo : profile.rpdo)
+    if (pdo.used() && pdo.event_ms > 0) return true;
+  const bool watches = profile.has_heartbeat_consumer || profile.guard_time_ms > 0;
+  return watches && profile.abort_connection_option.value_or(0) != 0;
+}
+
 void use_short_position_map(DriveProfile& profile) {
   using namespace object;
   clear_map(profile);

@@ -67,8 +67,10 @@ struct DriveProfile {
 
   // Modes.
   std::uint32_t modes =
-      supported_bit(OperationMode::cyclic_sync_position);             ///< needed of 6502h, checked at boot
-  bool check_modes = true;                                            ///< false: the drive has no 6502h
+      supported_bit(OperationMode::cyclic_sync_position);  ///< needed of 6502h, checked at boot
+  bool check_modes = true;                                 ///< false: the drive has no 6502h
+  /// For DriveMode::csp: csp, or ip of a drive without csp, whose record 60C1h:01 is mapped instead of 607Ah.
+  OperationMode position_mode = OperationMode::cyclic_sync_position;
   OperationMode velocity_mode = OperationMode::cyclic_sync_velocity;  ///< for DriveMode::csv: csv, pv or vl
 
   // Process data, index 0 = PDO 1.
@@ -82,7 +84,7 @@ struct DriveProfile {
   std::uint8_t command_delay_cycles = 1;  ///< cycles from a target's SYNC to the actual value that follows it
   bool has_cycle_period = false;          ///< 1006h is to be written
 
-  // If the computer dies. A drive with neither is named by the machine file's check.
+  // If the computer dies: see stops_by_itself().
   bool has_heartbeat_consumer = true;  ///< 1016h
   /// Period of node guarding in ms (100Ch) for a drive that has no heartbeat; 0: it has one. The drive
   /// watches the control by life guarding then: guard time times life time factor (100Dh).
@@ -106,6 +108,10 @@ struct DriveProfile {
   std::vector<SdoSetting> settings;
   std::vector<ErrorText> error_texts;
 };
+
+/// Whether the drive notices by itself that its control has died: heartbeat consumer 1016h or life guarding
+/// with a reaction 6007h, or a deadline of an RPDO.
+bool stops_by_itself(const DriveProfile& profile) noexcept;
 
 /// PDO maps for a position axis: RPDO1 6040h 607Ah, TPDO1 6041h 6064h; everything else (mode, touch probe,
 /// error code) goes over SDO, which three drives at 1 Mbit/s and 1 ms leave room for. Fills rpdo, tpdo and

@@ -57,8 +57,12 @@ void check_node(const NodeConfig& node) {
   require(profile.brake_bit < 32, "no such bit in 60FEh");
   require(profile.brake_bit < 0 || find_field(profile.rpdo, object::kDigitalOutputs, 1).mapped(),
           "60FEh:01 is not mapped for the brake");
+  require(stops_by_itself(profile) || node.unsupervised,
+          "the drive would not notice the death of the control, and nobody has waived that");
   if (node.target == DriveTarget::spindle) return;
-  require(find_field(profile.rpdo, object::kTargetPosition).mapped(), "607Ah is not mapped");
+  require(find_field(profile.rpdo, object::kTargetPosition).mapped() ||
+              find_field(profile.rpdo, object::kInterpolationData, 1).mapped(),
+          "neither 607Ah nor 60C1h:01 is mapped");
   require(find_field(profile.tpdo, object::kPositionActual).mapped(), "6064h is not mapped");
 }
 

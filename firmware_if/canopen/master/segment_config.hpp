@@ -23,7 +23,9 @@ struct NodeConfig {
   int target_index = 0;           ///< index in ProcessImage::axes or ::spindles
   std::int32_t heartbeat_ms = 0;  ///< producer time of this node, lost after three of them; 0: the segment's
   std::int32_t max_missed_pdo = 0;  ///< 0: the segment's
-  NodeSetup setup;                  ///< version, program and configuration of this one node
+  /// The drive may run although it would not notice the death of the control (see stops_by_itself()).
+  bool unsupervised = false;
+  NodeSetup setup;  ///< version, program and configuration of this one node
 };
 
 /// One CAN bus and how it is run.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 
 #include "drivers/mock/can/can_segment.hpp"
 #include "drivers/mock/drive/simulated_drive.hpp"
@@ -417,9 +418,10 @@ TEST_F(ProgramDownload, a_drive_that_has_it_already_is_left_alone) {
 TEST_F(ProgramDownload, an_error_of_the_flash_is_named) {
   machine.drives[0]->spoil_next_program(5);
   EXPECT_FALSE(boots());
-  EXPECT_EQ(failure(),
-            "X: boot stopped at step \"program of the device\": reading 1F57h:01 Flash status identification: "
-            "writing the flash failed (0000000Ah)");
+  EXPECT_EQ(
+      failure(),
+      "X: boot stopped at step \"program of the device\": reading 1F57h:01 Flash status identification: "
+      "writing the flash failed (0000000Ah)");
 }
 
 TEST(SimulatedDrives, of_another_software_version_are_named_with_both_versions) {
@@ -452,6 +454,88 @@ TEST(SimulatedDrives, get_a_concise_dcf_where_its_date_is_another_one) {
   // A reset of communication forgets 1020h, which nobody stored: the values are written again.
   ASSERT_TRUE(boot());
   EXPECT_EQ(machine.drives[0]->object(0x1020, 2), 3'600'000);
+}
+
+TEST(SimulatedDrives, without_csp_follow_in_interpolated_position) {
+  Machine machine(1, [](DriveProfile& profile) {
+    use_short_position_map(profile);
+    profile.position_mode = OperationMode::interpolated_position;
+    profile.modes = supported_bit(OperationMode::interpolated_position);
+    profile.rpdo[0].mapping = {};
+    profile.rpdo[0].mapping.add({0x6040, 0, 16});
+    profile.rpdo[0].mapping.add({0x60C1, 1, 32});
+  });
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  EXPECT_EQ(machine.drives[0]->object(0x6061), 7);
+  std::int64_t target = machine.image->axes[0].drive.position_counts;
+  machine.control = [&](image::ProcessImage& im) {
+    im.axes[0].drive_command.position_counts = target += 100;
+  };
+  machine.run(1000);
+  machine.control = nullptr;
+  machine.run(50);
+  EXPECT_NEAR(static_cast<double>(machine.drives[0]->reported_position()), static_cast<double>(target), 30);
+  EXPECT_TRUE(machine.image->axes[0].drive.state == DriveState::operation_enabled);
+}
+
+TEST(SimulatedDrives,
+     that_home_by_themselves_are_followed_over_their_new_zero_and_taken_over_without_a_jump) {
+  Machine machine(1, [](DriveProfile& profile) {
+    use_short_position_map(profile);
+    profile.settings.push_back({0x6098, 0, 1, 37});
+    profile.settings.push_back({0x607C, 0, 4, 100'000});
+  });
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  const double before = machine.drives[0]->revolutions();
+  const auto& drive = machine.image->axes[0].drive;
+  machine.control = [](image::ProcessImage& im) { im.axes[0].drive_command.mode = image::DriveMode::homing; };
+  ASSERT_TRUE(machine.run_until(
+      [&] { return drive.mode == image::DriveMode::homing && (drive.statusword & 0x1000); }));
+  machine.run(5);
+  EXPECT_NEAR(static_cast<double>(drive.position_counts), -100'000, 100)
+      << "home is at minus the home offset";
+  // The axis seats its command on the feedback, and only then asks for csp.
+  machine.control = [](image::ProcessImage& im) {
+    im.axes[0].drive_command.position_counts = im.axes[0].drive.position_counts;
+    im.axes[0].drive_command.mode = image::DriveMode::csp;
+  };
+  ASSERT_TRUE(machine.run_until([&] { return drive.mode == image::DriveMode::csp; }));
+  machine.control = nullptr;
+  machine.run(500);
+  EXPECT_EQ(machine.drives[0]->state(), DriveState::operation_enabled);
+  EXPECT_NEAR(machine.drives[0]->revolutions(), before, 1e-3);
+  EXPECT_EQ(machine.count(BusEventKind::handover_held), 0);
+  EXPECT_EQ(machine.count(BusEventKind::emcy), 0) << machine.story();
+}
+
+TEST(SimulatedDrives, that_would_not_notice_the_death_of_the_control_are_refused_or_waived) {
+  Machine machine(1);
+  machine.config.nodes[0].profile.has_heartbeat_consumer = false;
+  EXPECT_THROW(Segment(machine.bus, machine.config), std::invalid_argument);
+  machine.config.nodes[0].profile.rpdo[0].event_ms = 20;
+  EXPECT_NO_THROW(Segment(machine.bus, machine.config)) << "the deadline of an RPDO is enough";
+  machine.config.nodes[0].profile.rpdo[0].event_ms = 0;
+  machine.config.nodes[0].unsupervised = true;
+  EXPECT_NO_THROW(Segment(machine.bus, machine.config));
+  machine.config.nodes[0].unsupervised = false;
+  machine.config.nodes[0].profile.has_heartbeat_consumer = true;
+  machine.config.nodes[0].profile.abort_connection_option = std::nullopt;
+  EXPECT_THROW(Segment(machine.bus, machine.config), std::invalid_argument) << "it hears, and does nothing";
+}
+
+TEST(SimulatedDrives, stop_by_the_deadline_of_their_rpdo_when_the_control_dies) {
+  Machine machine(1, [](DriveProfile& profile) {
+    use_short_position_map(profile);
+    profile.has_heartbeat_consumer = false;
+    profile.rpdo[0].event_ms = 20;
+  });
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  EXPECT_EQ(machine.drives[0]->object(0x1400, 5), 20) << "written and read back";
+  machine.wire.advance_to(machine.image->now.t_ns + 15 * image::kMillisecond);
+  EXPECT_EQ(machine.drives[0]->state(), DriveState::operation_enabled);
+  machine.wire.advance_to(machine.image->now.t_ns + 200 * image::kMillisecond);
+  EXPECT_EQ(machine.drives[0]->state(), DriveState::fault);
+  EXPECT_EQ(machine.drives[0]->error_code(), 0x8250);
 }
 
 }  // namespace

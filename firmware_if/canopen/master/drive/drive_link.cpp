@@ -42,6 +42,7 @@ DriveLink::DriveLink(const NodeConfig& node, image::Nanoseconds cycle_ns)
   const auto& rpdo = profile_.rpdo;
   out_.controlword = find_field(rpdo, object::kControlword);
   out_.target_position = find_field(rpdo, object::kTargetPosition);
+  if (!out_.target_position.mapped()) out_.target_position = find_field(rpdo, object::kInterpolationData, 1);
   out_.target_velocity = find_field(rpdo, object::kTargetVelocity);
   out_.target_torque = find_field(rpdo, object::kTargetTorque);
   out_.mode = find_field(rpdo, object::kModesOfOperation);
@@ -89,7 +90,7 @@ void DriveLink::restart() noexcept {
 OperationMode DriveLink::mode_of(DriveMode mode) const noexcept {
   switch (mode) {
     case DriveMode::csp:
-      return OperationMode::cyclic_sync_position;
+      return profile_.position_mode;
     case DriveMode::csv:
       return profile_.velocity_mode;
     case DriveMode::cst:
@@ -99,7 +100,7 @@ OperationMode DriveLink::mode_of(DriveMode mode) const noexcept {
     case DriveMode::none:
       break;
   }
-  return target_ == DriveTarget::axis ? OperationMode::cyclic_sync_position : profile_.velocity_mode;
+  return target_ == DriveTarget::axis ? profile_.position_mode : profile_.velocity_mode;
 }
 
 void DriveLink::show_mode(std::int8_t shown) noexcept {
@@ -212,6 +213,8 @@ void DriveLink::apply(image::Nanoseconds now, const image::DriveCommand& command
   std::uint16_t word = control_.step(now, wish);
   if (mode == OperationMode::velocity && control_.state() == DriveState::operation_enabled)
     word |= kVlRampBits;
+  if (mode == OperationMode::interpolated_position && control_.state() == DriveState::operation_enabled)
+    word |= controlword::kModeSpecific4;  // interpolation on
   data_.set(out_.controlword, word);
   data_.set(out_.mode, static_cast<std::uint8_t>(mode));
   data_.set(out_.probe_function, probe_.function());
