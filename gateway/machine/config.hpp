@@ -284,6 +284,7 @@ struct ControlConfig {
   std::vector<std::string> power_on;        ///< in the dialect's words: "G94", ...
   std::map<std::string, double> variables;  ///< "ERF" -> mm, "MCD" -> 2, ...
   double contour_tolerance = 0.01;          ///< mm
+  int tool_places = 0;                      ///< of the magazine or turret; 0: T is not compared with it
   int processes = 1;
   int k_size = static_cast<int>(image::kPacketKDefaultSize);  ///< bytes of packet K
   int syvar_size = static_cast<int>(image::kSyvarDefaultSize);
@@ -294,7 +295,6 @@ struct MachineConfig {
   int schema = 0;
   std::string name;
   ControlConfig control;
-  int tool_places = 0;                      ///< of the magazine or turret; 0: T is not compared with it
   RunConfig run;
   RealtimeConfig realtime;
   SafetyConfig safety;

@@ -86,15 +86,15 @@ struct ModbusMap {
   bool di_as_registers = false;  ///< inputs as bits of input registers (function 4) instead of function 2
 };
 
-/// One device file of devices/ or of the machine file's folder.
-struct DeviceConfig {
-  int schema = 0;
-  std::string name;  ///< for people
 /// [gpio]: a GPIO chip.
 struct GpioConfig {
   int lines = 64;  ///< that the chip has, counted from 0
 };
 
+/// One device file of devices/ or of the machine file's folder.
+struct DeviceConfig {
+  int schema = 0;
+  std::string name;  ///< for people
   DeviceKind kind = DeviceKind::servo;
   std::string manufacturer;
   std::string description;
@@ -109,11 +109,11 @@ struct GpioConfig {
       objects;  ///< "6065:00/32" -> value, written at boot; bits 8, 16 or 32 (default)
   std::vector<DeviceError> errors;
   ModbusMap modbus;
+  GpioConfig gpio;
 
   std::string file;  ///< path it was read from
   std::map<std::string, Where, std::less<>> places;
   Where where(std::string_view path) const;
-  GpioConfig gpio;
   bool drive() const {
     return kind == DeviceKind::servo || kind == DeviceKind::stepper || kind == DeviceKind::spindle;
   }

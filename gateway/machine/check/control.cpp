@@ -136,8 +136,6 @@ void check_estop(const MachineConfig& machine, Reading& reading) {
   if (point->loss != 0.0 || point->hold) reading.error(at, finding::kEstopLoss, {point->name});
 }
 
-}  // namespace
-
 /// The power-on modes and values, as the interpreter of the language will read them.
 void check_settings(const MachineConfig& machine, Reading& reading) {
   program::MachineModel model;
@@ -151,6 +149,8 @@ void check_settings(const MachineConfig& machine, Reading& reading) {
     reading.error(machine.where("control." + path), *fault.entry, fault.arguments);
   }
 }
+
+}  // namespace
 
 void check_safety(const MachineConfig& machine, Reading& reading) {
   check_estop(machine, reading);

@@ -165,6 +165,18 @@ const Section& section_of<ModbusMap>() {
 }
 
 template <>
+const Section& section_of<GpioConfig>() {
+  using C = GpioConfig;
+  static const Key keys[] = {
+      key<&C::lines>("lines", {.min = 1, .max = 4096},
+                     "lines of the chip; the channel numbers of the machine file are below this",
+                     "линий у микросхемы; номера каналов в файле станка меньше этого числа"),
+  };
+  static const Section section{"lines of a GPIO chip", "линии микросхемы GPIO", keys, &default_object<C>};
+  return section;
+}
+
+template <>
 const Section& section_of<DeviceConfig>() {
   using C = DeviceConfig;
   static const Key keys[] = {
@@ -178,18 +190,6 @@ const Section& section_of<DeviceConfig>() {
                          "1018h:01, 0: не проверяется"),
       key<&C::product_code>("product_code", {.min = 0, .max = 4294967295.0}, "1018h:02, 0: not checked",
                             "1018h:02, 0: не проверяется"),
-template <>
-const Section& section_of<GpioConfig>() {
-  using C = GpioConfig;
-  static const Key keys[] = {
-      key<&C::lines>("lines", {.min = 1, .max = 4096},
-                     "lines of the chip; the channel numbers of the machine file are below this",
-                     "линий у микросхемы; номера каналов в файле станка меньше этого числа"),
-  };
-  static const Section section{"lines of a GPIO chip", "линии микросхемы GPIO", keys, &default_object<C>};
-  return section;
-}
-
       key<&C::revision>("revision", {.min = 0, .max = 4294967295.0}, "1018h:03, 0: not checked",
                         "1018h:03, 0: не проверяется"),
       key<&C::motor>("motor", {}, "motor and drive", "двигатель и привод"),
@@ -200,10 +200,10 @@ const Section& section_of<GpioConfig>() {
       key<&C::behaviour>("behaviour", {}, "where it differs from CiA 402", "отличия от CiA 402"),
       key<&C::errors>("error", {}, "error codes in words", "коды ошибок словами"),
       key<&C::modbus>("modbus", {}, "channels of a Modbus station", "каналы станции Modbus"),
+      key<&C::gpio>("gpio", {}, "lines of a GPIO chip", "линии микросхемы GPIO"),
   };
   static const Section section{"device file", "файл устройства", keys, &default_object<C>};
   return section;
 }
 
 }  // namespace servogate::machine
-      key<&C::gpio>("gpio", {}, "lines of a GPIO chip", "линии микросхемы GPIO"),
