@@ -272,6 +272,11 @@ class Lowering {
   ExpressionPtr joined_wires(const Pin& p, const Element& e) {
     if (p.value) return syntax::copy(*p.value);
     ExpressionPtr out;
+    constexpr std::size_t kMostWires = 500;
+    if (p.wires.size() > kMostWires) {
+      report_.error(e.location, texts::kTooDeep, {std::to_string(kMostWires)});
+      return expression_of(ExpressionKind::bad, e.location);
+    }
     for (const Wire& w : p.wires) {
       if (w.element < 0) continue;
       ExpressionPtr one = output(w, p.location.line > 0 ? p.location : e.location);

@@ -81,7 +81,11 @@ void Reader::run() {
     for (const pugi::xml_node& n : found) read(n);
   };
   each("dataType", "pou", [&](const pugi::xml_node& n) { data_type(n); });
-  each("globalVars", "pou", [&](const pugi::xml_node& n) { variables(n, Section::global, source_.globals); });
+  each("globalVars", "pou", [&](const pugi::xml_node& n) {
+    variables(n, Section::global, source_.globals);
+    if (const pugi::xml_attribute list = n.attribute("name"))
+      source_.global_lists.insert(key_of(list.value()));
+  });
   each("pou", "pou", [&](const pugi::xml_node& n) { pou(n); });
   each("configuration", "pou", [&](const pugi::xml_node& n) { configuration(n); });
 }

@@ -108,6 +108,7 @@ class Analyzer {
   // names.cpp: from a name to a place.
   Variable* find_variable(std::string_view name, bool& global);
   bool dotted_symbol(const Expression& e, std::string& name) const;
+  bool leads_global(const Expression& e);
   std::optional<ir::Place> place(const Expression& e, bool write);
   std::optional<ir::Place> place_of_name(const Expression& e, bool write);
   std::optional<ir::Place> place_of_member(const Expression& e, bool write);

@@ -128,6 +128,13 @@ ExprPtr Analyzer::name_expression(const Expression& e, const Type* hint) {
     if (v == nullptr && symbol(e.name) == nullptr)
       if (ExprPtr value = enumeration_value(e.name, e.location, hint)) return value;
   }
+  if (e.kind == ExpressionKind::member && leads_global(*e.operands[0])) {
+    Expression plain;
+    plain.kind = ExpressionKind::name;
+    plain.location = e.location;
+    plain.name = e.name;
+    return name_expression(plain, hint);
+  }
   if (e.kind == ExpressionKind::member && e.operands[0]->kind == ExpressionKind::name) {  // Colour.red
     bool global = false;
     const auto at = declared_types_.find(key_of(e.operands[0]->name));

@@ -62,6 +62,13 @@ void Analyzer::note_write(Variable& v, bool global, const Location& at) {
   if (v.root == ir::Root::shared) check_place_writer(v.cell, at, v.name);
 }
 
+// "GVL.speed": the name of a list of global variables before one of them.
+bool Analyzer::leads_global(const Expression& e) {
+  bool global = false;
+  return e.kind == ExpressionKind::name && source_.global_lists.contains(key_of(e.name)) &&
+         find_variable(e.name, global) == nullptr;
+}
+
 std::optional<ir::Place> Analyzer::place(const Expression& e, bool write) {
   switch (e.kind) {
     case ExpressionKind::name:
@@ -133,13 +140,20 @@ std::optional<ir::Place> Analyzer::place_of_name(const Expression& e, bool write
 }
 
 std::optional<ir::Place> Analyzer::place_of_member(const Expression& e, bool write) {
+  if (leads_global(*e.operands[0])) {
+    Expression plain;
+    plain.kind = ExpressionKind::name;
+    plain.location = e.location;
+    plain.name = e.name;
+    return place_of_name(plain, write);
+  }
   std::string name;
   if (dotted_symbol(e, name)) {
     const Expression* first = &e;
     while (first->kind == ExpressionKind::member) first = first->operands[0].get();
     bool global = false;
     const Variable* v = find_variable(first->name, global);
-    const bool structured = v != nullptr && !v->type->fields.empty();
+    const bool structured = (v != nullptr && !v->type->fields.empty()) || leads_global(*first);
     if (!structured) {
       if (auto p = place_of_symbol(name, first->location, write)) return p;
       if (symbol(name) != nullptr) return std::nullopt;  // reported

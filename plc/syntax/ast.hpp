@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -224,6 +225,7 @@ struct Source {
   std::vector<Unit> units;
   std::vector<TypeDeclaration> types;
   std::vector<Variable> globals;
+  std::set<std::string> global_lists;  ///< keys of names that may lead a global variable: GVL.speed
   std::vector<Configuration> configurations;
   std::size_t body_errors = 0;  ///< syntax errors inside bodies, where the declarations are whole
 };

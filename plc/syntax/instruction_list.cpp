@@ -94,6 +94,11 @@ class InstructionList {
       line_ = p_.now().location.line;
       try {
         line();
+        // A long list is no deep tree.
+        if (result_ == nullptr || result_->operands.empty())
+          chain_ = 0;
+        else if (++chain_ % kLongestChain == 0)
+          result_ = held(std::move(result_));
       } catch (const SyntaxError&) {
         while (!at_end() && p_.now().location.line == line_) p_.take();
         result_ = Parser::make(ExpressionKind::bad, p_.now().location);
@@ -255,7 +260,16 @@ class InstructionList {
     if (lasting(*e)) return e;
     return held_as(std::move(e), p_.holds_++);
   }
+  // What stands left of open parentheses is computed first.
+  void settle_open() {
+    for (Open& o : open_)
+      if (o.left && !lasting(*o.left)) o.left = hold_now(std::move(o.left), p_.holds_++);
+  }
   ExpressionPtr held_as(ExpressionPtr e, std::uint64_t number) {
+    settle_open();
+    return hold_now(std::move(e), number);
+  }
+  ExpressionPtr hold_now(ExpressionPtr e, std::uint64_t number) {
     const Location at = e->location;
     StatementPtr s = statement_of(StatementKind::hold, at);
     s->number = number;
@@ -265,10 +279,8 @@ class InstructionList {
     name->literal.magnitude = number;
     return name;
   }
-  // What stands left of open parentheses was computed before this statement.
   void emit(StatementPtr s) {
-    for (Open& o : open_)
-      if (o.left) o.left = held(std::move(o.left));
+    settle_open();
     out_.push_back(std::move(s));
   }
   // A result that nobody takes; a call was made for its effects.
@@ -285,6 +297,10 @@ class InstructionList {
     ExpressionPtr left = need(t);
     if (p_.at("(") && !end_of_line()) {
       take();
+      if (open_.size() >= kMaxNesting) {
+        p_.report_.error(t.location, texts::kTooDeep, {std::to_string(kMaxNesting)});
+        throw SyntaxError{};
+      }
       open_.push_back({std::move(left), k.op, k.inverted, t.location});
       result_ = nullptr;
       if (!end_of_line() && !(p_.now().kind == TokenKind::word && known(p_.now().key) != nullptr &&
@@ -466,6 +482,8 @@ class InstructionList {
   ExpressionPtr result_;
   std::vector<Open> open_;
   std::map<std::string, std::uint64_t> carried_;
+  static constexpr int kLongestChain = 20;
+  int chain_ = 0;      ///< operations in the tree of the current result
   int line_ = 0;       ///< of the instruction
   int last_line_ = 0;  ///< of the token taken last
 };
