@@ -18,6 +18,10 @@ int carry_out(const CommandLine& line) {
   if (line.command == "replay") return command::replay(line.replay);
   if (line.command == "plc run") return command::plc_run(line.plc_run);
   if (line.command == "plc check") return command::plc_check(line.plc_check);
+  if (line.command == "can bus") return command::can_bus(line.bus.can_bus);
+  if (line.command == "drive") return command::drive(line.bus.drive);
+  if (line.command == "dump") return command::dump(line.bus.dump);
+  if (line.command == "play") return command::play(line.bus.play);
   if (line.command == "up") return command::up(line.up);
   return command::client(line.client);
 }

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "gateway/cli/bus_options.hpp"
+
 namespace servogate::gateway {
 
 /// Exit codes of every command: a contract (docs/command-line.md).
@@ -76,6 +78,7 @@ struct CommandLine {
   ReplayOptions replay;
   PlcRunOptions plc_run;
   PlcCheckOptions plc_check;
+  BusCommands bus;
   bool json = false;               ///< of `version`
   std::vector<std::string> words;  ///< the whole line, for the report
 };

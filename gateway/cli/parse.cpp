@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware_if/text/finding.hpp"
+#include "gateway/cli/bus_commands.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/quantities.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -94,6 +95,7 @@ class Commands {
     canon();
     replay();
     plc();
+    add_bus_commands(app_, line.bus);
   }
 
   CLI::App& app() { return app_; }

@@ -18,5 +18,9 @@ int canon(const CanonOptions& options);
 int replay(const ReplayOptions& options);
 int plc_run(const PlcRunOptions& options);
 int plc_check(const PlcCheckOptions& options);
+int can_bus(const CanBusOptions& options);
+int drive(const DriveOptions& options);
+int dump(const DumpOptions& options);
+int play(const PlayOptions& options);
 
 }  // namespace servogate::gateway::command

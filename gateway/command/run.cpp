@@ -27,6 +27,9 @@ namespace {
 const text::Entry kRefused{"run.refused", "the control refuses: {0}", "управление отказывает: {0}"};
 const text::Entry kNotReady{"run.not-ready", "these axes did not become ready: {0}",
                             "эти оси не пришли в готовность: {0}"};
+const text::Entry kFramesLost{
+    "run.frames-lost", "bus '{0}': {1} frames were lost on this computer; what the run shows says nothing",
+    "шина «{0}»: на этом компьютере потеряно кадров: {1}; по прогону судить нельзя"};
 const text::Entry kAlarmLine{"run.alarm", "alarm {0}: {1}", "авария {0}: {1}"};
 const text::Entry kDone1{"run.done", "done: {0} blocks in {1} s of machine time",
                          "готово: кадров {0}, машинное время {1} с"};
@@ -101,7 +104,8 @@ int Run::prepare() {
   std::vector<text::Finding> findings;
   control_ = Control::compose(loaded_, findings);
   const int errors = print_findings(findings);
-  if (control_ == nullptr) return errors > 0 ? kWrongUse : kInfrastructure;
+  if (control_ == nullptr)
+    return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
   if (!options_.program.empty())
     control_->process(0).load([this](const program::Position& start) {
       return program::Interpreter(program_.dialect, program_.model, state_.tables, options_.program,
@@ -114,7 +118,7 @@ OperatorScript::Wishes Run::wishes() const {
   OperatorScript::Wishes w;
   w.program = !options_.program.empty();
   w.override_ratio = options_.override_percent / 100.0;
-  w.wait_for_start = !loaded_.machine.all_mock() && !options_.start_now;
+  w.wait_for_start = !loaded_.machine.nothing_real() && !options_.start_now;
   w.letters = loaded_.machine.letters();
   for (const machine::AxisConfig& a : loaded_.machine.axes)
     w.needs_homing.push_back(a.home.method != machine::HomingMethod::none);
@@ -186,6 +190,8 @@ bool Run::realtime_loop(OperatorScript& script, Session& session) {
     script.poll(*image);
     progress(*image, false);
   }
+    // Nothing is published before the first cycles: that is no machine whose axes are all ready.
+    if (static_cast<std::size_t>(image->axis_count) != loaded_.machine.axes.size()) continue;
   loop.stop();
   overruns_ = loop.overruns();
   return true;
@@ -252,6 +258,11 @@ int Run::finish(const OperatorScript& script, Session& session,
   switch (script.outcome()) {
     case OperatorScript::Outcome::finished:
       return kDone;
+  for (std::size_t b = 0; b < loaded_.machine.buses.size(); ++b)
+    if (const std::uint64_t lost = control_->frames_lost(b); lost > 0) {
+      complain(kFramesLost, {loaded_.machine.buses[b].name, std::to_string(lost)});
+      infrastructure_ = true;
+    }
     case OperatorScript::Outcome::stopped:
       return kStopped;
     default:
@@ -300,14 +311,15 @@ int run(const RunOptions& given, const std::vector<std::string>& command_line) {
   const machine::LoadResult loaded = machine::load(options.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
   if (options.clock == ClockKind::unset)
-    options.clock = loaded.machine.all_mock() ? ClockKind::virtual_time : ClockKind::realtime;
+    options.clock = loaded.machine.virtual_time() && loaded.machine.nothing_real() ? ClockKind::virtual_time
+                                                                                   : ClockKind::realtime;
   if (options.clock == ClockKind::virtual_time)
     for (const machine::BusConfig& bus : loaded.machine.buses)
-      if (!bus.mock()) {
+      if (!bus.mock() && !bus.lockstep()) {
         complain(kVirtualNeedsMock, {bus.url});
         return kWrongUse;
       }
-  if (options.start_now && !loaded.machine.all_mock() && !loaded.machine.run.allow_start_now) {
+  if (options.start_now && !loaded.machine.nothing_real() && !loaded.machine.run.allow_start_now) {
     complain(kStartNowForbidden, {});
     return kWrongUse;
   }

@@ -94,12 +94,12 @@ int up(const UpOptions& options) {
   const machine::LoadResult loaded = machine::load(options.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
   const machine::MachineConfig& m = loaded.machine;
-  const ClockKind clock = options.clock != ClockKind::unset ? options.clock
-                          : m.all_mock()                    ? ClockKind::virtual_time
-                                                            : ClockKind::realtime;
+  const ClockKind clock = options.clock != ClockKind::unset      ? options.clock
+                          : m.virtual_time() && m.nothing_real() ? ClockKind::virtual_time
+                                                                 : ClockKind::realtime;
   const bool is_virtual = clock == ClockKind::virtual_time;
   for (const machine::BusConfig& bus : m.buses)
-    if (is_virtual && !bus.mock()) {
+    if (is_virtual && !bus.mock() && !bus.lockstep()) {
       complain(kVirtualNeedsMock, {bus.url});
       return kWrongUse;
     }
@@ -117,7 +117,8 @@ int up(const UpOptions& options) {
   std::vector<text::Finding> findings;
   const std::unique_ptr<Control> control = Control::compose(loaded, findings);
   const int errors = print_findings(findings);
-  if (control == nullptr) return errors > 0 ? kWrongUse : kInfrastructure;
+  if (control == nullptr)
+    return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
   for (std::size_t a = 0; a < m.axes.size(); ++a)
     if (const auto kept = state.homing.find(m.axes[a].letter);
         kept != state.homing.end() && kept->second.valid &&

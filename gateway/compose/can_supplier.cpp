@@ -25,6 +25,16 @@ constexpr Row kAlarms[] = {
     {BusEventKind::send_failed, cycle::alarm::kBusSendOverflow},
 };
 
+struct StateRow {
+  image::CanState state;
+  image::AlarmNumber number;
+};
+constexpr StateRow kStates[] = {
+    {image::CanState::bus_off, cycle::alarm::kBusOff},
+    {image::CanState::error_passive, cycle::alarm::kBusErrorPassive},
+    {image::CanState::down, cycle::alarm::kBusDown},
+};
+
 }  // namespace
 
 void CanSupplier::receive(image::ProcessImage& image) noexcept {
@@ -42,9 +52,8 @@ void CanSupplier::report(const canopen::BusEvent& event, const image::ProcessIma
     if (row.kind == event.kind) r.number = row.number;
   if (event.kind == BusEventKind::emcy && event.emcy.error_code == 0) return;
   if (event.kind == BusEventKind::bus_state)
-    r.number = event.bus_state == image::CanState::bus_off         ? cycle::alarm::kBusOff
-               : event.bus_state == image::CanState::error_passive ? cycle::alarm::kBusErrorPassive
-                                                                   : image::AlarmNumber{0};
+    for (const StateRow& row : kStates)
+      if (row.state == event.bus_state) r.number = row.number;
   if (r.number == 0 || notices_ == nullptr) return;
   r.segment = event.segment;
   r.node = event.node;

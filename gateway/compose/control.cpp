@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/compose/control.hpp"
 
+#include <algorithm>
+
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/canopen_setup.hpp"
 #include "gateway/compose/program/program_model.hpp"
@@ -12,8 +14,28 @@ namespace servogate::gateway {
 namespace {
 
 const text::Entry kNoDriver{"compose.no-driver",
-                            "bus '{0}': no driver for '{1}' in this version; mock:NAME works",
-                            "шина «{0}»: для «{1}» в этой версии нет драйвера; работает mock:ИМЯ"};
+                            "station '{0}': no driver for '{1}' in this version; mock:NAME works",
+                            "станция «{0}»: для «{1}» в этой версии нет драйвера; работает mock:ИМЯ"};
+const text::Entry kNoBus{"compose.no-bus", "bus '{0}': {1}", "шина «{0}»: {1}"};
+const text::Entry kPerhapsReal{
+    "compose.perhaps-real",
+    "bus '{0}' is said to be simulated, but a real one may be behind '{1}': leave `simulated` out, and the "
+    "machine waits for its operator",
+    "шина «{0}» объявлена имитацией, но за «{1}» может быть настоящая: уберите `simulated`, и станок будет "
+    "ждать оператора"};
+
+/// Stands in for a bus while a record is replayed: what came in comes from the record.
+class SilentBus final : public image::CanBus {
+ public:
+  explicit SilentBus(std::uint32_t bit_rate) : bit_rate_(bit_rate) {}
+  bool send(const image::CanFrame&) noexcept override { return true; }
+  bool receive(image::CanFrame&) noexcept override { return false; }
+  image::CanState state() const noexcept override { return image::CanState::error_active; }
+  std::uint32_t bit_rate() const noexcept override { return bit_rate_; }
+
+ private:
+  std::uint32_t bit_rate_;
+};
 const text::Entry kUnreadable{"compose.plc-unreadable", "cannot read the PLC source: {0}",
                               "исходный текст ПЛК не читается: {0}"};
 
@@ -32,19 +54,18 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
     findings.push_back({text::Severity::error, m.file, where.line, where.column, &kNoDriver, {name, url}});
     good = false;
   };
-  for (std::size_t b = 0; b < m.buses.size(); ++b)
-    if (!m.buses[b].mock()) refuse("bus." + std::to_string(b) + ".url", m.buses[b].name, m.buses[b].url);
   for (std::size_t s = 0; s < m.stations.size(); ++s)
     if (!m.stations[s].mock())
       refuse("station." + std::to_string(s) + ".url", m.stations[s].name, m.stations[s].url);
-  if (!good) return nullptr;
+  if (!good || !c->open_buses(findings, source != nullptr)) return nullptr;
 
   c->world_ = std::make_unique<MockWorld>(c->loaded_);
   cycle::CycleParts parts;
   parts.period_ns = m.cycle_ns();
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    image::CanBus* bus = m.buses[b].mock() ? c->world_->bus(b) : c->transports_[b].bus.get();
     c->suppliers_.push_back(
-        std::make_unique<CanSupplier>(*c->world_->bus(b), segment_config(c->loaded_, static_cast<int>(b))));
+        std::make_unique<CanSupplier>(*bus, segment_config(c->loaded_, static_cast<int>(b))));
     parts.devices.push_back(c->suppliers_.back().get());
   }
   for (image::CycleDevice* device : c->world_->io()) parts.devices.push_back(device);
@@ -68,6 +89,63 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
   c->cycle_->attach(source);
   for (const auto& supplier : c->suppliers_) supplier->report_to(c->cycle_->notices());
   return c;
+}
+
+bool Control::open_buses(std::vector<text::Finding>& findings, bool replay) {
+  const machine::MachineConfig& m = loaded_.machine;
+  bool good = true;
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    const machine::BusConfig& bus = m.buses[b];
+    const auto rate = static_cast<std::uint32_t>(bus.bit_rate);
+    transports_.emplace_back();
+    if (bus.mock()) continue;
+    if (replay) {
+      transports_.back().bus = std::make_unique<SilentBus>(rate);
+      continue;
+    }
+    std::vector<int> nodes;
+    for (const machine::NodeConfig& node : bus.nodes) nodes.push_back(node.id);
+    drivers::Notice why;
+    auto opened = open_can(bus.url, {rate, master_filters(nodes), "control"}, why);
+    const machine::Where where = m.where("bus." + std::to_string(b) + ".url");
+    const auto refuse = [&](const text::Entry& entry, const std::string& text) {
+      findings.push_back(
+          {text::Severity::error, m.file, where.line, where.column, &entry, {bus.name, text}, {}});
+      good = false;
+    };
+    if (!opened)
+      refuse(kNoBus, text::both(why.str(text::Language::english), why.str(text::Language::russian)));
+    else if (bus.nothing_real() && !opened->nothing_real)
+      refuse(kPerhapsReal, bus.url);
+    else
+      transports_.back() = std::move(*opened);
+  }
+  return good;
+}
+
+bool Control::infrastructure(const std::vector<text::Finding>& findings) {
+  return std::any_of(findings.begin(), findings.end(), [](const auto& f) { return f.entry == &kNoBus; });
+}
+
+std::uint64_t Control::frames_lost(std::size_t bus) const noexcept {
+  return transports_[bus].bus != nullptr ? transports_[bus].bus->lost() : 0;
+}
+
+/// Time that other processes live in goes on to the beginning of the next cycle, with everything that happens
+/// until then.
+void Control::await_grants() {
+  const image::Nanoseconds t = cycle_->count() * cycle_->period_ns();
+  for (bool more = true; more;) {
+    more = false;
+    for (CanTransport& transport : transports_)
+      if (transport.lockstep != nullptr && (t > 0 || transport.lockstep->granted() > 0))
+        transport.lockstep->done(t);
+    for (CanTransport& transport : transports_) {
+      if (transport.lockstep == nullptr) continue;
+      const auto granted = transport.lockstep->wait_grant();
+      more = more || (granted && *granted < t);
+    }
+  }
 }
 
 bool Control::compile_logic(std::vector<text::Finding>& findings) {
@@ -96,7 +174,11 @@ bool Control::compile_logic(std::vector<text::Finding>& findings) {
   return true;
 }
 
-void Control::advance_world() { world_->advance_to(cycle_->count() * cycle_->period_ns()); }
+void Control::advance_world() {
+  await_grants();
+  world_->note_feedback(cycle_->image());
+  world_->advance_to(cycle_->count() * cycle_->period_ns());
+}
 
 bool Control::read_ahead() {
   const std::scoped_lock lock(reading_);
@@ -119,6 +201,11 @@ cycle::AlarmNames Control::alarm_names() const {
     names.units.push_back(a.type == machine::AxisType::rotary ? "deg" : "mm");
   for (const machine::BusConfig& b : m.buses) names.segments.push_back(b.name);
   for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
+  names.program_finding = [this](int process, int number, text::Language language) -> std::string {
+    if (process < 0 || process >= std::ssize(processes_)) return {};
+    const auto found = processes_[static_cast<std::size_t>(process)]->feeder().texts().finding(number);
+    return found ? found->str(language) : std::string();
+  };
   names.error_text = [this](int axis, int node, std::uint16_t code, text::Language language) -> std::string {
     const machine::MachineConfig& config = loaded_.machine;
     for (std::size_t b = 0; b < config.buses.size(); ++b)

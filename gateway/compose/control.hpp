@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gateway/compose/can_supplier.hpp"
+#include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/mock_world.hpp"
 #include "gateway/compose/plc_logic.hpp"
 #include "gateway/machine/load.hpp"
@@ -48,15 +49,22 @@ class Control {
   const std::vector<std::unique_ptr<CanSupplier>>& suppliers() const noexcept { return suppliers_; }
   /// Names for the sentences of alarms.
   cycle::AlarmNames alarm_names() const;
-  /// True when everything that moves is simulated.
-  bool all_mock() const { return loaded_.machine.all_mock(); }
+  /// True when nothing real can move.
+  bool nothing_real() const { return loaded_.machine.nothing_real(); }
+  /// True when composing failed because of the computer (a bus that cannot be opened), not of a file.
+  static bool infrastructure(const std::vector<text::Finding>& findings);
+  /// Frames that the transport of a bus knows to be lost, by bus.
+  std::uint64_t frames_lost(std::size_t bus) const noexcept;
 
  private:
   explicit Control(const machine::LoadResult& loaded);
   bool compile_logic(std::vector<text::Finding>& findings);
+  bool open_buses(std::vector<text::Finding>& findings, bool replay);
+  void await_grants();
 
   machine::LoadResult loaded_;
   std::unique_ptr<MockWorld> world_;
+  std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
   std::unique_ptr<PlcLogic> logic_;
   std::vector<std::unique_ptr<channel::Process>> processes_;

@@ -4,52 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gateway/compose/simulated_node.hpp"
+
 namespace servogate::gateway {
-
-namespace {
-
-/// Axis units per turn of the motor, with the sign of the axis' direction.
-double units_per_revolution(const machine::AxisConfig& a) {
-  const double units = a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
-  return a.direction == machine::Direction::plus ? units : -units;
-}
-
-std::int64_t positive_modulo(std::int64_t value, std::int64_t modulus) {
-  const std::int64_t rest = value % modulus;
-  return rest < 0 ? rest + modulus : rest;
-}
-
-mock::PlantConfig plant_of(const machine::DeviceConfig* device, const machine::SimulatedDrive* extra,
-                           const machine::AxisConfig* axis, const machine::SpindleConfig* spindle) {
-  mock::PlantConfig p;
-  if (device != nullptr) {
-    const machine::MotorConfig& m = device->motor;
-    if (m.counts_per_rev > 0) p.counts_per_rev = m.counts_per_rev;
-    if (m.inertia > 0.0) p.inertia_kg_m2 = m.inertia;
-    if (m.rated_torque > 0.0) p.rated_torque_nm = m.rated_torque;
-    if (m.peak_torque > 0.0) p.peak_torque_nm = m.peak_torque;
-    if (m.max_speed > 0.0) p.max_speed_rad_s = 1.2 * m.max_speed * 2.0 * M_PI / 60.0;
-  }
-  if (axis != nullptr && axis->counts_per_rev > 0) p.counts_per_rev = axis->counts_per_rev;
-  if (spindle != nullptr && spindle->counts_per_rev > 0) p.counts_per_rev = spindle->counts_per_rev;
-  if (extra != nullptr) {
-    if (extra->inertia > 0.0) p.inertia_kg_m2 = extra->inertia;
-    if (extra->friction_coulomb > 0.0) p.coulomb_friction_nm = extra->friction_coulomb;
-    if (extra->friction_viscous > 0.0) p.viscous_friction_nm_s = extra->friction_viscous;
-    if (extra->max_torque > 0.0) p.peak_torque_nm = extra->max_torque;
-    if (axis != nullptr) {
-      const double direction = axis->direction == machine::Direction::plus ? 1.0 : -1.0;
-      p.load_torque_nm = extra->gravity_torque * direction;
-      p.start_rev = extra->start / units_per_revolution(*axis);
-      p.zero_mark_counts = positive_modulo(std::llround(extra->zero_mark * direction), p.counts_per_rev);
-    }
-  }
-  if (axis != nullptr && axis->brake.present() && axis->brake.drive_output)
-    p.brake_torque_nm = p.peak_torque_nm;
-  return p;
-}
-
-}  // namespace
 
 MockWorld::MockWorld(const machine::LoadResult& loaded) {
   const machine::MachineConfig& m = loaded.machine;
@@ -80,34 +37,18 @@ void MockWorld::add_drives(const machine::LoadResult& loaded) {
     segments_.push_back(std::make_unique<mock::CanSegment>(config));
     endpoints_.push_back(&segments_.back()->add_endpoint("control"));
     for (const machine::NodeConfig& node : bus.nodes) {
-      const std::string reference = bus.name + "." + node.name;
-      const machine::AxisConfig* axis = nullptr;
-      const machine::SpindleConfig* spindle = nullptr;
-      const machine::SimulatedDrive* extra = nullptr;
-      std::size_t axis_index = 0;
-      for (std::size_t a = 0; a < m.axes.size(); ++a)
-        if (m.axes[a].drive == reference) {
-          axis = &m.axes[a];
-          axis_index = a;
-        }
-      for (const machine::SpindleConfig& s : m.spindles)
-        if (s.drive == reference) spindle = &s;
-      for (const machine::SimulatedDrive& s : m.simulation.drives)
-        if (s.node == reference) extra = &s;
-      const machine::DeviceConfig* device = loaded.device(node.device);
-      mock::SimulatedDriveConfig drive;
-      drive.node_id = static_cast<canopen::NodeId>(node.id);
-      if (device != nullptr && device->vendor_id != 0)
-        drive.vendor_id = static_cast<std::uint32_t>(device->vendor_id);
-      if (device != nullptr && device->product_code != 0)
-        drive.product_code = static_cast<std::uint32_t>(device->product_code);
-      if (extra != nullptr) drive.absolute_encoder = extra->absolute_encoder;
-      drive.serial_number = static_cast<std::uint32_t>(node.id);
-      drive.plant = plant_of(device, extra, axis, spindle);
-      drives_.push_back({reference, std::make_unique<mock::SimulatedDrive>(drive)});
+      drives_.push_back({bus.name + "." + node.name,
+                         std::make_unique<mock::SimulatedDrive>(simulated_node(loaded, bus, node))});
       segments_.back()->attach(*drives_.back().device, node.name);
-      if (axis != nullptr) axes_[axis_index] = {drives_.back().device.get(), units_per_revolution(*axis)};
     }
+  }
+  for (std::size_t a = 0; a < m.axes.size(); ++a) {
+    AxisDrive& axis = axes_[a];
+    axis.drive = drive(m.axes[a].drive);
+    axis.units_per_revolution = units_per_revolution(m.axes[a]);
+    axis.counts_per_revolution = static_cast<double>(std::max<std::int64_t>(1, m.axes[a].counts_per_rev));
+    for (const machine::SimulatedDrive& s : m.simulation.drives)
+      if (s.node == m.axes[a].drive && !s.absolute_encoder) axis.start = s.start;
   }
 }
 
@@ -316,9 +257,16 @@ mock::SimulatedDrive* MockWorld::drive(std::string_view reference) {
   return nullptr;
 }
 
+void MockWorld::note_feedback(const image::ProcessImage& image) noexcept {
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    if (axes_[a].drive == nullptr && image.axes[a].drive.online)
+      axes_[a].reported_counts = image.axes[a].drive.position_counts;
+}
+
 double MockWorld::axis_position(int axis) const {
   const AxisDrive& a = axes_[static_cast<std::size_t>(axis)];
-  return a.drive == nullptr ? 0.0 : a.drive->revolutions() * a.units_per_revolution;
+  if (a.drive != nullptr) return a.drive->revolutions() * a.units_per_revolution;
+  return a.start + static_cast<double>(a.reported_counts) / a.counts_per_revolution * a.units_per_revolution;
 }
 
 }  // namespace servogate::gateway

@@ -52,8 +52,11 @@ class MockWorld {
   mock::CanSegment* segment(std::size_t index) { return segments_[index].get(); }
   /// Drive of a node "bus.node"; nullptr: it is not simulated.
   mock::SimulatedDrive* drive(std::string_view reference);
-  /// True position of a simulated axis, machine coordinates.
+  /// True position of a simulated axis, machine coordinates. An axis whose drive lives in another process is
+  /// where its drive says, counted from where [[simulation.drive]] lets it stand at power-on.
   double axis_position(int axis) const;
+  /// What drives in other processes report; between two cycles. real-time safe.
+  void note_feedback(const image::ProcessImage& image) noexcept;
 
  private:
   struct Drive {
@@ -100,8 +103,11 @@ class MockWorld {
   std::vector<image::CanBus*> endpoints_;
   std::vector<Drive> drives_;
   struct AxisDrive {
-    const mock::SimulatedDrive* drive = nullptr;
+    const mock::SimulatedDrive* drive = nullptr;  ///< nullptr: in another process
     double units_per_revolution = 0.0;
+    double counts_per_revolution = 1.0;
+    double start = 0.0;
+    std::int64_t reported_counts = 0;
   };
   std::vector<AxisDrive> axes_;
   std::vector<std::unique_ptr<mock::MockGpio>> gpios_;

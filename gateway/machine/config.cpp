@@ -48,9 +48,13 @@ const NodeConfig* MachineConfig::node(std::string_view reference, int* bus, int*
   return nullptr;
 }
 
-bool MachineConfig::all_mock() const {
-  return std::all_of(buses.begin(), buses.end(), [](const BusConfig& b) { return b.mock(); }) &&
+bool MachineConfig::nothing_real() const {
+  return std::all_of(buses.begin(), buses.end(), [](const BusConfig& b) { return b.nothing_real(); }) &&
          std::all_of(stations.begin(), stations.end(), [](const StationConfig& s) { return s.mock(); });
+}
+
+bool MachineConfig::virtual_time() const {
+  return std::all_of(buses.begin(), buses.end(), [](const BusConfig& b) { return b.mock() || b.lockstep(); });
 }
 
 std::vector<std::string> MachineConfig::letters() const {

@@ -153,11 +153,14 @@ struct NodeConfig {
 /// [[bus]]
 struct BusConfig {
   std::string name;
-  std::string
-      url;  ///< "mock:NAME", "socketcan:IF", "socketcand:HOST:PORT/NAME", "udp:GROUP:PORT", "gsusb:SERIAL"
+  std::string url;            ///< the transport, by its scheme: docs/can.md
   std::int64_t bit_rate = 0;  ///< bit/s
+  bool simulated = false;     ///< nothing on it is real; holds only where no real bus can be behind the url
   std::vector<NodeConfig> nodes;
   bool mock() const { return url.starts_with("mock:"); }
+  /// Time on it is granted to all participants together, as on a mock.
+  bool lockstep() const { return url.starts_with("lockstep:"); }
+  bool nothing_real() const { return mock() || lockstep() || simulated; }
 };
 
 enum class StationKind : std::uint8_t { modbus, gpio, drive };
@@ -323,8 +326,10 @@ struct MachineConfig {
   const PointConfig* point(std::string_view name, int* station = nullptr) const;
   /// A node by "bus.node", nullptr: none. The out-parameters get the indices where asked for.
   const NodeConfig* node(std::string_view reference, int* bus = nullptr, int* index = nullptr) const;
-  /// True when every bus and station is a mock.
-  bool all_mock() const;
+  /// True when no bus and no station can reach anything real: mocks, and buses of simulated devices.
+  bool nothing_real() const;
+  /// True when every bus lives in virtual time.
+  bool virtual_time() const;
   /// Letters in axis order.
   std::vector<std::string> letters() const;
   /// Every name the PLC, the part program and the operator can use: points, free symbols, interface of packet

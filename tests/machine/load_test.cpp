@@ -32,7 +32,7 @@ TEST(MachineFile, mill_has_the_declared_control) {
   EXPECT_EQ(m.control.contour_tolerance, 0.01);
   EXPECT_EQ(m.control.power_on, (std::vector<std::string>{"G94", "G97", "G90", "G71", "G27"}));
   EXPECT_EQ(m.control.variables, (std::map<std::string, double>{{"ERF", 0.01}, {"MCD", 2}}));
-  EXPECT_TRUE(m.all_mock());
+  EXPECT_TRUE(m.nothing_real());
 }
 
 TEST(MachineFile, mill_axes_have_the_declared_limits) {

@@ -122,28 +122,32 @@ TEST(MessagePack, what_is_packed_is_read_by_python_can_and_back) {
   CanFrame fd = make(0x18FF0001, {1});
   fd.fd = true;
   fd.length = 64;
-  for (const CanFrame& frame : {make(0x181, {1, 2, 3}), make(0, {}), make(0x1FFFFFFF, {9}), remote, fd}) {
+  const std::vector<CanFrame> frames = {make(0x181, {1, 2, 3}), make(0, {}), make(0x1FFFFFFF, {9}), remote,
+                                        fd};
+  const std::string file = scratch("packet");
+  for (std::size_t i = 0; i < frames.size(); ++i) {
     std::array<std::uint8_t, kMaxPacket> packet;
-    const std::size_t size = pack(frame, 12.5, packet);
-    const std::string file = scratch("packet");
-    write_file(file, std::string(reinterpret_cast<const char*>(packet.data()), size));
-    ASSERT_EQ(shell("/usr/bin/python3 -c \"from can.interfaces.udp_multicast.utils import *\n"
-                    "m = unpack_message(open('" +
-                    file +
-                    "','rb').read(), check=True)\n"
-                    "assert m.timestamp == 12.5\n"
-                    "open('" +
-                    file + "','wb').write(pack_message(m))\""),
-              0);
-    const std::string back = content(file);
+    const std::size_t size = pack(frames[i], 12.5, packet);
+    write_file(file + std::to_string(i), std::string(reinterpret_cast<const char*>(packet.data()), size));
+  }
+  ASSERT_EQ(shell("/usr/bin/python3 -c \"from can.interfaces.udp_multicast.utils import *\n"
+                  "for i in range(" +
+                  std::to_string(frames.size()) + "):\n  name = '" + file +
+                  "%d' % i\n"
+                  "  m = unpack_message(open(name, 'rb').read(), check=True)\n"
+                  "  assert m.timestamp == 12.5\n"
+                  "  open(name, 'wb').write(pack_message(m))\""),
+            0);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::string back = content(file + std::to_string(i));
     CanFrame again;
     ASSERT_TRUE(unpack({reinterpret_cast<const std::uint8_t*>(back.data()), back.size()}, again));
-    EXPECT_EQ(again.id, frame.id);
-    EXPECT_EQ(again.extended, frame.extended);
-    EXPECT_EQ(again.remote, frame.remote);
-    EXPECT_EQ(again.fd, frame.fd);
-    EXPECT_EQ(again.length, frame.length);
-    EXPECT_EQ(again.data, frame.data);
+    EXPECT_EQ(again.id, frames[i].id);
+    EXPECT_EQ(again.extended, frames[i].extended);
+    EXPECT_EQ(again.remote, frames[i].remote);
+    EXPECT_EQ(again.fd, frames[i].fd);
+    EXPECT_EQ(again.length, frames[i].length);
+    EXPECT_EQ(again.data, frames[i].data);
   }
 }
 

@@ -18,8 +18,9 @@ struct Transport {
   std::string_view scheme;
   bool port;
 };
-constexpr Transport kCan[] = {
-    {"mock:", false}, {"socketcan:", false}, {"socketcand:", true}, {"udp:", true}, {"gsusb:", false}};
+constexpr Transport kCan[] = {{"mock:", false},      {"socketcan:", false},     {"socketcand:unix:", false},
+                              {"socketcand:", true}, {"lockstep:unix:", false}, {"lockstep:", true},
+                              {"udp:", true},        {"gsusb:", false}};
 constexpr Transport kModbus[] = {{"mock:", false}, {"tcp:", true}, {"rtu:", false}};
 constexpr Transport kGpio[] = {{"mock:", false}, {"chip:", false}};
 
@@ -53,8 +54,9 @@ void check_buses(const MachineConfig& machine, Reading& reading) {
     const std::string path = "bus." + std::to_string(i);
     if (!bus.url.empty())
       check_url(bus.url, path + ".url", kCan,
-                "mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL", machine,
-                reading);
+                "mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, socketcand:unix:PATH/NAME, "
+                "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
+                machine, reading);
     const bool known = std::any_of(std::begin(kRates), std::end(kRates),
                                    [&](int k) { return bus.bit_rate == std::int64_t{k} * 1000; });
     if (bus.bit_rate != 0 && !known)
@@ -156,7 +158,7 @@ void check_safety(const MachineConfig& machine, Reading& reading) {
   check_estop(machine, reading);
   const bool broken = std::any_of(reading.findings.begin(), reading.findings.end(),
                                   [](const text::Finding& f) { return f.severity == text::Severity::error; });
-  if (broken || machine.all_mock()) return;  // a transport that cannot be read says nothing about the bus
+  if (broken || machine.nothing_real()) return;  // a transport that cannot be read says nothing about the bus
   if (machine.run.start_point.empty()) reading.warning(machine.where("run"), finding::kNoStartPoint, {});
   if (machine.run.allow_start_now)
     reading.warning(machine.where("run.allow_start_now"), finding::kStartNow, {});

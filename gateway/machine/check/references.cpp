@@ -181,7 +181,7 @@ void check_simulated(const MachineConfig& machine, Reading& reading) {
     int bus = -1;
     const std::string path = "simulation.drive." + std::to_string(i) + ".node";
     if (machine.node(sim.drives[i].node, &bus) != nullptr &&
-        !machine.buses[static_cast<std::size_t>(bus)].mock())
+        !machine.buses[static_cast<std::size_t>(bus)].nothing_real())
       reading.error(machine.where(path), finding::kNotSimulated, {shown(path), sim.drives[i].node});
   }
 }

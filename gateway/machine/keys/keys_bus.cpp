@@ -45,10 +45,17 @@ const Section& section_of<BusConfig>() {
       key<&C::name>("name", {.required = true}, "name of the segment", "имя сегмента"),
       key<&C::url>(
           "url", {.required = true},
-          "transport: mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
-          "транспорт: mock:ИМЯ, socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ"),
+          "transport: mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, socketcand:unix:PATH/NAME, "
+          "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
+          "транспорт: mock:ИМЯ, socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, socketcand:unix:ПУТЬ/ИМЯ, "
+          "lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ"),
       key<&C::bit_rate>("bit_rate", {.unit = Unit::bit_per_s, .min = 10000, .max = 1000000, .required = true},
                         "bit rate of the segment", "скорость сегмента"),
+      key<&C::simulated>(
+          "simulated", {},
+          "every device on it is simulated (in other processes); refused where a real bus may be behind it",
+          "все устройства на ней имитированы (в других процессах); отказ, если за ней может быть "
+          "настоящая шина"),
       key<&C::nodes>("node", {}, "nodes", "узлы"),
   };
   static const Section section{"a CAN segment", "сегмент CAN", keys, &default_object<C>};

@@ -263,6 +263,13 @@ constexpr AlarmRow kTable[] = {
      {"bus.send_overflow", "bus {3}: {1} frames could not be sent", "шина {3}: не отправлено кадров: {1}"},
      "Lower the bus load: longer cycle, second segment, shorter mapping.",
      "Снизьте загрузку шины: больший такт, второй сегмент, меньше отображаемых объектов."},
+    {alarm::kBusDown,
+     Reaction::stop_axes,
+     cause_gone,
+     {"bus.down", "bus {3}: its interface is down, or its server is gone",
+      "шина {3}: интерфейс выключен или сервер исчез"},
+     "Bring the interface up: ip link set NAME up; start the server again, then the control.",
+     "Включите интерфейс: ip link set ИМЯ up; запустите сервер снова, затем управление."},
     // 3000: inputs and outputs
     {alarm::kSourceStale,
      Reaction::stop_on_path,

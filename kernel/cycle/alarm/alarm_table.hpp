@@ -22,6 +22,7 @@ inline constexpr AlarmNumber kBusErrorPassive = 2013;
 inline constexpr AlarmNumber kForeignFrame = 2014;
 inline constexpr AlarmNumber kBootFailed = 2015;
 inline constexpr AlarmNumber kBusSendOverflow = 2016;
+inline constexpr AlarmNumber kBusDown = 2017;
 
 inline constexpr AlarmNumber kSourceStale = 3001;
 inline constexpr AlarmNumber kSourceBad = 3002;

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/cli/bus_commands.hpp"
+
+#include "firmware_if/text/finding.hpp"
+#include "gateway/cli/quantities.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+void add_bit_rate(CLI::App& app, double& rate) {
+  app.add_option("--bit-rate", rate, "Bit rate of the bus in bit/s, 10000 to 1000000")
+      ->type_name("BIT/S")
+      ->check(number_within({10'000.0, 1e6, text::both("bit/s", "бит/с"), true}));
+}
+
+void add_can_bus(CLI::App& app, CanBusOptions& o) {
+  CLI::App& can = *app.add_subcommand("can", "CAN buses without a machine.");
+  can.require_subcommand(1);
+  CLI::App& bus = *can.add_subcommand(
+      "bus", "Serves CAN buses to processes of this computer, in the words of socketcand.");
+  bus.add_option("NAME", o.names, "Names of the buses: can0")->required();
+  bus.add_option("--listen", o.listen, "HOST:PORT on loopback, or unix:PATH")->type_name("ADDRESS");
+  add_bit_rate(bus, o.bit_rate);
+  bus.add_option("--lockstep", o.lockstep,
+                 "Time waits for so many participants, 1 to 60, and is granted to them")
+      ->type_name("N")
+      ->check(number_within({1.0, 60.0, text::both("participants", "участников"), true}));
+  bus.add_option("--until", o.until, "Lockstep: time ends here, in s")
+      ->type_name("S")
+      ->check(number_within({0.0, 1e9, text::both("s", "с")}));
+  bus.add_option("--log", o.log, "Writes every frame of the first bus to this file, as candump -l does");
+  bus.footer("Example: servogate can bus can0 --listen 127.0.0.1:29536");
+}
+
+constexpr const char* kBus = "Url of the bus, or MACHINE.toml#bus";
+
+void add_drive(CLI::App& app, DriveOptions& o) {
+  CLI::App& d = *app.add_subcommand("drive", "Simulated CiA 402 drives on a bus, as a process of their own.");
+  d.add_option("BUS", o.bus, kBus)->required();
+  d.add_option("--node", o.nodes, "Node-ID, 1 to 127; several with commas")
+      ->type_name("N,...")
+      ->required()
+      ->delimiter(',')
+      ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
+  d.add_option("--device", o.device, "Device file whose motor and name plate the drives have, without .toml")
+      ->type_name("NAME");
+  add_bit_rate(d, o.bit_rate);
+  d.footer("Example: servogate drive socketcand:127.0.0.1:29536/can0 --node 1,2,3");
+}
+
+void add_dump(CLI::App& app, DumpOptions& o) {
+  CLI::App& d = *app.add_subcommand("dump", "Prints what passes on a bus, as `candump -L` does.");
+  d.add_option("BUS", o.bus, kBus)->required();
+  d.add_option("--count", o.count, "Ends after so many frames")
+      ->type_name("N")
+      ->check(number_within({1.0, 1e12, text::both("frames", "кадров"), true}));
+  d.add_option("--seconds", o.seconds, "Ends after so many seconds")
+      ->type_name("S")
+      ->check(number_within({0.001, 1e9, text::both("s", "с")}));
+  add_bit_rate(d, o.bit_rate);
+  d.footer("Example: servogate dump socketcan:can0 > run.log");
+}
+
+void add_play(CLI::App& app, PlayOptions& o) {
+  CLI::App& p = *app.add_subcommand("play", "Sends the frames of a candump log again, in their rhythm.");
+  p.add_option("BUS", o.bus, kBus)->required();
+  p.add_option("FILE", o.file, "Log of `servogate dump` or `candump -l`")->required();
+  p.add_option("--speed", o.speed, "Times the log's own speed, 0.001 to 100000")
+      ->type_name("TIMES")
+      ->check(number_within({0.001, 1e5, text::both("times", "раз")}));
+  p.add_flag("--i-may-move", o.may_move, "Real drives on the bus may move");
+  add_bit_rate(p, o.bit_rate);
+  p.footer("Example: servogate play socketcan:vcan0 run.log");
+}
+
+}  // namespace
+
+void add_bus_commands(CLI::App& app, BusCommands& options) {
+  add_can_bus(app, options.can_bus);
+  add_drive(app, options.drive);
+  add_dump(app, options.dump);
+  add_play(app, options.play);
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/usercan/process.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "tests/usercan/running_server.hpp"
+
+namespace servogate::usercan {
+
+Process::Process(const std::vector<std::string>& arguments) : file_(scratch("said")) {
+  std::vector<std::string> words = {SERVOGATE_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const int out = open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  pid_ = fork();
+  if (pid_ == 0) {
+    setenv("LC_ALL", "C", 1);
+    dup2(out, 1);
+    dup2(out, 2);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  close(out);
+}
+
+Process::~Process() {
+  if (pid_ <= 0) return;
+  signal(SIGTERM);
+  wait();
+}
+
+bool Process::says(const std::string& text) const {
+  for (int i = 0; i < 3000; ++i) {
+    if (said().find(text) != std::string::npos) return true;
+    usleep(10'000);
+  }
+  return false;
+}
+
+int Process::wait() {
+  int status = 0;
+  waitpid(pid_, &status, 0);
+  pid_ = -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+void Process::signal(int number) const { kill(pid_, number); }
+
+std::string Process::said() const { return content(file_); }
+
+}  // namespace servogate::usercan

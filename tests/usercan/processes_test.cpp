@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The servogate program with itself: a bus, drives and the mill, each a process of its own.
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "tests/usercan/process.hpp"
+#include "tests/usercan/running_server.hpp"
+
+namespace servogate::usercan {
+namespace {
+
+/// The example mill with its bus behind another url. Switches and panel stay mocks.
+std::string mill(const std::string& url,
+                 const std::vector<std::pair<std::string, std::string>>& changes = {}) {
+  const std::string example = std::string(SERVOGATE_SOURCE_DIR) + "/examples/mill/";
+  std::string text = content(example + "machine.toml");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()), ++n)
+      text.replace(at, from.size(), to);
+    EXPECT_GT(n, 0u) << from;
+  };
+  replace("\"mill.st\"", "\"" + example + "mill.st\"");
+  replace("url = \"mock:can\"", "url = \"" + url + "\"");
+  for (const auto& [from, to] : changes) replace(from, to);
+  const std::string file = scratch("mill.toml");
+  std::ofstream(file) << text;
+  return file;
+}
+
+std::string program() {
+  const std::string file = scratch("square.nc");
+  std::ofstream(file) << "N1 G90 G0 X10 Y0 Z0\nN2 G1 X10 Y10 F3000\nN3 G1 X0 Y0 Z-5\nN4 M30\n";
+  return file;
+}
+
+/// Four drives in three processes.
+std::vector<std::unique_ptr<Process>> drives(const std::string& machine) {
+  std::vector<std::unique_ptr<Process>> out;
+  for (const char* nodes : {"1", "2", "3,4"})
+    out.push_back(
+        std::make_unique<Process>(std::vector<std::string>{"drive", machine + "#can", "--node", nodes}));
+  return out;
+}
+
+TEST(Processes, the_mill_runs_in_real_time_on_a_bus_between_processes_without_rights) {
+  const std::string socket = scratch("bus.sock");
+  const Process bus({"can", "bus", "can0", "--listen", "unix:" + socket});
+  ASSERT_TRUE(bus.says("can0 at 1000000 bit/s")) << bus.said();
+  // What a busy computer does to time is no matter here: late answers are waited for.
+  const std::string patient = "loss_cycles = 1000\nheartbeat = \"5 s\"\ndevice = ";
+  const std::string machine = mill("socketcand:unix:" + socket + "/can0",
+                                   {{"bit_rate = \"1 Mbit/s\"", "bit_rate = \"1 Mbit/s\"\nsimulated = true"},
+                                    {"cycle_time = \"1 ms\"", "cycle_time = \"4 ms\""},
+                                    {"device = \"servo", patient + "\"servo"},
+                                    {"device = \"spindle", patient + "\"spindle"}});
+  const auto living = drives(machine);
+  Process run({"run", machine, program(), "--realtime=best-effort", "-q"});
+  EXPECT_EQ(run.wait(), 0) << run.said();
+}
+
+TEST(Processes, the_mill_with_drives_in_lockstep_repeats_to_the_byte) {
+  std::vector<std::string> traces;
+  for (int i = 0; i < 2; ++i) {
+    const std::string socket = scratch("bus.sock"), trace = scratch("trace.csv"), log = scratch("bus.log");
+    const Process bus({"can", "bus", "can0", "--listen", "unix:" + socket, "--lockstep", "4", "--log", log});
+    ASSERT_TRUE(bus.says("can0 at")) << bus.said();
+    const std::string machine =
+        mill("lockstep:unix:" + socket + "/can0", {{"cycle_time = \"1 ms\"", "cycle_time = \"4 ms\""}});
+    const auto living = drives(machine);
+    Process run({"run", machine, program(), "--virtual", "-q", "--trace", trace});
+    ASSERT_EQ(run.wait(), 0) << run.said();
+    traces.push_back(content(trace));
+    EXPECT_NE(content(log).find(") can0 080#\n"), std::string::npos);
+  }
+  EXPECT_GT(traces[0].size(), 10'000u);
+  EXPECT_TRUE(traces[0] == traces[1]) << "two runs differ";
+}
+
+TEST(Processes, a_bus_that_cannot_be_opened_is_infrastructure_and_says_what_to_do) {
+  Process run({"run", mill("socketcand:127.0.0.1:1/can0"), program(), "--realtime=best-effort"});
+  EXPECT_EQ(run.wait(), 4);
+  EXPECT_NE(run.said().find("servogate can bus can0 --listen 127.0.0.1:1"), std::string::npos) << run.said();
+}
+
+TEST(Processes, a_machine_is_not_believed_to_be_simulated_when_a_real_bus_may_be_behind_the_url) {
+  // As socketcand itself answers: it knows no remote frames, and serves real interfaces.
+  Address address;
+  address.host = "127.0.0.1";
+  drivers::Notice why;
+  const int listener = listen_on(address, why);
+  ASSERT_GE(listener, 0);
+  std::atomic<bool> stop{false};
+  std::thread socketcand([&] {
+    while (!stop) {
+      const int s = accept(listener, nullptr, nullptr);
+      if (s < 0) {
+        usleep(10'000);
+        continue;
+      }
+      char heard[256];
+      for (const char* answer : {"< hi >", "< ok >", "< ok >", "< error unknown command >"}) {
+        if (send(s, answer, std::string_view(answer).size(), MSG_NOSIGNAL) < 0 ||
+            recv(s, heard, sizeof heard, 0) <= 0)
+          break;
+      }
+      close(s);
+    }
+  });
+  Process run({"run",
+               mill("socketcand:" + address.str() + "/can0",
+                    {{"bit_rate = \"1 Mbit/s\"", "bit_rate = \"1 Mbit/s\"\nsimulated = true"}}),
+               program(), "--realtime=best-effort"});
+  EXPECT_EQ(run.wait(), 2);
+  EXPECT_NE(run.said().find("a real one may be behind"), std::string::npos) << run.said();
+  stop = true;
+  socketcand.join();
+  close(listener);
+}
+
+TEST(Processes, a_drive_ends_when_its_bus_is_gone_and_says_so) {
+  const std::string socket = scratch("bus.sock");
+  auto bus =
+      std::make_unique<Process>(std::vector<std::string>{"can", "bus", "can0", "--listen", "unix:" + socket});
+  ASSERT_TRUE(bus->says("can0 at")) << bus->said();
+  Process drive(
+      {"drive", "socketcand:unix:" + socket + "/can0", "--node", "1,2", "--device", "servo-cia402"});
+  ASSERT_TRUE(drive.says("node 2 on"));
+  bus.reset();
+  EXPECT_EQ(drive.wait(), 4);
+  EXPECT_NE(drive.said().find("is gone"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace servogate::usercan
