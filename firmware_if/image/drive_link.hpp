@@ -56,6 +56,7 @@ struct DriveFeedback {
   std::int64_t position_counts = 0;
   double velocity_counts_s = 0.0;
   double torque_permille = 0.0;
+  bool torque_known = false;         ///< the drive's process data hold its torque
   std::uint32_t digital_inputs = 0;  ///< 60FDh
   std::int64_t latch_counts = 0;     ///< position of the last capture
   std::uint32_t latch_sequence = 0;  ///< increases by one with every capture

@@ -76,13 +76,55 @@ enum class Mode : std::uint8_t { off, mdi, automatic, step, manual, increment, p
 /// States of a process, in the order of the K place `NC.state`.
 enum class ProcessState : std::uint8_t { idle, running, held, waiting, stopped_by_alarm, ended };
 
+/// How two numbers compare.
+enum class Compare : std::uint8_t { eq, ne, lt, le, gt, ge };
+
+/// What keeps a program from going on while its path is at rest.
+enum class WaitReason : std::uint8_t {
+  none,
+  signal,         ///< a wait of the program: until `place` compares with `value`
+  m_acknowledge,  ///< the PLC has not acknowledged M `code`; ends by its own time-out, as the next three
+  s_acknowledge,  ///< `value` rpm
+  t_acknowledge,  ///< tool `code`
+  h_acknowledge,
+  dwell,             ///< `value` seconds in all; ends by itself
+  in_position,       ///< of `axis`
+  program_stop,      ///< M00: the operator's start
+  optional_stop,     ///< M01: the same
+  block_end,         ///< STEP mode: the operator's next step
+  read_in_enable,    ///< until the PLC sets `place`
+  operator_hold,     ///< feed hold of the operator
+  plc_hold,          ///< until the PLC takes `place` back
+  feed_enable,       ///< until the PLC sets `place`
+  axis_feed_enable,  ///< the same, of `axis`
+  override_zero,     ///< the operator's feed override is 0
+};
+inline constexpr int kWaitReasons = static_cast<int>(WaitReason::override_zero) + 1;
+
+/// A wait of a process as plain data; words come from outside the cycle.
+struct Wait {
+  WaitReason reason = WaitReason::none;
+  Compare compare = Compare::eq;
+  std::int8_t axis = -1;
+  std::int32_t line = 0;  ///< of the block that waits, in ProcessStatus::file
+  std::int32_t code = 0;
+  double value = 0.0;
+  Place place{};
+  Nanoseconds since_ns = 0;  ///< machine time at which this wait began
+
+  bool operator==(const Wait&) const = default;
+};
+
 /// One process (part program) as everybody sees it.
 struct ProcessStatus {
   Mode mode = Mode::off;
   ProcessState state = ProcessState::idle;
-  std::int32_t line = 0;  ///< line of the block in motion
-  std::int32_t file = 0;
-  std::int64_t blocks_done = 0;
+  std::uint32_t run = 0;  ///< rises with every start; 0: none yet
+  std::int32_t line = 0;  ///< line of the block in motion; 0: none, also after a reset and a new program
+  std::int32_t file = 0;  ///< 0: main program; names by run and number in channel::ProgramTexts
+  std::int64_t blocks_done = 0;  ///< blocks of this run up to the one in motion, each time it runs
+  std::int32_t message = 0;      ///< number of the program's last message in channel::ProgramTexts; 0: none
+  Wait wait;
   double feed_mm_s = 0.0;       ///< speed of the set-point along the path
   double override_ratio = 1.0;  ///< 0-1.5
   bool rapid = false;           ///< the block in motion is a rapid

@@ -152,6 +152,11 @@ class Commands {
     app.add_option("--override", o.override_percent, "Feed override in per cent, 0 to 150")
         ->type_name("PCT")
         ->check(number_within({0.0, 150.0, "%"}));
+    app.add_option(
+           "--patience", o.patience_s,
+           "Machine time that a program may wait for somebody; 0: for ever. 60 s where nothing is real")
+        ->type_name("SECONDS")
+        ->check(number_within({0.0, 1e9, "s"}));
     app.add_option("--state", o.state, "State directory; without one a virtual run leaves no state behind");
     app.add_flag("--start-now", o.start_now,
                  "Start without the operator's start, where the machine file allows it");

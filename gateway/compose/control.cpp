@@ -218,6 +218,11 @@ cycle::AlarmNames Control::alarm_names() const {
       }
     return {};
   };
+  names.program_finding = [this](int process, int number, text::Language language) -> std::string {
+    if (process < 0 || process >= std::ssize(processes_)) return {};
+    const auto finding = processes_[static_cast<std::size_t>(process)]->texts().finding(number);
+    return finding ? finding->str(language) : std::string();
+  };
   return names;
 }
 

@@ -60,6 +60,21 @@ Json to_json(const Provenance& p) {
   return out;
 }
 
+Json to_json(const text::Finding& f) {
+  return {{"file", f.file},
+          {"line", f.line},
+          {"column", f.column},
+          {"severity", f.severity == text::Severity::error ? "error" : "warning"},
+          {"code", f.entry != nullptr ? std::string(f.entry->id) : std::string()},
+          {"text",
+           f.entry != nullptr ? text::render(*f.entry, f.arguments, text::user_language()) : std::string()}};
+}
+
+Json to_json(const WaitEntry& w) {
+  return {{"reason", w.reason}, {"text", w.text}, {"remedy", w.remedy},
+          {"file", w.file},     {"line", w.line}, {"for_s", w.for_s}};
+}
+
 Json to_json(const AlarmEntry& a) {
   const image::AlarmRecord& r = a.record;
   Json out;
@@ -82,7 +97,8 @@ Json to_json(const AlarmEntry& a) {
   if (r.error_code != 0) out["error_code"] = hex(r.error_code, 4);
   if (r.line > 0) out["line"] = r.line;
   if (r.block >= 0) out["block"] = r.block;
-  if (r.limit != 0.0 || r.value != 0.0) {
+  if (a.finding) out["finding"] = to_json(*a.finding);
+  if (!a.finding && (r.limit != 0.0 || r.value != 0.0)) {
     out["limit"] = r.limit;
     out["value"] = r.value;
   }
@@ -125,6 +141,8 @@ Json json_of(const Report& r) {
   out["overruns"] = r.overruns;
   out["starved"] = r.starved;
   out["blocks"] = r.blocks;
+  if (r.blocks_expected > 0) out["blocks_expected"] = r.blocks_expected;
+  if (r.wait) out["wait"] = to_json(*r.wait);
   out["alarms"] = Json::array();
   for (const AlarmEntry& a : r.alarms) out["alarms"].push_back(to_json(a));
   out["axes"] = Json::object();

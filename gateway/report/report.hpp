@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware_if/image/alarm.hpp"
+#include "firmware_if/text/finding.hpp"
 #include "gateway/report/statistics.hpp"
 
 namespace servogate::report {
@@ -58,7 +59,19 @@ struct AlarmEntry {
   std::string id;
   std::string text;
   std::string remedy;
-  std::string axis;  ///< letter, empty: none
+  std::string axis;                      ///< letter, empty: none
+  bool consequence = false;              ///< stands behind its first fault
+  std::optional<text::Finding> finding;  ///< of a program error: file, line, column and words
+};
+
+/// What the program waited for when the run was given up because nothing moved any more.
+struct WaitEntry {
+  std::string reason;
+  std::string text;
+  std::string remedy;
+  std::string file;
+  int line = 0;
+  double for_s = 0.0;
 };
 
 /// One axis: what was met, and what the machine file allows (0: no limit known).
@@ -96,7 +109,9 @@ struct Report {
   std::int64_t cycles = 0;
   std::int64_t overruns = 0;
   std::int64_t starved = 0;
-  std::int64_t blocks = 0;
+  std::int64_t blocks = 0;           ///< executed, each time they ran, up to the one in motion at the end
+  std::int64_t blocks_expected = 0;  ///< of a dry run, whose branches may differ; 0: not known
+  std::optional<WaitEntry> wait;
   std::vector<AlarmEntry> alarms;
   std::vector<AxisReport> axes;
   double virtual_speed = 0.0;  ///< simulated seconds per second

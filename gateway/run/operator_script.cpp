@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/run/operator_script.hpp"
 
+#include "gateway/run/wait_words.hpp"
 #include "kernel/cycle/gate/gate.hpp"
 
 namespace servogate::gateway {
@@ -45,6 +46,16 @@ void OperatorScript::power_down(Outcome outcome, const ProcessImage& image) {
   enter(Stage::power_off, image);
 }
 
+/// A program that has waited for somebody too long is stopped on the path, as by Ctrl-C.
+void OperatorScript::give_up(const ProcessImage& image) {
+  const image::Wait& wait = image.processes[0].wait;
+  if (wishes_.patience_s <= 0.0 || !needs_somebody(wait.reason)) return;
+  if (static_cast<double>(image.now.t_ns - wait.since_ns) * 1e-9 < wishes_.patience_s) return;
+  given_up_ = wait;
+  outcome_ = Outcome::waited;
+  send(RequestKind::stop);
+}
+
 void OperatorScript::interrupt() { ++interrupts_; }
 
 void OperatorScript::take(const image::Answer& answer) {
@@ -71,8 +82,11 @@ void OperatorScript::poll(const ProcessImage& image) {
   bool standing = true;
   for (int a = 0; a < image.axis_count; ++a)
     standing = standing && !image.axes[static_cast<std::size_t>(a)].moving;
-  if (outcome_ == Outcome::stopped && stage_ < Stage::power_off) {
-    if (standing && image.processes[0].state != ProcessState::running) power_down(Outcome::stopped, image);
+  if (outcome_ != Outcome::under_way && stage_ < Stage::power_off) {
+    const ProcessState state = image.processes[0].state;
+    const bool busy =
+        state == ProcessState::running || state == ProcessState::held || state == ProcessState::waiting;
+    if (standing && !busy) power_down(outcome_, image);
     return;
   }
   if (refusal_.refusal != 0 && stage_ < Stage::running) return power_down(Outcome::refused, image);
@@ -140,6 +154,7 @@ void OperatorScript::poll(const ProcessImage& image) {
         case ProcessState::idle:
           return power_down(Outcome::stopped, image);
         default:
+          give_up(image);
           break;
       }
       break;

@@ -15,13 +15,14 @@ namespace servogate::gateway {
 class OperatorScript {
  public:
   enum class Stage { power, homing, start, running, power_off, done };
-  /// How it went.
-  enum class Outcome { under_way, finished, alarm, stopped, refused };
+  /// How it went. `waited`: nothing moved any more, and nobody did what the program waited for.
+  enum class Outcome { under_way, finished, alarm, stopped, refused, waited };
 
   struct Wishes {
     bool program = true;  ///< false: only drives on and homing
     double override_ratio = 1.0;
     bool wait_for_start = false;  ///< loads and waits for somebody else's start
+    double patience_s = 0.0;      ///< machine time that a program may wait for somebody; 0: for ever
     std::vector<std::string> letters;
     std::vector<bool> needs_homing;
   };
@@ -41,12 +42,15 @@ class OperatorScript {
   Stage stage() const noexcept { return stage_; }
   Outcome outcome() const noexcept { return outcome_; }
   const image::Answer& refusal() const noexcept { return refusal_; }
+  /// What the program waited for when the outcome is `waited`.
+  const image::Wait& given_up() const noexcept { return given_up_; }
   /// Axes that never came to what the stage waits for, with the state of their drives, for the message.
   const std::vector<std::string>& waiting_for() const noexcept { return waiting_for_; }
 
  private:
   void send(image::RequestKind kind, double value = 0.0, int axis = -1);
   void enter(Stage stage, const image::ProcessImage& image);
+  void give_up(const image::ProcessImage& image);
   void power_down(Outcome outcome, const image::ProcessImage& image);
   double in_stage(const image::ProcessImage& image) const;
 
@@ -57,6 +61,7 @@ class OperatorScript {
   image::Answer refusal_;
   image::Answer last_refusal_;  ///< of a request that is asked again
   std::vector<std::string> waiting_for_;
+  image::Wait given_up_;
   image::Nanoseconds entered_ns_ = 0;
   std::uint64_t next_id_ = 1;
   bool asked_ = false;

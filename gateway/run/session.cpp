@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "gateway/run/alarm_entries.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::gateway {
@@ -117,21 +118,10 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
   r.time_s = static_cast<double>(cycle.count() * cycle.period_ns()) * 1e-9;
   r.overruns = overruns;
   r.starved = image.processes[0].starved;
-  r.blocks = control_.process(0).feeder().executed();
+  r.blocks = image.processes[0].blocks_done;
   r.finished = image.processes[0].state == image::ProcessState::ended;
   r.virtual_speed = wall_s > 0.0 ? r.time_s / wall_s : 0.0;
-  const cycle::AlarmNames names = control_.alarm_names();
-  const text::Language language = text::user_language();
-  for (const image::AlarmRecord& record : cycle.alarms().history()) {
-    report::AlarmEntry entry;
-    entry.record = record;
-    if (const cycle::AlarmRow* row = cycle::find_alarm(record.number); row != nullptr)
-      entry.id = std::string(row->text.id);
-    entry.text = cycle::render(record, names, language);
-    entry.remedy = cycle::render_remedy(record, names, language);
-    if (record.axis >= 0) entry.axis = m.axes[static_cast<std::size_t>(record.axis)].letter;
-    r.alarms.push_back(std::move(entry));
-  }
+  r.alarms = alarm_entries(control_, cycle.alarms().history(), text::user_language());
   report::fill_axes(r, layout_, statistics_);
   for (std::size_t a = 0; a < r.axes.size() && a < m.axes.size(); ++a) {
     const machine::AxisConfig& axis = m.axes[a];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/server/resident.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -89,6 +90,8 @@ Resident::Load Resident::load(const std::string& path, const std::string& dialec
   std::string before = std::exchange(program_path_, path);
   if (arm()) {
     blocks_ = reader.block_count();
+    lines_ = static_cast<int>(std::count(file_.text.begin(), file_.text.end(), '\n')) +
+             (file_.text.empty() || file_.text.back() == '\n' ? 0 : 1);
     return Load::done;
   }
   std::swap(file_, file);  // a program began meanwhile

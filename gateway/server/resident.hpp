@@ -58,7 +58,9 @@ class Resident {
   /// A program is under way (running, held or waiting).
   bool busy();
   const std::string& program() const noexcept { return program_path_; }
+  /// Of the loaded program's file: blocks, and lines.
   int blocks() const noexcept { return blocks_; }
+  int lines() const noexcept { return lines_; }
   double speed() const noexcept { return speed_; }
   Control& control() noexcept { return control_; }
   /// Newest whole image and alarms.
@@ -77,7 +79,7 @@ class Resident {
   double speed_;
   ProgramFile file_;
   std::string program_path_;
-  int blocks_ = 0;
+  int blocks_ = 0, lines_ = 0;
   std::uint32_t homed_seen_ = 0;
   bool busy_seen_ = false;
   std::uint64_t next_id_ = 1;

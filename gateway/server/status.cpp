@@ -2,6 +2,11 @@
 #include "gateway/server/status.hpp"
 
 #include <nlohmann/json.hpp>
+#include <span>
+
+#include "gateway/machine/consequences.hpp"
+#include "gateway/run/alarm_entries.hpp"
+#include "gateway/run/wait_words.hpp"
 
 namespace servogate::gateway {
 
@@ -17,23 +22,65 @@ constexpr const char* kDriveStates[] = {
     "switched_on", "operation_enabled",      "quick_stop_active",  "fault_reaction_active",
     "fault"};
 
+json finding_json(const text::Finding& finding, text::Language language) {
+  return json::parse(machine::to_json(std::vector<text::Finding>{finding}, language), nullptr, false)[0];
+}
+
 json alarm_list(Resident& resident, text::Language language) {
-  const cycle::AlarmNames names = resident.control().alarm_names();
-  json list = json::array();
   const cycle::AlarmSnapshot& alarms = resident.alarms();
-  for (int i = 0; i < alarms.count; ++i) {
-    const image::AlarmRecord& r = alarms.records[static_cast<std::size_t>(i)];
-    const cycle::AlarmRow* row = cycle::find_alarm(r.number);
+  const std::span records(alarms.records.data(), static_cast<std::size_t>(alarms.count));
+  json list = json::array();
+  for (const report::AlarmEntry& a : alarm_entries(resident.control(), records, language)) {
+    const image::AlarmRecord& r = a.record;
     list.push_back({{"number", r.number},
-                    {"id", row != nullptr ? std::string(row->text.id) : std::string()},
-                    {"text", cycle::render(r, names, language)},
-                    {"remedy", cycle::render_remedy(r, names, language)},
-                    {"first", r.first_fault == r.sequence},
+                    {"id", a.id},
+                    {"text", a.text},
+                    {"remedy", a.remedy},
+                    {"first", !a.consequence},
+                    {"sequence", r.sequence},
+                    {"first_fault", r.first_fault},
                     {"time_s", static_cast<double>(r.t_ns) * 1e-9},
                     {"line", r.line},
                     {"reaction", cycle::words(r.reaction, language)}});
+    if (a.finding) list.back()["finding"] = finding_json(*a.finding, language);
   }
   return list;
+}
+
+json wait_json(const std::optional<WaitWords>& wait) {
+  if (!wait) return nullptr;
+  const WaitWords& w = *wait;
+  json out{{"reason", w.reason}, {"text", w.text},       {"remedy", w.remedy}, {"file", w.file},
+           {"line", w.line},     {"since_s", w.since_s}, {"for_s", w.for_s}};
+  const auto add = [&](const char* key, std::string_view words) {
+    if (!words.empty()) out[key] = words;
+  };
+  add("place", w.place);
+  add("symbol", w.symbol);
+  add("written_by", w.written_by);
+  add("axis", w.axis);
+  add("word", w.word);
+  if (w.wanted) {
+    out["compare"] = w.compare;
+    out["wanted"] = *w.wanted;
+    out["actual"] = *w.actual;
+  }
+  return out;
+}
+
+/// What `status` says of one process.
+json process_json(Control& control, const image::ProcessImage& image, int process, text::Language language) {
+  const image::ProcessStatus& p = image.processes[static_cast<std::size_t>(process)];
+  return {{"mode", kModes[static_cast<int>(p.mode)]},
+          {"state", kStates[static_cast<int>(p.state)]},
+          {"line", p.line},
+          {"file", p.line > 0 ? control.process(process).texts().file(p.run, p.file) : ""},
+          {"blocks_done", p.blocks_done},
+          {"message", program_message(control, image, process)},
+          {"wait", wait_json(wait_words(control, image, process, language))},
+          {"feed_mm_min", p.feed_mm_s * 60.0},
+          {"override_pct", p.override_ratio * 100.0},
+          {"tool", p.tool}};
 }
 
 }  // namespace
@@ -41,7 +88,6 @@ json alarm_list(Resident& resident, text::Language language) {
 std::string status_json(Resident& resident, text::Language language) {
   const image::ProcessImage& image = resident.image();
   const machine::MachineConfig& m = resident.control().machine();
-  const image::ProcessStatus& p = image.processes[0];
   bool homing = false;
   for (int i = 0; i < image.axis_count; ++i)
     homing = homing || image.axes[static_cast<std::size_t>(i)].owner == image::AxisOwner::homing;
@@ -50,16 +96,17 @@ std::string status_json(Resident& resident, text::Language language) {
               {"schema", 1},
               {"machine", m.name},
               {"time_s", image.now.seconds()},
-              {"mode", kModes[static_cast<int>(p.mode)]},
-              {"state", kStates[static_cast<int>(p.state)]},
               {"program", resident.program()},
-              {"line", p.line},
-              {"blocks_done", p.blocks_done},
               {"blocks", resident.blocks()},
+              {"lines", resident.lines()},
               {"homing", homing},
-              {"feed_mm_min", p.feed_mm_s * 60.0},
-              {"override_pct", p.override_ratio * 100.0},
-              {"tool", p.tool}};
+              {"processes", json::array()}};
+  for (int p = 0; p < image.process_count; ++p) {
+    json process = process_json(resident.control(), image, p, language);
+    if (p == 0) status.update(process);
+    process["process"] = p + 1;
+    status["processes"].push_back(std::move(process));
+  }
   for (int i = 0; i < image.axis_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
     const image::AxisImage& a = image.axes[n];
@@ -102,8 +149,12 @@ std::string alarms_in_words(Resident& resident, text::Language language) {
 }
 
 std::string alarms_json(Resident& resident, text::Language language) {
-  return json{{"ok", true}, {"exit", 0}, {"schema", 1}, {"alarms", alarm_list(resident, language)}}.dump(
-      -1, ' ', false, json::error_handler_t::replace);
+  const image::ProcessImage& image = resident.image();
+  json answer{{"ok", true}, {"exit", 0}, {"schema", 1}, {"alarms", alarm_list(resident, language)}};
+  for (int p = 0; p < image.process_count; ++p)
+    if (const auto wait = wait_words(resident.control(), image, p, language); wait)
+      answer["waits"].push_back(wait_json(wait));
+  return answer.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace servogate::gateway

@@ -69,7 +69,9 @@ void Axis::command(image::ProcessImage& image) noexcept {
 
 void Axis::step_power(double dt, PowerSequence::Outputs& out) noexcept {
   const PowerSequence::State before = power_.state();
-  if (power_requested_ && !power_permitted_ && moving_) raise(alarm::kEnableWithdrawn, 0.0, set_.v);
+  // Where a reaction takes the power anyway (emergency stop), the enable that goes with it says nothing new.
+  if (power_requested_ && !power_permitted_ && moving_ && reaction_ < Reaction::quick_stop)
+    raise(alarm::kEnableWithdrawn, 0.0, set_.v);
   PowerSequence::Inputs in;
   in.wanted = power_requested_ && power_permitted_;
   in.at_rest = held_ ? !moving_ : actual_standing_;

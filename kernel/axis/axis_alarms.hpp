@@ -50,7 +50,7 @@ struct Event {
   double limit = 0.0;    ///< what was allowed, in the unit of the alarm table
   double value = 0.0;    ///< what was met
   double detail1 = 0.0;  ///< further figures that the table names (following error: velocity ...)
-  double detail2 = 0.0;  ///< ... (following error: torque in per mille of the rated one)
+  double detail2 = 0.0;  ///< ... (following error: torque in per mille of the rated one, NaN: not known)
 };
 
 /// Bounded list of the events of one cycle. real-time safe.

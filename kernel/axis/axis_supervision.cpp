@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/axis/axis.hpp"
@@ -106,7 +107,7 @@ void Axis::supervise_drive() noexcept {
 void Axis::supervise_position() noexcept {
   if (held_ && std::abs(following_error_) > following_limit_)
     raise(alarm::kFollowingError, following_limit_, following_error_, actual_velocity_,
-          drive_.torque_permille);
+          drive_.torque_known ? drive_.torque_permille : std::numeric_limits<double>::quiet_NaN());
   if (held_ && limit_plus_ && limit_minus_) raise(alarm::kBothLimits, 0.0, actual_);
 }
 

@@ -26,15 +26,22 @@ enum class EventKind : std::uint8_t {
   end,            ///< M02, M30 or the last line
 };
 
+/// path::Tag::command of this room: the run above, and below how many of its blocks have been executed. Equal
+/// programs and inputs give equal numbers, whatever was read of runs given up before.
+constexpr std::uint64_t run_and_block(std::uint32_t run, long long executed) noexcept {
+  return std::uint64_t{run} << 32 | static_cast<std::uint32_t>(executed);
+}
+
 /// One command that the cycle executes at rest, in path order. Plain data; crosses the real-time line.
 struct Event {
   std::uint32_t id = 0;  ///< the path's event, or 0: at once (asynchronous write)
   std::uint32_t generation = 0;
+  std::uint32_t executed = 0;  ///< blocks of the run so far, its own included
   EventKind kind = EventKind::message;
   std::int32_t line = 0;
   std::int32_t block = -1;
   std::int16_t file = 0;
-  std::int32_t code = 0;    ///< M, H or tool number; index of the message or finding
+  std::int32_t code = 0;    ///< M, H or tool number; number of the message or finding in ProgramTexts
   std::int32_t code2 = 0;   ///< corrector
   double value = 0.0;       ///< seconds, speed, value to write or to compare with
   double limit = 0.0;       ///< rpm limit of a surface speed

@@ -104,13 +104,14 @@ void Feeder::begin(const FeederOrder& order) {
   block_by_block_ = order.block_by_block;
   moved_in_block_ = false;
   last_line_ = 0;
-  findings_.clear();
+  last_file_ = 0;
+  files_told_ = 0;
   view_ = link_.packets_of(generation_);
   synchronised_ = true;
   path::Vector at{};
   for (std::size_t i = 0; i < axes_.machine.size(); ++i)
     at[i] = position_[static_cast<std::size_t>(axes_.machine[i])];
-  planner_.restart(at);
+  link_.begin(generation_, {planner_.restart(at), link_.events.written(), link_.at_once.written()});
   state_ = State::feeding;
   std::optional<program::Interpreter> manual;
   if (order.manual_data) manual = manual_interpreter(position_);
@@ -121,16 +122,22 @@ void Feeder::begin(const FeederOrder& order) {
   else
     manual.emplace(factory_(position_));
   interpreter_ = std::move(manual);
+  executed_before_ = interpreter_->executed();
 }
 
 void Feeder::read_one() {
   const program::Step step = interpreter_->next(view_, synchronised_);
   synchronised_ = false;
+  if (const std::vector<std::string>& files = interpreter_->files(); files.size() != files_told_) {
+    texts_.set_files(generation_, files);
+    files_told_ = files.size();
+  }
   if (const auto* command = std::get_if<program::Command>(&step)) {
     accept(*command);
   } else if (const auto* sync = std::get_if<program::NeedsSync>(&step)) {
     program::Command at;
     at.line = sync->line;
+    at.file = last_file_;
     event(EventKind::sync, at, {});
     state_ = State::syncing;
   } else {
@@ -142,8 +149,7 @@ void Feeder::fail(const text::Finding& finding) {
   program::Command at;
   at.line = finding.line;
   Event e;
-  e.code = static_cast<std::int32_t>(findings_.size());
-  findings_.push_back(finding);
+  e.code = texts_.add_finding(finding);
   event(EventKind::error, at, e);
   end();
 }
@@ -167,7 +173,7 @@ path::Tag Feeder::tag(const program::Command& command) const {
   t.file = command.file;
   t.block = command.block;
   t.process = static_cast<std::int16_t>(process_);
-  t.command = commands_;
+  t.command = run_and_block(generation_, executed());
   return t;
 }
 
@@ -176,6 +182,7 @@ void Feeder::event(EventKind kind, const program::Command& command, Event e) {
   if (next_event_ == 0) next_event_ = 1;
   e.generation = generation_;
   e.kind = kind;
+  e.executed = static_cast<std::uint32_t>(executed());
   e.line = command.line;
   e.block = command.block;
   e.file = static_cast<std::int16_t>(command.file);
@@ -184,12 +191,12 @@ void Feeder::event(EventKind kind, const program::Command& command, Event e) {
 }
 
 void Feeder::accept(const program::Command& command) {
-  ++commands_;
   if (block_by_block_ && moved_in_block_ && command.line != last_line_) {
     event(EventKind::block_end, command, {});
     moved_in_block_ = false;
   }
   last_line_ = command.line;
+  last_file_ = command.file;
   Event e;
   std::visit(Overloaded{
                  [&](const program::Rapid&) { move(command); },
@@ -231,8 +238,7 @@ void Feeder::accept(const program::Command& command) {
                    event(EventKind::h_function, command, e);
                  },
                  [&](const program::Message& m) {
-                   e.code = static_cast<std::int32_t>(messages_.size());
-                   messages_.push_back(m.text);
+                   e.code = texts_.add_message(m.text);
                    event(EventKind::message, command, e);
                  },
                  [&](const program::WritePlace& w) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "firmware_if/text/finding.hpp"
 #include "kernel/channel/event.hpp"
+#include "kernel/channel/program_texts.hpp"
 #include "kernel/path/planner.hpp"
 #include "kernel/program/interpreter.hpp"
 
@@ -44,6 +46,24 @@ struct Link {
   /// so that a new one never writes what the feeder still reads.
   image::Packets& packets_of(std::uint32_t generation) { return packets[generation % packets.size()]; }
   std::array<image::Packets, 4> packets;
+
+  /// Where the queues stood when the feeder began a run: what is published from there on belongs to it.
+  struct Begin {
+    path::Track::Begin track;
+    std::uint64_t event = 0, at_once = 0;
+  };
+  /// Feeder: written before the first entry of the run is published.
+  void begin(std::uint32_t generation, const Begin& at) noexcept {
+    begins[generation % begins.size()] = at;
+    begun.store(generation, std::memory_order_release);
+  }
+  /// Cycle: nullptr while the feeder has not begun this run. real-time safe.
+  const Begin* begin_of(std::uint32_t generation) const noexcept {
+    return begun.load(std::memory_order_acquire) == generation ? &begins[generation % begins.size()]
+                                                               : nullptr;
+  }
+  std::array<Begin, 4> begins{};
+  std::atomic<std::uint32_t> begun{0};
 };
 
 /// How path axes lie among the machine's, and what an axis order means.
@@ -70,19 +90,24 @@ class Feeder {
   void forget_manual() { manual_.reset(); }
   /// The block that the next start in MDI mode runs.
   void set_manual_block(std::string block) { manual_block_ = std::move(block); }
-  /// A run is being read: load() has to wait. Also after its last motion was read, false.
-  bool reads() const noexcept { return state_ == State::feeding || state_ == State::syncing; }
+  /// A run is being read or about to be: load() has to wait. False once its last motion has been read.
+  bool reads() const noexcept {
+    return state_ == State::feeding || state_ == State::syncing || orders_read_ < link_.orders.written();
+  }
   bool loaded() const noexcept { return static_cast<bool>(factory_); }
 
   /// Takes orders, reads ahead as far as the planner wants, publishes. Bounded work a call. True: it is to be
   /// called again soon, there is more to do.
   bool work();
 
-  /// Findings of the run so far (the errors that ended it), index = Event::code of an error event.
-  const std::vector<text::Finding>& findings() const noexcept { return findings_; }
-  const std::vector<std::string>& messages() const noexcept { return messages_; }
-  /// Blocks executed by the interpreter (read ahead of motion) and in the main program, for progress.
-  long long executed() const noexcept { return interpreter_ ? interpreter_->executed() : 0; }
+  /// What its programs have said so far; Event::code of messages and errors are numbers in it. For
+  /// any thread outside the cycle.
+  const ProgramTexts& texts() const noexcept { return texts_; }
+  /// Blocks of the run that the interpreter has executed (read ahead of motion), and blocks of the main
+  /// program.
+  long long executed() const noexcept {
+    return interpreter_ ? interpreter_->executed() - executed_before_ : 0;
+  }
   int block_count() const noexcept { return interpreter_ ? interpreter_->block_count() : 0; }
   /// Tables as the running program left them (RQO ...).
   const program::Tables* tables() const noexcept { return interpreter_ ? &interpreter_->tables() : nullptr; }
@@ -128,10 +153,11 @@ class Feeder {
   double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0;
   std::uint32_t next_event_ = 1;
   std::uint32_t generation_ = 0;
-  std::uint64_t commands_ = 0;
   std::uint64_t orders_read_ = 0;
-  std::vector<text::Finding> findings_;
-  std::vector<std::string> messages_;
+  ProgramTexts texts_;
+  std::size_t files_told_ = 0;
+  long long executed_before_ = 0;  ///< by the interpreter, typed blocks before this one
+  int last_file_ = 0;
 };
 
 }  // namespace servogate::channel

@@ -19,11 +19,7 @@ using image::ProcessState;
 using image::Reaction;
 using image::RequestKind;
 
-constexpr Place kMode = field(kProcessFields, "mode"), kState = field(kProcessFields, "state");
-constexpr Place kRunning = field(kProcessFields, "running"), kHeld = field(kProcessFields, "held");
-constexpr Place kInPosition = field(kProcessFields, "in_position"), kRapid = field(kProcessFields, "rapid");
-constexpr Place kProgramEnd = field(kProcessFields, "program_end"), kLine = field(kProcessFields, "line");
-constexpr Place kFeed = field(kProcessFields, "feed"), kOverride = field(kProcessFields, "override");
+constexpr Place kProgramEnd = field(kProcessFields, "program_end");
 constexpr Place kStopBit = field(kProcessFields, "stop"), kFeedEnable = field(kProcessFields, "feed_enable");
 constexpr Place kFeedOverride = field(kProcessFields, "feed_override");
 
@@ -38,32 +34,95 @@ Process::Process(const ProcessConfig& config)
 
 Process::~Process() = default;
 
+// -- outside the cycle
+// --------------------------------------------------------------------------------------------------------
+
 void Process::load(InterpreterFactory factory) {
   feeder_.load(std::move(factory));
-  loaded_.store(true, std::memory_order_release);
+  programs_.fetch_add(1, std::memory_order_release);
+  changes_.fetch_add(1, std::memory_order_release);
 }
 
 void Process::load(InterpreterFactory factory, program::Tables tables) {
   feeder_.load(std::move(factory), std::move(tables));
-  loaded_.store(true, std::memory_order_release);
+  programs_.fetch_add(1, std::memory_order_release);
+  changes_.fetch_add(1, std::memory_order_release);
 }
 
+void Process::renew(InterpreterFactory factory, program::Tables tables) {
+  feeder_.load(std::move(factory), std::move(tables));
+  changes_.fetch_add(1, std::memory_order_release);
+}
+
+void Process::forget_manual() {
+  feeder_.forget_manual();
+  changes_.fetch_add(1, std::memory_order_release);
+}
+
+void Process::set_manual_block(std::string block) {
+  feeder_.set_manual_block(std::move(block));
+  changes_.fetch_add(1, std::memory_order_release);
+}
+
+// -- in the cycle
+// --------------------------------------------------------------------------------------------------------
+
 void Process::published(std::span<std::uint64_t> counts) const noexcept {
-  counts[0] = link_.track.visible();
-  counts[1] = link_.events.written();
-  counts[2] = link_.at_once.written();
+  // An event lies in its queue before the path speaks of it: the path is looked at first. A run is begun
+  // before anything of it is published: what the path shows of it is known to be of it.
+  const std::uint64_t entries = link_.track.visible();
+  const Link::Begin* begin = link_.begin_of(generation_);
+  const auto since = [begin](std::uint64_t now, std::uint64_t from) {
+    return begin != nullptr && now > from ? now - from : 0;
+  };
+  const Link::Begin from = begin != nullptr ? *begin : Link::Begin{};
+  counts[kTrack] = since(entries, from.track.entry);
+  counts[kEvents] = since(link_.events.written(), from.event);
+  counts[kAtOnce] = since(link_.at_once.written(), from.at_once);
+  counts[kPrograms] = programs_.load(std::memory_order_acquire);
+  counts[kChanges] = changes();
+}
+
+/// How far the track may be read in this cycle; sets the same of the event queues. What lies before the run
+/// under way is dropped.
+std::uint64_t Process::look(const cycle::ProcessContext& c) noexcept {
+  const std::uint64_t events = link_.events.written(), at_once = link_.at_once.written();
+  const std::uint64_t entries = link_.track.visible();
+  const Link::Begin* begin = link_.begin_of(generation_);
+  const auto drop = [](path::Ring<Event>& ring, std::uint64_t& read, std::uint64_t below) {
+    if (read < below) ring.free_below(read = below);
+  };
+  drop(link_.events, events_read_, begin != nullptr ? begin->event : events);
+  drop(link_.at_once, at_once_read_, begin != nullptr ? begin->at_once : at_once);
+  // A record may speak of what its reader published after the program was given up; a replay never reads it.
+  std::array<std::uint64_t, kCrossingsEach> seen{};
+  published(seen);
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = std::min(seen[i], c.visible[i]);
+  if (started_) seen[kTrack] = seen[kEvents] = seen[kAtOnce] = 0;
+  started_ = false;
+  if (seen[kPrograms] != programs_seen_ && !running_) {
+    forget_run(c.image.processes[static_cast<std::size_t>(config_.index)]);
+    if (state_ == ProcessState::ended) state_ = ProcessState::idle;
+  }
+  programs_seen_ = seen[kPrograms];
+  events_end_ = events_read_;
+  at_once_end_ = at_once_read_;
+  if (begin == nullptr) return entries;
+  events_end_ = std::max(events_read_, begin->event + seen[kEvents]);
+  at_once_end_ = std::max(at_once_read_, begin->at_once + seen[kAtOnce]);
+  if (seen[kTrack] == 0) return std::min(entries, begin->track.entry);
+  follower_.skip_to(begin->track);
+  return begin->track.entry + seen[kTrack];
 }
 
 void Process::interpolate(cycle::ProcessContext& c) noexcept {
-  // A record may speak of what its reader published after the program was given up; a replay never reads it.
-  published(seen_);
-  for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] = std::min(seen_[i], c.visible[i]);
-  c.visible = seen_;
+  const std::uint64_t entries = look(c);
   apply_at_once(c);
   apply_reaction(c);
   apply_hold(c);
-  const path::Sample sample = follower_.step(c.visible[0]);
+  const path::Sample sample = follower_.step(entries);
   if (running_) {
+    show_motion(sample, c.image.processes[static_cast<std::size_t>(config_.index)]);
     drive_axes(sample, c);
     switch (sample.state) {
       case path::FollowerState::at_stop:
@@ -111,9 +170,12 @@ bool Process::order(const image::Request& request, cycle::ProcessContext& c) noe
         follower_.stop();
         stopping_ = true;
         after_stop_ = ProcessState::idle;
+        forget_ = forget_ || request.kind == RequestKind::reset;
       } else {
         state_ = ProcessState::idle;
         handshake_.cancel(c.image, base_);
+        if (request.kind == RequestKind::reset)
+          forget_run(c.image.processes[static_cast<std::size_t>(config_.index)]);
       }
       held_ = false;
       break;
@@ -140,9 +202,11 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   follower_.set_position(position);
   link_.packets_of(generation_) = c.image.packets;
   link_.orders.push(order);
-  running_ = true;
-  shown_command_ = 0;
-  c.image.processes[static_cast<std::size_t>(config_.index)].line = 0;
+  running_ = started_ = true;
+  image::ProcessStatus& status = c.image.processes[static_cast<std::size_t>(config_.index)];
+  forget_run(status);
+  status.run = generation_;
+  forget_ = false;
   stopping_ = held_ = go_on_ = false;
   stage_ = Stage::none;
   last_speed_ = -1.0;
@@ -166,6 +230,8 @@ void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   } else {
     c.image.packets.set_bit(at(kProgramEnd, base_), true);
   }
+  if (forget_) forget_run(c.image.processes[static_cast<std::size_t>(config_.index)]);
+  forget_ = false;
   release(c);
 }
 
@@ -230,12 +296,11 @@ void Process::at_stop(cycle::ProcessContext& c) noexcept {
 
 void Process::at_event(std::uint32_t id, cycle::ProcessContext& c) noexcept {
   if (stage_ == Stage::none) {
-    for (; events_read_ < c.visible[1] && link_.events[events_read_].generation != generation_;)
-      link_.events.free_below(++events_read_);
-    if (events_read_ >= c.visible[1]) return;
+    if (events_read_ >= events_end_) return;
     event_ = link_.events[events_read_];
     if (event_.id != id || !in_position(c)) return;
     link_.events.free_below(++events_read_);
+    show_event(event_, c.image.processes[static_cast<std::size_t>(config_.index)]);
     stage_ = Stage::entered;
     waited_s_ = 0.0;
     go_on_ = false;
@@ -244,46 +309,6 @@ void Process::at_event(std::uint32_t id, cycle::ProcessContext& c) noexcept {
   stage_ = Stage::none;
   if (running_) state_ = ProcessState::running;
   follower_.release_event();
-}
-
-void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
-  image::ProcessStatus& out = c.image.processes[static_cast<std::size_t>(config_.index)];
-  const bool held = running_ && sample.state == path::FollowerState::held;
-  out.mode = mode_;
-  out.state = held ? ProcessState::held : state_;
-  out.rapid = running_ && sample.rapid && sample.feed > 0.0;
-  if (running_) {
-    // The newest of what began: a motion or an event. Between two events the motion before them is long over.
-    if (sample.tag.command != shown_command_) {
-      shown_command_ = sample.tag.command;
-      out.line = sample.tag.line;
-      out.file = sample.tag.file;
-    }
-    out.blocks_done = static_cast<std::int64_t>(sample.tag.command);
-    if (stage_ != Stage::none) out.line = event_.line;
-  }
-  out.feed_mm_s = running_ ? sample.feed : 0.0;
-  out.override_ratio = follower_.override_ratio();
-  out.starved = sample.starved;
-  if (sample.starved != starved_ && running_) {
-    image::AlarmRecord r;
-    r.number = cycle::alarm::kStarved;
-    r.process = static_cast<std::int8_t>(config_.index);
-    r.line = out.line;
-    r.value = sample.starved;
-    c.notices.add(r);
-  }
-  starved_ = sample.starved;
-  image::Packets& k = c.image.packets;
-  k.set_number(at(kMode, base_), static_cast<double>(out.mode));
-  k.set_number(at(kState, base_), static_cast<double>(out.state));
-  k.set_bit(at(kRunning, base_), running_);
-  k.set_bit(at(kHeld, base_), held);
-  k.set_bit(at(kInPosition, base_), in_position(c));
-  k.set_bit(at(kRapid, base_), out.rapid);
-  k.set_number(at(kLine, base_), out.line);
-  k.set_number(at(kFeed, base_), out.feed_mm_s * 60.0);
-  k.set_number(at(kOverride, base_), std::round(out.override_ratio * 100.0));
 }
 
 void Process::raise(image::AlarmNumber number, const Event& event, double value, double limit,

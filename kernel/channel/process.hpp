@@ -31,30 +31,49 @@ class Process final : public cycle::ProcessInCycle {
   ~Process() override;
 
   // -- outside the cycle
+  /// Makes a program ready for start; not while one is read (Feeder::reads()). What MDI has in force goes.
   void load(InterpreterFactory factory);
+  /// As load(); what MDI has in force stays, with these tables from now on.
   void load(InterpreterFactory factory, program::Tables tables);
+  /// The same program with other tables: what the status shows of the last run stays.
+  void renew(InterpreterFactory factory, program::Tables tables);
   program::Interpreter manual_interpreter(const program::Position& at) const {
     return feeder_.manual_interpreter(at);
   }
-  void forget_manual() { feeder_.forget_manual(); }
-  void set_manual_block(std::string block) { feeder_.set_manual_block(std::move(block)); }
+  void forget_manual();
+  void set_manual_block(std::string block);
+  /// How often one of the above was called; the cycle sees it as the last of its crossings.
+  std::uint64_t changes() const noexcept { return changes_.load(std::memory_order_acquire); }
   /// Reads ahead and plans; see Feeder::work().
   bool work() { return feeder_.work(); }
   const Feeder& feeder() const noexcept { return feeder_; }
+  /// For any thread outside the cycle.
+  const ProgramTexts& texts() const noexcept { return feeder_.texts(); }
 
   // -- in the cycle
   void published(std::span<std::uint64_t> counts) const noexcept override;
   void interpolate(cycle::ProcessContext& context) noexcept override;
   bool order(const image::Request& request, cycle::ProcessContext& context) noexcept override;
-  bool loaded() const noexcept override { return loaded_.load(std::memory_order_acquire); }
+  bool loaded() const noexcept override { return programs_.load(std::memory_order_acquire) != 0; }
 
  private:
   enum class Stage : std::uint8_t { none, entered, handshaking, waiting };
+  /// The ways across the real-time line, in the order of published().
+  enum Crossing : std::uint8_t { kTrack, kEvents, kAtOnce, kPrograms, kChanges };
+  static_assert(kChanges + 1 == kCrossingsEach);
 
   bool start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept;
   void leave(image::ProcessState state, cycle::ProcessContext& c) noexcept;
   bool acquire(cycle::ProcessContext& c) noexcept;
   void release(cycle::ProcessContext& c) noexcept;
+  std::uint64_t look(const cycle::ProcessContext& c) noexcept;
+  void show_motion(const path::Sample& sample, image::ProcessStatus& status) noexcept;
+  void show_event(const Event& event, image::ProcessStatus& status) const noexcept;
+  void forget_run(image::ProcessStatus& status) const noexcept;
+  image::Wait wait(const path::Sample& sample, const cycle::ProcessContext& c) const noexcept;
+  image::Wait wait_at_event(const cycle::ProcessContext& c) const noexcept;
+  image::Wait wait_on_path(const cycle::ProcessContext& c) const noexcept;
+  image::Wait wait_for_position(const cycle::ProcessContext& c) const noexcept;
   void apply_at_once(cycle::ProcessContext& c) noexcept;
   void apply_hold(cycle::ProcessContext& c) noexcept;
   void apply_reaction(cycle::ProcessContext& c) noexcept;
@@ -83,8 +102,9 @@ class Process final : public cycle::ProcessInCycle {
   Feeder feeder_;
   path::Follower follower_;
   Handshake handshake_;
-  std::uint32_t base_;  ///< of the process' block in K
-  std::atomic<bool> loaded_{false};
+  std::uint32_t base_;                      ///< of the process' block in K
+  std::atomic<std::uint64_t> programs_{0};  ///< loaded so far
+  std::atomic<std::uint64_t> changes_{0};
 
   bool manual_data_ = false;  ///< the run is a typed block
   bool running_ = false;      ///< a program is under way, held or waiting
@@ -101,11 +121,14 @@ class Process final : public cycle::ProcessInCycle {
   double surface_speed_ = 0.0, surface_limit_ = 0.0;
   program::SpindleMode surface_mode_ = program::SpindleMode::cw;
   double last_speed_ = -1.0;
-  std::uint64_t shown_command_ = 0;  ///< of the motion whose line the status shows
-  std::uint32_t generation_ = 0;
+  path::Tag shown_;               ///< of the motion that the status has shown
+  std::uint32_t generation_ = 0;  ///< of the run under way, or the last one
+  bool started_ = false;          ///< in this cycle: what is visible still speaks of the run before
+  bool forget_ = false;           ///< the run ends by a reset
+  std::uint64_t programs_seen_ = 0;
   std::uint32_t starved_ = 0;
   std::uint64_t at_once_read_ = 0, events_read_ = 0;
-  std::array<std::uint64_t, kCrossingsEach> seen_{};  ///< context's `visible`, never beyond what is there
+  std::uint64_t at_once_end_ = 0, events_end_ = 0;  ///< how far they may be read in this cycle
 };
 
 }  // namespace servogate::channel

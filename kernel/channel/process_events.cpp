@@ -58,9 +58,9 @@ axis::SpindleMode spindle_mode(program::SpindleMode mode) noexcept {
 }  // namespace
 
 void Process::apply_at_once(cycle::ProcessContext& c) noexcept {
-  while (at_once_read_ < c.visible[2]) {
+  while (at_once_read_ < at_once_end_) {
     const Event& e = link_.at_once[at_once_read_];
-    if (e.generation == generation_ && running_) write_place(e, c.image.packets);
+    if (running_) write_place(e, c.image.packets);
     link_.at_once.free_below(++at_once_read_);
   }
 }
@@ -97,6 +97,7 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       state_ = ProcessState::waiting;
       return holds(c.image.packets.number(e.place), e.compare, e.value);
     case EventKind::message:
+      c.image.processes[static_cast<std::size_t>(config_.index)].message = e.code;
       return true;
     case EventKind::sync: {
       if (!c.image.packets.bit(image::at(kReadInEnable, base_))) {

@@ -42,7 +42,12 @@ void InputEncoder::append(const CycleInputs& in, std::vector<std::uint8_t>& out)
       out.push_back(in.packet_a[i]);
     }
   put_changed(out, in.sources, last_.sources);
-  for (std::size_t i = 0; i < in.visible.size(); ++i) put_varint(out, in.visible[i] - last_.visible[i]);
+  std::uint64_t moved = 0;
+  for (std::size_t i = 0; i < in.visible.size(); ++i)
+    if (in.visible[i] != last_.visible[i]) moved |= std::uint64_t{1} << i;
+  put_varint(out, moved);
+  for (std::size_t i = 0; i < in.visible.size(); ++i)
+    if ((moved >> i & 1) != 0) put_varint(out, in.visible[i] - last_.visible[i]);
   out.push_back(in.request_count);
   put_raw(out, in.requests.data(), sizeof(image::Request) * in.request_count);
   out.push_back(in.notice_count);
@@ -92,7 +97,9 @@ bool InputDecoder::give(CycleInputs& in) noexcept {
       damaged_ = true;
   }
   changed(last_.sources);
-  for (std::uint64_t& v : last_.visible) v += varint();
+  const std::uint64_t moved = varint();
+  for (std::size_t i = 0; i < last_.visible.size() && !damaged_; ++i)
+    if ((moved >> i & 1) != 0) last_.visible[i] += varint();
   raw(&last_.request_count, 1);
   if (last_.request_count > kRequestsPerCycle) damaged_ = true;
   if (!damaged_) raw(last_.requests.data(), sizeof(image::Request) * last_.request_count);

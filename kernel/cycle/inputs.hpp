@@ -12,7 +12,8 @@
 
 namespace servogate::cycle {
 
-inline constexpr int kCrossings = 16;         ///< queues that cross the real-time line
+inline constexpr int kCrossingsEach = 5;  ///< ways across the real-time line to one process
+inline constexpr int kCrossings = kCrossingsEach * image::kMaxProcesses;
 inline constexpr int kRequestsPerCycle = 16;  ///< requests taken in one cycle; more wait for the next one
 inline constexpr int kNoticesPerCycle = 16;   ///< faults that devices report in one cycle; more are counted
 
@@ -24,7 +25,7 @@ struct CycleInputs {
   std::array<image::DriveFeedback, image::kMaxSpindles> spindles{};
   std::array<std::uint8_t, image::kPacketASize> packet_a{};
   std::array<image::IoSource, image::kMaxSources> sources{};
-  std::array<std::uint64_t, kCrossings> visible{};  ///< how far each crossing queue was filled
+  std::array<std::uint64_t, kCrossings> visible{};  ///< how far each way was filled
   std::uint8_t request_count = 0;
   std::array<image::Request, kRequestsPerCycle> requests{};
   std::uint8_t notice_count = 0;

@@ -57,9 +57,10 @@ struct ProcessContext {
 /// A part-program process as the cycle sees it. Everything real-time safe.
 class ProcessInCycle {
  public:
-  static constexpr int kCrossingsEach = 3;
+  static constexpr int kCrossingsEach = cycle::kCrossingsEach;
   virtual ~ProcessInCycle() = default;
-  /// How far its crossing queues are filled at this moment, kCrossingsEach numbers that only rise.
+  /// How far its crossing queues are filled at this moment, kCrossingsEach numbers. They speak of the run
+  /// under way and begin at 0 with it, so that what was read of a run given up leaves no trace in a record.
   virtual void published(std::span<std::uint64_t> counts) const noexcept = 0;
   /// One cycle: handshakes, path, set-points of the axes that the process owns.
   virtual void interpolate(ProcessContext& context) noexcept = 0;

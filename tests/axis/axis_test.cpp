@@ -333,5 +333,19 @@ TEST(Axis, stops_before_it_goes_off_when_the_plc_takes_the_enable_away_in_motion
   EXPECT_TRUE(judge.within(rig.axis.config().limits));
 }
 
+TEST(Axis, says_nothing_of_an_enable_that_goes_together_with_the_power) {
+  for (const image::Reaction reaction : {image::Reaction::quick_stop, image::Reaction::power_off}) {
+    Rig rig;
+    ASSERT_TRUE(rig.enable());
+    ASSERT_TRUE(rig.axis.jog_increment(50.0));
+    rig.run(300);
+    rig.reaction = reaction;  // emergency stop: the alarm stands, and the PLC takes the enable away
+    rig.plc("enable", false);
+    rig.run(500);
+    EXPECT_FALSE(rig.raised(alarm::kEnableWithdrawn));
+    EXPECT_FALSE(rig.shared().drive_command.power);
+  }
+}
+
 }  // namespace
 }  // namespace servogate::axis

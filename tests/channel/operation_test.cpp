@@ -195,8 +195,9 @@ TEST(Program, with_an_error_runs_up_to_it_and_stops_in_the_end_point_of_the_bloc
   EXPECT_EQ(a->line, 3);
   rig.run(0.5);
   EXPECT_NEAR(rig.x(), 40.0, 1e-9);
-  ASSERT_EQ(rig.process->feeder().findings().size(), 1u);
-  EXPECT_EQ(rig.process->feeder().findings()[0].line, 3);
+  const auto finding = rig.process->texts().finding(static_cast<std::int32_t>(a->value));
+  ASSERT_TRUE(finding);
+  EXPECT_EQ(finding->line, 3);
   EXPECT_EQ(rig.violations(), "");
 }
 

@@ -107,9 +107,10 @@ void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
   k.set_number(nc("feed_override"), feed_override);
   k.set_number(nc("external_alarm"), external_alarm);
   for (int n = 0; n < 4; ++n) word(image, n);
+  if (during) during();
 }
 
-Rig::Rig(std::string_view program, std::string_view power_on, double handshake_timeout_s) : text_(program) {
+Rig::Rig(std::string_view program, std::string_view power_on, double handshake_timeout_s) {
   ProcessConfig config;
   config.path.axis_count = kAxes;
   config.handshake_timeout_s = handshake_timeout_s;
@@ -136,9 +137,7 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   model_.power_on = {"G94", "G97", "G90", "G71", std::string(power_on)};
   model_.variables = {{"ERF", 0.01}, {"MCD", 2}};
   process = std::make_unique<Process>(config);
-  process->load([this](const program::Position& at) {
-    return program::Interpreter("nc110", model_, {}, "test.nc", text_, {}, at);
-  });
+  process->load(factory(program));
   parts.devices = {&drives};
   parts.logic = &logic;
   parts.processes = {process.get()};
@@ -153,8 +152,16 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   EXPECT_EQ(ask(RequestKind::mode, static_cast<double>(image::Mode::automatic)), cycle::Refusal::none);
 }
 
+InterpreterFactory Rig::factory(std::string_view program) const {
+  return [model = model_, text = std::string(program)](const program::Position& at) {
+    return program::Interpreter("nc110", model, {}, "test.nc", text, {}, at);
+  };
+}
+
+void Rig::load(std::string_view program) { process->load(factory(program)); }
+
 void Rig::step() {
-  process->work();
+  read ? read() : static_cast<void>(process->work());
   ASSERT_TRUE(cycle->step());
   std::array<double, kAxes> at{};
   for (int a = 0; a < kAxes; ++a) at[static_cast<std::size_t>(a)] = x(a);

@@ -59,6 +59,7 @@ class TestLogic final : public cycle::Logic {
   bool start_bit = false, stop_bit = false, reset_bit = false;
   int external_alarm = 0;
   std::vector<Strobe> strobes;
+  std::function<void()> during;  ///< in every scan: between what the cycle has looked at and what it does
 
  private:
   void word(image::ProcessImage& image, int n);
@@ -71,6 +72,8 @@ class Rig {
  public:
   explicit Rig(std::string_view program, std::string_view power_on = "G27", double handshake_timeout_s = 0.5);
 
+  /// Loads another program, as between two runs.
+  void load(std::string_view program);
   void run(double seconds);
   bool until(const std::function<bool()>& met, double patience_s = 30.0);
   cycle::Refusal ask(image::RequestKind kind, double value = 0.0, int axis = -1);
@@ -97,12 +100,13 @@ class Rig {
   std::unique_ptr<Process> process;
   std::unique_ptr<cycle::Cycle> cycle;
   std::function<void()> each;                   ///< after every cycle
+  std::function<void()> read;                   ///< takes the place of one Process::work() before each cycle
   std::vector<std::array<double, kAxes>> path;  ///< set-points of all cycles
 
  private:
   void step();
   std::string violations_;
-  std::string text_;
+  InterpreterFactory factory(std::string_view program) const;
   program::MachineModel model_;
   std::vector<image::AlarmRecord> history_;
   std::uint64_t next_id_ = 1;

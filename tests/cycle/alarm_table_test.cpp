@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -90,6 +91,42 @@ TEST(AlarmText, names_axis_value_limit_and_unit_in_both_languages) {
   names.units = {"mm", "°"};
   EXPECT_EQ(render(r, names, text::Language::english),
             "Y: following error 1.2399 °, allowed 1 °, at 103.25 °/s and 710 ‰ of the rated torque");
+}
+
+TEST(AlarmText, says_of_a_following_error_when_the_torque_is_not_known) {
+  image::AlarmRecord r;
+  r.number = axis::alarm::kFollowingError;
+  r.axis = 0;
+  r.value = -1.5;
+  r.limit = 1.0;
+  r.detail2 = std::numeric_limits<double>::quiet_NaN();
+  AlarmNames names;
+  names.axes = {"X"};
+  EXPECT_EQ(
+      render(r, names, text::Language::english),
+      "X: following error -1.5 mm, allowed 1 mm, at 0 mm/s and a torque that the drive does not report");
+  EXPECT_EQ(render(r, names, text::Language::russian),
+            "X: ошибка слежения -1.5 мм, допустимо 1 мм, при скорости 0 мм/с и моменте, о котором привод не "
+            "сообщает");
+}
+
+TEST(AlarmText, holds_what_the_interpreter_found_with_file_line_and_column) {
+  image::AlarmRecord r;
+  r.number = alarm::kProgramError;
+  r.process = 0;
+  r.line = 3;
+  r.value = 17;
+  AlarmNames names;
+  EXPECT_EQ(render(r, names, text::Language::english), "program error in line 3");
+  names.program_finding = [](int process, int number, text::Language language) -> std::string {
+    if (process != 0 || number != 17) return {};
+    return language == text::Language::russian ? "p.nc:3:9: error: нет [P1]" : "p.nc:3:9: error: no [P1]";
+  };
+  EXPECT_EQ(render(r, names, text::Language::english), "program error in line 3: p.nc:3:9: error: no [P1]");
+  EXPECT_EQ(render(r, names, text::Language::russian),
+            "ошибка программы в строке 3: p.nc:3:9: error: нет [P1]");
+  r.value = 18;
+  EXPECT_EQ(render(r, names, text::Language::english), "program error in line 3") << "not kept any more";
 }
 
 TEST(AlarmText, decodes_status_word_and_error_code) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 
 #include "kernel/cycle/alarm/alarms.hpp"
@@ -109,6 +110,14 @@ std::string error_words(const AlarmRecord& r, const AlarmNames& names, Language 
   return words.empty() ? out : out + " (" + words + ")";
 }
 
+std::string torque_words(double permille, Language language) {
+  const bool russian = language == Language::russian;
+  if (std::isnan(permille))
+    return russian ? "моменте, о котором привод не сообщает" : "a torque that the drive does not report";
+  const std::string number = text::number(permille, 1);
+  return russian ? "моменте " + number + " ‰ от номинального" : number + " ‰ of the rated torque";
+}
+
 std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names, Language language) {
   const std::string unit = !figures_are_lengths(r.number) ? ""
                            : r.axis >= 0 && r.axis < std::ssize(names.units)
@@ -129,6 +138,7 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
     out[1] = state_words(static_cast<int>(r.value), language);
     out[2] = state_words(static_cast<int>(r.limit), language);
   }
+  if (r.number == axis::alarm::kFollowingError) out[7] = torque_words(r.detail2, language);
   if (r.number == alarm::kOverrunLimit) out[6] = phase_words(static_cast<int>(r.detail1), language);
   if (r.number == alarm::kForeignFrame) out[8] = hex(static_cast<unsigned>(r.value), 3);
   return out;
@@ -156,7 +166,14 @@ std::string render(const AlarmRecord& record, const AlarmNames& names, Language 
   }
   const AlarmRow* row = find_alarm(record.number);
   if (row == nullptr) return "alarm " + std::to_string(record.number);
-  return text::render(row->text, arguments(record, names, language), language);
+  std::string sentence = text::render(row->text, arguments(record, names, language), language);
+  const bool of_program = record.number == alarm::kProgramError;
+  if (of_program && names.program_finding)
+    if (const std::string found =
+            names.program_finding(record.process, static_cast<int>(record.value), language);
+        !found.empty())
+      sentence += ": " + found;
+  return sentence;
 }
 
 std::string render_remedy(const AlarmRecord& record, const AlarmNames& names, Language language) {

@@ -94,6 +94,9 @@ struct AlarmNames {
   std::vector<std::string> sources;
   /// Words of a drive's own error code, from its device file; empty result: only the number is shown.
   std::function<std::string(int axis, int node, std::uint16_t code, text::Language)> error_text;
+  /// What a program's interpreter found (program errors and warnings; its number in `value`) with file, line
+  /// and column; may be empty.
+  std::function<std::string(int process, int number, text::Language)> program_finding;
   /// Text of an alarm that the PLC raises (number in `value`); may be empty.
   std::function<std::string(int number, text::Language)> external_text;
 };
