@@ -19,6 +19,7 @@ struct RunOptions {
   ClockKind clock = ClockKind::unset;
   std::string trace, report, html, record, state;
   double override_percent = 100.0;
+  std::optional<double> patience_s;  ///< machine time that a program may wait for somebody; 0: for ever
   bool quiet = false;
   bool start_now = false;
   bool json = false;

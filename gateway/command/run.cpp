@@ -18,6 +18,7 @@
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/session.hpp"
+#include "gateway/run/wait_words.hpp"
 #include "kernel/program/check.hpp"
 
 namespace servogate::gateway::command {
@@ -31,10 +32,25 @@ const text::Entry kFramesLost{
     "run.frames-lost", "bus '{0}': {1} frames were lost on this computer; what the run shows says nothing",
     "шина «{0}»: на этом компьютере потеряно кадров: {1}; по прогону судить нельзя"};
 const text::Entry kAlarmLine{"run.alarm", "alarm {0}: {1}", "авария {0}: {1}"};
+const text::Entry kConsequence{"run.consequence", "  from it alarm {0}: {1}", "  из-за неё авария {0}: {1}"};
+const text::Entry kMessage{"run.message", "message of the program: {0}", "сообщение программы: {0}"};
+const text::Entry kWaits{"run.waits", "{0} ({1} s so far)", "{0} (уже {1} с)"};
+const text::Entry kGaveUp{
+    "run.gave-up",
+    "{0}. For {1} s of machine time nothing has moved and nobody has done it: the run was "
+    "stopped (--patience says how long to wait)",
+    "{0}. За {1} с машинного времени ничего не сдвинулось и никто этого не сделал: прогон "
+    "остановлен (сколько ждать, задаёт --patience)"};
 const text::Entry kDone1{"run.done", "done: {0} blocks in {1} s of machine time",
                          "готово: кадров {0}, машинное время {1} с"};
-const text::Entry kProgress{"run.progress", "{0} of {1} blocks, {2} s, about {3} s left",
-                            "кадров {0} из {1}, {2} с, осталось около {3} с"};
+const text::Entry kProgress{"run.progress", "{0} of about {1} blocks, {2} s, about {3} s left",
+                            "кадров {0} примерно из {1}, {2} с, осталось около {3} с"};
+const text::Entry kBroken{"run.broken-off", "broken off: {0} of about {1} blocks in {2} s of machine time",
+                          "прервано: кадров {0} примерно из {1}, машинное время {2} с"};
+
+constexpr double kPatience_s = 60.0;       ///< of machine time, where --patience says nothing
+constexpr double kSilentWait_s = 5.0;      ///< a longer wait is said
+constexpr double kProgressPause_s = 0.25;  ///< of wall-clock time
 
 std::atomic<int> interrupts{0};
 void on_interrupt(int) { interrupts.fetch_add(1); }
@@ -62,7 +78,10 @@ class Run {
   bool virtual_loop(OperatorScript& script, Session& session);
   bool realtime_loop(OperatorScript& script, Session& session);
   void take_answers(OperatorScript& script);
-  void progress(const image::ProcessImage& image, bool last);
+  double patience() const;
+  void follow(const image::ProcessImage& image);
+  void progress(const image::ProcessImage& image);
+  void end_progress();
   int finish(const OperatorScript& script, Session& session, const std::vector<std::string>& command_line);
   void explain(const OperatorScript& script, const report::Report& report);
   bool save_state();
@@ -78,6 +97,9 @@ class Run {
   Clock::time_point begin_;
   double wall_s_ = 0.0;
   double last_progress_ = -1.0;
+  bool line_open_ = false;             ///< a progress line stands on the terminal
+  std::int32_t message_said_ = 0;      ///< newest message of the program that was printed
+  image::Nanoseconds wait_said_ = -1;  ///< beginning of the wait that was printed
   std::int64_t overruns_ = 0;
   bool infrastructure_ = false;
 };
@@ -173,7 +195,7 @@ bool Run::virtual_loop(OperatorScript& script, Session& session) {
     session.after_cycle(0);
     take_answers(script);
     script.poll(control_->cycle().image());
-    if (control_->cycle().count() % 256 == 0) progress(control_->cycle().image(), false);
+    if (control_->cycle().count() % 256 == 0) follow(control_->cycle().image());
   }
   return true;
 }
@@ -197,29 +219,48 @@ bool Run::realtime_loop(OperatorScript& script, Session& session) {
     if (static_cast<std::size_t>(image->axis_count) != loaded_.machine.axes.size()) continue;
     take_answers(script);
     script.poll(*image);
-    progress(*image, false);
+    follow(*image);
   }
   loop.stop();
   overruns_ = loop.overruns();
   return true;
 }
 
-void Run::progress(const image::ProcessImage& image, bool last) {
-  if (options_.quiet || estimate_blocks_ == 0) return;
+/// What a person wants to know while it runs: the program's messages, what it waits for, how far it is.
+void Run::follow(const image::ProcessImage& image) {
+  if (options_.quiet) return;
+  const image::ProcessStatus& p = image.processes[0];
+  for (; message_said_ < p.message; ++message_said_)
+    if (const auto words = control_->process(0).texts().message(message_said_ + 1); words) {
+      end_progress();
+      std::fprintf(stderr, "%s\n", say(kMessage, {*words}).c_str());
+    }
+  const auto wait = wait_words(*control_, image, 0, text::user_language());
+  if (wait && needs_somebody(p.wait.reason) && wait->for_s >= kSilentWait_s &&
+      wait_said_ != p.wait.since_ns) {
+    wait_said_ = p.wait.since_ns;
+    end_progress();
+    std::fprintf(stderr, "%s\n", say(kWaits, {wait->text, text::number(wait->for_s, 1)}).c_str());
+  }
+  progress(image);
+}
+
+void Run::progress(const image::ProcessImage& image) {
   const double wall = seconds_since(begin_);
-  if (!last && wall - last_progress_ < 0.25) return;
-  const std::unique_lock reading(control_->reading(), std::try_to_lock);
-  if (!reading.owns_lock()) return;  // the reader is at work; the next call shows it
+  if (estimate_blocks_ == 0 || isatty(2) == 0 || wall - last_progress_ < kProgressPause_s) return;
   last_progress_ = wall;
-  const long long done = control_->process(0).feeder().executed();
+  const std::int64_t done = image.processes[0].blocks_done;
   const double part = static_cast<double>(done) / static_cast<double>(estimate_blocks_);
-  const bool terminal = isatty(2) != 0;
-  if (!terminal && !last) return;
   const std::string line = say(kProgress, {std::to_string(done), std::to_string(estimate_blocks_),
                                            text::number(image.now.seconds(), 1),
                                            text::number(std::max(0.0, estimate_s_ * (1.0 - part)), 0)});
-  std::fprintf(stderr, terminal ? "\r%s   " : "%s\n", line.c_str());
-  if (last && terminal) std::fputc('\n', stderr);
+  std::fprintf(stderr, "\r%s   ", line.c_str());
+  line_open_ = true;
+}
+
+void Run::end_progress() {
+  if (line_open_) std::fputc('\n', stderr);
+  line_open_ = false;
 }
 
 int Run::finish(const OperatorScript& script, Session& session,
@@ -231,11 +272,18 @@ int Run::finish(const OperatorScript& script, Session& session,
     complain(kCannotWrite, {path, named ? error.substr(error.rfind(": ") + 2) : error});
     infrastructure_ = true;
   };
-  progress(control_->cycle().image(), true);
+  follow(control_->cycle().image());
+  end_progress();
   written(options_.trace, session.close());
   if (record_ != nullptr) written(options_.record, record_->close());
   report::Report report = session.make_report(wall_s_, overruns_);
   report.finished = script.outcome() == OperatorScript::Outcome::finished;
+  report.blocks_expected = estimate_blocks_;
+  if (script.outcome() == OperatorScript::Outcome::waited) {
+    const WaitWords w =
+        wait_words(*control_, control_->cycle().image(), 0, script.given_up(), text::user_language());
+    report.wait = {std::string(w.reason), w.text, w.remedy, w.file, w.line, patience()};
+  }
   report::Provenance& p = report.provenance;
   report::fill_host(p);
   p.machine = report::identify(options_.machine);
@@ -279,9 +327,14 @@ int Run::finish(const OperatorScript& script, Session& session,
 
 void Run::explain(const OperatorScript& script, const report::Report& report) {
   for (const report::AlarmEntry& a : report.alarms)
-    std::fprintf(stderr, "%s\n  %s\n", say(kAlarmLine, {std::to_string(a.record.number), a.text}).c_str(),
-                 a.remedy.c_str());
-  print_findings(control_->process(0).feeder().findings());
+    std::fprintf(
+        stderr, "%s\n%s%s\n",
+        say(a.consequence ? kConsequence : kAlarmLine, {std::to_string(a.record.number), a.text}).c_str(),
+        a.consequence ? "    " : "  ", a.remedy.c_str());
+  if (report.wait) {
+    complain(kGaveUp, {report.wait->text, text::number(report.wait->for_s, 1)});
+    std::fprintf(stderr, "  %s\n", report.wait->remedy.c_str());
+  }
   if (script.outcome() == OperatorScript::Outcome::refused)
     complain(kRefused, {cycle::render(script.refusal(), loaded_.machine.letters(), text::user_language())});
   if (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()) {
@@ -289,9 +342,12 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
     for (const std::string& a : script.waiting_for()) axes += (axes.empty() ? "" : ", ") + a;
     complain(kNotReady, {axes});
   }
-  if (script.outcome() == OperatorScript::Outcome::finished && !options_.quiet)
-    std::fprintf(stderr, "%s\n",
-                 say(kDone1, {std::to_string(report.blocks), text::number(report.time_s, 3)}).c_str());
+  if (options_.quiet) return;
+  const std::string blocks = std::to_string(report.blocks), time = text::number(report.time_s, 3);
+  if (script.outcome() == OperatorScript::Outcome::finished)
+    std::fprintf(stderr, "%s\n", say(kDone1, {blocks, time}).c_str());
+  else if (report.blocks > 0)
+    std::fprintf(stderr, "%s\n", say(kBroken, {blocks, std::to_string(estimate_blocks_), time}).c_str());
 }
 
 bool Run::save_state() {
