@@ -13,6 +13,9 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
   c.index = index;
   c.name = bus.name;
   c.cycle_ns = m.cycle_ns();
+  if (bus.sync_counter) c.sync_counter_overflow = 240;
+  c.sync_window_us = static_cast<std::int32_t>(std::lround(bus.sync_window * 1e6));
+  c.time_ms = static_cast<std::int32_t>(std::lround(bus.time_period * 1e3));
   for (const machine::NodeConfig& node : bus.nodes) {
     canopen::NodeConfig n;
     n.node = static_cast<canopen::NodeId>(node.id);
@@ -39,6 +42,10 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
       n.profile = machine::drive_profile(*device, node, counts);
     n.heartbeat_ms = static_cast<std::int32_t>(std::lround(node.heartbeat * 1e3));
     n.max_missed_pdo = static_cast<std::int32_t>(node.loss_cycles);
+    n.unsupervised = node.unsupervised;
+    n.setup.software_version = node.software_version;
+    n.setup.boot_timeout_ms = static_cast<std::int32_t>(std::lround(node.boot_timeout * 1e3));
+    n.setup.boot_attempts = node.boot_attempts;
     // The control's own heartbeat is as quick as the quickest node's.
     if (n.heartbeat_ms > 0) c.heartbeat_ms = std::min(c.heartbeat_ms, n.heartbeat_ms);
     c.nodes.push_back(std::move(n));

@@ -147,6 +147,10 @@ struct NodeConfig {
   std::string device;                     ///< device file without .toml
   double heartbeat = 0.1;                 ///< s, producer time of the node; 0: none
   int loss_cycles = 3;                    ///< cycles without process data until the node counts as lost
+  double boot_timeout = 0.0;              ///< s, wait for boot-up and for Operational; 0: the standard 2 s
+  int boot_attempts = 0;                  ///< before the failure is told; 0: the standard 3
+  std::string software_version;           ///< 100Ah at boot, to the letter; empty: any
+  bool unsupervised = false;              ///< may run although it would not notice the control's death
   std::map<std::string, double> objects;  ///< "6065:00" -> value, written at boot after the device file's own
 };
 
@@ -156,6 +160,9 @@ struct BusConfig {
   std::string url;            ///< the transport, by its scheme: docs/can.md
   std::int64_t bit_rate = 0;  ///< bit/s
   bool simulated = false;     ///< nothing on it is real; holds only where no real bus can be behind the url
+  bool sync_counter = false;  ///< SYNC carries a counter from 1 to 240 (1019h)
+  double sync_window = 0.0;   ///< s, 1007h of the nodes; 0: none
+  double time_period = 0.0;   ///< s between two TIME messages; 0: none
   std::vector<NodeConfig> nodes;
   bool mock() const { return url.starts_with("mock:"); }
   /// Time on it is granted to all participants together, as on a mock.

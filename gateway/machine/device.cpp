@@ -168,6 +168,8 @@ void put_behaviour(const BehaviourConfig& b, canopen::DriveProfile& p) {
   p.modes = 0;
   for (const std::string& m : b.modes) p.modes |= canopen::supported_bit(mode_of(m));
   p.check_modes = b.check_modes;
+  p.position_mode = b.position_mode == PositionMode::ip ? canopen::OperationMode::interpolated_position
+                                                        : canopen::OperationMode::cyclic_sync_position;
   static constexpr std::string_view kSpeed[] = {"csv", "pv", "vl"};
   p.velocity_mode = mode_of(kSpeed[static_cast<std::size_t>(b.speed_mode)]);
   p.fault_reset =
@@ -184,6 +186,8 @@ void put_behaviour(const BehaviourConfig& b, canopen::DriveProfile& p) {
   p.command_delay_cycles = static_cast<std::uint8_t>(b.command_delay);
   p.has_cycle_period = b.cycle_period;
   p.has_heartbeat_consumer = b.heartbeat_consumer;
+  p.guard_time_ms = static_cast<std::uint16_t>(std::lround(b.guard_time * 1e3));
+  p.life_time_factor = static_cast<std::uint8_t>(b.life_time_factor);
   p.abort_connection_option = b.connection_loss == ConnectionLoss::none
                                   ? std::nullopt
                                   : std::optional<std::int16_t>(static_cast<std::int16_t>(b.connection_loss));

@@ -47,6 +47,7 @@ struct MotorConfig {
 /// What a drive does when its master falls silent (6007h).
 enum class ConnectionLoss : std::uint8_t { none, fault, disable_voltage, quick_stop };
 enum class FaultResetBy : std::uint8_t { edge, level };
+enum class PositionMode : std::uint8_t { csp, ip };
 enum class SpeedMode : std::uint8_t { csv, pv, vl };
 
 /// [behaviour]: where a drive differs from CiA 402, in the names of canopen::DriveProfile.
@@ -56,6 +57,7 @@ struct BehaviourConfig {
   double torque_unit = 1.0;                  ///< one unit of 6071h and 6077h in per mille
   std::vector<std::string> modes = {"csp"};  ///< modes of 6502h that must be there
   bool check_modes = true;                   ///< false: the drive has no 6502h
+  PositionMode position_mode = PositionMode::csp;  ///< ip: of a drive without csp, 60C1h:01 mapped
   SpeedMode speed_mode = SpeedMode::csv;     ///< the drive's mode for csv of the kernel
   FaultResetBy fault_reset = FaultResetBy::edge;
   double fault_reset_hold = 0.02;    ///< s that controlword bit 7 stays set
@@ -69,6 +71,8 @@ struct BehaviourConfig {
   int command_delay = 1;             ///< cycles from a target's SYNC to the actual value that follows it
   bool cycle_period = false;         ///< 1006h is to be written
   bool heartbeat_consumer = true;    ///< has 1016h
+  double guard_time = 0.0;           ///< s, node guarding instead of heartbeat (100Ch); 0: heartbeat
+  int life_time_factor = 3;          ///< 100Dh
   ConnectionLoss connection_loss = ConnectionLoss::fault;
 };
 

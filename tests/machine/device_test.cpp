@@ -89,6 +89,20 @@ TEST(DeviceFiles, error_codes_have_words_in_both_languages) {
   EXPECT_EQ(p.error_texts.size(), d.errors.size());
 }
 
+TEST(DeviceFiles, a_drive_without_csp_and_heartbeat_is_declared_and_not_coded) {
+  const DeviceResult r = parse_device(
+      "schema = 1\nname = \"old\"\nkind = \"servo\"\n[behaviour]\nmodes = [\"ip\"]\nposition_mode = \"ip\"\n"
+      "guard_time = \"50 ms\"\nlife_time_factor = 4\n"
+      "[[rpdo]]\nnumber = 1\nobjects = [\"6040:00/16\", \"60C1:01/32\"]\n"
+      "[[tpdo]]\nnumber = 1\nobjects = [\"6041:00/16\", \"6064:00/32\"]\n",
+      "old.toml");
+  EXPECT_EQ(test::lines_of(r.findings, text::Language::english), "");
+  const canopen::DriveProfile p = drive_profile(r.device, {}, 1000);
+  EXPECT_EQ(p.position_mode, canopen::OperationMode::interpolated_position);
+  EXPECT_EQ(p.guard_time_ms, 50);
+  EXPECT_EQ(p.life_time_factor, 4);
+}
+
 TEST(ObjectText, reads_index_subindex_and_bits) {
   const auto full = parse_object("60FE:01/32");
   ASSERT_TRUE(full.has_value());

@@ -139,6 +139,12 @@ inline constexpr text::Entry kDeviceCounts{
 inline constexpr text::Entry kNoBrakeOutput{"machine.no_brake_output",
                                             "{0}: brake.drive_output, but {1} has no brake output",
                                             "{0}: задан brake.drive_output, но у {1} нет выхода тормоза"};
+inline constexpr text::Entry kUnsupervised{
+    "machine.unsupervised",
+    "{0}: the drive {1} would not notice that the control has died (no heartbeat consumer or guarding with a "
+    "reaction, no deadline of an RPDO); unsupervised = true waives that",
+    "{0}: привод {1} не заметит гибели управления (нет контроля heartbeat или опроса с реакцией, нет срока "
+    "RPDO); отказаться от этого можно ключом unsupervised = true"};
 inline constexpr text::Entry kPdoSize{"machine.pdo_size", "{0} {1} maps {2} bits; 64 fit",
                                       "{0} {1}: отображено {2} бит; помещается 64"};
 inline constexpr text::Entry kPdoTwice{"machine.pdo_twice", "{0} {1} is already declared in line {2}",

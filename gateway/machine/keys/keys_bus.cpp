@@ -30,6 +30,17 @@ const Section& section_of<NodeConfig>() {
       key<&C::loss_cycles>("loss_cycles", {.min = 1, .max = 1000},
                            "cycles without process data until the node counts as lost",
                            "число циклов без данных процесса, после которого узел считается потерянным"),
+      key<&C::boot_timeout>("boot_timeout", {.unit = Unit::second, .min = 0, .max = 600},
+                            "wait for the boot-up message and for Operational; 0: 2 s",
+                            "ожидание сообщения о загрузке и состояния Operational; 0: 2 с"),
+      key<&C::boot_attempts>("boot_attempts", {.min = 0, .max = 1000},
+                             "attempts to boot a silent node before that is an alarm; 0: 3",
+                             "число попыток загрузки молчащего узла до аварии; 0: 3"),
+      key<&C::software_version>("software_version", {}, "100Ah at boot, to the letter; empty: any",
+                                "100Ah при запуске, буква в букву; пусто: любая"),
+      key<&C::unsupervised>("unsupervised", {},
+                            "the drive may run although it would not notice that the control has died",
+                            "привод может работать, хотя не заметит гибели управления"),
       key<&C::objects>(
           "objects", {}, "objects written at boot after the device file's own: \"6065:00/32\" = value",
           "объекты, записываемые при запуске после объектов файла устройства: \"6065:00/32\" = значение"),
@@ -56,6 +67,13 @@ const Section& section_of<BusConfig>() {
           "every device on it is simulated (in other processes); refused where a real bus may be behind it",
           "все устройства на ней имитированы (в других процессах); отказ, если за ней может быть "
           "настоящая шина"),
+      key<&C::sync_counter>("sync_counter", {}, "SYNC carries a counter from 1 to 240 (1019h)",
+                            "SYNC со счётчиком от 1 до 240 (1019h)"),
+      key<&C::sync_window>("sync_window", {.unit = Unit::second, .min = 0, .max = 1},
+                           "synchronous window of the nodes (1007h); 0: none",
+                           "окно синхронных PDO узлов (1007h); 0: нет"),
+      key<&C::time_period>("time_period", {.unit = Unit::second, .min = 0, .max = 3600},
+                           "period of the TIME message; 0: none", "период сообщения TIME; 0: нет"),
       key<&C::nodes>("node", {}, "nodes", "узлы"),
   };
   static const Section section{"a CAN segment", "сегмент CAN", keys, &default_object<C>};

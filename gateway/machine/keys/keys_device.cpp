@@ -67,6 +67,11 @@ std::span<const std::string_view> choices_of<FaultResetBy>() {
   return kNames;
 }
 template <>
+std::span<const std::string_view> choices_of<PositionMode>() {
+  static constexpr std::string_view kNames[] = {"csp", "ip"};
+  return kNames;
+}
+template <>
 std::span<const std::string_view> choices_of<SpeedMode>() {
   static constexpr std::string_view kNames[] = {"csv", "pv", "vl"};
   return kNames;
@@ -86,6 +91,9 @@ const Section& section_of<BehaviourConfig>() {
       key<&C::modes>("modes", {}, "modes that 6502h must have: pp, vl, pv, tq, hm, ip, csp, csv, cst",
                      "режимы, которые должны быть в 6502h: pp, vl, pv, tq, hm, ip, csp, csv, cst"),
       key<&C::check_modes>("check_modes", {}, "false: the drive has no 6502h", "false: у привода нет 6502h"),
+      key<&C::position_mode>("position_mode", {},
+                             "mode of the drive for a position command; ip needs 60C1:01/32 in an RPDO",
+                             "режим привода для задания положения; для ip нужен 60C1:01/32 в RPDO"),
       key<&C::speed_mode>("speed_mode", {}, "mode of the drive for a speed command",
                           "режим привода для задания скорости"),
       key<&C::fault_reset>("fault_reset", {},
@@ -115,6 +123,12 @@ const Section& section_of<BehaviourConfig>() {
                              "циклов от SYNC задания до положения, которое ему отвечает"),
       key<&C::cycle_period>("cycle_period", {}, "1006h is to be written", "нужно записывать 1006h"),
       key<&C::heartbeat_consumer>("heartbeat_consumer", {}, "the drive has 1016h", "у привода есть 1016h"),
+      key<&C::guard_time>("guard_time", {.unit = Unit::second, .min = 0, .max = 60},
+                          "period of node guarding, for a drive without heartbeat (100Ch); 0: heartbeat",
+                          "период опроса узла для привода без heartbeat (100Ch); 0: heartbeat"),
+      key<&C::life_time_factor>("life_time_factor", {.min = 1, .max = 255},
+                                "guard times of silence until either side counts as lost (100Dh)",
+                                "число периодов опроса без ответа до потери связи (100Dh)"),
       key<&C::connection_loss>("connection_loss", {},
                                "what the drive does when its master falls silent (6007h)",
                                "что делает привод, когда ведущий замолчал (6007h)"),

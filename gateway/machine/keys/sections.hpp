@@ -26,6 +26,8 @@ std::span<const std::string_view> choices_of<ConnectionLoss>();
 template <>
 std::span<const std::string_view> choices_of<FaultResetBy>();
 template <>
+std::span<const std::string_view> choices_of<PositionMode>();
+template <>
 std::span<const std::string_view> choices_of<SpeedMode>();
 
 template <>
