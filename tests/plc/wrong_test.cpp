@@ -41,5 +41,25 @@ TEST_P(WrongPrograms, get_exactly_these_messages) {
 INSTANTIATE_TEST_SUITE_P(Files, WrongPrograms, testing::ValuesIn(data_files("wrong", ".wrong")),
                          [](const auto& i) { return stem(i.param); });
 
+std::string excerpt_of(const std::string& source) {
+  const CompileResult r = compile({{"a.st", source}}, {});
+  return r.findings.empty() ? "no finding" : r.findings[0].excerpt();
+}
+
+TEST(Findings, show_their_line_with_a_caret_under_the_column) {
+  EXPECT_EQ(excerpt_of("PROGRAM Main\nVAR a : BOOL; n : INT; END_VAR\n\ta := (* я *) n;\r\nEND_PROGRAM"),
+            " 3 | \ta := (* я *) n;\n   | \t             ^\n");
+}
+
+TEST(Findings, show_the_part_of_a_long_line_that_they_speak_of) {
+  const std::string blanks(300, ' ');
+  const std::string shown = excerpt_of("PROGRAM Main VAR a : BOOL; n : INT; END_VAR\n" + blanks + "a := n;" +
+                                       blanks + "\nEND_PROGRAM");
+  EXPECT_NE(shown.find("a := n;"), std::string::npos) << shown;
+  EXPECT_LT(shown.size(), 400u);
+  const std::size_t line = shown.find('\n');
+  EXPECT_EQ(shown.find('^') - (line + 1), shown.find("n;")) << shown;
+}
+
 }  // namespace
 }  // namespace servogate::plc
