@@ -52,13 +52,13 @@ enum class SpeedMode : std::uint8_t { csv, pv, vl };
 
 /// [behaviour]: where a drive differs from CiA 402, in the names of canopen::DriveProfile.
 struct BehaviourConfig {
-  double velocity_unit = 1.0;                ///< one unit of 60FFh and 606Ch in counts/s
-  bool velocity_in_rpm = false;              ///< 60FFh and 606Ch are in rpm; velocity_unit is computed
-  double torque_unit = 1.0;                  ///< one unit of 6071h and 6077h in per mille
-  std::vector<std::string> modes = {"csp"};  ///< modes of 6502h that must be there
-  bool check_modes = true;                   ///< false: the drive has no 6502h
+  double velocity_unit = 1.0;                      ///< one unit of 60FFh and 606Ch in counts/s
+  bool velocity_in_rpm = false;                    ///< 60FFh and 606Ch are in rpm; velocity_unit is computed
+  double torque_unit = 1.0;                        ///< one unit of 6071h and 6077h in per mille
+  std::vector<std::string> modes = {"csp"};        ///< modes of 6502h that must be there
+  bool check_modes = true;                         ///< false: the drive has no 6502h
   PositionMode position_mode = PositionMode::csp;  ///< ip: of a drive without csp, 60C1h:01 mapped
-  SpeedMode speed_mode = SpeedMode::csv;     ///< the drive's mode for csv of the kernel
+  SpeedMode speed_mode = SpeedMode::csv;           ///< the drive's mode for csv of the kernel
   FaultResetBy fault_reset = FaultResetBy::edge;
   double fault_reset_hold = 0.02;    ///< s that controlword bit 7 stays set
   double transition_timeout = 2.0;   ///< s, then a transition counts as refused

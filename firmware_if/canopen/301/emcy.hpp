@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "firmware_if/canopen/301/cob_id.hpp"
+#include "firmware_if/image/time.hpp"
 #include "firmware_if/text/finding.hpp"
 
 namespace servogate::canopen {
@@ -44,5 +45,33 @@ constexpr std::optional<Emcy> parse_emcy(const image::CanFrame& frame) noexcept 
 /// Words for an EMCY or 603Fh error code: the exact code of CiA 402-1 / CiA 301 where it is known, otherwise
 /// that of its group (xx00h, x000h). Never null. real-time safe.
 const text::Entry& error_code_text(std::uint16_t error_code) noexcept;
+
+/// The last emergency messages of a node, newest first, as its own 1003h keeps them. All members are
+/// real-time safe.
+class EmcyHistory {
+ public:
+  static constexpr std::size_t kSize = 8;
+  struct Item {
+    Emcy emcy;
+    image::Nanoseconds t_ns = 0;
+  };
+
+  void add(const Emcy& emcy, image::Nanoseconds t_ns) noexcept {
+    newest_ = (newest_ + kSize - 1) % kSize;
+    items_[newest_] = {emcy, t_ns};
+    ++count_;
+  }
+  /// Messages since the start.
+  std::uint32_t count() const noexcept { return count_; }
+  /// Kept messages.
+  std::size_t size() const noexcept { return count_ < kSize ? count_ : kSize; }
+  /// i-th newest, i < size().
+  const Item& operator[](std::size_t i) const noexcept { return items_[(newest_ + i) % kSize]; }
+
+ private:
+  std::array<Item, kSize> items_{};
+  std::size_t newest_ = 0;
+  std::uint32_t count_ = 0;
+};
 
 }  // namespace servogate::canopen

@@ -13,7 +13,7 @@
 #include "firmware_if/canopen/device/object_dictionary.hpp"
 #include "firmware_if/canopen/device/pdo_channel.hpp"
 #include "firmware_if/canopen/device/program_store.hpp"
-#include "firmware_if/canopen/device/sdo_server.hpp"
+#include "firmware_if/canopen/device/sdo/sdo_server.hpp"
 
 namespace servogate::canopen {
 

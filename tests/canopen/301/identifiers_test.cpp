@@ -3,7 +3,6 @@
 
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/301/emcy.hpp"
-#include "firmware_if/canopen/301/emcy_history.hpp"
 #include "firmware_if/canopen/301/nmt.hpp"
 #include "tests/canopen/scripted_bus.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "firmware_if/canopen/301/cob_id.hpp"
-#include "firmware_if/canopen/301/emcy_history.hpp"
+#include "firmware_if/canopen/301/emcy.hpp"
 #include "firmware_if/canopen/301/node_guard.hpp"
 #include "firmware_if/canopen/301/sdo_client.hpp"
 #include "firmware_if/canopen/302/node_boot.hpp"

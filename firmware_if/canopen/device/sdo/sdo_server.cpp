@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/canopen/device/sdo_server.hpp"
+#include "firmware_if/canopen/device/sdo/sdo_server.hpp"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // Block transfers of SdoServer. Source: CiA 301, 7.2.4.3.9-15.
 #include <algorithm>
 
-#include "firmware_if/canopen/device/sdo_server.hpp"
+#include "firmware_if/canopen/device/sdo/sdo_server.hpp"
 
 namespace servogate::canopen {
 namespace {
