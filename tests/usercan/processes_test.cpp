@@ -51,7 +51,7 @@ TEST(Processes, the_mill_runs_in_real_time_on_a_bus_between_processes_without_ri
   const Process bus({"can", "bus", "can0", "--listen", "unix:" + socket});
   ASSERT_TRUE(bus.says("can0 at 1000000 bit/s")) << bus.said();
   // What a busy computer does to time is no matter here: late answers are waited for.
-  const std::string patient = "loss_cycles = 1000\nheartbeat = \"5 s\"\ndevice = ";
+  const std::string patient = "loss_cycles = 1000\nheartbeat = \"1 s\"\ndevice = ";
   const std::string machine = mill("socketcand:unix:" + socket + "/can0",
                                    {{"bit_rate = \"1 Mbit/s\"", "bit_rate = \"1 Mbit/s\"\nsimulated = true"},
                                     {"cycle_time = \"1 ms\"", "cycle_time = \"4 ms\""},
@@ -81,7 +81,10 @@ TEST(Processes, the_mill_with_drives_in_lockstep_repeats_to_the_byte) {
 }
 
 TEST(Processes, a_bus_that_cannot_be_opened_is_infrastructure_and_says_what_to_do) {
-  Process run({"run", mill("socketcand:127.0.0.1:1/can0"), program(), "--realtime=best-effort"});
+  const std::string machine =
+      mill("socketcand:127.0.0.1:1/can0",
+           {{"bit_rate = \"1 Mbit/s\"", "bit_rate = \"1 Mbit/s\"\nsimulated = true"}});
+  Process run({"run", machine, program(), "--realtime=best-effort"});
   EXPECT_EQ(run.wait(), 4);
   EXPECT_NE(run.said().find("servogate can bus can0 --listen 127.0.0.1:1"), std::string::npos) << run.said();
 }
