@@ -60,8 +60,10 @@ const CLI::Option* option_in(const CLI::App& app, const std::string& message) {
 
 bool complain_of_unread(const CLI::App& app, const std::string& called,
                         const std::vector<std::string>& unread) {
-  const auto option = std::find_if(unread.begin(), unread.end(),
-                                   [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+  const auto option = std::find_if(unread.begin(), unread.end(), [](const std::string& word) {
+    const bool number = word.size() > 1 && (word[1] == '.' || (word[1] >= '0' && word[1] <= '9'));
+    return word.size() > 1 && word[0] == '-' && !number;
+  });
   if (option == unread.end()) return false;
   std::vector<std::string> names{"--help"};
   for (const CLI::Option* o : options_of(app))
@@ -71,12 +73,17 @@ bool complain_of_unread(const CLI::App& app, const std::string& called,
   return true;
 }
 
+/// By the code: what CLI11 calls an error may be the name of a command.
+bool is(const CLI::ParseError& error, CLI::ExitCodes code) {
+  return error.get_exit_code() == static_cast<int>(code);
+}
+
 void complain_of_option(const CLI::ParseError& error, const CLI::Option& option) {
-  const std::string name = option.get_name(), kind = error.get_name(), message = error.what();
+  const std::string name = option.get_name(), message = error.what();
   const std::size_t begin = message.find(": ");
-  if (kind == "ValidationError" && begin != std::string::npos)
+  if (is(error, CLI::ExitCodes::ValidationError) && begin != std::string::npos)
     return complain(kBadValue, {name, message.substr(begin + 2)});
-  if (kind == "ArgumentMismatch" && option.get_expected_max() > 0)
+  if (is(error, CLI::ExitCodes::ArgumentMismatch) && option.get_expected_max() > 0)
     return complain(option.results().size() > 1 ? kOnce : kNeedsValue, {name});
   complain(kNoValue, {name});
 }
@@ -120,12 +127,12 @@ void complain_of_use(const CLI::ParseError& error, const CLI::App& app,
   std::string called;
   const CLI::App& at = reached(app, called);
   if (complain_of_unread(at, called, unread)) return;
-  const std::string kind = error.get_name();
   if (!at.get_subcommands([](const CLI::App*) { return true; }).empty())
     return complain(kNoCommand, {&at == &app ? "" : at.get_name() + " "});
-  if (kind == "RequiredError" && complain_of_missing(at, called)) return;
-  if (kind == "ExcludesError" && complain_of_exclusion(at)) return;
-  if (kind == "ExtrasError" && !unread.empty()) return complain(kUnexpected, {called, unread.front()});
+  if (is(error, CLI::ExitCodes::RequiredError) && complain_of_missing(at, called)) return;
+  if (is(error, CLI::ExitCodes::ExcludesError) && complain_of_exclusion(at)) return;
+  if (is(error, CLI::ExitCodes::ExtrasError) && !unread.empty())
+    return complain(kUnexpected, {called, unread.front()});
   if (const CLI::Option* option = option_in(at, error.what()); option != nullptr)
     return complain_of_option(error, *option);
   complain(kOther, {error.what()});

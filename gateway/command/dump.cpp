@@ -3,9 +3,7 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 
 #include "drivers/candump/candump_line.hpp"
@@ -16,11 +14,13 @@
 #include "gateway/command/named_bus.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/compose/can_transport.hpp"
+#include "gateway/files/read_file.hpp"
 
 namespace servogate::gateway::command {
 
 namespace {
 
+const text::Entry kCannotPlay{"play.cannot-read", "cannot read {0}: {1}", "не читается {0}: {1}"};
 const text::Entry kBadLine{"play.bad-line", "{0}:{1}: no line of a candump log",
                            "{0}:{1}: не строка журнала candump"};
 const text::Entry kMayMove{
@@ -90,11 +90,11 @@ int dump(const DumpOptions& options) {
 }
 
 int play(const PlayOptions& options) {
-  std::ifstream file(options.file);
-  if (!file) {
-    complain(kCannotRead, {options.file + ": " + std::strerror(errno)});
+  if (const std::string why = files::why_unreadable(options.file); !why.empty()) {
+    complain(kCannotPlay, {options.file, why});
     return kWrongUse;
   }
+  std::ifstream file(options.file);
   std::vector<candump::Line> lines;
   std::string text;
   for (int number = 1; std::getline(file, text); ++number) {

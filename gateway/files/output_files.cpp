@@ -35,7 +35,8 @@ bool same_file(const std::string& a, const std::string& b) {
   if (has_a != has_b) return false;
   if (has_a) return S_ISREG(sa.st_mode) && sa.st_dev == sb.st_dev && sa.st_ino == sb.st_ino;
   std::error_code error_a, error_b;
-  const fs::path whole_a = fs::weakly_canonical(a, error_a), whole_b = fs::weakly_canonical(b, error_b);
+  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error_a), error_a),
+                 whole_b = fs::weakly_canonical(fs::absolute(b, error_b), error_b);
   return !error_a && !error_b && whole_a == whole_b;
 }
 

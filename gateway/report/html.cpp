@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string_view>
 
 #include "gateway/report/page/page_files.hpp"
@@ -236,17 +237,23 @@ std::string to_html(const Report& report, const RecordedRun& run, const HtmlOpti
 }
 
 std::string write_file(const std::string& path, const std::string& content) {
-  const std::string neighbour = path + ".part";
+  std::error_code error;
+  // A link leads to the file that is meant; a device or a pipe is written to and never replaced.
+  const std::filesystem::path linked = std::filesystem::canonical(path, error);
+  const std::string target = error ? path : linked.string();
+  const bool special =
+      std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error);
+  const std::string neighbour = special ? target : target + ".part";
   const auto failed = [&](const char* what) {
     const std::string text = path + ": " + what + ": " + std::strerror(errno);
-    std::remove(neighbour.c_str());
+    if (!special) std::remove(neighbour.c_str());
     return text;
   };
   std::FILE* file = std::fopen(neighbour.c_str(), "wb");
   if (file == nullptr) return failed("cannot create");
   const bool written = std::fwrite(content.data(), 1, content.size(), file) == content.size();
   if (std::fclose(file) != 0 || !written) return failed("cannot write");
-  if (std::rename(neighbour.c_str(), path.c_str()) != 0) return failed("cannot rename");
+  if (!special && std::rename(neighbour.c_str(), target.c_str()) != 0) return failed("cannot rename");
   return {};
 }
 

@@ -20,7 +20,8 @@ struct HtmlOptions {
 /// nothing in machine names, alarm texts or the program can break out of it. Not real-time safe.
 std::string to_html(const Report& report, const RecordedRun& run, const HtmlOptions& options);
 
-/// Writes text to a file by way of a neighbour and a rename, so that a reader never sees half of it. The
+/// Writes text to a file by way of a neighbour and a rename, so that a reader never sees half of it; through a
+/// link to the file that it leads to. What is no regular file (a device, a pipe) is written to as it is. The
 /// empty string, or what went wrong.
 std::string write_file(const std::string& path, const std::string& content);
 

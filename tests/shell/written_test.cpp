@@ -2,6 +2,7 @@
 // What a run is to write is looked at before anything moves.
 #include <gtest/gtest.h>
 
+#include "gateway/files/output_files.hpp"
 #include "tests/shell/line.hpp"
 
 namespace servogate::shell {
@@ -40,7 +41,18 @@ TEST_F(Written, files_are_not_the_same_file_twice) {
   refused("--trace folder/../f --html f", 2, "are one file");
   ASSERT_EQ(desk_.line("touch g && ln -s g h").code, 0);
   refused("--html g --record h", 2, "--html and --record are one file, h");
-  EXPECT_EQ(desk_.line("$SG run $MILL one.nc --virtual -q --trace /dev/null --report /dev/null").code, 0);
+  // Only asked: a device may take several outputs.
+  EXPECT_FALSE(files::problem_of_outputs({{"--trace", "/dev/null"}, {"--report", "/dev/null"}}, {}));
+}
+
+TEST_F(Written, files_that_are_pipes_or_links_stay_what_they_are) {
+  ASSERT_EQ(desk_.line("mkfifo pipe && touch page && ln -s page link").code, 0);
+  const Ended e = desk_.line(
+      "cat pipe > copy & $SG run machine.toml one.nc --virtual -q --report pipe --html link; code=$?; wait; "
+      "exit $code");
+  EXPECT_EQ(e.code, 0) << e.err;
+  EXPECT_EQ(desk_.line("test -p pipe && test -L link && test -s page && test -s copy").code, 0);
+  EXPECT_EQ(desk_.text("copy").substr(0, 1), "{") << "the report went through the pipe";
 }
 
 TEST_F(Written, files_never_overwrite_what_the_run_reads) {
