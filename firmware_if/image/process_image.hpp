@@ -98,8 +98,9 @@ enum class WaitReason : std::uint8_t {
   feed_enable,       ///< until the PLC sets `place`
   axis_feed_enable,  ///< the same, of `axis`
   override_zero,     ///< the operator's feed override is 0
+  spindle_stands,    ///< the feed is per revolution, and the spindle is not commanded to turn
 };
-inline constexpr int kWaitReasons = static_cast<int>(WaitReason::override_zero) + 1;
+inline constexpr int kWaitReasons = static_cast<int>(WaitReason::spindle_stands) + 1;
 
 /// A wait of a process as plain data; words come from outside the cycle.
 struct Wait {

@@ -119,7 +119,11 @@ int Run::prepare() {
                                program_.text, program_.loader, {});
     const program::Interpreter reader(program_.dialect, program_.model, state_.tables, options_.program,
                                       program_.text, program_.loader, {});
-    if (print_findings(reader.findings()) > 0) return kAlarm;
+    const std::vector<text::Finding> read = reader.findings();
+    if (print_findings(read) > 0) return kAlarm;
+    // An error of the dry run is none of the real one, where signals and positions differ.
+    for (std::size_t i = read.size(); i < check.findings.size(); ++i)
+      if (check.findings[i].severity == text::Severity::warning) print_findings({check.findings[i]});
     estimate_s_ = check.feed_seconds + check.rapid_seconds + check.dwell_seconds;
     estimate_blocks_ = check.executed;
   }

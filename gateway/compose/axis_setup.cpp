@@ -142,6 +142,10 @@ channel::ProcessConfig process_config(const machine::MachineConfig& m, int index
     c.path.rotary[static_cast<std::size_t>(i)] = a.type == machine::AxisType::rotary;
     if (a.diameter) c.axes.surface_speed_axis = i;
   }
+  if (!m.spindles.empty()) {
+    c.axes.spindle_min_rpm = m.spindles[0].min_speed;
+    c.axes.spindle_max_rpm = m.spindles[0].max_speed;
+  }
   c.handshake_timeout_s = m.plc.handshake_timeout;
   return c;
 }

@@ -201,11 +201,6 @@ cycle::AlarmNames Control::alarm_names() const {
     names.units.push_back(a.type == machine::AxisType::rotary ? "deg" : "mm");
   for (const machine::BusConfig& b : m.buses) names.segments.push_back(b.name);
   for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
-  names.program_finding = [this](int process, int number, text::Language language) -> std::string {
-    if (process < 0 || process >= std::ssize(processes_)) return {};
-    const auto found = processes_[static_cast<std::size_t>(process)]->feeder().texts().finding(number);
-    return found ? found->str(language) : std::string();
-  };
   names.error_text = [this](int axis, int node, std::uint16_t code, text::Language language) -> std::string {
     const machine::MachineConfig& config = loaded_.machine;
     for (std::size_t b = 0; b < config.buses.size(); ++b)

@@ -106,6 +106,13 @@ constexpr Row kRows[] = {
      {"wait.set-override", "`servogate override 100`; in `servogate run` the option --override.",
       "`servogate override 100`; для `servogate run` — параметр --override."},
      true},
+    {"spindle_stands",
+     {"wait.spindle-stands", "waits for the spindle: the feed is per revolution, and it does not turn",
+      "ждёт шпинделя: подача на оборот, а он не вращается"},
+     {"wait.see-spindle",
+      "Program S and M3 before the motion; see in {2} what the spindle's enable waits for.",
+      "Задайте S и M3 до движения; посмотрите в {2}, чего ждёт разрешение шпинделя."},
+     true},
 };
 static_assert(std::size(kRows) == image::kWaitReasons);
 
@@ -180,7 +187,7 @@ bool is_operators(WaitReason reason) {
 
 bool has_place(WaitReason reason) {
   return reason != WaitReason::none && reason != WaitReason::dwell && reason != WaitReason::in_position &&
-         !is_operators(reason);
+         reason != WaitReason::spindle_stands && !is_operators(reason);
 }
 
 std::string named(const WaitWords& w) { return w.symbol.empty() ? w.place : w.symbol + " (" + w.place + ")"; }

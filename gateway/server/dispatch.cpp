@@ -363,10 +363,16 @@ Reply Dispatch::mdi() {
   if (block.find_first_not_of(" \t") == std::string::npos) return fail(says::kBlockEmpty, {}, kWrongUse);
   if (resident_.busy()) return fail(says::kBusy, {}, kAlarm);
   resident_.take_tables();
-  if (const auto finding = resident_.check_block(block); finding)
-    return fail(says::kBlockWrong, {finding->str(language_)}, kAlarm);
+  const std::vector<text::Finding> findings = resident_.check_block(block);
+  if (!findings.empty() && findings.back().severity == text::Severity::error)
+    return fail(says::kBlockWrong, {findings.back().str(language_)}, kAlarm);
   resident_.set_manual_block(block);
-  if (ask(RequestKind::start, -1, 0.0, image::Mode::mdi)) return good(says::kBlockRuns);
+  if (ask(RequestKind::start, -1, 0.0, image::Mode::mdi)) {
+    std::string words;
+    for (const text::Finding& f : findings) words += "\n" + f.str(language_);
+    return good(says::kBlockRuns, {words},
+                {{"findings", json::parse(machine::to_json(findings), nullptr, false)}});
+  }
   resident_.set_manual_block({});  // a start button must not find it later
   return refusal_;
 }

@@ -119,7 +119,7 @@ program::Position Resident::position() {
   return at;
 }
 
-std::optional<text::Finding> Resident::check_block(const std::string& block) {
+std::vector<text::Finding> Resident::check_block(const std::string& block) {
   const program::Position at = position();
   std::optional<program::Interpreter> trial;
   {
@@ -127,13 +127,16 @@ std::optional<text::Finding> Resident::check_block(const std::string& block) {
     trial = control_.process(0).manual_interpreter(at);
   }
   trial->mdi(block);
+  std::optional<text::Finding> failed;
   for (int n = 0; n < kBlockPatience; ++n) {
     const program::Step step = trial->next(image_.packets, true);
-    if (const auto* error = std::get_if<program::Error>(&step)) return error->finding;
+    if (const auto* error = std::get_if<program::Error>(&step)) failed = error->finding;
     const auto* command = std::get_if<program::Command>(&step);
     if (command == nullptr || std::holds_alternative<program::End>(command->what)) break;
   }
-  return std::nullopt;
+  std::vector<text::Finding> findings = trial->warnings();
+  if (failed) findings.push_back(*failed);
+  return findings;
 }
 
 void Resident::set_manual_block(const std::string& block) {

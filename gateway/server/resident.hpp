@@ -33,8 +33,9 @@ class Resident {
   Load load(const std::string& path, const std::string& dialect, std::vector<text::Finding>& findings);
   /// Takes over what the last run changed in the tables, before the next one starts.
   void take_tables();
-  /// The error that this block gives in the present modal state of MDI, before anything moves.
-  std::optional<text::Finding> check_block(const std::string& block);
+  /// What this block gives in the present modal state of MDI, before anything moves: warnings, and last the
+  /// error that keeps it from running.
+  std::vector<text::Finding> check_block(const std::string& block);
   /// The block that the next start in MDI mode runs.
   void set_manual_block(const std::string& block);
   /// MDI begins with the power-on modes again.

@@ -41,7 +41,8 @@ json alarm_list(Resident& resident, text::Language language) {
                     {"first_fault", r.first_fault},
                     {"time_s", static_cast<double>(r.t_ns) * 1e-9},
                     {"line", r.line},
-                    {"reaction", cycle::words(r.reaction, language)}});
+                    {"reaction", cycle::words(r.reaction, language)},
+                    {"warning", r.reaction <= image::Reaction::warn}});
     if (a.finding) list.back()["finding"] = finding_json(*a.finding, language);
   }
   return list;

@@ -65,7 +65,7 @@ const Entry kZero{"said.zero", "{0} is {1} {2} here (origin {3} at {4})",
                   "{0} здесь равна {1} {2} (начало {3} в {4})"};
 const Entry kZeroDiameter{"said.zero-diameter", "{0} is {1} {2} in diameter here (origin {3} at radius {4})",
                           "{0} здесь равна {1} {2} по диаметру (начало {3} на радиусе {4})"};
-const Entry kBlockRuns{"said.block-runs", "the block runs", "кадр выполняется"};
+const Entry kBlockRuns{"said.block-runs", "the block runs{0}", "кадр выполняется{0}"};
 const Entry kLoaded{"said.loaded", "{0} is loaded: {1} blocks, {2} warnings",
                     "{0} загружена: кадров {1}, предупреждений {2}"};
 const Entry kStarted{"said.started", "{0} runs", "{0} выполняется"};

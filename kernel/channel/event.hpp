@@ -22,6 +22,7 @@ enum class EventKind : std::uint8_t {
   stop,           ///< M00
   optional_stop,  ///< M01
   block_end,      ///< STEP mode: waits for the operator between blocks
+  warning,        ///< at once: the control does something otherwise than the program asks
   error,          ///< the interpreter found an error in the next block
   end,            ///< M02, M30 or the last line
 };
@@ -34,7 +35,7 @@ constexpr std::uint64_t run_and_block(std::uint32_t run, long long executed) noe
 
 /// One command that the cycle executes at rest, in path order. Plain data; crosses the real-time line.
 struct Event {
-  std::uint32_t id = 0;  ///< the path's event, or 0: at once (asynchronous write)
+  std::uint32_t id = 0;  ///< the path's event, or 0: at once (asynchronous write, warning)
   std::uint32_t generation = 0;
   std::uint32_t executed = 0;  ///< blocks of the run so far, its own included
   EventKind kind = EventKind::message;
@@ -42,9 +43,10 @@ struct Event {
   std::int32_t block = -1;
   std::int16_t file = 0;
   std::int32_t code = 0;    ///< M, H or tool number; number of the message or finding in ProgramTexts
-  std::int32_t code2 = 0;   ///< corrector
+  std::int32_t code2 = 0;   ///< corrector; column of a warning
   double value = 0.0;       ///< seconds, speed, value to write or to compare with
   double limit = 0.0;       ///< rpm limit of a surface speed
+  double center = 0.0;      ///< where the radius of a surface speed begins
   std::uint8_t number = 0;  ///< spindle
   program::SpindleMode mode = program::SpindleMode::keep;
   bool flag = false;  ///< surface speed; rewind

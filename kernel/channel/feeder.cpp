@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "kernel/channel/channel_texts.hpp"
+#include "kernel/channel/surface_speed.hpp"
 
 namespace servogate::channel {
 
@@ -74,8 +75,10 @@ bool Feeder::work() {
 }
 
 bool Feeder::wants_more() const {
-  return state_ == State::feeding && planner_.wants_more() &&
-         link_.events.capacity() - (link_.events.written() - link_.events.freed()) > kSpareEvents;
+  const auto room = [](const path::Ring<Event>& ring) {
+    return ring.capacity() - (ring.written() - ring.freed()) > kSpareEvents;
+  };
+  return state_ == State::feeding && planner_.wants_more() && room(link_.events) && room(link_.at_once);
 }
 
 void Feeder::take_orders() {
@@ -123,6 +126,7 @@ void Feeder::begin(const FeederOrder& order) {
     manual.emplace(factory_(position_));
   interpreter_ = std::move(manual);
   executed_before_ = interpreter_->executed();
+  warned_ = 0;
 }
 
 void Feeder::read_one() {
@@ -132,6 +136,7 @@ void Feeder::read_one() {
     texts_.set_files(generation_, files);
     files_told_ = files.size();
   }
+  warn();
   if (const auto* command = std::get_if<program::Command>(&step)) {
     accept(*command);
   } else if (const auto* sync = std::get_if<program::NeedsSync>(&step)) {
@@ -142,6 +147,20 @@ void Feeder::read_one() {
     state_ = State::syncing;
   } else {
     fail(std::get<program::Error>(step).finding);
+  }
+}
+
+/// Hands what the interpreter warns of to the cycle, which raises the alarm without touching the path.
+void Feeder::warn() {
+  const std::vector<text::Finding>& warnings = interpreter_->warnings();
+  for (; warned_ < warnings.size(); ++warned_) {
+    Event e;
+    e.kind = EventKind::warning;
+    e.generation = generation_;
+    e.line = warnings[warned_].line;
+    e.code2 = warnings[warned_].column;
+    e.code = texts_.add_finding(warnings[warned_]);
+    link_.at_once.push(e);
   }
 }
 
@@ -212,12 +231,14 @@ void Feeder::accept(const program::Command& command) {
                    if (s.surface_speed) {
                      surface_speed_ = s.speed;
                      surface_limit_rpm_ = s.limit_rpm;
+                     surface_center_ = s.center;
                    } else if (s.speed > 0.0) {
                      surface_speed_ = 0.0;
                      spindle_rpm_ = s.speed;
                    }
                    e.value = s.speed;
                    e.limit = s.limit_rpm;
+                   e.center = s.center;
                    e.number = s.number;
                    e.mode = s.mode;
                    e.flag = s.surface_speed;
@@ -291,13 +312,8 @@ path::Element Feeder::element(const program::Command& command) const {
   path::Element e;
   e.tag = tag(command);
   const auto target = [&](const program::Position& to) {
-    double square = 0.0, rotary = 0.0;
-    for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
+    for (std::size_t i = 0; i < axes_.machine.size(); ++i)
       e.to[i] = to[static_cast<std::size_t>(axes_.machine[i])];
-      const double d = e.to[i] - planner_.position()[i];
-      (config_.rotary[i] ? rotary : square) += d * d;
-    }
-    return std::sqrt(square > 0.0 ? square : rotary);
   };
   if (const auto* rapid = std::get_if<program::Rapid>(&command.what)) {
     e.kind = path::Element::Kind::rapid;
@@ -305,7 +321,8 @@ path::Element Feeder::element(const program::Command& command) const {
     e.transition.confirm = true;
   } else if (const auto* line = std::get_if<program::Line>(&command.what)) {
     e.kind = path::Element::Kind::line;
-    e.feed = speed(line->feed, target(line->to));
+    target(line->to);
+    set_feed(e, line->feed, 0.0);
     e.transition = transition(line->corner);
   } else if (const auto* arc = std::get_if<program::Arc>(&command.what)) {
     e.kind = path::Element::Kind::arc;
@@ -321,37 +338,56 @@ path::Element Feeder::element(const program::Command& command) const {
     e.sweep_deg = arc->sweep_deg;
     const double radius =
         std::hypot(planner_.position()[e.axis1] - e.center1, planner_.position()[e.axis2] - e.center2);
-    const double circle = radius * std::abs(arc->sweep_deg) * std::numbers::pi / 180.0;
-    double along = circle * circle;
-    for (std::size_t i = 0; i < axes_.machine.size(); ++i)
-      if (i != e.axis1 && i != e.axis2 && !config_.rotary[i]) {
-        const double d = e.to[i] - planner_.position()[i];
-        along += d * d;
-      }
-    e.feed = speed(arc->feed, std::sqrt(along));
+    set_feed(e, arc->feed, radius * std::abs(arc->sweep_deg) * std::numbers::pi / 180.0);
     e.transition = transition(arc->corner);
   }
   return e;
 }
 
-double Feeder::speed(const program::Feed& feed, double length) const {
+/// A program's feed is that of the vector over millimetres and degrees alike (NC-110: specification A 17.1);
+/// the path counts along the linear axes, or the rotary ones where only they move.
+void Feeder::set_feed(path::Element& e, const program::Feed& feed, double arc_length) const {
+  double linear = arc_length * arc_length, turning = 0.0;
+  for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
+    const double d = e.to[i] - planner_.position()[i];
+    const bool in_plane = e.kind == path::Element::Kind::arc && (i == e.axis1 || i == e.axis2);
+    if (!in_plane) (config_.rotary[i] ? turning : linear) += d * d;
+  }
+  const double length = std::sqrt(linear > 1e-12 * turning ? linear : turning);
+  const double vector = std::sqrt(linear + turning);
+  const double share = vector > 0.0 ? length / vector : 1.0;
   switch (feed.unit) {
     case program::FeedUnit::mm_per_min:
-      return feed.value / 60.0;
+      e.feed = feed.value / 60.0 * share;
+      break;
     case program::FeedUnit::inverse_time:
-      return feed.value * length / 60.0;
-    case program::FeedUnit::mm_per_rev: {
-      double rpm = spindle_rpm_;
-      if (surface_speed_ > 0.0 && axes_.surface_speed_axis >= 0) {
-        const double radius =
-            std::max(std::abs(planner_.position()[static_cast<std::size_t>(axes_.surface_speed_axis)]), 1e-3);
-        rpm = surface_speed_ * 1000.0 / (2.0 * std::numbers::pi * radius);
-        if (surface_limit_rpm_ > 0.0) rpm = std::min(rpm, surface_limit_rpm_);
-      }
-      return feed.value * rpm / 60.0;
-    }
+      e.feed = feed.value * length / 60.0;
+      break;
+    case program::FeedUnit::mm_per_rev:
+      e.revolutions = largest_rpm(e) / 60.0;
+      e.feed = feed.value * e.revolutions * share;
+      break;
   }
-  return 0.0;
+}
+
+/// The largest speed of the spindle along an element.
+double Feeder::largest_rpm(const path::Element& e) const {
+  const double high = axes_.spindle_max_rpm > 0.0 ? axes_.spindle_max_rpm : spindle_rpm_;
+  if (!(surface_speed_ > 0.0) || axes_.surface_speed_axis < 0)
+    return spindle_rpm_ > 0.0 ? std::clamp(spindle_rpm_, std::min(axes_.spindle_min_rpm, high), high) : 0.0;
+  const auto axis = static_cast<std::size_t>(axes_.surface_speed_axis);
+  const double from = planner_.position()[axis] - surface_center_, to = e.to[axis] - surface_center_;
+  double radius = from * to <= 0.0 ? 0.0 : std::min(std::abs(from), std::abs(to));
+  if (e.kind == path::Element::Kind::arc && (axis == e.axis1 || axis == e.axis2)) {
+    const bool first = axis == e.axis1;
+    const double bulge =
+        std::hypot(planner_.position()[e.axis1] - e.center1, planner_.position()[e.axis2] - e.center2);
+    radius = std::max(0.0, std::abs((first ? e.center1 : e.center2) - surface_center_) - bulge);
+  }
+  const double limit = surface_limit_rpm_ > 0.0 && axes_.spindle_max_rpm > 0.0
+                           ? std::min(surface_limit_rpm_, axes_.spindle_max_rpm)
+                           : std::max(surface_limit_rpm_, axes_.spindle_max_rpm);
+  return std::max(surface_rpm(surface_speed_, radius, limit), axes_.spindle_min_rpm);
 }
 
 }  // namespace servogate::channel

@@ -39,7 +39,7 @@ struct Link {
   explicit Link(const path::Config& config) : track(config), events(4096), at_once(1024), orders(64) {}
   path::Track track;
   path::Ring<Event> events;   ///< executed at rest, in path order
-  path::Ring<Event> at_once;  ///< asynchronous writes
+  path::Ring<Event> at_once;  ///< asynchronous writes, warnings
   path::Ring<FeederOrder> orders;
 
   /// Written by the cycle before a start or sync order of a run, read by the feeder after it. Runs alternate,
@@ -68,8 +68,10 @@ struct Link {
 
 /// How path axes lie among the machine's, and what an axis order means.
 struct AxisMap {
-  std::vector<int> machine;     ///< machine axis of each path axis
-  int surface_speed_axis = -1;  ///< machine axis whose position is the radius for G96; -1: none
+  std::vector<int> machine;      ///< machine axis of each path axis
+  int surface_speed_axis = -1;   ///< machine axis whose position is the radius for G96; -1: none
+  double spindle_min_rpm = 0.0;  ///< to which the spindle limits what it is told
+  double spindle_max_rpm = 0.0;  ///< 0: no limit
 };
 
 /// Pulls commands from the interpreter, turns them into path elements and events. Runs outside the cycle, on
@@ -100,7 +102,7 @@ class Feeder {
   /// called again soon, there is more to do.
   bool work();
 
-  /// What its programs have said so far; Event::code of messages and errors are numbers in it. For
+  /// What its programs have said so far; Event::code of messages, warnings and errors are numbers in it. For
   /// any thread outside the cycle.
   const ProgramTexts& texts() const noexcept { return texts_; }
   /// Blocks of the run that the interpreter has executed (read ahead of motion), and blocks of the main
@@ -121,11 +123,13 @@ class Feeder {
   void begin(const FeederOrder& order);
   void read_one();
   void accept(const program::Command& command);
+  void warn();
   void fail(const text::Finding& finding);
   void end();
   bool move(const program::Command& command);
   path::Element element(const program::Command& command) const;
-  double speed(const program::Feed& feed, double length) const;
+  void set_feed(path::Element& element, const program::Feed& feed, double arc_length) const;
+  double largest_rpm(const path::Element& element) const;
   void event(EventKind kind, const program::Command& command, Event event);
   path::Tag tag(const program::Command& command) const;
   text::Finding finding(const program::Command& command, const text::Entry& entry,
@@ -150,7 +154,7 @@ class Feeder {
   image::Packets view_;  ///< packets as the interpreter sees them
   program::Position position_{};
   double spindle_rpm_ = 0.0;
-  double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0;
+  double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0, surface_center_ = 0.0;
   std::uint32_t next_event_ = 1;
   std::uint32_t generation_ = 0;
   std::uint64_t orders_read_ = 0;
@@ -158,6 +162,7 @@ class Feeder {
   std::size_t files_told_ = 0;
   long long executed_before_ = 0;  ///< by the interpreter, typed blocks before this one
   int last_file_ = 0;
+  std::size_t warned_ = 0;  ///< of interpreter_'s warnings
 };
 
 }  // namespace servogate::channel

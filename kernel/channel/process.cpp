@@ -274,6 +274,7 @@ void Process::apply_hold(cycle::ProcessContext& c) noexcept {
     follower_.resume();
   const double by_plc = k.number(at(kFeedOverride, base_)) / 100.0;
   follower_.set_override(by_plc > 0.0 ? by_plc : override_);
+  follower_.set_spindle(c.spindles.empty() ? -1.0 : std::abs(c.image.spindles[0].command_rpm) / 60.0);
 }
 
 void Process::drive_axes(const path::Sample& sample, cycle::ProcessContext& c) noexcept {

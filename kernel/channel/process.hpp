@@ -118,7 +118,7 @@ class Process final : public cycle::ProcessInCycle {
   Stage stage_ = Stage::none;
   Event event_;
   double waited_s_ = 0.0;
-  double surface_speed_ = 0.0, surface_limit_ = 0.0;
+  double surface_speed_ = 0.0, surface_limit_ = 0.0, surface_center_ = 0.0;
   program::SpindleMode surface_mode_ = program::SpindleMode::cw;
   double last_speed_ = -1.0;
   path::Tag shown_;               ///< of the motion that the status has shown

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/channel/process.hpp"
+#include "kernel/channel/surface_speed.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::channel {
@@ -14,6 +14,7 @@ namespace {
 using image::ProcessState;
 
 constexpr image::Place kOptionalStop = image::field(image::kProcessFields, "optional_stop");
+constexpr int kWarningsPerCycle = 4;
 constexpr image::Place kReadInEnable = image::field(image::kProcessFields, "read_in_enable");
 
 bool holds(double a, program::Wait::Compare compare, double b) noexcept {
@@ -58,9 +59,17 @@ axis::SpindleMode spindle_mode(program::SpindleMode mode) noexcept {
 }  // namespace
 
 void Process::apply_at_once(cycle::ProcessContext& c) noexcept {
+  int warnings = 0;
   while (at_once_read_ < at_once_end_) {
     const Event& e = link_.at_once[at_once_read_];
-    if (running_) write_place(e, c.image.packets);
+    if (running_) {
+      if (e.kind != EventKind::warning)
+        write_place(e, c.image.packets);
+      else if (++warnings <= kWarningsPerCycle)
+        raise(cycle::alarm::kProgramWarning, e, e.code, e.code2, c);
+      else
+        break;
+    }
     link_.at_once.free_below(++at_once_read_);
   }
 }
@@ -98,6 +107,8 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       return holds(c.image.packets.number(e.place), e.compare, e.value);
     case EventKind::message:
       c.image.processes[static_cast<std::size_t>(config_.index)].message = e.code;
+      return true;
+    case EventKind::warning:
       return true;
     case EventKind::sync: {
       if (!c.image.packets.bit(image::at(kReadInEnable, base_))) {
@@ -163,6 +174,7 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
     if (e.flag) {
       surface_speed_ = e.value > 0.0 ? e.value : surface_speed_;
       surface_limit_ = e.limit;
+      surface_center_ = e.center;
     } else if (e.value > 0.0) {
       surface_speed_ = 0.0;
     }
@@ -185,10 +197,8 @@ void Process::stop_spindles(cycle::ProcessContext& c) noexcept {
 void Process::surface_speed(cycle::ProcessContext& c) noexcept {
   if (surface_speed_ <= 0.0 || config_.axes.surface_speed_axis < 0 || c.spindles.empty()) return;
   axis::Spindle& spindle = c.spindles[0];
-  const double radius = std::max(
-      std::abs(c.axes[static_cast<std::size_t>(config_.axes.surface_speed_axis)].setpoint().x), 1e-3);
-  double rpm = surface_speed_ * 1000.0 / (2.0 * std::numbers::pi * radius);
-  if (surface_limit_ > 0.0) rpm = std::min(rpm, surface_limit_);
+  const double x = c.axes[static_cast<std::size_t>(config_.axes.surface_speed_axis)].setpoint().x;
+  const double rpm = surface_rpm(surface_speed_, x - surface_center_, surface_limit_);
   spindle.order(spindle.mode(), rpm);
 }
 

@@ -89,7 +89,7 @@ image::Wait Process::wait(const path::Sample& sample, const cycle::ProcessContex
     case path::FollowerState::held:
       return wait_on_path(c);
     default:
-      return {};
+      return follower_.waits_for_spindle() ? of(WaitReason::spindle_stands) : image::Wait{};
   }
 }
 

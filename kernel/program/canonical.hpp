@@ -66,6 +66,9 @@ struct Spindle {
   double speed = 0.0;
   bool surface_speed = false;  ///< m/min instead of rpm
   double limit_rpm = 0.0;      ///< for surface speed, 0: none
+  /// For surface speed: machine coordinate of the diameter axis at which the tool stands on the spindle's
+  /// axis, that is its length along it.
+  double center = 0.0;
 };
 /// Tool word. `activate` true: the corrector takes effect here (NC-110: with M06), else a preselection.
 struct Tool {

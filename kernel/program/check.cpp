@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kOpenTravel = 1e9;
 constexpr double kSlack = 1e-6;
+constexpr double kSmallestRadius = 0.1;  ///< mm, for the time under a cutting speed
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -49,7 +50,7 @@ class Survey {
   void take(const Other&) {}
   void take(const Wait&) { ++report_.waits; }
   void take(const Dwell& dwell) { report_.dwell_seconds += dwell.seconds; }
-  void take(const Spindle& spindle) { rpm_ = spindle.surface_speed ? 0.0 : spindle.speed; }
+  void take(const Spindle& spindle) { spindle_ = spindle; }
   void take(const Tool& tool) {
     auto known = std::find_if(report_.tools.begin(), report_.tools.end(), [&](const auto& t) {
       return t.number == tool.number && t.corrector == tool.corrector;
@@ -69,7 +70,7 @@ class Survey {
   void take(const Line& line) {
     double square = 0.0;
     for (std::size_t a = 0; a < machine_.axes.size(); ++a) square += std::pow(line.to[a] - position_[a], 2);
-    feed_motion(std::sqrt(square), line.feed);
+    feed_motion(std::sqrt(square), line.feed, line.to);
     go(line.to);
   }
   void take(const Arc& arc) {
@@ -78,19 +79,35 @@ class Survey {
     double square = std::pow(arc.sweep_deg * kDegree * radius, 2);
     for (std::size_t a = 0; a < machine_.axes.size(); ++a)
       if (a != a1 && a != a2) square += std::pow(arc.to[a] - position_[a], 2);
-    feed_motion(std::sqrt(square), arc.feed);
+    feed_motion(std::sqrt(square), arc.feed, arc.to);
     const Box box = extent({position_[a1], position_[a2]}, {arc.to[a1], arc.to[a2]},
                            {arc.center1, arc.center2}, arc.sweep_deg);
     reach(a1, box.low.x), reach(a1, box.high.x), reach(a2, box.low.y), reach(a2, box.high.y);
     go(arc.to);
   }
 
-  void feed_motion(double length, const Feed& feed) {
+  /// Speed of the spindle on the way to `to`; under a cutting speed that at half of the way.
+  double rpm(const Position& to) const {
+    double rpm = spindle_.speed;
+    const auto x =
+        std::find_if(machine_.axes.rbegin(), machine_.axes.rend(), [](const auto& a) { return a.diameter; });
+    if (spindle_.surface_speed) {
+      if (x == machine_.axes.rend()) return 0.0;
+      const auto axis = static_cast<std::size_t>(machine_.axes.rend() - x) - 1;
+      const double radius = std::abs(0.5 * (position_[axis] + to[axis]) - spindle_.center);
+      rpm = spindle_.speed * 1000.0 / (2.0 * std::numbers::pi * std::max(radius, kSmallestRadius));
+    }
+    if (machine_.spindle_max_rpm > 0.0) rpm = std::min(rpm, machine_.spindle_max_rpm);
+    return rpm > 0.0 ? std::max(rpm, machine_.spindle_min_rpm) : 0.0;
+  }
+
+  void feed_motion(double length, const Feed& feed, const Position& to) {
     report_.path_mm += length;
     double minutes = 0.0;
     if (feed.unit == FeedUnit::mm_per_min) minutes = length / feed.value;
     if (feed.unit == FeedUnit::inverse_time) minutes = 1.0 / feed.value;
-    if (feed.unit == FeedUnit::mm_per_rev && rpm_ > 0.0) minutes = length / (feed.value * rpm_);
+    if (feed.unit == FeedUnit::mm_per_rev)
+      if (const double turns = rpm(to); turns > 0.0) minutes = length / (feed.value * turns);
     report_.feed_seconds += minutes * 60.0;
   }
 
@@ -118,7 +135,7 @@ class Survey {
   const MachineModel& machine_;
   CheckReport& report_;
   Position position_;
-  double rpm_ = 0.0;
+  Spindle spindle_;
   int line_ = 0, file_ = 0;
   int first_outside_ = -1, outside_line_ = 0, outside_file_ = 0;
   double outside_value_ = 0.0;

@@ -146,6 +146,7 @@ struct Fields {
     w.field("speed", c.speed);
     w.field("unit", c.surface_speed ? "m/min" : "rpm");
     if (c.limit_rpm > 0.0) w.field("limit", c.limit_rpm);
+    if (c.center != 0.0) w.field("center", c.center);
   }
   void operator()(const Tool& c) const {
     w.count("number", c.number);

@@ -186,8 +186,9 @@ constexpr text::Entry kMessages[] = {
     {"P905", "{0} and {1} exclude one another: of a group one mode is in force",
      "{0} и {1} исключают друг друга: из группы действует один режим"},
     {"P906", "the mode {0} stands twice", "режим {0} назван дважды"},
+    {"P907", "from here on {0} more {1} are not named", "отсюда ещё {0} {1} не названо"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::power_on_twice) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::findings_many) + 1);
 
 }  // namespace
 

@@ -142,6 +142,7 @@ enum class Fault : std::uint8_t {
   power_on_for_block,
   power_on_excluded,
   power_on_twice,
+  findings_many,
 };
 
 /// All texts, in the order of Fault.

@@ -97,7 +97,8 @@ void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
     k.set_bit(image::at(field(image::kAxisFields, "feed_enable"), image::axis_base(a)),
               axis_feed_enable[static_cast<std::size_t>(a)]);
   }
-  k.set_bit(image::at(field(image::kSpindleFields, "enable"), image::spindle_base(0)), true);
+  k.set_bit(image::at(field(image::kSpindleFields, "enable"), image::spindle_base(0)), spindle_enable);
+  k.set_number(image::at(field(image::kSpindleFields, "override"), image::spindle_base(0)), spindle_override);
   k.set_bit(nc("feed_enable"), feed_enable);
   k.set_bit(nc("read_in_enable"), read_in_enable);
   k.set_bit(nc("optional_stop"), optional_stop);
@@ -110,12 +111,14 @@ void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
   if (during) during();
 }
 
-Rig::Rig(std::string_view program, std::string_view power_on, double handshake_timeout_s) {
+Rig::Rig(std::string_view program, std::string_view power_on, double handshake_timeout_s, RigKind kind) {
   ProcessConfig config;
   config.path.axis_count = kAxes;
   config.handshake_timeout_s = handshake_timeout_s;
   cycle::CycleParts parts;
-  const char* letters[] = {"X", "Y", "Z"};
+  const char* letters[] = {"X", kind == RigKind::rotary ? "B" : "Y", "Z"};
+  if (kind == RigKind::lathe) config.axes.surface_speed_axis = 0;
+  config.axes.spindle_max_rpm = model_.spindle_max_rpm = kSpindleMax;
   for (int a = 0; a < kAxes; ++a) {
     config.axes.machine.push_back(a);
     config.path.limits[static_cast<std::size_t>(a)] = {kLimits.velocity, kLimits.acceleration, kLimits.jerk};
@@ -126,13 +129,15 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
     c.homing.method = axis::HomingMethod::none;
     c.homing.position = 0.0;
     c.in_position_window = 0.002;
-    parts.axes.push_back(c);
     program::MachineModel::Axis m;
     m.letter = letters[a];
     m.travel_min = -300;
     m.travel_max = 300;
     m.rapid = kLimits.velocity;
+    m.diameter = kind == RigKind::lathe && a == 0;
+    m.rotary = c.rotary = config.path.rotary[static_cast<std::size_t>(a)] = kind == RigKind::rotary && a == 1;
     model_.axes.push_back(m);
+    parts.axes.push_back(c);
   }
   model_.power_on = {"G94", "G97", "G90", "G71", std::string(power_on)};
   model_.variables = {{"ERF", 0.01}, {"MCD", 2}};
@@ -141,7 +146,7 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   parts.devices = {&drives};
   parts.logic = &logic;
   parts.processes = {process.get()};
-  parts.spindles.emplace_back();
+  parts.spindles.emplace_back().max_rpm = kSpindleMax;
   cycle = std::make_unique<cycle::Cycle>(std::move(parts));
   run(0.01);
   EXPECT_EQ(ask(RequestKind::power, 1.0), cycle::Refusal::none);

@@ -18,6 +18,7 @@ namespace servogate::channel::test {
 
 inline constexpr int kAxes = 3;
 inline constexpr axis::MotionLimits kLimits{500.0, 1000.0, 10000.0};
+inline constexpr double kSpindleMax = 4000.0;  ///< rpm
 
 /// Drives that follow each command exactly two cycles later, like a fast bus.
 class IdealDrives final : public image::CycleDevice {
@@ -55,7 +56,8 @@ class TestLogic final : public cycle::Logic {
   bool acknowledge_s = true, acknowledge_t = true, acknowledge_h = true;
   bool estop_ok = true, power_on = true, feed_enable = true, read_in_enable = true, optional_stop = false;
   std::array<bool, kAxes> axis_feed_enable{true, true, true};
-  int feed_override = 0;
+  int feed_override = 0, spindle_override = 0;
+  bool spindle_enable = true;
   bool start_bit = false, stop_bit = false, reset_bit = false;
   int external_alarm = 0;
   std::vector<Strobe> strobes;
@@ -66,11 +68,15 @@ class TestLogic final : public cycle::Logic {
   std::array<int, 4> waited_{};
 };
 
+/// What the axes are: X, Y, Z; or X is programmed in diameter and the radius for G96; or Y is a rotary B.
+enum class RigKind { mill, lathe, rotary };
+
 /// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
 /// 0.
 class Rig {
  public:
-  explicit Rig(std::string_view program, std::string_view power_on = "G27", double handshake_timeout_s = 0.5);
+  explicit Rig(std::string_view program, std::string_view power_on = "G27", double handshake_timeout_s = 0.5,
+               RigKind kind = RigKind::mill);
 
   /// Loads another program, as between two runs.
   void load(std::string_view program);

@@ -22,6 +22,7 @@ const char* const kFolder = SERVOGATE_SOURCE_DIR "/tests/program";
 struct Outcome {
   std::vector<json> commands;
   std::string error;
+  std::string warnings;  ///< one a line
 };
 
 ProgramLoader loader_of(const CaseFile& c) {
@@ -40,6 +41,8 @@ Outcome run(const CaseFile& c) {
     return true;
   });
   if (error) outcome.error = error->str(text::Language::english);
+  for (const auto& warning : interpreter.warnings())
+    outcome.warnings += warning.str(text::Language::english) + "\n";
   return outcome;
 }
 
@@ -142,7 +145,10 @@ void judge(const CaseFile& c) {
     expect_all(wanted, motions, c.motions, c);
   }
   expect_contained(c, outcome.commands);
-  if (!c.findings.empty()) expect_findings(c);
+  if (!c.findings.empty())
+    expect_findings(c);
+  else
+    EXPECT_EQ("", outcome.warnings) << c.path;
 }
 
 class ProgramCase : public testing::TestWithParam<std::string> {};

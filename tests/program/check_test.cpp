@@ -86,6 +86,13 @@ TEST(CheckProgram, adds_up_feed_rapid_and_dwell_time) {
   EXPECT_NEAR(31.559, check("G0 X20\nG3 X0 Y20 Z-3 I J F500").path_mm, 1e-3);
   EXPECT_NEAR(15.0, check("G93 G1 X50 F4").feed_seconds, 1e-9);            // T-FED-01
   EXPECT_NEAR(60.0, check("G95 F0.2\nS500\nG1 X100").feed_seconds, 1e-9);  // T-FED-03: 100 mm/min
+  // T-SPN-01: 120 m/min at diameter 40 are 954.93 rpm; a face from 40 to 20 is turned at the mean of its
+  // radii.
+  machine.axes[0].diameter = true;
+  EXPECT_NEAR(60.0 * 10.0 / (0.1 * 954.93),
+              check("G95 G96 F0.1\nS120 M3\nG0 X40\nG1 Z10", machine).feed_seconds, 1e-3);
+  EXPECT_NEAR(60.0 * 10.0 / (0.1 * 954.93 * 40.0 / 30.0),
+              check("G95 G96 F0.1\nS120 M3\nG0 X40\nG1 X20", machine).feed_seconds, 1e-3);
   EXPECT_NEAR(3.5, check("TMR=1.5\nG4\n(DLY,2)").dwell_seconds, 1e-12);
 }
 
@@ -145,6 +152,29 @@ TEST(CheckProgram, finds_all_of_a_file_and_of_its_subprograms) {
   EXPECT_EQ((std::vector<std::string>{"P204", "P901", "P301", "P501", "P211"}), ids);
   EXPECT_EQ("SUB", report.findings.back().file);
   EXPECT_EQ(2, report.findings.back().line);
+}
+
+TEST(CheckProgram, names_ten_thousand_findings_of_a_file_and_says_that_there_are_more) {
+  std::string text;
+  for (int i = 0; i < 10'500; ++i) text += "G0 X1 ; why\n";
+  const CheckReport commented = check(text);
+  EXPECT_TRUE(commented.good()) << "warnings, however many, keep nothing from running";
+  ASSERT_EQ(10'001u, commented.findings.size());
+  EXPECT_EQ("p.nc:10001: warning: from here on 500 more warnings are not named [P907]",
+            commented.findings.back().str(text::Language::english));
+  text += "G0 !\n";
+  const CheckReport wrong = check(text);
+  ASSERT_EQ(10'002u, wrong.findings.size()) << "an error behind them is named";
+  EXPECT_EQ("p.nc:10501:4: error: the character ! has no meaning here [P201]",
+            wrong.findings.back().str(text::Language::english));
+}
+
+TEST(CheckProgram, checks_a_program_of_more_blocks_than_a_loop_may_run) {
+  std::string text;
+  for (long long i = 0; i < kDryRunBlocks + 10; ++i) text += "X1\n";
+  const CheckReport report = check(text);
+  EXPECT_TRUE(report.good());
+  EXPECT_EQ(kDryRunBlocks + 10, report.executed);
 }
 
 TEST(CheckProgram, lists_tools_once_with_their_calls) {

@@ -360,6 +360,13 @@ constexpr AlarmRow kTable[] = {
       "{0}: траектория требует {1}, предел {2}"},
      "Please report this with the record of the run: the path must never do that.",
      "Сообщите об этом разработчикам с записью прогона: траектория не должна так делать."},
+    {alarm::kProgramWarning,
+     Reaction::warn,
+     reset,
+     {"program.warning", "line {9}: the machine does something otherwise than the program asks",
+      "строка {9}: станок выполняет не то, что требует программа"},
+     "See the message with file, line and column; `servogate check` names them all before the program runs.",
+     "Смотрите сообщение с файлом, строкой и столбцом; `servogate check` называет все такие места заранее."},
     // 5000: PLC
     {alarm::kExternalAlarm,
      Reaction::stop_on_path,
@@ -462,7 +469,8 @@ std::string_view words(ResetCondition condition, text::Language language) {
 std::string alarms_page() {
   const std::vector<std::string> names(std::begin(kPlaceholders), std::end(kPlaceholders));
   std::string page =
-      "# Alarms\n\nMade from the alarm table (`kernel/cycle/alarm/alarm_table.cpp`); do not edit. The reaction is "
+      "# Alarms\n\nMade from the alarm table (`kernel/cycle/alarm/alarm_table.cpp`); do not edit. The "
+      "reaction is "
       "the default; a\n"
       "machine file may ask for a stronger one. While the machine reacts to a first fault, further faults "
       "are its\n"

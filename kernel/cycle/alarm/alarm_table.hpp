@@ -38,6 +38,7 @@ inline constexpr AlarmNumber kLeavesTravel = 4008;
 inline constexpr AlarmNumber kWriteRefused = 4009;
 inline constexpr AlarmNumber kAxisNotReady = 4010;
 inline constexpr AlarmNumber kSetpointLimit = 4011;
+inline constexpr AlarmNumber kProgramWarning = 4012;
 
 inline constexpr AlarmNumber kExternalAlarm = 5001;
 inline constexpr AlarmNumber kPlcBudget = 5002;

@@ -167,7 +167,7 @@ std::string render(const AlarmRecord& record, const AlarmNames& names, Language 
   const AlarmRow* row = find_alarm(record.number);
   if (row == nullptr) return "alarm " + std::to_string(record.number);
   std::string sentence = text::render(row->text, arguments(record, names, language), language);
-  const bool of_program = record.number == alarm::kProgramError;
+  const bool of_program = record.number == alarm::kProgramError || record.number == alarm::kProgramWarning;
   if (of_program && names.program_finding)
     if (const std::string found =
             names.program_finding(record.process, static_cast<int>(record.value), language);

@@ -22,7 +22,9 @@ bool is_fault(const AlarmRecord& r) noexcept { return r.reaction >= Reaction::st
 bool same(const AlarmRecord& a, const AlarmRecord& b) noexcept {
   return a.number == b.number && a.axis == b.axis && a.node == b.node && a.segment == b.segment &&
          a.process == b.process && a.object_index == b.object_index &&
-         a.object_subindex == b.object_subindex && (a.number != alarm::kExternalAlarm || a.value == b.value);
+         a.object_subindex == b.object_subindex &&
+         (a.number != alarm::kExternalAlarm || a.value == b.value) &&
+         (a.number != alarm::kProgramWarning || (a.line == b.line && a.limit == b.limit));
 }
 
 }  // namespace

@@ -114,7 +114,8 @@ double Execution::spindle_rpm(const Position& to) const {
   double rpm = state_.speed;
   if (state_.modes.spindle == Function::surface_speed) {
     if (surface_axis_ < 0) return 0.0;
-    const double from = state_.machine[at(surface_axis_)], end = to[at(surface_axis_)];
+    const double center = state_.frame.length(surface_axis_);
+    const double from = state_.machine[at(surface_axis_)] - center, end = to[at(surface_axis_)] - center;
     const double radius = from * end <= 0.0 ? 0.0 : std::min(std::abs(from), std::abs(end));
     if (radius == 0.0) return high;
     rpm = state_.speed * 1000.0 / (2.0 * std::numbers::pi * radius);

@@ -84,6 +84,7 @@ void Execution::emit_spindle(SpindleMode mode) {
   spindle.mode = mode;
   spindle.speed = state_.speed;
   spindle.surface_speed = state_.modes.spindle == Function::surface_speed;
+  if (spindle.surface_speed && surface_axis_ >= 0) spindle.center = state_.frame.length(surface_axis_);
   emit(spindle);
 }
 
@@ -138,10 +139,12 @@ void Execution::end_function(int code, const MRule* rule, int column) {
   }
 }
 
-/// M06: the lengths of the corrector that T named come into force; nothing moves by itself.
+/// M06: the lengths of the corrector that T named come into force; nothing moves by itself. A cutting speed
+/// goes by the new tool's radius.
 void Execution::change_tool() {
   const auto& correctors = state_.tables->correctors;
   const auto entry = correctors.find(state_.corrector);
+  const double center = surface_axis_ < 0 ? 0.0 : state_.frame.length(surface_axis_);
   for (int a = 0; a < axis_count(); ++a) {
     double length = 0.0;
     if (state_.corrector != 0 && entry != correctors.end()) {
@@ -151,6 +154,9 @@ void Execution::change_tool() {
     state_.frame.set_length(a, length);
   }
   frame_changed();
+  const bool by_radius = state_.modes.spindle == Function::surface_speed && state_.speed > 0.0;
+  if (by_radius && surface_axis_ >= 0 && state_.frame.length(surface_axis_) != center)
+    emit_spindle(state_.spindle);
 }
 
 double Execution::dwell_seconds() const {

@@ -12,6 +12,9 @@
 namespace servogate::program {
 namespace {
 
+/// Errors, and warnings, that are named of one file: a text of another kind gives one a line, of millions.
+constexpr long long kMostFindings = 10'000;
+
 /// Reads one file without executing it.
 class FileReader {
  public:
@@ -33,6 +36,16 @@ class FileReader {
       add(text::Severity::warning,
           {Fault::label_twice, 0, {std::string(twice.label), std::to_string(twice.first + 1)}});
     }
+    for (const Count& count : counts_)
+      if (count.found > kMostFindings)
+        out_.push_back({text::Severity::warning,
+                        source_.name(),
+                        count.line,
+                        0,
+                        &entry(Fault::findings_many),
+                        {std::to_string(count.found - kMostFindings),
+                         &count == &counts_[0] ? text::both("errors", "ошибок")
+                                               : text::both("warnings", "предупреждений")}});
     std::stable_sort(out_.begin() + static_cast<std::ptrdiff_t>(before), out_.end(),
                      [](const text::Finding& a, const text::Finding& b) { return a.line < b.line; });
   }
@@ -41,6 +54,9 @@ class FileReader {
 
  private:
   void add(text::Severity severity, const ProgramError& error) {
+    Count& count = counts_[severity == text::Severity::error ? 0 : 1];
+    if (++count.found == kMostFindings + 1) count.line = line_;
+    if (count.found > kMostFindings) return;
     out_.push_back({severity, source_.name(), line_, error.column, &entry(error.fault), error.arguments});
   }
 
@@ -130,6 +146,11 @@ class FileReader {
     if (pos != item.end) fail(Fault::expected, static_cast<int>(pos) + 1, {","});
   }
 
+  struct Count {
+    long long found = 0;
+    int line = 0;  ///< of the first that is not named
+  };
+
   const Execution& run_;
   const Source& source_;
   std::vector<text::Finding>& out_;
@@ -137,6 +158,7 @@ class FileReader {
   Block block_;
   Operands operands_;
   int line_ = 0;
+  Count counts_[2];  ///< errors, warnings
 };
 
 }  // namespace
