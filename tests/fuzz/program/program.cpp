@@ -18,6 +18,10 @@ MachineModel machine() {
   MachineModel model;
   for (const char* letter : {"X", "Y", "Z", "C"})
     model.axes.push_back({letter, letter[0] == 'C', false, false, -300.0, 300.0, 500.0});
+  model.axes[1].diameter = true;
+  model.spindle_min_rpm = 50.0;
+  model.spindle_max_rpm = 6000.0;
+  model.tool_places = 99;
   model.power_on = {"G94", "G97", "G90", "G71", "G27"};
   model.variables = {{"ERF", 0.01}, {"MCD", 2.0}};
   return model;
@@ -51,6 +55,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return true;
   };
   const auto error = run_dry(run, on_command, 20'000);
+  for (const auto& warning : run.warnings())
+    require(warning.severity == servogate::text::Severity::warning && warning.line > 0 &&
+            !warning.str().empty());
+  require(run.warnings().size() <= 200);
   if (error) require(error->entry != nullptr && !error->str().empty());
   return 0;
 }
