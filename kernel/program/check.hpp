@@ -35,7 +35,8 @@ struct CheckReport {
   std::vector<Extent> extents;          ///< index = axis of the machine
   std::vector<ToolUse> tools;           ///< in order of first use
   std::vector<std::string> files;
-  /// Path length over feed, no acceleration; feed per revolution with the spindle's speed at half of each way.
+  /// Path length over feed, no acceleration; feed per revolution with the spindle's speed at half of each
+  /// way.
   double feed_seconds = 0.0;
   double rapid_seconds = 0.0;  ///< by the axes' rapid velocities, no acceleration
   double dwell_seconds = 0.0;
