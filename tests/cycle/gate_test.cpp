@@ -387,7 +387,7 @@ TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others)
 
 TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
   const auto table = refusal_texts();
-  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::start_not_permitted) + 1);
+  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::override_range) + 1);
   for (std::size_t i = 1; i < table.size(); ++i) {
     image::Answer a;
     a.refusal = static_cast<std::uint16_t>(i);
@@ -410,6 +410,7 @@ TEST_F(Gate, answers_any_request_in_any_state_without_going_astray) {
     r.asker = static_cast<Asker>(random() % 8);
     r.axis = static_cast<std::int8_t>(random() % 6 - 2);
     r.process = static_cast<std::int8_t>(random() % 4 - 1);
+    r.mode = static_cast<std::int8_t>(random() % 256);
     r.packet = static_cast<std::uint8_t>(random() % 5), r.format = static_cast<std::uint8_t>(random() % 9);
     r.index = static_cast<std::uint32_t>(random()), r.length = static_cast<std::uint8_t>(random());
     r.value = std::ldexp(static_cast<double>(random() % 7) - 3.0, static_cast<int>(random() % 20) - 10);
@@ -419,7 +420,7 @@ TEST_F(Gate, answers_any_request_in_any_state_without_going_astray) {
     context_.homing_runs = random() % 2 != 0;
     image_.processes[0].state = static_cast<ProcessState>(random() % 6);
     const image::Answer a = decide(r, context_);
-    ASSERT_LE(a.refusal, static_cast<std::uint16_t>(Refusal::start_not_permitted));
+    ASSERT_LE(a.refusal, static_cast<std::uint16_t>(Refusal::override_range));
     const bool motion = r.kind == RequestKind::home || r.kind == RequestKind::jog_increment ||
                         r.kind == RequestKind::jog_continuous || r.kind == RequestKind::start;
     if (motion && context_.reaction >= Reaction::stop_on_path) {
