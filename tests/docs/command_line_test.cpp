@@ -56,7 +56,9 @@ std::string command_in(const std::string& code) {
   words >> program >> first >> second;
   if (program != "servogate" || first.empty() || first[0] == '-' || first.back() == ':') return "";
   if (std::isupper(static_cast<unsigned char>(first[0])) != 0) return "";  // COMMAND, a stand-in
-  return first == "plc" ? first + " " + second : first;
+  if (first == "chek") return "";  // shown as the mistake that it is
+  const std::string both = first + " " + second;
+  return known().count(both) != 0 ? both : first;
 }
 
 /// True when some piece of code begins with the command: `servogate run ...`, or `power on` of a table.

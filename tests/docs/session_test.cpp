@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the documents show of a terminal is what the terminal shows: every `$ servogate` of them that needs no
+// running control is run, and its lines are compared. `...` stands for any lines.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <vector>
+
+namespace servogate::docs {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Shown {
+  std::string command;
+  std::vector<std::string> lines;
+  std::string place;  ///< document:line
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
+std::string content(const fs::path& path) {
+  std::ifstream in(path);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// Commands behind `$ ` in fenced blocks, each with the lines up to the next one.
+std::vector<Shown> shown_in(const std::string& document) {
+  std::vector<Shown> out;
+  bool fenced = false, open = false;
+  int number = 0;
+  for (const std::string& line : lines_of(content(fs::path(SERVOGATE_SOURCE_DIR) / document))) {
+    ++number;
+    if (line.starts_with("```")) {
+      fenced = !fenced;
+      open = false;
+    } else if (fenced && line.starts_with("$ ")) {
+      out.push_back({line.substr(2), {}, document + ":" + std::to_string(number)});
+      open = true;
+    } else if (open) {
+      out.back().lines.push_back(line);
+    }
+  }
+  return out;
+}
+
+/// The block of code behind "`NAME`:" in a document.
+std::string listing(const std::string& document, const std::string& name) {
+  std::string out;
+  int state = 0;
+  for (const std::string& line : lines_of(content(fs::path(SERVOGATE_SOURCE_DIR) / document))) {
+    if (state == 0 && line == "`" + name + "`:") state = 1;
+    if (state == 2 && line.starts_with("```")) break;
+    if (state == 2) out += line + "\n";
+    if (state == 1 && line.starts_with("```")) state = 2;
+  }
+  return out;
+}
+
+bool matches(const std::vector<std::string>& shown, const std::vector<std::string>& real, std::size_t s = 0,
+             std::size_t r = 0) {
+  for (; s < shown.size(); ++s, ++r) {
+    if (shown[s] == "...") {
+      for (std::size_t rest = r; rest <= real.size(); ++rest)
+        if (matches(shown, real, s + 1, rest)) return true;
+      return false;
+    }
+    if (r >= real.size() || shown[s] != real[r]) return false;
+  }
+  return r == real.size();
+}
+
+/// A folder like the source tree's top, with what the documents let their reader make.
+class Terminal {
+ public:
+  Terminal() {
+    std::string pattern = (fs::temp_directory_path() / "servogate-docs-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    const fs::path tree = SERVOGATE_SOURCE_DIR;
+    fs::create_directory_symlink(tree / "examples", folder_ / "examples");
+    std::ofstream(folder_ / "blink.st") << listing("docs/command-line.md", "blink.st");
+    fs::create_directory(folder_ / "my");
+    fs::copy_file(tree / "examples/mill/mill.st", folder_ / "my/mill.st");
+    fs::copy_file(tree / "examples/mill/machine.toml", folder_ / "my/machine.toml");
+    const std::vector<std::string> machine = lines_of(content(tree / "examples/mill/machine.toml"));
+    std::ofstream wrong(folder_ / "my/wrong.toml"), no_brake(folder_ / "my/nobrake.toml");
+    bool brake = false;
+    for (std::size_t i = 0; i < machine.size(); ++i) {
+      const std::map<std::size_t, std::string> changed{
+          {55, "max_velocity = \"500 mm\""}, {87, "lead = \"5 mm/rev\""}, {140, "brakes = true"}};
+      const auto found = changed.find(i + 1);
+      wrong << (found != changed.end() ? found->second : machine[i]) << "\n";
+      if (machine[i].starts_with("[")) brake = machine[i] == "[axis.brake]";
+      if (!brake) no_brake << machine[i] << "\n";
+    }
+  }
+  ~Terminal() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  std::vector<std::string> run(const std::string& command) const {
+    const std::string line = "cd '" + folder_.string() + "' && LANG=C LC_ALL=C PATH=\"" +
+                             fs::path(SERVOGATE_PROGRAM).parent_path().string() + ":$PATH\" && { " + command +
+                             "; } 2>&1";
+    std::string out;
+    std::FILE* pipe = popen(line.c_str(), "r");
+    if (pipe == nullptr) return {};
+    char buffer[4096];
+    for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) out.append(buffer, n);
+    pclose(pipe);
+    return lines_of(out);
+  }
+
+ private:
+  fs::path folder_;
+};
+
+bool needs_no_control(const std::string& command) {
+  for (const char* begin : {"servogate run ", "servogate check ", "servogate canon ", "servogate replay ",
+                            "servogate plc ", "servogate chek "})
+    if (command.starts_with(begin)) return command.find("--realtime") == std::string::npos;
+  return false;
+}
+
+class Documents : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Documents, show_what_the_program_says) {
+  const Terminal terminal;
+  int run = 0;
+  for (const Shown& shown : shown_in(GetParam())) {
+    if (!needs_no_control(shown.command)) continue;
+    ++run;
+    const std::vector<std::string> real = terminal.run(shown.command);
+    std::string text;
+    for (const std::string& line : real) text += line + "\n";
+    EXPECT_TRUE(matches(shown.lines, real)) << shown.place << ": $ " << shown.command << "\n" << text;
+  }
+  EXPECT_GE(run, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Documents,
+                         ::testing::Values("docs/command-line.md", "docs/first-machine.md",
+                                           "docs/trace-and-report.md"),
+                         [](const auto& document) {
+                           std::string name = fs::path(document.param).stem().string();
+                           for (char& c : name) c = c == '-' ? '_' : c;
+                           return name;
+                         });
+
+TEST(Documents, a_line_that_is_not_there_would_be_noticed) {
+  EXPECT_TRUE(matches({"a", "...", "c"}, {"a", "b", "b", "c"}));
+  EXPECT_TRUE(matches({"a", "..."}, {"a"}));
+  EXPECT_FALSE(matches({"a", "...", "c"}, {"a", "b"}));
+  EXPECT_FALSE(matches({"a"}, {"a", "b"}));
+  EXPECT_FALSE(matches({}, {"a"}));
+  EXPECT_FALSE(listing("docs/command-line.md", "blink.st").empty());
+}
+
+}  // namespace
+}  // namespace servogate::docs
