@@ -5,8 +5,8 @@
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/client_request.hpp"
-#include "gateway/command/client_wait.hpp"
+#include "gateway/command/client/request.hpp"
+#include "gateway/command/client/wait.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/server/socket_client.hpp"
 #include "gateway/server/socket_path.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/client_wait.hpp"
+#include "gateway/command/client/wait.hpp"
 
 #include <poll.h>
 #include <unistd.h>

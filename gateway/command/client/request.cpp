@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/client_request.hpp"
+#include "gateway/command/client/request.hpp"
 
 #include <charconv>
 #include <cmath>
