@@ -103,8 +103,9 @@ class Interpreter {
   /// What is wrong with the machine's power-on modes and variables in this language.
   std::vector<SettingFault> setting_faults() const;
   /// What the program has asked for so far and the control does otherwise: S beyond the spindle's range, F
-  /// beyond the axes' speeds, a corrector that the tool table does not hold. Each place once, in the order of
-  /// execution, at most 20 places of a kind; only grows, but for mdi(), which begins anew.
+  /// beyond the axes' speeds, a corrector that the tool table does not hold, a feed per revolution without a
+  /// spindle that turns. Each place once, in the order of execution, at most 20 places of a kind; only grows,
+  /// but for mdi(), which begins anew.
   const std::vector<text::Finding>& warnings() const;
   /// The machine it was made for.
   const MachineModel& machine() const;

@@ -179,6 +179,11 @@ constexpr text::Entry kMessages[] = {
     {"P813", "{0} asks for {1}/min; in line {2} the axes reach {3}/min ({4}), the motion is as fast as that",
      "{0} требует {1}/мин; в строке {2} оси достигают {3}/мин ({4}), с этой скоростью и идёт движение"},
     {"P814", "further places of {0} are not named", "остальные места с {0} не названы"},
+    {"P815",
+     "the feed is per revolution (G95), and the program has not started the spindle: the motion waits until "
+     "it "
+     "turns",
+     "подача на оборот (G95), а программа не включила шпиндель: движение ждёт, пока он не завращается"},
     {"P901", "{0} is not executed in this version", "{0} в этой версии не выполняется"},
     {"P902", "the power-on mode {0} is not one of this language", "режим включения {0} не из этого языка"},
     {"P903", "there is no dialect {0}", "нет языка {0}"},

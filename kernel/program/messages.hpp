@@ -136,6 +136,7 @@ enum class Fault : std::uint8_t {
   corrector_missing,
   feed_above,
   more_places,
+  spindle_stands,
   not_executed,
   power_on_bad,
   dialect_unknown,

@@ -136,8 +136,18 @@ double Execution::path_speed(const Feed& feed, double length, const Position& to
   return 0.0;
 }
 
+/// A feed per revolution while nothing turns; told once.
+void Execution::check_turning(const Feed& feed) {
+  const bool turns = state_.spindle == SpindleMode::cw || state_.spindle == SpindleMode::ccw;
+  if (feed.unit != FeedUnit::mm_per_rev || turns || standing_told_) return;
+  standing_told_ = true;
+  Written place = written(static_cast<int>(block_.body) + 1);
+  warn(place, Fault::spindle_stands, {});
+}
+
 void Execution::check_line_feed(const BlockWords& words, const Feed& feed, const Position& to) {
   if (feed.unit == FeedUnit::mm_per_min && feed.value <= every_rapid_ * 60.0) return;
+  check_turning(feed);
   double square = 0.0;
   bool linear = false;
   for (int a = 0; a < axis_count(); ++a) {
@@ -155,6 +165,7 @@ void Execution::check_line_feed(const BlockWords& words, const Feed& feed, const
 
 void Execution::check_arc_feed(const BlockWords& words, const Arc& arc, double radius) {
   if (arc.feed.unit == FeedUnit::mm_per_min && arc.feed.value <= every_rapid_ * 60.0) return;
+  check_turning(arc.feed);
   const double length = helix_length(arc, radius);
   if (length <= 0.0) return;
   const double start =

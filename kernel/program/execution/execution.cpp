@@ -326,6 +326,7 @@ void Execution::mdi(std::string_view block) {
   before_mdi_ = state_;
   mdi_ = true;
   warnings_.clear();
+  standing_told_ = false;
   state_.feed_at.told = state_.speed_at.told = false;
   state_.flow = Flow{};
   const auto at = std::find(files_.begin() + 1, files_.end(), "MDI");

@@ -168,6 +168,7 @@ class Execution : public ValueSource {
   void warn(Written& place, Fault fault, std::vector<std::string> arguments);
   void check_tool(int column);
   void check_speed(const Word& word);
+  void check_turning(const Feed& feed);
   void check_line_feed(const BlockWords& words, const Feed& feed, const Position& to);
   void check_arc_feed(const BlockWords& words, const Arc& arc, double radius);
   double spindle_rpm(const Position& to) const;
@@ -202,6 +203,7 @@ class Execution : public ValueSource {
   bool mdi_ = false;
   PacketView view_;
   std::vector<text::Finding> warnings_;
+  bool standing_told_ = false;
   double every_rapid_ = 0.0;  ///< speed that every axis reaches, mm/s and degrees/s
   int surface_axis_ = -1;     ///< whose coordinate is the radius for G96
   std::vector<Command> queue_;
