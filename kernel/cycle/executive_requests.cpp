@@ -132,6 +132,7 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     }
     case RequestKind::stop:
       stop_manual();
+      if (parts_.processes.empty()) break;
       [[fallthrough]];
     case RequestKind::zero:
     case RequestKind::mode:

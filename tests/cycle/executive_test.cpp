@@ -66,11 +66,11 @@ class IdleProcess final : public ProcessInCycle {
 
 class Bench {
  public:
-  Bench() : io(order), logic(order) {
+  explicit Bench(bool with_process = true) : io(order), logic(order) {
     CycleParts parts;
     parts.devices = {&io};
     parts.logic = &logic;
-    parts.processes = {&process};
+    if (with_process) parts.processes = {&process};
     cycle = std::make_unique<Cycle>(std::move(parts));
   }
   image::Answer ask(Request r) {
@@ -347,6 +347,28 @@ TEST(Cycle, publishes_whole_cycles_to_readers_on_other_threads) {
   stop = true;
   reader.join();
   EXPECT_EQ(wrong.load(), 0);
+}
+
+TEST(Executive, without_a_process_carries_out_all_that_speaks_to_none) {
+  Bench bench(false);
+  const auto ask = [&](RequestKind kind) {
+    Request r;
+    r.id = 5;
+    r.kind = kind;
+    return static_cast<Refusal>(bench.ask(r).refusal);
+  };
+  EXPECT_EQ(bench.ask(Bench::place_request(RequestKind::set_place, kWord, 12.0, image::Asker::command_line))
+                .refusal,
+            0);
+  EXPECT_EQ(bench.cycle->image().packets.number(kWord), 12.0);
+  EXPECT_EQ(bench.ask(Bench::place_request(RequestKind::force, kInput, 1.0, image::Asker::scenario)).refusal,
+            0);
+  for (const RequestKind kind : {RequestKind::power, RequestKind::stop, RequestKind::quick_stop,
+                                 RequestKind::reset, RequestKind::acknowledge, RequestKind::jog_stop})
+    EXPECT_EQ(ask(kind), Refusal::none) << static_cast<int>(kind);
+  for (const RequestKind kind : {RequestKind::start, RequestKind::step, RequestKind::hold,
+                                 RequestKind::resume, RequestKind::mode, RequestKind::override_feed})
+    EXPECT_EQ(ask(kind), Refusal::no_such_process) << static_cast<int>(kind);
 }
 
 }  // namespace

@@ -34,6 +34,9 @@ constexpr std::uint32_t kPlaces =
 constexpr std::uint32_t kPanel = kStops | kJogs | kResets | kProgram | bit(RequestKind::power) |
                                  bit(RequestKind::home) | bit(RequestKind::zero);
 
+/// What speaks to a process. All else works on a machine that has none (a bench of drives) just as well.
+constexpr std::uint32_t kOfProcess = kProgram | bit(RequestKind::hold) | bit(RequestKind::zero);
+
 /// Who may ask for what at all. Stops are everybody's right.
 constexpr std::uint32_t may_ask(Asker asker) noexcept {
   switch (asker) {
@@ -81,7 +84,8 @@ class Decision {
     return (r_.axis >= 0 && r_.axis < std::ssize(c_.axes)) || refuse(Refusal::no_such_axis, -1, r_.axis);
   }
   bool process_known() noexcept {
-    return (r_.process >= 0 && r_.process < c_.image->process_count) ||
+    const bool needed = (kOfProcess & bit(r_.kind)) != 0 || r_.mode >= 0 || c_.image->process_count > 0;
+    return !needed || (r_.process >= 0 && r_.process < c_.image->process_count) ||
            refuse(Refusal::no_such_process, -1, r_.process);
   }
   bool no_alarm(Reaction from) noexcept {
