@@ -33,7 +33,12 @@ mock::PlantConfig plant_of(const machine::DeviceConfig* device, const machine::S
     if (axis != nullptr) {
       const double direction = axis->direction == machine::Direction::plus ? 1.0 : -1.0;
       p.load_torque_nm = extra->gravity_torque * direction;
-      p.start_rev = extra->start / units_per_revolution(*axis);
+      const double units = units_per_revolution(*axis);
+      p.start_rev = extra->start / units;
+      if (std::isfinite(extra->end_stop_min))
+        (units > 0.0 ? p.end_stop_min_rev : p.end_stop_max_rev) = extra->end_stop_min / units;
+      if (std::isfinite(extra->end_stop_max))
+        (units > 0.0 ? p.end_stop_max_rev : p.end_stop_min_rev) = extra->end_stop_max / units;
       p.zero_mark_counts = positive_modulo(std::llround(extra->zero_mark * direction), p.counts_per_rev);
     }
   }
