@@ -7,7 +7,9 @@ namespace servogate::gateway {
 
 namespace {
 
-bool is_of_program(image::AlarmNumber number) { return number == cycle::alarm::kProgramError; }
+bool is_of_program(image::AlarmNumber number) {
+  return number == cycle::alarm::kProgramError || number == cycle::alarm::kProgramWarning;
+}
 
 report::AlarmEntry entry_of(Control& control, const image::AlarmRecord& record,
                             const cycle::AlarmNames& names, text::Language language) {

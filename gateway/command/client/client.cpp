@@ -32,14 +32,59 @@ const text::Entry kOn{"client.on", "the drives are on, the brakes open",
                       "приводы включены, тормоза отпущены"};
 const text::Entry kOff{"client.off", "the drives are off", "приводы выключены"};
 const text::Entry kNoAlarms{"client.no-alarms", "no alarm is active", "активных аварий нет"};
+const text::Entry kProgram{"client.program", "program {0}: {1} blocks", "программа {0}: кадров {1}"};
+const text::Entry kProgramLine{"client.program-line", "program {0}, line {1} of {2}, {3} blocks done",
+                               "программа {0}, строка {1} из {2}, выполнено кадров: {3}"};
+const text::Entry kSubprogramLine{"client.subprogram-line",
+                                  "program {0}, line {1} of {2} (subprogram), {3} blocks done",
+                                  "программа {0}, строка {1} в {2} (подпрограмма), выполнено кадров: {3}"};
+const text::Entry kMessage{"client.message", "message: {0}", "сообщение: {0}"};
+const text::Entry kWaits{"client.waits", "{0} ({1} s so far)", "{0} (уже {1} с)"};
+const text::Entry kProcess{"client.process", "process {0}: ", "процесс {0}: "};
 
 std::string of(const json& object, const char* key) { return object.value(key, std::string()); }
+
+std::string say(const text::Entry& entry, const std::vector<std::string>& arguments) {
+  return text::render(entry, arguments, text::user_language());
+}
+
+void print_program(const json& s) {
+  const std::string program = of(s, "program"), file = of(s, "file");
+  if (program.empty()) return;
+  const int line = s.value("line", 0);
+  const std::string blocks = std::to_string(s.value("blocks", 0));
+  const std::string done = std::to_string(s.value("blocks_done", std::int64_t{0}));
+  if (line == 0)
+    print_line(say(kProgram, {program, blocks}));
+  else if (!file.empty() && file != program)
+    print_line(say(kSubprogramLine, {program, std::to_string(line), file, done}));
+  else
+    print_line(say(kProgramLine, {program, std::to_string(line), std::to_string(s.value("lines", 0)), done}));
+}
+
+void print_wait(const json& wait, const std::string& before) {
+  if (!wait.is_object()) return;
+  print_line(before + say(kWaits, {of(wait, "text"), text::number(wait.value("for_s", 0.0), 1)}));
+  if (const std::string remedy = of(wait, "remedy"); !remedy.empty()) print_line("    " + remedy);
+}
+
+/// What the programs have said and what they wait for.
+void print_processes(const json& s) {
+  const json processes = s.value("processes", json::array());
+  for (const json& p : processes) {
+    const std::string before =
+        processes.size() > 1 ? say(kProcess, {std::to_string(p.value("process", 0))}) : std::string();
+    if (const std::string message = of(p, "message"); !message.empty())
+      print_line(before + say(kMessage, {message}));
+    print_wait(p.value("wait", json()), before);
+  }
+}
 
 void print_status(const json& s) {
   print_formatted("%s: %s, %s%s, %.3f s\n", of(s, "machine").c_str(), of(s, "mode").c_str(),
                   of(s, "state").c_str(), s.value("homing", false) ? ", homing" : "", s.value("time_s", 0.0));
-  if (const std::string program = of(s, "program"); !program.empty())
-    print_formatted("program %s, line %d of %d\n", program.c_str(), s.value("line", 0), s.value("blocks", 0));
+  print_program(s);
+  print_processes(s);
   print_formatted("feed %.0f mm/min, override %.0f %%, tool %d\n", s.value("feed_mm_min", 0.0),
                   s.value("override_pct", 0.0), s.value("tool", 0));
   for (const json& a : s.value("axes", json::array()))
@@ -53,10 +98,13 @@ void print_status(const json& s) {
                     sp.value("command_rpm", 0.0), of(sp, "drive").c_str());
 }
 
+/// Each first fault with its remedy, what followed from it indented below it.
 void print_alarms(const json& alarms) {
-  for (const json& a : alarms)
-    print_formatted("%s %d %s: %s\n    %s\n", a.value("first", false) ? "*" : " ", a.value("number", 0),
-                    of(a, "id").c_str(), of(a, "text").c_str(), of(a, "remedy").c_str());
+  for (const json& a : alarms) {
+    const bool first = a.value("first", false);
+    print_formatted("%s%d %s: %s\n%s%s\n", first ? "* " : "      ", a.value("number", 0), of(a, "id").c_str(),
+                    of(a, "text").c_str(), first ? "    " : "        ", of(a, "remedy").c_str());
+  }
 }
 
 int find_socket(const ClientOptions& options, std::string& path) {
@@ -119,15 +167,15 @@ int client(const ClientOptions& options) {
   } else if (!reply.value("ok", false)) {
     std::fprintf(stderr, "servogate: %s [%s]\n", of(reply, "text").c_str(), of(reply, "code").c_str());
   } else if (power && waits && !options.wait) {
-    if (code == kDone)
-      print_line(text::render(request["value"] == 0 ? kOff : kOn, {}, text::user_language()));
+    if (code == kDone) print_line(say(request["value"] == 0 ? kOff : kOn, {}));
     print_alarms(reply["alarms"]);
   } else if (options.command == "status" || (waits && !continuous)) {
     print_status(reply);
     print_alarms(reply["alarms"]);
   } else if (options.command == "alarms") {
-    if (reply["alarms"].empty()) print_line(text::render(kNoAlarms, {}, text::user_language()));
+    if (reply["alarms"].empty()) print_line(say(kNoAlarms, {}));
     print_alarms(reply["alarms"]);
+    for (const json& wait : reply.value("waits", json::array())) print_wait(wait, "");
   } else {
     print_line(of(reply, "text"));
   }

@@ -20,7 +20,7 @@ function cards() {
   const metres = v => v >= 1000 ? num(v / 1000, 4) + " " + unit("m") : num(v, 4) + " " + unit("mm");
   const out = [
     card(tr("time"), clockText(R.time_s), tr("cyclesOf", num(R.cycles, 9), num(RUN.period * 1000) + " " + unit("ms"))),
-    card(tr("blocks"), num(R.blocks, 9), D.program.name),
+    card(tr("blocks"), num(R.blocks, 9), R.finished || !R.blocks_expected ? D.program.name : tr("ofAbout", num(R.blocks_expected, 9))),
     card(tr("alarms"), String(R.alarms.length), first ? first.text : tr("noAlarms"), R.alarms.length ? "bad" : "good"),
     card(tr("pathLength"), metres(a.feed + a.rapid), tr("feedPath") + " " + metres(a.feed) + ", " + tr("rapidPath") + " " + metres(a.rapid) + (a.homing ? ", " + tr("homingPath") + " " + metres(a.homing) : "")),
     card(tr("cycleTime"), num(R.cycle_us.p99, 3) + " " + unit("µs"), "p50 " + num(R.cycle_us.p50, 3) + " · " + tr("max") + " " + num(R.cycle_us.max, 3)),
@@ -129,6 +129,7 @@ function texts() {
   $("extents").textContent = tr("extents") + ": " + VIEW.map((letter, k) => letter && letter + " " + num(BOX.low[k], 6) + " … " + num(BOX.high[k], 6) + " " + unitOf(letter)).filter(Boolean).join(" · ");
   const steady = steadySignals(), names = (key, list) => list.length ? tr(key) + " — " + list.join(", ") : "";
   $("steady").textContent = steady.count && !S.constant ? tr("steady") + ": " + [names("on", steady.on), names("off", steady.off)].filter(Boolean).join("; ") : "";
+  $("wait").textContent = R.wait ? [R.wait.text, R.wait.remedy].filter(Boolean).join(". ") : "";
   $("dropped").textContent = R.trace_dropped ? tr("dropped", num(R.trace_dropped, 9)) : "";
   cards(); limitBars(); alarms(); timing(); provenance(); speedKey(); axisSwitches(); readout();
 }

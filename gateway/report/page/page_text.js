@@ -7,6 +7,7 @@ const TEXTS = {
   noAlarms: ["No alarms.", "Аварий нет."],
   time: ["Machine time", "Машинное время"],
   blocks: ["Blocks", "Кадры"],
+  ofAbout: ["of about {0}", "примерно из {0}"],
   cyclesOf: ["{0} cycles of {1}", "циклов: {0} по {1}"],
   extents: ["Extents", "Габариты"],
   timing: ["Timing and buses", "Время цикла и шины"],
