@@ -26,7 +26,7 @@ struct RunOptions {
 };
 
 struct UpOptions {
-  std::string machine, state, socket;
+  std::string machine, state, socket, record;
   ClockKind clock = ClockKind::unset;
   double speed = 1.0;
 };

@@ -175,6 +175,7 @@ class Commands {
         ->check(number_within({0.001, 100000.0, text::both("times real time", "× реального времени")}));
     app.add_option("--state", o.state, "State directory instead of the machine file's");
     app.add_option("--socket", o.socket, "Control socket instead of the default");
+    app.add_option("--record", o.record, "Records inputs, requests and programs for `servogate replay`");
   }
 
   void client(const ClientCommand& c) {

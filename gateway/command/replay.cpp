@@ -6,7 +6,6 @@
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
-#include "gateway/compose/program/program_file.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/session.hpp"
@@ -37,6 +36,20 @@ long first_difference(const std::string& a, const std::string& b) {
     if (ga != gb || (ga && la != lb) || fa.eof() != fb.eof()) return line;
     if (!ga) return 0;
   }
+}
+
+/// True when the cycle had seen more changes of the process than have been made so far.
+bool due(Control& control, const ProgramChange& change, const cycle::CycleInputs& inputs) {
+  constexpr std::size_t kEach = cycle::ProcessInCycle::kCrossingsEach;
+  const std::size_t last = static_cast<std::size_t>(change.process) * kEach + kEach - 1;
+  return control.process(change.process).changes() < inputs.visible[last];
+}
+
+/// What was loaded was loaded when nothing of the program before was left to be read.
+bool carry_out(Control& control, const ProgramChange& change) {
+  while (control.process(change.process).feeder().reads() && control.read_ahead()) {
+  }
+  return control.change(change);
 }
 
 /// Reads ahead until everything is published that the cycle saw at this point of the record, or nothing more
@@ -73,29 +86,18 @@ int replay(const ReplayOptions& options) {
   const RecordHeader& header = record.header();
   const machine::LoadResult loaded = machine::load(header.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
-  if (const int code =
-          check_outputs({{"--trace", options.trace}}, "", loaded,
-                        {{text::both("the record", "запись"), options.record},
-                         {"--against", options.against},
-                         {text::both("the part program", "управляющую программу"), header.program}});
+  if (const int code = check_outputs(
+          {{"--trace", options.trace}}, "", loaded,
+          {{text::both("the record", "запись"), options.record}, {"--against", options.against}});
       code != kDone)
     return code;
   if (report::identify(header.machine).sha256 != header.machine_sha256) complain(kChanged, {header.machine});
-  ProgramFile program;
-  if (!header.program.empty()) {
-    if (const int code = open_program(loaded.machine, header.program, header.dialect, program); code != kDone)
-      return code;
-    if (report::identify(header.program).sha256 != header.program_sha256)
-      complain(kChanged, {header.program});
-  }
   std::vector<text::Finding> findings;
   const std::unique_ptr<Control> control = Control::compose(loaded, findings, &record);
   if (print_findings(findings) > 0 || control == nullptr) return kWrongUse;
-  if (!header.program.empty())
-    control->process(0).load([&](const program::Position& start) {
-      return program::Interpreter(program.dialect, program.model, header.state.tables, header.program,
-                                  program.text, program.loader, start);
-    });
+  control->restore_references(header.state);
+  const std::vector<ProgramChange> changes = record.changes(loaded.machine);
+  std::size_t changed = 0;
   std::string trace = options.trace;
   if (trace.empty() && !options.against.empty()) trace = files::nameless_file(options.against, error);
   if (!error.empty()) {
@@ -104,6 +106,8 @@ int replay(const ReplayOptions& options) {
   }
   Session session(*control, {trace, {}, {}}, false);
   while (const cycle::CycleInputs* next = record.next()) {
+    while (changed < changes.size() && due(*control, changes[changed], *next))
+      if (!carry_out(*control, changes[changed++])) break;
     catch_up(*control, *next);
     session.wait_for_room();
     if (!control->cycle().step()) break;

@@ -35,12 +35,11 @@ const text::Entry kAlarmLine{"run.alarm", "alarm {0}: {1}", "авария {0}: {
 const text::Entry kConsequence{"run.consequence", "  from it alarm {0}: {1}", "  из-за неё авария {0}: {1}"};
 const text::Entry kMessage{"run.message", "message of the program: {0}", "сообщение программы: {0}"};
 const text::Entry kWaits{"run.waits", "{0} ({1} s so far)", "{0} (уже {1} с)"};
-const text::Entry kGaveUp{
-    "run.gave-up",
-    "{0}. For {1} s of machine time nothing has moved and nobody has done it: the run was "
-    "stopped (--patience says how long to wait)",
-    "{0}. За {1} с машинного времени ничего не сдвинулось и никто этого не сделал: прогон "
-    "остановлен (сколько ждать, задаёт --patience)"};
+const text::Entry kGaveUp{"run.gave-up",
+                          "{0}. Nothing has moved for {1} s of machine time: the run was stopped (--patience "
+                          "sets how long it waits)",
+                          "{0}. За {1} с машинного времени ничего не сдвинулось: прогон остановлен (сколько "
+                          "ждать, задаёт --patience)"};
 const text::Entry kDone1{"run.done", "done: {0} blocks in {1} s of machine time",
                          "готово: кадров {0}, машинное время {1} с"};
 const text::Entry kProgress{"run.progress", "{0} of about {1} blocks, {2} s, about {3} s left",
@@ -88,7 +87,7 @@ class Run {
 
   const RunOptions& options_;
   const machine::LoadResult& loaded_;
-  ProgramFile program_;
+  std::shared_ptr<ProgramFile> program_ = std::make_shared<ProgramFile>();
   machine::MachineState state_;
   std::unique_ptr<Control> control_;
   std::unique_ptr<RecordWriter> record_;
@@ -112,13 +111,12 @@ int Run::prepare() {
     state_ = kept.state;
   }
   if (!options_.program.empty()) {
-    if (const int code = open_program(m, options_.program, options_.dialect, program_); code != kDone)
+    if (const int code = open_program(m, options_.program, options_.dialect, *program_); code != kDone)
       return code;
+    const ProgramFile& p = *program_;
     const program::CheckReport check =
-        program::check_program(program_.dialect, program_.model, state_.tables, options_.program,
-                               program_.text, program_.loader, {});
-    const program::Interpreter reader(program_.dialect, program_.model, state_.tables, options_.program,
-                                      program_.text, program_.loader, {});
+        program::check_program(p.dialect, p.model, state_.tables, p.path, p.text, p.loader, {});
+    const program::Interpreter reader(p.dialect, p.model, state_.tables, p.path, p.text, p.loader, {});
     const std::vector<text::Finding> read = reader.findings();
     if (print_findings(read) > 0) return kAlarm;
     // An error of the dry run is none of the real one, where signals and positions differ.
@@ -132,11 +130,10 @@ int Run::prepare() {
   const int errors = print_findings(findings);
   if (control_ == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
+  control_->restore_references(state_);
+  if (!options_.record.empty()) record_ = begin_record(options_.record, options_.machine, state_, *control_);
   if (!options_.program.empty())
-    control_->process(0).load([this](const program::Position& start) {
-      return program::Interpreter(program_.dialect, program_.model, state_.tables, options_.program,
-                                  program_.text, program_.loader, start);
-    });
+    control_->change({ProgramChange::Kind::program, 0, program_, state_.tables, {}});
   return kDone;
 }
 
@@ -159,20 +156,6 @@ OperatorScript::Wishes Run::wishes() const {
 }
 
 int Run::execute(const std::vector<std::string>& command_line) {
-  if (!options_.record.empty()) {
-    RecordHeader header;
-    header.machine = std::filesystem::absolute(options_.machine).string();
-    header.machine_sha256 = report::identify(options_.machine).sha256;
-    if (!options_.program.empty()) {
-      header.program = std::filesystem::absolute(options_.program).string();
-      header.program_sha256 = report::identify(options_.program).sha256;
-    }
-    header.dialect = program_.dialect;
-    header.state = state_;
-    header.period_ns = loaded_.machine.cycle_ns();
-    record_ = std::make_unique<RecordWriter>(options_.record, header);
-    control_->cycle().attach(record_.get());
-  }
   Session session(*control_, {options_.trace, options_.report, options_.html}, realtime());
   OperatorScript script(wishes(), [this](const image::Request& r) { return control_->cycle().post(r); });
   std::signal(SIGINT, on_interrupt);
@@ -294,7 +277,7 @@ int Run::finish(const OperatorScript& script, Session& session,
   if (!options_.program.empty()) p.program = report::identify(options_.program);
   for (const std::string& source : loaded_.machine.plc.sources)
     p.plc.push_back(report::identify(loaded_.machine.resolve(source)));
-  p.dialect = program_.dialect;
+  p.dialect = program_->dialect;
   p.clock = options_.clock == ClockKind::virtual_time ? "virtual"
             : options_.clock == ClockKind::realtime   ? "realtime"
                                                       : "realtime=best-effort";
@@ -305,7 +288,7 @@ int Run::finish(const OperatorScript& script, Session& session,
     report::HtmlOptions html;
     html.program_name = std::filesystem::path(options_.program).filename().string();
     html.title = loaded_.machine.name + (html.program_name.empty() ? "" : " · " + html.program_name);
-    html.program_text = program_.text;
+    html.program_text = program_->text;
     html.language = text::user_language();
     written(options_.html,
             report::write_file(options_.html, report::to_html(report, *session.picture(), html)));

@@ -10,6 +10,7 @@
 #include "gateway/command/outputs.hpp"
 #include "gateway/machine/state.hpp"
 #include "gateway/run/realtime_loop.hpp"
+#include "gateway/run/record_file.hpp"
 #include "gateway/server/socket_path.hpp"
 #include "gateway/server/socket_server.hpp"
 
@@ -29,8 +30,8 @@ void on_end(int) { ended = true; }
 /// Virtual time paced against the wall clock on a thread of its own.
 class VirtualLoop {
  public:
-  VirtualLoop(Control& control, double speed)
-      : control_(control), speed_(speed), thread_([this] { run(); }) {}
+  VirtualLoop(Control& control, double speed, RecordWriter* record)
+      : control_(control), speed_(speed), record_(record), thread_([this] { run(); }) {}
   ~VirtualLoop() {
     stop_ = true;
     thread_.join();
@@ -50,11 +51,13 @@ class VirtualLoop {
       // What was lost (a slow computer, a laptop that slept) is not made up for in a burst.
       if (now > due + std::chrono::milliseconds(100)) begin += now - due;
       if (control_.cycle().count() % 64 == 0) std::this_thread::yield();
+      if (record_ != nullptr) record_->wait_for_room();
       control_.step();
     }
   }
   Control& control_;
   double speed_;
+  RecordWriter* record_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
@@ -107,7 +110,8 @@ int up(const UpOptions& options) {
   const std::string state_path = !options.state.empty() ? options.state
                                  : is_virtual           ? std::string()
                                                         : m.resolve(m.run.state);
-  if (const int code = check_outputs({}, state_path, loaded, {}); code != kDone) return code;
+  if (const int code = check_outputs({{"--record", options.record}}, state_path, loaded, {}); code != kDone)
+    return code;
   machine::MachineState state;
   if (!state_path.empty()) {
     machine::StateDirectory::Loaded kept = machine::StateDirectory(state_path).load();
@@ -119,11 +123,9 @@ int up(const UpOptions& options) {
   const int errors = print_findings(findings);
   if (control == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
-  for (std::size_t a = 0; a < m.axes.size(); ++a)
-    if (const auto kept = state.homing.find(m.axes[a].letter);
-        kept != state.homing.end() && kept->second.valid &&
-        m.axes[a].home.method == machine::HomingMethod::absolute)
-      control->cycle().set_reference(static_cast<int>(a), kept->second.offset_counts);
+  control->restore_references(state);
+  const std::unique_ptr<RecordWriter> record =
+      options.record.empty() ? nullptr : begin_record(options.record, options.machine, state, *control);
   control->cycle().publish_every(is_virtual ? 1 : 5);
   control->world().close_operator_points();
 
@@ -143,7 +145,7 @@ int up(const UpOptions& options) {
   std::unique_ptr<VirtualLoop> virtual_loop;
   std::unique_ptr<RealtimeLoop> realtime_loop;
   if (is_virtual) {
-    virtual_loop = std::make_unique<VirtualLoop>(*control, options.speed);
+    virtual_loop = std::make_unique<VirtualLoop>(*control, options.speed, record.get());
   } else {
     cycle::RealtimeSettings settings{m.realtime.priority, m.realtime.cpu,
                                      clock == ClockKind::realtime_best_effort};
@@ -164,9 +166,10 @@ int up(const UpOptions& options) {
   const std::string problem = resident.save();
   virtual_loop.reset();
   if (realtime_loop != nullptr) realtime_loop->stop();
-  if (problem.empty()) return kDone;
-  complain(kStateLost, {problem});
-  return kInfrastructure;
+  const std::string unrecorded = record != nullptr ? record->close() : std::string();
+  if (!problem.empty()) complain(kStateLost, {problem});
+  if (!unrecorded.empty()) complain(kCannotWrite, {options.record, unrecorded});
+  return problem.empty() && unrecorded.empty() ? kDone : kInfrastructure;
 }
 
 }  // namespace servogate::gateway::command

@@ -187,6 +187,40 @@ bool Control::read_ahead() {
   return more;
 }
 
+bool Control::change(const ProgramChange& change) {
+  const std::scoped_lock lock(reading_);
+  channel::Process& p = process(change.process);
+  const bool loads =
+      change.kind == ProgramChange::Kind::program || change.kind == ProgramChange::Kind::tables;
+  if (loads && p.feeder().reads()) return false;
+  // What a record keeps of it lies before what its subprograms are.
+  if (change_tap_ != nullptr) change_tap_->take(change);
+  switch (change.kind) {
+    case ProgramChange::Kind::program:
+      p.load(interpreter_factory(change, change_tap_), change.tables);
+      break;
+    case ProgramChange::Kind::tables:
+      p.renew(interpreter_factory(change, change_tap_), change.tables);
+      break;
+    case ProgramChange::Kind::block:
+      p.set_manual_block(change.block);
+      break;
+    case ProgramChange::Kind::modes:
+      p.forget_manual();
+      break;
+  }
+  return true;
+}
+
+void Control::restore_references(const machine::MachineState& state) {
+  const std::vector<machine::AxisConfig>& axes = loaded_.machine.axes;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (const auto kept = state.homing.find(axes[a].letter);
+        kept != state.homing.end() && kept->second.valid &&
+        axes[a].home.method == machine::HomingMethod::absolute)
+      cycle_->set_reference(static_cast<int>(a), kept->second.offset_counts);
+}
+
 bool Control::step() {
   advance_world();
   read_ahead();

@@ -9,7 +9,9 @@
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/mock_world.hpp"
 #include "gateway/compose/plc_logic.hpp"
+#include "gateway/compose/program/program_change.hpp"
 #include "gateway/machine/load.hpp"
+#include "gateway/machine/state.hpp"
 #include "kernel/channel/process.hpp"
 #include "kernel/cycle/clocks.hpp"
 #include "kernel/cycle/executive.hpp"
@@ -38,8 +40,15 @@ class Control {
   /// False: nothing more can be read before the cycle goes on.
   bool read_ahead();
 
-  /// Held while processes read ahead; whoever changes a program from another thread holds it too.
+  /// Held while processes read ahead; whoever looks at what they read from another thread holds it too.
   std::mutex& reading() noexcept { return reading_; }
+  /// Changes what a process will run, and shows it to the tap; any thread outside the cycle. False, and
+  /// nothing changed: its program is being read just now.
+  bool change(const ProgramChange& change);
+  /// For records; before the first change.
+  void attach(ProgramChangeTap* tap) noexcept { change_tap_ = tap; }
+  /// Takes over the references of absolute encoders that were kept; before the first cycle.
+  void restore_references(const machine::MachineState& state);
 
   cycle::Cycle& cycle() noexcept { return *cycle_; }
   const machine::MachineConfig& machine() const noexcept { return loaded_.machine; }
@@ -69,6 +78,7 @@ class Control {
   std::unique_ptr<PlcLogic> logic_;
   std::vector<std::unique_ptr<channel::Process>> processes_;
   std::mutex reading_;
+  ProgramChangeTap* change_tap_ = nullptr;
   cycle::MonotonicClock stopwatch_;
   std::unique_ptr<cycle::Cycle> cycle_;
 };

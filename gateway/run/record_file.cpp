@@ -3,15 +3,19 @@
 
 #include <readerwriterqueue/readerwriterqueue.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "gateway/compose/program/program_model.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/state_text.hpp"
+#include "gateway/report/report.hpp"
 
 namespace servogate::gateway {
 
@@ -21,6 +25,11 @@ constexpr int kRecordSchema = 3;
 constexpr std::size_t kQueued = 2048;
 constexpr std::size_t kChunk = 1 << 16;
 constexpr std::size_t kChunkHead = 8;  // length, checksum
+// First byte of a chunk: what it holds.
+constexpr char kCycleChunk = 'c', kChangeChunk = 'p', kSubprogramChunk = 's';
+/// Index = ProgramChange::Kind.
+constexpr std::string_view kChangeNames[] = {"program", "tables", "block", "modes"};
+constexpr machine::StatePart kTableParts[] = {machine::StatePart::origins, machine::StatePart::tools};
 constexpr machine::StatePart kParts[] = {machine::StatePart::origins, machine::StatePart::tools,
                                          machine::StatePart::homing,  machine::StatePart::counters,
                                          machine::StatePart::gains,   machine::StatePart::retained};
@@ -83,9 +92,6 @@ RecordWriter::RecordWriter(const std::string& path, const RecordHeader& header)
                       {"layout", sizeof(cycle::CycleInputs)},
                       {"machine", header.machine},
                       {"machine_sha256", header.machine_sha256},
-                      {"program", header.program},
-                      {"program_sha256", header.program_sha256},
-                      {"dialect", header.dialect},
                       {"period_ns", header.period_ns}};
   for (const machine::StatePart part : kParts)
     head["state"][std::string(machine::part_name(part))] = machine::write_part(header.state, part);
@@ -97,6 +103,19 @@ RecordWriter::RecordWriter(const std::string& path, const RecordHeader& header)
 
 RecordWriter::~RecordWriter() { close(); }
 
+std::unique_ptr<RecordWriter> begin_record(const std::string& path, const std::string& machine_file,
+                                           const machine::MachineState& state, Control& control) {
+  RecordHeader header;
+  header.machine = std::filesystem::absolute(machine_file).string();
+  header.machine_sha256 = report::identify(machine_file).sha256;
+  header.state = state;
+  header.period_ns = control.cycle().period_ns();
+  auto record = std::make_unique<RecordWriter>(path, header);
+  control.cycle().attach(static_cast<cycle::InputTap*>(record.get()));
+  control.attach(record.get());
+  return record;
+}
+
 void RecordWriter::take(const cycle::CycleInputs& inputs) noexcept {
   if (!queue_->cycles.try_enqueue(inputs)) lost_.fetch_add(1, std::memory_order_relaxed);
 }
@@ -105,13 +124,50 @@ void RecordWriter::wait_for_room() {
   while (thread_.joinable() && queue_->cycles.size_approx() >= kQueued - 1) std::this_thread::yield();
 }
 
-void RecordWriter::write_chunk(std::vector<std::uint8_t>& bytes) {
-  const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  queue_->checksum = chained(queue_->checksum, content);
+void RecordWriter::take(const ProgramChange& change) {
+  const bool loads = change.file != nullptr;
+  machine::MachineState state;
+  state.tables = change.tables;
+  nlohmann::json head{{"kind", kChangeNames[static_cast<std::size_t>(change.kind)]},
+                      {"process", change.process}};
+  if (!change.block.empty()) head["block"] = change.block;
+  if (loads) {
+    head["path"] = change.file->path;
+    head["dialect"] = change.file->dialect;
+    for (const machine::StatePart part : kTableParts)
+      head["tables"][std::string(machine::part_name(part))] = machine::write_part(state, part);
+  }
+  const std::scoped_lock lock(loaded_mutex_);
+  const bool new_text = loads && change.file != file_;
+  head["text"] = new_text;
+  std::string chunk =
+      kChangeChunk + head.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (new_text) chunk += change.file->text;
+  if (loads) file_ = change.file;
+  loaded_.push_back(std::move(chunk));
+}
+
+void RecordWriter::take_subprogram(std::string_view name, std::string_view text) {
+  const std::scoped_lock lock(loaded_mutex_);
+  loaded_.push_back(kSubprogramChunk + std::string(name) + "\n" + std::string(text));
+}
+
+/// Writes what was loaded since the last call, behind the cycles encoded so far.
+void RecordWriter::write_loaded(std::string& cycles) {
+  const std::scoped_lock lock(loaded_mutex_);
+  if (loaded_.empty()) return;
+  if (cycles.size() > 1) write_chunk(cycles);
+  cycles = kCycleChunk;
+  for (std::string& chunk : loaded_) write_chunk(chunk);
+  loaded_.clear();
+}
+
+void RecordWriter::write_chunk(std::string& bytes) {
+  queue_->checksum = chained(queue_->checksum, bytes);
   std::string chunk;
   put_word(chunk, static_cast<std::uint32_t>(bytes.size()));
   put_word(chunk, queue_->checksum);
-  chunk.append(content);
+  chunk.append(bytes);
   if (std::fwrite(chunk.data(), 1, chunk.size(), queue_->file) != chunk.size()) error_ = std::strerror(errno);
   bytes.clear();
 }
@@ -119,17 +175,26 @@ void RecordWriter::write_chunk(std::vector<std::uint8_t>& bytes) {
 void RecordWriter::drain() {
   cycle::InputEncoder encoder;
   std::vector<std::uint8_t> bytes;
+  std::string chunk(1, kCycleChunk);
   cycle::CycleInputs inputs;
   for (bool last = false; !last;) {
     last = stop_.load();
     while (queue_->cycles.try_dequeue(inputs)) {
+      // A change is queued before any cycle can see it.
+      write_loaded(chunk);
+      bytes.clear();
       encoder.append(inputs, bytes);
-      if (bytes.size() >= kChunk) write_chunk(bytes);
+      chunk.append(bytes.begin(), bytes.end());
+      if (chunk.size() < kChunk) continue;
+      write_chunk(chunk);
+      chunk = kCycleChunk;
     }
     if (!last) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  if (!bytes.empty()) write_chunk(bytes);
-  write_chunk(bytes);
+  write_loaded(chunk);
+  if (chunk.size() > 1) write_chunk(chunk);
+  std::string end;
+  write_chunk(end);
 }
 
 std::string RecordWriter::close() {
@@ -161,9 +226,6 @@ bool RecordReader::read_head(const std::string& line, std::string& error) {
     }
     header_.machine = json.value("machine", "");
     header_.machine_sha256 = json.value("machine_sha256", "");
-    header_.program = json.value("program", "");
-    header_.program_sha256 = json.value("program_sha256", "");
-    header_.dialect = json.value("dialect", "");
     header_.period_ns = json.value("period_ns", image::Nanoseconds{0});
     for (const machine::StatePart part : kParts) {
       const std::string name(machine::part_name(part));
@@ -185,7 +247,7 @@ void RecordReader::read_chunks(const std::string& content, std::size_t at) {
     const std::string_view bytes = all.substr(at + kChunkHead, length);
     checksum_ = chained(checksum_, bytes);
     if (checksum_ != word_at(all.substr(at + 4))) return;
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    if (length != 0 && !read_chunk(bytes)) return;
     at += kChunkHead + length;
     if (length == 0) {
       damaged_at_ = at;
@@ -193,6 +255,65 @@ void RecordReader::read_chunks(const std::string& content, std::size_t at) {
       return;
     }
   }
+}
+
+bool RecordReader::read_chunk(std::string_view bytes) {
+  const char kind = bytes.front();
+  bytes.remove_prefix(1);
+  if (kind == kCycleChunk) {
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    return true;
+  }
+  if (kind == kChangeChunk) return read_change(bytes);
+  const std::size_t end = bytes.find('\n');
+  if (kind != kSubprogramChunk || end == std::string_view::npos || !subprograms_) return false;
+  subprograms_->insert_or_assign(std::string(bytes.substr(0, end)), std::string(bytes.substr(end + 1)));
+  return true;
+}
+
+bool RecordReader::read_change(std::string_view bytes) {
+  const std::size_t end = bytes.find('\n');
+  const nlohmann::json head = nlohmann::json::parse(bytes.substr(0, end), nullptr, false);
+  if (end == std::string_view::npos || !head.is_object()) return false;
+  try {
+    const auto name = std::find(std::begin(kChangeNames), std::end(kChangeNames), head.value("kind", ""));
+    if (name == std::end(kChangeNames)) return false;
+    ProgramChange change;
+    change.kind = static_cast<ProgramChange::Kind>(name - std::begin(kChangeNames));
+    change.process = head.value("process", 0);
+    change.block = head.value("block", "");
+    if (head.value("text", false)) {
+      subprograms_ = std::make_shared<std::map<std::string, std::string, std::less<>>>();
+      auto file = std::make_shared<ProgramFile>();
+      file->path = head.value("path", "");
+      file->dialect = head.value("dialect", "");
+      file->text = bytes.substr(end + 1);
+      file->loader = [texts = subprograms_](std::string_view wanted) -> std::optional<std::string> {
+        const auto found = texts->find(wanted);
+        return found == texts->end() ? std::nullopt : std::optional<std::string>(found->second);
+      };
+      files_.push_back(std::move(file));
+    }
+    if (head.contains("tables")) {
+      if (files_.empty()) return false;
+      change.file = files_.back();
+      machine::MachineState state;
+      for (const machine::StatePart part : kTableParts) {
+        const std::string part_name(machine::part_name(part));
+        machine::read_part(head["tables"].value(part_name, ""), part_name, part, state);
+      }
+      change.tables = state.tables;
+    }
+    changes_.push_back(std::move(change));
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  }
+  return true;
+}
+
+std::vector<ProgramChange> RecordReader::changes(const machine::MachineConfig& machine) const {
+  for (const std::shared_ptr<ProgramFile>& file : files_) file->model = program_model(machine);
+  return changes_;
 }
 
 bool RecordReader::open(const std::string& path, std::string& error) {

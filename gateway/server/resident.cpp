@@ -16,10 +16,12 @@ constexpr int kBlockPatience = 10'000;  ///< commands of a typed block that are 
 
 Resident::Resident(Control& control, machine::MachineState state, std::string state_path, double speed)
     : control_(control), state_(std::move(state)), state_path_(std::move(state_path)), speed_(speed) {
-  file_.dialect = control.machine().control.dialect;
-  file_.model = program_model(control.machine());
-  file_.loader = program_loader({});
-  arm();
+  ProgramFile none;
+  none.dialect = control.machine().control.dialect;
+  none.model = program_model(control.machine());
+  none.loader = program_loader({});
+  file_ = std::make_shared<const ProgramFile>(std::move(none));
+  arm(ProgramChange::Kind::program);
 }
 
 bool Resident::ask(image::Request request, image::Answer& answer, int patience_ms) {
@@ -62,40 +64,26 @@ void Resident::tell(image::Request request) {
 }
 
 /// False: a program is being read just now, nothing was changed.
-bool Resident::arm() {
-  // The factory keeps its own copies: the program may be replaced while an interpreter of the old one still
-  // exists.
-  const std::scoped_lock lock(control_.reading());
-  if (control_.process(0).feeder().reads()) return false;
-  control_.process(0).load(
-      [file = file_, path = program_path_, tables = state_.tables](const program::Position& start) {
-        return program::Interpreter(file.dialect, file.model, tables, path.empty() ? "MDI" : path, file.text,
-                                    file.loader, start);
-      },
-      state_.tables);
-  return true;
-}
+bool Resident::arm(ProgramChange::Kind kind) { return control_.change({kind, 0, file_, state_.tables, {}}); }
 
 Resident::Load Resident::load(const std::string& path, const std::string& dialect,
                               std::vector<text::Finding>& findings) {
-  ProgramFile file;
-  if (!open_program(control_.machine(), path, dialect, file, findings)) return Load::not_opened;
+  auto file = std::make_shared<ProgramFile>();
+  if (!open_program(control_.machine(), path, dialect, *file, findings)) return Load::not_opened;
   take_tables();
-  const program::Interpreter reader(file.dialect, file.model, state_.tables, path, file.text, file.loader,
+  const program::Interpreter reader(file->dialect, file->model, state_.tables, path, file->text, file->loader,
                                     {});
   findings = reader.findings();
   for (const text::Finding& f : findings)
     if (f.severity == text::Severity::error) return Load::has_errors;
-  std::swap(file_, file);
-  std::string before = std::exchange(program_path_, path);
-  if (arm()) {
+  std::shared_ptr<const ProgramFile> before = std::exchange(file_, file);
+  if (arm(ProgramChange::Kind::program)) {
     blocks_ = reader.block_count();
-    lines_ = static_cast<int>(std::count(file_.text.begin(), file_.text.end(), '\n')) +
-             (file_.text.empty() || file_.text.back() == '\n' ? 0 : 1);
+    lines_ = static_cast<int>(std::count(file->text.begin(), file->text.end(), '\n')) +
+             (file->text.empty() || file->text.back() == '\n' ? 0 : 1);
     return Load::done;
   }
-  std::swap(file_, file);  // a program began meanwhile
-  program_path_ = std::move(before);
+  file_ = std::move(before);  // a program began meanwhile
   return Load::busy;
 }
 
@@ -106,7 +94,7 @@ void Resident::take_tables() {
     if (tables == nullptr || control_.process(0).feeder().reads()) return;
     state_.tables = *tables;
   }
-  arm();
+  arm(ProgramChange::Kind::tables);
 }
 
 program::Position Resident::position() {
@@ -140,14 +128,12 @@ std::vector<text::Finding> Resident::check_block(const std::string& block) {
 }
 
 void Resident::set_manual_block(const std::string& block) {
-  const std::scoped_lock lock(control_.reading());
-  control_.process(0).set_manual_block(block);
+  control_.change({ProgramChange::Kind::block, 0, {}, {}, block});
 }
 
 void Resident::forget_modes() {
   take_tables();
-  const std::scoped_lock lock(control_.reading());
-  control_.process(0).forget_manual();
+  control_.change({ProgramChange::Kind::modes, 0, {}, {}, {}});
 }
 
 Resident::Zeroed Resident::zero(int axis, double value) {
@@ -161,7 +147,7 @@ Resident::Zeroed Resident::zero(int axis, double value) {
   const machine::AxisConfig& a = control_.machine().axes[static_cast<std::size_t>(axis)];
   manual->preset(axis, a.diameter ? value / 2.0 : value);
   state_.tables = manual->tables();
-  arm();
+  arm(ProgramChange::Kind::tables);
   const int origin = manual->origin(axis);
   return {origin, state_.tables.origins[origin][a.letter]};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,7 +59,8 @@ class Resident {
 
   /// A program is under way (running, held or waiting).
   bool busy();
-  const std::string& program() const noexcept { return program_path_; }
+  /// Path of the loaded program; empty: none.
+  const std::string& program() const noexcept { return file_->path; }
   /// Of the loaded program's file: blocks, and lines.
   int blocks() const noexcept { return blocks_; }
   int lines() const noexcept { return lines_; }
@@ -69,7 +71,7 @@ class Resident {
   const cycle::AlarmSnapshot& alarms();
 
  private:
-  bool arm();
+  bool arm(ProgramChange::Kind kind);
   void catch_up();
   program::Position position();
   std::uint32_t homed();
@@ -78,8 +80,7 @@ class Resident {
   machine::MachineState state_;
   std::string state_path_;
   double speed_;
-  ProgramFile file_;
-  std::string program_path_;
+  std::shared_ptr<const ProgramFile> file_;
   int blocks_ = 0, lines_ = 0;
   std::uint32_t homed_seen_ = 0;
   bool busy_seen_ = false;

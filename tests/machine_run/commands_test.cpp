@@ -19,19 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string mill_file() { return source("examples/mill/machine.toml"); }
-
-/// The mill with something replaced, in a folder where its PLC source is found.
-std::string changed_mill(const Scratch& scratch, const std::string& from, const std::string& to) {
-  std::filesystem::copy_file(source("examples/mill/mill.st"), scratch.path("mill.st"),
-                             std::filesystem::copy_options::overwrite_existing);
-  std::string text = read_all(mill_file());
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  text.replace(at, from.size(), to);
-  return scratch.write("machine.toml", text);
-}
-
 json parsed(const std::string& text) {
   const json j = json::parse(text, nullptr, false);
   EXPECT_FALSE(j.is_discarded()) << text.substr(0, 300);

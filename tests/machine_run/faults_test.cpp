@@ -62,6 +62,8 @@ TEST(Faults, emergency_stop_in_motion_closes_the_brake_of_z_before_its_power_goe
   for (const image::AlarmRecord& r : history)
     EXPECT_EQ(r.first_fault, history.front().sequence) << mill.alarm_list();
   EXPECT_EQ(history.front().number, cycle::alarm::kEmergencyStop) << mill.alarm_list();
+  EXPECT_EQ(mill.alarms(axis::alarm::kEnableWithdrawn), 0)
+      << "that the PLC takes the enable away with the power says nothing new: " << mill.alarm_list();
 }
 
 TEST(Faults, after_an_emergency_stop_the_machine_is_made_ready_and_works_again) {

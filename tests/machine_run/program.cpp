@@ -45,6 +45,18 @@ std::string source(std::string_view path) {
   return std::string(SERVOGATE_SOURCE_DIR "/") + std::string(path);
 }
 
+std::string mill_file() { return source("examples/mill/machine.toml"); }
+
+std::string changed_mill(const Scratch& scratch, const std::string& from, const std::string& to) {
+  std::filesystem::copy_file(source("examples/mill/mill.st"), scratch.path("mill.st"),
+                             std::filesystem::copy_options::overwrite_existing);
+  std::string text = read_all(mill_file());
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  return scratch.write("machine.toml", text);
+}
+
 Program::Program(const std::vector<std::string>& arguments, const Environment& environment) {
   std::vector<std::string> all{SERVOGATE_PROGRAM};
   all.insert(all.end(), arguments.begin(), arguments.end());

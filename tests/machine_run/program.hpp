@@ -29,6 +29,10 @@ std::string read_all(const std::string& path);
 /// Path inside the source tree.
 std::string source(std::string_view path);
 
+/// The example mill, and it with something replaced, in a folder where its PLC source is found.
+std::string mill_file();
+std::string changed_mill(const Scratch& scratch, const std::string& from, const std::string& to);
+
 /// How the servogate program ended.
 struct Ending {
   int code = -1;  ///< exit code; 1000 + signal when a signal ended it

@@ -16,10 +16,10 @@ std::string small_record(const Scratch& scratch, int cycles) {
   const std::string path = scratch.path("record");
   gateway::RecordHeader header;
   header.machine = "/m.toml";
-  header.dialect = "nc110";
   header.state.tables.origins[3]["X"] = 1.5;
   header.period_ns = 1000000;
   gateway::RecordWriter writer(path, header);
+  writer.take(gateway::ProgramChange{gateway::ProgramChange::Kind::block, 0, {}, {}, "G0 X1"});
   std::mt19937 random(7);
   cycle::CycleInputs in;
   for (int i = 0; i < cycles; ++i) {
@@ -62,6 +62,49 @@ TEST(RecordFile, gives_back_header_and_cycles) {
   EXPECT_EQ(reader.header().state.tables.origins.at(3).at("X"), 1.5);
   bool sound = false;
   EXPECT_EQ(cycles_of(path, sound, error), 100);
+  EXPECT_TRUE(sound);
+}
+
+TEST(RecordFile, gives_back_what_was_loaded_with_texts_tables_and_subprograms) {
+  const Scratch scratch;
+  const std::string path = scratch.path("record");
+  auto file = std::make_shared<gateway::ProgramFile>();
+  file->path = "/p.nc";
+  file->dialect = "nc110";
+  file->text = "N10 G0 X1\r\n\xcf\xf0\n";  // as it stands, whatever its encoding
+  program::Tables tables;
+  tables.origins[2]["Y"] = -0.1;
+  {
+    gateway::RecordWriter writer(path, {});
+    using Kind = gateway::ProgramChange::Kind;
+    cycle::CycleInputs in;
+    writer.take(gateway::ProgramChange{Kind::program, 0, file, {}, {}});
+    writer.take_subprogram("PECK", "N1 G1\nN2\n");
+    writer.take(in);
+    writer.take(gateway::ProgramChange{Kind::tables, 0, file, tables, {}});
+    writer.take(gateway::ProgramChange{Kind::block, 0, {}, {}, "G0 X1 \"2\""});
+    writer.take(gateway::ProgramChange{Kind::modes, 0, {}, {}, {}});
+    in.number = 1;
+    writer.take(in);
+    EXPECT_EQ(writer.close(), "");
+  }
+  gateway::RecordReader reader;
+  std::string error;
+  ASSERT_TRUE(reader.open(path, error)) << error;
+  const auto changes = reader.changes({});
+  ASSERT_EQ(changes.size(), 4u);
+  EXPECT_EQ(changes[0].file->path, "/p.nc");
+  EXPECT_EQ(changes[0].file->dialect, "nc110");
+  EXPECT_EQ(changes[0].file->text, file->text);
+  EXPECT_EQ(changes[0].file->loader("PECK"), "N1 G1\nN2\n");
+  EXPECT_EQ(changes[0].file->loader("OTHER"), std::nullopt);
+  EXPECT_EQ(changes[1].kind, gateway::ProgramChange::Kind::tables);
+  EXPECT_EQ(changes[1].file, changes[0].file) << "its text stands in the record once";
+  EXPECT_EQ(changes[1].tables.origins.at(2).at("Y"), -0.1);
+  EXPECT_EQ(changes[2].block, "G0 X1 \"2\"");
+  EXPECT_EQ(changes[3].kind, gateway::ProgramChange::Kind::modes);
+  bool sound = false;
+  EXPECT_EQ(cycles_of(path, sound, error), 2);
   EXPECT_TRUE(sound);
 }
 

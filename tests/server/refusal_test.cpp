@@ -22,7 +22,7 @@ class Refusals : public ::testing::Test {
     shell_.up();
     shell_.ready();
     EXPECT_EQ(shell_.run({"mdi", "G0 X10", "--wait"}).exit, 0);
-    EXPECT_TRUE(shell_.until([](const json& s) { return s["state"] == "idle"; }));
+    EXPECT_TRUE(shell_.until([](const json& s) { return s["state"] == "ended"; }));
   }
   /// Mode, positions, origin: what a refusal must not touch.
   json kept() {

@@ -23,6 +23,7 @@ bool open_program(const machine::MachineConfig& machine, const std::string& path
   std::string reason;
   auto content = files::read_file(path, files::kMostOfProgram, reason);
   if (!content) return error(kCannotRead, {reason});
+  out.path = path;
   out.text = std::move(*content);
   out.model = program_model(machine);
   out.loader = program_loader(path);

@@ -13,6 +13,7 @@ namespace servogate::gateway {
 
 /// A part program opened for a machine: everything an interpreter is constructed from but the start position.
 struct ProgramFile {
+  std::string path;  ///< as it was given; empty: no program, only typed blocks
   std::string dialect, text;
   program::MachineModel model;
   program::ProgramLoader loader;

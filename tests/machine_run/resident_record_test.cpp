@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// The record of a resident control: several programs, typed blocks, stops. Its replay gives the same bytes.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "gateway/run/realtime_loop.hpp"
+#include "gateway/run/record_file.hpp"
+#include "gateway/run/session.hpp"
+#include "gateway/server/resident.hpp"
+#include "tests/machine_run/program.hpp"
+#include "tests/machine_run/programs.hpp"
+
+namespace servogate::machine_run {
+namespace {
+
+using image::ProcessState;
+using image::RequestKind;
+
+/// The example mill as `servogate up --record` runs it, in real time on a busy computer, with an operator.
+class RecordedControl {
+ public:
+  explicit RecordedControl(const Scratch& scratch)
+      : loaded_(machine::load(mill_file())),
+        control_(gateway::Control::compose(loaded_, findings_)),
+        record_(gateway::begin_record(scratch.path("record"), mill_file(), {}, *control_)),
+        session_(*control_, {scratch.path("trace.csv"), {}, {}}, true),
+        loop_(*control_, {.best_effort = true},
+              [this](gateway::Control&, image::Nanoseconds late) noexcept { session_.after_cycle(late); }) {
+    control_->cycle().publish_every(1);
+    control_->world().close_operator_points();
+    resident_ = std::make_unique<gateway::Resident>(*control_, machine::MachineState{}, std::string());
+    EXPECT_TRUE(loop_.start());
+  }
+  gateway::Resident& resident() { return *resident_; }
+  /// True: accepted. Asks again while an axis is not quite at rest.
+  bool ask(RequestKind kind, double value = 0.0, image::Mode mode = image::Mode::off) {
+    for (int i = 0; i < 200; ++i) {
+      if (mode != image::Mode::off) post(RequestKind::mode, static_cast<double>(mode));
+      if (post(kind, value) == 0) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+  bool until(const std::function<bool(const image::ProcessImage&)>& met) {
+    for (int i = 0; i < 6000; ++i) {
+      if (met(resident_->image())) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+  bool until_state(ProcessState state) {
+    return until([state](const image::ProcessImage& i) {
+      return i.processes[0].state == state && !i.axes[0].moving && !i.axes[1].moving && !i.axes[2].moving;
+    });
+  }
+  bool load(const std::string& path) {
+    std::vector<text::Finding> findings;
+    for (int i = 0; i < 200; ++i) {
+      if (resident_->load(path, {}, findings) == gateway::Resident::Load::done) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+  /// What went wrong with the files; empty: nothing.
+  std::string close() {
+    loop_.stop();
+    return session_.close() + record_->close();
+  }
+
+ private:
+  std::uint16_t post(RequestKind kind, double value) {
+    image::Request r;
+    r.kind = kind;
+    r.value = value;
+    image::Answer answer;
+    EXPECT_TRUE(resident_->ask(r, answer));
+    return answer.refusal;
+  }
+  machine::LoadResult loaded_;
+  std::vector<text::Finding> findings_;
+  std::unique_ptr<gateway::Control> control_;
+  std::unique_ptr<gateway::RecordWriter> record_;
+  gateway::Session session_;
+  std::unique_ptr<gateway::Resident> resident_;
+  gateway::RealtimeLoop loop_;
+};
+
+TEST(ResidentRecord, of_two_programs_with_a_stop_and_a_typed_block_between_replays_byte_by_byte) {
+  const Scratch scratch;
+  // Long enough to be read far ahead when it is given up.
+  std::string long_program = "N10 G90 G94 G71 G27\nN20 G1 X40 F6000\n";
+  for (int i = 0; i < 400; ++i)
+    long_program += "G1 X" + std::to_string(40 - i % 3) + " Y" + std::to_string(i % 7) + "\n";
+  const std::string first = scratch.write("first.nc", long_program + "M30\n");
+  const std::string second = scratch.write("second.nc", std::string("N5 (CLS,SUB)\n") + kShortProgram);
+  scratch.write("SUB.nc", "N1 G0 X7\nN2 G0 X1\n");
+  {
+    RecordedControl control(scratch);
+    using image::Mode;
+    ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.axes[2].drive.online; }));
+    ASSERT_TRUE(control.ask(RequestKind::reset));
+    ASSERT_TRUE(control.ask(RequestKind::power, 1.0));
+    ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.axes[2].enabled; }));
+    ASSERT_TRUE(control.ask(RequestKind::home, 0.0, Mode::home));
+    ASSERT_TRUE(control.until([](const image::ProcessImage& i) {
+      return i.axes[0].homed && i.axes[1].homed && i.axes[2].homed && !i.axes[0].moving && !i.axes[1].moving;
+    }));
+    ASSERT_TRUE(control.load(first));
+    ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::automatic));
+    ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.processes[0].line > 20; }));
+    ASSERT_TRUE(control.ask(RequestKind::stop));
+    ASSERT_TRUE(control.until_state(ProcessState::idle));
+    control.resident().take_tables();
+    control.resident().set_manual_block("(UOT,0,X2)");
+    ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::mdi));
+    ASSERT_TRUE(control.until_state(ProcessState::ended));
+    control.resident().take_tables();
+    control.resident().set_manual_block("G1 X12 Y3 F3000");
+    ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::mdi));
+    ASSERT_TRUE(control.until_state(ProcessState::ended));
+    ASSERT_TRUE(control.load(second));
+    control.resident().take_tables();
+    ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::automatic));
+    ASSERT_TRUE(control.until_state(ProcessState::ended));
+    ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::automatic)) << "and once more";
+    ASSERT_TRUE(control.until_state(ProcessState::ended));
+    ASSERT_EQ(control.close(), "");
+  }
+  // What was loaded stands in the record.
+  for (const char* file : {"first.nc", "second.nc", "SUB.nc"}) std::remove(scratch.path(file).c_str());
+  const Ending replay =
+      servogate({"replay", scratch.path("record"), "--against", scratch.path("trace.csv"), "--json"});
+  EXPECT_EQ(replay.code, 0) << replay.err << replay.out;
+  EXPECT_NE(replay.out.find("\"first_difference\":0"), std::string::npos) << replay.out;
+  const TraceFile trace(scratch.path("trace.csv"));
+  EXPECT_GT(trace.rows(), 5000u);
+}
+
+}  // namespace
+}  // namespace servogate::machine_run
