@@ -225,6 +225,8 @@ struct PlcConfig {
 struct SafetyConfig {
   std::string estop;          ///< input point: TRUE = the chain is closed. Never over Modbus.
   std::string control_alive;  ///< output point that toggles while the control runs
+  /// Mock inputs may stand for the emergency stop and the limit switches of drives on a real bus: a bench.
+  bool mock_inputs_guard_real_drives = false;
 };
 
 /// [run]

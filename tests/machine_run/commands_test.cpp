@@ -85,8 +85,10 @@ TEST(Command, wrong_use_ends_with_two_and_a_sentence) {
 TEST(Command, virtual_time_with_a_real_bus_is_wrong_use_and_names_the_bus) {
   const Scratch scratch;
   const std::string changed = changed_mill(scratch, "\"mock:can\"", "\"socketcan:vcan9\"");
-  const std::string text = read_all(changed);
-  const std::string machine = scratch.write("real.toml", text.substr(0, text.find("[[simulation.drive]]")));
+  std::string text = read_all(changed);
+  text = text.substr(0, text.find("[[simulation.drive]]"));
+  text.insert(text.find("estop ="), "mock_inputs_guard_real_drives = true\n");
+  const std::string machine = scratch.write("real.toml", text);
   const Ending e = servogate({"run", machine, source("examples/mill/bracket.nc"), "--virtual"});
   EXPECT_EQ(e.code, 2) << e.err;
   EXPECT_NE(e.err.find("socketcan:vcan9"), std::string::npos) << e.err;

@@ -138,6 +138,33 @@ void check_estop(const MachineConfig& machine, Reading& reading) {
   if (point->loss != 0.0 || point->hold) reading.error(at, finding::kEstopLoss, {point->name});
 }
 
+/// A switch that no wire can open does not guard a drive that is real.
+void check_mock_guards(const MachineConfig& machine, Reading& reading) {
+  const auto guard = [&](const std::string& path, const std::string& name, const BusConfig& bus) {
+    int station = -1;
+    const PointConfig* point = machine.point(name, &station);
+    if (point == nullptr || bus.nothing_real()) return;
+    const StationConfig& s = machine.stations[static_cast<std::size_t>(station)];
+    if (s.url.starts_with("mock:"))
+      reading.error(machine.where(path), finding::kMockGuard, {name, s.name, bus.name});
+  };
+  const auto real = std::find_if(machine.buses.begin(), machine.buses.end(),
+                                 [](const BusConfig& b) { return !b.nothing_real(); });
+  if (real == machine.buses.end()) return;
+  if (machine.safety.mock_inputs_guard_real_drives)
+    return reading.warning(machine.where("safety.mock_inputs_guard_real_drives"), finding::kMockGuardDeclared,
+                           {});
+  guard("safety.estop", machine.safety.estop, *real);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const AxisConfig& a = machine.axes[i];
+    int bus = -1;
+    if (machine.node(a.drive, &bus) == nullptr) continue;
+    const std::string path = "axis." + std::to_string(i);
+    guard(path + ".limit_plus", a.limit_plus, machine.buses[static_cast<std::size_t>(bus)]);
+    guard(path + ".limit_minus", a.limit_minus, machine.buses[static_cast<std::size_t>(bus)]);
+  }
+}
+
 /// The power-on modes and values, as the interpreter of the language will read them.
 void check_settings(const MachineConfig& machine, Reading& reading) {
   program::MachineModel model;
@@ -159,6 +186,7 @@ void check_safety(const MachineConfig& machine, Reading& reading) {
   const bool broken = std::any_of(reading.findings.begin(), reading.findings.end(),
                                   [](const text::Finding& f) { return f.severity == text::Severity::error; });
   if (broken || machine.nothing_real()) return;  // a transport that cannot be read says nothing about the bus
+  check_mock_guards(machine, reading);
   if (machine.run.start_point.empty()) reading.warning(machine.where("run"), finding::kNoStartPoint, {});
   if (machine.run.allow_start_now)
     reading.warning(machine.where("run.allow_start_now"), finding::kStartNow, {});

@@ -93,6 +93,20 @@ inline constexpr text::Entry kEstopInverted{
 inline constexpr text::Entry kEstopLoss{
     "machine.estop_loss", "\"{0}\": on loss the emergency-stop chain must read 0 (loss = 0, hold = false)",
     "«{0}»: при потере станции цепь аварийного останова должна читаться как 0 (loss = 0, hold = false)"};
+inline constexpr text::Entry kMockGuard{
+    "machine.mock_guards_real_drive",
+    "\"{0}\" is a mock input ({1}) and no wire can open it, but bus \"{2}\" is real: name a real input, or "
+    "declare "
+    "the bench with safety.mock_inputs_guard_real_drives = true",
+    "«{0}»: имитируемый вход ({1}), который не разомкнёт никакой провод, а шина «{2}» настоящая: нужен "
+    "настоящий "
+    "вход, либо объявите стенд: safety.mock_inputs_guard_real_drives = true"};
+inline constexpr text::Entry kMockGuardDeclared{
+    "machine.mock_guard_declared",
+    "safety.mock_inputs_guard_real_drives: no emergency stop and no limit switch of this file stops a real "
+    "drive",
+    "safety.mock_inputs_guard_real_drives: аварийный останов и концевики этого файла настоящий привод не "
+    "остановят"};
 inline constexpr text::Entry kNoEstop{"machine.no_estop",
                                       "no emergency-stop chain is declared (safety.estop)",
                                       "цепь аварийного останова не описана (safety.estop)"};

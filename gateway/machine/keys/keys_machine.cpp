@@ -77,6 +77,12 @@ const Section& section_of<SafetyConfig>() {
       key<&C::control_alive>("control_alive", {.refers = Refers::digital_output},
                              "output point that toggles while the control runs, for the safety relay",
                              "выход, переключающийся, пока система работает, для реле безопасности"),
+      key<&C::mock_inputs_guard_real_drives>(
+          "mock_inputs_guard_real_drives", {},
+          "mock inputs may stand for the emergency stop and the limit switches of drives on a real bus: "
+          "a bench without a machine",
+          "имитируемые входы могут заменять аварийный останов и концевики приводов на настоящей шине: "
+          "стенд без станка"),
   };
   static const Section section{"signals of the safety circuit", "сигналы цепи безопасности", keys,
                                &default_object<C>};
