@@ -20,14 +20,15 @@ constexpr double kRestPatience_s = 10.0;
 OperatorScript::OperatorScript(Wishes wishes, Post post)
     : wishes_(std::move(wishes)), post_(std::move(post)) {}
 
-void OperatorScript::send(RequestKind kind, double value, int axis) {
-  image::Request r;
-  r.id = next_id_++;
-  r.asker = image::Asker::command_line;
-  r.kind = kind;
-  r.axis = static_cast<std::int8_t>(axis);
-  r.value = value;
-  post_(r);
+void OperatorScript::send(RequestKind kind, double value) {
+  post_({.id = next_id_++, .asker = image::Asker::command_line, .kind = kind, .value = value});
+}
+
+void OperatorScript::send_in(image::Mode mode, RequestKind kind) {
+  post_({.id = next_id_++,
+         .asker = image::Asker::command_line,
+         .kind = kind,
+         .mode = static_cast<std::int8_t>(mode)});
 }
 
 double OperatorScript::in_stage(const ProcessImage& image) const {
@@ -122,8 +123,7 @@ void OperatorScript::poll(const ProcessImage& image) {
           [&](const image::AxisImage& a, std::size_t i) { return a.homed || !wishes_.needs_homing[i]; });
       if (open && !asked_) {
         asked_ = true;
-        send(RequestKind::mode, static_cast<double>(image::Mode::home));
-        send(RequestKind::home);
+        send_in(image::Mode::home, RequestKind::home);
       }
       const bool busy =
           missing([](const image::AxisImage& a, std::size_t) { return a.owner != image::AxisOwner::homing; });
@@ -140,8 +140,10 @@ void OperatorScript::poll(const ProcessImage& image) {
       if (!asked_) {
         asked_ = true;
         send(RequestKind::override_feed, wishes_.override_ratio);
-        send(RequestKind::mode, static_cast<double>(image::Mode::automatic));
-        if (!wishes_.wait_for_start) send(RequestKind::start);
+        if (wishes_.wait_for_start)
+          send(RequestKind::mode, static_cast<double>(image::Mode::automatic));
+        else
+          send_in(image::Mode::automatic, RequestKind::start);
       }
       if (image.processes[0].state != ProcessState::idle) enter(Stage::running, image);
       break;

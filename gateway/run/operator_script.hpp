@@ -48,7 +48,9 @@ class OperatorScript {
   const std::vector<std::string>& waiting_for() const noexcept { return waiting_for_; }
 
  private:
-  void send(image::RequestKind kind, double value = 0.0, int axis = -1);
+  void send(image::RequestKind kind, double value = 0.0);
+  /// The request in the mode that it needs: both happen, or neither.
+  void send_in(image::Mode mode, image::RequestKind kind);
   void enter(Stage stage, const image::ProcessImage& image);
   void give_up(const image::ProcessImage& image);
   void power_down(Outcome outcome, const image::ProcessImage& image);
