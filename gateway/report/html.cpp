@@ -237,11 +237,28 @@ std::string to_html(const Report& report, const RecordedRun& run, const HtmlOpti
   return out;
 }
 
+namespace {
+
+/// Where links lead, to a file that may be still to come. A pipe behind /dev/stdout has no path of its own.
+std::string behind_links(const std::string& path) {
+  static constexpr int kMostLinks = 40;  // as Linux follows in one path
+  std::error_code error;
+  std::filesystem::path at = path;
+  if (std::filesystem::exists(at, error)) {
+    const std::filesystem::path whole = std::filesystem::canonical(at, error);
+    return error ? path : whole.string();
+  }
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(at, error); ++i)
+    at = at.parent_path() / std::filesystem::read_symlink(at, error);
+  return at.string();
+}
+
+}  // namespace
+
 std::string write_file(const std::string& path, const std::string& content) {
   std::error_code error;
   // A link leads to the file that is meant; a device or a pipe is written to and never replaced.
-  const std::filesystem::path linked = std::filesystem::canonical(path, error);
-  const std::string target = error ? path : linked.string();
+  const std::string target = behind_links(path);
   const bool special =
       std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error);
   const std::string neighbour = special ? target : target + ".part";

@@ -218,5 +218,16 @@ TEST(WriteFile, leaves_no_half_file_behind) {
   EXPECT_EQ(write_file("/nowhere/a.html", "x"), "/nowhere/a.html: cannot create: No such file or directory");
 }
 
+TEST(WriteFile, makes_the_file_that_a_link_leads_to_and_keeps_the_link) {
+  const Folder folder;
+  std::filesystem::create_symlink("behind.html", folder / "link.html");
+  for (const char* content : {"first", "second"}) {
+    EXPECT_EQ(write_file(folder / "link.html", content), "");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.html"));
+    std::ifstream file(folder / "behind.html");
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), content);
+  }
+}
+
 }  // namespace
 }  // namespace servogate::report
