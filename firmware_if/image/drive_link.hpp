@@ -26,10 +26,11 @@ enum class LatchSource : std::uint8_t { zero_mark, probe_1, probe_2 };
 /// Kernel to drive, written every cycle in the axes phase; a supplier sends it in the same cycle. Counts are
 /// drive counts after scale, direction and compensation.
 struct DriveCommand {
-  bool power = false;          ///< wish: reach and hold Operation enabled
-  bool quick_stop = false;     ///< the drive's own quick stop (controlword bit 2 low)
-  bool reset_fault = false;    ///< level; the supplier makes the edge the drive wants
-  bool brake_release = false;  ///< brake output of the drive, where it has one
+  bool power = false;                 ///< wish: reach and hold Operation enabled
+  bool quick_stop = false;            ///< the drive's own quick stop (controlword bit 2 low)
+  bool reset_fault = false;           ///< level; the supplier makes the edge the drive wants
+  bool brake_release = false;         ///< brake output of the drive, where it has one
+  std::uint32_t digital_outputs = 0;  ///< 60FEh:01 but for the bit of the brake
   DriveMode mode = DriveMode::none;
   LatchSource latch_source = LatchSource::zero_mark;
   bool latch_arm = false;       ///< level: TRUE arms one capture, FALSE disarms

@@ -62,6 +62,12 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
   c->world_ = std::make_unique<MockWorld>(c->loaded_);
   cycle::CycleParts parts;
   parts.period_ns = m.cycle_ns();
+  c->debounce_ = std::make_unique<Debounce>(m);
+  const std::vector<DriveStation> drives = drive_stations(m);
+  c->drive_inputs_ = std::make_unique<DriveInputs>(drives);
+  c->drive_outputs_ = std::make_unique<DriveOutputs>(drives);
+  if (!c->debounce_->empty()) parts.devices.push_back(&c->debounce_->before());
+  if (!drives.empty()) parts.devices.push_back(c->drive_outputs_.get());
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
     image::CanBus* bus = m.buses[b].mock() ? c->world_->bus(b) : c->transports_[b].bus.get();
     c->suppliers_.push_back(
@@ -69,6 +75,8 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
     parts.devices.push_back(c->suppliers_.back().get());
   }
   for (image::CycleDevice* device : c->world_->io()) parts.devices.push_back(device);
+  if (!drives.empty()) parts.devices.push_back(c->drive_inputs_.get());
+  if (!c->debounce_->empty()) parts.devices.push_back(&c->debounce_->after());
   for (std::size_t s = 0; s < m.stations.size(); ++s)
     parts.watched_sources[s] = m.stations[s].kind != machine::StationKind::drive;
   parts.logic = c->logic_.get();

@@ -9,6 +9,8 @@
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/mock_world.hpp"
 #include "gateway/compose/plc_logic.hpp"
+#include "gateway/compose/points/debounce.hpp"
+#include "gateway/compose/points/drive_points.hpp"
 #include "gateway/compose/program/program_change.hpp"
 #include "gateway/machine/load.hpp"
 #include "gateway/machine/state.hpp"
@@ -75,6 +77,9 @@ class Control {
   std::unique_ptr<MockWorld> world_;
   std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
+  std::unique_ptr<Debounce> debounce_;
+  std::unique_ptr<DriveInputs> drive_inputs_;
+  std::unique_ptr<DriveOutputs> drive_outputs_;
   std::unique_ptr<PlcLogic> logic_;
   std::vector<std::unique_ptr<channel::Process>> processes_;
   std::mutex reading_;

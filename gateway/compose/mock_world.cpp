@@ -14,6 +14,7 @@ MockWorld::MockWorld(const machine::LoadResult& loaded) {
   add_drives(loaded);
   int source = 0;
   for (const machine::StationConfig& station : m.stations) {
+    if (station.kind == machine::StationKind::drive) add_drive_wires(loaded, station);
     if (station.mock() && station.kind == machine::StationKind::gpio) add_gpio(loaded, station, source);
     if (station.mock() && station.kind == machine::StationKind::modbus) add_modbus(loaded, station, source);
     ++source;
@@ -52,9 +53,29 @@ void MockWorld::add_drives(const machine::LoadResult& loaded) {
   }
 }
 
+/// An input line of the chip that is made next: its contact follows a switch or is set.
+mock::GpioInput MockWorld::contact(const machine::MachineConfig& m, const machine::PointConfig& p) {
+  mock::GpioInput input;
+  input.name = p.name;
+  input.place = p.place;
+  input.inverted = p.inverted;
+  const auto initial = m.simulation.initial.find(p.name);
+  input.source = mock::SetInput{initial != m.simulation.initial.end() && initial->second != 0.0};
+  for (const machine::SimulatedSwitch& s : m.simulation.switches) {
+    if (s.point != p.name) continue;
+    const int axis = m.axis_index(s.axis);
+    if (std::isinf(s.to))
+      input.source = mock::LimitSwitch{axis, s.from, true};
+    else if (std::isinf(s.from))
+      input.source = mock::LimitSwitch{axis, s.to, false};
+    else
+      input.source = mock::HomeSwitch{axis, s.from, s.to - s.from};
+  }
+  return input;
+}
+
 void MockWorld::add_gpio(const machine::LoadResult& loaded, const machine::StationConfig& station,
                          int source) {
-  const machine::MachineConfig& m = loaded.machine;
   std::vector<mock::GpioInput> inputs;
   std::vector<mock::GpioOutput> outputs;
   for (const machine::PointConfig& p : station.points) {
@@ -63,22 +84,7 @@ void MockWorld::add_gpio(const machine::LoadResult& loaded, const machine::Stati
       outputs.push_back({p.name, p.place, p.inverted});
       continue;
     }
-    mock::GpioInput input;
-    input.name = p.name;
-    input.place = p.place;
-    input.inverted = p.inverted;
-    const auto initial = m.simulation.initial.find(p.name);
-    input.source = mock::SetInput{initial != m.simulation.initial.end() && initial->second != 0.0};
-    for (const machine::SimulatedSwitch& s : m.simulation.switches) {
-      if (s.point != p.name) continue;
-      const int axis = m.axis_index(s.axis);
-      if (std::isinf(s.to))
-        input.source = mock::LimitSwitch{axis, s.from, true};
-      else if (std::isinf(s.from))
-        input.source = mock::LimitSwitch{axis, s.to, false};
-      else
-        input.source = mock::HomeSwitch{axis, s.from, s.to - s.from};
-    }
+    mock::GpioInput input = contact(loaded.machine, p);
     const bool switched = !std::holds_alternative<mock::SetInput>(input.source);
     inputs_.push_back({p.name, gpios_.size(), inputs.size(), true, p.inverted, false, switched});
     inputs.push_back(std::move(input));
@@ -86,6 +92,44 @@ void MockWorld::add_gpio(const machine::LoadResult& loaded, const machine::Stati
   gpios_.push_back(std::make_unique<mock::MockGpio>(
       std::move(inputs), std::move(outputs), [this](int axis) { return axis_position(axis); }, source));
   io_.push_back(gpios_.back().get());
+}
+
+/// Contacts that lead to a drive: their levels reach packet A over the bus, so the lines are no device of the
+/// cycle.
+void MockWorld::add_drive_wires(const machine::LoadResult& loaded, const machine::StationConfig& station) {
+  DriveWires wires{gpios_.size(), drive(station.node), {}};
+  if (wires.drive == nullptr) return;
+  std::vector<mock::GpioInput> inputs;
+  for (const machine::PointConfig& p : station.points) {
+    if (p.number < 0) continue;
+    if (!p.is_input()) {
+      outputs_.push_back({p.name, 0, static_cast<std::size_t>(p.number), false, p.inverted, wires.drive});
+      continue;
+    }
+    mock::GpioInput input = contact(loaded.machine, p);
+    const bool switched = !std::holds_alternative<mock::SetInput>(input.source);
+    inputs_.push_back({p.name, gpios_.size(), inputs.size(), true, p.inverted, false, switched});
+    inputs.push_back(std::move(input));
+    wires.bits.push_back(p.number);
+  }
+  gpios_.push_back(std::make_unique<mock::MockGpio>(std::move(inputs), std::vector<mock::GpioOutput>{},
+                                                    [this](int axis) { return axis_position(axis); }));
+  drive_wires_.push_back(std::move(wires));
+}
+
+void MockWorld::drive_wires(const DriveWires& wires) {
+  using Terminal = mock::DriveSwitch::Input;
+  std::uint16_t general = 0;
+  for (std::size_t n = 0; n < wires.bits.size(); ++n) {
+    const bool on = gpios_[wires.wires]->input(n);
+    const int bit = wires.bits[n];
+    if (bit == 0) wires.drive->set_input(Terminal::negative_limit, on);
+    if (bit == 1) wires.drive->set_input(Terminal::positive_limit, on);
+    if (bit == 2) wires.drive->set_input(Terminal::home, on);
+    if (bit == 3) wires.drive->set_interlock(on);
+    if (bit >= 16 && on) general = static_cast<std::uint16_t>(general | 1u << (bit - 16));
+  }
+  wires.drive->set_general_inputs(general);
 }
 
 void MockWorld::add_modbus(const machine::LoadResult& loaded, const machine::StationConfig& station,
@@ -190,6 +234,7 @@ void MockWorld::advance_to(image::Nanoseconds t) {
   for (const auto& segment : segments_)
     if (segment != nullptr) segment->advance_to(t);
   for (const auto& gpio : gpios_) gpio->advance_to(t);
+  for (const DriveWires& wires : drive_wires_) drive_wires(wires);
   for (const auto& line : lines_) line->advance_to(t);
 }
 
@@ -202,6 +247,7 @@ bool MockWorld::drive_input(const Input& i, bool on) {
 }
 
 bool MockWorld::motor_on(const Output& o) const {
+  if (o.drive != nullptr) return ((o.drive->digital_outputs() >> o.number & 1) != 0) != o.inverted;
   const bool level = o.gpio ? gpios_[o.device]->output(o.number)
                             : lines_[o.device]->station(0).output(static_cast<std::uint16_t>(o.number));
   return level != o.inverted;

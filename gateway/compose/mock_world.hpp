@@ -79,6 +79,14 @@ class MockWorld {
     std::size_t number;
     bool gpio;
     bool inverted;
+    const mock::SimulatedDrive* drive = nullptr;  ///< its output `number` instead
+  };
+  /// What is wired to the inputs of a simulated drive: contacts of gpios_[wires], line by line a bit of
+  /// 60FDh.
+  struct DriveWires {
+    std::size_t wires;
+    mock::SimulatedDrive* drive;
+    std::vector<int> bits;
   };
   struct Turret {
     mock::Indexer indexer;
@@ -92,6 +100,9 @@ class MockWorld {
   };
   void add_drives(const machine::LoadResult& loaded);
   void add_gpio(const machine::LoadResult& loaded, const machine::StationConfig& station, int source);
+  void add_drive_wires(const machine::LoadResult& loaded, const machine::StationConfig& station);
+  mock::GpioInput contact(const machine::MachineConfig& machine, const machine::PointConfig& point);
+  void drive_wires(const DriveWires& wires);
   void add_modbus(const machine::LoadResult& loaded, const machine::StationConfig& station, int source);
   void add_turrets(const machine::MachineConfig& machine);
   void apply_wishes();
@@ -111,6 +122,7 @@ class MockWorld {
   };
   std::vector<AxisDrive> axes_;
   std::vector<std::unique_ptr<mock::MockGpio>> gpios_;
+  std::vector<DriveWires> drive_wires_;
   std::vector<std::unique_ptr<mock::MockModbusLine>> lines_;
   std::vector<image::CycleDevice*> io_;
   std::vector<Input> inputs_;

@@ -100,6 +100,7 @@ std::int64_t SimulatedDrive::reported_position() const noexcept { return inside_
 void SimulatedDrive::set_input(DriveSwitch::Input input, bool active) noexcept {
   inside_->outside_level[static_cast<std::size_t>(input)] = active;
 }
+void SimulatedDrive::set_interlock(bool active) noexcept { inside_->inputs.interlock = active; }
 void SimulatedDrive::set_general_inputs(std::uint16_t bits) noexcept { inside_->inputs.general = bits; }
 std::uint32_t SimulatedDrive::digital_outputs() const noexcept {
   const auto& od = inside_->dictionary;

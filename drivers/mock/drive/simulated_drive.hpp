@@ -89,6 +89,8 @@ class SimulatedDrive final : public CanNode {
 
   /// Levels of the drive's inputs from the world. A switch of the configuration is OR-ed with it.
   void set_input(DriveSwitch::Input input, bool active) noexcept;
+  /// Bit 3 of 60FDh.
+  void set_interlock(bool active) noexcept;
   /// General purpose inputs, bits 16-31 of 60FDh.
   void set_general_inputs(std::uint16_t bits) noexcept;
   /// 60FEh:01 masked by 60FEh:02.

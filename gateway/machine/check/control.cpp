@@ -90,6 +90,10 @@ class StationCheck {
       check_url(s_.url, path_ + "url", kModbus, "mock:NAME, tcp:HOST:PORT, rtu:/dev/...", machine_, reading_);
     if (!s_.url.empty() && s_.kind == StationKind::gpio)
       check_url(s_.url, path_ + "url", kGpio, "mock:NAME, chip:LABEL", machine_, reading_);
+    for (std::size_t i = 0; i < s_.points.size(); ++i)
+      if (s_.points[i].debounce > 0.0 && s_.points[i].channel != ChannelKind::di)
+        reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".debounce"),
+                       finding::kDebounceKind, {s_.points[i].channel_text});
     if (s_.kind == StationKind::modbus) return;
     for (std::size_t i = 0; i < s_.points.size(); ++i)
       if (s_.points[i].is_analog())

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "gateway/machine/check/check.hpp"
@@ -82,6 +83,7 @@ class DeviceUse {
       }
       for (std::size_t p = 0; p < station.points.size(); ++p)
         channel(station, device, station.points[p], path + ".points." + std::to_string(p) + ".channel");
+      if (station.kind == StationKind::drive) drive_points(station, path);
     }
   }
 
@@ -167,6 +169,51 @@ class DeviceUse {
                                 ? station.device
                                 : text::both("a chip without device file", "микросхема без файла устройства");
     reading_.error(m_.where(path), finding::kChannelOutside, {point.channel_text, who, what});
+  }
+
+  bool drives_something(const std::string& node) const {
+    const auto same = [&](const auto& part) { return part.drive == node; };
+    return std::any_of(m_.axes.begin(), m_.axes.end(), same) ||
+           std::any_of(m_.spindles.begin(), m_.spindles.end(), same);
+  }
+
+  /// The bits of a drive have to be in its process data.
+  void drive_points(const StationConfig& station, const std::string& path) {
+    static constexpr int kFirstReserved = 4, kFirstOfMaker = 16;
+    const NodeConfig* node = m_.node(station.node);
+    if (node == nullptr) return;
+    if (!drives_something(station.node))
+      return reading_.error(m_.where(path + ".node"), finding::kPointNoAxis, {station.node});
+    const DeviceConfig* device = loaded_.device(node->device);
+    if (device == nullptr || !known(*device)) return;
+    const auto mapped = [](const std::vector<PdoConfig>& pdos, int index, int sub) {
+      for (const PdoConfig& pdo : pdos)
+        for (const PdoObject& o : pdo.objects)
+          if (o.index == index && o.subindex == sub) return true;
+      return false;
+    };
+    for (std::size_t i = 0; i < station.points.size(); ++i) {
+      const PointConfig& p = station.points[i];
+      const Where at = m_.where(path + ".points." + std::to_string(i) + ".channel");
+      if (p.number < 0 || p.is_analog()) continue;
+      if (p.is_input() && p.number >= kFirstReserved && p.number < kFirstOfMaker)
+        reading_.error(at, finding::kReservedChannel, {p.channel_text});
+      if (p.is_input() && !mapped(device->tpdos, 0x60FD, 0))
+        reading_.error(at, finding::kPointNotMapped, {p.channel_text, "60FD:00/32", "tpdo", node->device});
+      if (p.is_input()) continue;
+      if (!mapped(device->rpdos, 0x60FE, 1))
+        reading_.error(at, finding::kPointNotMapped, {p.channel_text, "60FE:01/32", "rpdo", node->device});
+      if (device->behaviour.brake_bit == p.number)
+        reading_.error(at, finding::kBrakeBit, {p.channel_text, std::to_string(p.number), node->device});
+      for (const auto* objects : {&device->objects, &node->objects})
+        for (const auto& [name, value] : *objects) {
+          const auto object = parse_object(name);
+          if (object && object->index == 0x60FE && object->subindex == 2 &&
+              (static_cast<std::uint32_t>(value) >> p.number & 1) == 0)
+            reading_.error(at, finding::kMaskedOutput,
+                           {p.channel_text, std::to_string(p.number), node->device});
+        }
+    }
   }
 
   const LoadResult& loaded_;

@@ -20,6 +20,26 @@ inline constexpr text::Entry kBadChannel{"machine.bad_channel",
                                          "канал «{0}»: ожидалось di, dq, ai или aq с номером, например di3"};
 inline constexpr text::Entry kChannelOutside{"machine.channel_outside", "channel \"{0}\": {1} has {2}",
                                              "канал «{0}»: {1}: есть {2}"};
+inline constexpr text::Entry kReservedChannel{
+    "machine.reserved_channel", "channel \"{0}\": bits 4 to 15 of 60FDh are reserved by CiA 402",
+    "канал «{0}»: биты 4 ... 15 объекта 60FDh зарезервированы в CiA 402"};
+inline constexpr text::Entry kPointNotMapped{
+    "machine.point_not_mapped",
+    "channel \"{0}\": {1} is in no {2} of device file \"{3}\"; add it, or take a device file that has it",
+    "канал «{0}»: {1} нет ни в одном {2} файла устройства «{3}»; добавьте его или выберите другой файл"};
+inline constexpr text::Entry kPointNoAxis{
+    "machine.point_no_axis",
+    "node \"{0}\" is the drive of no axis and no spindle: nothing reads or writes its points",
+    "узел «{0}» не является приводом ни оси, ни шпинделя: его точки никто не читает и не пишет"};
+inline constexpr text::Entry kBrakeBit{
+    "machine.brake_bit", "channel \"{0}\": bit {1} of 60FEh:01 works the brake (device file \"{2}\")",
+    "канал «{0}»: бит {1} объекта 60FEh:01 управляет тормозом (файл устройства «{2}»)"};
+inline constexpr text::Entry kMaskedOutput{
+    "machine.masked_output", "channel \"{0}\": the mask 60FEh:02 of device file \"{2}\" leaves out bit {1}",
+    "канал «{0}»: маска 60FEh:02 файла устройства «{2}» не содержит бит {1}"};
+inline constexpr text::Entry kDebounceKind{"machine.debounce_kind",
+                                           "`debounce`: channel \"{0}\" is no digital input",
+                                           "`debounce`: канал «{0}» не является дискретным входом"};
 inline constexpr text::Entry kAnalogOnGpio{"machine.analog_on_gpio",
                                            "channel \"{0}\": a {1} station has digital channels only",
                                            "канал «{0}»: у станции вида {1} только дискретные каналы"};

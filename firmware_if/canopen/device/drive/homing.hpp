@@ -17,6 +17,7 @@ inline constexpr std::size_t kDriveInputs = 5;
 struct DriveInputs {
   std::array<bool, kDriveInputs> active{};
   std::array<std::int64_t, kDriveInputs> edge_position{};
+  bool interlock = false;     ///< bit 3 of 60FDh
   std::uint16_t general = 0;  ///< bits 16-31 of 60FDh
   bool main_voltage = true;
   bool torque_allowed = true;  ///< no safe torque off

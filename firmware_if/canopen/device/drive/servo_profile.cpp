@@ -348,6 +348,7 @@ void ServoProfile::refresh() noexcept {
   v_.dc_link = inputs_.main_voltage ? static_cast<std::int64_t>(kDcLinkMillivolts) : 0;
   std::int64_t bits = static_cast<std::int64_t>(inputs_.general) << 16;
   for (std::size_t i = 0; i < 3; ++i) bits |= inputs_.active[i] ? std::int64_t{1} << i : 0;
+  if (inputs_.interlock) bits |= std::int64_t{1} << 3;
   v_.digital_inputs = bits;
   v_.mode_display = static_cast<std::int64_t>(mode_);
 }

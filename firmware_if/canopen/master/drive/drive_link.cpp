@@ -218,10 +218,12 @@ void DriveLink::apply(image::Nanoseconds now, const image::DriveCommand& command
   data_.set(out_.controlword, word);
   data_.set(out_.mode, static_cast<std::uint8_t>(mode));
   data_.set(out_.probe_function, probe_.function());
+  std::uint64_t outputs = command.digital_outputs;
   if (profile_.brake_bit >= 0) {
-    const bool level = command.brake_release == profile_.brake_bit_releases;
-    data_.set(out_.digital_outputs, level ? std::uint64_t{1} << profile_.brake_bit : 0);
+    const std::uint64_t brake = std::uint64_t{1} << profile_.brake_bit;
+    outputs = command.brake_release == profile_.brake_bit_releases ? outputs | brake : outputs & ~brake;
   }
+  data_.set(out_.digital_outputs, outputs);
   set_targets(command);
 }
 
