@@ -21,6 +21,12 @@ int carry_out(const CommandLine& line) {
   if (line.command == "can bus") return command::can_bus(line.bus.can_bus);
   if (line.command == "drive") return command::drive(line.bus.drive);
   if (line.command == "dump") return command::dump(line.bus.dump);
+  if (line.command == "can check") return command::can_check(line.bus.can_check);
+  if (line.command == "scan") return command::scan(line.bus.scan);
+  if (line.command == "sdo") return command::sdo(line.bus.sdo);
+  if (line.command == "od") return command::od(line.bus.od);
+  if (line.command == "lss") return command::lss(line.bus.lss);
+  if (line.command == "nmt") return command::nmt(line.bus.nmt);
   if (line.command == "play") return command::play(line.bus.play);
   if (line.command == "up") return command::up(line.up);
   return command::client(line.client);

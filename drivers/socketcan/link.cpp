@@ -156,10 +156,29 @@ int ask(const Request& request, Visit visit) {
   return error;
 }
 
+constexpr std::size_t kRoom = 192;
+
 struct LinkRequest {
   nlmsghdr head{};
   ifinfomsg link{};
-  std::array<char, 64> room{};
+  std::array<char, kRoom> room{};
+};
+
+/// Attributes of a message to the kernel, one after the other.
+struct Attributes {
+  std::array<char, kRoom> bytes{};
+  std::size_t used = 0;
+
+  /// What does not fit is left out, and the kernel refuses the message.
+  void put(int type, const void* data, std::size_t size) noexcept {
+    if (used + RTA_SPACE(size) > bytes.size()) return;
+    rtattr head{};
+    head.rta_type = static_cast<unsigned short>(type);
+    head.rta_len = static_cast<unsigned short>(RTA_LENGTH(size));
+    std::memcpy(bytes.data() + used, &head, sizeof head);
+    std::memcpy(bytes.data() + used + RTA_LENGTH(0), data, size);
+    used += RTA_SPACE(size);
+  }
 };
 
 std::vector<LinkInfo> all_links() {
@@ -189,29 +208,43 @@ std::vector<std::string> can_interfaces() {
   return names;
 }
 
-int restart_link(int index) {
+int set_link(int index, const LinkSetting& setting) {
   LinkRequest request;
   request.head.nlmsg_type = RTM_NEWLINK;
   request.head.nlmsg_flags = NLM_F_REQUEST | NLM_F_ACK;
   request.link.ifi_index = index;
-  // linkinfo { kind "can", data { restart 1 } }
-  const auto put = [](char* at, int type, const void* data, std::size_t size) {
-    rtattr head{};
-    head.rta_type = static_cast<unsigned short>(type);
-    head.rta_len = static_cast<unsigned short>(RTA_LENGTH(size));
-    std::memcpy(at, &head, sizeof head);
-    if (data != nullptr) std::memcpy(at + RTA_LENGTH(0), data, size);
-    return RTA_SPACE(size);
-  };
-  std::array<char, 64> inner{};
+  if (setting.up) {
+    request.link.ifi_change = IFF_UP;
+    request.link.ifi_flags = *setting.up ? IFF_UP : 0;
+  }
+  Attributes controller;
+  if (setting.bit_rate != 0) {
+    can_bittiming timing{};
+    timing.bitrate = setting.bit_rate;
+    controller.put(IFLA_CAN_BITTIMING, &timing, sizeof timing);
+  }
+  if (setting.listen_only) {
+    const can_ctrlmode mode{CAN_CTRLMODE_LISTENONLY, *setting.listen_only ? CAN_CTRLMODE_LISTENONLY : 0U};
+    controller.put(IFLA_CAN_CTRLMODE, &mode, sizeof mode);
+  }
   const std::uint32_t one = 1;
-  const std::size_t restart = put(inner.data(), IFLA_CAN_RESTART, &one, sizeof one);
-  std::array<char, 64> info{};
-  std::size_t used = put(info.data(), IFLA_INFO_KIND, "can", 4);
-  used += put(info.data() + used, IFLA_INFO_DATA, inner.data(), restart);
-  const std::size_t whole = put(request.room.data(), IFLA_LINKINFO, info.data(), used);
-  request.head.nlmsg_len = static_cast<std::uint32_t>(NLMSG_LENGTH(sizeof request.link) + whole);
+  if (setting.restart) controller.put(IFLA_CAN_RESTART, &one, sizeof one);
+  Attributes whole;
+  if (controller.used > 0) {
+    Attributes info;
+    info.put(IFLA_INFO_KIND, "can", 4);
+    info.put(IFLA_INFO_DATA, controller.bytes.data(), controller.used);
+    whole.put(IFLA_LINKINFO, info.bytes.data(), info.used);
+    std::memcpy(request.room.data(), whole.bytes.data(), whole.used);
+  }
+  request.head.nlmsg_len = static_cast<std::uint32_t>(NLMSG_LENGTH(sizeof request.link) + whole.used);
   return ask(request, [](const ifinfomsg&, Bytes) {});
+}
+
+int restart_link(int index) {
+  LinkSetting setting;
+  setting.restart = true;
+  return set_link(index, setting);
 }
 
 std::string command_up(const LinkInfo& link, std::uint32_t bit_rate) {

@@ -2,6 +2,7 @@
 #include "gateway/cli/bus_commands.hpp"
 
 #include "firmware_if/text/finding.hpp"
+#include "gateway/cli/canopen_commands.hpp"
 #include "gateway/cli/quantities.hpp"
 
 namespace servogate::gateway {
@@ -14,9 +15,7 @@ void add_bit_rate(CLI::App& app, double& rate) {
       ->check(number_within({10'000.0, 1e6, text::both("bit/s", "бит/с"), true}));
 }
 
-void add_can_bus(CLI::App& app, CanBusOptions& o) {
-  CLI::App& can = *app.add_subcommand("can", "CAN buses without a machine.");
-  can.require_subcommand(1);
+void add_can_bus(CLI::App& can, CanBusOptions& o) {
   CLI::App& bus = *can.add_subcommand(
       "bus", "Serves CAN buses to processes of this computer, in the words of socketcand.");
   bus.add_option("NAME", o.names, "Names of the buses: can0")->required();
@@ -77,7 +76,10 @@ void add_play(CLI::App& app, PlayOptions& o) {
 }  // namespace
 
 void add_bus_commands(CLI::App& app, BusCommands& options) {
-  add_can_bus(app, options.can_bus);
+  CLI::App& can = *app.add_subcommand("can", "CAN buses without a machine.");
+  can.require_subcommand(1);
+  add_can_bus(can, options.can_bus);
+  add_can_check(can, options.can_check);
   add_drive(app, options.drive);
   add_dump(app, options.dump);
   add_play(app, options.play);

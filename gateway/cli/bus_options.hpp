@@ -40,12 +40,68 @@ struct PlayOptions {
   bool may_move = false;
 };
 
+/// What the command line tools for CANopen have in common.
+struct CanopenBusOptions {
+  std::string bus;
+  double bit_rate = 0.0;      ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
+  double timeout_ms = 500.0;  ///< for an answer to an SDO or layer setting request
+  bool no_block = false;      ///< SDO in segments only
+  bool json = false;
+  double listen_s = 1.0;  ///< how long a bus must be silent of masters before what can move is done
+  bool may_move = false;
+};
+
+/// `servogate scan`: who is on the bus.
+struct ScanOptions : CanopenBusOptions {
+  double seconds = 2.0;  ///< for heartbeats
+};
+
+/// `servogate sdo`: one object of one node.
+struct SdoOptions : CanopenBusOptions {
+  int node = 0;
+  std::string action, object;
+  std::vector<std::string> words;  ///< VALUE and TYPE
+  std::string eds, save;
+};
+
+/// `servogate od`: the whole object dictionary of a node.
+struct OdOptions : CanopenBusOptions {
+  int node = 0;
+  std::string eds, save, compare;
+  std::string range;  ///< FIRST-LAST, hexadecimal; empty: the standard areas
+};
+
+/// `servogate lss`: layer setting services, in the order of the words.
+struct LssOptions : CanopenBusOptions {
+  /// Fastscan waits for every answer that does not come, 130 times.
+  LssOptions() { timeout_ms = 50.0; }
+  std::vector<std::string> words;
+};
+
+/// `servogate nmt`.
+struct NmtOptions : CanopenBusOptions {
+  std::string command;
+  std::string node = "all";
+};
+
+/// `servogate can check`.
+struct CanCheckOptions : CanopenBusOptions {
+  double seconds = 2.0;
+  bool detect = false;
+};
+
 /// Options of the commands that work on a bus.
 struct BusCommands {
   CanBusOptions can_bus;
+  CanCheckOptions can_check;
   DriveOptions drive;
   DumpOptions dump;
   PlayOptions play;
+  ScanOptions scan;
+  SdoOptions sdo;
+  OdOptions od;
+  LssOptions lss;
+  NmtOptions nmt;
 };
 
 }  // namespace servogate::gateway

@@ -4,6 +4,7 @@
 
 #include "firmware_if/text/finding.hpp"
 #include "gateway/cli/bus_commands.hpp"
+#include "gateway/cli/canopen_commands.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/quantities.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -61,9 +62,11 @@ void unshield(std::string& word) {
 
 /// The arguments as CLI11 wants them: last one first, without the program's name.
 std::vector<std::string> shielded(int argc, char** argv) {
-  const bool client =
-      argc > 1 && std::any_of(std::begin(kClients), std::end(kClients),
-                              [&](const ClientCommand& c) { return c.name == std::string_view(argv[1]); });
+  // Numbers of these may be negative, and are no options.
+  const bool numbers =
+      argc > 1 && (std::string_view(argv[1]) == "sdo" ||
+                   std::any_of(std::begin(kClients), std::end(kClients),
+                               [&](const ClientCommand& c) { return c.name == std::string_view(argv[1]); }));
   std::vector<std::string> arguments;
   for (int i = argc; i-- > 1;) {
     const std::string word = argv[i];
@@ -71,7 +74,7 @@ std::vector<std::string> shielded(int argc, char** argv) {
     if (word == "--realtime")
       arguments.push_back(word + "=strict");
     else
-      arguments.push_back(client && negative(word) ? kShield + word : word);
+      arguments.push_back(numbers && negative(word) ? kShield + word : word);
   }
   return arguments;
 }
@@ -97,6 +100,7 @@ class Commands {
     plc();
     add_bus_commands(app_, line.bus);
   }
+    add_canopen_commands(app_, line.bus);
 
   CLI::App& app() { return app_; }
 
@@ -109,6 +113,7 @@ class Commands {
     line_.client.command = line_.command;
     for (std::string& argument : line_.client.arguments) unshield(argument);
     line_.run.clock = line_.up.clock = virtual_time_           ? ClockKind::virtual_time
+    for (std::string& word : line_.bus.sdo.words) unshield(word);
                                        : realtime_ == "strict" ? ClockKind::realtime
                                        : realtime_.empty()     ? ClockKind::unset
                                                                : ClockKind::realtime_best_effort;

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+// `servogate can check`: how a bus is, in sentences.
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "firmware_if/image/can_wire.hpp"
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/options.hpp"
+#include "gateway/cli/standard_output.hpp"
+#include "gateway/command/canopen/bit_rate_detection.hpp"
+#include "gateway/command/canopen/foreign_master.hpp"
+#include "gateway/command/canopen/held_bus.hpp"
+#include "gateway/command/commands.hpp"
+#include "gateway/command/named_bus.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+using image::CanState;
+using nlohmann::json;
+using text::Entry;
+
+const Entry kLink{"check.link", "{0} is up at {1} bit/s, {2}", "{0} включён, {1} бит/с, {2}"};
+const Entry kVirtual{"check.virtual", "{0} is a virtual interface: it has no bit rate and makes no errors",
+                     "{0} — виртуальный интерфейс: у него нет скорости и не бывает ошибок"};
+const Entry kServed{"check.served", "{0} answers; a bus between processes has no error counters",
+                    "{0} отвечает; у шины между процессами нет счётчиков ошибок"};
+const Entry kDown{"check.down", "{0} is down; bring it up with: sudo {1}",
+                  "{0} выключен; включить: sudo {1}"};
+const Entry kCounters{
+    "check.counters",
+    "error counters of the controller: transmit {0}, receive {1} (0 is healthy, from 96 on it warns, "
+    "from 128 on it is passive)",
+    "счётчики ошибок контроллера: передача {0}, приём {1} (0 — исправно, с 96 предупреждение, со 128 "
+    "пассивное состояние)"};
+const Entry kRising{
+    "check.rising",
+    "errors are counted while it listens: look at bit rate, termination (60 ohms between CAN_H and "
+    "CAN_L) and wiring",
+    "ошибки растут во время прослушивания: проверьте скорость, терминаторы (60 Ом между CAN_H и CAN_L) "
+    "и кабель"};
+const Entry kRestart{"check.restart", "after bus-off the controller restarts by itself, {0} ms later",
+                     "после bus-off контроллер перезапустится сам через {0} мс"};
+const Entry kNoRestart{"check.no-restart",
+                       "after bus-off the controller stays off: `restart-ms 100` lets it return by itself",
+                       "после bus-off контроллер останется выключенным: `restart-ms 100` вернёт его сам"};
+const Entry kQueue{
+    "check.queue",
+    "the kernel keeps {0} frames waiting; a control wants at least {1}: sudo ip link set "
+    "{2} txqueuelen {1}",
+    "в очереди ядра {0} кадров; управлению нужно не меньше {1}: sudo ip link set {2} txqueuelen {1}"};
+const Entry kQuiet{"check.quiet", "no frame came within {0} s", "за {0} с не пришло ни одного кадра"};
+const Entry kTraffic{"check.traffic", "frames within {1} s: {0}, {2} % of the bit rate of {3} bit/s",
+                     "кадров за {1} с: {0}, {2} % скорости {3} бит/с"};
+const Entry kHeard{"check.heard", "nodes heard: {0}", "слышны узлы: {0}"};
+const Entry kMaster{"check.master", "somebody controls this bus: {0}", "этой шиной кто-то управляет: {0}"};
+const Entry kHolder{"check.holder", "the running control of '{0}' holds it ({1})",
+                    "её держит работающее управление «{0}» ({1})"};
+const Entry kIdle{"check.idle", "nobody controls it", "ею никто не управляет"};
+const Entry kErrorFrames{"check.error-frames", "{0} error frames came", "пришло кадров ошибок: {0}"};
+const Entry kNoDetection{
+    "check.no-detection",
+    "the bit rate of {0} cannot be found by listening: only CAN hardware of this computer can do it",
+    "скорость {0} прослушиванием не найти: это умеет только аппаратный CAN этого компьютера"};
+const Entry kDetectUp{
+    "check.detect-up", "{0} is up, and what uses it would be cut off: sudo ip link set {0} down, then again",
+    "{0} включён, и тот, кто им пользуется, был бы отключён: sudo ip link set {0} down, и снова"};
+const Entry kTrying{"check.trying", "listening at {0} bit/s", "прослушивание на {0} бит/с"};
+const Entry kDetected{"check.detected", "the bus runs at {0} bit/s: sudo {1}",
+                      "шина работает на {0} бит/с: sudo {1}"};
+const Entry kUndetected{"check.undetected",
+                        "no frame came at any usual bit rate: nobody speaks, or the wiring is open",
+                        "ни на одной обычной скорости кадров нет: никто не говорит, либо обрыв кабеля"};
+const Entry kCannotDetect{"check.cannot-detect", "{0} cannot be set to listen only: {1}",
+                          "{0} не переводится в прослушивание: {1}"};
+
+/// Frames that fit into one cycle of a full segment, with room.
+constexpr std::uint32_t kWantedQueue = 64;
+
+struct StateRow {
+  CanState state;
+  const char* name;
+  const char* english;
+  const char* russian;
+  bool healthy;
+};
+constexpr StateRow kStates[] = {
+    {CanState::error_active, "error_active", "error-active (healthy)", "error-active (исправно)", true},
+    {CanState::error_warning, "error_warning", "error-warning: errors pile up",
+     "error-warning: ошибки копятся", true},
+    {CanState::error_passive, "error_passive",
+     "error-passive: nobody acknowledges (no other node, another bit rate, open wiring), or most frames are "
+     "destroyed",
+     "error-passive: никто не подтверждает (нет других узлов, другая скорость, обрыв) или большинство кадров "
+     "гибнет",
+     false},
+    {CanState::bus_off, "bus_off", "bus-off: it has taken itself off the bus after too many errors",
+     "bus-off: отключился от шины после слишком многих ошибок", false},
+    {CanState::down, "down", "down", "выключен", false},
+};
+const StateRow& row_of(CanState state) {
+  for (const StateRow& r : kStates)
+    if (r.state == state) return r;
+  return kStates[0];
+}
+
+/// What came while it listened.
+struct Traffic {
+  std::uint64_t frames = 0, bits = 0, errors = 0;
+  std::set<int> nodes;
+  std::string master;  ///< its first frame, both languages
+};
+
+Traffic listen(ToolBus& bus, double seconds) {
+  Traffic t;
+  bus.listen(std::llround(seconds * 1e9), [&](const image::CanFrame& frame) {
+    if (frame.error) {
+      ++t.errors;
+      return false;
+    }
+    ++t.frames;
+    t.bits += image::known_bits(frame) + image::kIntermissionBits;
+    const canopen::CobId id = canopen::classify(frame.id, frame.extended);
+    using canopen::Service;
+    if (!frame.remote && (id.service == Service::heartbeat || id.service == Service::emcy ||
+                          id.service == Service::sdo_response))
+      t.nodes.insert(id.node);
+    if (t.master.empty() && shows_master(frame)) t.master = frame_words(frame);
+    return false;
+  });
+  return t;
+}
+
+/// Sentences and facts, told at the end at once.
+class Report {
+ public:
+  explicit Report(const CanCheckOptions& options) : options_(options) {
+    facts_["schema"] = 1;
+    facts_["bus"] = options.bus;
+  }
+  void say(const Entry& entry, const std::vector<std::string>& arguments = {}) {
+    sentences_.push_back(text::render(entry, arguments, text::user_language()));
+  }
+  void wrong(const Entry& entry, const std::vector<std::string>& arguments = {}) {
+    say(entry, arguments);
+    healthy_ = false;
+  }
+  void mark(bool healthy) { healthy_ = healthy_ && healthy; }
+  json& facts() { return facts_; }
+  int tell() {
+    facts_["ok"] = healthy_;
+    facts_["sentences"] = sentences_;
+    if (options_.json)
+      print_line(facts_.dump(1, ' ', false, json::error_handler_t::replace));
+    else
+      for (const std::string& s : sentences_) print_line(s);
+    return healthy_ ? kDone : kAlarm;
+  }
+
+ private:
+  const CanCheckOptions& options_;
+  json facts_;
+  std::vector<std::string> sentences_;
+  bool healthy_ = true;
+};
+
+bool is_virtual(const socketcan::LinkInfo& link) { return link.kind == "vcan" || link.kind == "vxcan"; }
+
+void tell_link(Report& report, const socketcan::LinkInfo& link) {
+  const StateRow& state = row_of(link.state);
+  report.facts()["link"] = {{"interface", link.name},
+                            {"kind", link.kind},
+                            {"up", link.up},
+                            {"state", state.name},
+                            {"bit_rate", link.bit_rate},
+                            {"restart_ms", link.restart_ms},
+                            {"queue", link.transmit_queue},
+                            {"fd", link.fd}};
+  if (is_virtual(link)) {
+    report.say(kVirtual, {link.name});
+  } else {
+    report.say(kLink, {link.name, std::to_string(link.bit_rate), text::both(state.english, state.russian)});
+    report.say(link.restart_ms > 0 ? kRestart : kNoRestart, {std::to_string(link.restart_ms)});
+    if (link.transmit_queue < kWantedQueue)
+      report.say(kQueue, {std::to_string(link.transmit_queue), std::to_string(kWantedQueue), link.name});
+  }
+  report.mark(state.healthy);
+  if (!link.counters) return;
+  report.facts()["link"]["transmit_errors"] = link.transmit_errors;
+  report.facts()["link"]["receive_errors"] = link.receive_errors;
+  report.say(kCounters, {std::to_string(link.transmit_errors), std::to_string(link.receive_errors)});
+}
+
+void tell_traffic(Report& report, const Traffic& t, const CanCheckOptions& options, std::uint32_t bit_rate) {
+  const double load = static_cast<double>(t.bits) / (options.seconds * bit_rate) * 100.0;
+  report.facts()["traffic"] = {{"seconds", options.seconds}, {"frames", t.frames},
+                               {"error_frames", t.errors},   {"load_percent", load},
+                               {"nodes", t.nodes},           {"controlled", !t.master.empty()}};
+  if (t.frames == 0)
+    report.say(kQuiet, {text::number(options.seconds)});
+  else
+    report.say(kTraffic, {std::to_string(t.frames), text::number(options.seconds), text::number(load, 1),
+                          std::to_string(bit_rate)});
+  if (t.errors > 0) report.wrong(kErrorFrames, {std::to_string(t.errors)});
+  std::string nodes;
+  for (const int node : t.nodes) nodes += (nodes.empty() ? "" : ", ") + std::to_string(node);
+  if (!nodes.empty()) report.say(kHeard, {nodes});
+}
+
+int detect(const CanCheckOptions& options, const std::optional<socketcan::LinkInfo>& link, Report& report) {
+  if (!link || is_virtual(*link) || link->kind.empty()) {
+    complain(kNoDetection, {options.bus});
+    return kInfrastructure;
+  }
+  if (link->up) {
+    complain(kDetectUp, {link->name});
+    return kWrongUse;
+  }
+  const EndBySignal signals;
+  const DetectedRate found = detect_bit_rate(*link, [&](std::uint32_t rate) {
+    std::fprintf(
+        stderr, "%s\n",
+        text::render(kTrying, std::vector<std::string>{std::to_string(rate)}, text::user_language()).c_str());
+    return !signals.ended();
+  });
+  if (signals.ended()) return kStopped;
+  if (!found.problem.empty()) {
+    complain(kCannotDetect, {link->name, found.problem});
+    return kInfrastructure;
+  }
+  report.facts()["bit_rate"] = found.bit_rate ? json(*found.bit_rate) : json();
+  if (found.bit_rate)
+    report.say(kDetected, {std::to_string(*found.bit_rate), socketcan::command_up(*link, *found.bit_rate)});
+  else
+    report.wrong(kUndetected);
+  return report.tell();
+}
+
+/// Errors were counted between two looks at the link.
+bool rising(const std::optional<socketcan::LinkInfo>& before,
+            const std::optional<socketcan::LinkInfo>& after) {
+  return before && after && after->counters &&
+         (after->transmit_errors > before->transmit_errors || after->receive_errors > before->receive_errors);
+}
+
+}  // namespace
+
+int can_check(const CanCheckOptions& options) {
+  const auto named = named_bus(options.bus, options.bit_rate);
+  if (!named) return kWrongUse;
+  const bool interface = named->url.starts_with("socketcan:");
+  const auto look = [&] {
+    return interface ? socketcan::read_link(named->url.substr(std::string_view("socketcan:").size()))
+                     : std::nullopt;
+  };
+  const std::optional<socketcan::LinkInfo> before = look();
+  Report report(options);
+  if (options.detect) return detect(options, before, report);
+  if (before && before->is_can && !before->up) {
+    const std::uint32_t rate = named->bit_rate != 0 ? named->bit_rate : 1'000'000;
+    report.facts()["link"] = {{"interface", before->name}, {"up", false}};
+    report.wrong(kDown, {before->name, socketcan::command_up(*before, rate)});
+    return report.tell();
+  }
+  const std::optional<Holder> holder = holder_of(named->url);
+  if (holder) {
+    report.facts()["held_by"] = {{"machine", holder->machine}, {"socket", holder->socket}};
+    if (named->url.starts_with("mock:")) {
+      report.say(kHolder, {holder->machine, holder->socket});
+      return report.tell();
+    }
+  }
+  int code = kDone;
+  const auto bus = ToolBus::open(options, code);
+  if (bus == nullptr) return code;
+  const Traffic traffic = listen(*bus, options.seconds);
+  if (bus->over()) return bus->finish(kDone);
+  const std::optional<socketcan::LinkInfo> after = look();
+  if (after)
+    tell_link(report, *after);
+  else
+    report.say(kServed, {named->url});
+  tell_traffic(report, traffic, options, bus->bit_rate());
+  if (rising(before, after)) report.wrong(kRising);
+  if (holder) report.say(kHolder, {holder->machine, holder->socket});
+  if (!traffic.master.empty())
+    report.say(kMaster, {traffic.master});
+  else if (!holder)
+    report.say(kIdle);
+  return bus->finish(report.tell());
+}
+
+}  // namespace servogate::gateway::command

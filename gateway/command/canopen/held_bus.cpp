@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/command/canopen/held_bus.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/options.hpp"
+#include "gateway/command/canopen/object_value.hpp"
+#include "gateway/command/named_bus.hpp"
+#include "gateway/server/socket_path.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+using nlohmann::json;
+
+const text::Entry kHeld{
+    "can.held",
+    "{0} is not done: the bus {1} is held by the running control of '{2}' ({3}); `servogate "
+    "down` ends it",
+    "{0} не выполняется: шину {1} держит работающее управление «{2}» ({3}); его завершает "
+    "`servogate down`"};
+const text::Entry kNoConnection{"can.no-connection", "cannot reach the control at {0}: {1}",
+                                "нет связи с управлением {0}: {1}"};
+
+/// Patience with a control that only has to say how it is, ms.
+constexpr int kStatusPatience = 2000;
+
+json ask(SocketClient& connection, const json& request, int patience_ms) {
+  std::string line;
+  if (!connection.send(request.dump() + "\n") || !connection.receive(line, patience_ms)) return nullptr;
+  return json::parse(line, nullptr, false);
+}
+
+/// Holder of the bus if the control behind this socket has it.
+std::optional<Holder> holder_at(const std::string& socket, const std::string& url) {
+  SocketClient connection;
+  if (!connection.connect(socket).empty()) return std::nullopt;
+  const json status = ask(connection, {{"cmd", "status"}, {"asker", "command_line"}}, kStatusPatience);
+  if (!status.is_object()) return std::nullopt;
+  for (const json& bus : status.value("buses", json::array())) {
+    if (bus.value("url", "") != url) continue;
+    Holder holder{socket, status.value("machine", ""), bus.value("name", ""), {}};
+    for (const json& n : bus.value("nodes", json::array()))
+      holder.nodes.push_back({n.value("node", 0), n.value("name", ""), n.value("online", false)});
+    return holder;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Holder> holder_of(const std::string& url) {
+  std::vector<std::string> sockets = known_sockets();
+  if (const char* named = std::getenv("SERVOGATE_SOCKET"); named != nullptr && *named != '\0')
+    if (std::find(sockets.begin(), sockets.end(), named) == sockets.end()) sockets.emplace_back(named);
+  for (const std::string& socket : sockets)
+    if (auto holder = holder_at(socket, url)) return holder;
+  return std::nullopt;
+}
+
+bool find_holder(const CanopenBusOptions& options, std::optional<Holder>& holder, int& code) {
+  const auto named = named_bus(options.bus, options.bit_rate);
+  code = kWrongUse;
+  if (!named) return false;
+  holder = holder_of(named->url);
+  return true;
+}
+
+int refuse_held(const Holder& holder, const std::string& url, const std::string& what) {
+  complain(kHeld, {what, url, holder.machine, holder.socket});
+  return kAlarm;
+}
+
+std::unique_ptr<HeldBus> HeldBus::open(Holder holder, double timeout_ms) {
+  std::unique_ptr<HeldBus> bus(new HeldBus(std::move(holder), timeout_ms));
+  const std::string problem = bus->connection_.connect(bus->holder_.socket);
+  if (problem.empty()) return bus;
+  complain(kNoConnection, {bus->holder_.socket, problem});
+  return nullptr;
+}
+
+SdoOutcome HeldBus::read(canopen::NodeId node, std::uint16_t index, std::uint8_t subindex) {
+  SdoOutcome outcome;
+  refusal_.clear();
+  const json answer = ask(connection_,
+                          {{"cmd", "sdo_read"},
+                           {"asker", "command_line"},
+                           {"language", text::user_language() == text::Language::russian ? "ru" : "en"},
+                           {"bus", holder_.bus},
+                           {"node", node},
+                           {"index", index},
+                           {"subindex", subindex}},
+                          static_cast<int>(timeout_ms_) + kStatusPatience);
+  if (!answer.is_object()) return outcome;
+  if (!answer.value("ok", false)) {
+    refusal_ = answer.value("text", "");
+    return outcome;
+  }
+  outcome.abort = static_cast<canopen::AbortCode>(answer.value("abort", 0U));
+  const std::string status = answer.value("status", "");
+  outcome.status = status == "done"      ? canopen::SdoStatus::done
+                   : status == "aborted" ? canopen::SdoStatus::aborted
+                                         : canopen::SdoStatus::no_answer;
+  const auto bytes = encode_value(answer.value("data", ""), *type_named("hex"));
+  if (bytes) outcome.data = *bytes;
+  return outcome;
+}
+
+SdoOutcome HeldBus::write(canopen::NodeId, std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
+  SdoOutcome outcome;
+  outcome.status = canopen::SdoStatus::aborted;
+  outcome.abort = canopen::AbortCode::local_control;
+  return outcome;
+}
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/command/canopen/object_walk.hpp"
+
+#include <algorithm>
+
+#include "firmware_if/canopen/402/objects.hpp"
+#include "gateway/command/canopen/foreign_master.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+namespace object = canopen::object;
+using canopen::AbortCode;
+using canopen::EdsAccess;
+using canopen::NodeId;
+
+constexpr std::uint16_t kDomain = 0x0F;
+/// An area is left after so many indices in a row that do not exist.
+constexpr int kGap = 8;
+
+/// SDO and PDO parameters are numbered from the front, so that their areas end early.
+constexpr bool numbered(std::uint16_t index) { return index >= 0x1200 && index < 0x1C00; }
+
+bool missing(const SdoOutcome& outcome) {
+  return outcome.abort == AbortCode::object_does_not_exist ||
+         outcome.abort == AbortCode::subindex_does_not_exist;
+}
+
+/// Sub-indices 1 ... of an index whose sub-index 0 was read.
+void walk_subs(SdoAccess& access, NodeId node, ReadObject head, std::vector<ReadObject>& out,
+               const std::function<bool()>& over) {
+  const bool counts = head.outcome.ok() && head.outcome.data.size() == 1 && head.outcome.data[0] > 0;
+  // The standards know their variables; some devices answer any sub-index of one.
+  const bool variable = known_object(head.index, 0) && !known_object(head.index, 1);
+  const int most = variable ? 0 : head.outcome.ok() ? (counts ? head.outcome.data[0] : 0) : 254;
+  std::vector<ReadObject> subs;
+  for (int sub = 1; sub <= most && !over(); ++sub) {
+    ReadObject one{head.index, static_cast<std::uint8_t>(sub), {}, true};
+    one.outcome = access.read(node, one.index, one.subindex);
+    if (!one.outcome.answered()) break;
+    const bool none = missing(one.outcome);
+    if (!none) subs.push_back(std::move(one));
+    // A number of one byte that is no count: the first sub-index is missing. An array may have holes.
+    if (none && sub == 1 && head.index != object::kPredefinedErrorField) break;
+  }
+  head.record = !subs.empty();
+  if (!missing(head.outcome) || head.record) out.push_back(std::move(head));
+  std::move(subs.begin(), subs.end(), std::back_inserter(out));
+}
+
+void walk_range(SdoAccess& access, NodeId node, IndexRange range, std::vector<ReadObject>& out,
+                const std::function<bool()>& over) {
+  int gap = 0;
+  for (int index = range.first; index <= range.last && !over(); ++index) {
+    ReadObject head{static_cast<std::uint16_t>(index), 0, {}, false};
+    head.outcome = access.read(node, head.index, 0);
+    if (!head.outcome.answered()) return;
+    if (head.outcome.abort == AbortCode::object_does_not_exist) {
+      if (numbered(head.index) && ++gap >= kGap) return;
+      continue;
+    }
+    gap = 0;
+    walk_subs(access, node, std::move(head), out, over);
+  }
+}
+
+bool to_be_read(const canopen::EdsEntry& e) {
+  return e.access != EdsAccess::wo && e.data_type != 0 && e.data_type != kDomain && (e.flags & 2) == 0;
+}
+
+template <class Take>
+void each_entry(const canopen::Eds& eds, Take take) {
+  for (const auto& [index, object] : eds.objects) {
+    if (object.subs.empty()) take(index, std::uint8_t{0}, object.entry, false);
+    for (const auto& [subindex, entry] : object.subs) take(index, subindex, entry, true);
+  }
+}
+
+canopen::EdsEntry entry_of(const ReadObject& o, std::string name) {
+  canopen::EdsEntry e;
+  e.name = std::move(name);
+  const auto known = known_object(o.index, o.subindex);
+  e.data_type = known ? known->data_type : guess_type(o.outcome.data)->data_type;
+  e.access = known && !known->writable ? EdsAccess::ro : EdsAccess::rw;
+  e.pdo_mapping = known && known->mappable;
+  return e;
+}
+
+void take_value(canopen::EdsEntry& e, const ReadObject& o) {
+  e.parameter_value = canopen::EdsValue{eds_value_text(o.outcome.data, e.data_type), std::nullopt};
+}
+
+canopen::Eds sheet_of(const std::vector<ReadObject>& objects) {
+  canopen::Eds eds;
+  const auto number = [&](std::uint8_t subindex) {
+    for (const ReadObject& o : objects)
+      if (o.index == object::kIdentity && o.subindex == subindex && o.outcome.ok())
+        return eds_value_text(o.outcome.data, 0x07);
+    return std::string("0");
+  };
+  eds.file_info = {
+      {"FileVersion", "1"}, {"FileRevision", "1"}, {"EDSVersion", "4.0"}, {"CreatedBy", "servogate od"}};
+  eds.device_info = {
+      {"VendorNumber", number(1)}, {"ProductNumber", number(2)}, {"RevisionNumber", number(3)}};
+  for (const ReadObject& o : objects) {
+    if (!o.outcome.ok()) continue;
+    std::string name(canopen::object_name(o.index));
+    if (name.empty()) name = "Object " + address_text(o.index, 0).substr(0, 5);
+    canopen::EdsObject& whole = eds.objects[o.index];
+    if (!o.record) {
+      whole.entry = entry_of(o, name);
+      continue;
+    }
+    whole.entry.name = name;
+    whole.entry.type = canopen::EdsObjectType::record;
+    whole.entry.data_type = 0;
+    const std::string sub =
+        o.subindex == 0 ? "Highest sub-index supported" : name + " " + std::to_string(o.subindex);
+    whole.subs[o.subindex] = entry_of(o, sub);
+  }
+  return eds;
+}
+
+/// A parameter, as opposed to a live value, a command or a service behind an object.
+bool is_parameter(std::uint16_t index, const canopen::EdsEntry& e) {
+  if (index == object::kPredefinedErrorField || index == object::kStoreParameters ||
+      index == object::kRestoreParameters || can_move(index) || (e.flags & 1) != 0)
+    return false;
+  if (index == object::kDeviceType || index == object::kIdentity) return true;
+  return e.access != EdsAccess::ro && to_be_read(e);
+}
+
+/// The bytes that a value of a file means; nullopt: it says none that could be compared.
+std::optional<std::vector<std::uint8_t>> bytes_of(const canopen::EdsEntry& e, NodeId node) {
+  const canopen::EdsValue* value = e.value();
+  const ValueType* type = type_numbered(e.data_type);
+  if (value == nullptr || type == nullptr) return std::nullopt;
+  const int bits = canopen::eds_type_bits(e.data_type);
+  if (value->number && bits > 0) {
+    std::vector<std::uint8_t> out(static_cast<std::size_t>(std::max(1, bits / 8)));
+    canopen::store_le(static_cast<std::uint64_t>(value->number->at(node)), out);
+    return out;
+  }
+  if (value->text.empty() && type->name != "str") return std::nullopt;
+  return encode_value(value->text, *type);
+}
+
+bool equal(const std::vector<std::uint8_t>& wanted, std::vector<std::uint8_t> got, const ValueType& type) {
+  // A device may end its text with zeros.
+  while (type.name == "str" && !got.empty() && got.back() == 0) got.pop_back();
+  return wanted == got;
+}
+
+}  // namespace
+
+std::vector<IndexRange> standard_areas() {
+  return {{0x1000, 0x10FF}, {0x1200, 0x127F}, {0x1280, 0x12FF}, {0x1400, 0x15FF}, {0x1600, 0x17FF},
+          {0x1800, 0x19FF}, {0x1A00, 0x1BFF}, {0x1F50, 0x1F9F}, {0x6000, 0x67FF}};
+}
+
+std::vector<ReadObject> read_listed(SdoAccess& access, NodeId node, const canopen::Eds& eds,
+                                    const std::function<bool()>& over) {
+  std::vector<ReadObject> out;
+  bool silent = false;
+  each_entry(eds, [&](std::uint16_t index, std::uint8_t subindex, const canopen::EdsEntry& e, bool record) {
+    if (silent || over() || !to_be_read(e)) return;
+    out.push_back({index, subindex, access.read(node, index, subindex), record});
+    silent = !out.back().outcome.answered();
+  });
+  return out;
+}
+
+std::vector<ReadObject> walk(SdoAccess& access, NodeId node, const std::vector<IndexRange>& ranges,
+                             const std::function<bool()>& over) {
+  std::vector<ReadObject> out;
+  for (const IndexRange& range : ranges) walk_range(access, node, range, out, over);
+  return out;
+}
+
+canopen::Eds configuration_of(const std::vector<ReadObject>& objects, const canopen::Eds* eds, NodeId node,
+                              std::uint32_t bit_rate) {
+  canopen::Eds dcf = eds != nullptr ? *eds : sheet_of(objects);
+  for (const ReadObject& o : objects)
+    if (canopen::EdsEntry* e = dcf.find(o.index, o.subindex); e != nullptr && o.outcome.ok())
+      take_value(*e, o);
+  canopen::EdsCommissioning commissioning = dcf.commissioning.value_or(canopen::EdsCommissioning{});
+  commissioning.node = node;
+  commissioning.kbit_s = bit_rate / 1000;
+  dcf.commissioning = commissioning;
+  return dcf;
+}
+
+std::vector<Difference> differences(SdoAccess& access, NodeId node, const canopen::Eds& file, int& compared,
+                                    const std::function<bool()>& over) {
+  std::vector<Difference> out;
+  compared = 0;
+  bool silent = false;
+  each_entry(file, [&](std::uint16_t index, std::uint8_t subindex, const canopen::EdsEntry& e, bool) {
+    if (silent || over() || !is_parameter(index, e)) return;
+    const auto wanted = bytes_of(e, node);
+    if (!wanted) return;
+    ++compared;
+    SdoOutcome outcome = access.read(node, index, subindex);
+    const ValueType* type = type_numbered(e.data_type);
+    if (outcome.ok() && equal(*wanted, outcome.data, *type)) return;
+    silent = !outcome.answered();
+    out.push_back({index, subindex, show_value(*wanted, type), std::move(outcome), type});
+  });
+  return out;
+}
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// `servogate od`: the object dictionary of a node.
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/options.hpp"
+#include "gateway/cli/standard_output.hpp"
+#include "gateway/command/canopen/held_bus.hpp"
+#include "gateway/command/canopen/object_walk.hpp"
+#include "gateway/command/commands.hpp"
+#include "gateway/files/output_files.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+using nlohmann::json;
+
+const text::Entry kBadRange{"od.bad-range", "'{0}' is no range; expected FIRST-LAST, hexadecimal: 2000-5FFF",
+                            "«{0}» — не диапазон; нужно FIRST-LAST в шестнадцатеричном виде: 2000-5FFF"};
+const text::Entry kSilent{"od.silent", "node {0} does not answer{1}", "узел {0} не отвечает{1}"};
+const text::Entry kSaved{"od.saved", "{0}: {1} values of node {2}", "{0}: значений узла {2} — {1}"};
+const text::Entry kEqual{"od.equal", "node {0} is as {1} has it: {2} parameters compared",
+                         "узел {0} соответствует {1}: сравнено параметров: {2}"};
+const text::Entry kDiffers{"od.differs", "{0}: the device has {1}, the file {2}",
+                           "{0}: в устройстве {1}, в файле {2}"};
+const text::Entry kMany{"od.differences", "{0} of {1} parameters differ from {2}",
+                        "параметров, отличных от {2}: {0} из {1}"};
+
+/// What the command works on.
+struct Work {
+  const OdOptions& options;
+  SdoAccess& access;
+  std::function<bool()> over;
+  std::uint32_t bit_rate;
+  canopen::NodeId node() const { return static_cast<canopen::NodeId>(options.node); }
+};
+
+std::string say(const text::Entry& entry, const std::vector<std::string>& arguments) {
+  return text::render(entry, arguments, text::user_language());
+}
+
+/// "1018h:04 Identity object".
+std::string place_words(const ObjectCatalogue& catalogue, std::uint16_t index, std::uint8_t subindex) {
+  const std::string name = catalogue.name(index, subindex);
+  return address_text(index, subindex) + (name.empty() ? "" : " " + name);
+}
+
+json place_json(const ObjectCatalogue& catalogue, std::uint16_t index, std::uint8_t subindex) {
+  char digits[8];
+  std::snprintf(digits, sizeof digits, "%04X", index);
+  return {{"index", digits}, {"subindex", subindex}, {"name", catalogue.name(index, subindex)}};
+}
+
+json head(const OdOptions& options) { return {{"schema", 1}, {"node", options.node}}; }
+void print_json(const json& out) { print_line(out.dump(1, ' ', false, json::error_handler_t::replace)); }
+
+void print_objects(const Work& work, const ObjectCatalogue& catalogue,
+                   const std::vector<ReadObject>& objects) {
+  json list = json::array();
+  for (const ReadObject& o : objects) {
+    const ValueType* type = catalogue.type(o.index, o.subindex);
+    if (type == nullptr && o.outcome.ok()) type = guess_type(o.outcome.data);
+    const std::string value = o.outcome.ok() ? show_value(o.outcome.data, type) : o.outcome.why();
+    if (!work.options.json) {
+      print_line(place_words(catalogue, o.index, o.subindex) + (o.outcome.ok() ? " = " : ": ") + value);
+      continue;
+    }
+    json row = place_json(catalogue, o.index, o.subindex);
+    if (o.outcome.ok()) {
+      row["type"] = type->name;
+      row["value"] = json_value(o.outcome.data, type);
+      row["bytes"] = hex_text(o.outcome.data);
+    } else {
+      row["error"] = value;
+      row["abort"] = static_cast<std::uint32_t>(o.outcome.abort);
+    }
+    list.push_back(std::move(row));
+  }
+  if (!work.options.json) return;
+  json out = head(work.options);
+  out["objects"] = std::move(list);
+  print_json(out);
+}
+
+int save(const Work& work, const std::vector<ReadObject>& objects, const canopen::Eds* eds) {
+  std::ofstream file(work.options.save, std::ios::binary);
+  file << canopen::write_dcf(configuration_of(objects, eds, work.node(), work.bit_rate));
+  if (!file.flush()) {
+    complain(kCannotWrite, {work.options.save, std::strerror(errno)});
+    return kInfrastructure;
+  }
+  const auto read =
+      std::count_if(objects.begin(), objects.end(), [](const auto& o) { return o.outcome.ok(); });
+  std::fprintf(
+      stderr, "%s\n",
+      say(kSaved, {work.options.save, std::to_string(read), std::to_string(work.options.node)}).c_str());
+  return kDone;
+}
+
+int compare(const Work& work, const canopen::Eds& file) {
+  int compared = 0;
+  const std::vector<Difference> found = differences(work.access, work.node(), file, compared, work.over);
+  const ObjectCatalogue catalogue(&file);
+  json list = json::array();
+  for (const Difference& d : found) {
+    const std::string got = d.outcome.ok() ? show_value(d.outcome.data, d.type) : d.outcome.why();
+    if (work.options.json) {
+      json row = place_json(catalogue, d.index, d.subindex);
+      row["device"] = got;
+      row["file"] = d.wanted;
+      list.push_back(std::move(row));
+    } else {
+      print_line(say(kDiffers, {place_words(catalogue, d.index, d.subindex), got, d.wanted}));
+    }
+  }
+  if (work.options.json) {
+    json out = head(work.options);
+    out["compared"] = compared;
+    out["differences"] = std::move(list);
+    print_json(out);
+  } else if (found.empty()) {
+    print_line(
+        say(kEqual, {std::to_string(work.options.node), work.options.compare, std::to_string(compared)}));
+  } else {
+    complain(kMany, {std::to_string(found.size()), std::to_string(compared), work.options.compare});
+  }
+  return found.empty() ? kDone : kAlarm;
+}
+
+/// FIRST-LAST; false: it is none.
+bool parse_range(const std::string& text, IndexRange& range) {
+  const std::size_t dash = text.find('-');
+  const auto first = parse_address(text.substr(0, dash));
+  const auto last = dash == std::string::npos ? first : parse_address(text.substr(dash + 1));
+  if (!first || !last || last->index < first->index) return false;
+  range = {first->index, last->index};
+  return true;
+}
+
+int work_on(const Work& work, const canopen::Eds* eds, const canopen::Eds* file,
+            const std::vector<IndexRange>& ranges, const std::string* refusal) {
+  const SdoOutcome alive = work.access.read(work.node(), 0x1000, 0);
+  if (!alive.answered()) {
+    complain(kSilent, {std::to_string(work.options.node),
+                       refusal != nullptr && !refusal->empty() ? ": " + *refusal : ""});
+    return kAlarm;
+  }
+  if (file != nullptr) return compare(work, *file);
+  const std::vector<ReadObject> objects = eds != nullptr && work.options.range.empty()
+                                              ? read_listed(work.access, work.node(), *eds, work.over)
+                                              : walk(work.access, work.node(), ranges, work.over);
+  if (work.over()) return kInfrastructure;
+  print_objects(work, ObjectCatalogue(eds), objects);
+  if (!objects.empty() && !objects.back().outcome.answered()) {
+    complain(kSilent, {std::to_string(work.options.node), ""});
+    return kAlarm;
+  }
+  return work.options.save.empty() ? kDone : save(work, objects, eds);
+}
+
+}  // namespace
+
+int od(const OdOptions& options) {
+  std::vector<IndexRange> ranges = standard_areas();
+  if (!options.range.empty()) {
+    ranges.resize(1);
+    if (!parse_range(options.range, ranges.front())) {
+      complain(kBadRange, {options.range});
+      return kWrongUse;
+    }
+  }
+  if (const auto problem = files::problem_of_outputs(
+          {{"--save", options.save}}, {{"--eds", options.eds}, {"--compare", options.compare}})) {
+    complain(*problem->entry, problem->arguments);
+    return problem->wrong_use ? kWrongUse : kInfrastructure;
+  }
+  std::optional<canopen::Eds> eds, file;
+  if (!options.eds.empty() && !(eds = read_data_sheet(options.eds))) return kWrongUse;
+  if (!options.compare.empty() && !(file = read_data_sheet(options.compare))) return kWrongUse;
+  const canopen::Eds* sheet = eds ? &*eds : nullptr;
+  const canopen::Eds* other = file ? &*file : nullptr;
+  int code = kDone;
+  std::optional<Holder> holder;
+  if (!find_holder(options, holder, code)) return code;
+  if (holder) {
+    const auto held = HeldBus::open(*holder, options.timeout_ms);
+    if (held == nullptr) return kInfrastructure;
+    return work_on({options, *held, [] { return false; }, static_cast<std::uint32_t>(options.bit_rate)},
+                   sheet, other, ranges, &held->refusal());
+  }
+  const auto bus = ToolBus::open(options, code);
+  if (bus == nullptr) return code;
+  return bus->finish(
+      work_on({options, *bus, [&] { return bus->over(); }, bus->bit_rate()}, sheet, other, ranges, nullptr));
+}
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+// `servogate scan`: who is on a CANopen bus.
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "drivers/clock.hpp"
+#include "firmware_if/canopen/402/objects.hpp"
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/options.hpp"
+#include "gateway/cli/standard_output.hpp"
+#include "gateway/command/canopen/device_words.hpp"
+#include "gateway/command/canopen/foreign_master.hpp"
+#include "gateway/command/canopen/guarding.hpp"
+#include "gateway/command/canopen/held_bus.hpp"
+#include "gateway/command/canopen/object_value.hpp"
+#include "gateway/command/canopen/tool_bus.hpp"
+#include "gateway/command/commands.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+using canopen::NodeId;
+using nlohmann::json;
+namespace object = canopen::object;
+
+const text::Entry kUsed{"scan.in-use", "somebody controls this bus (its frame {0} was seen); scan only reads",
+                        "этой шиной кто-то управляет (виден его кадр {0}); scan только читает"};
+const text::Entry kThrough{"scan.through", "read through the running control of '{0}', which holds the bus",
+                           "читается через работающее управление «{0}», которое держит шину"};
+const text::Entry kNobody{
+    "scan.nobody",
+    "nobody answers and nobody is heard: look at power, wiring, termination and bit rate "
+    "(`servogate can check`)",
+    "никто не отвечает и никого не слышно: проверьте питание, кабель, терминаторы и "
+    "скорость (`servogate can check`)"};
+const text::Entry kNode{"scan.node", "node {0}: {1}, {2}, {3}", "узел {0}: {1}, {2}, {3}"};
+const text::Entry kNodeNoObjects{"scan.node-no-objects", "node {0}: {1}, {2}, does not answer SDO",
+                                 "узел {0}: {1}, {2}, на SDO не отвечает"};
+const text::Entry kIdentity{"scan.identity", "vendor {0}, product {1}, revision {2}, serial number {3}",
+                            "производитель {0}, изделие {1}, версия {2}, заводской номер {3}"};
+const text::Entry kModes{"scan.modes", "modes: {0}", "режимы: {0}"};
+
+/// What is known of a node.
+struct Node {
+  std::optional<canopen::NmtState> state;
+  int heartbeats = 0;
+  bool guarded = false;  ///< the state was asked for by a remote frame
+  bool answers_sdo = false;
+  std::optional<bool> online;  ///< of a held bus: what its control says
+  std::optional<std::uint32_t> type, heartbeat_ms, modes;
+  std::array<std::optional<std::uint32_t>, 4> identity;
+  std::array<std::string, 3> names;  ///< 1008h, 1009h, 100Ah
+};
+using Nodes = std::map<int, Node>;
+
+bool ask_device_type(ToolBus& bus, const ToolBus::Handler& hear) {
+  for (int id = 1; id <= canopen::kMaxNode; ++id) {
+    const auto node = static_cast<NodeId>(id);
+    const auto bytes = canopen::sdo_request::upload(object::kDeviceType, 0);
+    if (!bus.send(canopen::make_frame(canopen::cob::sdo_request(node), bytes))) return false;
+    // A slow bus and a slow device get the time that they need.
+    bus.listen(image::kMillisecond, hear);
+  }
+  return true;
+}
+
+/// Asks everybody for 1000h, hears heartbeats. The first frame of a foreign master in `master`.
+void find_nodes(ToolBus& bus, const ScanOptions& options, Nodes& nodes, std::string& master) {
+  const auto hear = [&](const image::CanFrame& frame) {
+    const canopen::CobId id = canopen::classify(frame.id, frame.extended);
+    if (!frame.error && master.empty() && shows_master(frame)) master = frame_words(frame);
+    if (frame.remote || frame.error || id.node == 0) return false;
+    if (id.service == canopen::Service::sdo_response && frame.length == 8) {
+      nodes[id.node].answers_sdo = true;
+    } else if (id.service == canopen::Service::heartbeat) {
+      if (const auto state = canopen::parse_heartbeat(frame)) {
+        nodes[id.node].state =
+            *state == canopen::NmtState::boot_up ? canopen::NmtState::pre_operational : *state;
+        ++nodes[id.node].heartbeats;
+      }
+    } else if (id.service == canopen::Service::emcy) {
+      nodes[id.node];
+    }
+    return false;
+  };
+  const image::Nanoseconds begin = drivers::clock_ns(CLOCK_MONOTONIC);
+  if (!ask_device_type(bus, hear)) return;
+  const auto whole = std::llround(std::max(options.seconds * 1e9, options.timeout_ms * 1e6));
+  bus.listen(begin + whole - drivers::clock_ns(CLOCK_MONOTONIC), hear);
+}
+
+void read_facts(SdoAccess& access, int number, Node& node) {
+  const auto id = static_cast<NodeId>(number);
+  node.type = number_of(access, id, object::kDeviceType, 0);
+  for (std::uint8_t i = 0; i < 4; ++i)
+    node.identity[i] = number_of(access, id, object::kIdentity, static_cast<std::uint8_t>(i + 1));
+  constexpr std::uint16_t kNames[] = {object::kDeviceName, object::kHardwareVersion,
+                                      object::kSoftwareVersion};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SdoOutcome name = access.read(id, kNames[i], 0);
+    if (name.ok()) node.names[i] = json_value(name.data, type_named("str")).get<std::string>();
+  }
+  node.heartbeat_ms = number_of(access, id, object::kProducerHeartbeatTime, 0);
+  if (node.type && has_profile(*node.type, 402))
+    node.modes = number_of(access, id, object::kSupportedDriveModes, 0);
+}
+
+/// The state of a node that sends no heartbeat.
+void ask_state(ToolBus& bus, int id, Node& node) {
+  const auto number = static_cast<NodeId>(id);
+  if (node.state || !may_guard(bus, number)) return;
+  node.state = guard_once(bus, number);
+  node.guarded = node.state.has_value();
+}
+
+std::string hexadecimal(std::uint32_t value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%08Xh", value);
+  return text;
+}
+
+std::string state_words(const Node& node) {
+  if (node.state) return nmt_state_words(*node.state);
+  if (node.online)
+    return *node.online ? text::both("online", "на связи") : text::both("not online", "не на связи");
+  return text::both("state unknown", "состояние неизвестно");
+}
+
+std::string heartbeat_words(const Node& node) {
+  const std::uint32_t ms = node.heartbeat_ms.value_or(0);
+  const std::string every = std::to_string(ms);
+  if (node.heartbeats > 0)
+    return ms > 0 ? text::both("heartbeat every " + every + " ms", "heartbeat каждые " + every + " мс")
+                  : text::both("heartbeat seen", "heartbeat виден");
+  if (node.online && ms > 0)
+    return text::both("heartbeat every " + every + " ms", "heartbeat каждые " + every + " мс");
+  if (ms > 0)
+    return text::both("heartbeat of " + every + " ms not seen",
+                      "heartbeat с периодом " + every + " мс не виден");
+  return node.guarded ? text::both("no heartbeat, answers guarding", "без heartbeat, на опрос отвечает")
+                      : text::both("no heartbeat", "без heartbeat");
+}
+
+std::string say(const text::Entry& entry, const std::vector<std::string>& arguments) {
+  return text::render(entry, arguments, text::user_language());
+}
+
+void print_node(int id, const Node& node) {
+  const std::string number = std::to_string(id);
+  if (!node.type) {
+    print_line(say(kNodeNoObjects, {number, state_words(node), heartbeat_words(node)}));
+    return;
+  }
+  print_line(say(kNode, {number, state_words(node), heartbeat_words(node), device_type_words(*node.type)}));
+  std::string names;
+  for (const std::string& name : node.names)
+    if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty()) print_line("  " + names);
+  if (node.identity[0])
+    print_line("  " +
+               say(kIdentity, {hexadecimal(*node.identity[0]), hexadecimal(node.identity[1].value_or(0)),
+                               hexadecimal(node.identity[2].value_or(0)),
+                               std::to_string(node.identity[3].value_or(0))}));
+  if (node.modes) print_line("  " + say(kModes, {drive_modes(*node.modes)}));
+}
+
+json node_json(int id, const Node& node) {
+  const auto or_null = [](const auto& value) { return value ? json(*value) : json(); };
+  json out{{"node", id},
+           {"state", node.state ? json(nmt_state_name(*node.state)) : json()},
+           {"heartbeat_seen", node.heartbeats > 0},
+           {"heartbeat_ms", or_null(node.heartbeat_ms)},
+           {"answers_sdo", node.answers_sdo},
+           {"device_type", or_null(node.type)},
+           {"vendor_id", or_null(node.identity[0])},
+           {"product_code", or_null(node.identity[1])},
+           {"revision", or_null(node.identity[2])},
+           {"serial_number", or_null(node.identity[3])},
+           {"device_name", node.names[0]},
+           {"hardware_version", node.names[1]},
+           {"software_version", node.names[2]}};
+  if (node.online) out["online"] = *node.online;
+  if (!node.type) return out;
+  out["profile"] = *node.type & 0xFFFF;
+  out["device"] = say({"", "{0}", "{0}"}, {device_type_words(*node.type)});
+  if (!node.modes) return out;
+  out["modes"] = json::array();
+  std::string words = drive_modes(*node.modes) + " ";
+  for (std::size_t at = 0, end = 0; (end = words.find(' ', at)) != std::string::npos; at = end + 1)
+    if (end > at) out["modes"].push_back(words.substr(at, end - at));
+  return out;
+}
+
+int tell(const ScanOptions& options, const Nodes& nodes, const std::string& master, const Holder* holder) {
+  if (options.json) {
+    json out{{"schema", 1}, {"bus", options.bus}, {"nodes", json::array()}};
+    if (!master.empty()) out["controlled_by_frame"] = say({"", "{0}", "{0}"}, {master});
+    if (holder != nullptr) out["held_by"] = {{"machine", holder->machine}, {"socket", holder->socket}};
+    for (const auto& [id, node] : nodes) out["nodes"].push_back(node_json(id, node));
+    print_line(out.dump(1, ' ', false, json::error_handler_t::replace));
+  } else {
+    if (holder != nullptr) std::fprintf(stderr, "%s\n", say(kThrough, {holder->machine}).c_str());
+    if (!master.empty()) std::fprintf(stderr, "%s\n", say(kUsed, {master}).c_str());
+    for (const auto& [id, node] : nodes) print_node(id, node);
+  }
+  if (!nodes.empty()) return kDone;
+  complain(kNobody, {});
+  return kAlarm;
+}
+
+int scan_held(const ScanOptions& options, const Holder& holder) {
+  const auto bus = HeldBus::open(holder, options.timeout_ms);
+  if (bus == nullptr) return kInfrastructure;
+  Nodes nodes;
+  for (const Holder::Node& n : holder.nodes) {
+    Node& node = nodes[n.id];
+    node.online = n.online;
+    read_facts(*bus, n.id, node);
+    node.answers_sdo = node.type.has_value();
+  }
+  return tell(options, nodes, "", &holder);
+}
+
+}  // namespace
+
+int scan(const ScanOptions& options) {
+  int code = kDone;
+  std::optional<Holder> holder;
+  if (!find_holder(options, holder, code)) return code;
+  if (holder) return scan_held(options, *holder);
+  const auto bus = ToolBus::open(options, code);
+  if (bus == nullptr) return code;
+  Nodes nodes;
+  std::string master;
+  find_nodes(*bus, options, nodes, master);
+  for (auto& [id, node] : nodes) {
+    if (bus->over()) break;
+    if (!node.answers_sdo) continue;
+    read_facts(*bus, id, node);
+    ask_state(*bus, id, node);
+  }
+  if (bus->over()) return bus->finish(kDone);
+  return bus->finish(tell(options, nodes, master, nullptr));
+}
+
+}  // namespace servogate::gateway::command

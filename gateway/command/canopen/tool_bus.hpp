@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware_if/canopen/301/nmt.hpp"
+#include "firmware_if/canopen/301/sdo_client.hpp"
+#include "gateway/cli/bus_options.hpp"
+#include "gateway/command/signals.hpp"
+#include "gateway/compose/can_transport.hpp"
+
+namespace servogate::gateway::command {
+
+/// What an SDO access came to.
+struct SdoOutcome {
+  canopen::SdoStatus status = canopen::SdoStatus::no_answer;
+  canopen::AbortCode abort = canopen::AbortCode::none;
+  std::vector<std::uint8_t> data;  ///< what was read
+  bool ok() const noexcept { return status == canopen::SdoStatus::done; }
+  /// The device answered, with data or with an abort.
+  bool answered() const noexcept {
+    return status == canopen::SdoStatus::done || status == canopen::SdoStatus::aborted;
+  }
+  /// "0602 0000h: the object does not exist in the device", or that nobody answers.
+  std::string why(text::Language language = text::user_language()) const;
+};
+
+/// How the command line tools reach the objects of a node: over a bus of their own, or through the control
+/// that holds it.
+class SdoAccess {
+ public:
+  virtual ~SdoAccess() = default;
+  virtual SdoOutcome read(canopen::NodeId node, std::uint16_t index, std::uint8_t subindex) = 0;
+  virtual SdoOutcome write(canopen::NodeId node, std::uint16_t index, std::uint8_t subindex,
+                           std::span<const std::uint8_t> data) = 0;
+};
+
+/// A bus as a command line tool uses it: opened for this command, in the computer's time, waiting for
+/// answers. Not real-time safe.
+class ToolBus final : public SdoAccess {
+ public:
+  /// nullptr: refused, which has been said; `code` is the exit code then.
+  static std::unique_ptr<ToolBus> open(const CanopenBusOptions& options, int& code);
+
+  const std::string& url() const noexcept { return url_; }
+  const CanTransport& transport() const noexcept { return transport_; }
+  /// bit/s; 1 Mbit/s where the bus has no rate of its own.
+  std::uint32_t bit_rate() const noexcept;
+
+  /// Sees every frame that comes. True ends the waiting.
+  using Handler = std::function<bool(const image::CanFrame&)>;
+  /// Receives for at most `at_most`, less when a signal ends the command or the bus is gone. True: the
+  /// handler ended it.
+  bool listen(image::Nanoseconds at_most, const Handler& handler);
+  /// Waits until the bus takes the frame. False: it takes none (down, bus-off), or a signal came.
+  bool send(const image::CanFrame& frame);
+  /// The bus is down, its server has ended, or a signal came: go no further.
+  bool over() const;
+  bool gone() const { return transport_.bus->state() == image::CanState::down; }
+  bool ended() const noexcept { return signals_.ended(); }
+
+  SdoOutcome read(canopen::NodeId node, std::uint16_t index, std::uint8_t subindex) override;
+  SdoOutcome write(canopen::NodeId node, std::uint16_t index, std::uint8_t subindex,
+                   std::span<const std::uint8_t> data) override;
+
+  /// At the end of a command: says that the bus is gone or lost frames, and is kInfrastructure then; kStopped
+  /// after a signal; otherwise `code`.
+  int finish(int code) const;
+
+ private:
+  ToolBus(std::string url, CanTransport transport, const CanopenBusOptions& options);
+  canopen::SdoClient& client(canopen::NodeId node);
+  canopen::SdoStatus run(canopen::NodeId node);
+
+  std::string url_;
+  CanTransport transport_;
+  EndBySignal signals_;
+  image::Nanoseconds timeout_;
+  bool blocks_;
+  std::array<std::optional<canopen::SdoClient>, canopen::kMaxNode + 1> clients_;
+};
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <atomic>
+#include <thread>
+
+#include "firmware_if/canopen/301/nmt.hpp"
+#include "tests/canopen_tools/workbench.hpp"
+
+namespace servogate::canopen_tools {
+namespace {
+
+/// Sends a frame again and again while it lives, as a control would.
+class Sender {
+ public:
+  Sender(std::unique_ptr<usercan::SocketcandBus> bus, const image::CanFrame& frame)
+      : bus_(std::move(bus)), thread_([this, frame] {
+          while (!stop_) {
+            bus_->send(frame);
+            usleep(20'000);
+            for (image::CanFrame heard; bus_->receive(heard);) {
+            }
+          }
+        }) {}
+  ~Sender() {
+    stop_ = true;
+    thread_.join();
+  }
+
+ private:
+  std::unique_ptr<usercan::SocketcandBus> bus_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+TEST_F(Workbench, scan_names_every_node_with_identity_modes_and_state) {
+  drives("1,5");
+  const json nodes = facts("scan $BUS --seconds 0.5")["nodes"];
+  ASSERT_EQ(nodes.size(), 2u) << nodes;
+  const json& five = nodes[1];
+  EXPECT_EQ(five["node"], 5);
+  EXPECT_EQ(five["device"], "servo drive (CiA 402)");
+  EXPECT_EQ(five["profile"], 402);
+  EXPECT_EQ(five["product_code"], 0x0001'0192);
+  EXPECT_EQ(five["serial_number"], 5);
+  EXPECT_EQ(five["device_name"], "Servogate simulated drive");
+  EXPECT_EQ(five["state"], "pre_operational");
+  EXPECT_EQ(five["modes"], json::parse(R"(["pp","vl","pv","tq","hm","ip","csp","csv","cst"])"));
+  EXPECT_FALSE(five["heartbeat_seen"]) << "it only answers SDO";
+}
+
+TEST_F(Workbench, scan_sees_heartbeats_and_the_state_they_tell) {
+  drives("7");
+  ASSERT_EQ(tool("sdo $BUS 7 write 1017 50").code, 0);
+  ASSERT_EQ(tool("nmt $BUS start 7 --i-may-move --listen 0.1").code, 0);
+  const json node = facts("scan $BUS --seconds 0.5")["nodes"][0];
+  EXPECT_TRUE(node["heartbeat_seen"]);
+  EXPECT_EQ(node["heartbeat_ms"], 50);
+  EXPECT_EQ(node["state"], "operational");
+}
+
+TEST_F(Workbench, scan_of_an_empty_bus_is_a_failed_check_that_says_where_to_look) {
+  const Ended ended = tool("scan $BUS --seconds 0.3");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(ended.err_has("termination")) << ended.err;
+}
+
+TEST_F(Workbench, a_bus_that_is_not_there_is_infrastructure) {
+  EXPECT_EQ(tool("scan socketcand:127.0.0.1:1/can0").code, 4);
+  EXPECT_EQ(tool("sdo socketcand:127.0.0.1:1/can0 1 read 1000").code, 4);
+  EXPECT_EQ(tool("scan nonsense:can0").code, 4);
+}
+
+TEST_F(Workbench, sdo_reads_with_the_type_of_the_standard) {
+  drives("5");
+  const Ended text = tool("sdo $BUS 5 read 1008");
+  EXPECT_EQ(text.out, "1008h:00 Manufacturer device name = \"Servogate simulated drive\"\n") << text.err;
+  EXPECT_EQ(tool("sdo $BUS 5 read 0x1018:2").out, "1018h:02 Identity object = 65938 (00010192h)\n");
+  EXPECT_EQ(facts("sdo $BUS 5 read 60C2:2")["value"], -3);
+  EXPECT_EQ(facts("sdo $BUS 5 read 60C2h:2 hex")["value"], "FD");
+}
+
+TEST_F(Workbench, sdo_writes_numbers_of_both_signs_and_text_of_many_segments) {
+  drives("5");
+  ASSERT_EQ(tool("sdo $BUS 5 write 607C -123456").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 5 read 607C")["value"], -123456);
+  ASSERT_EQ(tool("sdo $BUS 5 write 6083 0x10000").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 5 read 6083")["value"], 65536);
+  const std::string name = "the drive of the third axis, behind the door";
+  ASSERT_EQ(tool("sdo $BUS 5 write 2100 '" + name + "' str").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 5 read 2100 str")["value"], name);
+  ASSERT_EQ(tool("sdo $BUS 5 write 2100 '" + name + "!' str --no-block").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 5 read 2100 str")["value"], name + "!");
+  ASSERT_EQ(tool("sdo $BUS 5 read 2100 str --save name.bin").code, 0);
+  EXPECT_EQ(desk_.text("name.bin"), name + "!");
+}
+
+TEST_F(Workbench, sdo_says_abort_codes_in_words_and_in_both_languages) {
+  drives("5");
+  Ended ended = tool("sdo $BUS 5 read 5FFF");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(ended.err_has("0602 0000h: the object does not exist in the device")) << ended.err;
+  ended = tool("sdo $BUS 5 read 5FFF", "ru_RU.UTF-8");
+  EXPECT_TRUE(ended.err_has("объекта нет в словаре устройства")) << ended.err;
+  EXPECT_EQ(facts("sdo $BUS 5 write 6041 1 u16", 1)["abort"], 0x0601'0002);
+  ended = tool("sdo $BUS 6 read 1000 --timeout 50");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(ended.err_has("node 6, 1000h:00: no answer")) << ended.err;
+}
+
+TEST_F(Workbench, sdo_tells_what_is_wrong_with_the_line_before_a_bus_is_opened) {
+  EXPECT_EQ(tool("sdo $BUS 5 read 12345").code, 2);
+  EXPECT_EQ(tool("sdo $BUS 0 read 1000").code, 2);
+  EXPECT_EQ(tool("sdo $BUS 5 write 607C").code, 2);
+  EXPECT_EQ(tool("sdo $BUS 5 write 2345 1").code, 2) << "the type is not known";
+  EXPECT_EQ(tool("sdo $BUS 5 write 1017 70000").code, 2) << "does not fit u16";
+  EXPECT_EQ(tool("sdo $BUS 5 read 1000 u31").code, 2);
+  EXPECT_EQ(tool("sdo $BUS 5 read 1000 --eds missing.eds").code, 2);
+}
+
+TEST_F(Workbench, sdo_takes_names_and_types_from_a_data_sheet) {
+  drives("5");
+  desk_.write("sheet.eds",
+              "[FileInfo]\nFileName=sheet.eds\n[DeviceInfo]\nVendorName=x\n[ManufacturerObjects]\n"
+              "SupportedObjects=1\n1=0x2100\n[2100]\nParameterName=Name of the user\nObjectType=0x7\n"
+              "DataType=0x0009\nAccessType=rw\nPDOMapping=0\n");
+  ASSERT_EQ(tool("sdo $BUS 5 write 2100 Anna --eds sheet.eds").code, 0);
+  EXPECT_EQ(tool("sdo $BUS 5 read 2100 --eds sheet.eds").out, "2100h:00 Name of the user = \"Anna\"\n");
+}
+
+TEST_F(Workbench, what_can_move_needs_the_word_and_a_bus_without_a_master) {
+  drives("5");
+  for (const char* write : {"6040 6", "6060 8", "607A 100", "60FF 100", "6071 10"}) {
+    const Ended ended = tool("sdo $BUS 5 write " + std::string(write));
+    EXPECT_EQ(ended.code, 2) << write;
+    EXPECT_TRUE(ended.err_has("--i-may-move")) << ended.err;
+  }
+  EXPECT_EQ(tool("nmt $BUS start 5").code, 2);
+  EXPECT_EQ(facts("sdo $BUS 5 read 6040")["value"], 0);
+  ASSERT_EQ(tool("sdo $BUS 5 write 6040 6 --i-may-move --listen 0.2").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 5 read 6041")["value"].get<int>() & 0x6F, 0x21);
+}
+
+TEST_F(Workbench, a_bus_in_use_is_refused_with_the_frame_that_shows_it) {
+  drives("5");
+  const struct {
+    image::CanFrame frame;
+    const char* words;
+  } masters[] = {{usercan::make(0x080, {}), "SYNC (080h)"},
+                 {usercan::make(0x205, {6, 0}), "RPDO 1 of node 5 (205h)"},
+                 {canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, 9), "NMT command (000h)"}};
+  for (const auto& master : masters) {
+    const Sender sender(join(), master.frame);
+    const Ended ended = tool("sdo $BUS 5 write 6040 6 --i-may-move");
+    EXPECT_EQ(ended.code, 1) << master.words;
+    EXPECT_TRUE(ended.err_has(master.words)) << ended.err;
+    EXPECT_EQ(tool("nmt $BUS stop all --i-may-move").code, 1);
+    EXPECT_EQ(tool("lss $BUS fastscan").code, 1);
+    EXPECT_EQ(tool("sdo $BUS 5 read 6041").code, 0) << "reading disturbs nobody";
+  }
+}
+
+TEST_F(Workbench, nmt_says_the_state_that_came_of_it) {
+  drives("5");
+  EXPECT_EQ(facts("nmt $BUS start 5 --i-may-move --listen 0.1")["states"][0]["state"], "operational");
+  EXPECT_EQ(facts("nmt $BUS stop 5 --i-may-move --listen 0.1")["states"][0]["state"], "stopped");
+  const json all = facts("nmt $BUS reset --i-may-move --listen 0.1");
+  EXPECT_EQ(all["states"], json::parse(R"([{"node":5,"state":"pre_operational"}])"));
+  EXPECT_EQ(tool("nmt $BUS start 200 --i-may-move").code, 2);
+  EXPECT_EQ(tool("nmt $BUS fly 5 --i-may-move").code, 2);
+}
+
+TEST_F(Workbench, od_finds_the_objects_of_a_drive_without_a_data_sheet) {
+  drives("5");
+  const json objects = facts("od $BUS 5")["objects"];
+  EXPECT_GT(objects.size(), 250u);
+  const auto value = [&](const char* index, int subindex) {
+    for (const json& o : objects)
+      if (o["index"] == index && o["subindex"] == subindex) return o.value("value", json());
+    return json("missing");
+  };
+  EXPECT_EQ(value("1018", 4), 5);
+  EXPECT_EQ(value("1A00", 1), 0x6041'0010);
+  EXPECT_EQ(value("607D", 1), -2147483648LL);
+  EXPECT_EQ(value("6502", 0), 1007);
+  EXPECT_EQ(value("60FE", 2), 0);
+  const json manufacturer = facts("od $BUS 5 --range 2000-21FF")["objects"];
+  ASSERT_EQ(manufacturer.size(), 1u);
+  EXPECT_EQ(manufacturer[0]["index"], "2100");
+}
+
+TEST_F(Workbench, od_saves_a_configuration_and_finds_what_was_changed_since) {
+  drives("5");
+  ASSERT_EQ(tool("od $BUS 5 --save a.dcf").code, 0);
+  Ended ended = tool("od $BUS 5 --compare a.dcf");
+  EXPECT_EQ(ended.code, 0) << ended.out << ended.err;
+  ASSERT_EQ(tool("sdo $BUS 5 write 6083 1234").code, 0);
+  ASSERT_EQ(tool("sdo $BUS 5 write 1400:2 1").code, 0);
+  ended = tool("od $BUS 5 --compare a.dcf");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(ended.out_has("6083h:00 Profile acceleration: the device has 1234")) << ended.out;
+  EXPECT_EQ(facts("od $BUS 5 --compare a.dcf", 1)["differences"].size(), 2u);
+  // The saved file is a data sheet like others.
+  ASSERT_EQ(tool("od $BUS 5 --eds a.dcf --save b.dcf").code, 0);
+  EXPECT_EQ(tool("od $BUS 5 --compare b.dcf").code, 0);
+  EXPECT_NE(desk_.text("b.dcf").find("NodeID=0x5"), std::string::npos);
+}
+
+TEST_F(Workbench, od_of_a_node_that_is_not_there_fails) {
+  const Ended ended = tool("od $BUS 9 --timeout 50");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(ended.err_has("node 9 does not answer")) << ended.err;
+  EXPECT_EQ(tool("od $BUS 9 --range zz").code, 2);
+}
+
+TEST_F(Workbench, lss_gives_a_device_another_node_id) {
+  drives("5");
+  const json steps =
+      facts("lss $BUS select 0:10192:10000:5 inquire node 17 store waiting --listen 0.1")["steps"];
+  EXPECT_EQ(steps[1]["node"], 5);
+  EXPECT_EQ(steps[1]["serial_number"], 5);
+  ASSERT_EQ(tool("nmt $BUS reset-comm --i-may-move --listen 0.1").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 17 read 1018:4")["value"], 5);
+}
+
+TEST_F(Workbench, lss_says_that_nobody_answers_and_which_words_are_wrong) {
+  const Ended ended = tool("lss $BUS fastscan --timeout 20 --listen 0.1");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(ended.err_has("nobody answers")) << ended.err;
+  EXPECT_EQ(tool("lss $BUS dance").code, 2);
+  EXPECT_EQ(tool("lss $BUS node 200").code, 2);
+  EXPECT_EQ(tool("lss $BUS bit-rate 123456").code, 2);
+  EXPECT_EQ(tool("lss $BUS select 1:2:3").code, 2);
+}
+
+TEST_F(Workbench, can_check_says_who_speaks_and_who_controls) {
+  drives("5");
+  ASSERT_EQ(tool("sdo $BUS 5 write 1017 20").code, 0);
+  json said = facts("can check $BUS --seconds 0.5");
+  EXPECT_EQ(said["traffic"]["nodes"], json::parse("[5]"));
+  EXPECT_FALSE(said["traffic"]["controlled"]);
+  EXPECT_GT(said["traffic"]["load_percent"], 0.1);
+  const Sender sender(join(), usercan::make(0x080, {}));
+  EXPECT_TRUE(tool("can check $BUS --seconds 0.5").out_has("somebody controls this bus: SYNC (080h)"));
+  EXPECT_EQ(tool("can check $BUS --detect").code, 4) << "there is nothing to set";
+}
+
+}  // namespace
+}  // namespace servogate::canopen_tools
