@@ -41,6 +41,12 @@ struct Engine::State {
   std::vector<std::uint8_t> memory;
   std::vector<Move> taken_in, put_back;
   std::vector<Force> forces;
+  struct Copy {
+    std::uint32_t from, to, size;
+  };
+  std::vector<Copy> retained;            ///< memory to snapshot, neighbours together
+  std::vector<std::uint8_t> given_back;  ///< restored bytes of places, which the first scan would take anew
+  std::vector<Copy> given_back_places;
   std::vector<TaskState> tasks;
   ScanResult fault;
   bool first = true;
@@ -146,6 +152,14 @@ Engine::Engine(std::shared_ptr<const Image> image)
     state_->taken_in.push_back(move_of(place));
     if (place.written) state_->put_back.push_back(state_->taken_in.back());
   }
+  for (const Image::RetainedCell& c : image_->retained) {
+    auto& copies = state_->retained;
+    if (!copies.empty() && copies.back().from + copies.back().size == c.address &&
+        copies.back().to + copies.back().size == c.offset)
+      copies.back().size += c.type->size;
+    else
+      copies.push_back({c.address, c.offset, c.type->size});
+  }
   restart();
 }
 Engine::~Engine() = default;
@@ -155,6 +169,8 @@ void Engine::restart() {
   state_->tasks.assign(image_->tasks.size(), {});
   state_->fault = {};
   state_->first = true;
+  state_->given_back.clear();
+  state_->given_back_places.clear();
 }
 
 ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexcept {
@@ -194,6 +210,9 @@ ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexce
         else
           std::memcpy(mem + p.address, p.initial.data(), p.initial.size());
       }
+  if (s.first)
+    for (const State::Copy& c : s.given_back_places)
+      std::memcpy(mem + c.to, s.given_back.data() + c.from, c.size);
   s.first = false;
   apply_forces();
 
@@ -288,6 +307,8 @@ double Engine::number(const Handle& h) const noexcept {
   return h.bit >= 0 ? (*at >> h.bit) & 1 : to_number(*h.type, at);
 }
 
+const std::uint8_t* Engine::data(const Handle& h) const noexcept { return state_->memory.data() + h.address; }
+
 namespace {
 // Puts bytes of a value into a variable, and into the packet where it mirrors a place.
 void assign(const Image& image, std::vector<std::uint8_t>& memory, image::Packets& packets, const Handle& h,
@@ -348,8 +369,8 @@ std::size_t Engine::retain_bytes() const noexcept { return image_->retain_bytes;
 
 bool Engine::snapshot_retained(std::span<std::uint8_t> out) const noexcept {
   if (out.size() < image_->retain_bytes) return false;
-  for (const Image::RetainedCell& c : image_->retained)
-    std::memcpy(out.data() + c.offset, state_->memory.data() + c.address, c.type->size);
+  for (const State::Copy& c : state_->retained)
+    std::memcpy(out.data() + c.to, state_->memory.data() + c.from, c.size);
   return true;
 }
 
@@ -375,6 +396,11 @@ std::size_t Engine::restore(std::span<const Retained> values) {
       std::vector<std::uint8_t> bytes(c.type->size);
       if (!parse_value(*c.type, v.value, bytes.data())) break;
       std::memcpy(state_->memory.data() + c.address, bytes.data(), bytes.size());
+      if (c.place >= 0) {
+        const auto at = static_cast<std::uint32_t>(state_->given_back.size());
+        state_->given_back.insert(state_->given_back.end(), bytes.begin(), bytes.end());
+        state_->given_back_places.push_back({at, c.address, c.type->size});
+      }
       ++taken;
       break;
     }

@@ -99,6 +99,8 @@ class Engine {
   /// Numeric value (BOOL 0 or 1, times in nanoseconds, enumerations by number), NaN for what is no number.
   /// real-time safe.
   double number(const Handle& handle) const noexcept;
+  /// The bytes of a variable as plc::to_json and plc::to_number take them. real-time safe.
+  const std::uint8_t* data(const Handle& handle) const noexcept;
   /// Writes a value given as an IEC literal (`TRUE`, `-5`, `16#FF`, `T#30ms`, `Red`, `'text'`) or as plain
   /// text for a STRING. The value stays until logic or another write changes it; a variable that mirrors a
   /// packet place is written in the packet. False: not an elementary variable, or the text is no value of its
@@ -124,7 +126,8 @@ class Engine {
   std::vector<Retained> retained(std::span<const std::uint8_t> snapshot) const;
   /// The present values. Not real-time safe.
   std::vector<Retained> retained() const;
-  /// Takes over every value whose name and type still exist; returns how many. Not real-time safe.
+  /// Takes over every value whose name and type still exist; returns how many. Before the first scan; a
+  /// place of a packet gets its value with it. Not real-time safe.
   std::size_t restore(std::span<const Retained> values);
 
   const Image& image() const noexcept { return *image_; }

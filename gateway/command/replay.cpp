@@ -96,6 +96,7 @@ int replay(const ReplayOptions& options) {
   const std::unique_ptr<Control> control = Control::compose(loaded, findings, &record);
   if (print_findings(findings) > 0 || control == nullptr) return kWrongUse;
   control->restore_references(header.state);
+  control->restore_retained(header.state);
   const std::vector<ProgramChange> changes = record.changes(loaded.machine);
   std::size_t changed = 0;
   std::string trace = options.trace;

@@ -17,6 +17,7 @@
 #include "gateway/run/operator_script.hpp"
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
+#include "gateway/run/retained_keeper.hpp"
 #include "gateway/run/session.hpp"
 #include "gateway/run/wait_words.hpp"
 #include "kernel/program/check.hpp"
@@ -91,6 +92,7 @@ class Run {
   machine::MachineState state_;
   std::unique_ptr<Control> control_;
   std::unique_ptr<RecordWriter> record_;
+  std::unique_ptr<RetainedKeeper> keeper_;
   double estimate_s_ = 0.0;
   long long estimate_blocks_ = 0;
   Clock::time_point begin_;
@@ -131,6 +133,8 @@ int Run::prepare() {
   if (control_ == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
   control_->restore_references(state_);
+  print_findings(control_->restore_retained(state_));
+  keeper_ = std::make_unique<RetainedKeeper>(*control_, options_.state, state_.retained_generation);
   if (!options_.record.empty()) record_ = begin_record(options_.record, options_.machine, state_, *control_);
   if (!options_.program.empty())
     control_->change({ProgramChange::Kind::program, 0, program_, state_.tables, {}});
@@ -349,7 +353,8 @@ bool Run::save_state() {
   }
   state_.tool_in_spindle = image.processes[0].tool;
   std::string error;
-  if (machine::StateDirectory(options_.state).save_all(state_, error)) return true;
+  if (machine::StateDirectory(options_.state).save_all(state_, error)) error = keeper_->close();
+  if (error.empty()) return true;
   complain(kCannotWrite, {options_.state, error});
   return false;
 }

@@ -11,6 +11,7 @@
 #include "gateway/machine/state.hpp"
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
+#include "gateway/run/retained_keeper.hpp"
 #include "gateway/server/socket_path.hpp"
 #include "gateway/server/socket_server.hpp"
 
@@ -124,11 +125,13 @@ int up(const UpOptions& options) {
   if (control == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
   control->restore_references(state);
+  print_findings(control->restore_retained(state));
   const std::unique_ptr<RecordWriter> record =
       options.record.empty() ? nullptr : begin_record(options.record, options.machine, state, *control);
   control->cycle().publish_every(is_virtual ? 1 : 5);
   control->world().close_operator_points();
 
+  RetainedKeeper keeper(*control, state_path, state.retained_generation);
   Resident resident(*control, std::move(state), state_path, is_virtual ? options.speed : 1.0);
   const std::string socket = !options.socket.empty() ? options.socket
                              : !m.run.socket.empty() ? m.resolve(m.run.socket)
@@ -166,10 +169,12 @@ int up(const UpOptions& options) {
   const std::string problem = resident.save();
   virtual_loop.reset();
   if (realtime_loop != nullptr) realtime_loop->stop();
+  const std::string unkept = keeper.close();
   const std::string unrecorded = record != nullptr ? record->close() : std::string();
   if (!problem.empty()) complain(kStateLost, {problem});
+  if (!unkept.empty()) complain(kStateLost, {unkept});
   if (!unrecorded.empty()) complain(kCannotWrite, {options.record, unrecorded});
-  return problem.empty() && unrecorded.empty() ? kDone : kInfrastructure;
+  return problem.empty() && unkept.empty() && unrecorded.empty() ? kDone : kInfrastructure;
 }
 
 }  // namespace servogate::gateway::command

@@ -36,6 +36,10 @@ class SilentBus final : public image::CanBus {
  private:
   std::uint32_t bit_rate_;
 };
+const text::Entry kNotRestored{
+    "compose.plc-not-restored",
+    "the retained value {2} of '{0}' is given up: the PLC has no such variable of type {1}",
+    "сохранённое значение {2} переменной «{0}» отброшено: в ПЛК нет такой переменной типа {1}"};
 const text::Entry kUnreadable{"compose.plc-unreadable", "cannot read the PLC source: {0}",
                               "исходный текст ПЛК не читается: {0}"};
 
@@ -227,6 +231,17 @@ void Control::restore_references(const machine::MachineState& state) {
         kept != state.homing.end() && kept->second.valid &&
         axes[a].home.method == machine::HomingMethod::absolute)
       cycle_->set_reference(static_cast<int>(a), kept->second.offset_counts);
+}
+
+std::vector<text::Finding> Control::restore_retained(const machine::MachineState& state) {
+  std::vector<text::Finding> findings;
+  for (const machine::RetainedVariable& v : state.retained) {
+    const plc::Retained value{v.name, v.type, v.value};
+    if (logic_ == nullptr || logic_->engine().restore({&value, 1}) == 0)
+      findings.push_back(
+          {text::Severity::warning, loaded_.machine.file, 0, 0, &kNotRestored, {v.name, v.type, v.value}});
+  }
+  return findings;
 }
 
 bool Control::step() {

@@ -51,6 +51,9 @@ class Control {
   void attach(ProgramChangeTap* tap) noexcept { change_tap_ = tap; }
   /// Takes over the references of absolute encoders that were kept; before the first cycle.
   void restore_references(const machine::MachineState& state);
+  /// Gives the PLC the retained values that were kept; before the first cycle. Warns of each that the program
+  /// has no variable of that name and type for.
+  std::vector<text::Finding> restore_retained(const machine::MachineState& state);
 
   cycle::Cycle& cycle() noexcept { return *cycle_; }
   const machine::MachineConfig& machine() const noexcept { return loaded_.machine; }

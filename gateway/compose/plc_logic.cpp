@@ -17,6 +17,9 @@ void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcep
     notices.add(r);
   }
   faulted_ = faulted;
+  if (faulted) return;  // what an abandoned scan has left half done is not kept
+  engine_.snapshot_retained(retained_.scratch());
+  retained_.publish();
 }
 
 }  // namespace servogate::gateway

@@ -23,8 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr StatePart kParts[] = {StatePart::origins,  StatePart::tools, StatePart::homing,
-                                StatePart::counters, StatePart::gains, StatePart::retained};
+/// Those of one file each; the retained variables have two copies.
+constexpr StatePart kParts[] = {StatePart::origins, StatePart::tools, StatePart::homing, StatePart::counters,
+                                StatePart::gains};
 
 std::string words(int code) { return std::system_category().message(code); }
 
@@ -58,15 +59,24 @@ bool sync_folder(const std::string& folder) {
   return fd.get() >= 0 && ::fsync(fd.get()) == 0;
 }
 
+bool write_temporary(const std::string& temporary, std::string_view text) {
+  const Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  return fd.get() >= 0 && write_whole(fd.get(), text) && ::fsync(fd.get()) == 0;
+}
+
+/// Temporary file, fsync, rename, fsync of the folder; the other copy is not touched.
+bool write_copy(const std::string& folder, const std::string& file, std::string_view text) {
+  const std::string temporary = file + ".new";
+  return write_temporary(temporary, text) && ::rename(temporary.c_str(), file.c_str()) == 0 &&
+         sync_folder(folder);
+}
+
 /// Temporary file, fsync, the present generation kept under another name, rename, fsync of the folder: at
 /// every point of time one whole generation has a name that load() looks at.
 bool write_generation(const std::string& folder, const std::string& file, const std::string& previous,
                       std::string_view text) {
   const std::string temporary = file + ".new";
-  {
-    const Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-    if (fd.get() < 0 || !write_whole(fd.get(), text) || ::fsync(fd.get()) != 0) return false;
-  }
+  if (!write_temporary(temporary, text)) return false;
   if (::unlink(previous.c_str()) != 0 && errno != ENOENT) return false;
   if (::link(file.c_str(), previous.c_str()) != 0 && errno != ENOENT) return false;
   if (::rename(temporary.c_str(), file.c_str()) != 0) return false;
@@ -118,6 +128,41 @@ void load_part(const std::string& file, StatePart part, MachineState& state,
     findings.push_back({text::Severity::error, previous, 0, 0, &finding::kNoGeneration, {}});
 }
 
+/// The retained variables from the newest whole copy.
+void load_retained(const std::string (&files)[2], MachineState& state, std::vector<text::Finding>& findings) {
+  std::vector<text::Finding> problems;
+  const std::string* taken = nullptr;
+  MachineState newest;
+  for (const std::string& file : files) {
+    const auto text = contents(file, problems);
+    if (!text) continue;
+    MachineState copy;
+    std::vector<text::Finding> found = read_part(*text, file, StatePart::retained, copy);
+    const bool whole = !any_error(found);
+    if (!whole || copy.retained_generation > newest.retained_generation || taken == nullptr)
+      problems.insert(problems.end(), found.begin(), found.end());
+    if (!whole || (taken != nullptr && copy.retained_generation <= newest.retained_generation)) continue;
+    newest = std::move(copy);
+    taken = &file;
+  }
+  if (taken != nullptr) {
+    const bool damaged = any_error(problems);
+    for (text::Finding& f : problems) f.severity = text::Severity::warning;
+    if (damaged)
+      problems.push_back({text::Severity::warning,
+                          *taken,
+                          0,
+                          0,
+                          &finding::kOtherCopyTaken,
+                          {std::to_string(newest.retained_generation)}});
+    state.retained = std::move(newest.retained);
+    state.retained_generation = newest.retained_generation;
+  } else if (!problems.empty()) {
+    problems.push_back({text::Severity::error, files[0], 0, 0, &finding::kRetainedLost, {files[1]}});
+  }
+  findings.insert(findings.end(), problems.begin(), problems.end());
+}
+
 }  // namespace
 
 bool StateDirectory::Loaded::ok() const { return !any_error(findings); }
@@ -128,9 +173,14 @@ std::string StateDirectory::file(StatePart part) const {
   return (fs::path(path_) / (std::string(part_name(part)) + ".toml")).string();
 }
 
+std::string StateDirectory::retained_file(std::int64_t generation) const {
+  return (fs::path(path_) / (generation % 2 == 0 ? "retained.a.toml" : "retained.b.toml")).string();
+}
+
 StateDirectory::Loaded StateDirectory::load() const {
   Loaded out;
   for (const StatePart part : kParts) load_part(file(part), part, out.state, out.findings);
+  load_retained({retained_file(0), retained_file(1)}, out.state, out.findings);
   return out;
 }
 
@@ -142,8 +192,11 @@ bool StateDirectory::save(const MachineState& state, StatePart part, std::string
     return false;
   }
   ::chmod(path_.c_str(), 0700);
-  const std::string name = file(part);
-  if (write_generation(path_, name, previous_of(name), write_part(state, part))) return true;
+  const bool copies = part == StatePart::retained;
+  const std::string name = copies ? retained_file(state.retained_generation) : file(part);
+  const std::string text = write_part(state, part);
+  if (copies ? write_copy(path_, name, text) : write_generation(path_, name, previous_of(name), text))
+    return true;
   error = name + ": " + words(errno);
   return false;
 }

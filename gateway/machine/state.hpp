@@ -35,13 +35,16 @@ struct MachineState {
   std::map<std::string, double> gains;           ///< "X.position_gain" ... found by the bench
   std::int32_t tool_in_spindle = 0;
   std::vector<RetainedVariable> retained;
+  std::int64_t retained_generation = 0;  ///< number of the copy that they come from, 0: none was ever written
 };
 
 /// The parts of the state, one file each: NAME.toml, readable, `schema = 1`, with a checksum in its head.
 enum class StatePart : std::uint8_t { origins, tools, homing, counters, gains, retained };
 
 /// A state directory. Files are written whole (temporary file, fsync, rename, fsync of the folder); the
-/// generation before stays as NAME.previous.toml and is taken when the newest is damaged. Not real-time safe.
+/// generation before stays as NAME.previous.toml and is taken when the newest is damaged. The retained
+/// variables, written again and again, have two copies instead, retained.a.toml and retained.b.toml, which
+/// take turns and carry the number of their generation; the newest whole one counts. Not real-time safe.
 class StateDirectory {
  public:
   explicit StateDirectory(std::string path);
@@ -55,11 +58,16 @@ class StateDirectory {
   /// Reads all parts. A missing folder or file is an empty part and no finding. A file that a person edited
   /// says `checksum = "none"` and is taken with a warning.
   Loaded load() const;
-  /// Writes one part, creating the folder (owner only). False: `error` holds the system's words.
+  /// Writes one part, creating the folder (owner only). False: `error` holds the system's words. Retained
+  /// variables go into the copy that state.retained_generation chooses; it must be greater than the one that
+  /// load() gave, by one.
   bool save(const MachineState& state, StatePart part, std::string& error) const;
+  /// Writes all parts but the retained variables, which have a writer of their own.
   bool save_all(const MachineState& state, std::string& error) const;
   /// Path of a part's file.
   std::string file(StatePart part) const;
+  /// Path of the copy that holds a generation of the retained variables.
+  std::string retained_file(std::int64_t generation) const;
 
  private:
   std::string path_;

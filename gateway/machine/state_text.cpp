@@ -63,6 +63,7 @@ void write_gains(const MachineState& s, std::string& out) {
 }
 
 void write_retained(const MachineState& s, std::string& out) {
+  out += "generation = " + std::to_string(s.retained_generation) + "\n";
   for (const RetainedVariable& v : s.retained)
     out += "\n[[variable]]\nname = " + quoted(v.name) + "\ntype = " + quoted(v.type) +
            "\nvalue = " + quoted(v.value) + "\n";
@@ -204,6 +205,7 @@ class PartReader {
   }
   void retained(const Element& root) {
     state_.retained.clear();
+    state_.retained_generation = integer(root, "generation", 0, kMaxLong);
     for (const Element* e : list(root, "variable"))
       state_.retained.push_back({string(*e, "name"), string(*e, "type"), string(*e, "value")});
   }

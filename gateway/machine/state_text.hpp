@@ -20,6 +20,17 @@ inline constexpr text::Entry kPreviousTaken{"state.previous_taken",
                                             "повреждён; взято предыдущее поколение из {0}"};
 inline constexpr text::Entry kNoGeneration{"state.no_generation", "the newest generation is missing",
                                            "нет последнего поколения"};
+inline constexpr text::Entry kOtherCopyTaken{
+    "state.other_copy_taken",
+    "the retained values are those of this copy, generation {0}: the other is damaged",
+    "сохраняемые значения взяты из этой копии, поколение {0}: другая повреждена"};
+inline constexpr text::Entry kRetainedLost{
+    "state.retained_lost",
+    "the retained values of the PLC are lost: neither this copy nor {0} is whole; move both away to begin "
+    "with "
+    "the initial values",
+    "сохраняемые значения ПЛК утрачены: ни эта копия, ни {0} не цела; уберите обе, чтобы начать с начальных "
+    "значений"};
 inline constexpr text::Entry kChecksum{
     "state.checksum", "checksum {0} does not fit the content ({1}): cut off or changed",
     "контрольная сумма {0} не подходит к содержимому ({1}): обрезан или изменён"};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "plc/code/references.hpp"
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
 
@@ -36,6 +37,7 @@ std::shared_ptr<const Image> Generator::run() {
   }
   link();
   tables();
+  image_->references = references(program_, *image_);
   return report_.failed() ? nullptr : image_;
 }
 
@@ -220,9 +222,21 @@ void Generator::tables() {
   for (ir::Global& g : image_->globals)
     if (g.place >= 0) g.address = program_.places[static_cast<std::size_t>(g.place)].address;
   image_->programs = program_.programs;
+  units();
   for (const ir::Global& g : image_->globals)
     if (g.retain && g.place < 0) retained_cells(g.name, *g.type, g.address, true);
   for (const ir::Global& p : image_->programs) retained_cells(p.name, *p.type, p.address, false);
+  for (std::size_t i = 0; i < program_.places.size(); ++i)
+    if (const ir::SharedPlace& s = program_.places[i]; s.retain && s.written && !s.raw)
+      retained_cell(s.name, *s.type, s.address, static_cast<std::int32_t>(i));
+}
+
+void Generator::units() {
+  const auto library = static_cast<int>(program_.files.size()) - 1;
+  for (std::size_t i = 0; i < program_.units.size(); ++i) {
+    const ir::Unit& u = program_.units[i];
+    image_->units.push_back({u.name, u.kind, u.frame, u.fixed_base, units_[i].entry, u.at.file >= library});
+  }
 }
 
 void Generator::retained_cells(const std::string& name, const Type& type, std::uint32_t address, bool all) {
@@ -235,9 +249,14 @@ void Generator::retained_cells(const std::string& name, const Type& type, std::u
       retained_cells(name + "[" + std::to_string(i) + "]", *type.base,
                      address + static_cast<std::uint32_t>(i - type.range.low) * type.base->size, all);
   } else if (all) {
-    image_->retained.push_back({name, &type, address, image_->retain_bytes});
-    image_->retain_bytes += type.size;
+    retained_cell(name, type, address, -1);
   }
+}
+
+void Generator::retained_cell(const std::string& name, const Type& type, std::uint32_t address,
+                              std::int32_t place) {
+  image_->retained.push_back({name, &type, address, image_->retain_bytes, place});
+  image_->retain_bytes += type.size;
 }
 
 }  // namespace servogate::plc::code

@@ -39,7 +39,9 @@ class Generator {
   void resets(const ir::Unit& u);
   void link();
   void tables();
+  void units();
   void retained_cells(const std::string& name, const Type& type, std::uint32_t address, bool all);
+  void retained_cell(const std::string& name, const Type& type, std::uint32_t address, std::int32_t place);
   Operand fixed(std::uint32_t address) const { return address; }
   Operand temporary(std::uint32_t size);
   Operand constant_bytes(const std::uint8_t* bytes, std::uint32_t size);

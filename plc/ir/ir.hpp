@@ -216,6 +216,7 @@ struct SharedPlace {
   std::uint32_t address = 0;
   bool written = false;
   bool initialised = false;
+  bool retain = false;
   Constant initial;
   bool raw = false;         ///< laid out as in the packet, because places share memory
   bool referenced = false;  ///< bound to a VAR_IN_OUT: needs a byte of its own
@@ -238,6 +239,7 @@ struct Global {
   std::uint32_t address = 0;
   std::int32_t place = -1;
   bool retain = false;
+  bool constant = false;
 };
 
 struct Program {

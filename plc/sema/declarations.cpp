@@ -352,7 +352,7 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
     } else {
       const bool reference = s.section == Section::in_out;
       v.root = reference ? ir::Root::reference : ir::Root::instance;
-      v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference});
+      v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference, s.constant});
       if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
     }
   }
@@ -446,7 +446,7 @@ void Analyzer::declare_globals(bool constants) {
       } else {
         v.cell = allocate(*v.type);
         std::copy(v.initial.begin(), v.initial.end(), program_.memory.begin() + v.cell);
-        program_.globals.push_back({v.name, v.type, v.cell, -1, v.retain});
+        program_.globals.push_back({v.name, v.type, v.cell, -1, v.retain, v.constant});
       }
     }
     globals_.push_back(std::move(v));

@@ -134,6 +134,7 @@ void Analyzer::declare_located(Variable& out, const syntax::Variable& v) {
   out.root = ir::Root::shared;
   out.cell = shared(unit + v.name, *place, out.type, v.location);
   ir::SharedPlace& s = program_.places[out.cell];
+  s.retain = s.retain || v.retain;
   if (v.address.starts_with("%I") || v.address.starts_with("%i")) read_only_places_.insert(out.cell);
   if (v.initial && !read_only_places_.contains(out.cell)) {
     if (const auto c = constant(*v.initial, out.type)) {

@@ -55,6 +55,7 @@ struct Field {
   std::uint32_t offset = 0;
   bool retain = false;
   bool reference = false;  ///< VAR_IN_OUT: the cell holds the address of the variable
+  bool constant = false;
 };
 
 struct Dimension {

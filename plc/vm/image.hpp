@@ -43,6 +43,28 @@ struct Image {
     const Type* type = nullptr;
     std::uint32_t address = 0;
     std::uint32_t offset = 0;  ///< in a snapshot
+    std::int32_t place = -1;   ///< index of the packet place it mirrors, -1: none
+  };
+
+  /// A body that runs: program, function or function block.
+  struct Unit {
+    std::string name;
+    syntax::UnitKind kind = syntax::UnitKind::program;
+    const Type* frame = nullptr;
+    std::int64_t fixed_base = -1;  ///< address of the only instance, -1: several
+    std::uint32_t entry = 0;       ///< its first instruction
+    bool library = false;          ///< a standard block or function
+  };
+  /// A variable at a place of the source where it is read or written.
+  struct Reference {
+    enum class Base : std::uint8_t { fixed, unit, place };
+    std::string name;  ///< of a function block: as `Block.member`
+    const Type* type = nullptr;
+    std::int32_t unit = -1;  ///< index of units, of the body in which it stands
+    Base base = Base::fixed;
+    std::uint32_t cell = 0;  ///< address, offset in the unit's own memory, or index of places
+    std::int32_t file = 0, line = 0, column = 0;
+    bool write = false;
   };
 
   std::shared_ptr<const TypeTable> types;
@@ -55,6 +77,8 @@ struct Image {
   std::vector<ir::Global> globals;
   std::vector<ir::Global> programs;
   std::vector<RetainedCell> retained;
+  std::vector<Unit> units;
+  std::vector<Reference> references;  ///< in the order of the source
   std::uint32_t retain_bytes = 0;
   std::vector<std::string> files;
   std::int64_t budget = 0;

@@ -75,6 +75,7 @@ TEST(StateDirectory, gives_back_what_was_saved) {
   const StateDirectory directory(test::scratch("round") + "/state");
   std::string error;
   ASSERT_TRUE(directory.save_all(sample(), error)) << error;
+  ASSERT_TRUE(directory.save(sample(), StatePart::retained, error)) << error;
   const StateDirectory::Loaded loaded = directory.load();
   EXPECT_TRUE(loaded.findings.empty()) << test::lines_of(loaded.findings, text::Language::english);
   EXPECT_TRUE(same(loaded.state, sample()));
@@ -189,6 +190,111 @@ TEST(StateDirectory, a_save_broken_off_between_its_steps_leaves_a_whole_generati
     EXPECT_TRUE(loaded.findings.empty()) << step;
     EXPECT_EQ(loaded.state.counters, step == 3 ? fresh.counters : old.counters) << step;
   }
+}
+
+/// A machine that counts: what generation n of the retained variables holds.
+MachineState counted(std::int64_t generation) {
+  MachineState s;
+  s.retained_generation = generation;
+  for (const char* name : {"Mill.parts", "Mill.magazine[1]", "Mill.magazine[2]"})
+    s.retained.push_back({name, "DINT", std::to_string(1000 + generation)});
+  return s;
+}
+
+struct Copies {
+  StateDirectory directory;
+  std::string older, newer;  ///< files of generations 7 and 8
+};
+
+Copies two_copies(const std::string& name) {
+  StateDirectory directory(test::scratch(name));
+  std::string error;
+  for (const std::int64_t generation : {7, 8})
+    EXPECT_TRUE(directory.save(counted(generation), StatePart::retained, error)) << error;
+  return {directory, directory.retained_file(7), directory.retained_file(8)};
+}
+
+TEST(RetainedCopies, take_turns_and_the_newer_one_counts) {
+  const Copies c = two_copies("turns");
+  ASSERT_NE(c.older, c.newer);
+  StateDirectory::Loaded loaded = c.directory.load();
+  EXPECT_TRUE(loaded.findings.empty());
+  EXPECT_EQ(loaded.state.retained, counted(8).retained);
+  std::string error;
+  ASSERT_TRUE(c.directory.save(counted(9), StatePart::retained, error)) << error;
+  loaded = c.directory.load();
+  EXPECT_EQ(loaded.state.retained_generation, 9);
+  EXPECT_EQ(loaded.state.retained, counted(9).retained);
+  EXPECT_EQ(test::read_text(c.newer), write_part(counted(8), StatePart::retained)) << "it was not touched";
+}
+
+/// What a power cut in a file system without order may leave of the copy under the pen.
+TEST(RetainedCopies, cut_at_every_byte_give_the_newest_whole_one_and_never_a_mixture) {
+  const Copies c = two_copies("cut");
+  const std::string whole = test::read_text(c.newer);
+  for (std::size_t n = 0; n <= whole.size(); ++n) {
+    test::write_text(c.newer, whole.substr(0, n));
+    const StateDirectory::Loaded loaded = c.directory.load();
+    ASSERT_TRUE(loaded.ok()) << n;
+    const std::int64_t expected = n == whole.size() ? 8 : 7;
+    ASSERT_EQ(loaded.state.retained, counted(expected).retained) << n;
+    ASSERT_EQ(loaded.state.retained_generation, expected) << n;
+    ASSERT_EQ(loaded.findings.empty(), n == whole.size()) << n;
+  }
+}
+
+TEST(RetainedCopies, over_which_older_bytes_show_through_are_damaged_and_not_mixed) {
+  const Copies c = two_copies("torn");
+  const std::string before = write_part(counted(6), StatePart::retained), whole = test::read_text(c.newer);
+  ASSERT_EQ(before.size(), whole.size());
+  for (std::size_t n = 0; n <= whole.size(); ++n) {  // n bytes of generation 8 over those of generation 6
+    const std::string torn = whole.substr(0, n) + before.substr(n);
+    test::write_text(c.newer, torn);
+    const StateDirectory::Loaded loaded = c.directory.load();
+    ASSERT_TRUE(loaded.ok()) << n;
+    const bool sound = torn == whole || torn == before;
+    ASSERT_EQ(loaded.state.retained, counted(torn == whole ? 8 : 7).retained) << n;
+    ASSERT_EQ(loaded.findings.empty(), sound) << n;
+  }
+}
+
+TEST(RetainedCopies, with_any_bit_flipped_give_the_other_one) {
+  const Copies c = two_copies("flip");
+  for (const std::string& file : {c.older, c.newer}) {
+    const std::string whole = test::read_text(file);
+    for (std::size_t n = 0; n < whole.size(); ++n) {
+      std::string flipped = whole;
+      flipped[n] ^= static_cast<char>(1u << (n % 8));
+      test::write_text(file, flipped);
+      const StateDirectory::Loaded loaded = c.directory.load();
+      ASSERT_TRUE(loaded.ok()) << n;
+      ASSERT_EQ(loaded.state.retained, counted(file == c.newer ? 7 : 8).retained) << n;
+      ASSERT_FALSE(loaded.findings.empty()) << n;
+      ASSERT_EQ(loaded.findings.back().entry->id, "state.other_copy_taken");
+    }
+    test::write_text(file, whole);
+  }
+}
+
+TEST(RetainedCopies, both_damaged_are_said_to_be_lost_wherever_they_are_cut) {
+  const Copies c = two_copies("lost");
+  const std::string whole = test::read_text(c.newer), old = test::read_text(c.older);
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    test::write_text(c.newer, whole.substr(0, n));
+    test::write_text(c.older, old.substr(0, old.size() - 1 - n % old.size()));
+    const StateDirectory::Loaded loaded = c.directory.load();
+    ASSERT_FALSE(loaded.ok()) << n;
+    ASSERT_EQ(loaded.findings.back().entry->id, "state.retained_lost") << n;
+    ASSERT_TRUE(loaded.state.retained.empty()) << n;
+  }
+}
+
+TEST(RetainedCopies, a_write_broken_off_before_its_rename_leaves_both_copies_whole) {
+  const Copies c = two_copies("rename");
+  test::write_text(c.older + ".new", "checksum = \"crc32:");
+  const StateDirectory::Loaded loaded = c.directory.load();
+  EXPECT_TRUE(loaded.findings.empty());
+  EXPECT_EQ(loaded.state.retained_generation, 8);
 }
 
 TEST(StateDirectory, a_file_edited_by_hand_says_so_and_is_taken) {

@@ -215,6 +215,25 @@ END_PROGRAM)"));
   EXPECT_EQ(second.number(*second.find("kind")), 0);
 }
 
+TEST(Engine, keeps_retained_places_of_a_packet_too) {
+  const std::string source = R"(VAR_GLOBAL RETAIN counter AT %MD10 : DINT := 7; END_VAR
+PROGRAM Main
+VAR RETAIN hours AT SYVAR2.LR : LREAL; END_VAR
+counter := counter + 1; hours := hours + 0.5;
+END_PROGRAM)";
+  Engine first(build(source));
+  image::Packets p;
+  for (int i = 0; i < 3; ++i) first.scan(p, i);
+  const std::vector<Retained> kept = first.retained();
+  EXPECT_EQ(kept, (std::vector<Retained>{{"counter", "DINT", "10"}, {"Main.hours", "LREAL", "1.5"}}));
+  Engine second(build(source));
+  image::Packets fresh;
+  EXPECT_EQ(second.restore(kept), 2u);
+  second.scan(fresh, 0);
+  EXPECT_EQ(second.read(*second.find("counter")), "11") << "not the initial value";
+  EXPECT_EQ(second.read(*second.find("Main.hours")), "2");
+}
+
 TEST(Engine, scans_without_allocating) {
   Engine e(build(R"(FUNCTION f : DINT VAR_INPUT x : DINT; END_VAR f := x * 2; END_FUNCTION
 PROGRAM Main

@@ -86,7 +86,11 @@ pid_t Shell::spawn(const std::vector<std::string>& arguments, const std::string&
 
 void Shell::up(const std::string& machine, const std::vector<std::string>& more) {
   name_ = machine == "mill" ? "three-axis-mill.sock" : "lathe-with-turret.sock";
-  std::vector<std::string> arguments{"up", example(machine + "/machine.toml")};
+  up_file(example(machine + "/machine.toml"), more);
+}
+
+void Shell::up_file(const std::string& machine, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"up", machine};
   arguments.insert(arguments.end(), more.begin(), more.end());
   up_ = spawn(arguments, "up");
   const bool online = until([](const json& s) {

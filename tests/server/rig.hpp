@@ -32,6 +32,8 @@ class Shell {
   /// `servogate up` of an example, ready to be asked. More arguments follow the machine file.
   void up(const std::string& machine = "mill",
           const std::vector<std::string>& more = {"--virtual", "--speed", "20"});
+  /// The same with a machine file of its own, which has the name of the example mill.
+  void up_file(const std::string& machine, const std::vector<std::string>& more);
   /// Ends the control by a signal and gives its exit code.
   int end(int signal);
   /// Waits for the control's own end and gives its exit code.

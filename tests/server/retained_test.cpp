@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Retained variables of the PLC over ends of the control that nobody announced.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "gateway/machine/state.hpp"
+#include "tests/server/rig.hpp"
+
+namespace servogate::gateway::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The mill with a second source: a counter in three places that always belong together.
+constexpr const char* kCounter = R"(PROGRAM Counter
+VAR RETAIN count : DINT; again : ARRAY[1..40] OF DINT; shown : STRING; END_VAR
+VAR i : INT; END_VAR
+count := count + 1;
+FOR i := 1 TO 40 DO again[i] := count; END_FOR;
+shown := DINT_TO_STRING(count);
+END_PROGRAM
+)";
+
+std::string counting_mill(const Shell& shell) {
+  std::ifstream in(Shell::example("mill/machine.toml"));
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  const std::string sources = "\"mill.st\"";
+  const std::size_t at = text.find(sources);
+  EXPECT_NE(at, std::string::npos);
+  text.replace(at, sources.size(), sources + ", \"counter.st\"");
+  std::ofstream(shell.folder() / "machine.toml") << text;
+  std::ofstream(shell.folder() / "counter.st") << kCounter;
+  fs::copy_file(Shell::example("mill/mill.st"), shell.folder() / "mill.st");
+  return (shell.folder() / "machine.toml").string();
+}
+
+/// What the next start would find; -1: nothing yet.
+std::int64_t kept_count(const std::string& state) {
+  const machine::StateDirectory::Loaded kept = machine::StateDirectory(state).load();
+  EXPECT_TRUE(kept.ok());
+  std::int64_t count = -1;
+  for (const machine::RetainedVariable& v : kept.state.retained)
+    if (v.name == "Counter.count") count = std::stoll(v.value);
+  const std::string number = std::to_string(count);
+  for (const machine::RetainedVariable& v : kept.state.retained) {
+    const bool text = v.name == "Counter.shown";
+    if (text || v.name.starts_with("Counter.again")) {
+      EXPECT_EQ(v.value, text ? "'" + number + "'" : number) << v.name;
+    }
+  }
+  return count;
+}
+
+bool grows_beyond(const std::string& state, std::int64_t count) {
+  for (int n = 0; n < 500; ++n, std::this_thread::sleep_for(std::chrono::milliseconds(20)))
+    if (kept_count(state) > count) return true;
+  return false;
+}
+
+TEST(RetainedVariables, survive_kill_9_at_any_time_and_are_never_a_mixture_of_two_scans) {
+  Shell shell;
+  const std::string machine = counting_mill(shell), state = (shell.folder() / "state").string();
+  std::int64_t before = -1;
+  for (int life = 0; life < 8; ++life) {
+    shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+    ASSERT_TRUE(grows_beyond(state, before)) << "life " << life;
+    std::this_thread::sleep_for(std::chrono::milliseconds(7 * life));
+    EXPECT_EQ(shell.end(SIGKILL), 128 + SIGKILL);
+    const std::int64_t now = kept_count(state);
+    EXPECT_GT(now, before) << "life " << life << ": it went on from what was kept";
+    before = now;
+  }
+}
+
+TEST(RetainedVariables, are_those_of_the_last_scan_after_an_orderly_end) {
+  Shell shell;
+  const std::string machine = counting_mill(shell), state = (shell.folder() / "state").string();
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+  ASSERT_TRUE(grows_beyond(state, 100));
+  ASSERT_EQ(shell.run({"down"}).exit, 0);
+  EXPECT_EQ(shell.wait(), 0);
+  const std::int64_t first = kept_count(state);
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+  ASSERT_TRUE(grows_beyond(state, first));
+}
+
+TEST(RetainedVariables, that_are_lost_keep_the_control_from_starting_until_somebody_agrees) {
+  Shell shell;
+  const std::string machine = counting_mill(shell), state = (shell.folder() / "state").string();
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+  for (int copies = 0; copies < 2; ++copies) ASSERT_TRUE(grows_beyond(state, kept_count(state)));
+  shell.end(SIGKILL);
+  for (const char* copy : {"/retained.a.toml", "/retained.b.toml"}) fs::resize_file(state + copy, 100);
+  const Outcome refused = shell.run({"up", machine, "--virtual", "--state", state});
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_NE(refused.err.find("[state.retained_lost]"), std::string::npos) << refused.err;
+  for (const char* copy : {"/retained.a.toml", "/retained.b.toml"}) fs::remove(state + copy);
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+  EXPECT_TRUE(grows_beyond(state, 0));
+}
+
+TEST(RetainedVariables, without_a_variable_of_their_name_and_type_are_named) {
+  Shell shell;
+  const std::string machine = counting_mill(shell), state = (shell.folder() / "state").string();
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+  ASSERT_TRUE(grows_beyond(state, 10));
+  shell.end(SIGKILL);
+  std::ofstream(shell.folder() / "counter.st")
+      << "PROGRAM Counter VAR RETAIN count : LINT; END_VAR count := count + 1; END_PROGRAM\n";
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+  EXPECT_NE(
+      shell.text("up.err").find("'Counter.count' is given up: the PLC has no such variable of type DINT"),
+      std::string::npos)
+      << shell.text("up.err");
+}
+
+}  // namespace
+}  // namespace servogate::gateway::testing
