@@ -5,6 +5,7 @@
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/plc/commands.hpp"
 
 namespace {
 
@@ -16,17 +17,18 @@ int carry_out(const CommandLine& line) {
   if (line.command == "check") return command::check(line.check);
   if (line.command == "canon") return command::canon(line.canon);
   if (line.command == "replay") return command::replay(line.replay);
-  if (line.command == "plc run") return command::plc_run(line.plc_run);
-  if (line.command == "plc check") return command::plc_check(line.plc_check);
+  if (line.command == "plc run") return command::plc_run(line.plc.run);
+  if (line.command == "plc check") return command::plc_check(line.plc.check);
+  if (line.command == "plc test") return command::plc_test(line.plc.test);
   if (line.command == "can bus") return command::can_bus(line.bus.can_bus);
-  if (line.command == "drive") return command::drive(line.bus.drive);
-  if (line.command == "dump") return command::dump(line.bus.dump);
   if (line.command == "can check") return command::can_check(line.bus.can_check);
   if (line.command == "scan") return command::scan(line.bus.scan);
   if (line.command == "sdo") return command::sdo(line.bus.sdo);
   if (line.command == "od") return command::od(line.bus.od);
   if (line.command == "lss") return command::lss(line.bus.lss);
   if (line.command == "nmt") return command::nmt(line.bus.nmt);
+  if (line.command == "drive") return command::drive(line.bus.drive);
+  if (line.command == "dump") return command::dump(line.bus.dump);
   if (line.command == "play") return command::play(line.bus.play);
   if (line.command == "up") return command::up(line.up);
   return command::client(line.client);

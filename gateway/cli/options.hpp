@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gateway/cli/bus_options.hpp"
+#include "gateway/cli/plc_options.hpp"
 
 namespace servogate::gateway {
 
@@ -56,18 +57,6 @@ struct ReplayOptions {
   bool json = false;
 };
 
-struct PlcRunOptions {
-  std::vector<std::string> files;
-  int cycles = 1;
-  double cycle_ms = 1.0;
-  std::vector<std::string> sets, prints;
-};
-
-struct PlcCheckOptions {
-  std::vector<std::string> files;
-  std::string machine;
-};
-
 /// The parsed command line: the name of the command and its options.
 struct CommandLine {
   std::string command;
@@ -77,8 +66,7 @@ struct CommandLine {
   CheckOptions check;
   CanonOptions canon;
   ReplayOptions replay;
-  PlcRunOptions plc_run;
-  PlcCheckOptions plc_check;
+  PlcCommands plc;
   BusCommands bus;
   bool json = false;               ///< of `version`
   std::vector<std::string> words;  ///< the whole line, for the report

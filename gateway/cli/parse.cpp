@@ -6,6 +6,7 @@
 #include "gateway/cli/bus_commands.hpp"
 #include "gateway/cli/canopen_commands.hpp"
 #include "gateway/cli/options.hpp"
+#include "gateway/cli/plc_commands.hpp"
 #include "gateway/cli/quantities.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/cli/wrong_use.hpp"
@@ -97,10 +98,10 @@ class Commands {
     check();
     canon();
     replay();
-    plc();
+    add_plc_commands(app_, line.plc);
     add_bus_commands(app_, line.bus);
-  }
     add_canopen_commands(app_, line.bus);
+  }
 
   CLI::App& app() { return app_; }
 
@@ -112,8 +113,8 @@ class Commands {
       line_.command += " " + chosen->get_subcommands().front()->get_name();
     line_.client.command = line_.command;
     for (std::string& argument : line_.client.arguments) unshield(argument);
-    line_.run.clock = line_.up.clock = virtual_time_           ? ClockKind::virtual_time
     for (std::string& word : line_.bus.sdo.words) unshield(word);
+    line_.run.clock = line_.up.clock = virtual_time_           ? ClockKind::virtual_time
                                        : realtime_ == "strict" ? ClockKind::realtime
                                        : realtime_.empty()     ? ClockKind::unset
                                                                : ClockKind::realtime_best_effort;
@@ -250,28 +251,6 @@ class Commands {
     app.add_option("--trace", o.trace, "Writes the trace of the replay to this CSV file");
     app.add_option("--against", o.against, "Compares with this trace, byte by byte");
     app.add_flag("--json", o.json, "As JSON");
-  }
-
-  void plc() {
-    CLI::App& app = *app_.add_subcommand("plc", "PLC programs without a machine.");
-    app.require_subcommand(1);
-    PlcRunOptions& o = line_.plc_run;
-    CLI::App& r =
-        *app.add_subcommand("run", "Runs Structured Text in virtual time, one JSON object a cycle.");
-    r.add_option("FILE", o.files, "Source files")->required();
-    r.add_option("--cycles", o.cycles, "Number of cycles, 1 to 1000000000")
-        ->type_name("N")
-        ->check(number_within({1.0, 1e9, text::both("cycles", "циклов"), true}));
-    r.add_option("--cycle-ms", o.cycle_ms, "Length of a cycle in ms, 0.001 to 60000")
-        ->type_name("MS")
-        ->check(number_within({0.001, 60000.0, text::both("ms", "мс")}));
-    r.add_option("--set", o.sets, "NAME=VALUE[@CYCLE], may be repeated")->allow_extra_args(false);
-    r.add_option("--print", o.prints, "NAME,... to print")->delimiter(',')->allow_extra_args(false);
-    r.footer("Example: servogate plc run blink.st --cycles 100 --set start=TRUE@5 --print lamp,timer.ET");
-    CLI::App& c = *app.add_subcommand("check", "Compiles Structured Text and prints what is wrong.");
-    c.add_option("FILE", line_.plc_check.files, "Source files")->required();
-    c.add_option("--machine", line_.plc_check.machine, "Machine file whose symbols the program uses");
-    c.footer("Example: servogate plc check mill.st --machine machine.toml");
   }
 
   CommandLine& line_;

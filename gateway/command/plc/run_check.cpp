@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "gateway/cli/messages.hpp"
+#include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/commands.hpp"
-#include "gateway/files/read_file.hpp"
-#include "gateway/machine/load.hpp"
+#include "gateway/command/plc/commands.hpp"
+#include "gateway/command/plc/sources.hpp"
 #include "plc/run.hpp"
 
 namespace servogate::gateway::command {
@@ -14,19 +14,6 @@ namespace {
 
 const text::Entry kBadSet{"cli.plc-set", "'{0}' is not of the form NAME=VALUE or NAME=VALUE@CYCLE",
                           "«{0}» не имеет вида ИМЯ=ЗНАЧЕНИЕ или ИМЯ=ЗНАЧЕНИЕ@ЦИКЛ"};
-
-bool read_sources(const std::vector<std::string>& files, std::vector<plc::SourceFile>& out) {
-  for (const std::string& name : files) {
-    std::string reason;
-    auto content = files::read_file(name, files::kMostOfSource, reason);
-    if (!content) {
-      print_findings({{text::Severity::error, name, 0, 0, &kCannotRead, {reason}}});
-      return false;
-    }
-    out.push_back({name, std::move(*content)});
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -61,17 +48,10 @@ int plc_run(const PlcRunOptions& options) {
 int plc_check(const PlcCheckOptions& options) {
   std::vector<plc::SourceFile> files;
   if (!read_sources(options.files, files)) return kWrongUse;
-  std::vector<image::Symbol> symbols;
-  plc::Options plc_options;
-  if (!options.machine.empty()) {
-    const machine::LoadResult loaded = machine::load(options.machine);
-    if (print_findings(loaded.findings) > 0) return kWrongUse;
-    symbols = loaded.machine.symbol_table();
-    plc_options.k_bytes = static_cast<std::uint32_t>(loaded.machine.control.k_size);
-    plc_options.v_bytes = static_cast<std::uint32_t>(loaded.machine.control.syvar_size);
-  }
+  PlcSurroundings surroundings;
+  if (!read_surroundings(options.machine, surroundings)) return kWrongUse;
   std::vector<text::Finding> findings;
-  const bool good = plc::check(files, symbols, plc_options, findings);
+  const bool good = plc::check(files, surroundings.symbols, surroundings.options, findings);
   print_findings(findings);
   return good ? kDone : kAlarm;
 }
