@@ -4,9 +4,43 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gateway/compose/modbus_setup.hpp"
 #include "gateway/compose/simulated_node.hpp"
 
 namespace servogate::gateway {
+
+namespace {
+
+/// A station as its device file says, everything off.
+mock::StationSettings station_settings(const machine::StationConfig& station,
+                                       const machine::ModbusMap& layout) {
+  mock::StationSettings s;
+  s.unit = static_cast<std::uint8_t>(station.unit);
+  s.digital_inputs = static_cast<std::uint16_t>(layout.di_count);
+  s.digital_outputs = static_cast<std::uint16_t>(layout.dq_count);
+  s.analog_inputs = static_cast<std::uint16_t>(layout.ai_count);
+  s.analog_outputs = static_cast<std::uint16_t>(layout.aq_count);
+  s.digital_inputs_at = static_cast<std::uint16_t>(layout.di_address);
+  s.digital_outputs_at = static_cast<std::uint16_t>(layout.dq_address);
+  s.analog_inputs_at = static_cast<std::uint16_t>(layout.ai_address);
+  s.analog_outputs_at = static_cast<std::uint16_t>(layout.aq_address);
+  s.inputs_in_registers = layout.di_as_registers;
+  s.initial_inputs.resize(s.digital_inputs);
+  s.initial_analog.resize(s.analog_inputs);
+  s.watchdog_ns = 20 * static_cast<image::Nanoseconds>(station.period * 1e9);
+  s.coil_loss.resize(s.digital_outputs);
+  s.holding_loss.resize(s.analog_outputs);
+  for (const machine::PointConfig& p : station.points) {
+    if (p.is_input()) continue;
+    auto& outputs = p.is_analog() ? s.holding_loss : s.coil_loss;
+    const double wire = std::clamp(p.loss, -32768.0, 65535.0);
+    if (const auto n = static_cast<std::size_t>(p.number); n < outputs.size())
+      outputs[n] = {p.hold, static_cast<std::uint16_t>(std::lround(wire))};
+  }
+  return s;
+}
+
+}  // namespace
 
 MockWorld::MockWorld(const machine::LoadResult& loaded) {
   const machine::MachineConfig& m = loaded.machine;
@@ -137,38 +171,8 @@ void MockWorld::add_modbus(const machine::LoadResult& loaded, const machine::Sta
   const machine::MachineConfig& m = loaded.machine;
   const machine::DeviceConfig* device = loaded.device(station.device);
   const machine::ModbusMap layout = device != nullptr ? device->modbus : machine::ModbusMap{};
-  mock::StationSettings settings;
-  settings.unit = static_cast<std::uint8_t>(station.unit);
-  settings.digital_inputs = static_cast<std::uint16_t>(layout.di_count);
-  settings.digital_outputs = static_cast<std::uint16_t>(layout.dq_count);
-  settings.analog_inputs = static_cast<std::uint16_t>(layout.ai_count);
-  settings.analog_outputs = static_cast<std::uint16_t>(layout.aq_count);
-  settings.initial_inputs.resize(settings.digital_inputs);
-  settings.initial_analog.resize(settings.analog_inputs);
-  settings.watchdog_ns = 20 * static_cast<image::Nanoseconds>(station.period * 1e9);
-
-  modbus::Map map;
-  const auto period = static_cast<image::Nanoseconds>(std::llround(station.period * 1e9));
-  const auto block = [&](modbus::Function function, int count) {
-    if (count <= 0) return std::size_t{0};
-    map.blocks.push_back({settings.unit, function, 0, static_cast<std::uint16_t>(count), period});
-    return map.blocks.size() - 1;
-  };
-  const std::size_t blocks[] = {block(modbus::Function::read_discrete_inputs, layout.di_count),
-                                block(modbus::Function::write_multiple_coils, layout.dq_count),
-                                block(modbus::Function::read_input_registers, layout.ai_count),
-                                block(modbus::Function::write_multiple_registers, layout.aq_count)};
+  mock::StationSettings settings = station_settings(station, layout);
   for (const machine::PointConfig& p : station.points) {
-    modbus::Point point;
-    point.block = blocks[static_cast<int>(p.channel)];
-    point.offset = static_cast<std::uint16_t>(p.number);
-    point.place = p.place;
-    point.inverted = p.inverted;
-    point.on_loss = p.hold ? modbus::OnLoss::hold : modbus::OnLoss::value;
-    point.loss_value = p.loss;
-    point.scale = p.scale;
-    point.shift = p.shift;
-    map.points.push_back(point);
     const auto initial = m.simulation.initial.find(p.name);
     const double value = initial != m.simulation.initial.end() ? initial->second : 0.0;
     const auto number = static_cast<std::size_t>(p.number);
@@ -182,8 +186,10 @@ void MockWorld::add_modbus(const machine::LoadResult& loaded, const machine::Sta
       outputs_.push_back({p.name, lines_.size(), number, false, p.inverted});
     }
   }
+  mock::LineSettings line;
+  line.answer_timeout_ns = static_cast<image::Nanoseconds>(std::llround(station.timeout * 1e9));
   lines_.push_back(std::make_unique<mock::MockModbusLine>(
-      mock::LineSettings{}, std::move(map), std::vector<mock::StationSettings>{settings}, source));
+      line, modbus_map(station, layout), std::vector<mock::StationSettings>{settings}, source));
   for (const machine::SimulatedLoop& loop : m.simulation.loops) {
     const machine::PointConfig* out = m.point(loop.output);
     const machine::PointConfig* in = m.point(loop.input);

@@ -32,6 +32,7 @@ class DeviceCheck {
     objects();
     pdos("rpdo", d_.rpdos);
     pdos("tpdo", d_.tpdos);
+    modbus();
     if (!d_.drive() || !d_.places.contains("kind")) return;  // unknown kind: said by the reader
     word("RPDO", d_.rpdos, 0x6040, "controlword");
     word("TPDO", d_.tpdos, 0x6041, "statusword");
@@ -85,6 +86,27 @@ class DeviceCheck {
     if (bits > 64)
       reading_.error(at(path + ".objects"), finding::kPdoSize,
                      {key, std::to_string(pdo.number), std::to_string(bits)});
+  }
+
+  void modbus() {
+    const ModbusMap& m = d_.modbus;
+    const struct {
+      const char* key;
+      int address, items;
+    } kinds[] = {{"modbus.di_address", m.di_address, m.di_items()},
+                 {"modbus.dq_address", m.dq_address, m.dq_count},
+                 {"modbus.ai_address", m.ai_address, m.ai_count},
+                 {"modbus.aq_address", m.aq_address, m.aq_count}};
+    for (const auto& k : kinds)
+      if (k.address + k.items > 0x10000)
+        reading_.error(at(k.key), finding::kModbusBehindEnd,
+                       {k.key, std::to_string(k.items), std::to_string(k.address)});
+    const bool apart =
+        m.di_address + m.di_items() <= m.ai_address || m.ai_address + m.ai_count <= m.di_address;
+    if (m.di_as_registers && m.di_count > 0 && m.ai_count > 0 && !apart)
+      reading_.error(at("modbus.di_as_registers"), finding::kModbusOverlap,
+                     {std::to_string(m.di_address), std::to_string(m.di_address + m.di_items() - 1),
+                      std::to_string(m.ai_address), std::to_string(m.ai_address + m.ai_count - 1)});
   }
 
   void word(const std::string& what, const std::vector<PdoConfig>& list, std::uint16_t index,

@@ -83,11 +83,15 @@ struct DeviceError {
   std::string russian;
 };
 
-/// [modbus]: registers of an I/O station; -1: the station has none of this kind.
+/// [modbus]: channels of an I/O station, 0: none of this kind. Addresses as on the wire, from 0.
 struct ModbusMap {
   int di_count = 0, dq_count = 0, ai_count = 0, aq_count = 0;
   int di_address = 0, dq_address = 0, ai_address = 0, aq_address = 0;
-  bool di_as_registers = false;  ///< inputs as bits of input registers (function 4) instead of function 2
+  /// Inputs are bits of input registers (function 4) instead of discrete inputs (function 2); input 0 is bit
+  /// 0 of the register at di_address.
+  bool di_as_registers = false;
+  /// Registers or bits that the digital inputs take.
+  int di_items() const { return di_as_registers ? (di_count + 15) / 16 : di_count; }
 };
 
 /// [gpio]: a GPIO chip.

@@ -276,6 +276,89 @@ TEST(MockModbusLine, the_watchdog_of_a_station_drops_its_outputs_when_nobody_ask
   EXPECT_FALSE(s.output(2));
 }
 
+/// What a station answers to a request of so many items at an address.
+modbus::Response asked(ModbusStation& station, Function function, std::uint16_t address,
+                       std::uint16_t count) {
+  modbus::Request request{function, address, count, {}};
+  if (modbus::writes(function)) request.data.set_bit(0, true), request.data.words[0] = 777;
+  modbus::Pdu question, answer;
+  modbus::Response response;
+  EXPECT_TRUE(encode(request, question));
+  EXPECT_TRUE(station.serve(kMillisecond, question, answer));
+  EXPECT_EQ(decode_response(answer.view(), request, response), modbus::AnswerFault::none);
+  return response;
+}
+
+TEST(ModbusStation, lives_at_its_addresses_and_has_nothing_outside_them) {
+  using modbus::Exception;
+  StationSettings settings;
+  settings.digital_inputs_at = 1000, settings.digital_outputs_at = 2000;
+  settings.analog_inputs_at = 3000, settings.analog_outputs_at = 4000;
+  settings.initial_inputs = {false, true};
+  settings.initial_analog = {11, 12, 13, 14};
+  ModbusStation s(settings);
+  const struct {
+    Function function;
+    std::uint16_t first, count;
+  } spaces[] = {{Function::read_discrete_inputs, 1000, 16},  {Function::read_coils, 2000, 16},
+                {Function::write_multiple_coils, 2000, 16},  {Function::read_input_registers, 3000, 4},
+                {Function::read_holding_registers, 4000, 2}, {Function::write_multiple_registers, 4000, 2}};
+  for (const auto& space : spaces) {
+    EXPECT_EQ(asked(s, space.function, space.first, space.count).exception, Exception::none) << space.first;
+    for (const int address : {0, space.first - 1, space.first + 1})
+      EXPECT_EQ(asked(s, space.function, static_cast<std::uint16_t>(address), space.count).exception,
+                Exception::illegal_data_address)
+          << address;
+  }
+  EXPECT_TRUE(asked(s, Function::read_discrete_inputs, 1001, 1).data.bit(0));
+  EXPECT_EQ(asked(s, Function::read_input_registers, 3003, 1).data.words[0], 14);
+  EXPECT_TRUE(s.output(0)) << "the channels of the station itself count from 0";
+  EXPECT_EQ(s.analog_output(0), 777);
+}
+
+TEST(ModbusStation, packs_its_digital_inputs_into_registers_beside_the_analog_ones) {
+  using modbus::Exception;
+  StationSettings settings;
+  settings.inputs_in_registers = true;
+  settings.digital_inputs = 20;
+  settings.digital_inputs_at = 8;
+  settings.analog_inputs_at = 10;
+  settings.initial_analog = {500};
+  ModbusStation s(settings);
+  for (const std::uint16_t on : {0, 15, 16, 19}) s.set_input(on, true);
+  const modbus::Response all = asked(s, Function::read_input_registers, 8, 6);
+  EXPECT_EQ(all.exception, Exception::none);
+  EXPECT_EQ(all.data.words[0], 0x8001);
+  EXPECT_EQ(all.data.words[1], 0x0009);
+  EXPECT_EQ(all.data.words[2], 500);
+  EXPECT_EQ(asked(s, Function::read_input_registers, 7, 1).exception, Exception::illegal_data_address);
+  EXPECT_EQ(asked(s, Function::read_input_registers, 8, 7).exception, Exception::illegal_data_address);
+  EXPECT_EQ(asked(s, Function::read_discrete_inputs, 8, 1).exception, Exception::illegal_data_address);
+}
+
+TEST(ModbusStation, puts_lost_outputs_where_each_of_them_is_to_be) {
+  StationSettings settings;
+  settings.watchdog_ns = 200 * kMillisecond;
+  settings.coil_loss = {{false, 1}, {true, 0}};
+  settings.holding_loss = {{false, 42}, {true, 0}};
+  ModbusStation s(settings);
+  modbus::Request write{Function::write_multiple_coils, 0, 3, {}};
+  for (std::size_t n = 1; n < 3; ++n) write.data.set_bit(n, true);
+  modbus::Pdu request, answer;
+  ASSERT_TRUE(encode(write, request));
+  ASSERT_TRUE(s.serve(10 * kMillisecond, request, answer));
+  modbus::Request words{Function::write_multiple_registers, 0, 2, {}};
+  words.data.words = {300, 400};
+  ASSERT_TRUE(encode(words, request));
+  ASSERT_TRUE(s.serve(10 * kMillisecond, request, answer));
+  s.advance_to(211 * kMillisecond);
+  EXPECT_TRUE(s.output(0)) << "its loss value is on";
+  EXPECT_TRUE(s.output(1)) << "it is to hold";
+  EXPECT_FALSE(s.output(2)) << "off, as nothing was said";
+  EXPECT_EQ(s.analog_output(0), 42);
+  EXPECT_EQ(s.analog_output(1), 400);
+}
+
 TEST(MockModbusLine, every_output_pattern_comes_back_through_its_wires) {
   const std::uint64_t seed = std::random_device{}();
   std::cout << "seed " << seed << "\n";

@@ -51,44 +51,65 @@ modbus::Response ModbusStation::answer_to(const modbus::Request& asked) {
   r.address = asked.address;
   r.count = asked.count;
   const std::size_t from = asked.address, end = from + asked.count;
-  const auto covers = [&](std::size_t size) {
-    if (end > size) r.exception = Exception::illegal_data_address;
-    return end <= size;
+  const auto covers = [&](std::size_t first, std::size_t size) {
+    const bool inside = from >= first && end <= first + size;
+    if (!inside) r.exception = Exception::illegal_data_address;
+    return inside;
   };
-  const auto bits = [&](const std::vector<bool>& source) {
-    for (std::size_t i = from; i < end; ++i) r.data.set_bit(i - from, source[i]);
+  const auto bits = [&](const std::vector<bool>& source, std::size_t first) {
+    if (!covers(first, source.size())) return;
+    for (std::size_t i = from; i < end; ++i) r.data.set_bit(i - from, source[i - first]);
   };
-  const auto words = [&](const std::vector<std::uint16_t>& source) {
-    for (std::size_t i = from; i < end; ++i) r.data.words[i - from] = source[i];
-  };
+  const std::size_t coils_at = settings_.digital_outputs_at, holding_at = settings_.analog_outputs_at;
   switch (asked.function) {
     case Function::read_coils:
-      if (covers(coils_.size())) bits(coils_);
+      bits(coils_, coils_at);
       break;
     case Function::read_discrete_inputs:
-      if (covers(inputs_.size())) bits(inputs_);
+      if (settings_.inputs_in_registers)
+        r.exception = Exception::illegal_data_address;
+      else
+        bits(inputs_, settings_.digital_inputs_at);
       break;
     case Function::read_holding_registers:
-      if (covers(holding_.size())) words(holding_);
+      if (covers(holding_at, holding_.size()))
+        for (std::size_t i = from; i < end; ++i) r.data.words[i - from] = holding_[i - holding_at];
       break;
     case Function::read_input_registers:
-      if (covers(analog_in_.size())) words(analog_in_);
+      for (std::size_t i = from; i < end; ++i)
+        if (!input_register(i, r.data.words[i - from])) r.exception = Exception::illegal_data_address;
       break;
     case Function::write_single_coil:
     case Function::write_multiple_coils:
       r.data = asked.data;
-      if (covers(coils_.size()))
+      if (covers(coils_at, coils_.size()))
         for (std::size_t i = from; i < end; ++i)
-          write_coil(static_cast<std::uint16_t>(i), asked.data.bit(i - from), now_ns_);
+          write_coil(static_cast<std::uint16_t>(i - coils_at), asked.data.bit(i - from), now_ns_);
       break;
     case Function::write_single_register:
     case Function::write_multiple_registers:
       r.data = asked.data;
-      if (covers(holding_.size()))
-        for (std::size_t i = from; i < end; ++i) holding_[i] = asked.data.words[i - from];
+      if (covers(holding_at, holding_.size()))
+        for (std::size_t i = from; i < end; ++i) holding_[i - holding_at] = asked.data.words[i - from];
       break;
   }
   return r;
+}
+
+/// The input register at an address: an analog input, or sixteen digital ones. False: there is none.
+bool ModbusStation::input_register(std::size_t address, std::uint16_t& word) const noexcept {
+  const std::size_t analog = address - settings_.analog_inputs_at;
+  if (address >= settings_.analog_inputs_at && analog < analog_in_.size()) {
+    word = analog_in_[analog];
+    return true;
+  }
+  const std::size_t first = (address - settings_.digital_inputs_at) * 16;
+  if (!settings_.inputs_in_registers || address < settings_.digital_inputs_at || first >= inputs_.size())
+    return false;
+  word = 0;
+  for (std::size_t bit = 0; bit < 16 && first + bit < inputs_.size(); ++bit)
+    if (inputs_[first + bit]) word = static_cast<std::uint16_t>(word | 1u << bit);
+  return true;
 }
 
 void ModbusStation::write_coil(std::uint16_t n, bool on, image::Nanoseconds t) {
@@ -106,14 +127,23 @@ void ModbusStation::drive(Wire& wire, bool out, image::Nanoseconds t) {
 
 void ModbusStation::advance_to(image::Nanoseconds t) {
   now_ns_ = std::max(now_ns_, t);
-  if (settings_.watchdog_ns > 0 && now_ns_ - last_request_ns_ > settings_.watchdog_ns)
-    for (std::size_t n = 0; n < coils_.size(); ++n)
-      write_coil(static_cast<std::uint16_t>(n), false, last_request_ns_ + settings_.watchdog_ns);
+  if (settings_.watchdog_ns > 0 && now_ns_ - last_request_ns_ > settings_.watchdog_ns) lose_outputs();
   for (Wire& wire : wires_) {
     if (!wire.pending || now_ns_ < wire.due_ns) continue;
     wire.pending = false;
     set_input(wire.settings.input, wire.target);
   }
+}
+
+void ModbusStation::lose_outputs() {
+  const auto loss = [](const std::vector<OutputLoss>& list, std::size_t n) {
+    return n < list.size() ? list[n] : OutputLoss{};
+  };
+  for (std::size_t n = 0; n < coils_.size(); ++n)
+    if (const OutputLoss l = loss(settings_.coil_loss, n); !l.hold)
+      write_coil(static_cast<std::uint16_t>(n), l.value != 0, last_request_ns_ + settings_.watchdog_ns);
+  for (std::size_t n = 0; n < holding_.size(); ++n)
+    if (const OutputLoss l = loss(settings_.holding_loss, n); !l.hold) holding_[n] = l.value;
 }
 
 bool ModbusStation::set_input(std::uint16_t n, bool on) {

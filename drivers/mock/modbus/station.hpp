@@ -9,17 +9,30 @@
 
 namespace servogate::mock {
 
-/// Sizes and initial values of a simulated I/O station: discrete inputs and coils from address 0, input
-/// registers (AI) and holding registers (AO) from address 0.
+/// What an output of a station does when the station's watchdog has run off.
+struct OutputLoss {
+  bool hold = false;
+  std::uint16_t value = 0;  ///< as on the wire; a coil is on when it is not 0
+};
+
+/// Sizes, addresses and initial values of a simulated I/O station. It has discrete inputs, coils, input
+/// registers (AI) and holding registers (AO) where it is told, and answers "illegal data address" to
+/// everything else.
 struct StationSettings {
   std::uint8_t unit = 1;
   std::uint16_t digital_inputs = 16, digital_outputs = 16, analog_inputs = 4, analog_outputs = 2;
+  /// Addresses of the first ones, as on the wire; the last ones at 65535 or below.
+  std::uint16_t digital_inputs_at = 0, digital_outputs_at = 0, analog_inputs_at = 0, analog_outputs_at = 0;
+  /// The digital inputs are bits of input registers, input 0 in bit 0 of the one at digital_inputs_at, and no
+  /// discrete inputs. Registers of both kinds do not overlap.
+  bool inputs_in_registers = false;
   std::vector<bool> initial_inputs;           ///< missing ones: off
   std::vector<std::uint16_t> initial_analog;  ///< missing ones: 0
   image::Nanoseconds answer_delay_ns =
       2 * image::kMillisecond;  ///< from the request's last byte to the answer's first
-  /// Coils fall to off when no request came for so long; 0: they stay.
+  /// Outputs go to their loss values when no request came for so long; 0: they stay.
   image::Nanoseconds watchdog_ns = 0;
+  std::vector<OutputLoss> coil_loss, holding_loss;  ///< missing ones: off
 };
 
 /// A wire from an output back to an input. A pulse shorter than the delay is swallowed, as a contactor does.
@@ -43,8 +56,8 @@ struct StationFault {
   image::Nanoseconds extra_ns = 0;
 };
 
-/// A Modbus I/O station in process: a server on bytes, with wires, a watchdog and faults. Times are
-/// simulated.
+/// A Modbus I/O station in process: a server on bytes, with wires, a watchdog and faults. Requests have
+/// addresses; everything else here counts channels from 0. Times are simulated.
 class ModbusStation {
  public:
   explicit ModbusStation(StationSettings settings);
@@ -83,6 +96,8 @@ class ModbusStation {
     image::Nanoseconds due_ns = 0;
   };
   modbus::Response answer_to(const modbus::Request& request);
+  bool input_register(std::size_t address, std::uint16_t& word) const noexcept;
+  void lose_outputs();
   void write_coil(std::uint16_t n, bool on, image::Nanoseconds t);
   void drive(Wire& wire, bool output, image::Nanoseconds t);
 

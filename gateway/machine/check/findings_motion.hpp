@@ -169,4 +169,12 @@ inline constexpr text::Entry kPdoTransmission{"machine.pdo_transmission",
                                               "transmission {0} is reserved: 0 to 240, 254, 255",
                                               "тип передачи {0} зарезервирован: 0-240, 254, 255"};
 
+inline constexpr text::Entry kModbusBehindEnd{"machine.modbus_behind_end",
+                                              "`{0}`: {1} from address {2} on end behind address 65535",
+                                              "«{0}»: {1} начиная с адреса {2} выходят за адрес 65535"};
+inline constexpr text::Entry kModbusOverlap{
+    "machine.modbus_overlap",
+    "digital inputs in the input registers {0} to {1} lie on the analog inputs {2} to {3}",
+    "дискретные входы во входных регистрах {0}-{1} лежат на аналоговых входах {2}-{3}"};
+
 }  // namespace servogate::machine::finding

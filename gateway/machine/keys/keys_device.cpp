@@ -49,8 +49,10 @@ const Section& section_of<MotorConfig>() {
       key<&C::counts_per_rev>("counts_per_rev", {.unit = Unit::counts, .min = 0, .max = 4294967296.0},
                               "counts per turn that the drive reports; 0: set by the machine file",
                               "дискрет на оборот, выдаваемых приводом; 0: задаёт файл станка"),
-      key<&C::brake_output>("brake_output", {}, "the drive has an output for a holding brake",
-                            "у привода есть выход удерживающего тормоза"),
+      key<&C::brake_output>(
+          "brake_output", {},
+          "the drive has an output for a holding brake; brake.drive_output of an axis needs it",
+          "у привода есть выход удерживающего тормоза; нужен для brake.drive_output оси"),
   };
   static const Section section{"motor and drive", "двигатель и привод", keys, &default_object<C>};
   return section;
@@ -169,9 +171,10 @@ const Section& section_of<ModbusMap>() {
                           "адрес первого входного регистра"),
       key<&C::aq_address>("aq_address", kAddress, "address of the first holding register",
                           "адрес первого регистра хранения"),
-      key<&C::di_as_registers>("di_as_registers", {},
-                               "digital inputs are bits of input registers (function 4)",
-                               "дискретные входы суть биты входных регистров (функция 4)"),
+      key<&C::di_as_registers>(
+          "di_as_registers", {},
+          "digital inputs are bits of input registers (function 4), input 0 is bit 0 at di_address",
+          "дискретные входы — биты входных регистров (функция 4), вход 0 — бит 0 по di_address"),
   };
   static const Section section{"channels and register addresses of a Modbus station",
                                "каналы и адреса регистров станции Modbus", keys, &default_object<C>};
