@@ -58,6 +58,7 @@ struct DriveFeedback {
   double velocity_counts_s = 0.0;
   double torque_permille = 0.0;
   bool torque_known = false;         ///< the drive's process data hold its torque
+  std::uint8_t restarts = 0;         ///< changes when the device restarts by itself: it may count from anew
   std::uint32_t digital_inputs = 0;  ///< 60FDh
   std::int64_t latch_counts = 0;     ///< position of the last capture
   std::uint32_t latch_sequence = 0;  ///< increases by one with every capture

@@ -69,6 +69,13 @@ void exact_ratio(std::int64_t counts, std::int64_t gear_motor, std::int64_t gear
   denominator /= divisor;
 }
 
+axis::DrivePlace drive_place(const machine::MachineConfig& m, std::string_view reference) {
+  int bus = -1;
+  const machine::NodeConfig* node = m.node(reference, &bus);
+  if (node == nullptr) return {};
+  return {static_cast<std::int16_t>(bus), static_cast<std::int16_t>(node->id)};
+}
+
 }  // namespace
 
 axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& a) {
@@ -104,6 +111,7 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
   }
   c.jog_velocity = a.jog();
   c.slow_velocity = a.jog_not_homed();
+  c.drive = drive_place(m, a.drive);
   if (const machine::NodeConfig* node = m.node(a.drive); node != nullptr) {
     // A target of cycle k leaves in k, acts at SYNC k + 1 and is read back one cycle after it was latched.
     if (const machine::DeviceConfig* device = loaded.device(node->device); device != nullptr)
@@ -113,8 +121,9 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
   return c;
 }
 
-axis::SpindleConfig spindle_config(const machine::LoadResult&, const machine::SpindleConfig& s) {
+axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& s) {
   axis::SpindleConfig c;
+  c.drive = drive_place(loaded.machine, s.drive);
   if (s.has_encoder()) {
     c.counts_numerator = s.counts_per_rev;
     c.counts_denominator = 1;

@@ -13,17 +13,20 @@ struct Row {
   BusEventKind kind;
   image::AlarmNumber number;
 };
-/// Which event is which alarm. What the axis finds by itself (refused transition, missing process data) is
-/// not here.
+/// Which event is which alarm. What the axis finds by itself (a refused transition) is not here.
 constexpr Row kAlarms[] = {
     {BusEventKind::boot_failed, cycle::alarm::kBootFailed},
     {BusEventKind::emcy, cycle::alarm::kEmergencyMessage},
     {BusEventKind::heartbeat_lost, cycle::alarm::kNodeLost},
-    {BusEventKind::node_restarted, cycle::alarm::kNodeLost},
-    {BusEventKind::node_left, cycle::alarm::kNodeLost},
+    {BusEventKind::pdo_missing, axis::alarm::kPdoMissing},
+    {BusEventKind::node_restarted, cycle::alarm::kNodeRestarted},
+    {BusEventKind::node_left, cycle::alarm::kNodeLeft},
     {BusEventKind::foreign_frame, cycle::alarm::kForeignFrame},
     {BusEventKind::send_failed, cycle::alarm::kBusSendOverflow},
 };
+
+/// A boot report in AlarmRecord::detail2: its problem, and these.
+constexpr unsigned kWriting = 16, kAborted = 32;
 
 struct StateRow {
   image::CanState state;
@@ -56,21 +59,46 @@ void CanSupplier::report(const canopen::BusEvent& event, const image::ProcessIma
       if (row.state == event.bus_state) r.number = row.number;
   if (r.number == 0 || notices_ == nullptr) return;
   r.segment = event.segment;
-  r.node = event.node;
+  if (event.node != 0) r.node = event.node;
   r.error_code = event.emcy.error_code;
   r.statusword = event.statusword;
-  r.object_index = event.boot.index;
-  r.object_subindex = event.boot.subindex;
-  r.limit =
-      static_cast<double>(event.kind == BusEventKind::boot_failed ? event.boot.expected : event.expected);
-  r.value = static_cast<double>(event.kind == BusEventKind::boot_failed     ? event.boot.got
-                                : event.kind == BusEventKind::foreign_frame ? event.frame.id
-                                                                            : event.got);
-  r.detail1 = static_cast<double>(event.boot.step);
+  r.limit = static_cast<double>(event.expected);
+  r.value = static_cast<double>(event.kind == BusEventKind::foreign_frame ? event.frame.id
+                                : event.kind == BusEventKind::emcy        ? event.emcy.error_register
+                                                                          : event.got);
+  if (event.kind == BusEventKind::boot_failed) pack(event.boot, r);
   for (const canopen::NodeConfig& n : segment_.config().nodes)
     if (n.node == event.node && n.target == canopen::DriveTarget::axis)
       r.axis = static_cast<std::int8_t>(n.target_index);
   notices_->add(r);
+}
+
+void pack(const canopen::BootReport& report, image::AlarmRecord& record) noexcept {
+  const bool aborted = report.abort != canopen::AbortCode::none;
+  record.object_index = report.index;
+  record.object_subindex = report.subindex;
+  record.limit = static_cast<double>(report.expected);
+  record.value = static_cast<double>(aborted ? static_cast<std::uint32_t>(report.abort) : report.got);
+  record.detail1 = static_cast<double>(report.step);
+  record.detail2 =
+      static_cast<double>(report.problem) + (report.writing ? kWriting : 0.0) + (aborted ? kAborted : 0.0);
+}
+
+canopen::BootReport unpack(const image::AlarmRecord& record) noexcept {
+  canopen::BootReport report;
+  const auto flags = static_cast<unsigned>(record.detail2);
+  report.step = static_cast<canopen::BootStep>(record.detail1);
+  report.problem = static_cast<canopen::BootProblem>(flags % kWriting);
+  report.writing = (flags & kWriting) != 0;
+  report.index = record.object_index;
+  report.subindex = record.object_subindex;
+  report.expected = static_cast<std::uint32_t>(record.limit);
+  const auto value = static_cast<std::uint32_t>(record.value);
+  if ((flags & kAborted) != 0)
+    report.abort = static_cast<canopen::AbortCode>(value);
+  else
+    report.got = value;
+  return report;
 }
 
 }  // namespace servogate::gateway

@@ -32,4 +32,9 @@ class CanSupplier final : public image::CycleDevice {
   cycle::Notices* notices_ = nullptr;
 };
 
+/// A start-up that failed in the figures of an alarm record (kBootFailed), and back; texts that a device should
+/// have said and did not are not kept. real-time safe.
+void pack(const canopen::BootReport& report, image::AlarmRecord& record) noexcept;
+canopen::BootReport unpack(const image::AlarmRecord& record) noexcept;
+
 }  // namespace servogate::gateway

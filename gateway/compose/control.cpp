@@ -258,17 +258,39 @@ cycle::AlarmNames Control::alarm_names() const {
     names.units.push_back(a.type == machine::AxisType::rotary ? "deg" : "mm");
   for (const machine::BusConfig& b : m.buses) names.segments.push_back(b.name);
   for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
-  names.error_text = [this](int axis, int node, std::uint16_t code, text::Language language) -> std::string {
+  names.error_text = [this](int axis, int segment, int node, std::uint16_t code,
+                            text::Language language) -> std::string {
     const machine::MachineConfig& config = loaded_.machine;
     for (std::size_t b = 0; b < config.buses.size(); ++b)
       for (const machine::NodeConfig& n : config.buses[b].nodes) {
         const std::string reference = config.buses[b].name + "." + n.name;
-        const bool mine =
-            axis >= 0 ? config.axes[static_cast<std::size_t>(axis)].drive == reference : n.id == node;
+        const bool mine = axis >= 0 ? config.axes[static_cast<std::size_t>(axis)].drive == reference
+                                    : n.id == node && segment == static_cast<int>(b);
         const machine::DeviceConfig* device = mine ? loaded_.device(n.device) : nullptr;
         if (device != nullptr) return std::string(device->error_text(code, language));
       }
     return {};
+  };
+  const auto node_at = [this](int segment, int node) -> const machine::NodeConfig* {
+    if (segment < 0 || segment >= std::ssize(loaded_.machine.buses)) return nullptr;
+    for (const machine::NodeConfig& n : loaded_.machine.buses[static_cast<std::size_t>(segment)].nodes)
+      if (n.id == node) return &n;
+    return nullptr;
+  };
+  names.node_name = [this, node_at](int segment, int node) -> std::string {
+    const machine::NodeConfig* n = node_at(segment, node);
+    return n == nullptr ? std::string()
+                        : loaded_.machine.buses[static_cast<std::size_t>(segment)].name + "." + n->name;
+  };
+  names.boot_failure = [node_at](const image::AlarmRecord& record, text::Language language) -> std::string {
+    canopen::BusEvent event;
+    event.kind = canopen::BusEventKind::boot_failed;
+    event.boot = unpack(record);
+    if (const machine::NodeConfig* n = node_at(record.segment, record.node); n != nullptr)
+      event.boot.expected_text = canopen::BootText(n->software_version);
+    event.boot.got_text = canopen::BootText("?");
+    const std::string words = canopen::describe(event, {}, nullptr, language);
+    return words.starts_with(": ") ? words.substr(2) : words;
   };
   names.program_finding = [this](int process, int number, text::Language language) -> std::string {
     if (process < 0 || process >= std::ssize(processes_)) return {};

@@ -30,6 +30,9 @@ class MockWorld {
   /// The control's endpoint on the mock bus with this index in the machine file; nullptr: that bus is no
   /// mock.
   image::CanBus* bus(std::size_t index);
+  /// The simulated wire of a bus, nullptr: it is no mock. Endpoint 0 is the control, the nodes follow in the
+  /// order of the machine file.
+  mock::CanSegment* wire(std::size_t index) noexcept { return segments_[index].get(); }
   /// I/O devices for the cycle, in the order of the machine file.
   const std::vector<image::CycleDevice*>& io() const noexcept { return io_; }
   /// Sets a simulated input as the world does, after `inverted`: TRUE makes the point TRUE. False: no such

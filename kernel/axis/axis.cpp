@@ -49,6 +49,7 @@ void Axis::command(image::ProcessImage& image) noexcept {
   if (!power_.holding() || !held_) follow_feedback();
   if (power_.holding()) advance(dt, image.now.t_ns);
   held_ = power_.holding();
+  supervise_path_end(dt);
   process_given_ = false;
   if (release_pending_ && !moving_ && !own_motion_) {
     release_pending_ = false;
@@ -211,6 +212,7 @@ void Axis::follow_feedback() noexcept {
 
 /// Makes `counts` the home position without moving the drive.
 void Axis::set_machine_position(std::int64_t counts) noexcept {
+  off_path_ = false;
   const double old_motor = scale_.position(drive_.position_counts);
   const double target = set_.x + compensation_value_;
   scale_.reference_counts = counts;
@@ -234,6 +236,7 @@ void Axis::drop_reference() noexcept {
       config_.homing.method == HomingMethod::absolute)
     return;
   homed_ = false;
+  path_end_ += compensation_value_;
   ramp_.shift(compensation_value_);
   set_.x += compensation_value_;
   for (Sent& s : history_) s = {s.command + s.compensation, 0.0};

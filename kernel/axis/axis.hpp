@@ -145,6 +145,8 @@ class Axis {
   bool leaves_travel(const MotionState& state) noexcept;
   void supervise_power(PowerSequence::State before) noexcept;
   void supervise_brake() noexcept;
+  void supervise_path_end(double dt) noexcept;
+  void report_path_end(double dt) noexcept;
   void update_in_position(double dt) noexcept;
   void raise(image::AlarmNumber number, double limit, double value, double d1 = 0.0,
              double d2 = 0.0) noexcept;
@@ -180,6 +182,12 @@ class Axis {
   bool homing_reported_ = true;  ///< the end of the homing that was asked for
   bool held_ = false;            ///< the drive held the axis in the last cycle
   bool process_given_ = false;
+  bool off_path_ = false;     ///< the axis does not follow the process that goes on or stops
+  bool path_moved_ = false;   ///< and the process has moved since
+  bool place_asked_ = false;  ///< that its place is not known has been said
+  std::uint8_t restarts_off_path_ = 0;
+  double path_end_ = 0.0;  ///< where the process ended
+  double off_path_rest_s_ = 0.0;
   bool release_pending_ = false;
   Setpoint process_;
 

@@ -14,6 +14,7 @@ using image::DriveState;
 namespace {
 
 constexpr double kVelocityFilter = 0.01;  // s
+constexpr double kOffPathRest = 0.1;      // s
 
 bool on(const image::ProcessImage& image, const std::optional<SwitchPlace>& s) noexcept {
   return s && image.packets.bit(s->place) != s->inverted;
@@ -86,7 +87,7 @@ void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
 void Axis::supervise_drive() noexcept {
   if (!drive_.online) {
     if (seen_online_) {
-      raise(alarm::kDriveOffline, 0.0, 0.0);
+      raise(alarm::kDriveOffline, 0.0, actual_, actual_velocity_);
       drop_reference();
       seen_counts_ = false;
     }
@@ -164,6 +165,39 @@ void Axis::supervise_brake() noexcept {
     brake_mark_ = static_cast<double>(drive_.position_counts);
     brake_marked_ = closed && actual_standing_;
   }
+}
+
+/// An axis that was lost or stopped by itself while its process went on along the path: how far from the end
+/// of the path it stands, as soon as the drive can tell.
+void Axis::supervise_path_end(double dt) noexcept {
+  if (!process_given_) return report_path_end(dt);
+  if ((held_ && !own_motion_) || reaction_ >= image::Reaction::quick_stop) {
+    off_path_ = false;
+    return;
+  }
+  if (!off_path_) {
+    path_moved_ = place_asked_ = false;
+    restarts_off_path_ = drive_.restarts;
+  }
+  off_path_ = true;
+  path_moved_ = path_moved_ || process_.velocity != 0.0;
+  path_end_ = process_.position;
+  off_path_rest_s_ = 0.0;
+}
+
+void Axis::report_path_end(double dt) noexcept {
+  if (!off_path_) return;
+  if (!drive_.online || drive_.restarts != restarts_off_path_) {
+    if (path_moved_ && !place_asked_) raise(alarm::kPlaceUnknown, path_end_, actual_);
+    place_asked_ = true;
+    off_path_ = !drive_.online;
+    return;
+  }
+  off_path_rest_s_ = actual_standing_ ? off_path_rest_s_ + dt : 0.0;
+  if (off_path_rest_s_ < kOffPathRest) return;
+  off_path_ = false;
+  const double off = actual_ - path_end_;
+  if (std::abs(off) > config_.in_position_window) raise(alarm::kOffPath, path_end_, off);
 }
 
 void Axis::update_in_position(double dt) noexcept {

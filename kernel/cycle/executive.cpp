@@ -168,6 +168,9 @@ void Cycle::collect_events() noexcept {
         const image::DriveFeedback& drive = image_.axes[static_cast<std::size_t>(axis)].drive;
         r.statusword = drive.statusword;
         r.error_code = drive.error_code;
+        const axis::DrivePlace& place = axes_[static_cast<std::size_t>(axis)].config().drive;
+        r.segment = place.segment;
+        r.node = place.node;
       }
       r.line = image_.processes[0].line;
       raise(r);
@@ -232,12 +235,34 @@ bool Cycle::still_present(const image::AlarmRecord& r) const noexcept {
     case alarm::kExternalAlarm:
       return r.process >= 0 &&
              external_alarm_[static_cast<std::size_t>(r.process)] == static_cast<std::int16_t>(r.value);
+    case alarm::kNodeLost:
+    case alarm::kNodeRestarted:
+    case alarm::kNodeLeft:
+    case alarm::kBusOff:
+    case alarm::kBusDown:
+    case axis::alarm::kPdoMissing:
+      return drives_missing(r);
     default:
       break;
   }
   if (r.axis >= 0) return axes_[static_cast<std::size_t>(r.axis)].present(r.number);
   return std::any_of(spindles_.begin(), spindles_.end(),
                      [&](const axis::Spindle& s) { return s.present(r.number); });
+}
+
+/// The drive that a record names, or one on the segment that it names, is not there.
+bool Cycle::drives_missing(const image::AlarmRecord& r) const noexcept {
+  const auto missing = [&r](const axis::DrivePlace& place, const image::DriveFeedback& drive) {
+    const bool meant = r.segment == place.segment && (r.node < 0 || r.node == place.node);
+    return meant && !drive.online;
+  };
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    if (missing(axes_[i].config().drive, image_.axes[i].drive) ||
+        (r.axis == static_cast<int>(i) && axes_[i].present(r.number)))
+      return true;
+  for (std::size_t i = 0; i < spindles_.size(); ++i)
+    if (missing(spindles_[i].config().drive, image_.spindles[i].drive)) return true;
+  return false;
 }
 
 void Cycle::note_overrun(image::Nanoseconds late_ns) noexcept {

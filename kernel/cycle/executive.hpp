@@ -128,6 +128,7 @@ class Cycle {
   ProcessContext context(int process) noexcept;
   void raise(const image::AlarmRecord& record) noexcept;
   bool still_present(const image::AlarmRecord& record) const noexcept;
+  bool drives_missing(const image::AlarmRecord& record) const noexcept;
   void begin_measuring() noexcept;
   void stamp(Phase phase) noexcept;
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "gateway/compose/program/program_model.hpp"
 #include "tests/machine_run/program.hpp"
@@ -49,8 +51,19 @@ std::string LimitJudge::verdict() const {
   return words;
 }
 
-Mill::Mill(std::string_view program, cycle::InputSource* source) : program_(program) {
-  const machine::LoadResult loaded = machine::load(machine_run::source("examples/mill/machine.toml"));
+machine::LoadResult changed_mill(const std::function<void(std::string& text)>& change) {
+  const std::string path = source("examples/mill/machine.toml");
+  std::ifstream file(path);
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  change(text);
+  return machine::parse(text, path);
+}
+
+Mill::Mill(std::string_view program, cycle::InputSource* source)
+    : Mill(machine::load(machine_run::source("examples/mill/machine.toml")), program, source) {}
+
+Mill::Mill(const machine::LoadResult& loaded, std::string_view program, cycle::InputSource* source)
+    : program_(program) {
   std::vector<text::Finding> findings;
   control_ = gateway::Control::compose(loaded, findings, source);
   if (control_ == nullptr) {

@@ -36,6 +36,8 @@ class Mill {
  public:
   /// With `program` as its part program (NC-110). `source`: the inputs come from a record.
   explicit Mill(std::string_view program = {}, cycle::InputSource* source = nullptr);
+  /// The same with another machine file.
+  Mill(const machine::LoadResult& machine, std::string_view program, cycle::InputSource* source = nullptr);
 
   gateway::Control& control() { return *control_; }
   const image::ProcessImage& image() const { return control_->cycle().image(); }
@@ -77,6 +79,9 @@ class Mill {
   std::unique_ptr<LimitJudge> judge_;
   std::uint64_t next_id_ = 1;
 };
+
+/// The example mill's machine file with its text changed.
+machine::LoadResult changed_mill(const std::function<void(std::string& text)>& change);
 
 /// A bit of the image by the name of its symbol, e.g. "coolant", "NC.m_strobe".
 image::Place place_of(const gateway::Control& control, std::string_view symbol);

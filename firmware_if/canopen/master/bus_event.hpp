@@ -19,7 +19,7 @@ enum class BusEventKind : std::uint8_t {
   node_booted,     ///< all boot steps done, process data runs
   boot_failed,     ///< `boot` says the step, what was expected and what came
   emcy,            ///< `emcy`; error code 0: the error is gone
-  heartbeat_lost,  ///< no heartbeat for `got` ms
+  heartbeat_lost,  ///< no heartbeat for `got` ms, allowed are `expected`
   node_restarted,  ///< a boot-up message of a node that was running
   node_left,       ///< heartbeat shows another NMT state (`got`) than Operational
   pdo_missing,     ///< no TPDO1 for `got` cycles
@@ -31,7 +31,8 @@ enum class BusEventKind : std::uint8_t {
   foreign_frame,   ///< SYNC, NMT, RPDO or SDO request that we did not send (`frame`): another master on the
                    ///< bus
   unknown_node,    ///< heartbeat or EMCY of a node that is not configured
-  send_failed,  ///< the transmit queue was full; `frame` was dropped, or waits where the service repeats it
+  send_failed,  ///< the transmit queue was full `got` times since this was said last; `frame` was dropped, or
+                ///< waits where the service repeats it
   bus_state,    ///< `bus_state` is the new one
 };
 

@@ -145,8 +145,9 @@ struct Segment::Impl {
   }
 
   BusEvent event(BusEventKind kind, const ProcessImage& image, NodeId node = 0) const noexcept;
-  void say_frame(BusEventKind kind, const ProcessImage& image, const image::CanFrame& frame,
-                 NodeId node) noexcept;
+  void say_frame(BusEventKind kind, const ProcessImage& image, const image::CanFrame& frame, NodeId node,
+                 std::int64_t got = 0) noexcept;
+  void say_send_failed(const ProcessImage& image, const image::CanFrame& frame, NodeId node) noexcept;
   bool send_own(const ProcessImage& image, const image::CanFrame& frame) noexcept;
   void dispatch(const image::CanFrame& frame, const ProcessImage& image) noexcept;
   void on_foreign(const CobId& cob, const image::CanFrame& frame, const ProcessImage& image) noexcept;
@@ -201,7 +202,7 @@ struct Segment::Impl {
   bool started = false;
   std::size_t next_acyclic = 0;
   SdoBudget sdo;
-  std::uint64_t send_failures = 0;
+  std::uint64_t send_failures = 0, send_failures_said = 0;
   Throttle send_failed;
   std::array<Throttle, kServices> foreign;
   std::bitset<128> unknown_said;
@@ -218,8 +219,9 @@ BusEvent Segment::Impl::event(BusEventKind kind, const ProcessImage& image, Node
 }
 
 void Segment::Impl::say_frame(BusEventKind kind, const ProcessImage& image, const image::CanFrame& frame,
-                              NodeId node) noexcept {
+                              NodeId node, std::int64_t got) noexcept {
   BusEvent e = event(kind, image, node);
+  e.got = got;
   e.frame.id = frame.id;
   e.frame.length = frame.length;
   for (std::size_t i = 0; i < frame.length && i < e.frame.data.size(); ++i) e.frame.data[i] = frame.data[i];
@@ -229,8 +231,18 @@ void Segment::Impl::say_frame(BusEventKind kind, const ProcessImage& image, cons
 bool Segment::Impl::send_own(const ProcessImage& image, const image::CanFrame& frame) noexcept {
   if (bus.send(frame)) return true;
   ++send_failures;
-  if (send_failed.pass(image.now.t_ns)) say_frame(BusEventKind::send_failed, image, frame, 0);
+  say_send_failed(image, frame, 0);
   return false;
+}
+
+void Segment::Impl::say_send_failed(const ProcessImage& image, const image::CanFrame& frame,
+                                    NodeId node) noexcept {
+  // That a bus is off or down has been said, and says why nothing goes out.
+  if (bus_state == image::CanState::bus_off || bus_state == image::CanState::down) return;
+  if (!send_failed.pass(image.now.t_ns)) return;
+  say_frame(BusEventKind::send_failed, image, frame, node,
+            static_cast<std::int64_t>(send_failures - send_failures_said));
+  send_failures_said = send_failures;
 }
 
 // Only the control speaks on these identifiers, and a bus does not give us our own frames back.
@@ -344,8 +356,8 @@ void Segment::receive(ProcessImage& image) noexcept {
   if (my.started) my.bus.meter.close_cycle(image.now.period_ns, my.bus.bit_rate());
   if (!my.started) my.heartbeat_due_ns = image.now.t_ns;
   my.started = true;
-  my.send_own(image, my.next_sync());
   my.watch_bus(image);
+  my.send_own(image, my.next_sync());
   my.drain(image);
   my.fill_status(image.segments[static_cast<std::size_t>(my.config.index)]);
 }
@@ -356,8 +368,7 @@ void Segment::send(ProcessImage& image) noexcept {
     image::CanFrame dropped;
     const int lost = node.send_process_data(Impl::command(image, node.config()), my.context(image), dropped);
     my.send_failures += static_cast<std::uint64_t>(lost);
-    if (lost && my.send_failed.pass(image.now.t_ns))
-      my.say_frame(BusEventKind::send_failed, image, dropped, node.id());
+    if (lost > 0) my.say_send_failed(image, dropped, node.id());
   }
   my.send_heartbeat(image);
   my.send_time(image);

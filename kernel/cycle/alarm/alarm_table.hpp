@@ -23,6 +23,8 @@ inline constexpr AlarmNumber kForeignFrame = 2014;
 inline constexpr AlarmNumber kBootFailed = 2015;
 inline constexpr AlarmNumber kBusSendOverflow = 2016;
 inline constexpr AlarmNumber kBusDown = 2017;
+inline constexpr AlarmNumber kNodeRestarted = 2018;
+inline constexpr AlarmNumber kNodeLeft = 2019;
 
 inline constexpr AlarmNumber kSourceStale = 3001;
 inline constexpr AlarmNumber kSourceBad = 3002;

@@ -58,7 +58,8 @@ bool figures_are_lengths(image::AlarmNumber n) {
   using namespace axis::alarm;
   return (n >= kFollowingError && n <= kSetpointStep) ||
          (n >= kHomingSwitchNotFound && n <= kHomingIndexNotFound) || n == kHomingLimitAgain ||
-         n == kHomingInterrupted || n == kHomingIndexNearEdge || n == alarm::kLeavesTravel;
+         n == kHomingInterrupted || n == kHomingIndexNearEdge || n == alarm::kLeavesTravel || n == kOffPath ||
+         n == kPlaceUnknown || n == kDriveOffline;
 }
 
 /// State of CiA 402-2, table "state coding" of the status word; -1: no valid one.
@@ -89,10 +90,35 @@ int state_of(std::uint16_t statusword) {
   }
 }
 
-std::string where(const AlarmRecord& r, const AlarmNames& names) {
+/// NMT state of a heartbeat.
+std::string nmt_words(int state, Language language) {
+  const bool russian = language == Language::russian;
+  if (state == 4) return russian ? "Stopped (остановлен)" : "Stopped";
+  if (state == 127) return russian ? "Pre-operational (не в работе)" : "Pre-operational";
+  return std::to_string(state);
+}
+
+/// "2 (can.y, axis Y)".
+std::string node_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
+  std::string words = names.node_name ? names.node_name(r.segment, r.node) : std::string();
+  if (r.axis >= 0) {
+    if (!words.empty()) words += ", ";
+    words += (language == Language::russian ? "ось " : "axis ") + name_at(names.axes, r.axis);
+  }
+  return std::to_string(r.node) + (words.empty() ? "" : " (" + words + ")");
+}
+
+std::string where(const AlarmRecord& r, const AlarmNames& names, Language language) {
   if (r.number >= 3000 && r.number < 4000) return name_at(names.sources, r.segment >= 0 ? r.segment : r.node);
-  if (r.node >= 0) return std::to_string(r.node);
-  return name_at(names.segments, r.segment);
+  if (r.node >= 0) return node_words(r, names, language);
+  return r.segment < 0 ? "-" : name_at(names.segments, r.segment);
+}
+
+std::string boot_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
+  std::string words = names.boot_failure ? names.boot_failure(r, language) : std::string();
+  if (!words.empty()) return words;
+  return (language == Language::russian ? "запуск прерван на шаге " : "start-up failed at step ") +
+         text::number(r.detail1, 0);
 }
 
 std::string axis_name(const AlarmRecord& r, const AlarmNames& names) {
@@ -106,7 +132,7 @@ std::string error_words(const AlarmRecord& r, const AlarmNames& names, Language 
   const auto code = in_value ? static_cast<std::uint16_t>(r.value) : r.error_code;
   std::string out = hex(code, 4);
   const std::string words =
-      names.error_text ? names.error_text(r.axis, r.node, code, language) : std::string();
+      names.error_text ? names.error_text(r.axis, r.segment, r.node, code, language) : std::string();
   return words.empty() ? out : out + " (" + words + ")";
 }
 
@@ -127,7 +153,7 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
   std::vector<std::string> out = {axis_name(r, names),
                                   figure(r.value),
                                   figure(r.limit),
-                                  where(r, names),
+                                  where(r, names, language),
                                   statusword_text(r.statusword, language),
                                   error_words(r, names, language),
                                   figure(r.detail1),
@@ -140,6 +166,8 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
   }
   if (r.number == axis::alarm::kFollowingError) out[7] = torque_words(r.detail2, language);
   if (r.number == alarm::kOverrunLimit) out[6] = phase_words(static_cast<int>(r.detail1), language);
+  if (r.number == alarm::kBootFailed) out[6] = boot_words(r, names, language);
+  if (r.number == alarm::kNodeLeft) out[1] = nmt_words(static_cast<int>(r.value), language);
   if (r.number == alarm::kForeignFrame) out[8] = hex(static_cast<unsigned>(r.value), 3);
   return out;
 }

@@ -93,7 +93,11 @@ struct AlarmNames {
   std::vector<std::string> segments;
   std::vector<std::string> sources;
   /// Words of a drive's own error code, from its device file; empty result: only the number is shown.
-  std::function<std::string(int axis, int node, std::uint16_t code, text::Language)> error_text;
+  std::function<std::string(int axis, int segment, int node, std::uint16_t code, text::Language)> error_text;
+  /// A node as the machine file calls it, "can.y"; may be empty.
+  std::function<std::string(int segment, int node)> node_name;
+  /// Where and why a node's start-up failed, from a record of kBootFailed; may be empty.
+  std::function<std::string(const image::AlarmRecord&, text::Language)> boot_failure;
   /// What a program's interpreter found (program errors and warnings; its number in `value`) with file, line
   /// and column; may be empty.
   std::function<std::string(int process, int number, text::Language)> program_finding;

@@ -140,6 +140,7 @@ void DriveNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& co
 void DriveNode::on_boot_up(const NodeContext& context) noexcept {
   if (guard_) guard_->start(context.now);
   if (phase_ == Phase::booting && boot_.boot_up_belongs()) return boot_.on_boot_up();
+  ++restarts_;
   if (phase_ == Phase::running) {
     context.events.push(event(BusEventKind::node_restarted, context));
     go_offline();
@@ -184,6 +185,7 @@ void DriveNode::supervise(bool status_fresh, const NodeContext& context) noexcep
   if (status_fresh) seen_status_ = online_ = true;
   if (context.now > heartbeat_deadline_ns_) {
     BusEvent e = event(BusEventKind::heartbeat_lost, context);
+    e.expected = heartbeat_timeout_ns_ / image::kMillisecond;
     e.got = (context.now - heartbeat_deadline_ns_ + heartbeat_timeout_ns_) / image::kMillisecond;
     context.events.push(e);
     go_offline();
@@ -228,14 +230,18 @@ void DriveNode::evaluate(image::DriveFeedback& feedback, const NodeContext& cont
   feedback.online = online_;
   // In PDOs that should have come, so that one on every n-th SYNC is not missed in between.
   feedback.missed = static_cast<std::uint32_t>(missed_ / status_every_);
+  feedback.restarts = restarts_;
   if (!online_) feedback.state = image::DriveState::offline;
 }
 
 int DriveNode::send_process_data(const image::DriveCommand& command, const NodeContext& context,
                                  image::CanFrame& dropped) noexcept {
-  if (!command.power) blocked_ = false;
-  if (phase_ != Phase::running) return 0;
-  link_.apply(context.now, command, blocked_);
+  if (!command.power && online_) blocked_ = false;
+  if (phase_ != Phase::running && phase_ != Phase::lost) return 0;
+  // It may still hear us: until it is heard again it is to ramp down, whatever is asked of it.
+  image::DriveCommand wanted = command;
+  if (blocked_ && !online_) wanted.power = true;
+  link_.apply(context.now, wanted, blocked_);
   int lost = 0;
   for (int number = 1; number <= 4; ++number) {
     if (!link_.process_data().due(number, config_.node, context.cycle, context.now)) continue;

@@ -41,7 +41,8 @@ class DriveNode {
   void on_frame(Service service, const image::CanFrame& frame, const NodeContext& context) noexcept;
   /// After all frames of the cycle: supervision, then the feedback.
   void evaluate(image::DriveFeedback& feedback, const NodeContext& context) noexcept;
-  /// Sends the RPDOs. Returns the number of frames the bus did not take; `dropped` is the last of them.
+  /// Sends the RPDOs; a node that was lost while it ran is told to quick-stop until it is heard again. Returns
+  /// the number of frames the bus did not take; `dropped` is the last of them.
   int send_process_data(const image::DriveCommand& command, const NodeContext& context,
                         image::CanFrame& dropped) noexcept;
   /// Sends at most one frame of boot or SDO. True when it did.
@@ -90,6 +91,7 @@ class DriveNode {
   bool seen_status_ = false;
   std::int64_t missed_ = 0;
   bool blocked_ = false;  ///< lost while it ran: power must be withdrawn once before it is given again
+  std::uint8_t restarts_ = 0;
   bool refusal_said_ = false;
   bool handover_said_ = false;
 };
