@@ -21,6 +21,8 @@ class CanSupplier final : public image::CycleDevice {
   void send(image::ProcessImage& image) noexcept override { segment_.send(image); }
 
   const canopen::Segment& segment() const noexcept { return segment_; }
+  /// Reading objects from outside the cycle; one asker. real-time safe.
+  canopen::ObjectQuestion& question() noexcept { return segment_.question(); }
   /// Takes the oldest event kept for people; one reader outside the cycle. real-time safe.
   bool take_event(canopen::BusEvent& event) noexcept { return kept_.pop(event); }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "gateway/machine/consequences.hpp"
+#include "gateway/server/bus_reading.hpp"
 #include "gateway/server/status.hpp"
 #include "gateway/server/texts.hpp"
 
@@ -100,6 +101,7 @@ class Dispatch {
   Reply hold();
   Reply reset();
   Reply input();
+  Reply sdo_read();
   /// What the request plays on a point; false: `refusal_` holds the answer.
   bool input_value(const machine::PointConfig& point, MockWorld::Play& play);
   Reply down() {
@@ -142,6 +144,7 @@ const Dispatch::Row Dispatch::kRows[] = {{"status", &Dispatch::status},
                                          {"reset", &Dispatch::reset},
                                          {"acknowledge", &Dispatch::reset},
                                          {"input", &Dispatch::input},
+                                         {"sdo_read", &Dispatch::sdo_read},
                                          {"down", &Dispatch::down}};
 
 Reply Dispatch::run() {
@@ -424,6 +427,13 @@ bool Dispatch::input_value(const machine::PointConfig& point, MockWorld::Play& p
 Reply Dispatch::input() {
   const std::string name = request_.value("point", "");
   int station = -1;
+Reply Dispatch::sdo_read() {
+  const ReadThrough read = read_object(resident_.control(), request_);
+  if (read.unknown) return fail(says::kNoSuchObject, {}, kWrongUse);
+  if (read.no_answer) return fail(says::kObjectUnanswered, {}, kAlarm);
+  return good(says::kObjectRead, {}, read.answer);
+}
+
   const machine::PointConfig* point = machine().point(name, &station);
   if (point == nullptr) {
     std::string list;

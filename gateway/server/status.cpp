@@ -84,6 +84,28 @@ json process_json(Control& control, const image::ProcessImage& image, int proces
           {"tool", p.tool}};
 }
 
+/// The buses that this control holds, with their nodes.
+json bus_list(const machine::MachineConfig& m, const image::ProcessImage& image) {
+  json buses = json::array();
+  const auto online = [&](const std::string& reference) {
+    for (int i = 0; i < image.axis_count; ++i)
+      if (const auto n = static_cast<std::size_t>(i); m.axes[n].drive == reference)
+        return image.axes[n].drive.online;
+    for (int i = 0; i < image.spindle_count; ++i)
+      if (const auto n = static_cast<std::size_t>(i); m.spindles[n].drive == reference)
+        return image.spindles[n].drive.online;
+    return false;
+  };
+  for (const machine::BusConfig& bus : m.buses) {
+    json nodes = json::array();
+    for (const machine::NodeConfig& node : bus.nodes)
+      nodes.push_back(
+          {{"node", node.id}, {"name", node.name}, {"online", online(bus.name + "." + node.name)}});
+    buses.push_back({{"name", bus.name}, {"url", bus.url}, {"nodes", std::move(nodes)}});
+  }
+  return buses;
+}
+
 }  // namespace
 
 std::string status_json(Resident& resident, text::Language language) {
@@ -134,6 +156,7 @@ std::string status_json(Resident& resident, text::Language language) {
                                   {"at_speed", s.at_speed},
                                   {"drive", kDriveStates[static_cast<int>(s.drive.state)]}});
   }
+  status["buses"] = bus_list(m, image);
   status["alarms"] = alarm_list(resident, language);
   return status.dump(-1, ' ', false, json::error_handler_t::replace);
 }

@@ -27,6 +27,12 @@ const Entry kBusy{"socket.program-runs", "a program runs; stop it first (`servog
 const Entry kBlockWrong{"socket.block-wrong", "the block was not run: {0}", "кадр не выполнен: {0}"};
 const Entry kBlockEmpty{"socket.block-empty", "the block is empty", "кадр пуст"};
 const Entry kNoJog{"socket.no-jog", "nothing jogs for this client", "для этого клиента ничего не движется"};
+const Entry kNoSuchObject{"socket.no-such-object",
+                          "sdo_read needs bus, node, index and subindex of a node of the machine file",
+                          "sdo_read требует bus, node, index и subindex узла из файла станка"};
+const Entry kObjectUnanswered{
+    "socket.object-unanswered", "the node does not run under this control, or somebody else reads just now",
+    "узел сейчас не работает под этим управлением, либо в эту минуту читает кто-то другой"};
 const Entry kNoPoint{"socket.no-point", "the machine has no input '{0}'; it has {1}",
                      "у станка нет входа «{0}»; есть {1}"};
 const Entry kOutput{"socket.output", "'{0}' is an output: the PLC drives it, not the world",
@@ -82,6 +88,7 @@ const Entry kOverride{"said.override", "feed override {0} %", "коррекци�
 const Entry kInput{"said.input", "input {0} is {1}", "вход {0}: {1}"};
 const Entry kInputFollows{"said.input-follows", "input {0} follows its axis again",
                           "вход {0} снова следует за осью"};
+const Entry kObjectRead{"said.object-read", "the node has answered", "узел ответил"};
 const Entry kDown{"said.down", "the control stops the axes, switches the drives off and ends",
                   "управление останавливает оси, выключает приводы и завершает работу"};
 

@@ -7,29 +7,31 @@
 namespace servogate::gateway::says {
 
 // refusals; ids begin with "socket."
-extern const text::Entry kBadLine;         ///< {0} the line or what is wrong with it
-extern const text::Entry kLongLine;        ///< {0} bytes
-extern const text::Entry kFull;            ///< {0} clients
-extern const text::Entry kUnknown;         ///< {0} command
-extern const text::Entry kUnknownAsker;    ///< {0} asker, {1} known ones
-extern const text::Entry kNoAxis;          ///< {0} axis, {1} axes of the machine
-extern const text::Entry kNotUnit;         ///< {0} unit, {1} axis, {2} its unit
-extern const text::Entry kNoNumber;        ///< {0} key
-extern const text::Entry kNoAnswer;        ///< the cycle stands
-extern const text::Entry kNotLoaded;       ///< {0} program
-extern const text::Entry kMoreFindings;    ///< {0} how many
-extern const text::Entry kBusy;            ///< a program runs
-extern const text::Entry kBlockWrong;      ///< {0} what is wrong
-extern const text::Entry kBlockEmpty;      ///< nothing typed
-extern const text::Entry kNoJog;           ///< keep-alive without a jog
-extern const text::Entry kNoPoint;         ///< {0} point, {1} inputs of the machine
-extern const text::Entry kOutput;          ///< {0} point
-extern const text::Entry kRealPoint;       ///< {0} point, {1} station, {2} its url
-extern const text::Entry kAnalogPoint;     ///< {0} point
-extern const text::Entry kDigitalPoint;    ///< {0} point, {1} value
-extern const text::Entry kInputRange;      ///< {0} point, {1} value, {2} smallest, {3} largest
-extern const text::Entry kFollowsNothing;  ///< {0} point
-extern const text::Entry kNotSaved;        ///< {0} the system's words
+extern const text::Entry kBadLine;           ///< {0} the line or what is wrong with it
+extern const text::Entry kLongLine;          ///< {0} bytes
+extern const text::Entry kFull;              ///< {0} clients
+extern const text::Entry kUnknown;           ///< {0} command
+extern const text::Entry kUnknownAsker;      ///< {0} asker, {1} known ones
+extern const text::Entry kNoAxis;            ///< {0} axis, {1} axes of the machine
+extern const text::Entry kNotUnit;           ///< {0} unit, {1} axis, {2} its unit
+extern const text::Entry kNoNumber;          ///< {0} key
+extern const text::Entry kNoAnswer;          ///< the cycle stands
+extern const text::Entry kNotLoaded;         ///< {0} program
+extern const text::Entry kMoreFindings;      ///< {0} how many
+extern const text::Entry kBusy;              ///< a program runs
+extern const text::Entry kBlockWrong;        ///< {0} what is wrong
+extern const text::Entry kBlockEmpty;        ///< nothing typed
+extern const text::Entry kNoJog;             ///< keep-alive without a jog
+extern const text::Entry kNoSuchObject;      ///< sdo_read: no such bus or node, or no object
+extern const text::Entry kObjectUnanswered;  ///< sdo_read: the node does not run, or somebody else reads
+extern const text::Entry kNoPoint;           ///< {0} point, {1} inputs of the machine
+extern const text::Entry kOutput;            ///< {0} point
+extern const text::Entry kRealPoint;         ///< {0} point, {1} station, {2} its url
+extern const text::Entry kAnalogPoint;       ///< {0} point
+extern const text::Entry kDigitalPoint;      ///< {0} point, {1} value
+extern const text::Entry kInputRange;        ///< {0} point, {1} value, {2} smallest, {3} largest
+extern const text::Entry kFollowsNothing;    ///< {0} point
+extern const text::Entry kNotSaved;          ///< {0} the system's words
 
 // accepted
 extern const text::Entry kPowerOn, kPowerOff;
@@ -52,6 +54,7 @@ extern const text::Entry kOverride;      ///< {0} per cent
 extern const text::Entry kInput;         ///< {0} point, {1} level
 extern const text::Entry kInputFollows;  ///< {0} point
 extern const text::Entry kDown;
+extern const text::Entry kObjectRead;
 
 // the socket itself
 extern const text::Entry kPathTooLong;

@@ -133,7 +133,7 @@ struct Segment::Impl {
   }
 
   NodeContext context(const ProcessImage& image) noexcept {
-    return {static_cast<std::int16_t>(config.index), image.now.number, image.now.t_ns, bus, ring};
+    return {static_cast<std::int16_t>(config.index), image.now.number, image.now.t_ns, bus, ring, question};
   }
   static image::DriveFeedback& feedback(ProcessImage& image, const NodeConfig& node) noexcept {
     const auto i = static_cast<std::size_t>(node.target_index);
@@ -196,6 +196,7 @@ struct Segment::Impl {
   std::vector<DriveNode> nodes;
   std::array<std::int8_t, 128> index_of{};
   BusEventRing ring;
+  ObjectQuestion question;
   image::CanState bus_state = image::CanState::error_active;
   image::Nanoseconds heartbeat_due_ns = 0, time_due_ns = 0;
   std::uint8_t sync_counter = 0;
@@ -375,6 +376,7 @@ void Segment::send(ProcessImage& image) noexcept {
   my.send_acyclic(image);
 }
 
+ObjectQuestion& Segment::question() noexcept { return impl_->question; }
 BusEventRing& Segment::events() noexcept { return impl_->ring; }
 const SegmentConfig& Segment::config() const noexcept { return impl_->config; }
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "firmware_if/canopen/master/bus_event.hpp"
+#include "firmware_if/canopen/master/object_question.hpp"
 #include "firmware_if/canopen/master/segment_config.hpp"
 #include "firmware_if/image/can_bus.hpp"
 #include "firmware_if/image/process_image.hpp"
@@ -40,6 +41,8 @@ class Segment final : public image::CycleDevice {
   /// RPDOs of drive_command, then heartbeat, NMT and SDO. real-time safe.
   void send(image::ProcessImage& image) noexcept override;
 
+  /// Reading an object of a node that runs, from outside the cycle; one asker. real-time safe.
+  ObjectQuestion& question() noexcept;
   /// What happened; one reader. real-time safe.
   BusEventRing& events() noexcept;
   const SegmentConfig& config() const noexcept;

@@ -264,11 +264,18 @@ bool DriveNode::send_guarding(const NodeContext& context) noexcept {
 }
 
 bool DriveNode::send_acyclic(const NodeContext& context) noexcept {
+  if (questioned_ && phase_ != Phase::running) {
+    context.question.give_up();
+    questioned_ = false;
+  }
   if (send_guarding(context)) return true;
   if (phase_ == Phase::booting) return boot_.poll(context.now, sdo_, context.bus);
   if (phase_ == Phase::running && !sdo_.busy()) {
+    if (questioned_) context.question.finish(sdo_);
+    questioned_ = false;
     if (link_.access_running()) finish_access(context);
     link_.start_access(context.now, sdo_);
+    if (!link_.access_running()) questioned_ = context.question.start(config_.node, sdo_);
   }
   return sdo_.poll(context.now, context.bus);
 }

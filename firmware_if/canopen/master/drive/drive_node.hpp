@@ -11,6 +11,7 @@
 #include "firmware_if/canopen/302/node_boot.hpp"
 #include "firmware_if/canopen/master/bus_event.hpp"
 #include "firmware_if/canopen/master/drive/drive_link.hpp"
+#include "firmware_if/canopen/master/object_question.hpp"
 #include "firmware_if/canopen/master/segment_config.hpp"
 
 namespace servogate::canopen {
@@ -22,6 +23,7 @@ struct NodeContext {
   image::Nanoseconds now = 0;
   image::CanBus& bus;
   BusEventRing& events;
+  ObjectQuestion& question;  ///< of somebody outside the cycle, to any node of the segment
 };
 
 /// One configured node through its life: boot, operation under supervision, loss, boot again. All but the
@@ -94,6 +96,7 @@ class DriveNode {
   std::uint8_t restarts_ = 0;
   bool refusal_said_ = false;
   bool handover_said_ = false;
+  bool questioned_ = false;  ///< the transfer under way answers a question from outside
 };
 
 }  // namespace servogate::canopen
