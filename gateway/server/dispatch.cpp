@@ -424,9 +424,6 @@ bool Dispatch::input_value(const machine::PointConfig& point, MockWorld::Play& p
                {point.name, text::number(*play.value), text::number(range.min), text::number(range.max)});
 }
 
-Reply Dispatch::input() {
-  const std::string name = request_.value("point", "");
-  int station = -1;
 Reply Dispatch::sdo_read() {
   const ReadThrough read = read_object(resident_.control(), request_);
   if (read.unknown) return fail(says::kNoSuchObject, {}, kWrongUse);
@@ -434,6 +431,9 @@ Reply Dispatch::sdo_read() {
   return good(says::kObjectRead, {}, read.answer);
 }
 
+Reply Dispatch::input() {
+  const std::string name = request_.value("point", "");
+  int station = -1;
   const machine::PointConfig* point = machine().point(name, &station);
   if (point == nullptr) {
     std::string list;
