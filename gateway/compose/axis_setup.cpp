@@ -90,6 +90,7 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
   c.travel_min = a.travel_min;
   c.travel_max = a.travel_max;
   if (a.following_error_stop > 0.0) c.following_error_limit = a.following_error_stop;
+  c.following_error_warn = a.following_error_warn;
   c.following_error_velocity = a.following_error_velocity;
   c.in_position_window = a.in_position_window;
   c.in_position_time = a.in_position_time;

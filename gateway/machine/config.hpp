@@ -85,7 +85,7 @@ struct AxisConfig {
   double max_jerk = 0.0;          ///< mm/s3
   double travel_min = 0.0;        ///< machine coordinates, mm; rotary with both 0: endless
   double travel_max = 0.0;
-  double following_error_warn = 0.0;      ///< mm at standstill, 0: no warning
+  double following_error_warn = 0.0;      ///< mm at standstill, warning 1017; 0: none
   double following_error_stop = 0.0;      ///< mm at standstill
   double following_error_velocity = 0.0;  ///< s: allowed in addition per mm/s of set-point speed
   double in_position_window = 0.01;       ///< mm

@@ -23,6 +23,15 @@ constexpr text::Entry kHome{"consequence.home", "home {0} on {1}, {2} ms: ±{3} 
 constexpr text::Entry kFollowing{"consequence.following_error",
                                  "{0}: stops at a following error of {1} at rest, {2} at {3}",
                                  "{0}: останов при рассогласовании {1} в покое, {2} на {3}"};
+constexpr text::Entry kFollowingWarn{"consequence.following_error_warn",
+                                     "{0}: warns at a following error of {1} at rest, {2} at {3}",
+                                     "{0}: предупреждение при рассогласовании {1} в покое, {2} на {3}"};
+constexpr text::Entry kInverter{"consequence.inverter",
+                                "{0}: {1} rpm is {2} in the register of {3}, standstill is {4}; turns {5}, "
+                                "no encoder: what it really does is "
+                                "not seen",
+                                "{0}: {1} об/мин — {2} в регистре {3}, покой — {4}; вращение {5}, датчика "
+                                "нет: что происходит на деле, не видно"};
 constexpr text::Entry kSpindle{"consequence.spindle",
                                "{0}: {1} to {2} rpm, {3} s to full speed; the motor turns at {4} rpm",
                                "{0}: от {1} до {2} об/мин, {3} с до полной частоты; двигатель {4} об/мин"};
@@ -102,6 +111,12 @@ class Sentences {
     say(a.letter, kFollowing,
         {a.letter, length(a.following_error_stop), length(moving), speed(a.max_velocity)},
         {{"at_rest", a.following_error_stop}, {"at_max_velocity", moving}});
+    if (a.following_error_warn > 0.0) {
+      const double warns = a.following_error_warn + a.following_error_velocity * a.max_velocity;
+      say(a.letter, kFollowingWarn,
+          {a.letter, length(a.following_error_warn), length(warns), speed(a.max_velocity)},
+          {{"at_rest", a.following_error_warn}, {"at_max_velocity", warns}});
+    }
     home(a);
     if (a.brake.present())
       say(a.letter, kBrake, {a.letter, text::number(a.brake.engage_delay * 1e3)},

@@ -141,6 +141,7 @@ class Axis {
   void read_feedback(const image::DriveFeedback& in, double dt) noexcept;
   void supervise_drive() noexcept;
   void supervise_position() noexcept;
+  void warn_of_following_error() noexcept;
   void supervise_setpoint() noexcept;
   bool leaves_travel(const MotionState& state) noexcept;
   void supervise_power(PowerSequence::State before) noexcept;
@@ -205,9 +206,11 @@ class Axis {
   double actual_velocity_ = 0.0;
   double following_error_ = 0.0;
   double following_limit_ = 0.0;  ///< at the speed of this cycle
-  double rest_s_ = 0.0;           ///< the set-point has stood for so long
-  double inside_s_ = 0.0;         ///< and the feedback inside the window for so long
-  double brake_mark_ = 0.0;       ///< motor position at which the brake closed
+  double following_warn_ = 0.0;   ///< the same for the warning
+  bool following_warned_ = false;
+  double rest_s_ = 0.0;      ///< the set-point has stood for so long
+  double inside_s_ = 0.0;    ///< and the feedback inside the window for so long
+  double brake_mark_ = 0.0;  ///< motor position at which the brake closed
   bool brake_marked_ = false;
   bool moving_ = false;
   bool actual_standing_ = true;

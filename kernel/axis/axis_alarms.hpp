@@ -23,6 +23,7 @@ inline constexpr AlarmNumber kSetpointStep = 1013;
 inline constexpr AlarmNumber kNotHomed = 1014;
 inline constexpr AlarmNumber kOffPath = 1015;
 inline constexpr AlarmNumber kPlaceUnknown = 1016;
+inline constexpr AlarmNumber kFollowingErrorHigh = 1017;
 
 inline constexpr AlarmNumber kHomingSwitchNotFound = 1101;
 inline constexpr AlarmNumber kHomingSwitchNotReleased = 1102;

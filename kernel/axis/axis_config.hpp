@@ -82,7 +82,8 @@ struct AxisConfig {
   double travel_max = 300.0;
   bool travel_limited = true;             ///< false: an endless rotary axis
   double following_error_limit = 1.0;     ///< at rest ...
-  double following_error_velocity = 0.0;  ///< ... and so much more for each mm/s of the set-point
+  double following_error_warn = 0.0;      ///< the same for a warning, below the limit; 0: none
+  double following_error_velocity = 0.0;  ///< ... and so much more for each mm/s of the set-point, both
   double in_position_window = 0.01;
   double in_position_time = 0.01;  ///< to be inside the window so long
   double in_position_timeout =

@@ -82,6 +82,7 @@ void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
   following_error_ = held_ ? then.command - actual_ : 0.0;
   const double speed = std::abs(then.command - sent(config_.feedback_delay + 1).command) / dt;
   following_limit_ = config_.following_error_limit + config_.following_error_velocity * speed;
+  following_warn_ = config_.following_error_warn + config_.following_error_velocity * speed;
 }
 
 void Axis::supervise_drive() noexcept {
@@ -109,7 +110,19 @@ void Axis::supervise_position() noexcept {
   if (held_ && std::abs(following_error_) > following_limit_)
     raise(alarm::kFollowingError, following_limit_, following_error_, actual_velocity_,
           drive_.torque_known ? drive_.torque_permille : std::numeric_limits<double>::quiet_NaN());
+  warn_of_following_error();
   if (held_ && limit_plus_ && limit_minus_) raise(alarm::kBothLimits, 0.0, actual_);
+}
+
+/// Once for each time that the error exceeds its warning; it ends well below, so that noise is one
+/// exceedance.
+void Axis::warn_of_following_error() noexcept {
+  const double error = held_ ? std::abs(following_error_) : 0.0;
+  if (config_.following_error_warn <= 0.0 || error < 0.9 * following_warn_) following_warned_ = false;
+  if (config_.following_error_warn <= 0.0 || following_warned_ || error <= following_warn_) return;
+  following_warned_ = true;
+  if (error <= following_limit_)
+    events_.add({alarm::kFollowingErrorHigh, following_warn_, following_error_, actual_velocity_, 0.0});
 }
 
 void Axis::supervise_setpoint() noexcept {

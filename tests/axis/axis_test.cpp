@@ -106,6 +106,50 @@ TEST(Axis, reports_a_following_error_with_limit_value_and_velocity) {
   EXPECT_EQ(rig.events.size(), 1u) << "raised once, however long it lasts";
 }
 
+TEST(Axis, warns_once_each_time_that_the_following_error_exceeds_its_warning) {
+  AxisConfig c = test::mill_axis();
+  c.slow_velocity = c.jog_velocity = 100.0;
+  c.following_error_limit = 10.0;
+  c.following_error_warn = 2.0;
+  Rig rig(c);
+  rig.drive.lag = 0.97;  // about 32 ms behind: 3.2 mm at 100 mm/s
+  ASSERT_TRUE(rig.enable());
+  for (std::size_t exceedance = 1; exceedance <= 3; ++exceedance) {
+    ASSERT_TRUE(rig.axis.jog_increment(exceedance % 2 != 0 ? 100.0 : -100.0));
+    ASSERT_TRUE(rig.run_until([&] { return !rig.axis.moving(); }));
+    rig.run(500);
+    ASSERT_EQ(rig.events.size(), exceedance);
+    const Event& e = rig.events.back();
+    EXPECT_EQ(e.number, alarm::kFollowingErrorHigh);
+    EXPECT_EQ(e.limit, 2.0);
+    EXPECT_GT(std::abs(e.value), 2.0);
+    EXPECT_LT(std::abs(e.value), 2.2);
+    EXPECT_GT(std::abs(e.detail1), 50.0) << "with the speed";
+  }
+  EXPECT_FALSE(rig.axis.stopped_by_reaction());
+}
+
+TEST(Axis, warns_of_no_following_error_that_the_speed_allows_and_never_where_no_warning_is_asked_for) {
+  for (const double warn : {0.0, 2.0}) {
+    AxisConfig c = test::mill_axis();
+    c.slow_velocity = c.jog_velocity = 100.0;
+    c.following_error_limit = 10.0;
+    c.following_error_warn = warn;
+    c.following_error_velocity = warn > 0.0 ? 0.04 : 0.0;  // the lag is 0.032 mm for each mm/s
+    Rig rig(c);
+    rig.drive.lag = 0.97;
+    ASSERT_TRUE(rig.enable());
+    ASSERT_TRUE(rig.axis.jog_increment(100.0));
+    double most = 0.0;
+    ASSERT_TRUE(rig.run_until([&] {
+      most = std::max(most, std::abs(rig.shared().following_error));
+      return !rig.axis.moving();
+    }));
+    EXPECT_GT(most, 3.0);
+    EXPECT_TRUE(rig.events.empty()) << warn;
+  }
+}
+
 TEST(Axis, permits_more_following_error_at_speed_where_the_machine_file_says_so) {
   for (const bool allowed : {false, true}) {
     AxisConfig c = test::mill_axis();

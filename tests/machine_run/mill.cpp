@@ -59,6 +59,12 @@ machine::LoadResult changed_mill(const std::function<void(std::string& text)>& c
   return machine::parse(text, path);
 }
 
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+}
+
 Mill::Mill(std::string_view program, cycle::InputSource* source)
     : Mill(machine::load(machine_run::source("examples/mill/machine.toml")), program, source) {}
 

@@ -82,6 +82,8 @@ class Mill {
 
 /// The example mill's machine file with its text changed.
 machine::LoadResult changed_mill(const std::function<void(std::string& text)>& change);
+/// For such a change: the first `from` in the text becomes `to`; a failure when it has none.
+void replace(std::string& text, const std::string& from, const std::string& to);
 
 /// A bit of the image by the name of its symbol, e.g. "coolant", "NC.m_strobe".
 image::Place place_of(const gateway::Control& control, std::string_view symbol);

@@ -10,24 +10,20 @@ namespace {
 using cycle::Refusal;
 using image::RequestKind;
 
-void replace(std::string& text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  ASSERT_NE(at, std::string::npos) << from;
-  text.replace(at, from.size(), to);
-}
-
 /// The mill whose switches of X and emergency-stop chain are wired to the drive of X.
 machine::LoadResult wired_to_the_drive() {
   return changed_mill([](std::string& text) {
     replace(text, "device = \"servo-cia402\"", "device = \"servo-cia402-io\"");
-    for (const char* line :
-         {"  { name = \"x_limit_plus\", channel = \"di0\", place = \"SA0\", comment = \"1 = on the switch\" },\n",
-          "  { name = \"x_limit_minus\", channel = \"di1\", place = \"SA1\" },\n",
-          "  { name = \"x_home\", channel = \"di6\", place = \"SA6\" },\n",
-          "  { name = \"estop_chain_ok\", channel = \"di9\", place = \"SA17\", comment = \"1 = the chain is closed\" "
-          "},\n",
-          "  { name = \"control_alive_relay\", channel = \"dq10\", place = \"SA70\", comment = \"toggles for the "
-          "safety relay\" },\n"})
+    for (const char* line : {"  { name = \"x_limit_plus\", channel = \"di0\", place = \"SA0\", comment = \"1 "
+                             "= on the switch\" },\n",
+                             "  { name = \"x_limit_minus\", channel = \"di1\", place = \"SA1\" },\n",
+                             "  { name = \"x_home\", channel = \"di6\", place = \"SA6\" },\n",
+                             "  { name = \"estop_chain_ok\", channel = \"di9\", place = \"SA17\", comment = "
+                             "\"1 = the chain is closed\" "
+                             "},\n",
+                             "  { name = \"control_alive_relay\", channel = \"dq10\", place = \"SA70\", "
+                             "comment = \"toggles for the "
+                             "safety relay\" },\n"})
       replace(text, line, "");
     replace(text, "[[station]]  # everything",
             "[[station]]\nname = \"x_terminals\"\nkind = \"drive\"\nnode = \"can.x\"\npoints = [\n"
@@ -36,7 +32,8 @@ machine::LoadResult wired_to_the_drive() {
             "  { name = \"x_home\", channel = \"di2\", place = \"SA6\" },\n"
             "  { name = \"estop_chain_ok\", channel = \"di16\", place = \"SA17\" },\n"
             "  { name = \"chuck_open\", channel = \"di17\", place = \"SA9\", inverted = true },\n"
-            "  { name = \"control_alive_relay\", channel = \"dq18\", place = \"SA70\" },\n]\n\n[[station]]  # everything");
+            "  { name = \"control_alive_relay\", channel = \"dq18\", place = \"SA70\" },\n]\n\n[[station]]  "
+            "# everything");
   });
 }
 

@@ -132,6 +132,15 @@ constexpr AlarmRow kTable[] = {
      "Осмотрите инструмент и деталь, прежде чем что-либо двигать. Отклонение будет сообщено, когда привод "
      "снова "
      "ответит, если он не выключался; иначе выведите ось в ноль."},
+    {ax::kFollowingErrorHigh,
+     Reaction::warn,
+     reset,
+     {"axis.following_error_high", "{0}: following error {1}, a warning from {2}, at {6}/s",
+      "{0}: ошибка слежения {1}, предупреждение с {2}, при скорости {6}/с"},
+     "The axis still follows, but worse than when the limit was set: look for friction, a dry guide, a weak "
+     "supply, before it stops at following_error_stop.",
+     "Ось ещё следует за заданием, но хуже, чем при настройке: проверьте трение, смазку и питание привода, "
+     "пока не сработал останов following_error_stop."},
     {ax::kHomingSwitchNotFound,
      Reaction::stop_axes,
      reset,

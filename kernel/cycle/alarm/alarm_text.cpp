@@ -59,7 +59,7 @@ bool figures_are_lengths(image::AlarmNumber n) {
   return (n >= kFollowingError && n <= kSetpointStep) ||
          (n >= kHomingSwitchNotFound && n <= kHomingIndexNotFound) || n == kHomingLimitAgain ||
          n == kHomingInterrupted || n == kHomingIndexNearEdge || n == alarm::kLeavesTravel || n == kOffPath ||
-         n == kPlaceUnknown || n == kDriveOffline;
+         n == kPlaceUnknown || n == kFollowingErrorHigh || n == kDriveOffline;
 }
 
 /// State of CiA 402-2, table "state coding" of the status word; -1: no valid one.
