@@ -94,6 +94,8 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
   parts.syvar_bytes = static_cast<std::uint32_t>(m.control.syvar_size);
   if (const machine::PointConfig* estop = m.point(m.safety.estop); estop != nullptr)
     parts.estop_place = estop->place;
+  if (const machine::PointConfig* alive = m.point(m.safety.control_alive); alive != nullptr)
+    parts.alive_place = alive->place;
   if (const machine::PointConfig* start = m.point(m.run.start_point); start != nullptr)
     parts.start_place = start->place;
   parts.stopwatch = &c->stopwatch_;

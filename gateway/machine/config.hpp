@@ -224,7 +224,7 @@ struct PlcConfig {
 /// [safety]
 struct SafetyConfig {
   std::string estop;          ///< input point: TRUE = the chain is closed. Never over Modbus.
-  std::string control_alive;  ///< output point that toggles while the control runs
+  std::string control_alive;  ///< output point that the control toggles while it runs in time
   /// Mock inputs may stand for the emergency stop and the limit switches of drives on a real bus: a bench.
   bool mock_inputs_guard_real_drives = false;
 };

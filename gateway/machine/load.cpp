@@ -66,6 +66,7 @@ void load_devices(LoadResult& result, Reading& reading, std::vector<text::Findin
 void check_all(LoadResult& result, Reading& reading) {
   MachineConfig& machine = result.machine;
   check_names(machine, reading);
+  claim_control_outputs(machine, reading);
   check_references(machine, reading);
   check_places(machine, reading);
   check_axes(machine, reading);

@@ -12,6 +12,7 @@
 namespace servogate::cycle {
 
 namespace {
+constexpr std::int64_t kAliveCycles = 50;  ///< between two changes of MC.control_alive
 constexpr const char* kPhaseNames[kPhases] = {"receive", "logic", "interpolate", "axes", "send", "publish"};
 }
 
@@ -281,7 +282,10 @@ void Cycle::note_overrun(image::Nanoseconds late_ns) noexcept {
 void Cycle::write_machine_places() noexcept {
   alarms_.write_interface(image_);
   image::Packets& k = image_.packets;
-  k.set_bit(places::kControlAlive, (count_ / 50) % 2 != 0);
+  // A level that stands still tells the safety relay: no cycles, cycles far too late, or no logic.
+  const bool alive = (count_ / kAliveCycles) % 2 != 0 && !alarms_.control_fails();
+  k.set_bit(places::kControlAlive, alive);
+  if (parts_.alive_place) k.set_bit(*parts_.alive_place, alive);
   k.set_bit(places::kReady, reaction_ < image::Reaction::stop_at_block_end && k.bit(places::kEstopOk));
   k.set_bit(places::kPowerRequest, power_request_);
 }

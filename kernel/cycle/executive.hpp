@@ -38,6 +38,7 @@ struct CycleParts {
   std::array<bool, image::kMaxSources> watched_sources{};  ///< a stale or bad one is an alarm
   std::optional<image::Place>
       estop_place;  ///< emergency-stop chain: FALSE opens MC.estop_ok whatever the logic says
+  std::optional<image::Place> alive_place;  ///< output that toggles as MC.control_alive does
   std::optional<image::Place> start_place;  ///< operator's start button: its rising edge asks for cycle start
 };
 

@@ -48,6 +48,19 @@ TEST(AlarmList, takes_a_stronger_reaction_of_the_machine_file_and_no_weaker_one)
   EXPECT_EQ(list.reaction(), Reaction::power_off);
 }
 
+TEST(AlarmList, tells_a_failing_control_from_a_failing_machine) {
+  AlarmList list;
+  list.raise(of(alarm::kEmergencyStop), at(1));
+  list.raise(of(axis::alarm::kDriveFault, 0), at(1));
+  EXPECT_FALSE(list.control_fails());
+  for (const image::AlarmNumber number : {alarm::kOverrunLimit, alarm::kPlcFault}) {
+    list.raise(of(number), at(2));
+    EXPECT_TRUE(list.control_fails()) << number;
+    list.reset(kNothingPresent);
+    EXPECT_FALSE(list.control_fails());
+  }
+}
+
 TEST(AlarmList, does_not_store_the_same_active_fault_twice) {
   AlarmList list;
   const auto first = list.raise(of(axis::alarm::kFollowingError, 0), at(1));

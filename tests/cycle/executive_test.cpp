@@ -228,6 +228,44 @@ TEST(Cycle, makes_an_alarm_of_a_long_overrun_and_none_of_a_short_one) {
   EXPECT_DOUBLE_EQ(r.limit, 2.0);
 }
 
+TEST(Cycle, toggles_the_alive_output_as_long_as_it_keeps_its_time) {
+  std::string order;
+  Io io(order);
+  CopyLogic logic(order);
+  IdleProcess process;
+  CycleParts parts;
+  parts.devices = {&io};
+  parts.logic = &logic;
+  parts.processes = {&process};
+  constexpr Place kAlive{Packet::a, Format::bl, 70, 1};
+  parts.alive_place = kAlive;
+  Cycle cycle(std::move(parts));
+  const auto changes = [&](int cycles) {
+    int n = 0;
+    for (bool was = cycle.image().packets.bit(kAlive); cycles-- > 0;) {
+      cycle.step();
+      const bool is = cycle.image().packets.bit(kAlive);
+      n += is != was;
+      was = is;
+    }
+    return n;
+  };
+  changes(10);
+  EXPECT_EQ(changes(1000), 20) << "each 50 cycles";
+  logic.estop_ok = false;
+  EXPECT_EQ(changes(1000), 20) << "an open chain has to find a living control when it is closed again";
+  logic.estop_ok = true;
+  cycle.note_overrun(5 * image::kMillisecond);
+  EXPECT_LE(changes(10), 1);
+  EXPECT_FALSE(cycle.image().packets.bit(kAlive));
+  EXPECT_EQ(changes(1000), 0) << "until somebody has read why";
+  Request reset;
+  reset.kind = RequestKind::reset;
+  reset.id = 1;
+  ASSERT_TRUE(cycle.post(reset));
+  EXPECT_GE(changes(1000), 19);
+}
+
 TEST(Cycle, says_once_that_the_emergency_stop_opened_and_takes_it_back_only_when_closed) {
   Bench b;
   b.cycle->step();

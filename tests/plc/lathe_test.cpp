@@ -19,7 +19,6 @@ struct Lathe : ExampleMachine {
                         {"lamp_green", 67},
                         {"lamp_red", 68},
                         {"turret_motor", 69},
-                        {"control_alive_relay", 70},
                         {"chuck_close", 71}}) {
     set("chuck_closed", 1);
     set("turret_locked", 1);

@@ -13,8 +13,7 @@ struct Mill : ExampleMachine {
                         {"mist", 66},
                         {"lamp_green", 67},
                         {"lamp_red", 68},
-                        {"tool_release", 69},
-                        {"control_alive_relay", 70}}) {}
+                        {"tool_release", 69}}) {}
 };
 
 TEST(ExampleMill, opens_everything_when_the_emergency_stop_chain_opens) {
@@ -204,15 +203,6 @@ TEST(ExampleMill, sprays_mist_while_the_part_program_asks_in_SK10) {
     m.packets.set_number(phase, value);
     m.cycle();
     EXPECT_EQ(m.on("mist"), mist) << value;
-  }
-}
-
-TEST(ExampleMill, passes_the_alive_signal_on_to_the_safety_relay) {
-  Mill m;
-  for (const int value : {1, 0, 1}) {
-    m.set("MC.control_alive", value);
-    m.cycle();
-    EXPECT_EQ(m.get("control_alive_relay"), value);
   }
 }
 

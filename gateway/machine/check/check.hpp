@@ -9,6 +9,9 @@ namespace servogate::machine {
 
 /// Names that are twice or not of the right form: letters, nodes, points, symbols, stations, buses.
 void check_names(MachineConfig& machine, Reading& reading);
+/// Outputs that the control itself writes (safety.control_alive, brakes, inverters): makes it their writer,
+/// and finds another one.
+void claim_control_outputs(MachineConfig& machine, Reading& reading);
 /// Names that lead nowhere: points, nodes, axes, PLC files, simulated things that are no mock.
 void check_references(const MachineConfig& machine, Reading& reading);
 /// Places: inside their packet, not shared, not inside the interface of packet K, one writer.

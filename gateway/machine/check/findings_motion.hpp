@@ -80,6 +80,39 @@ inline constexpr text::Entry kSpindleSource{"machine.spindle_source",
 inline constexpr text::Entry kSpindleSpeeds{"machine.spindle_speeds",
                                             "spindle {0}: min_speed {1} is not below max_speed {2}",
                                             "шпиндель {0}: min_speed {1} не меньше max_speed {2}"};
+inline constexpr text::Entry kSpindleRelay{"machine.spindle_relay",
+                                           "spindle {0}: `{1}` belongs to a spindle with `speed_output`",
+                                           "шпиндель {0}: «{1}» бывает только вместе с `speed_output`"};
+inline constexpr text::Entry kSpindleNoFeedback{
+    "machine.spindle_no_feedback",
+    "spindle {0}: `{1}` needs a drive; with `speed_output` nothing comes back, at speed is the command",
+    "шпиндель {0}: для «{1}» нужен привод; при `speed_output` обратной связи нет, частота достигнута по "
+    "команде"};
+inline constexpr text::Entry kSpindleOnlyCcw{
+    "machine.spindle_only_ccw", "spindle {0}: `ccw_output` without `cw_output`: who turns it clockwise?",
+    "шпиндель {0}: `ccw_output` без `cw_output`: чем включается вращение по часовой стрелке?"};
+inline constexpr text::Entry kSpindleLoss{
+    "machine.spindle_loss",
+    "spindle {0}: a lost station has to stop it, but \"{1}\" does not go to its rest (loss = {2}, hold = "
+    "false)",
+    "шпиндель {0}: при потере станции он должен остановиться, но «{1}» не переходит в покой (loss = {2}, "
+    "hold = false)"};
+inline constexpr text::Entry kSpindleScale{
+    "machine.spindle_scale",
+    "spindle {0}: \"{1}\" would be {2} at rest and {3} at max_speed; a register holds 0 to 65535: see scale "
+    "and "
+    "shift",
+    "шпиндель {0}: «{1}» был бы {2} в покое и {3} на max_speed; регистр вмещает 0-65535: см. scale и shift"};
+inline constexpr text::Entry kSpindleWord{
+    "machine.spindle_word", "spindle {0}: {1} rpm do not fit into {2}: a place of form .LI or .RE is needed",
+    "шпиндель {0}: {1} об/мин не помещается в {2}: нужен адрес вида .LI или .RE"};
+// Outputs of the control itself
+inline constexpr text::Entry kControlWrites{
+    "machine.control_writes", "`{0}`: the control itself writes \"{1}\"; its writer cannot be {2}",
+    "«{0}»: сигнал «{1}» пишет само управление; писать его не может {2}"};
+inline constexpr text::Entry kControlWritesTwice{"machine.control_writes",
+                                                 "`{0}`: \"{1}\" is already the output of `{2}`",
+                                                 "«{0}»: «{1}» уже служит выходом «{2}»"};
 // Safety
 inline constexpr text::Entry kEstopModbus{"machine.estop_over_modbus",
                                           "the emergency-stop chain \"{0}\" comes over Modbus ({1}): a line "

@@ -74,9 +74,10 @@ const Section& section_of<SafetyConfig>() {
       key<&C::estop>("estop", {.refers = Refers::digital_input},
                      "input point of the emergency-stop chain, 1 = closed; never over Modbus",
                      "вход цепи аварийного останова, 1 = замкнута; никогда через Modbus"),
-      key<&C::control_alive>("control_alive", {.refers = Refers::digital_output},
-                             "output point that toggles while the control runs, for the safety relay",
-                             "выход, переключающийся, пока система работает, для реле безопасности"),
+      key<&C::control_alive>(
+          "control_alive", {.refers = Refers::digital_output},
+          "output point that the control toggles while it runs in time, for the safety relay",
+          "выход, который управление переключает, пока успевает в такт, для реле безопасности"),
       key<&C::mock_inputs_guard_real_drives>(
           "mock_inputs_guard_real_drives", {},
           "mock inputs may stand for the emergency stop and the limit switches of drives on a real bus: "

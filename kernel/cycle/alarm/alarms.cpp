@@ -93,11 +93,13 @@ int AlarmList::after_reset() noexcept {
 
 void AlarmList::recount() noexcept {
   active_ = 0;
+  control_fails_ = false;
   reaction_ = dropped_reaction_;
   for (int i = 0; i < stored_; ++i) {
     const AlarmRecord& r = records_[static_cast<std::size_t>(i)];
     if (!r.active) continue;
     ++active_;
+    control_fails_ = control_fails_ || r.number == alarm::kOverrunLimit || r.number == alarm::kPlcFault;
     reaction_ = std::max(reaction_, r.reaction);
   }
 }

@@ -56,6 +56,9 @@ class AlarmList {
   /// The strongest reaction in force. real-time safe.
   image::Reaction reaction() const noexcept { return reaction_; }
   int active_count() const noexcept { return active_; }
+  /// An active alarm says that the control itself fails its task: late cycles (6002), logic that stopped
+  /// (5003). real-time safe.
+  bool control_fails() const noexcept { return control_fails_; }
   /// The oldest active first fault, nullptr: none. Warnings only when there is no fault. real-time safe.
   const image::AlarmRecord* first() const noexcept;
   /// The same among the alarms of one process and those of the machine. real-time safe.
@@ -77,6 +80,7 @@ class AlarmList {
   std::array<image::AlarmRecord, kCapacity> records_{};
   int stored_ = 0;
   int active_ = 0;
+  bool control_fails_ = false;
   std::uint32_t sequence_ = 0;
   std::uint32_t dropped_ = 0;
   std::uint32_t group_ = 0;  ///< sequence of the first fault of the reaction under way, 0: none
