@@ -69,6 +69,25 @@ void exact_ratio(std::int64_t counts, std::int64_t gear_motor, std::int64_t gear
   denominator /= divisor;
 }
 
+/// The outputs of an inverter; nothing when a drive supplies the spindle.
+std::optional<axis::InverterConfig> inverter(const machine::MachineConfig& m,
+                                             const machine::SpindleConfig& s) {
+  axis::InverterConfig c;
+  const auto place = [&](const std::string& name) -> std::optional<image::Place> {
+    int station = -1;
+    const machine::PointConfig* p = name.empty() ? nullptr : m.point(name, &station);
+    if (p == nullptr) return std::nullopt;
+    if (station < image::kMaxSources) c.sources |= std::uint32_t{1} << station;
+    return p->place;
+  };
+  const auto speed = place(s.speed_output);
+  if (!speed) return std::nullopt;
+  c.speed = *speed;
+  c.cw = place(s.cw_output);
+  c.ccw = place(s.ccw_output);
+  return c;
+}
+
 axis::DrivePlace drive_place(const machine::MachineConfig& m, std::string_view reference) {
   int bus = -1;
   const machine::NodeConfig* node = m.node(reference, &bus);
@@ -125,9 +144,17 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
 axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& s) {
   axis::SpindleConfig c;
   c.drive = drive_place(loaded.machine, s.drive);
+  c.inverter = inverter(loaded.machine, s);
+  c.encoder = s.has_encoder();
   if (s.has_encoder()) {
     c.counts_numerator = s.counts_per_rev;
     c.counts_denominator = 1;
+  } else if (const machine::NodeConfig* node = loaded.machine.node(s.drive); node != nullptr) {
+    // The drive counts at its motor.
+    const machine::DeviceConfig* device = loaded.device(node->device);
+    if (device != nullptr && device->motor.counts_per_rev > 0)
+      exact_ratio(device->motor.counts_per_rev, s.gear[0], s.gear[1], 1.0, c.counts_numerator,
+                  c.counts_denominator);
   }
   c.count_direction = sign(s.direction);
   c.max_rpm = s.max_speed;

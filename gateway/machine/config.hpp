@@ -124,8 +124,8 @@ struct AxisConfig {
 struct SpindleConfig {
   std::string name;
   std::string drive;         ///< "bus.node", or empty
-  std::string speed_output;  ///< analog output point, full scale = max_speed
-  std::string cw_output;     ///< output points of the relays
+  std::string speed_output;  ///< analog output point of an inverter; rpm without sign
+  std::string cw_output;     ///< output points of its relays
   std::string ccw_output;
   double min_speed = 0.0;                     ///< rpm
   double max_speed = 0.0;                     ///< rpm

@@ -160,6 +160,20 @@ class Sentences {
         {{"max_speed", s.max_speed},
          {"motor_rpm", motor},
          {"time_to_full_speed", s.max_speed / s.acceleration}});
+    inverter(s, "S" + (index == 0 ? std::string() : std::to_string(index + 1)), who);
+  }
+
+  void inverter(const SpindleConfig& s, const std::string& subject, const std::string& who) {
+    const PointConfig* p = s.speed_output.empty() ? nullptr : m_.point(s.speed_output);
+    if (p == nullptr || p->scale == 0.0) return;
+    const double full = std::round((s.max_speed - p->shift) / p->scale),
+                 rest = std::round((0.0 - p->shift) / p->scale);
+    const std::string ways = s.ccw_output.empty()
+                                 ? text::both("clockwise only", "только по часовой стрелке")
+                                 : text::both("both ways, through standstill", "в обе стороны, через покой");
+    say(subject, kInverter,
+        {who, text::number(s.max_speed), text::number(full), s.speed_output, text::number(rest), ways},
+        {{"register_at_max_speed", full}, {"register_at_rest", rest}});
   }
 
   void station(const StationConfig& s) {

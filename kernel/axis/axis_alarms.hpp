@@ -37,6 +37,9 @@ inline constexpr AlarmNumber kHomingIndexNearEdge = 1108;
 inline constexpr AlarmNumber kSpindleNotAtSpeed = 1201;
 inline constexpr AlarmNumber kSpindleOrientTimeout = 1202;
 inline constexpr AlarmNumber kSpindleDriveFault = 1203;
+inline constexpr AlarmNumber kSpindleNoEncoder = 1204;
+inline constexpr AlarmNumber kSpindleNoReverse = 1205;
+inline constexpr AlarmNumber kSpindleOutputLost = 1206;
 
 inline constexpr AlarmNumber kDriveFault = 2001;
 inline constexpr AlarmNumber kDriveRefuses = 2002;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware_if/image/packets.hpp"
+#include "kernel/axis/inverter/inverter.hpp"
 #include "kernel/axis/ramp.hpp"
 
 namespace servogate::axis {
@@ -112,7 +113,7 @@ struct SpindleConfig {
   std::int64_t counts_denominator = 1;
   int count_direction = 1;  ///< +1: counts rise clockwise (M3)
   double max_rpm = 6000.0;
-  double min_rpm = 0.0;            ///< a lower wish other than 0 is raised to it
+  double min_rpm = 0.0;            ///< a lower wish other than 0 is raised to it, override included
   double acceleration = 3000.0;    ///< rpm/s
   double at_speed_window = 0.05;   ///< of the commanded speed
   double at_speed_timeout = 10.0;  ///< alarm when not at speed so long after the ramp ended; 0: none
@@ -122,7 +123,9 @@ struct SpindleConfig {
   double orient_window = 0.5;  ///< degrees
   double orient_timeout = 10.0;
   double orient_gain = 5.0;  ///< 1/s, speed for each degree of error; below 1 / (2 x dead time)
+  bool encoder = true;       ///< the supplier gives counts; without them no oriented stop
   DrivePlace drive;
+  std::optional<InverterConfig> inverter;  ///< supplies the spindle instead of a drive, without an encoder
   std::uint32_t missed_limit = 3;
 };
 

@@ -26,10 +26,16 @@ void Spindle::configure(const SpindleConfig& config, int index) {
   config_ = config;
   index_ = index;
   scale_ = {config.counts_numerator, config.counts_denominator, config.count_direction, 0, 0.0};
+  if (config.inverter) inverter_.configure(*config.inverter);
 }
 
 void Spindle::order(SpindleMode mode, double rpm) noexcept {
-  mode_ = mode;
+  const bool analog = config_.inverter.has_value();
+  const bool no_angle = mode == SpindleMode::orient && (analog || !config_.encoder);
+  const bool no_relay = mode == SpindleMode::ccw && analog && !inverter_.reverses();
+  if (no_angle) cannot_ = alarm::kSpindleNoEncoder;
+  if (no_relay) cannot_ = alarm::kSpindleNoReverse;
+  mode_ = no_angle || no_relay ? SpindleMode::stop : mode;
   const double wish = std::isfinite(rpm) ? std::abs(rpm) : 0.0;
   ordered_rpm_ = wish > 0.0 ? std::clamp(wish, config_.min_rpm, config_.max_rpm) : 0.0;
   wait_s_ = 0.0;
@@ -42,13 +48,18 @@ void Spindle::read(image::ProcessImage& image) noexcept {
   using image::field;
   using image::kSpindleFields;
   const std::uint32_t base = image::spindle_base(index_);
-  enable_ = image.packets.bit(image::at(field(kSpindleFields, "enable"), base)) &&
-            image.packets.bit(field(image::kMachineFields, "power_on", image::kMachineBase));
+  power_on_ = image.packets.bit(field(image::kMachineFields, "power_on", image::kMachineBase));
+  enable_ = power_on_ && image.packets.bit(image::at(field(kSpindleFields, "enable"), base));
   const double percent = image.packets.number(image::at(field(kSpindleFields, "override"), base));
   override_ratio_ = percent > 0.0 ? std::clamp(percent, 50.0, 125.0) / 100.0 : 1.0;
 
   const double dt = image.now.period_s();
   image::SpindleImage& shared = image.spindles[static_cast<std::size_t>(index_)];
+  if (config_.inverter) {
+    lost_ = inverter_.lost(image);
+    shared.actual_rpm = actual_rpm_;
+    return;
+  }
   const image::DriveFeedback& in = shared.drive;
   if (in.online && drive_.online) {
     // A drive that supplies only one of speed and position leaves the other one standing still.
@@ -93,9 +104,11 @@ double Spindle::wanted_rpm() noexcept {
     case SpindleMode::stop:
       return 0.0;
     case SpindleMode::cw:
-      return std::min(ordered_rpm_ * override_ratio_, config_.max_rpm);
-    case SpindleMode::ccw:
-      return -std::min(ordered_rpm_ * override_ratio_, config_.max_rpm);
+    case SpindleMode::ccw: {
+      if (ordered_rpm_ == 0.0) return 0.0;
+      const double rpm = std::clamp(ordered_rpm_ * override_ratio_, config_.min_rpm, config_.max_rpm);
+      return mode_ == SpindleMode::cw ? rpm : -rpm;
+    }
     case SpindleMode::orient:
       break;
   }
@@ -103,15 +116,37 @@ double Spindle::wanted_rpm() noexcept {
   return orienting_ ? orient_rpm() : std::copysign(config_.orient_rpm, command_rpm_);
 }
 
+void Spindle::follow_drive(double wanted, double dt) noexcept {
+  on_ = drive_.online && drive_.state == DriveState::operation_enabled;
+  const double step = config_.acceleration * dt;
+  command_rpm_ = on_ ? command_rpm_ + std::clamp(wanted - command_rpm_, -step, step) : actual_rpm_;
+}
+
+void Spindle::follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept {
+  on_ = power_on_ && !lost_ && reaction_ < Reaction::quick_stop;
+  if (!on_ && mode_ != SpindleMode::stop) {
+    if (lost_) events_.add({alarm::kSpindleOutputLost, ordered_rpm_, command_rpm_});
+    order(SpindleMode::stop, 0.0);
+    wanted = 0.0;
+  }
+  inverter_.advance(wanted, config_.acceleration * dt, !on_, dt);
+  inverter_.write(image);
+  command_rpm_ = inverter_.command_rpm();
+  actual_rpm_ = inverter_.assumed_rpm();
+}
+
 void Spindle::command(image::ProcessImage& image) noexcept {
   const double dt = image.now.period_s();
+  if (cannot_ != 0) events_.add({cannot_, 0.0, 0.0});
   if (reaction_ >= Reaction::quick_stop) order(SpindleMode::stop, 0.0);
+  cannot_ = 0;
   oriented_ = false;
-  const bool on = drive_.online && drive_.state == DriveState::operation_enabled;
-  const double wanted = wanted_rpm();
-  const double step = config_.acceleration * dt;
-  command_rpm_ = on ? command_rpm_ + std::clamp(wanted - command_rpm_, -step, step) : actual_rpm_;
-  const bool reached = on && command_rpm_ == wanted;
+  double wanted = wanted_rpm();
+  if (config_.inverter)
+    follow_inverter(image, wanted, dt);
+  else
+    follow_drive(wanted, dt);
+  const bool reached = on_ && command_rpm_ == wanted;
   zero_speed_ = std::abs(actual_rpm_) <= config_.zero_speed_rpm;
   const bool turning = mode_ == SpindleMode::cw || mode_ == SpindleMode::ccw;
   at_speed_ = turning && enable_ && reached &&
@@ -119,11 +154,16 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   supervise(dt, reached && turning);
 
   off_s_ = mode_ == SpindleMode::stop && zero_speed_ ? off_s_ + dt : 0.0;
-  const bool needed = mode_ != SpindleMode::stop ? enable_ || !zero_speed_ : off_s_ < kPowerAfterStop && on;
   image::SpindleImage& out = image.spindles[static_cast<std::size_t>(index_)];
-  out.command_rpm = on ? command_rpm_ : 0.0;
+  out.command_rpm = on_ ? command_rpm_ : 0.0;
   out.running = mode_ != SpindleMode::stop || !zero_speed_;
   out.at_speed = at_speed_;
+  if (!config_.inverter) write_drive(out);
+  write_interface(image);
+}
+
+void Spindle::write_drive(image::SpindleImage& out) const noexcept {
+  const bool needed = mode_ != SpindleMode::stop ? enable_ || !zero_speed_ : off_s_ < kPowerAfterStop && on_;
   image::DriveCommand& drive = out.drive_command;
   drive.power = needed && reaction_ < Reaction::power_off;
   drive.quick_stop = reaction_ == Reaction::quick_stop;
@@ -132,8 +172,7 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   drive.latch_source = image::LatchSource::zero_mark;
   drive.latch_arm = !marked_ && drive_.online;
   drive.position_counts = drive_.position_counts;
-  drive.velocity_counts_s = on ? scale_.velocity_counts(command_rpm_ / 60.0) : 0.0;
-  write_interface(image);
+  drive.velocity_counts_s = on_ ? scale_.velocity_counts(command_rpm_ / 60.0) : 0.0;
 }
 
 void Spindle::supervise(double dt, bool speed_due) noexcept {

@@ -12,16 +12,22 @@ namespace servogate::axis {
 
 enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient };
 
-/// A spindle: ramped speed command, at-speed and standstill, oriented stop. It sees its supplier (CSV drive,
-/// later an analog output or a VFD) only through SpindleImage. In each cycle: read(image), react(reaction),
+/// A spindle: ramped speed command, at-speed and standstill, oriented stop. Its supplier is a CSV drive in
+/// SpindleImage, or an inverter on outputs of packet A. In each cycle: read(image), react(reaction),
 /// command(image); all real-time safe.
+///
+/// An inverter gives no feedback: at speed is its command, standstill its ramp. Speed and relays go to 0 at
+/// once with the reactions quick stop and power off, without MC.power_on, and when a station of theirs is
+/// lost; then the order is stop, and nothing turns again unasked.
 class Spindle {
  public:
   /// `index` is the spindle's place in the image. Not for the cycle.
   void configure(const SpindleConfig& config, int index);
   const SpindleConfig& config() const noexcept { return config_; }
 
-  /// What the program wants; `rpm` without sign, clamped to the configured range. real-time safe.
+  /// What the program wants; `rpm` without sign, clamped to the configured range. What this spindle cannot do
+  /// (an oriented stop without an encoder, a direction without a relay) is a stop and an alarm. real-time
+  /// safe.
   void order(SpindleMode mode, double rpm) noexcept;
   SpindleMode mode() const noexcept { return mode_; }
   double ordered_rpm() const noexcept { return ordered_rpm_; }
@@ -43,6 +49,9 @@ class Spindle {
   double angle_deg() const noexcept { return angle_deg_; }
 
  private:
+  void follow_drive(double wanted, double dt) noexcept;
+  void follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept;
+  void write_drive(image::SpindleImage& out) const noexcept;
   double wanted_rpm() noexcept;
   double orient_rpm() noexcept;
   void supervise(double dt, bool speed_due) noexcept;
@@ -56,6 +65,11 @@ class Spindle {
   double ordered_rpm_ = 0.0;
   image::Reaction reaction_ = image::Reaction::none;
   image::DriveFeedback drive_;
+  Inverter inverter_;
+  bool power_on_ = false;
+  bool lost_ = false;              ///< an output of the inverter
+  bool on_ = false;                ///< the supplier follows the command
+  image::AlarmNumber cannot_ = 0;  ///< why the last order was none for this spindle
   bool enable_ = false;
   double override_ratio_ = 1.0;
   double command_rpm_ = 0.0;

@@ -205,6 +205,18 @@ TEST(Spindle, goes_off_with_the_reaction_power_off_and_stays_off) {
   EXPECT_FALSE(rig.image.spindles[0].drive_command.power);
 }
 
+TEST(Spindle, refuses_an_oriented_stop_where_nothing_gives_an_angle) {
+  SpindleConfig c;
+  c.encoder = false;
+  SpindleRig rig(c);
+  rig.spindle.order(SpindleMode::orient, 0.0);
+  rig.spindle.order(rig.spindle.mode(), 100.0);  // as a constant surface speed orders anew
+  rig.run(100);
+  ASSERT_EQ(rig.events.size(), 1u);
+  EXPECT_EQ(rig.events[0].number, alarm::kSpindleNoEncoder);
+  EXPECT_EQ(rig.spindle.mode(), SpindleMode::stop);
+}
+
 TEST(Spindle, keeps_its_angle_exact_over_a_long_run) {
   SpindleConfig c;
   c.counts_numerator = 8191;  // 2730.33 counts a revolution

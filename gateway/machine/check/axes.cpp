@@ -171,6 +171,43 @@ class AxisCheck {
   std::string unit_;
 };
 
+/// The outputs of an inverter, and what a spindle without feedback has not.
+void check_inverter(const MachineConfig& machine, const SpindleConfig& s, const std::string& path,
+                    const std::string& number, Reading& reading) {
+  const bool analog = !s.speed_output.empty();
+  for (const char* key : {".cw_output", ".ccw_output"})
+    if (!analog && machine.places.contains(path + key))
+      reading.error(machine.where(path + key), finding::kSpindleRelay, {number, key + 1});
+  if (!analog) return;
+  for (const char* key : {".counts_per_rev", ".direction", ".at_speed_window", ".at_speed_timeout",
+                          ".orient_angle", ".orient_speed", ".gear"})
+    if (machine.places.contains(path + key))
+      reading.error(machine.where(path + key), finding::kSpindleNoFeedback, {number, key + 1});
+  if (s.cw_output.empty() && !s.ccw_output.empty())
+    reading.error(machine.where(path + ".ccw_output"), finding::kSpindleOnlyCcw, {number});
+  // As on the wire: off, or the register of standstill.
+  const auto rests = [](const PointConfig& p) {
+    return p.is_analog() ? std::round((0.0 - p.shift) / p.scale) : p.inverted ? 1.0 : 0.0;
+  };
+  for (const auto& [key, name] :
+       {std::pair(".speed_output", s.speed_output), std::pair(".cw_output", s.cw_output),
+        std::pair(".ccw_output", s.ccw_output)})
+    if (const PointConfig* p = machine.point(name);
+        p != nullptr && !p->is_input() && p->scale != 0.0 && (p->hold || p->loss != rests(*p)))
+      reading.error(machine.where(path + key), finding::kSpindleLoss,
+                    {number, name, text::number(rests(*p))});
+  const PointConfig* speed = machine.point(s.speed_output);
+  if (speed == nullptr || !speed->is_analog() || speed->scale == 0.0) return;
+  const double rest = std::round((0.0 - speed->shift) / speed->scale);
+  const double full = std::round((s.max_speed - speed->shift) / speed->scale);
+  if (std::min(rest, full) < 0.0 || std::max(rest, full) > 65535.0)
+    reading.error(machine.where(path + ".speed_output"), finding::kSpindleScale,
+                  {number, s.speed_output, text::number(rest), text::number(full)});
+  if (speed->place.format == image::Format::in && s.max_speed > 32767.0)
+    reading.error(machine.where(path + ".max_speed"), finding::kSpindleWord,
+                  {number, text::number(s.max_speed), to_string(speed->place)});
+}
+
 }  // namespace
 
 void check_axes(const MachineConfig& machine, Reading& reading) {
@@ -196,6 +233,7 @@ void check_spindles(const MachineConfig& machine, Reading& reading) {
     if (s.max_speed > 0.0 && s.min_speed >= s.max_speed)
       reading.error(machine.where(path + ".min_speed"), finding::kSpindleSpeeds,
                     {number, text::number(s.min_speed) + " rpm", text::number(s.max_speed) + " rpm"});
+    check_inverter(machine, s, path, number, reading);
   }
 }
 
