@@ -157,7 +157,8 @@ class AxisCheck {
         a_.following_error_warn >= a_.following_error_stop)
       error("following_error_warn", finding::kWarnAboveStop,
             {length(a_.following_error_warn), length(a_.following_error_stop)});
-    if (a_.control == ControlMode::csv && a_.position_gain <= 0.0) error("control", finding::kCsvGain, {});
+    if (a_.control == ControlMode::csv) error("control", finding::kNoCsv, {});
+    if (machine_.places.contains(path_ + ".position_gain")) error("position_gain", finding::kNoCsv, {});
     if (a_.lead > 0.0 && a_.counts_per_rev > 0 && a_.in_position_window * a_.counts_per_unit() < 1.0)
       error("in_position_window", finding::kWindowBelowCount,
             {text::number(a_.in_position_window, 9) + " " + unit_,

@@ -61,9 +61,10 @@ inline constexpr text::Entry kPitchSteep{
 inline constexpr text::Entry kWarnAboveStop{
     "machine.warn_above_stop", "{0}: following_error_warn {1} is not below following_error_stop {2}",
     "{0}: following_error_warn {1} не меньше following_error_stop {2}"};
-inline constexpr text::Entry kCsvGain{"machine.csv_gain",
-                                      "{0}: control = \"csv\" needs position_gain above 0",
-                                      "{0}: для control = \"csv\" нужен position_gain больше 0"};
+inline constexpr text::Entry kNoCsv{
+    "machine.no_csv",
+    "{0}: in this version the drive closes the position loop: control = \"csp\", and no position_gain",
+    "{0}: в этой версии контур положения замыкает привод: control = \"csp\", без position_gain"};
 inline constexpr text::Entry kDiameter{"machine.diameter",
                                        "{0}: only a linear axis can be shown as a diameter",
                                        "{0}: в диаметрах показывается только линейная ось"};

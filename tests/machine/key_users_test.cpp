@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// No key may be read, checked, documented, and then used by nobody: key_users.txt names for each of them who
+// makes it work. A new key fails here until somebody has said so, and a file that drops a key fails too.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "gateway/machine/keys/key.hpp"
+#include "gateway/machine/keys/sections.hpp"
+#include "tests/machine/files.hpp"
+
+namespace servogate::machine {
+namespace {
+
+void add_keys(const Section& section, const std::string& path, std::set<std::string>& out) {
+  for (const Key& key : section.keys)
+    if (key.child != nullptr)
+      add_keys(key.child(), path + std::string(key.name) + ".", out);
+    else
+      out.insert(path + std::string(key.name));
+}
+
+struct User {
+  std::string how, file, member;
+};
+
+std::map<std::string, User> users() {
+  std::map<std::string, User> out;
+  std::istringstream list(test::read_text(test::source("tests/machine/key_users.txt")));
+  for (std::string line; std::getline(list, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream words(line);
+    std::string key;
+    User user;
+    words >> key >> user.how >> user.file >> user.member;
+    EXPECT_TRUE(out.emplace(key, user).second) << key << " stands there twice";
+  }
+  return out;
+}
+
+TEST(KeyUsers, every_key_of_the_files_has_somebody_who_makes_it_work) {
+  std::set<std::string> keys;
+  add_keys(section_of<MachineConfig>(), "", keys);
+  add_keys(section_of<DeviceConfig>(), "device.", keys);
+  const auto listed = users();
+  for (const std::string& key : keys)
+    EXPECT_TRUE(listed.contains(key)) << key << ": say in tests/machine/key_users.txt who makes it work";
+  for (const auto& [key, user] : listed) EXPECT_TRUE(keys.contains(key)) << key << " is no key any more";
+}
+
+/// Checks and words about a machine; nothing that moves one.
+bool only_speaks(const std::string& file) {
+  return file.starts_with("gateway/machine/check/") || file.starts_with("gateway/machine/consequences");
+}
+
+TEST(KeyUsers, who_is_said_to_make_a_key_work_knows_it) {
+  for (const auto& [key, user] : users()) {
+    if (user.how == "people") continue;
+    ASSERT_TRUE(user.how == "acts" || user.how == "check") << key << ": " << user.how;
+    EXPECT_TRUE(user.file.starts_with("gateway/")) << key;
+    EXPECT_EQ(user.how == "check", only_speaks(user.file) && user.file != "gateway/machine/check/names.cpp")
+        << key;
+    ASSERT_TRUE(std::filesystem::exists(test::source(user.file))) << key << ": " << user.file;
+    // As a member that is read, not in a comment.
+    const std::regex member("^(?!\\s*//).*\\b" + user.member + "\\b",
+                            std::regex::ECMAScript | std::regex::multiline);
+    EXPECT_TRUE(std::regex_search(test::read_text(test::source(user.file)), member))
+        << key << ": " << user.file << " does not read " << user.member << " any more";
+  }
+}
+
+}  // namespace
+}  // namespace servogate::machine
