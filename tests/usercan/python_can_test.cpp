@@ -8,7 +8,7 @@ namespace {
 
 bool python_can() { return shell("/usr/bin/python3 -c 'import can, msgpack' 2>/dev/null") == 0; }
 
-TEST(PythonCan, as_a_master_brings_the_simulated_drive_through_its_states_over_socketcand) {
+TEST(PythonCan, as_a_master_brings_the_simulated_drive_through_every_state_and_mode_over_socketcand) {
   if (!python_can()) GTEST_SKIP() << "no python-can here; install it so: .ci/packages --tests";
   RunningServer server;
   const LivingDrive drive(server.join(), 5);

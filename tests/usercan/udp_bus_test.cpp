@@ -86,7 +86,7 @@ TEST_F(Udp, datagrams_that_nobody_read_in_time_are_counted) {
   EXPECT_EQ(read + b->lost(), 200'000u);
 }
 
-TEST_F(Udp, python_can_brings_the_simulated_drive_through_its_states) {
+TEST_F(Udp, python_can_brings_the_simulated_drive_through_every_state_and_mode) {
   if (shell("/usr/bin/python3 -c 'import can, msgpack' 2>/dev/null") != 0)
     GTEST_SKIP() << "no python-can here; install it so: .ci/packages --tests";
   const LivingDrive drive(open(43205), 6);
