@@ -41,6 +41,7 @@ constexpr StateRow kStates[] = {
 }  // namespace
 
 void CanSupplier::receive(image::ProcessImage& image) noexcept {
+  if (clock_ != nullptr) sync_ns_ = clock_->now_ns();  // SYNC is the first act of the segment
   segment_.receive(image);
   canopen::BusEvent event;
   for (int i = 0; i < cycle::kNoticesPerCycle && segment_.events().pop(event); ++i) {

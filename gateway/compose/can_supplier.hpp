@@ -15,6 +15,11 @@ class CanSupplier final : public image::CycleDevice {
   /// Where faults are reported; set before the first cycle.
   void report_to(cycle::Notices& notices) noexcept { notices_ = &notices; }
 
+  /// From now on sync_ns() says when each SYNC went. Before the first cycle.
+  void time_sync(const image::Clock& clock) noexcept { clock_ = &clock; }
+  /// Time by that clock at which the SYNC of this cycle was handed to the bus. real-time safe.
+  image::Nanoseconds sync_ns() const noexcept { return sync_ns_; }
+
   /// real-time safe.
   void receive(image::ProcessImage& image) noexcept override;
   /// real-time safe.
@@ -32,10 +37,12 @@ class CanSupplier final : public image::CycleDevice {
   canopen::Segment segment_;
   canopen::BusEventRing kept_;
   cycle::Notices* notices_ = nullptr;
+  const image::Clock* clock_ = nullptr;
+  image::Nanoseconds sync_ns_ = 0;
 };
 
-/// A start-up that failed in the figures of an alarm record (kBootFailed), and back; texts that a device should
-/// have said and did not are not kept. real-time safe.
+/// A start-up that failed in the figures of an alarm record (kBootFailed), and back; texts that a device
+/// should have said and did not are not kept. real-time safe.
 void pack(const canopen::BootReport& report, image::AlarmRecord& record) noexcept;
 canopen::BootReport unpack(const image::AlarmRecord& record) noexcept;
 

@@ -252,6 +252,12 @@ bool Control::step() {
   return cycle_->step();
 }
 
+void Control::open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) noexcept {
+  if (!due_ns_)
+    for (const auto& supplier : suppliers_) supplier->time_sync(clock);
+  due_ns_ = due_ns;
+}
+
 cycle::AlarmNames Control::alarm_names() const {
   const machine::MachineConfig& m = loaded_.machine;
   cycle::AlarmNames names;

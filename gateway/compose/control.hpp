@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,11 @@ class Control {
   MockWorld& world() noexcept { return *world_; }
   PlcLogic* logic() noexcept { return logic_.get(); }
   const std::vector<std::unique_ptr<CanSupplier>>& suppliers() const noexcept { return suppliers_; }
+  /// Real time: the cycle that step() is about to run was due at this time of `clock`. From the first call on
+  /// every SYNC is timed. real-time safe.
+  void open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) noexcept;
+  /// When the present cycle was due; nullopt: in virtual time.
+  std::optional<image::Nanoseconds> due_ns() const noexcept { return due_ns_; }
   /// Names for the sentences of alarms.
   cycle::AlarmNames alarm_names() const;
   /// True when nothing real can move.
@@ -80,6 +86,7 @@ class Control {
   std::unique_ptr<MockWorld> world_;
   std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
+  std::optional<image::Nanoseconds> due_ns_;
   std::unique_ptr<Debounce> debounce_;
   std::unique_ptr<DriveInputs> drive_inputs_;
   std::unique_ptr<DriveOutputs> drive_outputs_;

@@ -207,14 +207,26 @@ std::vector<canopen::NodeConfig> planned_nodes(const LoadResult& loaded, const B
     planned.node = static_cast<canopen::NodeId>(node.id);
     planned.name = node.name;
     planned.profile = drive_profile(*device, node, 0);
+    planned.heartbeat_ms = static_cast<std::int32_t>(std::lround(node.heartbeat * 1e3));
     out.push_back(std::move(planned));
   }
   return out;
 }
 
+canopen::SegmentServices planned_services(const BusConfig& bus) {
+  canopen::SegmentServices out;
+  for (const NodeConfig& node : bus.nodes)
+    if (node.heartbeat > 0.0)
+      out.heartbeat_ms =
+          std::min(out.heartbeat_ms, static_cast<std::int32_t>(std::lround(node.heartbeat * 1e3)));
+  out.sync_counter = bus.sync_counter;
+  out.time_ms = static_cast<std::int32_t>(std::lround(bus.time_period * 1e3));
+  return out;
+}
+
 canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus) {
   return canopen::segment_load(static_cast<std::uint32_t>(bus.bit_rate), loaded.machine.cycle_ns(),
-                               planned_nodes(loaded, bus));
+                               planned_nodes(loaded, bus), planned_services(bus));
 }
 
 std::vector<Consequence> consequences(const LoadResult& loaded) { return Sentences(loaded).all(); }

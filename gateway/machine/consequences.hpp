@@ -23,6 +23,9 @@ struct Consequence {
 /// Nodes whose device file could not be read are left out.
 std::vector<canopen::NodeConfig> planned_nodes(const LoadResult& loaded, const BusConfig& bus);
 
+/// What the control sends on a bus beside process data, as the file wants it.
+canopen::SegmentServices planned_services(const BusConfig& bus);
+
 /// Planned load of a segment with its devices' PDO maps.
 canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus);
 

@@ -121,12 +121,19 @@ Json to_json(const AxisReport& a) {
 }
 
 Json to_json(const SegmentReport& s) {
-  return {{"name", s.name},
-          {"load", s.load},
-          {"load_worst_cycle", s.load_worst_cycle},
-          {"frames_sent", s.frames_sent},
-          {"frames_received", s.frames_received},
-          {"errors", s.errors}};
+  Json out{{"name", s.name},
+           {"load", s.load},
+           {"load_worst_cycle", s.load_worst_cycle},
+           {"frames_sent", s.frames_sent},
+           {"frames_received", s.frames_received},
+           {"errors", s.errors}};
+  if (s.sync) {
+    out["sync_late_us"] = to_json(s.sync->us);
+    out["sync_late_histogram"] = Json::array();
+    for (const SyncReport::Band& b : s.sync->bands)
+      out["sync_late_histogram"].push_back({{"from_us", b.from_us}, {"to_us", b.to_us}, {"count", b.count}});
+  }
+  return out;
 }
 
 }  // namespace
@@ -154,6 +161,7 @@ Json json_of(const Report& r) {
   for (const PhaseReport& p : r.phases) out["phases_us"][p.name] = to_json(p.us);
   out["segments"] = Json::array();
   for (const SegmentReport& s : r.segments) out["segments"].push_back(to_json(s));
+  if (r.sync_skew_us) out["sync_skew_us"] = to_json(*r.sync_skew_us);
   out["trace_dropped"] = r.trace_dropped;
   return out;
 }
@@ -165,6 +173,17 @@ std::string to_json(const Report& report) {
 Quantiles quantiles_us(const Histogram& h) {
   const auto us = [&](double q) { return static_cast<double>(h.quantile(q)) / 1000.0; };
   return {us(0.5), us(0.99), us(0.999), us(1.0)};
+}
+
+SyncReport sync_report(const Histogram& lateness) {
+  SyncReport out{quantiles_us(lateness), {}};
+  for (const Histogram::Bucket& b : lateness.buckets()) {
+    if (out.bands.empty()) out.bands.push_back({0.0, 1.0, 0});
+    while (static_cast<double>(b.from) / 1000.0 >= out.bands.back().to_us)
+      out.bands.push_back({out.bands.back().to_us, 2.0 * out.bands.back().to_us, 0});
+    out.bands.back().count += b.count;
+  }
+  return out;
 }
 
 void fill_axes(Report& report, const TraceLayout& layout, const RunStatistics& statistics) {

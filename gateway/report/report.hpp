@@ -93,12 +93,25 @@ struct PhaseReport {
   Quantiles us;
 };
 
+/// How late the SYNC of a segment was handed to its bus, against the absolute time of its cycle.
+struct SyncReport {
+  Quantiles us;
+  /// So many were at least `from` and less than `to` late; `to` is twice `from`, but for the first band.
+  struct Band {
+    double from_us = 0.0, to_us = 0.0;
+    std::uint64_t count = 0;
+  };
+  std::vector<Band> bands;
+};
+SyncReport sync_report(const Histogram& lateness);
+
 /// Load of one bus segment; ratios 0-1.
 struct SegmentReport {
   std::string name;
   double load = 0.0;
   double load_worst_cycle = 0.0;
   std::uint64_t frames_sent = 0, frames_received = 0, errors = 0;
+  std::optional<SyncReport> sync;  ///< real time only
 };
 
 /// One run, from the first cycle to the last.
@@ -119,6 +132,8 @@ struct Report {
   std::optional<Quantiles> lateness_us;  ///< real time only
   std::vector<PhaseReport> phases;
   std::vector<SegmentReport> segments;
+  std::optional<Quantiles>
+      sync_skew_us;  ///< between the first and the last SYNC of a cycle, of several segments
   std::uint64_t trace_dropped = 0;
 };
 

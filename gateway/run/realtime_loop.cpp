@@ -61,6 +61,7 @@ void RealtimeLoop::cycle_thread() {
       // Cycles that are lost are not made up for: the next one is a period after this one.
       base += late;
     }
+    control_.open_cycle(clock_, due);
     if (!control_.cycle().step()) break;
     after_(control_, late);
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "gateway/run/alarm_entries.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
@@ -70,6 +71,7 @@ Session::Session(Control& control, const Outputs& outputs, bool realtime)
       statistics_(layout_),
       times_(phase_names()) {
   if (!realtime) control.cycle().measure_every(kMeasuredCycles);
+  if (realtime) sync_late_.resize(control.suppliers().size());
   sampled_.signals.clear();
   std::vector<std::unique_ptr<report::TraceSink>> sinks;
   if (!outputs.trace.empty()) sinks.push_back(std::make_unique<report::CsvSink>(outputs.trace));
@@ -94,7 +96,22 @@ void Session::after_cycle(image::Nanoseconds late_ns) noexcept {
   report::sample(cycle.image(), sampled_, row_);
   statistics_.add(row_);
   if (cycle.measured()) times_.add(cycle.duration_ns(), late_ns, cycle.phase_ns().data());
+  time_sync();
   if (recorder_ != nullptr) recorder_->record(row_);
+}
+
+// How late each SYNC was against the absolute time of its cycle, and how far apart those of several buses.
+void Session::time_sync() noexcept {
+  const auto due = control_.due_ns();
+  if (!due || sync_late_.empty()) return;
+  image::Nanoseconds first = std::numeric_limits<image::Nanoseconds>::max(), last = 0;
+  for (std::size_t b = 0; b < sync_late_.size(); ++b) {
+    const image::Nanoseconds sent = control_.suppliers()[b]->sync_ns();
+    sync_late_[b].add(sent - *due);
+    first = std::min(first, sent);
+    last = std::max(last, sent);
+  }
+  sync_skew_.add(last - first);
 }
 
 std::string Session::close() {
@@ -136,9 +153,12 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
     const image::SegmentStatus& s = image.segments[b];
     r.segments.push_back(
-        {m.buses[b].name, s.load, s.load_worst_cycle, s.frames_sent, s.frames_received, s.errors});
+        {m.buses[b].name, s.load, s.load_worst_cycle, s.frames_sent, s.frames_received, s.errors, {}});
+    if (b < sync_late_.size() && sync_late_[b].count() > 0)
+      r.segments.back().sync = report::sync_report(sync_late_[b]);
     r.provenance.buses.push_back({m.buses[b].name, m.buses[b].url, m.buses[b].mock()});
   }
+  if (sync_late_.size() > 1) r.sync_skew_us = report::quantiles_us(sync_skew_);
   for (const machine::StationConfig& s : m.stations)  // a drive's own points come over its segment
     if (s.kind != machine::StationKind::drive)
       r.provenance.buses.push_back(

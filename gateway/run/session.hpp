@@ -37,12 +37,16 @@ class Session {
   const report::CycleTimes& times() const noexcept { return times_; }
 
  private:
+  void time_sync() noexcept;
+
   Control& control_;
   report::TraceLayout layout_;
   report::TraceLayout sampled_;  ///< what a row is filled with: signals only where somebody records them
   bool realtime_;
   report::RunStatistics statistics_;
   report::CycleTimes times_;
+  std::vector<report::Histogram> sync_late_;  ///< by bus; real time only
+  report::Histogram sync_skew_;
   report::TraceRow row_;
   std::unique_ptr<report::TraceRecorder> recorder_;
   report::RunRecorder* picture_ = nullptr;  ///< one of the recorder's sinks

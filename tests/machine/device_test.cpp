@@ -42,14 +42,19 @@ TEST(DeviceFiles, servo_becomes_the_masters_profile) {
   EXPECT_FALSE(p.vendor_id.has_value());
 }
 
-TEST(DeviceFiles, brake_drive_maps_its_output_every_tenth_cycle) {
+TEST(DeviceFiles, brake_drive_maps_its_output_every_tenth_cycle_and_holds_its_load_when_the_bus_is_cut) {
   const canopen::DriveProfile p = drive_profile(device("servo-cia402-brake"), {}, 1000);
   EXPECT_EQ(p.brake_bit, 0);
   EXPECT_FALSE(p.brake_bit_releases);
-  ASSERT_EQ(p.settings.size(), 1u);
-  EXPECT_EQ(p.settings[0].index, 0x60FE);
-  EXPECT_EQ(p.settings[0].subindex, 2);
-  EXPECT_EQ(p.settings[0].value, 1u);
+  const auto sets = [&p](std::uint16_t index, std::uint8_t subindex, std::uint32_t value) {
+    return std::any_of(p.settings.begin(), p.settings.end(), [&](const canopen::SdoSetting& s) {
+      return s.index == index && s.subindex == subindex && s.value == value;
+    });
+  };
+  EXPECT_EQ(p.settings.size(), 2u);
+  EXPECT_TRUE(sets(0x60FE, 2, 1));
+  EXPECT_TRUE(sets(0x605A, 0, 6)) << "quick stop keeps its torque";
+  EXPECT_EQ(p.abort_connection_option, 3);
   EXPECT_EQ(p.rpdo[1].transmission_type, 10);
   EXPECT_EQ(p.rpdo[1].mapping.entries[0], (canopen::MappingEntry{0x60FE, 1, 32}));
 }

@@ -155,7 +155,11 @@ Report demo_report(const DemoRun& demo, int alarms) {
     times.add(2800 + i % 300, 0, phases);
   }
   fill_cycle_times(r, times, false);
-  r.segments = {{"can", 0.412, 0.447, 64'000, 64'000, 0}};
+  r.segments = {{"can", 0.412, 0.447, 64'000, 64'000, 0, {}}};
+  Histogram late;
+  for (const std::int64_t us : {0, 3, 70, 71, 72, 200}) late.add(us * 1000);
+  r.segments[0].sync = sync_report(late);
+  r.sync_skew_us = quantiles_us(late);
   for (int n = 0; n < alarms; ++n) {
     AlarmEntry a;
     a.record.number = static_cast<std::uint16_t>(3101 + 20 * n);

@@ -48,6 +48,16 @@ TEST(Report, carries_every_field_of_the_contract) {
   for (const char* key : {"p50", "p99", "p999", "max"}) EXPECT_GT(j["cycle_us"][key].get<double>(), 2.0);
   EXPECT_GT(j["virtual_speed"].get<double>(), 0.0);
   EXPECT_EQ(j["segments"][0]["name"], "can");
+  EXPECT_EQ(j["segments"][0]["sync_late_us"]["max"], 200.0);
+  EXPECT_EQ(j["sync_skew_us"]["max"], 200.0);
+  const auto& bands = j["segments"][0]["sync_late_histogram"];
+  ASSERT_EQ(bands.size(), 9u) << "0-1 us, then doublings up to that of 200 us";
+  EXPECT_EQ(bands[0]["count"], 1);
+  EXPECT_EQ(bands[2]["from_us"], 2.0);
+  EXPECT_EQ(bands[2]["count"], 1);
+  EXPECT_EQ(bands[7]["to_us"], 128.0);
+  EXPECT_EQ(bands[7]["count"], 3);
+  EXPECT_EQ(bands[8]["count"], 1);
   EXPECT_EQ(j["phases_us"]["plc"]["max"], 0.7);
   EXPECT_FALSE(j.contains("lateness_us"));
 }

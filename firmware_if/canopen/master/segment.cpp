@@ -94,7 +94,7 @@ class SdoBudget {
     const auto bits = [&](std::span<const NodeConfig> nodes) {
       return cycle_bits_ <= 0.0
                  ? 0.0
-                 : cycle_bits_ * segment_load(bit_rate, config.cycle_ns, nodes, config.heartbeat_ms).load;
+                 : cycle_bits_ * segment_load(bit_rate, config.cycle_ns, nodes, services_of(config)).load;
     };
     const double own = bits({});
     free_ = cycle_bits_ * (1.0 - config.sdo_reserve) - own;

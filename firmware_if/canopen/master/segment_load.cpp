@@ -47,18 +47,18 @@ image::Nanoseconds next_cycle_of_series(image::Nanoseconds cycle_ns) {
 }
 
 double load_of_part(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,
-                    std::size_t part, std::size_t parts, std::int32_t heartbeat_ms) {
+                    std::size_t part, std::size_t parts, const SegmentServices& services) {
   std::vector<NodeConfig> mine;
   for (std::size_t i = part; i < nodes.size(); i += parts) mine.push_back(nodes[i]);
-  return segment_load(bit_rate, cycle_ns, mine, heartbeat_ms).load;
+  return segment_load(bit_rate, cycle_ns, mine, services).load;
 }
 
 int segments_that_fit(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,
-                      std::int32_t heartbeat_ms) {
+                      const SegmentServices& services) {
   for (std::size_t parts = 1; parts <= nodes.size(); ++parts) {
     bool fits = true;
     for (std::size_t part = 0; part < parts && fits; ++part)
-      fits = load_of_part(bit_rate, cycle_ns, nodes, part, parts, heartbeat_ms) <= kLoadWarning;
+      fits = load_of_part(bit_rate, cycle_ns, nodes, part, parts, services) <= kLoadWarning;
     if (fits) return static_cast<int>(parts);
   }
   return 0;
@@ -96,12 +96,17 @@ constexpr text::Entry kNearlyFull{
 
 }  // namespace
 
+SegmentServices services_of(const SegmentConfig& config) noexcept {
+  return {config.heartbeat_ms, config.sync_counter_overflow != 0, config.time_ms};
+}
+
 SegmentLoad segment_load(std::uint32_t bit_rate, image::Nanoseconds cycle_ns,
-                         std::span<const NodeConfig> nodes, std::int32_t heartbeat_ms) {
+                         std::span<const NodeConfig> nodes, const SegmentServices& services) {
   Sum sum(bit_rate, cycle_ns);
-  const double heartbeat = static_cast<double>(cycle_ns) / (static_cast<double>(heartbeat_ms) * 1e6);
-  sum.add(cob::kSync, 0, "SYNC", 0, 1.0);
-  sum.add(cob::heartbeat(0), 0, "heartbeat", 1, heartbeat);
+  const auto every = [cycle_ns](std::int32_t ms) { return static_cast<double>(cycle_ns) / (ms * 1e6); };
+  sum.add(cob::kSync, 0, "SYNC", services.sync_counter ? 1 : 0, 1.0);
+  if (services.time_ms > 0) sum.add(cob::kTime, 0, "TIME", 6, every(services.time_ms));
+  sum.add(cob::heartbeat(0), 0, "heartbeat", 1, every(services.heartbeat_ms));
   for (const NodeConfig& node : nodes) {
     for (int n = 1; n <= 4; ++n) {
       const auto i = static_cast<std::size_t>(n - 1);
@@ -113,22 +118,29 @@ SegmentLoad segment_load(std::uint32_t bit_rate, image::Nanoseconds cycle_ns,
         sum.add(cob::tpdo(n, node.node), node.node, "TPDO" + std::to_string(n), tpdo.mapping.bytes(),
                 per_cycle(tpdo, cycle_ns, true));
     }
-    sum.add(cob::heartbeat(node.node), node.node, "heartbeat", 1, heartbeat);
+    if (const std::int32_t guard_ms = node.profile.guard_time_ms; guard_ms > 0) {
+      // A remote frame has the length of one without data. Source: CiA 301, "Node guarding".
+      sum.add(cob::heartbeat(node.node), node.node, "guard request", 0, every(guard_ms));
+      sum.add(cob::heartbeat(node.node), node.node, "guard answer", 1, every(guard_ms));
+    } else {
+      sum.add(cob::heartbeat(node.node), node.node, "heartbeat", 1,
+              every(node.heartbeat_ms > 0 ? node.heartbeat_ms : services.heartbeat_ms));
+    }
   }
   return sum.take();
 }
 
 LoadAdvice advise(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,
-                  std::int32_t heartbeat_ms) {
+                  const SegmentServices& services) {
   LoadAdvice advice;
   advice.cycle_ns = next_cycle_of_series(cycle_ns);
   while (advice.cycle_ns < image::kSecond &&
-         segment_load(bit_rate, advice.cycle_ns, nodes, heartbeat_ms).load > kLoadWarning)
+         segment_load(bit_rate, advice.cycle_ns, nodes, services).load > kLoadWarning)
     advice.cycle_ns *= 2;
-  advice.segments = segments_that_fit(bit_rate, cycle_ns, nodes, heartbeat_ms);
+  advice.segments = segments_that_fit(bit_rate, cycle_ns, nodes, services);
   std::vector<NodeConfig> small;
   for (const NodeConfig& node : nodes) small.push_back(with_four_byte_pdo(node));
-  advice.load_with_4_byte_pdo = segment_load(bit_rate, cycle_ns, small, heartbeat_ms).load;
+  advice.load_with_4_byte_pdo = segment_load(bit_rate, cycle_ns, small, services).load;
   return advice;
 }
 

@@ -13,8 +13,8 @@ namespace servogate::canopen {
 /// One frame of the plan.
 struct FrameLoad {
   std::uint32_t id = 0;
-  NodeId node = 0;   ///< 0: SYNC and the control's heartbeat
-  std::string what;  ///< "SYNC", "RPDO1", "TPDO2", "heartbeat"
+  NodeId node = 0;   ///< 0: SYNC, TIME and the control's heartbeat
+  std::string what;  ///< "SYNC", "RPDO1", "TPDO2", "heartbeat", "guard request", "guard answer", "TIME"
   std::uint8_t bytes = 0;
   std::uint32_t bits = 0;  ///< worst case with stuff bits and interframe space
   double per_cycle = 0.0;  ///< how often in a cycle, on average
@@ -31,10 +31,19 @@ struct SegmentLoad {
 inline constexpr double kLoadWarning = 0.80;
 inline constexpr double kLoadError = 0.90;
 
-/// Load of the cyclic traffic (SYNC, PDOs, heartbeats; SDO uses what is left). bit_rate in bit/s. Not
-/// real-time safe.
+/// What the control sends beside process data.
+struct SegmentServices {
+  std::int32_t heartbeat_ms = 100;  ///< of the control, and of every node that has no time of its own
+  bool sync_counter = false;        ///< SYNC carries its counter byte
+  std::int32_t time_ms = 0;         ///< period of the TIME message, 0: none
+};
+/// Of a configured segment.
+SegmentServices services_of(const SegmentConfig& config) noexcept;
+
+/// Load of the cyclic traffic: SYNC, PDOs, heartbeats, requests and answers of node guarding, TIME; SDO uses
+/// what is left. bit_rate in bit/s. Not real-time safe.
 SegmentLoad segment_load(std::uint32_t bit_rate, image::Nanoseconds cycle_ns,
-                         std::span<const NodeConfig> nodes, std::int32_t heartbeat_ms = 100);
+                         std::span<const NodeConfig> nodes, const SegmentServices& services = {});
 
 /// What would bring the load to at most kLoadWarning.
 struct LoadAdvice {
@@ -45,7 +54,7 @@ struct LoadAdvice {
       0.0;  ///< with 607Ah alone and 6064h alone every cycle, the rest every 10th SYNC
 };
 LoadAdvice advise(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,
-                  std::int32_t heartbeat_ms = 100);
+                  const SegmentServices& services = {});
 
 /// Sentence for the machine file's check: {0} segment, {1} load in per cent, {2} limit, {3} cycle that fits
 /// in ms, {4} number of segments that fit, {5} load in per cent with 4-byte PDOs. nullptr when the load is

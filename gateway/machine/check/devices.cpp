@@ -93,10 +93,10 @@ class DeviceUse {
       if (bus.bit_rate <= 0 || bus.nodes.empty()) continue;
       const std::vector<canopen::NodeConfig> nodes = planned_nodes(loaded_, bus);
       const auto rate = static_cast<std::uint32_t>(bus.bit_rate);
-      const canopen::SegmentLoad load = canopen::segment_load(rate, m_.cycle_ns(), nodes);
+      const canopen::SegmentLoad load = segment_load(loaded_, bus);
       const text::Entry* entry = canopen::load_text(load.load);
       if (entry == nullptr) continue;
-      const canopen::LoadAdvice advice = canopen::advise(rate, m_.cycle_ns(), nodes);
+      const canopen::LoadAdvice advice = canopen::advise(rate, m_.cycle_ns(), nodes, planned_services(bus));
       const bool error = load.load > canopen::kLoadError;
       const double limit = error ? canopen::kLoadError : canopen::kLoadWarning;
       const std::vector<std::string> arguments{bus.name,

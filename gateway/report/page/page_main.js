@@ -81,7 +81,17 @@ function timing() {
   const buses = el("table", {}, heads(tr("segment"), tr("load"), tr("worst"), tr("sent"), tr("received"), tr("errors")), el("tbody", {}, ...R.segments.map(s =>
     el("tr", {}, el("th", {}, s.name), ...[num(100 * s.load, 3) + " %", num(100 * s.load_worst_cycle, 3) + " %", num(s.frames_sent, 9), num(s.frames_received, 9), num(s.errors, 9)]
       .map(v => el("td", {class: "figure"}, v))))));
-  fill("timing", el("div", {class: "table"}, phases), R.segments.length ? el("div", {class: "table"}, buses) : null);
+  fill("timing", el("div", {class: "table"}, phases), R.segments.length ? el("div", {class: "table"}, buses) : null,
+    ...R.segments.filter(s => s.sync_late_us).map(lateSync), R.sync_skew_us ? el("p", {class: "note"}, tr("syncSkew") + ": " + quantiles(R.sync_skew_us)) : null);
+}
+const quantiles = q => ["p50", "p99", "p999", "max"].map(k => k + " " + num(q[k], 3)).join(", ") + " " + unit("µs");
+/** Histogram of the lateness of SYNC on one bus, a bar for each doubling. */
+function lateSync(s) {
+  const most = s.sync_late_histogram.reduce((m, b) => Math.max(m, b.count), 1);
+  const bar = b => el("div", {class: "late", style: `width:${Math.max(1, Math.round(200 * b.count / most))}px`});
+  const rows = s.sync_late_histogram.map(b => el("tr", {}, el("th", {}, `${num(b.from_us, 3)}–${num(b.to_us, 3)} ${unit("µs")}`),
+    el("td", {class: "figure"}, String(b.count)), el("td", {}, bar(b))));
+  return el("div", {class: "table"}, el("p", {class: "note"}, `${tr("syncLate")} ${s.name}: ${quantiles(s.sync_late_us)}`), el("table", {}, el("tbody", {}, ...rows)));
 }
 function provenance() {
   const p = R.provenance, rows = [];

@@ -14,6 +14,8 @@ const TEXTS = {
   cycle: ["Cycle", "Цикл"],
   lateness: ["Wake-up lateness", "Опоздание пробуждения"],
   segment: ["Bus segment", "Сегмент шины"],
+  syncLate: ["Lateness of SYNC on", "Запаздывание SYNC на"],
+  syncSkew: ["Between the first and the last SYNC of a cycle", "Между первым и последним SYNC такта"],
   load: ["Load", "Загрузка"],
   sent: ["Sent", "Передано"],
   received: ["Received", "Принято"],

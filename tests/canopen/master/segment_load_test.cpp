@@ -23,7 +23,7 @@ std::vector<NodeConfig> axes(int count, void (*map)(DriveProfile&) = use_short_p
 TEST(SegmentLoad, of_three_short_maps_at_1_ms_is_worked_out_by_hand) {
   // SYNC: 47 + 8 = 55 bits; six PDOs of 6 bytes: 95 + 20 = 115 bits each; four heartbeats in 100 ms of 1
   // byte: 55 + 10 = 65 bits.
-  const SegmentLoad load = segment_load(1'000'000, kMs, axes(3), 100);
+  const SegmentLoad load = segment_load(1'000'000, kMs, axes(3));
   EXPECT_NEAR(load.load, (55 + 6 * 115 + 4 * 65 / 100.0) / 1000.0, 1e-12);
   EXPECT_NEAR(load.worst_cycle, (55 + 6 * 115 + 4 * 65) / 1000.0, 1e-12);
   ASSERT_EQ(load.frames.size(), 1u + 1u + 3u * 3u);
@@ -47,6 +47,29 @@ TEST(SegmentLoad, counts_slow_pdos_by_their_type) {
   nodes[0].profile.tpdo[1].inhibit_100us = 50;
   EXPECT_NEAR(segment_load(1'000'000, kMs, nodes).load - before, image::worst_case_bits(4) / 5.0 / 1000.0,
               1e-12);
+}
+
+TEST(SegmentLoad, counts_time_the_sync_counter_guarding_and_a_heartbeat_of_its_own) {
+  const auto load = [](const std::vector<NodeConfig>& nodes, const SegmentServices& services = {}) {
+    return segment_load(1'000'000, kMs, nodes, services).load * 1000.0;
+  };
+  auto nodes = axes(1);
+  const double before = load(nodes);
+  SegmentServices services;
+  services.sync_counter = true;
+  EXPECT_NEAR(load(nodes, services) - before, image::worst_case_bits(1) - image::worst_case_bits(0), 1e-9);
+  services = {};
+  services.time_ms = 20;
+  EXPECT_NEAR(load(nodes, services) - before, image::worst_case_bits(6) / 20.0, 1e-9);
+  nodes[0].heartbeat_ms = 10;
+  EXPECT_NEAR(load(nodes) - before, image::worst_case_bits(1) * (1 / 10.0 - 1 / 100.0), 1e-9);
+  nodes[0].heartbeat_ms = 0;
+  nodes[0].profile.guard_time_ms = 50;
+  EXPECT_NEAR(
+      load(nodes) - before,
+      (image::worst_case_bits(0) + image::worst_case_bits(1)) / 50.0 - image::worst_case_bits(1) / 100.0,
+      1e-9)
+      << "request and answer take the place of the heartbeat";
 }
 
 TEST(SegmentLoad, of_a_full_bus_is_refused_with_what_would_fit) {
