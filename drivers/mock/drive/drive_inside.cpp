@@ -70,9 +70,24 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
   now = std::max(now, t);
 }
 
+// I2t. Source: CiA 402-1, error code 2350h "load level fault (I2t, thermal state)".
+void SimulatedDrive::Inside::watch_heat() noexcept {
+  constexpr double kTooHot = 1.0, kCooledDown = 0.9;
+  const double heat = plant.thermal();
+  if (heat > kTooHot && !hot) {
+    hot = true;
+    profile.hold_fault(true);
+    profile.fault(0x2350, false);
+  } else if (heat < kCooledDown && hot) {
+    hot = false;
+    profile.hold_fault(false);
+  }
+}
+
 void SimulatedDrive::Inside::servo_tick() noexcept {
   const std::int64_t before = plant.counts();
   plant.step(command);
+  if (config.plant.thermal_time_s > 0.0) watch_heat();
   read_inputs(before);
   inputs.hold_state = any_lasting && spoiled(DriveFaultKind::stuck_state) &&
                       profile.state() == fault(DriveFaultKind::stuck_state).state;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "drivers/mock/drive/bus_gate.hpp"
+#include "drivers/mock/drive/device_objects.hpp"
 #include "drivers/mock/drive/simulated_drive.hpp"
 #include "firmware_if/canopen/device/communication_objects.hpp"
 #include "firmware_if/canopen/device/drive/servo_profile.hpp"
@@ -22,6 +23,7 @@ struct SimulatedDrive::Inside {
   void power_on(Nanoseconds t) noexcept;
   void advance_to(Nanoseconds t) noexcept;
   void servo_tick() noexcept;
+  void watch_heat() noexcept;
   void read_inputs(std::int64_t before) noexcept;
   bool inside(const DriveSwitch& s) const noexcept {
     return plant.counts() >= s.from && plant.counts() <= s.to;
@@ -45,6 +47,7 @@ struct SimulatedDrive::Inside {
   };
 
   SimulatedDriveConfig config;
+  DeviceObjects objects;
   canopen::ObjectDictionary dictionary;
   canopen::ServoProfile profile;
   canopen::Slave slave;
@@ -57,6 +60,7 @@ struct SimulatedDrive::Inside {
   std::int64_t lost_encoder_position = 0;
   std::array<Lasting, kFaultKinds> lasting{};
   bool any_lasting = false;
+  bool hot = false;  ///< I2t: too hot, until it has cooled down
   Nanoseconds now = 0;
   Nanoseconds next_servo = 0;
   Nanoseconds next_communication = 0;

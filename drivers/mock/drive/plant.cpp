@@ -10,6 +10,14 @@ namespace servogate::mock {
 namespace {
 
 constexpr double kDefaultVelocityBandwidth = 600.0;  // rad/s
+/// A compliant coupling is integrated in steps of at most this angle of its resonance, rad.
+constexpr double kResonanceStep = 0.2;
+constexpr int kMostSubsteps = 64;
+
+/// Dry friction: it brings to rest and holds, and never reverses a motion.
+double with_dry_friction(double omega, double step) noexcept {
+  return std::abs(omega) <= step ? 0.0 : omega - std::copysign(step, omega);
+}
 
 std::int64_t floor_to_int(double x) noexcept {
   const auto i = static_cast<std::int64_t>(x);
@@ -23,28 +31,46 @@ Plant::Plant(const PlantConfig& config, image::Nanoseconds step_ns)
   if (config.counts_per_rev <= 0 || config.inertia_kg_m2 <= 0.0 || config.rated_torque_nm <= 0.0 ||
       step_ns <= 0)
     throw std::invalid_argument("a plant needs counts, inertia, torque and a step above zero");
+  const bool spring = config.stiffness_nm_rad > 0.0 && config.load_inertia_kg_m2 > 0.0;
+  total_inertia_ = config.inertia_kg_m2 + std::max(0.0, config.load_inertia_kg_m2);
+  // A rigid coupling makes one mass of both.
+  if (!spring) config_.inertia_kg_m2 = total_inertia_;
   const auto turn = static_cast<double>(config.counts_per_rev);
   revolutions_per_count_ = 1.0 / turn;
   rad_per_count_ = 2.0 * std::numbers::pi / turn;
   counts_per_rad_ = 1.0 / rad_per_count_;
   lag_ = config.current_time_constant_s > 0.0 ? -std::expm1(-h_ / config.current_time_constant_s) : 1.0;
-  h_over_j_ = h_ / config.inertia_kg_m2;
+  h_over_j_ = h_ / config_.inertia_kg_m2;
   viscous_divisor_ = 1.0 / (1.0 + h_over_j_ * config.viscous_friction_nm_s);
   friction_step_ = h_over_j_ * config.coulomb_friction_nm * viscous_divisor_;
   brake_step_ = h_over_j_ * config.brake_torque_nm * viscous_divisor_;
   permille_to_nm_ = config.rated_torque_nm / 1000.0;
   nm_to_permille_ = 1000.0 / config.rated_torque_nm;
   velocity_gain_ =
-      config.velocity_gain > 0.0 ? config.velocity_gain : config.inertia_kg_m2 * kDefaultVelocityBandwidth;
+      config.velocity_gain > 0.0 ? config.velocity_gain : total_inertia_ * kDefaultVelocityBandwidth;
   integral_step_ = velocity_gain_ * config.velocity_integral * h_;
   stop_min_counts_ = config.end_stop_min_rev * turn;
   stop_max_counts_ = config.end_stop_max_rev * turn;
+  cogging_per_count_ = config.cogging_periods * rad_per_count_;
+  if (config.thermal_time_s > 0.0) thermal_step_ = -std::expm1(-h_ / config.thermal_time_s);
+  if (spring) {
+    const double resonance =
+        std::sqrt(config.stiffness_nm_rad * (1.0 / config.inertia_kg_m2 + 1.0 / config.load_inertia_kg_m2));
+    substeps_ = std::clamp(static_cast<int>(std::ceil(h_ * resonance / kResonanceStep)), 1, kMostSubsteps);
+    sub_h_ = h_ / substeps_;
+    sub_lag_ =
+        config.current_time_constant_s > 0.0 ? -std::expm1(-sub_h_ / config.current_time_constant_s) : 1.0;
+    sub_over_motor_ = sub_h_ / config.inertia_kg_m2;
+    sub_over_load_ = sub_h_ / config.load_inertia_kg_m2;
+    load_viscous_divisor_ = 1.0 / (1.0 + sub_over_load_ * config.viscous_friction_nm_s);
+  }
   place_at(config.start_rev);
 }
 
 void Plant::place_at(double revolutions) noexcept {
   counts_ = std::clamp(revolutions / revolutions_per_count_, stop_min_counts_, stop_max_counts_);
-  omega_ = torque_ = integral_ = 0.0;
+  load_counts_ = counts_;
+  omega_ = load_omega_ = torque_ = integral_ = 0.0;
   whole_counts_ = floor_to_int(counts_);
   find_marks();
   measure();
@@ -58,11 +84,26 @@ void Plant::find_marks() noexcept {
   mark_above_ = mark_below_ + turn;
 }
 
-double Plant::kinetic_energy() const noexcept { return 0.5 * config_.inertia_kg_m2 * omega_ * omega_; }
+double Plant::kinetic_energy() const noexcept {
+  const double load = compliant() ? config_.load_inertia_kg_m2 * load_omega_ * load_omega_ : 0.0;
+  return 0.5 * (config_.inertia_kg_m2 * omega_ * omega_ + load);
+}
 
 void Plant::step(const canopen::ServoCommand& command) noexcept {
-  integrate(loop_torque(command), !command.brake_released);
+  const double torque = loop_torque(command);
+  if (compliant())
+    integrate_compliant(torque, !command.brake_released);
+  else
+    integrate(torque, !command.brake_released);
+  if (thermal_step_ > 0.0) {
+    const double load = torque_ / config_.rated_torque_nm;
+    thermal_ += thermal_step_ * (load * load - thermal_);
+  }
   measure();
+}
+
+double Plant::cogging() const noexcept {
+  return config_.cogging_nm != 0.0 ? config_.cogging_nm * std::sin(counts_ * cogging_per_count_) : 0.0;
 }
 
 // Cascade of position (P with velocity fed forward) and velocity (PI with acceleration fed forward).
@@ -83,7 +124,7 @@ double Plant::loop_torque(const canopen::ServoCommand& command) noexcept {
     if (command.loop == Loop::position)
       velocity += config_.position_gain * (command.position - static_cast<double>(state_.position));
     const double error = velocity * rad_per_count_ - omega_;
-    torque += config_.inertia_kg_m2 * command.acceleration * rad_per_count_ + velocity_gain_ * error;
+    torque += total_inertia_ * command.acceleration * rad_per_count_ + velocity_gain_ * error;
     const double wanted = torque + integral_;
     // The integral stands still while the torque is at its limit in that direction.
     if (!(wanted > high && error > 0.0) && !(wanted < low && error < 0.0))
@@ -98,20 +139,36 @@ double Plant::loop_torque(const canopen::ServoCommand& command) noexcept {
 
 void Plant::integrate(double torque_command, bool brake_closed) noexcept {
   torque_ += lag_ * (torque_command - torque_);
-  double omega = (omega_ + h_over_j_ * (torque_ - load_torque_)) * viscous_divisor_;
-  const double friction = friction_step_ + (brake_closed ? brake_step_ : 0.0);
-  if (std::abs(omega) <= friction) {
-    omega = 0.0;
-  } else {
-    omega -= std::copysign(friction, omega);
+  const double load = config_.cogging_nm != 0.0 ? load_torque_ + cogging() : load_torque_;
+  const double omega = (omega_ + h_over_j_ * (torque_ - load)) * viscous_divisor_;
+  omega_ = with_dry_friction(omega, friction_step_ + (brake_closed ? brake_step_ : 0.0));
+  counts_ += omega_ * h_ * counts_per_rad_;
+  omega_ = stopped_at_rigid_stops(counts_, omega_);
+}
+
+// Motor and load by turns, semi-implicitly: energy neither grows nor leaks.
+void Plant::integrate_compliant(double torque_command, bool brake_closed) noexcept {
+  const double brake = brake_closed ? sub_over_motor_ * config_.brake_torque_nm : 0.0;
+  const double friction = sub_over_load_ * config_.coulomb_friction_nm * load_viscous_divisor_;
+  for (int i = 0; i < substeps_; ++i) {
+    torque_ += sub_lag_ * (torque_command - torque_);
+    const double coupling = config_.stiffness_nm_rad * (counts_ - load_counts_) * rad_per_count_ +
+                            config_.damping_nm_s * (omega_ - load_omega_);
+    omega_ = with_dry_friction(omega_ + sub_over_motor_ * (torque_ - coupling - cogging()), brake);
+    load_omega_ = with_dry_friction(
+        (load_omega_ + sub_over_load_ * (coupling - load_torque_)) * load_viscous_divisor_, friction);
+    counts_ += omega_ * sub_h_ * counts_per_rad_;
+    load_counts_ += load_omega_ * sub_h_ * counts_per_rad_;
+    load_omega_ = stopped_at_rigid_stops(load_counts_, load_omega_);
   }
-  omega_ = omega;
-  counts_ += omega * h_ * counts_per_rad_;
-  at_stop_ = counts_ <= stop_min_counts_ || counts_ >= stop_max_counts_;
-  if (at_stop_) {
-    counts_ = std::clamp(counts_, stop_min_counts_, stop_max_counts_);
-    if ((counts_ == stop_min_counts_) == (omega_ < 0.0)) omega_ = 0.0;
-  }
+}
+
+/// What is left of a speed at the rigid stops.
+double Plant::stopped_at_rigid_stops(double& counts, double omega) noexcept {
+  at_stop_ = counts <= stop_min_counts_ || counts >= stop_max_counts_;
+  if (!at_stop_) return omega;
+  counts = std::clamp(counts, stop_min_counts_, stop_max_counts_);
+  return (counts == stop_min_counts_) == (omega < 0.0) ? 0.0 : omega;
 }
 
 void Plant::measure() noexcept {

@@ -10,7 +10,7 @@ namespace servogate::mock {
 /// Motor, load and servo loops of a simulated axis, all at the motor shaft. SI units.
 struct PlantConfig {
   std::int64_t counts_per_rev = 262'144;  ///< resolution of the encoder
-  double inertia_kg_m2 = 1.0e-3;          ///< rotor and load
+  double inertia_kg_m2 = 1.0e-3;          ///< rotor and load; with a compliant coupling the rotor alone
   double coulomb_friction_nm = 0.1;       ///< dry friction, also what holds at rest
   double viscous_friction_nm_s = 5.0e-4;  ///< per rad/s
   double load_torque_nm = 0.0;     ///< constant, e.g. gravity of a vertical axis; + pulls towards minus
@@ -27,11 +27,22 @@ struct PlantConfig {
   double end_stop_min_rev = -1.0e12;  ///< rigid stops, revolutions of the shaft from the world's zero
   double end_stop_max_rev = 1.0e12;
   double start_rev = 0.0;  ///< where the shaft stands at the start
+
+  double cogging_nm = 0.0;        ///< amplitude of the torque that pulls the rotor towards its poles
+  double cogging_periods = 24.0;  ///< of it in a revolution
+  /// Compliance: the load behind a spring. The encoder sits at the motor; friction, gravity and rigid stops
+  /// act on the load.
+  double load_inertia_kg_m2 = 0.0;
+  double stiffness_nm_rad = 0.0;  ///< of the coupling; 0: rigid
+  double damping_nm_s = 0.0;      ///< in the coupling, per rad/s
+  /// I2t: thermal time constant of the motor, which takes its rated torque for ever; 0: it never gets too
+  /// hot.
+  double thermal_time_s = 0.0;
 };
 
 /// The motor with its load, integrated semi-implicitly with a fixed step: dry friction is exact (it holds,
-/// and it never reverses a motion), viscous friction is unconditionally stable. Deterministic. real-time
-/// safe.
+/// and it never reverses a motion), viscous friction is unconditionally stable. A compliant coupling is
+/// integrated in steps short against its resonance. Deterministic. real-time safe.
 class Plant {
  public:
   Plant(const PlantConfig& config, image::Nanoseconds step_ns);
@@ -41,13 +52,18 @@ class Plant {
 
   /// What the drive's electronics measure. real-time safe.
   const canopen::ServoState& state() const noexcept { return state_; }
-  /// True angle in revolutions from the world's zero. real-time safe.
-  double revolutions() const noexcept { return counts_ * revolutions_per_count_; }
-  /// True position in counts from the world's zero, rounded down. real-time safe.
+  /// True angle of the load in revolutions from the world's zero. real-time safe.
+  double revolutions() const noexcept {
+    return (compliant() ? load_counts_ : counts_) * revolutions_per_count_;
+  }
+  /// True position of the motor in counts from the world's zero, rounded down. real-time safe.
   std::int64_t counts() const noexcept { return whole_counts_; }
   double velocity_rad_s() const noexcept { return omega_; }
   double torque_nm() const noexcept { return torque_; }
   bool at_end_stop() const noexcept { return at_stop_; }
+  /// Heat of the motor, 1: what the rated torque leads to in the end. 0 without a model of it. real-time
+  /// safe.
+  double thermal() const noexcept { return thermal_; }
   /// Kinetic energy in J. real-time safe.
   double kinetic_energy() const noexcept;
 
@@ -61,6 +77,10 @@ class Plant {
  private:
   double loop_torque(const canopen::ServoCommand& command) noexcept;
   void integrate(double torque_command, bool brake_closed) noexcept;
+  void integrate_compliant(double torque_command, bool brake_closed) noexcept;
+  bool compliant() const noexcept { return substeps_ > 0; }
+  double cogging() const noexcept;
+  double stopped_at_rigid_stops(double& counts, double omega) noexcept;
   void measure() noexcept;
   void find_marks() noexcept;
 
@@ -71,10 +91,16 @@ class Plant {
   double lag_, h_over_j_, viscous_divisor_, friction_step_, brake_step_;
   double permille_to_nm_, nm_to_permille_, velocity_gain_, integral_step_;
   double stop_min_counts_, stop_max_counts_;
+  double total_inertia_, cogging_per_count_, thermal_step_ = 0.0;
+  int substeps_ = 0;  ///< of a compliant coupling in a step; 0: rigid
+  double sub_h_ = 0.0, sub_lag_ = 0.0, sub_over_motor_ = 0.0, sub_over_load_ = 0.0,
+         load_viscous_divisor_ = 1.0;
   // State.
   double counts_ = 0.0;  ///< true position, counts with fraction
   std::int64_t whole_counts_ = 0;
   double omega_ = 0.0;
+  double load_counts_ = 0.0, load_omega_ = 0.0;  ///< behind a compliant coupling
+  double thermal_ = 0.0;
   double torque_ = 0.0;
   double integral_ = 0.0;
   double load_torque_;

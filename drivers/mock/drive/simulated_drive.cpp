@@ -3,28 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "drivers/mock/drive/drive_inside.hpp"
 
 namespace servogate::mock {
 namespace {
-
-canopen::DriveRatings ratings_of(const SimulatedDriveConfig& c) {
-  canopen::DriveRatings r;
-  r.counts_per_rev = static_cast<std::uint32_t>(c.plant.counts_per_rev);
-  r.rated_torque_mnm = static_cast<std::uint32_t>(std::lround(c.plant.rated_torque_nm * 1000.0));
-  r.peak_torque_permille =
-      static_cast<std::uint16_t>(std::lround(c.plant.peak_torque_nm / c.plant.rated_torque_nm * 1000.0));
-  r.max_speed_rpm =
-      static_cast<std::uint32_t>(std::lround(c.plant.max_speed_rad_s * 60.0 / (2.0 * std::numbers::pi)));
-  return r;
-}
-
-canopen::DeviceIdentity identity_of(const SimulatedDriveConfig& c) {
-  constexpr std::uint32_t kServoDrive = 0x0002'0192;  // CiA 402-1: servo drive, profile 402
-  return {kServoDrive, c.vendor_id, c.product_code, c.revision, c.serial_number};
-}
 
 canopen::ServoProfileSettings settings_of(const SimulatedDriveConfig& c) {
   const bool brake = c.plant.brake_torque_nm > 0.0;
@@ -37,18 +20,12 @@ canopen::ServoProfileSettings settings_of(const SimulatedDriveConfig& c) {
   return s;
 }
 
-std::vector<canopen::ObjectSpec> program_rows(const SimulatedDriveConfig& c) {
-  if (c.program_memory == 0) return {};
-  return canopen::program_objects(c.program_identification);
-}
-
 }  // namespace
 
 SimulatedDrive::Inside::Inside(const SimulatedDriveConfig& c)
     : config(c),
-      dictionary({canopen::communication_objects(c.node_id == canopen::kUnconfiguredNode ? 0 : c.node_id,
-                                                 identity_of(c)),
-                  canopen::drive_objects(ratings_of(c)), program_rows(c)}),
+      objects(device_objects(c)),
+      dictionary({objects.rows}),
       profile(dictionary, settings_of(c)),
       slave(c.node_id, dictionary, profile),
       plant(c.plant, c.servo_period_ns) {
@@ -57,7 +34,8 @@ SimulatedDrive::Inside::Inside(const SimulatedDriveConfig& c)
     programs.emplace(dictionary, c.program_memory, canopen::ProgramStore::Times{});
     slave.use(*programs);
   }
-  dictionary.set_text(dictionary.find(canopen::object::kDeviceName, 0), c.name);
+  for (const canopen::ObjectSpec& row : objects.hidden)
+    dictionary.hide(dictionary.find(row.index, row.subindex));
   inputs.main_voltage = c.main_voltage;
   for (const DriveSwitch& s : config.switches) inputs.active[static_cast<std::size_t>(s.input)] |= inside(s);
 }
@@ -94,6 +72,8 @@ bool SimulatedDrive::brake_released() const noexcept { return inside_->command.b
 double SimulatedDrive::revolutions() const noexcept { return inside_->plant.revolutions(); }
 std::int64_t SimulatedDrive::position_counts() const noexcept { return inside_->plant.counts(); }
 double SimulatedDrive::velocity_counts_s() const noexcept { return inside_->plant.state().velocity; }
+double SimulatedDrive::thermal() const noexcept { return inside_->plant.thermal(); }
+int SimulatedDrive::left_out() const noexcept { return inside_->objects.left_out; }
 double SimulatedDrive::torque_permille() const noexcept { return inside_->plant.state().torque; }
 std::int64_t SimulatedDrive::reported_position() const noexcept { return inside_->profile.position(); }
 

@@ -12,6 +12,7 @@
 #include "drivers/mock/drive/plant.hpp"
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/301/nmt.hpp"
+#include "firmware_if/canopen/306/eds.hpp"
 #include "firmware_if/image/drive_link.hpp"
 #include "firmware_if/image/process_image.hpp"
 
@@ -34,6 +35,8 @@ struct DriveSwitch {
 /// What stands on the drive's name plate and how it is mounted.
 struct SimulatedDriveConfig {
   canopen::NodeId node_id = 1;  ///< canopen::kUnconfiguredNode: to be given by layer setting services
+  std::uint32_t device_type = 0x0002'0192;         ///< 1000h; CiA 402-1: a servo drive
+  std::uint32_t modes = 0;                         ///< 6502h; 0: all that the simulation has
   std::string name = "Servogate simulated drive";  ///< 1008h, at most 64 characters
   std::uint32_t vendor_id = 0;                     ///< 1018h:01
   std::uint32_t product_code = 0x0001'0192;
@@ -49,6 +52,9 @@ struct SimulatedDriveConfig {
   std::vector<DriveSwitch> switches;
   std::size_t program_memory = 0;  ///< bytes for a program download (1F50h); 0: the device has none
   std::uint32_t program_identification = 0x0001'0000;  ///< 1F56h of the program that it comes with
+  /// EDS or DCF: the device has the objects of this sheet with their values, and shows no others. What the
+  /// sheet says no value of keeps the simulation's. nullptr: it has all objects of the simulation.
+  std::shared_ptr<const canopen::Eds> data_sheet;
 };
 
 /// A complete CiA 301/402 servo drive with its motor, load and encoder, in simulated time. Attach it to a
@@ -84,8 +90,14 @@ class SimulatedDrive final : public CanNode {
   std::int64_t position_counts() const noexcept;
   double velocity_counts_s() const noexcept;
   double torque_permille() const noexcept;
+  /// Heat of the motor, 1: what its rated torque leads to in the end. Above it the drive faults with 2350h.
+  double thermal() const noexcept;
   /// Position as the drive reports it in 6064h, without the wrap to 32 bits.
   std::int64_t reported_position() const noexcept;
+
+  /// Objects of the data sheet that the simulation cannot have: PDOs beyond the fourth, types that it does
+  /// not know.
+  int left_out() const noexcept;
 
   /// Levels of the drive's inputs from the world. A switch of the configuration is OR-ed with it.
   void set_input(DriveSwitch::Input input, bool active) noexcept;

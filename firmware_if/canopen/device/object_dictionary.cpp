@@ -54,6 +54,28 @@ bool ObjectDictionary::has_index(std::uint16_t index) const noexcept {
   return it != specs_.end() && it->index == index;
 }
 
+void ObjectDictionary::hide(Slot slot) {
+  if (slot == kNone) return;
+  hidden_.resize(specs_.size());
+  hidden_[static_cast<std::size_t>(slot)] = true;
+}
+
+ObjectDictionary::Slot ObjectDictionary::find_visible(std::uint16_t index,
+                                                      std::uint8_t subindex) const noexcept {
+  const Slot slot = find(index, subindex);
+  const bool hidden = slot != kNone && !hidden_.empty() && hidden_[static_cast<std::size_t>(slot)];
+  return hidden ? kNone : slot;
+}
+
+bool ObjectDictionary::index_visible(std::uint16_t index) const noexcept {
+  if (hidden_.empty()) return has_index(index);
+  auto it = std::lower_bound(specs_.begin(), specs_.end(), key_of(index, 0),
+                             [](const ObjectSpec& s, std::uint32_t k) { return key_of(s) < k; });
+  for (; it != specs_.end() && it->index == index; ++it)
+    if (!hidden_[static_cast<std::size_t>(it - specs_.begin())]) return true;
+  return false;
+}
+
 std::int64_t& ObjectDictionary::variable(std::uint16_t index, std::uint8_t subindex) {
   const Slot slot = find(index, subindex);
   if (slot == kNone) throw std::out_of_range("the object dictionary lacks an object that its owner needs");

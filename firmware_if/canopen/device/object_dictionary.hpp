@@ -90,6 +90,12 @@ class ObjectDictionary {
   /// real-time safe, as everything below unless said otherwise.
   Slot find(std::uint16_t index, std::uint8_t subindex) const noexcept;
   bool has_index(std::uint16_t index) const noexcept;
+  /// Takes a row out of what the bus can see: to SDO and PDO mapping it does not exist. Its owner keeps its
+  /// value. Not real-time safe.
+  void hide(Slot slot);
+  /// As find() and has_index(), of what the bus can see.
+  Slot find_visible(std::uint16_t index, std::uint8_t subindex) const noexcept;
+  bool index_visible(std::uint16_t index) const noexcept;
   int size() const noexcept { return static_cast<int>(specs_.size()); }
   const ObjectSpec& spec(Slot slot) const noexcept { return specs_[static_cast<std::size_t>(slot)]; }
 
@@ -136,6 +142,7 @@ class ObjectDictionary {
   };
   std::vector<ObjectSpec> specs_;  ///< by index, then sub-index
   std::vector<std::int64_t> values_, stored_;
+  std::vector<bool> hidden_;  ///< empty: none is
   std::vector<Text> texts_;   ///< of the string rows, in order
   std::vector<int> text_of_;  ///< row -> place in texts_, -1
 };

@@ -70,8 +70,8 @@ AbortCode check_dummy(MappingEntry entry, bool receive) noexcept {
 AbortCode check_entry(const ObjectDictionary& od, std::uint32_t word, bool receive) noexcept {
   const MappingEntry entry = MappingEntry::from_word(word);
   if (word != 0 && entry.dummy()) return check_dummy(entry, receive);
-  if (!od.has_index(entry.index)) return AbortCode::object_does_not_exist;
-  const auto slot = od.find(entry.index, entry.subindex);
+  if (!od.index_visible(entry.index)) return AbortCode::object_does_not_exist;
+  const auto slot = od.find_visible(entry.index, entry.subindex);
   if (slot == ObjectDictionary::kNone) return AbortCode::subindex_does_not_exist;
   const ObjectSpec& spec = od.spec(slot);
   const Mappable wanted = receive ? Mappable::rpdo : Mappable::tpdo;

@@ -18,10 +18,10 @@ constexpr bool pdo_parameter(std::uint16_t index) noexcept { return index >= 0x1
 
 AbortCode Slave::read(std::uint16_t index, std::uint8_t subindex, std::span<std::uint8_t> bytes,
                       std::size_t& size) noexcept {
-  const auto slot = dictionary_.find(index, subindex);
+  const auto slot = dictionary_.find_visible(index, subindex);
   if (slot == ObjectDictionary::kNone)
-    return dictionary_.has_index(index) ? AbortCode::subindex_does_not_exist
-                                        : AbortCode::object_does_not_exist;
+    return dictionary_.index_visible(index) ? AbortCode::subindex_does_not_exist
+                                            : AbortCode::object_does_not_exist;
   if (dictionary_.spec(slot).access == Access::wo) return AbortCode::write_only;
   if (index == object::kPredefinedErrorField && subindex > dictionary_.get(index, 0))
     return AbortCode::no_data_available;
@@ -35,10 +35,10 @@ std::span<std::uint8_t> Slave::room(std::uint16_t index, std::uint8_t) noexcept 
 }
 
 AbortCode Slave::may_write(std::uint16_t index, std::uint8_t subindex, std::size_t& size) noexcept {
-  const auto slot = dictionary_.find(index, subindex);
+  const auto slot = dictionary_.find_visible(index, subindex);
   if (slot == ObjectDictionary::kNone)
-    return dictionary_.has_index(index) ? AbortCode::subindex_does_not_exist
-                                        : AbortCode::object_does_not_exist;
+    return dictionary_.index_visible(index) ? AbortCode::subindex_does_not_exist
+                                            : AbortCode::object_does_not_exist;
   const ObjectSpec& spec = dictionary_.spec(slot);
   size = size_of(spec.type);
   if (programs_ && index == object::kProgramData && subindex > 0) return programs_->check_download();
@@ -48,7 +48,7 @@ AbortCode Slave::may_write(std::uint16_t index, std::uint8_t subindex, std::size
 
 AbortCode Slave::write(std::uint16_t index, std::uint8_t subindex,
                        std::span<const std::uint8_t> bytes) noexcept {
-  const auto slot = dictionary_.find(index, subindex);
+  const auto slot = dictionary_.find_visible(index, subindex);
   if (slot == ObjectDictionary::kNone) return AbortCode::object_does_not_exist;
   if (programs_ && index == object::kProgramData && subindex > 0) {
     if (const AbortCode code = programs_->check_download(); code != AbortCode::none) return code;

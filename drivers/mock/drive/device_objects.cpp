@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/mock/drive/device_objects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "firmware_if/canopen/305/lss_frame.hpp"
+#include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/device/communication_objects.hpp"
+#include "firmware_if/canopen/device/drive/drive_objects.hpp"
+#include "firmware_if/canopen/device/program_store.hpp"
+
+namespace servogate::mock {
+namespace {
+
+using canopen::ObjectSpec;
+namespace object = canopen::object;
+
+constexpr std::uint16_t kFirstApplication = 0x2000;
+
+canopen::DriveRatings ratings_of(const SimulatedDriveConfig& c) {
+  canopen::DriveRatings r;
+  r.counts_per_rev = static_cast<std::uint32_t>(c.plant.counts_per_rev);
+  r.rated_torque_mnm = static_cast<std::uint32_t>(std::lround(c.plant.rated_torque_nm * 1000.0));
+  r.peak_torque_permille =
+      static_cast<std::uint16_t>(std::lround(c.plant.peak_torque_nm / c.plant.rated_torque_nm * 1000.0));
+  r.max_speed_rpm =
+      static_cast<std::uint32_t>(std::lround(c.plant.max_speed_rad_s * 60.0 / (2.0 * std::numbers::pi)));
+  return r;
+}
+
+canopen::NodeId node_of(const SimulatedDriveConfig& c) {
+  return c.node_id == canopen::kUnconfiguredNode ? canopen::NodeId{0} : c.node_id;
+}
+
+std::vector<ObjectSpec> own_rows(const SimulatedDriveConfig& c) {
+  const canopen::DeviceIdentity identity{c.device_type, c.vendor_id, c.product_code, c.revision,
+                                         c.serial_number};
+  std::vector<ObjectSpec> rows = canopen::communication_objects(node_of(c), identity);
+  const auto drive = canopen::drive_objects(ratings_of(c));
+  rows.insert(rows.end(), drive.begin(), drive.end());
+  if (c.program_memory > 0) {
+    const auto program = canopen::program_objects(c.program_identification);
+    rows.insert(rows.end(), program.begin(), program.end());
+  }
+  for (ObjectSpec& row : rows) {
+    if (row.index == object::kDeviceName) row.text = c.name;
+    if (row.index == object::kSupportedDriveModes && c.modes != 0) row.value = c.modes;
+  }
+  return rows;
+}
+
+using Place = std::pair<std::uint16_t, std::uint8_t>;
+Place place_of(const ObjectSpec& s) { return {s.index, s.subindex}; }
+
+/// The simulation's services work on tables of their own size; beyond them there is nothing to serve an
+/// object.
+bool can_have(const ObjectSpec& row, const std::vector<ObjectSpec>& own) {
+  if (row.index >= kFirstApplication) return true;
+  const auto same = [&](const ObjectSpec& s) { return s.index == row.index; };
+  if (std::any_of(own.begin(), own.end(), same))
+    return std::any_of(own.begin(), own.end(),
+                       [&](const ObjectSpec& s) { return place_of(s) == place_of(row); });
+  const bool served = row.index >= 0x1200 && row.index < 0x1C00;
+  return !served && (row.index < 0x1F50 || row.index > 0x1F57);
+}
+
+bool says_value(const canopen::Eds& sheet, const ObjectSpec& row) {
+  const canopen::EdsEntry* entry = sheet.find(row.index, row.subindex);
+  return entry != nullptr && entry->value() != nullptr &&
+         (entry->value()->number.has_value() || canopen::size_of(row.type) == 0);
+}
+
+int entries_of(const canopen::Eds& sheet) {
+  int count = 0;
+  for (const auto& [index, whole] : sheet.objects)
+    count += whole.subs.empty() ? 1 : static_cast<int>(whole.subs.size());
+  return count;
+}
+
+}  // namespace
+
+DeviceObjects device_objects(const SimulatedDriveConfig& config) {
+  DeviceObjects out;
+  const std::vector<ObjectSpec> own = own_rows(config);
+  out.rows = own;
+  if (config.data_sheet == nullptr) return out;
+  const canopen::Eds& sheet = *config.data_sheet;
+  std::set<Place> shown;
+  for (ObjectSpec row : canopen::object_specs(sheet, node_of(config))) {
+    if (!can_have(row, own)) continue;
+    shown.insert(place_of(row));
+    const auto mine = std::find_if(own.begin(), own.end(),
+                                   [&](const ObjectSpec& s) { return place_of(s) == place_of(row); });
+    if (mine != own.end()) {
+      const bool count = row.subindex == 0 && row.index < kFirstApplication;
+      if (!says_value(sheet, row)) {
+        row.value = mine->value;
+        row.text = mine->text;
+      } else if (count && mine->value > 0 && mine->access == canopen::Access::constant) {
+        row.value = std::min(row.value, mine->value);
+      }
+    }
+    out.rows.push_back(row);
+  }
+  for (const ObjectSpec& row : own)
+    if (shown.count(place_of(row)) == 0) out.hidden.push_back(row);
+  out.left_out = entries_of(sheet) - static_cast<int>(shown.size());
+  return out;
+}
+
+}  // namespace servogate::mock
