@@ -34,6 +34,15 @@ void add_can_bus(CLI::App& can, CanBusOptions& o) {
 
 constexpr const char* kBus = "Url of the bus, or MACHINE.toml#bus";
 
+void add_faults(CLI::App& app, FaultOptions& o) {
+  app.add_option(
+         "--fault", o.faults,
+         "What goes wrong: \"over_current at=2\", \"pdo_dropped every=3 for=0.5 node=1\"; may be repeated")
+      ->type_name("FAULT")
+      ->allow_extra_args(false);
+  app.add_option("--script", o.script, "File of lines SECONDS FAULT");
+}
+
 void add_drive(CLI::App& app, DriveOptions& o) {
   CLI::App& d = *app.add_subcommand("drive", "Simulated CiA 402 drives on a bus, as a process of their own.");
   d.add_option("BUS", o.bus, kBus)->required();
@@ -44,8 +53,29 @@ void add_drive(CLI::App& app, DriveOptions& o) {
       ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
   d.add_option("--device", o.device, "Device file whose motor and name plate the drives have, without .toml")
       ->type_name("NAME");
+  d.add_option("--profile", o.profile, "servo (the default), stepper, spindle, or a data sheet: FILE.eds")
+      ->type_name("NAME|FILE")
+      ->excludes(d.get_option("--device"));
+  d.add_option("--plant", o.plant, "Motor and load: inertia=0.002 friction=0.3 gravity=1.5 ...")
+      ->type_name("KEY=VALUE")
+      ->delimiter(',');
+  add_faults(d, o.faults);
   add_bit_rate(d, o.bit_rate);
-  d.footer("Example: servogate drive socketcand:127.0.0.1:29536/can0 --node 1,2,3");
+  d.footer(
+      "On standard input it takes faults as --fault, and clear [FAULT], input NAME on|off, load NM, status.\n"
+      "Example: servogate drive socketcand:127.0.0.1:29536/can0 --node 1,2,3");
+}
+
+void add_sim(CLI::App& app, SimOptions& o) {
+  CLI::App& s = *app.add_subcommand(
+      "sim", "All simulated devices of a machine, for somebody else's controller, in the computer's time.");
+  s.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
+  s.add_option("--bus", o.buses, "Serves a bus of the machine elsewhere: can=socketcand:127.0.0.1:29536/can0")
+      ->type_name("NAME=URL")
+      ->allow_extra_args(false);
+  add_faults(s, o.faults);
+  s.add_flag("--json", o.json, "Switches as JSON");
+  s.footer("Example: servogate sim examples/mill/machine.toml --bus can=socketcan:vcan0");
 }
 
 void add_dump(CLI::App& app, DumpOptions& o) {
@@ -81,6 +111,7 @@ void add_bus_commands(CLI::App& app, BusCommands& options) {
   add_can_bus(can, options.can_bus);
   add_can_check(can, options.can_check);
   add_drive(app, options.drive);
+  add_sim(app, options.sim);
   add_dump(app, options.dump);
   add_play(app, options.play);
 }

@@ -16,12 +16,29 @@ struct CanBusOptions {
   std::string log;
 };
 
+/// What goes wrong with simulated drives.
+struct FaultOptions {
+  std::vector<std::string> faults;  ///< lines of gateway/command/simulated/fault_line.hpp
+  std::string script;               ///< file of such lines with times
+};
+
 /// `servogate drive`: simulated drives as a process of their own.
 struct DriveOptions {
   std::string bus;
   std::vector<int> nodes;
   std::string device;
+  std::string profile;             ///< servo, stepper, spindle, or a data sheet
+  std::vector<std::string> plant;  ///< KEY=VALUE
+  FaultOptions faults;
   double bit_rate = 1'000'000.0;  ///< bit/s
+};
+
+/// `servogate sim`: the simulated devices of a machine for somebody else's controller.
+struct SimOptions {
+  std::string machine;
+  std::vector<std::string> buses;  ///< NAME=URL
+  FaultOptions faults;
+  bool json = false;
 };
 
 /// `servogate dump`: a bus as a log of can-utils.
@@ -95,6 +112,7 @@ struct BusCommands {
   CanBusOptions can_bus;
   CanCheckOptions can_check;
   DriveOptions drive;
+  SimOptions sim;
   DumpOptions dump;
   PlayOptions play;
   ScanOptions scan;

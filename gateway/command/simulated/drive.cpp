@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
+// `servogate drive`: simulated drives on a bus, as a process of their own.
 #include <poll.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 
 #include "drivers/clock.hpp"
 #include "gateway/cli/messages.hpp"
+#include "gateway/command/canopen/data_sheet.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/named_bus.hpp"
 #include "gateway/command/signals.hpp"
+#include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/compose/can_transport.hpp"
+#include "gateway/compose/simulated/drive_kind.hpp"
 #include "gateway/compose/simulated_node.hpp"
 
 namespace servogate::gateway::command {
@@ -24,6 +29,15 @@ const text::Entry kNoNode{"drive.no-node", "{0} has no node {1}", "на шине
 const text::Entry kGone{"drive.gone", "the bus {0} is gone", "шина {0} исчезла"};
 const text::Entry kDeviceTwice{"drive.device-twice", "the nodes of a machine file have their devices from it",
                                "узлы файла станка берут устройства из него"};
+const text::Entry kNoProfile{"drive.no-profile",
+                             "--profile '{0}' is none of {1}, and no data sheet (FILE.eds)",
+                             "--profile «{0}»: нет среди {1}, и это не файл описания (FILE.eds)"};
+const text::Entry kNoPlantKey{"drive.no-plant-key", "--plant {0}: expected KEY=VALUE; keys: {1}",
+                              "--plant {0}: нужно КЛЮЧ=ЗНАЧЕНИЕ; ключи: {1}"};
+const text::Entry kPlantRange{"drive.plant-range", "--plant {0}: {1} is {2} to {3} {4}",
+                              "--plant {0}: {1} — от {2} до {3} {4}"};
+const text::Entry kLeftOut{"drive.left-out", "{0}: {1} objects cannot be simulated and are left out",
+                           "{0}: объектов, которые нельзя имитировать, {1}; они пропущены"};
 
 /// What is to be simulated, and where.
 struct Plan {
@@ -33,7 +47,7 @@ struct Plan {
 };
 
 int plan_from_machine(const DriveOptions& options, const NamedBus& named, Plan& plan) {
-  if (!options.device.empty()) {
+  if (!options.device.empty() || !options.profile.empty()) {
     complain(kDeviceTwice, {});
     return kWrongUse;
   }
@@ -50,7 +64,51 @@ int plan_from_machine(const DriveOptions& options, const NamedBus& named, Plan& 
   return kDone;
 }
 
+/// FILE.eds or FILE.dcf, as opposed to the name of a kind.
+bool is_sheet(const std::string& profile) { return profile.find('.') != std::string::npos; }
+
+int plan_from_profile(const DriveOptions& options, Plan& plan) {
+  std::shared_ptr<const canopen::Eds> sheet;
+  if (is_sheet(options.profile)) {
+    auto read = read_data_sheet(options.profile);
+    if (!read) return kWrongUse;
+    sheet = std::make_shared<const canopen::Eds>(std::move(*read));
+  }
+  for (const int id : options.nodes) {
+    auto drive = sheet != nullptr ? drive_of_sheet(sheet, id) : drive_kind(options.profile, id);
+    if (!drive) {
+      complain(kNoProfile, {options.profile, drive_kinds()});
+      return kWrongUse;
+    }
+    plan.drives.push_back(std::move(*drive));
+  }
+  return kDone;
+}
+
+/// KEY=VALUE,... of every --plant, for all drives.
+int apply_plant(const DriveOptions& options, Plan& plan) {
+  for (const std::string& word : options.plant) {
+    const std::size_t equals = word.find('=');
+    const PlantKey* key = equals == std::string::npos ? nullptr : plant_key(word.substr(0, equals));
+    if (key == nullptr) {
+      complain(kNoPlantKey, {word, plant_keys()});
+      return kWrongUse;
+    }
+    double value = 0.0;
+    const char* end = word.data() + word.size();
+    const auto [at, error] = std::from_chars(word.data() + equals + 1, end, value);
+    if (error != std::errc{} || at != end || !(value >= key->min && value <= key->max)) {
+      complain(kPlantRange, {word, std::string(key->key), text::number(key->min, 9),
+                             text::number(key->max, 9), std::string(key->unit)});
+      return kWrongUse;
+    }
+    for (mock::SimulatedDriveConfig& drive : plan.drives) key->set(drive.plant, value);
+  }
+  return kDone;
+}
+
 int plan_from_url(const DriveOptions& options, Plan& plan) {
+  if (!options.profile.empty()) return plan_from_profile(options, plan);
   machine::DeviceResult device;
   if (!options.device.empty()) {
     std::string found, looked;
@@ -74,12 +132,16 @@ int plan_from_url(const DriveOptions& options, Plan& plan) {
 /// Several drives behind one connection to a bus: each hears everything, none hears the others.
 class Drives {
  public:
-  Drives(const Plan& plan, image::CanBus& bus, image::Nanoseconds now) : bus_(bus) {
+  Drives(const Plan& plan, image::CanBus& bus, image::Nanoseconds now, DriveDesk& desk)
+      : bus_(bus), desk_(desk), start_(now) {
     for (const mock::SimulatedDriveConfig& config : plan.drives) {
       drives_.push_back(std::make_unique<mock::SimulatedDrive>(config));
       drives_.back()->connect(bus, now);
+      all_.push_back(drives_.back().get());
     }
   }
+  /// Objects of the data sheet that no drive can have.
+  int left_out() const { return drives_.front()->left_out(); }
   void advance_to(image::Nanoseconds now) {
     image::CanFrame frame;
     while (bus_.receive(frame)) {
@@ -87,6 +149,7 @@ class Drives {
       for (const auto& drive : drives_) drive->on_frame(frame);
     }
     for (const auto& drive : drives_) drive->advance_to(now);
+    desk_.advance(now - start_, all_);
   }
   image::Nanoseconds next_action_ns() const {
     image::Nanoseconds next = drives_.front()->next_action_ns();
@@ -96,13 +159,22 @@ class Drives {
 
  private:
   image::CanBus& bus_;
+  DriveDesk& desk_;
+  image::Nanoseconds start_;
   std::vector<std::unique_ptr<mock::SimulatedDrive>> drives_;
+  std::vector<mock::SimulatedDrive*> all_;
 };
 
-int live_in_lockstep(const Plan& plan, usercan::SocketcandBus& bus, const EndBySignal& signals) {
+void say_left_out(const DriveOptions& options, const Drives& drives) {
+  if (drives.left_out() > 0) complain(kLeftOut, {options.profile, std::to_string(drives.left_out())});
+}
+
+int live_in_lockstep(const DriveOptions& options, const Plan& plan, usercan::SocketcandBus& bus,
+                     DriveDesk& desk, const EndBySignal& signals) {
   auto now = bus.wait_grant();
   if (!now) return kDone;
-  Drives drives(plan, bus, *now);
+  Drives drives(plan, bus, *now, desk);
+  say_left_out(options, drives);
   for (; now && !signals.ended(); now = bus.wait_grant()) {
     drives.advance_to(*now);
     bus.done(std::max(drives.next_action_ns(), *now + 1));
@@ -110,11 +182,13 @@ int live_in_lockstep(const Plan& plan, usercan::SocketcandBus& bus, const EndByS
   return kDone;
 }
 
-int live(const Plan& plan, const CanTransport& transport, const EndBySignal& signals) {
+int live(const DriveOptions& options, const Plan& plan, const CanTransport& transport, DriveDesk& desk,
+         const EndBySignal& signals) {
   // Loops and mechanics catch up when a frame comes or the drive itself wants to speak.
   constexpr image::Nanoseconds kShortest = 50 * image::kMicrosecond, kLongest = image::kMillisecond;
   const image::Nanoseconds start = drivers::clock_ns(CLOCK_MONOTONIC);
-  Drives drives(plan, *transport.bus, start);
+  Drives drives(plan, *transport.bus, start, desk);
+  say_left_out(options, drives);
   bool heard = transport.bus->state() != image::CanState::down;
   while (!signals.ended()) {
     drives.advance_to(drivers::clock_ns(CLOCK_MONOTONIC));
@@ -125,10 +199,10 @@ int live(const Plan& plan, const CanTransport& transport, const EndBySignal& sig
       return kInfrastructure;
     }
     heard = heard || !down;
-    pollfd p{transport.descriptor, POLLIN, 0};
+    pollfd p[] = {{transport.descriptor, POLLIN, 0}, {desk.descriptor(), POLLIN, 0}};
     const image::Nanoseconds quiet = drives.next_action_ns() - drivers::clock_ns(CLOCK_MONOTONIC);
     const timespec limit{0, std::clamp(quiet, kShortest, kLongest)};
-    ppoll(&p, 1, &limit, nullptr);
+    ppoll(p, 2, &limit, nullptr);
   }
   return kDone;
 }
@@ -143,6 +217,9 @@ int drive(const DriveOptions& options) {
           named->machine ? plan_from_machine(options, *named, plan) : plan_from_url(options, plan);
       code != kDone)
     return code;
+  if (const int code = apply_plant(options, plan); code != kDone) return code;
+  auto deeds = read_deeds(options.faults);
+  if (!deeds) return kWrongUse;
   const EndBySignal signals;
   CanTransportOptions transport_options;
   transport_options.bit_rate = plan.bit_rate;
@@ -158,8 +235,11 @@ int drive(const DriveOptions& options) {
                  text::render(kLives, std::vector<std::string>{std::to_string(d.node_id), plan.url, d.name},
                               text::user_language())
                      .c_str());
-  if (transport->lockstep != nullptr) return live_in_lockstep(plan, *transport->lockstep, signals);
-  return live(plan, *transport, signals);
+  // Standard input has no place in granted time.
+  DriveDesk desk(std::move(*deeds), transport->lockstep == nullptr);
+  if (transport->lockstep != nullptr)
+    return live_in_lockstep(options, plan, *transport->lockstep, desk, signals);
+  return live(options, plan, *transport, desk, signals);
 }
 
 }  // namespace servogate::gateway::command

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/command/simulated/drive_desk.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/standard_output.hpp"
+#include "gateway/files/read_file.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+using nlohmann::json;
+
+const text::Entry kBadDeed{"drive.bad-fault", "{0}: {1}", "{0}: {1}"};
+const text::Entry kBadScript{"drive.bad-script", "{0}:{1}: {2}", "{0}:{1}: {2}"};
+const text::Entry kCannotRead{"drive.cannot-read", "cannot read {0}: {1}", "не читается {0}: {1}"};
+const text::Entry kHappened{"drive.happened", "node {0}: {1}", "узел {0}: {1}"};
+const text::Entry kNobody{"drive.nobody", "no drive of this process has the node-ID {0}",
+                          "у этого процесса нет привода с номером узла {0}"};
+
+constexpr const char* kStates[] = {
+    "offline",     "not_ready_to_switch_on", "switch_on_disabled", "ready_to_switch_on",
+    "switched_on", "operation_enabled",      "quick_stop_active",  "fault_reaction_active",
+    "fault"};
+
+json status_of(mock::SimulatedDrive& d) {
+  char code[8];
+  std::snprintf(code, sizeof code, "%04X", d.error_code());
+  return {{"node", d.node_id()},
+          {"state", kStates[static_cast<int>(d.state())]},
+          {"nmt", static_cast<int>(d.nmt_state())},
+          {"statusword", d.statusword()},
+          {"error_code", code},
+          {"position", d.reported_position()},
+          {"revolutions", d.revolutions()},
+          {"velocity_counts_s", d.velocity_counts_s()},
+          {"torque_permille", d.torque_permille()},
+          {"thermal", d.thermal()},
+          {"brake_released", d.brake_released()}};
+}
+
+void perform_on(mock::SimulatedDrive& d, const DriveDeed& deed) {
+  switch (deed.kind) {
+    case DriveDeed::Kind::fault:
+      return d.inject(deed.fault);
+    case DriveDeed::Kind::clear:
+      return d.clear(deed.fault.kind);
+    case DriveDeed::Kind::clear_all:
+      return d.clear_faults();
+    case DriveDeed::Kind::input:
+      return d.set_input(deed.input, deed.on);
+    case DriveDeed::Kind::load:
+      return d.set_load_torque(deed.load_nm);
+    case DriveDeed::Kind::status:
+      print_line(status_of(d).dump());
+      std::fflush(stdout);
+      return;
+  }
+}
+
+bool later(const DriveDeed& a, const DriveDeed& b) { return a.at < b.at; }
+
+}  // namespace
+
+std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options) {
+  std::vector<DriveDeed> deeds;
+  std::string why;
+  for (const std::string& line : options.faults) {
+    auto deed = parse_deed(line, why);
+    if (!deed) {
+      complain(kBadDeed, {"--fault", why});
+      return std::nullopt;
+    }
+    deeds.push_back(std::move(*deed));
+  }
+  if (!options.script.empty()) {
+    const auto text = files::read_file(options.script, files::kMostOfSettings, why);
+    if (!text) {
+      complain(kCannotRead, {options.script, why});
+      return std::nullopt;
+    }
+    int number = 0;
+    auto script = parse_script(*text, number, why);
+    if (!script) {
+      complain(kBadScript, {options.script, std::to_string(number), why});
+      return std::nullopt;
+    }
+    deeds.insert(deeds.end(), script->begin(), script->end());
+  }
+  std::stable_sort(deeds.begin(), deeds.end(), later);
+  return deeds;
+}
+
+DriveDesk::DriveDesk(std::vector<DriveDeed> script, bool listening)
+    : waiting_(std::move(script)), listening_(listening) {
+  // A process in the background of a terminal must not be stopped for having looked at it.
+  if (listening_) std::signal(SIGTTIN, SIG_IGN);
+}
+
+int DriveDesk::descriptor() const {
+  if (!listening_) return -1;
+  const bool elsewhere = isatty(STDIN_FILENO) != 0 && tcgetpgrp(STDIN_FILENO) != getpgrp();
+  return elsewhere ? -1 : STDIN_FILENO;
+}
+
+void DriveDesk::read_input() {
+  pollfd p{descriptor(), POLLIN, 0};
+  while (p.fd >= 0 && poll(&p, 1, 0) > 0) {
+    char bytes[1024];
+    const ssize_t got = read(STDIN_FILENO, bytes, sizeof bytes);
+    if (got <= 0) {
+      listening_ = false;
+      return;
+    }
+    input_.append(bytes, static_cast<std::size_t>(got));
+  }
+}
+
+void DriveDesk::take(const std::string& line, image::Nanoseconds since_start,
+                     const std::function<bool(const std::string&)>& other) {
+  if (line.find_first_not_of(" \t\r") == std::string::npos || (other && other(line))) return;
+  std::string why;
+  auto deed = parse_deed(line, why);
+  if (!deed) return complain(kBadDeed, {line, why});
+  // A time in a line that is typed counts from now.
+  deed->at += since_start;
+  waiting_.insert(std::upper_bound(waiting_.begin(), waiting_.end(), *deed, later), *deed);
+}
+
+void DriveDesk::advance(image::Nanoseconds since_start, std::span<mock::SimulatedDrive* const> drives,
+                        const std::function<bool(const std::string&)>& other) {
+  if (listening_) read_input();
+  for (std::size_t end = 0; (end = input_.find('\n')) != std::string::npos; input_.erase(0, end + 1))
+    take(input_.substr(0, end), since_start, other);
+  while (!waiting_.empty() && waiting_.front().at <= since_start) {
+    const DriveDeed deed = waiting_.front();
+    waiting_.erase(waiting_.begin());
+    perform(deed, drives);
+  }
+}
+
+void DriveDesk::perform(const DriveDeed& deed, std::span<mock::SimulatedDrive* const> drives) {
+  bool found = false;
+  for (mock::SimulatedDrive* d : drives) {
+    if (deed.node != 0 && deed.node != d->node_id()) continue;
+    found = true;
+    if (deed.kind != DriveDeed::Kind::status)
+      std::fprintf(stderr, "%s\n",
+                   text::render(kHappened, std::vector<std::string>{std::to_string(d->node_id()), deed.words},
+                                text::user_language())
+                       .c_str());
+    perform_on(*d, deed);
+  }
+  if (!found) complain(kNobody, {std::to_string(deed.node)});
+}
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gateway/cli/bus_options.hpp"
+#include "gateway/command/simulated/fault_line.hpp"
+
+namespace servogate::gateway::command {
+
+/// Reads `--fault` and `--script` of a command. nullopt: wrong, which has been said (exit code kWrongUse).
+std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options);
+
+/// Lets deeds happen to simulated drives: those of a script at their times, those of standard input as they
+/// come.
+class DriveDesk {
+ public:
+  /// `listening`: reads standard input, too, until its end.
+  DriveDesk(std::vector<DriveDeed> script, bool listening);
+  /// Does what is due `since_start`. `other`: takes lines of standard input that are its own; false: not its.
+  void advance(image::Nanoseconds since_start, std::span<mock::SimulatedDrive* const> drives,
+               const std::function<bool(const std::string& line)>& other = {});
+  /// For poll(2): -1 when standard input is not listened to just now.
+  int descriptor() const;
+
+ private:
+  void read_input();
+  void take(const std::string& line, image::Nanoseconds since_start,
+            const std::function<bool(const std::string& line)>& other);
+  static void perform(const DriveDeed& deed, std::span<mock::SimulatedDrive* const> drives);
+
+  std::vector<DriveDeed> waiting_;  ///< by time
+  std::string input_;
+  bool listening_;
+};
+
+}  // namespace servogate::gateway::command

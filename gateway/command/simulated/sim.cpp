@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// `servogate sim`: all simulated devices of a machine, for somebody else's controller.
+#include <poll.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "drivers/clock.hpp"
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/standard_output.hpp"
+#include "gateway/command/commands.hpp"
+#include "gateway/command/signals.hpp"
+#include "gateway/command/simulated/drive_desk.hpp"
+#include "gateway/compose/can_transport.hpp"
+#include "gateway/compose/mock_world.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+using text::Entry;
+
+const Entry kBadBus{"sim.bad-bus", "--bus {0}: expected NAME=URL with a bus of the machine file: {1}",
+                    "--bus {0}: нужно ИМЯ=URL с шиной из файла станка: {1}"};
+const Entry kInside{
+    "sim.inside",
+    "the bus '{0}' of the machine file is {1}, which nobody else can reach: --bus {0}=URL serves it "
+    "elsewhere (`servogate can bus {0}` makes a bus)",
+    "шина «{0}» в файле станка — {1}, снаружи она недоступна: --bus {0}=URL обслужит её в другом месте "
+    "(шину создаёт `servogate can bus {0}`)"};
+const Entry kLockstep{"sim.lockstep",
+                      "sim keeps pace with the wall clock; {0} has granted time: use `servogate drive`",
+                      "sim идёт по настенным часам; у {0} выдаваемое время: для неё `servogate drive`"};
+const Entry kNoBuses{"sim.no-buses", "the machine file has no CAN bus", "в файле станка нет шины CAN"};
+const Entry kServes{"sim.serves", "{0}: {1} simulated drives on {2}",
+                    "{0}: имитируемых приводов на {2}: {1}"};
+const Entry kNotServed{"sim.not-served",
+                       "station {0} can be reached by nobody outside; its switches are told here",
+                       "станция {0} снаружи недоступна; её датчики сообщаются здесь"};
+const Entry kGone{"sim.gone", "the bus {0} is gone", "шина {0} исчезла"};
+const Entry kPoint{"sim.point", "{0} {1}", "{0} {1}"};
+const Entry kNoPoint{"sim.no-point", "there is no simulated input '{0}'", "нет имитируемого входа «{0}»"};
+const Entry kNoInput{"sim.bad-input", "'{0}': expected input POINT on|off|auto|NUMBER",
+                     "«{0}»: нужно input ТОЧКА on|off|auto|ЧИСЛО"};
+
+/// A bus of the machine and where it is served.
+struct Served {
+  std::size_t index;
+  std::string name, url;
+  std::uint32_t bit_rate;
+  std::size_t drives;
+  CanTransport transport;
+  std::vector<image::CanFrame> waiting;  ///< for the bus outside
+};
+
+/// The url of each bus after --bus; false: wrong, which has been said.
+bool find_urls(const SimOptions& options, machine::MachineConfig& m, std::vector<Served>& buses) {
+  std::string names;
+  for (const machine::BusConfig& b : m.buses) names += (names.empty() ? "" : ", ") + b.name;
+  for (const std::string& word : options.buses) {
+    const std::size_t equals = word.find('=');
+    const auto bus = std::find_if(m.buses.begin(), m.buses.end(), [&](const auto& b) {
+      return equals != std::string::npos && b.name == word.substr(0, equals);
+    });
+    if (bus == m.buses.end()) {
+      complain(kBadBus, {word, names});
+      return false;
+    }
+    bus->url = word.substr(equals + 1);
+  }
+  for (std::size_t i = 0; i < m.buses.size(); ++i) {
+    machine::BusConfig& b = m.buses[i];
+    if (b.mock()) complain(kInside, {b.name, b.url});
+    if (b.lockstep()) complain(kLockstep, {b.url});
+    if (b.mock() || b.lockstep()) return false;
+    buses.push_back({i, b.name, b.url, static_cast<std::uint32_t>(b.bit_rate), b.nodes.size(), {}, {}});
+    // Inside, the drives live on a simulated wire as in a control of their own.
+    b.url = "mock:" + b.name;
+  }
+  if (buses.empty()) complain(kNoBuses, {});
+  return !buses.empty();
+}
+
+bool open_buses(std::vector<Served>& buses) {
+  for (Served& b : buses) {
+    CanTransportOptions options;
+    options.bit_rate = b.bit_rate;
+    drivers::Notice why;
+    auto opened = open_can(b.url, options, why);
+    if (!opened) {
+      complain(*why.entry, why.arguments);
+      return false;
+    }
+    b.transport = std::move(*opened);
+    std::fprintf(stderr, "%s\n",
+                 text::render(kServes, std::vector<std::string>{b.name, std::to_string(b.drives), b.url},
+                              text::user_language())
+                     .c_str());
+  }
+  return true;
+}
+
+/// Carries frames between a bus outside and the simulated wire of the same name.
+void carry(Served& b, image::CanBus& inside) {
+  image::CanFrame frame;
+  while (b.transport.bus->receive(frame))
+    if (!frame.error) inside.send(frame);
+  while (inside.receive(frame)) b.waiting.push_back(frame);
+  std::size_t sent = 0;
+  while (sent < b.waiting.size() && b.transport.bus->send(b.waiting[sent])) ++sent;
+  b.waiting.erase(b.waiting.begin(), b.waiting.begin() + static_cast<std::ptrdiff_t>(sent));
+}
+
+/// Tells the switches that follow axes when they change.
+class SwitchTeller {
+ public:
+  SwitchTeller(const machine::MachineConfig& m, const MockWorld& world, bool json)
+      : world_(world), json_(json) {
+    for (const machine::SimulatedSwitch& s : m.simulation.switches)
+      if (const int axis = m.axis_index(s.axis); axis >= 0) switches_.push_back({s, axis, std::nullopt});
+  }
+  void look(image::Nanoseconds since_start) {
+    for (Row& row : switches_) {
+      const double at = world_.axis_position(row.axis);
+      const bool on = at >= row.config.from && at <= row.config.to;
+      if (row.told == on) continue;
+      row.told = on;
+      if (json_)
+        print_line(nlohmann::json{
+            {"t", static_cast<double>(since_start) * 1e-9},
+            {"point", row.config.point},
+            {"on", on},
+            {"axis", row.config.axis},
+            {"position",
+             at}}.dump());
+      else
+        print_line(text::render(kPoint, std::vector<std::string>{row.config.point, on ? "on" : "off"},
+                                text::user_language()));
+      std::fflush(stdout);
+    }
+  }
+
+ private:
+  struct Row {
+    machine::SimulatedSwitch config;
+    int axis;
+    std::optional<bool> told;
+  };
+  const MockWorld& world_;
+  bool json_;
+  std::vector<Row> switches_;
+};
+
+/// `input POINT on|off|auto|NUMBER` of a machine's point; false: the line is none of this kind.
+bool play_point(MockWorld& world, const machine::MachineConfig& m, const std::string& line) {
+  std::istringstream words(line);
+  std::string verb, point, level;
+  words >> verb >> point >> level;
+  if (verb != "input" || m.point(point) == nullptr) return false;
+  MockWorld::Play play;
+  char* end = nullptr;
+  const double number = std::strtod(level.c_str(), &end);
+  if (level == "on" || level == "off")
+    play.value = level == "on" ? 1.0 : 0.0;
+  else if (level != "auto" && (level.empty() || *end != '\0'))
+    return complain(kNoInput, {line}), true;
+  else if (level != "auto")
+    play.value = number;
+  if (world.play_input(point, play) != MockWorld::Played::done) complain(kNoPoint, {point});
+  return true;
+}
+
+int serve(const SimOptions& options, const machine::LoadResult& loaded, std::vector<Served>& buses,
+          DriveDesk& desk) {
+  constexpr image::Nanoseconds kShortest = 50 * image::kMicrosecond;
+  MockWorld world(loaded);
+  SwitchTeller teller(loaded.machine, world, options.json);
+  std::vector<mock::SimulatedDrive*> drives;
+  for (const machine::BusConfig& bus : loaded.machine.buses)
+    for (const machine::NodeConfig& node : bus.nodes)
+      if (mock::SimulatedDrive* d = world.drive(bus.name + "." + node.name)) drives.push_back(d);
+  const EndBySignal signals;
+  const image::Nanoseconds start = drivers::clock_ns(CLOCK_MONOTONIC);
+  std::vector<pollfd> polled(buses.size() + 1);
+  std::vector<bool> heard(buses.size());
+  while (!signals.ended()) {
+    // The simulated world begins at zero.
+    const image::Nanoseconds now = drivers::clock_ns(CLOCK_MONOTONIC) - start;
+    for (Served& b : buses) carry(b, *world.bus(b.index));
+    world.advance_to(now);
+    for (Served& b : buses) carry(b, *world.bus(b.index));
+    desk.advance(now, drives,
+                 [&](const std::string& line) { return play_point(world, loaded.machine, line); });
+    teller.look(now);
+    for (std::size_t i = 0; i < buses.size(); ++i) {
+      const bool down = buses[i].transport.bus->state() == image::CanState::down;
+      if (down && heard[i] && buses[i].url.starts_with("socketcand:")) {
+        complain(kGone, {buses[i].url});
+        return kInfrastructure;
+      }
+      heard[i] = heard[i] || !down;
+      polled[i] = {buses[i].transport.descriptor, POLLIN, 0};
+    }
+    polled.back() = {desk.descriptor(), POLLIN, 0};
+    const timespec limit{0, kShortest};
+    ppoll(polled.data(), polled.size(), &limit, nullptr);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int sim(const SimOptions& options) {
+  machine::LoadResult loaded = machine::load(options.machine);
+  if (print_findings(loaded.findings) > 0) return kWrongUse;
+  std::vector<Served> buses;
+  if (!find_urls(options, loaded.machine, buses)) return kWrongUse;
+  auto deeds = read_deeds(options.faults);
+  if (!deeds) return kWrongUse;
+  if (!open_buses(buses)) return kInfrastructure;
+  for (const machine::StationConfig& s : loaded.machine.stations)
+    if (s.kind != machine::StationKind::drive && s.mock())
+      std::fprintf(stderr, "%s\n",
+                   text::render(kNotServed, std::vector<std::string>{s.name}, text::user_language()).c_str());
+  DriveDesk desk(std::move(*deeds), true);
+  return serve(options, loaded, buses, desk);
+}
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// `servogate drive` and `servogate sim` as products: kinds, plants, faults.
+#include <unistd.h>
+
+#include <csignal>
+
+#include "tests/canopen_tools/workbench.hpp"
+
+namespace servogate::canopen_tools {
+namespace {
+
+/// Waits until a tool's facts satisfy something; half a minute at most.
+template <class Facts, class Satisfied>
+bool comes(Facts facts, Satisfied satisfied) {
+  for (int i = 0; i < 120; ++i) {
+    if (satisfied(facts())) return true;
+    usleep(250'000);
+  }
+  return false;
+}
+
+class SimulatedDrives : public Workbench {
+ protected:
+  json value(int node, const std::string& object) {
+    return facts("sdo $BUS " + std::to_string(node) + " read " + object)["value"];
+  }
+  /// Switches a drive on in profile position, where it holds.
+  void switch_on(int node) {
+    const std::string at = std::to_string(node);
+    ASSERT_EQ(tool("sdo $BUS " + at + " write 6060 1 --i-may-move --listen 0.1").code, 0);
+    for (const char* word : {"6", "7", "15"})
+      ASSERT_EQ(tool("sdo $BUS " + at + " write 6040 " + word + " --i-may-move --listen 0.1").code, 0);
+  }
+};
+
+TEST_F(SimulatedDrives, a_stepper_and_a_spindle_say_what_they_are_and_which_modes_they_have) {
+  drives("1", {"--profile", "stepper"});
+  drives("2", {"--profile", "spindle"});
+  const json nodes = facts("scan $BUS --seconds 0.3")["nodes"];
+  ASSERT_EQ(nodes.size(), 2u);
+  EXPECT_EQ(nodes[0]["device"], "stepper drive (CiA 402)");
+  EXPECT_EQ(nodes[0]["modes"], json::parse(R"(["pp","pv","hm","ip","csp","csv"])"));
+  EXPECT_EQ(nodes[1]["device"], "frequency converter (CiA 402)");
+  EXPECT_EQ(nodes[1]["modes"], json::parse(R"(["vl","pv","tq","hm","csv","cst"])"));
+  EXPECT_EQ(tool("sdo $BUS 1 write 6060 4 --i-may-move --listen 0.1").code, 1)
+      << "a stepper has no torque mode";
+  EXPECT_EQ(value(1, "608F:1"), 51200);
+}
+
+TEST_F(SimulatedDrives, a_drive_of_a_data_sheet_has_its_objects_and_no_others) {
+  drives("3");
+  ASSERT_EQ(tool("od $BUS 3 --range 6040-6061 --save small.dcf").code, 0);
+  drives("4", {"--profile", path("small.dcf")});
+  EXPECT_EQ(tool("sdo $BUS 4 read 6041").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 4 read 6083", 1)["abort"], 0x0602'0000);
+  EXPECT_EQ(facts("sdo $BUS 3 read 6083")["ok"], true);
+}
+
+TEST_F(SimulatedDrives, the_plant_is_what_the_line_says) {
+  drives("1", {"--plant", "counts=1000", "inertia=0.01,torque=5", "start=2"});
+  EXPECT_EQ(value(1, "608F:1"), 1000);
+  EXPECT_EQ(value(1, "6076"), 5000);
+  for (const char* wrong :
+       {"--plant mass=3", "--plant inertia=0", "--plant inertia", "--plant counts=x", "--profile rocket",
+        "--profile missing.eds", "--fault melt", "--fault 'pdo_dropped every=0'", "--script missing.txt",
+        "--profile servo --device servo-cia402"})
+    EXPECT_EQ(tool("drive $BUS --node 9 " + std::string(wrong)).code, 2) << wrong;
+}
+
+TEST_F(SimulatedDrives, a_fault_comes_when_its_time_has_come) {
+  desk_.write("faults.txt",
+              "# seconds, what goes wrong\n0.3 over_current node=1\n0.1 sdo_abort index=0x6083 "
+              "abort=0x06090030 node=2\n");
+  drives("1,2", {"--script", path("faults.txt")});
+  EXPECT_TRUE(comes([&] { return value(1, "603F"); }, [](const json& code) { return code == 0x2310; }));
+  EXPECT_EQ(value(1, "6041").get<int>() & 0x4F, 0x08) << "fault";
+  EXPECT_EQ(value(2, "603F"), 0);
+  EXPECT_EQ(facts("sdo $BUS 2 read 6083", 1)["abort"], 0x0609'0030);
+}
+
+TEST_F(SimulatedDrives, a_script_with_a_mistake_is_refused_with_its_line) {
+  desk_.write("faults.txt", "0.3 over_current\nsoon reset\n");
+  const Ended ended = tool("drive $BUS --node 1 --script faults.txt");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(ended.err_has("faults.txt:2: 'soon'")) << ended.err;
+}
+
+TEST_F(SimulatedDrives, faults_come_on_command_by_standard_input) {
+  const Ended ended = desk_.line(
+      "{ sleep 0.5; echo emcy code=0x8611; echo status; sleep 0.5; echo status; echo nonsense; sleep 0.2; } "
+      "| "
+      "timeout -s INT 4 $SG drive " +
+      bus() + " --node 5");
+  EXPECT_TRUE(ended.err_has("node 5: emcy code=0x8611")) << ended.err;
+  EXPECT_TRUE(ended.err_has("'nonsense' is no fault")) << ended.err;
+  const std::size_t last = ended.out.rfind("{", ended.out.size());
+  ASSERT_NE(last, std::string::npos) << ended.out;
+  const json status = json::parse(ended.out.substr(last), nullptr, false);
+  EXPECT_EQ(status.value("error_code", ""), "8611") << ended.out;
+  EXPECT_EQ(status.value("state", ""), "fault") << ended.out;
+}
+
+TEST_F(SimulatedDrives, overload_heats_the_motor_until_it_faults_and_cannot_be_reset_at_once) {
+  drives("1", {"--plant", "gravity=4,thermal-time=0.5,brake=10"});
+  switch_on(1);
+  EXPECT_TRUE(comes([&] { return value(1, "603F"); }, [](const json& code) { return code == 0x2350; }))
+      << "4 N m of 2.4 rated";
+}
+
+TEST_F(SimulatedDrives, sim_serves_the_drives_of_a_machine_and_tells_its_switches) {
+  usercan::Process sim(
+      {"sim", shell::source("examples/mill/machine.toml"), "--bus", "can=" + bus(), "--json"});
+  ASSERT_TRUE(sim.says("simulated drives on")) << sim.said();
+  const json nodes = facts("scan $BUS --seconds 0.3")["nodes"];
+  ASSERT_EQ(nodes.size(), 4u) << nodes;
+  EXPECT_TRUE(sim.says("\"point\"")) << sim.said();
+  sim.signal(SIGINT);
+  EXPECT_EQ(sim.wait(), 0);
+}
+
+TEST_F(SimulatedDrives, sim_says_that_a_mock_bus_can_be_reached_by_nobody) {
+  const Ended ended = tool("sim $MILL");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(ended.err_has("--bus can=URL")) << ended.err;
+  EXPECT_EQ(tool("sim $MILL --bus nobus=$BUS").code, 2);
+  EXPECT_EQ(tool("sim missing.toml").code, 2);
+}
+
+}  // namespace
+}  // namespace servogate::canopen_tools
