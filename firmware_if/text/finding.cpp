@@ -49,13 +49,26 @@ std::string render(const Entry& entry, std::span<const std::string> arguments, L
   return out;
 }
 
+std::string visible(std::string_view words) {
+  static constexpr char kHex[] = "0123456789ABCDEF";
+  std::string out;
+  for (const char c : words) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte >= 0x20 && byte != 0x7F) || c == '\n')
+      out += c;
+    else
+      out += std::string("\\x") + kHex[byte >> 4] + kHex[byte & 0xF];
+  }
+  return out;
+}
+
 std::string Finding::str(Language language) const {
   std::string out = file;
   if (line > 0) out += ":" + std::to_string(line);
   if (line > 0 && column > 0) out += ":" + std::to_string(column);
   out += severity == Severity::error ? ": error: " : ": warning: ";
   if (entry != nullptr) {
-    out += render(*entry, arguments, language);
+    out += visible(render(*entry, arguments, language));
     out += " [" + std::string(entry->id) + "]";
   }
   return out;

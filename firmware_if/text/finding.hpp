@@ -29,6 +29,10 @@ std::string both(std::string_view english, std::string_view russian);
 
 enum class Severity { error, warning };
 
+/// Words with control characters as \\x1B, so that they neither end a line nor command a terminal; line feeds
+/// stay.
+std::string visible(std::string_view words);
+
 /// Something wrong in a file that a person wrote. Line and column count from 1; 0 = not known.
 struct Finding {
   Severity severity = Severity::error;

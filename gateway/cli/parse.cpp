@@ -5,6 +5,7 @@
 #include "firmware_if/text/finding.hpp"
 #include "gateway/cli/bus_commands.hpp"
 #include "gateway/cli/canopen_commands.hpp"
+#include "gateway/cli/help/russian.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/plc_commands.hpp"
 #include "gateway/cli/quantities.hpp"
@@ -101,6 +102,7 @@ class Commands {
     add_plc_commands(app_, line.plc);
     add_bus_commands(app_, line.bus);
     add_canopen_commands(app_, line.bus);
+    flags_take_no_value(app_);
   }
 
   CLI::App& app() { return app_; }
@@ -121,6 +123,13 @@ class Commands {
   }
 
  private:
+  static void flags_take_no_value(CLI::App& app) {
+    for (CLI::Option* option : app.get_options())
+      if (option->get_items_expected_max() == 0) option->disable_flag_override();
+    for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+      flags_take_no_value(*command);
+  }
+
   CLI::App& command(const char* name, const char* meaning, const std::string& example) {
     CLI::App& app = *app_.add_subcommand(name, meaning);
     app.footer("Example: " + example);
@@ -281,6 +290,8 @@ std::optional<CommandLine> parse_command_line(int argc, char** argv, int& exit_c
   Commands commands(line);
   CLI::App& app = commands.app();
   exit_code = kWrongUse;
+  static char version[] = "version";
+  if (argc == 2 && std::string_view(argv[1]) == "--version") argv[1] = version;
   const char* first = argc > 1 ? argv[1] : nullptr;
   if (unknown_command(app, "", first)) return std::nullopt;
   for (const char* group : {"plc", "can"})
@@ -290,6 +301,7 @@ std::optional<CommandLine> parse_command_line(int argc, char** argv, int& exit_c
   try {
     app.parse(shielded(argc, argv));
   } catch (const CLI::Success&) {
+    if (text::user_language() == text::Language::russian) speak_russian(app);
     print(app.help());
     exit_code = kDone;
     return std::nullopt;
@@ -299,6 +311,7 @@ std::optional<CommandLine> parse_command_line(int argc, char** argv, int& exit_c
     complain_of_use(error, app, unread);
     return std::nullopt;
   }
+  if (complain_of_empty(app)) return std::nullopt;
   commands.settle();
   return line;
 }

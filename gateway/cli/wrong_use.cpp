@@ -16,13 +16,15 @@ const text::Entry kUnknownCommand{"cli.unknown-command", "unknown command '{0}'{
                                   "неизвестная команда «{0}»{1}"};
 const text::Entry kUnknownOption{"cli.unknown-option", "`{0}` has no option '{1}'{2}",
                                  "у «{0}» нет ключа «{1}»{2}"};
+const text::Entry kEmpty{"cli.empty", "`{0}`: {1} is empty; a variable of the shell that is not set?",
+                         "«{0}»: {1} пуст; не задана переменная оболочки?"};
 const text::Entry kUnexpected{"cli.unexpected", "`{0}` does not take '{1}'; see `{0} --help`",
                               "«{0}» не принимает «{1}»; см. `{0} --help`"};
 const text::Entry kMissing{"cli.missing", "`{0}` needs {1}; see `{0} --help`",
                            "для «{0}» нужен аргумент {1}; см. `{0} --help`"};
 const text::Entry kNeedsValue{"cli.needs-value", "{0} needs a value", "ключу {0} нужно значение"};
 const text::Entry kOnce{"cli.once", "{0} may be given once only", "{0} можно указать только один раз"};
-const text::Entry kNoValue{"cli.no-value", "{0} takes no value", "у ключа {0} нет значения"};
+const text::Entry kNoValue{"cli.no-value", "{0} takes no value", "ключ {0} не принимает значения"};
 const text::Entry kExclude{"cli.exclude", "{0} and {1} exclude one another",
                            "{0} и {1} исключают друг друга"};
 const text::Entry kBadValue{"cli.bad-value", "{0}: {1}", "{0}: {1}"};
@@ -108,6 +110,18 @@ bool complain_of_missing(const CLI::App& app, const std::string& called) {
 }
 
 }  // namespace
+
+bool complain_of_empty(const CLI::App& app) {
+  std::string called;
+  const CLI::App& at = reached(app, called);
+  for (const CLI::Option* option : options_of(at))
+    for (const std::string& given : option->results())
+      if (given.empty()) {
+        complain(kEmpty, {called, option->get_name()});
+        return true;
+      }
+  return false;
+}
 
 void complain_of_command(const std::string& prefix, const std::string& word, const CLI::App& app) {
   std::vector<std::string> names;

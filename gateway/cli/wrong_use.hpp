@@ -14,4 +14,7 @@ void complain_of_command(const std::string& prefix, const std::string& word, con
 void complain_of_use(const CLI::ParseError& error, const CLI::App& app,
                      const std::vector<std::string>& unread);
 
+/// True, and said: an argument was given that has no characters.
+bool complain_of_empty(const CLI::App& app);
+
 }  // namespace servogate::gateway

@@ -90,6 +90,10 @@ std::optional<OutputProblem> problem_of_folder(const std::string& path) {
   while (!fs::exists(at, error) && at.has_parent_path() && at != at.parent_path()) at = at.parent_path();
   if (!fs::is_directory(at, error)) return problem(ENOTDIR);
   if (access(at.c_str(), W_OK | X_OK) != 0) return problem(errno);
+  // Permissions alone do not tell, as above.
+  const std::string probe = (at / (".servogate-" + std::to_string(getpid()))).string();
+  if (mkdir(probe.c_str(), 0700) != 0) return problem(errno);
+  rmdir(probe.c_str());
   return std::nullopt;
 }
 

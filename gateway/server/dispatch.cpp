@@ -261,6 +261,7 @@ Reply Dispatch::jog() {
   if (index < 0 || !unit_is_own(index) || !number("value", value, true)) return refusal_;
   const machine::AxisConfig& a = axis_config(index);
   const double distance = a.diameter ? value / 2.0 : value;
+  if (distance == 0.0) return fail(says::kNoDistance, {a.letter}, kWrongUse);
   const image::AxisImage& before = resident_.image().axes[static_cast<std::size_t>(index)];
   const double target = before.command + before.distance_to_go + distance;
   if (!ask(RequestKind::jog_increment, index, distance, image::Mode::manual)) return refusal_;
@@ -357,13 +358,16 @@ Reply Dispatch::begin(bool step) {
     resident_.take_tables();
     mode = step ? image::Mode::step : image::Mode::automatic;
   }
+  // A wait that began before belongs to the block before.
+  const json asked{{"asked_s", resident_.image().now.seconds()}};
   if (!ask(step ? RequestKind::step : RequestKind::start, -1, 0.0, mode)) return refusal_;
-  return step ? good(says::kStepped) : good(says::kStarted, {resident_.program()});
+  return step ? good(says::kStepped, {}, asked) : good(says::kStarted, {resident_.program()}, asked);
 }
 
 Reply Dispatch::mdi() {
   const std::string block = request_.value("block", "");
   if (block.find_first_not_of(" \t") == std::string::npos) return fail(says::kBlockEmpty, {}, kWrongUse);
+  if (block.find_first_of("\r\n") != std::string::npos) return fail(says::kBlocksSeveral, {}, kWrongUse);
   if (resident_.busy()) return fail(says::kBusy, {}, kAlarm);
   resident_.take_tables();
   const std::vector<text::Finding> findings = resident_.check_block(block);

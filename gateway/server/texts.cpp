@@ -25,6 +25,9 @@ const Entry kMoreFindings{"socket.more-findings", "and {0} more; `servogate chec
 const Entry kBusy{"socket.program-runs", "a program runs; stop it first (`servogate reset`)",
                   "программа выполняется; сначала остановите её (`servogate reset`)"};
 const Entry kBlockWrong{"socket.block-wrong", "the block was not run: {0}", "кадр не выполнен: {0}"};
+const Entry kBlocksSeveral{"socket.blocks-several", "one block at a time: there is more than one line",
+                           "по одному кадру: здесь больше одной строки"};
+const Entry kNoDistance{"socket.no-distance", "{0}: the distance is 0", "{0}: расстояние равно 0"};
 const Entry kBlockEmpty{"socket.block-empty", "the block is empty", "кадр пуст"};
 const Entry kNoJog{"socket.no-jog", "nothing jogs for this client", "для этого клиента ничего не движется"};
 const Entry kNoSuchObject{"socket.no-such-object",

@@ -20,6 +20,8 @@ extern const text::Entry kNotLoaded;         ///< {0} program
 extern const text::Entry kMoreFindings;      ///< {0} how many
 extern const text::Entry kBusy;              ///< a program runs
 extern const text::Entry kBlockWrong;        ///< {0} what is wrong
+extern const text::Entry kBlocksSeveral;     ///< more than one line typed
+extern const text::Entry kNoDistance;        ///< a jog by 0
 extern const text::Entry kBlockEmpty;        ///< nothing typed
 extern const text::Entry kNoJog;             ///< keep-alive without a jog
 extern const text::Entry kNoSuchObject;      ///< sdo_read: no such bus or node, or no object

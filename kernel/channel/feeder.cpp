@@ -107,6 +107,7 @@ void Feeder::begin(const FeederOrder& order) {
   block_by_block_ = order.block_by_block;
   moved_in_block_ = false;
   last_line_ = 0;
+  last_executed_ = 0;
   last_file_ = 0;
   files_told_ = 0;
   view_ = link_.packets_of(generation_);
@@ -197,24 +198,39 @@ path::Tag Feeder::tag(const program::Command& command) const {
 }
 
 void Feeder::event(EventKind kind, const program::Command& command, Event e) {
-  e.id = next_event_++;
-  if (next_event_ == 0) next_event_ = 1;
-  e.generation = generation_;
   e.kind = kind;
   e.executed = static_cast<std::uint32_t>(executed());
   e.line = command.line;
   e.block = command.block;
   e.file = static_cast<std::int16_t>(command.file);
+  push(e, command);
+}
+
+/// STEP: the block before `next` has ended, and is the one that is shown.
+void Feeder::end_block(const program::Command& next) {
+  Event e;
+  e.kind = EventKind::block_end;
+  e.executed = static_cast<std::uint32_t>(last_executed_);
+  e.line = last_line_;
+  e.file = static_cast<std::int16_t>(last_file_);
+  push(e, next);
+}
+
+void Feeder::push(Event& e, const program::Command& command) {
+  e.id = next_event_++;
+  if (next_event_ == 0) next_event_ = 1;
+  e.generation = generation_;
   link_.events.push(e);
   planner_.add_event(e.id, tag(command));
 }
 
 void Feeder::accept(const program::Command& command) {
-  if (block_by_block_ && moved_in_block_ && command.line != last_line_) {
-    event(EventKind::block_end, command, {});
+  if (block_by_block_ && moved_in_block_ && executed() != last_executed_) {
+    end_block(command);
     moved_in_block_ = false;
   }
   last_line_ = command.line;
+  last_executed_ = executed();
   last_file_ = command.file;
   Event e;
   std::visit(Overloaded{

@@ -131,6 +131,8 @@ class Feeder {
   void set_feed(path::Element& element, const program::Feed& feed, double arc_length) const;
   double largest_rpm(const path::Element& element) const;
   void event(EventKind kind, const program::Command& command, Event event);
+  void end_block(const program::Command& next);
+  void push(Event& event, const program::Command& command);
   path::Tag tag(const program::Command& command) const;
   text::Finding finding(const program::Command& command, const text::Entry& entry,
                         std::string argument) const;
@@ -151,6 +153,7 @@ class Feeder {
   bool block_by_block_ = false;
   bool moved_in_block_ = false;
   int last_line_ = 0;
+  long long last_executed_ = 0;  ///< blocks executed up to the last command
   image::Packets view_;  ///< packets as the interpreter sees them
   program::Position position_{};
   double spindle_rpm_ = 0.0;

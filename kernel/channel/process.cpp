@@ -228,7 +228,7 @@ void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
     order.generation = generation_;
     link_.orders.push(order);
   } else {
-    c.image.packets.set_bit(at(kProgramEnd, base_), true);
+    c.image.packets.set_bit(at(kProgramEnd, base_), !manual_data_);
   }
   if (forget_) forget_run(c.image.processes[static_cast<std::size_t>(config_.index)]);
   forget_ = false;

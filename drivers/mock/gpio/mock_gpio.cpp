@@ -44,11 +44,11 @@ bool MockGpio::contact(const GpioInput& input) const {
   if (!position_) return false;
   if (const auto* limit = std::get_if<LimitSwitch>(&input.source)) {
     const double at = position_(limit->axis);
-    return limit->positive ? at >= limit->mm : at <= limit->mm;
+    return (limit->positive ? at >= limit->mm : at <= limit->mm) != input.inverted;
   }
   const auto& home = std::get<HomeSwitch>(input.source);
   const double at = position_(home.axis);
-  return at >= home.mm && at <= home.mm + home.width_mm;
+  return (at >= home.mm && at <= home.mm + home.width_mm) != input.inverted;
 }
 
 void MockGpio::move(Line& line, bool wanted, const Bounce& settings, std::mt19937_64& random,

@@ -17,7 +17,8 @@ namespace servogate::mock {
 /// control believes it to be. `axis` = index in the machine file's order.
 using AxisPosition = std::function<double(int axis)>;
 
-/// Limit switch: active at and beyond `mm`, towards + or -.
+/// Limit switch: active at and beyond `mm`, towards + or -. Active closes the contact; of an inverted input, a
+/// normally closed switch, it opens it.
 struct LimitSwitch {
   int axis = 0;
   double mm = 0.0;

@@ -62,6 +62,7 @@ class Wait {
   bool under_way(const json& status);
   bool homing_under_way(const json& status);
   bool program_under_way(const json& status);
+  bool block_ended(const json& status) const;
   bool too_late(const json& status);
   bool cycle_stands(const json& status);
   void interrupt();
@@ -86,6 +87,7 @@ class Wait {
   Kind kind_;
   int code_ = kDone;
   int interrupts_done_ = 0;
+  double asked_s_ = 0.0;   ///< machine time before the request was carried out
   double begun_s_ = -1.0;  ///< machine time of the first status
   double seen_s_ = -1.0;
   std::chrono::steady_clock::time_point moved_on_ = std::chrono::steady_clock::now();
@@ -102,12 +104,18 @@ bool Wait::homing_under_way(const json& status) {
   return false;
 }
 
+/// The wait at the end of the block that was asked for, not the one at the end of the block before it.
+bool Wait::block_ended(const json& status) const {
+  const json wait = status.value("wait", json());
+  return wait.is_object() && wait.value("reason", "") == "block_end" && wait.value("since_s", 0.0) >= asked_s_;
+}
+
 bool Wait::program_under_way(const json& status) {
   const std::string state = of(status, "state");
   if (state == "running") return true;
   if (interrupts_done_ > 0 && state != "ended" && state != "stopped_by_alarm")
     return any_axis(status, moving);  // held, or ended by the second interrupt
-  if (state == "waiting") return true;
+  if (state == "waiting") return !(kind_ == Kind::step && block_ended(status));
   if (state == "held") return kind_ != Kind::step;
   if (state == "stopped_by_alarm") code_ = kAlarm;
   if (state == "idle" && !alarm(status)) code_ = kStopped;
@@ -183,6 +191,7 @@ void Wait::interrupt() {
 }
 
 int Wait::run(json& status) {
+  asked_s_ = status.value("asked_s", 0.0);
   const json question = simple("status");
   for (;; std::this_thread::sleep_for(kLook)) {
     status = ask(client_, question);

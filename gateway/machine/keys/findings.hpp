@@ -19,6 +19,9 @@ inline constexpr text::Entry kWrongType{"machine.wrong_type", "`{0}` must be {1}
 inline constexpr text::Entry kWrongUnit{"machine.wrong_unit",
                                         "`{0}`: \"{1}\" has the wrong unit; expected {2} ({3})",
                                         "«{0}»: у «{1}» не та единица; ожидалось {2} ({3})"};
+inline constexpr text::Entry kDecimalComma{"machine.decimal_comma",
+                                           "`{0}`: \"{1}\" has a decimal comma; write \"{2}\"",
+                                           "«{0}»: в «{1}» десятичная запятая; пишите «{2}»"};
 inline constexpr text::Entry kNoUnit{"machine.no_unit",
                                      "`{0}`: \"{1}\" has no unit; expected a number or a string in {2}",
                                      "«{0}»: у «{1}» нет единицы; ожидалось число или строка в {2}"};

@@ -105,6 +105,15 @@ bool in_range(const Slot& slot, const Element& e, double value, const Quantity* 
   return true;
 }
 
+/// "10,5 mm" as "10.5 mm"; empty: there is no decimal comma.
+std::string with_decimal_point(std::string text) {
+  const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos || comma == 0 || !digit(comma - 1) || !digit(comma + 1)) return {};
+  text[comma] = '.';
+  return text;
+}
+
 /// A number, or a string with a unit where the key has one.
 bool read_number(const Slot& slot, const Element& e, double& out) {
   const Unit unit = slot.key.rule.unit;
@@ -114,6 +123,11 @@ bool read_number(const Slot& slot, const Element& e, double& out) {
   } else if (e.kind == Element::Kind::string && unit != Unit::none) {
     const Quantity q = parse_quantity(e.string, unit, slot.axis);
     const std::string name = unit_name(unit, slot.axis);
+    if (const std::string point = with_decimal_point(e.string);
+        q.error != QuantityError::none && !point.empty()) {
+      slot.error(e, finding::kDecimalComma, e.string, point);
+      return false;
+    }
     if (q.error == QuantityError::not_a_number) {
       slot.error(e, finding::kNotANumber, e.string, text::both("a number in " + name, "число в " + name));
       return false;

@@ -131,6 +131,7 @@ class Decision {
                         : c_.image->processes[static_cast<std::size_t>(r_.process)].mode;
   }
   bool start() noexcept;
+  bool step() noexcept;
   bool resume() noexcept;
   bool place(bool write) noexcept;
   bool decide_kind() noexcept;
@@ -171,8 +172,9 @@ bool Decision::decide_kind() noexcept {
     case RequestKind::mode:
       return mode();
     case RequestKind::start:
-    case RequestKind::step:
       return start();
+    case RequestKind::step:
+      return step();
     case RequestKind::resume:
       return resume();
     case RequestKind::override_feed:
@@ -259,6 +261,15 @@ bool Decision::mode_of_request() noexcept {
   if (!possible) return refuse(Refusal::bad_value, -1, r_.mode, static_cast<double>(Mode::home));
   const bool same = c_.image->processes[static_cast<std::size_t>(r_.process)].mode == mode_in_force();
   return same || (no_program() && not_held_by_another());
+}
+
+/// What is planned of a program in AUTO goes on to its end: a step would be all of it.
+bool Decision::step() noexcept {
+  const ProcessState s = state(r_.process);
+  if ((s == ProcessState::held || s == ProcessState::waiting) &&
+      c_.image->processes[static_cast<std::size_t>(r_.process)].mode != Mode::step)
+    return refuse(Refusal::not_stepping);
+  return start();
 }
 
 bool Decision::start() noexcept {

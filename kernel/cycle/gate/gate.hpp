@@ -29,6 +29,7 @@ enum class Refusal : std::uint16_t {
   program_runs,
   program_does_not_run,
   program_not_held,
+  not_stepping,  ///< held in another mode than STEP
   no_program,
   wrong_mode,  ///< value: the mode in force
   homing_runs,

@@ -31,6 +31,10 @@ constexpr text::Entry kTexts[] = {
     {"gate.program_runs", "a program runs: stop it first", "выполняется программа: сначала остановите её"},
     {"gate.program_does_not_run", "no program runs", "программа не выполняется"},
     {"gate.program_not_held", "the program is not held", "программа не приостановлена"},
+    {"gate.not_stepping",
+     "the program runs in AUTO and would go on to its end: `servogate resume` does that, `servogate reset` ends it",
+     "программа выполняется в АВТО и прошла бы до конца: для этого есть `servogate resume`, `servogate reset` её "
+     "завершит"},
     {"gate.no_program", "no program is loaded: run `servogate load PROGRAM` first",
      "программа не загружена: сначала выполните `servogate load PROGRAM`"},
     {"gate.wrong_mode", "not possible in mode {1}", "невозможно в режиме {1}"},
