@@ -154,6 +154,32 @@ TEST(AlarmText, decodes_status_word_and_error_code) {
             "0x0221 ready to switch on, no main voltage");
 }
 
+TEST(AlarmText, names_node_axis_and_bus_of_what_is_lost) {
+  image::AlarmRecord r;
+  r.number = alarm::kNodeLost;
+  r.axis = 1;
+  r.segment = 0;
+  r.node = 2;
+  r.value = 301;
+  r.limit = 300;
+  AlarmNames names;
+  names.axes = {"X", "Y"};
+  names.segments = {"can"};
+  names.node_name = [](int segment, int node) {
+    return segment == 0 && node == 2 ? std::string("can.y") : std::string();
+  };
+  EXPECT_EQ(render(r, names, text::Language::english),
+            "node 2 (can.y, axis Y): no heartbeat for 301 ms, allowed 300 ms");
+  EXPECT_EQ(render(r, names, text::Language::russian),
+            "узел 2 (can.y, ось Y): нет контрольного сообщения 301 мс, допустимо 300 мс");
+  r.axis = -1;
+  r.node = 7;
+  EXPECT_EQ(render(r, names, text::Language::english), "node 7: no heartbeat for 301 ms, allowed 300 ms");
+  r.number = alarm::kBusSendOverflow;
+  r.value = 3;
+  EXPECT_EQ(render(r, names, text::Language::english), "bus can: 3 frames could not be sent");
+}
+
 TEST(AlarmText, knows_every_state_of_the_status_word) {
   const std::pair<std::uint16_t, const char*> kStates[] = {
       {0x0000, "not ready to switch on"}, {0x0040, "switch on disabled"},

@@ -238,8 +238,9 @@ bool Segment::Impl::send_own(const ProcessImage& image, const image::CanFrame& f
 
 void Segment::Impl::say_send_failed(const ProcessImage& image, const image::CanFrame& frame,
                                     NodeId node) noexcept {
-  // That a bus is off or down has been said, and says why nothing goes out.
-  if (bus_state == image::CanState::bus_off || bus_state == image::CanState::down) return;
+  // That a bus is off or down is said in its own words, and why nothing goes out.
+  const image::CanState state = bus.state();
+  if (state == image::CanState::bus_off || state == image::CanState::down) return;
   if (!send_failed.pass(image.now.t_ns)) return;
   say_frame(BusEventKind::send_failed, image, frame, node,
             static_cast<std::int64_t>(send_failures - send_failures_said));

@@ -108,9 +108,16 @@ std::string node_words(const AlarmRecord& r, const AlarmNames& names, Language l
   return std::to_string(r.node) + (words.empty() ? "" : " (" + words + ")");
 }
 
+/// The sentences of these begin with the bus, whichever node has to do with it.
+bool of_a_bus(image::AlarmNumber n) {
+  using namespace alarm;
+  return n == kBusOff || n == kBusErrorPassive || n == kBusDown || n == kBusSendOverflow ||
+         n == kForeignFrame;
+}
+
 std::string where(const AlarmRecord& r, const AlarmNames& names, Language language) {
   if (r.number >= 3000 && r.number < 4000) return name_at(names.sources, r.segment >= 0 ? r.segment : r.node);
-  if (r.node >= 0) return node_words(r, names, language);
+  if (r.node >= 0 && !of_a_bus(r.number)) return node_words(r, names, language);
   return r.segment < 0 ? "-" : name_at(names.segments, r.segment);
 }
 

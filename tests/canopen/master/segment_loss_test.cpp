@@ -177,6 +177,17 @@ TEST_F(RunningRig, bus_off_is_said_and_nothing_else_of_it) {
   EXPECT_TRUE(rig.run_until([&] { return rig.drive().online && rig.drive(1).online; }, 5000));
 }
 
+TEST_F(RunningRig, a_bus_that_goes_down_while_set_points_are_sent_is_no_full_queue) {
+  ASSERT_TRUE(ready);
+  rig.control = [&](image::ProcessImage&) {
+    rig.network.bus_state = image::CanState::down;
+    rig.network.refuse_sending = true;
+  };
+  rig.run(5);
+  EXPECT_EQ(rig.count(BusEventKind::send_failed), 0);
+  EXPECT_EQ(rig.count(BusEventKind::bus_state), 1);
+}
+
 TEST_F(RunningRig, a_refused_transition_is_an_event_with_the_statusword_in_words) {
   ASSERT_TRUE(ready);
   rig.control = nullptr;
