@@ -10,8 +10,8 @@
 namespace servogate::canopen {
 
 /// An object of a node that somebody outside the cycle wants to read: one question at a time. The cycle asks
-/// the node when it has nothing else to say over SDO, so that process data and the master's own accesses come
-/// first. Asked by one thread, answered by the cycle's. All members are real-time safe.
+/// the node by turns with the master's own accesses over SDO, which may come later by one short transfer.
+/// Process data come first. Asked by one thread, answered by the cycle's. All members are real-time safe.
 class ObjectQuestion {
  public:
   /// The asker: false, a question is under way.

@@ -271,11 +271,13 @@ bool DriveNode::send_acyclic(const NodeContext& context) noexcept {
   if (send_guarding(context)) return true;
   if (phase_ == Phase::booting) return boot_.poll(context.now, sdo_, context.bus);
   if (phase_ == Phase::running && !sdo_.busy()) {
+    const bool had_its_turn = questioned_;
     if (questioned_) context.question.finish(sdo_);
     questioned_ = false;
     if (link_.access_running()) finish_access(context);
-    link_.start_access(context.now, sdo_);
-    if (!link_.access_running()) questioned_ = context.question.start(config_.node, sdo_);
+    // By turns: a drive whose objects are asked for again and again would never answer somebody else.
+    if (!had_its_turn) questioned_ = context.question.start(config_.node, sdo_);
+    if (!questioned_) link_.start_access(context.now, sdo_);
   }
   return sdo_.poll(context.now, context.bus);
 }
