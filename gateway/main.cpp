@@ -20,6 +20,10 @@ int carry_out(const CommandLine& line) {
   if (line.command == "plc run") return command::plc_run(line.plc.run);
   if (line.command == "plc check") return command::plc_check(line.plc.check);
   if (line.command == "plc test") return command::plc_test(line.plc.test);
+  if (line.command == "plc list") return command::plc_list(line.plc.list);
+  if (line.command == "plc watch") return command::plc_watch(line.plc.watch);
+  if (line.command == "plc force") return command::plc_force(line.plc.force);
+  if (line.command == "plc load") return command::plc_load(line.plc.load);
   if (line.command == "can bus") return command::can_bus(line.bus.can_bus);
   if (line.command == "can check") return command::can_check(line.bus.can_check);
   if (line.command == "scan") return command::scan(line.bus.scan);

@@ -9,6 +9,7 @@
 
 #include "plc/lookup.hpp"
 #include "plc/texts.hpp"
+#include "plc/transfer.hpp"
 #include "plc/values.hpp"
 #include "plc/vm/machine.hpp"
 
@@ -28,19 +29,16 @@ struct Move {
 }  // namespace
 
 struct Engine::State {
-  struct Force {
-    Handle handle;
-    std::string name, text;
-    std::array<std::uint8_t, kMaxStringCapacity + 1> bytes{};
-    std::uint32_t size = 0;
-  };
   struct TaskState {
     image::Nanoseconds next = std::numeric_limits<image::Nanoseconds>::min();
     bool last = false;
   };
   std::vector<std::uint8_t> memory;
   std::vector<Move> taken_in, put_back;
-  std::vector<Force> forces;
+  std::vector<Forcing> forces;
+  std::vector<Times> task_times;
+  const image::Clock* clock = nullptr;
+  Times* blocks = nullptr;
   struct Copy {
     std::uint32_t from, to, size;
   };
@@ -148,6 +146,7 @@ void drop(const Image::Shared& s, image::Packets& packets) noexcept {
 Engine::Engine(std::shared_ptr<const Image> image)
     : image_(std::move(image)), state_(std::make_unique<State>()) {
   state_->forces.reserve(kMaxForces);
+  state_->task_times.resize(image_->tasks.size());
   for (const Image::Shared& place : image_->places) {
     state_->taken_in.push_back(move_of(place));
     if (place.written) state_->put_back.push_back(state_->taken_in.back());
@@ -190,7 +189,7 @@ ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexce
     return s.fault;
   }
   const auto apply_forces = [&] {
-    for (const State::Force& f : s.forces)
+    for (const Forcing& f : s.forces)
       if (f.handle.bit >= 0)
         set_bit(mem + f.handle.address, f.handle.bit, f.bytes[0] != 0);
       else
@@ -221,6 +220,8 @@ ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexce
   machine.image = &im;
   machine.now_ns = t_ns;
   machine.budget = im.budget;
+  machine.clock = s.clock;
+  machine.blocks = s.clock != nullptr ? s.blocks : nullptr;
   ScanResult result;
   for (std::size_t i = 0; i < im.tasks.size(); ++i) {
     const Image::Task& task = im.tasks[i];
@@ -240,7 +241,9 @@ ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexce
       state.next += ((t_ns - state.next) / task.interval + 1) * task.interval;
     }
     machine.budget -= task.length;
+    const image::Nanoseconds began = s.clock != nullptr ? s.clock->now_ns() : 0;
     const Fault fault = machine.budget < 0 ? Fault::budget : vm::execute(machine, task.entry);
+    if (s.clock != nullptr) s.task_times[i].add(s.clock->now_ns() - began);
     if (fault == Fault::none) continue;
     if (machine.budget < 0 && machine.at == 0) machine.at = task.entry;
     result.fault = fault;
@@ -340,30 +343,74 @@ bool Engine::set_number(image::Packets& packets, const Handle& h, double value) 
   return true;
 }
 
-bool Engine::force(const Handle& h, std::string_view text) {
-  State::Force f;
+std::optional<Forcing> Engine::prepare_force(const Handle& h, std::string_view text) const {
+  Forcing f;
   f.handle = h;
-  f.text = text;
-  if (!parse_value(*h.type, text, f.bytes.data())) return false;
+  if (!parse_value(*h.type, text, f.bytes.data())) return std::nullopt;
   f.size = h.type->kind == Kind::string ? 1u + f.bytes[0] : h.type->size;
-  release(h);
+  return f;
+}
+
+bool Engine::apply(const Forcing& forcing) noexcept {
+  release_now(forcing.handle);
   if (state_->forces.size() >= kMaxForces) return false;
-  state_->forces.push_back(std::move(f));
+  state_->forces.push_back(forcing);  // reserved
   return true;
 }
 
-void Engine::release(const Handle& h) {
-  std::erase_if(state_->forces, [&](const State::Force& f) {
-    return f.handle.address == h.address && f.handle.bit == h.bit;
-  });
+void Engine::release_now(const Handle& h) noexcept {
+  std::vector<Forcing>& forces = state_->forces;
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    if (forces[i].handle.address == h.address && forces[i].handle.bit == h.bit) {
+      for (; i + 1 < forces.size(); ++i) forces[i] = forces[i + 1];
+      forces.pop_back();
+      return;
+    }
 }
-void Engine::release_all() { state_->forces.clear(); }
+void Engine::release_all_now() noexcept { state_->forces.clear(); }
+
+bool Engine::force(const Handle& h, std::string_view text) {
+  const auto forcing = prepare_force(h, text);
+  return forcing && apply(*forcing);
+}
+void Engine::release(const Handle& h) { release_now(h); }
+void Engine::release_all() { release_all_now(); }
 
 std::vector<std::pair<std::string, std::string>> Engine::forced() const {
   std::vector<std::pair<std::string, std::string>> out;
-  for (const State::Force& f : state_->forces) out.emplace_back(name_of(f.handle), f.text);
+  for (const Forcing& f : state_->forces)
+    out.emplace_back(name_of(f.handle), f.handle.type->kind == Kind::boolean
+                                            ? f.bytes[0] != 0 ? "TRUE" : "FALSE"
+                                            : to_literal(*f.handle.type, f.bytes.data()));
   return out;
 }
+
+void Engine::prepare_transfer(const Transfer& t) {
+  std::size_t bytes = 0;
+  for (const Transfer::PlaceMove& m : t.places) bytes += m.size;
+  state_->given_back.resize(bytes);
+  state_->given_back_places.clear();
+  state_->given_back_places.reserve(t.places.size());
+}
+
+void Engine::take_over(const Engine& before, const Transfer& t) noexcept {
+  State& s = *state_;
+  const std::uint8_t* from = before.state_->memory.data();
+  for (const Transfer::Move& m : t.moves) std::memcpy(s.memory.data() + m.to, from + m.from, m.size);
+  std::uint32_t at = 0;
+  for (const Transfer::PlaceMove& m : t.places) {
+    std::memcpy(s.given_back.data() + at, from + m.from, m.size);
+    s.given_back_places.push_back({at, image_->places[m.place].address, m.size});  // reserved
+    at += m.size;
+  }
+  if (!t.running) return;
+  for (const auto& [old, now] : t.tasks) s.tasks[now] = before.state_->tasks[old];
+  s.first = false;
+}
+
+void Engine::measure(const image::Clock* clock) noexcept { state_->clock = clock; }
+void Engine::profile(Times* blocks) noexcept { state_->blocks = blocks; }
+std::span<const Times> Engine::task_times() const noexcept { return state_->task_times; }
 
 std::size_t Engine::retain_bytes() const noexcept { return image_->retain_bytes; }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 namespace servogate::plc {
 
 struct Image;
+struct Transfer;
 struct Type;
 
 /// Why a scan was abandoned. From then on every place that the PLC program writes is held at FALSE or 0, so
@@ -47,6 +49,26 @@ struct Handle {
   std::int32_t place = -1;    ///< index of the packet place it mirrors, -1: none
   std::int8_t bit = -1;       ///< bit in that byte, -1: the whole variable
   const Type* type = nullptr;
+};
+
+/// A variable and the value that it is held at, made outside the cycle.
+struct Forcing {
+  Handle handle;
+  std::array<std::uint8_t, 256> bytes{};
+  std::uint32_t size = 0;
+};
+
+/// How long a task or a block took. Of blocks, calls of others inside are part of it.
+struct Times {
+  image::Nanoseconds last = 0, most = 0, sum = 0;
+  std::int64_t count = 0;  ///< scans of a task, calls of a block
+
+  void add(image::Nanoseconds t) noexcept {
+    last = t;
+    most = t > most ? t : most;
+    sum += t;
+    ++count;
+  }
 };
 
 /// A retained elementary variable: full name, type name, value as Engine::write reads it.
@@ -114,6 +136,12 @@ class Engine {
   bool force(const Handle& handle, std::string_view text);
   void release(const Handle& handle);
   void release_all();
+  /// The same in two steps: the first outside the cycle, the second real-time safe; false: the table is full.
+  std::optional<Forcing> prepare_force(const Handle& handle, std::string_view text) const;
+  bool apply(const Forcing& forcing) noexcept;
+  /// real-time safe.
+  void release_now(const Handle& handle) noexcept;
+  void release_all_now() noexcept;
   /// Names and values of all forced variables. Not real-time safe.
   std::vector<std::pair<std::string, std::string>> forced() const;
   static constexpr std::size_t kMaxForces = 256;
@@ -129,6 +157,21 @@ class Engine {
   /// Takes over every value whose name and type still exist; returns how many. Before the first scan; a
   /// place of a packet gets its value with it. Not real-time safe.
   std::size_t restore(std::span<const Retained> values);
+
+  /// Takes over what was planned from the engine that ran before; instead of a first scan of its own, or
+  /// before it. real-time safe: moves bytes only. `transfer` was planned for these two programs, and
+  /// prepare_transfer() has seen it.
+  void take_over(const Engine& before, const Transfer& transfer) noexcept;
+  /// Makes room for it. Not real-time safe.
+  void prepare_transfer(const Transfer& transfer);
+
+  /// Measures every task with this clock, nullptr: none. Before the first scan.
+  void measure(const image::Clock* clock) noexcept;
+  /// In the next scans also every call of a block, into one entry of `blocks` for each Image::units; nullptr:
+  /// no more. real-time safe.
+  void profile(Times* blocks) noexcept;
+  /// By task. real-time safe.
+  std::span<const Times> task_times() const noexcept;
 
   const Image& image() const noexcept { return *image_; }
 

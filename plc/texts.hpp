@@ -63,6 +63,9 @@ inline constexpr Entry kAddressRange{"plc-address-range", "{0} lies outside its 
 inline constexpr Entry kAddressType{"plc-address-type", "{0} holds {1}, not {2}", "{0} хранит {1}, а не {2}"};
 inline constexpr Entry kAddressOverlap{"plc-overlap", "{0} shares memory with {1} of '{2}' in line {3}",
                                        "{0} занимает ту же память, что {1} переменной '{2}' в строке {3}"};
+inline constexpr Entry kSymbolOverlap{"plc-overlap-symbol",
+                                      "{0} shares memory with '{1}' of the machine ({2}); use that name",
+                                      "{0} занимает ту же память, что «{1}» станка ({2}); используйте это имя"};
 inline constexpr Entry kAddressSection{"plc-address-section",
                                        "only VAR and VAR_GLOBAL can stand AT an address",
                                        "AT возможно только в VAR и VAR_GLOBAL"};

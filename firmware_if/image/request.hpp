@@ -29,6 +29,7 @@ enum class RequestKind : std::uint8_t {
   set_place,    ///< place (packed) and value: an operator's write into packet K, a force, a simulated input
   force,
   release_force,
+  logic,  ///< index = number of a prepared change of the PLC; value 1: it may happen while the machine moves
 };
 
 /// A wish from outside, posted to the cycle through one bounded queue. Plain data.

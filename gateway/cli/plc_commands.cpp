@@ -46,6 +46,59 @@ void test(CLI::App& plc, PlcTestOptions& o) {
   app.add_flag("--json", o.json, "As JSON");
 }
 
+/// What all clients of the running control take.
+void client(CLI::App& app, std::string& socket, bool& json) {
+  app.add_option("--socket", socket, "Control socket instead of the default");
+  app.add_flag("--json", json, "As JSON");
+}
+
+void list(CLI::App& plc, PlcListOptions& o) {
+  CLI::App& app = command(plc, "list", "Lists symbols with type, place, and where they are read and written.",
+                          "servogate plc list mill.st --machine machine.toml");
+  app.add_option("FILE", o.files, "Source files; without one the program of the running control");
+  app.add_option("--machine", o.machine, "Machine file whose symbols the program uses");
+  client(app, o.socket, o.json);
+}
+
+void watch(CLI::App& plc, PlcWatchOptions& o) {
+  CLI::App& app =
+      command(plc, "watch", "Shows values of the running PLC, beside its source lines or by name.",
+              "servogate plc watch NC.m_code Mill.change.step");
+  app.add_option("NAME", o.names, "Variables and places; without one the lines of the first program");
+  app.add_option("--source", o.body, "Lines of this program or instance, as Mill or Mill.change")
+      ->type_name("BODY");
+  app.add_flag("--times", o.times, "How long tasks and blocks take");
+  app.add_option("--every", o.every_ms, "Time between samples in ms, 1 to 60000")
+      ->type_name("MS")
+      ->check(number_within({1.0, 60000.0, text::both("ms", "мс")}));
+  app.add_option("--samples", o.samples, "Number of samples, 1 to 1000000000; without it until Ctrl-C")
+      ->type_name("N")
+      ->check(number_within({1.0, 1e9, text::both("samples", "раз"), true}));
+  client(app, o.socket, o.json);
+}
+
+void force(CLI::App& plc, PlcForceOptions& o) {
+  CLI::App& app = command(plc, "force", "Holds variables and places at values until Enter or Ctrl-C.",
+                          "servogate plc force door_closed=TRUE");
+  app.add_option("NAME=VALUE", o.settings,
+                 "What is forced; with --release the names to let go, all without one");
+  app.add_flag("--stay", o.stay,
+               "Returns at once; it stays forced until --release or the end of the control");
+  app.add_flag("--release", o.release, "Lets go what is forced");
+  client(app, o.socket, o.json);
+}
+
+void load(CLI::App& plc, PlcLoadOptions& o) {
+  CLI::App& app = command(plc, "load", "Gives the running control another PLC program, between two scans.",
+                          "servogate plc load --online");
+  app.add_option("FILE", o.files, "Source files; without one those of the machine file, read again");
+  app.add_flag("--online", o.online,
+               "Online change: every variable keeps its value, not the retained ones only");
+  app.add_flag("--while-running", o.while_running, "Even while a program runs or an axis moves")
+      ->needs("--online");
+  client(app, o.socket, o.json);
+}
+
 }  // namespace
 
 void add_plc_commands(CLI::App& app, PlcCommands& options) {
@@ -54,6 +107,10 @@ void add_plc_commands(CLI::App& app, PlcCommands& options) {
   run(plc, options.run);
   check(plc, options.check);
   test(plc, options.test);
+  list(plc, options.list);
+  watch(plc, options.watch);
+  force(plc, options.force);
+  load(plc, options.load);
 }
 
 }  // namespace servogate::gateway

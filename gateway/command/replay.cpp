@@ -52,6 +52,17 @@ bool carry_out(Control& control, const ProgramChange& change) {
   return control.change(change);
 }
 
+/// Makes ready what the requests of the next cycle change of the PLC.
+void prepare_logic(Control& control, const std::vector<LogicChange>& changes,
+                   const cycle::CycleInputs& inputs) {
+  for (int i = 0; i < inputs.request_count; ++i) {
+    const image::Request& request = inputs.requests[static_cast<std::size_t>(i)];
+    if (request.kind != image::RequestKind::logic || control.logic() == nullptr) continue;
+    for (const LogicChange& change : changes)
+      if (change.number == request.index) control.prepare(change);
+  }
+}
+
 /// Reads ahead until everything is published that the cycle saw at this point of the record, or nothing more
 /// can be: what a reader had still published while its program was already given up has no meaning.
 void catch_up(Control& control, const cycle::CycleInputs& inputs) {
@@ -109,6 +120,7 @@ int replay(const ReplayOptions& options) {
   while (const cycle::CycleInputs* next = record.next()) {
     while (changed < changes.size() && due(*control, changes[changed], *next))
       if (!carry_out(*control, changes[changed++])) break;
+    prepare_logic(*control, record.logic_changes(), *next);
     catch_up(*control, *next);
     session.wait_for_room();
     if (!control->cycle().step()) break;

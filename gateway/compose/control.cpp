@@ -162,6 +162,19 @@ void Control::await_grants() {
   }
 }
 
+plc::Options Control::logic_options() const {
+  plc::Options options;
+  options.k_bytes = static_cast<std::uint32_t>(loaded_.machine.control.k_size);
+  options.v_bytes = static_cast<std::uint32_t>(loaded_.machine.control.syvar_size);
+  return options;
+}
+
+PlcLogic::Plan Control::prepare(const LogicChange& change) {
+  PlcLogic::Plan plan = logic_->prepare(change, loaded_.machine.symbol_table(), logic_options());
+  if (plan.possible && change_tap_ != nullptr) change_tap_->take(change);
+  return plan;
+}
+
 bool Control::compile_logic(std::vector<text::Finding>& findings) {
   const machine::MachineConfig& m = loaded_.machine;
   if (m.plc.sources.empty()) return true;
@@ -178,13 +191,10 @@ bool Control::compile_logic(std::vector<text::Finding>& findings) {
     file.text = std::move(*content);
     sources.push_back(std::move(file));
   }
-  plc::Options options;
-  options.k_bytes = static_cast<std::uint32_t>(m.control.k_size);
-  options.v_bytes = static_cast<std::uint32_t>(m.control.syvar_size);
-  plc::CompileResult compiled = plc::compile(std::move(sources), m.symbol_table(), options);
+  plc::CompileResult compiled = plc::compile(sources, m.symbol_table(), logic_options());
   findings.insert(findings.end(), compiled.findings.begin(), compiled.findings.end());
   if (!compiled.ok()) return false;
-  logic_ = std::make_unique<PlcLogic>(compiled.image);
+  logic_ = std::make_unique<PlcLogic>(compiled.image, std::move(sources));
   return true;
 }
 

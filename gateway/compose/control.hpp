@@ -48,6 +48,11 @@ class Control {
   /// Changes what a process will run, and shows it to the tap; any thread outside the cycle. False, and
   /// nothing changed: its program is being read just now.
   bool change(const ProgramChange& change);
+  /// Makes a change of the PLC ready for the request of its number, and shows it to the tap. Only with a PLC;
+  /// any one thread outside the cycle.
+  PlcLogic::Plan prepare(const LogicChange& change);
+  /// A number for the next one.
+  std::uint32_t next_logic_change() noexcept { return ++logic_changes_; }
   /// For records; before the first change.
   void attach(ProgramChangeTap* tap) noexcept { change_tap_ = tap; }
   /// Takes over the references of absolute encoders that were kept; before the first cycle.
@@ -78,6 +83,7 @@ class Control {
 
  private:
   explicit Control(const machine::LoadResult& loaded);
+  plc::Options logic_options() const;
   bool compile_logic(std::vector<text::Finding>& findings);
   bool open_buses(std::vector<text::Finding>& findings, bool replay);
   void await_grants();
@@ -94,6 +100,7 @@ class Control {
   std::vector<std::unique_ptr<channel::Process>> processes_;
   std::mutex reading_;
   ProgramChangeTap* change_tap_ = nullptr;
+  std::uint32_t logic_changes_ = 0;
   cycle::MonotonicClock stopwatch_;
   std::unique_ptr<cycle::Cycle> cycle_;
 };

@@ -1,12 +1,82 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/compose/plc_logic.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
 #include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/clocks.hpp"
+#include "plc/vm/image.hpp"
 
 namespace servogate::gateway {
 
+namespace {
+
+const cycle::MonotonicClock& stopwatch() {
+  static const cycle::MonotonicClock clock;
+  return clock;
+}
+
+bool same_variable(const std::string& a, const std::string& b) { return plc::same_name(a, b); }
+
+/// Places that the old program writes and the new one does not.
+std::vector<image::Place> dropped_places(const plc::Image& before, const plc::Image& now) {
+  std::vector<image::Place> out;
+  for (const plc::Image::Shared& old : before.places) {
+    const bool goes_on = std::any_of(now.places.begin(), now.places.end(),
+                                     [&](const auto& s) { return s.written && s.place == old.place; });
+    if (old.written && !goes_on) out.push_back(old.place);
+  }
+  return out;
+}
+
+}  // namespace
+
+/// A change on its way into the cycle and back.
+struct PlcLogic::Prepared {
+  LogicChange::Kind kind = LogicChange::Kind::load;
+  std::uint32_t number = 0;
+  std::shared_ptr<LogicProgram> program;
+  plc::Transfer transfer;
+  plc::Forcing forcing;
+  std::string name, value;
+  std::vector<std::pair<std::string, std::string>> forced;  ///< of the new program
+  bool accepted = false;
+};
+
+PlcLogic::PlcLogic(std::shared_ptr<const plc::Image> image, std::vector<plc::SourceFile> sources)
+    : shown_(std::make_shared<LogicProgram>(std::move(image), std::move(sources))) {
+  running_ = shown_.get();
+  running_->engine.measure(&stopwatch());
+}
+
+PlcLogic::~PlcLogic() {
+  for (Slots* slots : {&ready_, &done_})
+    for (auto& slot : *slots) delete slot.load();
+}
+
 void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcept {
-  const plc::ScanResult result = engine_.scan(image.packets, image.now.t_ns);
+  LogicProgram& program = *running_;
+  if (drops_)
+    for (const image::Place& p : program.dropped) {
+      if (p.format == image::Format::ch)
+        image.packets.set_characters(p, {});
+      else
+        image.packets.set_number(p, 0.0);
+    }
+  drops_ = false;
+  LogicSample* const sample =
+      wanted_.load(std::memory_order_relaxed) != nullptr ? wanted_.exchange(nullptr) : nullptr;
+  const bool own = sample != nullptr && sample->program == running_;
+  if (own && sample->profile) program.engine.profile(sample->blocks.data());
+  const plc::ScanResult result = program.engine.scan(image.packets, image.now.t_ns);
+  if (sample != nullptr) {
+    program.engine.profile(nullptr);
+    if (own) fill(*sample, image.now, result);
+    filled_.store(sample, std::memory_order_release);
+  }
   const bool faulted = result.fault != plc::Fault::none;
   if (faulted && !faulted_) {
     image::AlarmRecord r;
@@ -18,8 +88,170 @@ void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcep
   }
   faulted_ = faulted;
   if (faulted) return;  // what an abandoned scan has left half done is not kept
-  engine_.snapshot_retained(retained_.scratch());
-  retained_.publish();
+  program.engine.snapshot_retained(program.retained.scratch());
+  program.retained.publish();
+}
+
+void PlcLogic::fill(LogicSample& sample, const image::CycleTime& now,
+                    const plc::ScanResult& result) noexcept {
+  std::uint8_t* to = sample.bytes.data();
+  for (const LogicSample::Range& r : sample.ranges) {
+    plc::Handle handle;
+    handle.address = r.address;
+    std::memcpy(to, running_->engine.data(handle), r.size);
+    to += r.size;
+  }
+  const auto tasks = running_->engine.task_times();
+  for (std::size_t i = 0; i < tasks.size() && i < sample.tasks.size(); ++i) sample.tasks[i] = tasks[i];
+  sample.at = now;
+  sample.result = result;
+}
+
+bool PlcLogic::order(const image::Request& request) noexcept {
+  auto& slot = ready_[request.index % kSlots];
+  Prepared* const change = slot.exchange(nullptr, std::memory_order_acq_rel);
+  if (change == nullptr) return false;
+  change->accepted = change->number == request.index && carry_out(*change);
+  const bool accepted = change->accepted;
+  done_[request.index % kSlots].store(change, std::memory_order_release);
+  return accepted;
+}
+
+bool PlcLogic::carry_out(Prepared& change) noexcept {
+  switch (change.kind) {
+    case LogicChange::Kind::load:
+      change.program->engine.take_over(running_->engine, change.transfer);
+      running_ = change.program.get();
+      faulted_ = false;
+      drops_ = true;
+      return true;
+    case LogicChange::Kind::force:
+      return running_->engine.apply(change.forcing);
+    case LogicChange::Kind::release:
+      running_->engine.release_now(change.forcing.handle);
+      return true;
+    case LogicChange::Kind::release_all:
+      running_->engine.release_all_now();
+      return true;
+  }
+  return false;
+}
+
+std::shared_ptr<const LogicProgram> PlcLogic::program() const {
+  const std::scoped_lock lock(mutex_);
+  return shown_;
+}
+
+PlcLogic::Plan PlcLogic::prepare(const LogicChange& change, const std::vector<image::Symbol>& symbols,
+                                 const plc::Options& options) {
+  settle();
+  Plan plan;
+  auto prepared = std::make_unique<Prepared>();
+  prepared->kind = change.kind;
+  prepared->number = change.number;
+  prepared->name = change.name;
+  prepared->value = change.value;
+  const plc::Engine& engine = shown_->engine;
+  if (change.kind == LogicChange::Kind::load) {
+    plan = prepare_load(change, *prepared, symbols, options);
+  } else if (change.kind == LogicChange::Kind::release_all) {
+    plan.possible = true;
+  } else if (const auto handle = engine.find(change.name)) {
+    prepared->forcing.handle = *handle;
+    plan.possible = true;
+    if (change.kind == LogicChange::Kind::force) {
+      const auto forcing = engine.prepare_force(*handle, change.value);
+      plan.possible = forcing.has_value();
+      if (forcing) prepared->forcing = *forcing;
+    }
+  }
+  if (!plan.possible) return plan;
+  delete done_[change.number % kSlots].exchange(nullptr);
+  delete ready_[change.number % kSlots].exchange(prepared.release());
+  return plan;
+}
+
+PlcLogic::Plan PlcLogic::prepare_load(const LogicChange& change, Prepared& out,
+                                      const std::vector<image::Symbol>& symbols,
+                                      const plc::Options& options) {
+  Plan plan;
+  plc::CompileResult compiled = plc::compile(change.files, symbols, options);
+  plan.findings = std::move(compiled.findings);
+  if (compiled.image == nullptr) return plan;
+  plan.possible = true;
+  const plc::Image& before = shown_->engine.image();
+  out.transfer = plc::plan_transfer(before, *compiled.image, change.online);
+  out.program = std::make_shared<LogicProgram>(compiled.image, change.files);
+  out.program->dropped = dropped_places(before, *compiled.image);
+  plc::Engine& engine = out.program->engine;
+  engine.measure(&stopwatch());
+  engine.prepare_transfer(out.transfer);
+  for (const auto& [name, value] : forced_) {
+    const auto handle = engine.find(name);
+    const auto forcing = handle ? engine.prepare_force(*handle, value) : std::nullopt;
+    if (forcing && engine.apply(*forcing))
+      out.forced.emplace_back(name, value);
+    else
+      plan.forces_lost.push_back(name);
+  }
+  plan.kept = out.transfer.kept;
+  plan.fresh = out.transfer.fresh;
+  plan.given_up = out.transfer.given_up;
+  return plan;
+}
+
+void PlcLogic::withdraw(std::uint32_t number) { delete ready_[number % kSlots].exchange(nullptr); }
+
+void PlcLogic::settle() {
+  std::vector<std::unique_ptr<Prepared>> done;
+  for (auto& slot : done_)
+    if (Prepared* change = slot.exchange(nullptr, std::memory_order_acq_rel); change != nullptr)
+      done.emplace_back(change);
+  std::sort(done.begin(), done.end(), [](const auto& a, const auto& b) { return a->number < b->number; });
+  const auto forget = [this](const std::string& name) {
+    std::erase_if(forced_, [&](const auto& f) { return same_variable(f.first, name); });
+  };
+  for (const auto& change : done) {
+    if (!change->accepted) continue;
+    switch (change->kind) {
+      case LogicChange::Kind::load: {
+        const std::scoped_lock lock(mutex_);
+        shown_ = change->program;
+        forced_ = change->forced;
+        break;
+      }
+      case LogicChange::Kind::force:
+        forget(change->name);
+        forced_.emplace_back(change->name, change->value);
+        break;
+      case LogicChange::Kind::release:
+        forget(change->name);
+        break;
+      case LogicChange::Kind::release_all:
+        forced_.clear();
+        break;
+    }
+  }
+}
+
+bool PlcLogic::look(LogicSample& sample, int patience_ms) {
+  settle();
+  std::size_t bytes = 0;
+  for (const LogicSample::Range& r : sample.ranges) bytes += r.size;
+  sample.bytes.assign(bytes, 0);
+  sample.program = shown_.get();
+  const plc::Image& image = shown_->engine.image();
+  sample.blocks.assign(sample.profile ? image.units.size() : 0, {});
+  sample.tasks.assign(image.tasks.size(), {});
+  filled_.store(nullptr);
+  wanted_.store(&sample, std::memory_order_release);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(patience_ms);
+  while (filled_.load(std::memory_order_acquire) != &sample) {
+    std::this_thread::sleep_for(std::chrono::microseconds(300));
+    // Taken back only while the cycle has not begun with it.
+    if (std::chrono::steady_clock::now() > end && wanted_.exchange(nullptr) != nullptr) return false;
+  }
+  return true;
 }
 
 }  // namespace servogate::gateway

@@ -1,27 +1,104 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gateway/compose/logic_change.hpp"
 #include "gateway/compose/retained_memory.hpp"
 #include "kernel/cycle/participants.hpp"
 #include "plc/engine.hpp"
+#include "plc/transfer.hpp"
 
 namespace servogate::gateway {
 
-/// The PLC's engine as the cycle's logic; its faults become alarms, its retained variables leave the cycle
-/// after every scan that was whole.
+/// A program with everything that belongs to it.
+struct LogicProgram {
+  LogicProgram(std::shared_ptr<const plc::Image> image, std::vector<plc::SourceFile> files)
+      : engine(std::move(image)), retained(engine.retain_bytes()), sources(std::move(files)) {}
+  plc::Engine engine;
+  RetainedMemory retained;
+  std::vector<plc::SourceFile> sources;
+  std::vector<image::Place> dropped;  ///< written by the program before and not by this one
+};
+
+/// What somebody wants to see of one scan: bytes of the engine's memory, all of the same scan.
+struct LogicSample {
+  struct Range {
+    std::uint32_t address = 0, size = 0;
+  };
+  std::vector<Range> ranges;
+  std::vector<std::uint8_t> bytes;        ///< the ranges one behind the other
+  const LogicProgram* program = nullptr;  ///< that the ranges belong to; set by look()
+  bool profile = false;                   ///< measure every call of a block in this scan
+  std::vector<plc::Times> blocks, tasks;
+  image::CycleTime at;
+  plc::ScanResult result;
+};
+
+/// The PLC as the cycle's logic: its faults become alarms, its retained variables leave the cycle after every
+/// scan that was whole, and what is to change of it comes in between two scans.
+///
+/// Threads: scan() and order() are the cycle's; program() may be asked by any; the rest belongs to one thread
+/// outside (or under a lock).
 class PlcLogic final : public cycle::Logic {
  public:
-  explicit PlcLogic(std::shared_ptr<const plc::Image> image)
-      : engine_(std::move(image)), retained_(engine_.retain_bytes()) {}
+  PlcLogic(std::shared_ptr<const plc::Image> image, std::vector<plc::SourceFile> sources);
+  ~PlcLogic() override;
   /// real-time safe.
   void scan(image::ProcessImage& image, cycle::Notices& notices) noexcept override;
-  plc::Engine& engine() noexcept { return engine_; }
-  /// The retained variables after the newest scan, for any thread.
-  const RetainedMemory& retained() const noexcept { return retained_; }
+  /// Carries out the change that prepare() has made ready under the request's index. real-time safe.
+  bool order(const image::Request& request) noexcept override;
+
+  /// The engine before the first cycle.
+  plc::Engine& engine() noexcept { return shown_->engine; }
+  /// The program that runs, as far as the outside knows it.
+  std::shared_ptr<const LogicProgram> program() const;
+
+  /// What a change comes to; of load, what would be kept.
+  struct Plan {
+    bool possible = false;  ///< false: `findings` of the compiler, or no such variable or value
+    std::vector<text::Finding> findings;
+    std::size_t kept = 0;
+    std::vector<std::string> fresh, given_up;  ///< variables by name
+    std::vector<std::string> forces_lost;      ///< forced variables that the new program has not
+  };
+  /// Makes a change ready for the request with its number. Not real-time safe.
+  Plan prepare(const LogicChange& change, const std::vector<image::Symbol>& symbols,
+               const plc::Options& options);
+  /// Takes back what the gate has refused.
+  void withdraw(std::uint32_t number);
+  /// Takes note of what the cycle has carried out. Not real-time safe.
+  void settle();
+  /// Names and values of forced variables, as far as settle() knows.
+  const std::vector<std::pair<std::string, std::string>>& forced() const noexcept { return forced_; }
+
+  /// Has the next scan fill a sample. False: no scan came within the time.
+  bool look(LogicSample& sample, int patience_ms);
 
  private:
-  plc::Engine engine_;
-  RetainedMemory retained_;
+  struct Prepared;
+  static constexpr std::size_t kSlots = 16;
+  using Slots = std::array<std::atomic<Prepared*>, kSlots>;
+
+  Plan prepare_load(const LogicChange& change, Prepared& out, const std::vector<image::Symbol>& symbols,
+                    const plc::Options& options);
+  bool carry_out(Prepared& change) noexcept;
+  void fill(LogicSample& sample, const image::CycleTime& now, const plc::ScanResult& result) noexcept;
+
+  LogicProgram* running_;  ///< the cycle's
   bool faulted_ = false;
+  bool drops_ = false;  ///< the next scan is the first one of a program that came later
+  Slots ready_{}, done_{};
+  std::atomic<LogicSample*> wanted_{nullptr}, filled_{nullptr};
+
+  mutable std::mutex mutex_;  ///< of shown_
+  std::shared_ptr<LogicProgram> shown_;
+  std::vector<std::pair<std::string, std::string>> forced_;
 };
 
 }  // namespace servogate::gateway

@@ -21,14 +21,16 @@ namespace servogate::gateway {
 
 namespace {
 
-constexpr int kRecordSchema = 3;
+constexpr int kRecordSchema = 4;
 constexpr std::size_t kQueued = 2048;
 constexpr std::size_t kChunk = 1 << 16;
 constexpr std::size_t kChunkHead = 8;  // length, checksum
 // First byte of a chunk: what it holds.
-constexpr char kCycleChunk = 'c', kChangeChunk = 'p', kSubprogramChunk = 's';
+constexpr char kCycleChunk = 'c', kChangeChunk = 'p', kSubprogramChunk = 's', kLogicChunk = 'l';
 /// Index = ProgramChange::Kind.
 constexpr std::string_view kChangeNames[] = {"program", "tables", "block", "modes"};
+/// Index = LogicChange::Kind.
+constexpr std::string_view kLogicNames[] = {"load", "force", "release", "release_all"};
 constexpr machine::StatePart kTableParts[] = {machine::StatePart::origins, machine::StatePart::tools};
 constexpr machine::StatePart kParts[] = {machine::StatePart::origins, machine::StatePart::tools,
                                          machine::StatePart::homing,  machine::StatePart::counters,
@@ -144,6 +146,23 @@ void RecordWriter::take(const ProgramChange& change) {
       kChangeChunk + head.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   if (new_text) chunk += change.file->text;
   if (loads) file_ = change.file;
+  loaded_.push_back(std::move(chunk));
+}
+
+/// A line of JSON, then the texts of the files one behind the other, byte for byte.
+void RecordWriter::take(const LogicChange& change) {
+  nlohmann::json head{{"kind", kLogicNames[static_cast<std::size_t>(change.kind)]},
+                      {"number", change.number},
+                      {"online", change.online},
+                      {"name", change.name},
+                      {"value", change.value},
+                      {"files", nlohmann::json::array()}};
+  for (const plc::SourceFile& f : change.files)
+    head["files"].push_back({{"name", f.name}, {"bytes", f.text.size()}});
+  std::string chunk =
+      kLogicChunk + head.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  for (const plc::SourceFile& f : change.files) chunk += f.text;
+  const std::scoped_lock lock(loaded_mutex_);
   loaded_.push_back(std::move(chunk));
 }
 
@@ -265,9 +284,37 @@ bool RecordReader::read_chunk(std::string_view bytes) {
     return true;
   }
   if (kind == kChangeChunk) return read_change(bytes);
+  if (kind == kLogicChunk) return read_logic_change(bytes);
   const std::size_t end = bytes.find('\n');
   if (kind != kSubprogramChunk || end == std::string_view::npos || !subprograms_) return false;
   subprograms_->insert_or_assign(std::string(bytes.substr(0, end)), std::string(bytes.substr(end + 1)));
+  return true;
+}
+
+bool RecordReader::read_logic_change(std::string_view bytes) {
+  const std::size_t end = bytes.find('\n');
+  const nlohmann::json head = nlohmann::json::parse(bytes.substr(0, end), nullptr, false);
+  if (end == std::string_view::npos || !head.is_object()) return false;
+  try {
+    const auto name = std::find(std::begin(kLogicNames), std::end(kLogicNames), head.value("kind", ""));
+    if (name == std::end(kLogicNames)) return false;
+    LogicChange change;
+    change.kind = static_cast<LogicChange::Kind>(name - std::begin(kLogicNames));
+    change.number = head.value("number", 0u);
+    change.online = head.value("online", false);
+    change.name = head.value("name", "");
+    change.value = head.value("value", "");
+    std::string_view texts = bytes.substr(end + 1);
+    for (const nlohmann::json& f : head.at("files")) {
+      const std::size_t size = f.value("bytes", std::size_t{0});
+      if (size > texts.size()) return false;
+      change.files.push_back({f.value("name", ""), std::string(texts.substr(0, size))});
+      texts.remove_prefix(size);
+    }
+    logic_changes_.push_back(std::move(change));
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  }
   return true;
 }
 

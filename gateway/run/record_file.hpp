@@ -35,6 +35,7 @@ class RecordWriter final : public cycle::InputTap, public ProgramChangeTap {
   void take(const cycle::CycleInputs& inputs) noexcept override;
   /// Any thread but the cycle's; what take() sees of it later stands behind it in the file.
   void take(const ProgramChange& change) override;
+  void take(const LogicChange& change) override;
   void take_subprogram(std::string_view name, std::string_view text) override;
   /// Blocks until take() is sure to succeed; for virtual time.
   void wait_for_room();
@@ -75,6 +76,8 @@ class RecordReader final : public cycle::InputSource {
   /// What was loaded and typed, in its order: the n-th change of a process is made before the first cycle
   /// whose inputs have seen n changes. Programs and subprograms have the texts that they had then.
   std::vector<ProgramChange> changes(const machine::MachineConfig& machine) const;
+  /// What was prepared for the PLC, each before the cycle whose requests name its number.
+  const std::vector<LogicChange>& logic_changes() const noexcept { return logic_changes_; }
   /// True once next() has met the place where the record is cut off or changed.
   bool damaged() const noexcept { return damaged_; }
   /// Byte of the file at which the first unsound chunk begins; meaningful when damaged().
@@ -85,11 +88,13 @@ class RecordReader final : public cycle::InputSource {
   void read_chunks(const std::string& content, std::size_t at);
   bool read_chunk(std::string_view bytes);
   bool read_change(std::string_view bytes);
+  bool read_logic_change(std::string_view bytes);
   void look_ahead() noexcept;
 
   RecordHeader header_;
   std::vector<std::uint8_t> bytes_;
   std::vector<ProgramChange> changes_;
+  std::vector<LogicChange> logic_changes_;
   std::vector<std::shared_ptr<ProgramFile>> files_;  ///< of the changes; their models are the machine's
   std::shared_ptr<std::map<std::string, std::string, std::less<>>> subprograms_;  ///< of the newest file
   std::unique_ptr<cycle::InputDecoder> decoder_;

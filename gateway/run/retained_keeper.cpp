@@ -20,19 +20,20 @@ const text::Entry kNotKept{"run.retained-not-kept", "the retained values of the 
 
 RetainedKeeper::RetainedKeeper(Control& control, std::string folder, std::int64_t generation)
     : control_(control), directory_(folder), generation_(generation) {
-  const bool retains = control.logic() != nullptr && control.logic()->engine().retain_bytes() != 0;
-  if (retains && !folder.empty()) thread_ = std::thread([this] { keep(); });
+  if (control.logic() != nullptr && !folder.empty()) thread_ = std::thread([this] { keep(); });
 }
 
 RetainedKeeper::~RetainedKeeper() { close(); }
 
 bool RetainedKeeper::write_changed() {
-  const PlcLogic& logic = *control_.logic();
-  if (logic.retained().version() == written_) return true;
+  const std::shared_ptr<const LogicProgram> program = control_.logic()->program();
+  const RetainedMemory& memory = program->retained;
+  const bool same = program == program_ && memory.version() == written_;
+  if (same || memory.version() == 0 || program->engine.retain_bytes() == 0) return true;
   std::vector<std::uint8_t> bytes;
-  const std::uint64_t version = logic.retained().read(bytes);
+  const std::uint64_t version = memory.read(bytes);
   machine::MachineState state;
-  for (plc::Retained& v : control_.logic()->engine().retained(bytes))
+  for (plc::Retained& v : program->engine.retained(bytes))
     state.retained.push_back({std::move(v.name), std::move(v.type), std::move(v.value)});
   state.retained_generation = generation_ + 1;
   std::string problem;
@@ -44,6 +45,7 @@ bool RetainedKeeper::write_changed() {
   problem_.clear();
   ++generation_;
   written_ = version;
+  program_ = program;
   return true;
 }
 

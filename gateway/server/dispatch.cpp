@@ -154,6 +154,9 @@ Reply Dispatch::run() {
     if (row.name == command) return ask(row.kind) ? good(*row.said) : refusal_;
   for (const Row& row : kRows)
     if (row.name == command) return (this->*row.handler)();
+  if (command.starts_with("plc_"))
+    return {text_of(
+        resident_.plc().carry_out(request_, {asker_, connection_.number, connection_.user, language_}))};
   return fail(says::kUnknown, {command}, kWrongUse);
 }
 
@@ -487,6 +490,7 @@ Reply dispatch(Resident& resident, std::string_view line, Connection& connection
 }
 
 void end_connection(Resident& resident, Connection& connection) {
+  resident.plc().release_of(connection.number);
   if (connection.jogs < 0) return;
   image::Request r;
   r.kind = RequestKind::jog_stop;

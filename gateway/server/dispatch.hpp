@@ -18,6 +18,8 @@ struct Reply {
 struct Connection {
   int jogs = -1;  ///< axis of the continuous jog that this client keeps alive, -1: none
   image::Asker asker = image::Asker::command_line;  ///< who began it
+  std::uint64_t number = 0;                         ///< of this connection; what it forces at the PLC ends with it
+  std::string user;                                 ///< name of who opened it
 };
 
 /// Carries out one line of the control socket's protocol (docs/control-socket.md): a JSON object

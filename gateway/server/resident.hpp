@@ -8,6 +8,7 @@
 #include "gateway/compose/control.hpp"
 #include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/state.hpp"
+#include "gateway/server/plc_desk.hpp"
 
 namespace servogate::gateway {
 
@@ -65,6 +66,9 @@ class Resident {
   int blocks() const noexcept { return blocks_; }
   int lines() const noexcept { return lines_; }
   double speed() const noexcept { return speed_; }
+  /// Folder of what is learned; empty: nothing is kept.
+  const std::string& state_path() const noexcept { return state_path_; }
+  PlcDesk& plc() noexcept { return plc_; }
   Control& control() noexcept { return control_; }
   /// Newest whole image and alarms.
   const image::ProcessImage& image();
@@ -87,6 +91,7 @@ class Resident {
   std::uint64_t next_id_ = 1;
   image::ProcessImage image_;
   cycle::AlarmSnapshot alarms_;
+  PlcDesk plc_{*this};
 };
 
 }  // namespace servogate::gateway

@@ -3,11 +3,13 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <pwd.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -22,6 +24,17 @@ namespace {
 
 constexpr int kLinesPerTurn = 16;  ///< so that a client who floods leaves room for the others
 constexpr int kLookAfter_ms = 200;
+
+/// Name of who is at the other end; its number where it has none.
+std::string user_of(int fd) {
+  ucred who{};
+  socklen_t size = sizeof who;
+  if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return {};
+  passwd entry{}, *found = nullptr;
+  std::array<char, 4096> room{};
+  getpwuid_r(who.uid, &entry, room.data(), room.size(), &found);
+  return found != nullptr ? std::string(entry.pw_name) : std::to_string(who.uid);
+}
 
 }  // namespace
 
@@ -103,6 +116,8 @@ void SocketServer::accept_client() {
   clients_.emplace_back();
   Client& client = clients_.back();
   client.fd = fd;
+  client.connection.number = ++connections_;
+  client.connection.user = user_of(fd);
   if (clients_.size() <= kMostClients) return;
   client.output =
       refuse(says::kFull, {std::to_string(kMostClients)}, kInfrastructure, text::user_language()).line + "\n";

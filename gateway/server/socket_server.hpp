@@ -52,6 +52,7 @@ class SocketServer {
   int listener_ = -1;
   int wake_[2] = {-1, -1};
   std::vector<Client> clients_;
+  std::uint64_t connections_ = 0;  ///< so far; their numbers count from 1
   std::atomic<bool> stop_{false}, down_{false};
   std::thread thread_;
 };

@@ -158,6 +158,7 @@ std::string status_json(Resident& resident, text::Language language) {
   }
   status["buses"] = bus_list(m, image);
   status["alarms"] = alarm_list(resident, language);
+  status["forced"] = resident.plc().forced();
   return status.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -118,6 +118,7 @@ void Cycle::apply(const CycleInputs& in) noexcept {
 
 void Cycle::run_logic() noexcept {
   if (parts_.logic != nullptr) parts_.logic->scan(image_, notices_);
+  force();  // what follows in this cycle sees it too
   for (const image::AlarmRecord& r : notices_.records()) raise(r);
   notices_.clear();
 }

@@ -33,6 +33,7 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   context.homing_runs = homing_.running();
   context.manual_held = manual_held_;
   context.holder = holder_;
+  context.estop_place = parts_.estop_place ? &*parts_.estop_place : nullptr;
   image::Answer answer = decide(request, context);
   if (answer.refusal != 0) return answer;
   const image::Mode before = image_.processes[process].mode;
@@ -130,6 +131,9 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       }
       break;
     }
+    case RequestKind::logic:
+      if (parts_.logic == nullptr || !parts_.logic->order(request)) refusal = Refusal::logic_not_changed;
+      break;
     case RequestKind::stop:
       stop_manual();
       if (parts_.processes.empty()) break;

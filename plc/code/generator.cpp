@@ -235,7 +235,8 @@ void Generator::units() {
   const auto library = static_cast<int>(program_.files.size()) - 1;
   for (std::size_t i = 0; i < program_.units.size(); ++i) {
     const ir::Unit& u = program_.units[i];
-    image_->units.push_back({u.name, u.kind, u.frame, u.fixed_base, units_[i].entry, u.at.file >= library});
+    image_->units.push_back(
+        {u.name, u.kind, u.frame, u.fixed_base, units_[i].entry, units_[i].done, u.at.file >= library});
   }
 }
 

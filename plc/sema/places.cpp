@@ -147,6 +147,12 @@ void Analyzer::declare_located(Variable& out, const syntax::Variable& v) {
     if (l.place.overlaps(*place))
       report_.warning(v.address_location, texts::kAddressOverlap,
                       {v.address, l.text, l.name, std::to_string(l.at.line)});
+  for (const image::Symbol& symbol : symbols_)
+    if (symbol.place.overlaps(*place)) {
+      report_.warning(v.address_location, texts::kSymbolOverlap,
+                      {v.address, symbol.name, image::to_string(symbol.place)});
+      break;
+    }
   located_.push_back({v.name, v.address, *place, v.location});
   if (current_ < 0)
     program_.globals.push_back({v.name, out.type, 0, static_cast<std::int32_t>(out.cell), false});

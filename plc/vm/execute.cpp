@@ -149,9 +149,29 @@ struct Frame {
   std::uint32_t instance;
 };
 
+/// Times of the calls under way, beside the frames; only in a scan that is profiled.
+struct Profile {
+  std::int64_t began[kMaxCallDepth + 2];
+  std::int32_t unit[kMaxCallDepth + 2];
+
+  void enter(const Machine& m, int depth, std::uint32_t entry) noexcept {
+    unit[depth] = -1;
+    for (std::size_t u = 0; u < m.image->units.size(); ++u)
+      if (m.image->units[u].entry == entry && m.image->units[u].reached)
+        unit[depth] = static_cast<std::int32_t>(u);
+    began[depth] = m.clock->now_ns();
+  }
+  void leave(const Machine& m, int depth) noexcept {
+    if (unit[depth] >= 0) m.blocks[unit[depth]].add(m.clock->now_ns() - began[depth]);
+  }
+};
+
 }  // namespace
 
-Fault execute(Machine& m, std::uint32_t entry) noexcept {
+namespace {
+
+template <bool kProfiled>
+Fault run(Machine& m, std::uint32_t entry) noexcept {
   static const void* const table[] = {
 #define PLC_TYPED(op, cell, type) &&op##_##cell##_g, &&op##_##cell##_x,
 #define PLC_SINGLE(op) &&op##_g, &&op##_x,
@@ -165,6 +185,7 @@ Fault execute(Machine& m, std::uint32_t entry) noexcept {
   const Instruction* ip = code + entry;
   std::uint8_t* self = mem;
   Frame frames[kMaxCallDepth + 2];
+  [[maybe_unused]] std::conditional_t<kProfiled, Profile, char> profile;
   int depth = 0;
   Fault fault = Fault::none;
 
@@ -328,17 +349,19 @@ Fault execute(Machine& m, std::uint32_t entry) noexcept {
   DISPATCH()
 #define ENTER(where)                                                                                     \
   if ((m.budget -= ip->c) < 0) FAIL(Fault::budget);                                                      \
+  if constexpr (kProfiled) profile.enter(m, depth, ip->a);                                               \
   frames[depth++] = {static_cast<std::uint32_t>(ip - code) + 1, static_cast<std::uint32_t>(self - mem)}; \
   self = (where);                                                                                        \
   ip = code + ip->a;                                                                                     \
   DISPATCH()
 #define SINGLE_call(AT) ENTER(AT(ip->b))
 #define SINGLE_call_at(AT) ENTER(mem + get<std::uint32_t>(AT(ip->b)))
-#define SINGLE_ret(AT)                 \
-  if (depth == 0) return Fault::none;  \
-  --depth;                             \
-  ip = code + frames[depth].back;      \
-  self = mem + frames[depth].instance; \
+#define SINGLE_ret(AT)                              \
+  if (depth == 0) return Fault::none;               \
+  --depth;                                          \
+  if constexpr (kProfiled) profile.leave(m, depth); \
+  ip = code + frames[depth].back;                   \
+  self = mem + frames[depth].instance;              \
   DISPATCH()
 #define SINGLE_extra(AT)  \
   m.extra[0] = AT(ip->b); \
@@ -354,6 +377,12 @@ Fault execute(Machine& m, std::uint32_t entry) noexcept {
 failed:
   m.at = static_cast<std::uint32_t>(ip - code);
   return fault;
+}
+
+}  // namespace
+
+Fault execute(Machine& m, std::uint32_t entry) noexcept {
+  return m.blocks != nullptr && m.clock != nullptr ? run<true>(m, entry) : run<false>(m, entry);
 }
 
 }  // namespace servogate::plc::vm

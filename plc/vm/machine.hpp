@@ -16,6 +16,8 @@ struct Machine {
   std::int64_t budget = 0;
   const std::uint8_t* extra[2] = {nullptr, nullptr};  ///< third and fourth input of a native function
   std::uint32_t at = 0;                               ///< instruction of a fault
+  const image::Clock* clock = nullptr;                ///< measures calls, when `blocks` is there
+  Times* blocks = nullptr;                            ///< by Image::units
 };
 
 /// Runs from `entry` to the return of that body. real-time safe.

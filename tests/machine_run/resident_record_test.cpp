@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "gateway/run/realtime_loop.hpp"
@@ -136,6 +138,56 @@ TEST(ResidentRecord, of_two_programs_with_a_stop_and_a_typed_block_between_repla
   EXPECT_NE(replay.out.find("\"first_difference\":0"), std::string::npos) << replay.out;
   const TraceFile trace(scratch.path("trace.csv"));
   EXPECT_GT(trace.rows(), 5000u);
+}
+
+/// The mill's PLC file, changed.
+std::string other_logic(const Scratch& scratch) {
+  std::ifstream in(std::string(SERVOGATE_SOURCE_DIR) + "/examples/mill/mill.st");
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  const std::string lamp = "lamp_red := MC.alarm OR NOT MC.estop_ok;";
+  const std::size_t at = text.find(lamp);
+  EXPECT_NE(at, std::string::npos);
+  text.replace(at, lamp.size(), "(* \xD2 *) lamp_red := NOT lamp_red;");  // CP1251, as old files have it
+  return scratch.write("mill.st", text);
+}
+
+TEST(ResidentRecord, of_forces_and_another_PLC_program_replays_byte_by_byte) {
+  using nlohmann::json;
+  const Scratch scratch;
+  const std::string plc = other_logic(scratch);
+  {
+    RecordedControl control(scratch);
+    ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.axes[2].drive.online; }));
+    gateway::PlcDesk& desk = control.resident().plc();
+    const auto ask = [&](const json& request) {
+      const json answer = desk.carry_out(request, {image::Asker::command_line, 7, "somebody", {}});
+      return answer.value("ok", false) ? std::string() : answer.dump();
+    };
+    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(120)); };
+    EXPECT_EQ(ask({{"cmd", "plc_force"}, {"name", "door_closed"}, {"value", "FALSE"}}), "");
+    EXPECT_EQ(ask({{"cmd", "plc_force"}, {"name", "Mill.coolant_on"}, {"value", "TRUE"}}), "");
+    EXPECT_EQ(ask({{"cmd", "plc_force"}, {"name", "mist"}, {"value", "TRUE"}}), "");
+    wait();
+    EXPECT_EQ(ask({{"cmd", "plc_load"}, {"files", {plc}}, {"online", true}}), "");
+    wait();
+    EXPECT_EQ(ask({{"cmd", "plc_release"}, {"name", "Mill.coolant_on"}}), "");
+    desk.release_of(7);
+    wait();
+    EXPECT_EQ(ask({{"cmd", "plc_load"}}), "");
+    wait();
+    ASSERT_EQ(control.close(), "");
+  }
+  std::remove(plc.c_str());  // what was loaded stands in the record
+  const Ending replay =
+      servogate({"replay", scratch.path("record"), "--against", scratch.path("trace.csv"), "--json"});
+  EXPECT_EQ(replay.code, 0) << replay.err << replay.out;
+  EXPECT_NE(replay.out.find("\"first_difference\":0"), std::string::npos) << replay.out;
+  const TraceFile trace(scratch.path("trace.csv"));
+  int changes = 0;
+  const std::size_t lamp = trace.column("lamp_red");
+  for (std::size_t row = 1; row < trace.rows(); ++row)
+    changes += trace.at(row, lamp) != trace.at(row - 1, lamp) ? 1 : 0;
+  EXPECT_GT(changes, 50) << "the other program ran for a while";
 }
 
 }  // namespace

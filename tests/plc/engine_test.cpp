@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "plc/compile.hpp"
 #include "plc/run.hpp"
+#include "plc/transfer.hpp"
+#include "plc/vm/image.hpp"
 #include "tests/counting/allocations.hpp"
 
 namespace servogate::plc {
@@ -232,6 +235,114 @@ END_PROGRAM)";
   second.scan(fresh, 0);
   EXPECT_EQ(second.read(*second.find("counter")), "11") << "not the initial value";
   EXPECT_EQ(second.read(*second.find("Main.hours")), "2");
+}
+
+constexpr const char* kFirstProgram = R"(TYPE Light : (Dark, Bright); END_TYPE
+FUNCTION_BLOCK Counter VAR_INPUT up : BOOL R_EDGE; END_VAR VAR n : DINT; END_VAR IF up THEN n := n + 1; END_IF; END_FUNCTION_BLOCK
+VAR_GLOBAL total : DINT; END_VAR
+VAR_GLOBAL CONSTANT limit : INT := 5; END_VAR
+PROGRAM Main
+VAR RETAIN kept : DINT; END_VAR
+VAR flag : BOOL; c : Counter; t : TON; light : Light := Bright; list : ARRAY[1..3] OF INT; old : INT; END_VAR
+kept := kept + 1; total := total + 2; flag := TRUE; c(up := flag); t(IN := TRUE, PT := T#1s); list[2] := 7; old := limit;
+END_PROGRAM)";
+constexpr const char* kSecondProgram = R"(TYPE Light : (Dark, Bright, Blinking); END_TYPE
+FUNCTION_BLOCK Counter VAR_INPUT up : BOOL R_EDGE; END_VAR VAR n : DINT; END_VAR IF up THEN n := n + 1; END_IF; END_FUNCTION_BLOCK
+VAR_GLOBAL total : DINT; END_VAR
+VAR_GLOBAL CONSTANT limit : INT := 9; END_VAR
+PROGRAM Main
+VAR fresh : INT := 4; list : ARRAY[0..2] OF INT; flag : BOOL; light : Light; shown : INT; t : TON; c : Counter; END_VAR
+VAR RETAIN kept : DINT; END_VAR
+c(up := flag); t(IN := TRUE, PT := T#1s); shown := limit + fresh + list[2] + total + kept; light := light;
+END_PROGRAM)";
+
+/// The second program after a change, with one scan of its own.
+std::unique_ptr<Engine> changed(bool all, image::Packets& p, Transfer* plan = nullptr) {
+  Engine first(build(kFirstProgram));
+  for (int i = 0; i < 3; ++i) first.scan(p, i * 100 * image::kMillisecond);
+  auto second = std::make_unique<Engine>(build(kSecondProgram));
+  const Transfer transfer = plan_transfer(first.image(), second->image(), all);
+  if (plan != nullptr) *plan = transfer;
+  second->prepare_transfer(transfer);
+  const std::uint64_t before = counting::allocations();
+  second->take_over(first, transfer);
+  EXPECT_EQ(counting::allocations(), before) << "between two scans nothing is allocated";
+  second->scan(p, 300 * image::kMillisecond);
+  return second;
+}
+
+TEST(Transfer, of_an_online_change_keeps_every_variable_of_the_same_name_and_type) {
+  image::Packets p;
+  Transfer plan;
+  const auto e = changed(true, p, &plan);
+  EXPECT_EQ(e->read(*e->find("kept")), "3");
+  EXPECT_EQ(e->read(*e->find("total")), "6");
+  EXPECT_EQ(e->read(*e->find("list")), "[0,0,7]") << "by subscript, not by place";
+  EXPECT_EQ(e->read(*e->find("c.n")), "1") << "the edge goes on: no second one is seen";
+  EXPECT_EQ(e->read(*e->find("t.ET")), "\"T#300ms\"") << "timers run on";
+  EXPECT_EQ(e->read(*e->find("light")), "\"Dark\"") << "another enumeration of the same name begins anew";
+  EXPECT_EQ(e->read(*e->find("limit")), "9") << "constants are those of the new program";
+  EXPECT_EQ(e->read(*e->find("shown")), "29");
+  EXPECT_NE(std::find(plan.fresh.begin(), plan.fresh.end(), "Main.fresh"), plan.fresh.end());
+  EXPECT_NE(std::find(plan.given_up.begin(), plan.given_up.end(), "Main.old"), plan.given_up.end());
+}
+
+TEST(Transfer, without_it_keeps_the_retained_values_only) {
+  image::Packets p;
+  const auto e = changed(false, p);
+  EXPECT_EQ(e->read(*e->find("kept")), "3");
+  EXPECT_EQ(e->read(*e->find("total")), "0");
+  EXPECT_EQ(e->read(*e->find("t.ET")), "\"T#0ms\"");
+}
+
+/// A clock that goes on by a microsecond whenever somebody looks.
+struct Ticks final : image::Clock {
+  mutable image::Nanoseconds t = 0;
+  image::Nanoseconds now_ns() const noexcept override { return t += 1000; }
+};
+
+TEST(Engine, measures_tasks_always_and_blocks_when_somebody_looks) {
+  Engine e(build(R"(FUNCTION_BLOCK Inner VAR n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Outer VAR i : Inner; END_VAR i(); i(); END_FUNCTION_BLOCK
+PROGRAM Main VAR o : Outer; END_VAR o(); END_PROGRAM)"));
+  const Ticks clock;
+  e.measure(&clock);
+  image::Packets p;
+  e.scan(p, 0);
+  ASSERT_EQ(e.task_times().size(), 1u);
+  EXPECT_EQ(e.task_times()[0].count, 1);
+  EXPECT_EQ(e.task_times()[0].last, 1000);
+  std::vector<Times> blocks(e.image().units.size());
+  e.profile(blocks.data());
+  e.scan(p, 1);
+  e.profile(nullptr);
+  e.scan(p, 2);
+  for (std::size_t u = 0; u < blocks.size(); ++u) {
+    const std::string& name = e.image().units[u].name;
+    if (name != "Inner" && name != "Outer") continue;
+    EXPECT_EQ(blocks[u].count, name == "Inner" ? 2 : 1) << name;
+    EXPECT_EQ(blocks[u].last, name == "Inner" ? 1000 : 5000) << name;
+  }
+  EXPECT_EQ(e.task_times()[0].count, 3);
+}
+
+TEST(Engine, knows_where_variables_are_read_and_written) {
+  const auto image = build(R"(FUNCTION_BLOCK Lamp VAR_INPUT on : BOOL; END_VAR VAR_OUTPUT lit : BOOL; END_VAR
+lit := on;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR lamp : Lamp; list : ARRAY[1..3] OF INT; i : INT; END_VAR
+lamp(on := bit_in);
+FOR i := 1 TO 3 DO list[i] := i; END_FOR;
+bit_out := lamp.lit AND list[2] > 1;
+END_PROGRAM)",
+                           kSymbols);
+  std::string all;
+  for (const Image::Reference& r : image->references)
+    all += std::to_string(r.line) + (r.write ? " w " : " r ") + r.name + "\n";
+  for (const char* line : {"2 w Lamp.lit\n", "2 r Lamp.on\n", "5 w Main.lamp.on\n", "5 r bit_in\n", "6 w Main.i\n",
+                           "6 w Main.list\n", "6 r Main.i\n", "7 w bit_out\n", "7 r Main.lamp.lit\n",
+                           "7 r Main.list[2]\n"})
+    EXPECT_NE(all.find(line), std::string::npos) << line << "in\n" << all;
 }
 
 TEST(Engine, scans_without_allocating) {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
+#include "gateway/command/client/connection.hpp"
 #include "gateway/command/client/request.hpp"
 #include "gateway/command/client/wait.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/server/socket_client.hpp"
-#include "gateway/server/socket_path.hpp"
 
 namespace servogate::gateway::command {
 
@@ -17,17 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-const text::Entry kNoControl{
-    "client.no-control",
-    "no control is running (no socket in {0}); start one with `servogate up MACHINE.toml`",
-    "управление не запущено (нет сокета в {0}); запуск: `servogate up MACHINE.toml`"};
-const text::Entry kManyControls{"client.many-controls",
-                                "several controls are running; choose one with --socket: {0}",
-                                "запущено несколько управлений; выберите одно через --socket: {0}"};
-const text::Entry kNoConnection{"client.no-connection", "cannot reach the control at {0}: {1}",
-                                "нет связи с управлением {0}: {1}"};
-const text::Entry kConnectionLost{"client.connection-lost", "the control at {0} closed the connection",
-                                  "управление {0} закрыло соединение"};
 const text::Entry kOn{"client.on", "the drives are on, the brakes open",
                       "приводы включены, тормоза отпущены"};
 const text::Entry kOff{"client.off", "the drives are off", "приводы выключены"};
@@ -38,6 +26,9 @@ const text::Entry kProgramLine{"client.program-line", "program {0}, line {1} of 
 const text::Entry kSubprogramLine{"client.subprogram-line",
                                   "program {0}, line {1} of {2} (subprogram), {3} blocks done",
                                   "программа {0}, строка {1} в {2} (подпрограмма), выполнено кадров: {3}"};
+const text::Entry kForced{"client.forced", "forced: {0} = {1} (by {2})", "удерживается: {0} = {1} ({2})"};
+const text::Entry kForcedStays{"client.forced-stays", "forced: {0} = {1} (by {2}, stays)",
+                               "удерживается: {0} = {1} ({2}, постоянно)"};
 const text::Entry kMessage{"client.message", "message: {0}", "сообщение: {0}"};
 const text::Entry kWaits{"client.waits", "{0} ({1} s so far)", "{0} (уже {1} с)"};
 const text::Entry kProcess{"client.process", "process {0}: ", "процесс {0}: "};
@@ -80,6 +71,12 @@ void print_processes(const json& s) {
   }
 }
 
+void print_forced(const json& forced) {
+  for (const json& f : forced)
+    print_line(say(f.value("stays", false) ? kForcedStays : kForced,
+                   {of(f, "name"), of(f, "value"), of(f, "user")}));
+}
+
 void print_status(const json& s) {
   print_formatted("%s: %s, %s%s, %.3f s\n", of(s, "machine").c_str(), of(s, "mode").c_str(),
                   of(s, "state").c_str(), s.value("homing", false) ? ", homing" : "", s.value("time_s", 0.0));
@@ -96,6 +93,7 @@ void print_status(const json& s) {
   for (const json& sp : s.value("spindles", json::array()))
     print_formatted("  spindle %.0f rpm (commanded %.0f)  %s\n", sp.value("actual_rpm", 0.0),
                     sp.value("command_rpm", 0.0), of(sp, "drive").c_str());
+  print_forced(s.value("forced", json::array()));
 }
 
 /// Each first fault with its remedy, what followed from it indented below it.
@@ -107,42 +105,14 @@ void print_alarms(const json& alarms) {
   }
 }
 
-int find_socket(const ClientOptions& options, std::string& path) {
-  if (!options.socket.empty()) {
-    path = options.socket;
-    return kDone;
-  }
-  if (const char* named = std::getenv("SERVOGATE_SOCKET"); named != nullptr && *named != '\0') {
-    path = named;
-    return kDone;
-  }
-  const std::vector<std::string> found = known_sockets();
-  if (found.empty()) {
-    complain(kNoControl, {socket_folder()});
-    return kInfrastructure;
-  }
-  if (found.size() > 1) {
-    std::string list;
-    for (const std::string& f : found) list += (list.empty() ? "" : ", ") + f;
-    complain(kManyControls, {list});
-    return kWrongUse;
-  }
-  path = found.front();
-  return kDone;
-}
-
 }  // namespace
 
 int client(const ClientOptions& options) {
   const json request = request_of(options);
   if (request.is_null()) return kWrongUse;
   std::string path;
-  if (const int code = find_socket(options, path); code != kDone) return code;
   SocketClient connection;
-  if (const std::string problem = connection.connect(path); !problem.empty()) {
-    complain(kNoConnection, {path, problem});
-    return kInfrastructure;
-  }
+  if (const int found = connect_to_control(options.socket, connection, path); found != kDone) return found;
   const bool power = options.command == "power", continuous = request["cmd"] == "jog_continuous";
   const bool waits = options.wait || (power && !options.no_wait);
   if (continuous || waits) watch_operator();
@@ -159,8 +129,7 @@ int client(const ClientOptions& options) {
     }
   }
   if (reply.is_null()) {
-    complain(kConnectionLost, {path});
-    return kInfrastructure;
+    return connection_lost(path);
   }
   if (options.json) {
     print_line(reply.dump(1, ' ', false, json::error_handler_t::replace));

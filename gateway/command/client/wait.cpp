@@ -224,6 +224,8 @@ void watch_operator() {
   std::signal(SIGTERM, on_interrupt);
 }
 
+bool operator_interrupted() { return interrupts > 0; }
+
 json hold_jog(SocketClient& client, const json& request, const json& begun) {
   const int pause_ms = std::max(1, static_cast<int>(begun.value("keep_alive_ms", 30.0)));
   while (interrupts == 0) {

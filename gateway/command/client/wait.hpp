@@ -11,6 +11,8 @@ nlohmann::json ask(SocketClient& client, const nlohmann::json& request);
 
 /// From here on Ctrl-C and SIGTERM are wishes of the operator that the functions below see.
 void watch_operator();
+/// True once Ctrl-C or SIGTERM has come since watch_operator().
+bool operator_interrupted();
 
 /// Keeps a continuous jog alive until Enter, Ctrl-C, the end of standard input, or its own end. `begun`: the
 /// answer to its request. Returns the last answer; null: the connection is gone.

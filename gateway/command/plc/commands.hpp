@@ -8,5 +8,9 @@ namespace servogate::gateway::command {
 int plc_run(const PlcRunOptions& options);
 int plc_check(const PlcCheckOptions& options);
 int plc_test(const PlcTestOptions& options);
+int plc_list(const PlcListOptions& options);
+int plc_watch(const PlcWatchOptions& options);
+int plc_force(const PlcForceOptions& options);
+int plc_load(const PlcLoadOptions& options);
 
 }  // namespace servogate::gateway::command

@@ -5,6 +5,7 @@
 
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/interface_places.hpp"
 
 namespace servogate::cycle {
 
@@ -29,8 +30,8 @@ constexpr std::uint32_t kResets = bit(RequestKind::reset) | bit(RequestKind::ack
 constexpr std::uint32_t kProgram = bit(RequestKind::start) | bit(RequestKind::step) |
                                    bit(RequestKind::resume) | bit(RequestKind::mode) |
                                    bit(RequestKind::override_feed);
-constexpr std::uint32_t kPlaces =
-    bit(RequestKind::set_place) | bit(RequestKind::force) | bit(RequestKind::release_force);
+constexpr std::uint32_t kPlaces = bit(RequestKind::set_place) | bit(RequestKind::force) |
+                                  bit(RequestKind::release_force) | bit(RequestKind::logic);
 constexpr std::uint32_t kPanel = kStops | kJogs | kResets | kProgram | bit(RequestKind::power) |
                                  bit(RequestKind::home) | bit(RequestKind::zero);
 
@@ -134,6 +135,7 @@ class Decision {
   bool step() noexcept;
   bool resume() noexcept;
   bool place(bool write) noexcept;
+  bool not_of_emergency_stop(const image::Place& place) noexcept;
   bool decide_kind() noexcept;
 
   const Request& r_;
@@ -142,7 +144,7 @@ class Decision {
 };
 
 Answer Decision::run() noexcept {
-  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::release_force;
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::logic;
   if (!known)
     refuse(Refusal::unknown_request);
   else if ((may_ask(r_.asker) & bit(r_.kind)) == 0)
@@ -184,6 +186,8 @@ bool Decision::decide_kind() noexcept {
     case RequestKind::force:
     case RequestKind::release_force:
       return place(false);
+    case RequestKind::logic:
+      return r_.value == 1.0 || (no_program() && no_homing() && all_at_rest());
     default:
       return true;  // hold, stop, reset, quick stop, acknowledge: always
   }
@@ -298,6 +302,12 @@ bool Decision::resume() noexcept {
   return no_alarm(Reaction::stop_at_block_end) && no_homing() && not_held_by_another() && all_at_rest();
 }
 
+/// The chain and what is made of it are shown as they are, whoever asks.
+bool Decision::not_of_emergency_stop(const image::Place& place) noexcept {
+  const bool chain = c_.estop_place != nullptr && c_.estop_place->overlaps(place);
+  return !(chain || places::kEstopOk.overlaps(place)) || refuse(Refusal::emergency_stop_place);
+}
+
 bool Decision::place(bool write) noexcept {
   if (r_.packet > static_cast<int>(image::Packet::v) || r_.format > static_cast<int>(image::Format::ch))
     return refuse(Refusal::bad_value, -1, r_.packet);
@@ -309,7 +319,7 @@ bool Decision::place(bool write) noexcept {
   const std::uint64_t end = first + p.bytes();
   const std::uint32_t size = c_.image->packets.size(p.packet);
   if (end > size) return refuse(Refusal::place_outside, -1, static_cast<double>(first), size);
-  if (!write) return true;
+  if (!write) return r_.kind != RequestKind::force || not_of_emergency_stop(p);
   constexpr std::uint32_t kInterfaceEnd = image::kMachineBase + 8;
   const bool interface = p.packet == image::Packet::k && first < kInterfaceEnd && end > image::kInterfaceBase;
   const bool signal = p.packet == image::Packet::a && r_.asker != Asker::scenario;

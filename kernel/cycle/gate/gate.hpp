@@ -33,18 +33,20 @@ enum class Refusal : std::uint16_t {
   no_program,
   wrong_mode,  ///< value: the mode in force
   homing_runs,
-  axis_owned,           ///< axis; value: image::AxisOwner
-  axis_moves,           ///< axis
-  manual_held,          ///< value: image::Asker that holds manual control
-  on_hard_limit,        ///< axis; value: +1 or -1
-  at_soft_limit,        ///< axis; limit: the travel limit, value: the position
-  no_home_needed,       ///< axis: needs no homing
-  place_not_writable,   ///< value: byte
-  place_outside,        ///< value: byte; limit: size of the packet
-  start_not_permitted,  ///< the place that permits starting is FALSE
-  jog_range,            ///< axis; value: the distance; limit: the longest one
-  zero_range,           ///< axis; value: what the position was to be; limit: the largest magnitude
-  override_range,       ///< value: the ratio; limit: the largest one
+  axis_owned,            ///< axis; value: image::AxisOwner
+  axis_moves,            ///< axis
+  manual_held,           ///< value: image::Asker that holds manual control
+  on_hard_limit,         ///< axis; value: +1 or -1
+  at_soft_limit,         ///< axis; limit: the travel limit, value: the position
+  no_home_needed,        ///< axis: needs no homing
+  place_not_writable,    ///< value: byte
+  place_outside,         ///< value: byte; limit: size of the packet
+  start_not_permitted,   ///< the place that permits starting is FALSE
+  jog_range,             ///< axis; value: the distance; limit: the longest one
+  zero_range,            ///< axis; value: what the position was to be; limit: the largest magnitude
+  override_range,        ///< value: the ratio; limit: the largest one
+  emergency_stop_place,  ///< a place of the emergency stop is never forced
+  logic_not_changed,     ///< the prepared change of the PLC is not there any more, or finds no room
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis
@@ -62,6 +64,7 @@ struct GateContext {
   bool manual_held = false;  ///< somebody holds manual control (jogs, or a pendant with its dead-man)
   image::Asker holder = image::Asker::command_line;
   bool start_permitted = true;
+  const image::Place* estop_place = nullptr;  ///< emergency-stop chain, nullptr: none is declared
 };
 
 /// Axes that a `home` request names, as bits: the one of its axis; without one those of its value, or all of

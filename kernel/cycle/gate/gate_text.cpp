@@ -59,8 +59,13 @@ constexpr text::Entry kTexts[] = {
      "{0} не может получить значение {1} {3}: возможно от -{2} до {2} {3}"},
     {"gate.override_range", "a feed override of {1} % is not possible: 0 to {2} %",
      "коррекция подачи {1} % невозможна: от 0 до {2} %"},
+    {"gate.emergency_stop_place", "the emergency stop cannot be forced",
+     "аварийный останов нельзя удерживать"},
+    {"gate.logic_not_changed",
+     "the PLC did not take the change: it came too late, or 256 variables are forced",
+     "ПЛК не принял изменение: оно опоздало, или удерживается уже 256 переменных"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::override_range) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::logic_not_changed) + 1);
 
 constexpr std::string_view kAskers[][2] = {{"the command line", "командная строка"},
                                            {"the page", "страница"},

@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/server/plc_desk.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+
+#include "gateway/cli/options.hpp"
+#include "gateway/files/read_file.hpp"
+#include "gateway/machine/consequences.hpp"
+#include "gateway/report/report.hpp"
+#include "gateway/server/plc_view.hpp"
+#include "gateway/server/resident.hpp"
+#include "gateway/server/texts.hpp"
+#include "plc/values.hpp"
+#include "plc/vm/image.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+using nlohmann::json;
+using text::Entry;
+
+constexpr int kScanPatience_ms = 2000;
+
+const Entry kNoPlc{"plc.none", "this machine has no PLC program", "у этого станка нет программы ПЛК"};
+const Entry kNoFiles{"plc.no-files", "cannot read {0}", "не читается {0}"};
+const Entry kNotCompiled{"plc.errors", "the PLC program was not changed: it has errors",
+                         "программа ПЛК не заменена: в ней есть ошибки"};
+const Entry kChanged{"plc.changed", "the PLC runs {0}: {1} values kept, {2} variables begin anew",
+                     "ПЛК выполняет {0}: сохранено значений {1}, начато заново переменных {2}"};
+const Entry kNotLogged{"plc.not-logged", "the change of the PLC could not be written to the change log: {0}",
+                       "замена программы ПЛК не записана в журнал: {0}"};
+const Entry kNoVariable{"plc.no-variable", "there is no variable or place '{0}'",
+                        "переменной или места «{0}» нет"};
+const Entry kNoValue{"plc.no-value", "'{0}' is no value for '{1}'", "«{0}» не является значением для «{1}»"};
+const Entry kForced{"plc.forced", "{0} is forced to {1}", "{0} удерживается на {1}"};
+const Entry kReleased{"plc.released", "{0} is let go", "{0} освобождена"};
+const Entry kNotForced{"plc.not-forced", "'{0}' is not forced", "«{0}» не удерживается"};
+const Entry kNothingForced{"plc.nothing-forced", "nothing is forced", "ничего не удерживается"};
+const Entry kAllReleased{"plc.all-released", "everything is let go", "всё освобождено"};
+const Entry kNoBody{"plc.no-body", "there is no program or instance '{0}'",
+                    "программы или экземпляра «{0}» нет"};
+const Entry kTooManyNames{"plc.names", "at most {0} names at a time", "не более {0} имён за раз"};
+
+json told(const Entry& entry, const std::vector<std::string>& arguments, text::Language language) {
+  return {{"ok", true}, {"exit", kDone}, {"text", text::render(entry, arguments, language)}};
+}
+json refused(const Entry& entry, const std::vector<std::string>& arguments, int exit,
+             text::Language language) {
+  return {
+      {"ok", false}, {"code", entry.id}, {"text", text::render(entry, arguments, language)}, {"exit", exit}};
+}
+
+std::string joined(const std::vector<std::string>& list) {
+  std::string out;
+  for (const std::string& s : list) out += (out.empty() ? "" : ", ") + s;
+  return out;
+}
+
+/// Type of the PLC that a place of a packet has; nullptr: characters.
+const plc::Type* type_of(const plc::TypeTable& types, image::Format format) {
+  constexpr plc::Kind kKinds[] = {plc::Kind::boolean, plc::Kind::usint, plc::Kind::int_,
+                                  plc::Kind::dint,    plc::Kind::real,  plc::Kind::lreal};
+  const auto i = static_cast<std::size_t>(format);
+  return i < std::size(kKinds) ? types.elementary(kKinds[i]) : nullptr;
+}
+
+std::optional<image::Place> machine_place(const machine::MachineConfig& m, const std::string& name) {
+  for (const image::Symbol& s : m.symbol_table())
+    if (plc::same_name(s.name, name)) return s.place;
+  return image::parse_place(name);
+}
+
+}  // namespace
+
+json PlcDesk::ask(image::Request request, const PlcAsker& who) {
+  request.asker = who.asker;
+  image::Answer answer;
+  if (!resident_.ask(request, answer)) return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
+  if (answer.refusal == 0) return {{"ok", true}};
+  return {{"ok", false},
+          {"code", cycle::refusal_texts()[answer.refusal].id},
+          {"text", cycle::render(answer, resident_.control().machine().letters(), who.language)},
+          {"exit", kAlarm}};
+}
+
+json PlcDesk::change(const LogicChange& change, double value, const PlcAsker& who) {
+  image::Request request;
+  request.kind = image::RequestKind::logic;
+  request.index = change.number;
+  request.value = value;
+  json answer = ask(request, who);
+  if (!answer["ok"].get<bool>()) resident_.control().logic()->withdraw(change.number);
+  resident_.control().logic()->settle();
+  return answer;
+}
+
+json PlcDesk::carry_out(const json& request, const PlcAsker& who) {
+  if (resident_.control().logic() == nullptr) return refused(kNoPlc, {}, kAlarm, who.language);
+  resident_.control().logic()->settle();
+  const std::string command = request.value("cmd", "");
+  if (command == "plc_load") return load(request, who);
+  if (command == "plc_force") return force(request, who);
+  if (command == "plc_release") return release(request, who);
+  if (command == "plc_watch") return watch(request, who);
+  if (command == "plc_list") return list(who);
+  return refused(says::kUnknown, {command}, kWrongUse, who.language);
+}
+
+json PlcDesk::load(const json& request, const PlcAsker& who) {
+  Control& control = resident_.control();
+  std::vector<std::string> names = request.value("files", std::vector<std::string>{});
+  if (names.empty())
+    for (const std::string& source : control.machine().plc.sources)
+      names.push_back(control.machine().resolve(source));
+  LogicChange change;
+  change.kind = LogicChange::Kind::load;
+  change.online = request.value("online", false);
+  for (const std::string& name : names) {
+    std::string reason;
+    auto content = files::read_file(name, files::kMostOfSource, reason);
+    if (!content) return refused(kNoFiles, {name + ": " + reason}, kWrongUse, who.language);
+    change.files.push_back({name, std::move(*content)});
+  }
+  change.number = control.next_logic_change();
+  const PlcLogic::Plan plan = control.prepare(change);
+  json more{{"findings", json::parse(machine::to_json(plan.findings), nullptr, false)}};
+  if (!plan.possible) {
+    json answer = refused(kNotCompiled, {}, kAlarm, who.language);
+    std::string words = answer["text"];
+    for (const text::Finding& f : plan.findings) words += "\n" + f.str(who.language) + "\n" + f.excerpt();
+    while (words.ends_with('\n')) words.pop_back();
+    answer["text"] = words;
+    answer.update(more);
+    return answer;
+  }
+  json answer = this->change(change, request.value("while_running", false) ? 1.0 : 0.0, who);
+  if (!answer["ok"].get<bool>()) return answer;
+  for (const std::string& name : plan.forces_lost)
+    std::erase_if(forces_, [&](const Force& f) { return !f.place && plc::same_name(f.name, name); });
+  answer = told(kChanged, {joined(names), std::to_string(plan.kept), std::to_string(plan.fresh.size())},
+                who.language);
+  more.update({{"files", names},
+               {"online", change.online},
+               {"kept", plan.kept},
+               {"fresh", plan.fresh},
+               {"given_up", plan.given_up},
+               {"forces_lost", plan.forces_lost}});
+  answer.update(more);
+  if (const std::string problem = log(change, answer, who); !problem.empty())
+    answer["text"] = answer["text"].get<std::string>() + "\n" +
+                     text::render(kNotLogged, std::vector<std::string>{problem}, who.language);
+  return answer;
+}
+
+/// One JSON object a line in plc-changes.jsonl of the state directory; empty: done, or there is none.
+std::string PlcDesk::log(const LogicChange& change, const json& told, const PlcAsker& who) {
+  if (resident_.state_path().empty()) return {};
+  char when[32] = "";
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::strftime(when, sizeof when, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  json files = json::array();
+  for (const plc::SourceFile& f : change.files)
+    files.push_back({{"path", f.name}, {"sha256", report::sha256(f.text)}});
+  const json entry{{"schema", 1},
+                   {"when", when},
+                   {"user", who.user},
+                   {"cycle", resident_.image().now.number},
+                   {"online", change.online},
+                   {"files", files},
+                   {"kept", told["kept"]},
+                   {"fresh", told["fresh"]},
+                   {"given_up", told["given_up"]}};
+  std::error_code code;
+  std::filesystem::create_directories(resident_.state_path(), code);
+  const std::string path = (std::filesystem::path(resident_.state_path()) / "plc-changes.jsonl").string();
+  const std::string line = entry.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  const bool good = fd >= 0 && ::write(fd, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
+                    ::fsync(fd) == 0;
+  const int problem = errno;
+  if (fd >= 0) ::close(fd);
+  return good ? std::string() : path + ": " + std::system_category().message(problem);
+}
+
+/// The request that forces a packet place to a value; nullopt: the name is no place. `wrong`: no such value.
+std::optional<image::Request> PlcDesk::place_request(const std::string& name, const std::string& value,
+                                                     bool& wrong) {
+  Control& control = resident_.control();
+  const std::shared_ptr<const LogicProgram> program = control.logic()->program();
+  const plc::Image& image = program->engine.image();
+  std::optional<image::Place> place;
+  if (const auto handle = program->engine.find(name); handle && handle->place >= 0)
+    place = image.places[static_cast<std::size_t>(handle->place)].place;
+  else if (!handle)
+    place = machine_place(control.machine(), name);
+  if (!place) return std::nullopt;
+  image::Request request;
+  request.kind = image::RequestKind::force;
+  request.packet = static_cast<std::uint8_t>(place->packet);
+  request.format = static_cast<std::uint8_t>(place->format);
+  request.index = place->index;
+  request.length = place->length;
+  const plc::Type* type = type_of(*image.types, place->format);
+  std::uint8_t bytes[8] = {};
+  wrong = type == nullptr || (!value.empty() && !plc::parse_value(*type, value, bytes));
+  if (!wrong && !value.empty()) request.value = plc::to_number(*type, bytes);
+  return request;
+}
+
+json PlcDesk::force(const json& request, const PlcAsker& who) {
+  Force f;
+  f.name = request.value("name", "");
+  f.value = request.value("value", "");
+  f.user = who.user;
+  f.owner = request.value("stay", false) ? 0 : who.connection;
+  bool wrong = false;
+  json answer;
+  if (auto place = place_request(f.name, f.value, wrong)) {
+    if (wrong || f.value.empty()) return refused(kNoValue, {f.value, f.name}, kWrongUse, who.language);
+    answer = ask(*place, who);
+    place->kind = image::RequestKind::release_force;
+    place->value = 0.0;
+    f.place = place;
+  } else {
+    LogicChange change;
+    change.kind = LogicChange::Kind::force;
+    change.name = f.name;
+    change.value = f.value;
+    change.number = resident_.control().next_logic_change();
+    if (!resident_.control().logic()->program()->engine.find(f.name))
+      return refused(kNoVariable, {f.name}, kWrongUse, who.language);
+    if (!resident_.control().prepare(change).possible)
+      return refused(kNoValue, {f.value, f.name}, kWrongUse, who.language);
+    answer = this->change(change, 1.0, who);
+  }
+  if (!answer["ok"].get<bool>()) return answer;
+  std::erase_if(forces_, [&](const Force& other) { return plc::same_name(other.name, f.name); });
+  forces_.push_back(f);
+  return told(kForced, {f.name, f.value}, who.language);
+}
+
+bool PlcDesk::let_go(const Force& force, const PlcAsker& who) {
+  if (force.place) return ask(*force.place, who)["ok"].get<bool>();
+  LogicChange change;
+  change.kind = LogicChange::Kind::release;
+  change.name = force.name;
+  change.number = resident_.control().next_logic_change();
+  return !resident_.control().prepare(change).possible || this->change(change, 1.0, who)["ok"].get<bool>();
+}
+
+json PlcDesk::release(const json& request, const PlcAsker& who) {
+  const std::string name = request.value("name", "");
+  const bool all = name.empty();
+  if (all && forces_.empty()) return told(kNothingForced, {}, who.language);
+  bool found = false;
+  for (std::size_t i = forces_.size(); i-- > 0;) {
+    if (!all && !plc::same_name(forces_[i].name, name)) continue;
+    found = true;
+    if (!let_go(forces_[i], who)) return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
+    forces_.erase(forces_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  if (!found) return refused(kNotForced, {name}, kWrongUse, who.language);
+  return all ? told(kAllReleased, {}, who.language) : told(kReleased, {name}, who.language);
+}
+
+void PlcDesk::release_of(std::uint64_t connection) {
+  for (std::size_t i = forces_.size(); i-- > 0;)
+    if (forces_[i].owner == connection && connection != 0) {
+      let_go(forces_[i], {});
+      forces_.erase(forces_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+}
+
+json PlcDesk::forced() const {
+  json out = json::array();
+  for (const Force& f : forces_)
+    out.push_back({{"name", f.name}, {"value", f.value}, {"user", f.user}, {"stays", f.owner == 0}});
+  return out;
+}
+
+/// A packet place that is forced: what the packet holds, whatever the PLC has written.
+std::optional<std::string> PlcDesk::forced_value(const std::string& name, const plc::Type& type) const {
+  for (const Force& f : forces_) {
+    std::array<std::uint8_t, 8> bytes{};
+    if (f.place && plc::same_name(f.name, name) && type.size <= bytes.size() &&
+        plc::parse_value(type, f.value, bytes.data()))
+      return plc::to_json(type, bytes.data());
+  }
+  return std::nullopt;
+}
+
+json PlcDesk::watch(const json& request, const PlcAsker& who) {
+  if (request.contains("body")) return watch_body(request.value("body", ""), who);
+  constexpr std::size_t kMostNames = 500;
+  PlcLogic& logic = *resident_.control().logic();
+  const std::shared_ptr<const LogicProgram> program = logic.program();
+  const plc::Image& image = program->engine.image();
+  const auto names = request.value("names", std::vector<std::string>{});
+  if (names.size() > kMostNames)
+    return refused(kTooManyNames, {std::to_string(kMostNames)}, kWrongUse, who.language);
+  LogicSample sample;
+  sample.profile = request.value("times", false);
+  std::vector<std::optional<plc::Handle>> handles;
+  for (const std::string& name : names) {
+    handles.push_back(program->engine.find(name));
+    if (handles.back()) {
+      sample.ranges.push_back({handles.back()->address, handles.back()->type->size});
+    } else if (const auto place = machine_place(resident_.control().machine(), name);
+               !place || type_of(*image.types, place->format) == nullptr) {
+      return refused(kNoVariable, {name}, kWrongUse, who.language);
+    }
+  }
+  if (!logic.look(sample, kScanPatience_ms))
+    return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
+  const image::ProcessImage& now = resident_.image();
+  json values = json::array();
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::string text;
+    if (handles[i]) {
+      text = forced_value(names[i], *handles[i]->type)
+                 .value_or(plc::to_json(*handles[i]->type, sample.bytes.data() + at, handles[i]->bit));
+      at += handles[i]->type->size;
+    } else {
+      const auto place = machine_place(resident_.control().machine(), names[i]);
+      const plc::Type* type = type_of(*image.types, place->format);
+      std::uint8_t bytes[8] = {};
+      plc::from_number(*type, now.packets.number(*place), bytes);
+      text = plc::to_json(*type, bytes);
+    }
+    values.push_back({{"name", names[i]}, {"value", json::parse(text, nullptr, false)}});
+  }
+  json answer{{"ok", true},
+              {"exit", kDone},
+              {"schema", 1},
+              {"cycle", sample.at.number},
+              {"time_s", sample.at.seconds()},
+              {"values", values},
+              {"forced", forced()}};
+  if (!sample.profile) return answer;
+  const auto row = [](const std::string& name, const plc::Times& t) {
+    const double count = t.count > 0 ? static_cast<double>(t.count) : 1.0;
+    return json{{"name", name},
+                {"last_us", static_cast<double>(t.last) * 1e-3},
+                {"average_us", static_cast<double>(t.sum) * 1e-3 / count},
+                {"most_us", static_cast<double>(t.most) * 1e-3},
+                {"count", t.count}};
+  };
+  answer["tasks"] = answer["blocks"] = json::array();
+  for (std::size_t i = 0; i < sample.tasks.size(); ++i)
+    answer["tasks"].push_back(row(image.tasks[i].name, sample.tasks[i]));
+  for (std::size_t i = 0; i < sample.blocks.size(); ++i)
+    if (sample.blocks[i].count > 0) answer["blocks"].push_back(row(image.units[i].name, sample.blocks[i]));
+  return answer;
+}
+
+json PlcDesk::watch_body(const std::string& name, const PlcAsker& who) {
+  PlcLogic& logic = *resident_.control().logic();
+  const std::shared_ptr<const LogicProgram> program = logic.program();
+  const std::vector<std::string> programs = program_names(program->engine.image());
+  const std::string wanted = name.empty() && !programs.empty() ? programs.front() : name;
+  const WatchedBody body = watched_body(*program, wanted);
+  if (body.lines.empty()) return refused(kNoBody, {wanted}, kWrongUse, who.language);
+  LogicSample sample;
+  for (const WatchedLine& line : body.lines)
+    for (const WatchedValue& v : line.values) sample.ranges.push_back({v.address, v.type->size});
+  if (!logic.look(sample, kScanPatience_ms))
+    return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
+  std::size_t at = 0;
+  json lines = json::array();
+  for (const WatchedLine& line : body.lines) {
+    json values = json::array();
+    for (const WatchedValue& v : line.values) {
+      const std::string text =
+          forced_value(v.name, *v.type).value_or(plc::to_json(*v.type, sample.bytes.data() + at));
+      values.push_back({{"name", v.name}, {"value", json::parse(text, nullptr, false)}});
+      at += v.type->size;
+    }
+    lines.push_back({{"line", line.line}, {"text", line.text}, {"values", values}});
+  }
+  return {{"ok", true},
+          {"exit", kDone},
+          {"schema", 1},
+          {"cycle", sample.at.number},
+          {"time_s", sample.at.seconds()},
+          {"body", wanted},
+          {"file", body.file},
+          {"lines", lines},
+          {"forced", forced()}};
+}
+
+json PlcDesk::list(const PlcAsker&) {
+  const std::shared_ptr<const LogicProgram> program = resident_.control().logic()->program();
+  json files = json::array();
+  for (const plc::SourceFile& f : program->sources) files.push_back(f.name);
+  return {{"ok", true},
+          {"exit", kDone},
+          {"schema", 1},
+          {"files", files},
+          {"symbols", list_symbols(program->engine.image())},
+          {"forced", forced()}};
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/image/request.hpp"
+#include "firmware_if/text/finding.hpp"
+#include "gateway/compose/logic_change.hpp"
+#include "plc/types/type.hpp"
+
+namespace servogate::gateway {
+
+class Resident;
+
+/// Who has asked for something at the PLC.
+struct PlcAsker {
+  image::Asker asker = image::Asker::command_line;
+  std::uint64_t connection = 0;  ///< what is released when it ends
+  std::string user;              ///< name on the computer
+  text::Language language = text::Language::english;
+};
+
+/// What clients do to the PLC of a running control: see its values, force them, load another program. Every
+/// change goes through the gate as a request. For the server's thread.
+class PlcDesk {
+ public:
+  explicit PlcDesk(Resident& resident) : resident_(resident) {}
+
+  /// Carries out `plc_load`, `plc_force`, `plc_release`, `plc_watch` or `plc_list`; the answer is what
+  /// docs/control-socket.md says.
+  nlohmann::json carry_out(const nlohmann::json& request, const PlcAsker& who);
+  /// Lets go what a connection has forced.
+  void release_of(std::uint64_t connection);
+  /// All that is forced: name, value, who, and whether it stays.
+  nlohmann::json forced() const;
+
+ private:
+  struct Force {
+    std::string name, value, user;
+    std::optional<image::Request> place;  ///< of a packet place: the request that lets it go
+    std::uint64_t owner = 0;              ///< connection; 0: it stays
+  };
+  using json = nlohmann::json;
+  json load(const json& request, const PlcAsker& who);
+  json force(const json& request, const PlcAsker& who);
+  json release(const json& request, const PlcAsker& who);
+  json watch(const json& request, const PlcAsker& who);
+  json watch_body(const std::string& name, const PlcAsker& who);
+  json list(const PlcAsker& who);
+  json times(json answer, const PlcAsker& who);
+  json change(const LogicChange& change, double value, const PlcAsker& who);
+  json ask(image::Request request, const PlcAsker& who);
+  bool let_go(const Force& force, const PlcAsker& who);
+  std::optional<image::Request> place_request(const std::string& name, const std::string& value, bool& wrong);
+  std::optional<std::string> forced_value(const std::string& name, const plc::Type& type) const;
+  std::string log(const LogicChange& change, const json& told, const PlcAsker& who);
+
+  Resident& resident_;
+  std::vector<Force> forces_;
+};
+
+}  // namespace servogate::gateway

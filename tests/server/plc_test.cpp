@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// The PLC of a running control, as its programmer sees and changes it.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "tests/server/rig.hpp"
+
+namespace servogate::gateway::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// Value of a variable or place; null: there is none.
+json value(Shell& shell, const std::string& name) {
+  const json answer = shell.ask({{"cmd", "plc_watch"}, {"names", {name}}});
+  return answer.value("ok", false) ? answer["values"][0]["value"] : json();
+}
+
+bool becomes(Shell& shell, const std::string& name, const json& wanted) {
+  return shell.until([&](const json&) { return value(shell, name) == wanted; }, 20.0);
+}
+
+/// mill.st in the test's folder, with a counter in it.
+std::string mill_with(const Shell& shell, const std::string& declaration, const std::string& statement) {
+  std::ifstream in(Shell::example("mill/mill.st"));
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  const std::string program = "PROGRAM Mill\n", end = "END_PROGRAM";
+  text.replace(text.find(program), program.size(), program + declaration + "\n");
+  text.replace(text.find(end), end.size(), statement + "\n" + end);
+  const std::string path = (shell.folder() / "mill.st").string();
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(PlcOfAControl, is_listed_with_type_place_and_where_it_is_read_and_written) {
+  Shell shell;
+  shell.up();
+  const Outcome o = shell.run({"plc", "list"});
+  EXPECT_EQ(o.exit, 0) << o.err;
+  EXPECT_TRUE(has(o.out, "door_closed                  BOOL           SA16")) << o.out.substr(0, 2000);
+  EXPECT_TRUE(has(o.out, "tool_release")) << o.out.substr(0, 500);
+  const json list = json::parse(shell.run({"plc", "list", "--json"}).out);
+  bool found = false;
+  for (const json& s : list["symbols"])
+    if (s["name"] == "Mill.spindle_on") {
+      found = true;
+      EXPECT_EQ(s["type"], "BOOL");
+      EXPECT_GE(s["written"].size(), 4u);
+      EXPECT_GE(s["read"].size(), 1u);
+    }
+  EXPECT_TRUE(found);
+  const json files = json::parse(
+      shell.run({"plc", "list", Shell::example("mill/mill.st"), "--machine", Shell::example("mill/machine.toml"), "--json"})
+          .out);
+  EXPECT_EQ(files["symbols"], list["symbols"]) << "the same without a control";
+}
+
+TEST(PlcOfAControl, is_watched_by_name_and_beside_its_source_lines) {
+  Shell shell;
+  shell.up();
+  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  const Outcome names = shell.run({"plc", "watch", "door_closed", "Mill.change.step", "SK10.IN", "--samples", "2",
+                                   "--every", "20"});
+  EXPECT_EQ(names.exit, 0) << names.err;
+  EXPECT_TRUE(has(names.out, "  Mill.change.step = Idle\n")) << names.out;
+  EXPECT_TRUE(has(names.out, "  SK10.IN = 0\n")) << names.out;
+  const Outcome objects =
+      shell.run({"plc", "watch", "MC.estop_ok", "--json", "--samples", "3", "--every", "1"});
+  std::istringstream lines(objects.out);
+  std::int64_t before = -1;
+  int samples = 0;
+  for (std::string line; std::getline(lines, line); ++samples) {
+    const json sample = json::parse(line);
+    EXPECT_GT(sample["cycle"].get<std::int64_t>(), before) << "one object a sample";
+    before = sample["cycle"];
+    EXPECT_EQ(sample["values"][0], (json{{"name", "MC.estop_ok"}, {"value", true}}));
+  }
+  EXPECT_EQ(samples, 3);
+  const Outcome source = shell.run({"plc", "watch", "--samples", "1"});
+  EXPECT_TRUE(has(source.out, "MC.estop_ok := estop_chain_ok;")) << source.out;
+  EXPECT_TRUE(has(source.out, "| estop_chain_ok = TRUE, MC.estop_ok = TRUE") ||
+              has(source.out, "| MC.estop_ok = TRUE, estop_chain_ok = TRUE"))
+      << source.out;
+  const Outcome block = shell.run({"plc", "watch", "--source", "Mill.change", "--samples", "1"});
+  EXPECT_TRUE(has(block.out, "step = Idle")) << block.out;
+  EXPECT_EQ(shell.run({"plc", "watch", "no_such", "--samples", "1"}).exit, 2);
+  EXPECT_EQ(shell.run({"plc", "watch", "--source", "Nothing", "--samples", "1"}).exit, 2);
+  const Outcome times = shell.run({"plc", "watch", "--times", "--samples", "1"});
+  EXPECT_TRUE(has(times.out, "ToolChange")) << times.out;
+}
+
+TEST(PlcOfAControl, is_forced_until_the_client_ends_however_it_ends) {
+  Shell shell;
+  shell.up();
+  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  const pid_t client = shell.spawn({"plc", "force", "lamp_green=TRUE", "Mill.coolant_on=TRUE"}, "force");
+  ASSERT_TRUE(becomes(shell, "lamp_green", true)) << "an output that the PLC writes FALSE in every scan";
+  ASSERT_TRUE(becomes(shell, "Mill.coolant_on", true));
+  EXPECT_EQ(shell.status()["forced"].size(), 2u);
+  EXPECT_TRUE(has(shell.run({"status"}).out, "forced: lamp_green = TRUE"));
+  EXPECT_TRUE(has(shell.run({"plc", "list"}).out, "forced to TRUE"));
+  EXPECT_TRUE(has(shell.run({"plc", "watch", "lamp_green", "--samples", "1"}).out, "lamp_green = TRUE  (forced)"));
+  kill(client, SIGKILL);
+  waitpid(client, nullptr, 0);
+  EXPECT_TRUE(becomes(shell, "lamp_green", false));
+  EXPECT_TRUE(becomes(shell, "Mill.coolant_on", false));
+  EXPECT_TRUE(shell.status()["forced"].empty());
+}
+
+TEST(PlcOfAControl, stays_forced_when_told_and_is_let_go_by_name) {
+  Shell shell;
+  shell.up();
+  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  EXPECT_EQ(shell.run({"plc", "force", "lamp_green=TRUE", "Mill.change.alarm=-3", "--stay"}).exit, 0);
+  EXPECT_EQ(value(shell, "lamp_green"), true);
+  EXPECT_EQ(value(shell, "Mill.change.alarm"), -3);
+  EXPECT_TRUE(has(shell.run({"status"}).out, "stays")) << shell.run({"status"}).out;
+  EXPECT_TRUE(has(shell.run({"plc", "force"}).out, "Mill.change.alarm = -3"));
+  EXPECT_EQ(shell.run({"plc", "force", "--release", "lamp_green"}).exit, 0);
+  EXPECT_TRUE(becomes(shell, "lamp_green", false));
+  EXPECT_EQ(shell.run({"plc", "force", "--release", "lamp_green"}).exit, 2);
+  EXPECT_EQ(shell.run({"plc", "force", "--release"}).exit, 0);
+  EXPECT_TRUE(becomes(shell, "Mill.change.alarm", 0));
+  EXPECT_EQ(shell.run({"plc", "force", "no_such=1", "--stay"}).exit, 2);
+  EXPECT_EQ(shell.run({"plc", "force", "Mill.change.alarm=high", "--stay"}).exit, 2);
+  EXPECT_EQ(shell.run({"plc", "force", "lamp_green", "--stay"}).exit, 2);
+}
+
+TEST(PlcOfAControl, cannot_be_made_to_hide_the_emergency_stop) {
+  Shell shell;
+  shell.up();
+  for (const char* setting : {"estop_chain_ok=TRUE", "MC.estop_ok=TRUE"}) {
+    const Outcome o = shell.run({"plc", "force", setting, "--stay"});
+    EXPECT_EQ(o.exit, 1) << setting;
+    EXPECT_TRUE(has(o.err, "[gate.emergency_stop_place]")) << o.err;
+  }
+}
+
+TEST(PlcOfAControl, takes_another_program_between_two_scans_with_its_values) {
+  Shell shell;
+  const std::string state = (shell.folder() / "state").string();
+  shell.up("mill", {"--virtual", "--speed", "5", "--state", state});
+  const std::string first =
+      mill_with(shell, "VAR RETAIN kept : DINT; END_VAR VAR passing : DINT; END_VAR", "kept := kept + 1; passing := passing + 1;");
+  const Outcome loaded = shell.run({"plc", "load", first});
+  EXPECT_EQ(loaded.exit, 0) << loaded.err;
+  ASSERT_TRUE(shell.until([&](const json&) { return value(shell, "Mill.kept") > 50; }));
+  EXPECT_TRUE(has(shell.run({"plc", "list"}).out, "Mill.kept"));
+
+  mill_with(shell, "VAR RETAIN kept : DINT; END_VAR VAR passing : DINT; END_VAR", "passing := passing;");
+  EXPECT_EQ(shell.run({"plc", "load", first, "--online"}).exit, 0);
+  const json kept = value(shell, "Mill.kept"), passing = value(shell, "Mill.passing");
+  EXPECT_GT(kept, 50);
+  EXPECT_GT(passing, 50) << "an online change keeps every variable";
+  EXPECT_EQ(shell.run({"plc", "load", first}).exit, 0);
+  EXPECT_EQ(value(shell, "Mill.kept"), kept) << "retained";
+  EXPECT_EQ(value(shell, "Mill.passing"), 0) << "not retained";
+
+  std::istringstream log(shell.text("state/plc-changes.jsonl"));
+  int entries = 0;
+  for (std::string line; std::getline(log, line); ++entries) {
+    const json entry = json::parse(line);
+    EXPECT_EQ(entry["files"][0]["path"], first);
+    EXPECT_EQ(entry["files"][0]["sha256"].get<std::string>().size(), 64u);
+    EXPECT_FALSE(entry["user"].get<std::string>().empty());
+    EXPECT_EQ(entry["when"].get<std::string>().size(), 20u);
+  }
+  EXPECT_EQ(entries, 3);
+}
+
+TEST(PlcOfAControl, keeps_its_program_when_the_new_one_has_errors) {
+  Shell shell;
+  shell.up();
+  const std::string wrong = mill_with(shell, "VAR x : INT; END_VAR", "x := TRUE;");
+  const Outcome o = shell.run({"plc", "load", wrong});
+  EXPECT_EQ(o.exit, 1);
+  EXPECT_TRUE(has(o.err, "mill.st:") && has(o.err, "expected INT, found BOOL") && has(o.err, "^")) << o.err;
+  EXPECT_EQ(shell.run({"plc", "load", (shell.folder() / "none.st").string()}).exit, 2);
+  EXPECT_TRUE(becomes(shell, "MC.estop_ok", true));
+}
+
+TEST(PlcOfAControl, is_not_changed_while_something_moves_unless_that_is_declared_safe) {
+  Shell shell;
+  shell.up("mill", {"--virtual", "--speed", "5"});
+  shell.ready();
+  std::ofstream(shell.folder() / "long.nc") << "N10 G1 X100 F300\nN20 M2\n";
+  ASSERT_EQ(shell.run({"load", (shell.folder() / "long.nc").string()}).exit, 0);
+  ASSERT_EQ(shell.run({"start"}).exit, 0);
+  ASSERT_TRUE(shell.until([](const json& s) { return s["feed_mm_min"] > 100.0; }));
+  const std::string other = mill_with(shell, "VAR extra : INT; END_VAR", "extra := 7;");
+  for (const auto& arguments : {std::vector<std::string>{"plc", "load", other},
+                                std::vector<std::string>{"plc", "load", other, "--online"}}) {
+    const Outcome o = shell.run(arguments);
+    EXPECT_EQ(o.exit, 1);
+    EXPECT_TRUE(has(o.err, "[gate.program_runs]")) << o.err;
+  }
+  EXPECT_EQ(shell.run({"plc", "load", other, "--while-running"}).exit, 2) << "only as an online change";
+  const Outcome o = shell.run({"plc", "load", other, "--online", "--while-running"});
+  EXPECT_EQ(o.exit, 0) << o.err;
+  EXPECT_TRUE(becomes(shell, "Mill.extra", 7));
+  const json s = shell.status();
+  EXPECT_EQ(s["state"], "running");
+  EXPECT_TRUE(s["axes"][0]["enabled"].get<bool>()) << "no enable has dropped";
+  EXPECT_TRUE(s["alarms"].empty());
+}
+
+TEST(PlcOfAControl, keeps_its_forces_over_a_change_of_program) {
+  Shell shell;
+  shell.up();
+  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  ASSERT_EQ(shell.run({"plc", "force", "Mill.change.alarm=5", "--stay"}).exit, 0);
+  ASSERT_EQ(shell.run({"plc", "load"}).exit, 0);
+  EXPECT_EQ(value(shell, "Mill.change.alarm"), 5);
+  EXPECT_EQ(shell.status()["forced"].size(), 1u);
+}
+
+}  // namespace
+}  // namespace servogate::gateway::testing
