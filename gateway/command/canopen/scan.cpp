@@ -87,9 +87,12 @@ void find_nodes(ToolBus& bus, const ScanOptions& options, Nodes& nodes, std::str
     return false;
   };
   const image::Nanoseconds begin = drivers::clock_ns(CLOCK_MONOTONIC);
-  if (!ask_device_type(bus, hear)) return;
   const auto whole = std::llround(std::max(options.seconds * 1e9, options.timeout_ms * 1e6));
-  bus.listen(begin + whole - drivers::clock_ns(CLOCK_MONOTONIC), hear);
+  // Twice: who has just been switched on, or was busy, answers the second time.
+  for (int round = 1; round <= 2; ++round) {
+    if (!ask_device_type(bus, hear)) return;
+    bus.listen(begin + round * whole / 2 - drivers::clock_ns(CLOCK_MONOTONIC), hear);
+  }
 }
 
 void read_facts(SdoAccess& access, int number, Node& node) {
