@@ -14,7 +14,7 @@ namespace servogate::cycle {
 namespace {
 constexpr std::int64_t kAliveCycles = 50;  ///< between two changes of MC.control_alive
 constexpr const char* kPhaseNames[kPhases] = {"receive", "logic", "interpolate", "axes", "send", "publish"};
-}
+}  // namespace
 
 const char* name(Phase phase) noexcept { return kPhaseNames[static_cast<int>(phase)]; }
 
