@@ -90,6 +90,19 @@ void complain_of_option(const CLI::ParseError& error, const CLI::Option& option)
   complain(kNoValue, {name});
 }
 
+/// CLI11 names the flag without its dashes: "virtual was given a disallowed flag override".
+bool complain_of_flag_value(const CLI::ParseError& error, const CLI::App& app) {
+  const std::string message = error.what();
+  const std::size_t rest = message.find(" was given a disallowed flag override");
+  if (rest == std::string::npos) return false;
+  for (const CLI::Option* option : options_of(app))
+    if (option->check_name("--" + message.substr(0, rest))) {
+      complain(kNoValue, {option->get_name()});
+      return true;
+    }
+  return false;
+}
+
 bool complain_of_exclusion(const CLI::App& app) {
   for (const CLI::Option* option : options_of(app))
     for (const CLI::Option* other : option->get_excludes())
@@ -145,6 +158,7 @@ void complain_of_use(const CLI::ParseError& error, const CLI::App& app,
     return complain(kNoCommand, {&at == &app ? "" : at.get_name() + " "});
   if (is(error, CLI::ExitCodes::RequiredError) && complain_of_missing(at, called)) return;
   if (is(error, CLI::ExitCodes::ExcludesError) && complain_of_exclusion(at)) return;
+  if (complain_of_flag_value(error, at)) return;
   if (is(error, CLI::ExitCodes::ExtrasError) && !unread.empty())
     return complain(kUnexpected, {called, unread.front()});
   if (const CLI::Option* option = option_in(at, error.what()); option != nullptr)

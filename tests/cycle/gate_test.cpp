@@ -198,8 +198,18 @@ TEST_F(Gate, keeps_manual_motion_and_programs_apart) {
 
 TEST_F(Gate, lets_a_program_that_waits_at_M00_or_at_a_block_end_go_on) {
   image_.processes[0].state = ProcessState::waiting;
+  image_.processes[0].mode = image::Mode::step;
   for (const RequestKind k : {RequestKind::start, RequestKind::step, RequestKind::resume})
     EXPECT_EQ(ask(k), Refusal::none);
+}
+
+TEST_F(Gate, does_not_step_a_program_that_was_started_as_a_whole) {
+  image_.processes[0].mode = image::Mode::automatic;
+  for (const ProcessState s : {ProcessState::held, ProcessState::waiting}) {
+    image_.processes[0].state = s;
+    EXPECT_EQ(ask(RequestKind::step), Refusal::not_stepping) << english();
+    EXPECT_EQ(ask(RequestKind::resume), Refusal::none);
+  }
 }
 
 TEST_F(Gate, homes_the_axes_of_a_mask_and_refuses_a_mask_of_axes_that_do_not_exist) {
@@ -222,6 +232,7 @@ TEST_F(Gate, resumes_and_steps_only_a_program_that_is_held) {
   EXPECT_EQ(ask(RequestKind::resume), Refusal::program_not_held);
   EXPECT_EQ(ask(RequestKind::step), Refusal::program_runs);
   image_.processes[0].state = ProcessState::held;
+  image_.processes[0].mode = image::Mode::step;
   EXPECT_EQ(ask(RequestKind::resume), Refusal::none);
   EXPECT_EQ(ask(RequestKind::step), Refusal::none);
   context_.reaction = Reaction::stop_on_path;
@@ -387,7 +398,7 @@ TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others)
 
 TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
   const auto table = refusal_texts();
-  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::override_range) + 1);
+  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::logic_not_changed) + 1);
   for (std::size_t i = 1; i < table.size(); ++i) {
     image::Answer a;
     a.refusal = static_cast<std::uint16_t>(i);

@@ -64,15 +64,17 @@ TEST(MockGpio, a_home_switch_is_on_over_its_width_only) {
   EXPECT_EQ(chip.edges(0), 2u);
 }
 
-TEST(MockGpio, a_normally_closed_contact_reads_true_while_it_is_not_pressed) {
+TEST(MockGpio, a_normally_closed_switch_opens_its_contact_and_its_inverted_place_reads_true_when_pressed) {
   Slide slide;
   MockGpio chip({input("plus", LimitSwitch{0, 100.0, true}, "SA0", true)}, {}, slide.position());
   image::ProcessImage image;
   cycle(chip, image, 0);
-  EXPECT_TRUE(image.packets.bit(place("SA0")));
+  EXPECT_TRUE(chip.input(0));
+  EXPECT_FALSE(image.packets.bit(place("SA0")));
   slide.mm = 101.0;
   cycle(chip, image, kMillisecond);
-  EXPECT_FALSE(image.packets.bit(place("SA0")));
+  EXPECT_FALSE(chip.input(0));
+  EXPECT_TRUE(image.packets.bit(place("SA0")));
 }
 
 TEST(MockGpio, a_bouncing_contact_flickers_and_then_settles_within_its_time) {

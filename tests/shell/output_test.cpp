@@ -2,6 +2,9 @@
 // Standard output that cannot be written, that nobody reads, or that is not there.
 #include <gtest/gtest.h>
 
+#include <regex>
+#include <sstream>
+
 #include "tests/shell/line.hpp"
 
 namespace servogate::shell {
@@ -38,6 +41,13 @@ TEST_F(Output, that_finds_no_room_is_an_infrastructure_error_with_a_sentence) {
       << russian.err;
 }
 
+TEST_F(Output, into_a_state_directory_that_cannot_be_is_refused_before_anything_moves) {
+  const Ended e = desk_.line("$SG run $MILL short.nc --virtual --state /proc/x --report report.json");
+  EXPECT_EQ(e.code, 4);
+  EXPECT_TRUE(e.err_has("cannot write --state /proc/x")) << e.err;
+  EXPECT_FALSE(e.err_has("done:")) << e.err;
+}
+
 TEST_F(Output, that_was_closed_is_said_as_well) {
   const Ended e = desk_.line("$SG version >&-");
   EXPECT_EQ(e.code, 4);
@@ -71,6 +81,26 @@ TEST_F(Output, of_progress_that_nobody_reads_does_not_end_a_run) {
       desk_.line("{ $SG run $MILL short.nc --virtual --report r.json; echo $? > code; } 2>&1 | true");
   EXPECT_EQ(desk_.text("code"), "0\n") << e.err;
   EXPECT_NE(desk_.text("r.json").find("\"finished\": true"), std::string::npos);
+}
+
+TEST(Help, of_every_command_is_in_the_users_language) {
+  Desk desk;
+  const std::regex english_words("([a-z]+ ){3,}");
+  for (const char* command :
+       {"",        "version",   "run",      "up",       "status",    "home",      "jog",      "zero",
+        "mdi",     "load",      "start",    "step",     "hold",      "resume",    "reset",    "override",
+        "power",   "input",     "alarms",   "down",     "check",     "canon",     "replay",   "plc",
+        "plc run", "plc check", "plc test", "plc list", "plc watch", "plc force", "plc load", "can",
+        "can bus", "can check", "drive",    "sim",      "dump",      "play",      "scan",     "sdo",
+        "od",      "lss",       "nmt"}) {
+    const Ended e = desk.line(std::string("$SG ") + command + " --help", "ru_RU.UTF-8");
+    EXPECT_EQ(e.code, 0) << command;
+    std::istringstream lines(e.out);
+    for (std::string line; std::getline(lines, line);)
+      if (line.find("Пример: ") == std::string::npos) {
+        EXPECT_FALSE(std::regex_search(line, english_words)) << command << ": " << line;
+      }
+  }
 }
 
 }  // namespace

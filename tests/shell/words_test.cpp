@@ -28,7 +28,6 @@ constexpr Wrong kWrong[] = {
     {"$SG run $MILL \"\"", "`servogate run`: PROGRAM is empty", "«servogate run»: PROGRAM пуст"},
     {"$SG run $MILL --trace \"\"", "`servogate run`: --trace is empty", "«servogate run»: --trace пуст"},
     {"$SG run $MILL --virtual=1", "--virtual takes no value", "ключ --virtual не принимает значения"},
-    {"$SG run $MILL --virtual --state /proc/x", "cannot write --state /proc", "не удаётся записать"},
     {"$SG transmogrify", "unknown command 'transmogrify'; `servogate --help` lists them",
      "неизвестная команда «transmogrify»; их перечисляет"},
     {"$SG run $MILL --trcae x.csv", "`servogate run` has no option '--trcae'; did you mean '--trace'?",
