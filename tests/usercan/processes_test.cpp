@@ -55,6 +55,7 @@ TEST(Processes, the_mill_runs_in_real_time_on_a_bus_between_processes_without_ri
   const std::string machine = mill("socketcand:unix:" + socket + "/can0",
                                    {{"bit_rate = \"1 Mbit/s\"", "bit_rate = \"1 Mbit/s\"\nsimulated = true"},
                                     {"cycle_time = \"1 ms\"", "cycle_time = \"4 ms\""},
+                                    {"following_error_stop = \"1 mm\"", "following_error_stop = \"100 mm\""},
                                     {"device = \"servo", patient + "\"servo"},
                                     {"device = \"spindle", patient + "\"spindle"}});
   const auto living = drives(machine);
