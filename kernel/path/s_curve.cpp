@@ -74,7 +74,8 @@ void build(Profile& profile, const MotionState& from, double peak, double exit, 
   const double d = ramp_distance(from.v, from.a, peak, box) + even_distance(peak, exit, box);
   profile.start(from);
   add_ramp(profile, from.v, from.a, peak, box);
-  if (peak > 0.0 && length > d) profile.add((length - d) / peak, 0.0);
+  // A rest of rounding errors is no distance to drive: at a peak of rounding errors it would take for ever.
+  if (peak > 0.0 && length - d > kSame) profile.add((length - d) / peak, 0.0);
   add_ramp(profile, peak, 0.0, exit, box);
   profile.finish_at({from.s + length, exit, 0.0});
 }

@@ -70,6 +70,14 @@ TEST(RandomPrograms, on_slow_axes_keep_the_velocity_when_held_while_speeding_up)
   }
 }
 
+TEST(RandomPrograms, end_after_a_hold_that_rests_a_rounding_error_before_the_end_of_a_block) {
+  // The last picometre was driven at 1e-19 mm/s, for hours.
+  for (const std::uint64_t seed : {1795318917929931706u}) {
+    const RandomProgram program = random_program(seed, {2 + static_cast<int>(seed % 11), true, true});
+    EXPECT_EQ(verdict(run(program, scenario(seed)), program), "") << seed;
+  }
+}
+
 TEST(RandomPrograms, of_many_short_blocks_keep_them_too_when_held_over_and_over) {
   const std::uint64_t base = first_seed();
   std::printf("SERVOGATE_PROPERTY_SEED=%llu\n", static_cast<unsigned long long>(base));

@@ -92,6 +92,22 @@ TEST(SCurve, keeps_its_box_and_ends_at_the_end_of_the_span_from_a_million_states
   EXPECT_GT(rested, 10'000);
 }
 
+TEST(SCurve, drives_what_is_left_by_rounding_in_no_time) {
+  Dice dice(20261122);
+  for (int k = 0; k < 1'000'000; ++k) {
+    const Box b = dice.box();
+    MotionState from{dice.uniform(0, 10), dice.chance(0.2) ? 0.0 : dice.logarithmic(1e-22, 1e-6), 0.0};
+    if (dice.chance(0.3)) from.a = -dice.uniform(0, 1) * std::sqrt(2.0 * b.jerk * from.v);
+    Goal g;
+    g.velocity = b.velocity * dice.logarithmic(0.01, 1);
+    g.exit_limit = g.exit = dice.chance(0.5) ? 0.0 : dice.logarithmic(1e-22, 1e-6);
+    g.length = dice.logarithmic(1e-18, 1e-7);
+    Profile p;
+    if (!plan(p, from, g, b)) continue;
+    ASSERT_LT(p.duration(), 1.0) << k << ": " << g.length << " mm from " << from.v << " mm/s";
+  }
+}
+
 TEST(SCurve, finds_a_way_wherever_the_exit_can_be_reached) {
   Dice dice(7);
   for (int k = 0; k < 300'000; ++k) {
