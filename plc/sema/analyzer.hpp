@@ -50,7 +50,7 @@ struct UnitScope {
   int depth_state = 0;  ///< of the search for recursion
   bool ready = false;   ///< frame laid out
   bool laying_out = false;
-  bool library = false;
+  bool from_library = false;
 };
 
 /// Turns the trees of all files into the typed representation and reports everything that does not hold. One

@@ -60,14 +60,14 @@ void Analyzer::declare_names() {
     const syntax::Unit& s = source_.units[i];
     UnitScope u;
     u.source = &s;
-    u.library = s.location.file == library_file_;
+    u.from_library = s.location.file == library_file_;
     const auto known = units_by_name_.find(key_of(s.name));
     if (types_->find(s.name) != nullptr) {
       report_.error(s.location, texts::kReserved, {s.name});
     } else if (declared_types_.contains(key_of(s.name))) {
       report_.error(s.location, texts::kDuplicate,
                     {s.name, line_of(source_.types[declared_types_[key_of(s.name)]].location)});
-    } else if (known != units_by_name_.end() && !u.library) {
+    } else if (known != units_by_name_.end() && !u.from_library) {
       report_.error(s.location, texts::kDuplicate,
                     {s.name, line_of(source_.units[static_cast<std::size_t>(known->second)].location)});
     } else if (known == units_by_name_.end()) {

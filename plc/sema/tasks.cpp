@@ -251,7 +251,7 @@ bool Analyzer::visit(int unit, std::vector<int>& path) {
 void Analyzer::check_usage() {
   if (report_.failed()) return;
   for (const UnitScope& u : scopes_) {
-    if (u.library) continue;
+    if (u.from_library) continue;
     for (const Variable& v : u.variables)
       if (!v.used &&
           (v.section == Section::local || v.section == Section::temp || v.section == Section::external))

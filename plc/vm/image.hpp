@@ -54,7 +54,7 @@ struct Image {
     std::int64_t fixed_base = -1;  ///< address of the only instance, -1: several
     std::uint32_t entry = 0;       ///< its first instruction
     bool reached = false;          ///< some task runs it
-    bool library = false;          ///< a standard block or function
+    bool from_library = false;     ///< a standard block or function
   };
   /// A variable at a place of the source where it is read or written.
   struct Reference {
