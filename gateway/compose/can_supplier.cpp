@@ -44,13 +44,10 @@ void CanSupplier::receive(image::ProcessImage& image) noexcept {
   if (clock_ != nullptr) sync_ns_ = clock_->now_ns();  // SYNC is the first act of the segment
   segment_.receive(image);
   canopen::BusEvent event;
-  for (int i = 0; i < cycle::kNoticesPerCycle && segment_.events().pop(event); ++i) {
-    report(event, image);
-    kept_.push(event);
-  }
+  for (int i = 0; i < cycle::kNoticesPerCycle && segment_.events().pop(event); ++i) report(event);
 }
 
-void CanSupplier::report(const canopen::BusEvent& event, const image::ProcessImage&) noexcept {
+void CanSupplier::report(const canopen::BusEvent& event) noexcept {
   image::AlarmRecord r;
   for (const Row& row : kAlarms)
     if (row.kind == event.kind) r.number = row.number;

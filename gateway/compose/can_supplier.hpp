@@ -7,8 +7,7 @@
 
 namespace servogate::gateway {
 
-/// A CANopen segment as a device of the cycle whose bus events become alarms. Events are also kept for
-/// people, who want more words than a record holds.
+/// A CANopen segment as a device of the cycle whose bus events become alarms.
 class CanSupplier final : public image::CycleDevice {
  public:
   CanSupplier(image::CanBus& bus, canopen::SegmentConfig config) : segment_(bus, std::move(config)) {}
@@ -28,14 +27,11 @@ class CanSupplier final : public image::CycleDevice {
   const canopen::Segment& segment() const noexcept { return segment_; }
   /// Reading objects from outside the cycle; one asker. real-time safe.
   canopen::ObjectQuestion& question() noexcept { return segment_.question(); }
-  /// Takes the oldest event kept for people; one reader outside the cycle. real-time safe.
-  bool take_event(canopen::BusEvent& event) noexcept { return kept_.pop(event); }
 
  private:
-  void report(const canopen::BusEvent& event, const image::ProcessImage& image) noexcept;
+  void report(const canopen::BusEvent& event) noexcept;
 
   canopen::Segment segment_;
-  canopen::BusEventRing kept_;
   cycle::Notices* notices_ = nullptr;
   const image::Clock* clock_ = nullptr;
   image::Nanoseconds sync_ns_ = 0;
