@@ -13,12 +13,12 @@
 
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/axis/axis.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::axis::test {
 
 inline unsigned fresh_seed() {
-  const unsigned seed = std::random_device{}();
-  std::printf("seed %u\n", seed);
+  const auto seed = static_cast<unsigned>(servogate::test::property_seed());
   return seed;
 }
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "tests/channel/rig.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::channel::test {
 namespace {
@@ -109,8 +110,7 @@ std::vector<std::array<double, kAxes>> replayed(const Recording& run) {
 }
 
 TEST(Replay, of_several_starts_repeats_every_set_point) {
-  const unsigned seed = std::random_device{}();
-  std::printf("seed %u\n", seed);
+  const auto seed = static_cast<unsigned>(servogate::test::property_seed());
   for (unsigned i = 0; i < 20; ++i) {
     const Recording run = recorded(seed + i);
     const auto path = replayed(run);

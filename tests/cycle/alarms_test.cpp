@@ -7,6 +7,7 @@
 #include <random>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::cycle {
 namespace {
@@ -170,8 +171,7 @@ TEST(AlarmList, stays_bounded_counts_what_it_drops_and_still_reacts_to_it) {
 }
 
 TEST(AlarmList, holds_its_invariants_over_random_histories) {
-  const unsigned seed = std::random_device{}();
-  std::printf("seed %u\n", seed);
+  const auto seed = static_cast<unsigned>(servogate::test::property_seed());
   std::mt19937_64 random(seed);
   const auto table = alarm_table();
   for (int run = 0; run < 200; ++run) {

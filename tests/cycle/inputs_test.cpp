@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/cycle/inputs.hpp"
+#include "tests/property_seed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,8 +59,7 @@ void next(CycleInputs& in, std::mt19937_64& random) {
 }
 
 TEST(Inputs, come_back_from_their_record_as_they_went_in) {
-  const unsigned seed = std::random_device{}();
-  std::printf("seed %u\n", seed);
+  const auto seed = static_cast<unsigned>(servogate::test::property_seed());
   for (unsigned run = 0; run < 20; ++run) {
     std::mt19937_64 random(seed + run);
     InputEncoder encoder;
@@ -118,8 +118,7 @@ TEST(Inputs, cut_inside_a_cycle_are_damaged_and_at_its_end_are_not) {
 }
 
 TEST(Inputs, of_random_bytes_never_reach_beyond_their_arrays) {
-  const unsigned seed = std::random_device{}();
-  std::printf("seed %u\n", seed);
+  const auto seed = static_cast<unsigned>(servogate::test::property_seed());
   std::mt19937_64 random(seed);
   for (int i = 0; i < 3000; ++i) {
     std::vector<std::uint8_t> bytes(random() % 400);

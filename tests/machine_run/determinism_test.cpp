@@ -10,9 +10,10 @@
 #include <random>
 #include <sstream>
 
-#include "tests/machine_run/mill.hpp"
-#include "tests/machine_run/program.hpp"
-#include "tests/machine_run/programs.hpp"
+#include "tests/machine_run/rig/mill.hpp"
+#include "tests/machine_run/rig/program.hpp"
+#include "tests/machine_run/rig/programs.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::machine_run {
 namespace {
@@ -208,8 +209,7 @@ Seen drive_through(unsigned seed) {
 }
 
 TEST(Determinism, two_machines_in_one_process_do_the_same_under_the_same_hands) {
-  const unsigned seed = std::random_device{}();
-  std::printf("seed %u\n", seed);
+  const auto seed = static_cast<unsigned>(servogate::test::property_seed());
   const Seen a = drive_through(seed), b = drive_through(seed);
   EXPECT_TRUE(a == b) << "seed " << seed;
   EXPECT_GT(a.numbers.size(), 10000u);

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "drivers/mock/gpio/mock_gpio.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::mock {
 namespace {
@@ -78,8 +79,7 @@ TEST(MockGpio, a_normally_closed_switch_opens_its_contact_and_its_inverted_place
 }
 
 TEST(MockGpio, a_bouncing_contact_flickers_and_then_settles_within_its_time) {
-  const std::uint64_t seed = std::random_device{}();
-  std::cout << "seed " << seed << "\n";
+  const std::uint64_t seed = servogate::test::property_seed();
   std::mt19937_64 random(seed);
   int flickered = 0;
   for (int i = 0; i < 300; ++i) {

@@ -6,6 +6,7 @@
 
 #include "drivers/mock/modbus/modbus_line.hpp"
 #include "firmware_if/image/interface_map.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::mock {
 namespace {
@@ -360,8 +361,7 @@ TEST(ModbusStation, puts_lost_outputs_where_each_of_them_is_to_be) {
 }
 
 TEST(MockModbusLine, every_output_pattern_comes_back_through_its_wires) {
-  const std::uint64_t seed = std::random_device{}();
-  std::cout << "seed " << seed << "\n";
+  const std::uint64_t seed = servogate::test::property_seed();
   std::mt19937_64 random(seed);
   LineSettings settings;
   settings.baud = 57600;

@@ -2,19 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 
 #include "tests/path/rig.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::path::test {
 namespace {
-
-std::uint64_t first_seed() {
-  if (const char* given = std::getenv("SERVOGATE_PROPERTY_SEED")) return std::strtoull(given, nullptr, 10);
-  return static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
-}
 
 int cases() {
   if (const char* given = std::getenv("SERVOGATE_PROPERTY_CASES")) return std::atoi(given);
@@ -33,8 +28,7 @@ Scenario scenario(std::uint64_t seed) {
 }
 
 TEST(RandomPrograms, keep_every_limit_the_tolerance_and_the_end_point_whatever_happens) {
-  const std::uint64_t base = first_seed();
-  std::printf("SERVOGATE_PROPERTY_SEED=%llu, %d programs\n", static_cast<unsigned long long>(base), cases());
+  const std::uint64_t base = servogate::test::property_seed();
   int wrong = 0;
   Worst reached;
   std::size_t cycles = 0;
@@ -79,8 +73,7 @@ TEST(RandomPrograms, end_after_a_hold_that_rests_a_rounding_error_before_the_end
 }
 
 TEST(RandomPrograms, of_many_short_blocks_keep_them_too_when_held_over_and_over) {
-  const std::uint64_t base = first_seed();
-  std::printf("SERVOGATE_PROPERTY_SEED=%llu\n", static_cast<unsigned long long>(base));
+  const std::uint64_t base = servogate::test::property_seed();
   int wrong = 0;
   for (int k = 0; k < cases() / 100 && wrong < 10; ++k) {
     const std::uint64_t seed = base + static_cast<std::uint64_t>(k);

@@ -11,13 +11,13 @@
 #include "kernel/program/messages.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "tests/program/case_file.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::program::tests {
 namespace {
 
 std::uint64_t fresh_seed() {
-  const std::uint64_t seed = std::random_device{}();
-  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  const std::uint64_t seed = servogate::test::property_seed();
   return seed;
 }
 

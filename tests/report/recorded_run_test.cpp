@@ -10,6 +10,7 @@
 
 #include "gateway/report/record/path_thinning.hpp"
 #include "gateway/report/statistics.hpp"
+#include "tests/property_seed.hpp"
 #include "tests/report/demo_run.hpp"
 
 namespace servogate::report {
@@ -93,8 +94,7 @@ TEST(RunRecorder, the_thinned_path_stays_within_its_tolerance_of_every_set_point
 }
 
 TEST(BoundedPath, random_walks_stay_within_tolerance_and_length) {
-  const std::uint64_t seed = std::random_device{}();
-  std::cout << "seed " << seed << "\n";
+  const std::uint64_t seed = servogate::test::property_seed();
   std::mt19937_64 random(seed);
   std::normal_distribution<float> turn(0.0f, 0.2f);
   for (int round = 0; round < 20; ++round) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/report/statistics.hpp"
+#include "tests/property_seed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +13,7 @@ namespace servogate::report {
 namespace {
 
 TEST(Histogram, quantiles_are_never_below_the_truth_and_at_most_one_part_in_64_above) {
-  const std::uint64_t seed = std::random_device{}();
-  std::cout << "seed " << seed << "\n";
+  const std::uint64_t seed = servogate::test::property_seed();
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> exponent(0.0, 12.0);
   for (int run = 0; run < 60; ++run) {

@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "tests/property_seed.hpp"
 #include "tests/server/rig.hpp"
 
 namespace servogate::gateway::testing {
@@ -178,8 +179,7 @@ std::string random_line(std::mt19937_64& random) {
 TEST(Socket, answers_every_line_of_garbage_with_one_object_and_stays_up) {
   Shell shell;
   shell.up();
-  const std::uint64_t seed = std::random_device{}();
-  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  const std::uint64_t seed = servogate::test::property_seed();
   std::mt19937_64 random(seed);
   SocketClient client;
   ASSERT_TRUE(client.connect(shell.socket()).empty());

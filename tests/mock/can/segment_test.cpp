@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/mock/can/can_segment.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::mock {
 namespace {
@@ -193,7 +194,7 @@ struct Wire final : CanMonitor {
 };
 
 TEST(CanSegment, random_traffic_never_overlaps_never_inverts_priority_and_loses_nothing) {
-  const unsigned seed = std::random_device{}();
+  const auto seed = static_cast<unsigned>(servogate::test::property_seed());
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
   for (int round = 0; round < 40; ++round) {
