@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "firmware_if/text/finding.hpp"
-#include "gateway/cli/bus_commands.hpp"
-#include "gateway/cli/canopen_commands.hpp"
+#include "gateway/cli/commands/bus_commands.hpp"
+#include "gateway/cli/commands/canopen_commands.hpp"
+#include "gateway/cli/commands/plc_commands.hpp"
 #include "gateway/cli/help/russian.hpp"
 #include "gateway/cli/options.hpp"
-#include "gateway/cli/plc_commands.hpp"
 #include "gateway/cli/quantities.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/cli/wrong_use.hpp"

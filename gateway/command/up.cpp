@@ -12,8 +12,8 @@
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/retained_keeper.hpp"
-#include "gateway/server/socket_path.hpp"
-#include "gateway/server/socket_server.hpp"
+#include "gateway/server/socket/socket_path.hpp"
+#include "gateway/server/socket/socket_server.hpp"
 
 namespace servogate::gateway::command {
 

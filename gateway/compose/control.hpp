@@ -8,11 +8,11 @@
 
 #include "gateway/compose/can_supplier.hpp"
 #include "gateway/compose/can_transport.hpp"
-#include "gateway/compose/mock_world.hpp"
-#include "gateway/compose/plc_logic.hpp"
+#include "gateway/compose/plc/plc_logic.hpp"
 #include "gateway/compose/points/debounce.hpp"
 #include "gateway/compose/points/drive_points.hpp"
 #include "gateway/compose/program/program_change.hpp"
+#include "gateway/compose/simulated/mock_world.hpp"
 #include "gateway/machine/load.hpp"
 #include "gateway/machine/state.hpp"
 #include "kernel/channel/process.hpp"

@@ -8,7 +8,7 @@
 #include "gateway/compose/control.hpp"
 #include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/state.hpp"
-#include "gateway/server/plc_desk.hpp"
+#include "gateway/server/plc/plc_desk.hpp"
 
 namespace servogate::gateway {
 

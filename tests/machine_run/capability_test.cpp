@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "tests/machine_run/program.hpp"
+#include "tests/machine_run/rig/program.hpp"
 
 namespace servogate::machine_run {
 namespace {

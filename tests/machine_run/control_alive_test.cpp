@@ -2,7 +2,7 @@
 // `safety.control_alive` in the composed mill.
 #include <gtest/gtest.h>
 
-#include "tests/machine_run/mill.hpp"
+#include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {
 namespace {

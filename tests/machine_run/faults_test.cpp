@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/machine_run/mill.hpp"
+#include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {
 namespace {

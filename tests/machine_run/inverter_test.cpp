@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "gateway/machine/consequences.hpp"
-#include "tests/machine_run/mill.hpp"
+#include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {
 namespace {

@@ -2,7 +2,7 @@
 // Points that come over a drive (60FDh, 60FEh:01) and points that are debounced, in the example mill.
 #include <gtest/gtest.h>
 
-#include "tests/machine_run/mill.hpp"
+#include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {
 namespace {

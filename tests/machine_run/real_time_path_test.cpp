@@ -11,10 +11,10 @@
 
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/session.hpp"
-#include "tests/machine_run/mill.hpp"
-#include "tests/machine_run/program.hpp"
-#include "tests/machine_run/programs.hpp"
-#include "tests/machine_run/watch.hpp"
+#include "tests/machine_run/rig/mill.hpp"
+#include "tests/machine_run/rig/program.hpp"
+#include "tests/machine_run/rig/programs.hpp"
+#include "tests/machine_run/rig/watch.hpp"
 
 namespace servogate::machine_run {
 namespace {

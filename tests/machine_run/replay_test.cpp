@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "gateway/machine/state.hpp"
-#include "tests/machine_run/program.hpp"
-#include "tests/machine_run/programs.hpp"
+#include "tests/machine_run/rig/program.hpp"
+#include "tests/machine_run/rig/programs.hpp"
 
 namespace servogate::machine_run {
 namespace {

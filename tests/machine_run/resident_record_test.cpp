@@ -11,8 +11,8 @@
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/session.hpp"
 #include "gateway/server/resident.hpp"
-#include "tests/machine_run/program.hpp"
-#include "tests/machine_run/programs.hpp"
+#include "tests/machine_run/rig/program.hpp"
+#include "tests/machine_run/rig/programs.hpp"
 
 namespace servogate::machine_run {
 namespace {

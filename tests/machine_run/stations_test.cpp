@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "gateway/compose/modbus_setup.hpp"
-#include "tests/machine_run/mill.hpp"
-#include "tests/machine_run/program.hpp"
+#include "tests/machine_run/rig/mill.hpp"
+#include "tests/machine_run/rig/program.hpp"
 
 namespace servogate::machine_run {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "tests/machine_run/program.hpp"
+#include "tests/machine_run/rig/program.hpp"
 
 namespace servogate::machine_run {
 namespace {

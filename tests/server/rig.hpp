@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/server/socket_client.hpp"
+#include "gateway/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::testing {
 

@@ -9,8 +9,8 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/canopen/foreign_master.hpp"
-#include "gateway/command/canopen/held_bus.hpp"
+#include "gateway/command/canopen/bus/foreign_master.hpp"
+#include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/commands.hpp"
 
 namespace servogate::gateway::command {

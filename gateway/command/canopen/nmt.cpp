@@ -9,10 +9,10 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
+#include "gateway/command/canopen/bus/foreign_master.hpp"
+#include "gateway/command/canopen/bus/guarding.hpp"
+#include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/canopen/device_words.hpp"
-#include "gateway/command/canopen/foreign_master.hpp"
-#include "gateway/command/canopen/guarding.hpp"
-#include "gateway/command/canopen/held_bus.hpp"
 #include "gateway/command/commands.hpp"
 
 namespace servogate::gateway::command {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "firmware_if/canopen/402/objects.hpp"
-#include "gateway/command/canopen/foreign_master.hpp"
+#include "gateway/command/canopen/bus/foreign_master.hpp"
 
 namespace servogate::gateway::command {
 

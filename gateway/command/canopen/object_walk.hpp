@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
+#include "gateway/command/canopen/bus/tool_bus.hpp"
 #include "gateway/command/canopen/data_sheet.hpp"
-#include "gateway/command/canopen/tool_bus.hpp"
 
 namespace servogate::gateway::command {
 

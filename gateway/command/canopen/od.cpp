@@ -10,7 +10,7 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/canopen/held_bus.hpp"
+#include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/canopen/object_walk.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/files/output_files.hpp"

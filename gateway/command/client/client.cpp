@@ -8,7 +8,7 @@
 #include "gateway/command/client/request.hpp"
 #include "gateway/command/client/wait.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/server/socket_client.hpp"
+#include "gateway/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::command {
 

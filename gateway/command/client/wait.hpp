@@ -2,7 +2,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "gateway/server/socket_client.hpp"
+#include "gateway/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::command {
 
@@ -18,9 +18,9 @@ bool operator_interrupted();
 /// answer to its request. Returns the last answer; null: the connection is gone.
 nlohmann::json hold_jog(SocketClient& client, const nlohmann::json& request, const nlohmann::json& begun);
 
-/// Waits until what `request` began has ended, and gives the exit code. `status` is its answer and gets the last
-/// status; null: the connection is gone. Ctrl-C stops what moves: a program is held on its path, a second one ends it;
-/// homing and jogs stop; drives that are being switched on are switched off again.
+/// Waits until what `request` began has ended, and gives the exit code. `status` is its answer and gets the
+/// last status; null: the connection is gone. Ctrl-C stops what moves: a program is held on its path, a
+/// second one ends it; homing and jogs stop; drives that are being switched on are switched off again.
 int wait_for_end(SocketClient& client, const nlohmann::json& request, nlohmann::json& status);
 
 }  // namespace servogate::gateway::command

@@ -5,7 +5,7 @@
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/control_client.hpp"
 #include "gateway/command/plc/sources.hpp"
-#include "gateway/server/plc_view.hpp"
+#include "gateway/server/plc/plc_view.hpp"
 
 namespace servogate::gateway::command {
 

@@ -16,7 +16,7 @@
 #include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/simulated/drive_kind.hpp"
-#include "gateway/compose/simulated_node.hpp"
+#include "gateway/compose/simulated/simulated_node.hpp"
 
 namespace servogate::gateway::command {
 

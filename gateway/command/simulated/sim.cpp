@@ -15,7 +15,7 @@
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/compose/can_transport.hpp"
-#include "gateway/compose/mock_world.hpp"
+#include "gateway/compose/simulated/mock_world.hpp"
 
 namespace servogate::gateway::command {
 

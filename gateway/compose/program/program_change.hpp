@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "gateway/compose/logic_change.hpp"
+#include "gateway/compose/plc/logic_change.hpp"
 #include "gateway/compose/program/program_file.hpp"
 #include "kernel/channel/feeder.hpp"
 #include "kernel/program/interpreter.hpp"
@@ -28,8 +28,8 @@ struct ProgramChange {
   std::string block;
 };
 
-/// Sees what Control::change() carries out, the subprograms that were read for it, and what Control::prepare()
-/// makes ready for the PLC. Called outside the cycle, by one thread at a time.
+/// Sees what Control::change() carries out, the subprograms that were read for it, and what
+/// Control::prepare() makes ready for the PLC. Called outside the cycle, by one thread at a time.
 class ProgramChangeTap {
  public:
   virtual ~ProgramChangeTap() = default;

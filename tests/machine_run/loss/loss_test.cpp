@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "tests/machine_run/loss/forked.hpp"
-#include "tests/machine_run/mill.hpp"
+#include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {
 namespace {

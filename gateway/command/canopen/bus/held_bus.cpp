@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/canopen/held_bus.hpp"
+#include "gateway/command/canopen/bus/held_bus.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -9,7 +9,7 @@
 #include "gateway/cli/options.hpp"
 #include "gateway/command/canopen/object_value.hpp"
 #include "gateway/command/named_bus.hpp"
-#include "gateway/server/socket_path.hpp"
+#include "gateway/server/socket/socket_path.hpp"
 
 namespace servogate::gateway::command {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/machine_run/mill.hpp"
+#include "tests/machine_run/rig/mill.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "gateway/compose/program/program_model.hpp"
-#include "tests/machine_run/program.hpp"
+#include "tests/machine_run/rig/program.hpp"
 
 namespace servogate::machine_run {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/machine_run/program.hpp"
+#include "tests/machine_run/rig/program.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/mock_world.hpp"
+#include "gateway/compose/simulated/mock_world.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "gateway/compose/modbus_setup.hpp"
-#include "gateway/compose/simulated_node.hpp"
+#include "gateway/compose/simulated/simulated_node.hpp"
 
 namespace servogate::gateway {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "firmware_if/canopen/301/nmt.hpp"
-#include "gateway/command/canopen/tool_bus.hpp"
+#include "gateway/command/canopen/bus/tool_bus.hpp"
 
 namespace servogate::gateway::command {
 

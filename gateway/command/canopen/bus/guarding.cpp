@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/canopen/guarding.hpp"
+#include "gateway/command/canopen/bus/guarding.hpp"
 
 #include "firmware_if/canopen/402/objects.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/retained_memory.hpp"
+#include "gateway/compose/plc/retained_memory.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/canopen/foreign_master.hpp"
+#include "gateway/command/canopen/bus/foreign_master.hpp"
 
 #include <algorithm>
 #include <cmath>

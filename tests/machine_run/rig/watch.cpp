@@ -2,7 +2,7 @@
 // Stands between this test program and the C library: allocation, locks, system calls. System calls are
 // caught by Linux' syscall user dispatch (5.11 and later): a byte that the kernel looks at before each call
 // of this thread.
-#include "tests/machine_run/watch.hpp"
+#include "tests/machine_run/rig/watch.hpp"
 
 #include <dlfcn.h>
 #include <pthread.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/plc_view.hpp"
+#include "gateway/server/plc/plc_view.hpp"
 
 #include <algorithm>
 #include <map>
@@ -33,7 +33,7 @@ std::vector<Row> rows_of(const Image& image) {
   };
   for (const plc::ir::Global& p : image.programs) members(p.name, *p.type);
   for (const Image::Unit& u : image.units)
-    if (!u.library && u.kind != plc::syntax::UnitKind::program && u.frame != nullptr)
+    if (!u.from_library && u.kind != plc::syntax::UnitKind::program && u.frame != nullptr)
       members(u.name, *u.frame);
   return rows;
 }
@@ -79,7 +79,7 @@ bool find_body(const LogicProgram& program, const std::string& name, int& unit, 
   for (std::size_t u = 0; u < image.units.size(); ++u)
     if (frame != nullptr && image.units[u].frame == frame) {
       unit = static_cast<int>(u);
-      return !image.units[u].library;
+      return !image.units[u].from_library;
     }
   return false;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/canopen/bit_rate_detection.hpp"
+#include "gateway/command/canopen/bus/bit_rate_detection.hpp"
 
 #include <poll.h>
 

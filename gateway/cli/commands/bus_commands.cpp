@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/cli/bus_commands.hpp"
+#include "gateway/cli/commands/bus_commands.hpp"
 
 #include "firmware_if/text/finding.hpp"
-#include "gateway/cli/canopen_commands.hpp"
+#include "gateway/cli/commands/canopen_commands.hpp"
 #include "gateway/cli/quantities.hpp"
 
 namespace servogate::gateway {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/cli/plc_commands.hpp"
+#include "gateway/cli/commands/plc_commands.hpp"
 
 #include <CLI/CLI.hpp>
 

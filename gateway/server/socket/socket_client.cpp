@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/socket_client.hpp"
+#include "gateway/server/socket/socket_client.hpp"
 
 #include <poll.h>
 #include <sys/socket.h>

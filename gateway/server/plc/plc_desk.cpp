@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/plc_desk.hpp"
+#include "gateway/server/plc/plc_desk.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/report/report.hpp"
-#include "gateway/server/plc_view.hpp"
+#include "gateway/server/plc/plc_view.hpp"
 #include "gateway/server/resident.hpp"
 #include "gateway/server/texts.hpp"
 #include "plc/values.hpp"

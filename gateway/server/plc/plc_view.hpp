@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/compose/plc_logic.hpp"
+#include "gateway/compose/plc/plc_logic.hpp"
 
 namespace servogate::gateway {
 

@@ -9,7 +9,7 @@
 
 #include "firmware_if/image/request.hpp"
 #include "firmware_if/text/finding.hpp"
-#include "gateway/compose/logic_change.hpp"
+#include "gateway/compose/plc/logic_change.hpp"
 #include "plc/types/type.hpp"
 
 namespace servogate::gateway {

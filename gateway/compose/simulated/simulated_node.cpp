@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/simulated_node.hpp"
+#include "gateway/compose/simulated/simulated_node.hpp"
 
 #include <cmath>
 

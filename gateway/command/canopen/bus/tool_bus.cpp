@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/canopen/tool_bus.hpp"
+#include "gateway/command/canopen/bus/tool_bus.hpp"
 
 #include <poll.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/plc_logic.hpp"
+#include "gateway/compose/plc/plc_logic.hpp"
 
 #include <algorithm>
 #include <chrono>

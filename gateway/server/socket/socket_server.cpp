@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/socket_server.hpp"
+#include "gateway/server/socket/socket_server.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -14,8 +14,8 @@
 #include <cstring>
 
 #include "gateway/cli/messages.hpp"
-#include "gateway/server/socket_client.hpp"
-#include "gateway/server/socket_path.hpp"
+#include "gateway/server/socket/socket_client.hpp"
+#include "gateway/server/socket/socket_path.hpp"
 #include "gateway/server/texts.hpp"
 
 namespace servogate::gateway {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "gateway/compose/logic_change.hpp"
-#include "gateway/compose/retained_memory.hpp"
+#include "gateway/compose/plc/logic_change.hpp"
+#include "gateway/compose/plc/retained_memory.hpp"
 #include "kernel/cycle/participants.hpp"
 #include "plc/engine.hpp"
 #include "plc/transfer.hpp"

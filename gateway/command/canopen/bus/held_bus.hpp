@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/command/canopen/tool_bus.hpp"
-#include "gateway/server/socket_client.hpp"
+#include "gateway/command/canopen/bus/tool_bus.hpp"
+#include "gateway/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::command {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/socket_path.hpp"
+#include "gateway/server/socket/socket_path.hpp"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "gateway/server/socket_client.hpp"
+#include "gateway/server/socket/socket_client.hpp"
 #include "gateway/server/texts.hpp"
 
 namespace servogate::gateway {
