@@ -5,26 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "drivers/mock/drive/plant.hpp"
+#include "tests/mock/drive/plant_rig.hpp"
 
 namespace servogate::mock {
 namespace {
-
-using canopen::ServoCommand;
-constexpr image::Nanoseconds kStep = 250'000;
-constexpr double kStepS = 250e-6;
-
-ServoCommand torque(double permille) {
-  ServoCommand c;
-  c.loop = ServoCommand::Loop::torque;
-  c.torque = permille;
-  c.brake_released = true;
-  c.torque_limit_positive = c.torque_limit_negative = 3000;
-  return c;
-}
-void run(Plant& plant, const ServoCommand& c, double seconds) {
-  for (double t = 0; t < seconds; t += kStepS) plant.step(c);
-}
 
 PlantConfig frictionless() {
   PlantConfig config;

@@ -5,24 +5,12 @@
 #include <numbers>
 #include <random>
 
-#include "drivers/mock/drive/plant.hpp"
+#include "tests/mock/drive/plant_rig.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::mock {
 namespace {
 
-using canopen::ServoCommand;
-constexpr image::Nanoseconds kStep = 250'000;
-constexpr double kStepS = 250e-6;
-
-ServoCommand torque(double permille) {
-  ServoCommand c;
-  c.loop = ServoCommand::Loop::torque;
-  c.torque = permille;
-  c.brake_released = true;
-  c.torque_limit_positive = c.torque_limit_negative = 3000;
-  return c;
-}
 ServoCommand velocity(double counts_s) {
   ServoCommand c = torque(0);
   c.loop = ServoCommand::Loop::velocity;
@@ -36,10 +24,6 @@ ServoCommand position(double counts, double counts_s = 0.0) {
   c.velocity = counts_s;
   return c;
 }
-void run(Plant& plant, const ServoCommand& c, double seconds) {
-  for (double t = 0; t < seconds; t += kStepS) plant.step(c);
-}
-
 TEST(DrivePlant, a_constant_torque_ends_at_the_speed_where_viscous_friction_balances_it) {
   PlantConfig config;
   config.viscous_friction_nm_s = 0.02;
