@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "drivers/notice.hpp"
+#include "drivers/send_queue.hpp"
 #include "drivers/socketcan/link.hpp"
-#include "drivers/socketcan/send_queue.hpp"
 #include "firmware_if/image/can_bus.hpp"
 
 namespace servogate::socketcan {
@@ -96,7 +96,7 @@ class SocketCanBus final : public image::CanBus {
   LinkInfo news_;
   std::uint32_t bit_rate_;
   image::CanState state_ = image::CanState::error_active;
-  SendQueue queue_;
+  drivers::SendQueue queue_;
   Batch batch_;
   bool looked_ = false;                 ///< the link was watched since receive() last found nothing
   std::uint32_t overflow_counter_ = 0;  ///< the kernel's own, wraps

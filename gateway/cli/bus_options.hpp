@@ -30,7 +30,7 @@ struct DriveOptions {
   std::string profile;             ///< servo, stepper, spindle, or a data sheet
   std::vector<std::string> plant;  ///< KEY=VALUE
   FaultOptions faults;
-  double bit_rate = 1'000'000.0;  ///< bit/s
+  double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
 };
 
 /// `servogate sim`: the simulated devices of a machine for somebody else's controller.
@@ -44,15 +44,15 @@ struct SimOptions {
 /// `servogate dump`: a bus as a log of can-utils.
 struct DumpOptions {
   std::string bus;
-  double bit_rate = 1'000'000.0;  ///< bit/s
-  std::int64_t count = 0;         ///< frames, 0: no end
-  double seconds = 0.0;           ///< 0: no end
+  double bit_rate = 0.0;   ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
+  std::int64_t count = 0;  ///< frames, 0: no end
+  double seconds = 0.0;    ///< 0: no end
 };
 
 /// `servogate play`: such a log back onto a bus.
 struct PlayOptions {
   std::string bus, file;
-  double bit_rate = 1'000'000.0;  ///< bit/s
+  double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
   double speed = 1.0;
   bool may_move = false;
 };

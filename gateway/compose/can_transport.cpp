@@ -2,7 +2,9 @@
 #include "gateway/compose/can_transport.hpp"
 
 #include <algorithm>
+#include <charconv>
 
+#include "drivers/gsusb/libusb_port.hpp"
 #include "firmware_if/canopen/301/cob_id.hpp"
 
 namespace servogate::gateway {
@@ -11,14 +13,19 @@ namespace {
 const text::Entry kNoTransport{
     "can.no-transport",
     "'{0}' is no bus that can be opened here; known: socketcan:IF, socketcand:HOST:PORT/NAME, "
-    "socketcand:unix:PATH/NAME, lockstep:HOST:PORT/NAME, udp:GROUP:PORT",
+    "socketcand:unix:PATH/NAME, lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
     "«{0}» — не шина, которую можно открыть; известны: socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, "
-    "socketcand:unix:ПУТЬ/ИМЯ, lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ"};
+    "socketcand:unix:ПУТЬ/ИМЯ, lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ"};
 const text::Entry kMockElsewhere{
     "can.mock-elsewhere", "'{0}' lives inside one control; for several processes: servogate can bus can0",
     "«{0}» живёт внутри одного управления; для нескольких процессов: servogate can bus can0"};
 
 using Opened = std::optional<CanTransport>;
+
+/// Of a bus without a wire, where nobody said it.
+std::uint32_t assumed_rate(const CanTransportOptions& options) {
+  return options.bit_rate != 0 ? options.bit_rate : 1'000'000;
+}
 
 Opened open_socketcan(std::string_view rest, const CanTransportOptions& options, drivers::Notice& why) {
   auto bus = socketcan::SocketCanBus::open({std::string(rest), options.bit_rate, options.filters}, why);
@@ -42,7 +49,7 @@ Opened open_served(std::string_view rest, const CanTransportOptions& options, st
   usercan::SocketcandConfig config;
   config.address = *address;
   config.bus = rest.substr(slash + 1);
-  config.bit_rate = options.bit_rate;
+  config.bit_rate = assumed_rate(options);
   config.lockstep = std::move(participant);
   auto bus = usercan::SocketcandBus::open(config, why);
   if (bus == nullptr) return std::nullopt;
@@ -68,11 +75,38 @@ Opened open_udp(std::string_view rest, const CanTransportOptions& options, drive
     why = {&kNoTransport, {"udp:" + std::string(rest)}};
     return std::nullopt;
   }
-  auto bus = usercan::UdpBus::open({address->host, address->port, options.bit_rate}, why);
+  auto bus = usercan::UdpBus::open({address->host, address->port, assumed_rate(options)}, why);
   if (bus == nullptr) return std::nullopt;
   CanTransport t;
   t.descriptor = bus->descriptor();
   t.nothing_real = true;
+  t.bus = std::move(bus);
+  return t;
+}
+
+/// "SERIAL" or "SERIAL/CHANNEL".
+Opened open_gsusb(std::string_view rest, const CanTransportOptions& options, drivers::Notice& why) {
+  gsusb::GsUsbConfig config;
+  const std::size_t slash = rest.rfind('/');
+  config.adapter = rest.substr(0, slash);
+  config.bit_rate = options.bit_rate;
+  config.listen_only = options.listen_only;
+  if (slash != std::string_view::npos) {
+    const std::string_view channel = rest.substr(slash + 1);
+    const auto [end, error] =
+        std::from_chars(channel.data(), channel.data() + channel.size(), config.channel);
+    if (error != std::errc{} || end != channel.data() + channel.size()) {
+      why = {&kNoTransport, {"gsusb:" + std::string(rest)}};
+      return std::nullopt;
+    }
+  }
+  auto port = gsusb::open_libusb(config.adapter, why);
+  if (port == nullptr) return std::nullopt;
+  auto bus = gsusb::GsUsbBus::open(std::move(port), config, why);
+  if (bus == nullptr) return std::nullopt;
+  CanTransport t;
+  t.descriptor = bus->descriptor();
+  t.adapter = bus.get();
   t.bus = std::move(bus);
   return t;
 }
@@ -82,10 +116,9 @@ struct Scheme {
   Opened (*open)(std::string_view rest, const CanTransportOptions& options, drivers::Notice& why);
 };
 constexpr Scheme kSchemes[] = {
-    {"socketcan:", &open_socketcan},
-    {"socketcand:", &open_socketcand},
-    {"lockstep:", &open_lockstep},
-    {"udp:", &open_udp},
+    {"socketcan:", &open_socketcan}, {"socketcand:", &open_socketcand},
+    {"lockstep:", &open_lockstep},   {"udp:", &open_udp},
+    {"gsusb:", &open_gsusb},
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/gsusb/gsusb_bus.hpp"
 #include "drivers/notice.hpp"
 #include "drivers/socketcan/socketcan_bus.hpp"
 #include "drivers/usercan/socketcand_bus.hpp"
@@ -18,12 +19,15 @@ namespace servogate::gateway {
 struct CanTransport {
   std::unique_ptr<image::CanBus> bus;
   usercan::SocketcandBus* lockstep = nullptr;  ///< the same bus where its time is granted
+  gsusb::GsUsbBus* adapter = nullptr;          ///< the same bus where it is a USB adapter
   int descriptor = -1;                         ///< for poll(2)
   bool nothing_real = false;                   ///< no real bus can be behind it
 };
 
 struct CanTransportOptions {
+  /// bit/s; 0: that of the interface, 1 Mbit/s on a bus without a wire. An adapter has none of its own.
   std::uint32_t bit_rate = 1'000'000;
+  bool listen_only = false;                ///< acknowledges nothing, sends nothing; where the transport can
   std::vector<socketcan::Filter> filters;  ///< where the transport has them; empty: everything
   std::string participant;                 ///< name in lockstep
 };

@@ -120,7 +120,7 @@ bool Control::open_buses(std::vector<text::Finding>& findings, bool replay) {
     std::vector<int> nodes;
     for (const machine::NodeConfig& node : bus.nodes) nodes.push_back(node.id);
     drivers::Notice why;
-    auto opened = open_can(bus.url, {rate, master_filters(nodes), "control"}, why);
+    auto opened = open_can(bus.url, {rate, false, master_filters(nodes), "control"}, why);
     const machine::Where where = m.where("bus." + std::to_string(b) + ".url");
     const auto refuse = [&](const text::Entry& entry, const std::string& text) {
       findings.push_back(

@@ -186,11 +186,11 @@ TEST_F(SlcanQueue, a_full_queue_refuses_and_a_link_that_goes_down_counts_what_it
   int accepted = 0;
   while (accepted < 10'000 && bus->send(f)) ++accepted;
   ASSERT_LT(accepted, 10'000);
-  ASSERT_EQ(bus->waiting(), SendQueue::kCapacity);
+  ASSERT_EQ(bus->waiting(), drivers::SendQueue::kCapacity);
   ASSERT_TRUE(shell("ip link set " + name_ + " down"));
   EXPECT_TRUE(reaches(*bus, CanState::down));
   EXPECT_EQ(bus->waiting(), 0u);
-  EXPECT_EQ(bus->lost(), SendQueue::kCapacity);
+  EXPECT_EQ(bus->lost(), drivers::SendQueue::kCapacity);
 }
 
 }  // namespace

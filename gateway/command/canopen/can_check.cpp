@@ -28,6 +28,12 @@ const Entry kVirtual{"check.virtual", "{0} is a virtual interface: it has no bit
                      "{0} — виртуальный интерфейс: у него нет скорости и не бывает ошибок"};
 const Entry kServed{"check.served", "{0} answers; a bus between processes has no error counters",
                     "{0} отвечает; у шины между процессами нет счётчиков ошибок"};
+const Entry kAdapter{
+    "check.adapter",
+    "{0} is a USB adapter, its firmware of version {1}; it runs at {2} bit/s, reads a bit at {3} % "
+    "of it, and is {4}",
+    "{0} — адаптер USB с прошивкой версии {1}; работает на {2} бит/с, читает бит на {3} % его "
+    "длины, состояние: {4}"};
 const Entry kDown{"check.down", "{0} is down; bring it up with: sudo {1}",
                   "{0} выключен; включить: sudo {1}"};
 const Entry kCounters{
@@ -65,6 +71,8 @@ const Entry kNoDetection{
     "check.no-detection",
     "the bit rate of {0} cannot be found by listening: only CAN hardware of this computer can do it",
     "скорость {0} прослушиванием не найти: это умеет только аппаратный CAN этого компьютера"};
+const Entry kDetectedAdapter{"check.detected-adapter", "the bus runs at {0} bit/s: --bit-rate {0}",
+                             "шина работает на {0} бит/с: --bit-rate {0}"};
 const Entry kDetectUp{
     "check.detect-up", "{0} is up, and what uses it would be cut off: sudo ip link set {0} down, then again",
     "{0} включён, и тот, кто им пользуется, был бы отключён: sudo ip link set {0} down, и снова"};
@@ -169,6 +177,12 @@ class Report {
 
 bool is_virtual(const socketcan::LinkInfo& link) { return link.kind == "vcan" || link.kind == "vxcan"; }
 
+void tell_counters(Report& report, std::uint32_t transmit, std::uint32_t receive) {
+  report.facts()["link"]["transmit_errors"] = transmit;
+  report.facts()["link"]["receive_errors"] = receive;
+  report.say(kCounters, {std::to_string(transmit), std::to_string(receive)});
+}
+
 void tell_link(Report& report, const socketcan::LinkInfo& link) {
   const StateRow& state = row_of(link.state);
   report.facts()["link"] = {{"interface", link.name},
@@ -189,9 +203,28 @@ void tell_link(Report& report, const socketcan::LinkInfo& link) {
   }
   report.mark(state.healthy);
   if (!link.counters) return;
-  report.facts()["link"]["transmit_errors"] = link.transmit_errors;
-  report.facts()["link"]["receive_errors"] = link.receive_errors;
-  report.say(kCounters, {std::to_string(link.transmit_errors), std::to_string(link.receive_errors)});
+  tell_counters(report, link.transmit_errors, link.receive_errors);
+}
+
+/// Whether the state and the error counters of the adapter's controller rose since `before` is told, too.
+void tell_adapter(Report& report, const std::string& url, gsusb::GsUsbBus& adapter,
+                  const std::optional<gsusb::ControllerState>& before) {
+  const auto now = adapter.ask_state();
+  const StateRow& state = row_of(now ? now->state : adapter.state());
+  report.facts()["link"] = {{"kind", "gs_usb"},
+                            {"state", state.name},
+                            {"bit_rate", adapter.bit_rate()},
+                            {"sample_point", adapter.timing().sample_point()},
+                            {"firmware", adapter.device().software}};
+  report.say(kAdapter, {url, std::to_string(adapter.device().software), std::to_string(adapter.bit_rate()),
+                        text::number(adapter.timing().sample_point() * 100.0, 1),
+                        text::both(state.english, state.russian)});
+  report.mark(state.healthy);
+  if (!now) return;
+  tell_counters(report, now->transmit_errors, now->receive_errors);
+  if (before &&
+      (now->transmit_errors > before->transmit_errors || now->receive_errors > before->receive_errors))
+    report.wrong(kRising);
 }
 
 void tell_traffic(Report& report, const Traffic& t, const CanCheckOptions& options, std::uint32_t bit_rate) {
@@ -210,29 +243,34 @@ void tell_traffic(Report& report, const Traffic& t, const CanCheckOptions& optio
   if (!nodes.empty()) report.say(kHeard, {nodes});
 }
 
-int detect(const CanCheckOptions& options, const std::optional<socketcan::LinkInfo>& link, Report& report) {
-  if (!link || is_virtual(*link) || link->kind.empty()) {
+int detect(const CanCheckOptions& options, const std::string& url,
+           const std::optional<socketcan::LinkInfo>& link, Report& report) {
+  const bool adapter = url.starts_with("gsusb:");
+  if (!adapter && (!link || is_virtual(*link) || link->kind.empty())) {
     complain(kNoDetection, {options.bus});
     return kInfrastructure;
   }
-  if (link->up) {
+  if (link && link->up) {
     complain(kDetectUp, {link->name});
     return kWrongUse;
   }
   const EndBySignal signals;
-  const DetectedRate found = detect_bit_rate(*link, [&](std::uint32_t rate) {
+  const auto tell = [&](std::uint32_t rate) {
     std::fprintf(
         stderr, "%s\n",
         text::render(kTrying, std::vector<std::string>{std::to_string(rate)}, text::user_language()).c_str());
     return !signals.ended();
-  });
+  };
+  const DetectedRate found = adapter ? detect_bit_rate(url, tell) : detect_bit_rate(*link, tell);
   if (signals.ended()) return kStopped;
   if (!found.problem.empty()) {
-    complain(kCannotDetect, {link->name, found.problem});
+    complain(kCannotDetect, {adapter ? url : link->name, found.problem});
     return kInfrastructure;
   }
   report.facts()["bit_rate"] = found.bit_rate ? json(*found.bit_rate) : json();
-  if (found.bit_rate)
+  if (found.bit_rate && adapter)
+    report.say(kDetectedAdapter, {std::to_string(*found.bit_rate)});
+  else if (found.bit_rate)
     report.say(kDetected, {std::to_string(*found.bit_rate), socketcan::command_up(*link, *found.bit_rate)});
   else
     report.wrong(kUndetected);
@@ -258,7 +296,7 @@ int can_check(const CanCheckOptions& options) {
   };
   const std::optional<socketcan::LinkInfo> before = look();
   Report report(options);
-  if (options.detect) return detect(options, before, report);
+  if (options.detect) return detect(options, named->url, before, report);
   if (before && before->is_can && !before->up) {
     const std::uint32_t rate = named->bit_rate != 0 ? named->bit_rate : 1'000'000;
     report.facts()["link"] = {{"interface", before->name}, {"up", false}};
@@ -276,10 +314,14 @@ int can_check(const CanCheckOptions& options) {
   int code = kDone;
   const auto bus = ToolBus::open(options, code);
   if (bus == nullptr) return code;
+  gsusb::GsUsbBus* const adapter = bus->transport().adapter;
+  const auto adapter_before = adapter != nullptr ? adapter->ask_state() : std::nullopt;
   const Traffic traffic = listen(*bus, options.seconds);
   if (bus->over()) return bus->finish(kDone);
   const std::optional<socketcan::LinkInfo> after = look();
-  if (after)
+  if (adapter != nullptr)
+    tell_adapter(report, named->url, *adapter, adapter_before);
+  else if (after)
     tell_link(report, *after);
   else
     report.say(kServed, {named->url});

@@ -5,6 +5,7 @@
 
 #include "drivers/clock.hpp"
 #include "drivers/socketcan/socketcan_bus.hpp"
+#include "gateway/compose/can_transport.hpp"
 #include "gateway/files/system_words.hpp"
 
 namespace servogate::gateway::command {
@@ -19,6 +20,19 @@ constexpr image::Nanoseconds kListening = 1200 * image::kMillisecond;
 constexpr int kConvincing = 3;  ///< frames without an error between them
 
 /// Frames come, and no errors.
+bool frames_come(image::CanBus& bus, int descriptor) {
+  int frames = 0, errors = 0;
+  const image::Nanoseconds until = drivers::clock_ns(CLOCK_MONOTONIC) + kListening;
+  for (image::CanFrame frame; frames < kConvincing && drivers::clock_ns(CLOCK_MONOTONIC) < until;) {
+    while (bus.receive(frame)) (frame.error ? errors : frames) += 1;
+    if (errors > 0) return false;
+    pollfd p{descriptor, POLLIN, 0};
+    const timespec nap{0, 20 * image::kMillisecond};
+    ppoll(&p, 1, &nap, nullptr);
+  }
+  return frames > 0;
+}
+
 bool frames_come(const std::string& interface, std::string& problem) {
   drivers::Notice why;
   const auto bus = socketcan::SocketCanBus::open({interface, 0, {}}, why);
@@ -26,16 +40,7 @@ bool frames_come(const std::string& interface, std::string& problem) {
     problem = why.str();
     return false;
   }
-  int frames = 0, errors = 0;
-  const image::Nanoseconds until = drivers::clock_ns(CLOCK_MONOTONIC) + kListening;
-  for (image::CanFrame frame; frames < kConvincing && drivers::clock_ns(CLOCK_MONOTONIC) < until;) {
-    while (bus->receive(frame)) (frame.error ? errors : frames) += 1;
-    if (errors > 0) return false;
-    pollfd p{bus->descriptor(), POLLIN, 0};
-    const timespec nap{0, 20 * image::kMillisecond};
-    ppoll(&p, 1, &nap, nullptr);
-  }
-  return frames > 0;
+  return frames_come(*bus, bus->descriptor());
 }
 
 }  // namespace
@@ -66,6 +71,25 @@ DetectedRate detect_bit_rate(const socketcan::LinkInfo& link,
   before.listen_only = false;
   before.bit_rate = link.bit_rate;
   socketcan::set_link(link.index, before);
+  return found;
+}
+
+DetectedRate detect_bit_rate(const std::string& url, const std::function<bool(std::uint32_t)>& tell) {
+  DetectedRate found;
+  for (const std::uint32_t rate : kRates) {
+    if (found.bit_rate || !tell(rate)) break;
+    drivers::Notice why;
+    CanTransportOptions options;
+    options.bit_rate = rate;
+    options.listen_only = true;
+    const auto listening = open_can(url, options, why);
+    if (!listening && gsusb::is_no_timing(why)) continue;  // this adapter does not have this rate
+    if (!listening) {
+      found.problem = why.str();
+      break;
+    }
+    if (frames_come(*listening->bus, listening->descriptor)) found.bit_rate = rate;
+  }
   return found;
 }
 

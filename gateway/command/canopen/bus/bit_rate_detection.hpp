@@ -21,4 +21,8 @@ struct DetectedRate {
 /// real-time safe.
 DetectedRate detect_bit_rate(const socketcan::LinkInfo& link, const std::function<bool(std::uint32_t)>& tell);
 
+/// The same with a USB adapter, which is started anew for every rate; `url` is gsusb:SERIAL. Not real-time
+/// safe.
+DetectedRate detect_bit_rate(const std::string& url, const std::function<bool(std::uint32_t)>& tell);
+
 }  // namespace servogate::gateway::command

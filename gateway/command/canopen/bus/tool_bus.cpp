@@ -52,9 +52,7 @@ std::unique_ptr<ToolBus> ToolBus::open(const CanopenBusOptions& options, int& co
   const auto named = named_bus(options.bus, options.bit_rate);
   if (!named) return nullptr;
   CanTransportOptions transport_options;
-  // An interface says its own rate when none is asked for.
-  const bool own = named->bit_rate == 0 && named->url.starts_with("socketcan:");
-  transport_options.bit_rate = own || named->bit_rate != 0 ? named->bit_rate : kDefaultBitRate;
+  transport_options.bit_rate = named->bit_rate;
   drivers::Notice why;
   auto opened = open_can(named->url, transport_options, why);
   code = kInfrastructure;

@@ -6,9 +6,9 @@
 
 #include "firmware_if/image/can_bus.hpp"
 
-namespace servogate::socketcan {
+namespace servogate::drivers {
 
-/// Frames that the kernel did not take yet, the one that would win the arbitration first, equal identifiers
+/// Frames that an interface did not take yet, the one that would win the arbitration first, equal identifiers
 /// in the order of push(). real-time safe.
 class SendQueue {
  public:
@@ -35,4 +35,4 @@ class SendQueue {
   std::size_t count_ = 0;
 };
 
-}  // namespace servogate::socketcan
+}  // namespace servogate::drivers

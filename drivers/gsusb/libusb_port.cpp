@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/gsusb/libusb_port.hpp"
+
+#include <libusb.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "drivers/clock.hpp"
+
+namespace servogate::gsusb {
+namespace {
+
+const text::Entry kNoUsb{"gsusb.no-usb", "this computer has no USB that can be used: {0}",
+                         "на этом компьютере нет доступного USB: {0}"};
+const text::Entry kNoAdapter{"gsusb.no-adapter", "there is no gs_usb adapter '{0}'; plugged in: {1}",
+                             "нет адаптера gs_usb «{0}»; подключены: {1}"};
+const text::Entry kSeveral{"gsusb.several",
+                           "several gs_usb adapters are plugged in: {0}; say which: gsusb:SERIAL",
+                           "подключено несколько адаптеров gs_usb: {0}; укажите один: gsusb:СЕРИЙНЫЙ"};
+const text::Entry kNoRight{
+    "gsusb.no-right",
+    "the adapter {0} may not be used by this user; a file /etc/udev/rules.d/70-gsusb.rules with the line "
+    "SUBSYSTEM==\"usb\", ATTRS{idVendor}==\"{1}\", ATTRS{idProduct}==\"{2}\", MODE=\"0660\", "
+    "TAG+=\"uaccess\" lets it, after the adapter is plugged in again",
+    "адаптер {0} недоступен этому пользователю; файл /etc/udev/rules.d/70-gsusb.rules со строкой "
+    "SUBSYSTEM==\"usb\", ATTRS{idVendor}==\"{1}\", ATTRS{idProduct}==\"{2}\", MODE=\"0660\", "
+    "TAG+=\"uaccess\" даст доступ после нового подключения"};
+const text::Entry kKernelHasIt{
+    "gsusb.kernel-has-it",
+    "the kernel's own driver has the adapter {0}: use its interface, socketcan:can0 (`ip link` names it), or "
+    "take the driver away: sudo modprobe -r gs_usb",
+    "адаптером {0} управляет драйвер ядра: используйте его интерфейс, socketcan:can0 (имя покажет `ip "
+    "link`), "
+    "либо выгрузите драйвер: sudo modprobe -r gs_usb"};
+const text::Entry kBusy{"gsusb.busy", "another program has the adapter {0}",
+                        "адаптер {0} занят другой программой"};
+const text::Entry kOpen{"gsusb.open", "the adapter {0} cannot be opened: {1}",
+                        "адаптер {0} не открывается: {1}"};
+
+/// Adapters that speak the protocol on interface 0.
+struct Product {
+  std::uint16_t vendor, product;
+};
+constexpr Product kProducts[] = {
+    {0x1D50, 0x606F}, {0x1209, 0x2323}, {0x1CD2, 0x606F}, {0x16D0, 0x10B8}, {0x16D0, 0x0F30},
+};
+constexpr int kInterface = 0;
+constexpr unsigned kPatience_ms = 1000;
+constexpr std::size_t kReads = 30;
+/// A multiple of every packet size of bulk pipes up to high speed, so that no transfer overflows.
+constexpr std::size_t kReadBytes = 512;
+/// Failed transfers after one another that a disturbed cable may make.
+constexpr int kBearable = 16;
+
+struct CloseContext {
+  void operator()(libusb_context* c) const noexcept { libusb_exit(c); }
+};
+struct CloseHandle {
+  void operator()(libusb_device_handle* h) const noexcept { libusb_close(h); }
+};
+struct FreeTransfer {
+  void operator()(libusb_transfer* t) const noexcept { libusb_free_transfer(t); }
+};
+using Context = std::unique_ptr<libusb_context, CloseContext>;
+using Handle = std::unique_ptr<libusb_device_handle, CloseHandle>;
+using Transfer = std::unique_ptr<libusb_transfer, FreeTransfer>;
+
+Context open_context(int& error) {
+  libusb_context* context = nullptr;
+  error = libusb_init(&context);
+  return Context(error == 0 ? context : nullptr);
+}
+
+/// An adapter that is plugged in; `handle` is empty where it may not be opened.
+struct Found {
+  std::string serial = "?";
+  libusb_device_descriptor descriptor{};
+  Handle handle;
+  int error = 0;
+};
+
+std::vector<Found> find(libusb_context* context) {
+  std::vector<Found> all;
+  libusb_device** list = nullptr;
+  const ssize_t count = libusb_get_device_list(context, &list);
+  for (ssize_t i = 0; i < count; ++i) {
+    Found f;
+    if (libusb_get_device_descriptor(list[i], &f.descriptor) != 0) continue;
+    if (std::none_of(std::begin(kProducts), std::end(kProducts), [&](const Product& p) {
+          return p.vendor == f.descriptor.idVendor && p.product == f.descriptor.idProduct;
+        }))
+      continue;
+    libusb_device_handle* handle = nullptr;
+    f.error = libusb_open(list[i], &handle);
+    if (f.error == 0) {
+      f.handle.reset(handle);
+      std::array<unsigned char, 128> text{};
+      const int length = libusb_get_string_descriptor_ascii(handle, f.descriptor.iSerialNumber, text.data(),
+                                                            static_cast<int>(text.size()));
+      if (length > 0)
+        f.serial.assign(reinterpret_cast<const char*>(text.data()), static_cast<std::size_t>(length));
+    }
+    all.push_back(std::move(f));
+  }
+  if (count >= 0) libusb_free_device_list(list, 1);
+  return all;
+}
+
+std::string names(const std::vector<Found>& all) {
+  std::string list;
+  for (const Found& f : all) list += (list.empty() ? "" : ", ") + f.serial;
+  return list.empty() ? text::both("none", "ни одного") : list;
+}
+
+std::string hex(std::uint16_t word) {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "%04x", word);
+  return text.data();
+}
+
+/// The in and out bulk pipes of the interface. False: it has not both.
+bool find_pipes(libusb_device* device, std::uint8_t& in, std::uint8_t& out) {
+  libusb_config_descriptor* config = nullptr;
+  if (libusb_get_active_config_descriptor(device, &config) != 0) return false;
+  in = out = 0;
+  if (config->bNumInterfaces > kInterface && config->interface[kInterface].num_altsetting > 0) {
+    const libusb_interface_descriptor& i = config->interface[kInterface].altsetting[0];
+    for (int e = 0; e < i.bNumEndpoints; ++e) {
+      if ((i.endpoint[e].bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK) continue;
+      const std::uint8_t address = i.endpoint[e].bEndpointAddress;
+      std::uint8_t& pipe = (address & LIBUSB_ENDPOINT_IN) != 0 ? in : out;
+      if (pipe == 0) pipe = address;
+    }
+  }
+  libusb_free_config_descriptor(config);
+  return in != 0 && out != 0;
+}
+
+class LibusbPort final : public UsbPort {
+ public:
+  LibusbPort(Context context, Handle handle, std::uint8_t in, std::uint8_t out, int wake)
+      : context_(std::move(context)), handle_(std::move(handle)), in_(in), out_(out), wake_(wake) {}
+  ~LibusbPort() override;
+
+  bool control_out(std::uint8_t request, std::uint16_t value, std::span<const std::uint8_t> data) override {
+    // libusb takes one pointer for both directions; it reads only from this one.
+    return libusb_control_transfer(
+               handle_.get(), kVendorOut, request, value, kInterface, const_cast<unsigned char*>(data.data()),
+               static_cast<std::uint16_t>(data.size()), kPatience_ms) == static_cast<int>(data.size());
+  }
+  std::size_t control_in(std::uint8_t request, std::uint16_t value, std::span<std::uint8_t> data) override {
+    const int got = libusb_control_transfer(handle_.get(), kVendorIn, request, value, kInterface, data.data(),
+                                            static_cast<std::uint16_t>(data.size()), kPatience_ms);
+    return got > 0 ? static_cast<std::size_t>(got) : 0;
+  }
+  bool start(std::size_t bytes, PortListener& listener) override;
+  bool write(std::size_t slot, std::span<const std::uint8_t> bytes) noexcept override;
+  bool serve(image::Nanoseconds at_most) noexcept override;
+  void wake() noexcept override {
+    const std::uint64_t one = 1;
+    if (::write(wake_, &one, sizeof one) < 0) return;  // the counter is full: it is awake
+  }
+
+ private:
+  static constexpr std::uint8_t kVendorOut =
+      std::uint8_t{LIBUSB_REQUEST_TYPE_VENDOR} | std::uint8_t{LIBUSB_RECIPIENT_INTERFACE};
+  static constexpr std::uint8_t kVendorIn = kVendorOut | std::uint8_t{LIBUSB_ENDPOINT_IN};
+  struct Buffer {
+    LibusbPort* port = nullptr;
+    std::size_t index = 0;
+    Transfer transfer;
+    std::array<std::uint8_t, kReadBytes> bytes{};
+  };
+
+  static void has_read(libusb_transfer* transfer) noexcept;
+  static void has_written(libusb_transfer* transfer) noexcept;
+  bool submit(Buffer& buffer) noexcept;
+  bool set_up(Buffer& buffer, std::size_t index);
+  /// Whether the pipe still works after this transfer.
+  bool bearable(const libusb_transfer& transfer) noexcept;
+
+  Context context_;
+  Handle handle_;
+  std::uint8_t in_, out_;
+  int wake_;
+  PortListener* listener_ = nullptr;
+  std::array<Buffer, kReads> reads_;
+  std::array<Buffer, kSlots> writes_;
+  std::vector<pollfd> polled_;
+  int under_way_ = 0, failures_ = 0;
+  bool gone_ = false, ending_ = false;
+};
+
+LibusbPort::~LibusbPort() {
+  ending_ = true;
+  for (Buffer& b : reads_)
+    if (b.transfer) libusb_cancel_transfer(b.transfer.get());
+  for (Buffer& b : writes_)
+    if (b.transfer) libusb_cancel_transfer(b.transfer.get());
+  const image::Nanoseconds until = drivers::clock_ns(CLOCK_MONOTONIC) + image::kSecond;
+  while (under_way_ > 0 && drivers::clock_ns(CLOCK_MONOTONIC) < until) {
+    timeval slice{0, 10'000};
+    libusb_handle_events_timeout_completed(context_.get(), &slice, nullptr);
+  }
+  libusb_release_interface(handle_.get(), kInterface);
+  if (under_way_ > 0) {
+    // The kernel still owns their memory: better kept than freed under it.
+    for (Buffer& b : reads_) (void)b.transfer.release();
+    for (Buffer& b : writes_) (void)b.transfer.release();
+  }
+  close(wake_);
+}
+
+bool LibusbPort::set_up(Buffer& buffer, std::size_t index) {
+  buffer.port = this;
+  buffer.index = index;
+  buffer.transfer.reset(libusb_alloc_transfer(0));
+  return buffer.transfer != nullptr;
+}
+
+bool LibusbPort::start(std::size_t bytes, PortListener& listener) {
+  if (bytes > kReadBytes) return false;
+  listener_ = &listener;
+  for (std::size_t i = 0; i < kSlots; ++i) {
+    Buffer& b = writes_[i];
+    if (!set_up(b, i)) return false;
+    libusb_fill_bulk_transfer(b.transfer.get(), handle_.get(), out_, b.bytes.data(), 0, &has_written, &b, 0);
+  }
+  for (std::size_t i = 0; i < kReads; ++i) {
+    Buffer& b = reads_[i];
+    if (!set_up(b, i)) return false;
+    libusb_fill_bulk_transfer(b.transfer.get(), handle_.get(), in_, b.bytes.data(),
+                              static_cast<int>(kReadBytes), &has_read, &b, 0);
+    if (!submit(b)) return false;
+  }
+  const libusb_pollfd** list = libusb_get_pollfds(context_.get());
+  if (list == nullptr) return false;
+  polled_.push_back({wake_, POLLIN, 0});
+  for (const libusb_pollfd** p = list; *p != nullptr; ++p) polled_.push_back({(*p)->fd, (*p)->events, 0});
+  libusb_free_pollfds(list);
+  return true;
+}
+
+bool LibusbPort::submit(Buffer& buffer) noexcept {
+  if (libusb_submit_transfer(buffer.transfer.get()) != 0) return false;
+  ++under_way_;
+  return true;
+}
+
+bool LibusbPort::bearable(const libusb_transfer& transfer) noexcept {
+  if (transfer.status == LIBUSB_TRANSFER_COMPLETED) {
+    failures_ = 0;
+    return true;
+  }
+  return transfer.status != LIBUSB_TRANSFER_NO_DEVICE && transfer.status != LIBUSB_TRANSFER_STALL &&
+         transfer.status != LIBUSB_TRANSFER_CANCELLED && ++failures_ < kBearable;
+}
+
+void LibusbPort::has_read(libusb_transfer* transfer) noexcept {
+  Buffer& b = *static_cast<Buffer*>(transfer->user_data);
+  LibusbPort& port = *b.port;
+  --port.under_way_;
+  if (port.ending_ || port.gone_) return;
+  const bool bearable = port.bearable(*transfer);
+  if (bearable && transfer->status == LIBUSB_TRANSFER_COMPLETED)
+    port.listener_->read({b.bytes.data(), static_cast<std::size_t>(transfer->actual_length)});
+  if (!bearable || !port.submit(b)) port.gone_ = true;
+}
+
+void LibusbPort::has_written(libusb_transfer* transfer) noexcept {
+  Buffer& b = *static_cast<Buffer*>(transfer->user_data);
+  LibusbPort& port = *b.port;
+  --port.under_way_;
+  if (port.ending_) return;
+  if (!port.bearable(*transfer)) port.gone_ = true;
+  port.listener_->written(b.index, transfer->status == LIBUSB_TRANSFER_COMPLETED);
+}
+
+bool LibusbPort::write(std::size_t slot, std::span<const std::uint8_t> bytes) noexcept {
+  Buffer& b = writes_[slot];
+  if (gone_ || bytes.size() > b.bytes.size()) return false;
+  std::copy(bytes.begin(), bytes.end(), b.bytes.begin());
+  b.transfer->length = static_cast<int>(bytes.size());
+  return submit(b);
+}
+
+bool LibusbPort::serve(image::Nanoseconds at_most) noexcept {
+  const timespec limit{at_most / image::kSecond, at_most % image::kSecond};
+  if (!gone_) ppoll(polled_.data(), polled_.size(), &limit, nullptr);
+  std::uint64_t told;
+  if (::read(wake_, &told, sizeof told) < 0 && errno != EAGAIN) return false;
+  timeval now{0, 0};
+  const int error = libusb_handle_events_timeout_completed(context_.get(), &now, nullptr);
+  return !gone_ && (error == 0 || error == LIBUSB_ERROR_INTERRUPTED);
+}
+
+}  // namespace
+
+std::vector<std::string> adapters() {
+  std::vector<std::string> serials;
+  int error = 0;
+  if (const Context context = open_context(error))
+    for (const Found& f : find(context.get())) serials.push_back(f.serial);
+  return serials;
+}
+
+std::unique_ptr<UsbPort> open_libusb(const std::string& serial, drivers::Notice& why) {
+  int error = 0;
+  Context context = open_context(error);
+  if (!context) {
+    why = {&kNoUsb, {libusb_error_name(error)}};
+    return nullptr;
+  }
+  std::vector<Found> all = find(context.get());
+  const bool any = serial == "any";
+  auto at = std::find_if(all.begin(), all.end(), [&](const Found& f) { return any || f.serial == serial; });
+  // One that may not be opened hides its number: it may be the one.
+  if (at == all.end()) at = std::find_if(all.begin(), all.end(), [](const Found& f) { return !f.handle; });
+  if (at == all.end()) {
+    why = {&kNoAdapter, {serial, names(all)}};
+  } else if (any && all.size() > 1) {
+    why = {&kSeveral, {names(all)}};
+  } else if (!at->handle && at->error == LIBUSB_ERROR_ACCESS) {
+    why = {&kNoRight, {serial, hex(at->descriptor.idVendor), hex(at->descriptor.idProduct)}};
+  } else if (!at->handle) {
+    why = {&kOpen, {serial, libusb_error_name(at->error)}};
+  } else if (libusb_kernel_driver_active(at->handle.get(), kInterface) == 1) {
+    why = {&kKernelHasIt, {at->serial}};
+  } else {
+    Handle handle = std::move(at->handle);
+    const std::string name = at->serial;
+    all.clear();
+    error = libusb_claim_interface(handle.get(), kInterface);
+    std::uint8_t in = 0, out = 0;
+    const int wake = error == 0 && find_pipes(libusb_get_device(handle.get()), in, out)
+                         ? eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)
+                         : -1;
+    if (wake >= 0) return std::make_unique<LibusbPort>(std::move(context), std::move(handle), in, out, wake);
+    why = error == LIBUSB_ERROR_BUSY ? drivers::Notice{&kBusy, {name}}
+                                     : drivers::Notice{&kOpen, {name, libusb_error_name(error)}};
+  }
+  all.clear();
+  return nullptr;
+}
+
+}  // namespace servogate::gsusb
