@@ -205,12 +205,19 @@ bool TransmitPdo::due_at_sync(const ObjectDictionary& dictionary, std::uint8_t c
   return true;
 }
 
-bool TransmitPdo::due_by_event(const ObjectDictionary& dictionary, image::Nanoseconds now) noexcept {
+bool TransmitPdo::due_by_event(const ObjectDictionary& dictionary, PdoEvents& events,
+                               image::Nanoseconds now) noexcept {
   if (!event_driven()) return false;
   if (!sent_once_) return true;
   if (now - last_sent_ < inhibit_) return false;
   if (event_timer_ > 0 && now - last_sent_ >= event_timer_) return true;
-  return sample(dictionary) != last_content_;
+  if (sample(dictionary) == last_content_) return false;
+  return std::any_of(objects_.begin(), objects_.end(), [&](const MappedObjects::Field& f) {
+    if (f.slot == ObjectDictionary::kNone) return false;
+    const std::uint64_t raw = last_content_ >> f.offset & mask(f.bits);
+    const std::int64_t sent = f.is_signed ? sign_extend(raw, f.bits) : static_cast<std::int64_t>(raw);
+    return events.is_event(f.slot, sent, dictionary.value(f.slot));
+  });
 }
 
 void TransmitPdo::send(const ObjectDictionary& dictionary, image::CanBus& bus,

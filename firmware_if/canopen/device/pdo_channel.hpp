@@ -52,6 +52,13 @@ class PdoSink {
   virtual void pdo_wrote(ObjectDictionary::Slot slot) noexcept = 0;
 };
 
+/// Who knows which change of a value is an event.
+class PdoEvents {
+ public:
+  virtual ~PdoEvents() = default;
+  virtual bool is_event(ObjectDictionary::Slot slot, std::int64_t sent, std::int64_t now) noexcept = 0;
+};
+
 /// One RPDO. real-time safe.
 class ReceivePdo {
  public:
@@ -99,7 +106,7 @@ class TransmitPdo {
   /// SYNC with its counter (0: none). True: to be sent now. Type 252 stores what a remote request will get.
   bool due_at_sync(const ObjectDictionary& dictionary, std::uint8_t counter) noexcept;
   /// Every millisecond. True: an event or the event timer makes it due and the inhibit time is over.
-  bool due_by_event(const ObjectDictionary& dictionary, image::Nanoseconds now) noexcept;
+  bool due_by_event(const ObjectDictionary& dictionary, PdoEvents& events, image::Nanoseconds now) noexcept;
   /// Samples and sends; of type 252 what the last SYNC has stored.
   void send(const ObjectDictionary& dictionary, image::CanBus& bus, image::Nanoseconds now) noexcept;
 

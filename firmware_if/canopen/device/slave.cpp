@@ -215,7 +215,7 @@ void Slave::tick(image::Nanoseconds now) noexcept {
   if (state_ != NmtState::operational || !any_event_driven_) return;
   profile_.refresh();
   for (TransmitPdo& p : transmit_)
-    if (p.due_by_event(dictionary_, now)) p.send(dictionary_, *bus_, now);
+    if (p.due_by_event(dictionary_, *this, now)) p.send(dictionary_, *bus_, now);
 }
 
 void Slave::watch_connection() noexcept {

@@ -26,6 +26,10 @@ class DeviceProfile {
   virtual AbortCode before_write(ObjectDictionary::Slot, std::int64_t) noexcept { return AbortCode::none; }
   /// An SDO or a PDO has written it.
   virtual void after_write(ObjectDictionary::Slot) noexcept {}
+  /// A mapped object of an event-driven TPDO was sent as `sent` and is `now`: is that an event?
+  virtual bool is_event(ObjectDictionary::Slot, std::int64_t sent, std::int64_t now) noexcept {
+    return sent != now;
+  }
   /// Live values are about to be read: bring them up to date.
   virtual void refresh() noexcept {}
   /// A SYNC has come; synchronous RPDOs are applied and TPDOs sampled.
@@ -48,7 +52,7 @@ class DeviceProfile {
 /// A CiA 301 device without a profile: NMT slave with boot-up, heartbeat and guarding, SDO server, EMCY, SYNC
 /// consumer, four PDOs of each direction with variable mapping, store and restore. A pure state machine on
 /// frames and time: the owner passes in frames and calls tick() every millisecond.
-class Slave final : private SdoObjects, private PdoSink, private LssDevice {
+class Slave final : private SdoObjects, private PdoSink, private PdoEvents, private LssDevice {
  public:
   /// `dictionary` holds communication_objects() of this node and the profile's. With kUnconfiguredNode (their
   /// node is 0 then) the device hears layer setting services only, until one of them gives it a node-ID. Not
@@ -100,6 +104,9 @@ class Slave final : private SdoObjects, private PdoSink, private LssDevice {
                   std::span<const std::uint8_t> bytes) noexcept override;
   AbortCode may_write(std::uint16_t index, std::uint8_t subindex, std::size_t& size) noexcept override;
   void pdo_wrote(ObjectDictionary::Slot slot) noexcept override { profile_.after_write(slot); }
+  bool is_event(ObjectDictionary::Slot slot, std::int64_t sent, std::int64_t now) noexcept override {
+    return profile_.is_event(slot, sent, now);
+  }
 
   AbortCode check_communication_write(std::uint16_t index, std::uint8_t subindex,
                                       std::int64_t value) const noexcept;
