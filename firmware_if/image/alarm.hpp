@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "firmware_if/image/time.hpp"
@@ -44,6 +45,7 @@ struct AlarmRecord {
   double value = 0.0;       ///< ... and what was met, in the unit the table names
   double detail1 = 0.0;     ///< further figures that the table names, e.g. the velocity of a following error
   double detail2 = 0.0;
+  std::array<char, 32> text{};  ///< words that a device gave, ended by 0 and cut off; empty: none
 };
 
 }  // namespace servogate::image

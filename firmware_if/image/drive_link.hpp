@@ -20,6 +20,15 @@ enum class DriveState : std::uint8_t {
 /// Operating modes the kernel asks of a drive (CiA 402 object 6060h: csp 8, csv 9, cst 10, homing 6).
 enum class DriveMode : std::uint8_t { none, csp, csv, cst, homing };
 
+/// How far a drive is with a homing that it does by itself (DriveMode::homing).
+enum class DriveHoming : std::uint8_t {
+  idle,  ///< none was begun since the mode was asked for
+  running,
+  interrupted,  ///< the drive stands and has neither found its home nor reported an error
+  attained,
+  failed,  ///< the drive reports a homing error
+};
+
 /// What the latch of a drive watches (CiA 402 60B8h).
 enum class LatchSource : std::uint8_t { zero_mark, probe_1, probe_2 };
 
@@ -31,7 +40,9 @@ struct DriveCommand {
   bool reset_fault = false;           ///< level; the supplier makes the edge the drive wants
   bool brake_release = false;         ///< brake output of the drive, where it has one
   std::uint32_t digital_outputs = 0;  ///< 60FEh:01 but for the bit of the brake
-  DriveMode mode = DriveMode::none;
+  DriveMode mode = DriveMode::none;   ///< homing: the drive begins as soon as it is in this mode, and leads
+  bool halt =
+      false;  ///< stops a motion that the drive leads: its halt bit, or its quick stop where it has none
   LatchSource latch_source = LatchSource::zero_mark;
   bool latch_arm = false;       ///< level: TRUE arms one capture, FALSE disarms
   bool latch_negative = false;  ///< capture on the negative edge
@@ -62,7 +73,9 @@ struct DriveFeedback {
   std::uint32_t digital_inputs = 0;  ///< 60FDh
   std::int64_t latch_counts = 0;     ///< position of the last capture
   std::uint32_t latch_sequence = 0;  ///< increases by one with every capture
-  std::uint32_t missed = 0;          ///< consecutive cycles without a fresh process data object
+  DriveHoming homing = DriveHoming::idle;
+  std::int64_t home_counts = 0;  ///< attained: where home is, in the counts of position_counts
+  std::uint32_t missed = 0;      ///< consecutive cycles without a fresh process data object
   DriveRefusal refusal;
 };
 

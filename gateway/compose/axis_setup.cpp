@@ -19,12 +19,21 @@ axis::HomingMethod method(machine::HomingMethod m) {
       return axis::HomingMethod::switch_only;
     case machine::HomingMethod::index:
       return axis::HomingMethod::index_only;
+    case machine::HomingMethod::drive:
+      return axis::HomingMethod::drive;
     case machine::HomingMethod::absolute:
       return axis::HomingMethod::absolute;
     case machine::HomingMethod::none:
       return axis::HomingMethod::none;
   }
   return axis::HomingMethod::none;
+}
+
+/// Whether a method of CiA 402-2 turns round at a limit switch, or has one for its home.
+bool turns_at_limit(int method) {
+  const int without_index = method > 16 && method < 31 ? method - 16 : method;
+  return without_index == 1 || without_index == 2 || (without_index >= 7 && without_index <= 14) ||
+         method < 0;
 }
 
 axis::HomingData homing(const machine::AxisConfig& a) {
@@ -41,6 +50,8 @@ axis::HomingData homing(const machine::AxisConfig& a) {
   h.max_index_travel = a.home.index_max_travel > 0.0
                            ? a.home.index_max_travel
                            : 1.5 * a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
+  // The ramp down from the search and up again, and a second for what the switch takes.
+  if (turns_at_limit(a.home.drive_method)) h.drive_limit_time = 2.0 * h.fast / a.homing_acceleration() + 1.0;
   h.timeout_s = a.home.timeout;
   h.order = a.home.order;
   h.index_spacing = a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
@@ -97,6 +108,20 @@ axis::DrivePlace drive_place(const machine::MachineConfig& m, std::string_view r
 
 }  // namespace
 
+image::Reaction loss_reaction(machine::LossReaction reaction) {
+  switch (reaction) {
+    case machine::LossReaction::stop_axes:
+      return image::Reaction::stop_axes;
+    case machine::LossReaction::quick_stop:
+      return image::Reaction::quick_stop;
+    case machine::LossReaction::power_off:
+      return image::Reaction::power_off;
+    case machine::LossReaction::stop_on_path:
+      break;
+  }
+  return image::Reaction::stop_on_path;
+}
+
 axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& a) {
   const machine::MachineConfig& m = loaded.machine;
   axis::AxisConfig c;
@@ -137,6 +162,7 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
     if (const machine::DeviceConfig* device = loaded.device(node->device); device != nullptr)
       c.feedback_delay = 2 + device->behaviour.command_delay;
     c.missed_limit = static_cast<std::uint32_t>(node->loss_cycles);
+    c.loss_reaction = loss_reaction(node->loss_reaction);
   }
   return c;
 }

@@ -7,6 +7,9 @@
 /// The machine file's axes and spindles in the terms of the kernel. Not real-time safe.
 namespace servogate::gateway {
 
+/// What the machine does when a node is lost, as the kernel has it.
+image::Reaction loss_reaction(machine::LossReaction reaction);
+
 axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& axis);
 axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& spindle);
 /// Process `index` with all axes of the machine as its path axes (the first kMaxPathAxes).

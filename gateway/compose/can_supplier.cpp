@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/compose/can_supplier.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::gateway {
@@ -24,6 +27,10 @@ constexpr Row kAlarms[] = {
     {BusEventKind::foreign_frame, cycle::alarm::kForeignFrame},
     {BusEventKind::send_failed, cycle::alarm::kBusSendOverflow},
 };
+
+/// Those that mean the loss of a node.
+constexpr BusEventKind kLosses[] = {BusEventKind::heartbeat_lost, BusEventKind::pdo_missing,
+                                    BusEventKind::node_restarted, BusEventKind::node_left};
 
 /// A boot report in AlarmRecord::detail2: its problem, and these.
 constexpr unsigned kWriting = 16, kAborted = 32;
@@ -65,9 +72,12 @@ void CanSupplier::report(const canopen::BusEvent& event) noexcept {
                                 : event.kind == BusEventKind::emcy        ? event.emcy.error_register
                                                                           : event.got);
   if (event.kind == BusEventKind::boot_failed) pack(event.boot, r);
-  for (const canopen::NodeConfig& n : segment_.config().nodes)
-    if (n.node == event.node && n.target == canopen::DriveTarget::axis)
-      r.axis = static_cast<std::int8_t>(n.target_index);
+  const bool lost = std::find(std::begin(kLosses), std::end(kLosses), event.kind) != std::end(kLosses);
+  for (const canopen::NodeConfig& n : segment_.config().nodes) {
+    if (n.node != event.node) continue;
+    if (n.target == canopen::DriveTarget::axis) r.axis = static_cast<std::int8_t>(n.target_index);
+    if (lost) r.reaction = n.loss_reaction;
+  }
   notices_->add(r);
 }
 
@@ -77,6 +87,7 @@ void pack(const canopen::BootReport& report, image::AlarmRecord& record) noexcep
   record.object_subindex = report.subindex;
   record.limit = static_cast<double>(report.expected);
   record.value = static_cast<double>(aborted ? static_cast<std::uint32_t>(report.abort) : report.got);
+  record.text = report.got_text.bytes;
   record.detail1 = static_cast<double>(report.step);
   record.detail2 =
       static_cast<double>(report.problem) + (report.writing ? kWriting : 0.0) + (aborted ? kAborted : 0.0);
@@ -96,6 +107,7 @@ canopen::BootReport unpack(const image::AlarmRecord& record) noexcept {
     report.abort = static_cast<canopen::AbortCode>(value);
   else
     report.got = value;
+  report.got_text.bytes = record.text;
   return report;
 }
 

@@ -3,8 +3,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "gateway/compose/axis_setup.hpp"
 
 namespace servogate::gateway {
+
+namespace {
+
+std::uint32_t object_value(double value) {
+  return static_cast<std::uint32_t>(std::llround(std::clamp(value, 1.0, 4294967295.0)));
+}
+
+/// Speeds and acceleration of the axis in the drive's own units. nullopt: whoever homes, the drive is not
+/// asked.
+std::optional<canopen::NodeHoming> homing_of(const machine::AxisConfig& a, const canopen::DriveProfile& p) {
+  const bool has_mode = (p.modes & canopen::supported_bit(canopen::OperationMode::homing)) != 0;
+  if (a.home.method != machine::HomingMethod::drive)
+    return has_mode ? std::optional(canopen::NodeHoming{}) : std::nullopt;
+  const double counts = a.counts_per_unit();
+  canopen::NodeHoming h;
+  h.method = static_cast<std::int8_t>(a.home.drive_method);
+  if (a.home.fast > 0.0) h.speed_switch = object_value(a.home.fast * counts / p.velocity_unit_counts_s);
+  if (a.home.slow > 0.0) h.speed_zero = object_value(a.home.slow * counts / p.velocity_unit_counts_s);
+  h.acceleration = object_value(a.homing_acceleration() * counts / p.acceleration_unit_counts_s2);
+  return h;
+}
+
+void put_files(const machine::LoadResult& loaded, const machine::NodeConfig& node,
+               const std::string& reference, canopen::NodeSetup& setup) {
+  const auto found = loaded.node_files.find(reference);
+  if (found == loaded.node_files.end()) return;
+  const machine::LoadResult::NodeFiles& files = found->second;
+  if (node.program_version >= 0) {
+    canopen::NodeProgram& program = setup.program.emplace();
+    if (node.program_when == machine::ProgramWhen::other_version) program.image = files.program;
+    program.identification = static_cast<std::uint32_t>(node.program_version);
+    program.number = static_cast<std::uint8_t>(node.program_number);
+  }
+  setup.program_timeout_ms = static_cast<std::int32_t>(std::lround(node.program_timeout * 1e3));
+  setup.concise_dcf = files.concise_dcf;
+  setup.configuration_date = files.configuration_date;
+  setup.store_configuration = node.configuration_store;
+}
+
+}  // namespace
 
 canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int index) {
   const machine::MachineConfig& m = loaded.machine;
@@ -40,10 +83,18 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
     if (!used) continue;
     if (const machine::DeviceConfig* device = loaded.device(node.device); device != nullptr)
       n.profile = machine::drive_profile(*device, node, counts);
+    if (n.target == canopen::DriveTarget::axis) {
+      const machine::AxisConfig& axis = m.axes[static_cast<std::size_t>(n.target_index)];
+      n.setup.homing = homing_of(axis, n.profile);
+      if (axis.home.method == machine::HomingMethod::drive)
+        n.profile.modes |= canopen::supported_bit(canopen::OperationMode::homing);
+    }
     n.heartbeat_ms = static_cast<std::int32_t>(std::lround(node.heartbeat * 1e3));
     n.max_missed_pdo = static_cast<std::int32_t>(node.loss_cycles);
     n.unsupervised = node.unsupervised;
     n.setup.software_version = node.software_version;
+    n.loss_reaction = loss_reaction(node.loss_reaction);
+    put_files(loaded, node, reference, n.setup);
     n.setup.boot_timeout_ms = static_cast<std::int32_t>(std::lround(node.boot_timeout * 1e3));
     n.setup.boot_attempts = node.boot_attempts;
     // The control's own heartbeat is as quick as the quickest node's.

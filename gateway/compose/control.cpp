@@ -306,7 +306,6 @@ cycle::AlarmNames Control::alarm_names() const {
     event.boot = unpack(record);
     if (const machine::NodeConfig* n = node_at(record.segment, record.node); n != nullptr)
       event.boot.expected_text = canopen::BootText(n->software_version);
-    event.boot.got_text = canopen::BootText("?");
     const std::string words = canopen::describe(event, {}, nullptr, language);
     return words.starts_with(": ") ? words.substr(2) : words;
   };

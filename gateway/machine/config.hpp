@@ -30,8 +30,8 @@ inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 enum class AxisType : std::uint8_t { linear, rotary };
 enum class Direction : std::uint8_t { plus, minus };
 /// How an axis finds its zero. `absolute`: the kept reference of an absolute encoder; `none`: zero where it
-/// is switched on.
-enum class HomingMethod : std::uint8_t { switch_and_index, switch_only, index, absolute, none };
+/// is switched on; `drive`: by a method of the drive itself (6098h).
+enum class HomingMethod : std::uint8_t { switch_and_index, switch_only, index, drive, absolute, none };
 /// Which side closes the position loop: `csp` the drive, `csv` the kernel.
 enum class ControlMode : std::uint8_t { csp, csv };
 
@@ -46,6 +46,8 @@ struct HomingConfig {
   /// leaving the switch, equal: driving onto it.
   Direction index_direction = Direction::plus;
   double index_max_travel = 0.0;  ///< give up the search for the index after this, 0: one and a half turns
+  int drive_method = 0;           ///< method drive: number of CiA 402-2 for 6098h
+  double acceleration = 0.0;      ///< method drive: 609Ah, mm/s2; 0: the axis' own
   double position = 0.0;          ///< machine coordinate of the index (of the switch edge without one), mm
   double max_travel = 0.0;        ///< give up the search for the switch after this, 0: 1.2 x travel
   bool final_move = true;         ///< drives to final_position after referencing
@@ -114,6 +116,9 @@ struct AxisConfig {
   double motor_rpm(double velocity) const {
     return velocity / lead * static_cast<double>(gear[0]) / static_cast<double>(gear[1]) * 60.0;
   }
+  double homing_acceleration() const {
+    return home.acceleration > 0.0 ? home.acceleration : max_acceleration;
+  }
   double jog() const { return jog_velocity > 0.0 ? jog_velocity : max_velocity / 10.0; }
   double jog_not_homed() const {
     return jog_velocity_not_homed > 0.0 ? jog_velocity_not_homed : max_velocity / 100.0;
@@ -140,16 +145,30 @@ struct SpindleConfig {
   bool has_encoder() const { return counts_per_rev > 0; }
 };
 
+/// What the loss of a node makes the machine do, in rising severity.
+enum class LossReaction : std::uint8_t { stop_on_path, stop_axes, quick_stop, power_off };
+/// When a node gets its program: where 1F56h tells another version, or never, then another one is refused.
+enum class ProgramWhen : std::uint8_t { other_version, never };
+
 /// [[bus.node]]
 struct NodeConfig {
   std::string name;
-  int id = 0;                             ///< CANopen node-ID 1-127
-  std::string device;                     ///< device file without .toml
-  double heartbeat = 0.1;                 ///< s, producer time of the node; 0: none
-  int loss_cycles = 3;                    ///< cycles without process data until the node counts as lost
-  double boot_timeout = 0.0;              ///< s, wait for boot-up and for Operational; 0: the standard 2 s
-  int boot_attempts = 0;                  ///< before the failure is told; 0: the standard 3
-  std::string software_version;           ///< 100Ah at boot, to the letter; empty: any
+  int id = 0;                    ///< CANopen node-ID 1-127
+  std::string device;            ///< device file without .toml
+  double heartbeat = 0.1;        ///< s, producer time of the node; 0: none
+  int loss_cycles = 3;           ///< cycles without process data until the node counts as lost
+  double boot_timeout = 0.0;     ///< s, wait for boot-up and for Operational; 0: the standard 2 s
+  int boot_attempts = 0;         ///< before the failure is told; 0: the standard 3
+  std::string software_version;  ///< 100Ah at boot, to the letter; empty: any
+  LossReaction loss_reaction = LossReaction::stop_on_path;
+  std::string program;                ///< file for 1F50h, from the machine file's folder; empty: none
+  std::int64_t program_version = -1;  ///< 1F56h of the right program; -1: not checked
+  int program_number = 1;             ///< sub-index of 1F50h, 1F51h, 1F56h and 1F57h
+  ProgramWhen program_when = ProgramWhen::other_version;
+  double program_timeout = 60.0;          ///< s of clearing and of writing the flash
+  std::string configuration;              ///< DCF, written at boot; empty: none
+  std::string configuration_date;         ///< "2026-11-22 14:30:00" for 1020h; empty: written at every boot
+  bool configuration_store = false;       ///< the device is told to store it (1010h:01)
   bool unsupervised = false;              ///< may run although it would not notice the control's death
   std::map<std::string, double> objects;  ///< "6065:00" -> value, written at boot after the device file's own
 };

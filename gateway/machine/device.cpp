@@ -33,6 +33,8 @@ class DeviceCheck {
     pdos("rpdo", d_.rpdos);
     pdos("tpdo", d_.tpdos);
     modbus();
+    homing_methods();
+    ip_record();
     if (!d_.drive() || !d_.places.contains("kind")) return;  // unknown kind: said by the reader
     word("RPDO", d_.rpdos, 0x6040, "controlword");
     word("TPDO", d_.tpdos, 0x6041, "statusword");
@@ -86,6 +88,39 @@ class DeviceCheck {
     if (bits > 64)
       reading_.error(at(path + ".objects"), finding::kPdoSize,
                      {key, std::to_string(pdo.number), std::to_string(bits)});
+  }
+
+  void homing_methods() {
+    for (std::size_t i = 0; i < d_.behaviour.homing_methods.size(); ++i) {
+      const std::string& text = d_.behaviour.homing_methods[i];
+      std::string_view rest = text;
+      int number = 0;
+      if (!take(rest, 10, number) || !rest.empty() || number < -128 || number > 127 || number == 0)
+        reading_.error(at("behaviour.homing_methods." + std::to_string(i)), finding::kHomingNumber, {text});
+    }
+  }
+
+  /// Where ip is the mode for positions, every entry of its record is in an RPDO, the position among them.
+  void ip_record() {
+    const auto& record = d_.behaviour.ip_record;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      const Where where = at("behaviour.ip_record." + std::to_string(i));
+      if (record[i] != "position" && record[i] != "velocity")
+        reading_.error(where, finding::kUnknownChoice,
+                       {"behaviour.ip_record", record[i], "position, velocity"});
+      else if (d_.behaviour.position_mode == PositionMode::ip &&
+               !maps(d_.rpdos, 0x60C1, static_cast<int>(i) + 1))
+        reading_.error(where, finding::kIpRecord, {"60C1:0" + std::to_string(i + 1) + "/32", record[i]});
+    }
+    if (std::find(record.begin(), record.end(), "position") == record.end())
+      reading_.error(at("behaviour.ip_record"), finding::kIpNoPosition, {});
+  }
+
+  static bool maps(const std::vector<PdoConfig>& pdos, std::uint16_t index, int subindex) {
+    for (const PdoConfig& pdo : pdos)
+      for (const PdoObject& o : pdo.objects)
+        if (o.index == index && o.subindex == subindex) return true;
+    return false;
   }
 
   void modbus() {
@@ -154,6 +189,16 @@ void DeviceCheck::modes() {
                      {"behaviour.modes", d_.behaviour.modes[i], "pp, vl, pv, tq, hm, ip, csp, csv, cst"});
 }
 
+}  // namespace
+
+bool has_homing_method(const DeviceConfig& device, int method) {
+  const auto& listed = device.behaviour.homing_methods;
+  if (!listed.empty()) return std::find(listed.begin(), listed.end(), std::to_string(method)) != listed.end();
+  return (method >= 1 && method <= 14) || (method >= 17 && method <= 30) || (method >= 33 && method <= 37);
+}
+
+namespace {
+
 void put_pdos(const std::vector<PdoConfig>& from, std::array<canopen::PdoWanted, 4>& to) {
   for (const PdoConfig& pdo : from) {
     if (pdo.number < 1 || pdo.number > 4) continue;
@@ -185,6 +230,11 @@ std::optional<std::uint32_t> given(std::int64_t value) {
 
 void put_behaviour(const BehaviourConfig& b, canopen::DriveProfile& p) {
   p.torque_unit_permille = b.torque_unit;
+  p.acceleration_unit_counts_s2 = b.acceleration_unit;
+  p.halt = b.halt;
+  p.homing_method_here = static_cast<std::int8_t>(b.homing_method_here);
+  p.homing_method_none = b.homing_method_none;
+  p.homing_method_list = b.homing_method_list;
   p.velocity_unit_counts_s =
       b.velocity_in_rpm ? static_cast<double>(p.counts_per_rev) / 60.0 : b.velocity_unit;
   p.modes = 0;
@@ -192,6 +242,12 @@ void put_behaviour(const BehaviourConfig& b, canopen::DriveProfile& p) {
   p.check_modes = b.check_modes;
   p.position_mode = b.position_mode == PositionMode::ip ? canopen::OperationMode::interpolated_position
                                                         : canopen::OperationMode::cyclic_sync_position;
+  const auto entry = [&b](std::string_view what) {
+    const auto found = std::find(b.ip_record.begin(), b.ip_record.end(), what);
+    return static_cast<std::uint8_t>(found == b.ip_record.end() ? 0 : found - b.ip_record.begin() + 1);
+  };
+  p.ip_position_entry = entry("position");
+  p.ip_velocity_entry = entry("velocity");
   static constexpr std::string_view kSpeed[] = {"csv", "pv", "vl"};
   p.velocity_mode = mode_of(kSpeed[static_cast<std::size_t>(b.speed_mode)]);
   p.fault_reset =

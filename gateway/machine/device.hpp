@@ -54,16 +54,23 @@ enum class SpeedMode : std::uint8_t { csv, pv, vl };
 struct BehaviourConfig {
   double velocity_unit = 1.0;                      ///< one unit of 60FFh and 606Ch in counts/s
   bool velocity_in_rpm = false;                    ///< 60FFh and 606Ch are in rpm; velocity_unit is computed
+  double acceleration_unit = 1.0;                  ///< one unit of 609Ah in counts/s2
   double torque_unit = 1.0;                        ///< one unit of 6071h and 6077h in per mille
   std::vector<std::string> modes = {"csp"};        ///< modes of 6502h that must be there
   bool check_modes = true;                         ///< false: the drive has no 6502h
   PositionMode position_mode = PositionMode::csp;  ///< ip: of a drive without csp, 60C1h:01 mapped
-  SpeedMode speed_mode = SpeedMode::csv;           ///< the drive's mode for csv of the kernel
+  std::vector<std::string> ip_record = {"position"};  ///< what 60C1h:01, :02 ... are
+  SpeedMode speed_mode = SpeedMode::csv;              ///< the drive's mode for csv of the kernel
   FaultResetBy fault_reset = FaultResetBy::edge;
-  double fault_reset_hold = 0.02;    ///< s that controlword bit 7 stays set
-  double transition_timeout = 2.0;   ///< s, then a transition counts as refused
-  std::int64_t handover_counts = 0;  ///< 0: a quarter of a turn
-  int brake_bit = -1;                ///< bit of 60FEh:01, -1: none
+  double fault_reset_hold = 0.02;           ///< s that controlword bit 7 stays set
+  double transition_timeout = 2.0;          ///< s, then a transition counts as refused
+  bool halt = true;                         ///< has a halt bit (6040h bit 8)
+  std::vector<std::string> homing_methods;  ///< of 6098h that the drive has, by CiA 402-2; empty: not said
+  int homing_method_here = 37;              ///< the drive's own number of method 37
+  bool homing_method_none = true;           ///< 6098h takes 0
+  bool homing_method_list = true;           ///< 60E3h is to be believed where it is there
+  std::int64_t handover_counts = 0;         ///< 0: a quarter of a turn
+  int brake_bit = -1;                       ///< bit of 60FEh:01, -1: none
   bool brake_bit_releases = true;
   bool fixed_pdo_map = false;        ///< the map cannot be written: it is read and compared
   bool interpolation_period = true;  ///< the drive has 60C2h
@@ -128,6 +135,10 @@ struct DeviceConfig {
   /// Text of an error code in the language, empty: unknown.
   std::string_view error_text(std::uint16_t code, text::Language language) const;
 };
+
+/// Whether a drive has a homing method: by `homing_methods`, without those every one that CiA 402-2
+/// describes.
+bool has_homing_method(const DeviceConfig& device, int method);
 
 /// "6065:00/32", "6065:00", "6065" -> index (hexadecimal), subindex, bits (0 when not given); nullopt: not of
 /// that form.

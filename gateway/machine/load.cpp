@@ -11,6 +11,7 @@
 #include "gateway/machine/check/findings.hpp"
 #include "gateway/machine/keys/findings.hpp"
 #include "gateway/machine/keys/sections.hpp"
+#include "gateway/machine/node_files.hpp"
 
 namespace servogate::machine {
 
@@ -113,6 +114,7 @@ LoadResult parse(std::string_view text, const std::string& path) {
     result.machine.places = std::move(reading.places);
     result.machine.unread = std::move(reading.unread);
     load_devices(result, reading, of_devices);
+    load_node_files(result, reading);
     check_all(result, reading);
   }
   sort_findings(reading.findings);

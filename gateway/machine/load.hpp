@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "firmware_if/canopen/302/node_setup.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "gateway/machine/config.hpp"
 #include "gateway/machine/device.hpp"
@@ -16,7 +19,14 @@ struct LoadResult {
   MachineConfig machine;
   std::map<std::string, DeviceConfig, std::less<>> devices;  ///< by name in the machine file
   std::vector<text::Finding>
-      findings;          ///< all of the file and its device files, errors and warnings, by place
+      findings;  ///< all of the file and its device files, errors and warnings, by place
+  /// Files that nodes name, read: by "bus.node".
+  struct NodeFiles {
+    std::vector<std::uint8_t> program;
+    std::vector<std::uint8_t> concise_dcf;  ///< of `configuration`, as in 1F22h
+    std::optional<canopen::ConfigurationDate> configuration_date;
+  };
+  std::map<std::string, NodeFiles, std::less<>> node_files;
   bool readable = true;  ///< false: there was no content to judge (missing, no regular file, too large)
   /// No error; warnings are allowed.
   bool ok() const;

@@ -96,7 +96,7 @@ void Axis::advance(double dt, image::Nanoseconds now) noexcept {
   else if (owner_ == AxisOwner::process)
     advance_process(dt);
   moving_ = set_.v != 0.0 || set_.a != 0.0 || set_.x != before || (own_motion_ && !ramp_.done()) ||
-            homing_.active();
+            homing_.active() || homing_.drive_leads();
   if (stopped_by_reaction_ && !stop_now && !moving_ && rest_s_ > 0.01) stopped_by_reaction_ = false;
 }
 
@@ -134,6 +134,8 @@ void Axis::advance_own(double dt, image::Nanoseconds now) noexcept {
       raise(homing_.failure(), homing_.failure_limit(), homing_.failure_value());
     homing_reported_ = homing_reported_ || !homing_.active();
   }
+  if (homing_.drive_leads() && !homing_.active()) homing_.bring_back(homing_inputs(dt));
+  if (homing_.drive_leads()) return follow_drive();
   set_ = ramp_.step(dt);
   if (!ramp_.done() || homing_.active()) return;
   set_.v = set_.a = 0.0;
@@ -152,6 +154,14 @@ void Axis::advance_homing(double dt) noexcept {
   if (!homing_.take_reference()) return;
   set_machine_position(homing_.captured_counts());
   check_index_place();
+}
+
+/// The drive homes by itself: the set-point is where it is, and nothing falls behind.
+void Axis::follow_drive() noexcept {
+  set_ = {actual_, 0.0, 0.0};
+  compensation_.seat(actual_, 0);
+  ramp_.reset(set_, config_.limits);
+  fill_history();
 }
 
 /// A zero mark close to the edge of the switch is taken today and missed tomorrow.
@@ -197,6 +207,7 @@ void Axis::follow_feedback() noexcept {
     homing_.abort(ramp_);
     raise(alarm::kHomingInterrupted, 0.0, set_.x);
   }
+  homing_.drop();
   if (homed_) compensation_value_ = compensation_.at(motor_ - compensation_value_);
   actual_ = motor_ - compensation_value_;
   set_ = {actual_, 0.0, 0.0};
@@ -249,7 +260,10 @@ void Axis::write_drive(image::ProcessImage& image, const PowerSequence::Outputs&
   out.quick_stop = power.quick_stop;
   out.reset_fault = reset_pending_;
   out.brake_release = power.brake_release && config_.brake.output == BrakeOutput::drive;
-  out.mode = image::DriveMode::csp;
+  const DriveLedHoming& led = homing_.drive_led();
+  out.mode = led.wants_homing_mode() ? image::DriveMode::homing : image::DriveMode::csp;
+  out.halt = led.wants_halt();
+  out.quick_stop = out.quick_stop || led.wants_quick_stop();
   out.latch_source = image::LatchSource::zero_mark;
   out.latch_arm = homing_.latch_arm();
   out.position_counts = held_ ? scale_.counts(set_.x + compensation_value_) : drive_.position_counts;

@@ -120,6 +120,7 @@ class Axis {
   void advance_own(double dt, image::Nanoseconds now) noexcept;
   void advance_homing(double dt) noexcept;
   void advance_manual(image::Nanoseconds now) noexcept;
+  void follow_drive() noexcept;
   void check_index_place() noexcept;
   void take_away() noexcept;
   void follow_feedback() noexcept;

@@ -33,6 +33,8 @@ inline constexpr AlarmNumber kHomingLimitAgain = 1105;
 inline constexpr AlarmNumber kHomingNoReference = 1106;
 inline constexpr AlarmNumber kHomingInterrupted = 1107;
 inline constexpr AlarmNumber kHomingIndexNearEdge = 1108;
+inline constexpr AlarmNumber kHomingDriveFailed = 1109;
+inline constexpr AlarmNumber kHomingModeRefused = 1110;
 
 inline constexpr AlarmNumber kSpindleNotAtSpeed = 1201;
 inline constexpr AlarmNumber kSpindleOrientTimeout = 1202;

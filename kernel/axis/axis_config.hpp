@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/packets.hpp"
 #include "kernel/axis/inverter/inverter.hpp"
 #include "kernel/axis/ramp.hpp"
@@ -22,6 +23,7 @@ enum class HomingMethod : std::uint8_t {
   switch_and_index,  ///< decisive edge of the home switch, then the next zero mark
   switch_only,       ///< decisive edge of the home switch
   index_only,        ///< next zero mark in the direction of search
+  drive,             ///< the drive does it by a method of its own; the set-point follows the feedback
   absolute,          ///< absolute encoder: the kept reference holds; without one the axis is not homed
 };
 
@@ -41,6 +43,8 @@ struct HomingData {
   double max_index_travel = 20.0;  ///< way from the edge to the zero mark, mm
   double index_spacing = 0.0;      ///< way from zero mark to zero mark, mm; 0: not known, not checked
   double timeout_s = 60.0;         ///< for the whole of it
+  double drive_limit_time = 0.0;   ///< method drive: so long, in s, it may move into a limit switch: it turns
+                                   ///< round there; 0: by a method that has no business there
   int order = 1;                   ///< axes with the same number home together, lower numbers first
 };
 
@@ -105,6 +109,8 @@ struct AxisConfig {
   DrivePlace drive;
   int feedback_delay = 2;          ///< cycles from a command to the feedback that shows it carried out, 1-15
   std::uint32_t missed_limit = 3;  ///< consecutive cycles without process data, then an alarm
+  image::Reaction loss_reaction =
+      image::Reaction::stop_on_path;  ///< to the loss of its drive, or a stronger one
 };
 
 /// A spindle, as plain data from the machine file.

@@ -102,6 +102,9 @@ HomingInputs Axis::homing_inputs(double dt) const noexcept {
   in.counts = drive_.position_counts;
   in.latch_counts = drive_.latch_counts;
   in.latch_sequence = drive_.latch_sequence;
+  in.drive = {dt, drive_.mode, drive_.homing, actual_standing_,
+              !actual_standing_ && into_limit(actual_velocity_)};
+  in.home_counts = drive_.home_counts;
   return in;
 }
 

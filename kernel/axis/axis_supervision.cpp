@@ -65,10 +65,12 @@ void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
   last_counts_ = in.position_counts;
   motor_ = scale_.position(in.position_counts);
   if (seen_counts_) {
-    const double step = scale_.velocity(static_cast<double>(in.position_counts - before));
+    double step = scale_.velocity(static_cast<double>(in.position_counts - before));
     const double permitted =
         2.0 * config_.limits.velocity * dt * (1.0 + last_missed_) + 20.0 / scale_.per_unit();
-    if (std::abs(step) > permitted) {
+    if (std::abs(step) > permitted && homing_.drive_leads()) {
+      step = actual_velocity_ * dt;  // the drive counts from its new zero
+    } else if (std::abs(step) > permitted) {
       raise(alarm::kEncoderJump, permitted, step);
       drop_reference();
     }
@@ -79,7 +81,7 @@ void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
   actual_standing_ = std::abs(actual_velocity_) <= config_.standstill_velocity;
   const Sent& then = sent(config_.feedback_delay);
   actual_ = motor_ - then.compensation;
-  following_error_ = held_ ? then.command - actual_ : 0.0;
+  following_error_ = held_ && !homing_.drive_leads() ? then.command - actual_ : 0.0;
   const double speed = std::abs(then.command - sent(config_.feedback_delay + 1).command) / dt;
   following_limit_ = config_.following_error_limit + config_.following_error_velocity * speed;
   following_warn_ = config_.following_error_warn + config_.following_error_velocity * speed;
@@ -158,6 +160,7 @@ void Axis::supervise_power(PowerSequence::State before) noexcept {
   if (!drive_.online || drive_.state == DriveState::fault ||
       drive_.state == DriveState::fault_reaction_active)
     return;
+  if (homing_.drive_led().wants_halt()) return;  // by the quick stop of a drive that has no halt
   const bool opening = before == State::torque || before == State::releasing;
   if (opening && config_.brake.output != BrakeOutput::none)
     raise(alarm::kBrakeNoTorque, 0.0, 0.0);

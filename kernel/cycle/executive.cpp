@@ -170,7 +170,10 @@ void Cycle::collect_events() noexcept {
         const image::DriveFeedback& drive = image_.axes[static_cast<std::size_t>(axis)].drive;
         r.statusword = drive.statusword;
         r.error_code = drive.error_code;
-        const axis::DrivePlace& place = axes_[static_cast<std::size_t>(axis)].config().drive;
+        const axis::AxisConfig& config = axes_[static_cast<std::size_t>(axis)].config();
+        const axis::DrivePlace& place = config.drive;
+        if (e.number == axis::alarm::kDriveOffline || e.number == axis::alarm::kPdoMissing)
+          r.reaction = config.loss_reaction;
         r.segment = place.segment;
         r.node = place.node;
       }

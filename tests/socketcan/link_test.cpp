@@ -7,6 +7,8 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <cerrno>
+
 #include "tests/socketcan/vcan.hpp"
 
 namespace servogate::socketcan {
@@ -110,6 +112,25 @@ TEST_F(Vcan, the_right_to_restart_is_the_kernels_to_refuse) {
   EXPECT_NE(why.str(text::Language::english).find(name_), std::string::npos);
 }
 
+TEST_F(Vcan, a_link_is_taken_down_and_brought_up_by_the_program_itself) {
+  auto bus = open();
+  ASSERT_EQ(set_link(read_link(name_)->index, {.up = false}), 0);
+  EXPECT_FALSE(read_link(name_)->up);
+  EXPECT_TRUE(reaches(*bus, CanState::down));
+  ASSERT_EQ(set_link(read_link(name_)->index, {.up = true}), 0);
+  EXPECT_TRUE(read_link(name_)->up);
+  EXPECT_TRUE(reaches(*bus, CanState::error_active));
+}
+
+TEST_F(Vcan, what_only_a_controller_can_is_refused_and_changes_nothing) {
+  const int index = read_link(name_)->index;
+  EXPECT_NE(set_link(index, {.bit_rate = 125'000}), 0);
+  EXPECT_NE(set_link(index, {.listen_only = true}), 0);
+  EXPECT_NE(restart_link(index), 0);
+  EXPECT_TRUE(read_link(name_)->up);
+  EXPECT_EQ(set_link(99'999, {.up = true}), ENODEV);
+}
+
 /// An slcan interface on a pseudo-terminal: its queue fills when nobody reads the terminal.
 class SlcanQueue : public Vcan {
  protected:
@@ -175,6 +196,15 @@ TEST_F(SlcanQueue, frames_beyond_the_kernels_queue_wait_and_leave_by_priority_no
   EXPECT_EQ(heard, sent + 4);
   EXPECT_EQ(order, "000 080 201 600 ");
   EXPECT_EQ(bus->lost(), 0u);
+}
+
+TEST_F(SlcanQueue, a_controller_that_is_not_bus_off_is_not_restarted) {
+  const int error = restart_link(read_link(name_)->index);
+  EXPECT_EQ(error, EBUSY) << "the request reaches the driver's own rule";
+  drivers::Notice why;
+  EXPECT_FALSE(open()->restart(why));
+  EXPECT_NE(why.str(text::Language::english).find("busy"), std::string::npos)
+      << why.str(text::Language::english);
 }
 
 TEST_F(SlcanQueue, a_full_queue_refuses_and_a_link_that_goes_down_counts_what_it_loses) {

@@ -22,6 +22,7 @@ constexpr std::uint16_t kFirstApplication = 0x2000;
 
 canopen::DriveRatings ratings_of(const SimulatedDriveConfig& c) {
   canopen::DriveRatings r;
+  r.quirks = c.quirks;
   r.counts_per_rev = static_cast<std::uint32_t>(c.plant.counts_per_rev);
   r.rated_torque_mnm = static_cast<std::uint32_t>(std::lround(c.plant.rated_torque_nm * 1000.0));
   r.peak_torque_permille =

@@ -17,6 +17,7 @@ canopen::ServoProfileSettings settings_of(const SimulatedDriveConfig& c) {
   s.counts_per_rev = c.plant.counts_per_rev;
   s.brake_release = ns(c.brake_release_s);
   s.brake_engage = ns(c.brake_engage_s);
+  s.quirks = c.quirks;
   return s;
 }
 

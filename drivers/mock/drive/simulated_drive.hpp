@@ -13,6 +13,7 @@
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/301/nmt.hpp"
 #include "firmware_if/canopen/306/eds.hpp"
+#include "firmware_if/canopen/device/drive/drive_objects.hpp"
 #include "firmware_if/image/drive_link.hpp"
 #include "firmware_if/image/process_image.hpp"
 
@@ -52,6 +53,7 @@ struct SimulatedDriveConfig {
   std::vector<DriveSwitch> switches;
   std::size_t program_memory = 0;  ///< bytes for a program download (1F50h); 0: the device has none
   std::uint32_t program_identification = 0x0001'0000;  ///< 1F56h of the program that it comes with
+  canopen::DriveQuirks quirks = {};
   /// EDS or DCF: the device has the objects of this sheet with their values, and shows no others. What the
   /// sheet says no value of keeps the simulation's. nullptr: it has all objects of the simulation.
   std::shared_ptr<const canopen::Eds> data_sheet;

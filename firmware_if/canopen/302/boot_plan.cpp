@@ -45,6 +45,9 @@ class Plan {
   void await(Kind kind, std::uint16_t index = 0, std::uint8_t subindex = 0) {
     add({kind, step_, index, subindex, static_cast<std::uint8_t>(index ? 4 : 0)});
   }
+  void find(std::uint16_t index, std::int8_t value) {
+    add({Kind::find_in_list, step_, index, 0, 1, static_cast<std::uint8_t>(value), 0xFF, true});
+  }
   /// A comparison that leaves out what stands between it and land().
   std::size_t jump(Kind kind, std::uint16_t index, std::uint8_t subindex, std::uint32_t value) {
     add({kind, step_, index, subindex, 4, value, 0xFFFF'FFFF});
@@ -107,8 +110,10 @@ void add_configuration(Plan& plan, const NodeConfig& node) {
   if (const auto& date = setup.configuration_date) {
     plan.write(object::kVerifyConfiguration, 1, 4, date->days);
     plan.write(object::kVerifyConfiguration, 2, 4, date->milliseconds);
-    plan.land(time);
   }
+  constexpr std::uint32_t kSave = 0x65766173;  // "save", CiA 301, 7.5.2.13
+  if (setup.store_configuration) plan.write(object::kStoreParameters, 1, 4, kSave);
+  if (setup.configuration_date) plan.land(time);
 }
 
 void add_modes(Plan& plan, const DriveProfile& profile) {
@@ -151,6 +156,24 @@ void add_sync(Plan& plan, const DriveProfile& profile, const SegmentConfig& segm
   if (profile.has_cycle_period)
     plan.write_and_check(object::kCommunicationCyclePeriod, 0, 4,
                          static_cast<std::uint32_t>(segment.cycle_ns / image::kMicrosecond));
+}
+
+// Home is at 0 of the drive's own counting, wherever the machine has it.
+void add_homing(Plan& plan, const NodeConfig& node) {
+  if (!node.setup.homing) return;
+  const NodeHoming& homing = *node.setup.homing;
+  plan.step(BootStep::homing);
+  if (homing.method == 0) {
+    if (node.profile.homing_method_none) plan.write_and_check(object::kHomingMethod, 0, 1, 0, true);
+    return;
+  }
+  const std::int8_t number = homing.method == 37 ? node.profile.homing_method_here : homing.method;
+  if (node.profile.homing_method_list) plan.find(object::kSupportedHomingMethods, number);
+  plan.write_and_check(object::kHomingMethod, 0, 1, static_cast<std::uint8_t>(number));
+  plan.write_and_check(object::kHomeOffset, 0, 4, 0);
+  if (homing.speed_switch > 0) plan.write_and_check(object::kHomingSpeeds, 1, 4, homing.speed_switch);
+  if (homing.speed_zero > 0) plan.write_and_check(object::kHomingSpeeds, 2, 4, homing.speed_zero);
+  if (homing.acceleration > 0) plan.write_and_check(object::kHomingAcceleration, 0, 4, homing.acceleration);
 }
 
 struct PdoPlace {
@@ -219,8 +242,7 @@ void add_mode(Plan& plan, const NodeConfig& node, const SegmentConfig& segment) 
     plan.write_and_check(object::kInterpolationTimePeriod, 1, 1, value);
   }
   plan.step(BootStep::mode);
-  const OperationMode mode =
-      node.target == DriveTarget::axis ? profile.position_mode : profile.velocity_mode;
+  const OperationMode mode = node.target == DriveTarget::axis ? profile.position_mode : profile.velocity_mode;
   plan.write(object::kModesOfOperation, 0, 1, static_cast<std::uint8_t>(mode));
 }
 
@@ -260,6 +282,7 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
     plan.write(setting.index, setting.subindex, setting.bytes, setting.value);
     if (setting.read_back) plan.check(setting.index, setting.subindex, setting.bytes, setting.value);
   }
+  add_homing(plan, node);
   add_guarding(plan, node.profile, segment);
   add_sync(plan, node.profile, segment);
   add_pdos(plan, node);

@@ -18,6 +18,8 @@ struct BootAction {
     read_text,      ///< upload a string and compare it with `data`
     jump_if_equal,  ///< upload; equal to `value`: leave out `jump` actions. A missing object is another value
     jump_unless_equal,  ///< the same where it is not equal
+    find_in_list,   ///< upload sub-index 0 and then the entries of an array until one is `value`; without the
+                    ///< object nothing is looked for
     await_flash,    ///< upload the flash status until it is no longer at work, and see that it has no error
     await_boot_up,  ///< wait for the boot-up message
     start,          ///< NMT start, then wait for a heartbeat with state Operational

@@ -15,6 +15,7 @@ constexpr text::Entry kSteps[] = {
     {"boot-modes", "supported drive modes", "поддерживаемые режимы привода"},
     {"boot-configuration", "configuration (DCF)", "конфигурация (DCF)"},
     {"boot-settings", "settings of the device file", "настройки из файла устройства"},
+    {"boot-homing", "homing by the drive", "выход в ноль силами привода"},
     {"boot-node-guarding", "node guarding", "опрос узла (node guarding)"},
     {"boot-heartbeat-consumer", "supervision of the control's heartbeat", "контроль heartbeat управления"},
     {"boot-abort-connection", "reaction to a lost connection", "реакция на потерю связи"},

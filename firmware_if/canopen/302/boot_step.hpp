@@ -20,6 +20,7 @@ enum class BootStep : std::uint8_t {
   supported_modes,     ///< 6502h
   configuration,       ///< 1020h compared; concise DCF where it is another one
   settings,            ///< the device file's own values
+  homing,              ///< 60E3h, 6098h, 6099h, 609Ah, 607Ch, for an axis that its drive homes
   node_guarding,       ///< 100Ch, 100Dh, for a node without heartbeat
   heartbeat_consumer,  ///< 1016h:01, our heartbeat
   abort_connection,    ///< 6007h
@@ -43,6 +44,7 @@ enum class BootProblem : std::uint8_t {
   bad_protocol,
   wrong_text,    ///< `expected_text`, `got_text`
   flash_error,   ///< `got`: 1F57h
+  not_in_list,   ///< `expected` is none of the `got` entries of an array
   flash_timeout  ///< the flash is still at work; `got`: 1F57h
 };
 

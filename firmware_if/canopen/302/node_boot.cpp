@@ -13,6 +13,7 @@ void NodeBoot::restart_at(std::size_t action, SdoClient& sdo) noexcept {
   state_ = State::running;
   action_ = action;
   entered_ = false;
+  list_size_ = list_entry_ = 0;
   nmt_state_ = NmtState::boot_up;
   describe_action();
 }
@@ -42,6 +43,7 @@ void NodeBoot::next() noexcept {
   ++action_;
   entered_ = false;
   flash_deadline_ns_ = poll_again_ns_ = 0;
+  list_size_ = list_entry_ = 0;
   describe_action();
   if (action_ >= plan_.size()) state_ = State::done;
 }
@@ -81,6 +83,7 @@ bool NodeBoot::await_boot_up(image::Nanoseconds now) noexcept {
 
 bool NodeBoot::start_transfer(SdoClient& sdo) noexcept {
   const BootAction& action = plan_[action_];
+  if (action.kind == BootAction::Kind::find_in_list) return sdo.upload(action.index, list_entry_);
   if (action.kind != BootAction::Kind::write) return sdo.upload(action.index, action.subindex);
   // A boot-up from before the program control does not count.
   boot_up_seen_ = false;
@@ -150,6 +153,7 @@ void NodeBoot::judge_value(const SdoClient& sdo) noexcept {
   const auto value = static_cast<std::uint32_t>(load_le(sdo.data().first(action.bytes)));
   keep(value);
   if (action.kind == BootAction::Kind::await_flash) return judge_flash(sdo);
+  if (action.kind == BootAction::Kind::find_in_list) return judge_list(value);
   if (action.kind != BootAction::Kind::read) return jump(value == action.value);
   if ((value & action.mask) != (action.value & action.mask)) {
     report_.got = value;
@@ -180,6 +184,19 @@ void NodeBoot::judge_flash(const SdoClient& sdo) noexcept {
   if (now_ >= flash_deadline_ns_) return fail(BootProblem::flash_timeout);
   entered_ = false;
   poll_again_ns_ = now_ + kFlashPollNs;
+}
+
+// The entries are 16 bits wide in CiA 402-2 and 8 in some drives; the number is in the lowest.
+void NodeBoot::judge_list(std::uint32_t value) noexcept {
+  const BootAction& action = plan_[action_];
+  if (list_entry_ == 0)
+    list_size_ = static_cast<std::uint8_t>(value);
+  else if (value == action.value)
+    return next();
+  report_.got = list_size_;
+  if (list_entry_ >= list_size_) return fail(BootProblem::not_in_list);
+  ++list_entry_;
+  entered_ = false;
 }
 
 void NodeBoot::jump(bool equal) noexcept {

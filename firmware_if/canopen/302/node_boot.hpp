@@ -55,6 +55,7 @@ class NodeBoot {
   void judge_value(const SdoClient& sdo) noexcept;
   void judge_text(const SdoClient& sdo) noexcept;
   void judge_flash(const SdoClient& sdo) noexcept;
+  void judge_list(std::uint32_t value) noexcept;
   void jump(bool equal) noexcept;
   bool start_transfer(SdoClient& sdo) noexcept;
   bool await_boot_up(image::Nanoseconds now) noexcept;
@@ -69,7 +70,8 @@ class NodeBoot {
   image::Nanoseconds now_ = 0, flash_deadline_ns_ = 0, poll_again_ns_ = 0;
   State state_ = State::idle;
   std::size_t action_ = 0;
-  bool entered_ = false;  ///< the action has begun: command sent or transfer started
+  std::uint8_t list_size_ = 0, list_entry_ = 0;  ///< of find_in_list; entry 0: the size is asked for
+  bool entered_ = false;                         ///< the action has begun: command sent or transfer started
   image::Nanoseconds deadline_ns_ = 0;
   bool boot_up_seen_ = false;
   NmtState nmt_state_ = NmtState::boot_up;

@@ -20,6 +20,13 @@ struct NodeProgram {
   std::uint8_t number = 1;           ///< sub-index of 1F50h, 1F51h, 1F56h, 1F57h
 };
 
+/// Homing by the drive itself, in the drive's own units. Source: CiA 402-2, "Homing mode".
+struct NodeHoming {
+  std::int8_t method = 0;                          ///< 6098h; 0: the drive is not to home
+  std::uint32_t speed_switch = 0, speed_zero = 0;  ///< 6099h
+  std::uint32_t acceleration = 0;                  ///< 609Ah; 0: as it is
+};
+
 /// What one node, not its make, is to be before it may run. Everything may be left out.
 struct NodeSetup {
   std::string software_version;  ///< 100Ah, compared to the letter
@@ -27,6 +34,8 @@ struct NodeSetup {
   std::vector<std::uint8_t> concise_dcf;  ///< as in 1F22h, written before the PDOs
   /// With it the concise DCF is written only where 1020h tells another date, which is written after it.
   std::optional<ConfigurationDate> configuration_date;
+  bool store_configuration = false;  ///< what was written is stored by 1010h:01
+  std::optional<NodeHoming> homing;
   std::int32_t boot_timeout_ms = 0;          ///< 0: the segment's
   std::int32_t boot_attempts = 0;            ///< 0: the segment's
   std::int32_t program_timeout_ms = 60'000;  ///< of clearing and of writing the flash

@@ -52,7 +52,8 @@ std::uint16_t DriveControl::command(image::Nanoseconds now, const Wish& wish, Dr
       return quick_stop ? kCommandQuickStop : kCommandShutdown;
     case DriveState::operation_enabled:
       if (on)
-        return static_cast<std::uint16_t>(kCommandEnableOperation | (wish.start_homing ? kModeSpecific4 : 0));
+        return static_cast<std::uint16_t>(kCommandEnableOperation | (wish.start_homing ? kModeSpecific4 : 0) |
+                                          (wish.halt ? kHalt : 0));
       wanted = quick_stop ? DriveState::quick_stop_active : DriveState::ready_to_switch_on;
       return quick_stop ? kCommandQuickStop : kCommandShutdown;
     case DriveState::quick_stop_active:

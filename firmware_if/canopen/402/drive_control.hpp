@@ -31,6 +31,7 @@ class DriveControl {
     bool reset_fault = false;
     bool mode_ready = true;  ///< FALSE holds Switched on until the wanted mode of operation is in force
     bool start_homing = false;
+    bool halt = false;  ///< bit 8 in Operation enabled
   };
 
   DriveControl() = default;

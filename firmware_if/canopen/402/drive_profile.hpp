@@ -63,7 +63,8 @@ struct DriveProfile {
   std::int64_t counts_per_rev = 65536;  ///< of 607Ah and 6064h, per turn of the motor
   double velocity_unit_counts_s =
       1.0;  ///< one unit of 60FFh, 606Ch, 6042h in counts/s (rpm: counts_per_rev / 60)
-  double torque_unit_permille = 1.0;  ///< one unit of 6071h and 6077h in per mille of the rated torque
+  double acceleration_unit_counts_s2 = 1.0;  ///< one unit of 609Ah in counts/s2
+  double torque_unit_permille = 1.0;         ///< one unit of 6071h and 6077h in per mille of the rated torque
 
   // Modes.
   std::uint32_t modes =
@@ -71,6 +72,8 @@ struct DriveProfile {
   bool check_modes = true;                                 ///< false: the drive has no 6502h
   /// For DriveMode::csp: csp, or ip of a drive without csp, whose record 60C1h:01 is mapped instead of 607Ah.
   OperationMode position_mode = OperationMode::cyclic_sync_position;
+  std::uint8_t ip_position_entry = 1;  ///< sub-index of 60C1h that takes the position
+  std::uint8_t ip_velocity_entry = 0;  ///< the same for its velocity; 0: the record has none
   OperationMode velocity_mode = OperationMode::cyclic_sync_velocity;  ///< for DriveMode::csv: csv, pv or vl
 
   // Process data, index 0 = PDO 1.
@@ -97,6 +100,8 @@ struct DriveProfile {
   FaultReset fault_reset = FaultReset::edge;
   std::int32_t fault_reset_hold_ms = 20;      ///< how long bit 7 stays set
   std::int32_t transition_timeout_ms = 2000;  ///< a state transition not followed for so long is a refusal
+  bool halt = true;                  ///< bit 8 of the controlword stops a motion that the drive leads;
+                                     ///< false: its quick stop has to, which takes the power
   std::int64_t handover_counts = 0;  ///< at Operation enabled the target may differ from the preset by so
                                      ///< much; 0: a quarter of counts_per_rev
   /// Bit of 60FEh:01 that works the holding brake, -1: none; 60FEh:01 must be mapped. Boot writes the engaged
@@ -104,6 +109,12 @@ struct DriveProfile {
   std::int8_t brake_bit = -1;
   bool brake_bit_releases =
       true;  ///< 1 in that bit releases the brake; FALSE for bit 0 of CiA 402, "set brake"
+
+  /// Numbers of 6098h that differ from CiA 402-2: method 37 (the present position is home) is 35 in drives
+  /// made to its first edition.
+  std::int8_t homing_method_here = 37;
+  bool homing_method_none = true;  ///< 6098h takes 0, "no homing": written where the drive is not to home
+  bool homing_method_list = true;  ///< false: its 60E3h cannot be trusted, the method is not looked for there
 
   std::vector<SdoSetting> settings;
   std::vector<ErrorText> error_texts;

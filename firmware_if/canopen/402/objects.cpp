@@ -96,6 +96,7 @@ constexpr ObjectInfo kObjects[] = {
     {kInterpolationTimePeriod, "Interpolation time period", 0, false},
     {kMaxAcceleration, "Max acceleration", 32, false},
     {kMaxDeceleration, "Max deceleration", 32, false},
+    {kSupportedHomingMethods, "Supported homing methods", 0, false},
     {kFollowingErrorActual, "Following error actual value", 32, true},
     {kDigitalInputs, "Digital inputs", 32, false},
     {kDigitalOutputs, "Digital outputs", 0, false},

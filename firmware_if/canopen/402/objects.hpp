@@ -49,8 +49,9 @@ inline constexpr std::uint16_t kAbortConnectionOption = 0x6007, kErrorCode = 0x6
                                kTouchProbe1Negative = 0x60BB, kTouchProbe2Positive = 0x60BC,
                                kTouchProbe2Negative = 0x60BD, kInterpolationData = 0x60C1,
                                kInterpolationTimePeriod = 0x60C2, kMaxAcceleration = 0x60C5,
-                               kMaxDeceleration = 0x60C6, kFollowingErrorActual = 0x60F4,
-                               kDigitalInputs = 0x60FD, kDigitalOutputs = 0x60FE, kTargetVelocity = 0x60FF,
+                               kMaxDeceleration = 0x60C6, kSupportedHomingMethods = 0x60E3,
+                               kFollowingErrorActual = 0x60F4, kDigitalInputs = 0x60FD,
+                               kDigitalOutputs = 0x60FE, kTargetVelocity = 0x60FF,
                                kSupportedDriveModes = 0x6502;
 }  // namespace object
 

@@ -71,6 +71,8 @@ constexpr Entry kWrongLength{"can-wrong-length", "{0}: expected {1} bytes, got {
                              "{0}: ожидалось байтов {1}, получено {2}"};
 constexpr Entry kWrongText{"can-wrong-text", "{0}: expected \"{1}\", got \"{2}\"",
                            "{0}: ожидалось «{1}», получено «{2}»"};
+constexpr Entry kNotInList{"can-not-in-list", "{0}: {1} is none of the {2} that the device has",
+                           "{0}: {1} нет среди {2}, которые есть у устройства"};
 constexpr Entry kFlashError{"can-flash-error", "{0}: {3} ({2})", "{0}: {3} ({2})"};
 constexpr Entry kFlashTimeout{"can-flash-timeout", "{0}: the flash is still at work ({2})",
                               "{0}: память всё ещё занята ({2})"};
@@ -113,6 +115,11 @@ std::string problem_words(const BootReport& report, Language language) {
       return fill(kWrongText,
                   {what, std::string(report.expected_text.view()), std::string(report.got_text.view())},
                   language);
+    case BootProblem::not_in_list:
+      return fill(
+          kNotInList,
+          {what, std::to_string(static_cast<std::int8_t>(report.expected)), std::to_string(report.got)},
+          language);
     case BootProblem::flash_error:
     case BootProblem::flash_timeout: {
       const std::string status = hex(report.got, 8);

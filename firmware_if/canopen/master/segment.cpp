@@ -61,7 +61,7 @@ void check_node(const NodeConfig& node) {
           "the drive would not notice the death of the control, and nobody has waived that");
   if (node.target == DriveTarget::spindle) return;
   require(find_field(profile.rpdo, object::kTargetPosition).mapped() ||
-              find_field(profile.rpdo, object::kInterpolationData, 1).mapped(),
+              find_field(profile.rpdo, object::kInterpolationData, profile.ip_position_entry).mapped(),
           "neither 607Ah nor 60C1h:01 is mapped");
   require(find_field(profile.tpdo, object::kPositionActual).mapped(), "6064h is not mapped");
 }

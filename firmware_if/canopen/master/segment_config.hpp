@@ -7,6 +7,7 @@
 #include "firmware_if/canopen/301/time_of_day.hpp"
 #include "firmware_if/canopen/302/node_setup.hpp"
 #include "firmware_if/canopen/402/drive_profile.hpp"
+#include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/time.hpp"
 
 namespace servogate::canopen {
@@ -25,6 +26,8 @@ struct NodeConfig {
   std::int32_t max_missed_pdo = 0;  ///< 0: the segment's
   /// The drive may run although it would not notice the death of the control (see stops_by_itself()).
   bool unsupervised = false;
+  /// What its loss makes the machine do: stop_on_path or something stronger.
+  image::Reaction loss_reaction = image::Reaction::stop_on_path;
   NodeSetup setup;  ///< version, program and configuration of this one node
 };
 

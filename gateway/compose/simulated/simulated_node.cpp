@@ -47,6 +47,19 @@ mock::PlantConfig plant_of(const machine::DeviceConfig* device, const machine::S
   return p;
 }
 
+/// What its device file says of a drive, its simulation is like.
+canopen::DriveQuirks quirks_of(const machine::DeviceConfig& device) {
+  const machine::BehaviourConfig& b = device.behaviour;
+  canopen::DriveQuirks q;
+  q.halt = b.halt;
+  if (b.fault_reset == machine::FaultResetBy::level) q.fault_reset_level_ns = 30'000'000;
+  q.homing_method_here = static_cast<std::int8_t>(b.homing_method_here);
+  q.homing_method_none = b.homing_method_none;
+  q.homing_method_list = b.homing_method_list;
+  q.velocity_in_ip_record = b.ip_record == std::vector<std::string>{"position", "velocity"};
+  return q;
+}
+
 }  // namespace
 
 double units_per_revolution(const machine::AxisConfig& a) {
@@ -63,6 +76,7 @@ mock::SimulatedDriveConfig simulated_device(const machine::DeviceConfig* device,
   if (device != nullptr && device->product_code != 0)
     drive.product_code = static_cast<std::uint32_t>(device->product_code);
   drive.plant = plant_of(device, nullptr, nullptr, nullptr);
+  if (device != nullptr) drive.quirks = quirks_of(*device);
   return drive;
 }
 
@@ -81,6 +95,7 @@ mock::SimulatedDriveConfig simulated_node(const machine::LoadResult& loaded, con
     if (s.node == reference) extra = &s;
   const machine::DeviceConfig* device = loaded.device(node.device);
   mock::SimulatedDriveConfig drive = simulated_device(device, node.id);
+  if (!node.program.empty() || node.program_version >= 0) drive.program_memory = std::size_t{1} << 20;
   if (extra != nullptr) drive.absolute_encoder = extra->absolute_encoder;
   drive.plant = plant_of(device, extra, axis, spindle);
   return drive;

@@ -70,15 +70,24 @@ class AxisCheck {
     if (!has("home")) warning("letter", finding::kNoHoming, {});
     if (has("home")) inside("home.position", h.position);
     const bool moves = h.method != HomingMethod::none && h.method != HomingMethod::absolute;
+    const bool by_drive = h.method == HomingMethod::drive;
+    if (!by_drive && has("home.drive_method"))
+      error("home.drive_method", finding::kHomeDriveOnly, {"home.drive_method"});
+    if (!by_drive && has("home.acceleration"))
+      error("home.acceleration", finding::kHomeDriveOnly, {"home.acceleration"});
     if (!moves) return;
     if (h.final_move) inside("home.final_position", h.final_position);
-    const bool by_switch = h.method != HomingMethod::index;
+    if (by_drive && h.drive_method == 0 && !unread("home.drive_method"))
+      error("home", finding::kHomeMethodMissing, {});
+    const bool here = by_drive && (h.drive_method == 35 || h.drive_method == 37);
+    if (here) return;
+    const bool by_switch = h.method != HomingMethod::index && !by_drive;
     if (by_switch && h.switch_point.empty() && !unread("home.switch"))
       error("home", finding::kHomeSwitchMissing, {method});
-    if (by_switch && h.fast <= 0.0 && !unread("home.fast"))
+    if ((by_switch || by_drive) && h.fast <= 0.0 && !unread("home.fast"))
       error("home", finding::kHomeSpeedMissing, {method, "fast"});
     if (h.slow <= 0.0 && !unread("home.slow")) error("home", finding::kHomeSpeedMissing, {method, "slow"});
-    if (by_switch && h.fast > 0.0 && h.slow > h.fast)
+    if ((by_switch || by_drive) && h.fast > 0.0 && h.slow > h.fast)
       error("home.slow", finding::kHomeSpeedOrder, {speed(h.slow), speed(h.fast)});
   }
 

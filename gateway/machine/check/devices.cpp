@@ -16,6 +16,12 @@ std::string kind_name(DeviceKind kind) {
   return std::string(choices_of<DeviceKind>()[static_cast<std::size_t>(kind)]);
 }
 
+std::string homing_methods_of(const DeviceConfig& device) {
+  std::string words;
+  for (const std::string& m : device.behaviour.homing_methods) words += (words.empty() ? "" : ", ") + m;
+  return words.empty() ? "1-14, 17-30, 33-37" : words;
+}
+
 class DeviceUse {
  public:
   DeviceUse(const LoadResult& loaded, Reading& reading)
@@ -51,6 +57,11 @@ class DeviceUse {
         reading_.error(m_.where(path + ".counts_per_rev"), finding::kDeviceCounts,
                        {a.letter, std::to_string(a.counts_per_rev),
                         std::to_string(device->motor.counts_per_rev), m_.node(a.drive)->device});
+      if (a.home.method == HomingMethod::drive && a.home.drive_method != 0 &&
+          !has_homing_method(*device, a.home.drive_method))
+        reading_.error(m_.where(path + ".home.drive_method"), finding::kHomeMethodUnknown,
+                       {a.letter, std::to_string(a.home.drive_method), m_.node(a.drive)->device,
+                        homing_methods_of(*device)});
       if (a.brake.drive_output && !device->motor.brake_output)
         reading_.error(m_.where(path + ".brake.drive_output"), finding::kNoBrakeOutput,
                        {a.letter, m_.node(a.drive)->device});

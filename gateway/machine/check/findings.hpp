@@ -6,6 +6,20 @@
 namespace servogate::machine::finding {
 
 // Names
+inline constexpr text::Entry kNodeFile{"machine.node_file", "\"{0}\" cannot be read: {1}",
+                                       "не удалось прочитать «{0}»: {1}"};
+inline constexpr text::Entry kProgramVersion{
+    "machine.program_version", "{0}: a program needs program_version, which 1F56h shows once it runs",
+    "{0}: для программы нужен program_version, который после запуска показывает 1F56h"};
+inline constexpr text::Entry kConfigurationDate{
+    "machine.configuration_date", "\"{0}\" is no date from 1984 on; written as \"2026-11-22 14:30:00\"",
+    "«{0}» не дата с 1984 года; пишется \"2026-11-22 14:30:00\""};
+inline constexpr text::Entry kNoConfiguration{"machine.no_configuration",
+                                              "{0} acts with `configuration` only",
+                                              "{0} действует только вместе с `configuration`"};
+inline constexpr text::Entry kEmptyConfiguration{
+    "machine.empty_configuration", "\"{0}\" has no value that differs from its default and may be written",
+    "в «{0}» нет значений, отличных от исходных и доступных для записи"};
 inline constexpr text::Entry kBadName{
     "machine.bad_name",
     "\"{0}\" is no name: letters A-Z a-z, digits and _ are allowed, not beginning with a digit",

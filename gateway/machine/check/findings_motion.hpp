@@ -22,6 +22,24 @@ inline constexpr text::Entry kNoHoming{"machine.no_homing",
 inline constexpr text::Entry kHomeSwitchMissing{"machine.home_switch_missing",
                                                 "{0}: homing by {1} needs `home.switch`",
                                                 "{0}: для способа {1} нужен `home.switch`"};
+inline constexpr text::Entry kHomeMethodMissing{
+    "machine.home_method_missing",
+    "{0}: homing by the drive needs `home.drive_method`, a number of CiA 402-2",
+    "{0}: для выхода в ноль силами привода нужен `home.drive_method`, номер метода CiA 402-2"};
+inline constexpr text::Entry kHomeMethodUnknown{"machine.home_method_unknown",
+                                                "{0}: the drive {2} has no homing method {1}; it has {3}",
+                                                "{0}: у привода {2} нет метода выхода в ноль {1}; есть {3}"};
+inline constexpr text::Entry kHomeDriveOnly{"machine.home_drive_only",
+                                            "{0}: {1} acts with home.method = \"drive\" only",
+                                            "{0}: {1} действует только при home.method = \"drive\""};
+inline constexpr text::Entry kHomingNumber{
+    "machine.homing_number", "\"{0}\" is no number of a homing method; written as \"17\", -128 to 127 but 0",
+    "«{0}» не номер метода выхода в ноль; пишется \"17\", от -128 до 127, кроме 0"};
+inline constexpr text::Entry kIpRecord{"machine.ip_record",
+                                       "position_mode ip: no rpdo has {0}, the {1} of the record",
+                                       "position_mode ip: ни в одном rpdo нет {0} ({1} записи)"};
+inline constexpr text::Entry kIpNoPosition{"machine.ip_no_position", "ip_record has no position",
+                                           "в ip_record нет position"};
 inline constexpr text::Entry kHomeSpeedMissing{"machine.home_speed_missing",
                                                "{0}: homing by {1} needs `home.{2}` above 0",
                                                "{0}: для способа {1} нужен `home.{2}` больше 0"};

@@ -16,7 +16,8 @@ std::span<const std::string_view> choices_of<Direction>() {
 }
 template <>
 std::span<const std::string_view> choices_of<HomingMethod>() {
-  static constexpr std::string_view kNames[] = {"switch_and_index", "switch", "index", "absolute", "none"};
+  static constexpr std::string_view kNames[] = {"switch_and_index", "switch", "index", "drive",
+                                                "absolute",         "none"};
   return kNames;
 }
 template <>
@@ -47,6 +48,14 @@ const Section& section_of<HomingConfig>() {
       key<&C::index_max_travel>("index_max_travel", {.unit = Unit::axis_length, .min = 0, .computed = true},
                                 "the search for the index gives up after this; one and a half motor turns",
                                 "предел пути поиска нулевой метки; полтора оборота двигателя"),
+      key<&C::drive_method>("drive_method", {.min = -128, .max = 127},
+                            "method drive: number of the method by CiA 402-2 (6098h); fast, slow and "
+                            "acceleration go to the drive (6099h, 609Ah)",
+                            "способ drive: номер метода по CiA 402-2 (6098h); fast, slow и acceleration "
+                            "передаются приводу (6099h, 609Ah)"),
+      key<&C::acceleration>("acceleration", {.unit = Unit::axis_acceleration, .min = 0, .computed = true},
+                            "method drive: acceleration of the drive's homing; that of the axis",
+                            "способ drive: ускорение при выходе в ноль; ускорение оси"),
       key<&C::position>("position", {.unit = Unit::axis_length},
                         "machine coordinate of the index (of the switch edge without one)",
                         "машинная координата нулевой метки (без метки: края датчика)"),

@@ -16,6 +16,17 @@ std::span<const std::string_view> choices_of<image::Writer>() {
 }
 
 template <>
+std::span<const std::string_view> choices_of<LossReaction>() {
+  static constexpr std::string_view kNames[] = {"stop_on_path", "stop_axes", "quick_stop", "power_off"};
+  return kNames;
+}
+template <>
+std::span<const std::string_view> choices_of<ProgramWhen>() {
+  static constexpr std::string_view kNames[] = {"other_version", "never"};
+  return kNames;
+}
+
+template <>
 const Section& section_of<NodeConfig>() {
   using C = NodeConfig;
   static const Key keys[] = {
@@ -38,6 +49,43 @@ const Section& section_of<NodeConfig>() {
                              "число попыток загрузки молчащего узла до аварии; 0: 3"),
       key<&C::software_version>("software_version", {}, "100Ah at boot, to the letter; empty: any",
                                 "100Ah при запуске, буква в букву; пусто: любая"),
+      key<&C::loss_reaction>(
+          "loss_reaction", {},
+          "what the loss of this node makes the machine do: the other axes stop together on "
+          "the path, or more severely",
+          "что делает станок при потере этого узла: остальные оси останавливаются вместе на "
+          "траектории или строже"),
+      key<&C::program>("program", {},
+                       "program file for the device (1F50h), from this file's folder; needs "
+                       "program_version",
+                       "файл программы устройства (1F50h), от папки этого файла; нужен program_version"),
+      key<&C::program_version>("program_version", {.min = -1, .max = 4294967295.0},
+                               "1F56h that the right program shows; -1: not checked",
+                               "1F56h нужной программы; -1: не проверяется"),
+      key<&C::program_number>("program_number", {.min = 1, .max = 254},
+                              "sub-index of 1F50h, 1F51h, 1F56h and 1F57h",
+                              "субиндекс 1F50h, 1F51h, 1F56h и 1F57h"),
+      key<&C::program_when>(
+          "program_when", {},
+          "when the program is written: where 1F56h tells another version, or never: then the "
+          "node is refused",
+          "когда записывать программу: если 1F56h показывает другую версию, или никогда: тогда "
+          "узел отклоняется"),
+      key<&C::program_timeout>("program_timeout", {.unit = Unit::second, .min = 1, .max = 3600},
+                               "for clearing and for writing the flash (1F57h)",
+                               "на стирание и на запись памяти (1F57h)"),
+      key<&C::configuration>("configuration", {},
+                             "DCF from this file's folder: its values are written at boot, before the PDOs",
+                             "файл DCF от папки этого файла: значения записываются при запуске до PDO"),
+      key<&C::configuration_date>(
+          "configuration_date", {},
+          "date of the configuration, \"2026-11-22 14:30:00\": it is written only where "
+          "1020h tells another one; empty: at every boot",
+          "дата конфигурации, \"2026-11-22 14:30:00\": записывается, только если 1020h "
+          "показывает другую; пусто: при каждом запуске"),
+      key<&C::configuration_store>("configuration_store", {},
+                                   "the device is told to store what was written (1010h:01), 1020h with it",
+                                   "устройству приказывают сохранить записанное (1010h:01) вместе с 1020h"),
       key<&C::unsupervised>("unsupervised", {},
                             "the drive may run although it would not notice that the control has died",
                             "привод может работать, хотя не заметит гибели управления"),

@@ -87,6 +87,8 @@ const Section& section_of<BehaviourConfig>() {
                              "one unit of 60FFh and 606Ch in counts/s",
                              "единица 60FFh и 606Ch в дискретах/с"),
       key<&C::velocity_in_rpm>("velocity_in_rpm", {}, "60FFh and 606Ch are in rpm", "60FFh и 606Ch в об/мин"),
+      key<&C::acceleration_unit>("acceleration_unit", {.min = 0, .max = 1e9, .above_min = true},
+                                 "one unit of 609Ah in counts/s2", "единица 609Ah в дискретах/с2"),
       key<&C::torque_unit>("torque_unit", {.min = 0, .max = 1000, .above_min = true},
                            "one unit of 6071h and 6077h in per mille of the rated torque",
                            "единица 6071h и 6077h в тысячных номинального момента"),
@@ -96,6 +98,11 @@ const Section& section_of<BehaviourConfig>() {
       key<&C::position_mode>("position_mode", {},
                              "mode of the drive for a position command; ip needs 60C1:01/32 in an RPDO",
                              "режим привода для задания положения; для ip нужен 60C1:01/32 в RPDO"),
+      key<&C::ip_record>(
+          "ip_record", {},
+          "position_mode ip: what 60C1h:01, :02 ... take: position, velocity; each is to be mapped",
+          "position_mode ip: что принимают 60C1h:01, :02 ...: position, velocity; каждый "
+          "должен быть отображён"),
       key<&C::speed_mode>("speed_mode", {}, "mode of the drive for a speed command",
                           "режим привода для задания скорости"),
       key<&C::fault_reset>("fault_reset", {},
@@ -106,6 +113,26 @@ const Section& section_of<BehaviourConfig>() {
       key<&C::transition_timeout>("transition_timeout", {.unit = Unit::second, .min = 0.01, .max = 60},
                                   "a transition not followed this long counts as refused",
                                   "переход, не выполненный за это время, считается отклонённым"),
+      key<&C::halt>("halt", {},
+                    "the halt bit (6040h bit 8) stops a homing of the drive; false: its quick stop does, "
+                    "which takes the power",
+                    "бит останова (6040h, бит 8) останавливает выход в ноль силами привода; false: его "
+                    "быстрый останов, снимающий питание"),
+      key<&C::homing_methods>(
+          "homing_methods", {},
+          "methods of 6098h that the drive has, by their numbers in CiA 402-2; empty: not said",
+          "методы 6098h, которые есть у привода, по номерам CiA 402-2; пусто: не сказано"),
+      key<&C::homing_method_here>("homing_method_here", {.min = -128, .max = 127},
+                                  "the drive's own number of method 37, the present position is home",
+                                  "номер, под которым у привода метод 37 (ноль в текущем положении)"),
+      key<&C::homing_method_none>("homing_method_none", {},
+                                  "6098h takes 0, no homing; it is written where the control homes by itself "
+                                  "and `modes` has hm",
+                                  "6098h принимает 0, нет выхода в ноль; записывается, если ось ведёт в ноль "
+                                  "управление и в `modes` есть hm"),
+      key<&C::homing_method_list>("homing_method_list", {},
+                                  "the method is looked for in 60E3h, where the drive has it",
+                                  "метод ищется в 60E3h, если этот объект есть у привода"),
       key<&C::handover_counts>("handover_counts", {.unit = Unit::counts, .min = 0, .max = 4294967296.0},
                                "target against actual position at Operation enabled; 0: a quarter of a turn",
                                "отличие задания от положения при включении; 0: четверть оборота"),

@@ -33,6 +33,10 @@ void Homing::start(const Ramp& ramp, const HomingInputs& in) noexcept {
     failure_ = alarm::kHomingNoReference;
     return;
   }
+  if (data_.method == HomingMethod::drive) {
+    state_ = State::drive_led;
+    return drive_.start();
+  }
   if (data_.method == HomingMethod::index_only)
     state_ = State::index;
   else if (!in.home_switch)
@@ -53,12 +57,19 @@ void Homing::fail(image::AlarmNumber number, double limit, double value, Ramp& r
   failure_limit_ = limit;
   failure_value_ = value;
   state_ = State::failed;
+  drive_.stop();
   ramp.stop(limits_);
 }
 
 void Homing::abort(Ramp& ramp) noexcept {
   if (active()) state_ = State::idle;
+  drive_.stop();
   ramp.stop(limits_);
+}
+
+void Homing::drop() noexcept {
+  if (active()) state_ = State::idle;
+  drive_.drop();
 }
 
 bool Homing::take_reference() noexcept {
@@ -136,6 +147,8 @@ void Homing::step(Ramp& ramp, const HomingInputs& in) noexcept {
       return leave(ramp, in);
     case State::index:
       return index(ramp, in);
+    case State::drive_led:
+      return drive_led(ramp, in);
     case State::settle:
       if (!stop_first(ramp, in)) return;
       reference_pending_ = true;
@@ -209,6 +222,29 @@ void Homing::index(Ramp& ramp, const HomingInputs& in) noexcept {
   } else if (!travel_exceeded(ramp, data_.max_index_travel, alarm::kHomingIndexNotFound)) {
     const bool only = data_.method == HomingMethod::index_only;
     run(only ? data_.direction : data_.release_direction, data_.slow, ramp);
+  }
+}
+
+/// The alarm comes while the drive is still being halted, the reference when the axis leads again.
+void Homing::drive_led(Ramp& ramp, const HomingInputs& in) noexcept {
+  using Outcome = DriveLedHoming::Outcome;
+  drive_.step(data_, in.drive);
+  switch (drive_.outcome()) {
+    case Outcome::none:
+      return;
+    case Outcome::attained:
+      if (drive_.leads()) return;
+      captured_ = in.home_counts;
+      reference_pending_ = true;
+      return enter(State::final_move, ramp);
+    case Outcome::interrupted:
+      return fail(alarm::kHomingInterrupted, 0.0, ramp.state().x, ramp);
+    case Outcome::failed:
+      return fail(alarm::kHomingDriveFailed, 0.0, ramp.state().x, ramp);
+    case Outcome::limit:
+      return fail(alarm::kHomingLimitAgain, 0.0, ramp.state().x, ramp);
+    case Outcome::mode_refused:
+      return fail(alarm::kHomingModeRefused, DriveLedHoming::kModePatience, ramp.state().x, ramp);
   }
 }
 

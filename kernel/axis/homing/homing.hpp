@@ -4,6 +4,7 @@
 
 #include "firmware_if/image/alarm.hpp"
 #include "kernel/axis/axis_config.hpp"
+#include "kernel/axis/homing/drive_led_homing.hpp"
 #include "kernel/axis/ramp.hpp"
 
 namespace servogate::axis {
@@ -19,10 +20,13 @@ struct HomingInputs {
   std::int64_t counts = 0;  ///< measured, drive counts
   std::int64_t latch_counts = 0;
   std::uint32_t latch_sequence = 0;
+  DriveLedInputs drive;          ///< method drive
+  std::int64_t home_counts = 0;  ///< that the drive found
 };
 
 /// Homing of one axis (methods of HomingData). It only moves a Ramp and arms the drive's latch; the axis sets
-/// its machine position when told to. A hard limit in the way of the search reverses it once.
+/// its machine position when told to. A hard limit in the way of the search reverses it once. By method
+/// `drive` it moves nothing: see DriveLedHoming.
 class Homing {
  public:
   enum class State : std::uint8_t {
@@ -33,6 +37,7 @@ class Homing {
     approach,    ///< slowly onto the switch
     leave,       ///< slowly off the switch, the decisive edge being the release
     index,       ///< latch armed, slowly to the zero mark
+    drive_led,   ///< the drive homes
     settle,      ///< captured: stopping
     final_move,  ///< machine position set, to the final position
     done,
@@ -47,8 +52,16 @@ class Homing {
   /// Gives up and stops the ramp; no failure is recorded. real-time safe.
   void abort(Ramp& ramp) noexcept;
 
+  /// The drive does not hold the axis any more. Gives up without a stop. real-time safe.
+  void drop() noexcept;
+
   State state() const noexcept { return state_; }
   bool active() const noexcept { return state_ != State::idle && state_ < State::done; }
+  /// The drive leads the axis: under way, or being brought to rest and back after homing was given up.
+  bool drive_leads() const noexcept { return drive_.leads(); }
+  const DriveLedHoming& drive_led() const noexcept { return drive_; }
+  /// One cycle of a drive that is being brought back after homing was given up. real-time safe.
+  void bring_back(const HomingInputs& in) noexcept { drive_.step(data_, in.drive); }
   /// The drive's latch is to be armed (zero mark). real-time safe.
   bool latch_arm() const noexcept { return state_ == State::index && !stopping_; }
   /// True once, in the cycle in which the axis has to set `captured_counts()` = home position. real-time
@@ -74,6 +87,7 @@ class Homing {
   void approach(Ramp& ramp, const HomingInputs& in) noexcept;
   void leave(Ramp& ramp, const HomingInputs& in) noexcept;
   void index(Ramp& ramp, const HomingInputs& in) noexcept;
+  void drive_led(Ramp& ramp, const HomingInputs& in) noexcept;
   void final_move(Ramp& ramp, const HomingInputs& in) noexcept;
   void after_switch_search(Ramp& ramp, const HomingInputs& in) noexcept;
   void decisive_edge(Ramp& ramp, const HomingInputs& in) noexcept;
@@ -82,6 +96,7 @@ class Homing {
   HomingData data_;
   MotionLimits limits_;
   State state_ = State::idle;
+  DriveLedHoming drive_;
   bool stopping_ = false;  ///< the condition of the state is met, the ramp comes to rest
   bool seen_on_ = false;
   bool limit_met_ = false;

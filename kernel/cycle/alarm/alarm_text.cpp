@@ -58,8 +58,9 @@ bool figures_are_lengths(image::AlarmNumber n) {
   using namespace axis::alarm;
   return (n >= kFollowingError && n <= kSetpointStep) ||
          (n >= kHomingSwitchNotFound && n <= kHomingIndexNotFound) || n == kHomingLimitAgain ||
-         n == kHomingInterrupted || n == kHomingIndexNearEdge || n == alarm::kLeavesTravel || n == kOffPath ||
-         n == kPlaceUnknown || n == kFollowingErrorHigh || n == kDriveOffline;
+         n == kHomingInterrupted || n == kHomingIndexNearEdge || n == kHomingDriveFailed ||
+         n == alarm::kLeavesTravel || n == kOffPath || n == kPlaceUnknown || n == kFollowingErrorHigh ||
+         n == kDriveOffline;
 }
 
 /// State of CiA 402-2, table "state coding" of the status word; -1: no valid one.

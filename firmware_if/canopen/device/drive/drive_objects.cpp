@@ -172,9 +172,17 @@ std::vector<ObjectSpec> drive_objects(const DriveRatings& r) {
   set(object::kMaxDeceleration, 0, 10'000 * turn > 0xFFFFFFFFLL ? 0xFFFFFFFFLL : 10'000 * turn);
   set(object::kPositiveTorqueLimit, 0, r.peak_torque_permille);
   set(object::kNegativeTorqueLimit, 0, r.peak_torque_permille);
+  const DriveQuirks& q = r.quirks;
   std::uint8_t count = 0;
   for (const int method : supported_homing_methods())
-    rows.push_back({object::kSupportedHomingMethods, ++count, unsigned16, ro, kNo, method});
+    if (q.homing_method_list)
+      rows.push_back({object::kSupportedHomingMethods, ++count, unsigned16, ro, kNo,
+                      method == 37 ? q.homing_method_here : method});
+  if (q.velocity_in_ip_record) {
+    set(object::kInterpolationData, 0, 2);
+    rows.push_back({object::kInterpolationData, 2, integer32, rw, kR});
+  }
+  if (q.interpolation_exponent < 1) set(object::kInterpolationTimePeriod, 2, q.interpolation_exponent);
   rows.push_back({object::kSupportedHomingMethods, 0, unsigned8, constant, kNo, count});
   return rows;
 }

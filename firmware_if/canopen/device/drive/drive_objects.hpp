@@ -15,11 +15,23 @@ inline constexpr std::uint16_t kVelocityDemand = 0x606B, kPositionWindowTime = 0
                                kVelocityThreshold = 0x606F, kVelocityThresholdTime = 0x6070,
                                kEndVelocity = 0x6082, kTorqueSlope = 0x6087,
                                kProbeCounter = 0x60D5,  ///< 60D5h-60D8h
-    kPositiveTorqueLimit = 0x60E0, kNegativeTorqueLimit = 0x60E1, kSupportedHomingMethods = 0x60E3,
-                               kVlMinMax = 0x6046, kVlAcceleration = 0x6048, kVlDeceleration = 0x6049,
-                               kVlSetpointFactor = 0x604B, kVlDimensionFactor = 0x604C,
-                               kInterpolationSubMode = 0x60C0, kInterpolationBuffer = 0x60C4;
+    kPositiveTorqueLimit = 0x60E0, kNegativeTorqueLimit = 0x60E1, kVlMinMax = 0x6046,
+                               kVlAcceleration = 0x6048, kVlDeceleration = 0x6049, kVlSetpointFactor = 0x604B,
+                               kVlDimensionFactor = 0x604C, kInterpolationSubMode = 0x60C0,
+                               kInterpolationBuffer = 0x60C4;
 }  // namespace object
+
+/// Where drives on the market differ from CiA 402-2. A drive to the standard has the defaults.
+struct DriveQuirks {
+  bool halt = true;  ///< bit 8 of the controlword acts
+  std::int64_t fault_reset_level_ns =
+      0;  ///< > 0: bit 7 resets a fault when it has been set for so long, by no edge
+  std::int8_t homing_method_here = 37;     ///< number of method 37, under which it is known only
+  bool homing_method_none = true;          ///< 6098h takes 0
+  bool homing_method_list = true;          ///< false: 60E3h is empty
+  bool velocity_in_ip_record = false;      ///< 60C1h:02 is a velocity, and a record is complete with it
+  std::int8_t interpolation_exponent = 1;  ///< the one that 60C2h:02 takes; 1: any
+};
 
 /// Values of the name plate that the defaults of the objects depend on.
 struct DriveRatings {
@@ -28,6 +40,7 @@ struct DriveRatings {
   std::uint32_t rated_current_ma = 3'000;
   std::uint16_t peak_torque_permille = 3'000;
   std::uint32_t max_speed_rpm = 5'000;
+  DriveQuirks quirks = {};
 };
 
 /// The rows 6000h-67FFh of a servo drive. Position unit: encoder count; velocity: counts/s; acceleration:

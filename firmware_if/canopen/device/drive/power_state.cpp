@@ -59,6 +59,8 @@ void PowerState::tick(const PowerInputs& in, image::Nanoseconds step) noexcept {
   const bool reset_level = in.controlword & controlword::kFaultReset;
   const bool reset_edge = reset_level && !reset_level_;
   reset_level_ = reset_level;
+  reset_held_ns_ = reset_level && state_ == DriveState::fault ? reset_held_ns_ + step : 0;
+  const bool reset = reset_needed_ns_ > 0 ? reset_held_ns_ >= reset_needed_ns_ : reset_edge;
   if (fault_requested_) return react_to_fault(in);
   if (in.hold_state) return;
   const ControlCommand command = decode_command(in.controlword);
@@ -77,7 +79,7 @@ void PowerState::tick(const PowerInputs& in, image::Nanoseconds step) noexcept {
     case DriveState::fault_reaction_active:
       return finish_stop(in);  // transition 14
     case DriveState::fault:
-      if (reset_edge && !in.fault_cause) enter(DriveState::switch_on_disabled);  // transition 15
+      if (reset && !in.fault_cause) enter(DriveState::switch_on_disabled);  // transition 15
       return;
     case DriveState::offline:
       return;

@@ -41,6 +41,8 @@ class PowerState {
     release_ns_ = release;
     engage_ns_ = engage;
   }
+  /// A drive without the edge: bit 7 resets a fault after so long; 0: by its rising edge.
+  void set_fault_reset_level(image::Nanoseconds needed) noexcept { reset_needed_ns_ = needed; }
   /// Power-on or reset: transition 0 and, with the next tick, 1.
   void reset() noexcept;
   void tick(const PowerInputs& in, image::Nanoseconds step) noexcept;
@@ -82,6 +84,7 @@ class PowerState {
   bool energised_ = false, brake_released_ = false, enabling_ = false, engaging_ = false;
   bool fault_requested_ = false, coast_ = false, reset_level_ = true;
   image::Nanoseconds release_ns_ = 0, engage_ns_ = 0, brake_left_ = 0;
+  image::Nanoseconds reset_needed_ns_ = 0, reset_held_ns_ = 0;
   image::Nanoseconds step_ = 0;
   std::uint32_t transitions_ = 0;
 };

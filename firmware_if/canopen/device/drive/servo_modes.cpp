@@ -237,7 +237,8 @@ void ServoProfile::homing() noexcept {
   const bool start = v_.controlword & kStart;
   if (start && !start_bit_) {
     homing_attained_ = homing_error_ = false;
-    homing_error_ = !homing_.start(static_cast<int>(v_.homing_method), inputs_, servo_);
+    const bool here = v_.homing_method == settings_.quirks.homing_method_here;
+    homing_error_ = !homing_.start(here ? 37 : static_cast<int>(v_.homing_method), inputs_, servo_);
   }
   if (!start) homing_.cancel();
   start_bit_ = start;

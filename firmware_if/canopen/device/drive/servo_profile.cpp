@@ -44,7 +44,9 @@ ServoProfile::ServoProfile(ObjectDictionary& dictionary, const ServoProfileSetti
       probe_(dictionary),
       target_position_slot_(dictionary.find(object::kTargetPosition, 0)),
       controlword_slot_(dictionary.find(object::kControlword, 0)),
-      ip_record_slot_(dictionary.find(object::kInterpolationData, 1)) {
+      ip_record_slot_(
+          dictionary.find(object::kInterpolationData, settings.quirks.velocity_in_ip_record ? 2 : 1)) {
+  power_.set_fault_reset_level(settings.quirks.fault_reset_level_ns);
   power_.set_brake(settings.brake_release, settings.brake_engage);
   interpolation_period_changed();
 }
@@ -72,11 +74,6 @@ void ServoProfile::on_reset() noexcept {
 
 AbortCode ServoProfile::before_write(ObjectDictionary::Slot slot, std::int64_t value) noexcept {
   const ObjectSpec& s = dictionary_.spec(slot);
-  const auto known = [value](std::span<const int> all) {
-    for (const int m : all)
-      if (m == value) return true;
-    return value == 0;
-  };
   switch (s.index) {
     case object::kModesOfOperation:
       if (value == 0) return AbortCode::none;
@@ -84,7 +81,11 @@ AbortCode ServoProfile::before_write(ObjectDictionary::Slot slot, std::int64_t v
                  ? AbortCode::none
                  : AbortCode::value_invalid;
     case object::kHomingMethod:
-      return known(supported_homing_methods()) ? AbortCode::none : AbortCode::value_invalid;
+      return homing_method_taken(value);
+    case object::kInterpolationTimePeriod: {
+      const std::int8_t only = settings_.quirks.interpolation_exponent;
+      return s.subindex == 2 && only < 1 && value != only ? AbortCode::value_invalid : AbortCode::none;
+    }
     case object::kInterpolationData:
       return buffer_.takes_more() ? AbortCode::none : AbortCode::device_state;
     case object::kInterpolationBuffer:
@@ -101,6 +102,14 @@ AbortCode ServoProfile::before_write(ObjectDictionary::Slot slot, std::int64_t v
     default:
       return AbortCode::none;
   }
+}
+
+AbortCode ServoProfile::homing_method_taken(std::int64_t value) const noexcept {
+  const DriveQuirks& q = settings_.quirks;
+  bool known = value == 0 && q.homing_method_none;
+  for (const int m : supported_homing_methods())
+    known = known || (m == 37 ? q.homing_method_here : m) == value;
+  return known ? AbortCode::none : AbortCode::value_invalid;
 }
 
 void ServoProfile::after_write(ObjectDictionary::Slot slot) noexcept {

@@ -19,6 +19,7 @@ struct ServoProfileSettings {
   image::Nanoseconds servo_period = 250'000;
   std::int64_t counts_per_rev = 262'144;
   image::Nanoseconds brake_release = 0, brake_engage = 0;  ///< 0: no holding brake
+  DriveQuirks quirks = {};
   bool limit_switches_stop = true;  ///< the drive itself stops at its limit inputs, outside of homing
 };
 
@@ -66,7 +67,8 @@ class ServoProfile final : public DeviceProfile {
   void stop_motion(StopKind kind, double slow_down) noexcept;
   double slow_down() const noexcept;
   bool stopped_by_limit_switch(double direction) const noexcept;
-  bool halted() const noexcept { return v_.controlword & controlword::kHalt; }
+  bool halted() const noexcept { return settings_.quirks.halt && (v_.controlword & controlword::kHalt); }
+  AbortCode homing_method_taken(std::int64_t value) const noexcept;
 
   void cyclic_position() noexcept;
   void plan_cyclic_segment(double target) noexcept;

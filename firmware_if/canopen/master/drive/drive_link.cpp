@@ -42,7 +42,10 @@ DriveLink::DriveLink(const NodeConfig& node, image::Nanoseconds cycle_ns)
   const auto& rpdo = profile_.rpdo;
   out_.controlword = find_field(rpdo, object::kControlword);
   out_.target_position = find_field(rpdo, object::kTargetPosition);
-  if (!out_.target_position.mapped()) out_.target_position = find_field(rpdo, object::kInterpolationData, 1);
+  if (!out_.target_position.mapped())
+    out_.target_position = find_field(rpdo, object::kInterpolationData, profile_.ip_position_entry);
+  if (profile_.ip_velocity_entry > 0)
+    out_.ip_velocity = find_field(rpdo, object::kInterpolationData, profile_.ip_velocity_entry);
   out_.target_velocity = find_field(rpdo, object::kTargetVelocity);
   out_.target_torque = find_field(rpdo, object::kTargetTorque);
   out_.mode = find_field(rpdo, object::kModesOfOperation);
@@ -67,6 +70,7 @@ void DriveLink::restart() noexcept {
   data_.clear();
   control_.restart();
   probe_.restart();
+  homing_.restart();
   statusword_ = 0;
   position_known_ = false;
   cycles_since_position_ = 0;
@@ -82,6 +86,7 @@ void DriveLink::restart() noexcept {
   mode_refused_ = false;
   probe_function_known_ = false;
   probe_refused_ = false;
+  stopping_ = false;
   following_ = false;
   handover_difference_ = 0;
   access_ = Access::none;
@@ -120,6 +125,7 @@ bool DriveLink::update() noexcept {
   if (data_.fresh(in_.position)) take_position();
   take_velocity();
   if (data_.fresh(in_.mode)) show_mode(static_cast<std::int8_t>(data_.number(in_.mode)));
+  if (status_fresh && mode_meant_ == DriveMode::homing) homing_.on_statusword(statusword_);
   if (data_.fresh(in_.probe_status)) take_probe_by_pdo();
   follow_state();
   data_.end_of_cycle();
@@ -191,11 +197,17 @@ void DriveLink::fill(image::DriveFeedback& feedback) const noexcept {
   feedback.digital_inputs = static_cast<std::uint32_t>(data_.raw(in_.inputs));
   feedback.latch_counts = probe_.latch_counts();
   feedback.latch_sequence = probe_.sequence();
+  feedback.homing = homing_.state();
+  // Home is where the drive counts 0 (the boot writes 607Ch); the machine's 64 bits have gone round
+  // meanwhile.
+  feedback.home_counts =
+      position_counts_ - static_cast<std::int32_t>(static_cast<std::uint32_t>(position_counts_));
   feedback.refusal = control_.refusal();
 }
 
 void DriveLink::apply(image::Nanoseconds now, const image::DriveCommand& command, bool blocked) noexcept {
-  const OperationMode mode = mode_of(command.mode);
+  follow_halt(command);
+  const OperationMode mode = stopping_ ? mode_wanted_ : mode_of(command.mode);
   if (mode != mode_wanted_) {
     mode_wanted_ = mode;
     mode_refused_ = false;
@@ -204,13 +216,16 @@ void DriveLink::apply(image::Nanoseconds now, const image::DriveCommand& command
   probe_.command(command.latch_arm && !probe_refused_, command.latch_source, command.latch_negative);
 
   DriveControl::Wish wish;
-  wish.power = !command.power                  ? PowerWish::off
-               : command.quick_stop || blocked ? PowerWish::quick_stop
-                                               : PowerWish::on;
+  const bool quick_stop = command.power && (command.quick_stop || blocked);
+  wish.power = quick_stop || stopping_ ? PowerWish::quick_stop
+               : command.power         ? PowerWish::on
+                                       : PowerWish::off;
   wish.reset_fault = command.reset_fault;
   wish.mode_ready = mode_ready();
   wish.start_homing = mode == OperationMode::homing && mode_ready();
+  wish.halt = command.halt;
   std::uint16_t word = control_.step(now, wish);
+  homing_.command(now, wish.start_homing && control_.state() == DriveState::operation_enabled);
   if (mode == OperationMode::velocity && control_.state() == DriveState::operation_enabled)
     word |= kVlRampBits;
   if (mode == OperationMode::interpolated_position && control_.state() == DriveState::operation_enabled)
@@ -225,6 +240,16 @@ void DriveLink::apply(image::Nanoseconds now, const image::DriveCommand& command
   }
   data_.set(out_.digital_outputs, outputs);
   set_targets(command);
+}
+
+// A drive without a halt bit is stopped by its quick stop, which nothing cuts short: neither that the power
+// is taken away nor another mode.
+void DriveLink::follow_halt(const image::DriveCommand& command) noexcept {
+  const DriveState state = control_.state();
+  if (command.halt && !profile_.halt && state == DriveState::operation_enabled) stopping_ = true;
+  const bool rests = std::abs(velocity_counts_s_) * 1000.0 < static_cast<double>(profile_.counts_per_rev);
+  const bool held_by_stop = state == DriveState::quick_stop_active && !rests;
+  if (!held_by_stop && state != DriveState::operation_enabled) stopping_ = false;
 }
 
 // Until the drive holds the axis its target is where it stands, so that nothing jumps when it begins to
@@ -259,6 +284,7 @@ void DriveLink::set_targets(const image::DriveCommand& command) noexcept {
   };
   set(out_.vl_velocity, by_velocity, velocity, 32767.0);
   set(out_.target_velocity, by_velocity, velocity);
+  set(out_.ip_velocity, following_ && !by_velocity, velocity);
   set(out_.velocity_offset, following_ && !by_velocity, velocity);
   set(out_.target_torque, by_torque, command.torque_permille / profile_.torque_unit_permille);
 }

@@ -4,6 +4,7 @@
 
 #include "firmware_if/canopen/301/sdo_client.hpp"
 #include "firmware_if/canopen/402/drive_control.hpp"
+#include "firmware_if/canopen/402/homing_watch.hpp"
 #include "firmware_if/canopen/402/touch_probe.hpp"
 #include "firmware_if/canopen/master/process_data.hpp"
 #include "firmware_if/canopen/master/segment_config.hpp"
@@ -61,6 +62,7 @@ class DriveLink {
   bool mode_ready() const noexcept { return mode_shown_ == static_cast<std::int8_t>(mode_wanted_); }
   OperationMode mode_of(image::DriveMode mode) const noexcept;
   void show_mode(std::int8_t shown) noexcept;
+  void follow_halt(const image::DriveCommand& command) noexcept;
   std::int64_t target_position(const image::DriveCommand& command) noexcept;
   void set_targets(const image::DriveCommand& command) noexcept;
   Access next_access(image::Nanoseconds now) const noexcept;
@@ -73,7 +75,7 @@ class DriveLink {
   ProcessData data_;
   struct {
     PdoField controlword, target_position, target_velocity, target_torque, mode, probe_function,
-        velocity_offset, vl_velocity, digital_outputs;
+        velocity_offset, ip_velocity, vl_velocity, digital_outputs;
   } out_;
   struct {
     PdoField statusword, position, velocity, torque, inputs, error_code, mode, probe_status;
@@ -81,6 +83,7 @@ class DriveLink {
 
   DriveControl control_;
   TouchProbe probe_;
+  HomingWatch homing_;
 
   std::uint16_t statusword_ = 0;
   bool position_known_ = false;
@@ -103,6 +106,7 @@ class DriveLink {
   bool probe_function_known_ = false;
   bool probe_refused_ = false;
 
+  bool stopping_ = false;  ///< a drive without halt bit: its quick stop is under way
   bool following_ = false;
   std::int64_t held_target_ = 0;
   std::int64_t handover_difference_ = 0;

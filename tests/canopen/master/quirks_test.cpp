@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drives that differ from CiA 402, each with the key of its device file that the gateway needs to know, and
+// without: then it does not work, or the key would be for nothing.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+
+#include "drivers/mock/can/can_segment.hpp"
+#include "drivers/mock/drive/simulated_drive.hpp"
+#include "firmware_if/canopen/master/segment.hpp"
+
+namespace servogate::canopen {
+namespace {
+
+using image::DriveHoming;
+using image::DriveMode;
+using image::DriveState;
+
+constexpr std::int64_t kTurn = 262'144;
+
+/// One drive with its quirks, and a master with what its device file says.
+struct Pair {
+  Pair(const DriveQuirks& quirks, const std::function<void(NodeConfig&)>& told)
+      : bus(wire.add_endpoint("master")) {
+    NodeConfig node;
+    node.node = 1;
+    node.name = "x";
+    node.profile.counts_per_rev = kTurn;
+    use_short_position_map(node.profile);
+    node.profile.transition_timeout_ms = 500;
+    told(node);
+    config.nodes.push_back(node);
+    mock::SimulatedDriveConfig plate;
+    plate.plant.counts_per_rev = kTurn;
+    plate.plant.start_rev = 0.3;
+    plate.quirks = quirks;
+    drive = std::make_unique<mock::SimulatedDrive>(plate);
+    wire.attach(*drive);
+    segment = std::make_unique<Segment>(bus, config);
+    image->now.period_ns = config.cycle_ns;
+  }
+  void run(int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      wire.advance_to(image->now.t_ns);
+      segment->receive(*image);
+      if (feedback().state != DriveState::operation_enabled)
+        command().position_counts = feedback().position_counts;
+      if (control) control();
+      segment->send(*image);
+      ++image->now.number;
+      image->now.t_ns += config.cycle_ns;
+      BusEvent e;
+      while (segment->events().pop(e))
+        if (e.kind != BusEventKind::node_booted)
+          story += describe(e, "x", nullptr, text::Language::english) + "\n";
+    }
+  }
+  bool until(const std::function<bool()>& met, int cycles = 5000) {
+    for (int i = 0; i < cycles && !met(); ++i) run(1);
+    return met();
+  }
+  bool enable() {
+    command().power = true;
+    command().mode = DriveMode::csp;
+    return until([this] { return feedback().state == DriveState::operation_enabled; });
+  }
+  image::DriveCommand& command() { return image->axes[0].drive_command; }
+  const image::DriveFeedback& feedback() const { return image->axes[0].drive; }
+
+  mock::CanSegment wire;
+  image::CanBus& bus;
+  SegmentConfig config;
+  std::unique_ptr<mock::SimulatedDrive> drive;
+  std::unique_ptr<Segment> segment;
+  std::unique_ptr<image::ProcessImage> image = std::make_unique<image::ProcessImage>();
+  std::function<void()> control;
+  std::string story;
+};
+
+NodeHoming by_method(std::int8_t method) {
+  return {method, static_cast<std::uint32_t>(kTurn), static_cast<std::uint32_t>(kTurn / 10),
+          static_cast<std::uint32_t>(10 * kTurn)};
+}
+
+bool fault_is_reset(bool told) {
+  Pair pair({.fault_reset_level_ns = 100 * image::kMillisecond}, [told](NodeConfig& node) {
+    if (told) node.profile.fault_reset = FaultReset::level;
+  });
+  EXPECT_TRUE(pair.enable()) << pair.story;
+  mock::DriveFault fault;
+  fault.kind = mock::DriveFaultKind::over_current;
+  pair.drive->inject(fault);
+  EXPECT_TRUE(pair.until([&] { return pair.feedback().state == DriveState::fault; }));
+  pair.drive->clear_faults();
+  pair.command().power = false;
+  pair.run(50);
+  pair.command().reset_fault = true;
+  return pair.until([&] { return pair.feedback().state == DriveState::switch_on_disabled; }, 1500);
+}
+
+TEST(Quirks, a_drive_that_resets_its_fault_by_the_level_needs_the_bit_held) {
+  EXPECT_TRUE(fault_is_reset(true));
+  EXPECT_FALSE(fault_is_reset(false));
+}
+
+bool boots(Pair& pair) {
+  return pair.until([&] { return pair.feedback().online; }, 2000);
+}
+
+TEST(Quirks, method_0_is_written_where_the_drive_is_not_to_home_but_not_into_a_drive_without_it) {
+  const auto not_to_home = [](NodeConfig& node) { node.setup.homing = NodeHoming{}; };
+  Pair standard({}, not_to_home);
+  ASSERT_TRUE(boots(standard)) << standard.story;
+  Pair untold({.homing_method_none = false}, not_to_home);
+  EXPECT_FALSE(boots(untold));
+  EXPECT_NE(untold.story.find("homing by the drive"), std::string::npos) << untold.story;
+  Pair told({.homing_method_none = false}, [&](NodeConfig& node) {
+    not_to_home(node);
+    node.profile.homing_method_none = false;
+  });
+  EXPECT_TRUE(boots(told)) << told.story;
+}
+
+TEST(Quirks, method_37_goes_to_the_drive_under_its_own_number) {
+  const auto here = [](NodeConfig& node) { node.setup.homing = by_method(37); };
+  Pair untold({.homing_method_here = -1}, here);
+  EXPECT_FALSE(boots(untold));
+  EXPECT_EQ(untold.story,
+            "x: boot stopped at step \"homing by the drive\": reading 60E3h:00 Supported homing methods: 37 "
+            "is none of "
+            "the 32 that the device has\n");
+  Pair told({.homing_method_here = -1}, [&](NodeConfig& node) {
+    here(node);
+    node.profile.homing_method_here = -1;
+  });
+  ASSERT_TRUE(boots(told)) << told.story;
+  EXPECT_EQ(told.drive->object(0x6098), -1);
+}
+
+TEST(Quirks, an_empty_list_of_methods_refuses_the_drive_unless_its_file_says_not_to_look) {
+  const auto by_zero_mark = [](NodeConfig& node) { node.setup.homing = by_method(33); };
+  Pair untold({.homing_method_list = false}, by_zero_mark);
+  EXPECT_FALSE(boots(untold));
+  Pair told({.homing_method_list = false}, [&](NodeConfig& node) {
+    by_zero_mark(node);
+    node.profile.homing_method_list = false;
+  });
+  ASSERT_TRUE(boots(told)) << told.story;
+  EXPECT_EQ(told.drive->object(0x6098), 33);
+  EXPECT_EQ(told.drive->object(0x6099, 2), kTurn / 10);
+  EXPECT_EQ(told.drive->object(0x609A), 10 * kTurn);
+}
+
+/// Way of the shaft from the halt on, in turns, and how the drive ended.
+struct Halted {
+  double way = 0.0;
+  bool stands = false;
+  DriveState state = DriveState::offline;
+};
+Halted halted(bool has_halt, bool told) {
+  Pair pair({.halt = has_halt}, [told](NodeConfig& node) {
+    node.setup.homing = by_method(17);  // no limit switch comes: it would search for ever
+    node.profile.halt = told;
+  });
+  EXPECT_TRUE(pair.enable()) << pair.story;
+  pair.command().mode = DriveMode::homing;
+  EXPECT_TRUE(pair.until([&] { return pair.feedback().homing == DriveHoming::running; }));
+  pair.run(500);
+  const double before = pair.drive->revolutions();
+  pair.command().halt = true;
+  pair.run(5);
+  if (!told) pair.command().power = false;  // as the axis does when the drive lets go
+  pair.run(1500);
+  return {std::abs(pair.drive->revolutions() - before), std::abs(pair.drive->velocity_counts_s()) < 100.0,
+          pair.drive->state()};
+}
+
+TEST(Quirks, a_homing_is_stopped_by_the_halt_bit_or_by_the_quick_stop_of_a_drive_without_one) {
+  const Halted standard = halted(true, true);
+  EXPECT_TRUE(standard.stands);
+  EXPECT_LT(standard.way, 0.1);
+  EXPECT_EQ(standard.state, DriveState::operation_enabled);
+  const Halted untold = halted(false, true);
+  EXPECT_FALSE(untold.stands) << "it does not know the bit";
+  const Halted by_quick_stop = halted(false, false);
+  EXPECT_TRUE(by_quick_stop.stands);
+  EXPECT_LT(by_quick_stop.way, 0.1) << "the ramp of the quick stop, though the power is taken away meanwhile";
+  EXPECT_EQ(by_quick_stop.state, DriveState::switch_on_disabled);
+}
+
+void use_ip(NodeConfig& node) {
+  node.profile.position_mode = OperationMode::interpolated_position;
+  node.profile.modes = supported_bit(OperationMode::interpolated_position);
+  node.profile.rpdo[0].mapping = {};
+  node.profile.rpdo[0].mapping.add({0x6040, 0, 16});
+  node.profile.rpdo[0].mapping.add({0x60C1, 1, 32});
+}
+
+/// Counts that the drive has moved when it was asked for 100 a cycle for a second.
+std::int64_t moved_in_ip(bool told) {
+  Pair pair({.velocity_in_ip_record = true}, [told](NodeConfig& node) {
+    use_ip(node);
+    if (!told) return;
+    node.profile.ip_velocity_entry = 2;
+    node.profile.rpdo[1].mapping.add({0x60C1, 2, 32});
+  });
+  EXPECT_TRUE(pair.enable()) << pair.story;
+  const std::int64_t from = pair.feedback().position_counts;
+  pair.control = [&, target = from]() mutable {
+    pair.command().position_counts = target += 100;
+    pair.command().velocity_counts_s = 100'000.0;
+  };
+  pair.run(1000);
+  if (told) {
+    EXPECT_EQ(pair.drive->object(0x60C1, 2), 100'000);
+  }
+  return pair.feedback().position_counts - from;
+}
+
+TEST(Quirks, a_record_of_position_and_velocity_is_filled_whole) {
+  EXPECT_NEAR(static_cast<double>(moved_in_ip(true)), 100'000.0, 1'000.0);
+  EXPECT_EQ(moved_in_ip(false), 0) << "no record is ever complete";
+}
+
+TEST(Quirks, a_drive_that_counts_60C2_in_tenths_of_a_millisecond_gets_it_so) {
+  Pair untold({.interpolation_exponent = -4}, [](NodeConfig&) {});
+  EXPECT_FALSE(boots(untold));
+  EXPECT_NE(untold.story.find("interpolation time period"), std::string::npos) << untold.story;
+  Pair told({.interpolation_exponent = -4}, [](NodeConfig& node) { node.profile.interpolation_base = -4; });
+  ASSERT_TRUE(boots(told)) << told.story;
+  EXPECT_EQ(told.drive->object(0x60C2, 1), 10);
+}
+
+TEST(Quirks, speeds_of_homing_go_in_the_drives_own_units_and_home_is_at_0_of_its_counting) {
+  Pair pair({}, [](NodeConfig& node) { node.setup.homing = by_method(37); });
+  ASSERT_TRUE(pair.enable()) << pair.story;
+  pair.command().position_counts += 5'000;
+  pair.run(500);
+  pair.command().mode = DriveMode::homing;
+  ASSERT_TRUE(pair.until([&] { return pair.feedback().homing == DriveHoming::attained; })) << pair.story;
+  EXPECT_NEAR(static_cast<double>(pair.feedback().position_counts), 0.0, 20.0);
+  EXPECT_EQ(pair.feedback().home_counts, 0);
+}
+
+}  // namespace
+}  // namespace servogate::canopen
