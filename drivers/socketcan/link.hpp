@@ -32,10 +32,10 @@ std::optional<LinkInfo> read_link(const std::string& name);
 std::vector<std::string> can_interfaces();
 /// What set_link() changes; the rest stays.
 struct LinkSetting {
-  std::optional<bool> up;
-  std::uint32_t bit_rate = 0;       ///< bit/s, of an interface that is down; 0: as it is
-  std::optional<bool> listen_only;  ///< of an interface that is down: hears, and never drives the bus
-  bool restart = false;             ///< out of bus-off
+  std::optional<bool> up = {};
+  std::uint32_t bit_rate = 0;            ///< bit/s, of an interface that is down; 0: as it is
+  std::optional<bool> listen_only = {};  ///< of an interface that is down: hears, and never drives the bus
+  bool restart = false;                  ///< out of bus-off
 };
 /// Changes an interface; needs CAP_NET_ADMIN. Bit rate and listening are set before it goes up. 0, or what
 /// errno said: EOPNOTSUPP of a driver that cannot. Not real-time safe.
