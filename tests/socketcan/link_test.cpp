@@ -198,15 +198,6 @@ TEST_F(SlcanQueue, frames_beyond_the_kernels_queue_wait_and_leave_by_priority_no
   EXPECT_EQ(bus->lost(), 0u);
 }
 
-TEST_F(SlcanQueue, a_controller_that_is_not_bus_off_is_not_restarted) {
-  const int error = restart_link(read_link(name_)->index);
-  EXPECT_EQ(error, EBUSY) << "the request reaches the driver's own rule";
-  drivers::Notice why;
-  EXPECT_FALSE(open()->restart(why));
-  EXPECT_NE(why.str(text::Language::english).find("busy"), std::string::npos)
-      << why.str(text::Language::english);
-}
-
 TEST_F(SlcanQueue, a_full_queue_refuses_and_a_link_that_goes_down_counts_what_it_loses) {
   auto bus = open();
   ASSERT_NE(bus, nullptr);
