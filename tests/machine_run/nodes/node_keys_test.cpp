@@ -125,6 +125,24 @@ TEST_F(NodeKeys, a_silent_node_is_named_after_its_own_time_and_attempts) {
   EXPECT_GT(told_after("boot_timeout = \"3 s\"\nboot_attempts = 1"), 2.9);
 }
 
+TEST_F(NodeKeys, an_error_code_is_told_in_the_words_of_the_device_file_in_both_languages) {
+  ASSERT_NO_FATAL_FAILURE(start(""));
+  ASSERT_TRUE(mill->power_on()) << mill->alarm_list();
+  mill->inject("can.x", mock::DriveFaultKind::over_current);
+  ASSERT_TRUE(mill->until([&] { return mill->alarms(axis::alarm::kDriveFault) > 0; }, 2.0));
+  for (const image::AlarmRecord& r : mill->control().cycle().alarms().history()) {
+    if (r.number != axis::alarm::kDriveFault) continue;
+    const auto words = [&](text::Language language) {
+      return cycle::render(r, mill->control().alarm_names(), language);
+    };
+    EXPECT_NE(words(text::Language::english).find("continuous over-current at the output"), std::string::npos)
+        << words(text::Language::english);
+    EXPECT_NE(words(text::Language::russian).find("длительная перегрузка по току на выходе"),
+              std::string::npos)
+        << words(text::Language::russian);
+  }
+}
+
 constexpr const char* kLine = "N10 G90 G94 G71\nN20 G1 X150 Y100 F3000\nN30 M30\n";
 
 /// The first fault after X's drive has fallen silent in the middle of a line, and after how many cycles it
