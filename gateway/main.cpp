@@ -32,6 +32,7 @@ int carry_out(const CommandLine& line) {
   if (line.command == "lss") return command::lss(line.bus.lss);
   if (line.command == "nmt") return command::nmt(line.bus.nmt);
   if (line.command == "drive") return command::drive(line.bus.drive);
+  if (line.command == "io") return command::io(line.bus.io);
   if (line.command == "sim") return command::sim(line.bus.sim);
   if (line.command == "dump") return command::dump(line.bus.dump);
   if (line.command == "play") return command::play(line.bus.play);

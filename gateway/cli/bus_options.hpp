@@ -33,6 +33,14 @@ struct DriveOptions {
   double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
 };
 
+/// `servogate io`: simulated I/O modules as a process of their own.
+struct IoOptions {
+  std::string bus;
+  std::vector<int> nodes;
+  int digital_inputs = 16, digital_outputs = 16, analogue_inputs = 4, analogue_outputs = 2;
+  double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
+};
+
 /// `servogate sim`: the simulated devices of a machine for somebody else's controller.
 struct SimOptions {
   std::string machine;
@@ -112,6 +120,7 @@ struct BusCommands {
   CanBusOptions can_bus;
   CanCheckOptions can_check;
   DriveOptions drive;
+  IoOptions io;
   SimOptions sim;
   DumpOptions dump;
   PlayOptions play;

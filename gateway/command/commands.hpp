@@ -24,6 +24,7 @@ int od(const OdOptions& options);
 int lss(const LssOptions& options);
 int nmt(const NmtOptions& options);
 int drive(const DriveOptions& options);
+int io(const IoOptions& options);
 int sim(const SimOptions& options);
 int dump(const DumpOptions& options);
 int play(const PlayOptions& options);

@@ -66,6 +66,31 @@ void add_drive(CLI::App& app, DriveOptions& o) {
       "Example: servogate drive socketcand:127.0.0.1:29536/can0 --node 1,2,3");
 }
 
+void add_terminals(CLI::App& app, const std::string& name, int& count, int most, const std::string& what) {
+  app.add_option(name, count, what)
+      ->type_name("N")
+      ->check(number_within({0.0, static_cast<double>(most), text::both("terminals", "клемм"), true}));
+}
+
+void add_io(CLI::App& app, IoOptions& o) {
+  CLI::App& c =
+      *app.add_subcommand("io", "Simulated CiA 401 I/O modules on a bus, as a process of their own.");
+  c.add_option("BUS", o.bus, kBus)->required();
+  c.add_option("--node", o.nodes, "Node-ID, 1 to 127; several with commas")
+      ->type_name("N,...")
+      ->required()
+      ->delimiter(',')
+      ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
+  add_terminals(c, "--di", o.digital_inputs, 64, "Digital inputs, 0 to 64");
+  add_terminals(c, "--dq", o.digital_outputs, 64, "Digital outputs, 0 to 64");
+  add_terminals(c, "--ai", o.analogue_inputs, 12, "Analogue inputs, 0 to 12");
+  add_terminals(c, "--aq", o.analogue_outputs, 12, "Analogue outputs, 0 to 12");
+  add_bit_rate(c, o.bit_rate);
+  c.footer(
+      "On standard input it takes di3 on, di3 off, ai0 1200, status; it prints its outputs as they change.\n"
+      "Example: servogate io socketcand:127.0.0.1:29536/can0 --node 9");
+}
+
 void add_sim(CLI::App& app, SimOptions& o) {
   CLI::App& s = *app.add_subcommand(
       "sim", "All simulated devices of a machine, for somebody else's controller, in the computer's time.");
@@ -111,6 +136,7 @@ void add_bus_commands(CLI::App& app, BusCommands& options) {
   add_can_bus(can, options.can_bus);
   add_can_check(can, options.can_check);
   add_drive(app, options.drive);
+  add_io(app, options.io);
   add_sim(app, options.sim);
   add_dump(app, options.dump);
   add_play(app, options.play);

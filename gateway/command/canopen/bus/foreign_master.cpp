@@ -90,6 +90,8 @@ bool can_move(std::uint16_t index) {
   if (index == 0x1F82 || index == 0x1F51) return true;
   if (index < 0x6000 || index >= 0xA000) return false;
   const auto own = static_cast<std::uint16_t>(0x6000 + (index - 0x6000) % 0x800);
+  // Outputs of a CiA 401 module, digital and analogue, with their polarity: valves and brakes hang on them.
+  if ((own >= 0x6200 && own < 0x6400) || (own >= 0x6410 && own < 0x6420)) return true;
   return std::find(std::begin(kObjects), std::end(kObjects), own) != std::end(kObjects);
 }
 

@@ -17,7 +17,8 @@ bool shows_master(const image::CanFrame& frame);
 std::optional<image::CanFrame> foreign_master(ToolBus& bus, image::Nanoseconds listening);
 
 /// Whether writing this object can move a drive, release its brake or start its program: the set-points,
-/// controlword and modes of every axis of CiA 402, its outputs 60FEh, and NMT requests 1F82h.
+/// controlword and modes of every axis of CiA 402, its outputs 60FEh, outputs of CiA 401 (6200h to 63FFh,
+/// 6410h to 641Fh), and NMT requests 1F82h.
 bool can_move(std::uint16_t index);
 
 /// The gate of everything that can move. kDone: it may be done; otherwise the exit code, after saying why
