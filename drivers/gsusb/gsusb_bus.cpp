@@ -36,7 +36,7 @@ const text::Entry kSystem{"gsusb.system", "{0}: {1}", "{0}: {1}"};
 constexpr std::uint16_t kDevice = 1;  ///< wValue of requests to the whole device
 constexpr std::uint8_t code(Request r) noexcept { return static_cast<std::uint8_t>(r); }
 
-/// The priority below the cycle's, where the process may have it; else as any thread.
+/// A real-time priority below the usual one of the cycle, where the process may have it; else as any thread.
 void prefer_this_thread() noexcept {
   sched_param priority{};
   priority.sched_priority = 70;

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <vector>
 
 #include "drivers/gsusb/adapter_clock.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::gsusb {
 namespace {
@@ -114,6 +116,45 @@ TEST(GsUsbProtocol, short_answers_to_requests_are_no_answers) {
   EXPECT_FALSE(parse_state(Bytes(12, 0xFF))) << "a state that there is not";
   EXPECT_FALSE(parse_timestamp(Bytes(3)));
   EXPECT_FALSE(parse_device_config(Bytes(12, 0xFF))) << "256 channels";
+}
+
+TEST(GsUsbProtocol, whatever_bytes_an_adapter_sends_a_frame_that_is_taken_is_a_frame) {
+  std::mt19937_64 random(test::property_seed());
+  int taken = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    Bytes bytes(random() % 30);
+    for (std::uint8_t& b : bytes) b = static_cast<std::uint8_t>(random());
+    // Half of them are likely ones: from the bus, with a length that there is.
+    if (i % 2 == 0 && bytes.size() > 10)
+      std::fill_n(bytes.begin(), 4, std::uint8_t{0xFF}), bytes[8] %= 10, bytes[10] = 0;
+    HostFrame in;
+    if (!decode(bytes, i % 3 == 0, in)) continue;
+    ++taken;
+    ASSERT_LE(in.frame.length, 8);
+    ASSERT_LT(in.frame.id, 1u << (in.frame.extended || in.frame.error ? 29 : 11));
+    ASSERT_FALSE(in.frame.fd);
+    ASSERT_EQ(in.timestamp_us.has_value(), i % 3 == 0);
+  }
+  EXPECT_GT(taken, 1000);
+}
+
+TEST(GsUsbProtocol, a_frame_that_goes_out_comes_back_as_it_was) {
+  std::mt19937_64 random(test::property_seed());
+  for (int i = 0; i < 5000; ++i) {
+    image::CanFrame f;
+    f.extended = random() % 2 == 0;
+    f.id = static_cast<std::uint32_t>(random()) & (f.extended ? 0x1FFF'FFFFu : 0x7FFu);
+    f.remote = random() % 8 == 0;
+    f.length = static_cast<std::uint8_t>(random() % 9);
+    for (std::size_t n = 0; n < f.length && !f.remote; ++n) f.data[n] = static_cast<std::uint8_t>(random());
+    HostFrame in;
+    ASSERT_TRUE(decode(encoded(f, HostFrame::kReceived), false, in));
+    ASSERT_EQ(in.frame.id, f.id);
+    ASSERT_EQ(in.frame.extended, f.extended);
+    ASSERT_EQ(in.frame.remote, f.remote);
+    ASSERT_EQ(in.frame.length, f.length);
+    ASSERT_EQ(in.frame.data, f.data);
+  }
 }
 
 TEST(AdapterClock, a_stamp_is_never_after_its_arrival_and_keeps_the_distance_of_frames) {
