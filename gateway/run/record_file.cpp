@@ -335,9 +335,11 @@ bool RecordReader::read_change(std::string_view bytes) {
       file->path = head.value("path", "");
       file->dialect = head.value("dialect", "");
       file->text = bytes.substr(end + 1);
-      file->loader = [texts = subprograms_](std::string_view wanted) -> std::optional<std::string> {
+      file->loader = [texts =
+                          subprograms_](std::string_view wanted) -> std::optional<program::LoadedProgram> {
         const auto found = texts->find(wanted);
-        return found == texts->end() ? std::nullopt : std::optional<std::string>(found->second);
+        if (found == texts->end()) return std::nullopt;
+        return program::LoadedProgram{found->second};
       };
       files_.push_back(std::move(file));
     }

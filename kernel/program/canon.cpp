@@ -17,12 +17,8 @@ void take_effect(image::Packets& packets, const WritePlace& write) {
 }
 
 text::Finding too_long(const Interpreter& interpreter, int file, int line, long long limit) {
-  return {text::Severity::error,
-          interpreter.files()[static_cast<std::size_t>(file)],
-          line,
-          0,
-          &entry(Fault::block_limit),
-          {std::to_string(limit)}};
+  return {text::Severity::error,      interpreter.path(file), line, interpreter.column(file, line, -1),
+          &entry(Fault::block_limit), {std::to_string(limit)}};
 }
 
 }  // namespace

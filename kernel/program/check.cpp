@@ -149,16 +149,18 @@ MachineModel without_travel(MachineModel machine) {
   return machine;
 }
 
-void add_travel(CheckReport& report, const MachineModel& machine, const Survey& survey) {
+void add_travel(CheckReport& report, const Interpreter& interpreter, const MachineModel& machine,
+                const Survey& survey) {
   if (survey.first_outside() < 0) return;
   const auto& axis = machine.axes[at(survey.first_outside())];
   const double limit = survey.outside_value() > axis.travel_max ? axis.travel_max : axis.travel_min;
-  report.findings.push_back({text::Severity::error,
-                             report.files[at(survey.outside_file())],
-                             survey.outside_line(),
-                             0,
-                             &entry(Fault::travel),
-                             {axis.letter, text::number(survey.outside_value(), 4), text::number(limit, 4)}});
+  report.findings.push_back(
+      {text::Severity::error,
+       interpreter.path(survey.outside_file()),
+       survey.outside_line(),
+       interpreter.column(survey.outside_file(), survey.outside_line(), survey.first_outside()),
+       &entry(Fault::travel),
+       {axis.letter, text::number(survey.outside_value(), 4), text::number(limit, 4)}});
 }
 
 }  // namespace
@@ -186,7 +188,7 @@ CheckReport check_program(std::string_view dialect, const MachineModel& machine,
   report.finished = !error;
   const std::vector<text::Finding>& warnings = interpreter.warnings();
   report.findings.insert(report.findings.end(), warnings.begin(), warnings.end());
-  add_travel(report, machine, survey);
+  add_travel(report, interpreter, machine, survey);
   const auto same = [&](const text::Finding& f) {
     return f.file == error->file && f.line == error->line && f.entry == error->entry;
   };

@@ -42,7 +42,7 @@ Interpreter::~Interpreter() = default;
 Step Interpreter::next(const image::Packets& packets, bool synchronised) {
   if (!impl_->known)
     return Error{
-        {text::Severity::error, files().front(), 0, 0, &entry(Fault::dialect_unknown), {impl_->dialect}}};
+        {text::Severity::error, files().front(), 1, 1, &entry(Fault::dialect_unknown), {impl_->dialect}}};
   return impl_->run.next(packets, synchronised);
 }
 
@@ -57,6 +57,8 @@ std::vector<SettingFault> Interpreter::setting_faults() const {
 const std::vector<text::Finding>& Interpreter::warnings() const { return impl_->run.warnings(); }
 const MachineModel& Interpreter::machine() const { return impl_->run.machine(); }
 const std::vector<std::string>& Interpreter::files() const { return impl_->run.files(); }
+const std::string& Interpreter::path(int file) const { return impl_->run.path(file); }
+int Interpreter::column(int file, int line, int axis) const { return impl_->run.column_at(file, line, axis); }
 const Position& Interpreter::position() const { return impl_->run.state().machine; }
 const Tables& Interpreter::tables() const { return *impl_->run.state().tables; }
 int Interpreter::block_count() const { return impl_->run.main_source().blocks(); }

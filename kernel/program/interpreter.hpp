@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -57,8 +58,14 @@ struct Tables {
   std::map<int, Corrector> correctors;
 };
 
-/// Gives the text of another program by its name (NC-110 CLS), nullopt when there is none.
-using ProgramLoader = std::function<std::optional<std::string>(std::string_view name)>;
+/// Another program, and where people find it.
+struct LoadedProgram {
+  LoadedProgram(std::string text_, std::string path_ = {}) : text(std::move(text_)), path(std::move(path_)) {}
+  std::string text;
+  std::string path;  ///< as findings name it; empty: the name by which it was called
+};
+/// Gives another program by its name (NC-110 CLS), nullopt when there is none.
+using ProgramLoader = std::function<std::optional<LoadedProgram>(std::string_view name)>;
 
 /// A power-on mode or value of the machine file that the language cannot take. Its program does not run.
 struct SettingFault {
@@ -107,6 +114,11 @@ class Interpreter {
   /// spindle that turns. Each place once, in the order of execution, at most 20 places of a kind; only grows,
   /// but for mdi(), which begins anew.
   const std::vector<text::Finding>& warnings() const;
+  /// Path of a file met so far (index = Command::file) as people open it; findings name it so.
+  const std::string& path(int file) const;
+  /// Column of what moves an axis (-1: none in particular) in a block of a file met so far: the axis' word,
+  /// or where the block begins.
+  int column(int file, int line, int axis) const;
   /// The machine it was made for.
   const MachineModel& machine() const;
   /// Names of the files met so far, index = Command::file.

@@ -99,8 +99,10 @@ constexpr text::Entry kMessages[] = {
      "в тексте {0} символов, показывается не более {1}"},
     {"P611", "{0}: the origin must be a whole number from 0 to {1}, not {2}",
      "{0}: номер начала — целое от 0 до {1}, а не {2}"},
-    {"P612", "the origin {0} is not in the table", "начала отсчёта {0} нет в таблице"},
-    {"P613", "the origin {0} has no value for {1}", "в начале отсчёта {0} нет значения для {1}"},
+    {"P612", "the origin {0} is not in the table, which has {1}",
+     "начала отсчёта {0} нет в таблице, в ней есть {1}"},
+    {"P613", "the origin {0} has no value for {1}, only for {2}",
+     "в начале отсчёта {0} нет значения для {1}, есть только для {2}"},
     {"P614", "the scale must not be 0", "масштаб не может быть 0"},
     {"P616", "{0} inside of a continuous profile: end it with G00 or G29 first",
      "{0} внутри непрерывного профиля: сначала завершите его G00 или G29"},
@@ -184,6 +186,20 @@ constexpr text::Entry kMessages[] = {
      "it "
      "turns",
      "подача на оборот (G95), а программа не включила шпиндель: движение ждёт, пока он не завращается"},
+    {"P816", "{0} dwells for TMR, and TMR is 0: there is no dwell",
+     "{0} выдерживает время TMR, а TMR равно 0: выдержки не будет"},
+    {"P817", "G{0}: the depth {1} is the level {2} where the work begins: nothing is worked",
+     "G{0}: глубина {1} совпадает с уровнем {2}, с которого начинается работа: обработки не будет"},
+    {"P818",
+     "G{0}: the depth {1} lies before the level {2} where the work begins: the axis passes it at rapid and "
+     "works backwards",
+     "G{0}: глубина {1} лежит перед уровнем {2}, с которого начинается работа: ось проходит её на быстром "
+     "ходу и работает назад"},
+    {"P819",
+     "G{0}: from the bottom at {1} the tool returns to {2}, not back over the level {3} where the work "
+     "begins",
+     "G{0}: со дна на {1} инструмент возвращается на {2}, а не назад за уровень {3}, с которого начинается "
+     "работа"},
     {"P901", "{0} is not executed in this version", "{0} в этой версии не выполняется"},
     {"P902", "the power-on mode {0} is not one of this language", "режим включения {0} не из этого языка"},
     {"P903", "there is no dialect {0}", "нет языка {0}"},

@@ -21,7 +21,7 @@ const char* const kFolder = SERVOGATE_SOURCE_DIR "/tests/program";
 /// What a case gives when it is run as `servogate canon` runs it.
 struct Outcome {
   std::vector<json> commands;
-  std::string error;
+  std::optional<text::Finding> error;
   std::string warnings;  ///< one a line
 };
 
@@ -40,7 +40,7 @@ Outcome run(const CaseFile& c) {
     outcome.commands.push_back(json::parse(line));
     return true;
   });
-  if (error) outcome.error = error->str(text::Language::english);
+  outcome.error = error;
   for (const auto& warning : interpreter.warnings())
     outcome.warnings += warning.str(text::Language::english) + "\n";
   return outcome;
@@ -111,9 +111,16 @@ void expect_contained(const CaseFile& c, const std::vector<json>& got) {
   }
 }
 
+/// What it is about can be gone to: `file:line:col`.
+void expect_place(const text::Finding& finding) {
+  EXPECT_GT(finding.line, 0) << finding.str();
+  EXPECT_GT(finding.column, 0) << finding.str();
+}
+
 void expect_findings(const CaseFile& c) {
   const CheckReport report =
       check_program("nc110", c.machine, c.tables, c.name + ".nc", c.program, loader_of(c), c.start);
+  for (const text::Finding& finding : report.findings) expect_place(finding);
   for (std::size_t i = 0; i < std::max(c.findings.size(), report.findings.size()); ++i) {
     const std::string got =
         i < report.findings.size() ? report.findings[i].str(text::Language::english) : "(nothing)";
@@ -130,7 +137,10 @@ void judge(const CaseFile& c) {
   const Outcome outcome = run(c);
   const bool error_allowed = c.errors.empty() && !c.findings.empty();
   if (!error_allowed) {
-    EXPECT_EQ(c.errors.empty() ? "" : c.errors.front().text, outcome.error) << c.path;
+    EXPECT_EQ(c.errors.empty() ? "" : c.errors.front().text,
+              outcome.error ? outcome.error->str(text::Language::english) : "")
+        << c.path;
+    if (outcome.error) expect_place(*outcome.error);
   }
   if (!c.expected.empty()) {
     std::vector<json> wanted;

@@ -107,7 +107,7 @@ TEST(CheckProgram, forms_the_vector_over_millimetres_and_degrees_alike) {
 TEST(CheckProgram, goes_on_after_a_motion_out_of_the_travel_and_names_its_first_line) {
   const CheckReport report = check("G0 X10\nX301\nX500 Y-400\nX0");
   ASSERT_EQ(1u, report.findings.size());
-  EXPECT_EQ("p.nc:2: error: X would go to 301, the travel ends at 300 [P701]",
+  EXPECT_EQ("p.nc:2:1: error: X would go to 301, the travel ends at 300 [P701]",
             report.findings[0].str(text::Language::english));
   EXPECT_EQ(2, report.extents[0].outside_line);
   EXPECT_EQ(3, report.extents[1].outside_line);
@@ -132,10 +132,12 @@ TEST(CheckProgram, stops_a_program_without_end_after_a_million_blocks) {
   const CheckReport moving = check("\"A\" G0 X1\n(BNC,A)");
   ASSERT_EQ(1u, moving.findings.size());
   EXPECT_EQ("P514", moving.findings[0].entry->id);
+  EXPECT_EQ(0u, moving.findings[0].str().find("p.nc:1:5: "));
   EXPECT_GE(moving.executed, kDryRunBlocks);
   const CheckReport still = check("\"A\"\n(BNC,A)");
   ASSERT_EQ(1u, still.findings.size());
   EXPECT_EQ("P513", still.findings[0].entry->id);
+  EXPECT_EQ(0u, still.findings[0].str().find("p.nc:2:1: "));
   const CheckReport polling = check("\"A\"(BEQ,SA3,0,A)");
   ASSERT_EQ(1u, polling.findings.size());
   EXPECT_EQ("P514", polling.findings[0].entry->id);
@@ -154,13 +156,30 @@ TEST(CheckProgram, finds_all_of_a_file_and_of_its_subprograms) {
   EXPECT_EQ(2, report.findings.back().line);
 }
 
+TEST(CheckProgram, names_a_subprogram_by_the_path_at_which_people_open_it) {
+  const auto loader = [](std::string_view name) -> std::optional<LoadedProgram> {
+    if (name == "SUB") return LoadedProgram{"G0 X1\n  G1 Y301 F100\n", "parts/sub.nc"};
+    if (name == "BAD") return LoadedProgram{"G0 X1\nX2 G99\n", "parts/bad.nc"};
+    return std::nullopt;
+  };
+  const CheckReport outside = check("G0 X1\n(CLS,SUB)", mill(), loader);
+  ASSERT_EQ(1u, outside.findings.size());
+  EXPECT_EQ("parts/sub.nc:2:6: error: Y would go to 301, the travel ends at 300 [P701]",
+            outside.findings[0].str(text::Language::english));
+  const CheckReport wrong = check("(CLS,BAD)", mill(), loader);
+  ASSERT_EQ(1u, wrong.findings.size());
+  EXPECT_EQ(0u, wrong.findings[0].str().find("parts/bad.nc:2:4: error: "));
+  EXPECT_EQ((std::vector<std::string>{"p.nc", "BAD"}), wrong.files)
+      << "canon's `file` is the name of the call";
+}
+
 TEST(CheckProgram, names_ten_thousand_findings_of_a_file_and_says_that_there_are_more) {
   std::string text;
   for (int i = 0; i < 10'500; ++i) text += "G0 X1 ; why\n";
   const CheckReport commented = check(text);
   EXPECT_TRUE(commented.good()) << "warnings, however many, keep nothing from running";
   ASSERT_EQ(10'001u, commented.findings.size());
-  EXPECT_EQ("p.nc:10001: warning: from here on 500 more warnings are not named [P907]",
+  EXPECT_EQ("p.nc:10001:7: warning: from here on 500 more warnings are not named [P907]",
             commented.findings.back().str(text::Language::english));
   text += "G0 !\n";
   const CheckReport wrong = check(text);

@@ -155,7 +155,7 @@ TEST(Interpreter, names_a_language_that_this_build_does_not_read) {
   Interpreter run("rs274", mill(), {}, "p.nc", "G0 X1", {}, Position{});
   const Step step = run.next(image::Packets{}, true);
   ASSERT_TRUE(std::holds_alternative<Error>(step));
-  EXPECT_EQ("p.nc: error: there is no dialect rs274 [P903]",
+  EXPECT_EQ("p.nc:1:1: error: there is no dialect rs274 [P903]",
             std::get<Error>(step).finding.str(text::Language::english));
   EXPECT_EQ((std::vector<std::string>{"nc110"}), dialects());
 }

@@ -8,9 +8,9 @@ channel::InterpreterFactory interpreter_factory(const ProgramChange& change, Pro
   program::ProgramLoader loader = change.file->loader;
   if (tap != nullptr && loader)
     loader = [file = change.file, tap](std::string_view name) {
-      std::optional<std::string> text = file->loader(name);
-      if (text) tap->take_subprogram(name, *text);
-      return text;
+      std::optional<program::LoadedProgram> loaded = file->loader(name);
+      if (loaded) tap->take_subprogram(name, loaded->text);
+      return loaded;
     };
   return [file = change.file, tables = change.tables, loader](const program::Position& start) {
     return program::Interpreter(file->dialect, file->model, tables, file->path.empty() ? "MDI" : file->path,

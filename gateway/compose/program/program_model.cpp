@@ -41,7 +41,7 @@ program::MachineModel program_model(const machine::MachineConfig& machine) {
 
 program::ProgramLoader program_loader(const std::string& main_program) {
   const std::filesystem::path folder = std::filesystem::path(main_program).parent_path();
-  return [folder](std::string_view name) -> std::optional<std::string> {
+  return [folder](std::string_view name) -> std::optional<program::LoadedProgram> {
     std::string lower(name);
     std::transform(lower.begin(), lower.end(), lower.begin(),
                    [](unsigned char c) { return std::tolower(c); });
@@ -49,7 +49,8 @@ program::ProgramLoader program_loader(const std::string& main_program) {
       for (const char* extension : {"", ".nc", ".NC"}) {
         std::string ignored;
         const std::filesystem::path path = folder / (base + extension);
-        if (auto content = files::read_file(path.string(), files::kMostOfProgram, ignored)) return content;
+        if (auto content = files::read_file(path.string(), files::kMostOfProgram, ignored))
+          return program::LoadedProgram{std::move(*content), path.string()};
       }
     return std::nullopt;
   };

@@ -62,7 +62,7 @@ Written Execution::written(int column) const noexcept {
 void Execution::warn(Written& place, Fault fault, std::vector<std::string> arguments) {
   if (place.told) return;
   place.told = true;
-  const std::string& file = files_[static_cast<std::size_t>(place.file)];
+  const std::string& file = path(place.file);
   const text::Entry* kind = &entry(fault);
   const auto known = [&](const text::Finding& f) {
     return f.line == place.line && f.column == place.column && f.entry == kind && f.file == file;
@@ -106,6 +106,12 @@ void Execution::check_speed(const Word& word) {
     warn(state_.speed_at, Fault::speed_above, {asked, text::number(high)});
   else if (state_.speed * kSlack < low)
     warn(state_.speed_at, Fault::speed_below, {asked, text::number(low)});
+}
+
+void Execution::check_dwell(const Word& word) {
+  if (state_.dwell > 0.0) return;
+  Written place = written(word.column);
+  warn(place, Fault::dwell_zero, {word_text(block_, word)});
 }
 
 /// Speed of the spindle along the way to `to`, the largest where it changes; 0: not known.

@@ -232,12 +232,24 @@ Step Execution::stop_with(const ProgramError& error) {
 
 text::Finding Execution::finding(const ProgramError& error) const {
   text::Finding f;
-  f.file = files_[static_cast<std::size_t>(state_.flow.file)];
-  f.line = power_on_error_ ? 0 : line_number();
-  f.column = error.column;
+  f.file = path(state_.flow.file);
+  f.line = power_on_error_ ? 1 : line_number();
+  f.column = error.column > 0 ? error.column : power_on_error_ ? 1 : column_of(-1);
   f.entry = &entry(error.fault);
   f.arguments = error.arguments;
   return f;
+}
+
+int Execution::column_at(int file, int line, int axis) const {
+  Block block;
+  const Source& source = *sources_[static_cast<std::size_t>(file)];
+  if (line < 1 || static_cast<std::uint32_t>(line) > source.lines()) return 1;
+  try {
+    read_block(*dialect_, axes_, source.line(static_cast<std::uint32_t>(line) - 1), block);
+  } catch (const ProgramError& error) {
+    return error.column;
+  }
+  return program::column_of(block, axis);
 }
 
 /// Executes blocks until one has given a command; a value instead when something else has to come first.

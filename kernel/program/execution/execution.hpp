@@ -24,7 +24,7 @@ struct BlockWords {
   bool dwell = false, exact_once = false, machine_zero = false;
   std::uint32_t one_shot = 0;  ///< bit of each Function that holds for this block only
   int cycle = 0;               ///< number of a G word that defines a cycle
-  const Word* cycle_word = nullptr;
+  const Word *cycle_word = nullptr, *dwell_word = nullptr;
   int axes = 0;
   std::array<const Word*, image::kMaxAxes> axis{};
   const Word *centre1 = nullptr, *centre2 = nullptr, *pitch = nullptr, *radius = nullptr, *radius2 = nullptr;
@@ -53,6 +53,8 @@ class Execution : public ValueSource {
   const AxisLetters& axes() const noexcept { return axes_; }
   const ProgramLoader& loader() const noexcept { return loader_; }
   const std::vector<std::string>& files() const noexcept { return files_; }
+  const std::string& path(int file) const { return sources_[static_cast<std::size_t>(file)]->path(); }
+  int column_at(int file, int line, int axis) const;
   const std::vector<SettingFault>& setting_faults() const noexcept { return setting_faults_; }
   const std::vector<text::Finding>& warnings() const noexcept { return warnings_; }
   const Source& main_source() const noexcept { return *sources_.front(); }
@@ -103,6 +105,14 @@ class Execution : public ValueSource {
   double dwell_seconds() const;
   void emit_spindle(SpindleMode mode);
 
+  // --- warnings (capability.cpp) ---
+  /// A column of the block that is executed.
+  Written written(int column) const noexcept;
+  /// Tells of a place once.
+  void warn(Written& place, Fault fault, std::vector<std::string> arguments);
+  /// A dwell of TMR that is asked for at `word` while TMR is 0.
+  void check_dwell(const Word& word);
+
   // --- frames ---
   /// After a change of the frame: the machine stands still, its programmed coordinates are new.
   void frame_changed();
@@ -136,6 +146,7 @@ class Execution : public ValueSource {
   void finish(bool rewind);
   Step stop_with(const ProgramError& error);
   text::Finding finding(const ProgramError& error) const;
+  int column_of(int axis) const noexcept { return program::column_of(block_, axis); }
   const Source& source() const { return *sources_[static_cast<std::size_t>(state_.flow.file)]; }
   bool leave_part_or_file();
 
@@ -164,8 +175,6 @@ class Execution : public ValueSource {
 
   // capability.cpp
   void learn_machine();
-  Written written(int column) const noexcept;
-  void warn(Written& place, Fault fault, std::vector<std::string> arguments);
   void check_tool(int column);
   void check_speed(const Word& word);
   void check_turning(const Feed& feed);

@@ -16,7 +16,10 @@ bool Execution::leave_part_or_file() {
     return true;
   }
   if (flow.line < source().lines() || flow.calls.empty()) return false;
-  if (flow.loops.size() > flow.calls.back().loops) fail(Fault::repeat_without_end, 0);
+  if (flow.loops.size() > flow.calls.back().loops) {
+    line_ = flow.loops.back().first;
+    fail(Fault::repeat_without_end, column_at(flow.file, line_number(), -1));
+  }
   flow.file = flow.calls.back().file;
   flow.line = flow.calls.back().back;
   flow.calls.pop_back();
@@ -69,9 +72,10 @@ void Execution::call(std::string_view name, int column) {
       std::find_if(sources_.begin() + 1, sources_.end(), [&](const auto& s) { return s->name() == name; });
   const auto index = static_cast<std::size_t>(known - sources_.begin());
   if (known == sources_.end()) {
-    auto text = loader_ ? loader_(name) : std::nullopt;
-    if (!text) fail(Fault::program_missing, column, {std::string(name)});
-    sources_.push_back(std::make_shared<const Source>(std::string(name), std::move(*text)));
+    auto loaded = loader_ ? loader_(name) : std::nullopt;
+    if (!loaded) fail(Fault::program_missing, column, {std::string(name)});
+    sources_.push_back(
+        std::make_shared<const Source>(std::string(name), std::move(loaded->text), std::move(loaded->path)));
     files_.emplace_back(name);
   }
   flow.calls.push_back({flow.file, flow.line, flow.loops.size()});

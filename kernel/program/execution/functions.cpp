@@ -91,7 +91,10 @@ void Execution::emit_spindle(SpindleMode mode) {
 /// Dwell, then the M functions of the class "end of motion" in the order written; what stops or ends the
 /// program last.
 void Execution::after_motion(const BlockWords& words) {
-  if (words.dwell) dwell(dwell_seconds());
+  if (words.dwell) {
+    check_dwell(*words.dwell_word);
+    dwell(dwell_seconds());
+  }
   int last = -1;
   for (int i = 0; i < words.m_count; ++i) {
     const int code = words.m_code[static_cast<std::size_t>(i)];

@@ -63,10 +63,7 @@ Position Execution::target_of(const BlockWords& words) {
   if (words.machine_zero)
     for (int a = 0; a < axis_count(); ++a) programmed[at(a)] = frame.to_programmed(to, a);
   for (int a = 0; a < axis_count(); ++a)
-    if (words.axis[at(a)] != nullptr || turned)
-      check_axis(
-          a, to[at(a)],
-          words.axis[at(a)] != nullptr ? words.axis[at(a)]->column : static_cast<int>(block_.body) + 1);
+    if (words.axis[at(a)] != nullptr || turned) check_axis(a, to[at(a)], column_of(a));
   return to;
 }
 
@@ -99,7 +96,7 @@ void Execution::go(int axis, double programmed, bool at_rapid) {
   for (const int a : {axis, state_.modes.axis1, state_.modes.axis2}) {
     if (a != axis && (state_.frame.separate(a) || state_.frame.separate(axis))) continue;
     to[at(a)] = state_.frame.to_machine(state_.programmed, a);
-    check_axis(a, to[at(a)], static_cast<int>(block_.body) + 1);
+    check_axis(a, to[at(a)], column_of(a));
   }
   if (at_rapid) {
     rapid(to);
@@ -185,8 +182,8 @@ void Execution::arc(const BlockWords& words, const Position& to) {
   const double turns = helix_turns(words, to, arc.sweep_deg, r1);
   arc.sweep_deg += arc.sweep_deg < 0.0 ? -360.0 * turns : 360.0 * turns;
   const Box box = extent(start, end, centre, arc.sweep_deg);
-  for (const double x : {box.low.x, box.high.x}) check_axis(a1, x, here);
-  for (const double y : {box.low.y, box.high.y}) check_axis(a2, y, here);
+  for (const double x : {box.low.x, box.high.x}) check_axis(a1, x, column_of(a1));
+  for (const double y : {box.low.y, box.high.y}) check_axis(a2, y, column_of(a2));
   arc.feed = feed_of(words, helix_length(arc, r1), false);
   arc.corner = corner_of(words);
   check_arc_feed(words, arc, r1);

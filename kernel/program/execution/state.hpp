@@ -55,6 +55,14 @@ struct Flow {
   bool barrier = false;  ///< the next block is read only after the motion before it
 };
 
+/// Where a modal word was written that the control may have to speak of later.
+struct Written {
+  int file = 0;
+  int line = 0;  ///< 0: nowhere, it is a power-on value
+  int column = 0;
+  bool told = false;  ///< its warning has been given
+};
+
 /// A canned cycle in force. Lengths in programmed coordinates, mm.
 struct Cycle {
   int number = 0;  ///< G word, 0: none
@@ -65,15 +73,8 @@ struct Cycle {
   double step = 0.0;           ///< I of G83, > 0
   double factor = 0.0;         ///< K of G83, 0: chips are broken, not removed
   double min_step = 0.0;       ///< J of G83
+  Written levels_at;           ///< the word that gave the levels in force
   bool spindle_rests = false;  ///< stopped at the bottom of a hole, to start again before the next one
-};
-
-/// Where a modal word was written that the control may have to speak of later.
-struct Written {
-  int file = 0;
-  int line = 0;  ///< 0: nowhere, it is a power-on value
-  int column = 0;
-  bool told = false;  ///< its warning has been given
 };
 
 /// Everything of an interpreter that changes while a program runs; a plain value.

@@ -90,6 +90,7 @@ BlockWords Execution::gather() {
         }
         take_g(words, *rule);
         if (rule->function == Function::cycle) words.cycle_word = &word;
+        if (rule->function == Function::dwell) words.dwell_word = &word;
         break;
       }
       case Meaning::m: {

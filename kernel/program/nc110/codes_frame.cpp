@@ -22,11 +22,26 @@ int origin_number(const Execution& run, const Operands& operands) {
   return static_cast<int>(number);
 }
 
+/// "0, 1, 5": origin 0 is always there.
+std::string numbers(const std::map<int, std::map<std::string, double>>& origins) {
+  std::string out = "0";
+  for (const auto& [number, row] : origins)
+    if (number != 0) out += ", " + std::to_string(number);
+  return out;
+}
+
+std::string letters(const std::map<std::string, double>& row) {
+  std::string out;
+  for (const auto& [axis, value] : row) out += (out.empty() ? "" : ", ") + axis;
+  return out.empty() ? text::both("no axis", "ни одной оси") : out;
+}
+
 /// The row of an origin; origin 0 is machine zero where the table has none. nullptr: machine zero.
 const std::map<std::string, double>* origin_row(const Execution& run, int number, int column) {
-  const auto row = run.state().tables->origins.find(number);
-  if (row != run.state().tables->origins.end()) return &row->second;
-  if (number != 0) fail(Fault::origin_missing, column, {std::to_string(number)});
+  const auto& origins = run.state().tables->origins;
+  const auto row = origins.find(number);
+  if (row != origins.end()) return &row->second;
+  if (number != 0) fail(Fault::origin_missing, column, {std::to_string(number), numbers(origins)});
   return nullptr;
 }
 
@@ -37,7 +52,7 @@ void use_origin(Execution& run, int number, const std::map<std::string, double>*
     if (entry != row->end())
       value = entry->second;
     else if (number != 0)
-      fail(Fault::origin_without_axis, column, {std::to_string(number), letter(run, axis)});
+      fail(Fault::origin_without_axis, column, {std::to_string(number), letter(run, axis), letters(*row)});
   }
   run.state().frame.set_origin(axis, value);
   run.state().origin[at(axis)] = static_cast<std::int16_t>(number);
@@ -105,12 +120,17 @@ void scf(Execution& run, const Operands& operands) {
   run.frame_changed();
 }
 
-/// Changes the table, and the origin in force where it is this one; no scale (specification B 4.7).
+/// Changes the table, and the origin in force where it is this one; no scale. The table's records limit the
+/// numbers (specification B 4.7).
 void rqo(Execution& run, const Operands& operands) {
   const int number = origin_number(run, operands);
+  const auto* row = origin_row(run, number, operands.items[0].value.column);
   auto tables = std::make_shared<Tables>(*run.state().tables);
   for (std::size_t i = 1; i < operands.count; ++i) {
     const Operand& item = operands.items[i];
+    if (number != 0 && !has(row, letter(run, item.axis)))
+      fail(Fault::origin_without_axis, static_cast<int>(item.begin) + 1,
+           {std::to_string(number), letter(run, item.axis), letters(*row)});
     const double value = run.length(item.axis, item.value, false);
     tables->origins[number][letter(run, item.axis)] += value;
     Frame& frame = run.state().frame;

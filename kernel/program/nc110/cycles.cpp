@@ -43,7 +43,24 @@ int cycle_axis(const Execution& run, const BlockWords& words) {
 void take_levels(const Execution& run, const BlockWords& words, Cycle& cycle) {
   if (words.radius != nullptr) cycle.approach = cycle.retreat = level(run, cycle.axis, *words.radius);
   if (words.radius2 != nullptr) cycle.retreat = level(run, cycle.axis, *words.radius2);
-  if (const Word* depth = words.axis[at(cycle.axis)]) cycle.depth = level(run, cycle.axis, *depth);
+  const Word* depth = words.axis[at(cycle.axis)];
+  if (depth != nullptr) cycle.depth = level(run, cycle.axis, *depth);
+  if (const Word* word = depth != nullptr ? depth : words.radius; word != nullptr)
+    cycle.levels_at = run.written(word->column);
+}
+
+/// Levels between which nothing is worked, or otherwise than people mean them; `from`: where the axis stands.
+void check_levels(Execution& run, Cycle& cycle, double from) {
+  const std::string number = std::to_string(cycle.number), depth = text::number(cycle.depth, 4),
+                    approach = text::number(cycle.approach, 4);
+  const double down = cycle.depth - cycle.approach;
+  if (down == 0.0)
+    run.warn(cycle.levels_at, Fault::cycle_no_depth, {number, depth, approach});
+  else if ((cycle.depth - from) * (cycle.approach - cycle.depth) > 0.0)
+    run.warn(cycle.levels_at, Fault::cycle_passes_depth, {number, depth, approach});
+  else if ((cycle.retreat - cycle.approach) * down > 0.0)
+    run.warn(cycle.levels_at, Fault::cycle_return_below,
+             {number, depth, text::number(cycle.retreat, 4), approach});
 }
 
 void take_pecks(const Execution& run, const BlockWords& words, Cycle& cycle) {
@@ -81,6 +98,7 @@ void define(Execution& run, const BlockWords& words) {
   cycle.approach = cycle.retreat = state.programmed[at(cycle.axis)];
   take_levels(run, words, cycle);
   take_pecks(run, words, cycle);
+  if (cycle.number == 82 || cycle.number == 89) run.check_dwell(*words.cycle_word);
   state.cycle = cycle;
 }
 
@@ -93,7 +111,7 @@ void dwell(Execution& run) {
 void break_chips(Execution& run, const Cycle& cycle, double sign) {
   double bottom = cycle.approach;
   for (int pecks = 0; bottom != cycle.depth; ++pecks) {
-    if (pecks == kMaxPecks) fail(Fault::cycle_pecks, 1, {std::to_string(kMaxPecks)});
+    if (pecks == kMaxPecks) fail(Fault::cycle_pecks, 0, {std::to_string(kMaxPecks)});
     bottom += sign * cycle.step;
     if ((bottom - cycle.depth) * sign > -1e-9) bottom = cycle.depth;
     run.go(cycle.axis, bottom, false);
@@ -106,8 +124,8 @@ void break_chips(Execution& run, const Cycle& cycle, double sign) {
 void remove_chips(Execution& run, const Cycle& cycle, double sign) {
   double from = cycle.approach, step = cycle.step;
   for (int pecks = 0;; ++pecks) {
-    if (pecks == kMaxPecks) fail(Fault::cycle_pecks, 1, {std::to_string(kMaxPecks)});
-    if (step <= kClearance) fail(Fault::cycle_step, 1, {text::number(step, 4), text::number(kClearance)});
+    if (pecks == kMaxPecks) fail(Fault::cycle_pecks, 0, {std::to_string(kMaxPecks)});
+    if (step <= kClearance) fail(Fault::cycle_step, 0, {text::number(step, 4), text::number(kClearance)});
     double bottom = from + sign * step;
     const bool last = (bottom - cycle.depth) * sign > -1e-9;
     if (last) bottom = cycle.depth;
@@ -164,6 +182,7 @@ void cycle(Execution& run, const BlockWords& words) {
   }
   run.position(words, active.axis);
   take_levels(run, words, active);
+  check_levels(run, active, run.state().programmed[at(active.axis)]);
   run.go(active.axis, active.approach, true);
   if (active.spindle_rests) run.emit_spindle(run.state().spindle);
   active.spindle_rests = false;

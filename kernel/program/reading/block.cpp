@@ -74,6 +74,7 @@ void read_prefix(const Dialect& dialect, std::string_view line, Block& block) {
     } else if (its_rank == 2) {
       pos = block.label_end = read_label(dialect, line, pos);
     } else if (its_rank == 3) {
+      block.number_column = static_cast<std::uint16_t>(column(pos));
       block.number = read_number(line, pos);
     } else {
       block.sync = c == dialect.lexis.request_sync ? Sync::request : Sync::cancel;
@@ -320,6 +321,13 @@ const Word* Block::find(Meaning meaning) const noexcept {
   for (std::size_t i = 0; i < count; ++i)
     if (words[i].meaning == meaning) return &words[i];
   return nullptr;
+}
+
+int column_of(const Block& block, int axis) noexcept {
+  if (axis >= 0 && block.kind == BlockKind::words)
+    for (std::size_t i = 0; i < block.count; ++i)
+      if (block.words[i].axis == axis) return block.words[i].column;
+  return column(block.body);
 }
 
 std::string word_text(const Block& block, const Word& word) {

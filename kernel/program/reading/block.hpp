@@ -55,7 +55,8 @@ struct Block {
   Sync sync = Sync::standard;
   bool skip = false;  ///< `/` stands in front
   bool trailing_comment = false;
-  std::int32_t number = -1;   ///< N
+  std::int32_t number = -1;  ///< N
+  std::uint16_t number_column = 0;
   std::size_t label_end = 0;  ///< offset behind the label, 0: no label
   std::size_t body = 0;       ///< offset of what follows the prefix
   std::size_t end = 0;        ///< offset of a trailing comment, or the length of the line
@@ -73,6 +74,9 @@ void read_block(const Dialect& dialect, const AxisLetters& axes, std::string_vie
 
 /// Reads a sign and a number or a parameter at `pos` and moves `pos` behind it. `word` names it in messages.
 Value read_value(std::string_view line, std::size_t& pos, std::string_view word);
+
+/// Column of the first word of an axis, or of what follows the prefix when there is none (axis -1: always).
+int column_of(const Block& block, int axis) noexcept;
 
 /// How a word reads in messages: its letter and number as written.
 std::string word_text(const Block& block, const Word& word);

@@ -33,15 +33,16 @@ class FileReader {
     }
     for (const auto& twice : source_.duplicates()) {
       line_ = static_cast<int>(twice.line) + 1;
-      add(text::Severity::warning,
-          {Fault::label_twice, 0, {std::string(twice.label), std::to_string(twice.first + 1)}});
+      add(text::Severity::warning, {Fault::label_twice,
+                                    static_cast<int>(twice.label.data() - source_.line(twice.line).data()),
+                                    {std::string(twice.label), std::to_string(twice.first + 1)}});
     }
     for (const Count& count : counts_)
       if (count.found > kMostFindings)
         out_.push_back({text::Severity::warning,
-                        source_.name(),
+                        source_.path(),
                         count.line,
-                        0,
+                        count.column,
                         &entry(Fault::findings_many),
                         {std::to_string(count.found - kMostFindings),
                          &count == &counts_[0] ? text::both("errors", "ошибок")
@@ -55,9 +56,9 @@ class FileReader {
  private:
   void add(text::Severity severity, const ProgramError& error) {
     Count& count = counts_[severity == text::Severity::error ? 0 : 1];
-    if (++count.found == kMostFindings + 1) count.line = line_;
+    if (++count.found == kMostFindings + 1) count.line = line_, count.column = error.column;
     if (count.found > kMostFindings) return;
-    out_.push_back({severity, source_.name(), line_, error.column, &entry(error.fault), error.arguments});
+    out_.push_back({severity, source_.path(), line_, error.column, &entry(error.fault), error.arguments});
   }
 
   void read_line(std::uint32_t index) {
@@ -65,7 +66,7 @@ class FileReader {
     if (block_.number >= 0 && std::to_string(block_.number).size() > run_.dialect().max_block_number_digits)
       add(text::Severity::warning,
           {Fault::block_number_long,
-           0,
+           block_.number_column,
            {std::to_string(block_.number), std::to_string(run_.dialect().max_block_number_digits)}});
     if (block_.trailing_comment && block_.kind != BlockKind::empty)
       add(text::Severity::warning,
@@ -148,7 +149,7 @@ class FileReader {
 
   struct Count {
     long long found = 0;
-    int line = 0;  ///< of the first that is not named
+    int line = 0, column = 0;  ///< of the first that is not named
   };
 
   const Execution& run_;
@@ -173,9 +174,9 @@ std::vector<text::Finding> find_all(const Execution& run) {
     const std::string name = open.back();
     open.pop_back();
     if (!done.insert(name).second) continue;
-    const auto text = run.loader() ? run.loader()(name) : std::nullopt;
-    if (!text) continue;
-    const Source source(name, *text);
+    const auto loaded = run.loader() ? run.loader()(name) : std::nullopt;
+    if (!loaded) continue;
+    const Source source(name, loaded->text, loaded->path);
     FileReader reader(run, source, out);
     reader.read();
     open.insert(open.end(), reader.called().begin(), reader.called().end());

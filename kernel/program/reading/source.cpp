@@ -7,7 +7,8 @@
 
 namespace servogate::program {
 
-Source::Source(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)) {
+Source::Source(std::string name, std::string text, std::string path)
+    : name_(std::move(name)), path_(path.empty() ? name_ : std::move(path)), text_(std::move(text)) {
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
   starts_.reserve(text_.size() / 24 + 2);
   starts_.push_back(0);

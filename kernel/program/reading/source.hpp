@@ -14,11 +14,13 @@ class Source {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-  Source(std::string name, std::string text);
+  /// `path`: where people find the file, for findings; empty: its name.
+  Source(std::string name, std::string text, std::string path = {});
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
   const std::string& name() const noexcept { return name_; }
+  const std::string& path() const noexcept { return path_; }
   std::uint32_t lines() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
   /// One line without its line end.
   std::string_view line(std::uint32_t index) const noexcept;
@@ -30,7 +32,7 @@ class Source {
   /// Line of the ERP that belongs to the RPT of a line and the reverse, kNone where the partner is missing.
   std::uint32_t repeat_partner(std::uint32_t line) const;
 
-  /// A label that stands a second time.
+  /// A label that stands a second time; `label` points into its line.
   struct Duplicate {
     std::uint32_t line;
     std::uint32_t first;
@@ -42,6 +44,7 @@ class Source {
   void index_line(std::uint32_t index, std::vector<std::uint32_t>& open);
 
   std::string name_;
+  std::string path_;
   std::string text_;
   std::vector<std::uint32_t> starts_;
   std::unordered_map<std::string_view, std::uint32_t> labels_;
