@@ -6,6 +6,7 @@
 #include "plc/code/generator.hpp"
 #include "plc/front_end.hpp"
 #include "plc/ladder/drawing.hpp"
+#include "plc/library/motion_blocks.hpp"
 #include "plc/library/standard_blocks.hpp"
 #include "plc/plcopen/plcopen.hpp"
 #include "plc/sema/analyzer.hpp"
@@ -33,7 +34,7 @@ std::optional<ir::Program> analyze(const std::vector<SourceFile>& files,
   if (report.failed()) report.no_warnings();
   const auto library = static_cast<int>(files.size());
   report.hide(library);
-  syntax::parse_st(library::standard_blocks(), library, source, report);
+  syntax::parse_st(library::standard_blocks() + library::motion_blocks(), library, source, report);
   ir::Program program = sema::Analyzer(source, symbols, options, library, report).run();
   if (report.failed()) return std::nullopt;
   return program;

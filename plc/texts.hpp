@@ -63,9 +63,9 @@ inline constexpr Entry kAddressRange{"plc-address-range", "{0} lies outside its 
 inline constexpr Entry kAddressType{"plc-address-type", "{0} holds {1}, not {2}", "{0} хранит {1}, а не {2}"};
 inline constexpr Entry kAddressOverlap{"plc-overlap", "{0} shares memory with {1} of '{2}' in line {3}",
                                        "{0} занимает ту же память, что {1} переменной '{2}' в строке {3}"};
-inline constexpr Entry kSymbolOverlap{"plc-overlap-symbol",
-                                      "{0} shares memory with '{1}' of the machine ({2}); use that name",
-                                      "{0} занимает ту же память, что «{1}» станка ({2}); используйте это имя"};
+inline constexpr Entry kSymbolOverlap{
+    "plc-overlap-symbol", "{0} shares memory with '{1}' of the machine ({2}); use that name",
+    "{0} занимает ту же память, что «{1}» станка ({2}); используйте это имя"};
 inline constexpr Entry kAddressSection{"plc-address-section",
                                        "only VAR and VAR_GLOBAL can stand AT an address",
                                        "AT возможно только в VAR и VAR_GLOBAL"};
@@ -125,6 +125,12 @@ inline constexpr Entry kXmlNoElement{"plc-xml-element", "there is no element wit
 // Names and types in statements.
 inline constexpr Entry kUnknownName{"plc-unknown-name", "there is no variable '{0}'{1}",
                                     "переменной '{0}' нет{1}"};
+inline constexpr Entry kNotAuxiliary{
+    "plc-not-auxiliary",
+    "'{0}' is an axis of the programs: blocks move those that are `auxiliary` in "
+    "the machine file",
+    "«{0}» — ось программ: блоки перемещают оси, которые в файле станка "
+    "`auxiliary`"};
 inline constexpr Entry kUnknownCall{"plc-unknown-call", "there is no function or instance '{0}'{1}",
                                     "функции или экземпляра '{0}' нет{1}"};
 inline constexpr Entry kNotCallable{"plc-not-callable", "'{0}' is {1} and cannot be called",

@@ -59,6 +59,14 @@ std::string interface_page() {
             ", the second at " + at_byte(spindle_base(1)) + ".",
         kSpindleFields);
   table(out, "Machine", "MC.", "Begins at byte " + at_byte(kMachineBase) + ".", kMachineFields);
+  table(out, "Auxiliary axes", "U.",
+        "Only of axes with `auxiliary = true` in the machine file: what the `MC_` blocks ([plc.md](plc.md)) "
+        "and "
+        "the control say to one another; programs use the blocks. Axis n in the order of the machine file "
+        "begins "
+        "at byte " +
+            at_byte(motion_base(0)) + " + " + at_byte(kMotionBlock) + " (n - 1).",
+        kMotionFields);
   out +=
       "\n## Handshake of M, S, T and H\n\nThe NC puts the code into its place and raises the strobe. The PLC "
       "sets the "
@@ -72,11 +80,14 @@ std::string interface_page() {
 }
 
 std::vector<Symbol> interface_symbols(int processes, const std::vector<std::string>& axis_letters,
-                                      int spindles) {
+                                      int spindles, std::uint32_t auxiliary) {
   std::vector<Symbol> out;
   for (int p = 0; p < processes; ++p) add(out, numbered("NC", p), kProcessFields, process_base(p));
   for (std::size_t a = 0; a < axis_letters.size(); ++a)
     add(out, axis_letters[a], kAxisFields, axis_base(static_cast<int>(a)));
+  for (std::size_t a = 0; a < axis_letters.size(); ++a)
+    if ((auxiliary >> a & 1u) != 0)
+      add(out, axis_letters[a], kMotionFields, motion_base(static_cast<int>(a)));
   for (int s = 0; s < spindles; ++s) add(out, numbered("S", s), kSpindleFields, spindle_base(s));
   add(out, "MC", kMachineFields, kMachineBase);
   return out;

@@ -36,6 +36,12 @@ inline constexpr std::uint32_t spindle_base(int spindle) {
 }
 inline constexpr std::uint32_t kMachineBase =
     kInterfaceBase + kProcessBlock * 5 + kAxisBlock * 16 + kSpindleBlock * 2;
+/// Orders of the PLC to its auxiliary axes lie above the default size of K: only a machine that has such an
+/// axis needs a larger packet.
+inline constexpr std::uint32_t kMotionBlock = 64;
+inline constexpr std::uint32_t motion_base(int axis) {
+  return kPacketKDefaultSize + kMotionBlock * static_cast<std::uint32_t>(axis);
+}
 
 /// One row of the interface: byte offset inside its block, bit (BL only), format, writer, meaning.
 struct InterfaceField {
@@ -126,11 +132,37 @@ inline constexpr InterfaceField kMachineFields[] = {
     {"estop_ok", 4, 0, Format::bl, Writer::plc, "TRUE: the emergency-stop chain is closed; FALSE: power off"},
     {"power_on", 4, 1, Format::bl, Writer::plc, "TRUE permits drive power"},
 };
+/// Of an auxiliary axis: what the MC_ blocks of the PLC and the kernel say to one another. The blocks see it
+/// as a structure AXIS_REF, which lies in memory as it lies here.
+inline constexpr InterfaceField kMotionFields[] = {
+    {"mc_taken", 0, 0, Format::li, Writer::nc, "number of the last order that was decided on"},
+    {"mc_active", 4, 0, Format::li, Writer::nc, "number of the order in force, 0: none"},
+    {"mc_refusal", 8, 0, Format::in, Writer::nc, "why the last order was refused, 0: accepted"},
+    {"mc_error", 10, 0, Format::in, Writer::nc, "number of the alarm that stopped the axis, 0: none"},
+    {"mc_state", 12, 0, Format::by, Writer::nc,
+     "0 no axis, 1 disabled, 2 standstill, 3 homing, 4 discrete motion, 5 continuous motion, 6 stopping, "
+     "7 stopped by an error"},
+    {"mc_result", 13, 0, Format::by, Writer::nc,
+     "of the order in force: 0 under way, 1 done (at speed), 2 aborted, 3 error"},
+    {"mc_powered", 14, 0, Format::by, Writer::nc, "1: the drive holds the axis, and it may move"},
+    {"mc_power_refusal", 16, 0, Format::in, Writer::nc, "why mc_power was refused or fell, 0: it was not"},
+    {"mc_position", 24, 0, Format::lr, Writer::nc, "measured position, machine coordinates, mm or degrees"},
+    {"mc_order_number", 32, 0, Format::li, Writer::plc, "another number: a new order"},
+    {"mc_order", 36, 0, Format::by, Writer::plc,
+     "0 none (stops), 1 home, 2 to a position, 3 by a distance, 4 at a speed, 5 stop, 6 end of the stop, 7 "
+     "reset"},
+    {"mc_power", 37, 0, Format::by, Writer::plc,
+     "1: drive power is wanted; it comes on with the rising edge"},
+    {"mc_target", 40, 0, Format::lr, Writer::plc, "position, distance (mm or degrees) or direction (sign)"},
+    {"mc_velocity", 48, 0, Format::lr, Writer::plc, "speed, mm/s or degrees/s, above 0"},
+    {"mc_acceleration", 56, 0, Format::lr, Writer::plc, "mm/s2 or degrees/s2; 0: the axis' limit"},
+};
 
 /// All symbols of the interface for a machine: `NC.` (process 1), `NC2.` ... , `<letter>.` per axis, `S.` and
-/// `S2.` per spindle, `MC.` for the machine. Not real-time safe.
+/// `S2.` per spindle, `MC.` for the machine. `auxiliary`: the axes that the PLC moves, as bits. Not real-time
+/// safe.
 std::vector<Symbol> interface_symbols(int processes, const std::vector<std::string>& axis_letters,
-                                      int spindles);
+                                      int spindles, std::uint32_t auxiliary = 0);
 
 /// The page docs/interface.md: every place of the interface with its meaning. Not real-time safe.
 std::string interface_page();

@@ -30,6 +30,14 @@ enum class RequestKind : std::uint8_t {
   force,
   release_force,
   logic,  ///< index = number of a prepared change of the PLC; value 1: it may happen while the machine moves
+  // Of an auxiliary axis, for the PLC alone:
+  axis_power,     ///< axis, value 1: drive on, 0: off
+  axis_home,      ///< axis
+  move_absolute,  ///< axis, value = machine position, velocity, acceleration
+  move_relative,  ///< axis, value = distance from the target in force, velocity, acceleration
+  move_velocity,  ///< axis, value = +1 or -1, velocity, acceleration
+  axis_stop,      ///< axis
+  axis_reset,     ///< axis: its alarms, as far as their causes are gone
 };
 
 /// A wish from outside, posted to the cycle through one bounded queue. Plain data.
@@ -45,6 +53,8 @@ struct Request {
   std::uint8_t packet = 0, format = 0, length = 1;  ///< image::Place of set_place and force
   std::uint32_t index = 0;
   double value = 0.0;
+  double velocity = 0.0;      ///< of moves: mm/s or degrees/s, above 0
+  double acceleration = 0.0;  ///< of moves; 0: the axis' limit
 };
 
 /// The gate's answer. `refusal` is 0 when accepted, otherwise a key of the gate's table of sentences

@@ -154,6 +154,7 @@ OperatorScript::Wishes Run::wishes() const {
   w.wait_for_start = !loaded_.machine.nothing_real() && !options_.start_now;
   w.patience_s = patience();
   w.letters = loaded_.machine.letters();
+  w.letters.resize(loaded_.machine.program_axes());
   for (const machine::AxisConfig& a : loaded_.machine.axes)
     w.needs_homing.push_back(a.home.method != machine::HomingMethod::none);
   return w;

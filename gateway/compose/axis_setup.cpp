@@ -127,6 +127,7 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
   axis::AxisConfig c;
   c.letter = a.letter;
   c.rotary = a.type == machine::AxisType::rotary;
+  c.auxiliary = a.auxiliary;
   exact_ratio(a.counts_per_rev, a.gear[0], a.gear[1], a.lead, c.counts_numerator, c.counts_denominator);
   c.count_direction = sign(a.direction);
   c.limits = {a.max_velocity, a.max_acceleration, a.max_jerk};
@@ -197,7 +198,7 @@ channel::ProcessConfig process_config(const machine::MachineConfig& m, int index
   channel::ProcessConfig c;
   c.index = index;
   c.path.period_s = m.control.cycle_time;
-  c.path.axis_count = std::min<int>(static_cast<int>(m.axes.size()), path::kMaxAxes);
+  c.path.axis_count = std::min<int>(static_cast<int>(m.program_axes()), path::kMaxAxes);
   for (int i = 0; i < c.path.axis_count; ++i) {
     const machine::AxisConfig& a = m.axes[static_cast<std::size_t>(i)];
     c.axes.machine.push_back(i);

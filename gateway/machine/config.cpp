@@ -63,9 +63,21 @@ std::vector<std::string> MachineConfig::letters() const {
   return out;
 }
 
+std::size_t MachineConfig::program_axes() const {
+  return static_cast<std::size_t>(
+      std::count_if(axes.begin(), axes.end(), [](const AxisConfig& a) { return !a.auxiliary; }));
+}
+
+std::uint32_t MachineConfig::auxiliary_axes() const {
+  std::uint32_t bits = 0;
+  for (std::size_t a = 0; a < axes.size() && a < image::kMaxAxes; ++a)
+    if (axes[a].auxiliary) bits |= std::uint32_t{1} << a;
+  return bits;
+}
+
 std::vector<image::Symbol> MachineConfig::symbol_table() const {
-  std::vector<image::Symbol> out =
-      image::interface_symbols(control.processes, letters(), static_cast<int>(spindles.size()));
+  std::vector<image::Symbol> out = image::interface_symbols(
+      control.processes, letters(), static_cast<int>(spindles.size()), auxiliary_axes());
   for (const StationConfig& s : stations)
     for (const PointConfig& p : s.points) out.push_back({p.name, p.place, p.writer, p.comment});
   for (const SymbolConfig& s : symbols) out.push_back({s.name, s.place, s.writer, s.comment});

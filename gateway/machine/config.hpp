@@ -72,8 +72,9 @@ struct AxisConfig {
   std::string letter;  ///< "X", one of A-Z
   std::string name;    ///< for people
   AxisType type = AxisType::linear;
-  bool diameter = false;  ///< programs and displays show twice the machine coordinate
-  std::string drive;      ///< "bus.node"
+  bool diameter = false;   ///< programs and displays show twice the machine coordinate
+  bool auxiliary = false;  ///< the PLC moves it, no program and nobody by hand
+  std::string drive;       ///< "bus.node"
 
   double lead = 0.0;                          ///< mm (degrees) per turn of the screw (output of the gear)
   std::array<std::int64_t, 2> gear = {1, 1};  ///< motor turns : screw turns, exact
@@ -360,6 +361,10 @@ struct MachineConfig {
   bool virtual_time() const;
   /// Letters in axis order.
   std::vector<std::string> letters() const;
+  /// Axes that programs move; the auxiliary ones stand behind them.
+  std::size_t program_axes() const;
+  /// The auxiliary axes as bits.
+  std::uint32_t auxiliary_axes() const;
   /// Every name the PLC, the part program and the operator can use: points, free symbols, interface of packet
   /// K.
   std::vector<image::Symbol> symbol_table() const;

@@ -81,8 +81,7 @@ void OperatorScript::poll(const ProcessImage& image) {
     send(RequestKind::quick_stop);
   }
   bool standing = true;
-  for (int a = 0; a < image.axis_count; ++a)
-    standing = standing && !image.axes[static_cast<std::size_t>(a)].moving;
+  for (std::size_t a = 0; a < wishes_.letters.size(); ++a) standing = standing && !image.axes[a].moving;
   if (outcome_ != Outcome::under_way && stage_ < Stage::power_off) {
     const ProcessState state = image.processes[0].state;
     const bool busy =
@@ -93,9 +92,8 @@ void OperatorScript::poll(const ProcessImage& image) {
   if (refusal_.refusal != 0 && stage_ < Stage::running) return power_down(Outcome::refused, image);
   const auto missing = [&](auto&& good) {
     waiting_for_.clear();
-    for (int a = 0; a < image.axis_count; ++a)
-      if (!good(image.axes[static_cast<std::size_t>(a)], static_cast<std::size_t>(a)))
-        waiting_for_.push_back(wishes_.letters[static_cast<std::size_t>(a)]);
+    for (std::size_t a = 0; a < wishes_.letters.size(); ++a)
+      if (!good(image.axes[a], a)) waiting_for_.push_back(wishes_.letters[a]);
     return !waiting_for_.empty();
   };
   if (last_refusal_.refusal != 0 && !asked_ && in_stage(image) > kRestPatience_s) {

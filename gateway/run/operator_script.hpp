@@ -21,9 +21,9 @@ class OperatorScript {
   struct Wishes {
     bool program = true;  ///< false: only drives on and homing
     double override_ratio = 1.0;
-    bool wait_for_start = false;  ///< loads and waits for somebody else's start
-    double patience_s = 0.0;      ///< machine time that a program may wait for somebody; 0: for ever
-    std::vector<std::string> letters;
+    bool wait_for_start = false;       ///< loads and waits for somebody else's start
+    double patience_s = 0.0;           ///< machine time that a program may wait for somebody; 0: for ever
+    std::vector<std::string> letters;  ///< of the axes that programs move; auxiliary ones are the PLC's
     std::vector<bool> needs_homing;
   };
   using Post = std::function<bool(const image::Request&)>;

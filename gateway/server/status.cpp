@@ -137,6 +137,7 @@ std::string status_json(Resident& resident, text::Language language) {
     status["axes"].push_back({{"letter", m.axes[n].letter},
                               {"unit", m.axes[n].type == machine::AxisType::rotary ? "deg" : "mm"},
                               {"diameter", m.axes[n].diameter},
+                              {"auxiliary", m.axes[n].auxiliary},
                               {"command", a.command * shown},
                               {"position", a.actual * shown},
                               {"following_error", a.following_error},

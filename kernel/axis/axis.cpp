@@ -138,6 +138,7 @@ void Axis::advance_own(double dt, image::Nanoseconds now) noexcept {
   if (homing_.drive_leads()) return follow_drive();
   set_ = ramp_.step(dt);
   if (!ramp_.done() || homing_.active()) return;
+  if (manual_ == Manual::plc && !feed_enable_) return;  // held on its way
   set_.v = set_.a = 0.0;
   own_motion_ = false;
   manual_ = Manual::rest;
@@ -174,6 +175,7 @@ void Axis::check_index_place() noexcept {
 }
 
 void Axis::advance_manual(image::Nanoseconds now) noexcept {
+  if (manual_ == Manual::plc) return advance_plc();
   const auto silence_ns = static_cast<double>(now - keep_alive_ns_);
   const bool silent = manual_ == Manual::continuous && silence_ns >= config_.keep_alive_s * 1e9;
   if (!feed_enable_ || silent) return jog_stop();
@@ -185,6 +187,15 @@ void Axis::advance_manual(image::Nanoseconds now) noexcept {
         lim);
   else
     ramp_.move_at(jog_direction_ * lim.velocity, lim);
+}
+
+void Axis::advance_plc() noexcept {
+  if (!feed_enable_)
+    ramp_.stop(config_.limits);
+  else if (goal_endless_)
+    ramp_.move_at(goal_, goal_limits_);
+  else
+    ramp_.move_to(goal_, goal_limits_);
 }
 
 /// Ends whatever motion there is, at the axis' own limits.

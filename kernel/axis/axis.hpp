@@ -61,6 +61,7 @@ class Axis {
   /// itself when the drive lets go, and with the reactions quick stop and power off: nothing comes on again
   /// unasked.
   void request_power(bool on) noexcept { power_requested_ = on; }
+  bool power_requested() const noexcept { return power_requested_; }
   /// Moves on by `distance` from the target in force, at jog speed; clipped at the software limits.
   bool jog_increment(double distance) noexcept;
   /// Runs in `direction` (+1, -1) until jog_stop, a limit, or the keep-alive fails; `now` = time of the
@@ -70,6 +71,16 @@ class Axis {
   void jog_stop() noexcept;
   /// Moves to a machine position at `velocity` (at most the limit), for manual, PLC or bench owners.
   bool move_to(double position, double velocity) noexcept;
+  /// The PLC's motion of an auxiliary axis: to a machine position, with at most these limits. A motion of the
+  /// PLC under way passes over into it. While feed_enable is FALSE the axis stands on its way and then goes
+  /// on.
+  bool plc_move_to(double position, MotionLimits limits) noexcept;
+  /// The same in `direction` (+1, -1) at limits.velocity until it is stopped; a travel limit ends it.
+  bool plc_move_at(int direction, MotionLimits limits) noexcept;
+  /// Such a motion is under way, or held on its way.
+  bool plc_moves() const noexcept { return own_motion_ && manual_ == Manual::plc; }
+  /// Position, or speed with its sign, that the last one was to reach.
+  double plc_goal() const noexcept { return goal_; }
   /// Starts homing (method of the configuration); the axis becomes the homing's own until it ends.
   bool home() noexcept;
   /// Stops whatever this axis does by itself (jog, homing), at its limits.
@@ -112,7 +123,7 @@ class Axis {
   struct Sent {
     double command = 0.0, compensation = 0.0;
   };
-  enum class Manual : std::uint8_t { rest, increment, continuous, position };
+  enum class Manual : std::uint8_t { rest, increment, continuous, position, plc };
 
   // axis.cpp: the owner's set-point and the way to the drive
   void advance(double dt, image::Nanoseconds now) noexcept;
@@ -135,6 +146,8 @@ class Axis {
   double jog_speed() const noexcept;
   double clipped(double target) const noexcept;
   bool begin_own(image::AxisOwner owner) noexcept;
+  bool begin_plc(double goal, MotionLimits limits, bool endless) noexcept;
+  void advance_plc() noexcept;
   bool into_limit(double direction) const noexcept;
   HomingInputs homing_inputs(double dt) const noexcept;
   // axis_supervision.cpp: feedback, switches, limits
@@ -169,6 +182,9 @@ class Axis {
   image::Reaction reaction_ = image::Reaction::none;
   Manual manual_ = Manual::rest;
   int jog_direction_ = 0;
+  double goal_ = 0.0;          ///< of Manual::plc: position, or speed with its sign
+  bool goal_endless_ = false;  ///< it is a speed
+  MotionLimits goal_limits_;
   image::Nanoseconds keep_alive_ns_ = 0;
   bool power_requested_ = false;
   bool power_permitted_ = false;

@@ -79,6 +79,7 @@ struct DrivePlace {
 struct AxisConfig {
   std::string letter = "X";
   bool rotary = false;
+  bool auxiliary = false;                ///< the PLC moves it (magazine, chuck); no program, nobody by hand
   std::int64_t counts_numerator = 1000;  ///< exactly numerator / denominator counts make one mm or degree
   std::int64_t counts_denominator = 1;
   int count_direction = 1;  ///< -1: counts fall while the position rises

@@ -91,6 +91,35 @@ bool Axis::move_to(double position, double velocity) noexcept {
   return true;
 }
 
+/// A motion under way was laid to end inside the travel with the acceleration it has: less would pass by.
+bool Axis::begin_plc(double goal, MotionLimits limits, bool endless) noexcept {
+  const bool under_way = own_motion_ && manual_ == Manual::plc;
+  if (own_motion_ && owner_ == AxisOwner::plc && !under_way && moving_)
+    limits.acceleration = config_.limits.acceleration;  // it is being stopped
+  if (!begin_own(AxisOwner::plc)) return false;
+  if (under_way) limits.acceleration = std::max(limits.acceleration, goal_limits_.acceleration);
+  manual_ = Manual::plc;
+  goal_ = goal;
+  goal_endless_ = endless;
+  goal_limits_ = limits;
+  advance_plc();
+  return true;
+}
+
+bool Axis::plc_move_to(double position, MotionLimits limits) noexcept {
+  if (!std::isfinite(position) || clipped(position) != position || into_limit(position - set_.x))
+    return false;
+  return begin_plc(position, limits, false);
+}
+
+bool Axis::plc_move_at(int direction, MotionLimits limits) noexcept {
+  if (direction == 0 || into_limit(direction)) return false;
+  if (!homed_ || !config_.travel_limited) return begin_plc(direction * limits.velocity, limits, true);
+  return begin_plc(
+      direction > 0 ? std::max(config_.travel_max, set_.x) : std::min(config_.travel_min, set_.x), limits,
+      false);
+}
+
 HomingInputs Axis::homing_inputs(double dt) const noexcept {
   HomingInputs in;
   in.dt = dt;

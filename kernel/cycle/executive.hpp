@@ -15,6 +15,7 @@
 #include "kernel/cycle/gate/gate.hpp"
 #include "kernel/cycle/inputs.hpp"
 #include "kernel/cycle/participants.hpp"
+#include "kernel/cycle/plc_motion.hpp"
 #include "kernel/cycle/snapshot.hpp"
 
 namespace servogate::cycle {
@@ -119,6 +120,8 @@ class Cycle {
   image::Answer handle(const image::Request& request) noexcept;
   Refusal carry_out(const image::Request& request) noexcept;
   void change_mode(int process, image::Mode mode) noexcept;
+  bool carry_out_motion(const image::Request& request, axis::Axis& axis) noexcept;
+  void move_auxiliary(PlcMotion& motion, axis::Axis& axis) noexcept;
   void stop_manual() noexcept;
   void run_processes() noexcept;
   void run_axes() noexcept;
@@ -160,6 +163,7 @@ class Cycle {
   image::Asker holder_ = image::Asker::command_line;
   std::array<std::uint8_t, image::kMaxProcesses> plc_edges_{};
   std::array<std::int8_t, image::kMaxAxes> plc_jogs_{};
+  std::array<PlcMotion, image::kMaxAxes> plc_motion_{};
   std::array<std::int16_t, image::kMaxProcesses> external_alarm_{};
   std::array<image::Quality, image::kMaxSources> source_quality_{};
   std::uint32_t overruns_ = 0;

@@ -33,6 +33,11 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   context.homing_runs = homing_.running();
   context.manual_held = manual_held_;
   context.holder = holder_;
+  context.drives_wanted = power_request_;
+  if (request.axis >= 0 && request.axis < std::ssize(axes_)) {
+    context.axis_stopping = plc_motion_[static_cast<std::size_t>(request.axis)].stopping();
+    context.axis_error_stop = plc_motion_[static_cast<std::size_t>(request.axis)].error_stop();
+  }
   context.estop_place = parts_.estop_place ? &*parts_.estop_place : nullptr;
   image::Answer answer = decide(request, context);
   if (answer.refusal != 0) return answer;
@@ -66,10 +71,11 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       break;
     case RequestKind::power:
       power_request_ = request.value != 0.0;
-      for (axis::Axis& a : axes_) a.request_power(power_request_);
+      for (axis::Axis& a : axes_)
+        if (!power_request_ || !a.config().auxiliary) a.request_power(power_request_);
       break;
     case RequestKind::home:
-      if (homing_.start(axes_, homing_mask(request, axes_.size())))
+      if (homing_.start(axes_, homing_mask(request, axes_)))
         hold_manual();
       else
         refusal = Refusal::axis_moves;
@@ -131,6 +137,15 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       }
       break;
     }
+    case RequestKind::axis_power:
+    case RequestKind::axis_home:
+    case RequestKind::move_absolute:
+    case RequestKind::move_relative:
+    case RequestKind::move_velocity:
+    case RequestKind::axis_stop:
+    case RequestKind::axis_reset:
+      if (!carry_out_motion(request, axes_[axis])) refusal = Refusal::axis_moves;
+      break;
     case RequestKind::logic:
       if (parts_.logic == nullptr || !parts_.logic->order(request)) refusal = Refusal::logic_not_changed;
       break;
@@ -154,10 +169,37 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
   return refusal;
 }
 
+bool Cycle::carry_out_motion(const Request& request, axis::Axis& a) noexcept {
+  axis::MotionLimits limits = a.config().limits;
+  limits.velocity = request.velocity;
+  if (request.acceleration > 0.0) limits.acceleration = request.acceleration;
+  switch (request.kind) {
+    case RequestKind::axis_power:
+      a.request_power(request.value != 0.0);
+      return true;
+    case RequestKind::axis_home:
+      return a.home();
+    case RequestKind::move_absolute:
+      return a.plc_move_to(request.value, limits);
+    case RequestKind::move_relative:
+      return a.plc_move_to(a.setpoint().x + request.value, limits);
+    case RequestKind::move_velocity:
+      return a.plc_move_at(request.value > 0.0 ? 1 : -1, limits);
+    case RequestKind::axis_reset:
+      a.reset();
+      return true;
+    default:
+      a.stop();
+      return true;
+  }
+}
+
 void Cycle::stop_manual() noexcept {
   homing_.abort(axes_);
   for (axis::Axis& a : axes_)
-    if (a.owner() == image::AxisOwner::manual || a.owner() == image::AxisOwner::homing) a.stop();
+    if (a.owner() == image::AxisOwner::manual || a.owner() == image::AxisOwner::homing ||
+        a.owner() == image::AxisOwner::plc)
+      a.stop();
 }
 
 void Cycle::handle_plc_requests() noexcept {
@@ -202,6 +244,21 @@ void Cycle::handle_plc_requests() noexcept {
     }
     plc_jogs_[i] = wish;
   }
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    if (axes_[i].config().auxiliary) move_auxiliary(plc_motion_[i], axes_[i]);
+}
+
+void Cycle::move_auxiliary(PlcMotion& motion, axis::Axis& a) noexcept {
+  if (motion.resetting())
+    alarms_.reset([this](const image::AlarmRecord& r) { return still_present(r); }, a.index());
+  PlcMotion::Alarms alarms;
+  alarms.stop = alarms_.reaction() >= image::Reaction::stop_on_path;
+  if (const image::AlarmRecord* first = alarms_.first(); alarms.stop && first != nullptr)
+    alarms.number = first->number;
+  motion.read(image_, a.index());
+  motion.watch(a, alarms, image_.now.period_s());
+  for (Request request; motion.next(request);) motion.answer(request, handle(request), a);
+  motion.write(image_, a);
 }
 
 }  // namespace servogate::cycle

@@ -42,8 +42,8 @@ class Logic {
   virtual ~Logic() = default;
   /// One scan on packets A and K; faults (budget, division by zero ...) go into `notices`.
   virtual void scan(image::ProcessImage& image, Notices& notices) noexcept = 0;
-  /// Carries out a change (RequestKind::logic) that the gate has let pass, between two scans. False: it is not
-  /// there any more.
+  /// Carries out a change (RequestKind::logic) that the gate has let pass, between two scans. False: it is
+  /// not there any more.
   virtual bool order(const image::Request& request) noexcept {
     static_cast<void>(request);
     return false;

@@ -218,8 +218,9 @@ struct SharedPlace {
   bool initialised = false;
   bool retain = false;
   Constant initial;
-  bool raw = false;         ///< laid out as in the packet, because places share memory
-  bool referenced = false;  ///< bound to a VAR_IN_OUT: needs a byte of its own
+  bool raw = false;          ///< laid out as in the packet, because places share memory
+  bool referenced = false;   ///< bound to a VAR_IN_OUT: needs a byte of its own
+  std::uint32_t extent = 0;  ///< so many bytes from here on lie in memory as in the packet: an AXIS_REF
   Location at;
 };
 

@@ -93,6 +93,8 @@ class Analyzer {
                        const Location& at);
   const Type* type_of(const image::Place& place);
   const image::Symbol* symbol(std::string_view name) const;
+  bool axis_of_programs(const Expression& e, const Type& wanted);
+  std::optional<ir::Place> axis_reference(const std::string& name, const Location& at);
   void check_place_writer(std::uint32_t place, const Location& at, const std::string& shown);
   void lay_out_places();
 

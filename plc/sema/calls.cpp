@@ -202,6 +202,15 @@ void Analyzer::output_argument(const syntax::Argument& a, const ir::Place& from,
   assign(std::move(*target), std::move(value), a.location, out);
 }
 
+bool Analyzer::axis_of_programs(const Expression& e, const Type& wanted) {
+  bool global = false;
+  const bool letter = e.kind == ExpressionKind::name && same_name(wanted.name, "AXIS_REF") &&
+                      find_variable(e.name, global) == nullptr &&
+                      symbol(e.name + ".home_switch") != nullptr && symbol(e.name + ".mc_taken") == nullptr;
+  if (letter) report_.error(e.location, texts::kNotAuxiliary, {e.name});
+  return letter;
+}
+
 void Analyzer::block_input(const syntax::Argument& a, const Variable& v, const ir::Place& instance,
                            ir::Block& out) {
   ir::Place formal = instance.copy();
@@ -211,6 +220,7 @@ void Analyzer::block_input(const syntax::Argument& a, const Variable& v, const i
     assign(std::move(formal), expression(*a.value, v.type), a.location, out);
     return;
   }
+  if (axis_of_programs(*a.value, *v.type)) return;
   auto target = place(*a.value, true);
   if (!target) return;
   if (target->bit >= 0) {

@@ -51,7 +51,12 @@ void Analyzer::declare_names() {
     const auto& d = source_.types[i];
     if (types_->find(d.name) != nullptr)
       report_.error(d.location, texts::kReserved, {d.name});
-    else if (const auto [at, fresh] = declared_types_.emplace(key_of(d.name), i); !fresh)
+    else if (const auto [at, fresh] = declared_types_.emplace(key_of(d.name), i); fresh)
+      continue;
+    else if (d.location.file == library_file_) {
+      report_.error(source_.types[at->second].location, texts::kReserved, {d.name});
+      at->second = i;  // what follows speaks of the standard one
+    } else
       report_.error(d.location, texts::kDuplicate, {d.name, line_of(source_.types[at->second].location)});
   }
   resolved_.resize(source_.types.size());

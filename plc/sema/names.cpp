@@ -125,6 +125,7 @@ std::optional<ir::Place> Analyzer::place_of_name(const Expression& e, bool write
   Variable* v = find_variable(e.name, global);
   if (v == nullptr) {
     if (auto p = place_of_symbol(e.name, e.location, write)) return p;
+    if (auto p = axis_reference(e.name, e.location)) return p;
     if (unknown_.insert(key_of(e.name)).second && symbol(e.name) == nullptr)
       report_.error(e.location, texts::kUnknownName, {e.name, syntax::suggestion(e.name, names_in_scope())});
     return std::nullopt;

@@ -158,6 +158,25 @@ void Analyzer::declare_located(Variable& out, const syntax::Variable& v) {
     program_.globals.push_back({v.name, out.type, 0, static_cast<std::int32_t>(out.cell), false});
 }
 
+// The letter of an auxiliary axis: its places as one AXIS_REF. What the PLC writes of it goes back after
+// every scan, whichever block wrote.
+std::optional<ir::Place> Analyzer::axis_reference(const std::string& name, const Location& at) {
+  if (symbol(name + "." + std::string(image::kMotionFields[0].name)) == nullptr) return std::nullopt;
+  ir::Place out;
+  for (const image::InterfaceField& f : image::kMotionFields) {
+    const image::Symbol* s = symbol(name + "." + std::string(f.name));
+    const auto part = s == nullptr ? std::nullopt : place_of_symbol(s->name, at, false);
+    if (!part) return std::nullopt;
+    ir::SharedPlace& place = program_.places[part->cell];
+    place.written = place.written || f.writer == image::Writer::plc;
+    if (f.byte != 0) continue;
+    place.extent = image::kMotionBlock;
+    out = part->copy();
+  }
+  out.type = resolve_declared(declared_types_.at("AXIS_REF"));
+  return out;
+}
+
 // A place that the NC or an input writes is read-only here (one declared writer for each place).
 void Analyzer::check_place_writer(std::uint32_t index, const Location& at, const std::string& shown) {
   ir::SharedPlace& s = program_.places[index];
@@ -192,13 +211,18 @@ void Analyzer::lay_out_places() {
   });
   for (std::size_t i = 0; i < order.size();) {
     const image::Place& first = places[order[i]].place;
-    std::uint32_t end = first.byte() + first.bytes();
+    const auto end_of = [&](std::size_t k) {
+      const ir::SharedPlace& s = places[order[k]];
+      return s.place.byte() + std::max(s.place.bytes(), s.extent);
+    };
+    std::uint32_t end = end_of(i);
     std::size_t j = i + 1;
-    bool overlapping = false;
+    bool overlapping = places[order[i]].extent > 0;
     for (; j < order.size(); ++j) {
       const image::Place& p = places[order[j]].place;
       if (p.packet != first.packet || p.byte() >= end) break;
-      end = std::max(end, p.byte() + p.bytes());
+      end = std::max(end, end_of(j));
+      overlapping = overlapping || places[order[j]].extent > 0;
       for (std::size_t k = i; k < j; ++k)
         overlapping = overlapping || (p.overlaps(places[order[k]].place) && p.format != Format::ch &&
                                       places[order[k]].place.format != Format::ch);

@@ -221,11 +221,134 @@ TEST_F(Gate, homes_the_axes_of_a_mask_and_refuses_a_mask_of_axes_that_do_not_exi
   image::Request request;
   request.kind = RequestKind::home;
   request.value = 5.0;
-  EXPECT_EQ(homing_mask(request, 4), 5u);
+  EXPECT_EQ(homing_mask(request, axes_), 5u);
   request.value = 0.0;
-  EXPECT_EQ(homing_mask(request, 4), 15u);
+  EXPECT_EQ(homing_mask(request, axes_), 3u);
   request.axis = 2;
-  EXPECT_EQ(homing_mask(request, 4), 4u);
+  EXPECT_EQ(homing_mask(request, axes_), 4u);
+}
+
+/// The second axis is the PLC's.
+class GateOfAuxiliary : public Gate {
+ protected:
+  GateOfAuxiliary() {
+    axis::AxisConfig c = axes_[1].config();
+    c.letter = "U";
+    c.auxiliary = true;
+    c.homing.method = axis::HomingMethod::absolute;
+    axes_[1].configure(c, 1);
+    axes_[1].set_reference(0);
+    axes_[1].request_power(true);
+    run(20);
+  }
+  Refusal move(RequestKind kind, double value, double velocity, double acceleration = 0.0, int axis = 1,
+               Asker asker = Asker::plc) {
+    Request r;
+    r.kind = kind;
+    r.axis = static_cast<std::int8_t>(axis);
+    r.value = value;
+    r.velocity = velocity;
+    r.acceleration = acceleration;
+    r.asker = asker;
+    answer_ = decide(r, context_);
+    return static_cast<Refusal>(answer_.refusal);
+  }
+};
+
+TEST_F(GateOfAuxiliary, lets_the_plc_move_its_axis_also_while_a_program_runs_and_the_operator_jogs) {
+  image_.processes[0].state = ProcessState::running;
+  context_.manual_held = context_.homing_runs = true;
+  context_.holder = Asker::pendant;
+  EXPECT_EQ(move(RequestKind::move_absolute, 10, 5), Refusal::none);
+  EXPECT_EQ(move(RequestKind::move_relative, -10, 5, 1), Refusal::none);
+  EXPECT_EQ(move(RequestKind::move_velocity, -1, 5), Refusal::none);
+  EXPECT_EQ(move(RequestKind::axis_home, 0, 0), Refusal::none);
+  EXPECT_EQ(move(RequestKind::axis_power, 1, 0), Refusal::none);
+}
+
+TEST_F(GateOfAuxiliary, lets_nobody_but_the_plc_move_it) {
+  for (const Asker who : {Asker::command_line, Asker::page, Asker::pendant, Asker::scenario, Asker::modbus,
+                          Asker::program, Asker::bench})
+    for (const RequestKind k : {RequestKind::axis_power, RequestKind::axis_home, RequestKind::move_absolute,
+                                RequestKind::move_relative, RequestKind::move_velocity,
+                                RequestKind::axis_stop, RequestKind::axis_reset})
+      EXPECT_EQ(move(k, 1, 1, 0, 1, who), Refusal::asker_may_not) << static_cast<int>(k);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1), Refusal::axis_owned) << "by hand";
+  EXPECT_NE(english().find("the PLC"), std::string::npos) << english();
+  EXPECT_EQ(ask(RequestKind::jog_continuous, 1, 1), Refusal::axis_owned);
+  EXPECT_EQ(ask(RequestKind::home, 1), Refusal::axis_owned);
+  EXPECT_EQ(ask(RequestKind::zero, 1), Refusal::axis_owned);
+  EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1, Asker::plc), Refusal::none) << "<axis>.jog_plus";
+}
+
+TEST_F(GateOfAuxiliary, keeps_the_axes_of_programs_from_the_plc) {
+  for (const RequestKind k : {RequestKind::axis_power, RequestKind::axis_home, RequestKind::move_absolute,
+                              RequestKind::move_relative, RequestKind::move_velocity, RequestKind::axis_stop,
+                              RequestKind::axis_reset})
+    EXPECT_EQ(move(k, 1, 1, 0, 0), Refusal::axis_not_auxiliary) << static_cast<int>(k);
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1, 0, 7), Refusal::no_such_axis);
+}
+
+TEST_F(GateOfAuxiliary, homes_all_axes_without_it_and_starts_programs_whatever_it_does) {
+  image::Request request;
+  request.kind = RequestKind::home;
+  EXPECT_EQ(homing_mask(request, axes_), 1u);
+  axes_[1].request_power(false);
+  run(5);
+  EXPECT_EQ(ask(RequestKind::start), Refusal::none);
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::not_powered);
+}
+
+TEST_F(GateOfAuxiliary, says_why_a_motion_cannot_be) {
+  const axis::AxisConfig& c = axes_[1].config();
+  EXPECT_EQ(move(RequestKind::move_absolute, c.travel_max + 1, 5), Refusal::outside_travel);
+  EXPECT_EQ(move(RequestKind::move_relative, c.travel_min - 1, 5), Refusal::outside_travel);
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, 0), Refusal::velocity_range);
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, -1), Refusal::velocity_range);
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, std::numeric_limits<double>::quiet_NaN()),
+            Refusal::velocity_range);
+  EXPECT_EQ(move(RequestKind::move_absolute, std::numeric_limits<double>::infinity(), 1), Refusal::bad_value);
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, c.limits.velocity * 1.01), Refusal::velocity_range);
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1, c.limits.acceleration * 1.01),
+            Refusal::acceleration_range);
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1, -1), Refusal::acceleration_range);
+  EXPECT_EQ(move(RequestKind::move_velocity, 0.5, 1), Refusal::bad_value);
+  set(1, "feed_enable", false);
+  run(1);
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::feed_not_enabled);
+  set(1, "feed_enable", true);
+  set(1, "limit_plus", true);
+  run(1);
+  EXPECT_EQ(move(RequestKind::move_velocity, 1, 1), Refusal::on_hard_limit);
+  EXPECT_EQ(move(RequestKind::move_velocity, -1, 1), Refusal::none) << "away from it";
+}
+
+TEST_F(GateOfAuxiliary, wants_alarms_reset_and_the_drives_wished_for) {
+  context_.drives_wanted = false;
+  EXPECT_EQ(move(RequestKind::axis_power, 1, 0), Refusal::drives_not_wanted);
+  EXPECT_EQ(move(RequestKind::axis_power, 0, 0), Refusal::none);
+  context_.drives_wanted = true;
+  context_.axis_stopping = true;
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::axis_stopping);
+  context_.axis_error_stop = true;
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::axis_error_stop);
+  EXPECT_EQ(move(RequestKind::axis_reset, 0, 0), Refusal::none);
+  context_.axis_error_stop = context_.axis_stopping = false;
+  context_.reaction = Reaction::power_off;
+  context_.first_alarm = alarm::kEmergencyStop;
+  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::emergency_stop);
+  EXPECT_EQ(move(RequestKind::axis_power, 1, 0), Refusal::emergency_stop);
+  EXPECT_EQ(move(RequestKind::axis_stop, 0, 0), Refusal::none);
+}
+
+TEST_F(GateOfAuxiliary, keeps_everybody_from_the_places_of_the_blocks) {
+  image_.packets.resize(4096, image::kSyvarDefaultSize);
+  const image::Place order = image::field(image::kMotionFields, "mc_order", image::motion_base(1));
+  EXPECT_EQ(ask_place(RequestKind::set_place, order), Refusal::place_not_writable);
+  EXPECT_EQ(ask_place(RequestKind::set_place,
+                      image::field(image::kMotionFields, "mc_order", image::motion_base(0))),
+            Refusal::none)
+      << "the first axis has none";
 }
 
 TEST_F(Gate, resumes_and_steps_only_a_program_that_is_held) {
@@ -399,7 +522,7 @@ TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others)
 
 TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
   const auto table = refusal_texts();
-  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::logic_not_changed) + 1);
+  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::axis_error_stop) + 1);
   for (std::size_t i = 1; i < table.size(); ++i) {
     image::Answer a;
     a.refusal = static_cast<std::uint16_t>(i);
@@ -417,7 +540,7 @@ TEST_F(Gate, answers_any_request_in_any_state_without_going_astray) {
   std::mt19937_64 random(seed);
   for (int i = 0; i < 200'000; ++i) {
     Request r;
-    r.kind = static_cast<RequestKind>(random() % 24);
+    r.kind = static_cast<RequestKind>(random() % 32);
     r.asker = static_cast<Asker>(random() % 8);
     r.axis = static_cast<std::int8_t>(random() % 6 - 2);
     r.process = static_cast<std::int8_t>(random() % 4 - 1);
@@ -431,7 +554,10 @@ TEST_F(Gate, answers_any_request_in_any_state_without_going_astray) {
     context_.homing_runs = random() % 2 != 0;
     image_.processes[0].state = static_cast<ProcessState>(random() % 6);
     const image::Answer a = decide(r, context_);
-    ASSERT_LE(a.refusal, static_cast<std::uint16_t>(Refusal::override_range));
+    ASSERT_LE(a.refusal, static_cast<std::uint16_t>(Refusal::axis_error_stop));
+    if (r.kind > RequestKind::logic) {
+      ASSERT_NE(a.refusal, 0) << i << ": there is no auxiliary axis";
+    }
     const bool motion = r.kind == RequestKind::home || r.kind == RequestKind::jog_increment ||
                         r.kind == RequestKind::jog_continuous || r.kind == RequestKind::start;
     if (motion && context_.reaction >= Reaction::stop_on_path) {

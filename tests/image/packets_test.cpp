@@ -106,8 +106,9 @@ TEST(Place, text_and_place_are_inverse_for_every_format) {
 
 TEST(InterfaceMap, no_two_places_of_the_interface_overlap_and_all_lie_in_k) {
   const auto symbols = interface_symbols(
-      5, {"X", "Y", "Z", "A", "B", "C", "U", "V", "W", "P", "Q", "D", "E", "F", "G", "H"}, 2);
+      5, {"X", "Y", "Z", "A", "B", "C", "U", "V", "W", "P", "Q", "D", "E", "F", "G", "H"}, 2, 0xFFFE);
   Packets p;
+  p.resize(motion_base(16), kSyvarDefaultSize);
   for (std::size_t i = 0; i < symbols.size(); ++i) {
     EXPECT_TRUE(p.contains(symbols[i].place)) << symbols[i].name;
     EXPECT_GE(symbols[i].place.byte(), kInterfaceBase);

@@ -67,10 +67,12 @@ class Wait {
   bool cycle_stands(const json& status);
   void interrupt();
   json simple(const char* command) const { return {{"cmd", command}, {"language", request_["language"]}}; }
+  /// Of those that the PLC moves nobody here waits for anything.
   template <typename Is>
   static bool any_axis(const json& status, Is&& is) {
     const json axes = status.value("axes", json::array());
-    return std::any_of(axes.begin(), axes.end(), is);
+    return std::any_of(axes.begin(), axes.end(),
+                       [&](const json& a) { return !a.value("auxiliary", false) && is(a); });
   }
   static bool on(const json& axis) { return axis.value("enabled", false); }
   static bool moving(const json& axis) { return axis.value("moving", false); }
@@ -107,7 +109,8 @@ bool Wait::homing_under_way(const json& status) {
 /// The wait at the end of the block that was asked for, not the one at the end of the block before it.
 bool Wait::block_ended(const json& status) const {
   const json wait = status.value("wait", json());
-  return wait.is_object() && wait.value("reason", "") == "block_end" && wait.value("since_s", 0.0) >= asked_s_;
+  return wait.is_object() && wait.value("reason", "") == "block_end" &&
+         wait.value("since_s", 0.0) >= asked_s_;
 }
 
 bool Wait::program_under_way(const json& status) {

@@ -12,6 +12,7 @@ namespace servogate::gateway {
 program::MachineModel program_model(const machine::MachineConfig& machine) {
   program::MachineModel model;
   for (const machine::AxisConfig& a : machine.axes) {
+    if (a.auxiliary) continue;  // behind all others
     program::MachineModel::Axis axis;
     axis.letter = a.letter;
     axis.rotary = a.type == machine::AxisType::rotary;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "firmware_if/image/interface_map.hpp"
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
 #include "gateway/machine/keys/sections.hpp"
@@ -14,6 +15,7 @@ class AxisCheck {
  public:
   AxisCheck(const MachineConfig& machine, std::size_t index, Reading& reading)
       : machine_(machine),
+        index_(index),
         a_(machine.axes[index]),
         path_("axis." + std::to_string(index) + "."),
         reading_(reading) {
@@ -21,6 +23,7 @@ class AxisCheck {
   }
 
   void all() {
+    auxiliary();
     travel();
     homing();
     speeds();
@@ -48,6 +51,22 @@ class AxisCheck {
   void warning(std::string_view key, const text::Entry& entry, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), a_.letter);
     reading_.warning(at(key), entry, std::move(arguments));
+  }
+
+  /// Programs count their axes from the first on; the places of the MC_ blocks lie above the usual packet.
+  void auxiliary() {
+    if (!a_.auxiliary) {
+      for (std::size_t i = 0; i < index_; ++i)
+        if (machine_.axes[i].auxiliary)
+          return error("letter", finding::kAuxiliaryOrder, {machine_.axes[i].letter});
+      return;
+    }
+    if (a_.diameter) error("diameter", finding::kAuxiliaryDiameter, {});
+    const std::uint32_t needed = image::motion_base(static_cast<int>(index_)) + image::kMotionBlock;
+    if (index_ < image::kMaxAxes && static_cast<std::uint32_t>(machine_.control.k_size) < needed)
+      error("auxiliary", finding::kAuxiliaryPacket,
+            {std::to_string(needed), std::to_string(machine_.control.k_size)});
+    if (machine_.program_axes() == 0) error("auxiliary", finding::kAuxiliaryAlone, {});
   }
 
   void travel() {
@@ -175,6 +194,7 @@ class AxisCheck {
   }
 
   const MachineConfig& machine_;
+  const std::size_t index_;
   const AxisConfig& a_;
   std::string path_;
   Reading& reading_;

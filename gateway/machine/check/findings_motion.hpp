@@ -10,6 +10,20 @@ inline constexpr text::Entry kNoAxes{"machine.no_axes", "the machine has no axis
                                      "у станка нет ни одной оси"};
 inline constexpr text::Entry kTooMany{"machine.too_many", "{0} {1}: at most {2} are possible",
                                       "{1}: {0}, возможно не больше {2}"};
+inline constexpr text::Entry kAuxiliaryOrder{
+    "machine.auxiliary_order", "{0}: axes of programs stand before the auxiliary ones, {1} is auxiliary",
+    "{0}: оси программ стоят до вспомогательных, а {1} вспомогательная"};
+inline constexpr text::Entry kAuxiliaryDiameter{"machine.auxiliary_diameter",
+                                                "{0}: an auxiliary axis has no diameter: no program moves it",
+                                                "{0}: у вспомогательной оси нет диаметра: программы её не "
+                                                "перемещают"};
+inline constexpr text::Entry kAuxiliaryPacket{
+    "machine.auxiliary_packet",
+    "{0}: the places of an auxiliary axis here need control.k_size = {1}, it is {2}",
+    "{0}: ячейкам этой вспомогательной оси нужно control.k_size = {1}, сейчас {2}"};
+inline constexpr text::Entry kAuxiliaryAlone{"machine.auxiliary_alone",
+                                             "{0}: a machine needs an axis that is not auxiliary",
+                                             "{0}: станку нужна хотя бы одна не вспомогательная ось"};
 inline constexpr text::Entry kTravelOrder{"machine.travel_order",
                                           "{0}: travel_min {1} is not below travel_max {2}",
                                           "{0}: travel_min {1} не меньше travel_max {2}"};

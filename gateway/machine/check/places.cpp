@@ -98,21 +98,27 @@ void check_interface(const MachineConfig& machine, const std::vector<Used>& used
   std::uint32_t end = image::kMachineBase;
   for (const image::InterfaceField& f : image::kMachineFields)
     end = std::max(end, image::kMachineBase + f.byte + image::format_size(f.format));
-  const auto fields = image::interface_symbols(machine.control.processes, machine.letters(),
-                                               static_cast<int>(machine.spindles.size()));
+  const auto fields =
+      image::interface_symbols(machine.control.processes, machine.letters(),
+                               static_cast<int>(machine.spindles.size()), machine.auxiliary_axes());
   for (const Used& u : used) {
-    if (u.place.packet != image::Packet::k || u.place.byte() >= end ||
-        u.place.byte() + u.place.bytes() <= image::kInterfaceBase)
-      continue;
+    const std::uint32_t first = u.place.byte(), last = first + u.place.bytes();
+    std::uint32_t kept = image::kInterfaceBase, kept_end = end;
+    for (int a = 0; a < image::kMaxAxes; ++a)
+      if ((machine.auxiliary_axes() >> a & 1u) != 0 && last > image::motion_base(a) &&
+          first < image::motion_base(a) + image::kMotionBlock) {
+        kept = image::motion_base(a);
+        kept_end = kept + image::kMotionBlock;
+      }
+    if (u.place.packet != image::Packet::k || first >= kept_end || last <= kept) continue;
     const auto hit = std::find_if(fields.begin(), fields.end(),
                                   [&](const image::Symbol& f) { return f.place.overlaps(u.place); });
     if (hit != fields.end())
       reading.error(u.at, finding::kInterface,
                     {to_string(u.place), u.name, to_string(hit->place), hit->name});
     else
-      reading.error(
-          u.at, finding::kInterfaceReserved,
-          {to_string(u.place), u.name, std::to_string(image::kInterfaceBase), std::to_string(end - 1)});
+      reading.error(u.at, finding::kInterfaceReserved,
+                    {to_string(u.place), u.name, std::to_string(kept), std::to_string(kept_end - 1)});
   }
 }
 

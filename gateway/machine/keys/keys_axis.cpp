@@ -112,6 +112,11 @@ std::span<const Key> axis_keys() {
                     "вид оси; определяет мм или градусы для всех ключей ниже"),
       key<&C::diameter>("diameter", {}, "programs and displays show the diameter; this file holds radii",
                         "программа и индикация показывают диаметр; в этом файле радиусы"),
+      key<&C::auxiliary>(
+          "auxiliary", {},
+          "moved by the MC_ blocks of the PLC alone (magazine, chuck); stands behind the axes of the "
+          "programs",
+          "ось перемещает только ПЛК блоками MC_ (магазин, патрон); стоит после осей программ"),
       key<&C::drive>("drive", {.required = true, .refers = Refers::node}, "the drive as \"bus.node\"",
                      "привод в виде \"шина.узел\""),
       key<&C::lead>("lead",

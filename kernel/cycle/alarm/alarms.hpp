@@ -42,11 +42,13 @@ class AlarmList {
   /// ms; 250 cycles), the next fault is then a first fault again. real-time safe.
   void note_rest(bool at_rest) noexcept;
   /// The operator's reset. `still_present(record)` says whether the cause is there; asked only for those
-  /// whose condition is that it has gone. Returns how many stay active. real-time safe if `still_present` is.
+  /// whose condition is that it has gone. `axis` >= 0: only the alarms that name this axis. Returns how many
+  /// stay active. real-time safe if `still_present` is.
   template <typename Present>
-  int reset(Present&& still_present) noexcept {
+  int reset(Present&& still_present, int axis = -1) noexcept {
     for (int i = 0; i < stored_; ++i) {
       image::AlarmRecord& r = records_[static_cast<std::size_t>(i)];
+      if (axis >= 0 && r.axis != axis) continue;
       if (r.active && (!waits_for_cause(r) || !still_present(static_cast<const image::AlarmRecord&>(r))))
         r.active = false;
     }

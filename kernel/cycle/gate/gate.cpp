@@ -34,6 +34,11 @@ constexpr std::uint32_t kPlaces = bit(RequestKind::set_place) | bit(RequestKind:
                                   bit(RequestKind::release_force) | bit(RequestKind::logic);
 constexpr std::uint32_t kPanel = kStops | kJogs | kResets | kProgram | bit(RequestKind::power) |
                                  bit(RequestKind::home) | bit(RequestKind::zero);
+/// Of the auxiliary axes, the PLC's alone.
+constexpr std::uint32_t kMoves =
+    bit(RequestKind::move_absolute) | bit(RequestKind::move_relative) | bit(RequestKind::move_velocity);
+constexpr std::uint32_t kAuxiliary = kMoves | bit(RequestKind::axis_power) | bit(RequestKind::axis_home) |
+                                     bit(RequestKind::axis_stop) | bit(RequestKind::axis_reset);
 
 /// What speaks to a process. All else works on a machine that has none (a bench of drives) just as well.
 constexpr std::uint32_t kOfProcess = kProgram | bit(RequestKind::hold) | bit(RequestKind::zero);
@@ -48,7 +53,7 @@ constexpr std::uint32_t may_ask(Asker asker) noexcept {
     case Asker::pendant:
       return kPanel;
     case Asker::plc:
-      return kPanel & ~bit(RequestKind::zero);
+      return (kPanel & ~bit(RequestKind::zero)) | kAuxiliary;
     case Asker::modbus:
       return kStops | bit(RequestKind::set_place);
     case Asker::program:
@@ -112,17 +117,23 @@ class Decision {
     const AxisOwner o = a.owner();
     const bool own = (o == AxisOwner::plc && r_.asker == Asker::plc) ||
                      (o == AxisOwner::bench && r_.asker == Asker::bench);
+    if (a.config().auxiliary && r_.asker != Asker::plc)
+      return refuse(Refusal::axis_owned, a.index(), static_cast<double>(AxisOwner::plc));
     const bool others = o == AxisOwner::plc || o == AxisOwner::bench;
     return !others || own || refuse(Refusal::axis_owned, a.index(), static_cast<double>(o));
   }
-  bool all_at_rest() noexcept {
+  bool all_at_rest(bool with_auxiliary) noexcept {
     for (const Axis& a : c_.axes)
-      if (a.moving()) return refuse(Refusal::axis_moves, a.index());
+      if (a.moving() && (with_auxiliary || !a.config().auxiliary))
+        return refuse(Refusal::axis_moves, a.index());
     return true;
   }
   bool power() noexcept;
   bool home() noexcept;
   bool jog() noexcept;
+  bool auxiliary() noexcept;
+  bool move(const Axis& a) noexcept;
+  bool inside_travel(const Axis& a) noexcept;
   bool keep_alive() noexcept;
   bool zero() noexcept;
   bool mode() noexcept;
@@ -144,7 +155,7 @@ class Decision {
 };
 
 Answer Decision::run() noexcept {
-  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::logic;
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::axis_reset;
   if (!known)
     refuse(Refusal::unknown_request);
   else if ((may_ask(r_.asker) & bit(r_.kind)) == 0)
@@ -187,7 +198,15 @@ bool Decision::decide_kind() noexcept {
     case RequestKind::release_force:
       return place(false);
     case RequestKind::logic:
-      return r_.value == 1.0 || (no_program() && no_homing() && all_at_rest());
+      return r_.value == 1.0 || (no_program() && no_homing() && all_at_rest(true));
+    case RequestKind::axis_power:
+    case RequestKind::axis_home:
+    case RequestKind::move_absolute:
+    case RequestKind::move_relative:
+    case RequestKind::move_velocity:
+    case RequestKind::axis_stop:
+    case RequestKind::axis_reset:
+      return auxiliary();
     default:
       return true;  // hold, stop, reset, quick stop, acknowledge: always
   }
@@ -200,7 +219,7 @@ bool Decision::home() noexcept {
   const double all = std::ldexp(1.0, static_cast<int>(c_.axes.size())) - 1.0;
   if (r_.value < 0.0 || r_.value > all || r_.value != std::floor(r_.value))
     return refuse(Refusal::bad_value, -1, r_.value, all);
-  const std::uint32_t mask = homing_mask(r_, c_.axes.size());
+  const std::uint32_t mask = homing_mask(r_, c_.axes);
   const bool named = r_.axis >= 0 || r_.value != 0.0;
   if (!no_alarm(Reaction::stop_on_path) || !no_program() || !no_homing() || !not_held_by_another())
     return false;
@@ -236,6 +255,55 @@ bool Decision::jog() noexcept {
   return !at_limit || refuse(Refusal::at_soft_limit, r_.axis, x, limit);
 }
 
+/// The PLC and its own axes: neither a program nor manual control has to do with them.
+bool Decision::auxiliary() noexcept {
+  if (!axis_known()) return false;
+  const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
+  if (!a.config().auxiliary) return refuse(Refusal::axis_not_auxiliary, r_.axis);
+  const bool ends = r_.kind == RequestKind::axis_stop || r_.kind == RequestKind::axis_reset;
+  if (ends || (r_.kind == RequestKind::axis_power && r_.value == 0.0)) return true;
+  if (c_.axis_error_stop && r_.kind != RequestKind::axis_power)
+    return refuse(Refusal::axis_error_stop, r_.axis);
+  if (!no_alarm(Reaction::stop_on_path)) return false;
+  if (r_.kind == RequestKind::axis_power)
+    return c_.drives_wanted || refuse(Refusal::drives_not_wanted, r_.axis);
+  if (c_.axis_stopping) return refuse(Refusal::axis_stopping, r_.axis);
+  if (!ready(a)) return false;
+  if (a.homing().active()) return refuse(Refusal::homing_runs);
+  if (r_.kind != RequestKind::axis_home) return move(a);
+  if (a.config().homing.method == axis::HomingMethod::none) return refuse(Refusal::no_home_needed, r_.axis);
+  return a.standstill() || refuse(Refusal::axis_moves, r_.axis);
+}
+
+bool Decision::move(const Axis& a) noexcept {
+  const axis::MotionLimits& most = a.config().limits;
+  if (!a.homed()) return refuse(Refusal::not_homed, r_.axis);
+  if (a.moving() && !a.plc_moves() && a.owner() != AxisOwner::plc)
+    return refuse(Refusal::axis_moves, r_.axis);
+  if (!(r_.velocity > 0.0 && r_.velocity <= most.velocity))
+    return refuse(Refusal::velocity_range, r_.axis, r_.velocity, most.velocity);
+  if (!(r_.acceleration >= 0.0 && r_.acceleration <= most.acceleration))
+    return refuse(Refusal::acceleration_range, r_.axis, r_.acceleration, most.acceleration);
+  return inside_travel(a);
+}
+
+bool Decision::inside_travel(const Axis& a) noexcept {
+  const axis::AxisConfig& config = a.config();
+  const double x = a.setpoint().x;
+  const bool endless = r_.kind == RequestKind::move_velocity;
+  if (endless && std::abs(r_.value) != 1.0) return refuse(Refusal::bad_value, r_.axis, r_.value, 1.0);
+  const double way = r_.kind == RequestKind::move_absolute ? r_.value - x : r_.value;
+  if (way > 0.0 ? a.on_limit_plus() : way < 0.0 && a.on_limit_minus())
+    return refuse(Refusal::on_hard_limit, r_.axis, way > 0.0 ? 1 : -1);
+  if (!config.travel_limited) return true;
+  const double limit = way > 0.0 ? config.travel_max : config.travel_min;
+  if (endless)
+    return (way > 0.0 ? x < limit : x > limit) || refuse(Refusal::at_soft_limit, r_.axis, x, limit);
+  const bool inside = x + way >= config.travel_min && x + way <= config.travel_max;
+  return inside || refuse(Refusal::outside_travel, r_.axis, x + way,
+                          x + way > config.travel_max ? config.travel_max : config.travel_min);
+}
+
 bool Decision::keep_alive() noexcept { return not_held_by_another(); }
 
 bool Decision::zero() noexcept {
@@ -244,6 +312,7 @@ bool Decision::zero() noexcept {
     return refuse(Refusal::zero_range, r_.axis, r_.value, kLargestCoordinate);
   if (!no_program()) return false;
   const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
+  if (!free(a)) return false;
   if (!a.homed()) return refuse(Refusal::not_homed, r_.axis);
   return !a.moving() || refuse(Refusal::axis_moves, r_.axis);
 }
@@ -287,6 +356,7 @@ bool Decision::start() noexcept {
   if (m >= Mode::manual) return refuse(Refusal::wrong_mode, -1, static_cast<double>(m));
   if (!no_alarm(Reaction::stop_at_block_end) || !no_homing() || !not_held_by_another()) return false;
   for (const Axis& a : c_.axes) {
+    if (a.config().auxiliary) continue;
     if (!a.homed()) return refuse(Refusal::not_homed, a.index());
     if (!a.motion_permitted()) return refuse(Refusal::not_powered, a.index());
     if (!free(a)) return false;
@@ -299,7 +369,7 @@ bool Decision::resume() noexcept {
   const ProcessState s = state(r_.process);
   if (!busy(s)) return refuse(Refusal::program_does_not_run, -1, r_.process);
   if (s == ProcessState::running) return refuse(Refusal::program_not_held, -1, r_.process);
-  return no_alarm(Reaction::stop_at_block_end) && no_homing() && not_held_by_another() && all_at_rest();
+  return no_alarm(Reaction::stop_at_block_end) && no_homing() && not_held_by_another() && all_at_rest(false);
 }
 
 /// The chain and what is made of it are shown as they are, whoever asks.
@@ -321,16 +391,25 @@ bool Decision::place(bool write) noexcept {
   if (end > size) return refuse(Refusal::place_outside, -1, static_cast<double>(first), size);
   if (!write) return r_.kind != RequestKind::force || not_of_emergency_stop(p);
   constexpr std::uint32_t kInterfaceEnd = image::kMachineBase + 8;
-  const bool interface = p.packet == image::Packet::k && first < kInterfaceEnd && end > image::kInterfaceBase;
+  bool interface = p.packet == image::Packet::k && first < kInterfaceEnd && end > image::kInterfaceBase;
+  for (const Axis& a : c_.axes) {
+    const std::uint32_t base = image::motion_base(a.index());
+    interface = interface || (a.config().auxiliary && p.packet == image::Packet::k &&
+                              first < base + image::kMotionBlock && end > base);
+  }
   const bool signal = p.packet == image::Packet::a && r_.asker != Asker::scenario;
   return !(interface || signal) || refuse(Refusal::place_not_writable, -1, static_cast<double>(first));
 }
 
 }  // namespace
 
-std::uint32_t homing_mask(const Request& request, std::size_t axes) noexcept {
+std::uint32_t homing_mask(const Request& request, std::span<const Axis> axes) noexcept {
   if (request.axis >= 0) return 1u << request.axis;
-  return request.value > 0.0 ? static_cast<std::uint32_t>(request.value) : (1u << axes) - 1u;
+  if (request.value > 0.0) return static_cast<std::uint32_t>(request.value);
+  std::uint32_t mask = 0;
+  for (const Axis& a : axes)
+    if (!a.config().auxiliary) mask |= 1u << a.index();
+  return mask;
 }
 
 Answer decide(const Request& request, const GateContext& context) noexcept {
@@ -339,7 +418,8 @@ Answer decide(const Request& request, const GateContext& context) noexcept {
 
 bool moves(RequestKind kind) noexcept {
   return ((kJogs | bit(RequestKind::home) | bit(RequestKind::start) | bit(RequestKind::step) |
-           bit(RequestKind::resume) | bit(RequestKind::power)) &
+           bit(RequestKind::resume) | bit(RequestKind::power) | kMoves | bit(RequestKind::axis_power) |
+           bit(RequestKind::axis_home)) &
           bit(kind)) != 0;
 }
 

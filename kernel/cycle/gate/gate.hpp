@@ -47,6 +47,13 @@ enum class Refusal : std::uint16_t {
   override_range,        ///< value: the ratio; limit: the largest one
   emergency_stop_place,  ///< a place of the emergency stop is never forced
   logic_not_changed,     ///< the prepared change of the PLC is not there any more, or finds no room
+  axis_not_auxiliary,    ///< axis: the machine file gives it to the programs, not to the PLC
+  outside_travel,        ///< axis; value: the position asked for; limit: the travel limit that it is beyond
+  velocity_range,        ///< axis; value; limit: the largest one
+  acceleration_range,    ///< axis; value; limit: the largest one
+  axis_stopping,         ///< axis: MC_Stop holds it
+  drives_not_wanted,     ///< the operator has not asked for the drives
+  axis_error_stop,       ///< axis: an error stopped it, MC_Reset has not come yet
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis
@@ -64,12 +71,15 @@ struct GateContext {
   bool manual_held = false;  ///< somebody holds manual control (jogs, or a pendant with its dead-man)
   image::Asker holder = image::Asker::command_line;
   bool start_permitted = true;
+  bool drives_wanted = true;                  ///< the operator has asked for the drives
+  bool axis_stopping = false;                 ///< PlcMotion of the request's axis
+  bool axis_error_stop = false;               ///< the same
   const image::Place* estop_place = nullptr;  ///< emergency-stop chain, nullptr: none is declared
 };
 
-/// Axes that a `home` request names, as bits: the one of its axis; without one those of its value, or all of
-/// the machine's when that is 0. real-time safe.
-std::uint32_t homing_mask(const image::Request& request, std::size_t axes) noexcept;
+/// Axes that a `home` request names, as bits: the one of its axis; without one those of its value, or all
+/// that are not the PLC's when that is 0. real-time safe.
+std::uint32_t homing_mask(const image::Request& request, std::span<const axis::Axis> axes) noexcept;
 
 /// The one gate to motion: decides on a request, changes nothing. An accepted request (refusal 0) is carried
 /// out by the executive with plain calls to axes and channel. real-time safe.

@@ -32,8 +32,10 @@ constexpr text::Entry kTexts[] = {
     {"gate.program_does_not_run", "no program runs", "программа не выполняется"},
     {"gate.program_not_held", "the program is not held", "программа не приостановлена"},
     {"gate.not_stepping",
-     "the program runs in AUTO and would go on to its end: `servogate resume` does that, `servogate reset` ends it",
-     "программа выполняется в АВТО и прошла бы до конца: для этого есть `servogate resume`, `servogate reset` её "
+     "the program runs in AUTO and would go on to its end: `servogate resume` does that, `servogate reset` "
+     "ends it",
+     "программа выполняется в АВТО и прошла бы до конца: для этого есть `servogate resume`, `servogate "
+     "reset` её "
      "завершит"},
     {"gate.no_program", "no program is loaded: run `servogate load PROGRAM` first",
      "программа не загружена: сначала выполните `servogate load PROGRAM`"},
@@ -64,8 +66,25 @@ constexpr text::Entry kTexts[] = {
     {"gate.logic_not_changed",
      "the PLC did not take the change: it came too late, or 256 variables are forced",
      "ПЛК не принял изменение: оно опоздало, или удерживается уже 256 переменных"},
+    {"gate.axis_not_auxiliary", "{0} is an axis of the programs: the PLC moves those that are `auxiliary`",
+     "{0} — ось программ: ПЛК перемещает оси с ключом `auxiliary`"},
+    {"gate.outside_travel", "{0} cannot go to {1} {3}: its travel ends at {2} {3}",
+     "{0} не может перейти в {1} {3}: ход кончается в {2} {3}"},
+    {"gate.velocity_range", "{0} cannot move at {1} {3}/s: above 0 and up to {2} {3}/s is possible",
+     "{0} не может двигаться со скоростью {1} {3}/с: возможно больше 0 и до {2} {3}/с"},
+    {"gate.acceleration_range",
+     "{0} cannot accelerate with {1} {3}/s2: 0 (its limit) and up to {2} {3}/s2 is possible",
+     "{0} не может разгоняться с {1} {3}/с2: возможно 0 (её предел) и до {2} {3}/с2"},
+    {"gate.axis_stopping", "{0} is held by MC_Stop until its Execute falls",
+     "{0} удерживается MC_Stop, пока не снят его Execute"},
+    {"gate.drives_not_wanted", "{0}: the operator has not switched the drives on",
+     "{0}: оператор не включил приводы"},
+    {"gate.axis_error_stop", "{0} was stopped by an error: MC_Reset first",
+     "{0} остановлена ошибкой: сначала MC_Reset"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::logic_not_changed) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::axis_error_stop) + 1);
+static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
+              "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 
 constexpr std::string_view kAskers[][2] = {{"the command line", "командная строка"},
                                            {"the page", "страница"},
@@ -101,7 +120,15 @@ constexpr std::string_view kKinds[][2] = {{"none", "нет"},
                                           {"acknowledge", "квитирование"},
                                           {"set a place", "запись в ячейку"},
                                           {"force", "принудительное значение"},
-                                          {"release a force", "снятие принудительного значения"}};
+                                          {"release a force", "снятие принудительного значения"},
+                                          {"change the PLC", "изменение ПЛК"},
+                                          {"power of an auxiliary axis", "питание вспомогательной оси"},
+                                          {"home an auxiliary axis", "выход в ноль вспомогательной оси"},
+                                          {"move an auxiliary axis", "перемещение вспомогательной оси"},
+                                          {"move an auxiliary axis", "перемещение вспомогательной оси"},
+                                          {"move an auxiliary axis", "перемещение вспомогательной оси"},
+                                          {"stop an auxiliary axis", "останов вспомогательной оси"},
+                                          {"reset an auxiliary axis", "сброс вспомогательной оси"}};
 
 template <std::size_t N>
 std::string word(const std::string_view (&table)[N][2], double index, Language language) {
