@@ -97,8 +97,10 @@ TEST(RecordFile, gives_back_what_was_loaded_with_texts_tables_and_subprograms) {
   EXPECT_EQ(changes[0].file->path, "/p.nc");
   EXPECT_EQ(changes[0].file->dialect, "nc110");
   EXPECT_EQ(changes[0].file->text, file->text);
-  EXPECT_EQ(changes[0].file->loader("PECK"), "N1 G1\nN2\n");
-  EXPECT_EQ(changes[0].file->loader("OTHER"), std::nullopt);
+  const auto peck = changes[0].file->loader("PECK");
+  ASSERT_TRUE(peck);
+  EXPECT_EQ(peck->text, "N1 G1\nN2\n");
+  EXPECT_FALSE(changes[0].file->loader("OTHER"));
   EXPECT_EQ(changes[1].kind, gateway::ProgramChange::Kind::tables);
   EXPECT_EQ(changes[1].file, changes[0].file) << "its text stands in the record once";
   EXPECT_EQ(changes[1].tables.origins.at(2).at("Y"), -0.1);
