@@ -77,9 +77,11 @@ void find_nodes(ToolBus& bus, const ScanOptions& options, Nodes& nodes, std::str
       nodes[id.node].answers_sdo = true;
     } else if (id.service == canopen::Service::heartbeat) {
       if (const auto state = canopen::parse_heartbeat(frame)) {
-        nodes[id.node].state =
-            *state == canopen::NmtState::boot_up ? canopen::NmtState::pre_operational : *state;
-        ++nodes[id.node].heartbeats;
+        // The boot-up message of a node that was just switched on has the identifier of a heartbeat, and is
+        // none.
+        const bool boot_up = *state == canopen::NmtState::boot_up;
+        nodes[id.node].state = boot_up ? canopen::NmtState::pre_operational : *state;
+        if (!boot_up) ++nodes[id.node].heartbeats;
       }
     } else if (id.service == canopen::Service::emcy) {
       nodes[id.node];
