@@ -14,10 +14,11 @@ namespace {
 
 using image::CanState;
 
-const text::Entry kNoCan{
-    "socketcan.no-can",
-    "this kernel has no CAN: `modprobe can-raw`, or run it in the laboratory: tests/lab/lab run ...",
-    "в этом ядре нет CAN: `modprobe can-raw`, либо запуск в лаборатории: tests/lab/lab run ..."};
+const text::Entry kNoCan{"socketcan.no-can",
+                         "this kernel has no CAN: `sudo modprobe can-raw`, or `servogate can bus` and a "
+                         "socketcand: url, which need none",
+                         "в этом ядре нет CAN: `sudo modprobe can-raw`, либо `servogate can bus` и url "
+                         "socketcand:, где CAN ядра не нужен"};
 const text::Entry kNoInterface{"socketcan.no-interface",
                                "there is no CAN interface {0}; there are: {1}. A virtual one: {2}",
                                "нет интерфейса CAN {0}; есть: {1}. Виртуальный создаёт: {2}"};

@@ -40,6 +40,8 @@ struct AlarmRecord {
   std::uint16_t statusword = 0;
   std::uint16_t error_code = 0;
   std::int32_t line = 0;    ///< line of the block in motion, 0: none
+  std::int32_t file = 0;    ///< its file in run `run` of the process (ProcessStatus)
+  std::uint32_t run = 0;
   std::int32_t block = -1;  ///< its N number
   double limit = 0.0;       ///< what was allowed ...
   double value = 0.0;       ///< ... and what was met, in the unit the table names

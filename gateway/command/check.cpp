@@ -31,7 +31,7 @@ void check_logic(const machine::MachineConfig& machine, std::vector<text::Findin
     std::string reason;
     auto content = files::read_file(machine.resolve(name), files::kMostOfSource, reason);
     if (!content) {
-      findings.push_back({text::Severity::error, machine.resolve(name), 0, 0, &kCannotRead, {reason}});
+      findings.push_back({text::Severity::error, machine.resolve(name), 1, 1, &kCannotRead, {reason}});
       return;
     }
     sources.push_back({machine.resolve(name), std::move(*content)});

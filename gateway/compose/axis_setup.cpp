@@ -125,7 +125,6 @@ image::Reaction loss_reaction(machine::LossReaction reaction) {
 axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& a) {
   const machine::MachineConfig& m = loaded.machine;
   axis::AxisConfig c;
-  c.letter = a.letter;
   c.rotary = a.type == machine::AxisType::rotary;
   c.auxiliary = a.auxiliary;
   exact_ratio(a.counts_per_rev, a.gear[0], a.gear[1], a.lead, c.counts_numerator, c.counts_denominator);
@@ -146,7 +145,6 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
   c.home_switch = switch_place(m, a.home.switch_point);
   c.backlash = a.backlash;
   for (const auto& point : a.pitch_table) c.pitch.push_back({point[0], point[1], point[1]});
-  c.vertical = a.vertical;
   if (a.brake.present()) {
     c.brake.output = a.brake.drive_output ? axis::BrakeOutput::drive : axis::BrakeOutput::place;
     if (const machine::PointConfig* p = m.point(a.brake.point); p != nullptr) c.brake.place.place = p->place;
@@ -166,6 +164,11 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
     c.loss_reaction = loss_reaction(node->loss_reaction);
   }
   return c;
+}
+
+std::int64_t counts_per_motor_turn(const machine::SpindleConfig& s) {
+  return std::llround(static_cast<double>(s.counts_per_rev) * static_cast<double>(s.gear[1]) /
+                      static_cast<double>(s.gear[0]));
 }
 
 axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& s) {

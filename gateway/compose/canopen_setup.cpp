@@ -7,6 +7,8 @@
 
 #include "gateway/compose/axis_setup.hpp"
 
+#include "gateway/compose/axis_setup.hpp"
+
 namespace servogate::gateway {
 
 namespace {
@@ -77,7 +79,7 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
       if (m.spindles[s].drive == reference) {
         n.target = canopen::DriveTarget::spindle;
         n.target_index = static_cast<int>(s);
-        counts = m.spindles[s].counts_per_rev;
+        counts = counts_per_motor_turn(m.spindles[s]);
         used = true;
       }
     if (!used) continue;

@@ -249,9 +249,14 @@ std::vector<text::Finding> Control::restore_retained(const machine::MachineState
   std::vector<text::Finding> findings;
   for (const machine::RetainedVariable& v : state.retained) {
     const plc::Retained value{v.name, v.type, v.value};
-    if (logic_ == nullptr || logic_->engine().restore({&value, 1}) == 0)
-      findings.push_back(
-          {text::Severity::warning, loaded_.machine.file, 0, 0, &kNotRestored, {v.name, v.type, v.value}});
+    if (logic_ != nullptr && logic_->engine().restore({&value, 1}) != 0) continue;
+    const machine::Where where = loaded_.machine.where("plc");
+    findings.push_back({text::Severity::warning,
+                        loaded_.machine.file,
+                        where.line,
+                        where.column,
+                        &kNotRestored,
+                        {v.name, v.type, v.value}});
   }
   return findings;
 }
@@ -308,6 +313,10 @@ cycle::AlarmNames Control::alarm_names() const {
       event.boot.expected_text = canopen::BootText(n->software_version);
     const std::string words = canopen::describe(event, {}, nullptr, language);
     return words.starts_with(": ") ? words.substr(2) : words;
+  };
+  names.program_file = [this](int process, std::uint32_t run, int file) -> std::string {
+    if (process < 0 || process >= std::ssize(processes_)) return {};
+    return processes_[static_cast<std::size_t>(process)]->texts().file(run, file);
   };
   names.program_finding = [this](int process, int number, text::Language language) -> std::string {
     if (process < 0 || process >= std::ssize(processes_)) return {};

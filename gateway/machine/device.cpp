@@ -347,7 +347,7 @@ DeviceResult load_device(const std::string& path) {
   if (const auto text = files::read_file(path, files::kMostOfSettings, reason))
     return parse_device(*text, path);
   DeviceResult out;
-  out.findings.push_back({text::Severity::error, path, 0, 0, &finding::kFileMissing, {reason}});
+  out.findings.push_back({text::Severity::error, path, 1, 1, &finding::kFileMissing, {reason}});
   return out;
 }
 

@@ -95,11 +95,13 @@ std::vector<std::string> device_folders() {
     out.emplace_back(folder);
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (const fs::path installed = program.parent_path().parent_path() / "share/servogate/devices";
-      !error && fs::is_directory(installed, error))
+  const fs::path installed = program.parent_path().parent_path() / "share/servogate/devices";
+  if (!error && fs::is_directory(installed, error)) {
     out.push_back(installed.string());
+    return out;
+  }
 #ifdef SERVOGATE_DEVICE_FOLDER
-  out.emplace_back(SERVOGATE_DEVICE_FOLDER);
+  if (fs::is_directory(SERVOGATE_DEVICE_FOLDER, error)) out.emplace_back(SERVOGATE_DEVICE_FOLDER);
 #endif
   return out;
 }
@@ -130,7 +132,7 @@ LoadResult load(const std::string& path) {
   LoadResult result;
   result.readable = false;
   result.machine.file = path;
-  result.findings.push_back({text::Severity::error, path, 0, 0, &finding::kFileMissing, {reason}});
+  result.findings.push_back({text::Severity::error, path, 1, 1, &finding::kFileMissing, {reason}});
   return result;
 }
 

@@ -35,8 +35,8 @@ struct LoadResult {
 };
 
 /// Where device files are looked for after the machine file's own folder and its devices/.
-/// $SERVOGATE_DEVICES, then ../share/servogate/devices of an installed program, then the source tree's
-/// devices/.
+/// $SERVOGATE_DEVICES, then ../share/servogate/devices of an installed program, or else the source tree's
+/// devices/ where it is there.
 std::vector<std::string> device_folders();
 
 /// Reads and checks a machine file: keys, units, ranges, references, places, dangerous choices, consequences.

@@ -89,7 +89,7 @@ std::optional<std::string> contents(const std::string& path, std::vector<text::F
   if (auto content = files::read_file(path, files::kMostOfSettings, reason)) return content;
   std::error_code error;
   if (fs::exists(path, error) || error)
-    findings.push_back({text::Severity::error, path, 0, 0, &finding::kFileMissing, {reason}});
+    findings.push_back({text::Severity::error, path, 1, 1, &finding::kFileMissing, {reason}});
   return std::nullopt;
 }
 
@@ -119,13 +119,13 @@ void load_part(const std::string& file, StatePart part, MachineState& state,
   if (older && !any_error(read_part(*older, previous, part, state))) {
     for (text::Finding& f : problems) f.severity = text::Severity::warning;
     findings.insert(findings.end(), problems.begin(), problems.end());
-    findings.push_back({text::Severity::warning, file, 0, 0, &finding::kPreviousTaken, {previous}});
+    findings.push_back({text::Severity::warning, file, 1, 1, &finding::kPreviousTaken, {previous}});
     return;
   }
   findings.insert(findings.end(), problems.begin(), problems.end());
   findings.insert(findings.end(), of_previous.begin(), of_previous.end());
   if (!newest && older)
-    findings.push_back({text::Severity::error, previous, 0, 0, &finding::kNoGeneration, {}});
+    findings.push_back({text::Severity::error, previous, 1, 1, &finding::kNoGeneration, {}});
 }
 
 /// The retained variables from the newest whole copy.
@@ -158,7 +158,7 @@ void load_retained(const std::string (&files)[2], MachineState& state, std::vect
     state.retained = std::move(newest.retained);
     state.retained_generation = newest.retained_generation;
   } else if (!problems.empty()) {
-    problems.push_back({text::Severity::error, files[0], 0, 0, &finding::kRetainedLost, {files[1]}});
+    problems.push_back({text::Severity::error, files[0], 1, 1, &finding::kRetainedLost, {files[1]}});
   }
   findings.insert(findings.end(), problems.begin(), problems.end());
 }

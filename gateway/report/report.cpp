@@ -116,6 +116,10 @@ Json to_json(const AxisReport& a) {
   if (a.limit_acceleration > 0) limits["acceleration"] = a.limit_acceleration;
   if (a.limit_jerk > 0) limits["jerk"] = a.limit_jerk;
   if (a.limit_following_error > 0) limits["following_error"] = a.limit_following_error;
+  if (a.travel_min < a.travel_max) {
+    limits["travel_min"] = a.travel_min;
+    limits["travel_max"] = a.travel_max;
+  }
   out["limits"] = limits;
   return out;
 }

@@ -80,6 +80,7 @@ struct AxisReport {
   std::string unit = "mm";  ///< "mm" or "deg"
   double max_velocity = 0.0, max_acceleration = 0.0, max_jerk = 0.0, max_following_error = 0.0;
   double limit_velocity = 0.0, limit_acceleration = 0.0, limit_jerk = 0.0, limit_following_error = 0.0;
+  double travel_min = 0.0, travel_max = 0.0;  ///< both 0: without end
 };
 
 /// Quantiles of a histogram in microseconds.

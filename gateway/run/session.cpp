@@ -146,6 +146,10 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
     r.axes[a].limit_velocity = axis.max_velocity;
     r.axes[a].limit_acceleration = axis.max_acceleration;
     r.axes[a].limit_jerk = axis.max_jerk;
+    if (!axis.endless()) {
+      r.axes[a].travel_min = axis.travel_min;
+      r.axes[a].travel_max = axis.travel_max;
+    }
     r.axes[a].limit_following_error =
         axis.following_error_stop + axis.following_error_velocity * axis.max_velocity;
   }

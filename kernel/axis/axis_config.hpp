@@ -77,7 +77,6 @@ struct DrivePlace {
 /// Everything an axis is, as plain data from the machine file. mm or degrees, seconds; a lathe's X is a
 /// radius.
 struct AxisConfig {
-  std::string letter = "X";
   bool rotary = false;
   bool auxiliary = false;                ///< the PLC moves it (magazine, chuck); no program, nobody by hand
   std::int64_t counts_numerator = 1000;  ///< exactly numerator / denominator counts make one mm or degree
@@ -102,7 +101,6 @@ struct AxisConfig {
   std::optional<SwitchPlace> home_switch;
   double backlash = 0.0;          ///< >= 0
   std::vector<PitchPoint> pitch;  ///< rising positions; outside the table its end values hold
-  bool vertical = false;
   BrakeData brake;
   double jog_velocity = 50.0;  ///< continuous and incremental jogging
   double slow_velocity = 5.0;  ///< while not homed, and away from a hard limit

@@ -128,6 +128,7 @@ void Feeder::begin(const FeederOrder& order) {
   interpreter_ = std::move(manual);
   executed_before_ = interpreter_->executed();
   warned_ = 0;
+  raised_.clear();
 }
 
 void Feeder::read_one() {
@@ -151,10 +152,24 @@ void Feeder::read_one() {
   }
 }
 
+/// True for the first warning of its kind about the same word and figure, S5000 say, in this run. `check`
+/// names every place.
+bool Feeder::is_news(const text::Finding& warning) {
+  constexpr std::size_t kThing = 2;
+  const auto end =
+      warning.arguments.begin() + std::min<std::ptrdiff_t>(kThing, std::ssize(warning.arguments));
+  std::pair<const text::Entry*, std::vector<std::string>> thing{warning.entry,
+                                                                {warning.arguments.begin(), end}};
+  if (std::find(raised_.begin(), raised_.end(), thing) != raised_.end()) return false;
+  raised_.push_back(std::move(thing));
+  return true;
+}
+
 /// Hands what the interpreter warns of to the cycle, which raises the alarm without touching the path.
 void Feeder::warn() {
   const std::vector<text::Finding>& warnings = interpreter_->warnings();
   for (; warned_ < warnings.size(); ++warned_) {
+    if (!is_news(warnings[warned_])) continue;
     Event e;
     e.kind = EventKind::warning;
     e.generation = generation_;
@@ -181,9 +196,11 @@ void Feeder::end() {
 
 text::Finding Feeder::finding(const program::Command& command, const text::Entry& entry,
                               std::string argument) const {
-  const auto file = static_cast<std::size_t>(command.file);
-  const std::vector<std::string>& files = interpreter_->files();
-  return {text::Severity::error, file < files.size() ? files[file] : std::string(), command.line, 1, &entry,
+  return {text::Severity::error,
+          interpreter_->path(command.file),
+          command.line,
+          interpreter_->column(command.file, command.line, -1),
+          &entry,
           {std::move(argument)}};
 }
 

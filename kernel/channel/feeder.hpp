@@ -123,6 +123,7 @@ class Feeder {
   void begin(const FeederOrder& order);
   void read_one();
   void accept(const program::Command& command);
+  bool is_news(const text::Finding& warning);
   void warn();
   void fail(const text::Finding& finding);
   void end();
@@ -154,7 +155,7 @@ class Feeder {
   bool moved_in_block_ = false;
   int last_line_ = 0;
   long long last_executed_ = 0;  ///< blocks executed up to the last command
-  image::Packets view_;  ///< packets as the interpreter sees them
+  image::Packets view_;          ///< packets as the interpreter sees them
   program::Position position_{};
   double spindle_rpm_ = 0.0;
   double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0, surface_center_ = 0.0;
@@ -166,6 +167,8 @@ class Feeder {
   long long executed_before_ = 0;  ///< by the interpreter, typed blocks before this one
   int last_file_ = 0;
   std::size_t warned_ = 0;  ///< of interpreter_'s warnings
+  /// What of them has been raised in this run: the text with the word and its figure, whatever the line.
+  std::vector<std::pair<const text::Entry*, std::vector<std::string>>> raised_;
 };
 
 }  // namespace servogate::channel

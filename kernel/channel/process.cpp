@@ -318,6 +318,8 @@ void Process::raise(image::AlarmNumber number, const Event& event, double value,
   r.number = number;
   r.process = static_cast<std::int8_t>(config_.index);
   r.line = event.line;
+  r.file = event.file;
+  r.run = generation_;
   r.block = event.block;
   r.value = value;
   r.limit = limit;

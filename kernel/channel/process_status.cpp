@@ -169,6 +169,8 @@ void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c)
     r.number = cycle::alarm::kStarved;
     r.process = static_cast<std::int8_t>(config_.index);
     r.line = out.line;
+    r.file = out.file;
+    r.run = out.run;
     r.value = sample.starved;
     c.notices.add(r);
   }

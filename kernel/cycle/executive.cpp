@@ -178,6 +178,8 @@ void Cycle::collect_events() noexcept {
         r.node = place.node;
       }
       r.line = image_.processes[0].line;
+      r.file = image_.processes[0].file;
+      r.run = image_.processes[0].run;
       raise(r);
     }
   };

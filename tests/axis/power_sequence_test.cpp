@@ -14,7 +14,6 @@ using State = PowerSequence::State;
 
 AxisConfig vertical() {
   AxisConfig c = test::mill_axis();
-  c.vertical = true;
   c.brake.output = BrakeOutput::place;
   c.brake.place = test::kBrakePlace;
   c.brake.torque_delay = 0.050;

@@ -123,7 +123,6 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
     config.axes.machine.push_back(a);
     config.path.limits[static_cast<std::size_t>(a)] = {kLimits.velocity, kLimits.acceleration, kLimits.jerk};
     axis::AxisConfig c;
-    c.letter = letters[a];
     c.limits = kLimits;
     c.counts_numerator = 100000;
     c.homing.method = axis::HomingMethod::none;

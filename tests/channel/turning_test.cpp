@@ -134,8 +134,8 @@ TEST(Warning, is_one_alarm_a_place_and_leaves_the_path_as_it_is) {
   EXPECT_EQ(plain, told);
 }
 
-TEST(Warning, names_line_and_finding_and_more_than_one_stand_beside_each_other) {
-  Rig rig("N10 S9000 M3\nN20 S9500\nM30\n", "G27", 0.5, RigKind::lathe);
+TEST(Warning, names_line_and_finding_and_each_speed_once_however_often_it_is_asked_for) {
+  Rig rig("N10 S9000 M3\nN20 S9500\nN30 S9000\nM30\n", "G27", 0.5, RigKind::lathe);
   ASSERT_TRUE(rig.finish()) << rig.alarm_list();
   const auto history = rig.cycle->alarms().history();
   ASSERT_EQ(history.size(), 2u) << rig.alarm_list();

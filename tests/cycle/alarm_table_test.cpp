@@ -124,9 +124,26 @@ TEST(AlarmText, holds_what_the_interpreter_found_with_file_line_and_column) {
   };
   EXPECT_EQ(render(r, names, text::Language::english), "program error in line 3: p.nc:3:9: error: no [P1]");
   EXPECT_EQ(render(r, names, text::Language::russian),
-            "ошибка программы в строке 3: p.nc:3:9: error: нет [P1]");
+            "ошибка программы, строка 3: p.nc:3:9: error: нет [P1]");
   r.value = 18;
   EXPECT_EQ(render(r, names, text::Language::english), "program error in line 3") << "not kept any more";
+}
+
+TEST(AlarmText, names_file_and_line_of_the_block_that_stands_still) {
+  AlarmNames names;
+  image::AlarmRecord r;
+  r.number = alarm::kUnknownM;
+  r.process = 0;
+  r.line = 12;
+  r.value = 77;
+  EXPECT_EQ(render(r, names, text::Language::english), "line 12: the PLC does not know M77");
+  EXPECT_EQ(render(r, names, text::Language::russian), "строка 12: ПЛК не знает функцию M77");
+  names.program_file = [](int, std::uint32_t run, int file) {
+    return run == 4 && file == 1 ? std::string("parts/sub.nc") : std::string();
+  };
+  r.run = 4;
+  r.file = 1;
+  EXPECT_EQ(render(r, names, text::Language::english), "parts/sub.nc:12: the PLC does not know M77");
 }
 
 TEST(AlarmText, decodes_status_word_and_error_code) {

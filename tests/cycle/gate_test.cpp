@@ -30,7 +30,6 @@ class Gate : public ::testing::Test {
     image_.packets.set_bit(image::field(image::kMachineFields, "power_on", image::kMachineBase), true);
     for (int i = 0; i < 2; ++i) {
       axis::AxisConfig c;
-      c.letter = i == 0 ? "X" : "Y";
       c.homing.method = axis::HomingMethod::absolute;
       axes_[static_cast<std::size_t>(i)].configure(c, i);
       set(i, "enable", true);
@@ -233,7 +232,6 @@ class GateOfAuxiliary : public Gate {
  protected:
   GateOfAuxiliary() {
     axis::AxisConfig c = axes_[1].config();
-    c.letter = "U";
     c.auxiliary = true;
     c.homing.method = axis::HomingMethod::absolute;
     axes_[1].configure(c, 1);

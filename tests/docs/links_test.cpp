@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "tests/docs/markdown.hpp"
@@ -67,9 +68,15 @@ TEST(Links, a_dead_one_would_be_noticed) {
 }
 
 TEST(Folders, each_says_in_a_readme_what_lives_there) {
-  for (const char* folder : {"firmware_if", "drivers", "kernel", "plc", "bench", "gateway", "tests",
-                             "examples", "devices", "docs"})
-    EXPECT_TRUE(fs::exists(fs::path(SERVOGATE_SOURCE_DIR) / folder / "README.md")) << folder;
+  const fs::path tree = SERVOGATE_SOURCE_DIR;
+  std::set<fs::path> folders = {tree / "tests", tree / "examples", tree / "devices", tree / "docs"};
+  for (const char* room : {"firmware_if", "drivers", "kernel", "plc", "bench", "gateway"}) {
+    folders.insert(tree / room);
+    for (const auto& entry : fs::recursive_directory_iterator(tree / room))
+      if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp")
+        folders.insert(entry.path().parent_path());
+  }
+  for (const fs::path& folder : folders) EXPECT_TRUE(fs::exists(folder / "README.md")) << folder;
 }
 
 }  // namespace

@@ -42,6 +42,10 @@ TEST_P(Broken, says_exactly_what_is_expected) {
   if (std::getenv("SERVOGATE_UPDATE") != nullptr) test::write_text(expected, got);
   ASSERT_FALSE(got.empty()) << "this file is not broken";
   EXPECT_EQ(got, read_text(expected));
+  for (const text::Finding& f : findings) {
+    EXPECT_GT(f.line, 0) << f.str() << ": no line to go to";
+    EXPECT_GT(f.column, 0) << f.str() << ": no column to go to";
+  }
 }
 
 /// In Russian the same findings at the same places, in Russian words, with nothing left open.

@@ -194,7 +194,7 @@ TEST(MachineFile, a_file_that_does_not_exist_is_a_finding) {
   ASSERT_EQ(r.findings.size(), 1u);
   EXPECT_FALSE(r.ok());
   EXPECT_EQ(r.findings[0].str(text::Language::english),
-            "/nowhere/machine.toml: error: the file cannot be read: No such file or directory "
+            "/nowhere/machine.toml:1:1: error: the file cannot be read: No such file or directory "
             "[machine.file_missing]");
 }
 

@@ -148,6 +148,8 @@ Report demo_report(const DemoRun& demo, int alarms) {
     a.limit_acceleration = 1000;
     a.limit_jerk = 10000;
     a.limit_following_error = 2;
+    a.travel_min = -300;
+    a.travel_max = 300;
   }
   CycleTimes times({"receive", "plc", "interpolate", "axes", "send"});
   for (int i = 0; i < 2000; ++i) {

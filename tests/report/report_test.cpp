@@ -45,6 +45,8 @@ TEST(Report, carries_every_field_of_the_contract) {
   for (const char* letter : {"X", "Y", "Z"})
     for (const char* key : {"max_velocity", "max_acceleration", "max_jerk", "max_following_error"})
       EXPECT_GT(j["axes"][letter][key].get<double>(), 0.0) << letter << key;
+  EXPECT_EQ(j["axes"]["X"]["limits"]["travel_min"], -300.0);
+  EXPECT_EQ(j["axes"]["X"]["limits"]["travel_max"], 300.0);
   for (const char* key : {"p50", "p99", "p999", "max"}) EXPECT_GT(j["cycle_us"][key].get<double>(), 2.0);
   EXPECT_GT(j["virtual_speed"].get<double>(), 0.0);
   EXPECT_EQ(j["segments"][0]["name"], "can");

@@ -91,7 +91,7 @@ TEST_F(Refusals, of_a_typed_block_do_not_leave_it_for_a_later_start) {
 
 TEST_F(Refusals, of_a_program_that_is_not_there_are_wrong_use) {
   const std::string none = (shell_.folder() / "none.nc").string();
-  expect({{"load", none}, 2, "none.nc: error: cannot read the file: No such file or directory"});
+  expect({{"load", none}, 2, "none.nc:1:1: error: cannot read the file: No such file or directory"});
   expect({{"load", "/dev/zero"}, 2, "not a regular file but a device"});
   const json answer = shell_.ask({{"cmd", "load"}, {"program", none}, {"dialect", "klingon"}});
   EXPECT_EQ(answer["exit"], 2);

@@ -40,7 +40,7 @@ TEST_F(Words, of_a_program_error_reach_status_and_alarms_with_file_line_and_colu
   EXPECT_TRUE(contains(alarms.out, "X would go to 400, the travel ends at 300 [P701]")) << alarms.out;
   EXPECT_TRUE(contains(shell_.run({"status"}).out, "[P701]"));
   const Outcome russian = shell_.run({"alarms"}, "ru_RU.UTF-8");
-  EXPECT_TRUE(contains(russian.out, "ошибка программы в строке 4: " + place)) << russian.out;
+  EXPECT_TRUE(contains(russian.out, "ошибка программы, строка 4: " + place)) << russian.out;
   EXPECT_TRUE(contains(russian.out, "ход кончается на 300")) << russian.out;
   const json finding = shell_.status()["alarms"][0]["finding"];
   EXPECT_EQ(finding["code"], "P701");

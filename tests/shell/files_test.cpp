@@ -72,7 +72,7 @@ TEST_F(Files, that_a_machine_file_names_are_met_with_the_same_care) {
   const Ended device = desk_.line("$SG check m.toml", "C", 20.0);
   EXPECT_EQ(device.code, 1) << "the machine file itself can be read: " << device.err;
   EXPECT_TRUE(
-      device.err_has("servo-cia402.toml: error: the file cannot be read: not a regular file but a pipe"))
+      device.err_has("servo-cia402.toml:1:1: error: the file cannot be read: not a regular file but a pipe"))
       << device.err;
   ASSERT_EQ(desk_.line("rm -r devices").code, 0);
   const Ended logic = desk_.line("$SG check n.toml", "C", 20.0);

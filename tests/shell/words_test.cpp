@@ -82,7 +82,7 @@ TEST(Words, behind_an_optional_value_are_not_taken_for_it) {
   const Desk desk;
   desk.write("one.nc", "N10 G0 X1\nN20 M30\n");
   const Ended e = desk.line("$SG run $MILL --realtime none.nc");
-  EXPECT_TRUE(e.err_has("none.nc: error: cannot read the file")) << e.err;
+  EXPECT_TRUE(e.err_has("none.nc:1:1: error: cannot read the file")) << e.err;
 }
 
 TEST(Words, of_the_help_name_each_argument_as_it_is_written) {

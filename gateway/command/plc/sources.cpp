@@ -12,7 +12,7 @@ bool read_sources(const std::vector<std::string>& files, std::vector<plc::Source
     std::string reason;
     auto content = files::read_file(name, files::kMostOfSource, reason);
     if (!content) {
-      print_findings({{text::Severity::error, name, 0, 0, &kCannotRead, {reason}}});
+      print_findings({{text::Severity::error, name, 1, 1, &kCannotRead, {reason}}});
       return false;
     }
     out.push_back({name, std::move(*content)});

@@ -60,7 +60,7 @@ int Tests::run_file(const std::string& path) {
   std::string reason;
   const auto content = files::read_file(path, files::kMostOfSource, reason);
   if (!content) {
-    print_findings({{text::Severity::error, path, 0, 0, &kCannotRead, {reason}}});
+    print_findings({{text::Severity::error, path, 1, 1, &kCannotRead, {reason}}});
     return kWrongUse;
   }
   const testing::TestFile file = testing::read_test_file(path, *content);

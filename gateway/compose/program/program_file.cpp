@@ -40,7 +40,7 @@ int first_line_not_utf8(std::string_view text) {
 bool open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
                   ProgramFile& out, std::vector<text::Finding>& findings) {
   const auto error = [&](const text::Entry& entry, std::vector<std::string> arguments) {
-    findings.push_back({text::Severity::error, path, 0, 0, &entry, std::move(arguments)});
+    findings.push_back({text::Severity::error, path, 1, 1, &entry, std::move(arguments)});
     return false;
   };
   out.dialect = dialect.empty() ? machine.control.dialect : dialect;

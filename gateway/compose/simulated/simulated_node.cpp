@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "gateway/compose/axis_setup.hpp"
+
 namespace servogate::gateway {
 
 namespace {
@@ -24,7 +26,7 @@ mock::PlantConfig plant_of(const machine::DeviceConfig* device, const machine::S
     if (m.max_speed > 0.0) p.max_speed_rad_s = 1.2 * m.max_speed * 2.0 * M_PI / 60.0;
   }
   if (axis != nullptr && axis->counts_per_rev > 0) p.counts_per_rev = axis->counts_per_rev;
-  if (spindle != nullptr && spindle->counts_per_rev > 0) p.counts_per_rev = spindle->counts_per_rev;
+  if (spindle != nullptr && spindle->counts_per_rev > 0) p.counts_per_rev = counts_per_motor_turn(*spindle);
   if (extra != nullptr) {
     if (extra->inertia > 0.0) p.inertia_kg_m2 = extra->inertia;
     if (extra->friction_coulomb > 0.0) p.coulomb_friction_nm = extra->friction_coulomb;

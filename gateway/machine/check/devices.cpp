@@ -73,6 +73,9 @@ class DeviceUse {
       const SpindleConfig& s = m_.spindles[i];
       const DeviceConfig* device = of_node(s.drive);
       if (device == nullptr) continue;
+      if (s.counts_per_rev == 0 && device->motor.counts_per_rev == 0)
+        reading_.error(m_.where("spindle." + std::to_string(i)), finding::kSpindleCounts,
+                       {std::to_string(i + 1), m_.node(s.drive)->device});
       const double rpm = s.max_speed * static_cast<double>(s.gear[0]) / static_cast<double>(s.gear[1]);
       motor(*device, m_.node(s.drive)->device,
             text::both("spindle " + std::to_string(i + 1), "шпиндель " + std::to_string(i + 1)),

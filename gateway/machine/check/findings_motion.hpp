@@ -216,6 +216,13 @@ inline constexpr text::Entry kMotorTooFast{
 inline constexpr text::Entry kDeviceCounts{
     "machine.device_counts", "{0}: counts_per_rev {1} differs from {2} of the device file {3}",
     "{0}: counts_per_rev {1} отличается от {2} в файле устройства {3}"};
+inline constexpr text::Entry kSpindleCounts{"machine.spindle_counts",
+                                            "spindle {0}: nobody says what its drive counts: "
+                                            "`counts_per_rev` here for an encoder at the spindle, or under "
+                                            "[motor] of the device file {1}",
+                                            "шпиндель {0}: не сказано, сколько отсчётов на оборот: "
+                                            "`counts_per_rev` здесь для датчика на шпинделе либо в "
+                                            "[motor] файла устройства {1}"};
 inline constexpr text::Entry kNoBrakeOutput{"machine.no_brake_output",
                                             "{0}: brake.drive_output, but {1} has no brake output",
                                             "{0}: задан brake.drive_output, но у {1} нет выхода тормоза"};

@@ -23,10 +23,10 @@ function cards() {
     card(tr("blocks"), num(R.blocks, 9), R.finished || !R.blocks_expected ? D.program.name : tr("ofAbout", num(R.blocks_expected, 9))),
     card(tr("alarms"), String(R.alarms.length), first ? first.text : tr("noAlarms"), R.alarms.length ? "bad" : "good"),
     card(tr("pathLength"), metres(a.feed + a.rapid), tr("feedPath") + " " + metres(a.feed) + ", " + tr("rapidPath") + " " + metres(a.rapid) + (a.homing ? ", " + tr("homingPath") + " " + metres(a.homing) : "")),
-    card(tr("cycleTime"), num(R.cycle_us.p99, 3) + " " + unit("µs"), "p50 " + num(R.cycle_us.p50, 3) + " · " + tr("max") + " " + num(R.cycle_us.max, 3)),
+    card(tr("cycleTime"), num(R.cycle_us.p99, 3) + " " + unit("µs"), "p50\u00a0" + num(R.cycle_us.p50, 3) + " · " + tr("max") + "\u00a0" + num(R.cycle_us.max, 3)),
   ];
   if (R.virtual_speed > 0) out.push(card(tr("speed"), num(R.virtual_speed, 3), tr("timesReal")));
-  if (R.lateness_us) out.push(card(tr("late"), num(R.lateness_us.p99, 3) + " " + unit("µs"), tr("max") + " " + num(R.lateness_us.max, 3)));
+  if (R.lateness_us) out.push(card(tr("late"), num(R.lateness_us.p99, 3) + " " + unit("µs"), tr("max") + "\u00a0" + num(R.lateness_us.max, 3)));
   out.push(card(tr("overruns"), num(R.overruns, 9), tr("starved") + ": " + num(R.starved, 9), R.overruns + R.starved > 0 ? "bad" : ""));
   if (R.segments.length) out.push(card(tr("busLoad"), num(100 * load, 3) + " %", tr("worst") + " " + num(100 * worst, 3) + " %", load > 0.8 ? "bad" : ""));
   fill("cards", ...out);

@@ -170,15 +170,46 @@ function pathView(box, view) {
   return {redraw, fit() { view.fit(); redraw(); }, draw};
 }
 
+/** Travel of the machine along axis k of the view, [low, high]; null where it has no end. */
+function travelOf(k) {
+  const axis = AXES.find(a => a.letter === VIEW[k]), limits = axis && axis.report.limits;
+  return limits && limits.travel_max !== undefined ? [limits.travel_min, limits.travel_max] : null;
+}
+
 /** The plan: x to the right, y up, one scale. */
 function planView() {
   let scale = 0, cx = 0, cy = 0, w = 1, h = 1, fitted = true;
+  const travel = [travelOf(0), travelOf(1)];
+  /** "Everything" has the box of the machine's travel in it. */
+  const planBox = () => {
+    const box = shownBox(), low = [...box.low], high = [...box.high];
+    if (S.whole) travel.forEach((ends, k) => {
+      if (ends) [low[k], high[k]] = [Math.min(low[k], ends[0]), Math.max(high[k], ends[1])];
+    });
+    return {low, high};
+  };
+  const drawTravel = (g, width, height) => {
+    if (!travel[0] || !travel[1]) return;
+    const [x0, y0] = view.project(travel[0][0], travel[1][1]), [x1, y1] = view.project(travel[0][1], travel[1][0]);
+    g.fillStyle = css("--travel");
+    for (const [x, y, w, h] of [[0, 0, x0, height], [x1, 0, width - x1, height], [x0, 0, x1 - x0, y0], [x0, y1, x1 - x0, height - y1]])
+      if (w > 0 && h > 0) g.fillRect(x, y, w, h);
+    g.strokeStyle = css("--faint");
+    g.lineWidth = 1.2;
+    g.setLineDash([8, 4]);
+    g.strokeRect(x0, y0, x1 - x0, y1 - y0);
+    g.setLineDash([]);
+    if (y0 < 0 || y0 > height || x0 > width || x1 < 0) return;
+    g.fillStyle = css("--faint");
+    g.textAlign = "left"; g.textBaseline = "bottom";
+    g.fillText(tr("travel"), Math.max(x0, 0) + 4, y0 > 16 ? y0 - 3 : y0 + 15);
+  };
   const view = {
     fit() { fitted = true; },
     prepare(width, height) {
       [w, h] = [width, height];
       if (!fitted) return;
-      const box = shownBox(), dx = box.high[0] - box.low[0], dy = box.high[1] - box.low[1];
+      const box = planBox(), dx = box.high[0] - box.low[0], dy = box.high[1] - box.low[1];
       scale = Math.min((w - 72) / Math.max(dx, 1e-3), (h - 64) / Math.max(dy, 1e-3));
       if (!isFinite(scale) || dx + dy <= 0) scale = 1;
       [cx, cy] = [(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2];
@@ -212,6 +243,7 @@ function planView() {
         g.textAlign = "left"; g.textBaseline = "middle";
         if (y < height - 18) g.fillText(fixed(k * step, decimals), 4, y);
       }
+      drawTravel(g, width, height);
       g.font = "600 " + css("--canvas-font");
       g.fillStyle = axisColour(VIEW[0]); g.textAlign = "right"; g.textBaseline = "bottom";
       g.fillText((VIEW[0] || "") + " →", width - 8, height - 18);

@@ -36,6 +36,12 @@ const Entry kNotCompiled{"plc.errors", "the PLC program was not changed: it has 
                          "программа ПЛК не заменена: в ней есть ошибки"};
 const Entry kChanged{"plc.changed", "the PLC runs {0}: {1} values kept, {2} variables begin anew",
                      "ПЛК выполняет {0}: сохранено значений {1}, начато заново переменных {2}"};
+const Entry kLoadLater{
+    "plc.load-later",
+    "Load it when the program has ended and all axes rest; or with --online --while-running, once you have "
+    "made sure that the machine may go on with the new logic in the middle of its motion.",
+    "Загрузите её, когда программа закончится и все оси остановятся; или с --online --while-running, "
+    "убедившись, что станок может продолжать движение с новой логикой."};
 const Entry kNotLogged{"plc.not-logged", "the change of the PLC could not be written to the change log: {0}",
                        "замена программы ПЛК не записана в журнал: {0}"};
 const Entry kNoVariable{"plc.no-variable", "there is no variable or place '{0}'",
@@ -143,7 +149,12 @@ json PlcDesk::load(const json& request, const PlcAsker& who) {
     return answer;
   }
   json answer = this->change(change, request.value("while_running", false) ? 1.0 : 0.0, who);
-  if (!answer["ok"].get<bool>()) return answer;
+  if (!answer["ok"].get<bool>()) {
+    if (!change.online || !request.value("while_running", false))
+      answer["text"] = answer["text"].get<std::string>() + "\n" +
+                       text::render(kLoadLater, std::vector<std::string>{}, who.language);
+    return answer;
+  }
   for (const std::string& name : plan.forces_lost)
     std::erase_if(forces_, [&](const Force& f) { return !f.place && plc::same_name(f.name, name); });
   answer = told(kChanged, {joined(names), std::to_string(plan.kept), std::to_string(plan.fresh.size())},

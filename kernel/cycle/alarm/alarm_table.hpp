@@ -61,7 +61,7 @@ enum class ResetCondition : std::uint8_t {
 
 /// One kind of alarm. Texts have the placeholders {0} axis, {1} value, {2} limit, {3} node or segment or
 /// source, {4} status word in words, {5} error code in words, {6} and {7} detail1 and detail2, {8} object,
-/// {9} line.
+/// {9} file and line of the block ("bracket.nc:12"; of the PLC: the number of its line).
 struct AlarmRow {
   image::AlarmNumber number = 0;
   image::Reaction reaction = image::Reaction::none;  ///< default; the machine file may ask for a stronger one

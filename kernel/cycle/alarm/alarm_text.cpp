@@ -152,6 +152,18 @@ std::string torque_words(double permille, Language language) {
   return russian ? "моменте " + number + " ‰ от номинального" : number + " ‰ of the rated torque";
 }
 
+/// "bracket.nc:12" of a block, the bare number elsewhere.
+std::string line_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
+  const std::string line = std::to_string(r.line);
+  if (r.process < 0) return line;
+  // What the interpreter found follows, with its file.
+  const bool found = r.number == alarm::kProgramError || r.number == alarm::kProgramWarning;
+  const std::string file =
+      !found && names.program_file ? names.program_file(r.process, r.run, r.file) : std::string();
+  if (!file.empty()) return file + ":" + line;
+  return (language == Language::russian ? "строка " : "line ") + line;
+}
+
 std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names, Language language) {
   const std::string unit = !figures_are_lengths(r.number) ? ""
                            : r.axis >= 0 && r.axis < std::ssize(names.units)
@@ -167,7 +179,7 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
                                   figure(r.detail1),
                                   text::number(r.detail2, 1),
                                   hex(r.object_index, 4) + ":" + hex(r.object_subindex, 2).substr(2),
-                                  std::to_string(r.line)};
+                                  line_words(r, names, language)};
   if (r.number == axis::alarm::kDriveRefuses) {
     out[1] = state_words(static_cast<int>(r.value), language);
     out[2] = state_words(static_cast<int>(r.limit), language);

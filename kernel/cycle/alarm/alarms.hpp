@@ -104,6 +104,8 @@ struct AlarmNames {
   std::function<std::string(int segment, int node)> node_name;
   /// Where and why a node's start-up failed, from a record of kBootFailed; may be empty.
   std::function<std::string(const image::AlarmRecord&, text::Language)> boot_failure;
+  /// Path of a file of a run as people open it (ProcessStatus::run, ::file); may be empty.
+  std::function<std::string(int process, std::uint32_t run, int file)> program_file;
   /// What a program's interpreter found (program errors and warnings; its number in `value`) with file, line
   /// and column; may be empty.
   std::function<std::string(int process, int number, text::Language)> program_finding;
