@@ -14,6 +14,7 @@
 #include "gateway/command/outputs.hpp"
 #include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/state.hpp"
+#include "gateway/machine/state_lock.hpp"
 #include "gateway/run/operator_script.hpp"
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
@@ -90,6 +91,7 @@ class Run {
   const machine::LoadResult& loaded_;
   std::shared_ptr<ProgramFile> program_ = std::make_shared<ProgramFile>();
   machine::MachineState state_;
+  machine::StateLock lock_;
   std::unique_ptr<Control> control_;
   std::unique_ptr<RecordWriter> record_;
   std::unique_ptr<RetainedKeeper> keeper_;
@@ -108,6 +110,10 @@ class Run {
 int Run::prepare() {
   const machine::MachineConfig& m = loaded_.machine;
   if (!options_.state.empty()) {
+    if (const std::string why = lock_.take(options_.state); !why.empty()) {
+      complain(machine::kStateTaken, {options_.state, why});
+      return kInfrastructure;
+    }
     const machine::StateDirectory::Loaded kept = machine::StateDirectory(options_.state).load();
     if (print_findings(kept.findings) > 0) return kWrongUse;
     state_ = kept.state;

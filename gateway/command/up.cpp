@@ -9,6 +9,7 @@
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/machine/state.hpp"
+#include "gateway/machine/state_lock.hpp"
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/retained_keeper.hpp"
@@ -114,7 +115,12 @@ int up(const UpOptions& options) {
   if (const int code = check_outputs({{"--record", options.record}}, state_path, loaded, {}); code != kDone)
     return code;
   machine::MachineState state;
+  machine::StateLock lock;
   if (!state_path.empty()) {
+    if (const std::string why = lock.take(state_path); !why.empty()) {
+      complain(machine::kStateTaken, {state_path, why});
+      return kInfrastructure;
+    }
     machine::StateDirectory::Loaded kept = machine::StateDirectory(state_path).load();
     if (print_findings(kept.findings) > 0) return kWrongUse;
     state = std::move(kept.state);

@@ -239,7 +239,9 @@ bool Dispatch::unit_is_own(int axis) {
 
 Reply Dispatch::power() {
   double value = 0.0;
-  if (!number("value", value, true) || !ask(RequestKind::power, -1, value)) return refusal_;
+  if (!number("value", value, true)) return refusal_;
+  if (value != 0.0 && value != 1.0) return fail(says::kNotSwitch, {"value"}, kWrongUse);
+  if (!ask(RequestKind::power, -1, value)) return refusal_;
   return good(value != 0.0 ? says::kPowerOn : says::kPowerOff);
 }
 
@@ -247,13 +249,14 @@ Reply Dispatch::home() {
   const json axes = request_.value("axes", json::array());
   std::uint32_t mask = 0;
   std::string names;
-  if (axes.is_array())
-    for (const json& name : axes) {
-      const int index = axis(name);
-      if (index < 0) return refusal_;
-      mask |= 1u << index;
-      names += (names.empty() ? "" : ", ") + axis_config(index).letter;
-    }
+  // A slip in the request must not become "all axes".
+  if (!axes.is_array()) return fail(says::kNotAxes, {"axes"}, kWrongUse);
+  for (const json& name : axes) {
+    const int index = axis(name);
+    if (index < 0) return refusal_;
+    mask |= 1u << index;
+    names += (names.empty() ? "" : ", ") + axis_config(index).letter;
+  }
   if (!ask(RequestKind::home, -1, mask, image::Mode::home)) return refusal_;
   return mask == 0 ? good(says::kHomingAll) : good(says::kHoming, {names});
 }

@@ -17,6 +17,9 @@ const Entry kNoAxis{"socket.no-axis", "the machine has no axis '{0}'; it has {1}
 const Entry kNotUnit{"socket.not-unit", "'{0}' is not the unit of {1}: it moves in {2}",
                      "«{0}» — не единица оси {1}: она измеряется в {2}"};
 const Entry kNoNumber{"socket.no-number", "'{0}' must be a number", "«{0}» должно быть числом"};
+const Entry kNotSwitch{"socket.not-switch", "'{0}' must be 1 or 0", "«{0}» должно быть 1 или 0"};
+const Entry kNotAxes{"socket.not-axes", "'{0}' must be a list of axes: [\"X\"]",
+                     "«{0}» должно быть списком осей: [\"X\"]"};
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
                       "цикл не ответил; работает ли он?"};
 const Entry kNotLoaded{"socket.not-loaded", "{0} was not loaded", "программа {0} не загружена"};

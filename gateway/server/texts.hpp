@@ -15,6 +15,8 @@ extern const text::Entry kUnknownAsker;      ///< {0} asker, {1} known ones
 extern const text::Entry kNoAxis;            ///< {0} axis, {1} axes of the machine
 extern const text::Entry kNotUnit;           ///< {0} unit, {1} axis, {2} its unit
 extern const text::Entry kNoNumber;          ///< {0} key
+extern const text::Entry kNotSwitch;         ///< {0} key
+extern const text::Entry kNotAxes;           ///< {0} key
 extern const text::Entry kNoAnswer;          ///< the cycle stands
 extern const text::Entry kNotLoaded;         ///< {0} program
 extern const text::Entry kMoreFindings;      ///< {0} how many

@@ -2,7 +2,9 @@
 // What the control refuses, it refuses with a sentence that names the range, and without having changed
 // anything.
 #include <gtest/gtest.h>
+#include <signal.h>
 
+#include "gateway/machine/state_lock.hpp"
 #include "tests/server/rig.hpp"
 
 namespace servogate::gateway::testing {
@@ -95,6 +97,37 @@ TEST_F(Refusals, of_a_program_that_is_not_there_are_wrong_use) {
   expect({{"load", "/dev/zero"}, 2, "not a regular file but a device"});
   const json answer = shell_.ask({{"cmd", "load"}, {"program", none}, {"dialect", "klingon"}});
   EXPECT_EQ(answer["exit"], 2);
+}
+
+TEST_F(Refusals, of_requests_of_the_wrong_type_move_nothing) {
+  const json before = kept();
+  EXPECT_EQ(shell_.ask({{"cmd", "home"}, {"axes", "X"}})["exit"], 2) << "one letter is not all axes";
+  EXPECT_EQ(shell_.ask({{"cmd", "home"}, {"axes", {{"X", true}}}})["exit"], 2);
+  EXPECT_EQ(shell_.ask({{"cmd", "power"}, {"value", 2}})["exit"], 2);
+  EXPECT_EQ(shell_.ask({{"cmd", "power"}, {"value", "on"}})["exit"], 2);
+  EXPECT_EQ(kept(), before);
+}
+
+TEST(StateDirectory, belongs_to_one_control_at_a_time) {
+  Shell shell;
+  const std::string state = (shell.folder() / "state").string(), mill = Shell::example("mill/machine.toml");
+  shell.up("mill", {"--virtual", "--speed", "20", "--state", state});
+  shell.ready();
+  ASSERT_EQ(shell.run({"zero", "X", "5"}).exit, 0);
+  const std::string other = (shell.folder() / "other.sock").string();
+  for (const std::vector<std::string>& second :
+       {std::vector<std::string>{"up", mill, "--virtual", "--state", state, "--socket", other},
+        std::vector<std::string>{"run", mill, Shell::example("mill/bracket.nc"), "--virtual", "--state",
+                                 state}}) {
+    const Outcome o = shell.run(second);
+    EXPECT_EQ(o.exit, 4) << o.out;
+    EXPECT_NE(o.err.find(state), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("process " + std::to_string(shell.pid())), std::string::npos) << o.err;
+  }
+  EXPECT_EQ(shell.end(SIGKILL), 128 + SIGKILL) << "a control that is killed";
+  machine::StateLock next;
+  EXPECT_EQ(next.take(state), "") << "leaves its directory to the next one";
+  EXPECT_NE(shell.text("state/origins.toml").find("-5"), std::string::npos);
 }
 
 }  // namespace
