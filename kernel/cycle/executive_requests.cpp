@@ -44,7 +44,11 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   const image::Mode before = image_.processes[process].mode;
   if (request.mode >= 0) change_mode(request.process, static_cast<image::Mode>(request.mode));
   answer.refusal = static_cast<std::uint16_t>(carry_out(request));
-  if (answer.refusal != 0 && request.mode >= 0) change_mode(request.process, before);
+  if (answer.refusal == 0) return answer;
+  answer.axis = request.axis;
+  for (const axis::Axis& a : axes_)
+    if (answer.axis < 0 && !a.standstill()) answer.axis = static_cast<std::int8_t>(a.index());
+  if (request.mode >= 0) change_mode(request.process, before);
   return answer;
 }
 

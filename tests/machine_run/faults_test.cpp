@@ -184,6 +184,17 @@ TEST(Faults, axis_that_is_not_homed_jogs_slowly_and_refuses_auto_by_name) {
   EXPECT_LE(fastest, 10.0 * 1.001);
 }
 
+TEST(Faults, an_axis_that_does_not_stand_yet_is_named_where_it_refuses_the_next_jog) {
+  Mill mill(kLine);
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  ASSERT_EQ(mill.ask(RequestKind::mode, static_cast<double>(Mode::manual)), Refusal::none);
+  ASSERT_EQ(mill.ask(RequestKind::jog_continuous, 1.0, 1), Refusal::none);
+  mill.run(0.05);
+  ASSERT_EQ(mill.ask(RequestKind::jog_stop, 0.0, 1), Refusal::none);
+  ASSERT_EQ(mill.ask(RequestKind::jog_continuous, -1.0, 1), Refusal::axis_moves);
+  EXPECT_EQ(mill.answer().axis, 1);
+}
+
 TEST(Faults, continuous_jog_without_keep_alive_begins_to_stop_within_100_ms) {
   Mill mill(kLine);
   ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();

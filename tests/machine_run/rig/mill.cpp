@@ -127,7 +127,10 @@ cycle::Refusal Mill::ask(RequestKind kind, double value, int axis) {
   for (int i = 0; i < 10; ++i) {
     step();
     while (control_->cycle().take_answer(answer))
-      if (answer.id == next_id_ - 1) return static_cast<cycle::Refusal>(answer.refusal);
+      if (answer.id == next_id_ - 1) {
+        answer_ = answer;
+        return static_cast<cycle::Refusal>(answer.refusal);
+      }
   }
   ADD_FAILURE() << "no answer";
   return cycle::Refusal::unknown_request;

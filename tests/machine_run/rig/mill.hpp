@@ -51,7 +51,9 @@ class Mill {
   bool until(const std::function<bool()>& met, double patience_s = 60.0);
   /// Posts a request and steps until it is answered: the refusal, none: accepted.
   cycle::Refusal ask(image::RequestKind kind, double value = 0.0, int axis = -1);
-  /// The same without waiting for the answer.
+  /// The whole answer to the last ask().
+  const image::Answer& answer() const { return answer_; }
+  /// ask() without waiting for the answer.
   void post(image::RequestKind kind, double value = 0.0, int axis = -1);
   /// Emergency stop chain closed, buses up, drives on, all axes homed, AUTO. False: it did not come to that.
   bool make_ready();
@@ -78,6 +80,7 @@ class Mill {
   std::unique_ptr<gateway::Control> control_;
   std::unique_ptr<LimitJudge> judge_;
   std::uint64_t next_id_ = 1;
+  image::Answer answer_;
 };
 
 /// The example mill's machine file with its text changed.
