@@ -26,8 +26,6 @@ struct Options {
   /// one to two milliseconds.
   std::int64_t instruction_budget = 1'000'000;
   bool warnings = true;
-  /// A source without any PROGRAM is an error unless this is set (a library checked by itself).
-  bool library_only = false;
 };
 
 /// What came out. `findings` are in the order of file, line and column; `image` is null when any is an error.

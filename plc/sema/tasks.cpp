@@ -42,7 +42,7 @@ void Analyzer::default_task() {
     const std::uint32_t base = instance(u.name, static_cast<int>(i));
     body_unit.body.push_back(invoke_at(base, scopes_[i].frame, static_cast<int>(i), u.location));
   }
-  if (body_unit.body.empty() && !options_.library_only) report_.error({0, 1, 1}, texts::kNoProgram);
+  if (body_unit.body.empty()) report_.error({0, 1, 1}, texts::kNoProgram);
   ir::Task task;
   task.name = "cycle";
   task.unit = static_cast<int>(program_.units.size());
