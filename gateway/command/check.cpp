@@ -8,7 +8,7 @@
 #include "gateway/compose/program/program_file.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 #include "plc/run.hpp"
 
 namespace servogate::gateway::command {

@@ -14,7 +14,7 @@
 #include "gateway/compose/program/program_change.hpp"
 #include "gateway/compose/simulated/mock_world.hpp"
 #include "gateway/machine/load.hpp"
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 #include "kernel/channel/process.hpp"
 #include "kernel/cycle/clocks.hpp"
 #include "kernel/cycle/executive.hpp"

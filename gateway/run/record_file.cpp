@@ -14,7 +14,7 @@
 
 #include "gateway/compose/program/program_model.hpp"
 #include "gateway/files/read_file.hpp"
-#include "gateway/machine/state_text.hpp"
+#include "gateway/machine/state/state_text.hpp"
 #include "gateway/report/report.hpp"
 
 namespace servogate::gateway {

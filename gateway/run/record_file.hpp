@@ -11,7 +11,7 @@
 
 #include "firmware_if/text/finding.hpp"
 #include "gateway/compose/control.hpp"
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 #include "kernel/cycle/inputs.hpp"
 
 namespace servogate::gateway {

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "gateway/compose/control.hpp"
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 
 namespace servogate::gateway {
 

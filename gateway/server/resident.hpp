@@ -7,7 +7,7 @@
 
 #include "gateway/compose/control.hpp"
 #include "gateway/compose/program/program_file.hpp"
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 #include "gateway/server/plc/plc_desk.hpp"
 
 namespace servogate::gateway {

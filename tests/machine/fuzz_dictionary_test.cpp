@@ -9,7 +9,7 @@
 #include "gateway/machine/device.hpp"
 #include "gateway/machine/keys/key.hpp"
 #include "gateway/machine/keys/sections.hpp"
-#include "gateway/machine/state_text.hpp"
+#include "gateway/machine/state/state_text.hpp"
 #include "tests/machine/files.hpp"
 
 namespace servogate::machine {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <random>
 
-#include "gateway/machine/state_text.hpp"
+#include "gateway/machine/state/state_text.hpp"
 #include "tests/machine/files.hpp"
 
 namespace servogate::machine {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include "gateway/machine/state_lock.hpp"
+#include "gateway/machine/state/state_lock.hpp"
 #include "tests/server/rig.hpp"
 
 namespace servogate::gateway::testing {

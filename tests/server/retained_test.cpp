@@ -7,7 +7,7 @@
 #include <fstream>
 #include <thread>
 
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 #include "tests/server/rig.hpp"
 
 namespace servogate::gateway::testing {

@@ -8,7 +8,7 @@
 
 #include "gateway/machine/consequences.hpp"
 #include "gateway/machine/load.hpp"
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 
 using namespace servogate;
 

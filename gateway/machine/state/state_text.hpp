@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "firmware_if/text/finding.hpp"
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 
 namespace servogate::machine {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/state_text.hpp"
+#include "gateway/machine/state/state_text.hpp"
 
 #include <array>
 #include <charconv>

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <thread>
 
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"
 

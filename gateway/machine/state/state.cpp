@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/state.hpp"
+#include "gateway/machine/state/state.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -15,7 +15,7 @@
 
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/keys/findings.hpp"
-#include "gateway/machine/state_text.hpp"
+#include "gateway/machine/state/state_text.hpp"
 
 namespace servogate::machine {
 

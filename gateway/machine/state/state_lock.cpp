@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/state_lock.hpp"
+#include "gateway/machine/state/state_lock.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
