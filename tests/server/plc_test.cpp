@@ -57,9 +57,10 @@ TEST(PlcOfAControl, is_listed_with_type_place_and_where_it_is_read_and_written) 
       EXPECT_GE(s["read"].size(), 1u);
     }
   EXPECT_TRUE(found);
-  const json files = json::parse(
-      shell.run({"plc", "list", Shell::example("mill/mill.st"), "--machine", Shell::example("mill/machine.toml"), "--json"})
-          .out);
+  const json files = json::parse(shell
+                                     .run({"plc", "list", Shell::example("mill/mill.st"), "--machine",
+                                           Shell::example("mill/machine.toml"), "--json"})
+                                     .out);
   EXPECT_EQ(files["symbols"], list["symbols"]) << "the same without a control";
 }
 
@@ -67,8 +68,8 @@ TEST(PlcOfAControl, is_watched_by_name_and_beside_its_source_lines) {
   Shell shell;
   shell.up();
   ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
-  const Outcome names = shell.run({"plc", "watch", "door_closed", "Mill.change.step", "SK10.IN", "--samples", "2",
-                                   "--every", "20"});
+  const Outcome names = shell.run(
+      {"plc", "watch", "door_closed", "Mill.change.step", "SK10.IN", "--samples", "2", "--every", "20"});
   EXPECT_EQ(names.exit, 0) << names.err;
   EXPECT_TRUE(has(names.out, "  Mill.change.step = Idle\n")) << names.out;
   EXPECT_TRUE(has(names.out, "  SK10.IN = 0\n")) << names.out;
@@ -107,7 +108,8 @@ TEST(PlcOfAControl, is_forced_until_the_client_ends_however_it_ends) {
   EXPECT_EQ(shell.status()["forced"].size(), 2u);
   EXPECT_TRUE(has(shell.run({"status"}).out, "forced: lamp_green = TRUE"));
   EXPECT_TRUE(has(shell.run({"plc", "list"}).out, "forced to TRUE"));
-  EXPECT_TRUE(has(shell.run({"plc", "watch", "lamp_green", "--samples", "1"}).out, "lamp_green = TRUE  (forced)"));
+  EXPECT_TRUE(
+      has(shell.run({"plc", "watch", "lamp_green", "--samples", "1"}).out, "lamp_green = TRUE  (forced)"));
   kill(client, SIGKILL);
   waitpid(client, nullptr, 0);
   EXPECT_TRUE(becomes(shell, "lamp_green", false));
@@ -134,6 +136,22 @@ TEST(PlcOfAControl, stays_forced_when_told_and_is_let_go_by_name) {
   EXPECT_EQ(shell.run({"plc", "force", "lamp_green", "--stay"}).exit, 2);
 }
 
+TEST(PlcOfAControl, holds_a_string_in_a_packet_that_its_program_writes) {
+  Shell shell;
+  shell.up();
+  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  const std::string file = mill_with(shell, "VAR word AT SK20.4CH : STRING[4]; END_VAR", "word := 'free';");
+  ASSERT_EQ(shell.run({"plc", "load", file}).exit, 0);
+  ASSERT_TRUE(becomes(shell, "Mill.word", "free"));
+  EXPECT_EQ(shell.run({"plc", "force", "Mill.word=held", "--stay"}).exit, 0);
+  EXPECT_TRUE(becomes(shell, "Mill.word", "held"));
+  EXPECT_TRUE(becomes(shell, "SK5.LI", 0x646c6568)) << "in the packet too: 'held' from the lowest byte on";
+  EXPECT_TRUE(has(shell.run({"status"}).out, "forced: Mill.word = held"));
+  EXPECT_EQ(shell.run({"plc", "force", "Mill.word=longer", "--stay"}).exit, 2);
+  EXPECT_EQ(shell.run({"plc", "force", "--release"}).exit, 0);
+  EXPECT_TRUE(becomes(shell, "Mill.word", "free"));
+}
+
 TEST(PlcOfAControl, cannot_be_made_to_hide_the_emergency_stop) {
   Shell shell;
   shell.up();
@@ -148,8 +166,8 @@ TEST(PlcOfAControl, takes_another_program_between_two_scans_with_its_values) {
   Shell shell;
   const std::string state = (shell.folder() / "state").string();
   shell.up("mill", {"--virtual", "--speed", "5", "--state", state});
-  const std::string first =
-      mill_with(shell, "VAR RETAIN kept : DINT; END_VAR VAR passing : DINT; END_VAR", "kept := kept + 1; passing := passing + 1;");
+  const std::string first = mill_with(shell, "VAR RETAIN kept : DINT; END_VAR VAR passing : DINT; END_VAR",
+                                      "kept := kept + 1; passing := passing + 1;");
   const Outcome loaded = shell.run({"plc", "load", first});
   EXPECT_EQ(loaded.exit, 0) << loaded.err;
   ASSERT_TRUE(shell.until([&](const json&) { return value(shell, "Mill.kept") > 50; }));

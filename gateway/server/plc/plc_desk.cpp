@@ -215,7 +215,8 @@ std::optional<image::Request> PlcDesk::place_request(const std::string& name, co
     place = image.places[static_cast<std::size_t>(handle->place)].place;
   else if (!handle)
     place = machine_place(control.machine(), name);
-  if (!place) return std::nullopt;
+  // Characters do not fit into a request: the variable that mirrors them is held.
+  if (!place || (place->format == image::Format::ch && program->engine.find(name))) return std::nullopt;
   image::Request request;
   request.kind = image::RequestKind::force;
   request.packet = static_cast<std::uint8_t>(place->packet);
