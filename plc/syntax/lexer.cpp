@@ -194,7 +194,14 @@ class Lexer {
     std::string body = clean(t.offset);
     if (letter(peek())) {
       while (word_part(peek())) step();
-      report_.error(t.location, texts::kBadNumber, {std::string(text_.substr(t.offset, at_ - t.offset))});
+      const std::string_view whole = text_.substr(t.offset, at_ - t.offset);
+      if (format_of_characters(t.offset, whole)) {
+        t.kind = TokenKind::word;
+        t.text = whole;
+        t.key = key_of(whole);
+        return t;
+      }
+      report_.error(t.location, texts::kBadNumber, {std::string(whole)});
       t.literal.magnitude = 1;
       return t;
     }
@@ -207,6 +214,12 @@ class Lexer {
       report_.error(t.location, texts::kHugeNumber, {body});
     }
     return t;
+  }
+  // The 4CH of a place of a packet, AT SK20.4CH; anywhere else the parser refuses the word.
+  bool format_of_characters(std::size_t begin, std::string_view whole) const {
+    const std::size_t digits = whole.find_first_not_of("0123456789");
+    return begin > 0 && text_[begin - 1] == '.' && digits != std::string_view::npos &&
+           key_of(whole.substr(digits)) == "CH";
   }
   Token based(Token t) {
     const std::string base_text = clean(t.offset);

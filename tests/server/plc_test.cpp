@@ -140,12 +140,12 @@ TEST(PlcOfAControl, holds_a_string_in_a_packet_that_its_program_writes) {
   Shell shell;
   shell.up();
   ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
-  const std::string file = mill_with(shell, "VAR word AT SK20.4CH : STRING[4]; END_VAR", "word := 'free';");
+  const std::string file = mill_with(shell, "VAR word AT SK800.4CH : STRING[4]; END_VAR", "word := 'free';");
   ASSERT_EQ(shell.run({"plc", "load", file}).exit, 0);
   ASSERT_TRUE(becomes(shell, "Mill.word", "free"));
   EXPECT_EQ(shell.run({"plc", "force", "Mill.word=held", "--stay"}).exit, 0);
   EXPECT_TRUE(becomes(shell, "Mill.word", "held"));
-  EXPECT_TRUE(becomes(shell, "SK5.LI", 0x646c6568)) << "in the packet too: 'held' from the lowest byte on";
+  EXPECT_TRUE(becomes(shell, "SK200.LI", 0x646c6568)) << "in the packet too: 'held' from the lowest byte on";
   EXPECT_TRUE(has(shell.run({"status"}).out, "forced: Mill.word = held"));
   EXPECT_EQ(shell.run({"plc", "force", "Mill.word=longer", "--stay"}).exit, 2);
   EXPECT_EQ(shell.run({"plc", "force", "--release"}).exit, 0);
