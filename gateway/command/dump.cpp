@@ -28,6 +28,8 @@ const text::Entry kMayMove{
     "{0} может быть настоящей шиной, воспроизведение может двинуть приводы: --i-may-move"};
 const text::Entry kDown{"play.down", "the bus {0} takes no more frames",
                         "шина {0} больше не принимает кадры"};
+const text::Entry kGone{"dump.gone", "the bus {0} has gone down: nothing more can be recorded",
+                        "шина {0} отключилась: дальше записывать нечего"};
 const text::Entry kLost{"dump.lost", "{0} frames were lost on this computer",
                         "на этом компьютере потеряно кадров: {0}"};
 
@@ -72,21 +74,23 @@ int dump(const DumpOptions& options) {
   const image::Nanoseconds until = options.seconds > 0.0 ? begin + std::llround(options.seconds * 1e9) : 0;
   std::int64_t count = 0;
   image::CanFrame frame;
-  bool wanted = true;
-  while (wanted && !signals.ended() && (until == 0 || clock_ns(CLOCK_MONOTONIC) < until)) {
+  bool wanted = true, down = false;
+  while (wanted && !down && !signals.ended() && (until == 0 || clock_ns(CLOCK_MONOTONIC) < until)) {
     while (wanted && transport->bus->receive(frame)) {
       const image::Nanoseconds time = frame.timestamp_ns + drivers::realtime_ahead();
       wanted =
           print_line(candump::format(frame, time, name)) && (options.count == 0 || ++count < options.count);
     }
-    if (transport->bus->state() == image::CanState::down) break;
-    if (wanted) wait_readable(transport->descriptor, 100 * image::kMillisecond);
+    down = transport->bus->state() == image::CanState::down;
+    if (wanted && !down) wait_readable(transport->descriptor, 100 * image::kMillisecond);
   }
   if (const std::uint64_t lost = transport->bus->lost(); lost > 0) {
     complain(kLost, {std::to_string(lost)});
     return kInfrastructure;
   }
-  return kDone;
+  if (!wanted || !down) return kDone;
+  complain(kGone, {options.bus});
+  return kInfrastructure;
 }
 
 int play(const PlayOptions& options) {

@@ -6,8 +6,7 @@
 #include <optional>
 
 #include "gateway/compose/axis_setup.hpp"
-
-#include "gateway/compose/axis_setup.hpp"
+#include "gateway/machine/can_channel.hpp"
 
 namespace servogate::gateway {
 
@@ -49,6 +48,51 @@ void put_files(const machine::LoadResult& loaded, const machine::NodeConfig& nod
   setup.store_configuration = node.configuration_store;
 }
 
+std::optional<std::uint32_t> given(std::int64_t value) {
+  if (value == 0) return std::nullopt;
+  return static_cast<std::uint32_t>(value);
+}
+
+/// The points of a station of kind canopen, as objects of its node.
+canopen::IoStation io_station(const machine::StationConfig& station, const machine::DeviceConfig& device) {
+  canopen::IoStation out;
+  for (const machine::PointConfig& p : station.points) {
+    const auto channel = machine::channel_object(device.kind, p.channel, p.number);
+    if (!channel) continue;
+    canopen::IoPoint point;
+    point.input = p.is_input();
+    point.index = channel->object.index;
+    point.subindex = channel->object.subindex;
+    point.bit = channel->bit;
+    point.place = p.place;
+    point.inverted = p.inverted;
+    point.hold = p.hold;
+    point.loss = p.loss;
+    point.scale = p.scale;
+    point.shift = p.shift;
+    out.points.push_back(point);
+  }
+  return out;
+}
+
+/// The node carries a station. False: it carries none.
+bool take_station(const machine::LoadResult& loaded, const machine::NodeConfig& node,
+                  const std::string& reference, canopen::NodeConfig& n) {
+  const machine::MachineConfig& m = loaded.machine;
+  const machine::DeviceConfig* device = loaded.device(node.device);
+  for (std::size_t s = 0; s < m.stations.size(); ++s) {
+    if (m.stations[s].kind != machine::StationKind::canopen || m.stations[s].node != reference) continue;
+    if (device == nullptr || !device->terminals()) return false;
+    n.target = canopen::DriveTarget::io;
+    n.target_index = static_cast<int>(s);
+    n.io = io_station(m.stations[s], *device);
+    n.setup.counts_per_rev = given(device->encoder.counts_per_rev);
+    n.setup.revolutions = given(device->encoder.revolutions);
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int index) {
@@ -82,7 +126,7 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
         counts = counts_per_motor_turn(m.spindles[s]);
         used = true;
       }
-    if (!used) continue;
+    if (!used && !take_station(loaded, node, reference, n)) continue;
     if (const machine::DeviceConfig* device = loaded.device(node.device); device != nullptr)
       n.profile = machine::drive_profile(*device, node, counts);
     if (n.target == canopen::DriveTarget::axis) {

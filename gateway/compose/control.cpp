@@ -77,12 +77,16 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
     c->suppliers_.push_back(
         std::make_unique<CanSupplier>(*bus, segment_config(c->loaded_, static_cast<int>(b))));
     parts.devices.push_back(c->suppliers_.back().get());
+    for (const canopen::NodeConfig& node : c->suppliers_.back()->segment().config().nodes)
+      if (node.target == canopen::DriveTarget::io)
+        parts.source_places[static_cast<std::size_t>(node.target_index)] = {static_cast<std::int16_t>(b),
+                                                                            node.node};
   }
   for (image::CycleDevice* device : c->world_->io()) parts.devices.push_back(device);
   if (!drives.empty()) parts.devices.push_back(c->drive_inputs_.get());
   if (!c->debounce_->empty()) parts.devices.push_back(&c->debounce_->after());
   for (std::size_t s = 0; s < m.stations.size(); ++s)
-    parts.watched_sources[s] = m.stations[s].kind != machine::StationKind::drive;
+    parts.watched_sources[s] = !m.stations[s].over_bus();  // the loss of a node is said by its bus
   parts.logic = c->logic_.get();
   for (int p = 0; p < m.control.processes; ++p) {
     c->processes_.push_back(std::make_unique<channel::Process>(process_config(m, p)));

@@ -48,6 +48,12 @@ const NodeConfig* MachineConfig::node(std::string_view reference, int* bus, int*
   return nullptr;
 }
 
+bool MachineConfig::nothing_real(const StationConfig& station) const {
+  if (!station.over_bus()) return station.mock();
+  int bus = -1;
+  return node(station.node, &bus) != nullptr && buses[static_cast<std::size_t>(bus)].nothing_real();
+}
+
 bool MachineConfig::nothing_real() const {
   return std::all_of(buses.begin(), buses.end(), [](const BusConfig& b) { return b.nothing_real(); }) &&
          std::all_of(stations.begin(), stations.end(), [](const StationConfig& s) { return s.mock(); });

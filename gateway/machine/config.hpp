@@ -190,7 +190,7 @@ struct BusConfig {
   bool nothing_real() const { return mock() || lockstep() || simulated; }
 };
 
-enum class StationKind : std::uint8_t { modbus, gpio, drive };
+enum class StationKind : std::uint8_t { modbus, gpio, drive, canopen };
 enum class ChannelKind : std::uint8_t { di, dq, ai, aq };
 
 /// One of [[station]] points: a wire of the machine with its place in packet A.
@@ -213,18 +213,22 @@ struct PointConfig {
   bool is_analog() const { return channel == ChannelKind::ai || channel == ChannelKind::aq; }
 };
 
-/// [[station]]: a Modbus station, a GPIO chip, or the digital inputs and outputs of a drive.
+/// [[station]]: a Modbus station, a GPIO chip, the digital inputs and outputs of a drive, or a node of CiA
+/// 401 or CiA 406.
 struct StationConfig {
   std::string name;
   StationKind kind = StationKind::gpio;
   std::string url;  ///< modbus: "mock:NAME", "tcp:HOST:PORT", "rtu:/dev/..."; gpio: "mock:NAME", "chip:LABEL"
-  std::string node;      ///< drive: "bus.node"
+  std::string node;      ///< drive, canopen: "bus.node"
   std::string device;    ///< device file without .toml, modbus
   int unit = 1;          ///< modbus unit identifier
   double period = 0.02;  ///< s between polls, modbus; GPIO is read every cycle
   double timeout = 0.1;  ///< s until an answer is late
   std::vector<PointConfig> points;
-  bool mock() const { return kind == StationKind::drive || url.starts_with("mock:"); }
+  /// Its points come over a node of a bus.
+  bool over_bus() const { return kind == StationKind::drive || kind == StationKind::canopen; }
+  /// Nothing real is behind it, but for what is behind its bus.
+  bool mock() const { return over_bus() || url.starts_with("mock:"); }
 };
 
 /// [[symbol]]: a free place with a name.
@@ -355,6 +359,8 @@ struct MachineConfig {
   const PointConfig* point(std::string_view name, int* station = nullptr) const;
   /// A node by "bus.node", nullptr: none. The out-parameters get the indices where asked for.
   const NodeConfig* node(std::string_view reference, int* bus = nullptr, int* index = nullptr) const;
+  /// True when what a station has comes from a mock, or over a bus on which nothing is real.
+  bool nothing_real(const StationConfig& station) const;
   /// True when no bus and no station can reach anything real: mocks, and buses of simulated devices.
   bool nothing_real() const;
   /// True when every bus lives in virtual time.

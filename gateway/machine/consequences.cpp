@@ -144,7 +144,7 @@ class Sentences {
     // Without an index the slow edge is the zero; with one it only has to find the right turn.
     const double v = h.method == HomingMethod::switch_only ? h.slow : h.fast;
     if (v <= 0.0) return;
-    static constexpr const char* kNames[] = {"Modbus", "GPIO", "CAN"};
+    static constexpr const char* kNames[] = {"Modbus", "GPIO", "CAN", "CAN"};
     say(a.letter, kHome,
         {a.letter, kNames[static_cast<std::size_t>(s.kind)], text::number(period * 1e3), length(v * period),
          speed(v), index ? text::both(", the index makes it exact", ", точность даёт нулевая метка") : ""},
@@ -207,6 +207,7 @@ std::vector<canopen::NodeConfig> planned_nodes(const LoadResult& loaded, const B
     planned.node = static_cast<canopen::NodeId>(node.id);
     planned.name = node.name;
     planned.profile = drive_profile(*device, node, 0);
+    if (device->terminals()) planned.target = canopen::DriveTarget::io;
     planned.heartbeat_ms = static_cast<std::int32_t>(std::lround(node.heartbeat * 1e3));
     out.push_back(std::move(planned));
   }

@@ -5,6 +5,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "firmware_if/canopen/401/objects.hpp"
+#include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/406/objects.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
 #include "gateway/machine/keys/findings.hpp"
@@ -35,7 +38,9 @@ class DeviceCheck {
     modbus();
     homing_methods();
     ip_record();
-    if (!d_.drive() || !d_.places.contains("kind")) return;  // unknown kind: said by the reader
+    if (!d_.places.contains("kind")) return;  // unknown kind: said by the reader
+    if (d_.terminals()) terminals();
+    if (!d_.drive()) return;
     word("RPDO", d_.rpdos, 0x6040, "controlword");
     word("TPDO", d_.tpdos, 0x6041, "statusword");
     modes();
@@ -88,6 +93,25 @@ class DeviceCheck {
     if (bits > 64)
       reading_.error(at(path + ".objects"), finding::kPdoSize,
                      {key, std::to_string(pdo.number), std::to_string(bits)});
+  }
+
+  /// The loss of a module is seen by its process data, and what its outputs do then comes from their points.
+  void terminals() {
+    for (std::size_t i = 0; i < d_.tpdos.size(); ++i) {
+      const PdoConfig& pdo = d_.tpdos[i];
+      if ((pdo.transmission < 1 || pdo.transmission > 240) && pdo.event <= 0.0)
+        reading_.error(at("tpdo." + std::to_string(i) + ".transmission"), finding::kPdoNeverComes,
+                       {std::to_string(pdo.number), std::to_string(pdo.transmission)});
+    }
+    if (d_.kind != DeviceKind::canopen_io) return;
+    namespace io = canopen::io;
+    static constexpr std::uint16_t kOurs[] = {
+        canopen::object::kErrorBehaviour, io::kPolarityOutput8,         io::kErrorModeOutput8,
+        io::kErrorValueOutput8,           io::kErrorModeAnalogueOutput, io::kErrorValueAnalogueOutput};
+    for (const auto& [text, value] : d_.objects)
+      if (const auto object = parse_object(text);
+          object && std::find(std::begin(kOurs), std::end(kOurs), object->index) != std::end(kOurs))
+        reading_.error(at("objects." + text), finding::kObjectOfPoints, {text});
   }
 
   void homing_methods() {
@@ -318,6 +342,9 @@ canopen::DriveProfile drive_profile(const DeviceConfig& device, const NodeConfig
   p.revision = given(device.revision);
   p.counts_per_rev = counts_per_rev > 0 ? counts_per_rev : device.motor.counts_per_rev;
   put_behaviour(device.behaviour, p);
+  if (device.kind == DeviceKind::canopen_io) p.device_type = canopen::io::kDeviceProfile;
+  if (device.kind == DeviceKind::canopen_encoder) p.device_type = canopen::encoder::kDeviceProfile;
+  if (device.terminals()) p.abort_connection_option.reset();  // 6007h is something else there
   put_pdos(device.rpdos, p.rpdo);
   put_pdos(device.tpdos, p.tpdo);
   put_settings(device.objects, p.settings);

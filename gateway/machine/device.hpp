@@ -14,7 +14,15 @@
 namespace servogate::machine {
 
 /// What a device file describes; which of the tables below have a meaning follows from it.
-enum class DeviceKind : std::uint8_t { servo, stepper, spindle, modbus_io, gpio };
+enum class DeviceKind : std::uint8_t {
+  servo,
+  stepper,
+  spindle,
+  modbus_io,
+  gpio,
+  canopen_io,
+  canopen_encoder
+};
 
 /// One mapped object: "6040:00/16" = index, subindex, bits.
 struct PdoObject {
@@ -101,6 +109,12 @@ struct ModbusMap {
   int di_items() const { return di_as_registers ? (di_count + 15) / 16 : di_count; }
 };
 
+/// [encoder]: what an encoder of CiA 406 is to be, compared at boot.
+struct EncoderConfig {
+  std::int64_t counts_per_rev = 0;  ///< 6501h, 0: not checked
+  std::int64_t revolutions = 0;     ///< 6502h, 0: not checked
+};
+
 /// [gpio]: a GPIO chip.
 struct GpioConfig {
   int lines = 64;  ///< that the chip has, counted from 0
@@ -125,6 +139,7 @@ struct DeviceConfig {
   std::vector<DeviceError> errors;
   ModbusMap modbus;
   GpioConfig gpio;
+  EncoderConfig encoder;
 
   std::string file;  ///< path it was read from
   std::map<std::string, Where, std::less<>> places;
@@ -132,6 +147,8 @@ struct DeviceConfig {
   bool drive() const {
     return kind == DeviceKind::servo || kind == DeviceKind::stepper || kind == DeviceKind::spindle;
   }
+  /// A node of a bus that is no drive.
+  bool terminals() const { return kind == DeviceKind::canopen_io || kind == DeviceKind::canopen_encoder; }
   /// Text of an error code in the language, empty: unknown.
   std::string_view error_text(std::uint16_t code, text::Language language) const;
 };

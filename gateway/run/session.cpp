@@ -163,8 +163,8 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
     r.provenance.buses.push_back({m.buses[b].name, m.buses[b].url, m.buses[b].mock()});
   }
   if (sync_late_.size() > 1) r.sync_skew_us = report::quantiles_us(sync_skew_);
-  for (const machine::StationConfig& s : m.stations)  // a drive's own points come over its segment
-    if (s.kind != machine::StationKind::drive)
+  for (const machine::StationConfig& s : m.stations)  // what comes over a segment is in its nodes
+    if (!s.over_bus())
       r.provenance.buses.push_back(
           {s.name, s.url, s.mock(), s.kind == machine::StationKind::modbus ? "modbus" : "gpio"});
   for (std::size_t s = 0; s < control_.suppliers().size(); ++s) {

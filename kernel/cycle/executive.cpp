@@ -248,7 +248,7 @@ bool Cycle::still_present(const image::AlarmRecord& r) const noexcept {
     case alarm::kBusOff:
     case alarm::kBusDown:
     case axis::alarm::kPdoMissing:
-      return drives_missing(r);
+      return nodes_missing(r);
     default:
       break;
   }
@@ -257,12 +257,18 @@ bool Cycle::still_present(const image::AlarmRecord& r) const noexcept {
                      [&](const axis::Spindle& s) { return s.present(r.number); });
 }
 
-/// The drive that a record names, or one on the segment that it names, is not there.
-bool Cycle::drives_missing(const image::AlarmRecord& r) const noexcept {
-  const auto missing = [&r](const axis::DrivePlace& place, const image::DriveFeedback& drive) {
-    const bool meant = r.segment == place.segment && (r.node < 0 || r.node == place.node);
-    return meant && !drive.online;
+/// The drive or I/O module that a record names, or one on the segment that it names, is not there.
+bool Cycle::nodes_missing(const image::AlarmRecord& r) const noexcept {
+  const auto meant = [&r](const axis::DrivePlace& place) {
+    return r.segment == place.segment && (r.node < 0 || r.node == place.node);
   };
+  const auto missing = [&meant](const axis::DrivePlace& place, const image::DriveFeedback& drive) {
+    return meant(place) && !drive.online;
+  };
+  for (std::size_t s = 0; s < parts_.source_places.size(); ++s)
+    if (parts_.source_places[s].segment >= 0 && meant(parts_.source_places[s]) &&
+        image_.sources[s].quality != image::Quality::good)
+      return true;
   for (std::size_t i = 0; i < axes_.size(); ++i)
     if (missing(axes_[i].config().drive, image_.axes[i].drive) ||
         (r.axis == static_cast<int>(i) && axes_[i].present(r.number)))

@@ -37,6 +37,8 @@ struct CycleParts {
   std::uint32_t syvar_bytes = image::kSyvarDefaultSize;
   const image::Clock* stopwatch = nullptr;  ///< measures the phases; nullptr: phases are not measured
   std::array<bool, image::kMaxSources> watched_sources{};  ///< a stale or bad one is an alarm
+  /// Where on a bus a source is; segment -1: on none. An alarm of that place stays while its source is gone.
+  std::array<axis::DrivePlace, image::kMaxSources> source_places{};
   std::optional<image::Place>
       estop_place;  ///< emergency-stop chain: FALSE opens MC.estop_ok whatever the logic says
   std::optional<image::Place> alive_place;  ///< output that toggles as MC.control_alive does
@@ -132,7 +134,7 @@ class Cycle {
   ProcessContext context(int process) noexcept;
   void raise(const image::AlarmRecord& record) noexcept;
   bool still_present(const image::AlarmRecord& record) const noexcept;
-  bool drives_missing(const image::AlarmRecord& record) const noexcept;
+  bool nodes_missing(const image::AlarmRecord& record) const noexcept;
   void begin_measuring() noexcept;
   void stamp(Phase phase) noexcept;
 

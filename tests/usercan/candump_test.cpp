@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 
 #include "drivers/candump/candump_line.hpp"
@@ -62,6 +63,22 @@ TEST(Dump, what_is_played_onto_a_bus_is_what_is_dumped_from_it) {
   std::string frames = dump.said();
   for (const char* part : {"can0 181#DEAD\n", "can0 00012345#\n", "can0 701#R1\n", "can0 080#\n"})
     EXPECT_NE(frames.find(part), std::string::npos) << frames;
+}
+
+TEST(Dump, of_a_bus_that_goes_away_says_so_and_ends_as_trouble_of_the_computer) {
+  const std::string socket = scratch("bus.sock"), log = scratch("log");
+  const std::string url = "socketcand:unix:" + socket + "/can0";
+  const Process bus({"can", "bus", "can0", "--listen", "unix:" + socket});
+  ASSERT_TRUE(bus.says("can0 at")) << bus.said();
+  std::ofstream(log) << "(100.000000) can0 080#\n";
+  Process dump({"dump", url});
+  for (int i = 0; i < 100 && dump.said().find("080#") == std::string::npos; ++i) {
+    Process play({"play", url, log});
+    ASSERT_EQ(play.wait(), 0) << play.said();
+  }
+  bus.signal(SIGTERM);
+  EXPECT_EQ(dump.wait(), 4);
+  EXPECT_NE(dump.said().find("gone down"), std::string::npos) << dump.said();
 }
 
 TEST(Dump, a_log_that_is_none_is_named_with_its_line) {

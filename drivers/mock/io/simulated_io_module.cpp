@@ -3,14 +3,13 @@
 
 #include <cmath>
 
+#include "drivers/mock/io/profiled_node.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/device/communication_objects.hpp"
 #include "firmware_if/canopen/device/io/io_profile.hpp"
 
 namespace servogate::mock {
 namespace {
-
-constexpr Nanoseconds kPeriod = image::kMillisecond;
 
 std::vector<canopen::ObjectSpec> rows_of(const SimulatedIoConfig& c) {
   auto rows = canopen::communication_objects(c.node_id, {canopen::io_device_type(c.terminals), c.vendor_id,
@@ -27,55 +26,38 @@ std::vector<canopen::ObjectSpec> rows_of(const SimulatedIoConfig& c) {
 struct SimulatedIoModule::Inside {
   explicit Inside(const SimulatedIoConfig& c)
       : config(c),
-        dictionary({rows_of(config)}),
-        profile(dictionary, config.terminals, static_cast<Nanoseconds>(std::llround(config.filter_s * 1e9))),
-        slave(config.node_id, dictionary, profile) {}
+        node(config.node_id, config.boot_time_s, rows_of(config), config.terminals,
+             static_cast<Nanoseconds>(std::llround(config.filter_s * 1e9))) {}
 
-  void advance_to(Nanoseconds t) noexcept {
-    for (; next <= t; next += kPeriod) {
-      profile.tick(next);
-      slave.tick(next);
-    }
-  }
-
-  SimulatedIoConfig config;
-  canopen::ObjectDictionary dictionary;
-  canopen::IoProfile profile;
-  canopen::Slave slave;
-  Nanoseconds next = 0;
+  SimulatedIoConfig config;  ///< the dictionary's texts are its
+  ProfiledNode<canopen::IoProfile> node;
 };
 
 SimulatedIoModule::SimulatedIoModule(const SimulatedIoConfig& config)
     : inside_(std::make_unique<Inside>(config)) {}
 SimulatedIoModule::~SimulatedIoModule() = default;
 
-void SimulatedIoModule::connect(image::CanBus& bus, Nanoseconds now) {
-  inside_->next = now + kPeriod;
-  inside_->slave.power_on(bus, now,
-                          static_cast<Nanoseconds>(std::llround(inside_->config.boot_time_s * 1e9)));
-}
-const CanFilter* SimulatedIoModule::filter() const noexcept { return &inside_->slave.filter(); }
-void SimulatedIoModule::on_frame(const CanFrame& frame) noexcept {
-  if (!inside_->slave.concerned(frame)) return;
-  inside_->advance_to(frame.timestamp_ns);
-  inside_->slave.on_frame(frame, frame.timestamp_ns);
-}
-void SimulatedIoModule::advance_to(Nanoseconds t) noexcept { inside_->advance_to(t); }
-Nanoseconds SimulatedIoModule::next_action_ns() const noexcept { return inside_->next; }
+void SimulatedIoModule::connect(image::CanBus& bus, Nanoseconds now) { inside_->node.connect(bus, now); }
+const CanFilter* SimulatedIoModule::filter() const noexcept { return &inside_->node.slave.filter(); }
+void SimulatedIoModule::on_frame(const CanFrame& frame) noexcept { inside_->node.on_frame(frame); }
+void SimulatedIoModule::advance_to(Nanoseconds t) noexcept { inside_->node.advance_to(t); }
+Nanoseconds SimulatedIoModule::next_action_ns() const noexcept { return inside_->node.next; }
 
-canopen::NmtState SimulatedIoModule::nmt_state() const noexcept { return inside_->slave.state(); }
+canopen::NmtState SimulatedIoModule::nmt_state() const noexcept { return inside_->node.slave.state(); }
 void SimulatedIoModule::set_digital(std::uint8_t line, bool level) noexcept {
-  inside_->profile.set_digital(line, level);
+  inside_->node.profile.set_digital(line, level);
 }
 void SimulatedIoModule::set_analogue(std::uint8_t channel, std::int16_t value) noexcept {
-  inside_->profile.set_analogue(channel, value);
+  inside_->node.profile.set_analogue(channel, value);
 }
-bool SimulatedIoModule::digital(std::uint8_t line) const noexcept { return inside_->profile.digital(line); }
+bool SimulatedIoModule::digital(std::uint8_t line) const noexcept {
+  return inside_->node.profile.digital(line);
+}
 std::int16_t SimulatedIoModule::analogue(std::uint8_t channel) const noexcept {
-  return inside_->profile.analogue(channel);
+  return inside_->node.profile.analogue(channel);
 }
 std::int64_t SimulatedIoModule::object(std::uint16_t index, std::uint8_t subindex) const noexcept {
-  return inside_->dictionary.get(index, subindex);
+  return inside_->node.dictionary.get(index, subindex);
 }
 
 }  // namespace servogate::mock

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/canopen/302/boot_plan.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 
 #include "firmware_if/canopen/302/concise_dcf.hpp"
+#include "firmware_if/canopen/401/objects.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/406/objects.hpp"
 
 namespace servogate::canopen {
 namespace {
@@ -123,7 +127,14 @@ void add_modes(Plan& plan, const DriveProfile& profile) {
   }
 }
 
-void add_guarding(Plan& plan, const DriveProfile& profile, const SegmentConfig& segment) {
+void add_encoder(Plan& plan, const NodeSetup& setup) {
+  plan.step(BootStep::encoder_resolution);
+  if (setup.counts_per_rev) plan.check(encoder::kSingleTurnResolution, 0, 4, *setup.counts_per_rev);
+  if (setup.revolutions) plan.check(encoder::kRevolutions, 0, 2, *setup.revolutions);
+}
+
+void add_guarding(Plan& plan, const NodeConfig& node, const SegmentConfig& segment) {
+  const DriveProfile& profile = node.profile;
   if (profile.guard_time_ms > 0) {
     plan.step(BootStep::node_guarding);
     plan.write_and_check(object::kGuardTime, 0, 2, profile.guard_time_ms);
@@ -134,11 +145,38 @@ void add_guarding(Plan& plan, const DriveProfile& profile, const SegmentConfig& 
     plan.write_and_check(object::kConsumerHeartbeatTime, 1, 4,
                          static_cast<std::uint32_t>(segment.own_node) << 16 | time);
   }
-  if (profile.abort_connection_option) {
+  // In an I/O module 6007h is a mask of events.
+  if (profile.abort_connection_option && node.target != DriveTarget::io) {
     plan.step(BootStep::abort_connection);
     plan.write_and_check(object::kAbortConnectionOption, 0, 2,
                          static_cast<std::uint16_t>(*profile.abort_connection_option));
   }
+}
+
+/// What the outputs of a module do when it has lost its master: in state Pre-operational (1029h:01 = 0) they
+/// go to the values of their points, or stay. Source: CiA 301, 7.5.2.31; CiA 401-1, 6206h, 6207h, 6443h,
+/// 6444h.
+void add_error_states(Plan& plan, const NodeConfig& node) {
+  if (node.target != DriveTarget::io) return;
+  plan.step(BootStep::error_states);
+  plan.write_and_check(object::kErrorBehaviour, 1, 1, 0, true);
+  for (const PdoWanted& pdo : node.profile.rpdo)
+    for (const MappingEntry& mapped : pdo.mapping.used()) {
+      const bool digital = mapped.index == io::kWriteOutput8;
+      if (!digital && mapped.index != io::kWriteAnalogueOutput16) continue;
+      std::uint32_t mode = digital ? 0xFF : 1, value = 0;  // lines that are no point go to 0
+      for (const IoPoint& p : node.io.points) {
+        if (p.index != mapped.index || p.subindex != mapped.subindex) continue;
+        if (p.hold) mode &= ~(1u << std::max<int>(0, p.bit));
+        if (digital && p.loss != 0.0) value |= 1u << p.bit;
+        // The 16 bits of a channel stand in the upper half.
+        if (!digital) value = static_cast<std::uint32_t>(std::lround(p.loss)) << 16;
+      }
+      plan.write_and_check(digital ? io::kErrorModeOutput8 : io::kErrorModeAnalogueOutput, mapped.subindex, 1,
+                           mode);
+      plan.write_and_check(digital ? io::kErrorValueOutput8 : io::kErrorValueAnalogueOutput, mapped.subindex,
+                           digital ? 1 : 4, value);
+    }
 }
 
 void add_sync(Plan& plan, const DriveProfile& profile, const SegmentConfig& segment) {
@@ -271,7 +309,8 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
     plan.step(BootStep::software_version);
     plan.read_text(object::kSoftwareVersion, node.setup.software_version);
   }
-  add_modes(plan, node.profile);
+  if (node.target != DriveTarget::io) add_modes(plan, node.profile);
+  add_encoder(plan, node.setup);
   add_configuration(plan, node);
   plan.step(BootStep::settings);
   // The brake must be engaged before anything, a mask in the settings for one, can hand it to the output.
@@ -283,10 +322,11 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
     if (setting.read_back) plan.check(setting.index, setting.subindex, setting.bytes, setting.value);
   }
   add_homing(plan, node);
-  add_guarding(plan, node.profile, segment);
+  add_guarding(plan, node, segment);
+  add_error_states(plan, node);
   add_sync(plan, node.profile, segment);
   add_pdos(plan, node);
-  add_mode(plan, node, segment);
+  if (node.target != DriveTarget::io) add_mode(plan, node, segment);
   plan.step(BootStep::heartbeat_producer);
   if (node.profile.guard_time_ms > 0)  // a heartbeat producer would not answer guarding
     plan.write(object::kProducerHeartbeatTime, 0, 2, 0, true);

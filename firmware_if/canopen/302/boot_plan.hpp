@@ -40,7 +40,7 @@ struct BootAction {
   std::uint16_t jump = 0;
 };
 
-/// The boot of one drive as a list: identity first, then configuration with every value read back, then
+/// The boot of one node as a list: identity first, then configuration with every value read back, then
 /// start. PDOs are written in the order of CiA 301, 7.5.2.36: switch off, count 0, entries, count,
 /// communication, switch on. Not real-time safe.
 std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& segment);

@@ -18,12 +18,14 @@ enum class BootStep : std::uint8_t {
   software_version,    ///< 100Ah
   program,             ///< 1F56h compared; 1F51h, 1F50h, 1F57h where it is another one
   supported_modes,     ///< 6502h
+  encoder_resolution,  ///< 6501h, 6502h, of an encoder
   configuration,       ///< 1020h compared; concise DCF where it is another one
   settings,            ///< the device file's own values
   homing,              ///< 60E3h, 6098h, 6099h, 609Ah, 607Ch, for an axis that its drive homes
   node_guarding,       ///< 100Ch, 100Dh, for a node without heartbeat
   heartbeat_consumer,  ///< 1016h:01, our heartbeat
   abort_connection,    ///< 6007h
+  error_states,        ///< 1029h, 6206h, 6207h, 6443h, 6444h, for the outputs of an I/O module
   sync,                ///< 1005h, 1006h
   rpdo,                ///< 1400h+n, 1600h+n
   tpdo,                ///< 1800h+n, 1A00h+n

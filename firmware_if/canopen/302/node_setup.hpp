@@ -36,6 +36,8 @@ struct NodeSetup {
   std::optional<ConfigurationDate> configuration_date;
   bool store_configuration = false;  ///< what was written is stored by 1010h:01
   std::optional<NodeHoming> homing;
+  /// Of an encoder: counts per turn (6501h) and turns (6502h), compared. Source: CiA 406.
+  std::optional<std::uint32_t> counts_per_rev, revolutions;
   std::int32_t boot_timeout_ms = 0;          ///< 0: the segment's
   std::int32_t boot_attempts = 0;            ///< 0: the segment's
   std::int32_t program_timeout_ms = 60'000;  ///< of clearing and of writing the flash

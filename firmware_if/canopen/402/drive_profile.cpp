@@ -26,11 +26,23 @@ constexpr std::uint8_t kEveryTenthSync = 10;
 
 }  // namespace
 
-bool stops_by_itself(const DriveProfile& profile) noexcept {
+namespace {
+bool has_deadline(const DriveProfile& profile) noexcept {
   for (const PdoWanted& pdo : profile.rpdo)
     if (pdo.used() && pdo.event_ms > 0) return true;
-  const bool watches = profile.has_heartbeat_consumer || profile.guard_time_ms > 0;
-  return watches && profile.abort_connection_option.value_or(0) != 0;
+  return false;
+}
+bool watches(const DriveProfile& profile) noexcept {
+  return profile.has_heartbeat_consumer || profile.guard_time_ms > 0;
+}
+}  // namespace
+
+bool stops_by_itself(const DriveProfile& profile) noexcept {
+  return has_deadline(profile) || (watches(profile) && profile.abort_connection_option.value_or(0) != 0);
+}
+
+bool notices_silence(const DriveProfile& profile) noexcept {
+  return has_deadline(profile) || watches(profile);
 }
 
 void use_short_position_map(DriveProfile& profile) {

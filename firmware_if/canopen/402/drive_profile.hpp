@@ -44,9 +44,9 @@ enum class FaultReset : std::uint8_t {
           ///< stands
 };
 
-/// Everything that is particular to one make of drive: a file of devices/ as data, never code. Filled by the
-/// gateway before the cycle starts and not changed afterwards. The defaults fit a drive that keeps to CiA
-/// 402.
+/// Everything that is particular to one make of drive, or of I/O module: a file of devices/ as data, never
+/// code. Filled by the gateway before the cycle starts and not changed afterwards. The defaults fit a drive
+/// that keeps to CiA 402.
 struct DriveProfile {
   std::string name;  ///< name of the device file
   std::string manufacturer;
@@ -94,7 +94,7 @@ struct DriveProfile {
   std::uint16_t guard_time_ms = 0;
   std::uint8_t life_time_factor = 3;
   std::optional<std::int16_t> abort_connection_option =
-      1;  ///< 6007h: 1 fault, 2 disable voltage, 3 quick stop
+      1;  ///< 6007h of CiA 402: 1 fault, 2 disable voltage, 3 quick stop
 
   // Behaviour.
   FaultReset fault_reset = FaultReset::edge;
@@ -123,6 +123,8 @@ struct DriveProfile {
 /// Whether the drive notices by itself that its control has died: heartbeat consumer 1016h or life guarding
 /// with a reaction 6007h, or a deadline of an RPDO.
 bool stops_by_itself(const DriveProfile& profile) noexcept;
+/// The same without the reaction, of a device whose reaction is no 6007h: an I/O module has its error modes.
+bool notices_silence(const DriveProfile& profile) noexcept;
 
 /// PDO maps for a position axis: RPDO1 6040h 607Ah, TPDO1 6041h 6064h; everything else (mode, touch probe,
 /// error code) goes over SDO, which three drives at 1 Mbit/s and 1 ms leave room for. Fills rpdo, tpdo and

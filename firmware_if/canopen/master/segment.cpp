@@ -9,7 +9,7 @@
 
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/master/bus_meter.hpp"
-#include "firmware_if/canopen/master/drive/drive_node.hpp"
+#include "firmware_if/canopen/master/bus_node.hpp"
 #include "firmware_if/canopen/master/segment_load.hpp"
 
 namespace servogate::canopen {
@@ -46,10 +46,21 @@ void require(bool condition, const char* what) {
   if (!condition) throw std::invalid_argument(what);
 }
 
-void check_node(const NodeConfig& node) {
-  require(node.node >= 1 && node.node <= kMaxNode, "node-ID outside 1-127");
-  const int targets = node.target == DriveTarget::axis ? image::kMaxAxes : image::kMaxSpindles;
-  require(node.target_index >= 0 && node.target_index < targets, "target of a node out of range");
+void check_io(const NodeConfig& node) {
+  const DriveProfile& profile = node.profile;
+  for (const IoPoint& p : node.io.points) {
+    const PdoField field = find_field(p.input ? profile.tpdo : profile.rpdo, p.index, p.subindex);
+    require(field.mapped() && p.bit < field.bits, "a point is in no PDO");
+    require(p.scale != 0.0, "the scale of a point is zero");
+  }
+  for (const PdoWanted& pdo : profile.tpdo)
+    require(!pdo.used() || cycles_between(pdo, image::kMillisecond) > 0, "a TPDO that need never come");
+  const bool speaks = std::ranges::any_of(profile.rpdo, &PdoWanted::used);
+  require(!speaks || notices_silence(profile) || node.unsupervised,
+          "the module would not notice the death of the control, and nobody has waived that");
+}
+
+void check_drive(const NodeConfig& node) {
   const DriveProfile& profile = node.profile;
   require(find_field(profile.rpdo, object::kControlword).mapped(), "6040h is not mapped");
   require(find_field(profile.tpdo, object::kStatusword).mapped(), "6041h is not mapped");
@@ -64,6 +75,14 @@ void check_node(const NodeConfig& node) {
               find_field(profile.rpdo, object::kInterpolationData, profile.ip_position_entry).mapped(),
           "neither 607Ah nor 60C1h:01 is mapped");
   require(find_field(profile.tpdo, object::kPositionActual).mapped(), "6064h is not mapped");
+}
+
+void check_node(const NodeConfig& node) {
+  static constexpr int kTargets[] = {image::kMaxAxes, image::kMaxSpindles, image::kMaxSources};
+  require(node.node >= 1 && node.node <= kMaxNode, "node-ID outside 1-127");
+  require(node.target_index >= 0 && node.target_index < kTargets[static_cast<int>(node.target)],
+          "target of a node out of range");
+  node.target == DriveTarget::io ? check_io(node) : check_drive(node);
 }
 
 SegmentConfig checked(SegmentConfig config) {
@@ -101,7 +120,7 @@ class SdoBudget {
     for (const NodeConfig& node : config.nodes) node_bits_.push_back(bits({&node, 1}) - own);
   }
   /// A cycle begins. real-time safe.
-  void refill(std::span<const DriveNode> nodes) noexcept {
+  void refill(std::span<const BusNode> nodes) noexcept {
     double free = free_;
     for (std::size_t i = 0; i < nodes.size(); ++i)
       if (nodes[i].online()) free -= node_bits_[i];
@@ -135,15 +154,6 @@ struct Segment::Impl {
   NodeContext context(const ProcessImage& image) noexcept {
     return {static_cast<std::int16_t>(config.index), image.now.number, image.now.t_ns, bus, ring, question};
   }
-  static image::DriveFeedback& feedback(ProcessImage& image, const NodeConfig& node) noexcept {
-    const auto i = static_cast<std::size_t>(node.target_index);
-    return node.target == DriveTarget::axis ? image.axes[i].drive : image.spindles[i].drive;
-  }
-  static const image::DriveCommand& command(const ProcessImage& image, const NodeConfig& node) noexcept {
-    const auto i = static_cast<std::size_t>(node.target_index);
-    return node.target == DriveTarget::axis ? image.axes[i].drive_command : image.spindles[i].drive_command;
-  }
-
   BusEvent event(BusEventKind kind, const ProcessImage& image, NodeId node = 0) const noexcept;
   void say_frame(BusEventKind kind, const ProcessImage& image, const image::CanFrame& frame, NodeId node,
                  std::int64_t got = 0) noexcept;
@@ -193,7 +203,7 @@ struct Segment::Impl {
 
   SegmentConfig config;
   CountingBus bus;
-  std::vector<DriveNode> nodes;
+  std::vector<BusNode> nodes;
   std::array<std::int8_t, 128> index_of{};
   BusEventRing ring;
   ObjectQuestion question;
@@ -300,7 +310,7 @@ void Segment::Impl::watch_bus(const ProcessImage& image) noexcept {
 void Segment::Impl::drain(ProcessImage& image) noexcept {
   image::CanFrame frame;
   for (int n = 0; n < kMaxFramesPerCycle && bus.receive(frame); ++n) dispatch(frame, image);
-  for (DriveNode& node : nodes) node.evaluate(feedback(image, node.config()), context(image));
+  for (BusNode& node : nodes) node.evaluate(image, context(image));
 }
 
 void Segment::Impl::send_heartbeat(const ProcessImage& image) noexcept {
@@ -346,7 +356,7 @@ void Segment::Impl::fill_status(image::SegmentStatus& status) const noexcept {
   status.frames_received = bus.received;
   status.errors = bus.errors + send_failures;
   status.operational = !nodes.empty();
-  for (const DriveNode& node : nodes) status.operational = status.operational && node.online();
+  for (const BusNode& node : nodes) status.operational = status.operational && node.online();
 }
 
 Segment::Segment(image::CanBus& bus, SegmentConfig config)
@@ -366,9 +376,9 @@ void Segment::receive(ProcessImage& image) noexcept {
 
 void Segment::send(ProcessImage& image) noexcept {
   Impl& my = *impl_;
-  for (DriveNode& node : my.nodes) {
+  for (BusNode& node : my.nodes) {
     image::CanFrame dropped;
-    const int lost = node.send_process_data(Impl::command(image, node.config()), my.context(image), dropped);
+    const int lost = node.send_process_data(image, my.context(image), dropped);
     my.send_failures += static_cast<std::uint64_t>(lost);
     if (lost > 0) my.say_send_failed(image, dropped, node.id());
   }
@@ -382,7 +392,7 @@ BusEventRing& Segment::events() noexcept { return impl_->ring; }
 const SegmentConfig& Segment::config() const noexcept { return impl_->config; }
 
 NodeStatus Segment::node_status(std::size_t i) const noexcept {
-  const DriveNode& node = impl_->nodes[i];
+  const BusNode& node = impl_->nodes[i];
   const NodeIdentity& identity = node.identity();
   return {node.id(),
           node.online(),

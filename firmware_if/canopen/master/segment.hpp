@@ -20,7 +20,8 @@ struct NodeStatus {
   std::uint32_t emcy_count = 0;
 };
 
-/// CANopen master of one CAN bus with its CiA 402 drives, as a device of the cycle.
+/// CANopen master of one CAN bus with its drives (CiA 402), I/O modules (CiA 401) and encoders (CiA 406), as
+/// a device of the cycle.
 ///
 /// SYNC k opens cycle k: it is the first frame receive() sends. A drive latches its actual values and applies
 /// the RPDO it got before at SYNC; the TPDOs it answers after SYNC k are read in cycle k + 1. Nodes boot, are
@@ -36,9 +37,10 @@ class Segment final : public image::CycleDevice {
   Segment(const Segment&) = delete;
   Segment& operator=(const Segment&) = delete;
 
-  /// SYNC, then all received frames, then AxisImage::drive and SpindleImage::drive. real-time safe.
+  /// SYNC, then all received frames, then AxisImage::drive, SpindleImage::drive, inputs into packet A.
+  /// real-time safe.
   void receive(image::ProcessImage& image) noexcept override;
-  /// RPDOs of drive_command, then heartbeat, NMT and SDO. real-time safe.
+  /// RPDOs of drive_command and of outputs in packet A, then heartbeat, NMT and SDO. real-time safe.
   void send(image::ProcessImage& image) noexcept override;
 
   /// Reading an object of a node that runs, from outside the cycle; one asker. real-time safe.

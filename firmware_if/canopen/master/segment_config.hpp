@@ -7,24 +7,27 @@
 #include "firmware_if/canopen/301/time_of_day.hpp"
 #include "firmware_if/canopen/302/node_setup.hpp"
 #include "firmware_if/canopen/402/drive_profile.hpp"
+#include "firmware_if/canopen/master/io/io_station.hpp"
 #include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/time.hpp"
 
 namespace servogate::canopen {
 
-/// Which part of the process image a drive supplies.
-enum class DriveTarget : std::uint8_t { axis, spindle };
+/// Which part of the process image a node supplies; io: points of packet A.
+enum class DriveTarget : std::uint8_t { axis, spindle, io };
 
-/// One drive on the segment.
+/// One drive or I/O module on the segment.
 struct NodeConfig {
   NodeId node = 1;
   std::string name;  ///< as the machine file calls it, for messages
   DriveProfile profile;
   DriveTarget target = DriveTarget::axis;
-  int target_index = 0;           ///< index in ProcessImage::axes or ::spindles
+  int target_index = 0;           ///< index in ProcessImage::axes, ::spindles or ::sources
+  IoStation io;                   ///< target io: its points
   std::int32_t heartbeat_ms = 0;  ///< producer time of this node, lost after three of them; 0: the segment's
   std::int32_t max_missed_pdo = 0;  ///< 0: the segment's
-  /// The drive may run although it would not notice the death of the control (see stops_by_itself()).
+  /// It may run although it would not notice the death of the control (see stops_by_itself(),
+  /// notices_silence()).
   bool unsupervised = false;
   /// What its loss makes the machine do: stop_on_path or something stronger.
   image::Reaction loss_reaction = image::Reaction::stop_on_path;
@@ -41,7 +44,7 @@ struct SegmentConfig {
 
   std::int32_t heartbeat_ms = 100;          ///< producer time of every node and of the control
   std::int32_t heartbeat_timeout_ms = 300;  ///< consumer time on both sides
-  std::int32_t max_missed_pdo = 3;          ///< cycles without TPDO1 after which a node is offline
+  std::int32_t max_missed_pdo = 3;          ///< process data missing in a row after which a node is offline
   /// SYNC counter runs from 1 to this and begins anew (1019h); 0: SYNC has no counter. 2-240.
   std::uint8_t sync_counter_overflow = 0;
   std::int32_t sync_window_us = 0;  ///< 1007h of every node: later synchronous PDOs are dropped; 0: no window
@@ -67,7 +70,7 @@ constexpr std::int32_t heartbeat_timeout_ms(const NodeConfig& node, const Segmen
   if (node.profile.guard_time_ms > 0) return node.profile.guard_time_ms * node.profile.life_time_factor;
   return node.heartbeat_ms > 0 ? 3 * node.heartbeat_ms : segment.heartbeat_timeout_ms;
 }
-/// Cycles without TPDO1 after which a node is offline. real-time safe.
+/// Process data missing in a row after which a node is offline. real-time safe.
 constexpr std::int32_t max_missed_pdo(const NodeConfig& node, const SegmentConfig& segment) noexcept {
   return node.max_missed_pdo > 0 ? node.max_missed_pdo : segment.max_missed_pdo;
 }

@@ -66,6 +66,7 @@ int segments_that_fit(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::
 
 /// Every cycle only the set-point and the actual position; all else rides in a second PDO every 10th SYNC.
 NodeConfig with_four_byte_pdo(NodeConfig node) {
+  if (node.target == DriveTarget::io) return node;
   const bool velocity = node.target == DriveTarget::spindle;
   PdoWanted target, actual, rest_out, rest_in;
   target.mapping.add({velocity ? object::kTargetVelocity : object::kTargetPosition, 0, 32});

@@ -222,7 +222,7 @@ int sim(const SimOptions& options) {
   if (!deeds) return kWrongUse;
   if (!open_buses(buses)) return kInfrastructure;
   for (const machine::StationConfig& s : loaded.machine.stations)
-    if (s.kind != machine::StationKind::drive && s.mock())
+    if (!s.over_bus() && s.mock())
       std::fprintf(stderr, "%s\n",
                    text::render(kNotServed, std::vector<std::string>{s.name}, text::user_language()).c_str());
   DriveDesk desk(std::move(*deeds), true);

@@ -48,12 +48,13 @@ MockWorld::MockWorld(const machine::LoadResult& loaded) {
   add_drives(loaded);
   int source = 0;
   for (const machine::StationConfig& station : m.stations) {
-    if (station.kind == machine::StationKind::drive) add_drive_wires(loaded, station);
+    if (station.over_bus()) add_node_wires(loaded, station);
     if (station.mock() && station.kind == machine::StationKind::gpio) add_gpio(loaded, station, source);
     if (station.mock() && station.kind == machine::StationKind::modbus) add_modbus(loaded, station, source);
     ++source;
   }
   add_turrets(m);
+  add_wires(m);
   operator_points_ = m.simulation.operator_closes;
 }
 
@@ -71,11 +72,7 @@ void MockWorld::add_drives(const machine::LoadResult& loaded) {
     config.bit_rate = static_cast<std::uint32_t>(bus.bit_rate);
     segments_.push_back(std::make_unique<mock::CanSegment>(config));
     endpoints_.push_back(&segments_.back()->add_endpoint("control"));
-    for (const machine::NodeConfig& node : bus.nodes) {
-      drives_.push_back({bus.name + "." + node.name,
-                         std::make_unique<mock::SimulatedDrive>(simulated_node(loaded, bus, node))});
-      segments_.back()->attach(*drives_.back().device, node.name);
-    }
+    for (const machine::NodeConfig& node : bus.nodes) add_node(loaded, bus, node);
   }
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
     AxisDrive& axis = axes_[a];
@@ -85,6 +82,27 @@ void MockWorld::add_drives(const machine::LoadResult& loaded) {
     for (const machine::SimulatedDrive& s : m.simulation.drives)
       if (s.node == m.axes[a].drive && !s.absolute_encoder) axis.start = s.start;
   }
+}
+
+/// The device of a node, on the wire that was made last.
+void MockWorld::add_node(const machine::LoadResult& loaded, const machine::BusConfig& bus,
+                         const machine::NodeConfig& node) {
+  const std::string reference = bus.name + "." + node.name;
+  const machine::DeviceConfig* device = loaded.device(node.device);
+  mock::CanNode* made = nullptr;
+  if (device != nullptr && device->kind == machine::DeviceKind::canopen_io) {
+    modules_.push_back(
+        {reference, std::make_unique<mock::SimulatedIoModule>(simulated_module(*device, node.id))});
+    made = modules_.back().device.get();
+  } else if (device != nullptr && device->kind == machine::DeviceKind::canopen_encoder) {
+    encoders_.push_back(
+        {reference, std::make_unique<mock::SimulatedEncoder>(simulated_encoder(*device, node.id))});
+    made = encoders_.back().device.get();
+  } else {
+    drives_.push_back({reference, std::make_unique<mock::SimulatedDrive>(simulated_node(loaded, bus, node))});
+    made = drives_.back().device.get();
+  }
+  segments_.back()->attach(*made, node.name);
 }
 
 /// An input line of the chip that is made next: its contact follows a switch or is set.
@@ -128,16 +146,19 @@ void MockWorld::add_gpio(const machine::LoadResult& loaded, const machine::Stati
   io_.push_back(gpios_.back().get());
 }
 
-/// Contacts that lead to a drive: their levels reach packet A over the bus, so the lines are no device of the
-/// cycle.
-void MockWorld::add_drive_wires(const machine::LoadResult& loaded, const machine::StationConfig& station) {
-  DriveWires wires{gpios_.size(), drive(station.node), {}};
-  if (wires.drive == nullptr) return;
+/// Contacts that lead to a drive or an I/O module: their levels reach packet A over the bus, so the lines are
+/// no device of the cycle.
+void MockWorld::add_node_wires(const machine::LoadResult& loaded, const machine::StationConfig& station) {
+  NodeWires wires{gpios_.size(), drive(station.node), module(station.node), {}};
+  for (const machine::PointConfig& p : station.points)
+    if (p.channel == machine::ChannelKind::ai && p.number >= 0) add_analog(loaded.machine, station, p);
+  if (wires.drive == nullptr && wires.module == nullptr) return;
   std::vector<mock::GpioInput> inputs;
   for (const machine::PointConfig& p : station.points) {
-    if (p.number < 0) continue;
+    if (p.number < 0 || p.is_analog()) continue;
     if (!p.is_input()) {
-      outputs_.push_back({p.name, 0, static_cast<std::size_t>(p.number), false, p.inverted, wires.drive});
+      outputs_.push_back(
+          {p.name, 0, static_cast<std::size_t>(p.number), false, p.inverted, wires.drive, wires.module});
       continue;
     }
     mock::GpioInput input = contact(loaded.machine, p);
@@ -148,22 +169,37 @@ void MockWorld::add_drive_wires(const machine::LoadResult& loaded, const machine
   }
   gpios_.push_back(std::make_unique<mock::MockGpio>(std::move(inputs), std::vector<mock::GpioOutput>{},
                                                     [this](int axis) { return axis_position(axis); }));
-  drive_wires_.push_back(std::move(wires));
+  node_wires_.push_back(std::move(wires));
 }
 
-void MockWorld::drive_wires(const DriveWires& wires) {
+void MockWorld::add_analog(const machine::MachineConfig& m, const machine::StationConfig& station,
+                           const machine::PointConfig& p) {
+  Input input{p.name, 0, static_cast<std::size_t>(p.number), false, false, true, false, p.scale, p.shift};
+  input.module = module(station.node);
+  input.encoder = p.number == 0 ? encoder(station.node) : nullptr;
+  if (input.module == nullptr && input.encoder == nullptr) return;
+  inputs_.push_back(input);
+  if (const auto initial = m.simulation.initial.find(p.name); initial != m.simulation.initial.end())
+    play_raw(input, initial->second);
+}
+
+void MockWorld::carry_wires(const NodeWires& wires) {
   using Terminal = mock::DriveSwitch::Input;
   std::uint16_t general = 0;
   for (std::size_t n = 0; n < wires.bits.size(); ++n) {
     const bool on = gpios_[wires.wires]->input(n);
     const int bit = wires.bits[n];
+    if (wires.module != nullptr) {
+      wires.module->set_digital(static_cast<std::uint8_t>(bit), on);
+      continue;
+    }
     if (bit == 0) wires.drive->set_input(Terminal::negative_limit, on);
     if (bit == 1) wires.drive->set_input(Terminal::positive_limit, on);
     if (bit == 2) wires.drive->set_input(Terminal::home, on);
     if (bit == 3) wires.drive->set_interlock(on);
     if (bit >= 16 && on) general = static_cast<std::uint16_t>(general | 1u << (bit - 16));
   }
-  wires.drive->set_general_inputs(general);
+  if (wires.drive != nullptr) wires.drive->set_general_inputs(general);
 }
 
 void MockWorld::add_modbus(const machine::LoadResult& loaded, const machine::StationConfig& station,
@@ -225,6 +261,34 @@ void MockWorld::add_turrets(const machine::MachineConfig& machine) {
   }
 }
 
+void MockWorld::add_wires(const machine::MachineConfig& m) {
+  for (const machine::SimulatedLoop& loop : m.simulation.loops) {
+    int from = -1, to = -1;
+    if (m.point(loop.output, &from) == nullptr || m.point(loop.input, &to) == nullptr) continue;
+    if (from == to && m.stations[static_cast<std::size_t>(to)].kind == machine::StationKind::modbus) continue;
+    const auto named = [](const auto& list, const std::string& name) {
+      return static_cast<std::size_t>(
+          std::ranges::find_if(list, [&](const auto& item) { return item.name == name; }) - list.begin());
+    };
+    const std::size_t output = named(outputs_, loop.output), input = named(inputs_, loop.input);
+    if (output < outputs_.size() && input < inputs_.size() && !inputs_[input].analog)
+      wires_.push_back(
+          {output, input, loop.inverted, static_cast<image::Nanoseconds>(std::llround(loop.delay * 1e9))});
+  }
+}
+
+/// Levels of the wires themselves: `inverted` of the two points is not theirs.
+void MockWorld::carry(Wire& wire, image::Nanoseconds t) {
+  const Output& from = outputs_[wire.output];
+  const bool level = motor_on(from) != from.inverted;
+  if (wire.level != level) {
+    wire.level = level;
+    wire.since = t;
+  }
+  if (t - wire.since >= wire.delay_ns)
+    drive_input(inputs_[wire.input], (level != wire.inverted) != inputs_[wire.input].inverted);
+}
+
 void MockWorld::turn(Turret& turret, image::Nanoseconds t) {
   turret.indexer.advance_to(t, motor_on(outputs_[turret.motor]));
   const int position = turret.indexer.position();
@@ -237,10 +301,11 @@ void MockWorld::turn(Turret& turret, image::Nanoseconds t) {
 void MockWorld::advance_to(image::Nanoseconds t) {
   if (wished_.load(std::memory_order_acquire)) apply_wishes();
   for (Turret& turret : turrets_) turn(turret, t);
+  for (Wire& wire : wires_) carry(wire, t);
   for (const auto& segment : segments_)
     if (segment != nullptr) segment->advance_to(t);
   for (const auto& gpio : gpios_) gpio->advance_to(t);
-  for (const DriveWires& wires : drive_wires_) drive_wires(wires);
+  for (const NodeWires& wires : node_wires_) carry_wires(wires);
   for (const auto& line : lines_) line->advance_to(t);
 }
 
@@ -253,6 +318,7 @@ bool MockWorld::drive_input(const Input& i, bool on) {
 }
 
 bool MockWorld::motor_on(const Output& o) const {
+  if (o.module != nullptr) return o.module->digital(static_cast<std::uint8_t>(o.number)) != o.inverted;
   if (o.drive != nullptr) return ((o.drive->digital_outputs() >> o.number & 1) != 0) != o.inverted;
   const bool level = o.gpio ? gpios_[o.device]->output(o.number)
                             : lines_[o.device]->station(0).output(static_cast<std::uint16_t>(o.number));
@@ -284,10 +350,7 @@ void MockWorld::apply_wishes() {
     const Input& i = inputs_[wish.input];
     const double value = wish.play.value.value_or(0.0);
     if (i.analog) {
-      const double raw = i.scale != 0.0 ? (value - i.shift) / i.scale : value;
-      lines_[i.device]->station(0).set_analog_input(
-          static_cast<std::uint16_t>(i.number),
-          static_cast<std::uint16_t>(std::lround(std::clamp(raw, 0.0, kLargestRegister))));
+      play_raw(i, i.scale != 0.0 ? (value - i.shift) / i.scale : value);
     } else if (!i.switched) {
       drive_input(i, value != 0.0);
     } else if (wish.play.value) {
@@ -299,6 +362,18 @@ void MockWorld::apply_wishes() {
   wishes_.clear();
 }
 
+void MockWorld::play_raw(const Input& i, double raw) {
+  const auto within = [raw](double low, double high) { return std::llround(std::clamp(raw, low, high)); };
+  if (i.encoder != nullptr)
+    i.encoder->set_position(within(-2147483648.0, 4294967295.0));
+  else if (i.module != nullptr)
+    i.module->set_analogue(static_cast<std::uint8_t>(i.number),
+                           static_cast<std::int16_t>(within(-32768.0, 32767.0)));
+  else
+    lines_[i.device]->station(0).set_analog_input(static_cast<std::uint16_t>(i.number),
+                                                  static_cast<std::uint16_t>(within(0.0, kLargestRegister)));
+}
+
 void MockWorld::close_operator_points() {
   for (const std::string& point : operator_points_) set_input(point, true);
 }
@@ -306,6 +381,18 @@ void MockWorld::close_operator_points() {
 mock::SimulatedDrive* MockWorld::drive(std::string_view reference) {
   for (Drive& d : drives_)
     if (d.reference == reference) return d.device.get();
+  return nullptr;
+}
+
+mock::SimulatedIoModule* MockWorld::module(std::string_view reference) {
+  for (Module& m : modules_)
+    if (m.reference == reference) return m.device.get();
+  return nullptr;
+}
+
+mock::SimulatedEncoder* MockWorld::encoder(std::string_view reference) {
+  for (Encoder& e : encoders_)
+    if (e.reference == reference) return e.device.get();
   return nullptr;
 }
 

@@ -11,6 +11,8 @@
 #include "drivers/mock/drive/simulated_drive.hpp"
 #include "drivers/mock/gpio/mock_gpio.hpp"
 #include "drivers/mock/indexer/indexer.hpp"
+#include "drivers/mock/io/simulated_encoder.hpp"
+#include "drivers/mock/io/simulated_io_module.hpp"
 #include "drivers/mock/modbus/modbus_line.hpp"
 #include "gateway/machine/load.hpp"
 
@@ -55,6 +57,10 @@ class MockWorld {
   mock::CanSegment* segment(std::size_t index) { return segments_[index].get(); }
   /// Drive of a node "bus.node"; nullptr: it is not simulated.
   mock::SimulatedDrive* drive(std::string_view reference);
+  /// I/O module of a node "bus.node"; nullptr: it is not simulated.
+  mock::SimulatedIoModule* module(std::string_view reference);
+  /// Encoder of a node, the same.
+  mock::SimulatedEncoder* encoder(std::string_view reference);
   /// True position of a simulated axis, machine coordinates. An axis whose drive lives in another process is
   /// where its drive says, counted from where [[simulation.drive]] lets it stand at power-on.
   double axis_position(int axis) const;
@@ -66,6 +72,14 @@ class MockWorld {
     std::string reference;
     std::unique_ptr<mock::SimulatedDrive> device;
   };
+  struct Module {
+    std::string reference;
+    std::unique_ptr<mock::SimulatedIoModule> device;
+  };
+  struct Encoder {
+    std::string reference;
+    std::unique_ptr<mock::SimulatedEncoder> device;
+  };
   struct Input {
     std::string name;
     std::size_t device;
@@ -75,6 +89,8 @@ class MockWorld {
     bool analog = false;
     bool switched = false;  ///< follows an axis
     double scale = 1.0, shift = 0.0;
+    mock::SimulatedIoModule* module = nullptr;  ///< analog: its channel `number` instead
+    mock::SimulatedEncoder* encoder = nullptr;  ///< analog: its position instead
   };
   struct Output {
     std::string name;
@@ -82,13 +98,15 @@ class MockWorld {
     std::size_t number;
     bool gpio;
     bool inverted;
-    const mock::SimulatedDrive* drive = nullptr;  ///< its output `number` instead
+    const mock::SimulatedDrive* drive = nullptr;      ///< its output `number` instead
+    const mock::SimulatedIoModule* module = nullptr;  ///< the same
   };
-  /// What is wired to the inputs of a simulated drive: contacts of gpios_[wires], line by line a bit of
-  /// 60FDh.
-  struct DriveWires {
+  /// What is wired to the inputs of a simulated drive or I/O module: contacts of gpios_[wires], line by line
+  /// a bit of 60FDh or a terminal.
+  struct NodeWires {
     std::size_t wires;
     mock::SimulatedDrive* drive;
+    mock::SimulatedIoModule* module;
     std::vector<int> bits;
   };
   struct Turret {
@@ -97,17 +115,32 @@ class MockWorld {
     std::vector<std::size_t> inputs;  ///< of inputs_
     int shown = -2;                   ///< position that the inputs show
   };
+  /// A wire from an output to an input, but for those inside a Modbus station.
+  struct Wire {
+    std::size_t output, input;  ///< of outputs_ and inputs_
+    bool inverted;
+    image::Nanoseconds delay_ns;
+    std::optional<bool> level = {};  ///< of the output, since `since`
+    image::Nanoseconds since = 0;
+  };
   struct Wish {
     std::size_t input;
     Play play;
   };
   void add_drives(const machine::LoadResult& loaded);
+  void add_node(const machine::LoadResult& loaded, const machine::BusConfig& bus,
+                const machine::NodeConfig& node);
   void add_gpio(const machine::LoadResult& loaded, const machine::StationConfig& station, int source);
-  void add_drive_wires(const machine::LoadResult& loaded, const machine::StationConfig& station);
+  void add_node_wires(const machine::LoadResult& loaded, const machine::StationConfig& station);
+  void add_analog(const machine::MachineConfig& machine, const machine::StationConfig& station,
+                  const machine::PointConfig& point);
   mock::GpioInput contact(const machine::MachineConfig& machine, const machine::PointConfig& point);
-  void drive_wires(const DriveWires& wires);
+  void carry_wires(const NodeWires& wires);
+  void play_raw(const Input& input, double raw);
   void add_modbus(const machine::LoadResult& loaded, const machine::StationConfig& station, int source);
   void add_turrets(const machine::MachineConfig& machine);
+  void add_wires(const machine::MachineConfig& machine);
+  void carry(Wire& wire, image::Nanoseconds t);
   void apply_wishes();
   void turn(Turret& turret, image::Nanoseconds t);
   bool drive_input(const Input& input, bool on);
@@ -116,6 +149,8 @@ class MockWorld {
   std::vector<std::unique_ptr<mock::CanSegment>> segments_;
   std::vector<image::CanBus*> endpoints_;
   std::vector<Drive> drives_;
+  std::vector<Module> modules_;
+  std::vector<Encoder> encoders_;
   struct AxisDrive {
     const mock::SimulatedDrive* drive = nullptr;  ///< nullptr: in another process
     double units_per_revolution = 0.0;
@@ -125,12 +160,13 @@ class MockWorld {
   };
   std::vector<AxisDrive> axes_;
   std::vector<std::unique_ptr<mock::MockGpio>> gpios_;
-  std::vector<DriveWires> drive_wires_;
+  std::vector<NodeWires> node_wires_;
   std::vector<std::unique_ptr<mock::MockModbusLine>> lines_;
   std::vector<image::CycleDevice*> io_;
   std::vector<Input> inputs_;
   std::vector<Output> outputs_;
   std::vector<Turret> turrets_;
+  std::vector<Wire> wires_;
   std::vector<std::string> operator_points_;
   std::mutex wishes_lock_;
   std::vector<Wish> wishes_;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/compose/simulated/simulated_node.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "firmware_if/canopen/401/objects.hpp"
+#include "firmware_if/canopen/device/io/io_profile.hpp"
 #include "gateway/compose/axis_setup.hpp"
+#include "gateway/machine/can_channel.hpp"
 
 namespace servogate::gateway {
 
@@ -62,11 +66,47 @@ canopen::DriveQuirks quirks_of(const machine::DeviceConfig& device) {
   return q;
 }
 
+template <class Config>
+void put_name_plate(const machine::DeviceConfig& device, int node, Config& config) {
+  config.node_id = static_cast<canopen::NodeId>(node);
+  config.serial_number = static_cast<std::uint32_t>(node);
+  if (device.vendor_id != 0) config.vendor_id = static_cast<std::uint32_t>(device.vendor_id);
+  if (device.product_code != 0) config.product_code = static_cast<std::uint32_t>(device.product_code);
+  if (device.revision != 0) config.revision = static_cast<std::uint32_t>(device.revision);
+}
+
 }  // namespace
 
 double units_per_revolution(const machine::AxisConfig& a) {
   const double units = a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
   return a.direction == machine::Direction::plus ? units : -units;
+}
+
+mock::SimulatedIoConfig simulated_module(const machine::DeviceConfig& device, int node) {
+  namespace io = canopen::io;
+  mock::SimulatedIoConfig module;
+  put_name_plate(device, node, module);
+  const auto count = [](const std::vector<machine::PdoConfig>& pdos, std::uint16_t index, int each,
+                        int most) {
+    return static_cast<std::uint8_t>(std::min(each * machine::mapped_subindices(pdos, index), most));
+  };
+  constexpr int kLines = 8 * static_cast<int>(canopen::IoProfile::kGroups);
+  constexpr int kChannels = static_cast<int>(canopen::IoProfile::kChannels);
+  module.terminals = {count(device.tpdos, io::kReadInput8, 8, kLines),
+                      count(device.rpdos, io::kWriteOutput8, 8, kLines),
+                      count(device.tpdos, io::kReadAnalogueInput16, 1, kChannels),
+                      count(device.rpdos, io::kWriteAnalogueOutput16, 1, kChannels)};
+  return module;
+}
+
+mock::SimulatedEncoderConfig simulated_encoder(const machine::DeviceConfig& device, int node) {
+  mock::SimulatedEncoderConfig encoder;
+  put_name_plate(device, node, encoder);
+  if (device.encoder.counts_per_rev > 0)
+    encoder.resolution.counts_per_rev = static_cast<std::uint32_t>(device.encoder.counts_per_rev);
+  if (device.encoder.revolutions > 0)
+    encoder.resolution.revolutions = static_cast<std::uint16_t>(device.encoder.revolutions);
+  return encoder;
 }
 
 mock::SimulatedDriveConfig simulated_device(const machine::DeviceConfig* device, int node) {

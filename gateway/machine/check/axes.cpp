@@ -164,6 +164,10 @@ class AxisCheck {
     int station = -1;
     if (machine_.point(b.point, &station) == nullptr) return;
     const StationConfig& s = machine_.stations[static_cast<std::size_t>(station)];
+    const PointConfig& p = *machine_.point(b.point);
+    const double closed = p.inverted ? 1.0 : 0.0;
+    if ((s.kind == StationKind::modbus || s.kind == StationKind::canopen) && (p.hold || p.loss != closed))
+      error("brake.point", finding::kBrakeLoss, {b.point, text::number(closed)});
     if (s.kind == StationKind::modbus)
       warning("brake.point", finding::kBrakeModbus, {b.point, text::number(s.period * 1000.0)});
   }
@@ -230,9 +234,16 @@ void check_inverter(const MachineConfig& machine, const SpindleConfig& s, const 
   if (speed == nullptr || !speed->is_analog() || speed->scale == 0.0) return;
   const double rest = std::round((0.0 - speed->shift) / speed->scale);
   const double full = std::round((s.max_speed - speed->shift) / speed->scale);
-  if (std::min(rest, full) < 0.0 || std::max(rest, full) > 65535.0)
+  int station = -1;
+  machine.point(s.speed_output, &station);
+  // A channel of CiA 401 has a sign.
+  const bool on_can = machine.stations[static_cast<std::size_t>(station)].kind == StationKind::canopen;
+  const double low = on_can ? -32768.0 : 0.0, high = on_can ? 32767.0 : 65535.0;
+  if (std::min(rest, full) < low || std::max(rest, full) > high)
     reading.error(machine.where(path + ".speed_output"), finding::kSpindleScale,
-                  {number, s.speed_output, text::number(rest), text::number(full)});
+                  {number, s.speed_output, text::number(rest), text::number(full),
+                   text::both(text::number(low) + " to " + text::number(high),
+                              text::number(low) + " ... " + text::number(high))});
   if (speed->place.format == image::Format::in && s.max_speed > 32767.0)
     reading.error(machine.where(path + ".max_speed"), finding::kSpindleWord,
                   {number, text::number(s.max_speed), to_string(speed->place)});

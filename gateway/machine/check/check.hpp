@@ -24,6 +24,8 @@ void check_spindles(const MachineConfig& machine, Reading& reading);
 void check_safety(const MachineConfig& machine, Reading& reading);
 /// Cycle time, dialect words, transports and channels of stations.
 void check_control(const MachineConfig& machine, Reading& reading);
+/// Stations of kind canopen: their channels in the process data of their nodes.
+void check_can_stations(const LoadResult& loaded, Reading& reading);
 /// Bus load and speed of motors against the device files.
 void check_devices(const LoadResult& loaded, Reading& reading);
 

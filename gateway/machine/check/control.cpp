@@ -77,7 +77,7 @@ class StationCheck {
 
   void all() {
     if (!machine_.places.contains(path_ + "kind")) return;  // unknown kind: said by the reader
-    if (s_.kind == StationKind::drive) {
+    if (s_.over_bus()) {
       needed("node", s_.node);
       not_here("url", s_.url);
       not_here("device", s_.device);
@@ -94,7 +94,7 @@ class StationCheck {
       if (s_.points[i].debounce > 0.0 && s_.points[i].channel != ChannelKind::di)
         reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".debounce"),
                        finding::kDebounceKind, {s_.points[i].channel_text});
-    if (s_.kind == StationKind::modbus) return;
+    if (s_.kind == StationKind::modbus || s_.kind == StationKind::canopen) return;
     for (std::size_t i = 0; i < s_.points.size(); ++i)
       if (s_.points[i].is_analog())
         reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".channel"),
@@ -149,7 +149,7 @@ void check_mock_guards(const MachineConfig& machine, Reading& reading) {
     const PointConfig* point = machine.point(name, &station);
     if (point == nullptr || bus.nothing_real()) return;
     const StationConfig& s = machine.stations[static_cast<std::size_t>(station)];
-    if (s.url.starts_with("mock:"))
+    if (machine.nothing_real(s))
       reading.error(machine.where(path), finding::kMockGuard, {name, s.name, bus.name});
   };
   const auto real = std::find_if(machine.buses.begin(), machine.buses.end(),

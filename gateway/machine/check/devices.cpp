@@ -33,14 +33,32 @@ class DeviceUse {
         const NodeConfig& node = m_.buses[b].nodes[n];
         const std::string path = "bus." + std::to_string(b) + ".node." + std::to_string(n);
         const DeviceConfig* device = loaded_.device(node.device);
-        if (device != nullptr && known(*device) && !device->drive())
-          reading_.error(m_.where(path + ".device"), finding::kWrongDevice,
-                         {node.device, kind_name(device->kind), "servo, stepper, spindle"});
+        if (device != nullptr && known(*device) && !device->drive() && !device->terminals())
+          reading_.error(
+              m_.where(path + ".device"), finding::kWrongDevice,
+              {node.device, kind_name(device->kind), "servo, stepper, spindle, canopen_io, canopen_encoder"});
         if (device != nullptr && known(*device) && device->drive() && !node.unsupervised &&
             !canopen::stops_by_itself(drive_profile(*device, node, 0)))
           reading_.error(m_.where(path + ".device"), finding::kUnsupervised, {node.name, node.device});
         objects(node, path);
       }
+  }
+
+  /// What moves something needs a drive.
+  void drives() {
+    const auto drive = [this](const std::string& reference, const std::string& path) {
+      const DeviceConfig* device = of_node(reference);
+      if (device != nullptr && known(*device) && device->terminals())
+        reading_.error(m_.where(path), finding::kWrongDevice,
+                       {m_.node(reference)->device, kind_name(device->kind), "servo, stepper, spindle"});
+    };
+    for (std::size_t i = 0; i < m_.axes.size(); ++i)
+      drive(m_.axes[i].drive, "axis." + std::to_string(i) + ".drive");
+    for (std::size_t i = 0; i < m_.spindles.size(); ++i)
+      drive(m_.spindles[i].drive, "spindle." + std::to_string(i) + ".drive");
+    for (std::size_t i = 0; i < m_.stations.size(); ++i)
+      if (m_.stations[i].kind == StationKind::drive)
+        drive(m_.stations[i].node, "station." + std::to_string(i) + ".node");
   }
 
   void axes() {
@@ -95,6 +113,7 @@ class DeviceUse {
                        {station.device, kind_name(device->kind), kind_name(wanted)});
         continue;
       }
+      if (station.kind == StationKind::canopen) continue;  // check_can_stations
       for (std::size_t p = 0; p < station.points.size(); ++p)
         channel(station, device, station.points[p], path + ".points." + std::to_string(p) + ".channel");
       if (station.kind == StationKind::drive) drive_points(station, path);
@@ -196,9 +215,10 @@ class DeviceUse {
     static constexpr int kFirstReserved = 4, kFirstOfMaker = 16;
     const NodeConfig* node = m_.node(station.node);
     if (node == nullptr) return;
+    const DeviceConfig* device = loaded_.device(node->device);
+    if (device != nullptr && device->terminals()) return;  // said by drives()
     if (!drives_something(station.node))
       return reading_.error(m_.where(path + ".node"), finding::kPointNoAxis, {station.node});
-    const DeviceConfig* device = loaded_.device(node->device);
     if (device == nullptr || !known(*device)) return;
     const auto mapped = [](const std::vector<PdoConfig>& pdos, int index, int sub) {
       for (const PdoConfig& pdo : pdos)
@@ -240,6 +260,7 @@ class DeviceUse {
 void check_devices(const LoadResult& loaded, Reading& reading) {
   DeviceUse use(loaded, reading);
   use.nodes();
+  use.drives();
   use.axes();
   use.spindles();
   use.stations();

@@ -41,6 +41,21 @@ inline constexpr text::Entry kPointNotMapped{
     "machine.point_not_mapped",
     "channel \"{0}\": {1} is in no {2} of device file \"{3}\"; add it, or take a device file that has it",
     "канал «{0}»: {1} нет ни в одном {2} файла устройства «{3}»; добавьте его или выберите другой файл"};
+inline constexpr text::Entry kNoSuchChannel{"machine.no_such_channel",
+                                            "channel \"{0}\": a {1} has no such channel",
+                                            "канал «{0}»: у устройства вида {1} такого канала нет"};
+inline constexpr text::Entry kStationNodeTwice{"machine.station_node_twice",
+                                               "node \"{0}\" already has its points in station \"{1}\"",
+                                               "сигналы узла «{0}» уже описаны в станции «{1}»"};
+inline constexpr text::Entry kNodeNoStation{
+    "machine.node_no_station",
+    "node \"{0}\" is an I/O module, but no station of kind canopen names it: it will not be started",
+    "узел «{0}» — модуль ввода-вывода, но ни одна станция вида canopen его не называет: он не будет запущен"};
+inline constexpr text::Entry kLossRange{"machine.loss_range",
+                                        "\"{0}\": loss {1} is no value of the channel: {2}",
+                                        "«{0}»: loss {1} не значение канала: {2}"};
+inline constexpr text::Entry kZeroScale{"machine.zero_scale", "\"{0}\": scale 0 makes every value the same",
+                                        "«{0}»: scale 0 делает все значения одинаковыми"};
 inline constexpr text::Entry kPointNoAxis{
     "machine.point_no_axis",
     "node \"{0}\" is the drive of no axis and no spindle: nothing reads or writes its points",

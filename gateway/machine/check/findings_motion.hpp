@@ -78,6 +78,10 @@ inline constexpr text::Entry kVerticalBrake{
 inline constexpr text::Entry kBrakeModbus{
     "machine.brake_over_modbus", "{0}: the brake \"{1}\" is switched over Modbus, up to {2} ms late",
     "{0}: тормоз «{1}» переключается через Modbus с опозданием до {2} мс"};
+inline constexpr text::Entry kBrakeLoss{
+    "machine.brake_loss",
+    "{0}: when its station is lost the brake \"{1}\" would not engage: loss = {2}, hold = false",
+    "{0}: при потере станции тормоз «{1}» не зажмёт: нужно loss = {2}, hold = false"};
 inline constexpr text::Entry kBrakeDelay{
     "machine.brake_delay", "{0}: brake.engage_delay is 0: power goes before the brake holds",
     "{0}: brake.engage_delay равен 0: питание снимется раньше, чем тормоз зажмёт"};
@@ -132,10 +136,9 @@ inline constexpr text::Entry kSpindleLoss{
     "hold = false)"};
 inline constexpr text::Entry kSpindleScale{
     "machine.spindle_scale",
-    "spindle {0}: \"{1}\" would be {2} at rest and {3} at max_speed; a register holds 0 to 65535: see scale "
-    "and "
+    "spindle {0}: \"{1}\" would be {2} at rest and {3} at max_speed; a register holds {4}: see scale and "
     "shift",
-    "шпиндель {0}: «{1}» был бы {2} в покое и {3} на max_speed; регистр вмещает 0-65535: см. scale и shift"};
+    "шпиндель {0}: «{1}» был бы {2} в покое и {3} на max_speed; регистр вмещает {4}: см. scale и shift"};
 inline constexpr text::Entry kSpindleWord{
     "machine.spindle_word", "spindle {0}: {1} rpm do not fit into {2}: a place of form .LI or .RE is needed",
     "шпиндель {0}: {1} об/мин не помещается в {2}: нужен адрес вида .LI или .RE"};
@@ -152,6 +155,13 @@ inline constexpr text::Entry kEstopModbus{"machine.estop_over_modbus",
                                           "that is polled and may be lost; use GPIO or a drive input",
                                           "цепь аварийного останова «{0}» приходит через Modbus ({1}): линия "
                                           "опрашивается и может пропасть; нужен GPIO или вход привода"};
+inline constexpr text::Entry kEstopSlow{
+    "machine.estop_not_with_sync",
+    "the emergency-stop chain \"{0}\" comes in tpdo {1} of \"{2}\", which is not sent with every SYNC: "
+    "transmission = 1",
+    "цепь аварийного останова «{0}» приходит в tpdo {1} файла «{2}», который передаётся не с каждым SYNC: "
+    "нужен "
+    "transmission = 1"};
 inline constexpr text::Entry kEstopInverted{
     "machine.estop_inverted",
     "\"{0}\" is inverted: a broken wire would read as a closed emergency-stop chain",
@@ -180,6 +190,11 @@ inline constexpr text::Entry kLimitModbus{
     "machine.limit_over_modbus",
     "{0}: limit switch \"{1}\" comes over Modbus: up to {2} mm further at full speed",
     "{0}: концевик «{1}» приходит через Modbus: до {2} мм лишнего пути на полной скорости"};
+inline constexpr text::Entry kLimitSlow{"machine.limit_not_with_sync",
+                                        "{0}: limit switch \"{1}\" comes in tpdo {2} of \"{3}\", which is "
+                                        "not sent with every SYNC: transmission = 1",
+                                        "{0}: концевик «{1}» приходит в tpdo {2} файла «{3}», который "
+                                        "передаётся не с каждым SYNC: нужен transmission = 1"};
 inline constexpr text::Entry kNoStartPoint{
     "machine.no_start_point", "real buses and no run.start_point: programs start only by `servogate start`",
     "настоящие шины без run.start_point: программу запустит только `servogate start`"};
@@ -232,6 +247,14 @@ inline constexpr text::Entry kUnsupervised{
     "reaction, no deadline of an RPDO); unsupervised = true waives that",
     "{0}: привод {1} не заметит гибели управления (нет контроля heartbeat или опроса с реакцией, нет срока "
     "RPDO); отказаться от этого можно ключом unsupervised = true"};
+inline constexpr text::Entry kUnsupervisedModule{
+    "machine.unsupervised",
+    "{0}: the module {1} would not notice that the control has died, and its outputs would stay (no "
+    "heartbeat "
+    "consumer, no guarding, no deadline of an RPDO); unsupervised = true waives that",
+    "{0}: модуль {1} не заметит гибели управления, и его выходы останутся (нет контроля heartbeat, опроса, "
+    "срока "
+    "RPDO); отказаться от этого можно ключом unsupervised = true"};
 inline constexpr text::Entry kPdoSize{"machine.pdo_size", "{0} {1} maps {2} bits; 64 fit",
                                       "{0} {1}: отображено {2} бит; помещается 64"};
 inline constexpr text::Entry kPdoTwice{"machine.pdo_twice", "{0} {1} is already declared in line {2}",
@@ -242,6 +265,16 @@ inline constexpr text::Entry kPdoTransmission{"machine.pdo_transmission",
                                               "transmission {0} is reserved: 0 to 240, 254, 255",
                                               "тип передачи {0} зарезервирован: 0-240, 254, 255"};
 
+inline constexpr text::Entry kPdoNeverComes{"machine.pdo_never_comes",
+                                            "tpdo {0}: with transmission {1} and no `event` it need never "
+                                            "come, and its loss would not be seen: 1 to 240, or "
+                                            "`event`",
+                                            "tpdo {0}: при типе {1} без `event` он может не приходить, и его "
+                                            "потеря не видна: нужен тип 1-240 или `event`"};
+inline constexpr text::Entry kObjectOfPoints{
+    "machine.object_of_points",
+    "object {0}: `loss`, `hold` and `inverted` of the points say that; the control writes it at boot",
+    "объект {0}: это задают `loss`, `hold` и `inverted` сигналов; управление записывает его при запуске"};
 inline constexpr text::Entry kModbusBehindEnd{"machine.modbus_behind_end",
                                               "`{0}`: {1} from address {2} on end behind address 65535",
                                               "«{0}»: {1} начиная с адреса {2} выходят за адрес 65535"};

@@ -6,7 +6,7 @@ namespace servogate::machine {
 
 template <>
 std::span<const std::string_view> choices_of<StationKind>() {
-  static constexpr std::string_view kNames[] = {"modbus", "gpio", "drive"};
+  static constexpr std::string_view kNames[] = {"modbus", "gpio", "drive", "canopen"};
   return kNames;
 }
 template <>
@@ -166,8 +166,8 @@ const Section& section_of<StationConfig>() {
       key<&C::kind>("kind", {.required = true}, "what carries the signals", "чем передаются сигналы"),
       key<&C::url>("url", {}, "modbus: mock:NAME, tcp:HOST:PORT, rtu:/dev/...; gpio: mock:NAME, chip:LABEL",
                    "modbus: mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/...; gpio: mock:ИМЯ, chip:МЕТКА"),
-      key<&C::node>("node", {.refers = Refers::node}, "kind drive: the drive as \"bus.node\"",
-                    "вид drive: привод в виде \"шина.узел\""),
+      key<&C::node>("node", {.refers = Refers::node}, "kinds drive and canopen: the node as \"bus.node\"",
+                    "виды drive и canopen: узел в виде \"шина.узел\""),
       key<&C::device>("device", {.refers = Refers::device}, "device file, without .toml",
                       "файл устройства, без .toml"),
       key<&C::unit>("unit", {.min = 0, .max = 255}, "Modbus unit identifier", "адрес устройства Modbus"),

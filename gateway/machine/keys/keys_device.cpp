@@ -6,7 +6,8 @@ namespace servogate::machine {
 
 template <>
 std::span<const std::string_view> choices_of<DeviceKind>() {
-  static constexpr std::string_view kNames[] = {"servo", "stepper", "spindle", "modbus_io", "gpio"};
+  static constexpr std::string_view kNames[] = {"servo", "stepper",    "spindle",        "modbus_io",
+                                                "gpio",  "canopen_io", "canopen_encoder"};
   return kNames;
 }
 
@@ -221,6 +222,22 @@ const Section& section_of<GpioConfig>() {
 }
 
 template <>
+const Section& section_of<EncoderConfig>() {
+  using C = EncoderConfig;
+  static const Key keys[] = {
+      key<&C::counts_per_rev>("counts_per_rev", {.unit = Unit::counts, .min = 0, .max = 4294967295.0},
+                              "counts per turn, compared with 6501h at boot; 0: not checked",
+                              "дискрет на оборот, сравниваются с 6501h при запуске; 0: не проверяется"),
+      key<&C::revolutions>("revolutions", {.min = 0, .max = 65535},
+                           "turns that it distinguishes, compared with 6502h at boot; 0: not checked",
+                           "различаемых оборотов, сравниваются с 6502h при запуске; 0: не проверяется"),
+  };
+  static const Section section{"resolution of an encoder", "разрешение датчика положения", keys,
+                               &default_object<C>};
+  return section;
+}
+
+template <>
 const Section& section_of<DeviceConfig>() {
   using C = DeviceConfig;
   static const Key keys[] = {
@@ -245,6 +262,7 @@ const Section& section_of<DeviceConfig>() {
       key<&C::errors>("error", {}, "error codes in words", "коды ошибок словами"),
       key<&C::modbus>("modbus", {}, "channels of a Modbus station", "каналы станции Modbus"),
       key<&C::gpio>("gpio", {}, "lines of a GPIO chip", "линии микросхемы GPIO"),
+      key<&C::encoder>("encoder", {}, "resolution of an encoder", "разрешение датчика положения"),
   };
   static const Section section{"device file", "файл устройства", keys, &default_object<C>};
   return section;

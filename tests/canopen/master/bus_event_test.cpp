@@ -78,12 +78,11 @@ TEST(BusEventText, names_step_object_and_reason_of_a_failed_boot) {
   BusEvent e = event(BusEventKind::boot_failed);
   e.boot = {BootStep::tpdo, BootProblem::aborted,        0x1A01,     2,
             true,           AbortCode::cannot_be_mapped, 0x60BA0020, 0};
-  EXPECT_EQ(
-      describe(e, "Y", nullptr, Language::english),
-      "Y: boot stopped at step \"process data from drive to control (TPDO)\": writing 1A01h:02 TPDO mapping "
-      "parameter: refused by the device, the object cannot be mapped into a PDO (06040041h)");
+  EXPECT_EQ(describe(e, "Y", nullptr, Language::english),
+            "Y: boot stopped at step \"process data of the device (TPDO)\": writing 1A01h:02 TPDO mapping "
+            "parameter: refused by the device, the object cannot be mapped into a PDO (06040041h)");
   EXPECT_EQ(describe(e, "Y", nullptr, Language::russian),
-            "Y: загрузка остановилась на шаге «данные процесса от привода к ЧПУ (TPDO)»: запись 1A01h:02 "
+            "Y: загрузка остановилась на шаге «данные процесса от устройства (TPDO)»: запись 1A01h:02 "
             "TPDO mapping "
             "parameter: отказ устройства, объект нельзя включить в PDO (06040041h)");
   e.boot.abort = static_cast<AbortCode>(0x12345678);

@@ -24,6 +24,13 @@ std::uint64_t clamped(double value, double limit) noexcept {
   return static_cast<std::uint64_t>(std::llround(std::clamp(value, -limit, limit)));
 }
 
+/// Cycles between two PDOs with the statusword; 0: not known.
+std::int64_t status_interval(const NodeConfig& node, const SegmentConfig& segment) noexcept {
+  const PdoField status = find_field(node.profile.tpdo, object::kStatusword);
+  if (!status.mapped()) return 0;
+  return cycles_between(node.profile.tpdo[static_cast<std::size_t>(status.pdo)], segment.cycle_ns);
+}
+
 DriveControl::Timing timing_of(const DriveProfile& profile) {
   return {profile.fault_reset, profile.fault_reset_hold_ms * image::kMillisecond,
           profile.transition_timeout_ms * image::kMillisecond};
@@ -31,10 +38,12 @@ DriveControl::Timing timing_of(const DriveProfile& profile) {
 
 }  // namespace
 
-DriveLink::DriveLink(const NodeConfig& node, image::Nanoseconds cycle_ns)
+DriveLink::DriveLink(const NodeConfig& node, const SegmentConfig& segment)
     : profile_(node.profile),
       target_(node.target),
-      cycle_ns_(cycle_ns),
+      cycle_ns_(segment.cycle_ns),
+      status_every_(std::max<std::int64_t>(1, status_interval(node, segment))),
+      missed_limit_(status_interval(node, segment) * max_missed_pdo(node, segment)),
       handover_counts_(profile_.handover_counts ? profile_.handover_counts
                                                 : std::max<std::int64_t>(1, profile_.counts_per_rev / 4)),
       data_(profile_),

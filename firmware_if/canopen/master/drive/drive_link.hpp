@@ -6,7 +6,7 @@
 #include "firmware_if/canopen/402/drive_control.hpp"
 #include "firmware_if/canopen/402/homing_watch.hpp"
 #include "firmware_if/canopen/402/touch_probe.hpp"
-#include "firmware_if/canopen/master/process_data.hpp"
+#include "firmware_if/canopen/master/node_link.hpp"
 #include "firmware_if/canopen/master/segment_config.hpp"
 
 namespace servogate::canopen {
@@ -14,32 +14,29 @@ namespace servogate::canopen {
 /// One CiA 402 drive behind a CAN node: turns image::DriveCommand into objects and objects into
 /// image::DriveFeedback. An object that is mapped travels by PDO, any other by SDO. All but the constructor
 /// is real-time safe.
-class DriveLink {
+class DriveLink final : public NodeLink {
  public:
-  DriveLink(const NodeConfig& node, image::Nanoseconds cycle_ns);
+  DriveLink(const NodeConfig& node, const SegmentConfig& segment);
 
-  ProcessData& process_data() noexcept { return data_; }
-
-  /// The node has just become operational: everything known of the drive is void.
-  void restart() noexcept;
-
-  /// Evaluates what has come since the last cycle. True when the PDO with the statusword was among it.
-  bool update() noexcept;
-  /// An emergency message of the drive.
-  void on_emcy(std::uint16_t error_code) noexcept;
+  ProcessData& process_data() noexcept override { return data_; }
+  void restart() noexcept override;
+  /// True when the PDO with the statusword has come.
+  bool update() noexcept override;
+  std::int64_t missed_limit() const noexcept override { return missed_limit_; }
+  /// Cycles from one PDO with the statusword to the next, at least 1.
+  std::int64_t status_every() const noexcept { return status_every_; }
+  void on_emcy(std::uint16_t error_code) noexcept override;
   void fill(image::DriveFeedback& feedback) const noexcept;
 
   /// Puts the command into the RPDOs. `blocked` lets a drive that has been lost ramp down by itself instead
   /// of obeying the command; it stays off until power has been withdrawn once.
   void apply(image::Nanoseconds now, const image::DriveCommand& command, bool blocked) noexcept;
 
-  /// Starts the next SDO access that is due, if there is one. `sdo` must be idle.
-  void start_access(image::Nanoseconds now, SdoClient& sdo) noexcept;
-  /// Takes the result of the access started last. False when the drive refused it or did not answer.
-  bool finish_access(const SdoClient& sdo) noexcept;
-  bool access_running() const noexcept { return access_ != Access::none; }
+  void start_access(image::Nanoseconds now, SdoClient& sdo) noexcept override;
+  bool finish_access(const SdoClient& sdo) noexcept override;
+  bool access_running() const noexcept override { return access_ != Access::none; }
 
-  std::uint16_t statusword() const noexcept { return statusword_; }
+  std::uint16_t statusword() const noexcept override { return statusword_; }
   const image::DriveRefusal& refusal() const noexcept { return control_.refusal(); }
   /// Distance of command and held target while the hand-over waits at Operation enabled, otherwise 0.
   std::int64_t handover_difference() const noexcept { return handover_difference_; }
@@ -71,6 +68,7 @@ class DriveLink {
   DriveProfile profile_;
   DriveTarget target_;
   image::Nanoseconds cycle_ns_;
+  std::int64_t status_every_, missed_limit_;
   std::int64_t handover_counts_;
   ProcessData data_;
   struct {

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "firmware_if/canopen/301/cob_id.hpp"
@@ -11,6 +12,7 @@
 #include "firmware_if/canopen/302/node_boot.hpp"
 #include "firmware_if/canopen/master/bus_event.hpp"
 #include "firmware_if/canopen/master/drive/drive_link.hpp"
+#include "firmware_if/canopen/master/io/io_link.hpp"
 #include "firmware_if/canopen/master/object_question.hpp"
 #include "firmware_if/canopen/master/segment_config.hpp"
 
@@ -28,9 +30,9 @@ struct NodeContext {
 
 /// One configured node through its life: boot, operation under supervision, loss, boot again. All but the
 /// constructor is real-time safe.
-class DriveNode {
+class BusNode {
  public:
-  DriveNode(const NodeConfig& config, const SegmentConfig& segment);
+  BusNode(const NodeConfig& config, const SegmentConfig& segment);
 
   NodeId id() const noexcept { return config_.node; }
   const NodeConfig& config() const noexcept { return config_; }
@@ -41,11 +43,12 @@ class DriveNode {
 
   /// A frame of this node: TPDO, SDO answer, heartbeat or emergency.
   void on_frame(Service service, const image::CanFrame& frame, const NodeContext& context) noexcept;
-  /// After all frames of the cycle: supervision, then the feedback.
-  void evaluate(image::DriveFeedback& feedback, const NodeContext& context) noexcept;
-  /// Sends the RPDOs; a node that was lost while it ran is told to quick-stop until it is heard again. Returns
-  /// the number of frames the bus did not take; `dropped` is the last of them.
-  int send_process_data(const image::DriveCommand& command, const NodeContext& context,
+  /// After all frames of the cycle: supervision, then the feedback or the inputs.
+  void evaluate(image::ProcessImage& image, const NodeContext& context) noexcept;
+  /// Sends the RPDOs; a drive that was lost while it ran is told to quick-stop until it is heard again,
+  /// outputs to go where their loss leads them. Returns the number of frames the bus did not take; `dropped`
+  /// is the last of them.
+  int send_process_data(const image::ProcessImage& image, const NodeContext& context,
                         image::CanFrame& dropped) noexcept;
   /// Sends at most one frame of boot or SDO. True when it did.
   bool send_acyclic(const NodeContext& context) noexcept;
@@ -70,18 +73,22 @@ class DriveNode {
   bool send_guarding(const NodeContext& context) noexcept;
   void supervise(bool status_fresh, const NodeContext& context) noexcept;
   void report_link(const NodeContext& context) noexcept;
+  void fill(image::DriveFeedback& feedback) const noexcept;
+  bool apply(const image::ProcessImage& image, const NodeContext& context) noexcept;
   void finish_access(const NodeContext& context) noexcept;
   BusEvent event(BusEventKind kind, const NodeContext& context) const noexcept;
 
   NodeConfig config_;
   image::Nanoseconds heartbeat_timeout_ns_, boot_pause_ns_;
-  std::int64_t status_every_, missed_limit_, first_limit_;
+  std::int64_t first_limit_;
   std::int32_t boot_attempts_;
   std::optional<NodeGuard> guard_;  ///< of a node without heartbeat
 
   SdoClient sdo_;
   NodeBoot boot_;
-  DriveLink link_;
+  std::unique_ptr<NodeLink> link_;
+  DriveLink* drive_ = nullptr;  ///< link_, or nullptr
+  IoLink* io_ = nullptr;        ///< the same
   EmcyHistory emcy_;
 
   Phase phase_ = Phase::booting;
@@ -92,6 +99,7 @@ class DriveNode {
   bool online_ = false;
   bool seen_status_ = false;
   std::int64_t missed_ = 0;
+  bool missing_said_ = false;
   bool blocked_ = false;  ///< lost while it ran: power must be withdrawn once before it is given again
   std::uint8_t restarts_ = 0;
   bool refusal_said_ = false;

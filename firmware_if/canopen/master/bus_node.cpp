@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/canopen/master/drive/drive_node.hpp"
+#include "firmware_if/canopen/master/bus_node.hpp"
 
 #include <algorithm>
 
@@ -8,18 +8,14 @@
 namespace servogate::canopen {
 namespace {
 
-/// Cycles between two TPDOs of this kind; 0: they come when they like.
-std::int64_t cycles_between(const PdoWanted& pdo, image::Nanoseconds cycle_ns) noexcept {
-  if (pdo.transmission_type >= 1 && pdo.transmission_type <= 240) return pdo.transmission_type;
-  return pdo.event_ms * image::kMillisecond / cycle_ns;
+image::DriveFeedback& feedback_of(image::ProcessImage& image, const NodeConfig& node) noexcept {
+  const auto i = static_cast<std::size_t>(node.target_index);
+  return node.target == DriveTarget::axis ? image.axes[i].drive : image.spindles[i].drive;
 }
 
-/// Cycles between two PDOs with the statusword; 0: not known.
-std::int64_t status_interval(const NodeConfig& node, const SegmentConfig& segment) noexcept {
-  const PdoField status = find_field(node.profile.tpdo, object::kStatusword);
-  if (!status.mapped()) return 0;
-  const auto& pdo = node.profile.tpdo[static_cast<std::size_t>(status.pdo)];
-  return cycles_between(pdo, segment.cycle_ns);
+const image::DriveCommand& command_of(const image::ProcessImage& image, const NodeConfig& node) noexcept {
+  const auto i = static_cast<std::size_t>(node.target_index);
+  return node.target == DriveTarget::axis ? image.axes[i].drive_command : image.spindles[i].drive_command;
 }
 
 bool same_failure(const BootReport& a, const BootReport& b) noexcept {
@@ -28,12 +24,10 @@ bool same_failure(const BootReport& a, const BootReport& b) noexcept {
 
 }  // namespace
 
-DriveNode::DriveNode(const NodeConfig& config, const SegmentConfig& segment)
+BusNode::BusNode(const NodeConfig& config, const SegmentConfig& segment)
     : config_(config),
       heartbeat_timeout_ns_(heartbeat_timeout_ms(config, segment) * image::kMillisecond),
       boot_pause_ns_(segment.boot_pause_ms * image::kMillisecond),
-      status_every_(std::max<std::int64_t>(1, status_interval(config, segment))),
-      missed_limit_(status_interval(config, segment) * max_missed_pdo(config, segment)),
       first_limit_(segment.boot_timeout_ms * image::kMillisecond / segment.cycle_ns),
       boot_attempts_(config.setup.boot_attempts > 0 ? config.setup.boot_attempts : segment.boot_attempts),
       sdo_(config.node, segment.sdo_timeout_ms * image::kMillisecond,
@@ -41,36 +35,44 @@ DriveNode::DriveNode(const NodeConfig& config, const SegmentConfig& segment)
       boot_(config.node, boot_plan(config, segment),
             (config.setup.boot_timeout_ms > 0 ? config.setup.boot_timeout_ms : segment.boot_timeout_ms) *
                 image::kMillisecond,
-            config.setup.program_timeout_ms * image::kMillisecond),
-      link_(config, segment.cycle_ns) {
+            config.setup.program_timeout_ms * image::kMillisecond) {
+  if (config.target == DriveTarget::io) {
+    auto io = std::make_unique<IoLink>(config, segment);
+    io_ = io.get();
+    link_ = std::move(io);
+  } else {
+    auto drive = std::make_unique<DriveLink>(config, segment);
+    drive_ = drive.get();
+    link_ = std::move(drive);
+  }
   const DriveProfile& profile = config_.profile;
   if (profile.guard_time_ms > 0)
     guard_.emplace(config_.node, profile.guard_time_ms * image::kMillisecond, profile.life_time_factor);
   start_boot();
 }
 
-BusEvent DriveNode::event(BusEventKind kind, const NodeContext& context) const noexcept {
+BusEvent BusNode::event(BusEventKind kind, const NodeContext& context) const noexcept {
   BusEvent e;
   e.kind = kind;
   e.segment = context.segment;
   e.node = config_.node;
   e.cycle = context.cycle;
   e.t_ns = context.now;
-  e.statusword = link_.statusword();
+  e.statusword = link_->statusword();
   return e;
 }
 
-void DriveNode::start_boot() noexcept {
+void BusNode::start_boot() noexcept {
   phase_ = Phase::booting;
   boot_.begin(sdo_);
 }
 
-void DriveNode::go_offline() noexcept {
+void BusNode::go_offline() noexcept {
   if (online_) blocked_ = true;
   online_ = false;
 }
 
-void DriveNode::on_frame(Service service, const image::CanFrame& frame, const NodeContext& context) noexcept {
+void BusNode::on_frame(Service service, const image::CanFrame& frame, const NodeContext& context) noexcept {
   switch (service) {
     case Service::tpdo1:
       return on_tpdo(1, frame, context);
@@ -92,12 +94,12 @@ void DriveNode::on_frame(Service service, const image::CanFrame& frame, const No
   }
 }
 
-void DriveNode::on_tpdo(int number, const image::CanFrame& frame, const NodeContext& context) noexcept {
+void BusNode::on_tpdo(int number, const image::CanFrame& frame, const NodeContext& context) noexcept {
   // What a node sends by an old configuration before it has booted means nothing.
   if (phase_ != Phase::running) return;
-  if (link_.process_data().take(number, frame) != ProcessData::Taken::too_short) return;
+  if (link_->process_data().take(number, frame) != ProcessData::Taken::too_short) return;
   BusEvent e = event(BusEventKind::pdo_short, context);
-  e.expected = link_.process_data().tpdo_bytes(number);
+  e.expected = link_->process_data().tpdo_bytes(number);
   e.got = frame.length;
   e.frame.id = frame.id;
   e.frame.length = frame.length;
@@ -105,17 +107,17 @@ void DriveNode::on_tpdo(int number, const image::CanFrame& frame, const NodeCont
   context.events.push(e);
 }
 
-void DriveNode::on_emcy(const image::CanFrame& frame, const NodeContext& context) noexcept {
+void BusNode::on_emcy(const image::CanFrame& frame, const NodeContext& context) noexcept {
   const auto emcy = parse_emcy(frame);
   if (!emcy) return;
   emcy_.add(*emcy, context.now);
-  link_.on_emcy(emcy->error_code);
+  link_->on_emcy(emcy->error_code);
   BusEvent e = event(BusEventKind::emcy, context);
   e.emcy = *emcy;
   context.events.push(e);
 }
 
-void DriveNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& context) noexcept {
+void BusNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& context) noexcept {
   const auto state = parse_heartbeat(frame);
   if (!state) return;
   if (*state == NmtState::boot_up) return on_boot_up(context);
@@ -137,7 +139,7 @@ void DriveNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& co
   }
 }
 
-void DriveNode::on_boot_up(const NodeContext& context) noexcept {
+void BusNode::on_boot_up(const NodeContext& context) noexcept {
   if (guard_) guard_->start(context.now);
   if (phase_ == Phase::booting && boot_.boot_up_belongs()) return boot_.on_boot_up();
   ++restarts_;
@@ -150,7 +152,7 @@ void DriveNode::on_boot_up(const NodeContext& context) noexcept {
   boot_.begin_after_boot_up(sdo_);
 }
 
-void DriveNode::follow_boot(const NodeContext& context) noexcept {
+void BusNode::follow_boot(const NodeContext& context) noexcept {
   if (boot_.state() == NodeBoot::State::done) return start_operation(context);
   if (boot_.state() != NodeBoot::State::failed) return;
   ++attempts_;
@@ -165,24 +167,28 @@ void DriveNode::follow_boot(const NodeContext& context) noexcept {
   context.events.push(e);
 }
 
-void DriveNode::start_operation(const NodeContext& context) noexcept {
+void BusNode::start_operation(const NodeContext& context) noexcept {
   phase_ = Phase::running;
   attempts_ = 0;
   reported_ = {};
   missed_ = 0;
   seen_status_ = false;
+  missing_said_ = false;
   refusal_said_ = false;
   handover_said_ = false;
   heartbeat_deadline_ns_ = context.now + heartbeat_timeout_ns_;
-  link_.restart();
+  link_->restart();
   BusEvent e = event(BusEventKind::node_booted, context);
   e.boot = boot_.report();
   context.events.push(e);
 }
 
-void DriveNode::supervise(bool status_fresh, const NodeContext& context) noexcept {
+void BusNode::supervise(bool status_fresh, const NodeContext& context) noexcept {
   missed_ = status_fresh ? 0 : missed_ + 1;
-  if (status_fresh) seen_status_ = online_ = true;
+  if (status_fresh) {
+    seen_status_ = online_ = true;
+    missing_said_ = false;
+  }
   if (context.now > heartbeat_deadline_ns_) {
     BusEvent e = event(BusEventKind::heartbeat_lost, context);
     e.expected = heartbeat_timeout_ns_ / image::kMillisecond;
@@ -193,8 +199,9 @@ void DriveNode::supervise(bool status_fresh, const NodeContext& context) noexcep
     phase_ = Phase::lost;
     return;
   }
-  const std::int64_t limit = seen_status_ ? missed_limit_ : first_limit_;
-  if (limit == 0 || missed_ != limit) return;
+  const std::int64_t limit = seen_status_ ? link_->missed_limit() : first_limit_;
+  if (limit == 0 || missed_ < limit || missing_said_) return;
+  missing_said_ = true;
   BusEvent e = event(BusEventKind::pdo_missing, context);
   e.expected = limit;
   e.got = missed_;
@@ -202,52 +209,71 @@ void DriveNode::supervise(bool status_fresh, const NodeContext& context) noexcep
   go_offline();
 }
 
-void DriveNode::report_link(const NodeContext& context) noexcept {
-  const bool refused = link_.refusal().waited_ms != 0;
+void BusNode::report_link(const NodeContext& context) noexcept {
+  if (drive_ == nullptr) return;
+  const bool refused = drive_->refusal().waited_ms != 0;
   if (refused && !refusal_said_) {
     BusEvent e = event(BusEventKind::refused, context);
-    e.refusal = link_.refusal();
+    e.refusal = drive_->refusal();
     context.events.push(e);
   }
   refusal_said_ = refused;
-  const bool held = link_.handover_difference() != 0;
+  const bool held = drive_->handover_difference() != 0;
   if (held && !handover_said_) {
     BusEvent e = event(BusEventKind::handover_held, context);
-    e.got = link_.handover_difference();
+    e.got = drive_->handover_difference();
     context.events.push(e);
   }
   handover_said_ = held;
 }
 
-void DriveNode::evaluate(image::DriveFeedback& feedback, const NodeContext& context) noexcept {
+void BusNode::evaluate(image::ProcessImage& image, const NodeContext& context) noexcept {
   if (phase_ == Phase::booting) follow_boot(context);
   if (phase_ == Phase::pausing && context.now >= pause_until_ns_) start_boot();
   if (phase_ == Phase::running) {
-    supervise(link_.update(), context);
+    supervise(link_->update(), context);
     report_link(context);
   }
-  link_.fill(feedback);
+  if (drive_ != nullptr) fill(feedback_of(image, config_));
+  if (io_ != nullptr) io_->fill(image, online_);
+}
+
+void BusNode::fill(image::DriveFeedback& feedback) const noexcept {
+  drive_->fill(feedback);
   feedback.online = online_;
   // In PDOs that should have come, so that one on every n-th SYNC is not missed in between.
-  feedback.missed = static_cast<std::uint32_t>(missed_ / status_every_);
+  feedback.missed = static_cast<std::uint32_t>(missed_ / drive_->status_every());
   feedback.restarts = restarts_;
   if (!online_) feedback.state = image::DriveState::offline;
 }
 
-int DriveNode::send_process_data(const image::DriveCommand& command, const NodeContext& context,
-                                 image::CanFrame& dropped) noexcept {
-  if (!command.power && online_) blocked_ = false;
-  if (phase_ != Phase::running && phase_ != Phase::lost) return 0;
+/// The command or the outputs into the process data. False: there is nothing to say to the node.
+bool BusNode::apply(const image::ProcessImage& image, const NodeContext& context) noexcept {
+  const bool hears = phase_ == Phase::running || phase_ == Phase::lost;
+  if (drive_ == nullptr) {
+    // Before its inputs have come once its outputs stay as the module has them.
+    if (!hears || !seen_status_) return false;
+    io_->apply(image.packets, online_);
+    return true;
+  }
+  image::DriveCommand wanted = command_of(image, config_);
+  if (!wanted.power && online_) blocked_ = false;
+  if (!hears) return false;
   // It may still hear us: until it is heard again it is to ramp down, whatever is asked of it.
-  image::DriveCommand wanted = command;
   if (blocked_ && !online_) wanted.power = true;
-  link_.apply(context.now, wanted, blocked_);
+  drive_->apply(context.now, wanted, blocked_);
+  return true;
+}
+
+int BusNode::send_process_data(const image::ProcessImage& image, const NodeContext& context,
+                               image::CanFrame& dropped) noexcept {
+  if (!apply(image, context)) return 0;
   int lost = 0;
   for (int number = 1; number <= 4; ++number) {
-    if (!link_.process_data().due(number, config_.node, context.cycle, context.now)) continue;
-    const image::CanFrame frame = link_.process_data().frame(number, config_.node);
+    if (!link_->process_data().due(number, config_.node, context.cycle, context.now)) continue;
+    const image::CanFrame frame = link_->process_data().frame(number, config_.node);
     if (context.bus.send(frame)) {
-      link_.process_data().sent(number, context.now);
+      link_->process_data().sent(number, context.now);
     } else {
       dropped = frame;
       ++lost;
@@ -257,13 +283,13 @@ int DriveNode::send_process_data(const image::DriveCommand& command, const NodeC
 }
 
 // A guarded node says nothing by itself: its state Operational and its return after a loss are asked for.
-bool DriveNode::send_guarding(const NodeContext& context) noexcept {
+bool BusNode::send_guarding(const NodeContext& context) noexcept {
   const bool starting = phase_ == Phase::booting && boot_.report().step == BootStep::start;
   if (!guard_ || !(starting || phase_ == Phase::running || phase_ == Phase::lost)) return false;
   return guard_->poll(context.now, context.bus);
 }
 
-bool DriveNode::send_acyclic(const NodeContext& context) noexcept {
+bool BusNode::send_acyclic(const NodeContext& context) noexcept {
   if (questioned_ && phase_ != Phase::running) {
     context.question.give_up();
     questioned_ = false;
@@ -274,16 +300,16 @@ bool DriveNode::send_acyclic(const NodeContext& context) noexcept {
     const bool had_its_turn = questioned_;
     if (questioned_) context.question.finish(sdo_);
     questioned_ = false;
-    if (link_.access_running()) finish_access(context);
+    if (link_->access_running()) finish_access(context);
     // By turns: a drive whose objects are asked for again and again would never answer somebody else.
     if (!had_its_turn) questioned_ = context.question.start(config_.node, sdo_);
-    if (!questioned_) link_.start_access(context.now, sdo_);
+    if (!questioned_) link_->start_access(context.now, sdo_);
   }
   return sdo_.poll(context.now, context.bus);
 }
 
-void DriveNode::finish_access(const NodeContext& context) noexcept {
-  if (link_.finish_access(sdo_)) return;
+void BusNode::finish_access(const NodeContext& context) noexcept {
+  if (link_->finish_access(sdo_)) return;
   const SdoResult& result = sdo_.result();
   BusEvent e = event(BusEventKind::sdo_failed, context);
   e.boot.index = result.index;

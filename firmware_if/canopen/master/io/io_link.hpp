@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <vector>
+
+#include "firmware_if/canopen/master/io/io_station.hpp"
+#include "firmware_if/canopen/master/node_link.hpp"
+#include "firmware_if/canopen/master/segment_config.hpp"
+#include "firmware_if/image/process_image.hpp"
+
+namespace servogate::canopen {
+
+/// Carries the points of a station between packet A and the PDOs of its node. All but the constructor is
+/// real-time safe.
+class IoLink final : public NodeLink {
+ public:
+  IoLink(const NodeConfig& node, const SegmentConfig& segment);
+
+  ProcessData& process_data() noexcept override { return data_; }
+  void restart() noexcept override;
+  bool update() noexcept override;
+  std::int64_t missed_limit() const noexcept override { return limit_; }
+
+  /// Inputs into packet A, and the health of their source. While the node is not online they have what is
+  /// declared for its loss.
+  void fill(image::ProcessImage& image, bool online) noexcept;
+  /// Outputs out of packet A. While the node is not online, and may hear all the same, they go to what is
+  /// declared for its loss.
+  void apply(const image::Packets& packets, bool online) noexcept;
+
+ private:
+  struct Terminal {
+    IoPoint point;
+    PdoField field;
+  };
+  /// A TPDO that has to come again and again.
+  struct Watch {
+    std::int64_t every = 0;  ///< cycles; 0: it is not used
+    std::int64_t age = 0;    ///< cycles since it came
+  };
+
+  std::size_t source_;
+  std::int64_t max_missed_;
+  ProcessData data_;
+  std::vector<Terminal> inputs_, outputs_;
+  std::array<Watch, 4> watches_{};
+  std::int64_t limit_ = 0;
+};
+
+}  // namespace servogate::canopen
