@@ -87,17 +87,23 @@ void Axis::step_power(double dt, PowerSequence::Outputs& out) noexcept {
 /// The set-point of this cycle, by the owner or, where the motion was taken from it, by the axis itself.
 void Axis::advance(double dt, image::Nanoseconds now) noexcept {
   const bool by_itself = owner_ != AxisOwner::process;
-  const bool stop_now = reaction_ >= Reaction::stop_axes || !power_.motion_permitted() ||
+  // A process whose axes are to lose their power brakes along the path, and they with it.
+  const bool with_the_path = !by_itself && process_given_ && letting_go() && held_;
+  const bool stop_now = reaction_ >= Reaction::stop_axes || (!power_.motion_permitted() && !with_the_path) ||
                         (by_itself && reaction_ >= Reaction::stop_on_path);
   if (stop_now && !stopped_by_reaction_) take_away();
   const double before = set_.x;
   if (own_motion_)
     advance_own(dt, now);
-  else if (owner_ == AxisOwner::process)
+  else if (!by_itself && !stopped_by_reaction_)
     advance_process(dt);
   moving_ = set_.v != 0.0 || set_.a != 0.0 || set_.x != before || (own_motion_ && !ramp_.done()) ||
             homing_.active() || homing_.drive_leads();
-  if (stopped_by_reaction_ && !stop_now && !moving_ && rest_s_ > 0.01) stopped_by_reaction_ = false;
+  // Whoever left the path comes back to it with the next start only, never while the process still brakes on
+  // it.
+  const bool path_ended = !process_given_;
+  if (stopped_by_reaction_ && !stop_now && path_ended && !moving_ && rest_s_ > 0.01)
+    stopped_by_reaction_ = false;
 }
 
 void Axis::advance_process(double dt) noexcept {

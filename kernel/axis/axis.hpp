@@ -107,6 +107,8 @@ class Axis {
   bool on_limit_minus() const noexcept { return limit_minus_; }
   /// The axis took the motion away from its owner (reaction, limit, power); cleared by reset().
   bool stopped_by_reaction() const noexcept { return stopped_by_reaction_; }
+  /// Power is to go and the axis still moves: its owner has to stop it.
+  bool letting_go() const noexcept { return power_.state() == PowerSequence::State::stopping; }
   /// <axis>.feed_enable as the PLC wrote it.
   bool feed_enabled() const noexcept { return feed_enable_; }
   /// Jog wish of the PLC: +1, -1 or 0 (both or none).

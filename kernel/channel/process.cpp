@@ -255,8 +255,10 @@ void Process::release(cycle::ProcessContext& c) noexcept {
 void Process::apply_reaction(cycle::ProcessContext& c) noexcept {
   if (!running_ || stopping_) return;
   bool taken = false;
-  for (const int a : config_.axes.machine)
-    taken = taken || c.axes[static_cast<std::size_t>(a)].stopped_by_reaction();
+  for (const int i : config_.axes.machine) {
+    const axis::Axis& a = c.axes[static_cast<std::size_t>(i)];
+    taken = taken || a.stopped_by_reaction() || a.letting_go();
+  }
   if (c.reaction < Reaction::stop_at_block_end && !taken) return;
   follower_.stop();
   stopping_ = true;

@@ -23,9 +23,13 @@ void LimitJudge::add(const image::ProcessImage& image) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const image::AxisImage& in = image.axes[i];
     Axis& a = axes_[i];
-    if (!in.enabled || in.homed != a.homed) a.known = 0;
+    // To the last cycle in which the drive goes where it is told, also while its power is being taken away.
+    const image::DriveCommand& to = in.drive_command;
+    const bool follows = in.drive.online && in.drive.state == image::DriveState::operation_enabled &&
+                         to.power && !to.quick_stop && to.mode == image::DriveMode::csp;
+    if (!follows || in.homed != a.homed) a.known = 0;
     a.homed = in.homed;
-    if (!in.enabled) continue;
+    if (!follows) continue;
     std::copy(a.x + 1, a.x + 4, a.x);
     a.x[3] = in.command;
     a.known = std::min(a.known + 1, 4);
