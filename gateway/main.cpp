@@ -1,17 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
+#include <algorithm>
+#include <array>
 #include <exception>
+#include <string_view>
 
+#include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/plc/commands.hpp"
+#include "gateway/command/signals.hpp"
 
 namespace {
 
 using namespace servogate::gateway;
 
+const servogate::text::Entry kFailed{"cli.failed", "{0}", "{0}"};
+
+/// They only read, and nothing goes on when they end.
+constexpr std::array<std::string_view, 8> kNothingToStop = {"version", "check",     "canon",    "replay",
+                                                            "plc run", "plc check", "plc test", "plc list"};
+
 int carry_out(const CommandLine& line) {
+  if (std::find(kNothingToStop.begin(), kNothingToStop.end(), line.command) != kNothingToStop.end())
+    command::leave_signals_alone();
   if (line.command == "version") return command::version(line.json);
   if (line.command == "run") return command::run(line.run, line.words);
   if (line.command == "check") return command::check(line.check);
@@ -43,14 +55,17 @@ int carry_out(const CommandLine& line) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  command::watch_signals();
   prepare_streams();
   int exit_code = kDone;
   try {
     const auto line = parse_command_line(argc, argv, exit_code);
     if (line) exit_code = carry_out(*line);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "servogate: %s\n", e.what());
+    complain(kFailed, {e.what()});
     exit_code = kInfrastructure;
   }
-  return end_output(exit_code);
+  const bool json = std::any_of(argv + std::min(argc, 1), argv + argc,
+                                [](const char* word) { return std::string_view(word) == "--json"; });
+  return end_output(exit_code, json);
 }

@@ -57,7 +57,7 @@ struct InterfaceField {
 inline constexpr InterfaceField kProcessFields[] = {
     {"mode", 0, 0, Format::by, Writer::nc, "0 off, 1 MDI, 2 AUTO, 3 STEP, 4 MANU, 5 MANJ, 6 PROF, 7 HOME"},
     {"state", 1, 0, Format::by, Writer::nc,
-     "0 idle, 1 running, 2 held, 3 waiting, 4 stopped by alarm, 5 ended"},
+     "0 idle, 1 running, 2 held, 3 waiting, 4 stopped by alarm, 5 ended, 6 stopped without an alarm"},
     {"m_strobe", 2, 0, Format::bl, Writer::nc, "an M code stands in m_code; stays until m_ack"},
     {"s_strobe", 2, 1, Format::bl, Writer::nc, "a spindle word stands in s_value; stays until s_ack"},
     {"t_strobe", 2, 2, Format::bl, Writer::nc, "a tool word stands in t_number; stays until t_ack"},

@@ -6,6 +6,7 @@
 
 #include "firmware_if/image/drive_link.hpp"
 #include "firmware_if/image/packets.hpp"
+#include "firmware_if/image/request.hpp"
 #include "firmware_if/image/time.hpp"
 
 namespace servogate::image {
@@ -21,6 +22,19 @@ inline constexpr int kMaxSegments = 4;
 /// "Owners").
 enum class AxisOwner : std::uint8_t { none, process, manual, homing, plc, bench };
 
+/// How the last jog of an axis ended.
+enum class JogEnd : std::uint8_t {
+  none,     ///< there was none, or one is under way
+  arrived,  ///< at the place that was asked for
+  asked,    ///< by a request: jog_stop, stop, reset
+  silent,   ///< its keep-alive was missed
+  feed,     ///< the PLC took the axis' feed enable away
+  travel,   ///< at the end of the travel
+  alarm,    ///< an alarm took the motion away
+  power,    ///< the drive was switched off
+};
+inline constexpr int kJogEnds = static_cast<int>(JogEnd::power) + 1;
+
 /// One axis as everybody sees it. Units: mm or degrees, seconds. A lathe's X is a radius.
 struct AxisImage {
   double command = 0.0;  ///< set-point before compensation, machine coordinates
@@ -30,6 +44,7 @@ struct AxisImage {
   double following_error = 0.0;  ///< command minus actual compared at equal times
   double distance_to_go = 0.0;
   AxisOwner owner = AxisOwner::none;
+  JogEnd jog_end = JogEnd::none;
   bool enabled = false;  ///< drive in Operation enabled and following
   bool homed = false;
   bool in_position = false;
@@ -74,7 +89,27 @@ struct SegmentStatus {
 /// Modes of a process, in the order of the K place `NC.mode`.
 enum class Mode : std::uint8_t { off, mdi, automatic, step, manual, increment, profile, home };
 /// States of a process, in the order of the K place `NC.state`.
-enum class ProcessState : std::uint8_t { idle, running, held, waiting, stopped_by_alarm, ended };
+enum class ProcessState : std::uint8_t {
+  idle,
+  running,
+  held,
+  waiting,
+  stopped_by_alarm,
+  ended,
+  stopped,  ///< before its end and without an alarm: ProcessStatus::stop says why
+};
+
+/// What stopped a program before its end where it was no alarm.
+enum class StopCause : std::uint8_t {
+  none,
+  drives_off,        ///< `asker` had the drives switched off
+  enable_withdrawn,  ///< the PLC took the enable of `axis`, or of all drives, away while they stood
+};
+struct Stop {
+  StopCause cause = StopCause::none;
+  Asker asker = Asker::command_line;
+  std::int8_t axis = -1;
+};
 
 /// How two numbers compare.
 enum class Compare : std::uint8_t { eq, ne, lt, le, gt, ge };
@@ -126,6 +161,8 @@ struct ProcessStatus {
   std::int64_t blocks_done = 0;  ///< blocks of this run up to the one in motion, each time it runs
   std::int32_t message = 0;      ///< number of the program's last message in channel::ProgramTexts; 0: none
   Wait wait;
+  Stop stop;                    ///< of the last run, where `state` is stopped
+  bool typed = false;           ///< the run is a block typed by hand (MDI), not the loaded program
   double feed_mm_s = 0.0;       ///< speed of the set-point along the path
   double override_ratio = 1.0;  ///< 0-1.5
   bool rapid = false;           ///< the block in motion is a rapid

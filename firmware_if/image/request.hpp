@@ -12,11 +12,11 @@ enum class RequestKind : std::uint8_t {
   power,           ///< value 1: drives on, 0: off
   home,            ///< axis, or -1 for all in the machine's order
   jog_increment,   ///< axis, value = signed distance in mm or degrees, at most the axis' whole travel
-  jog_continuous,  ///< axis, value = +1 or -1; needs keep_alive at least every 100 ms
+  jog_continuous,  ///< axis, value = +1 or -1; needs keep_alive at least every 100 ms of the wall clock
   keep_alive,
-  jog_stop,
-  zero,  ///< axis, value = the value the present position gets in the active origin
-  mode,  ///< value = image::Mode
+  jog_stop,  ///< axis, or -1 for all; value 1: because its keep-alive was missed
+  zero,      ///< axis, value = the value the present position gets in the active origin
+  mode,      ///< value = image::Mode
   start,
   step,
   hold,

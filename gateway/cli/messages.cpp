@@ -21,18 +21,25 @@ const text::Entry kStartNowForbidden{
 const text::Entry kLeavesTravel{"cli.leaves-travel", "{0} moves from {1} to {2}; its travel is {3} to {4}",
                                 "{0} движется от {1} до {2}; ход оси от {3} до {4}"};
 
+namespace {
+LastError last;
+}  // namespace
+
+const LastError& last_error() noexcept { return last; }
+
 int print_findings(const std::vector<text::Finding>& findings) {
   int errors = 0;
   for (const text::Finding& f : findings) {
     std::fprintf(stderr, "%s\n%s", f.str().c_str(), f.excerpt().c_str());
-    errors += f.severity == text::Severity::error ? 1 : 0;
+    if (f.severity != text::Severity::error) continue;
+    if (errors++ == 0) last = {f.entry == nullptr ? "" : std::string(f.entry->id), f.str()};
   }
   return errors;
 }
 
 void complain(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  std::fprintf(stderr, "servogate: %s [%s]\n", text::render(entry, arguments, text::user_language()).c_str(),
-               std::string(entry.id).c_str());
+  last = {std::string(entry.id), text::render(entry, arguments, text::user_language())};
+  std::fprintf(stderr, "servogate: %s [%s]\n", last.text.c_str(), last.code.c_str());
 }
 
 }  // namespace servogate::gateway

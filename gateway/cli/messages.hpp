@@ -16,6 +16,13 @@ extern const text::Entry kVirtualNeedsMock;  ///< {0} bus
 extern const text::Entry kStartNowForbidden;
 extern const text::Entry kLeavesTravel;  ///< {0} axis, {1} from, {2} to, {3} travel min, {4} travel max
 
+/// The error that was said last: what a command with --json leaves on standard output when it failed before
+/// it had anything else to say (end_output()).
+struct LastError {
+  std::string code, text;  ///< both empty: none
+};
+const LastError& last_error() noexcept;
+
 /// Prints findings, one a line, on stderr; returns the number of errors.
 int print_findings(const std::vector<text::Finding>& findings);
 /// Prints one sentence as `servogate: text [code]` on stderr.

@@ -39,7 +39,7 @@ struct ClientOptions {
   std::string socket;
   bool json = false;
   bool wait = false;     ///< until what was begun has ended
-  bool no_wait = false;  ///< of `power`, which waits of itself
+  bool no_wait = false;  ///< of `power` and `jog`, which wait of themselves
 };
 
 struct CheckOptions {
@@ -50,6 +50,7 @@ struct CheckOptions {
 
 struct CanonOptions {
   std::string machine, program, dialect;
+  bool json = true;  ///< its output is JSON with and without the option
 };
 
 struct ReplayOptions {

@@ -29,7 +29,9 @@ constexpr ClientCommand kClients[] = {
      "servogate status --json"},
     {"home", "References axes; without a name all of them, in the machine's order.", "[AXIS...]",
      "servogate home Z --wait", true},
-    {"jog", "Moves one axis: a distance (+1mm, -0.5deg) or a direction (+ or -) until Enter or Ctrl-C.",
+    {"jog",
+     "Moves one axis, and waits until it stands: a distance (+1mm, -0.5deg), or a direction (+ or -) until "
+     "Enter or Ctrl-C.",
      "AXIS DISTANCE", "servogate jog X -1mm", true},
     {"zero", "Gives the present position of an axis a value in the active origin (0 if none is said).",
      "AXIS [VALUE]", "servogate zero X 0"},
@@ -210,7 +212,7 @@ class Commands {
     app.add_flag("--json", o.json, "As JSON");
     if (!c.waits) return;
     app.add_flag("--wait", o.wait, "Waits until it has ended; exit 1 after an alarm, 3 when it was stopped");
-    if (std::string_view(c.name) == "power")
+    if (std::string_view(c.name) == "power" || std::string_view(c.name) == "jog")
       app.add_flag("--no-wait", o.no_wait, "Returns as soon as the control has agreed");
   }
 
@@ -250,6 +252,7 @@ class Commands {
     app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
     app.add_option("PROGRAM", o.program, "Part program")->required();
     app.add_option("--dialect", o.dialect, "Language of the program instead of the machine's own");
+    app.add_flag("--json", o.json, "As JSON, which it always is");
   }
 
   void replay() {

@@ -15,6 +15,7 @@ struct PlcRunOptions {
 struct PlcCheckOptions {
   std::vector<std::string> files;
   std::string machine;
+  bool json = false;
 };
 
 struct PlcTestOptions {

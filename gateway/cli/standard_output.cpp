@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdarg>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
@@ -19,6 +20,7 @@ namespace {
 
 /// errno of the first write that failed, 0: none.
 int failure = 0;
+bool printed = false;
 
 bool note(bool written) {
   if (!written && failure == 0) failure = errno != 0 ? errno : EIO;
@@ -36,6 +38,7 @@ void prepare_streams() {
 
 bool print(std::string_view text) {
   if (failure != 0) return false;
+  printed = true;
   errno = 0;
   return note(std::fwrite(text.data(), 1, text.size(), stdout) == text.size());
 }
@@ -44,6 +47,7 @@ bool print_line(std::string_view line) { return print(line) && print("\n"); }
 
 bool print_formatted(const char* format, ...) {
   if (failure != 0) return false;
+  printed = true;
   std::va_list arguments;
   va_start(arguments, format);
   errno = 0;
@@ -52,7 +56,13 @@ bool print_formatted(const char* format, ...) {
   return note(written >= 0);
 }
 
-int end_output(int code) {
+int end_output(int code, bool json) {
+  if (json && !printed && code != kDone) {
+    const LastError& error = last_error();
+    print_line(
+        nlohmann::json{{"schema", 1}, {"exit", code}, {"error", {{"code", error.code}, {"text", error.text}}}}
+            .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  }
   errno = 0;
   if (failure == 0) note(std::fflush(stdout) == 0);
   if (failure == 0 || failure == EPIPE) return code;

@@ -19,8 +19,9 @@ bool print_line(std::string_view line);
 /// The same as printf has it.
 [[gnu::format(printf, 1, 2)]] bool print_formatted(const char* format, ...);
 
-/// At the end of a command: writes what is still buffered. Returns `code`, or kInfrastructure after saying
-/// what could not be written. A closed pipe changes nothing.
-int end_output(int code);
+/// At the end of a command: writes what is still buffered. With `json` a command that failed before it had
+/// anything to print leaves one object with its error. Returns `code`, or kInfrastructure after saying what
+/// could not be written. A closed pipe changes nothing.
+int end_output(int code, bool json);
 
 }  // namespace servogate::gateway

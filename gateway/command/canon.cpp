@@ -8,6 +8,7 @@
 namespace servogate::gateway::command {
 
 int canon(const CanonOptions& options) {
+  if (!options.dialect.empty() && !known_dialect(options.dialect)) return kWrongUse;
   const machine::LoadResult loaded = machine::load(options.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
   ProgramFile program;

@@ -123,6 +123,7 @@ ProgramErrors check_programs(const CheckOptions& options, const machine::Machine
 }  // namespace
 
 int check(const CheckOptions& options) {
+  if (!options.dialect.empty() && !known_dialect(options.dialect)) return kWrongUse;
   const machine::LoadResult loaded = machine::load(options.machine);
   std::vector<text::Finding> findings = loaded.findings;
   if (loaded.ok()) check_logic(loaded.machine, findings);

@@ -106,6 +106,7 @@ int replay(const ReplayOptions& options) {
   std::vector<text::Finding> findings;
   const std::unique_ptr<Control> control = Control::compose(loaded, findings, &record);
   if (print_findings(findings) > 0 || control == nullptr) return kWrongUse;
+  control->cycle().set_time_scale(header.time_scale);
   control->restore_references(header.state);
   control->restore_retained(header.state);
   const std::vector<ProgramChange> changes = record.changes(loaded.machine);

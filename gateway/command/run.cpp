@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <mutex>
@@ -12,6 +10,7 @@
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
+#include "gateway/command/signals.hpp"
 #include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/state/state.hpp"
 #include "gateway/machine/state/state_lock.hpp"
@@ -20,7 +19,9 @@
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/retained_keeper.hpp"
 #include "gateway/run/session.hpp"
-#include "gateway/run/wait_words.hpp"
+#include "gateway/run/words/ready_words.hpp"
+#include "gateway/run/words/stop_words.hpp"
+#include "gateway/run/words/wait_words.hpp"
 #include "kernel/program/check.hpp"
 
 namespace servogate::gateway::command {
@@ -46,15 +47,16 @@ const text::Entry kDone1{"run.done", "done: {0} blocks in {1} s of machine time"
                          "готово: кадров {0}, машинное время {1} с"};
 const text::Entry kProgress{"run.progress", "{0} of about {1} blocks, {2} s, about {3} s left",
                             "кадров {0} примерно из {1}, {2} с, осталось около {3} с"};
+const text::Entry kStoppedEarly{"run.stopped-early",
+                                "stopped by the operator before the first block; the drives are off",
+                                "остановлено оператором до первого кадра; приводы выключены"};
+const text::Entry kMissing{"run.missing", "  {0}\n    {1}", "  {0}\n    {1}"};
 const text::Entry kBroken{"run.broken-off", "broken off: {0} of about {1} blocks in {2} s of machine time",
                           "прервано: кадров {0} примерно из {1}, машинное время {2} с"};
 
 constexpr double kPatience_s = 60.0;       ///< of machine time, where --patience says nothing
 constexpr double kSilentWait_s = 5.0;      ///< a longer wait is said
 constexpr double kProgressPause_s = 0.25;  ///< of wall-clock time
-
-std::atomic<int> interrupts{0};
-void on_interrupt(int) { interrupts.fetch_add(1); }
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point begin) {
@@ -79,6 +81,8 @@ class Run {
   bool virtual_loop(OperatorScript& script, Session& session);
   bool realtime_loop(OperatorScript& script, Session& session);
   void take_answers(OperatorScript& script);
+  void note_missing(const OperatorScript& script, const image::ProcessImage& image,
+                    const cycle::AlarmSnapshot& alarms);
   double patience() const;
   void follow(const image::ProcessImage& image);
   void progress(const image::ProcessImage& image);
@@ -100,9 +104,11 @@ class Run {
   Clock::time_point begin_;
   double wall_s_ = 0.0;
   double last_progress_ = -1.0;
-  bool line_open_ = false;             ///< a progress line stands on the terminal
-  std::int32_t message_said_ = 0;      ///< newest message of the program that was printed
-  image::Nanoseconds wait_said_ = -1;  ///< beginning of the wait that was printed
+  bool line_open_ = false;                 ///< a progress line stands on the terminal
+  std::int32_t message_said_ = 0;          ///< newest message of the program that was printed
+  image::Nanoseconds wait_said_ = -1;      ///< beginning of the wait that was printed
+  std::vector<MissingCondition> missing_;  ///< for the drives to be on, when the script gave up on them
+  bool missing_noted_ = false;
   std::int64_t overruns_ = 0;
   bool infrastructure_ = false;
 };
@@ -169,8 +175,7 @@ OperatorScript::Wishes Run::wishes() const {
 int Run::execute(const std::vector<std::string>& command_line) {
   Session session(*control_, {options_.trace, options_.report, options_.html}, realtime());
   OperatorScript script(wishes(), [this](const image::Request& r) { return control_->cycle().post(r); });
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  count_signals();
   control_->world().close_operator_points();
   begin_ = Clock::now();
   const bool ran = realtime() ? realtime_loop(script, session) : virtual_loop(script, session);
@@ -182,10 +187,21 @@ int Run::execute(const std::vector<std::string>& command_line) {
 void Run::take_answers(OperatorScript& script) {
   image::Answer answer;
   while (control_->cycle().take_answer(answer)) script.take(answer);
-  for (static int seen = 0; seen < interrupts.load(); ++seen) script.interrupt();
+  for (static int seen = 0; seen < signals_seen(); ++seen) script.interrupt();
+}
+
+/// As it was in the cycle in which the script gave up, before it switches off what is on.
+void Run::note_missing(const OperatorScript& script, const image::ProcessImage& image,
+                       const cycle::AlarmSnapshot& alarms) {
+  if (missing_noted_ || script.outcome() == OperatorScript::Outcome::under_way) return;
+  missing_noted_ = true;
+  const bool refused = script.outcome() == OperatorScript::Outcome::refused;
+  if (refused || (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()))
+    missing_ = missing_for_power(*control_, image, alarms, text::user_language());
 }
 
 bool Run::virtual_loop(OperatorScript& script, Session& session) {
+  cycle::AlarmSnapshot alarms;
   while (!script.done()) {
     session.wait_for_room();
     if (record_ != nullptr) record_->wait_for_room();
@@ -193,6 +209,10 @@ bool Run::virtual_loop(OperatorScript& script, Session& session) {
     session.after_cycle(0);
     take_answers(script);
     script.poll(control_->cycle().image());
+    if (!missing_noted_ && script.outcome() != OperatorScript::Outcome::under_way) {
+      control_->cycle().alarms().snapshot(alarms);
+      note_missing(script, control_->cycle().image(), alarms);
+    }
     if (control_->cycle().count() % 256 == 0) follow(control_->cycle().image());
   }
   return true;
@@ -210,6 +230,7 @@ bool Run::realtime_loop(OperatorScript& script, Session& session) {
   if (!started || !options_.quiet) loop.complain_of_refusals(started);
   if (!started) return false;
   auto image = std::make_unique<image::ProcessImage>();
+  auto alarms = std::make_unique<cycle::AlarmSnapshot>();
   while (!script.done()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     control_->cycle().read(*image);
@@ -217,6 +238,8 @@ bool Run::realtime_loop(OperatorScript& script, Session& session) {
     if (static_cast<std::size_t>(image->axis_count) != loaded_.machine.axes.size()) continue;
     take_answers(script);
     script.poll(*image);
+    control_->cycle().read(*alarms);
+    note_missing(script, *image, *alarms);
     follow(*image);
   }
   loop.stop();
@@ -340,6 +363,12 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
     for (const std::string& a : script.waiting_for()) axes += (axes.empty() ? "" : ", ") + a;
     complain(kNotReady, {axes});
   }
+  for (const MissingCondition& m : missing_)
+    if (m.reason != "alarm") std::fprintf(stderr, "%s\n", say(kMissing, {m.text, m.remedy}).c_str());
+  if (const auto stop = stop_words(*control_, control_->cycle().image(), 0, text::user_language()); stop)
+    std::fprintf(stderr, "%s\n  %s\n", stop->text.c_str(), stop->remedy.c_str());
+  if (script.outcome() == OperatorScript::Outcome::stopped && report.blocks == 0)
+    std::fprintf(stderr, "%s\n", say(kStoppedEarly, {}).c_str());
   if (options_.quiet) return;
   const std::string blocks = std::to_string(report.blocks), time = text::number(report.time_s, 3);
   if (script.outcome() == OperatorScript::Outcome::finished)
@@ -370,6 +399,7 @@ bool Run::save_state() {
 
 int run(const RunOptions& given, const std::vector<std::string>& command_line) {
   RunOptions options = given;
+  if (!options.dialect.empty() && !known_dialect(options.dialect)) return kWrongUse;
   const machine::LoadResult loaded = machine::load(options.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
   if (options.clock == ClockKind::unset)

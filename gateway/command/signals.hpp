@@ -1,23 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <csignal>
+#include "firmware_if/text/finding.hpp"
 
+/// Ctrl-C and SIGTERM as wishes of the operator. One a process; the main thread's.
 namespace servogate::gateway::command {
 
-/// Ctrl-C and SIGTERM end a command that would otherwise run on: its loop asks ended(). Waiting system calls
-/// are interrupted. One a process.
+/// First act of main(): from here on the first signal says that nothing has begun and ends the program at
+/// once with exit code 3, until one of the functions below says otherwise.
+void watch_signals();
+
+/// As before, but what is said is this sentence.
+void say_when_stopped(const text::Entry& entry);
+
+/// From here on the command looks itself: signals are counted. `interrupting`: system calls that wait are
+/// interrupted by them.
+void count_signals(bool interrupting = false);
+/// How many have come since count_signals().
+int signals_seen() noexcept;
+
+/// For commands that an operator has nothing to stop in: what the system does by itself.
+void leave_signals_alone();
+
+/// Ends a command that would otherwise run on: its loop asks ended(). Waiting system calls are interrupted.
 class EndBySignal {
  public:
-  EndBySignal() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { ended_ = 1; };
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-  }
-  bool ended() const noexcept { return ended_ != 0; }
-
- private:
-  static inline volatile std::sig_atomic_t ended_ = 0;
+  EndBySignal() { count_signals(true); }
+  bool ended() const noexcept { return signals_seen() > 0; }
 };
 
 }  // namespace servogate::gateway::command

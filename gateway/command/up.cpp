@@ -8,6 +8,7 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
+#include "gateway/command/signals.hpp"
 #include "gateway/machine/state/state.hpp"
 #include "gateway/machine/state/state_lock.hpp"
 #include "gateway/run/realtime_loop.hpp"
@@ -26,8 +27,8 @@ const text::Entry kNoSocket{"up.no-socket", "cannot listen on {0}: {1}", "не �
 const text::Entry kStateLost{"up.state-not-saved", "the state was not saved: {0}",
                              "состояние не сохранено: {0}"};
 
-std::atomic<bool> ended{false};
-void on_end(int) { ended = true; }
+std::atomic<bool> hung_up{false};
+void on_hangup(int) { hung_up = true; }
 
 /// Virtual time paced against the wall clock on a thread of its own.
 class VirtualLoop {
@@ -130,6 +131,7 @@ int up(const UpOptions& options) {
   const int errors = print_findings(findings);
   if (control == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
+  if (is_virtual) control->cycle().set_time_scale(options.speed);
   control->restore_references(state);
   print_findings(control->restore_retained(state));
   const std::unique_ptr<RecordWriter> record =
@@ -142,14 +144,13 @@ int up(const UpOptions& options) {
   const std::string socket = !options.socket.empty() ? options.socket
                              : !m.run.socket.empty() ? m.resolve(m.run.socket)
                                                      : default_socket(m.name);
+  count_signals();  // from here on there is something to be put away
+  std::signal(SIGHUP, on_hangup);
   SocketServer server(resident, socket);
   if (const std::string problem = server.bind(); !problem.empty()) {
     complain(kNoSocket, {socket, problem});
     return kInfrastructure;
   }
-  std::signal(SIGINT, on_end);
-  std::signal(SIGTERM, on_end);
-  std::signal(SIGHUP, on_end);
 
   std::unique_ptr<VirtualLoop> virtual_loop;
   std::unique_ptr<RealtimeLoop> realtime_loop;
@@ -168,7 +169,8 @@ int up(const UpOptions& options) {
   std::fprintf(
       stderr, "%s\n",
       text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()).c_str());
-  while (!ended && !server.down_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  while (signals_seen() == 0 && !hung_up && !server.down_requested())
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the answer to `down` leaves first
   server.stop();
   shut_down(resident);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/run/operator_script.hpp"
 
-#include "gateway/run/wait_words.hpp"
+#include "gateway/run/words/wait_words.hpp"
 #include "kernel/cycle/gate/gate.hpp"
 
 namespace servogate::gateway {
@@ -150,6 +150,7 @@ void OperatorScript::poll(const ProcessImage& image) {
         case ProcessState::ended:
           return power_down(Outcome::finished, image);
         case ProcessState::stopped_by_alarm:
+        case ProcessState::stopped:  // by the PLC: nobody else is there
           return power_down(Outcome::alarm, image);
         case ProcessState::idle:
           return power_down(Outcome::stopped, image);

@@ -94,7 +94,8 @@ RecordWriter::RecordWriter(const std::string& path, const RecordHeader& header)
                       {"layout", sizeof(cycle::CycleInputs)},
                       {"machine", header.machine},
                       {"machine_sha256", header.machine_sha256},
-                      {"period_ns", header.period_ns}};
+                      {"period_ns", header.period_ns},
+                      {"time_scale", header.time_scale}};
   for (const machine::StatePart part : kParts)
     head["state"][std::string(machine::part_name(part))] = machine::write_part(header.state, part);
   const std::string line = head.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
@@ -112,6 +113,7 @@ std::unique_ptr<RecordWriter> begin_record(const std::string& path, const std::s
   header.machine_sha256 = report::identify(machine_file).sha256;
   header.state = state;
   header.period_ns = control.cycle().period_ns();
+  header.time_scale = control.cycle().time_scale();
   auto record = std::make_unique<RecordWriter>(path, header);
   control.cycle().attach(static_cast<cycle::InputTap*>(record.get()));
   control.attach(record.get());
@@ -246,6 +248,7 @@ bool RecordReader::read_head(const std::string& line, std::string& error) {
     header_.machine = json.value("machine", "");
     header_.machine_sha256 = json.value("machine_sha256", "");
     header_.period_ns = json.value("period_ns", image::Nanoseconds{0});
+    header_.time_scale = json.value("time_scale", 1.0);
     for (const machine::StatePart part : kParts) {
       const std::string name(machine::part_name(part));
       machine::read_part(json.at("state").value(name, ""), name, part, header_.state);

@@ -24,6 +24,7 @@ struct RecordHeader {
   std::string machine, machine_sha256;
   machine::MachineState state;  ///< as the run found it; the run itself may change the state directory
   image::Nanoseconds period_ns = 0;
+  double time_scale = 1.0;  ///< Cycle::time_scale()
 };
 
 /// Writes the inputs of every cycle, and what was loaded beside them, to a file on a thread of its own.

@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "gateway/run/alarm_entries.hpp"
+#include "gateway/run/words/alarm_entries.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::gateway {

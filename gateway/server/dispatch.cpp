@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "gateway/machine/consequences.hpp"
+#include "gateway/run/words/jog_words.hpp"
 #include "gateway/server/bus_reading.hpp"
 #include "gateway/server/status.hpp"
 #include "gateway/server/texts.hpp"
@@ -18,7 +19,8 @@ namespace {
 using image::RequestKind;
 using nlohmann::json;
 
-constexpr double kKeepAlive_ms = 30.0;  ///< of machine time, between two keep-alives of a jog
+constexpr double kKeepAlive_ms = 30.0;  ///< of the wall clock, between two keep-alives of a jog
+constexpr std::chrono::milliseconds kSilence{100};
 
 constexpr std::size_t kFindingsSaid = 10;  ///< of a bad program; all of them stand in the answer's "findings"
 
@@ -102,6 +104,8 @@ class Dispatch {
   Reply reset();
   Reply input();
   Reply sdo_read();
+  /// The answer to "not powered", with each condition that is missing.
+  void add_missing(json& answer);
   /// What the request plays on a point; false: `refusal_` holds the answer.
   bool input_value(const machine::PointConfig& point, MockWorld::Play& play);
   Reply down() {
@@ -193,11 +197,23 @@ bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image
   as_people_write(answer);
   std::vector<std::string> units;
   for (const machine::AxisConfig& a : machine().axes) units.emplace_back(unit(a));
-  refusal_ = {text_of({{"ok", false},
-                       {"code", cycle::refusal_texts()[answer.refusal].id},
-                       {"text", cycle::render(answer, machine().letters(), language_, units)},
-                       {"exit", kAlarm}})};
+  json refused{{"ok", false},
+               {"code", cycle::refusal_texts()[answer.refusal].id},
+               {"text", cycle::render(answer, machine().letters(), language_, units)},
+               {"exit", kAlarm}};
+  const auto refusal = static_cast<cycle::Refusal>(answer.refusal);
+  if (refusal == cycle::Refusal::not_powered || refusal == cycle::Refusal::emergency_stop)
+    add_missing(refused);
+  refusal_ = {text_of(refused)};
   return false;
+}
+
+void Dispatch::add_missing(json& answer) {
+  answer["missing"] = missing_json(resident_, language_);
+  std::string words = answer["text"];
+  for (const json& m : answer["missing"])
+    words += "\n  " + m["text"].get<std::string>() + "\n    " + m["remedy"].get<std::string>();
+  answer["text"] = words;
 }
 
 /// The cycle knows radii only; of a diameter axis people see the diameter.
@@ -286,18 +302,27 @@ Reply Dispatch::jog_continuous() {
   if (!ask(RequestKind::jog_continuous, index, value, image::Mode::manual)) return refusal_;
   connection_.jogs = index;
   connection_.asker = asker_;
+  connection_.silent = false;
+  connection_.heard = std::chrono::steady_clock::now();
   return good(says::kJogs, {axis_config(index).letter, value > 0.0 ? "+" : "-"},
-              {{"keep_alive_ms", std::max(1.0, kKeepAlive_ms / std::max(resident_.speed(), 1.0))}});
+              {{"keep_alive_ms", kKeepAlive_ms}});
 }
 
 Reply Dispatch::keep_alive() {
   if (connection_.jogs < 0) return fail(says::kNoJog, {}, kWrongUse);
-  const image::AxisOwner owner = resident_.image().axes[static_cast<std::size_t>(connection_.jogs)].owner;
-  if (owner != image::AxisOwner::manual) {
+  const image::AxisImage& a = resident_.image().axes[static_cast<std::size_t>(connection_.jogs)];
+  const image::JogEnd end = connection_.silent ? image::JogEnd::silent : a.jog_end;
+  if (end != image::JogEnd::none || a.owner != image::AxisOwner::manual) {
     const std::string letter = axis_config(connection_.jogs).letter;
     connection_.jogs = -1;
-    return good(says::kJogEnds, {letter}, {{"moving", false}});
+    return {text_of({{"ok", true},
+                     {"exit", kDone},
+                     {"moving", false},
+                     {"reason", jog_end_name(end)},
+                     {"code", jog_end_code(end)},
+                     {"text", jog_end_words(end, letter, language_)}})};
   }
+  connection_.heard = std::chrono::steady_clock::now();
   image::Request r;
   r.kind = RequestKind::keep_alive;
   r.asker = connection_.asker;
@@ -492,15 +517,30 @@ Reply dispatch(Resident& resident, std::string_view line, Connection& connection
   }
 }
 
-void end_connection(Resident& resident, Connection& connection) {
-  resident.plc().release_of(connection.number);
-  if (connection.jogs < 0) return;
+namespace {
+
+void stop_jog(Resident& resident, const Connection& connection) {
   image::Request r;
   r.kind = RequestKind::jog_stop;
+  r.value = 1.0;
   r.asker = connection.asker;
   r.axis = static_cast<std::int8_t>(connection.jogs);
   resident.tell(r);
+}
+
+}  // namespace
+
+void end_connection(Resident& resident, Connection& connection) {
+  resident.plc().release_of(connection.number);
+  if (connection.jogs >= 0) stop_jog(resident, connection);
   connection.jogs = -1;
+}
+
+void watch_jog(Resident& resident, Connection& connection) {
+  if (connection.jogs < 0 || connection.silent || resident.speed() == 1.0) return;
+  if (std::chrono::steady_clock::now() - connection.heard < kSilence) return;
+  connection.silent = true;
+  stop_jog(resident, connection);
 }
 
 }  // namespace servogate::gateway

@@ -128,6 +128,7 @@ std::vector<text::Finding> Resident::check_block(const std::string& block) {
 }
 
 void Resident::set_manual_block(const std::string& block) {
+  if (!block.empty()) manual_block_ = block;
   control_.change({ProgramChange::Kind::block, 0, {}, {}, block});
 }
 

@@ -40,6 +40,8 @@ class Resident {
   std::vector<text::Finding> check_block(const std::string& block);
   /// The block that the next start in MDI mode runs.
   void set_manual_block(const std::string& block);
+  /// The block that was typed last.
+  const std::string& manual_block() const noexcept { return manual_block_; }
   /// MDI begins with the power-on modes again.
   void forget_modes();
 
@@ -86,6 +88,7 @@ class Resident {
   double speed_;
   std::shared_ptr<const ProgramFile> file_;
   int blocks_ = 0, lines_ = 0;
+  std::string manual_block_;
   std::uint32_t homed_seen_ = 0;
   bool busy_seen_ = false;
   std::uint64_t next_id_ = 1;

@@ -5,8 +5,11 @@
 #include <span>
 
 #include "gateway/machine/consequences.hpp"
-#include "gateway/run/alarm_entries.hpp"
-#include "gateway/run/wait_words.hpp"
+#include "gateway/run/words/alarm_entries.hpp"
+#include "gateway/run/words/jog_words.hpp"
+#include "gateway/run/words/ready_words.hpp"
+#include "gateway/run/words/stop_words.hpp"
+#include "gateway/run/words/wait_words.hpp"
 
 namespace servogate::gateway {
 
@@ -15,7 +18,9 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kModes[] = {"off", "mdi", "auto", "step", "manual", "increment", "profile", "home"};
-constexpr const char* kStates[] = {"idle", "running", "held", "waiting", "stopped_by_alarm", "ended"};
+constexpr const char* kStates[] = {"idle",  "running", "held", "waiting", "stopped_by_alarm",
+                                   "ended", "stopped"};
+constexpr std::string_view kTypedFile = "MDI";  ///< what the interpreter calls the file of typed blocks
 constexpr const char* kOwners[] = {"none", "process", "manual", "homing", "plc", "bench"};
 constexpr const char* kDriveStates[] = {
     "offline",     "not_ready_to_switch_on", "switch_on_disabled", "ready_to_switch_on",
@@ -69,13 +74,35 @@ json wait_json(const std::optional<WaitWords>& wait) {
   return out;
 }
 
+json stop_json(const std::optional<StopWords>& stop) {
+  if (!stop) return nullptr;
+  return {{"cause", stop->cause}, {"text", stop->text}, {"remedy", stop->remedy}};
+}
+
+json jog_end_json(image::JogEnd end, const std::string& axis, text::Language language) {
+  if (end == image::JogEnd::none) return nullptr;
+  return {{"reason", jog_end_name(end)},
+          {"code", jog_end_code(end)},
+          {"text", jog_end_words(end, axis, language)}};
+}
+
+/// File of the block in motion; a typed block is in none, but what it calls is.
+std::string file_in_motion(Control& control, const image::ProcessStatus& p, int process) {
+  const std::string file = control.process(process).texts().file(p.run, p.file);
+  return p.typed && file == kTypedFile ? std::string() : file;
+}
+
 /// What `status` says of one process.
-json process_json(Control& control, const image::ProcessImage& image, int process, text::Language language) {
+json process_json(Resident& resident, const image::ProcessImage& image, int process,
+                  text::Language language) {
+  Control& control = resident.control();
   const image::ProcessStatus& p = image.processes[static_cast<std::size_t>(process)];
   return {{"mode", kModes[static_cast<int>(p.mode)]},
           {"state", kStates[static_cast<int>(p.state)]},
+          {"block", p.typed ? json(resident.manual_block()) : json()},
+          {"stop", stop_json(stop_words(control, image, process, language))},
           {"line", p.line},
-          {"file", p.line > 0 ? control.process(process).texts().file(p.run, p.file) : ""},
+          {"file", p.line > 0 ? file_in_motion(control, p, process) : ""},
           {"blocks_done", p.blocks_done},
           {"message", program_message(control, image, process)},
           {"wait", wait_json(wait_words(control, image, process, language))},
@@ -125,7 +152,7 @@ std::string status_json(Resident& resident, text::Language language) {
               {"homing", homing},
               {"processes", json::array()}};
   for (int p = 0; p < image.process_count; ++p) {
-    json process = process_json(resident.control(), image, p, language);
+    json process = process_json(resident, image, p, language);
     if (p == 0) status.update(process);
     process["process"] = p + 1;
     status["processes"].push_back(std::move(process));
@@ -144,7 +171,9 @@ std::string status_json(Resident& resident, text::Language language) {
                               {"enabled", a.enabled},
                               {"homed", a.homed},
                               {"moving", a.moving},
+                              {"in_position", a.in_position},
                               {"owner", kOwners[static_cast<int>(a.owner)]},
+                              {"jog_end", jog_end_json(a.jog_end, m.axes[n].letter, language)},
                               {"drive", kDriveStates[static_cast<int>(a.drive.state)]},
                               {"on_limit", a.limit_plus    ? 1
                                            : a.limit_minus ? -1
@@ -159,8 +188,18 @@ std::string status_json(Resident& resident, text::Language language) {
   }
   status["buses"] = bus_list(m, image);
   status["alarms"] = alarm_list(resident, language);
+  status["missing"] = missing_json(resident, language);
   status["forced"] = resident.plc().forced();
   return status.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+json missing_json(Resident& resident, text::Language language) {
+  json list = json::array();
+  const image::ProcessImage& image = resident.image();
+  if (static_cast<std::size_t>(image.axis_count) != resident.control().machine().axes.size()) return list;
+  for (const MissingCondition& c : missing_for_power(resident.control(), image, resident.alarms(), language))
+    list.push_back({{"reason", c.reason}, {"text", c.text}, {"remedy", c.remedy}, {"axes", c.axes}});
+  return list;
 }
 
 std::string alarms_in_words(Resident& resident, text::Language language) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "gateway/server/resident.hpp"
@@ -10,7 +11,9 @@ namespace servogate::gateway {
 std::string status_json(Resident& resident, text::Language language);
 /// Active alarms with cause and remedy as one JSON object.
 std::string alarms_json(Resident& resident, text::Language language);
-/// The same in a few words: "alarm 201 X: ...; alarm ...". Empty: none.
+/// What keeps the drives from being on: a list of `reason`, `text`, `remedy`, `axes`; empty: they are on.
+nlohmann::json missing_json(Resident& resident, text::Language language);
+/// The alarms in a few words: "alarm 201 X: ...; alarm ...". Empty: none.
 std::string alarms_in_words(Resident& resident, text::Language language);
 
 }  // namespace servogate::gateway

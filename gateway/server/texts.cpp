@@ -71,8 +71,6 @@ const Entry kJogClipped{"said.jog-clipped", "{0} moves to its travel limit only,
                         "{0} перемещается только до границы зоны, {1} {2}"};
 const Entry kJogs{"said.jogs", "{0} jogs {1}: it goes on while this client keeps asking",
                   "{0} движется в направлении {1}, пока клиент это подтверждает"};
-const Entry kJogEnds{"said.jog-ends", "{0} stopped by itself (limit, alarm or PLC)",
-                     "{0} остановилась сама (предел, авария или ПЛК)"};
 const Entry kZero{"said.zero", "{0} is {1} {2} here (origin {3} at {4})",
                   "{0} здесь равна {1} {2} (начало {3} в {4})"};
 const Entry kZeroDiameter{"said.zero-diameter", "{0} is {1} {2} in diameter here (origin {3} at radius {4})",
@@ -106,6 +104,9 @@ const Entry kAnotherListens{
     "там уже работает другое управление; завершите его (`servogate down`) или укажите --socket"};
 const Entry kNoSocketFile{"socket.not-a-socket", "there is a file of that name that is no socket",
                           "файл с таким именем есть, и это не сокет"};
+const Entry kNoFolder{"socket.no-folder",
+                      "folder {0} does not exist; make it first, or choose another --socket",
+                      "каталога {0} нет; сначала создайте его или укажите другой --socket"};
 const Entry kForeignFolder{"socket.foreign-folder", "folder {0} belongs to somebody else",
                            "каталог {0} принадлежит другому пользователю"};
 

@@ -45,7 +45,6 @@ extern const text::Entry kJog;          ///< {0} axis, {1} distance, {2} unit
 extern const text::Entry kJogDiameter;  ///< {0} axis, {1} diameter, {2} radius
 extern const text::Entry kJogClipped;   ///< {0} axis, {1} limit, {2} unit
 extern const text::Entry kJogs;         ///< {0} axis, {1} direction
-extern const text::Entry kJogEnds;      ///< {0} axis
 extern const text::Entry kZero;         ///< {0} axis, {1} value, {2} unit, {3} origin, {4} machine coordinate
 extern const text::Entry kZeroDiameter;  ///< as kZero
 extern const text::Entry kBlockRuns;
@@ -64,6 +63,7 @@ extern const text::Entry kObjectRead;
 extern const text::Entry kPathTooLong;
 extern const text::Entry kAnotherListens;
 extern const text::Entry kNoSocketFile;   ///< {0} path
+extern const text::Entry kNoFolder;       ///< {0} folder
 extern const text::Entry kForeignFolder;  ///< {0} folder
 
 }  // namespace servogate::gateway::says

@@ -91,7 +91,8 @@ void Axis::advance(double dt, image::Nanoseconds now) noexcept {
   const bool with_the_path = !by_itself && process_given_ && letting_go() && held_;
   const bool stop_now = reaction_ >= Reaction::stop_axes || (!power_.motion_permitted() && !with_the_path) ||
                         (by_itself && reaction_ >= Reaction::stop_on_path);
-  if (stop_now && !stopped_by_reaction_) take_away();
+  if (stop_now && !stopped_by_reaction_)
+    take_away(reaction_ >= Reaction::stop_on_path ? image::JogEnd::alarm : image::JogEnd::power);
   const double before = set_.x;
   if (own_motion_)
     advance_own(dt, now);
@@ -146,6 +147,7 @@ void Axis::advance_own(double dt, image::Nanoseconds now) noexcept {
   if (!ramp_.done() || homing_.active()) return;
   if (manual_ == Manual::plc && !feed_enable_) return;  // held on its way
   set_.v = set_.a = 0.0;
+  end_jog(manual_ == Manual::increment ? image::JogEnd::arrived : image::JogEnd::travel);
   own_motion_ = false;
   manual_ = Manual::rest;
   if (owner_ == AxisOwner::manual || owner_ == AxisOwner::homing) owner_ = AxisOwner::none;
@@ -183,8 +185,8 @@ void Axis::check_index_place() noexcept {
 void Axis::advance_manual(image::Nanoseconds now) noexcept {
   if (manual_ == Manual::plc) return advance_plc();
   const auto silence_ns = static_cast<double>(now - keep_alive_ns_);
-  const bool silent = manual_ == Manual::continuous && silence_ns >= config_.keep_alive_s * 1e9;
-  if (!feed_enable_ || silent) return jog_stop();
+  const bool silent = manual_ == Manual::continuous && silence_ns >= config_.keep_alive_s * time_scale_ * 1e9;
+  if (!feed_enable_ || silent) return jog_stop(silent ? image::JogEnd::silent : image::JogEnd::feed);
   if (manual_ != Manual::continuous) return;
   const MotionLimits lim = limits_with(jog_speed());
   if (homed_ && config_.travel_limited)
@@ -204,8 +206,15 @@ void Axis::advance_plc() noexcept {
     ramp_.move_to(goal_, goal_limits_);
 }
 
+/// The first cause of a jog's end is its cause.
+void Axis::end_jog(image::JogEnd why) noexcept {
+  const bool jogs = manual_ == Manual::increment || manual_ == Manual::continuous;
+  if (jogs && jog_end_ == image::JogEnd::none) jog_end_ = why;
+}
+
 /// Ends whatever motion there is, at the axis' own limits.
-void Axis::take_away() noexcept {
+void Axis::take_away(image::JogEnd why) noexcept {
+  end_jog(why);
   if (homing_.active()) {
     homing_.abort(ramp_);
     raise(alarm::kHomingInterrupted, 0.0, set_.x);
@@ -231,6 +240,7 @@ void Axis::follow_feedback() noexcept {
   compensation_.seat(actual_, 0);
   ramp_.reset(set_, config_.limits);
   fill_history();
+  end_jog(image::JogEnd::power);
   manual_ = Manual::rest;
   own_motion_ = moving_ = false;
   stopped_by_reaction_ = false;
@@ -300,6 +310,7 @@ void Axis::write_image(image::ProcessImage& image, const PowerSequence::Outputs&
                        : owner_ == AxisOwner::process && moving_ ? process_.distance_to_go
                                                                  : 0.0;
   out.owner = owner_;
+  out.jog_end = jog_end_;
   out.enabled = power_.motion_permitted();
   out.homed = homed_;
   out.in_position = in_position_;

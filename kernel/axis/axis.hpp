@@ -68,7 +68,10 @@ class Axis {
   /// cycle.
   bool jog_continuous(int direction, image::Nanoseconds now) noexcept;
   void keep_alive(image::Nanoseconds now) noexcept { keep_alive_ns_ = now; }
-  void jog_stop() noexcept;
+  /// Machine seconds in a second of the wall clock, by which the hand of whoever jogs is judged. Before the
+  /// first cycle.
+  void set_time_scale(double scale) noexcept { time_scale_ = scale; }
+  void jog_stop(image::JogEnd why = image::JogEnd::asked) noexcept;
   /// Moves to a machine position at `velocity` (at most the limit), for manual, PLC or bench owners.
   bool move_to(double position, double velocity) noexcept;
   /// The PLC's motion of an auxiliary axis: to a machine position, with at most these limits. A motion of the
@@ -111,6 +114,8 @@ class Axis {
   bool letting_go() const noexcept { return power_.state() == PowerSequence::State::stopping; }
   /// <axis>.feed_enable as the PLC wrote it.
   bool feed_enabled() const noexcept { return feed_enable_; }
+  /// <axis>.enable and MC.power_on as the PLC wrote them.
+  bool power_permitted() const noexcept { return power_permitted_; }
   /// Jog wish of the PLC: +1, -1 or 0 (both or none).
   int plc_jog() const noexcept { return plc_jog_; }
   const Homing& homing() const noexcept { return homing_; }
@@ -135,7 +140,8 @@ class Axis {
   void advance_manual(image::Nanoseconds now) noexcept;
   void follow_drive() noexcept;
   void check_index_place() noexcept;
-  void take_away() noexcept;
+  void take_away(image::JogEnd why = image::JogEnd::alarm) noexcept;
+  void end_jog(image::JogEnd why) noexcept;
   void follow_feedback() noexcept;
   void set_machine_position(std::int64_t counts) noexcept;
   void drop_reference() noexcept;
@@ -187,7 +193,9 @@ class Axis {
   double goal_ = 0.0;          ///< of Manual::plc: position, or speed with its sign
   bool goal_endless_ = false;  ///< it is a speed
   MotionLimits goal_limits_;
+  image::JogEnd jog_end_ = image::JogEnd::none;
   image::Nanoseconds keep_alive_ns_ = 0;
+  double time_scale_ = 1.0;
   bool power_requested_ = false;
   bool power_permitted_ = false;
   bool feed_enable_ = false;

@@ -59,6 +59,7 @@ bool Axis::jog_increment(double distance) noexcept {
   if (target == set_.x && !own_motion_) return false;
   if (!begin_own(AxisOwner::manual)) return false;
   manual_ = Manual::increment;
+  jog_end_ = image::JogEnd::none;
   ramp_.move_to(target, limits_with(jog_speed()));
   return true;
 }
@@ -70,13 +71,15 @@ bool Axis::jog_continuous(int direction, image::Nanoseconds now) noexcept {
   if (own_motion_ && manual_ != Manual::continuous) return false;
   if (!begin_own(AxisOwner::manual)) return false;
   manual_ = Manual::continuous;
+  jog_end_ = image::JogEnd::none;
   jog_direction_ = direction > 0 ? 1 : -1;
   keep_alive_ns_ = now;
   return true;
 }
 
-void Axis::jog_stop() noexcept {
+void Axis::jog_stop(image::JogEnd why) noexcept {
   if (owner_ != AxisOwner::manual || manual_ == Manual::rest) return;
+  end_jog(why);
   manual_ = Manual::rest;
   ramp_.stop(config_.limits);
 }
@@ -152,6 +155,7 @@ bool Axis::home() noexcept {
 void Axis::stop() noexcept {
   if (!own_motion_) return;
   if (homing_.active()) homing_.abort(ramp_);
+  end_jog(image::JogEnd::asked);
   manual_ = Manual::rest;
   ramp_.stop(config_.limits);
 }

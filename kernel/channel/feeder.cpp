@@ -185,7 +185,12 @@ void Feeder::fail(const text::Finding& finding) {
   at.line = finding.line;
   Event e;
   e.code = texts_.add_finding(finding);
-  event(EventKind::error, at, e);
+  e.kind = EventKind::error;
+  e.executed = static_cast<std::uint32_t>(std::max(0LL, executed() - 1));  // the block that fails is not done
+  e.line = at.line;
+  e.block = at.block;
+  e.file = static_cast<std::int16_t>(at.file);
+  push(e, at);
   end();
 }
 

@@ -102,7 +102,7 @@ std::uint64_t Process::look(const cycle::ProcessContext& c) noexcept {
   started_ = false;
   if (seen[kPrograms] != programs_seen_ && !running_) {
     forget_run(c.image.processes[static_cast<std::size_t>(config_.index)]);
-    if (state_ == ProcessState::ended) state_ = ProcessState::idle;
+    if (state_ == ProcessState::ended || state_ == ProcessState::stopped) state_ = ProcessState::idle;
   }
   programs_seen_ = seen[kPrograms];
   events_end_ = events_read_;
@@ -206,6 +206,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   image::ProcessStatus& status = c.image.processes[static_cast<std::size_t>(config_.index)];
   forget_run(status);
   status.run = generation_;
+  status.typed = manual_data_;
   forget_ = false;
   stopping_ = held_ = go_on_ = false;
   stage_ = Stage::none;
@@ -262,8 +263,19 @@ void Process::apply_reaction(cycle::ProcessContext& c) noexcept {
   if (c.reaction < Reaction::stop_at_block_end && !taken) return;
   follower_.stop();
   stopping_ = true;
-  after_stop_ = ProcessState::stopped_by_alarm;
+  image::Stop& stop = c.image.processes[static_cast<std::size_t>(config_.index)].stop;
+  stop = c.reaction < Reaction::stop_at_block_end ? stop_without_alarm(c) : image::Stop{};
+  after_stop_ = stop.cause == image::StopCause::none ? ProcessState::stopped_by_alarm : ProcessState::stopped;
   handshake_.cancel(c.image, base_);
+}
+
+/// Who took the axes from the program where it was no alarm.
+image::Stop Process::stop_without_alarm(const cycle::ProcessContext& c) const noexcept {
+  if (!c.drives_wanted) return {image::StopCause::drives_off, c.drives_asker, -1};
+  for (const int a : config_.axes.machine)
+    if (!c.axes[static_cast<std::size_t>(a)].power_permitted())
+      return {image::StopCause::enable_withdrawn, image::Asker::plc, static_cast<std::int8_t>(a)};
+  return {};
 }
 
 void Process::apply_hold(cycle::ProcessContext& c) noexcept {

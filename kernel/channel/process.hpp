@@ -77,6 +77,7 @@ class Process final : public cycle::ProcessInCycle {
   void apply_at_once(cycle::ProcessContext& c) noexcept;
   void apply_hold(cycle::ProcessContext& c) noexcept;
   void apply_reaction(cycle::ProcessContext& c) noexcept;
+  image::Stop stop_without_alarm(const cycle::ProcessContext& c) const noexcept;
   void drive_axes(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
   void at_stop(cycle::ProcessContext& c) noexcept;
   void at_event(std::uint32_t id, cycle::ProcessContext& c) noexcept;

@@ -74,6 +74,8 @@ void Process::show_event(const Event& event, image::ProcessStatus& status) const
 void Process::forget_run(image::ProcessStatus& status) const noexcept {
   status.line = status.file = status.message = 0;
   status.blocks_done = 0;
+  status.stop = {};
+  status.typed = false;
 }
 
 // -- what it waits for

@@ -139,7 +139,14 @@ ProcessContext Cycle::context(int process) noexcept {
               .subspan(static_cast<std::size_t>(process) * ProcessInCycle::kCrossingsEach,
                        ProcessInCycle::kCrossingsEach),
           reaction_,
+          power_request_,
+          power_asker_,
           notices_};
+}
+
+void Cycle::set_time_scale(double scale) noexcept {
+  time_scale_ = scale;
+  for (axis::Axis& a : axes_) a.set_time_scale(scale);
 }
 
 void Cycle::run_axes() noexcept {

@@ -77,6 +77,10 @@ class Cycle {
 
   /// Where devices and the gateway report faults from inside receive().
   Notices& notices() noexcept { return notices_; }
+  /// Machine seconds in a second of the wall clock where time is scaled (virtual time with --speed): what is
+  /// asked of a living hand, the keep-alive of a jog, is judged by it. Before the first step.
+  void set_time_scale(double scale) noexcept;
+  double time_scale() const noexcept { return time_scale_; }
   /// Hands every cycle's inputs to a tap (record), or takes them from a source (replay) instead of the
   /// devices.
   void attach(InputTap* tap) noexcept { tap_ = tap; }
@@ -159,6 +163,7 @@ class Cycle {
 
   image::Reaction reaction_ = image::Reaction::none;
   bool power_request_ = false;
+  image::Asker power_asker_ = image::Asker::command_line;  ///< of the last request for power
   bool estop_seen_ok_ = false;
   bool start_pressed_ = false;
   bool manual_held_ = false;
@@ -175,6 +180,7 @@ class Cycle {
   image::Nanoseconds duration_ns_ = 0;
   image::Nanoseconds stamp_ns_ = 0;
   int measure_every_ = 1;
+  double time_scale_ = 1.0;
   bool measuring_ = false;
 };
 

@@ -75,6 +75,7 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       break;
     case RequestKind::power:
       power_request_ = request.value != 0.0;
+      power_asker_ = request.asker;
       for (axis::Axis& a : axes_)
         if (!power_request_ || !a.config().auxiliary) a.request_power(power_request_);
       break;
@@ -101,7 +102,8 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       break;
     case RequestKind::jog_stop:
       for (std::size_t i = 0; i < axes_.size(); ++i)
-        if (request.axis < 0 || i == axis) axes_[i].jog_stop();
+        if (request.axis < 0 || i == axis)
+          axes_[i].jog_stop(request.value == 1.0 ? image::JogEnd::silent : image::JogEnd::asked);
       break;
     case RequestKind::quick_stop: {
       image::AlarmRecord r;
@@ -164,9 +166,11 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     case RequestKind::hold:
     case RequestKind::resume:
     case RequestKind::override_feed: {
+      const auto process = static_cast<std::size_t>(request.process);
+      const std::uint32_t run = image_.processes[process].run;
       ProcessContext c = context(request.process);
-      if (!parts_.processes[static_cast<std::size_t>(request.process)]->order(request, c))
-        refusal = Refusal::axis_moves;
+      if (!parts_.processes[process]->order(request, c)) refusal = Refusal::axis_moves;
+      if (image_.processes[process].run != run) alarms_.run_begins(request.process);
       break;
     }
   }

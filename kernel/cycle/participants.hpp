@@ -57,6 +57,8 @@ struct ProcessContext {
   std::span<axis::Spindle> spindles;
   std::span<const std::uint64_t> visible;  ///< how far its own crossing queues may be read in this cycle
   image::Reaction reaction;                ///< the strongest one in force
+  bool drives_wanted;                      ///< the operator has asked for the drives to be on
+  image::Asker drives_asker;               ///< whose request that was, or the one that they be off
   Notices& notices;
 };
 

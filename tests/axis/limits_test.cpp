@@ -49,6 +49,48 @@ TEST(Jog, begins_to_stop_a_tenth_of_a_second_after_the_last_keep_alive) {
   ASSERT_TRUE(rig.run_until([&] { return !rig.axis.moving(); }, 500));
 }
 
+TEST(Jog, is_given_a_tenth_of_a_second_of_the_wall_clock_where_time_is_scaled) {
+  for (const double scale : {20.0, 0.5}) {
+    Rig rig;
+    rig.reference_here();
+    rig.axis.set_time_scale(scale);
+    ASSERT_TRUE(rig.enable());
+    ASSERT_TRUE(rig.axis.jog_continuous(1, rig.image.now.t_ns));
+    rig.run(static_cast<int>(100.0 * scale) - 2);
+    EXPECT_EQ(rig.shared().jog_end, image::JogEnd::none) << scale;
+    rig.run(4);
+    EXPECT_EQ(rig.shared().jog_end, image::JogEnd::silent) << scale;
+    ASSERT_TRUE(rig.run_until([&] { return !rig.axis.moving(); }, 500));
+  }
+}
+
+TEST(Jog, says_how_it_ended) {
+  using image::JogEnd;
+  struct Case {
+    JogEnd end;
+    void (*happens)(Rig&);
+  };
+  const Case cases[] = {
+      {JogEnd::asked, [](Rig& rig) { rig.axis.jog_stop(); }},
+      {JogEnd::asked, [](Rig& rig) { rig.axis.stop(); }},
+      {JogEnd::feed, [](Rig& rig) { rig.plc("feed_enable", false); }},
+      {JogEnd::power, [](Rig& rig) { rig.axis.request_power(false); }},
+      {JogEnd::alarm, [](Rig& rig) { rig.reaction = image::Reaction::stop_axes; }},
+      {JogEnd::arrived, [](Rig&) {}},
+  };
+  for (const Case& c : cases) {
+    Rig rig;
+    rig.reference_here();
+    ASSERT_TRUE(rig.enable());
+    ASSERT_TRUE(rig.axis.jog_increment(20.0));
+    rig.run(100);
+    EXPECT_EQ(rig.shared().jog_end, JogEnd::none);
+    c.happens(rig);
+    ASSERT_TRUE(rig.run_until([&] { return !rig.axis.moving(); }, 2000));
+    EXPECT_EQ(rig.shared().jog_end, c.end) << static_cast<int>(c.end);
+  }
+}
+
 TEST(Jog, stops_at_the_travel_limit_exactly_whether_continuous_or_by_increment) {
   for (const int direction : {1, -1}) {
     Rig rig;
@@ -69,6 +111,7 @@ TEST(Jog, stops_at_the_travel_limit_exactly_whether_continuous_or_by_increment) 
       judge.add(rig.shared().command);
     }
     EXPECT_EQ(rig.shared().command, direction * 300.0);
+    EXPECT_EQ(rig.shared().jog_end, image::JogEnd::travel);
     EXPECT_TRUE(judge.within(rig.axis.config().limits));
     EXPECT_TRUE(rig.events.empty());
   }

@@ -113,12 +113,22 @@ TEST(AlarmList, keeps_after_a_reset_only_what_waits_for_its_cause) {
 
 TEST(AlarmList, lets_only_warnings_go_by_themselves) {
   AlarmList list;
-  list.raise(of(alarm::kStarved), at(1));
+  AlarmRecord starved = of(alarm::kStarved), warned = of(alarm::kProgramWarning);
+  starved.process = 1;
+  warned.process = 0;
+  AlarmRecord wrong = of(alarm::kMAckTimeout);
+  wrong.process = 1;
+  list.raise(starved, at(1));
+  list.raise(warned, at(1));
+  list.raise(wrong, at(1));
   list.raise(of(axis::alarm::kFollowingError, 0), at(1));
-  list.cause_gone(axis::alarm::kFollowingError, 0);
+  EXPECT_EQ(list.active_count(), 4);
+  list.run_begins(1);
+  EXPECT_FALSE(list.active(alarm::kStarved)) << "of the run before";
+  EXPECT_TRUE(list.active(alarm::kProgramWarning)) << "another process'";
+  EXPECT_TRUE(list.active(alarm::kMAckTimeout)) << "no warning";
+  list.run_begins(0);
   EXPECT_EQ(list.active_count(), 2);
-  list.cause_gone(alarm::kStarved);
-  EXPECT_EQ(list.active_count(), 1);
 }
 
 TEST(AlarmList, writes_what_the_plc_sees) {
@@ -185,7 +195,7 @@ TEST(AlarmList, holds_its_invariants_over_random_histories) {
       else if (dice < 97)
         list.reset([&](const AlarmRecord&) { return random() % 2 == 0; });
       else
-        list.cause_gone(table[random() % table.size()].number);
+        list.run_begins(static_cast<int>(random() % 2) - 1);
       const auto history = list.history();
       Reaction strongest = Reaction::none;
       int active = 0;

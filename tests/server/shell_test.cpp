@@ -260,7 +260,7 @@ TEST(Control, takes_SIGTERM_for_down_in_the_middle_of_a_motion) {
   Shell shell;
   shell.up("mill", {"--virtual", "--state", (shell.folder() / "state").string()});
   ASSERT_EQ(shell.run({"power", "on", "--wait"}).exit, 0);
-  ASSERT_EQ(shell.run({"jog", "X", "+50mm"}).exit, 0);
+  ASSERT_EQ(shell.run({"jog", "X", "+50mm", "--no-wait"}).exit, 0);
   EXPECT_EQ(shell.end(SIGTERM), 0);
   EXPECT_TRUE(contains(shell.text("state/homing.toml"), "schema = 1"));
 }

@@ -20,7 +20,7 @@ constexpr Wrong kWrong[] = {
     {"$SG plc", "a command is missing; `servogate plc --help`", "не указана команда"},
     {"$SG chek", "unknown command 'chek'; did you mean 'check'?",
      "неизвестная команда «chek»; имелось в виду «check»?"},
-    {"$SG statsu --json", "did you mean 'status'?", "имелось в виду «status»?"},
+    {"$SG statsu", "did you mean 'status'?", "имелось в виду «status»?"},
     {"$SG plc chekc x.st", "unknown command 'plc chekc'; did you mean 'plc check'?",
      "имелось в виду «plc check»"},
     {"$SG --verison", "unknown command '--verison'; did you mean 'version'?",

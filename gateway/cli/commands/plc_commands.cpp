@@ -35,6 +35,7 @@ void check(CLI::App& plc, PlcCheckOptions& o) {
                           "servogate plc check mill.st --machine machine.toml");
   app.add_option("FILE", o.files, "Source files")->required();
   app.add_option("--machine", o.machine, "Machine file whose symbols the program uses");
+  app.add_flag("--json", o.json, "As JSON");
 }
 
 void test(CLI::App& plc, PlcTestOptions& o) {

@@ -29,8 +29,10 @@ inline constexpr Translation kCatalogue[] = {
      "Показывает режимы, оси, программу и аварии работающего управления."},
     {"References axes; without a name all of them, in the machine's order.",
      "Выводит оси в ноль; без имени все, в порядке, заданном для станка."},
-    {"Moves one axis: a distance (+1mm, -0.5deg) or a direction (+ or -) until Enter or Ctrl-C.",
-     "Перемещает одну ось: на расстояние (+1mm, -0.5deg) или в сторону (+ или -) до Enter или Ctrl-C."},
+    {"Moves one axis, and waits until it stands: a distance (+1mm, -0.5deg), or a direction (+ or -) until "
+     "Enter or Ctrl-C.",
+     "Перемещает одну ось и ждёт её останова: на расстояние (+1mm, -0.5deg) или в сторону (+ или -) до Enter "
+     "или Ctrl-C."},
     {"Gives the present position of an axis a value in the active origin (0 if none is said).",
      "Присваивает текущему положению оси значение в действующем начале отсчёта (0, если не указано)."},
     {"Runs one block typed by hand.", "Выполняет один кадр, набранный вручную."},
@@ -57,6 +59,7 @@ inline constexpr Translation kCatalogue[] = {
      "Повторяет запись в виртуальном времени и сравнивает уставки."},
     // Options
     {"As JSON", "В виде JSON"},
+    {"As JSON, which it always is", "В виде JSON: здесь всегда так"},
     {"Virtual time (mock buses only)", "Виртуальное время (только на имитируемых шинах)"},
     {"Real time; =best-effort goes on without the rights for it",
      "Реальное время; с =best-effort работает и без прав на него"},

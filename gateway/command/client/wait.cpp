@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/command/client/wait.hpp"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <string>
 #include <thread>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
+#include "gateway/command/signals.hpp"
 
 namespace servogate::gateway::command {
 
@@ -24,7 +20,8 @@ const text::Entry kHeld{"client.held",
                         "held on the path: `servogate resume` goes on, `servogate reset` ends the program",
                         "остановлено на контуре: `servogate resume` продолжает, `servogate reset` завершает "
                         "программу"};
-const text::Entry kNotOn{"client.not-on", "not switched on within {0} s: {1}", "не включились за {0} с: {1}"};
+const text::Entry kNotOn{"client.not-on", "not switched on within {0} s: {1}{2}",
+                         "не включились за {0} с: {1}{2}"};
 const text::Entry kNotOff{"client.not-off", "not switched off within {0} s: {1}",
                           "не выключились за {0} с: {1}"};
 const text::Entry kNoCycle{"client.no-cycle", "the control answers, but its cycle does not run",
@@ -32,11 +29,10 @@ const text::Entry kNoCycle{"client.no-cycle", "the control answers, but its cycl
 
 constexpr auto kLook = std::chrono::milliseconds(50);
 constexpr double kPowerPatience_s = 15.0;  ///< of machine time: boot of a drive, brakes
+constexpr double kEndPatience_s = 2.0;     ///< of a program whose drives are off
+constexpr double kSettling_s = 1.0;        ///< at most, of an axis that has jogged
 constexpr double kAlarmPatience_s = 2.0;   ///< the same while an alarm is active
 constexpr std::chrono::seconds kCyclePatience{10};
-
-std::atomic<int> interrupts{0};
-void on_interrupt(int) { interrupts.fetch_add(1); }
 
 std::string of(const json& object, const char* key) { return object.value(key, std::string()); }
 
@@ -47,7 +43,7 @@ Kind kind_of(const json& request) {
   const std::string command = request["cmd"];
   if (command == "power") return request["value"] == 0 ? Kind::power_off : Kind::power_on;
   if (command == "home") return Kind::home;
-  if (command == "jog") return Kind::jog;
+  if (command.starts_with("jog")) return Kind::jog;
   return command == "step" ? Kind::step : Kind::program;
 }
 
@@ -55,16 +51,29 @@ Kind kind_of(const json& request) {
 class Wait {
  public:
   Wait(SocketClient& client, const json& request)
-      : client_(client), request_(request), kind_(kind_of(request)) {}
+      : client_(client), request_(request), kind_(kind_of(request)) {
+    // What ended a continuous jog has done its work.
+    if (request["cmd"] == "jog_continuous") interrupts_done_ = signals_seen();
+  }
   int run(json& status);
 
  private:
   bool under_way(const json& status);
   bool homing_under_way(const json& status);
+  bool jog_under_way(const json& status);
   bool program_under_way(const json& status);
   bool block_ended(const json& status) const;
   bool too_late(const json& status);
   bool cycle_stands(const json& status);
+  /// A program that the drives are taken from ends as soon as its path is at rest.
+  static bool busy(const json& status) {
+    const std::string state = of(status, "state");
+    return state == "running" || state == "held" || state == "waiting";
+  }
+  static bool stopped_by_plc(const json& status) {
+    const json stop = status.value("stop", json());
+    return stop.is_object() && of(stop, "cause") == "enable_withdrawn";
+  }
   void interrupt();
   json simple(const char* command) const { return {{"cmd", command}, {"language", request_["language"]}}; }
   /// Of those that the PLC moves nobody here waits for anything.
@@ -92,6 +101,7 @@ class Wait {
   double asked_s_ = 0.0;   ///< machine time before the request was carried out
   double begun_s_ = -1.0;  ///< machine time of the first status
   double seen_s_ = -1.0;
+  double stands_since_s_ = -1.0;  ///< of a jog
   std::chrono::steady_clock::time_point moved_on_ = std::chrono::steady_clock::now();
 };
 
@@ -106,6 +116,19 @@ bool Wait::homing_under_way(const json& status) {
   return false;
 }
 
+/// Until the axes stand, and then until they have settled, as long as that takes an axis.
+bool Wait::jog_under_way(const json& status) {
+  if (any_axis(status, moving)) {
+    stands_since_s_ = -1.0;
+    return true;
+  }
+  const double now_s = status.value("time_s", 0.0);
+  if (stands_since_s_ < 0.0) stands_since_s_ = now_s;
+  const bool settles =
+      any_axis(status, [](const json& a) { return on(a) && !a.value("in_position", false); });
+  return settles && !alarm(status) && now_s - stands_since_s_ < kSettling_s;
+}
+
 /// The wait at the end of the block that was asked for, not the one at the end of the block before it.
 bool Wait::block_ended(const json& status) const {
   const json wait = status.value("wait", json());
@@ -116,12 +139,13 @@ bool Wait::block_ended(const json& status) const {
 bool Wait::program_under_way(const json& status) {
   const std::string state = of(status, "state");
   if (state == "running") return true;
-  if (interrupts_done_ > 0 && state != "ended" && state != "stopped_by_alarm")
+  if (interrupts_done_ > 0 && state != "ended" && !state.starts_with("stopped"))
     return any_axis(status, moving);  // held, or ended by the second interrupt
   if (state == "waiting") return !(kind_ == Kind::step && block_ended(status));
   if (state == "held") return kind_ != Kind::step;
   if (state == "stopped_by_alarm") code_ = kAlarm;
-  if (state == "idle" && !alarm(status)) code_ = kStopped;
+  if ((state == "idle" || state == "stopped") && !alarm(status))
+    code_ = stopped_by_plc(status) ? kAlarm : kStopped;
   return false;
 }
 
@@ -135,11 +159,11 @@ bool Wait::under_way(const json& status) {
     }
     case Kind::power_off:
       code_ = kDone;
-      return any_axis(status, on);
+      return any_axis(status, on) || (busy(status) && in_wait_s(status) < kEndPatience_s);
     case Kind::home:
       return homing_under_way(status);
     case Kind::jog:
-      return any_axis(status, moving);
+      return jog_under_way(status);
     case Kind::step:
     case Kind::program:
       return program_under_way(status);
@@ -155,7 +179,11 @@ bool Wait::too_late(const json& status) {
   for (const json& a : status.value("axes", json::array()))
     if (on(a) != (kind_ == Kind::power_on))
       late += (late.empty() ? "" : ", ") + of(a, "letter") + " (" + of(a, "drive") + ")";
-  complain(kind_ == Kind::power_on ? kNotOn : kNotOff, {text::number(kPowerPatience_s, 0), late});
+  std::string missing;
+  if (kind_ == Kind::power_on)
+    for (const json& m : status.value("missing", json::array()))
+      missing += "\n  " + of(m, "text") + "\n    " + of(m, "remedy");
+  complain(kind_ == Kind::power_on ? kNotOn : kNotOff, {text::number(kPowerPatience_s, 0), late, missing});
   return true;
 }
 
@@ -199,7 +227,7 @@ int Wait::run(json& status) {
   for (;; std::this_thread::sleep_for(kLook)) {
     status = ask(client_, question);
     if (status.is_null() || cycle_stands(status)) return kInfrastructure;
-    if (interrupts > interrupts_done_) {
+    if (signals_seen() > interrupts_done_) {
       interrupt();
       continue;
     }
@@ -220,24 +248,6 @@ json ask(SocketClient& client, const json& request) {
   if (!client.exchange(request.dump(-1, ' ', false, json::error_handler_t::replace), answer)) return {};
   json reply = json::parse(answer, nullptr, false);
   return reply.is_object() ? reply : json();
-}
-
-void watch_operator() {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-}
-
-bool operator_interrupted() { return interrupts > 0; }
-
-json hold_jog(SocketClient& client, const json& request, const json& begun) {
-  const int pause_ms = std::max(1, static_cast<int>(begun.value("keep_alive_ms", 30.0)));
-  while (interrupts == 0) {
-    pollfd in{STDIN_FILENO, POLLIN, 0};
-    if (poll(&in, 1, pause_ms) > 0) break;
-    json reply = ask(client, {{"cmd", "keep_alive"}, {"language", request["language"]}});
-    if (!reply.value("moving", false)) return reply;
-  }
-  return ask(client, {{"cmd", "jog_stop"}, {"axis", request["axis"]}, {"language", request["language"]}});
 }
 
 int wait_for_end(SocketClient& client, const json& request, json& status) {

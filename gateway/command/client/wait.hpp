@@ -9,15 +9,6 @@ namespace servogate::gateway::command {
 /// One request, answered; null: the connection is gone.
 nlohmann::json ask(SocketClient& client, const nlohmann::json& request);
 
-/// From here on Ctrl-C and SIGTERM are wishes of the operator that the functions below see.
-void watch_operator();
-/// True once Ctrl-C or SIGTERM has come since watch_operator().
-bool operator_interrupted();
-
-/// Keeps a continuous jog alive until Enter, Ctrl-C, the end of standard input, or its own end. `begun`: the
-/// answer to its request. Returns the last answer; null: the connection is gone.
-nlohmann::json hold_jog(SocketClient& client, const nlohmann::json& request, const nlohmann::json& begun);
-
 /// Waits until what `request` began has ended, and gives the exit code. `status` is its answer and gets the
 /// last status; null: the connection is gone. Ctrl-C stops what moves: a program is held on its path, a
 /// second one ends it; homing and jogs stop; drives that are being switched on are switched off again.

@@ -7,9 +7,9 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/client/wait.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/control_client.hpp"
+#include "gateway/command/signals.hpp"
 
 namespace servogate::gateway::command {
 
@@ -20,6 +20,7 @@ using nlohmann::json;
 const text::Entry kBadSetting{"plc-force.setting", "'{0}' is not of the form NAME=VALUE",
                               "«{0}» не имеет вида ИМЯ=ЗНАЧЕНИЕ"};
 const text::Entry kWaits{"plc-force.waits", "Enter or Ctrl-C lets go", "Enter или Ctrl-C освобождает"};
+const text::Entry kNothing{"plc-force.nothing", "nothing is forced", "ничего не удерживается"};
 const text::Entry kRow{"plc-force.row", "{0} = {1} (by {2})", "{0} = {1} ({2})"};
 
 int release(ControlClient& control, const PlcForceOptions& options) {
@@ -44,6 +45,7 @@ int show(ControlClient& control, const PlcForceOptions& options) {
     print_line(json{{"schema", 1}, {"forced", forced}}.dump(-1, ' ', false, json::error_handler_t::replace));
     return kDone;
   }
+  if (forced.empty()) print_line(text::render(kNothing, {}, text::user_language()));
   for (const json& f : forced)
     print_line(text::render(
         kRow, std::vector<std::string>{f.value("name", ""), f.value("value", ""), f.value("user", "")},
@@ -68,7 +70,7 @@ int plc_force(const PlcForceOptions& options) {
   if (const int code = control.connect(options.socket); code != kDone) return code;
   if (options.release) return release(control, options);
   if (settings.empty()) return show(control, options);
-  if (!options.stay) watch_operator();
+  if (!options.stay) count_signals();
   for (const auto& [name, value] : settings) {
     const json answer = control.ask("plc_force", {{"name", name}, {"value", value}, {"stay", options.stay}});
     const int code = ControlClient::tell(answer, options.json);
@@ -79,7 +81,7 @@ int plc_force(const PlcForceOptions& options) {
   // The control lets go when this connection ends, however it ends; asking now and then shows when it is
   // gone.
   std::fprintf(stderr, "%s\n", text::render(kWaits, {}, text::user_language()).c_str());
-  while (!operator_interrupted()) {
+  while (signals_seen() == 0) {
     pollfd in{STDIN_FILENO, POLLIN, 0};
     if (poll(&in, 1, 200) > 0) break;
     if (control.ask("status").is_null()) return kInfrastructure;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/sources.hpp"
+#include "gateway/machine/consequences.hpp"
 #include "plc/run.hpp"
 
 namespace servogate::gateway::command {
@@ -52,7 +54,12 @@ int plc_check(const PlcCheckOptions& options) {
   if (!read_surroundings(options.machine, surroundings)) return kWrongUse;
   std::vector<text::Finding> findings;
   const bool good = plc::check(files, surroundings.symbols, surroundings.options, findings);
-  print_findings(findings);
+  const int errors = print_findings(findings);
+  if (options.json)
+    print_line(nlohmann::json{{"schema", 1},
+                              {"errors", errors},
+                              {"findings", nlohmann::json::parse(machine::to_json(findings), nullptr, false)}}
+                   .dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   return good ? kDone : kAlarm;
 }
 

@@ -7,9 +7,9 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/client/wait.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/control_client.hpp"
+#include "gateway/command/signals.hpp"
 
 namespace servogate::gateway::command {
 
@@ -79,12 +79,12 @@ void print_sample(const json& answer) {
 int plc_watch(const PlcWatchOptions& options) {
   ControlClient control;
   if (const int code = control.connect(options.socket); code != kDone) return code;
-  watch_operator();
+  count_signals();
   json request{{"names", options.names}, {"times", options.times}};
   if (options.names.empty() && !options.times) request["body"] = options.body;
-  for (int n = 0; (options.samples == 0 || n < options.samples) && !operator_interrupted(); ++n) {
+  for (int n = 0; (options.samples == 0 || n < options.samples) && signals_seen() == 0; ++n) {
     if (n > 0) std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(options.every_ms));
-    if (operator_interrupted()) break;
+    if (signals_seen() > 0) break;
     const json answer = control.ask("plc_watch", request);
     const int code = ControlClient::tell(answer, options.json);
     if (code != kDone) return code;

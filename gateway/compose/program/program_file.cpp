@@ -37,6 +37,27 @@ int first_line_not_utf8(std::string_view text) {
 
 }  // namespace
 
+namespace {
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+bool is_known(const std::string& dialect, const std::vector<std::string>& known) {
+  return std::find(known.begin(), known.end(), dialect) != known.end();
+}
+
+}  // namespace
+
+bool known_dialect(const std::string& dialect) {
+  const std::vector<std::string> known = program::dialects();
+  if (is_known(dialect, known)) return true;
+  complain(kUnknownDialect, {dialect, list_of(known)});
+  return false;
+}
+
 bool open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
                   ProgramFile& out, std::vector<text::Finding>& findings) {
   const auto error = [&](const text::Entry& entry, std::vector<std::string> arguments) {
@@ -45,11 +66,7 @@ bool open_program(const machine::MachineConfig& machine, const std::string& path
   };
   out.dialect = dialect.empty() ? machine.control.dialect : dialect;
   const std::vector<std::string> known = program::dialects();
-  if (std::find(known.begin(), known.end(), out.dialect) == known.end()) {
-    std::string list;
-    for (const std::string& d : known) list += (list.empty() ? "" : ", ") + d;
-    return error(kUnknownDialect, {out.dialect, list});
-  }
+  if (!is_known(out.dialect, known)) return error(kUnknownDialect, {out.dialect, list_of(known)});
   std::string reason;
   auto content = files::read_file(path, files::kMostOfProgram, reason);
   if (!content) return error(kCannotRead, {reason});

@@ -19,6 +19,9 @@ struct ProgramFile {
   program::ProgramLoader loader;
 };
 
+/// The name is one of a language; otherwise it is said on standard error that it is not.
+bool known_dialect(const std::string& dialect);
+
 /// Reads the program and settles its dialect (`dialect`, empty: the machine's own). False: a finding says why
 /// not, `out` is unchanged but for its dialect. The program's own errors are the interpreter's.
 bool open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,

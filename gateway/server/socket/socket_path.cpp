@@ -55,10 +55,13 @@ std::string clear_way(const std::string& path, text::Language language) {
   };
   std::error_code error;
   const fs::path folder = fs::path(path).parent_path();
-  if (!folder.empty() && fs::create_directories(folder, error)) chmod(folder.c_str(), 0700);
+  const bool own = folder == fs::path(socket_folder());
+  if (own && fs::create_directories(folder, error)) chmod(folder.c_str(), 0700);
   if (error) return error.message();
+  if (!own && !folder.empty() && !fs::is_directory(folder, error))
+    return say(says::kNoFolder, {folder.string()});
   struct stat seen {};
-  if (folder == fs::path(socket_folder()) && lstat(folder.c_str(), &seen) == 0) {
+  if (own && lstat(folder.c_str(), &seen) == 0) {
     if (seen.st_uid != getuid() || !S_ISDIR(seen.st_mode))
       return say(says::kForeignFolder, {folder.string()});
     if ((seen.st_mode & 077) != 0) chmod(folder.c_str(), 0700);

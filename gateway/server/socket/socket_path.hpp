@@ -13,8 +13,8 @@ std::string socket_folder();
 std::string default_socket(const std::string& machine_name);
 /// Sockets of running controls in socket_folder(). Those that nobody listens on any more are removed.
 std::vector<std::string> known_sockets();
-/// Makes the way free for a new socket: the folder exists (0700; ours where it is socket_folder()), nobody
-/// listens there, a stale socket file is removed. Empty: done; otherwise what stands against it.
+/// Makes the way free for a new socket: the folder exists (socket_folder() is made, 0700 and ours; no other
+/// one), nobody listens there, a stale socket file is removed. Empty: done; otherwise what stands against it.
 std::string clear_way(const std::string& path, text::Language language = text::user_language());
 
 }  // namespace servogate::gateway

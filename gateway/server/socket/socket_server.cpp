@@ -80,13 +80,19 @@ void SocketServer::stop() {
 void SocketServer::serve() {
   while (!stop_) {
     std::vector<pollfd> fds{{wake_[0], POLLIN, 0}, {listener_, POLLIN, 0}};
-    bool backlog = false;
+    bool backlog = false, jogs = false;
     for (const Client& c : clients_) {
       const bool reads = !c.closing && !c.backlog;
       fds.push_back({c.fd, static_cast<short>((reads ? POLLIN : 0) | (c.output.empty() ? 0 : POLLOUT)), 0});
       backlog = backlog || c.backlog;
+      jogs = jogs || c.connection.jogs >= 0;
     }
-    if (poll(fds.data(), fds.size(), backlog ? 0 : kLookAfter_ms) < 0 && errno != EINTR) break;
+    if (poll(fds.data(), fds.size(),
+             backlog ? 0
+             : jogs  ? kLookAtJogs_ms
+                     : kLookAfter_ms) < 0 &&
+        errno != EINTR)
+      break;
     if (fds[0].revents != 0) break;
     for (std::size_t i = clients_.size(); i-- > 0;) {
       Client& client = clients_[i];
@@ -94,6 +100,7 @@ void SocketServer::serve() {
       bool stays = (events & (POLLERR | POLLNVAL)) == 0;
       if (stays && (events & (POLLIN | POLLHUP)) != 0) stays = read_client(client);
       if (stays && !client.input.empty()) answer_lines(client);
+      if (stays) watch_jog(resident_, client.connection);
       stays = stays && write_client(client) && !(client.closing && client.output.empty());
       if (stays) continue;
       let_go(client);

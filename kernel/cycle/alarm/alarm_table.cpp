@@ -438,7 +438,7 @@ constexpr AlarmRow kTable[] = {
      "Сообщите об этом разработчикам с записью прогона: траектория не должна так делать."},
     {alarm::kProgramWarning,
      Reaction::warn,
-     reset,
+     by_itself,
      {"program.warning", "{9}: the machine does something otherwise than the program asks",
       "{9}: станок выполняет не то, что требует программа"},
      "See the message with file, line and column; `servogate check` names them all before the program runs.",

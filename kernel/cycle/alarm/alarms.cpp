@@ -64,12 +64,12 @@ std::uint32_t AlarmList::raise(const AlarmRecord& record, const image::CycleTime
   return made.sequence;
 }
 
-void AlarmList::cause_gone(image::AlarmNumber number, int axis, int node, int segment) noexcept {
-  const AlarmRow* row = find_alarm(number);
-  if (row == nullptr || row->reset != ResetCondition::by_itself) return;
+void AlarmList::run_begins(int process) noexcept {
   for (int i = 0; i < stored_; ++i) {
     AlarmRecord& r = records_[static_cast<std::size_t>(i)];
-    if (r.number == number && r.axis == axis && r.node == node && r.segment == segment) r.active = false;
+    if (!r.active || r.process != process) continue;
+    const AlarmRow* row = find_alarm(r.number);
+    if (row != nullptr && row->reset == ResetCondition::by_itself) r.active = false;
   }
   recount();
 }

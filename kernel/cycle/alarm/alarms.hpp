@@ -36,8 +36,9 @@ class AlarmList {
   /// here. The same fault (number, axis, node, segment, process, object) while active is not stored twice.
   /// Returns the sequence. real-time safe.
   std::uint32_t raise(const image::AlarmRecord& record, const image::CycleTime& now) noexcept;
-  /// Ends an active alarm that goes by itself (ResetCondition::by_itself); others stay. real-time safe.
-  void cause_gone(image::AlarmNumber number, int axis = -1, int node = -1, int segment = -1) noexcept;
+  /// A process begins a run: the warnings of the run before it that go by themselves
+  /// (ResetCondition::by_itself) end; others stay. real-time safe.
+  void run_begins(int process) noexcept;
   /// To be told in every cycle: the machine is at rest. A quarter of a second of rest ends the reaction (at 1
   /// ms; 250 cycles), the next fault is then a first fault again. real-time safe.
   void note_rest(bool at_rest) noexcept;

@@ -88,6 +88,9 @@ image::Answer decide(const image::Request& request, const GateContext& context) 
 /// The request begins or continues motion, or makes it possible. real-time safe.
 bool moves(image::RequestKind kind) noexcept;
 
+/// "the command line": an asker as people call it. Not real-time safe.
+std::string asker_words(image::Asker asker, text::Language language);
+
 /// The sentence for a refusal, e.g. "X is not homed: run `servogate home X` first, or jog slowly". Empty for
 /// an accepted request. `axis_units`: "mm" or "deg" of each axis, mm where there are none. Not real-time
 /// safe.

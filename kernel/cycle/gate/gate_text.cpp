@@ -160,6 +160,10 @@ std::string value_words(const image::Answer& answer, Language language) {
 
 }  // namespace
 
+std::string asker_words(image::Asker asker, Language language) {
+  return word(kAskers, static_cast<double>(asker), language);
+}
+
 std::span<const text::Entry> refusal_texts() noexcept { return kTexts; }
 
 std::string render(const image::Answer& answer, const std::vector<std::string>& axis_letters,

@@ -37,6 +37,13 @@ WaitWords wait_words(Control& control, const image::ProcessImage& image, int pro
 /// Somebody else has to act before the program goes on: neither a time that runs out nor a time-out ends it.
 bool needs_somebody(image::WaitReason reason) noexcept;
 
+/// The machine's PLC sources, as a list for a sentence.
+std::string plc_sources(const machine::MachineConfig& machine);
+/// What to do so that `symbol` becomes TRUE (`named`: the place as people read it), by who writes it;
+/// nullptr: nobody is named.
+std::string writer_remedy(const machine::MachineConfig& machine, const image::Symbol* symbol,
+                          const std::string& named, text::Language language);
+
 /// The last message of the program (NC-110 DIS) that process `process` has reached; empty: none.
 std::string program_message(Control& control, const image::ProcessImage& image, int process);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/run/alarm_entries.hpp"
+#include "gateway/run/words/alarm_entries.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/run/wait_words.hpp"
+#include "gateway/run/words/wait_words.hpp"
 
 #include <algorithm>
 #include <array>
@@ -141,29 +141,6 @@ std::string join(const std::vector<std::string>& names) {
   return list;
 }
 
-/// Remedy of a wait for a signal, by who writes the place; fills `written_by`.
-std::string writer_remedy(const machine::MachineConfig& m, const image::Symbol* symbol,
-                          const std::string& named, text::Language language) {
-  const auto say = [&](const Entry& entry, const std::string& who = {}) {
-    return text::render(entry, std::array{named, who, join(m.plc.sources)}, language);
-  };
-  if (symbol == nullptr) return say(kUnnamed);
-  int station = -1;
-  switch (symbol->writer) {
-    case image::Writer::input:
-      if (m.point(symbol->name, &station) == nullptr) return say(kInput, symbol->name);
-      return say(m.stations[static_cast<std::size_t>(station)].mock() ? kMockInput : kInput,
-                 m.stations[static_cast<std::size_t>(station)].name);
-    case image::Writer::nc:
-      return say(kNc);
-    case image::Writer::program:
-      return say(kProgram);
-    case image::Writer::plc:
-      break;
-  }
-  return say(kSeePlc);
-}
-
 std::string word_of(const image::Wait& wait) {
   switch (wait.reason) {
     case WaitReason::m_acknowledge:
@@ -212,6 +189,30 @@ void describe_place(const machine::MachineConfig& m, const image::ProcessImage& 
 }
 
 }  // namespace
+
+std::string plc_sources(const machine::MachineConfig& machine) { return join(machine.plc.sources); }
+
+std::string writer_remedy(const machine::MachineConfig& m, const image::Symbol* symbol,
+                          const std::string& named, text::Language language) {
+  const auto say = [&](const Entry& entry, const std::string& who = {}) {
+    return text::render(entry, std::array{named, who, plc_sources(m)}, language);
+  };
+  if (symbol == nullptr) return say(kUnnamed);
+  int station = -1;
+  switch (symbol->writer) {
+    case image::Writer::input:
+      if (m.point(symbol->name, &station) == nullptr) return say(kInput, symbol->name);
+      return say(m.stations[static_cast<std::size_t>(station)].mock() ? kMockInput : kInput,
+                 m.stations[static_cast<std::size_t>(station)].name);
+    case image::Writer::nc:
+      return say(kNc);
+    case image::Writer::program:
+      return say(kProgram);
+    case image::Writer::plc:
+      break;
+  }
+  return say(kSeePlc);
+}
 
 bool needs_somebody(WaitReason reason) noexcept {
   return kRows[static_cast<std::size_t>(reason)].needs_somebody;

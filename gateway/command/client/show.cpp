@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/command/client/show.hpp"
+
+#include <cstdio>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/text/finding.hpp"
+#include "gateway/cli/standard_output.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+using nlohmann::json;
+using text::Entry;
+
+const Entry kHead{"client.head", "{0}: {1}, {2}{3}, {4} s", "{0}: {1}, {2}{3}, {4} с"};
+const Entry kHoming{"client.homing", ", homing", ", идёт выход в ноль"};
+const Entry kFeed{"client.feed", "feed {0} mm/min, override {1} %, tool {2}",
+                  "подача {0} мм/мин, коррекция {1} %, инструмент {2}"};
+const Entry kSpindle{"client.spindle", "  spindle {0} rpm (commanded {1})  {2}",
+                     "  шпиндель {0} об/мин (задано {1})  {2}"};
+const Entry kProgram{"client.program", "program {0}: {1} blocks", "программа {0}: кадров {1}"};
+const Entry kProgramLine{"client.program-line", "program {0}, line {1} of {2}, {3} blocks done",
+                         "программа {0}, строка {1} из {2}, выполнено кадров: {3}"};
+const Entry kSubprogramLine{"client.subprogram-line",
+                            "program {0}, line {1} of {2} (subprogram), {3} blocks done",
+                            "программа {0}, строка {1} в {2} (подпрограмма), выполнено кадров: {3}"};
+const Entry kTyped{"client.typed", "typed block: {0}", "введённый кадр: {0}"};
+const Entry kTypedSubprogram{"client.typed-subprogram", "typed block: {0}, line {1} of {2} (subprogram)",
+                             "введённый кадр: {0}, строка {1} в {2} (подпрограмма)"};
+const Entry kForced{"client.forced", "forced: {0} = {1} (by {2})", "удерживается: {0} = {1} ({2})"};
+const Entry kForcedStays{"client.forced-stays", "forced: {0} = {1} (by {2}, stays)",
+                         "удерживается: {0} = {1} ({2}, постоянно)"};
+const Entry kMessage{"client.message", "message: {0}", "сообщение: {0}"};
+const Entry kWaits{"client.waits", "{0} ({1} s so far)", "{0} (уже {1} с)"};
+const Entry kProcess{"client.process", "process {0}: ", "процесс {0}: "};
+
+/// Words of the status and what people read for them; in English the words themselves.
+struct Word {
+  std::string_view word, russian;
+};
+constexpr Word kModes[] = {{"off", "выключено"},   {"mdi", "ручной ввод"},  {"auto", "авто"},
+                           {"step", "покадровый"}, {"manual", "ручной"},    {"increment", "на шаг"},
+                           {"profile", "профиль"}, {"home", "выход в ноль"}};
+constexpr Word kStates[] = {{"idle", "ничего не выполняется"},
+                            {"running", "выполняется"},
+                            {"held", "приостановлено"},
+                            {"waiting", "ожидание"},
+                            {"stopped_by_alarm", "остановлено аварией"},
+                            {"ended", "завершено"},
+                            {"stopped", "остановлено"}};
+constexpr Word kDrives[] = {{"offline", "нет связи с приводом"},
+                            {"not_ready_to_switch_on", "привод не готов к включению"},
+                            {"switch_on_disabled", "привод выключен"},
+                            {"ready_to_switch_on", "привод готов к включению"},
+                            {"switched_on", "привод включён, не разрешён"},
+                            {"operation_enabled", "привод работает"},
+                            {"quick_stop_active", "быстрый останов привода"},
+                            {"fault_reaction_active", "привод реагирует на отказ"},
+                            {"fault", "отказ привода"}};
+constexpr Word kUnits[] = {{"mm", "мм"}, {"deg", "град"}};
+
+template <std::size_t N>
+std::string people_read(const Word (&table)[N], const std::string& word) {
+  if (text::user_language() != text::Language::russian) return word;
+  for (const Word& w : table)
+    if (w.word == word) return std::string(w.russian);
+  return word;
+}
+
+std::string of(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+std::string say(const Entry& entry, const std::vector<std::string>& arguments) {
+  return text::render(entry, arguments, text::user_language());
+}
+
+std::string fixed(double value, int decimals) {
+  char digits[64];
+  std::snprintf(digits, sizeof digits, "%.*f", decimals, value);
+  return digits;
+}
+
+void print_program(const json& s) {
+  const std::string program = of(s, "program"), file = of(s, "file"), block = of(s, "block");
+  const int line = s.value("line", 0);
+  if (!block.empty()) {
+    const bool called = line > 0 && !file.empty() && file != program;
+    print_line(called ? say(kTypedSubprogram, {block, std::to_string(line), file}) : say(kTyped, {block}));
+  }
+  if (program.empty()) return;
+  const std::string blocks = std::to_string(s.value("blocks", 0));
+  const std::string done = std::to_string(s.value("blocks_done", std::int64_t{0}));
+  if (line == 0 || !block.empty())
+    print_line(say(kProgram, {program, blocks}));
+  else if (!file.empty() && file != program)
+    print_line(say(kSubprogramLine, {program, std::to_string(line), file, done}));
+  else
+    print_line(say(kProgramLine, {program, std::to_string(line), std::to_string(s.value("lines", 0)), done}));
+}
+
+/// A sentence and below it what to do.
+void print_advice(const std::string& before, const json& what) {
+  print_line(before + of(what, "text"));
+  if (const std::string remedy = of(what, "remedy"); !remedy.empty()) print_line("    " + remedy);
+}
+
+/// What the programs have said, what they wait for and what stopped them.
+void print_processes(const json& s) {
+  const json processes = s.value("processes", json::array());
+  for (const json& p : processes) {
+    const std::string before =
+        processes.size() > 1 ? say(kProcess, {std::to_string(p.value("process", 0))}) : std::string();
+    if (const std::string message = of(p, "message"); !message.empty())
+      print_line(before + say(kMessage, {message}));
+    print_wait(p.value("wait", json()), before);
+    if (const json stop = p.value("stop", json()); stop.is_object()) print_advice(before, stop);
+  }
+}
+
+/// That nobody has asked for the drives, or that they are coming, is seen at the axes.
+void print_missing(const json& missing) {
+  for (const json& m : missing)
+    if (const std::string reason = of(m, "reason");
+        reason != "not_asked" && reason != "starting" && reason != "alarm")
+      print_advice("", m);
+}
+
+void print_axis(const json& a) {
+  const bool russian = text::user_language() == text::Language::russian;
+  const auto words = [&](const char* in_english, const char* in_russian) {
+    return std::string(russian ? in_russian : in_english);
+  };
+  std::string facts = people_read(kDrives, of(a, "drive"));
+  facts += a.value("homed", false) ? words(", homed", ", выведена в ноль")
+                                   : words(", not homed", ", не выведена в ноль");
+  if (a.value("moving", false)) facts += words(", moving", ", движется");
+  if (a.value("on_limit", 0) != 0) facts += words(", on the hard limit", ", на концевом выключателе");
+  const std::string unit = people_read(kUnits, of(a, "unit")) +
+                           (a.value("diameter", false) ? words(" (diameter)", " (диаметр)") : "");
+  print_formatted("  %-3s %12.4f %s  %s\n", of(a, "letter").c_str(), a.value("position", 0.0), unit.c_str(),
+                  facts.c_str());
+}
+
+void print_forced(const json& forced) {
+  for (const json& f : forced)
+    print_line(say(f.value("stays", false) ? kForcedStays : kForced,
+                   {of(f, "name"), of(f, "value"), of(f, "user")}));
+}
+
+}  // namespace
+
+void print_wait(const json& wait, const std::string& before) {
+  if (!wait.is_object()) return;
+  print_line(before + say(kWaits, {of(wait, "text"), text::number(wait.value("for_s", 0.0), 1)}));
+  if (const std::string remedy = of(wait, "remedy"); !remedy.empty()) print_line("    " + remedy);
+}
+
+void print_status(const json& s) {
+  print_line(
+      say(kHead,
+          {of(s, "machine"), people_read(kModes, of(s, "mode")), people_read(kStates, of(s, "state")),
+           s.value("homing", false) ? say(kHoming, {}) : std::string(), fixed(s.value("time_s", 0.0), 3)}));
+  print_program(s);
+  print_processes(s);
+  print_missing(s.value("missing", json::array()));
+  print_line(say(kFeed, {fixed(s.value("feed_mm_min", 0.0), 0), fixed(s.value("override_pct", 0.0), 0),
+                         std::to_string(s.value("tool", 0))}));
+  for (const json& a : s.value("axes", json::array())) print_axis(a);
+  for (const json& sp : s.value("spindles", json::array()))
+    print_line(say(kSpindle, {fixed(sp.value("actual_rpm", 0.0), 0), fixed(sp.value("command_rpm", 0.0), 0),
+                              people_read(kDrives, of(sp, "drive"))}));
+  print_forced(s.value("forced", json::array()));
+}
+
+void print_alarms(const json& alarms) {
+  for (const json& a : alarms) {
+    const bool first = a.value("first", false);
+    print_formatted("%s%d %s: %s\n%s%s\n", first ? "* " : "      ", a.value("number", 0), of(a, "id").c_str(),
+                    of(a, "text").c_str(), first ? "    " : "        ", of(a, "remedy").c_str());
+  }
+}
+
+}  // namespace servogate::gateway::command

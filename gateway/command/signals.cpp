@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/command/signals.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstring>
+#include <string>
+
+#include "gateway/cli/options.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+const text::Entry kNothingBegun{"cli.stopped", "stopped by the operator before anything had begun",
+                                "остановлено оператором: ещё ничего не началось"};
+
+constexpr std::array kSignals{SIGINT, SIGTERM};
+
+/// What a handler may use: plain bytes that are whole before the handler is there.
+struct Words {
+  std::array<char, 512> bytes{};
+  std::size_t size = 0;
+};
+Words words[2];
+std::atomic<int> words_in_force{0};
+std::atomic<bool> counting{false};
+std::atomic<int> seen{0};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+extern "C" void on_signal(int) {
+  if (counting.load()) {
+    seen.fetch_add(1);
+    return;
+  }
+  const Words& w = words[words_in_force.load()];
+  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, w.bytes.data(), w.size);
+  _exit(kStopped);
+}
+
+void handle(void (*handler)(int), int flags) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = flags;
+  for (const int signal : kSignals) sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+void watch_signals() {
+  say_when_stopped(kNothingBegun);
+  handle(on_signal, SA_RESTART);
+}
+
+void say_when_stopped(const text::Entry& entry) {
+  const int next = 1 - words_in_force.load();
+  const std::string line =
+      "servogate: " + text::render(entry, {}, text::user_language()) + " [" + std::string(entry.id) + "]\n";
+  Words& w = words[next];
+  w.size = std::min(line.size(), w.bytes.size());
+  std::memcpy(w.bytes.data(), line.data(), w.size);
+  words_in_force.store(next);
+}
+
+void count_signals(bool interrupting) {
+  counting.store(true);
+  handle(on_signal, interrupting ? 0 : SA_RESTART);
+}
+
+int signals_seen() noexcept { return seen.load(); }
+
+void leave_signals_alone() { handle(SIG_DFL, 0); }
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// `servogate jog`: how long a hand holds it, why it ended, and where the axis stands then.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/server/rig.hpp"
+
+namespace servogate::gateway::testing {
+namespace {
+
+using nlohmann::json;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+int ending_of(pid_t pid) {
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+bool x_moves(const json& s) { return s["axes"][0]["moving"].get<bool>(); }
+
+class JogCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    shell_.up("mill", {"--virtual", "--speed", "20"});
+    ASSERT_EQ(shell_.run({"power", "on"}).exit, 0);
+  }
+  /// What `jog X DIRECTION` says when `happens` comes while it moves. Its own keep-alive may be late on a
+  /// computer that others use too: then it is asked again, back and forth.
+  template <typename Happens>
+  Outcome while_it_jogs(Happens&& happens, const std::string& direction = "+") {
+    Outcome last;
+    for (int attempt = 0; attempt < 8; ++attempt) {
+      const pid_t client = shell_.spawn({"jog", "X", direction}, "jog");
+      EXPECT_TRUE(shell_.until(x_moves, 10.0));
+      happens(client);
+      last = {ending_of(client), shell_.text("jog.out"), shell_.text("jog.err")};
+      EXPECT_FALSE(x_moves(shell_.status())) << "the command ends when the axis stands";
+      if (!contains(last.err, "[jog.keep-alive]")) break;
+    }
+    return last;
+  }
+  Shell shell_;
+};
+
+TEST_F(JogCommand, goes_on_at_twenty_times_the_wall_clock_until_Ctrl_C_and_says_where_the_axis_stands) {
+  double way = 0.0;
+  const Outcome o = while_it_jogs([&](pid_t client) {
+    const double from = shell_.status()["axes"][0]["command"];
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    way = shell_.status()["axes"][0]["command"].get<double>() - from;
+    kill(client, SIGINT);
+  });
+  EXPECT_EQ(o.exit, 0) << o.err;
+  EXPECT_TRUE(contains(o.out, "X stands at ")) << o.out;
+  EXPECT_GT(way, 20.0) << "ten times as long as 100 ms of the machine's time";
+}
+
+TEST_F(JogCommand, ends_at_a_silent_hand_with_that_as_its_reason) {
+  SocketClient client;
+  std::string answer;
+  ASSERT_TRUE(client.connect(shell_.socket()).empty());
+  ASSERT_TRUE(client.exchange(R"({"cmd":"jog_continuous","axis":"X","value":1})", answer));
+  EXPECT_EQ(json::parse(answer)["keep_alive_ms"], 30.0) << answer;
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["jog_end"].is_object(); }, 10.0));
+  EXPECT_EQ(shell_.status()["axes"][0]["jog_end"]["reason"], "keep_alive");
+  ASSERT_TRUE(client.exchange(R"({"cmd":"keep_alive"})", answer));
+  EXPECT_EQ(json::parse(answer)["moving"], false) << answer;
+  EXPECT_EQ(json::parse(answer)["reason"], "keep_alive") << answer;
+  EXPECT_TRUE(contains(json::parse(answer)["text"], "no keep-alive")) << answer;
+}
+
+TEST_F(JogCommand, by_a_distance_returns_when_the_axis_stands) {
+  const Outcome o = shell_.run({"jog", "X", "+2mm"});
+  EXPECT_EQ(o.exit, 0) << o.err;
+  EXPECT_FALSE(x_moves(shell_.status()));
+  EXPECT_NEAR(shell_.status()["axes"][0]["command"].get<double>(), 2.0, 1e-9);
+  EXPECT_TRUE(contains(o.out, "X stands at ")) << o.out;
+  EXPECT_TRUE(contains(shell_.run({"jog", "X", "-2mm"}, "ru_RU.UTF-8").out, "X стоит на "));
+  const json told = json::parse(shell_.run({"jog", "X", "+1mm", "--json"}).out);
+  EXPECT_EQ(told["reason"], "arrived");
+  EXPECT_EQ(told["exit"], 0);
+  EXPECT_NEAR(told["position"].get<double>(), 1.0, 0.05);
+  const Outcome at_once = shell_.run({"jog", "X", "+100mm", "--no-wait"});
+  EXPECT_TRUE(contains(at_once.out, "X moves by +100 mm")) << at_once.out;
+}
+
+TEST_F(JogCommand, that_an_alarm_ends_says_so_and_is_no_success) {
+  const Outcome o = while_it_jogs([&](pid_t) {
+    ASSERT_EQ(shell_.run({"input", "x_limit_plus", "on"}).exit, 0);
+  });
+  EXPECT_EQ(o.exit, 1);
+  EXPECT_TRUE(contains(o.err, "X was stopped by an alarm")) << o.err;
+  EXPECT_TRUE(contains(o.err, "[jog.alarm]")) << o.err;
+  EXPECT_TRUE(contains(o.out, "limit")) << "the alarm itself: " << o.out;
+}
+
+TEST_F(JogCommand, that_the_plc_ends_says_so_and_is_no_success) {
+  const Outcome o = while_it_jogs([&](pid_t) {
+    ASSERT_TRUE(
+        shell_
+            .ask({{"cmd", "plc_force"}, {"name", "X.feed_enable"}, {"value", "FALSE"}, {"stay", true}})["ok"]
+            .get<bool>());
+  });
+  EXPECT_EQ(o.exit, 1);
+  EXPECT_TRUE(contains(o.err, "the PLC does not permit its feed")) << o.err;
+}
+
+TEST_F(JogCommand, that_the_end_of_the_travel_ends_says_so) {
+  ASSERT_EQ(shell_.run({"home", "--wait"}).exit, 0);
+  const Outcome o = while_it_jogs([](pid_t) {});
+  EXPECT_EQ(o.exit, 1);
+  EXPECT_TRUE(contains(o.err, "at the end of its travel; X stands at 300 mm")) << o.err;
+}
+
+TEST_F(JogCommand, that_somebody_else_ends_is_stopped_by_the_operator) {
+  const Outcome o = while_it_jogs([&](pid_t) { ASSERT_EQ(shell_.ask({{"cmd", "stop"}})["ok"], true); });
+  EXPECT_EQ(o.exit, 3);
+  EXPECT_TRUE(contains(o.err, "stopped by a request")) << o.err;
+}
+
+}  // namespace
+}  // namespace servogate::gateway::testing
