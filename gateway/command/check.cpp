@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/program/check.hpp"
-
 #include <nlohmann/json.hpp>
 
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/compose/program/program_file.hpp"
+#include "gateway/compose/program/program_check.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/machine/state/state.hpp"
@@ -17,8 +15,12 @@ namespace {
 
 const text::Entry kTravelLine{"check.extent", "{0}: {1} to {2} of {3} to {4} {5}",
                               "{0}: от {1} до {2} при ходе от {3} до {4} {5}"};
-const text::Entry kTimeLine{"check.time", "{0}: {1} blocks, about {2} s, {3} mm of path",
-                            "{0}: кадров {1}, около {2} с, путь {3} мм"};
+const text::Entry kTimeLine{
+    "check.time",
+    "{0}: {1} blocks, about {2} s: {3} s of motion ({4} mm at feed), {5} s of dwells; the PLC adds its "
+    "own for {6} M, S and T",
+    "{0}: кадров {1}, около {2} с: движение {3} с ({4} мм на подаче), выдержки {5} с; сверх того время "
+    "ПЛК на функции M, S и T ({6})"};
 const text::Entry kToolLine{"check.tool", "tool {0} corrector {1}, first in line {2}, called {3} times",
                             "инструмент {0}, корректор {1}, впервые в строке {2}, вызовов: {3}"};
 std::string sentence(const text::Entry& entry, const std::vector<std::string>& arguments) {
@@ -43,13 +45,17 @@ void check_logic(const machine::MachineConfig& machine, std::vector<text::Findin
   plc::check(sources, machine.symbol_table(), options, findings);
 }
 
-nlohmann::json describe(const program::CheckReport& report, const program::MachineModel& model,
+nlohmann::json describe(const ProgramCheck& check, const program::MachineModel& model,
                         const std::string& name) {
+  const program::CheckReport& report = check.report;
   nlohmann::json json{{"program", name},
                       {"finished", report.finished},
                       {"blocks", report.blocks},
                       {"executed", report.executed},
-                      {"time_s", report.feed_seconds + report.rapid_seconds + report.dwell_seconds},
+                      {"time_s", check.seconds()},
+                      {"motion_s", check.motion_s},
+                      {"dwell_s", report.dwell_seconds},
+                      {"functions", report.functions},
                       {"path_mm", report.path_mm}};
   for (std::size_t a = 0; a < report.extents.size(); ++a)
     json["extents"][model.axes[a].letter] = {{"min", report.extents[a].min},
@@ -64,12 +70,11 @@ nlohmann::json describe(const program::CheckReport& report, const program::Machi
   return json;
 }
 
-void print_report(const program::CheckReport& report, const program::MachineModel& model,
-                  const std::string& name) {
-  print_line(
-      sentence(kTimeLine, {name, std::to_string(report.blocks),
-                           text::number(report.feed_seconds + report.rapid_seconds + report.dwell_seconds, 1),
-                           text::number(report.path_mm, 1)}));
+void print_report(const ProgramCheck& check, const program::MachineModel& model, const std::string& name) {
+  const program::CheckReport& report = check.report;
+  print_line(sentence(kTimeLine, {name, std::to_string(report.blocks), text::number(check.seconds(), 1),
+                                  text::number(check.motion_s, 1), text::number(report.path_mm, 1),
+                                  text::number(report.dwell_seconds, 1), std::to_string(report.functions)}));
   for (std::size_t a = 0; a < report.extents.size(); ++a) {
     const auto& e = report.extents[a];
     if (!e.moved) continue;
@@ -101,14 +106,14 @@ ProgramErrors check_programs(const CheckOptions& options, const machine::Machine
     std::vector<text::Finding> found;
     nlohmann::json entry{{"program", name}};
     if (open_program(machine, name, options.dialect, program, found)) {
-      const program::CheckReport report = program::check_program(program.dialect, program.model, tables, name,
-                                                                 program.text, program.loader, {});
-      found = report.findings;
+      const ProgramCheck result = check_program(machine, program, tables, start_after_homing(machine).at,
+                                                channel::Forecast::Depth::timed);
+      found.insert(found.end(), result.report.findings.begin(), result.report.findings.end());
       errors.found += print_findings(found);
       if (options.json)
-        entry = describe(report, program.model, name);
+        entry = describe(result, program.model, name);
       else
-        print_report(report, program.model, name);
+        print_report(result, program.model, name);
     } else {
       errors.unreadable = true;
       print_findings(found);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <thread>
 
@@ -11,6 +13,7 @@
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/signals.hpp"
+#include "gateway/compose/program/program_check.hpp"
 #include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/state/state.hpp"
 #include "gateway/machine/state/state_lock.hpp"
@@ -96,6 +99,7 @@ class Run {
   std::shared_ptr<ProgramFile> program_ = std::make_shared<ProgramFile>();
   machine::MachineState state_;
   machine::StateLock lock_;
+  std::vector<text::Finding> wrong_;  ///< errors of the program: nothing moves
   std::unique_ptr<Control> control_;
   std::unique_ptr<RecordWriter> record_;
   std::unique_ptr<RetainedKeeper> keeper_;
@@ -128,16 +132,13 @@ int Run::prepare() {
     if (const int code = open_program(m, options_.program, options_.dialect, *program_); code != kDone)
       return code;
     const ProgramFile& p = *program_;
-    const program::CheckReport check =
-        program::check_program(p.dialect, p.model, state_.tables, p.path, p.text, p.loader, {});
-    const program::Interpreter reader(p.dialect, p.model, state_.tables, p.path, p.text, p.loader, {});
-    const std::vector<text::Finding> read = reader.findings();
-    if (print_findings(read) > 0) return kAlarm;
-    // An error of the dry run is none of the real one, where signals and positions differ.
-    for (std::size_t i = read.size(); i < check.findings.size(); ++i)
-      if (check.findings[i].severity == text::Severity::warning) print_findings({check.findings[i]});
-    estimate_s_ = check.feed_seconds + check.rapid_seconds + check.dwell_seconds;
-    estimate_blocks_ = check.executed;
+    const ProgramCheck check =
+        prove_program(m, p, state_.tables, start_after_homing(m), channel::Forecast::Depth::timed);
+    print_findings(check.report.findings);
+    std::copy_if(check.report.findings.begin(), check.report.findings.end(), std::back_inserter(wrong_),
+                 [](const text::Finding& f) { return f.severity == text::Severity::error; });
+    estimate_s_ = check.seconds();
+    estimate_blocks_ = check.report.executed;
   }
   std::vector<text::Finding> findings;
   control_ = Control::compose(loaded_, findings);
@@ -175,6 +176,7 @@ OperatorScript::Wishes Run::wishes() const {
 int Run::execute(const std::vector<std::string>& command_line) {
   Session session(*control_, {options_.trace, options_.report, options_.html}, realtime());
   OperatorScript script(wishes(), [this](const image::Request& r) { return control_->cycle().post(r); });
+  if (!wrong_.empty()) return finish(script, session, command_line);
   count_signals();
   control_->world().close_operator_points();
   begin_ = Clock::now();
@@ -300,6 +302,7 @@ int Run::finish(const OperatorScript& script, Session& session,
   report::Report report = session.make_report(wall_s_, overruns_);
   report.finished = script.outcome() == OperatorScript::Outcome::finished;
   report.blocks_expected = estimate_blocks_;
+  report.findings = wrong_;
   if (script.outcome() == OperatorScript::Outcome::waited) {
     const WaitWords w =
         wait_words(*control_, control_->cycle().image(), 0, script.given_up(), text::user_language());
@@ -329,7 +332,7 @@ int Run::finish(const OperatorScript& script, Session& session,
   }
   if (options_.json) print(report::to_json(report));
   explain(script, report);
-  if (!options_.state.empty() && !save_state()) infrastructure_ = true;
+  if (!options_.state.empty() && wrong_.empty() && !save_state()) infrastructure_ = true;
   for (std::size_t b = 0; b < loaded_.machine.buses.size(); ++b)
     if (const std::uint64_t lost = control_->frames_lost(b); lost > 0) {
       complain(kFramesLost, {loaded_.machine.buses[b].name, std::to_string(lost)});

@@ -126,6 +126,7 @@ struct Report {
   std::int64_t blocks = 0;           ///< executed, each time they ran, up to the one in motion at the end
   std::int64_t blocks_expected = 0;  ///< of a dry run, whose branches may differ; 0: not known
   std::optional<WaitEntry> wait;
+  std::vector<text::Finding> findings;  ///< errors for which the program was not begun
   std::vector<AlarmEntry> alarms;
   std::vector<AxisReport> axes;
   double virtual_speed = 0.0;  ///< simulated seconds per second

@@ -96,6 +96,8 @@ class Dispatch {
   Reply zero();
   Reply override_feed();
   Reply load();
+  std::string with_findings(const text::Entry& entry, const std::string& program,
+                            const std::vector<text::Finding>& findings) const;
   Reply start() { return begin(false); }
   Reply step() { return begin(true); }
   Reply begin(bool step);
@@ -358,6 +360,19 @@ Reply Dispatch::override_feed() {
   return good(says::kOverride, {text::number(value, 1)});
 }
 
+/// A sentence about a program, and what is wrong with it below.
+std::string Dispatch::with_findings(const text::Entry& entry, const std::string& program,
+                                    const std::vector<text::Finding>& findings) const {
+  std::string words = text::render(entry, std::vector<std::string>{program}, language_);
+  for (std::size_t i = 0; i < findings.size() && i < kFindingsSaid; ++i)
+    words += "\n" + findings[i].str(language_);
+  if (findings.size() > kFindingsSaid)
+    words += "\n" + text::render(says::kMoreFindings,
+                                 std::vector<std::string>{std::to_string(findings.size() - kFindingsSaid)},
+                                 language_);
+  return words;
+}
+
 Reply Dispatch::load() {
   if (resident_.busy()) return fail(says::kBusy, {}, kAlarm);
   std::vector<text::Finding> findings;
@@ -368,13 +383,7 @@ Reply Dispatch::load() {
   if (loaded == Resident::Load::done)
     return good(says::kLoaded, {program, std::to_string(resident_.blocks()), std::to_string(findings.size())},
                 more);
-  std::string words = text::render(says::kNotLoaded, std::vector<std::string>{program}, language_);
-  for (std::size_t i = 0; i < findings.size() && i < kFindingsSaid; ++i)
-    words += "\n" + findings[i].str(language_);
-  if (findings.size() > kFindingsSaid)
-    words += "\n" + text::render(says::kMoreFindings,
-                                 std::vector<std::string>{std::to_string(findings.size() - kFindingsSaid)},
-                                 language_);
+  const std::string words = with_findings(says::kNotLoaded, program, findings);
   const int exit = loaded == Resident::Load::not_opened ? kWrongUse : kAlarm;
   more.update({{"ok", false}, {"exit", exit}, {"code", says::kNotLoaded.id}, {"text", words}});
   return {text_of(more)};
@@ -387,6 +396,11 @@ Reply Dispatch::begin(bool step) {
       return refuse(cycle::refusal_texts()[static_cast<std::size_t>(cycle::Refusal::no_program)], {}, kAlarm,
                     language_);
     resident_.take_tables();
+    if (const auto& wrong = resident_.refused(); !wrong.empty())
+      return {text_of({{"ok", false},
+                       {"code", says::kNotStarted.id},
+                       {"text", with_findings(says::kNotStarted, resident_.program(), wrong)},
+                       {"exit", kAlarm}})};
     mode = step ? image::Mode::step : image::Mode::automatic;
   }
   // A wait that began before belongs to the block before.

@@ -64,26 +64,51 @@ void Resident::tell(image::Request request) {
 }
 
 /// False: a program is being read just now, nothing was changed.
-bool Resident::arm(ProgramChange::Kind kind) { return control_.change({kind, 0, file_, state_.tables, {}}); }
+bool Resident::arm(ProgramChange::Kind kind) {
+  prove_again();
+  if (refused_.empty()) return control_.change({kind, 0, file_, state_.tables, {}});
+  // Whoever starts, a start button too, must not find it.
+  auto none = std::make_shared<ProgramFile>(*file_);
+  none->path.clear();
+  none->text.clear();
+  return control_.change({kind, 0, std::move(none), state_.tables, {}});
+}
+
+/// What was proven of the loaded program holds for its tables only.
+void Resident::prove_again() {
+  if (state_.tables == proven_) return;
+  proven_ = state_.tables;
+  refused_.clear();
+  if (file_->path.empty()) return;
+  for (text::Finding& f : prove(*file_).report.findings)
+    if (f.severity == text::Severity::error) refused_.push_back(std::move(f));
+}
+
+ProgramCheck Resident::prove(const ProgramFile& file) {
+  return prove_program(control_.machine(), file, state_.tables, {position(), false},
+                       channel::Forecast::Depth::drivable);
+}
 
 Resident::Load Resident::load(const std::string& path, const std::string& dialect,
                               std::vector<text::Finding>& findings) {
   auto file = std::make_shared<ProgramFile>();
   if (!open_program(control_.machine(), path, dialect, *file, findings)) return Load::not_opened;
   take_tables();
-  const program::Interpreter reader(file->dialect, file->model, state_.tables, path, file->text, file->loader,
-                                    {});
-  findings = reader.findings();
+  const ProgramCheck check = prove(*file);
+  findings.insert(findings.end(), check.report.findings.begin(), check.report.findings.end());
   for (const text::Finding& f : findings)
     if (f.severity == text::Severity::error) return Load::has_errors;
   std::shared_ptr<const ProgramFile> before = std::exchange(file_, file);
+  std::vector<text::Finding> refused_before = std::exchange(refused_, {});
+  proven_ = state_.tables;
   if (arm(ProgramChange::Kind::program)) {
-    blocks_ = reader.block_count();
+    blocks_ = check.report.blocks;
     lines_ = static_cast<int>(std::count(file->text.begin(), file->text.end(), '\n')) +
              (file->text.empty() || file->text.back() == '\n' ? 0 : 1);
     return Load::done;
   }
   file_ = std::move(before);  // a program began meanwhile
+  refused_ = std::move(refused_before);
   return Load::busy;
 }
 

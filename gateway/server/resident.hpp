@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gateway/compose/control.hpp"
-#include "gateway/compose/program/program_file.hpp"
+#include "gateway/compose/program/program_check.hpp"
 #include "gateway/machine/state/state.hpp"
 #include "gateway/server/plc/plc_desk.hpp"
 
@@ -31,13 +31,17 @@ class Resident {
     has_errors,  ///< of the program
     busy         ///< a program has begun meanwhile
   };
-  /// Loads a program; findings of reading are returned. Unless `done`, the one loaded before stays.
+  /// Loads a program that nothing can be proven wrong of with the tables as they are (prove_program);
+  /// findings are returned. Unless `done`, the one loaded before stays.
   Load load(const std::string& path, const std::string& dialect, std::vector<text::Finding>& findings);
   /// Takes over what the last run changed in the tables, before the next one starts.
   void take_tables();
   /// What this block gives in the present modal state of MDI, before anything moves: warnings, and last the
   /// error that keeps it from running.
   std::vector<text::Finding> check_block(const std::string& block);
+  /// Errors of the loaded program since its tables (origins, tools) changed behind the load: it is not given
+  /// to the process until they are gone. Empty: none.
+  const std::vector<text::Finding>& refused() const noexcept { return refused_; }
   /// The block that the next start in MDI mode runs.
   void set_manual_block(const std::string& block);
   /// The block that was typed last.
@@ -78,6 +82,8 @@ class Resident {
 
  private:
   bool arm(ProgramChange::Kind kind);
+  void prove_again();
+  ProgramCheck prove(const ProgramFile& file);
   void catch_up();
   program::Position position();
   std::uint32_t homed();
@@ -87,6 +93,8 @@ class Resident {
   std::string state_path_;
   double speed_;
   std::shared_ptr<const ProgramFile> file_;
+  program::Tables proven_;  ///< with which file_ was last looked through
+  std::vector<text::Finding> refused_;
   int blocks_ = 0, lines_ = 0;
   std::string manual_block_;
   std::uint32_t homed_seen_ = 0;

@@ -23,6 +23,9 @@ const Entry kNotAxes{"socket.not-axes", "'{0}' must be a list of axes: [\"X\"]",
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
                       "цикл не ответил; работает ли он?"};
 const Entry kNotLoaded{"socket.not-loaded", "{0} was not loaded", "программа {0} не загружена"};
+const Entry kNotStarted{"socket.not-started",
+                        "{0} is not started: with the origins and tools as they are now it has errors",
+                        "программа {0} не пущена: с нынешними началами и инструментом в ней ошибки"};
 const Entry kMoreFindings{"socket.more-findings", "and {0} more; `servogate check` shows all of them",
                           "и ещё {0}; все показывает `servogate check`"};
 const Entry kBusy{"socket.program-runs", "a program runs; stop it first (`servogate reset`)",

@@ -19,6 +19,7 @@ extern const text::Entry kNotSwitch;         ///< {0} key
 extern const text::Entry kNotAxes;           ///< {0} key
 extern const text::Entry kNoAnswer;          ///< the cycle stands
 extern const text::Entry kNotLoaded;         ///< {0} program
+extern const text::Entry kNotStarted;        ///< {0} program
 extern const text::Entry kMoreFindings;      ///< {0} how many
 extern const text::Entry kBusy;              ///< a program runs
 extern const text::Entry kBlockWrong;        ///< {0} what is wrong

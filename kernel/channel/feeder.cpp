@@ -2,11 +2,6 @@
 #include "kernel/channel/feeder.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-
-#include "kernel/channel/channel_texts.hpp"
-#include "kernel/channel/surface_speed.hpp"
 
 namespace servogate::channel {
 
@@ -22,20 +17,13 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-path::Transition transition(const program::CornerRule& corner) {
-  path::Transition t;
-  t.continuation = static_cast<path::Continuation>(corner.transition);
-  t.tolerance = corner.tolerance_mm;
-  t.erf = corner.erf_mm;
-  t.max_angle_deg = corner.max_angle_deg;
-  t.confirm = true;
-  return t;
-}
-
 }  // namespace
 
 Feeder::Feeder(path::Config config, AxisMap axes, Link& link, int process)
-    : config_(config), axes_(std::move(axes)), link_(link), planner_(config, link.track), process_(process) {}
+    : elements_(config, std::move(axes), SpindleAt::fastest),
+      link_(link),
+      planner_(config, link.track),
+      process_(process) {}
 
 Feeder::~Feeder() = default;
 
@@ -112,10 +100,8 @@ void Feeder::begin(const FeederOrder& order) {
   files_told_ = 0;
   view_ = link_.packets_of(generation_);
   synchronised_ = true;
-  path::Vector at{};
-  for (std::size_t i = 0; i < axes_.machine.size(); ++i)
-    at[i] = position_[static_cast<std::size_t>(axes_.machine[i])];
-  link_.begin(generation_, {planner_.restart(at), link_.events.written(), link_.at_once.written()});
+  link_.begin(generation_, {planner_.restart(elements_.path_position(position_)), link_.events.written(),
+                            link_.at_once.written()});
   state_ = State::feeding;
   std::optional<program::Interpreter> manual;
   if (order.manual_data) manual = manual_interpreter(position_);
@@ -199,14 +185,11 @@ void Feeder::end() {
   state_ = State::ended;
 }
 
-text::Finding Feeder::finding(const program::Command& command, const text::Entry& entry,
-                              std::string argument) const {
-  return {text::Severity::error,
-          interpreter_->path(command.file),
-          command.line,
-          interpreter_->column(command.file, command.line, -1),
-          &entry,
-          {std::move(argument)}};
+text::Finding Feeder::placed(text::Finding finding, const program::Command& command) const {
+  finding.file = interpreter_->path(command.file);
+  finding.line = command.line;
+  finding.column = interpreter_->column(command.file, command.line, -1);
+  return finding;
 }
 
 path::Tag Feeder::tag(const program::Command& command) const {
@@ -259,21 +242,14 @@ void Feeder::accept(const program::Command& command) {
                  [&](const program::Rapid&) { move(command); },
                  [&](const program::Line&) { move(command); },
                  [&](const program::Arc&) { move(command); },
-                 [&](const program::Thread&) { fail(finding(command, texts::kNotDriven, "thread")); },
-                 [&](const program::Probe&) { fail(finding(command, texts::kNotDriven, "probe")); },
+                 [&](const program::Thread&) { fail(placed(*not_driven(command), command)); },
+                 [&](const program::Probe&) { fail(placed(*not_driven(command), command)); },
                  [&](const program::Dwell& d) {
                    e.value = d.seconds;
                    event(EventKind::dwell, command, e);
                  },
                  [&](const program::Spindle& s) {
-                   if (s.surface_speed) {
-                     surface_speed_ = s.speed;
-                     surface_limit_rpm_ = s.limit_rpm;
-                     surface_center_ = s.center;
-                   } else if (s.speed > 0.0) {
-                     surface_speed_ = 0.0;
-                     spindle_rpm_ = s.speed;
-                   }
+                   elements_.take(s);
                    e.value = s.speed;
                    e.limit = s.limit_rpm;
                    e.center = s.center;
@@ -336,96 +312,14 @@ void Feeder::accept(const program::Command& command) {
 }
 
 bool Feeder::move(const program::Command& command) {
-  const path::Element e = element(command);
-  if (planner_.add(e)) {
+  path::Element element = elements_.element(command, planner_.position());
+  element.tag = tag(command);
+  if (planner_.add(element)) {
     moved_in_block_ = true;
     return true;
   }
-  const text::Entry& flaw = texts::kFlaws[static_cast<std::size_t>(planner_.last_flaw())];
-  fail(finding(command, texts::kCannotDrive, text::render(flaw, {}, text::user_language())));
+  fail(placed(cannot_drive(planner_.last_flaw()), command));
   return false;
-}
-
-path::Element Feeder::element(const program::Command& command) const {
-  path::Element e;
-  e.tag = tag(command);
-  const auto target = [&](const program::Position& to) {
-    for (std::size_t i = 0; i < axes_.machine.size(); ++i)
-      e.to[i] = to[static_cast<std::size_t>(axes_.machine[i])];
-  };
-  if (const auto* rapid = std::get_if<program::Rapid>(&command.what)) {
-    e.kind = path::Element::Kind::rapid;
-    target(rapid->to);
-    e.transition.confirm = true;
-  } else if (const auto* line = std::get_if<program::Line>(&command.what)) {
-    e.kind = path::Element::Kind::line;
-    target(line->to);
-    set_feed(e, line->feed, 0.0);
-    e.transition = transition(line->corner);
-  } else if (const auto* arc = std::get_if<program::Arc>(&command.what)) {
-    e.kind = path::Element::Kind::arc;
-    target(arc->to);
-    const auto path_axis = [&](int machine_axis) {
-      const auto it = std::find(axes_.machine.begin(), axes_.machine.end(), machine_axis);
-      return static_cast<std::uint8_t>(it - axes_.machine.begin());
-    };
-    e.axis1 = path_axis(arc->axis1);
-    e.axis2 = path_axis(arc->axis2);
-    e.center1 = arc->center1;
-    e.center2 = arc->center2;
-    e.sweep_deg = arc->sweep_deg;
-    const double radius =
-        std::hypot(planner_.position()[e.axis1] - e.center1, planner_.position()[e.axis2] - e.center2);
-    set_feed(e, arc->feed, radius * std::abs(arc->sweep_deg) * std::numbers::pi / 180.0);
-    e.transition = transition(arc->corner);
-  }
-  return e;
-}
-
-/// A program's feed is that of the vector over millimetres and degrees alike (NC-110: specification A 17.1);
-/// the path counts along the linear axes, or the rotary ones where only they move.
-void Feeder::set_feed(path::Element& e, const program::Feed& feed, double arc_length) const {
-  double linear = arc_length * arc_length, turning = 0.0;
-  for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
-    const double d = e.to[i] - planner_.position()[i];
-    const bool in_plane = e.kind == path::Element::Kind::arc && (i == e.axis1 || i == e.axis2);
-    if (!in_plane) (config_.rotary[i] ? turning : linear) += d * d;
-  }
-  const double length = std::sqrt(linear > 1e-12 * turning ? linear : turning);
-  const double vector = std::sqrt(linear + turning);
-  const double share = vector > 0.0 ? length / vector : 1.0;
-  switch (feed.unit) {
-    case program::FeedUnit::mm_per_min:
-      e.feed = feed.value / 60.0 * share;
-      break;
-    case program::FeedUnit::inverse_time:
-      e.feed = feed.value * length / 60.0;
-      break;
-    case program::FeedUnit::mm_per_rev:
-      e.revolutions = largest_rpm(e) / 60.0;
-      e.feed = feed.value * e.revolutions * share;
-      break;
-  }
-}
-
-/// The largest speed of the spindle along an element.
-double Feeder::largest_rpm(const path::Element& e) const {
-  const double high = axes_.spindle_max_rpm > 0.0 ? axes_.spindle_max_rpm : spindle_rpm_;
-  if (!(surface_speed_ > 0.0) || axes_.surface_speed_axis < 0)
-    return spindle_rpm_ > 0.0 ? std::clamp(spindle_rpm_, std::min(axes_.spindle_min_rpm, high), high) : 0.0;
-  const auto axis = static_cast<std::size_t>(axes_.surface_speed_axis);
-  const double from = planner_.position()[axis] - surface_center_, to = e.to[axis] - surface_center_;
-  double radius = from * to <= 0.0 ? 0.0 : std::min(std::abs(from), std::abs(to));
-  if (e.kind == path::Element::Kind::arc && (axis == e.axis1 || axis == e.axis2)) {
-    const bool first = axis == e.axis1;
-    const double bulge =
-        std::hypot(planner_.position()[e.axis1] - e.center1, planner_.position()[e.axis2] - e.center2);
-    radius = std::max(0.0, std::abs((first ? e.center1 : e.center2) - surface_center_) - bulge);
-  }
-  const double limit = surface_limit_rpm_ > 0.0 && axes_.spindle_max_rpm > 0.0
-                           ? std::min(surface_limit_rpm_, axes_.spindle_max_rpm)
-                           : std::max(surface_limit_rpm_, axes_.spindle_max_rpm);
-  return std::max(surface_rpm(surface_speed_, radius, limit), axes_.spindle_min_rpm);
 }
 
 }  // namespace servogate::channel

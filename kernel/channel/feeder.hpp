@@ -11,6 +11,7 @@
 
 #include "firmware_if/text/finding.hpp"
 #include "kernel/channel/event.hpp"
+#include "kernel/channel/motion/path_elements.hpp"
 #include "kernel/channel/program_texts.hpp"
 #include "kernel/path/planner.hpp"
 #include "kernel/program/interpreter.hpp"
@@ -64,14 +65,6 @@ struct Link {
   }
   std::array<Begin, 4> begins{};
   std::atomic<std::uint32_t> begun{0};
-};
-
-/// How path axes lie among the machine's, and what an axis order means.
-struct AxisMap {
-  std::vector<int> machine;      ///< machine axis of each path axis
-  int surface_speed_axis = -1;   ///< machine axis whose position is the radius for G96; -1: none
-  double spindle_min_rpm = 0.0;  ///< to which the spindle limits what it is told
-  double spindle_max_rpm = 0.0;  ///< 0: no limit
 };
 
 /// Pulls commands from the interpreter, turns them into path elements and events. Runs outside the cycle, on
@@ -128,18 +121,13 @@ class Feeder {
   void fail(const text::Finding& finding);
   void end();
   bool move(const program::Command& command);
-  path::Element element(const program::Command& command) const;
-  void set_feed(path::Element& element, const program::Feed& feed, double arc_length) const;
-  double largest_rpm(const path::Element& element) const;
   void event(EventKind kind, const program::Command& command, Event event);
   void end_block(const program::Command& next);
   void push(Event& event, const program::Command& command);
   path::Tag tag(const program::Command& command) const;
-  text::Finding finding(const program::Command& command, const text::Entry& entry,
-                        std::string argument) const;
+  text::Finding placed(text::Finding finding, const program::Command& command) const;
 
-  path::Config config_;
-  AxisMap axes_;
+  PathElements elements_;
   Link& link_;
   path::Planner planner_;
   int process_;
@@ -157,8 +145,6 @@ class Feeder {
   long long last_executed_ = 0;  ///< blocks executed up to the last command
   image::Packets view_;          ///< packets as the interpreter sees them
   program::Position position_{};
-  double spindle_rpm_ = 0.0;
-  double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0, surface_center_ = 0.0;
   std::uint32_t next_event_ = 1;
   std::uint32_t generation_ = 0;
   std::uint64_t orders_read_ = 0;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kOpenTravel = 1e9;
 constexpr double kSlack = 1e-6;
-constexpr double kSmallestRadius = 0.1;  ///< mm, for the time under a cutting speed
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -50,8 +49,10 @@ class Survey {
   void take(const Other&) {}
   void take(const Wait&) { ++report_.waits; }
   void take(const Dwell& dwell) { report_.dwell_seconds += dwell.seconds; }
-  void take(const Spindle& spindle) { spindle_ = spindle; }
+  void take(const Spindle&) { ++report_.functions; }
+  void take(const MFunction&) { ++report_.functions; }
   void take(const Tool& tool) {
+    if (!tool.activate) ++report_.functions;
     auto known = std::find_if(report_.tools.begin(), report_.tools.end(), [&](const auto& t) {
       return t.number == tool.number && t.corrector == tool.corrector;
     });
@@ -59,18 +60,11 @@ class Survey {
       known = report_.tools.insert(known, {tool.number, tool.corrector, line_, 0});
     ++known->calls;
   }
-  void take(const Rapid& rapid) {
-    double seconds = 0.0;
-    for (std::size_t a = 0; a < machine_.axes.size(); ++a)
-      if (machine_.axes[a].rapid > 0.0)
-        seconds = std::max(seconds, std::abs(rapid.to[a] - position_[a]) / machine_.axes[a].rapid);
-    report_.rapid_seconds += seconds;
-    go(rapid.to);
-  }
+  void take(const Rapid& rapid) { go(rapid.to); }
   void take(const Line& line) {
     double square = 0.0;
     for (std::size_t a = 0; a < machine_.axes.size(); ++a) square += std::pow(line.to[a] - position_[a], 2);
-    feed_motion(std::sqrt(square), line.feed, line.to);
+    report_.path_mm += std::sqrt(square);
     go(line.to);
   }
   void take(const Arc& arc) {
@@ -79,36 +73,11 @@ class Survey {
     double square = std::pow(arc.sweep_deg * kDegree * radius, 2);
     for (std::size_t a = 0; a < machine_.axes.size(); ++a)
       if (a != a1 && a != a2) square += std::pow(arc.to[a] - position_[a], 2);
-    feed_motion(std::sqrt(square), arc.feed, arc.to);
+    report_.path_mm += std::sqrt(square);
     const Box box = extent({position_[a1], position_[a2]}, {arc.to[a1], arc.to[a2]},
                            {arc.center1, arc.center2}, arc.sweep_deg);
     reach(a1, box.low.x), reach(a1, box.high.x), reach(a2, box.low.y), reach(a2, box.high.y);
     go(arc.to);
-  }
-
-  /// Speed of the spindle on the way to `to`; under a cutting speed that at half of the way.
-  double rpm(const Position& to) const {
-    double rpm = spindle_.speed;
-    const auto x =
-        std::find_if(machine_.axes.rbegin(), machine_.axes.rend(), [](const auto& a) { return a.diameter; });
-    if (spindle_.surface_speed) {
-      if (x == machine_.axes.rend()) return 0.0;
-      const auto axis = static_cast<std::size_t>(machine_.axes.rend() - x) - 1;
-      const double radius = std::abs(0.5 * (position_[axis] + to[axis]) - spindle_.center);
-      rpm = spindle_.speed * 1000.0 / (2.0 * std::numbers::pi * std::max(radius, kSmallestRadius));
-    }
-    if (machine_.spindle_max_rpm > 0.0) rpm = std::min(rpm, machine_.spindle_max_rpm);
-    return rpm > 0.0 ? std::max(rpm, machine_.spindle_min_rpm) : 0.0;
-  }
-
-  void feed_motion(double length, const Feed& feed, const Position& to) {
-    report_.path_mm += length;
-    double minutes = 0.0;
-    if (feed.unit == FeedUnit::mm_per_min) minutes = length / feed.value;
-    if (feed.unit == FeedUnit::inverse_time) minutes = 1.0 / feed.value;
-    if (feed.unit == FeedUnit::mm_per_rev)
-      if (const double turns = rpm(to); turns > 0.0) minutes = length / (feed.value * turns);
-    report_.feed_seconds += minutes * 60.0;
   }
 
   void reach(std::size_t axis, double value) {
@@ -135,7 +104,6 @@ class Survey {
   const MachineModel& machine_;
   CheckReport& report_;
   Position position_;
-  Spindle spindle_;
   int line_ = 0, file_ = 0;
   int first_outside_ = -1, outside_line_ = 0, outside_file_ = 0;
   double outside_value_ = 0.0;
@@ -172,28 +140,42 @@ bool CheckReport::good() const {
 
 CheckReport check_program(std::string_view dialect, const MachineModel& machine, const Tables& tables,
                           const std::string& file_name, const std::string& text, const ProgramLoader& loader,
-                          const Position& start) {
+                          const Position& start, const CommandCheck& also) {
   CheckReport report;
   Interpreter interpreter(dialect, without_travel(machine), tables, file_name, text, loader, start);
   report.findings = interpreter.findings();
+  report.of_run = report.findings.size();
   report.blocks = interpreter.block_count();
   Survey survey(machine, start, report);
+  std::optional<text::Finding> refused;
+  bool read_inside = false;  // a packet, before the travel was left
   const auto on_command = [&](const Command& command) {
+    if (survey.first_outside() < 0) read_inside = interpreter.machine_read();
     survey(command);
-    return true;
+    if (also) refused = also(command);
+    if (!refused) return true;
+    refused->file = interpreter.path(command.file);
+    refused->line = command.line;
+    refused->column = interpreter.column(command.file, command.line, -1);
+    return false;
   };
-  const auto error = run_dry(interpreter, on_command, kDryRunBlocks + report.blocks);
+  auto error = run_dry(interpreter, on_command, kDryRunBlocks + report.blocks);
+  if (refused) error = refused;
   report.executed = interpreter.executed();
   report.files = interpreter.files();
   report.finished = !error;
   const std::vector<text::Finding>& warnings = interpreter.warnings();
   report.findings.insert(report.findings.end(), warnings.begin(), warnings.end());
   add_travel(report, interpreter, machine, survey);
+  const auto the_machine_decides = [&] { report.by_machine.push_back(report.findings.size() - 1); };
+  if (survey.first_outside() >= 0 && read_inside) the_machine_decides();
   const auto same = [&](const text::Finding& f) {
     return f.file == error->file && f.line == error->line && f.entry == error->entry;
   };
-  if (error && std::none_of(report.findings.begin(), report.findings.end(), same))
+  if (error && std::none_of(report.findings.begin(), report.findings.end(), same)) {
     report.findings.push_back(*error);
+    if (interpreter.machine_read() || error->entry == &entry(Fault::block_limit)) the_machine_decides();
+  }
   return report;
 }
 

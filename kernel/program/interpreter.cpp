@@ -63,6 +63,7 @@ const Position& Interpreter::position() const { return impl_->run.state().machin
 const Tables& Interpreter::tables() const { return *impl_->run.state().tables; }
 int Interpreter::block_count() const { return impl_->run.main_source().blocks(); }
 long long Interpreter::executed() const { return impl_->run.state().executed; }
+bool Interpreter::machine_read() const { return impl_->run.machine_read(); }
 void Interpreter::mdi(std::string_view block) { impl_->run.mdi(block); }
 void Interpreter::reposition(const Position& at) { impl_->run.reposition(at); }
 void Interpreter::adopt(Tables tables) { impl_->run.adopt(std::move(tables)); }

@@ -53,9 +53,11 @@ struct Tables {
   struct Corrector {
     std::map<std::string, double> length;  ///< axis letter to mm
     double diameter = 0.0;
+    bool operator==(const Corrector&) const = default;
   };
   std::map<int, std::map<std::string, double>> origins;  ///< number to axis letter to mm
   std::map<int, Corrector> correctors;
+  bool operator==(const Tables&) const = default;
 };
 
 /// Another program, and where people find it.
@@ -131,6 +133,8 @@ class Interpreter {
   /// Blocks in the main program, and blocks executed so far, for progress.
   int block_count() const;
   long long executed() const;
+  /// The program has read a place of a packet: what it does from there on may depend on the machine.
+  bool machine_read() const;
   /// Executes one block typed by the operator (MDI) in the present modal state; then next() returns its
   /// commands and End.
   void mdi(std::string_view block);

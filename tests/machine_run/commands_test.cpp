@@ -125,6 +125,44 @@ TEST(Check, that_fails_ends_with_one_and_names_file_line_and_column) {
   EXPECT_NE((m.err + m.out).find("machine.toml:"), std::string::npos) << m.err << m.out;
 }
 
+/// Seconds in which a run's set-point moved while a block of its program was under way.
+double seconds_of_motion(const TraceFile& trace, const std::vector<std::string>& axes) {
+  const std::size_t line = trace.column("line");
+  double seconds = 0.0;
+  for (std::size_t row = 1; row < trace.rows(); ++row) {
+    bool moved = false;
+    for (const std::string& axis : axes) {
+      const std::size_t command = trace.column(axis + ".cmd");
+      moved = moved || trace.at(row, command) != trace.at(row - 1, command);
+    }
+    if (moved && trace.at(row, line) > 0.0) seconds += 0.001;
+  }
+  return seconds;
+}
+
+TEST(Check, says_the_time_that_the_motion_of_a_run_takes_within_a_hundredth) {
+  const struct {
+    std::string machine, program;
+    std::vector<std::string> axes;
+  } examples[] = {{mill_file(), source("examples/mill/bracket.nc"), {"X", "Y", "Z"}},
+                  {source("examples/lathe/machine.toml"), source("examples/lathe/bush.nc"), {"X", "Z"}}};
+  for (const auto& example : examples) {
+    const Scratch scratch;
+    const Ending said = servogate({"check", example.machine, example.program, "--json"});
+    ASSERT_EQ(said.code, 0) << said.err;
+    const json report = parsed(said.out)["programs"][0];
+    const Ending ran = servogate(
+        {"run", example.machine, example.program, "--virtual", "--trace", scratch.path("t.csv"), "-q"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const double driven = seconds_of_motion(TraceFile(scratch.path("t.csv")), example.axes);
+    EXPECT_GT(driven, 60.0);
+    EXPECT_NEAR(report["motion_s"].get<double>(), driven, 0.01 * driven) << example.program;
+    EXPECT_NEAR(report["time_s"].get<double>(),
+                report["motion_s"].get<double>() + report["dwell_s"].get<double>(), 1e-9);
+    EXPECT_GT(report["functions"], 15);
+  }
+}
+
 TEST(Canon, prints_one_object_a_line_with_command_and_line) {
   const Ending e = servogate({"canon", mill_file(), source("examples/mill/bracket.nc")});
   ASSERT_EQ(e.code, 0) << e.err;
@@ -203,6 +241,22 @@ TEST(Run, with_a_program_error_ends_with_one_and_writes_its_report_all_the_same)
       servogate({"run", mill_file(), program, "--virtual", "--report", scratch.path("r.json"), "-q"});
   EXPECT_EQ(e.code, 1) << e.err;
   EXPECT_NE(e.err.find("stops.nc:4"), std::string::npos) << e.err;
+}
+
+TEST(Run, of_a_program_that_is_proven_wrong_moves_nothing_and_names_the_place) {
+  const Scratch scratch;
+  const std::string program = scratch.write("far.nc", "N10 G90 G71 G94\nN20 G0 X5\nN30 G0 X301\nN40 M30\n");
+  const Ending e = servogate({"run", mill_file(), program, "--virtual", "--report", scratch.path("r.json"),
+                              "--trace", scratch.path("t.csv"), "-q"});
+  EXPECT_EQ(e.code, 1);
+  EXPECT_NE(e.err.find("far.nc:3:8: error: X would go to 301, the travel ends at 300 [P701]"),
+            std::string::npos)
+      << e.err;
+  const json report = parsed(read_all(scratch.path("r.json")));
+  EXPECT_FALSE(report["finished"].get<bool>());
+  EXPECT_EQ(report["cycles"], 0);
+  EXPECT_EQ(report["findings"][0]["code"], "P701");
+  EXPECT_EQ(TraceFile(scratch.path("t.csv")).rows(), 0u);
 }
 
 TEST(Run, that_an_alarm_ends_is_one_with_the_alarm_in_report_and_words) {

@@ -124,7 +124,7 @@ void Execution::set_plane(int axis1, int axis2, int normal) {
 double Execution::parameter(int index, int column) const { return state_.parameters.get(index, column); }
 
 double Execution::place(const image::Place& place, int column) const {
-  snapshot_used_ = true;
+  snapshot_used_ = machine_read_ = true;
   return view_.number(place, column);
 }
 

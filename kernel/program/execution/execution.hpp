@@ -78,7 +78,12 @@ class Execution : public ValueSource {
   // --- packets ---
   void write(const image::Place& place, double value, int column);
   void write(const image::Place& place, std::string_view characters, int column);
-  std::string characters(const image::Place& place, int column) const { return view_.text(place, column); }
+  std::string characters(const image::Place& place, int column) const {
+    machine_read_ = true;
+    return view_.text(place, column);
+  }
+  /// Some place of a packet has been read so far.
+  bool machine_read() const noexcept { return machine_read_; }
 
   void check_storable(const image::Place& place, double value, int column) const {
     view_.storable(place, value, column);
@@ -225,6 +230,7 @@ class Execution : public ValueSource {
   std::uint32_t line_ = 0;
   long long since_command_ = 0;
   mutable bool snapshot_used_ = false;
+  mutable bool machine_read_ = false;
   bool want_fresh_ = false;
 };
 

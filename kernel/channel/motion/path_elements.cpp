@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/channel/motion/path_elements.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kernel/channel/channel_texts.hpp"
+#include "kernel/channel/surface_speed.hpp"
+
+namespace servogate::channel {
+
+namespace {
+
+path::Transition transition(const program::CornerRule& corner) {
+  path::Transition t;
+  t.continuation = static_cast<path::Continuation>(corner.transition);
+  t.tolerance = corner.tolerance_mm;
+  t.erf = corner.erf_mm;
+  t.max_angle_deg = corner.max_angle_deg;
+  t.confirm = true;
+  return t;
+}
+
+}  // namespace
+
+PathElements::PathElements(const path::Config& config, AxisMap axes, SpindleAt spindle_at)
+    : config_(config), axes_(std::move(axes)), spindle_at_(spindle_at) {}
+
+path::Vector PathElements::path_position(const program::Position& at) const {
+  path::Vector path{};
+  for (std::size_t i = 0; i < axes_.machine.size(); ++i)
+    path[i] = at[static_cast<std::size_t>(axes_.machine[i])];
+  return path;
+}
+
+void PathElements::take(const program::Spindle& spindle) {
+  if (spindle.surface_speed) {
+    surface_speed_ = spindle.speed;
+    surface_limit_rpm_ = spindle.limit_rpm;
+    surface_center_ = spindle.center;
+  } else if (spindle.speed > 0.0) {
+    surface_speed_ = 0.0;
+    spindle_rpm_ = spindle.speed;
+  }
+}
+
+path::Element PathElements::element(const program::Command& command, const path::Vector& from) const {
+  path::Element e;
+  if (const auto* rapid = std::get_if<program::Rapid>(&command.what)) {
+    e.kind = path::Element::Kind::rapid;
+    e.to = path_position(rapid->to);
+    e.transition.confirm = true;
+  } else if (const auto* line = std::get_if<program::Line>(&command.what)) {
+    e.kind = path::Element::Kind::line;
+    e.to = path_position(line->to);
+    set_feed(e, from, line->feed, 0.0);
+    e.transition = transition(line->corner);
+  } else if (const auto* arc = std::get_if<program::Arc>(&command.what)) {
+    e.kind = path::Element::Kind::arc;
+    e.to = path_position(arc->to);
+    const auto path_axis = [&](int machine_axis) {
+      const auto it = std::find(axes_.machine.begin(), axes_.machine.end(), machine_axis);
+      return static_cast<std::uint8_t>(it - axes_.machine.begin());
+    };
+    e.axis1 = path_axis(arc->axis1);
+    e.axis2 = path_axis(arc->axis2);
+    e.center1 = arc->center1;
+    e.center2 = arc->center2;
+    e.sweep_deg = arc->sweep_deg;
+    const double radius = std::hypot(from[e.axis1] - e.center1, from[e.axis2] - e.center2);
+    set_feed(e, from, arc->feed, radius * std::abs(arc->sweep_deg) * std::numbers::pi / 180.0);
+    e.transition = transition(arc->corner);
+  }
+  return e;
+}
+
+/// A program's feed is that of the vector over millimetres and degrees alike (NC-110: specification A 17.1);
+/// the path counts along the linear axes, or the rotary ones where only they move.
+void PathElements::set_feed(path::Element& e, const path::Vector& from, const program::Feed& feed,
+                            double arc_length) const {
+  double linear = arc_length * arc_length, turning = 0.0;
+  for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
+    const double d = e.to[i] - from[i];
+    const bool in_plane = e.kind == path::Element::Kind::arc && (i == e.axis1 || i == e.axis2);
+    if (!in_plane) (config_.rotary[i] ? turning : linear) += d * d;
+  }
+  const double length = std::sqrt(linear > 1e-12 * turning ? linear : turning);
+  const double vector = std::sqrt(linear + turning);
+  const double share = vector > 0.0 ? length / vector : 1.0;
+  switch (feed.unit) {
+    case program::FeedUnit::mm_per_min:
+      e.feed = feed.value / 60.0 * share;
+      break;
+    case program::FeedUnit::inverse_time:
+      e.feed = feed.value * length / 60.0;
+      break;
+    case program::FeedUnit::mm_per_rev:
+      e.revolutions = rpm(e, from) / 60.0;
+      e.feed = feed.value * e.revolutions * share;
+      break;
+  }
+}
+
+/// Distance from the spindle's axis that its speed on this element is reckoned with.
+double PathElements::radius_of(const path::Element& e, const path::Vector& from_all) const {
+  const auto axis = static_cast<std::size_t>(axes_.surface_speed_axis);
+  const double from = from_all[axis] - surface_center_, to = e.to[axis] - surface_center_;
+  if (spindle_at_ == SpindleAt::halfway) return std::abs(0.5 * (from + to));
+  if (e.kind == path::Element::Kind::arc && (axis == e.axis1 || axis == e.axis2)) {
+    const bool first = axis == e.axis1;
+    const double bulge = std::hypot(from_all[e.axis1] - e.center1, from_all[e.axis2] - e.center2);
+    return std::max(0.0, std::abs((first ? e.center1 : e.center2) - surface_center_) - bulge);
+  }
+  return from * to <= 0.0 ? 0.0 : std::min(std::abs(from), std::abs(to));
+}
+
+double PathElements::rpm(const path::Element& e, const path::Vector& from) const {
+  const double high = axes_.spindle_max_rpm > 0.0 ? axes_.spindle_max_rpm : spindle_rpm_;
+  if (!(surface_speed_ > 0.0) || axes_.surface_speed_axis < 0)
+    return spindle_rpm_ > 0.0 ? std::clamp(spindle_rpm_, std::min(axes_.spindle_min_rpm, high), high) : 0.0;
+  const double limit = surface_limit_rpm_ > 0.0 && axes_.spindle_max_rpm > 0.0
+                           ? std::min(surface_limit_rpm_, axes_.spindle_max_rpm)
+                           : std::max(surface_limit_rpm_, axes_.spindle_max_rpm);
+  return std::max(surface_rpm(surface_speed_, radius_of(e, from), limit), axes_.spindle_min_rpm);
+}
+
+bool is_motion(const program::Command& command) {
+  return std::holds_alternative<program::Rapid>(command.what) ||
+         std::holds_alternative<program::Line>(command.what) ||
+         std::holds_alternative<program::Arc>(command.what);
+}
+
+text::Finding cannot_drive(path::Flaw flaw) {
+  const text::Entry& why = texts::kFlaws[static_cast<std::size_t>(flaw)];
+  text::Finding finding;
+  finding.entry = &texts::kCannotDrive;
+  finding.arguments = {text::both(why.english, why.russian)};
+  return finding;
+}
+
+std::optional<text::Finding> not_driven(const program::Command& command) {
+  const bool thread = std::holds_alternative<program::Thread>(command.what);
+  if (!thread && !std::holds_alternative<program::Probe>(command.what)) return std::nullopt;
+  text::Finding finding;
+  finding.entry = &texts::kNotDriven;
+  finding.arguments = {thread ? "thread" : "probe"};
+  return finding;
+}
+
+}  // namespace servogate::channel

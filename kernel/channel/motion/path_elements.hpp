@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "firmware_if/text/finding.hpp"
+#include "kernel/path/element.hpp"
+#include "kernel/path/geometry/piece.hpp"
+#include "kernel/program/canonical.hpp"
+
+namespace servogate::channel {
+
+/// How path axes lie among the machine's, and what an axis order means.
+struct AxisMap {
+  std::vector<int> machine;      ///< machine axis of each path axis
+  int surface_speed_axis = -1;   ///< machine axis whose position is the radius for G96; -1: none
+  double spindle_min_rpm = 0.0;  ///< to which the spindle limits what it is told
+  double spindle_max_rpm = 0.0;  ///< 0: no limit
+};
+
+/// Which speed of the spindle a feed per revolution is reckoned with, where a cutting speed changes it along
+/// an element.
+enum class SpindleAt : std::uint8_t {
+  fastest,  ///< what the path is planned for
+  halfway,  ///< what its time is reckoned with
+};
+
+/// Motion commands of a program as elements of the path. Not real-time safe.
+class PathElements {
+ public:
+  PathElements(const path::Config& config, AxisMap axes, SpindleAt spindle_at);
+
+  /// The path axes of a machine position.
+  path::Vector path_position(const program::Position& at) const;
+  /// From here on feeds per revolution are those of this spindle word.
+  void take(const program::Spindle& spindle);
+  /// Rapid, Line or Arc of a command that begins at `from`; its tag is left empty.
+  path::Element element(const program::Command& command, const path::Vector& from) const;
+
+ private:
+  void set_feed(path::Element& element, const path::Vector& from, const program::Feed& feed,
+                double arc_length) const;
+  double rpm(const path::Element& element, const path::Vector& from) const;
+  double radius_of(const path::Element& element, const path::Vector& from) const;
+
+  path::Config config_;
+  AxisMap axes_;
+  SpindleAt spindle_at_;
+  double spindle_rpm_ = 0.0;
+  double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0, surface_center_ = 0.0;
+};
+
+/// True for Rapid, Line and Arc.
+bool is_motion(const program::Command& command);
+/// What keeps an element with this flaw from being driven; the place is for the caller to fill in.
+text::Finding cannot_drive(path::Flaw flaw);
+/// A motion command that no part of the path room knows yet (thread, probe); nullopt: it is none.
+std::optional<text::Finding> not_driven(const program::Command& command);
+
+}  // namespace servogate::channel

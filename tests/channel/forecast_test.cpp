@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// How long a program's motion takes, and what of it cannot be driven. Axes without inertia show the feeds as
+// they are.
+#include "kernel/channel/motion/forecast.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kernel/program/check.hpp"
+
+namespace servogate::channel::test {
+namespace {
+
+struct Machine {
+  program::MachineModel model;
+  path::Config path;
+  AxisMap axes;
+};
+
+Machine machine(double acceleration = 1e9, double jerk = 1e14) {
+  Machine m;
+  for (const char* letter : {"X", "Y", "Z"}) {
+    m.axes.machine.push_back(static_cast<int>(m.model.axes.size()));
+    m.path.limits[m.model.axes.size()] = {500.0, acceleration, jerk};
+    m.model.axes.push_back({letter, false, false, false, -1e6, 1e6, 500.0});
+  }
+  m.path.period_s = 1e-6;
+  m.model.power_on = {"G94", "G97", "G90", "G71", "G29"};
+  return m;
+}
+
+double seconds(const std::string& text, const Machine& m = machine()) {
+  Forecast forecast(Forecast::Depth::timed, m.path, m.axes, {});
+  const program::CheckReport report =
+      program::check_program("nc110", m.model, {}, "p.nc", text, {}, {},
+                             [&](const program::Command& c) { return forecast.take(c); });
+  for (const text::Finding& f : report.findings)
+    if (f.severity == text::Severity::error) ADD_FAILURE() << f.str(text::Language::english);
+  return forecast.motion_seconds();
+}
+
+TEST(Forecast, of_axes_without_inertia_is_the_way_over_the_feed) {
+  // T-LIN-01: rapids X 10000, Y 5000 mm/min; T-LIN-02; T-ARC-01; T-FED-01; T-FED-03.
+  Machine m = machine();
+  m.path.limits[0].velocity = 10000.0 / 60.0;
+  m.path.limits[1].velocity = 5000.0 / 60.0;
+  EXPECT_NEAR(1.2, seconds("G0 X100 Y100", m), 1e-3);
+  EXPECT_NEAR(25.632, seconds("G1 X80 Y30 F200"), 1e-3);
+  EXPECT_NEAR(9.4248 + 0.06, seconds("G0 X30\nG3 X0 Y30 I0 J0 F300"), 1e-3);
+  EXPECT_NEAR(15.0, seconds("G93 G1 X50 F4"), 1e-3);
+  EXPECT_NEAR(60.0, seconds("G95 F0.2\nS500 M3\nG1 X100"), 1e-3);
+}
+
+TEST(Forecast, takes_a_cutting_speed_at_half_of_the_way) {
+  // T-SPN-01: 120 m/min at diameter 40 are 954.93 rpm; a face from 40 to 20 is turned at the mean of both.
+  Machine m = machine();
+  m.model.axes[0].diameter = true;
+  m.axes.surface_speed_axis = 0;
+  const double there = seconds("G0 X40", m);
+  EXPECT_NEAR(there + 60.0 * 10.0 / (0.1 * 954.93), seconds("G95 G96 F0.1\nS120 M3\nG0 X40\nG1 Z10", m),
+              0.01);
+  EXPECT_NEAR(there + 60.0 * 10.0 / (0.1 * 954.93 * 40.0 / 30.0),
+              seconds("G95 G96 F0.1\nS120 M3\nG0 X40\nG1 X20", m), 0.01);
+}
+
+TEST(Forecast, forms_the_vector_over_millimetres_and_degrees_alike) {
+  // T-ROT-02: X 30 with B 90 on a diameter of 40, wanted speed 200 mm/min.
+  Machine m = machine();
+  m.model.axes[1] = {"B", true, false, false, -1e6, 1e6, 500.0};
+  m.path.rotary[1] = true;
+  EXPECT_NEAR(13.032, seconds("G1 X30 B90 F436.79", m), 1e-3);
+  EXPECT_NEAR(13.032, seconds("G93 G1 X30 B90 F4.6041", m), 1e-3);
+}
+
+TEST(Forecast, counts_ramps_and_a_rest_for_each_function) {
+  // 100 mm at 1000 mm/s2 and 10 000 mm/s3 peak at 270.2 mm/s: 2 (0.2702 + 0.1) s.
+  const Machine m = machine(1000.0, 10000.0);
+  EXPECT_NEAR(0.7403, seconds("G0 X100", m), 1e-3);
+  const double through = seconds("G28 G1 X50 F6000\nX100", m);
+  EXPECT_GT(seconds("G28 G1 X50 F6000\nM8\nX100", m), through + 0.1);
+}
+
+TEST(Forecast, says_what_cannot_be_driven_whether_it_is_timed_or_not) {
+  const Machine m = machine();
+  for (const Forecast::Depth depth : {Forecast::Depth::drivable, Forecast::Depth::timed}) {
+    Forecast forecast(depth, m.path, m.axes, {});
+    program::Command command;
+    program::Line line;
+    line.to[0] = 10.0;
+    command.what = line;
+    const auto finding = forecast.take(command);
+    ASSERT_TRUE(finding);
+    EXPECT_EQ("channel.cannot-drive", finding->entry->id);
+    EXPECT_NE(std::string::npos, finding->str(text::Language::english).find("program F"));
+    EXPECT_NE(std::string::npos, finding->str(text::Language::russian).find("задайте F"));
+    command.what = program::Thread{};
+    ASSERT_TRUE(forecast.take(command));
+  }
+}
+
+}  // namespace
+}  // namespace servogate::channel::test
