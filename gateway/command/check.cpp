@@ -15,6 +15,8 @@ namespace {
 
 const text::Entry kTravelLine{"check.extent", "{0}: {1} to {2} of {3} to {4} {5}",
                               "{0}: от {1} до {2} при ходе от {3} до {4} {5}"};
+const text::Entry kTravelLineDiameter{"check.extent-diameter", "{0} (diameter): {1} to {2} of {3} to {4} {5}",
+                                      "{0} (диаметр): от {1} до {2} при ходе от {3} до {4} {5}"};
 const text::Entry kTimeLine{
     "check.time",
     "{0}: {1} blocks, about {2} s: {3} s of motion ({4} mm at feed), {5} s of dwells; the PLC adds its "
@@ -78,10 +80,11 @@ void print_report(const ProgramCheck& check, const program::MachineModel& model,
   for (std::size_t a = 0; a < report.extents.size(); ++a) {
     const auto& e = report.extents[a];
     if (!e.moved) continue;
-    print_line("  " +
-               sentence(kTravelLine, {model.axes[a].letter, text::number(e.min, 3), text::number(e.max, 3),
-                                      text::number(e.travel_min, 3), text::number(e.travel_max, 3),
-                                      model.axes[a].rotary ? "deg" : "mm"}));
+    const program::MachineModel::Axis& axis = model.axes[a];
+    const auto place = [&](double v) { return text::number(axis.diameter ? 2.0 * v : v, 3); };
+    print_line("  " + sentence(axis.diameter ? kTravelLineDiameter : kTravelLine,
+                               {axis.letter, place(e.min), place(e.max), place(e.travel_min),
+                                place(e.travel_max), axis.rotary ? "deg" : "mm"}));
   }
   for (const auto& t : report.tools)
     print_line("  " + sentence(kToolLine, {std::to_string(t.number), std::to_string(t.corrector),

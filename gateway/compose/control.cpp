@@ -281,8 +281,10 @@ cycle::AlarmNames Control::alarm_names() const {
   const machine::MachineConfig& m = loaded_.machine;
   cycle::AlarmNames names;
   names.axes = m.letters();
-  for (const machine::AxisConfig& a : m.axes)
+  for (const machine::AxisConfig& a : m.axes) {
     names.units.push_back(a.type == machine::AxisType::rotary ? "deg" : "mm");
+    names.diameters.push_back(a.diameter);
+  }
   for (const machine::BusConfig& b : m.buses) names.segments.push_back(b.name);
   for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
   names.error_text = [this](int axis, int segment, int node, std::uint16_t code,

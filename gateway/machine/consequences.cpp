@@ -37,8 +37,11 @@ constexpr text::Entry kSpindle{"consequence.spindle",
                                "{0}: от {1} до {2} об/мин, {3} с до полной частоты; двигатель {4} об/мин"};
 constexpr text::Entry kBus{
     "consequence.bus_load",
-    "bus {0}: {1} nodes load it by {2} % on average, {3} % if everything falls into one cycle",
-    "шина {0}: узлов {1}, загрузка в среднем {2} %, {3} %, если всё совпадёт в одном цикле"};
+    "bus {0}: {1} nodes load it by {2} % on average, {3} % if everything falls into one cycle; both with the "
+    "most "
+    "stuff bits that frames can need, a run measures those that are sent",
+    "шина {0}: узлов {1}, загрузка в среднем {2} %, {3} %, если всё совпадёт в одном цикле; и то и другое с "
+    "наибольшим числом вставных битов, а прогон измеряет переданные"};
 constexpr text::Entry kStation{"consequence.station", "{0}: {1} signals, up to {2} ms old",
                                "{0}: сигналов {1}, возраст до {2} мс"};
 constexpr text::Entry kBrake{"consequence.brake", "{0}: power goes {1} ms after the brake is told to engage",

@@ -123,12 +123,9 @@ void add_travel(CheckReport& report, const Interpreter& interpreter, const Machi
   const auto& axis = machine.axes[at(survey.first_outside())];
   const double limit = survey.outside_value() > axis.travel_max ? axis.travel_max : axis.travel_min;
   report.findings.push_back(
-      {text::Severity::error,
-       interpreter.path(survey.outside_file()),
-       survey.outside_line(),
+      {text::Severity::error, interpreter.path(survey.outside_file()), survey.outside_line(),
        interpreter.column(survey.outside_file(), survey.outside_line(), survey.first_outside()),
-       &entry(Fault::travel),
-       {axis.letter, text::number(survey.outside_value(), 4), text::number(limit, 4)}});
+       &entry(Fault::travel), outside_arguments(axis, survey.outside_value(), limit)});
 }
 
 }  // namespace

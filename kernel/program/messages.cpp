@@ -26,6 +26,8 @@ constexpr text::Entry kMessages[] = {
      "{0} после закрывающей скобки: трёхбуквенный код стоит в кадре один"},
     {"P112", "the letter {0} is Cyrillic and only looks like the Latin {1}: write the Latin letter",
      "буква {0} русская и только похожа на латинскую {1}: напишите латинскую"},
+    {"P113", "this line ends with CR alone; such ends are taken as line ends",
+     "строка кончается одним CR; такие концы приняты за концы строк"},
     {"P201", "the character {0} has no meaning here", "символ {0} здесь не имеет смысла"},
     {"P202", "the language has no word {0}", "в языке нет слова {0}"},
     {"P203", "this machine has no axis {0}", "на этом станке нет оси {0}"},
@@ -214,6 +216,12 @@ static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::findings_m
 }  // namespace
 
 std::span<const text::Entry> messages() { return kMessages; }
+
+std::vector<std::string> outside_arguments(const MachineModel::Axis& axis, double value, double limit) {
+  const double shown = axis.diameter ? 2.0 : 1.0;
+  return {axis.diameter ? text::both(axis.letter + " (diameter)", axis.letter + " (диаметр)") : axis.letter,
+          text::number(shown * value, 4), text::number(shown * limit, 4)};
+}
 
 const text::Entry& entry(Fault fault) { return kMessages[static_cast<std::size_t>(fault)]; }
 

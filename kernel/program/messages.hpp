@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware_if/text/finding.hpp"
+#include "kernel/program/interpreter.hpp"
 
 namespace servogate::program {
 
@@ -27,6 +28,7 @@ enum class Fault : std::uint8_t {
   bracket_unclosed,
   after_bracket,
   cyrillic,
+  lone_return,
   unknown_character,
   unknown_word,
   axis_missing,
@@ -154,6 +156,10 @@ enum class Fault : std::uint8_t {
 std::span<const text::Entry> messages();
 /// The text of one message.
 const text::Entry& entry(Fault fault);
+
+/// Arguments of Fault::travel and Fault::field: a diameter axis is named so, with its places as diameters.
+/// `value`, `limit`: machine coordinates, a diameter axis' as radius.
+std::vector<std::string> outside_arguments(const MachineModel::Axis& axis, double value, double limit);
 
 /// Thrown inside of this room only, caught in Interpreter: the block cannot be read or executed. `column`
 /// counts from 1.

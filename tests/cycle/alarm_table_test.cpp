@@ -234,5 +234,26 @@ TEST(AlarmText, leaves_no_placeholder_open_in_any_alarm) {
     }
 }
 
+TEST(AlarmText, gives_places_of_a_diameter_axis_as_diameters_and_lengths_as_they_are) {
+  AlarmNames names;
+  names.axes = {"X", "Z"};
+  names.units = {"mm", "mm"};
+  names.diameters = {true, false};
+  image::AlarmRecord r;
+  r.number = axis::alarm::kHomingInterrupted;
+  r.axis = 0;
+  r.value = 41.25;
+  EXPECT_EQ(render(r, names, text::Language::english), "X: homing was broken off at 82.5 mm in diameter");
+  EXPECT_NE(render(r, names, text::Language::russian).find("82.5 mm по диаметру"), std::string::npos);
+  r.axis = 1;
+  EXPECT_EQ(render(r, names, text::Language::english), "Z: homing was broken off at 41.25 mm");
+  r.number = axis::alarm::kOffPath;
+  r.axis = 0;
+  r.value = 0.5;
+  r.limit = 20.0;
+  EXPECT_EQ(render(r, names, text::Language::english),
+            "X: stands 0.5 mm off the place 40 mm in diameter at which the path ended");
+}
+
 }  // namespace
 }  // namespace servogate::cycle

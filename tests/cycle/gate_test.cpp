@@ -152,7 +152,9 @@ TEST_F(Gate, names_the_axis_that_is_without_power_or_without_feed_enable) {
   set(1, "feed_enable", false);
   run(1);
   EXPECT_EQ(ask(RequestKind::jog_continuous, 1, 1), Refusal::feed_not_enabled);
-  EXPECT_EQ(english(), "Y: the PLC does not permit the feed (its feed_enable is FALSE)");
+  EXPECT_EQ(english(),
+            "Y: the PLC does not permit motion (Y.feed_enable is FALSE: see in its program for what, an open "
+            "door for instance)");
 }
 
 TEST_F(Gate, lets_nothing_move_while_a_fault_is_active_but_warnings_do_not_matter) {

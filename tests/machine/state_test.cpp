@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <random>
 
 #include "gateway/machine/state/state_text.hpp"
@@ -189,6 +190,45 @@ TEST(StateDirectory, a_save_broken_off_between_its_steps_leaves_a_whole_generati
     const StateDirectory::Loaded loaded = directory.load();
     EXPECT_TRUE(loaded.findings.empty()) << step;
     EXPECT_EQ(loaded.state.counters, step == 3 ? fresh.counters : old.counters) << step;
+  }
+}
+
+TEST(StateDirectory, with_no_whole_generation_of_a_part_says_what_is_lost_and_what_to_do) {
+  const std::string folder = test::scratch("lost-parts");
+  const StateDirectory directory(folder);
+  const struct {
+    StatePart part;
+    const char *lost, *remedy, *russian;
+  } parts[] = {
+      {StatePart::origins, "the origins are lost", "set them again (`zero`)", "начала отсчёта утрачены"},
+      {StatePart::tools, "of the tools are lost", "measure the tools again", "утрачены"},
+      {StatePart::homing, "the references of the axes", "home all axes again", "выведите все оси в ноль"},
+      {StatePart::counters, "the counters are lost", "they begin at 0", "счётчики утрачены"},
+      {StatePart::gains, "gains that were found are lost", "tune again", "настройте заново"}};
+  for (const auto& p : parts) {
+    const std::string file = directory.file(p.part),
+                      previous = file.substr(0, file.size() - 5) + ".previous.toml";
+    std::string error;
+    ASSERT_TRUE(directory.save(sample(), p.part, error) && directory.save(sample(), p.part, error)) << error;
+    const std::string whole = test::read_text(file);
+    const auto last = [&] { return directory.load().findings.back(); };
+    test::write_text(file, whole.substr(0, whole.size() / 2));
+    EXPECT_TRUE(directory.load().ok()) << "the generation before is taken";
+    test::write_text(previous, whole.substr(0, whole.size() / 3));
+    ASSERT_FALSE(directory.load().ok());
+    EXPECT_EQ(last().entry->id, "state.part_lost");
+    const std::string both = last().str(text::Language::english);
+    for (const std::string& said : {file + ":1:1: error: neither this file nor " + previous,
+                                    std::string(p.lost), std::string("move both away, and ") + p.remedy})
+      EXPECT_NE(both.find(said), std::string::npos) << both;
+    EXPECT_NE(last().str(text::Language::russian).find(p.russian), std::string::npos);
+    std::filesystem::remove(previous);
+    EXPECT_NE(last().str(text::Language::english).find("there is no other generation, " + previous),
+              std::string::npos);
+    std::filesystem::rename(file, previous);
+    EXPECT_EQ(last().file, previous);
+    std::filesystem::remove(previous);
+    EXPECT_TRUE(directory.load().findings.empty());
   }
 }
 

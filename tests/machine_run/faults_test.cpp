@@ -125,6 +125,39 @@ TEST(Faults, open_door_holds_the_feed_on_the_path_and_closing_it_goes_on) {
   EXPECT_EQ(mill.judge().verdict(), "");
 }
 
+TEST(Faults, behind_an_open_door_nothing_starts_homes_or_jogs_and_what_jogs_comes_to_rest) {
+  Mill mill("N10 G90 G94 G71\nN20 G1 X20 F3000\nN30 M30\n");
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  const auto door = [&](bool closed) {
+    mill.control().world().set_input("door_closed", closed);
+    mill.run(0.1);
+  };
+  door(false);
+  EXPECT_EQ(mill.ask(RequestKind::start), Refusal::feed_not_enabled);
+  EXPECT_EQ(
+      cycle::render(mill.answer(), {"X", "Y", "Z"}, text::Language::english),
+      "X: the PLC does not permit motion (X.feed_enable is FALSE: see in its program for what, an open door "
+      "for instance)");
+  ASSERT_EQ(mill.ask(RequestKind::mode, static_cast<double>(image::Mode::manual)), Refusal::none);
+  EXPECT_EQ(mill.ask(RequestKind::jog_increment, 1.0, 0), Refusal::feed_not_enabled);
+  EXPECT_EQ(mill.ask(RequestKind::jog_continuous, 1.0, 1), Refusal::feed_not_enabled);
+  ASSERT_EQ(mill.ask(RequestKind::mode, static_cast<double>(image::Mode::home)), Refusal::none);
+  EXPECT_EQ(mill.ask(RequestKind::home), Refusal::feed_not_enabled);
+  EXPECT_TRUE(mill.standing());
+  EXPECT_TRUE(mill.axis("X").enabled) << "the drives stay on";
+
+  door(true);
+  ASSERT_EQ(mill.ask(RequestKind::mode, static_cast<double>(image::Mode::manual)), Refusal::none);
+  ASSERT_EQ(mill.ask(RequestKind::jog_increment, 100.0, 0), Refusal::none);
+  ASSERT_TRUE(mill.until([&] { return mill.axis("X").command > 5.0; }, 5.0));
+  mill.control().world().set_input("door_closed", false);
+  ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 1.0));
+  EXPECT_LT(mill.axis("X").command, 99.0);
+  door(true);
+  EXPECT_TRUE(mill.standing()) << "closing it moves nothing by hand";
+  EXPECT_EQ(mill.judge().verdict(), "");
+}
+
 TEST(Faults, stop_of_the_operator_leaves_the_axes_on_the_path) {
   Moving mill;
   ASSERT_EQ(mill.ask(RequestKind::stop), Refusal::none);

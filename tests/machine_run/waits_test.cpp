@@ -70,14 +70,15 @@ TEST(Waits, are_said_in_the_language_of_the_user) {
   EXPECT_TRUE(says(run.ending, "прогон остановлен")) << run.ending.err;
 }
 
-TEST(Waits, for_an_open_door_name_the_enable_and_who_writes_it) {
+TEST(Waits, for_an_open_door_are_none_for_the_program_is_not_begun) {
   const Scratch scratch;
   const GivenUp run = give_up(scratch, changed_mill(scratch, "door_closed = 1", "door_closed = 0"),
                               "N10 G90 G94 G71\nN20 G1 X20 F3000\nN30 M30\n", {"--patience", "2"});
   EXPECT_EQ(run.ending.code, 1);
-  EXPECT_EQ(run.report["wait"]["reason"], "feed_enable");
-  EXPECT_TRUE(says(run.ending, "waits for the PLC's feed enable: NC.feed_enable (")) << run.ending.err;
-  EXPECT_TRUE(says(run.ending, "see in mill.st what it waits for")) << run.ending.err;
+  EXPECT_FALSE(run.report.contains("wait"));
+  EXPECT_TRUE(
+      says(run.ending, "the control refuses: X: the PLC does not permit motion (X.feed_enable is FALSE"))
+      << run.ending.err;
 }
 
 TEST(Waits, at_an_override_of_zero_and_at_M00_end_too) {

@@ -123,6 +123,37 @@ TEST(CheckProgram, goes_on_after_a_motion_out_of_the_travel_and_names_its_first_
   EXPECT_FALSE(report.good());
 }
 
+TEST(CheckProgram, names_places_of_a_diameter_axis_as_diameters) {
+  MachineModel lathe = mill();
+  lathe.axes[0].diameter = true;
+  EXPECT_EQ("p.nc:1:4: error: X (diameter) would go to 602, the travel ends at 600 [P701]",
+            check("G0 X602", lathe).findings.at(0).str(text::Language::english));
+  EXPECT_EQ("p.nc:1:4: error: X (диаметр) вышла бы на 602, ход кончается на 600 [P701]",
+            check("G0 X602", lathe).findings.at(0).str(text::Language::russian));
+  EXPECT_EQ("p.nc:2:4: error: X (diameter) would go to 50, the working field ends at 40 (DLO) [P702]",
+            check("(DLO,X-40 X40)\nG0 X50", lathe).findings.at(0).str(text::Language::english));
+}
+
+TEST(CheckProgram, takes_the_line_ends_and_end_marks_of_old_computers) {
+  for (const char* text :
+       {"G0 X1\nX301\n\x1A", "G0 X1\r\nX301\r\n\x1A\x1A\x1A", "G0 X1\r\r\nX301\r\r\n\x1A\r\n"}) {
+    const CheckReport report = check(text);
+    ASSERT_EQ(1u, report.findings.size());
+    EXPECT_EQ(0u, report.findings[0].str().find("p.nc:2:1: error: X would go to 301"));
+    EXPECT_EQ(2, report.blocks);
+  }
+  const CheckReport filled = check(std::string("G0 X1\x1A\0\0\0", 9));
+  EXPECT_TRUE(filled.findings.empty());
+  const CheckReport tape = check("G0 X1\rX2\r(UAO,7)\r\x1A");
+  ASSERT_EQ(2u, tape.findings.size());
+  EXPECT_EQ("p.nc:1:6: warning: this line ends with CR alone; such ends are taken as line ends [P113]",
+            tape.findings[0].str(text::Language::english));
+  EXPECT_EQ(0u, tape.findings[1].str().find("p.nc:3:"));
+  const CheckReport inside = check("G0 X1\x1A\nX2\n");
+  ASSERT_FALSE(inside.findings.empty());
+  EXPECT_EQ("P201", inside.findings[0].entry->id) << "in the middle it ends nothing";
+}
+
 TEST(CheckProgram, counts_arcs_with_their_bulge) {
   const CheckReport report = check("G0 X10\nG3 X-10 Y0 I0 J0 F100");
   EXPECT_NEAR(10.0, report.extents[1].max, 1e-9);

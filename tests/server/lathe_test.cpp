@@ -107,5 +107,31 @@ TEST(Lathe, says_that_X_is_a_diameter_when_it_is_jogged_shown_and_zeroed) {
   EXPECT_EQ(shell.status()["tool"], 3);
 }
 
+TEST(Lathe, says_places_of_X_as_diameters_wherever_they_are_the_reason) {
+  Shell shell;
+  shell.up("lathe");
+  ASSERT_EQ(shell.run({"power", "on"}).exit, 0);
+  ASSERT_EQ(shell.run({"home", "X"}).exit, 0);
+  ASSERT_TRUE(shell.until([](const json& s) { return s["axes"][0]["moving"].get<bool>(); }));
+  ASSERT_EQ(shell.ask({{"cmd", "stop"}})["ok"], true);
+  ASSERT_TRUE(shell.until([](const json& s) { return !s["alarms"].empty(); }));
+  const json alarm = shell.status()["alarms"][0];
+  EXPECT_EQ(alarm["number"], 1107);
+  EXPECT_NE(alarm["text"].get<std::string>().find(" mm in diameter"), std::string::npos) << alarm;
+  EXPECT_NE(shell.run({"alarms"}, "ru_RU.UTF-8").out.find("по диаметру"), std::string::npos);
+
+  const std::string path = (shell.folder() / "far.nc").string();
+  std::ofstream(path) << "G90 G0 X250\nM30\n";
+  const std::string said = "X (diameter) would go to 250, the travel ends at 240 [P701]";
+  EXPECT_NE(shell.run({"load", path}).err.find(said), std::string::npos);
+  EXPECT_NE(shell.run({"mdi", "G90 G0 X250"}).err.find(said), std::string::npos);
+  EXPECT_NE(shell.run({"mdi", "G90 G0 X250"}, "ru_RU.UTF-8").err.find("X (диаметр) вышла бы на 250"),
+            std::string::npos);
+  const Outcome checked =
+      shell.run({"check", Shell::example("lathe/machine.toml"), Shell::example("lathe/bush.nc")});
+  EXPECT_NE(checked.out.find("X (diameter): "), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find(" of -4 to 240 mm"), std::string::npos) << checked.out;
+}
+
 }  // namespace
 }  // namespace servogate::gateway::testing

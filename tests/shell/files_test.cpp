@@ -108,5 +108,35 @@ TEST_F(Files, are_complained_of_in_russian_to_a_russian) {
   EXPECT_TRUE(missing.err_has("нет такого файла или каталога")) << missing.err;
 }
 
+TEST(ProgramFile, that_is_not_utf8_is_said_by_check_with_the_encoding_that_it_looks_like) {
+  const struct {
+    const char *encoding, *capitals, *small;
+  } texts[] = {
+      {"CP1251", "; \324\313\300\315\305\326 \317\305\320\305\325\316\304\315\333\311",
+       "; \304\345\362\340\353\374: \352\360\373\370\352\340, \342\362\356\360\340\377 "
+       "\363\361\362\340\355\356\342\352\340"},
+      {"CP866", "; \224\213\200\215\205\226 \217\205\220\205\225\216\204\215\233\211",
+       "; \204\245\342\240\253\354: \252\340\353\350\252\240, \242\342\256\340\240\357 "
+       "\343\341\342\240\255\256\242\252\240"},
+      {"KOI8-R", "; \346\354\341\356\345\343 \360\345\362\345\350\357\344\356\371\352",
+       "; \344\305\324\301\314\330: \313\322\331\333\313\301, \327\324\317\322\301\321 "
+       "\325\323\324\301\316\317\327\313\301"},
+  };
+  const Desk desk;
+  for (const auto& t : texts)
+    for (const std::string remark : {t.capitals, t.small}) {
+      desk.write("old.nc", "G90 G0 X1\n" + remark + "\nM30\n");
+      const Ended e = desk.line("$SG check $MILL old.nc");
+      EXPECT_EQ(e.code, 0) << e.err;
+      EXPECT_TRUE(
+          e.err_has("old.nc:2:1: warning: the text is not UTF-8 but looks like " + std::string(t.encoding)))
+          << e.err;
+      EXPECT_TRUE(e.err_has("iconv -f " + std::string(t.encoding) + " -t UTF-8")) << e.err;
+    }
+  desk.write("old.nc", "G90 G0 X1\n; 90\260\nM30\n");
+  EXPECT_TRUE(desk.line("$SG check $MILL old.nc").err_has("iconv -f CP1251 -t UTF-8 (or CP866, KOI8-R)"));
+  EXPECT_TRUE(desk.line("$SG check $MILL old.nc", "ru_RU.UTF-8").err_has("(или CP866, KOI8-R)"));
+}
+
 }  // namespace
 }  // namespace servogate::shell

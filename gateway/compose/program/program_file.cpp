@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gateway/files/encoding.hpp"
 #include "gateway/files/read_file.hpp"
 
 namespace servogate::gateway {
@@ -12,28 +13,14 @@ namespace {
 const text::Entry kNotUtf8{
     "program.not-utf8",
     "the text is not UTF-8: words in it cannot be shown. Convert it from what the old control wrote: "
-    "iconv -f CP1251 -t UTF-8 (or CP866)",
+    "iconv -f CP1251 -t UTF-8 (or CP866, KOI8-R)",
     "текст не в UTF-8: слова в нём не показать. Преобразуйте из кодировки старой системы: "
-    "iconv -f CP1251 -t UTF-8 (или CP866)"};
-
-/// 0: all of it is UTF-8.
-int first_line_not_utf8(std::string_view text) {
-  int line = 1;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t length = lead < 0x80                   ? 1
-                               : lead >= 0xC2 && lead < 0xE0 ? 2
-                               : lead >= 0xE0 && lead < 0xF0 ? 3
-                               : lead >= 0xF0 && lead < 0xF5 ? 4
-                                                             : 0;
-    if (length == 0 || i + length > text.size()) return line;
-    for (std::size_t k = 1; k < length; ++k)
-      if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return line;
-    if (lead == '\n') ++line;
-    i += length;
-  }
-  return 0;
-}
+    "iconv -f CP1251 -t UTF-8 (или CP866, KOI8-R)"};
+const text::Entry kLikelyEncoding{
+    "program.not-utf8",
+    "the text is not UTF-8 but looks like {0}: words in it cannot be shown. Convert it: iconv -f {0} -t "
+    "UTF-8",
+    "текст не в UTF-8, похоже на {0}: слова в нём не показать. Преобразуйте: iconv -f {0} -t UTF-8"};
 
 }  // namespace
 
@@ -70,8 +57,11 @@ bool open_program(const machine::MachineConfig& machine, const std::string& path
   std::string reason;
   auto content = files::read_file(path, files::kMostOfProgram, reason);
   if (!content) return error(kCannotRead, {reason});
-  if (const int line = first_line_not_utf8(*content); line > 0)
-    findings.push_back({text::Severity::warning, path, line, 1, &kNotUtf8, {path}});
+  if (const int line = files::first_line_not_utf8(*content); line > 0) {
+    const std::string likely(files::likely_russian_encoding(*content));
+    findings.push_back(
+        {text::Severity::warning, path, line, 1, likely.empty() ? &kNotUtf8 : &kLikelyEncoding, {likely}});
+  }
   out.path = path;
   out.text = std::move(*content);
   out.model = program_model(machine);

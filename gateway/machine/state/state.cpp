@@ -102,13 +102,45 @@ std::string previous_of(const std::string& file) {
   return file.substr(0, file.size() - 5) + ".previous.toml";
 }
 
+/// What a person has lost with a part, and what makes it good again.
+struct Loss {
+  StatePart part;
+  std::string_view lost, lost_ru, remedy, remedy_ru;
+};
+constexpr Loss kLosses[] = {
+    {StatePart::origins, "the origins are lost", "начала отсчёта утрачены", "set them again (`zero`)",
+     "задайте их заново (`zero`)"},
+    {StatePart::tools, "the lengths and diameters of the tools are lost",
+     "вылеты и диаметры инструментов утрачены", "measure the tools again", "измерьте инструменты заново"},
+    {StatePart::homing, "the references of the axes and the tool in the spindle are lost",
+     "привязка осей и номер инструмента в шпинделе утрачены",
+     "home all axes again, absolute encoders too, and call the tool anew",
+     "выведите все оси в ноль, с абсолютными датчиками тоже, и вызовите инструмент заново"},
+    {StatePart::counters, "the counters are lost", "счётчики утрачены", "they begin at 0",
+     "они начнутся с нуля"},
+    {StatePart::gains, "the gains that were found are lost", "найденные коэффициенты утрачены",
+     "tune again; until then those of the machine file hold",
+     "настройте заново; до этого действуют коэффициенты файла станка"}};
+
+text::Finding loss_of(StatePart part, const std::string& file, const std::string& other, bool both) {
+  const auto& l = *std::find_if(std::begin(kLosses), std::end(kLosses),
+                                [part](const Loss& row) { return row.part == part; });
+  return {text::Severity::error,
+          file,
+          1,
+          1,
+          both ? &finding::kPartLost : &finding::kPartLostAlone,
+          {other, text::both(l.lost, l.lost_ru), text::both(l.remedy, l.remedy_ru)}};
+}
+
 /// One part from its newest whole generation.
 void load_part(const std::string& file, StatePart part, MachineState& state,
                std::vector<text::Finding>& findings) {
   const std::string previous = previous_of(file);
   std::vector<text::Finding> problems, of_previous;
   const auto newest = contents(file, problems), older = contents(previous, of_previous);
-  if (!newest && !older && problems.empty() && of_previous.empty()) return;
+  const bool file_there = newest || !problems.empty(), previous_there = older || !of_previous.empty();
+  if (!file_there && !previous_there) return;
   if (newest) {
     problems = read_part(*newest, file, part, state);
     if (!any_error(problems)) {
@@ -116,7 +148,8 @@ void load_part(const std::string& file, StatePart part, MachineState& state,
       return;
     }
   }
-  if (older && !any_error(read_part(*older, previous, part, state))) {
+  if (older) of_previous = read_part(*older, previous, part, state);
+  if (older && !any_error(of_previous)) {
     for (text::Finding& f : problems) f.severity = text::Severity::warning;
     findings.insert(findings.end(), problems.begin(), problems.end());
     findings.push_back({text::Severity::warning, file, 1, 1, &finding::kPreviousTaken, {previous}});
@@ -124,8 +157,8 @@ void load_part(const std::string& file, StatePart part, MachineState& state,
   }
   findings.insert(findings.end(), problems.begin(), problems.end());
   findings.insert(findings.end(), of_previous.begin(), of_previous.end());
-  if (!newest && older)
-    findings.push_back({text::Severity::error, previous, 1, 1, &finding::kNoGeneration, {}});
+  findings.push_back(file_there ? loss_of(part, file, previous, previous_there)
+                                : loss_of(part, previous, file, false));
 }
 
 /// The retained variables from the newest whole copy.

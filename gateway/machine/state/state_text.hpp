@@ -18,8 +18,6 @@ namespace finding {
 inline constexpr text::Entry kPreviousTaken{"state.previous_taken",
                                             "damaged; the generation before is taken from {0}",
                                             "повреждён; взято предыдущее поколение из {0}"};
-inline constexpr text::Entry kNoGeneration{"state.no_generation", "the newest generation is missing",
-                                           "нет последнего поколения"};
 inline constexpr text::Entry kOtherCopyTaken{
     "state.other_copy_taken",
     "the retained values are those of this copy, generation {0}: the other is damaged",
@@ -31,6 +29,15 @@ inline constexpr text::Entry kRetainedLost{
     "the initial values",
     "сохраняемые значения ПЛК утрачены: ни эта копия, ни {0} не цела; уберите обе, чтобы начать с начальных "
     "значений"};
+/// {0} the other generation's file; {1} what is lost, {2} what to do then: halves of text::both.
+inline constexpr text::Entry kPartLost{
+    "state.part_lost",
+    "neither this file nor {0}, the generation before it, is whole: {1}; move both away, and {2}",
+    "ни этот файл, ни {0}, предыдущее поколение, не цел: {1}; уберите оба, и {2}"};
+inline constexpr text::Entry kPartLostAlone{
+    "state.part_lost",
+    "this file is not whole, and there is no other generation, {0}: {1}; move it away, and {2}",
+    "файл не цел, а другого поколения, {0}, нет: {1}; уберите его, и {2}"};
 inline constexpr text::Entry kChecksum{
     "state.checksum", "checksum {0} does not fit the content ({1}): cut off or changed",
     "контрольная сумма {0} не подходит к содержимому ({1}): обрезан или изменён"};

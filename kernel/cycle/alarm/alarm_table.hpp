@@ -36,7 +36,6 @@ inline constexpr AlarmNumber kSAckTimeout = 4004;
 inline constexpr AlarmNumber kTAckTimeout = 4005;
 inline constexpr AlarmNumber kHAckTimeout = 4006;
 inline constexpr AlarmNumber kStarved = 4007;
-inline constexpr AlarmNumber kLeavesTravel = 4008;
 inline constexpr AlarmNumber kWriteRefused = 4009;
 inline constexpr AlarmNumber kAxisNotReady = 4010;
 inline constexpr AlarmNumber kSetpointLimit = 4011;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -58,10 +59,19 @@ bool figures_are_lengths(image::AlarmNumber n) {
   using namespace axis::alarm;
   return (n >= kFollowingError && n <= kSetpointStep) ||
          (n >= kHomingSwitchNotFound && n <= kHomingIndexNotFound) || n == kHomingLimitAgain ||
-         n == kHomingInterrupted || n == kHomingIndexNearEdge || n == kHomingDriveFailed ||
-         n == alarm::kLeavesTravel || n == kOffPath || n == kPlaceUnknown || n == kFollowingErrorHigh ||
-         n == kDriveOffline;
+         n == kHomingInterrupted || n == kHomingIndexNearEdge || n == kHomingDriveFailed || n == kOffPath ||
+         n == kPlaceUnknown || n == kFollowingErrorHigh || n == kDriveOffline;
 }
+
+/// Which figures of an alarm are places of the axis, not lengths: a diameter axis shows them as diameters.
+struct Places {
+  image::AlarmNumber number;
+  bool value, limit;
+};
+constexpr Places kPlaces[] = {
+    {axis::alarm::kOffPath, false, true},           {axis::alarm::kPlaceUnknown, true, true},
+    {axis::alarm::kHomingLimitAgain, true, false},  {axis::alarm::kHomingInterrupted, true, false},
+    {axis::alarm::kHomingDriveFailed, true, false}, {axis::alarm::kDriveOffline, true, false}};
 
 /// State of CiA 402-2, table "state coding" of the status word; -1: no valid one.
 int state_of(std::uint16_t statusword) {
@@ -170,9 +180,17 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
                                ? " " + names.units[static_cast<std::size_t>(r.axis)]
                                : (language == Language::russian ? " мм" : " mm");
   auto figure = [&](double v) { return text::number(v, 4) + unit; };
+  const auto* places = std::find_if(std::begin(kPlaces), std::end(kPlaces),
+                                    [&](const Places& p) { return p.number == r.number; });
+  const bool diameter = r.axis >= 0 && r.axis < std::ssize(names.diameters) &&
+                        names.diameters[static_cast<std::size_t>(r.axis)] && places != std::end(kPlaces);
+  const auto place = [&](double v, bool is_place) {
+    if (!diameter || !is_place) return figure(v);
+    return figure(2.0 * v) + (language == Language::russian ? " по диаметру" : " in diameter");
+  };
   std::vector<std::string> out = {axis_name(r, names),
-                                  figure(r.value),
-                                  figure(r.limit),
+                                  place(r.value, places != std::end(kPlaces) && places->value),
+                                  place(r.limit, places != std::end(kPlaces) && places->limit),
                                   where(r, names, language),
                                   statusword_text(r.statusword, language),
                                   error_words(r, names, language),

@@ -97,6 +97,7 @@ static_assert(std::is_trivially_copyable_v<AlarmSnapshot>);
 struct AlarmNames {
   std::vector<std::string> axes;
   std::vector<std::string> units;  ///< of each axis; missing: mm
+  std::vector<bool> diameters;     ///< axes whose positions people see as diameters; missing: none
   std::vector<std::string> segments;
   std::vector<std::string> sources;
   /// Words of a drive's own error code, from its device file; empty result: only the number is shown.

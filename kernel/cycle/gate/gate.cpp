@@ -358,8 +358,7 @@ bool Decision::start() noexcept {
   for (const Axis& a : c_.axes) {
     if (a.config().auxiliary) continue;
     if (!a.homed()) return refuse(Refusal::not_homed, a.index());
-    if (!a.motion_permitted()) return refuse(Refusal::not_powered, a.index());
-    if (!free(a)) return false;
+    if (!ready(a) || !free(a)) return false;
     if (a.owner() != AxisOwner::process && a.moving()) return refuse(Refusal::axis_moves, a.index());
   }
   return true;

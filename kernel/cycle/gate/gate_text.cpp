@@ -26,8 +26,12 @@ constexpr text::Entry kTexts[] = {
      "{0} не готова: сначала включите приводы (или дождитесь отпускания тормоза)"},
     {"gate.not_homed", "{0} is not homed: run `servogate home {0}` first, or jog slowly",
      "{0} не выведена в ноль: сначала выполните `servogate home {0}` или перемещайте её медленно"},
-    {"gate.feed_not_enabled", "{0}: the PLC does not permit the feed (its feed_enable is FALSE)",
-     "{0}: ПЛК не разрешает подачу (feed_enable = FALSE)"},
+    {"gate.feed_not_enabled",
+     "{0}: the PLC does not permit motion ({0}.feed_enable is FALSE: see in its program for what, an open "
+     "door for "
+     "instance)",
+     "{0}: ПЛК не разрешает движение ({0}.feed_enable = FALSE: причину, например открытую дверь, ищите в его "
+     "программе)"},
     {"gate.program_runs", "a program runs: stop it first", "выполняется программа: сначала остановите её"},
     {"gate.program_does_not_run", "no program runs", "программа не выполняется"},
     {"gate.program_not_held", "the program is not held", "программа не приостановлена"},

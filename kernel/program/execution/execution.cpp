@@ -145,11 +145,18 @@ double Execution::unit_factor(int axis) const noexcept {
   return state_.modes.unit == Function::inch && !rotary(axis) ? 25.4 : 1.0;
 }
 
+void Execution::refuse_range(std::string_view word, const Value& value, double number, const char* least,
+                             const char* most) const {
+  std::string named(word);
+  if (value.parameter >= 0)
+    named += std::string(value.negative ? " = -E" : " = E") + std::to_string(value.parameter) + " = ";
+  fail(Fault::out_of_range, value.column, {std::move(named), text::number(number), least, most});
+}
+
 double Execution::length(int axis, const Value& value, bool halve) const {
   double number = resolve(value);
   const MachineModel::Axis& a = machine_->axes[static_cast<std::size_t>(axis)];
-  if (!(std::abs(number) <= 99999.9999))
-    fail(Fault::out_of_range, value.column, {a.letter, text::number(number), "-99999.9999", "99999.9999"});
+  if (!(std::abs(number) <= 99999.9999)) refuse_range(a.letter, value, number, "-99999.9999", "99999.9999");
   const double steps = a.rotary ? resolution_ * 10.0 : resolution_;
   if (steps != 0.0) number = std::nearbyint(number * steps) / steps;
   number *= unit_factor(axis);

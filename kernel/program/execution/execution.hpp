@@ -68,6 +68,9 @@ class Execution : public ValueSource {
   double place(const image::Place& place, int column) const override;
   /// Number of a value, its parameter read. Throws ProgramError.
   double resolve(const Value& value) const;
+  /// Refuses the value of a word outside of `least` to `most`; where a parameter gave it, its name is said.
+  [[noreturn]] void refuse_range(std::string_view word, const Value& value, double number, const char* least,
+                                 const char* most) const;
   /// The same as a whole number of at least 0; `word` names it in messages.
   int whole(const Value& value, std::string_view word) const;
   /// A length of an axis in mm, degrees or as a radius, by the unit in force; `halve`: a diameter axis is

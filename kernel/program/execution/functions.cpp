@@ -64,8 +64,7 @@ void Execution::spindle_word(const BlockWords& words, const MRule* start, const 
     if (machine_->spindles == 0)
       fail(Fault::no_spindle, words.speed->column, {word_text(block_, *words.speed)});
     const double speed = resolve(words.speed->value);
-    if (!(speed >= 0.0 && speed <= 99999.99))
-      fail(Fault::out_of_range, words.speed->value.column, {"S", text::number(speed), "0", "99999.99"});
+    if (!(speed >= 0.0 && speed <= 99999.99)) refuse_range("S", words.speed->value, speed, "0", "99999.99");
     const bool feet = state_.modes.unit == Function::inch && state_.modes.spindle == Function::surface_speed;
     state_.speed = feet ? speed * kMetresPerFoot : speed;
     state_.speed_at = written(words.speed->column);

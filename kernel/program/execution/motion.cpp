@@ -72,13 +72,13 @@ void Execution::check_axis(int axis, double value, int column) const {
   const MachineModel::Axis& a = machine_->axes[at(axis)];
   const double limit = value > a.travel_max ? a.travel_max : a.travel_min;
   if (value > a.travel_max + kTravelSlack || value < a.travel_min - kTravelSlack)
-    fail(Fault::travel, column, {a.letter, text::number(value, 4), text::number(limit, 4)});
+    fail(Fault::travel, column, outside_arguments(a, value, limit));
   const double inside = value - state_.frame.length(axis);
   const double field =
       inside > state_.field_max[at(axis)] ? state_.field_max[at(axis)] : state_.field_min[at(axis)];
   if (inside > state_.field_max[at(axis)] + kTravelSlack ||
       inside < state_.field_min[at(axis)] - kTravelSlack)
-    fail(Fault::field, column, {a.letter, text::number(inside, 4), text::number(field, 4)});
+    fail(Fault::field, column, outside_arguments(a, inside, field));
 }
 
 void Execution::position(const BlockWords& words, int without_axis) {
@@ -234,7 +234,7 @@ void Execution::store_feed(const BlockWords& words) {
   if (words.feed == nullptr) return;
   const double value = resolve(words.feed->value);
   if (!(value >= 0.01 - 1e-12 && value <= 99999.99))
-    fail(Fault::out_of_range, words.feed->value.column, {"F", text::number(value), "0.01", "99999.99"});
+    refuse_range("F", words.feed->value, value, "0.01", "99999.99");
   if (state_.modes.feed == Function::feed_inverse) return;
   state_.feed = value;
   state_.feed_at = written(words.feed->column);
@@ -246,8 +246,7 @@ Feed Execution::feed_of(const BlockWords& words, double length_mm, bool rotary_o
   if (words.time != nullptr) {
     if (state_.modes.feed != Function::feed_minute) fail(Fault::block_time, words.time->column);
     const double seconds = resolve(words.time->value);
-    if (!(seconds > 0.0))
-      fail(Fault::out_of_range, words.time->value.column, {"t", text::number(seconds), "0.001", "99999.999"});
+    if (!(seconds > 0.0)) refuse_range("t", words.time->value, seconds, "0.001", "99999.999");
     return length_mm > 0.0 ? Feed{length_mm * 60.0 / seconds, FeedUnit::mm_per_min}
                            : Feed{60.0 / seconds, FeedUnit::inverse_time};
   }

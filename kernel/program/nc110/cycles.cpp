@@ -82,8 +82,7 @@ void take_pecks(const Execution& run, const BlockWords& words, Cycle& cycle) {
   const double least = removes ? kClearance : 0.0;
   if (!(cycle.step > least))
     fail(Fault::cycle_step, words.centre1->value.column, {text::number(cycle.step, 4), text::number(least)});
-  if (removes && !(cycle.factor > 0.0))
-    fail(Fault::out_of_range, words.pitch->value.column, {"K", text::number(cycle.factor), "0.001", "1"});
+  if (removes && !(cycle.factor > 0.0)) run.refuse_range("K", words.pitch->value, cycle.factor, "0.001", "1");
 }
 
 /// The block of the G word only stores the cycle.

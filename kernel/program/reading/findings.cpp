@@ -31,6 +31,11 @@ class FileReader {
         add(text::Severity::error, error);
       }
     }
+    if (source_.lone_return() != Source::kNone) {
+      line_ = static_cast<int>(source_.lone_return()) + 1;
+      const auto column = static_cast<int>(source_.line(source_.lone_return()).size()) + 1;
+      add(text::Severity::warning, {Fault::lone_return, column, {}});
+    }
     for (const auto& twice : source_.duplicates()) {
       line_ = static_cast<int>(twice.line) + 1;
       add(text::Severity::warning, {Fault::label_twice,

@@ -7,9 +7,24 @@
 
 namespace servogate::program {
 
+namespace {
+
+/// Behind the last character that is more than filling.
+std::size_t last_of(std::string_view text) {
+  constexpr std::string_view kFilling("\x1A\0 \t\r\n", 6);
+  const std::size_t last = text.find_last_not_of(kFilling);
+  return last == std::string_view::npos ? 0 : last + 1;
+}
+
+}  // namespace
+
 Source::Source(std::string name, std::string text, std::string path)
     : name_(std::move(name)), path_(path.empty() ? name_ : std::move(path)), text_(std::move(text)) {
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
+  // CP/M and its heirs end a text with 1Ah, and may fill the last record up.
+  const std::size_t end_mark = text_.find_first_of("\x1A", last_of(text_));
+  if (end_mark != std::string::npos) text_.erase(end_mark);
+  put_line_ends();
   starts_.reserve(text_.size() / 24 + 2);
   starts_.push_back(0);
   const char* const begin = text_.data();
@@ -21,6 +36,24 @@ Source::Source(std::string name, std::string text, std::string path)
   }
   std::vector<std::uint32_t> open;
   for (std::uint32_t i = 0; i < lines(); ++i) index_line(i, open);
+}
+
+/// A CR that no LF follows ends a line as well. Those before an LF (CR CR LF, too) belong to it.
+void Source::put_line_ends() {
+  std::uint32_t line = 0;
+  for (std::size_t at = text_.find_first_of("\r\n"); at != std::string::npos;
+       at = text_.find_first_of("\r\n", at + 1)) {
+    const std::size_t next = text_.find_first_not_of('\r', at);
+    if (text_[at] == '\r') {
+      if (next != std::string::npos && text_[next] == '\n') {
+        at = next;
+      } else {
+        text_[at] = '\n';
+        if (lone_return_ == kNone) lone_return_ = line;
+      }
+    }
+    ++line;
+  }
 }
 
 std::string_view Source::line(std::uint32_t index) const noexcept {

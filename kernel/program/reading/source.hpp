@@ -39,8 +39,11 @@ class Source {
     std::string_view label;
   };
   const std::vector<Duplicate>& duplicates() const noexcept { return duplicates_; }
+  /// First line (from 0) that a CR alone ends, as tapes and old computers wrote them; kNone: there is none.
+  std::uint32_t lone_return() const noexcept { return lone_return_; }
 
  private:
+  void put_line_ends();
   void index_line(std::uint32_t index, std::vector<std::uint32_t>& open);
 
   std::string name_;
@@ -50,6 +53,7 @@ class Source {
   std::unordered_map<std::string_view, std::uint32_t> labels_;
   std::unordered_map<std::uint32_t, std::uint32_t> partners_;
   std::vector<Duplicate> duplicates_;
+  std::uint32_t lone_return_ = kNone;
   int blocks_ = 0;
 };
 
