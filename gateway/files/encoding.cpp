@@ -39,7 +39,7 @@ constexpr struct {
 constexpr double kNoLetter = -8.0;       ///< a character of the upper half that is none
 constexpr double kCapitalInside = -2.0;  ///< behind a small letter
 constexpr int kFewest = 4;               ///< characters of the upper half
-constexpr double kClear = 2.0;           ///< the most likely one is ahead by so much (of e)
+constexpr double kClear = 3.0;           ///< the most likely one is ahead by so much (of e)
 constexpr std::size_t kLookedAt = 1 << 20;
 
 double likelihood(std::string_view text, Letter (*letter_of)(int)) {

@@ -138,9 +138,9 @@ TEST(Waits, of_a_wrong_patience_are_wrong_use) {
 
 TEST(Words, of_a_program_error_stand_in_the_alarm_with_file_line_and_column) {
   const Scratch scratch;
-  // Found when the block is executed: X would leave its travel.
+  // Found when the block is executed, for a signal has its part in it: X would leave its travel.
   const GivenUp run =
-      give_up(scratch, mill_file(), "N10 G90 G71 G94\nN20 G1 X20 F6000\nN30 E30=400\nN40 XE30\nN50 M30\n");
+      give_up(scratch, mill_file(), "N10 G90 G71 G94\nN20 G1 X20 F6000\nN30 E30=SA20+400\nN40 XE30\nN50 M30\n");
   EXPECT_EQ(run.ending.code, 1);
   EXPECT_TRUE(says(run.ending, "alarm 4001: program error in line 4: ")) << run.ending.err;
   EXPECT_TRUE(says(run.ending, "waits.nc:4:")) << run.ending.err;

@@ -113,10 +113,13 @@ TEST(Lathe, says_places_of_X_as_diameters_wherever_they_are_the_reason) {
   ASSERT_EQ(shell.run({"power", "on"}).exit, 0);
   ASSERT_EQ(shell.run({"home", "X"}).exit, 0);
   ASSERT_TRUE(shell.until([](const json& s) { return s["axes"][0]["moving"].get<bool>(); }));
-  ASSERT_EQ(shell.ask({{"cmd", "stop"}})["ok"], true);
-  ASSERT_TRUE(shell.until([](const json& s) { return !s["alarms"].empty(); }));
-  const json alarm = shell.status()["alarms"][0];
-  EXPECT_EQ(alarm["number"], 1107);
+  ASSERT_EQ(shell.run({"input", "estop_chain_ok", "off"}).exit, 0);
+  json alarm;
+  ASSERT_TRUE(shell.until([&](const json& s) {
+    for (const json& a : s["alarms"])
+      if (a["number"] == 1107) alarm = a;
+    return !alarm.is_null();
+  }));
   EXPECT_NE(alarm["text"].get<std::string>().find(" mm in diameter"), std::string::npos) << alarm;
   EXPECT_NE(shell.run({"alarms"}, "ru_RU.UTF-8").out.find("по диаметру"), std::string::npos);
 

@@ -32,7 +32,7 @@ class Words : public ::testing::Test {
 };
 
 TEST_F(Words, of_a_program_error_reach_status_and_alarms_with_file_line_and_column) {
-  begin("far.nc", "N10 G90 G71 G94\nN20 G1 X5 F6000\nN30 E30=400\nN40 XE30\nN50 M2\n");
+  begin("far.nc", "N10 G90 G71 G94\nN20 G1 X5 F6000\nN30 E30=SA20+400\nN40 XE30\nN50 M2\n");
   ASSERT_TRUE(shell_.until([](const json& s) { return s["state"] == "stopped_by_alarm"; }));
   const std::string place = (shell_.folder() / "far.nc").string() + ":4:";
   const Outcome alarms = shell_.run({"alarms"});
