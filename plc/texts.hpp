@@ -38,6 +38,14 @@ inline constexpr Entry kReserved{"plc-reserved", "'{0}' is a standard name and c
                                  "'{0}' является стандартным именем, повторно объявлять его нельзя"};
 inline constexpr Entry kUnknownType{"plc-unknown-type", "there is no type '{0}'{1}", "типа '{0}' нет{1}"};
 inline constexpr Entry kTypeCycle{"plc-type-cycle", "'{0}' contains itself", "'{0}' содержит само себя"};
+inline constexpr Entry kOpenArrayPlace{"plc-open-array",
+                                       "ARRAY[*] is possible as VAR_IN_OUT, and as VAR_INPUT of a FUNCTION",
+                                       "ARRAY[*] возможен как VAR_IN_OUT и как VAR_INPUT в FUNCTION"};
+inline constexpr Entry kOpenArrayMixed{"plc-open-array", "either all dimensions of an array are * or none",
+                                       "звёздочка ставится во всех измерениях массива или ни в одном"};
+inline constexpr Entry kOpenArrayWhole{
+    "plc-open-array", "{0} is used element by element, or passed on; it cannot be copied whole",
+    "{0} используется поэлементно или передаётся дальше; целиком он не копируется"};
 inline constexpr Entry kNotConstant{"plc-not-constant", "expected a constant here", "здесь нужна константа"};
 inline constexpr Entry kEmptyRange{"plc-empty-range",
                                    "the range {0}..{1} is empty; the lower limit comes first",
@@ -201,6 +209,13 @@ inline constexpr Entry kMixed{"plc-mixed-arguments", "name either all inputs or 
                               "имена указываются либо у всех входов, либо ни у одного"};
 inline constexpr Entry kInOutMissing{"plc-in-out", "{0} needs a variable for its VAR_IN_OUT '{1}'",
                                      "{0} требует переменную для VAR_IN_OUT '{1}'"};
+inline constexpr Entry kInputMissing{"plc-bound-input", "{0} needs a variable for its VAR_INPUT '{1}'",
+                                     "{0} требует переменную для VAR_INPUT '{1}'"};
+inline constexpr Entry kInputType{"plc-bound-input", "'{0}' is bound to a variable of exactly {1}, not {2}",
+                                  "'{0}' связывается с переменной в точности типа {1}, а не {2}"};
+inline constexpr Entry kWriteBoundInput{"plc-write-bound-input",
+                                        "'{0}' is an input, and the caller's own; it is only read here",
+                                        "'{0}' является входом вызывающего; здесь его можно только читать"};
 inline constexpr Entry kInOutType{"plc-in-out-type", "'{0}' is VAR_IN_OUT and needs exactly {1}, not {2}",
                                   "'{0}' (VAR_IN_OUT) требует в точности {1}, а не {2}"};
 inline constexpr Entry kBitReference{"plc-bit-reference", "a single bit cannot be passed as VAR_IN_OUT",

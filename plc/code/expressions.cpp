@@ -315,7 +315,7 @@ Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> int
     const ir::Parameter& p = e.parameters[i];
     if (p.value)
       copy(*p.type, frame + p.offset, values[i]);
-    else if (p.section == syntax::Section::in_out)
+    else if (p.section != syntax::Section::output)
       bind(frame + p.offset, p.place);
   }
   const Unit& callee = units_[static_cast<std::size_t>(e.unit)];

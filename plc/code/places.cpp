@@ -36,6 +36,14 @@ Generator::Target Generator::target(const ir::Place& p) {
   for (const ir::Step& s : p.steps) {
     const Operand index = value(*s.index);
     const Operand cell = temporary(4);
+    if (s.limits) {
+      const Target limits = target(s.limits->place);
+      emit(Code::extra, 0, limits.where);
+      emit(Code::index_open, cell, t.where, index, static_cast<std::uint16_t>(limits.offset));
+      t.where = cell;
+      t.indirect = true;
+      continue;
+    }
     const Code first = t.indirect ? Code::index_add_i8 : Code::index_at_i8;
     emit(vm::code_for(first, cell_of(*s.index->type)), cell, t.where, index, bounds(s.low, s.high, s.stride));
     t.where = cell;

@@ -124,8 +124,7 @@ void Walk::expression(const ir::Expr& e) {
   for (const ir::ExprPtr& a : e.args) optional(a);
   for (const ir::Parameter& p : e.parameters) {
     optional(p.value);
-    if (p.section == syntax::Section::output || p.section == syntax::Section::in_out)
-      if (p.place.type != nullptr) place(p.place, e.at, true);
+    if (!p.value && p.place.type != nullptr) place(p.place, e.at, p.section != syntax::Section::input);
   }
 }
 
@@ -136,7 +135,7 @@ void Walk::statement(const ir::Stmt& s) {
       place(s.place, s.at, true);
       break;
     case ir::StmtKind::bind:
-      place(s.other, s.at, true);
+      place(s.other, s.at, !s.reads);
       break;
     default:
       break;

@@ -10,9 +10,11 @@ Place Place::copy() const {
   p.offset = offset;
   p.bit = bit;
   p.type = type;
-  for (const Step& s : steps) p.steps.push_back({s.index->copy(), s.low, s.high, s.stride});
+  for (const Step& s : steps) p.steps.push_back(s.copy());
   return p;
 }
+
+Step Step::copy() const { return {index->copy(), low, high, stride, limits ? limits->copy() : nullptr}; }
 
 ExprPtr Expr::copy() const {
   auto e = std::make_unique<Expr>();

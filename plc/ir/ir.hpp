@@ -92,6 +92,14 @@ struct Step {
   ExprPtr index;
   std::int64_t low = 0, high = 0;
   std::uint32_t stride = 0;
+  ExprPtr limits = nullptr;  ///< of an ARRAY[*]: load of the Limits that hold instead; `index` is LINT then
+
+  Step copy() const;
+};
+
+/// One dimension of an array as it lies in memory for an ARRAY[*]; the dimensions of one follow one another.
+struct Limits {
+  std::int64_t low = 0, high = 0, stride = 0;
 };
 
 enum class Root : std::uint8_t {
@@ -127,7 +135,7 @@ enum class ExprKind : std::uint8_t {
   choose
 };
 
-/// A parameter of a function call: value (input) or place (in-out: bound, output: copied after the call).
+/// A parameter of a function call: value (input) or place (output: copied after the call; others: bound).
 struct Parameter {
   std::uint32_t offset = 0;  ///< in the function's memory
   const Type* type = nullptr;
@@ -183,9 +191,10 @@ struct Branch {
 struct Stmt {
   StmtKind kind = StmtKind::assign;
   Location at;
-  Place place;    ///< target; instance of invoke; the reference cell of bind; variable of FOR
-  Place other;    ///< what bind binds
-  ExprPtr value;  ///< right side; condition; selector; start of FOR
+  Place place;         ///< target; instance of invoke; the reference cell of bind; variable of FOR
+  Place other;         ///< what bind binds
+  bool reads = false;  ///< bind: what is bound is only read
+  ExprPtr value;       ///< right side; condition; selector; start of FOR
   ExprPtr to, by;
   std::vector<Branch> branches;
   Block body;  ///< of a loop; the ELSE part

@@ -36,6 +36,8 @@ struct Variable {
   std::vector<std::uint8_t> initial;
   bool used = false;
   bool written = false;
+  /// Bound to the caller's variable instead of copied.
+  bool bound() const { return section == syntax::Section::in_out || root == ir::Root::reference; }
   std::set<int> writers;  ///< units that assign it
 };
 
@@ -73,6 +75,7 @@ class Analyzer {
   const Type* resolve(const syntax::TypeReference& t, const std::string& name = {});
   const Type* resolve_named(const syntax::TypeReference& t);
   const Type* resolve_array(const syntax::TypeReference& t);
+  const Type* resolve_open_array(const syntax::TypeReference& t, const Type* element, bool allowed);
   const Type* resolve_structure(const syntax::TypeReference& t, const std::string& name);
   const Type* resolve_enumeration(const syntax::TypeReference& t, const std::string& name);
   const Type* resolve_subrange(const syntax::TypeReference& t, const Type* base, const std::string& name);
@@ -86,6 +89,7 @@ class Analyzer {
   void declare_located(Variable& out, const syntax::Variable& v);
   void check_sections(const UnitScope& u, const syntax::Variable& v);
   std::uint32_t allocate(const Type& type);
+  const Type* limits_type();
 
   // places.cpp: packet places.
   std::optional<image::Place> parse_address(const std::string& text, const Location& at);
@@ -116,6 +120,8 @@ class Analyzer {
   std::optional<ir::Place> place_of_member(const Expression& e, bool write);
   std::optional<ir::Place> place_of_index(const Expression& e, bool write);
   std::optional<ir::Place> place_of_bit(const Expression& e, bool write);
+  ir::Place limits_of(const ir::Place& array);
+  ir::Step open_step(const ir::Place& array, ExprPtr index);
   std::optional<ir::Place> character_of(ir::Place base, const Expression& subscript);
   std::optional<ir::Place> place_of_symbol(const std::string& name, const Location& at, bool write);
   void note_write(Variable& v, bool global, const Location& at);
@@ -173,6 +179,9 @@ class Analyzer {
                    ir::Block& out);
   const Variable* match(const syntax::Argument& a, std::size_t position, int unit, bool with_outputs = false);
   bool check_arguments(const Expression& e, int unit, std::vector<const Variable*>& matched);
+  ir::Place actual_limits(const ir::Place& array);
+  ir::Parameter limits_parameter(const Variable& parameter, const ir::Place& actual);
+  std::optional<ir::Place> bound_argument(const syntax::Argument& a, const Variable& parameter);
   void output_argument(const syntax::Argument& a, const ir::Place& from, ir::Block& out);
   bool guarded(const syntax::Statement& s, ir::Block& out);
   ExprPtr enabled_value(const Expression& e);
@@ -196,6 +205,7 @@ class Analyzer {
   // tasks.cpp
   void default_task();
   void configured_tasks();
+  void all_bound(int unit, const std::vector<const Variable*>& given, const Location& at);
   ir::Task task_of(const syntax::Task& t);
   void program_call(const syntax::ProgramInstance& p, ir::Block& out);
   int program_unit(const syntax::ProgramInstance& p);
@@ -244,6 +254,9 @@ class Analyzer {
   int loops_ = 0;
   std::map<std::uint64_t, ir::Place> held_;  ///< of the current body
   std::map<std::string, std::int32_t> labels_;
+  std::map<const Type*, std::uint32_t> limits_;  ///< where the limits of an array lie that was bound
+  const Type* limits_type_ = nullptr;
+  bool open_arrays_ = false;             ///< the type being resolved may be ARRAY[*]
   const Expression* guarded_ = nullptr;  ///< the call whose EN and ENO are being dealt with
   bool no_marks_ = false;                ///< reads do not count as use
 };

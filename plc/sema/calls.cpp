@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstring>
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
@@ -113,17 +114,58 @@ bool Analyzer::check_arguments(const Expression& e, int unit, std::vector<const 
     report_.error(e.location, texts::kCount,
                   {u.source->name, std::to_string(inputs_known), std::to_string(positional)});
   for (const Variable& v : u.variables)
-    if (v.section == Section::in_out && std::find(matched.begin(), matched.end(), &v) == matched.end() &&
+    if (v.bound() && std::find(matched.begin(), matched.end(), &v) == matched.end() &&
         report_.errors() == errors)
-      report_.error(e.location, texts::kInOutMissing, {u.source->name, v.name});
+      report_.error(e.location, v.section == Section::input ? texts::kInputMissing : texts::kInOutMissing,
+                    {u.source->name, v.name});
   return report_.errors() == errors;
 }
 
-namespace {
-bool exact(const Type& actual, const Type& formal) {
-  return &actual == &formal || conversion(actual, formal) == Conversion::same;
+// The variable that a parameter is bound to.
+std::optional<ir::Place> Analyzer::bound_argument(const syntax::Argument& a, const Variable& v) {
+  const bool input = v.section == Section::input;
+  auto target = place(*a.value, !input);
+  if (!target) return target;
+  if (target->bit >= 0) {
+    report_.error(a.location, texts::kBitReference);
+    return std::nullopt;
+  }
+  if (!binds(*target->type, *v.type)) {
+    report_.error(a.value->location, input ? texts::kInputType : texts::kInOutType,
+                  {v.name, v.type->name, target->type->name});
+    return std::nullopt;
+  }
+  if (target->root == ir::Root::shared) program_.places[target->cell].referenced = true;
+  return target;
 }
-}  // namespace
+
+// The limits of an array that is bound to an ARRAY[*]: those it was given itself, or constants in memory.
+ir::Place Analyzer::actual_limits(const ir::Place& array) {
+  if (array.type->open) return limits_of(array);
+  ir::Place out;
+  out.type = limits_type();
+  const auto known = limits_.find(array.type);
+  if (known != limits_.end()) {
+    out.cell = known->second;
+    return out;
+  }
+  std::vector<ir::Limits> all;
+  for (const Type* t = array.type; t->kind == Kind::array; t = t->base)
+    all.push_back({t->range.low, t->range.high, t->base->size});
+  const Type* block = types_->array(limits_type(), {1, static_cast<std::int64_t>(all.size())});
+  out.cell = limits_[array.type] = allocate(*block);
+  std::memcpy(program_.memory.data() + out.cell, all.data(), all.size() * sizeof(ir::Limits));
+  return out;
+}
+
+ir::Parameter Analyzer::limits_parameter(const Variable& v, const ir::Place& actual) {
+  ir::Parameter p;
+  p.offset = v.cell + 4;
+  p.type = limits_type();
+  p.section = v.section;
+  p.place = actual_limits(actual);
+  return p;
+}
 
 ExprPtr Analyzer::function_call(const Expression& e, int unit) {
   lay_out(unit);
@@ -141,31 +183,31 @@ ExprPtr Analyzer::function_call(const Expression& e, int unit) {
     p.offset = v.cell;
     p.type = v.type;
     p.section = v.section;
-    if (v.section == Section::input) {
+    if (v.bound()) {
+      auto target = bound_argument(a, v);
+      good = good && target;
+      if (!target) continue;
+      if (v.type->open) out->parameters.push_back(limits_parameter(v, *target));
+      p.place = std::move(*target);
+    } else if (v.section == Section::input) {
       p.value = assignable(expression(*a.value, v.type), v.type);
       good = good && p.value->type->kind != Kind::error;
     } else if (a.value) {
       auto target = place(*a.value, true);
-      if (!target) {
-        good = false;
-      } else if (target->bit >= 0 && v.section == Section::in_out) {
-        report_.error(a.location, texts::kBitReference);
-        good = false;
-      } else if (!exact(*target->type, *v.type)) {
+      if (target && !binds(*target->type, *v.type)) {
         report_.error(a.value->location, texts::kInOutType, {v.name, v.type->name, target->type->name});
-        good = false;
-      } else {
-        if (target->root == ir::Root::shared && v.section == Section::in_out)
-          program_.places[target->cell].referenced = true;
-        p.place = std::move(*target);
+        target.reset();
       }
+      good = good && target;
+      if (target) p.place = std::move(*target);
     } else {
       continue;
     }
     out->parameters.push_back(std::move(p));
   }
   for (const Variable& v : u.variables) {  // inputs that are not given take their initial value
-    if (v.section != Section::input || std::find(matched.begin(), matched.end(), &v) != matched.end())
+    if (v.section != Section::input || v.bound() ||
+        std::find(matched.begin(), matched.end(), &v) != matched.end())
       continue;
     if (!is_elementary(v.type->kind) || v.type->kind == Kind::error) continue;
     Constant c;
@@ -216,29 +258,29 @@ void Analyzer::block_input(const syntax::Argument& a, const Variable& v, const i
   ir::Place formal = instance.copy();
   formal.offset += v.cell;
   formal.type = v.type;
-  if (v.section == Section::input) {
+  if (!v.bound()) {
     assign(std::move(formal), expression(*a.value, v.type), a.location, out);
     return;
   }
   if (axis_of_programs(*a.value, *v.type)) return;
-  auto target = place(*a.value, true);
+  auto target = bound_argument(a, v);
   if (!target) return;
-  if (target->bit >= 0) {
-    report_.error(a.location, texts::kBitReference);
-    return;
-  }
-  if (!exact(*target->type, *v.type)) {
-    report_.error(a.value->location, texts::kInOutType, {v.name, v.type->name, target->type->name});
-    return;
-  }
-  if (target->root == ir::Root::shared) program_.places[target->cell].referenced = true;
-  ir::Stmt bind;
-  bind.kind = ir::StmtKind::bind;
-  bind.at = a.location;
   formal.type = elementary(Kind::udint);
-  bind.place = std::move(formal);
-  bind.other = std::move(*target);
-  out.push_back(std::move(bind));
+  const auto bind = [&](ir::Place cell, ir::Place to) {
+    ir::Stmt s;
+    s.kind = ir::StmtKind::bind;
+    s.at = a.location;
+    s.reads = v.section == Section::input;
+    s.place = std::move(cell);
+    s.other = std::move(to);
+    out.push_back(std::move(s));
+  };
+  if (v.type->open) {
+    ir::Place limits = formal.copy();
+    limits.offset += 4;
+    bind(std::move(limits), actual_limits(*target));
+  }
+  bind(std::move(formal), std::move(*target));
 }
 
 // What ENO gets after the call: the output of that name where the unit declares one, else TRUE.

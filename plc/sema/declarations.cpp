@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
@@ -167,8 +168,11 @@ const Type* Analyzer::resolve_named(const syntax::TypeReference& t) {
 }
 
 const Type* Analyzer::resolve_array(const syntax::TypeReference& t) {
+  const bool allowed = std::exchange(open_arrays_, false);
   const Type* element = resolve(*t.element);
   if (element->kind == Kind::error) return element;
+  if (std::any_of(t.ranges.begin(), t.ranges.end(), [](const auto& r) { return r.first == nullptr; }))
+    return resolve_open_array(t, element, allowed);
   for (auto r = t.ranges.rbegin(); r != t.ranges.rend(); ++r) {
     const auto low = constant_integer(*r->first), high = constant_integer(*r->second);
     if (!low || !high) return elementary(Kind::error);
@@ -185,6 +189,24 @@ const Type* Analyzer::resolve_array(const syntax::TypeReference& t) {
     element = types_->array(element, {*low, *high});
   }
   return element;
+}
+
+// ARRAY[*, *]: either all dimensions are open or none (6.5.3.4).
+const Type* Analyzer::resolve_open_array(const syntax::TypeReference& t, const Type* element, bool allowed) {
+  const bool all = std::all_of(t.ranges.begin(), t.ranges.end(), [](const auto& r) { return !r.first; });
+  if (!all || !allowed) {
+    report_.error(t.location, all ? texts::kOpenArrayPlace : texts::kOpenArrayMixed);
+    return elementary(Kind::error);
+  }
+  for (std::size_t i = 0; i < t.ranges.size(); ++i) element = types_->open_array(element);
+  return element;
+}
+
+const Type* Analyzer::limits_type() {
+  if (limits_type_ != nullptr) return limits_type_;
+  Type* t = types_->add(Kind::structure, "$limits");
+  for (const char* name : {"low$", "high$", "stride$"}) append(*t, {name, elementary(Kind::lint)});
+  return limits_type_ = t;
 }
 
 std::uint32_t Analyzer::append(Type& owner, Field field) {
@@ -333,7 +355,10 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
   v.section = s.section;
   v.constant = s.constant;
   v.retain = s.retain;
+  const bool function = u.source->kind == UnitKind::function;
+  open_arrays_ = s.section == Section::in_out || (s.section == Section::input && function);
   v.type = s.type ? resolve(*s.type) : elementary(Kind::error);
+  open_arrays_ = false;
   const bool alias = s.section == Section::external;
   if (alias) {
     const auto g = globals_by_name_.find(key_of(s.name));
@@ -355,10 +380,11 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
     if (!s.address.empty()) {
       declare_located(v, s);
     } else {
-      const bool reference = s.section == Section::in_out;
+      const bool reference = s.section == Section::in_out || v.type->open;
       v.root = reference ? ir::Root::reference : ir::Root::instance;
       v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference, s.constant});
       if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
+      if (v.type->open) append(*u.frame, {s.name + "$limits", limits_type(), 0, false, true});
     }
   }
   if (v.constant && !s.initial && !alias)

@@ -428,6 +428,10 @@ ExprPtr Analyzer::assignable(ExprPtr e, const Type* to) {
     report_.error(e->at, texts::kInstanceCopy, {to->name});
     return bad(e->at);
   }
+  if (from.open || to->open) {
+    report_.error(e->at, texts::kOpenArrayWhole, {from.open ? from.name : to->name});
+    return bad(e->at);
+  }
   if (to->kind == Kind::character && from.kind == Kind::string && e->kind == ExprKind::constant &&
       e->value.s.size() == 1)
     return convert(std::move(e), to);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cctype>
+#include <limits>
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
@@ -57,7 +58,10 @@ void Analyzer::note_write(Variable& v, bool global, const Location& at) {
   }
   for (const Variable* f : for_variables_)
     if (f == &v) report_.error(at, texts::kWriteFor, {v.name});
-  if (!global && v.section == Section::input) report_.warning(at, texts::kWriteInput, {v.name});
+  if (!global && v.section == Section::input && v.bound())
+    report_.error(at, texts::kWriteBoundInput, {v.name});
+  else if (!global && v.section == Section::input)
+    report_.warning(at, texts::kWriteInput, {v.name});
   if (global) v.writers.insert(current_);
   if (v.root == ir::Root::shared) check_place_writer(v.cell, at, v.name);
 }
@@ -232,7 +236,9 @@ std::optional<ir::Place> Analyzer::place_of_index(const Expression& e, bool writ
       report_.error(e.operands[i]->location, texts::kIndexType, {index->type->name});
       return std::nullopt;
     }
-    if (index->kind == ir::ExprKind::constant) {
+    if (t.open) {
+      base->steps.push_back(open_step(*base, std::move(index)));
+    } else if (index->kind == ir::ExprKind::constant) {
       if (index->value.i < t.range.low || index->value.i > t.range.high) {
         report_.error(
             e.operands[i]->location, texts::kIndexRange,
@@ -245,6 +251,34 @@ std::optional<ir::Place> Analyzer::place_of_index(const Expression& e, bool writ
     }
   }
   return base;
+}
+
+// The limits of the first dimension of an ARRAY[*]: behind its address, one for each dimension.
+ir::Place Analyzer::limits_of(const ir::Place& array) {
+  ir::Place out;
+  out.root = ir::Root::reference;
+  out.cell = array.cell + 4;
+  out.offset = static_cast<std::uint32_t>(array.steps.size() * sizeof(ir::Limits));
+  out.type = limits_type();
+  return out;
+}
+
+ir::Step Analyzer::open_step(const ir::Place& array, ExprPtr index) {
+  const Location at = index->at;
+  const Type* lint = elementary(Kind::lint);
+  if (cell_of(*index->type) == Cell::u64 && index->kind != ir::ExprKind::constant) {  // stays too large
+    ExprPtr cut = node(ir::ExprKind::binary, index->type, at);
+    cut->op = Op::min;
+    Constant most;
+    most.i = std::numeric_limits<std::int64_t>::max();
+    cut->args.push_back(std::move(index));
+    cut->args.push_back(make_constant(cut->type, most, at));
+    index = std::move(cut);
+  }
+  ir::Step s;
+  s.index = convert(std::move(index), lint);
+  s.limits = load(limits_of(array), at);
+  return s;
 }
 
 // One character of a string, counted from 1 (6.3.3); beyond the capacity is an index fault.

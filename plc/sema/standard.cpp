@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
@@ -420,7 +421,7 @@ ExprPtr Analyzer::text_call(std::string_view key, const Expression& e) {
   return native(which, result, e.location, std::move(args));
 }
 
-// Limits of an array as constants (IEC 61131-3:2013, 6.5.3.3).
+// Limits of an array: constants, but of an ARRAY[*] those of the actual one (IEC 61131-3:2013, 6.5.3.4).
 ExprPtr Analyzer::bound_call(std::string_view key, const Expression& e) {
   const auto in = inputs(e, key, {"ARR", "DIM"}, 2, 2);
   if (in.empty()) return bad(e.location);
@@ -428,10 +429,18 @@ ExprPtr Analyzer::bound_call(std::string_view key, const Expression& e) {
   const auto dimension = constant_integer(*in[1]);
   if (!array || !dimension) return bad(e.location);
   const Type* t = array->type;
-  for (std::int64_t i = 1; i < *dimension && t->kind == Kind::array; ++i) t = t->base;
+  std::int64_t open = 0;
+  for (std::int64_t i = 1; i < *dimension && t->kind == Kind::array; ++i, t = t->base) open += t->open;
   if (t->kind != Kind::array || *dimension < 1) {
     report_.error(in[0]->location, texts::kNotArray, {t->name});
     return bad(e.location);
+  }
+  if (t->open) {
+    ir::Place limit = limits_of(*array);
+    limit.offset += static_cast<std::uint32_t>(open * static_cast<std::int64_t>(sizeof(ir::Limits)));
+    if (key != "LOWER_BOUND") limit.offset += offsetof(ir::Limits, high);
+    limit.type = elementary(Kind::lint);
+    return convert(load(std::move(limit), e.location), elementary(Kind::dint));
   }
   Constant c;
   c.i = key == "LOWER_BOUND" ? t->range.low : t->range.high;

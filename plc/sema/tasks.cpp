@@ -33,6 +33,15 @@ ir::Stmt invoke_at(std::uint32_t base, const Type* frame, int unit, const Locati
 }
 }  // namespace
 
+// Without a variable behind it a VAR_IN_OUT of a program would lead nowhere.
+void Analyzer::all_bound(int unit, const std::vector<const Variable*>& given, const Location& at) {
+  const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
+  for (const Variable& v : u.variables)
+    if (v.bound() && std::find(given.begin(), given.end(), &v) == given.end())
+      report_.error(at, v.section == Section::input ? texts::kInputMissing : texts::kInOutMissing,
+                    {u.source->name, v.name});
+}
+
 void Analyzer::default_task() {
   ir::Unit body_unit;
   body_unit.name = "cycle";
@@ -40,6 +49,7 @@ void Analyzer::default_task() {
     const syntax::Unit& u = source_.units[i];
     if (u.kind != UnitKind::program || scopes_[i].frame == nullptr) continue;
     const std::uint32_t base = instance(u.name, static_cast<int>(i));
+    all_bound(static_cast<int>(i), {}, u.location);
     body_unit.body.push_back(invoke_at(base, scopes_[i].frame, static_cast<int>(i), u.location));
   }
   if (body_unit.body.empty()) report_.error({0, 1, 1}, texts::kNoProgram);
@@ -106,6 +116,7 @@ void Analyzer::program_call(const syntax::ProgramInstance& p, ir::Block& out) {
     matched.push_back(v);
   }
   if (std::find(matched.begin(), matched.end(), nullptr) != matched.end()) return;
+  all_bound(unit, matched, p.location);
   for (std::size_t i = 0; i < matched.size(); ++i)
     if (!p.arguments[i].output) block_input(p.arguments[i], *matched[i], where, out);
   out.push_back(invoke_at(where.cell, where.type, unit, p.location));

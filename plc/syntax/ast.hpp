@@ -146,7 +146,7 @@ struct Statement {
 struct TypeReference {
   Location location;
   std::string name;  ///< elementary, user type, or ARRAY, STRING, STRUCT
-  std::vector<std::pair<ExpressionPtr, ExpressionPtr>> ranges;  ///< of an array
+  std::vector<std::pair<ExpressionPtr, ExpressionPtr>> ranges;  ///< of an array; two nulls: *
   std::unique_ptr<TypeReference> element;
   ExpressionPtr length;                                       ///< of a string
   ExpressionPtr low, high;                                    ///< of a subrange

@@ -194,6 +194,10 @@ void Parser::array_type(TypeReference& t) {
   t.name = take().key;
   expect("[");
   do {
+    if (accept("*")) {
+      t.ranges.emplace_back();
+      continue;
+    }
     ExpressionPtr low = expression();
     expect("..");
     t.ranges.emplace_back(std::move(low), expression());

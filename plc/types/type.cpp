@@ -191,10 +191,18 @@ Conversion conversion(const Type& from, const Type& to) noexcept {
   if (&from == &to || from.kind == Kind::error || to.kind == Kind::error) return Conversion::same;
   if (from.kind == Kind::enumeration || to.kind == Kind::enumeration) return Conversion::none;
   if (is_elementary(from.kind) && is_elementary(to.kind)) return between(from.kind, to.kind);
-  if (from.kind == Kind::array && to.kind == Kind::array && from.range.count() == to.range.count() &&
-      from.range.low == to.range.low)
+  if (from.kind == Kind::array && to.kind == Kind::array && !from.open && !to.open &&
+      from.range.count() == to.range.count() && from.range.low == to.range.low && from.size == to.size)
     return conversion(*from.base, *to.base) == Conversion::same ? Conversion::same : Conversion::none;
   return Conversion::none;
+}
+
+bool binds(const Type& actual, const Type& formal) noexcept {
+  const Type *a = &actual, *f = &formal;
+  if (a->kind == Kind::error || f->kind == Kind::error) return true;
+  for (; f->open; a = a->base, f = f->base)
+    if (a->kind != Kind::array) return false;
+  return a == f || (!a->open && a->size == f->size && conversion(*a, *f) == Conversion::same);
 }
 
 TypeTable::TypeTable() {
@@ -220,7 +228,8 @@ const Type* TypeTable::string(std::uint32_t capacity) {
 
 const Type* TypeTable::array(const Type* element, Dimension range) {
   for (const Type& t : all_)
-    if (t.kind == Kind::array && t.base == element && t.range.low == range.low && t.range.high == range.high)
+    if (t.kind == Kind::array && !t.open && t.base == element && t.range.low == range.low &&
+        t.range.high == range.high)
       return &t;
   Type* t = add(Kind::array, "ARRAY[" + std::to_string(range.low) + ".." + std::to_string(range.high) +
                                  "] OF " + element->name);
@@ -231,6 +240,16 @@ const Type* TypeTable::array(const Type* element, Dimension range) {
   if (!element->image.empty())
     for (std::int64_t i = 0; i < range.count(); ++i)
       t->image.insert(t->image.end(), element->image.begin(), element->image.end());
+  return t;
+}
+
+const Type* TypeTable::open_array(const Type* element) {
+  for (const Type& t : all_)
+    if (t.open && t.base == element) return &t;
+  Type* t = add(Kind::array, "ARRAY[*] OF " + element->name);
+  t->open = true;
+  t->base = element;
+  t->range = {0, -1};
   return t;
 }
 

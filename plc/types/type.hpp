@@ -79,6 +79,7 @@ struct Type {
   Dimension limits;
   const Type* base = nullptr;  ///< element of an array, integer under an enumeration or subrange
   Dimension range;             ///< of an array (several dimensions are arrays of arrays)
+  bool open = false;           ///< ARRAY[*]: the limits come with the actual array, `range` is empty
   std::vector<Field> fields;   ///< of a structure or function block
   std::vector<EnumValue> values;
   std::int32_t block = -1;          ///< function block: index of its body
@@ -112,6 +113,8 @@ void integer_limits(Kind k, std::int64_t& low, std::uint64_t& high) noexcept;
 /// How a value of one type gets into a variable of another.
 enum class Conversion : std::uint8_t { same, widening, narrowing, none };
 Conversion conversion(const Type& from, const Type& to) noexcept;
+/// Whether a variable of one type can stand for one of the other: a parameter that is bound, not copied.
+bool binds(const Type& actual, const Type& formal) noexcept;
 
 /// All types of a compilation.
 class TypeTable {
@@ -124,6 +127,8 @@ class TypeTable {
   /// STRING[capacity], 1 to 254 characters.
   const Type* string(std::uint32_t capacity);
   const Type* array(const Type* element, Dimension range);
+  /// ARRAY[*] of it, for parameters (IEC 61131-3:2013, 6.5.3.4); it has no size.
+  const Type* open_array(const Type* element);
   /// A new type that the caller fills; named types are found again by find().
   Type* add(Kind k, std::string name);
   /// Declares a name for a type; false when the name is taken.

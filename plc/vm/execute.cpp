@@ -275,6 +275,15 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
   op##_g : SINGLE_##op(PLAIN); \
   op##_x : SINGLE_##op(MIXED);
 
+// a := address of the element of an ARRAY[*]: limits `aux` behind the address in extra, index c, base b.
+#define SINGLE_index_open(AT)                                                                           \
+  {                                                                                                     \
+    const auto r = get<ir::Limits>(mem + get<std::uint32_t>(m.extra[0]) + ip->aux);                     \
+    const auto i = get<std::int64_t>(AT(ip->c));                                                        \
+    if (i < r.low || i > r.high) FAIL(Fault::index_out_of_range);                                       \
+    put(AT(ip->a), static_cast<std::uint32_t>(get<std::uint32_t>(AT(ip->b)) + (i - r.low) * r.stride)); \
+  }                                                                                                     \
+  NEXT()
 #define SINGLE_not_bool(AT)    \
   *AT(ip->a) = *AT(ip->b) ^ 1; \
   NEXT()

@@ -11,11 +11,12 @@ namespace servogate::plc::vm {
 
 // One row for each cell, in the order of plc::Cell; a group's code for a cell is its first code plus the
 // cell.
-#define PLC_INTEGER_CELLS(M, op)                                                                      \
-  M(op, i8, std::int8_t)                                                                              \
-  M(op, i16, std::int16_t)                                                                            \
-  M(op, i32, std::int32_t) M(op, i64, std::int64_t) M(op, u8, std::uint8_t) M(op, u16, std::uint16_t) \
-      M(op, u32, std::uint32_t) M(op, u64, std::uint64_t)
+#define PLC_INTEGER_CELLS(M, op) \
+  M(op, i8, std::int8_t)         \
+  M(op, i16, std::int16_t)       \
+  M(op, i32, std::int32_t)       \
+  M(op, i64, std::int64_t)       \
+  M(op, u8, std::uint8_t) M(op, u16, std::uint16_t) M(op, u32, std::uint32_t) M(op, u64, std::uint64_t)
 #define PLC_NUMBER_CELLS(M, op) PLC_INTEGER_CELLS(M, op) M(op, f32, float) M(op, f64, double)
 #define PLC_WIDTHS(M, op) \
   M(op, w1, std::uint8_t) M(op, w2, std::uint16_t) M(op, w4, std::uint32_t) M(op, w8, std::uint64_t)
@@ -45,6 +46,7 @@ namespace servogate::plc::vm {
   PLC_INTEGER_CELLS(INDEX, index_at)                                          \
   PLC_INTEGER_CELLS(INDEX, index_add)                                         \
   PLC_INTEGER_CELLS(CHECK, check)                                             \
+  SINGLE(index_open)                                                          \
   SINGLE(not_bool)                                                            \
   SINGLE(move_bytes)                                                          \
   SINGLE(load_bytes)                                                          \

@@ -83,8 +83,10 @@ Evaluator::Address Evaluator::address(const ir::Place& p, std::uint32_t self) {
   for (const ir::Step& s : p.steps) {
     const Value index = evaluate(*s.index, self);
     const bool huge = cell_of(*s.index->type) == Cell::u64 && index.i < 0;
-    if (huge || index.i < s.low || index.i > s.high) throw Stopped{Fault::index_out_of_range};
-    a.at += static_cast<std::uint32_t>((index.i - s.low) * s.stride);
+    ir::Limits limits{s.low, s.high, s.stride};
+    if (s.limits) std::memcpy(&limits, memory.data() + address(s.limits->place, self).at, sizeof limits);
+    if (huge || index.i < limits.low || index.i > limits.high) throw Stopped{Fault::index_out_of_range};
+    a.at += static_cast<std::uint32_t>((index.i - limits.low) * limits.stride);
   }
   return a;
 }
@@ -305,7 +307,7 @@ Evaluator::Value Evaluator::call(const ir::Expr& e, std::uint32_t self) {
     const ir::Parameter& p = e.parameters[i];
     if (p.value) {
       store({frame + p.offset, -1}, *p.type, values[i]);
-    } else if (p.section == syntax::Section::in_out) {
+    } else if (p.section != syntax::Section::output) {
       const std::uint32_t at = address(p.place, self).at;
       std::memcpy(memory.data() + frame + p.offset, &at, 4);
     }

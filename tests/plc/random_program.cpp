@@ -46,6 +46,13 @@ class Writer {
         locals() + "END_VAR\n" + statements(2, 3) + "Fn := " + expression(2, 3) +
         ";\nio2 := " + expression(2, 2) + ";\nEND_FUNCTION\n";
     text +=
+        "FUNCTION Total : DINT\nVAR_INPUT a : ARRAY[*] OF DINT; END_VAR\nVAR_IN_OUT m : ARRAY[*, *] OF Rec; "
+        "END_VAR\nVAR i, j : DINT; END_VAR\nFOR i := LOWER_BOUND(a, 1) TO UPPER_BOUND(a, 1) DO\n"
+        "Total := Total * 3 + a[i];\nEND_FOR;\nFOR i := LOWER_BOUND(m, 1) TO UPPER_BOUND(m, 1) DO\n"
+        "FOR j := UPPER_BOUND(m, 2) TO LOWER_BOUND(m, 2) BY -1 DO\nm[i, j].m2 := m[i, j].m2 + Total + " +
+        number(pick(9)) + ";\nEND_FOR;\nEND_FOR;\nTotal := a[" + number(pick(2)) + " + LOWER_BOUND(m, " +
+        number(1 + pick(2)) + ")];\nEND_FUNCTION\n";
+    text +=
         "FUNCTION_BLOCK Blk\nVAR_INPUT p2 : DINT; p1 : INT; END_VAR\nVAR_IN_OUT io2 : DINT; END_VAR\nVAR" +
         locals() + "END_VAR\nVAR_TEMP tmp : INT := 3; END_VAR\n" + statements(2, 4) +
         "tmp := tmp + 1;\nio2 := io2 + tmp;\nEND_FUNCTION_BLOCK\n";
@@ -64,7 +71,9 @@ class Writer {
     for (int s = 0; s < kSortCount; ++s)
       out += "\n  v" + number(s) + " : " + kSorts[s].name + " := " + kSorts[s].literals[pick(4)] + "; a" +
              number(s) + " : ARRAY[-1..2] OF " + kSorts[s].name + ";";
-    return out + "\n  rec, rec2 : Rec; recs : ARRAY[1..2, 0..1] OF Rec; i, j, k : DINT; n : INT;\n";
+    return out +
+           "\n  rec, rec2 : Rec; recs : ARRAY[1..2, 0..1] OF Rec; few : ARRAY[0..0, -1..1] OF Rec; i, j, k : "
+           "DINT; n : INT;\n";
   }
 
   std::string index(int low, int high) {
@@ -196,6 +205,8 @@ class Writer {
                ", io2 := " + (pick(2) == 0 ? "v2" : "a2[" + index(-1, 2) + "]") + ");\n";
       default:
         if (function_) return "v1 := v1 + p1;\n";
+        if (pick(3) == 0)
+          return "v2 := v2 + Total(a2, recs);\nv1 := v1 + DINT_TO_INT(Total(m := few, a := a2));\n";
         return "v2 := Fn(p2 := " + expression(2, 2) +
                ", io2 := " + (pick(2) == 0 ? "rec.m2" : "a2[" + index(-1, 2) + "]") +
                ") + v2 * Fn(p2 := Fn(p2 := 1, io2 := v2), p1 := v1, io2 := v2);\n";
