@@ -18,6 +18,13 @@ const text::Entry kStartNowForbidden{
     "cli.start-now-forbidden",
     "--start-now is not allowed by this machine file ([run] allow_start_now = true allows it)",
     "--start-now не разрешён файлом станка (разрешает [run] allow_start_now = true)"};
+const text::Entry kNoStartButton{"cli.no-start-button",
+                                 "the buses are real and the machine file names no start button ([run] "
+                                 "start_point), so nothing would ever start: "
+                                 "name one, or use `servogate up`, `home` and `start`",
+                                 "шины настоящие, а кнопка пуска в файле станка не названа ([run] "
+                                 "start_point), поэтому ничего не начнётся: "
+                                 "назовите её или используйте `servogate up`, `home` и `start`"};
 const text::Entry kLeavesTravel{"cli.leaves-travel", "{0} moves from {1} to {2}; its travel is {3} to {4}",
                                 "{0} движется от {1} до {2}; ход оси от {3} до {4}"};
 

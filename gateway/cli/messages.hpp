@@ -14,6 +14,7 @@ extern const text::Entry kOutputLost;        ///< {0} system's words
 extern const text::Entry kUnknownDialect;    ///< {0} name, {1} known ones
 extern const text::Entry kVirtualNeedsMock;  ///< {0} bus
 extern const text::Entry kStartNowForbidden;
+extern const text::Entry kNoStartButton;
 extern const text::Entry kLeavesTravel;  ///< {0} axis, {1} from, {2} to, {3} travel min, {4} travel max
 
 /// The error that was said last: what a command with --json leaves on standard output when it failed before

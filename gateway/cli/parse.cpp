@@ -189,7 +189,8 @@ class Commands {
     clock(app);
     app.add_option("--speed", o.speed, "Virtual seconds per wall-clock second, 0.001 to 100000")
         ->type_name("TIMES")
-        ->check(number_within({0.001, 100000.0, text::both("times real time", "× реального времени")}));
+        ->check(number_within({0.001, 100000.0, text::both("times real time", "× реального времени")}))
+        ->excludes("--realtime");
     app.add_option("--state", o.state, "State directory instead of the machine file's");
     app.add_option("--socket", o.socket, "Control socket instead of the default");
     app.add_option("--record", o.record, "Records inputs, requests and programs for `servogate replay`");

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/command/outputs.hpp"
 
+#include <filesystem>
+
 #include "gateway/cli/messages.hpp"
-#include "gateway/cli/options.hpp"
+#include "gateway/report/html.hpp"
+#include "gateway/report/recorded_run.hpp"
+#include "gateway/report/trace.hpp"
+#include "gateway/run/session.hpp"
 
 namespace servogate::gateway::command {
 
@@ -19,6 +24,41 @@ int check_outputs(const std::vector<files::NamedPath>& outputs, const std::strin
   if (!problem) return kDone;
   complain(*problem->entry, problem->arguments);
   return problem->wrong_use ? kWrongUse : kInfrastructure;
+}
+
+void fill_provenance(report::Provenance& p, const RunOptions& options, const machine::MachineConfig& machine,
+                     const std::vector<std::string>& command_line) {
+  report::fill_host(p);
+  p.machine = report::identify(options.machine);
+  if (!options.program.empty()) p.program = report::identify(options.program);
+  for (const std::string& source : machine.plc.sources)
+    p.plc.push_back(report::identify(machine.resolve(source)));
+  p.clock = options.clock == ClockKind::virtual_time ? "virtual"
+            : options.clock == ClockKind::realtime   ? "realtime"
+            : options.clock == ClockKind::unset      ? ""
+                                                     : "realtime=best-effort";
+  p.command_line = command_line;
+}
+
+void write_outputs_of_no_run(const RunOptions& options, const machine::LoadResult& loaded,
+                             const std::vector<std::string>& command_line) {
+  report::Report report;
+  report.error = {last_error().code, last_error().text};
+  for (const text::Finding& f : loaded.findings)
+    if (f.severity == text::Severity::error) report.findings.push_back(f);
+  fill_provenance(report.provenance, options, loaded.machine, command_line);
+  const auto write = [](const std::string& path, const std::string& content) {
+    if (path.empty()) return;
+    if (const std::string error = report::write_file(path, content); !error.empty())
+      complain(kCannotWrite, {path, error});
+  };
+  write(options.trace, report::CsvSink::header(trace_layout(loaded.machine)) + "\n");
+  write(options.report, report::to_json(report));
+  report::HtmlOptions html;
+  html.title = loaded.machine.name;
+  html.program_name = std::filesystem::path(options.program).filename().string();
+  html.language = text::user_language();
+  write(options.html, report::to_html(report, report::RecordedRun{}, html));
 }
 
 }  // namespace servogate::gateway::command

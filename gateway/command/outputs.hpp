@@ -3,8 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "gateway/cli/options.hpp"
 #include "gateway/files/output_files.hpp"
 #include "gateway/machine/load.hpp"
+#include "gateway/report/report.hpp"
 
 namespace servogate::gateway::command {
 
@@ -12,5 +14,13 @@ namespace servogate::gateway::command {
 /// the machine's files and `others`; otherwise the exit code, after saying why. `state`: folder, empty: none.
 int check_outputs(const std::vector<files::NamedPath>& outputs, const std::string& state,
                   const machine::LoadResult& machine, const std::vector<files::NamedPath>& others);
+
+/// Where the report of a run comes from: host, files, clock, command line.
+void fill_provenance(report::Provenance& provenance, const RunOptions& options,
+                     const machine::MachineConfig& machine, const std::vector<std::string>& command_line);
+/// Trace, report and page of a `run` that ended before its first cycle, so that no older file is taken for
+/// them: a trace without rows, a report whose `error` is what was said last.
+void write_outputs_of_no_run(const RunOptions& options, const machine::LoadResult& loaded,
+                             const std::vector<std::string>& command_line);
 
 }  // namespace servogate::gateway::command

@@ -53,13 +53,22 @@ const text::Entry kProgress{"run.progress", "{0} of about {1} blocks, {2} s, abo
 const text::Entry kStoppedEarly{"run.stopped-early",
                                 "stopped by the operator before the first block; the drives are off",
                                 "остановлено оператором до первого кадра; приводы выключены"};
+const text::Entry kPressFirst{"run.press-first",
+                              "nothing moves yet: the start button '{0}' switches the drives on and homes; "
+                              "pressed again it starts the program",
+                              "пока ничего не движется: кнопка пуска «{0}» включает приводы и выводит оси в "
+                              "ноль; второе нажатие запускает "
+                              "программу"};
+const text::Entry kPressSecond{"run.press-second", "ready: the start button '{0}' starts the program",
+                               "готово: кнопка пуска «{0}» запускает программу"};
 const text::Entry kMissing{"run.missing", "  {0}\n    {1}", "  {0}\n    {1}"};
 const text::Entry kBroken{"run.broken-off", "broken off: {0} of about {1} blocks in {2} s of machine time",
                           "прервано: кадров {0} примерно из {1}, машинное время {2} с"};
 
 constexpr double kPatience_s = 60.0;       ///< of machine time, where --patience says nothing
 constexpr double kSilentWait_s = 5.0;      ///< a longer wait is said
-constexpr double kProgressPause_s = 0.25;  ///< of wall-clock time
+constexpr double kProgressPause_s = 0.25;  ///< of wall-clock time, on a terminal
+constexpr double kLogPause_s = 10.0;       ///< and in a file or pipe
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point begin) {
@@ -77,13 +86,17 @@ class Run {
 
   int prepare();
   int execute(const std::vector<std::string>& command_line);
+  /// Trace, report and page are written.
+  bool reported() const { return reported_; }
 
  private:
+  bool waits_for_start() const { return !loaded_.machine.nothing_real() && !options_.start_now; }
   bool realtime() const { return options_.clock != ClockKind::virtual_time; }
   OperatorScript::Wishes wishes() const;
   bool virtual_loop(OperatorScript& script, Session& session);
   bool realtime_loop(OperatorScript& script, Session& session);
   void take_answers(OperatorScript& script);
+  void prompt(const OperatorScript& script);
   void note_missing(const OperatorScript& script, const image::ProcessImage& image,
                     const cycle::AlarmSnapshot& alarms);
   double patience() const;
@@ -107,14 +120,16 @@ class Run {
   long long estimate_blocks_ = 0;
   Clock::time_point begin_;
   double wall_s_ = 0.0;
-  double last_progress_ = -1.0;
+  double last_progress_ = 0.0;
   bool line_open_ = false;                 ///< a progress line stands on the terminal
   std::int32_t message_said_ = 0;          ///< newest message of the program that was printed
   image::Nanoseconds wait_said_ = -1;      ///< beginning of the wait that was printed
   std::vector<MissingCondition> missing_;  ///< for the drives to be on, when the script gave up on them
   bool missing_noted_ = false;
+  OperatorScript::Stage prompted_ = OperatorScript::Stage::done;  ///< what the operator was last asked for
   std::int64_t overruns_ = 0;
   bool infrastructure_ = false;
+  bool reported_ = false;
 };
 
 int Run::prepare() {
@@ -164,7 +179,9 @@ OperatorScript::Wishes Run::wishes() const {
   OperatorScript::Wishes w;
   w.program = !options_.program.empty();
   w.override_ratio = options_.override_percent / 100.0;
-  w.wait_for_start = !loaded_.machine.nothing_real() && !options_.start_now;
+  w.wait_for_start = waits_for_start();
+  if (const machine::PointConfig* button = loaded_.machine.point(loaded_.machine.run.start_point))
+    w.start_place = button->place;
   w.patience_s = patience();
   w.letters = loaded_.machine.letters();
   w.letters.resize(loaded_.machine.program_axes());
@@ -190,6 +207,18 @@ void Run::take_answers(OperatorScript& script) {
   image::Answer answer;
   while (control_->cycle().take_answer(answer)) script.take(answer);
   for (static int seen = 0; seen < signals_seen(); ++seen) script.interrupt();
+  prompt(script);
+}
+
+/// At a real machine a person starts: what pressing the button does next.
+void Run::prompt(const OperatorScript& script) {
+  if (!waits_for_start() || script.stage() == prompted_) return;
+  const std::string& button = loaded_.machine.run.start_point;
+  if (script.stage() == OperatorScript::Stage::button)
+    std::fprintf(stderr, "%s\n", say(kPressFirst, {button}).c_str());
+  if (script.stage() == OperatorScript::Stage::start)
+    std::fprintf(stderr, "%s\n", say(kPressSecond, {button}).c_str());
+  prompted_ = script.stage();
 }
 
 /// As it was in the cycle in which the script gave up, before it switches off what is on.
@@ -270,15 +299,16 @@ void Run::follow(const image::ProcessImage& image) {
 
 void Run::progress(const image::ProcessImage& image) {
   const double wall = seconds_since(begin_);
-  if (estimate_blocks_ == 0 || isatty(2) == 0 || wall - last_progress_ < kProgressPause_s) return;
+  const bool terminal = isatty(2) != 0;
+  if (estimate_blocks_ == 0 || wall - last_progress_ < (terminal ? kProgressPause_s : kLogPause_s)) return;
   last_progress_ = wall;
   const std::int64_t done = image.processes[0].blocks_done;
   const double part = static_cast<double>(done) / static_cast<double>(estimate_blocks_);
   const std::string line = say(kProgress, {std::to_string(done), std::to_string(estimate_blocks_),
                                            text::number(image.now.seconds(), 1),
                                            text::number(std::max(0.0, estimate_s_ * (1.0 - part)), 0)});
-  std::fprintf(stderr, "\r%s   ", line.c_str());
-  line_open_ = true;
+  std::fprintf(stderr, terminal ? "\r%s   " : "%s\n", line.c_str());
+  line_open_ = terminal;
 }
 
 void Run::end_progress() {
@@ -295,6 +325,7 @@ int Run::finish(const OperatorScript& script, Session& session,
     complain(kCannotWrite, {path, named ? error.substr(error.rfind(": ") + 2) : error});
     infrastructure_ = true;
   };
+  reported_ = true;
   follow(control_->cycle().image());
   end_progress();
   written(options_.trace, session.close());
@@ -309,16 +340,8 @@ int Run::finish(const OperatorScript& script, Session& session,
     report.wait = {std::string(w.reason), w.text, w.remedy, w.file, w.line, patience()};
   }
   report::Provenance& p = report.provenance;
-  report::fill_host(p);
-  p.machine = report::identify(options_.machine);
-  if (!options_.program.empty()) p.program = report::identify(options_.program);
-  for (const std::string& source : loaded_.machine.plc.sources)
-    p.plc.push_back(report::identify(loaded_.machine.resolve(source)));
+  fill_provenance(p, options_, loaded_.machine, command_line);
   p.dialect = program_->dialect;
-  p.clock = options_.clock == ClockKind::virtual_time ? "virtual"
-            : options_.clock == ClockKind::realtime   ? "realtime"
-                                                      : "realtime=best-effort";
-  p.command_line = command_line;
   if (!options_.report.empty())
     written(options_.report, report::write_file(options_.report, report::to_json(report)));
   if (!options_.html.empty()) {
@@ -400,10 +423,11 @@ bool Run::save_state() {
 
 }  // namespace
 
-int run(const RunOptions& given, const std::vector<std::string>& command_line) {
-  RunOptions options = given;
+namespace {
+
+/// What has to be right before a control is composed: kDone, or the exit code after saying why.
+int refuse_early(RunOptions& options, const machine::LoadResult& loaded) {
   if (!options.dialect.empty() && !known_dialect(options.dialect)) return kWrongUse;
-  const machine::LoadResult loaded = machine::load(options.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
   if (options.clock == ClockKind::unset)
     options.clock = loaded.machine.virtual_time() && loaded.machine.nothing_real() ? ClockKind::virtual_time
@@ -414,10 +438,22 @@ int run(const RunOptions& given, const std::vector<std::string>& command_line) {
         complain(kVirtualNeedsMock, {bus.url});
         return kWrongUse;
       }
-  if (options.start_now && !loaded.machine.nothing_real() && !loaded.machine.run.allow_start_now) {
+  if (options.start_now && !loaded.machine.run.allow_start_now && !loaded.machine.nothing_real()) {
     complain(kStartNowForbidden, {});
     return kWrongUse;
   }
+  if (!loaded.machine.nothing_real() && !options.start_now && loaded.machine.run.start_point.empty()) {
+    complain(kNoStartButton, {});
+    return kWrongUse;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int run(const RunOptions& given, const std::vector<std::string>& command_line) {
+  RunOptions options = given;
+  const machine::LoadResult loaded = machine::load(options.machine);
   if (const int code =
           check_outputs({{"--trace", options.trace},
                          {"--report", options.report},
@@ -427,9 +463,12 @@ int run(const RunOptions& given, const std::vector<std::string>& command_line) {
                         {{text::both("the part program", "управляющую программу"), options.program}});
       code != kDone)
     return code;
+  int code = refuse_early(options, loaded);
   Run run(options, loaded);
-  if (const int code = run.prepare(); code != kDone) return code;
-  return run.execute(command_line);
+  if (code == kDone) code = run.prepare();
+  if (code == kDone) code = run.execute(command_line);
+  if (!run.reported()) write_outputs_of_no_run(options, loaded, command_line);
+  return code;
 }
 
 }  // namespace servogate::gateway::command

@@ -154,6 +154,7 @@ Json json_of(const Report& r) {
   out["blocks"] = r.blocks;
   if (r.blocks_expected > 0) out["blocks_expected"] = r.blocks_expected;
   if (r.wait) out["wait"] = to_json(*r.wait);
+  if (r.error) out["error"] = {{"code", r.error->code}, {"text", r.error->text}};
   for (const text::Finding& f : r.findings) out["findings"].push_back(to_json(f));
   out["alarms"] = Json::array();
   for (const AlarmEntry& a : r.alarms) out["alarms"].push_back(to_json(a));

@@ -18,7 +18,9 @@ constexpr double kRestPatience_s = 10.0;
 }  // namespace
 
 OperatorScript::OperatorScript(Wishes wishes, Post post)
-    : wishes_(std::move(wishes)), post_(std::move(post)) {}
+    : wishes_(std::move(wishes)),
+      post_(std::move(post)),
+      stage_(wishes_.wait_for_start ? Stage::button : Stage::power) {}
 
 void OperatorScript::send(RequestKind kind, double value) {
   post_({.id = next_id_++, .asker = image::Asker::command_line, .kind = kind, .value = value});
@@ -101,6 +103,12 @@ void OperatorScript::poll(const ProcessImage& image) {
     return power_down(Outcome::refused, image);
   }
   switch (stage_) {
+    case Stage::button: {
+      const bool pressed = wishes_.start_place && image.packets.bit(*wishes_.start_place);
+      if (pressed && !pressed_) return enter(Stage::power, image);
+      pressed_ = pressed;
+      break;
+    }
     case Stage::power: {
       const bool offline = missing([](const image::AxisImage& a, std::size_t) { return a.drive.online; });
       if (!offline && !asked_) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,17 +12,20 @@
 namespace servogate::gateway {
 
 /// What `servogate run` does in an operator's place, one step after the other, by requests like anybody's:
-/// drives on, home what is not homed, AUTO, start, wait for the end, drives off.
+/// drives on, home what is not homed, AUTO, start, wait for the end, drives off. With `wait_for_start`
+/// nothing happens before the start button is pressed: that switches the drives on and homes, the next press
+/// starts.
 class OperatorScript {
  public:
-  enum class Stage { power, homing, start, running, power_off, done };
+  enum class Stage { button, power, homing, start, running, power_off, done };
   /// How it went. `waited`: nothing moved any more, and nobody did what the program waited for.
   enum class Outcome { under_way, finished, alarm, stopped, refused, waited };
 
   struct Wishes {
     bool program = true;  ///< false: only drives on and homing
     double override_ratio = 1.0;
-    bool wait_for_start = false;       ///< loads and waits for somebody else's start
+    bool wait_for_start = false;              ///< a person at the machine starts everything
+    std::optional<image::Place> start_place;  ///< of that person's button; needed with wait_for_start
     double patience_s = 0.0;           ///< machine time that a program may wait for somebody; 0: for ever
     std::vector<std::string> letters;  ///< of the axes that programs move; auxiliary ones are the PLC's
     std::vector<bool> needs_homing;
@@ -58,7 +62,7 @@ class OperatorScript {
 
   Wishes wishes_;
   Post post_;
-  Stage stage_ = Stage::power;
+  Stage stage_;
   Outcome outcome_ = Outcome::under_way;
   image::Answer refusal_;
   image::Answer last_refusal_;  ///< of a request that is asked again
@@ -67,7 +71,7 @@ class OperatorScript {
   image::Nanoseconds entered_ns_ = 0;
   std::uint64_t next_id_ = 1;
   bool asked_ = false;
-  bool started_ = false;
+  bool pressed_ = true;  ///< the start button, in the poll before; one that is stuck starts nothing
   int interrupts_ = 0, interrupts_done_ = 0;
 };
 

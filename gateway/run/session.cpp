@@ -20,16 +20,6 @@ constexpr std::string_view kFollowed[] = {
     "t_ack",   "enabled",  "homed",    "in_position", "on_limit_plus", "on_limit_minus", "brake_release",
     "run",     "at_speed", "estop_ok", "power_on",    "ready",         "alarm"};
 
-report::TraceLayout layout_of(const Control& control) {
-  const machine::MachineConfig& m = control.machine();
-  report::TraceLayout layout;
-  layout.period_ns = m.cycle_ns();
-  layout.axes = m.letters();
-  layout.spindles = static_cast<int>(m.spindles.size());
-  layout.signals = trace_signals(m);
-  return layout;
-}
-
 std::vector<std::string> phase_names() {
   std::vector<std::string> names;
   for (int p = 0; p < cycle::kPhases; ++p) names.emplace_back(cycle::name(static_cast<cycle::Phase>(p)));
@@ -63,9 +53,18 @@ std::vector<report::TraceSignal> trace_signals(const machine::MachineConfig& mac
   return signals;
 }
 
+report::TraceLayout trace_layout(const machine::MachineConfig& machine) {
+  report::TraceLayout layout;
+  layout.period_ns = machine.cycle_ns();
+  layout.axes = machine.letters();
+  layout.spindles = static_cast<int>(machine.spindles.size());
+  layout.signals = trace_signals(machine);
+  return layout;
+}
+
 Session::Session(Control& control, const Outputs& outputs, bool realtime)
     : control_(control),
-      layout_(layout_of(control)),
+      layout_(trace_layout(control.machine())),
       sampled_(layout_),
       realtime_(realtime),
       statistics_(layout_),

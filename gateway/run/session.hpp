@@ -56,4 +56,7 @@ class Session {
 /// looks for.
 std::vector<report::TraceSignal> trace_signals(const machine::MachineConfig& machine);
 
+/// The columns of a machine's trace.
+report::TraceLayout trace_layout(const machine::MachineConfig& machine);
+
 }  // namespace servogate::gateway

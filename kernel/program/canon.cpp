@@ -53,7 +53,7 @@ std::optional<text::Finding> write_canon(Interpreter& interpreter, const Machine
     append_json(text, command, letters, interpreter.files());
     return line(text);
   };
-  return run_dry(interpreter, on_command, kDryRunBlocks + interpreter.block_count());
+  return run_dry(interpreter, on_command, kDryRunBlocks);
 }
 
 }  // namespace servogate::program

@@ -10,8 +10,8 @@
 
 namespace servogate::program {
 
-/// A program that runs without a machine is stopped with an error when it has executed so many blocks more
-/// than it has.
+/// A program that runs without a machine is stopped with an error when it has executed so many blocks; where
+/// only the endless one is looked for (check), so many more than it has.
 inline constexpr long long kDryRunBlocks = 1'000'000;
 
 /// What one run of a program without a machine has shown.

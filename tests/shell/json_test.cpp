@@ -24,7 +24,6 @@ constexpr Failing kFailing[] = {
     {"$SG run none.toml --json", 2, "machine.file_missing"},
     {"$SG run $MILL none.nc --json", 2, "cli.cannot-read"},
     {"$SG run $MILL --dialect esperanto --json", 2, "cli.unknown-dialect"},
-    {"$SG run $MILL wrong.nc --json", 1, ""},
     {"$SG canon $MILL none.nc --json", 2, "cli.cannot-read"},
     {"$SG status --socket none.sock --json", 4, "client.no-connection"},
     {"$SG jog X far --socket none.sock --json", 2, "client.bad-number"},
@@ -35,7 +34,6 @@ constexpr Failing kFailing[] = {
 
 TEST(Json, of_a_command_that_fails_before_its_work_is_one_object_with_the_error) {
   const Desk desk;
-  desk.write("wrong.nc", "N10 G0 (\n");
   for (const Failing& f : kFailing) {
     const Ended e = desk.line(f.line);
     EXPECT_EQ(e.code, f.code) << f.line << ": " << e.err;
@@ -43,14 +41,25 @@ TEST(Json, of_a_command_that_fails_before_its_work_is_one_object_with_the_error)
     ASSERT_TRUE(said.is_object()) << f.line << ": " << e.out << e.err;
     EXPECT_EQ(said["exit"], f.code) << f.line;
     EXPECT_EQ(said["schema"], 1) << f.line;
-    if (*f.error != '\0') {
-      EXPECT_EQ(said["error"]["code"], f.error) << f.line;
-    }
+    EXPECT_EQ(said["error"]["code"], f.error) << f.line;
     const std::string text = said["error"]["text"];
     EXPECT_FALSE(text.empty()) << f.line;
     EXPECT_TRUE(e.err_has(text)) << f.line << ": the same as people read: " << e.err;
   }
   EXPECT_EQ(desk.line("$SG run none.toml").out, "") << "without --json only people are told";
+}
+
+TEST(Json, of_a_run_whose_program_is_wrong_is_its_report_with_the_findings) {
+  const Desk desk;
+  desk.write("wrong.nc", "N10 G0 (\n");
+  const Ended e = desk.line("$SG run $MILL wrong.nc --json");
+  EXPECT_EQ(e.code, 1) << e.err;
+  const json report = json::parse(e.out, nullptr, false);
+  ASSERT_TRUE(report.is_object()) << e.out;
+  EXPECT_EQ(report["finished"], false);
+  EXPECT_EQ(report["cycles"], 0);
+  ASSERT_FALSE(report["findings"].empty());
+  EXPECT_EQ(report["findings"][0]["line"], 1);
 }
 
 TEST(Json, is_taken_by_canon_which_prints_nothing_else) {

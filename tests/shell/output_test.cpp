@@ -2,6 +2,8 @@
 // Standard output that cannot be written, that nobody reads, or that is not there.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include <regex>
 #include <sstream>
 
@@ -101,6 +103,55 @@ TEST(Help, of_every_command_is_in_the_users_language) {
         EXPECT_FALSE(std::regex_search(line, english_words)) << command << ": " << line;
       }
   }
+}
+
+/// Runs that end before their first cycle, with the code of what they say.
+struct NoRun {
+  const char* line;
+  int code;
+  const char* error;
+};
+
+constexpr NoRun kNoRuns[] = {
+    {"$SG run $MILL none.nc", 2, "cli.cannot-read"},
+    {"$SG run broken.toml $BRACKET", 2, ""},
+    {"$SG run $MILL $BRACKET --dialect esperanto", 2, "cli.unknown-dialect"},
+};
+
+TEST(Outputs, of_a_run_that_never_began_are_written_and_do_not_look_like_those_of_an_older_one) {
+  const Desk desk;
+  desk.write("broken.toml", "schema = 1\n[machine\n");
+  for (const NoRun& n : kNoRuns) {
+    for (const char* name : {"r.json", "t.csv", "p.html"}) desk.write(name, "an older run");
+    const Ended e = desk.line(std::string(n.line) + " --report r.json --trace t.csv --html p.html");
+    EXPECT_EQ(e.code, n.code) << n.line << e.err;
+    const auto report = nlohmann::json::parse(desk.text("r.json"), nullptr, false);
+    ASSERT_TRUE(report.is_object()) << n.line << desk.text("r.json");
+    EXPECT_EQ(report["finished"], false) << n.line;
+    EXPECT_EQ(report["cycles"], 0) << n.line;
+    if (*n.error != '\0') {
+      EXPECT_EQ(report["error"]["code"], n.error) << n.line;
+    } else {
+      EXPECT_FALSE(report["findings"].empty()) << n.line;
+    }
+    EXPECT_EQ(desk.text("t.csv").rfind("t,feed,line", 0), 0u) << n.line;
+    EXPECT_EQ(desk.text("t.csv").find('\n'), desk.text("t.csv").size() - 1) << "a header, no rows";
+    EXPECT_NE(desk.text("p.html").find("<html"), std::string::npos) << n.line;
+  }
+}
+
+TEST(Outputs, nothing_is_written_over_a_file_that_the_command_reads_even_if_that_is_broken) {
+  const Desk desk;
+  desk.write("broken.toml", "schema = 1\n[machine\n");
+  EXPECT_EQ(desk.line("$SG run broken.toml --report broken.toml").code, 2);
+  EXPECT_EQ(desk.text("broken.toml"), "schema = 1\n[machine\n");
+}
+
+TEST(Speed, of_virtual_time_and_real_time_exclude_one_another) {
+  const Desk desk;
+  const Ended e = desk.line("$SG up $MILL --speed 2 --realtime");
+  EXPECT_EQ(e.code, 2);
+  EXPECT_TRUE(e.err_has("--speed")) << e.err;
 }
 
 }  // namespace

@@ -3,8 +3,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
+#include <sstream>
+#include <thread>
 
 #include "tests/usercan/process.hpp"
 #include "tests/usercan/running_server.hpp"
@@ -61,6 +64,31 @@ TEST(Processes, the_mill_runs_in_real_time_on_a_bus_between_processes_without_ri
   const auto living = drives(machine);
   Process run({"run", machine, program(), "--realtime=best-effort", "-q"});
   EXPECT_EQ(run.wait(), 0) << run.said();
+}
+
+TEST(Processes, drives_that_may_be_real_stay_off_until_somebody_presses_the_button) {
+  const std::string socket = scratch("bus.sock"), trace = scratch("trace.csv"), log = scratch("bus.log");
+  const Process bus({"can", "bus", "can0", "--listen", "unix:" + socket, "--log", log});
+  ASSERT_TRUE(bus.says("can0 at 1000000 bit/s")) << bus.said();
+  const std::string machine = mill("socketcand:unix:" + socket + "/can0",
+                                   {{"[safety]", "[safety]\nmock_inputs_guard_real_drives = true"},
+                                    {"cycle_time = \"1 ms\"", "cycle_time = \"4 ms\""}});
+  const auto living = drives(machine);
+  Process run({"run", machine, program(), "--realtime=best-effort", "-q", "--trace", trace});
+  ASSERT_TRUE(run.says("the start button 'cycle_start' switches the drives on")) << run.said();
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 3) << run.said();
+  // Controlwords of the RPDOs: none with Enable operation (bit 3).
+  std::istringstream lines(content(log));
+  int seen = 0;
+  for (std::string line; std::getline(lines, line);)
+    for (const char* id : {" 201#", " 202#", " 203#"})
+      if (const std::size_t at = line.find(id); at != std::string::npos) {
+        ++seen;
+        EXPECT_EQ(std::stoi(line.substr(at + 5, 2), nullptr, 16) & 0x08, 0) << line;
+      }
+  EXPECT_GT(seen, 0) << "the drives were addressed";
 }
 
 TEST(Processes, the_mill_with_drives_in_lockstep_repeats_to_the_byte) {
