@@ -25,13 +25,17 @@ text::Finding too_long(const Interpreter& interpreter, int file, int line, long 
 
 std::optional<text::Finding> run_dry(Interpreter& interpreter,
                                      const std::function<bool(const Command&)>& on_command,
-                                     long long block_limit) {
+                                     long long block_limit,
+                                     const std::function<bool(const text::Finding&)>& on_error) {
   const auto packets = std::make_unique<image::Packets>();
   packets->resize(interpreter.machine().k_bytes, interpreter.machine().syvar_bytes);
   int file = 0, line = 0;
   for (;;) {
     const Step step = interpreter.next(*packets, true);
-    if (const auto* error = std::get_if<Error>(&step)) return error->finding;
+    if (const auto* error = std::get_if<Error>(&step)) {
+      const text::Finding finding = error->finding;
+      if (!on_error || !on_error(finding) || !interpreter.pass_over_error()) return finding;
+    }
     if (const auto* wait = std::get_if<NeedsSync>(&step)) line = wait->line;
     if (const auto* command = std::get_if<Command>(&step)) {
       file = command->file;

@@ -12,10 +12,12 @@ namespace servogate::program {
 /// Runs an interpreter to its end without a machine and hands over every command: packets start at zero, own
 /// writes take effect in order, NeedsSync is granted at once, waits are passed, and after `block_limit`
 /// executed blocks it stops with an error. Returns the error that ended the program, nullopt when it came to
-/// its end. `on_command` returning false ends the run early (nullopt). Not real-time safe.
+/// its end. `on_command` returning false ends the run early (nullopt). `on_error` (may be empty) sees each
+/// error; true passes over its block. Not real-time safe.
 std::optional<text::Finding> run_dry(Interpreter& interpreter,
                                      const std::function<bool(const Command&)>& on_command,
-                                     long long block_limit);
+                                     long long block_limit,
+                                     const std::function<bool(const text::Finding&)>& on_error = {});
 
 /// `servogate canon`: one JSON object a line (without line end) for each command, see docs/canon.md. The view
 /// is valid during the call only; `line` returning false ends it early. Returns the error that ended the

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kOpenTravel = 1e9;
 constexpr double kSlack = 1e-6;
+constexpr std::size_t kMostErrors = 100;  ///< of a run; somebody mends the first ones first
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -128,6 +129,68 @@ void add_travel(CheckReport& report, const Interpreter& interpreter, const Machi
        &entry(Fault::travel), outside_arguments(axis, survey.outside_value(), limit)});
 }
 
+/// What a dry run meets: each place once, and no error that only follows from a block that was passed over.
+class ErrorsOfRun {
+ public:
+  ErrorsOfRun(CheckReport& report, const Interpreter& interpreter)
+      : report_(report), interpreter_(interpreter) {}
+
+  void moves(const Command& command) {
+    if (std::holds_alternative<Rapid>(command.what) || std::holds_alternative<Line>(command.what) ||
+        std::holds_alternative<Arc>(command.what))
+      off_place_ = false;
+  }
+  bool full() const { return found_.size() >= kMostErrors; }
+  bool none() const { return found_.empty() && !any_; }
+  /// False: nothing can follow.
+  bool take(const text::Finding& f) {
+    any_ = true;
+    const bool stuck = interpreter_.executed() == executed_ && same(f, last_);
+    executed_ = interpreter_.executed();
+    last_ = f;
+    const bool follows = !found_.empty() && (is(f, Fault::block_limit) || is(f, Fault::endless) ||
+                                             (off_place_ && about_the_start(f)));
+    off_place_ = true;
+    const auto told = [&f](const text::Finding& other) { return same(f, other); };
+    const bool new_place =
+        std::none_of(found_.begin(), found_.end(), [&](const Met& m) { return told(m.finding); }) &&
+        std::none_of(report_.findings.begin(), report_.findings.end(), told);
+    if (new_place && !follows)
+      found_.push_back({f, interpreter_.machine_read() || is(f, Fault::block_limit)});
+    return !stuck && !full();
+  }
+  /// Into the report, behind what stands there.
+  void tell() {
+    for (const Met& m : found_) {
+      report_.findings.push_back(m.finding);
+      if (m.by_machine) report_.by_machine.push_back(report_.findings.size() - 1);
+    }
+  }
+
+ private:
+  struct Met {
+    text::Finding finding;
+    bool by_machine;
+  };
+  static bool is(const text::Finding& f, Fault fault) { return f.entry == &entry(fault); }
+  static bool same(const text::Finding& a, const text::Finding& b) {
+    return a.file == b.file && a.line == b.line && a.entry == b.entry;
+  }
+  /// An arc says so when it begins elsewhere than its block means.
+  static bool about_the_start(const text::Finding& f) {
+    return is(f, Fault::not_congruent) || is(f, Fault::arc_full_by_radius) || is(f, Fault::arc_too_small) ||
+           is(f, Fault::arc_zero);
+  }
+
+  CheckReport& report_;
+  const Interpreter& interpreter_;
+  std::vector<Met> found_;
+  text::Finding last_;
+  long long executed_ = -1;
+  bool any_ = false;
+  bool off_place_ = false;  ///< a block was passed over and nothing has moved since
+};
+
 }  // namespace
 
 bool CheckReport::good() const {
@@ -144,35 +207,31 @@ CheckReport check_program(std::string_view dialect, const MachineModel& machine,
   report.of_run = report.findings.size();
   report.blocks = interpreter.block_count();
   Survey survey(machine, start, report);
-  std::optional<text::Finding> refused;
   bool read_inside = false;  // a packet, before the travel was left
+  ErrorsOfRun errors(report, interpreter);
   const auto on_command = [&](const Command& command) {
     if (survey.first_outside() < 0) read_inside = interpreter.machine_read();
     survey(command);
-    if (also) refused = also(command);
+    errors.moves(command);
+    std::optional<text::Finding> refused;
+    if (also && !errors.full()) refused = also(command);
     if (!refused) return true;
     refused->file = interpreter.path(command.file);
     refused->line = command.line;
     refused->column = interpreter.column(command.file, command.line, -1);
-    return false;
+    return errors.take(*refused);
   };
-  auto error = run_dry(interpreter, on_command, kDryRunBlocks + report.blocks);
-  if (refused) error = refused;
+  const auto on_error = [&](const text::Finding& error) { return errors.take(error); };
+  const auto error = run_dry(interpreter, on_command, kDryRunBlocks + report.blocks, on_error);
+  if (error && error->entry == &entry(Fault::block_limit)) errors.take(*error);
   report.executed = interpreter.executed();
   report.files = interpreter.files();
-  report.finished = !error;
+  report.finished = !error && errors.none();
   const std::vector<text::Finding>& warnings = interpreter.warnings();
   report.findings.insert(report.findings.end(), warnings.begin(), warnings.end());
   add_travel(report, interpreter, machine, survey);
-  const auto the_machine_decides = [&] { report.by_machine.push_back(report.findings.size() - 1); };
-  if (survey.first_outside() >= 0 && read_inside) the_machine_decides();
-  const auto same = [&](const text::Finding& f) {
-    return f.file == error->file && f.line == error->line && f.entry == error->entry;
-  };
-  if (error && std::none_of(report.findings.begin(), report.findings.end(), same)) {
-    report.findings.push_back(*error);
-    if (interpreter.machine_read() || error->entry == &entry(Fault::block_limit)) the_machine_decides();
-  }
+  if (survey.first_outside() >= 0 && read_inside) report.by_machine.push_back(report.findings.size() - 1);
+  errors.tell();
   return report;
 }
 

@@ -31,8 +31,8 @@ struct CheckReport {
     int line = 0;  ///< where it is called first
     int calls = 0;
   };
-  std::vector<text::Finding> findings;  ///< all that reading gives, in file order, then the warnings and the
-                                        ///< first error of execution
+  std::vector<text::Finding> findings;  ///< all that reading gives, in file order, then the warnings and
+                                        ///< errors of execution; an error passes over its block
   std::vector<Extent> extents;          ///< index = axis of the machine
   std::vector<ToolUse> tools;           ///< in order of first use
   std::vector<std::string> files;
@@ -55,7 +55,7 @@ struct CheckReport {
 };
 
 /// Sees every command of a dry run. A finding, whose place is filled in by the run, is an error of that
-/// command and ends it.
+/// command.
 using CommandCheck = std::function<std::optional<text::Finding>(const Command&)>;
 
 /// Runs a program to its end without a machine: packets start at zero, own writes take effect in order,

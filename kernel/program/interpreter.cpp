@@ -46,6 +46,8 @@ Step Interpreter::next(const image::Packets& packets, bool synchronised) {
   return impl_->run.next(packets, synchronised);
 }
 
+bool Interpreter::pass_over_error() { return impl_->known && impl_->run.pass_over_error(); }
+
 std::vector<text::Finding> Interpreter::findings() const {
   if (!impl_->known) return {};
   return find_all(impl_->run);

@@ -107,6 +107,11 @@ class Interpreter {
   /// real-time safe. Never throws on bad programs. After End or Error it keeps returning the same.
   Step next(const image::Packets& packets, bool synchronised);
 
+  /// After an Error of a block: goes on behind it as if that block had not been there, so that `check` finds
+  /// what else is wrong. False where nothing can follow. What comes then is no program that a machine may
+  /// run.
+  bool pass_over_error();
+
   /// All findings that reading alone can give (syntax, unknown words, impossible combinations), for `check`.
   std::vector<text::Finding> findings() const;
   /// What is wrong with the machine's power-on modes and variables in this language.

@@ -81,7 +81,7 @@ TEST(CheckProgram, adds_up_path_and_dwells) {
   EXPECT_NEAR(3.5, check("TMR=1.5\nG4\n(DLY,2)").dwell_seconds, 1e-12);
 }
 
-TEST(CheckProgram, ends_where_who_sees_the_commands_objects_and_fills_in_the_place) {
+TEST(CheckProgram, tells_what_who_sees_the_commands_objects_to_at_its_place_and_goes_on) {
   int seen = 0;
   const auto objects = [&](const Command& command) -> std::optional<text::Finding> {
     ++seen;
@@ -92,7 +92,7 @@ TEST(CheckProgram, ends_where_who_sees_the_commands_objects_and_fills_in_the_pla
   };
   const CheckReport report =
       check_program("nc110", mill(), {}, "p.nc", "G0 X1\n  G0 X2\nX3", {}, Position{}, objects);
-  EXPECT_EQ(2, seen);
+  EXPECT_EQ(4, seen) << "three motions and the end";
   EXPECT_FALSE(report.finished);
   ASSERT_EQ(1u, report.findings.size());
   EXPECT_EQ(0u, report.findings[0].str().find("p.nc:2:3: error: "));
@@ -221,6 +221,42 @@ TEST(CheckProgram, names_ten_thousand_findings_of_a_file_and_says_that_there_are
   ASSERT_EQ(10'002u, wrong.findings.size()) << "an error behind them is named";
   EXPECT_EQ("p.nc:10501:4: error: the character ! has no meaning here [P201]",
             wrong.findings.back().str(text::Language::english));
+}
+
+std::vector<std::string> errors_of(const CheckReport& report) {
+  std::vector<std::string> out;
+  for (const text::Finding& f : report.findings)
+    if (f.severity == text::Severity::error)
+      out.push_back(std::to_string(f.line) + " " + std::string(f.entry->id));
+  return out;
+}
+
+TEST(CheckProgram, finds_every_error_of_the_run_not_only_the_first) {
+  using Errors = std::vector<std::string>;
+  EXPECT_EQ((Errors{"2 P706", "4 P706", "5 P801"}),
+            errors_of(check("G1 X10 F100\nG2 X20 I0 J3\nG1 X5\nG2 X40 I0 J3\nT1 G1 X10\nX9\nM30")));
+  EXPECT_EQ((Errors{"2 P707", "4 P707", "5 P305"}),
+            errors_of(check("G1 X10 F100\nG2 X20\nG1 X5\nG2 X40\nE1=1/0\nM30")));
+  EXPECT_FALSE(check("G1 X10 F100\nG2 X20\nM30").finished);
+}
+
+TEST(CheckProgram, finds_errors_of_the_run_behind_those_of_reading) {
+  const std::vector<std::string> found = errors_of(check("G1 X10 F100\nG0 !\nE1=1/0\nM30"));
+  EXPECT_EQ(2u, found.size());
+}
+
+TEST(CheckProgram, names_no_error_that_only_follows_from_a_block_that_was_passed_over) {
+  // Both arcs are right where the block before them has brought the axes there.
+  EXPECT_EQ(1u,
+            errors_of(check("G1 X0 Y0 F100\nG1 X10 Y0 T1\nG3 X0 Y10 I0 J0\nG3 X-10 Y0 I0 J0\nM30")).size());
+}
+
+TEST(CheckProgram, names_an_error_in_a_loop_once_and_ends) {
+  EXPECT_EQ(1u, errors_of(check("(RPT,50)\nE1=1/0\n(ERP)\nM30")).size());
+  EXPECT_EQ(1u, errors_of(check("(RPT,5)\nG0 X1\nM30")).size()) << "nothing follows the end of the file";
+  std::string many;
+  for (int i = 0; i < 1000; ++i) many += "E1=1/0\n";
+  EXPECT_EQ(100u, errors_of(check(many)).size());
 }
 
 TEST(CheckProgram, checks_a_program_of_more_blocks_than_a_loop_may_run) {

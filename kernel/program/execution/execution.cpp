@@ -237,6 +237,14 @@ Step Execution::stop_with(const ProgramError& error) {
   return *last_;
 }
 
+bool Execution::pass_over_error() {
+  const bool endless = since_command_ > kEndless;
+  if (!last_ || !std::holds_alternative<Error>(*last_) || power_on_error_ || mdi_ || endless) return false;
+  last_.reset();
+  if (state_.flow.line == line_ && line_ < source().lines()) ++state_.flow.line;
+  return true;
+}
+
 text::Finding Execution::finding(const ProgramError& error) const {
   text::Finding f;
   f.file = path(state_.flow.file);

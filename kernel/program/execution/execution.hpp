@@ -42,6 +42,7 @@ class Execution : public ValueSource {
             std::string text, ProgramLoader loader, const Position& start, int process);
 
   Step next(const image::Packets& packets, bool synchronised);
+  bool pass_over_error();  ///< see Interpreter
   void mdi(std::string_view block);
   /// See Interpreter.
   void reposition(const Position& at);
