@@ -42,6 +42,7 @@ void fill_provenance(report::Provenance& p, const RunOptions& options, const mac
 
 void write_outputs_of_no_run(const RunOptions& options, const machine::LoadResult& loaded,
                              const std::vector<std::string>& command_line) {
+  if (options.trace.empty() && options.report.empty() && options.html.empty()) return;
   report::Report report;
   report.error = {last_error().code, last_error().text};
   for (const text::Finding& f : loaded.findings)

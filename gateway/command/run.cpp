@@ -180,7 +180,8 @@ OperatorScript::Wishes Run::wishes() const {
   w.program = !options_.program.empty();
   w.override_ratio = options_.override_percent / 100.0;
   w.wait_for_start = waits_for_start();
-  if (const machine::PointConfig* button = loaded_.machine.point(loaded_.machine.run.start_point))
+  if (const machine::PointConfig* button =
+          loaded_.machine.point(loaded_.machine.run.start_point, &w.start_source))
     w.start_place = button->place;
   w.patience_s = patience();
   w.letters = loaded_.machine.letters();
@@ -298,6 +299,7 @@ void Run::follow(const image::ProcessImage& image) {
 }
 
 void Run::progress(const image::ProcessImage& image) {
+  if (begin_ == Clock::time_point{}) return;
   const double wall = seconds_since(begin_);
   const bool terminal = isatty(2) != 0;
   if (estimate_blocks_ == 0 || wall - last_progress_ < (terminal ? kProgressPause_s : kLogPause_s)) return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openssl/evp.h>
 #include <sys/utsname.h>
+#include <filesystem>
 
 #include <fstream>
 #include <memory>
@@ -68,7 +69,11 @@ std::optional<std::string> sha256_of_file(const std::string& path) {
   return hash.hex();
 }
 
-FileIdentity identify(const std::string& path) { return {path, sha256_of_file(path).value_or("")}; }
+FileIdentity identify(const std::string& path) {
+  std::error_code error;  // a device has no end, a pipe may have no writer
+  if (!std::filesystem::is_regular_file(path, error)) return {path, ""};
+  return {path, sha256_of_file(path).value_or("")};
+}
 
 void fill_host(Provenance& p) {
   p.version = build_identity().version;

@@ -11,6 +11,9 @@ using image::ProcessState;
 using image::RequestKind;
 
 namespace {
+/// A button that has not been released for so long, with its input known, was pressed before anybody could
+/// mean it.
+constexpr image::Nanoseconds kReleased_ns = 200'000'000;
 constexpr double kBootPatience_s = 15.0;
 constexpr double kHomingPatience_s = 300.0;
 constexpr double kPowerOffPatience_s = 5.0;
@@ -104,9 +107,17 @@ void OperatorScript::poll(const ProcessImage& image) {
   }
   switch (stage_) {
     case Stage::button: {
+      const bool known =
+          wishes_.start_source < 0 ||
+          image.sources[static_cast<std::size_t>(wishes_.start_source)].quality == image::Quality::good;
       const bool pressed = wishes_.start_place && image.packets.bit(*wishes_.start_place);
-      if (pressed && !pressed_) return enter(Stage::power, image);
-      pressed_ = pressed;
+      const image::Nanoseconds now = image.now.t_ns;
+      if (known && pressed && released_ns_ >= 0 && now - released_ns_ >= kReleased_ns)
+        return enter(Stage::power, image);
+      if (!known || pressed)
+        released_ns_ = -1;
+      else if (released_ns_ < 0)
+        released_ns_ = now;
       break;
     }
     case Stage::power: {

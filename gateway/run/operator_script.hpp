@@ -26,6 +26,7 @@ class OperatorScript {
     double override_ratio = 1.0;
     bool wait_for_start = false;              ///< a person at the machine starts everything
     std::optional<image::Place> start_place;  ///< of that person's button; needed with wait_for_start
+    int start_source = -1;                    ///< whose age says whether the button is known, -1: nobody's
     double patience_s = 0.0;           ///< machine time that a program may wait for somebody; 0: for ever
     std::vector<std::string> letters;  ///< of the axes that programs move; auxiliary ones are the PLC's
     std::vector<bool> needs_homing;
@@ -71,7 +72,7 @@ class OperatorScript {
   image::Nanoseconds entered_ns_ = 0;
   std::uint64_t next_id_ = 1;
   bool asked_ = false;
-  bool pressed_ = true;  ///< the start button, in the poll before; one that is stuck starts nothing
+  image::Nanoseconds released_ns_ = -1;  ///< since when the start button is known to be released
   int interrupts_ = 0, interrupts_done_ = 0;
 };
 

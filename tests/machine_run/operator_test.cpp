@@ -41,7 +41,7 @@ class Operated {
   OperatorScript::Wishes wishes(bool wait_for_start) {
     OperatorScript::Wishes w;
     w.wait_for_start = wait_for_start;
-    w.start_place = mill_.control().machine().point("cycle_start")->place;
+    w.start_place = mill_.control().machine().point("cycle_start", &w.start_source)->place;
     w.letters = mill_.control().machine().letters();
     w.needs_homing.assign(w.letters.size(), true);
     return w;
@@ -85,7 +85,7 @@ TEST(Operator, does_not_take_a_button_that_was_stuck_from_the_beginning_for_a_pr
   run.mill().run(5.0);
   EXPECT_FALSE(run.asked_for_power());
   run.button(false);
-  run.mill().run(0.5);
+  run.mill().run(1.0);
   run.button(true);
   EXPECT_TRUE(run.reaches(OperatorScript::Stage::homing));
 }
