@@ -149,8 +149,9 @@ class Sentences {
     if (v <= 0.0) return;
     static constexpr const char* kNames[] = {"Modbus", "GPIO", "CAN", "CAN"};
     say(a.letter, kHome,
-        {a.letter, kNames[static_cast<std::size_t>(s.kind)], text::number(period * 1e3), length(v * period),
-         speed(v), index ? text::both(", the index makes it exact", ", точность даёт нулевая метка") : ""},
+        {a.letter, kNames[static_cast<std::size_t>(s.kind)], text::number(period * 1e3),
+         uncertainty(v * period), speed(v),
+         index ? text::both(", the index makes it exact", ", точность даёт нулевая метка") : ""},
         {{"uncertainty", v * period}, {"velocity", v}, {"period", period}});
   }
 
@@ -187,6 +188,11 @@ class Sentences {
   }
 
   std::string length(double v) const { return text::number(v, 3) + " " + unit_; }
+  /// With a decimal always: what is not known is no exact number.
+  std::string uncertainty(double v) const {
+    const std::string number = text::number(v, 3);
+    return number + (number.find('.') == std::string::npos ? ".0 " : " ") + unit_;
+  }
   std::string speed(double v) const { return text::number(v, 3) + " " + unit_ + "/s"; }
 
   const LoadResult& loaded_;

@@ -40,7 +40,7 @@ TEST(Consequences, say_how_far_a_home_switch_on_modbus_is_off) {
   text.insert(text.find(door), "  { name = \"x_home\", channel = \"di6\", place = \"SA6\" },\n");
   const LoadResult loaded = parse(text, test::source("examples/mill/machine.toml"));
   ASSERT_TRUE(loaded.ok()) << test::lines_of(loaded.findings, text::Language::english);
-  EXPECT_TRUE(has(said(loaded), "home X on Modbus, 20 ms: ±1 mm at 50 mm/s, the index makes it exact"));
+  EXPECT_TRUE(has(said(loaded), "home X on Modbus, 20 ms: ±1.0 mm at 50 mm/s, the index makes it exact"));
 }
 
 TEST(Consequences, without_an_index_the_slow_edge_counts) {

@@ -79,21 +79,15 @@ NodeConfig with_four_byte_pdo(NodeConfig node) {
   return node;
 }
 
-constexpr text::Entry kTooFull{"can-load-error",
-                               "CAN segment {0}: load {1} % is above {2} %; it fits with a cycle of {3} ms, "
-                               "or with the drives on {4} segments "
-                               "(0: on none); with 4-byte process data it would be {5} %",
-                               "сегмент CAN {0}: загрузка {1} % выше {2} %; поместится при цикле {3} мс или "
-                               "при разделении приводов на {4} "
-                               "сегмента(ов) (0: ни на сколько); с 4-байтными PDO загрузка была бы {5} %"};
+constexpr text::Entry kTooFull{
+    "can-load-error", "CAN segment {0}: load {1} % is above {2} %; it fits with a cycle of {3} ms{4}{5}",
+    "сегмент CAN {0}: загрузка {1} % выше {2} %; поместится при цикле {3} мс{4}{5}"};
 constexpr text::Entry kNearlyFull{
     "can-load-warning",
-    "CAN segment {0}: load {1} % is above {2} %, little is left for service data; a cycle of {3} ms or {4} "
-    "segments "
-    "(0: none would do) would relieve it; with 4-byte process data it would be {5} %",
-    "сегмент CAN {0}: загрузка {1} % выше {2} %, для сервисных данных остаётся мало; поможет цикл {3} мс или "
-    "{4} "
-    "сегмента(ов) (0: не поможет); с 4-байтными PDO загрузка была бы {5} %"};
+    "CAN segment {0}: load {1} % is above {2} %, little is left for service data; it is "
+    "relieved by a cycle of {3} ms{4}{5}",
+    "сегмент CAN {0}: загрузка {1} % выше {2} %, для сервисных данных остаётся мало; "
+    "поможет цикл {3} мс{4}{5}"};
 
 }  // namespace
 

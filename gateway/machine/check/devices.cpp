@@ -12,6 +12,20 @@ namespace servogate::machine {
 
 namespace {
 
+/// What else would relieve a bus; empty where it would not.
+std::string split_over(int segments) {
+  if (segments <= 0) return {};
+  const std::string n = std::to_string(segments);
+  return text::both(", or with its nodes on " + n + " segments",
+                    ", или при разделении узлов на " + n + " сегмента(ов)");
+}
+std::string shorter_data(double load, double with_4_byte_pdo) {
+  if (with_4_byte_pdo >= load) return {};
+  const std::string percent = text::number(with_4_byte_pdo * 100.0, 1);
+  return text::both("; with 4-byte process data it would be " + percent + " %",
+                    "; с 4-байтными PDO загрузка была бы " + percent + " %");
+}
+
 std::string kind_name(DeviceKind kind) {
   return std::string(choices_of<DeviceKind>()[static_cast<std::size_t>(kind)]);
 }
@@ -136,8 +150,8 @@ class DeviceUse {
                                                text::number(load.load * 100.0, 1),
                                                text::number(limit * 100.0, 1),
                                                text::number(static_cast<double>(advice.cycle_ns) * 1e-6),
-                                               std::to_string(advice.segments),
-                                               text::number(advice.load_with_4_byte_pdo * 100.0, 1)};
+                                               split_over(advice.segments),
+                                               shorter_data(load.load, advice.load_with_4_byte_pdo)};
       const Where at = m_.where("bus." + std::to_string(b) + ".bit_rate");
       if (error)
         reading_.error(at, *entry, arguments);
