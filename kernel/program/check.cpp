@@ -14,7 +14,9 @@ namespace {
 
 constexpr double kOpenTravel = 1e9;
 constexpr double kSlack = 1e-6;
-constexpr std::size_t kMostErrors = 100;  ///< of a run; somebody mends the first ones first
+constexpr long long kMostCommandsBehind = 1'000'000;  ///< an error; whoever mends it looks again
+constexpr int kMostMet = 1000;                        ///< errors in all, those in loops each time
+constexpr std::size_t kMostErrors = 100;              ///< of a run; somebody mends the first ones first
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -135,7 +137,10 @@ class ErrorsOfRun {
   ErrorsOfRun(CheckReport& report, const Interpreter& interpreter)
       : report_(report), interpreter_(interpreter) {}
 
+  /// Commands since the first error.
+  long long commands_behind() const { return behind_; }
   void moves(const Command& command) {
+    if (any_) ++behind_;
     if (std::holds_alternative<Rapid>(command.what) || std::holds_alternative<Line>(command.what) ||
         std::holds_alternative<Arc>(command.what))
       off_place_ = false;
@@ -157,7 +162,7 @@ class ErrorsOfRun {
         std::none_of(report_.findings.begin(), report_.findings.end(), told);
     if (new_place && !follows)
       found_.push_back({f, interpreter_.machine_read() || is(f, Fault::block_limit)});
-    return !stuck && !full();
+    return !stuck && !full() && ++met_ < kMostMet;
   }
   /// Into the report, behind what stands there.
   void tell() {
@@ -186,7 +191,8 @@ class ErrorsOfRun {
   const Interpreter& interpreter_;
   std::vector<Met> found_;
   text::Finding last_;
-  long long executed_ = -1;
+  long long executed_ = -1, behind_ = 0;
+  int met_ = 0;
   bool any_ = false;
   bool off_place_ = false;  ///< a block was passed over and nothing has moved since
 };
@@ -213,6 +219,7 @@ CheckReport check_program(std::string_view dialect, const MachineModel& machine,
     if (survey.first_outside() < 0) read_inside = interpreter.machine_read();
     survey(command);
     errors.moves(command);
+    if (errors.commands_behind() > kMostCommandsBehind) return false;
     std::optional<text::Finding> refused;
     if (also && !errors.full()) refused = also(command);
     if (!refused) return true;
