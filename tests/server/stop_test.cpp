@@ -125,5 +125,16 @@ TEST(Start, that_is_refused_because_the_drives_are_off_names_each_missing_condit
   EXPECT_EQ(shell.status()["missing"][0]["reason"], "emergency_stop");
 }
 
+TEST_F(Stopped, power_off_returns_when_nothing_is_driven_any_more) {
+  ASSERT_EQ(shell_.run({"jog", "X", "+100mm", "--no-wait"}).exit, 0);
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["moving"].get<bool>(); }));
+  EXPECT_EQ(shell_.run({"power", "off"}).exit, 0);
+  const json s = shell_.status();
+  for (const json& a : s["axes"]) {
+    EXPECT_FALSE(a["moving"].get<bool>()) << a;
+    EXPECT_NE(a["drive"], "operation_enabled") << a;
+  }
+}
+
 }  // namespace
 }  // namespace servogate::gateway::testing
