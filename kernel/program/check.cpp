@@ -140,16 +140,16 @@ class ErrorsOfRun {
   /// Commands since the first error.
   long long commands_behind() const { return behind_; }
   void moves(const Command& command) {
-    if (any_) ++behind_;
+    if (met_ > 0) ++behind_;
     if (std::holds_alternative<Rapid>(command.what) || std::holds_alternative<Line>(command.what) ||
         std::holds_alternative<Arc>(command.what))
       off_place_ = false;
   }
   bool full() const { return found_.size() >= kMostErrors; }
-  bool none() const { return found_.empty() && !any_; }
+  bool none() const { return met_ == 0; }
   /// False: nothing can follow.
   bool take(const text::Finding& f) {
-    any_ = true;
+    ++met_;
     const bool stuck = interpreter_.executed() == executed_ && same(f, last_);
     executed_ = interpreter_.executed();
     last_ = f;
@@ -162,7 +162,7 @@ class ErrorsOfRun {
         std::none_of(report_.findings.begin(), report_.findings.end(), told);
     if (new_place && !follows)
       found_.push_back({f, interpreter_.machine_read() || is(f, Fault::block_limit)});
-    return !stuck && !full() && ++met_ < kMostMet;
+    return !stuck && !full() && met_ < kMostMet;
   }
   /// Into the report, behind what stands there.
   void tell() {
@@ -193,7 +193,6 @@ class ErrorsOfRun {
   text::Finding last_;
   long long executed_ = -1, behind_ = 0;
   int met_ = 0;
-  bool any_ = false;
   bool off_place_ = false;  ///< a block was passed over and nothing has moved since
 };
 

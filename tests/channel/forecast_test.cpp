@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "kernel/program/check.hpp"
 
 namespace servogate::channel::test {
@@ -94,6 +96,33 @@ TEST(Forecast, says_what_cannot_be_driven_whether_it_is_timed_or_not) {
     EXPECT_NE(std::string::npos, finding->str(text::Language::russian).find("задайте F"));
     command.what = program::Thread{};
     ASSERT_TRUE(forecast.take(command));
+  }
+}
+
+TEST(Forecast, goes_on_where_an_element_that_cannot_be_driven_would_have_ended) {
+  const Machine m = machine();
+  for (const Forecast::Depth depth : {Forecast::Depth::drivable, Forecast::Depth::timed}) {
+    Forecast forecast(depth, m.path, m.axes, {});
+    const auto take = [&](auto what) {
+      program::Command command;
+      command.what = what;
+      return forecast.take(command);
+    };
+    program::Line line;
+    line.to[0] = 10.0;
+    EXPECT_TRUE(take(line)) << "it has no feed";
+    line.to[0] = 20.0;
+    line.feed = {600.0, program::FeedUnit::mm_per_min};
+    EXPECT_FALSE(take(line));
+    // About X0 Y0 from X20; from X0 it would be no circle.
+    program::Arc arc;
+    arc.to[1] = 20.0;
+    arc.sweep_deg = 90.0;
+    arc.feed = line.feed;
+    EXPECT_FALSE(take(arc));
+    if (depth == Forecast::Depth::timed) {
+      EXPECT_NEAR((10.0 + 31.416) / 10.0, forecast.motion_seconds(), 1e-3);
+    }
   }
 }
 

@@ -24,12 +24,12 @@ Forecast::Forecast(Depth depth, const path::Config& config, AxisMap axes, const 
 std::optional<text::Finding> Forecast::take(const program::Command& command) {
   if (is_motion(command)) {
     const path::Element element = elements_.element(command, at_);
-    if (time_ && !time_->add(element)) return cannot_drive(time_->last_flaw());
-    if (!time_)
-      if (const path::Flaw flaw = path::shape(config_, at_, element).flaw; flaw != path::Flaw::none)
-        return cannot_drive(flaw);
+    const path::Flaw flaw = time_ ? (time_->add(element) ? path::Flaw::none : time_->last_flaw())
+                                  : path::shape(config_, at_, element).flaw;
     at_ = element.to;
-    return std::nullopt;
+    if (flaw == path::Flaw::none) return std::nullopt;
+    begin_anew();
+    return cannot_drive(flaw);
   }
   if (auto finding = not_driven(command)) return finding;
   if (const auto* spindle = std::get_if<program::Spindle>(&command.what)) elements_.take(*spindle);
@@ -40,7 +40,13 @@ std::optional<text::Finding> Forecast::take(const program::Command& command) {
 double Forecast::motion_seconds() {
   if (!time_) return 0.0;
   time_->rest();
-  return time_->seconds();
+  return before_s_ + time_->seconds();
+}
+
+void Forecast::begin_anew() {
+  if (!time_) return;
+  before_s_ = motion_seconds();
+  time_.emplace(config_, at_);
 }
 
 }  // namespace servogate::channel
