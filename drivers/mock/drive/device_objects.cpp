@@ -37,8 +37,8 @@ canopen::NodeId node_of(const SimulatedDriveConfig& c) {
 }
 
 std::vector<ObjectSpec> own_rows(const SimulatedDriveConfig& c) {
-  const canopen::DeviceIdentity identity{c.device_type, c.vendor_id, c.product_code, c.revision,
-                                         c.serial_number};
+  const canopen::DeviceIdentity identity{c.device_type, c.vendor_id,     c.product_code,
+                                         c.revision,    c.serial_number, c.name};
   std::vector<ObjectSpec> rows = canopen::communication_objects(node_of(c), identity);
   const auto drive = canopen::drive_objects(ratings_of(c));
   rows.insert(rows.end(), drive.begin(), drive.end());
@@ -47,7 +47,6 @@ std::vector<ObjectSpec> own_rows(const SimulatedDriveConfig& c) {
     rows.insert(rows.end(), program.begin(), program.end());
   }
   for (ObjectSpec& row : rows) {
-    if (row.index == object::kDeviceName) row.text = c.name;
     if (row.index == object::kSupportedDriveModes && c.modes != 0) row.value = c.modes;
   }
   return rows;

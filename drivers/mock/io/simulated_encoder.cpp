@@ -2,7 +2,6 @@
 #include "drivers/mock/io/simulated_encoder.hpp"
 
 #include "drivers/mock/io/profiled_node.hpp"
-#include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/406/objects.hpp"
 #include "firmware_if/canopen/device/communication_objects.hpp"
 
@@ -12,9 +11,7 @@ namespace {
 std::vector<canopen::ObjectSpec> rows_of(const SimulatedEncoderConfig& c) {
   auto rows = canopen::communication_objects(
       c.node_id, {canopen::encoder::kDeviceProfile | canopen::encoder::kMultiTurnAbsolute, c.vendor_id,
-                  c.product_code, c.revision, c.serial_number});
-  for (canopen::ObjectSpec& row : rows)
-    if (row.index == canopen::object::kDeviceName) row.text = c.name;
+                  c.product_code, c.revision, c.serial_number, c.name});
   const auto own = canopen::encoder_objects(c.node_id, c.resolution);
   rows.insert(rows.end(), own.begin(), own.end());
   return rows;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "drivers/mock/io/profiled_node.hpp"
-#include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/device/communication_objects.hpp"
 #include "firmware_if/canopen/device/io/io_profile.hpp"
 
@@ -12,10 +11,9 @@ namespace servogate::mock {
 namespace {
 
 std::vector<canopen::ObjectSpec> rows_of(const SimulatedIoConfig& c) {
-  auto rows = canopen::communication_objects(c.node_id, {canopen::io_device_type(c.terminals), c.vendor_id,
-                                                         c.product_code, c.revision, c.serial_number});
-  for (canopen::ObjectSpec& row : rows)
-    if (row.index == canopen::object::kDeviceName) row.text = c.name;
+  auto rows =
+      canopen::communication_objects(c.node_id, {canopen::io_device_type(c.terminals), c.vendor_id,
+                                                 c.product_code, c.revision, c.serial_number, c.name});
   const auto own = canopen::io_objects(c.node_id, c.terminals);
   rows.insert(rows.end(), own.begin(), own.end());
   return rows;

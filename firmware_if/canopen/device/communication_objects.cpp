@@ -18,7 +18,7 @@ constexpr ObjectSpec kGeneral[] = {
     {0x1005, 0, unsigned32, rw, Mappable::no, 0x80},
     {0x1006, 0, unsigned32, rw},
     {0x1007, 0, unsigned32, rw},
-    {0x1008, 0, visible_string, constant, Mappable::no, 0, 0, 0, "Servogate simulated drive"},
+    {0x1008, 0, visible_string, constant, Mappable::no},
     {0x1009, 0, visible_string, constant, Mappable::no, 0, 0, 0, "simulated"},
     {0x100A, 0, visible_string, constant, Mappable::no, 0, 0, 0, "0.1"},
     {0x100C, 0, unsigned16, rw},
@@ -76,6 +76,8 @@ void add_pdo(std::vector<ObjectSpec>& rows, std::uint16_t parameter, std::uint32
 std::vector<ObjectSpec> communication_objects(NodeId node, const DeviceIdentity& identity) {
   std::vector<ObjectSpec> rows(std::begin(kGeneral), std::end(kGeneral));
   rows.front().value = identity.device_type;
+  for (ObjectSpec& row : rows)
+    if (row.index == object::kDeviceName) row.text = identity.name;
   for (std::uint8_t i = 1; i <= 8; ++i) rows.push_back({object::kPredefinedErrorField, i, unsigned32, ro});
   rows.push_back({object::kCobIdEmcy, 0, unsigned32, rw, Mappable::no, cob::emcy(node)});
   for (std::uint8_t i = 1; i <= NodeMonitor::kConsumers; ++i)
