@@ -184,6 +184,7 @@ struct ProcessImage {
   std::array<IoSource, kMaxSources> sources;
   std::array<SegmentStatus, kMaxSegments> segments;
   std::uint32_t alarms_active = 0;  ///< number of unacknowledged alarms
+  bool homing = false;              ///< an order to home is under way, between two of its axes, too
 };
 static_assert(std::is_trivially_copyable_v<ProcessImage>);
 

@@ -138,7 +138,7 @@ json bus_list(const machine::MachineConfig& m, const image::ProcessImage& image)
 std::string status_json(Resident& resident, text::Language language) {
   const image::ProcessImage& image = resident.image();
   const machine::MachineConfig& m = resident.control().machine();
-  bool homing = false;
+  bool homing = image.homing;
   for (int i = 0; i < image.axis_count; ++i)
     homing = homing || image.axes[static_cast<std::size_t>(i)].owner == image::AxisOwner::homing;
   json status{{"ok", true},

@@ -125,6 +125,7 @@ void Cycle::run_logic() noexcept {
 
 void Cycle::run_processes() noexcept {
   homing_.step(axes_);
+  image_.homing = homing_.running();
   for (std::size_t p = 0; p < parts_.processes.size(); ++p) {
     ProcessContext c = context(static_cast<int>(p));
     parts_.processes[p]->interpolate(c);

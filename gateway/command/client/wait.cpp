@@ -30,7 +30,6 @@ const text::Entry kNoCycle{"client.no-cycle", "the control answers, but its cycl
 constexpr auto kLook = std::chrono::milliseconds(50);
 constexpr double kPowerPatience_s = 15.0;  ///< of machine time: boot of a drive, brakes
 constexpr double kEndPatience_s = 2.0;     ///< of a program whose drives are off
-constexpr double kNextAxis_s = 0.1;        ///< of machine time, between the axes of a homing
 constexpr double kSettling_s = 1.0;        ///< at most, of an axis that has jogged
 constexpr double kAlarmPatience_s = 2.0;   ///< the same while an alarm is active
 constexpr std::chrono::seconds kCyclePatience{10};
@@ -107,26 +106,19 @@ class Wait {
   double asked_s_ = 0.0;   ///< machine time before the request was carried out
   double begun_s_ = -1.0;  ///< machine time of the first status
   double seen_s_ = -1.0;
-  double stands_since_s_ = -1.0;  ///< of a jog, or between two axes of a homing
+  double stands_since_s_ = -1.0;  ///< of a jog
   std::chrono::steady_clock::time_point moved_on_ = std::chrono::steady_clock::now();
 };
 
 bool Wait::homing_under_way(const json& status) {
-  if (status.value("homing", false)) {
-    stands_since_s_ = -1.0;
-    return true;
-  }
+  if (status.value("homing", false)) return true;
   const json named = request_.value("axes", json::array());
   const bool open = any_axis(status, [&](const json& a) {
     return !a.value("homed", false) &&
            (named.empty() || std::find(named.begin(), named.end(), a["letter"]) != named.end());
   });
-  if (!open || alarm(status)) return false;
-  // Between two axes of an order nobody homes for a cycle.
-  const double now_s = status.value("time_s", 0.0);
-  if (stands_since_s_ < 0.0) stands_since_s_ = now_s;
-  code_ = kStopped;
-  return now_s - stands_since_s_ < kNextAxis_s;
+  if (open && !alarm(status)) code_ = kStopped;
+  return false;
 }
 
 /// Until the axes stand, and then until they have settled, as long as that takes an axis.
