@@ -11,6 +11,24 @@
 
 namespace servogate::gateway::command {
 
+namespace {
+
+std::string_view name_of(ClockKind clock) {
+  switch (clock) {
+    case ClockKind::virtual_time:
+      return "virtual";
+    case ClockKind::realtime:
+      return "realtime";
+    case ClockKind::realtime_best_effort:
+      return "realtime=best-effort";
+    case ClockKind::unset:
+      break;
+  }
+  return {};
+}
+
+}  // namespace
+
 int check_outputs(const std::vector<files::NamedPath>& outputs, const std::string& state,
                   const machine::LoadResult& machine, const std::vector<files::NamedPath>& others) {
   std::vector<files::NamedPath> inputs = others;
@@ -33,10 +51,7 @@ void fill_provenance(report::Provenance& p, const RunOptions& options, const mac
   if (!options.program.empty()) p.program = report::identify(options.program);
   for (const std::string& source : machine.plc.sources)
     p.plc.push_back(report::identify(machine.resolve(source)));
-  p.clock = options.clock == ClockKind::virtual_time ? "virtual"
-            : options.clock == ClockKind::realtime   ? "realtime"
-            : options.clock == ClockKind::unset      ? ""
-                                                     : "realtime=best-effort";
+  p.clock = name_of(options.clock);
   p.command_line = command_line;
 }
 
