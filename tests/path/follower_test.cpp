@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "kernel/path/planner.hpp"
-#include "tests/path/rig.hpp"
+#include "tests/path/rig/trip.hpp"
 
 namespace servogate::path::test {
 namespace {

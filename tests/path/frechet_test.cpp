@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The judge of the property tests is judged itself.
-#include "tests/path/frechet.hpp"
+#include "tests/path/rig/frechet.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "tests/path/random_program.hpp"
+#include "tests/path/rig/random_program.hpp"
 
 namespace servogate::path::test {
 namespace {

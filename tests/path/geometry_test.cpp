@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
-#include "tests/path/frechet.hpp"
-#include "tests/path/random_program.hpp"
+#include "tests/path/rig/frechet.hpp"
+#include "tests/path/rig/random_program.hpp"
 
 namespace servogate::path::test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/path/random_program.hpp"
+#include "tests/path/rig/random_program.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::path::test {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "kernel/path/follower.hpp"
-#include "tests/path/rig.hpp"
+#include "tests/path/rig/trip.hpp"
 
 namespace servogate::path::test {
 namespace {

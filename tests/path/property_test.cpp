@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "tests/path/rig.hpp"
+#include "tests/path/rig/trip.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::path::test {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/counting/allocations.hpp"
-#include "tests/path/rig.hpp"
+#include "tests/path/rig/trip.hpp"
 
 namespace servogate::path::test {
 namespace {

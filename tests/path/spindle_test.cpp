@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/path/rig.hpp"
+#include "tests/path/rig/trip.hpp"
 
 namespace servogate::path::test {
 namespace {

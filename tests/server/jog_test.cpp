@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-#include "tests/server/rig.hpp"
+#include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {
 namespace {

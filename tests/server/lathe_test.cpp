@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "tests/server/rig.hpp"
+#include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {
 namespace {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <thread>
 
-#include "tests/server/rig.hpp"
+#include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {
 namespace {

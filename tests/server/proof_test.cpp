@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "tests/server/rig.hpp"
+#include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {
 namespace {

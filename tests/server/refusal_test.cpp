@@ -5,7 +5,7 @@
 #include <signal.h>
 
 #include "gateway/machine/state/state_lock.hpp"
-#include "tests/server/rig.hpp"
+#include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {
 namespace {

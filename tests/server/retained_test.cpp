@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "gateway/machine/state/state.hpp"
-#include "tests/server/rig.hpp"
+#include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {
 namespace {

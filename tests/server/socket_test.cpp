@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "tests/property_seed.hpp"
-#include "tests/server/rig.hpp"
+#include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/path/frechet.hpp"
+#include "tests/path/rig/frechet.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/path/rig.hpp"
+#include "tests/path/rig/trip.hpp"
 
 #include <algorithm>
 #include <cmath>

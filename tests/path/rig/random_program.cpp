@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/path/random_program.hpp"
+#include "tests/path/rig/random_program.hpp"
 
 #include <cmath>
 #include <numbers>

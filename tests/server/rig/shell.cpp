@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/server/rig.hpp"
+#include "tests/server/rig/shell.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -5,8 +5,8 @@
 
 #include "kernel/path/follower.hpp"
 #include "kernel/path/planner.hpp"
-#include "tests/path/frechet.hpp"
-#include "tests/path/random_program.hpp"
+#include "tests/path/rig/frechet.hpp"
+#include "tests/path/rig/random_program.hpp"
 
 namespace servogate::path::test {
 
