@@ -12,10 +12,11 @@ enum class Reaction : std::uint8_t {
   none,
   warn,
   stop_at_block_end,
-  stop_on_path,  ///< controlled stop of all axes of the process together, on the programmed path
-  stop_axes,     ///< controlled stop of each axis at its own limits
-  quick_stop,    ///< the drives' own quick stop
-  power_off,     ///< brakes engage, power goes
+  stop_on_path,        ///< controlled stop of all axes of the process together, on the programmed path
+  stop_axes,           ///< controlled stop of each axis at its own limits
+  stop_and_power_off,  ///< the same; at rest the brakes engage, then the power goes
+  quick_stop,          ///< the drives' own quick stop
+  power_off,           ///< at once: brakes engage, power goes, what moves coasts
 };
 
 /// Number of an alarm: the key of the one alarm table (kernel/cycle/alarm_table.hpp).
@@ -39,8 +40,8 @@ struct AlarmRecord {
   std::uint8_t object_subindex = 0;
   std::uint16_t statusword = 0;
   std::uint16_t error_code = 0;
-  std::int32_t line = 0;    ///< line of the block in motion, 0: none
-  std::int32_t file = 0;    ///< its file in run `run` of the process (ProcessStatus)
+  std::int32_t line = 0;  ///< line of the block in motion, 0: none
+  std::int32_t file = 0;  ///< its file in run `run` of the process (ProcessStatus)
   std::uint32_t run = 0;
   std::int32_t block = -1;  ///< its N number
   double limit = 0.0;       ///< what was allowed ...

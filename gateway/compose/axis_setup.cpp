@@ -112,6 +112,8 @@ image::Reaction loss_reaction(machine::LossReaction reaction) {
   switch (reaction) {
     case machine::LossReaction::stop_axes:
       return image::Reaction::stop_axes;
+    case machine::LossReaction::stop_and_power_off:
+      return image::Reaction::stop_and_power_off;
     case machine::LossReaction::quick_stop:
       return image::Reaction::quick_stop;
     case machine::LossReaction::power_off:

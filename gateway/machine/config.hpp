@@ -147,7 +147,7 @@ struct SpindleConfig {
 };
 
 /// What the loss of a node makes the machine do, in rising severity.
-enum class LossReaction : std::uint8_t { stop_on_path, stop_axes, quick_stop, power_off };
+enum class LossReaction : std::uint8_t { stop_on_path, stop_axes, stop_and_power_off, quick_stop, power_off };
 /// When a node gets its program: where 1F56h tells another version, or never, then another one is refused.
 enum class ProgramWhen : std::uint8_t { other_version, never };
 

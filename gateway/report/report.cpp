@@ -14,8 +14,9 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* kReactions[] = {"none",      "warn",       "stop_at_block_end", "stop_on_path",
-                                      "stop_axes", "quick_stop", "power_off"};
+constexpr const char* kReactions[] = {"none",         "warn",      "stop_at_block_end",
+                                      "stop_on_path", "stop_axes", "stop_and_power_off",
+                                      "quick_stop",   "power_off"};
 
 std::string hex(std::uint32_t value, int digits) {
   char text[16];
@@ -84,7 +85,8 @@ Json to_json(const AlarmEntry& a) {
   out["remedy"] = a.remedy;
   out["sequence"] = r.sequence;
   out["first_fault"] = r.first_fault;
-  out["reaction"] = kReactions[std::min<std::size_t>(static_cast<std::size_t>(r.reaction), 6)];
+  out["reaction"] =
+      kReactions[std::min<std::size_t>(static_cast<std::size_t>(r.reaction), std::size(kReactions) - 1)];
   out["active"] = r.active;
   out["cycle"] = r.cycle;
   out["t"] = static_cast<double>(r.t_ns) * 1e-9;

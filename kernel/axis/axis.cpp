@@ -71,8 +71,8 @@ void Axis::command(image::ProcessImage& image) noexcept {
 void Axis::step_power(double dt, PowerSequence::Outputs& out) noexcept {
   const PowerSequence::State before = power_.state();
   // Where a reaction takes the power anyway (emergency stop), the enable that goes with it says nothing new.
-  if (power_requested_ && !power_permitted_ && moving_ && reaction_ < Reaction::quick_stop)
-    raise(alarm::kEnableWithdrawn, 0.0, set_.v);
+  if (reaction_ >= Reaction::stop_and_power_off) power_requested_ = false;
+  if (power_requested_ && !power_permitted_ && moving_) raise(alarm::kEnableWithdrawn, 0.0, set_.v);
   PowerSequence::Inputs in;
   in.wanted = power_requested_ && power_permitted_;
   in.at_rest = held_ ? !moving_ : actual_standing_;
@@ -81,7 +81,6 @@ void Axis::step_power(double dt, PowerSequence::Outputs& out) noexcept {
   in.dt = dt;
   out = power_.step(in);
   supervise_power(before);
-  if (reaction_ >= Reaction::quick_stop) power_requested_ = false;
 }
 
 /// The set-point of this cycle, by the owner or, where the motion was taken from it, by the axis itself.

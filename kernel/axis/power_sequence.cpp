@@ -6,6 +6,16 @@ namespace servogate::axis {
 using image::DriveState;
 using image::Reaction;
 
+namespace {
+
+/// In a quick stop: the drive still has its torque.
+bool brakes(DriveState drive) noexcept {
+  return drive == DriveState::operation_enabled || drive == DriveState::quick_stop_active ||
+         drive == DriveState::fault_reaction_active;
+}
+
+}  // namespace
+
 void PowerSequence::configure(const BrakeData& brake) noexcept {
   brake_ = brake;
   state_ = State::off;
@@ -26,7 +36,7 @@ void PowerSequence::drop(const Inputs& in) noexcept {
   } else if (in.reaction == Reaction::quick_stop && !quick_) {
     quick_ = true;
     enter(State::stopping);
-  } else if (!drive_on_ && state_ >= State::torque && !quick_) {
+  } else if (state_ >= State::torque && (quick_ ? !brakes(in.drive) : !drive_on_)) {
     enter(State::off);  // the drive let go by itself: the brake closes at once
   }
 }
@@ -42,7 +52,7 @@ PowerSequence::Outputs PowerSequence::step(const Inputs& in) noexcept {
   switch (state_) {
     case State::off:
       quick_ = false;
-      if (in.wanted && in.reaction < Reaction::quick_stop) enter(State::powering);
+      if (in.wanted && in.reaction < Reaction::stop_and_power_off) enter(State::powering);
       break;
     case State::powering:
       if (!in.wanted)

@@ -10,7 +10,8 @@ namespace servogate::axis {
 
 /// Order of drive power and holding brake.
 /// On: power, Operation enabled, torque delay, brake opens, release delay, motion permitted.
-/// Off: the axis has come to rest, brake closes, engage delay, power goes.
+/// Off, and with the reaction stop and power off: the axis has come to rest, brake closes, engage delay, power
+/// goes. A drive that lets go by itself meanwhile, or in its quick stop: the brake closes at once.
 /// Reaction power off: the brake closes at once; an axis with a brake keeps its torque (in the drive's quick
 /// stop) for the engage delay, so that the load does not drop; one without loses power at once.
 class PowerSequence {

@@ -99,7 +99,7 @@ double Spindle::orient_rpm() noexcept {
 }
 
 double Spindle::wanted_rpm() noexcept {
-  if (!enable_ || reaction_ >= Reaction::quick_stop) return 0.0;
+  if (!enable_ || reaction_ >= Reaction::stop_and_power_off) return 0.0;
   switch (mode_) {
     case SpindleMode::stop:
       return 0.0;
@@ -123,7 +123,7 @@ void Spindle::follow_drive(double wanted, double dt) noexcept {
 }
 
 void Spindle::follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept {
-  on_ = power_on_ && !lost_ && reaction_ < Reaction::quick_stop;
+  on_ = power_on_ && !lost_ && reaction_ < Reaction::stop_and_power_off;
   if (!on_ && mode_ != SpindleMode::stop) {
     if (lost_) events_.add({alarm::kSpindleOutputLost, ordered_rpm_, command_rpm_});
     order(SpindleMode::stop, 0.0);
@@ -138,7 +138,7 @@ void Spindle::follow_inverter(image::ProcessImage& image, double& wanted, double
 void Spindle::command(image::ProcessImage& image) noexcept {
   const double dt = image.now.period_s();
   if (cannot_ != 0) events_.add({cannot_, 0.0, 0.0});
-  if (reaction_ >= Reaction::quick_stop) order(SpindleMode::stop, 0.0);
+  if (reaction_ >= Reaction::stop_and_power_off) order(SpindleMode::stop, 0.0);
   cannot_ = 0;
   oriented_ = false;
   double wanted = wanted_rpm();
@@ -163,7 +163,10 @@ void Spindle::command(image::ProcessImage& image) noexcept {
 }
 
 void Spindle::write_drive(image::SpindleImage& out) const noexcept {
-  const bool needed = mode_ != SpindleMode::stop ? enable_ || !zero_speed_ : off_s_ < kPowerAfterStop && on_;
+  // A drive in its quick stop brakes, too: without power it would coast.
+  const bool holds = on_ || (drive_.online && drive_.state == DriveState::quick_stop_active);
+  const bool needed =
+      mode_ != SpindleMode::stop ? enable_ || !zero_speed_ : off_s_ < kPowerAfterStop && holds;
   image::DriveCommand& drive = out.drive_command;
   drive.power = needed && reaction_ < Reaction::power_off;
   drive.quick_stop = reaction_ == Reaction::quick_stop;

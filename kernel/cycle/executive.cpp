@@ -46,6 +46,8 @@ bool Cycle::step() noexcept {
   watch_machine();
   handle_requests();
   reaction_ = alarms_.reaction();
+  // Who wants the drives on after this has to say so again.
+  if (reaction_ >= image::Reaction::stop_and_power_off) power_request_ = false;
   run_processes();
   stamp(Phase::interpolate);
   run_axes();

@@ -79,6 +79,48 @@ TEST(Brake, closes_in_the_same_cycle_when_the_power_has_to_go_and_the_torque_sta
   EXPECT_FALSE(rig.shared().drive_command.power) << "nothing comes on again unasked";
 }
 
+TEST(Brake, closes_after_the_ramp_with_the_reaction_stop_and_power_off) {
+  Rig rig(vertical());
+  ASSERT_TRUE(rig.enable());
+  ASSERT_TRUE(rig.axis.jog_continuous(1, rig.image.now.t_ns));
+  rig.run(60);
+  ASSERT_GT(rig.shared().command_velocity, 0.0);
+  rig.reaction = Reaction::stop_and_power_off;
+  int moving = 0;
+  while (rig.shared().moving && moving < 2000) {
+    rig.cycle();
+    ++moving;
+    if (rig.shared().moving) {
+      ASSERT_TRUE(brake_open(rig)) << moving;
+      ASSERT_FALSE(rig.shared().drive_command.quick_stop) << "the control leads the ramp";
+    }
+  }
+  ASSERT_LT(moving, 2000);
+  ASSERT_GT(moving, 5);
+  int held = 0;
+  while (rig.shared().drive_command.power && held < 500) rig.cycle(), ++held;
+  EXPECT_NEAR(held, 80, 3);
+  EXPECT_FALSE(brake_open(rig));
+  rig.reaction = Reaction::none;
+  rig.run(200);
+  EXPECT_FALSE(rig.shared().drive_command.power) << "nothing comes on again unasked";
+}
+
+TEST(Brake, closes_at_once_when_the_drive_loses_its_torque_in_its_quick_stop) {
+  Rig rig(vertical());
+  ASSERT_TRUE(rig.enable());
+  ASSERT_TRUE(rig.axis.jog_continuous(1, rig.image.now.t_ns));
+  rig.run(60);
+  rig.reaction = Reaction::quick_stop;
+  rig.drive.coast_counts = 400;  // per cycle
+  rig.run(5);
+  ASSERT_TRUE(rig.shared().drive_command.quick_stop);
+  ASSERT_TRUE(brake_open(rig)) << "while the drive brakes";
+  rig.drive.torque_off = true;
+  rig.run(2);
+  EXPECT_FALSE(brake_open(rig)) << "a falling axis never comes to the rest that would close it";
+}
+
 TEST(Brake, closes_at_once_when_the_drive_lets_go) {
   Rig rig(vertical());
   ASSERT_TRUE(rig.enable());

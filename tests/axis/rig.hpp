@@ -61,6 +61,8 @@ class FakeDrive {
   std::int64_t counts = 0;
   bool fault = false;
   bool lost = false;
+  bool torque_off = false;        ///< somebody took its torque: it cannot be enabled
+  std::int64_t coast_counts = 0;  ///< moves so far each cycle while it does not follow
   std::uint32_t sequence = 0;
   std::int64_t captured = 0;
 
@@ -72,7 +74,7 @@ class FakeDrive {
   void cycle(const image::DriveCommand& c, image::DriveFeedback& f) {
     power_cycles_ = c.power && !fault ? power_cycles_ + 1 : 0;
     if (c.reset_fault) fault = false;
-    const bool on = power_cycles_ > enable_cycles && !c.quick_stop;
+    const bool on = power_cycles_ > enable_cycles && !c.quick_stop && !torque_off;
     pipe_.push_back(c.position_counts);
     while (static_cast<int>(pipe_.size()) > delay) pipe_.pop_front();
     const std::int64_t before = counts;
@@ -81,11 +83,13 @@ class FakeDrive {
                          : static_cast<double>(pipe_.front());
       counts = std::llround(exact_);
     } else {
+      counts += coast_counts;
       exact_ = static_cast<double>(counts);
     }
     latch(before, c.latch_arm);
     f.online = !lost;
     f.state = fault          ? image::DriveState::fault
+              : torque_off   ? image::DriveState::switch_on_disabled
               : c.quick_stop ? image::DriveState::quick_stop_active
               : on           ? image::DriveState::operation_enabled
                              : image::DriveState::switch_on_disabled;

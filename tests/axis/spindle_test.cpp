@@ -31,8 +31,12 @@ class SpindleRig {
   void cycle() {
     image.now.t_ns += image.now.period_ns;
     image::SpindleImage& s = image.spindles[0];
-    const bool on = s.drive_command.power && !fault;
-    speed += ((on ? s.drive_command.velocity_counts_s : 0.0) - speed) * (blocked ? 0.0 : 0.2);
+    const bool quick = s.drive_command.power && s.drive_command.quick_stop && !fault;
+    const bool on = s.drive_command.power && !quick && !fault;
+    if (on)
+      speed += (s.drive_command.velocity_counts_s - speed) * 0.2;
+    else
+      speed *= quick ? 0.99 : 0.9999;  // the drive's own ramp; without power the spindle coasts
     if (blocked) speed = 0.0;
     const double before = position;
     position += speed * 0.001;
@@ -44,9 +48,10 @@ class SpindleRig {
       ++s.drive.latch_sequence;
     }
     s.drive.online = true;
-    s.drive.state = fault ? image::DriveState::fault
-                    : on  ? image::DriveState::operation_enabled
-                          : image::DriveState::switch_on_disabled;
+    s.drive.state = fault   ? image::DriveState::fault
+                    : quick ? image::DriveState::quick_stop_active
+                    : on    ? image::DriveState::operation_enabled
+                            : image::DriveState::switch_on_disabled;
     s.drive.error_code = fault ? 0x2310 : 0;
     s.drive.position_counts = std::llround(position);
     spindle.read(image);
@@ -203,6 +208,40 @@ TEST(Spindle, goes_off_with_the_reaction_power_off_and_stays_off) {
   rig.run(2000);
   EXPECT_EQ(rig.spindle.mode(), SpindleMode::stop);
   EXPECT_FALSE(rig.image.spindles[0].drive_command.power);
+}
+
+TEST(Spindle, brakes_by_the_drive_in_a_quick_stop_and_loses_its_power_at_rest) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::cw, 600.0);
+  rig.run(500);
+  rig.reaction = image::Reaction::quick_stop;
+  int cycles = 0;
+  for (; !rig.get("zero_speed") && cycles < 5000; ++cycles) {
+    rig.run(1);
+    ASSERT_TRUE(rig.image.spindles[0].drive_command.power) << "it would coast, cycle " << cycles;
+  }
+  EXPECT_LT(cycles, 1000);
+  rig.run(1500);
+  EXPECT_FALSE(rig.image.spindles[0].drive_command.power);
+}
+
+TEST(Spindle, ramps_to_rest_before_its_power_goes_with_the_reaction_stop_and_power_off) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::cw, 600.0);
+  rig.run(500);
+  rig.reaction = image::Reaction::stop_and_power_off;
+  int cycles = 0;
+  for (; !rig.get("zero_speed") && cycles < 5000; ++cycles) {
+    rig.run(1);
+    ASSERT_TRUE(rig.image.spindles[0].drive_command.power) << "it would coast, cycle " << cycles;
+    ASSERT_FALSE(rig.image.spindles[0].drive_command.quick_stop);
+  }
+  EXPECT_LT(cycles, 2000);
+  rig.run(1500);
+  EXPECT_FALSE(rig.image.spindles[0].drive_command.power);
+  rig.reaction = image::Reaction::none;
+  rig.run(1500);
+  EXPECT_EQ(rig.spindle.mode(), SpindleMode::stop);
 }
 
 TEST(Spindle, refuses_an_oriented_stop_where_nothing_gives_an_angle) {

@@ -17,7 +17,8 @@ std::span<const std::string_view> choices_of<image::Writer>() {
 
 template <>
 std::span<const std::string_view> choices_of<LossReaction>() {
-  static constexpr std::string_view kNames[] = {"stop_on_path", "stop_axes", "quick_stop", "power_off"};
+  static constexpr std::string_view kNames[] = {"stop_on_path", "stop_axes", "stop_and_power_off",
+                                                "quick_stop", "power_off"};
   return kNames;
 }
 template <>

@@ -103,6 +103,7 @@ const TEXTS = {
   stop_at_block_end: ["stop at block end", "останов в конце кадра"],
   stop_on_path: ["stop on the path", "останов на траектории"],
   stop_axes: ["stop of the axes", "останов осей"],
+  stop_and_power_off: ["stop of the axes, then power off", "останов осей, затем отключение питания"],
   quick_stop: ["quick stop", "быстрый останов"],
   power_off: ["power off", "отключение питания"],
   axis: ["axis", "ось"],

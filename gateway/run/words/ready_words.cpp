@@ -52,6 +52,8 @@ constexpr Entry kWaitOrSee{
     "ready.wait", "Wait for the drive and its brake; if it stays so, see its power stage and its STO input.",
     "Дождитесь привода и тормоза; если не меняется, проверьте силовую часть и вход STO."};
 constexpr Entry kNotAsked{"ready.not-asked", "the drives are not switched on", "приводы не включены"};
+constexpr Entry kAxisNotAsked{"ready.axis-not-asked", "the drive of {0} is not switched on",
+                              "не включён привод {0}"};
 constexpr Entry kAsk{"ready.ask", "`servogate power on`.", "`servogate power on`."};
 
 /// Index = image::DriveState.
@@ -83,6 +85,7 @@ class Look {
     if (!on(kPowerOn)) add("power_on", say(kPower, image::to_string(kPowerOn)), plc_remedy("MC.power_on"));
     not_enabled();
     if (found_.empty()) starting();
+    if (found_.empty()) not_asked();
     return std::move(found_);
   }
 
@@ -141,12 +144,19 @@ class Look {
   }
   void starting() {
     for (std::size_t a = 0; a < m_.program_axes(); ++a)
-      if (!image_.axes[a].enabled) {
+      if (!image_.axes[a].enabled && image_.axes[a].drive_command.power) {
         const auto& words = kDriveWords[static_cast<std::size_t>(image_.axes[a].drive.state)];
         const std::string_view state = words[language_ == text::Language::russian];
         add("starting", say(kStarting, m_.axes[a].letter, std::string(state)), say(kWaitOrSee),
             m_.axes[a].letter);
       }
+  }
+
+  /// An axis that lost its drive by an alarm of its own; the others are on.
+  void not_asked() {
+    const std::string letters =
+        axes([](const image::AxisImage& a, std::size_t) { return !a.enabled && !a.drive_command.power; });
+    if (!letters.empty()) add("not_asked", say(kAxisNotAsked, letters), say(kAsk), letters);
   }
 
   Control& control_;

@@ -451,7 +451,7 @@ constexpr AlarmRow kTable[] = {
      "Shorten loops in the PLC program or lengthen the cycle.",
      "Сократите циклы в программе ПЛК или увеличьте такт."},
     {alarm::kPlcFault,
-     Reaction::power_off,
+     Reaction::stop_and_power_off,
      reset,
      {"plc.fault", "the PLC program stopped with error {1} in line {9}",
       "программа ПЛК остановлена с ошибкой {1} в строке {9}"},
@@ -459,11 +459,11 @@ constexpr AlarmRow kTable[] = {
      "Исправьте программу ПЛК; без неё нет разрешений."},
     // 6000: real time and system
     {alarm::kEmergencyStop,
-     Reaction::power_off,
+     Reaction::stop_and_power_off,
      cause_gone,
      {"system.emergency_stop", "emergency stop", "аварийный останов"},
-     "Remove the danger, unlock the button, reset.",
-     "Устраните опасность, отпустите кнопку, выполните сброс."},
+     "Remove the danger, unlock the button, reset, then switch the drives on again.",
+     "Устраните опасность, отпустите кнопку, выполните сброс и снова включите приводы."},
     {alarm::kOverrunLimit,
      Reaction::stop_on_path,
      reset,
@@ -501,13 +501,15 @@ constexpr Room kRooms[] = {{1000, "Axes and spindles"},
                            {5000, "PLC"},
                            {6000, "Real time and system"}};
 
-constexpr std::string_view kReactionWords[][2] = {{"none", "нет"},
-                                                  {"warning", "предупреждение"},
-                                                  {"stop at block end", "останов в конце кадра"},
-                                                  {"stop on the path", "останов на траектории"},
-                                                  {"stop of each axis", "останов каждой оси"},
-                                                  {"quick stop", "быстрый останов"},
-                                                  {"power off", "отключение питания"}};
+constexpr std::string_view kReactionWords[][2] = {
+    {"none", "нет"},
+    {"warning", "предупреждение"},
+    {"stop at block end", "останов в конце кадра"},
+    {"stop on the path", "останов на траектории"},
+    {"stop of each axis", "останов каждой оси"},
+    {"stop of each axis, then power off", "останов каждой оси, затем отключение питания"},
+    {"quick stop", "быстрый останов"},
+    {"power off", "отключение питания"}};
 constexpr std::string_view kResetWords[][2] = {
     {"reset", "сброс"},
     {"reset after the cause has gone", "сброс после устранения причины"},
