@@ -81,7 +81,8 @@ inline constexpr InterfaceField kProcessFields[] = {
     {"t_ack", 32, 2, Format::bl, Writer::plc, "the tool word is carried out"},
     {"h_ack", 32, 3, Format::bl, Writer::plc, "the H code is carried out"},
     {"start", 32, 4, Format::bl, Writer::plc, "rising edge: cycle start"},
-    {"stop", 32, 5, Format::bl, Writer::plc, "TRUE: feed hold"},
+    {"stop", 32, 5, Format::bl, Writer::plc,
+     "TRUE: feed hold; when it is FALSE again, start or resume goes on (feed_enable goes on by itself)"},
     {"reset", 32, 6, Format::bl, Writer::plc, "rising edge: reset"},
     {"m_unknown", 32, 7, Format::bl, Writer::plc, "with m_ack: the PLC does not know this M code"},
     {"feed_enable", 33, 0, Format::bl, Writer::plc, "TRUE permits feed; FALSE holds"},
@@ -129,7 +130,8 @@ inline constexpr InterfaceField kMachineFields[] = {
     {"ready", 0, 1, Format::bl, Writer::nc, "no alarm, drives may be switched on"},
     {"alarm", 0, 2, Format::bl, Writer::nc, "any alarm is active"},
     {"power_request", 0, 3, Format::bl, Writer::nc, "the operator wants the drives on"},
-    {"estop_ok", 4, 0, Format::bl, Writer::plc, "TRUE: the emergency-stop chain is closed; FALSE: power off"},
+    {"estop_ok", 4, 0, Format::bl, Writer::plc,
+     "TRUE: the emergency-stop chain is closed; FALSE: the axes stop, the brakes close, the power goes"},
     {"power_on", 4, 1, Format::bl, Writer::plc, "TRUE permits drive power"},
 };
 /// Of an auxiliary axis: what the MC_ blocks of the PLC and the kernel say to one another. The blocks see it

@@ -44,6 +44,11 @@ constexpr text::Entry kBus{
     "наибольшим числом вставных битов, а прогон измеряет переданные"};
 constexpr text::Entry kStation{"consequence.station", "{0}: {1} signals, up to {2} ms old",
                                "{0}: сигналов {1}, возраст до {2} мс"};
+constexpr text::Entry kEmergencyStop{"consequence.emergency_stop",
+                                     "emergency stop: all axes rest and their brakes hold after {0} s; the "
+                                     "safety relay's delay t_d has to be longer",
+                                     "аварийный останов: все оси стоят, тормоза держат через {0} с; задержка "
+                                     "t_d реле безопасности должна быть больше"};
 constexpr text::Entry kBrake{"consequence.brake", "{0}: power goes {1} ms after the brake is told to engage",
                              "{0}: питание снимается через {1} мс после команды на зажатие тормоза"};
 
@@ -78,6 +83,7 @@ class Sentences {
       if (a.lead > 0.0 && a.counts_per_rev > 0 && a.max_velocity > 0.0 && a.max_acceleration > 0.0 &&
           a.max_jerk > 0.0)
         axis(a);
+    emergency_stop();
     for (std::size_t i = 0; i < m_.spindles.size(); ++i) spindle(m_.spindles[i], static_cast<int>(i));
     for (const StationConfig& s : m_.stations) station(s);
     return std::move(lines_);
@@ -109,6 +115,10 @@ class Sentences {
     const Stop stop = stop_from(a.max_velocity, a.max_acceleration, a.max_jerk);
     say(a.letter, kStop, {a.letter, speed(a.max_velocity), length(stop.way), text::number(stop.time, 3)},
         {{"stop_distance", stop.way}, {"stop_time", stop.time}});
+    // The stop may begin in full acceleration, which has to be taken back first.
+    const double back = std::min(a.max_acceleration / a.max_jerk, std::sqrt(a.max_velocity / a.max_jerk));
+    longest_stop_ =
+        std::max(longest_stop_, stop.time + back + (a.brake.present() ? a.brake.engage_delay : 0.0));
     margin(a);
     const double moving = a.following_error_stop + a.following_error_velocity * a.max_velocity;
     say(a.letter, kFollowing,
@@ -124,6 +134,13 @@ class Sentences {
     if (a.brake.present())
       say(a.letter, kBrake, {a.letter, text::number(a.brake.engage_delay * 1e3)},
           {{"engage_delay", a.brake.engage_delay}});
+  }
+
+  void emergency_stop() {
+    if (longest_stop_ <= 0.0) return;
+    // The input is read, answered and obeyed in three cycles.
+    const double time = std::ceil((longest_stop_ + 3.0 * m_.control.cycle_time) * 100.0) / 100.0;
+    say("emergency stop", kEmergencyStop, {text::number(time, 2)}, {{"stop_time", time}});
   }
 
   void margin(const AxisConfig& a) {
@@ -199,6 +216,7 @@ class Sentences {
   const MachineConfig& m_;
   std::vector<Consequence> lines_;
   std::string unit_;
+  double longest_stop_ = 0.0;  ///< with the engaging of its brake, s
 };
 
 }  // namespace

@@ -280,7 +280,8 @@ image::Stop Process::stop_without_alarm(const cycle::ProcessContext& c) const no
 
 void Process::apply_hold(cycle::ProcessContext& c) noexcept {
   const image::Packets& k = c.image.packets;
-  bool hold = held_ || k.bit(at(kStopBit, base_)) || !k.bit(at(kFeedEnable, base_));
+  if (k.bit(at(kStopBit, base_))) held_ = running_;  // it goes on when somebody says so
+  bool hold = held_ || !k.bit(at(kFeedEnable, base_));
   for (const int a : config_.axes.machine) hold = hold || !c.axes[static_cast<std::size_t>(a)].feed_enabled();
   if (hold)
     follower_.hold();

@@ -113,7 +113,7 @@ class Process final : public cycle::ProcessInCycle {
   image::ProcessState after_stop_ = image::ProcessState::idle;
   image::ProcessState state_ = image::ProcessState::idle;
   image::Mode mode_ = image::Mode::off;
-  bool held_ = false;   ///< the operator's hold
+  bool held_ = false;   ///< hold of the operator or the PLC, until start or resume
   bool go_on_ = false;  ///< start or step while an event waits for the operator
   double override_ = 1.0;
   Stage stage_ = Stage::none;

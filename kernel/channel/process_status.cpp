@@ -132,8 +132,8 @@ image::Wait Process::wait_at_event(const cycle::ProcessContext& c) const noexcep
 /// Why the feed is held; several causes come one after the other.
 image::Wait Process::wait_on_path(const cycle::ProcessContext& c) const noexcept {
   const image::Packets& k = c.image.packets;
-  if (held_) return of(WaitReason::operator_hold);
   if (k.bit(at(kStopBit, base_))) return of(WaitReason::plc_hold, at(kStopBit, base_));
+  if (held_) return of(WaitReason::operator_hold);
   if (!k.bit(at(kFeedEnable, base_))) return of(WaitReason::feed_enable, at(kFeedEnable, base_));
   for (const int a : config_.axes.machine)
     if (!c.axes[static_cast<std::size_t>(a)].feed_enabled())
@@ -181,7 +181,7 @@ void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c)
   k.set_number(at(kMode, base_), static_cast<double>(out.mode));
   k.set_number(at(kState, base_), static_cast<double>(out.state));
   k.set_bit(at(kRunning, base_), running_);
-  k.set_bit(at(kHeld, base_), held);
+  k.set_bit(at(kHeld, base_), running_ && (held || held_));
   k.set_bit(at(kInPosition, base_), in_position(c));
   k.set_bit(at(kRapid, base_), out.rapid);
   k.set_number(at(kLine, base_), out.line);

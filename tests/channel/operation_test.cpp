@@ -37,7 +37,7 @@ TEST(Hold, stops_on_the_path_within_the_limits_and_resume_goes_on_from_there) {
   EXPECT_EQ(rig.violations(), "");
 }
 
-TEST(Hold, comes_from_the_plc_from_feed_enable_and_from_a_single_axis_just_the_same) {
+TEST(Hold, comes_from_feed_enable_and_from_a_single_axis_just_the_same) {
   const auto try_it = [](const char* what, auto&& hold, auto&& release) {
     Rig rig(kLongLine);
     rig.start();
@@ -51,12 +51,45 @@ TEST(Hold, comes_from_the_plc_from_feed_enable_and_from_a_single_axis_just_the_s
     EXPECT_EQ(rig.violations(), "") << what;
   };
   try_it(
-      "stop bit", [](TestLogic& l) { l.stop_bit = true; }, [](TestLogic& l) { l.stop_bit = false; });
-  try_it(
       "feed_enable", [](TestLogic& l) { l.feed_enable = false; }, [](TestLogic& l) { l.feed_enable = true; });
   try_it(
       "Y.feed_enable", [](TestLogic& l) { l.axis_feed_enable[1] = false; },
       [](TestLogic& l) { l.axis_feed_enable[1] = true; });
+}
+
+TEST(Hold, by_the_plcs_stop_ends_with_start_or_resume_and_not_before_the_stop_has_gone) {
+  for (const RequestKind go_on : {RequestKind::start, RequestKind::resume}) {
+    Rig rig(kLongLine);
+    rig.start();
+    rig.run(0.6);
+    rig.logic.stop_bit = true;
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::held; }, 1.0));
+    rig.ask(go_on);
+    rig.run(0.3);
+    EXPECT_EQ(rig.state(), ProcessState::held);
+    EXPECT_EQ(rig.status().wait.reason, image::WaitReason::plc_hold);
+    rig.logic.stop_bit = false;
+    rig.run(0.5);
+    EXPECT_EQ(rig.state(), ProcessState::held) << "it does not go on by itself";
+    EXPECT_EQ(rig.status().wait.reason, image::WaitReason::operator_hold);
+    rig.ask(go_on);
+    EXPECT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+    EXPECT_EQ(rig.violations(), "");
+  }
+}
+
+TEST(Hold, by_the_plcs_stop_during_a_function_holds_behind_it) {
+  Rig rig("N10 M8\nN20 G1 X10 F6000\nN30 M30\n", "G29");
+  rig.logic.delay_cycles = 300;
+  rig.start();
+  rig.run(0.1);
+  rig.logic.stop_bit = true;
+  rig.run(0.05);
+  rig.logic.stop_bit = false;
+  rig.run(1.0);
+  EXPECT_EQ(rig.x(), 0.0) << "what was told to stop does not begin to move";
+  rig.ask(RequestKind::resume);
+  EXPECT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
 }
 
 TEST(Hold, in_every_state_of_a_program_keeps_it_able_to_go_on) {

@@ -54,6 +54,15 @@ TEST(Consequences, say_the_stopping_distance) {
   EXPECT_TRUE(has(said(mill()), "X: stops from 500 mm/s within 150 mm, in 0.6 s"));
 }
 
+/// The stop of 0.6 s, 0.1 s to take a full acceleration back, 0.1 s for Z's brake, three cycles; rounded up.
+TEST(Consequences, say_how_long_the_safety_relay_has_to_wait) {
+  EXPECT_TRUE(has(said(mill()), "emergency stop: all axes rest and their brakes hold after 0.81 s"));
+  LoadResult slow_brake = mill();
+  for (AxisConfig& a : slow_brake.machine.axes)
+    if (a.brake.present()) a.brake.engage_delay = 0.4;
+  EXPECT_TRUE(has(said(slow_brake), "emergency stop: all axes rest and their brakes hold after 1.11 s"));
+}
+
 TEST(Consequences, stopping_distance_agrees_with_an_integration_of_the_jerk_profile) {
   for (const auto& [v, a, j] :
        std::vector<std::array<double, 3>>{{500, 1000, 10000}, {20, 1000, 10000}, {100, 2000, 5000}}) {

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
+#include "gateway/machine/consequences.hpp"
 #include "tests/machine_run/rig/mill.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::machine_run {
 namespace {
@@ -75,6 +78,30 @@ TEST(Faults, emergency_stop_in_motion_stops_every_axis_within_its_limits_and_onl
   EXPECT_EQ(history.front().number, cycle::alarm::kEmergencyStop) << mill.alarm_list();
   EXPECT_EQ(mill.alarms(axis::alarm::kEnableWithdrawn), 0)
       << "that the PLC takes the enable away with the power says nothing new: " << mill.alarm_list();
+}
+
+TEST(Faults, emergency_stop_at_any_moment_ends_within_the_time_that_check_tells_for_the_safety_relay) {
+  double told = 0.0;
+  const machine::LoadResult loaded = changed_mill([](std::string&) {});
+  for (const machine::Consequence& c : machine::consequences(loaded))
+    if (c.subject == "emergency stop") told = c.figures.at("stop_time");
+  ASSERT_GT(told, 0.0);
+  std::mt19937 random(static_cast<unsigned>(servogate::test::property_seed()));
+  for (int n = 0; n < 40; ++n) {
+    Mill mill("N10 G90 G94 G71 G29\nN20 G0 X280 Y-280 Z-250\nN30 G0 X-280 Y280 Z0\nN40 M30\n");
+    ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+    ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
+    mill.run(0.05 + 0.001 * static_cast<double>(random() % 2500));
+    mill.control().world().set_input("estop_chain_ok", false);
+    EXPECT_TRUE(mill.until(
+        [&] {
+          return !mill.axis("X").drive_command.power && !mill.axis("Y").drive_command.power &&
+                 !mill.axis("Z").drive_command.power;
+        },
+        told + 0.002))
+        << n;
+    EXPECT_EQ(mill.judge().verdict(), "") << n;
+  }
 }
 
 TEST(Faults, relay_that_takes_the_torque_at_once_closes_the_brake_of_z_at_once) {
@@ -159,15 +186,67 @@ TEST(Faults, node_that_falls_silent_stops_the_program_and_is_named) {
   EXPECT_EQ(mill.judge().verdict(), "");
 }
 
-TEST(Faults, open_door_holds_the_feed_on_the_path_and_closing_it_goes_on) {
+TEST(Faults, open_door_holds_the_feed_on_the_path_and_only_a_resume_behind_the_closed_one_goes_on) {
   Moving mill;
   mill.control().world().set_input("door_closed", false);
   ASSERT_TRUE(mill.until([&] { return mill.process().state == ProcessState::held; }, 2.0))
       << mill.alarm_list();
   EXPECT_LT(off_line(mill.image()), 1e-4);
+  EXPECT_EQ(mill.ask(RequestKind::resume), Refusal::none) << "it is held on";
+  mill.run(0.5);
+  EXPECT_TRUE(mill.standing());
   mill.control().world().set_input("door_closed", true);
+  mill.run(2.0);
+  EXPECT_TRUE(mill.standing()) << "closing a guard starts nothing";
+  EXPECT_EQ(mill.process().state, ProcessState::held);
+  ASSERT_EQ(mill.ask(RequestKind::resume), Refusal::none);
   EXPECT_TRUE(mill.until([&] { return mill.process().state == ProcessState::ended; })) << mill.alarm_list();
   EXPECT_EQ(mill.judge().verdict(), "");
+}
+
+TEST(Faults, spindle_that_an_open_door_stopped_runs_up_after_the_resume_and_before_the_feed) {
+  Mill mill("N10 G90 G94 G71\nN20 S1000 M3\nN30 G1 X200 F1200\nN40 M30\n");
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
+  ASSERT_TRUE(mill.until([&] { return mill.axis("X").command > 5.0; })) << mill.alarm_list();
+  const image::SpindleImage& spindle = mill.image().spindles[0];
+  EXPECT_TRUE(spindle.at_speed);
+  mill.control().world().set_input("door_closed", false);
+  ASSERT_TRUE(mill.until([&] { return mill.standing() && std::abs(spindle.actual_rpm) < 5.0; }, 10.0));
+  mill.control().world().set_input("door_closed", true);
+  mill.run(2.0);
+  EXPECT_LT(std::abs(spindle.actual_rpm), 5.0) << "closing a guard starts nothing";
+  EXPECT_TRUE(mill.standing());
+  bool moved_early = false;
+  mill.after_cycle = [&] { moved_early |= !mill.standing() && !spindle.at_speed; };
+  ASSERT_EQ(mill.ask(RequestKind::resume), Refusal::none);
+  ASSERT_TRUE(mill.until([&] { return !mill.standing(); }, 10.0)) << mill.alarm_list();
+  EXPECT_FALSE(moved_early) << "the tool would cut without turning";
+  mill.after_cycle = {};
+  EXPECT_TRUE(mill.until([&] { return mill.process().state == ProcessState::ended; })) << mill.alarm_list();
+}
+
+TEST(Faults, spindle_that_an_open_door_stopped_stays_off_when_the_program_is_given_up) {
+  Mill mill("N10 G90 G94 G71\nN20 S1000 M3\nN30 G1 X200 F1200\nN40 M30\n");
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
+  ASSERT_TRUE(mill.until([&] { return mill.axis("X").command > 5.0; })) << mill.alarm_list();
+  const image::SpindleImage& spindle = mill.image().spindles[0];
+  for (const bool stop_before_closing : {true, false}) {
+    mill.control().world().set_input("door_closed", false);
+    ASSERT_TRUE(mill.until([&] { return mill.standing() && std::abs(spindle.actual_rpm) < 5.0; }, 10.0));
+    if (stop_before_closing) ASSERT_EQ(mill.ask(RequestKind::stop), Refusal::none);
+    mill.control().world().set_input("door_closed", true);
+    mill.run(0.5);
+    if (!stop_before_closing) ASSERT_EQ(mill.ask(RequestKind::stop), Refusal::none);
+    mill.run(3.0);
+    EXPECT_LT(std::abs(spindle.actual_rpm), 5.0) << stop_before_closing;
+    EXPECT_FALSE(mill.image().packets.bit(place_of(mill.control(), "spindle_contactor")));
+    if (!stop_before_closing) break;
+    ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
+    ASSERT_TRUE(mill.until([&] { return mill.process().feed_mm_s > 1.0 && spindle.at_speed; }))
+        << mill.alarm_list();
+  }
 }
 
 TEST(Faults, behind_an_open_door_nothing_starts_homes_or_jogs_and_what_jogs_comes_to_rest) {

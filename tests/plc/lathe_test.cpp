@@ -59,6 +59,36 @@ TEST(ExampleLathe, turns_the_turret_to_the_station_of_the_T_word_and_waits_for_t
   EXPECT_EQ(m.until("NC.t_ack", 0, 2), 1);
 }
 
+TEST(ExampleLathe, starts_nothing_when_the_door_is_closed_again) {
+  Lathe m;
+  m.set("chuck_closed", 1);
+  m.set("NC.running", 1);
+  m.set("S.run", 1);
+  m.strobe_m(3);
+  m.until("S.enable", 1);
+  m.set("S.at_speed", 1);
+  m.cycle();
+  m.finish_m();
+  m.set("door_closed", 0);
+  m.cycle();
+  EXPECT_TRUE(m.on("NC.stop"));
+  for (const char* name : {"S.enable", "X.feed_enable", "Z.feed_enable", "NC.feed_enable"})
+    EXPECT_FALSE(m.on(name)) << name;
+  m.set("NC.held", 1);
+  m.set("S.at_speed", 0);
+  m.set("S.zero_speed", 1);
+  m.set("door_closed", 1);
+  m.cycles(500);
+  for (const char* name : {"S.enable", "spindle_contactor", "NC.feed_enable"})
+    EXPECT_FALSE(m.on(name)) << name;
+  m.set("NC.held", 0);
+  EXPECT_GE(m.until("S.enable", 1), 100);
+  EXPECT_FALSE(m.on("NC.feed_enable"));
+  m.set("S.at_speed", 1);
+  m.cycle();
+  EXPECT_TRUE(m.on("NC.feed_enable"));
+}
+
 TEST(ExampleLathe, holds_the_axes_while_the_turret_turns) {
   Lathe m;
   m.set("NC.t_number", 2);

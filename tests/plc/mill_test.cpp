@@ -49,6 +49,59 @@ TEST(ExampleMill, holds_the_feed_while_the_door_is_open) {
   EXPECT_TRUE(m.on("X.enable"));
 }
 
+TEST(ExampleMill, starts_nothing_when_the_door_is_closed_again) {
+  Mill m;
+  m.power_up();
+  m.set("NC.running", 1);
+  m.set("S.run", 1);
+  m.strobe_m(13);
+  m.until("S.enable", 1);
+  m.set("S.at_speed", 1);
+  m.cycle();
+  m.finish_m();
+  ASSERT_TRUE(m.on("coolant"));
+  m.set("door_closed", 0);
+  m.cycle();
+  EXPECT_TRUE(m.on("NC.stop"));
+  EXPECT_FALSE(m.on("coolant"));
+  EXPECT_FALSE(m.on("S.enable"));
+  m.set("NC.held", 1);
+  m.set("S.at_speed", 0);
+  m.set("door_closed", 1);
+  m.cycles(500);
+  for (const char* name : {"NC.stop", "NC.feed_enable", "coolant", "S.enable", "spindle_contactor"})
+    EXPECT_FALSE(m.on(name)) << name;
+  m.set("NC.held", 0);  // resume
+  m.cycle();
+  EXPECT_TRUE(m.on("coolant"));
+  EXPECT_EQ(m.until("S.enable", 1), 100);
+  EXPECT_FALSE(m.on("NC.feed_enable")) << "the spindle does not turn yet";
+  m.set("S.at_speed", 1);
+  m.cycle();
+  EXPECT_TRUE(m.on("NC.feed_enable"));
+  m.set("S.at_speed", 0);
+  m.cycle();
+  EXPECT_TRUE(m.on("NC.feed_enable")) << "a new speed on the way holds nothing";
+}
+
+TEST(ExampleMill, forgets_what_an_open_door_interrupted_when_no_program_is_left_to_resume) {
+  Mill m;
+  m.power_up();
+  m.set("NC.running", 1);
+  m.strobe_m(13);
+  m.until("NC.m_ack", 1);
+  m.finish_m();
+  m.set("door_closed", 0);
+  m.set("NC.held", 1);
+  m.cycles(5);
+  m.set("door_closed", 1);
+  m.cycles(5);
+  m.set("NC.running", 0);
+  m.set("NC.held", 0);
+  m.cycles(500);
+  for (const char* name : {"coolant", "S.enable", "spindle_contactor"}) EXPECT_FALSE(m.on(name)) << name;
+}
+
 TEST(ExampleMill, closes_the_contactor_before_the_spindle_and_acknowledges_M3_at_speed) {
   for (const int code : {3, 4, 13, 14}) {
     Mill m;

@@ -97,13 +97,13 @@ TEST_F(Words, of_a_held_feed_name_the_plcs_place_the_operator_or_the_override) {
         [reason](const json& s) { return s["wait"].is_object() && s["wait"]["reason"] == reason; }, 10.0);
   };
   ASSERT_EQ(shell_.run({"input", "door_closed", "off"}).exit, 0);
-  EXPECT_TRUE(waits("feed_enable")) << shell_.status()["wait"];
-  EXPECT_EQ(shell_.status()["wait"]["symbol"], "NC.feed_enable");
+  EXPECT_TRUE(waits("plc_hold")) << shell_.status()["wait"];
+  EXPECT_EQ(shell_.status()["wait"]["symbol"], "NC.stop");
   EXPECT_EQ(shell_.status()["wait"]["written_by"], "plc");
   EXPECT_TRUE(contains(shell_.run({"status"}).out, "see in mill.st"));
   ASSERT_EQ(shell_.run({"input", "door_closed", "on"}).exit, 0);
-  ASSERT_EQ(shell_.run({"hold"}).exit, 0);
-  EXPECT_TRUE(waits("operator_hold")) << shell_.status()["wait"];
+  EXPECT_TRUE(waits("operator_hold")) << "closing the door starts nothing: " << shell_.status()["wait"];
+  EXPECT_TRUE(contains(shell_.run({"status"}).out, "`servogate resume` goes on"));
   ASSERT_EQ(shell_.run({"override", "0"}).exit, 0);
   ASSERT_EQ(shell_.run({"resume"}).exit, 0);
   EXPECT_TRUE(waits("override_zero")) << shell_.status()["wait"];
