@@ -181,7 +181,7 @@ void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c)
   k.set_number(at(kMode, base_), static_cast<double>(out.mode));
   k.set_number(at(kState, base_), static_cast<double>(out.state));
   k.set_bit(at(kRunning, base_), running_);
-  k.set_bit(at(kHeld, base_), running_ && (held || held_));
+  k.set_bit(at(kHeld, base_), running_ && held_);
   k.set_bit(at(kInPosition, base_), in_position(c));
   k.set_bit(at(kRapid, base_), out.rapid);
   k.set_number(at(kLine, base_), out.line);

@@ -282,14 +282,22 @@ TEST(Fault, of_following_names_the_axis_and_stops_the_rest) {
   EXPECT_GT(std::abs(a->value), a->limit);
 }
 
-TEST(EmergencyStop, during_motion_takes_the_power_at_once_and_gives_it_back_only_when_asked) {
+TEST(EmergencyStop, during_motion_ramps_down_takes_the_power_at_rest_and_gives_it_back_only_when_asked) {
   Rig rig(kLongLine);
   rig.start();
   rig.run(0.6);
   rig.logic.estop_ok = false;
   rig.run(0.003);
+  EXPECT_TRUE(rig.moving());
+  for (; rig.moving(); rig.run(0.001))
+    for (const int a : {0, 1}) {
+      const image::AxisImage& axis = rig.image().axes[static_cast<std::size_t>(a)];
+      ASSERT_TRUE(!axis.moving || axis.drive_command.power) << "axis " << a;
+    }
+  rig.run(0.002);
   for (int a = 0; a < kAxes; ++a)
     EXPECT_FALSE(rig.image().axes[static_cast<std::size_t>(a)].drive_command.power) << "axis " << a;
+  EXPECT_EQ(rig.violations(), "");
   EXPECT_EQ(rig.alarms(cycle::alarm::kEmergencyStop), 1) << rig.alarm_list();
   rig.run(0.5);
   EXPECT_EQ(rig.state(), ProcessState::stopped_by_alarm);

@@ -167,7 +167,7 @@ TEST(AlarmList, stays_bounded_counts_what_it_drops_and_still_reacts_to_it) {
     list.raise(r, at(i));
   }
   list.raise(of(alarm::kEmergencyStop), at(999));
-  EXPECT_EQ(list.reaction(), Reaction::power_off) << "no room for the record, but the machine stops";
+  EXPECT_EQ(list.reaction(), Reaction::stop_and_power_off) << "no room for the record, but the machine stops";
   AlarmSnapshot s;
   list.snapshot(s);
   EXPECT_EQ(s.dropped, 1u);

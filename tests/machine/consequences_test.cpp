@@ -56,11 +56,15 @@ TEST(Consequences, say_the_stopping_distance) {
 
 /// The stop of 0.6 s, 0.1 s to take a full acceleration back, 0.1 s for Z's brake, three cycles; rounded up.
 TEST(Consequences, say_how_long_the_safety_relay_has_to_wait) {
-  EXPECT_TRUE(has(said(mill()), "emergency stop: all axes rest and their brakes hold after 0.81 s"));
+  const auto told = [](const char* seconds) {
+    return "emergency stop: all axes rest and their brakes hold after " + std::string(seconds) +
+           " s; the safety relay's delay t_d has to be longer";
+  };
+  EXPECT_TRUE(has(said(mill()), told("0.81")));
   LoadResult slow_brake = mill();
   for (AxisConfig& a : slow_brake.machine.axes)
     if (a.brake.present()) a.brake.engage_delay = 0.4;
-  EXPECT_TRUE(has(said(slow_brake), "emergency stop: all axes rest and their brakes hold after 1.11 s"));
+  EXPECT_TRUE(has(said(slow_brake), told("1.11")));
 }
 
 TEST(Consequences, stopping_distance_agrees_with_an_integration_of_the_jerk_profile) {

@@ -368,6 +368,9 @@ bool Decision::resume() noexcept {
   const ProcessState s = state(r_.process);
   if (!busy(s)) return refuse(Refusal::program_does_not_run, -1, r_.process);
   if (s == ProcessState::running) return refuse(Refusal::program_not_held, -1, r_.process);
+  // Behind an open door nothing is begun that its closing would let go.
+  for (const Axis& a : c_.axes)
+    if (!a.config().auxiliary && !a.feed_enabled()) return refuse(Refusal::feed_not_enabled, a.index());
   return no_alarm(Reaction::stop_at_block_end) && no_homing() && not_held_by_another() && all_at_rest(false);
 }
 
