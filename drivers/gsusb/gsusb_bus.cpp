@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "drivers/clock.hpp"
+#include "firmware_if/text/system_words.hpp"
 
 namespace servogate::gsusb {
 namespace {
@@ -56,7 +57,7 @@ std::unique_ptr<GsUsbBus> GsUsbBus::open(std::unique_ptr<UsbPort> port, const Gs
   }
   const int event = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   if (event < 0) {
-    why = {&kSystem, {config.adapter, std::strerror(errno)}};
+    why = {&kSystem, {config.adapter, text::words_of(errno)}};
     return nullptr;
   }
   std::unique_ptr<GsUsbBus> bus(new GsUsbBus(std::move(port), config, event));

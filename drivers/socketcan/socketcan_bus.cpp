@@ -8,6 +8,7 @@
 #include <cstring>
 #include "drivers/clock.hpp"
 #include "drivers/socketcan/kernel_frame.hpp"
+#include "firmware_if/text/system_words.hpp"
 
 namespace servogate::socketcan {
 namespace {
@@ -97,7 +98,7 @@ std::unique_ptr<SocketCanBus> SocketCanBus::open(const SocketCanConfig& config, 
   if (s < 0) {
     why = errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT
               ? drivers::Notice{&kNoCan, {}}
-              : drivers::Notice{&kSystem, {config.interface, std::strerror(errno)}};
+              : drivers::Notice{&kSystem, {config.interface, text::words_of(errno)}};
     return nullptr;
   }
   std::optional<LinkInfo> link = read_link(config.interface);
@@ -106,14 +107,14 @@ std::unique_ptr<SocketCanBus> SocketCanBus::open(const SocketCanConfig& config, 
     return nullptr;
   }
   if (!set_up(s, config, *link)) {
-    why = {&kSystem, {config.interface, std::strerror(errno)}};
+    why = {&kSystem, {config.interface, text::words_of(errno)}};
     close(s);
     return nullptr;
   }
   const std::uint32_t rate = link->bit_rate != 0 ? link->bit_rate : config.bit_rate;
   std::unique_ptr<SocketCanBus> bus(new SocketCanBus(s, std::move(*link), rate));
   if (bus->watch_.good()) return bus;
-  why = {&kSystem, {config.interface, std::strerror(errno)}};
+  why = {&kSystem, {config.interface, text::words_of(errno)}};
   return nullptr;
 }
 
@@ -129,7 +130,7 @@ SocketCanBus::~SocketCanBus() { close(socket_); }
 bool SocketCanBus::restart(drivers::Notice& why) {
   const int error = restart_link(link_.index);
   if (error == 0) return true;
-  why = {&kSystem, {link_.name, std::strerror(error)}};
+  why = {&kSystem, {link_.name, text::words_of(error)}};
   return false;
 }
 

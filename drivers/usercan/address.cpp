@@ -14,6 +14,8 @@
 #include <cstring>
 #include <memory>
 
+#include "firmware_if/text/system_words.hpp"
+
 namespace servogate::usercan {
 namespace {
 
@@ -138,7 +140,7 @@ int listen_on(Address& address, drivers::Notice& why) {
   } else {
     s = listen_tcp(address, *found);
   }
-  if (s < 0) why = {&kCannotListen, {address.str(), std::strerror(errno)}};
+  if (s < 0) why = {&kCannotListen, {address.str(), text::words_of(errno)}};
   return s;
 }
 
@@ -157,7 +159,7 @@ int connect_to(const Address& address, drivers::Notice& why) {
     const int on = 1;
     if (s >= 0) setsockopt(s, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   }
-  if (s < 0) why = {&kCannotConnect, {address.str(), std::strerror(errno)}};
+  if (s < 0) why = {&kCannotConnect, {address.str(), text::words_of(errno)}};
   return s;
 }
 

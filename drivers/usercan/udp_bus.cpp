@@ -10,6 +10,7 @@
 #include <cstring>
 #include "drivers/clock.hpp"
 #include "drivers/usercan/message_pack.hpp"
+#include "firmware_if/text/system_words.hpp"
 
 namespace servogate::usercan {
 namespace {
@@ -72,7 +73,7 @@ std::unique_ptr<UdpBus> UdpBus::open(const UdpBusConfig& config, drivers::Notice
   if (receiver >= 0 && sender >= 0 && set_up_receiver(receiver, group) &&
       set_up_sender(sender, group, own_port))
     return std::unique_ptr<UdpBus>(new UdpBus(receiver, sender, own_port, config));
-  why = {&kNoMulticast, {config.group, std::strerror(errno)}};
+  why = {&kNoMulticast, {config.group, text::words_of(errno)}};
   close(receiver);
   close(sender);
   return nullptr;

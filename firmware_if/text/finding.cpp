@@ -18,18 +18,29 @@ Language user_language() {
 }
 
 namespace {
-// ASCII unit separator: cannot stand in a name or a number.
-constexpr char kBetweenLanguages = '\x1f';
-
-std::string_view in_language(std::string_view argument, Language language) {
-  const std::size_t cut = argument.find(kBetweenLanguages);
-  if (cut == std::string_view::npos) return argument;
-  return language == Language::russian ? argument.substr(cut + 1) : argument.substr(0, cut);
-}
+// ASCII start, middle and end: cannot stand in a name or a number.
+constexpr char kBegin = '\x02', kBetween = '\x1f', kEnd = '\x03';
 }  // namespace
 
 std::string both(std::string_view english, std::string_view russian) {
-  return std::string(english) + kBetweenLanguages + std::string(russian);
+  return kBegin + std::string(english) + kBetween + std::string(russian) + kEnd;
+}
+
+std::string in_language(std::string_view words, Language language) {
+  std::string out;
+  // Of each both() that is open: whether its half of this language is being read.
+  std::vector<bool> chosen;
+  for (const char c : words) {
+    if (c == kBegin)
+      chosen.push_back(language == Language::english);
+    else if (c == kBetween && !chosen.empty())
+      chosen.back() = language == Language::russian;
+    else if (c == kEnd && !chosen.empty())
+      chosen.pop_back();
+    else if (std::find(chosen.begin(), chosen.end(), false) == chosen.end())
+      out += c;
+  }
+  return out;
 }
 
 std::string render(const Entry& entry, std::span<const std::string> arguments, Language language) {

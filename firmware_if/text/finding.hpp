@@ -24,8 +24,12 @@ struct Entry {
 /// safe.
 std::string render(const Entry& entry, std::span<const std::string> arguments, Language language);
 
-/// An argument that is itself words: render() takes the half of its language.
+/// An argument that is itself words: render() takes the half of its language. May stand anywhere inside a
+/// string that becomes an argument: `path + ": " + both(...)`.
 std::string both(std::string_view english, std::string_view russian);
+
+/// Words with every both() in them resolved: for what is printed without render(). Not real-time safe.
+std::string in_language(std::string_view words, Language language = user_language());
 
 enum class Severity { error, warning };
 

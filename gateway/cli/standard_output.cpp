@@ -10,9 +10,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
-#include "gateway/files/system_words.hpp"
 
 namespace servogate::gateway {
 
@@ -66,7 +66,7 @@ int end_output(int code, bool json) {
   errno = 0;
   if (failure == 0) note(std::fflush(stdout) == 0);
   if (failure == 0 || failure == EPIPE) return code;
-  complain(kOutputLost, {files::words_of(failure)});
+  complain(kOutputLost, {text::words_of(failure)});
   return kInfrastructure;
 }
 

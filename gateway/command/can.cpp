@@ -7,6 +7,7 @@
 
 #include "drivers/candump/candump_line.hpp"
 #include "drivers/usercan/server/bus_server.hpp"
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
@@ -71,7 +72,7 @@ int can_bus(const CanBusOptions& options) {
   if (!options.log.empty()) {
     log = std::make_unique<Log>(options.log, options.names.front(), server->epoch());
     if (!log->good()) {
-      complain(kCannotWrite, {options.log, std::strerror(errno)});
+      complain(kCannotWrite, {options.log, text::words_of(errno)});
       return kInfrastructure;
     }
     server->set_monitor(0, log.get());
@@ -87,7 +88,7 @@ int can_bus(const CanBusOptions& options) {
   while (!signals.ended() && server->serve(100 * image::kMillisecond)) {
   }
   if (log == nullptr || log->good()) return kDone;
-  complain(kCannotWrite, {options.log, std::strerror(errno)});
+  complain(kCannotWrite, {options.log, text::words_of(errno)});
   return kInfrastructure;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/text/units.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/compose/program/program_check.hpp"
@@ -84,7 +85,7 @@ void print_report(const ProgramCheck& check, const program::MachineModel& model,
     const auto place = [&](double v) { return text::number(axis.diameter ? 2.0 * v : v, 3); };
     print_line("  " + sentence(axis.diameter ? kTravelLineDiameter : kTravelLine,
                                {axis.letter, place(e.min), place(e.max), place(e.travel_min),
-                                place(e.travel_max), axis.rotary ? "deg" : "mm"}));
+                                place(e.travel_max), text::unit_words(axis.rotary ? "deg" : "mm")}));
   }
   for (const auto& t : report.tools)
     print_line("  " + sentence(kToolLine, {std::to_string(t.number), std::to_string(t.corrector),

@@ -385,7 +385,8 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
     std::fprintf(stderr, "  %s\n", report.wait->remedy.c_str());
   }
   if (script.outcome() == OperatorScript::Outcome::refused)
-    complain(kRefused, {cycle::render(script.refusal(), loaded_.machine.letters(), text::user_language())});
+    complain(kRefused, {cycle::render(script.refusal(), loaded_.machine.letters(), text::user_language(),
+                                      loaded_.machine.unit_words())});
   if (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()) {
     std::string axes;
     for (const std::string& a : script.waiting_for()) axes += (axes.empty() ? "" : ", ") + a;

@@ -189,7 +189,12 @@ bool Control::compile_logic(std::vector<text::Finding>& findings) {
     auto content = files::read_file(file.name, files::kMostOfSource, error);
     if (!content) {
       const machine::Where where = m.where("plc.sources");
-      findings.push_back({text::Severity::error, m.file, where.line, where.column, &kUnreadable, {error}});
+      findings.push_back({text::Severity::error,
+                          m.file,
+                          where.line,
+                          where.column,
+                          &kUnreadable,
+                          {file.name + ": " + error}});
       return false;
     }
     file.text = std::move(*content);
@@ -281,10 +286,8 @@ cycle::AlarmNames Control::alarm_names() const {
   const machine::MachineConfig& m = loaded_.machine;
   cycle::AlarmNames names;
   names.axes = m.letters();
-  for (const machine::AxisConfig& a : m.axes) {
-    names.units.push_back(a.type == machine::AxisType::rotary ? "deg" : "mm");
-    names.diameters.push_back(a.diameter);
-  }
+  names.units = m.unit_words();
+  for (const machine::AxisConfig& a : m.axes) names.diameters.push_back(a.diameter);
   for (const machine::BusConfig& b : m.buses) names.segments.push_back(b.name);
   for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
   names.error_text = [this](int axis, int segment, int node, std::uint16_t code,

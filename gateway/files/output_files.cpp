@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "gateway/files/system_words.hpp"
+#include "firmware_if/text/system_words.hpp"
 
 namespace servogate::files {
 
@@ -44,17 +44,17 @@ bool same_file(const std::string& a, const std::string& b) {
 std::string why_unwritable(const std::string& path) {
   struct stat seen {};
   if (stat(path.c_str(), &seen) == 0) {
-    if (S_ISDIR(seen.st_mode)) return words_of(EISDIR);
-    return access(path.c_str(), W_OK) == 0 ? "" : words_of(errno);
+    if (S_ISDIR(seen.st_mode)) return text::words_of(EISDIR);
+    return access(path.c_str(), W_OK) == 0 ? "" : text::words_of(errno);
   }
-  if (errno != ENOENT) return words_of(errno);
+  if (errno != ENOENT) return text::words_of(errno);
   if (lstat(path.c_str(), &seen) == 0) return "";  // a link to a file that is still to come
   const std::string folder = folder_of(path);
   if (stat(folder.c_str(), &seen) != 0)
     return text::both("the folder '" + folder + "' does not exist", "каталога «" + folder + "» нет");
   // Permissions alone do not tell: the file system may be full of names, or read-only.
   const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (fd < 0) return words_of(errno);
+  if (fd < 0) return text::words_of(errno);
   close(fd);
   unlink(path.c_str());
   return "";
@@ -83,7 +83,7 @@ std::optional<OutputProblem> problem_of_outputs(const std::vector<NamedPath>& ou
 
 std::optional<OutputProblem> problem_of_folder(const std::string& path) {
   const auto problem = [&](int error) {
-    return OutputProblem{&kCannot, {"--state", path, words_of(error)}, false};
+    return OutputProblem{&kCannot, {"--state", path, text::words_of(error)}, false};
   };
   std::error_code error;
   fs::path at = fs::absolute(path, error);
@@ -102,7 +102,7 @@ std::string nameless_file(const std::string& beside, std::string& error) {
   int fd = open(folder_of(beside).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (fd < 0) fd = open(fs::temp_directory_path(ignored).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (fd < 0) {
-    error = words_of(errno);
+    error = text::words_of(errno);
     return {};
   }
   return "/proc/self/fd/" + std::to_string(fd);

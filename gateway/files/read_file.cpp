@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "firmware_if/text/finding.hpp"
-#include "gateway/files/system_words.hpp"
+#include "firmware_if/text/system_words.hpp"
 
 namespace servogate::files {
 
@@ -50,7 +50,7 @@ class Opened {
     fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     struct stat seen {};
     if (fd_ < 0 || ::fstat(fd_, &seen) != 0)
-      problem_ = words_of(errno);
+      problem_ = text::words_of(errno);
     else if (!S_ISREG(seen.st_mode))
       problem_ = not_regular(seen.st_mode);
     size_ = seen.st_size;
@@ -84,7 +84,7 @@ std::optional<std::string> read_file(const std::string& path, std::int64_t most,
     const ssize_t got = ::read(file.fd(), content.data() + filled, content.size() - filled);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {
-      error = words_of(errno);
+      error = text::words_of(errno);
       return std::nullopt;
     }
     if (got == 0) break;

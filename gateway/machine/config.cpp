@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "firmware_if/text/units.hpp"
 #include "gateway/machine/keys/reader.hpp"
 
 namespace servogate::machine {
@@ -66,6 +67,12 @@ bool MachineConfig::virtual_time() const {
 std::vector<std::string> MachineConfig::letters() const {
   std::vector<std::string> out;
   for (const AxisConfig& a : axes) out.push_back(a.letter);
+  return out;
+}
+
+std::vector<std::string> MachineConfig::unit_words() const {
+  std::vector<std::string> out;
+  for (const AxisConfig& a : axes) out.push_back(text::unit_words(a.unit()));
   return out;
 }
 

@@ -107,6 +107,8 @@ struct AxisConfig {
   HomingConfig home;
   BrakeConfig brake;
 
+  /// What its lengths are in, as files and JSON write it; people read text::unit_words() of it.
+  const char* unit() const { return type == AxisType::rotary ? "deg" : "mm"; }
   bool endless() const { return type == AxisType::rotary && travel_min == 0.0 && travel_max == 0.0; }
   /// Drive counts per mm (degree), without sign.
   double counts_per_unit() const {
@@ -367,6 +369,8 @@ struct MachineConfig {
   bool virtual_time() const;
   /// Letters in axis order.
   std::vector<std::string> letters() const;
+  /// Unit of each axis as people read it, in both languages (text::unit_words).
+  std::vector<std::string> unit_words() const;
   /// Axes that programs move; the auxiliary ones stand behind them.
   std::size_t program_axes() const;
   /// The auxiliary axes as bits.

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "firmware_if/text/finding.hpp"
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/report/decimal.hpp"
 #include "gateway/report/trace.hpp"
 
@@ -39,12 +41,12 @@ struct CsvSink::Impl {
   std::vector<char> buffer;
   std::size_t used = 0;
 
-  void fail(const char* what) {
-    if (error.empty()) error = path + ": " + what + ": " + std::strerror(errno);
+  void fail(const std::string& what) {
+    if (error.empty()) error = path + ": " + what + ": " + text::words_of(errno);
   }
   void flush() {
     if (file != nullptr && error.empty() && used > 0 && std::fwrite(buffer.data(), 1, used, file) != used)
-      fail("cannot write");
+      fail(text::both("cannot write", "не записывается"));
     used = 0;
   }
   void put(const std::string& text) {
@@ -118,7 +120,7 @@ void CsvSink::begin(const TraceLayout& layout) {
   i.row_max = 64 + kFixedMax * (1 + 3 * i.axes + 2 * i.spindles) + 2 * i.signals;
   i.buffer.resize(kChunk + i.row_max);
   i.file = std::fopen(i.path.c_str(), "wb");
-  if (i.file == nullptr) i.fail("cannot create");
+  if (i.file == nullptr) i.fail(text::both("cannot create", "не создаётся"));
   i.put(header(layout, i.columns) + "\n");
 }
 
@@ -130,7 +132,8 @@ void CsvSink::row(const TraceRow& row) {
 
 void CsvSink::end(std::uint64_t) {
   impl_->flush();
-  if (impl_->file != nullptr && std::fclose(impl_->file) != 0) impl_->fail("cannot close");
+  if (impl_->file != nullptr && std::fclose(impl_->file) != 0)
+    impl_->fail(text::both("cannot close", "не закрывается"));
   impl_->file = nullptr;
 }
 

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "firmware_if/text/finding.hpp"
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/report/page/page_files.hpp"
 #include "gateway/report/report_json.hpp"
 
@@ -262,16 +264,17 @@ std::string write_file(const std::string& path, const std::string& content) {
   const bool special =
       std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error);
   const std::string neighbour = special ? target : target + ".part";
-  const auto failed = [&](const char* what) {
-    const std::string text = path + ": " + what + ": " + std::strerror(errno);
+  const auto failed = [&](const std::string& what) {
+    const std::string text = path + ": " + what + ": " + text::words_of(errno);
     if (!special) std::remove(neighbour.c_str());
     return text;
   };
   std::FILE* file = std::fopen(neighbour.c_str(), "wb");
-  if (file == nullptr) return failed("cannot create");
+  if (file == nullptr) return failed(text::both("cannot create", "не создаётся"));
   const bool written = std::fwrite(content.data(), 1, content.size(), file) == content.size();
-  if (std::fclose(file) != 0 || !written) return failed("cannot write");
-  if (!special && std::rename(neighbour.c_str(), target.c_str()) != 0) return failed("cannot rename");
+  if (std::fclose(file) != 0 || !written) return failed(text::both("cannot write", "не записывается"));
+  if (!special && std::rename(neighbour.c_str(), target.c_str()) != 0)
+    return failed(text::both("cannot rename", "не переименовывается"));
   return {};
 }
 

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/compose/program/program_model.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/state/state_text.hpp"
@@ -86,7 +87,7 @@ struct RecordWriter::Queue {
 RecordWriter::RecordWriter(const std::string& path, const RecordHeader& header)
     : queue_(std::make_unique<Queue>(path)) {
   if (queue_->file == nullptr) {
-    error_ = std::strerror(errno);
+    error_ = text::words_of(errno);
     return;
   }
   nlohmann::json head{{"servogate", "record"},
@@ -99,7 +100,7 @@ RecordWriter::RecordWriter(const std::string& path, const RecordHeader& header)
   for (const machine::StatePart part : kParts)
     head["state"][std::string(machine::part_name(part))] = machine::write_part(header.state, part);
   const std::string line = head.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  if (std::fwrite(line.data(), 1, line.size(), queue_->file) != line.size()) error_ = std::strerror(errno);
+  if (std::fwrite(line.data(), 1, line.size(), queue_->file) != line.size()) error_ = text::words_of(errno);
   queue_->checksum = machine::crc32(line);
   thread_ = std::thread([this] { drain(); });
 }
@@ -189,7 +190,8 @@ void RecordWriter::write_chunk(std::string& bytes) {
   put_word(chunk, static_cast<std::uint32_t>(bytes.size()));
   put_word(chunk, queue_->checksum);
   chunk.append(bytes);
-  if (std::fwrite(chunk.data(), 1, chunk.size(), queue_->file) != chunk.size()) error_ = std::strerror(errno);
+  if (std::fwrite(chunk.data(), 1, chunk.size(), queue_->file) != chunk.size())
+    error_ = text::words_of(errno);
   bytes.clear();
 }
 
@@ -222,7 +224,7 @@ std::string RecordWriter::close() {
   if (thread_.joinable()) {
     stop_ = true;
     thread_.join();
-    if (std::fclose(queue_->file) != 0 && error_.empty()) error_ = std::strerror(errno);
+    if (std::fclose(queue_->file) != 0 && error_.empty()) error_ = text::words_of(errno);
     queue_->file = nullptr;
   }
   if (error_.empty() && lost() != 0) error_ = say(kLost, {std::to_string(lost())});

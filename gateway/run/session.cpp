@@ -30,8 +30,7 @@ report::RunRecorderOptions picture_options(const machine::MachineConfig& m) {
   report::RunRecorderOptions options;
   const int x = m.axis_index("X"), z = m.axis_index("Z");
   if (x >= 0 && z >= 0 && m.axes[static_cast<std::size_t>(x)].diameter) options.view_axes = {z, x, -1};
-  for (const machine::AxisConfig& a : m.axes)
-    options.axis_units.push_back(a.type == machine::AxisType::rotary ? "deg" : "mm");
+  for (const machine::AxisConfig& a : m.axes) options.axis_units.emplace_back(a.unit());
   return options;
 }
 
@@ -141,7 +140,7 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
   report::fill_axes(r, layout_, statistics_);
   for (std::size_t a = 0; a < r.axes.size() && a < m.axes.size(); ++a) {
     const machine::AxisConfig& axis = m.axes[a];
-    r.axes[a].unit = axis.type == machine::AxisType::rotary ? "deg" : "mm";
+    r.axes[a].unit = axis.unit();
     r.axes[a].limit_velocity = axis.max_velocity;
     r.axes[a].limit_acceleration = axis.max_acceleration;
     r.axes[a].limit_jerk = axis.max_jerk;

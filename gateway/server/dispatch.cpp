@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "firmware_if/text/units.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/run/words/jog_words.hpp"
 #include "gateway/server/bus_reading.hpp"
@@ -120,9 +121,6 @@ class Dispatch {
   const machine::AxisConfig& axis_config(int index) const {
     return machine().axes[static_cast<std::size_t>(index)];
   }
-  static const char* unit(const machine::AxisConfig& a) {
-    return a.type == machine::AxisType::rotary ? "deg" : "mm";
-  }
 
   Resident& resident_;
   const json& request_;
@@ -197,11 +195,9 @@ bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image
   }
   if (answer.refusal == 0) return true;
   as_people_write(answer);
-  std::vector<std::string> units;
-  for (const machine::AxisConfig& a : machine().axes) units.emplace_back(unit(a));
   json refused{{"ok", false},
                {"code", cycle::refusal_texts()[answer.refusal].id},
-               {"text", cycle::render(answer, machine().letters(), language_, units)},
+               {"text", cycle::render(answer, machine().letters(), language_, machine().unit_words())},
                {"exit", kAlarm}};
   const auto refusal = static_cast<cycle::Refusal>(answer.refusal);
   if (refusal == cycle::Refusal::not_powered || refusal == cycle::Refusal::emergency_stop)
@@ -250,8 +246,8 @@ bool Dispatch::number(const char* key, double& value, bool needed) {
 bool Dispatch::unit_is_own(int axis) {
   const machine::AxisConfig& a = axis_config(axis);
   const std::string said = request_.value("unit", "");
-  if (said.empty() || said == unit(a)) return true;
-  refusal_ = fail(says::kNotUnit, {said, a.letter, unit(a)}, kWrongUse);
+  if (said.empty() || said == a.unit()) return true;
+  refusal_ = fail(says::kNotUnit, {said, a.letter, a.unit()}, kWrongUse);
   return false;
 }
 
@@ -292,9 +288,10 @@ Reply Dispatch::jog() {
   const bool homed = resident_.image().axes[static_cast<std::size_t>(index)].homed;
   const double limit = std::clamp(target, a.travel_min, a.travel_max);
   if (homed && !a.endless() && std::abs(limit - target) > 1e-9)
-    return good(says::kJogClipped, {a.letter, text::number(limit * (a.diameter ? 2.0 : 1.0), 4), unit(a)});
+    return good(says::kJogClipped,
+                {a.letter, text::number(limit * (a.diameter ? 2.0 : 1.0), 4), text::unit_words(a.unit())});
   if (a.diameter) return good(says::kJogDiameter, {a.letter, signed_number(value), signed_number(distance)});
-  return good(says::kJog, {a.letter, signed_number(value), unit(a)});
+  return good(says::kJog, {a.letter, signed_number(value), text::unit_words(a.unit())});
 }
 
 Reply Dispatch::jog_continuous() {
@@ -349,7 +346,7 @@ Reply Dispatch::zero() {
     return fail(says::kNotSaved, {problem}, kInfrastructure);
   const machine::AxisConfig& a = axis_config(index);
   return good(a.diameter ? says::kZeroDiameter : says::kZero,
-              {a.letter, text::number(value, 4), unit(a), std::to_string(zeroed.origin),
+              {a.letter, text::number(value, 4), text::unit_words(a.unit()), std::to_string(zeroed.origin),
                text::number(zeroed.place, 4)},
               {{"origin", zeroed.origin}, {"place", zeroed.place}});
 }

@@ -162,7 +162,7 @@ std::string status_json(Resident& resident, text::Language language) {
     const image::AxisImage& a = image.axes[n];
     const double shown = m.axes[n].diameter ? 2.0 : 1.0;
     status["axes"].push_back({{"letter", m.axes[n].letter},
-                              {"unit", m.axes[n].type == machine::AxisType::rotary ? "deg" : "mm"},
+                              {"unit", m.axes[n].unit()},
                               {"diameter", m.axes[n].diameter},
                               {"auxiliary", m.axes[n].auxiliary},
                               {"command", a.command * shown},

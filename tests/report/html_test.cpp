@@ -215,7 +215,11 @@ TEST(WriteFile, leaves_no_half_file_behind) {
   EXPECT_EQ(write_file(folder / "a.html", "content"), "");
   EXPECT_TRUE(std::filesystem::exists(folder / "a.html"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.html.part"));
-  EXPECT_EQ(write_file("/nowhere/a.html", "x"), "/nowhere/a.html: cannot create: No such file or directory");
+  const std::string said = write_file("/nowhere/a.html", "x");
+  EXPECT_EQ(text::in_language(said, text::Language::english),
+            "/nowhere/a.html: cannot create: No such file or directory");
+  EXPECT_EQ(text::in_language(said, text::Language::russian),
+            "/nowhere/a.html: не создаётся: нет такого файла или каталога");
 }
 
 TEST(WriteFile, makes_the_file_that_a_link_leads_to_and_keeps_the_link) {

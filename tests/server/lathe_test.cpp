@@ -121,7 +121,7 @@ TEST(Lathe, says_places_of_X_as_diameters_wherever_they_are_the_reason) {
     return !alarm.is_null();
   }));
   EXPECT_NE(alarm["text"].get<std::string>().find(" mm in diameter"), std::string::npos) << alarm;
-  EXPECT_NE(shell.run({"alarms"}, "ru_RU.UTF-8").out.find("по диаметру"), std::string::npos);
+  EXPECT_NE(shell.run({"alarms"}, "ru_RU.UTF-8").out.find(" мм по диаметру"), std::string::npos);
 
   const std::string path = (shell.folder() / "far.nc").string();
   std::ofstream(path) << "G90 G0 X250\nM30\n";

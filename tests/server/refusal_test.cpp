@@ -108,6 +108,23 @@ TEST_F(Refusals, of_requests_of_the_wrong_type_move_nothing) {
   EXPECT_EQ(kept(), before);
 }
 
+TEST_F(Refusals, in_russian_name_the_file_and_have_no_english_words) {
+  const std::string none = (shell_.folder() / "none.st").string();
+  const struct {
+    std::vector<std::string> arguments;
+    std::string said;
+  } rows[] = {{{"plc", "load", none}, "не читается " + none + ": нет такого файла или каталога"},
+              {{"load", none}, "файл не читается: нет такого файла или каталога"},
+              {{"jog", "X", "-601mm"}, "от -600 до 600 мм"},
+              {{"zero", "X", "1e300"}, "от -99999.999 до 99999.999 мм"}};
+  for (const auto& row : rows) {
+    const Outcome o = shell_.run(row.arguments, "ru_RU.UTF-8");
+    EXPECT_NE(o.exit, 0);
+    EXPECT_NE(o.err.find(row.said), std::string::npos) << row.said << "\n" << o.err;
+  }
+  EXPECT_EQ(shell_.run({"jog", "X", "+1mm", "--no-wait"}, "ru_RU.UTF-8").out, "X перемещается на +1 мм\n");
+}
+
 TEST(StateDirectory, belongs_to_one_control_at_a_time) {
   Shell shell;
   const std::string state = (shell.folder() / "state").string(), mill = Shell::example("mill/machine.toml");

@@ -25,6 +25,21 @@ TEST(Render, keeps_a_placeholder_without_an_argument_visible) {
             "X leaves the travel at {1} mm");
 }
 
+TEST(Both, is_resolved_wherever_it_stands_in_an_argument) {
+  constexpr Entry kCannot{"sample.cannot", "cannot do it: {0}", "не удаётся: {0}"};
+  const std::vector<std::string> said = {"a.st: " + both("missing", "нет файла") + " (2 " + both("mm", "мм") +
+                                         ")"};
+  EXPECT_EQ(render(kCannot, said, Language::english), "cannot do it: a.st: missing (2 mm)");
+  EXPECT_EQ(render(kCannot, said, Language::russian), "не удаётся: a.st: нет файла (2 мм)");
+}
+
+TEST(Both, may_stand_inside_of_another) {
+  const std::string unit = both("mm", "мм");
+  const std::string words = both("of 2 " + unit + " each", "по 2 " + unit);
+  EXPECT_EQ(in_language(words, Language::english), "of 2 mm each");
+  EXPECT_EQ(in_language(words, Language::russian), "по 2 мм");
+}
+
 TEST(UserLanguage, follows_the_first_variable_that_is_set) {
   setenv("LC_ALL", "", 1);
   setenv("LC_MESSAGES", "", 1);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -92,7 +93,7 @@ int save(const Work& work, const std::vector<ReadObject>& objects, const canopen
   std::ofstream file(work.options.save, std::ios::binary);
   file << canopen::write_dcf(configuration_of(objects, eds, work.node(), work.bit_rate));
   if (!file.flush()) {
-    complain(kCannotWrite, {work.options.save, std::strerror(errno)});
+    complain(kCannotWrite, {work.options.save, text::words_of(errno)});
     return kInfrastructure;
   }
   const auto read =

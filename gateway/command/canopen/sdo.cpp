@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -120,7 +121,7 @@ int save_bytes(const std::string& path, const std::vector<std::uint8_t>& data) {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(data.data()), static_cast<std::streamsize>(data.size()));
   if (file.flush()) return kDone;
-  complain(kCannotWrite, {path, std::strerror(errno)});
+  complain(kCannotWrite, {path, text::words_of(errno)});
   return kInfrastructure;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "firmware_if/text/finding.hpp"
+#include "firmware_if/text/units.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/command/client/wait.hpp"
 #include "gateway/command/signals.hpp"
@@ -70,7 +71,7 @@ int follow_jog(SocketClient& client, const json& request, json& reply) {
   const std::string stands = text::render(
       axis.value("diameter", false) ? kStandsDiameter : kStands,
       std::vector<std::string>{axis.value("letter", ""), text::number(axis.value("position", 0.0), 3),
-                               axis.value("unit", "")},
+                               text::unit_words(axis.value("unit", ""))},
       text::user_language());
   reply = {{"ok", code == kDone},
            {"exit", code},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware_if/text/finding.hpp"
+#include "firmware_if/text/units.hpp"
 #include "gateway/cli/standard_output.hpp"
 
 namespace servogate::gateway::command {
@@ -60,7 +61,6 @@ constexpr Word kDrives[] = {{"offline", "нет связи с приводом"}
                             {"quick_stop_active", "быстрый останов привода"},
                             {"fault_reaction_active", "привод реагирует на отказ"},
                             {"fault", "отказ привода"}};
-constexpr Word kUnits[] = {{"mm", "мм"}, {"deg", "град"}};
 
 template <std::size_t N>
 std::string people_read(const Word (&table)[N], const std::string& word) {
@@ -140,7 +140,7 @@ void print_axis(const json& a) {
                                    : words(", not homed", ", не выведена в ноль");
   if (a.value("moving", false)) facts += words(", moving", ", движется");
   if (a.value("on_limit", 0) != 0) facts += words(", on the hard limit", ", на концевом выключателе");
-  const std::string unit = people_read(kUnits, of(a, "unit")) +
+  const std::string unit = text::in_language(text::unit_words(of(a, "unit"))) +
                            (a.value("diameter", false) ? words(" (diameter)", " (диаметр)") : "");
   print_formatted("  %-3s %12.4f %s  %s\n", of(a, "letter").c_str(), a.value("position", 0.0), unit.c_str(),
                   facts.c_str());

@@ -3,6 +3,7 @@
 
 #include "firmware_if/image/interface_map.hpp"
 #include "gateway/machine/check/check.hpp"
+#include "firmware_if/text/units.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
 #include "gateway/machine/keys/sections.hpp"
 
@@ -18,9 +19,7 @@ class AxisCheck {
         index_(index),
         a_(machine.axes[index]),
         path_("axis." + std::to_string(index) + "."),
-        reading_(reading) {
-    unit_ = a_.type == AxisType::rotary ? "deg" : "mm";
-  }
+        reading_(reading) {}
 
   void all() {
     auxiliary();
@@ -42,8 +41,10 @@ class AxisCheck {
   }
   bool unread(std::string_view key) const { return machine_.unread.contains(path_ + std::string(key)); }
   bool has_travel() const { return has("travel_min") && has("travel_max"); }
-  std::string length(double v) const { return text::number(v) + " " + unit_; }
-  std::string speed(double v) const { return text::number(v) + " " + unit_ + "/s"; }
+  std::string length(double v) const { return text::number(v) + " " + text::unit_words(a_.unit()); }
+  std::string speed(double v) const {
+    return text::number(v) + " " + text::unit_words(a_.unit() + std::string("/s"));
+  }
   void error(std::string_view key, const text::Entry& entry, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), a_.letter);
     reading_.error(at(key), entry, std::move(arguments));
@@ -193,8 +194,8 @@ class AxisCheck {
     if (machine_.places.contains(path_ + ".position_gain")) error("position_gain", finding::kNoCsv, {});
     if (a_.lead > 0.0 && a_.counts_per_rev > 0 && a_.in_position_window * a_.counts_per_unit() < 1.0)
       error("in_position_window", finding::kWindowBelowCount,
-            {text::number(a_.in_position_window, 9) + " " + unit_,
-             text::number(1.0 / a_.counts_per_unit(), 9) + " " + unit_});
+            {text::number(a_.in_position_window, 9) + " " + text::unit_words(a_.unit()),
+             text::number(1.0 / a_.counts_per_unit(), 9) + " " + text::unit_words(a_.unit())});
   }
 
   const MachineConfig& machine_;
@@ -202,7 +203,6 @@ class AxisCheck {
   const AxisConfig& a_;
   std::string path_;
   Reading& reading_;
-  std::string unit_;
 };
 
 /// The outputs of an inverter, and what a spindle without feedback has not.

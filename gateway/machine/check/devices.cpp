@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware_if/text/units.hpp"
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
@@ -82,7 +83,7 @@ class DeviceUse {
       const DeviceConfig* device = of_node(a.drive);
       if (device == nullptr || a.lead <= 0.0 || a.counts_per_rev <= 0) continue;
       const std::string speed =
-          text::number(a.max_velocity) + (a.type == AxisType::rotary ? " deg/s" : " mm/s");
+          text::number(a.max_velocity) + " " + text::unit_words(a.unit() + std::string("/s"));
       motor(*device, m_.node(a.drive)->device, a.letter, speed, a.motor_rpm(a.max_velocity),
             path + ".max_velocity");
       if (device->motor.counts_per_rev > 0 && device->motor.counts_per_rev != a.counts_per_rev)

@@ -10,7 +10,7 @@ namespace servogate::machine {
 
 namespace {
 
-std::string english(const std::string& both) { return both.substr(0, both.find('\x1f')); }
+std::string english(const std::string& both) { return text::in_language(both, text::Language::english); }
 
 /// A cell of a Markdown table.
 std::string cell(std::string_view text) {

@@ -13,6 +13,7 @@
 #include <optional>
 #include <system_error>
 
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/keys/findings.hpp"
 #include "gateway/machine/state/state_text.hpp"
@@ -26,8 +27,6 @@ namespace fs = std::filesystem;
 /// Those of one file each; the retained variables have two copies.
 constexpr StatePart kParts[] = {StatePart::origins, StatePart::tools, StatePart::homing, StatePart::counters,
                                 StatePart::gains};
-
-std::string words(int code) { return std::system_category().message(code); }
 
 /// A file descriptor that closes itself.
 class Descriptor {
@@ -221,7 +220,7 @@ bool StateDirectory::save(const MachineState& state, StatePart part, std::string
   std::error_code code;
   fs::create_directories(path_, code);
   if (code) {
-    error = path_ + ": " + code.message();
+    error = path_ + ": " + text::words_of(code.value());
     return false;
   }
   ::chmod(path_.c_str(), 0700);
@@ -230,7 +229,7 @@ bool StateDirectory::save(const MachineState& state, StatePart part, std::string
   const std::string text = write_part(state, part);
   if (copies ? write_copy(path_, name, text) : write_generation(path_, name, previous_of(name), text))
     return true;
-  error = name + ": " + words(errno);
+  error = name + ": " + text::words_of(errno);
   return false;
 }
 

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "firmware_if/text/system_words.hpp"
+
 namespace servogate::machine {
 
 const text::Entry kStateTaken{"state.taken", "cannot use the state directory {0}: {1}",
@@ -34,10 +36,10 @@ StateLock::~StateLock() {
 std::string StateLock::take(const std::string& directory) {
   std::error_code code;
   const bool made = std::filesystem::create_directories(directory, code);
-  if (code) return directory + ": " + code.message();
+  if (code) return directory + ": " + text::words_of(code.value());
   if (made) ::chmod(directory.c_str(), 0700);
   file_ = ::open((directory + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (file_ < 0) return directory + "/lock: " + std::strerror(errno);
+  if (file_ < 0) return directory + "/lock: " + text::words_of(errno);
   if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
     return text::both(
         "another control has it, process " + owner(file_) +
@@ -47,7 +49,7 @@ std::string StateLock::take(const std::string& directory) {
   const std::string number = std::to_string(::getpid()) + "\n";
   if (::ftruncate(file_, 0) != 0 ||
       ::pwrite(file_, number.data(), number.size(), 0) != static_cast<ssize_t>(number.size()))
-    return directory + "/lock: " + std::strerror(errno);
+    return directory + "/lock: " + text::words_of(errno);
   return {};
 }
 

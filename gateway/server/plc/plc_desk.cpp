@@ -11,6 +11,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
@@ -94,7 +95,8 @@ json PlcDesk::ask(image::Request request, const PlcAsker& who) {
   if (answer.refusal == 0) return {{"ok", true}};
   return {{"ok", false},
           {"code", cycle::refusal_texts()[answer.refusal].id},
-          {"text", cycle::render(answer, resident_.control().machine().letters(), who.language)},
+          {"text", cycle::render(answer, resident_.control().machine().letters(), who.language,
+                                 resident_.control().machine().unit_words())},
           {"exit", kAlarm}};
 }
 
@@ -201,7 +203,7 @@ std::string PlcDesk::log(const LogicChange& change, const json& told, const PlcA
                     ::fsync(fd) == 0;
   const int problem = errno;
   if (fd >= 0) ::close(fd);
-  return good ? std::string() : path + ": " + std::system_category().message(problem);
+  return good ? std::string() : path + ": " + text::words_of(problem);
 }
 
 /// The request that forces a packet place to a value; nullopt: the name is no place. `wrong`: no such value.

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/server/texts.hpp"
 
 namespace servogate::gateway {
@@ -29,7 +30,7 @@ std::string SocketClient::connect(const std::string& path) {
   if (!socket_address(path, address)) return text::render(says::kPathTooLong, {}, text::user_language());
   fd_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (fd_ < 0 || ::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-    return std::strerror(errno);
+    return text::words_of(errno);
   return {};
 }
 

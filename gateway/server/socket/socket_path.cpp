@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/server/socket/socket_client.hpp"
 #include "gateway/server/texts.hpp"
 
@@ -57,7 +58,7 @@ std::string clear_way(const std::string& path, text::Language language) {
   const fs::path folder = fs::path(path).parent_path();
   const bool own = folder == fs::path(socket_folder());
   if (own && fs::create_directories(folder, error)) chmod(folder.c_str(), 0700);
-  if (error) return error.message();
+  if (error) return text::words_of(error.value());
   if (!own && !folder.empty() && !fs::is_directory(folder, error))
     return say(says::kNoFolder, {folder.string()});
   struct stat seen {};

@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/server/socket/socket_client.hpp"
 #include "gateway/server/socket/socket_path.hpp"
@@ -53,9 +54,9 @@ std::string SocketServer::bind() {
       listener_ >= 0 && ::bind(listener_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   const int problem = errno;
   umask(before);
-  if (!bound) return std::strerror(problem);
+  if (!bound) return text::words_of(problem);
   if (listen(listener_, static_cast<int>(kMostClients)) != 0 || pipe2(wake_, O_CLOEXEC) != 0)
-    return std::strerror(errno);
+    return text::words_of(errno);
   return {};
 }
 

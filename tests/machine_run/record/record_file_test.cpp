@@ -162,7 +162,7 @@ TEST(RecordFile, says_how_many_cycles_a_slow_disk_lost) {
 
 TEST(RecordFile, that_cannot_be_opened_says_why) {
   gateway::RecordWriter writer("/nonexistent/folder/r", {});
-  EXPECT_EQ(writer.close(), std::strerror(ENOENT));
+  EXPECT_EQ(text::in_language(writer.close(), text::Language::english), std::strerror(ENOENT));
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 #include "drivers/clock.hpp"
 #include "drivers/socketcan/socketcan_bus.hpp"
+#include "firmware_if/text/system_words.hpp"
 #include "gateway/compose/can_transport.hpp"
-#include "gateway/files/system_words.hpp"
 
 namespace servogate::gateway::command {
 
@@ -62,7 +62,7 @@ DetectedRate detect_bit_rate(const socketcan::LinkInfo& link,
     up.up = true;
     if (error == 0) error = socketcan::set_link(link.index, up);
     if (error != 0)
-      found.problem = files::words_of(error);
+      found.problem = text::words_of(error);
     else if (frames_come(link.name, found.problem))
       found.bit_rate = rate;
     socketcan::set_link(link.index, down);
