@@ -108,6 +108,78 @@ TEST_F(Program, is_ended_by_a_second_Ctrl_C) {
   EXPECT_EQ(shell_.status()["state"], "idle");
 }
 
+class Stops : public ::testing::Test {
+ protected:
+  Stops() {
+    shell_.up();
+    shell_.ready();
+  }
+  void load(const std::string& blocks) {
+    std::ofstream(shell_.folder() / "stops.nc") << blocks;
+    ASSERT_EQ(shell_.run({"load", (shell_.folder() / "stops.nc").string()}).exit, 0);
+  }
+  bool waits(const char* reason) {
+    return shell_.until(
+        [&](const json& s) { return s["wait"].is_object() && s["wait"]["reason"] == reason; });
+  }
+  Shell shell_;
+};
+
+TEST_F(Stops, that_the_program_asks_for_end_start_wait_and_say_what_goes_on) {
+  load("N10 G1 X5 F6000\nN20 M0\nN30 X10\nN40 M2\n");
+  const Outcome o = shell_.run({"start", "--wait"});
+  EXPECT_EQ(o.exit, 0) << o.err;
+  EXPECT_NE(
+      o.err.find(
+          "line 2 of stops.nc: the program stands at M00 until the operator's start\n    `servogate start`"),
+      std::string::npos)
+      << o.err;
+  const json stands = shell_.status();
+  EXPECT_EQ(stands["state"], "waiting");
+  EXPECT_EQ(stands["axes"][0]["command"], 5.0);
+  EXPECT_EQ(shell_.run({"start", "--wait"}).exit, 0);
+  EXPECT_EQ(shell_.status()["state"], "ended") << "the second one waits for the end, not for the same M00";
+}
+
+TEST_F(Stops, that_the_program_asks_for_end_step_wait) {
+  load("N10 G1 X5 F6000\nN20 M0\nN30 X10\nN40 M2\n");
+  ASSERT_EQ(shell_.run({"step", "--wait"}).exit, 0);
+  const Outcome o = shell_.run({"step", "--wait"}, "ru_RU.UTF-8");
+  EXPECT_EQ(o.exit, 0) << o.err;
+  EXPECT_NE(o.err.find("стоит на M00 до пуска оператором"), std::string::npos) << o.err;
+  EXPECT_EQ(shell_.run({"step", "--wait"}).exit, 0);
+  EXPECT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["command"] == 10.0; }));
+}
+
+TEST_F(Stops, of_a_typed_block_end_mdi_wait) {
+  const Outcome o = shell_.run({"mdi", "M0", "--wait"});
+  EXPECT_EQ(o.exit, 0) << o.err;
+  EXPECT_NE(o.err.find("stands at M00"), std::string::npos) << o.err;
+}
+
+TEST_F(Stops, that_others_cause_are_said_while_the_command_goes_on_waiting) {
+  load("N10 G1 X200 F600\nN20 (WAI,SA20=1)\nN30 M2\n");
+  const pid_t client = shell_.spawn({"start", "--wait"}, "start");
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 100.0; }));
+  ASSERT_EQ(shell_.run({"hold"}).exit, 0);
+  const auto said = [&](const std::string& words) {
+    return shell_.until(
+        [&](const json&) { return shell_.text("start.err").find(words) != std::string::npos; });
+  };
+  EXPECT_TRUE(said("is held by the operator's feed hold; going on waiting\n    `servogate resume` goes on."))
+      << shell_.text("start.err");
+  ASSERT_EQ(shell_.run({"resume"}).exit, 0);
+  ASSERT_EQ(shell_.run({"input", "door_closed", "off"}).exit, 0);
+  EXPECT_TRUE(said("waits for the PLC's feed enable")) << shell_.text("start.err");
+  ASSERT_EQ(shell_.run({"input", "door_closed", "on"}).exit, 0);
+  ASSERT_TRUE(waits("signal"));
+  EXPECT_TRUE(said("the program waits until cycle_start (SA20.BL) = 1; it is 0; going on waiting"))
+      << shell_.text("start.err");
+  ASSERT_EQ(shell_.run({"input", "cycle_start", "on"}).exit, 0);
+  EXPECT_EQ(ending_of(client), 0) << shell_.text("start.err");
+  EXPECT_EQ(shell_.status()["state"], "ended");
+}
+
 TEST_F(Program, goes_on_when_its_client_is_killed) {
   const pid_t client = started();
   kill(client, SIGKILL);

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
@@ -27,14 +29,27 @@ const text::Entry kNotOff{"client.not-off", "not switched off within {0} s: {1}"
 const text::Entry kNoCycle{"client.no-cycle", "the control answers, but its cycle does not run",
                            "управление отвечает, но его цикл не работает"};
 
+const text::Entry kStopsAt{"client.programmed-stop", "{0}\n    {1}", "{0}\n    {1}"};
+const text::Entry kWaitsFor{"client.waits-for", "{0}; going on waiting\n    {1}",
+                            "{0}; ожидание продолжается\n    {1}"};
+
 constexpr auto kLook = std::chrono::milliseconds(50);
 constexpr double kPowerPatience_s = 15.0;  ///< of machine time: boot of a drive, brakes
 constexpr double kEndPatience_s = 2.0;     ///< of a program whose drives are off
 constexpr double kSettling_s = 1.0;        ///< at most, of an axis that has jogged
 constexpr double kAlarmPatience_s = 2.0;   ///< the same while an alarm is active
+constexpr double kSilentWait_s = 2.0;      ///< a longer wait of the program for somebody is said
 constexpr std::chrono::seconds kCyclePatience{10};
 
 std::string of(const json& object, const char* key) { return object.value(key, std::string()); }
+
+/// A wait of the program and who has to do what, on standard error.
+void tell(const text::Entry& entry, const json& wait) {
+  std::fprintf(stderr, "%s\n",
+               text::render(entry, std::vector<std::string>{of(wait, "text"), of(wait, "remedy")},
+                            text::user_language())
+                   .c_str());
+}
 
 /// What was asked for, as far as waiting has to tell it apart.
 enum class Kind { power_on, power_off, home, jog, step, program };
@@ -62,7 +77,8 @@ class Wait {
   bool homing_under_way(const json& status);
   bool jog_under_way(const json& status);
   bool program_under_way(const json& status);
-  bool block_ended(const json& status) const;
+  bool rests(const json& status) const;
+  void say_what_is_missing(const json& status);
   bool too_late(const json& status);
   bool cycle_stands(const json& status);
   /// A program that the drives are taken from ends as soon as its path is at rest.
@@ -106,6 +122,7 @@ class Wait {
   double asked_s_ = 0.0;   ///< machine time before the request was carried out
   double begun_s_ = -1.0;  ///< machine time of the first status
   double seen_s_ = -1.0;
+  double said_s_ = -1.0;          ///< beginning of the wait that was said
   double stands_since_s_ = -1.0;  ///< of a jog
   std::chrono::steady_clock::time_point moved_on_ = std::chrono::steady_clock::now();
 };
@@ -134,11 +151,26 @@ bool Wait::jog_under_way(const json& status) {
   return settles && !alarm(status) && now_s - stands_since_s_ < kSettling_s;
 }
 
-/// The wait at the end of the block that was asked for, not the one at the end of the block before it.
-bool Wait::block_ended(const json& status) const {
+/// What was asked for has come to its end, and the program waits for the operator: behind the block that was
+/// asked for, not the one before it, or at a stop that it programs.
+bool Wait::rests(const json& status) const {
   const json wait = status.value("wait", json());
-  return wait.is_object() && wait.value("reason", "") == "block_end" &&
-         wait.value("since_s", 0.0) >= asked_s_;
+  if (!wait.is_object() || wait.value("since_s", 0.0) <= asked_s_) return false;
+  const std::string reason = of(wait, "reason");
+  if (reason == "block_end") return kind_ == Kind::step;
+  if (reason != "program_stop" && reason != "optional_stop") return false;
+  tell(kStopsAt, wait);
+  return true;
+}
+
+/// Once for each wait: that nothing happens because somebody else has to act first.
+void Wait::say_what_is_missing(const json& status) {
+  const json wait = status.value("wait", json());
+  if (interrupts_done_ > 0 || !wait.is_object() || of(wait, "remedy").empty()) return;
+  const double since_s = wait.value("since_s", 0.0);
+  if (since_s == said_s_ || wait.value("for_s", 0.0) < kSilentWait_s) return;
+  said_s_ = since_s;
+  tell(kWaitsFor, wait);
 }
 
 bool Wait::program_under_way(const json& status) {
@@ -146,7 +178,7 @@ bool Wait::program_under_way(const json& status) {
   if (state == "running") return true;
   if (interrupts_done_ > 0 && state != "ended" && !state.starts_with("stopped"))
     return any_axis(status, moving);  // held, or ended by the second interrupt
-  if (state == "waiting") return !(kind_ == Kind::step && block_ended(status));
+  if (state == "waiting") return !rests(status);
   if (state == "held") return kind_ != Kind::step;
   if (state == "stopped_by_alarm") code_ = kAlarm;
   if ((state == "idle" || state == "stopped") && !alarm(status))
@@ -238,6 +270,7 @@ int Wait::run(json& status) {
     }
     if (!under_way(status)) break;
     if (too_late(status)) return kAlarm;
+    say_what_is_missing(status);
   }
   const std::string state = of(status, "state");
   const bool own_end = kind_ == Kind::program && (state == "ended" || state == "stopped_by_alarm");
