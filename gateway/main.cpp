@@ -55,7 +55,9 @@ int carry_out(const CommandLine& line) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  command::watch_signals();
+  const bool json = std::any_of(argv + std::min(argc, 1), argv + argc,
+                                [](const char* word) { return std::string_view(word) == "--json"; });
+  command::watch_signals(json);
   prepare_streams();
   int exit_code = kDone;
   try {
@@ -65,7 +67,5 @@ int main(int argc, char** argv) {
     complain(kFailed, {e.what()});
     exit_code = kInfrastructure;
   }
-  const bool json = std::any_of(argv + std::min(argc, 1), argv + argc,
-                                [](const char* word) { return std::string_view(word) == "--json"; });
   return end_output(exit_code, json);
 }

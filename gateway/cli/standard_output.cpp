@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdarg>
@@ -11,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/text/system_words.hpp"
-#include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 
 namespace servogate::gateway {
@@ -20,7 +20,7 @@ namespace {
 
 /// errno of the first write that failed, 0: none.
 int failure = 0;
-bool printed = false;
+std::atomic<bool> printed{false};  ///< asked by a signal handler, too
 
 bool note(bool written) {
   if (!written && failure == 0) failure = errno != 0 ? errno : EIO;
@@ -56,13 +56,16 @@ bool print_formatted(const char* format, ...) {
   return note(written >= 0);
 }
 
+bool has_printed() noexcept { return printed; }
+
+std::string error_object(const LastError& error, int code) {
+  return nlohmann::json{
+      {"schema", 1}, {"exit", code}, {"error", {{"code", error.code}, {"text", error.text}}}}
+      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 int end_output(int code, bool json) {
-  if (json && !printed && code != kDone) {
-    const LastError& error = last_error();
-    print_line(
-        nlohmann::json{{"schema", 1}, {"exit", code}, {"error", {{"code", error.code}, {"text", error.text}}}}
-            .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  }
+  if (json && !printed && code != kDone) print_line(error_object(last_error(), code));
   errno = 0;
   if (failure == 0) note(std::fflush(stdout) == 0);
   if (failure == 0 || failure == EPIPE) return code;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
 #include <string_view>
+
+#include "gateway/cli/messages.hpp"
 
 namespace servogate::gateway {
 
@@ -18,6 +21,13 @@ bool print_line(std::string_view line);
 
 /// The same as printf has it.
 [[gnu::format(printf, 1, 2)]] bool print_formatted(const char* format, ...);
+
+/// Something stands on standard output, or will. May be called by a signal handler.
+bool has_printed() noexcept;
+
+/// What a command with --json leaves when it failed before it had anything to print: one line without its
+/// end.
+std::string error_object(const LastError& error, int code);
 
 /// At the end of a command: writes what is still buffered. With `json` a command that failed before it had
 /// anything to print leaves one object with its error. Returns `code`, or kInfrastructure after saying what

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "gateway/cli/options.hpp"
+#include "gateway/cli/standard_output.hpp"
 
 namespace servogate::gateway::command {
 
@@ -22,13 +23,26 @@ const text::Entry kNothingBegun{"cli.stopped", "stopped by the operator before a
 constexpr std::array kSignals{SIGINT, SIGTERM};
 
 /// What a handler may use: plain bytes that are whole before the handler is there.
-struct Words {
-  std::array<char, 512> bytes{};
+struct Line {
+  std::array<char, 768> bytes{};
   std::size_t size = 0;
+
+  void hold(const std::string& line) {
+    size = std::min(line.size(), bytes.size());
+    std::memcpy(bytes.data(), line.data(), size);
+  }
+  void tell(int descriptor) const {
+    [[maybe_unused]] const ssize_t ignored = write(descriptor, bytes.data(), size);
+  }
+};
+struct Words {
+  Line sentence;
+  Line object;  ///< the same for --json
 };
 Words words[2];
 std::atomic<int> words_in_force{0};
 std::atomic<bool> counting{false};
+std::atomic<bool> as_json{false};
 std::atomic<int> seen{0};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
@@ -38,7 +52,8 @@ extern "C" void on_signal(int) {
     return;
   }
   const Words& w = words[words_in_force.load()];
-  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, w.bytes.data(), w.size);
+  w.sentence.tell(STDERR_FILENO);
+  if (as_json.load() && !has_printed()) w.object.tell(STDOUT_FILENO);
   _exit(kStopped);
 }
 
@@ -51,18 +66,17 @@ void handle(void (*handler)(int), int flags) {
 
 }  // namespace
 
-void watch_signals() {
+void watch_signals(bool json) {
+  as_json.store(json);
   say_when_stopped(kNothingBegun);
   handle(on_signal, SA_RESTART);
 }
 
 void say_when_stopped(const text::Entry& entry) {
   const int next = 1 - words_in_force.load();
-  const std::string line =
-      "servogate: " + text::render(entry, {}, text::user_language()) + " [" + std::string(entry.id) + "]\n";
-  Words& w = words[next];
-  w.size = std::min(line.size(), w.bytes.size());
-  std::memcpy(w.bytes.data(), line.data(), w.size);
+  const LastError said{std::string(entry.id), text::render(entry, {}, text::user_language())};
+  words[next].sentence.hold("servogate: " + said.text + " [" + said.code + "]\n");
+  words[next].object.hold(error_object(said, kStopped) + "\n");
   words_in_force.store(next);
 }
 

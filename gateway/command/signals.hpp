@@ -7,7 +7,9 @@ namespace servogate::gateway::command {
 
 /// First act of main(): from here on the first signal says that nothing has begun and ends the program at
 /// once with exit code 3, until one of the functions below says otherwise.
-void watch_signals();
+/// `json`: the command was called with --json; what ends it then says the same as an object on standard
+/// output, unless something stands there already.
+void watch_signals(bool json);
 
 /// As before, but what is said is this sentence.
 void say_when_stopped(const text::Entry& entry);

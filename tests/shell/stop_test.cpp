@@ -28,6 +28,33 @@ TEST(Interrupt, of_a_run_that_still_reads_its_program_ends_it_at_once_with_3_and
   EXPECT_TRUE(russian.err_has("остановлено оператором: ещё ничего не началось")) << russian.err;
 }
 
+TEST(Interrupt, of_a_command_with_json_leaves_its_object_from_the_first_moment_on) {
+  const Desk desk;
+  std::string program;
+  for (int n = 0; n < 300'000; ++n) program += "G1 X" + std::to_string(n % 200) + " F6000\n";
+  desk.write("long.nc", program + "M30\n");
+  const Ended e =
+      desk.line(std::string("$SG run $MILL long.nc --virtual --json > said & p=$!; ") + kInterrupt);
+  EXPECT_EQ(e.out, "code 3\n") << e.err;
+  EXPECT_EQ(desk.text("said"),
+            "{\"error\":{\"code\":\"cli.stopped\",\"text\":\"stopped by the operator before anything had "
+            "begun\"},\"exit\":3,\"schema\":1}\n");
+  EXPECT_TRUE(e.err_has("stopped by the operator before anything had begun")) << e.err;
+}
+
+TEST(Interrupt, at_any_moment_of_a_run_with_json_leaves_one_whole_object) {
+  const Desk desk;
+  for (int ms = 0; ms < 150; ms += 6) {
+    const Ended e = desk.line(
+        "$SG run $MILL $BRACKET --virtual --json -q > said & p=$!; until grep -q "
+        "'^SigCgt:.*[2367abef]$' /proc/$p/status; do :; done; sleep " +
+        std::to_string(ms * 1e-3) +
+        "; kill -INT $p; wait $p; echo code $?; python3 -m json.tool said > whole; "
+        "echo $?");
+    EXPECT_TRUE(e.out == "code 3\n0\n" || e.out == "code 0\n0\n") << ms << " ms: " << e.out << e.err;
+  }
+}
+
 TEST(Interrupt, of_a_run_before_its_first_block_says_so) {
   const Desk desk;
   desk.write("short.nc", "N10 G0 X1\nN20 M30\n");
