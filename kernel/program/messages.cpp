@@ -48,6 +48,7 @@ constexpr text::Entry kMessages[] = {
     {"P215", "{0} has no meaning in this block", "слово {0} в этом кадре не имеет смысла"},
     {"P216", "{0} expected here", "здесь ожидается {0}"},
     {"P217", "no parameter can stand for this number", "параметр здесь не может заменить число"},
+    {"P218", "{0} needs a number, and {1} has none", "{0} требует числа, а в {1} его нет"},
     {"P301", "a number, a parameter, a function or a place is expected here",
      "здесь ожидается число, параметр, функция или место памяти"},
     {"P302", "a closing bracket is expected here", "здесь ожидается закрывающая скобка"},

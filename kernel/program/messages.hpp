@@ -46,6 +46,7 @@ enum class Fault : std::uint8_t {
   word_without_function,
   expected,
   g_with_parameter,
+  value_missing,
   expression_expected,
   closing_expected,
   function_unknown,

@@ -74,7 +74,7 @@ void Execution::assign_variable(std::size_t& pos) {
   const std::size_t start = pos;
   while (pos < line.size() && (is_capital(line[pos]) || (line[pos] >= 'a' && line[pos] <= 'z'))) ++pos;
   const std::string_view name = line.substr(start, pos - start);
-  if (name.empty()) fail(Fault::expected, column(start), {"NAME = value"});
+  if (name.empty()) fail(Fault::expected, column(start), {text::both("NAME = value", "ИМЯ = значение")});
   std::size_t digits = pos;
   while (digits < line.size() && is_digit(line[digits])) ++digits;
   const VariableRule* rule = dialect_->find_variable(name);

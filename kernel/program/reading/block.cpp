@@ -165,6 +165,13 @@ void check_conflicts(const Dialect& dialect, const Block& block) {
   name_later_g(block);
 }
 
+/// A run of letters, digits and points: what a person takes for one word.
+std::string run_at(std::string_view line, std::size_t pos) {
+  std::size_t end = pos + 1;
+  while (end < line.size() && (is_digit(line[end]) || line[end] == '.' || is_letter(line[end]))) ++end;
+  return std::string(line.substr(pos, end - pos));
+}
+
 [[noreturn]] void fail_letter(const Block& block, std::size_t pos) {
   const std::string_view line = block.line;
   name_later_g(block);
@@ -175,9 +182,19 @@ void check_conflicts(const Dialect& dialect, const Block& block) {
       if (character == cyrillic) fail(Fault::cyrillic, column(pos), {character, std::string(latin)});
     fail(Fault::unknown_character, column(pos), {character});
   }
-  std::size_t end = pos + 1;
-  while (end < line.size() && (is_digit(line[end]) || line[end] == '.' || is_letter(line[end]))) ++end;
-  fail(Fault::unknown_word, column(pos), {std::string(line.substr(pos, end - pos))});
+  fail(Fault::unknown_word, column(pos), {run_at(line, pos)});
+}
+
+/// A letter alone is 0, where 0 is possible; one with letters behind it that are no words is none.
+void check_bare(const Dialect& dialect, const LetterRule& rule, const Block& block, const Word& word,
+                std::size_t pos) {
+  const std::string_view line = block.line;
+  const bool letters = pos < block.end && is_letter(line[pos]) &&
+                       dialect.letters[static_cast<unsigned char>(line[pos])].meaning == Meaning::unknown;
+  if (!letters && rule.min <= 0.0 && rule.max >= 0.0) return;
+  name_later_g(block);
+  fail(Fault::value_missing, word.column,
+       {std::string(1, word.letter), run_at(line.substr(0, block.end), word.column - 1u)});
 }
 
 /// Classes of words already met in a block, for order and repetition.
@@ -249,6 +266,7 @@ std::size_t read_word(const Dialect& dialect, const AxisLetters& axes, Block& bl
   if (word.value.parameter >= 0) {
     check_parameter(rule, c, word.value);
   } else {
+    if (word.value.bare) check_bare(dialect, rule, block, word, pos);
     if (is_whole(rule.meaning) && (word.value.fraction || word.value.negative))
       fail(Fault::whole_number, word.value.column,
            {std::string(name),
@@ -358,7 +376,9 @@ Value read_value(std::string_view line, std::size_t& pos, std::string_view word)
   }
   const Decimal number = read_decimal(line, at);
   if (number.length == 0) {
-    if (sign) fail(Fault::expected, column(at), {"number after " + std::string(word)});
+    if (sign)
+      fail(Fault::expected, column(at),
+           {text::both("number after " + std::string(word), "число после " + std::string(word))});
     value.bare = true;
     return value;
   }

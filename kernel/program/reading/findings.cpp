@@ -112,7 +112,7 @@ class FileReader {
   void check_variable(std::string_view name, std::string_view line, std::size_t start, std::size_t digits,
                       std::size_t end) const {
     const int column = static_cast<int>(start) + 1;
-    if (name.empty()) fail(Fault::expected, column, {"NAME = value"});
+    if (name.empty()) fail(Fault::expected, column, {text::both("NAME = value", "ИМЯ = значение")});
     if (name == "E") {
       if (digits == end) fail(Fault::parameter_number_missing, static_cast<int>(end) + 1);
       return;

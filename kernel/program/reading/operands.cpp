@@ -18,27 +18,22 @@ struct Items {
   std::size_t count = 0;
 };
 
-std::string_view kind_name(char kind) {
-  switch (kind) {
-    case 'n':
-      return "whole number or E";
-    case 'x':
-      return "number or E";
-    case 'a':
-      return "axis";
-    case 'v':
-      return "axis with value";
-    case 'p':
-      return "axis with two values";
-    case 'l':
-      return "label";
-    case 'f':
-      return "program name";
-    case 'w':
-      return "condition";
-    default:
-      return "value";
-  }
+constexpr struct {
+  char kind;
+  std::string_view english, russian;
+} kKinds[] = {{'n', "whole number or E", "целое число или E"},
+              {'x', "number or E", "число или E"},
+              {'a', "axis", "ось"},
+              {'v', "axis with value", "ось со значением"},
+              {'p', "axis with two values", "ось с двумя значениями"},
+              {'l', "label", "метка"},
+              {'f', "program name", "имя программы"},
+              {'w', "condition", "условие"}};
+
+std::string kind_name(char kind) {
+  for (const auto& row : kKinds)
+    if (row.kind == kind) return text::both(row.english, row.russian);
+  return text::both("value", "значение");
 }
 
 void add_item(std::string_view line, Items& items, std::size_t from, std::size_t to, std::string_view code) {
@@ -99,7 +94,7 @@ class OperandReader {
   std::string code() const { return std::string(out_.rule->name); }
   [[noreturn]] void missing(char kind) const {
     const std::size_t at = next_ < items_.count ? items_.at[next_].first : items_.at[items_.count - 1].second;
-    fail(Fault::operand_missing, column(at), {code(), std::to_string(next_), std::string(kind_name(kind))});
+    fail(Fault::operand_missing, column(at), {code(), std::to_string(next_), kind_name(kind)});
   }
 
   void one(char kind) {
@@ -186,7 +181,7 @@ class OperandReader {
   }
 
   [[noreturn]] void unexpected(std::size_t pos, char kind) const {
-    fail(Fault::expected, column(pos), {std::string(kind_name(kind))});
+    fail(Fault::expected, column(pos), {kind_name(kind)});
   }
 
   static constexpr std::size_t kMaxAxesNamed = 6;
