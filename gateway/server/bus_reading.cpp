@@ -28,7 +28,9 @@ std::string hex(std::span<const std::uint8_t> bytes) {
 
 int number(const json& request, const char* key) {
   const auto found = request.find(key);
-  return found != request.end() && found->is_number_integer() ? found->get<int>() : -1;
+  if (found == request.end() || !found->is_number_integer()) return -1;
+  const auto value = found->get<std::int64_t>();
+  return value >= 0 && value <= 0xFFFF ? static_cast<int>(value) : -1;
 }
 
 CanSupplier* supplier_of(Control& control, const json& request) {

@@ -10,6 +10,7 @@
 #include "gateway/machine/consequences.hpp"
 #include "gateway/run/words/jog_words.hpp"
 #include "gateway/server/bus_reading.hpp"
+#include "gateway/server/request_form.hpp"
 #include "gateway/server/status.hpp"
 #include "gateway/server/texts.hpp"
 
@@ -165,9 +166,7 @@ Reply Dispatch::run() {
 }
 
 bool Dispatch::read_head() {
-  const std::string language = request_.value("language", "");
-  if (language == "ru") language_ = text::Language::russian;
-  if (language == "en") language_ = text::Language::english;
+  language_ = language_of(request_);
   const std::string name = request_.value("asker", "command_line");
   std::string known;
   for (const auto& row : kAskers) {
@@ -263,8 +262,6 @@ Reply Dispatch::home() {
   const json axes = request_.value("axes", json::array());
   std::uint32_t mask = 0;
   std::string names;
-  // A slip in the request must not become "all axes".
-  if (!axes.is_array()) return fail(says::kNotAxes, {"axes"}, kWrongUse);
   for (const json& name : axes) {
     const int index = axis(name);
     if (index < 0) return refusal_;
@@ -518,13 +515,13 @@ Reply refuse(const text::Entry& entry, const std::vector<std::string>& arguments
 }
 
 Reply dispatch(Resident& resident, std::string_view line, Connection& connection) {
-  const json request = json::parse(line, nullptr, false);
-  if (request.is_discarded() || !request.is_object())
-    return refuse(says::kBadLine, {std::string(line.substr(0, 80))}, kWrongUse, text::user_language());
+  FormProblem problem;
+  const std::optional<json> request = read_request(line, problem);
+  if (!request) return refuse(*problem.entry, problem.arguments, kWrongUse, problem.language);
   try {
-    return Dispatch(resident, request, connection).run();
-  } catch (const json::exception& e) {
-    return refuse(says::kBadLine, {e.what()}, kWrongUse, text::user_language());
+    return Dispatch(resident, *request, connection).run();
+  } catch (const json::exception&) {  // no request, whatever it is, ends a control
+    return refuse(says::kBadLine, {std::string(line.substr(0, 80))}, kWrongUse, problem.language);
   }
 }
 

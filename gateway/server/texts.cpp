@@ -5,7 +5,13 @@ namespace servogate::gateway::says {
 
 using text::Entry;
 
-const Entry kBadLine{"socket.bad-line", "not a request: {0}", "это не запрос: {0}"};
+const Entry kBadLine{"socket.bad-line", "this is no JSON: {0}", "это не JSON: {0}"};
+const Entry kNoObject{"socket.no-object", "a request is an object as {\"cmd\":\"status\"}, and this is {0}",
+                      "запрос — это объект вида {\"cmd\":\"status\"}, а здесь {0}"};
+const Entry kNested{"socket.nested", "a request is nested at most {0} deep",
+                    "вложенность запроса не может быть больше {0}"};
+const Entry kWrongType{"socket.wrong-type", "'{0}' must be {1}, and is {2}",
+                       "«{0}»: ожидается {1}, а здесь {2}"};
 const Entry kLongLine{"socket.long-line", "a request is at most {0} bytes long",
                       "запрос не может быть длиннее {0} байт"};
 const Entry kFull{"socket.full", "{0} clients are connected already", "уже подключено клиентов: {0}"};
@@ -18,8 +24,6 @@ const Entry kNotUnit{"socket.not-unit", "'{0}' is not the unit of {1}: it moves 
                      "«{0}» — не единица оси {1}: она измеряется в {2}"};
 const Entry kNoNumber{"socket.no-number", "'{0}' must be a number", "«{0}» должно быть числом"};
 const Entry kNotSwitch{"socket.not-switch", "'{0}' must be 1 or 0", "«{0}» должно быть 1 или 0"};
-const Entry kNotAxes{"socket.not-axes", "'{0}' must be a list of axes: [\"X\"]",
-                     "«{0}» должно быть списком осей: [\"X\"]"};
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
                       "цикл не ответил; работает ли он?"};
 const Entry kNotLoaded{"socket.not-loaded", "{0} was not loaded", "программа {0} не загружена"};

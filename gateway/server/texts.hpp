@@ -7,7 +7,10 @@
 namespace servogate::gateway::says {
 
 // refusals; ids begin with "socket."
-extern const text::Entry kBadLine;           ///< {0} the line or what is wrong with it
+extern const text::Entry kBadLine;           ///< {0} the line
+extern const text::Entry kNoObject;          ///< {0} what stands there
+extern const text::Entry kNested;            ///< {0} levels
+extern const text::Entry kWrongType;         ///< {0} key, {1} what it must be, {2} what stands there
 extern const text::Entry kLongLine;          ///< {0} bytes
 extern const text::Entry kFull;              ///< {0} clients
 extern const text::Entry kUnknown;           ///< {0} command
@@ -16,7 +19,6 @@ extern const text::Entry kNoAxis;            ///< {0} axis, {1} axes of the mach
 extern const text::Entry kNotUnit;           ///< {0} unit, {1} axis, {2} its unit
 extern const text::Entry kNoNumber;          ///< {0} key
 extern const text::Entry kNotSwitch;         ///< {0} key
-extern const text::Entry kNotAxes;           ///< {0} key
 extern const text::Entry kNoAnswer;          ///< the cycle stands
 extern const text::Entry kNotLoaded;         ///< {0} program
 extern const text::Entry kNotStarted;        ///< {0} program
