@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "firmware_if/image/interface_map.hpp"
-#include "gateway/machine/check/check.hpp"
 #include "firmware_if/text/units.hpp"
+#include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
 #include "gateway/machine/keys/sections.hpp"
 
@@ -75,6 +76,14 @@ class AxisCheck {
     if (!a_.endless() && a_.travel_min >= a_.travel_max)
       error("travel_max", finding::kTravelOrder, {length(a_.travel_min), length(a_.travel_max)});
     if (a_.diameter && a_.type == AxisType::rotary) error("diameter", finding::kDiameter, {});
+    if (!(a_.lead > 0.0) || a_.counts_per_rev <= 0) return;
+    constexpr double kExact = 9007199254740992.0;  // of a double
+    const double turn = a_.type == AxisType::rotary ? 360.0 : 0.0;
+    const double farthest = std::max({turn, std::abs(a_.travel_min), std::abs(a_.travel_max)});
+    const double counts = farthest * a_.counts_per_unit();
+    if (counts > kExact)
+      error("counts_per_rev", finding::kTravelCounts,
+            {length(farthest), text::number(counts, 0), text::number(kExact, 0)});
   }
 
   void inside(std::string_view key, double value) {

@@ -27,6 +27,10 @@ inline constexpr text::Entry kAuxiliaryAlone{"machine.auxiliary_alone",
 inline constexpr text::Entry kTravelOrder{"machine.travel_order",
                                           "{0}: travel_min {1} is not below travel_max {2}",
                                           "{0}: travel_min {1} не меньше travel_max {2}"};
+inline constexpr text::Entry kTravelCounts{
+    "machine.travel_counts",
+    "{0}: {1} are {2} counts of the drive, and at most {3} are exact; look at lead, gear and counts_per_rev",
+    "{0}: {1} — это {2} дискрет привода, а точны не более {3}; проверьте lead, gear и counts_per_rev"};
 inline constexpr text::Entry kHomeOutside{"machine.home_outside",
                                           "{0}: {1} {2} is outside the travel {3} to {4}",
                                           "{0}: {1} {2} вне хода от {3} до {4}"};

@@ -60,6 +60,15 @@ struct Rule {
   bool computed = false;  ///< the default is computed from other keys; the meaning says how
 };
 
+/// No machine is beyond these; what is written beyond is a slip, and would break the arithmetic of motion. In
+/// mm or degrees, and seconds; the rotary bounds are wide, the linear ones a thousandfold of what machines
+/// do.
+inline constexpr double kLongest = 1e6;              ///< lengths: 1 km
+inline constexpr double kFastest = 1e6;              ///< velocity: 1 km/s, 167 000 rpm
+inline constexpr double kSteepest = 1e8;             ///< acceleration: 10 000 times that of falling
+inline constexpr double kHardest = 1e11;             ///< jerk: that acceleration within a millisecond
+inline constexpr double kMostCounts = 4294967296.0;  ///< of one turn: 32 bits
+
 struct Key {
   std::string_view name;
   KeyKind kind;

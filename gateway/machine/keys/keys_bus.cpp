@@ -4,6 +4,10 @@
 
 namespace servogate::machine {
 
+namespace {
+constexpr double kLargestSignal = 1e12;  ///< of an analog point, whatever its unit
+}  // namespace
+
 template <>
 std::span<const std::string_view> choices_of<StationKind>() {
   static constexpr std::string_view kNames[] = {"modbus", "gpio", "drive", "canopen"};
@@ -141,16 +145,17 @@ const Section& section_of<PointConfig>() {
       key<&C::place>("place", {.required = true}, "place in packet A: SA16, analog as a word: SA16.IN",
                      "место в пакете A: SA16, аналоговый сигнал словом: SA16.IN"),
       key<&C::inverted>("inverted", {}, "the wire's 1 is 0 in packet A", "1 на проводе есть 0 в пакете A"),
-      key<&C::loss>("loss", {},
+      key<&C::loss>("loss", {.min = -kLargestSignal, .max = kLargestSignal},
                     "value while the station is lost: in packet A for an input, on the wire for an output",
                     "значение при потере станции: для входа в пакете A, для выхода на проводе"),
       key<&C::writer>("writer", {.computed = true}, "who writes it; input for inputs, plc for outputs",
                       "кто пишет; input для входов, plc для выходов"),
       key<&C::hold>("hold", {}, "keep the last value while the station is lost, instead of `loss`",
                     "при потере станции сохранять последнее значение вместо `loss`"),
-      key<&C::scale>("scale", {}, "analog: value in packet A = raw * scale + shift",
+      key<&C::scale>("scale", {.min = -kLargestSignal, .max = kLargestSignal},
+                     "analog: value in packet A = raw * scale + shift",
                      "аналоговый: значение в пакете A = код * scale + shift"),
-      key<&C::shift>("shift", {}, "see scale", "см. scale"),
+      key<&C::shift>("shift", {.min = -kLargestSignal, .max = kLargestSignal}, "see scale", "см. scale"),
       key<&C::debounce>("debounce", {.unit = Unit::second, .min = 0, .max = 1}, "time a change must last",
                         "время, которое изменение должно продержаться"),
       key<&C::comment>("comment", {}, "meaning for people", "пояснение для людей"),

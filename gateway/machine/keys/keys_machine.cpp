@@ -115,10 +115,11 @@ const Section& section_of<SimulatedSwitch>() {
       key<&C::axis>("axis", {.required = true, .refers = Refers::axis},
                     "axis whose simulated position it follows",
                     "ось, за имитируемым положением которой он следует"),
-      key<&C::from>("from", {.unit = Unit::axis_length}, "the switch works from here, machine coordinates",
+      key<&C::from>("from", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                    "the switch works from here, machine coordinates",
                     "начало зоны срабатывания, машинные координаты"),
-      key<&C::to>("to", {.unit = Unit::axis_length}, "the switch works up to here",
-                  "конец зоны срабатывания"),
+      key<&C::to>("to", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                  "the switch works up to here", "конец зоны срабатывания"),
   };
   static const Section section{"a mock switch that follows an axis",
                                "имитируемый выключатель, следующий за осью", keys, &default_object<C>};
@@ -168,10 +169,10 @@ const Section& section_of<SimulatedDrive>() {
   static const Key keys[] = {
       key<&C::node>("node", {.required = true, .refers = Refers::node}, "the drive as \"bus.node\"",
                     "привод в виде \"шина.узел\""),
-      key<&C::start>("start", {.unit = Unit::axis_length},
+      key<&C::start>("start", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
                      "position of the axis at power-on, machine coordinates",
                      "положение оси при включении, машинные координаты"),
-      key<&C::zero_mark>("zero_mark", {.unit = Unit::counts},
+      key<&C::zero_mark>("zero_mark", {.unit = Unit::counts, .min = -kMostCounts, .max = kMostCounts},
                          "counts from machine zero to the nearest zero mark in plus direction",
                          "дискрет от машинного нуля до ближайшей нулевой метки в направлении плюс"),
       key<&C::inertia>("inertia", {.unit = Unit::kg_m2, .min = 0, .max = 1000, .computed = true},
@@ -189,10 +190,10 @@ const Section& section_of<SimulatedDrive>() {
                           "предел момента; пиковый момент из файла устройства"),
       key<&C::absolute_encoder>("absolute_encoder", {}, "the encoder keeps its count without power",
                                 "датчик сохраняет счёт без питания"),
-      key<&C::end_stop_min>("end_stop_min", {.unit = Unit::axis_length}, "rigid stop, machine coordinates",
-                            "жёсткий упор, машинные координаты"),
-      key<&C::end_stop_max>("end_stop_max", {.unit = Unit::axis_length}, "rigid stop, machine coordinates",
-                            "жёсткий упор, машинные координаты"),
+      key<&C::end_stop_min>("end_stop_min", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                            "rigid stop, machine coordinates", "жёсткий упор, машинные координаты"),
+      key<&C::end_stop_max>("end_stop_max", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                            "rigid stop, machine coordinates", "жёсткий упор, машинные координаты"),
   };
   static const Section section{"the plant behind a simulated drive", "механика за имитируемым приводом", keys,
                                &default_object<C>};
