@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "kernel/program/canon.hpp"
 #include "kernel/program/geometry/circle.hpp"
@@ -149,7 +152,9 @@ class ErrorsOfRun {
   bool none() const { return met_ == 0; }
   /// False: nothing can follow.
   bool take(const text::Finding& f) {
-    ++met_;
+    const bool of_first = lacks_told_feed(f);
+    // A new place of it is no pass of a loop.
+    if (!of_first || !without_feed_.emplace(f.file, f.line).second) ++met_;
     const bool stuck = interpreter_.executed() == executed_ && same(f, last_);
     executed_ = interpreter_.executed();
     last_ = f;
@@ -160,7 +165,7 @@ class ErrorsOfRun {
     const bool new_place =
         std::none_of(found_.begin(), found_.end(), [&](const Met& m) { return told(m.finding); }) &&
         std::none_of(report_.findings.begin(), report_.findings.end(), told);
-    if (new_place && !follows)
+    if (new_place && !follows && !of_first)
       found_.push_back({f, interpreter_.machine_read() || is(f, Fault::block_limit)});
     return !stuck && !full() && met_ < kMostMet;
   }
@@ -169,6 +174,7 @@ class ErrorsOfRun {
     for (const Met& m : found_) {
       report_.findings.push_back(m.finding);
       if (m.by_machine) report_.by_machine.push_back(report_.findings.size() - 1);
+      if (!without_feed_.empty() && is(m.finding, Fault::feed_missing)) tell_blocks_without_feed();
     }
   }
 
@@ -177,6 +183,24 @@ class ErrorsOfRun {
     text::Finding finding;
     bool by_machine;
   };
+  /// One F mends it in every block, so it is told of the first.
+  bool lacks_told_feed(const text::Finding& f) const {
+    return is(f, Fault::feed_missing) && std::any_of(found_.begin(), found_.end(), [&](const Met& m) {
+             return is(m.finding, Fault::feed_missing) && !same(m.finding, f);
+           });
+  }
+  void tell_blocks_without_feed() {
+    const auto& [file, line] = *without_feed_.begin();
+    const auto in_file = [&file](const auto& place) { return place.first == file; };
+    const auto end = std::find_if_not(without_feed_.begin(), without_feed_.end(), in_file);
+    report_.findings.push_back(
+        {text::Severity::warning,
+         file,
+         line,
+         1,
+         &entry(Fault::feed_missing_more),
+         {std::to_string(without_feed_.size()), std::to_string(std::prev(end)->second)}});
+  }
   static bool is(const text::Finding& f, Fault fault) { return f.entry == &entry(fault); }
   static bool same(const text::Finding& a, const text::Finding& b) {
     return a.file == b.file && a.line == b.line && a.entry == b.entry;
@@ -190,6 +214,7 @@ class ErrorsOfRun {
   CheckReport& report_;
   const Interpreter& interpreter_;
   std::vector<Met> found_;
+  std::set<std::pair<std::string, int>> without_feed_;  ///< further places of it: file, line
   text::Finding last_;
   long long executed_ = -1, behind_ = 0;
   int met_ = 0;

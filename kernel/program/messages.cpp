@@ -155,6 +155,8 @@ constexpr text::Entry kMessages[] = {
     {"P723", "G83 needs I, the first step", "G83 требует I — первого шага"},
     {"P724", "G83: the step {0} must be above {1}", "G83: шаг {0} должен быть больше {1}"},
     {"P725", "G83 would take more than {0} steps", "G83 потребовал бы больше {0} шагов"},
+    {"P726", "more blocks without a feed: {0}, the last one in line {1}",
+     "ещё кадров без подачи: {0}, последний в строке {1}"},
     {"P801",
      "{0} in a motion block of a continuous profile (G27, G28): put it into a G00 block or a block of its "
      "own",

@@ -125,6 +125,7 @@ enum class Fault : std::uint8_t {
   cycle_step_missing,
   cycle_step,
   cycle_pecks,
+  feed_missing_more,
   function_in_profile,
   m_end_twice,
   spindle_conflict,

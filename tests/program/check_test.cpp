@@ -123,6 +123,30 @@ TEST(CheckProgram, goes_on_after_a_motion_out_of_the_travel_and_names_its_first_
   EXPECT_FALSE(report.good());
 }
 
+TEST(CheckProgram, tells_a_missing_feed_once_and_in_how_many_more_blocks_and_all_other_errors) {
+  std::string text = "G1 X1\n";
+  for (int n = 2; n <= 1500; ++n) text += "X" + std::to_string(n % 100) + "\n";
+  const CheckReport report = check(text + "(UAO,7)\nX5 F100\nX6\nX301\n");
+  ASSERT_EQ(4u, report.findings.size());
+  const auto said = [&](std::size_t i) { return report.findings[i].str(text::Language::english); };
+  EXPECT_EQ("p.nc:1504:1: error: X would go to 301, the travel ends at 300 [P701]", said(0));
+  EXPECT_EQ("p.nc:1:1: error: no feed: F was never programmed [P703]", said(1));
+  EXPECT_EQ("p.nc:2:1: warning: more blocks without a feed: 1499, the last one in line 1500 [P726]", said(2));
+  EXPECT_EQ(0u, said(3).find("p.nc:1501:")) << said(3);
+  EXPECT_FALSE(report.good());
+}
+
+TEST(CheckProgram, tells_a_single_block_without_feed_alone) {
+  const CheckReport once = check("G1 X1\nX2 F100\nX3\nM30\n");
+  ASSERT_EQ(1u, once.findings.size());
+  EXPECT_EQ("p.nc:1:1: error: no feed: F was never programmed [P703]",
+            once.findings[0].str(text::Language::english));
+  const CheckReport loop = check("(RPT,99)\nG1 X1\nX2\n(ERP)\nX5\nM30\n");
+  ASSERT_EQ(2u, loop.findings.size()) << "a block of a loop is one block";
+  EXPECT_EQ("p.nc:3:1: warning: more blocks without a feed: 2, the last one in line 5 [P726]",
+            loop.findings[1].str(text::Language::english));
+}
+
 TEST(CheckProgram, names_places_of_a_diameter_axis_as_diameters) {
   MachineModel lathe = mill();
   lathe.axes[0].diameter = true;
