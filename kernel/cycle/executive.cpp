@@ -196,6 +196,8 @@ void Cycle::collect_events() noexcept {
   bool rest = true;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     collect(axes_[i].events(), static_cast<int>(i));
+    if (axes_[i].homing().state() == axis::Homing::State::done)
+      alarms_.cause_gone(axis::alarm::kHomingInterrupted, static_cast<int>(i));
     rest = rest && axes_[i].standstill();
   }
   for (const axis::Spindle& s : spindles_) collect(s.events(), -1);

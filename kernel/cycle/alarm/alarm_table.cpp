@@ -184,7 +184,7 @@ constexpr AlarmRow kTable[] = {
      "Один раз задайте привязку оси; она хранится в каталоге состояния."},
     {ax::kHomingInterrupted,
      Reaction::warn,
-     reset,
+     by_itself,
      {"homing.interrupted", "{0}: homing was broken off at {1}", "{0}: выход в ноль прерван на {1}"},
      "Remove the cause and home again.",
      "Устраните причину и повторите выход в ноль."},

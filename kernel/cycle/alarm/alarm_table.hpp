@@ -55,7 +55,8 @@ inline constexpr AlarmNumber kRequestsLost = 6004;
 enum class ResetCondition : std::uint8_t {
   reset,       ///< the operator's reset is enough
   cause_gone,  ///< reset, after the cause has gone
-  by_itself,   ///< a warning that goes with its cause: one of a program with the start of the next one
+  by_itself,  ///< a warning that goes with its cause: one of a program with the start of the next one, one of
+              ///< a homing with the next one that reaches its end
 };
 
 /// One kind of alarm. Texts have the placeholders {0} axis, {1} value, {2} limit, {3} node or segment or

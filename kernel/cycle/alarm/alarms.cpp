@@ -74,6 +74,17 @@ void AlarmList::run_begins(int process) noexcept {
   recount();
 }
 
+void AlarmList::cause_gone(image::AlarmNumber number, int axis) noexcept {
+  if (active_ == 0 || !active(number, axis)) return;
+  const AlarmRow* row = find_alarm(number);
+  if (row == nullptr || row->reset != ResetCondition::by_itself) return;
+  for (int i = 0; i < stored_; ++i) {
+    AlarmRecord& r = records_[static_cast<std::size_t>(i)];
+    if (r.number == number && r.axis == axis) r.active = false;
+  }
+  recount();
+}
+
 void AlarmList::note_rest(bool at_rest) noexcept {
   rest_cycles_ = at_rest ? std::min(rest_cycles_ + 1, kRestCycles) : 0;
   if (rest_cycles_ >= kRestCycles) group_ = 0;

@@ -39,6 +39,8 @@ class AlarmList {
   /// A process begins a run: the warnings of the run before it that go by themselves
   /// (ResetCondition::by_itself) end; others stay. real-time safe.
   void run_begins(int process) noexcept;
+  /// The cause of a warning of an axis is gone: it ends where it goes by itself. real-time safe.
+  void cause_gone(image::AlarmNumber number, int axis) noexcept;
   /// To be told in every cycle: the machine is at rest. A quarter of a second of rest ends the reaction (at 1
   /// ms; 250 cycles), the next fault is then a first fault again. real-time safe.
   void note_rest(bool at_rest) noexcept;
