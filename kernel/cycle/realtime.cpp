@@ -10,10 +10,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 
 #include "firmware_if/text/finding.hpp"
+#include "firmware_if/text/system_words.hpp"
 
 namespace servogate::cycle {
 
@@ -44,7 +44,7 @@ void prefault_stack() {
 RealtimeThread::RealtimeThread(const RealtimeSettings& settings) {
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
     refusals_.push_back(
-        {text::both("locked memory", "закрепление памяти"), std::strerror(errno), grant(), true});
+        {text::both("locked memory", "закрепление памяти"), text::words_of(errno), grant(), true});
   prefault_stack();
   if (settings.cpu >= 0) {
     cpu_set_t set;
@@ -54,7 +54,7 @@ RealtimeThread::RealtimeThread(const RealtimeSettings& settings) {
       refusals_.push_back(
           {text::both("processor " + std::to_string(settings.cpu),
                       "процессор " + std::to_string(settings.cpu)),
-           std::strerror(error),
+           text::words_of(error),
            text::both("set [realtime] cpu in the machine file to one that `nproc --all` knows",
                       "задайте в файле станка [realtime] cpu из тех, что знает `nproc --all`"),
            true});
@@ -64,12 +64,12 @@ RealtimeThread::RealtimeThread(const RealtimeSettings& settings) {
   if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param); error != 0)
     refusals_.push_back({text::both("SCHED_FIFO priority " + std::to_string(settings.priority),
                                     "SCHED_FIFO с приоритетом " + std::to_string(settings.priority)),
-                         std::strerror(error), grant(), true});
+                         text::words_of(error), grant(), true});
   latency_file_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   const std::int32_t zero = 0;
   if (latency_file_ < 0 || write(latency_file_, &zero, sizeof zero) != sizeof zero)
     refusals_.push_back(
-        {"/dev/cpu_dma_latency", std::strerror(errno), "sudo chmod o+w /dev/cpu_dma_latency", false});
+        {"/dev/cpu_dma_latency", text::words_of(errno), "sudo chmod o+w /dev/cpu_dma_latency", false});
 }
 
 RealtimeThread::~RealtimeThread() {
