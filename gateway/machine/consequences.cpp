@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "firmware_if/text/units.hpp"
 #include "gateway/machine/keys/json.hpp"
 
 namespace servogate::machine {
@@ -107,7 +108,8 @@ class Sentences {
   }
 
   void axis(const AxisConfig& a) {
-    unit_ = a.type == AxisType::rotary ? "deg" : "mm";
+    unit_ = text::unit_words(a.unit());
+    speed_unit_ = text::unit_words(std::string(a.unit()) + "/s");
     const double counts = a.counts_per_unit(), rpm = a.motor_rpm(a.max_velocity);
     say(a.letter, kScale,
         {a.letter, "1 " + unit_, text::number(counts, 4), speed(a.max_velocity), text::number(rpm, 1)},
@@ -210,12 +212,12 @@ class Sentences {
     const std::string number = text::number(v, 3);
     return number + (number.find('.') == std::string::npos ? ".0 " : " ") + unit_;
   }
-  std::string speed(double v) const { return text::number(v, 3) + " " + unit_ + "/s"; }
+  std::string speed(double v) const { return text::number(v, 3) + " " + speed_unit_; }
 
   const LoadResult& loaded_;
   const MachineConfig& m_;
   std::vector<Consequence> lines_;
-  std::string unit_;
+  std::string unit_, speed_unit_;
   double longest_stop_ = 0.0;  ///< with the engaging of its brake, s
 };
 

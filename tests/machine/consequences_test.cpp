@@ -29,7 +29,7 @@ bool has(const std::vector<std::string>& lines, const std::string& line) {
 TEST(Consequences, say_what_a_millimetre_is) {
   EXPECT_TRUE(has(said(mill()), "X: 1 mm = 26214.4 counts; 500 mm/s = 3000 rpm"));
   EXPECT_TRUE(
-      has(said(mill(), text::Language::russian), "X: 1 mm = 26214.4 дискрет; 500 mm/s = 3000 об/мин"));
+      has(said(mill(), text::Language::russian), "X: 1 мм = 26214.4 дискрет; 500 мм/с = 3000 об/мин"));
 }
 
 TEST(Consequences, say_how_far_a_home_switch_on_modbus_is_off) {

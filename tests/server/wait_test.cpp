@@ -166,12 +166,15 @@ TEST_F(Stops, that_others_cause_are_said_while_the_command_goes_on_waiting) {
     return shell_.until(
         [&](const json&) { return shell_.text("start.err").find(words) != std::string::npos; });
   };
-  EXPECT_TRUE(said("is held by the operator's feed hold; going on waiting\n    `servogate resume` goes on."))
+  EXPECT_TRUE(said(
+      "is held by a feed hold of the operator or the PLC; going on waiting\n    `servogate resume` goes on."))
       << shell_.text("start.err");
   ASSERT_EQ(shell_.run({"resume"}).exit, 0);
   ASSERT_EQ(shell_.run({"input", "door_closed", "off"}).exit, 0);
-  EXPECT_TRUE(said("waits for the PLC's feed enable")) << shell_.text("start.err");
+  EXPECT_TRUE(said("is held by the PLC: NC.stop")) << shell_.text("start.err");
   ASSERT_EQ(shell_.run({"input", "door_closed", "on"}).exit, 0);
+  ASSERT_TRUE(waits("operator_hold"));
+  ASSERT_EQ(shell_.run({"resume"}).exit, 0);
   ASSERT_TRUE(waits("signal"));
   EXPECT_TRUE(said("the program waits until cycle_start (SA20.BL) = 1; it is 0; going on waiting"))
       << shell_.text("start.err");
