@@ -9,22 +9,24 @@
 namespace servogate::shell {
 namespace {
 
-/// Waits until the program $p has taken SIGINT over, which is its first act, then sends it.
-constexpr const char* kInterrupt =
-    "until grep -q '^SigCgt:.*[2367abef]$' /proc/$p/status; do :; done; kill -INT $p; wait $p; echo code $?";
+/// Waits until the process $p is the program, no longer the shell that became it, and has taken SIGINT over,
+/// which is its first act.
+const std::string kTakenOver =
+    "until grep -q '^servogate$' /proc/$p/comm && grep -q '^SigCgt:.*[2367abef]$' /proc/$p/status; do :; "
+    "done; ";
+/// The same, then sends it.
+const std::string kInterrupt = kTakenOver + "kill -INT $p; wait $p; echo code $?";
 
 TEST(Interrupt, of_a_run_that_still_reads_its_program_ends_it_at_once_with_3_and_a_sentence) {
   const Desk desk;
   std::string program;
   for (int n = 0; n < 300'000; ++n) program += "G1 X" + std::to_string(n % 200) + " F6000\n";
   desk.write("long.nc", program + "M30\n");
-  const Ended e =
-      desk.line(std::string("$SG run $MILL long.nc --virtual --report r.json & p=$!; ") + kInterrupt);
+  const Ended e = desk.line("$SG run $MILL long.nc --virtual --report r.json & p=$!; " + kInterrupt);
   EXPECT_EQ(e.out, "code 3\n") << e.err;
   EXPECT_TRUE(e.err_has("stopped by the operator before anything had begun")) << e.err;
   EXPECT_FALSE(desk.has("r.json"));
-  const Ended russian =
-      desk.line(std::string("$SG run $MILL long.nc --virtual & p=$!; ") + kInterrupt, "ru_RU.UTF-8");
+  const Ended russian = desk.line("$SG run $MILL long.nc --virtual & p=$!; " + kInterrupt, "ru_RU.UTF-8");
   EXPECT_TRUE(russian.err_has("остановлено оператором: ещё ничего не началось")) << russian.err;
 }
 
@@ -33,8 +35,7 @@ TEST(Interrupt, of_a_command_with_json_leaves_its_object_from_the_first_moment_o
   std::string program;
   for (int n = 0; n < 300'000; ++n) program += "G1 X" + std::to_string(n % 200) + " F6000\n";
   desk.write("long.nc", program + "M30\n");
-  const Ended e =
-      desk.line(std::string("$SG run $MILL long.nc --virtual --json > said & p=$!; ") + kInterrupt);
+  const Ended e = desk.line("$SG run $MILL long.nc --virtual --json > said & p=$!; " + kInterrupt);
   EXPECT_EQ(e.out, "code 3\n") << e.err;
   EXPECT_EQ(desk.text("said"),
             "{\"error\":{\"code\":\"cli.stopped\",\"text\":\"stopped by the operator before anything had "
@@ -45,12 +46,10 @@ TEST(Interrupt, of_a_command_with_json_leaves_its_object_from_the_first_moment_o
 TEST(Interrupt, at_any_moment_of_a_run_with_json_leaves_one_whole_object) {
   const Desk desk;
   for (int ms = 0; ms < 150; ms += 6) {
-    const Ended e = desk.line(
-        "$SG run $MILL $BRACKET --virtual --json -q > said & p=$!; until grep -q "
-        "'^SigCgt:.*[2367abef]$' /proc/$p/status; do :; done; sleep " +
-        std::to_string(ms * 1e-3) +
-        "; kill -INT $p; wait $p; echo code $?; python3 -m json.tool said > whole; "
-        "echo $?");
+    const Ended e = desk.line("$SG run $MILL $BRACKET --virtual --json -q > said & p=$!; " + kTakenOver +
+                              "sleep " + std::to_string(ms * 1e-3) +
+                              "; kill -INT $p; wait $p; echo code $?; python3 -m json.tool said > whole; "
+                              "echo $?");
     EXPECT_TRUE(e.out == "code 3\n0\n" || e.out == "code 0\n0\n") << ms << " ms: " << e.out << e.err;
   }
 }
