@@ -190,7 +190,8 @@ class ErrorsOfRun {
            });
   }
   void tell_blocks_without_feed() {
-    const auto& [file, line] = *without_feed_.begin();
+    const auto file = without_feed_.begin()->first;
+    const auto line = without_feed_.begin()->second;
     const auto in_file = [&file](const auto& place) { return place.first == file; };
     const auto end = std::find_if_not(without_feed_.begin(), without_feed_.end(), in_file);
     report_.findings.push_back(
