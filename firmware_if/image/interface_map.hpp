@@ -87,11 +87,10 @@ inline constexpr InterfaceField kProcessFields[] = {
     {"reset", 32, 6, Format::bl, Writer::plc, "rising edge: reset"},
     {"m_unknown", 32, 7, Format::bl, Writer::plc, "with m_ack: the PLC does not know this M code"},
     {"feed_enable", 33, 0, Format::bl, Writer::plc, "TRUE permits feed; FALSE holds"},
-    {"read_in_enable", 33, 1, Format::bl, Writer::plc, "TRUE permits the next block"},
-    {"block_skip", 33, 2, Format::bl, Writer::plc, "blocks with / are executed (USB=1)"},
+    {"read_in_enable", 33, 1, Format::bl, Writer::plc,
+     "TRUE permits the next function: M, S, T, H, a wait, a reading or writing of signals; feed_enable is "
+     "for motion"},
     {"optional_stop", 33, 3, Format::bl, Writer::plc, "M01 stops"},
-    {"dry_run", 33, 4, Format::bl, Writer::plc, "run without axis motion"},
-    {"single_block", 33, 5, Format::bl, Writer::plc, "stop at each block end"},
     {"feed_override", 34, 0, Format::by, Writer::plc, "per cent 1-150; 0: the operator's value"},
     {"external_alarm", 36, 0, Format::in, Writer::plc, "number of an alarm the PLC raises, 0: none"},
 };

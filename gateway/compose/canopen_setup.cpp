@@ -111,6 +111,7 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
     n.name = node.name;
     const std::string reference = bus.name + "." + node.name;
     std::int64_t counts = 0;
+    double ramp_rpm_s = 0.0;  // of a spindle's motor
     bool used = false;
     for (std::size_t a = 0; a < m.axes.size(); ++a)
       if (m.axes[a].drive == reference) {
@@ -124,11 +125,17 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
         n.target = canopen::DriveTarget::spindle;
         n.target_index = static_cast<int>(s);
         counts = counts_per_motor_turn(m.spindles[s]);
+        ramp_rpm_s = m.spindles[s].acceleration * static_cast<double>(m.spindles[s].gear[0]) /
+                     static_cast<double>(m.spindles[s].gear[1]);
         used = true;
       }
     if (!used && !take_station(loaded, node, reference, n)) continue;
     if (const machine::DeviceConfig* device = loaded.device(node.device); device != nullptr)
       n.profile = machine::drive_profile(*device, node, counts);
+    if (n.target == canopen::DriveTarget::spindle &&
+        n.profile.velocity_mode == canopen::OperationMode::profile_velocity)
+      n.setup.speed_ramp = object_value(ramp_rpm_s / 60.0 * static_cast<double>(n.profile.counts_per_rev) /
+                                        n.profile.acceleration_unit_counts_s2);
     if (n.target == canopen::DriveTarget::axis) {
       const machine::AxisConfig& axis = m.axes[static_cast<std::size_t>(n.target_index)];
       n.setup.homing = homing_of(axis, n.profile);

@@ -46,10 +46,10 @@ constexpr text::Entry kBus{
 constexpr text::Entry kStation{"consequence.station", "{0}: {1} signals, up to {2} ms old",
                                "{0}: сигналов {1}, возраст до {2} мс"};
 constexpr text::Entry kEmergencyStop{"consequence.emergency_stop",
-                                     "emergency stop: all axes rest and their brakes hold after {0} s; the "
-                                     "safety relay's delay t_d has to be longer",
-                                     "аварийный останов: все оси стоят, тормоза держат через {0} с; задержка "
-                                     "t_d реле безопасности должна быть больше"};
+                                     "emergency stop: all axes rest and their brakes hold after {0} s{1}; "
+                                     "the safety relay's delay t_d has to be longer",
+                                     "аварийный останов: все оси стоят, тормоза держат через {0} с{1}; "
+                                     "задержка t_d реле безопасности должна быть больше"};
 constexpr text::Entry kBrake{"consequence.brake", "{0}: power goes {1} ms after the brake is told to engage",
                              "{0}: питание снимается через {1} мс после команды на зажатие тормоза"};
 
@@ -142,7 +142,15 @@ class Sentences {
     if (longest_stop_ <= 0.0) return;
     // The input is read, answered and obeyed in three cycles.
     const double time = std::ceil((longest_stop_ + 3.0 * m_.control.cycle_time) * 100.0) / 100.0;
-    say("emergency stop", kEmergencyStop, {text::number(time, 2)}, {{"stop_time", time}});
+    double turning = 0.0;  // an inverter is told 0 at once and says nothing of its way to rest
+    for (const SpindleConfig& s : m_.spindles)
+      if (s.speed_output.empty()) turning = std::max(turning, s.max_speed / s.acceleration);
+    const std::string seconds = text::number(turning, 2);
+    say("emergency stop", kEmergencyStop,
+        {text::number(time, 2), turning > 0.0 ? text::both(", the spindle after " + seconds + " s",
+                                                           ", шпиндель через " + seconds + " с")
+                                              : ""},
+        {{"stop_time", time}, {"spindle_stop_time", turning}});
   }
 
   void margin(const AxisConfig& a) {

@@ -67,7 +67,8 @@ void OperatorScript::interrupt() { ++interrupts_; }
 void OperatorScript::take(const image::Answer& answer) {
   if (answer.refusal == 0 || stage_ >= Stage::power_off || refusal_.refusal != 0) return;
   const auto refusal = static_cast<cycle::Refusal>(answer.refusal);
-  if (refusal == cycle::Refusal::axis_moves || refusal == cycle::Refusal::not_powered) {
+  if (refusal == cycle::Refusal::axis_moves || refusal == cycle::Refusal::not_powered ||
+      refusal == cycle::Refusal::switching_off) {
     asked_ = stage_ == Stage::power;  // not quite at rest yet: ask again
     last_refusal_ = answer;
     return;

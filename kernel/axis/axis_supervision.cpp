@@ -187,7 +187,7 @@ void Axis::supervise_brake() noexcept {
 /// of the path it stands, as soon as the drive can tell.
 void Axis::supervise_path_end(double dt) noexcept {
   if (!process_given_) return report_path_end(dt);
-  if ((held_ && !own_motion_ && !stopped_by_reaction_) || reaction_ >= image::Reaction::quick_stop) {
+  if ((held_ && !own_motion_ && !stopped_by_reaction_) || reaction_ >= image::Reaction::stop_and_power_off) {
     off_path_ = false;
     return;
   }

@@ -17,6 +17,18 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
+/// Something has been done when it is through: STEP stops behind it. A programmed stop waits by itself.
+bool acts(const program::Command& command) {
+  if (const auto* tool = std::get_if<program::Tool>(&command.what)) return !tool->activate;
+  return !std::holds_alternative<program::Stop>(command.what) &&
+         !std::holds_alternative<program::End>(command.what);
+}
+
+bool stops(const program::Command& command) {
+  const auto* stop = std::get_if<program::Stop>(&command.what);
+  return stop != nullptr && !stop->optional;
+}
+
 }  // namespace
 
 Feeder::Feeder(path::Config config, AxisMap axes, Link& link, int process)
@@ -93,7 +105,7 @@ void Feeder::begin(const FeederOrder& order) {
   generation_ = order.generation;
   position_ = order.position;
   block_by_block_ = order.block_by_block;
-  moved_in_block_ = false;
+  acted_in_block_ = false;
   last_line_ = 0;
   last_executed_ = 0;
   last_file_ = 0;
@@ -230,13 +242,14 @@ void Feeder::push(Event& e, const program::Command& command) {
 }
 
 void Feeder::accept(const program::Command& command) {
-  if (block_by_block_ && moved_in_block_ && executed() != last_executed_) {
+  if (block_by_block_ && acted_in_block_ && executed() != last_executed_) {
     end_block(command);
-    moved_in_block_ = false;
+    acted_in_block_ = false;
   }
   last_line_ = command.line;
   last_executed_ = executed();
   last_file_ = command.file;
+  acted_in_block_ = (acted_in_block_ || acts(command)) && !stops(command);
   Event e;
   std::visit(Overloaded{
                  [&](const program::Rapid&) { move(command); },
@@ -314,10 +327,7 @@ void Feeder::accept(const program::Command& command) {
 bool Feeder::move(const program::Command& command) {
   path::Element element = elements_.element(command, planner_.position());
   element.tag = tag(command);
-  if (planner_.add(element)) {
-    moved_in_block_ = true;
-    return true;
-  }
+  if (planner_.add(element)) return true;
   fail(placed(cannot_drive(planner_.last_flaw()), command));
   return false;
 }

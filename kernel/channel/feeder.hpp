@@ -140,7 +140,7 @@ class Feeder {
   State state_ = State::idle;
   bool synchronised_ = false;
   bool block_by_block_ = false;
-  bool moved_in_block_ = false;
+  bool acted_in_block_ = false;
   int last_line_ = 0;
   long long last_executed_ = 0;  ///< blocks executed up to the last command
   image::Packets view_;          ///< packets as the interpreter sees them

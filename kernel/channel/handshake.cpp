@@ -35,12 +35,12 @@ void Handshake::begin(HandshakeWord word, std::int32_t code, double value, doubl
   unknown_ = false;
 }
 
-Handshake::State Handshake::step(image::ProcessImage& image, std::uint32_t base) noexcept {
+Handshake::State Handshake::step(image::ProcessImage& image, std::uint32_t base, bool held) noexcept {
   if (phase_ == Phase::idle) return State::idle;
   const Word& w = kWords[static_cast<int>(word_)];
   image::Packets& k = image.packets;
   const bool ack = k.bit(image::at(w.ack, base));
-  waited_s_ += image.now.period_s();
+  if (!held) waited_s_ += image.now.period_s();
   if (phase_ == Phase::clear && !ack) {
     k.set_number(image::at(w.code, base), word_ == HandshakeWord::s ? value_ : code_);
     if (word_ == HandshakeWord::t) k.set_number(image::at(kCorrector, base), value_);

@@ -18,7 +18,8 @@ class Handshake {
   /// Begins. `code` = M, H or tool number; `value` = spindle speed of an S word, corrector of a T word.
   void begin(HandshakeWord word, std::int32_t code, double value, double timeout_s) noexcept;
   /// One cycle on the interface of the process whose block begins at byte `base` of K.
-  State step(image::ProcessImage& image, std::uint32_t base) noexcept;
+  /// `held`: nobody is to hurry, the time does not count.
+  State step(image::ProcessImage& image, std::uint32_t base, bool held = false) noexcept;
   /// Drops strobe and waiting at once (reset, emergency stop).
   void cancel(image::ProcessImage& image, std::uint32_t base) noexcept;
   bool active() const noexcept { return phase_ != Phase::idle; }

@@ -22,6 +22,7 @@ using image::RequestKind;
 constexpr Place kProgramEnd = field(kProcessFields, "program_end");
 constexpr Place kStopBit = field(kProcessFields, "stop"), kFeedEnable = field(kProcessFields, "feed_enable");
 constexpr Place kFeedOverride = field(kProcessFields, "feed_override");
+constexpr Place kReadInEnable = field(kProcessFields, "read_in_enable");
 
 }  // namespace
 
@@ -315,8 +316,10 @@ void Process::at_event(std::uint32_t id, cycle::ProcessContext& c) noexcept {
     if (events_read_ >= events_end_) return;
     event_ = link_.events[events_read_];
     if (event_.id != id || !in_position(c)) return;
-    link_.events.free_below(++events_read_);
     show_event(event_, c.image.processes[static_cast<std::size_t>(config_.index)]);
+    // What is held begins nothing: no word goes to the PLC.
+    if (held_ || !c.image.packets.bit(at(kReadInEnable, base_))) return;
+    link_.events.free_below(++events_read_);
     stage_ = Stage::entered;
     waited_s_ = 0.0;
     go_on_ = false;

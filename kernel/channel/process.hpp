@@ -71,6 +71,7 @@ class Process final : public cycle::ProcessInCycle {
   void show_event(const Event& event, image::ProcessStatus& status) const noexcept;
   void forget_run(image::ProcessStatus& status) const noexcept;
   image::Wait wait(const path::Sample& sample, const cycle::ProcessContext& c) const noexcept;
+  image::Wait wait_for_go_on(const cycle::ProcessContext& c) const noexcept;
   image::Wait wait_at_event(const cycle::ProcessContext& c) const noexcept;
   image::Wait wait_on_path(const cycle::ProcessContext& c) const noexcept;
   image::Wait wait_for_position(const cycle::ProcessContext& c) const noexcept;

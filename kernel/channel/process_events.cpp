@@ -15,7 +15,6 @@ using image::ProcessState;
 
 constexpr image::Place kOptionalStop = image::field(image::kProcessFields, "optional_stop");
 constexpr int kWarningsPerCycle = 4;
-constexpr image::Place kReadInEnable = image::field(image::kProcessFields, "read_in_enable");
 
 bool holds(double a, program::Wait::Compare compare, double b) noexcept {
   using C = program::Wait::Compare;
@@ -111,10 +110,6 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
     case EventKind::warning:
       return true;
     case EventKind::sync: {
-      if (!c.image.packets.bit(image::at(kReadInEnable, base_))) {
-        stage_ = Stage::waiting;
-        return false;
-      }
       link_.packets_of(generation_) = c.image.packets;
       FeederOrder order;
       order.kind = FeederOrder::Kind::sync;
@@ -149,7 +144,7 @@ bool Process::handshake(HandshakeWord word, std::int32_t code, double value, con
     stage_ = Stage::handshaking;
     state_ = ProcessState::waiting;
   }
-  switch (handshake_.step(c.image, base_)) {
+  switch (handshake_.step(c.image, base_, held_)) {
     case Handshake::State::done:
       return true;
     case Handshake::State::unknown:

@@ -84,8 +84,13 @@ void Process::forget_run(image::ProcessStatus& status) const noexcept {
 image::Wait Process::wait(const path::Sample& sample, const cycle::ProcessContext& c) const noexcept {
   if (!running_ || stopping_ || !follower_.at_rest()) return {};
   switch (sample.state) {
-    case path::FollowerState::at_event:
-      return stage_ == Stage::none ? wait_for_position(c) : wait_at_event(c);
+    case path::FollowerState::at_event: {
+      const image::Wait settling = stage_ == Stage::none ? wait_for_position(c) : image::Wait{};
+      if (settling.reason != WaitReason::none) return settling;
+      // Whatever it waits for beside: behind it, only that somebody goes on helps.
+      const image::Wait hold = wait_for_go_on(c);
+      return hold.reason != WaitReason::none ? hold : wait_at_event(c);
+    }
     case path::FollowerState::at_stop:
       return wait_for_position(c);
     case path::FollowerState::held:
@@ -95,7 +100,16 @@ image::Wait Process::wait(const path::Sample& sample, const cycle::ProcessContex
   }
 }
 
+image::Wait Process::wait_for_go_on(const cycle::ProcessContext& c) const noexcept {
+  if (c.image.packets.bit(at(kStopBit, base_))) return of(WaitReason::plc_hold, at(kStopBit, base_));
+  return held_ ? of(WaitReason::operator_hold) : image::Wait{};
+}
+
 image::Wait Process::wait_at_event(const cycle::ProcessContext& c) const noexcept {
+  if (stage_ == Stage::none)
+    return c.image.packets.bit(at(kReadInEnable, base_))
+               ? image::Wait{}
+               : of(WaitReason::read_in_enable, at(kReadInEnable, base_));
   if (stage_ == Stage::handshaking) {
     const HandshakeWait& word = kHandshakes[static_cast<int>(handshake_.word())];
     image::Wait wait = of(word.reason, at(word.ack, base_));
@@ -114,10 +128,6 @@ image::Wait Process::wait_at_event(const cycle::ProcessContext& c) const noexcep
       wait = of(WaitReason::dwell);
       wait.value = event_.value;
       return wait;
-    case EventKind::sync:
-      return c.image.packets.bit(at(kReadInEnable, base_))
-                 ? wait
-                 : of(WaitReason::read_in_enable, at(kReadInEnable, base_));
     case EventKind::stop:
       return of(WaitReason::program_stop);
     case EventKind::optional_stop:
@@ -132,8 +142,7 @@ image::Wait Process::wait_at_event(const cycle::ProcessContext& c) const noexcep
 /// Why the feed is held; several causes come one after the other.
 image::Wait Process::wait_on_path(const cycle::ProcessContext& c) const noexcept {
   const image::Packets& k = c.image.packets;
-  if (k.bit(at(kStopBit, base_))) return of(WaitReason::plc_hold, at(kStopBit, base_));
-  if (held_) return of(WaitReason::operator_hold);
+  if (const image::Wait hold = wait_for_go_on(c); hold.reason != WaitReason::none) return hold;
   if (!k.bit(at(kFeedEnable, base_))) return of(WaitReason::feed_enable, at(kFeedEnable, base_));
   for (const int a : config_.axes.machine)
     if (!c.axes[static_cast<std::size_t>(a)].feed_enabled())
@@ -152,7 +161,8 @@ image::Wait Process::wait_for_position(const cycle::ProcessContext& c) const noe
 
 void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
   image::ProcessStatus& out = c.image.processes[static_cast<std::size_t>(config_.index)];
-  const bool held = running_ && sample.state == path::FollowerState::held;
+  const bool before_event = sample.state == path::FollowerState::at_event && stage_ == Stage::none && held_;
+  const bool held = running_ && (sample.state == path::FollowerState::held || before_event);
   out.mode = mode_;
   out.state = held ? ProcessState::held : state_;
   out.rapid = running_ && sample.rapid && sample.feed > 0.0;

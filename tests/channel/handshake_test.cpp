@@ -137,7 +137,8 @@ TEST(Handshake, is_dropped_by_reset_and_a_new_start_begins_clean) {
   EXPECT_TRUE(rig.until([&] { return rig.state() == ProcessState::idle; }, 1.0));
   EXPECT_FALSE(rig.bit(image::at(image::field(image::kProcessFields, "m_strobe"), image::process_base(0))));
   rig.logic.never.clear();
-  ASSERT_TRUE(rig.finish()) << rig.alarm_list() << " state " << static_cast<int>(rig.state()) << " x " << rig.x();
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list() << " state " << static_cast<int>(rig.state()) << " x "
+                            << rig.x();
   EXPECT_NEAR(rig.x(), 5.0, 1e-9);
 }
 

@@ -92,6 +92,38 @@ TEST(Hold, by_the_plcs_stop_during_a_function_holds_behind_it) {
   EXPECT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
 }
 
+TEST(Hold, hands_no_word_to_the_plc_and_no_time_of_its_acknowledge_runs) {
+  Rig rig("N10 M8\nN20 M9\nN30 G1 X10 F6000\nN40 M30\n", "G29");
+  rig.logic.delay_cycles = 20'000;  // longer than the time for an acknowledge
+  rig.start();
+  rig.run(0.1);
+  ASSERT_EQ(rig.logic.strobes.size(), 1u);
+  rig.logic.stop_bit = true;
+  rig.run(0.1);
+  EXPECT_EQ(rig.status().wait.reason, image::WaitReason::plc_hold) << "that helps first";
+  rig.logic.stop_bit = false;
+  rig.run(22.0);
+  EXPECT_NE(rig.state(), ProcessState::stopped_by_alarm) << rig.alarm_list();
+  EXPECT_EQ(rig.logic.strobes.size(), 1u) << "M9 waits for a resume";
+  EXPECT_EQ(rig.state(), ProcessState::held);
+  EXPECT_EQ(rig.status().wait.reason, image::WaitReason::operator_hold);
+  rig.logic.delay_cycles = 3;
+  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
+  EXPECT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  EXPECT_EQ(rig.logic.strobes.size(), 3u) << "M8, M9, M30";
+}
+
+TEST(ReadIn, waits_before_each_function_for_the_plcs_leave) {
+  Rig rig("N10 M8\nN20 G1 X10 F6000\nN30 M9\nN40 M30\n", "G29");
+  rig.logic.read_in_enable = false;
+  rig.start();
+  rig.run(0.5);
+  EXPECT_TRUE(rig.logic.strobes.empty());
+  EXPECT_EQ(rig.status().wait.reason, image::WaitReason::read_in_enable);
+  rig.logic.read_in_enable = true;
+  EXPECT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+}
+
 TEST(Hold, in_every_state_of_a_program_keeps_it_able_to_go_on) {
   // The program waits in a handshake, dwells, moves, waits for a signal; a hold at any moment changes only
   // times.

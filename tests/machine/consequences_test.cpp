@@ -58,7 +58,7 @@ TEST(Consequences, say_the_stopping_distance) {
 TEST(Consequences, say_how_long_the_safety_relay_has_to_wait) {
   const auto told = [](const char* seconds) {
     return "emergency stop: all axes rest and their brakes hold after " + std::string(seconds) +
-           " s; the safety relay's delay t_d has to be longer";
+           " s, the spindle after 2 s; the safety relay's delay t_d has to be longer";
   };
   EXPECT_TRUE(has(said(mill()), told("0.81")));
   LoadResult slow_brake = mill();

@@ -102,6 +102,68 @@ TEST(Faults, emergency_stop_at_any_moment_ends_within_the_time_that_check_tells_
   }
 }
 
+TEST(Faults, power_that_is_asked_for_while_the_axes_ramp_down_is_refused_and_nothing_coasts) {
+  for (const bool emergency : {true, false}) {
+    Mill mill("N10 G90 G94 G71 G29\nN20 G0 X280 Y-280 Z-250\nN30 M30\n");
+    ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+    ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
+    ASSERT_TRUE(mill.until([&] { return mill.axis("X").command_velocity > 450.0; }, 5.0));
+    if (emergency) {
+      mill.control().world().set_input("estop_chain_ok", false);
+      mill.run(0.03);
+      mill.control().world().set_input("estop_chain_ok", true);
+      mill.run(0.03);
+      ASSERT_EQ(mill.ask(RequestKind::reset), Refusal::none);
+    } else {
+      ASSERT_EQ(mill.ask(RequestKind::power, 0.0), Refusal::none);
+    }
+    for (int n = 0; n < 300; ++n) {  // an impatient hand
+      if (mill.ask(RequestKind::power, 1.0) == Refusal::none) break;
+      EXPECT_EQ(mill.answer().refusal, static_cast<std::uint16_t>(Refusal::switching_off));
+      mill.run(0.003);
+    }
+    EXPECT_TRUE(mill.standing()) << "it is switched on at rest only";
+    EXPECT_LT(mill.axis("X").actual, 300.0);
+    EXPECT_EQ(mill.judge().verdict(), "");
+    EXPECT_TRUE(mill.until([&] { return mill.axis("Z").enabled; }, 3.0)) << mill.alarm_list();
+    EXPECT_EQ(mill.alarms(axis::alarm::kBrakeNoTorque) + mill.alarms(axis::alarm::kEnableWithdrawn), 0)
+        << mill.alarm_list();
+  }
+}
+
+TEST(Faults, spindle_of_the_mill_ramps_down_under_power_in_an_emergency_stop) {
+  Mill mill("N10 G90 G94 G71\nN20 S3000 M3\nN30 G4 TMR=60\nN40 M30\n");
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
+  const image::SpindleImage& spindle = mill.image().spindles[0];
+  ASSERT_TRUE(mill.until([&] { return spindle.at_speed; }, 10.0)) << mill.alarm_list();
+  const auto contactor = [&] {
+    return mill.image().packets.bit(place_of(mill.control(), "spindle_contactor"));
+  };
+  mill.control().world().set_input("estop_chain_ok", false);
+  bool held = true;
+  EXPECT_TRUE(mill.until(
+      [&] {
+        const bool turns = std::abs(spindle.actual_rpm) > 10.0;
+        held = held && (!turns || contactor());
+        return !turns;
+      },
+      1.5))
+      << "3000 rpm at 3000 rpm/s, still " << spindle.actual_rpm;
+  EXPECT_TRUE(held) << "the contactor falls at rest only";
+  EXPECT_TRUE(mill.until([&] { return !contactor(); }, 1.0));
+}
+
+TEST(Faults, no_program_and_no_typed_block_starts_on_a_limit_switch) {
+  Mill mill("N10 G90 G94 G71\nN20 G1 X20 F3000\nN30 M30\n");
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  mill.control().world().play_input("x_limit_plus", {1.0});
+  mill.run(0.1);
+  ASSERT_TRUE(mill.axis("X").limit_plus);
+  EXPECT_EQ(mill.ask(RequestKind::start), Refusal::on_hard_limit);
+  EXPECT_TRUE(mill.standing());
+}
+
 TEST(Faults, relay_that_takes_the_torque_at_once_closes_the_brake_of_z_at_once) {
   Moving mill;
   mill.control().world().set_input("estop_chain_ok", false);

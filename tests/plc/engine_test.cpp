@@ -339,9 +339,9 @@ END_PROGRAM)",
   std::string all;
   for (const Image::Reference& r : image->references)
     all += std::to_string(r.line) + (r.write ? " w " : " r ") + r.name + "\n";
-  for (const char* line : {"2 w Lamp.lit\n", "2 r Lamp.on\n", "5 w Main.lamp.on\n", "5 r bit_in\n", "6 w Main.i\n",
-                           "6 w Main.list\n", "6 r Main.i\n", "7 w bit_out\n", "7 r Main.lamp.lit\n",
-                           "7 r Main.list[2]\n"})
+  for (const char* line :
+       {"2 w Lamp.lit\n", "2 r Lamp.on\n", "5 w Main.lamp.on\n", "5 r bit_in\n", "6 w Main.i\n",
+        "6 w Main.list\n", "6 r Main.i\n", "7 w bit_out\n", "7 r Main.lamp.lit\n", "7 r Main.list[2]\n"})
     EXPECT_NE(all.find(line), std::string::npos) << line << "in\n" << all;
 }
 

@@ -89,6 +89,33 @@ TEST(ExampleLathe, starts_nothing_when_the_door_is_closed_again) {
   EXPECT_TRUE(m.on("NC.feed_enable"));
 }
 
+TEST(ExampleLathe, turns_no_turret_and_moves_no_chuck_behind_an_open_door) {
+  Lathe m;
+  m.set("NC.running", 1);
+  m.set("S.zero_speed", 1);
+  m.set("NC.t_number", 2);
+  m.set("NC.t_strobe", 1);
+  m.cycle();
+  ASSERT_TRUE(m.on("turret_motor"));
+  m.set("door_closed", 0);
+  m.cycle();
+  EXPECT_FALSE(m.on("turret_motor"));
+  m.set("NC.held", 1);
+  m.set("door_closed", 1);
+  m.cycles(500);
+  EXPECT_FALSE(m.on("turret_motor")) << "until somebody resumes";
+  m.set("NC.held", 0);
+  m.cycles(2);
+  EXPECT_TRUE(m.on("turret_motor"));
+  m.set("NC.t_strobe", 0);
+  m.cycles(400);
+  ASSERT_TRUE(m.on("chuck_close"));
+  m.set("door_closed", 0);
+  m.strobe_m(69);
+  m.cycles(100);
+  EXPECT_TRUE(m.on("chuck_close")) << "the part would drop";
+}
+
 TEST(ExampleLathe, holds_the_axes_while_the_turret_turns) {
   Lathe m;
   m.set("NC.t_number", 2);

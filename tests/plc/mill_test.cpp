@@ -84,6 +84,59 @@ TEST(ExampleMill, starts_nothing_when_the_door_is_closed_again) {
   EXPECT_TRUE(m.on("NC.feed_enable")) << "a new speed on the way holds nothing";
 }
 
+TEST(ExampleMill, lets_no_tool_go_behind_an_open_door_and_begins_the_change_anew) {
+  Mill m;
+  m.power_up();
+  m.set("NC.running", 1);
+  m.set("air_ok", 1);
+  m.set("tool_clamped", 1);
+  m.set("S.zero_speed", 0);
+  m.strobe_m(6);
+  m.cycles(20);
+  m.set("door_closed", 0);
+  m.set("NC.held", 1);
+  m.cycle();
+  m.set("S.zero_speed", 1);
+  m.cycles(1000);
+  EXPECT_FALSE(m.on("tool_release"));
+  m.set("door_closed", 1);
+  m.cycles(1000);
+  EXPECT_FALSE(m.on("tool_release")) << "closing it lets nothing go either";
+  EXPECT_FALSE(m.on("NC.m_ack"));
+  m.set("NC.held", 0);
+  EXPECT_LE(m.until("tool_release", 1), 4);
+  EXPECT_GE(m.until("NC.m_ack", 1), 500);
+}
+
+TEST(ExampleMill, switches_off_what_a_program_switched_on_when_it_is_given_up) {
+  Mill m;
+  m.power_up();
+  m.set("NC.running", 1);
+  m.set("NC.state", 1);
+  m.strobe_m(13);
+  m.until("NC.m_ack", 1);
+  m.finish_m();
+  m.strobe_m(6);
+  m.cycles(3);
+  for (const char* name : {"NC.m_strobe", "NC.running", "NC.state"}) m.set(name, 0);  // reset
+  m.cycles(3);
+  for (const char* name : {"coolant", "mist", "S.enable"}) EXPECT_FALSE(m.on(name)) << name;
+}
+
+TEST(ExampleMill, keeps_the_spindle_of_a_typed_block_that_has_ended) {
+  Mill m;
+  m.power_up();
+  m.set("NC.running", 1);
+  m.set("NC.state", 1);
+  m.strobe_m(3);
+  m.until("S.enable", 1);
+  m.finish_m();
+  m.set("NC.running", 0);
+  m.set("NC.state", 5);
+  m.cycles(10);
+  EXPECT_TRUE(m.on("S.enable"));
+}
+
 TEST(ExampleMill, forgets_what_an_open_door_interrupted_when_no_program_is_left_to_resume) {
   Mill m;
   m.power_up();

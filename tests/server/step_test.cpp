@@ -32,6 +32,22 @@ TEST(Step, ends_with_its_block_and_the_next_one_goes_on_from_there) {
   EXPECT_EQ(shell.status()["state"], "ended");
 }
 
+TEST(Step, runs_one_block_of_functions_as_one_of_motion) {
+  Shell shell;
+  shell.up();
+  shell.ready();
+  const std::string program = (shell.folder() / "words.nc").string();
+  std::ofstream(program) << "M8\nG1 X5 F6000\nM9\nM0\nX10\nM30\n";
+  ASSERT_EQ(shell.run({"load", program}).exit, 0);
+  for (const int line : {1, 2, 3, 4, 5}) {
+    EXPECT_EQ(shell.run({"step", "--wait"}).exit, 0);
+    EXPECT_EQ(shell.status()["line"], line);
+  }
+  EXPECT_NE(shell.status()["state"], "ended");
+  EXPECT_EQ(shell.run({"step", "--wait"}).exit, 0);
+  EXPECT_EQ(shell.status()["state"], "ended");
+}
+
 TEST(Step, is_refused_for_a_program_that_was_started_as_a_whole_and_is_held) {
   Shell shell;
   shell.up();

@@ -321,6 +321,9 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
     plan.write(setting.index, setting.subindex, setting.bytes, setting.value);
     if (setting.read_back) plan.check(setting.index, setting.subindex, setting.bytes, setting.value);
   }
+  if (node.setup.speed_ramp > 0)
+    for (const std::uint16_t ramp : {object::kProfileAcceleration, object::kProfileDeceleration})
+      plan.write_and_check(ramp, 0, 4, node.setup.speed_ramp);
   add_homing(plan, node);
   add_guarding(plan, node, segment);
   add_error_states(plan, node);

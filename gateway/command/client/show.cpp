@@ -122,11 +122,10 @@ void print_processes(const json& s) {
   }
 }
 
-/// That nobody has asked for the drives, or that they are coming, is seen at the axes.
+/// That drives are coming is seen at the axes.
 void print_missing(const json& missing) {
   for (const json& m : missing)
-    if (const std::string reason = of(m, "reason");
-        reason != "not_asked" && reason != "starting" && reason != "alarm")
+    if (const std::string reason = of(m, "reason"); reason != "starting" && reason != "alarm")
       print_advice("", m);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/cycle/gate/gate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware_if/image/interface_map.hpp"
@@ -129,6 +130,7 @@ class Decision {
     return true;
   }
   bool power() noexcept;
+  bool not_switching_off(const Axis& a) noexcept;
   bool home() noexcept;
   bool jog() noexcept;
   bool auxiliary() noexcept;
@@ -212,7 +214,18 @@ bool Decision::decide_kind() noexcept {
   }
 }
 
-bool Decision::power() noexcept { return r_.value == 0.0 || no_alarm(Reaction::stop_on_path); }
+bool Decision::power() noexcept {
+  if (r_.value == 0.0) return true;
+  if (!no_alarm(Reaction::stop_on_path)) return false;
+  return std::all_of(c_.axes.begin(), c_.axes.end(), [this](const Axis& a) { return not_switching_off(a); });
+}
+
+/// A switching-off that has begun comes to its end first.
+bool Decision::not_switching_off(const Axis& a) noexcept {
+  using State = axis::PowerSequence::State;
+  const bool ends = a.power_state() == State::stopping || a.power_state() == State::engaging;
+  return !ends || refuse(Refusal::switching_off, a.index());
+}
 
 bool Decision::home() noexcept {
   if (r_.axis != -1 && !axis_known()) return false;
@@ -266,7 +279,7 @@ bool Decision::auxiliary() noexcept {
     return refuse(Refusal::axis_error_stop, r_.axis);
   if (!no_alarm(Reaction::stop_on_path)) return false;
   if (r_.kind == RequestKind::axis_power)
-    return c_.drives_wanted || refuse(Refusal::drives_not_wanted, r_.axis);
+    return (c_.drives_wanted || refuse(Refusal::drives_not_wanted, r_.axis)) && not_switching_off(a);
   if (c_.axis_stopping) return refuse(Refusal::axis_stopping, r_.axis);
   if (!ready(a)) return false;
   if (a.homing().active()) return refuse(Refusal::homing_runs);
@@ -358,6 +371,9 @@ bool Decision::start() noexcept {
   for (const Axis& a : c_.axes) {
     if (a.config().auxiliary) continue;
     if (!a.homed()) return refuse(Refusal::not_homed, a.index());
+    // A program knows no slow way off a switch: that is jogging's.
+    if (a.on_limit_plus() || a.on_limit_minus())
+      return refuse(Refusal::on_hard_limit, a.index(), a.on_limit_plus() ? 1.0 : -1.0);
     if (!ready(a) || !free(a)) return false;
     if (a.owner() != AxisOwner::process && a.moving()) return refuse(Refusal::axis_moves, a.index());
   }

@@ -54,6 +54,7 @@ enum class Refusal : std::uint16_t {
   axis_stopping,         ///< axis: MC_Stop holds it
   drives_not_wanted,     ///< the operator has not asked for the drives
   axis_error_stop,       ///< axis: an error stopped it, MC_Reset has not come yet
+  switching_off,         ///< axis: it ramps down to be switched off, or its brake closes
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis

@@ -85,8 +85,10 @@ constexpr text::Entry kTexts[] = {
      "{0}: оператор не включил приводы"},
     {"gate.axis_error_stop", "{0} was stopped by an error: MC_Reset first",
      "{0} остановлена ошибкой: сначала MC_Reset"},
+    {"gate.switching_off", "{0} is still being switched off: wait until it stands and its brake has closed",
+     "{0} ещё выключается: дождитесь останова и наложения тормоза"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::axis_error_stop) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::switching_off) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 
