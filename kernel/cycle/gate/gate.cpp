@@ -111,7 +111,9 @@ class Decision {
            refuse(Refusal::manual_held, -1, static_cast<double>(c_.holder));
   }
   bool ready(const Axis& a) noexcept {
-    if (!a.motion_permitted()) return refuse(Refusal::not_powered, a.index());
+    return (a.motion_permitted() || refuse(Refusal::not_powered, a.index())) && feed_enabled(a);
+  }
+  bool feed_enabled(const Axis& a) noexcept {
     return a.feed_enabled() || refuse(Refusal::feed_not_enabled, a.index());
   }
   bool free(const Axis& a) noexcept {
@@ -223,7 +225,7 @@ bool Decision::power() noexcept {
 /// A switching-off that has begun comes to its end first.
 bool Decision::not_switching_off(const Axis& a) noexcept {
   using State = axis::PowerSequence::State;
-  const bool ends = a.power_state() == State::stopping || a.power_state() == State::engaging;
+  const bool ends = a.letting_go() || a.power_state() == State::engaging;
   return !ends || refuse(Refusal::switching_off, a.index());
 }
 
@@ -386,7 +388,7 @@ bool Decision::resume() noexcept {
   if (s == ProcessState::running) return refuse(Refusal::program_not_held, -1, r_.process);
   // Behind an open door nothing is begun that its closing would let go.
   for (const Axis& a : c_.axes)
-    if (!a.config().auxiliary && !a.feed_enabled()) return refuse(Refusal::feed_not_enabled, a.index());
+    if (!a.config().auxiliary && !feed_enabled(a)) return false;
   return no_alarm(Reaction::stop_at_block_end) && no_homing() && not_held_by_another() && all_at_rest(false);
 }
 
