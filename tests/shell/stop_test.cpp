@@ -17,11 +17,16 @@ const std::string kTakenOver =
 /// The same, then sends it.
 const std::string kInterrupt = kTakenOver + "kill -INT $p; wait $p; echo code $?";
 
-TEST(Interrupt, of_a_run_that_still_reads_its_program_ends_it_at_once_with_3_and_a_sentence) {
-  const Desk desk;
+/// Reading it takes longer than the signal.
+std::string long_program() {
   std::string program;
   for (int n = 0; n < 300'000; ++n) program += "G1 X" + std::to_string(n % 200) + " F6000\n";
-  desk.write("long.nc", program + "M30\n");
+  return program + "M30\n";
+}
+
+TEST(Interrupt, of_a_run_that_still_reads_its_program_ends_it_at_once_with_3_and_a_sentence) {
+  const Desk desk;
+  desk.write("long.nc", long_program());
   const Ended e = desk.line("$SG run $MILL long.nc --virtual --report r.json & p=$!; " + kInterrupt);
   EXPECT_EQ(e.out, "code 3\n") << e.err;
   EXPECT_TRUE(e.err_has("stopped by the operator before anything had begun")) << e.err;
@@ -32,9 +37,7 @@ TEST(Interrupt, of_a_run_that_still_reads_its_program_ends_it_at_once_with_3_and
 
 TEST(Interrupt, of_a_command_with_json_leaves_its_object_from_the_first_moment_on) {
   const Desk desk;
-  std::string program;
-  for (int n = 0; n < 300'000; ++n) program += "G1 X" + std::to_string(n % 200) + " F6000\n";
-  desk.write("long.nc", program + "M30\n");
+  desk.write("long.nc", long_program());
   const Ended e = desk.line("$SG run $MILL long.nc --virtual --json > said & p=$!; " + kInterrupt);
   EXPECT_EQ(e.out, "code 3\n") << e.err;
   EXPECT_EQ(desk.text("said"),
