@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -92,6 +95,15 @@ void print_report(const ProgramCheck& check, const program::MachineModel& model,
                                            std::to_string(t.line), std::to_string(t.calls)}));
 }
 
+/// As people go through a program: the files in the order of their first finding, each from its top.
+void order_by_place(std::vector<text::Finding>& found) {
+  std::map<std::string, std::size_t> file;
+  for (const text::Finding& f : found) file.emplace(f.file, file.size());
+  std::stable_sort(found.begin(), found.end(), [&](const text::Finding& a, const text::Finding& b) {
+    return std::tuple(file[a.file], a.line, a.column) < std::tuple(file[b.file], b.line, b.column);
+  });
+}
+
 /// What the programs of a command line came to.
 struct ProgramErrors {
   int found = 0;
@@ -113,6 +125,7 @@ ProgramErrors check_programs(const CheckOptions& options, const machine::Machine
       const ProgramCheck result = check_program(machine, program, tables, start_after_homing(machine).at,
                                                 channel::Forecast::Depth::timed);
       found.insert(found.end(), result.report.findings.begin(), result.report.findings.end());
+      order_by_place(found);
       errors.found += print_findings(found);
       if (options.json)
         entry = describe(result, program.model, name);

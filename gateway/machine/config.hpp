@@ -109,6 +109,7 @@ struct AxisConfig {
 
   /// What its lengths are in, as files and JSON write it; people read text::unit_words() of it.
   const char* unit() const { return type == AxisType::rotary ? "deg" : "mm"; }
+  const char* speed_unit() const { return type == AxisType::rotary ? "deg/s" : "mm/s"; }
   bool endless() const { return type == AxisType::rotary && travel_min == 0.0 && travel_max == 0.0; }
   /// Drive counts per mm (degree), without sign.
   double counts_per_unit() const {

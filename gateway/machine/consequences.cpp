@@ -109,7 +109,7 @@ class Sentences {
 
   void axis(const AxisConfig& a) {
     unit_ = text::unit_words(a.unit());
-    speed_unit_ = text::unit_words(std::string(a.unit()) + "/s");
+    speed_unit_ = text::unit_words(a.speed_unit());
     const double counts = a.counts_per_unit(), rpm = a.motor_rpm(a.max_velocity);
     say(a.letter, kScale,
         {a.letter, "1 " + unit_, text::number(counts, 4), speed(a.max_velocity), text::number(rpm, 1)},

@@ -72,6 +72,14 @@ void Interpreter::adopt(Tables tables) { impl_->run.adopt(std::move(tables)); }
 void Interpreter::preset(int axis, double value) { impl_->run.preset(axis, value); }
 int Interpreter::origin(int axis) const { return impl_->run.state().origin[static_cast<std::size_t>(axis)]; }
 
+std::string axis_letters(std::string_view dialect) {
+  const Dialect* found = find_dialect(dialect);
+  std::string letters;
+  for (char c = 'A'; found != nullptr && c <= 'Z'; ++c)
+    if (found->letters[static_cast<unsigned char>(c)].meaning == Meaning::axis) letters += c;
+  return letters;
+}
+
 std::vector<std::string> dialects() {
   std::vector<std::string> names;
   for (const Dialect* dialect : all_dialects()) names.emplace_back(dialect->name);

@@ -161,4 +161,8 @@ class Interpreter {
 /// Names of the dialects that this build reads: "nc110", ...
 std::vector<std::string> dialects();
 
+/// Letters that name an axis in programs of `dialect`, in alphabetical order; empty for one that this build
+/// does not read. Not real-time safe.
+std::string axis_letters(std::string_view dialect);
+
 }  // namespace servogate::program

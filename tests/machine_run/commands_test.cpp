@@ -140,6 +140,17 @@ double seconds_of_motion(const TraceFile& trace, const std::vector<std::string>&
   return seconds;
 }
 
+TEST(Check, names_what_reading_and_what_the_motion_finds_from_the_top_of_the_file) {
+  const Scratch scratch;
+  const std::string both = scratch.write("both.nc", "N10 G0 X2\nN20 G1 X400 F100\nN30 G1 X1 FOO\nN40 M30\n");
+  const Ending e = servogate({"check", mill_file(), both});
+  EXPECT_EQ(e.code, 1);
+  const std::size_t motion = e.err.find("both.nc:2:8: error: X would go to 400");
+  const std::size_t reading = e.err.find("both.nc:3:11: error: F needs a number");
+  ASSERT_NE(reading, std::string::npos) << e.err;
+  EXPECT_LT(motion, reading) << e.err;
+}
+
 TEST(Check, says_the_time_that_the_motion_of_a_run_takes_within_a_hundredth) {
   const struct {
     std::string machine, program;

@@ -43,9 +43,7 @@ class AxisCheck {
   bool unread(std::string_view key) const { return machine_.unread.contains(path_ + std::string(key)); }
   bool has_travel() const { return has("travel_min") && has("travel_max"); }
   std::string length(double v) const { return text::number(v) + " " + text::unit_words(a_.unit()); }
-  std::string speed(double v) const {
-    return text::number(v) + " " + text::unit_words(a_.unit() + std::string("/s"));
-  }
+  std::string speed(double v) const { return text::number(v) + " " + text::unit_words(a_.speed_unit()); }
   void error(std::string_view key, const text::Entry& entry, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), a_.letter);
     reading_.error(at(key), entry, std::move(arguments));
@@ -199,6 +197,13 @@ class AxisCheck {
         a_.following_error_warn >= a_.following_error_stop)
       error("following_error_warn", finding::kWarnAboveStop,
             {length(a_.following_error_warn), length(a_.following_error_stop)});
+    const double travel = a_.endless() ? 360.0 : a_.travel_max - a_.travel_min;
+    if (has_travel() && travel > 0.0 && a_.following_error_stop > travel)
+      error("following_error_stop", finding::kFollowingBeyondTravel,
+            {length(a_.following_error_stop), length(travel)});
+    if (a_.following_error_stop > 0.0 && a_.in_position_window > a_.following_error_stop)
+      error("in_position_window", finding::kWindowBeyondFollowing,
+            {length(a_.in_position_window), length(a_.following_error_stop)});
     if (a_.control == ControlMode::csv) error("control", finding::kNoCsv, {});
     if (machine_.places.contains(path_ + ".position_gain")) error("position_gain", finding::kNoCsv, {});
     if (a_.lead > 0.0 && a_.counts_per_rev > 0 && a_.in_position_window * a_.counts_per_unit() < 1.0)

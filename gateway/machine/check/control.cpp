@@ -127,6 +127,16 @@ void check_simulation(const MachineConfig& machine, Reading& reading) {
   }
 }
 
+/// "home.switch of X" where an axis has the point as one of its switches; empty: none has.
+std::string switch_of_axis(const MachineConfig& machine, const std::string& point) {
+  for (const AxisConfig& a : machine.axes)
+    for (const auto& [key, name] : {std::pair{"limit_plus", &a.limit_plus},
+                                    {"limit_minus", &a.limit_minus},
+                                    {"home.switch", &a.home.switch_point}})
+      if (*name == point) return text::both(std::string(key) + " of ", std::string(key) + " оси ") + a.letter;
+  return {};
+}
+
 void check_estop(const MachineConfig& machine, Reading& reading) {
   if (machine.safety.estop.empty()) {
     reading.warning(machine.where("safety"), finding::kNoEstop, {});
@@ -138,6 +148,8 @@ void check_estop(const MachineConfig& machine, Reading& reading) {
   const StationConfig& s = machine.stations[static_cast<std::size_t>(station)];
   const Where at = machine.where("safety.estop");
   if (s.kind == StationKind::modbus) reading.error(at, finding::kEstopModbus, {point->name, s.name});
+  if (const std::string taken = switch_of_axis(machine, point->name); !taken.empty())
+    reading.error(at, finding::kEstopShared, {point->name, taken});
   if (point->inverted) reading.error(at, finding::kEstopInverted, {point->name});
   if (point->loss != 0.0 || point->hold) reading.error(at, finding::kEstopLoss, {point->name});
 }

@@ -82,8 +82,7 @@ class DeviceUse {
       const std::string path = "axis." + std::to_string(i);
       const DeviceConfig* device = of_node(a.drive);
       if (device == nullptr || a.lead <= 0.0 || a.counts_per_rev <= 0) continue;
-      const std::string speed =
-          text::number(a.max_velocity) + " " + text::unit_words(a.unit() + std::string("/s"));
+      const std::string speed = text::number(a.max_velocity) + " " + text::unit_words(a.speed_unit());
       motor(*device, m_.node(a.drive)->device, a.letter, speed, a.motor_rpm(a.max_velocity),
             path + ".max_velocity");
       if (device->motor.counts_per_rev > 0 && device->motor.counts_per_rev != a.counts_per_rev)

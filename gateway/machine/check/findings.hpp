@@ -27,6 +27,13 @@ inline constexpr text::Entry kBadName{
 inline constexpr text::Entry kBadLetter{"machine.bad_letter",
                                         "axis letter \"{0}\": one of A to Z is expected",
                                         "буква оси «{0}»: ожидалась одна из A ... Z"};
+inline constexpr text::Entry kLetterTaken{
+    "machine.letter_taken",
+    "axis letter \"{0}\" is no axis in programs of \"{1}\": there an axis is one of {2}",
+    "буква оси «{0}»: в программах «{1}» она не обозначает ось; осью может быть одна из {2}"};
+inline constexpr text::Entry kEstopShared{
+    "machine.estop_shared", "estop \"{0}\" is {1} already; the emergency-stop chain has an input of its own",
+    "estop «{0}» — уже {1}; у цепи аварийного останова свой вход"};
 inline constexpr text::Entry kTwice{"machine.twice", "{0} \"{1}\" is already declared in line {2}",
                                     "{0} «{1}»: уже описано в строке {2}"};
 inline constexpr text::Entry kBadChannel{"machine.bad_channel",

@@ -101,6 +101,14 @@ inline constexpr text::Entry kPitchSteep{
 inline constexpr text::Entry kWarnAboveStop{
     "machine.warn_above_stop", "{0}: following_error_warn {1} is not below following_error_stop {2}",
     "{0}: following_error_warn {1} не меньше following_error_stop {2}"};
+inline constexpr text::Entry kFollowingBeyondTravel{
+    "machine.following_beyond_travel",
+    "{0}: following_error_stop {1} is more than the whole travel of {2}: it would stop nothing",
+    "{0}: following_error_stop {1} больше всего хода {2}: он ничего не остановит"};
+inline constexpr text::Entry kWindowBeyondFollowing{
+    "machine.window_beyond_following",
+    "{0}: in_position_window {1} is above following_error_stop {2}: an exact stop would wait for nothing",
+    "{0}: in_position_window {1} больше following_error_stop {2}: точный останов ничего бы не ждал"};
 inline constexpr text::Entry kNoCsv{
     "machine.no_csv",
     "{0}: in this version the drive closes the position loop: control = \"csp\", and no position_gain",

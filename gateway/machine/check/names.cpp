@@ -4,6 +4,7 @@
 
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings.hpp"
+#include "kernel/program/interpreter.hpp"
 
 namespace servogate::machine {
 
@@ -44,16 +45,28 @@ class NameSet {
   std::map<std::string, int> seen_;
 };
 
+/// A letter that is another word of the language, such as F, would never reach the axis.
+void check_program_letter(const MachineConfig& machine, const AxisConfig& axis, const std::string& path,
+                          Reading& reading) {
+  const std::string known = program::axis_letters(machine.control.dialect);
+  if (axis.auxiliary || known.empty() || known.find(axis.letter[0]) != std::string::npos) return;
+  std::string list;
+  for (const char letter : known) list += (list.empty() ? "" : " ") + std::string(1, letter);
+  reading.error(machine.where(path), finding::kLetterTaken, {axis.letter, machine.control.dialect, list});
+}
+
 void check_letters(const MachineConfig& machine, Reading& reading) {
   NameSet letters(machine, reading, text::both("axis", "ось"));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const std::string& letter = machine.axes[i].letter;
     const std::string path = "axis." + std::to_string(i) + ".letter";
     if (letter.empty()) continue;
-    if (letter.size() != 1 || letter[0] < 'A' || letter[0] > 'Z')
+    if (letter.size() != 1 || letter[0] < 'A' || letter[0] > 'Z') {
       reading.error(machine.where(path), finding::kBadLetter, {letter});
-    else
-      letters.add(letter, path, false);
+      continue;
+    }
+    check_program_letter(machine, machine.axes[i], path, reading);
+    letters.add(letter, path, false);
   }
 }
 

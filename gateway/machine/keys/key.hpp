@@ -67,6 +67,7 @@ inline constexpr double kLongest = 1e6;              ///< lengths: 1 km
 inline constexpr double kFastest = 1e6;              ///< velocity: 1 km/s, 167 000 rpm
 inline constexpr double kSteepest = 1e8;             ///< acceleration: 10 000 times that of falling
 inline constexpr double kHardest = 1e11;             ///< jerk: that acceleration within a millisecond
+inline constexpr double kSlowest = 1e-3;             ///< a micrometre a second, a second², a second³
 inline constexpr double kMostCounts = 4294967296.0;  ///< of one turn: 32 bits
 
 struct Key {

@@ -139,17 +139,15 @@ std::span<const Key> axis_keys() {
                              "gain of the kernel's position loop (csv), not in this version",
                              "коэффициент контура положения ядра (csv), в этой версии нет"),
       key<&C::max_velocity>(
-          "max_velocity",
-          {.unit = Unit::axis_velocity, .min = 0, .max = kFastest, .above_min = true, .required = true},
+          "max_velocity", {.unit = Unit::axis_velocity, .min = kSlowest, .max = kFastest, .required = true},
           "limit of velocity, also of rapids", "предел скорости, он же скорость ускоренного хода"),
       key<&C::max_acceleration>(
           "max_acceleration",
-          {.unit = Unit::axis_acceleration, .min = 0, .max = kSteepest, .above_min = true, .required = true},
+          {.unit = Unit::axis_acceleration, .min = kSlowest, .max = kSteepest, .required = true},
           "limit of acceleration", "предел ускорения"),
-      key<&C::max_jerk>(
-          "max_jerk",
-          {.unit = Unit::axis_jerk, .min = 0, .max = kHardest, .above_min = true, .required = true},
-          "limit of jerk", "предел рывка"),
+      key<&C::max_jerk>("max_jerk",
+                        {.unit = Unit::axis_jerk, .min = kSlowest, .max = kHardest, .required = true},
+                        "limit of jerk", "предел рывка"),
       key<&C::travel_min>(
           "travel_min", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest, .required = true},
           "lower software limit, machine coordinates; a rotary axis with both limits 0 is endless",
