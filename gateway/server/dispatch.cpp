@@ -208,6 +208,8 @@ bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image
 void Dispatch::add_missing(json& answer) {
   answer["missing"] = missing_json(resident_, language_);
   std::string words = answer["text"];
+  // The control has not looked at them yet, or they came on since the gate refused.
+  if (answer["missing"].empty()) words += "\n  " + text::render(says::kComesOn, {}, language_);
   for (const json& m : answer["missing"])
     words += "\n  " + m["text"].get<std::string>() + "\n    " + m["remedy"].get<std::string>();
   answer["text"] = words;

@@ -16,6 +16,7 @@ bool is_text(const json& v) { return v.is_string(); }
 bool is_number(const json& v) { return v.is_number(); }
 bool is_switch(const json& v) { return v.is_boolean(); }
 bool is_list(const json& v) { return v.is_array() && std::all_of(v.begin(), v.end(), is_text); }
+bool is_language(const json& v) { return v == "en" || v == "ru"; }
 bool is_played(const json& v) { return v.is_number() || v.is_boolean() || v.is_string(); }
 
 struct Type {
@@ -26,13 +27,14 @@ constexpr Type kText{is_text, "a string", "строка"};
 constexpr Type kNumber{is_number, "a number", "число"};
 constexpr Type kSwitch{is_switch, "true or false", "true или false"};
 constexpr Type kList{is_list, "a list of strings", "список строк"};
+constexpr Type kLanguage{is_language, "'en' or 'ru'", "'en' или 'ru'"};
 constexpr Type kPlayed{is_played, "a number, true, false or a string", "число, true, false или строка"};
 
 /// The first row that fits tells the type of a field; `command` empty: the same in all others.
 constexpr struct {
   std::string_view command, key;
   const Type& type;
-} kFields[] = {{"", "cmd", kText},          {"", "asker", kText},          {"", "language", kText},
+} kFields[] = {{"", "cmd", kText},          {"", "asker", kText},          {"", "language", kLanguage},
                {"", "axis", kText},         {"", "axes", kList},           {"", "unit", kText},
                {"input", "value", kPlayed}, {"plc_force", "value", kText}, {"", "value", kNumber},
                {"", "block", kText},        {"", "program", kText},        {"", "dialect", kText},
@@ -74,6 +76,10 @@ text::Language language_of(const json& request) {
 }
 
 std::optional<json> read_request(std::string_view line, FormProblem& problem) {
+  if (line.find_first_not_of(" \t") == std::string_view::npos) {
+    problem = {&says::kNoObject, {text::both("an empty line", "пустая строка")}};
+    return std::nullopt;
+  }
   bool deep = false;
   const auto shallow = [&deep](int depth, json::parse_event_t, json&) {
     deep = deep || depth > kDeepestRequest;
@@ -105,7 +111,10 @@ std::optional<json> read_request(std::string_view line, FormProblem& problem) {
       return row.key == field->key && (row.command.empty() || row.command == command);
     });
     if (first != field || field->type.is(*found)) continue;
-    wrong_type(field->key, field->type, what_stands(*found), problem);
+    const bool other_word = &field->type == &kLanguage && found->is_string();
+    wrong_type(field->key, field->type,
+               other_word ? "'" + found->get<std::string>().substr(0, 20) + "'" : what_stands(*found),
+               problem);
     return std::nullopt;
   }
   return request;

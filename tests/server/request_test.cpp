@@ -24,7 +24,9 @@ TEST(Request, names_the_field_of_another_type_and_what_was_expected) {
   } rows[] = {
       {R"({"cmd":5})", "'cmd' must be a string, and is a number"},
       {R"({})", "'cmd' must be a string, and is missing"},
-      {R"({"cmd":"status","language":["ru"]})", "'language' must be a string, and is a list"},
+      {R"({"cmd":"status","language":["ru"]})", "'language' must be 'en' or 'ru', and is a list"},
+      {R"({"cmd":"status","language":"de"})", "'language' must be 'en' or 'ru', and is 'de'"},
+      {"", "a request is an object as {\"cmd\":\"status\"}, and this is an empty line"},
       {R"({"cmd":"status","asker":null})", "'asker' must be a string, and is null"},
       {R"({"cmd":"jog","axis":1,"value":1})", "'axis' must be a string, and is a number"},
       {R"({"cmd":"jog","axis":"X","value":"1"})", "'value' must be a number, and is a string"},

@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "gateway/server/socket/socket_server.hpp"
 #include "tests/property_seed.hpp"
 #include "tests/server/rig/shell.hpp"
 
@@ -173,7 +174,7 @@ std::string random_line(std::mt19937_64& random) {
   }
   for (char& c : line)
     if (c == '\n') c = ' ';
-  return line.find_first_not_of('\r') == std::string::npos ? "x" : line;
+  return line;
 }
 
 TEST(Socket, answers_every_line_of_garbage_with_one_object_and_stays_up) {
@@ -208,6 +209,36 @@ TEST(Socket, lets_a_client_go_whose_line_never_ends) {
   EXPECT_EQ(json::parse(answer)["code"], "socket.long-line");
   EXPECT_FALSE(client.receive(answer, 5000)) << "closed";
   EXPECT_EQ(shell.run({"status"}).exit, 0);
+}
+
+TEST(Socket, takes_a_line_of_64_KiB_and_refuses_one_of_a_byte_more_however_it_arrives) {
+  Shell shell;
+  shell.up();
+  const std::string status = R"({"cmd":"status"})";
+  for (const std::size_t excess : {0u, 1u, 2'000u, 30'000u}) {
+    SocketClient client;
+    ASSERT_TRUE(client.connect(shell.socket()).empty());
+    const std::string line = status + std::string(SocketServer::kLongestLine + excess - status.size(), ' ');
+    std::string answer;
+    ASSERT_TRUE(client.exchange(line, answer)) << excess;
+    const json reply = json::parse(answer);
+    EXPECT_EQ(reply["ok"], excess == 0);
+    if (excess > 0) {
+      EXPECT_EQ(reply["code"], "socket.long-line") << excess;
+    }
+  }
+}
+
+TEST(Socket, answers_an_empty_line_too_so_that_answers_never_fall_behind_the_lines) {
+  Shell shell;
+  shell.up();
+  SocketClient client;
+  ASSERT_TRUE(client.connect(shell.socket()).empty());
+  std::string answer;
+  ASSERT_TRUE(client.exchange("", answer));
+  EXPECT_EQ(json::parse(answer)["code"], "socket.no-object");
+  ASSERT_TRUE(client.exchange(R"({"cmd":"status"})", answer));
+  EXPECT_TRUE(json::parse(answer)["ok"]);
 }
 
 TEST(Socket, serves_32_clients_and_tells_the_33rd) {

@@ -148,18 +148,21 @@ void SocketServer::answer_lines(Client& client) {
   std::size_t begin = 0;
   for (int n = 0; n < kLinesPerTurn && !client.closing; ++n) {
     const std::size_t end = client.input.find('\n', begin);
+    const std::size_t length = (end == std::string::npos ? client.input.size() : end) - begin;
+    if (length > kLongestLine) return refuse_long_line(client);
     if (end == std::string::npos) break;
-    std::string_view line(client.input.data() + begin, end - begin);
+    std::string_view line(client.input.data() + begin, length);
     begin = end + 1;
     if (line.ends_with('\r')) line.remove_suffix(1);
-    if (line.empty()) continue;
     const Reply reply = dispatch(resident_, line, client.connection);
     client.output += reply.line + "\n";
     if (reply.down) down_ = true;
   }
   client.input.erase(0, begin);
   client.backlog = client.input.find('\n') != std::string::npos;
-  if (client.backlog || client.input.size() <= kLongestLine) return;
+}
+
+void SocketServer::refuse_long_line(Client& client) {
   client.output +=
       refuse(says::kLongLine, {std::to_string(kLongestLine)}, kWrongUse, text::user_language()).line + "\n";
   client.input.clear();

@@ -16,7 +16,7 @@ namespace servogate::gateway {
 class SocketServer {
  public:
   static constexpr std::size_t kMostClients = 32;
-  static constexpr std::size_t kLongestLine = 64 * 1024;
+  static constexpr std::size_t kLongestLine = 64 * 1024;  ///< bytes of a request without its line feed
   static constexpr std::size_t kMostUnread = 1024 * 1024;
 
   SocketServer(Resident& resident, std::string path);
@@ -45,6 +45,7 @@ class SocketServer {
   bool read_client(Client& client);
   bool write_client(Client& client);
   void answer_lines(Client& client);
+  void refuse_long_line(Client& client);
   void let_go(Client& client);
 
   Resident& resident_;
