@@ -20,4 +20,10 @@ std::string unit_words(std::string_view symbol) {
   return std::string(symbol);
 }
 
+std::string unit_symbol(std::string_view words) {
+  for (const auto& row : kUnits)
+    if (row.russian == words) return std::string(row.english);
+  return std::string(words);
+}
+
 }  // namespace servogate::text

@@ -10,4 +10,8 @@ namespace servogate::text {
 /// Not real-time safe.
 std::string unit_words(std::string_view symbol);
 
+/// The symbol of a unit that a person wrote in either language: "мм" and "mm" give "mm". One that the table
+/// lacks stays as it is. Not real-time safe.
+std::string unit_symbol(std::string_view words);
+
 }  // namespace servogate::text

@@ -41,6 +41,9 @@ const text::Entry kAlarmLine{"run.alarm", "alarm {0}: {1}", "авария {0}: {
 const text::Entry kConsequence{"run.consequence", "  from it alarm {0}: {1}", "  из-за неё авария {0}: {1}"};
 const text::Entry kMessage{"run.message", "message of the program: {0}", "сообщение программы: {0}"};
 const text::Entry kWaits{"run.waits", "{0} ({1} s so far)", "{0} (уже {1} с)"};
+const text::Entry kNoOperator{"run.no-operator",
+                              "`servogate run` has no operator: use `servogate up` for such programs.",
+                              "У `servogate run` нет оператора: для таких программ есть `servogate up`."};
 const text::Entry kGaveUp{"run.gave-up",
                           "{0}. Nothing has moved for {1} s of machine time: the run was stopped (--patience "
                           "sets how long it waits)",
@@ -339,7 +342,15 @@ int Run::finish(const OperatorScript& script, Session& session,
   if (script.outcome() == OperatorScript::Outcome::waited) {
     const WaitWords w =
         wait_words(*control_, control_->cycle().image(), 0, script.given_up(), text::user_language());
-    report.wait = {std::string(w.reason), w.text, w.remedy, w.file, w.line, patience()};
+    const image::WaitReason reason = script.given_up().reason;
+    const bool for_operator =
+        reason == image::WaitReason::program_stop || reason == image::WaitReason::optional_stop;
+    report.wait = {std::string(w.reason),
+                   w.text,
+                   for_operator ? say(kNoOperator, {}) : w.remedy,
+                   w.file,
+                   w.line,
+                   patience()};
   }
   report::Provenance& p = report.provenance;
   fill_provenance(p, options_, loaded_.machine, command_line);

@@ -92,6 +92,7 @@ TEST(Waits, at_an_override_of_zero_and_at_M00_end_too) {
   const GivenUp stop = give_up(scratch, mill_file(), "N10 G0 X2\nN20 M0\nN30 M30\n", {"--patience", "2"});
   EXPECT_EQ(stop.ending.code, 1);
   EXPECT_TRUE(says(stop.ending, "line 2 of waits.nc: the program stands at M00")) << stop.ending.err;
+  EXPECT_TRUE(says(stop.ending, "`servogate run` has no operator")) << stop.ending.err;
 }
 
 TEST(Waits, that_end_by_themselves_are_none) {
@@ -139,8 +140,8 @@ TEST(Waits, of_a_wrong_patience_are_wrong_use) {
 TEST(Words, of_a_program_error_stand_in_the_alarm_with_file_line_and_column) {
   const Scratch scratch;
   // Found when the block is executed, for a signal has its part in it: X would leave its travel.
-  const GivenUp run =
-      give_up(scratch, mill_file(), "N10 G90 G71 G94\nN20 G1 X20 F6000\nN30 E30=SA20+400\nN40 XE30\nN50 M30\n");
+  const GivenUp run = give_up(scratch, mill_file(),
+                              "N10 G90 G71 G94\nN20 G1 X20 F6000\nN30 E30=SA20+400\nN40 XE30\nN50 M30\n");
   EXPECT_EQ(run.ending.code, 1);
   EXPECT_TRUE(says(run.ending, "alarm 4001: program error in line 4: ")) << run.ending.err;
   EXPECT_TRUE(says(run.ending, "waits.nc:4:")) << run.ending.err;

@@ -30,5 +30,12 @@ TEST(UnitWords, are_in_the_language_of_the_sentence) {
   EXPECT_EQ(unit_words("furlong"), "furlong");
 }
 
+TEST(UnitSymbol, is_read_in_both_languages) {
+  EXPECT_EQ(unit_symbol("мм"), "mm");
+  EXPECT_EQ(unit_symbol("град"), "deg");
+  EXPECT_EQ(unit_symbol("mm"), "mm");
+  EXPECT_EQ(unit_symbol("furlong"), "furlong");
+}
+
 }  // namespace
 }  // namespace servogate::text

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "firmware_if/text/units.hpp"
 #include "gateway/cli/messages.hpp"
 
 namespace servogate::gateway::command {
@@ -53,13 +54,13 @@ json request_of(const ClientOptions& options) {
       if (!parse_number(a[1], value, rest))
         return not_a(a[1], "a distance such as +1mm or -0.5deg", "перемещение вида +1mm или -0.5deg");
       r["value"] = value;
-      if (!rest.empty()) r["unit"] = rest;
+      if (!rest.empty()) r["unit"] = text::unit_symbol(rest);
     }
   } else if (c == "zero") {
     if (a.size() == 2 && !parse_number(a[1], value, rest)) return not_a(a[1], "a number", "число");
     r["axis"] = a[0];
     r["value"] = value;
-    if (!rest.empty()) r["unit"] = rest;
+    if (!rest.empty()) r["unit"] = text::unit_symbol(rest);
   } else if (c == "mdi") {
     std::string block = a[0];
     for (std::size_t i = 1; i < a.size(); ++i) block += " " + a[i];

@@ -25,11 +25,7 @@ struct Row {
 constexpr Entry kNothing{"", "", ""};
 constexpr Entry kSeePlc{"wait.see-plc", "The PLC program writes {0}: see in {2} what it waits for.",
                         "{0} записывает программа ПЛК: посмотрите в {2}, чего она ждёт."};
-constexpr Entry kStart{
-    "wait.start",
-    "`servogate start` goes on; `servogate run` has no operator: use `servogate up` for such programs.",
-    "Продолжить: `servogate start`; у `servogate run` нет оператора: для таких программ есть `servogate "
-    "up`."};
+constexpr Entry kStart{"wait.start", "`servogate start` goes on.", "Продолжить: `servogate start`."};
 
 /// Index = image::WaitReason.
 constexpr Row kRows[] = {
