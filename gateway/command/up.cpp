@@ -115,6 +115,7 @@ int up(const UpOptions& options) {
                                                         : m.resolve(m.run.state);
   if (const int code = check_outputs({{"--record", options.record}}, state_path, loaded, {}); code != kDone)
     return code;
+  std::unique_ptr<SocketServer> server;  // its connections end last, after the state's lock
   machine::MachineState state;
   machine::StateLock lock;
   if (!state_path.empty()) {
@@ -146,8 +147,8 @@ int up(const UpOptions& options) {
                                                      : default_socket(m.name);
   count_signals();  // from here on there is something to be put away
   std::signal(SIGHUP, on_hangup);
-  SocketServer server(resident, socket);
-  if (const std::string problem = server.bind(); !problem.empty()) {
+  server = std::make_unique<SocketServer>(resident, socket);
+  if (const std::string problem = server->bind(); !problem.empty()) {
     complain(kNoSocket, {socket, problem});
     return kInfrastructure;
   }
@@ -165,14 +166,14 @@ int up(const UpOptions& options) {
     realtime_loop->complain_of_refusals(started);
     if (!started) return kInfrastructure;
   }
-  server.start();
+  server->start();
   std::fprintf(
       stderr, "%s\n",
       text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()).c_str());
-  while (signals_seen() == 0 && !hung_up && !server.down_requested())
+  while (signals_seen() == 0 && !hung_up && !server->down_requested())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the answer to `down` leaves first
-  server.stop();
+  server->stop();
   shut_down(resident);
   const std::string problem = resident.save();
   virtual_loop.reset();

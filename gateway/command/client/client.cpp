@@ -42,6 +42,14 @@ void print_refusal(const json& reply) {
                words.substr(end).c_str());
 }
 
+/// The control ends its connections when state and record are written and the axes and drives are at rest.
+void wait_until_closed(SocketClient& connection) {
+  constexpr int kLongestEnd_ms = 60'000;
+  std::string line;
+  while (connection.receive(line, kLongestEnd_ms)) {
+  }
+}
+
 /// A client and what its command waits for.
 struct Manner {
   bool power, jog, waits;
@@ -107,6 +115,7 @@ int client(const ClientOptions& options) {
     code = manner.jog ? follow_jog(connection, request, reply) : wait_for_end(connection, request, reply);
     if (!reply.is_null()) reply["exit"] = code;
   }
+  if (code == kDone && request["cmd"] == "down") wait_until_closed(connection);
   if (reply.is_null()) return connection_lost(path);
   if (options.json)
     print_line(reply.dump(1, ' ', false, json::error_handler_t::replace));

@@ -42,7 +42,10 @@ std::string user_of(int fd) {
 SocketServer::SocketServer(Resident& resident, std::string path)
     : resident_(resident), path_(std::move(path)) {}
 
-SocketServer::~SocketServer() { stop(); }
+SocketServer::~SocketServer() {
+  stop();
+  for (const Client& c : clients_) close(c.fd);
+}
 
 std::string SocketServer::bind() {
   sockaddr_un address{};
@@ -105,6 +108,7 @@ void SocketServer::serve() {
       stays = stays && write_client(client) && !(client.closing && client.output.empty());
       if (stays) continue;
       let_go(client);
+      close(client.fd);
       clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(i));
     }
     if (fds[1].revents != 0) accept_client();
@@ -115,7 +119,6 @@ void SocketServer::serve() {
     write_client(c);
     let_go(c);
   }
-  clients_.clear();
 }
 
 void SocketServer::accept_client() {
@@ -131,6 +134,7 @@ void SocketServer::accept_client() {
       refuse(says::kFull, {std::to_string(kMostClients)}, kInfrastructure, text::user_language()).line + "\n";
   write_client(client);
   let_go(client);
+  close(client.fd);
   clients_.pop_back();
 }
 
@@ -181,9 +185,6 @@ bool SocketServer::write_client(Client& client) {
   return client.output.size() <= kMostUnread;
 }
 
-void SocketServer::let_go(Client& client) {
-  end_connection(resident_, client.connection);
-  close(client.fd);
-}
+void SocketServer::let_go(Client& client) { end_connection(resident_, client.connection); }
 
 }  // namespace servogate::gateway

@@ -20,6 +20,7 @@ class SocketServer {
   static constexpr std::size_t kMostUnread = 1024 * 1024;
 
   SocketServer(Resident& resident, std::string path);
+  /// Closes what connections stop() has left.
   ~SocketServer();
 
   /// Takes the socket's name; nothing is served yet. Empty: done; otherwise what went wrong (another control
@@ -29,7 +30,8 @@ class SocketServer {
   void start();
   /// A client asked the control to end.
   bool down_requested() const noexcept { return down_.load(); }
-  /// Ends the thread and removes the socket.
+  /// Ends the thread and removes the socket. The connections are answered no longer, but stay open until the
+  /// destructor: their end tells clients that the control has put everything away.
   void stop();
 
  private:
