@@ -107,6 +107,7 @@ class Run {
   void progress(const image::ProcessImage& image);
   void end_progress();
   int finish(const OperatorScript& script, Session& session, const std::vector<std::string>& command_line);
+  std::optional<report::ErrorEntry> not_begun(const OperatorScript& script) const;
   void explain(const OperatorScript& script, const report::Report& report);
   bool save_state();
 
@@ -352,6 +353,7 @@ int Run::finish(const OperatorScript& script, Session& session,
                    w.line,
                    patience()};
   }
+  report.error = not_begun(script);
   report::Provenance& p = report.provenance;
   fill_provenance(p, options_, loaded_.machine, command_line);
   p.dialect = program_->dialect;
@@ -385,6 +387,26 @@ int Run::finish(const OperatorScript& script, Session& session,
   }
 }
 
+/// Why nothing was begun although cycles ran: what the gate says, or which axes did not become ready; then
+/// what is missing.
+std::optional<report::ErrorEntry> Run::not_begun(const OperatorScript& script) const {
+  report::ErrorEntry error;
+  if (script.outcome() == OperatorScript::Outcome::refused) {
+    error = {std::string(kRefused.id),
+             say(kRefused, {cycle::render(script.refusal(), loaded_.machine.letters(), text::user_language(),
+                                          loaded_.machine.unit_words())})};
+  } else if (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()) {
+    std::string axes;
+    for (const std::string& a : script.waiting_for()) axes += (axes.empty() ? "" : ", ") + a;
+    error = {std::string(kNotReady.id), say(kNotReady, {axes})};
+  } else {
+    return std::nullopt;
+  }
+  for (const MissingCondition& m : missing_)
+    if (m.reason != "alarm") error.text += "\n" + say(kMissing, {m.text, m.remedy});
+  return error;
+}
+
 void Run::explain(const OperatorScript& script, const report::Report& report) {
   for (const report::AlarmEntry& a : report.alarms)
     std::fprintf(
@@ -395,16 +417,12 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
     complain(kGaveUp, {report.wait->text, text::number(report.wait->for_s, 1)});
     std::fprintf(stderr, "  %s\n", report.wait->remedy.c_str());
   }
-  if (script.outcome() == OperatorScript::Outcome::refused)
-    complain(kRefused, {cycle::render(script.refusal(), loaded_.machine.letters(), text::user_language(),
-                                      loaded_.machine.unit_words())});
-  if (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()) {
-    std::string axes;
-    for (const std::string& a : script.waiting_for()) axes += (axes.empty() ? "" : ", ") + a;
-    complain(kNotReady, {axes});
+  if (report.error) {
+    const std::string& words = report.error->text;
+    const std::size_t end = std::min(words.find('\n'), words.size());
+    std::fprintf(stderr, "servogate: %s [%s]%s\n", words.substr(0, end).c_str(), report.error->code.c_str(),
+                 words.substr(end).c_str());
   }
-  for (const MissingCondition& m : missing_)
-    if (m.reason != "alarm") std::fprintf(stderr, "%s\n", say(kMissing, {m.text, m.remedy}).c_str());
   if (const auto stop = stop_words(*control_, control_->cycle().image(), 0, text::user_language()); stop)
     std::fprintf(stderr, "%s\n  %s\n", stop->text.c_str(), stop->remedy.c_str());
   if (script.outcome() == OperatorScript::Outcome::stopped && report.blocks == 0)

@@ -112,12 +112,14 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
     const std::string reference = bus.name + "." + node.name;
     std::int64_t counts = 0;
     double ramp_rpm_s = 0.0;  // of a spindle's motor
+    double braking_counts_s2 = 0.0;
     bool used = false;
     for (std::size_t a = 0; a < m.axes.size(); ++a)
       if (m.axes[a].drive == reference) {
         n.target = canopen::DriveTarget::axis;
         n.target_index = static_cast<int>(a);
         counts = m.axes[a].counts_per_rev;
+        braking_counts_s2 = m.axes[a].max_acceleration * m.axes[a].counts_per_unit();
         used = true;
       }
     for (std::size_t s = 0; s < m.spindles.size(); ++s)
@@ -136,6 +138,9 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
         n.profile.velocity_mode == canopen::OperationMode::profile_velocity)
       n.setup.speed_ramp = object_value(ramp_rpm_s / 60.0 * static_cast<double>(n.profile.counts_per_rev) /
                                         n.profile.acceleration_unit_counts_s2);
+    if (n.target == canopen::DriveTarget::spindle)
+      braking_counts_s2 = ramp_rpm_s / 60.0 * static_cast<double>(n.profile.counts_per_rev);
+    n.setup.quick_stop_ramp = object_value(braking_counts_s2 / n.profile.acceleration_unit_counts_s2);
     if (n.target == canopen::DriveTarget::axis) {
       const machine::AxisConfig& axis = m.axes[static_cast<std::size_t>(n.target_index)];
       n.setup.homing = homing_of(axis, n.profile);

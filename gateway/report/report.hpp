@@ -74,7 +74,7 @@ struct WaitEntry {
   double for_s = 0.0;
 };
 
-/// Why there was no run: code and words.
+/// Why there was no run, or the control refused it: code and words.
 struct ErrorEntry {
   std::string code, text;
 };
@@ -131,7 +131,8 @@ struct Report {
   std::int64_t blocks = 0;           ///< executed, each time they ran, up to the one in motion at the end
   std::int64_t blocks_expected = 0;  ///< of a dry run, whose branches may differ; 0: not known
   std::optional<WaitEntry> wait;
-  std::optional<ErrorEntry> error;  ///< no cycle ran: a bad file, a bus that does not open, missing rights
+  std::optional<ErrorEntry> error;  ///< no cycle ran (a bad file, a bus that does not open, missing rights),
+                                    ///< or the control refused it, or its axes did not become ready
   std::vector<text::Finding> findings;  ///< errors for which the program was not begun
   std::vector<AlarmEntry> alarms;
   std::vector<AxisReport> axes;

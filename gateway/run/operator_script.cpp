@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/run/operator_script.hpp"
 
+#include "gateway/run/standstill.hpp"
 #include "gateway/run/words/wait_words.hpp"
 #include "kernel/cycle/gate/gate.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 constexpr image::Nanoseconds kReleased_ns = 200'000'000;
 constexpr double kBootPatience_s = 15.0;
 constexpr double kHomingPatience_s = 300.0;
-constexpr double kPowerOffPatience_s = 5.0;
 constexpr double kRestPatience_s = 10.0;
 }  // namespace
 
@@ -184,9 +184,9 @@ void OperatorScript::poll(const ProcessImage& image) {
         asked_ = true;
         send(RequestKind::power, 0.0);
       }
-      bool on = false;
-      for (int a = 0; a < image.axis_count; ++a) on = on || image.axes[static_cast<std::size_t>(a)].enabled;
-      if ((asked_ && !on) || in_stage(image) > kPowerOffPatience_s) stage_ = Stage::done;
+      const bool off = (asked_ && axes_off(image)) || in_stage(image) > kAxesOffPatience_s;
+      const bool rest = spindles_rest(image) || in_stage(image) > kSpindlePatience_s;
+      if (off && rest) stage_ = Stage::done;
       break;
     }
     case Stage::done:

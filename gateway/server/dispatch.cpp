@@ -427,8 +427,14 @@ Reply Dispatch::mdi() {
 
 Reply Dispatch::hold() {
   const bool busy = resident_.busy();
+  const image::ProcessImage& image = resident_.image();
+  const auto by_hand = [](const image::AxisImage& a) {
+    return a.moving && (a.owner == image::AxisOwner::manual || a.owner == image::AxisOwner::homing);
+  };
+  const bool jogs =
+      image.homing || std::any_of(image.axes.begin(), image.axes.begin() + image.axis_count, by_hand);
   if (!ask(RequestKind::hold)) return refusal_;
-  return good(busy ? says::kHeld : says::kNothingHeld);
+  return good(busy ? says::kHeld : jogs ? says::kManualStopped : says::kNothingHeld);
 }
 
 Reply Dispatch::reset() {

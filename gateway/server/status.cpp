@@ -5,6 +5,7 @@
 #include <span>
 
 #include "gateway/machine/consequences.hpp"
+#include "gateway/run/standstill.hpp"
 #include "gateway/run/words/alarm_entries.hpp"
 #include "gateway/run/words/jog_words.hpp"
 #include "gateway/run/words/ready_words.hpp"
@@ -150,7 +151,8 @@ std::string status_json(Resident& resident, text::Language language) {
               {"blocks", resident.blocks()},
               {"lines", resident.lines()},
               {"homing", homing},
-              {"processes", json::array()}};
+              {"processes", json::array()},
+              {"spindles", json::array()}};
   for (int p = 0; p < image.process_count; ++p) {
     json process = process_json(resident, image, p, language);
     if (p == 0) status.update(process);
@@ -184,6 +186,7 @@ std::string status_json(Resident& resident, text::Language language) {
     status["spindles"].push_back({{"command_rpm", s.command_rpm},
                                   {"actual_rpm", s.actual_rpm},
                                   {"at_speed", s.at_speed},
+                                  {"rests", spindle_rests(image, i)},
                                   {"drive", kDriveStates[static_cast<int>(s.drive.state)]}});
   }
   status["buses"] = bus_list(m, image);

@@ -93,6 +93,8 @@ const Entry kStarted{"said.started", "{0} runs", "{0} выполняется"};
 const Entry kStepped{"said.stepped", "one block runs", "выполняется один кадр"};
 const Entry kHeld{"said.held", "feed hold: the axes stop on the path",
                   "пауза подачи: оси останавливаются на контуре"};
+const Entry kManualStopped{"said.manual-stopped", "jogging and homing stop; nothing resumes them",
+                           "ручной ход и выход в ноль останавливаются; продолжить их нельзя"};
 const Entry kNothingHeld{"said.nothing-held", "no program runs: there is nothing to hold",
                          "программа не выполняется: приостанавливать нечего"};
 const Entry kResumed{"said.resumed", "the program goes on", "программа продолжается"};

@@ -54,7 +54,7 @@ extern const text::Entry kZeroDiameter;  ///< as kZero
 extern const text::Entry kBlockRuns;
 extern const text::Entry kLoaded;   ///< {0} program, {1} blocks, {2} warnings
 extern const text::Entry kStarted;  ///< {0} program
-extern const text::Entry kStepped, kHeld, kNothingHeld, kResumed, kStopped;
+extern const text::Entry kStepped, kHeld, kManualStopped, kNothingHeld, kResumed, kStopped;
 extern const text::Entry kReset;
 extern const text::Entry kResetLeft;     ///< {0} alarms still active
 extern const text::Entry kOverride;      ///< {0} per cent

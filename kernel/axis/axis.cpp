@@ -154,8 +154,7 @@ void Axis::advance_own(double dt, image::Nanoseconds now) noexcept {
 
 void Axis::advance_homing(double dt) noexcept {
   if (!feed_enable_) {
-    homing_.abort(ramp_);
-    raise(alarm::kHomingInterrupted, 0.0, set_.x);
+    break_homing(image::JogEnd::feed);
     return;
   }
   homing_.step(ramp_, homing_inputs(dt));
@@ -211,13 +210,15 @@ void Axis::end_jog(image::JogEnd why) noexcept {
   if (jogs && jog_end_ == image::JogEnd::none) jog_end_ = why;
 }
 
+void Axis::break_homing(image::JogEnd why) noexcept {
+  homing_.abort(ramp_);
+  raise(alarm::kHomingInterrupted, 0.0, set_.x, static_cast<double>(why));
+}
+
 /// Ends whatever motion there is, at the axis' own limits.
 void Axis::take_away(image::JogEnd why) noexcept {
   end_jog(why);
-  if (homing_.active()) {
-    homing_.abort(ramp_);
-    raise(alarm::kHomingInterrupted, 0.0, set_.x);
-  }
+  if (homing_.active()) break_homing(why);
   manual_ = Manual::rest;
   ramp_.reset(set_, config_.limits);
   own_motion_ = true;
@@ -228,10 +229,7 @@ void Axis::fill_history() noexcept { history_.fill({set_.x, compensation_value_}
 
 /// The drive does not hold the axis: the set-point is where the axis is.
 void Axis::follow_feedback() noexcept {
-  if (homing_.active()) {
-    homing_.abort(ramp_);
-    raise(alarm::kHomingInterrupted, 0.0, set_.x);
-  }
+  if (homing_.active()) break_homing(image::JogEnd::power);
   homing_.drop();
   if (homed_) compensation_value_ = compensation_.at(motor_ - compensation_value_);
   actual_ = motor_ - compensation_value_;

@@ -140,6 +140,7 @@ class Axis {
   void advance_manual(image::Nanoseconds now) noexcept;
   void follow_drive() noexcept;
   void check_index_place() noexcept;
+  void break_homing(image::JogEnd why) noexcept;
   void take_away(image::JogEnd why = image::JogEnd::alarm) noexcept;
   void end_jog(image::JogEnd why) noexcept;
   void follow_feedback() noexcept;

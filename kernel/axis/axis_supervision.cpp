@@ -128,12 +128,17 @@ void Axis::warn_of_following_error() noexcept {
 }
 
 void Axis::supervise_setpoint() noexcept {
-  if (!held_ || set_.v == 0.0) return;
-  const bool forward = set_.v > 0.0;
-  if (owner_ != image::AxisOwner::homing && into_limit(set_.v)) {
-    raise(forward ? alarm::kHardLimitPlus : alarm::kHardLimitMinus, 0.0, actual_);
+  if (!held_) return;
+  // A program never takes an axis to its switches: one that works is a limit that was passed or a broken
+  // wire, wherever the axis goes or rests. Others move away from a switch.
+  const bool of_program = owner_ == image::AxisOwner::process && (limit_plus_ || limit_minus_);
+  const bool into = owner_ != image::AxisOwner::homing && into_limit(set_.v);
+  if (of_program || into) {
+    const bool plus = into ? set_.v > 0.0 : limit_plus_;
+    raise(plus ? alarm::kHardLimitPlus : alarm::kHardLimitMinus, 0.0, actual_);
     if (!stopped_by_reaction_) take_away();
   }
+  if (set_.v == 0.0) return;
   if (!stopped_by_reaction_ && own_motion_ && leaves_travel(set_)) take_away();
 }
 

@@ -128,7 +128,7 @@ class Cycle {
   void change_mode(int process, image::Mode mode) noexcept;
   bool carry_out_motion(const image::Request& request, axis::Axis& axis) noexcept;
   void move_auxiliary(PlcMotion& motion, axis::Axis& axis) noexcept;
-  void stop_manual() noexcept;
+  void stop_manual(bool with_plc) noexcept;
   void run_processes() noexcept;
   void run_axes() noexcept;
   void collect_events() noexcept;

@@ -112,7 +112,7 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       break;
     }
     case RequestKind::reset:
-      stop_manual();
+      stop_manual(true);
       [[fallthrough]];
     case RequestKind::acknowledge:
       for (axis::Axis& a : axes_) a.reset();
@@ -156,14 +156,15 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       if (parts_.logic == nullptr || !parts_.logic->order(request)) refusal = Refusal::logic_not_changed;
       break;
     case RequestKind::stop:
-      stop_manual();
+    case RequestKind::hold:
+      // Whoever presses hold wants rest: jogs and homing, too, which nothing resumes.
+      stop_manual(request.kind == RequestKind::stop);
       if (parts_.processes.empty()) break;
       [[fallthrough]];
     case RequestKind::zero:
     case RequestKind::mode:
     case RequestKind::start:
     case RequestKind::step:
-    case RequestKind::hold:
     case RequestKind::resume:
     case RequestKind::override_feed: {
       const auto process = static_cast<std::size_t>(request.process);
@@ -202,11 +203,11 @@ bool Cycle::carry_out_motion(const Request& request, axis::Axis& a) noexcept {
   }
 }
 
-void Cycle::stop_manual() noexcept {
+void Cycle::stop_manual(bool with_plc) noexcept {
   homing_.abort(axes_);
   for (axis::Axis& a : axes_)
     if (a.owner() == image::AxisOwner::manual || a.owner() == image::AxisOwner::homing ||
-        a.owner() == image::AxisOwner::plc)
+        (with_plc && a.owner() == image::AxisOwner::plc))
       a.stop();
 }
 

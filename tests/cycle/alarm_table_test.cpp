@@ -243,10 +243,16 @@ TEST(AlarmText, gives_places_of_a_diameter_axis_as_diameters_and_lengths_as_they
   r.number = axis::alarm::kHomingInterrupted;
   r.axis = 0;
   r.value = 41.25;
-  EXPECT_EQ(render(r, names, text::Language::english), "X: homing was broken off at 82.5 mm in diameter");
+  r.detail1 = static_cast<double>(image::JogEnd::feed);
+  EXPECT_EQ(
+      render(r, names, text::Language::english),
+      "X: homing was broken off at 82.5 mm in diameter: the PLC withdrew X.feed_enable (in the examples: "
+      "the door is open)");
   EXPECT_NE(render(r, names, text::Language::russian).find("82.5 mm по диаметру"), std::string::npos);
   r.axis = 1;
-  EXPECT_EQ(render(r, names, text::Language::english), "Z: homing was broken off at 41.25 mm");
+  r.detail1 = static_cast<double>(image::JogEnd::power);
+  EXPECT_EQ(render(r, names, text::Language::english),
+            "Z: homing was broken off at 41.25 mm: its drive was switched off");
   r.number = axis::alarm::kOffPath;
   r.axis = 0;
   r.value = 0.5;

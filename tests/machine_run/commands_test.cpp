@@ -140,6 +140,15 @@ double seconds_of_motion(const TraceFile& trace, const std::vector<std::string>&
   return seconds;
 }
 
+TEST(Check, gives_the_warnings_about_the_machine_beside_those_about_its_logic) {
+  const Scratch scratch;
+  const std::string fast =
+      changed_mill(scratch, "max_velocity = \"500 mm/s\"", "max_velocity = \"900 mm/s\"");
+  const Ending e = servogate({"check", fast});
+  EXPECT_EQ(e.code, 0) << e.err;
+  EXPECT_NE((e.err + e.out).find("[machine.motor_too_fast]"), std::string::npos) << e.err;
+}
+
 TEST(Check, names_what_reading_and_what_the_motion_finds_from_the_top_of_the_file) {
   const Scratch scratch;
   const std::string both = scratch.write("both.nc", "N10 G0 X2\nN20 G1 X400 F100\nN30 G1 X1 FOO\nN40 M30\n");
@@ -268,6 +277,25 @@ TEST(Run, of_a_program_that_is_proven_wrong_moves_nothing_and_names_the_place) {
   EXPECT_EQ(report["cycles"], 0);
   EXPECT_EQ(report["findings"][0]["code"], "P701");
   EXPECT_EQ(TraceFile(scratch.path("t.csv")).rows(), 0u);
+}
+
+TEST(Run, that_is_refused_or_never_gets_ready_says_why_in_its_report) {
+  const Scratch scratch;
+  const std::string report = scratch.path("r.json");
+  const struct {
+    const char *from, *to, *code, *words;
+  } rows[] = {{"door_closed = 1", "door_closed = 0", "run.refused", "feed_enable"},
+              {"operator_closes = [\"estop_chain_ok\"]", "operator_closes = []", "run.not-ready",
+               "the emergency-stop chain is open"}};
+  for (const auto& row : rows) {
+    const Ending e =
+        servogate({"run", changed_mill(scratch, row.from, row.to), "--virtual", "--report", report, "-q"});
+    EXPECT_EQ(e.code, 1) << row.code;
+    EXPECT_NE(e.err.find(std::string("[") + row.code + "]"), std::string::npos) << e.err;
+    const json error = parsed(read_all(report))["error"];
+    EXPECT_EQ(error["code"], row.code);
+    EXPECT_NE(error["text"].get<std::string>().find(row.words), std::string::npos) << error;
+  }
 }
 
 TEST(Run, that_an_alarm_ends_is_one_with_the_alarm_in_report_and_words) {

@@ -313,6 +313,8 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
   add_encoder(plan, node.setup);
   add_configuration(plan, node);
   plan.step(BootStep::settings);
+  if (node.setup.quick_stop_ramp > 0 && node.setup.concise_dcf.empty())
+    plan.write_and_check(object::kQuickStopDeceleration, 0, 4, node.setup.quick_stop_ramp, true);
   // The brake must be engaged before anything, a mask in the settings for one, can hand it to the output.
   if (node.profile.brake_bit >= 0)
     plan.write_and_check(object::kDigitalOutputs, 1, 4,

@@ -39,6 +39,9 @@ struct NodeSetup {
   /// Ramp of a speed that the drive itself forms (profile velocity), in its own units: 6083h, 6084h; 0: as it
   /// is.
   std::uint32_t speed_ramp = 0;
+  /// Deceleration of the drive's quick stop (6085h), in its own units; what device file or machine file write
+  /// comes after it; 0: as it is.
+  std::uint32_t quick_stop_ramp = 0;
   /// Of an encoder: counts per turn (6501h) and turns (6502h), compared. Source: CiA 406.
   std::optional<std::uint32_t> counts_per_rev, revolutions;
   std::int32_t boot_timeout_ms = 0;          ///< 0: the segment's

@@ -23,6 +23,9 @@ const text::Entry kStands{"client.stands", "{0} stands at {1} {2}", "{0} сто�
 const text::Entry kStandsDiameter{"client.stands-diameter", "{0} stands at {1} {2} in diameter",
                                   "{0} стоит на {1} {2} по диаметру"};
 
+const text::Entry kLastSeen{"client.last-seen", "{0} was last seen at {1} {2}: its drive does not answer",
+                            "{0}: последнее известное место {1} {2}, привод не отвечает"};
+
 /// Keeps a continuous jog alive until the operator ends it or it ends by itself; its last answer.
 json hold(SocketClient& client, const json& request, const json& begun) {
   const int pause_ms = std::max(1, static_cast<int>(begun.value("keep_alive_ms", 30.0)));
@@ -69,7 +72,9 @@ int follow_jog(SocketClient& client, const json& request, json& reply) {
                    : reason == "asked"                                      ? kStopped
                                                                             : kAlarm;
   const std::string stands = text::render(
-      axis.value("diameter", false) ? kStandsDiameter : kStands,
+      axis.value("drive", "") == "offline" ? kLastSeen
+      : axis.value("diameter", false)      ? kStandsDiameter
+                                           : kStands,
       std::vector<std::string>{axis.value("letter", ""), text::number(axis.value("position", 0.0), 3),
                                text::unit_words(axis.value("unit", ""))},
       text::user_language());

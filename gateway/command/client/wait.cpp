@@ -11,6 +11,7 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/command/signals.hpp"
+#include "gateway/run/standstill.hpp"
 
 namespace servogate::gateway::command {
 
@@ -28,6 +29,17 @@ const text::Entry kNotOff{"client.not-off", "not switched off within {0} s: {1}"
                           "не выключились за {0} с: {1}"};
 const text::Entry kNoCycle{"client.no-cycle", "the control answers, but its cycle does not run",
                            "управление отвечает, но его цикл не работает"};
+
+const text::Entry kHomingEnded{
+    "client.homing-ended",
+    "homing was stopped by somebody else (reset, stop or hold): `servogate home` again",
+    "выход в ноль остановлен кем-то другим (reset, stop или hold): повторите `servogate "
+    "home`"};
+const text::Entry kUnreachable{
+    "client.unreachable",
+    "no answer from the drive of {0}: whether it is off cannot be seen; a cut supply (emergency stop) is "
+    "sure",
+    "привод {0} не отвечает: выключен ли он, не видно; надёжно — снять питание (аварийный останов)"};
 
 const text::Entry kStopsAt{"client.programmed-stop", "{0}\n    {1}", "{0}\n    {1}"};
 const text::Entry kWaitsFor{"client.waits-for", "{0}; going on waiting\n    {1}",
@@ -79,6 +91,7 @@ class Wait {
   bool program_under_way(const json& status);
   bool rests(const json& status) const;
   void say_what_is_missing(const json& status);
+  void name_unreachable(const json& status);
   bool too_late(const json& status);
   bool cycle_stands(const json& status);
   /// A program that the drives are taken from ends as soon as its path is at rest.
@@ -98,6 +111,11 @@ class Wait {
     const json axes = status.value("axes", json::array());
     return std::any_of(axes.begin(), axes.end(),
                        [&](const json& a) { return !a.value("auxiliary", false) && is(a); });
+  }
+  static bool turning(const json& status) {
+    const json spindles = status.value("spindles", json::array());
+    return std::any_of(spindles.begin(), spindles.end(),
+                       [](const json& s) { return !s.value("rests", true); });
   }
   static bool on(const json& axis) { return axis.value("enabled", false); }
   static bool moving(const json& axis) { return axis.value("moving", false); }
@@ -134,7 +152,15 @@ bool Wait::homing_under_way(const json& status) {
     return !a.value("homed", false) &&
            (named.empty() || std::find(named.begin(), named.end(), a["letter"]) != named.end());
   });
-  if (open && !alarm(status)) code_ = kStopped;
+  if (!open || alarm(status) || interrupts_done_ > 0) return false;
+  // 1101 ... 1110 say by themselves why an axis has no reference.
+  const json alarms = status.value("alarms", json::array());
+  const bool broken = std::any_of(alarms.begin(), alarms.end(), [](const json& a) {
+    const int number = a.value("number", 0);
+    return number > 1100 && number < 1200;
+  });
+  code_ = broken ? kAlarm : kStopped;
+  if (!broken) complain(kHomingEnded, {});
   return false;
 }
 
@@ -186,6 +212,16 @@ bool Wait::program_under_way(const json& status) {
   return false;
 }
 
+/// A drive that does not answer may be on.
+void Wait::name_unreachable(const json& status) {
+  std::string letters;
+  for (const json& a : status.value("axes", json::array()))
+    if (of(a, "drive") == "offline") letters += (letters.empty() ? "" : ", ") + of(a, "letter");
+  if (letters.empty()) return;
+  code_ = kAlarm;
+  complain(kUnreachable, {letters});
+}
+
 bool Wait::under_way(const json& status) {
   code_ = alarm(status) ? kAlarm : kDone;
   switch (kind_) {
@@ -196,7 +232,10 @@ bool Wait::under_way(const json& status) {
     }
     case Kind::power_off:
       code_ = kDone;
-      return any_axis(status, powered) || (busy(status) && in_wait_s(status) < kEndPatience_s);
+      if (any_axis(status, powered) || turning(status)) return true;
+      if (busy(status) && in_wait_s(status) < kEndPatience_s) return true;
+      name_unreachable(status);
+      return false;
     case Kind::home:
       return homing_under_way(status);
     case Kind::jog:
@@ -211,8 +250,11 @@ bool Wait::under_way(const json& status) {
 /// Drives that do not come or go are named with their states.
 bool Wait::too_late(const json& status) {
   if (kind_ != Kind::power_on && kind_ != Kind::power_off) return false;
-  if (in_wait_s(status) < kPowerPatience_s) return false;
+  const bool runs_down = kind_ == Kind::power_off && turning(status);
+  const double patience_s = runs_down ? kSpindlePatience_s : kPowerPatience_s;
+  if (in_wait_s(status) < patience_s) return false;
   std::string late;
+  if (runs_down) late = text::both("spindle", "шпиндель");
   for (const json& a : status.value("axes", json::array()))
     if (kind_ == Kind::power_on ? !on(a) : powered(a))
       late += (late.empty() ? "" : ", ") + of(a, "letter") + " (" + of(a, "drive") + ")";
@@ -220,7 +262,7 @@ bool Wait::too_late(const json& status) {
   if (kind_ == Kind::power_on)
     for (const json& m : status.value("missing", json::array()))
       missing += "\n  " + of(m, "text") + "\n    " + of(m, "remedy");
-  complain(kind_ == Kind::power_on ? kNotOn : kNotOff, {text::number(kPowerPatience_s, 0), late, missing});
+  complain(kind_ == Kind::power_on ? kNotOn : kNotOff, {text::number(patience_s, 0), late, missing});
   return true;
 }
 

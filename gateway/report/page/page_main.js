@@ -139,7 +139,7 @@ function texts() {
   $("extents").textContent = tr("extents") + ": " + VIEW.map((letter, k) => letter && letter + " " + num(BOX.low[k], 6) + " … " + num(BOX.high[k], 6) + " " + unitOf(letter)).filter(Boolean).join(" · ");
   const steady = steadySignals(), names = (key, list) => list.length ? tr(key) + " — " + list.join(", ") : "";
   $("steady").textContent = steady.count && !S.constant ? tr("steady") + ": " + [names("on", steady.on), names("off", steady.off)].filter(Boolean).join("; ") : "";
-  $("wait").textContent = R.wait ? [R.wait.text, R.wait.remedy].filter(Boolean).join(". ") : "";
+  $("wait").textContent = R.wait ? [R.wait.text, R.wait.remedy].filter(Boolean).join(". ") : R.error ? R.error.text : "";
   $("dropped").textContent = R.trace_dropped ? tr("dropped", num(R.trace_dropped, 9)) : "";
   cards(); limitBars(); alarms(); timing(); provenance(); speedKey(); axisSwitches(); readout();
 }

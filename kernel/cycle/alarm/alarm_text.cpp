@@ -162,6 +162,22 @@ std::string torque_words(double permille, Language language) {
   return russian ? "моменте " + number + " ‰ от номинального" : number + " ‰ of the rated torque";
 }
 
+/// What broke a homing off, by image::JogEnd.
+std::string break_words(double why, const std::string& axis, Language language) {
+  const bool russian = language == Language::russian;
+  switch (static_cast<image::JogEnd>(static_cast<int>(why))) {
+    case image::JogEnd::feed:
+      return russian ? "ПЛК снял " + axis + ".feed_enable (в примерах: открыта дверь)"
+                     : "the PLC withdrew " + axis + ".feed_enable (in the examples: the door is open)";
+    case image::JogEnd::alarm:
+      return russian ? "движение прервала авария" : "an alarm took the motion away";
+    case image::JogEnd::power:
+      return russian ? "привод отключён" : "its drive was switched off";
+    default:
+      return russian ? "его прервал привод" : "its drive ended it";
+  }
+}
+
 /// "bracket.nc:12" of a block, the bare number elsewhere.
 std::string line_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
   const std::string line = std::to_string(r.line);
@@ -203,6 +219,7 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
     out[2] = state_words(static_cast<int>(r.limit), language);
   }
   if (r.number == axis::alarm::kFollowingError) out[7] = torque_words(r.detail2, language);
+  if (r.number == axis::alarm::kHomingInterrupted) out[6] = break_words(r.detail1, out[0], language);
   if (r.number == alarm::kOverrunLimit) out[6] = phase_words(static_cast<int>(r.detail1), language);
   if (r.number == alarm::kBootFailed) out[6] = boot_words(r, names, language);
   if (r.number == alarm::kNodeLeft) out[1] = nmt_words(static_cast<int>(r.value), language);

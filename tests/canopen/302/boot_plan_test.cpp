@@ -56,6 +56,21 @@ TEST(BootPlan, switches_a_pdo_off_clears_maps_counts_and_switches_on_then_reads_
   EXPECT_EQ(steps, expected);
 }
 
+TEST(BootPlan, writes_the_quick_stop_ramp_where_it_exists_and_lets_settings_and_a_configuration_overrule_it) {
+  NodeConfig node = position_node();
+  node.setup.quick_stop_ramp = 0x1234;
+  node.profile.settings.push_back({0x6085, 0, 4, 0x99, true});
+  const auto plan = boot_plan(node, {});
+  const std::vector<std::string> expected = {"write 6085:0 4 1234", "read 6085:0 4 1234", "write 6085:0 4 99",
+                                             "read 6085:0 4 99"};
+  EXPECT_EQ(of_step(plan, BootStep::settings), expected);
+  const auto first = std::ranges::find(plan, 0x6085, &BootAction::index);
+  EXPECT_TRUE(first->optional) << "a drive without 6085h stays as it is";
+  node.profile.settings.clear();
+  node.setup.concise_dcf = {0, 0, 0, 0};
+  EXPECT_TRUE(of_step(boot_plan(node, {}), BootStep::settings).empty());
+}
+
 TEST(BootPlan, unused_pdos_need_not_exist) {
   for (const BootAction& action : boot_plan(position_node(), {}))
     if (action.index == 0x1401 || action.index == 0x1803) {

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/run/standstill.hpp"
+
+#include "firmware_if/image/interface_map.hpp"
+
+namespace servogate::gateway {
+
+using image::DriveState;
+
+bool axes_off(const image::ProcessImage& image) noexcept {
+  for (int a = 0; a < image.axis_count; ++a)
+    if (image.axes[static_cast<std::size_t>(a)].enabled) return false;
+  return true;
+}
+
+bool spindle_rests(const image::ProcessImage& image, int spindle) noexcept {
+  constexpr image::Place kZeroSpeed = image::field(image::kSpindleFields, "zero_speed");
+  const image::DriveFeedback& drive = image.spindles[static_cast<std::size_t>(spindle)].drive;
+  const bool torque = drive.online && (drive.state == DriveState::operation_enabled ||
+                                       drive.state == DriveState::quick_stop_active ||
+                                       drive.state == DriveState::fault_reaction_active);
+  return !torque && image.packets.bit(image::at(kZeroSpeed, image::spindle_base(spindle)));
+}
+
+bool spindles_rest(const image::ProcessImage& image) noexcept {
+  for (int s = 0; s < image.spindle_count; ++s)
+    if (!spindle_rests(image, s)) return false;
+  return true;
+}
+
+}  // namespace servogate::gateway

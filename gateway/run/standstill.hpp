@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "firmware_if/image/process_image.hpp"
+
+namespace servogate::gateway {
+
+/// What a control waits for before it ends, in machine time. A spindle ramps down under power for as long as
+/// its own acceleration takes.
+inline constexpr double kAxesOffPatience_s = 5.0;
+inline constexpr double kSpindlePatience_s = 60.0;
+
+/// No axis stands under power or moves. Real-time safe.
+bool axes_off(const image::ProcessImage& image) noexcept;
+
+/// The spindle stands (its `zero_speed` place) and its drive, where it answers, has no torque. Of an inverter
+/// without feedback standstill is what its ramp says. Real-time safe.
+bool spindle_rests(const image::ProcessImage& image, int spindle) noexcept;
+bool spindles_rest(const image::ProcessImage& image) noexcept;
+
+}  // namespace servogate::gateway
