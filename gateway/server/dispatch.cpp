@@ -100,6 +100,11 @@ class Dispatch {
   Reply load();
   std::string with_findings(const text::Entry& entry, const std::string& program,
                             const std::vector<text::Finding>& findings) const;
+  /// What the gate would say: a program is under way.
+  Reply busy() const {
+    const auto why = resident_.stopping() ? cycle::Refusal::program_stopping : cycle::Refusal::program_runs;
+    return fail(cycle::refusal_texts()[static_cast<std::size_t>(why)], {}, kAlarm);
+  }
   Reply start() { return begin(false); }
   Reply step() { return begin(true); }
   Reply begin(bool step);
@@ -370,11 +375,11 @@ std::string Dispatch::with_findings(const text::Entry& entry, const std::string&
 }
 
 Reply Dispatch::load() {
-  if (resident_.busy()) return fail(says::kBusy, {}, kAlarm);
+  if (resident_.busy()) return busy();
   std::vector<text::Finding> findings;
   const std::string program = request_.value("program", "");
   const Resident::Load loaded = resident_.load(program, request_.value("dialect", ""), findings);
-  if (loaded == Resident::Load::busy) return fail(says::kBusy, {}, kAlarm);
+  if (loaded == Resident::Load::busy) return busy();
   json more{{"findings", json::parse(machine::to_json(findings), nullptr, false)}};
   if (loaded == Resident::Load::done)
     return good(says::kLoaded, {program, std::to_string(resident_.blocks()), std::to_string(findings.size())},
@@ -389,8 +394,7 @@ Reply Dispatch::begin(bool step) {
   std::optional<image::Mode> mode;
   if (!resident_.busy()) {
     if (resident_.program().empty())
-      return refuse(cycle::refusal_texts()[static_cast<std::size_t>(cycle::Refusal::no_program)], {}, kAlarm,
-                    language_);
+      return fail(cycle::refusal_texts()[static_cast<std::size_t>(cycle::Refusal::no_program)], {}, kAlarm);
     resident_.take_tables();
     if (const auto& wrong = resident_.refused(); !wrong.empty())
       return {text_of({{"ok", false},
@@ -409,7 +413,7 @@ Reply Dispatch::mdi() {
   const std::string block = request_.value("block", "");
   if (block.find_first_not_of(" \t") == std::string::npos) return fail(says::kBlockEmpty, {}, kWrongUse);
   if (block.find_first_of("\r\n") != std::string::npos) return fail(says::kBlocksSeveral, {}, kWrongUse);
-  if (resident_.busy()) return fail(says::kBusy, {}, kAlarm);
+  if (resident_.busy()) return busy();
   resident_.take_tables();
   const std::vector<text::Finding> findings = resident_.check_block(block);
   if (!findings.empty() && findings.back().severity == text::Severity::error)

@@ -55,6 +55,10 @@ bool Resident::busy() {
          state == image::ProcessState::waiting;
 }
 
+bool Resident::stopping() const { return control_.process(0).stopping(); }
+
+bool Resident::typed() { return busy() && image_.processes[0].typed; }
+
 void Resident::tell(image::Request request) {
   image::Answer unread;
   while (control_.cycle().take_answer(unread)) {

@@ -66,6 +66,10 @@ class Resident {
 
   /// A program is under way (running, held or waiting).
   bool busy();
+  /// It has been ended, and its path is not at rest yet.
+  bool stopping() const;
+  /// What is under way is a block typed by hand, not the loaded program.
+  bool typed();
   /// Path of the loaded program; empty: none.
   const std::string& program() const noexcept { return file_->path; }
   /// Of the loaded program's file: blocks, and lines.

@@ -36,8 +36,6 @@ const Entry kNotStarted{"socket.not-started",
                         "программа {0} не пущена: с нынешними началами и инструментом в ней ошибки"};
 const Entry kMoreFindings{"socket.more-findings", "and {0} more; `servogate check` shows all of them",
                           "и ещё {0}; все показывает `servogate check`"};
-const Entry kBusy{"socket.program-runs", "a program runs; stop it first (`servogate reset`)",
-                  "программа выполняется; сначала остановите её (`servogate reset`)"};
 const Entry kBlockWrong{"socket.block-wrong", "the block was not run: {0}", "кадр не выполнен: {0}"};
 const Entry kBlocksSeveral{"socket.blocks-several", "one block at a time: there is more than one line",
                            "по одному кадру: здесь больше одной строки"};

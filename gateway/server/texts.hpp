@@ -24,7 +24,6 @@ extern const text::Entry kComesOn;           ///< the drives are about to be rea
 extern const text::Entry kNotLoaded;         ///< {0} program
 extern const text::Entry kNotStarted;        ///< {0} program
 extern const text::Entry kMoreFindings;      ///< {0} how many
-extern const text::Entry kBusy;              ///< a program runs
 extern const text::Entry kBlockWrong;        ///< {0} what is wrong
 extern const text::Entry kBlocksSeveral;     ///< more than one line typed
 extern const text::Entry kNoDistance;        ///< a jog by 0

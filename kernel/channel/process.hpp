@@ -55,6 +55,7 @@ class Process final : public cycle::ProcessInCycle {
   void interpolate(cycle::ProcessContext& context) noexcept override;
   bool order(const image::Request& request, cycle::ProcessContext& context) noexcept override;
   bool loaded() const noexcept override { return programs_.load(std::memory_order_acquire) != 0; }
+  bool stopping() const noexcept override { return stopping_.load(std::memory_order_relaxed); }
 
  private:
   enum class Stage : std::uint8_t { none, entered, handshaking, waiting };
@@ -108,9 +109,9 @@ class Process final : public cycle::ProcessInCycle {
   std::atomic<std::uint64_t> programs_{0};  ///< loaded so far
   std::atomic<std::uint64_t> changes_{0};
 
-  bool manual_data_ = false;  ///< the run is a typed block
-  bool running_ = false;      ///< a program is under way, held or waiting
-  bool stopping_ = false;     ///< it ends as soon as the path is at rest
+  bool manual_data_ = false;           ///< the run is a typed block
+  bool running_ = false;               ///< a program is under way, held or waiting
+  std::atomic<bool> stopping_{false};  ///< it ends as soon as the path is at rest
   image::ProcessState after_stop_ = image::ProcessState::idle;
   image::ProcessState state_ = image::ProcessState::idle;
   image::Mode mode_ = image::Mode::off;

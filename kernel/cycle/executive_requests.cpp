@@ -30,6 +30,8 @@ image::Answer Cycle::handle(const Request& request) noexcept {
     context.first_alarm = first->number;
   const auto process = static_cast<std::size_t>(request.process);
   context.program_loaded = process < parts_.processes.size() && parts_.processes[process]->loaded();
+  for (std::size_t p = 0; p < parts_.processes.size(); ++p)
+    if (parts_.processes[p]->stopping()) context.stopping |= 1u << p;
   context.homing_runs = homing_.running();
   context.manual_held = manual_held_;
   context.holder = holder_;

@@ -78,6 +78,8 @@ class ProcessInCycle {
   virtual bool order(const image::Request& request, ProcessContext& context) noexcept = 0;
   /// A program is loaded and may be started.
   virtual bool loaded() const noexcept = 0;
+  /// The program has been ended, and its path is not at rest yet. For any thread.
+  virtual bool stopping() const noexcept { return false; }
 };
 
 }  // namespace servogate::cycle

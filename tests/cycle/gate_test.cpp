@@ -131,9 +131,8 @@ TEST_F(Gate, always_lets_a_stop_pass_whoever_asks_and_whatever_is_wrong) {
 TEST_F(Gate, refuses_auto_by_name_while_an_axis_is_not_homed_but_lets_it_jog) {
   not_homed(1);
   EXPECT_EQ(ask(RequestKind::start), Refusal::not_homed);
-  EXPECT_EQ(english(), "Y is not homed: run `servogate home Y` first, or jog slowly");
-  EXPECT_EQ(russian(),
-            "Y не выведена в ноль: сначала выполните `servogate home Y` или перемещайте её медленно");
+  EXPECT_EQ(english(), "Y is not homed: run `servogate home Y` first");
+  EXPECT_EQ(russian(), "Y не выведена в ноль: сначала выполните `servogate home Y`");
   EXPECT_EQ(ask(RequestKind::zero, 1), Refusal::not_homed);
   EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1.0), Refusal::none);
   EXPECT_EQ(ask(RequestKind::home, 1), Refusal::none);
@@ -155,6 +154,17 @@ TEST_F(Gate, names_the_axis_that_is_without_power_or_without_feed_enable) {
   EXPECT_EQ(english(),
             "Y: the PLC does not permit motion (Y.feed_enable is FALSE: see in its program for what, an open "
             "door for instance)");
+}
+
+TEST_F(Gate, tells_who_wants_to_move_an_axis_that_is_being_switched_off_to_wait) {
+  ASSERT_TRUE(axes_[1].jog_increment(20.0));
+  run(30);
+  axes_[1].request_power(false);
+  run(1);
+  for (const RequestKind k : {RequestKind::home, RequestKind::start, RequestKind::step, RequestKind::power})
+    EXPECT_EQ(ask(k, -1, k == RequestKind::power ? 1.0 : 0.0), Refusal::switching_off);
+  EXPECT_EQ(english(),
+            "Y is still being switched off: wait until the drives are off, then `servogate power on`");
 }
 
 TEST_F(Gate, lets_nothing_move_while_a_fault_is_active_but_warnings_do_not_matter) {
@@ -498,6 +508,18 @@ TEST_F(Gate, knows_who_may_ask_for_what) {
   EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 1.0, Asker::plc), Refusal::none);
 }
 
+TEST_F(Gate, names_the_command_that_helps_where_a_program_is_in_the_way_or_is_not_there) {
+  const auto said = [&](RequestKind kind) { return ask(kind), english(); };
+  EXPECT_EQ(said(RequestKind::resume), "no program runs: `servogate start` starts the loaded one");
+  image_.processes[0].state = ProcessState::running;
+  EXPECT_EQ(said(RequestKind::resume), "the program runs and is not held: `servogate hold` holds it");
+  EXPECT_EQ(said(RequestKind::home), "a program runs: end it first (`servogate reset`)");
+  EXPECT_EQ(russian(), "выполняется программа: сначала завершите её (`servogate reset`)");
+  context_.stopping = 1;
+  for (const RequestKind k : {RequestKind::start, RequestKind::step, RequestKind::resume, RequestKind::home})
+    EXPECT_EQ(said(k), "the program is still stopping: ask again once the axes stand");
+}
+
 TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others) {
   using enum image::Format;
   using image::Packet;
@@ -522,7 +544,7 @@ TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others)
 
 TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
   const auto table = refusal_texts();
-  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::switching_off) + 1);
+  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::program_stopping) + 1);
   for (std::size_t i = 1; i < table.size(); ++i) {
     image::Answer a;
     a.refusal = static_cast<std::uint16_t>(i);
@@ -552,9 +574,10 @@ TEST_F(Gate, answers_any_request_in_any_state_without_going_astray) {
     context_.manual_held = random() % 2 != 0;
     context_.holder = static_cast<Asker>(random() % 8);
     context_.homing_runs = random() % 2 != 0;
+    context_.stopping = static_cast<std::uint32_t>(random() % 2);
     image_.processes[0].state = static_cast<ProcessState>(random() % 6);
     const image::Answer a = decide(r, context_);
-    ASSERT_LE(a.refusal, static_cast<std::uint16_t>(Refusal::axis_error_stop));
+    ASSERT_LE(a.refusal, static_cast<std::uint16_t>(Refusal::program_stopping));
     if (r.kind > RequestKind::logic) {
       ASSERT_NE(a.refusal, 0) << i << ": there is no auxiliary axis";
     }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "gateway/machine/consequences.hpp"
+#include "gateway/run/words/ready_words.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/property_seed.hpp"
 
@@ -129,6 +130,41 @@ TEST(Faults, power_that_is_asked_for_while_the_axes_ramp_down_is_refused_and_not
     EXPECT_EQ(mill.alarms(axis::alarm::kBrakeNoTorque) + mill.alarms(axis::alarm::kEnableWithdrawn), 0)
         << mill.alarm_list();
   }
+}
+
+TEST(Faults, requests_on_the_way_from_a_reset_to_rest_are_told_that_the_program_stops) {
+  Mill mill("N10 G90 G94 G71 G29\nN20 G0 X280 Y-280 Z-250\nN30 M30\n");
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
+  ASSERT_TRUE(mill.until([&] { return mill.axis("X").command_velocity > 450.0; }, 5.0));
+  EXPECT_EQ(mill.ask(RequestKind::home), Refusal::program_runs);
+  ASSERT_EQ(mill.ask(RequestKind::reset), Refusal::none);
+  for (const RequestKind k : {RequestKind::home, RequestKind::start, RequestKind::resume, RequestKind::step})
+    EXPECT_EQ(mill.ask(k), Refusal::program_stopping) << static_cast<int>(k);
+  ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 3.0));
+  mill.run(0.1);
+  EXPECT_EQ(mill.ask(RequestKind::home), Refusal::none);
+}
+
+TEST(Faults, drives_that_are_still_being_switched_off_are_not_advised_to_be_switched_on_at_once) {
+  Mill mill("N10 M30\n");
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  const auto missing = [&] {
+    return gateway::missing_for_power(mill.control(), mill.image(), cycle::AlarmSnapshot{},
+                                      text::Language::english);
+  };
+  EXPECT_TRUE(missing().empty());
+  ASSERT_EQ(mill.ask(RequestKind::power, 0.0), Refusal::none);
+  ASSERT_TRUE(mill.until([&] { return !mill.axis("X").enabled; }, 1.0));
+  ASSERT_TRUE(mill.axis("Z").drive_command.power) << "its brake closes";
+  ASSERT_EQ(missing().size(), 1u);
+  EXPECT_EQ(missing()[0].reason, "switching_off");
+  EXPECT_EQ(missing()[0].remedy, "Wait until they are off, then `servogate power on`.");
+  EXPECT_EQ(mill.ask(RequestKind::home), Refusal::switching_off);
+  EXPECT_EQ(mill.ask(RequestKind::jog_increment, 1.0, 0), Refusal::switching_off) << "X is off, but Z is not";
+  ASSERT_TRUE(mill.until([&] { return !mill.axis("Z").drive_command.power; }, 1.0));
+  mill.run(0.01);
+  EXPECT_EQ(missing()[0].reason, "not_asked");
 }
 
 TEST(Faults, spindle_of_the_mill_ramps_down_under_power_in_an_emergency_stop) {

@@ -183,6 +183,25 @@ TEST_F(Stops, that_others_cause_are_said_while_the_command_goes_on_waiting) {
   EXPECT_EQ(shell_.status()["state"], "ended");
 }
 
+TEST_F(Program, that_still_stops_after_a_reset_says_so_to_who_loads_or_types_meanwhile) {
+  const std::string path = (shell_.folder() / "fast.nc").string();
+  std::ofstream(path) << "N10 G0 X200\nN20 X-200\nN30 M2\n";
+  const json load{{"cmd", "load"}, {"program", path}}, mdi{{"cmd", "mdi"}, {"block", "G0 X0"}};
+  ASSERT_EQ(shell_.ask(load)["ok"], true);
+  json loaded, typed = json::object();
+  for (int n = 0; n < 10 && typed.value("code", "") != "gate.program_stopping"; ++n) {  // it stops soon
+    ASSERT_TRUE(shell_.until([](const json& s) { return s["state"] == "idle" || s["state"] == "ended"; }));
+    ASSERT_EQ(shell_.ask({{"cmd", "start"}})["ok"], true);
+    ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 25'000.0; }));
+    EXPECT_EQ(shell_.ask(load)["text"], "a program runs: end it first (`servogate reset`)");
+    ASSERT_EQ(shell_.ask({{"cmd", "reset"}})["ok"], true);
+    loaded = shell_.ask(load);
+    typed = shell_.ask(mdi);
+  }
+  EXPECT_EQ(loaded["text"], "the program is still stopping: ask again once the axes stand");
+  EXPECT_EQ(typed["text"], loaded["text"]);
+}
+
 TEST_F(Program, goes_on_when_its_client_is_killed) {
   const pid_t client = started();
   kill(client, SIGKILL);

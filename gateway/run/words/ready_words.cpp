@@ -51,6 +51,10 @@ constexpr Entry kStarting{"ready.starting", "{0} is not switched on yet ({1})", 
 constexpr Entry kWaitOrSee{
     "ready.wait", "Wait for the drive and its brake; if it stays so, see its power stage and its STO input.",
     "Дождитесь привода и тормоза; если не меняется, проверьте силовую часть и вход STO."};
+constexpr Entry kEnding{"ready.switching-off", "the drives are still being switched off",
+                        "приводы ещё выключаются"};
+constexpr Entry kAskLater{"ready.ask-later", "Wait until they are off, then `servogate power on`.",
+                          "Дождитесь их выключения, затем `servogate power on`."};
 constexpr Entry kNotAsked{"ready.not-asked", "the drives are not switched on", "приводы не включены"};
 constexpr Entry kAxisNotAsked{"ready.axis-not-asked", "the drive of {0} is not switched on",
                               "не включён привод {0}"};
@@ -80,7 +84,13 @@ class Look {
     offline();
     if (chain) return std::move(found_);
     alarms();
-    if (!on(kPowerRequest) && found_.empty()) add("not_asked", say(kNotAsked), say(kAsk));
+    if (!on(kPowerRequest) && found_.empty()) {
+      const auto powered = [](const image::AxisImage& a, std::size_t) { return a.drive_command.power; };
+      if (const std::string letters = axes(powered); !letters.empty())
+        add("switching_off", say(kEnding), say(kAskLater), letters);
+      else
+        add("not_asked", say(kNotAsked), say(kAsk));
+    }
     if (!on(kPowerRequest)) return std::move(found_);
     if (!on(kPowerOn)) add("power_on", say(kPower, image::to_string(kPowerOn)), plc_remedy("MC.power_on"));
     not_enabled();

@@ -102,8 +102,13 @@ class Decision {
   }
   bool no_program() noexcept {
     for (int p = 0; p < c_.image->process_count; ++p)
-      if (busy(state(p))) return refuse(Refusal::program_runs, -1, p);
+      if (busy(state(p))) return under_way(p);
     return true;
+  }
+  /// What is said of a program that runs, or stops just now.
+  bool under_way(int process) noexcept {
+    const bool stops = (c_.stopping >> process & 1u) != 0;
+    return refuse(stops ? Refusal::program_stopping : Refusal::program_runs, -1, process);
   }
   bool no_homing() noexcept { return !c_.homing_runs || refuse(Refusal::homing_runs); }
   bool not_held_by_another() noexcept {
@@ -111,7 +116,11 @@ class Decision {
            refuse(Refusal::manual_held, -1, static_cast<double>(c_.holder));
   }
   bool ready(const Axis& a) noexcept {
-    return (a.motion_permitted() || refuse(Refusal::not_powered, a.index())) && feed_enabled(a);
+    if (a.motion_permitted()) return feed_enabled(a);
+    // While one of them is being switched off, none can be switched on: that comes first.
+    for (const Axis& b : c_.axes)
+      if ((&b == &a || !a.config().auxiliary) && !not_switching_off(b)) return false;
+    return refuse(Refusal::not_powered, a.index());
   }
   bool feed_enabled(const Axis& a) noexcept {
     return a.feed_enabled() || refuse(Refusal::feed_not_enabled, a.index());
@@ -364,7 +373,7 @@ bool Decision::start() noexcept {
   const ProcessState s = state(r_.process);
   // A hold, M00 and the end of a block in STEP go on by the same button.
   if (s == ProcessState::held || s == ProcessState::waiting) return resume();
-  if (busy(s)) return refuse(Refusal::program_runs, -1, r_.process);
+  if (busy(s)) return under_way(r_.process);
   if (!c_.program_loaded) return refuse(Refusal::no_program);
   if (!c_.start_permitted) return refuse(Refusal::start_not_permitted);
   const Mode m = mode_in_force();
@@ -385,6 +394,7 @@ bool Decision::start() noexcept {
 bool Decision::resume() noexcept {
   const ProcessState s = state(r_.process);
   if (!busy(s)) return refuse(Refusal::program_does_not_run, -1, r_.process);
+  if ((c_.stopping >> r_.process & 1u) != 0) return under_way(r_.process);
   if (s == ProcessState::running) return refuse(Refusal::program_not_held, -1, r_.process);
   // Behind an open door nothing is begun that its closing would let go.
   for (const Axis& a : c_.axes)

@@ -55,6 +55,7 @@ enum class Refusal : std::uint16_t {
   drives_not_wanted,     ///< the operator has not asked for the drives
   axis_error_stop,       ///< axis: an error stopped it, MC_Reset has not come yet
   switching_off,         ///< axis: it ramps down to be switched off, or its brake closes
+  program_stopping,      ///< value: the process; its program has been ended, its path is not at rest yet
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis
@@ -68,6 +69,8 @@ struct GateContext {
   image::Reaction reaction = image::Reaction::none;  ///< in force
   image::AlarmNumber first_alarm = 0;
   bool program_loaded = false;  ///< of the request's process
+  std::uint32_t stopping =
+      0;  ///< bit of each process whose program has been ended and whose path still stops
   bool homing_runs = false;
   bool manual_held = false;  ///< somebody holds manual control (jogs, or a pendant with its dead-man)
   image::Asker holder = image::Asker::command_line;
@@ -92,7 +95,7 @@ bool moves(image::RequestKind kind) noexcept;
 /// "the command line": an asker as people call it. Not real-time safe.
 std::string asker_words(image::Asker asker, text::Language language);
 
-/// The sentence for a refusal, e.g. "X is not homed: run `servogate home X` first, or jog slowly". Empty for
+/// The sentence for a refusal, e.g. "X is not homed: run `servogate home X` first". Empty for
 /// an accepted request. `axis_units`: "mm" or "deg" of each axis, mm where there are none. Not real-time
 /// safe.
 std::string render(const image::Answer& answer, const std::vector<std::string>& axis_letters,

@@ -24,17 +24,20 @@ constexpr text::Entry kTexts[] = {
      "аварийный останов: отпустите кнопку и выполните сброс"},
     {"gate.not_powered", "{0} is not ready: switch the drives on first (or wait until the brake is open)",
      "{0} не готова: сначала включите приводы (или дождитесь отпускания тормоза)"},
-    {"gate.not_homed", "{0} is not homed: run `servogate home {0}` first, or jog slowly",
-     "{0} не выведена в ноль: сначала выполните `servogate home {0}` или перемещайте её медленно"},
+    {"gate.not_homed", "{0} is not homed: run `servogate home {0}` first",
+     "{0} не выведена в ноль: сначала выполните `servogate home {0}`"},
     {"gate.feed_not_enabled",
      "{0}: the PLC does not permit motion ({0}.feed_enable is FALSE: see in its program for what, an open "
      "door for "
      "instance)",
      "{0}: ПЛК не разрешает движение ({0}.feed_enable = FALSE: причину, например открытую дверь, ищите в его "
      "программе)"},
-    {"gate.program_runs", "a program runs: stop it first", "выполняется программа: сначала остановите её"},
-    {"gate.program_does_not_run", "no program runs", "программа не выполняется"},
-    {"gate.program_not_held", "the program is not held", "программа не приостановлена"},
+    {"gate.program_runs", "a program runs: end it first (`servogate reset`)",
+     "выполняется программа: сначала завершите её (`servogate reset`)"},
+    {"gate.program_does_not_run", "no program runs: `servogate start` starts the loaded one",
+     "программа не выполняется: загруженную запустит `servogate start`"},
+    {"gate.program_not_held", "the program runs and is not held: `servogate hold` holds it",
+     "программа выполняется и не приостановлена: приостановит её `servogate hold`"},
     {"gate.not_stepping",
      "the program runs in AUTO and would go on to its end: `servogate resume` does that, `servogate reset` "
      "ends it",
@@ -85,10 +88,13 @@ constexpr text::Entry kTexts[] = {
      "{0}: оператор не включил приводы"},
     {"gate.axis_error_stop", "{0} was stopped by an error: MC_Reset first",
      "{0} остановлена ошибкой: сначала MC_Reset"},
-    {"gate.switching_off", "{0} is still being switched off: wait until it stands and its brake has closed",
-     "{0} ещё выключается: дождитесь останова и наложения тормоза"},
+    {"gate.switching_off",
+     "{0} is still being switched off: wait until the drives are off, then `servogate power on`",
+     "{0} ещё выключается: дождитесь выключения приводов, затем `servogate power on`"},
+    {"gate.program_stopping", "the program is still stopping: ask again once the axes stand",
+     "программа ещё останавливается: повторите, когда оси остановятся"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::switching_off) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::program_stopping) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 
