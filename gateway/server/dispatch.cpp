@@ -392,7 +392,8 @@ Reply Dispatch::load() {
 
 Reply Dispatch::begin(bool step) {
   std::optional<image::Mode> mode;
-  if (!resident_.busy()) {
+  const bool typed = resident_.typed();
+  if (!typed && !resident_.busy()) {
     if (resident_.program().empty())
       return fail(cycle::refusal_texts()[static_cast<std::size_t>(cycle::Refusal::no_program)], {}, kAlarm);
     resident_.take_tables();
@@ -406,6 +407,7 @@ Reply Dispatch::begin(bool step) {
   // A wait that began before belongs to the block before.
   const json asked{{"asked_s", resident_.image().now.seconds()}};
   if (!ask(step ? RequestKind::step : RequestKind::start, -1, 0.0, mode)) return refusal_;
+  if (typed) return good(says::kTypedGoesOn, {resident_.manual_block()}, asked);
   return step ? good(says::kStepped, {}, asked) : good(says::kStarted, {resident_.program()}, asked);
 }
 

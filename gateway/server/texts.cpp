@@ -88,6 +88,8 @@ const Entry kBlockRuns{"said.block-runs", "the block runs{0}", "кадр вып�
 const Entry kLoaded{"said.loaded", "{0} is loaded: {1} blocks, {2} warnings",
                     "{0} загружена: кадров {1}, предупреждений {2}"};
 const Entry kStarted{"said.started", "{0} runs", "{0} выполняется"};
+const Entry kTypedGoesOn{"said.typed-goes-on", "the typed block goes on: {0}",
+                         "введённый кадр продолжается: {0}"};
 const Entry kStepped{"said.stepped", "one block runs", "выполняется один кадр"};
 const Entry kHeld{"said.held", "feed hold: the axes stop on the path",
                   "пауза подачи: оси останавливаются на контуре"};

@@ -51,8 +51,9 @@ extern const text::Entry kJogs;         ///< {0} axis, {1} direction
 extern const text::Entry kZero;         ///< {0} axis, {1} value, {2} unit, {3} origin, {4} machine coordinate
 extern const text::Entry kZeroDiameter;  ///< as kZero
 extern const text::Entry kBlockRuns;
-extern const text::Entry kLoaded;   ///< {0} program, {1} blocks, {2} warnings
-extern const text::Entry kStarted;  ///< {0} program
+extern const text::Entry kLoaded;       ///< {0} program, {1} blocks, {2} warnings
+extern const text::Entry kStarted;      ///< {0} program
+extern const text::Entry kTypedGoesOn;  ///< {0} block
 extern const text::Entry kStepped, kHeld, kManualStopped, kNothingHeld, kResumed, kStopped;
 extern const text::Entry kReset;
 extern const text::Entry kResetLeft;     ///< {0} alarms still active

@@ -151,6 +151,14 @@ TEST_F(Stops, that_the_program_asks_for_end_step_wait) {
   EXPECT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["command"] == 10.0; }));
 }
 
+TEST_F(Stops, of_a_typed_block_are_gone_on_from_as_that_block_and_not_as_the_loaded_program) {
+  ASSERT_EQ(shell_.run({"mdi", "M0", "--wait"}).exit, 0);
+  EXPECT_EQ(shell_.run({"start"}).out, "the typed block goes on: M0\n");
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["state"] == "ended"; }));
+  ASSERT_EQ(shell_.run({"mdi", "M0", "--wait"}).exit, 0);
+  EXPECT_EQ(shell_.run({"start"}, "ru_RU.UTF-8").out, "введённый кадр продолжается: M0\n");
+}
+
 TEST_F(Stops, of_a_typed_block_end_mdi_wait) {
   const Outcome o = shell_.run({"mdi", "M0", "--wait"});
   EXPECT_EQ(o.exit, 0) << o.err;
