@@ -79,7 +79,7 @@ class Dispatch {
   /// Puts a request to the gate. True: accepted; otherwise `refusal_` holds the answer.
   /// `mode`: the mode that belongs to it; a refused request leaves the machine in the one it was in.
   bool ask(RequestKind kind, int axis = -1, double value = 0.0, std::optional<image::Mode> mode = {});
-  void as_people_write(image::Answer& answer) const;
+  std::vector<std::string> as_people_write(image::Answer& answer) const;
   /// Index of the axis that `name` says; -1: `refusal_` holds the answer.
   int axis(const json& name);
   /// A number of the request; false: `refusal_` holds the answer.
@@ -198,10 +198,10 @@ bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image
     return false;
   }
   if (answer.refusal == 0) return true;
-  as_people_write(answer);
+  const std::vector<std::string> units = as_people_write(answer);
   json refused{{"ok", false},
                {"code", cycle::refusal_texts()[answer.refusal].id},
-               {"text", cycle::render(answer, machine().letters(), language_, machine().unit_words())},
+               {"text", cycle::render(answer, machine().letters(), language_, units)},
                {"exit", kAlarm}};
   const auto refusal = static_cast<cycle::Refusal>(answer.refusal);
   if (refusal == cycle::Refusal::not_powered || refusal == cycle::Refusal::emergency_stop)
@@ -220,13 +220,17 @@ void Dispatch::add_missing(json& answer) {
   answer["text"] = words;
 }
 
-/// The cycle knows radii only; of a diameter axis people see the diameter.
-void Dispatch::as_people_write(image::Answer& answer) const {
+/// The cycle knows radii only; of a diameter axis people see the diameter, and are told so. Gives the units
+/// of the axes.
+std::vector<std::string> Dispatch::as_people_write(image::Answer& answer) const {
+  std::vector<std::string> units = machine().unit_words();
   const auto refusal = static_cast<cycle::Refusal>(answer.refusal);
   const bool of_radius = refusal == cycle::Refusal::jog_range || refusal == cycle::Refusal::at_soft_limit;
-  if (!of_radius || answer.axis < 0 || !axis_config(answer.axis).diameter) return;
-  answer.value *= 2.0;
-  answer.limit *= 2.0;
+  const bool of_place = of_radius || refusal == cycle::Refusal::zero_range;
+  if (!of_place || answer.axis < 0 || !axis_config(answer.axis).diameter) return units;
+  units[static_cast<std::size_t>(answer.axis)] += text::both(" in diameter", " по диаметру");
+  if (of_radius) answer.value *= 2.0, answer.limit *= 2.0;
+  return units;
 }
 
 int Dispatch::axis(const json& name) {

@@ -111,6 +111,16 @@ TEST(Lathe, says_places_of_X_as_diameters_wherever_they_are_the_reason) {
   Shell shell;
   shell.up("lathe");
   ASSERT_EQ(shell.run({"power", "on"}).exit, 0);
+  const auto refused = [&](const std::vector<std::string>& words, const char* said, const char* language) {
+    const std::string err = shell.run(words, language).err;
+    EXPECT_NE(err.find(said), std::string::npos) << err;
+  };
+  refused({"jog", "X", "-500"},
+          "X cannot jog by -500 mm in diameter: from -244 to 244 mm in diameter is possible", "C");
+  refused({"jog", "X", "-500"}, "X не может переместиться на -500 мм по диаметру: возможно от -244 до 244 мм",
+          "ru_RU.UTF-8");
+  refused({"zero", "X", "1e6"}, "X cannot be given the value 1000000 mm in diameter", "C");
+  refused({"jog", "Z", "-5000"}, "Z cannot jog by -5000 mm: from", "C");
   ASSERT_EQ(shell.run({"home", "X"}).exit, 0);
   ASSERT_TRUE(shell.until([](const json& s) { return s["axes"][0]["moving"].get<bool>(); }));
   ASSERT_EQ(shell.run({"input", "estop_chain_ok", "off"}).exit, 0);
