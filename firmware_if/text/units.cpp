@@ -9,8 +9,9 @@ namespace {
 
 constexpr struct {
   std::string_view english, russian;
-} kUnits[] = {{"mm", "мм"},       {"deg", "град"},       {"mm/s", "мм/с"},   {"deg/s", "град/с"},
-              {"mm/s2", "мм/с²"}, {"deg/s2", "град/с²"}, {"mm/s3", "мм/с³"}, {"deg/s3", "град/с³"}};
+} kUnits[] = {{"mm", "мм"},        {"deg", "град"},       {"mm/s", "мм/с"},
+              {"deg/s", "град/с"}, {"mm/s2", "мм/с²"},    {"deg/s2", "град/с²"},
+              {"mm/s3", "мм/с³"},  {"deg/s3", "град/с³"}, {"rpm", "об/мин"}};
 
 }  // namespace
 

@@ -257,7 +257,7 @@ bool Dispatch::unit_is_own(int axis) {
   const machine::AxisConfig& a = axis_config(axis);
   const std::string said = request_.value("unit", "");
   if (said.empty() || said == a.unit()) return true;
-  refusal_ = fail(says::kNotUnit, {said, a.letter, a.unit()}, kWrongUse);
+  refusal_ = fail(says::kNotUnit, {said, a.letter, text::unit_words(a.unit())}, kWrongUse);
   return false;
 }
 

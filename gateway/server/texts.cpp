@@ -21,7 +21,7 @@ const Entry kUnknownAsker{"socket.unknown-asker", "'{0}' may not ask here; asker
 const Entry kNoAxis{"socket.no-axis", "the machine has no axis '{0}'; it has {1}",
                     "у станка нет оси «{0}»; есть {1}"};
 const Entry kNotUnit{"socket.not-unit", "'{0}' is not the unit of {1}: it moves in {2}",
-                     "«{0}» — не единица оси {1}: она измеряется в {2}"};
+                     "«{0}» — не единица оси {1}: её единица — {2}"};
 const Entry kNoNumber{"socket.no-number", "'{0}' must be a number", "«{0}» должно быть числом"};
 const Entry kNotSwitch{"socket.not-switch", "'{0}' must be 1 or 0", "«{0}» должно быть 1 или 0"};
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",

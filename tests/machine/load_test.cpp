@@ -198,6 +198,67 @@ TEST(MachineFile, a_file_that_does_not_exist_is_a_finding) {
             "[machine.file_missing]");
 }
 
+TEST(MachineFile, syntax_errors_are_said_in_russian_too_and_the_words_that_nobody_translated_are_quoted) {
+  const struct {
+    const char *text, *said;
+  } rows[] = {
+      {"name \"a\"\n",
+       "m.toml:1:6: error: синтаксис TOML: при чтении пары «ключ = значение»: "
+       "ожидается «=», а стоит «\"» [machine.syntax]"},
+      {"name\n", "ожидается «=», а стоит «конец строки»"},
+      {"name =\n", "нет значения, стоит «конец строки»"},
+      {"name = abc\n", "при чтении значения: непонятно, какое это значение (текст пишется в кавычках)"},
+      {"name = \"a\n", "строка файла кончилась раньше закрывающей кавычки"},
+      {"name = \"a\" b\n", "значение уже кончилось, а дальше стоит «b»"},
+      {"a = 1,5\n", "значение уже кончилось, а дальше стоит «,»"},
+      {"a = 5mm\n",
+       "при чтении целого числа: ожидается цифра, а стоит «m» (значение с единицей пишется в "
+       "кавычках)"},
+      {"a = \"\\q\"\n", "неизвестное сочетание «\\q»"},
+      {"a = 1\na = 2\n",
+       "m.toml:2:5: error: синтаксис TOML: при чтении пары «ключ = значение»: ключ «a» уже "
+       "есть выше"},
+      {"[a]\n[a]\n", "при чтении заголовка таблицы: таблица «a» уже есть выше"},
+      {"a = 1\n[a]\n", "«a» уже есть выше и значит другое"},
+      {"[a\n", "ожидается «]», а стоит «конец строки»"},
+      {"a = [1, 2\n", "при чтении списка: файл кончился раньше времени"},
+      {"a = [1 2]\n", "ожидается запятая или «]», а стоит «2»"},
+      {"a = 05\n", "число не может начинаться с нуля"},
+      {"a = True\n", "ожидается «true», а стоит «T»"},
+      {"; a\n", "ожидается ключ, [таблица] или # комментарий, а стоит «;»"},
+      {"a = \"\xFF\"\n", "файл записан не в UTF-8"},
+      {"a = 2020-01-01T99:00:00\n", "это место не читается; слова читающей его библиотеки: «Error while"},
+  };
+  for (const auto& row : rows) {
+    const std::string lines = test::lines_of(parse(row.text, "m.toml").findings, text::Language::russian);
+    EXPECT_NE(lines.find(row.said), std::string::npos) << row.text << lines;
+  }
+}
+
+TEST(MachineFile, words_put_into_russian_sentences_are_russian) {
+  const auto said = [](const std::string& from, const std::string& to) {
+    std::string text = example("mill");
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    return test::lines_of(parse(text, source("examples/mill/machine.toml")).findings,
+                          text::Language::russian);
+  };
+  const struct {
+    const char *from, *to, *words;
+  } rows[] = {
+      {"letter = \"Y\"", "letter = \"X\"", "«X»: повторяет описание из строки "},
+      {"channel = \"di1\"", "channel = \"di0\"", "«di0»: повторяет описание из строки "},
+      {"\"mock:gpio\"", "\"nothing:gpio\"", "ожидалось mock:ИМЯ, chip:МЕТКА"},
+      {"SA25.IN", "SA250", "здесь ожидается слово (SA16.IN, .LI, .RE)"},
+      {"min_speed = ", "min_speed = 9000 # ", "min_speed 9000 об/мин не меньше max_speed 6000 об/мин"},
+  };
+  for (const auto& row : rows) {
+    const std::string lines = said(row.from, row.to);
+    EXPECT_NE(lines.find(row.words), std::string::npos) << row.to << "\n" << lines;
+  }
+}
+
 TEST(MachineFile, a_folder_is_no_machine_file) {
   const LoadResult r = load(source("examples"));
   ASSERT_EQ(r.findings.size(), 1u);

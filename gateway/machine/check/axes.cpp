@@ -287,7 +287,8 @@ void check_spindles(const MachineConfig& machine, Reading& reading) {
       reading.error(machine.where(path), finding::kSpindleSource, {number});
     if (s.max_speed > 0.0 && s.min_speed >= s.max_speed)
       reading.error(machine.where(path + ".min_speed"), finding::kSpindleSpeeds,
-                    {number, text::number(s.min_speed) + " rpm", text::number(s.max_speed) + " rpm"});
+                    {number, text::number(s.min_speed) + " " + text::unit_words("rpm"),
+                     text::number(s.max_speed) + " " + text::unit_words("rpm")});
     check_inverter(machine, s, path, number, reading);
   }
 }

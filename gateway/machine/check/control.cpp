@@ -54,8 +54,10 @@ void check_buses(const MachineConfig& machine, Reading& reading) {
     const std::string path = "bus." + std::to_string(i);
     if (!bus.url.empty())
       check_url(bus.url, path + ".url", kCan,
-                "mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, socketcand:unix:PATH/NAME, "
-                "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
+                text::both("mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, socketcand:unix:PATH/NAME, "
+                           "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
+                           "mock:ИМЯ, socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, socketcand:unix:ПУТЬ/ИМЯ, "
+                           "lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ"),
                 machine, reading);
     const bool known = std::any_of(std::begin(kRates), std::end(kRates),
                                    [&](int k) { return bus.bit_rate == std::int64_t{k} * 1000; });
@@ -87,9 +89,12 @@ class StationCheck {
     }
     if (s_.kind == StationKind::modbus) needed("device", s_.device);
     if (!s_.url.empty() && s_.kind == StationKind::modbus)
-      check_url(s_.url, path_ + "url", kModbus, "mock:NAME, tcp:HOST:PORT, rtu:/dev/...", machine_, reading_);
+      check_url(s_.url, path_ + "url", kModbus,
+                text::both("mock:NAME, tcp:HOST:PORT, rtu:/dev/...", "mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/..."),
+                machine_, reading_);
     if (!s_.url.empty() && s_.kind == StationKind::gpio)
-      check_url(s_.url, path_ + "url", kGpio, "mock:NAME, chip:LABEL", machine_, reading_);
+      check_url(s_.url, path_ + "url", kGpio, text::both("mock:NAME, chip:LABEL", "mock:ИМЯ, chip:МЕТКА"),
+                machine_, reading_);
     for (std::size_t i = 0; i < s_.points.size(); ++i)
       if (s_.points[i].debounce > 0.0 && s_.points[i].channel != ChannelKind::di)
         reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".debounce"),

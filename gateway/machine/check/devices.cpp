@@ -111,7 +111,8 @@ class DeviceUse {
       const double rpm = s.max_speed * static_cast<double>(s.gear[0]) / static_cast<double>(s.gear[1]);
       motor(*device, m_.node(s.drive)->device,
             text::both("spindle " + std::to_string(i + 1), "шпиндель " + std::to_string(i + 1)),
-            text::number(s.max_speed) + " rpm", rpm, "spindle." + std::to_string(i) + ".max_speed");
+            text::number(s.max_speed) + " " + text::unit_words("rpm"), rpm,
+            "spindle." + std::to_string(i) + ".max_speed");
     }
   }
 

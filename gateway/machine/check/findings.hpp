@@ -35,7 +35,7 @@ inline constexpr text::Entry kEstopShared{
     "machine.estop_shared", "estop \"{0}\" is {1} already; the emergency-stop chain has an input of its own",
     "estop «{0}» — уже {1}; у цепи аварийного останова свой вход"};
 inline constexpr text::Entry kTwice{"machine.twice", "{0} \"{1}\" is already declared in line {2}",
-                                    "{0} «{1}»: уже описано в строке {2}"};
+                                    "{0} «{1}»: повторяет описание из строки {2}"};
 inline constexpr text::Entry kBadChannel{"machine.bad_channel",
                                          "channel \"{0}\": expected di, dq, ai or aq with a number, like di3",
                                          "канал «{0}»: ожидалось di, dq, ai или aq с номером, например di3"};
@@ -118,7 +118,7 @@ inline constexpr text::Entry kPointPacket{"machine.point_packet",
                                           "{0} of \"{1}\": a signal lies in packet A (SA...)",
                                           "{0} сигнала «{1}»: сигнал лежит в пакете A (SA...)"};
 inline constexpr text::Entry kPointFormat{"machine.point_format", "{0} of \"{1}\": {2} needs {3}",
-                                          "{0} сигнала «{1}»: {2}: нужен {3}"};
+                                          "{0} сигнала «{1}»: {2}: здесь ожидается {3}"};
 inline constexpr text::Entry kInputWriter{"machine.writer", "\"{0}\" is an input; its writer cannot be {1}",
                                           "«{0}» — вход; писать его не может {1}"};
 inline constexpr text::Entry kOutputWriter{"machine.writer",

@@ -270,7 +270,7 @@ inline constexpr text::Entry kUnsupervisedModule{
 inline constexpr text::Entry kPdoSize{"machine.pdo_size", "{0} {1} maps {2} bits; 64 fit",
                                       "{0} {1}: отображено {2} бит; помещается 64"};
 inline constexpr text::Entry kPdoTwice{"machine.pdo_twice", "{0} {1} is already declared in line {2}",
-                                       "{0} {1}: уже описан в строке {2}"};
+                                       "{0} {1}: повторяет описание из строки {2}"};
 inline constexpr text::Entry kPdoNoWord{"machine.pdo_no_word", "no {0} maps {1} ({2})",
                                         "ни один {0} не содержит {1} ({2})"};
 inline constexpr text::Entry kPdoTransmission{"machine.pdo_transmission",

@@ -88,6 +88,100 @@ std::string character_at(std::string_view text, Where at) {
   return {};
 }
 
+/// What the library says it was reading, in the genitive.
+constexpr struct {
+  std::string_view english, russian;
+} kReading[] = {{"key-value pair", "пары «ключ = значение»"},
+                {"key", "ключа"},
+                {"value", "значения"},
+                {"string", "строки в кавычках"},
+                {"literal string", "строки в апострофах"},
+                {"table header", "заголовка таблицы"},
+                {"root table", "файла"},
+                {"array", "списка"},
+                {"inline table", "таблицы в фигурных скобках"},
+                {"boolean", "значения true или false"},
+                {"decimal integer", "целого числа"},
+                {"floating-point", "числа"},
+                {"hexadecimal integer", "шестнадцатеричного числа"},
+                {"date", "даты"},
+                {"time", "времени"}};
+
+/// Why it went on no further; each * is what stands in its place, {0} and {1} in Russian. The first that
+/// fits.
+constexpr struct {
+  std::string_view english, russian;
+} kReasons[] = {
+    {"expected '*', saw '*'", "ожидается «{0}», а стоит «{1}»"},
+    {"expected a comment or whitespace, saw '*'", "значение уже кончилось, а дальше стоит «{0}»"},
+    {"expected value, saw '*'", "нет значения, стоит «{0}»"},
+    {"expected keys, tables, whitespace or comments, saw '*'",
+     "ожидается ключ, [таблица] или # комментарий, а стоит «{0}»"},
+    {"expected bare key starting character or string delimiter, saw '*'", "ожидается ключ, а стоит «{0}»"},
+    {"expected comma or closing ']', saw '*'", "ожидается запятая или «]», а стоит «{0}»"},
+    {"expected value or closing ']', saw comma", "ожидается значение или «]», а стоит запятая"},
+    {"expected key or closing '}', saw '*'", "ожидается ключ или «}», а стоит «{0}»"},
+    {"expected key-value pair, saw closing '}' (dangling comma)", "перед «}» лишняя запятая"},
+    {"expected digit, saw '*'", "ожидается цифра, а стоит «{0}» (значение с единицей пишется в кавычках)"},
+    {"expected decimal digit, saw '*'", "ожидается цифра, а стоит «{0}»"},
+    {"could not determine value type", "непонятно, какое это значение (текст пишется в кавычках)"},
+    {"encountered end-of-file", "файл кончился раньше времени"},
+    {"unescaped control characters other than TAB (U+0009) are explicitly prohibited",
+     "строка файла кончилась раньше закрывающей кавычки, или в тексте управляющий символ"},
+    {"control characters other than TAB (U+0009) are explicitly prohibited",
+     "строка файла кончилась раньше закрывающего апострофа, или в тексте управляющий символ"},
+    {"unknown escape sequence '*'", "неизвестное сочетание «{0}» (обратная черта в тексте пишется дважды)"},
+    {"cannot redefine existing table '*'", "таблица «{0}» уже есть выше"},
+    {"cannot redefine existing * '*' as *", "«{1}» уже есть выше и значит другое"},
+    {"cannot redefine existing * as dotted key-value pair", "этот ключ уже есть выше и значит другое"},
+    {"cannot redefine existing * '*'", "ключ «{1}» уже есть выше"},
+    {"cannot insert '*' into existing inline table",
+     "«{0}» нельзя добавить к таблице, записанной в фигурных скобках"},
+    {"tables with blank bare keys are explicitly prohibited", "у таблицы нет имени"},
+    {"leading zeroes are prohibited", "число не может начинаться с нуля"},
+    {"'*' is not representable in 64 bits", "число «{0}» слишком велико"},
+    {"expected month between 1 and 12 (inclusive), saw *", "месяц — от 1 до 12, а не {0}"}};
+
+/// The parts of `words` that the stars of `pattern` stand for; false: it has another form.
+bool fits(std::string_view pattern, std::string_view words, std::vector<std::string>& parts) {
+  parts.clear();
+  for (std::size_t star = pattern.find('*'); star != std::string_view::npos; star = pattern.find('*')) {
+    if (!words.starts_with(pattern.substr(0, star))) return false;
+    words.remove_prefix(star);
+    pattern.remove_prefix(star + 1);
+    const std::string_view next = pattern.substr(0, pattern.find('*'));
+    const std::size_t end = next.empty() ? words.size() : words.find(next, 1);
+    if (end == std::string_view::npos) return false;
+    const std::string_view part = words.substr(0, end);
+    parts.emplace_back(part == "\\n" ? "конец строки" : part);
+    words.remove_prefix(end);
+  }
+  return words == pattern;
+}
+
+/// The library's words, and what they are in Russian; what the tables lack is quoted there.
+std::string in_both(const std::string& words) {
+  if (words.starts_with("Encountered invalid utf-8 sequence"))
+    return text::both(words, "файл записан не в UTF-8");
+  std::string_view rest = words;
+  constexpr std::string_view kBegin = "Error while parsing ";
+  std::string russian;
+  if (const std::size_t colon = rest.find(": ");
+      rest.starts_with(kBegin) && colon != std::string_view::npos) {
+    const std::string_view what = rest.substr(kBegin.size(), colon - kBegin.size());
+    for (const auto& row : kReading)
+      if (row.english == what) russian = "при чтении " + std::string(row.russian) + ": ";
+    rest.remove_prefix(colon + 2);
+  }
+  std::vector<std::string> parts;
+  for (const auto& row : kReasons)
+    if (fits(row.english, rest, parts)) {
+      const text::Entry entry{{}, {}, row.russian};
+      return text::both(words, russian + text::render(entry, parts, text::Language::russian));
+    }
+  return text::both(words, "это место не читается; слова читающей его библиотеки: «" + words + "»");
+}
+
 }  // namespace
 
 const Element* Element::find(std::string_view name) const {
@@ -103,8 +197,7 @@ Document read_document(std::string_view source) {
     convert_table(toml::parse(source), out.root);
   } catch (const toml::parse_error& error) {
     out.root.children.clear();
-    out.error = std::string(error.description());
-    if (out.error.empty()) out.error.assign(1, '?');
+    out.error = in_both(std::string(error.description()));
     out.error_at = where(error.source().begin);
     const std::string character = character_at(source, out.error_at);
     if (character.size() > 1)
