@@ -463,6 +463,26 @@ image::NumberRange playable(const machine::PointConfig& point) {
   return {std::max(place.min, std::min(point.shift, end)), std::min(place.max, std::max(point.shift, end))};
 }
 
+/// What an analog point can be next to a value: below it and above it, the same twice where it can be the
+/// value.
+std::pair<double, double> next_to(const machine::PointConfig& point, double value) {
+  const bool whole_place = point.place.format != image::Format::re && point.place.format != image::Format::lr;
+  if (whole_place && std::abs(point.scale) < 1.0) return {std::floor(value), std::ceil(value)};
+  if (point.scale == 0.0) return {point.shift, point.shift};
+  const double raw = (value - point.shift) / point.scale;
+  const auto of = [&](double counts) {
+    const double shown = counts * point.scale + point.shift;
+    return whole_place ? std::round(shown) : shown;
+  };
+  return std::minmax({of(std::floor(raw)), of(std::ceil(raw))});
+}
+
+/// A point without fractions, where a person means what he writes; of others the nearest step does.
+bool is_whole(const machine::PointConfig& point) {
+  const bool whole_place = point.place.format != image::Format::re && point.place.format != image::Format::lr;
+  return whole_place || (point.scale == std::floor(point.scale) && point.shift == std::floor(point.shift));
+}
+
 bool Dispatch::input_value(const machine::PointConfig& point, MockWorld::Play& play) {
   const json value = request_.value("value", json());
   const auto wrong = [&](const text::Entry& entry, const std::vector<std::string>& arguments) {
@@ -479,7 +499,16 @@ bool Dispatch::input_value(const machine::PointConfig& point, MockWorld::Play& p
     return wrong(says::kNoNumber, {"value"});
   const image::NumberRange range = playable(point);
   const bool inside = *play.value >= range.min && *play.value <= range.max;
-  if (inside && (point.is_analog() || *play.value == range.min || *play.value == range.max)) return true;
+  if (inside && point.is_analog()) {
+    const auto [below, above] = next_to(point, *play.value);
+    const bool fits = below == *play.value || above == *play.value;
+    if (is_whole(point) && !fits)
+      return wrong(says::kInputSteps,
+                   {point.name, text::number(*play.value), text::number(below), text::number(above)});
+    play.value = above - *play.value > *play.value - below ? below : above;
+    return true;
+  }
+  if (inside && (*play.value == range.min || *play.value == range.max)) return true;
   if (!point.is_analog()) return wrong(says::kDigitalPoint, {point.name, text::number(*play.value)});
   return wrong(says::kInputRange,
                {point.name, text::number(*play.value), text::number(range.min), text::number(range.max)});

@@ -62,6 +62,8 @@ const Entry kDigitalPoint{"socket.digital-point", "'{0}' is on or off (1 or 0), 
                           "«{0}» — вход on или off (1 или 0), а не {1}"};
 const Entry kInputRange{"socket.input-range", "'{0}' cannot be {1}: from {2} to {3} is possible",
                         "«{0}» не может быть {1}: возможно от {2} до {3}"};
+const Entry kInputSteps{"socket.input-steps", "'{0}' cannot be {1}: its register holds {2} or {3}",
+                        "«{0}» не может быть {1}: регистр вмещает {2} или {3}"};
 const Entry kFollowsNothing{"socket.follows-nothing",
                             "'{0}' follows nothing by itself: `auto` is for switches that axes operate",
                             "«{0}» ни за чем не следит: `auto` — для выключателей, которыми управляют оси"};

@@ -37,6 +37,7 @@ extern const text::Entry kRealPoint;         ///< {0} point, {1} station, {2} it
 extern const text::Entry kAnalogPoint;       ///< {0} point
 extern const text::Entry kDigitalPoint;      ///< {0} point, {1} value
 extern const text::Entry kInputRange;        ///< {0} point, {1} value, {2} smallest, {3} largest
+extern const text::Entry kInputSteps;        ///< {0} point, {1} value, {2} and {3} those on either side
 extern const text::Entry kFollowsNothing;    ///< {0} point
 extern const text::Entry kNotSaved;          ///< {0} the system's words
 

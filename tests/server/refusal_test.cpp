@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "gateway/machine/state/state_lock.hpp"
 #include "tests/server/rig/shell.hpp"
 
@@ -59,6 +62,8 @@ TEST_F(Refusals, name_the_range_of_a_number_that_is_too_large_or_none) {
       {{"input", "air_pressure", "-1"}, 2, "from 0 to 32767 is possible"},
       {{"input", "air_pressure", "40000"}, 2, "from 0 to 32767 is possible"},
       {{"input", "air_pressure", "nan"}, 2, "takes: POINT on | off | auto | NUMBER"},
+      {{"input", "air_pressure", "1.5"}, 2, "'air_pressure' cannot be 1.5: its register holds 1 or 2"},
+      {{"input", "air_pressure", "0.999"}, 2, "its register holds 0 or 1"},
       {{"input", "door_closed", "5"}, 2, "'door_closed' is on or off (1 or 0), not 5"},
       {{"override", "200"}, 1, "a feed override of 200 % is not possible: 0 to 150 %"},
       {{"override", "1e300"}, 1, "0 to 150 %"},
@@ -113,16 +118,39 @@ TEST_F(Refusals, in_russian_name_the_file_and_have_no_english_words) {
   const struct {
     std::vector<std::string> arguments;
     std::string said;
-  } rows[] = {{{"plc", "load", none}, "не читается " + none + ": нет такого файла или каталога"},
-              {{"load", none}, "файл не читается: нет такого файла или каталога"},
-              {{"jog", "X", "-601mm"}, "от -600 до 600 мм"},
-              {{"zero", "X", "1e300"}, "от -99999.999 до 99999.999 мм"}};
+  } rows[] = {
+      {{"plc", "load", none}, "не читается " + none + ": нет такого файла или каталога"},
+      {{"load", none}, "файл не читается: нет такого файла или каталога"},
+      {{"jog", "X", "-601mm"}, "от -600 до 600 мм"},
+      {{"zero", "X", "1e300"}, "от -99999.999 до 99999.999 мм"},
+      {{"zero", "X", "5inch"}, "«inch» — не единица оси X: её единица — мм"},
+      {{"input", "air_pressure", "1.5"}, "«air_pressure» не может быть 1.5: регистр вмещает 1 или 2"}};
   for (const auto& row : rows) {
     const Outcome o = shell_.run(row.arguments, "ru_RU.UTF-8");
     EXPECT_NE(o.exit, 0);
     EXPECT_NE(o.err.find(row.said), std::string::npos) << row.said << "\n" << o.err;
   }
   EXPECT_EQ(shell_.run({"jog", "X", "+1mm", "--no-wait"}, "ru_RU.UTF-8").out, "X перемещается на +1 мм\n");
+}
+
+TEST(Inputs, with_fractions_take_the_nearest_step_of_their_register_and_say_which) {
+  Shell shell;
+  std::ifstream example(Shell::example("mill/machine.toml"));
+  std::string machine((std::istreambuf_iterator<char>(example)), {});
+  const std::string whole = "channel = \"ai1\", place = \"SA17.IN\"";
+  ASSERT_NE(machine.find(whole), std::string::npos);
+  machine.replace(machine.find(whole), whole.size(), "channel = \"ai1\", place = \"SA30.RE\", scale = 0.1");
+  std::ofstream(shell.folder() / "machine.toml") << machine;
+  std::filesystem::copy_file(Shell::example("mill/mill.st"), shell.folder() / "mill.st");
+  shell.up_file((shell.folder() / "machine.toml").string(), {"--virtual", "--speed", "20"});
+  const struct {
+    const char *number, *said;
+  } rows[] = {{"1.5", "input air_pressure is 1.5\n"},
+              {"1.26", "input air_pressure is 1.3\n"},
+              {"1.24", "input air_pressure is 1.2\n"},
+              {"0", "input air_pressure is 0\n"}};
+  for (const auto& row : rows)
+    EXPECT_EQ(shell.run({"input", "air_pressure", row.number}).out, row.said) << row.number;
 }
 
 TEST(StateDirectory, belongs_to_one_control_at_a_time) {
