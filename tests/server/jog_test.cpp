@@ -117,7 +117,7 @@ TEST_F(JogCommand, that_the_end_of_the_travel_ends_says_so) {
   ASSERT_EQ(shell_.run({"home", "--wait"}).exit, 0);
   const Outcome o = while_it_jogs([](pid_t) {});
   EXPECT_EQ(o.exit, 1);
-  EXPECT_TRUE(contains(o.err, "at the end of its travel; X stands at 300 mm")) << o.err;
+  EXPECT_TRUE(contains(o.err, "at the end of its travel; X stands at 300 mm (machine coordinates)")) << o.err;
 }
 
 TEST_F(JogCommand, that_somebody_else_ends_is_stopped_by_the_operator) {

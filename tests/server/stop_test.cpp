@@ -98,8 +98,9 @@ TEST_F(Stopped, status_is_all_in_the_users_language) {
   begin("N10 (DIS,\"A\")\nN20 G1 X50 F600\nN30 M2\n");
   ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 100.0; }));
   const std::string out = shell_.run({"status"}, "ru_RU.UTF-8").out;
-  for (const char* part : {"авто, выполняется", "строка 2 из 3", "подача ", "мм/мин", "инструмент",
-                           "привод работает", "выведена в ноль", "движется", "шпиндель 0 об/мин"})
+  for (const char* part :
+       {"авто, выполняется", "строка 2 из 3", "подача ", "мм/мин", "инструмент",
+        "оси, в координатах станка:", "привод работает", "выведена в ноль", "движется", "шпиндель 0 об/мин"})
     EXPECT_TRUE(contains(out, part)) << part << ": " << out;
   for (const char* english :
        {"auto", "running", "feed", "homed", "moving", "spindle", "operation_enabled", "rpm"})

@@ -19,9 +19,11 @@ using nlohmann::json;
 
 namespace {
 
-const text::Entry kStands{"client.stands", "{0} stands at {1} {2}", "{0} стоит на {1} {2}"};
-const text::Entry kStandsDiameter{"client.stands-diameter", "{0} stands at {1} {2} in diameter",
-                                  "{0} стоит на {1} {2} по диаметру"};
+const text::Entry kStands{"client.stands", "{0} stands at {1} {2} (machine coordinates)",
+                          "{0} стоит на {1} {2} (в координатах станка)"};
+const text::Entry kStandsDiameter{"client.stands-diameter",
+                                  "{0} stands at {1} {2} in diameter (machine coordinates)",
+                                  "{0} стоит на {1} {2} по диаметру (в координатах станка)"};
 
 const text::Entry kLastSeen{"client.last-seen", "{0} was last seen at {1} {2}: its drive does not answer",
                             "{0}: последнее известное место {1} {2}, привод не отвечает"};

@@ -20,6 +20,7 @@ const Entry kHead{"client.head", "{0}: {1}, {2}{3}, {4} s", "{0}: {1}, {2}{3}, {
 const Entry kHoming{"client.homing", ", homing", ", идёт выход в ноль"};
 const Entry kFeed{"client.feed", "feed {0} mm/min, override {1} %, tool {2}",
                   "подача {0} мм/мин, коррекция {1} %, инструмент {2}"};
+const Entry kAxes{"client.axes", "axes, in machine coordinates:", "оси, в координатах станка:"};
 const Entry kSpindle{"client.spindle", "  spindle {0} rpm (commanded {1})  {2}",
                      "  шпиндель {0} об/мин (задано {1})  {2}"};
 const Entry kProgram{"client.program", "program {0}: {1} blocks", "программа {0}: кадров {1}"};
@@ -169,7 +170,9 @@ void print_status(const json& s) {
   print_missing(s.value("missing", json::array()));
   print_line(say(kFeed, {fixed(s.value("feed_mm_min", 0.0), 0), fixed(s.value("override_pct", 0.0), 0),
                          std::to_string(s.value("tool", 0))}));
-  for (const json& a : s.value("axes", json::array())) print_axis(a);
+  const json axes = s.value("axes", json::array());
+  if (!axes.empty()) print_line(say(kAxes, {}));
+  for (const json& a : axes) print_axis(a);
   for (const json& sp : s.value("spindles", json::array()))
     print_line(say(kSpindle, {fixed(sp.value("actual_rpm", 0.0), 0), fixed(sp.value("command_rpm", 0.0), 0),
                               people_read(kDrives, of(sp, "drive"))}));
