@@ -189,7 +189,9 @@ void read_choice(const Slot& slot, const Element& e, void* member) {
 
 void read_place(const Slot& slot, const Element& e, void* member) {
   if (e.kind != Element::Kind::string) return wrong_type(slot, e);
-  if (const auto place = image::parse_place(e.string))
+  // A bare packet is its first place to a program; here nobody means it.
+  const bool indexed = e.string.find_first_of("0123456789") < e.string.find('.');
+  if (const auto place = image::parse_place(e.string); place && indexed)
     *static_cast<image::Place*>(member) = *place;
   else
     slot.error(e, finding::kNotAPlace, e.string);
