@@ -79,15 +79,13 @@ NodeConfig with_four_byte_pdo(NodeConfig node) {
   return node;
 }
 
-constexpr text::Entry kTooFull{
-    "can-load-error", "CAN segment {0}: load {1} % is above {2} %; it fits with a cycle of {3} ms{4}{5}",
-    "сегмент CAN {0}: загрузка {1} % выше {2} %; поместится при цикле {3} мс{4}{5}"};
+constexpr text::Entry kTooFull{"can-load-error", "CAN segment {0}: load {1} % is above {2} %; it fits {3}{4}",
+                               "сегмент CAN {0}: загрузка {1} % выше {2} %; поместится {3}{4}"};
 constexpr text::Entry kNearlyFull{
     "can-load-warning",
-    "CAN segment {0}: load {1} % is above {2} %, little is left for service data; it is "
-    "relieved by a cycle of {3} ms{4}{5}",
-    "сегмент CAN {0}: загрузка {1} % выше {2} %, для сервисных данных остаётся мало; "
-    "поможет цикл {3} мс{4}{5}"};
+    "CAN segment {0}: load {1} % is above {2} %, little is left for service data; more is left {3}{4}",
+    "сегмент CAN {0}: загрузка {1} % выше {2} %, для сервисных данных остаётся мало; больше останется "
+    "{3}{4}"};
 
 }  // namespace
 

@@ -56,9 +56,9 @@ struct LoadAdvice {
 LoadAdvice advise(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,
                   const SegmentServices& services = {});
 
-/// Sentence for the machine file's check: {0} segment, {1} load in per cent, {2} limit, {3} cycle that fits
-/// in ms, {4} number of segments that fit, {5} load in per cent with 4-byte PDOs. nullptr when the load is
-/// fine. Severity: error above kLoadError, otherwise warning.
+/// Sentence for the machine file's check: {0} segment, {1} load in per cent, {2} limit, {3} with what it fits
+/// ("with a cycle of 2 ms"), {4} what else would help. nullptr when the load is fine. Severity: error above
+/// kLoadError, otherwise warning.
 const text::Entry* load_text(double load) noexcept;
 
 }  // namespace servogate::canopen

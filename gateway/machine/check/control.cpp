@@ -44,7 +44,6 @@ void check_url(const std::string& url, const std::string& path, std::span<const 
 }
 
 void check_buses(const MachineConfig& machine, Reading& reading) {
-  static constexpr int kRates[] = {10, 20, 50, 125, 250, 500, 800, 1000};
   if (machine.buses.size() > static_cast<std::size_t>(image::kMaxSegments))
     reading.error(machine.where("bus." + std::to_string(image::kMaxSegments)), finding::kTooMany,
                   {std::to_string(machine.buses.size()), text::both("buses", "Шин слишком много"),
@@ -59,7 +58,7 @@ void check_buses(const MachineConfig& machine, Reading& reading) {
                            "mock:ИМЯ, socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, socketcand:unix:ПУТЬ/ИМЯ, "
                            "lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ"),
                 machine, reading);
-    const bool known = std::any_of(std::begin(kRates), std::end(kRates),
+    const bool known = std::any_of(std::begin(kBitRates), std::end(kBitRates),
                                    [&](int k) { return bus.bit_rate == std::int64_t{k} * 1000; });
     if (bus.bit_rate != 0 && !known)
       reading.error(machine.where(path + ".bit_rate"), finding::kBitRate,

@@ -13,15 +13,43 @@ namespace servogate::machine {
 
 namespace {
 
-/// What else would relieve a bus; empty where it would not.
-std::string split_over(int segments) {
-  if (segments <= 0) return {};
-  const std::string n = std::to_string(segments);
-  return text::both(", or with its nodes on " + n + " segments",
-                    ", или при разделении узлов на " + n + " сегмента(ов)");
+/// With what a segment fits, as far as the machine file can say it: a cycle no longer than the longest one,
+/// otherwise a faster rate; beside it more segments.
+std::string fits_with(const canopen::LoadAdvice& advice, int rate_kbit) {
+  std::string words, n = std::to_string(advice.segments);
+  if (static_cast<double>(advice.cycle_ns) * 1e-9 <= kLongestCycle * (1.0 + 1e-9)) {
+    const std::string ms = text::number(static_cast<double>(advice.cycle_ns) * 1e-6);
+    words = text::both("with a cycle of " + ms + " ms", "при цикле " + ms + " мс");
+  } else if (rate_kbit > 0) {
+    const std::string rate = std::to_string(rate_kbit);
+    words = text::both("with bit_rate = \"" + rate + " kbit/s\"", "при bit_rate = \"" + rate + " kbit/s\"");
+  }
+  if (advice.segments > 0)
+    words += words.empty() ? text::both("with its nodes on " + n + " segments",
+                                        "при разделении узлов на " + n + " сегмента(ов)")
+                           : text::both(", or with its nodes on " + n + " segments",
+                                        ", или при разделении узлов на " + n + " сегмента(ов)");
+  const std::string longest = text::number(kLongestCycle * 1e3);
+  if (words.empty())
+    words =
+        text::both("with fewer nodes or less process data only: no bit_rate and no cycle up to " + longest +
+                       " ms is enough",
+                   "только при меньшем числе узлов или данных процесса: не хватит ни bit_rate, ни цикла до " +
+                       longest + " мс");
+  return words;
 }
+/// The slowest rate with which it fits, kbit/s; 0: none.
+int rate_that_fits(const MachineConfig& m, const std::vector<canopen::NodeConfig>& nodes,
+                   const canopen::SegmentServices& services) {
+  for (const int kbit : kBitRates)
+    if (canopen::segment_load(static_cast<std::uint32_t>(kbit) * 1000, m.cycle_ns(), nodes, services).load <=
+        canopen::kLoadWarning)
+      return kbit;
+  return 0;
+}
+/// What else would relieve a bus; empty where it would not.
 std::string shorter_data(double load, double with_4_byte_pdo) {
-  if (with_4_byte_pdo >= load) return {};
+  if (with_4_byte_pdo >= load || with_4_byte_pdo > canopen::kLoadError) return {};
   const std::string percent = text::number(with_4_byte_pdo * 100.0, 1);
   return text::both("; with 4-byte process data it would be " + percent + " %",
                     "; с 4-байтными PDO загрузка была бы " + percent + " %");
@@ -144,14 +172,13 @@ class DeviceUse {
       const canopen::SegmentLoad load = segment_load(loaded_, bus);
       const text::Entry* entry = canopen::load_text(load.load);
       if (entry == nullptr) continue;
-      const canopen::LoadAdvice advice = canopen::advise(rate, m_.cycle_ns(), nodes, planned_services(bus));
+      const canopen::SegmentServices services = planned_services(bus);
+      const canopen::LoadAdvice advice = canopen::advise(rate, m_.cycle_ns(), nodes, services);
       const bool error = load.load > canopen::kLoadError;
       const double limit = error ? canopen::kLoadError : canopen::kLoadWarning;
-      const std::vector<std::string> arguments{bus.name,
-                                               text::number(load.load * 100.0, 1),
+      const std::vector<std::string> arguments{bus.name, text::number(load.load * 100.0, 1),
                                                text::number(limit * 100.0, 1),
-                                               text::number(static_cast<double>(advice.cycle_ns) * 1e-6),
-                                               split_over(advice.segments),
+                                               fits_with(advice, rate_that_fits(m_, nodes, services)),
                                                shorter_data(load.load, advice.load_with_4_byte_pdo)};
       const Where at = m_.where("bus." + std::to_string(b) + ".bit_rate");
       if (error)

@@ -60,6 +60,11 @@ struct Rule {
   bool computed = false;  ///< the default is computed from other keys; the meaning says how
 };
 
+/// The longest cycle, in seconds.
+inline constexpr double kLongestCycle = 0.02;
+/// Bit rates in kbit/s. Source: CiA 301, "Bit rates".
+inline constexpr int kBitRates[] = {10, 20, 50, 125, 250, 500, 800, 1000};
+
 /// No machine is beyond these; what is written beyond is a slip, and would break the arithmetic of motion. In
 /// mm or degrees, and seconds; the rotary bounds are wide, the linear ones a thousandfold of what machines
 /// do.

@@ -8,7 +8,7 @@ template <>
 const Section& section_of<ControlConfig>() {
   using C = ControlConfig;
   static const Key keys[] = {
-      key<&C::cycle_time>("cycle_time", {.unit = Unit::second, .min = 0.00025, .max = 0.02},
+      key<&C::cycle_time>("cycle_time", {.unit = Unit::second, .min = 0.00025, .max = kLongestCycle},
                           "period of the cycle", "период цикла"),
       key<&C::dialect>("dialect", {}, "language of the part programs", "язык управляющих программ"),
       key<&C::power_on>("power_on", {}, "modal words in force after power-on",
