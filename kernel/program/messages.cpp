@@ -28,8 +28,8 @@ constexpr text::Entry kMessages[] = {
      "буква {0} русская и только похожа на латинскую {1}: напишите латинскую"},
     {"P113", "this line ends with CR alone; such ends are taken as line ends",
      "строка кончается одним CR; такие концы приняты за концы строк"},
-    {"P201", "the character {0} has no meaning here", "символ {0} здесь не имеет смысла"},
-    {"P202", "the language has no word {0}", "в языке нет слова {0}"},
+    {"P201", "the character {0} has no meaning here{1}", "символ {0} здесь не имеет смысла{1}"},
+    {"P202", "the language has no word {0}{1}", "в языке нет слова {0}{1}"},
     {"P203", "this machine has no axis {0}", "на этом станке нет оси {0}"},
     {"P204", "the word {0} stands twice in the block", "слово {0} стоит в кадре дважды"},
     {"P205", "more than {0} words in the block", "в кадре больше {0} слов"},
@@ -92,7 +92,7 @@ constexpr text::Entry kMessages[] = {
     {"P513", "{0} blocks without a motion or another command: the program does not end",
      "{0} кадров без движения и других команд: программа не кончается"},
     {"P514", "{0} blocks executed, the program does not end", "выполнено {0} кадров, программа не кончается"},
-    {"P601", "the language has no three-letter code {0}", "в языке нет трёхбуквенного кода {0}"},
+    {"P601", "the language has no three-letter code {0}{1}", "в языке нет трёхбуквенного кода {0}{1}"},
     {"P602", "{0}: operand {1} is missing ({2})", "{0}: нет операнда {1} ({2})"},
     {"P603", "{0}: an operand too many", "{0}: лишний операнд"},
     {"P604", "{0}: the letter of an axis is expected", "{0}: ожидается буква оси"},
@@ -224,6 +224,20 @@ std::vector<std::string> outside_arguments(const MachineModel::Axis& axis, doubl
   const double shown = axis.diameter ? 2.0 : 1.0;
   return {axis.diameter ? text::both(axis.letter + " (diameter)", axis.letter + " (диаметр)") : axis.letter,
           text::number(shown * value, 4), text::number(shown * limit, 4)};
+}
+
+std::string in_capitals(std::string_view written) {
+  std::string out(written);
+  for (char& c : out)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return out;
+}
+
+std::string capitals_hint(std::string_view written, bool known) {
+  const std::string meant = in_capitals(written);
+  if (!known || meant == written) return {};
+  return text::both(": words are written in capital letters, " + meant,
+                    ": слова пишутся прописными буквами, " + meant);
 }
 
 const text::Entry& entry(Fault fault) { return kMessages[static_cast<std::size_t>(fault)]; }

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -162,6 +163,12 @@ const text::Entry& entry(Fault fault);
 /// Arguments of Fault::travel and Fault::field: a diameter axis is named so, with its places as diameters.
 /// `value`, `limit`: machine coordinates, a diameter axis' as radius.
 std::vector<std::string> outside_arguments(const MachineModel::Axis& axis, double value, double limit);
+
+/// What was written, with the capitals A to Z that it would have.
+std::string in_capitals(std::string_view written);
+/// Last argument of Fault::unknown_word and Fault::code_unknown: that words have capital letters, where some
+/// of `written` are small and with capitals it is `known`; otherwise nothing.
+std::string capitals_hint(std::string_view written, bool known);
 
 /// Thrown inside of this room only, caught in Interpreter: the block cannot be read or executed. `column`
 /// counts from 1.

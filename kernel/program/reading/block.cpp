@@ -172,7 +172,15 @@ std::string run_at(std::string_view line, std::size_t pos) {
   return std::string(line.substr(pos, end - pos));
 }
 
-[[noreturn]] void fail_letter(const Block& block, std::size_t pos) {
+/// What a person means who writes 1,5.
+std::string comma_hint(std::string_view line, std::size_t pos) {
+  const bool comma = line[pos] == ',' && pos + 1 < line.size() && is_digit(line[pos + 1]);
+  return comma ? text::both(": numbers have a decimal point, not a comma",
+                            ": в числах пишется десятичная точка, а не запятая")
+               : std::string();
+}
+
+[[noreturn]] void fail_letter(const Dialect& dialect, const Block& block, std::size_t pos) {
   const std::string_view line = block.line;
   name_later_g(block);
   const char c = line[pos];
@@ -180,9 +188,12 @@ std::string run_at(std::string_view line, std::size_t pos) {
     const std::string character = character_at(line, pos);
     for (const auto& [cyrillic, latin] : kLookAlikes)
       if (character == cyrillic) fail(Fault::cyrillic, column(pos), {character, std::string(latin)});
-    fail(Fault::unknown_character, column(pos), {character});
+    fail(Fault::unknown_character, column(pos), {character, comma_hint(line, pos)});
   }
-  fail(Fault::unknown_word, column(pos), {run_at(line, pos)});
+  const std::string run = run_at(line, pos);
+  const bool meant =
+      dialect.letters[static_cast<unsigned char>(in_capitals(run)[0]) & 127u].meaning != Meaning::unknown;
+  fail(Fault::unknown_word, column(pos), {run, capitals_hint(run, meant)});
 }
 
 /// A letter alone is 0, where 0 is possible; one with letters behind it that are no words is none.
@@ -238,9 +249,9 @@ std::size_t read_word(const Dialect& dialect, const AxisLetters& axes, Block& bl
                       Word& word) {
   const std::string_view line = block.line;
   const char c = line[pos];
-  if (static_cast<unsigned char>(c) >= 128) fail_letter(block, pos);
+  if (static_cast<unsigned char>(c) >= 128) fail_letter(dialect, block, pos);
   const LetterRule& rule = dialect.letters[static_cast<unsigned char>(c)];
-  if (rule.meaning == Meaning::unknown) fail_letter(block, pos);
+  if (rule.meaning == Meaning::unknown) fail_letter(dialect, block, pos);
   word.letter = c;
   word.meaning = rule.meaning;
   word.column = static_cast<std::uint16_t>(column(pos));

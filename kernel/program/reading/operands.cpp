@@ -202,7 +202,10 @@ void read_operands(const Dialect& dialect, const AxisLetters& axes, const Block&
   const auto [from, to] = items.at[0];
   const std::string_view code = block.line.substr(from, to - from);
   out.rule = dialect.find_code(code);
-  if (out.rule == nullptr) fail(Fault::code_unknown, column(from), {code.empty() ? "()" : std::string(code)});
+  if (out.rule == nullptr)
+    fail(Fault::code_unknown, column(from),
+         {code.empty() ? "()" : std::string(code),
+          capitals_hint(code, dialect.find_code(in_capitals(code)) != nullptr)});
   if (out.rule->run == nullptr) fail(Fault::not_executed, column(from), {std::string(code)});
   OperandReader(axes, items, out).run(out.rule->operands);
 }
