@@ -91,8 +91,12 @@ inline constexpr InterfaceField kProcessFields[] = {
      "TRUE permits the next function: M, S, T, H, a wait, a reading or writing of signals; feed_enable is "
      "for motion"},
     {"optional_stop", 33, 3, Format::bl, Writer::plc, "M01 stops"},
+    {"dry_run", 33, 4, Format::bl, Writer::plc,
+     "taken over when a program starts: feed motions run at rapid speed, to see the path without a part"},
     {"feed_override", 34, 0, Format::by, Writer::plc, "per cent 1-150; 0: the operator's value"},
     {"external_alarm", 36, 0, Format::in, Writer::plc, "number of an alarm the PLC raises, 0: none"},
+    {"skip_levels", 38, 0, Format::in, Writer::plc,
+     "taken over when a program starts: bit 0 skips the blocks marked with /, bit n those marked with /n"},
 };
 inline constexpr InterfaceField kAxisFields[] = {
     {"enabled", 0, 0, Format::bl, Writer::nc, "the drive is in Operation enabled"},

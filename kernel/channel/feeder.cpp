@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "firmware_if/image/interface_map.hpp"
+
 namespace servogate::channel {
 
 namespace {
@@ -22,6 +24,18 @@ bool acts(const program::Command& command) {
   if (const auto* tool = std::get_if<program::Tool>(&command.what)) return !tool->activate;
   return !std::holds_alternative<program::Stop>(command.what) &&
          !std::holds_alternative<program::End>(command.what);
+}
+
+/// What the operator has set in the PLC's places, as they are when the program starts.
+program::OperatorSwitches switches_of(const image::Packets& packets, int process) {
+  using image::field;
+  using image::kProcessFields;
+  const std::uint32_t base = image::process_base(process);
+  program::OperatorSwitches switches;
+  switches.skip_levels =
+      static_cast<std::uint16_t>(packets.number(image::at(field(kProcessFields, "skip_levels"), base)));
+  switches.dry_run = packets.bit(image::at(field(kProcessFields, "dry_run"), base));
+  return switches;
 }
 
 bool stops(const program::Command& command) {
@@ -123,6 +137,7 @@ void Feeder::begin(const FeederOrder& order) {
     manual->mdi(manual_block_);
   else
     manual.emplace(factory_(position_));
+  if (!order.manual_data) manual->set_switches(switches_of(view_, process_));
   interpreter_ = std::move(manual);
   executed_before_ = interpreter_->executed();
   warned_ = 0;

@@ -70,6 +70,11 @@ void Interpreter::mdi(std::string_view block) { impl_->run.mdi(block); }
 void Interpreter::reposition(const Position& at) { impl_->run.reposition(at); }
 void Interpreter::adopt(Tables tables) { impl_->run.adopt(std::move(tables)); }
 void Interpreter::preset(int axis, double value) { impl_->run.preset(axis, value); }
+void Interpreter::set_switches(const OperatorSwitches& switches) {
+  State& state = impl_->run.state();
+  state.execute_marked = state.execute_marked && (switches.skip_levels & 1u) == 0;
+  state.dry_run = state.dry_run || switches.dry_run;
+}
 int Interpreter::origin(int axis) const { return impl_->run.state().origin[static_cast<std::size_t>(axis)]; }
 
 std::string axis_letters(std::string_view dialect) {

@@ -88,6 +88,12 @@ struct Error {
 };
 using Step = std::variant<Command, NeedsSync, Error>;
 
+/// What the operator has set for a whole program. The program's own words (NC-110 USB, UVR) come after it.
+struct OperatorSwitches {
+  std::uint16_t skip_levels = 0;  ///< bit 0: blocks marked with / are skipped; bit n: those with /n
+  bool dry_run = false;           ///< feed motions run at rapid speed
+};
+
 /// The interpreter of one process: a value that can be copied at any time (restart, retrace, look-ahead).
 class Interpreter {
  public:
@@ -150,6 +156,8 @@ class Interpreter {
   /// Changes the origin in force of an axis so that the present position is `value` in programmed coordinates
   /// (mm or degrees; of a diameter axis the radius), in the table too.
   void preset(int axis, double value);
+  /// Before the first next(): what the operator has set.
+  void set_switches(const OperatorSwitches& switches);
   /// Number of the origin in force of an axis.
   int origin(int axis) const;
 

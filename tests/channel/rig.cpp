@@ -102,6 +102,8 @@ void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
   k.set_bit(nc("feed_enable"), feed_enable);
   k.set_bit(nc("read_in_enable"), read_in_enable);
   k.set_bit(nc("optional_stop"), optional_stop);
+  k.set_bit(nc("dry_run"), dry_run);
+  k.set_number(nc("skip_levels"), skip_levels);
   k.set_bit(nc("start"), start_bit);
   k.set_bit(nc("stop"), stop_bit);
   k.set_bit(nc("reset"), reset_bit);

@@ -54,9 +54,10 @@ class TestLogic final : public cycle::Logic {
   std::set<double> never;    ///< M codes that are never acknowledged
   std::set<double> unknown;  ///< M codes that are acknowledged as unknown
   bool acknowledge_s = true, acknowledge_t = true, acknowledge_h = true;
-  bool estop_ok = true, power_on = true, feed_enable = true, read_in_enable = true, optional_stop = false;
+  bool estop_ok = true, power_on = true, feed_enable = true, read_in_enable = true, optional_stop = false,
+       dry_run = false;
   std::array<bool, kAxes> axis_feed_enable{true, true, true};
-  int feed_override = 0, spindle_override = 0;
+  int feed_override = 0, spindle_override = 0, skip_levels = 0;
   bool spindle_enable = true;
   bool start_bit = false, stop_bit = false, reset_bit = false;
   int external_alarm = 0;

@@ -49,8 +49,12 @@ class Reach {
 
 void Execution::learn_machine() {
   every_rapid_ = std::numeric_limits<double>::infinity();
+  all_rapids_ = 0.0;
   for (int a = 0; a < axis_count(); ++a) {
-    if (machine_->axes[at(a)].rapid > 0.0) every_rapid_ = std::min(every_rapid_, machine_->axes[at(a)].rapid);
+    if (machine_->axes[at(a)].rapid > 0.0) {
+      every_rapid_ = std::min(every_rapid_, machine_->axes[at(a)].rapid);
+      all_rapids_ += machine_->axes[at(a)].rapid;
+    }
     if (machine_->axes[at(a)].diameter) surface_axis_ = a;
   }
 }
@@ -152,6 +156,7 @@ void Execution::check_turning(const Feed& feed) {
 }
 
 void Execution::check_line_feed(const BlockWords& words, const Feed& feed, const Position& to) {
+  if (state_.dry_run) return;
   if (feed.unit == FeedUnit::mm_per_min && feed.value <= every_rapid_ * 60.0) return;
   check_turning(feed);
   double square = 0.0;
@@ -170,6 +175,7 @@ void Execution::check_line_feed(const BlockWords& words, const Feed& feed, const
 }
 
 void Execution::check_arc_feed(const BlockWords& words, const Arc& arc, double radius) {
+  if (state_.dry_run) return;
   if (arc.feed.unit == FeedUnit::mm_per_min && arc.feed.value <= every_rapid_ * 60.0) return;
   check_turning(arc.feed);
   const double length = helix_length(arc, radius);

@@ -204,6 +204,7 @@ class Execution : public ValueSource {
   Point arc_centre(const BlockWords& words) const;
   double helix_turns(const BlockWords& words, const Position& to, double sweep_deg, double radius) const;
   Feed feed_of(const BlockWords& words, double length_mm, bool rotary_only);
+  Feed programmed_feed(const BlockWords& words, double length_mm, bool rotary_only);
   CornerRule corner_of(const BlockWords& words) const;
   void check_axis(int axis, double value, int column) const;
   void store_feed(const BlockWords& words);
@@ -223,6 +224,7 @@ class Execution : public ValueSource {
   std::vector<text::Finding> warnings_;
   bool standing_told_ = false;
   double every_rapid_ = 0.0;  ///< speed that every axis reaches, mm/s and degrees/s
+  double all_rapids_ = 0.0;   ///< more than all axes together reach; 0: not known
   int surface_axis_ = -1;     ///< whose coordinate is the radius for G96
   std::vector<Command> queue_;
   std::size_t head_ = 0;

@@ -241,7 +241,14 @@ void Execution::store_feed(const BlockWords& words) {
   state_.feed_inch = state_.modes.unit == Function::inch;
 }
 
+/// What the block asks for is checked in a dry run, too.
 Feed Execution::feed_of(const BlockWords& words, double length_mm, bool rotary_only) {
+  const Feed programmed = programmed_feed(words, length_mm, rotary_only);
+  if (!state_.dry_run || all_rapids_ <= 0.0) return programmed;
+  return {all_rapids_ * 60.0, FeedUnit::mm_per_min};
+}
+
+Feed Execution::programmed_feed(const BlockWords& words, double length_mm, bool rotary_only) {
   const int here = static_cast<int>(block_.body) + 1;
   if (words.time != nullptr) {
     if (state_.modes.feed != Function::feed_minute) fail(Fault::block_time, words.time->column);

@@ -99,6 +99,7 @@ struct State {
   double max_angle_deg = 0.0;  ///< MCD as an angle
   double allowance = 0.0;      ///< UOV, mm
   bool execute_marked = true;  ///< USB: blocks with / are executed
+  bool dry_run = false;        ///< UVR: feed motions at rapid speed
   int optional_stop = -1;      ///< USO, -1: left to the operator's switch
   bool profile_open = false;   ///< inside of a running chain of feed blocks under G27 or G28
   Cycle cycle;

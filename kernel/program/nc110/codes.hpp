@@ -45,5 +45,6 @@ void erf(Execution& run, double value, int column);
 void mcd(Execution& run, double value, int column);
 void usb(Execution& run, double value, int column);
 void uso(Execution& run, double value, int column);
+void uvr(Execution& run, double value, int column);
 
 }  // namespace servogate::program::nc110::variable

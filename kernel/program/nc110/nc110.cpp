@@ -143,6 +143,7 @@ constexpr VariableRule kVariables[] = {
     {"MCD", variable::mcd},
     {"USB", variable::usb},
     {"USO", variable::uso},
+    {"UVR", variable::uvr},
     // Variables of the language that this version does not execute.
     {"TIM", nullptr, true},
     {"TOT", nullptr, true},
@@ -152,7 +153,6 @@ constexpr VariableRule kVariables[] = {
     {"RTA", nullptr},
     {"RTO", nullptr},
     {"JOG", nullptr},
-    {"UVR", nullptr},
     {"URL", nullptr},
     {"UCV", nullptr},
     {"RAP", nullptr},

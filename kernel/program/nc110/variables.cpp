@@ -50,6 +50,11 @@ void usb(Execution& run, double value, int column) {
   run.state().execute_marked = value != 0.0;
 }
 
+void uvr(Execution& run, double value, int column) {
+  check_switch("UVR", value, column);
+  run.state().dry_run = value != 0.0;
+}
+
 void uso(Execution& run, double value, int column) {
   check_switch("USO", value, column);
   run.state().optional_stop = value != 0.0 ? 1 : 0;
