@@ -38,6 +38,7 @@ int carry_out(const CommandLine& line) {
   if (line.command == "plc load") return command::plc_load(line.plc.load);
   if (line.command == "can bus") return command::can_bus(line.bus.can_bus);
   if (line.command == "can check") return command::can_check(line.bus.can_check);
+  if (line.command == "can restart") return command::can_restart(line.bus.can_restart);
   if (line.command == "scan") return command::scan(line.bus.scan);
   if (line.command == "sdo") return command::sdo(line.bus.sdo);
   if (line.command == "od") return command::od(line.bus.od);

@@ -127,13 +127,6 @@ SocketCanBus::SocketCanBus(int socket, LinkInfo link, std::uint32_t bit_rate)
 
 SocketCanBus::~SocketCanBus() { close(socket_); }
 
-bool SocketCanBus::restart(drivers::Notice& why) {
-  const int error = restart_link(link_.index);
-  if (error == 0) return true;
-  why = {&kSystem, {link_.name, text::words_of(error)}};
-  return false;
-}
-
 bool SocketCanBus::send(const image::CanFrame& frame) noexcept {
   if (frame.error || (frame.fd && !link_.fd) || state_ == CanState::down || state_ == CanState::bus_off)
     return false;

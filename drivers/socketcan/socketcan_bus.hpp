@@ -69,9 +69,6 @@ class SocketCanBus final : public image::CanBus {
   std::size_t waiting() const noexcept { return queue_.size(); }
   /// For poll(2): readable when a frame has come.
   int descriptor() const noexcept { return socket_; }
-  /// Lets a bus-off controller take part again; needs the right to administer the network, and is not needed
-  /// where the interface has restart-ms. False: `why` says what the kernel said. Not real-time safe.
-  bool restart(drivers::Notice& why);
 
  private:
   static constexpr std::size_t kBatch = 32;

@@ -37,7 +37,9 @@ struct DriveOptions {
 struct IoOptions {
   std::string bus;
   std::vector<int> nodes;
+  std::string kind = "module";  ///< or "encoder"
   int digital_inputs = 16, digital_outputs = 16, analogue_inputs = 4, analogue_outputs = 2;
+  int counts_per_rev = 8192, revolutions = 4096;  ///< of an encoder
   double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
 };
 
@@ -109,6 +111,11 @@ struct NmtOptions : CanopenBusOptions {
   std::string node = "all";
 };
 
+/// `servogate can restart`.
+struct CanRestartOptions {
+  std::string bus;
+};
+
 /// `servogate can check`.
 struct CanCheckOptions : CanopenBusOptions {
   double seconds = 2.0;
@@ -119,6 +126,7 @@ struct CanCheckOptions : CanopenBusOptions {
 struct BusCommands {
   CanBusOptions can_bus;
   CanCheckOptions can_check;
+  CanRestartOptions can_restart;
   DriveOptions drive;
   IoOptions io;
   SimOptions sim;

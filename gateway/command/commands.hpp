@@ -18,6 +18,7 @@ int canon(const CanonOptions& options);
 int replay(const ReplayOptions& options);
 int can_bus(const CanBusOptions& options);
 int can_check(const CanCheckOptions& options);
+int can_restart(const CanRestartOptions& options);
 int scan(const ScanOptions& options);
 int sdo(const SdoOptions& options);
 int od(const OdOptions& options);

@@ -11,7 +11,7 @@ class SimulatedModules : public Workbench {
     std::vector<std::string> line{"io", bus()};
     line.insert(line.end(), words.begin(), words.end());
     process_ = std::make_unique<usercan::Process>(line);
-    EXPECT_TRUE(process_->says("I/O module")) << process_->said();
+    EXPECT_TRUE(process_->says("Servogate simulated")) << process_->said();
     return *process_;
   }
   std::unique_ptr<usercan::Process> process_;
@@ -29,6 +29,17 @@ TEST_F(SimulatedModules, a_module_is_found_with_its_kind_and_tells_its_outputs) 
   ASSERT_EQ(tool("sdo $BUS 9 write 6200:2 0x81 u8 --i-may-move --listen 0.1").code, 0);
   EXPECT_TRUE(io.says("9.dq8 on")) << io.said();
   EXPECT_TRUE(io.says("9.dq15 on")) << io.said();
+}
+
+TEST_F(SimulatedModules, an_encoder_is_one_for_the_tools_of_a_bus) {
+  modules({"--node", "9", "--kind", "encoder", "--counts", "1000", "--turns", "16"});
+  const json nodes = facts("scan $BUS --seconds 0.3")["nodes"];
+  ASSERT_EQ(nodes.size(), 1u);
+  EXPECT_EQ(nodes[0]["device_type"], 0x0002'0196);
+  EXPECT_EQ(facts("sdo $BUS 9 read 6501")["value"], 1000);
+  EXPECT_EQ(facts("sdo $BUS 9 read 6502")["value"], 16);
+  EXPECT_EQ(tool("sdo $BUS 9 write 6003 4711 u32").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 9 read 6004")["value"], 4711) << "the preset is what it reads where it stands";
 }
 
 TEST_F(SimulatedModules, several_modules_live_in_one_process) {

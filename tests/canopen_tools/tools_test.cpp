@@ -233,6 +233,14 @@ TEST_F(Workbench, lss_says_that_nobody_answers_and_which_words_are_wrong) {
   EXPECT_EQ(tool("lss $BUS select 1:2:3").code, 2);
 }
 
+TEST_F(Workbench, can_restart_is_for_interfaces_of_linux_that_are_there) {
+  EXPECT_EQ(tool("can restart $BUS").code, 2) << "a bus between processes never goes off";
+  EXPECT_EQ(tool("can restart gsusb:LAB1").code, 2);
+  const Ended none = tool("can restart socketcan:nosuch0");
+  EXPECT_EQ(none.code, 4);
+  EXPECT_TRUE(none.out_has("nosuch0"));
+}
+
 TEST_F(Workbench, can_check_says_who_speaks_and_who_controls) {
   drives("5");
   ASSERT_EQ(tool("sdo $BUS 5 write 1017 20").code, 0);

@@ -105,13 +105,6 @@ TEST_F(Vcan, a_link_that_goes_down_and_comes_back_is_noticed_without_reopening) 
   EXPECT_EQ(f.id, 0x181u);
 }
 
-TEST_F(Vcan, the_right_to_restart_is_the_kernels_to_refuse) {
-  auto bus = open();
-  drivers::Notice why;
-  EXPECT_FALSE(bus->restart(why)) << "a vcan has no controller";
-  EXPECT_NE(why.str(text::Language::english).find(name_), std::string::npos);
-}
-
 TEST_F(Vcan, a_link_is_taken_down_and_brought_up_by_the_program_itself) {
   auto bus = open();
   ASSERT_EQ(set_link(read_link(name_)->index, {.up = false}), 0);

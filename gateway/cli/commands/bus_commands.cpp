@@ -34,6 +34,13 @@ void add_can_bus(CLI::App& can, CanBusOptions& o) {
 
 constexpr const char* kBus = "Url of the bus, or MACHINE.toml#bus";
 
+void add_can_restart(CLI::App& can, CanRestartOptions& o) {
+  CLI::App& c =
+      *can.add_subcommand("restart", "Lets an interface that went bus-off take part in its bus again.");
+  c.add_option("BUS", o.bus, kBus)->required();
+  c.footer("Example: sudo servogate can restart socketcan:can0");
+}
+
 void add_faults(CLI::App& app, FaultOptions& o) {
   app.add_option(
          "--fault", o.faults,
@@ -73,21 +80,33 @@ void add_terminals(CLI::App& app, const std::string& name, int& count, int most,
 }
 
 void add_io(CLI::App& app, IoOptions& o) {
-  CLI::App& c =
-      *app.add_subcommand("io", "Simulated CiA 401 I/O modules on a bus, as a process of their own.");
+  CLI::App& c = *app.add_subcommand(
+      "io", "Simulated I/O modules (CiA 401) or encoders (CiA 406) on a bus, in their own process.");
   c.add_option("BUS", o.bus, kBus)->required();
   c.add_option("--node", o.nodes, "Node-ID, 1 to 127; several with commas")
       ->type_name("N,...")
       ->required()
       ->delimiter(',')
       ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
+  c.add_option("--kind", o.kind, "module (the default) or encoder")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"module", "encoder"}));
   add_terminals(c, "--di", o.digital_inputs, 64, "Digital inputs, 0 to 64");
   add_terminals(c, "--dq", o.digital_outputs, 64, "Digital outputs, 0 to 64");
   add_terminals(c, "--ai", o.analogue_inputs, 12, "Analogue inputs, 0 to 12");
   add_terminals(c, "--aq", o.analogue_outputs, 12, "Analogue outputs, 0 to 12");
+  const auto counted =
+      number_within({1.0, 65535.0, text::both("(counts, turns)", "(дискрет, оборотов)"), true});
+  c.add_option("--counts", o.counts_per_rev, "Encoder: counts per turn, 1 to 65535")
+      ->type_name("N")
+      ->check(counted);
+  c.add_option("--turns", o.revolutions, "Encoder: turns it can tell apart, 1 to 65535")
+      ->type_name("N")
+      ->check(counted);
   add_bit_rate(c, o.bit_rate);
   c.footer(
-      "On standard input it takes di3 on, di3 off, ai0 1200, status; it prints its outputs as they change.\n"
+      "On standard input it takes di3 on, di3 off, ai0 1200, status; an encoder position 1200, speed 500,\n"
+      "blind on, blind off, status. It prints its outputs as they change.\n"
       "Example: servogate io socketcand:127.0.0.1:29536/can0 --node 9");
 }
 
@@ -135,6 +154,7 @@ void add_bus_commands(CLI::App& app, BusCommands& options) {
   can.require_subcommand(1);
   add_can_bus(can, options.can_bus);
   add_can_check(can, options.can_check);
+  add_can_restart(can, options.can_restart);
   add_drive(app, options.drive);
   add_io(app, options.io);
   add_sim(app, options.sim);

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// `servogate io`: simulated CiA 401 modules on a bus, as a process of their own.
+// `servogate io`: simulated CiA 401 modules or CiA 406 encoders on a bus, as a process of their own.
 #include <poll.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "drivers/clock.hpp"
+#include "drivers/mock/io/simulated_encoder.hpp"
 #include "drivers/mock/io/simulated_io_module.hpp"
+#include "firmware_if/canopen/406/objects.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
@@ -23,92 +26,177 @@ namespace {
 
 const text::Entry kLives{"io.lives", "node {0} on {1}: {2}", "узел {0} на {1}: {2}"};
 const text::Entry kGone{"io.gone", "the bus {0} is gone", "шина {0} исчезла"};
-const text::Entry kBadLine{
-    "io.bad-line",
-    "'{0}' is none of: di0 on, di0 off, ai0 1234, status, each with NODE. before it when there are several",
-    "«{0}»: нужно di0 on, di0 off, ai0 1234 или status, перед ними УЗЕЛ., если узлов несколько"};
-
-/// A module, and what was told of its outputs.
-struct Module {
-  explicit Module(const mock::SimulatedIoConfig& c)
-      : config(c), device(c), digital(c.terminals.digital_outputs), analogue(c.terminals.analogue_outputs) {}
-  mock::SimulatedIoConfig config;
-  mock::SimulatedIoModule device;
-  std::vector<bool> digital;
-  std::vector<std::int16_t> analogue;
-};
-
-/// "7.dq3 on", "7.aq0 -1200".
-void print_terminal(const Module& m, const char* kind, std::size_t number, const std::string& value) {
-  print_line(std::to_string(m.config.node_id) + "." + kind + std::to_string(number) + " " + value);
-}
-
-/// What has changed on the output terminals, or with `all` everything.
-void print_outputs(Module& m, bool all) {
-  for (std::size_t i = 0; i < m.digital.size(); ++i) {
-    const bool now = m.device.digital(static_cast<std::uint8_t>(i));
-    if (all || now != m.digital[i]) print_terminal(m, "dq", i, now ? "on" : "off");
-    m.digital[i] = now;
-  }
-  for (std::size_t i = 0; i < m.analogue.size(); ++i) {
-    const std::int16_t now = m.device.analogue(static_cast<std::uint8_t>(i));
-    if (all || now != m.analogue[i]) print_terminal(m, "aq", i, std::to_string(now));
-    m.analogue[i] = now;
-  }
-  std::fflush(stdout);
-}
+const text::Entry kBadLine{"io.bad-line",
+                           "'{0}' is none of: di0 on, di0 off, ai0 1234, of an encoder position 1234, speed "
+                           "500, blind on, blind off; "
+                           "status; each with NODE. before it when there are several",
+                           "«{0}»: нужно di0 on, di0 off, ai0 1234, для датчика position 1234, speed 500, "
+                           "blind on, blind off; status; "
+                           "перед ними УЗЕЛ., если узлов несколько"};
 
 /// The whole text as a number between two limits.
-bool number_of(std::string_view text, int low, int high, int& number) {
+template <typename Number>
+bool number_of(std::string_view text, Number low, Number high, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc{} && end == text.data() + text.size() && number >= low && number <= high;
 }
 
-bool set_terminal(Module& m, std::string_view terminal, std::string_view value) {
-  const canopen::IoTerminals& t = m.config.terminals;
-  int number = 0, level = 0;
-  if (terminal.starts_with("di") && (value == "on" || value == "off") &&
-      number_of(terminal.substr(2), 0, t.digital_inputs - 1, number)) {
-    m.device.set_digital(static_cast<std::uint8_t>(number), value == "on");
+/// A simulated node with what the world does to it, and what was told of it.
+class Node {
+ public:
+  virtual ~Node() = default;
+  virtual mock::CanNode& device() = 0;
+  virtual const std::string& name() const = 0;
+  virtual void advance_to(image::Nanoseconds now) { device().advance_to(now); }
+  /// What has changed, or with `all` everything.
+  virtual void print(bool all) = 0;
+  /// "di3", "on". False: it has no such thing.
+  virtual bool set(std::string_view what, std::string_view value) = 0;
+
+  int id = 0;
+
+ protected:
+  /// "7.dq3 on", "7.aq0 -1200".
+  void say(const std::string& what, const std::string& value) const {
+    print_line(std::to_string(id) + "." + what + " " + value);
+  }
+};
+
+class Module final : public Node {
+ public:
+  explicit Module(const mock::SimulatedIoConfig& c)
+      : config_(c),
+        device_(c),
+        digital_(c.terminals.digital_outputs),
+        analogue_(c.terminals.analogue_outputs) {}
+  mock::CanNode& device() override { return device_; }
+  const std::string& name() const override { return config_.name; }
+
+  void print(bool all) override {
+    for (std::size_t i = 0; i < digital_.size(); ++i) {
+      const bool now = device_.digital(static_cast<std::uint8_t>(i));
+      if (all || now != digital_[i]) say("dq" + std::to_string(i), now ? "on" : "off");
+      digital_[i] = now;
+    }
+    for (std::size_t i = 0; i < analogue_.size(); ++i) {
+      const std::int16_t now = device_.analogue(static_cast<std::uint8_t>(i));
+      if (all || now != analogue_[i]) say("aq" + std::to_string(i), std::to_string(now));
+      analogue_[i] = now;
+    }
+  }
+  bool set(std::string_view terminal, std::string_view value) override {
+    const canopen::IoTerminals& t = config_.terminals;
+    int number = 0, level = 0;
+    if (terminal.starts_with("di") && (value == "on" || value == "off") &&
+        number_of(terminal.substr(2), 0, t.digital_inputs - 1, number)) {
+      device_.set_digital(static_cast<std::uint8_t>(number), value == "on");
+      return true;
+    }
+    if (terminal.starts_with("ai") && number_of(terminal.substr(2), 0, t.analogue_inputs - 1, number) &&
+        number_of(value, -32768, 32767, level)) {
+      device_.set_analogue(static_cast<std::uint8_t>(number), static_cast<std::int16_t>(level));
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  mock::SimulatedIoConfig config_;
+  mock::SimulatedIoModule device_;
+  std::vector<bool> digital_;
+  std::vector<std::int16_t> analogue_;
+};
+
+class Encoder final : public Node {
+ public:
+  explicit Encoder(const mock::SimulatedEncoderConfig& c) : config_(c), device_(c) {}
+  mock::CanNode& device() override { return device_; }
+  const std::string& name() const override { return config_.name; }
+
+  void advance_to(image::Nanoseconds now) override {
+    now_ = now;
+    if (speed_ != 0)
+      device_.set_position(
+          from_ + std::llround(static_cast<double>(speed_) * static_cast<double>(now - since_) * 1e-9));
+    Node::advance_to(now);
+  }
+  void print(bool all) override {
+    if (all) say("position", std::to_string(device_.object(canopen::encoder::kPositionValue)));
+  }
+  bool set(std::string_view what, std::string_view value) override {
+    constexpr std::int64_t kFar = std::int64_t{1} << 40;
+    std::int64_t number = 0;
+    if (what == "blind" && (value == "on" || value == "off")) {
+      device_.set_unreadable(value == "on");
+      return true;
+    }
+    if ((what != "position" && what != "speed") || !number_of(value, -kFar, kFar, number)) return false;
+    if (what == "position") device_.set_position(number);
+    speed_ = what == "speed" ? number : 0;
+    from_ = device_.position();
+    since_ = now_;
     return true;
   }
-  if (terminal.starts_with("ai") && number_of(terminal.substr(2), 0, t.analogue_inputs - 1, number) &&
-      number_of(value, -32768, 32767, level)) {
-    m.device.set_analogue(static_cast<std::uint8_t>(number), static_cast<std::int16_t>(level));
-    return true;
-  }
-  return false;
+
+ private:
+  mock::SimulatedEncoderConfig config_;
+  mock::SimulatedEncoder device_;
+  std::int64_t speed_ = 0;  ///< counts/s from `from_` at `since_` on
+  std::int64_t from_ = 0;
+  image::Nanoseconds since_ = 0, now_ = 0;
+};
+
+template <class Config>
+Config with_node(int id) {
+  Config c;
+  c.node_id = static_cast<canopen::NodeId>(id);
+  c.serial_number = static_cast<std::uint32_t>(id);
+  return c;
 }
 
-class Modules {
+std::unique_ptr<Node> make_node(const IoOptions& options, int id) {
+  std::unique_ptr<Node> node;
+  if (options.kind == "encoder") {
+    auto c = with_node<mock::SimulatedEncoderConfig>(id);
+    c.resolution = {static_cast<std::uint32_t>(options.counts_per_rev),
+                    static_cast<std::uint16_t>(options.revolutions)};
+    node = std::make_unique<Encoder>(c);
+  } else {
+    auto c = with_node<mock::SimulatedIoConfig>(id);
+    c.terminals = {static_cast<std::uint8_t>(options.digital_inputs),
+                   static_cast<std::uint8_t>(options.digital_outputs),
+                   static_cast<std::uint8_t>(options.analogue_inputs),
+                   static_cast<std::uint8_t>(options.analogue_outputs)};
+    node = std::make_unique<Module>(c);
+  }
+  node->id = id;
+  return node;
+}
+
+class Nodes {
  public:
-  Modules(const IoOptions& options, image::CanBus& bus, image::Nanoseconds now) : bus_(bus) {
-    for (const int node : options.nodes) {
-      mock::SimulatedIoConfig c;
-      c.node_id = static_cast<canopen::NodeId>(node);
-      c.serial_number = static_cast<std::uint32_t>(node);
-      c.terminals = {static_cast<std::uint8_t>(options.digital_inputs),
-                     static_cast<std::uint8_t>(options.digital_outputs),
-                     static_cast<std::uint8_t>(options.analogue_inputs),
-                     static_cast<std::uint8_t>(options.analogue_outputs)};
-      all_.push_back(std::make_unique<Module>(c));
-      all_.back()->device.connect(bus, now);
+  Nodes(const IoOptions& options, image::CanBus& bus, image::Nanoseconds now) : bus_(bus) {
+    for (const int id : options.nodes) {
+      all_.push_back(make_node(options, id));
+      all_.back()->device().connect(bus, now);
+      all_.back()->advance_to(now);
     }
   }
   void advance_to(image::Nanoseconds now) {
     image::CanFrame frame;
     while (bus_.receive(frame)) {
       frame.timestamp_ns = std::min(frame.timestamp_ns, now);
-      for (const auto& m : all_) m->device.on_frame(frame);
+      for (const auto& n : all_) n->device().on_frame(frame);
     }
-    for (const auto& m : all_) {
-      m->device.advance_to(now);
-      print_outputs(*m, false);
+    for (const auto& n : all_) {
+      n->advance_to(now);
+      n->print(false);
     }
+    std::fflush(stdout);
   }
   image::Nanoseconds next_action_ns() const {
-    image::Nanoseconds next = all_.front()->device.next_action_ns();
-    for (const auto& m : all_) next = std::min(next, m->device.next_action_ns());
+    image::Nanoseconds next = all_.front()->device().next_action_ns();
+    for (const auto& n : all_) next = std::min(next, n->device().next_action_ns());
     return next;
   }
   /// A line of standard input.
@@ -121,11 +209,10 @@ class Modules {
     if (named || all_.size() == 1) {
       const std::string_view rest = named ? text.substr(point + 1) : text;
       const std::size_t gap = rest.find(' ');
-      for (const auto& m : all_) {
-        if (named && m->config.node_id != node) continue;
-        if (rest == "status") return print_outputs(*m, true);
-        if (gap != std::string_view::npos && set_terminal(*m, rest.substr(0, gap), rest.substr(gap + 1)))
-          return;
+      for (const auto& n : all_) {
+        if (named && n->id != node) continue;
+        if (rest == "status") return n->print(true);
+        if (gap != std::string_view::npos && n->set(rest.substr(0, gap), rest.substr(gap + 1))) return;
       }
     }
     complain(kBadLine, {line});
@@ -133,18 +220,18 @@ class Modules {
 
  private:
   image::CanBus& bus_;
-  std::vector<std::unique_ptr<Module>> all_;
+  std::vector<std::unique_ptr<Node>> all_;
 };
 
-int live(const std::string& url, const CanTransport& transport, Modules& modules, DriveDesk& desk,
+int live(const std::string& url, const CanTransport& transport, Nodes& nodes, DriveDesk& desk,
          const EndBySignal& signals) {
   const auto take = [&](const std::string& line) {
-    modules.take(line);
+    nodes.take(line);
     return true;
   };
   bool heard = transport.bus->state() != image::CanState::down;
   while (!signals.ended()) {
-    modules.advance_to(drivers::clock_ns(CLOCK_MONOTONIC));
+    nodes.advance_to(drivers::clock_ns(CLOCK_MONOTONIC));
     desk.advance(0, {}, take);
     const bool down = transport.bus->state() == image::CanState::down;
     // An interface comes back; a server or an adapter does not.
@@ -154,7 +241,7 @@ int live(const std::string& url, const CanTransport& transport, Modules& modules
     }
     heard = heard || !down;
     pollfd p[] = {{transport.descriptor, POLLIN, 0}, {desk.descriptor(), POLLIN, 0}};
-    const image::Nanoseconds quiet = modules.next_action_ns() - drivers::clock_ns(CLOCK_MONOTONIC);
+    const image::Nanoseconds quiet = nodes.next_action_ns() - drivers::clock_ns(CLOCK_MONOTONIC);
     const timespec limit{0, std::clamp<image::Nanoseconds>(quiet, 50'000, image::kMillisecond)};
     ppoll(p, 2, &limit, nullptr);
   }
@@ -164,10 +251,10 @@ int live(const std::string& url, const CanTransport& transport, Modules& modules
 int live_in_lockstep(const IoOptions& options, usercan::SocketcandBus& bus, const EndBySignal& signals) {
   auto now = bus.wait_grant();
   if (!now) return kDone;
-  Modules modules(options, bus, *now);
+  Nodes nodes(options, bus, *now);
   for (; now && !signals.ended(); now = bus.wait_grant()) {
-    modules.advance_to(*now);
-    bus.done(std::max(modules.next_action_ns(), *now + 1));
+    nodes.advance_to(*now);
+    bus.done(std::max(nodes.next_action_ns(), *now + 1));
   }
   return kDone;
 }
@@ -187,17 +274,16 @@ int io(const IoOptions& options) {
     complain(*why.entry, why.arguments);
     return kInfrastructure;
   }
+  const std::string name = make_node(options, 1)->name();
   for (const int node : options.nodes)
     std::fprintf(stderr, "%s\n",
-                 text::render(kLives,
-                              std::vector<std::string>{std::to_string(node), named->url,
-                                                       mock::SimulatedIoConfig{}.name},
+                 text::render(kLives, std::vector<std::string>{std::to_string(node), named->url, name},
                               text::user_language())
                      .c_str());
   if (transport->lockstep != nullptr) return live_in_lockstep(options, *transport->lockstep, signals);
   DriveDesk desk({}, true);
-  Modules modules(options, *transport->bus, drivers::clock_ns(CLOCK_MONOTONIC));
-  return live(named->url, *transport, modules, desk, signals);
+  Nodes nodes(options, *transport->bus, drivers::clock_ns(CLOCK_MONOTONIC));
+  return live(named->url, *transport, nodes, desk, signals);
 }
 
 }  // namespace servogate::gateway::command
