@@ -227,8 +227,6 @@ int set_link(int index, const LinkSetting& setting) {
     const can_ctrlmode mode{CAN_CTRLMODE_LISTENONLY, *setting.listen_only ? CAN_CTRLMODE_LISTENONLY : 0U};
     controller.put(IFLA_CAN_CTRLMODE, &mode, sizeof mode);
   }
-  const std::uint32_t one = 1;
-  if (setting.restart) controller.put(IFLA_CAN_RESTART, &one, sizeof one);
   Attributes whole;
   if (controller.used > 0) {
     Attributes info;
@@ -242,9 +240,8 @@ int set_link(int index, const LinkSetting& setting) {
 }
 
 int restart_link(int index) {
-  LinkSetting setting;
-  setting.restart = true;
-  return set_link(index, setting);
+  const int error = set_link(index, {.up = false});
+  return error != 0 ? error : set_link(index, {.up = true});
 }
 
 std::string command_up(const LinkInfo& link, std::uint32_t bit_rate) {

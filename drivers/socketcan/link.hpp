@@ -35,12 +35,14 @@ struct LinkSetting {
   std::optional<bool> up = {};
   std::uint32_t bit_rate = 0;            ///< bit/s, of an interface that is down; 0: as it is
   std::optional<bool> listen_only = {};  ///< of an interface that is down: hears, and never drives the bus
-  bool restart = false;                  ///< out of bus-off
 };
 /// Changes an interface; needs CAP_NET_ADMIN. Bit rate and listening are set before it goes up. 0, or what
 /// errno said: EOPNOTSUPP of a driver that cannot. Not real-time safe.
 int set_link(int index, const LinkSetting& setting);
-/// Restarts a controller that is bus-off; needs CAP_NET_ADMIN. 0, or what errno said. Not real-time safe.
+/// Takes an interface down and brings it up again as it was: its controller leaves bus-off. The kernel's own
+/// restart (IFLA_CAN_RESTART) is not asked for: not every driver has it, and kernels before the repair of
+/// 2025 follow a null pointer in one that has not. Needs CAP_NET_ADMIN. 0, or what errno said. Not real-time
+/// safe.
 int restart_link(int index);
 /// The command that brings an interface up, as a person types it. Not real-time safe.
 std::string command_up(const LinkInfo& link, std::uint32_t bit_rate);

@@ -238,7 +238,7 @@ TEST_F(Workbench, can_restart_is_for_interfaces_of_linux_that_are_there) {
   EXPECT_EQ(tool("can restart gsusb:LAB1").code, 2);
   const Ended none = tool("can restart socketcan:nosuch0");
   EXPECT_EQ(none.code, 4);
-  EXPECT_TRUE(none.out_has("nosuch0"));
+  EXPECT_TRUE(none.err_has("there is no CAN interface nosuch0")) << none.err;
 }
 
 TEST_F(Workbench, can_check_says_who_speaks_and_who_controls) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -56,7 +57,7 @@ std::string command_in(const std::string& code) {
   words >> program >> first >> second;
   if (program != "servogate" || first.empty() || first[0] == '-' || first.back() == ':') return "";
   if (std::isupper(static_cast<unsigned char>(first[0])) != 0) return "";  // COMMAND, a stand-in
-  if (first == "chek") return "";  // shown as the mistake that it is
+  if (first == "chek") return "";                                          // shown as the mistake that it is
   const std::string both = first + " " + second;
   return known().count(both) != 0 ? both : first;
 }
@@ -69,14 +70,23 @@ bool page_names(const Markdown& page, const std::string& command) {
   });
 }
 
+/// A word of its own: "start" is none of "can restart".
+bool names(const std::string& section, const std::string& command) {
+  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-'; };
+  for (std::size_t at = section.find(command); at != std::string::npos; at = section.find(command, at + 1)) {
+    const std::size_t end = at + command.size();
+    if ((at == 0 || !is_word(section[at - 1])) && (end == section.size() || !is_word(section[end])))
+      return true;
+  }
+  return false;
+}
+
 /// True when the option stands in a section whose heading names the command, or in that of all clients.
 bool page_explains(const Markdown& page, const std::string& command, const std::string& option) {
-  const bool own = std::any_of(page.sections.begin(), page.sections.end(), [&](const std::string& s) {
-    return ("," + s + ",").find(command) != std::string::npos;
-  });
+  const bool own = std::any_of(page.sections.begin(), page.sections.end(),
+                               [&](const std::string& s) { return names(s, command); });
   return std::any_of(page.code.begin(), page.code.end(), [&](const Code& c) {
-    const bool here =
-        own ? c.section.find(command) != std::string::npos : c.section.find("clients") != std::string::npos;
+    const bool here = own ? names(c.section, command) : c.section.find("clients") != std::string::npos;
     const std::vector<std::string> options = options_in(c.text);
     return here && std::find(options.begin(), options.end(), option) != options.end();
   });

@@ -223,6 +223,10 @@ std::string hex_text(std::span<const std::uint8_t> bytes, const char* between) {
   return text;
 }
 
+bool may_be(std::span<const std::uint8_t> bytes, const ValueType& type) {
+  return canopen::eds_type_bits(type.data_type) == 0 || fits(bytes, type);
+}
+
 std::string show_value(std::span<const std::uint8_t> bytes, const ValueType* type) {
   if (type != nullptr && is_text(type->data_type)) return "\"" + text_of(bytes) + "\"";
   if (type == nullptr || is_bytes(type->data_type) || !fits(bytes, *type)) return hex_text(bytes, " ");

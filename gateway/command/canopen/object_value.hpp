@@ -34,6 +34,8 @@ std::string type_words();
 
 /// Bytes of a value as a person writes it; nullopt: no value of this type.
 std::optional<std::vector<std::uint8_t>> encode_value(std::string_view text, const ValueType& type);
+/// False: a number of this type has another length. Texts and bytes have any.
+bool may_be(std::span<const std::uint8_t> bytes, const ValueType& type);
 /// The value in words: "567 (0237h)", "-5", "\"name\"", "DE AD". Bytes that do not fit the type are shown as
 /// bytes.
 std::string show_value(std::span<const std::uint8_t> bytes, const ValueType* type);

@@ -49,6 +49,7 @@ const text::Entry kWritten{"sdo.written", "{0} of node {1} is {2}", "{0} узл�
 struct Request {
   ObjectAddress at;
   const ValueType* type = nullptr;  ///< nullptr: by what comes
+  bool type_given = false;          ///< on the command line, else of the object by that number in a drive
   std::vector<std::uint8_t> data;   ///< of a write
   std::string name;
 };
@@ -86,6 +87,7 @@ int read_request(const SdoOptions& options, const ObjectCatalogue& catalogue, Re
   if (options.words.size() > values + 1) return wrong(kTooMuch, {});
   if (options.words.size() == values + 1) {
     request.type = type_named(options.words.back());
+    request.type_given = true;
     if (request.type == nullptr) return wrong(kBadType, {options.words.back(), type_words()});
   }
   return writes ? read_value(options.words.front(), request) : kDone;
@@ -125,8 +127,14 @@ int save_bytes(const std::string& path, const std::vector<std::uint8_t>& data) {
   return kInfrastructure;
 }
 
-int show(const SdoOptions& options, const Request& request, const std::vector<std::uint8_t>& data) {
-  const ValueType* type = request.type != nullptr ? request.type : guess_type(data);
+int show(const SdoOptions& options, Request request, const std::vector<std::uint8_t>& data) {
+  const ValueType* type = request.type;
+  // Another profile has another object by the same number: 6502h of an encoder is not that of a drive.
+  if (type != nullptr && !request.type_given && !may_be(data, *type)) {
+    type = nullptr;
+    request.name.clear();
+  }
+  if (type == nullptr) type = guess_type(data);
   if (options.json) {
     json out = head(options, request);
     out["ok"] = true;
