@@ -10,6 +10,7 @@
 #include "gateway/machine/consequences.hpp"
 #include "gateway/run/words/jog_words.hpp"
 #include "gateway/server/bus_reading.hpp"
+#include "gateway/server/played_value.hpp"
 #include "gateway/server/request_form.hpp"
 #include "gateway/server/status.hpp"
 #include "gateway/server/texts.hpp"
@@ -455,34 +456,6 @@ Reply Dispatch::reset() {
   return left.empty() ? good(says::kReset) : good(says::kResetLeft, {left});
 }
 
-/// What a point can be: what a register holds, as far as its place in the packet holds it.
-image::NumberRange playable(const machine::PointConfig& point) {
-  if (!point.is_analog()) return {0.0, 1.0};
-  const image::NumberRange place = image::number_range(point.place.format);
-  const double end = MockWorld::kLargestRegister * point.scale + point.shift;
-  return {std::max(place.min, std::min(point.shift, end)), std::min(place.max, std::max(point.shift, end))};
-}
-
-/// What an analog point can be next to a value: below it and above it, the same twice where it can be the
-/// value.
-std::pair<double, double> next_to(const machine::PointConfig& point, double value) {
-  const bool whole_place = point.place.format != image::Format::re && point.place.format != image::Format::lr;
-  if (whole_place && std::abs(point.scale) < 1.0) return {std::floor(value), std::ceil(value)};
-  if (point.scale == 0.0) return {point.shift, point.shift};
-  const double raw = (value - point.shift) / point.scale;
-  const auto of = [&](double counts) {
-    const double shown = counts * point.scale + point.shift;
-    return whole_place ? std::round(shown) : shown;
-  };
-  return std::minmax({of(std::floor(raw)), of(std::ceil(raw))});
-}
-
-/// A point without fractions, where a person means what he writes; of others the nearest step does.
-bool is_whole(const machine::PointConfig& point) {
-  const bool whole_place = point.place.format != image::Format::re && point.place.format != image::Format::lr;
-  return whole_place || (point.scale == std::floor(point.scale) && point.shift == std::floor(point.shift));
-}
-
 bool Dispatch::input_value(const machine::PointConfig& point, MockWorld::Play& play) {
   const json value = request_.value("value", json());
   const auto wrong = [&](const text::Entry& entry, const std::vector<std::string>& arguments) {
@@ -497,7 +470,7 @@ bool Dispatch::input_value(const machine::PointConfig& point, MockWorld::Play& p
     play.value = value.get<double>();
   else
     return wrong(says::kNoNumber, {"value"});
-  const image::NumberRange range = playable(point);
+  const image::NumberRange range = range_of(point);
   const bool inside = *play.value >= range.min && *play.value <= range.max;
   if (inside && point.is_analog()) {
     const auto [below, above] = next_to(point, *play.value);
