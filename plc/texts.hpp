@@ -218,11 +218,17 @@ inline constexpr Entry kWriteBoundInput{"plc-write-bound-input",
                                         "'{0}' является входом вызывающего; здесь его можно только читать"};
 inline constexpr Entry kInOutType{"plc-in-out-type", "'{0}' is VAR_IN_OUT and needs exactly {1}, not {2}",
                                   "'{0}' (VAR_IN_OUT) требует в точности {1}, а не {2}"};
+inline constexpr Entry kOutputType{"plc-output-type",
+                                   "'{0}' is VAR_OUTPUT of {1}, which does not fit into {2}",
+                                   "'{0}' (VAR_OUTPUT) имеет тип {1}, он не подходит для {2}"};
 inline constexpr Entry kBitReference{"plc-bit-reference", "a single bit cannot be passed as VAR_IN_OUT",
                                      "отдельный бит нельзя передать как VAR_IN_OUT"};
 inline constexpr Entry kInstanceCopy{
     "plc-instance", "{0} is a function block; its instance is called, not assigned",
     "{0} является функциональным блоком: экземпляр вызывают, а не присваивают"};
+inline constexpr Entry kInstancesCopy{
+    "plc-instances", "{0} holds instances of a function block; they are called one by one, not assigned",
+    "{0} содержит экземпляры функционального блока: их вызывают по одному, а не присваивают"};
 inline constexpr Entry kNotEnumValue{"plc-enum-value", "{0} has no value '{1}'{2}",
                                      "у {0} нет значения '{1}'{2}"};
 inline constexpr Entry kConstantFault{"plc-constant", "this constant cannot be computed: {0}",

@@ -194,8 +194,8 @@ ExprPtr Analyzer::function_call(const Expression& e, int unit) {
       good = good && p.value->type->kind != Kind::error;
     } else if (a.value) {
       auto target = place(*a.value, true);
-      if (target && !binds(*target->type, *v.type)) {
-        report_.error(a.value->location, texts::kInOutType, {v.name, v.type->name, target->type->name});
+      if (target && !takes_output(*target->type, *v.type)) {
+        report_.error(a.value->location, texts::kOutputType, {v.name, v.type->name, target->type->name});
         target.reset();
       }
       good = good && target;

@@ -424,8 +424,8 @@ ExprPtr Analyzer::assignable(ExprPtr e, const Type* to) {
         {e->kind == ExprKind::call ? program_.units[static_cast<std::size_t>(e->unit)].name : "()"});
     return bad(e->at);
   }
-  if (to->kind == Kind::block) {
-    report_.error(e->at, texts::kInstanceCopy, {to->name});
+  if (holds_instance(*to)) {
+    report_.error(e->at, to->kind == Kind::block ? texts::kInstanceCopy : texts::kInstancesCopy, {to->name});
     return bad(e->at);
   }
   if (from.open || to->open) {

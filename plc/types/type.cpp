@@ -193,16 +193,37 @@ Conversion conversion(const Type& from, const Type& to) noexcept {
   if (is_elementary(from.kind) && is_elementary(to.kind)) return between(from.kind, to.kind);
   if (from.kind == Kind::array && to.kind == Kind::array && !from.open && !to.open &&
       from.range.count() == to.range.count() && from.range.low == to.range.low && from.size == to.size)
-    return conversion(*from.base, *to.base) == Conversion::same ? Conversion::same : Conversion::none;
+    return conversion(*from.base, *to.base) == Conversion::same && range_fits(*from.base, *to.base)
+               ? Conversion::same
+               : Conversion::none;
   return Conversion::none;
 }
 
-bool binds(const Type& actual, const Type& formal) noexcept {
+bool range_fits(const Type& from, const Type& to) noexcept {
+  const Type *f = &from, *t = &to;
+  for (; f->kind == Kind::array && t->kind == Kind::array; f = f->base) t = t->base;
+  return !t->bounded || (f->bounded && f->limits.low >= t->limits.low && f->limits.high <= t->limits.high);
+}
+
+bool holds_instance(const Type& type) noexcept {
+  if (type.kind == Kind::array) return holds_instance(*type.base);
+  if (type.kind != Kind::structure) return type.kind == Kind::block;
+  return std::any_of(type.fields.begin(), type.fields.end(),
+                     [](const Field& f) { return holds_instance(*f.type); });
+}
+
+bool takes_output(const Type& actual, const Type& formal) noexcept {
   const Type *a = &actual, *f = &formal;
   if (a->kind == Kind::error || f->kind == Kind::error) return true;
   for (; f->open; a = a->base, f = f->base)
     if (a->kind != Kind::array) return false;
-  return a == f || (!a->open && a->size == f->size && conversion(*a, *f) == Conversion::same);
+  return a == f ||
+         (!a->open && a->size == f->size && conversion(*a, *f) == Conversion::same && range_fits(*f, *a));
+}
+
+bool binds(const Type& actual, const Type& formal) noexcept {
+  const bool known = actual.kind != Kind::error && formal.kind != Kind::error;
+  return takes_output(actual, formal) && (!known || range_fits(actual, formal));
 }
 
 TypeTable::TypeTable() {

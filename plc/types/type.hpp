@@ -113,8 +113,15 @@ void integer_limits(Kind k, std::int64_t& low, std::uint64_t& high) noexcept;
 /// How a value of one type gets into a variable of another.
 enum class Conversion : std::uint8_t { same, widening, narrowing, none };
 Conversion conversion(const Type& from, const Type& to) noexcept;
-/// Whether a variable of one type can stand for one of the other: a parameter that is bound, not copied.
+/// Whether a variable of one type can stand for one of the other: a parameter that is bound, not copied. A
+/// subrange is never lost, whichever side writes.
 bool binds(const Type& actual, const Type& formal) noexcept;
+/// The same of a parameter that is written only.
+bool takes_output(const Type& actual, const Type& formal) noexcept;
+/// Every value of `from` is one of `to` as far as subranges go; of arrays those of the elements.
+bool range_fits(const Type& from, const Type& to) noexcept;
+/// It is a function block, or an element or member of it is one.
+bool holds_instance(const Type& type) noexcept;
 
 /// All types of a compilation.
 class TypeTable {
