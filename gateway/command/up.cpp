@@ -14,7 +14,6 @@
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/retained_keeper.hpp"
-#include "gateway/run/standstill.hpp"
 #include "gateway/server/socket/socket_path.hpp"
 #include "gateway/server/socket/socket_server.hpp"
 
@@ -27,14 +26,6 @@ const text::Entry kListening{"up.listening", "{0} is up; control socket {1}",
 const text::Entry kNoSocket{"up.no-socket", "cannot listen on {0}: {1}", "не удаётся слушать {0}: {1}"};
 const text::Entry kStateLost{"up.state-not-saved", "the state was not saved: {0}",
                              "состояние не сохранено: {0}"};
-
-const text::Entry kSpindleRunsDown{"up.spindle-runs-down",
-                                   "the spindle runs down; the control ends when it stands",
-                                   "шпиндель останавливается; управление завершится, когда он встанет"};
-const text::Entry kSpindleTurns{"up.spindle-turns",
-                                "the spindle does not stand after {0} s: the control ends all the same",
-                                "шпиндель не встал за {0} с: управление всё же завершается"};
-constexpr double kSilentWait_s = 0.5;
 
 std::atomic<bool> hung_up{false};
 void on_hangup(int) { hung_up = true; }
@@ -73,37 +64,6 @@ class VirtualLoop {
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
-
-image::Request request(image::RequestKind kind, double value = 0.0) {
-  image::Request r;
-  r.kind = kind;
-  r.value = value;
-  return r;
-}
-
-/// Stops the axes on the path, switches the drives off, and waits for the spindles to run down.
-void shut_down(Resident& resident) {
-  image::Answer answer;
-  using Clock = std::chrono::steady_clock;
-  const auto wait = [&](double seconds, auto&& done) {
-    const Clock::time_point end =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-    while (!done() && Clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return done();
-  };
-  resident.ask(request(image::RequestKind::stop), answer);
-  wait(kAxesOffPatience_s, [&] {
-    const image::ProcessImage& image = resident.image();
-    for (int a = 0; a < image.axis_count; ++a)
-      if (image.axes[static_cast<std::size_t>(a)].moving) return false;
-    return true;
-  });
-  resident.ask(request(image::RequestKind::power, 0.0), answer);
-  wait(kAxesOffPatience_s, [&] { return axes_off(resident.image()); });
-  const auto rest = [&] { return spindles_rest(resident.image()); };
-  if (!wait(kSilentWait_s, rest)) complain(kSpindleRunsDown, {});
-  if (!wait(kSpindlePatience_s, rest)) complain(kSpindleTurns, {text::number(kSpindlePatience_s, 0)});
-}
 
 }  // namespace
 
@@ -183,9 +143,9 @@ int up(const UpOptions& options) {
       text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()).c_str());
   while (signals_seen() == 0 && !hung_up && !server->down_requested())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the answer to `down` leaves first
+  server->shut_down();
+  while (!server->at_rest()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   server->stop();
-  shut_down(resident);
   const std::string problem = resident.save();
   virtual_loop.reset();
   if (realtime_loop != nullptr) realtime_loop->stop();
@@ -194,7 +154,8 @@ int up(const UpOptions& options) {
   if (!problem.empty()) complain(kStateLost, {problem});
   if (!unkept.empty()) complain(kStateLost, {unkept});
   if (!unrecorded.empty()) complain(kCannotWrite, {options.record, unrecorded});
-  return problem.empty() && unkept.empty() && unrecorded.empty() ? kDone : kInfrastructure;
+  if (!problem.empty() || !unkept.empty() || !unrecorded.empty()) return kInfrastructure;
+  return server->rests() ? kDone : kAlarm;
 }
 
 }  // namespace servogate::gateway::command

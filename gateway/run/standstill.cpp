@@ -22,6 +22,18 @@ bool spindle_rests(const image::ProcessImage& image, int spindle) noexcept {
   return !torque && image.packets.bit(image::at(kZeroSpeed, image::spindle_base(spindle)));
 }
 
+bool spindle_lost(const image::ProcessImage& image, const machine::MachineConfig& machine,
+                  int spindle) noexcept {
+  const auto n = static_cast<std::size_t>(spindle);
+  return !machine.spindles[n].drive.empty() && !image.spindles[n].drive.online;
+}
+
+bool spindles_answer(const image::ProcessImage& image, const machine::MachineConfig& machine) noexcept {
+  for (int s = 0; s < image.spindle_count; ++s)
+    if (spindle_lost(image, machine, s)) return false;
+  return true;
+}
+
 bool spindles_rest(const image::ProcessImage& image) noexcept {
   for (int s = 0; s < image.spindle_count; ++s)
     if (!spindle_rests(image, s)) return false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "firmware_if/image/process_image.hpp"
+#include "gateway/machine/config.hpp"
 
 namespace servogate::gateway {
 
@@ -16,5 +17,10 @@ bool axes_off(const image::ProcessImage& image) noexcept;
 /// without feedback standstill is what its ramp says. Real-time safe.
 bool spindle_rests(const image::ProcessImage& image, int spindle) noexcept;
 bool spindles_rest(const image::ProcessImage& image) noexcept;
+
+/// The spindle has a drive, and that answers no more: whether it stands cannot be seen. Real-time safe.
+bool spindle_lost(const image::ProcessImage& image, const machine::MachineConfig& machine,
+                  int spindle) noexcept;
+bool spindles_answer(const image::ProcessImage& image, const machine::MachineConfig& machine) noexcept;
 
 }  // namespace servogate::gateway

@@ -158,9 +158,18 @@ const Dispatch::Row Dispatch::kRows[] = {{"status", &Dispatch::status},
                                          {"sdo_read", &Dispatch::sdo_read},
                                          {"down", &Dispatch::down}};
 
+/// What a control still does for its clients while it comes to its end.
+bool looks_or_stops(std::string_view command) {
+  static constexpr std::string_view kWords[] = {"status",   "alarms",     "down",     "hold",
+                                                "stop",     "quick_stop", "jog_stop", "sdo_read",
+                                                "plc_list", "plc_watch"};
+  return std::find(std::begin(kWords), std::end(kWords), command) != std::end(kWords);
+}
+
 Reply Dispatch::run() {
   if (!read_head()) return refusal_;
   const std::string command = request_.value("cmd", "");
+  if (resident_.ending() && !looks_or_stops(command)) return fail(says::kEnding, {}, kAlarm);
   for (const auto& row : kRequests)
     if (row.name == command) return ask(row.kind) ? good(*row.said) : refusal_;
   for (const Row& row : kRows)

@@ -64,6 +64,9 @@ class Resident {
   /// ended. Empty: fine.
   std::string look_after();
 
+  /// The control comes to its end: nothing is begun any more.
+  void set_ending() noexcept { ending_ = true; }
+  bool ending() const noexcept { return ending_; }
   /// A program is under way (running, held or waiting).
   bool busy();
   /// It has been ended, and its path is not at rest yet.
@@ -102,7 +105,7 @@ class Resident {
   int blocks_ = 0, lines_ = 0;
   std::string manual_block_;
   std::uint32_t homed_seen_ = 0;
-  bool busy_seen_ = false;
+  bool busy_seen_ = false, ending_ = false;
   std::uint64_t next_id_ = 1;
   image::ProcessImage image_;
   cycle::AlarmSnapshot alarms_;

@@ -183,11 +183,12 @@ std::string status_json(Resident& resident, text::Language language) {
   }
   for (int i = 0; i < image.spindle_count; ++i) {
     const image::SpindleImage& s = image.spindles[static_cast<std::size_t>(i)];
-    status["spindles"].push_back({{"command_rpm", s.command_rpm},
-                                  {"actual_rpm", s.actual_rpm},
-                                  {"at_speed", s.at_speed},
-                                  {"rests", spindle_rests(image, i)},
-                                  {"drive", kDriveStates[static_cast<int>(s.drive.state)]}});
+    status["spindles"].push_back(
+        {{"command_rpm", s.command_rpm},
+         {"actual_rpm", s.actual_rpm},
+         {"at_speed", s.at_speed},
+         {"rests", spindle_lost(image, m, i) ? json() : json(spindle_rests(image, i))},
+         {"drive", kDriveStates[static_cast<int>(s.drive.state)]}});
   }
   status["buses"] = bus_list(m, image);
   status["alarms"] = alarm_list(resident, language);

@@ -26,6 +26,10 @@ const Entry kNoNumber{"socket.no-number", "'{0}' must be a number", "«{0}» д�
 const Entry kNotSwitch{"socket.not-switch", "'{0}' must be 1 or 0", "«{0}» должно быть 1 или 0"};
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
                       "цикл не ответил; работает ли он?"};
+const Entry kEnding{
+    "socket.ending",
+    "the control comes to its end: axes and spindles come to rest, `servogate status` shows them",
+    "управление завершается: оси и шпиндели останавливаются, их показывает `servogate status`"};
 const Entry kComesOn{
     "socket.comes-on",
     "the drives are starting up just now: ask again in a moment, `servogate status` shows them",

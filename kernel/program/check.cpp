@@ -38,17 +38,19 @@ class Survey {
     }
   }
 
-  void operator()(const Command& command) {
+  /// `machine_read`: the program has read a packet before this command.
+  void operator()(const Command& command, bool machine_read) {
     ++report_.commands;
+    machine_read_ = machine_read;
     line_ = command.line;
     file_ = command.file;
     std::visit([this](const auto& what) { take(what); }, command.what);
   }
 
-  int first_outside() const { return first_outside_; }
-  double outside_value() const { return outside_value_; }
-  int outside_line() const { return outside_line_; }
-  int outside_file() const { return outside_file_; }
+  /// Where the first line that leaves the travel of this axis goes.
+  double outside_value(std::size_t axis) const { return outside_value_[axis]; }
+  /// The program had read a packet before: the machine decides whether it goes there.
+  bool outside_by_machine(std::size_t axis) const { return outside_by_machine_[axis]; }
 
  private:
   template <typename Other>
@@ -95,11 +97,8 @@ class Survey {
     if (!outside || extent.outside_line != 0) return;
     extent.outside_line = line_;
     extent.outside_file = file_;
-    if (first_outside_ >= 0) return;
-    first_outside_ = static_cast<int>(axis);
-    outside_value_ = value;
-    outside_line_ = line_;
-    outside_file_ = file_;
+    outside_value_[axis] = value;
+    outside_by_machine_[axis] = machine_read_;
   }
 
   void go(const Position& to) {
@@ -111,8 +110,9 @@ class Survey {
   CheckReport& report_;
   Position position_;
   int line_ = 0, file_ = 0;
-  int first_outside_ = -1, outside_line_ = 0, outside_file_ = 0;
-  double outside_value_ = 0.0;
+  Position outside_value_{};
+  std::array<bool, image::kMaxAxes> outside_by_machine_{};
+  bool machine_read_ = false;
 };
 
 MachineModel without_travel(MachineModel machine) {
@@ -123,15 +123,20 @@ MachineModel without_travel(MachineModel machine) {
   return machine;
 }
 
+/// The first line of each axis that leaves its travel.
 void add_travel(CheckReport& report, const Interpreter& interpreter, const MachineModel& machine,
                 const Survey& survey) {
-  if (survey.first_outside() < 0) return;
-  const auto& axis = machine.axes[at(survey.first_outside())];
-  const double limit = survey.outside_value() > axis.travel_max ? axis.travel_max : axis.travel_min;
-  report.findings.push_back(
-      {text::Severity::error, interpreter.path(survey.outside_file()), survey.outside_line(),
-       interpreter.column(survey.outside_file(), survey.outside_line(), survey.first_outside()),
-       &entry(Fault::travel), outside_arguments(axis, survey.outside_value(), limit)});
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    const CheckReport::Extent& extent = report.extents[a];
+    if (extent.outside_line == 0) continue;
+    const double value = survey.outside_value(a);
+    const double limit = value > extent.travel_max ? extent.travel_max : extent.travel_min;
+    report.findings.push_back(
+        {text::Severity::error, interpreter.path(extent.outside_file), extent.outside_line,
+         interpreter.column(extent.outside_file, extent.outside_line, static_cast<int>(a)),
+         &entry(Fault::travel), outside_arguments(machine.axes[a], value, limit)});
+    if (survey.outside_by_machine(a)) report.by_machine.push_back(report.findings.size() - 1);
+  }
 }
 
 /// What a dry run meets: each place once, and no error that only follows from a block that was passed over.
@@ -238,11 +243,9 @@ CheckReport check_program(std::string_view dialect, const MachineModel& machine,
   report.of_run = report.findings.size();
   report.blocks = interpreter.block_count();
   Survey survey(machine, start, report);
-  bool read_inside = false;  // a packet, before the travel was left
   ErrorsOfRun errors(report, interpreter);
   const auto on_command = [&](const Command& command) {
-    if (survey.first_outside() < 0) read_inside = interpreter.machine_read();
-    survey(command);
+    survey(command, interpreter.machine_read());
     errors.moves(command);
     if (errors.commands_behind() > kMostCommandsBehind) return false;
     std::optional<text::Finding> refused;
@@ -262,7 +265,6 @@ CheckReport check_program(std::string_view dialect, const MachineModel& machine,
   const std::vector<text::Finding>& warnings = interpreter.warnings();
   report.findings.insert(report.findings.end(), warnings.begin(), warnings.end());
   add_travel(report, interpreter, machine, survey);
-  if (survey.first_outside() >= 0 && read_inside) report.by_machine.push_back(report.findings.size() - 1);
   errors.tell();
   return report;
 }

@@ -406,7 +406,8 @@ TEST_F(Gate, permits_on_a_hard_limit_only_the_way_back) {
   set(0, "limit_plus", true);
   run(1);
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::on_hard_limit);
-  EXPECT_EQ(english(), "X is on its limit switch: only motion away from it is possible (+ is not)");
+  EXPECT_EQ(english(),
+            "X is on its limit switch: only a jog away from it is possible (+ is not), `servogate jog`");
   EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 1.0), Refusal::on_hard_limit);
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, -1.0), Refusal::none);
   EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1.0), Refusal::none);

@@ -104,15 +104,18 @@ TEST(CheckProgram, leaves_errors_behind_a_read_signal_to_the_machine) {
   EXPECT_TRUE(by_machine("G0 X301\nE1=SK3").empty()) << "the error comes first";
   EXPECT_TRUE(by_machine("SK3=1\nG0 X301").empty()) << "a write is the program's own";
   EXPECT_EQ(std::vector<std::size_t>{0}, by_machine("E1=SK3\nG0 X301"));
+  EXPECT_EQ(std::vector<std::size_t>{1}, by_machine("G0 X301\nE1=SK3\nG0 Y301")) << "of Y alone";
   EXPECT_EQ(std::vector<std::size_t>{0}, by_machine("(BEQ,SA3,1,A)\n(UAO,7)\n\"A\""));
   EXPECT_EQ(std::vector<std::size_t>{0}, by_machine("\"A\" G0 X1\n(BNC,A)")) << "it was given up";
 }
 
-TEST(CheckProgram, goes_on_after_a_motion_out_of_the_travel_and_names_its_first_line) {
+TEST(CheckProgram, goes_on_after_a_motion_out_of_the_travel_and_names_the_first_line_of_each_axis) {
   const CheckReport report = check("G0 X10\nX301\nX500 Y-400\nX0");
-  ASSERT_EQ(1u, report.findings.size());
+  ASSERT_EQ(2u, report.findings.size());
   EXPECT_EQ("p.nc:2:1: error: X would go to 301, the travel ends at 300 [P701]",
             report.findings[0].str(text::Language::english));
+  EXPECT_EQ("p.nc:3:6: error: Y would go to -400, the travel ends at -300 [P701]",
+            report.findings[1].str(text::Language::english));
   EXPECT_EQ(2, report.extents[0].outside_line);
   EXPECT_EQ(3, report.extents[1].outside_line);
   EXPECT_EQ(0, report.extents[2].outside_line);

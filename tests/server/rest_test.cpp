@@ -88,6 +88,25 @@ TEST_F(Rest, of_the_spindle_is_waited_for_by_power_off) {
   EXPECT_LT(std::abs(spindle["actual_rpm"].get<double>()), 30.0);
 }
 
+TEST_F(Rest, is_to_be_seen_by_clients_to_its_end_and_nothing_begins_in_it) {
+  shell_.up("mill", {"--virtual"});
+  shell_.ready();
+  ASSERT_EQ(shell_.run({"mdi", "S4000 M3", "--wait"}).exit, 0);
+  const pid_t down = shell_.spawn({"down"}, "down");
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["spindles"][0]["command_rpm"] < 3900.0; }, 5.0));
+  for (const char* command : {"home", "start", "resume"}) {
+    const json refused = shell_.ask({{"cmd", command}});
+    EXPECT_EQ(refused["code"], "socket.ending") << command;
+  }
+  EXPECT_EQ(shell_.ask({{"cmd", "power"}, {"value", 1}})["code"], "socket.ending");
+  EXPECT_EQ(shell_.run({"status"}).exit, 0);
+  EXPECT_EQ(shell_.run({"down"}).exit, 0) << "a second one waits for the same end";
+  int status = 0;
+  waitpid(down, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(shell_.wait(), 0);
+}
+
 TEST_F(Rest, comes_by_hold_to_a_jog_and_to_a_homing_too) {
   shell_.up("mill", {"--virtual"});
   ASSERT_EQ(shell_.run({"power", "on"}).exit, 0);
@@ -159,6 +178,9 @@ TEST_F(Rest, comes_to_a_lathe_whose_chuck_opens_in_the_cut_and_closing_it_starts
   EXPECT_TRUE(shell_.until([](const json& s) { return s["state"] == "stopped_by_alarm"; }, 10.0));
   EXPECT_TRUE(contains(shell_.run({"alarms"}).out, "706")) << shell_.run({"alarms"}).out;
   EXPECT_TRUE(shell_.until([](const json& s) { return s["spindles"][0]["rests"].get<bool>(); }, 30.0));
+  EXPECT_EQ(shell_.run({"reset"}).exit, 0) << "the part that is lost can be taken out";
+  EXPECT_TRUE(shell_.status()["alarms"].empty()) << shell_.status()["alarms"];
+  EXPECT_EQ(shell_.run({"mdi", "M69", "--wait"}).exit, 0);
   ASSERT_EQ(shell_.run({"input", "chuck_closed", "on"}).exit, 0);
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // six seconds of the machine
   EXPECT_TRUE(shell_.status()["spindles"][0]["rests"]);

@@ -115,7 +115,7 @@ class Wait {
   static bool turning(const json& status) {
     const json spindles = status.value("spindles", json::array());
     return std::any_of(spindles.begin(), spindles.end(),
-                       [](const json& s) { return !s.value("rests", true); });
+                       [](const json& s) { return s.value("rests", json()) == json(false); });
   }
   static bool on(const json& axis) { return axis.value("enabled", false); }
   static bool moving(const json& axis) { return axis.value("moving", false); }
@@ -217,6 +217,10 @@ void Wait::name_unreachable(const json& status) {
   std::string letters;
   for (const json& a : status.value("axes", json::array()))
     if (of(a, "drive") == "offline") letters += (letters.empty() ? "" : ", ") + of(a, "letter");
+  // null: its drive does not answer.
+  for (const json& s : status.value("spindles", json::array()))
+    if (s.value("rests", json()).is_null())
+      letters += (letters.empty() ? "" : ", ") + text::both("the spindle", "шпинделя");
   if (letters.empty()) return;
   code_ = kAlarm;
   complain(kUnreachable, {letters});

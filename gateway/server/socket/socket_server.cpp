@@ -25,6 +25,7 @@ namespace {
 
 constexpr int kLinesPerTurn = 16;  ///< so that a client who floods leaves room for the others
 constexpr int kLookAfter_ms = 200;
+constexpr int kLookAtShutDown_ms = 20;
 
 /// Name of who is at the other end; its number where it has none.
 std::string user_of(int fd) {
@@ -40,7 +41,7 @@ std::string user_of(int fd) {
 }  // namespace
 
 SocketServer::SocketServer(Resident& resident, std::string path)
-    : resident_(resident), path_(std::move(path)) {}
+    : resident_(resident), path_(std::move(path)), shut_down_(resident) {}
 
 SocketServer::~SocketServer() {
   stop();
@@ -92,9 +93,10 @@ void SocketServer::serve() {
       jogs = jogs || c.connection.jogs >= 0;
     }
     if (poll(fds.data(), fds.size(),
-             backlog ? 0
-             : jogs  ? kLookAtJogs_ms
-                     : kLookAfter_ms) < 0 &&
+             backlog                ? 0
+             : jogs                 ? kLookAtJogs_ms
+             : shuts_down_ || down_ ? kLookAtShutDown_ms
+                                    : kLookAfter_ms) < 0 &&
         errno != EINTR)
       break;
     if (fds[0].revents != 0) break;
@@ -114,7 +116,11 @@ void SocketServer::serve() {
     if (fds[1].revents != 0) accept_client();
     if (const std::string problem = resident_.look_after(); !problem.empty())
       complain(says::kNotSaved, {problem});
+    if (!shuts_down_ || at_rest_) continue;
+    resident_.set_ending();
+    at_rest_ = shut_down_.look();
   }
+  at_rest_ = true;
   for (Client& c : clients_) {
     write_client(c);
     let_go(c);

@@ -7,6 +7,7 @@
 
 #include "gateway/server/dispatch.hpp"
 #include "gateway/server/resident.hpp"
+#include "gateway/server/shut_down.hpp"
 
 namespace servogate::gateway {
 
@@ -30,6 +31,12 @@ class SocketServer {
   void start();
   /// A client asked the control to end.
   bool down_requested() const noexcept { return down_.load(); }
+  /// Begins the end of the control: its axes and spindles come to rest, while clients may look on.
+  void shut_down() noexcept { shuts_down_ = true; }
+  /// They rest, or were waited for long enough.
+  bool at_rest() const noexcept { return at_rest_.load(); }
+  /// After at_rest(): nothing turns or is on, as far as can be seen.
+  bool rests() const noexcept { return shut_down_.rests(); }
   /// Ends the thread and removes the socket. The connections are answered no longer, but stay open until the
   /// destructor: their end tells clients that the control has put everything away.
   void stop();
@@ -56,7 +63,8 @@ class SocketServer {
   int wake_[2] = {-1, -1};
   std::vector<Client> clients_;
   std::uint64_t connections_ = 0;  ///< so far; their numbers count from 1
-  std::atomic<bool> stop_{false}, down_{false};
+  std::atomic<bool> stop_{false}, down_{false}, shuts_down_{false}, at_rest_{false};
+  ShutDown shut_down_;
   std::thread thread_;
 };
 

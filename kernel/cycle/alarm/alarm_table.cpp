@@ -118,8 +118,12 @@ constexpr AlarmRow kTable[] = {
      reset,
      {"axis.off_path", "{0}: stands {1} off the place {2} at which the path ended",
       "{0}: стоит на {1} в стороне от точки {2}, в которой закончилась траектория"},
-     "The axis was lost and stopped by itself: look at tool and part before anything moves.",
-     "Ось была потеряна и остановилась сама: осмотрите инструмент и деталь, прежде чем что-либо двигать."},
+     "The axis left the path to stop (a limit switch, a fault), or was lost and stopped by itself: look at "
+     "tool and part before "
+     "anything moves.",
+     "Ось сошла с траектории, чтобы остановиться (концевик, отказ), или была потеряна и остановилась сама: "
+     "осмотрите инструмент "
+     "и деталь, прежде чем что-либо двигать."},
     {ax::kPlaceUnknown,
      Reaction::warn,
      reset,
