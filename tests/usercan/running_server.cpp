@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -104,9 +105,24 @@ image::CanFrame make(std::uint32_t id, std::initializer_list<std::uint8_t> bytes
   return f;
 }
 
+namespace {
+
+/// Folders of this process, gone when it ends.
+struct Folders {
+  ~Folders() {
+    std::error_code ignored;
+    for (const std::string& folder : all) std::filesystem::remove_all(folder, ignored);
+  }
+  std::vector<std::string> all;
+};
+
+}  // namespace
+
 std::string scratch(const std::string& name) {
+  static Folders folders;
   std::string folder = ::testing::TempDir() + "usercan-" + std::to_string(getpid()) + "-XXXXXX";
   if (mkdtemp(folder.data()) == nullptr) ADD_FAILURE() << "no folder " << folder;
+  folders.all.push_back(folder);
   return folder + "/" + name;
 }
 
