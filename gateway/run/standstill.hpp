@@ -5,8 +5,8 @@
 
 namespace servogate::gateway {
 
-/// What a control waits for before it ends, in machine time. A spindle ramps down under power for as long as
-/// its own acceleration takes.
+/// How long a control waits before it ends: a run in machine time, a resident control by the wall clock. A
+/// spindle ramps down under power for as long as its own acceleration takes.
 inline constexpr double kAxesOffPatience_s = 5.0;
 inline constexpr double kSpindlePatience_s = 60.0;
 

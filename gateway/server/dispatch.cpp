@@ -10,8 +10,8 @@
 #include "gateway/machine/consequences.hpp"
 #include "gateway/run/words/jog_words.hpp"
 #include "gateway/server/bus_reading.hpp"
-#include "gateway/server/played_value.hpp"
-#include "gateway/server/request_form.hpp"
+#include "gateway/server/request/played_value.hpp"
+#include "gateway/server/request/request_form.hpp"
 #include "gateway/server/status.hpp"
 #include "gateway/server/texts.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/request_form.hpp"
+#include "gateway/server/request/request_form.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
