@@ -209,9 +209,9 @@ ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexce
         else
           std::memcpy(mem + p.address, p.initial.data(), p.initial.size());
       }
-  if (s.first)
-    for (const State::Copy& c : s.given_back_places)
-      std::memcpy(mem + c.to, s.given_back.data() + c.from, c.size);
+  for (const State::Copy& c : s.given_back_places)
+    std::memcpy(mem + c.to, s.given_back.data() + c.from, c.size);
+  s.given_back_places.clear();
   s.first = false;
   apply_forces();
 

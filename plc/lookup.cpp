@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plc/lookup.hpp"
 
+#include <algorithm>
+#include <cstring>
+
 #include "plc/syntax/parser.hpp"
 #include "plc/vm/image.hpp"
 
@@ -53,6 +56,20 @@ bool take_apart(const Expression& e, std::vector<Part>& out) {
   }
 }
 
+// The place whose address stands in the cell of a variable AT %Q*.
+Handle located(const Image& image, std::uint32_t cell, const Type* type) {
+  Handle h;
+  std::memcpy(&h.address, image.memory.data() + cell, sizeof h.address);
+  h.type = type;
+  for (std::size_t i = 0; i < image.places.size(); ++i)
+    if (image.places[i].address == h.address && image.places[i].type == type)
+      h.place = static_cast<std::int32_t>(i);
+  return h;
+}
+
+std::optional<Handle> find_global(const Image& image, const std::string& prefix,
+                                  const std::vector<Part>& parts);
+
 // Follows the rest of a path from a variable.
 std::optional<Handle> follow(const Image& image, Handle h, const std::vector<Part>& parts, std::size_t at) {
   for (; at < parts.size(); ++at) {
@@ -71,9 +88,13 @@ std::optional<Handle> follow(const Image& image, Handle h, const std::vector<Par
       return at + 1 == parts.size() ? std::optional(h) : std::nullopt;
     } else {
       const Field* f = t.field(p.name);
-      if (f == nullptr || f->reference) return std::nullopt;
+      if (f == nullptr && t.kind == Kind::block && at > 0)  // AT an address, the same for all instances
+        return find_global(image, t.name + ".",
+                           {parts.begin() + static_cast<std::ptrdiff_t>(at), parts.end()});
+      if (f == nullptr || (f->reference && !f->located)) return std::nullopt;
       h.address += f->offset;
       h.type = f->type;
+      if (f->located) h = located(image, h.address, f->type);
     }
   }
   return h;
@@ -129,6 +150,11 @@ std::optional<Handle> find_variable(const Image& image, std::string_view path) {
   const syntax::ExpressionPtr e = syntax::parse_path(path);
   std::vector<Part> parts;
   if (!e || !take_apart(*e, parts)) return std::nullopt;
+  const ir::Global* only = image.programs.size() == 1 ? image.programs.data() : nullptr;
+  if (only != nullptr) {  // bare names belong to the single program, as inside it
+    if (auto found = follow(image, {only->address, -1, -1, only->type}, parts, 0)) return found;
+    if (auto found = find_global(image, only->type->name + ".", parts)) return found;  // AT an address
+  }
   if (auto found = find_global(image, "", parts)) return found;
   for (const ir::Global& p : image.programs)
     if (same_name(p.name, parts[0].name) && parts.size() > 1) {
@@ -136,10 +162,7 @@ std::optional<Handle> find_variable(const Image& image, std::string_view path) {
       const std::vector<Part> rest(parts.begin() + 1, parts.end());
       if (auto found = find_global(image, p.type->name + ".", rest)) return found;  // declared AT an address
     }
-  if (image.programs.size() != 1) return std::nullopt;
-  const ir::Global& p = image.programs[0];
-  if (auto found = follow(image, {p.address, -1, -1, p.type}, parts, 0)) return found;
-  return find_global(image, p.type->name + ".", parts);
+  return std::nullopt;
 }
 
 std::string variable_name(const Image& image, const Handle& h) {
@@ -157,8 +180,16 @@ std::string variable_name(const Image& image, const Handle& h) {
 
 std::vector<std::string> variable_names(const Image& image) {
   std::vector<std::string> out;
+  const Type* only = image.programs.size() == 1 ? image.programs[0].type : nullptr;
+  const auto hidden = [&](const std::string& name) {  // by a variable of the single program
+    if (only == nullptr) return false;
+    const Field* f = only->field(name);
+    return (f != nullptr && !f->reference) ||
+           std::any_of(image.globals.begin(), image.globals.end(),
+                       [&](const ir::Global& g) { return same_name(g.name, only->name + "." + name); });
+  };
   for (const ir::Global& g : image.globals)
-    if (g.name.find('%') == std::string::npos) out.push_back(g.name);
+    if (g.name.find('%') == std::string::npos && !hidden(g.name)) out.push_back(g.name);
   for (const ir::Global& p : image.programs)
     for (const Field& f : p.type->fields)
       if (!f.reference && f.name.find('$') == std::string::npos)

@@ -93,6 +93,20 @@ bool parse_set(std::string_view text, RunSet& out) {
   return true;
 }
 
+std::vector<std::string> parse_prints(std::string_view text) {
+  std::vector<std::string> out(1);
+  int depth = 0;
+  for (const char c : text) {
+    depth += c == '[' ? 1 : c == ']' ? -1 : 0;
+    if (c == ',' && depth == 0)
+      out.emplace_back();
+    else
+      out.back() += c;
+  }
+  std::erase(out, "");
+  return out;
+}
+
 RunResult run(const RunRequest& request, const std::function<bool(std::string_view)>& line) {
   RunResult out;
   CompileResult compiled = compile(request.files, request.symbols, request.options);

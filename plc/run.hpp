@@ -48,6 +48,9 @@ RunResult run(const RunRequest& request, const std::function<bool(std::string_vi
 /// the cycle.
 bool parse_set(std::string_view text, RunSet& out);
 
+/// `NAME,NAME,...` taken apart; a comma between the subscripts of one name belongs to it.
+std::vector<std::string> parse_prints(std::string_view text);
+
 /// What `servogate plc check` prints: every finding, warnings included. True when there is no error. Not
 /// real-time safe.
 bool check(const std::vector<SourceFile>& files, const std::vector<image::Symbol>& symbols,

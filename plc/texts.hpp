@@ -74,9 +74,34 @@ inline constexpr Entry kAddressOverlap{"plc-overlap", "{0} shares memory with {1
 inline constexpr Entry kSymbolOverlap{
     "plc-overlap-symbol", "{0} shares memory with '{1}' of the machine ({2}); use that name",
     "{0} занимает ту же память, что «{1}» станка ({2}); используйте это имя"};
+inline constexpr Entry kNoLocation{"plc-no-location",
+                                   "no location for {0}; VAR_CONFIG gives it: {1} AT {2}...",
+                                   "нет адреса для {0}; его задаёт VAR_CONFIG: {1} AT {2}..."};
+inline constexpr Entry kNoLasting{"plc-no-location",
+                                  "'{0}' is AT {1}, but its instance does not last; it cannot get a location",
+                                  "'{0}' объявлена AT {1}, но её экземпляр временный; адрес задать нельзя"};
+inline constexpr Entry kLocationOverlap{"plc-location-overlap", "{0} of '{1}' is taken by '{2}'",
+                                        "{0} для '{1}' уже занят '{2}'"};
+inline constexpr Entry kUnlocatedGlobal{
+    "plc-unlocated", "AT {0} is possible in a PROGRAM or FUNCTION_BLOCK; a global variable needs its address",
+    "AT {0} возможно в PROGRAM и FUNCTION_BLOCK; глобальной переменной нужен адрес"};
+inline constexpr Entry kNotLocatable{"plc-not-locatable",
+                                     "'{0}' is not declared AT %I*, %Q* or %M*; it cannot get a location",
+                                     "'{0}' не объявлена AT %I*, %Q* или %M*; адрес задать нельзя"};
+inline constexpr Entry kLocationArea{"plc-location-area", "'{0}' is declared AT {1}; {2} lies elsewhere",
+                                     "'{0}' объявлена AT {1}; {2} лежит в другой области"};
+inline constexpr Entry kLocationType{"plc-location-type", "'{0}' is {1}; AT {2} is for elementary types",
+                                     "'{0}' имеет тип {1}; AT {2} возможно для элементарных типов"};
+inline constexpr Entry kSharedBit{
+    "plc-shared-bit", "the bit of '{0}' is also part of a larger place; this BOOL needs it for itself",
+    "бит переменной '{0}' входит и в более длинное место; этой BOOL он нужен отдельно"};
 inline constexpr Entry kAddressSection{"plc-address-section",
                                        "only VAR and VAR_GLOBAL can stand AT an address",
                                        "AT возможно только в VAR и VAR_GLOBAL"};
+inline constexpr Entry kAddressMember{
+    "plc-address-member",
+    "a member of a structure stands at a place inside it, such as %B2 or %X3.0, not at {0}",
+    "элемент структуры имеет место внутри неё, например %B2 или %X3.0, а не {0}"};
 inline constexpr Entry kNoProgram{"plc-no-program", "there is no PROGRAM to run", "нет ни одной PROGRAM"};
 inline constexpr Entry kRecursion{"plc-recursion", "'{0}' calls itself ({1}); IEC 61131-3 forbids recursion",
                                   "'{0}' вызывает само себя ({1}); МЭК 61131-3 запрещает рекурсию"};
@@ -190,8 +215,8 @@ inline constexpr Entry kExitOutside{"plc-exit", "{0} stands outside a loop", "{0
 inline constexpr Entry kForType{"plc-for-type", "FOR counts with an integer variable, not {0}",
                                 "счётчиком FOR может быть только целая переменная, а не {0}"};
 inline constexpr Entry kForZero{"plc-for-zero", "BY 0 would never end", "с шагом 0 цикл не кончится"};
-inline constexpr Entry kCaseType{"plc-case-type", "CASE needs an integer, bit string or enumeration, not {0}",
-                                 "CASE возможен для целого, битовой строки или перечисления, а не {0}"};
+inline constexpr Entry kCaseType{"plc-case-type", "CASE needs a value of an elementary type, not {0}",
+                                 "CASE возможен для значения элементарного типа, а не {0}"};
 inline constexpr Entry kCaseTwice{"plc-case-twice", "{0} was already chosen in line {1}",
                                   "значение {0} уже встречалось в строке {1}"};
 inline constexpr Entry kNoValue{"plc-no-value", "'{0}' gives no value", "'{0}' не возвращает значения"};
@@ -213,6 +238,9 @@ inline constexpr Entry kInputMissing{"plc-bound-input", "{0} needs a variable fo
                                      "{0} требует переменную для VAR_INPUT '{1}'"};
 inline constexpr Entry kInputType{"plc-bound-input", "'{0}' is bound to a variable of exactly {1}, not {2}",
                                   "'{0}' связывается с переменной в точности типа {1}, а не {2}"};
+inline constexpr Entry kOpenLimits{"plc-open-limits",
+                                   "'{0}' does not take {1}; its limits must fit into DINT",
+                                   "'{0}' не принимает {1}; границы должны помещаться в DINT"};
 inline constexpr Entry kWriteBoundInput{"plc-write-bound-input",
                                         "'{0}' is an input, and the caller's own; it is only read here",
                                         "'{0}' является входом вызывающего; здесь его можно только читать"};

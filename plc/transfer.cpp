@@ -62,6 +62,18 @@ void add_move(Transfer& t, std::uint32_t from, std::uint32_t to, std::uint32_t s
   t.moves.push_back({from, to, size});
 }
 
+// A retained variable whose address is another one now: what it held goes there. Others mean what lies there.
+void keep_moved_places(const Image& from, const Image& to, Transfer& t) {
+  for (const Image::RetainedCell& now : to.retained)
+    for (const Image::RetainedCell& old : from.retained) {
+      if (now.place < 0 || old.place < 0 || !same_name(now.name, old.name)) continue;
+      const auto place = static_cast<std::uint32_t>(now.place);
+      if (same_type(*now.type, *old.type) &&
+          !(to.places[place].place == from.places[static_cast<std::size_t>(old.place)].place))
+        t.places.push_back({old.address, place, now.type->size});
+    }
+}
+
 }  // namespace
 
 Transfer plan_transfer(const Image& from, const Image& to, bool all) {
@@ -82,6 +94,7 @@ Transfer plan_transfer(const Image& from, const Image& to, bool all) {
       add_move(t, old->second.address, leaf.address, leaf.type->size);
     before.erase(old);
   }
+  if (all) keep_moved_places(from, to, t);
   for (const auto& [key, leaf] : before) t.given_up.push_back(leaf.name);
   if (all)
     for (std::uint32_t i = 0; i < from.tasks.size(); ++i)

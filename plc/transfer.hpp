@@ -21,7 +21,7 @@ struct Transfer {
   };
   bool running = false;  ///< an online change: every variable, edges and tasks go on
   std::vector<Move> moves;
-  std::vector<PlaceMove> places;  ///< retained places, which the first scan would give their initial values
+  std::vector<PlaceMove> places;  ///< retained places, which the next scan would take from the packet
   std::vector<std::pair<std::uint32_t, std::uint32_t>> tasks;  ///< old and new index of tasks that go on
   std::size_t kept = 0;                                        ///< variables of elementary type
   std::vector<std::string> fresh;     ///< variables that begin with their initial value

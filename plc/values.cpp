@@ -33,9 +33,30 @@ std::string shortest(T v) {
   return {buffer, end};
 }
 
+// Length of the UTF-8 character that begins there; 0: it is none.
+std::size_t character_at(std::string_view s, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(s[i])); };
+  const unsigned lead = byte(at);
+  const std::size_t n = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
+  if (n < 2 || at + n > s.size()) return n == 1 ? 1 : 0;
+  unsigned code = lead & (0x7Fu >> n);
+  for (std::size_t i = 1; i < n; ++i) {
+    if (byte(at + i) >> 6 != 2) return 0;
+    code = code << 6 | (byte(at + i) & 0x3F);
+  }
+  constexpr unsigned least[] = {0x80, 0x800, 0x10000};
+  return code < least[n - 2] || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000) ? 0 : n;
+}
+
+// A STRING holds bytes; one that is no UTF-8 is shown by its number, as $FF.
 std::string quoted(std::string_view s) {
   std::string out = "\"";
-  for (const char c : s) {
+  std::size_t inside = 0;  // bytes of the character begun
+  for (std::size_t at = 0; at < s.size(); ++at) {
+    const char c = s[at];
+    if (inside == 0) inside = character_at(s, at);
+    const bool whole = inside > 0;
+    inside -= whole;
     if (c == '"' || c == '\\') {
       out += '\\';
       out += c;
@@ -43,10 +64,10 @@ std::string quoted(std::string_view s) {
       char buffer[8];
       std::snprintf(buffer, sizeof buffer, "\\u%04x", static_cast<unsigned>(c));
       out += buffer;
-    } else if (static_cast<unsigned char>(c) >= 0x80) {
-      // A STRING holds bytes; what is no UTF-8 would break the line, so every high byte is shown by its
-      // number.
-      out += c;
+    } else if (!whole) {
+      char buffer[8];
+      std::snprintf(buffer, sizeof buffer, "$%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+      out += buffer;
     } else {
       out += c;
     }

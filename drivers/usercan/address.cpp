@@ -128,6 +128,17 @@ std::optional<Address> parse_address(std::string_view text) {
   return a;
 }
 
+Address in_numbers(const Address& address) {
+  Address numbers = address;
+  if (address.host.empty()) return numbers;
+  const Resolved found = resolve(address);
+  char host[NI_MAXHOST];
+  if (found != nullptr &&
+      getnameinfo(found->ai_addr, found->ai_addrlen, host, sizeof host, nullptr, 0, NI_NUMERICHOST) == 0)
+    numbers.host = host;
+  return numbers;
+}
+
 int listen_on(Address& address, drivers::Notice& why) {
   int s = -1;
   if (address.host.empty()) {

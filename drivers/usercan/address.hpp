@@ -21,6 +21,9 @@ struct Address {
 
 /// "HOST:PORT" or "unix:PATH"; nullopt: neither. Not real-time safe.
 std::optional<Address> parse_address(std::string_view text);
+/// The same address with its host in numbers, as connect_to() would reach it; a host that nobody knows stays
+/// as it is. Not real-time safe.
+Address in_numbers(const Address& address);
 /// A listening socket that does not wait, -1: refused, `why` says it. Other computers are never let in: a
 /// host that is not loopback is refused. Gives `address` the port that the system chose. Not real-time safe.
 int listen_on(Address& address, drivers::Notice& why);

@@ -185,6 +185,7 @@ struct ProcessImage {
   std::array<SegmentStatus, kMaxSegments> segments;
   std::uint32_t alarms_active = 0;  ///< number of unacknowledged alarms
   bool homing = false;              ///< an order to home is under way, between two of its axes, too
+  std::uint32_t homing_left = 0;    ///< axes, as bits, that the last order to home has not brought to its end
 };
 static_assert(std::is_trivially_copyable_v<ProcessImage>);
 
@@ -193,7 +194,10 @@ static_assert(std::is_trivially_copyable_v<ProcessImage>);
 class CycleDevice {
  public:
   virtual ~CycleDevice() = default;
-  /// First act of a cycle: opens it on the bus (SYNC) and takes in what has come. real-time safe.
+  /// First act of a cycle, of all devices before any of them receives: what has to leave at the cycle's own
+  /// time (SYNC). real-time safe.
+  virtual void open_cycle(ProcessImage& /*image*/) noexcept {}
+  /// Takes in what has come. real-time safe.
   virtual void receive(ProcessImage& image) noexcept = 0;
   /// Last act of a cycle: sends the commands computed in it. real-time safe.
   virtual void send(ProcessImage& image) noexcept = 0;

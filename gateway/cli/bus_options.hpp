@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,10 @@ struct PlayOptions {
   bool may_move = false;
 };
 
+/// Longer than any usual SYNC period, and not in the way of who reads one object after the other.
+inline constexpr double kSilenceBeforeReading_s = 0.25;
+inline constexpr double kSilenceBeforeWriting_s = 1.0;
+
 /// What the command line tools for CANopen have in common.
 struct CanopenBusOptions {
   std::string bus;
@@ -74,8 +79,10 @@ struct CanopenBusOptions {
   double timeout_ms = 500.0;  ///< for an answer to an SDO or layer setting request
   bool no_block = false;      ///< SDO in segments only
   bool json = false;
-  double listen_s = 1.0;  ///< how long a bus must be silent of masters before what can move is done
+  /// How long a bus must be silent of masters, s; none: kSilenceBeforeReading_s or kSilenceBeforeWriting_s.
+  std::optional<double> listen_s;
   bool may_move = false;
+  bool anyway = false;  ///< reads although somebody controls the bus
 };
 
 /// `servogate scan`: who is on the bus.

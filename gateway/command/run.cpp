@@ -11,6 +11,7 @@
 
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/compose/program/program_check.hpp"
@@ -25,6 +26,8 @@
 #include "gateway/run/words/ready_words.hpp"
 #include "gateway/run/words/stop_words.hpp"
 #include "gateway/run/words/wait_words.hpp"
+#include "gateway/server/run_server.hpp"
+#include "gateway/server/socket/socket_path.hpp"
 #include "kernel/program/check.hpp"
 
 namespace servogate::gateway::command {
@@ -34,9 +37,9 @@ namespace {
 const text::Entry kRefused{"run.refused", "the control refuses: {0}", "управление отказывает: {0}"};
 const text::Entry kNotReady{"run.not-ready", "these axes did not become ready: {0}",
                             "эти оси не пришли в готовность: {0}"};
-const text::Entry kFramesLost{
-    "run.frames-lost", "bus '{0}': {1} frames were lost on this computer; what the run shows says nothing",
-    "шина «{0}»: на этом компьютере потеряно кадров: {1}; по прогону судить нельзя"};
+const text::Entry kNotAnnounced{"run.not-announced",
+                                "tools cannot see that this run holds its buses: no socket {0}: {1}",
+                                "инструменты не увидят, что этот прогон держит шины: нет сокета {0}: {1}"};
 const text::Entry kAlarmLine{"run.alarm", "alarm {0}: {1}", "авария {0}: {1}"};
 const text::Entry kConsequence{"run.consequence", "  from it alarm {0}: {1}", "  из-за неё авария {0}: {1}"};
 const text::Entry kMessage{"run.message", "message of the program: {0}", "сообщение программы: {0}"};
@@ -82,6 +85,12 @@ std::string say(const text::Entry& entry, const std::vector<std::string>& argume
   return text::render(entry, arguments, text::user_language());
 }
 
+int code_of(OperatorScript::Outcome outcome) {
+  return outcome == OperatorScript::Outcome::finished  ? kDone
+         : outcome == OperatorScript::Outcome::stopped ? kStopped
+                                                       : kAlarm;
+}
+
 /// One run from the command line: everything between "machine loaded" and the exit code.
 class Run {
  public:
@@ -96,6 +105,7 @@ class Run {
   bool waits_for_start() const { return !loaded_.machine.nothing_real() && !options_.start_now; }
   bool realtime() const { return options_.clock != ClockKind::virtual_time; }
   OperatorScript::Wishes wishes() const;
+  void announce();
   bool virtual_loop(OperatorScript& script, Session& session);
   bool realtime_loop(OperatorScript& script, Session& session);
   void take_answers(OperatorScript& script);
@@ -118,6 +128,7 @@ class Run {
   machine::StateLock lock_;
   std::vector<text::Finding> wrong_;  ///< errors of the program: nothing moves
   std::unique_ptr<Control> control_;
+  std::unique_ptr<RunServer> server_;
   std::unique_ptr<RecordWriter> record_;
   std::unique_ptr<RetainedKeeper> keeper_;
   double estimate_s_ = 0.0;
@@ -200,12 +211,26 @@ int Run::execute(const std::vector<std::string>& command_line) {
   OperatorScript script(wishes(), [this](const image::Request& r) { return control_->cycle().post(r); });
   if (!wrong_.empty()) return finish(script, session, command_line);
   count_signals();
+  if (realtime()) refuse_suspension();
   control_->world().close_operator_points();
+  announce();
   begin_ = Clock::now();
   const bool ran = realtime() ? realtime_loop(script, session) : virtual_loop(script, session);
   if (!ran) return kInfrastructure;
   wall_s_ = seconds_since(begin_);
+  server_.reset();
   return finish(script, session, command_line);
+}
+
+/// Who holds buses that others can reach says so, and lets them read through it.
+void Run::announce() {
+  if (!RunServer::needed(loaded_.machine)) return;
+  const std::string path = run_socket(loaded_.machine.name);
+  server_ = std::make_unique<RunServer>(*control_, path);
+  const std::string problem = server_->bind();
+  if (problem.empty()) return server_->start();
+  complain(kNotAnnounced, {path, problem});
+  server_.reset();
 }
 
 void Run::take_answers(OperatorScript& script) {
@@ -371,20 +396,7 @@ int Run::finish(const OperatorScript& script, Session& session,
   if (options_.json) print(report::to_json(report));
   explain(script, report);
   if (!options_.state.empty() && wrong_.empty() && !save_state()) infrastructure_ = true;
-  for (std::size_t b = 0; b < loaded_.machine.buses.size(); ++b)
-    if (const std::uint64_t lost = control_->frames_lost(b); lost > 0) {
-      complain(kFramesLost, {loaded_.machine.buses[b].name, std::to_string(lost)});
-      infrastructure_ = true;
-    }
-  if (infrastructure_) return kInfrastructure;
-  switch (script.outcome()) {
-    case OperatorScript::Outcome::finished:
-      return kDone;
-    case OperatorScript::Outcome::stopped:
-      return kStopped;
-    default:
-      return kAlarm;
-  }
+  return unless_frames_lost(infrastructure_ ? kInfrastructure : code_of(script.outcome()), *control_);
 }
 
 /// Why nothing was begun although cycles ran: what the gate says, or which axes did not become ready; then

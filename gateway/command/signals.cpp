@@ -20,7 +20,7 @@ namespace {
 const text::Entry kNothingBegun{"cli.stopped", "stopped by the operator before anything had begun",
                                 "остановлено оператором: ещё ничего не началось"};
 
-constexpr std::array kSignals{SIGINT, SIGTERM};
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
 /// What a handler may use: plain bytes that are whole before the handler is there.
 struct Line {
@@ -61,7 +61,11 @@ void handle(void (*handler)(int), int flags) {
   struct sigaction action {};
   action.sa_handler = handler;
   action.sa_flags = flags;
-  for (const int signal : kSignals) sigaction(signal, &action, nullptr);
+  for (const int signal : kSignals) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (signal != SIGHUP || before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
 }
 
 }  // namespace
@@ -86,6 +90,8 @@ void count_signals(bool interrupting) {
 }
 
 int signals_seen() noexcept { return seen.load(); }
+
+void refuse_suspension() { std::signal(SIGTSTP, SIG_IGN); }
 
 void leave_signals_alone() { handle(SIG_DFL, 0); }
 

@@ -2,7 +2,8 @@
 #pragma once
 #include "firmware_if/text/finding.hpp"
 
-/// Ctrl-C and SIGTERM as wishes of the operator. One a process; the main thread's.
+/// Ctrl-C, Ctrl-\, SIGTERM and the end of the terminal as wishes of the operator. One a process; the main
+/// thread's. A terminal's end that the caller ignores (nohup) stays ignored.
 namespace servogate::gateway::command {
 
 /// First act of main(): from here on the first signal says that nothing has begun and ends the program at
@@ -17,6 +18,8 @@ void say_when_stopped(const text::Entry& entry);
 /// From here on the command looks itself: signals are counted. `interrupting`: system calls that wait are
 /// interrupted by them.
 void count_signals(bool interrupting = false);
+/// Ctrl-Z does not suspend this process: what drives an axis cannot be laid aside.
+void refuse_suspension();
 /// How many have come since count_signals().
 int signals_seen() noexcept;
 

@@ -7,6 +7,7 @@
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/machine/state/state.hpp"
@@ -26,9 +27,6 @@ const text::Entry kListening{"up.listening", "{0} is up; control socket {1}",
 const text::Entry kNoSocket{"up.no-socket", "cannot listen on {0}: {1}", "не удаётся слушать {0}: {1}"};
 const text::Entry kStateLost{"up.state-not-saved", "the state was not saved: {0}",
                              "состояние не сохранено: {0}"};
-
-std::atomic<bool> hung_up{false};
-void on_hangup(int) { hung_up = true; }
 
 /// Virtual time paced against the wall clock on a thread of its own.
 class VirtualLoop {
@@ -117,7 +115,7 @@ int up(const UpOptions& options) {
                              : !m.run.socket.empty() ? m.resolve(m.run.socket)
                                                      : default_socket(m.name);
   count_signals();  // from here on there is something to be put away
-  std::signal(SIGHUP, on_hangup);
+  if (!is_virtual) refuse_suspension();
   server = std::make_unique<SocketServer>(resident, socket);
   if (const std::string problem = server->bind(); !problem.empty()) {
     complain(kNoSocket, {socket, problem});
@@ -141,7 +139,7 @@ int up(const UpOptions& options) {
   std::fprintf(
       stderr, "%s\n",
       text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()).c_str());
-  while (signals_seen() == 0 && !hung_up && !server->down_requested())
+  while (signals_seen() == 0 && !server->down_requested())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   server->shut_down();
   while (!server->at_rest()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -154,8 +152,8 @@ int up(const UpOptions& options) {
   if (!problem.empty()) complain(kStateLost, {problem});
   if (!unkept.empty()) complain(kStateLost, {unkept});
   if (!unrecorded.empty()) complain(kCannotWrite, {options.record, unrecorded});
-  if (!problem.empty() || !unkept.empty() || !unrecorded.empty()) return kInfrastructure;
-  return server->rests() ? kDone : kAlarm;
+  const int code = unless_frames_lost(server->rests() ? kDone : kAlarm, *control);
+  return problem.empty() && unkept.empty() && unrecorded.empty() ? code : kInfrastructure;
 }
 
 }  // namespace servogate::gateway::command

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <span>
 
+#include "firmware_if/image/frame_record.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::gateway {
@@ -22,6 +24,7 @@ constexpr Row kAlarms[] = {
     {BusEventKind::emcy, cycle::alarm::kEmergencyMessage},
     {BusEventKind::heartbeat_lost, cycle::alarm::kNodeLost},
     {BusEventKind::pdo_missing, axis::alarm::kPdoMissing},
+    {BusEventKind::pdo_short, cycle::alarm::kPdoShort},
     {BusEventKind::node_restarted, cycle::alarm::kNodeRestarted},
     {BusEventKind::node_left, cycle::alarm::kNodeLeft},
     {BusEventKind::foreign_frame, cycle::alarm::kForeignFrame},
@@ -47,8 +50,12 @@ constexpr StateRow kStates[] = {
 
 }  // namespace
 
+void CanSupplier::open_cycle(image::ProcessImage& image) noexcept {
+  if (clock_ != nullptr) sync_ns_ = clock_->now_ns();
+  segment_.open_cycle(image);
+}
+
 void CanSupplier::receive(image::ProcessImage& image) noexcept {
-  if (clock_ != nullptr) sync_ns_ = clock_->now_ns();  // SYNC is the first act of the segment
   segment_.receive(image);
   canopen::BusEvent event;
   for (int i = 0; i < cycle::kNoticesPerCycle && segment_.events().pop(event); ++i) report(event);
@@ -68,10 +75,17 @@ void CanSupplier::report(const canopen::BusEvent& event) noexcept {
   r.error_code = event.emcy.error_code;
   r.statusword = event.statusword;
   r.limit = static_cast<double>(event.expected);
-  r.value = static_cast<double>(event.kind == BusEventKind::foreign_frame ? event.frame.id
-                                : event.kind == BusEventKind::emcy        ? event.emcy.error_register
-                                                                          : event.got);
+  r.value = static_cast<double>(event.kind == BusEventKind::emcy ? event.emcy.error_register : event.got);
+  r.detail1 = event.pdo;
+  if (event.kind == BusEventKind::foreign_frame) {
+    const std::size_t length = std::min<std::size_t>(event.frame.length, event.frame.data.size());
+    image::pack_frame(canopen::make_frame(event.frame.id, std::span(event.frame.data).first(length)), r);
+  }
   if (event.kind == BusEventKind::boot_failed) pack(event.boot, r);
+  // Without its bus no node is reached: the strongest of what their losses demand.
+  if (r.number == cycle::alarm::kBusOff || r.number == cycle::alarm::kBusDown)
+    for (const canopen::NodeConfig& n : segment_.config().nodes)
+      r.reaction = std::max(r.reaction, n.loss_reaction);
   const bool lost = std::find(std::begin(kLosses), std::end(kLosses), event.kind) != std::end(kLosses);
   for (const canopen::NodeConfig& n : segment_.config().nodes) {
     if (n.node != event.node) continue;

@@ -19,6 +19,8 @@ class CanSupplier final : public image::CycleDevice {
   /// Time by that clock at which the SYNC of this cycle was handed to the bus. real-time safe.
   image::Nanoseconds sync_ns() const noexcept { return sync_ns_; }
 
+  /// Sends SYNC. real-time safe.
+  void open_cycle(image::ProcessImage& image) noexcept override;
   /// real-time safe.
   void receive(image::ProcessImage& image) noexcept override;
   /// real-time safe.

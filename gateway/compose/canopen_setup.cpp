@@ -155,6 +155,8 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
     put_files(loaded, node, reference, n.setup);
     n.setup.boot_timeout_ms = static_cast<std::int32_t>(std::lround(node.boot_timeout * 1e3));
     n.setup.boot_attempts = node.boot_attempts;
+    n.setup.sdo_timeout_ms = static_cast<std::int32_t>(std::lround(node.sdo_timeout * 1e3));
+    n.setup.sdo_retries = node.sdo_retries;
     // The control's own heartbeat is as quick as the quickest node's.
     if (n.heartbeat_ms > 0) c.heartbeat_ms = std::min(c.heartbeat_ms, n.heartbeat_ms);
     c.nodes.push_back(std::move(n));

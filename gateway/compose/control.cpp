@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "firmware_if/canopen/301/words/frame_words.hpp"
+#include "firmware_if/image/frame_record.hpp"
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/canopen_setup.hpp"
 #include "gateway/compose/program/program_model.hpp"
@@ -323,9 +325,17 @@ cycle::AlarmNames Control::alarm_names() const {
     const std::string words = canopen::describe(event, {}, nullptr, language);
     return words.starts_with(": ") ? words.substr(2) : words;
   };
+  names.foreign_frame = [](const image::AlarmRecord& record, text::Language language) {
+    return text::render({"", "{0}", "{0}"},
+                        std::vector<std::string>{canopen::frame_words(image::unpack_frame(record))},
+                        language);
+  };
   names.program_file = [this](int process, std::uint32_t run, int file) -> std::string {
     if (process < 0 || process >= std::ssize(processes_)) return {};
     return processes_[static_cast<std::size_t>(process)]->texts().file(run, file);
+  };
+  names.plc_fault = [this](const image::AlarmRecord& record, text::Language language) -> std::string {
+    return logic_ == nullptr ? std::string() : logic_->fault_words(record, language);
   };
   names.program_finding = [this](int process, int number, text::Language language) -> std::string {
     if (process < 0 || process >= std::ssize(processes_)) return {};

@@ -163,6 +163,8 @@ struct NodeConfig {
   int loss_cycles = 3;           ///< cycles without process data until the node counts as lost
   double boot_timeout = 0.0;     ///< s, wait for boot-up and for Operational; 0: the standard 2 s
   int boot_attempts = 0;         ///< before the failure is told; 0: the standard 3
+  double sdo_timeout = 0.0;      ///< s, wait for each answer of an SDO transfer; 0: the standard 200 ms
+  int sdo_retries = 2;           ///< repetitions of a transfer that got no answer
   std::string software_version;  ///< 100Ah at boot, to the letter; empty: any
   LossReaction loss_reaction = LossReaction::stop_on_path;
   std::string program;                ///< file for 1F50h, from the machine file's folder; empty: none

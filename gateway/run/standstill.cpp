@@ -7,19 +7,29 @@ namespace servogate::gateway {
 
 using image::DriveState;
 
+namespace {
+
+bool has_torque(const image::DriveFeedback& drive) noexcept {
+  return drive.online &&
+         (drive.state == DriveState::operation_enabled || drive.state == DriveState::quick_stop_active ||
+          drive.state == DriveState::fault_reaction_active);
+}
+
+}  // namespace
+
 bool axes_off(const image::ProcessImage& image) noexcept {
-  for (int a = 0; a < image.axis_count; ++a)
-    if (image.axes[static_cast<std::size_t>(a)].enabled) return false;
+  for (int n = 0; n < image.axis_count; ++n) {
+    // `enabled` falls as soon as the brake begins to close, the torque behind it.
+    const image::AxisImage& a = image.axes[static_cast<std::size_t>(n)];
+    if (a.enabled || a.moving || has_torque(a.drive)) return false;
+  }
   return true;
 }
 
 bool spindle_rests(const image::ProcessImage& image, int spindle) noexcept {
   constexpr image::Place kZeroSpeed = image::field(image::kSpindleFields, "zero_speed");
   const image::DriveFeedback& drive = image.spindles[static_cast<std::size_t>(spindle)].drive;
-  const bool torque = drive.online && (drive.state == DriveState::operation_enabled ||
-                                       drive.state == DriveState::quick_stop_active ||
-                                       drive.state == DriveState::fault_reaction_active);
-  return !torque && image.packets.bit(image::at(kZeroSpeed, image::spindle_base(spindle)));
+  return !has_torque(drive) && image.packets.bit(image::at(kZeroSpeed, image::spindle_base(spindle)));
 }
 
 bool spindle_lost(const image::ProcessImage& image, const machine::MachineConfig& machine,
@@ -29,8 +39,10 @@ bool spindle_lost(const image::ProcessImage& image, const machine::MachineConfig
 }
 
 bool spindles_answer(const image::ProcessImage& image, const machine::MachineConfig& machine) noexcept {
-  for (int s = 0; s < image.spindle_count; ++s)
-    if (spindle_lost(image, machine, s)) return false;
+  for (int s = 0; s < image.spindle_count; ++s) {
+    const bool heard = image.spindles[static_cast<std::size_t>(s)].drive.statusword != 0;
+    if (heard && spindle_lost(image, machine, s)) return false;
+  }
   return true;
 }
 

@@ -21,6 +21,7 @@ bool spindles_rest(const image::ProcessImage& image) noexcept;
 /// The spindle has a drive, and that answers no more: whether it stands cannot be seen. Real-time safe.
 bool spindle_lost(const image::ProcessImage& image, const machine::MachineConfig& machine,
                   int spindle) noexcept;
+/// No spindle was lost. A drive that has never answered was never told to turn it. Real-time safe.
 bool spindles_answer(const image::ProcessImage& image, const machine::MachineConfig& machine) noexcept;
 
 }  // namespace servogate::gateway

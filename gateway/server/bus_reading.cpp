@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <thread>
+
+#include "gateway/cli/options.hpp"
+#include "gateway/server/texts.hpp"
 
 namespace servogate::gateway {
 
@@ -12,6 +16,15 @@ namespace {
 
 using canopen::SdoStatus;
 using nlohmann::json;
+
+/// What came of a question.
+struct ReadThrough {
+  /// `bus` is no bus of the machine, or it has no such node: what the question names wrongly.
+  bool unknown = false;
+  /// Another question is under way, or the cycle does not come to it.
+  bool no_answer = false;
+  json answer;  ///< status, abort, data; null without an answer
+};
 
 /// The master's own patience with a node, and as much again for its turn.
 constexpr auto kPatience = std::chrono::milliseconds(1500);
@@ -41,8 +54,6 @@ CanSupplier* supplier_of(Control& control, const json& request) {
     if (buses[i].name == found->get<std::string>()) return control.suppliers()[i].get();
   return nullptr;
 }
-
-}  // namespace
 
 ReadThrough read_object(Control& control, const json& request) {
   ReadThrough out;
@@ -76,6 +87,15 @@ ReadThrough read_object(Control& control, const json& request) {
   }
   question.done();
   return out;
+}
+
+}  // namespace
+
+Reply sdo_read(Control& control, const json& request, text::Language language) {
+  ReadThrough read = read_object(control, request);
+  if (read.unknown) return refuse(says::kNoSuchObject, {}, kWrongUse, language);
+  if (read.no_answer) return refuse(says::kObjectUnanswered, {}, kAlarm, language);
+  return accept(says::kObjectRead, {}, language, std::move(read.answer));
 }
 
 }  // namespace servogate::gateway

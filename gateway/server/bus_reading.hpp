@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <nlohmann/json.hpp>
-#include <optional>
+#include <nlohmann/json_fwd.hpp>
 
 #include "gateway/compose/control.hpp"
+#include "gateway/server/socket/line.hpp"
 
 namespace servogate::gateway {
 
-/// What came of reading an object of a node through the control that holds its bus.
-struct ReadThrough {
-  /// `bus` is no bus of the machine, or it has no such node: what the question names wrongly.
-  bool unknown = false;
-  /// Another question is under way, or the cycle does not come to it.
-  bool no_answer = false;
-  nlohmann::json answer;  ///< status, abort, data; null without an answer
-};
-
-/// Reads an object; waits as long as an SDO transfer may take. The keys of the request: bus, node, index,
-/// subindex.
-ReadThrough read_object(Control& control, const nlohmann::json& request);
+/// The answer to `sdo_read` on a socket: an object of a node, read by the control that holds its bus. The
+/// keys of the request: bus, node, index, subindex. Waits as long as an SDO transfer may take.
+Reply sdo_read(Control& control, const nlohmann::json& request, text::Language language);
 
 }  // namespace servogate::gateway

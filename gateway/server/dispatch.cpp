@@ -42,11 +42,8 @@ constexpr struct {
   std::string_view name;
   RequestKind kind;
   const text::Entry* said;
-} kRequests[] = {{"resume", RequestKind::resume, &says::kResumed},
-                 {"stop", RequestKind::stop, &says::kStopped},
+} kRequests[] = {{"stop", RequestKind::stop, &says::kStopped},
                  {"quick_stop", RequestKind::quick_stop, &says::kStopped}};
-
-std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 std::string signed_number(double value) { return (value > 0.0 ? "+" : "") + text::number(value, 4); }
 
@@ -68,10 +65,7 @@ class Dispatch {
   /// An accepted request; `more` is added to the answer.
   Reply good(const text::Entry& entry, const std::vector<std::string>& arguments = {},
              json more = json::object()) const {
-    more["ok"] = true;
-    more["exit"] = kDone;
-    more["text"] = text::render(entry, arguments, language_);
-    return {text_of(more)};
+    return accept(entry, arguments, language_, std::move(more));
   }
   Reply fail(const text::Entry& entry, const std::vector<std::string>& arguments, int exit) const {
     return refuse(entry, arguments, exit, language_);
@@ -89,6 +83,7 @@ class Dispatch {
   bool read_head();
 
   Reply status() { return {status_json(resident_, language_)}; }
+  Reply buses() { return {held_buses_json(machine(), resident_.image(), false)}; }
   Reply alarms() { return {alarms_json(resident_, language_)}; }
   Reply power();
   Reply home();
@@ -111,14 +106,16 @@ class Dispatch {
   Reply begin(bool step);
   Reply mdi();
   Reply hold();
+  Reply resume();
   Reply reset();
   Reply input();
-  Reply sdo_read();
+  Reply sdo_read() { return gateway::sdo_read(resident_.control(), request_, language_); }
   /// The answer to "not powered", with each condition that is missing.
   void add_missing(json& answer);
   /// What the request plays on a point; false: `refusal_` holds the answer.
   bool input_value(const machine::PointConfig& point, MockWorld::Play& play);
   Reply down() {
+    resident_.set_ending();  // nothing begins behind the answer
     Reply reply = good(says::kDown);
     reply.down = true;
     return reply;
@@ -138,6 +135,7 @@ class Dispatch {
 };
 
 const Dispatch::Row Dispatch::kRows[] = {{"status", &Dispatch::status},
+                                         {"buses", &Dispatch::buses},
                                          {"alarms", &Dispatch::alarms},
                                          {"power", &Dispatch::power},
                                          {"home", &Dispatch::home},
@@ -152,6 +150,7 @@ const Dispatch::Row Dispatch::kRows[] = {{"status", &Dispatch::status},
                                          {"step", &Dispatch::step},
                                          {"mdi", &Dispatch::mdi},
                                          {"hold", &Dispatch::hold},
+                                         {"resume", &Dispatch::resume},
                                          {"reset", &Dispatch::reset},
                                          {"acknowledge", &Dispatch::reset},
                                          {"input", &Dispatch::input},
@@ -160,9 +159,9 @@ const Dispatch::Row Dispatch::kRows[] = {{"status", &Dispatch::status},
 
 /// What a control still does for its clients while it comes to its end.
 bool looks_or_stops(std::string_view command) {
-  static constexpr std::string_view kWords[] = {"status",   "alarms",     "down",     "hold",
-                                                "stop",     "quick_stop", "jog_stop", "sdo_read",
-                                                "plc_list", "plc_watch"};
+  static constexpr std::string_view kWords[] = {"status",   "buses",    "alarms",     "down",
+                                                "hold",     "stop",     "quick_stop", "jog_stop",
+                                                "sdo_read", "plc_list", "plc_watch"};
   return std::find(std::begin(kWords), std::end(kWords), command) != std::end(kWords);
 }
 
@@ -417,6 +416,8 @@ Reply Dispatch::begin(bool step) {
                        {"text", with_findings(says::kNotStarted, resident_.program(), wrong)},
                        {"exit", kAlarm}})};
     mode = step ? image::Mode::step : image::Mode::automatic;
+  } else if (!typed && !step && resident_.steps()) {
+    mode = image::Mode::automatic;
   }
   // A wait that began before belongs to the block before.
   const json asked{{"asked_s", resident_.image().now.seconds()}};
@@ -443,6 +444,12 @@ Reply Dispatch::mdi() {
   }
   resident_.set_manual_block({});  // a start button must not find it later
   return refusal_;
+}
+
+Reply Dispatch::resume() {
+  const bool typed = resident_.typed();
+  if (!ask(RequestKind::resume)) return refusal_;
+  return typed ? good(says::kTypedGoesOn, {resident_.manual_block()}) : good(says::kResumed);
 }
 
 Reply Dispatch::hold() {
@@ -496,13 +503,6 @@ bool Dispatch::input_value(const machine::PointConfig& point, MockWorld::Play& p
                {point.name, text::number(*play.value), text::number(range.min), text::number(range.max)});
 }
 
-Reply Dispatch::sdo_read() {
-  const ReadThrough read = read_object(resident_.control(), request_);
-  if (read.unknown) return fail(says::kNoSuchObject, {}, kWrongUse);
-  if (read.no_answer) return fail(says::kObjectUnanswered, {}, kAlarm);
-  return good(says::kObjectRead, {}, read.answer);
-}
-
 Reply Dispatch::input() {
   const std::string name = request_.value("point", "");
   int station = -1;
@@ -534,14 +534,6 @@ Reply Dispatch::input() {
 }
 
 }  // namespace
-
-Reply refuse(const text::Entry& entry, const std::vector<std::string>& arguments, int exit,
-             text::Language language) {
-  return {text_of({{"ok", false},
-                   {"code", entry.id},
-                   {"text", text::render(entry, arguments, language)},
-                   {"exit", exit}})};
-}
 
 Reply dispatch(Resident& resident, std::string_view line, Connection& connection) {
   FormProblem problem;

@@ -1,29 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <chrono>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "gateway/server/resident.hpp"
+#include "gateway/server/socket/line.hpp"
 
 namespace servogate::gateway {
-
-/// What a line on the control socket leads to.
-struct Reply {
-  std::string line;   ///< one JSON object without a line end
-  bool down = false;  ///< the control is to end
-};
-
-/// What the server remembers of a connection.
-struct Connection {
-  int jogs = -1;  ///< axis of the continuous jog that this client keeps alive, -1: none
-  image::Asker asker = image::Asker::command_line;  ///< who began it
-  bool silent = false;                              ///< it was ended because its client had fallen silent
-  std::chrono::steady_clock::time_point heard{};    ///< when that client last kept it alive
-  std::uint64_t number = 0;  ///< of this connection; what it forces at the PLC ends with it
-  std::string user;          ///< name of who opened it
-};
 
 /// Carries out one line of the control socket's protocol (docs/control-socket.md): a JSON object
 /// `{"cmd":"jog","asker":"command_line","axis":"X","value":1.0}`; the answer is `{"ok":true,...}` or
@@ -38,9 +20,5 @@ void end_connection(Resident& resident, Connection& connection);
 /// judges by its own time; where time is scaled the machine's seconds say nothing of a living hand.
 void watch_jog(Resident& resident, Connection& connection);
 inline constexpr int kLookAtJogs_ms = 10;
-
-/// A refusal as a line.
-Reply refuse(const text::Entry& entry, const std::vector<std::string>& arguments, int exit,
-             text::Language language);
 
 }  // namespace servogate::gateway

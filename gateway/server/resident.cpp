@@ -59,6 +59,8 @@ bool Resident::stopping() const { return control_.process(0).stopping(); }
 
 bool Resident::typed() { return busy() && image_.processes[0].typed; }
 
+bool Resident::steps() { return busy() && image_.processes[0].mode == image::Mode::step; }
+
 void Resident::tell(image::Request request) {
   image::Answer unread;
   while (control_.cycle().take_answer(unread)) {

@@ -73,6 +73,8 @@ class Resident {
   bool stopping() const;
   /// What is under way is a block typed by hand, not the loaded program.
   bool typed();
+  /// A program is stepped through block by block.
+  bool steps();
   /// Path of the loaded program; empty: none.
   const std::string& program() const noexcept { return file_->path; }
   /// Of the loaded program's file: blocks, and lines.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "gateway/compose/bus_place.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/run/standstill.hpp"
 #include "gateway/run/words/alarm_entries.hpp"
@@ -112,8 +113,8 @@ json process_json(Resident& resident, const image::ProcessImage& image, int proc
           {"tool", p.tool}};
 }
 
-/// The buses that this control holds, with their nodes.
-json bus_list(const machine::MachineConfig& m, const image::ProcessImage& image) {
+/// The buses of a machine: `name`, `url`, `place` (bus_place()), `nodes`.
+json buses_json(const machine::MachineConfig& m, const image::ProcessImage& image) {
   json buses = json::array();
   const auto online = [&](const std::string& reference) {
     for (int i = 0; i < image.axis_count; ++i)
@@ -129,12 +130,24 @@ json bus_list(const machine::MachineConfig& m, const image::ProcessImage& image)
     for (const machine::NodeConfig& node : bus.nodes)
       nodes.push_back(
           {{"node", node.id}, {"name", node.name}, {"online", online(bus.name + "." + node.name)}});
-    buses.push_back({{"name", bus.name}, {"url", bus.url}, {"nodes", std::move(nodes)}});
+    buses.push_back(
+        {{"name", bus.name}, {"url", bus.url}, {"place", bus_place(bus.url)}, {"nodes", std::move(nodes)}});
   }
   return buses;
 }
 
 }  // namespace
+
+std::string held_buses_json(const machine::MachineConfig& machine, const image::ProcessImage& image,
+                            bool run) {
+  const json held{{"ok", true},
+                  {"exit", 0},
+                  {"schema", 1},
+                  {"kind", run ? "run" : "control"},
+                  {"machine", machine.name},
+                  {"buses", buses_json(machine, image)}};
+  return held.dump(-1, ' ', false, json::error_handler_t::replace);
+}
 
 std::string status_json(Resident& resident, text::Language language) {
   const image::ProcessImage& image = resident.image();
@@ -151,6 +164,8 @@ std::string status_json(Resident& resident, text::Language language) {
               {"blocks", resident.blocks()},
               {"lines", resident.lines()},
               {"homing", homing},
+              {"homing_left", json::array()},
+              {"ending", resident.ending()},
               {"processes", json::array()},
               {"spindles", json::array()}};
   for (int p = 0; p < image.process_count; ++p) {
@@ -163,6 +178,7 @@ std::string status_json(Resident& resident, text::Language language) {
     const auto n = static_cast<std::size_t>(i);
     const image::AxisImage& a = image.axes[n];
     const double shown = m.axes[n].diameter ? 2.0 : 1.0;
+    if ((image.homing_left >> i & 1u) != 0) status["homing_left"].push_back(m.axes[n].letter);
     status["axes"].push_back({{"letter", m.axes[n].letter},
                               {"unit", m.axes[n].unit()},
                               {"diameter", m.axes[n].diameter},
@@ -190,7 +206,7 @@ std::string status_json(Resident& resident, text::Language language) {
          {"rests", spindle_lost(image, m, i) ? json() : json(spindle_rests(image, i))},
          {"drive", kDriveStates[static_cast<int>(s.drive.state)]}});
   }
-  status["buses"] = bus_list(m, image);
+  status["buses"] = buses_json(m, image);
   status["alarms"] = alarm_list(resident, language);
   status["missing"] = missing_json(resident, language);
   status["forced"] = resident.plc().forced();

@@ -11,6 +11,9 @@ namespace servogate::gateway {
 std::string status_json(Resident& resident, text::Language language);
 /// Active alarms with cause and remedy as one JSON object.
 std::string alarms_json(Resident& resident, text::Language language);
+/// Who holds which buses, with their nodes, as one JSON object; `run`: it is a `servogate run`.
+std::string held_buses_json(const machine::MachineConfig& machine, const image::ProcessImage& image,
+                            bool run);
 /// What keeps the drives from being on: a list of `reason`, `text`, `remedy`, `axes`; empty: they are on.
 nlohmann::json missing_json(Resident& resident, text::Language language);
 /// The alarms in a few words: "alarm 201 X: ...; alarm ...". Empty: none.

@@ -49,6 +49,10 @@ const Entry kNoJog{"socket.no-jog", "nothing jogs for this client", "для эт
 const Entry kNoSuchObject{"socket.no-such-object",
                           "sdo_read needs bus, node, index and subindex of a node of the machine file",
                           "sdo_read требует bus, node, index и subindex узла из файла станка"};
+const Entry kOnlyRead{
+    "socket.only-read",
+    "'{0}' is not for a `servogate run`: its socket says who holds the buses and reads objects",
+    "«{0}» — не для `servogate run`: его сокет говорит, кто держит шины, и читает объекты"};
 const Entry kObjectUnanswered{
     "socket.object-unanswered", "the node does not run under this control, or somebody else reads just now",
     "узел сейчас не работает под этим управлением, либо в эту минуту читает кто-то другой"};

@@ -31,6 +31,7 @@ extern const text::Entry kNoDistance;        ///< a jog by 0
 extern const text::Entry kBlockEmpty;        ///< nothing typed
 extern const text::Entry kNoJog;             ///< keep-alive without a jog
 extern const text::Entry kNoSuchObject;      ///< sdo_read: no such bus or node, or no object
+extern const text::Entry kOnlyRead;          ///< {0} command; of a `servogate run`
 extern const text::Entry kObjectUnanswered;  ///< sdo_read: the node does not run, or somebody else reads
 extern const text::Entry kNoPoint;           ///< {0} point, {1} inputs of the machine
 extern const text::Entry kOutput;            ///< {0} point

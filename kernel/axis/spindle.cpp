@@ -36,11 +36,15 @@ void Spindle::order(SpindleMode mode, double rpm) noexcept {
   if (no_angle) cannot_ = alarm::kSpindleNoEncoder;
   if (no_relay) cannot_ = alarm::kSpindleNoReverse;
   mode_ = no_angle || no_relay ? SpindleMode::stop : mode;
-  const double wish = std::isfinite(rpm) ? std::abs(rpm) : 0.0;
-  ordered_rpm_ = wish > 0.0 ? std::clamp(wish, config_.min_rpm, config_.max_rpm) : 0.0;
+  adjust(rpm);
   wait_s_ = 0.0;
   orienting_ = oriented_ = at_speed_ = false;
   raised_speed_ = raised_orient_ = false;
+}
+
+void Spindle::adjust(double rpm) noexcept {
+  const double wish = std::isfinite(rpm) ? std::abs(rpm) : 0.0;
+  ordered_rpm_ = wish > 0.0 ? std::clamp(wish, config_.min_rpm, config_.max_rpm) : 0.0;
 }
 
 void Spindle::read(image::ProcessImage& image) noexcept {
@@ -98,17 +102,20 @@ double Spindle::orient_rpm() noexcept {
   return std::copysign(speed, error);
 }
 
+/// Signed speed of the order with its override, whatever the PLC permits.
+double Spindle::ordered_speed() const noexcept {
+  if ((mode_ != SpindleMode::cw && mode_ != SpindleMode::ccw) || ordered_rpm_ == 0.0) return 0.0;
+  const double rpm = std::clamp(ordered_rpm_ * override_ratio_, config_.min_rpm, config_.max_rpm);
+  return mode_ == SpindleMode::cw ? rpm : -rpm;
+}
+
 double Spindle::wanted_rpm() noexcept {
   if (!enable_ || reaction_ >= Reaction::stop_and_power_off) return 0.0;
   switch (mode_) {
     case SpindleMode::stop:
-      return 0.0;
     case SpindleMode::cw:
-    case SpindleMode::ccw: {
-      if (ordered_rpm_ == 0.0) return 0.0;
-      const double rpm = std::clamp(ordered_rpm_ * override_ratio_, config_.min_rpm, config_.max_rpm);
-      return mode_ == SpindleMode::cw ? rpm : -rpm;
-    }
+    case SpindleMode::ccw:
+      return ordered_speed();
     case SpindleMode::orient:
       break;
   }
@@ -151,7 +158,7 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   const bool turning = mode_ == SpindleMode::cw || mode_ == SpindleMode::ccw;
   at_speed_ = turning && enable_ && reached &&
               std::abs(actual_rpm_ - wanted) <= config_.at_speed_window * std::abs(wanted);
-  supervise(dt, reached && turning);
+  supervise(dt, enable_ && reached && ordered_speed() != 0.0);
 
   off_s_ = mode_ == SpindleMode::stop && zero_speed_ ? off_s_ + dt : 0.0;
   image::SpindleImage& out = image.spindles[static_cast<std::size_t>(index_)];
@@ -190,7 +197,7 @@ void Spindle::supervise(double dt, bool speed_due) noexcept {
   wait_s_ = (speed_due && !at_speed_) || orient_due ? wait_s_ + dt : 0.0;
   if (speed_due && config_.at_speed_timeout > 0.0 && wait_s_ > config_.at_speed_timeout && !raised_speed_) {
     raised_speed_ = true;
-    events_.add({alarm::kSpindleNotAtSpeed, command_rpm_, actual_rpm_});
+    events_.add({alarm::kSpindleNotAtSpeed, ordered_speed(), actual_rpm_});
   }
   if (orient_due && config_.orient_timeout > 0.0 && wait_s_ > config_.orient_timeout && !raised_orient_) {
     raised_orient_ = true;

@@ -29,6 +29,8 @@ class Spindle {
   /// (an oriented stop without an encoder, a direction without a relay) is a stop and an alarm. real-time
   /// safe.
   void order(SpindleMode mode, double rpm) noexcept;
+  /// Another speed of the mode in force, as often as is liked: what is waited for goes on. real-time safe.
+  void adjust(double rpm) noexcept;
   SpindleMode mode() const noexcept { return mode_; }
   double ordered_rpm() const noexcept { return ordered_rpm_; }
 
@@ -52,6 +54,7 @@ class Spindle {
   void follow_drive(double wanted, double dt) noexcept;
   void follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept;
   void write_drive(image::SpindleImage& out) const noexcept;
+  double ordered_speed() const noexcept;
   double wanted_rpm() noexcept;
   double orient_rpm() noexcept;
   void supervise(double dt, bool speed_due) noexcept;

@@ -111,6 +111,9 @@ void Feeder::take_orders() {
         synchronised_ = true;
         state_ = State::feeding;
         break;
+      case FeederOrder::Kind::run_on:
+        if (order.generation == generation_) block_by_block_ = false;
+        break;
     }
   }
 }

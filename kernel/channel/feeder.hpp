@@ -27,6 +27,7 @@ struct FeederOrder {
     start,    ///< begin at the first block, axes stand at `position`
     abandon,  ///< drop what is under way; the next order is a start
     sync,     ///< the sync event has been reached; packets stand in Link::packets_of()
+    run_on,   ///< no longer block by block
   };
   Kind kind = Kind::start;
   std::uint32_t generation = 0;  ///< of the run it speaks of

@@ -136,8 +136,8 @@ void Process::interpolate(cycle::ProcessContext& c) noexcept {
         break;
     }
     if (running_ && stopping_ && follower_.at_rest()) leave(after_stop_, c);
-    surface_speed(c);
   }
+  surface_speed(c);
   write_status(sample, c);
 }
 
@@ -147,6 +147,7 @@ void Process::interpolate(cycle::ProcessContext& c) noexcept {
 bool Process::order(const image::Request& request, cycle::ProcessContext& c) noexcept {
   switch (request.kind) {
     case RequestKind::mode:
+      if (request.value == static_cast<double>(image::Mode::automatic)) run_on();
       mode_ = static_cast<image::Mode>(static_cast<int>(request.value));
       c.image.processes[static_cast<std::size_t>(config_.index)].mode = mode_;
       break;
@@ -189,6 +190,16 @@ bool Process::order(const image::Request& request, cycle::ProcessContext& c) noe
   return true;
 }
 
+/// What was stepped through goes on to its end; the ends of blocks that are planned already are passed.
+void Process::run_on() noexcept {
+  if (!running_ || !block_by_block_) return;
+  block_by_block_ = false;
+  FeederOrder order;
+  order.kind = FeederOrder::Kind::run_on;
+  order.generation = generation_;
+  link_.orders.push(order);
+}
+
 bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept {
   if (!acquire(c)) return false;
   path::Vector position{};
@@ -196,7 +207,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   order.kind = FeederOrder::Kind::start;
   order.generation = ++generation_;
   order.manual_data = manual_data_ = manual_data;
-  order.block_by_block = block_by_block;
+  order.block_by_block = block_by_block_ = block_by_block;
   for (std::size_t i = 0; i < c.axes.size(); ++i) order.position[i] = c.image.axes[i].command;
   for (std::size_t i = 0; i < config_.axes.machine.size(); ++i)
     position[i] = order.position[static_cast<std::size_t>(config_.axes.machine[i])];
@@ -221,7 +232,6 @@ void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   running_ = stopping_ = held_ = false;
   state_ = state;
   stage_ = Stage::none;
-  surface_speed_ = 0.0;
   handshake_.cancel(c.image, base_);
   if (state != ProcessState::ended) {
     follower_.stop();

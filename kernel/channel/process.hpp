@@ -64,6 +64,7 @@ class Process final : public cycle::ProcessInCycle {
   static_assert(kChanges + 1 == kCrossingsEach);
 
   bool start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept;
+  void run_on() noexcept;
   void leave(image::ProcessState state, cycle::ProcessContext& c) noexcept;
   bool acquire(cycle::ProcessContext& c) noexcept;
   void release(cycle::ProcessContext& c) noexcept;
@@ -115,14 +116,14 @@ class Process final : public cycle::ProcessInCycle {
   image::ProcessState after_stop_ = image::ProcessState::idle;
   image::ProcessState state_ = image::ProcessState::idle;
   image::Mode mode_ = image::Mode::off;
-  bool held_ = false;   ///< hold of the operator or the PLC, until start or resume
+  bool held_ = false;  ///< hold of the operator or the PLC, until start or resume
+  bool block_by_block_ = false;
   bool go_on_ = false;  ///< start or step while an event waits for the operator
   double override_ = 1.0;
   Stage stage_ = Stage::none;
   Event event_;
   double waited_s_ = 0.0;
   double surface_speed_ = 0.0, surface_limit_ = 0.0, surface_center_ = 0.0;
-  program::SpindleMode surface_mode_ = program::SpindleMode::cw;
   double last_speed_ = -1.0;
   path::Tag shown_;               ///< of the motion that the status has shown
   std::uint32_t generation_ = 0;  ///< of the run under way, or the last one

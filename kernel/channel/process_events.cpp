@@ -120,8 +120,9 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
     case EventKind::optional_stop:
       if (entered && !c.image.packets.bit(image::at(kOptionalStop, base_))) return true;
       return wait_for_operator();
-    case EventKind::stop:
     case EventKind::block_end:
+      return !block_by_block_ || wait_for_operator();
+    case EventKind::stop:
       return wait_for_operator();
     case EventKind::error:
       raise(cycle::alarm::kProgramError, e, e.code, 0.0, c);
@@ -173,7 +174,6 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
     } else if (e.value > 0.0) {
       surface_speed_ = 0.0;
     }
-    if (e.mode == program::SpindleMode::cw || e.mode == program::SpindleMode::ccw) surface_mode_ = e.mode;
     const axis::SpindleMode mode =
         e.mode == program::SpindleMode::keep ? spindle.mode() : spindle_mode(e.mode);
     const double rpm = e.flag || e.value <= 0.0 ? spindle.ordered_rpm() : e.value;
@@ -187,14 +187,19 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
 
 void Process::stop_spindles(cycle::ProcessContext& c) noexcept {
   for (axis::Spindle& spindle : c.spindles) spindle.order(axis::SpindleMode::stop, 0.0);
+  surface_speed_ = 0.0;
 }
 
+/// As long as the spindle turns by it: a typed G96 holds for the next block, and for jogging, too.
 void Process::surface_speed(cycle::ProcessContext& c) noexcept {
   if (surface_speed_ <= 0.0 || config_.axes.surface_speed_axis < 0 || c.spindles.empty()) return;
   axis::Spindle& spindle = c.spindles[0];
-  const double x = c.axes[static_cast<std::size_t>(config_.axes.surface_speed_axis)].setpoint().x;
+  if (spindle.mode() != axis::SpindleMode::cw && spindle.mode() != axis::SpindleMode::ccw) return;
+  const axis::Axis& axis = c.axes[static_cast<std::size_t>(config_.axes.surface_speed_axis)];
+  if (!axis.homed()) return;
+  const double x = axis.setpoint().x;
   const double rpm = surface_rpm(surface_speed_, x - surface_center_, surface_limit_);
-  spindle.order(spindle.mode(), rpm);
+  spindle.adjust(rpm);
 }
 
 }  // namespace servogate::channel

@@ -83,6 +83,7 @@ bool Cycle::receive() noexcept {
     if (!source_->give(inputs_)) return false;
     apply(inputs_);
   } else {
+    for (image::CycleDevice* d : parts_.devices) d->open_cycle(image_);
     for (image::CycleDevice* d : parts_.devices) d->receive(image_);
     capture(inputs_);
     if (tap_ != nullptr) tap_->take(inputs_);
@@ -128,6 +129,7 @@ void Cycle::run_logic() noexcept {
 void Cycle::run_processes() noexcept {
   homing_.step(axes_);
   image_.homing = homing_.running();
+  image_.homing_left = homing_.remaining();
   for (std::size_t p = 0; p < parts_.processes.size(); ++p) {
     ProcessContext c = context(static_cast<int>(p));
     parts_.processes[p]->interpolate(c);

@@ -170,8 +170,12 @@ class ErrorsOfRun {
     const bool new_place =
         std::none_of(found_.begin(), found_.end(), [&](const Met& m) { return told(m.finding); }) &&
         std::none_of(report_.findings.begin(), report_.findings.end(), told);
-    if (new_place && !follows && !of_first)
-      found_.push_back({f, interpreter_.machine_read() || is(f, Fault::block_limit)});
+    if (new_place && !follows && !of_first) {
+      const bool without_end = is(f, Fault::block_limit);
+      found_.push_back({f, interpreter_.machine_read() && !without_end});
+      // It may be meant to go on until somebody stops it.
+      if (without_end) found_.back().finding.severity = text::Severity::warning;
+    }
     return !stuck && !full() && met_ < kMostMet;
   }
   /// Into the report, behind what stands there.

@@ -125,6 +125,13 @@ Generator::Operand Generator::value_of(const ir::Expr& e, std::optional<Operand>
       return native(e, into);
     case ExprKind::choose:
       return choose(e, into);
+    case ExprKind::let:
+      return let(e, into);
+    case ExprKind::kept: {
+      const Operand x = kept_[e.value.i];
+      if (into) copy(*e.type, *into, x);
+      return into ? *into : x;
+    }
   }
   return 0;
 }
@@ -195,13 +202,18 @@ Generator::Operand Generator::unary(const ir::Expr& e, std::optional<Operand> in
   const Operand x = value(*e.args[0]);
   const Operand out = destination(e, into);
   const Cell cell = cell_of(*e.type);
-  if (e.op == Op::not_ && e.type->kind == Kind::boolean)
-    emit(Code::not_bool, out, x);
-  else if (e.op == Op::not_)
-    emit(vm::code_for_width(Code::not_w1, e.type->size), out, x);
+  if (e.op == Op::not_)
+    invert(*e.type, out, x);
   else
     emit(vm::code_for(first_code(e.op), cell), out, x);
   return out;
+}
+
+void Generator::invert(const Type& type, Operand to, Operand from) {
+  if (type.kind == Kind::boolean)
+    emit(Code::not_bool, to, from);
+  else
+    emit(vm::code_for_width(Code::not_w1, type.size), to, from);
 }
 
 Generator::Operand Generator::converted(const ir::Expr& e, std::optional<Operand> into) {
@@ -289,6 +301,19 @@ Generator::Operand Generator::choose(const ir::Expr& e, std::optional<Operand> i
   return into ? *into : work;
 }
 
+// The cell is this unit's own, so that no function called further on touches it.
+Generator::Operand Generator::let(const ir::Expr& e, std::optional<Operand> into) {
+  const ir::Expr& held = *e.args[0];
+  if (held.type->kind == Kind::string) {
+    const Operand text = temporary(kTextCell);
+    emit(Code::move_text, text, value(held), 0, kMaxStringCapacity);
+    kept_[e.value.i] = text;
+  } else {
+    kept_[e.value.i] = value(held, temporary(held.type->size));
+  }
+  return value(*e.args[1], into);
+}
+
 Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> into) {
   const ir::Unit& u = program_.units[static_cast<std::size_t>(e.unit)];
   const auto frame = static_cast<std::uint32_t>(u.fixed_base);
@@ -313,6 +338,9 @@ Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> int
   }
   for (std::size_t i = 0; i < e.parameters.size(); ++i) {
     const ir::Parameter& p = e.parameters[i];
+    if (p.value && p.type->bounded && p.value->kind != ExprKind::constant)
+      emit(vm::code_for(Code::check_i8, cell_of(*p.type)), values[i], 0, 0,
+           bounds(p.type->limits.low, p.type->limits.high, 0));
     if (p.value)
       copy(*p.type, frame + p.offset, values[i]);
     else if (p.section != syntax::Section::output)
@@ -320,8 +348,28 @@ Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> int
   }
   const Unit& callee = units_[static_cast<std::size_t>(e.unit)];
   emit(Code::call, callee.entry, frame, callee.length);
-  for (const ir::Parameter& p : e.parameters)
-    if (!p.value && p.section == syntax::Section::output) store(target(p.place), *p.type, frame + p.offset);
+  for (const ir::Parameter& p : e.parameters) {
+    if (p.value || p.section != syntax::Section::output) continue;
+    Operand from = frame + p.offset;
+    if (p.inverted) {
+      from = temporary(p.type->size);
+      invert(*p.type, from, frame + p.offset);
+    }
+    const Type& to = *p.place.type;
+    if (to.kind != p.type->kind && is_integer(to.kind) && is_integer(p.type->kind)) {
+      std::int64_t low = 0;
+      std::uint64_t high = 0;
+      integer_limits(to.kind, low, high);
+      const Cell cell = cell_of(*p.type);
+      emit(vm::code_for(Code::check_i8, cell), from, 0, 0,
+           bounds(low, static_cast<std::int64_t>(high & (~std::uint64_t{0} >> 1)), 0));
+      const Operand converted_value = temporary(to.size);
+      emit(Code::native, converted_value, from, 0, vm::convert_function(cell, cell_of(to)));
+      store(target(p.place), to, converted_value);
+      continue;
+    }
+    store(target(p.place), *p.type, from);
+  }
   if (e.type->kind == Kind::none) return 0;
   const Operand out = into ? *into : temporary(e.type->size);
   copy(*e.type, out, frame + e.result);

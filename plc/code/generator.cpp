@@ -225,7 +225,7 @@ void Generator::tables() {
   units();
   for (const ir::Global& g : image_->globals)
     if (g.retain && g.place < 0) retained_cells(g.name, *g.type, g.address, true);
-  for (const ir::Global& p : image_->programs) retained_cells(p.name, *p.type, p.address, false);
+  for (const ir::Global& p : image_->programs) retained_cells(p.name, *p.type, p.address, p.retain);
   for (std::size_t i = 0; i < program_.places.size(); ++i)
     if (const ir::SharedPlace& s = program_.places[i]; s.retain && s.written && !s.raw)
       retained_cell(s.name, *s.type, s.address, static_cast<std::int32_t>(i));
@@ -243,7 +243,8 @@ void Generator::units() {
 void Generator::retained_cells(const std::string& name, const Type& type, std::uint32_t address, bool all) {
   if (type.kind == Kind::structure || type.kind == Kind::block) {
     for (const Field& f : type.fields)
-      if (!f.reference) retained_cells(name + "." + f.name, *f.type, address + f.offset, all || f.retain);
+      if (!f.reference && !f.constant)
+        retained_cells(name + "." + f.name, *f.type, address + f.offset, all || f.retain);
   } else if (type.kind == Kind::array) {
     if (!all && type.base->kind != Kind::block) return;
     for (std::int64_t i = type.range.low; i <= type.range.high; ++i)

@@ -77,9 +77,11 @@ class Generator {
   Operand text_binary(const ir::Expr& e, std::optional<Operand> into);
   Operand short_circuit(const ir::Expr& e, std::optional<Operand> into);
   Operand unary(const ir::Expr& e, std::optional<Operand> into);
+  void invert(const Type& type, Operand to, Operand from);
   Operand converted(const ir::Expr& e, std::optional<Operand> into);
   Operand native(const ir::Expr& e, std::optional<Operand> into);
   Operand choose(const ir::Expr& e, std::optional<Operand> into);
+  Operand let(const ir::Expr& e, std::optional<Operand> into);
   Operand call(const ir::Expr& e, std::optional<Operand> into);
   Operand stable(const ir::Expr& e, bool keep);
   Operand destination(const ir::Expr& e, std::optional<Operand> into);
@@ -112,7 +114,8 @@ class Generator {
   std::map<std::int32_t, std::vector<std::size_t>> forward_;  ///< jumps to labels not yet met
   int current_ = -1;
   std::uint32_t line_ = 0;
-  std::uint32_t top_ = 0, most_ = 0;  ///< temporaries of the current unit
+  std::uint32_t top_ = 0, most_ = 0;      ///< temporaries of the current unit
+  std::map<std::int64_t, Operand> kept_;  ///< where the values of let stand
   std::map<std::string, std::uint32_t> constants_;
   std::vector<std::uint8_t> constant_memory_;
 };

@@ -57,7 +57,8 @@ void descend(Reference& out, std::uint32_t offset, const ir::Place& p) {
     out.cell += field->offset;
     offset -= field->offset;
     out.type = field->type;
-    if (field->reference) return;
+    out.bound = field->reference;
+    if (out.bound) return;
   }
 }
 

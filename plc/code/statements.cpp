@@ -208,6 +208,10 @@ void Generator::for_statement(const ir::Stmt& s) {
   loops_.emplace_back();
   const std::size_t check = emit(Code::for_check, counter, control, 0, static_cast<std::uint16_t>(cell));
   const std::size_t begin = here();
+  if (s.check_range) {
+    const Dimension& limits = s.place.type->limits;
+    emit(vm::code_for(Code::check_i8, cell), control, 0, 0, bounds(limits.low, limits.high, 0));
+  }
   show();
   block(s.body);
   line_ = line;

@@ -30,7 +30,7 @@ ExprPtr Expr::copy() const {
   for (const ExprPtr& a : args) e->args.push_back(a->copy());
   for (const Parameter& p : parameters)
     e->parameters.push_back(
-        {p.offset, p.type, p.section, p.value ? p.value->copy() : nullptr, p.place.copy()});
+        {p.offset, p.type, p.section, p.value ? p.value->copy() : nullptr, p.place.copy(), p.inverted});
   return e;
 }
 

@@ -73,6 +73,7 @@ enum class Native : std::uint8_t {
   from_text,   ///< the reverse
   to_bcd,
   from_bcd,
+  turn_bytes,    ///< the first byte becomes the last
   select_fault,  ///< never returns a value: Fault::selector
 };
 
@@ -132,7 +133,9 @@ enum class ExprKind : std::uint8_t {
   reinterpret,
   call,
   native,
-  choose
+  choose,
+  let,  ///< args[0] is computed and kept as number `value.i`, then args[1] is the value
+  kept  ///< what the let of number `value.i` around it keeps
 };
 
 /// A parameter of a function call: value (input) or place (output: copied after the call; others: bound).
@@ -142,6 +145,7 @@ struct Parameter {
   syntax::Section section = syntax::Section::input;
   ExprPtr value;
   Place place;
+  bool inverted = false;  ///< output: NOT of it is copied
 };
 
 struct Expr {
@@ -200,7 +204,7 @@ struct Stmt {
   Block body;  ///< of a loop; the ELSE part
   std::int32_t unit = -1;
   std::int32_t label = -1;
-  bool check_range = false;  ///< assign: the value must lie in the subrange of the place
+  bool check_range = false;  ///< assign, FOR: the value must lie in the subrange of the place
 };
 
 /// A body: PROGRAM, FUNCTION, FUNCTION_BLOCK or a task. Its own memory is `frame`.
@@ -229,6 +233,7 @@ struct SharedPlace {
   Constant initial;
   bool raw = false;          ///< laid out as in the packet, because places share memory
   bool referenced = false;   ///< bound to a VAR_IN_OUT: needs a byte of its own
+  bool configured = false;   ///< given to an instance by VAR_CONFIG: likewise
   std::uint32_t extent = 0;  ///< so many bytes from here on lie in memory as in the packet: an AXIS_REF
   Location at;
 };

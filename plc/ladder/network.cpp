@@ -82,10 +82,10 @@ class Lowering {
   enum class Progress : std::uint8_t { waiting, running, done };
   struct State {
     Progress progress = Progress::waiting;
-    std::uint64_t power =
-        0;  ///< number of the held power behind contacts, coils, actions; result of a function
+    std::uint64_t power = 0;  ///< number of the held power behind contacts, coils, actions
     bool has_power = false;
-    std::uint64_t enabled = 0;  ///< number of the held ENO
+    std::vector<std::pair<std::string, std::uint64_t>> pins;  ///< of a function: numbers of its held outputs
+    std::uint64_t enabled = 0;                                ///< number of the held ENO
     bool has_enabled = false;
   };
 
@@ -232,13 +232,19 @@ class Lowering {
       value = expression_of(ExpressionKind::member, e.location);
       value->name = w.pin;
       value->operands.push_back(name_path(e.instance, e.location));
-    } else if (s.has_power) {
-      value = held(s.power, from);
+    } else if (const auto pin = find_pin(s, w.pin); pin != s.pins.end()) {
+      value = held(pin->second, from);
     } else {
       report_.error(from, texts::kLoop);
       return expression_of(ExpressionKind::bad, from);
     }
     return inverse(std::move(value), inverted, e.location);
+  }
+
+  static std::vector<std::pair<std::string, std::uint64_t>>::iterator find_pin(State& s,
+                                                                               const std::string& name) {
+    return std::find_if(s.pins.begin(), s.pins.end(),
+                        [&](const auto& pin) { return same_name(pin.first, name); });
   }
 
   static ExpressionPtr name_path(const std::string& path, const Location& at_location) {
@@ -412,23 +418,40 @@ class Lowering {
     emit(std::move(s));
   }
 
+  // Every output that is used is held, for it lasts until the next call of the same function only.
   void function(int i) {
     Element& e = at(i);
-    ExpressionPtr c = call(i, name_of(e.name, e.location));
-    const bool result = std::any_of(elements_.begin(), elements_.end(), [&](const Element& other) {
-      return std::any_of(other.inputs.begin(), other.inputs.end(), [&](const Pin& p) {
-        return std::any_of(p.wires.begin(), p.wires.end(),
-                           [&](const Wire& w) { return w.element == i && !same_name(w.pin, "ENO"); });
-      });
-    });
-    StatementPtr s = statement_of(result ? StatementKind::hold : StatementKind::call, e.location);
-    s->number = holds_;
-    s->value = std::move(c);
-    if (result) {
-      state(i).power = holds_++;
-      state(i).has_power = true;
-    }
+    std::vector<syntax::Argument> drawn;
+    for (syntax::Argument& a : e.written)
+      if (a.drawn) drawn.push_back(std::move(a));
+    std::erase_if(e.written, [](const syntax::Argument& a) { return a.drawn; });
+    StatementPtr s = statement_of(StatementKind::call, e.location);
+    s->value = call(i, name_of(e.name, e.location));
+    for (const Element& other : elements_)
+      for (const Pin& p : other.inputs)
+        for (const Wire& w : p.wires)
+          if (w.element == i && !same_name(w.pin, "ENO")) hold_pin(i, w.pin, e.location, *s);
+    for (const syntax::Argument& a : drawn) hold_pin(i, a.name, a.location, *s);
     emit(std::move(s));
+    for (syntax::Argument& a : drawn) {
+      const Location written = a.location;
+      ExpressionPtr value = inverse(held(find_pin(state(i), a.name)->second, written), a.inverted, written);
+      StatementPtr store = assignment(std::move(a.value), std::move(value), written);
+      under(state(i).has_enabled ? held(state(i).enabled, written) : truth(true, written), std::move(store),
+            written);
+    }
+  }
+  void hold_pin(int i, const std::string& name, const Location& where, syntax::Statement& s) {
+    if (find_pin(state(i), name) != state(i).pins.end()) return;
+    state(i).pins.emplace_back(name, holds_);
+    s.kind = StatementKind::hold;
+    s.number = holds_;
+    syntax::Argument a;
+    a.name = name;
+    a.location = where;
+    a.output = a.drawn = true;
+    a.value = held(holds_++, where);
+    s.value->arguments.push_back(std::move(a));
   }
 
   std::vector<Element> elements_;

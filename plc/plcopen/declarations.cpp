@@ -32,6 +32,39 @@ void Reader::variables(const pugi::xml_node& list, syntax::Section section, std:
   }
 }
 
+namespace {
+// "Res.Main.valve[2].coil": names, and subscripts as "[2]"; what is none finds no variable.
+std::vector<std::string> path_parts(std::string_view text) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find_first_of(".[],", at), text.size());
+    const bool subscript = at > 0 && (text[at - 1] == '[' || text[at - 1] == ',');
+    std::string part(text.substr(at, end - at));
+    std::erase(part, ' ');
+    const std::size_t digits = part.starts_with('-') ? 1 : 0;
+    const bool number = part.size() > digits && part.find_first_not_of("0123456789", digits) == part.npos;
+    if (subscript)
+      out.push_back(number ? "[" + part + "]" : part + "]");
+    else if (!part.empty() || at == 0 || text[at - 1] != ']')
+      out.push_back(part);
+    at = end + 1;
+  }
+  return out;
+}
+}  // namespace
+
+// A variable of VAR_CONFIG or VAR_ACCESS, which has an alias.
+void Reader::path(const pugi::xml_node& n, syntax::Configuration& c) {
+  syntax::PathDeclaration p;
+  p.location = p.path_location = p.address_location = where(n);
+  p.path = path_parts(attribute(n, "instancePathAndName"));
+  if (local_name(n) == "accessVariable") p.name = attribute(n, "alias");
+  p.type = type_of(n, 0);
+  p.address = n.attribute("address").value();
+  if (const pugi::xml_node value = child(n, "initialValue")) p.initial = initial(value);
+  c.paths.push_back(std::move(p));
+}
+
 // The type of a variable.
 TypeReference Reader::type_of(const pugi::xml_node& variable, int depth) {
   if (const pugi::xml_node t = child(variable, "type")) return type(t, depth);

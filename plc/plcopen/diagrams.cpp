@@ -161,7 +161,7 @@ void Reader::block(const pugi::xml_node& n, Element& e) {
     syntax::Argument a;
     a.name = e.outputs.back().name;
     a.location = begin;
-    a.output = true;
+    a.output = a.drawn = true;
     a.inverted = e.outputs.back().inverted;
     a.value = syntax::parse_expression(written, begin, report_);
     e.written.push_back(std::move(a));

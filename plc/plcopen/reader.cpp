@@ -186,6 +186,10 @@ void Reader::configuration(const pugi::xml_node& n) {
   c.name = attribute(n, "name");
   for (const pugi::xml_node& part : n.children())
     if (local_name(part) == "resource") resource(part, c);
+  for (const pugi::xml_node& list : n.children())
+    if (local_name(list) == "configVars" || local_name(list) == "accessVars")
+      for (const pugi::xml_node& part : list.children())
+        if (local_name(part) == "configVariable" || local_name(part) == "accessVariable") path(part, c);
   if (!c.programs.empty()) source_.configurations.push_back(std::move(c));
 }
 

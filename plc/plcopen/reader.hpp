@@ -43,6 +43,7 @@ class Reader {
 
   // declarations.cpp: variables and types.
   void variables(const pugi::xml_node& list, syntax::Section section, std::vector<syntax::Variable>& out);
+  void path(const pugi::xml_node& n, syntax::Configuration& c);
   syntax::TypeReference type_of(const pugi::xml_node& variable, int depth);
   syntax::TypeReference type(const pugi::xml_node& n, int depth = 0);
   void array(const pugi::xml_node& n, syntax::TypeReference& t, int depth);

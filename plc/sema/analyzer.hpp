@@ -37,7 +37,11 @@ struct Variable {
   bool used = false;
   bool written = false;
   /// Bound to the caller's variable instead of copied.
-  bool bound() const { return section == syntax::Section::in_out || root == ir::Root::reference; }
+  bool bound() const {
+    return section == syntax::Section::in_out ||
+           (section == syntax::Section::input && root == ir::Root::reference);
+  }
+  std::string area;       ///< "%Q*": VAR_CONFIG gives each instance its location
   std::set<int> writers;  ///< units that assign it
 };
 
@@ -73,9 +77,15 @@ class Analyzer {
   void resolve_types();
   const Type* resolve_declared(std::size_t index);
   const Type* resolve(const syntax::TypeReference& t, const std::string& name = {});
+  const Type* resolve_written(const syntax::TypeReference& t, const std::string& name);
   const Type* resolve_named(const syntax::TypeReference& t);
   const Type* resolve_array(const syntax::TypeReference& t);
   const Type* resolve_open_array(const syntax::TypeReference& t, const Type* element, bool allowed);
+  struct MemberBits {
+    std::int64_t low, high;
+    const syntax::Variable* member;
+  };
+  void check_member_place(const syntax::Variable& m, const Type& type, std::vector<MemberBits>& taken);
   const Type* resolve_structure(const syntax::TypeReference& t, const std::string& name);
   const Type* resolve_enumeration(const syntax::TypeReference& t, const std::string& name);
   const Type* resolve_subrange(const syntax::TypeReference& t, const Type* base, const std::string& name);
@@ -86,7 +96,8 @@ class Analyzer {
   void declare_variable(UnitScope& u, const syntax::Variable& v);
   void declare_edge(UnitScope& u, const syntax::Variable& v);
   void declare_globals(bool constants);
-  void declare_located(Variable& out, const syntax::Variable& v);
+  void declare_located(Variable& out, const syntax::Variable& v, bool configured = false);
+  void warn_overlaps(const syntax::Variable& v, const image::Place& place);
   void check_sections(const UnitScope& u, const syntax::Variable& v);
   std::uint32_t allocate(const Type& type);
   const Type* limits_type();
@@ -109,7 +120,9 @@ class Analyzer {
   void initial_list(const Expression& e, const Type& type, std::vector<std::uint8_t>& out);
   void initial_record(const Expression& e, const Type& type, std::vector<std::uint8_t>& out);
   ExprPtr fold(ExprPtr e);
+  ExprPtr fold_function(ExprPtr e);
   ExprPtr make_constant(const Type* type, Constant c, const Location& at);
+  ExprPtr truth(const Location& at);  ///< the constant TRUE
 
   // names.cpp: from a name to a place.
   Variable* find_variable(std::string_view name, bool& global);
@@ -120,6 +133,7 @@ class Analyzer {
   std::optional<ir::Place> place_of_member(const Expression& e, bool write);
   std::optional<ir::Place> place_of_index(const Expression& e, bool write);
   std::optional<ir::Place> place_of_bit(const Expression& e, bool write);
+  bool changeable(const Expression& instance);
   ir::Place limits_of(const ir::Place& array);
   ir::Step open_step(const ir::Place& array, ExprPtr index);
   std::optional<ir::Place> character_of(ir::Place base, const Expression& subscript);
@@ -158,6 +172,7 @@ class Analyzer {
   ExprPtr shift_call(std::string_view key, const Expression& e, const Type* hint);
   ExprPtr text_call(std::string_view key, const Expression& e);
   ExprPtr time_call(std::string_view key, const Expression& e);
+  ExprPtr order_call(std::string_view key, const Expression& e, const Type* hint, bool turns);
   ExprPtr bound_call(std::string_view key, const Expression& e);
   std::vector<const Expression*> numbered_inputs(const Expression& e, std::string_view name);
   ExprPtr conversion_call(std::string_view key, const Expression& e);
@@ -166,6 +181,9 @@ class Analyzer {
                                      const Type* hint, bool (*accepts)(Kind), const char* wanted);
   std::vector<ExprPtr> typed_inputs(const std::vector<const Expression*>& in,
                                     std::initializer_list<const Type*> types);
+  using Kept = std::vector<std::pair<std::int64_t, ExprPtr>>;  ///< number and value
+  ExprPtr once(ExprPtr e, Kept& kept);
+  ExprPtr around(ExprPtr e, Kept kept);
   ExprPtr chain(Op op, std::vector<ExprPtr> args, const Location& at, std::string_view shown);
   std::vector<const Expression*> inputs(const Expression& e, std::string_view name,
                                         std::initializer_list<const char*> names, std::size_t least,
@@ -174,6 +192,8 @@ class Analyzer {
   // calls.cpp
   ExprPtr call(const Expression& e, const Type* hint, bool as_statement);
   ExprPtr function_call(const Expression& e, int unit);
+  int function_named(const Expression& callee);
+  ExprPtr initial_value(const Variable& v, int unit, const Location& at);
   void block_call(const Expression& e, const ir::Place& instance, int unit, ir::Block& out);
   void block_input(const syntax::Argument& a, const Variable& parameter, const ir::Place& instance,
                    ir::Block& out);
@@ -183,6 +203,7 @@ class Analyzer {
   ir::Parameter limits_parameter(const Variable& parameter, const ir::Place& actual);
   std::optional<ir::Place> bound_argument(const syntax::Argument& a, const Variable& parameter);
   void output_argument(const syntax::Argument& a, const ir::Place& from, ir::Block& out);
+  bool inverts(const syntax::Argument& a, const Type& output);
   bool guarded(const syntax::Statement& s, ir::Block& out);
   ExprPtr enabled_value(const Expression& e);
 
@@ -193,9 +214,16 @@ class Analyzer {
   void assign(ir::Place target, ExprPtr value, const Location& at, ir::Block& out);
   void if_statement(const syntax::Statement& s, ir::Block& out);
   void case_statement(const syntax::Statement& s, ir::Block& out);
+  struct Chosen {
+    Constant low, high;
+    int line;
+  };
+  void case_label(const syntax::Label& l, const Type& type, std::vector<Chosen>& seen);
   void for_statement(const syntax::Statement& s, ir::Block& out);
   void loop_statement(const syntax::Statement& s, ir::Block& out);
   void hold(const syntax::Statement& s, ir::Block& out);
+  bool drawn_call(const syntax::Statement& s, ir::Block& out);
+  bool result_pin(int unit, const std::string& name) const;
   void set_statement(const syntax::Statement& s, ir::Block& out);
   std::int32_t label(const syntax::Statement& s);
   void collect_labels(const syntax::Block& b);
@@ -209,9 +237,27 @@ class Analyzer {
   ir::Task task_of(const syntax::Task& t);
   void program_call(const syntax::ProgramInstance& p, ir::Block& out);
   int program_unit(const syntax::ProgramInstance& p);
-  std::uint32_t instance(const std::string& name, int unit);
+  std::uint32_t instance(const std::string& name, int unit, bool retain);
+  // locations.cpp: the paths of VAR_CONFIG and VAR_ACCESS, AT %Q*.
+  struct Reached {
+    std::uint32_t cell;
+    const Type* type;
+    const Type* owner;  ///< of a variable AT %Q*: the block or program; `cell` is its reference
+    std::string name;   ///< without the resource
+  };
+  using Missing = std::map<const Variable*, std::vector<std::string>>;
   void configured_paths(const syntax::Configuration& c);
-  std::optional<ir::Place> path_place(const syntax::Configuration& c, const syntax::PathDeclaration& p);
+  std::optional<Reached> reach_path(const syntax::Configuration& c, const syntax::PathDeclaration& p);
+  bool path_step(const syntax::PathDeclaration& p, std::size_t part, Reached& out);
+  bool declare_unlocated(UnitScope& u, Variable& v, const syntax::Variable& s);
+  bool lies_in(const std::string& area, const image::Place& place, const std::string& address) const;
+  void locate(const syntax::PathDeclaration& p, const Reached& found);
+  void find_missing(const std::string& name, const Type& type, std::uint32_t address, bool lasting,
+                    Missing& out);
+  void check_locations();
+  void bind_locations();
+
+  // tasks.cpp, of the whole program.
   void check_recursion();
   bool visit(int unit, std::vector<int>& path);
   void check_usage();
@@ -245,16 +291,27 @@ class Analyzer {
     Location at;
   };
   std::vector<Located> located_;
+  struct Configured {
+    const Variable* variable;
+    int unit;            ///< that declares it
+    std::int32_t place;  ///< index of places, -1: reported
+    std::string name;
+    Location at;
+  };
+  std::map<std::uint32_t, Configured> locations_;  ///< by the cell of an AT %Q* in its instance
   std::vector<std::set<int>> place_writers_;
   std::set<std::uint32_t> read_only_places_;  ///< declared AT %I
   std::set<std::string> unknown_;             ///< names reported in the current unit
   std::vector<const Variable*> for_variables_;
   std::vector<int> instances_;  ///< programs: number of instances a unit has
   int current_ = -1;
+  std::map<const syntax::TypeReference*, const Type*> nameless_;
   int loops_ = 0;
+  std::int64_t lets_ = 0;
   std::map<std::uint64_t, ir::Place> held_;  ///< of the current body
   std::map<std::string, std::int32_t> labels_;
   std::map<const Type*, std::uint32_t> limits_;  ///< where the limits of an array lie that was bound
+  std::map<std::pair<int, std::uint32_t>, std::uint32_t> initial_values_;  ///< of inputs: unit, cell -> where
   const Type* limits_type_ = nullptr;
   bool open_arrays_ = false;             ///< the type being resolved may be ARRAY[*]
   const Expression* guarded_ = nullptr;  ///< the call whose EN and ENO are being dealt with
@@ -263,6 +320,8 @@ class Analyzer {
 
 /// The bytes of a constant as the machine holds them.
 void store_constant(const Type& type, const Constant& c, std::uint8_t* out);
+/// The reverse, of an elementary type.
+Constant stored_constant(const Type& type, const std::uint8_t* bytes);
 std::string constant_text(const Type& type, const Constant& c);
 
 }  // namespace servogate::plc::sema

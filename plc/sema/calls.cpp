@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
@@ -12,6 +13,14 @@ using syntax::ExpressionKind;
 using syntax::Section;
 using syntax::UnitKind;
 
+namespace {
+// EN and ENO where a unit declares them itself (table 18): no list without names has them.
+bool is_enable(const Variable& v) {
+  return (v.section == Section::input && same_name(v.name, "EN")) ||
+         (v.section == Section::output && same_name(v.name, "ENO"));
+}
+}  // namespace
+
 ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
   const Expression& callee = *e.operands[0];
   if ((e.enable || e.enabled) && guarded_ != &e) report_.error(e.location, texts::kEnableNested);
@@ -21,9 +30,7 @@ ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
     const Variable* v = find_variable(callee.name, global);
     if (v == nullptr || v->type->kind != Kind::block) {
       const auto unit = units_by_name_.find(key);
-      if (unit != units_by_name_.end() &&
-          scopes_[static_cast<std::size_t>(unit->second)].source->kind == UnitKind::function)
-        return function_call(e, unit->second);
+      if (const int function = function_named(callee); function >= 0) return function_call(e, function);
       if (is_standard(key)) return standard_call(e, key, hint);
       if (v == nullptr) {
         std::vector<std::string> names = names_in_scope();
@@ -60,6 +67,15 @@ ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
   return bad(e.location);
 }
 
+// The FUNCTION that a call names; -1: none that is declared in text.
+int Analyzer::function_named(const Expression& callee) {
+  if (callee.kind != ExpressionKind::name) return -1;
+  const auto unit = units_by_name_.find(key_of(callee.name));
+  const bool found = unit != units_by_name_.end() &&
+                     scopes_[static_cast<std::size_t>(unit->second)].source->kind == UnitKind::function;
+  return found ? unit->second : -1;
+}
+
 const Variable* Analyzer::match(const syntax::Argument& a, std::size_t position, int unit,
                                 bool with_outputs) {
   const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
@@ -67,7 +83,7 @@ const Variable* Analyzer::match(const syntax::Argument& a, std::size_t position,
   std::size_t seen = 0;
   for (const Variable& v : u.variables) {
     const bool input = v.section == Section::input || v.section == Section::in_out;
-    const bool listed = input || (with_outputs && v.section == Section::output);
+    const bool listed = !is_enable(v) && (input || (with_outputs && v.section == Section::output));
     if (named ? same_name(v.name, a.name) && (a.output ? v.section == Section::output : input)
               : listed && seen++ == position)
       return &v;
@@ -82,6 +98,7 @@ bool Analyzer::check_arguments(const Expression& e, int unit, std::vector<const 
   const std::size_t errors = report_.errors();
   std::size_t positional = 0, named = 0, inputs_known = 0, all_known = 0, position = 0;
   for (const Variable& v : u.variables) {
+    if (is_enable(v)) continue;
     const bool input = v.section == Section::input || v.section == Section::in_out;
     inputs_known += input;
     all_known += input || v.section == Section::output;
@@ -135,6 +152,13 @@ std::optional<ir::Place> Analyzer::bound_argument(const syntax::Argument& a, con
                   {v.name, v.type->name, target->type->name});
     return std::nullopt;
   }
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  for (const Type* t = target->type; v.type->open && t->kind == Kind::array && !t->open; t = t->base)
+    if (t->range.low < kLeast || t->range.high > kMost) {  // LOWER_BOUND is a DINT
+      report_.error(a.value->location, texts::kOpenLimits, {v.name, target->type->name});
+      return std::nullopt;
+    }
   if (target->root == ir::Root::shared) program_.places[target->cell].referenced = true;
   return target;
 }
@@ -167,6 +191,28 @@ ir::Parameter Analyzer::limits_parameter(const Variable& v, const ir::Place& act
   return p;
 }
 
+ExprPtr Analyzer::truth(const Location& at) {
+  Constant one;
+  one.i = 1;
+  return make_constant(elementary(Kind::boolean), one, at);
+}
+
+// What an input begins with; of a structure or an array a copy that nothing writes.
+ExprPtr Analyzer::initial_value(const Variable& v, int unit, const Location& at) {
+  std::vector<std::uint8_t> bytes = v.initial.empty() ? v.type->image : v.initial;
+  bytes.resize(v.type->size);
+  if (is_elementary(v.type->kind)) return make_constant(v.type, stored_constant(*v.type, bytes.data()), at);
+  const auto [known, fresh] = initial_values_.try_emplace({unit, v.cell}, 0);
+  if (fresh) {
+    known->second = allocate(*v.type);
+    std::copy(bytes.begin(), bytes.end(), program_.memory.begin() + known->second);
+  }
+  ir::Place p;
+  p.cell = known->second;
+  p.type = v.type;
+  return load(std::move(p), at);
+}
+
 ExprPtr Analyzer::function_call(const Expression& e, int unit) {
   lay_out(unit);
   if (current_ >= 0) here().calls.insert(unit);
@@ -193,12 +239,16 @@ ExprPtr Analyzer::function_call(const Expression& e, int unit) {
       p.value = assignable(expression(*a.value, v.type), v.type);
       good = good && p.value->type->kind != Kind::error;
     } else if (a.value) {
-      auto target = place(*a.value, true);
-      if (target && !takes_output(*target->type, *v.type)) {
+      auto target = inverts(a, *v.type) ? place(*a.value, true) : std::nullopt;
+      // Outputs of the standard's functions are ANY_INT: a value that does not fit is a fault.
+      const bool any = u.from_library && target && is_integer(target->type->kind) && !target->type->bounded &&
+                       is_integer(v.type->kind);
+      if (target && !any && !takes_output(*target->type, *v.type)) {
         report_.error(a.value->location, texts::kOutputType, {v.name, v.type->name, target->type->name});
         target.reset();
       }
       good = good && target;
+      p.inverted = a.inverted;
       if (target) p.place = std::move(*target);
     } else {
       continue;
@@ -206,22 +256,13 @@ ExprPtr Analyzer::function_call(const Expression& e, int unit) {
     out->parameters.push_back(std::move(p));
   }
   for (const Variable& v : u.variables) {  // inputs that are not given take their initial value
-    if (v.section != Section::input || v.bound() ||
+    if (v.section != Section::input || v.bound() || v.type->kind == Kind::error ||
         std::find(matched.begin(), matched.end(), &v) != matched.end())
       continue;
-    if (!is_elementary(v.type->kind) || v.type->kind == Kind::error) continue;
-    Constant c;
-    if (!v.initial.empty()) {
-      const syntax::Variable* s = nullptr;
-      for (const syntax::Variable& w : u.source->variables)
-        if (same_name(w.name, v.name)) s = &w;
-      if (s != nullptr && s->initial)
-        if (const auto given = constant(*s->initial, v.type)) c = *given;
-    }
     ir::Parameter p;
     p.offset = v.cell;
     p.type = v.type;
-    p.value = make_constant(v.type, c, e.location);
+    p.value = is_enable(v) ? truth(e.location) : initial_value(v, unit, e.location);
     out->parameters.push_back(std::move(p));
   }
   if (!good) return bad(e.location);
@@ -229,8 +270,16 @@ ExprPtr Analyzer::function_call(const Expression& e, int unit) {
   return out;
 }
 
+// NOT before an output needs one that NOT applies to.
+bool Analyzer::inverts(const syntax::Argument& a, const Type& output) {
+  const Kind k = output.kind;
+  const bool good = !a.inverted || k == Kind::boolean || is_bits(k) || is_integer(k) || k == Kind::error;
+  if (!good) report_.error(a.location, texts::kOperand, {"NOT", output.name});
+  return good;
+}
+
 void Analyzer::output_argument(const syntax::Argument& a, const ir::Place& from, ir::Block& out) {
-  if (!a.value) return;
+  if (!a.value || !inverts(a, *from.type)) return;
   auto target = place(*a.value, true);
   if (!target) return;
   ExprPtr value = load(from.copy(), a.location);
@@ -285,9 +334,7 @@ void Analyzer::block_input(const syntax::Argument& a, const Variable& v, const i
 
 // What ENO gets after the call: the output of that name where the unit declares one, else TRUE.
 ExprPtr Analyzer::enabled_value(const Expression& e) {
-  Constant one;
-  one.i = 1;
-  ExprPtr yes = make_constant(elementary(Kind::boolean), one, e.enabled->location);
+  ExprPtr yes = truth(e.enabled->location);
   const Expression& callee = *e.operands[0];
   bool global = false;
   const Variable* v = callee.kind == ExpressionKind::name ? find_variable(callee.name, global) : nullptr;
@@ -325,16 +372,23 @@ bool Analyzer::guarded(const syntax::Statement& s, ir::Block& out) {
   test.kind = ir::StmtKind::if_;
   test.at = s.location;
   ir::Branch yes;
-  Constant one;
-  one.i = 1;
-  yes.condition = e.enable ? condition(*e.enable) : make_constant(elementary(Kind::boolean), one, s.location);
+  yes.condition = e.enable ? condition(*e.enable) : truth(s.location);
   statement(s, yes.body);
   guarded_ = outer;
   if (e.enabled) {
     auto first = place(*e.enabled, true), second = place(*e.enabled, true);
     if (first && second) {
-      assign(std::move(*first), enabled_value(e), e.enabled->location, yes.body);
-      assign(std::move(*second), make_constant(elementary(Kind::boolean), {}, e.enabled->location),
+      ExprPtr done = enabled_value(e);
+      Constant otherwise;
+      otherwise.i = e.enabled_inverted;
+      if (e.enabled_inverted) {
+        ExprPtr inverse = node(ExprKind::unary, done->type, e.enabled->location);
+        inverse->op = Op::not_;
+        inverse->args.push_back(std::move(done));
+        done = fold(std::move(inverse));
+      }
+      assign(std::move(*first), std::move(done), e.enabled->location, yes.body);
+      assign(std::move(*second), make_constant(elementary(Kind::boolean), otherwise, e.enabled->location),
              e.enabled->location, test.body);
     }
   }
@@ -363,6 +417,13 @@ void Analyzer::block_call(const Expression& e, const ir::Place& named, int unit,
   }
   for (std::size_t i = 0; i < e.arguments.size(); ++i)
     if (matched[i]->section != Section::output) block_input(e.arguments[i], *matched[i], instance, out);
+  for (const Variable& v : scopes_[static_cast<std::size_t>(unit)].variables) {
+    if (v.section != Section::input || !is_enable(v)) continue;
+    ir::Place enable = instance.copy();
+    enable.offset += v.cell;
+    enable.type = v.type;
+    assign(std::move(enable), truth(e.location), e.location, out);
+  }
   ir::Stmt invoke;
   invoke.kind = ir::StmtKind::invoke;
   invoke.at = e.location;

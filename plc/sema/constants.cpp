@@ -136,6 +136,24 @@ void store_constant(const Type& type, const Constant& c, std::uint8_t* out) {
   }
 }
 
+Constant stored_constant(const Type& type, const std::uint8_t* bytes) {
+  Constant c;
+  const Cell cell = cell_of(type);
+  if (cell == Cell::f32) {
+    float v = 0;
+    std::memcpy(&v, bytes, sizeof v);
+    c.r = static_cast<double>(v);
+  } else if (cell == Cell::f64) {
+    std::memcpy(&c.r, bytes, sizeof c.r);
+  } else if (cell == Cell::text) {
+    c.s.assign(reinterpret_cast<const char*>(bytes) + 1, bytes[0]);
+  } else {
+    std::memcpy(&c.i, bytes, cell_size(cell));
+    c.i = wrapped(cell, c.i);
+  }
+  return c;
+}
+
 std::string constant_text(const Type& type, const Constant& c) {
   if (type.kind == Kind::string) return "'" + c.s + "'";
   if (is_real(type.kind) || type.kind == Kind::untyped_real) return text::number(c.r);

@@ -76,6 +76,15 @@ ExprPtr Analyzer::explicit_conversion(ExprPtr e, const Type* to, bool truncate, 
       return native(to->kind == Kind::string ? Native::to_text : Native::from_text, to, at, std::move(one));
     }
   }
+  if (is_bits(from) && to->kind == Kind::boolean) {  // the rightmost bit (table 25)
+    Constant lowest;
+    lowest.i = 1;
+    ExprPtr bit = node(ExprKind::binary, e->type, at);
+    bit->op = Op::and_;
+    bit->args.push_back(std::move(e));
+    bit->args.push_back(make_constant(bit->type, lowest, at));
+    e = fold(std::move(bit));
+  }
   if (numeric(from) && numeric(to->kind)) {
     ExprPtr out = node(truncate ? ExprKind::truncate : ExprKind::convert, to, at);
     out->args.push_back(std::move(e));
@@ -135,9 +144,12 @@ ExprPtr Analyzer::conversion_call(std::string_view key, const Expression& e) {
     return bad(e.location);
   }
   if (from_bcd || to_bcd) {
-    if (!is_bits((from_bcd ? value->type : to)->kind) || !is_unsigned((from_bcd ? to : value->type)->kind)) {
-      report_.error(in[0]->location, texts::kMismatch,
-                    {from_bcd ? "ANY_BIT" : "ANY_UNSIGNED", value->type->name, ""});
+    const auto fits = [&](const Type& t, bool bcd) { return bcd ? is_bits(t.kind) : is_unsigned(t.kind); };
+    const bool given = fits(*value->type, from_bcd);
+    if (!given || !fits(*to, to_bcd)) {
+      report_.error(given ? e.location : in[0]->location, texts::kMismatch,
+                    {(given ? to_bcd : from_bcd) ? "ANY_BIT" : "ANY_UNSIGNED",
+                     given ? to->name : value->type->name, ""});
       return bad(e.location);
     }
     std::vector<ExprPtr> one;

@@ -40,10 +40,12 @@ ir::Program Analyzer::run() {
     configured_tasks();
   for (std::size_t u = 0; u < scopes_.size(); ++u)
     if (scopes_[u].source != nullptr) body(static_cast<int>(u));
+  check_locations();
   check_recursion();
   check_writers();
   check_usage();
   lay_out_places();
+  bind_locations();
   return std::move(program_);
 }
 
@@ -120,6 +122,15 @@ const Type* Analyzer::resolve_declared(std::size_t index) {
 }
 
 const Type* Analyzer::resolve(const syntax::TypeReference& t, const std::string& name) {
+  // What has no name of its own is one type for all variables of its list: x, y : (on, off);
+  const bool nameless = name.empty() && (!t.values.empty() || key_of(t.name) == "STRUCT");
+  if (const auto known = nameless_.find(&t); nameless && known != nameless_.end()) return known->second;
+  const Type* type = resolve_written(t, name);
+  if (nameless) nameless_[&t] = type;
+  return type;
+}
+
+const Type* Analyzer::resolve_written(const syntax::TypeReference& t, const std::string& name) {
   if (!t.values.empty()) return resolve_enumeration(t, name);
   if (key_of(t.name) == "ARRAY") return resolve_array(t);
   if (key_of(t.name) == "STRUCT") return resolve_structure(t, name);
@@ -232,14 +243,45 @@ void Analyzer::place_initial(std::vector<std::uint8_t>& image, std::uint32_t off
   std::copy(bytes.begin(), bytes.end(), image.begin() + offset);
 }
 
+// Relative places of members (table 11) say nothing that a program could see as long as none shares its bits
+// with another: memory is laid out as here is usual.
+void Analyzer::check_member_place(const syntax::Variable& m, const Type& type,
+                                  std::vector<MemberBits>& taken) {
+  const std::string& a = m.address;
+  constexpr std::string_view sizes = "XBWDL";
+  const std::size_t size = a.size() > 2 && a[0] == '%' ? sizes.find(a[1]) : std::string_view::npos;
+  const std::size_t dot = std::min(a.find('.'), a.size());
+  const auto number = [&](std::size_t from, std::size_t to) -> std::int64_t {
+    const std::string digits = a.substr(from, to - from);
+    const bool good =
+        !digits.empty() && digits.size() < 7 && digits.find_first_not_of("0123456789") == std::string::npos;
+    return good ? std::stoll(digits) : -1;
+  };
+  const std::int64_t index = size == std::string_view::npos ? -1 : number(2, dot);
+  const std::int64_t bit = dot == a.size() ? 0 : number(dot + 1, a.size());
+  if (index < 0 || bit < 0 || bit > 7 || (size != 0 && dot != a.size())) {
+    report_.error(m.address_location, texts::kAddressMember, {a});
+    return;
+  }
+  const std::int64_t low = (size < 2 ? index : index << (size - 1)) * 8 + bit;
+  const std::int64_t bits = type.kind == Kind::boolean ? 1 : static_cast<std::int64_t>(type.size) * 8;
+  for (const MemberBits& other : taken)
+    if (low < other.high && other.low < low + bits)
+      report_.error(m.address_location, texts::kAddressOverlap,
+                    {a, other.member->address, other.member->name, line_of(other.member->address_location)});
+  taken.push_back({low, low + bits, &m});
+}
+
 const Type* Analyzer::resolve_structure(const syntax::TypeReference& t, const std::string& name) {
   Type* s = types_->add(Kind::structure, name.empty() ? "STRUCT" : name);
+  std::vector<MemberBits> taken;
   for (const syntax::Variable& m : t.members) {
     if (s->field(m.name) != nullptr) {
       report_.error(m.location, texts::kDuplicate, {m.name, line_of(t.location)});
       continue;
     }
     const Type* type = resolve(*m.type);
+    if (!m.address.empty()) check_member_place(m, *type, taken);
     const std::uint32_t offset = append(*s, {m.name, type, 0, false, false});
     if (m.initial && type->kind != Kind::error)
       place_initial(s->image, offset, *type, initial_bytes(*m.initial, *type));
@@ -252,7 +294,7 @@ const Type* Analyzer::resolve_structure(const syntax::TypeReference& t, const st
 const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const std::string& name) {
   const Type* base = elementary(Kind::int_);
   if (!t.name.empty()) base = resolve_named(t);
-  if (!is_integer(base->kind) && base->kind != Kind::error) {
+  if (!is_integer(base->kind) && !is_bits(base->kind) && base->kind != Kind::error) {
     report_.error(t.location, texts::kSubrangeBase, {base->name});
     return elementary(Kind::error);
   }
@@ -378,9 +420,10 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
     if (s.initial) v.initial = initial_bytes(*s.initial, *v.type);
     if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
     if (!s.address.empty()) {
-      declare_located(v, s);
+      if (!declare_unlocated(u, v, s)) declare_located(v, s);
     } else {
-      const bool reference = s.section == Section::in_out || v.type->open;
+      const bool instance = s.section == Section::input && v.type->kind == Kind::block;
+      const bool reference = s.section == Section::in_out || v.type->open || instance;
       v.root = reference ? ir::Root::reference : ir::Root::instance;
       v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference, s.constant});
       if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
@@ -402,6 +445,8 @@ void Analyzer::declare_edge(UnitScope& u, const syntax::Variable& s) {
   v.used = v.written = true;
   u.by_name[key_of(v.name)] = u.variables.size();
   v.cell = append(*u.frame, {v.name, v.type, 0, false, false});
+  // As F_TRIG, an F_EDGE input that is FALSE at the first call has fallen (table 44).
+  if (s.edge < 0) place_initial(u.frame->image, v.cell, *v.type, {1});
   u.variables.push_back(std::move(v));
 }
 
@@ -433,7 +478,12 @@ void Analyzer::lay_out(int index) {
       r.at = u.source->location;
       r.type = u.result;
       r.used = true;
-      u.by_name[key_of(r.name)] = u.variables.size();
+      const auto [at, fresh] = u.by_name.emplace(key_of(r.name), u.variables.size());
+      if (!fresh) {
+        report_.error(u.variables[at->second].at, texts::kDuplicate,
+                      {u.variables[at->second].name, line_of(u.source->location)});
+        at->second = u.variables.size();
+      }
       r.cell = append(*u.frame, {r.name, r.type, 0, false, false});
       u.variables.push_back(std::move(r));
     }
@@ -472,7 +522,10 @@ void Analyzer::declare_globals(bool constants) {
     if (v.type->kind != Kind::error) {
       if (s.initial) v.initial = initial_bytes(*s.initial, *v.type);
       if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
-      if (!s.address.empty()) {
+      if (s.address.ends_with("*")) {
+        report_.error(s.address_location, texts::kUnlocatedGlobal, {s.address});
+        v.type = elementary(Kind::error);
+      } else if (!s.address.empty()) {
         declare_located(v, s);
       } else {
         v.cell = allocate(*v.type);

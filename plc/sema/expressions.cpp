@@ -34,7 +34,7 @@ ExprPtr Analyzer::native(Native n, const Type* type, const Location& at, std::ve
   ExprPtr e = node(ExprKind::native, type, at);
   e->native = n;
   e->args = std::move(args);
-  return e;
+  return fold_function(std::move(e));
 }
 
 ExprPtr Analyzer::expression(const Expression& e, const Type* hint) {
@@ -112,6 +112,11 @@ ExprPtr Analyzer::typed_literal(const Expression& e) {
   ExprPtr value = literal(*e.operands[0], type);
   if (type->kind == Kind::boolean && value->type->kind == Kind::untyped_int && (value->value.i & ~1) != 0) {
     report_.error(e.location, texts::kLiteralRange, {std::to_string(value->value.i), "BOOL", "0", "1"});
+    return bad(e.location);
+  }
+  if (type->kind == Kind::character && value->type->kind == Kind::untyped_int) {  // CHAR#16#41
+    if (value->value.i >= 0 && value->value.i <= 255) return make_constant(type, value->value, e.location);
+    report_.error(e.location, texts::kLiteralRange, {std::to_string(value->value.i), "CHAR", "0", "255"});
     return bad(e.location);
   }
   return assignable(std::move(value), type);
@@ -415,6 +420,13 @@ ExprPtr Analyzer::convert(ExprPtr e, const Type* to) {
   return make_constant(base, std::move(c), e->at);
 }
 
+namespace {
+// As conversion functions call it: STRING[3] is STRING, a subrange its base.
+std::string plain_name(const Type& t) {
+  return t.bounded ? t.base->name : t.kind == Kind::string ? "STRING" : t.name;
+}
+}  // namespace
+
 ExprPtr Analyzer::assignable(ExprPtr e, const Type* to) {
   const Type& from = *e->type;
   if (from.kind == Kind::error || to->kind == Kind::error) return e;
@@ -443,13 +455,13 @@ ExprPtr Analyzer::assignable(ExprPtr e, const Type* to) {
     std::string how;
     if (is_elementary(from.kind) && is_elementary(to->kind) && !is_untyped(from.kind) &&
         from.kind != Kind::enumeration && to->kind != Kind::enumeration)
-      how = from.name + "_TO_" + (to->bounded ? to->base->name : to->name);
+      how = plain_name(from) + "_TO_" + plain_name(*to);
     report_.error(e->at, how.empty() ? texts::kMismatch : texts::kMismatchWrite, {to->name, from.name, how});
     return bad(e->at);
   }
   if (c == Conversion::narrowing && e->kind != ExprKind::constant)
     report_.warning(e->at, texts::kNarrowing,
-                    {from.name, to->name, from.name + "_TO_" + (to->bounded ? to->base->name : to->name)});
+                    {from.name, to->name, plain_name(from) + "_TO_" + plain_name(*to)});
   if (from.kind == Kind::string && e->kind == ExprKind::constant && e->value.s.size() > to->capacity())
     report_.warning(e->at, texts::kNarrowing, {constant_text(from, e->value), to->name, "LEFT"});
   ExprPtr out = convert(std::move(e), to);

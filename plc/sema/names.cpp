@@ -52,7 +52,9 @@ std::vector<std::string> Analyzer::names_in_scope() const {
 
 void Analyzer::note_write(Variable& v, bool global, const Location& at) {
   v.written = true;
-  if (v.constant) {
+  const bool constant = global && current_ >= 0 && here().by_name.contains(key_of(v.name)) &&
+                        here().variables[here().by_name[key_of(v.name)]].constant;  // VAR_EXTERNAL CONSTANT
+  if (v.constant || constant) {
     report_.error(at, texts::kWriteConstant, {v.name});
     return;
   }
@@ -64,6 +66,7 @@ void Analyzer::note_write(Variable& v, bool global, const Location& at) {
     report_.warning(at, texts::kWriteInput, {v.name});
   if (global) v.writers.insert(current_);
   if (v.root == ir::Root::shared) check_place_writer(v.cell, at, v.name);
+  if (v.area == "%I*") report_.error(at, texts::kWritePlaceInput, {v.name});
 }
 
 // "GVL.speed": the name of a list of global variables before one of them.
@@ -130,6 +133,8 @@ std::optional<ir::Place> Analyzer::place_of_name(const Expression& e, bool write
   if (v == nullptr) {
     if (auto p = place_of_symbol(e.name, e.location, write)) return p;
     if (auto p = axis_reference(e.name, e.location)) return p;
+    if (current_ >= 0 && here().by_name.contains(key_of(e.name)))
+      return std::nullopt;  // VAR_EXTERNAL: reported
     if (unknown_.insert(key_of(e.name)).second && symbol(e.name) == nullptr)
       report_.error(e.location, texts::kUnknownName, {e.name, syntax::suggestion(e.name, names_in_scope())});
     return std::nullopt;
@@ -190,7 +195,7 @@ std::optional<ir::Place> Analyzer::place_of_member(const Expression& e, bool wri
   if (t.kind == Kind::block) {
     UnitScope& u = scopes_[static_cast<std::size_t>(t.block)];
     const Variable& v = u.variables[u.by_name.at(key_of(e.name))];
-    if (v.section != Section::input && v.section != Section::output) {
+    if ((v.section != Section::input && v.section != Section::output) || v.bound()) {
       report_.error(e.location, texts::kPrivate, {v.name, t.name});
       return std::nullopt;
     }
@@ -198,12 +203,33 @@ std::optional<ir::Place> Analyzer::place_of_member(const Expression& e, bool wri
       report_.error(e.location, texts::kWriteOutput, {v.name, t.name});
       return std::nullopt;
     }
+    if (through_block && !changeable(*e.operands[0])) return std::nullopt;
   } else if (write) {
     place(*e.operands[0], true);  // a member of a constant or an input is one itself
   }
   base->offset += f->offset;
   base->type = f->type;
   return base;
+}
+
+// An instance that is an input, or an output of another block, can be read here, not called or given inputs.
+bool Analyzer::changeable(const Expression& instance) {
+  if (instance.kind == ExpressionKind::index) return changeable(*instance.operands[0]);
+  if (instance.kind == ExpressionKind::name) {
+    bool global = false;
+    const Variable* v = find_variable(instance.name, global);
+    const bool input = v != nullptr && !global && v->section == Section::input && v->bound();
+    if (input) report_.error(instance.location, texts::kWriteBoundInput, {v->name});
+    return !input;
+  }
+  if (instance.kind != ExpressionKind::member || leads_global(*instance.operands[0])) return true;
+  const auto base = place(*instance.operands[0], false);
+  if (!base || base->type->kind != Kind::block) return changeable(*instance.operands[0]);
+  const UnitScope& u = scopes_[static_cast<std::size_t>(base->type->block)];
+  const Variable& v = u.variables[u.by_name.at(key_of(instance.name))];
+  if (v.section == Section::output)
+    report_.error(instance.location, texts::kWriteOutput, {v.name, base->type->name});
+  return v.section != Section::output && changeable(*instance.operands[0]);
 }
 
 std::optional<ir::Place> Analyzer::place_of_index(const Expression& e, bool write) {

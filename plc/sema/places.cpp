@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 
+#include "plc/types/direct_place.hpp"
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
 
@@ -10,48 +10,11 @@ namespace servogate::plc::sema {
 using image::Format;
 using image::Packet;
 
-namespace {
-
-// Half of packet A belongs to %I, the other to %Q, so that %IX0.0 and %QX0.0 are two places; %M is packet K.
-constexpr std::uint32_t kOutputBase = image::kPacketASize / 2;
-
-std::optional<image::Place> parse_direct(std::string_view text, bool& input) {
-  const std::string key = key_of(text);
-  if (key.size() < 3) return std::nullopt;
-  const char area = key[1];
-  if (area != 'I' && area != 'Q' && area != 'M') return std::nullopt;
-  input = area == 'I';
-  std::size_t at = 2;
-  char size = 'X';
-  if (key[at] >= 'A') size = key[at++];
-  const Format format = size == 'X'   ? Format::bl
-                        : size == 'B' ? Format::by
-                        : size == 'W' ? Format::in
-                        : size == 'D' ? Format::li
-                                      : Format::lr;
-  if (std::string_view("XBWDL").find(size) == std::string_view::npos) return std::nullopt;
-  std::uint32_t number = 0, bit = 0;
-  const char* end = key.data() + key.size();
-  auto [next, error] = std::from_chars(key.data() + at, end, number);
-  if (error != std::errc{} || number > 100'000) return std::nullopt;
-  if (size == 'X') {
-    if (next == end || *next != '.') return std::nullopt;
-    const auto [last, bit_error] = std::from_chars(next + 1, end, bit);
-    if (bit_error != std::errc{} || bit > 7) return std::nullopt;
-    next = last;
-  }
-  if (next != end) return std::nullopt;
-  image::Place p{area == 'M' ? Packet::k : Packet::a, format, size == 'X' ? number * 8 + bit : number, 1};
-  if (area == 'Q') p.index += size == 'X' ? kOutputBase * 8 : kOutputBase / image::format_size(format);
-  return p;
-}
-
-}  // namespace
-
 std::optional<image::Place> Analyzer::parse_address(const std::string& text, const Location& at) {
-  bool input = false;
-  const std::optional<image::Place> p =
-      text.starts_with("%") ? parse_direct(text, input) : image::parse_place(text);
+  const bool input = key_of(text).starts_with("%I");
+  std::optional<image::Place> p =
+      text.starts_with("%") ? direct_place(text) : image::parse_place(key_of(text));
+  if (const image::Symbol* s = p ? nullptr : symbol(text)) p = s->place;
   if (!p) {
     report_.error(at, texts::kBadAddress, {text});
     return std::nullopt;
@@ -113,7 +76,8 @@ std::uint32_t Analyzer::shared(const std::string& name, const image::Place& plac
   return index;
 }
 
-void Analyzer::declare_located(Variable& out, const syntax::Variable& v) {
+// `configured`: by VAR_CONFIG, whose locations are compared with one another.
+void Analyzer::declare_located(Variable& out, const syntax::Variable& v, bool configured) {
   const auto place = parse_address(v.address, v.address_location);
   if (!place) {
     out.type = elementary(Kind::error);
@@ -143,19 +107,24 @@ void Analyzer::declare_located(Variable& out, const syntax::Variable& v) {
       check_place_writer(out.cell, v.address_location, v.name);
     }
   }
+  if (configured) return;
+  warn_overlaps(v, *place);
+  located_.push_back({v.name, v.address, *place, v.location});
+  if (current_ < 0)
+    program_.globals.push_back({v.name, out.type, 0, static_cast<std::int32_t>(out.cell), false});
+}
+
+void Analyzer::warn_overlaps(const syntax::Variable& v, const image::Place& place) {
   for (const Located& l : located_)
-    if (l.place.overlaps(*place))
+    if (l.place.overlaps(place))
       report_.warning(v.address_location, texts::kAddressOverlap,
                       {v.address, l.text, l.name, std::to_string(l.at.line)});
   for (const image::Symbol& symbol : symbols_)
-    if (symbol.place.overlaps(*place)) {
+    if (symbol.place.overlaps(place)) {
       report_.warning(v.address_location, texts::kSymbolOverlap,
                       {v.address, symbol.name, image::to_string(symbol.place)});
       break;
     }
-  located_.push_back({v.name, v.address, *place, v.location});
-  if (current_ < 0)
-    program_.globals.push_back({v.name, out.type, 0, static_cast<std::int32_t>(out.cell), false});
 }
 
 // The letter of an auxiliary axis: its places as one AXIS_REF. What the PLC writes of it goes back after
@@ -235,7 +204,10 @@ void Analyzer::lay_out_places() {
         ir::SharedPlace& s = places[order[k]];
         s.address = s.place.format == Format::ch ? allocate(*s.type) : base + s.place.byte() - first.byte();
         s.raw = s.place.format != Format::ch;
-        if (s.raw && s.referenced && s.place.format == Format::bl) report_.error(s.at, texts::kBitReference);
+        if (s.raw && s.place.format == Format::bl && s.configured)
+          report_.error(s.at, texts::kSharedBit, {s.name});
+        else if (s.raw && s.referenced && s.place.format == Format::bl)
+          report_.error(s.at, texts::kBitReference);
       }
     } else {
       for (std::size_t k = i; k < j; ++k) places[order[k]].address = allocate(*places[order[k]].type);

@@ -54,12 +54,24 @@ struct TimeFunction {
   Op op;
 };
 constexpr TimeFunction kTimes[] = {
-    {"ADD_TIME", Op::add},    {"ADD_LTIME", Op::add},   {"ADD_TOD_TIME", Op::add},  {"ADD_DT_TIME", Op::add},
-    {"SUB_TIME", Op::sub},    {"SUB_LTIME", Op::sub},   {"SUB_DATE_DATE", Op::sub}, {"SUB_TOD_TIME", Op::sub},
-    {"SUB_TOD_TOD", Op::sub}, {"SUB_DT_TIME", Op::sub}, {"SUB_DT_DT", Op::sub},     {"MUL_TIME", Op::mul},
-    {"MULTIME", Op::mul},     {"MUL_LTIME", Op::mul},   {"DIV_TIME", Op::div},      {"DIVTIME", Op::div},
-    {"DIV_LTIME", Op::div},
+    {"ADD_TIME", Op::add},      {"ADD_LTIME", Op::add},       {"ADD_TOD_TIME", Op::add},
+    {"ADD_DT_TIME", Op::add},   {"SUB_TIME", Op::sub},        {"SUB_LTIME", Op::sub},
+    {"SUB_DATE_DATE", Op::sub}, {"SUB_TOD_TIME", Op::sub},    {"SUB_TOD_TOD", Op::sub},
+    {"SUB_DT_TIME", Op::sub},   {"SUB_DT_DT", Op::sub},       {"MUL_TIME", Op::mul},
+    {"MULTIME", Op::mul},       {"MUL_LTIME", Op::mul},       {"DIV_TIME", Op::div},
+    {"DIVTIME", Op::div},       {"DIV_LTIME", Op::div},       {"ADD_LTOD_LTIME", Op::add},
+    {"ADD_LDT_LTIME", Op::add}, {"SUB_LDATE_LDATE", Op::sub}, {"SUB_LTOD_LTIME", Op::sub},
+    {"SUB_LTOD_LTOD", Op::sub}, {"SUB_LDT_LTIME", Op::sub},   {"SUB_LDT_LDT", Op::sub},
 };
+// TO_BIG_ENDIAN and its like (table 38): a number here lies with its low byte first.
+struct OrderFunction {
+  std::string_view name;
+  bool turns;
+};
+constexpr OrderFunction kOrders[] = {{"TO_BIG_ENDIAN", true},
+                                     {"BIG_ENDIAN_TO", true},
+                                     {"TO_LITTLE_ENDIAN", false},
+                                     {"LITTLE_ENDIAN_TO", false}};
 
 bool any_elementary(Kind k) { return is_elementary(k); }
 
@@ -72,11 +84,35 @@ bool Analyzer::is_standard(std::string_view key) const {
     if (f.name == key) return true;
   for (const auto& f : kTimes)
     if (f.name == key) return true;
-  return listed(key,
-                {"ABS",         "ATAN2",      "EXPT",   "MOVE",    "NOT",  "SEL",  "LIMIT", "MUX",
-                 "SHL",         "SHR",        "ROL",    "ROR",     "LEN",  "LEFT", "RIGHT", "MID",
-                 "CONCAT",      "INSERT",     "DELETE", "REPLACE", "FIND", "TIME", "LTIME", "CONCAT_DATE_TOD",
-                 "LOWER_BOUND", "UPPER_BOUND"}) ||
+  for (const auto& f : kOrders)
+    if (f.name == key) return true;
+  return listed(key, {"ABS",
+                      "ATAN2",
+                      "EXPT",
+                      "MOVE",
+                      "NOT",
+                      "SEL",
+                      "LIMIT",
+                      "MUX",
+                      "SHL",
+                      "SHR",
+                      "ROL",
+                      "ROR",
+                      "LEN",
+                      "LEFT",
+                      "RIGHT",
+                      "MID",
+                      "CONCAT",
+                      "INSERT",
+                      "DELETE",
+                      "REPLACE",
+                      "FIND",
+                      "TIME",
+                      "LTIME",
+                      "CONCAT_DATE_TOD",
+                      "CONCAT_DATE_LTOD",
+                      "LOWER_BOUND",
+                      "UPPER_BOUND"}) ||
          conversion_name(key, *types_);
 }
 
@@ -205,8 +241,10 @@ ExprPtr Analyzer::standard_call(const Expression& e, std::string_view key, const
     return text_call(key, e);
   for (const auto& f : kTimes)
     if (f.name == key) return time_call(key, e);
-  if (listed(key, {"TIME", "LTIME", "CONCAT_DATE_TOD"})) return time_call(key, e);
+  if (listed(key, {"TIME", "LTIME", "CONCAT_DATE_TOD", "CONCAT_DATE_LTOD"})) return time_call(key, e);
   if (key == "LOWER_BOUND" || key == "UPPER_BOUND") return bound_call(key, e);
+  for (const auto& f : kOrders)
+    if (f.name == key) return order_call(key, e, hint, f.turns);
   for (const auto& f : kOperators)
     if (f.name == key) return operator_call(key, e, hint);
   return numeric_call(key, e, hint);
@@ -255,15 +293,40 @@ ExprPtr Analyzer::numeric_call(std::string_view key, const Expression& e, const 
   return native(f->native, t, e.location, std::move(args));
 }
 
+// Stands for `e` as often as it is copied; what must not be computed again goes to `kept`.
+ExprPtr Analyzer::once(ExprPtr e, Kept& kept) {
+  if (e->kind == ExprKind::constant || e->type->kind == Kind::error) return e;
+  ExprPtr stands = node(ExprKind::kept, e->type, e->at);
+  stands->value.i = ++lets_;
+  kept.emplace_back(lets_, std::move(e));
+  return stands;
+}
+
+ExprPtr Analyzer::around(ExprPtr e, Kept kept) {
+  if (e->type->kind == Kind::error) return e;
+  while (!kept.empty()) {
+    ExprPtr let = node(ExprKind::let, e->type, e->at);
+    let->value.i = kept.back().first;
+    let->args.push_back(std::move(kept.back().second));
+    let->args.push_back(std::move(e));
+    e = std::move(let);
+    kept.pop_back();
+  }
+  return e;
+}
+
 ExprPtr Analyzer::chain(Op op, std::vector<ExprPtr> args, const Location& at, std::string_view shown) {
   if (args.empty()) return bad(at);
-  if (op >= Op::eq && op <= Op::ge) {  // GT(a, b, c) is (a > b) AND (b > c)
+  if (op >= Op::eq && op <= Op::ge) {  // GT(a, b, c) is (a > b) AND (b > c), each computed once
+    Kept kept;
+    if (args.size() > 2)
+      for (ExprPtr& a : args) a = once(std::move(a), kept);
     ExprPtr all;
     for (std::size_t i = 0; i + 1 < args.size(); ++i) {
       ExprPtr pair = combine(op, args[i]->copy(), args[i + 1]->copy(), at, shown);
       all = all ? combine(Op::and_, std::move(all), std::move(pair), at, "AND") : std::move(pair);
     }
-    return all;
+    return around(std::move(all), std::move(kept));
   }
   ExprPtr out = std::move(args[0]);
   for (std::size_t i = 1; i < args.size(); ++i)
@@ -293,6 +356,22 @@ ExprPtr Analyzer::operator_call(std::string_view key, const Expression& e, const
   for (const Expression* i : in)
     args.push_back(expression(*i, f->op >= Op::eq && f->op <= Op::ge ? nullptr : hint));
   return chain(f->op, std::move(args), e.location, key);
+}
+
+ExprPtr Analyzer::order_call(std::string_view key, const Expression& e, const Type* hint, bool turns) {
+  const auto in = inputs(e, key, {"IN"}, 1, 1);
+  if (in.empty()) return bad(e.location);
+  ExprPtr value = settle(expression(*in[0], hint), hint);
+  const Type* t = value->type;
+  if (t->kind == Kind::error) return value;
+  if (!is_elementary(t->kind) || t->kind == Kind::string || t->kind == Kind::enumeration) {
+    report_.error(in[0]->location, texts::kMismatch, {"ANY_ELEMENTARY", t->name, ""});
+    return bad(e.location);
+  }
+  if (!turns || t->size == 1) return value;
+  std::vector<ExprPtr> args;
+  args.push_back(std::move(value));
+  return native(Native::turn_bytes, t, e.location, std::move(args));
 }
 
 ExprPtr Analyzer::selection_call(std::string_view key, const Expression& e, const Type* hint) {
@@ -334,6 +413,8 @@ ExprPtr Analyzer::selection_call(std::string_view key, const Expression& e, cons
     out->args.push_back(std::move(args[0]));
     return out;
   }
+  Kept kept;
+  selector = once(std::move(selector), kept);
   ExprPtr out = native(Native::select_fault, t, e.location, {});
   for (std::size_t i = args.size(); i-- > 0;) {
     ExprPtr choice = node(ExprKind::choose, t, e.location);
@@ -345,7 +426,7 @@ ExprPtr Analyzer::selection_call(std::string_view key, const Expression& e, cons
     choice->args.push_back(std::move(out));
     out = std::move(choice);
   }
-  return out;
+  return around(std::move(out), std::move(kept));
 }
 
 ExprPtr Analyzer::shift_call(std::string_view key, const Expression& e, const Type* hint) {
@@ -444,7 +525,7 @@ ExprPtr Analyzer::bound_call(std::string_view key, const Expression& e) {
   }
   Constant c;
   c.i = key == "LOWER_BOUND" ? t->range.low : t->range.high;
-  return make_constant(elementary(Kind::dint), c, e.location);
+  return make_constant(elementary(Kind::untyped_int), c, e.location);  // ANY_INT, as a literal
 }
 
 ExprPtr Analyzer::time_call(std::string_view key, const Expression& e) {
@@ -455,7 +536,7 @@ ExprPtr Analyzer::time_call(std::string_view key, const Expression& e) {
   }
   const auto in = inputs(e, key, {"IN1", "IN2"}, 2, 2);
   if (in.empty()) return bad(e.location);
-  if (key == "CONCAT_DATE_TOD") {
+  if (key == "CONCAT_DATE_TOD" || key == "CONCAT_DATE_LTOD") {
     auto args = typed_inputs(in, {elementary(Kind::date), elementary(Kind::tod)});
     if (args.empty()) return bad(e.location);
     ExprPtr out = node(ExprKind::binary, elementary(Kind::dt), e.location);

@@ -81,7 +81,7 @@ ir::Block Analyzer::block(const syntax::Block& b) {
 }
 
 void Analyzer::statement(const syntax::Statement& s, ir::Block& out) {
-  if (guarded(s, out)) return;
+  if (drawn_call(s, out) || guarded(s, out)) return;
   switch (s.kind) {
     case StatementKind::assign:
       return assignment(s, out);
@@ -94,6 +94,7 @@ void Analyzer::statement(const syntax::Statement& s, ir::Block& out) {
       if (callee.kind != ExpressionKind::name || (v != nullptr && v->type->kind == Kind::block)) {
         const auto instance = place(callee, false);
         if (!instance) return;
+        if (instance->type->kind == Kind::block && !changeable(callee)) return;
         if (instance->type->kind == Kind::block)
           return block_call(*s.value, *instance, instance->type->block, out);
       }
@@ -187,6 +188,57 @@ void Analyzer::hold(const syntax::Statement& s, ir::Block& out) {
   assign(held_[s.number].copy(), std::move(value), s.location, out);
 }
 
+// A function in a drawing: a pin that is none of its VAR_OUTPUT carries its result.
+bool Analyzer::drawn_call(const syntax::Statement& s, ir::Block& out) {
+  const auto drawn = [](const syntax::Argument& a) { return a.drawn; };
+  if (s.kind != StatementKind::hold || s.value->kind != ExpressionKind::call ||
+      std::none_of(s.value->arguments.begin(), s.value->arguments.end(), drawn))
+    return false;
+  const int unit = function_named(*s.value->operands[0]);
+  if (unit >= 0) lay_out(unit);
+  syntax::Statement plain;
+  plain.kind = StatementKind::call;
+  plain.location = s.location;
+  plain.value = syntax::copy(*s.value);
+  std::vector<std::uint64_t> results;
+  std::erase_if(plain.value->arguments, [&](syntax::Argument& a) {
+    if (!a.drawn) return false;
+    a.drawn = false;
+    const std::uint64_t number = a.value->literal.magnitude;
+    const Variable* v = unit < 0 ? nullptr : match(a, 0, unit);
+    if (v == nullptr && (unit < 0 || result_pin(unit, a.name))) {
+      results.push_back(number);
+      return true;
+    }
+    if (v != nullptr) {  // what it has not: the arguments are checked below
+      ir::Place p;
+      p.type = v->type;
+      p.cell = allocate(*p.type);
+      held_[number] = std::move(p);
+    }
+    return false;
+  });
+  if (!results.empty()) {
+    plain.kind = StatementKind::hold;
+    plain.number = results.front();
+  }
+  statement(plain, out);
+  if (!results.empty())
+    if (const auto result = held_.find(results.front()); result != held_.end())
+      for (const std::uint64_t other : results) held_[other] = result->second.copy();
+  return true;
+}
+
+// The pin of the result is called like the function, OUT, or not at all; where nothing else comes out,
+// anyhow.
+bool Analyzer::result_pin(int unit, const std::string& name) const {
+  const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
+  if (u.result_variable < 0) return false;
+  return name.empty() || same_name(name, "OUT") || same_name(name, u.source->name) ||
+         std::none_of(u.variables.begin(), u.variables.end(),
+                      [](const Variable& v) { return v.section == Section::output; });
+}
+
 // S and R of IL, (S) and (R) of a ladder. The same letters are inputs of bistables and counters.
 void Analyzer::set_statement(const syntax::Statement& s, ir::Block& out) {
   auto target = place(*s.target, false);
@@ -243,42 +295,70 @@ void Analyzer::case_statement(const syntax::Statement& s, ir::Block& out) {
   ir::Stmt stmt = make(StmtKind::case_, s.location);
   stmt.value = settle(expression(*s.target), nullptr);
   const Type* type = stmt.value->type;
-  const bool good = is_integer(type->kind) || is_bits(type->kind) || type->kind == Kind::enumeration;
+  const bool good = is_elementary(type->kind) && type->kind != Kind::error;
   if (!good && type->kind != Kind::error) report_.error(s.target->location, texts::kCaseType, {type->name});
-  struct Seen {
-    ir::Range range;
-    int line;
-  };
-  std::vector<Seen> seen;
-  const bool huge = cell_of(*type) == Cell::u64;
-  const auto less = [&](std::int64_t a, std::int64_t b) {
-    return huge ? static_cast<std::uint64_t>(a) < static_cast<std::uint64_t>(b) : a < b;
-  };
+  const bool cells = type->kind != Kind::string && !is_real(type->kind);
+  std::vector<Chosen> seen;
+  ir::Place held;
+  if (good && !cells) {  // compared in turn with what is held
+    stmt.kind = StmtKind::if_;
+    held.type = type->kind == Kind::string ? types_->string(kMaxStringCapacity) : type;
+    held.cell = allocate(*held.type);
+    assign(held.copy(), std::move(stmt.value), s.location, out);
+    type = held.type;
+  }
   for (const syntax::Branch& b : s.branches) {
     ir::Branch branch;
     for (const syntax::Label& l : b.labels) {
-      if (!good) continue;
-      const auto low = constant(*l.low, type), high = l.high ? constant(*l.high, type) : low;
-      if (!low || !high) continue;
-      if (less(high->i, low->i)) {
-        report_.error(l.low->location, texts::kEmptyRange,
-                      {constant_text(*type, *low), constant_text(*type, *high)});
+      const std::size_t before = seen.size();
+      if (good) case_label(l, *type, seen);
+      if (seen.size() == before) continue;
+      const Chosen& chosen = seen.back();
+      if (cells) {
+        branch.ranges.push_back({chosen.low.i, chosen.high.i});
         continue;
       }
-      const ir::Range r{low->i, high->i};
-      for (const Seen& x : seen)
-        if (!less(x.range.high, r.low) && !less(r.high, x.range.low))
-          report_.error(l.low->location, texts::kCaseTwice,
-                        {constant_text(*type, {less(r.low, x.range.low) ? x.range.low : r.low, 0, {}}),
-                         std::to_string(x.line)});
-      seen.push_back({r, l.low->location.line});
-      branch.ranges.push_back(r);
+      const auto compared = [&](Op op, const Constant& c) {
+        return combine(op, load(held.copy(), l.low->location), make_constant(type, c, l.low->location),
+                       l.low->location, "=");
+      };
+      ExprPtr test = l.high ? combine(Op::and_, compared(Op::ge, chosen.low), compared(Op::le, chosen.high),
+                                      l.low->location, "AND")
+                            : compared(Op::eq, chosen.low);
+      branch.condition = branch.condition ? combine(Op::or_, std::move(branch.condition), std::move(test),
+                                                    l.low->location, "OR")
+                                          : std::move(test);
     }
     branch.body = block(b.body);
+    if (!cells && !branch.condition)
+      branch.condition = make_constant(elementary(Kind::boolean), {}, s.location);
     stmt.branches.push_back(std::move(branch));
   }
   stmt.body = block(s.body);
   if (good) out.push_back(std::move(stmt));
+}
+
+// One label or range of a CASE; of several that hold a value the first counts.
+void Analyzer::case_label(const syntax::Label& l, const Type& type, std::vector<Chosen>& seen) {
+  const auto low = constant(*l.low, &type), high = l.high ? constant(*l.high, &type) : low;
+  if (!low || !high) return;
+  const bool huge = cell_of(type) == Cell::u64;
+  const auto less = [&](const Constant& a, const Constant& b) {
+    return type.kind == Kind::string ? a.s < b.s
+           : is_real(type.kind)      ? a.r < b.r
+           : huge                    ? static_cast<std::uint64_t>(a.i) < static_cast<std::uint64_t>(b.i)
+                                     : a.i < b.i;
+  };
+  if (less(*high, *low)) {
+    report_.error(l.low->location, texts::kEmptyRange,
+                  {constant_text(type, *low), constant_text(type, *high)});
+    return;
+  }
+  for (const Chosen& x : seen)
+    if (!less(x.high, *low) && !less(*high, x.low))
+      report_.warning(l.low->location, texts::kCaseTwice,
+                      {constant_text(type, less(*low, x.low) ? x.low : *low), std::to_string(x.line)});
+  seen.push_back({*low, *high, l.low->location.line});
 }
 
 void Analyzer::for_statement(const syntax::Statement& s, ir::Block& out) {
@@ -329,6 +409,7 @@ void Analyzer::for_statement(const syntax::Statement& s, ir::Block& out) {
   stmt.body = block(s.body);
   --loops_;
   if (v != nullptr) for_variables_.pop_back();
+  stmt.check_range = control->type->bounded;
   stmt.place = std::move(*control);
   out.push_back(std::move(stmt));
 }

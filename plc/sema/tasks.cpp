@@ -10,13 +10,13 @@ using syntax::Section;
 using syntax::UnitKind;
 
 // Memory of a program's instance; the only one makes its addresses fixed.
-std::uint32_t Analyzer::instance(const std::string& name, int unit) {
+std::uint32_t Analyzer::instance(const std::string& name, int unit, bool retain) {
   lay_out(unit);
   const auto index = static_cast<std::size_t>(unit);
   const std::uint32_t base = allocate(*scopes_[index].frame);
   ir::Unit& u = program_.units[index];
   u.fixed_base = ++instances_[index] == 1 ? static_cast<std::int64_t>(base) : -1;
-  program_.programs.push_back({name, scopes_[index].frame, base, -1, false});
+  program_.programs.push_back({name, scopes_[index].frame, base, -1, retain});
   return base;
 }
 
@@ -48,7 +48,7 @@ void Analyzer::default_task() {
   for (std::size_t i = 0; i < source_.units.size(); ++i) {
     const syntax::Unit& u = source_.units[i];
     if (u.kind != UnitKind::program || scopes_[i].frame == nullptr) continue;
-    const std::uint32_t base = instance(u.name, static_cast<int>(i));
+    const std::uint32_t base = instance(u.name, static_cast<int>(i), false);
     all_bound(static_cast<int>(i), {}, u.location);
     body_unit.body.push_back(invoke_at(base, scopes_[i].frame, static_cast<int>(i), u.location));
   }
@@ -104,7 +104,7 @@ void Analyzer::program_call(const syntax::ProgramInstance& p, ir::Block& out) {
   if (unit < 0) return;
   ir::Place where;
   where.root = ir::Root::fixed;
-  where.cell = instance(p.name, unit);
+  where.cell = instance(p.name, unit, p.retain);
   where.type = scopes_[static_cast<std::size_t>(unit)].frame;
   current_ = -1;
   std::vector<const Variable*> matched;
@@ -176,62 +176,6 @@ void Analyzer::configured_tasks() {
   if (program_.programs.empty() && !report_.failed()) report_.error({0, 1, 1}, texts::kNoProgram);
 }
 
-// A variable of a configured program, or a global one, by its path; the name of the resource may lead it.
-std::optional<ir::Place> Analyzer::path_place(const syntax::Configuration& c,
-                                              const syntax::PathDeclaration& p) {
-  std::size_t at = 0;
-  for (const std::string& r : c.resources)
-    if (p.path.size() > 1 && same_name(p.path[0], r)) at = 1;
-  const auto programs = std::find_if(program_.programs.begin(), program_.programs.end(),
-                                     [&](const ir::Global& g) { return same_name(g.name, p.path[at]); });
-  const auto globals =
-      std::find_if(program_.globals.begin(), program_.globals.end(),
-                   [&](const ir::Global& g) { return g.place < 0 && same_name(g.name, p.path[at]); });
-  const bool program = programs != program_.programs.end();
-  if (!program && globals == program_.globals.end()) {
-    report_.error(p.path_location, texts::kUnknownName, {p.path[at], ""});
-    return std::nullopt;
-  }
-  ir::Place out;
-  out.cell = program ? programs->address : globals->address;
-  out.type = program ? programs->type : globals->type;
-  for (++at; at < p.path.size(); ++at) {
-    const Field* f = out.type->field(p.path[at]);
-    if (f == nullptr || f->reference) {
-      report_.error(p.path_location, texts::kNoMember, {out.type->name, p.path[at], ""});
-      return std::nullopt;
-    }
-    out.cell += f->offset;
-    out.type = f->type;
-  }
-  const Type* declared = resolve(p.type);
-  if (declared->kind == Kind::error) return std::nullopt;
-  if (conversion(*declared, *out.type) != Conversion::same) {
-    report_.error(p.path_location, texts::kExternalType, {p.path.back(), out.type->name, declared->name});
-    return std::nullopt;
-  }
-  return out;
-}
-
-// VAR_ACCESS gives a variable a second name; VAR_CONFIG an initial value of this one instance.
-void Analyzer::configured_paths(const syntax::Configuration& c) {
-  current_ = -1;
-  for (const syntax::PathDeclaration& p : c.paths) {
-    if (!p.address.empty()) {
-      report_.error(p.path_location, texts::kUnsupported, {"VAR_CONFIG ... AT"});
-      continue;
-    }
-    const auto where = path_place(c, p);
-    if (!where) continue;
-    if (!p.name.empty()) {
-      program_.globals.push_back({p.name, where->type, where->cell, -1, false});
-    } else if (p.initial) {
-      const std::vector<std::uint8_t> bytes = initial_bytes(*p.initial, *where->type);
-      std::copy(bytes.begin(), bytes.end(), program_.memory.begin() + where->cell);
-    }
-  }
-}
-
 void Analyzer::check_recursion() {
   for (std::size_t u = 0; u < scopes_.size(); ++u) {
     std::vector<int> path;
@@ -268,6 +212,10 @@ void Analyzer::check_usage() {
           (v.section == Section::local || v.section == Section::temp || v.section == Section::external))
         report_.warning(v.at, texts::kUnused, {v.name});
   }
+  // One at an address is there for others, a constant for whoever wants it.
+  for (const Variable& v : globals_)
+    if (!v.used && !v.written && !v.constant && v.root == ir::Root::fixed)
+      report_.warning(v.at, texts::kUnused, {v.name});
 }
 
 void Analyzer::reach(int unit, std::set<int>& out) const {

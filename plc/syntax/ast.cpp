@@ -14,9 +14,10 @@ ExpressionPtr copy(const Expression& e) {
   out->repeats = e.repeats;
   for (const ExpressionPtr& o : e.operands) out->operands.push_back(same(o));
   for (const Argument& a : e.arguments)
-    out->arguments.push_back({a.name, a.location, a.output, a.inverted, same(a.value)});
+    out->arguments.push_back({a.name, a.location, a.output, a.inverted, a.drawn, same(a.value)});
   out->enable = same(e.enable);
   out->enabled = same(e.enabled);
+  out->enabled_inverted = e.enabled_inverted;
   return out;
 }
 

@@ -58,6 +58,7 @@ struct Argument {
   Location location;
   bool output = false;
   bool inverted = false;
+  bool drawn = false;  ///< the pin of a function in a drawing: its output of that name, or else its result
   ExpressionPtr value;
 };
 
@@ -87,8 +88,9 @@ struct Expression {
   std::vector<ExpressionPtr> operands;
   std::vector<std::int64_t> repeats;  ///< of a list, parallel to operands
   std::vector<Argument> arguments;
-  ExpressionPtr enable;   ///< of a call: EN := ...
-  ExpressionPtr enabled;  ///< of a call: ENO => ...
+  ExpressionPtr enable;           ///< of a call: EN := ...
+  ExpressionPtr enabled;          ///< of a call: ENO => ...
+  bool enabled_inverted = false;  ///< NOT ENO => ...
 };
 
 /// The same tree once more.
@@ -199,14 +201,16 @@ struct ProgramInstance {
   std::string name;
   Location location;
   std::string task, type;
+  bool retain = false;  ///< all its variables
   Location task_location, type_location;
   std::vector<Argument> arguments;
 };
-/// A line of VAR_ACCESS (`name` set) or VAR_CONFIG: the path of a variable as its parts.
+/// A line of VAR_ACCESS (`name` set) or VAR_CONFIG: the path of a variable as its parts, names and
+/// subscripts ("[3]").
 struct PathDeclaration {
   std::string name;
   std::vector<std::string> path;
-  Location location, path_location;
+  Location location, path_location, address_location;
   TypeReference type;
   std::string address;  ///< AT, of VAR_CONFIG
   ExpressionPtr initial;

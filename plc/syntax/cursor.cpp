@@ -83,8 +83,9 @@ void Parser::expect(std::string_view key) {
 
 void Parser::expect_closing(std::string_view key, std::string_view opener, const Location& begin) {
   if (accept(key)) return;
-  report_.error(now().location, texts::kUnclosed,
-                {"'" + std::string(key) + "'", std::string(opener), std::to_string(begin.line), found()});
+  if (now().kind != TokenKind::end || !now().told)
+    report_.error(now().location, texts::kUnclosed,
+                  {"'" + std::string(key) + "'", std::string(opener), std::to_string(begin.line), found()});
   throw SyntaxError{};
 }
 
@@ -100,7 +101,7 @@ std::string Parser::found() const {
 
 void Parser::fail(std::string wanted) {
   // A bad token has been reported by its reader; saying it again helps nobody.
-  if (now().kind != TokenKind::bad)
+  if (now().kind != TokenKind::bad && !now().told)
     report_.error(now().location, texts::kExpected, {std::move(wanted), found()});
   throw SyntaxError{};
 }

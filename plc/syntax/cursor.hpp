@@ -59,6 +59,7 @@ class Parser {
   void configuration_part(Configuration& c, int& resources, Location& resource);
   void task(Configuration& c);
   void program_instance(Configuration& c);
+  void path_part(std::vector<std::string>& out);
   void paths(Configuration& c, bool access);
   ExpressionPtr list_initializer();
   ExpressionPtr record_initializer();

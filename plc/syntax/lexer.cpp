@@ -28,6 +28,7 @@ class Lexer {
       out.back().text = text_.substr(out.back().offset, at_ - out.back().offset);
     }
     out.push_back(start(TokenKind::end));
+    out.back().told = open_;
     return out;
   }
 
@@ -73,7 +74,10 @@ class Lexer {
     const Location begin = here();
     int depth = 0;
     do {
-      if (at_ >= text_.size()) return report_.error(begin, texts::kOpenComment, {std::string(close)});
+      if (at_ >= text_.size()) {
+        open_ = true;
+        return report_.error(begin, texts::kOpenComment, {std::string(close)});
+      }
       if (text_.substr(at_, open.size()) == open)
         ++depth, step(open.size());
       else if (text_.substr(at_, close.size()) == close)
@@ -248,6 +252,15 @@ class Lexer {
     return out;
   }
 
+  // A ';' at the end of a line whose string is not closed ends the statement all the same.
+  void end_of_statement(std::string& inside) {
+    const std::size_t last = inside.find_last_not_of(" \t\r");
+    if (last == std::string::npos || inside[last] != ';') return;
+    const std::size_t back = inside.size() - last;
+    inside.resize(last);
+    at_ -= back;
+    column_ -= static_cast<int>(back);
+  }
   Token string() {
     Token t = start(TokenKind::literal);
     t.literal.kind = Kind::string;
@@ -256,6 +269,7 @@ class Lexer {
     while (peek() != quote) {
       if (at_ >= text_.size() || peek() == '\n') {
         report_.error(t.location, texts::kOpenString, {std::string(1, quote)});
+        end_of_statement(t.literal.text);
         return t;
       }
       if (peek() == '$')
@@ -291,6 +305,7 @@ class Lexer {
     Token t = start(TokenKind::direct);
     step();
     while (word_part(peek()) || (peek() == '.' && digit(peek(1)))) step();
+    if (peek() == '*' && at_ == t.offset + 2) step();  // %Q*: VAR_CONFIG says where
     return t;
   }
 
@@ -329,6 +344,7 @@ class Lexer {
   int file_;
   Report& report_;
   std::size_t at_ = 0;
+  bool open_ = false;  ///< a comment has swallowed the rest
   int line_, column_;
 };
 

@@ -27,6 +27,7 @@ struct Token {
   std::string text;        ///< as written
   std::string key;
   Literal literal;
+  bool told = false;  ///< of the end: why the text ends here was reported
 
   bool is(std::string_view k) const {
     return (kind == TokenKind::word || kind == TokenKind::symbol) && key == k;

@@ -77,12 +77,15 @@ void Parser::variables(std::vector<Variable>& out, Section section, bool in_unit
   Variable prototype;
   prototype.section = section;
   for (;; take())
-    if (at("RETAIN"))
+    if (at_any({"RETAIN", "PERSISTENT"})) {
       prototype.retain = true;
-    else if (at("CONSTANT"))
+      if (section == Section::temp || section == Section::in_out || section == Section::external)
+        report_.error(now().location, texts::kSectionPlace, {now().key, opener});
+    } else if (at("CONSTANT")) {
       prototype.constant = true;
-    else if (!at("NON_RETAIN") && !at("PERSISTENT"))
+    } else if (!at("NON_RETAIN")) {
       break;
+    }
   while (!at_end() && !at("END_VAR")) {
     if (now().kind == TokenKind::word && is_keyword(now().key) && in_unit) break;
     // A statement: END_VAR is missing.
@@ -142,9 +145,11 @@ void Parser::address(Variable& v) {
   if (now().kind != TokenKind::word)
     fail(text::both("an address such as %QX0.0 or SA128", "адрес вида %QX0.0 или SA128"));
   std::size_t end = now().offset;
-  while (end < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[end])) || text_[end] == '.'))
-    ++end;
-  v.address = key_of(text_.substr(now().offset, end - now().offset));
+  const auto part = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_';
+  };
+  while (end < text_.size() && part(text_[end])) ++end;
+  v.address = text_.substr(now().offset, end - now().offset);
   while (!at_end() && now().offset < end) take();
 }
 
@@ -337,6 +342,20 @@ void Parser::configuration() {
   accept(";");
 }
 
+// A name and the subscripts behind it.
+void Parser::path_part(std::vector<std::string>& out) {
+  out.push_back(identifier(text::both("the path of a variable", "путь к переменной")));
+  while (accept("[")) {
+    do {
+      const std::string sign = accept("-") ? "-" : "";
+      if (now().kind != TokenKind::literal || now().literal.kind != Kind::untyped_int)
+        fail(text::both("a subscript", "индекс"));
+      out.push_back("[" + sign + std::to_string(take().literal.magnitude) + "]");
+    } while (accept(","));
+    expect("]");
+  }
+}
+
 // VAR_ACCESS name : path : type READ_WRITE; and VAR_CONFIG path AT %QX0.0 : type := value;
 void Parser::paths(Configuration& c, bool access) {
   const std::string opener = now().key;
@@ -350,12 +369,13 @@ void Parser::paths(Configuration& c, bool access) {
         expect(":");
       }
       p.path_location = now().location;
-      do p.path.push_back(identifier(text::both("the path of a variable", "путь к переменной")));
+      do path_part(p.path);
       while (accept("."));
       if (!access && at("AT")) {
         Variable v;
         address(v);
         p.address = v.address;
+        p.address_location = v.address_location;
       }
       expect(":");
       p.type = type_reference();
@@ -394,8 +414,9 @@ void Parser::task(Configuration& c) {
 
 void Parser::program_instance(Configuration& c) {
   take();
-  if (at_any({"RETAIN", "NON_RETAIN"})) take();
   ProgramInstance p;
+  p.retain = at("RETAIN");
+  if (at_any({"RETAIN", "NON_RETAIN"})) take();
   p.location = now().location;
   p.name = identifier(text::both("the name of a program", "имя программы"));
   if (accept("WITH")) {

@@ -178,8 +178,8 @@ void Parser::arguments(Expression& call) {
     const std::string key = key_of(a.name);
     if (key == "EN" && !a.output)
       call.enable = std::move(a.value);
-    else if (key == "ENO" && a.output && !a.inverted)
-      call.enabled = std::move(a.value);
+    else if (key == "ENO" && a.output)
+      call.enabled = std::move(a.value), call.enabled_inverted = a.inverted;
     else
       call.arguments.push_back(std::move(a));
     if (!accept(",")) break;

@@ -209,7 +209,15 @@ StatementPtr Parser::for_statement() {
   StatementPtr s = make_statement(StatementKind::for_, take().location);
   s->target = make(ExpressionKind::name, now().location);
   s->target->name = identifier(text::both("the variable that counts", "переменная-счётчик"));
-  expect(":=");
+  bool counts = true;
+  if (at("=")) {
+    report_.error(take().location, texts::kAssignEqual);
+  } else if (!accept(":=")) {  // FOR a.b := ...: the rest is read, and means nothing
+    counts = false;
+    report_.error(now().location, texts::kExpected, {"':='", found()});
+    recover({":=", ";", "TO", "DO"});
+    if (!accept(":=")) throw SyntaxError{};
+  }
   s->value = expression();
   expect("TO");
   s->to = expression();
@@ -222,6 +230,7 @@ StatementPtr Parser::for_statement() {
   s->body = block({"END_FOR"});
   expect_closing("END_FOR", "FOR", s->location);
   accept(";");
+  if (!counts) s->kind = StatementKind::empty;
   return s;
 }
 

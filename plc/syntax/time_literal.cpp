@@ -65,7 +65,7 @@ bool parse_duration(std::string_view text, std::int64_t& ns) {
   bool ended = false;
   while (!text.empty()) {
     if (ended) return false;  // a fraction only in the last part
-    if (text[0] == '_' && total != 0) text.remove_prefix(1);
+    if (text[0] == '_' && previous != std::numeric_limits<std::int64_t>::max()) text.remove_prefix(1);
     std::string_view number = text;
     std::int64_t probe = 0;
     if (!read_decimal(number, 1, probe, ended)) return false;

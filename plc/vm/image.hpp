@@ -66,6 +66,7 @@ struct Image {
     std::uint32_t cell = 0;  ///< address, offset in the unit's own memory, or index of places
     std::int32_t file = 0, line = 0, column = 0;
     bool write = false;
+    bool bound = false;  ///< the cell holds the address: VAR_IN_OUT, AT %Q*
   };
 
   std::shared_ptr<const TypeTable> types;

@@ -147,6 +147,14 @@ Fault from_bcd(Machine&, Bytes* d, const Bytes* a, const Bytes*) noexcept {
   return Fault::none;
 }
 
+template <std::size_t kBytes>
+Fault turn_bytes(Machine&, Bytes* d, const Bytes* a, const Bytes*) noexcept {
+  std::array<Bytes, kBytes> v;
+  std::reverse_copy(a, a + kBytes, v.begin());
+  std::memcpy(d, v.data(), kBytes);
+  return Fault::none;
+}
+
 constexpr std::size_t kRealFunctions = 12;
 template <typename T>
 constexpr std::array<NativeFunction, kRealFunctions> real_functions() {
@@ -165,7 +173,8 @@ constexpr std::array<std::array<NativeFunction, kRealFunctions>, 2> kReals = {re
                                                                               real_functions<double>()};
 constexpr auto kConvert = convert_table<false>();
 constexpr auto kTruncate = convert_table<true>();
-constexpr NativeFunction kOthers[] = {now, day_part, clock_part, select_fault, to_bcd, from_bcd};
+constexpr NativeFunction kOthers[] = {now,      day_part,      clock_part,    select_fault, to_bcd,
+                                      from_bcd, turn_bytes<2>, turn_bytes<4>, turn_bytes<8>};
 
 // Numbers: 0 convert, 100 truncate, 200 reals, 230 shifts, 250 others, 300 texts.
 constexpr std::uint16_t kTruncateBase = 100, kRealBase = 200, kShiftBase = 230, kOtherBase = 250;
@@ -202,6 +211,10 @@ std::uint16_t native_function(ir::Native n, Cell cell) noexcept {
       return kOtherBase + 4;
     case ir::Native::from_bcd:
       return kOtherBase + 5;
+    case ir::Native::turn_bytes:
+      return static_cast<std::uint16_t>(kOtherBase + (cell_size(cell) == 2   ? 6
+                                                      : cell_size(cell) == 4 ? 7
+                                                                             : 8));
     default:
       return static_cast<std::uint16_t>(kTextBase + i - static_cast<int>(ir::Native::length));
   }

@@ -74,6 +74,18 @@ class InverterRig {
   double steepest = 0.0, last_speed = 0.0;
 };
 
+TEST(Inverter, that_the_plc_does_not_enable_is_not_missed_at_its_speed) {
+  InverterRig rig;
+  rig.set("enable", false);
+  rig.order(SpindleMode::cw, 600.0);
+  rig.run(11'000);
+  EXPECT_TRUE(rig.events.empty()) << "a door may stand open for long";
+  rig.set("enable", true);
+  rig.run(2'000);
+  EXPECT_EQ(rig.speed(), 600.0);
+  EXPECT_TRUE(rig.events.empty());
+}
+
 TEST(Inverter, ramps_the_speed_with_the_relay_of_its_direction_on_and_is_at_speed_by_the_command) {
   InverterRig rig;
   rig.run(10);

@@ -178,6 +178,25 @@ TEST(Spindle, names_what_keeps_it_from_its_speed_or_angle) {
   EXPECT_EQ(rig.events[0].number, alarm::kSpindleOrientTimeout);
 }
 
+TEST(Spindle, whose_speed_is_adjusted_in_every_cycle_is_supervised_all_the_same) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::cw, 600.0);
+  rig.run(500);
+  for (int i = 0; i < 500; ++i) {
+    rig.spindle.adjust(600.0 + i);
+    rig.cycle();
+  }
+  EXPECT_NEAR(rig.spindle.actual_rpm(), 1099.0, 60.0);
+  EXPECT_TRUE(rig.events.empty());
+  rig.blocked = true;
+  for (int i = 0; i < 11'000; ++i) {
+    rig.spindle.adjust(1099.0);
+    rig.cycle();
+  }
+  ASSERT_EQ(rig.events.size(), 1u);
+  EXPECT_EQ(rig.events[0].number, alarm::kSpindleNotAtSpeed);
+}
+
 TEST(Spindle, reports_the_fault_of_its_drive_once_and_resets_it) {
   SpindleRig rig;
   rig.spindle.order(SpindleMode::cw, 600.0);

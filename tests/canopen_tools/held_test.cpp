@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include "tests/canopen_tools/workbench.hpp"
+#include "tests/usercan/rig/mill.hpp"
 
 namespace servogate::canopen_tools {
 namespace {
@@ -60,6 +61,117 @@ TEST_F(HeldBus, is_locked_to_writes_and_commands_with_the_name_of_its_holder) {
   }
   EXPECT_TRUE(tool("can check " + held_).out_has("holds it"));
   EXPECT_EQ(tool("sdo " + held_ + " 99 read 1000").code, 1) << "no node of the machine file";
+}
+
+/// The mill runs a long line on the bus of the workbench, its drives in processes of their own.
+class HeldByRun : public Workbench {
+ protected:
+  /// `runtime`: XDG_RUNTIME_DIR of the run; tools look in the folder of the test.
+  void run(const std::string& runtime) {
+    const std::string machine = usercan::mill(bus(), usercan::patience());
+    living_ = usercan::mill_drives(machine);
+    desk_.write("long.nc", "N1 G90 G0 X10 Y0 Z0\nN2 G1 X10 Y90 F10\nN3 M30\n");
+    setenv("XDG_RUNTIME_DIR", runtime.c_str(), 1);
+    run_ = std::make_unique<usercan::Process>(std::vector<std::string>{
+        "run", machine, path("long.nc"), "--realtime=best-effort", "-q", "--report", path("report.json")});
+    unsetenv("XDG_RUNTIME_DIR");
+  }
+  /// The node is operational: it answers the RPDOs of the run.
+  bool comes_on() {
+    const auto ear = join();
+    for (image::CanFrame frame; usercan::wait_for(*ear, frame);)
+      if (frame.id == 0x181) return true;
+    return false;
+  }
+  /// Ends the run; numbers of the alarms that it had.
+  std::vector<int> alarms() {
+    run_->signal(SIGINT);
+    EXPECT_EQ(run_->wait(), 3) << run_->said();
+    std::vector<int> numbers;
+    const json report = json::parse(desk_.text("report.json"), nullptr, false);
+    EXPECT_TRUE(report.contains("alarms")) << run_->said();
+    for (const json& alarm : report["alarms"]) {
+      numbers.push_back(alarm["number"]);
+      texts_ += alarm["text"].get<std::string>() + "\n";
+    }
+    return numbers;
+  }
+  std::string texts_;  ///< of those alarms
+  static constexpr int kForeignFrame = 2014;
+  std::vector<std::unique_ptr<usercan::Process>> living_;
+  std::unique_ptr<usercan::Process> run_;
+};
+
+TEST_F(HeldByRun, is_read_through_it_so_that_it_hears_no_foreign_frame) {
+  run(path(""));
+  ASSERT_TRUE(comes_on()) << run_->said();
+  const json scanned = facts("scan $BUS");
+  EXPECT_EQ(scanned["held_by"]["machine"], "Three-axis mill");
+  EXPECT_EQ(scanned["nodes"].size(), 4u);
+  EXPECT_EQ(facts("sdo $BUS 1 read 1018:4")["value"], 1);
+  EXPECT_EQ(facts("sdo socketcand:unix:bus.sock/can0 2 read 1018:4")["value"], 2) << "written otherwise";
+  EXPECT_EQ(facts("sdo socketcand:unix:" + path("./bus.sock") + "/can0 3 read 1018:4")["value"], 3);
+  EXPECT_EQ(facts("od $BUS 1 --range 6060-6070")["objects"][0]["index"], "6060");
+  EXPECT_EQ(alarms(), std::vector<int>());
+}
+
+TEST_F(HeldByRun, is_locked_to_every_write_and_command_and_the_run_is_named) {
+  run(path(""));
+  ASSERT_TRUE(comes_on()) << run_->said();
+  for (const char* words : {"sdo $BUS 1 write 1801:1 0x40000281", "sdo $BUS 1 write 6040 6 --i-may-move",
+                            "nmt $BUS stop all --i-may-move", "lss $BUS inquire"}) {
+    const Ended ended = tool(words);
+    EXPECT_EQ(ended.code, 1) << words;
+    EXPECT_TRUE(ended.err_has("is held by a `servogate run` of 'Three-axis mill'")) << ended.err;
+  }
+  EXPECT_TRUE(tool("can check $BUS --seconds 0.3").out_has("holds it"));
+  EXPECT_TRUE(tool("status").err_has("no control is running")) << "clients do not take it for a control";
+  for (const char* words : {"status", "power on", "down"}) {
+    const Ended refused = tool(std::string(words) + " --socket servogate/*.run");
+    EXPECT_EQ(refused.code, 2) << words;
+    EXPECT_TRUE(refused.err_has("is not for a `servogate run`")) << refused.err;
+  }
+  EXPECT_EQ(alarms(), std::vector<int>());
+}
+
+TEST_F(HeldByRun, is_locked_to_logs_of_a_master_whoever_runs_it) {
+  desk_.write("stop.log", "(1.0) can0 000#8002\n");
+  desk_.write("drive.log", "(1.0) can0 77E#05\n");
+  run(path(""));
+  ASSERT_TRUE(comes_on()) << run_->said();
+  const Ended held = tool("play $BUS stop.log");
+  EXPECT_EQ(held.code, 1);
+  EXPECT_TRUE(held.err_has("`play` is not done: the bus")) << held.err;
+  const Ended heard = desk_.line("XDG_RUNTIME_DIR=$PWD/else $SG play " + bus() + " stop.log");
+  EXPECT_EQ(heard.code, 1);
+  EXPECT_TRUE(heard.err_has("`play` is not done: somebody controls this bus")) << heard.err;
+  EXPECT_EQ(tool("play $BUS drive.log").code, 0) << "a device among simulated ones";
+  EXPECT_EQ(alarms(), std::vector<int>());
+}
+
+TEST_F(HeldByRun, of_somebody_else_is_heard_and_left_alone) {
+  run(path("else"));
+  ASSERT_TRUE(comes_on()) << run_->said();
+  for (const char* words : {"sdo $BUS 1 read 6041", "od $BUS 1", "scan $BUS"}) {
+    const Ended ended = tool(words);
+    EXPECT_EQ(ended.code, 1) << words;
+    EXPECT_TRUE(ended.err_has("somebody controls this bus")) << ended.err;
+    EXPECT_TRUE(ended.err_has("--anyway reads all the same")) << ended.err;
+  }
+  const Ended written = tool("sdo $BUS 1 write 1801:1 0x40000281");
+  EXPECT_EQ(written.code, 1);
+  EXPECT_TRUE(written.err_has("writing 1801h:01 is not done: somebody controls this bus")) << written.err;
+  EXPECT_EQ(tool("sdo $BUS 1 write 1801:1 0x40000281 --anyway").code, 2);
+  EXPECT_EQ(alarms(), std::vector<int>());
+}
+
+TEST_F(HeldByRun, is_told_of_who_reads_all_the_same) {
+  run(path("else"));
+  ASSERT_TRUE(comes_on()) << run_->said();
+  EXPECT_EQ(tool("sdo $BUS 1 read 6041 --anyway").code, 0);
+  EXPECT_EQ(alarms(), std::vector<int>{kForeignFrame});
+  EXPECT_NE(texts_.find("somebody else sends SDO request of node 1, read 6041h:00 (601h)"), std::string::npos)
+      << texts_;
 }
 
 }  // namespace

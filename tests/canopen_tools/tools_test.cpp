@@ -148,7 +148,8 @@ TEST_F(Workbench, a_bus_in_use_is_refused_with_the_frame_that_shows_it) {
     const char* words;
   } masters[] = {{usercan::make(0x080, {}), "SYNC (080h)"},
                  {usercan::make(0x205, {6, 0}), "RPDO 1 of node 5 (205h)"},
-                 {canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, 9), "NMT command (000h)"}};
+                 {canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, 9),
+                  "NMT command enter pre-operational to node 9 (000h)"}};
   for (const auto& master : masters) {
     const Sender sender(join(), master.frame);
     const Ended ended = tool("sdo $BUS 5 write 6040 6 --i-may-move");
@@ -156,7 +157,12 @@ TEST_F(Workbench, a_bus_in_use_is_refused_with_the_frame_that_shows_it) {
     EXPECT_TRUE(ended.err_has(master.words)) << ended.err;
     EXPECT_EQ(tool("nmt $BUS stop all --i-may-move").code, 1);
     EXPECT_EQ(tool("lss $BUS fastscan").code, 1);
-    EXPECT_EQ(tool("sdo $BUS 5 read 6041").code, 0) << "reading disturbs nobody";
+    EXPECT_EQ(tool("sdo $BUS 5 write 6083 1000").code, 1) << "whatever is written";
+    const Ended read = tool("sdo $BUS 5 read 6041");
+    EXPECT_EQ(read.code, 1) << master.words;
+    EXPECT_TRUE(read.err_has(master.words)) << read.err;
+    EXPECT_EQ(tool("sdo $BUS 5 read 6041 --anyway").code, 0);
+    EXPECT_EQ(facts("scan $BUS --seconds 0.3 --anyway")["nodes"].size(), 1u);
   }
 }
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "tests/shell/line.hpp"
-#include "tests/usercan/process.hpp"
-#include "tests/usercan/running_server.hpp"
+#include "tests/usercan/rig/process.hpp"
+#include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::canopen_tools {
 

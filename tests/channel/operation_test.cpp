@@ -237,6 +237,31 @@ TEST(Step, runs_one_block_with_each_press) {
   EXPECT_EQ(rig.violations(), "");
 }
 
+TEST(Step, is_followed_by_a_run_to_the_end_where_start_asks_for_auto) {
+  for (const int steps : {1, 2, 3}) {
+    Rig rig("N10 G1 X5 F6000\nN20 X10\nN30 M8\nN40 X15\nN50 M0\nN60 X20\nN70 M30\n");
+    ASSERT_EQ(rig.ask(RequestKind::mode, static_cast<double>(image::Mode::step)), Refusal::none);
+    for (int i = 0; i < steps; ++i) {
+      ASSERT_EQ(rig.ask(RequestKind::step), Refusal::none);
+      rig.run(1.0);
+    }
+    ASSERT_EQ(rig.state(), ProcessState::waiting);
+    image::Request on;
+    on.kind = RequestKind::start;
+    on.mode = static_cast<std::int8_t>(image::Mode::automatic);
+    ASSERT_EQ(rig.ask(on), Refusal::none);
+    rig.run(3.0);
+    EXPECT_EQ(rig.state(), ProcessState::waiting) << "M0 stops it all the same";
+    EXPECT_NEAR(rig.x(), 15.0, 1e-9);
+    EXPECT_EQ(rig.image().processes[0].mode, image::Mode::automatic);
+    EXPECT_EQ(rig.ask(RequestKind::step), Refusal::not_stepping);
+    ASSERT_EQ(rig.ask(RequestKind::start), Refusal::none);
+    rig.run(3.0);
+    EXPECT_EQ(rig.state(), ProcessState::ended) << rig.alarm_list();
+    EXPECT_EQ(rig.violations(), "");
+  }
+}
+
 TEST(Start, takes_the_place_where_the_axes_stand_after_a_jog) {
   Rig rig("N10 G91 G1 X10 F6000\nN20 M30\n");
   ASSERT_EQ(rig.ask(RequestKind::mode, static_cast<double>(image::Mode::manual)), Refusal::none);

@@ -203,10 +203,14 @@ bool Rig::until(const std::function<bool()>& met, double patience_s) {
 
 cycle::Refusal Rig::ask(RequestKind kind, double value, int axis) {
   image::Request r;
-  r.id = next_id_++;
   r.kind = kind;
   r.value = value;
   r.axis = static_cast<std::int8_t>(axis);
+  return ask(r);
+}
+
+cycle::Refusal Rig::ask(image::Request r) {
+  r.id = next_id_++;
   EXPECT_TRUE(cycle->post(r));
   step();
   image::Answer answer;

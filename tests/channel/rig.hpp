@@ -84,6 +84,7 @@ class Rig {
   void run(double seconds);
   bool until(const std::function<bool()>& met, double patience_s = 30.0);
   cycle::Refusal ask(image::RequestKind kind, double value = 0.0, int axis = -1);
+  cycle::Refusal ask(image::Request request);
   void start() { started_ = ask(image::RequestKind::start); }
   /// Starts the program and runs it to its end: true when it ends by itself.
   bool finish(double patience_s = 60.0);

@@ -197,6 +197,23 @@ TEST(AlarmText, names_node_axis_and_bus_of_what_is_lost) {
   EXPECT_EQ(render(r, names, text::Language::english), "bus can: 3 frames could not be sent");
 }
 
+TEST(AlarmText, of_a_foreign_frame_says_what_it_means_or_at_least_its_identifier) {
+  image::AlarmRecord r;
+  r.number = alarm::kForeignFrame;
+  r.segment = 0;
+  r.value = 0x205;
+  AlarmNames names;
+  names.segments = {"can"};
+  EXPECT_EQ(render(r, names, text::Language::english), "bus can: somebody else sends 0x205");
+  names.foreign_frame = [](const image::AlarmRecord& record, text::Language) {
+    return record.value == 0x205 ? std::string("RPDO 1 of node 5 (205h)") : std::string();
+  };
+  EXPECT_EQ(render(r, names, text::Language::english),
+            "bus can: somebody else sends RPDO 1 of node 5 (205h)");
+  EXPECT_EQ(render(r, names, text::Language::russian),
+            "шина can: кто-то посторонний шлёт: RPDO 1 of node 5 (205h)");
+}
+
 TEST(AlarmText, knows_every_state_of_the_status_word) {
   const std::pair<std::uint16_t, const char*> kStates[] = {
       {0x0000, "not ready to switch on"}, {0x0040, "switch on disabled"},

@@ -284,6 +284,12 @@ TEST(AuxiliaryAxis, stops_and_goes_off_when_the_logic_fails) {
   desk.set("goal", 0.0);
   desk.set("crash", 1);
   ASSERT_TRUE(desk.until([&] { return desk.alarms(cycle::alarm::kPlcFault) > 0; }, 0.1));
+  for (const image::AlarmRecord& r : desk.control().cycle().alarms().history())
+    if (r.number == cycle::alarm::kPlcFault) {
+      const std::string words = cycle::render(r, desk.control().alarm_names(), text::Language::english);
+      EXPECT_NE(words.find(".st:"), std::string::npos) << words;
+      EXPECT_NE(words.find("divided by zero"), std::string::npos) << words;
+    }
   ASSERT_TRUE(desk.until([&] { return !desk.axis("U").drive_command.power; }, 3.0));
   EXPECT_FALSE(desk.axis("U").moving);
   EXPECT_EQ(desk.judge().verdict(), "");

@@ -10,6 +10,9 @@ namespace {
 using cycle::Refusal;
 using image::RequestKind;
 
+/// The TPDO of servo-cia402-io with 60FDh.
+constexpr std::uint32_t kInputsMessage = 2;
+
 /// The mill whose switches of X and emergency-stop chain are wired to the drive of X.
 machine::LoadResult wired_to_the_drive() {
   return changed_mill([](std::string& text) {
@@ -67,6 +70,24 @@ TEST(DrivePoints, outputs_follow_their_places_under_the_mask_and_inputs_their_wi
     }
   };
   EXPECT_TRUE(mill.until([&] { return low && high; }, 3.0)) << "the relay of the control's life toggles";
+}
+
+TEST(DrivePoints, whose_message_alone_is_lost_read_what_is_declared_and_the_message_is_named) {
+  Mill mill(wired_to_the_drive(), "N10 G1 X20 F3000\nN20 M30\n");
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  EXPECT_EQ(mill.ask(RequestKind::start), Refusal::none);
+  mill.run(0.2);
+  const image::Place chain = place_of(mill.control(), "estop_chain_ok");
+  ASSERT_TRUE(mill.image().packets.bit(chain));
+  mill.control().world().drive("can.x")->inject(
+      {.kind = mock::DriveFaultKind::pdo_dropped, .number = kInputsMessage});
+  ASSERT_TRUE(mill.until([&] { return mill.alarms(axis::alarm::kPdoMissing) > 0; }, 0.2))
+      << mill.alarm_list();
+  for (const image::AlarmRecord& r : mill.control().cycle().alarms().history())
+    if (r.number == axis::alarm::kPdoMissing) {
+      EXPECT_EQ(r.detail1, kInputsMessage) << "the message that is missing";
+    }
+  EXPECT_FALSE(mill.image().packets.bit(chain));
 }
 
 TEST(DrivePoints, read_what_is_declared_for_a_loss_when_the_drive_is_silent) {

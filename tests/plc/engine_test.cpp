@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "plc/compile.hpp"
-#include "plc/run.hpp"
 #include "plc/transfer.hpp"
 #include "plc/vm/image.hpp"
 #include "tests/counting/allocations.hpp"
@@ -218,6 +217,37 @@ END_PROGRAM)"));
   EXPECT_EQ(second.number(*second.find("kind")), 0);
 }
 
+TEST(Engine, keeps_all_of_an_instance_that_is_retained_and_what_is_persistent) {
+  const std::string source = R"(VAR_GLOBAL PERSISTENT total : INT; END_VAR
+FUNCTION_BLOCK Count
+VAR CONSTANT step : INT := 2; END_VAR
+VAR n : INT; END_VAR
+n := n + step;
+END_FUNCTION_BLOCK
+PROGRAM Work
+VAR c : Count; k : INT; END_VAR
+VAR PERSISTENT p : INT; END_VAR
+c(); k := k + 1; p := p + 3; total := k;
+END_PROGRAM
+CONFIGURATION Plant
+TASK t(INTERVAL := T#1ms, PRIORITY := 1);
+PROGRAM RETAIN kept WITH t : Work;
+PROGRAM lost WITH t : Work;
+END_CONFIGURATION)";
+  Engine first(build(source));
+  image::Packets p;
+  for (int i = 0; i < 2; ++i) first.scan(p, i * 1'000'000);
+  Engine second(build(source));
+  const std::vector<Retained> kept = first.retained();
+  EXPECT_EQ(kept.size(), 5u) << "total, kept.c.n, kept.k, kept.p, lost.p; no constant";
+  second.restore(kept);
+  EXPECT_EQ(second.read(*second.find("total")), "2");
+  EXPECT_EQ(second.read(*second.find("kept.c.n")), "4");
+  EXPECT_EQ(second.read(*second.find("kept.k")), "2");
+  EXPECT_EQ(second.read(*second.find("lost.p")), "6");
+  EXPECT_EQ(second.read(*second.find("lost.k")), "0");
+}
+
 TEST(Engine, keeps_retained_places_of_a_packet_too) {
   const std::string source = R"(VAR_GLOBAL RETAIN counter AT %MD10 : DINT := 7; END_VAR
 PROGRAM Main
@@ -300,6 +330,71 @@ struct Ticks final : image::Clock {
   mutable image::Nanoseconds t = 0;
   image::Nanoseconds now_ns() const noexcept override { return t += 1000; }
 };
+
+constexpr const char* kValves = R"(FUNCTION_BLOCK Valve
+VAR_INPUT go : BOOL; END_VAR
+VAR coil AT %Q* : BOOL; ready AT %I* : BOOL; END_VAR
+VAR RETAIN strokes AT %M* : DINT; END_VAR
+coil := go AND ready; IF coil THEN strokes := strokes + 1; END_IF;
+END_FUNCTION_BLOCK
+PROGRAM P VAR v : ARRAY[1..2] OF Valve; END_VAR v[1](go := TRUE); v[2](go := NOT v[1].go); END_PROGRAM
+CONFIGURATION c
+PROGRAM Main : P;
+VAR_CONFIG
+Main.v[1].coil AT bit_out : BOOL; Main.v[2].coil AT SA65 : BOOL;
+Main.v[1].ready AT bit_in : BOOL; Main.v[2].ready AT bit_in : BOOL;
+Main.v[1].strokes AT %MD10 : DINT := 5; Main.v[2].strokes AT %MD11 : DINT;
+END_VAR
+VAR_ACCESS clamp : Main.v[1].coil : BOOL READ_ONLY; END_VAR
+END_CONFIGURATION)";
+
+TEST(Engine, reads_writes_forces_and_keeps_what_VAR_CONFIG_put_at_an_address) {
+  Engine e(build(kValves, kSymbols));
+  image::Packets p;
+  p.set_bit(kSymbols[0].place, true);
+  for (int i = 0; i < 3; ++i) e.scan(p, i);
+  EXPECT_TRUE(p.bit(kSymbols[7].place));
+  EXPECT_FALSE(p.bit(kSymbols[8].place));
+  EXPECT_EQ(p.number({Packet::k, Format::li, 10, 1}), 8);
+  EXPECT_EQ(e.read(*e.find("Main.v[1].coil")), "true");
+  EXPECT_EQ(e.read(*e.find("v[2].coil")), "false");
+  EXPECT_EQ(e.read(*e.find("clamp")), "true") << "the name of VAR_ACCESS";
+  EXPECT_TRUE(e.force(*e.find("Main.v[1].coil"), "FALSE"));
+  EXPECT_TRUE(e.force(*e.find("v[2].coil"), "TRUE"));
+  e.scan(p, 3);
+  EXPECT_FALSE(p.bit(kSymbols[7].place)) << "a force reaches the address";
+  EXPECT_TRUE(p.bit(kSymbols[8].place));
+  e.release_all();
+  EXPECT_EQ(e.retained(),
+            (std::vector<Retained>{{"Main.v[1].strokes", "DINT", "9"}, {"Main.v[2].strokes", "DINT", "0"}}));
+  Engine later(build(kValves, kSymbols));
+  image::Packets fresh;
+  EXPECT_EQ(later.restore(e.retained()), 2u);
+  later.scan(fresh, 0);
+  EXPECT_EQ(later.read(*later.find("v[1].strokes")), "9") << "not the initial value";
+}
+
+TEST(Transfer, of_an_online_change_gives_an_instance_its_new_address) {
+  Engine first(build(kValves, kSymbols));
+  image::Packets p;
+  p.set_bit(kSymbols[0].place, true);
+  for (int i = 0; i < 3; ++i) first.scan(p, i);
+  std::string text = kValves;
+  const auto change = [&](std::string_view from, std::string_view to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  change("coil AT bit_out", "coil AT %QX2.0");
+  change("strokes AT %MD10", "strokes AT %MD12");
+  change("v : ARRAY", "n : LINT; v : ARRAY");
+  Engine second(build(text, kSymbols));
+  const Transfer transfer = plan_transfer(first.image(), second.image(), true);
+  second.prepare_transfer(transfer);
+  second.take_over(first, transfer);
+  second.scan(p, 3);
+  EXPECT_TRUE(p.bit({Packet::a, Format::bl, 514 * 8, 1}));
+  EXPECT_EQ(second.read(*second.find("v[1].strokes")), "9") << "kept by its name";
+  EXPECT_EQ(p.number({Packet::k, Format::li, 12, 1}), 9);
+}
 
 TEST(Engine, measures_tasks_always_and_blocks_when_somebody_looks) {
   Engine e(build(R"(FUNCTION_BLOCK Inner VAR n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
@@ -402,73 +497,6 @@ TEST(Engine, resolves_bare_names_only_where_one_program_runs) {
   EXPECT_TRUE(Engine(one).find("X"));
   EXPECT_FALSE(Engine(two).find("x"));
   EXPECT_TRUE(Engine(two).find("b.X"));
-}
-
-TEST(Run, prints_one_object_a_cycle_as_requested_and_takes_sets_at_their_cycle) {
-  RunRequest r;
-  r.files = {
-      {"a.st",
-       "PROGRAM Main\nVAR a, b : BOOL; t : TON; END_VAR\nt(IN := a, PT := T#20ms);\nb := t.Q;\nEND_PROGRAM"}};
-  r.cycles = 4;
-  r.prints = {"MAIN.b", "t.ET", "a"};
-  RunSet set;
-  ASSERT_TRUE(parse_set("a=TRUE@2", set));
-  r.sets = {set};
-  std::vector<std::string> lines;
-  const RunResult out = run(r, [&](std::string_view l) {
-    lines.emplace_back(l);
-    return true;
-  });
-  EXPECT_EQ(out.end, RunResult::End::done);
-  EXPECT_EQ(lines,
-            (std::vector<std::string>{R"({"cycle":1,"values":{"MAIN.b":false,"t.ET":"T#0ms","a":false}})",
-                                      R"({"cycle":2,"values":{"MAIN.b":false,"t.ET":"T#0ms","a":true}})",
-                                      R"({"cycle":3,"values":{"MAIN.b":false,"t.ET":"T#10ms","a":true}})",
-                                      R"({"cycle":4,"values":{"MAIN.b":true,"t.ET":"T#20ms","a":true}})"}));
-}
-
-TEST(Run, ends_when_nobody_wants_its_lines_any_more) {
-  RunRequest r;
-  r.files = {{"a.st", "PROGRAM Main\nVAR a : INT; END_VAR\na := a + 1;\nEND_PROGRAM"}};
-  r.cycles = 1'000'000'000;
-  int lines = 0;
-  const RunResult out = run(r, [&](std::string_view) { return ++lines < 3; });
-  EXPECT_EQ(out.end, RunResult::End::done);
-  EXPECT_EQ(lines, 3);
-  EXPECT_EQ(out.cycles, 3);
-}
-
-TEST(Run, refuses_names_values_and_cycles_that_cannot_be) {
-  RunRequest r;
-  r.files = {{"a.st", "PROGRAM Main\nVAR a : BOOL; END_VAR\na := a;\nEND_PROGRAM"}};
-  r.cycles = 2;
-  r.sets = {{"x", "1", 1}, {"a", "7", 1}, {"a", "TRUE", 3}};
-  r.prints = {"y"};
-  const RunResult out = run(r, [](std::string_view line) {
-    ADD_FAILURE() << "nothing runs: " << line;
-    return true;
-  });
-  EXPECT_EQ(out.end, RunResult::End::wrong_use);
-  std::vector<std::string> said;
-  for (const text::Finding& f : out.findings) said.push_back(f.str(text::Language::english));
-  EXPECT_EQ(said,
-            (std::vector<std::string>{"plc run: error: there is no variable 'x' [plc-run-name]",
-                                      "plc run: error: '7' is no value for 'a' of type BOOL [plc-run-value]",
-                                      "plc run: error: cycle 3 is outside 1..2 [plc-run-cycle]",
-                                      "plc run: error: there is no variable 'y' [plc-run-name]"}));
-}
-
-TEST(Run, takes_a_set_apart) {
-  RunSet s;
-  EXPECT_TRUE(parse_set("Main.text=a@b@12", s));
-  EXPECT_EQ(s.name, "Main.text");
-  EXPECT_EQ(s.value, "a@b");
-  EXPECT_EQ(s.cycle, 12);
-  EXPECT_TRUE(parse_set("m=x@home", s));
-  EXPECT_EQ(s.value, "x@home");
-  EXPECT_EQ(s.cycle, 1);
-  EXPECT_FALSE(parse_set("=5", s));
-  EXPECT_FALSE(parse_set("name", s));
 }
 
 TEST(Compile, reads_several_files_and_names_the_right_one) {

@@ -154,6 +154,11 @@ Evaluator::Value Evaluator::evaluate(const ir::Expr& e, std::uint32_t self) {
       return native(e, self);
     case ExprKind::choose:
       return evaluate(evaluate(*e.args[0], self).i != 0 ? *e.args[1] : *e.args[2], self);
+    case ExprKind::let:
+      kept_[e.value.i] = evaluate(*e.args[0], self);
+      return evaluate(*e.args[1], self);
+    case ExprKind::kept:
+      return kept_[e.value.i];
   }
   return {};
 }
@@ -306,6 +311,9 @@ Evaluator::Value Evaluator::call(const ir::Expr& e, std::uint32_t self) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const ir::Parameter& p = e.parameters[i];
     if (p.value) {
+      const Dimension& limits = p.type->limits;
+      if (p.type->bounded && (values[i].i < limits.low || values[i].i > limits.high))
+        throw Stopped{Fault::subrange};
       store({frame + p.offset, -1}, *p.type, values[i]);
     } else if (p.section != syntax::Section::output) {
       const std::uint32_t at = address(p.place, self).at;
@@ -314,8 +322,11 @@ Evaluator::Value Evaluator::call(const ir::Expr& e, std::uint32_t self) {
   }
   run(e.unit, frame);
   for (const ir::Parameter& p : e.parameters)
-    if (!p.value && p.section == syntax::Section::output)
-      store(address(p.place, self), *p.type, load({frame + p.offset, -1}, *p.type));
+    if (!p.value && p.section == syntax::Section::output) {
+      Value v = load({frame + p.offset, -1}, *p.type);
+      if (p.inverted) v.i = p.type->kind == Kind::boolean ? v.i == 0 : wrap(cell_of(*p.type), ~v.i);
+      store(address(p.place, self), *p.type, v);
+    }
   return e.type->kind == Kind::none ? Value{} : load({frame + e.result, -1}, *e.type);
 }
 
@@ -398,6 +409,8 @@ Evaluator::Flow Evaluator::loop(const ir::Stmt& s, std::uint32_t self) {
   show();
   while (by >= 0 ? n.i <= to : n.i >= to) {
     if (++steps_ > 3'000'000) throw Stopped{Fault::budget};
+    const Dimension& limits = s.place.type->limits;
+    if (s.check_range && (n.i < limits.low || n.i > limits.high)) throw Stopped{Fault::subrange};
     const Flow f = block(s.body, self);
     if (f == Flow::exit) break;
     if (f == Flow::return_ || f == Flow::jump) return f;

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <map>
+
 #include "plc/engine.hpp"
 #include "plc/ir/ir.hpp"
 
@@ -46,6 +48,7 @@ class Evaluator {
 
   ir::Program program_;
   std::int64_t steps_ = 0;
+  std::map<std::int64_t, Value> kept_;
   std::int32_t target_ = -1;  ///< label of a jump under way
 
  public:

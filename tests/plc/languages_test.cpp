@@ -222,7 +222,7 @@ Drawing ladder(Maker& maker, int depth, std::string& st) {
         st = "p" + number + ".Q";
         return {"--|P b" + number + " |-"};
       case 2:
-        st = "f" + number + ".Q";
+        st = "f" + number;
         return {"-| N b" + number + "|-"};
       case 3:
         st = "(n" + number + " > 50)";
@@ -244,11 +244,13 @@ TEST(Languages, a_drawn_ladder_gives_what_structured_text_gives) {
     Maker maker(seed);
     std::string st = "PROGRAM One\nVAR ", drawn = "PROGRAM Two\nLADDER\n";
     for (int i = 0; i < kInputs; ++i)
-      st += "p" + std::to_string(i) + " : R_TRIG; f" + std::to_string(i) + " : F_TRIG; ";
+      st += "p" + std::to_string(i) + " : R_TRIG; f" + std::to_string(i) + ", m" + std::to_string(i) +
+            " : BOOL; ";
     st += "END_VAR\n";
     for (int i = 0; i < kInputs; ++i)
-      st += "p" + std::to_string(i) + "(CLK := b" + std::to_string(i) + "); f" + std::to_string(i) +
-            "(CLK := b" + std::to_string(i) + ");\n";
+      st += "p" + std::to_string(i) + "(CLK := b" + std::to_string(i) + "); f" + std::to_string(i) + " := m" +
+            std::to_string(i) + " AND NOT b" + std::to_string(i) + "; m" + std::to_string(i) + " := b" +
+            std::to_string(i) + ";\n";
     for (int i = 0; i < kResults; ++i) {
       std::string logic;
       Drawing d = ladder(maker, 5, logic);

@@ -146,5 +146,36 @@ TEST(Lathe, says_places_of_X_as_diameters_wherever_they_are_the_reason) {
   EXPECT_NE(checked.out.find(" of -4 to 240 mm"), std::string::npos) << checked.out;
 }
 
+TEST(Lathe, keeps_a_cutting_speed_that_was_typed_over_the_next_blocks_and_jogs) {
+  Shell shell;
+  shell.up("lathe", {"--virtual", "--speed", "20"});
+  shell.ready();
+  const auto rpm_at = [&](double diameter) {
+    EXPECT_TRUE(shell.until(
+        [&](const json& s) { return std::abs(s["axes"][0]["command"].get<double>() - diameter) < 1e-6; },
+        10.0));
+    EXPECT_TRUE(shell.until([](const json& s) { return s["spindles"][0]["at_speed"].get<bool>(); }, 10.0));
+    return shell.status()["spindles"][0]["command_rpm"].get<double>();
+  };
+  const auto expected = [](double diameter) { return 100.0 * 1000.0 / (3.14159265358979 * diameter); };
+  ASSERT_EQ(shell.run({"mdi", "G0 X100", "--wait"}).exit, 0);
+  const Outcome typed = shell.run({"mdi", "G96 S100 M3", "--wait"});
+  ASSERT_EQ(typed.exit, 0) << typed.err;
+  EXPECT_NEAR(rpm_at(100.0), expected(100.0), 0.5);
+  ASSERT_EQ(shell.run({"mdi", "G0 X200", "--wait"}).exit, 0);
+  EXPECT_NEAR(rpm_at(200.0), expected(200.0), 0.5) << "a larger diameter, a slower spindle";
+  ASSERT_EQ(shell.run({"jog", "X", "-40mm"}).exit, 0);
+  EXPECT_NEAR(rpm_at(160.0), expected(160.0), 0.5);
+  ASSERT_EQ(shell.run({"mdi", "M5", "--wait"}).exit, 0);
+  ASSERT_EQ(shell.run({"mdi", "G0 X100", "--wait"}).exit, 0);
+  EXPECT_EQ(shell.status()["spindles"][0]["command_rpm"], 0.0) << "nothing turns by itself";
+  ASSERT_EQ(shell.run({"mdi", "M3", "--wait"}).exit, 0);
+  EXPECT_NEAR(rpm_at(100.0), expected(100.0), 0.5) << "the cutting speed holds over M5";
+  ASSERT_EQ(shell.run({"mdi", "G97 S300", "--wait"}).exit, 0);
+  ASSERT_EQ(shell.run({"mdi", "G0 X200", "--wait"}).exit, 0);
+  ASSERT_EQ(shell.run({"mdi", "G0 X100", "--wait"}).exit, 0);
+  EXPECT_NEAR(rpm_at(100.0), 300.0, 0.5);
+}
+
 }  // namespace
 }  // namespace servogate::gateway::testing

@@ -73,6 +73,12 @@ TEST(PlcOfAControl, is_watched_by_name_and_beside_its_source_lines) {
   EXPECT_EQ(names.exit, 0) << names.err;
   EXPECT_TRUE(has(names.out, "  Mill.change.step = Idle\n")) << names.out;
   EXPECT_TRUE(has(names.out, "  SK10.IN = 0\n")) << names.out;
+  const Outcome places = shell.run({"plc", "watch", "%MW120", "SK120.4CH", "%IX100.3", "--samples", "1"});
+  EXPECT_EQ(places.exit, 0) << places.err;
+  EXPECT_TRUE(has(places.out, "  %MW120 = 0\n")) << places.out;
+  EXPECT_TRUE(has(places.out, "  SK120.4CH = ")) << places.out;
+  EXPECT_TRUE(has(places.out, "  %IX100.3 = FALSE\n")) << places.out;
+  EXPECT_EQ(shell.run({"plc", "watch", "%MW99999", "--samples", "1"}).exit, 2) << "outside packet K";
   const Outcome objects =
       shell.run({"plc", "watch", "MC.estop_ok", "--json", "--samples", "3", "--every", "1"});
   std::istringstream lines(objects.out);
@@ -96,6 +102,42 @@ TEST(PlcOfAControl, is_watched_by_name_and_beside_its_source_lines) {
   EXPECT_EQ(shell.run({"plc", "watch", "--source", "Nothing", "--samples", "1"}).exit, 2);
   const Outcome times = shell.run({"plc", "watch", "--times", "--samples", "1"});
   EXPECT_TRUE(has(times.out, "ToolChange")) << times.out;
+}
+
+TEST(PlcOfAControl, shows_what_VAR_CONFIG_put_at_an_address_and_no_address_of_a_parameter) {
+  Shell shell;
+  shell.up();
+  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  const std::string path = mill_with(shell, "VAR counter : Counted; total : INT; own AT %M* : INT; END_VAR",
+                                     "counter(sum := total);");
+  std::ofstream(path, std::ios::app) << R"(
+FUNCTION_BLOCK Counted
+VAR_IN_OUT sum : INT; END_VAR
+VAR seen AT %M* : INT; END_VAR
+sum := 5;
+seen := 7;
+END_FUNCTION_BLOCK
+CONFIGURATION c
+PROGRAM Mill : Mill;
+VAR_CONFIG Mill.counter.seen AT %MW40 : INT; Mill.own AT %MW41 : INT; END_VAR
+END_CONFIGURATION
+)";
+  const Outcome loaded = shell.run({"plc", "load", path});
+  ASSERT_EQ(loaded.exit, 0) << loaded.err;
+  EXPECT_TRUE(becomes(shell, "Mill.counter.seen", 7));
+  EXPECT_EQ(value(shell, "SK40.IN"), 7);
+  EXPECT_EQ(value(shell, "Mill.total"), 5);
+  const Outcome source = shell.run({"plc", "watch", "--source", "Mill.counter", "--samples", "1"});
+  EXPECT_TRUE(has(source.out, "| seen = 7")) << source.out;
+  EXPECT_FALSE(has(source.out, "sum = ")) << "it is another variable in each call: " << source.out;
+  const json list = json::parse(shell.run({"plc", "list", "--json"}).out);
+  int rows = 0;
+  for (const json& s : list["symbols"])
+    if (s["name"] == "Mill.own") {
+      ++rows;
+      EXPECT_EQ(s["place"], "SK41.IN");
+    }
+  EXPECT_EQ(rows, 1);
 }
 
 TEST(PlcOfAControl, is_forced_until_the_client_ends_however_it_ends) {
@@ -159,6 +201,28 @@ TEST(PlcOfAControl, cannot_be_made_to_hide_the_emergency_stop) {
     const Outcome o = shell.run({"plc", "force", setting, "--stay"});
     EXPECT_EQ(o.exit, 1) << setting;
     EXPECT_TRUE(has(o.err, "[gate.emergency_stop_place]")) << o.err;
+  }
+}
+
+TEST(PlcOfAControl, cannot_be_made_to_hide_it_behind_another_name_of_its_place) {
+  Shell shell;
+  shell.up();
+  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  const std::string path =
+      mill_with(shell, "VAR chain AT %I* : BOOL; seen : BOOL; END_VAR", "seen := chain;");
+  std::ofstream(path, std::ios::app) << R"(
+CONFIGURATION c
+PROGRAM Mill : Mill;
+VAR_CONFIG Mill.chain AT estop_chain_ok : BOOL; END_VAR
+VAR_ACCESS other : Mill.chain : BOOL READ_ONLY; END_VAR
+END_CONFIGURATION
+)";
+  ASSERT_EQ(shell.run({"plc", "load", path}).exit, 0);
+  ASSERT_TRUE(becomes(shell, "Mill.seen", true));
+  for (const char* name : {"Mill.chain=TRUE", "other=TRUE"}) {
+    const Outcome o = shell.run({"plc", "force", name, "--stay"});
+    EXPECT_EQ(o.exit, 1) << name;
+    EXPECT_TRUE(has(o.err, "the emergency stop cannot be forced")) << o.err;
   }
 }
 

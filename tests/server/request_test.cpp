@@ -34,6 +34,8 @@ TEST(Request, names_the_field_of_another_type_and_what_was_expected) {
       {R"({"cmd":"home","axes":"X"})", "'axes' must be a list of strings, and is a string"},
       {R"({"cmd":"home","axes":["X",1]})", "'axes' must be a list of strings, and is a list"},
       {R"({"cmd":"mdi","block":true})", "'block' must be a string, and is true"},
+      {R"({"cmd":"load"})", "'program' must be a string, and is missing"},
+      {R"({"cmd":"jog","value":1})", "'axis' must be a string, and is missing"},
       {R"({"cmd":"load","program":7})", "'program' must be a string, and is a number"},
       {R"({"cmd":"load","program":"a.nc","dialect":7})", "'dialect' must be a string, and is a number"},
       {R"({"cmd":"input","point":1})", "'point' must be a string, and is a number"},

@@ -159,6 +159,24 @@ TEST_F(Stops, of_a_typed_block_are_gone_on_from_as_that_block_and_not_as_the_loa
   EXPECT_EQ(shell_.run({"start"}, "ru_RU.UTF-8").out, "введённый кадр продолжается: M0\n");
 }
 
+TEST_F(Stops, behind_a_step_are_left_by_start_which_runs_on_to_the_end) {
+  load("N10 G1 X5 F6000\nN20 X10\nN30 X15\nN40 X20\nN50 M2\n");
+  ASSERT_EQ(shell_.run({"step", "--wait"}).exit, 0);
+  EXPECT_EQ(shell_.status()["axes"][0]["command"], 5.0);
+  EXPECT_EQ(shell_.run({"start", "--wait"}).exit, 0);
+  EXPECT_EQ(shell_.status()["state"], "ended");
+  EXPECT_EQ(shell_.status()["axes"][0]["command"], 20.0);
+}
+
+TEST_F(Stops, of_a_typed_block_are_resumed_as_that_block) {
+  ASSERT_EQ(shell_.run({"mdi", "G1 X200 F600"}).exit, 0);
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 100.0; }));
+  ASSERT_EQ(shell_.run({"hold"}).exit, 0);
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["state"] == "held"; }));
+  EXPECT_EQ(shell_.run({"resume"}).out, "the typed block goes on: G1 X200 F600\n");
+  ASSERT_EQ(shell_.run({"reset"}).exit, 0);
+}
+
 TEST_F(Stops, of_a_typed_block_end_mdi_wait) {
   const Outcome o = shell_.run({"mdi", "M0", "--wait"});
   EXPECT_EQ(o.exit, 0) << o.err;

@@ -9,6 +9,7 @@
 
 #include <cerrno>
 
+#include "tests/skip_here.hpp"
 #include "tests/socketcan/vcan.hpp"
 
 namespace servogate::socketcan {
@@ -136,7 +137,9 @@ class SlcanQueue : public Vcan {
  protected:
   void SetUp() override {
     int slave = -1;
-    if (openpty(&far_end_, &slave, nullptr, nullptr, nullptr) != 0) GTEST_SKIP() << "no pseudo-terminal";
+    if (openpty(&far_end_, &slave, nullptr, nullptr, nullptr) != 0)
+      SKIP_HERE(
+          "no pseudo-terminal; run it so: tests/lab/lab run ctest --test-dir build/release -R socketcan");
     near_end_ = slave;
     termios raw{};
     tcgetattr(slave, &raw);
@@ -145,8 +148,7 @@ class SlcanQueue : public Vcan {
     const int discipline = N_SLCAN;
     ifreq request{};
     if (ioctl(slave, TIOCSETD, &discipline) != 0 || ioctl(slave, SIOCGIFNAME, &request) != 0)
-      GTEST_SKIP()
-          << "no slcan here; run it so: tests/lab/lab run ctest --test-dir build/release -R socketcan";
+      SKIP_HERE("no slcan here; run it so: tests/lab/lab run ctest --test-dir build/release -R socketcan");
     name_ = request.ifr_name;
     ASSERT_TRUE(shell("ip link set " + name_ + " up"));
   }

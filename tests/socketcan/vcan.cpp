@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "tests/skip_here.hpp"
+
 namespace servogate::socketcan {
 
 bool shell(const std::string& command) { return std::system((command + " 2>/dev/null").c_str()) == 0; }
@@ -26,7 +28,7 @@ void Vcan::SetUp() {
   static int count = 0;
   name_ = "vt" + std::to_string(getpid() % 100000) + "x" + std::to_string(count++);
   if (!shell("ip link add " + name_ + " type vcan && ip link set " + name_ + " mtu 72 up"))
-    GTEST_SKIP() << "no vcan here; run it so: tests/lab/lab run ctest --test-dir build/release -R socketcan";
+    SKIP_HERE("no vcan here; run it so: tests/lab/lab run ctest --test-dir build/release -R socketcan");
 }
 
 void Vcan::TearDown() { shell("ip link del " + name_); }

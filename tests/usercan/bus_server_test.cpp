@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "tests/counting/allocations.hpp"
-#include "tests/usercan/running_server.hpp"
+#include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::usercan {
 namespace {

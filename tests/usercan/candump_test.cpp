@@ -3,10 +3,11 @@
 
 #include <csignal>
 #include <fstream>
+#include <sstream>
 
 #include "drivers/candump/candump_line.hpp"
-#include "tests/usercan/process.hpp"
-#include "tests/usercan/running_server.hpp"
+#include "tests/usercan/rig/process.hpp"
+#include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::usercan {
 namespace {
@@ -63,6 +64,61 @@ TEST(Dump, what_is_played_onto_a_bus_is_what_is_dumped_from_it) {
   std::string frames = dump.said();
   for (const char* part : {"can0 181#DEAD\n", "can0 00012345#\n", "can0 701#R1\n", "can0 080#\n"})
     EXPECT_NE(frames.find(part), std::string::npos) << frames;
+}
+
+/// Frames of a log without their times and buses.
+std::vector<std::string> frames_of(const std::string& log) {
+  std::vector<std::string> frames;
+  std::istringstream lines(log);
+  for (std::string time, bus, frame, rest; lines >> time >> bus >> frame; std::getline(lines, rest))
+    if (time.starts_with('(')) frames.push_back(frame);
+  return frames;
+}
+
+/// What a dump writes while a log is played: all of the log, and nothing else but marks that are played until
+/// the dump listens.
+std::vector<std::string> dumped_while_playing(const std::string& url, const std::string& log,
+                                              std::size_t frames, const std::string& save) {
+  const std::string mark = scratch("mark");
+  std::ofstream(mark) << "(1.000000) can0 77E#\n";
+  Process dump({"dump", url});
+  for (int i = 0; i < 100 && dump.said().find("77E#") == std::string::npos; ++i)
+    EXPECT_EQ(Process({"play", url, mark}).wait(), 0);
+  const std::size_t marks = frames_of(dump.said()).size();
+  Process play({"play", url, log});
+  EXPECT_EQ(play.wait(), 0) << play.said();
+  for (int i = 0; i < 1000 && frames_of(dump.said()).size() < marks + frames; ++i) usleep(10'000);
+  dump.signal(SIGTERM);
+  EXPECT_EQ(dump.wait(), 0);
+  std::istringstream lines(dump.said());
+  std::ofstream out(save);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("77E#") == std::string::npos) out << line << "\n";
+  out.close();
+  return frames_of(content(save));
+}
+
+TEST(Dump, is_understood_by_can_utils_and_what_they_write_is_played) {
+  if (shell("command -v log2asc asc2log >/dev/null") != 0)
+    GTEST_SKIP() << "no can-utils here; install them so: .ci/packages --tests";
+  const std::string socket = scratch("bus.sock"), log = scratch("log"), dumped = scratch("dumped"),
+                    asc = scratch("asc"), back = scratch("back");
+  const std::string url = "socketcand:unix:" + socket + "/can0";
+  const Process bus({"can", "bus", "can0", "--listen", "unix:" + socket});
+  ASSERT_TRUE(bus.says("can0 at")) << bus.said();
+  const std::vector<std::string> frames = {"181#DEAD", "18FF1234#0102030405060708", "701#R1", "080#",
+                                           "000#8002"};
+  std::ofstream out(log);
+  for (std::size_t i = 0; i < frames.size(); ++i) out << "(100.0" << i << "0000) can0 " << frames[i] << "\n";
+  out.close();
+  ASSERT_EQ(dumped_while_playing(url, log, frames.size(), dumped), frames);
+  // Our dump into the form of another tool, and from there back into a log of can-utils.
+  ASSERT_EQ(shell("log2asc -I " + dumped + " -O " + asc + " can0 2>/dev/null"), 0);
+  EXPECT_NE(content(asc).find("18FF1234x       Rx   d 8 01 02 03 04 05 06 07 08"), std::string::npos)
+      << content(asc);
+  ASSERT_EQ(shell("asc2log -I " + asc + " -O " + back + " 2>/dev/null"), 0);
+  EXPECT_EQ(frames_of(content(back)), frames) << content(back);
+  EXPECT_EQ(dumped_while_playing(url, back, frames.size(), dumped), frames);
 }
 
 TEST(Dump, of_a_bus_that_goes_away_says_so_and_ends_as_trouble_of_the_computer) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eight simulated drives in one process answer a SYNC every millisecond on one bus.
-#include "tests/usercan/process.hpp"
-#include "tests/usercan/running_server.hpp"
+#include "tests/usercan/rig/process.hpp"
+#include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::usercan {
 namespace {
@@ -20,9 +20,9 @@ TEST(EightDrives, in_one_process_answer_every_sync_of_a_millisecond_on_a_bus_of_
               0)
         << drives.said();
   }
-  EXPECT_EQ(
-      shell("/usr/bin/python3 " + counterpart("check_sync.py") + " " + log + " 8 " + std::to_string(kCycles)),
-      0);
+  EXPECT_EQ(shell("/usr/bin/python3 " + counterpart("check_sync.py") + " " + log + " 8 " +
+                  std::to_string(kCycles) + " 1 0.002"),
+            0);
 }
 
 }  // namespace

@@ -9,30 +9,11 @@
 #include <sstream>
 #include <thread>
 
-#include "tests/usercan/process.hpp"
-#include "tests/usercan/running_server.hpp"
+#include "tests/usercan/rig/mill.hpp"
+#include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::usercan {
 namespace {
-
-/// The example mill with its bus behind another url. Switches and panel stay mocks.
-std::string mill(const std::string& url,
-                 const std::vector<std::pair<std::string, std::string>>& changes = {}) {
-  const std::string example = std::string(SERVOGATE_SOURCE_DIR) + "/examples/mill/";
-  std::string text = content(example + "machine.toml");
-  const auto replace = [&text](const std::string& from, const std::string& to) {
-    std::size_t n = 0;
-    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()), ++n)
-      text.replace(at, from.size(), to);
-    EXPECT_GT(n, 0u) << from;
-  };
-  replace("\"mill.st\"", "\"" + example + "mill.st\"");
-  replace("url = \"mock:can\"", "url = \"" + url + "\"");
-  for (const auto& [from, to] : changes) replace(from, to);
-  const std::string file = scratch("mill.toml");
-  std::ofstream(file) << text;
-  return file;
-}
 
 std::string program() {
   const std::string file = scratch("square.nc");
@@ -40,33 +21,28 @@ std::string program() {
   return file;
 }
 
-/// Four drives in three processes.
-std::vector<std::unique_ptr<Process>> drives(const std::string& machine) {
-  std::vector<std::unique_ptr<Process>> out;
-  for (const char* nodes : {"1", "2", "3,4"})
-    out.push_back(
-        std::make_unique<Process>(std::vector<std::string>{"drive", machine + "#can", "--node", nodes}));
-  return out;
+/// What a bus server says first: the address, with the port that the system chose.
+std::string address_of(const Process& bus) {
+  const std::string said = bus.said();
+  return said.substr(0, said.find(": can0"));
 }
 
-TEST(Processes, the_mill_runs_in_real_time_on_a_bus_between_processes_without_rights) {
-  const std::string socket = scratch("bus.sock");
-  const Process bus({"can", "bus", "can0", "--listen", "unix:" + socket});
+/// Where a bus server may listen: neither needs rights.
+class Wires : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Wires, the_mill_runs_in_real_time_on_a_bus_between_processes_without_rights) {
+  const std::string wire = GetParam();
+  const Process bus(
+      {"can", "bus", "can0", "--listen", wire == "unix" ? "unix:" + scratch("bus.sock") : wire});
   ASSERT_TRUE(bus.says("can0 at 1000000 bit/s")) << bus.said();
-  // What a busy computer does to time is no matter here: late answers are waited for, and a drive whose
-  // process came late does not trip on its own following error (6065h, FFFFFFFFh: no window).
-  const std::string patient =
-      "loss_cycles = 1000\nheartbeat = \"1 s\"\nobjects = { \"6065:00/32\" = 4294967295 }\ndevice = ";
-  const std::string machine = mill("socketcand:unix:" + socket + "/can0",
-                                   {{"bit_rate = \"1 Mbit/s\"", "bit_rate = \"1 Mbit/s\"\nsimulated = true"},
-                                    {"cycle_time = \"1 ms\"", "cycle_time = \"4 ms\""},
-                                    {"following_error_stop = \"1 mm\"", "following_error_stop = \"100 mm\""},
-                                    {"device = \"servo", patient + "\"servo"},
-                                    {"device = \"spindle", patient + "\"spindle"}});
-  const auto living = drives(machine);
+  const std::string machine = mill("socketcand:" + address_of(bus) + "/can0", patience());
+  const auto living = mill_drives(machine);
   Process run({"run", machine, program(), "--realtime=best-effort", "-q"});
   EXPECT_EQ(run.wait(), 0) << run.said();
 }
+
+INSTANTIATE_TEST_SUITE_P(Processes, Wires, ::testing::Values("unix", "127.0.0.1:0"),
+                         [](const auto& wire) { return std::string(wire.param) == "unix" ? "unix" : "tcp"; });
 
 TEST(Processes, drives_that_may_be_real_stay_off_until_somebody_presses_the_button) {
   const std::string socket = scratch("bus.sock"), trace = scratch("trace.csv"), log = scratch("bus.log");
@@ -105,7 +81,7 @@ TEST(Processes, the_mill_with_drives_in_lockstep_repeats_to_the_byte) {
     ASSERT_TRUE(bus.says("can0 at")) << bus.said();
     const std::string machine =
         mill("lockstep:unix:" + socket + "/can0", {{"cycle_time = \"1 ms\"", "cycle_time = \"4 ms\""}});
-    const auto living = drives(machine);
+    const auto living = mill_drives(machine);
     Process run({"run", machine, program(), "--virtual", "-q", "--trace", trace});
     ASSERT_EQ(run.wait(), 0) << run.said();
     traces.push_back(content(trace));

@@ -1,51 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <sched.h>
-#include <unistd.h>
-
 #include <fstream>
 
 #include "drivers/usercan/message_pack.hpp"
 #include "drivers/usercan/udp_bus.hpp"
 #include "tests/counting/allocations.hpp"
-#include "tests/usercan/running_server.hpp"
+#include "tests/usercan/rig/own_network.hpp"
+#include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::usercan {
 namespace {
 
 using image::CanFrame;
-
-bool write_file(const std::string& file, const std::string& text) {
-  return static_cast<bool>(std::ofstream(file) << text << std::flush);
-}
-
-/// A network of the test program's own: root's right, or that of a user namespace.
-bool own_network() {
-  static const bool made = [] {
-    const std::string user = std::to_string(getuid()), group = std::to_string(getgid());
-    if (unshare(CLONE_NEWNET) != 0) {
-      if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
-      write_file("/proc/self/setgroups", "deny");
-      write_file("/proc/self/uid_map", "0 " + user + " 1");
-      write_file("/proc/self/gid_map", "0 " + group + " 1");
-    }
-    return shell("ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo") == 0;
-  }();
-  return made;
-}
-
-class Udp : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!own_network())
-      GTEST_SKIP() << "no network namespace here; run it as root, or: tests/lab/lab run ...";
-  }
-  static std::unique_ptr<UdpBus> open(std::uint16_t port) {
-    drivers::Notice why;
-    auto bus = UdpBus::open({"239.74.163.2", port, 1'000'000}, why);
-    EXPECT_NE(bus, nullptr) << why.str(text::Language::english);
-    return bus;
-  }
-};
 
 TEST_F(Udp, frames_reach_every_participant_but_their_sender) {
   auto a = open(43201);
@@ -128,7 +93,8 @@ TEST(MessagePack, what_is_packed_is_read_by_python_can_and_back) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     std::array<std::uint8_t, kMaxPacket> packet;
     const std::size_t size = pack(frames[i], 12.5, packet);
-    write_file(file + std::to_string(i), std::string(reinterpret_cast<const char*>(packet.data()), size));
+    std::ofstream(file + std::to_string(i))
+        .write(reinterpret_cast<const char*>(packet.data()), static_cast<std::streamsize>(size));
   }
   ASSERT_EQ(shell("/usr/bin/python3 -c \"from can.interfaces.udp_multicast.utils import *\n"
                   "for i in range(" +

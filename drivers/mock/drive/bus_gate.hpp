@@ -17,8 +17,10 @@ class BusGate final : public image::CanBus {
   struct Spoil {
     bool silent = false, heartbeat_lost = false, sdo_silent = false, pdo_repeated = false;
     std::uint32_t pdo_dropped_every = 0;  ///< 0: none
-    image::Nanoseconds pdo_delay_ns = 0;
+    image::Nanoseconds pdo_delay_ns = 0, sdo_delay_ns = 0;
     std::uint64_t pdo_flip = 0;
+    /// The TPDO (1-4 by its predefined identifier) that each of these means; 0: any.
+    std::uint32_t dropped_number = 0, late_number = 0, flipped_number = 0, repeated_number = 0;
   };
 
   void set_node(canopen::NodeId node) noexcept { node_ = node; }
@@ -42,6 +44,7 @@ class BusGate final : public image::CanBus {
     image::Nanoseconds at = 0;
   };
   bool send_pdo(image::CanFrame frame) noexcept;
+  bool send_later(const image::CanFrame& frame, image::Nanoseconds delay) noexcept;
 
   image::CanBus* bus_ = nullptr;
   canopen::NodeId node_ = 1;

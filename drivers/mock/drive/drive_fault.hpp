@@ -16,11 +16,12 @@ enum class DriveFaultKind : std::uint8_t {
   silent,            ///< sends nothing; receives and works on
   deaf,              ///< receives nothing
   heartbeat_lost,    ///< no heartbeat
-  pdo_dropped,       ///< its TPDOs are not sent (every `every`-th one)
+  pdo_dropped,       ///< its TPDOs (or only TPDO `number`) are not sent (every `every`-th one)
   pdo_late,          ///< its TPDOs are sent `delay_ns` later
   pdo_corrupted,     ///< its TPDOs carry bits of `value` flipped in their first eight bytes
   pdo_repeated,      ///< its TPDOs repeat the old content
   sdo_silent,        ///< requests are not answered
+  sdo_late,          ///< requests are answered `delay_ns` later
   sdo_abort,         ///< requests to `index` (0: any) are answered with `abort`
   stuck_state,       ///< the state machine does not leave `state`
   frozen,            ///< the whole device stands still, mechanics and all
@@ -46,6 +47,7 @@ struct DriveFault {
   image::Nanoseconds duration_ns = 0;  ///< of a lasting fault; 0: until cleared
   image::Nanoseconds delay_ns = 0;
   std::uint32_t every = 1;
+  std::uint32_t number = 0;  ///< of a TPDO, 1-4; 0: any
   std::int64_t value = 0;
   std::uint16_t error_code = 0x1000;
   std::uint16_t index = 0;

@@ -6,27 +6,13 @@
 namespace servogate::mock {
 namespace {
 
-constexpr std::string_view kNames[kFaultKinds] = {"silent",
-                                                  "deaf",
-                                                  "heartbeat_lost",
-                                                  "pdo_dropped",
-                                                  "pdo_late",
-                                                  "pdo_corrupted",
-                                                  "pdo_repeated",
-                                                  "sdo_silent",
-                                                  "sdo_abort",
-                                                  "stuck_state",
-                                                  "frozen",
-                                                  "encoder_loss",
-                                                  "emcy",
-                                                  "emcy_only",
-                                                  "over_current",
-                                                  "encoder_fault",
-                                                  "encoder_jump",
-                                                  "following_error",
-                                                  "over_temperature",
-                                                  "under_voltage",
-                                                  "reset"};
+constexpr std::string_view kNames[kFaultKinds] = {
+    "silent",        "deaf",          "heartbeat_lost",  "pdo_dropped",
+    "pdo_late",      "pdo_corrupted", "pdo_repeated",    "sdo_silent",
+    "sdo_late",      "sdo_abort",     "stuck_state",     "frozen",
+    "encoder_loss",  "emcy",          "emcy_only",       "over_current",
+    "encoder_fault", "encoder_jump",  "following_error", "over_temperature",
+    "under_voltage", "reset"};
 
 constexpr bool lasts(DriveFaultKind kind) noexcept { return kind <= DriveFaultKind::encoder_loss; }
 
@@ -159,8 +145,14 @@ void SimulatedDrive::Inside::apply_to_gate() noexcept {
   BusGate::Spoil& s = gate.spoil();
   s.silent = spoiled(DriveFaultKind::silent) || spoiled(DriveFaultKind::frozen);
   s.heartbeat_lost = spoiled(DriveFaultKind::heartbeat_lost);
+  s.sdo_delay_ns = spoiled(DriveFaultKind::sdo_late) ? fault(DriveFaultKind::sdo_late).delay_ns : 0;
   s.sdo_silent = spoiled(DriveFaultKind::sdo_silent);
   s.pdo_repeated = spoiled(DriveFaultKind::pdo_repeated);
+  const auto number = [this](DriveFaultKind kind) { return spoiled(kind) ? fault(kind).number : 0; };
+  s.dropped_number = number(DriveFaultKind::pdo_dropped);
+  s.late_number = number(DriveFaultKind::pdo_late);
+  s.flipped_number = number(DriveFaultKind::pdo_corrupted);
+  s.repeated_number = number(DriveFaultKind::pdo_repeated);
   const DriveFault& dropped = fault(DriveFaultKind::pdo_dropped);
   s.pdo_dropped_every = spoiled(DriveFaultKind::pdo_dropped) ? std::max<std::uint32_t>(1, dropped.every) : 0;
   s.pdo_delay_ns = spoiled(DriveFaultKind::pdo_late) ? fault(DriveFaultKind::pdo_late).delay_ns : 0;

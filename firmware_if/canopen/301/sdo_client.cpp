@@ -7,6 +7,7 @@ namespace servogate::canopen {
 bool SdoClient::start(bool is_download, std::uint16_t index, std::uint8_t subindex) noexcept {
   result_ = {SdoStatus::busy, AbortCode::none, index, subindex, is_download, 0, 0};
   blocks_refused_ = false;
+  patience_ns_ = timeout_ns_;
   restart();
   return true;
 }
@@ -128,7 +129,7 @@ bool SdoClient::send_abort(image::CanBus& bus) noexcept {
 }
 
 bool SdoClient::poll(image::Nanoseconds now, image::CanBus& bus) noexcept {
-  if (progress_) deadline_ns_ = now + timeout_ns_;
+  if (progress_) deadline_ns_ = now + patience_ns_;
   progress_ = false;
   if (busy() && !request_due_ && now >= deadline_ns_) on_timeout();
   if (abort_due_) return send_abort(bus);
@@ -136,7 +137,7 @@ bool SdoClient::poll(image::Nanoseconds now, image::CanBus& bus) noexcept {
   const SdoBytes bytes = request();
   if (!bus.send(make_frame(cob::sdo_request(node_), bytes))) return false;
   request_due_ = false;
-  deadline_ns_ = now + timeout_ns_;
+  deadline_ns_ = now + patience_ns_;
   if (in_block()) block_sent();
   return true;
 }

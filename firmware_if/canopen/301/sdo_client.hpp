@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -66,6 +67,9 @@ class SdoClient {
   /// Starts reading into the caller's memory, which must stay until data() is no longer needed. False when
   /// busy. A longer object ends with AbortCode::out_of_memory.
   bool upload_into(std::uint16_t index, std::uint8_t subindex, std::span<std::uint8_t> memory) noexcept;
+  /// The transfer that has just been started: the device may take so long for each of its answers, where that
+  /// is longer than the client's own time-out.
+  void wait_for(image::Nanoseconds answer_ns) noexcept { patience_ns_ = std::max(timeout_ns_, answer_ns); }
   /// Breaks a running transfer off; the abort frame is sent by the next poll. The status becomes idle.
   void cancel() noexcept;
 
@@ -142,6 +146,7 @@ class SdoClient {
 
   NodeId node_ = 0;
   image::Nanoseconds timeout_ns_ = 200 * image::kMillisecond;
+  image::Nanoseconds patience_ns_ = timeout_ns_;  ///< of this transfer
   std::uint32_t retries_ = 2;
   std::uint8_t own_block_size_ = kMaxBlockSize;
   bool blocks_allowed_ = true;

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/canopen/302/node_boot.hpp"
 
+#include "firmware_if/canopen/402/objects.hpp"
+
 namespace servogate::canopen {
 namespace {
 // The flash is asked for its status so often.
 constexpr image::Nanoseconds kFlashPollNs = 20 * image::kMillisecond;
 constexpr std::uint32_t kFlashBusy = 1;
+// A device that stores all its parameters answers behind that (CiA 301, 7.5.2.13).
+constexpr image::Nanoseconds kStoreNs = 10 * image::kSecond;
 }  // namespace
 
 void NodeBoot::restart_at(std::size_t action, SdoClient& sdo) noexcept {
@@ -87,8 +91,24 @@ bool NodeBoot::start_transfer(SdoClient& sdo) noexcept {
   if (action.kind != BootAction::Kind::write) return sdo.upload(action.index, action.subindex);
   // A boot-up from before the program control does not count.
   boot_up_seen_ = false;
-  if (action.data.empty()) return sdo.download(action.index, action.subindex, action.value, action.bytes);
-  return sdo.download_from(action.index, action.subindex, action.data);
+  const bool started = action.data.empty()
+                           ? sdo.download(action.index, action.subindex, action.value, action.bytes)
+                           : sdo.download_from(action.index, action.subindex, action.data);
+  if (started) sdo.wait_for(writing_time(action.index));
+  return started;
+}
+
+/// How long a device that writes into its flash may keep silent.
+image::Nanoseconds NodeBoot::writing_time(std::uint16_t index) const noexcept {
+  switch (index) {
+    case object::kProgramData:
+    case object::kProgramControl:
+      return flash_timeout_ns_;
+    case object::kStoreParameters:
+      return kStoreNs;
+    default:
+      return 0;
+  }
 }
 
 bool NodeBoot::command_and_wait(image::Nanoseconds now, image::CanBus& bus, NmtCommand command,

@@ -58,6 +58,7 @@ class NodeBoot {
   void judge_list(std::uint32_t value) noexcept;
   void jump(bool equal) noexcept;
   bool start_transfer(SdoClient& sdo) noexcept;
+  image::Nanoseconds writing_time(std::uint16_t index) const noexcept;
   bool await_boot_up(image::Nanoseconds now) noexcept;
   void keep(std::uint32_t value) noexcept;
   void next() noexcept;

@@ -46,6 +46,8 @@ struct NodeSetup {
   std::optional<std::uint32_t> counts_per_rev, revolutions;
   std::int32_t boot_timeout_ms = 0;          ///< 0: the segment's
   std::int32_t boot_attempts = 0;            ///< 0: the segment's
+  std::int32_t sdo_timeout_ms = 0;           ///< wait for each answer; 0: the segment's
+  std::int32_t sdo_retries = -1;             ///< -1: the segment's
   std::int32_t program_timeout_ms = 60'000;  ///< of clearing and of writing the flash
 };
 

@@ -26,7 +26,8 @@ constexpr Entry kEvents[] = {
     {"can-node-restarted", "{0}: has restarted by itself", "{0}: узел сам перезапустился"},
     {"can-node-left", "{0}: has left state Operational, NMT state is now {1}",
      "{0}: вышел из состояния Operational, состояние NMT теперь {1}"},
-    {"can-pdo-missing", "{0}: no process data for {1} cycles", "{0}: нет данных процесса уже {1} циклов"},
+    {"can-pdo-missing", "{0}: no process data ({2}) for {1} cycles",
+     "{0}: нет данных процесса ({2}) уже {1} циклов"},
     {"can-pdo-short", "{0}: process data {3} has {2} bytes where {1} are mapped",
      "{0}: в данных процесса {3} байтов {2}, а отображено {1}"},
     {"can-sdo-failed", "{0}: {1}", "{0}: {1}"},
@@ -176,6 +177,10 @@ std::vector<std::string> arguments_of(const BusEvent& e, std::string_view name, 
       break;
     case BusEventKind::node_left:
       add(nmt_state_words(e.got));
+      break;
+    case BusEventKind::pdo_missing:
+      add(std::to_string(e.got));
+      add(e.pdo == 0 ? "TPDO" : "TPDO" + std::to_string(e.pdo));
       break;
     case BusEventKind::pdo_short:
       add(std::to_string(e.expected));

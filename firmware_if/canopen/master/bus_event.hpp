@@ -22,7 +22,7 @@ enum class BusEventKind : std::uint8_t {
   heartbeat_lost,  ///< no heartbeat for `got` ms, allowed are `expected`
   node_restarted,  ///< a boot-up message of a node that was running
   node_left,       ///< heartbeat shows another NMT state (`got`) than Operational
-  pdo_missing,     ///< process data missing for `got` cycles
+  pdo_missing,     ///< process data (TPDO `pdo`) missing for `got` cycles
   pdo_short,       ///< a TPDO with `got` bytes where `expected` are mapped (`frame`)
   sdo_failed,      ///< an object read or written while running: `boot.index`, `boot.abort`
   refused,         ///< the drive does not follow a transition: `refusal`, `statusword`
@@ -50,6 +50,7 @@ struct BusEvent {
   image::CanState bus_state = image::CanState::error_active;
   std::int64_t expected = 0;
   std::int64_t got = 0;
+  std::uint8_t pdo = 0;  ///< 1-4
   struct {
     std::uint32_t id = 0;
     std::uint8_t length = 0;

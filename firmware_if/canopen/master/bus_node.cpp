@@ -30,8 +30,11 @@ BusNode::BusNode(const NodeConfig& config, const SegmentConfig& segment)
       boot_pause_ns_(segment.boot_pause_ms * image::kMillisecond),
       first_limit_(segment.boot_timeout_ms * image::kMillisecond / segment.cycle_ns),
       boot_attempts_(config.setup.boot_attempts > 0 ? config.setup.boot_attempts : segment.boot_attempts),
-      sdo_(config.node, segment.sdo_timeout_ms * image::kMillisecond,
-           static_cast<std::uint32_t>(std::max(0, segment.sdo_retries))),
+      sdo_(config.node,
+           (config.setup.sdo_timeout_ms > 0 ? config.setup.sdo_timeout_ms : segment.sdo_timeout_ms) *
+               image::kMillisecond,
+           static_cast<std::uint32_t>(
+               std::max(0, config.setup.sdo_retries >= 0 ? config.setup.sdo_retries : segment.sdo_retries))),
       boot_(config.node, boot_plan(config, segment),
             (config.setup.boot_timeout_ms > 0 ? config.setup.boot_timeout_ms : segment.boot_timeout_ms) *
                 image::kMillisecond,
@@ -98,9 +101,13 @@ void BusNode::on_tpdo(int number, const image::CanFrame& frame, const NodeContex
   // What a node sends by an old configuration before it has booted means nothing.
   if (phase_ != Phase::running) return;
   if (link_->process_data().take(number, frame) != ProcessData::Taken::too_short) return;
+  const auto mark = static_cast<std::uint8_t>(1u << number);
+  if ((short_said_ & mark) != 0) return;
+  short_said_ |= mark;
   BusEvent e = event(BusEventKind::pdo_short, context);
   e.expected = link_->process_data().tpdo_bytes(number);
   e.got = frame.length;
+  e.pdo = static_cast<std::uint8_t>(number);
   e.frame.id = frame.id;
   e.frame.length = frame.length;
   std::copy_n(frame.data.begin(), std::min<std::size_t>(frame.length, 8), e.frame.data.begin());
@@ -174,6 +181,7 @@ void BusNode::start_operation(const NodeContext& context) noexcept {
   missed_ = 0;
   seen_status_ = false;
   missing_said_ = false;
+  short_said_ = 0;
   refusal_said_ = false;
   handover_said_ = false;
   heartbeat_deadline_ns_ = context.now + heartbeat_timeout_ns_;
@@ -183,9 +191,9 @@ void BusNode::start_operation(const NodeContext& context) noexcept {
   context.events.push(e);
 }
 
-void BusNode::supervise(bool status_fresh, const NodeContext& context) noexcept {
-  missed_ = status_fresh ? 0 : missed_ + 1;
-  if (status_fresh) {
+void BusNode::supervise(bool on_time, const NodeContext& context) noexcept {
+  missed_ = on_time ? 0 : missed_ + 1;
+  if (on_time) {
     seen_status_ = online_ = true;
     missing_said_ = false;
   }
@@ -199,12 +207,13 @@ void BusNode::supervise(bool status_fresh, const NodeContext& context) noexcept 
     phase_ = Phase::lost;
     return;
   }
-  const std::int64_t limit = seen_status_ ? link_->missed_limit() : first_limit_;
-  if (limit == 0 || missed_ < limit || missing_said_) return;
+  const PdoWatch::Overdue& overdue = link_->watch().overdue();
+  if (missing_said_ || !(seen_status_ ? overdue.lost() : missed_ >= first_limit_)) return;
   missing_said_ = true;
   BusEvent e = event(BusEventKind::pdo_missing, context);
-  e.expected = limit;
-  e.got = missed_;
+  e.expected = seen_status_ ? overdue.limit : first_limit_;
+  e.got = seen_status_ ? overdue.cycles : missed_;
+  e.pdo = static_cast<std::uint8_t>(overdue.number);
   context.events.push(e);
   go_offline();
 }
@@ -242,7 +251,7 @@ void BusNode::fill(image::DriveFeedback& feedback) const noexcept {
   drive_->fill(feedback);
   feedback.online = online_;
   // In PDOs that should have come, so that one on every n-th SYNC is not missed in between.
-  feedback.missed = static_cast<std::uint32_t>(missed_ / drive_->status_every());
+  feedback.missed = static_cast<std::uint32_t>(drive_->watch().overdue().missed);
   feedback.restarts = restarts_;
   if (!online_) feedback.state = image::DriveState::offline;
 }

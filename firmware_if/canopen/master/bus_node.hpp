@@ -71,7 +71,7 @@ class BusNode {
   void start_operation(const NodeContext& context) noexcept;
   void go_offline() noexcept;
   bool send_guarding(const NodeContext& context) noexcept;
-  void supervise(bool status_fresh, const NodeContext& context) noexcept;
+  void supervise(bool on_time, const NodeContext& context) noexcept;
   void report_link(const NodeContext& context) noexcept;
   void fill(image::DriveFeedback& feedback) const noexcept;
   bool apply(const image::ProcessImage& image, const NodeContext& context) noexcept;
@@ -100,7 +100,8 @@ class BusNode {
   bool seen_status_ = false;
   std::int64_t missed_ = 0;
   bool missing_said_ = false;
-  bool blocked_ = false;  ///< lost while it ran: power must be withdrawn once before it is given again
+  std::uint8_t short_said_ = 0;  ///< a bit for each TPDO
+  bool blocked_ = false;         ///< lost while it ran: power must be withdrawn once before it is given again
   std::uint8_t restarts_ = 0;
   bool refusal_said_ = false;
   bool handover_said_ = false;

@@ -3,7 +3,8 @@
 #include <cstdint>
 
 #include "firmware_if/canopen/301/sdo_client.hpp"
-#include "firmware_if/canopen/master/process_data.hpp"
+#include "firmware_if/canopen/master/pdo/pdo_watch.hpp"
+#include "firmware_if/canopen/master/pdo/process_data.hpp"
 #include "firmware_if/image/time.hpp"
 
 namespace servogate::canopen {
@@ -18,8 +19,8 @@ class NodeLink {
   virtual void restart() noexcept = 0;
   /// Evaluates what has come since the last cycle. True: no process data that should have come are missing.
   virtual bool update() noexcept = 0;
-  /// Cycles in a row without true from update() after which the node is lost; 0: never.
-  virtual std::int64_t missed_limit() const noexcept = 0;
+  /// Which of them are missing, and for how long.
+  virtual const PdoWatch& watch() const noexcept = 0;
   /// An emergency message of the node.
   virtual void on_emcy(std::uint16_t /*error_code*/) noexcept {}
 
@@ -30,11 +31,5 @@ class NodeLink {
   virtual bool access_running() const noexcept { return false; }
   virtual std::uint16_t statusword() const noexcept { return 0; }
 };
-
-/// Cycles between two TPDOs of this kind; 0: they come when they like. real-time safe.
-constexpr std::int64_t cycles_between(const PdoWanted& pdo, image::Nanoseconds cycle_ns) noexcept {
-  if (pdo.transmission_type >= 1 && pdo.transmission_type <= 240) return pdo.transmission_type;
-  return pdo.event_ms * image::kMillisecond / cycle_ns;
-}
 
 }  // namespace servogate::canopen

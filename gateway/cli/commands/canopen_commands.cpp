@@ -32,9 +32,13 @@ void add_listening(CLI::App& app, CanopenBusOptions& o) {
       ->check(number_within({0.1, 60.0, text::both("s", "с")}));
 }
 
+void add_anyway(CLI::App& app, CanopenBusOptions& o) {
+  app.add_flag("--anyway", o.anyway, "Reads although somebody controls the bus");
+  add_listening(app, o);
+}
+
 void add_may_move(CLI::App& app, CanopenBusOptions& o) {
   app.add_flag("--i-may-move", o.may_move, "A drive may move");
-  add_listening(app, o);
 }
 
 void add_node(CLI::App& app, int& node) {
@@ -50,6 +54,7 @@ void add_scan(CLI::App& app, ScanOptions& o) {
       ->type_name("S")
       ->check(number_within({0.1, 60.0, text::both("s", "с")}));
   add_timeout(c, o);
+  add_anyway(c, o);
   c.footer("Example: servogate scan socketcan:can0");
 }
 
@@ -69,6 +74,7 @@ void add_sdo(CLI::App& app, SdoOptions& o) {
   add_timeout(c, o);
   add_no_block(c, o);
   add_may_move(c, o);
+  add_anyway(c, o);
   c.footer("Example: servogate sdo socketcan:can0 5 read 6041");
 }
 
@@ -85,6 +91,7 @@ void add_od(CLI::App& app, OdOptions& o) {
   range->excludes(compare);
   add_timeout(c, o);
   add_no_block(c, o);
+  add_anyway(c, o);
   c.footer("Example: servogate od socketcan:can0 5 --eds drive.eds --save node5.dcf");
 }
 
@@ -110,6 +117,7 @@ void add_nmt(CLI::App& app, NmtOptions& o) {
       ->check(one_of({"start", "stop", "preop", "reset", "reset-comm"}));
   c.add_option("NODE", o.node, "Node-ID, or all (the default)");
   add_may_move(c, o);
+  add_listening(c, o);
   c.footer("Example: servogate nmt socketcan:can0 preop 5 --i-may-move");
 }
 

@@ -27,7 +27,7 @@ void run(CLI::App& plc, PlcRunOptions& o) {
       ->type_name("MS")
       ->check(number_within({0.001, 60000.0, text::both("ms", "мс")}));
   app.add_option("--set", o.sets, "NAME=VALUE[@CYCLE], may be repeated")->allow_extra_args(false);
-  app.add_option("--print", o.prints, "NAME,... to print")->delimiter(',')->allow_extra_args(false);
+  app.add_option("--print", o.prints, "NAME,... to print")->allow_extra_args(false);
 }
 
 void check(CLI::App& plc, PlcCheckOptions& o) {

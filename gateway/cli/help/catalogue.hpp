@@ -159,6 +159,7 @@ inline constexpr Translation kCatalogue[] = {
     {"Long objects in segments, never in blocks", "Длинные объекты сегментами, без блочной передачи"},
     {"How long the bus must show no master before, in s, 0.1 to 60",
      "Сколько времени на шине не должно быть ведущего, в с, от 0.1 до 60"},
+    {"Reads although somebody controls the bus", "Читает, хотя шиной кто-то управляет"},
     {"A drive may move", "Привод может двигаться"},
     {"Who is on a CANopen bus: every node that answers or is heard.",
      "Кто на шине CANopen: каждый узел, который отвечает или слышен."},

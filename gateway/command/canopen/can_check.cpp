@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/image/can_wire.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
@@ -13,7 +14,7 @@
 #include "gateway/command/canopen/bus/foreign_master.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/command/named_bus.hpp"
+#include "gateway/command/bus/named_bus.hpp"
 
 namespace servogate::gateway::command {
 
@@ -136,7 +137,7 @@ Traffic listen(ToolBus& bus, double seconds) {
     if (!frame.remote && (id.service == Service::heartbeat || id.service == Service::emcy ||
                           id.service == Service::sdo_response))
       t.nodes.insert(id.node);
-    if (t.master.empty() && shows_master(frame)) t.master = frame_words(frame);
+    if (t.master.empty() && canopen::sent_by_masters(frame)) t.master = canopen::frame_words(frame);
     return false;
   });
   return t;
@@ -303,7 +304,7 @@ int can_check(const CanCheckOptions& options) {
     report.wrong(kDown, {before->name, socketcan::command_up(*before, rate)});
     return report.tell();
   }
-  const std::optional<Holder> holder = holder_of(named->url);
+  const std::optional<Holder> holder = holder_of(*named);
   if (holder) {
     report.facts()["held_by"] = {{"machine", holder->machine}, {"socket", holder->socket}};
     if (named->url.starts_with("mock:")) {

@@ -7,7 +7,7 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/command/named_bus.hpp"
+#include "gateway/command/bus/named_bus.hpp"
 
 namespace servogate::gateway::command {
 

@@ -296,11 +296,11 @@ int lss(const LssOptions& options) {
   if (!read_steps(options.words, steps)) return kWrongUse;
   int code = kDone;
   std::optional<Holder> holder;
-  if (!find_holder(options, holder, code)) return code;
+  if (!find_holder(options.bus, holder, code)) return code;
   if (holder) return refuse_held(*holder, options.bus, "`lss`");
   const auto bus = ToolBus::open(options, code);
   if (bus == nullptr) return code;
-  code = must_be_idle(*bus, "`lss`", options.listen_s);
+  code = must_be_idle(*bus, "`lss`", options);
   if (code == kDone) code = Layers(*bus, options).run(steps);
   return bus->finish(code);
 }

@@ -118,11 +118,11 @@ int nmt(const NmtOptions& options) {
   const std::string what = "`nmt " + options.command + "`";
   int code = kDone;
   std::optional<Holder> holder;
-  if (!find_holder(options, holder, code)) return code;
+  if (!find_holder(options.bus, holder, code)) return code;
   if (holder) return refuse_held(*holder, options.bus, what);
   const auto bus = ToolBus::open(options, code);
   if (bus == nullptr) return code;
-  code = may_move(*bus, what, options.may_move, options.listen_s);
+  code = may_move(*bus, what, options);
   if (code != kDone) return bus->finish(code);
   const auto states = command(*bus, node, row);
   if (states) return bus->finish(tell(options, *states, row));

@@ -11,6 +11,7 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
+#include "gateway/command/canopen/bus/foreign_master.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/canopen/object_walk.hpp"
 #include "gateway/command/commands.hpp"
@@ -188,7 +189,7 @@ int od(const OdOptions& options) {
   const canopen::Eds* other = file ? &*file : nullptr;
   int code = kDone;
   std::optional<Holder> holder;
-  if (!find_holder(options, holder, code)) return code;
+  if (!find_holder(options.bus, holder, code)) return code;
   if (holder) {
     const auto held = HeldBus::open(*holder, options.timeout_ms);
     if (held == nullptr) return kInfrastructure;
@@ -197,6 +198,7 @@ int od(const OdOptions& options) {
   }
   const auto bus = ToolBus::open(options, code);
   if (bus == nullptr) return code;
+  if (code = may_read(*bus, options); code != kDone) return bus->finish(code);
   return bus->finish(
       work_on({options, *bus, [&] { return bus->over(); }, bus->bit_rate()}, sheet, other, ranges, nullptr));
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/clock.hpp"
+#include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
@@ -71,7 +72,7 @@ bool ask_device_type(ToolBus& bus, const ToolBus::Handler& hear) {
 void find_nodes(ToolBus& bus, const ScanOptions& options, Nodes& nodes, std::string& master) {
   const auto hear = [&](const image::CanFrame& frame) {
     const canopen::CobId id = canopen::classify(frame.id, frame.extended);
-    if (!frame.error && master.empty() && shows_master(frame)) master = frame_words(frame);
+    if (master.empty() && canopen::sent_by_masters(frame)) master = canopen::frame_words(frame);
     if (frame.remote || frame.error || id.node == 0) return false;
     if (id.service == canopen::Service::sdo_response && frame.length == 8) {
       nodes[id.node].answers_sdo = true;
@@ -234,10 +235,11 @@ int scan_held(const ScanOptions& options, const Holder& holder) {
 int scan(const ScanOptions& options) {
   int code = kDone;
   std::optional<Holder> holder;
-  if (!find_holder(options, holder, code)) return code;
+  if (!find_holder(options.bus, holder, code)) return code;
   if (holder) return scan_held(options, *holder);
   const auto bus = ToolBus::open(options, code);
   if (bus == nullptr) return code;
+  if (code = may_read(*bus, options); code != kDone) return bus->finish(code);
   Nodes nodes;
   std::string master;
   find_nodes(*bus, options, nodes, master);

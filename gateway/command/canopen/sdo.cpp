@@ -40,6 +40,8 @@ const text::Entry kNoValue{"sdo.no-value", "`servogate sdo write` needs a value"
                            "для `servogate sdo write` нужно значение"};
 const text::Entry kTooMuch{"sdo.too-much", "`servogate sdo read` takes a type only, no value",
                            "`servogate sdo read` принимает только тип, без значения"};
+const text::Entry kAnyway{"sdo.anyway", "--anyway is for reading: a write needs a bus without a master",
+                          "--anyway — для чтения: запись требует шины без ведущего"};
 const text::Entry kCannotRead{"sdo.cannot-read", "cannot read {0}: {1}", "не читается {0}: {1}"};
 const text::Entry kFailed{"sdo.failed", "node {0}, {1}: {2}", "узел {0}, {1}: {2}"};
 const text::Entry kWrite{"sdo.write", "writing {0}", "запись {0}"};
@@ -82,6 +84,7 @@ int read_request(const SdoOptions& options, const ObjectCatalogue& catalogue, Re
   request.name = catalogue.name(at->index, at->subindex);
   request.type = catalogue.type(at->index, at->subindex);
   const bool writes = options.action == "write";
+  if (writes && options.anyway) return wrong(kAnyway, {});
   const std::size_t values = writes ? 1 : 0;
   if (options.words.size() < values) return wrong(kNoValue, {});
   if (options.words.size() > values + 1) return wrong(kTooMuch, {});
@@ -151,12 +154,13 @@ int show(const SdoOptions& options, Request request, const std::vector<std::uint
 
 int write(const SdoOptions& options, const Request& request, ToolBus& bus) {
   const std::string place = address_text(request.at.index, request.at.subindex);
-  if (can_move(request.at.index)) {
-    const std::string what =
-        text::both(text::render(kWrite, std::vector<std::string>{place}, text::Language::english),
-                   text::render(kWrite, std::vector<std::string>{place}, text::Language::russian));
-    if (const int code = may_move(bus, what, options.may_move, options.listen_s); code != kDone) return code;
-  }
+  const std::string what =
+      text::both(text::render(kWrite, std::vector<std::string>{place}, text::Language::english),
+                 text::render(kWrite, std::vector<std::string>{place}, text::Language::russian));
+  if (const int code =
+          can_move(request.at.index) ? may_move(bus, what, options) : must_be_idle(bus, what, options);
+      code != kDone)
+    return code;
   const SdoOutcome outcome = bus.write(static_cast<canopen::NodeId>(options.node), request.at.index,
                                        request.at.subindex, request.data);
   if (!outcome.ok()) return fail(options, request, outcome, {});
@@ -197,7 +201,7 @@ int sdo(const SdoOptions& options) {
   }
   int code = kDone;
   std::optional<Holder> holder;
-  if (!find_holder(options, holder, code)) return code;
+  if (!find_holder(options.bus, holder, code)) return code;
   const bool writes = options.action == "write";
   if (holder && writes) return refuse_held(*holder, options.bus, "`sdo write`");
   if (holder) {
@@ -206,7 +210,9 @@ int sdo(const SdoOptions& options) {
   }
   const auto bus = ToolBus::open(options, code);
   if (bus == nullptr) return code;
-  return bus->finish(writes ? write(options, request, *bus) : read(options, request, *bus, nullptr));
+  if (writes) return bus->finish(write(options, request, *bus));
+  code = may_read(*bus, options);
+  return bus->finish(code == kDone ? read(options, request, *bus, nullptr) : code);
 }
 
 }  // namespace servogate::gateway::command

@@ -109,6 +109,7 @@ int client(const ClientOptions& options) {
   else
     say_when_stopped(kAsked);
   json reply = ask(connection, request);
+  if (reply.is_null()) return connection_lost(path);
   int code = reply.value("exit", kInfrastructure);
   if (code == kDone && manner.waits) {
     if (!options.json) std::fprintf(stderr, "%s\n", of(reply, "text").c_str());

@@ -28,14 +28,16 @@ const text::Entry kStandsDiameter{"client.stands-diameter",
 const text::Entry kLastSeen{"client.last-seen", "{0} was last seen at {1} {2}: its drive does not answer",
                             "{0}: последнее известное место {1} {2}, привод не отвечает"};
 
-/// Keeps a continuous jog alive until the operator ends it or it ends by itself; its last answer.
-json hold(SocketClient& client, const json& request, const json& begun) {
+/// Keeps a continuous jog alive until the operator ends it or it ends by itself (`by_itself`); its last
+/// answer.
+json hold(SocketClient& client, const json& request, const json& begun, bool& by_itself) {
   const int pause_ms = std::max(1, static_cast<int>(begun.value("keep_alive_ms", 30.0)));
   while (signals_seen() == 0) {
     pollfd in{STDIN_FILENO, POLLIN, 0};
     if (poll(&in, 1, pause_ms) > 0) break;
     json reply = ask(client, {{"cmd", "keep_alive"}, {"language", request["language"]}});
-    if (!reply.value("moving", false)) return reply;
+    by_itself = !reply.value("moving", false);
+    if (by_itself) return reply;
   }
   return ask(client, {{"cmd", "jog_stop"}, {"axis", request["axis"]}, {"language", request["language"]}});
 }
@@ -50,15 +52,15 @@ json axis_of(const json& status, const std::string& letter) {
 
 int follow_jog(SocketClient& client, const json& request, json& reply) {
   const bool continuous = request["cmd"] == "jog_continuous";
+  bool by_itself = false;
   json ended;
   if (continuous) {
-    ended = hold(client, request, reply);
+    ended = hold(client, request, reply, by_itself);
     if (ended.is_null()) {
       reply = nullptr;
       return kInfrastructure;
     }
   }
-  const bool by_itself = ended.contains("moving");
   json status = continuous ? json::object() : reply;
   const int waited = wait_for_end(client, request, status);
   if (status.is_null()) {
@@ -66,7 +68,7 @@ int follow_jog(SocketClient& client, const json& request, json& reply) {
     return kInfrastructure;
   }
   const json axis = axis_of(status, request["axis"].get<std::string>());
-  const json end = by_itself ? ended : axis.value("jog_end", json());
+  const json end = ended.contains("moving") ? ended : axis.value("jog_end", json());
   const std::string reason = end.is_object() ? end.value("reason", "") : "";
   const bool own_stop = continuous && !by_itself;
   const int code = waited == kInfrastructure                                ? kInfrastructure

@@ -35,6 +35,12 @@ const text::Entry kHomingEnded{
     "homing was stopped by somebody else (reset, stop or hold): `servogate home` again",
     "выход в ноль остановлен кем-то другим (reset, stop или hold): повторите `servogate "
     "home`"};
+const text::Entry kOffByOperator{"client.stopped-off", "stopped by the operator: the drives are off",
+                                 "остановлено оператором: приводы выключены"};
+const text::Entry kControlEnds{
+    "client.control-ends",
+    "the control comes to its end (`servogate down` or a signal): what was under way has been stopped",
+    "управление завершается (`servogate down` или сигнал): то, что выполнялось, остановлено"};
 const text::Entry kUnreachable{
     "client.unreachable",
     "no answer from the drive of {0}: whether it is off cannot be seen; a cut supply (emergency stop) is "
@@ -147,11 +153,8 @@ class Wait {
 
 bool Wait::homing_under_way(const json& status) {
   if (status.value("homing", false)) return true;
-  const json named = request_.value("axes", json::array());
-  const bool open = any_axis(status, [&](const json& a) {
-    return !a.value("homed", false) &&
-           (named.empty() || std::find(named.begin(), named.end(), a["letter"]) != named.end());
-  });
+  // An axis that had its reference before keeps it when its homing is broken off.
+  const bool open = !status.value("homing_left", json::array()).empty();
   if (!open || alarm(status) || interrupts_done_ > 0) return false;
   // 1101 ... 1110 say by themselves why an axis has no reference.
   const json alarms = status.value("alarms", json::array());
@@ -160,7 +163,7 @@ bool Wait::homing_under_way(const json& status) {
     return number > 1100 && number < 1200;
   });
   code_ = broken ? kAlarm : kStopped;
-  if (!broken) complain(kHomingEnded, {});
+  if (!broken && !status.value("ending", false)) complain(kHomingEnded, {});
   return false;
 }
 
@@ -232,6 +235,10 @@ bool Wait::under_way(const json& status) {
     case Kind::power_on: {
       const bool off = any_axis(status, [](const json& a) { return !on(a); });
       if (!off) code_ = kDone;  // a warning that is active did not keep them off
+      if (off && status.value("ending", false)) {
+        code_ = kStopped;
+        return false;
+      }
       return off && !(alarm(status) && in_wait_s(status) > kAlarmPatience_s);
     }
     case Kind::power_off:
@@ -307,8 +314,13 @@ void Wait::interrupt() {
 int Wait::run(json& status) {
   asked_s_ = status.value("asked_s", 0.0);
   const json question = simple("status");
-  for (;; std::this_thread::sleep_for(kLook)) {
+  for (json before;; before = status, std::this_thread::sleep_for(kLook)) {
     status = ask(client_, question);
+    if (status.is_null() && before.is_object() && before.value("ending", false)) {
+      status = before;  // it has put everything away, and with it what was waited for
+      complain(kControlEnds, {});
+      return kStopped;
+    }
     if (status.is_null() || cycle_stands(status)) return kInfrastructure;
     if (signals_seen() > interrupts_done_) {
       interrupt();
@@ -318,10 +330,12 @@ int Wait::run(json& status) {
     if (too_late(status)) return kAlarm;
     say_what_is_missing(status);
   }
+  if (code_ == kStopped && status.value("ending", false)) complain(kControlEnds, {});
   const std::string state = of(status, "state");
   const bool own_end = kind_ == Kind::program && (state == "ended" || state == "stopped_by_alarm");
   if (interrupts_done_ == 0 || own_end) return code_;
   if (state == "held") complain(kHeld, {});
+  if (kind_ == Kind::power_off) complain(kOffByOperator, {});
   return kStopped;
 }
 

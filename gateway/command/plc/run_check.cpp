@@ -32,7 +32,8 @@ int plc_run(const PlcRunOptions& options) {
     }
     request.sets.push_back(set);
   }
-  request.prints = options.prints;
+  for (const std::string& list : options.prints)
+    for (std::string& name : plc::parse_prints(list)) request.prints.push_back(std::move(name));
   const plc::RunResult result = plc::run(request, print_line);
   print_findings(result.findings);
   switch (result.end) {

@@ -11,7 +11,8 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/canopen/data_sheet.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/command/named_bus.hpp"
+#include "gateway/command/bus/lost_frames.hpp"
+#include "gateway/command/bus/named_bus.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/compose/can_transport.hpp"
@@ -237,9 +238,10 @@ int drive(const DriveOptions& options) {
                      .c_str());
   // Standard input has no place in granted time.
   DriveDesk desk(std::move(*deeds), transport->lockstep == nullptr);
-  if (transport->lockstep != nullptr)
-    return live_in_lockstep(options, plan, *transport->lockstep, desk, signals);
-  return live(options, plan, *transport, desk, signals);
+  const int code = transport->lockstep != nullptr
+                       ? live_in_lockstep(options, plan, *transport->lockstep, desk, signals)
+                       : live(options, plan, *transport, desk, signals);
+  return unless_frames_lost(code, plan.url, *transport->bus);
 }
 
 }  // namespace servogate::gateway::command

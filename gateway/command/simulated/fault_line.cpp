@@ -112,6 +112,7 @@ constexpr Key kKeys[] = {
     {"at", [](std::string_view v, DriveDeed& d) { return set_duration(v, d.at); }},
     {"for", [](std::string_view v, DriveDeed& d) { return set_duration(v, d.fault.duration_ns); }},
     {"delay", [](std::string_view v, DriveDeed& d) { return set_duration(v, d.fault.delay_ns); }},
+    {"number", [](std::string_view v, DriveDeed& d) { return set_whole(v, 1, 4, d.fault.number); }},
     {"every", [](std::string_view v, DriveDeed& d) { return set_whole(v, 1, kMost32, d.fault.every); }},
     {"value",
      [](std::string_view v, DriveDeed& d) { return set_whole(v, INT64_MIN, INT64_MAX, d.fault.value); }},

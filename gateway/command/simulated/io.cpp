@@ -15,7 +15,8 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/command/named_bus.hpp"
+#include "gateway/command/bus/lost_frames.hpp"
+#include "gateway/command/bus/named_bus.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/compose/can_transport.hpp"
@@ -223,8 +224,10 @@ class Nodes {
   std::vector<std::unique_ptr<Node>> all_;
 };
 
-int live(const std::string& url, const CanTransport& transport, Nodes& nodes, DriveDesk& desk,
+int live(const IoOptions& options, const std::string& url, const CanTransport& transport,
          const EndBySignal& signals) {
+  DriveDesk desk({}, true);
+  Nodes nodes(options, *transport.bus, drivers::clock_ns(CLOCK_MONOTONIC));
   const auto take = [&](const std::string& line) {
     nodes.take(line);
     return true;
@@ -280,10 +283,9 @@ int io(const IoOptions& options) {
                  text::render(kLives, std::vector<std::string>{std::to_string(node), named->url, name},
                               text::user_language())
                      .c_str());
-  if (transport->lockstep != nullptr) return live_in_lockstep(options, *transport->lockstep, signals);
-  DriveDesk desk({}, true);
-  Nodes nodes(options, *transport->bus, drivers::clock_ns(CLOCK_MONOTONIC));
-  return live(named->url, *transport, nodes, desk, signals);
+  const int code = transport->lockstep != nullptr ? live_in_lockstep(options, *transport->lockstep, signals)
+                                                  : live(options, named->url, *transport, signals);
+  return unless_frames_lost(code, named->url, *transport->bus);
 }
 
 }  // namespace servogate::gateway::command

@@ -12,6 +12,7 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/compose/can_transport.hpp"
@@ -53,7 +54,8 @@ struct Served {
   std::uint32_t bit_rate;
   std::size_t drives;
   CanTransport transport;
-  std::vector<image::CanFrame> waiting;  ///< for the bus outside
+  std::vector<image::CanFrame> waiting;     ///< for the bus outside
+  std::optional<image::CanFrame> entering;  ///< the wire inside is full
 };
 
 /// The url of each bus after --bus; false: wrong, which has been said.
@@ -76,7 +78,7 @@ bool find_urls(const SimOptions& options, machine::MachineConfig& m, std::vector
     if (b.mock()) complain(kInside, {b.name, b.url});
     if (b.lockstep()) complain(kLockstep, {b.url});
     if (b.mock() || b.lockstep()) return false;
-    buses.push_back({i, b.name, b.url, static_cast<std::uint32_t>(b.bit_rate), b.nodes.size(), {}, {}});
+    buses.push_back({i, b.name, b.url, static_cast<std::uint32_t>(b.bit_rate), b.nodes.size(), {}, {}, {}});
     // Inside, the drives live on a simulated wire as in a control of their own.
     b.url = "mock:" + b.name;
   }
@@ -103,11 +105,18 @@ bool open_buses(std::vector<Served>& buses) {
   return true;
 }
 
-/// Carries frames between a bus outside and the simulated wire of the same name.
+/// Carries frames between a bus outside and the simulated wire of the same name. None is dropped: what the
+/// other side has no room for waits, and meanwhile the transport keeps (and counts) what comes.
 void carry(Served& b, image::CanBus& inside) {
   image::CanFrame frame;
-  while (b.transport.bus->receive(frame))
-    if (!frame.error) inside.send(frame);
+  while (b.entering || b.transport.bus->receive(frame)) {
+    if (b.entering) frame = *b.entering;
+    b.entering.reset();
+    if (frame.error || frame.fd) continue;  // classic devices hear no FD frame
+    if (inside.send(frame)) continue;
+    b.entering = frame;
+    break;
+  }
   while (inside.receive(frame)) b.waiting.push_back(frame);
   std::size_t sent = 0;
   while (sent < b.waiting.size() && b.transport.bus->send(b.waiting[sent])) ++sent;
@@ -226,7 +235,9 @@ int sim(const SimOptions& options) {
       std::fprintf(stderr, "%s\n",
                    text::render(kNotServed, std::vector<std::string>{s.name}, text::user_language()).c_str());
   DriveDesk desk(std::move(*deeds), true);
-  return serve(options, loaded, buses, desk);
+  int code = serve(options, loaded, buses, desk);
+  for (const Served& b : buses) code = unless_frames_lost(code, b.url, *b.transport.bus);
+  return code;
 }
 
 }  // namespace servogate::gateway::command

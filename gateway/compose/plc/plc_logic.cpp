@@ -82,8 +82,10 @@ void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcep
     image::AlarmRecord r;
     r.number = result.fault == plc::Fault::budget ? cycle::alarm::kPlcBudget : cycle::alarm::kPlcFault;
     r.line = result.line;
-    r.value = result.fault == plc::Fault::budget ? static_cast<double>(result.instructions)
-                                                 : static_cast<double>(result.fault);
+    r.file = result.file;
+    r.run = program.number;
+    r.value = static_cast<double>(result.fault);
+    r.detail1 = static_cast<double>(result.task);
     notices.add(r);
   }
   faulted_ = faulted;
@@ -137,6 +139,17 @@ bool PlcLogic::carry_out(Prepared& change) noexcept {
   return false;
 }
 
+std::string PlcLogic::fault_words(const image::AlarmRecord& record, text::Language language) const {
+  const std::shared_ptr<const LogicProgram> of = program();
+  if (of->number != record.run) return {};
+  plc::ScanResult result;
+  result.fault = static_cast<plc::Fault>(static_cast<int>(record.value));
+  result.task = static_cast<std::int16_t>(record.detail1);
+  result.file = static_cast<std::int16_t>(record.file);
+  result.line = record.line;
+  return of->engine.describe(result).str(language);
+}
+
 std::shared_ptr<const LogicProgram> PlcLogic::program() const {
   const std::scoped_lock lock(mutex_);
   return shown_;
@@ -181,7 +194,7 @@ PlcLogic::Plan PlcLogic::prepare_load(const LogicChange& change, Prepared& out,
   plan.possible = true;
   const plc::Image& before = shown_->engine.image();
   out.transfer = plc::plan_transfer(before, *compiled.image, change.online);
-  out.program = std::make_shared<LogicProgram>(compiled.image, change.files);
+  out.program = std::make_shared<LogicProgram>(compiled.image, change.files, change.number);
   out.program->dropped = dropped_places(before, *compiled.image);
   plc::Engine& engine = out.program->engine;
   engine.measure(&stopwatch());

@@ -18,11 +18,16 @@ namespace servogate::gateway {
 
 /// A program with everything that belongs to it.
 struct LogicProgram {
-  LogicProgram(std::shared_ptr<const plc::Image> image, std::vector<plc::SourceFile> files)
-      : engine(std::move(image)), retained(engine.retain_bytes()), sources(std::move(files)) {}
+  LogicProgram(std::shared_ptr<const plc::Image> image, std::vector<plc::SourceFile> files,
+               std::uint32_t its_number = 0)
+      : engine(std::move(image)),
+        retained(engine.retain_bytes()),
+        sources(std::move(files)),
+        number(its_number) {}
   plc::Engine engine;
   RetainedMemory retained;
   std::vector<plc::SourceFile> sources;
+  std::uint32_t number;               ///< of the request that brought it, 0: from the start
   std::vector<image::Place> dropped;  ///< written by the program before and not by this one
 };
 
@@ -58,6 +63,9 @@ class PlcLogic final : public cycle::Logic {
   plc::Engine& engine() noexcept { return shown_->engine; }
   /// The program that runs, as far as the outside knows it.
   std::shared_ptr<const LogicProgram> program() const;
+  /// What stopped the program, with task, file and line, from a record of kPlcBudget or kPlcFault; empty when
+  /// another program runs meanwhile. Not real-time safe.
+  std::string fault_words(const image::AlarmRecord& record, text::Language language) const;
 
   /// What a change comes to; of load, what would be kept.
   struct Plan {

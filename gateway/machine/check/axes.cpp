@@ -168,7 +168,10 @@ class AxisCheck {
     if (a_.vertical && !b.present()) error("vertical", finding::kVerticalBrake, {});
     if (!b.present()) return;
     if (!b.point.empty() && b.drive_output) error("brake.drive_output", finding::kBrakeTwo, {});
-    if (a_.vertical && b.engage_delay <= 0.0) error("brake.engage_delay", finding::kBrakeDelay, {});
+    const double cycle_s = static_cast<double>(machine_.cycle_ns()) * 1e-9;
+    if (a_.vertical && b.engage_delay < cycle_s)
+      error("brake.engage_delay", finding::kBrakeDelay,
+            {text::number(b.engage_delay * 1e3), text::number(cycle_s * 1e3)});
     int station = -1;
     if (machine_.point(b.point, &station) == nullptr) return;
     const StationConfig& s = machine_.stations[static_cast<std::size_t>(station)];

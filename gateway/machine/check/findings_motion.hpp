@@ -87,8 +87,9 @@ inline constexpr text::Entry kBrakeLoss{
     "{0}: when its station is lost the brake \"{1}\" would not engage: loss = {2}, hold = false",
     "{0}: при потере станции тормоз «{1}» не зажмёт: нужно loss = {2}, hold = false"};
 inline constexpr text::Entry kBrakeDelay{
-    "machine.brake_delay", "{0}: brake.engage_delay is 0: power goes before the brake holds",
-    "{0}: brake.engage_delay равен 0: питание снимется раньше, чем тормоз зажмёт"};
+    "machine.brake_delay",
+    "{0}: brake.engage_delay is {1} ms, less than a cycle of {2} ms: power goes before the brake holds",
+    "{0}: brake.engage_delay равен {1} мс, меньше такта {2} мс: питание снимется раньше, чем тормоз зажмёт"};
 inline constexpr text::Entry kBrakeTwo{"machine.brake_twice",
                                        "{0}: the brake has both `point` and `drive_output`",
                                        "{0}: у тормоза заданы и `point`, и `drive_output`"};

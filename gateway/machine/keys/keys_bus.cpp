@@ -52,6 +52,12 @@ const Section& section_of<NodeConfig>() {
       key<&C::boot_attempts>("boot_attempts", {.min = 0, .max = 1000},
                              "attempts to boot a silent node before that is an alarm; 0: 3",
                              "число попыток загрузки молчащего узла до аварии; 0: 3"),
+      key<&C::sdo_timeout>("sdo_timeout", {.unit = Unit::second, .min = 0, .max = 60},
+                           "wait for each answer of an SDO transfer; 0: 200 ms",
+                           "ожидание каждого ответа на обмен SDO; 0: 200 мс"),
+      key<&C::sdo_retries>("sdo_retries", {.min = 0, .max = 100},
+                           "repetitions of an SDO transfer that got no answer",
+                           "число повторов обмена SDO, оставшегося без ответа"),
       key<&C::software_version>("software_version", {}, "100Ah at boot, to the letter; empty: any",
                                 "100Ah при запуске, буква в букву; пусто: любая"),
       key<&C::loss_reaction>(

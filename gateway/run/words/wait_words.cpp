@@ -187,7 +187,11 @@ void describe_place(const machine::MachineConfig& m, const image::ProcessImage& 
 
 }  // namespace
 
-std::string plc_sources(const machine::MachineConfig& machine) { return join(machine.plc.sources); }
+std::string plc_sources(const machine::MachineConfig& machine) {
+  if (!machine.plc.sources.empty()) return join(machine.plc.sources);
+  return text::both("the PLC program that the machine file does not name ([plc] sources)",
+                    "программе ПЛК, которая в файле станка не указана ([plc] sources)");
+}
 
 std::string writer_remedy(const machine::MachineConfig& m, const image::Symbol* symbol,
                           const std::string& named, text::Language language) {
@@ -237,7 +241,7 @@ WaitWords wait_words(Control& control, const image::ProcessImage& image, int pro
                                            language);
   if (w.remedy.empty())
     w.remedy = text::render(
-        row.remedy, std::array{named(w), std::string(), join(m.plc.sources), w.word, w.axis}, language);
+        row.remedy, std::array{named(w), std::string(), plc_sources(m), w.word, w.axis}, language);
   const std::string file = std::filesystem::path(w.file).filename().string();
   w.text = text::render(w.line > 0 && !file.empty() ? kHere : kSomewhere,
                         std::array{std::to_string(w.line), file, happens}, language);

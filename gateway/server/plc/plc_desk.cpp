@@ -19,6 +19,7 @@
 #include "gateway/server/plc/plc_view.hpp"
 #include "gateway/server/resident.hpp"
 #include "gateway/server/texts.hpp"
+#include "plc/types/direct_place.hpp"
 #include "plc/values.hpp"
 #include "plc/vm/image.hpp"
 
@@ -84,6 +85,34 @@ std::optional<image::Place> machine_place(const machine::MachineConfig& m, const
   for (const image::Symbol& s : m.symbol_table())
     if (plc::same_name(s.name, name)) return s.place;
   return image::parse_place(name);
+}
+
+/// What stands at a place that the program has no variable for, as JSON: numbers by the type of the place,
+/// `%MW8` as a bit string, characters as a STRING. nullopt: the name is no place of this machine's packets.
+std::optional<std::string> place_text(const machine::MachineConfig& m, const plc::TypeTable& types,
+                                      const image::Packets& packets, const std::string& name) {
+  const auto direct = plc::direct_place(name);
+  const auto place = direct ? direct : machine_place(m, name);
+  if (!place || !packets.contains(*place)) return std::nullopt;
+  if (const plc::Type* type = type_of(types, place->format); type != nullptr && !direct) {
+    std::uint8_t bytes[8] = {};
+    plc::from_number(*type, packets.number(*place), bytes);
+    return plc::to_json(*type, bytes);
+  }
+  const std::uint8_t* at = packets.data(place->packet) + place->byte();
+  if (place->format == image::Format::bl) return packets.bit(*place) ? "true" : "false";
+  if (place->format != image::Format::ch) {
+    constexpr plc::Kind kBits[] = {plc::Kind::boolean, plc::Kind::byte,  plc::Kind::word,
+                                   plc::Kind::dword,   plc::Kind::dword, plc::Kind::lword};
+    return plc::to_json(*types.elementary(kBits[static_cast<std::size_t>(place->format)]), at);
+  }
+  plc::Type text;
+  text.kind = plc::Kind::string;
+  const std::size_t length = std::min<std::size_t>(place->bytes(), plc::kMaxStringCapacity);
+  std::vector<std::uint8_t> bytes(1 + length);
+  std::copy(at, at + length, bytes.begin() + 1);
+  bytes[0] = static_cast<std::uint8_t>(std::find(bytes.begin() + 1, bytes.end(), 0) - bytes.begin() - 1);
+  return plc::to_json(text, bytes.data());
 }
 
 }  // namespace
@@ -330,8 +359,7 @@ json PlcDesk::watch(const json& request, const PlcAsker& who) {
     handles.push_back(program->engine.find(name));
     if (handles.back()) {
       sample.ranges.push_back({handles.back()->address, handles.back()->type->size});
-    } else if (const auto place = machine_place(resident_.control().machine(), name);
-               !place || type_of(*image.types, place->format) == nullptr) {
+    } else if (!place_text(resident_.control().machine(), *image.types, resident_.image().packets, name)) {
       return refused(kNoVariable, {name}, kWrongUse, who.language);
     }
   }
@@ -347,11 +375,7 @@ json PlcDesk::watch(const json& request, const PlcAsker& who) {
                  .value_or(plc::to_json(*handles[i]->type, sample.bytes.data() + at, handles[i]->bit));
       at += handles[i]->type->size;
     } else {
-      const auto place = machine_place(resident_.control().machine(), names[i]);
-      const plc::Type* type = type_of(*image.types, place->format);
-      std::uint8_t bytes[8] = {};
-      plc::from_number(*type, now.packets.number(*place), bytes);
-      text = plc::to_json(*type, bytes);
+      text = place_text(resident_.control().machine(), *image.types, now.packets, names[i]).value_or("null");
     }
     values.push_back({{"name", names[i]}, {"value", json::parse(text, nullptr, false)}});
   }

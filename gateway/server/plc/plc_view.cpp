@@ -2,9 +2,12 @@
 #include "gateway/server/plc/plc_view.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <iterator>
 #include <map>
 
 #include "firmware_if/image/packets.hpp"
+#include "plc/lookup.hpp"
 #include "plc/vm/image.hpp"
 
 namespace servogate::gateway {
@@ -21,20 +24,28 @@ struct Row {
 };
 
 std::vector<Row> rows_of(const Image& image) {
-  std::vector<Row> rows;
-  for (const Image::Shared& s : image.places)
-    rows.push_back({s.name, s.type->name, image::to_string(s.place), false, {}, {}});
-  for (const plc::ir::Global& g : image.globals)
-    if (g.place < 0) rows.push_back({g.name, g.type->name, "", g.retain, {}, {}});
-  const auto members = [&](const std::string& owner, const plc::Type& frame) {
+  std::vector<Row> programs, rows;
+  const auto members = [&](std::vector<Row>& out, const std::string& owner, const plc::Type& frame) {
     for (const plc::Field& f : frame.fields)
       if (f.name.find('$') == std::string::npos)
-        rows.push_back({owner + "." + f.name, f.type->name, "", f.retain, {}, {}});
+        out.push_back({owner + "." + f.name, f.type->name, "", f.retain, {}, {}});
   };
-  for (const plc::ir::Global& p : image.programs) members(p.name, *p.type);
+  for (const plc::ir::Global& p : image.programs) {
+    members(programs, p.name, *p.type);
+    for (Row& r : programs)  // AT %Q* has its place through VAR_CONFIG
+      if (const auto h = plc::find_variable(image, r.name); r.place.empty() && h && h->place >= 0)
+        r.place = image::to_string(image.places[static_cast<std::size_t>(h->place)].place);
+  }
+  for (const Image::Shared& s : image.places)
+    if (std::none_of(programs.begin(), programs.end(),
+                     [&](const Row& r) { return plc::same_name(r.name, s.name); }))
+      rows.push_back({s.name, s.type->name, image::to_string(s.place), false, {}, {}});
+  for (const plc::ir::Global& g : image.globals)
+    if (g.place < 0) rows.push_back({g.name, g.type->name, "", g.retain, {}, {}});
+  std::move(programs.begin(), programs.end(), std::back_inserter(rows));
   for (const Image::Unit& u : image.units)
     if (!u.from_library && u.kind != plc::syntax::UnitKind::program && u.frame != nullptr)
-      members(u.name, *u.frame);
+      members(rows, u.name, *u.frame);
   return rows;
 }
 
@@ -124,6 +135,10 @@ WatchedBody watched_body(const LogicProgram& program, const std::string& name) {
     if (!plc::is_elementary(r.type->kind)) continue;
     std::uint32_t address = r.cell;
     if (r.base == Image::Reference::Base::unit) address += base;
+    if (r.bound) {  // its cell holds an address: AT %Q* always the same, VAR_IN_OUT one for each call
+      std::memcpy(&address, image.memory.data() + address, sizeof address);
+      if (address == 0) continue;
+    }
     if (r.base == Image::Reference::Base::place) {
       if (image.places[r.cell].raw && r.type->kind == plc::Kind::boolean) continue;
       address = image.places[r.cell].address;

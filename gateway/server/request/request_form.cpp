@@ -44,6 +44,12 @@ constexpr struct {
                {"", "bus", kText},          {"", "node", kNumber},         {"", "index", kNumber},
                {"", "subindex", kNumber}};
 
+/// Without which a request says nothing.
+constexpr struct {
+  std::string_view command, key;
+} kNeeded[] = {{"jog", "axis"},     {"jog_continuous", "axis"}, {"zero", "axis"},
+               {"load", "program"}, {"mdi", "block"},           {"input", "point"}};
+
 std::string what_stands(const json& value) {
   switch (value.type()) {
     case json::value_t::null:
@@ -117,6 +123,11 @@ std::optional<json> read_request(std::string_view line, FormProblem& problem) {
                problem);
     return std::nullopt;
   }
+  for (const auto& needed : kNeeded)
+    if (needed.command == command && !request.contains(needed.key)) {
+      wrong_type(needed.key, kText, text::both("missing", "поля нет"), problem);
+      return std::nullopt;
+    }
   return request;
 }
 

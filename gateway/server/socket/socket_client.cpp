@@ -63,7 +63,9 @@ bool SocketClient::receive(std::string& line, int patience_ms) {
 }
 
 bool SocketClient::exchange(const std::string& line, std::string& answer) {
-  return send(line + "\n") && receive(answer);
+  // A server that does not take the request may have said why before it closed.
+  send(line + "\n");
+  return receive(answer);
 }
 
 }  // namespace servogate::gateway

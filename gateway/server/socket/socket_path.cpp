@@ -23,7 +23,13 @@ std::string socket_folder() {
   return "/tmp/servogate-" + std::to_string(getuid());
 }
 
-std::string default_socket(const std::string& machine_name) {
+namespace {
+
+constexpr const char* kOfControl = ".sock";
+constexpr const char* kOfRun = ".run";
+
+/// Letters, digits and dashes of a machine's name.
+std::string file_name(const std::string& machine_name) {
   std::string name;
   for (const char c : machine_name)
     if (std::isalnum(static_cast<unsigned char>(c)) != 0)
@@ -31,15 +37,15 @@ std::string default_socket(const std::string& machine_name) {
     else if (!name.empty() && name.back() != '-')
       name += '-';
   while (!name.empty() && name.back() == '-') name.pop_back();
-  return socket_folder() + "/" + (name.empty() ? "control" : name) + ".sock";
+  return name.empty() ? "control" : name;
 }
 
-std::vector<std::string> known_sockets() {
+std::vector<std::string> known(const char* extension) {
   std::vector<std::string> found;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(socket_folder(), error)) {
     const std::string path = entry.path().string();
-    if (entry.path().extension() != ".sock" || !entry.is_socket(error)) continue;
+    if (entry.path().extension() != extension || !entry.is_socket(error)) continue;
     SocketClient probe;
     if (probe.connect(path).empty())
       found.push_back(path);
@@ -49,6 +55,20 @@ std::vector<std::string> known_sockets() {
   std::sort(found.begin(), found.end());
   return found;
 }
+
+}  // namespace
+
+std::string default_socket(const std::string& machine_name) {
+  return socket_folder() + "/" + file_name(machine_name) + kOfControl;
+}
+
+std::string run_socket(const std::string& machine_name) {
+  return socket_folder() + "/" + file_name(machine_name) + "-" + std::to_string(getpid()) + kOfRun;
+}
+
+std::vector<std::string> known_sockets() { return known(kOfControl); }
+
+std::vector<std::string> known_runs() { return known(kOfRun); }
 
 std::string clear_way(const std::string& path, text::Language language) {
   const auto say = [&](const text::Entry& entry, std::vector<std::string> arguments = {}) {

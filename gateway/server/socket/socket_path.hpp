@@ -11,8 +11,13 @@ namespace servogate::gateway {
 std::string socket_folder();
 /// Default socket of a machine by its name (letters, digits and dashes of it).
 std::string default_socket(const std::string& machine_name);
-/// Sockets of running controls in socket_folder(). Those that nobody listens on any more are removed.
+/// Socket of a `servogate run` of this process: other names than those of resident controls, so that clients
+/// do not take it for one.
+std::string run_socket(const std::string& machine_name);
+/// Sockets of resident controls in socket_folder(). Those that nobody listens on any more are removed.
 std::vector<std::string> known_sockets();
+/// The same of runs.
+std::vector<std::string> known_runs();
 /// Makes the way free for a new socket: the folder exists (socket_folder() is made, 0700 and ours; no other
 /// one), nobody listens there, a stale socket file is removed. Empty: done; otherwise what stands against it.
 std::string clear_way(const std::string& path, text::Language language = text::user_language());

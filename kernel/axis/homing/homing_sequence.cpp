@@ -26,7 +26,7 @@ bool HomingSequence::start(std::span<Axis> axes, std::uint32_t mask) noexcept {
   if (running() || mask == 0) return false;
   for (std::size_t i = 0; i < axes.size(); ++i)
     if ((mask & bit(i)) && !(axes[i].motion_permitted() && axes[i].standstill())) return false;
-  waiting_ = mask;
+  waiting_ = remaining_ = mask;
   active_ = 0;
   state_ = State::running;
   if (begin_next(axes)) return true;
@@ -44,6 +44,7 @@ void HomingSequence::step(std::span<Axis> axes) noexcept {
       state_ = State::failed;
       return;
     }
+    remaining_ &= ~bit(i);
   }
   if (active_ != 0) return;
   if (waiting_ == 0) {

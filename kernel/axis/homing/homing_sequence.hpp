@@ -22,8 +22,8 @@ class HomingSequence {
   void abort(std::span<Axis> axes) noexcept;
   State state() const noexcept { return state_; }
   bool running() const noexcept { return state_ == State::running; }
-  /// Axes not yet begun or under way, as bits.
-  std::uint32_t remaining() const noexcept { return waiting_ | active_; }
+  /// Axes that the last order has not brought to its end: not begun, under way or broken off, as bits.
+  std::uint32_t remaining() const noexcept { return remaining_; }
 
  private:
   bool begin_next(std::span<Axis> axes) noexcept;
@@ -31,6 +31,7 @@ class HomingSequence {
   State state_ = State::idle;
   std::uint32_t waiting_ = 0;
   std::uint32_t active_ = 0;
+  std::uint32_t remaining_ = 0;
 };
 
 }  // namespace servogate::axis

@@ -25,6 +25,7 @@ inline constexpr AlarmNumber kBusSendOverflow = 2016;
 inline constexpr AlarmNumber kBusDown = 2017;
 inline constexpr AlarmNumber kNodeRestarted = 2018;
 inline constexpr AlarmNumber kNodeLeft = 2019;
+inline constexpr AlarmNumber kPdoShort = 2020;
 
 inline constexpr AlarmNumber kSourceStale = 3001;
 inline constexpr AlarmNumber kSourceBad = 3002;

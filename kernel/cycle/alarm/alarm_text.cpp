@@ -139,6 +139,19 @@ std::string boot_words(const AlarmRecord& r, const AlarmNames& names, Language l
          text::number(r.detail1, 0);
 }
 
+std::string plc_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
+  std::string words = names.plc_fault ? names.plc_fault(r, language) : std::string();
+  if (!words.empty()) return words;
+  const bool russian = language == Language::russian;
+  return (russian ? "ошибка " : "error ") + text::number(r.value, 0) +
+         (russian ? " в строке " : " in line ") + std::to_string(r.line);
+}
+
+std::string frame_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
+  const std::string words = names.foreign_frame ? names.foreign_frame(r, language) : std::string();
+  return words.empty() ? hex(static_cast<unsigned>(r.value), 3) : words;
+}
+
 std::string axis_name(const AlarmRecord& r, const AlarmNames& names) {
   const bool spindle = r.number >= 1200 && r.number < 1300;
   if (spindle) return r.axis > 0 ? "S" + std::to_string(r.axis + 1) : "S";
@@ -222,8 +235,11 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
   if (r.number == axis::alarm::kHomingInterrupted) out[6] = break_words(r.detail1, out[0], language);
   if (r.number == alarm::kOverrunLimit) out[6] = phase_words(static_cast<int>(r.detail1), language);
   if (r.number == alarm::kBootFailed) out[6] = boot_words(r, names, language);
+  if (r.number == axis::alarm::kPdoMissing || r.number == alarm::kPdoShort)
+    out[6] = r.detail1 > 0.0 ? " (TPDO" + text::number(r.detail1, 0) + ")" : "";
+  if (r.number == alarm::kPlcBudget || r.number == alarm::kPlcFault) out[6] = plc_words(r, names, language);
   if (r.number == alarm::kNodeLeft) out[1] = nmt_words(static_cast<int>(r.value), language);
-  if (r.number == alarm::kForeignFrame) out[8] = hex(static_cast<unsigned>(r.value), 3);
+  if (r.number == alarm::kForeignFrame) out[8] = frame_words(r, names, language);
   return out;
 }
 

@@ -110,7 +110,8 @@ void AlarmList::recount() noexcept {
     const AlarmRecord& r = records_[static_cast<std::size_t>(i)];
     if (!r.active) continue;
     ++active_;
-    control_fails_ = control_fails_ || r.number == alarm::kOverrunLimit || r.number == alarm::kPlcFault;
+    control_fails_ = control_fails_ || r.number == alarm::kOverrunLimit || r.number == alarm::kPlcBudget ||
+                     r.number == alarm::kPlcFault;
     reaction_ = std::max(reaction_, r.reaction);
   }
 }

@@ -108,11 +108,15 @@ struct AlarmNames {
   std::function<std::string(int segment, int node)> node_name;
   /// Where and why a node's start-up failed, from a record of kBootFailed; may be empty.
   std::function<std::string(const image::AlarmRecord&, text::Language)> boot_failure;
+  /// What a frame says that somebody else sent, from a record of kForeignFrame; may be empty.
+  std::function<std::string(const image::AlarmRecord&, text::Language)> foreign_frame;
   /// Path of a file of a run as people open it (ProcessStatus::run, ::file); may be empty.
   std::function<std::string(int process, std::uint32_t run, int file)> program_file;
   /// What a program's interpreter found (program errors and warnings; its number in `value`) with file, line
   /// and column; may be empty.
   std::function<std::string(int process, int number, text::Language)> program_finding;
+  /// What stopped the PLC program, from a record of kPlcBudget or kPlcFault; may be empty.
+  std::function<std::string(const image::AlarmRecord&, text::Language)> plc_fault;
   /// Text of an alarm that the PLC raises (number in `value`); may be empty.
   std::function<std::string(int number, text::Language)> external_text;
 };

@@ -157,6 +157,7 @@ class Decision {
   }
   bool start() noexcept;
   bool step() noexcept;
+  bool runs_on() const noexcept;
   bool resume() noexcept;
   bool place(bool write) noexcept;
   bool not_of_emergency_stop(const image::Place& place) noexcept;
@@ -357,7 +358,15 @@ bool Decision::mode_of_request() noexcept {
   const bool possible = (kWithMode & bit(r_.kind)) != 0 && r_.mode <= static_cast<int>(Mode::home);
   if (!possible) return refuse(Refusal::bad_value, -1, r_.mode, static_cast<double>(Mode::home));
   const bool same = c_.image->processes[static_cast<std::size_t>(r_.process)].mode == mode_in_force();
-  return same || (no_program() && not_held_by_another());
+  return same || runs_on() || (no_program() && not_held_by_another());
+}
+
+/// A program that is stepped through may be started to run to its end.
+bool Decision::runs_on() const noexcept {
+  const ProcessState s = state(r_.process);
+  return r_.kind == RequestKind::start && r_.mode == static_cast<int>(Mode::automatic) &&
+         (s == ProcessState::held || s == ProcessState::waiting) &&
+         c_.image->processes[static_cast<std::size_t>(r_.process)].mode == Mode::step;
 }
 
 /// What is planned of a program in AUTO goes on to its end: a step would be all of it.

@@ -108,6 +108,28 @@ TEST_F(SdoClientTest, retries_a_lost_answer_once_and_then_names_the_object) {
   EXPECT_EQ(client.result().abort, AbortCode::timed_out);
 }
 
+TEST_F(SdoClientTest, waits_longer_for_one_transfer_where_it_is_told_to_and_never_shorter) {
+  client.download(0x1010, 1, 0x65766173, 4);
+  client.wait_for(5 * kTimeout);
+  poll();
+  wait(4 * kTimeout);
+  EXPECT_EQ(bus.take_sent().size(), 1u) << "no repetition";
+  answer({0x60, 0x10, 0x10, 0x01, 0, 0, 0, 0});
+  EXPECT_EQ(client.result().status, SdoStatus::done);
+  EXPECT_EQ(client.result().retries, 0u);
+  client.upload(0x6064, 0);
+  poll();
+  wait(kTimeout);
+  EXPECT_EQ(client.result().retries, 1u) << "the next transfer has the usual time";
+  poll();
+  answer({0x43, 0x64, 0x60, 0x00, 1, 0, 0, 0});
+  client.upload(0x6064, 0);
+  client.wait_for(1);
+  poll();
+  wait(kTimeout - 1);
+  EXPECT_EQ(client.result().retries, 0u);
+}
+
 TEST_F(SdoClientTest, an_answer_to_the_repetition_is_as_good) {
   client.upload(0x6064, 0);
   poll();

@@ -76,7 +76,7 @@ TEST_F(RunningRig, missing_process_data_is_counted_and_said_after_the_limit) {
   rig.run(1);
   EXPECT_EQ(rig.drive().missed, 3u);
   EXPECT_FALSE(rig.drive().online);
-  EXPECT_EQ(rig.sentence(BusEventKind::pdo_missing), "X: no process data for 3 cycles");
+  EXPECT_EQ(rig.sentence(BusEventKind::pdo_missing), "X: no process data (TPDO1) for 3 cycles");
   rig.run(100);
   EXPECT_EQ(rig.count(BusEventKind::pdo_missing), 1);
   EXPECT_EQ(rig.device().machine.state, DriveState::quick_stop_active)
@@ -96,6 +96,34 @@ TEST_F(RunningRig, one_lost_pdo_is_no_loss) {
   EXPECT_EQ(rig.drive().state, DriveState::operation_enabled);
 }
 
+TEST(ProcessData, of_each_kind_that_has_to_come_is_missed_by_itself) {
+  struct Kind {
+    int number;
+    std::uint8_t every;  ///< SYNCs
+  };
+  for (const Kind& kind : {Kind{1, 1}, {2, 1}, {3, 1}, {3, 10}}) {
+    SegmentRig rig;
+    DriveProfile& profile = rig.config.nodes[0].profile;
+    use_full_position_map(profile);
+    profile.tpdo[static_cast<std::size_t>(kind.number - 1)].transmission_type = kind.every;
+    rig.start();
+    ASSERT_TRUE(rig.boot());
+    rig.run(40);
+    ASSERT_TRUE(rig.drive().online);
+    rig.network.fate = [&](const image::CanFrame& f) {
+      return f.id == 0x81u + 0x100u * static_cast<unsigned>(kind.number) ? 0 : 1;
+    };
+    ASSERT_TRUE(rig.run_until([&] { return !rig.drive().online; }, 3 * kind.every + kind.every + 1))
+        << kind.number;
+    EXPECT_EQ(rig.count(BusEventKind::pdo_missing), 1);
+    EXPECT_EQ(rig.sentence(BusEventKind::pdo_missing), "X: no process data (TPDO" +
+                                                           std::to_string(kind.number) + ") for " +
+                                                           std::to_string(3 * kind.every) + " cycles");
+    rig.network.fate = nullptr;
+    EXPECT_TRUE(rig.run_until([&] { return rig.drive().online; }, 20));
+  }
+}
+
 TEST_F(RunningRig, a_short_pdo_is_not_used_and_is_said) {
   ASSERT_TRUE(ready);
   const auto position = rig.drive().position_counts;
@@ -103,6 +131,7 @@ TEST_F(RunningRig, a_short_pdo_is_not_used_and_is_said) {
   rig.run(3);
   EXPECT_EQ(rig.drive().position_counts, position);
   EXPECT_GE(rig.drive().missed, 1u);
+  EXPECT_EQ(rig.count(BusEventKind::pdo_short), 1) << "once, not in every cycle";
   EXPECT_EQ(rig.sentence(BusEventKind::pdo_short), "X: process data 181h has 4 bytes where 6 are mapped");
 }
 

@@ -125,6 +125,19 @@ TEST_F(NodeKeys, a_silent_node_is_named_after_its_own_time_and_attempts) {
   EXPECT_GT(told_after("boot_timeout = \"3 s\"\nboot_attempts = 1"), 2.9);
 }
 
+TEST_F(NodeKeys, a_slow_node_boots_where_it_is_given_the_time_for_its_answers) {
+  const auto boots = [&](const std::string& keys) {
+    start(keys);
+    drive().inject({.kind = mock::DriveFaultKind::sdo_late, .delay_ns = 300 * image::kMillisecond});
+    EXPECT_TRUE(mill->until(
+        [&] { return mill->axis("X").drive.online || mill->alarms(cycle::alarm::kBootFailed) > 0; }, 120.0));
+    return mill->axis("X").drive.online;
+  };
+  EXPECT_FALSE(boots("sdo_retries = 0"));
+  EXPECT_NE(first_words().find("no answer"), std::string::npos) << first_words();
+  EXPECT_TRUE(boots("sdo_timeout = \"500 ms\"\nsdo_retries = 0")) << first_words();
+}
+
 TEST_F(NodeKeys, an_error_code_is_told_in_the_words_of_the_device_file_in_both_languages) {
   ASSERT_NO_FATAL_FAILURE(start(""));
   ASSERT_TRUE(mill->power_on()) << mill->alarm_list();
@@ -152,16 +165,20 @@ struct Loss {
   std::int64_t cycles = 0;
   image::DriveState other = image::DriveState::offline;
 };
-Loss lose_x(const std::string& keys) {
+enum class Lost { drive, bus };
+Loss lose_x(const std::string& keys, Lost what = Lost::drive) {
   Mill mill(mill_with(keys), kLine);
   EXPECT_TRUE(mill.make_ready()) << mill.alarm_list();
   EXPECT_EQ(mill.ask(image::RequestKind::start), cycle::Refusal::none);
   EXPECT_TRUE(mill.until([&] { return mill.axis("X").command > 50.0; }, 20.0));
   const std::int64_t cut = mill.image().now.number;
-  mill.inject("can.x", mock::DriveFaultKind::silent);
+  if (what == Lost::drive)
+    mill.inject("can.x", mock::DriveFaultKind::silent);
+  else
+    mill.control().world().wire(0)->force_bus_off(0);
+  const image::AlarmNumber awaited = what == Lost::drive ? axis::alarm::kPdoMissing : cycle::alarm::kBusOff;
   // A long patience lets the lost axis fall behind first: that is a warning.
-  EXPECT_TRUE(mill.until([&] { return mill.alarms(axis::alarm::kPdoMissing) > 0; }, 2.0))
-      << mill.alarm_list();
+  EXPECT_TRUE(mill.until([&] { return mill.alarms(awaited) > 0; }, 2.0)) << mill.alarm_list();
   Loss loss;
   for (const image::AlarmRecord& r : mill.control().cycle().alarms().history())
     if (r.reaction > Reaction::warn && loss.fault.number == 0) loss.fault = r;
@@ -181,6 +198,16 @@ TEST(NodeLoss, has_the_reaction_that_the_node_declares) {
   EXPECT_EQ(quick.fault.reaction, Reaction::quick_stop);
   EXPECT_NE(quick.other, image::DriveState::operation_enabled);
   EXPECT_EQ(lose_x("loss_reaction = \"power_off\"").fault.reaction, Reaction::power_off);
+}
+
+TEST(NodeLoss, by_a_bus_that_is_off_has_the_strongest_reaction_of_its_nodes_at_once) {
+  const Loss standard = lose_x("", Lost::bus);
+  EXPECT_EQ(standard.fault.number, cycle::alarm::kBusOff);
+  EXPECT_EQ(standard.fault.reaction, Reaction::stop_on_path);
+  const Loss declared = lose_x("loss_reaction = \"quick_stop\"\nloss_cycles = 1000", Lost::bus);
+  EXPECT_EQ(declared.fault.number, cycle::alarm::kBusOff);
+  EXPECT_EQ(declared.fault.reaction, Reaction::quick_stop);
+  EXPECT_LE(declared.cycles, 2);
 }
 
 TEST(NodeLoss, counts_after_as_many_cycles_without_process_data_as_the_node_declares) {

@@ -33,6 +33,10 @@ TEST(Standstill, is_not_reached_while_a_drive_has_torque_or_a_spindle_turns) {
   ASSERT_TRUE(mill.power_on()) << mill.alarm_list();
   auto image = std::make_unique<image::ProcessImage>(mill.control().cycle().image());
   EXPECT_FALSE(axes_off(*image));
+  for (image::AxisImage& a : image->axes) a.enabled = a.moving = false;
+  EXPECT_FALSE(axes_off(*image)) << "the brake closes under torque";
+  for (image::AxisImage& a : image->axes) a.drive.state = image::DriveState::switch_on_disabled;
+  EXPECT_TRUE(axes_off(*image));
   ASSERT_TRUE(spindles_rest(*image));
   image->spindles[0].drive.online = true;
   image->spindles[0].drive.state = image::DriveState::operation_enabled;

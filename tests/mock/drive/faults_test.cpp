@@ -86,6 +86,10 @@ TEST_F(DriveFaults, corrupted_and_repeated_pdos) {
   EXPECT_EQ(b.take(0x185)->data[0], good ^ 0xFF);
   b.drive.clear_faults();
   cycles(1);
+  b.drive.inject({.kind = DriveFaultKind::pdo_corrupted, .number = 2, .value = 0xFF});
+  cycles(1);
+  EXPECT_EQ(b.take(0x185)->data[0], good) << "TPDO1 is not TPDO2";
+  b.drive.clear_faults();
   b.drive.inject({.kind = DriveFaultKind::pdo_repeated});
   const auto before = b.take(0x185);
   for (int i = 1; i < 20; ++i) b.cycle(0x0F, 500 * i);
@@ -97,6 +101,13 @@ TEST_F(DriveFaults, sdo_requests_can_be_refused_or_left_without_an_answer) {
       {.kind = DriveFaultKind::sdo_abort, .index = 0x6085, .abort = canopen::AbortCode::hardware_error});
   EXPECT_EQ(b.write(0x6085, 0, 1000, 4), 0x06060000u);
   EXPECT_EQ(b.write(0x6084, 0, 1000, 4), 0u) << "another object";
+  b.drive.clear_faults();
+  b.drive.inject({.kind = DriveFaultKind::sdo_late, .delay_ns = 20 * image::kMillisecond});
+  EXPECT_TRUE(b.sdo({0x40, 0, 0x10, 0, 0, 0, 0, 0}).empty());
+  int waited = 0;
+  while (!b.take(0x585) && waited < 100) cycles(1), ++waited;
+  EXPECT_GE(waited, 8);
+  EXPECT_LE(waited, 21) << "20 ms behind the request";
   b.drive.clear_faults();
   b.drive.inject({.kind = DriveFaultKind::sdo_silent});
   EXPECT_TRUE(b.sdo({0x40, 0, 0x10, 0, 0, 0, 0, 0}).empty());

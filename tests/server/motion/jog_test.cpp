@@ -77,6 +77,15 @@ TEST_F(JogCommand, ends_at_a_silent_hand_with_that_as_its_reason) {
   EXPECT_TRUE(contains(json::parse(answer)["text"], "no keep-alive")) << answer;
 }
 
+TEST_F(JogCommand, ends_when_another_hand_asks_for_the_other_direction) {
+  const Outcome o = while_it_jogs([&](pid_t) {
+    EXPECT_EQ(shell_.ask({{"cmd", "jog_continuous"}, {"axis", "X"}, {"value", -1}})["code"],
+              "gate.axis_moves");
+  });
+  EXPECT_EQ(o.exit, 3) << o.err;
+  EXPECT_TRUE(contains(o.err, "[jog.asked]")) << o.err;
+}
+
 TEST_F(JogCommand, by_a_distance_returns_when_the_axis_stands) {
   const Outcome o = shell_.run({"jog", "X", "+2mm"});
   EXPECT_EQ(o.exit, 0) << o.err;

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Judges a log of candump -L: SYNC is the first frame of every cycle, and between one SYNC and the next every drive
-answers exactly once. Usage: check_sync.py LOG NODES CYCLES"""
+answers exactly once. With GRID, SYNC k is at most so many ms away from t0 + k * PERIOD ms, too: for computers that
+hold times. Usage: check_sync.py LOG NODES CYCLES [PERIOD GRID]"""
 import sys
 
 nodes, cycles = int(sys.argv[2]), int(sys.argv[3])
@@ -31,6 +32,12 @@ close()
 steps = [b - a for a, b in zip(times, times[1:])]
 if len(times) != cycles:
     problems.append(f"{len(times)} SYNC instead of {cycles}")
+if len(sys.argv) > 5:
+    period, grid = float(sys.argv[4]), float(sys.argv[5])
+    off = [(t - times[0]) * 1e3 - k * period for k, t in enumerate(times)]
+    print(f"SYNC within {max(off) - min(off):.3f} ms of its grid")
+    if max(off) - min(off) > grid:
+        problems.append(f"SYNC strays {max(off) - min(off):.3f} ms from its grid, allowed {grid} ms")
 print(f"{len(times)} SYNC, {min(steps) * 1e3:.3f} to {max(steps) * 1e3:.3f} ms apart, {nodes} drives, "
       f"{len(problems)} cycles not in order")
 sys.exit("\n".join(problems[:10]) or 0)

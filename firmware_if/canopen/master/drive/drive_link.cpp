@@ -24,13 +24,6 @@ std::uint64_t clamped(double value, double limit) noexcept {
   return static_cast<std::uint64_t>(std::llround(std::clamp(value, -limit, limit)));
 }
 
-/// Cycles between two PDOs with the statusword; 0: not known.
-std::int64_t status_interval(const NodeConfig& node, const SegmentConfig& segment) noexcept {
-  const PdoField status = find_field(node.profile.tpdo, object::kStatusword);
-  if (!status.mapped()) return 0;
-  return cycles_between(node.profile.tpdo[static_cast<std::size_t>(status.pdo)], segment.cycle_ns);
-}
-
 DriveControl::Timing timing_of(const DriveProfile& profile) {
   return {profile.fault_reset, profile.fault_reset_hold_ms * image::kMillisecond,
           profile.transition_timeout_ms * image::kMillisecond};
@@ -42,8 +35,7 @@ DriveLink::DriveLink(const NodeConfig& node, const SegmentConfig& segment)
     : profile_(node.profile),
       target_(node.target),
       cycle_ns_(segment.cycle_ns),
-      status_every_(std::max<std::int64_t>(1, status_interval(node, segment))),
-      missed_limit_(status_interval(node, segment) * max_missed_pdo(node, segment)),
+      watch_(profile_.tpdo, segment.cycle_ns, max_missed_pdo(node, segment)),
       handover_counts_(profile_.handover_counts ? profile_.handover_counts
                                                 : std::max<std::int64_t>(1, profile_.counts_per_rev / 4)),
       data_(profile_),
@@ -77,10 +69,12 @@ DriveLink::DriveLink(const NodeConfig& node, const SegmentConfig& segment)
 
 void DriveLink::restart() noexcept {
   data_.clear();
+  watch_.restart();
   control_.restart();
   probe_.restart();
   homing_.restart();
   statusword_ = 0;
+  status_known_ = false;
   position_known_ = false;
   cycles_since_position_ = 0;
   velocity_counts_s_ = 0.0;
@@ -130,6 +124,7 @@ bool DriveLink::update() noexcept {
   if (status_fresh) {
     statusword_ = static_cast<std::uint16_t>(data_.raw(in_.statusword));
     control_.on_statusword(statusword_);
+    status_known_ = true;
   }
   if (data_.fresh(in_.position)) take_position();
   take_velocity();
@@ -137,8 +132,9 @@ bool DriveLink::update() noexcept {
   if (status_fresh && mode_meant_ == DriveMode::homing) homing_.on_statusword(statusword_);
   if (data_.fresh(in_.probe_status)) take_probe_by_pdo();
   follow_state();
+  const bool on_time = watch_.step(data_);
   data_.end_of_cycle();
-  return status_fresh;
+  return on_time && status_known_;
 }
 
 // 6064h has 32 bits and wraps; the machine counts on in 64.

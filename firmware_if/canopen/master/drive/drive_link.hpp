@@ -20,11 +20,8 @@ class DriveLink final : public NodeLink {
 
   ProcessData& process_data() noexcept override { return data_; }
   void restart() noexcept override;
-  /// True when the PDO with the statusword has come.
   bool update() noexcept override;
-  std::int64_t missed_limit() const noexcept override { return missed_limit_; }
-  /// Cycles from one PDO with the statusword to the next, at least 1.
-  std::int64_t status_every() const noexcept { return status_every_; }
+  const PdoWatch& watch() const noexcept override { return watch_; }
   void on_emcy(std::uint16_t error_code) noexcept override;
   void fill(image::DriveFeedback& feedback) const noexcept;
 
@@ -68,7 +65,7 @@ class DriveLink final : public NodeLink {
   DriveProfile profile_;
   DriveTarget target_;
   image::Nanoseconds cycle_ns_;
-  std::int64_t status_every_, missed_limit_;
+  PdoWatch watch_;
   std::int64_t handover_counts_;
   ProcessData data_;
   struct {
@@ -84,6 +81,7 @@ class DriveLink final : public NodeLink {
   HomingWatch homing_;
 
   std::uint16_t statusword_ = 0;
+  bool status_known_ = false;
   bool position_known_ = false;
   std::int64_t position_counts_ = 0;
   std::int64_t last_position_counts_ = 0;

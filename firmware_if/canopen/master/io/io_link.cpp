@@ -7,12 +7,6 @@
 namespace servogate::canopen {
 namespace {
 
-/// A timer of the node is not in step with our cycle.
-std::int64_t expected_every(const PdoWanted& pdo, image::Nanoseconds cycle_ns) noexcept {
-  if (!pdo.used()) return 0;
-  return cycles_between(pdo, cycle_ns) + (pdo.transmission_type > 240 ? 2 : 0);
-}
-
 std::uint64_t raw_of(double value, const IoPoint& p, std::uint8_t bits) noexcept {
   const double raw = (value - p.shift) / p.scale;
   if (!std::isfinite(raw)) return 0;
@@ -24,7 +18,7 @@ std::uint64_t raw_of(double value, const IoPoint& p, std::uint8_t bits) noexcept
 
 IoLink::IoLink(const NodeConfig& node, const SegmentConfig& segment)
     : source_(static_cast<std::size_t>(node.target_index)),
-      max_missed_(max_missed_pdo(node, segment)),
+      watch_(node.profile.tpdo, segment.cycle_ns, max_missed_pdo(node, segment)),
       data_(node.profile) {
   for (const IoPoint& p : node.io.points) {
     Terminal terminal{p, find_field(p.input ? node.profile.tpdo : node.profile.rpdo, p.index, p.subindex)};
@@ -34,32 +28,18 @@ IoLink::IoLink(const NodeConfig& node, const SegmentConfig& segment)
     }
     (p.input ? inputs_ : outputs_).push_back(terminal);
   }
-  for (std::size_t i = 0; i < watches_.size(); ++i)
-    watches_[i].every = expected_every(node.profile.tpdo[i], segment.cycle_ns);
   restart();
 }
 
 void IoLink::restart() noexcept {
   data_.clear();
-  limit_ = 0;
-  // None has come yet.
-  for (Watch& w : watches_) w.age = w.every;
+  watch_.restart();
 }
 
 bool IoLink::update() noexcept {
-  std::int64_t limit = 0;
-  for (std::size_t i = 0; i < watches_.size(); ++i) {
-    Watch& w = watches_[i];
-    if (w.every == 0) continue;
-    w.age = data_.fresh({static_cast<std::int8_t>(i), 0, 8}) ? 0 : w.age + 1;
-    if (w.age < w.every) continue;
-    // Counted from when it should have come: of n that may be missing, the last n - 1 are yet to come.
-    const std::int64_t more = (max_missed_ - 1) * w.every + 1;
-    limit = limit == 0 ? more : std::min(limit, more);
-  }
-  limit_ = limit;
+  const bool on_time = watch_.step(data_);
   data_.end_of_cycle();
-  return limit == 0;
+  return on_time;
 }
 
 void IoLink::fill(image::ProcessImage& image, bool online) noexcept {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <vector>
 
 #include "firmware_if/canopen/master/io/io_station.hpp"
@@ -19,7 +18,7 @@ class IoLink final : public NodeLink {
   ProcessData& process_data() noexcept override { return data_; }
   void restart() noexcept override;
   bool update() noexcept override;
-  std::int64_t missed_limit() const noexcept override { return limit_; }
+  const PdoWatch& watch() const noexcept override { return watch_; }
 
   /// Inputs into packet A, and the health of their source. While the node is not online they have what is
   /// declared for its loss.
@@ -33,18 +32,11 @@ class IoLink final : public NodeLink {
     IoPoint point;
     PdoField field;
   };
-  /// A TPDO that has to come again and again.
-  struct Watch {
-    std::int64_t every = 0;  ///< cycles; 0: it is not used
-    std::int64_t age = 0;    ///< cycles since it came
-  };
 
   std::size_t source_;
-  std::int64_t max_missed_;
+  PdoWatch watch_;
   ProcessData data_;
   std::vector<Terminal> inputs_, outputs_;
-  std::array<Watch, 4> watches_{};
-  std::int64_t limit_ = 0;
 };
 
 }  // namespace servogate::canopen

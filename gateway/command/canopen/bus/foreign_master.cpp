@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 
@@ -12,73 +12,26 @@ namespace servogate::gateway::command {
 
 namespace {
 
-using canopen::Service;
-
 const text::Entry kMayMove{"can.may-move", "{0} can move a drive: --i-may-move says that it may",
                            "{0} может двинуть привод: --i-may-move разрешает это"};
 const text::Entry kInUse{"can.in-use",
                          "{0} is not done: somebody controls this bus, its frame {1} came within {2} s",
                          "{0} не выполняется: этой шиной кто-то управляет, за {2} с пришёл его кадр {1}"};
 
-struct Row {
-  Service service;
-  const char* english;
-  const char* russian;
-  bool of_node;
-  bool master;  ///< sent by masters only
-};
-constexpr Row kRows[] = {
-    {Service::nmt, "NMT command", "команда NMT", false, true},
-    {Service::sync, "SYNC", "SYNC", false, true},
-    {Service::emcy, "EMCY", "EMCY", true, false},
-    {Service::time, "TIME", "TIME", false, true},
-    {Service::tpdo1, "TPDO 1", "TPDO 1", true, false},
-    {Service::rpdo1, "RPDO 1", "RPDO 1", true, true},
-    {Service::tpdo2, "TPDO 2", "TPDO 2", true, false},
-    {Service::rpdo2, "RPDO 2", "RPDO 2", true, true},
-    {Service::tpdo3, "TPDO 3", "TPDO 3", true, false},
-    {Service::rpdo3, "RPDO 3", "RPDO 3", true, true},
-    {Service::tpdo4, "TPDO 4", "TPDO 4", true, false},
-    {Service::rpdo4, "RPDO 4", "RPDO 4", true, true},
-    {Service::sdo_response, "SDO answer", "ответ SDO", true, false},
-    {Service::sdo_request, "SDO request", "запрос SDO", true, true},
-    {Service::heartbeat, "heartbeat", "heartbeat", true, false},
-    {Service::lss, "layer setting", "LSS", false, true},
-};
-constexpr Row kGuarding{Service::heartbeat, "node guarding", "опрос узла", true, true};
-
-const Row* row_of(Service service) {
-  const auto found =
-      std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) { return r.service == service; });
-  return found == std::end(kRows) ? nullptr : found;
-}
+const text::Entry kNotRead{
+    "can.not-read",
+    "somebody controls this bus, its frame {0} came within {1} s, and no running control of this user holds "
+    "it: requests from here would come between its own. Ask it, or end it; --anyway reads all the same",
+    "этой шиной кто-то управляет, за {1} с пришёл его кадр {0}, а работающего управления этого пользователя "
+    "на ней нет: запросы отсюда вклинились бы между его запросами. Спросите его или завершите; --anyway "
+    "читает несмотря на это"};
 
 }  // namespace
-
-std::string frame_words(const image::CanFrame& frame) {
-  const canopen::CobId id = canopen::classify(frame.id, frame.extended);
-  char number[16];
-  std::snprintf(number, sizeof number, frame.extended ? "(%08Xh)" : "(%03Xh)", frame.id);
-  const Row* row = frame.remote && id.service == Service::heartbeat ? &kGuarding : row_of(id.service);
-  if (row == nullptr) return number;
-  const std::string node = std::to_string(id.node);
-  return text::both(row->english + (row->of_node ? " of node " + node : "") + " " + number,
-                    row->russian + (row->of_node ? " узла " + node : "") + " " + number);
-}
-
-bool shows_master(const image::CanFrame& frame) {
-  if (frame.error) return false;
-  const canopen::CobId id = canopen::classify(frame.id, frame.extended);
-  if (frame.remote) return id.service == Service::heartbeat;
-  if (id.service == Service::lss) return frame.id == canopen::cob::kLssMaster;
-  const Row* row = row_of(id.service);
-  return row != nullptr && row->master;
-}
 
 std::optional<image::CanFrame> foreign_master(ToolBus& bus, image::Nanoseconds listening) {
   std::optional<image::CanFrame> found;
   bus.listen(listening, [&](const image::CanFrame& frame) {
-    if (shows_master(frame)) found = frame;
+    if (canopen::sent_by_masters(frame)) found = frame;
     return found.has_value();
   });
   return found;
@@ -95,19 +48,29 @@ bool can_move(std::uint16_t index) {
   return std::find(std::begin(kObjects), std::end(kObjects), own) != std::end(kObjects);
 }
 
-int must_be_idle(ToolBus& bus, const std::string& what, double listen_s) {
+int must_be_idle(ToolBus& bus, const std::string& what, const CanopenBusOptions& options) {
+  const double listen_s = options.listen_s.value_or(kSilenceBeforeWriting_s);
   const auto frame = foreign_master(bus, std::llround(listen_s * 1e9));
   if (!frame) return kDone;
-  complain(kInUse, {what, frame_words(*frame), text::number(listen_s)});
+  complain(kInUse, {what, canopen::frame_words(*frame), text::number(listen_s)});
   return kAlarm;
 }
 
-int may_move(ToolBus& bus, const std::string& what, bool i_may_move, double listen_s) {
-  if (!i_may_move) {
+int may_read(ToolBus& bus, const CanopenBusOptions& options) {
+  if (options.anyway) return kDone;
+  const double listen_s = options.listen_s.value_or(kSilenceBeforeReading_s);
+  const auto frame = foreign_master(bus, std::llround(listen_s * 1e9));
+  if (!frame) return kDone;
+  complain(kNotRead, {canopen::frame_words(*frame), text::number(listen_s)});
+  return kAlarm;
+}
+
+int may_move(ToolBus& bus, const std::string& what, const CanopenBusOptions& options) {
+  if (!options.may_move) {
     complain(kMayMove, {what});
     return kWrongUse;
   }
-  return must_be_idle(bus, what, listen_s);
+  return must_be_idle(bus, what, options);
 }
 
 }  // namespace servogate::gateway::command

@@ -7,12 +7,6 @@
 
 namespace servogate::gateway::command {
 
-/// A frame in words, as the standard's connection set has it: "SYNC (080h)", "RPDO 1 of node 5 (205h)"; in
-/// both languages (text::both).
-std::string frame_words(const image::CanFrame& frame);
-/// Whether only a master sends such a frame: NMT, SYNC, TIME, RPDOs, SDO requests, layer setting, guarding.
-bool shows_master(const image::CanFrame& frame);
-
 /// Listens for `listening`; the first frame that shows that somebody controls this bus. nullopt: it is idle.
 std::optional<image::CanFrame> foreign_master(ToolBus& bus, image::Nanoseconds listening);
 
@@ -21,10 +15,13 @@ std::optional<image::CanFrame> foreign_master(ToolBus& bus, image::Nanoseconds l
 /// 6410h to 641Fh), and NMT requests 1F82h.
 bool can_move(std::uint16_t index);
 
+/// The gate of every command that only reads. kDone: the bus shows no master, or --anyway was said; otherwise
+/// kAlarm, after saying what was heard: SDO requests of two clients disturb one another.
+int may_read(ToolBus& bus, const CanopenBusOptions& options);
 /// The gate of everything that can move. kDone: it may be done; otherwise the exit code, after saying why
 /// not: kWrongUse without `--i-may-move`, kAlarm when somebody controls the bus.
-int may_move(ToolBus& bus, const std::string& what, bool i_may_move, double listen_s);
-/// The half of it for what moves nothing and yet disturbs a bus that is in use.
-int must_be_idle(ToolBus& bus, const std::string& what, double listen_s);
+int may_move(ToolBus& bus, const std::string& what, const CanopenBusOptions& options);
+/// The half of it for what moves nothing and yet disturbs a bus that is in use: every write.
+int must_be_idle(ToolBus& bus, const std::string& what, const CanopenBusOptions& options);
 
 }  // namespace servogate::gateway::command

@@ -8,7 +8,7 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/command/canopen/object_value.hpp"
-#include "gateway/command/named_bus.hpp"
+#include "gateway/compose/bus_place.hpp"
 #include "gateway/server/socket/socket_path.hpp"
 
 namespace servogate::gateway::command {
@@ -23,11 +23,17 @@ const text::Entry kHeld{
     "down` ends it",
     "{0} не выполняется: шину {1} держит работающее управление «{2}» ({3}); его завершает "
     "`servogate down`"};
+const text::Entry kHeldByRun{
+    "can.held-by-run",
+    "{0} is not done: the bus {1} is held by a `servogate run` of '{2}' ({3}); it is free when the run has "
+    "ended",
+    "{0} не выполняется: шину {1} держит `servogate run` станка «{2}» ({3}); она освободится, когда прогон "
+    "закончится"};
 const text::Entry kNoConnection{"can.no-connection", "cannot reach the control at {0}: {1}",
                                 "нет связи с управлением {0}: {1}"};
 
-/// Patience with a control that only has to say how it is, ms.
-constexpr int kStatusPatience = 2000;
+/// Patience with a control that only has to say what it holds, ms.
+constexpr int kHolderPatience = 2000;
 
 json ask(SocketClient& connection, const json& request, int patience_ms) {
   std::string line;
@@ -36,14 +42,15 @@ json ask(SocketClient& connection, const json& request, int patience_ms) {
 }
 
 /// Holder of the bus if the control behind this socket has it.
-std::optional<Holder> holder_at(const std::string& socket, const std::string& url) {
+std::optional<Holder> holder_at(const std::string& socket, const std::string& place) {
   SocketClient connection;
   if (!connection.connect(socket).empty()) return std::nullopt;
-  const json status = ask(connection, {{"cmd", "status"}, {"asker", "command_line"}}, kStatusPatience);
-  if (!status.is_object()) return std::nullopt;
-  for (const json& bus : status.value("buses", json::array())) {
-    if (bus.value("url", "") != url) continue;
-    Holder holder{socket, status.value("machine", ""), bus.value("name", ""), {}};
+  const json held = ask(connection, {{"cmd", "buses"}, {"asker", "command_line"}}, kHolderPatience);
+  if (!held.is_object()) return std::nullopt;
+  for (const json& bus : held.value("buses", json::array())) {
+    if (!same_place(bus.value("place", bus.value("url", "")), place)) continue;
+    Holder holder{
+        socket, held.value("machine", ""), bus.value("name", ""), held.value("kind", "") == "run", {}};
     for (const json& n : bus.value("nodes", json::array()))
       holder.nodes.push_back({n.value("node", 0), n.value("name", ""), n.value("online", false)});
     return holder;
@@ -53,25 +60,33 @@ std::optional<Holder> holder_at(const std::string& socket, const std::string& ur
 
 }  // namespace
 
-std::optional<Holder> holder_of(const std::string& url) {
+std::optional<Holder> holder_of(const NamedBus& bus) {
   std::vector<std::string> sockets = known_sockets();
-  if (const char* named = std::getenv("SERVOGATE_SOCKET"); named != nullptr && *named != '\0')
-    if (std::find(sockets.begin(), sockets.end(), named) == sockets.end()) sockets.emplace_back(named);
+  const std::vector<std::string> runs = known_runs();
+  sockets.insert(sockets.end(), runs.begin(), runs.end());
+  const auto add = [&](const std::string& socket) {
+    if (!socket.empty() && std::find(sockets.begin(), sockets.end(), socket) == sockets.end())
+      sockets.push_back(socket);
+  };
+  if (const char* named = std::getenv("SERVOGATE_SOCKET"); named != nullptr) add(named);
+  if (bus.machine && !bus.machine->machine.run.socket.empty())
+    add(bus.machine->machine.resolve(bus.machine->machine.run.socket));
+  const std::string place = bus_place(bus.url);
   for (const std::string& socket : sockets)
-    if (auto holder = holder_at(socket, url)) return holder;
+    if (auto holder = holder_at(socket, place)) return holder;
   return std::nullopt;
 }
 
-bool find_holder(const CanopenBusOptions& options, std::optional<Holder>& holder, int& code) {
-  const auto named = named_bus(options.bus, options.bit_rate);
+bool find_holder(const std::string& bus, std::optional<Holder>& holder, int& code) {
+  const auto named = named_bus(bus, 0.0);
   code = kWrongUse;
   if (!named) return false;
-  holder = holder_of(named->url);
+  holder = holder_of(*named);
   return true;
 }
 
 int refuse_held(const Holder& holder, const std::string& url, const std::string& what) {
-  complain(kHeld, {what, url, holder.machine, holder.socket});
+  complain(holder.run ? kHeldByRun : kHeld, {what, url, holder.machine, holder.socket});
   return kAlarm;
 }
 
@@ -94,7 +109,7 @@ SdoOutcome HeldBus::read(canopen::NodeId node, std::uint16_t index, std::uint8_t
                            {"node", node},
                            {"index", index},
                            {"subindex", subindex}},
-                          static_cast<int>(timeout_ms_) + kStatusPatience);
+                          static_cast<int>(timeout_ms_) + kHolderPatience);
   if (!answer.is_object()) return outcome;
   if (!answer.value("ok", false)) {
     refusal_ = answer.value("text", "");

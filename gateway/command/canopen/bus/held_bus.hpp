@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gateway/command/canopen/bus/tool_bus.hpp"
+#include "gateway/command/bus/named_bus.hpp"
 #include "gateway/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::command {
@@ -16,6 +17,7 @@ struct Holder {
   std::string socket;   ///< path of its control socket
   std::string machine;  ///< name of its machine
   std::string bus;      ///< name of the bus in its machine file
+  bool run = false;     ///< it is a `servogate run`, which ends by itself
   struct Node {
     int id = 0;
     std::string name;
@@ -24,11 +26,12 @@ struct Holder {
   std::vector<Node> nodes;
 };
 
-/// The running control of this user whose machine file has a bus with this url; nullopt: none has.
-std::optional<Holder> holder_of(const std::string& url);
+/// The running control or run of this user that holds this bus, however its url is written; nullopt: none
+/// does.
+std::optional<Holder> holder_of(const NamedBus& bus);
 /// The same for a bus as the command line names it; false with `code`: the name is wrong, which has been
 /// said.
-bool find_holder(const CanopenBusOptions& options, std::optional<Holder>& holder, int& code);
+bool find_holder(const std::string& bus, std::optional<Holder>& holder, int& code);
 /// Says that the bus is held, and that `what` is not done therefore; the exit code.
 int refuse_held(const Holder& holder, const std::string& url, const std::string& what);
 

@@ -10,7 +10,8 @@
 #include "drivers/clock.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
-#include "gateway/command/named_bus.hpp"
+#include "gateway/command/bus/lost_frames.hpp"
+#include "gateway/command/bus/named_bus.hpp"
 
 namespace servogate::gateway::command {
 
@@ -20,8 +21,6 @@ const text::Entry kNoAnswer{"sdo.no-answer", "no answer", "нет ответа"}
 const text::Entry kBadProtocol{"sdo.bad-protocol", "the answer is against CiA 301: {0}",
                                "ответ противоречит CiA 301: {0}"};
 const text::Entry kGone{"can.gone", "the bus {0} is gone", "шина {0} исчезла"};
-const text::Entry kLost{"can.lost", "{0} frames were lost on this computer",
-                        "на этом компьютере потеряно кадров: {0}"};
 
 constexpr image::Nanoseconds kPatience = 2 * image::kSecond;  ///< for room in the send queue
 constexpr std::uint32_t kDefaultBitRate = 1'000'000;
@@ -160,16 +159,13 @@ SdoOutcome ToolBus::write(canopen::NodeId node, std::uint16_t index, std::uint8_
 }
 
 int ToolBus::finish(int code) const {
-  if (signals_.ended()) return kStopped;
-  if (gone()) {
+  if (signals_.ended()) {
+    code = kStopped;
+  } else if (gone()) {
     complain(kGone, {url_});
-    return kInfrastructure;
+    code = kInfrastructure;
   }
-  if (const std::uint64_t lost = transport_.bus->lost(); lost > 0) {
-    complain(kLost, {std::to_string(lost)});
-    return kInfrastructure;
-  }
-  return code;
+  return unless_frames_lost(code, url_, *transport_.bus);
 }
 
 }  // namespace servogate::gateway::command

@@ -68,8 +68,8 @@ class ToolBus final : public SdoAccess {
   SdoOutcome write(canopen::NodeId node, std::uint16_t index, std::uint8_t subindex,
                    std::span<const std::uint8_t> data) override;
 
-  /// At the end of a command: says that the bus is gone or lost frames, and is kInfrastructure then; kStopped
-  /// after a signal; otherwise `code`.
+  /// At the end of a command: kInfrastructure, said, when the bus is gone or lost frames; kStopped after a
+  /// signal; otherwise `code`.
   int finish(int code) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/usercan/process.hpp"
+#include "tests/usercan/rig/process.hpp"
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -7,7 +7,7 @@
 
 #include <csignal>
 
-#include "tests/usercan/running_server.hpp"
+#include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::usercan {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/named_bus.hpp"
+#include "gateway/command/bus/named_bus.hpp"
 
 #include <algorithm>
 

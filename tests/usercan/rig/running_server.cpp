@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/usercan/running_server.hpp"
+#include "tests/usercan/rig/running_server.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/canopen/master/process_data.hpp"
+#include "firmware_if/canopen/master/pdo/process_data.hpp"
 
 #include <span>
 

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// `servogate play`: a log of can-utils back onto a bus.
+#include <poll.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "drivers/candump/candump_line.hpp"
+#include "drivers/clock.hpp"
+#include "firmware_if/canopen/301/words/frame_words.hpp"
+#include "gateway/cli/messages.hpp"
+#include "gateway/command/canopen/bus/foreign_master.hpp"
+#include "gateway/command/canopen/bus/held_bus.hpp"
+#include "gateway/command/canopen/bus/tool_bus.hpp"
+#include "gateway/command/commands.hpp"
+#include "gateway/files/read_file.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+const text::Entry kCannotRead{"play.cannot-read", "cannot read {0}: {1}", "не читается {0}: {1}"};
+const text::Entry kBadLine{"play.bad-line", "{0}:{1}: no line of a candump log",
+                           "{0}:{1}: не строка журнала candump"};
+const text::Entry kMayMove{
+    "play.may-move", "{0} may be a real bus, and what is played can move its drives: --i-may-move",
+    "{0} может быть настоящей шиной, воспроизведение может двинуть приводы: --i-may-move"};
+using drivers::clock_ns;
+using Log = std::vector<candump::Line>;
+
+constexpr const char* kWhat = "`play`";
+
+/// kDone, or the exit code after saying what is wrong with the file.
+int read_log(const std::string& name, Log& log) {
+  if (const std::string why = files::why_unreadable(name); !why.empty()) {
+    complain(kCannotRead, {name, why});
+    return kWrongUse;
+  }
+  std::ifstream file(name);
+  std::string text;
+  for (int number = 1; std::getline(file, text); ++number) {
+    if (text.empty()) continue;
+    auto line = candump::parse(text);
+    if (!line) {
+      complain(kBadLine, {name, std::to_string(number)});
+      return kWrongUse;
+    }
+    if (!line->frame.error) log.push_back(std::move(*line));
+  }
+  return kDone;
+}
+
+/// What only a master sends is played onto a bus that has none; what devices send, too, where real ones are.
+int may_play(ToolBus& bus, const std::optional<Holder>& holder, const Log& log, const PlayOptions& options) {
+  const bool nothing_real = bus.transport().nothing_real;
+  const bool commands = std::any_of(
+      log.begin(), log.end(), [](const candump::Line& line) { return canopen::sent_by_masters(line.frame); });
+  if (holder && (commands || !nothing_real)) return refuse_held(*holder, options.bus, kWhat);
+  if (!nothing_real && !options.may_move) {
+    complain(kMayMove, {options.bus});
+    return kWrongUse;
+  }
+  return commands ? must_be_idle(bus, kWhat, {}) : kDone;
+}
+
+int send_all(ToolBus& bus, const Log& log, const PlayOptions& options) {
+  const auto ignore = [](const image::CanFrame&) { return false; };
+  const image::Nanoseconds begin = clock_ns(CLOCK_MONOTONIC);
+  for (const candump::Line& line : log) {
+    const auto after = static_cast<double>(line.time - log.front().time) / options.speed;
+    const image::Nanoseconds due = begin + static_cast<image::Nanoseconds>(after);
+    for (bool sent = false; !sent;) {
+      if (bus.ended()) return kStopped;
+      const image::Nanoseconds early = due - clock_ns(CLOCK_MONOTONIC);
+      if (early <= 0) sent = bus.transport().bus->send(line.frame);
+      if (!sent && bus.gone()) return kInfrastructure;
+      bus.listen(early > 0 ? early : sent ? 0 : image::kMillisecond, ignore);
+    }
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int play(const PlayOptions& options) {
+  Log log;
+  int code = read_log(options.file, log);
+  if (code != kDone) return code;
+  std::optional<Holder> holder;
+  if (!find_holder(options.bus, holder, code)) return code;
+  CanopenBusOptions bus_options;
+  bus_options.bus = options.bus;
+  bus_options.bit_rate = options.bit_rate;
+  const auto bus = ToolBus::open(bus_options, code);
+  if (bus == nullptr) return code;
+  code = may_play(*bus, holder, log, options);
+  if (code == kDone) code = send_all(*bus, log, options);
+  return bus->finish(code);
+}
+
+}  // namespace servogate::gateway::command

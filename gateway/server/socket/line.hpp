@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "firmware_if/image/request.hpp"
+#include "firmware_if/text/finding.hpp"
+
+namespace servogate::gateway {
+
+/// What a line on the control socket leads to.
+struct Reply {
+  std::string line;   ///< one JSON object without a line end
+  bool down = false;  ///< the control is to end
+};
+
+/// What the server remembers of a connection.
+struct Connection {
+  int jogs = -1;  ///< axis of the continuous jog that this client keeps alive, -1: none
+  image::Asker asker = image::Asker::command_line;  ///< who began it
+  bool silent = false;                              ///< it was ended because its client had fallen silent
+  std::chrono::steady_clock::time_point heard{};    ///< when that client last kept it alive
+  std::uint64_t number = 0;  ///< of this connection; what it forces at the PLC ends with it
+  std::string user;          ///< name of who opened it
+};
+
+/// JSON as a line; what is no UTF-8 is replaced.
+std::string text_of(const nlohmann::json& value);
+/// An accepted request as a line; `more` is added to it.
+Reply accept(const text::Entry& entry, const std::vector<std::string>& arguments, text::Language language,
+             nlohmann::json more);
+/// A refusal as a line.
+Reply refuse(const text::Entry& entry, const std::vector<std::string>& arguments, int exit,
+             text::Language language);
+
+}  // namespace servogate::gateway
