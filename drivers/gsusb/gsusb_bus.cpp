@@ -22,16 +22,17 @@ const text::Entry kNoBitRate{"gsusb.no-bit-rate",
                              "file): an adapter at a wrong rate disturbs the bus",
                              "для {0} нужно указать скорость (--bit-rate 500000 или шина файла машины): "
                              "адаптер с неверной скоростью мешает шине"};
-const text::Entry kNoAnswer{"gsusb.no-answer", "the adapter {0} does not answer as one of the gs_usb class",
-                            "адаптер {0} не отвечает как адаптер класса gs_usb"};
+const text::Entry kNoAnswer{"gsusb.no-answer",
+                            "the adapter {0} does not answer as one of the gs_usb class ({1})",
+                            "адаптер {0} не отвечает как адаптер класса gs_usb ({1})"};
 const text::Entry kNoChannel{"gsusb.no-channel", "the adapter {0} has no channel {1}; it has {2}, from 0",
                              "у адаптера {0} нет канала {1}; каналов {2}, с нулевого"};
 const text::Entry kNoTiming{"gsusb.no-timing", "the adapter {0} cannot make {1} bit/s of its clock of {2} Hz",
                             "адаптер {0} не может получить {1} бит/с из своей частоты {2} Гц"};
 const text::Entry kNoListening{"gsusb.no-listening", "the adapter {0} cannot listen without taking part",
                                "адаптер {0} не умеет слушать, не участвуя"};
-const text::Entry kNoStart{"gsusb.no-start", "the adapter {0} refuses {1} bit/s",
-                           "адаптер {0} отказывается работать на {1} бит/с"};
+const text::Entry kNoStart{"gsusb.no-start", "the adapter {0} refuses {1} bit/s ({2})",
+                           "адаптер {0} отказывается работать на {1} бит/с ({2})"};
 const text::Entry kSystem{"gsusb.system", "{0}: {1}", "{0}: {1}"};
 
 constexpr std::uint16_t kDevice = 1;  ///< wValue of requests to the whole device
@@ -85,17 +86,20 @@ bool GsUsbBus::start(drivers::Notice& why) {
   const auto ask = [&](Request request, std::uint16_t value) {
     return std::span<const std::uint8_t>(bytes.data(), port_->control_in(code(request), value, bytes));
   };
-  why = {&kNoAnswer, {config_.adapter}};
-  if (!port_->control_out(code(Request::host_format), kDevice, host_format())) return false;
+  const auto no_answer = [&] {
+    why = {&kNoAnswer, {config_.adapter, port_->failure()}};
+    return false;
+  };
+  if (!port_->control_out(code(Request::host_format), kDevice, host_format())) return no_answer();
   const auto device = parse_device_config(ask(Request::device_config, kDevice));
-  if (!device) return false;
+  if (!device) return no_answer();
   device_ = *device;
   if (config_.channel >= device_.channels) {
     why = {&kNoChannel, {config_.adapter, std::to_string(config_.channel), std::to_string(device_.channels)}};
     return false;
   }
   const auto limits = parse_limits(ask(Request::limits, config_.channel));
-  if (!limits) return false;
+  if (!limits) return no_answer();
   limits_ = *limits;
   const auto timing = find_timing(limits_.timing, config_.bit_rate);
   if (!timing) {
@@ -107,8 +111,9 @@ bool GsUsbBus::start(drivers::Notice& why) {
     why = {&kNoListening, {config_.adapter}};
     return false;
   }
-  why = {&kNoStart, {config_.adapter, rate}};
-  return port_->start(kStampedBytes, *this) && start_channel();
+  if (port_->start(kStampedBytes, *this) && start_channel()) return true;
+  why = {&kNoStart, {config_.adapter, rate, port_->failure()}};
+  return false;
 }
 
 bool GsUsbBus::start_channel() {

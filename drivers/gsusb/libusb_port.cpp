@@ -52,7 +52,10 @@ constexpr Product kProducts[] = {
     {0x1D50, 0x606F}, {0x1209, 0x2323}, {0x1CD2, 0x606F}, {0x16D0, 0x10B8}, {0x16D0, 0x0F30},
 };
 constexpr int kInterface = 0;
-constexpr unsigned kPatience_ms = 1000;
+/// A request that got no answer is repeated: a busy computer, or a hub that recovers, is no dead adapter.
+/// Together they stay near the 5 s of USB 2.0, 9.2.6.1.
+constexpr unsigned kPatience_ms = 1500;
+constexpr int kAttempts = 3;
 constexpr std::size_t kReads = 30;
 /// A multiple of every packet size of bulk pipes up to high speed, so that no transfer overflows.
 constexpr std::size_t kReadBytes = 512;
@@ -151,14 +154,15 @@ class LibusbPort final : public UsbPort {
 
   bool control_out(std::uint8_t request, std::uint16_t value, std::span<const std::uint8_t> data) override {
     // libusb takes one pointer for both directions; it reads only from this one.
-    return libusb_control_transfer(
-               handle_.get(), kVendorOut, request, value, kInterface, const_cast<unsigned char*>(data.data()),
-               static_cast<std::uint16_t>(data.size()), kPatience_ms) == static_cast<int>(data.size());
+    return control(kVendorOut, request, value, {const_cast<unsigned char*>(data.data()), data.size()}) ==
+           data.size();
   }
   std::size_t control_in(std::uint8_t request, std::uint16_t value, std::span<std::uint8_t> data) override {
-    const int got = libusb_control_transfer(handle_.get(), kVendorIn, request, value, kInterface, data.data(),
-                                            static_cast<std::uint16_t>(data.size()), kPatience_ms);
-    return got > 0 ? static_cast<std::size_t>(got) : 0;
+    return control(kVendorIn, request, value, data);
+  }
+  std::string failure() const override {
+    return failure_ < 0 ? libusb_error_name(failure_)
+                        : text::both("its answer is too short", "ответ слишком короткий");
   }
   bool start(std::size_t bytes, PortListener& listener) override;
   bool write(std::size_t slot, std::span<const std::uint8_t> bytes) noexcept override;
@@ -179,6 +183,9 @@ class LibusbPort final : public UsbPort {
     std::array<std::uint8_t, kReadBytes> bytes{};
   };
 
+  /// How many bytes went over; 0 with failure_ set where none did.
+  std::size_t control(std::uint8_t direction, std::uint8_t request, std::uint16_t value,
+                      std::span<std::uint8_t> data);
   static void has_read(libusb_transfer* transfer) noexcept;
   static void has_written(libusb_transfer* transfer) noexcept;
   bool submit(Buffer& buffer) noexcept;
@@ -194,7 +201,7 @@ class LibusbPort final : public UsbPort {
   std::array<Buffer, kReads> reads_;
   std::array<Buffer, kSlots> writes_;
   std::vector<pollfd> polled_;
-  int under_way_ = 0, failures_ = 0;
+  int under_way_ = 0, failures_ = 0, failure_ = 0;
   bool gone_ = false, ending_ = false;
 };
 
@@ -216,6 +223,16 @@ LibusbPort::~LibusbPort() {
     for (Buffer& b : writes_) (void)b.transfer.release();
   }
   close(wake_);
+}
+
+std::size_t LibusbPort::control(std::uint8_t direction, std::uint8_t request, std::uint16_t value,
+                                std::span<std::uint8_t> data) {
+  int got = LIBUSB_ERROR_TIMEOUT;
+  for (int i = 0; i < kAttempts && (got == LIBUSB_ERROR_TIMEOUT || got == LIBUSB_ERROR_IO); ++i)
+    got = libusb_control_transfer(handle_.get(), direction, request, value, kInterface, data.data(),
+                                  static_cast<std::uint16_t>(data.size()), kPatience_ms);
+  failure_ = std::min(got, 0);
+  return static_cast<std::size_t>(std::max(got, 0));
 }
 
 bool LibusbPort::set_up(Buffer& buffer, std::size_t index) {
@@ -249,7 +266,8 @@ bool LibusbPort::start(std::size_t bytes, PortListener& listener) {
 }
 
 bool LibusbPort::submit(Buffer& buffer) noexcept {
-  if (libusb_submit_transfer(buffer.transfer.get()) != 0) return false;
+  failure_ = libusb_submit_transfer(buffer.transfer.get());
+  if (failure_ != 0) return false;
   ++under_way_;
   return true;
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "firmware_if/image/time.hpp"
 
@@ -26,10 +27,13 @@ class UsbPort {
   static constexpr std::size_t kSlots = 10;
 
   virtual ~UsbPort() = default;
-  /// Vendor requests to the interface; they wait for the adapter, a second at most. False: it refused, or is
-  /// gone. control_in fills the beginning of `data` and says how much.
+  /// Vendor requests to the interface, repeated while the adapter only is silent, for some seconds at most.
+  /// False: it refused, stayed silent, or is gone. control_in fills the beginning of `data` and says how
+  /// much.
   virtual bool control_out(std::uint8_t request, std::uint16_t value, std::span<const std::uint8_t> data) = 0;
   virtual std::size_t control_in(std::uint8_t request, std::uint16_t value, std::span<std::uint8_t> data) = 0;
+  /// Why the last of these requests failed, in the words of USB ("LIBUSB_ERROR_TIMEOUT").
+  virtual std::string failure() const = 0;
   /// Keeps transfers of at most `bytes` waiting on the in pipe from now on.
   virtual bool start(std::size_t bytes, PortListener& listener) = 0;
   /// Puts bytes on the out pipe from buffer `slot`, which written() gives back. False: they could not be put.

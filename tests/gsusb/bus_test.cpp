@@ -227,6 +227,11 @@ TEST_F(GsUsb, what_cannot_be_started_is_refused_with_the_reason) {
   EXPECT_EQ(why_.str(text::Language::english), "the adapter A1 has no channel 1; it has 1, from 0");
   EXPECT_EQ(open({.clock_hz = 7'372'800}, {"A1", 1'000'000}), nullptr);
   EXPECT_EQ(why_.entry->id, "gsusb.no-timing");
+  plugged_ = std::make_shared<Plugged>();
+  plugged_->unplug();
+  EXPECT_EQ(GsUsbBus::open(std::make_unique<PluggedPort>(plugged_), {"A1", 500'000}, why_), nullptr);
+  EXPECT_EQ(why_.str(text::Language::english),
+            "the adapter A1 does not answer as one of the gs_usb class (unplugged)");
 }
 
 TEST_F(GsUsb, the_channel_is_reset_when_the_bus_is_closed) {

@@ -81,6 +81,7 @@ class PluggedPort final : public UsbPort {
   explicit PluggedPort(std::shared_ptr<Plugged> plugged) : plugged_(std::move(plugged)) {}
   bool control_out(std::uint8_t request, std::uint16_t value, std::span<const std::uint8_t> data) override;
   std::size_t control_in(std::uint8_t request, std::uint16_t value, std::span<std::uint8_t> data) override;
+  std::string failure() const override { return plugged_->present ? "refused" : "unplugged"; }
   bool start(std::size_t bytes, PortListener& listener) override;
   bool write(std::size_t slot, std::span<const std::uint8_t> bytes) noexcept override;
   bool serve(image::Nanoseconds at_most) noexcept override;
