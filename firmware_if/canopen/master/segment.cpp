@@ -211,7 +211,6 @@ struct Segment::Impl {
   image::Nanoseconds heartbeat_due_ns = 0, time_due_ns = 0;
   std::uint8_t sync_counter = 0;
   bool started = false;
-  bool opened = false;  ///< SYNC of this cycle is sent
   std::size_t next_acyclic = 0;
   SdoBudget sdo;
   std::uint64_t send_failures = 0, send_failures_said = 0;
@@ -366,7 +365,6 @@ Segment::~Segment() = default;
 
 void Segment::open_cycle(ProcessImage& image) noexcept {
   Impl& my = *impl_;
-  my.opened = true;
   if (my.started) my.bus.meter.close_cycle(image.now.period_ns, my.bus.bit_rate());
   if (!my.started) my.heartbeat_due_ns = image.now.t_ns;
   my.started = true;
@@ -376,8 +374,6 @@ void Segment::open_cycle(ProcessImage& image) noexcept {
 
 void Segment::receive(ProcessImage& image) noexcept {
   Impl& my = *impl_;
-  if (!my.opened) open_cycle(image);
-  my.opened = false;
   my.drain(image);
   my.fill_status(image.segments[static_cast<std::size_t>(my.config.index)]);
 }

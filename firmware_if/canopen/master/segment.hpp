@@ -24,10 +24,9 @@ struct NodeStatus {
 /// a device of the cycle.
 ///
 /// SYNC k opens cycle k: it is the first frame of the cycle, and of several segments all SYNCs leave before
-/// any is received from. A drive latches its actual values and applies
-/// the RPDO it got before at SYNC; the TPDOs it answers after SYNC k are read in cycle k + 1. Nodes boot, are
-/// lost and come back while the cycle runs; everything that is not process data goes over SDO in a bounded
-/// number of frames per cycle.
+/// any is received from. A drive latches its actual values and applies the RPDO it got before at SYNC; the
+/// TPDOs it answers after SYNC k are read in cycle k + 1. Nodes boot, are lost and come back while the cycle
+/// runs; everything that is not process data goes over SDO in a bounded number of frames per cycle.
 class Segment final : public image::CycleDevice {
  public:
   /// The bus must live longer. Copies and prepares everything; allocates here and never again. Throws
@@ -40,8 +39,8 @@ class Segment final : public image::CycleDevice {
 
   /// SYNC. real-time safe.
   void open_cycle(image::ProcessImage& image) noexcept override;
-  /// SYNC, where open_cycle() has not been called in this cycle, then all received frames, then
-  /// AxisImage::drive, SpindleImage::drive, inputs into packet A. real-time safe.
+  /// All received frames, then AxisImage::drive, SpindleImage::drive, inputs into packet A; behind
+  /// open_cycle() of the same cycle. real-time safe.
   void receive(image::ProcessImage& image) noexcept override;
   /// RPDOs of drive_command and of outputs in packet A, then heartbeat, NMT and SDO. real-time safe.
   void send(image::ProcessImage& image) noexcept override;

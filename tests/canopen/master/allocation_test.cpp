@@ -11,13 +11,14 @@ namespace {
 using counting::allocations;
 using testing::SegmentRig;
 
-/// Steps a rig like SegmentRig::step, counting only what receive() and send() allocate. The fake network
+/// Steps a rig like SegmentRig::step, counting only what the segment allocates. The fake network
 /// allocates when the master sends, so its queue is given room beforehand.
 struct CountingRig : SegmentRig {
   using SegmentRig::SegmentRig;
   void counted_step() {
     network.sent.reserve(256);
     const std::uint64_t before = allocations();
+    segment->open_cycle(*image);
     segment->receive(*image);
     segment->send(*image);
     counted += allocations() - before;

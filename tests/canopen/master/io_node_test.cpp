@@ -75,6 +75,7 @@ struct Bench {
   }
   void step() {
     wire.advance_to(image->now.t_ns);
+    segment->open_cycle(*image);
     segment->receive(*image);
     segment->send(*image);
     ++image->now.number;
@@ -268,6 +269,7 @@ TEST(IoNode, allocates_nothing_while_it_runs) {
   const std::uint64_t before = counting::allocations();
   for (int i = 0; i < 100; ++i) {
     b.wire.advance_to(b.image->now.t_ns);
+    b.segment->open_cycle(*b.image);
     b.segment->receive(*b.image);
     b.segment->send(*b.image);
     ++b.image->now.number;

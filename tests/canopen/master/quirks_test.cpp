@@ -43,6 +43,7 @@ struct Pair {
   void run(int cycles) {
     for (int i = 0; i < cycles; ++i) {
       wire.advance_to(image->now.t_ns);
+      segment->open_cycle(*image);
       segment->receive(*image);
       if (feedback().state != DriveState::operation_enabled)
         command().position_counts = feedback().position_counts;

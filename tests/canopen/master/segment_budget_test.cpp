@@ -104,6 +104,7 @@ TEST(SegmentBudget, a_full_bus_keeps_its_heartbeats_while_service_data_are_asked
   int lost = 0;
   for (int n = 0; n < 10'000; ++n) {
     wire.advance_to(image->now.t_ns);
+    segment.open_cycle(*image);
     segment.receive(*image);
     for (int a = 0; a < 3; ++a) {
       auto& axis = image->axes[static_cast<std::size_t>(a)];

@@ -32,6 +32,7 @@ struct SegmentRig {
   }
 
   void step() {
+    segment->open_cycle(*image);
     segment->receive(*image);
     if (control) control(*image);
     segment->send(*image);

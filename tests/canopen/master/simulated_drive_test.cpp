@@ -54,6 +54,7 @@ struct Machine {
 
   void step() {
     wire.advance_to(image->now.t_ns);
+    segment->open_cycle(*image);
     segment->receive(*image);
     if (control) control(*image);
     segment->send(*image);

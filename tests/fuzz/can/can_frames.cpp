@@ -115,6 +115,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto image = std::make_unique<image::ProcessImage>();
   BusEvent event;
   while (bus.next_cycle()) {
+    segment.open_cycle(*image);
     segment.receive(*image);
     for (auto& axis : image->axes) {
       axis.drive_command.power = image->now.number % 64 > 8;

@@ -67,6 +67,7 @@ TEST(EncoderOnTheBus, of_another_resolution_is_refused_at_its_boot_with_both_num
   canopen::BusEvent event, failed;
   for (int i = 0; i < 3000 && failed.kind == canopen::BusEventKind::none; ++i) {
     another.advance_to(image->now.t_ns);
+    segment.open_cycle(*image);
     segment.receive(*image);
     segment.send(*image);
     ++image->now.number;
