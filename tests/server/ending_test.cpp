@@ -3,7 +3,6 @@
 // behind it.
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/wait.h>
 
 #include <fstream>
 
@@ -13,16 +12,6 @@ namespace servogate::gateway::testing {
 namespace {
 
 using nlohmann::json;
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-int ending_of(pid_t pid) {
-  int status = 0;
-  waitpid(pid, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
 
 TEST(Ending, begins_with_the_answer_to_down_and_refuses_whatever_comes_behind_it) {
   for (const char* request :

@@ -22,9 +22,6 @@ class Proof : public ::testing::Test {
     std::ofstream(path) << text;
     return path;
   }
-  bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-  }
   Shell shell_;
 };
 

@@ -2,7 +2,6 @@
 // Commands that wait for what they began: until when, what they say, and what Ctrl-C does meanwhile.
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/wait.h>
 
 #include <fstream>
 
@@ -17,12 +16,6 @@ bool all_on(const json& status) {
   for (const json& a : status["axes"])
     if (!a["enabled"].get<bool>()) return false;
   return true;
-}
-
-int ending_of(pid_t pid) {
-  int status = 0;
-  waitpid(pid, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 TEST(Power, is_on_when_the_command_has_ended_brakes_included) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "gateway/cli/messages.hpp"
@@ -314,7 +315,7 @@ void Wait::interrupt() {
 int Wait::run(json& status) {
   asked_s_ = status.value("asked_s", 0.0);
   const json question = simple("status");
-  for (json before;; before = status, std::this_thread::sleep_for(kLook)) {
+  for (json before;; before = std::move(status), std::this_thread::sleep_for(kLook)) {
     status = ask(client_, question);
     if (status.is_null() && before.is_object() && before.value("ending", false)) {
       status = before;  // it has put everything away, and with it what was waited for

@@ -14,10 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 /// Value of a column in the last row of a trace.
 double last_of(const std::string& trace, const std::string& column) {
   std::istringstream lines(trace);

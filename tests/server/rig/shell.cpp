@@ -44,9 +44,17 @@ pid_t launch(const fs::path& folder, const std::string& name, std::vector<std::s
   _exit(127);
 }
 
-int exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
-
 }  // namespace
+
+int ending_of(pid_t pid) {
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 Shell::Shell() {
   std::string pattern = (fs::temp_directory_path() / "servogate-test-XXXXXX").string();
@@ -75,9 +83,8 @@ std::string Shell::text(const std::string& file) const {
 }
 
 Outcome Shell::run(const std::vector<std::string>& arguments, const std::string& language) {
-  int status = 0;
-  waitpid(launch(folder_, "run", arguments, language), &status, 0);
-  return {exit_code(status), text("run.out"), text("run.err")};
+  const int code = ending_of(launch(folder_, "run", arguments, language));
+  return {code, text("run.out"), text("run.err")};
 }
 
 pid_t Shell::spawn(const std::vector<std::string>& arguments, const std::string& name) {
@@ -102,10 +109,9 @@ void Shell::up_file(const std::string& machine, const std::vector<std::string>& 
 }
 
 int Shell::wait() {
-  int status = 0;
-  waitpid(up_, &status, 0);
+  const int code = ending_of(up_);
   up_ = -1;
-  return exit_code(status);
+  return code;
 }
 
 int Shell::end(int signal) {

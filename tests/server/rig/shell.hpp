@@ -18,6 +18,11 @@ struct Outcome {
   std::string out, err;
 };
 
+/// Waits for a process and gives its exit code; 128 and the number of the signal that ended it.
+int ending_of(pid_t pid);
+
+bool contains(const std::string& text, const std::string& part);
+
 /// The program in a folder of its own; whatever it started is ended with it.
 class Shell {
  public:
