@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <thread>
 
 #include "drivers/clock.hpp"
 
@@ -52,10 +54,11 @@ constexpr Product kProducts[] = {
     {0x1D50, 0x606F}, {0x1209, 0x2323}, {0x1CD2, 0x606F}, {0x16D0, 0x10B8}, {0x16D0, 0x0F30},
 };
 constexpr int kInterface = 0;
-/// A request that got no answer is repeated: a busy computer, or a hub that recovers, is no dead adapter.
-/// Together they stay near the 5 s of USB 2.0, 9.2.6.1.
-constexpr unsigned kPatience_ms = 1500;
-constexpr int kAttempts = 3;
+/// A request that got no answer is repeated as long as USB 2.0, 9.2.6.1 gives a device: a busy computer, or a
+/// hub that recovers, is no dead adapter.
+constexpr unsigned kAnswer_ms = 1500;
+constexpr image::Nanoseconds kPatience = 5 * image::kSecond;
+constexpr auto kRecovery = std::chrono::milliseconds(200);
 constexpr std::size_t kReads = 30;
 /// A multiple of every packet size of bulk pipes up to high speed, so that no transfer overflows.
 constexpr std::size_t kReadBytes = 512;
@@ -227,10 +230,14 @@ LibusbPort::~LibusbPort() {
 
 std::size_t LibusbPort::control(std::uint8_t direction, std::uint8_t request, std::uint16_t value,
                                 std::span<std::uint8_t> data) {
-  int got = LIBUSB_ERROR_TIMEOUT;
-  for (int i = 0; i < kAttempts && (got == LIBUSB_ERROR_TIMEOUT || got == LIBUSB_ERROR_IO); ++i)
+  const image::Nanoseconds until = drivers::clock_ns(CLOCK_MONOTONIC) + kPatience;
+  int got = 0;
+  for (;; std::this_thread::sleep_for(kRecovery)) {
     got = libusb_control_transfer(handle_.get(), direction, request, value, kInterface, data.data(),
-                                  static_cast<std::uint16_t>(data.size()), kPatience_ms);
+                                  static_cast<std::uint16_t>(data.size()), kAnswer_ms);
+    const bool silent = got == LIBUSB_ERROR_TIMEOUT || got == LIBUSB_ERROR_IO;
+    if (!silent || drivers::clock_ns(CLOCK_MONOTONIC) > until) break;
+  }
   failure_ = std::min(got, 0);
   return static_cast<std::size_t>(std::max(got, 0));
 }

@@ -93,7 +93,11 @@ GadgetFunction::~GadgetFunction() {
 
 void GadgetFunction::serve_requests() {
   usb_functionfs_event event{};
-  while (!ending_ && read(requests_, &event, sizeof event) == static_cast<ssize_t>(sizeof event)) {
+  while (!ending_) {
+    const ssize_t got = read(requests_, &event, sizeof event);
+    // EIDRM: the host has given a request up that was not answered in time, and asks anew.
+    if (got < 0 && (errno == EIDRM || errno == EINTR)) continue;
+    if (got != static_cast<ssize_t>(sizeof event)) return;
     if (event.type == FUNCTIONFS_SETUP) answer(event.u.setup);
     if (event.type == FUNCTIONFS_UNBIND) return;
   }
