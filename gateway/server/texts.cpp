@@ -10,6 +10,7 @@ const Entry kNoObject{"socket.no-object", "a request is an object as {\"cmd\":\"
                       "запрос — это объект вида {\"cmd\":\"status\"}, а здесь {0}"};
 const Entry kNested{"socket.nested", "a request is nested at most {0} deep",
                     "вложенность запроса не может быть больше {0}"};
+const Entry kRepeated{"socket.repeated", "'{0}' stands twice in the request", "«{0}» стоит в запросе дважды"};
 const Entry kWrongType{"socket.wrong-type", "'{0}' must be {1}, and is {2}",
                        "«{0}»: ожидается {1}, а здесь {2}"};
 const Entry kLongLine{"socket.long-line", "a request is at most {0} bytes long",

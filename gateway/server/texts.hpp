@@ -10,6 +10,7 @@ namespace servogate::gateway::says {
 extern const text::Entry kBadLine;           ///< {0} the line
 extern const text::Entry kNoObject;          ///< {0} what stands there
 extern const text::Entry kNested;            ///< {0} levels
+extern const text::Entry kRepeated;          ///< field {0}
 extern const text::Entry kWrongType;         ///< {0} key, {1} what it must be, {2} what stands there
 extern const text::Entry kLongLine;          ///< {0} bytes
 extern const text::Entry kFull;              ///< {0} clients

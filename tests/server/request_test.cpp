@@ -77,6 +77,14 @@ TEST(Request, that_is_nested_absurdly_is_refused_whatever_its_depth) {
   }
 }
 
+TEST(Request, that_can_be_read_in_two_ways_is_refused) {
+  EXPECT_EQ(said(R"({"cmd":"stop","cmd":"start"})"), "'cmd' stands twice in the request");
+  EXPECT_EQ(said(R"({"cmd":"jog","axis":"X","value":1,"axis":"Y"})"), "'axis' stands twice in the request");
+  EXPECT_EQ(said(R"({"cmd":"load","program":"part.nc\u0000x"})"),
+            "'program' must be a string, and is a string with a zero character");
+  EXPECT_EQ(said(R"({"cmd":"home","axes":["X\u0000"]})"), "'axes' must be a list of strings, and is a list");
+}
+
 TEST(Request, of_the_wrong_form_is_answered_in_its_own_language_and_the_control_goes_on) {
   Shell shell;
   shell.up();

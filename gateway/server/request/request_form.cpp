@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "gateway/server/texts.hpp"
 
@@ -12,7 +13,11 @@ namespace {
 
 using nlohmann::json;
 
-bool is_text(const json& v) { return v.is_string(); }
+/// Zero characters end a name for the system: another file would be read than the one that was said.
+bool has_zero(const json& v) {
+  return v.is_string() && v.get_ref<const std::string&>().find('\0') != std::string::npos;
+}
+bool is_text(const json& v) { return v.is_string() && !has_zero(v); }
 bool is_number(const json& v) { return v.is_number(); }
 bool is_switch(const json& v) { return v.is_boolean(); }
 bool is_list(const json& v) { return v.is_array() && std::all_of(v.begin(), v.end(), is_text); }
@@ -57,7 +62,8 @@ std::string what_stands(const json& value) {
     case json::value_t::boolean:
       return value.get<bool>() ? "true" : "false";
     case json::value_t::string:
-      return text::both("a string", "строка");
+      return has_zero(value) ? text::both("a string with a zero character", "строка с нулевым символом")
+                             : text::both("a string", "строка");
     case json::value_t::array:
       return text::both("a list", "список");
     case json::value_t::object:
@@ -87,11 +93,14 @@ std::optional<json> read_request(std::string_view line, FormProblem& problem) {
     return std::nullopt;
   }
   bool deep = false;
-  const auto shallow = [&deep](int depth, json::parse_event_t, json&) {
+  std::set<std::string> keys;
+  std::string repeated;
+  const auto look = [&](int depth, json::parse_event_t event, json& parsed) {
     deep = deep || depth > kDeepestRequest;
+    if (event == json::parse_event_t::key && depth == 1 && !keys.insert(parsed).second) repeated = parsed;
     return !deep;
   };
-  json request = json::parse(line, shallow, false);
+  json request = json::parse(line, look, false);
   if (deep) {
     problem = {&says::kNested, {std::to_string(kDeepestRequest)}};
     return std::nullopt;
@@ -105,6 +114,11 @@ std::optional<json> read_request(std::string_view line, FormProblem& problem) {
     return std::nullopt;
   }
   problem.language = language_of(request);
+  if (!repeated.empty()) {
+    problem.entry = &says::kRepeated;
+    problem.arguments = {repeated};
+    return std::nullopt;
+  }
   if (!request.contains("cmd")) {
     wrong_type("cmd", kText, text::both("missing", "поля нет"), problem);
     return std::nullopt;
