@@ -124,6 +124,7 @@ inline constexpr InterfaceField kSpindleFields[] = {
     {"orient", 0, 3, Format::bl, Writer::nc, "oriented stop is wanted"},
     {"at_speed", 0, 4, Format::bl, Writer::nc, "measured speed inside the window"},
     {"zero_speed", 0, 5, Format::bl, Writer::nc, "standstill"},
+    {"oriented", 0, 6, Format::bl, Writer::nc, "stands at the angle of the oriented stop"},
     {"command", 4, 0, Format::re, Writer::nc, "commanded speed, rpm, + clockwise"},
     {"actual", 8, 0, Format::re, Writer::nc, "measured speed, rpm"},
     {"enable", 12, 0, Format::bl, Writer::plc, "TRUE permits the spindle to turn"},

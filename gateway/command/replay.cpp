@@ -108,6 +108,7 @@ int replay(const ReplayOptions& options) {
   if (print_findings(findings) > 0 || control == nullptr) return kWrongUse;
   control->cycle().set_time_scale(header.time_scale);
   control->restore_references(header.state);
+  control->restore_tool(header.state);
   control->restore_retained(header.state);
   const std::vector<ProgramChange> changes = record.changes(loaded.machine);
   std::size_t changed = 0;

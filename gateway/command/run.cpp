@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/commands.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
+#include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/compose/program/program_check.hpp"
@@ -176,6 +176,7 @@ int Run::prepare() {
   if (control_ == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
   control_->restore_references(state_);
+  control_->restore_tool(state_);
   print_findings(control_->restore_retained(state_));
   keeper_ = std::make_unique<RetainedKeeper>(*control_, options_.state, state_.retained_generation);
   if (!options_.record.empty()) record_ = begin_record(options_.record, options_.machine, state_, *control_);

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "gateway/cli/messages.hpp"
-#include "gateway/command/commands.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
+#include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/machine/state/state.hpp"
@@ -103,6 +103,7 @@ int up(const UpOptions& options) {
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
   if (is_virtual) control->cycle().set_time_scale(options.speed);
   control->restore_references(state);
+  control->restore_tool(state);
   print_findings(control->restore_retained(state));
   const std::unique_ptr<RecordWriter> record =
       options.record.empty() ? nullptr : begin_record(options.record, options.machine, state, *control);

@@ -256,6 +256,10 @@ void Control::restore_references(const machine::MachineState& state) {
       cycle_->set_reference(static_cast<int>(a), kept->second.offset_counts);
 }
 
+void Control::restore_tool(const machine::MachineState& state) {
+  cycle_->initial_image().processes[0].tool = static_cast<std::uint16_t>(state.tool_in_spindle);
+}
+
 std::vector<text::Finding> Control::restore_retained(const machine::MachineState& state) {
   std::vector<text::Finding> findings;
   for (const machine::RetainedVariable& v : state.retained) {

@@ -57,6 +57,9 @@ class Control {
   void attach(ProgramChangeTap* tap) noexcept { change_tap_ = tap; }
   /// Takes over the references of absolute encoders that were kept; before the first cycle.
   void restore_references(const machine::MachineState& state);
+  /// The tool that was in the spindle is there still; its lengths count from the next T on. Before the first
+  /// cycle.
+  void restore_tool(const machine::MachineState& state);
   /// Gives the PLC the retained values that were kept; before the first cycle. Warns of each that the program
   /// has no variable of that name and type for.
   std::vector<text::Finding> restore_retained(const machine::MachineState& state);

@@ -221,7 +221,8 @@ std::string Resident::look_after() {
   const bool ended = busy_seen_ && !busy_now;
   busy_seen_ = busy_now;
   if (ended) take_tables();
-  return found || ended ? save() : std::string();
+  const bool changed = image().axis_count > 0 && image_.processes[0].tool != state_.tool_in_spindle;
+  return found || ended || changed ? save() : std::string();
 }
 
 const image::ProcessImage& Resident::image() {

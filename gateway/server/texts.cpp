@@ -73,9 +73,12 @@ const Entry kInputRange{"socket.input-range", "'{0}' cannot be {1}: from {2} to 
                         "«{0}» не может быть {1}: возможно от {2} до {3}"};
 const Entry kInputSteps{"socket.input-steps", "'{0}' cannot be {1}: its register holds {2} or {3}",
                         "«{0}» не может быть {1}: регистр вмещает {2} или {3}"};
-const Entry kFollowsNothing{"socket.follows-nothing",
-                            "'{0}' follows nothing by itself: `auto` is for switches that axes operate",
-                            "«{0}» ни за чем не следит: `auto` — для выключателей, которыми управляют оси"};
+const Entry kFollowsNothing{
+    "socket.follows-nothing",
+    "'{0}' follows nothing by itself: `auto` is for switches that axes operate and for "
+    "inputs that an output operates",
+    "«{0}» ни за чем не следит: `auto` — для выключателей, которыми управляют оси, и для "
+    "входов, которыми управляют выходы"};
 const Entry kNotSaved{"socket.not-saved", "done, but the state was not saved: {0}",
                       "выполнено, но состояние не сохранено: {0}"};
 

@@ -160,6 +160,7 @@ class Axis {
   bool into_limit(double direction) const noexcept;
   HomingInputs homing_inputs(double dt) const noexcept;
   // axis_supervision.cpp: feedback, switches, limits
+  static bool met(bool on, double& free_s, double dt) noexcept;
   void read_places(const image::ProcessImage& image) noexcept;
   void read_feedback(const image::DriveFeedback& in, double dt) noexcept;
   void supervise_drive() noexcept;
@@ -205,6 +206,8 @@ class Axis {
   int plc_jog_ = 0;
 
   bool limit_plus_ = false, limit_minus_ = false, home_switch_ = false;
+  double plus_free_s_ = 0.0, minus_free_s_ = 0.0;  ///< so long the switches have been free without a break
+  bool met_plus_ = false, met_minus_ = false;      ///< they came on in this cycle, and not by bouncing
   bool homed_ = false;
   bool own_motion_ = false;  ///< the ramp moves the axis, not the process
   bool stopped_by_reaction_ = false;

@@ -20,6 +20,8 @@ bool on(const image::ProcessImage& image, const std::optional<SwitchPlace>& s) n
   return s && image.packets.bit(s->place) != s->inverted;
 }
 
+constexpr double kBounce_s = 0.1;  ///< a switch that was free for less is one that bounces
+
 }  // namespace
 
 const Axis::Sent& Axis::sent(int cycles_ago) const noexcept {
@@ -34,6 +36,13 @@ void Axis::raise(image::AlarmNumber number, double limit, double value, double d
   events_.add({number, limit, value, d1, d2});
 }
 
+/// Whether a switch came on that had been free for longer than contacts bounce.
+bool Axis::met(bool on, double& free_s, double dt) noexcept {
+  const bool came = on && free_s > kBounce_s;
+  free_s = on ? 0.0 : free_s + dt;
+  return came;
+}
+
 void Axis::read_places(const image::ProcessImage& image) noexcept {
   using image::field;
   using image::kAxisFields;
@@ -43,6 +52,8 @@ void Axis::read_places(const image::ProcessImage& image) noexcept {
   };
   limit_plus_ = on(image, config_.limit_plus) || bit(field(kAxisFields, "limit_plus"));
   limit_minus_ = on(image, config_.limit_minus) || bit(field(kAxisFields, "limit_minus"));
+  met_plus_ = met(limit_plus_, plus_free_s_, image.now.period_s());
+  met_minus_ = met(limit_minus_, minus_free_s_, image.now.period_s());
   home_switch_ = on(image, config_.home_switch) || bit(field(kAxisFields, "home_switch"));
   feed_enable_ = bit(field(kAxisFields, "feed_enable"));
   power_permitted_ = bit(field(kAxisFields, "enable")) &&
@@ -130,11 +141,14 @@ void Axis::warn_of_following_error() noexcept {
 void Axis::supervise_setpoint() noexcept {
   if (!held_) return;
   // A program never takes an axis to its switches: one that works is a limit that was passed or a broken
-  // wire, wherever the axis goes or rests. Others move away from a switch.
+  // wire, wherever the axis goes or rests. Others move away from the switch that they stood on; one that
+  // comes on while they move is a stop whichever way they go: wires are swapped, and broken.
   const bool of_program = owner_ == image::AxisOwner::process && (limit_plus_ || limit_minus_);
-  const bool into = owner_ != image::AxisOwner::homing && into_limit(set_.v);
-  if (of_program || into) {
-    const bool plus = into ? set_.v > 0.0 : limit_plus_;
+  const bool by_hand = owner_ != image::AxisOwner::homing;
+  const bool into = by_hand && into_limit(set_.v);
+  const bool met = by_hand && set_.v != 0.0 && (met_plus_ || met_minus_);
+  if (of_program || into || met) {
+    const bool plus = into ? set_.v > 0.0 : met ? met_plus_ : limit_plus_;
     raise(plus ? alarm::kHardLimitPlus : alarm::kHardLimitMinus, 0.0, actual_);
     if (!stopped_by_reaction_) take_away();
   }

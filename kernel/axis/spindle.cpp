@@ -156,8 +156,9 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   const bool reached = on_ && command_rpm_ == wanted;
   zero_speed_ = std::abs(actual_rpm_) <= config_.zero_speed_rpm;
   const bool turning = mode_ == SpindleMode::cw || mode_ == SpindleMode::ccw;
-  at_speed_ = turning && enable_ && reached &&
-              std::abs(actual_rpm_ - wanted) <= config_.at_speed_window * std::abs(wanted);
+  // Of a speed of 0 no share can be kept: it is at speed when it stands.
+  const double window = wanted != 0.0 ? config_.at_speed_window * std::abs(wanted) : config_.zero_speed_rpm;
+  at_speed_ = turning && enable_ && reached && std::abs(actual_rpm_ - wanted) <= window;
   supervise(dt, enable_ && reached && ordered_speed() != 0.0);
 
   off_s_ = mode_ == SpindleMode::stop && zero_speed_ ? off_s_ + dt : 0.0;
@@ -218,6 +219,7 @@ void Spindle::write_interface(image::ProcessImage& image) const noexcept {
   put(field(kSpindleFields, "orient"), mode_ == SpindleMode::orient);
   put(field(kSpindleFields, "at_speed"), at_speed_);
   put(field(kSpindleFields, "zero_speed"), zero_speed_);
+  put(field(kSpindleFields, "oriented"), oriented_);
   image.packets.set_number(image::at(field(kSpindleFields, "command"), base),
                            image.spindles[static_cast<std::size_t>(index_)].command_rpm);
   image.packets.set_number(image::at(field(kSpindleFields, "actual"), base), actual_rpm_);

@@ -167,19 +167,16 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
   if (e.number >= c.spindles.size()) return true;
   axis::Spindle& spindle = c.spindles[e.number];
   if (stage_ == Stage::entered) {
-    if (e.flag) {
-      surface_speed_ = e.value > 0.0 ? e.value : surface_speed_;
-      surface_limit_ = e.limit;
-      surface_center_ = e.center;
-    } else if (e.value > 0.0) {
-      surface_speed_ = 0.0;
-    }
+    surface_speed_ = e.flag ? e.value : 0.0;
+    surface_limit_ = e.limit;
+    surface_center_ = e.center;
     const axis::SpindleMode mode =
         e.mode == program::SpindleMode::keep ? spindle.mode() : spindle_mode(e.mode);
-    const double rpm = e.flag || e.value <= 0.0 ? spindle.ordered_rpm() : e.value;
-    spindle.order(mode, rpm);
+    spindle.order(mode, e.flag && e.value > 0.0 ? spindle.ordered_rpm() : e.value);
     surface_speed(c);
-    if (e.value <= 0.0 || spindle.ordered_rpm() == last_speed_) return true;
+    const bool same = spindle.ordered_rpm() == last_speed_;
+    if (e.value <= 0.0) last_speed_ = 0.0;
+    if (e.value <= 0.0 || same) return true;
     last_speed_ = spindle.ordered_rpm();
   }
   return handshake(HandshakeWord::s, 0, last_speed_, e, c);

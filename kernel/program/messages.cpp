@@ -205,6 +205,13 @@ constexpr text::Entry kMessages[] = {
      "begins",
      "G{0}: со дна на {1} инструмент возвращается на {2}, а не назад за уровень {3}, с которого начинается "
      "работа"},
+    {"P820", "{0} turns the spindle, and no S says how fast: it stands until one does",
+     "{0} включает шпиндель, а S не задано: он стоит, пока S не появится"},
+    {"P821",
+     "{0} turns the spindle by a cutting speed (G96), and the last S was written in rpm: write S in m/min "
+     "into the block",
+     "{0} включает шпиндель по скорости резания (G96), а последнее S задано в об/мин: запишите в кадре S в "
+     "м/мин"},
     {"P901", "{0} is not executed in this version", "{0} в этой версии не выполняется"},
     {"P902", "the power-on mode {0} is not one of this language", "режим включения {0} не из этого языка"},
     {"P903", "there is no dialect {0}", "нет языка {0}"},

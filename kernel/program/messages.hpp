@@ -146,6 +146,8 @@ enum class Fault : std::uint8_t {
   cycle_no_depth,
   cycle_passes_depth,
   cycle_return_below,
+  no_speed,
+  no_cutting_speed,
   not_executed,
   power_on_bad,
   dialect_unknown,

@@ -153,6 +153,40 @@ TEST(HardLimit, stops_the_axis_and_lets_it_go_only_back_and_slowly) {
   EXPECT_EQ(rig.events.size(), 1u);
 }
 
+TEST(HardLimit, that_comes_on_while_the_axis_goes_the_other_way_stops_it_too) {
+  Rig rig;
+  rig.reference_here();
+  ASSERT_TRUE(rig.enable());
+  rig.run(200);
+  ASSERT_TRUE(rig.axis.jog_increment(-200.0));
+  rig.run(400);
+  rig.plc("limit_plus", true);  // wires are swapped, or one is broken
+  rig.run(2);
+  EXPECT_TRUE(rig.raised(alarm::kHardLimitPlus));
+  ASSERT_TRUE(rig.run_until([&] { return !rig.axis.moving(); }));
+  EXPECT_GT(rig.shared().command, -30.0);
+  rig.axis.reset();
+  ASSERT_TRUE(rig.axis.jog_increment(-1.0)) << "away from the switch that is on, it may go";
+  ASSERT_TRUE(rig.run_until([&] { return !rig.axis.moving(); }));
+  EXPECT_EQ(rig.events.size(), 1u);
+}
+
+TEST(HardLimit, that_bounces_while_the_axis_leaves_it_does_not_stop_it) {
+  Rig rig;
+  rig.reference_here();
+  rig.plc("limit_plus", true);
+  ASSERT_TRUE(rig.enable());
+  ASSERT_TRUE(rig.axis.jog_increment(-20.0));
+  for (int i = 0; i < 300; ++i) {
+    rig.plc("limit_plus", i % 3 == 0);
+    rig.cycle();
+  }
+  rig.plc("limit_plus", false);
+  ASSERT_TRUE(rig.run_until([&] { return !rig.axis.moving(); }));
+  EXPECT_NEAR(rig.shared().command, -20.0, 1e-9);
+  EXPECT_TRUE(rig.events.empty());
+}
+
 TEST(HardLimit, is_read_from_the_plc_beside_the_own_input) {
   Rig rig;
   ASSERT_TRUE(rig.enable());

@@ -171,10 +171,19 @@ TEST(Lathe, keeps_a_cutting_speed_that_was_typed_over_the_next_blocks_and_jogs) 
   EXPECT_EQ(shell.status()["spindles"][0]["command_rpm"], 0.0) << "nothing turns by itself";
   ASSERT_EQ(shell.run({"mdi", "M3", "--wait"}).exit, 0);
   EXPECT_NEAR(rpm_at(100.0), expected(100.0), 0.5) << "the cutting speed holds over M5";
+  ASSERT_EQ(shell.run({"mdi", "G97", "--wait"}).exit, 0);
+  ASSERT_EQ(shell.run({"mdi", "G0 X200", "--wait"}).exit, 0);
+  EXPECT_NEAR(rpm_at(200.0), expected(100.0), 0.5) << "G97 alone keeps the speed of that moment";
+  EXPECT_TRUE(contains(shell.run({"mdi", "G96 M3", "--wait"}).err, "[P821]"));
+  EXPECT_NEAR(rpm_at(200.0), expected(100.0), 0.5);
   ASSERT_EQ(shell.run({"mdi", "G97 S300", "--wait"}).exit, 0);
   ASSERT_EQ(shell.run({"mdi", "G0 X200", "--wait"}).exit, 0);
   ASSERT_EQ(shell.run({"mdi", "G0 X100", "--wait"}).exit, 0);
   EXPECT_NEAR(rpm_at(100.0), 300.0, 0.5);
+  ASSERT_EQ(shell.run({"mdi", "S0", "--wait"}).exit, 0);
+  EXPECT_EQ(rpm_at(100.0), 0.0);
+  ASSERT_EQ(shell.run({"mdi", "S0 M3", "--wait"}).exit, 0);
+  EXPECT_EQ(rpm_at(100.0), 0.0) << "never the speed before";
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ namespace servogate::gateway::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 /// The mill with a second source: a counter in three places that always belong together.
 constexpr const char* kCounter = R"(PROGRAM Counter
@@ -116,6 +117,24 @@ TEST(RetainedVariables, without_a_variable_of_their_name_and_type_are_named) {
       shell.text("up.err").find("'Counter.count' is given up: the PLC has no such variable of type DINT"),
       std::string::npos)
       << shell.text("up.err");
+}
+
+/// A tool that nobody remembers is changed into one that sits there already.
+TEST(ToolInTheSpindle, is_written_when_it_is_changed_and_known_after_a_power_cut) {
+  Shell shell;
+  const std::string state = (shell.folder() / "state").string();
+  const std::vector<std::string> how{"--virtual", "--speed", "20", "--state", state};
+  shell.up("mill", how);
+  shell.ready();
+  ASSERT_EQ(shell.run({"mdi", "T2.2 M6", "--wait"}).exit, 0);
+  EXPECT_TRUE(shell.until(
+      [&](const json&) { return contains(shell.text("state/tools.toml"), "tool_in_spindle = 2"); }, 10.0));
+  EXPECT_EQ(shell.end(SIGKILL), 128 + SIGKILL);
+  shell.up("mill", how);
+  EXPECT_EQ(shell.status()["processes"][0]["tool"], 2);
+  ASSERT_EQ(shell.run({"down"}).exit, 0);
+  EXPECT_EQ(shell.wait(), 0);
+  EXPECT_TRUE(contains(shell.text("state/tools.toml"), "tool_in_spindle = 2"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ using modbus::Function;
 
 ModbusStation::ModbusStation(StationSettings settings) : settings_(std::move(settings)) {
   inputs_.assign(settings_.digital_inputs, false);
+  held_.assign(settings_.digital_inputs, false);
   coils_.assign(settings_.digital_outputs, false);
   analog_in_.assign(settings_.analog_inputs, 0);
   holding_.assign(settings_.analog_outputs, 0);
@@ -131,8 +132,13 @@ void ModbusStation::advance_to(image::Nanoseconds t) {
   for (Wire& wire : wires_) {
     if (!wire.pending || now_ns_ < wire.due_ns) continue;
     wire.pending = false;
-    set_input(wire.settings.input, wire.target);
+    follow(wire);
   }
+}
+
+void ModbusStation::follow(const Wire& wire) {
+  if (wire.settings.input < inputs_.size() && !held_[wire.settings.input])
+    inputs_[wire.settings.input] = wire.target;
 }
 
 void ModbusStation::lose_outputs() {
@@ -150,6 +156,19 @@ bool ModbusStation::set_input(std::uint16_t n, bool on) {
   if (n >= inputs_.size()) return false;
   inputs_[n] = on;
   return true;
+}
+
+bool ModbusStation::hold_input(std::uint16_t n, bool on) {
+  if (!set_input(n, on)) return false;
+  held_[n] = true;
+  return true;
+}
+
+void ModbusStation::let_go_input(std::uint16_t n) {
+  if (n >= inputs_.size()) return;
+  held_[n] = false;
+  for (const Wire& wire : wires_)
+    if (wire.settings.input == n && !wire.pending) follow(wire);
 }
 
 bool ModbusStation::set_analog_input(std::uint16_t n, std::uint16_t raw) {

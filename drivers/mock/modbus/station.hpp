@@ -77,6 +77,9 @@ class ModbusStation {
   /// Sets a simulated input from outside; false when there is none. A looped input follows its wire again at
   /// the wire's next change.
   bool set_input(std::uint16_t input, bool on);
+  /// The input stays so whatever a loopback does, until it is let go; then it follows its loopback again.
+  bool hold_input(std::uint16_t input, bool on);
+  void let_go_input(std::uint16_t input);
   bool set_analog_input(std::uint16_t input, std::uint16_t raw);
   bool input(std::uint16_t n) const noexcept { return n < inputs_.size() && inputs_[n]; }
   bool output(std::uint16_t n) const noexcept { return n < coils_.size() && coils_[n]; }
@@ -97,12 +100,13 @@ class ModbusStation {
   };
   modbus::Response answer_to(const modbus::Request& request);
   bool input_register(std::size_t address, std::uint16_t& word) const noexcept;
+  void follow(const Wire& wire);
   void lose_outputs();
   void write_coil(std::uint16_t n, bool on, image::Nanoseconds t);
   void drive(Wire& wire, bool output, image::Nanoseconds t);
 
   StationSettings settings_;
-  std::vector<bool> inputs_, coils_;
+  std::vector<bool> inputs_, held_, coils_;
   std::vector<std::uint16_t> analog_in_, holding_;
   std::vector<Wire> wires_;
   StationFault fault_;

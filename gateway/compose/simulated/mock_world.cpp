@@ -251,6 +251,7 @@ void MockWorld::add_turrets(const machine::MachineConfig& machine) {
         if (initial != machine.simulation.initial.end() && initial->second != 0.0)
           start = static_cast<int>(inputs.size());
         inputs.push_back(i);
+        inputs_[i].looped = true;
       }
     for (std::size_t o = 0; o < outputs_.size(); ++o)
       if (outputs_[o].name == config.output && inputs.size() == config.inputs.size())
@@ -263,6 +264,7 @@ void MockWorld::add_turrets(const machine::MachineConfig& machine) {
 
 void MockWorld::add_wires(const machine::MachineConfig& m) {
   for (const machine::SimulatedLoop& loop : m.simulation.loops) {
+    for (Input& input : inputs_) input.looped = input.looped || input.name == loop.input;
     int from = -1, to = -1;
     if (m.point(loop.output, &from) == nullptr || m.point(loop.input, &to) == nullptr) continue;
     if (from == to && m.stations[static_cast<std::size_t>(to)].kind == machine::StationKind::modbus) continue;
@@ -285,7 +287,7 @@ void MockWorld::carry(Wire& wire, image::Nanoseconds t) {
     wire.level = level;
     wire.since = t;
   }
-  if (t - wire.since >= wire.delay_ns)
+  if (t - wire.since >= wire.delay_ns && !inputs_[wire.input].held)
     drive_input(inputs_[wire.input], (level != wire.inverted) != inputs_[wire.input].inverted);
 }
 
@@ -295,7 +297,8 @@ void MockWorld::turn(Turret& turret, image::Nanoseconds t) {
   if (position == turret.shown) return;
   turret.shown = position;
   for (std::size_t i = 0; i < turret.inputs.size(); ++i)
-    drive_input(inputs_[turret.inputs[i]], static_cast<int>(i) == position);
+    if (!inputs_[turret.inputs[i]].held)
+      drive_input(inputs_[turret.inputs[i]], static_cast<int>(i) == position);
 }
 
 void MockWorld::advance_to(image::Nanoseconds t) {
@@ -334,7 +337,7 @@ bool MockWorld::set_input(std::string_view point, bool on) {
 MockWorld::Played MockWorld::play_input(std::string_view point, Play play) {
   for (std::size_t n = 0; n < inputs_.size(); ++n) {
     if (inputs_[n].name != point) continue;
-    if (!play.value && !inputs_[n].switched) return Played::follows_nothing;
+    if (!play.value && !inputs_[n].switched && !inputs_[n].looped) return Played::follows_nothing;
     const std::scoped_lock lock(wishes_lock_);
     wishes_.push_back({n, play});
     wished_.store(true, std::memory_order_release);
@@ -351,6 +354,8 @@ void MockWorld::apply_wishes() {
     const double value = wish.play.value.value_or(0.0);
     if (i.analog) {
       play_raw(i, i.scale != 0.0 ? (value - i.shift) / i.scale : value);
+    } else if (i.looped) {
+      play_looped(wish.input, wish.play);
     } else if (!i.switched) {
       drive_input(i, value != 0.0);
     } else if (wish.play.value) {
@@ -360,6 +365,23 @@ void MockWorld::apply_wishes() {
     }
   }
   wishes_.clear();
+}
+
+/// What is played stays, whatever the output does; let go, the input shows at once what it should.
+void MockWorld::play_looped(std::size_t input, const Play& play) {
+  Input& i = inputs_[input];
+  i.held = play.value.has_value();
+  const bool contact = play.value.value_or(0.0) != 0.0;
+  if (i.gpio) {
+    if (i.held) drive_input(i, contact);
+  } else if (mock::ModbusStation& station = lines_[i.device]->station(0); i.held) {
+    station.hold_input(static_cast<std::uint16_t>(i.number), contact != i.inverted);
+  } else {
+    station.let_go_input(static_cast<std::uint16_t>(i.number));
+  }
+  if (i.held) return;
+  for (Turret& turret : turrets_)
+    if (std::ranges::find(turret.inputs, input) != turret.inputs.end()) turret.shown = -2;
 }
 
 void MockWorld::play_raw(const Input& i, double raw) {

@@ -91,6 +91,8 @@ class MockWorld {
     double scale = 1.0, shift = 0.0;
     mock::SimulatedIoModule* module = nullptr;  ///< analog: its channel `number` instead
     mock::SimulatedEncoder* encoder = nullptr;  ///< analog: its position instead
+    bool looped = false;                        ///< follows an output: a loop or an indexer
+    bool held = false;                          ///< looped, and played by somebody
   };
   struct Output {
     std::string name;
@@ -127,6 +129,7 @@ class MockWorld {
     std::size_t input;
     Play play;
   };
+  void play_looped(std::size_t input, const Play& play);
   void add_drives(const machine::LoadResult& loaded);
   void add_node(const machine::LoadResult& loaded, const machine::BusConfig& bus,
                 const machine::NodeConfig& node);

@@ -97,6 +97,17 @@ void Execution::check_tool(int column) {
   warn(place, Fault::corrector_missing, {std::to_string(state_.corrector)});
 }
 
+/// M3 and its like say that the spindle turns; the speed has to stand before them or in their block.
+void Execution::check_start(const Word& word) {
+  if (state_.speed <= 0.0 && state_.speed_at.line == 0) {
+    Written place = written(word.column);
+    warn(place, Fault::no_speed, {word_text(block_, word)});
+  }
+  if (state_.speed > 0.0 && !state_.cutting && state_.modes.spindle == Function::surface_speed &&
+      surface_axis_ >= 0)
+    fail(Fault::no_cutting_speed, word.column, {word_text(block_, word)});
+}
+
 /// The speed with which the spindle is to turn from here on; `word` asks for it.
 void Execution::check_speed(const Word& word) {
   if (state_.speed <= 0.0) return;
@@ -122,7 +133,7 @@ void Execution::check_dwell(const Word& word) {
 double Execution::spindle_rpm(const Position& to) const {
   const double high = machine_->spindle_max_rpm;
   double rpm = state_.speed;
-  if (state_.modes.spindle == Function::surface_speed) {
+  if (state_.cutting) {
     if (surface_axis_ < 0) return 0.0;
     const double center = state_.frame.length(surface_axis_);
     const double from = state_.machine[at(surface_axis_)] - center, end = to[at(surface_axis_)] - center;

@@ -169,7 +169,7 @@ class Execution : public ValueSource {
   void run_words();
   BlockWords gather();
   void take_g(BlockWords& words, const GRule& rule);
-  void return_modes(std::uint32_t one_shot, const Modes& before);
+  void return_modes(std::uint32_t one_shot, const Modes& before, double speed, bool cutting);
   void check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const;
   void check_profile(const BlockWords& words) const;
   void run_cycle_block(const BlockWords& words);
@@ -185,6 +185,7 @@ class Execution : public ValueSource {
   // capability.cpp
   void learn_machine();
   void check_tool(int column);
+  void check_start(const Word& word);
   void check_speed(const Word& word);
   void check_turning(const Feed& feed);
   void check_line_feed(const BlockWords& words, const Feed& feed, const Position& to);

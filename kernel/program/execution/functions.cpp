@@ -65,15 +65,20 @@ void Execution::spindle_word(const BlockWords& words, const MRule* start, const 
       fail(Fault::no_spindle, words.speed->column, {word_text(block_, *words.speed)});
     const double speed = resolve(words.speed->value);
     if (!(speed >= 0.0 && speed <= 99999.99)) refuse_range("S", words.speed->value, speed, "0", "99999.99");
-    const bool feet = state_.modes.unit == Function::inch && state_.modes.spindle == Function::surface_speed;
+    state_.cutting = state_.modes.spindle == Function::surface_speed;
+    const bool feet = state_.modes.unit == Function::inch && state_.cutting;
     state_.speed = feet ? speed * kMetresPerFoot : speed;
     state_.speed_at = written(words.speed->column);
+  } else if (state_.cutting && state_.modes.spindle != Function::surface_speed) {
+    state_.speed = spindle_rpm(state_.machine);  // G97 keeps the speed of the moment
+    state_.cutting = state_.speed_told = false;
   }
   const bool turns = start != nullptr && start->action != MAction::spindle_orient;
+  if (turns) check_start(*start_word);
   if (words.speed != nullptr || turns) check_speed(words.speed != nullptr ? *words.speed : *start_word);
   if (start != nullptr)
     emit_spindle(mode_of(start->action));
-  else if (words.speed != nullptr)
+  else if (words.speed != nullptr || (!state_.speed_told && state_.spindle != SpindleMode::stop))
     emit_spindle(state_.spindle);
 }
 
@@ -82,9 +87,10 @@ void Execution::emit_spindle(SpindleMode mode) {
   Spindle spindle;
   spindle.mode = mode;
   spindle.speed = state_.speed;
-  spindle.surface_speed = state_.modes.spindle == Function::surface_speed;
+  spindle.surface_speed = state_.cutting;
   if (spindle.surface_speed && surface_axis_ >= 0) spindle.center = state_.frame.length(surface_axis_);
   emit(spindle);
+  state_.speed_told = true;
 }
 
 /// Dwell, then the M functions of the class "end of motion" in the order written; what stops or ends the
@@ -156,7 +162,7 @@ void Execution::change_tool() {
     state_.frame.set_length(a, length);
   }
   frame_changed();
-  const bool by_radius = state_.modes.spindle == Function::surface_speed && state_.speed > 0.0;
+  const bool by_radius = state_.cutting && state_.speed > 0.0;
   if (by_radius && surface_axis_ >= 0 && state_.frame.length(surface_axis_) != center)
     emit_spindle(state_.spindle);
 }

@@ -89,7 +89,9 @@ struct State {
   double feed = 0.0;                  ///< F as programmed, 0: never
   bool feed_inch = false;
   Written feed_at;
-  double speed = 0.0;  ///< S in rpm or m/min
+  double speed = 0.0;      ///< S in rpm or, if `cutting`, m/min
+  bool cutting = false;    ///< what `speed` is, G96 or G97 of the block that set it
+  bool speed_told = true;  ///< the machine knows `speed`
   Written speed_at;
   SpindleMode spindle = SpindleMode::stop;
   std::int32_t tool = 0;  ///< last T word
