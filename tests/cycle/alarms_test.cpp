@@ -38,6 +38,17 @@ TEST(AlarmList, stamps_a_record_and_takes_the_reaction_of_the_table) {
   EXPECT_EQ(list.reaction(), Reaction::stop_axes);
 }
 
+TEST(AlarmList, has_each_kind_of_foreign_frame_once) {
+  AlarmList list;
+  image::AlarmRecord sync = of(alarm::kForeignFrame), nmt = sync;
+  sync.segment = nmt.segment = 0;
+  sync.value = 0x080;
+  nmt.value = 0x000;
+  EXPECT_EQ(list.raise(sync, at(1)), 1u);
+  EXPECT_EQ(list.raise(nmt, at(2)), 2u) << "both are of no node";
+  EXPECT_EQ(list.raise(sync, at(3)), 1u);
+}
+
 TEST(AlarmList, takes_a_stronger_reaction_of_the_machine_file_and_no_weaker_one) {
   AlarmList list;
   AlarmRecord strong = of(axis::alarm::kFollowingError, 0), weak = of(axis::alarm::kFollowingError, 1);
