@@ -163,6 +163,10 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
     if (const machine::DeviceConfig* device = loaded.device(node->device); device != nullptr)
       c.feedback_delay = 2 + device->behaviour.command_delay;
     c.missed_limit = static_cast<std::uint32_t>(node->loss_cycles);
+    // Its values come when they come; the segment knows when an answer is overdue.
+    if (const machine::DeviceConfig* device = loaded.device(node->device);
+        device != nullptr && device->behaviour.sdo_only)
+      c.missed_limit = 0;
     c.loss_reaction = loss_reaction(node->loss_reaction);
   }
   return c;

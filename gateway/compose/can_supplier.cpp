@@ -5,6 +5,7 @@
 #include <iterator>
 #include <span>
 
+#include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/image/frame_record.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
 
@@ -22,6 +23,7 @@ struct Row {
 constexpr Row kAlarms[] = {
     {BusEventKind::boot_failed, cycle::alarm::kBootFailed},
     {BusEventKind::emcy, cycle::alarm::kEmergencyMessage},
+    {BusEventKind::error_history, cycle::alarm::kErrorHistory},
     {BusEventKind::heartbeat_lost, cycle::alarm::kNodeLost},
     {BusEventKind::pdo_missing, axis::alarm::kPdoMissing},
     {BusEventKind::pdo_short, cycle::alarm::kPdoShort},
@@ -77,6 +79,11 @@ void CanSupplier::report(const canopen::BusEvent& event) noexcept {
   r.limit = static_cast<double>(event.expected);
   r.value = static_cast<double>(event.kind == BusEventKind::emcy ? event.emcy.error_register : event.got);
   r.detail1 = event.pdo;
+  if (event.kind == BusEventKind::error_history) {
+    r.object_index = canopen::object::kPredefinedErrorField;
+    r.object_subindex = event.pdo;
+    r.detail1 = 0.0;
+  }
   if (event.kind == BusEventKind::foreign_frame) {
     const std::size_t length = std::min<std::size_t>(event.frame.length, event.frame.data.size());
     image::pack_frame(canopen::make_frame(event.frame.id, std::span(event.frame.data).first(length)), r);

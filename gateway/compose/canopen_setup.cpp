@@ -144,6 +144,12 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
     if (n.target == canopen::DriveTarget::axis) {
       const machine::AxisConfig& axis = m.axes[static_cast<std::size_t>(n.target_index)];
       n.setup.homing = homing_of(axis, n.profile);
+      // What it forms by itself keeps to the limits of the axis.
+      if (n.profile.position_mode == canopen::OperationMode::profile_position) {
+        n.setup.profile_speed =
+            object_value(axis.max_velocity * axis.counts_per_unit() / n.profile.velocity_unit_counts_s);
+        n.setup.speed_ramp = object_value(braking_counts_s2 / n.profile.acceleration_unit_counts_s2);
+      }
       if (axis.home.method == machine::HomingMethod::drive)
         n.profile.modes |= canopen::supported_bit(canopen::OperationMode::homing);
     }

@@ -176,6 +176,7 @@ struct NodeConfig {
   std::string configuration_date;         ///< "2026-11-22 14:30:00" for 1020h; empty: written at every boot
   bool configuration_store = false;       ///< the device is told to store it (1010h:01)
   bool unsupervised = false;              ///< may run although it would not notice the control's death
+  bool silent_status = false;             ///< the statusword may come on event only, its loss unseen
   std::map<std::string, double> objects;  ///< "6065:00" -> value, written at boot after the device file's own
 };
 

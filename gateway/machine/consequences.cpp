@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/machine/consequences.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
 #include "firmware_if/text/units.hpp"
 #include "gateway/machine/keys/json.hpp"
 
@@ -43,6 +45,25 @@ constexpr text::Entry kBus{
     "stuff bits that frames can need, a run measures those that are sent",
     "шина {0}: узлов {1}, загрузка в среднем {2} %, {3} %, если всё совпадёт в одном цикле; и то и другое с "
     "наибольшим числом вставных битов, а прогон измеряет переданные"};
+constexpr text::Entry kFullestCycle{
+    "consequence.fullest_cycle",
+    "bus {0}: the fullest cycle, with service data beside all that may fall into it, would take {1} % "
+    "(process "
+    "data {2} %); what goes with every SYNC is in time even then, the rest may end in the next cycle",
+    "шина {0}: самый заполненный цикл вместе с сервисными данными занял бы {1} % (данные процесса {2} %); "
+    "то, что "
+    "передаётся с каждым SYNC, успевает и тогда, остальное может закончиться в следующем цикле"};
+constexpr text::Entry kBySdo{"consequence.by_sdo",
+                             "{0}: only answers SDO: a set-point and its actual value every {1} ms at best; "
+                             "without an answer for {2} ms it "
+                             "counts as lost",
+                             "{0}: отвечает только по SDO: задание и ответное положение в лучшем случае раз "
+                             "в {1} мс; без ответа {2} мс "
+                             "считается потерянным"};
+constexpr text::Entry kOwnMotion{
+    "consequence.own_motion",
+    "{0}: its drive forms the motion by itself (profile position) and is up to {1} behind at {2}",
+    "{0}: движение строит сам привод (режим позиционирования), отставание до {1} на {2}"};
 constexpr text::Entry kStation{"consequence.station", "{0}: {1} signals, up to {2} ms old",
                                "{0}: сигналов {1}, возраст до {2} мс"};
 constexpr text::Entry kEmergencyStop{"consequence.emergency_stop",
@@ -105,6 +126,24 @@ class Sentences {
         {{"load", load.load},
          {"worst_cycle", load.worst_cycle},
          {"nodes", static_cast<double>(bus.nodes.size())}});
+    const double fullest = load.worst_cycle + load.worst_service_data;
+    if (!bus.nodes.empty() && fullest > 1.0 &&
+        canopen::late_pdos(load, static_cast<std::uint32_t>(bus.bit_rate), m_.cycle_ns()).empty())
+      say("bus " + bus.name, kFullestCycle,
+          {bus.name, text::number(fullest * 100.0, 1), text::number(load.worst_process_data * 100.0, 1)},
+          {{"fullest_cycle", fullest}, {"process_data", load.worst_process_data}});
+    for (const NodeConfig& node : bus.nodes) by_sdo(bus, node);
+  }
+
+  void by_sdo(const BusConfig& bus, const NodeConfig& node) {
+    const double period = sdo_round(loaded_, bus.name + "." + node.name);
+    if (period <= 0.0) return;
+    const double patience = node.sdo_timeout > 0.0
+                                ? node.sdo_timeout
+                                : static_cast<double>(canopen::SegmentConfig{}.sdo_timeout_ms) * 1e-3;
+    say(bus.name + "." + node.name, kBySdo,
+        {bus.name + "." + node.name, text::number(period * 1e3), text::number(patience * 1e3)},
+        {{"period", period}, {"patience", patience}});
   }
 
   void axis(const AxisConfig& a) {
@@ -122,6 +161,8 @@ class Sentences {
     longest_stop_ =
         std::max(longest_stop_, stop.time + back + (a.brake.present() ? a.brake.engage_delay : 0.0));
     margin(a);
+    if (const double lag = own_motion_lag(loaded_, a); lag > 0.0)
+      say(a.letter, kOwnMotion, {a.letter, length(lag), speed(a.max_velocity)}, {{"lag", lag}});
     const double moving = a.following_error_stop + a.following_error_velocity * a.max_velocity;
     say(a.letter, kFollowing,
         {a.letter, length(a.following_error_stop), length(moving), speed(a.max_velocity)},
@@ -265,6 +306,44 @@ canopen::SegmentServices planned_services(const BusConfig& bus) {
 canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus) {
   return canopen::segment_load(static_cast<std::uint32_t>(bus.bit_rate), loaded.machine.cycle_ns(),
                                planned_nodes(loaded, bus), planned_services(bus));
+}
+
+double sdo_round(const LoadResult& loaded, const std::string& reference) {
+  int index = -1;
+  const NodeConfig* node = loaded.machine.node(reference, &index);
+  if (node == nullptr) return 0.0;
+  const BusConfig& bus = loaded.machine.buses[static_cast<std::size_t>(index)];
+  if (bus.bit_rate <= 0) return 0.0;
+  canopen::SegmentConfig segment;
+  segment.cycle_ns = loaded.machine.cycle_ns();
+  segment.nodes = planned_nodes(loaded, bus);
+  const canopen::SegmentServices services = planned_services(bus);
+  segment.heartbeat_ms = services.heartbeat_ms;
+  segment.time_ms = services.time_ms;
+  const bool spindle = std::any_of(loaded.machine.spindles.begin(), loaded.machine.spindles.end(),
+                                   [&](const SpindleConfig& s) { return s.drive == reference; });
+  for (canopen::NodeConfig& planned : segment.nodes) {
+    if (planned.node != node->id) continue;
+    if (spindle) planned.target = canopen::DriveTarget::spindle;
+    return static_cast<double>(
+               canopen::sdo_round_ns(segment, planned, static_cast<std::uint32_t>(bus.bit_rate))) *
+           1e-9;
+  }
+  return 0.0;
+}
+
+double own_motion_lag(const LoadResult& loaded, const AxisConfig& axis) {
+  const NodeConfig* node = loaded.machine.node(axis.drive);
+  const DeviceConfig* device = node == nullptr ? nullptr : loaded.device(node->device);
+  if (device == nullptr || device->behaviour.position_mode != PositionMode::pp ||
+      axis.max_acceleration <= 0.0)
+    return 0.0;
+  // The handshake of a set-point by process data: given, answered, withdrawn, answered.
+  constexpr double kCyclesOfHandshake = 8.0;
+  const double by_sdo = sdo_round(loaded, axis.drive);
+  const double between = by_sdo > 0.0 ? by_sdo : kCyclesOfHandshake * loaded.machine.control.cycle_time;
+  return axis.max_velocity * axis.max_velocity / (2.0 * axis.max_acceleration) +
+         2.0 * axis.max_velocity * between;
 }
 
 std::vector<Consequence> consequences(const LoadResult& loaded) { return Sentences(loaded).all(); }

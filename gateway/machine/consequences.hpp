@@ -29,6 +29,13 @@ canopen::SegmentServices planned_services(const BusConfig& bus);
 /// Planned load of a segment with its devices' PDO maps.
 canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus);
 
+/// Time between two set-points of a drive that only answers SDO, in seconds, at best; 0: it has process data,
+/// or there is no such node ("bus.node").
+double sdo_round(const LoadResult& loaded, const std::string& reference);
+/// How far a drive that forms its motion by itself (profile position) is behind the set-points of its axis at
+/// full speed: the way on which it would stop, and that of the time between two set-points. mm or degrees.
+double own_motion_lag(const LoadResult& loaded, const AxisConfig& axis);
+
 /// Sentences for `servogate check MACHINE`, in the order of the file. Takes any result, also one with errors.
 std::vector<Consequence> consequences(const LoadResult& loaded);
 /// {"schema":1,"machine":"...","consequences":[{"subject":...,"text":...,"figures":{...}}]}

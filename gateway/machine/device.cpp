@@ -8,6 +8,7 @@
 #include "firmware_if/canopen/401/objects.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/406/objects.hpp"
+#include "firmware_if/canopen/master/drive/drive_fields.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
 #include "gateway/machine/keys/findings.hpp"
@@ -40,10 +41,13 @@ class DeviceCheck {
     ip_record();
     if (!d_.places.contains("kind")) return;  // unknown kind: said by the reader
     if (d_.terminals()) terminals();
+    write_only();
     if (!d_.drive()) return;
+    modes();
+    if (d_.behaviour.sdo_only) return sdo_only();
+    mapped_for_nothing();
     word("RPDO", d_.rpdos, 0x6040, "controlword");
     word("TPDO", d_.tpdos, 0x6041, "statusword");
-    modes();
   }
 
  private:
@@ -67,15 +71,25 @@ class DeviceCheck {
     for (std::size_t i = 0; i < list.size(); ++i) {
       PdoConfig& pdo = list[i];
       const std::string path = key + "." + std::to_string(i);
-      if (pdo.transmission > 240 && pdo.transmission < 254)
-        reading_.error(at(path + ".transmission"), finding::kPdoTransmission,
-                       {std::to_string(pdo.transmission)});
+      transmission(key, path, pdo);
       const auto [it, fresh] = numbers.try_emplace(pdo.number, at(path + ".number").line);
       if (!fresh)
         reading_.error(at(path + ".number"), finding::kPdoTwice,
                        {key, std::to_string(pdo.number), std::to_string(it->second)});
       mapping(key, path, pdo);
     }
+  }
+
+  /// Reserved are 241 to 251; only a TPDO can be asked for, and so often as `event` says.
+  void transmission(const std::string& key, const std::string& path, const PdoConfig& pdo) {
+    const std::string type = std::to_string(pdo.transmission);
+    if (pdo.remote() && key == "rpdo")
+      reading_.error(at(path + ".transmission"), finding::kPdoRemoteRpdo, {type});
+    else if (pdo.remote() && pdo.event <= 0.0)
+      reading_.error(at(path + ".transmission"), finding::kPdoRemotePeriod,
+                     {std::to_string(pdo.number), type});
+    else if (pdo.transmission > 240 && pdo.transmission < 254 && !pdo.remote())
+      reading_.error(at(path + ".transmission"), finding::kPdoTransmission, {type});
   }
 
   void mapping(const std::string& key, const std::string& path, PdoConfig& pdo) {
@@ -180,6 +194,53 @@ class DeviceCheck {
 
   void modes();
 
+  void sdo_only() {
+    for (const auto& [key, list] : {std::pair("rpdo", &d_.rpdos), std::pair("tpdo", &d_.tpdos)})
+      if (!list->empty()) reading_.error(at(key), finding::kSdoOnlyPdo, {key});
+    const BehaviourConfig& b = d_.behaviour;
+    const bool spindle = d_.kind == DeviceKind::spindle;
+    if (spindle ? b.speed_mode == SpeedMode::csv : b.position_mode != PositionMode::pp)
+      reading_.error(at("behaviour.sdo_only"), finding::kSdoOnlyMode,
+                     {spindle ? "speed_mode" : "position_mode", spindle ? "pv, vl" : "pp"});
+    if (b.brake_bit >= 0) reading_.error(at("behaviour.brake_bit"), finding::kSdoOnlyBrake, {});
+  }
+
+  bool has_setting(const PdoObject& o) const {
+    return std::any_of(d_.objects.begin(), d_.objects.end(), [&o](const auto& setting) {
+      const auto object = parse_object(setting.first);
+      return object && object->index == o.index && object->subindex == o.subindex;
+    });
+  }
+
+  /// What the drive is sent and nobody gives would be 0: a torque limit of 0, for one. What it sends and
+  /// nobody takes loads the bus.
+  void mapped_for_nothing() {
+    const canopen::DriveProfile profile = drive_profile(d_, NodeConfig{}, 0);
+    const auto each = [&](const std::string& key, const std::vector<PdoConfig>& list, const auto& found) {
+      for (std::size_t i = 0; i < list.size(); ++i)
+        for (std::size_t k = 0; k < list[i].objects.size(); ++k)
+          if (list[i].objects[k].index >= 0x20 && list[i].objects.size() == list[i].object_texts.size())
+            found(list[i].objects[k], list[i],
+                  at(key + "." + std::to_string(i) + ".objects." + std::to_string(k)), k);
+    };
+    each("rpdo", d_.rpdos, [&](const PdoObject& o, const PdoConfig& pdo, const Where& where, std::size_t k) {
+      if (!canopen::written_in_cycle(profile, o.index, o.subindex) && !has_setting(o))
+        reading_.error(where, finding::kNobodyWrites, {pdo.object_texts[k], std::to_string(pdo.number)});
+    });
+    if (d_.behaviour.fixed_pdo_map) return;  // the drive sends it whether it is wanted or not
+    each("tpdo", d_.tpdos, [&](const PdoObject& o, const PdoConfig& pdo, const Where& where, std::size_t k) {
+      if (!canopen::read_in_cycle(o.index, o.subindex))
+        reading_.warning(where, finding::kNobodyReads, {pdo.object_texts[k], std::to_string(pdo.number)});
+    });
+  }
+
+  void write_only() {
+    for (std::size_t i = 0; i < d_.write_only.size(); ++i)
+      if (!parse_object(d_.write_only[i]))
+        reading_.error(at("write_only." + std::to_string(i)), finding::kBadObject,
+                       {d_.write_only[i], "60C4:06/8"});
+  }
+
   DeviceConfig& d_;
   Reading& reading_;
 };
@@ -234,7 +295,8 @@ void put_pdos(const std::vector<PdoConfig>& from, std::array<canopen::PdoWanted,
   }
 }
 
-void put_settings(const std::map<std::string, double>& from, std::vector<canopen::SdoSetting>& to) {
+void put_settings(const std::map<std::string, double>& from, const std::vector<std::string>& write_only,
+                  std::vector<canopen::SdoSetting>& to) {
   for (const auto& [text, value] : from) {
     const auto object = parse_object(text);
     if (!object) continue;
@@ -243,6 +305,10 @@ void put_settings(const std::map<std::string, double>& from, std::vector<canopen
     setting.subindex = object->subindex;
     setting.bytes = static_cast<std::uint8_t>(object->bits == 0 ? 4 : object->bits / 8);
     setting.value = static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+    setting.read_back = std::none_of(write_only.begin(), write_only.end(), [&](const std::string& name) {
+      const auto other = parse_object(name);
+      return other && other->index == object->index && other->subindex == object->subindex;
+    });
     to.push_back(setting);
   }
 }
@@ -264,8 +330,9 @@ void put_behaviour(const BehaviourConfig& b, canopen::DriveProfile& p) {
   p.modes = 0;
   for (const std::string& m : b.modes) p.modes |= canopen::supported_bit(mode_of(m));
   p.check_modes = b.check_modes;
-  p.position_mode = b.position_mode == PositionMode::ip ? canopen::OperationMode::interpolated_position
-                                                        : canopen::OperationMode::cyclic_sync_position;
+  static constexpr std::string_view kPosition[] = {"csp", "ip", "pp"};
+  p.position_mode = mode_of(kPosition[static_cast<std::size_t>(b.position_mode)]);
+  p.ip_buffer = b.ip_buffer && b.position_mode == PositionMode::ip;
   const auto entry = [&b](std::string_view what) {
     const auto found = std::find(b.ip_record.begin(), b.ip_record.end(), what);
     return static_cast<std::uint8_t>(found == b.ip_record.end() ? 0 : found - b.ip_record.begin() + 1);
@@ -282,6 +349,7 @@ void put_behaviour(const BehaviourConfig& b, canopen::DriveProfile& p) {
   p.brake_bit = static_cast<std::int8_t>(b.brake_bit);
   p.brake_bit_releases = b.brake_bit_releases;
   p.pdo_map_fixed = b.fixed_pdo_map;
+  p.sdo_only = b.sdo_only;
   p.interpolation_base = b.interpolation_period
                              ? std::optional<std::int8_t>(static_cast<std::int8_t>(b.interpolation_base))
                              : std::nullopt;
@@ -347,8 +415,8 @@ canopen::DriveProfile drive_profile(const DeviceConfig& device, const NodeConfig
   if (device.terminals()) p.abort_connection_option.reset();  // 6007h is something else there
   put_pdos(device.rpdos, p.rpdo);
   put_pdos(device.tpdos, p.tpdo);
-  put_settings(device.objects, p.settings);
-  put_settings(node.objects, p.settings);
+  put_settings(device.objects, device.write_only, p.settings);
+  put_settings(node.objects, device.write_only, p.settings);
   for (const DeviceError& e : device.errors)
     p.error_texts.push_back({static_cast<std::uint16_t>(e.code), e.english, e.russian});
   return p;

@@ -33,12 +33,16 @@ struct PdoObject {
 /// [[rpdo]] (to the device) and [[tpdo]] (from the device).
 struct PdoConfig {
   int number = 1;        ///< 1-4, with predefined identifiers
-  int transmission = 1;  ///< CiA 301 transmission type: 0-240 by SYNC (n: every n-th), 254/255 on event
+  int transmission = 1;  ///< CiA 301 transmission type: 0-240 by SYNC (n: every n-th), 252/253 when asked
+                         ///< for, 254/255 on event
   double inhibit = 0.0;  ///< s between two frames of an event-driven PDO
-  double event = 0.0;    ///< s: TPDO on event is sent at least this often; RPDO: deadline
+  /// s: TPDO on event is sent at least this often; TPDO 252/253: the control asks this often; RPDO: deadline.
+  double event = 0.0;
   std::vector<std::string> object_texts;  ///< key `objects`
   std::vector<PdoObject> objects;         ///< taken apart by the loader
   int bytes() const;
+  bool cyclic() const { return transmission >= 1 && transmission <= 240; }
+  bool remote() const { return transmission == 252 || transmission == 253; }
   bool synchronous() const { return transmission <= 240; }
 };
 
@@ -55,19 +59,21 @@ struct MotorConfig {
 /// What a drive does when its master falls silent (6007h).
 enum class ConnectionLoss : std::uint8_t { none, fault, disable_voltage, quick_stop };
 enum class FaultResetBy : std::uint8_t { edge, level };
-enum class PositionMode : std::uint8_t { csp, ip };
+enum class PositionMode : std::uint8_t { csp, ip, pp };
 enum class SpeedMode : std::uint8_t { csv, pv, vl };
 
 /// [behaviour]: where a drive differs from CiA 402, in the names of canopen::DriveProfile.
 struct BehaviourConfig {
-  double velocity_unit = 1.0;                      ///< one unit of 60FFh and 606Ch in counts/s
-  bool velocity_in_rpm = false;                    ///< 60FFh and 606Ch are in rpm; velocity_unit is computed
-  double acceleration_unit = 1.0;                  ///< one unit of 609Ah in counts/s2
-  double torque_unit = 1.0;                        ///< one unit of 6071h and 6077h in per mille
-  std::vector<std::string> modes = {"csp"};        ///< modes of 6502h that must be there
-  bool check_modes = true;                         ///< false: the drive has no 6502h
-  PositionMode position_mode = PositionMode::csp;  ///< ip: of a drive without csp, 60C1h:01 mapped
+  double velocity_unit = 1.0;                ///< one unit of 60FFh and 606Ch in counts/s
+  bool velocity_in_rpm = false;              ///< 60FFh and 606Ch are in rpm; velocity_unit is computed
+  double acceleration_unit = 1.0;            ///< one unit of 609Ah in counts/s2
+  double torque_unit = 1.0;                  ///< one unit of 6071h and 6077h in per mille
+  std::vector<std::string> modes = {"csp"};  ///< modes of 6502h that must be there
+  bool check_modes = true;                   ///< false: the drive has no 6502h
+  /// ip: of a drive without csp, 60C1h:01 mapped; pp: the drive forms the motion to each set-point by itself.
+  PositionMode position_mode = PositionMode::csp;
   std::vector<std::string> ip_record = {"position"};  ///< what 60C1h:01, :02 ... are
+  bool ip_buffer = false;                             ///< has 60C4h
   SpeedMode speed_mode = SpeedMode::csv;              ///< the drive's mode for csv of the kernel
   FaultResetBy fault_reset = FaultResetBy::edge;
   double fault_reset_hold = 0.02;           ///< s that controlword bit 7 stays set
@@ -81,6 +87,7 @@ struct BehaviourConfig {
   int brake_bit = -1;                       ///< bit of 60FEh:01, -1: none
   bool brake_bit_releases = true;
   bool fixed_pdo_map = false;        ///< the map cannot be written: it is read and compared
+  bool sdo_only = false;             ///< no process data: everything goes over SDO
   bool interpolation_period = true;  ///< the drive has 60C2h
   int interpolation_base = -3;       ///< exponent of 60C2h:02
   int command_delay = 1;             ///< cycles from a target's SYNC to the actual value that follows it
@@ -136,6 +143,7 @@ struct DeviceConfig {
   std::vector<PdoConfig> tpdos;
   std::map<std::string, double>
       objects;  ///< "6065:00/32" -> value, written at boot; bits 8, 16 or 32 (default)
+  std::vector<std::string> write_only;  ///< of `objects`, or of a node's: cannot be read back
   std::vector<DeviceError> errors;
   ModbusMap modbus;
   GpioConfig gpio;

@@ -235,7 +235,7 @@ void write_map(Plan& plan, const PdoPlace& place, const PdoWanted& pdo) {
 }
 
 void add_pdo(Plan& plan, const PdoPlace& place, const PdoWanted& pdo, bool fixed) {
-  const std::uint32_t flags = place.transmit ? cob::kNoRemote : 0;
+  const std::uint32_t flags = place.transmit && !pdo.remote() ? cob::kNoRemote : 0;
   const std::uint32_t off = cob::kInvalid | flags | place.id;
   constexpr std::uint32_t kIdAndValid = cob::kInvalid | 0x1FFF'FFFF;
   if (!pdo.used()) {
@@ -247,7 +247,7 @@ void add_pdo(Plan& plan, const PdoPlace& place, const PdoWanted& pdo, bool fixed
   if (!fixed) write_map(plan, place, pdo);
   plan.write_and_check(place.parameter, 2, 1, pdo.transmission_type);
   if (pdo.inhibit_100us && place.transmit) plan.write_and_check(place.parameter, 3, 2, pdo.inhibit_100us);
-  if (pdo.event_ms) plan.write_and_check(place.parameter, 5, 2, pdo.event_ms);
+  if (pdo.event_ms && !pdo.remote()) plan.write_and_check(place.parameter, 5, 2, pdo.event_ms);
   plan.write(place.parameter, 1, 4, flags | place.id);
   check_map(plan, place, pdo);
   plan.check(place.parameter, 1, 4, place.id, kIdAndValid);
@@ -278,6 +278,11 @@ void add_mode(Plan& plan, const NodeConfig& node, const SegmentConfig& segment) 
       throw std::invalid_argument("cycle time cannot be written into 60C2h");
     plan.write_and_check(object::kInterpolationTimePeriod, 2, 1, static_cast<std::uint8_t>(exponent));
     plan.write_and_check(object::kInterpolationTimePeriod, 1, 1, value);
+  }
+  // Nothing of an earlier run may be interpolated; sub-index 6 can only be written.
+  if (profile.ip_buffer) {
+    plan.step(BootStep::interpolation_time);
+    plan.write(object::kInterpolationBuffer, kBufferClear, 1, 0);
   }
   plan.step(BootStep::mode);
   const OperationMode mode = node.target == DriveTarget::axis ? profile.position_mode : profile.velocity_mode;
@@ -323,6 +328,8 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
     plan.write(setting.index, setting.subindex, setting.bytes, setting.value);
     if (setting.read_back) plan.check(setting.index, setting.subindex, setting.bytes, setting.value);
   }
+  if (node.setup.profile_speed > 0)
+    plan.write_and_check(object::kProfileVelocity, 0, 4, node.setup.profile_speed);
   if (node.setup.speed_ramp > 0)
     for (const std::uint16_t ramp : {object::kProfileAcceleration, object::kProfileDeceleration})
       plan.write_and_check(ramp, 0, 4, node.setup.speed_ramp);

@@ -36,9 +36,10 @@ struct NodeSetup {
   std::optional<ConfigurationDate> configuration_date;
   bool store_configuration = false;  ///< what was written is stored by 1010h:01
   std::optional<NodeHoming> homing;
-  /// Ramp of a speed that the drive itself forms (profile velocity), in its own units: 6083h, 6084h; 0: as it
-  /// is.
+  /// Ramp of a motion that the drive itself forms (profile velocity, profile position), in its own units:
+  /// 6083h, 6084h; 0: as it is.
   std::uint32_t speed_ramp = 0;
+  std::uint32_t profile_speed = 0;  ///< its greatest speed (profile position), 6081h; 0: as it is
   /// Deceleration of the drive's quick stop (6085h), in its own units; what device file or machine file write
   /// comes after it; 0: as it is.
   std::uint32_t quick_stop_ramp = 0;

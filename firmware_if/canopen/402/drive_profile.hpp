@@ -14,11 +14,18 @@ namespace servogate::canopen {
 /// One process data object as the machine wants it. Source: CiA 301, 7.5.2.35-38.
 struct PdoWanted {
   PdoMapping mapping;                  ///< count 0: this PDO is not used and gets disabled
-  std::uint8_t transmission_type = 1;  ///< 1-240: every n-th SYNC; 254/255: on event
-  std::uint16_t inhibit_100us = 0;     ///< TPDO on event: least distance between two, in 100 µs
-  std::uint16_t event_ms = 0;          ///< TPDO on event: sent at least this often; RPDO: deadline (0: none)
+  /// 1-240: every n-th SYNC; 0: at SYNC on event; 254/255: on event; TPDO 252/253: when it is asked for.
+  std::uint8_t transmission_type = 1;
+  std::uint16_t inhibit_100us = 0;  ///< TPDO on event: least distance between two, in 100 µs
+  /// TPDO on event: sent at least this often; TPDO 252/253: the master asks this often; RPDO: deadline (0:
+  /// none).
+  std::uint16_t event_ms = 0;
 
   bool used() const noexcept { return mapping.count != 0; }
+  /// Sent with every n-th SYNC.
+  constexpr bool cyclic() const noexcept { return transmission_type >= 1 && transmission_type <= 240; }
+  /// A TPDO that comes when a remote frame asks for it.
+  constexpr bool remote() const noexcept { return transmission_type == 252 || transmission_type == 253; }
 };
 
 /// A value that a drive wants written over SDO at boot, before its PDOs, and read back.
@@ -70,16 +77,21 @@ struct DriveProfile {
   std::uint32_t modes =
       supported_bit(OperationMode::cyclic_sync_position);  ///< needed of 6502h, checked at boot
   bool check_modes = true;                                 ///< false: the drive has no 6502h
-  /// For DriveMode::csp: csp, or ip of a drive without csp, whose record 60C1h:01 is mapped instead of 607Ah.
+  /// For DriveMode::csp: csp; ip of a drive without csp, whose record 60C1h:01 is mapped instead of 607Ah; or
+  /// pp, where the drive forms the motion to each set-point by itself: for auxiliary axes.
   OperationMode position_mode = OperationMode::cyclic_sync_position;
   std::uint8_t ip_position_entry = 1;  ///< sub-index of 60C1h that takes the position
   std::uint8_t ip_velocity_entry = 0;  ///< the same for its velocity; 0: the record has none
+  bool ip_buffer = false;  ///< has 60C4h: closed and cleared by :06 until the drive interpolates
   OperationMode velocity_mode = OperationMode::cyclic_sync_velocity;  ///< for DriveMode::csv: csv, pv or vl
 
   // Process data, index 0 = PDO 1.
   std::array<PdoWanted, 4> rpdo{};
   std::array<PdoWanted, 4> tpdo{};
   bool pdo_map_fixed = false;  ///< the map cannot be written: it is read and compared
+  /// It has no process data, or none that can be used: rpdo and tpdo are empty, everything goes over SDO.
+  /// Position mode pp, velocity mode pv or vl.
+  bool sdo_only = false;
 
   // Timing of the communication.
   std::optional<std::int8_t> interpolation_base =

@@ -49,9 +49,9 @@ inline constexpr std::uint16_t kAbortConnectionOption = 0x6007, kErrorCode = 0x6
                                kTouchProbe1Negative = 0x60BB, kTouchProbe2Positive = 0x60BC,
                                kTouchProbe2Negative = 0x60BD, kInterpolationData = 0x60C1,
                                kInterpolationTimePeriod = 0x60C2, kMaxAcceleration = 0x60C5,
-                               kMaxDeceleration = 0x60C6, kSupportedHomingMethods = 0x60E3,
-                               kFollowingErrorActual = 0x60F4, kDigitalInputs = 0x60FD,
-                               kDigitalOutputs = 0x60FE, kTargetVelocity = 0x60FF,
+                               kInterpolationBuffer = 0x60C4, kMaxDeceleration = 0x60C6,
+                               kSupportedHomingMethods = 0x60E3, kFollowingErrorActual = 0x60F4,
+                               kDigitalInputs = 0x60FD, kDigitalOutputs = 0x60FE, kTargetVelocity = 0x60FF,
                                kSupportedDriveModes = 0x6502;
 }  // namespace object
 
@@ -65,6 +65,9 @@ inline constexpr std::uint16_t kStatusEnabled = 1u << 0, kStatusPositiveStored =
                                kStatusNegativeStored = 1u << 2;
 inline constexpr int kProbe2Shift = 8;
 }  // namespace touch_probe
+
+/// 60C4h: its sub-index "buffer clear": 0 clears the buffer and closes it, 1 opens it. Write-only.
+inline constexpr std::uint8_t kBufferClear = 6;
 
 /// Bits of the digital inputs 60FDh. Source: CiA 402-2, "Object 60FDh".
 namespace digital_input {

@@ -7,6 +7,7 @@
 #include "firmware_if/canopen/402/drive_profile.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/402/statusword.hpp"
+#include "firmware_if/canopen/master/pdo/pdo_watch.hpp"
 
 namespace servogate::canopen {
 namespace {
@@ -22,6 +23,8 @@ constexpr Entry kEvents[] = {
      "{0}: загрузка остановилась на шаге «{1}»: {2}"},
     {"can-emcy", "{0}: emergency message {1}: {2}; error register {3}, manufacturer's bytes {4}",
      "{0}: аварийное сообщение {1}: {2}; регистр ошибок {3}, байты изготовителя {4}"},
+    {"can-error-history", "{0}: error history 1003h:{3} has {1}, of which no message has come: {2}",
+     "{0}: в истории ошибок 1003h:{3} есть {1}, о которой сообщения не было: {2}"},
     {"can-heartbeat-lost", "{0}: no heartbeat for {1} ms", "{0}: нет heartbeat уже {1} мс"},
     {"can-node-restarted", "{0}: has restarted by itself", "{0}: узел сам перезапустился"},
     {"can-node-left", "{0}: has left state Operational, NMT state is now {1}",
@@ -175,12 +178,17 @@ std::vector<std::string> arguments_of(const BusEvent& e, std::string_view name, 
       add(hex(e.emcy.error_register, 2));
       add(bytes_words(e.emcy.manufacturer.data(), e.emcy.manufacturer.size()));
       break;
+    case BusEventKind::error_history:
+      add(hex(e.emcy.error_code, 4));
+      add(describe_error_code(e.emcy.error_code, profile, language));
+      add(hex(e.pdo, 2).substr(0, 2));
+      break;
     case BusEventKind::node_left:
       add(nmt_state_words(e.got));
       break;
     case BusEventKind::pdo_missing:
       add(std::to_string(e.got));
-      add(e.pdo == 0 ? "TPDO" : "TPDO" + std::to_string(e.pdo));
+      add(e.pdo == 0 ? "TPDO" : e.pdo == PdoWatch::kSdo ? "SDO" : "TPDO" + std::to_string(e.pdo));
       break;
     case BusEventKind::pdo_short:
       add(std::to_string(e.expected));

@@ -19,6 +19,7 @@ enum class BusEventKind : std::uint8_t {
   node_booted,     ///< all boot steps done, process data runs
   boot_failed,     ///< `boot` says the step, what was expected and what came
   emcy,            ///< `emcy`; error code 0: the error is gone
+  error_history,   ///< 1003h:`pdo` has an error code (`emcy`) of which no message has come
   heartbeat_lost,  ///< no heartbeat for `got` ms, allowed are `expected`
   node_restarted,  ///< a boot-up message of a node that was running
   node_left,       ///< heartbeat shows another NMT state (`got`) than Operational
@@ -50,7 +51,7 @@ struct BusEvent {
   image::CanState bus_state = image::CanState::error_active;
   std::int64_t expected = 0;
   std::int64_t got = 0;
-  std::uint8_t pdo = 0;  ///< 1-4
+  std::uint8_t pdo = 0;  ///< 1-4; PdoWatch::kSdo; of error_history a sub-index
   struct {
     std::uint32_t id = 0;
     std::uint8_t length = 0;

@@ -30,9 +30,7 @@ BusNode::BusNode(const NodeConfig& config, const SegmentConfig& segment)
       boot_pause_ns_(segment.boot_pause_ms * image::kMillisecond),
       first_limit_(segment.boot_timeout_ms * image::kMillisecond / segment.cycle_ns),
       boot_attempts_(config.setup.boot_attempts > 0 ? config.setup.boot_attempts : segment.boot_attempts),
-      sdo_(config.node,
-           (config.setup.sdo_timeout_ms > 0 ? config.setup.sdo_timeout_ms : segment.sdo_timeout_ms) *
-               image::kMillisecond,
+      sdo_(config.node, sdo_timeout_ms(config, segment) * image::kMillisecond,
            static_cast<std::uint32_t>(
                std::max(0, config.setup.sdo_retries >= 0 ? config.setup.sdo_retries : segment.sdo_retries))),
       boot_(config.node, boot_plan(config, segment),
@@ -99,7 +97,7 @@ void BusNode::on_frame(Service service, const image::CanFrame& frame, const Node
 
 void BusNode::on_tpdo(int number, const image::CanFrame& frame, const NodeContext& context) noexcept {
   // What a node sends by an old configuration before it has booted means nothing.
-  if (phase_ != Phase::running) return;
+  if (phase_ != Phase::running || config_.profile.sdo_only) return;
   if (link_->process_data().take(number, frame) != ProcessData::Taken::too_short) return;
   const auto mark = static_cast<std::uint8_t>(1u << number);
   if ((short_said_ & mark) != 0) return;
@@ -119,6 +117,7 @@ void BusNode::on_emcy(const image::CanFrame& frame, const NodeContext& context) 
   if (!emcy) return;
   emcy_.add(*emcy, context.now);
   link_->on_emcy(emcy->error_code);
+  if (emcy->error_code != 0) history_.on_error(context.now);
   BusEvent e = event(BusEventKind::emcy, context);
   e.emcy = *emcy;
   context.events.push(e);
@@ -186,6 +185,8 @@ void BusNode::start_operation(const NodeContext& context) noexcept {
   handover_said_ = false;
   heartbeat_deadline_ns_ = context.now + heartbeat_timeout_ns_;
   link_->restart();
+  history_.restart();
+  faulty_ = false;
   BusEvent e = event(BusEventKind::node_booted, context);
   e.boot = boot_.report();
   context.events.push(e);
@@ -207,7 +208,7 @@ void BusNode::supervise(bool on_time, const NodeContext& context) noexcept {
     phase_ = Phase::lost;
     return;
   }
-  const PdoWatch::Overdue& overdue = link_->watch().overdue();
+  const PdoWatch::Overdue overdue = link_->overdue();
   if (missing_said_ || !(seen_status_ ? overdue.lost() : missed_ >= first_limit_)) return;
   missing_said_ = true;
   BusEvent e = event(BusEventKind::pdo_missing, context);
@@ -220,6 +221,9 @@ void BusNode::supervise(bool on_time, const NodeContext& context) noexcept {
 
 void BusNode::report_link(const NodeContext& context) noexcept {
   if (drive_ == nullptr) return;
+  const bool faulty = drive_->in_fault();
+  if (faulty && !faulty_) history_.on_error(context.now);
+  faulty_ = faulty;
   const bool refused = drive_->refusal().waited_ms != 0;
   if (refused && !refusal_said_) {
     BusEvent e = event(BusEventKind::refused, context);
@@ -250,8 +254,7 @@ void BusNode::evaluate(image::ProcessImage& image, const NodeContext& context) n
 void BusNode::fill(image::DriveFeedback& feedback) const noexcept {
   drive_->fill(feedback);
   feedback.online = online_;
-  // In PDOs that should have come, so that one on every n-th SYNC is not missed in between.
-  feedback.missed = static_cast<std::uint32_t>(drive_->watch().overdue().missed);
+  feedback.missed = drive_->missed();
   feedback.restarts = restarts_;
   if (!online_) feedback.state = image::DriveState::offline;
 }
@@ -276,17 +279,19 @@ bool BusNode::apply(const image::ProcessImage& image, const NodeContext& context
 
 int BusNode::send_process_data(const image::ProcessImage& image, const NodeContext& context,
                                image::CanFrame& dropped) noexcept {
-  if (!apply(image, context)) return 0;
+  if (!apply(image, context) || config_.profile.sdo_only) return 0;
   int lost = 0;
+  const auto send = [&](const image::CanFrame& frame) {
+    if (context.bus.send(frame)) return true;
+    dropped = frame;
+    ++lost;
+    return false;
+  };
   for (int number = 1; number <= 4; ++number) {
-    if (!link_->process_data().due(number, config_.node, context.cycle, context.now)) continue;
-    const image::CanFrame frame = link_->process_data().frame(number, config_.node);
-    if (context.bus.send(frame)) {
-      link_->process_data().sent(number, context.now);
-    } else {
-      dropped = frame;
-      ++lost;
-    }
+    ProcessData& data = link_->process_data();
+    if (data.due(number, config_.node, context.cycle, context.now) && send(data.frame(number, config_.node)))
+      data.sent(number, context.now);
+    if (data.ask_due(number, config_.node, context.cycle)) send(data.request(number, config_.node));
   }
   return lost;
 }
@@ -310,11 +315,28 @@ bool BusNode::send_acyclic(const NodeContext& context) noexcept {
     if (questioned_) context.question.finish(sdo_);
     questioned_ = false;
     if (link_->access_running()) finish_access(context);
+    if (history_.running()) finish_history(context);
     // By turns: a drive whose objects are asked for again and again would never answer somebody else.
     if (!had_its_turn) questioned_ = context.question.start(config_.node, sdo_);
-    if (!questioned_) link_->start_access(context.now, sdo_);
+    if (!questioned_ && !history_.start(context.now, sdo_)) link_->start_access(context.now, sdo_);
   }
   return sdo_.poll(context.now, context.bus);
+}
+
+/// A message or 603Fh has named this error already.
+bool BusNode::told(std::uint16_t error_code) const noexcept {
+  for (std::size_t i = 0; i < emcy_.size(); ++i)
+    if (emcy_[i].emcy.error_code == error_code) return true;
+  return drive_ != nullptr && drive_->error_code() == error_code;
+}
+
+void BusNode::finish_history(const NodeContext& context) noexcept {
+  const auto entry = history_.finish(sdo_);
+  if (!entry || entry->error_code == 0 || told(entry->error_code)) return;
+  BusEvent e = event(BusEventKind::error_history, context);
+  e.emcy.error_code = entry->error_code;
+  e.pdo = entry->subindex;
+  context.events.push(e);
 }
 
 void BusNode::finish_access(const NodeContext& context) noexcept {

@@ -14,6 +14,7 @@
 #include "firmware_if/canopen/master/drive/drive_link.hpp"
 #include "firmware_if/canopen/master/io/io_link.hpp"
 #include "firmware_if/canopen/master/object_question.hpp"
+#include "firmware_if/canopen/master/sdo/error_history.hpp"
 #include "firmware_if/canopen/master/segment_config.hpp"
 
 namespace servogate::canopen {
@@ -76,6 +77,8 @@ class BusNode {
   void fill(image::DriveFeedback& feedback) const noexcept;
   bool apply(const image::ProcessImage& image, const NodeContext& context) noexcept;
   void finish_access(const NodeContext& context) noexcept;
+  void finish_history(const NodeContext& context) noexcept;
+  bool told(std::uint16_t error_code) const noexcept;
   BusEvent event(BusEventKind kind, const NodeContext& context) const noexcept;
 
   NodeConfig config_;
@@ -90,6 +93,8 @@ class BusNode {
   DriveLink* drive_ = nullptr;  ///< link_, or nullptr
   IoLink* io_ = nullptr;        ///< the same
   EmcyHistory emcy_;
+  ErrorHistory history_;
+  bool faulty_ = false;  ///< the drive shows a fault
 
   Phase phase_ = Phase::booting;
   std::int32_t attempts_ = 0;

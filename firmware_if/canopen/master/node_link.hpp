@@ -20,7 +20,7 @@ class NodeLink {
   /// Evaluates what has come since the last cycle. True: no process data that should have come are missing.
   virtual bool update() noexcept = 0;
   /// Which of them are missing, and for how long.
-  virtual const PdoWatch& watch() const noexcept = 0;
+  virtual PdoWatch::Overdue overdue() const noexcept = 0;
   /// An emergency message of the node.
   virtual void on_emcy(std::uint16_t /*error_code*/) noexcept {}
 

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <bitset>
-#include <span>
 #include <stdexcept>
 #include <vector>
 
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/master/bus_meter.hpp"
 #include "firmware_if/canopen/master/bus_node.hpp"
-#include "firmware_if/canopen/master/segment_load.hpp"
+#include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
 
 namespace servogate::canopen {
 namespace {
@@ -21,10 +20,6 @@ using image::ProcessImage;
 constexpr int kMaxFramesPerCycle = 256;
 /// The same trouble is said again after so long.
 constexpr image::Nanoseconds kRepeatNs = image::kSecond;
-/// Request and answer of a service data transfer.
-constexpr double kExchangeBits = 2.0 * image::worst_case_bits(8);
-/// However full the bus is planned, one exchange in so many cycles goes through.
-constexpr double kCyclesPerExchange = 20.0;
 constexpr int kServices = static_cast<int>(Service::other) + 1;
 
 /// Lets one event in a second through.
@@ -60,17 +55,34 @@ void check_io(const NodeConfig& node) {
           "the module would not notice the death of the control, and nobody has waived that");
 }
 
+bool sends_or_takes_pdos(const DriveProfile& profile) {
+  return std::ranges::any_of(profile.rpdo, &PdoWanted::used) ||
+         std::ranges::any_of(profile.tpdo, &PdoWanted::used);
+}
+
+/// The drive forms its motion to each set-point, which may therefore come when it comes.
+bool moves_by_itself(const NodeConfig& node) {
+  if (node.target == DriveTarget::axis) return node.profile.position_mode == OperationMode::profile_position;
+  return node.profile.velocity_mode == OperationMode::profile_velocity ||
+         node.profile.velocity_mode == OperationMode::velocity;
+}
+
 void check_drive(const NodeConfig& node) {
   const DriveProfile& profile = node.profile;
-  require(find_field(profile.rpdo, object::kControlword).mapped(), "6040h is not mapped");
-  require(find_field(profile.tpdo, object::kStatusword).mapped(), "6041h is not mapped");
+  if (profile.sdo_only) {
+    require(!sends_or_takes_pdos(profile), "a drive that only answers SDO has process data");
+    require(moves_by_itself(node), "a drive that only answers SDO needs mode pp, pv or vl");
+  } else {
+    require(find_field(profile.rpdo, object::kControlword).mapped(), "6040h is not mapped");
+    require(find_field(profile.tpdo, object::kStatusword).mapped(), "6041h is not mapped");
+  }
   require(profile.velocity_unit_counts_s != 0.0 && profile.torque_unit_permille != 0.0, "a unit is zero");
   require(profile.brake_bit < 32, "no such bit in 60FEh");
   require(profile.brake_bit < 0 || find_field(profile.rpdo, object::kDigitalOutputs, 1).mapped(),
           "60FEh:01 is not mapped for the brake");
   require(stops_by_itself(profile) || node.unsupervised,
           "the drive would not notice the death of the control, and nobody has waived that");
-  if (node.target == DriveTarget::spindle) return;
+  if (node.target == DriveTarget::spindle || profile.sdo_only) return;
   require(find_field(profile.rpdo, object::kTargetPosition).mapped() ||
               find_field(profile.rpdo, object::kInterpolationData, profile.ip_position_entry).mapped(),
           "neither 607Ah nor 60C1h:01 is mapped");
@@ -102,43 +114,6 @@ SegmentConfig checked(SegmentConfig config) {
 }
 
 }  // namespace
-
-/// What service data may take of the bus: what the planned load of the nodes that run, and a reserve, leave.
-/// A bucket that holds a cycle's share, one exchange at least.
-class SdoBudget {
- public:
-  SdoBudget(const SegmentConfig& config, std::uint32_t bit_rate)
-      : cycle_bits_(static_cast<double>(bit_rate) * static_cast<double>(config.cycle_ns) * 1e-9),
-        most_(kExchangeBits * config.sdo_frames_per_cycle) {
-    const auto bits = [&](std::span<const NodeConfig> nodes) {
-      return cycle_bits_ <= 0.0
-                 ? 0.0
-                 : cycle_bits_ * segment_load(bit_rate, config.cycle_ns, nodes, services_of(config)).load;
-    };
-    const double own = bits({});
-    free_ = cycle_bits_ * (1.0 - config.sdo_reserve) - own;
-    for (const NodeConfig& node : config.nodes) node_bits_.push_back(bits({&node, 1}) - own);
-  }
-  /// A cycle begins. real-time safe.
-  void refill(std::span<const BusNode> nodes) noexcept {
-    double free = free_;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      if (nodes[i].online()) free -= node_bits_[i];
-    // An unknown bit rate is no limit.
-    const double share = cycle_bits_ <= 0.0
-                             ? most_
-                             : std::clamp(free, std::min(kExchangeBits / kCyclesPerExchange, most_), most_);
-    bits_ = std::min(bits_ + share, std::max(share, kExchangeBits));
-  }
-  bool enough() const noexcept { return bits_ >= kExchangeBits; }
-  void take() noexcept { bits_ -= kExchangeBits; }
-
- private:
-  double cycle_bits_, most_;
-  double free_ = 0.0;              ///< bits of a cycle without any node
-  std::vector<double> node_bits_;  ///< of a cycle, by node
-  double bits_ = 0.0;
-};
 
 struct Segment::Impl {
   Impl(image::CanBus& can, SegmentConfig segment)

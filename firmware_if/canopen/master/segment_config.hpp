@@ -70,6 +70,11 @@ constexpr std::int32_t heartbeat_timeout_ms(const NodeConfig& node, const Segmen
   if (node.profile.guard_time_ms > 0) return node.profile.guard_time_ms * node.profile.life_time_factor;
   return node.heartbeat_ms > 0 ? 3 * node.heartbeat_ms : segment.heartbeat_timeout_ms;
 }
+/// Wait for the answer to a service data request, ms; a node that only answers SDO is lost then. real-time
+/// safe.
+constexpr std::int32_t sdo_timeout_ms(const NodeConfig& node, const SegmentConfig& segment) noexcept {
+  return node.setup.sdo_timeout_ms > 0 ? node.setup.sdo_timeout_ms : segment.sdo_timeout_ms;
+}
 /// Process data missing in a row after which a node is offline. real-time safe.
 constexpr std::int32_t max_missed_pdo(const NodeConfig& node, const SegmentConfig& segment) noexcept {
   return node.max_missed_pdo > 0 ? node.max_missed_pdo : segment.max_missed_pdo;

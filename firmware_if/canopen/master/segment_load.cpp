@@ -5,30 +5,45 @@
 
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/master/pdo/pdo_watch.hpp"
 #include "firmware_if/image/can_bus.hpp"
 
 namespace servogate::canopen {
 namespace {
 
-constexpr std::uint8_t kLastSyncType = 240;
-
 /// How often a PDO comes in a cycle, on average; one on event at most once a cycle.
 double per_cycle(const PdoWanted& pdo, image::Nanoseconds cycle_ns, bool transmit) {
-  if (pdo.transmission_type <= kLastSyncType) return 1.0 / std::max<int>(1, pdo.transmission_type);
+  if (pdo.cyclic()) return 1.0 / pdo.transmission_type;
+  if (pdo.remote())
+    return 1.0 / static_cast<double>(std::max<std::int64_t>(1, cycles_between(pdo, cycle_ns)));
   if (!transmit || pdo.inhibit_100us == 0) return 1.0;
   const double inhibit_ns = pdo.inhibit_100us * 100'000.0;
   return std::min(1.0, static_cast<double>(cycle_ns) / inhibit_ns);
+}
+
+/// SYNC, the PDOs and what asks for them.
+bool of_sync(const FrameLoad& frame) {
+  const Service service = classify(frame.id, false).service;
+  return service == Service::sync || (service >= Service::tpdo1 && service <= Service::rpdo4);
 }
 
 class Sum {
  public:
   Sum(std::uint32_t bit_rate, image::Nanoseconds cycle_ns)
       : bits_per_cycle_(static_cast<double>(bit_rate) * static_cast<double>(cycle_ns) * 1e-9) {}
-  void add(std::uint32_t id, NodeId node, std::string what, std::uint8_t bytes, double often) {
+  void add(std::uint32_t id, NodeId node, std::string what, std::uint8_t bytes, double often,
+           bool every_sync = false) {
     const std::uint32_t bits = image::worst_case_bits(bytes);
-    total_.frames.push_back({id, node, std::move(what), bytes, bits, often});
+    total_.frames.push_back({id, node, std::move(what), bytes, bits, often, every_sync});
     total_.load += bits * often / bits_per_cycle_;
-    total_.worst_cycle += bits * std::max(often, 1.0) / bits_per_cycle_;
+    const double worst = bits * std::max(often, 1.0) / bits_per_cycle_;
+    total_.worst_cycle += worst;
+    if (of_sync(total_.frames.back())) total_.worst_process_data += worst;
+  }
+  void add_service_data(const SegmentServices& services) {
+    const double free = bits_per_cycle_ * (1.0 - services.sdo_reserve - total_.load);
+    const double share = sdo_share(free, kExchangeBits * services.sdo_frames_per_cycle);
+    total_.worst_service_data = std::max(share, kExchangeBits) / bits_per_cycle_;
   }
   SegmentLoad take() {
     std::ranges::stable_sort(total_.frames, {}, &FrameLoad::id);
@@ -90,7 +105,8 @@ constexpr text::Entry kNearlyFull{
 }  // namespace
 
 SegmentServices services_of(const SegmentConfig& config) noexcept {
-  return {config.heartbeat_ms, config.sync_counter_overflow != 0, config.time_ms};
+  return {config.heartbeat_ms, config.sync_counter_overflow != 0, config.time_ms, config.sdo_frames_per_cycle,
+          config.sdo_reserve};
 }
 
 SegmentLoad segment_load(std::uint32_t bit_rate, image::Nanoseconds cycle_ns,
@@ -106,10 +122,13 @@ SegmentLoad segment_load(std::uint32_t bit_rate, image::Nanoseconds cycle_ns,
       const PdoWanted &rpdo = node.profile.rpdo[i], &tpdo = node.profile.tpdo[i];
       if (rpdo.used())
         sum.add(cob::rpdo(n, node.node), node.node, "RPDO" + std::to_string(n), rpdo.mapping.bytes(),
-                per_cycle(rpdo, cycle_ns, false));
+                per_cycle(rpdo, cycle_ns, false), rpdo.transmission_type == 1);
+      if (tpdo.used() && tpdo.remote())
+        sum.add(cob::tpdo(n, node.node), node.node, "request of TPDO" + std::to_string(n), 0,
+                per_cycle(tpdo, cycle_ns, true));
       if (tpdo.used())
         sum.add(cob::tpdo(n, node.node), node.node, "TPDO" + std::to_string(n), tpdo.mapping.bytes(),
-                per_cycle(tpdo, cycle_ns, true));
+                per_cycle(tpdo, cycle_ns, true), tpdo.transmission_type == 1);
     }
     if (const std::int32_t guard_ms = node.profile.guard_time_ms; guard_ms > 0) {
       // A remote frame has the length of one without data. Source: CiA 301, "Node guarding".
@@ -120,7 +139,21 @@ SegmentLoad segment_load(std::uint32_t bit_rate, image::Nanoseconds cycle_ns,
               every(node.heartbeat_ms > 0 ? node.heartbeat_ms : services.heartbeat_ms));
     }
   }
+  sum.add_service_data(services);
   return sum.take();
+}
+
+std::vector<const FrameLoad*> late_pdos(const SegmentLoad& load, std::uint32_t bit_rate,
+                                        image::Nanoseconds cycle_ns) {
+  std::vector<const FrameLoad*> late;
+  double free = static_cast<double>(bit_rate) * static_cast<double>(cycle_ns) * 1e-9;
+  // The frames are in the order of their urgency.
+  for (const FrameLoad& frame : load.frames) {
+    if (!of_sync(frame)) continue;
+    free -= frame.bits;
+    if (free < 0.0 && frame.every_sync) late.push_back(&frame);
+  }
+  return late;
 }
 
 LoadAdvice advise(std::uint32_t bit_rate, image::Nanoseconds cycle_ns, std::span<const NodeConfig> nodes,

@@ -83,6 +83,7 @@ class DeviceUse {
         if (device != nullptr && known(*device) && device->drive() && !node.unsupervised &&
             !canopen::stops_by_itself(drive_profile(*device, node, 0)))
           reading_.error(m_.where(path + ".device"), finding::kUnsupervised, {node.name, node.device});
+        if (device != nullptr && known(*device) && device->drive()) status(*device, node, path);
         objects(node, path);
       }
   }
@@ -122,6 +123,7 @@ class DeviceUse {
         reading_.error(m_.where(path + ".home.drive_method"), finding::kHomeMethodUnknown,
                        {a.letter, std::to_string(a.home.drive_method), m_.node(a.drive)->device,
                         homing_methods_of(*device)});
+      own_motion(a, *device, path);
       if (a.brake.drive_output && !device->motor.brake_output)
         reading_.error(m_.where(path + ".brake.drive_output"), finding::kNoBrakeOutput,
                        {a.letter, m_.node(a.drive)->device});
@@ -170,6 +172,7 @@ class DeviceUse {
       const std::vector<canopen::NodeConfig> nodes = planned_nodes(loaded_, bus);
       const auto rate = static_cast<std::uint32_t>(bus.bit_rate);
       const canopen::SegmentLoad load = segment_load(loaded_, bus);
+      if (load.load <= canopen::kLoadError) late_pdos(bus, b, load);
       const text::Entry* entry = canopen::load_text(load.load);
       if (entry == nullptr) continue;
       const canopen::SegmentServices services = planned_services(bus);
@@ -191,6 +194,57 @@ class DeviceUse {
  private:
   /// Its kind was read; otherwise its own findings say enough.
   static bool known(const DeviceConfig& device) { return device.places.contains("kind"); }
+
+  /// What speaks on event only, and has no timer, may be silent because it is dead.
+  void status(const DeviceConfig& device, const NodeConfig& node, const std::string& path) {
+    if (node.silent_status) return;
+    for (const PdoConfig& pdo : device.tpdos) {
+      const bool has_status = std::any_of(pdo.objects.begin(), pdo.objects.end(),
+                                          [](const PdoObject& o) { return o.index == 0x6041; });
+      if (has_status && !pdo.cyclic() && !pdo.remote() && pdo.event <= 0.0)
+        reading_.error(
+            m_.where(path + ".device"), finding::kSilentStatus,
+            {node.name, std::to_string(pdo.number), std::to_string(pdo.transmission), node.device});
+    }
+  }
+
+  /// A drive that forms its motion by itself cannot keep to a path.
+  void own_motion(const AxisConfig& a, const DeviceConfig& device, const std::string& path) {
+    const bool by_sdo = device.behaviour.sdo_only;
+    if (!by_sdo && device.behaviour.position_mode != PositionMode::pp) return;
+    const std::string name = m_.node(a.drive)->device;
+    if (!a.auxiliary)
+      return reading_.error(
+          m_.where(path + ".drive"), finding::kOwnMotion,
+          {a.letter, name,
+           by_sdo ? text::both("only answers SDO", "отвечает только по SDO")
+                  : text::both("works in profile position", "работает в режиме позиционирования")});
+    const double lag = own_motion_lag(loaded_, a);
+    const double allowed = a.following_error_stop + a.following_error_velocity * a.max_velocity;
+    const std::string unit = " " + text::unit_words(a.unit());
+    if (a.max_acceleration > 0.0 && lag > allowed)
+      reading_.warning(m_.where(path + ".following_error_velocity"), finding::kOwnMotionLag,
+                       {a.letter, name, text::number(lag, 3) + unit,
+                        text::number(a.max_velocity) + " " + text::unit_words(a.speed_unit()),
+                        text::number(allowed, 3) + unit});
+  }
+
+  /// Where the mean is fine and the cycle of a SYNC that many wait for is not.
+  void late_pdos(const BusConfig& bus, std::size_t index, const canopen::SegmentLoad& load) {
+    std::string names;
+    for (const canopen::FrameLoad* frame :
+         canopen::late_pdos(load, static_cast<std::uint32_t>(bus.bit_rate), m_.cycle_ns()))
+      names += (names.empty() ? "" : ", ") + frame->what + " (" + node_name(bus, frame->node) + ")";
+    if (names.empty()) return;
+    reading_.warning(m_.where("bus." + std::to_string(index) + ".bit_rate"), finding::kPdosTooLate,
+                     {bus.name, text::number(load.worst_process_data * 100.0, 1), names,
+                      text::number(load.load * 100.0, 1)});
+  }
+  static std::string node_name(const BusConfig& bus, canopen::NodeId id) {
+    for (const NodeConfig& node : bus.nodes)
+      if (node.id == id) return node.name;
+    return std::to_string(id);
+  }
 
   const DeviceConfig* of_node(const std::string& reference) const {
     const NodeConfig* node = m_.node(reference);

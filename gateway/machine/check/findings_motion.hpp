@@ -275,8 +275,69 @@ inline constexpr text::Entry kPdoTwice{"machine.pdo_twice", "{0} {1} is already 
 inline constexpr text::Entry kPdoNoWord{"machine.pdo_no_word", "no {0} maps {1} ({2})",
                                         "ни один {0} не содержит {1} ({2})"};
 inline constexpr text::Entry kPdoTransmission{"machine.pdo_transmission",
-                                              "transmission {0} is reserved: 0 to 240, 254, 255",
-                                              "тип передачи {0} зарезервирован: 0-240, 254, 255"};
+                                              "transmission {0} is reserved: 0 to 240, 252 to 255",
+                                              "тип передачи {0} зарезервирован: 0-240, 252-255"};
+inline constexpr text::Entry kPdoRemoteRpdo{
+    "machine.pdo_remote", "transmission {0} is for a tpdo: only what a device sends can be asked for",
+    "тип передачи {0} только для tpdo: запросить можно лишь то, что передаёт устройство"};
+inline constexpr text::Entry kPdoRemotePeriod{
+    "machine.pdo_remote",
+    "tpdo {0}: with transmission {1} it comes when the control asks for it; `event` has to say how often "
+    "that "
+    "is",
+    "tpdo {0}: при типе {1} он передаётся по запросу управления; ключ `event` задаёт период запросов"};
+inline constexpr text::Entry kNobodyWrites{"machine.pdo_nobody_writes",
+                                           "{0} in rpdo {1}: the control has no value for it and would send "
+                                           "0; take it out, or give it a value under "
+                                           "`objects`, which is sent then",
+                                           "{0} в rpdo {1}: у управления нет для него значения, передавался "
+                                           "бы 0; уберите его или задайте значение в "
+                                           "`objects`, оно и будет передаваться"};
+inline constexpr text::Entry kNobodyReads{
+    "machine.pdo_nobody_reads", "{0} in tpdo {1}: nobody reads it, and it loads the bus in every cycle of it",
+    "{0} в tpdo {1}: его никто не читает, а шину он загружает"};
+inline constexpr text::Entry kSdoOnlyPdo{"machine.sdo_only_pdo",
+                                         "sdo_only: a drive that only answers SDO has no {0}",
+                                         "sdo_only: у привода, отвечающего только по SDO, нет {0}"};
+inline constexpr text::Entry kSdoOnlyMode{
+    "machine.sdo_only_mode",
+    "sdo_only: set-points come too seldom for a mode with one in every cycle; {0} has to be one of {1}",
+    "sdo_only: задания приходят слишком редко для режима с заданием в каждом цикле; {0} должен быть: {1}"};
+inline constexpr text::Entry kSdoOnlyBrake{
+    "machine.sdo_only_brake",
+    "sdo_only: a brake that is worked over SDO would be late; brake_bit has to be -1",
+    "sdo_only: тормоз, управляемый по SDO, срабатывал бы с опозданием; brake_bit должен быть -1"};
+inline constexpr text::Entry kOwnMotion{
+    "machine.own_motion",
+    "{0}: the drive {1} {2}, so it forms the motion between two set-points by itself and leaves the path; "
+    "that "
+    "is for an axis with auxiliary = true, or a spindle",
+    "{0}: привод {1} {2}, поэтому сам строит движение между заданиями и сходит с траектории; он годится для "
+    "оси с auxiliary = true или шпинделя"};
+inline constexpr text::Entry kOwnMotionLag{
+    "machine.own_motion_lag",
+    "{0}: the drive {1} follows by up to {2} behind at {3}, which following_error_stop and "
+    "following_error_velocity do not allow ({4}): the axis would stop with a following error",
+    "{0}: привод {1} отстаёт до {2} на {3}, а following_error_stop и following_error_velocity допускают {4}: "
+    "ось остановится по рассогласованию"};
+inline constexpr text::Entry kSilentStatus{
+    "machine.silent_status",
+    "{0}: the statusword (tpdo {1}, transmission {2}) of {3} comes on event only: silence would not differ "
+    "from "
+    "loss. Take 1 to 240, or give the tpdo an `event` time; silent_status = true waives that",
+    "{0}: слово состояния (tpdo {1}, тип {2}) устройства {3} передаётся только по событию: молчание не "
+    "отличить "
+    "от потери. Возьмите тип 1-240 или задайте для tpdo `event`; silent_status = true снимает это "
+    "требование"};
+inline constexpr text::Entry kPdosTooLate{
+    "machine.pdos_late",
+    "bus {0}: a cycle into which all slower process data fall, too, takes up to {1} %: {2}, due with every "
+    "SYNC, "
+    "would come a cycle late; the mean of {3} % hides that. A longer cycle helps, or a lower PDO number for "
+    "it",
+    "шина {0}: цикл, на который приходятся и все более редкие данные процесса, занимает до {1} %: {2}, "
+    "нужный с "
+    "каждым SYNC, опоздает на цикл; в среднем это {3} %. Поможет больший такт или меньший номер PDO"};
 
 inline constexpr text::Entry kPdoNeverComes{"machine.pdo_never_comes",
                                             "tpdo {0}: with transmission {1} and no `event` it need never "

@@ -100,6 +100,13 @@ const Section& section_of<NodeConfig>() {
       key<&C::unsupervised>("unsupervised", {},
                             "the drive may run although it would not notice that the control has died",
                             "привод может работать, хотя не заметит гибели управления"),
+      key<&C::silent_status>(
+          "silent_status", {},
+          "the drive may send its statusword on event only (transmission 0, 254 or 255 without `event`): "
+          "that it "
+          "has fallen silent is then seen by its heartbeat only",
+          "привод может передавать слово состояния только по событию (тип 0, 254 или 255 без `event`): его "
+          "молчание тогда видно только по heartbeat"),
       key<&C::objects>(
           "objects", {}, "objects written at boot after the device file's own: \"6065:00/32\" = value",
           "объекты, записываемые при запуске после объектов файла устройства: \"6065:00/32\" = значение"),

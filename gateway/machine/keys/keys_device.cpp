@@ -18,14 +18,20 @@ const Section& section_of<PdoConfig>() {
       key<&C::number>("number", {.min = 1, .max = 4, .required = true},
                       "number of the PDO, with its predefined identifier",
                       "номер PDO с предопределённым идентификатором"),
-      key<&C::transmission>("transmission", {.min = 0, .max = 255},
-                            "transmission type of CiA 301: 1-240 every n-th SYNC, 254 or 255 on event",
-                            "тип передачи по CiA 301: 1-240 каждый n-й SYNC, 254 или 255 по событию"),
+      key<&C::transmission>(
+          "transmission", {.min = 0, .max = 255},
+          "transmission type of CiA 301: 1-240 every n-th SYNC, 0 at SYNC on event, 254 or 255 "
+          "on event; TPDO 252 or 253 when the control asks for it (remote frame)",
+          "тип передачи по CiA 301: 1-240 каждый n-й SYNC, 0 по SYNC при событии, 254 или 255 "
+          "по событию; TPDO 252 или 253 по запросу управления (удалённый кадр)"),
       key<&C::inhibit>("inhibit", {.unit = Unit::second, .min = 0, .max = 6.5535},
                        "inhibit time of an event-driven PDO", "время запрета повторной передачи по событию"),
-      key<&C::event>("event", {.unit = Unit::second, .min = 0, .max = 65.535},
-                     "TPDO on event: sent at least this often; RPDO: deadline",
-                     "TPDO по событию: передаётся не реже; RPDO: предельный срок"),
+      key<&C::event>(
+          "event", {.unit = Unit::second, .min = 0, .max = 65.535},
+          "TPDO on event: sent at least this often; TPDO 252 or 253: asked for this often; RPDO: "
+          "deadline",
+          "TPDO по событию: передаётся не реже; TPDO 252 или 253: запрашивается с этим периодом; RPDO: "
+          "предельный срок"),
       key<&C::object_texts>("objects", {.required = true},
                             "mapped objects, \"index:subindex/bits\": \"6040:00/16\"",
                             "отображаемые объекты, \"индекс:субиндекс/биты\": \"6040:00/16\""),
@@ -71,7 +77,7 @@ std::span<const std::string_view> choices_of<FaultResetBy>() {
 }
 template <>
 std::span<const std::string_view> choices_of<PositionMode>() {
-  static constexpr std::string_view kNames[] = {"csp", "ip"};
+  static constexpr std::string_view kNames[] = {"csp", "ip", "pp"};
   return kNames;
 }
 template <>
@@ -96,9 +102,18 @@ const Section& section_of<BehaviourConfig>() {
       key<&C::modes>("modes", {}, "modes that 6502h must have: pp, vl, pv, tq, hm, ip, csp, csv, cst",
                      "режимы, которые должны быть в 6502h: pp, vl, pv, tq, hm, ip, csp, csv, cst"),
       key<&C::check_modes>("check_modes", {}, "false: the drive has no 6502h", "false: у привода нет 6502h"),
-      key<&C::position_mode>("position_mode", {},
-                             "mode of the drive for a position command; ip needs 60C1:01/32 in an RPDO",
-                             "режим привода для задания положения; для ip нужен 60C1:01/32 в RPDO"),
+      key<&C::position_mode>(
+          "position_mode", {},
+          "mode of the drive for a position command; ip needs 60C1:01/32 in an RPDO; with pp the "
+          "drive forms the motion to each set-point by itself: for auxiliary axes only",
+          "режим привода для задания положения; для ip нужен 60C1:01/32 в RPDO; при pp привод сам "
+          "строит движение к каждому заданию: только для вспомогательных осей"),
+      key<&C::ip_buffer>(
+          "ip_buffer", {},
+          "position_mode ip: the drive has 60C4h; the control closes its buffer (60C4h:06) until the "
+          "drive interpolates",
+          "position_mode ip: у привода есть 60C4h; управление держит его буфер закрытым (60C4h:06), "
+          "пока привод не начнёт интерполяцию"),
       key<&C::ip_record>(
           "ip_record", {},
           "position_mode ip: what 60C1h:01, :02 ... take: position, velocity; each is to be mapped",
@@ -144,6 +159,12 @@ const Section& section_of<BehaviourConfig>() {
                                   "1 в этом бите отпускает тормоз"),
       key<&C::fixed_pdo_map>("fixed_pdo_map", {}, "the PDO map cannot be written, only compared",
                              "отображение PDO нельзя записать, только сравнить"),
+      key<&C::sdo_only>(
+          "sdo_only", {},
+          "the drive has no process data: everything goes over SDO; needs position_mode pp, "
+          "speed_mode pv or vl, and no rpdo and tpdo",
+          "у привода нет данных процесса: всё идёт по SDO; нужны position_mode pp, speed_mode pv или "
+          "vl, без rpdo и tpdo"),
       key<&C::interpolation_period>("interpolation_period", {}, "the drive has 60C2h",
                                     "у привода есть 60C2h"),
       key<&C::interpolation_base>("interpolation_base", {.min = -9, .max = 0}, "exponent of 60C2h:02",
@@ -258,6 +279,9 @@ const Section& section_of<DeviceConfig>() {
       key<&C::tpdos>("tpdo", {}, "process data from the device", "данные процесса от устройства"),
       key<&C::objects>("objects", {}, "objects written at boot: \"6065:00/32\" = value; 8, 16 or 32 bits",
                        "объекты, записываемые при запуске: \"6065:00/32\" = значение; 8, 16 или 32 бита"),
+      key<&C::write_only>("write_only", {},
+                          "of `objects`, also of a node's: those that cannot be read back, \"60C4:06\"",
+                          "из `objects`, в том числе узла: те, что нельзя прочитать обратно, \"60C4:06\""),
       key<&C::behaviour>("behaviour", {}, "where it differs from CiA 402", "отличия от CiA 402"),
       key<&C::errors>("error", {}, "error codes in words", "коды ошибок словами"),
       key<&C::modbus>("modbus", {}, "channels of a Modbus station", "каналы станции Modbus"),

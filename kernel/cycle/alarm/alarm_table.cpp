@@ -361,6 +361,13 @@ constexpr AlarmRow kTable[] = {
       "узел {3}: данные процесса{6} приходят длиной {1} байт вместо {2} и не используются"},
      "Compare the mapping of the node (1A00h and following) with its file in devices/.",
      "Сравните отображение узла (1A00h и далее) с его файлом в devices/."},
+    {alarm::kErrorHistory,
+     Reaction::warn,
+     reset,
+     {"bus.error_history", "node {3}: its error history ({8}) has {5}, of which no message has come",
+      "узел {3}: в его истории ошибок ({8}) есть {5}, сообщения о которой не было"},
+     "It may be the cause of what the node has reported; see its manual for the error code.",
+     "Это может быть причиной того, о чём узел сообщил; код ошибки — в руководстве устройства."},
     // 3000: inputs and outputs
     {alarm::kSourceStale,
      Reaction::stop_on_path,

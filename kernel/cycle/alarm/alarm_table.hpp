@@ -26,6 +26,7 @@ inline constexpr AlarmNumber kBusDown = 2017;
 inline constexpr AlarmNumber kNodeRestarted = 2018;
 inline constexpr AlarmNumber kNodeLeft = 2019;
 inline constexpr AlarmNumber kPdoShort = 2020;
+inline constexpr AlarmNumber kErrorHistory = 2021;
 
 inline constexpr AlarmNumber kSourceStale = 3001;
 inline constexpr AlarmNumber kSourceBad = 3002;

@@ -236,7 +236,9 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
   if (r.number == alarm::kOverrunLimit) out[6] = phase_words(static_cast<int>(r.detail1), language);
   if (r.number == alarm::kBootFailed) out[6] = boot_words(r, names, language);
   if (r.number == axis::alarm::kPdoMissing || r.number == alarm::kPdoShort)
-    out[6] = r.detail1 > 0.0 ? " (TPDO" + text::number(r.detail1, 0) + ")" : "";
+    out[6] = r.detail1 <= 0.0     ? ""
+             : r.detail1 >= 255.0 ? " (SDO)"
+                                  : " (TPDO" + text::number(r.detail1, 0) + ")";
   if (r.number == alarm::kPlcBudget || r.number == alarm::kPlcFault) out[6] = plc_words(r, names, language);
   if (r.number == alarm::kNodeLeft) out[1] = nmt_words(static_cast<int>(r.value), language);
   if (r.number == alarm::kForeignFrame) out[8] = frame_words(r, names, language);

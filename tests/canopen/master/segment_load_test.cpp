@@ -49,6 +49,39 @@ TEST(SegmentLoad, counts_slow_pdos_by_their_type) {
               1e-12);
 }
 
+TEST(SegmentLoad, of_the_fullest_cycle_has_all_pdos_of_one_sync_and_service_data) {
+  auto nodes = axes(3);
+  const auto load = [&] { return segment_load(1'000'000, kMs, nodes); };
+  EXPECT_NEAR(load().worst_process_data, (55 + 6 * 115) / 1000.0, 1e-12);
+  EXPECT_NEAR(load().worst_service_data, kExchangeBits / 1000.0, 1e-12) << "one exchange at least";
+  EXPECT_TRUE(late_pdos(load(), 1'000'000, kMs).empty());
+  // TPDOs every 10th SYNC add little to the mean, and all of them come with the same SYNC.
+  for (NodeConfig& node : nodes) {
+    node.profile.tpdo[1].mapping.add({0x606C, 0, 32});
+    node.profile.tpdo[1].mapping.add({0x6077, 0, 16});
+    node.profile.tpdo[1].transmission_type = 10;
+  }
+  EXPECT_LT(load().load, 0.80);
+  EXPECT_GT(load().worst_process_data, 1.0);
+  EXPECT_TRUE(late_pdos(load(), 1'000'000, kMs).empty()) << "what may wait a cycle is the one that waits";
+  nodes[1].profile.rpdo[2].mapping.add({0x60B8, 0, 16});
+  const SegmentLoad full = load();
+  const auto late = late_pdos(full, 1'000'000, kMs);
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_EQ(late[0]->node, 2);
+  EXPECT_EQ(late[0]->what, "RPDO3");
+}
+
+TEST(SegmentLoad, counts_the_remote_frame_that_asks_for_a_tpdo) {
+  auto nodes = axes(1);
+  const double before = segment_load(1'000'000, kMs, nodes).load * 1000.0;
+  nodes[0].profile.tpdo[1].mapping.add({0x606C, 0, 32});
+  nodes[0].profile.tpdo[1].transmission_type = 253;
+  nodes[0].profile.tpdo[1].event_ms = 10;
+  EXPECT_NEAR(segment_load(1'000'000, kMs, nodes).load * 1000.0 - before,
+              (image::worst_case_bits(0) + image::worst_case_bits(4)) / 10.0, 1e-9);
+}
+
 TEST(SegmentLoad, counts_time_the_sync_counter_guarding_and_a_heartbeat_of_its_own) {
   const auto load = [](const std::vector<NodeConfig>& nodes, const SegmentServices& services = {}) {
     return segment_load(1'000'000, kMs, nodes, services).load * 1000.0;

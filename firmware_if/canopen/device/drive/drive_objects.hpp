@@ -17,8 +17,7 @@ inline constexpr std::uint16_t kVelocityDemand = 0x606B, kPositionWindowTime = 0
                                kProbeCounter = 0x60D5,  ///< 60D5h-60D8h
     kPositiveTorqueLimit = 0x60E0, kNegativeTorqueLimit = 0x60E1, kVlMinMax = 0x6046,
                                kVlAcceleration = 0x6048, kVlDeceleration = 0x6049, kVlSetpointFactor = 0x604B,
-                               kVlDimensionFactor = 0x604C, kInterpolationSubMode = 0x60C0,
-                               kInterpolationBuffer = 0x60C4;
+                               kVlDimensionFactor = 0x604C, kInterpolationSubMode = 0x60C0;
 }  // namespace object
 
 /// Where drives on the market differ from CiA 402-2. A drive to the standard has the defaults.

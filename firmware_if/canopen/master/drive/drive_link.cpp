@@ -14,31 +14,49 @@ using image::DriveState;
 
 namespace {
 
-/// vl: enable ramp, unlock ramp, reference ramp; without them the drive ramps to zero. Source: CiA 402-2,
-/// "vl".
-constexpr std::uint16_t kVlRampBits =
-    controlword::kModeSpecific4 | controlword::kModeSpecific5 | controlword::kModeSpecific6;
-
 std::uint64_t clamped(double value, double limit) noexcept {
   if (!(value == value)) return 0;
   return static_cast<std::uint64_t>(std::llround(std::clamp(value, -limit, limit)));
 }
 
+/// Over SDO a controlword may wait for its turn.
+constexpr std::int32_t kResetHoldBySdoMs = 300;
+
 DriveControl::Timing timing_of(const DriveProfile& profile) {
-  return {profile.fault_reset, profile.fault_reset_hold_ms * image::kMillisecond,
+  const std::int32_t hold_ms = profile.sdo_only ? std::max(profile.fault_reset_hold_ms, kResetHoldBySdoMs)
+                                                : profile.fault_reset_hold_ms;
+  return {profile.fault_reset, hold_ms * image::kMillisecond,
           profile.transition_timeout_ms * image::kMillisecond};
+}
+
+/// Of a drive that only answers SDO the objects of the cycle have their places here, too, and no frame
+/// carries them.
+DriveProfile with_places(const NodeConfig& node) {
+  DriveProfile profile = node.profile;
+  if (!profile.sdo_only) return profile;
+  const bool axis = node.target == DriveTarget::axis, vl = profile.velocity_mode == OperationMode::velocity;
+  const auto place = [](std::uint16_t index, std::uint8_t bits) {
+    PdoWanted pdo;
+    pdo.mapping.add({index, 0, bits});
+    return pdo;
+  };
+  const PdoWanted speed = vl ? place(object::kVlTargetVelocity, 16) : place(object::kTargetVelocity, 32);
+  const PdoWanted turns = vl ? place(object::kVlVelocityActual, 16) : place(object::kVelocityActual, 32);
+  profile.rpdo = {place(object::kControlword, 16), axis ? place(object::kTargetPosition, 32) : speed};
+  profile.tpdo = {place(object::kStatusword, 16), axis ? place(object::kPositionActual, 32) : turns};
+  return profile;
 }
 
 }  // namespace
 
 DriveLink::DriveLink(const NodeConfig& node, const SegmentConfig& segment)
-    : profile_(node.profile),
+    : profile_(with_places(node)),
       target_(node.target),
       cycle_ns_(segment.cycle_ns),
       watch_(profile_.tpdo, segment.cycle_ns, max_missed_pdo(node, segment)),
       handover_counts_(profile_.handover_counts ? profile_.handover_counts
                                                 : std::max<std::int64_t>(1, profile_.counts_per_rev / 4)),
-      data_(profile_),
+      data_(profile_, segment.cycle_ns),
       control_(timing_of(profile_)) {
   const auto& rpdo = profile_.rpdo;
   out_.controlword = find_field(rpdo, object::kControlword);
@@ -64,6 +82,8 @@ DriveLink::DriveLink(const NodeConfig& node, const SegmentConfig& segment)
   in_.error_code = find_field(tpdo, object::kErrorCode);
   in_.mode = find_field(tpdo, object::kModesOfOperationDisplay);
   in_.probe_status = find_field(tpdo, object::kTouchProbeStatus);
+  answer_cycles_ =
+      std::max<std::int64_t>(1, sdo_timeout_ms(node, segment) * image::kMillisecond / segment.cycle_ns);
   restart();
 }
 
@@ -73,6 +93,7 @@ void DriveLink::restart() noexcept {
   control_.restart();
   probe_.restart();
   homing_.restart();
+  set_points_.restart();
   statusword_ = 0;
   status_known_ = false;
   position_known_ = false;
@@ -93,6 +114,10 @@ void DriveLink::restart() noexcept {
   following_ = false;
   handover_difference_ = 0;
   access_ = Access::none;
+  buffer_open_wanted_ = buffer_open_ = buffer_refused_ = false;  // the boot has closed it
+  waited_ = actual_age_ = 0;
+  control_written_.reset();
+  target_written_.reset();
 }
 
 OperationMode DriveLink::mode_of(DriveMode mode) const noexcept {
@@ -118,23 +143,38 @@ void DriveLink::show_mode(std::int8_t shown) noexcept {
     if (mode_of(mode) == static_cast<OperationMode>(shown)) mode_meant_ = mode;
 }
 
+PdoWatch::Overdue DriveLink::overdue() const noexcept {
+  if (!profile_.sdo_only) return watch_.overdue();
+  if (waited_ < answer_cycles_) return {};
+  return {PdoWatch::kSdo, waited_, waited_, answer_cycles_};
+}
+
+std::uint32_t DriveLink::missed() const noexcept {
+  return static_cast<std::uint32_t>(profile_.sdo_only ? actual_age_ : watch_.overdue().missed);
+}
+
 bool DriveLink::update() noexcept {
   ++cycles_since_position_;
+  ++actual_age_;
+  if (access_ != Access::none) ++waited_;
   const bool status_fresh = data_.fresh(in_.statusword);
   if (status_fresh) {
     statusword_ = static_cast<std::uint16_t>(data_.raw(in_.statusword));
     control_.on_statusword(statusword_);
     status_known_ = true;
+    if (mode_shown_ == static_cast<std::int8_t>(OperationMode::profile_position))
+      set_points_.on_acknowledge(statusword_ & statusword::kModeSpecific12);
   }
   if (data_.fresh(in_.position)) take_position();
+  if (data_.fresh(in_.position) || data_.fresh(in_.velocity)) actual_age_ = 0;
   take_velocity();
   if (data_.fresh(in_.mode)) show_mode(static_cast<std::int8_t>(data_.number(in_.mode)));
   if (status_fresh && mode_meant_ == DriveMode::homing) homing_.on_statusword(statusword_);
   if (data_.fresh(in_.probe_status)) take_probe_by_pdo();
   follow_state();
-  const bool on_time = watch_.step(data_);
+  const bool on_time = profile_.sdo_only ? waited_ < answer_cycles_ : watch_.step(data_);
   data_.end_of_cycle();
-  return on_time && status_known_;
+  return on_time && status_known_ && (position_known_ || !profile_.sdo_only || !in_.position.mapped());
 }
 
 // 6064h has 32 bits and wraps; the machine counts on in 64.
@@ -229,12 +269,10 @@ void DriveLink::apply(image::Nanoseconds now, const image::DriveCommand& command
   wish.mode_ready = mode_ready();
   wish.start_homing = mode == OperationMode::homing && mode_ready();
   wish.halt = command.halt;
+  const std::int64_t target = target_position(command);
   std::uint16_t word = control_.step(now, wish);
   homing_.command(now, wish.start_homing && control_.state() == DriveState::operation_enabled);
-  if (mode == OperationMode::velocity && control_.state() == DriveState::operation_enabled)
-    word |= kVlRampBits;
-  if (mode == OperationMode::interpolated_position && control_.state() == DriveState::operation_enabled)
-    word |= controlword::kModeSpecific4;  // interpolation on
+  word |= mode_bits(now, target);
   data_.set(out_.controlword, word);
   data_.set(out_.mode, static_cast<std::uint8_t>(mode));
   data_.set(out_.probe_function, probe_.function());
@@ -244,7 +282,7 @@ void DriveLink::apply(image::Nanoseconds now, const image::DriveCommand& command
     outputs = command.brake_release == profile_.brake_bit_releases ? outputs | brake : outputs & ~brake;
   }
   data_.set(out_.digital_outputs, outputs);
-  set_targets(command);
+  set_targets(command, target);
 }
 
 // A drive without a halt bit is stopped by its quick stop, which nothing cuts short: neither that the power
@@ -264,7 +302,8 @@ std::int64_t DriveLink::target_position(const image::DriveCommand& command) noex
   // While the drive homes by itself it leads: the target goes along with the actual position, also over the
   // new zero, until csp is back and the command is seated on it again.
   const auto homing = static_cast<std::int8_t>(OperationMode::homing);
-  const bool drive_leads = mode_wanted_ == OperationMode::homing || mode_shown_ == homing;
+  const bool drive_leads = mode_wanted_ == OperationMode::homing || mode_shown_ == homing ||
+                           (mode_wanted_ == OperationMode::interpolated_position && !interpolating());
   if (drive_leads || control_.state() != DriveState::operation_enabled) {
     following_ = false;
     held_target_ = position_counts_;
@@ -278,11 +317,12 @@ std::int64_t DriveLink::target_position(const image::DriveCommand& command) noex
   return following_ ? command.position_counts : held_target_;
 }
 
-void DriveLink::set_targets(const image::DriveCommand& command) noexcept {
+void DriveLink::set_targets(const image::DriveCommand& command, std::int64_t target) noexcept {
   const bool enabled = control_.state() == DriveState::operation_enabled;
   const bool by_velocity = mode_wanted_ == profile_.velocity_mode && enabled;
   const bool by_torque = mode_wanted_ == OperationMode::cyclic_sync_torque && enabled;
-  data_.set(out_.target_position, static_cast<std::uint64_t>(target_position(command)));
+  if (mode_wanted_ == OperationMode::profile_position) target = set_points_.target().value_or(target);
+  data_.set(out_.target_position, static_cast<std::uint64_t>(target));
   const double velocity = command.velocity_counts_s / profile_.velocity_unit_counts_s;
   const auto set = [this](const PdoField& field, bool wanted, double value, double limit = 2147483647.0) {
     if (field.mapped()) data_.set(field, wanted ? clamped(value, limit) : 0);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "firmware_if/canopen/301/sdo_client.hpp"
 #include "firmware_if/canopen/402/drive_control.hpp"
 #include "firmware_if/canopen/402/homing_watch.hpp"
+#include "firmware_if/canopen/402/set_point_handshake.hpp"
 #include "firmware_if/canopen/402/touch_probe.hpp"
 #include "firmware_if/canopen/master/node_link.hpp"
 #include "firmware_if/canopen/master/segment_config.hpp"
@@ -12,8 +14,9 @@
 namespace servogate::canopen {
 
 /// One CiA 402 drive behind a CAN node: turns image::DriveCommand into objects and objects into
-/// image::DriveFeedback. An object that is mapped travels by PDO, any other by SDO. All but the constructor
-/// is real-time safe.
+/// image::DriveFeedback. An object that is mapped travels by PDO, any other by SDO; of a drive that only
+/// answers SDO controlword, target, statusword and actual value go round by turns. All but the constructor is
+/// real-time safe.
 class DriveLink final : public NodeLink {
  public:
   DriveLink(const NodeConfig& node, const SegmentConfig& segment);
@@ -21,7 +24,9 @@ class DriveLink final : public NodeLink {
   ProcessData& process_data() noexcept override { return data_; }
   void restart() noexcept override;
   bool update() noexcept override;
-  const PdoWatch& watch() const noexcept override { return watch_; }
+  PdoWatch::Overdue overdue() const noexcept override;
+  /// Cycles (of a PDO on every n-th SYNC: PDOs) that the actual values are behind.
+  std::uint32_t missed() const noexcept;
   void on_emcy(std::uint16_t error_code) noexcept override;
   void fill(image::DriveFeedback& feedback) const noexcept;
 
@@ -34,6 +39,12 @@ class DriveLink final : public NodeLink {
   bool access_running() const noexcept override { return access_ != Access::none; }
 
   std::uint16_t statusword() const noexcept override { return statusword_; }
+  /// 603Fh or the last emergency message.
+  std::uint16_t error_code() const noexcept { return error_code_; }
+  bool in_fault() const noexcept {
+    return control_.state() == image::DriveState::fault ||
+           control_.state() == image::DriveState::fault_reaction_active;
+  }
   const image::DriveRefusal& refusal() const noexcept { return control_.refusal(); }
   /// Distance of command and held target while the hand-over waits at Operation enabled, otherwise 0.
   std::int64_t handover_difference() const noexcept { return handover_difference_; }
@@ -41,6 +52,11 @@ class DriveLink final : public NodeLink {
  private:
   enum class Access : std::uint8_t {
     none,
+    write_control,
+    write_target,
+    read_status,
+    read_actual,
+    write_buffer,
     write_mode,
     read_mode,
     write_probe,
@@ -58,8 +74,16 @@ class DriveLink final : public NodeLink {
   void show_mode(std::int8_t shown) noexcept;
   void follow_halt(const image::DriveCommand& command) noexcept;
   std::int64_t target_position(const image::DriveCommand& command) noexcept;
-  void set_targets(const image::DriveCommand& command) noexcept;
-  Access next_access(image::Nanoseconds now) const noexcept;
+  void set_targets(const image::DriveCommand& command, std::int64_t target) noexcept;
+  std::uint16_t mode_bits(image::Nanoseconds now, std::int64_t target) noexcept;
+  void follow_interpolation() noexcept;
+  bool interpolating() const noexcept;
+  Access next_access(image::Nanoseconds now) noexcept;
+  Access next_in_round() noexcept;
+  Access next_object(image::Nanoseconds now) const noexcept;
+  PdoField field_of(Access access) const noexcept;
+  void start_field(Access access, SdoClient& sdo) noexcept;
+  void take_field(Access access, const SdoClient& sdo) noexcept;
   bool take_result(Access access, const SdoClient& sdo) noexcept;
 
   DriveProfile profile_;
@@ -79,6 +103,7 @@ class DriveLink final : public NodeLink {
   DriveControl control_;
   TouchProbe probe_;
   HomingWatch homing_;
+  SetPointHandshake set_points_;
 
   std::uint16_t statusword_ = 0;
   bool status_known_ = false;
@@ -107,7 +132,17 @@ class DriveLink final : public NodeLink {
   std::int64_t held_target_ = 0;
   std::int64_t handover_difference_ = 0;
   Access access_ = Access::none;
-  std::uint16_t access_value_ = 0;  ///< what a running write carries
+  std::uint32_t access_value_ = 0;  ///< what a running write carries
+
+  /// 60C4h:06 as it is to be and as the drive has it.
+  bool buffer_open_wanted_ = false, buffer_open_ = false, buffer_refused_ = false;
+
+  // Of a drive that only answers SDO.
+  std::int64_t answer_cycles_ = 0;  ///< wait for an answer, then the node is lost
+  std::int64_t waited_ = 0;         ///< cycles without an answer
+  std::int64_t actual_age_ = 0;
+  std::uint8_t turn_ = 0;
+  std::optional<std::uint32_t> control_written_, target_written_;
 };
 
 }  // namespace servogate::canopen

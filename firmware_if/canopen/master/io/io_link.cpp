@@ -19,7 +19,7 @@ std::uint64_t raw_of(double value, const IoPoint& p, std::uint8_t bits) noexcept
 IoLink::IoLink(const NodeConfig& node, const SegmentConfig& segment)
     : source_(static_cast<std::size_t>(node.target_index)),
       watch_(node.profile.tpdo, segment.cycle_ns, max_missed_pdo(node, segment)),
-      data_(node.profile) {
+      data_(node.profile, segment.cycle_ns) {
   for (const IoPoint& p : node.io.points) {
     Terminal terminal{p, find_field(p.input ? node.profile.tpdo : node.profile.rpdo, p.index, p.subindex)};
     if (p.bit >= 0) {

@@ -18,7 +18,7 @@ class IoLink final : public NodeLink {
   ProcessData& process_data() noexcept override { return data_; }
   void restart() noexcept override;
   bool update() noexcept override;
-  const PdoWatch& watch() const noexcept override { return watch_; }
+  PdoWatch::Overdue overdue() const noexcept override { return watch_.overdue(); }
 
   /// Inputs into packet A, and the health of their source. While the node is not online they have what is
   /// declared for its loss.

@@ -8,7 +8,7 @@ namespace {
 std::int64_t expected_every(const PdoWanted& pdo, image::Nanoseconds cycle_ns) noexcept {
   if (!pdo.used()) return 0;
   const std::int64_t cycles = cycles_between(pdo, cycle_ns);
-  if (pdo.transmission_type <= 240) return cycles;
+  if (pdo.cyclic()) return cycles;
   return pdo.event_ms > 0 ? cycles + 2 : 0;
 }
 

@@ -10,7 +10,7 @@ namespace servogate::canopen {
 
 /// Cycles between two TPDOs of this kind; 0: they come when they like. real-time safe.
 constexpr std::int64_t cycles_between(const PdoWanted& pdo, image::Nanoseconds cycle_ns) noexcept {
-  if (pdo.transmission_type >= 1 && pdo.transmission_type <= 240) return pdo.transmission_type;
+  if (pdo.cyclic()) return pdo.transmission_type;
   return pdo.event_ms * image::kMillisecond / cycle_ns;
 }
 
@@ -27,8 +27,9 @@ class PdoWatch {
   /// One cycle, before ProcessData::end_of_cycle(). True: none is overdue.
   bool step(const ProcessData& data) noexcept;
   /// The overdue TPDO that is nearest to its limit or furthest beyond it.
+  static constexpr int kSdo = 255;
   struct Overdue {
-    int number = 0;           ///< 1-4; 0: none is overdue
+    int number = 0;           ///< 1-4; 0: none is overdue; kSdo: it is the answer to an SDO request
     std::int64_t missed = 0;  ///< how many have not come
     std::int64_t cycles = 0;  ///< since it came last
     std::int64_t limit = 0;   ///< cycles after which the node is lost; 0: never

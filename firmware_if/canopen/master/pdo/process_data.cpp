@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/canopen/master/pdo/process_data.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace servogate::canopen {
@@ -22,7 +23,7 @@ PdoField find_field(const std::array<PdoWanted, 4>& pdos, std::uint16_t index,
   return {};
 }
 
-ProcessData::ProcessData(const DriveProfile& profile) {
+ProcessData::ProcessData(const DriveProfile& profile, image::Nanoseconds cycle_ns) {
   for (std::size_t i = 0; i < 4; ++i) {
     const PdoWanted& wanted = profile.rpdo[i];
     rpdo_[i].bytes = wanted.mapping.bytes();
@@ -30,7 +31,12 @@ ProcessData::ProcessData(const DriveProfile& profile) {
     // Twice within the drive's deadline, so that one lost frame does no harm.
     rpdo_[i].refresh_ns = wanted.event_ms ? wanted.event_ms * image::kMillisecond / 2 : kRefreshNs;
     tpdo_bytes_[i] = profile.tpdo[i].mapping.bytes();
+    if (const PdoWanted& asked = profile.tpdo[i]; asked.used() && asked.remote())
+      ask_every_[i] = std::max<std::int64_t>(1, asked.event_ms * image::kMillisecond / cycle_ns);
   }
+  for (const SdoSetting& setting : profile.settings)
+    set(find_field(profile.rpdo, setting.index, setting.subindex), setting.value);
+  for (Rpdo& pdo : rpdo_) pdo.constant = pdo.data;
 }
 
 ProcessData::Taken ProcessData::take(int number, const image::CanFrame& frame) noexcept {
@@ -47,15 +53,15 @@ void ProcessData::clear() noexcept {
   received_ = {};
   fresh_ = {};
   for (Rpdo& pdo : rpdo_) {
-    pdo.data = 0;
-    pdo.ever_sent = false;
+    pdo.data = pdo.constant;
+    pdo.ever_sent = pdo.held = false;
   }
 }
 
 bool ProcessData::due(int number, NodeId node, std::int64_t cycle, image::Nanoseconds now) const noexcept {
   const Rpdo& pdo = rpdo_[static_cast<std::size_t>(number - 1)];
-  if (pdo.bytes == 0) return false;
-  if (pdo.type > kLastSyncType) {
+  if (pdo.bytes == 0 || pdo.held) return false;
+  if (pdo.type == 0 || pdo.type > kLastSyncType) {
     if (pdo.ever_sent && pdo.data == pdo.sent && now - pdo.sent_ns < pdo.refresh_ns) return false;
   } else if (pdo.type > 1 && (cycle + node) % pdo.type != 0) {
     return false;
@@ -69,6 +75,14 @@ image::CanFrame ProcessData::frame(int number, NodeId node) const noexcept {
   out.id = cob::rpdo(number, node);
   out.length = pdo.bytes;
   store_le(pdo.data, std::span(out.data).first(kPdoBytes));
+  return out;
+}
+
+image::CanFrame ProcessData::request(int number, NodeId node) const noexcept {
+  image::CanFrame out;
+  out.id = cob::tpdo(number, node);
+  out.length = tpdo_bytes(number);
+  out.remote = true;
   return out;
 }
 
