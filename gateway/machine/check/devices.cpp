@@ -135,6 +135,9 @@ class DeviceUse {
       const SpindleConfig& s = m_.spindles[i];
       const DeviceConfig* device = of_node(s.drive);
       if (device == nullptr) continue;
+      if (device->behaviour.sdo_only && device->behaviour.speed_mode == SpeedMode::csv)
+        reading_.error(m_.where("spindle." + std::to_string(i) + ".drive"), finding::kSdoOnlyMode,
+                       {"speed_mode", "pv, vl"});
       if (s.counts_per_rev == 0 && device->motor.counts_per_rev == 0)
         reading_.error(m_.where("spindle." + std::to_string(i)), finding::kSpindleCounts,
                        {std::to_string(i + 1), m_.node(s.drive)->device});
@@ -219,6 +222,8 @@ class DeviceUse {
           {a.letter, name,
            by_sdo ? text::both("only answers SDO", "отвечает только по SDO")
                   : text::both("works in profile position", "работает в режиме позиционирования")});
+    if (device.behaviour.position_mode != PositionMode::pp)
+      return reading_.error(m_.where(path + ".drive"), finding::kSdoOnlyMode, {"position_mode", "pp"});
     const double lag = own_motion_lag(loaded_, a);
     const double allowed = a.following_error_stop + a.following_error_velocity * a.max_velocity;
     const std::string unit = " " + text::unit_words(a.unit());
