@@ -312,6 +312,8 @@ double Engine::number(const Handle& h) const noexcept {
 
 const std::uint8_t* Engine::data(const Handle& h) const noexcept { return state_->memory.data() + h.address; }
 
+static_assert(sizeof(Forcing::bytes) >= kMaxElementarySize);
+
 namespace {
 // Puts bytes of a value into a variable, and into the packet where it mirrors a place.
 void assign(const Image& image, std::vector<std::uint8_t>& memory, image::Packets& packets, const Handle& h,
@@ -323,14 +325,14 @@ void assign(const Image& image, std::vector<std::uint8_t>& memory, image::Packet
   if (h.bit >= 0)
     set_bit(at, h.bit, bytes[0] != 0);
   else
-    std::memcpy(at, bytes, h.type->kind == Kind::string ? 1u + bytes[0] : h.type->size);
+    std::memcpy(at, bytes, value_size(*h.type, bytes));
   if (s != nullptr)
     put_back(move_of(*s), packets.data(s->place.packet) + s->place.byte(), memory.data() + s->address);
 }
 }  // namespace
 
 bool Engine::write(image::Packets& packets, const Handle& h, std::string_view text) {
-  std::array<std::uint8_t, kMaxStringCapacity + 1> bytes{};
+  std::array<std::uint8_t, kMaxElementarySize> bytes{};
   if (!parse_value(*h.type, text, bytes.data())) return false;
   assign(*image_, state_->memory, packets, h, bytes.data());
   return true;
@@ -347,7 +349,7 @@ std::optional<Forcing> Engine::prepare_force(const Handle& h, std::string_view t
   Forcing f;
   f.handle = h;
   if (!parse_value(*h.type, text, f.bytes.data())) return std::nullopt;
-  f.size = h.type->kind == Kind::string ? 1u + f.bytes[0] : h.type->size;
+  f.size = value_size(*h.type, f.bytes.data());
   return f;
 }
 

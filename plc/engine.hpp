@@ -54,7 +54,7 @@ struct Handle {
 /// A variable and the value that it is held at, made outside the cycle.
 struct Forcing {
   Handle handle;
-  std::array<std::uint8_t, 256> bytes{};
+  std::array<std::uint8_t, 512> bytes{};
   std::uint32_t size = 0;
 };
 

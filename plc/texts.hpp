@@ -16,6 +16,11 @@ inline constexpr Entry kOpenString{"plc-open-string", "this string does not end 
 inline constexpr Entry kBadEscape{
     "plc-escape", "'{0}' is no escape in a string; $$ writes a dollar sign",
     "'{0}' не является управляющей последовательностью; знак доллара пишется $$"};
+inline constexpr Entry kBadWideEscape{
+    "plc-escape",
+    "'{0}' is no escape in a WSTRING; a number has four digits ($0416), $$ writes a dollar sign",
+    "'{0}' не является управляющей последовательностью WSTRING; число пишется четырьмя цифрами ($0416), "
+    "знак доллара — $$"};
 inline constexpr Entry kBadNumber{"plc-number", "'{0}' is no number", "'{0}' не является числом"};
 inline constexpr Entry kHugeNumber{"plc-number-range", "{0} does not fit into 64 bits",
                                    "{0} не помещается в 64 бита"};
@@ -52,8 +57,8 @@ inline constexpr Entry kEmptyRange{"plc-empty-range",
                                    "диапазон {0}..{1} пуст; первой пишется нижняя граница"};
 inline constexpr Entry kTooLarge{"plc-too-large", "'{0}' needs {1} bytes; at most {2} are possible",
                                  "'{0}' занимает {1} байт; допустимо не более {2}"};
-inline constexpr Entry kStringLength{"plc-string-length", "a STRING holds 1 to 254 characters, not {0}",
-                                     "длина STRING от 1 до 254 символов, а не {0}"};
+inline constexpr Entry kStringLength{"plc-string-length", "a {1} holds 1 to 254 characters, not {0}",
+                                     "длина {1} от 1 до 254 символов, а не {0}"};
 inline constexpr Entry kSubrangeBase{"plc-subrange-base", "a subrange needs an integer type, not {0}",
                                      "поддиапазон возможен только для целого типа, а не {0}"};
 inline constexpr Entry kSectionPlace{"plc-section", "{0} has no place in a {1}", "{0} недопустимо в {1}"};

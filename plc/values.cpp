@@ -8,6 +8,7 @@
 
 #include "plc/syntax/lexer.hpp"
 #include "plc/syntax/time_literal.hpp"
+#include "plc/types/characters.hpp"
 
 namespace servogate::plc {
 
@@ -33,28 +34,13 @@ std::string shortest(T v) {
   return {buffer, end};
 }
 
-// Length of the UTF-8 character that begins there; 0: it is none.
-std::size_t character_at(std::string_view s, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(s[i])); };
-  const unsigned lead = byte(at);
-  const std::size_t n = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
-  if (n < 2 || at + n > s.size()) return n == 1 ? 1 : 0;
-  unsigned code = lead & (0x7Fu >> n);
-  for (std::size_t i = 1; i < n; ++i) {
-    if (byte(at + i) >> 6 != 2) return 0;
-    code = code << 6 | (byte(at + i) & 0x3F);
-  }
-  constexpr unsigned least[] = {0x80, 0x800, 0x10000};
-  return code < least[n - 2] || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000) ? 0 : n;
-}
-
 // A STRING holds bytes; one that is no UTF-8 is shown by its number, as $FF.
 std::string quoted(std::string_view s) {
   std::string out = "\"";
   std::size_t inside = 0;  // bytes of the character begun
   for (std::size_t at = 0; at < s.size(); ++at) {
     const char c = s[at];
-    if (inside == 0) inside = character_at(s, at);
+    if (inside == 0) inside = utf8_length(s, at);
     const bool whole = inside > 0;
     inside -= whole;
     if (c == '"' || c == '\\') {
@@ -73,6 +59,31 @@ std::string quoted(std::string_view s) {
     }
   }
   return out + "\"";
+}
+
+// The units of a WSTRING or WCHAR, wherever they lie.
+std::u16string units_at(const Type& type, const std::uint8_t* at) {
+  const std::uint32_t before = type.kind == Kind::wide_string ? 2 : 0;
+  std::u16string out((value_size(type, at) - before) / 2, u'\0');
+  std::memcpy(out.data(), at + before, out.size() * sizeof(char16_t));
+  return out;
+}
+// The bytes of a STRING or CHAR; of a WSTRING or WCHAR its characters as UTF-8, half a surrogate pair by its
+// number.
+std::string bytes_at(const Type& type, const std::uint8_t* at) {
+  const auto* text = reinterpret_cast<const char*>(at);
+  if (type.kind == Kind::character) return {text, 1};
+  if (type.kind == Kind::string) return {text + 1, *at};
+  std::string out;
+  const std::u16string units = units_at(type, at);
+  for (std::size_t i = 0; i < units.size();) {
+    const char32_t c = take_character(units, i);
+    char buffer[8];
+    out.append(buffer, is_surrogate(c) ? static_cast<std::size_t>(std::snprintf(
+                                             buffer, sizeof buffer, "$%04X", static_cast<unsigned>(c)))
+                                       : put_character(c, buffer));
+  }
+  return out;
 }
 
 std::string compound(const Type& type, const std::uint8_t* at) {
@@ -106,9 +117,10 @@ std::string to_json(const Type& type, const std::uint8_t* at, int bit) {
       return shortest(v);
     }
     case Kind::string:
-      return quoted({reinterpret_cast<const char*>(at + 1), *at});
+    case Kind::wide_string:
     case Kind::character:
-      return quoted({reinterpret_cast<const char*>(at), 1});
+    case Kind::wide_character:
+      return quoted(bytes_at(type, at));
     case Kind::array:
     case Kind::structure:
     case Kind::block:
@@ -128,25 +140,31 @@ std::string to_json(const Type& type, const std::uint8_t* at, int bit) {
 }
 
 std::string to_literal(const Type& type, const std::uint8_t* at) {
-  if (type.kind != Kind::string && type.kind != Kind::character) {
+  if (!is_text(type.kind) && !is_character(type.kind)) {
     std::string s = to_json(type, at);
     if (s.size() > 1 && s[0] == '"') s = s.substr(1, s.size() - 2);
     return s;
   }
-  const std::string_view s = type.kind == Kind::character
-                                 ? std::string_view(reinterpret_cast<const char*>(at), 1)
-                                 : std::string_view(reinterpret_cast<const char*>(at + 1), *at);
-  std::string out = "'";
-  for (const char c : s) {
+  const char quote = is_wide(type.kind) ? '"' : '\'';
+  std::string out(1, quote);
+  const auto add = [&](char32_t c, const char* as_number, std::string_view as_it_is) {
     char buffer[8];
-    if (static_cast<unsigned char>(c) >= 0x20 && c != '$' && c != '\'' && c != 0x7F) {
-      out += c;
-    } else {
-      std::snprintf(buffer, sizeof buffer, "$%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
-      out += buffer;
+    const bool plain =
+        c >= 0x20 && c != '$' && c != static_cast<char32_t>(quote) && c != 0x7F && !is_surrogate(c);
+    if (!plain) std::snprintf(buffer, sizeof buffer, as_number, static_cast<unsigned>(c));
+    out += plain ? as_it_is : std::string_view(buffer);
+  };
+  if (is_wide(type.kind)) {
+    const std::u16string units = units_at(type, at);
+    for (std::size_t i = 0; i < units.size();) {
+      const std::size_t begin = i;
+      const char32_t c = take_character(units, i);
+      add(c, "$%04X", narrow(std::u16string_view(units).substr(begin, i - begin)));
     }
+  } else {
+    for (const char c : bytes_at(type, at)) add(static_cast<unsigned char>(c), "$%02X", {&c, 1});
   }
-  return out + "'";
+  return out + quote;
 }
 
 namespace {
@@ -183,23 +201,35 @@ bool store_literal(const Type& type, const syntax::Literal& l, std::uint8_t* out
 
 }  // namespace
 
-bool parse_value(const Type& type, std::string_view text, std::uint8_t* out) {
-  if (type.kind == Kind::string || type.kind == Kind::character) {
-    syntax::Literal l;
-    std::string s(text);
-    if (!text.empty() && (text[0] == '\'' || text[0] == '"') && syntax::parse_literal(text, l) &&
-        l.kind == Kind::string)
-      s = l.text;
-    if (type.kind == Kind::character) {
-      if (s.size() != 1) return false;
-      *out = static_cast<std::uint8_t>(s[0]);
-      return true;
-    }
-    if (s.size() > type.capacity()) return false;
-    out[0] = static_cast<std::uint8_t>(s.size());
-    std::memcpy(out + 1, s.data(), s.size());
-    return true;
+namespace {
+
+// A literal with either quotes, or plain text.
+bool parse_text(const Type& type, std::string_view text, std::uint8_t* out) {
+  syntax::Literal l;
+  std::string s(text);
+  std::u16string w;
+  const bool literal = !text.empty() && (text[0] == '\'' || text[0] == '"') && syntax::parse_literal(text, l);
+  if (literal && is_text(l.kind)) s = l.kind == Kind::string ? l.text : narrow(l.wide);
+  if (is_wide(type.kind)) w = literal && l.kind == Kind::wide_string ? l.wide : wide(s);
+  const std::size_t length = is_wide(type.kind) ? w.size() : s.size();
+  if (is_character(type.kind) ? length != 1 : length > type.capacity()) return false;
+  if (is_text(type.kind)) {
+    const auto n = static_cast<std::uint16_t>(length);
+    const std::uint32_t bytes = is_wide(type.kind) ? 2 : 1;
+    std::memcpy(out, &n, bytes);
+    out += bytes;
   }
+  if (is_wide(type.kind))
+    std::memcpy(out, w.data(), length * sizeof(char16_t));
+  else
+    std::memcpy(out, s.data(), length);
+  return true;
+}
+
+}  // namespace
+
+bool parse_value(const Type& type, std::string_view text, std::uint8_t* out) {
+  if (is_text(type.kind) || is_character(type.kind)) return parse_text(type, text, out);
   if (!is_elementary(type.kind)) return false;
   if (type.kind == Kind::enumeration) {
     const std::size_t mark = text.find('#');
@@ -215,7 +245,7 @@ bool parse_value(const Type& type, std::string_view text, std::uint8_t* out) {
 
 double to_number(const Type& type, const std::uint8_t* at) noexcept {
   const Cell c = cell_of(type);
-  if (c == Cell::text || c == Cell::blob) return std::numeric_limits<double>::quiet_NaN();
+  if (c >= Cell::text) return std::numeric_limits<double>::quiet_NaN();
   if (c == Cell::f32) {
     float v = 0;
     std::memcpy(&v, at, sizeof v);
@@ -232,7 +262,7 @@ double to_number(const Type& type, const std::uint8_t* at) noexcept {
 
 bool from_number(const Type& type, double value, std::uint8_t* out) noexcept {
   const Cell c = cell_of(type);
-  if (c == Cell::text || c == Cell::blob || std::isnan(value)) return false;
+  if (c >= Cell::text || std::isnan(value)) return false;
   if (c == Cell::f32) {
     if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max())) return false;
     const auto v = static_cast<float>(value);

@@ -9,7 +9,8 @@
 namespace servogate::plc {
 
 /// A variable in memory as JSON: true, -5, 1.25, "T#30ms", "text", enumerations by name, arrays and
-/// structures as such. `bit` >= 0: that bit of the byte. Not real-time safe.
+/// structures as such; text as UTF-8, half a surrogate pair of a WSTRING as $D83D. `bit` >= 0: that bit of
+/// the byte. Not real-time safe.
 std::string to_json(const Type& type, const std::uint8_t* at, int bit = -1);
 
 /// Reads an IEC literal, the name of an enumeration value, or plain text for a STRING, into the bytes of an

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstring>
 
 #include "plc/code/generator.hpp"
@@ -7,12 +8,14 @@
 namespace servogate::plc::code {
 
 using ir::ExprKind;
-using ir::Native;
 using ir::Op;
 using vm::Code;
 
 namespace {
-constexpr std::uint32_t kTextCell = kMaxStringCapacity + 1;
+// Bytes of a temporary for a value: of a text as much as any result may have.
+std::uint32_t cell_bytes(const Type& t) {
+  return is_text(t.kind) ? text_size(t.kind, kMaxStringCapacity) : t.size;
+}
 
 bool comparison(Op op) { return op >= Op::eq && op <= Op::ge; }
 
@@ -64,9 +67,10 @@ bool Generator::calls(const ir::Expr& e) {
   if (e.kind == ExprKind::call) return true;
   for (const ir::ExprPtr& a : e.args)
     if (calls(*a)) return true;
-  for (const ir::Step& s : e.place.steps)
-    if (calls(*s.index)) return true;
-  return false;
+  return calls(e.place);
+}
+bool Generator::calls(const ir::Place& p) {
+  return std::any_of(p.steps.begin(), p.steps.end(), [](const ir::Step& s) { return calls(*s.index); });
 }
 
 // Evaluating it costs less than a jump and neither faults nor changes anything.
@@ -79,7 +83,7 @@ bool Generator::cheap(const ir::Expr& e, int depth) {
       return e.place.steps.empty();
     case ExprKind::unary:
     case ExprKind::binary:
-      if (e.op == Op::div || e.op == Op::mod || cell_of(*e.args[0]->type) == Cell::text) return false;
+      if (e.op == Op::div || e.op == Op::mod || is_text(e.args[0]->type->kind)) return false;
       for (const ir::ExprPtr& a : e.args)
         if (!cheap(*a, depth + 1)) return false;
       return true;
@@ -89,7 +93,7 @@ bool Generator::cheap(const ir::Expr& e, int depth) {
 }
 
 Generator::Operand Generator::destination(const ir::Expr& e, std::optional<Operand> into) {
-  return into ? *into : temporary(e.type->kind == Kind::string ? kTextCell : e.type->size);
+  return into ? *into : temporary(cell_bytes(*e.type));
 }
 
 // Faults name the line of the operation, not of the statement that it belongs to.
@@ -139,20 +143,22 @@ Generator::Operand Generator::value_of(const ir::Expr& e, std::optional<Operand>
 Generator::Operand Generator::constant(const ir::Expr& e) {
   std::vector<std::uint8_t> bytes(std::max<std::uint32_t>(e.type->size, 1));
   sema::store_constant(*e.type, e.value, bytes.data());
-  const std::uint32_t size = e.type->kind == Kind::string ? 1u + bytes[0] : e.type->size;
-  return constant_bytes(bytes.data(), size);
+  return constant_bytes(bytes.data(), value_size(*e.type, bytes.data()));
 }
 
-// The value of a left operand; copied where the right one calls a function that might change it.
+// The value of an operand; copied where a later one calls a function that might change it.
 Generator::Operand Generator::stable(const ir::Expr& e, bool keep) {
-  if (!keep || e.kind == ExprKind::constant || e.type->kind == Kind::string) return value(e);
-  return value(e, temporary(e.type->size));
+  if (!keep || e.kind == ExprKind::constant) return value(e);
+  const Operand kept = temporary(cell_bytes(*e.type));
+  if (!is_text(e.type->kind)) return value(e, kept);
+  move_text(e.type->kind, kept, value(e), kMaxStringCapacity);
+  return kept;
 }
 
 Generator::Operand Generator::binary(const ir::Expr& e, std::optional<Operand> into) {
   const ir::Expr &a = *e.args[0], &b = *e.args[1];
   const Cell cell = cell_of(*a.type);
-  if (cell == Cell::text) return text_binary(e, into);
+  if (is_text(a.type->kind)) return text_binary(e, into);
   if (a.type->kind == Kind::boolean && (e.op == Op::and_ || e.op == Op::or_) && !cheap(b))
     return short_circuit(e, into);
   Operand x = stable(a, calls(b)), y = value(b);
@@ -176,21 +182,17 @@ Generator::Operand Generator::short_circuit(const ir::Expr& e, std::optional<Ope
 }
 
 Generator::Operand Generator::text_binary(const ir::Expr& e, std::optional<Operand> into) {
-  Operand x = value(*e.args[0]);
-  if (calls(*e.args[1])) {
-    const Operand kept = temporary(kTextCell);
-    emit(Code::move_text, kept, x, 0, kMaxStringCapacity);
-    x = kept;
-  }
+  const Operand x = stable(*e.args[0], calls(*e.args[1]));
   const Operand y = value(*e.args[1]);
+  const bool wide = is_wide(e.args[0]->type->kind);
   if (!comparison(e.op)) {
-    const Operand picked = temporary(kTextCell);
-    emit(Code::native, picked, x, y, vm::pick_text_function(e.op == Op::max));
+    const Operand picked = temporary(cell_bytes(*e.type));
+    emit(Code::native, picked, x, y, vm::pick_text_function(e.op == Op::max, wide));
     if (into) copy(*e.type, *into, picked);
     return into ? *into : picked;
   }
   const Operand order = temporary(1);
-  emit(Code::native, order, x, y, vm::compare_text_function());
+  emit(Code::native, order, x, y, vm::compare_text_function(wide));
   Operand left = order, right = constant_integer(0, Cell::i8);
   if (e.op == Op::gt || e.op == Op::ge) std::swap(left, right);
   const Operand out = destination(e, into);
@@ -223,17 +225,11 @@ Generator::Operand Generator::converted(const ir::Expr& e, std::optional<Operand
     if (into) copy(*e.type, *into, x);
     return into ? *into : x;
   };
-  if (e.type->kind == Kind::string) {
+  if (is_text(e.type->kind)) {
     const Operand x = value(a);
-    if (a.type->kind == Kind::string) return finish(x);
-    const Operand out = temporary(2);  // a character: length one, then itself
-    const Operand one = constant_integer(1, Cell::u8);
-    const Operand wide = temporary(2);
-    emit(vm::Code::native, wide, x, 0, vm::convert_function(Cell::u8, Cell::u16));
-    emit(Code::mul_u16, wide, wide, constant_integer(256, Cell::u16));
-    const Operand length = temporary(2);
-    emit(vm::Code::native, length, one, 0, vm::convert_function(Cell::u8, Cell::u16));
-    emit(Code::or_w2, out, wide, length);
+    if (is_text(a.type->kind)) return finish(x);
+    const Operand out = temporary(text_size(e.type->kind, 1));
+    emit(Code::native, out, x, 0, vm::character_text_function(is_wide(e.type->kind)));
     return finish(out);
   }
   if (e.kind == ExprKind::reinterpret) return finish(value(a));
@@ -264,31 +260,25 @@ Generator::Operand Generator::native(const ir::Expr& e, std::optional<Operand> i
   }
   in.resize(std::max<std::size_t>(in.size(), 4));
   if (e.args.size() > 2) emit(Code::extra, 0, in[2], in[3]);
-  std::uint16_t function = 0;
-  if (e.native == Native::to_text)
-    function = vm::to_text_function(*e.args[0]->type);
-  else if (e.native == Native::from_text)
-    function = vm::from_text_function(*e.type);
-  else
-    function = vm::native_function(e.native, cell_of(*e.type));
-  if (e.type->kind != Kind::string) {
+  const std::uint16_t function = vm::native_function(e);
+  if (!is_text(e.type->kind)) {
     const Operand out = destination(e, into);
     emit(Code::native, out, in[0], in[1], function);
     return out;
   }
-  const Operand out = temporary(kTextCell);
+  const Operand out = temporary(cell_bytes(*e.type));
   emit(Code::native, out, in[0], in[1], function);
   if (into) copy(*e.type, *into, out);
   return into ? *into : out;
 }
 
 Generator::Operand Generator::choose(const ir::Expr& e, std::optional<Operand> into) {
-  const Operand work = temporary(e.type->kind == Kind::string ? kTextCell : e.type->size);
+  const Operand work = temporary(cell_bytes(*e.type));
   const Operand condition = value(*e.args[0]);
   const std::size_t otherwise = emit(Code::jump_false, condition);
   const auto part = [&](const ir::Expr& x) {
-    if (e.type->kind == Kind::string)
-      emit(Code::move_text, work, value(x), 0, kMaxStringCapacity);
+    if (is_text(e.type->kind))
+      move_text(e.type->kind, work, value(x), kMaxStringCapacity);
     else
       value(x, work);
   };
@@ -304,13 +294,12 @@ Generator::Operand Generator::choose(const ir::Expr& e, std::optional<Operand> i
 // The cell is this unit's own, so that no function called further on touches it.
 Generator::Operand Generator::let(const ir::Expr& e, std::optional<Operand> into) {
   const ir::Expr& held = *e.args[0];
-  if (held.type->kind == Kind::string) {
-    const Operand text = temporary(kTextCell);
-    emit(Code::move_text, text, value(held), 0, kMaxStringCapacity);
-    kept_[e.value.i] = text;
-  } else {
-    kept_[e.value.i] = value(held, temporary(held.type->size));
-  }
+  const Operand cell = temporary(cell_bytes(*held.type));
+  if (is_text(held.type->kind))
+    move_text(held.type->kind, cell, value(held), kMaxStringCapacity);
+  else
+    value(held, cell);
+  kept_[e.value.i] = cell;
   return value(*e.args[1], into);
 }
 
@@ -318,16 +307,22 @@ Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> int
   const ir::Unit& u = program_.units[static_cast<std::size_t>(e.unit)];
   const auto frame = static_cast<std::uint32_t>(u.fixed_base);
   std::vector<Operand> values(e.parameters.size());
-  // All values first: an argument may call the same function.
+  const auto calling = [](const ir::Parameter& p) {
+    return p.value ? calls(*p.value) : p.section != syntax::Section::output && calls(p.place);
+  };
+  // All values and subscripts first: an argument may call the same function.
   for (std::size_t i = 0; i < e.parameters.size(); ++i) {
     const ir::Parameter& p = e.parameters[i];
-    if (!p.value) continue;
-    bool later = false;
-    for (std::size_t j = i + 1; j < e.parameters.size(); ++j)
-      later = later || (e.parameters[j].value && calls(*e.parameters[j].value));
+    if (!p.value) {
+      if (p.section == syntax::Section::output || p.place.steps.empty()) continue;
+      bind(values[i] = temporary(4), p.place);
+      continue;
+    }
+    const bool later =
+        std::any_of(e.parameters.begin() + static_cast<std::ptrdiff_t>(i) + 1, e.parameters.end(), calling);
     if (later && p.value->kind != ExprKind::constant) {
       const Operand kept = temporary(p.type->size);
-      if (p.value->type->kind == Kind::string)
+      if (is_text(p.value->type->kind))
         copy(*p.type, kept, value(*p.value));
       else
         value(*p.value, kept);
@@ -343,17 +338,36 @@ Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> int
            bounds(p.type->limits.low, p.type->limits.high, 0));
     if (p.value)
       copy(*p.type, frame + p.offset, values[i]);
+    else if (p.section != syntax::Section::output && !p.place.steps.empty())
+      emit(Code::move_w4, frame + p.offset, values[i]);
     else if (p.section != syntax::Section::output)
       bind(frame + p.offset, p.place);
   }
   const Unit& callee = units_[static_cast<std::size_t>(e.unit)];
   emit(Code::call, callee.entry, frame, callee.length);
-  for (const ir::Parameter& p : e.parameters) {
-    if (p.value || p.section != syntax::Section::output) continue;
-    Operand from = frame + p.offset;
+  const auto is_output = [](const ir::Parameter& p) {
+    return !p.value && p.section == syntax::Section::output;
+  };
+  // The subscript of an output may call the function once more.
+  const bool again = std::any_of(e.parameters.begin(), e.parameters.end(),
+                                 [&](const ir::Parameter& p) { return is_output(p) && calls(p.place); });
+  const auto kept = [&](const Type& type, Operand from) {
+    if (!again) return from;
+    const Operand to = temporary(type.size);
+    copy(type, to, from);
+    return to;
+  };
+  const bool gives = e.type->kind != Kind::none;
+  const Operand result = gives ? kept(*e.type, frame + e.result) : 0;
+  for (std::size_t i = 0; i < e.parameters.size(); ++i)
+    if (is_output(e.parameters[i])) values[i] = kept(*e.parameters[i].type, frame + e.parameters[i].offset);
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const ir::Parameter& p = e.parameters[i];
+    if (!is_output(p)) continue;
+    Operand from = values[i];
     if (p.inverted) {
       from = temporary(p.type->size);
-      invert(*p.type, from, frame + p.offset);
+      invert(*p.type, from, values[i]);
     }
     const Type& to = *p.place.type;
     if (to.kind != p.type->kind && is_integer(to.kind) && is_integer(p.type->kind)) {
@@ -370,9 +384,9 @@ Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> int
     }
     store(target(p.place), *p.type, from);
   }
-  if (e.type->kind == Kind::none) return 0;
+  if (!gives) return 0;
   const Operand out = into ? *into : temporary(e.type->size);
-  copy(*e.type, out, frame + e.result);
+  copy(*e.type, out, result);
   return out;
 }
 

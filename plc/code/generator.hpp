@@ -65,6 +65,7 @@ class Generator {
   Operand reference(const ir::Place& p);
   void bind(Operand cell, const ir::Place& p);
   void copy(const Type& type, Operand to, Operand from);
+  void move_text(Kind kind, Operand to, Operand from, std::uint32_t capacity);
 
   // expressions.cpp
   Operand value(const ir::Expr& e, std::optional<Operand> into = std::nullopt);
@@ -86,6 +87,7 @@ class Generator {
   Operand stable(const ir::Expr& e, bool keep);
   Operand destination(const ir::Expr& e, std::optional<Operand> into);
   static bool calls(const ir::Expr& e);
+  static bool calls(const ir::Place& p);
   static bool cheap(const ir::Expr& e, int depth = 0);
 
   // statements.cpp

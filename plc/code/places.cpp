@@ -91,7 +91,7 @@ Generator::Operand Generator::load(const Target& t, const Type& type, std::optio
     copy(type, *into, t.where);
     return *into;
   }
-  if (cell != Cell::text && cell != Cell::blob) {
+  if (!is_text(type.kind) && cell != Cell::blob) {
     const Operand out = into ? *into : temporary(type.size);
     emit(vm::code_for_width(Code::load_w1, type.size), out, t.where, t.offset);
     return out;
@@ -123,8 +123,8 @@ void Generator::store(const Target& t, const Type& type, Operand from) {
     copy(type, t.where, from);
     return;
   }
-  const Cell cell = cell_of(type);
-  if (cell != Cell::text && cell != Cell::blob) {
+  const bool text = is_text(type.kind);
+  if (!text && cell_of(type) != Cell::blob) {
     emit(vm::code_for_width(Code::store_w1, type.size), t.where, from, t.offset);
     return;
   }
@@ -134,19 +134,24 @@ void Generator::store(const Target& t, const Type& type, Operand from) {
     emit(Code::add_u32, address, t.where, constant_integer(t.offset, Cell::u32));
   }
   Operand source = from;
-  if (cell == Cell::text) {  // cut to the capacity of the target first
+  if (text) {  // cut to the capacity of the target first
     source = temporary(type.size);
-    emit(Code::move_text, source, from, 0, static_cast<std::uint16_t>(type.capacity()));
+    move_text(type.kind, source, from, type.capacity());
   }
   emit(Code::store_bytes, address, source, type.size);
+}
+
+void Generator::move_text(Kind kind, Operand to, Operand from, std::uint32_t capacity) {
+  emit(kind == Kind::wide_string ? Code::move_wide_text : Code::move_text, to, from, 0,
+       static_cast<std::uint16_t>(capacity));
 }
 
 void Generator::copy(const Type& type, Operand to, Operand from) {
   if (to == from) return;
   switch (cell_of(type)) {
     case Cell::text:
-      emit(Code::move_text, to, from, 0, static_cast<std::uint16_t>(type.capacity()));
-      return;
+    case Cell::wide_text:
+      return move_text(type.kind, to, from, type.capacity());
     case Cell::blob:
       emit(Code::move_bytes, to, from, type.size);
       return;

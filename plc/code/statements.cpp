@@ -55,7 +55,7 @@ void Generator::statement(const ir::Stmt& s) {
 void Generator::assign(const ir::Stmt& s) {
   const Type& type = *s.place.type;
   if (s.check_range) {
-    const Operand v = value(*s.value);
+    const Operand v = stable(*s.value, calls(s.place));
     emit(vm::code_for(Code::check_i8, cell_of(type)), v, 0, 0, bounds(type.limits.low, type.limits.high, 0));
     store(target(s.place), type, v);
     return;
@@ -63,12 +63,12 @@ void Generator::assign(const ir::Stmt& s) {
   const bool direct =
       s.place.steps.empty() && s.place.root != ir::Root::reference && s.place.root != ir::Root::pointer;
   const Target t = direct ? target(s.place) : Target{};
-  const bool scalar = type.kind != Kind::string && cell_of(type) != Cell::blob;
+  const bool scalar = !is_text(type.kind) && cell_of(type) != Cell::blob;
   if (direct && t.bit < 0 && scalar) {
     value(*s.value, t.where);
     return;
   }
-  const Operand v = value(*s.value);
+  const Operand v = stable(*s.value, calls(s.place));
   store(direct ? t : target(s.place), type, v);
 }
 

@@ -78,11 +78,12 @@ enum class Native : std::uint8_t {
 };
 
 /// Value of a constant. Integers, BOOL, times and enumerations in `i` (unsigned ones by their bits), reals in
-/// `r`, strings in `s`.
+/// `r`, a STRING in `s`, a WSTRING in `w`.
 struct Constant {
   std::int64_t i = 0;
   double r = 0.0;
-  std::string s;
+  std::string s = {};
+  std::u16string w = {};
 };
 
 struct Expr;

@@ -154,6 +154,7 @@ class Analyzer {
   ExprPtr power(ExprPtr a, ExprPtr b, const Location& at);
   ExprPtr convert(ExprPtr e, const Type* to);
   ExprPtr scaled_time(ExprPtr e, const Type* to, const Location& at);
+  ExprPtr recoded(ExprPtr e, const Type* to, const Location& at);
   ExprPtr explicit_conversion(ExprPtr e, const Type* to, bool truncate, const Location& at);
   /// For an assignment: reports what does not fit, warns of narrowing.
   ExprPtr assignable(ExprPtr e, const Type* to);
@@ -180,7 +181,7 @@ class Analyzer {
   std::vector<ExprPtr> common_inputs(const std::vector<const Expression*>& in, std::string_view name,
                                      const Type* hint, bool (*accepts)(Kind), const char* wanted);
   std::vector<ExprPtr> typed_inputs(const std::vector<const Expression*>& in,
-                                    std::initializer_list<const Type*> types);
+                                    const std::vector<const Type*>& types);
   using Kept = std::vector<std::pair<std::int64_t, ExprPtr>>;  ///< number and value
   ExprPtr once(ExprPtr e, Kept& kept);
   ExprPtr around(ExprPtr e, Kept kept);

@@ -7,6 +7,7 @@
 #include "plc/sema/analyzer.hpp"
 #include "plc/syntax/time_literal.hpp"
 #include "plc/texts.hpp"
+#include "plc/types/characters.hpp"
 
 namespace servogate::plc::sema {
 
@@ -129,6 +130,12 @@ void store_constant(const Type& type, const Constant& c, std::uint8_t* out) {
       std::memcpy(out + 1, c.s.data(), n);
       break;
     }
+    case Cell::wide_text: {
+      const auto n = static_cast<std::uint16_t>(std::min<std::size_t>(c.w.size(), type.capacity()));
+      std::memcpy(out, &n, sizeof n);
+      std::memcpy(out + sizeof n, c.w.data(), n * sizeof(char16_t));
+      break;
+    }
     case Cell::blob:
       break;
     default:
@@ -147,6 +154,9 @@ Constant stored_constant(const Type& type, const std::uint8_t* bytes) {
     std::memcpy(&c.r, bytes, sizeof c.r);
   } else if (cell == Cell::text) {
     c.s.assign(reinterpret_cast<const char*>(bytes) + 1, bytes[0]);
+  } else if (cell == Cell::wide_text) {
+    c.w.resize(value_size(type, bytes) / 2 - 1);
+    std::memcpy(c.w.data(), bytes + 2, c.w.size() * sizeof(char16_t));
   } else {
     std::memcpy(&c.i, bytes, cell_size(cell));
     c.i = wrapped(cell, c.i);
@@ -156,6 +166,7 @@ Constant stored_constant(const Type& type, const std::uint8_t* bytes) {
 
 std::string constant_text(const Type& type, const Constant& c) {
   if (type.kind == Kind::string) return "'" + c.s + "'";
+  if (type.kind == Kind::wide_string) return "\"" + narrow(c.w) + "\"";
   if (is_real(type.kind) || type.kind == Kind::untyped_real) return text::number(c.r);
   if (type.kind == Kind::boolean) return c.i != 0 ? "TRUE" : "FALSE";
   if (is_temporal(type.kind)) {
@@ -177,8 +188,7 @@ ExprPtr Analyzer::make_constant(const Type* type, Constant c, const Location& at
 ExprPtr Analyzer::fold(ExprPtr e) {
   if (e->kind != ir::ExprKind::unary && e->kind != ir::ExprKind::binary) return e;
   for (const ExprPtr& a : e->args)
-    if (a->kind != ir::ExprKind::constant || a->type->kind == Kind::string || a->type->kind == Kind::error)
-      return e;
+    if (a->kind != ir::ExprKind::constant || is_text(a->type->kind) || a->type->kind == Kind::error) return e;
   const Type* operand = e->args[0]->type;
   const Cell cell = cell_of(*operand);
   const Constant& a = e->args[0]->value;

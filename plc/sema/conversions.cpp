@@ -17,7 +17,7 @@ bool same_bits(Kind a, Kind b) {
 }
 
 bool numeric(Kind k) {
-  return is_integer(k) || is_bits(k) || is_real(k) || k == Kind::boolean || k == Kind::character;
+  return is_integer(k) || is_bits(k) || is_real(k) || k == Kind::boolean || is_character(k);
 }
 
 }  // namespace
@@ -39,6 +39,21 @@ ExprPtr Analyzer::scaled_time(ExprPtr e, const Type* to, const Location& at) {
   ExprPtr out = node(ExprKind::convert, to, at);
   out->args.push_back(std::move(scaled));
   return out;
+}
+
+// Between STRING, CHAR and WSTRING, WCHAR (table 27): texts from UTF-8 to UTF-16 and back, characters by
+// their number.
+ExprPtr Analyzer::recoded(ExprPtr e, const Type* to, const Location& at) {
+  const bool text = is_text(e->type->kind), to_text = is_text(to->kind);
+  if (text != to_text) {  // by way of the wide one of the same form
+    const bool as_text = is_wide(to->kind) ? text : to_text;
+    const Type* between = elementary(as_text ? Kind::wide_string : Kind::wide_character);
+    return explicit_conversion(explicit_conversion(std::move(e), between, false, at), to, false, at);
+  }
+  if (!text && is_wide(to->kind)) return convert(std::move(e), to);
+  std::vector<ExprPtr> one;
+  one.push_back(std::move(e));
+  return native(text ? Native::to_text : Native::from_text, to, at, std::move(one));
 }
 
 ExprPtr Analyzer::explicit_conversion(ExprPtr e, const Type* to, bool truncate, const Location& at) {
@@ -67,13 +82,16 @@ ExprPtr Analyzer::explicit_conversion(ExprPtr e, const Type* to, bool truncate, 
   }
   if ((is_temporal(from) && numeric(to->kind)) || (numeric(from) && is_temporal(to->kind)))
     return scaled_time(std::move(e), to, at);
-  if (from == Kind::character && to->kind == Kind::string) return convert(std::move(e), to);
-  if (to->kind == Kind::string || from == Kind::string) {
-    const bool possible = to->kind == Kind::string ? is_elementary(from)
-                                                   : is_elementary(to->kind) && to->kind != Kind::enumeration;
+  const auto textual = [](Kind k) { return is_text(k) || is_character(k); };
+  if (textual(from) && textual(to->kind) && is_wide(from) != is_wide(to->kind))
+    return recoded(std::move(e), to, at);
+  if (is_character(from) && is_text(to->kind)) return convert(std::move(e), to);
+  if (is_text(to->kind) || is_text(from)) {
+    const bool possible =
+        is_text(to->kind) ? is_elementary(from) : is_elementary(to->kind) && to->kind != Kind::enumeration;
     if (possible) {
       one.push_back(std::move(e));
-      return native(to->kind == Kind::string ? Native::to_text : Native::from_text, to, at, std::move(one));
+      return native(is_text(to->kind) ? Native::to_text : Native::from_text, to, at, std::move(one));
     }
   }
   if (is_bits(from) && to->kind == Kind::boolean) {  // the rightmost bit (table 25)

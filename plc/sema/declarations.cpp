@@ -136,11 +136,12 @@ const Type* Analyzer::resolve_written(const syntax::TypeReference& t, const std:
   if (key_of(t.name) == "STRUCT") return resolve_structure(t, name);
   const Type* named = resolve_named(t);
   if (t.low) return resolve_subrange(t, named, name);
-  if (t.length && named->kind == Kind::string) {
+  if (t.length && is_text(named->kind)) {
     const auto n = constant_integer(*t.length);
     if (!n) return elementary(Kind::error);
-    if (*n >= 1 && *n <= kMaxStringCapacity) return types_->string(static_cast<std::uint32_t>(*n));
-    report_.error(t.location, texts::kStringLength, {std::to_string(*n)});
+    if (*n >= 1 && *n <= kMaxStringCapacity)
+      return types_->string(static_cast<std::uint32_t>(*n), named->kind);
+    report_.error(t.location, texts::kStringLength, {std::to_string(*n), named->name});
     return elementary(Kind::error);
   }
   return named;
@@ -164,13 +165,9 @@ const Type* Analyzer::resolve_named(const syntax::TypeReference& t) {
     current_ = outer;
     return u.frame;
   }
-  if (key == "WSTRING" || key == "WCHAR") {
-    report_.error(t.location, texts::kUnsupported, {key});
-    return elementary(Kind::error);
-  }
-  std::vector<std::string> names = {"BOOL",  "SINT",  "INT",  "DINT", "LINT",  "USINT", "UINT",
-                                    "UDINT", "ULINT", "BYTE", "WORD", "DWORD", "LWORD", "REAL",
-                                    "LREAL", "TIME",  "DATE", "TOD",  "DT",    "STRING"};
+  std::vector<std::string> names = {"BOOL",  "SINT", "INT",  "DINT",   "LINT",    "USINT", "UINT",  "UDINT",
+                                    "ULINT", "BYTE", "WORD", "DWORD",  "LWORD",   "REAL",  "LREAL", "TIME",
+                                    "DATE",  "TOD",  "DT",   "STRING", "WSTRING", "CHAR",  "WCHAR"};
   for (const auto& d : source_.types) names.push_back(d.name);
   for (const auto& u : source_.units)
     if (u.kind == UnitKind::function_block) names.push_back(u.name);

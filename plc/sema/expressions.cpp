@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/syntax/time_literal.hpp"
 #include "plc/texts.hpp"
+#include "plc/types/characters.hpp"
 
 namespace servogate::plc::sema {
 
@@ -64,18 +66,25 @@ ExprPtr Analyzer::expression(const Expression& e, const Type* hint) {
   }
 }
 
+namespace {
+std::size_t length_of(const Constant& text) { return text.s.size() + text.w.size(); }
+}  // namespace
+
 ExprPtr Analyzer::literal(const Expression& e, const Type*) {
   const syntax::Literal& l = e.literal;
   Constant c;
   c.s = l.text;
+  c.w = l.wide;
   c.r = l.real;
   c.i = static_cast<std::int64_t>(l.negative ? 0 - l.magnitude : l.magnitude);
   const Type* type = elementary(l.kind);
-  if (l.kind == Kind::string)
-    type = types_->string(std::min<std::uint32_t>(
-        kMaxStringCapacity, std::max<std::uint32_t>(1, static_cast<std::uint32_t>(l.text.size()))));
-  if (l.kind == Kind::string && l.text.size() > kMaxStringCapacity)
-    report_.error(e.location, texts::kStringLength, {std::to_string(l.text.size())});
+  if (is_text(l.kind)) {
+    const std::size_t n = length_of(c);
+    type =
+        types_->string(static_cast<std::uint32_t>(std::clamp<std::size_t>(n, 1, kMaxStringCapacity)), l.kind);
+    if (n > kMaxStringCapacity)
+      report_.error(e.location, texts::kStringLength, {std::to_string(n), elementary(l.kind)->name});
+  }
   constexpr std::uint64_t kHalf = std::uint64_t{1} << 63;
   if (l.kind == Kind::untyped_int && l.magnitude > kHalf - (l.negative ? 0 : 1)) {
     if (l.negative) {
@@ -114,11 +123,14 @@ ExprPtr Analyzer::typed_literal(const Expression& e) {
     report_.error(e.location, texts::kLiteralRange, {std::to_string(value->value.i), "BOOL", "0", "1"});
     return bad(e.location);
   }
-  if (type->kind == Kind::character && value->type->kind == Kind::untyped_int) {  // CHAR#16#41
-    if (value->value.i >= 0 && value->value.i <= 255) return make_constant(type, value->value, e.location);
-    report_.error(e.location, texts::kLiteralRange, {std::to_string(value->value.i), "CHAR", "0", "255"});
+  if (is_character(type->kind) && value->type->kind == Kind::untyped_int) {  // CHAR#16#41
+    const std::int64_t most = is_wide(type->kind) ? 65535 : 255;
+    if (value->value.i >= 0 && value->value.i <= most) return make_constant(type, value->value, e.location);
+    report_.error(e.location, texts::kLiteralRange,
+                  {std::to_string(value->value.i), type->name, "0", std::to_string(most)});
     return bad(e.location);
   }
+  if (is_text(type->kind) && type == elementary(type->kind) && value->type->kind == type->kind) return value;
   return assignable(std::move(value), type);
 }
 
@@ -253,9 +265,10 @@ ExprPtr Analyzer::combine(Op op, ExprPtr a, ExprPtr b, const Location& at, std::
     if (a->type != b->type || !comparing(op)) return refuse();
     common = a->type;
   } else {
-    if (x == Kind::string && y == Kind::character) b = convert(std::move(b), a->type);
-    if (x == Kind::character && y == Kind::string) {
-      if (b->kind == ExprKind::constant && b->value.s.size() == 1)
+    const bool alike = is_wide(x) == is_wide(y);
+    if (is_text(x) && is_character(y) && alike) b = convert(std::move(b), a->type);
+    if (is_character(x) && is_text(y) && alike) {
+      if (b->kind == ExprKind::constant && length_of(b->value) == 1)
         b = convert(std::move(b), a->type);
       else
         a = convert(std::move(a), b->type);
@@ -382,7 +395,7 @@ ExprPtr Analyzer::convert(ExprPtr e, const Type* to) {
   const Type* base = to->bounded ? to->base : to;
   if (e->type == to || e->type == base || e->type->kind == Kind::error) return e;
   if (e->kind != ExprKind::constant) {
-    if (e->type->kind == base->kind && base->kind != Kind::string) return e;
+    if (e->type->kind == base->kind && !is_text(base->kind)) return e;
     ExprPtr out = node(ExprKind::convert, base, e->at);
     out->args.push_back(std::move(e));
     return out;
@@ -390,8 +403,11 @@ ExprPtr Analyzer::convert(ExprPtr e, const Type* to) {
   const Kind from = e->type->kind;
   Constant c = e->value;
   if (base->kind == Kind::string && from == Kind::character) c.s.assign(1, static_cast<char>(c.i));
+  if (base->kind == Kind::wide_string && from == Kind::wide_character)
+    c.w.assign(1, static_cast<char16_t>(c.i));
   if (base->kind == Kind::character && from == Kind::string)
     c.i = c.s.empty() ? 0 : static_cast<unsigned char>(c.s[0]);
+  if (base->kind == Kind::wide_character && from == Kind::wide_string) c.i = c.w.empty() ? 0 : c.w[0];
   const bool from_real = is_real(from) || from == Kind::untyped_real;
   const bool to_real = is_real(base->kind) || base->kind == Kind::untyped_real;
   if (to_real && !from_real)
@@ -423,7 +439,10 @@ ExprPtr Analyzer::convert(ExprPtr e, const Type* to) {
 namespace {
 // As conversion functions call it: STRING[3] is STRING, a subrange its base.
 std::string plain_name(const Type& t) {
-  return t.bounded ? t.base->name : t.kind == Kind::string ? "STRING" : t.name;
+  return t.bounded                     ? t.base->name
+         : t.kind == Kind::string      ? "STRING"
+         : t.kind == Kind::wide_string ? "WSTRING"
+                                       : t.name;
 }
 }  // namespace
 
@@ -444,12 +463,12 @@ ExprPtr Analyzer::assignable(ExprPtr e, const Type* to) {
     report_.error(e->at, texts::kOpenArrayWhole, {from.open ? from.name : to->name});
     return bad(e->at);
   }
-  if (to->kind == Kind::character && from.kind == Kind::string && e->kind == ExprKind::constant &&
-      e->value.s.size() == 1)
+  if (is_character(to->kind) && is_text(from.kind) && is_wide(to->kind) == is_wide(from.kind) &&
+      e->kind == ExprKind::constant && length_of(e->value) == 1)
     return convert(std::move(e), to);
   const bool bool_literal = to->kind == Kind::boolean && from.kind == Kind::untyped_int;
   const Conversion c =
-      from.kind == Kind::string && to->kind == Kind::string ? Conversion::widening : conversion(from, *to);
+      is_text(from.kind) && from.kind == to->kind ? Conversion::widening : conversion(from, *to);
   const bool alias = from.kind == to->kind && is_elementary(from.kind) && from.kind != Kind::enumeration;
   if (!alias && (c == Conversion::none || (bool_literal && e->kind != ExprKind::constant))) {
     std::string how;
@@ -462,7 +481,7 @@ ExprPtr Analyzer::assignable(ExprPtr e, const Type* to) {
   if (c == Conversion::narrowing && e->kind != ExprKind::constant)
     report_.warning(e->at, texts::kNarrowing,
                     {from.name, to->name, plain_name(from) + "_TO_" + plain_name(*to)});
-  if (from.kind == Kind::string && e->kind == ExprKind::constant && e->value.s.size() > to->capacity())
+  if (is_text(from.kind) && e->kind == ExprKind::constant && length_of(e->value) > to->capacity())
     report_.warning(e->at, texts::kNarrowing, {constant_text(from, e->value), to->name, "LEFT"});
   ExprPtr out = convert(std::move(e), to);
   if (to->bounded && out->kind == ExprKind::constant && out->type->kind != Kind::error &&

@@ -80,6 +80,7 @@ ExprPtr Analyzer::fold_function(ExprPtr e) {
     c = stored_constant(*e->type, bytes);  // with its sign
   } else if (e->native == Native::concat) {
     c.s = (a.s + b.s).substr(0, kMaxStringCapacity);
+    c.w = (a.w + b.w).substr(0, kMaxStringCapacity);
   } else {
     return e;
   }

@@ -21,7 +21,7 @@ bool Analyzer::declare_unlocated(UnitScope& u, Variable& v, const syntax::Variab
     return true;
   }
   v.area = key_of(s.address);
-  if (!is_elementary(v.type->kind) || v.type->kind == Kind::string || v.type->kind == Kind::enumeration) {
+  if (!is_elementary(v.type->kind) || is_text(v.type->kind) || v.type->kind == Kind::enumeration) {
     report_.error(s.address_location, texts::kLocationType, {s.name, v.type->name, v.area});
     v.type = elementary(Kind::error);
     return true;

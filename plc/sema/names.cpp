@@ -241,7 +241,7 @@ std::optional<ir::Place> Analyzer::place_of_index(const Expression& e, bool writ
   std::size_t dimensions = 0;
   for (const Type* t = base->type; t->kind == Kind::array; t = t->base) ++dimensions;
   const std::size_t given = e.operands.size() - 1;
-  if (base->type->kind == Kind::string && given == 1 && base->root != ir::Root::shared)
+  if (is_text(base->type->kind) && given == 1 && base->root != ir::Root::shared)
     return character_of(std::move(*base), *e.operands[1]);
   if (dimensions == 0) {
     report_.error(e.operands[1]->location, texts::kNotArray, {base->type->name});
@@ -316,10 +316,11 @@ std::optional<ir::Place> Analyzer::character_of(ir::Place base, const Expression
     report_.error(subscript.location, texts::kIndexType, {index->type->name});
     return std::nullopt;
   }
-  base.type = elementary(Kind::character);
-  base.offset += 1;
+  base.type = elementary(base.type->kind == Kind::wide_string ? Kind::wide_character : Kind::character);
+  const std::uint32_t stride = base.type->size;
+  base.offset += stride;  // the length
   if (index->kind != ir::ExprKind::constant) {
-    base.steps.push_back({std::move(index), 1, last, 1});
+    base.steps.push_back({std::move(index), 1, last, stride});
     return base;
   }
   if (index->value.i < 1 || index->value.i > last) {
@@ -327,7 +328,7 @@ std::optional<ir::Place> Analyzer::character_of(ir::Place base, const Expression
                   {std::to_string(index->value.i), "1", std::to_string(last)});
     return std::nullopt;
   }
-  base.offset += static_cast<std::uint32_t>(index->value.i - 1);
+  base.offset += static_cast<std::uint32_t>(index->value.i - 1) * stride;
   return base;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "plc/types/direct_place.hpp"
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
+#include "plc/types/direct_place.hpp"
 
 namespace servogate::plc::sema {
 
@@ -86,7 +86,7 @@ void Analyzer::declare_located(Variable& out, const syntax::Variable& v, bool co
   const Type& t = *out.type;
   const bool text = place->format == Format::ch;
   const bool fits = text ? t.kind == Kind::string && t.capacity() == place->length
-                         : is_elementary(t.kind) && t.kind != Kind::string && t.kind != Kind::enumeration &&
+                         : is_elementary(t.kind) && !is_text(t.kind) && t.kind != Kind::enumeration &&
                                t.size == image::format_size(place->format) &&
                                (place->format == Format::bl) == (t.kind == Kind::boolean);
   if (!fits) {

@@ -181,14 +181,20 @@ std::vector<const Expression*> Analyzer::numbered_inputs(const Expression& e, st
 }
 
 std::vector<ExprPtr> Analyzer::typed_inputs(const std::vector<const Expression*>& in,
-                                            std::initializer_list<const Type*> types) {
+                                            const std::vector<const Type*>& types) {
   std::vector<ExprPtr> out;
+  const Type* text = nullptr;
   bool good = true;
   auto type = types.begin();
   for (const Expression* e : in) {
     const Type* t = *type++;
     ExprPtr value = expression(*e, t);
-    if (t->kind != Kind::string || value->type->kind != Kind::string) value = assignable(std::move(value), t);
+    if (t->kind == Kind::string) {  // ANY_STRING: the first text decides
+      if (text == nullptr && value->type->kind != Kind::error)
+        text = elementary(is_wide(value->type->kind) ? Kind::wide_string : Kind::string);
+      if (text != nullptr) t = text;
+    }
+    if (!is_text(t->kind) || value->type->kind != t->kind) value = assignable(std::move(value), t);
     good = good && value->type->kind != Kind::error;
     out.push_back(std::move(value));
   }
@@ -364,7 +370,7 @@ ExprPtr Analyzer::order_call(std::string_view key, const Expression& e, const Ty
   ExprPtr value = settle(expression(*in[0], hint), hint);
   const Type* t = value->type;
   if (t->kind == Kind::error) return value;
-  if (!is_elementary(t->kind) || t->kind == Kind::string || t->kind == Kind::enumeration) {
+  if (!is_elementary(t->kind) || is_text(t->kind) || t->kind == Kind::enumeration) {
     report_.error(in[0]->location, texts::kMismatch, {"ANY_ELEMENTARY", t->name, ""});
     return bad(e.location);
   }
@@ -386,13 +392,16 @@ ExprPtr Analyzer::selection_call(std::string_view key, const Expression& e, cons
     if (args.empty()) return bad(e.location);
     const Type* t = args[0]->type;
     ExprPtr low = node(ExprKind::binary, t, e.location), out = node(ExprKind::binary, t, e.location);
+    // MIN(MAX(IN, MN), MX) (table 32), but MN is computed before IN.
+    Kept kept;
+    ExprPtr least = args[1]->kind == ExprKind::constant ? std::move(args[0]) : once(std::move(args[0]), kept);
     low->op = Op::max;
     low->args.push_back(std::move(args[1]));
-    low->args.push_back(std::move(args[0]));
+    low->args.push_back(std::move(least));
     out->op = Op::min;
     out->args.push_back(fold(std::move(low)));
     out->args.push_back(std::move(args[2]));
-    return fold(std::move(out));
+    return around(fold(std::move(out)), std::move(kept));
   }
   const bool sel = key == "SEL";
   auto in = sel ? inputs(e, key, {"G", "IN0", "IN1"}, 3, 3) : inputs(e, key, {}, 3, 100);
@@ -459,9 +468,9 @@ ExprPtr Analyzer::text_call(std::string_view key, const Expression& e) {
   const Type* n = elementary(Kind::lint);
   std::vector<ExprPtr> args;
   Native which = Native::length;
-  const Type* result = types_->string(kMaxStringCapacity);
-  const auto take = [&](Native native_function, std::vector<const Expression*> in,
-                        std::initializer_list<const Type*> types) {
+  const Type* result = s;
+  const auto take = [&](Native native_function, const std::vector<const Expression*>& in,
+                        const std::vector<const Type*>& types) {
     which = native_function;
     if (!in.empty()) args = typed_inputs(in, types);
   };
@@ -483,23 +492,19 @@ ExprPtr Analyzer::text_call(std::string_view key, const Expression& e) {
     result = elementary(Kind::int_);
   } else {
     const auto in = inputs(e, key, {}, 2, 100);
-    ExprPtr out;
-    for (const Expression* i : in) {
-      std::vector<ExprPtr> one = typed_inputs({i}, {s});
-      if (one.empty()) return bad(e.location);
-      if (!out) {
-        out = std::move(one[0]);
-        continue;
-      }
-      std::vector<ExprPtr> two;
-      two.push_back(std::move(out));
-      two.push_back(std::move(one[0]));
-      out = native(Native::concat, result, e.location, std::move(two));
-    }
-    return out ? std::move(out) : bad(e.location);
+    take(Native::concat, in, std::vector<const Type*>(in.size(), s));
   }
   if (args.empty()) return bad(e.location);
-  return native(which, result, e.location, std::move(args));
+  if (result == s) result = types_->string(kMaxStringCapacity, args[0]->type->kind);
+  if (which != Native::concat) return native(which, result, e.location, std::move(args));
+  ExprPtr out = std::move(args[0]);
+  for (std::size_t i = 1; i < args.size(); ++i) {
+    std::vector<ExprPtr> two;
+    two.push_back(std::move(out));
+    two.push_back(std::move(args[i]));
+    out = native(Native::concat, result, e.location, std::move(two));
+  }
+  return out;
 }
 
 // Limits of an array: constants, but of an ARRAY[*] those of the actual one (IEC 61131-3:2013, 6.5.3.4).

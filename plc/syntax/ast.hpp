@@ -24,7 +24,8 @@ struct Literal {
   std::uint64_t magnitude = 0;
   bool negative = false;
   double real = 0.0;
-  std::string text;
+  std::string text;     ///< of '...'
+  std::u16string wide;  ///< of "..."
 };
 
 enum class Operator : std::uint8_t {

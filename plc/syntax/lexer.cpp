@@ -6,6 +6,7 @@
 
 #include "plc/syntax/time_literal.hpp"
 #include "plc/texts.hpp"
+#include "plc/types/characters.hpp"
 
 namespace servogate::plc::syntax {
 
@@ -253,52 +254,71 @@ class Lexer {
   }
 
   // A ';' at the end of a line whose string is not closed ends the statement all the same.
-  void end_of_statement(std::string& inside) {
-    const std::size_t last = inside.find_last_not_of(" \t\r");
-    if (last == std::string::npos || inside[last] != ';') return;
-    const std::size_t back = inside.size() - last;
-    inside.resize(last);
-    at_ -= back;
-    column_ -= static_cast<int>(back);
+  void end_of_statement(std::size_t begin) {
+    std::size_t last = at_;
+    while (last > begin && std::isspace(static_cast<unsigned char>(text_[last - 1]))) --last;
+    if (last == begin || text_[last - 1] != ';') return;
+    column_ -= static_cast<int>(at_ - (last - 1));
+    at_ = last - 1;
   }
+  // 'STRING' of bytes, or "WSTRING" of units of 16 bits (6.3.3).
   Token string() {
     Token t = start(TokenKind::literal);
-    t.literal.kind = Kind::string;
     const char quote = peek();
+    t.literal.kind = quote == '"' ? Kind::wide_string : Kind::string;
     step();
+    const std::size_t begin = at_;
     while (peek() != quote) {
       if (at_ >= text_.size() || peek() == '\n') {
         report_.error(t.location, texts::kOpenString, {std::string(1, quote)});
-        end_of_statement(t.literal.text);
+        end_of_statement(begin);
         return t;
       }
       if (peek() == '$')
-        escape(t.literal.text);
+        escape(t.literal);
       else
-        t.literal.text += peek(), step();
+        character(t.literal);
     }
     step();
     return t;
   }
-  void escape(std::string& out) {
+  void character(Literal& out) {
+    if (out.kind == Kind::string) {
+      out.text += peek();
+      return step();
+    }
+    std::size_t behind = at_;
+    add(out, take_character(text_, behind));
+    step(behind - at_);
+  }
+  static void add(Literal& out, char32_t c) {
+    char16_t units[2];
+    if (out.kind == Kind::string)
+      out.text += static_cast<char>(c);
+    else
+      out.wide.append(units, put_character(c, units));
+  }
+  void escape(Literal& out) {
     const Location begin = here();
     const char c = static_cast<char>(std::toupper(static_cast<unsigned char>(peek(1))));
     constexpr std::pair<char, char> plain[] = {{'$', '$'},  {'\'', '\''}, {'"', '"'},  {'L', '\n'},
                                                {'N', '\n'}, {'P', '\f'},  {'R', '\r'}, {'T', '\t'}};
     for (const auto& [name, value] : plain)
       if (c == name) {
-        out += value;
+        add(out, static_cast<char32_t>(value));
         return step(2);
       }
-    if (std::isxdigit(static_cast<unsigned char>(peek(1))) &&
-        std::isxdigit(static_cast<unsigned char>(peek(2)))) {
-      out += static_cast<char>(std::stoi(std::string(text_.substr(at_ + 1, 2)), nullptr, 16));
-      return step(3);
+    const std::size_t digits = out.kind == Kind::string ? 2 : 4;
+    std::size_t found = 0;
+    while (found < digits && std::isxdigit(static_cast<unsigned char>(peek(1 + found)))) ++found;
+    if (found == digits) {
+      add(out, static_cast<char32_t>(std::stoul(std::string(text_.substr(at_ + 1, digits)), nullptr, 16)));
+      return step(1 + digits);
     }
     std::string shown = "$";
     step();
     if (at_ < text_.size() && peek() != '\n') shown += peek();
-    report_.error(begin, texts::kBadEscape, {shown});
+    report_.error(begin, out.kind == Kind::string ? texts::kBadEscape : texts::kBadWideEscape, {shown});
   }
 
   Token direct() {
@@ -364,8 +384,7 @@ bool parse_literal(std::string_view text, Literal& out) {
   if (report.failed() || list[at].kind != TokenKind::literal || list[at + 1].kind != TokenKind::end)
     return false;
   out = list[at].literal;
-  if (negative && (out.kind == Kind::boolean || out.kind == Kind::string || is_temporal(out.kind)))
-    return false;
+  if (negative && (out.kind == Kind::boolean || is_text(out.kind) || is_temporal(out.kind))) return false;
   if (negative) out.negative = !out.negative, out.real = -out.real;
   return true;
 }

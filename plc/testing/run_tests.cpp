@@ -18,7 +18,7 @@ namespace servogate::plc::testing {
 
 namespace {
 
-using Bytes = std::array<std::uint8_t, kMaxStringCapacity + 1>;
+using Bytes = std::array<std::uint8_t, kMaxElementarySize>;
 
 /// A variable of the program, or a symbol that the program does not use.
 struct Target {
@@ -245,7 +245,7 @@ std::optional<bool> Run::fulfilled(const Term& term, std::string& wanted, std::s
     wrong(term.name, texts::kNotBool, {term.name.text, type.name});
     return std::nullopt;
   }
-  const bool text = type.kind == Kind::string || type.kind == Kind::character;
+  const bool text = is_text(type.kind) || is_character(type.kind);
   if (text && term.comparison > Comparison::not_equal) {
     wrong(term.value, texts::kNotOrdered, {type.name});
     return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <limits>
 
 namespace servogate::plc {
@@ -37,6 +38,7 @@ constexpr Elementary kElementary[] = {
     {Kind::tod, "TIME_OF_DAY", 8},
     {Kind::dt, "DATE_AND_TIME", 8},
     {Kind::character, "CHAR", 1},
+    {Kind::wide_character, "WCHAR", 2},
     {Kind::untyped_int, "integer literal", 8},
     {Kind::untyped_real, "real literal", 8},
 };
@@ -89,7 +91,7 @@ Conversion between(Kind from, Kind to) noexcept {
   // Extension: a bit string and the unsigned integer of its size are the same bits (packet bytes are both).
   if (is_bits(from) && is_unsigned(to)) return wider(rank(to) >= rank(from));
   if (is_unsigned(from) && is_bits(to)) return wider(rank(to) >= rank(from));
-  if (from == Kind::character && to == Kind::string) return Conversion::widening;
+  if (is_character(from) && is_text(to) && is_wide(from) == is_wide(to)) return Conversion::widening;
   return Conversion::none;
 }
 
@@ -146,6 +148,7 @@ Cell cell_of(const Type& t) noexcept {
       return Cell::i64;
     case Kind::uint:
     case Kind::word:
+    case Kind::wide_character:
       return Cell::u16;
     case Kind::udint:
     case Kind::dword:
@@ -160,6 +163,8 @@ Cell cell_of(const Type& t) noexcept {
       return Cell::f64;
     case Kind::string:
       return Cell::text;
+    case Kind::wide_string:
+      return Cell::wide_text;
     case Kind::enumeration:
       return cell_of(*t.base);
     case Kind::array:
@@ -172,8 +177,15 @@ Cell cell_of(const Type& t) noexcept {
 }
 
 std::uint32_t cell_size(Cell c) noexcept {
-  constexpr std::uint32_t sizes[] = {1, 2, 4, 8, 1, 2, 4, 8, 4, 8, 0, 0};
+  constexpr std::uint32_t sizes[] = {1, 2, 4, 8, 1, 2, 4, 8, 4, 8, 0, 0, 0};
   return sizes[static_cast<int>(c)];
+}
+
+std::uint32_t value_size(const Type& type, const std::uint8_t* at) noexcept {
+  if (!is_text(type.kind)) return type.size;
+  std::uint16_t length = *at;
+  if (type.kind == Kind::wide_string) std::memcpy(&length, at, sizeof length);
+  return text_size(type.kind, length);
 }
 
 void integer_limits(Kind k, std::int64_t& low, std::uint64_t& high) noexcept {
@@ -231,19 +243,24 @@ TypeTable::TypeTable() {
     Type* t = add(e.kind, e.name);
     t->size = t->align = e.size;
     by_kind_[static_cast<std::size_t>(e.kind)] = t;
-    if (e.kind >= Kind::boolean && e.kind <= Kind::character) named_[e.name] = t;
+    if (e.kind >= Kind::boolean && e.kind <= Kind::wide_character) named_[e.name] = t;
   }
   for (const auto& [name, kind] : kOtherNames) named_[name] = elementary(kind);
-  by_kind_[static_cast<std::size_t>(Kind::string)] = string(kDefaultStringCapacity);
-  named_["STRING"] = elementary(Kind::string);
+  for (const Kind k : {Kind::string, Kind::wide_string}) {
+    const Type* t = string(kDefaultStringCapacity, k);
+    by_kind_[static_cast<std::size_t>(k)] = t;
+    named_[t->name] = t;
+  }
 }
 
-const Type* TypeTable::string(std::uint32_t capacity) {
+const Type* TypeTable::string(std::uint32_t capacity, Kind kind) {
   for (const Type& t : all_)
-    if (t.kind == Kind::string && t.size == capacity + 1) return &t;
-  Type* t = add(Kind::string,
-                capacity == kDefaultStringCapacity ? "STRING" : "STRING[" + std::to_string(capacity) + "]");
-  t->size = capacity + 1;
+    if (t.kind == kind && t.size == text_size(kind, capacity)) return &t;
+  const std::string name = kind == Kind::wide_string ? "WSTRING" : "STRING";
+  const bool plain = capacity == kDefaultStringCapacity;
+  Type* t = add(kind, plain ? name : name + "[" + std::to_string(capacity) + "]");
+  t->size = text_size(kind, capacity);
+  t->align = kind == Kind::wide_string ? 2 : 1;
   return t;
 }
 
@@ -295,7 +312,7 @@ const Type* TypeTable::common(const Type& a, const Type& b) const noexcept {
     const Conversion c = conversion(from, to);
     return c == Conversion::same || c == Conversion::widening;
   };
-  if (a.kind == Kind::string && b.kind == Kind::string) return a.size >= b.size ? &a : &b;
+  if (is_text(a.kind) && a.kind == b.kind) return a.size >= b.size ? &a : &b;
   if (fits(b, a)) return a.bounded ? a.base : &a;
   if (fits(a, b)) return b.bounded ? b.base : &b;
   static constexpr Kind order[] = {Kind::sint,  Kind::usint, Kind::int_, Kind::uint, Kind::dint,

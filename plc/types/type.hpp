@@ -34,7 +34,9 @@ enum class Kind : std::uint8_t {
   tod,
   dt,
   character,
+  wide_character,
   string,
+  wide_string,
   enumeration,
   array,
   structure,
@@ -44,7 +46,7 @@ enum class Kind : std::uint8_t {
 };
 
 /// How the machine holds an elementary value.
-enum class Cell : std::uint8_t { i8, i16, i32, i64, u8, u16, u32, u64, f32, f64, text, blob };
+enum class Cell : std::uint8_t { i8, i16, i32, i64, u8, u16, u32, u64, f32, f64, text, wide_text, blob };
 
 struct Type;
 
@@ -86,7 +88,8 @@ struct Type {
   std::int32_t block = -1;          ///< function block: index of its body
   std::vector<std::uint8_t> image;  ///< initial value; empty: all zero
 
-  std::uint32_t capacity() const noexcept { return size - 1; }  ///< of a STRING, in characters
+  /// Of a STRING or WSTRING, in characters.
+  std::uint32_t capacity() const noexcept { return kind == Kind::wide_string ? size / 2 - 1 : size - 1; }
   const Field* field(std::string_view key) const;
   const EnumValue* value_named(std::string_view key) const;
 };
@@ -102,6 +105,10 @@ bool is_bits(Kind k) noexcept;  ///< BYTE WORD DWORD LWORD
 bool is_real(Kind k) noexcept;
 bool is_temporal(Kind k) noexcept;  ///< TIME DATE TOD DT
 bool is_untyped(Kind k) noexcept;
+inline bool is_text(Kind k) noexcept { return k == Kind::string || k == Kind::wide_string; }
+inline bool is_character(Kind k) noexcept { return k == Kind::character || k == Kind::wide_character; }
+/// WSTRING and WCHAR, which do not mix with STRING and CHAR.
+inline bool is_wide(Kind k) noexcept { return k == Kind::wide_string || k == Kind::wide_character; }
 bool is_elementary(Kind k) noexcept;
 inline bool is_number(Kind k) noexcept { return is_integer(k) || is_real(k) || is_untyped(k); }
 
@@ -132,8 +139,8 @@ class TypeTable {
   TypeTable& operator=(const TypeTable&) = delete;
 
   const Type* elementary(Kind k) const noexcept { return by_kind_[static_cast<std::size_t>(k)]; }
-  /// STRING[capacity], 1 to 254 characters.
-  const Type* string(std::uint32_t capacity);
+  /// STRING[capacity] or WSTRING[capacity], 1 to 254 characters.
+  const Type* string(std::uint32_t capacity, Kind kind = Kind::string);
   const Type* array(const Type* element, Dimension range);
   /// ARRAY[*] of it, for parameters (IEC 61131-3:2013, 6.5.3.4); it has no size.
   const Type* open_array(const Type* element);
@@ -154,5 +161,13 @@ class TypeTable {
 
 inline constexpr std::uint32_t kDefaultStringCapacity = 80;
 inline constexpr std::uint32_t kMaxStringCapacity = 254;
+/// Bytes of a text in memory: its length in one byte and the characters; of a WSTRING both have two bytes.
+constexpr std::uint32_t text_size(Kind kind, std::uint32_t characters) noexcept {
+  return kind == Kind::wide_string ? 2 + 2 * characters : 1 + characters;
+}
+/// The largest variable of an elementary type.
+inline constexpr std::uint32_t kMaxElementarySize = text_size(Kind::wide_string, kMaxStringCapacity);
+/// Bytes of the value that a variable of elementary type has: of a text only what its length says.
+std::uint32_t value_size(const Type& type, const std::uint8_t* at) noexcept;
 
 }  // namespace servogate::plc

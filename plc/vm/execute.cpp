@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -307,6 +308,13 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
     std::memmove(to + 1, from + 1, n);                                                   \
     *to = n;                                                                             \
   }                                                                                      \
+  NEXT()
+#define SINGLE_move_wide_text(AT)                                     \
+  {                                                                   \
+    const auto n = std::min(get<std::uint16_t>(AT(ip->b)), ip->aux);  \
+    std::memmove(AT(ip->a) + 2, AT(ip->b) + 2, n * sizeof(char16_t)); \
+    put(AT(ip->a), n);                                                \
+  }                                                                   \
   NEXT()
 #define SINGLE_address(AT)                                             \
   put(AT(ip->a), static_cast<std::uint32_t>(AT(ip->b) - mem) + ip->c); \

@@ -30,12 +30,12 @@ using NativeFunction = Fault (*)(Machine& m, std::uint8_t* d, const std::uint8_t
 /// Numbers for Instruction::aux of Code::native.
 std::uint16_t convert_function(Cell from, Cell to) noexcept;
 std::uint16_t truncate_function(Cell from, Cell to) noexcept;
-std::uint16_t native_function(ir::Native n, Cell cell) noexcept;
-/// To and from text depend on the type, not only on its cell.
-std::uint16_t to_text_function(const Type& type) noexcept;
-std::uint16_t from_text_function(const Type& type) noexcept;
-std::uint16_t compare_text_function() noexcept;
-std::uint16_t pick_text_function(bool greatest) noexcept;
+/// Of an expression of the kind `native`, by it and the types of its inputs.
+std::uint16_t native_function(const ir::Expr& e) noexcept;
+/// One character as a text of its kind.
+std::uint16_t character_text_function(bool wide) noexcept;
+std::uint16_t compare_text_function(bool wide) noexcept;
+std::uint16_t pick_text_function(bool greatest, bool wide) noexcept;
 NativeFunction native_at(std::uint16_t number) noexcept;
 
 }  // namespace servogate::plc::vm

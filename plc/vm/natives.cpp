@@ -188,7 +188,9 @@ std::uint16_t truncate_function(Cell from, Cell to) noexcept {
   return static_cast<std::uint16_t>(kTruncateBase + static_cast<int>(from) * 10 + static_cast<int>(to));
 }
 
-std::uint16_t native_function(ir::Native n, Cell cell) noexcept {
+std::uint16_t native_function(const ir::Expr& e) noexcept {
+  const ir::Native n = e.native;
+  const Cell cell = cell_of(*e.type);
   const int i = static_cast<int>(n);
   if (n <= ir::Native::power)
     return static_cast<std::uint16_t>(kRealBase + i +
@@ -215,8 +217,12 @@ std::uint16_t native_function(ir::Native n, Cell cell) noexcept {
       return static_cast<std::uint16_t>(kOtherBase + (cell_size(cell) == 2   ? 6
                                                       : cell_size(cell) == 4 ? 7
                                                                              : 8));
+    case ir::Native::to_text:
+      return to_text_function(*e.args[0]->type, is_wide(e.type->kind));
+    case ir::Native::from_text:
+      return from_text_function(*e.args[0]->type, *e.type);
     default:
-      return static_cast<std::uint16_t>(kTextBase + i - static_cast<int>(ir::Native::length));
+      return text_function(n, is_wide(e.args[0]->type->kind));
   }
 }
 

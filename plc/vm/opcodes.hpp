@@ -52,6 +52,7 @@ namespace servogate::plc::vm {
   SINGLE(load_bytes)                                                          \
   SINGLE(store_bytes)                                                         \
   SINGLE(move_text)                                                           \
+  SINGLE(move_wide_text)                                                      \
   SINGLE(address)                                                             \
   SINGLE(load_bit)                                                            \
   SINGLE(store_bit)                                                           \

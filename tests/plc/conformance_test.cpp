@@ -43,9 +43,9 @@ std::string in_variables(const std::string& e, std::string& declarations) {
   std::string out;
   int count = 0;
   for (std::size_t i = 0; i < e.size();) {
-    if (e[i] == '\'') {
+    if (e[i] == '\'' || e[i] == '"') {
       std::size_t end = i + 1;
-      while (end < e.size() && e[end] != '\'') end += e[end] == '$' ? 2 : 1;
+      while (end < e.size() && e[end] != e[i]) end += e[end] == '$' ? 2 : 1;
       out += e.substr(i, end - i + 1);
       i = end + 1;
       continue;
@@ -62,8 +62,8 @@ std::string in_variables(const std::string& e, std::string& declarations) {
     std::size_t end = n + 1;
     const Kind kind = syntax::time_prefix(key_of(type));
     const bool time = kind != Kind::none;
-    if (e[end] == '\'') {
-      end = e.find('\'', end + 1) + 1;
+    if (e[end] == '\'' || e[end] == '"') {
+      end = e.find(e[end], end + 1) + 1;
     } else {
       if (e[end] == '-') ++end;
       while (end < e.size() &&

@@ -217,6 +217,32 @@ END_PROGRAM)"));
   EXPECT_EQ(second.number(*second.find("kind")), 0);
 }
 
+TEST(Engine, forces_and_keeps_wide_strings_with_every_character) {
+  const std::string source = R"(PROGRAM Main
+VAR RETAIN name : WSTRING[254]; mark : WCHAR; half : WSTRING[4]; list : ARRAY[0..1] OF WSTRING[3]; END_VAR
+VAR part : WSTRING; END_VAR
+part := RIGHT(name, 3);
+END_PROGRAM)";
+  Engine first(build(source));
+  image::Packets p;
+  const std::string longest = std::string(248, 'x') + "Ж\"$\n😀";  // 254 units of 16 bits
+  EXPECT_TRUE(first.write(p, *first.find("name"), longest));
+  EXPECT_FALSE(first.write(p, *first.find("name"), longest + "y"));
+  EXPECT_TRUE(first.write(p, *first.find("half"), "\"a$D83D\""));
+  EXPECT_TRUE(first.force(*first.find("mark"), "Ж"));
+  EXPECT_FALSE(first.force(*first.find("mark"), "😀")) << "two units";
+  EXPECT_TRUE(first.force(*first.find("list[1]"), "\"абв\""));
+  first.scan(p, 0);
+  EXPECT_EQ(first.read(*first.find("part")), "\"\\u000a😀\"");
+  EXPECT_EQ(first.read(*first.find("half")), "\"a$D83D\"");
+  EXPECT_EQ(first.forced()[0].second, "\"Ж\"");
+  Engine second(build(source));
+  EXPECT_EQ(second.restore(first.retained()), 5u);
+  for (const char* name : {"name", "mark", "half", "list"})
+    EXPECT_EQ(second.read(*second.find(name)), first.read(*first.find(name)));
+  EXPECT_EQ(second.read(*second.find("list")), "[\"\",\"абв\"]");
+}
+
 TEST(Engine, keeps_all_of_an_instance_that_is_retained_and_what_is_persistent) {
   const std::string source = R"(VAR_GLOBAL PERSISTENT total : INT; END_VAR
 FUNCTION_BLOCK Count

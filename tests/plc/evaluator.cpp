@@ -307,7 +307,12 @@ Evaluator::Value Evaluator::native(const ir::Expr& e, std::uint32_t self) {
 Evaluator::Value Evaluator::call(const ir::Expr& e, std::uint32_t self) {
   const auto frame = static_cast<std::uint32_t>(program_.units[static_cast<std::size_t>(e.unit)].fixed_base);
   std::vector<Value> values;
-  for (const ir::Parameter& p : e.parameters) values.push_back(p.value ? evaluate(*p.value, self) : Value{});
+  std::vector<std::uint32_t> bound;
+  for (const ir::Parameter& p : e.parameters) {
+    const bool binds_place = !p.value && p.section != syntax::Section::output;
+    values.push_back(p.value ? evaluate(*p.value, self) : Value{});
+    bound.push_back(binds_place ? address(p.place, self).at : 0);
+  }
   for (std::size_t i = 0; i < values.size(); ++i) {
     const ir::Parameter& p = e.parameters[i];
     if (p.value) {
@@ -316,18 +321,24 @@ Evaluator::Value Evaluator::call(const ir::Expr& e, std::uint32_t self) {
         throw Stopped{Fault::subrange};
       store({frame + p.offset, -1}, *p.type, values[i]);
     } else if (p.section != syntax::Section::output) {
-      const std::uint32_t at = address(p.place, self).at;
-      std::memcpy(memory.data() + frame + p.offset, &at, 4);
+      std::memcpy(memory.data() + frame + p.offset, &bound[i], 4);
     }
   }
   run(e.unit, frame);
-  for (const ir::Parameter& p : e.parameters)
-    if (!p.value && p.section == syntax::Section::output) {
-      Value v = load({frame + p.offset, -1}, *p.type);
+  const auto is_output = [](const ir::Parameter& p) {
+    return !p.value && p.section == syntax::Section::output;
+  };
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (const ir::Parameter& p = e.parameters[i]; is_output(p))
+      values[i] = load({frame + p.offset, -1}, *p.type);
+  const Value result = e.type->kind == Kind::none ? Value{} : load({frame + e.result, -1}, *e.type);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (const ir::Parameter& p = e.parameters[i]; is_output(p)) {
+      Value& v = values[i];
       if (p.inverted) v.i = p.type->kind == Kind::boolean ? v.i == 0 : wrap(cell_of(*p.type), ~v.i);
       store(address(p.place, self), *p.type, v);
     }
-  return e.type->kind == Kind::none ? Value{} : load({frame + e.result, -1}, *e.type);
+  return result;
 }
 
 Evaluator::Flow Evaluator::block(const ir::Block& b, std::uint32_t self) {
