@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "firmware_if/image/time.hpp"
 #include "firmware_if/text/finding.hpp"
 
 namespace servogate::plc {
@@ -25,6 +26,8 @@ struct Options {
   /// Instructions that one scan may execute, all tasks together; more is Fault::budget. 1 million take about
   /// one to two milliseconds.
   std::int64_t instruction_budget = 1'000'000;
+  /// The machine's cycle, for the warning of tasks that ask for more; 0: not known.
+  image::Nanoseconds cycle_ns = 0;
   bool warnings = true;
 };
 

@@ -109,7 +109,9 @@ std::vector<std::string> parse_prints(std::string_view text) {
 
 RunResult run(const RunRequest& request, const std::function<bool(std::string_view)>& line) {
   RunResult out;
-  CompileResult compiled = compile(request.files, request.symbols, request.options);
+  Options options = request.options;
+  options.cycle_ns = request.cycle_ns;
+  CompileResult compiled = compile(request.files, request.symbols, options);
   out.findings = std::move(compiled.findings);
   if (compiled.image == nullptr) {
     out.end = RunResult::End::bad_source;

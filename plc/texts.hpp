@@ -274,6 +274,12 @@ inline constexpr Entry kUnsupported{"plc-unsupported", "{0} is not supported", "
 inline constexpr Entry kUnused{"plc-unused", "'{0}' is never used", "'{0}' нигде не используется"};
 inline constexpr Entry kTwoWriters{"plc-two-writers", "'{0}' is written in {1} and in {2}",
                                    "'{0}' записывается и в {1}, и в {2}"};
+inline constexpr Entry kTwoWritersOverlap{
+    "plc-two-writers", "'{0}' is written in {1}, and '{2}', which shares memory with it, in {3}",
+    "'{0}' записывается в {1}, а '{2}', занимающая ту же память, — в {3}"};
+inline constexpr Entry kTaskShort{
+    "plc-task-short", "INTERVAL {0} is shorter than the machine's cycle of {1}; the task runs once a cycle",
+    "INTERVAL {0} короче такта станка {1}; задача выполняется один раз за такт"};
 inline constexpr Entry kFastTask{"plc-task-range", "priority {0}; 0 to 65535 is possible",
                                  "приоритет {0}; возможны значения от 0 до 65535"};
 

@@ -48,6 +48,7 @@ void check_logic(const machine::MachineConfig& machine, std::vector<text::Findin
   plc::Options options;
   options.k_bytes = static_cast<std::uint32_t>(machine.control.k_size);
   options.v_bytes = static_cast<std::uint32_t>(machine.control.syvar_size);
+  options.cycle_ns = machine.cycle_ns();
   std::vector<text::Finding> of_logic;
   plc::check(sources, machine.symbol_table(), options, of_logic);
   findings.insert(findings.end(), of_logic.begin(), of_logic.end());

@@ -172,6 +172,7 @@ plc::Options Control::logic_options() const {
   plc::Options options;
   options.k_bytes = static_cast<std::uint32_t>(loaded_.machine.control.k_size);
   options.v_bytes = static_cast<std::uint32_t>(loaded_.machine.control.syvar_size);
+  options.cycle_ns = loaded_.machine.cycle_ns();
   return options;
 }
 

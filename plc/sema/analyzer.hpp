@@ -97,7 +97,8 @@ class Analyzer {
   void declare_edge(UnitScope& u, const syntax::Variable& v);
   void declare_globals(bool constants);
   void declare_located(Variable& out, const syntax::Variable& v, bool configured = false);
-  void warn_overlaps(const syntax::Variable& v, const image::Place& place);
+  void warn_overlaps(const std::string& address, const image::Place& place, const Location& at,
+                     bool direct = false);
   void check_sections(const UnitScope& u, const syntax::Variable& v);
   std::uint32_t allocate(const Type& type);
   const Type* limits_type();
@@ -263,6 +264,7 @@ class Analyzer {
   bool visit(int unit, std::vector<int>& path);
   void check_usage();
   void check_writers();
+  void check_overlapping_writers();
   void reach(int unit, std::set<int>& out) const;
 
   UnitScope& here() { return scopes_[static_cast<std::size_t>(current_)]; }
@@ -301,6 +303,7 @@ class Analyzer {
   };
   std::map<std::uint32_t, Configured> locations_;  ///< by the cell of an AT %Q* in its instance
   std::vector<std::set<int>> place_writers_;
+  std::set<std::string> direct_;              ///< addresses used without a declaration
   std::set<std::uint32_t> read_only_places_;  ///< declared AT %I
   std::set<std::string> unknown_;             ///< names reported in the current unit
   std::vector<const Variable*> for_variables_;

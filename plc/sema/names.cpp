@@ -100,6 +100,7 @@ std::optional<ir::Place> Analyzer::place(const Expression& e, bool write) {
       const Kind bits[] = {Kind::boolean, Kind::byte, Kind::word, Kind::dword, Kind::real, Kind::lword};
       out.type = elementary(bits[static_cast<int>(p->format)]);
       out.cell = shared(key_of(e.name), *p, out.type, e.location);
+      if (direct_.insert(key_of(e.name)).second) warn_overlaps(e.name, *p, e.location, true);
       if (key_of(e.name).starts_with("%I")) read_only_places_.insert(out.cell);
       if (write) check_place_writer(out.cell, e.location, e.name);
       return out;

@@ -108,21 +108,21 @@ void Analyzer::declare_located(Variable& out, const syntax::Variable& v, bool co
     }
   }
   if (configured) return;
-  warn_overlaps(v, *place);
+  warn_overlaps(v.address, *place, v.address_location);
   located_.push_back({v.name, v.address, *place, v.location});
   if (current_ < 0)
     program_.globals.push_back({v.name, out.type, 0, static_cast<std::int32_t>(out.cell), false});
 }
 
-void Analyzer::warn_overlaps(const syntax::Variable& v, const image::Place& place) {
+// `direct`: an address in a body, where the place of a variable may be named once more.
+void Analyzer::warn_overlaps(const std::string& address, const image::Place& place, const Location& at,
+                             bool direct) {
   for (const Located& l : located_)
-    if (l.place.overlaps(place))
-      report_.warning(v.address_location, texts::kAddressOverlap,
-                      {v.address, l.text, l.name, std::to_string(l.at.line)});
+    if (l.place.overlaps(place) && !(direct && l.place == place))
+      report_.warning(at, texts::kAddressOverlap, {address, l.text, l.name, std::to_string(l.at.line)});
   for (const image::Symbol& symbol : symbols_)
     if (symbol.place.overlaps(place)) {
-      report_.warning(v.address_location, texts::kSymbolOverlap,
-                      {v.address, symbol.name, image::to_string(symbol.place)});
+      report_.warning(at, texts::kSymbolOverlap, {address, symbol.name, image::to_string(symbol.place)});
       break;
     }
 }

@@ -82,6 +82,12 @@ ir::Task Analyzer::task_of(const syntax::Task& t) {
     if (const auto ns = constant(*t.interval, elementary(Kind::time))) {
       task.interval = ns->i;
       if (ns->i <= 0) report_.error(t.location, texts::kTaskInterval);
+      Constant cycle;
+      cycle.i = options_.cycle_ns;
+      if (ns->i > 0 && ns->i < cycle.i)
+        report_.warning(
+            t.interval->location, texts::kTaskShort,
+            {constant_text(*elementary(Kind::time), *ns), constant_text(*elementary(Kind::time), cycle)});
     }
   if (t.single)
     if (auto p = place(*t.single, false)) {
@@ -243,6 +249,33 @@ void Analyzer::check_writers() {
   for (const Variable& v : globals_) check(v.writers, v.at, v.name);
   for (std::size_t i = 0; i < place_writers_.size(); ++i)
     check(place_writers_[i], program_.places[i].at, program_.places[i].name);
+  check_overlapping_writers();
+}
+
+// Addresses in bodies that share bits. One that shares them with a declared variable was warned of where it
+// stands.
+void Analyzer::check_overlapping_writers() {
+  const auto& places = program_.places;
+  for (std::size_t j = 0; j < places.size(); ++j) {
+    if (place_writers_[j].empty() || places[j].name[0] != '%') continue;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool both = places[i].name[0] == '%';
+      if (i == j || (both && i > j) || place_writers_[i].empty() ||
+          !places[i].place.overlaps(places[j].place))
+        continue;
+      if (!both && places[i].place != places[j].place) continue;
+      std::set<int> writers = place_writers_[i];
+      writers.insert(place_writers_[j].begin(), place_writers_[j].end());
+      if (writers.size() < 2) continue;
+      const int second = *place_writers_[j].rbegin();
+      const int first = *std::find_if(place_writers_[i].begin(), place_writers_[i].end(),
+                                      [&](int u) { return u != second || place_writers_[i].size() == 1; });
+      const auto name_of = [&](int unit) { return scopes_[static_cast<std::size_t>(unit)].source->name; };
+      report_.warning(places[j].at, texts::kTwoWritersOverlap,
+                      {places[j].name, name_of(second), places[i].name, name_of(first)});
+      break;
+    }
+  }
 }
 
 }  // namespace servogate::plc::sema

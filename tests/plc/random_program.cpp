@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/plc/random_program.hpp"
 
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -33,7 +34,7 @@ constexpr int kSortCount = 15, kFirstBits = 8, kFirstReal = 12, kBool = 14;
 
 class Writer {
  public:
-  explicit Writer(std::uint64_t seed) : random_(seed) {}
+  explicit Writer(std::function<std::uint64_t()> choice) : choice_(std::move(choice)) {}
 
   std::string program() {
     std::string text = "TYPE Rec : STRUCT";
@@ -64,7 +65,7 @@ class Writer {
 
  private:
   static std::string number(int n) { return std::to_string(n); }
-  int pick(int n) { return static_cast<int>(random_() % static_cast<std::uint64_t>(n)); }
+  int pick(int n) { return static_cast<int>(choice_() % static_cast<std::uint64_t>(n)); }
 
   std::string locals() {
     std::string out;
@@ -77,8 +78,11 @@ class Writer {
   }
 
   std::string index(int low, int high) {
-    if (pick(3) != 0) return number(low + pick(high - low + 1));
-    return "LIMIT(" + number(low) + ", " + variable(2) + ", " + number(high + (pick(40) == 0 ? 1 : 0)) + ")";
+    if (pick(3) != 0 || subscripts_ > 3) return number(low + pick(high - low + 1));
+    ++subscripts_;
+    const std::string inner = variable(2);
+    --subscripts_;
+    return "LIMIT(" + number(low) + ", " + inner + ", " + number(high + (pick(40) == 0 ? 1 : 0)) + ")";
   }
   std::string variable(int sort) {
     const std::string s = number(sort);
@@ -213,19 +217,28 @@ class Writer {
     }
   }
 
-  std::mt19937_64 random_;
+  std::function<std::uint64_t()> choice_;
   bool function_ = false;
   int depth_ = 0;
+  int subscripts_ = 0;  ///< inside one another
 };
 
 }  // namespace
 
-std::string random_program(std::uint64_t seed) {
-  std::string text = Writer(seed).program();
+static std::string written(std::function<std::uint64_t()> choice) {
+  std::string text = Writer(std::move(choice)).program();
   // A call inside an expression: the last argument is the variable that the function changes.
   for (std::size_t at; (at = text.find("INT_TO_INT_SAFE")) != std::string::npos;)
     text.replace(at, 15, "v1, v2");
   return text;
+}
+
+std::string random_program(std::uint64_t seed) { return written(std::mt19937_64(seed)); }
+
+std::string random_program(std::span<const std::uint8_t> choices) {
+  return written([choices, at = std::size_t{0}]() mutable -> std::uint64_t {
+    return at < choices.size() ? choices[at++] : 0;
+  });
 }
 
 }  // namespace servogate::plc

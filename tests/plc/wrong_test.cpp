@@ -24,7 +24,9 @@ class WrongPrograms : public testing::TestWithParam<std::string> {};
 TEST_P(WrongPrograms, get_exactly_these_messages) {
   for (const DataCase& c : cases_of(GetParam())) {
     SCOPED_TRACE(stem(GetParam()) + ":" + std::to_string(c.line) + " " + c.title);
-    const CompileResult r = compile({{"a.st", c.source}}, symbols());
+    Options options;
+    options.cycle_ns = image::kMillisecond;
+    const CompileResult r = compile({{"a.st", c.source}}, symbols(), options);
     std::vector<std::string> said;
     for (const text::Finding& f : r.findings) said.push_back(f.str(text::Language::english).substr(5));
     EXPECT_EQ(said, c.rest);

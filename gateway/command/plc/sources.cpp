@@ -27,6 +27,7 @@ bool read_surroundings(const std::string& machine, PlcSurroundings& out) {
   out.symbols = loaded.machine.symbol_table();
   out.options.k_bytes = static_cast<std::uint32_t>(loaded.machine.control.k_size);
   out.options.v_bytes = static_cast<std::uint32_t>(loaded.machine.control.syvar_size);
+  out.options.cycle_ns = loaded.machine.cycle_ns();
   for (const std::string& source : loaded.machine.plc.sources)
     out.sources.push_back(loaded.machine.resolve(source));
   return true;
