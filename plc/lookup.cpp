@@ -156,12 +156,15 @@ std::optional<Handle> find_variable(const Image& image, std::string_view path) {
     if (auto found = find_global(image, only->type->name + ".", parts)) return found;  // AT an address
   }
   if (auto found = find_global(image, "", parts)) return found;
-  for (const ir::Global& p : image.programs)
-    if (same_name(p.name, parts[0].name) && parts.size() > 1) {
-      if (auto found = follow(image, {p.address, -1, -1, p.type}, parts, 1)) return found;
-      const std::vector<Part> rest(parts.begin() + 1, parts.end());
-      if (auto found = find_global(image, p.type->name + ".", rest)) return found;  // declared AT an address
-    }
+  for (const ir::Global& p : image.programs) {
+    std::size_t n = 1;
+    std::string name = parts[0].name;
+    if (p.name.find('.') != std::string::npos && parts.size() > 1) name += "." + parts[n++].name;  // resource
+    if (!same_name(p.name, name) || parts.size() <= n) continue;
+    if (auto found = follow(image, {p.address, -1, -1, p.type}, parts, n)) return found;
+    const std::vector<Part> rest(parts.begin() + static_cast<std::ptrdiff_t>(n), parts.end());
+    if (auto found = find_global(image, p.type->name + ".", rest)) return found;  // declared AT an address
+  }
   return std::nullopt;
 }
 

@@ -61,6 +61,11 @@ inline constexpr Entry kStringLength{"plc-string-length", "a {1} holds 1 to 254 
                                      "длина {1} от 1 до 254 символов, а не {0}"};
 inline constexpr Entry kSubrangeBase{"plc-subrange-base", "a subrange needs an integer type, not {0}",
                                      "поддиапазон возможен только для целого типа, а не {0}"};
+inline constexpr Entry kNamedBase{
+    "plc-subrange-base", "named values need a number, a bit string, a time or a date, not {0}",
+    "именованные значения возможны для чисел, битовых строк, времени и дат, а не {0}"};
+inline constexpr Entry kNamedValue{"plc-named-value", "'{0}' needs a value; those of {1} are not counted on",
+                                   "'{0}' требует значения: у {1} следующего по порядку нет"};
 inline constexpr Entry kSectionPlace{"plc-section", "{0} has no place in a {1}", "{0} недопустимо в {1}"};
 inline constexpr Entry kNoExternal{"plc-external", "there is no global variable '{0}' for this VAR_EXTERNAL",
                                    "для VAR_EXTERNAL нет глобальной переменной '{0}'"};
@@ -112,6 +117,12 @@ inline constexpr Entry kRecursion{"plc-recursion", "'{0}' calls itself ({1}); IE
                                   "'{0}' вызывает само себя ({1}); МЭК 61131-3 запрещает рекурсию"};
 inline constexpr Entry kNoTask{"plc-no-task", "there is no TASK '{0}' in this resource",
                                "в этом ресурсе нет TASK '{0}'"};
+inline constexpr Entry kGlobalTwice{
+    "plc-duplicate",
+    "'{0}' is already declared in line {1}; all resources share one list of global variables",
+    "'{0}' уже объявлена в строке {1}; список глобальных переменных у всех ресурсов один"};
+inline constexpr Entry kBlockTask{"plc-block-task", "'{0}' runs with TASK '{1}'; {2} cannot call it, too",
+                                  "'{0}' выполняется в задаче '{1}'; вызывать его ещё и из {2} нельзя"};
 inline constexpr Entry kTaskInterval{"plc-task-interval",
                                      "a task needs a positive INTERVAL or a SINGLE variable",
                                      "задаче нужен положительный INTERVAL или переменная SINGLE"};

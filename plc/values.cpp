@@ -133,9 +133,11 @@ std::string to_json(const Type& type, const std::uint8_t* at, int bit) {
     char buffer[48];
     return quoted({buffer, syntax::print_time(type.kind, v, buffer)});
   }
-  if (type.kind == Kind::enumeration)
+  if (type.kind == Kind::enumeration) {
     for (const EnumValue& e : type.values)
       if (e.value == v) return quoted(e.name);
+    return to_json(*type.base, at);
+  }
   return cell_of(type) == Cell::u64 ? std::to_string(static_cast<std::uint64_t>(v)) : std::to_string(v);
 }
 
@@ -183,6 +185,8 @@ bool store_literal(const Type& type, const syntax::Literal& l, std::uint8_t* out
     const double whole = static_cast<double>(l.magnitude) * (l.negative ? -1.0 : 1.0);
     return from_number(type, l.kind == Kind::untyped_real ? l.real : whole, out);
   }
+  if (type.kind == Kind::enumeration && !is_integer(type.base->kind) && !is_bits(type.base->kind))
+    return store_literal(*type.base, l, out);
   if (l.kind != Kind::untyped_int) return false;
   std::int64_t low = 0;
   std::uint64_t high = 0;

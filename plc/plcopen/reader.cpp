@@ -216,6 +216,7 @@ void Reader::task(const pugi::xml_node& n, syntax::Configuration& c) {
   syntax::Task t;
   t.location = where(n);
   t.name = attribute(n, "name");
+  t.resource = c.resources.back();
   if (const std::string interval = iec_time(n.attribute("interval").value()); !interval.empty())
     t.interval = syntax::parse_expression(interval, t.location, report_);
   if (const std::string priority = n.attribute("priority").value(); !priority.empty())
@@ -232,6 +233,7 @@ void Reader::instance(const pugi::xml_node& n, const std::string& task, syntax::
   syntax::ProgramInstance p;
   p.location = p.task_location = p.type_location = where(n);
   p.name = attribute(n, "name");
+  p.resource = c.resources.back();
   p.type = n.attribute("typeName").value();
   if (p.type.empty()) p.type = p.name;
   p.task = task;

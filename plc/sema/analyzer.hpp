@@ -41,6 +41,7 @@ struct Variable {
     return section == syntax::Section::in_out ||
            (section == syntax::Section::input && root == ir::Root::reference);
   }
+  std::string resource;   ///< of a global variable, empty: of none
   std::string area;       ///< "%Q*": VAR_CONFIG gives each instance its location
   std::set<int> writers;  ///< units that assign it
 };
@@ -122,6 +123,7 @@ class Analyzer {
   void initial_record(const Expression& e, const Type& type, std::vector<std::uint8_t>& out);
   ExprPtr fold(ExprPtr e);
   ExprPtr fold_function(ExprPtr e);
+  ExprPtr fold_conversion(ExprPtr e);
   ExprPtr make_constant(const Type* type, Constant c, const Location& at);
   ExprPtr truth(const Location& at);  ///< the constant TRUE
 
@@ -237,8 +239,11 @@ class Analyzer {
   void configured_tasks();
   void all_bound(int unit, const std::vector<const Variable*>& given, const Location& at);
   ir::Task task_of(const syntax::Task& t);
-  void program_call(const syntax::ProgramInstance& p, ir::Block& out);
+  bool program_call(const syntax::ProgramInstance& p, const std::string& name, ir::Block& out);
   int program_unit(const syntax::ProgramInstance& p);
+  std::string program_name(const syntax::Configuration& c, const syntax::ProgramInstance& p);
+  void block_task(const syntax::BlockTask& b, const ir::Global& program, ir::Block& out);
+  void check_block_tasks();
   std::uint32_t instance(const std::string& name, int unit, bool retain);
   // locations.cpp: the paths of VAR_CONFIG and VAR_ACCESS, AT %Q*.
   struct Reached {
@@ -301,6 +306,10 @@ class Analyzer {
     std::string name;
     Location at;
   };
+  /// An instance of a function block by the unit that declares it and its cell there.
+  using Instance = std::pair<int, std::uint32_t>;
+  std::set<Instance> called_;
+  std::vector<std::pair<Instance, const syntax::BlockTask*>> block_tasks_;
   std::map<std::uint32_t, Configured> locations_;  ///< by the cell of an AT %Q* in its instance
   std::vector<std::set<int>> place_writers_;
   std::set<std::string> direct_;              ///< addresses used without a declaration
@@ -324,7 +333,9 @@ class Analyzer {
 
 /// The bytes of a constant as the machine holds them.
 void store_constant(const Type& type, const Constant& c, std::uint8_t* out);
-/// The reverse, of an elementary type.
+/// A named value as a constant of its type.
+Constant named_constant(const Type& type, const EnumValue& value);
+/// The reverse of store_constant, of an elementary type.
 Constant stored_constant(const Type& type, const std::uint8_t* bytes);
 std::string constant_text(const Type& type, const Constant& c);
 

@@ -401,6 +401,8 @@ void Analyzer::block_call(const Expression& e, const ir::Place& named, int unit,
   if (current_ >= 0) here().calls.insert(unit);
   std::vector<const Variable*> matched;
   if (!check_arguments(e, unit, matched)) return;
+  if (named.root == ir::Root::instance && named.steps.empty())
+    called_.insert({current_, named.cell + named.offset});
   ir::Place instance = named.copy();
   if (!named.steps.empty()) {  // subscripts are computed once, whatever the call changes
     ir::Stmt choose;

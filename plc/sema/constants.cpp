@@ -164,6 +164,12 @@ Constant stored_constant(const Type& type, const std::uint8_t* bytes) {
   return c;
 }
 
+Constant named_constant(const Type& type, const EnumValue& value) {
+  std::uint8_t bytes[sizeof value.value];
+  std::memcpy(bytes, &value.value, sizeof bytes);
+  return stored_constant(type, bytes);
+}
+
 std::string constant_text(const Type& type, const Constant& c) {
   if (type.kind == Kind::string) return "'" + c.s + "'";
   if (type.kind == Kind::wide_string) return "\"" + narrow(c.w) + "\"";
@@ -173,8 +179,11 @@ std::string constant_text(const Type& type, const Constant& c) {
     char buffer[48];
     return {buffer, syntax::print_time(type.kind, c.i, buffer)};
   }
-  for (const EnumValue& v : type.values)
-    if (v.value == c.i) return v.name;
+  for (const EnumValue& v : type.values) {
+    const Constant named = named_constant(type, v);
+    if (named.i == c.i && named.r == c.r) return v.name;
+  }
+  if (type.kind == Kind::enumeration) return constant_text(*type.base, c);
   return cell_of(type) == Cell::u64 ? std::to_string(static_cast<std::uint64_t>(c.i)) : std::to_string(c.i);
 }
 

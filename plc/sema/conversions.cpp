@@ -34,11 +34,11 @@ ExprPtr Analyzer::scaled_time(ExprPtr e, const Type* to, const Location& at) {
   scaled->op = from_time ? Op::div : Op::mul;
   ExprPtr inner = node(ExprKind::convert, as, at);
   inner->args.push_back(std::move(e));
-  scaled->args.push_back(std::move(inner));
+  scaled->args.push_back(fold_conversion(std::move(inner)));
   scaled->args.push_back(make_constant(as, c, at));
   ExprPtr out = node(ExprKind::convert, to, at);
-  out->args.push_back(std::move(scaled));
-  return out;
+  out->args.push_back(fold(std::move(scaled)));
+  return fold_conversion(std::move(out));
 }
 
 // Between STRING, CHAR and WSTRING, WCHAR (table 27): texts from UTF-8 to UTF-16 and back, characters by
@@ -66,7 +66,7 @@ ExprPtr Analyzer::explicit_conversion(ExprPtr e, const Type* to, bool truncate, 
   if (e->type->kind == Kind::enumeration) {
     ExprPtr base = node(ExprKind::reinterpret, e->type->base, at);
     base->args.push_back(std::move(e));
-    e = std::move(base);
+    e = fold_conversion(std::move(base));
   }
   const Kind from = e->type->kind;
   if (from == to->kind) return e;
@@ -78,7 +78,7 @@ ExprPtr Analyzer::explicit_conversion(ExprPtr e, const Type* to, bool truncate, 
   if (same_bits(from, to->kind) || (from == Kind::date && to->kind == Kind::dt)) {
     ExprPtr out = node(ExprKind::reinterpret, to, at);
     out->args.push_back(std::move(e));
-    return out;
+    return fold_conversion(std::move(out));
   }
   if ((is_temporal(from) && numeric(to->kind)) || (numeric(from) && is_temporal(to->kind)))
     return scaled_time(std::move(e), to, at);
@@ -106,7 +106,7 @@ ExprPtr Analyzer::explicit_conversion(ExprPtr e, const Type* to, bool truncate, 
   if (numeric(from) && numeric(to->kind)) {
     ExprPtr out = node(truncate ? ExprKind::truncate : ExprKind::convert, to, at);
     out->args.push_back(std::move(e));
-    return out;
+    return fold_conversion(std::move(out));
   }
   report_.error(at, texts::kMismatch, {to->name, e->type->name, ""});
   return bad(at);
@@ -173,12 +173,12 @@ ExprPtr Analyzer::conversion_call(std::string_view key, const Expression& e) {
     std::vector<ExprPtr> one;
     ExprPtr wide = node(ExprKind::convert, elementary(Kind::ulint), e.location);
     wide->args.push_back(std::move(value));
-    one.push_back(std::move(wide));
+    one.push_back(fold_conversion(std::move(wide)));
     ExprPtr bcd = native(from_bcd ? Native::from_bcd : Native::to_bcd, elementary(Kind::ulint), e.location,
                          std::move(one));
     ExprPtr out = node(ExprKind::convert, to, e.location);
     out->args.push_back(std::move(bcd));
-    return out;
+    return fold_conversion(std::move(out));
   }
   return explicit_conversion(std::move(value), to, truncate, e.location);
 }

@@ -41,6 +41,7 @@ ir::Program Analyzer::run() {
   for (std::size_t u = 0; u < scopes_.size(); ++u)
     if (scopes_[u].source != nullptr) body(static_cast<int>(u));
   check_locations();
+  check_block_tasks();
   check_recursion();
   check_writers();
   check_usage();
@@ -291,8 +292,9 @@ const Type* Analyzer::resolve_structure(const syntax::TypeReference& t, const st
 const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const std::string& name) {
   const Type* base = elementary(Kind::int_);
   if (!t.name.empty()) base = resolve_named(t);
-  if (!is_integer(base->kind) && !is_bits(base->kind) && base->kind != Kind::error) {
-    report_.error(t.location, texts::kSubrangeBase, {base->name});
+  const bool counts = is_integer(base->kind) || is_bits(base->kind);
+  if (!counts && !is_real(base->kind) && !is_temporal(base->kind) && base->kind != Kind::error) {
+    report_.error(t.location, texts::kNamedBase, {base->name});
     return elementary(Kind::error);
   }
   if (base->kind == Kind::error) return base;
@@ -304,6 +306,15 @@ const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const 
     const auto& [value_name, value] = t.values[i];
     if (e->value_named(value_name) != nullptr)
       report_.error(t.value_locations[i], texts::kDuplicate, {value_name, line_of(t.location)});
+    if (!counts) {  // each has a value of its own
+      const auto given = value ? constant(*value, base) : std::nullopt;
+      if (!value) report_.error(t.value_locations[i], texts::kNamedValue, {value_name, base->name});
+      next = 0;
+      if (given) store_constant(*base, *given, reinterpret_cast<std::uint8_t*>(&next));
+      e->values.push_back({value_name, next});
+      enumerations_[key_of(value_name)].push_back(e);
+      continue;
+    }
     if (value)
       if (const auto given = constant_integer(*value)) next = *given;
     std::int64_t low = 0;
@@ -505,12 +516,15 @@ void Analyzer::declare_globals(bool constants) {
     if (s.constant != constants) continue;
     const auto [at, fresh] = globals_by_name_.emplace(key_of(s.name), globals_.size());
     if (!fresh) {
-      report_.error(s.location, texts::kDuplicate, {s.name, line_of(globals_[at->second].at)});
+      const bool resources = s.resource != globals_[at->second].resource;
+      report_.error(s.location, resources ? texts::kGlobalTwice : texts::kDuplicate,
+                    {s.name, line_of(globals_[at->second].at)});
       continue;
     }
     Variable v;
     v.name = s.name;
     v.at = s.location;
+    v.resource = s.resource;
     v.section = Section::global;
     v.constant = s.constant;
     v.retain = s.retain;

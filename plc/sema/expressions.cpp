@@ -107,7 +107,7 @@ ExprPtr Analyzer::typed_literal(const Expression& e) {
   }
   if (type->kind == Kind::enumeration) {
     const EnumValue* v = type->value_named(e.literal.text);
-    if (v != nullptr) return make_constant(type, {v->value, 0, {}}, e.location);
+    if (v != nullptr) return make_constant(type, named_constant(*type, *v), e.location);
     std::vector<std::string> names;
     for (const EnumValue& n : type->values) names.push_back(n.name);
     report_.error(e.location, texts::kNotEnumValue,

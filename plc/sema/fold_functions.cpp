@@ -1,89 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
 
 #include "plc/sema/analyzer.hpp"
+#include "plc/vm/machine.hpp"
 
+// Functions and conversions of constants, computed by the functions of the machine itself, so that a folded
+// value is the one that a scan would give. What would be a fault stays for the scan.
 namespace servogate::plc::sema {
 
 namespace {
 
-// As the machine computes it, in the same precision.
-template <typename T>
-T real_result(Native n, T a, T b) {
-  switch (n) {
-    case Native::sqrt:
-      return std::sqrt(a);
-    case Native::ln:
-      return std::log(a);
-    case Native::log:
-      return std::log10(a);
-    case Native::exp:
-      return std::exp(a);
-    case Native::sin:
-      return std::sin(a);
-    case Native::cos:
-      return std::cos(a);
-    case Native::tan:
-      return std::tan(a);
-    case Native::asin:
-      return std::asin(a);
-    case Native::acos:
-      return std::acos(a);
-    case Native::atan:
-      return std::atan(a);
-    case Native::atan2:
-      return std::atan2(a, b);
-    default:
-      return std::pow(a, b);
-  }
+struct alignas(8) Value {
+  std::array<std::uint8_t, kMaxElementarySize> bytes{};
+};
+
+Value value_of(const Expr& constant) {
+  Value v;
+  store_constant(*constant.type, constant.value, v.bytes.data());
+  return v;
 }
 
-template <typename T>
-std::int64_t shifted(Native n, std::int64_t value, std::int64_t by) {
-  constexpr std::int64_t width = sizeof(T) * 8;
-  const auto v = static_cast<T>(value);
-  T out = v;
-  if (n == Native::rol || n == Native::ror)
-    out = n == Native::rol ? std::rotl(v, static_cast<int>(by % width))
-                           : std::rotr(v, static_cast<int>(by % width));
-  else if (by >= width)
-    out = 0;
-  else if (by > 0)
-    out = static_cast<T>(n == Native::shl ? v << by : v >> by);
-  return static_cast<std::int64_t>(out);
+bool constants(const Expr& e) {
+  return !e.args.empty() && std::all_of(e.args.begin(), e.args.end(), [](const ExprPtr& a) {
+    return a->kind == ir::ExprKind::constant && is_elementary(a->type->kind);
+  });
 }
 
 }  // namespace
 
-// Functions of constants that initial values may need; the others are computed when the program runs.
 ExprPtr Analyzer::fold_function(ExprPtr e) {
-  if (e->args.empty() || std::any_of(e->args.begin(), e->args.end(),
-                                     [](const ExprPtr& a) { return a->kind != ir::ExprKind::constant; }))
-    return e;
-  const Constant &a = e->args.front()->value, &b = e->args.back()->value;
-  Constant c;
-  if (e->native <= Native::power) {
-    c.r = e->type->kind == Kind::real
-              ? static_cast<double>(real_result(e->native, static_cast<float>(a.r), static_cast<float>(b.r)))
-              : real_result(e->native, a.r, b.r);
-    if (!std::isfinite(c.r)) return e;
-  } else if (e->native <= Native::ror) {
-    const std::uint32_t size = e->type->size;
-    c.i = size == 1   ? shifted<std::uint8_t>(e->native, a.i, b.i)
-          : size == 2 ? shifted<std::uint16_t>(e->native, a.i, b.i)
-          : size == 4 ? shifted<std::uint32_t>(e->native, a.i, b.i)
-                      : shifted<std::uint64_t>(e->native, a.i, b.i);
-    std::uint8_t bytes[8];
-    store_constant(*e->type, c, bytes);
-    c = stored_constant(*e->type, bytes);  // with its sign
-  } else if (e->native == Native::concat) {
-    c.s = (a.s + b.s).substr(0, kMaxStringCapacity);
-    c.w = (a.w + b.w).substr(0, kMaxStringCapacity);
-  } else {
-    return e;
+  if (e->native == Native::now || e->native == Native::select_fault || !constants(*e)) return e;
+  Value in[4], out;
+  for (std::size_t i = 0; i < e->args.size(); ++i) in[i] = value_of(*e->args[i]);
+  vm::Machine machine;
+  machine.extra[0] = in[2].bytes.data();
+  machine.extra[1] = in[3].bytes.data();
+  const vm::NativeFunction function = vm::native_at(vm::native_function(*e));
+  if (function(machine, out.bytes.data(), in[0].bytes.data(), in[1].bytes.data()) != Fault::none) return e;
+  Constant c = stored_constant(*e->type, out.bytes.data());
+  if (!std::isfinite(c.r)) return e;
+  return make_constant(e->type, std::move(c), e->at);
+}
+
+ExprPtr Analyzer::fold_conversion(ExprPtr e) {
+  if (!constants(*e) || is_text(e->type->kind) || is_untyped(e->args[0]->type->kind)) return e;
+  const Expr& a = *e->args[0];
+  const Cell from = cell_of(*a.type), to = cell_of(*e->type);
+  const Value in = value_of(a);
+  Value out = in;  // integers that get narrower keep their low bytes
+  const bool low_bytes = from <= Cell::u64 && to <= Cell::u64 && cell_size(to) <= cell_size(from);
+  if (e->type->kind == Kind::boolean && a.type->kind != Kind::boolean) {
+    out.bytes[0] = from >= Cell::f32 ? a.value.r != 0 : a.value.i != 0;
+  } else if (e->kind != ir::ExprKind::reinterpret && from != to && !low_bytes) {
+    vm::Machine machine;
+    const auto number =
+        e->kind == ir::ExprKind::truncate ? vm::truncate_function(from, to) : vm::convert_function(from, to);
+    if (vm::native_at(number)(machine, out.bytes.data(), in.bytes.data(), nullptr) != Fault::none) return e;
   }
+  Constant c = stored_constant(*e->type, out.bytes.data());
+  if (!std::isfinite(c.r)) return e;
   return make_constant(e->type, std::move(c), e->at);
 }
 

@@ -63,8 +63,10 @@ std::optional<Analyzer::Reached> Analyzer::reach_path(const syntax::Configuratio
   std::size_t at = 0;
   for (const std::string& r : c.resources)
     if (p.path.size() > 1 && same_name(p.path[0], r)) at = 1;
-  const auto programs = std::find_if(program_.programs.begin(), program_.programs.end(),
-                                     [&](const ir::Global& g) { return same_name(g.name, p.path[at]); });
+  const auto programs =
+      std::find_if(program_.programs.begin(), program_.programs.end(), [&](const ir::Global& g) {
+        return same_name(g.name, p.path[at]) || (at == 1 && same_name(g.name, p.path[0] + "." + p.path[1]));
+      });
   const auto globals =
       std::find_if(program_.globals.begin(), program_.globals.end(),
                    [&](const ir::Global& g) { return g.place < 0 && same_name(g.name, p.path[at]); });

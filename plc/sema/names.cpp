@@ -376,11 +376,12 @@ std::optional<ir::Place> Analyzer::place_of_bit(const Expression& e, bool write)
 
 ExprPtr Analyzer::enumeration_value(std::string_view name, const Location& at, const Type* hint) {
   if (hint != nullptr && hint->kind == Kind::enumeration)
-    if (const EnumValue* v = hint->value_named(name)) return make_constant(hint, {v->value, 0, {}}, at);
+    if (const EnumValue* v = hint->value_named(name))
+      return make_constant(hint, named_constant(*hint, *v), at);
   const auto found = enumerations_.find(key_of(name));
   if (found == enumerations_.end()) return nullptr;
   const Type* t = found->second.front();
-  return make_constant(t, {t->value_named(name)->value, 0, {}}, at);
+  return make_constant(t, named_constant(*t, *t->value_named(name)), at);
 }
 
 }  // namespace servogate::plc::sema

@@ -297,7 +297,7 @@ void Analyzer::case_statement(const syntax::Statement& s, ir::Block& out) {
   const Type* type = stmt.value->type;
   const bool good = is_elementary(type->kind) && type->kind != Kind::error;
   if (!good && type->kind != Kind::error) report_.error(s.target->location, texts::kCaseType, {type->name});
-  const bool cells = !is_text(type->kind) && !is_real(type->kind);
+  const bool cells = cell_of(*type) < Cell::f32;
   std::vector<Chosen> seen;
   ir::Place held;
   if (good && !cells) {  // compared in turn with what is held
@@ -344,10 +344,10 @@ void Analyzer::case_label(const syntax::Label& l, const Type& type, std::vector<
   if (!low || !high) return;
   const bool huge = cell_of(type) == Cell::u64;
   const auto less = [&](const Constant& a, const Constant& b) {
-    return is_text(type.kind)   ? a.s < b.s || a.w < b.w
-           : is_real(type.kind) ? a.r < b.r
-           : huge               ? static_cast<std::uint64_t>(a.i) < static_cast<std::uint64_t>(b.i)
-                                : a.i < b.i;
+    return is_text(type.kind)           ? a.s < b.s || a.w < b.w
+           : cell_of(type) >= Cell::f32 ? a.r < b.r
+           : huge                       ? static_cast<std::uint64_t>(a.i) < static_cast<std::uint64_t>(b.i)
+                                        : a.i < b.i;
   };
   if (less(*high, *low)) {
     report_.error(l.low->location, texts::kEmptyRange,

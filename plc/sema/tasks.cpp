@@ -105,12 +105,12 @@ ir::Task Analyzer::task_of(const syntax::Task& t) {
 }
 
 // The instance's inputs, its call, its outputs.
-void Analyzer::program_call(const syntax::ProgramInstance& p, ir::Block& out) {
+bool Analyzer::program_call(const syntax::ProgramInstance& p, const std::string& name, ir::Block& out) {
   const int unit = program_unit(p);
-  if (unit < 0) return;
+  if (unit < 0) return false;
   ir::Place where;
   where.root = ir::Root::fixed;
-  where.cell = instance(p.name, unit, p.retain);
+  where.cell = instance(name, unit, p.retain);
   where.type = scopes_[static_cast<std::size_t>(unit)].frame;
   current_ = -1;
   std::vector<const Variable*> matched;
@@ -121,7 +121,7 @@ void Analyzer::program_call(const syntax::ProgramInstance& p, ir::Block& out) {
                     {p.type, a.output ? "VAR_OUTPUT" : "VAR_INPUT", a.name, ""});
     matched.push_back(v);
   }
-  if (std::find(matched.begin(), matched.end(), nullptr) != matched.end()) return;
+  if (std::find(matched.begin(), matched.end(), nullptr) != matched.end()) return false;
   all_bound(unit, matched, p.location);
   for (std::size_t i = 0; i < matched.size(); ++i)
     if (!p.arguments[i].output) block_input(p.arguments[i], *matched[i], where, out);
@@ -133,6 +133,47 @@ void Analyzer::program_call(const syntax::ProgramInstance& p, ir::Block& out) {
     from.type = matched[i]->type;
     output_argument(p.arguments[i], from, out);
   }
+  return true;
+}
+
+// With its resource before it where two resources have a program of that name.
+std::string Analyzer::program_name(const syntax::Configuration& c, const syntax::ProgramInstance& p) {
+  std::string name = p.name;
+  for (const syntax::ProgramInstance& other : c.programs) {
+    if (&other == &p || !same_name(other.name, p.name)) continue;
+    if (!same_name(other.resource, p.resource))
+      name = p.resource.empty() ? p.name : p.resource + "." + p.name;
+    else if (&other < &p)
+      report_.error(p.location, texts::kDuplicate, {p.name, std::to_string(other.location.line)});
+  }
+  return name;
+}
+
+// A task runs it, not the program that declares it (IEC 61131-3:2013, 6.8.2).
+void Analyzer::block_task(const syntax::BlockTask& b, const ir::Global& program, ir::Block& out) {
+  UnitScope& u = scopes_[static_cast<std::size_t>(program.type->block)];
+  const auto at = u.by_name.find(key_of(b.name));
+  if (at == u.by_name.end()) {
+    report_.error(b.location, texts::kNoMember, {program.type->name, b.name, ""});
+    return;
+  }
+  Variable& v = u.variables[at->second];
+  if (v.type->kind != Kind::block || v.root != ir::Root::instance) {
+    report_.error(b.location, texts::kMismatch, {"FUNCTION_BLOCK", v.type->name, ""});
+    return;
+  }
+  v.used = true;
+  all_bound(v.type->block, {}, b.location);
+  u.calls.insert(v.type->block);
+  block_tasks_.emplace_back(Instance{program.type->block, v.cell}, &b);
+  out.push_back(invoke_at(program.address + v.cell, v.type, v.type->block, b.location));
+}
+
+void Analyzer::check_block_tasks() {
+  for (const auto& [instance, b] : block_tasks_)
+    if (called_.contains(instance))
+      report_.error(b->location, texts::kBlockTask,
+                    {b->name, b->task, scopes_[static_cast<std::size_t>(instance.first)].source->name});
 }
 
 // Calls and actual parameters of each task are a body of their own. A program without a task runs every
@@ -140,21 +181,27 @@ void Analyzer::program_call(const syntax::ProgramInstance& p, ir::Block& out) {
 void Analyzer::configured_tasks() {
   for (const syntax::Configuration& c : source_.configurations) {
     std::vector<ir::Task> tasks;
-    const auto find = [&](const std::string& name) {
-      return static_cast<std::size_t>(
-          std::find_if(tasks.begin(), tasks.end(),
-                       [&](const ir::Task& t) { return same_name(t.name, name); }) -
-          tasks.begin());
+    std::vector<std::pair<std::string, std::string>> names;  // resource and name of each
+    const auto find = [&](const std::string& resource, const std::string& name) {
+      const auto at = std::find_if(names.begin(), names.end(), [&](const auto& n) {
+        return same_name(n.first, resource) && same_name(n.second, name);
+      });
+      return static_cast<std::size_t>(at - names.begin());
     };
     for (const syntax::Task& t : c.tasks) {
-      if (find(t.name) != tasks.size())
-        report_.error(t.location, texts::kDuplicate, {t.name, std::to_string(c.location.line)});
+      if (const std::size_t other = find(t.resource, t.name); other != names.size())
+        report_.error(t.location, texts::kDuplicate, {t.name, std::to_string(c.tasks[other].location.line)});
+      names.emplace_back(t.resource, t.name);
       tasks.push_back(task_of(t));
+      const bool shared = std::any_of(c.tasks.begin(), c.tasks.end(), [&](const syntax::Task& other) {
+        return same_name(other.name, t.name) && !same_name(other.resource, t.resource);
+      });
+      if (shared && !t.resource.empty()) tasks.back().name = t.resource + "." + t.name;
     }
     constexpr const char* kUnnamed = "cycle";
     std::vector<ir::Unit> bodies(tasks.size());
     for (const syntax::ProgramInstance& p : c.programs) {
-      const std::size_t index = find(p.task.empty() ? kUnnamed : p.task);
+      const std::size_t index = p.task.empty() ? find("", kUnnamed) : find(p.resource, p.task);
       if (index == tasks.size() && !p.task.empty()) {
         report_.error(p.task_location, texts::kNoTask, {p.task});
         continue;
@@ -164,9 +211,18 @@ void Analyzer::configured_tasks() {
         task.name = kUnnamed;
         task.priority = 65536;
         tasks.push_back(std::move(task));
+        names.emplace_back("", kUnnamed);
         bodies.emplace_back();
       }
-      program_call(p, bodies[index].body);
+      if (!program_call(p, program_name(c, p), bodies[index].body)) continue;
+      const ir::Global program = program_.programs.back();
+      for (const syntax::BlockTask& b : p.blocks) {
+        const std::size_t own = find(p.resource, b.task);
+        if (own == tasks.size())
+          report_.error(b.task_location, texts::kNoTask, {b.task});
+        else
+          block_task(b, program, bodies[own].body);
+      }
     }
     configured_paths(c);
     for (std::size_t i = 0; i < tasks.size(); ++i) {

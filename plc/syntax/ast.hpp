@@ -164,6 +164,7 @@ struct Variable {
   std::string name;
   Location location;
   Section section = Section::local;
+  std::string resource = {};  ///< of a global variable
   bool retain = false;
   bool constant = false;
   int edge = 0;         ///< +1 R_EDGE, -1 F_EDGE
@@ -195,16 +196,24 @@ struct TypeDeclaration {
 
 struct Task {
   std::string name;
+  std::string resource;  ///< empty: of none
   Location location;
   ExpressionPtr interval, priority, single;
 };
+/// `fb WITH task` behind a program: the task runs that instance of a function block.
+struct BlockTask {
+  std::string name, task;
+  Location location, task_location;
+};
 struct ProgramInstance {
   std::string name;
+  std::string resource;  ///< empty: of none
   Location location;
   std::string task, type;
   bool retain = false;  ///< all its variables
   Location task_location, type_location;
   std::vector<Argument> arguments;
+  std::vector<BlockTask> blocks;
 };
 /// A line of VAR_ACCESS (`name` set) or VAR_CONFIG: the path of a variable as its parts, names and
 /// subscripts ("[3]").

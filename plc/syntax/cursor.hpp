@@ -59,6 +59,7 @@ class Parser {
   void configuration_part(Configuration& c, int& resources, Location& resource);
   void task(Configuration& c);
   void program_instance(Configuration& c);
+  void program_elements(ProgramInstance& p);
   void path_part(std::vector<std::string>& out);
   void paths(Configuration& c, bool access);
   ExpressionPtr list_initializer();
@@ -90,6 +91,7 @@ class Parser {
   ExpressionPtr postfix(ExpressionPtr e);
   ExpressionPtr typed();
   void arguments(Expression& call);
+  void argument(Expression& call);
   static ExpressionPtr make(ExpressionKind kind, const Location& at);
 
   struct Nesting {

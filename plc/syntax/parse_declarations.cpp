@@ -297,8 +297,11 @@ ExpressionPtr Parser::record_initializer() {
 }
 
 void Parser::configuration_part(Configuration& c, int& resources, Location& resource) {
+  const std::string inside = resources > 0 ? c.resources.back() : "";
   if (at("VAR_GLOBAL")) {
+    const std::size_t first = source_.globals.size();
     variables(source_.globals, Section::global, false);
+    for (std::size_t i = first; i < source_.globals.size(); ++i) source_.globals[i].resource = inside;
   } else if (at("RESOURCE")) {
     resource = take().location;
     c.resources.push_back(identifier(text::both("a name", "имя")));
@@ -309,8 +312,10 @@ void Parser::configuration_part(Configuration& c, int& resources, Location& reso
     --resources;
   } else if (at("TASK")) {
     task(c);
+    c.tasks.back().resource = inside;
   } else if (at("PROGRAM")) {
     program_instance(c);
+    c.programs.back().resource = inside;
   } else if (at_any({"VAR_ACCESS", "VAR_CONFIG"})) {
     paths(c, at("VAR_ACCESS"));
   } else if (!accept(";")) {
@@ -426,13 +431,31 @@ void Parser::program_instance(Configuration& c) {
   expect(":");
   p.type_location = now().location;
   p.type = identifier(text::both("a PROGRAM", "PROGRAM"));
-  if (at("(")) {
-    Expression call;
-    arguments(call);
-    p.arguments = std::move(call.arguments);
-  }
+  if (at("(")) program_elements(p);
   expect(";");
   c.programs.push_back(std::move(p));
+}
+
+// Inputs, outputs, and blocks that a task of their own runs.
+void Parser::program_elements(ProgramInstance& p) {
+  const Location begin = take().location;
+  Expression call;
+  while (!at(")")) {
+    if (now().kind == TokenKind::word && ahead().is("WITH")) {
+      BlockTask b;
+      b.location = now().location;
+      b.name = take().text;
+      take();
+      b.task_location = now().location;
+      b.task = identifier(text::both("the name of a task", "имя задачи"));
+      p.blocks.push_back(std::move(b));
+    } else {
+      argument(call);
+    }
+    if (!accept(",")) break;
+  }
+  expect_closing(")", "'('", begin);
+  p.arguments = std::move(call.arguments);
 }
 
 }  // namespace servogate::plc::syntax

@@ -165,27 +165,31 @@ void Parser::arguments(Expression& call) {
   const Location begin = now().location;
   expect("(");
   while (!at(")")) {
-    Argument a;
-    a.location = now().location;
-    const bool inverted = at("NOT") && ahead().kind == TokenKind::word && ahead(2).is("=>");
-    if (inverted) take();
-    if (now().kind == TokenKind::word && (ahead().is(":=") || ahead().is("=>"))) {
-      a.name = take().text;
-      a.output = take().key == "=>";
-      a.inverted = inverted;
-    }
-    if (!(a.output && at_any({",", ")"}))) a.value = expression();
-    const std::string key = key_of(a.name);
-    if (key == "EN" && !a.output)
-      call.enable = std::move(a.value);
-    else if (key == "ENO" && a.output)
-      call.enabled = std::move(a.value), call.enabled_inverted = a.inverted;
-    else
-      call.arguments.push_back(std::move(a));
+    argument(call);
     if (!accept(",")) break;
     if (at(")")) fail(text::both("an argument", "аргумент"));
   }
   expect_closing(")", "'('", begin);
+}
+
+void Parser::argument(Expression& call) {
+  Argument a;
+  a.location = now().location;
+  const bool inverted = at("NOT") && ahead().kind == TokenKind::word && ahead(2).is("=>");
+  if (inverted) take();
+  if (now().kind == TokenKind::word && (ahead().is(":=") || ahead().is("=>"))) {
+    a.name = take().text;
+    a.output = take().key == "=>";
+    a.inverted = inverted;
+  }
+  if (!(a.output && at_any({",", ")"}))) a.value = expression();
+  const std::string key = key_of(a.name);
+  if (key == "EN" && !a.output)
+    call.enable = std::move(a.value);
+  else if (key == "ENO" && a.output)
+    call.enabled = std::move(a.value), call.enabled_inverted = a.inverted;
+  else
+    call.arguments.push_back(std::move(a));
 }
 
 }  // namespace servogate::plc::syntax

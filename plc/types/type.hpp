@@ -67,6 +67,7 @@ struct Dimension {
   std::int64_t count() const noexcept { return high - low + 1; }
 };
 
+/// A name of a value; `value` has the bits that the base has in memory, also of a REAL.
 struct EnumValue {
   std::string name;
   std::int64_t value = 0;
