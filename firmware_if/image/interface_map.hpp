@@ -108,6 +108,8 @@ inline constexpr InterfaceField kAxisFields[] = {
     {"on_limit_minus", 0, 6, Format::bl, Writer::nc, "on the negative hard limit"},
     {"brake_release", 0, 7, Format::bl, Writer::nc, "TRUE: the holding brake is to be open"},
     {"owner", 1, 0, Format::by, Writer::nc, "0 none, 1 process, 2 manual, 3 homing, 4 PLC, 5 bench"},
+    {"handwheel_refusal", 2, 0, Format::in, Writer::nc,
+     "why the last counts of its handwheel did not move the axis, 0: they did; numbers as ErrorID"},
     {"position", 4, 0, Format::re, Writer::nc, "measured position, machine coordinates, mm or degrees"},
     {"enable", 8, 0, Format::bl, Writer::plc, "TRUE permits the drive to be on"},
     {"limit_plus", 8, 1, Format::bl, Writer::plc, "TRUE: on the positive limit, beside the axis' own input"},
@@ -116,6 +118,7 @@ inline constexpr InterfaceField kAxisFields[] = {
     {"feed_enable", 8, 4, Format::bl, Writer::plc, "TRUE permits motion of this axis"},
     {"jog_plus", 8, 5, Format::bl, Writer::plc, "jogs while TRUE"},
     {"jog_minus", 8, 6, Format::bl, Writer::plc, "jogs while TRUE"},
+    {"handwheel", 9, 0, Format::by, Writer::plc, "the axis follows handwheel 1 or 2; 0: none"},
 };
 inline constexpr InterfaceField kSpindleFields[] = {
     {"run", 0, 0, Format::bl, Writer::nc, "the program wants the spindle to turn"},
@@ -138,7 +141,12 @@ inline constexpr InterfaceField kMachineFields[] = {
     {"estop_ok", 4, 0, Format::bl, Writer::plc,
      "TRUE: the emergency-stop chain is closed; FALSE: the axes stop, the brakes close, the power goes"},
     {"power_on", 4, 1, Format::bl, Writer::plc, "TRUE permits drive power"},
+    {"handwheel1", 8, 0, Format::li, Writer::plc, "counter of handwheel 1; only what it changes by counts"},
+    {"handwheel1_step", 12, 0, Format::re, Writer::plc, "mm or degrees for one count; below 0 turns it round"},
+    {"handwheel2", 16, 0, Format::li, Writer::plc, "the same of handwheel 2"},
+    {"handwheel2_step", 20, 0, Format::re, Writer::plc, "the same of handwheel 2"},
 };
+inline constexpr std::uint32_t kMachineBlock = 24;
 /// Of an auxiliary axis: what the MC_ blocks of the PLC and the kernel say to one another. The blocks see it
 /// as a structure AXIS_REF, which lies in memory as it lies here.
 inline constexpr InterfaceField kMotionFields[] = {

@@ -38,6 +38,7 @@ enum class RequestKind : std::uint8_t {
   move_velocity,  ///< axis, value = +1 or -1, velocity, acceleration
   axis_stop,      ///< axis
   axis_reset,     ///< axis: its alarms, as far as their causes are gone
+  logic_scan,     ///< value 1: the PLC is held, 2: then runs `index` scans, 0: runs freely again
 };
 
 /// A wish from outside, posted to the cycle through one bounded queue. Plain data.

@@ -72,6 +72,12 @@ class Axis {
   /// first cycle.
   void set_time_scale(double scale) noexcept { time_scale_ = scale; }
   void jog_stop(image::JogEnd why = image::JogEnd::asked) noexcept;
+  /// A jog by increments is under way.
+  bool increments() const noexcept { return own_motion_ && manual_ == Manual::increment; }
+  /// What is left of it, with its sign.
+  double way_left() const noexcept { return increments() ? ramp_.target() - set_.x : 0.0; }
+  /// Speed of jogs at this moment: the slow one while not homed or on a limit switch.
+  double jog_speed() const noexcept;
   /// Moves to a machine position at `velocity` (at most the limit), for manual, PLC or bench owners.
   bool move_to(double position, double velocity) noexcept;
   /// The PLC's motion of an auxiliary axis: to a machine position, with at most these limits. A motion of the
@@ -152,7 +158,6 @@ class Axis {
   void write_image(image::ProcessImage& image, const PowerSequence::Outputs& power) const noexcept;
   // axis_orders.cpp: jog, home, owner
   MotionLimits limits_with(double velocity) const noexcept;
-  double jog_speed() const noexcept;
   double clipped(double target) const noexcept;
   bool begin_own(image::AxisOwner owner) noexcept;
   bool begin_plc(double goal, MotionLimits limits, bool endless) noexcept;

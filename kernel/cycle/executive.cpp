@@ -213,12 +213,13 @@ void Cycle::watch_machine() noexcept {
   if (parts_.estop_place && !image_.packets.bit(*parts_.estop_place))
     image_.packets.set_bit(places::kEstopOk, false);
   const bool estop_ok = image_.packets.bit(places::kEstopOk);
-  if (estop_seen_ok_ && !estop_ok) {
+  // While the logic is held its output MC.estop_ok is off, and everything with it (kPlcHeld).
+  if (estop_seen_ok_ && !estop_ok && !logic_held_) {
     image::AlarmRecord r;
     r.number = alarm::kEmergencyStop;
     raise(r);
   }
-  estop_seen_ok_ = estop_ok;
+  if (!logic_held_) estop_seen_ok_ = estop_ok;
   for (std::size_t p = 0; p < parts_.processes.size(); ++p) {
     const auto number = static_cast<std::int16_t>(
         image_.packets.number(image::at(places::kExternalAlarm, image::process_base(static_cast<int>(p)))));
@@ -249,6 +250,8 @@ bool Cycle::still_present(const image::AlarmRecord& r) const noexcept {
   switch (r.number) {
     case alarm::kEmergencyStop:
       return !image_.packets.bit(places::kEstopOk);
+    case alarm::kPlcHeld:
+      return logic_held_;
     case alarm::kSourceStale:
     case alarm::kSourceBad:
       return r.segment >= 0 &&
@@ -302,6 +305,16 @@ void Cycle::note_overrun(image::Nanoseconds late_ns) noexcept {
   if (duration_ns_ > parts_.period_ns)  // the cycle before was too long: name its longest phase
     r.detail1 =
         1.0 + static_cast<double>(std::max_element(phase_ns_.begin(), phase_ns_.end()) - phase_ns_.begin());
+  notices_.add(r);
+}
+
+void Cycle::watch_logic(image::Nanoseconds limit_ns) noexcept {
+  const image::Nanoseconds took = phase_ns_[static_cast<std::size_t>(Phase::logic)];
+  if (limit_ns <= 0 || !measuring_ || took <= limit_ns) return;
+  image::AlarmRecord r;
+  r.number = alarm::kPlcWatchdog;
+  r.limit = static_cast<double>(limit_ns) / 1e6;
+  r.value = static_cast<double>(took) / 1e6;
   notices_.add(r);
 }
 

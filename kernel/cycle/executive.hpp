@@ -15,7 +15,8 @@
 #include "kernel/cycle/gate/gate.hpp"
 #include "kernel/cycle/inputs.hpp"
 #include "kernel/cycle/participants.hpp"
-#include "kernel/cycle/plc_motion.hpp"
+#include "kernel/cycle/plc_orders/handwheel.hpp"
+#include "kernel/cycle/plc_orders/plc_motion.hpp"
 #include "kernel/cycle/snapshot.hpp"
 
 namespace servogate::cycle {
@@ -108,6 +109,9 @@ class Cycle {
   image::Nanoseconds period_ns() const noexcept { return parts_.period_ns; }
   /// The owner of the loop reports a cycle that began late; past a limit this is an alarm. real-time safe.
   void note_overrun(image::Nanoseconds late_ns) noexcept;
+  /// The owner of the loop asks, after a step that was measured, whether the logic has taken longer than
+  /// this; then it is an alarm. In virtual time nobody asks. real-time safe.
+  void watch_logic(image::Nanoseconds limit_ns) noexcept;
 
  private:
   struct Queues;
@@ -127,6 +131,9 @@ class Cycle {
   Refusal carry_out(const image::Request& request) noexcept;
   void change_mode(int process, image::Mode mode) noexcept;
   bool carry_out_motion(const image::Request& request, axis::Axis& axis) noexcept;
+  bool hold_logic(const image::Request& request) noexcept;
+  void jog_of_plc(axis::Axis& axis) noexcept;
+  void follow_handwheel(Handwheel& wheel, axis::Axis& axis) noexcept;
   void move_auxiliary(PlcMotion& motion, axis::Axis& axis) noexcept;
   void stop_manual(bool with_plc) noexcept;
   void run_processes() noexcept;
@@ -158,7 +165,7 @@ class Cycle {
   Snapshot<References> reference_snapshot_;
   AlarmSnapshot alarm_copy_;
   int publish_every_ = 0;
-  std::array<Forced, 64> forced_{};
+  std::array<Forced, 256> forced_{};
   int forced_count_ = 0;
 
   image::Reaction reaction_ = image::Reaction::none;
@@ -171,6 +178,8 @@ class Cycle {
   std::array<std::uint8_t, image::kMaxProcesses> plc_edges_{};
   std::array<std::int8_t, image::kMaxAxes> plc_jogs_{};
   std::array<PlcMotion, image::kMaxAxes> plc_motion_{};
+  std::array<Handwheel, image::kMaxAxes> handwheels_{};
+  bool logic_held_ = false;  ///< for single scans
   std::array<std::int16_t, image::kMaxProcesses> external_alarm_{};
   std::array<image::Quality, image::kMaxSources> source_quality_{};
   std::uint32_t overruns_ = 0;

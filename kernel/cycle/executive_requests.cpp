@@ -36,6 +36,7 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   context.manual_held = manual_held_;
   context.holder = holder_;
   context.drives_wanted = power_request_;
+  context.logic_held = logic_held_;
   if (request.axis >= 0 && request.axis < std::ssize(axes_)) {
     context.axis_stopping = plc_motion_[static_cast<std::size_t>(request.axis)].stopping();
     context.axis_error_stop = plc_motion_[static_cast<std::size_t>(request.axis)].error_stop();
@@ -103,9 +104,11 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       for (axis::Axis& a : axes_) a.keep_alive(image_.now.t_ns);
       break;
     case RequestKind::jog_stop:
-      for (std::size_t i = 0; i < axes_.size(); ++i)
-        if (request.axis < 0 || i == axis)
-          axes_[i].jog_stop(request.value == 1.0 ? image::JogEnd::silent : image::JogEnd::asked);
+      for (std::size_t i = 0; i < axes_.size(); ++i) {
+        if (request.axis >= 0 && i != axis) continue;
+        axes_[i].jog_stop(request.value == 1.0 ? image::JogEnd::silent : image::JogEnd::asked);
+        if (request.asker != image::Asker::plc) handwheels_[i].stop();
+      }
       break;
     case RequestKind::quick_stop: {
       image::AlarmRecord r;
@@ -114,6 +117,8 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       break;
     }
     case RequestKind::reset:
+      for (Handwheel& wheel : handwheels_)
+        if (wheel.moves()) wheel.stop();
       stop_manual(true);
       [[fallthrough]];
     case RequestKind::acknowledge:
@@ -142,6 +147,8 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
         found->value = request.value;
       } else if (forced_count_ < static_cast<int>(forced_.size())) {
         forced_[static_cast<std::size_t>(forced_count_++)] = {place, request.value};
+      } else {
+        refusal = Refusal::forces_full;
       }
       break;
     }
@@ -157,9 +164,13 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     case RequestKind::logic:
       if (parts_.logic == nullptr || !parts_.logic->order(request)) refusal = Refusal::logic_not_changed;
       break;
+    case RequestKind::logic_scan:
+      if (!hold_logic(request)) refusal = Refusal::logic_not_changed;
+      break;
     case RequestKind::stop:
     case RequestKind::hold:
       // Whoever presses hold wants rest: jogs and homing, too, which nothing resumes.
+      for (Handwheel& wheel : handwheels_) wheel.stop();
       stop_manual(request.kind == RequestKind::stop);
       if (parts_.processes.empty()) break;
       [[fallthrough]];
@@ -178,6 +189,17 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     }
   }
   return refusal;
+}
+
+/// The alarm takes the power and the alive output, and keeps both away until the operator's reset.
+bool Cycle::hold_logic(const Request& request) noexcept {
+  if (parts_.logic == nullptr || !parts_.logic->order(request)) return false;
+  logic_held_ = request.value != 0.0;
+  if (request.value != 1.0) return true;
+  image::AlarmRecord r;
+  r.number = alarm::kPlcHeld;
+  raise(r);
+  return true;
 }
 
 bool Cycle::carry_out_motion(const Request& request, axis::Axis& a) noexcept {
@@ -242,21 +264,33 @@ void Cycle::handle_plc_requests() noexcept {
     }
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const auto wish = static_cast<std::int8_t>(axes_[i].plc_jog());
-    Request request;
-    request.asker = image::Asker::plc;
-    request.axis = static_cast<std::int8_t>(i);
-    if (wish != plc_jogs_[i]) {
-      request.kind = wish == 0 ? RequestKind::jog_stop : RequestKind::jog_continuous;
-      request.value = wish;
-      handle(request);
-    } else if (wish != 0) {
-      axes_[i].keep_alive(image_.now.t_ns);
-    }
-    plc_jogs_[i] = wish;
+    jog_of_plc(axes_[i]);
+    follow_handwheel(handwheels_[i], axes_[i]);
   }
   for (std::size_t i = 0; i < axes_.size(); ++i)
     if (axes_[i].config().auxiliary) move_auxiliary(plc_motion_[i], axes_[i]);
+}
+
+void Cycle::jog_of_plc(axis::Axis& a) noexcept {
+  std::int8_t& before = plc_jogs_[static_cast<std::size_t>(a.index())];
+  const auto wish = static_cast<std::int8_t>(a.plc_jog());
+  Request request;
+  request.asker = image::Asker::plc;
+  request.axis = static_cast<std::int8_t>(a.index());
+  if (wish != before) {
+    request.kind = wish == 0 ? RequestKind::jog_stop : RequestKind::jog_continuous;
+    request.value = wish;
+    handle(request);
+  } else if (wish != 0) {
+    a.keep_alive(image_.now.t_ns);
+  }
+  before = wish;
+}
+
+void Cycle::follow_handwheel(Handwheel& wheel, axis::Axis& a) noexcept {
+  wheel.read(image_, a.index());
+  if (Request request; wheel.next(request, a)) wheel.answer(request, handle(request));
+  wheel.write(image_);
 }
 
 void Cycle::move_auxiliary(PlcMotion& motion, axis::Axis& a) noexcept {

@@ -43,7 +43,8 @@ class Logic {
   /// One scan on packets A and K; faults (budget, division by zero ...) go into `notices`.
   virtual void scan(image::ProcessImage& image, Notices& notices) noexcept = 0;
   /// Carries out a change (RequestKind::logic) that the gate has let pass, between two scans. False: it is
-  /// not there any more.
+  /// not there any more. Or holds the logic, lets it scan, or lets it go (RequestKind::logic_scan): from the
+  /// next cycle on, while it is held, what it writes is FALSE or 0.
   virtual bool order(const image::Request& request) noexcept {
     static_cast<void>(request);
     return false;

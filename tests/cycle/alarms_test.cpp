@@ -65,7 +65,8 @@ TEST(AlarmList, tells_a_failing_control_from_a_failing_machine) {
   list.raise(of(alarm::kEmergencyStop), at(1));
   list.raise(of(axis::alarm::kDriveFault, 0), at(1));
   EXPECT_FALSE(list.control_fails());
-  for (const image::AlarmNumber number : {alarm::kOverrunLimit, alarm::kPlcBudget, alarm::kPlcFault}) {
+  for (const image::AlarmNumber number :
+       {alarm::kOverrunLimit, alarm::kPlcBudget, alarm::kPlcFault, alarm::kPlcHeld, alarm::kPlcWatchdog}) {
     list.raise(of(number), at(2));
     EXPECT_TRUE(list.control_fails()) << number;
     list.reset(kNothingPresent);

@@ -409,5 +409,45 @@ TEST(Executive, without_a_process_carries_out_all_that_speaks_to_none) {
     EXPECT_EQ(ask(kind), Refusal::no_such_process) << static_cast<int>(kind);
 }
 
+/// A clock that stands unless the logic takes its time.
+class HandClock final : public image::Clock {
+ public:
+  image::Nanoseconds now_ns() const noexcept override { return now; }
+  image::Nanoseconds now = 0;
+};
+class SlowLogic final : public Logic {
+ public:
+  explicit SlowLogic(HandClock& clock) : clock_(clock) {}
+  void scan(image::ProcessImage&, Notices&) noexcept override { clock_.now += takes; }
+  image::Nanoseconds takes = 0;
+
+ private:
+  HandClock& clock_;
+};
+
+TEST(Cycle, raises_the_watchdog_of_the_logic_in_the_cycle_behind_the_slow_one) {
+  HandClock clock;
+  SlowLogic logic(clock);
+  CycleParts parts;
+  parts.logic = &logic;
+  parts.stopwatch = &clock;
+  Cycle cycle(std::move(parts));
+  const auto step = [&](image::Nanoseconds takes, image::Nanoseconds limit) {
+    logic.takes = takes;
+    cycle.step();
+    cycle.watch_logic(limit);
+    return cycle.alarms().active(alarm::kPlcWatchdog);
+  };
+  EXPECT_FALSE(step(500'000, 500'000));
+  EXPECT_FALSE(step(900'000, 0)) << "not watched";
+  EXPECT_FALSE(step(500'001, 500'000)) << "it is an input of the next cycle, so that a record holds it";
+  EXPECT_TRUE(step(0, 500'000));
+  const image::AlarmRecord& r = *cycle.alarms().first();
+  EXPECT_EQ(r.number, alarm::kPlcWatchdog);
+  EXPECT_NEAR(r.value, 0.500001, 1e-9);
+  EXPECT_EQ(r.limit, 0.5);
+  EXPECT_EQ(r.reaction, image::Reaction::stop_and_power_off);
+}
+
 }  // namespace
 }  // namespace servogate::cycle

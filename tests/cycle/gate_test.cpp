@@ -532,7 +532,11 @@ TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others)
             Refusal::place_not_writable);
   EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, bl, (image::kMachineBase + 4) * 8, 1}),
             Refusal::place_not_writable);
-  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, by, image::kMachineBase + 8, 1}), Refusal::none);
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, li, image::kMachineBase / 4 + 2, 1}),
+            Refusal::place_not_writable)
+      << "the counter of a handwheel";
+  EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, by, image::kMachineBase + image::kMachineBlock, 1}),
+            Refusal::none);
   EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::a, bl, 8, 1}), Refusal::place_not_writable);
   EXPECT_EQ(ask_place(RequestKind::force, {Packet::a, bl, 8, 1}), Refusal::none);
   EXPECT_EQ(ask_place(RequestKind::force, {Packet::a, lr, 127, 1}), Refusal::none);
@@ -545,7 +549,7 @@ TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others)
 
 TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
   const auto table = refusal_texts();
-  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::program_stopping) + 1);
+  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::forces_full) + 1);
   for (std::size_t i = 1; i < table.size(); ++i) {
     image::Answer a;
     a.refusal = static_cast<std::uint16_t>(i);
@@ -556,6 +560,48 @@ TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
       EXPECT_EQ(sentence.find('{'), std::string::npos) << sentence;
     }
   }
+}
+
+TEST_F(Gate, holds_the_plc_with_all_drives_off_and_at_rest_only) {
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 1), Refusal::drives_on) << english();
+  axes_[0].request_power(false);
+  axes_[1].request_power(false);
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 1), Refusal::drives_on) << "they are not off yet";
+  run(2000);
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 1), Refusal::none) << english();
+  axes_[1].request_power(true);
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 1), Refusal::drives_on) << "wanted, not yet permitted";
+  axes_[1].request_power(false);
+  image_.spindle_count = 1;
+  image_.spindles[0].running = true;
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 1), Refusal::drives_on) << "a spindle coasts";
+  image_.spindles[0].running = false;
+  image_.processes[0].state = ProcessState::held;
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 1), Refusal::program_runs);
+  image_.processes[0].state = ProcessState::idle;
+  context_.homing_runs = true;
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 1), Refusal::homing_runs);
+  context_.homing_runs = false;
+  for (const Asker who : {Asker::pendant, Asker::plc, Asker::modbus, Asker::program})
+    EXPECT_EQ(ask(RequestKind::logic_scan, -1, 1, who), Refusal::asker_may_not);
+}
+
+TEST_F(Gate, lets_scan_and_go_what_is_held_only) {
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 0), Refusal::logic_not_held);
+  Request scans;
+  scans.kind = RequestKind::logic_scan;
+  scans.value = 2.0;
+  scans.index = 1;
+  EXPECT_EQ(decide(scans, context_).refusal, static_cast<std::uint16_t>(Refusal::logic_not_held));
+  context_.logic_held = true;
+  EXPECT_EQ(decide(scans, context_).refusal, 0);
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 1), Refusal::logic_held);
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 0), Refusal::none);
+  EXPECT_EQ(ask(RequestKind::logic_scan, -1, 3), Refusal::bad_value);
+  scans.index = 0;
+  EXPECT_EQ(decide(scans, context_).refusal, static_cast<std::uint16_t>(Refusal::bad_value));
+  scans.index = 100'001;
+  EXPECT_EQ(decide(scans, context_).refusal, static_cast<std::uint16_t>(Refusal::bad_value));
 }
 
 TEST_F(Gate, answers_any_request_in_any_state_without_going_astray) {
@@ -578,8 +624,8 @@ TEST_F(Gate, answers_any_request_in_any_state_without_going_astray) {
     context_.stopping = static_cast<std::uint32_t>(random() % 2);
     image_.processes[0].state = static_cast<ProcessState>(random() % 6);
     const image::Answer a = decide(r, context_);
-    ASSERT_LE(a.refusal, static_cast<std::uint16_t>(Refusal::program_stopping));
-    if (r.kind > RequestKind::logic) {
+    ASSERT_LE(a.refusal, static_cast<std::uint16_t>(Refusal::forces_full));
+    if (r.kind > RequestKind::logic && r.kind != RequestKind::logic_scan) {
       ASSERT_NE(a.refusal, 0) << i << ": there is no auxiliary axis";
     }
     const bool motion = r.kind == RequestKind::home || r.kind == RequestKind::jog_increment ||

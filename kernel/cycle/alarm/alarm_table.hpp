@@ -46,6 +46,8 @@ inline constexpr AlarmNumber kProgramWarning = 4012;
 inline constexpr AlarmNumber kExternalAlarm = 5001;
 inline constexpr AlarmNumber kPlcBudget = 5002;
 inline constexpr AlarmNumber kPlcFault = 5003;
+inline constexpr AlarmNumber kPlcHeld = 5004;
+inline constexpr AlarmNumber kPlcWatchdog = 5005;
 
 inline constexpr AlarmNumber kEmergencyStop = 6001;
 inline constexpr AlarmNumber kOverrunLimit = 6002;

@@ -104,6 +104,11 @@ int AlarmList::after_reset() noexcept {
   return active_;
 }
 
+/// No cycles in time, or no logic that looks after the machine.
+static bool fails_control(image::AlarmNumber number) noexcept {
+  return number == alarm::kOverrunLimit || (number >= alarm::kPlcBudget && number <= alarm::kPlcWatchdog);
+}
+
 void AlarmList::recount() noexcept {
   active_ = 0;
   control_fails_ = false;
@@ -112,8 +117,7 @@ void AlarmList::recount() noexcept {
     const AlarmRecord& r = records_[static_cast<std::size_t>(i)];
     if (!r.active) continue;
     ++active_;
-    control_fails_ = control_fails_ || r.number == alarm::kOverrunLimit || r.number == alarm::kPlcBudget ||
-                     r.number == alarm::kPlcFault;
+    control_fails_ = control_fails_ || fails_control(r.number);
     reaction_ = std::max(reaction_, r.reaction);
   }
 }

@@ -61,8 +61,8 @@ class AlarmList {
   /// The strongest reaction in force. real-time safe.
   image::Reaction reaction() const noexcept { return reaction_; }
   int active_count() const noexcept { return active_; }
-  /// An active alarm says that the control itself fails its task: late cycles (6002), logic that stopped
-  /// (5003). real-time safe.
+  /// An active alarm says that the control itself fails its task: late cycles (6002), logic that stopped,
+  /// is held or takes too long (5002 to 5005). real-time safe.
   bool control_fails() const noexcept { return control_fails_; }
   /// The oldest active first fault, nullptr: none. Warnings only when there is no fault. real-time safe.
   const image::AlarmRecord* first() const noexcept;

@@ -32,7 +32,8 @@ constexpr std::uint32_t kProgram = bit(RequestKind::start) | bit(RequestKind::st
                                    bit(RequestKind::resume) | bit(RequestKind::mode) |
                                    bit(RequestKind::override_feed);
 constexpr std::uint32_t kPlaces = bit(RequestKind::set_place) | bit(RequestKind::force) |
-                                  bit(RequestKind::release_force) | bit(RequestKind::logic);
+                                  bit(RequestKind::release_force) | bit(RequestKind::logic) |
+                                  bit(RequestKind::logic_scan);
 constexpr std::uint32_t kPanel = kStops | kJogs | kResets | kProgram | bit(RequestKind::power) |
                                  bit(RequestKind::home) | bit(RequestKind::zero);
 /// Of the auxiliary axes, the PLC's alone.
@@ -148,6 +149,8 @@ class Decision {
   bool move(const Axis& a) noexcept;
   bool inside_travel(const Axis& a) noexcept;
   bool keep_alive() noexcept;
+  bool logic_scan() noexcept;
+  bool drives_off() noexcept;
   bool zero() noexcept;
   bool mode() noexcept;
   bool mode_of_request() noexcept;
@@ -169,7 +172,7 @@ class Decision {
 };
 
 Answer Decision::run() noexcept {
-  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::axis_reset;
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::logic_scan;
   if (!known)
     refuse(Refusal::unknown_request);
   else if ((may_ask(r_.asker) & bit(r_.kind)) == 0)
@@ -213,6 +216,8 @@ bool Decision::decide_kind() noexcept {
       return place(false);
     case RequestKind::logic:
       return r_.value == 1.0 || (no_program() && no_homing() && all_at_rest(true));
+    case RequestKind::logic_scan:
+      return logic_scan();
     case RequestKind::axis_power:
     case RequestKind::axis_home:
     case RequestKind::move_absolute:
@@ -329,6 +334,33 @@ bool Decision::inside_travel(const Axis& a) noexcept {
                           x + way > config.travel_max ? config.travel_max : config.travel_min);
 }
 
+/// Nobody looks after the machine while the PLC is held: nothing may be on then, or come on (alarm 5004).
+bool Decision::logic_scan() noexcept {
+  constexpr double kMostScans = 100'000.0;
+  if (r_.value == 0.0) return c_.logic_held || refuse(Refusal::logic_not_held);
+  if (r_.value == 2.0) {
+    if (r_.index < 1 || r_.index > kMostScans) return refuse(Refusal::bad_value, -1, r_.index, kMostScans);
+    return c_.logic_held || refuse(Refusal::logic_not_held);
+  }
+  if (r_.value != 1.0) return refuse(Refusal::bad_value, -1, r_.value, 2.0);
+  if (c_.logic_held) return refuse(Refusal::logic_held);
+  return no_program() && no_homing() && drives_off();
+}
+
+bool Decision::drives_off() noexcept {
+  using State = axis::PowerSequence::State;
+  for (const Axis& a : c_.axes) {
+    if (!a.standstill()) return refuse(Refusal::axis_moves, a.index());
+    if (a.power_requested() || a.power_state() != State::off) return refuse(Refusal::drives_on);
+  }
+  for (int s = 0; s < c_.image->spindle_count; ++s) {
+    const image::SpindleImage& spindle = c_.image->spindles[static_cast<std::size_t>(s)];
+    if (spindle.running || spindle.command_rpm != 0.0 || spindle.drive_command.power)
+      return refuse(Refusal::drives_on);
+  }
+  return true;
+}
+
 bool Decision::keep_alive() noexcept { return not_held_by_another(); }
 
 bool Decision::zero() noexcept {
@@ -429,7 +461,7 @@ bool Decision::place(bool write) noexcept {
   const std::uint32_t size = c_.image->packets.size(p.packet);
   if (end > size) return refuse(Refusal::place_outside, -1, static_cast<double>(first), size);
   if (!write) return r_.kind != RequestKind::force || not_of_emergency_stop(p);
-  constexpr std::uint32_t kInterfaceEnd = image::kMachineBase + 8;
+  constexpr std::uint32_t kInterfaceEnd = image::kMachineBase + image::kMachineBlock;
   bool interface = p.packet == image::Packet::k && first < kInterfaceEnd && end > image::kInterfaceBase;
   for (const Axis& a : c_.axes) {
     const std::uint32_t base = image::motion_base(a.index());

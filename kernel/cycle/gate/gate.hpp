@@ -56,6 +56,11 @@ enum class Refusal : std::uint16_t {
   axis_error_stop,       ///< axis: an error stopped it, MC_Reset has not come yet
   switching_off,         ///< axis: it ramps down to be switched off, or its brake closes
   program_stopping,      ///< value: the process; its program has been ended, its path is not at rest yet
+  handwheel_stopped,     ///< axis: a stop or a hold ended its motion; the handwheel is to be selected anew
+  drives_on,             ///< a drive is on, or a spindle turns
+  logic_held,            ///< the PLC is held for single scans already
+  logic_not_held,        ///< it is not held
+  forces_full,           ///< no more places can be forced
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis
@@ -78,6 +83,7 @@ struct GateContext {
   bool drives_wanted = true;                  ///< the operator has asked for the drives
   bool axis_stopping = false;                 ///< PlcMotion of the request's axis
   bool axis_error_stop = false;               ///< the same
+  bool logic_held = false;                    ///< the PLC is held for single scans
   const image::Place* estop_place = nullptr;  ///< emergency-stop chain, nullptr: none is declared
 };
 

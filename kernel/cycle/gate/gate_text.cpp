@@ -94,8 +94,19 @@ constexpr text::Entry kTexts[] = {
      "{0} ещё выключается: дождитесь выключения приводов, затем `servogate power on`"},
     {"gate.program_stopping", "the program is still stopping: ask again once the axes stand",
      "программа ещё останавливается: повторите, когда оси остановятся"},
+    {"gate.handwheel_stopped", "{0} was stopped: select the handwheel anew",
+     "{0} остановлена: выберите маховик заново"},
+    {"gate.drives_on",
+     "a drive is on or a spindle turns: the PLC is held with the drives off only (`servogate power off`)",
+     "включён привод или вращается шпиндель: ПЛК удерживается только при выключенных приводах (`servogate "
+     "power off`)"},
+    {"gate.logic_held", "the PLC is held for single scans already",
+     "ПЛК уже удерживается для отдельных сканов"},
+    {"gate.logic_not_held", "the PLC is not held", "ПЛК не удерживается"},
+    {"gate.forces_full", "too many places are forced: let some of them go first",
+     "удерживается слишком много мест: сначала освободите некоторые"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::program_stopping) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::forces_full) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 
@@ -141,7 +152,8 @@ constexpr std::string_view kKinds[][2] = {{"none", "нет"},
                                           {"move an auxiliary axis", "перемещение вспомогательной оси"},
                                           {"move an auxiliary axis", "перемещение вспомогательной оси"},
                                           {"stop an auxiliary axis", "останов вспомогательной оси"},
-                                          {"reset an auxiliary axis", "сброс вспомогательной оси"}};
+                                          {"reset an auxiliary axis", "сброс вспомогательной оси"},
+                                          {"hold the PLC for single scans", "отдельные сканы ПЛК"}};
 
 template <std::size_t N>
 std::string word(const std::string_view (&table)[N][2], double index, Language language) {

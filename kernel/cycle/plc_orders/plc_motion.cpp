@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/cycle/plc_motion.hpp"
+#include "kernel/cycle/plc_orders/plc_motion.hpp"
 
 #include <cmath>
 
