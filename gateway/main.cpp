@@ -34,6 +34,7 @@ int carry_out(const CommandLine& line) {
   if (line.command == "plc test") return command::plc_test(line.plc.test);
   if (line.command == "plc list") return command::plc_list(line.plc.list);
   if (line.command == "plc watch") return command::plc_watch(line.plc.watch);
+  if (line.command == "plc step") return command::plc_step(line.plc.step);
   if (line.command == "plc force") return command::plc_force(line.plc.force);
   if (line.command == "plc load") return command::plc_load(line.plc.load);
   if (line.command == "can bus") return command::can_bus(line.bus.can_bus);

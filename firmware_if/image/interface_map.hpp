@@ -142,7 +142,8 @@ inline constexpr InterfaceField kMachineFields[] = {
      "TRUE: the emergency-stop chain is closed; FALSE: the axes stop, the brakes close, the power goes"},
     {"power_on", 4, 1, Format::bl, Writer::plc, "TRUE permits drive power"},
     {"handwheel1", 8, 0, Format::li, Writer::plc, "counter of handwheel 1; only what it changes by counts"},
-    {"handwheel1_step", 12, 0, Format::re, Writer::plc, "mm or degrees for one count; below 0 turns it round"},
+    {"handwheel1_step", 12, 0, Format::re, Writer::plc,
+     "mm or degrees for one count; below 0 turns it round"},
     {"handwheel2", 16, 0, Format::li, Writer::plc, "the same of handwheel 2"},
     {"handwheel2_step", 20, 0, Format::re, Writer::plc, "the same of handwheel 2"},
 };

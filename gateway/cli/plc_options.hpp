@@ -39,6 +39,14 @@ struct PlcWatchOptions {
   bool times = false, json = false;
 };
 
+struct PlcStepOptions {
+  std::vector<std::string> names;
+  std::string body;  ///< program or instance whose lines are shown
+  std::string socket;
+  int scans = 0;  ///< 0: one for each Enter, until Ctrl-C
+  bool json = false;
+};
+
 struct PlcForceOptions {
   std::vector<std::string> settings;  ///< NAME=VALUE, or names to be let go
   std::string socket;
@@ -58,6 +66,7 @@ struct PlcCommands {
   PlcTestOptions test;
   PlcListOptions list;
   PlcWatchOptions watch;
+  PlcStepOptions step;
   PlcForceOptions force;
   PlcLoadOptions load;
 };

@@ -7,6 +7,7 @@
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/compose/plc/logic_options.hpp"
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
@@ -45,12 +46,8 @@ void check_logic(const machine::MachineConfig& machine, std::vector<text::Findin
     sources.push_back({machine.resolve(name), std::move(*content)});
   }
   if (sources.empty()) return;
-  plc::Options options;
-  options.k_bytes = static_cast<std::uint32_t>(machine.control.k_size);
-  options.v_bytes = static_cast<std::uint32_t>(machine.control.syvar_size);
-  options.cycle_ns = machine.cycle_ns();
   std::vector<text::Finding> of_logic;
-  plc::check(sources, machine.symbol_table(), options, of_logic);
+  plc::check(sources, machine.symbol_table(), logic_options(machine), of_logic);
   findings.insert(findings.end(), of_logic.begin(), of_logic.end());
 }
 

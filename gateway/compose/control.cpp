@@ -7,6 +7,7 @@
 #include "firmware_if/image/frame_record.hpp"
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/canopen_setup.hpp"
+#include "gateway/compose/plc/logic_options.hpp"
 #include "gateway/compose/program/program_model.hpp"
 #include "gateway/files/read_file.hpp"
 #include "plc/compile.hpp"
@@ -168,16 +169,13 @@ void Control::await_grants() {
   }
 }
 
-plc::Options Control::logic_options() const {
-  plc::Options options;
-  options.k_bytes = static_cast<std::uint32_t>(loaded_.machine.control.k_size);
-  options.v_bytes = static_cast<std::uint32_t>(loaded_.machine.control.syvar_size);
-  options.cycle_ns = loaded_.machine.cycle_ns();
-  return options;
+void Control::watch_logic() noexcept {
+  cycle_->watch_logic(static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
 }
 
 PlcLogic::Plan Control::prepare(const LogicChange& change) {
-  PlcLogic::Plan plan = logic_->prepare(change, loaded_.machine.symbol_table(), logic_options());
+  PlcLogic::Plan plan =
+      logic_->prepare(change, loaded_.machine.symbol_table(), logic_options(loaded_.machine));
   if (plan.possible && change_tap_ != nullptr) change_tap_->take(change);
   return plan;
 }
@@ -203,7 +201,7 @@ bool Control::compile_logic(std::vector<text::Finding>& findings) {
     file.text = std::move(*content);
     sources.push_back(std::move(file));
   }
-  plc::CompileResult compiled = plc::compile(sources, m.symbol_table(), logic_options());
+  plc::CompileResult compiled = plc::compile(sources, m.symbol_table(), logic_options(m));
   findings.insert(findings.end(), compiled.findings.begin(), compiled.findings.end());
   if (!compiled.ok()) return false;
   logic_ = std::make_unique<PlcLogic>(compiled.image, std::move(sources));

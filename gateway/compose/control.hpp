@@ -73,6 +73,9 @@ class Control {
   /// Real time: the cycle that step() is about to run was due at this time of `clock`. From the first call on
   /// every SYNC is timed. real-time safe.
   void open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) noexcept;
+  /// Real time, behind every step: a scan of the PLC that took longer than [plc] watchdog is an alarm.
+  /// real-time safe.
+  void watch_logic() noexcept;
   /// When the present cycle was due; nullopt: in virtual time.
   std::optional<image::Nanoseconds> due_ns() const noexcept { return due_ns_; }
   /// Names for the sentences of alarms.
@@ -86,7 +89,6 @@ class Control {
 
  private:
   explicit Control(const machine::LoadResult& loaded);
-  plc::Options logic_options() const;
   bool compile_logic(std::vector<text::Finding>& findings);
   bool open_buses(std::vector<text::Finding>& findings, bool replay);
   void await_grants();

@@ -247,8 +247,10 @@ struct SymbolConfig {
 
 /// [plc]
 struct PlcConfig {
-  std::vector<std::string> sources;  ///< as written; resolve() makes paths of them
-  double handshake_timeout = 10.0;   ///< s until an M, S, T or H word that is not acknowledged is an alarm
+  std::vector<std::string> sources;    ///< as written; resolve() makes paths of them
+  double handshake_timeout = 10.0;     ///< s until an M, S, T or H word that is not acknowledged is an alarm
+  int instruction_budget = 1'000'000;  ///< of one scan, with all its tasks; more is alarm 5002
+  double watchdog = 0.0;  ///< longest time of a scan in real time, s; more is alarm 5005; 0: not watched
 };
 
 /// [safety]

@@ -63,6 +63,7 @@ void RealtimeLoop::cycle_thread() {
     }
     control_.open_cycle(clock_, due);
     if (!control_.cycle().step()) break;
+    control_.watch_logic();
     after_(control_, late);
   }
 }

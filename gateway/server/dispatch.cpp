@@ -161,7 +161,7 @@ const Dispatch::Row Dispatch::kRows[] = {{"status", &Dispatch::status},
 bool looks_or_stops(std::string_view command) {
   static constexpr std::string_view kWords[] = {"status",   "buses",    "alarms",     "down",
                                                 "hold",     "stop",     "quick_stop", "jog_stop",
-                                                "sdo_read", "plc_list", "plc_watch"};
+                                                "sdo_read", "plc_list", "plc_watch",  "plc_go"};
   return std::find(std::begin(kWords), std::end(kWords), command) != std::end(kWords);
 }
 

@@ -210,6 +210,7 @@ std::string status_json(Resident& resident, text::Language language) {
   status["alarms"] = alarm_list(resident, language);
   status["missing"] = missing_json(resident, language);
   status["forced"] = resident.plc().forced();
+  status["plc_held_by"] = resident.plc().held_by().empty() ? json(nullptr) : json(resident.plc().held_by());
   return status.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -70,11 +70,13 @@ bool page_names(const Markdown& page, const std::string& command) {
   });
 }
 
-/// A word of its own: "start" is none of "can restart".
+/// A command of its own: "start" is none of "can restart", nor "step" of "plc step".
 bool names(const std::string& section, const std::string& command) {
   const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-'; };
   for (std::size_t at = section.find(command); at != std::string::npos; at = section.find(command, at + 1)) {
     const std::size_t end = at + command.size();
+    const std::string before = section.substr(0, at);
+    if (before.ends_with("plc ") || before.ends_with("can ")) continue;
     if ((at == 0 || !is_word(section[at - 1])) && (end == section.size() || !is_word(section[end])))
       return true;
   }

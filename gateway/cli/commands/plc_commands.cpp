@@ -78,6 +78,21 @@ void watch(CLI::App& plc, PlcWatchOptions& o) {
   client(app, o.socket, o.json);
 }
 
+void step(CLI::App& plc, PlcStepOptions& o) {
+  CLI::App& app =
+      command(plc, "step", "Holds the PLC of a control whose drives are off, and runs single scans.",
+              "servogate plc step Mill.change.step lamp");
+  app.add_option("NAME", o.names, "Variables and places; without one the lines of the first program");
+  app.add_option("--source", o.body, "Lines of this program or instance, as Mill or Mill.change")
+      ->type_name("BODY");
+  app.add_option(
+         "--scans", o.scans,
+         "Number of scans, 1 to 100000; without it one for each Enter, or as many as the number typed")
+      ->type_name("N")
+      ->check(number_within({1.0, 1e5, text::both("scans", "сканов"), true}));
+  client(app, o.socket, o.json);
+}
+
 void force(CLI::App& plc, PlcForceOptions& o) {
   CLI::App& app = command(plc, "force", "Holds variables and places at values until Enter or Ctrl-C.",
                           "servogate plc force door_closed=TRUE");
@@ -110,6 +125,7 @@ void add_plc_commands(CLI::App& app, PlcCommands& options) {
   test(plc, options.test);
   list(plc, options.list);
   watch(plc, options.watch);
+  step(plc, options.step);
   force(plc, options.force);
   load(plc, options.load);
 }

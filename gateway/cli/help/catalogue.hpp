@@ -126,7 +126,8 @@ inline constexpr Translation kCatalogue[] = {
      "Со стандартного ввода принимает отказы, как --fault, и clear [FAULT], input NAME on|off, load NM, "
      "status."},
     {"Simulated I/O modules (CiA 401) or encoders (CiA 406) on a bus, in their own process.",
-     "Имитируемые модули ввода-вывода (CiA 401) или датчики положения (CiA 406) на шине, отдельным процессом."},
+     "Имитируемые модули ввода-вывода (CiA 401) или датчики положения (CiA 406) на шине, отдельным "
+     "процессом."},
     {"Lets an interface that went bus-off take part in its bus again.",
      "Возвращает на шину интерфейс, отключившийся из-за ошибок (bus-off)."},
     {"module (the default) or encoder", "module (по умолчанию) или encoder"},
@@ -228,6 +229,10 @@ inline constexpr Translation kCatalogue[] = {
     {"Time between samples in ms, 1 to 60000", "Время между снимками в мс, от 1 до 60000"},
     {"Number of samples, 1 to 1000000000; without it until Ctrl-C",
      "Число снимков, от 1 до 1000000000; без него до Ctrl-C"},
+    {"Holds the PLC of a control whose drives are off, and runs single scans.",
+     "Удерживает ПЛК управления с выключенными приводами и выполняет отдельные сканы."},
+    {"Number of scans, 1 to 100000; without it one for each Enter, or as many as the number typed",
+     "Число сканов, от 1 до 100000; без него один на каждый Enter или столько, сколько введено"},
     {"Holds variables and places at values until Enter or Ctrl-C.",
      "Удерживает переменные и адреса на заданных значениях до Enter или Ctrl-C."},
     {"What is forced; with --release the names to let go, all without one",

@@ -32,6 +32,8 @@ const Entry kSubprogramLine{"client.subprogram-line",
 const Entry kTyped{"client.typed", "typed block: {0}", "введённый кадр: {0}"};
 const Entry kTypedSubprogram{"client.typed-subprogram", "typed block: {0}, line {1} of {2} (subprogram)",
                              "введённый кадр: {0}, строка {1} в {2} (подпрограмма)"};
+const Entry kPlcHeld{"client.plc-held", "the PLC is held for single scans (by {0})",
+                     "ПЛК удерживается для отдельных сканов ({0})"};
 const Entry kForced{"client.forced", "forced: {0} = {1} (by {2})", "удерживается: {0} = {1} ({2})"};
 const Entry kForcedStays{"client.forced-stays", "forced: {0} = {1} (by {2}, stays)",
                          "удерживается: {0} = {1} ({2}, постоянно)"};
@@ -146,6 +148,10 @@ void print_axis(const json& a) {
                   facts.c_str());
 }
 
+void print_held(const json& status) {
+  if (const json& by = status.value("plc_held_by", json()); by.is_string()) print_line(say(kPlcHeld, {by}));
+}
+
 void print_forced(const json& forced) {
   for (const json& f : forced)
     print_line(say(f.value("stays", false) ? kForcedStays : kForced,
@@ -176,6 +182,7 @@ void print_status(const json& s) {
   for (const json& sp : s.value("spindles", json::array()))
     print_line(say(kSpindle, {fixed(sp.value("actual_rpm", 0.0), 0), fixed(sp.value("command_rpm", 0.0), 0),
                               people_read(kDrives, of(sp, "drive"))}));
+  print_held(s);
   print_forced(s.value("forced", json::array()));
 }
 

@@ -10,6 +10,7 @@ int plc_check(const PlcCheckOptions& options);
 int plc_test(const PlcTestOptions& options);
 int plc_list(const PlcListOptions& options);
 int plc_watch(const PlcWatchOptions& options);
+int plc_step(const PlcStepOptions& options);
 int plc_force(const PlcForceOptions& options);
 int plc_load(const PlcLoadOptions& options);
 

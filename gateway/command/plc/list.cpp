@@ -32,8 +32,7 @@ void print_symbols(const json& answer) {
     const std::string name = s.value("name", ""), place = s.value("place", "");
     print_formatted("%-28s %-14s %-12s%s\n", name.c_str(), s.value("type", "").c_str(), place.c_str(),
                     s.value("retain", false) ? " RETAIN" : "");
-    for (const json& f : answer.value("forced", json::array()))
-      if (f.value("name", "") == name) print_line("    " + say(kForced, f.value("value", "")));
+    if (s.contains("forced")) print_line("    " + say(kForced, s.value("forced", "")));
     if (!s["written"].empty()) print_line("    " + say(kWritten, joined(s["written"])));
     if (!s["read"].empty()) print_line("    " + say(kRead, joined(s["read"])));
   }

@@ -2,6 +2,7 @@
 #include "gateway/command/plc/sources.hpp"
 
 #include "gateway/cli/messages.hpp"
+#include "gateway/compose/plc/logic_options.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/load.hpp"
 
@@ -25,9 +26,7 @@ bool read_surroundings(const std::string& machine, PlcSurroundings& out) {
   const machine::LoadResult loaded = machine::load(machine);
   if (print_findings(loaded.findings) > 0) return false;
   out.symbols = loaded.machine.symbol_table();
-  out.options.k_bytes = static_cast<std::uint32_t>(loaded.machine.control.k_size);
-  out.options.v_bytes = static_cast<std::uint32_t>(loaded.machine.control.syvar_size);
-  out.options.cycle_ns = loaded.machine.cycle_ns();
+  out.options = logic_options(loaded.machine);
   for (const std::string& source : loaded.machine.plc.sources)
     out.sources.push_back(loaded.machine.resolve(source));
   return true;

@@ -32,6 +32,30 @@ std::vector<image::Place> dropped_places(const plc::Image& before, const plc::Im
   return out;
 }
 
+void clear(const image::Place& place, image::Packets& packets) noexcept {
+  if (place.format == image::Format::ch)
+    packets.set_characters(place, {});
+  else
+    packets.set_number(place, 0.0);
+}
+
+void clear_written(const plc::Image& program, image::Packets& packets) noexcept {
+  for (const plc::Image::Shared& s : program.places)
+    if (s.written) clear(s.place, packets);
+}
+
+/// What the program writes, from one copy of the packets into another.
+void copy_written(const plc::Image& program, const image::Packets& from, image::Packets& to) noexcept {
+  for (const plc::Image::Shared& s : program.places) {
+    if (!s.written) continue;
+    if (s.place.format == image::Format::bl)
+      to.set_bit(s.place, from.bit(s.place));
+    else
+      std::memcpy(to.data(s.place.packet) + s.place.byte(), from.data(s.place.packet) + s.place.byte(),
+                  s.place.bytes());
+  }
+}
+
 }  // namespace
 
 /// A change on its way into the cycle and back.
@@ -58,40 +82,76 @@ PlcLogic::~PlcLogic() {
 }
 
 void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcept {
+  if (begins_) kept_ = image.packets;
+  begins_ = false;
+  if (held_ && steps_ == 0) return stand_still(image);
   LogicProgram& program = *running_;
+  const plc::Image& compiled = program.engine.image();
+  if (!given_back_) copy_written(compiled, kept_, image.packets);
+  given_back_ = true;
   if (drops_)
-    for (const image::Place& p : program.dropped) {
-      if (p.format == image::Format::ch)
-        image.packets.set_characters(p, {});
-      else
-        image.packets.set_number(p, 0.0);
-    }
+    for (const image::Place& p : program.dropped) clear(p, image.packets);
   drops_ = false;
-  LogicSample* const sample =
-      wanted_.load(std::memory_order_relaxed) != nullptr ? wanted_.exchange(nullptr) : nullptr;
-  const bool own = sample != nullptr && sample->program == running_;
-  if (own && sample->profile) program.engine.profile(sample->blocks.data());
-  const plc::ScanResult result = program.engine.scan(image.packets, image.now.t_ns);
-  if (sample != nullptr) {
-    program.engine.profile(nullptr);
-    if (own) fill(*sample, image.now, result);
-    filled_.store(sample, std::memory_order_release);
+  last_ = run_program(image);
+  if (held_) {
+    --steps_;
+    copy_written(compiled, image.packets, kept_);
+    clear_written(compiled, image.packets);
+    given_back_ = false;
   }
-  const bool faulted = result.fault != plc::Fault::none;
-  if (faulted && !faulted_) {
-    image::AlarmRecord r;
-    r.number = result.fault == plc::Fault::budget ? cycle::alarm::kPlcBudget : cycle::alarm::kPlcFault;
-    r.line = result.line;
-    r.file = result.file;
-    r.run = program.number;
-    r.value = static_cast<double>(result.fault);
-    r.detail1 = static_cast<double>(result.task);
-    notices.add(r);
-  }
+  const bool faulted = last_.fault != plc::Fault::none;
+  if (faulted && !faulted_) raise_fault(last_, notices);
   faulted_ = faulted;
   if (faulted) return;  // what an abandoned scan has left half done is not kept
   program.engine.snapshot_retained(program.retained.scratch());
   program.retained.publish();
+}
+
+/// One scan, which fills the sample that somebody waits for; of several that were asked for, the last one.
+plc::ScanResult PlcLogic::run_program(image::ProcessImage& image) noexcept {
+  plc::Engine& engine = running_->engine;
+  const bool shown = wanted_.load(std::memory_order_relaxed) != nullptr && steps_ <= 1;
+  LogicSample* const sample = shown ? wanted_.exchange(nullptr) : nullptr;
+  const bool own = sample != nullptr && sample->program == running_;
+  if (own && sample->profile) engine.profile(sample->blocks.data());
+  const plc::ScanResult result = engine.scan(image.packets, image.now.t_ns - held_ns_);
+  if (sample == nullptr) return result;
+  engine.profile(nullptr);
+  if (own) fill(*sample, image.now, result);
+  filled_.store(sample, std::memory_order_release);
+  return result;
+}
+
+/// A cycle without a scan: the program's time stands, and what it writes is off.
+void PlcLogic::stand_still(image::ProcessImage& image) noexcept {
+  held_ns_ += image.now.period_ns;
+  clear_written(running_->engine.image(), image.packets);
+  given_back_ = false;
+  LogicSample* const sample =
+      wanted_.load(std::memory_order_relaxed) != nullptr ? wanted_.exchange(nullptr) : nullptr;
+  if (sample == nullptr) return;
+  if (sample->program == running_) fill(*sample, image.now, last_);
+  filled_.store(sample, std::memory_order_release);
+}
+
+void PlcLogic::raise_fault(const plc::ScanResult& result, cycle::Notices& notices) const noexcept {
+  image::AlarmRecord r;
+  r.number = result.fault == plc::Fault::budget ? cycle::alarm::kPlcBudget : cycle::alarm::kPlcFault;
+  r.line = result.line;
+  r.file = result.file;
+  r.run = running_->number;
+  r.value = static_cast<double>(result.fault);
+  r.detail1 = static_cast<double>(result.task);
+  notices.add(r);
+}
+
+/// The gate has decided whether it may.
+bool PlcLogic::hold(const image::Request& request) noexcept {
+  const bool holds = request.value != 0.0;
+  begins_ = begins_ || (holds && !held_);
+  held_ = holds;
+  steps_ = request.value == 2.0 ? request.index : 0;
+  return true;
 }
 
 void PlcLogic::fill(LogicSample& sample, const image::CycleTime& now,
@@ -110,6 +170,7 @@ void PlcLogic::fill(LogicSample& sample, const image::CycleTime& now,
 }
 
 bool PlcLogic::order(const image::Request& request) noexcept {
+  if (request.kind == image::RequestKind::logic_scan) return hold(request);
   auto& slot = ready_[request.index % kSlots];
   Prepared* const change = slot.exchange(nullptr, std::memory_order_acq_rel);
   if (change == nullptr) return false;

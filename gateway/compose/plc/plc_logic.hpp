@@ -56,7 +56,8 @@ class PlcLogic final : public cycle::Logic {
   ~PlcLogic() override;
   /// real-time safe.
   void scan(image::ProcessImage& image, cycle::Notices& notices) noexcept override;
-  /// Carries out the change that prepare() has made ready under the request's index. real-time safe.
+  /// Carries out the change that prepare() has made ready under the request's index, or holds the program,
+  /// lets it scan, and lets it go (RequestKind::logic_scan). real-time safe.
   bool order(const image::Request& request) noexcept override;
 
   /// The engine before the first cycle.
@@ -96,11 +97,23 @@ class PlcLogic final : public cycle::Logic {
   Plan prepare_load(const LogicChange& change, Prepared& out, const std::vector<image::Symbol>& symbols,
                     const plc::Options& options);
   bool carry_out(Prepared& change) noexcept;
+  bool hold(const image::Request& request) noexcept;
+  void stand_still(image::ProcessImage& image) noexcept;
+  plc::ScanResult run_program(image::ProcessImage& image) noexcept;
+  void raise_fault(const plc::ScanResult& result, cycle::Notices& notices) const noexcept;
   void fill(LogicSample& sample, const image::CycleTime& now, const plc::ScanResult& result) noexcept;
 
   LogicProgram* running_;  ///< the cycle's
   bool faulted_ = false;
   bool drops_ = false;  ///< the next scan is the first one of a program that came later
+  // Held for single scans: what the program writes is kept here, and off in the packets.
+  bool held_ = false;
+  bool begins_ = false;             ///< the next cycle is the first one that is held
+  bool given_back_ = true;          ///< the packets hold what the program has written
+  std::uint32_t steps_ = 0;         ///< scans that are still to be run
+  image::Nanoseconds held_ns_ = 0;  ///< so far the program's time is behind
+  image::Packets kept_;
+  plc::ScanResult last_;
   Slots ready_{}, done_{};
   std::atomic<LogicSample*> wanted_{nullptr}, filled_{nullptr};
 

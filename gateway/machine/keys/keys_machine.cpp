@@ -101,6 +101,14 @@ const Section& section_of<PlcConfig>() {
                                  {.unit = Unit::second, .min = 0, .max = 3600, .above_min = true},
                                  "an M, S, T or H word not acknowledged within this is an alarm",
                                  "функция M, S, T или H без подтверждения за это время вызывает аварию"),
+      key<&C::instruction_budget>("instruction_budget", {.min = 1000, .max = 1e9},
+                                  "instructions of one scan with all its tasks; a scan that needs more is "
+                                  "stopped: alarm 5002",
+                                  "команд в одном скане со всеми задачами; скан, которому нужно больше, "
+                                  "останавливается: авария 5002"),
+      key<&C::watchdog>("watchdog", {.unit = Unit::second, .min = 0, .max = 10},
+                        "longest time of a scan in real time, more is alarm 5005; 0: not watched",
+                        "наибольшее время скана в реальном времени, больше — авария 5005; 0: без контроля"),
   };
   static const Section section{"the PLC", "ПЛК", keys, &default_object<C>};
   return section;

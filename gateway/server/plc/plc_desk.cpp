@@ -8,6 +8,8 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 
@@ -56,6 +58,14 @@ const Entry kNothingForced{"plc.nothing-forced", "nothing is forced", "ниче�
 const Entry kAllReleased{"plc.all-released", "everything is let go", "всё освобождено"};
 const Entry kNoBody{"plc.no-body", "there is no program or instance '{0}'",
                     "программы или экземпляра «{0}» нет"};
+const Entry kHeld{"plc.held-now", "the PLC is held; its outputs are off until it is let go",
+                  "ПЛК удерживается; его выходы отключены, пока он не отпущен"};
+const Entry kStepped{"plc.stepped", "{0} scans done", "выполнено сканов: {0}"};
+const Entry kGoes{"plc.goes",
+                  "the PLC runs freely again; `servogate reset` before the drives are switched on",
+                  "ПЛК снова работает; перед включением приводов выполните `servogate reset`"};
+const Entry kNotHolder{"plc.not-holder", "the PLC is not held by this client",
+                       "этот клиент не удерживает ПЛК"};
 const Entry kTooManyNames{"plc.names", "at most {0} names at a time", "не более {0} имён за раз"};
 
 json told(const Entry& entry, const std::vector<std::string>& arguments, text::Language language) {
@@ -72,6 +82,10 @@ std::string joined(const std::vector<std::string>& list) {
   for (const std::string& s : list) out += (out.empty() ? "" : ", ") + s;
   return out;
 }
+
+/// Type of an address (`%MW8`) by the format of its place; none of characters.
+constexpr plc::Kind kBitStrings[] = {plc::Kind::boolean, plc::Kind::byte,  plc::Kind::word,
+                                     plc::Kind::dword,   plc::Kind::dword, plc::Kind::lword};
 
 /// Type of the PLC that a place of a packet has; nullptr: characters.
 const plc::Type* type_of(const plc::TypeTable& types, image::Format format) {
@@ -102,9 +116,7 @@ std::optional<std::string> place_text(const machine::MachineConfig& m, const plc
   const std::uint8_t* at = packets.data(place->packet) + place->byte();
   if (place->format == image::Format::bl) return packets.bit(*place) ? "true" : "false";
   if (place->format != image::Format::ch) {
-    constexpr plc::Kind kBits[] = {plc::Kind::boolean, plc::Kind::byte,  plc::Kind::word,
-                                   plc::Kind::dword,   plc::Kind::dword, plc::Kind::lword};
-    return plc::to_json(*types.elementary(kBits[static_cast<std::size_t>(place->format)]), at);
+    return plc::to_json(*types.elementary(kBitStrings[static_cast<std::size_t>(place->format)]), at);
   }
   plc::Type text;
   text.kind = plc::Kind::string;
@@ -147,6 +159,9 @@ json PlcDesk::carry_out(const json& request, const PlcAsker& who) {
   if (command == "plc_load") return load(request, who);
   if (command == "plc_force") return force(request, who);
   if (command == "plc_release") return release(request, who);
+  if (command == "plc_hold") return hold(who);
+  if (command == "plc_step") return step(request, who);
+  if (command == "plc_go") return go(who);
   if (command == "plc_watch") return watch(request, who);
   if (command == "plc_list") return list(who);
   return refused(says::kUnknown, {command}, kWrongUse, who.language);
@@ -187,7 +202,7 @@ json PlcDesk::load(const json& request, const PlcAsker& who) {
     return answer;
   }
   for (const std::string& name : plan.forces_lost)
-    std::erase_if(forces_, [&](const Force& f) { return !f.place && plc::same_name(f.name, name); });
+    std::erase_if(forces_, [&](const Force& f) { return f.places.empty() && plc::same_name(f.name, name); });
   answer = told(kChanged, {joined(names), std::to_string(plan.kept), std::to_string(plan.fresh.size())},
                 who.language);
   more.update({{"files", names},
@@ -235,30 +250,74 @@ std::string PlcDesk::log(const LogicChange& change, const json& told, const PlcA
   return good ? std::string() : path + ": " + text::words_of(problem);
 }
 
-/// The request that forces a packet place to a value; nullopt: the name is no place. `wrong`: no such value.
-std::optional<image::Request> PlcDesk::place_request(const std::string& name, const std::string& value,
-                                                     bool& wrong) {
+/// The place of a packet that a name means: of the program's variable there, a point of the machine, or an
+/// address. nullopt: a variable of the program alone, or nothing.
+std::optional<image::Place> PlcDesk::place_of(const std::string& name) const {
   Control& control = resident_.control();
   const std::shared_ptr<const LogicProgram> program = control.logic()->program();
-  const plc::Image& image = program->engine.image();
-  std::optional<image::Place> place;
-  if (const auto handle = program->engine.find(name); handle && handle->place >= 0)
-    place = image.places[static_cast<std::size_t>(handle->place)].place;
-  else if (!handle)
-    place = machine_place(control.machine(), name);
-  // Characters do not fit into a request: the variable that mirrors them is held.
-  if (!place || (place->format == image::Format::ch && program->engine.find(name))) return std::nullopt;
+  if (const auto handle = program->engine.find(name)) {
+    if (handle->place < 0) return std::nullopt;
+    return program->engine.image().places[static_cast<std::size_t>(handle->place)].place;
+  }
+  const auto direct = plc::direct_place(name);
+  return direct ? direct : machine_place(control.machine(), name);
+}
+
+/// The requests that force a packet place to a value, none: the name is no place, or a string that a variable
+/// mirrors, which is held there. `wrong`: no such value.
+std::vector<image::Request> PlcDesk::place_requests(const std::string& name, const std::string& value,
+                                                    bool& wrong) {
+  const std::shared_ptr<const LogicProgram> program = resident_.control().logic()->program();
+  const bool variable = program->engine.find(name).has_value();
+  const std::optional<image::Place> place = place_of(name);
+  if (!place || (place->format == image::Format::ch && variable)) return {};
   image::Request request;
   request.kind = image::RequestKind::force;
   request.packet = static_cast<std::uint8_t>(place->packet);
   request.format = static_cast<std::uint8_t>(place->format);
   request.index = place->index;
   request.length = place->length;
-  const plc::Type* type = type_of(*image.types, place->format);
+  if (place->format == image::Format::ch) {  // a request holds a number: one for each character
+    plc::Type text;
+    text.kind = plc::Kind::string;
+    text.size = 1 + place->bytes();
+    std::vector<std::uint8_t> bytes(text.size, ' ');
+    wrong = !plc::parse_value(text, value, bytes.data());
+    std::fill(bytes.begin() + 1 + (wrong ? 0 : bytes[0]), bytes.end(), ' ');
+    request.format = static_cast<std::uint8_t>(image::Format::by);
+    std::vector<image::Request> out;
+    for (std::uint32_t n = 0; n < place->bytes(); ++n) {
+      request.index = place->byte() + n;
+      request.length = 1;
+      request.value = bytes[1 + n];
+      out.push_back(request);
+    }
+    return out;
+  }
+  const plc::TypeTable& types = *program->engine.image().types;
+  const plc::Type* const number = type_of(types, place->format);
+  const plc::Type* const bits = types.elementary(kBitStrings[static_cast<std::size_t>(place->format)]);
   std::uint8_t bytes[8] = {};
-  wrong = type == nullptr || (!value.empty() && !plc::parse_value(*type, value, bytes));
-  if (!wrong && !value.empty()) request.value = plc::to_number(*type, bytes);
-  return request;
+  // `%MW8` is a bit string and as such has other literals than the number at its place.
+  wrong = !plc::parse_value(*number, value, bytes) &&
+          !(plc::direct_place(name) && plc::parse_value(*bits, value, bytes));
+  if (!wrong) request.value = plc::to_number(*number, bytes);
+  return {request};
+}
+
+/// All of them or none.
+json PlcDesk::force_places(std::vector<image::Request> requests, const PlcAsker& who) {
+  for (std::size_t n = 0; n < requests.size(); ++n) {
+    json answer = ask(requests[n], who);
+    if (answer["ok"].get<bool>()) continue;
+    while (n-- > 0) {
+      requests[n].kind = image::RequestKind::release_force;
+      requests[n].value = 0.0;
+      ask(requests[n], who);
+    }
+    return answer;
+  }
+  return {{"ok", true}};
 }
 
 json PlcDesk::force(const json& request, const PlcAsker& who) {
@@ -269,12 +328,14 @@ json PlcDesk::force(const json& request, const PlcAsker& who) {
   f.owner = request.value("stay", false) ? 0 : who.connection;
   bool wrong = false;
   json answer;
-  if (auto place = place_request(f.name, f.value, wrong)) {
+  f.places = place_requests(f.name, f.value, wrong);
+  if (!f.places.empty()) {
     if (wrong || f.value.empty()) return refused(kNoValue, {f.value, f.name}, kWrongUse, who.language);
-    answer = ask(*place, who);
-    place->kind = image::RequestKind::release_force;
-    place->value = 0.0;
-    f.place = place;
+    answer = force_places(f.places, who);
+    for (image::Request& place : f.places) {
+      place.kind = image::RequestKind::release_force;
+      place.value = 0.0;
+    }
   } else {
     LogicChange change;
     change.kind = LogicChange::Kind::force;
@@ -294,7 +355,9 @@ json PlcDesk::force(const json& request, const PlcAsker& who) {
 }
 
 bool PlcDesk::let_go(const Force& force, const PlcAsker& who) {
-  if (force.place) return ask(*force.place, who)["ok"].get<bool>();
+  if (!force.places.empty())
+    return std::all_of(force.places.begin(), force.places.end(),
+                       [&](const image::Request& r) { return ask(r, who)["ok"].get<bool>(); });
   LogicChange change;
   change.kind = LogicChange::Kind::release;
   change.name = force.name;
@@ -317,7 +380,47 @@ json PlcDesk::release(const json& request, const PlcAsker& who) {
   return all ? told(kAllReleased, {}, who.language) : told(kReleased, {name}, who.language);
 }
 
+json PlcDesk::hold(const PlcAsker& who) {
+  image::Request request;
+  request.kind = image::RequestKind::logic_scan;
+  request.value = 1.0;
+  const json answer = ask(request, who);
+  if (!answer["ok"].get<bool>()) return answer;
+  held_by_ = who.connection;
+  holder_ = who.user;
+  return told(kHeld, {}, who.language);
+}
+
+json PlcDesk::step(const json& request, const PlcAsker& who) {
+  if (held_by_ == 0 || held_by_ != who.connection) return refused(kNotHolder, {}, kAlarm, who.language);
+  image::Request scans;
+  scans.kind = image::RequestKind::logic_scan;
+  scans.value = 2.0;
+  const double wanted = request.value("scans", 1.0);
+  const bool whole = wanted >= 1.0 && wanted <= 1e9 && wanted == std::floor(wanted);
+  scans.index = whole ? static_cast<std::uint32_t>(wanted) : 0;  // which the gate refuses
+  const json answer = ask(scans, who);
+  if (!answer["ok"].get<bool>()) return answer;
+  return told(kStepped, {std::to_string(scans.index)}, who.language);
+}
+
+json PlcDesk::go(const PlcAsker& who) {
+  if (held_by_ == 0 || held_by_ != who.connection) return refused(kNotHolder, {}, kAlarm, who.language);
+  image::Request request;
+  request.kind = image::RequestKind::logic_scan;
+  const json answer = ask(request, who);
+  if (!answer["ok"].get<bool>()) return answer;
+  held_by_ = 0;
+  holder_.clear();
+  return told(kGoes, {}, who.language);
+}
+
 void PlcDesk::release_of(std::uint64_t connection) {
+  if (connection != 0 && held_by_ == connection) {
+    PlcAsker gone;
+    gone.connection = connection;
+    go(gone);
+  }
   for (std::size_t i = forces_.size(); i-- > 0;)
     if (forces_[i].owner == connection && connection != 0) {
       let_go(forces_[i], {});
@@ -332,15 +435,36 @@ json PlcDesk::forced() const {
   return out;
 }
 
+/// What forces it: by this name, by another one of the same variable, or of a place that it shares.
+const PlcDesk::Force* PlcDesk::force_of(const std::string& name) const {
+  const std::optional<image::Place> place = place_of(name);
+  const auto& engine = resident_.control().logic()->program()->engine;
+  const auto mine = engine.find(name);
+  for (const Force& f : forces_) {
+    if (plc::same_name(f.name, name)) return &f;
+    const auto other = place_of(f.name);
+    const auto handle = engine.find(f.name);
+    const bool same_place = place && other && place->overlaps(*other);
+    if (same_place || (mine && handle && mine->address == handle->address && mine->bit == handle->bit))
+      return &f;
+  }
+  return nullptr;
+}
+
 /// A packet place that is forced: what the packet holds, whatever the PLC has written.
 std::optional<std::string> PlcDesk::forced_value(const std::string& name, const plc::Type& type) const {
-  for (const Force& f : forces_) {
-    std::array<std::uint8_t, 8> bytes{};
-    if (f.place && plc::same_name(f.name, name) && type.size <= bytes.size() &&
-        plc::parse_value(type, f.value, bytes.data()))
-      return plc::to_json(type, bytes.data());
-  }
-  return std::nullopt;
+  const Force* const force = force_of(name);
+  const std::optional<image::Place> place = place_of(name);
+  if (force == nullptr || force->places.empty() || !place || place->format == image::Format::ch ||
+      place->bytes() != type.size)
+    return std::nullopt;
+  const image::Packets& packets = resident_.image().packets;
+  std::array<std::uint8_t, 8> bytes{};
+  if (place->format == image::Format::bl)
+    bytes[0] = packets.bit(*place) ? 1 : 0;
+  else
+    std::memcpy(bytes.data(), packets.data(place->packet) + place->byte(), place->bytes());
+  return plc::to_json(type, bytes.data());
 }
 
 json PlcDesk::watch(const json& request, const PlcAsker& who) {
@@ -378,6 +502,7 @@ json PlcDesk::watch(const json& request, const PlcAsker& who) {
       text = place_text(resident_.control().machine(), *image.types, now.packets, names[i]).value_or("null");
     }
     values.push_back({{"name", names[i]}, {"value", json::parse(text, nullptr, false)}});
+    if (const Force* f = force_of(names[i])) values.back()["forced"] = f->value;
   }
   json answer{{"ok", true},
               {"exit", kDone},
@@ -420,9 +545,12 @@ json PlcDesk::watch_body(const std::string& name, const PlcAsker& who) {
   for (const WatchedLine& line : body.lines) {
     json values = json::array();
     for (const WatchedValue& v : line.values) {
+      // Members of the body go without its name.
+      const std::string full = program->engine.find(v.name) ? v.name : wanted + "." + v.name;
       const std::string text =
-          forced_value(v.name, *v.type).value_or(plc::to_json(*v.type, sample.bytes.data() + at));
+          forced_value(full, *v.type).value_or(plc::to_json(*v.type, sample.bytes.data() + at));
       values.push_back({{"name", v.name}, {"value", json::parse(text, nullptr, false)}});
+      if (const Force* f = force_of(full)) values.back()["forced"] = f->value;
       at += v.type->size;
     }
     lines.push_back({{"line", line.line}, {"text", line.text}, {"values", values}});
@@ -442,12 +570,11 @@ json PlcDesk::list(const PlcAsker&) {
   const std::shared_ptr<const LogicProgram> program = resident_.control().logic()->program();
   json files = json::array();
   for (const plc::SourceFile& f : program->sources) files.push_back(f.name);
-  return {{"ok", true},
-          {"exit", kDone},
-          {"schema", 1},
-          {"files", files},
-          {"symbols", list_symbols(program->engine.image())},
-          {"forced", forced()}};
+  json symbols = list_symbols(program->engine.image());
+  for (json& s : symbols)
+    if (const Force* f = force_of(s.value("name", ""))) s["forced"] = f->value;
+  return {{"ok", true},     {"exit", kDone},      {"schema", 1},
+          {"files", files}, {"symbols", symbols}, {"forced", forced()}};
 }
 
 }  // namespace servogate::gateway

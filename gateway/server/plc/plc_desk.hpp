@@ -30,24 +30,30 @@ class PlcDesk {
  public:
   explicit PlcDesk(Resident& resident) : resident_(resident) {}
 
-  /// Carries out `plc_load`, `plc_force`, `plc_release`, `plc_watch` or `plc_list`; the answer is what
-  /// docs/control-socket.md says.
+  /// Carries out `plc_load`, `plc_force`, `plc_release`, `plc_hold`, `plc_step`, `plc_go`, `plc_watch` or
+  /// `plc_list`; the answer is what docs/control-socket.md says.
   nlohmann::json carry_out(const nlohmann::json& request, const PlcAsker& who);
-  /// Lets go what a connection has forced.
+  /// Lets go what a connection has forced, and the PLC where it holds it.
   void release_of(std::uint64_t connection);
+  /// Who holds the PLC for single scans; empty: nobody.
+  const std::string& held_by() const noexcept { return holder_; }
   /// All that is forced: name, value, who, and whether it stays.
   nlohmann::json forced() const;
 
  private:
   struct Force {
     std::string name, value, user;
-    std::optional<image::Request> place;  ///< of a packet place: the request that lets it go
-    std::uint64_t owner = 0;              ///< connection; 0: it stays
+    /// Of a packet place: the requests that let it go; none: a variable. Of characters one for each.
+    std::vector<image::Request> places;
+    std::uint64_t owner = 0;  ///< connection; 0: it stays
   };
   using json = nlohmann::json;
   json load(const json& request, const PlcAsker& who);
   json force(const json& request, const PlcAsker& who);
   json release(const json& request, const PlcAsker& who);
+  json hold(const PlcAsker& who);
+  json step(const json& request, const PlcAsker& who);
+  json go(const PlcAsker& who);
   json watch(const json& request, const PlcAsker& who);
   json watch_body(const std::string& name, const PlcAsker& who);
   json list(const PlcAsker& who);
@@ -55,12 +61,17 @@ class PlcDesk {
   json change(const LogicChange& change, double value, const PlcAsker& who);
   json ask(image::Request request, const PlcAsker& who);
   bool let_go(const Force& force, const PlcAsker& who);
-  std::optional<image::Request> place_request(const std::string& name, const std::string& value, bool& wrong);
+  std::vector<image::Request> place_requests(const std::string& name, const std::string& value, bool& wrong);
+  json force_places(std::vector<image::Request> requests, const PlcAsker& who);
+  const Force* force_of(const std::string& name) const;
+  std::optional<image::Place> place_of(const std::string& name) const;
   std::optional<std::string> forced_value(const std::string& name, const plc::Type& type) const;
   std::string log(const LogicChange& change, const json& told, const PlcAsker& who);
 
   Resident& resident_;
   std::vector<Force> forces_;
+  std::string holder_;         ///< name of who holds the PLC
+  std::uint64_t held_by_ = 0;  ///< and the connection
 };
 
 }  // namespace servogate::gateway

@@ -47,7 +47,7 @@ constexpr struct {
                {"", "body", kText},         {"", "times", kSwitch},        {"", "stay", kSwitch},
                {"", "files", kList},        {"", "online", kSwitch},       {"", "while_running", kSwitch},
                {"", "bus", kText},          {"", "node", kNumber},         {"", "index", kNumber},
-               {"", "subindex", kNumber}};
+               {"", "subindex", kNumber},   {"", "scans", kNumber}};
 
 /// Without which a request says nothing.
 constexpr struct {

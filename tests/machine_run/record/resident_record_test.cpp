@@ -89,6 +89,35 @@ class RecordedControl {
   gateway::RealtimeLoop loop_;
 };
 
+TEST(ResidentRecord, of_a_plc_that_was_held_for_single_scans_replays_byte_by_byte) {
+  const Scratch scratch;
+  {
+    RecordedControl control(scratch);
+    ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.axes[2].drive.online; }));
+    ASSERT_TRUE(control.ask(RequestKind::reset));
+    ASSERT_TRUE(control.ask(RequestKind::logic_scan, 1.0));
+    for (const std::uint32_t scans : {1u, 20u, 3u}) {
+      image::Request r;
+      r.kind = RequestKind::logic_scan;
+      r.value = 2.0;
+      r.index = scans;
+      image::Answer answer;
+      ASSERT_TRUE(control.resident().ask(r, answer));
+      ASSERT_EQ(answer.refusal, 0);
+      std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    }
+    ASSERT_TRUE(control.ask(RequestKind::logic_scan, 0.0));
+    ASSERT_TRUE(control.ask(RequestKind::reset));
+    ASSERT_TRUE(control.ask(RequestKind::power, 1.0));
+    ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.axes[2].enabled; }));
+    ASSERT_EQ(control.close(), "");
+  }
+  const Ending replay =
+      servogate({"replay", scratch.path("record"), "--against", scratch.path("trace.csv"), "--json"});
+  EXPECT_EQ(replay.code, 0) << replay.err << replay.out;
+  EXPECT_NE(replay.out.find("\"first_difference\":0"), std::string::npos) << replay.out;
+}
+
 TEST(ResidentRecord, of_two_programs_with_a_stop_and_a_typed_block_between_replays_byte_by_byte) {
   const Scratch scratch;
   // Long enough to be read far ahead when it is given up.
