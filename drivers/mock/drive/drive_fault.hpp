@@ -20,6 +20,9 @@ enum class DriveFaultKind : std::uint8_t {
   pdo_late,          ///< its TPDOs are sent `delay_ns` later
   pdo_corrupted,     ///< its TPDOs carry bits of `value` flipped in their first eight bytes
   pdo_repeated,      ///< its TPDOs repeat the old content
+  rpdo_dropped,      ///< RPDOs (or only RPDO `number`) do not reach it (every `every`-th one)
+  rpdo_late,         ///< RPDOs reach it `delay_ns` later
+  rpdo_corrupted,    ///< RPDOs reach it with bits of `value` flipped in their first eight bytes
   sdo_silent,        ///< requests are not answered
   sdo_late,          ///< requests are answered `delay_ns` later
   sdo_abort,         ///< requests to `index` (0: any) are answered with `abort`
@@ -47,7 +50,7 @@ struct DriveFault {
   image::Nanoseconds duration_ns = 0;  ///< of a lasting fault; 0: until cleared
   image::Nanoseconds delay_ns = 0;
   std::uint32_t every = 1;
-  std::uint32_t number = 0;  ///< of a TPDO, 1-4; 0: any
+  std::uint32_t number = 0;  ///< of a TPDO or RPDO, 1-4; 0: any
   std::int64_t value = 0;
   std::uint16_t error_code = 0x1000;
   std::uint16_t index = 0;

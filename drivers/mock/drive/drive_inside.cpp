@@ -2,17 +2,36 @@
 #include "drivers/mock/drive/drive_inside.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace servogate::mock {
 namespace {
 
-constexpr std::string_view kNames[kFaultKinds] = {
-    "silent",        "deaf",          "heartbeat_lost",  "pdo_dropped",
-    "pdo_late",      "pdo_corrupted", "pdo_repeated",    "sdo_silent",
-    "sdo_late",      "sdo_abort",     "stuck_state",     "frozen",
-    "encoder_loss",  "emcy",          "emcy_only",       "over_current",
-    "encoder_fault", "encoder_jump",  "following_error", "over_temperature",
-    "under_voltage", "reset"};
+constexpr std::string_view kNames[kFaultKinds] = {"silent",
+                                                  "deaf",
+                                                  "heartbeat_lost",
+                                                  "pdo_dropped",
+                                                  "pdo_late",
+                                                  "pdo_corrupted",
+                                                  "pdo_repeated",
+                                                  "rpdo_dropped",
+                                                  "rpdo_late",
+                                                  "rpdo_corrupted",
+                                                  "sdo_silent",
+                                                  "sdo_late",
+                                                  "sdo_abort",
+                                                  "stuck_state",
+                                                  "frozen",
+                                                  "encoder_loss",
+                                                  "emcy",
+                                                  "emcy_only",
+                                                  "over_current",
+                                                  "encoder_fault",
+                                                  "encoder_jump",
+                                                  "following_error",
+                                                  "over_temperature",
+                                                  "under_voltage",
+                                                  "reset"};
 
 constexpr bool lasts(DriveFaultKind kind) noexcept { return kind <= DriveFaultKind::encoder_loss; }
 
@@ -43,6 +62,7 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
       expire(next_communication);
       next_communication += kCommunicationPeriod;
     } else if (next_servo <= next_communication) {
+      if (late_count > 0) hear_late(next_servo);
       servo_tick();
       next_servo += config.servo_period_ns;
     } else {
@@ -53,7 +73,42 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
       next_communication += kCommunicationPeriod;
     }
   }
+  if (late_count > 0 && !spoiled(DriveFaultKind::frozen)) hear_late(t);
   now = std::max(now, t);
+}
+
+void SimulatedDrive::Inside::hear_late(Nanoseconds t) noexcept {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < late_count; ++i) {
+    const CanFrame frame = late[i];
+    if (frame.timestamp_ns > t)
+      late[kept++] = frame;
+    else
+      slave.on_frame(frame, frame.timestamp_ns);
+  }
+  late_count = kept;
+}
+
+// False: the frame does not get through now.
+bool SimulatedDrive::Inside::spoil_rpdo(CanFrame& frame) noexcept {
+  const auto number = static_cast<std::uint32_t>(slave.receive_pdo_of(frame));
+  const auto hit = [&](DriveFaultKind kind) {
+    return spoiled(kind) && (fault(kind).number == 0 || fault(kind).number == number);
+  };
+  if (number == 0) return true;
+  if (hit(DriveFaultKind::rpdo_dropped) &&
+      ++rpdos_dropped_of % std::max<std::uint32_t>(1, fault(DriveFaultKind::rpdo_dropped).every) == 0)
+    return false;
+  if (hit(DriveFaultKind::rpdo_corrupted)) {
+    const auto bytes = std::span(frame.data).first(std::min<std::size_t>(frame.length, 8));
+    canopen::store_le(
+        canopen::load_le(bytes) ^ static_cast<std::uint64_t>(fault(DriveFaultKind::rpdo_corrupted).value),
+        bytes);
+  }
+  if (!hit(DriveFaultKind::rpdo_late)) return true;
+  frame.timestamp_ns += fault(DriveFaultKind::rpdo_late).delay_ns;
+  if (late_count < late.size()) late[late_count++] = frame;
+  return false;
 }
 
 // I2t. Source: CiA 402-1, error code 2350h "load level fault (I2t, thermal state)".
@@ -121,6 +176,7 @@ bool SimulatedDrive::Inside::answer_with_abort(const CanFrame& frame) noexcept {
 void SimulatedDrive::Inside::inject(const DriveFault& f) noexcept {
   if (!lasts(f.kind)) return happen(f);
   lasting[static_cast<std::size_t>(f.kind)] = {f, f.duration_ns > 0 ? now + f.duration_ns : 0, true};
+  if (f.kind == DriveFaultKind::rpdo_dropped) rpdos_dropped_of = 0;
   if (f.kind == DriveFaultKind::encoder_loss) lost_encoder_position = plant.state().position;
   apply_to_gate();
 }

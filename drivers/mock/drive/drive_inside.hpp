@@ -29,6 +29,8 @@ struct SimulatedDrive::Inside {
     return plant.counts() >= s.from && plant.counts() <= s.to;
   }
   bool answer_with_abort(const CanFrame& frame) noexcept;
+  bool spoil_rpdo(CanFrame& frame) noexcept;
+  void hear_late(Nanoseconds t) noexcept;
 
   void inject(const DriveFault& fault) noexcept;
   void happen(const DriveFault& fault) noexcept;
@@ -60,6 +62,9 @@ struct SimulatedDrive::Inside {
   std::int64_t lost_encoder_position = 0;
   std::array<Lasting, kFaultKinds> lasting{};
   bool any_lasting = false;
+  std::uint32_t rpdos_dropped_of = 0;  ///< RPDOs since the fault began
+  std::array<CanFrame, 32> late{};     ///< RPDOs on their way, with the time at which they arrive
+  std::size_t late_count = 0;
   bool hot = false;  ///< I2t: too hot, until it has cooled down
   Nanoseconds now = 0;
   Nanoseconds next_servo = 0;

@@ -57,7 +57,11 @@ void SimulatedDrive::on_frame(const CanFrame& frame) noexcept {
   if (!in.slave.concerned(frame) || in.spoiled(DriveFaultKind::deaf) || in.spoiled(DriveFaultKind::frozen))
     return;
   if (in.slave.immediate(frame)) in.advance_to(frame.timestamp_ns);
-  if (in.answer_with_abort(frame)) return;
+  if (in.any_lasting) {
+    CanFrame spoiled = frame;
+    if (in.answer_with_abort(frame) || !in.spoil_rpdo(spoiled)) return;
+    return in.slave.on_frame(spoiled, frame.timestamp_ns);
+  }
   in.slave.on_frame(frame, frame.timestamp_ns);
 }
 

@@ -35,7 +35,8 @@ class EmcyProducer {
   void tick(image::Nanoseconds now) noexcept;
   /// Empties the history (a write of 0 to 1003h:00).
   void clear_history() noexcept;
-  /// Error-free again, history kept, nothing sent (a reset).
+  /// As after power-on (a reset): no error, nothing to send. The history lies in the dictionary and is reset
+  /// with it.
   void reset() noexcept;
 
  private:

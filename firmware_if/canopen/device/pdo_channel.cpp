@@ -20,12 +20,6 @@ constexpr std::uint8_t kRemoteSynchronous = 252;
 constexpr std::uint32_t kExtended = 0x2000'0000u;
 constexpr std::uint32_t kAllButValid = 0x3FFF'FFFFu;
 
-// CAN identifiers that no configurable object may use. Source: CiA 301, 7.3.5, table "Restricted CAN-IDs".
-constexpr bool restricted(std::uint32_t id) noexcept {
-  return id <= 0x07F || (id >= 0x101 && id <= 0x180) || (id >= 0x581 && id <= 0x5FF) ||
-         (id >= 0x601 && id <= 0x67F) || id >= 0x6E0;
-}
-
 // 241-251 are reserved, and so are for an RPDO the two types that only a remote request can make. Source: CiA
 // 301, tables "Description of RPDO/TPDO transmission types".
 constexpr bool reserved_type(std::uint32_t type, bool transmit) noexcept {
@@ -41,7 +35,7 @@ AbortCode check_communication(const ObjectDictionary& od, std::uint16_t index, s
       if (value & kExtended || (value & 0x1FFF'F800u)) return AbortCode::value_invalid;
       const bool becomes_valid = !(value & cob::kInvalid);
       if (valid && becomes_valid && ((old ^ value) & kAllButValid)) return AbortCode::value_invalid;
-      return becomes_valid && restricted(value & 0x7FF) ? AbortCode::value_invalid : AbortCode::none;
+      return becomes_valid && restricted_cob_id(value & 0x7FF) ? AbortCode::value_invalid : AbortCode::none;
     }
     case 2:
       return reserved_type(value, index >= object::kTpdoParameter) ? AbortCode::value_invalid
@@ -132,12 +126,13 @@ void ReceivePdo::configure(const ObjectDictionary& dictionary, int number) noexc
   id_ = cob_id & 0x7FF;
   type_ = static_cast<std::uint8_t>(dictionary.get(parameter, 2));
   timeout_ = dictionary.get(parameter, 5) * image::kMillisecond;
-  deadline_ = 0;
-  pending_ = false;
+  start();
 }
 
 ReceivePdo::Result ReceivePdo::accept(const image::CanFrame& frame, image::Nanoseconds now) noexcept {
-  if (frame.length < objects_.bytes()) return Result::too_short;
+  was_short_ = frame.length < objects_.bytes();
+  if (was_short_) return Result::too_short;
+  overdue_ = false;
   if (timeout_ > 0) deadline_ = now + timeout_;
   content_ = load_le(std::span(frame.data).first(8));
   pending_ = true;

@@ -14,6 +14,13 @@ namespace servogate::canopen {
 inline constexpr int kPdos = 4;                 ///< of each direction
 inline constexpr std::uint8_t kPdoEntries = 8;  ///< mapped objects of one
 
+/// CAN identifiers that no configurable object (SYNC, TIME, EMCY, PDO) may use. Source: CiA 301, 7.3.5, table
+/// "Restricted CAN-IDs".
+constexpr bool restricted_cob_id(std::uint32_t id) noexcept {
+  return id <= 0x07F || (id >= 0x101 && id <= 0x180) || (id >= 0x581 && id <= 0x5FF) ||
+         (id >= 0x601 && id <= 0x67F) || id >= 0x6E0;
+}
+
 /// Whether a PDO parameter (1400h-1403h, 1600h-1603h, 1800h-1803h, 1A00h-1A03h) may take this value now,
 /// after CiA 301, 7.5.2.35-38: identifiers change only while the PDO is invalid, mappings only while it is
 /// invalid and :00 is 0. real-time safe.
@@ -75,15 +82,26 @@ class ReceivePdo {
   bool pending() const noexcept { return pending_; }
   /// Moves the content into the dictionary; values out of an object's range are left out.
   void apply(ObjectDictionary& dictionary, PdoSink& sink) noexcept;
-  void drop() noexcept { pending_ = false; }
 
   /// The deadline :05 passed without a PDO since the last one.
   bool late(image::Nanoseconds now) const noexcept { return deadline_ > 0 && now > deadline_; }
-  void stop_deadline() noexcept { deadline_ = 0; }
+  /// It was late, and is until the next frame.
+  void note_late() noexcept {
+    deadline_ = 0;
+    overdue_ = true;
+  }
+  bool overdue() const noexcept { return overdue_; }
+  /// Its last frame was too short.
+  bool was_short() const noexcept { return was_short_; }
+  /// Entering Operational: nothing has come yet.
+  void start() noexcept {
+    pending_ = overdue_ = was_short_ = false;
+    deadline_ = 0;
+  }
 
  private:
   MappedObjects objects_;
-  bool valid_ = false;
+  bool valid_ = false, overdue_ = false, was_short_ = false;
   std::uint32_t id_ = 0;
   std::uint8_t type_ = 255;
   image::Nanoseconds timeout_ = 0, deadline_ = 0;

@@ -74,6 +74,15 @@ bool Slave::immediate(const image::CanFrame& frame) const noexcept {
   return true;
 }
 
+int Slave::receive_pdo_of(const image::CanFrame& frame) const noexcept {
+  if (frame.extended || frame.remote || frame.error) return 0;
+  for (int n = 0; n < kPdos; ++n) {
+    const ReceivePdo& p = receive_[static_cast<std::size_t>(n)];
+    if (p.valid() && p.id() == frame.id) return n + 1;
+  }
+  return 0;
+}
+
 void Slave::on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexcept {
   if (!concerned(frame)) return;
   now_ = now;
@@ -159,11 +168,15 @@ void Slave::on_pdo_frame(const image::CanFrame& frame) noexcept {
       case ReceivePdo::Result::kept:
         break;
     }
-    if (emcy_.any()) {
-      emcy_.clear(kPdoTooShort);
-      emcy_.clear(kRpdoTimeout);
-    }
+    if (emcy_.any()) clear_pdo_errors();
   }
+}
+
+// An error is over when no RPDO has it any more.
+void Slave::clear_pdo_errors() noexcept {
+  const auto any = [this](auto has) { return std::any_of(receive_.begin(), receive_.end(), has); };
+  if (!any([](const ReceivePdo& p) { return p.valid() && p.was_short(); })) emcy_.clear(kPdoTooShort);
+  if (!any([](const ReceivePdo& p) { return p.valid() && p.overdue(); })) emcy_.clear(kRpdoTimeout);
 }
 
 void Slave::answer_remote(const image::CanFrame& frame) noexcept {
@@ -228,11 +241,17 @@ void Slave::watch_connection() noexcept {
     profile_.on_connection_restored();
   }
   lost_ = lost;
-  if (state_ != NmtState::operational) return;
+  if (state_ == NmtState::operational) watch_receive_pdos();
+}
+
+// Deadline monitoring 1400h:05. The profile reacts as to a lost connection (6007h); 1029h does not speak of
+// it, so that the node stays as it is. Source: CiA 301, 7.2.2.5.2 and 7.5.2.31.
+void Slave::watch_receive_pdos() noexcept {
   for (ReceivePdo& p : receive_) {
     if (!p.valid() || !p.late(now_)) continue;
-    p.stop_deadline();
-    connection_lost(kRpdoTimeout);
+    p.note_late();
+    emcy_.raise(kRpdoTimeout, error_register::kCommunication);
+    profile_.on_abort_connection(kRpdoTimeout);
   }
 }
 
@@ -272,10 +291,7 @@ void Slave::command(NmtCommand command) noexcept {
 void Slave::enter(NmtState state) noexcept {
   if (state == NmtState::operational && state_ != NmtState::operational) {
     for (TransmitPdo& p : transmit_) p.start(now_);
-    for (ReceivePdo& p : receive_) {
-      p.drop();
-      p.stop_deadline();
-    }
+    for (ReceivePdo& p : receive_) p.start();
   }
   if (state == NmtState::stopped) sdo_.reset();
   state_ = state;
@@ -304,12 +320,27 @@ void Slave::reset_communication() noexcept {
 }
 
 void Slave::configure_pdos() noexcept {
-  any_event_driven_ = false;
   for (int n = 0; n < kPdos; ++n) {
     receive_[static_cast<std::size_t>(n)].configure(dictionary_, n);
     transmit_[static_cast<std::size_t>(n)].configure(dictionary_, n, now_);
-    any_event_driven_ |= transmit_[static_cast<std::size_t>(n)].event_driven();
   }
+  pdos_changed();
+}
+
+// One PDO; the others go on with their counters, timers and deadlines.
+void Slave::configure_pdo(std::uint16_t parameter) noexcept {
+  const int n = parameter & 0x1FF;
+  if (n >= kPdos) return;
+  if (parameter < object::kTpdoParameter)
+    receive_[static_cast<std::size_t>(n)].configure(dictionary_, n);
+  else
+    transmit_[static_cast<std::size_t>(n)].configure(dictionary_, n, now_);
+  pdos_changed();
+}
+
+void Slave::pdos_changed() noexcept {
+  any_event_driven_ =
+      std::any_of(transmit_.begin(), transmit_.end(), [](const TransmitPdo& p) { return p.event_driven(); });
   set_filter();
 }
 

@@ -45,6 +45,8 @@ class DeviceProfile {
   virtual bool store_node(NodeId, std::uint32_t /*bit_s*/) noexcept { return false; }
   /// The bus changes over: be silent (0), or run at this bit rate.
   virtual void bit_rate_changed(std::uint32_t /*bit_s*/) noexcept {}
+  /// 2000h-FFFFh were stored (1010h): what is a command and no parameter is to be forgotten again.
+  virtual void on_store() noexcept {}
   /// 2000h-FFFFh have their defaults or stored values again.
   virtual void on_reset() noexcept {}
 };
@@ -83,6 +85,8 @@ class Slave final : private SdoObjects, private PdoSink, private PdoEvents, priv
   /// Whether a frame takes effect at once, so that the profile must be brought to its time first. A PDO that
   /// waits for SYNC does not.
   bool immediate(const image::CanFrame& frame) const noexcept;
+  /// Which RPDO, 1-4, this frame is to the device; 0: none.
+  int receive_pdo_of(const image::CanFrame& frame) const noexcept;
   void on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexcept;
   /// Timers; call every millisecond.
   void tick(image::Nanoseconds now) noexcept;
@@ -116,6 +120,9 @@ class Slave final : private SdoObjects, private PdoSink, private PdoEvents, priv
   void enter(NmtState state) noexcept;
   void reset_communication() noexcept;
   void configure_pdos() noexcept;
+  void configure_pdo(std::uint16_t parameter) noexcept;
+  void pdos_changed() noexcept;
+  void clear_pdo_errors() noexcept;
   void set_filter() noexcept;
   void on_sync(const image::CanFrame& frame) noexcept;
   void on_pdo_frame(const image::CanFrame& frame) noexcept;
@@ -124,6 +131,7 @@ class Slave final : private SdoObjects, private PdoSink, private PdoEvents, priv
   void on_sdo(const image::CanFrame& frame) noexcept;
   void watch_connection() noexcept;
   void connection_lost(std::uint16_t error_code) noexcept;
+  void watch_receive_pdos() noexcept;
   std::uint32_t sync_id() const noexcept { return static_cast<std::uint32_t>(cob_id_sync_) & 0x7FF; }
   bool consumes_time() const noexcept { return static_cast<std::uint32_t>(cob_id_time_) & cob::kInvalid; }
   std::uint32_t time_id() const noexcept { return static_cast<std::uint32_t>(cob_id_time_) & 0x7FF; }

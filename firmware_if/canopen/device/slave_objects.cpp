@@ -86,13 +86,18 @@ AbortCode Slave::check_communication_write(std::uint16_t index, std::uint8_t sub
     case object::kPredefinedErrorField:
       return value == 0 ? AbortCode::none : AbortCode::value_invalid;
     case object::kCobIdSync:  // a consumer only, 11-bit identifiers
-      return word & ~0x8000'07FFu ? AbortCode::value_invalid : AbortCode::none;
-    case object::kCobIdTime:  // a consumer only, 11-bit identifiers
-      return word & ~0x8000'07FFu ? AbortCode::value_invalid : AbortCode::none;
+      return word & ~0x8000'07FFu || restricted_cob_id(word & 0x7FF) ? AbortCode::value_invalid
+                                                                     : AbortCode::none;
+    case object::kCobIdTime:  // a consumer only, 11-bit identifiers; not used without bit 31
+      return word & ~0x8000'07FFu || (word & cob::kInvalid && restricted_cob_id(word & 0x7FF))
+                 ? AbortCode::value_invalid
+                 : AbortCode::none;
     case object::kCobIdEmcy: {
       const auto old = static_cast<std::uint32_t>(dictionary_.get(index));
       const bool stays_valid = !(old & cob::kInvalid) && !(word & cob::kInvalid);
-      return word & 0x7FFF'F800u || (stays_valid && old != word) ? AbortCode::value_invalid : AbortCode::none;
+      const bool may_be_used = word & cob::kInvalid || !restricted_cob_id(word & 0x7FF);
+      return word & 0x7FFF'F800u || (stays_valid && old != word) || !may_be_used ? AbortCode::value_invalid
+                                                                                 : AbortCode::none;
     }
     case object::kStoreParameters:
       return word == kSave ? AbortCode::none : AbortCode::cannot_transfer;
@@ -109,7 +114,7 @@ AbortCode Slave::check_communication_write(std::uint16_t index, std::uint8_t sub
 }
 
 void Slave::communication_written(std::uint16_t index, std::uint8_t subindex, std::int64_t value) noexcept {
-  if (pdo_parameter(index)) return configure_pdos();
+  if (pdo_parameter(index)) return configure_pdo(index);
   switch (index) {
     case object::kProgramControl:
       // Without its program the device drives nothing.
@@ -132,10 +137,11 @@ void Slave::communication_written(std::uint16_t index, std::uint8_t subindex, st
 
 void Slave::store_or_restore(std::uint16_t index, std::uint8_t subindex) noexcept {
   const ObjectDictionary::Range part = kParts[subindex - 1];
-  if (index == object::kStoreParameters)
-    dictionary_.store(part);
-  else
-    dictionary_.forget(part);
+  if (index != object::kStoreParameters) return dictionary_.forget(part);
+  dictionary_.store(part);
+  // Its count without its entries would be errors that never were.
+  dictionary_.forget({object::kPredefinedErrorField, object::kPredefinedErrorField});
+  profile_.on_store();
 }
 
 }  // namespace servogate::canopen

@@ -96,6 +96,88 @@ TEST_F(DriveFaults, corrupted_and_repeated_pdos) {
   while (const auto f = b.take(0x185)) EXPECT_EQ(f->data, before->data);
 }
 
+// ---- what the drive hears ----
+
+TEST_F(DriveFaults, an_rpdo_that_does_not_come_leaves_the_drive_where_it_is) {
+  b.drive.inject({.kind = DriveFaultKind::rpdo_dropped});
+  for (int i = 1; i < 50; ++i) b.cycle(0x0F, 500 * i);
+  EXPECT_EQ(b.drive.object(0x607A), 0);
+  EXPECT_NEAR(static_cast<double>(b.drive.reported_position()), 0, 20);
+  EXPECT_EQ(b.drive.state(), DriveState::operation_enabled) << "1400h:05 is 0: nobody watches";
+  EXPECT_EQ(b.count(0x185), 49) << "its own PDOs are not concerned";
+  b.drive.clear_faults();
+  b.cycle(0x0F, 100);
+  b.cycle(0x0F, 100);
+  EXPECT_EQ(b.drive.object(0x607A), 100);
+}
+
+TEST_F(DriveFaults, every_nth_rpdo_can_be_dropped) {
+  b.drive.inject({.kind = DriveFaultKind::rpdo_dropped, .every = 3});
+  int missed = 0;
+  for (int i = 1; i <= 30; ++i) {
+    b.cycle(0x0F, i);
+    b.send(0x080, {});
+    b.run(1);
+    missed += b.drive.object(0x607A) != i;
+  }
+  EXPECT_EQ(missed, 10);
+}
+
+TEST_F(DriveFaults, another_rpdo_than_the_one_that_is_named_comes_through) {
+  b.drive.inject({.kind = DriveFaultKind::rpdo_dropped, .number = 2});
+  b.cycle(0x0F, 77);
+  b.cycle(0x0F, 77);
+  EXPECT_EQ(b.drive.object(0x607A), 77);
+}
+
+TEST_F(DriveFaults, a_late_rpdo_acts_with_the_sync_behind_it) {
+  b.drive.inject({.kind = DriveFaultKind::rpdo_late, .delay_ns = 2500 * image::kMicrosecond});
+  for (int i = 1; i <= 20; ++i) b.cycle(0x0F, i);
+  // Without the fault a SYNC makes the target of the cycle before it act: 19.
+  EXPECT_NEAR(static_cast<double>(b.drive.object(0x607A)), 17, 1);
+}
+
+TEST_F(DriveFaults, a_corrupted_rpdo_acts_as_it_came) {
+  // Bit 4 of the second byte of the target.
+  b.drive.inject({.kind = DriveFaultKind::rpdo_corrupted, .value = 0x1000'0000});
+  b.cycle(0x0F, 5);
+  b.cycle(0x0F, 5);
+  EXPECT_EQ(b.drive.object(0x607A), 0x1005);
+  EXPECT_EQ(b.drive.state(), DriveState::operation_enabled);
+}
+
+TEST_F(DriveFaults, the_deadline_1400_05_ends_what_dropped_or_late_rpdos_began) {
+  for (const auto kind : {DriveFaultKind::rpdo_dropped, DriveFaultKind::rpdo_late}) {
+    for (const int option : {0, 1, 2, 3}) {
+      b.write(0x6007, 0, option, 2);
+      b.write(0x605A, 0, 6, 2);
+      b.write(0x1400, 5, 20, 2);
+      for (const int word : {0x00, 0x80, 0x06, 0x07, 0x0F})
+        for (int i = 0; i < 5; ++i) b.cycle(static_cast<std::uint16_t>(word), 0);
+      ASSERT_EQ(b.drive.state(), DriveState::operation_enabled);
+      b.seen.clear();
+      b.drive.inject({.kind = kind, .delay_ns = 50 * kMillisecond});
+      cycles(19);
+      EXPECT_EQ(b.count(0x085), 0) << "the deadline is not over";
+      cycles(20);
+      const auto emcy = b.take(0x085);
+      ASSERT_TRUE(emcy) << name_of(kind) << " " << option;
+      EXPECT_EQ(emcy->data[0] | emcy->data[1] << 8, 0x8250);
+      EXPECT_EQ(emcy->data[2], 0x11);
+      constexpr DriveState kAfter[] = {DriveState::operation_enabled, DriveState::fault,
+                                       DriveState::switch_on_disabled, DriveState::quick_stop_active};
+      EXPECT_EQ(b.drive.state(), kAfter[option]) << option;
+      EXPECT_EQ(b.drive.nmt_state(), canopen::NmtState::operational) << "1029h does not speak of it";
+      b.drive.clear_faults();
+      cycles(60);
+      const auto over = b.take(0x085);
+      ASSERT_TRUE(over) << name_of(kind) << " " << option;
+      EXPECT_EQ(over->data[0] | over->data[1] << 8, 0x0000);
+      b.write(0x1400, 5, 0, 2);
+    }
+  }
+}
+
 TEST_F(DriveFaults, sdo_requests_can_be_refused_or_left_without_an_answer) {
   b.drive.inject(
       {.kind = DriveFaultKind::sdo_abort, .index = 0x6085, .abort = canopen::AbortCode::hardware_error});

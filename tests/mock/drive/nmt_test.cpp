@@ -208,6 +208,59 @@ TEST(DriveEmcy, the_history_holds_the_newest_first_and_is_cleared_by_writing_0) 
   EXPECT_EQ(b.read(0x1003, 0), 8u) << "the oldest fall out";
 }
 
+TEST(DriveEmcy, the_history_takes_no_value_but_0_and_has_no_entries_beyond_its_count) {
+  DriveBench b;
+  b.drive.inject({.kind = DriveFaultKind::emcy_only, .error_code = 0x1111});
+  EXPECT_EQ(b.write(0x1003, 0, 1, 1), 0x06090030u);
+  EXPECT_EQ(b.write(0x1003, 0, 255, 1), 0x06090030u);
+  EXPECT_EQ(b.write(0x1003, 1, 0, 4), 0x06010002u) << "an entry is read only";
+  EXPECT_EQ(b.read(0x1003, 0), 1u) << "nothing was cleared";
+  EXPECT_EQ(b.write(0x1003, 0, 0, 1), 0u);
+  EXPECT_EQ(b.read(0x1003, 1), 0x08000024u) << "no data available";
+  EXPECT_EQ(b.read(0x1003, 9), 0x06090011u);
+}
+
+TEST(DriveEmcy, the_history_is_no_parameter_that_could_be_stored) {
+  DriveBench b;
+  for (int i = 0; i < 3; ++i) b.drive.inject({.kind = DriveFaultKind::emcy_only, .error_code = 0x2222});
+  ASSERT_EQ(b.write(0x1010, 1, 0x65766173, 4), 0u);
+  b.nmt(0x82);
+  b.run(20);
+  EXPECT_EQ(b.read(0x1003, 0), 0u) << "errors that never were";
+}
+
+TEST(DriveEmcy, each_group_of_error_codes_has_its_bit_of_the_register) {
+  for (const auto& [code, bits] : {std::pair{0x1000, 0x01},
+                                   {0x2340, 0x03},
+                                   {0x3110, 0x05},
+                                   {0x4210, 0x09},
+                                   {0x8110, 0x11},
+                                   {0x8210, 0x11},
+                                   {0x8500, 0x21},
+                                   {0x9000, 0x01},
+                                   {0xFF12, 0x81}}) {
+    DriveBench b;
+    b.drive.inject({.kind = DriveFaultKind::emcy, .error_code = static_cast<std::uint16_t>(code)});
+    b.run(5);
+    EXPECT_EQ(b.read(0x1001), static_cast<std::uint32_t>(bits)) << std::hex << code;
+    b.control(0x80);
+    EXPECT_EQ(b.read(0x1001), 0u) << std::hex << code;
+  }
+}
+
+TEST(DriveEmcy, sync_time_and_emcy_take_no_restricted_identifier) {
+  DriveBench b;
+  ASSERT_EQ(b.write(0x1014, 0, 0x80000085, 4), 0u);
+  for (const std::uint32_t id : {0x000u, 0x07Fu, 0x101u, 0x180u, 0x581u, 0x601u, 0x6E0u, 0x705u}) {
+    EXPECT_EQ(b.write(0x1005, 0, id, 4), 0x06090030u) << std::hex << id;
+    EXPECT_EQ(b.write(0x1012, 0, 0x80000000 | id, 4), 0x06090030u) << std::hex << id;
+    EXPECT_EQ(b.write(0x1014, 0, id, 4), 0x06090030u) << std::hex << id;
+  }
+  EXPECT_EQ(b.write(0x1005, 0, 0x081, 4), 0u);
+  EXPECT_EQ(b.write(0x1012, 0, 0x80000100, 4), 0u);
+  EXPECT_EQ(b.write(0x1014, 0, 0x085, 4), 0u);
+}
+
 TEST(DriveEmcy, the_identifier_1014_can_be_switched_off_and_the_inhibit_time_spreads_messages) {
   DriveBench b;
   b.write(0x1015, 0, 200, 2);  // 20 ms

@@ -229,6 +229,41 @@ TEST_F(DrivePdo, an_rpdo_past_its_deadline_is_an_abort_of_the_connection) {
   EXPECT_EQ(b.drive.state(), image::DriveState::fault) << "6007h = 1";
 }
 
+TEST_F(DrivePdo, one_rpdo_in_time_does_not_end_the_error_of_another) {
+  b.write(0x6007, 0, 0, 2);
+  b.write(0x1400, 5, 20, 2);
+  b.write(0x1401, 1, 0x305, 4);
+  b.nmt(0x01);
+  b.send(0x205, {0x06, 0x00});
+  b.run(30);
+  EXPECT_EQ(b.read(0x1001), 0x11u);
+  b.send(0x305, {0x06, 0x00, 0x00});
+  b.run(2);
+  EXPECT_EQ(b.read(0x1001), 0x11u) << "8250h is still that of RPDO1";
+  b.send(0x205, {0x06, 0x00});
+  b.run(2);
+  EXPECT_EQ(b.read(0x1001), 0x00u);
+}
+
+TEST_F(DrivePdo, a_pdo_that_is_changed_while_operational_leaves_the_others_alone) {
+  b.write(0x6007, 0, 0, 2);
+  b.write(0x1400, 5, 20, 2);
+  b.write(0x1801, 1, 0x80000285, 4);
+  b.write(0x1801, 2, 10, 1);
+  b.write(0x1801, 1, 0x40000285, 4);
+  b.nmt(0x01);
+  b.send(0x205, {0x06, 0x00});
+  b.seen.clear();
+  for (int i = 0; i < 10; ++i) {
+    b.write(0x1402, 1, 0x80000405, 4);  // another RPDO and another TPDO
+    b.write(0x1802, 1, 0xC0000385, 4);
+    b.send(0x080, {});
+  }
+  b.run(5);
+  EXPECT_EQ(b.count(0x285), 1) << "every tenth SYNC";
+  EXPECT_EQ(b.count(0x085), 1) << "the deadline of RPDO1 went on";
+}
+
 TEST_F(DrivePdo, dummy_entries_leave_gaps_in_an_rpdo) {
   switch_off_first_pdos();
   b.write(0x1600, 0, 0, 1);

@@ -189,6 +189,22 @@ TEST(DriveSdo, stored_parameters_survive_a_reset_and_restoring_brings_the_defaul
   EXPECT_EQ(b.read(0x6085), 12345u) << "only the communication part was restored";
 }
 
+TEST(DriveSdo, commands_and_targets_are_not_stored_with_the_parameters) {
+  DriveBench b;
+  b.write(0x6060, 0, 3, 1);
+  b.write(0x60FF, 0, 500'000, 4);
+  b.write(0x6071, 0, 300, 2);
+  b.control(0x0F);
+  ASSERT_EQ(b.write(0x1010, 1, 0x65766173, 4), 0u);
+  EXPECT_EQ(b.read(0x60FF), 500'000u) << "now it acts as before";
+  b.nmt(0x81);
+  b.run(20);
+  EXPECT_EQ(b.read(0x6060), 3u);
+  EXPECT_EQ(b.read(0x60FF), 0u);
+  EXPECT_EQ(b.read(0x6071), 0u);
+  EXPECT_EQ(b.read(0x6040), 0u);
+}
+
 TEST(DriveSdo, random_requests_get_well_formed_answers_and_never_stop_the_server) {
   const auto seed = static_cast<unsigned>(servogate::test::property_seed());
   SCOPED_TRACE(seed);

@@ -80,7 +80,7 @@ constexpr ObjectSpec kRows[] = {
     {0x607F, 0, unsigned32, rw, kR},
     {0x6080, 0, unsigned32, rw},
     {0x6081, 0, unsigned32, rw, kR},
-    {0x6082, 0, unsigned32, rw, kR, 0, 0, 0},
+    {0x6082, 0, unsigned32, rw, kR},
     {0x6083, 0, unsigned32, rw, kR, 0, 1},
     {0x6084, 0, unsigned32, rw, kR, 0, 1},
     {0x6085, 0, unsigned32, rw, kNo, 0, 1},

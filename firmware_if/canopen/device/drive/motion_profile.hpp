@@ -2,12 +2,25 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace servogate::canopen {
 
 /// A set-point in encoder counts and seconds.
 struct DriveSetpoint {
   double position = 0.0, velocity = 0.0, acceleration = 0.0;
+};
+
+/// A set-point of profile position mode with the values that its motion has, taken together at the rising
+/// edge of bit 4 of the controlword. Counts and seconds. Source: CiA 402-2, "Profile position mode".
+struct SetPoint {
+  std::int64_t object = 0;        ///< 607Ah
+  bool relative = false;          ///< bit 6: to the target before it
+  bool change_on_target = false;  ///< bit 9: the motion before it does not stop at its target
+  double velocity = 0.0;          ///< 6081h
+  double end_velocity = 0.0;      ///< 6082h
+  double acceleration = 0.0;      ///< 6083h
+  double deceleration = 0.0;      ///< 6084h
 };
 
 /// One step of a velocity ramp (linear ramp, 6086h = 0): `acceleration` while the speed grows, `deceleration`
@@ -26,22 +39,25 @@ inline void ramp_velocity(DriveSetpoint& s, double target, double acceleration, 
   s.velocity = next;
 }
 
-/// One step of a trapezoidal motion that ends at rest in `target`. True when it is there. real-time safe.
+/// One step of a trapezoidal motion to `target`, to be at rest there or, with `end` > 0, to pass it with that
+/// speed (or with what acceleration allows). True when it is there or has passed it. real-time safe.
 inline bool approach_position(DriveSetpoint& s, double target, double speed, double acceleration,
-                              double deceleration, double h) noexcept {
+                              double deceleration, double h, double end = 0.0) noexcept {
   const double distance = target - s.position;
   const double d = deceleration * h;
   // Half a count is below the encoder's resolution; the speed left over is that of the last step.
-  if (std::abs(distance) < 0.5 && std::abs(s.velocity) <= 2.0 * d) {
+  if (std::abs(distance) < 0.5 && std::abs(s.velocity) <= (end > 0.0 ? 0.0 : 2.0 * d)) {
     s = {target, 0.0, 0.0};
     return true;
   }
-  // Highest speed from which the remaining way suffices when speed falls by d a step.
-  const double magnitude = std::abs(distance);
-  const double braking = std::sqrt(0.25 * d * d + 2.0 * deceleration * magnitude) - 0.5 * d;
-  const double wanted = std::min({speed, braking, magnitude / h});
+  // Highest speed after this step from which the way that is left then suffices when speed falls by d a step.
+  const double magnitude = std::abs(distance), last = std::min(end, speed);
+  const double left = magnitude - 0.5 * h * std::copysign(s.velocity, s.velocity * distance);
+  const double root = 0.25 * d * d + last * last + 2.0 * deceleration * left;
+  const double braking = std::max(last, std::sqrt(std::max(0.0, root)) - 0.5 * d);
+  const double wanted = last > 0.0 ? std::min(speed, braking) : std::min({speed, braking, magnitude / h});
   ramp_velocity(s, std::copysign(wanted, distance), acceleration, deceleration * 1.0001, h);
-  return false;
+  return last > 0.0 && (target - s.position) * distance <= 0.0;
 }
 
 }  // namespace servogate::canopen

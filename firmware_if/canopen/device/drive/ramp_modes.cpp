@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Velocity mode (vl) and interpolated position mode (ip) of ServoProfile.
+// Velocity mode (vl), interpolated position mode (ip) and profile position mode (pp) of ServoProfile.
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +13,9 @@ constexpr std::uint16_t kRampEnabled = controlword::kModeSpecific4,
                         kRampUnlocked = controlword::kModeSpecific5,
                         kReferenceUsed = controlword::kModeSpecific6;
 constexpr std::uint16_t kInterpolate = controlword::kModeSpecific4;
+constexpr std::uint16_t kNewSetPoint = controlword::kModeSpecific4,
+                        kChangeImmediately = controlword::kModeSpecific5,
+                        kRelative = controlword::kModeSpecific6, kChangeOnSetPoint = 1u << 9;
 // A ramp of no time: as fast as a number can say.
 constexpr double kAtOnce = 1e15;
 
@@ -57,9 +60,9 @@ void ServoProfile::velocity_mode() noexcept {
   const double deceleration = vl_ramp(v_.vl_deceleration_speed, v_.vl_deceleration_time);
   if (!(v_.controlword & kRampEnabled)) {
     const double d = static_cast<double>(v_.quick_stop_deceleration);
-    ramp_velocity(demand_, 0.0, d, d, h_);
+    ramp_to(0.0, d, d);
   } else if (v_.controlword & kRampUnlocked) {
-    ramp_velocity(demand_, vl_reference(), acceleration, deceleration, h_);
+    ramp_to(vl_reference(), acceleration, deceleration);
   } else {
     demand_.acceleration = 0.0;
     demand_.position += demand_.velocity * h_;
@@ -79,7 +82,7 @@ bool ServoProfile::interpolating() const noexcept {
 void ServoProfile::interpolated_position() noexcept {
   if (!interpolating()) {
     const double d = static_cast<double>(v_.profile_deceleration);
-    ramp_velocity(demand_, 0.0, d, d, h_);
+    ramp_to(0.0, d, d);
     ticks_left_ = 0;
     previous_segment_velocity_ = 0.0;
     return command_position();
@@ -106,6 +109,124 @@ void ServoProfile::buffer_configured(std::uint8_t subindex) noexcept {
     buffer_.configure(static_cast<std::uint32_t>(v_.ip_buffer_size),
                       static_cast<InterpolationBuffer::Organisation>(v_.ip_buffer_organisation));
   if (subindex == 6) buffer_.open(v_.ip_buffer_clear != 0);
+}
+
+SetPoint ServoProfile::set_point_given() const noexcept {
+  const auto word = static_cast<std::uint16_t>(v_.controlword);
+  return {v_.target_position,
+          (word & kRelative) != 0,
+          (word & kChangeOnSetPoint) != 0,
+          static_cast<double>(v_.profile_velocity),
+          static_cast<double>(v_.end_velocity),
+          static_cast<double>(v_.profile_acceleration),
+          static_cast<double>(v_.profile_deceleration)};
+}
+
+void ServoProfile::forget_set_points() noexcept {
+  set_point_active_ = set_point_waiting_ = false;
+  passed_ = 0.0;
+}
+
+// The handshake of bit 4 and status bit 12: one set-point in work and one waiting. While both places are
+// taken the acknowledge stays, and what comes then is not taken.
+// Source: CiA 402-2, "Profile position mode", figures of the set-point handshake.
+void ServoProfile::take_set_points() noexcept {
+  const auto word = static_cast<std::uint16_t>(v_.controlword);
+  const bool start = word & kNewSetPoint, immediately = word & kChangeImmediately;
+  if (start && !start_bit_ && (!set_point_waiting_ || immediately)) {
+    waiting_ = set_point_given();
+    set_point_waiting_ = set_point_acknowledged_ = true;
+    if (immediately) start_set_point();
+  }
+  start_bit_ = start;
+  if (!set_point_active_ && set_point_waiting_) start_set_point();
+  if (!start && !set_point_waiting_) set_point_acknowledged_ = false;
+}
+
+double ServoProfile::target_of(const SetPoint& p) noexcept {
+  const double from = set_point_active_ ? active_target_ : demand_.position;
+  return p.relative ? from + static_cast<double>(p.object) : target_from_object(p.object);
+}
+
+void ServoProfile::start_set_point() noexcept {
+  active_target_ = target_of(waiting_);
+  active_ = waiting_;
+  set_point_active_ = true;
+  set_point_waiting_ = false;
+  passed_ = 0.0;
+  window_time_ = 0.0;
+}
+
+/// Speed with which the motion under way shall arrive. Before a set-point with bit 9 it does not slow down,
+/// but for what the next one needs to end at its own target.
+double ServoProfile::arrival_speed(double target) noexcept {
+  if (target != active_target_) return 0.0;  // a software limit
+  if (!set_point_waiting_ || !waiting_.change_on_target) return active_.end_velocity;
+  const bool limited = internal_limit_;
+  const double way = limited_target(target_of(waiting_)) - target;
+  internal_limit_ = limited;
+  const double direction = target - demand_.position;
+  if (way * (direction != 0.0 ? direction : demand_.velocity) <= 0.0) return 0.0;
+  const double d = deceleration_of(waiting_.deceleration);
+  return std::sqrt(waiting_.end_velocity * waiting_.end_velocity + 2.0 * d * std::abs(way));
+}
+
+bool ServoProfile::target_reached() const noexcept {
+  return window_time_ * 1e3 >= static_cast<double>(v_.position_window_time);
+}
+
+/// Behind a target that was passed with 6082h that speed is kept, up to the software limits, until the next
+/// set-point.
+void ServoProfile::go_on_behind_target() noexcept {
+  if (stopped_by_limit_switch(passed_)) return stop_at_limit_switch();
+  constexpr double kFar = 1e12;
+  const bool limited = internal_limit_;
+  const double end = limited_target(demand_.position + kFar * passed_);
+  const double speed = std::min({active_.end_velocity, active_.velocity, profile_speed()});
+  const bool there = approach_position(demand_, end, speed, acceleration_of(active_.acceleration),
+                                       deceleration_of(active_.deceleration), h_);
+  internal_limit_ = limited || there;
+}
+
+void ServoProfile::stop_at_limit_switch() noexcept {
+  internal_limit_ = true;
+  const double d = static_cast<double>(v_.quick_stop_deceleration);
+  ramp_to(0.0, d, d);
+}
+
+void ServoProfile::position_to_target() noexcept {
+  const double target = limited_target(active_target_);
+  if (stopped_by_limit_switch(target - demand_.position)) return stop_at_limit_switch();
+  if (!approach_position(demand_, target, std::min(active_.velocity, profile_speed()),
+                         acceleration_of(active_.acceleration), deceleration_of(active_.deceleration), h_,
+                         arrival_speed(target)))
+    return;
+  if (demand_.velocity != 0.0) passed_ = std::copysign(1.0, demand_.velocity);
+  const double off = std::abs(target - static_cast<double>(servo_.position));
+  window_time_ = off <= static_cast<double>(v_.position_window) ? window_time_ + h_ : 0.0;
+  const bool done = passed_ != 0.0 || waiting_.change_on_target || target_reached();
+  if (set_point_waiting_ && done) start_set_point();
+}
+
+void ServoProfile::profile_position() noexcept {
+  if (command_.loop != ServoCommand::Loop::position) {
+    const double velocity = servo_.velocity;
+    hold_actual();
+    demand_.velocity = velocity;
+  }
+  take_set_points();
+  if (!set_point_active_) {
+    const double deceleration = static_cast<double>(v_.profile_deceleration);
+    ramp_to(0.0, deceleration, deceleration);
+  } else if (passed_ != 0.0 && set_point_waiting_) {
+    start_set_point();
+    position_to_target();
+  } else if (passed_ != 0.0) {
+    go_on_behind_target();
+  } else {
+    position_to_target();
+  }
+  command_position();
 }
 
 }  // namespace servogate::canopen

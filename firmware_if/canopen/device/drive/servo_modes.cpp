@@ -8,9 +8,7 @@
 namespace servogate::canopen {
 namespace {
 
-constexpr std::uint16_t kStart = controlword::kModeSpecific4,
-                        kChangeImmediately = controlword::kModeSpecific5,
-                        kRelative = controlword::kModeSpecific6;
+constexpr std::uint16_t kStart = controlword::kModeSpecific4;
 
 }  // namespace
 
@@ -22,9 +20,10 @@ void ServoProfile::select_mode() noexcept {
   mode_ = wanted;
   homing_.cancel();
   homing_attained_ = homing_error_ = false;
-  set_point_active_ = set_point_waiting_ = set_point_acknowledged_ = false;
+  forget_set_points();
+  set_point_acknowledged_ = false;
   start_bit_ = v_.controlword & kStart;
-  window_time_ = 0.0;
+  window_time_ = threshold_time_ = 0.0;
   new_target_ = false;
   buffer_.clear();
   if (command_.loop != ServoCommand::Loop::position) {
@@ -58,7 +57,7 @@ void ServoProfile::run_mode() noexcept {
       return interpolated_position();
     default:
       // No mode: stay where we are.
-      ramp_velocity(demand_, 0.0, slow_down(), slow_down(), h_);
+      ramp_to(0.0, slow_down(), slow_down());
       return command_position();
   }
 }
@@ -98,7 +97,7 @@ void ServoProfile::cyclic_position() noexcept {
   const double target = limited_target(cyclic_target_);
   if (stopped_by_limit_switch(target - demand_.position)) {
     const double d = static_cast<double>(v_.quick_stop_deceleration);
-    ramp_velocity(demand_, 0.0, d, d, h_);
+    ramp_to(0.0, d, d);
     ticks_left_ = 0;
     previous_segment_velocity_ = 0.0;
     internal_limit_ = true;
@@ -154,6 +153,17 @@ double ServoProfile::profile_speed() const noexcept {
   return std::min(static_cast<double>(v_.max_profile_velocity), max_speed());
 }
 
+// 60C5h and 60C6h bound what any object asks for. A data sheet may leave them at 0: no limit.
+double ServoProfile::acceleration_of(double asked) const noexcept {
+  return v_.max_acceleration > 0 ? std::min(asked, static_cast<double>(v_.max_acceleration)) : asked;
+}
+double ServoProfile::deceleration_of(double asked) const noexcept {
+  return v_.max_deceleration > 0 ? std::min(asked, static_cast<double>(v_.max_deceleration)) : asked;
+}
+void ServoProfile::ramp_to(double velocity, double acceleration, double deceleration) noexcept {
+  ramp_velocity(demand_, velocity, acceleration_of(acceleration), deceleration_of(deceleration), h_);
+}
+
 void ServoProfile::profile_velocity() noexcept {
   if (command_.loop == ServoCommand::Loop::position && power_.following() && demand_.velocity == 0.0)
     demand_.velocity = servo_.velocity;
@@ -167,70 +177,13 @@ void ServoProfile::profile_velocity() noexcept {
     target = 0.0;
     internal_limit_ = true;
   }
-  ramp_velocity(demand_, target, static_cast<double>(v_.profile_acceleration),
-                static_cast<double>(v_.profile_deceleration), h_);
+  ramp_to(target, static_cast<double>(v_.profile_acceleration), static_cast<double>(v_.profile_deceleration));
   command_.loop = ServoCommand::Loop::velocity;
   command_.velocity = demand_.velocity;
   command_.acceleration = demand_.acceleration;
   command_.torque = 0.0;
   const double off = std::abs(static_cast<double>(v_.target_velocity) - servo_.velocity);
   window_time_ = off <= static_cast<double>(v_.velocity_window) ? window_time_ + h_ : 0.0;
-}
-
-// The handshake of bit 4 and status bit 12 with one set-point in work and one waiting.
-// Source: CiA 402-2, "Profile position mode", figures of the set-point handshake.
-void ServoProfile::take_set_points() noexcept {
-  const auto word = static_cast<std::uint16_t>(v_.controlword);
-  const bool start = word & kStart;
-  if (start && !start_bit_) {
-    const bool room = !set_point_waiting_ || (word & kChangeImmediately);
-    if (room) {
-      waiting_target_ = v_.target_position;
-      waiting_relative_ = word & kRelative;
-      set_point_waiting_ = true;
-      set_point_acknowledged_ = true;
-      if (word & kChangeImmediately) start_set_point();
-    }
-  }
-  start_bit_ = start;
-  if (!set_point_active_ && set_point_waiting_) start_set_point();
-  if (!start && !set_point_waiting_) set_point_acknowledged_ = false;
-}
-
-void ServoProfile::start_set_point() noexcept {
-  const double from = set_point_active_ ? active_target_ : demand_.position;
-  active_target_ =
-      waiting_relative_ ? from + static_cast<double>(waiting_target_) : target_from_object(waiting_target_);
-  set_point_active_ = true;
-  set_point_waiting_ = false;
-  window_time_ = 0.0;
-}
-
-void ServoProfile::profile_position() noexcept {
-  if (command_.loop != ServoCommand::Loop::position) {
-    const double velocity = servo_.velocity;
-    hold_actual();
-    demand_.velocity = velocity;
-  }
-  take_set_points();
-  const double deceleration = static_cast<double>(v_.profile_deceleration);
-  if (set_point_active_) {
-    const double target = limited_target(active_target_);
-    if (stopped_by_limit_switch(target - demand_.position)) {
-      internal_limit_ = true;
-      const double d = static_cast<double>(v_.quick_stop_deceleration);
-      ramp_velocity(demand_, 0.0, d, d, h_);
-    } else if (approach_position(demand_, target,
-                                 std::min(static_cast<double>(v_.profile_velocity), profile_speed()),
-                                 static_cast<double>(v_.profile_acceleration), deceleration, h_)) {
-      const double off = std::abs(target - static_cast<double>(servo_.position));
-      window_time_ = off <= static_cast<double>(v_.position_window) ? window_time_ + h_ : 0.0;
-      if (set_point_waiting_) set_point_active_ = false;
-    }
-  } else {
-    ramp_velocity(demand_, 0.0, deceleration, deceleration, h_);
-  }
-  command_position();
 }
 
 void ServoProfile::homing() noexcept {
@@ -246,7 +199,7 @@ void ServoProfile::homing() noexcept {
   const double speed = homing_.tick(inputs_, servo_, static_cast<double>(v_.homing_speed_switch),
                                     static_cast<double>(v_.homing_speed_zero), resting);
   const auto acceleration = static_cast<double>(v_.homing_acceleration);
-  ramp_velocity(demand_, speed, acceleration, acceleration, h_);
+  ramp_to(speed, acceleration, acceleration);
   if (homing_.state() == HomingSequence::State::done) finish_homing();
   if (homing_.state() == HomingSequence::State::failed) homing_error_ = true;
   command_position();
@@ -268,13 +221,13 @@ std::uint16_t ServoProfile::mode_bits() const noexcept {
     case OperationMode::profile_position:
       if (set_point_acknowledged_) word |= kModeSpecific12;
       if (following_exceeded_) word |= kModeSpecific13;
-      if (!set_point_active_ || window_time_ * 1e3 >= static_cast<double>(v_.position_window_time))
-        word |= kTargetReached;
+      if (!set_point_active_ || passed_ != 0.0 || target_reached()) word |= kTargetReached;
       return word;
     case OperationMode::profile_velocity:
       if (!halted() && window_time_ * 1e3 >= static_cast<double>(v_.velocity_window_time))
         word |= kTargetReached;
-      if (std::abs(servo_.velocity) <= static_cast<double>(v_.velocity_threshold)) word |= kModeSpecific12;
+      // Speed is not zero any more once it has been above 606Fh for longer than 6070h.
+      if (threshold_time_ * 1e3 <= static_cast<double>(v_.velocity_threshold_time)) word |= kModeSpecific12;
       return word;
     case OperationMode::homing:
       if (homing_attained_) word |= kModeSpecific12;

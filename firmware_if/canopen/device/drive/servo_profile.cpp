@@ -19,6 +19,10 @@ constexpr double kDcLinkMillivolts = 320'000.0;
 // Bit of the error register for an error code. Source: CiA 301, 7.5.2.2 and the groups of 7.2.7.1.
 constexpr std::uint8_t register_bit(std::uint16_t code) noexcept {
   switch (code >> 12) {
+    case 0x0:
+    case 0x1:
+    case 0x9:  // generic and external errors have no bit but that of all
+      return 0;
     case 0x2:
       return error_register::kCurrent;
     case 0x3:
@@ -64,12 +68,22 @@ void ServoProfile::on_reset() noexcept {
   mode_ = OperationMode::none;
   active_error_ = 0;
   homing_attained_ = homing_error_ = false;
-  set_point_active_ = set_point_waiting_ = set_point_acknowledged_ = start_bit_ = false;
+  forget_set_points();
+  set_point_acknowledged_ = start_bit_ = false;
   new_target_ = false;
   buffer_ = {};
   buffer_configured(2);
   interpolation_period_changed();
   hold_actual();
+}
+
+// A controlword or target of yesterday must not act after the next power-on.
+void ServoProfile::on_store() noexcept {
+  for (const std::uint16_t command :
+       {object::kControlword, object::kVlTargetVelocity, object::kTargetTorque, object::kTargetPosition,
+        object::kPositionOffset, object::kVelocityOffset, object::kTorqueOffset, object::kTouchProbeFunction,
+        object::kInterpolationData, object::kTargetVelocity})
+    dictionary_.forget({command, command});
 }
 
 AbortCode ServoProfile::before_write(ObjectDictionary::Slot slot, std::int64_t value) noexcept {
@@ -178,7 +192,7 @@ void ServoProfile::state_changed(DriveState before) noexcept {
     // A set-point given before belongs to the past; the mode begins where the shaft is.
     if (before != DriveState::quick_stop_active) hold_actual();
     start_bit_ = v_.controlword & controlword::kModeSpecific4;
-    set_point_active_ = set_point_waiting_ = false;
+    forget_set_points();
     new_target_ = false;
   }
 }
@@ -263,6 +277,8 @@ void ServoProfile::command_position() noexcept {
 
 void ServoProfile::generate() noexcept {
   internal_limit_ = false;
+  const bool turns = std::abs(servo_.velocity) > static_cast<double>(v_.velocity_threshold);
+  threshold_time_ = turns ? threshold_time_ + h_ : 0.0;
   const StopKind stop = power_.stop();
   if (stop == StopKind::none) at_rest_ = false;
   if (!power_.energised()) {
@@ -292,7 +308,7 @@ void ServoProfile::stop_motion(StopKind kind, double slow_down) noexcept {
   if (command_.loop != ServoCommand::Loop::position)
     demand_ = {static_cast<double>(servo_.position), servo_.velocity, 0.0};
   // A halted positioning goes on afterwards, a stopped one does not.
-  if (power_.stop() != StopKind::none) set_point_active_ = set_point_waiting_ = false;
+  if (power_.stop() != StopKind::none) forget_set_points();
   if (kind == StopKind::torque_limit) {
     if (!standstill()) {
       command_.loop = ServoCommand::Loop::velocity;
@@ -305,7 +321,7 @@ void ServoProfile::stop_motion(StopKind kind, double slow_down) noexcept {
   } else {
     const double d =
         kind == StopKind::quick_stop_ramp ? static_cast<double>(v_.quick_stop_deceleration) : slow_down;
-    ramp_velocity(demand_, 0.0, d, d, h_);
+    ramp_to(0.0, d, d);
   }
   cyclic_target_ = demand_.position;
   ticks_left_ = 0;

@@ -52,6 +52,7 @@ class ServoProfile final : public DeviceProfile {
   void after_write(ObjectDictionary::Slot slot) noexcept override;
   void refresh() noexcept override;
   void on_abort_connection(std::uint16_t error_code) noexcept override;
+  void on_store() noexcept override;
   void on_reset() noexcept override;
   bool store_node(NodeId, std::uint32_t bit_s) noexcept override { return bit_s == 0; }
 
@@ -79,6 +80,14 @@ class ServoProfile final : public DeviceProfile {
   void profile_position() noexcept;
   void take_set_points() noexcept;
   void start_set_point() noexcept;
+  void forget_set_points() noexcept;
+  SetPoint set_point_given() const noexcept;
+  double target_of(const SetPoint& p) noexcept;
+  double arrival_speed(double target) noexcept;
+  bool target_reached() const noexcept;
+  void position_to_target() noexcept;
+  void go_on_behind_target() noexcept;
+  void stop_at_limit_switch() noexcept;
   void homing() noexcept;
   void finish_homing() noexcept;
 
@@ -93,6 +102,9 @@ class ServoProfile final : public DeviceProfile {
   double target_from_object(std::int64_t object_value) noexcept;
   double limited_target(double target) noexcept;
   double profile_speed() const noexcept;
+  double acceleration_of(double asked) const noexcept;
+  double deceleration_of(double asked) const noexcept;
+  void ramp_to(double velocity, double acceleration, double deceleration) noexcept;
   double max_speed() const noexcept;
   void interpolation_period_changed() noexcept;
   bool standstill() const noexcept;
@@ -121,7 +133,8 @@ class ServoProfile final : public DeviceProfile {
   double following_error_ = 0.0;  ///< demand minus actual, both of the last tick
   double following_time_ = 0.0;
   bool following_exceeded_ = false;
-  double window_time_ = 0.0;  ///< how long the target (pp, pv) has been inside its window
+  double threshold_time_ = 0.0;  ///< how long the speed (pv) has been above 606Fh
+  double window_time_ = 0.0;     ///< how long the target (pp, pv) has been inside its window
 
   // csp
   ObjectDictionary::Slot target_position_slot_, controlword_slot_, ip_record_slot_;
@@ -133,9 +146,9 @@ class ServoProfile final : public DeviceProfile {
   // pp
   bool start_bit_ = false;
   bool set_point_active_ = false, set_point_waiting_ = false, set_point_acknowledged_ = false;
-  bool waiting_relative_ = false;
-  std::int64_t waiting_target_ = 0;
+  SetPoint active_, waiting_;
   double active_target_ = 0.0;
+  double passed_ = 0.0;  ///< the target was passed with 6082h: in this direction, 1 or -1
   // ip
   InterpolationBuffer buffer_;
   // hm
