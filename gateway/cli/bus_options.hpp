@@ -28,8 +28,9 @@ struct DriveOptions {
   std::string bus;
   std::vector<int> nodes;
   std::string device;
-  std::string profile;             ///< servo, stepper, spindle, or a data sheet
-  std::vector<std::string> plant;  ///< KEY=VALUE
+  std::string profile;                ///< servo, stepper, spindle, or a data sheet
+  std::vector<std::string> plant;     ///< KEY=VALUE
+  std::vector<std::string> switches;  ///< INPUT=FROM..TO, revolutions
   FaultOptions faults;
   double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
 };

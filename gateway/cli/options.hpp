@@ -18,7 +18,7 @@ enum class ClockKind { unset, virtual_time, realtime, realtime_best_effort };
 struct RunOptions {
   std::string machine, program, dialect;
   ClockKind clock = ClockKind::unset;
-  std::string trace, report, html, record, state;
+  std::string trace, report, html, record, can_log, state;
   double override_percent = 100.0;
   std::optional<double> patience_s;  ///< machine time that a program may wait for somebody; 0: for ever
   bool quiet = false;
@@ -27,7 +27,7 @@ struct RunOptions {
 };
 
 struct UpOptions {
-  std::string machine, state, socket, record;
+  std::string machine, state, socket, record, can_log;
   ClockKind clock = ClockKind::unset;
   double speed = 1.0;
 };

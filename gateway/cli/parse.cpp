@@ -165,6 +165,9 @@ class Commands {
     app.add_option("--report", o.report, "Writes the report to this JSON file");
     app.add_option("--html", o.html, "Writes the report to this HTML file");
     app.add_option("--record", o.record, "Records inputs and requests for `servogate replay`");
+    app.add_option("--can-log", o.can_log,
+                   "Writes the frames of each simulated CAN bus to BUS.log in this folder")
+        ->type_name("DIR");
     app.add_option("--dialect", o.dialect, "Language of the program instead of the machine's own");
     app.add_option("--override", o.override_percent, "Feed override in per cent, 0 to 150")
         ->type_name("PCT")
@@ -194,6 +197,9 @@ class Commands {
     app.add_option("--state", o.state, "State directory instead of the machine file's");
     app.add_option("--socket", o.socket, "Control socket instead of the default");
     app.add_option("--record", o.record, "Records inputs, requests and programs for `servogate replay`");
+    app.add_option("--can-log", o.can_log,
+                   "Writes the frames of each simulated CAN bus to BUS.log in this folder")
+        ->type_name("DIR");
   }
 
   void client(const ClientCommand& c) {

@@ -7,11 +7,16 @@
 #include "gateway/report/html.hpp"
 #include "gateway/report/recorded_run.hpp"
 #include "gateway/report/trace.hpp"
+#include "gateway/run/can_log.hpp"
 #include "gateway/run/session.hpp"
 
 namespace servogate::gateway::command {
 
 namespace {
+
+const text::Entry kNothingToLog{
+    "can-log.no-bus", "--can-log: no CAN bus of this machine is simulated; `servogate dump` reads a real one",
+    "--can-log: у станка нет имитируемой шины CAN; настоящую читает `servogate dump`"};
 
 std::string_view name_of(ClockKind clock) {
   switch (clock) {
@@ -42,6 +47,22 @@ int check_outputs(const std::vector<files::NamedPath>& outputs, const std::strin
   if (!problem) return kDone;
   complain(*problem->entry, problem->arguments);
   return problem->wrong_use ? kWrongUse : kInfrastructure;
+}
+
+int check_can_log(const std::string& folder, const machine::LoadResult& machine) {
+  if (folder.empty()) return kDone;
+  const auto logs = CanLog::files_of(folder, machine.machine);
+  if (logs.empty()) {
+    complain(kNothingToLog, {});
+    return kWrongUse;
+  }
+  if (const auto problem = files::problem_of_folder(folder)) {
+    complain(*problem->entry, problem->arguments);
+    return problem->wrong_use ? kWrongUse : kInfrastructure;
+  }
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  return check_outputs(logs, {}, machine, {});
 }
 
 void fill_provenance(report::Provenance& p, const RunOptions& options, const machine::MachineConfig& machine,

@@ -15,6 +15,10 @@ namespace servogate::gateway::command {
 int check_outputs(const std::vector<files::NamedPath>& outputs, const std::string& state,
                   const machine::LoadResult& machine, const std::vector<files::NamedPath>& others);
 
+/// The folder of `--can-log` before anything moves: kDone when it is there (made, where it was not) and the
+/// logs can be written, or none is asked for; otherwise the exit code, after saying why.
+int check_can_log(const std::string& folder, const machine::LoadResult& machine);
+
 /// Where the report of a run comes from: host, files, clock, command line.
 void fill_provenance(report::Provenance& provenance, const RunOptions& options,
                      const machine::MachineConfig& machine, const std::vector<std::string>& command_line);

@@ -18,6 +18,7 @@
 #include "gateway/compose/program/program_file.hpp"
 #include "gateway/machine/state/state.hpp"
 #include "gateway/machine/state/state_lock.hpp"
+#include "gateway/run/can_log.hpp"
 #include "gateway/run/operator_script.hpp"
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
@@ -130,6 +131,7 @@ class Run {
   std::unique_ptr<Control> control_;
   std::unique_ptr<RunServer> server_;
   std::unique_ptr<RecordWriter> record_;
+  std::unique_ptr<CanLog> can_log_;
   std::unique_ptr<RetainedKeeper> keeper_;
   double estimate_s_ = 0.0;
   long long estimate_blocks_ = 0;
@@ -179,6 +181,7 @@ int Run::prepare() {
   control_->restore_tool(state_);
   print_findings(control_->restore_retained(state_));
   keeper_ = std::make_unique<RetainedKeeper>(*control_, options_.state, state_.retained_generation);
+  if (!options_.can_log.empty()) can_log_ = std::make_unique<CanLog>(options_.can_log, *control_);
   if (!options_.record.empty()) record_ = begin_record(options_.record, options_.machine, state_, *control_);
   if (!options_.program.empty())
     control_->change({ProgramChange::Kind::program, 0, program_, state_.tables, {}});
@@ -267,6 +270,7 @@ bool Run::virtual_loop(OperatorScript& script, Session& session) {
   while (!script.done()) {
     session.wait_for_room();
     if (record_ != nullptr) record_->wait_for_room();
+    if (can_log_ != nullptr) can_log_->wait_for_room();
     control_->step();
     session.after_cycle(0);
     take_answers(script);
@@ -362,6 +366,7 @@ int Run::finish(const OperatorScript& script, Session& session,
   end_progress();
   written(options_.trace, session.close());
   if (record_ != nullptr) written(options_.record, record_->close());
+  if (can_log_ != nullptr) written(options_.can_log, can_log_->close());
   report::Report report = session.make_report(wall_s_, overruns_);
   report.finished = script.outcome() == OperatorScript::Outcome::finished;
   report.blocks_expected = estimate_blocks_;
@@ -509,6 +514,7 @@ int run(const RunOptions& given, const std::vector<std::string>& command_line) {
       code != kDone)
     return code;
   int code = refuse_early(options, loaded);
+  if (code == kDone) code = check_can_log(options.can_log, loaded);
   Run run(options, loaded);
   if (code == kDone) code = run.prepare();
   if (code == kDone) code = run.execute(command_line);

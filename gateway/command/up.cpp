@@ -12,6 +12,7 @@
 #include "gateway/command/signals.hpp"
 #include "gateway/machine/state/state.hpp"
 #include "gateway/machine/state/state_lock.hpp"
+#include "gateway/run/can_log.hpp"
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/retained_keeper.hpp"
@@ -31,8 +32,8 @@ const text::Entry kStateLost{"up.state-not-saved", "the state was not saved: {0}
 /// Virtual time paced against the wall clock on a thread of its own.
 class VirtualLoop {
  public:
-  VirtualLoop(Control& control, double speed, RecordWriter* record)
-      : control_(control), speed_(speed), record_(record), thread_([this] { run(); }) {}
+  VirtualLoop(Control& control, double speed, RecordWriter* record, const CanLog* can_log)
+      : control_(control), speed_(speed), record_(record), can_log_(can_log), thread_([this] { run(); }) {}
   ~VirtualLoop() {
     stop_ = true;
     thread_.join();
@@ -53,12 +54,14 @@ class VirtualLoop {
       if (now > due + std::chrono::milliseconds(100)) begin += now - due;
       if (control_.cycle().count() % 64 == 0) std::this_thread::yield();
       if (record_ != nullptr) record_->wait_for_room();
+      if (can_log_ != nullptr) can_log_->wait_for_room();
       control_.step();
     }
   }
   Control& control_;
   double speed_;
   RecordWriter* record_;
+  const CanLog* can_log_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
@@ -84,6 +87,7 @@ int up(const UpOptions& options) {
                                                         : m.resolve(m.run.state);
   if (const int code = check_outputs({{"--record", options.record}}, state_path, loaded, {}); code != kDone)
     return code;
+  if (const int code = check_can_log(options.can_log, loaded); code != kDone) return code;
   std::unique_ptr<SocketServer> server;  // its connections end last, after the state's lock
   machine::MachineState state;
   machine::StateLock lock;
@@ -107,6 +111,8 @@ int up(const UpOptions& options) {
   print_findings(control->restore_retained(state));
   const std::unique_ptr<RecordWriter> record =
       options.record.empty() ? nullptr : begin_record(options.record, options.machine, state, *control);
+  const auto can_log =
+      options.can_log.empty() ? nullptr : std::make_unique<CanLog>(options.can_log, *control);
   control->cycle().publish_every(is_virtual ? 1 : 5);
   control->world().close_operator_points();
 
@@ -126,7 +132,7 @@ int up(const UpOptions& options) {
   std::unique_ptr<VirtualLoop> virtual_loop;
   std::unique_ptr<RealtimeLoop> realtime_loop;
   if (is_virtual) {
-    virtual_loop = std::make_unique<VirtualLoop>(*control, options.speed, record.get());
+    virtual_loop = std::make_unique<VirtualLoop>(*control, options.speed, record.get(), can_log.get());
   } else {
     cycle::RealtimeSettings settings{m.realtime.priority, m.realtime.cpu,
                                      clock == ClockKind::realtime_best_effort};
@@ -150,11 +156,13 @@ int up(const UpOptions& options) {
   if (realtime_loop != nullptr) realtime_loop->stop();
   const std::string unkept = keeper.close();
   const std::string unrecorded = record != nullptr ? record->close() : std::string();
+  const std::string unlogged = can_log != nullptr ? can_log->close() : std::string();
   if (!problem.empty()) complain(kStateLost, {problem});
   if (!unkept.empty()) complain(kStateLost, {unkept});
   if (!unrecorded.empty()) complain(kCannotWrite, {options.record, unrecorded});
+  if (!unlogged.empty()) complain(kCannotWrite, {options.can_log, unlogged});
   const int code = unless_frames_lost(server->rests() ? kDone : kAlarm, *control);
-  return problem.empty() && unkept.empty() && unrecorded.empty() ? code : kInfrastructure;
+  return problem.empty() && unkept.empty() && unrecorded.empty() && unlogged.empty() ? code : kInfrastructure;
 }
 
 }  // namespace servogate::gateway::command

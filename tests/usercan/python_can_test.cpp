@@ -17,6 +17,15 @@ TEST(PythonCan, as_a_master_brings_the_simulated_drive_through_every_state_and_m
             0);
 }
 
+TEST(PythonCan, as_a_master_that_does_everything_wrong_gets_the_answers_of_the_standard) {
+  if (!python_can()) GTEST_SKIP() << "no python-can here; install it so: .ci/packages --tests";
+  RunningServer server;
+  const LivingDrive drive(server.join(), 5);
+  EXPECT_EQ(shell("/usr/bin/python3 " + counterpart("drive_trials.py") +
+                  " 5 socketcand can0 host=127.0.0.1 port=" + std::to_string(server.address().port)),
+            0);
+}
+
 TEST(PythonCan, hears_every_frame_of_a_busy_bus_although_reads_cut_elements_in_two) {
   if (!python_can()) GTEST_SKIP() << "no python-can here; install it so: .ci/packages --tests";
   RunningServer server;

@@ -66,6 +66,10 @@ void add_drive(CLI::App& app, DriveOptions& o) {
   d.add_option("--plant", o.plant, "Motor and load: inertia=0.002 friction=0.3 gravity=1.5 ...")
       ->type_name("KEY=VALUE")
       ->delimiter(',');
+  d.add_option("--switch", o.switches,
+               "Switch on an input that follows the shaft, in revolutions: home=1.5..2 positive_limit=3..")
+      ->type_name("INPUT=FROM..TO")
+      ->delimiter(',');
   add_faults(d, o.faults);
   add_bit_rate(d, o.bit_rate);
   d.footer(

@@ -73,6 +73,8 @@ inline constexpr Translation kCatalogue[] = {
     {"Writes the report to this HTML file", "Пишет отчёт в этот файл HTML"},
     {"Records inputs and requests for `servogate replay`",
      "Записывает входы и запросы для `servogate replay`"},
+    {"Writes the frames of each simulated CAN bus to BUS.log in this folder",
+     "Пишет кадры каждой имитируемой шины CAN в файл ШИНА.log в этой папке"},
     {"Records inputs, requests and programs for `servogate replay`",
      "Записывает входы, запросы и программы для `servogate replay`"},
     {"Language of the program instead of the machine's own", "Язык программы вместо языка станка"},
@@ -122,6 +124,8 @@ inline constexpr Translation kCatalogue[] = {
      "servo (по умолчанию), stepper, spindle или паспорт устройства: FILE.eds"},
     {"Motor and load: inertia=0.002 friction=0.3 gravity=1.5 ...",
      "Двигатель и нагрузка: inertia=0.002 friction=0.3 gravity=1.5 ..."},
+    {"Switch on an input that follows the shaft, in revolutions: home=1.5..2 positive_limit=3..",
+     "Выключатель на входе, следящий за валом, в оборотах: home=1.5..2 positive_limit=3.."},
     {"On standard input it takes faults as --fault, and clear [FAULT], input NAME on|off, load NM, status.",
      "Со стандартного ввода принимает отказы, как --fault, и clear [FAULT], input NAME on|off, load NM, "
      "status."},

@@ -9,12 +9,14 @@
 
 #include "drivers/clock.hpp"
 #include "gateway/cli/messages.hpp"
-#include "gateway/command/canopen/data_sheet.hpp"
-#include "gateway/command/commands.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/bus/named_bus.hpp"
+#include "gateway/command/canopen/data_sheet.hpp"
+#include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
+#include "gateway/command/simulated/fault_line.hpp"
+#include "gateway/command/simulated/switch_option.hpp"
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/simulated/drive_kind.hpp"
 #include "gateway/compose/simulated/simulated_node.hpp"
@@ -37,6 +39,10 @@ const text::Entry kNoPlantKey{"drive.no-plant-key", "--plant {0}: expected KEY=V
                               "--plant {0}: нужно КЛЮЧ=ЗНАЧЕНИЕ; ключи: {1}"};
 const text::Entry kPlantRange{"drive.plant-range", "--plant {0}: {1} is {2} to {3} {4}",
                               "--plant {0}: {1} — от {2} до {3} {4}"};
+const text::Entry kNoSwitch{
+    "drive.no-switch",
+    "--switch {0}: expected INPUT=FROM..TO in revolutions, as home=1.5..2 or positive_limit=3..; inputs: {1}",
+    "--switch {0}: нужно ВХОД=ОТ..ДО в оборотах, например home=1.5..2 или positive_limit=3..; входы: {1}"};
 const text::Entry kLeftOut{"drive.left-out", "{0}: {1} objects cannot be simulated and are left out",
                            "{0}: объектов, которые нельзя имитировать, {1}; они пропущены"};
 
@@ -104,6 +110,20 @@ int apply_plant(const DriveOptions& options, Plan& plan) {
       return kWrongUse;
     }
     for (mock::SimulatedDriveConfig& drive : plan.drives) key->set(drive.plant, value);
+  }
+  return kDone;
+}
+
+/// INPUT=FROM..TO of every --switch, for all drives, once their encoders are known.
+int apply_switches(const DriveOptions& options, Plan& plan) {
+  for (const std::string& word : options.switches) {
+    const auto place = parse_switch(word);
+    if (!place) {
+      complain(kNoSwitch, {word, drive_input_names()});
+      return kWrongUse;
+    }
+    for (mock::SimulatedDriveConfig& drive : plan.drives)
+      drive.switches.push_back(place->at(drive.plant.counts_per_rev));
   }
   return kDone;
 }
@@ -219,6 +239,7 @@ int drive(const DriveOptions& options) {
       code != kDone)
     return code;
   if (const int code = apply_plant(options, plan); code != kDone) return code;
+  if (const int code = apply_switches(options, plan); code != kDone) return code;
   auto deeds = read_deeds(options.faults);
   if (!deeds) return kWrongUse;
   const EndBySignal signals;

@@ -196,6 +196,13 @@ std::string fault_names() {
   return list;
 }
 
+std::optional<mock::DriveSwitch::Input> drive_input(std::string_view name) {
+  const InputName* row = find_in(kInputs, name);
+  return row != nullptr ? std::optional(row->input) : std::nullopt;
+}
+
+std::string drive_input_names() { return names_of(kInputs); }
+
 std::optional<DriveDeed> parse_deed(std::string_view line, std::string& why) {
   DriveDeed deed;
   std::vector<std::string_view> plain;

@@ -31,5 +31,9 @@ std::optional<DriveDeed> parse_deed(std::string_view line, std::string& why);
 std::optional<std::vector<DriveDeed>> parse_script(std::string_view text, int& number, std::string& why);
 /// Names of all faults, for a message.
 std::string fault_names();
+/// Inputs of a drive: "home", "negative_limit" ...; nullopt: no such input.
+std::optional<mock::DriveSwitch::Input> drive_input(std::string_view name);
+/// Their names, for a message.
+std::string drive_input_names();
 
 }  // namespace servogate::gateway::command
