@@ -165,6 +165,7 @@ TEST(HardLimit, that_comes_on_while_the_axis_goes_the_other_way_stops_it_too) {
   EXPECT_TRUE(rig.raised(alarm::kHardLimitPlus));
   ASSERT_TRUE(rig.run_until([&] { return !rig.axis.moving(); }));
   EXPECT_GT(rig.shared().command, -30.0);
+  rig.run(50);
   rig.axis.reset();
   ASSERT_TRUE(rig.axis.jog_increment(-1.0)) << "away from the switch that is on, it may go";
   ASSERT_TRUE(rig.run_until([&] { return !rig.axis.moving(); }));

@@ -14,6 +14,10 @@ struct Mill : ExampleMachine {
                         {"lamp_green", 67},
                         {"lamp_red", 68},
                         {"tool_release", 69}}) {}
+  void power_up() {
+    set("tool_clamped", 1);
+    ExampleMachine::power_up();
+  }
 };
 
 TEST(ExampleMill, opens_everything_when_the_emergency_stop_chain_opens) {
@@ -245,6 +249,7 @@ TEST(ExampleMill, says_which_part_of_a_tool_change_failed) {
   m.strobe_m(6);
   EXPECT_GE(m.until("NC.external_alarm", 702), 2000) << "no air";
   m.set("air_ok", 1);
+  m.set("tool_clamped", 0);
   m.until("tool_release", 0);
   EXPECT_GE(m.until("NC.external_alarm", 701), 2000) << "no clamp";
   EXPECT_FALSE(m.on("NC.m_ack"));
