@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <vector>
 
 namespace servogate::cycle {
 
@@ -523,17 +522,6 @@ constexpr AlarmRow kTable[] = {
 static_assert(std::is_sorted(std::begin(kTable), std::end(kTable),
                              [](const AlarmRow& a, const AlarmRow& b) { return a.number < b.number; }));
 
-struct Room {
-  image::AlarmNumber first;
-  std::string_view english;
-};
-constexpr Room kRooms[] = {{1000, "Axes and spindles"},
-                           {2000, "Buses and drives"},
-                           {3000, "Inputs and outputs"},
-                           {4000, "Program and channel"},
-                           {5000, "PLC"},
-                           {6000, "Real time and system"}};
-
 constexpr std::string_view kReactionWords[][2] = {
     {"none", "нет"},
     {"warning", "предупреждение"},
@@ -547,9 +535,6 @@ constexpr std::string_view kResetWords[][2] = {
     {"reset", "сброс"},
     {"reset after the cause has gone", "сброс после устранения причины"},
     {"goes by itself", "снимается автоматически"}};
-
-constexpr std::string_view kPlaceholders[] = {"AXIS",  "VALUE",   "LIMIT",   "WHERE",  "STATUS",
-                                              "ERROR", "FIGURE1", "FIGURE2", "OBJECT", "LINE"};
 
 }  // namespace
 
@@ -568,34 +553,6 @@ std::string_view words(image::Reaction reaction, text::Language language) {
 
 std::string_view words(ResetCondition condition, text::Language language) {
   return kResetWords[static_cast<int>(condition)][language == text::Language::russian];
-}
-
-std::string alarms_page() {
-  const std::vector<std::string> names(std::begin(kPlaceholders), std::end(kPlaceholders));
-  std::string page =
-      "# Alarms\n\nMade from the alarm table (`kernel/cycle/alarm/alarm_table.cpp`); do not edit. The "
-      "reaction is "
-      "the default; a\n"
-      "machine file may ask for a stronger one. While the machine reacts to a first fault, further faults "
-      "are its\n"
-      "consequences and are shown under it.\n";
-  image::AlarmNumber room_end = 0;
-  for (const AlarmRow& row : kTable) {
-    if (row.number >= room_end) {
-      for (const Room& room : kRooms)
-        if (row.number / 1000 == room.first / 1000)
-          page += "\n## " + std::to_string(room.first) + " " + std::string(room.english) + "\n";
-      room_end = static_cast<image::AlarmNumber>((row.number / 1000 + 1) * 1000);
-    }
-    page += "\n### " + std::to_string(row.number) + " `" + std::string(row.text.id) + "`\n\n";
-    page += "- " + text::render(row.text, names, text::Language::english) + "\n";
-    page += "- " + text::render(row.text, names, text::Language::russian) + "\n";
-    page += "- Reaction: " + std::string(words(row.reaction, text::Language::english)) +
-            ". Goes with: " + std::string(words(row.reset, text::Language::english)) + ".\n";
-    page +=
-        "- Remedy: " + std::string(row.remedy_en) + "\n- Что делать: " + std::string(row.remedy_ru) + "\n";
-  }
-  return page;
 }
 
 }  // namespace servogate::cycle

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/cycle/gate/gate.hpp"
-
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdio>
 #include <limits>
 #include <random>
 
-#include "firmware_if/image/interface_map.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
+#include "tests/cycle/gate/rig.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::cycle {
@@ -21,82 +17,7 @@ using image::ProcessState;
 using image::Reaction;
 using image::Request;
 using image::RequestKind;
-
-/// Two axes with ideal drives in a machine where everything is permitted; each test takes something away.
-class Gate : public ::testing::Test {
- protected:
-  Gate() {
-    image_.axis_count = 2;
-    image_.packets.set_bit(image::field(image::kMachineFields, "power_on", image::kMachineBase), true);
-    for (int i = 0; i < 2; ++i) {
-      axis::AxisConfig c;
-      c.homing.method = axis::HomingMethod::absolute;
-      axes_[static_cast<std::size_t>(i)].configure(c, i);
-      set(i, "enable", true);
-      set(i, "feed_enable", true);
-      axes_[static_cast<std::size_t>(i)].set_reference(0);
-      axes_[static_cast<std::size_t>(i)].request_power(true);
-    }
-    run(20);
-    context_.image = &image_;
-    context_.axes = axes_;
-    context_.program_loaded = true;
-  }
-  void set(int axis, std::string_view name, bool value) {
-    for (const auto& f : image::kAxisFields)
-      if (f.name == name)
-        image_.packets.set_bit(
-            {image::Packet::k, image::Format::bl, (image::axis_base(axis) + f.byte) * 8 + f.bit, 1}, value);
-  }
-  void run(int cycles) {
-    while (cycles-- > 0) {
-      image_.now.t_ns += image_.now.period_ns;
-      for (std::size_t i = 0; i < 2; ++i) {
-        image::AxisImage& a = image_.axes[i];
-        a.drive.online = true;
-        a.drive.state =
-            a.drive_command.power ? image::DriveState::operation_enabled : image::DriveState::switched_on;
-        a.drive.position_counts = a.drive_command.position_counts;
-        axes_[i].read(image_);
-        axes_[i].command(image_);
-      }
-    }
-  }
-  Refusal ask(RequestKind kind, int axis = -1, double value = 0.0, Asker asker = Asker::command_line) {
-    Request r;
-    r.id = 4711;
-    r.kind = kind;
-    r.axis = static_cast<std::int8_t>(axis);
-    r.value = value;
-    r.asker = asker;
-    answer_ = decide(r, context_);
-    EXPECT_EQ(answer_.id, 4711u);
-    return static_cast<Refusal>(answer_.refusal);
-  }
-  Refusal ask_place(RequestKind kind, const image::Place& p, Asker asker = Asker::command_line) {
-    Request r;
-    r.kind = kind;
-    r.asker = asker;
-    r.packet = static_cast<std::uint8_t>(p.packet), r.format = static_cast<std::uint8_t>(p.format);
-    r.index = p.index, r.length = p.length;
-    answer_ = decide(r, context_);
-    return static_cast<Refusal>(answer_.refusal);
-  }
-  std::string english() const { return render(answer_, {"X", "Y"}, text::Language::english); }
-  std::string russian() const { return render(answer_, {"X", "Y"}, text::Language::russian); }
-  void not_homed(int axis) {
-    axis::AxisConfig c = axes_[static_cast<std::size_t>(axis)].config();
-    c.homing.method = axis::HomingMethod::switch_and_index;
-    axes_[static_cast<std::size_t>(axis)].configure(c, axis);
-    axes_[static_cast<std::size_t>(axis)].request_power(true);
-    run(20);
-  }
-
-  image::ProcessImage image_;
-  std::array<axis::Axis, 2> axes_;
-  GateContext context_;
-  image::Answer answer_;
-};
+using Gate = test::GateRig;
 
 TEST_F(Gate, lets_every_request_pass_on_a_machine_that_is_ready) {
   EXPECT_EQ(ask(RequestKind::power, -1, 1), Refusal::none);
@@ -237,128 +158,6 @@ TEST_F(Gate, homes_the_axes_of_a_mask_and_refuses_a_mask_of_axes_that_do_not_exi
   EXPECT_EQ(homing_mask(request, axes_), 3u);
   request.axis = 2;
   EXPECT_EQ(homing_mask(request, axes_), 4u);
-}
-
-/// The second axis is the PLC's.
-class GateOfAuxiliary : public Gate {
- protected:
-  GateOfAuxiliary() {
-    axis::AxisConfig c = axes_[1].config();
-    c.auxiliary = true;
-    c.homing.method = axis::HomingMethod::absolute;
-    axes_[1].configure(c, 1);
-    axes_[1].set_reference(0);
-    axes_[1].request_power(true);
-    run(20);
-  }
-  Refusal move(RequestKind kind, double value, double velocity, double acceleration = 0.0, int axis = 1,
-               Asker asker = Asker::plc) {
-    Request r;
-    r.kind = kind;
-    r.axis = static_cast<std::int8_t>(axis);
-    r.value = value;
-    r.velocity = velocity;
-    r.acceleration = acceleration;
-    r.asker = asker;
-    answer_ = decide(r, context_);
-    return static_cast<Refusal>(answer_.refusal);
-  }
-};
-
-TEST_F(GateOfAuxiliary, lets_the_plc_move_its_axis_also_while_a_program_runs_and_the_operator_jogs) {
-  image_.processes[0].state = ProcessState::running;
-  context_.manual_held = context_.homing_runs = true;
-  context_.holder = Asker::pendant;
-  EXPECT_EQ(move(RequestKind::move_absolute, 10, 5), Refusal::none);
-  EXPECT_EQ(move(RequestKind::move_relative, -10, 5, 1), Refusal::none);
-  EXPECT_EQ(move(RequestKind::move_velocity, -1, 5), Refusal::none);
-  EXPECT_EQ(move(RequestKind::axis_home, 0, 0), Refusal::none);
-  EXPECT_EQ(move(RequestKind::axis_power, 1, 0), Refusal::none);
-}
-
-TEST_F(GateOfAuxiliary, lets_nobody_but_the_plc_move_it) {
-  for (const Asker who : {Asker::command_line, Asker::page, Asker::pendant, Asker::scenario, Asker::modbus,
-                          Asker::program, Asker::bench})
-    for (const RequestKind k : {RequestKind::axis_power, RequestKind::axis_home, RequestKind::move_absolute,
-                                RequestKind::move_relative, RequestKind::move_velocity,
-                                RequestKind::axis_stop, RequestKind::axis_reset})
-      EXPECT_EQ(move(k, 1, 1, 0, 1, who), Refusal::asker_may_not) << static_cast<int>(k);
-  EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1), Refusal::axis_owned) << "by hand";
-  EXPECT_NE(english().find("the PLC"), std::string::npos) << english();
-  EXPECT_EQ(ask(RequestKind::jog_continuous, 1, 1), Refusal::axis_owned);
-  EXPECT_EQ(ask(RequestKind::home, 1), Refusal::axis_owned);
-  EXPECT_EQ(ask(RequestKind::zero, 1), Refusal::axis_owned);
-  EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1, Asker::plc), Refusal::none) << "<axis>.jog_plus";
-}
-
-TEST_F(GateOfAuxiliary, keeps_the_axes_of_programs_from_the_plc) {
-  for (const RequestKind k : {RequestKind::axis_power, RequestKind::axis_home, RequestKind::move_absolute,
-                              RequestKind::move_relative, RequestKind::move_velocity, RequestKind::axis_stop,
-                              RequestKind::axis_reset})
-    EXPECT_EQ(move(k, 1, 1, 0, 0), Refusal::axis_not_auxiliary) << static_cast<int>(k);
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1, 0, 7), Refusal::no_such_axis);
-}
-
-TEST_F(GateOfAuxiliary, homes_all_axes_without_it_and_starts_programs_whatever_it_does) {
-  image::Request request;
-  request.kind = RequestKind::home;
-  EXPECT_EQ(homing_mask(request, axes_), 1u);
-  axes_[1].request_power(false);
-  run(5);
-  EXPECT_EQ(ask(RequestKind::start), Refusal::none);
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::not_powered);
-}
-
-TEST_F(GateOfAuxiliary, says_why_a_motion_cannot_be) {
-  const axis::AxisConfig& c = axes_[1].config();
-  EXPECT_EQ(move(RequestKind::move_absolute, c.travel_max + 1, 5), Refusal::outside_travel);
-  EXPECT_EQ(move(RequestKind::move_relative, c.travel_min - 1, 5), Refusal::outside_travel);
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, 0), Refusal::velocity_range);
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, -1), Refusal::velocity_range);
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, std::numeric_limits<double>::quiet_NaN()),
-            Refusal::velocity_range);
-  EXPECT_EQ(move(RequestKind::move_absolute, std::numeric_limits<double>::infinity(), 1), Refusal::bad_value);
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, c.limits.velocity * 1.01), Refusal::velocity_range);
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1, c.limits.acceleration * 1.01),
-            Refusal::acceleration_range);
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1, -1), Refusal::acceleration_range);
-  EXPECT_EQ(move(RequestKind::move_velocity, 0.5, 1), Refusal::bad_value);
-  set(1, "feed_enable", false);
-  run(1);
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::feed_not_enabled);
-  set(1, "feed_enable", true);
-  set(1, "limit_plus", true);
-  run(1);
-  EXPECT_EQ(move(RequestKind::move_velocity, 1, 1), Refusal::on_hard_limit);
-  EXPECT_EQ(move(RequestKind::move_velocity, -1, 1), Refusal::none) << "away from it";
-}
-
-TEST_F(GateOfAuxiliary, wants_alarms_reset_and_the_drives_wished_for) {
-  context_.drives_wanted = false;
-  EXPECT_EQ(move(RequestKind::axis_power, 1, 0), Refusal::drives_not_wanted);
-  EXPECT_EQ(move(RequestKind::axis_power, 0, 0), Refusal::none);
-  context_.drives_wanted = true;
-  context_.axis_stopping = true;
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::axis_stopping);
-  context_.axis_error_stop = true;
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::axis_error_stop);
-  EXPECT_EQ(move(RequestKind::axis_reset, 0, 0), Refusal::none);
-  context_.axis_error_stop = context_.axis_stopping = false;
-  context_.reaction = Reaction::power_off;
-  context_.first_alarm = alarm::kEmergencyStop;
-  EXPECT_EQ(move(RequestKind::move_absolute, 1, 1), Refusal::emergency_stop);
-  EXPECT_EQ(move(RequestKind::axis_power, 1, 0), Refusal::emergency_stop);
-  EXPECT_EQ(move(RequestKind::axis_stop, 0, 0), Refusal::none);
-}
-
-TEST_F(GateOfAuxiliary, keeps_everybody_from_the_places_of_the_blocks) {
-  image_.packets.resize(4096, image::kSyvarDefaultSize);
-  const image::Place order = image::field(image::kMotionFields, "mc_order", image::motion_base(1));
-  EXPECT_EQ(ask_place(RequestKind::set_place, order), Refusal::place_not_writable);
-  EXPECT_EQ(ask_place(RequestKind::set_place,
-                      image::field(image::kMotionFields, "mc_order", image::motion_base(0))),
-            Refusal::none)
-      << "the first axis has none";
 }
 
 TEST_F(Gate, resumes_and_steps_only_a_program_that_is_held) {
