@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <span>
 
-#include "tests/plc/random_program.hpp"
-#include "tests/plc/two_paths.hpp"
+#include "tests/plc/two_paths/random_program.hpp"
+#include "tests/plc/two_paths/two_paths.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace servogate;

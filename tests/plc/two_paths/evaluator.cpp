@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/plc/evaluator.hpp"
+#include "tests/plc/two_paths/evaluator.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/plc/random_program.hpp"
+#include "tests/plc/two_paths/random_program.hpp"
 
 #include <functional>
 #include <random>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/plc/two_paths.hpp"
+#include "tests/plc/two_paths/two_paths.hpp"
 
 #include "plc/compile.hpp"
 #include "plc/front_end.hpp"
 #include "plc/lookup.hpp"
 #include "plc/values.hpp"
 #include "plc/vm/image.hpp"
-#include "tests/plc/evaluator.hpp"
+#include "tests/plc/two_paths/evaluator.hpp"
 
 namespace servogate::plc {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/plc/two_paths.hpp"
+#include "tests/plc/two_paths/two_paths.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <map>
 
-#include "tests/plc/random_program.hpp"
+#include "tests/plc/two_paths/random_program.hpp"
 
 namespace servogate::plc {
 namespace {
