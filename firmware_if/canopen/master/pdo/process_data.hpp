@@ -71,7 +71,7 @@ class ProcessData {
   }
   /// The remote frame that asks for TPDO `number`.
   image::CanFrame request(int number, NodeId node) const noexcept;
-  /// The RPDO with this field is not sent for now.
+  /// While `held`, the RPDO with this field is not sent.
   void hold(const PdoField& field, bool held) noexcept {
     if (field.mapped()) rpdo_[index_of(field)].held = held;
   }
