@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/channel/process.hpp"
@@ -174,10 +175,8 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
         e.mode == program::SpindleMode::keep ? spindle.mode() : spindle_mode(e.mode);
     spindle.order(mode, e.flag && e.value > 0.0 ? spindle.ordered_rpm() : e.value);
     surface_speed(c);
-    const bool same = spindle.ordered_rpm() == last_speed_;
-    if (e.value <= 0.0) last_speed_ = 0.0;
-    if (e.value <= 0.0 || same) return true;
-    last_speed_ = spindle.ordered_rpm();
+    const double before = std::exchange(last_speed_, e.value > 0.0 ? spindle.ordered_rpm() : 0.0);
+    if (e.value <= 0.0 || last_speed_ == before) return true;
   }
   return handshake(HandshakeWord::s, 0, last_speed_, e, c);
 }
