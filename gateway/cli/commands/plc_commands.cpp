@@ -61,13 +61,18 @@ void list(CLI::App& plc, PlcListOptions& o) {
   client(app, o.socket, o.json);
 }
 
+/// What `watch` and `step` show.
+void shown(CLI::App& app, std::vector<std::string>& names, std::string& body) {
+  app.add_option("NAME", names, "Variables and places; without one the lines of the first program");
+  app.add_option("--source", body, "Lines of this program or instance, as Mill or Mill.change")
+      ->type_name("BODY");
+}
+
 void watch(CLI::App& plc, PlcWatchOptions& o) {
   CLI::App& app =
       command(plc, "watch", "Shows values of the running PLC, beside its source lines or by name.",
               "servogate plc watch NC.m_code Mill.change.step");
-  app.add_option("NAME", o.names, "Variables and places; without one the lines of the first program");
-  app.add_option("--source", o.body, "Lines of this program or instance, as Mill or Mill.change")
-      ->type_name("BODY");
+  shown(app, o.names, o.body);
   app.add_flag("--times", o.times, "How long tasks and blocks take");
   app.add_option("--every", o.every_ms, "Time between samples in ms, 1 to 60000")
       ->type_name("MS")
@@ -82,9 +87,7 @@ void step(CLI::App& plc, PlcStepOptions& o) {
   CLI::App& app =
       command(plc, "step", "Holds the PLC of a control whose drives are off, and runs single scans.",
               "servogate plc step Mill.change.step lamp");
-  app.add_option("NAME", o.names, "Variables and places; without one the lines of the first program");
-  app.add_option("--source", o.body, "Lines of this program or instance, as Mill or Mill.change")
-      ->type_name("BODY");
+  shown(app, o.names, o.body);
   app.add_option(
          "--scans", o.scans,
          "Number of scans, 1 to 100000; without it one for each Enter, or as many as the number typed")
