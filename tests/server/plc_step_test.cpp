@@ -11,17 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-json value(Shell& shell, const std::string& name) {
-  const json answer = shell.ask({{"cmd", "plc_watch"}, {"names", {name}}});
-  return answer.value("ok", false) ? answer["values"][0]["value"] : json();
-}
-
-bool becomes(Shell& shell, const std::string& name, const json& wanted) {
-  return shell.until([&](const json&) { return value(shell, name) == wanted; }, 20.0);
-}
-
 bool has_alarm(const json& status, int number) {
   for (const json& a : status["alarms"])
     if (a["number"] == number) return true;
@@ -31,7 +20,7 @@ bool has_alarm(const json& status, int number) {
 TEST(SingleScans, show_the_values_of_each_and_let_the_plc_go) {
   Shell shell;
   shell.up();
-  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  ASSERT_TRUE(shell.plc_becomes("MC.estop_ok", true));
   const Outcome o = shell.run({"plc", "step", "MC.estop_ok", "Mill.change.step", "--scans", "3", "--json"});
   EXPECT_EQ(o.exit, 0) << o.err;
   std::istringstream lines(o.out);
@@ -55,19 +44,20 @@ TEST(SingleScans, show_the_values_of_each_and_let_the_plc_go) {
 TEST(SingleScans, are_for_people_one_for_each_line_typed) {
   Shell shell;
   shell.up();
-  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  ASSERT_TRUE(shell.plc_becomes("MC.estop_ok", true));
   for (const int signal : {SIGINT, SIGTERM}) {
     const pid_t client = shell.spawn({"plc", "step", "--source", "Mill.change"}, "step");
     EXPECT_TRUE(shell.until([](const json& s) { return s["plc_held_by"].is_string(); }));
-    EXPECT_TRUE(shell.until([&](const json&) { return has(shell.text("step.err"), "Enter runs a scan"); }));
+    EXPECT_TRUE(
+        shell.until([&](const json&) { return contains(shell.text("step.err"), "Enter runs a scan"); }));
     kill(client, signal);
     int status = 0;
     waitpid(client, &status, 0);
     EXPECT_EQ(status, 0);
     const std::string out = shell.text("step.out");
-    EXPECT_TRUE(has(out, "the PLC is held")) << out;
-    EXPECT_TRUE(has(out, "step = Idle")) << out;
-    EXPECT_TRUE(has(out, "the PLC runs freely again")) << out;
+    EXPECT_TRUE(contains(out, "the PLC is held")) << out;
+    EXPECT_TRUE(contains(out, "step = Idle")) << out;
+    EXPECT_TRUE(contains(out, "the PLC runs freely again")) << out;
   }
 }
 
@@ -77,14 +67,14 @@ TEST(SingleScans, are_refused_while_the_drives_are_on) {
   shell.ready();
   const Outcome o = shell.run({"plc", "step", "MC.estop_ok", "--scans", "1"});
   EXPECT_EQ(o.exit, 1);
-  EXPECT_TRUE(has(o.err, "[gate.drives_on]")) << o.err;
+  EXPECT_TRUE(contains(o.err, "[gate.drives_on]")) << o.err;
   EXPECT_TRUE(shell.status()["axes"][0]["enabled"].get<bool>());
 }
 
 TEST(SingleScans, belong_to_the_client_that_holds_and_end_with_it) {
   Shell shell;
   shell.up();
-  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  ASSERT_TRUE(shell.plc_becomes("MC.estop_ok", true));
   {
     SocketClient client;
     ASSERT_EQ(client.connect(shell.socket()), "");
@@ -96,7 +86,7 @@ TEST(SingleScans, belong_to_the_client_that_holds_and_end_with_it) {
     json answer = ask(R"({"cmd":"plc_hold"})");
     ASSERT_TRUE(answer.value("ok", false)) << answer;
     EXPECT_FALSE(shell.status()["plc_held_by"].is_null());
-    EXPECT_TRUE(has(shell.run({"status"}).out, "the PLC is held for single scans"));
+    EXPECT_TRUE(contains(shell.run({"status"}).out, "the PLC is held for single scans"));
     for (const char* command : {"plc_step", "plc_go"}) {
       answer = shell.ask({{"cmd", command}});
       EXPECT_EQ(answer["code"], "plc.not-holder") << "another client";
@@ -116,23 +106,24 @@ TEST(SingleScans, belong_to_the_client_that_holds_and_end_with_it) {
 TEST(SingleScans, see_what_is_forced_between_them) {
   Shell shell;
   shell.up();
-  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  ASSERT_TRUE(shell.plc_becomes("MC.estop_ok", true));
   ASSERT_EQ(shell.run({"plc", "force", "Mill.change.alarm=5", "--stay"}).exit, 0);
   const Outcome o = shell.run({"plc", "step", "Mill.change.alarm", "--scans", "1"});
-  EXPECT_TRUE(has(o.out, "Mill.change.alarm = 5  (forced)")) << o.out;
+  EXPECT_TRUE(contains(o.out, "Mill.change.alarm = 5  (forced)")) << o.out;
 }
 
 TEST(Forcing, takes_addresses_as_bit_strings_and_as_numbers) {
   Shell shell;
   shell.up();
-  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  ASSERT_TRUE(shell.plc_becomes("MC.estop_ok", true));
   EXPECT_EQ(shell.run({"plc", "force", "%MW8=16#FF00", "--stay"}).exit, 0);
-  EXPECT_TRUE(becomes(shell, "%MW8", 0xFF00));
-  EXPECT_EQ(value(shell, "SK8.IN"), -256);
-  EXPECT_TRUE(has(shell.run({"plc", "watch", "SK8.IN", "--samples", "1"}).out, "SK8.IN = -256  (forced)"))
+  EXPECT_TRUE(shell.plc_becomes("%MW8", 0xFF00));
+  EXPECT_EQ(shell.plc_value("SK8.IN"), -256);
+  EXPECT_TRUE(
+      contains(shell.run({"plc", "watch", "SK8.IN", "--samples", "1"}).out, "SK8.IN = -256  (forced)"))
       << "by any name of the place";
   EXPECT_EQ(shell.run({"plc", "force", "%MW8=-2", "--stay"}).exit, 0);
-  EXPECT_TRUE(becomes(shell, "%MW8", 0xFFFE));
+  EXPECT_TRUE(shell.plc_becomes("%MW8", 0xFFFE));
   EXPECT_EQ(shell.status()["forced"].size(), 1u);
   EXPECT_EQ(shell.run({"plc", "force", "%MW8=high", "--stay"}).exit, 2);
   EXPECT_EQ(shell.run({"plc", "force", "%MW99999=1", "--stay"}).exit, 1) << "outside the packet";
@@ -143,13 +134,13 @@ TEST(Forcing, takes_addresses_as_bit_strings_and_as_numbers) {
 TEST(Forcing, holds_characters_that_no_variable_stands_for) {
   Shell shell;
   shell.up();
-  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  ASSERT_TRUE(shell.plc_becomes("MC.estop_ok", true));
   EXPECT_EQ(shell.run({"plc", "force", "SK800.4CH=abc", "--stay"}).exit, 0);
-  EXPECT_TRUE(becomes(shell, "SK200.LI", 0x20636261)) << "'abc ' from the lowest byte on";
-  EXPECT_TRUE(has(shell.run({"status"}).out, "forced: SK800.4CH = abc"));
+  EXPECT_TRUE(shell.plc_becomes("SK200.LI", 0x20636261)) << "'abc ' from the lowest byte on";
+  EXPECT_TRUE(contains(shell.run({"status"}).out, "forced: SK800.4CH = abc"));
   EXPECT_EQ(shell.run({"plc", "force", "SK800.4CH=longer", "--stay"}).exit, 2);
   EXPECT_EQ(shell.run({"plc", "force", "SK800.4CH=xy", "--stay"}).exit, 0);
-  EXPECT_TRUE(becomes(shell, "SK200.LI", 0x20207978));
+  EXPECT_TRUE(shell.plc_becomes("SK200.LI", 0x20207978));
   EXPECT_EQ(shell.run({"plc", "force", "--release"}).exit, 0);
   EXPECT_TRUE(shell.status()["forced"].empty());
 }
@@ -157,12 +148,12 @@ TEST(Forcing, holds_characters_that_no_variable_stands_for) {
 TEST(Forcing, is_marked_at_what_it_reaches_under_another_name) {
   Shell shell;
   shell.up();
-  ASSERT_TRUE(becomes(shell, "MC.estop_ok", true));
+  ASSERT_TRUE(shell.plc_becomes("MC.estop_ok", true));
   EXPECT_EQ(shell.run({"plc", "force", "LAMP_green=TRUE", "--stay"}).exit, 0);
-  EXPECT_TRUE(becomes(shell, "lamp_green", true));
+  EXPECT_TRUE(shell.plc_becomes("lamp_green", true));
   const Outcome watched = shell.run({"plc", "watch", "lamp_green", "--samples", "1"});
-  EXPECT_TRUE(has(watched.out, "lamp_green = TRUE  (forced)")) << watched.out;
-  EXPECT_TRUE(has(shell.run({"plc", "list"}).out, "forced to TRUE"));
+  EXPECT_TRUE(contains(watched.out, "lamp_green = TRUE  (forced)")) << watched.out;
+  EXPECT_TRUE(contains(shell.run({"plc", "list"}).out, "forced to TRUE"));
 }
 
 }  // namespace

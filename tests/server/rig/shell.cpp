@@ -135,6 +135,15 @@ bool Shell::until(const std::function<bool(const json&)>& good, double patience_
   return false;
 }
 
+json Shell::plc_value(const std::string& name) {
+  const json answer = ask({{"cmd", "plc_watch"}, {"names", {name}}});
+  return answer.value("ok", false) ? answer["values"][0]["value"] : json();
+}
+
+bool Shell::plc_becomes(const std::string& name, const json& wanted) {
+  return until([&](const json&) { return plc_value(name) == wanted; }, 20.0);
+}
+
 void Shell::ready() {
   ASSERT_EQ(run({"power", "on", "--wait"}).exit, 0);
   ASSERT_EQ(run({"home", "--wait"}).exit, 0);

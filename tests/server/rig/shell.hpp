@@ -50,6 +50,10 @@ class Shell {
   nlohmann::json status() { return ask({{"cmd", "status"}}); }
   /// Asks for the status until `good` says so; false after `patience_s`.
   bool until(const std::function<bool(const nlohmann::json&)>& good, double patience_s = 30.0);
+  /// Value of a variable or place of the PLC; null: there is none.
+  nlohmann::json plc_value(const std::string& name);
+  /// Waits until it has this value.
+  bool plc_becomes(const std::string& name, const nlohmann::json& wanted);
   /// Switched on and homed.
   void ready();
 
