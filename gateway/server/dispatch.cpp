@@ -285,7 +285,9 @@ Reply Dispatch::home() {
   for (const json& name : axes) {
     const int index = axis(name);
     if (index < 0) return refusal_;
-    mask |= 1u << index;
+    const std::uint32_t bit = 1u << index;
+    if ((mask & bit) != 0) continue;
+    mask |= bit;
     names += (names.empty() ? "" : ", ") + axis_config(index).letter;
   }
   if (!ask(RequestKind::home, -1, mask, image::Mode::home)) return refusal_;

@@ -25,7 +25,9 @@ TEST(Power, is_on_when_the_command_has_ended_brakes_included) {
   EXPECT_EQ(on.exit, 0) << on.err;
   EXPECT_NE(on.out.find("the drives are on"), std::string::npos) << on.out;
   EXPECT_TRUE(all_on(shell.status()));
-  EXPECT_EQ(shell.run({"home", "Z"}).exit, 0) << "the axis with the brake is ready at once";
+  const Outcome home = shell.run({"home", "Z", "Z"});
+  EXPECT_EQ(home.exit, 0) << "the axis with the brake is ready at once";
+  EXPECT_EQ(home.out, "homing Z\n") << "an axis named twice is homed once";
   ASSERT_TRUE(shell.until([](const json& s) { return !s["homing"].get<bool>(); }));
   EXPECT_EQ(shell.run({"power", "off"}).exit, 0);
   EXPECT_FALSE(shell.status()["axes"][2]["enabled"].get<bool>());

@@ -116,6 +116,21 @@ class AxisCheck {
     if (h.slow <= 0.0 && !unread("home.slow")) error("home", finding::kHomeSpeedMissing, {method, "slow"});
     if ((by_switch || by_drive) && h.fast > 0.0 && h.slow > h.fast)
       error("home.slow", finding::kHomeSpeedOrder, {speed(h.slow), speed(h.fast)});
+    if (by_switch) home_switch_of_another();
+  }
+  /// A switch of two axes does not tell which of them is on it.
+  void home_switch_of_another() {
+    const HomingConfig& h = a_.home;
+    if (h.switch_point.empty()) return;
+    for (std::size_t i = 0; i < index_; ++i) {
+      const AxisConfig& other = machine_.axes[i];
+      if (other.home.switch_point != h.switch_point) continue;
+      if (other.home.order == h.order)
+        error("home.switch", finding::kHomeSwitchAtOnce,
+              {other.letter, h.switch_point, std::to_string(h.order)});
+      else
+        warning("home.switch", finding::kHomeSwitchShared, {other.letter, h.switch_point});
+    }
   }
 
   void not_above(std::string_view key, double value) {

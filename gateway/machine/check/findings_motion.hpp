@@ -76,6 +76,19 @@ inline constexpr text::Entry kLimitInside{"machine.limit_inside",
 inline constexpr text::Entry kSamePoint{"machine.same_point",
                                         "{0}: `{1}` and `{2}` are the same point \"{3}\"",
                                         "{0}: «{1}» и «{2}» — один и тот же сигнал «{3}»"};
+inline constexpr text::Entry kHomeSwitchAtOnce{
+    "machine.home_switch_at_once",
+    "{0} and {1} would be homed at once (`home.order` {3}) on the same switch \"{2}\", which does not tell "
+    "which of them is on it: give one of them another `home.order`",
+    "{0} и {1} выходили бы в ноль одновременно (`home.order` {3}) по одному датчику «{2}», а он не "
+    "различает оси: задайте одной из них другой `home.order`"};
+inline constexpr text::Entry kHomeSwitchShared{
+    "machine.home_switch_shared",
+    "{0} and {1} have the same home switch \"{2}\": homing finds a wrong zero, or none, while the other axis "
+    "is "
+    "on it; let `home.final_position` leave it",
+    "У осей {0} и {1} один датчик нуля «{2}»: пока на нём другая ось, ноль будет найден неверно или не "
+    "найден; пусть `home.final_position` уводит ось с датчика"};
 inline constexpr text::Entry kVerticalBrake{
     "machine.vertical_without_brake", "{0} is vertical and has no brake: it falls when power goes",
     "{0}: вертикальная ось без тормоза: при снятии питания она упадёт"};
