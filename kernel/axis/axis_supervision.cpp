@@ -172,8 +172,7 @@ bool Axis::leaves_travel(const MotionState& state) noexcept {
 /// What it means that the drive let go.
 void Axis::supervise_power(PowerSequence::State before) noexcept {
   using State = PowerSequence::State;
-  if (before < State::torque || power_.state() != State::off || reaction_ >= image::Reaction::quick_stop)
-    return;
+  if (!power_.lost() || reaction_ >= image::Reaction::quick_stop) return;
   if (before == State::engaging || (before == State::stopping && !moving_)) return;  // as it was told
   power_requested_ = false;
   if (!drive_.online || drive_.state == DriveState::fault ||

@@ -20,7 +20,7 @@ void PowerSequence::configure(const BrakeData& brake) noexcept {
   brake_ = brake;
   state_ = State::off;
   in_state_s_ = 0.0;
-  drive_on_ = quick_ = false;
+  drive_on_ = quick_ = lost_ = false;
 }
 
 void PowerSequence::enter(State s) noexcept {
@@ -37,12 +37,14 @@ void PowerSequence::drop(const Inputs& in) noexcept {
     quick_ = true;
     enter(State::stopping);
   } else if (state_ >= State::torque && (quick_ ? !brakes(in.drive) : !drive_on_)) {
-    enter(State::off);  // the drive let go by itself: the brake closes at once
+    lost_ = true;  // the brake closes at once
+    enter(State::off);
   }
 }
 
 PowerSequence::Outputs PowerSequence::step(const Inputs& in) noexcept {
   in_state_s_ += in.dt;
+  lost_ = false;
   drive_on_ = in.drive == DriveState::operation_enabled;
   const bool forced = in.reaction == Reaction::power_off && state_ == State::engaging;
   if (state_ != State::off && !forced) {

@@ -10,8 +10,8 @@ namespace servogate::axis {
 
 /// Order of drive power and holding brake.
 /// On: power, Operation enabled, torque delay, brake opens, release delay, motion permitted.
-/// Off, and with the reaction stop and power off: the axis has come to rest, brake closes, engage delay, power
-/// goes. A drive that lets go by itself meanwhile, or in its quick stop: the brake closes at once.
+/// Off, and with the reaction stop and power off: the axis has come to rest, brake closes, engage delay,
+/// power goes. A drive that lets go by itself meanwhile, or in its quick stop: the brake closes at once.
 /// Reaction power off: the brake closes at once; an axis with a brake keeps its torque (in the drive's quick
 /// stop) for the engage delay, so that the load does not drop; one without loses power at once.
 class PowerSequence {
@@ -47,6 +47,8 @@ class PowerSequence {
   bool holding() const noexcept { return state_ >= State::torque && drive_on_ && !quick_; }
   /// The axis may be moved by its owner. real-time safe.
   bool motion_permitted() const noexcept { return state_ == State::ready && holding(); }
+  /// In the last step the drive was found without its torque, of which nobody had told it. real-time safe.
+  bool lost() const noexcept { return lost_; }
 
  private:
   bool has_brake() const noexcept { return brake_.output != BrakeOutput::none; }
@@ -58,6 +60,7 @@ class PowerSequence {
   double in_state_s_ = 0.0;
   bool drive_on_ = false;
   bool quick_ = false;
+  bool lost_ = false;
 };
 
 }  // namespace servogate::axis

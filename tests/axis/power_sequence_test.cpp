@@ -182,6 +182,34 @@ TEST(Power, of_an_axis_without_a_brake_goes_off_as_told_without_an_alarm) {
   EXPECT_TRUE(rig.events.empty());
 }
 
+/// The enable goes in the cycle `gone` of a power on with a jog, and comes again `for_cycles` later.
+std::vector<Event> enable_gone(const AxisConfig& config, int gone, int for_cycles) {
+  Rig rig(config);
+  rig.axis.request_power(true);
+  bool jogged = false, met = false;
+  for (int i = 0; i < 1200; ++i) {
+    if (i == gone) rig.plc("enable", false);
+    if (i == gone + for_cycles) rig.plc("enable", true);
+    const bool begins = !jogged && rig.axis.jog_increment(3.0);
+    jogged = jogged || begins;
+    met = met || (i == gone && (begins || rig.axis.moving()));
+    rig.cycle();
+    // What the cycle does with an alarm of this kind: the axes stop.
+    if (rig.raised(alarm::kEnableWithdrawn)) rig.reaction = Reaction::stop_axes;
+  }
+  EXPECT_EQ(rig.raised(alarm::kEnableWithdrawn), met) << "gone in cycle " << gone;
+  return rig.events;
+}
+
+TEST(Power, whose_enable_goes_in_whatever_cycle_is_withdrawn_in_motion_and_never_lost) {
+  for (const AxisConfig& config : {test::mill_axis(), vertical()})
+    for (int gone = 0; gone < 900; ++gone)
+      for (int for_cycles : {1, 2, 7, 2000})
+        for (const Event& e : enable_gone(config, gone, for_cycles))
+          ASSERT_EQ(e.number, alarm::kEnableWithdrawn)
+              << "gone in cycle " << gone << " for " << for_cycles << " cycles";
+}
+
 TEST(Power, in_a_quick_stop_the_drive_brakes_by_itself_and_the_command_follows_it) {
   Rig rig;
   ASSERT_TRUE(rig.enable());
