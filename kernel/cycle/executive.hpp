@@ -129,6 +129,7 @@ class Cycle {
   void handle_plc_requests() noexcept;
   image::Answer handle(const image::Request& request) noexcept;
   Refusal carry_out(const image::Request& request) noexcept;
+  Refusal write_place(const image::Request& request) noexcept;
   void change_mode(int process, image::Mode mode) noexcept;
   bool carry_out_motion(const image::Request& request, axis::Axis& axis) noexcept;
   bool hold_logic(const image::Request& request) noexcept;

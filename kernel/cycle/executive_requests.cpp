@@ -65,6 +65,28 @@ void Cycle::change_mode(int process, image::Mode mode) noexcept {
   parts_.processes[static_cast<std::size_t>(process)]->order(request, c);
 }
 
+// A force that stands is changed in its place; a new one needs room.
+Refusal Cycle::write_place(const Request& request) noexcept {
+  const image::Place place{static_cast<image::Packet>(request.packet),
+                           static_cast<image::Format>(request.format), request.index, request.length};
+  if (request.kind == RequestKind::set_place) {
+    image_.packets.set_number(place, request.value);
+    return Refusal::none;
+  }
+  const auto end = forced_.begin() + forced_count_;
+  const auto found = std::find_if(forced_.begin(), end, [&](const Forced& f) { return f.place == place; });
+  if (request.kind == RequestKind::release_force) {
+    if (found != end) *found = forced_[static_cast<std::size_t>(--forced_count_)];
+  } else if (found != end) {
+    found->value = request.value;
+  } else if (forced_count_ < static_cast<int>(forced_.size())) {
+    forced_[static_cast<std::size_t>(forced_count_++)] = {place, request.value};
+  } else {
+    return Refusal::forces_full;
+  }
+  return Refusal::none;
+}
+
 // What the gate cannot know (an axis not yet quite at rest) makes a late refusal.
 Refusal Cycle::carry_out(const Request& request) noexcept {
   Refusal refusal = Refusal::none;
@@ -133,25 +155,9 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       break;
     case RequestKind::set_place:
     case RequestKind::force:
-    case RequestKind::release_force: {
-      const image::Place place{static_cast<image::Packet>(request.packet),
-                               static_cast<image::Format>(request.format), request.index, request.length};
-      const auto end = forced_.begin() + forced_count_;
-      const auto found =
-          std::find_if(forced_.begin(), end, [&](const Forced& f) { return f.place == place; });
-      if (request.kind == RequestKind::set_place) {
-        image_.packets.set_number(place, request.value);
-      } else if (request.kind == RequestKind::release_force) {
-        if (found != end) *found = forced_[static_cast<std::size_t>(--forced_count_)];
-      } else if (found != end) {
-        found->value = request.value;
-      } else if (forced_count_ < static_cast<int>(forced_.size())) {
-        forced_[static_cast<std::size_t>(forced_count_++)] = {place, request.value};
-      } else {
-        refusal = Refusal::forces_full;
-      }
+    case RequestKind::release_force:
+      refusal = write_place(request);
       break;
-    }
     case RequestKind::axis_power:
     case RequestKind::axis_home:
     case RequestKind::move_absolute:
