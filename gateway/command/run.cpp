@@ -222,6 +222,7 @@ int Run::execute(const std::vector<std::string>& command_line) {
   const bool ran = realtime() ? realtime_loop(script, session) : virtual_loop(script, session);
   if (!ran) return kInfrastructure;
   wall_s_ = seconds_since(begin_);
+  control_->take_leave();
   server_.reset();
   return finish(script, session, command_line);
 }

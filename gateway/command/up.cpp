@@ -154,6 +154,7 @@ int up(const UpOptions& options) {
   const std::string problem = resident.save();
   virtual_loop.reset();
   if (realtime_loop != nullptr) realtime_loop->stop();
+  control->take_leave();
   const std::string unkept = keeper.close();
   const std::string unrecorded = record != nullptr ? record->close() : std::string();
   const std::string unlogged = can_log != nullptr ? can_log->close() : std::string();

@@ -26,6 +26,9 @@ class CanSupplier final : public image::CycleDevice {
   /// real-time safe.
   void send(image::ProcessImage& image) noexcept override { segment_.send(image); }
 
+  /// See canopen::Segment. real-time safe.
+  bool leave(image::Nanoseconds now) noexcept { return segment_.leave(now); }
+
   const canopen::Segment& segment() const noexcept { return segment_; }
   /// Reading objects from outside the cycle; one asker. real-time safe.
   canopen::ObjectQuestion& question() noexcept { return segment_.question(); }

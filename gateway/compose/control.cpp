@@ -2,6 +2,8 @@
 #include "gateway/compose/control.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/image/frame_record.hpp"
@@ -154,8 +156,7 @@ std::uint64_t Control::frames_lost(std::size_t bus) const noexcept {
 
 /// Time that other processes live in goes on to the beginning of the next cycle, with everything that happens
 /// until then.
-void Control::await_grants() {
-  const image::Nanoseconds t = cycle_->count() * cycle_->period_ns();
+void Control::await_grants(image::Nanoseconds t) {
   for (bool more = true; more;) {
     more = false;
     for (CanTransport& transport : transports_)
@@ -209,9 +210,29 @@ bool Control::compile_logic(std::vector<text::Finding>& findings) {
 }
 
 void Control::advance_world() {
-  await_grants();
+  const image::Nanoseconds t = cycle_->count() * cycle_->period_ns();
+  await_grants(t);
   world_->note_feedback(cycle_->image());
-  world_->advance_to(cycle_->count() * cycle_->period_ns());
+  world_->advance_to(t);
+}
+
+void Control::take_leave() {
+  constexpr image::Nanoseconds kPatience_ns = 500 * image::kMillisecond;
+  const image::Nanoseconds begin = cycle_->count() * cycle_->period_ns();
+  const bool granted = std::any_of(transports_.begin(), transports_.end(),
+                                   [](const CanTransport& t) { return t.lockstep != nullptr; });
+  bool done = false;
+  for (image::Nanoseconds t = begin; !done && t < begin + kPatience_ns; t += cycle_->period_ns()) {
+    if (granted)
+      await_grants(t);
+    else
+      std::this_thread::sleep_for(std::chrono::nanoseconds(cycle_->period_ns()));
+    done = true;
+    for (const auto& supplier : suppliers_) {
+      const auto bus = static_cast<std::size_t>(supplier->segment().config().index);
+      if (transports_[bus].bus != nullptr) done = supplier->leave(t) && done;
+    }
+  }
 }
 
 bool Control::read_ahead() {

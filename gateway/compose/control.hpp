@@ -78,6 +78,10 @@ class Control {
   void watch_logic() noexcept;
   /// When the present cycle was due; nullopt: in virtual time.
   std::optional<image::Nanoseconds> due_ns() const noexcept { return due_ns_; }
+  /// Behind the last cycle, by whoever owned the loop: drives that others go on to speak with no longer miss
+  /// this control (canopen::Segment::leave()). Takes as long as the drives need to answer, 0.5 s at most;
+  /// nothing on buses that end with this process.
+  void take_leave();
   /// Names for the sentences of alarms.
   cycle::AlarmNames alarm_names() const;
   /// True when nothing real can move.
@@ -91,7 +95,7 @@ class Control {
   explicit Control(const machine::LoadResult& loaded);
   bool compile_logic(std::vector<text::Finding>& findings);
   bool open_buses(std::vector<text::Finding>& findings, bool replay);
-  void await_grants();
+  void await_grants(image::Nanoseconds t);
 
   machine::LoadResult loaded_;
   std::unique_ptr<MockWorld> world_;

@@ -119,7 +119,8 @@ TEST(InterfaceMap, no_two_places_of_the_interface_overlap_and_all_lie_in_k) {
 
 TEST(InterfaceMap, a_field_of_the_second_process_lies_one_block_further) {
   constexpr Place strobe = field(kProcessFields, "m_strobe", kInterfaceBase);
-  EXPECT_EQ(at(strobe, kProcessBlock), field(kProcessFields, "m_strobe", process_base(1)));
+  constexpr Place second = field(kProcessFields, "m_strobe", process_base(1));
+  EXPECT_EQ(at(strobe, kProcessBlock), second);
   for (const Symbol& s : interface_symbols(2, {"X"}, 1))
     if (s.name == "NC2.m_strobe") {
       EXPECT_EQ(s.place, at(strobe, kProcessBlock));

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "firmware_if/canopen/301/nmt.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/402/statusword.hpp"
 
 namespace servogate::canopen {
 namespace {
@@ -321,6 +323,38 @@ bool BusNode::send_acyclic(const NodeContext& context) noexcept {
     if (!questioned_ && !history_.start(context.now, sdo_)) link_->start_access(context.now, sdo_);
   }
   return sdo_.poll(context.now, context.bus);
+}
+
+// A drive with torque goes on watching us: its own reaction is what stops it. Without process data its RPDO
+// deadlines end, too.
+bool BusNode::begin_leave(const NodeContext& context) noexcept {
+  if (drive_ == nullptr || phase_ != Phase::running) return false;
+  const auto state = decode_state(drive_->statusword());
+  if (state == image::DriveState::operation_enabled || state == image::DriveState::quick_stop_active ||
+      state == image::DriveState::fault_reaction_active)
+    return false;
+  phase_ = Phase::leaving;
+  return context.bus.send(nmt_frame(NmtCommand::enter_pre_operational, config_.node));
+}
+
+bool BusNode::leave(const NodeContext& context) noexcept {
+  if (phase_ != Phase::leaving) return !begin_leave(context);
+  struct Watch {
+    std::uint16_t index;
+    std::uint8_t subindex, bytes;
+    bool armed;
+  };
+  const bool guarded = config_.profile.guard_time_ms > 0;
+  const Watch watches[] = {
+      {object::kConsumerHeartbeatTime, 1, 4, !guarded && config_.profile.has_heartbeat_consumer},
+      {object::kLifeTimeFactor, 0, 1, guarded},
+      {object::kGuardTime, 0, 2, guarded}};
+  while (!sdo_.busy() && leave_said_ < std::size(watches)) {
+    const Watch& w = watches[leave_said_++];
+    if (w.armed) sdo_.download(w.index, w.subindex, 0u, w.bytes);
+  }
+  sdo_.poll(context.now, context.bus);
+  return !sdo_.busy() && leave_said_ == std::size(watches);
 }
 
 /// A message or 603Fh has named this error already.

@@ -53,6 +53,8 @@ class BusNode {
                         image::CanFrame& dropped) noexcept;
   /// Sends at most one frame of boot or SDO. True when it did.
   bool send_acyclic(const NodeContext& context) noexcept;
+  /// Behind the last cycle, see Segment::leave(): at most one frame. True: nothing is left to say.
+  bool leave(const NodeContext& context) noexcept;
 
  private:
   enum class Phase : std::uint8_t {
@@ -61,6 +63,7 @@ class BusNode {
     refused,  ///< the node answered, and not as it should: waits until it restarts
     running,
     lost,  ///< silent: waits for a sign of life
+    leaving,
   };
 
   void on_heartbeat(const image::CanFrame& frame, const NodeContext& context) noexcept;
@@ -76,6 +79,7 @@ class BusNode {
   void report_link(const NodeContext& context) noexcept;
   void fill(image::DriveFeedback& feedback) const noexcept;
   bool apply(const image::ProcessImage& image, const NodeContext& context) noexcept;
+  bool begin_leave(const NodeContext& context) noexcept;
   void finish_access(const NodeContext& context) noexcept;
   void finish_history(const NodeContext& context) noexcept;
   bool told(std::uint16_t error_code) const noexcept;
@@ -110,7 +114,8 @@ class BusNode {
   std::uint8_t restarts_ = 0;
   bool refusal_said_ = false;
   bool handover_said_ = false;
-  bool questioned_ = false;  ///< the transfer under way answers a question from outside
+  std::uint8_t leave_said_ = 0;  ///< so many of the objects that make it miss us
+  bool questioned_ = false;      ///< the transfer under way answers a question from outside
 };
 
 }  // namespace servogate::canopen

@@ -366,6 +366,23 @@ void Segment::send(ProcessImage& image) noexcept {
   my.send_acyclic(image);
 }
 
+bool Segment::leave(image::Nanoseconds now) noexcept {
+  Impl& my = *impl_;
+  const NodeContext context{static_cast<std::int16_t>(my.config.index), 0, now, my.bus, my.ring, my.question};
+  image::CanFrame frame;
+  for (int n = 0; n < kMaxFramesPerCycle && my.bus.receive(frame); ++n) {
+    const CobId cob = classify(frame.id, frame.extended);
+    const bool answer = cob.service == Service::sdo_response && !frame.error && !frame.remote && !frame.fd;
+    if (const int i = answer ? my.index_of[cob.node] : -1; i >= 0)
+      my.nodes[static_cast<std::size_t>(i)].on_frame(cob.service, frame, context);
+  }
+  if (now >= my.heartbeat_due_ns && my.bus.send(heartbeat_frame(my.config.own_node, NmtState::operational)))
+    my.heartbeat_due_ns = now + my.config.heartbeat_ms * image::kMillisecond;
+  bool done = true;
+  for (BusNode& node : my.nodes) done = node.leave(context) && done;
+  return done;
+}
+
 ObjectQuestion& Segment::question() noexcept { return impl_->question; }
 BusEventRing& Segment::events() noexcept { return impl_->ring; }
 const SegmentConfig& Segment::config() const noexcept { return impl_->config; }

@@ -45,6 +45,12 @@ class Segment final : public image::CycleDevice {
   /// RPDOs of drive_command and of outputs in packet A, then heartbeat, NMT and SDO. real-time safe.
   void send(image::ProcessImage& image) noexcept override;
 
+  /// Behind the last cycle, again and again with the time that goes on, until it is true: drives without torque
+  /// go to Pre-operational and no longer miss the heartbeat of the control (1016h or life guarding), so that
+  /// its end is no fault to them. A drive with torque and an I/O module go on watching: their own reaction is
+  /// what is wanted of them. real-time safe.
+  bool leave(image::Nanoseconds now) noexcept;
+
   /// Reading an object of a node that runs, from outside the cycle; one asker. real-time safe.
   ObjectQuestion& question() noexcept;
   /// What happened; one reader. real-time safe.

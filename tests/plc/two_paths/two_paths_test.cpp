@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 
@@ -14,7 +15,8 @@ namespace {
 TEST(TwoPaths, machine_and_tree_walk_agree_on_random_programs) {
   const char* given = std::getenv("SERVOGATE_SEED");
   const std::uint64_t first = given != nullptr ? std::strtoull(given, nullptr, 10) : 20'260'101;
-  const int count = 400;
+  const char* cases = std::getenv("SERVOGATE_PROPERTY_CASES");
+  const int count = cases != nullptr ? std::max(1, std::atoi(cases) / 5) : 400;
   std::printf("seeds %llu to %llu\n", static_cast<unsigned long long>(first),
               static_cast<unsigned long long>(first + count - 1));
   std::map<Fault, int> outcomes;
