@@ -159,19 +159,22 @@ inline constexpr InterfaceField kMotionFields[] = {
      "0 no axis, 1 disabled, 2 standstill, 3 homing, 4 discrete motion, 5 continuous motion, 6 stopping, "
      "7 stopped by an error"},
     {"mc_result", 13, 0, Format::by, Writer::nc,
-     "of the order in force: 0 under way, 1 done (at speed), 2 aborted, 3 error"},
+     "of the order in force: 0 under way, 1 done (at speed, at torque), 2 aborted, 3 error"},
     {"mc_powered", 14, 0, Format::by, Writer::nc, "1: the drive holds the axis, and it may move"},
     {"mc_power_refusal", 16, 0, Format::in, Writer::nc, "why mc_power was refused or fell, 0: it was not"},
+    {"mc_torque", 20, 0, Format::re, Writer::nc, "measured torque, per cent of the rated one"},
     {"mc_position", 24, 0, Format::lr, Writer::nc, "measured position, machine coordinates, mm or degrees"},
     {"mc_order_number", 32, 0, Format::li, Writer::plc, "another number: a new order"},
     {"mc_order", 36, 0, Format::by, Writer::plc,
      "0 none (stops), 1 home, 2 to a position, 3 by a distance, 4 at a speed, 5 stop, 6 end of the stop, 7 "
-     "reset"},
+     "reset, 8 torque"},
     {"mc_power", 37, 0, Format::by, Writer::plc,
      "1: drive power is wanted; it comes on with the rising edge"},
-    {"mc_target", 40, 0, Format::lr, Writer::plc, "position, distance (mm or degrees) or direction (sign)"},
+    {"mc_target", 40, 0, Format::lr, Writer::plc,
+     "position, distance (mm or degrees), direction (sign) or torque (per cent of the rated one)"},
     {"mc_velocity", 48, 0, Format::lr, Writer::plc, "speed, mm/s or degrees/s, above 0"},
-    {"mc_acceleration", 56, 0, Format::lr, Writer::plc, "mm/s2 or degrees/s2; 0: the axis' limit"},
+    {"mc_acceleration", 56, 0, Format::lr, Writer::plc,
+     "mm/s2 or degrees/s2, of a torque per cent a second; 0: the axis' limit"},
 };
 
 /// All symbols of the interface for a machine: `NC.` (process 1), `NC2.` ... , `<letter>.` per axis, `S.` and

@@ -39,6 +39,9 @@ enum class RequestKind : std::uint8_t {
   axis_stop,      ///< axis
   axis_reset,     ///< axis: its alarms, as far as their causes are gone
   logic_scan,     ///< value 1: the PLC is held, 2: then runs `index` scans, 0: runs freely again
+  /// Axis; value = torque in per cent of the rated one, velocity = its limit, acceleration = ramp in per cent
+  /// a second, 0: the axis' own. An auxiliary one, for the PLC alone.
+  torque,
 };
 
 /// A wish from outside, posted to the cycle through one bounded queue. Plain data.

@@ -155,6 +155,7 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
     c.brake.release_delay = a.brake.release_delay;
     c.brake.engage_delay = a.brake.engage_delay;
   }
+  c.torque = {a.torque_max, a.greatest_torque_ramp()};
   c.jog_velocity = a.jog();
   c.slow_velocity = a.jog_not_homed();
   c.drive = drive_place(m, a.drive);

@@ -29,6 +29,7 @@ constexpr Row kAlarms[] = {
     {BusEventKind::pdo_short, cycle::alarm::kPdoShort},
     {BusEventKind::node_restarted, cycle::alarm::kNodeRestarted},
     {BusEventKind::node_left, cycle::alarm::kNodeLeft},
+    {BusEventKind::not_interpolating, cycle::alarm::kNotInterpolating},
     {BusEventKind::foreign_frame, cycle::alarm::kForeignFrame},
     {BusEventKind::send_failed, cycle::alarm::kBusSendOverflow},
 };
@@ -60,7 +61,26 @@ void CanSupplier::open_cycle(image::ProcessImage& image) noexcept {
 void CanSupplier::receive(image::ProcessImage& image) noexcept {
   segment_.receive(image);
   canopen::BusEvent event;
-  for (int i = 0; i < cycle::kNoticesPerCycle && segment_.events().pop(event); ++i) report(event);
+  while (room() && segment_.events().pop(event)) report(event);
+  report_lost();
+}
+
+/// What finds no place in this cycle waits in the ring for the next one; a few are left to others.
+bool CanSupplier::room() const noexcept {
+  constexpr int kOfOthers = 4;
+  return notices_ == nullptr || notices_->room() > kOfOthers;
+}
+
+/// What the full ring swallowed.
+void CanSupplier::report_lost() noexcept {
+  const std::uint32_t lost = segment_.events().lost();
+  if (notices_ == nullptr || lost == lost_said_ || notices_->room() == 0) return;
+  image::AlarmRecord r;
+  r.number = cycle::alarm::kReportsLost;
+  r.segment = static_cast<std::int16_t>(segment_.config().index);
+  r.value = lost - lost_said_;
+  notices_->add(r);
+  lost_said_ = lost;
 }
 
 void CanSupplier::report(const canopen::BusEvent& event) noexcept {

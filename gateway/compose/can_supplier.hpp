@@ -35,11 +35,14 @@ class CanSupplier final : public image::CycleDevice {
 
  private:
   void report(const canopen::BusEvent& event) noexcept;
+  bool room() const noexcept;
+  void report_lost() noexcept;
 
   canopen::Segment segment_;
   cycle::Notices* notices_ = nullptr;
   const image::Clock* clock_ = nullptr;
   image::Nanoseconds sync_ns_ = 0;
+  std::uint32_t lost_said_ = 0;
 };
 
 /// A start-up that failed in the figures of an alarm record (kBootFailed), and back; texts that a device

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "firmware_if/canopen/402/objects.hpp"
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/machine/can_channel.hpp"
 
@@ -29,6 +30,40 @@ std::optional<canopen::NodeHoming> homing_of(const machine::AxisConfig& a, const
   if (a.home.slow > 0.0) h.speed_zero = object_value(a.home.slow * counts / p.velocity_unit_counts_s);
   h.acceleration = object_value(a.homing_acceleration() * counts / p.acceleration_unit_counts_s2);
   return h;
+}
+
+/// Limits and ramp of a spindle in the units of its drive's 6042h. A ramp of few units a second is told over
+/// a longer time.
+canopen::NodeVl vl_of(const machine::SpindleConfig& s, const canopen::DriveProfile& p) {
+  canopen::NodeVl vl;
+  const auto factor = [&p](std::uint16_t index, std::int32_t(&to)[2]) {
+    const machine::VlFactor f = machine::vl_factor(p, index);
+    to[0] = f.numerator;
+    to[1] = f.denominator;
+  };
+  factor(canopen::object::kVlSetpointFactor, vl.set_point_factor);
+  factor(canopen::object::kVlDimensionFactor, vl.dimension_factor);
+  const double per_rpm = static_cast<double>(s.gear[0]) / static_cast<double>(s.gear[1]) / 60.0 *
+                         static_cast<double>(p.counts_per_rev) / std::abs(p.vl_unit_counts_s);
+  vl.least = s.min_speed > 0.0 ? object_value(s.min_speed * per_rpm) : 0;
+  vl.most = object_value(std::ceil(s.max_speed * per_rpm));
+  double speed = s.acceleration * per_rpm;
+  while (speed < 100.0 && vl.ramp.seconds < 1000) {
+    speed *= 10.0;
+    vl.ramp.seconds = static_cast<std::uint16_t>(vl.ramp.seconds * 10);
+  }
+  vl.ramp.speed = object_value(speed);
+  return vl;
+}
+
+/// The speed limit is the drive's own and lies above what the control watches.
+canopen::NodeTorque torque_of(const machine::AxisConfig& a, const canopen::DriveProfile& p) {
+  constexpr double kAbove = 1.3;
+  canopen::NodeTorque t;
+  if (p.torque_mode == canopen::OperationMode::profile_torque)
+    t.slope = object_value(a.greatest_torque_ramp() * 10.0 / p.torque_unit_permille);
+  t.max_speed = object_value(std::ceil(kAbove * a.motor_rpm(a.max_velocity)));
+  return t;
 }
 
 void put_files(const machine::LoadResult& loaded, const machine::NodeConfig& node,
@@ -138,6 +173,9 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
         n.profile.velocity_mode == canopen::OperationMode::profile_velocity)
       n.setup.speed_ramp = object_value(ramp_rpm_s / 60.0 * static_cast<double>(n.profile.counts_per_rev) /
                                         n.profile.acceleration_unit_counts_s2);
+    if (n.target == canopen::DriveTarget::spindle &&
+        n.profile.velocity_mode == canopen::OperationMode::velocity)
+      n.setup.vl = vl_of(m.spindles[static_cast<std::size_t>(n.target_index)], n.profile);
     if (n.target == canopen::DriveTarget::spindle)
       braking_counts_s2 = ramp_rpm_s / 60.0 * static_cast<double>(n.profile.counts_per_rev);
     n.setup.quick_stop_ramp = object_value(braking_counts_s2 / n.profile.acceleration_unit_counts_s2);
@@ -149,6 +187,10 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
         n.setup.profile_speed =
             object_value(axis.max_velocity * axis.counts_per_unit() / n.profile.velocity_unit_counts_s);
         n.setup.speed_ramp = object_value(braking_counts_s2 / n.profile.acceleration_unit_counts_s2);
+      }
+      if (axis.torque_max > 0.0) {
+        n.setup.torque = torque_of(axis, n.profile);
+        n.profile.modes |= canopen::supported_bit(n.profile.torque_mode);
       }
       if (axis.home.method == machine::HomingMethod::drive)
         n.profile.modes |= canopen::supported_bit(canopen::OperationMode::homing);

@@ -104,6 +104,8 @@ struct AxisConfig {
   double backlash = 0.0;                           ///< mm, taken up when moving in minus direction
   std::vector<std::array<double, 2>> pitch_table;  ///< machine coordinate mm -> error mm, rising coordinates
   bool vertical = false;
+  double torque_max = 0.0;   ///< per cent of the motor's rated torque, for MC_TorqueControl; 0: none
+  double torque_ramp = 0.0;  ///< per cent a second, 0: torque_max in a second
   HomingConfig home;
   BrakeConfig brake;
 
@@ -123,6 +125,7 @@ struct AxisConfig {
   double homing_acceleration() const {
     return home.acceleration > 0.0 ? home.acceleration : max_acceleration;
   }
+  double greatest_torque_ramp() const { return torque_ramp > 0.0 ? torque_ramp : torque_max; }
   double jog() const { return jog_velocity > 0.0 ? jog_velocity : max_velocity / 10.0; }
   double jog_not_homed() const {
     return jog_velocity_not_homed > 0.0 ? jog_velocity_not_homed : max_velocity / 100.0;

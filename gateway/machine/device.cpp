@@ -341,6 +341,8 @@ void put_behaviour(const BehaviourConfig& b, canopen::DriveProfile& p) {
   p.ip_velocity_entry = entry("velocity");
   static constexpr std::string_view kSpeed[] = {"csv", "pv", "vl"};
   p.velocity_mode = mode_of(kSpeed[static_cast<std::size_t>(b.speed_mode)]);
+  static constexpr std::string_view kTorque[] = {"cst", "tq"};
+  p.torque_mode = mode_of(kTorque[static_cast<std::size_t>(b.torque_mode)]);
   p.fault_reset =
       b.fault_reset == FaultResetBy::level ? canopen::FaultReset::level : canopen::FaultReset::edge;
   p.fault_reset_hold_ms = static_cast<std::int32_t>(std::lround(b.fault_reset_hold * 1e3));
@@ -399,6 +401,17 @@ std::optional<PdoObject> parse_object(std::string_view text) {
   return out;
 }
 
+VlFactor vl_factor(const canopen::DriveProfile& profile, std::uint16_t index) {
+  VlFactor factor;
+  for (const canopen::SdoSetting& s : profile.settings) {  // a node's own come later
+    if (s.index != index || s.value == 0) continue;
+    const auto value = s.bytes == 2 ? static_cast<std::int16_t>(s.value) : static_cast<std::int32_t>(s.value);
+    if (s.subindex == 1) factor.numerator = value;
+    if (s.subindex == 2) factor.denominator = value;
+  }
+  return factor;
+}
+
 canopen::DriveProfile drive_profile(const DeviceConfig& device, const NodeConfig& node,
                                     std::int64_t counts_per_rev) {
   canopen::DriveProfile p;
@@ -417,6 +430,11 @@ canopen::DriveProfile drive_profile(const DeviceConfig& device, const NodeConfig
   put_pdos(device.tpdos, p.tpdo);
   put_settings(device.objects, device.write_only, p.settings);
   put_settings(node.objects, device.write_only, p.settings);
+  double rpm = 1.0;
+  for (const VlFactor factor :
+       {vl_factor(p, canopen::object::kVlSetpointFactor), vl_factor(p, canopen::object::kVlDimensionFactor)})
+    rpm *= static_cast<double>(factor.numerator) / factor.denominator;
+  p.vl_unit_counts_s = rpm * static_cast<double>(p.counts_per_rev) / 60.0;
   for (const DeviceError& e : device.errors)
     p.error_texts.push_back({static_cast<std::uint16_t>(e.code), e.english, e.russian});
   return p;

@@ -61,6 +61,7 @@ enum class ConnectionLoss : std::uint8_t { none, fault, disable_voltage, quick_s
 enum class FaultResetBy : std::uint8_t { edge, level };
 enum class PositionMode : std::uint8_t { csp, ip, pp };
 enum class SpeedMode : std::uint8_t { csv, pv, vl };
+enum class TorqueMode : std::uint8_t { cst, tq };
 
 /// [behaviour]: where a drive differs from CiA 402, in the names of canopen::DriveProfile.
 struct BehaviourConfig {
@@ -75,6 +76,7 @@ struct BehaviourConfig {
   std::vector<std::string> ip_record = {"position"};  ///< what 60C1h:01, :02 ... are
   bool ip_buffer = false;                             ///< has 60C4h
   SpeedMode speed_mode = SpeedMode::csv;              ///< the drive's mode for csv of the kernel
+  TorqueMode torque_mode = TorqueMode::cst;           ///< the drive's mode for a torque command
   FaultResetBy fault_reset = FaultResetBy::edge;
   double fault_reset_hold = 0.02;           ///< s that controlword bit 7 stays set
   double transition_timeout = 2.0;          ///< s, then a transition counts as refused
@@ -168,6 +170,12 @@ bool has_homing_method(const DeviceConfig& device, int method);
 /// "6065:00/32", "6065:00", "6065" -> index (hexadecimal), subindex, bits (0 when not given); nullopt: not of
 /// that form.
 std::optional<PdoObject> parse_object(std::string_view text);
+
+/// 604Bh or 604Ch of the velocity mode vl, as the device file or the node sets it; 1 where neither does.
+struct VlFactor {
+  std::int32_t numerator = 1, denominator = 1;
+};
+VlFactor vl_factor(const canopen::DriveProfile& profile, std::uint16_t index);
 
 /// The device file as the CANopen master wants it: a node's own objects after the device's; counts_per_rev of
 /// the axis.

@@ -19,6 +19,7 @@ void Axis::configure(const AxisConfig& config, int index) {
   compensation_.configure(config);
   power_.configure(config.brake);
   homing_.configure(config.homing, config.limits);
+  torque_.configure(config.torque);
   if (config.homing.method == HomingMethod::none) set_reference(config.reference_counts);
 }
 
@@ -98,7 +99,7 @@ void Axis::advance(double dt, image::Nanoseconds now) noexcept {
   else if (!by_itself && !stopped_by_reaction_)
     advance_process(dt);
   moving_ = set_.v != 0.0 || set_.a != 0.0 || set_.x != before || (own_motion_ && !ramp_.done()) ||
-            homing_.active() || homing_.drive_leads();
+            homing_.active() || homing_.drive_leads() || torque_.leads();
   // Whoever left the path comes back to it with the next start only, never while the process still brakes on
   // it.
   const bool path_ended = !process_given_;
@@ -131,6 +132,7 @@ void Axis::advance_process(double dt) noexcept {
 }
 
 void Axis::advance_own(double dt, image::Nanoseconds now) noexcept {
+  if (torque_.leads()) return advance_torque(dt);
   if (!stopped_by_reaction_) {
     if (homing_.active())
       advance_homing(dt);
@@ -161,6 +163,25 @@ void Axis::advance_homing(double dt) noexcept {
   if (!homing_.take_reference()) return;
   set_machine_position(homing_.captured_counts());
   check_index_place();
+}
+
+/// The set-point goes along with the axis: where it is by now, at the speed it has. From there it brakes.
+void Axis::advance_torque(double dt) noexcept {
+  using Failure = TorqueControl::Failure;
+  const Failure failure =
+      torque_.step({dt, drive_.mode, actual_velocity_, config_.standstill_velocity, feed_enable_});
+  if (failure == Failure::too_fast)
+    raise(alarm::kTorqueTooFast, torque_.velocity_limit(), std::abs(actual_velocity_));
+  else if (failure != Failure::none)
+    raise(alarm::kTorqueModeRefused, failure == Failure::no_return ? 1.0 : 0.0, torque_.wanted());
+  if (failure != Failure::none && !stopped_by_reaction_) take_away();
+  const double speed = actual_standing_ ? 0.0 : actual_velocity_;
+  set_ = {actual_ + speed * dt * config_.feedback_delay, speed, 0.0};
+  if (homed_) compensation_value_ = compensation_.at(set_.x);
+  compensation_.seat(set_.x, speed > 0.0 ? 1 : speed < 0.0 ? -1 : 0);
+  ramp_.reset(set_, config_.limits);
+  fill_history(speed * dt);
+  if (!torque_.leads() && manual_ == Manual::torque) manual_ = Manual::rest;
 }
 
 /// The drive homes by itself: the set-point is where it is, and nothing falls behind.
@@ -219,18 +240,25 @@ void Axis::break_homing(image::JogEnd why) noexcept {
 void Axis::take_away(image::JogEnd why) noexcept {
   end_jog(why);
   if (homing_.active()) break_homing(why);
+  torque_.leave();
   manual_ = Manual::rest;
   ramp_.reset(set_, config_.limits);
   own_motion_ = true;
   stopped_by_reaction_ = true;
 }
 
-void Axis::fill_history() noexcept { history_.fill({set_.x, compensation_value_}); }
+/// As if the set-point had come here with this step a cycle; what is sent in this cycle comes on top.
+void Axis::fill_history(double step) noexcept {
+  for (int ago = 0; ago < kHistory; ++ago)
+    history_[static_cast<std::size_t>((head_ + kHistory - ago) % kHistory)] = {set_.x - step * (ago + 1),
+                                                                               compensation_value_};
+}
 
 /// The drive does not hold the axis: the set-point is where the axis is.
 void Axis::follow_feedback() noexcept {
   if (homing_.active()) break_homing(image::JogEnd::power);
   homing_.drop();
+  torque_.drop();
   if (homed_) compensation_value_ = compensation_.at(motor_ - compensation_value_);
   actual_ = motor_ - compensation_value_;
   set_ = {actual_, 0.0, 0.0};
@@ -285,7 +313,10 @@ void Axis::write_drive(image::ProcessImage& image, const PowerSequence::Outputs&
   out.reset_fault = reset_pending_;
   out.brake_release = power.brake_release && config_.brake.output == BrakeOutput::drive;
   const DriveLedHoming& led = homing_.drive_led();
-  out.mode = led.wants_homing_mode() ? image::DriveMode::homing : image::DriveMode::csp;
+  out.mode = led.wants_homing_mode() ? image::DriveMode::homing
+             : torque_.wants_mode()  ? image::DriveMode::cst
+                                     : image::DriveMode::csp;
+  out.torque_permille = torque_.command() * 10.0 * scale_.direction;
   out.halt = led.wants_halt();
   out.quick_stop = out.quick_stop || led.wants_quick_stop();
   out.latch_source = image::LatchSource::zero_mark;

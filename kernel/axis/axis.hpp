@@ -12,6 +12,7 @@
 #include "kernel/axis/power_sequence.hpp"
 #include "kernel/axis/ramp.hpp"
 #include "kernel/axis/scale.hpp"
+#include "kernel/axis/torque/torque_control.hpp"
 
 namespace servogate::axis {
 
@@ -88,6 +89,17 @@ class Axis {
   bool plc_move_at(int direction, MotionLimits limits) noexcept;
   /// Such a motion is under way, or held on its way.
   bool plc_moves() const noexcept { return own_motion_ && manual_ == Manual::plc; }
+  /// Leads the auxiliary axis by torque, in per cent of the rated one with its sign, until another order of
+  /// the PLC, a stop or a reaction; `ramp` in per cent a second, 0: the axis' own. Another torque takes over.
+  bool plc_torque(double torque, double ramp, double velocity_limit) noexcept;
+  /// Torque leads the axis, as it was asked for.
+  bool torque_led() const noexcept { return own_motion_ && manual_ == Manual::torque; }
+  /// The torque that was asked for is there: as set, and as the drive measures it.
+  bool torque_reached() const noexcept;
+  /// Measured, per cent of the rated torque, + towards rising positions; 0 where the drive does not tell.
+  double torque_percent() const noexcept {
+    return drive_.torque_known ? drive_.torque_permille / 10.0 * scale_.direction : 0.0;
+  }
   /// Position, or speed with its sign, that the last one was to reach.
   double plc_goal() const noexcept { return goal_; }
   /// Starts homing (method of the configuration); the axis becomes the homing's own until it ends.
@@ -136,7 +148,7 @@ class Axis {
   struct Sent {
     double command = 0.0, compensation = 0.0;
   };
-  enum class Manual : std::uint8_t { rest, increment, continuous, position, plc };
+  enum class Manual : std::uint8_t { rest, increment, continuous, position, plc, torque };
 
   // axis.cpp: the owner's set-point and the way to the drive
   void advance(double dt, image::Nanoseconds now) noexcept;
@@ -144,6 +156,7 @@ class Axis {
   void advance_own(double dt, image::Nanoseconds now) noexcept;
   void advance_homing(double dt) noexcept;
   void advance_manual(image::Nanoseconds now) noexcept;
+  void advance_torque(double dt) noexcept;
   void follow_drive() noexcept;
   void check_index_place() noexcept;
   void break_homing(image::JogEnd why) noexcept;
@@ -152,7 +165,7 @@ class Axis {
   void follow_feedback() noexcept;
   void set_machine_position(std::int64_t counts) noexcept;
   void drop_reference() noexcept;
-  void fill_history() noexcept;
+  void fill_history(double step = 0.0) noexcept;
   void step_power(double dt, PowerSequence::Outputs& out) noexcept;
   void write_drive(image::ProcessImage& image, const PowerSequence::Outputs& power) const noexcept;
   void write_image(image::ProcessImage& image, const PowerSequence::Outputs& power) const noexcept;
@@ -188,6 +201,7 @@ class Axis {
   Compensation compensation_;
   PowerSequence power_;
   Homing homing_;
+  TorqueControl torque_;
   Ramp ramp_;
   Events events_;
   std::array<image::AlarmNumber, 16> raised_{};  ///< since the last reset, so that each comes once

@@ -24,6 +24,8 @@ inline constexpr AlarmNumber kNotHomed = 1014;
 inline constexpr AlarmNumber kOffPath = 1015;
 inline constexpr AlarmNumber kPlaceUnknown = 1016;
 inline constexpr AlarmNumber kFollowingErrorHigh = 1017;
+inline constexpr AlarmNumber kTorqueTooFast = 1018;
+inline constexpr AlarmNumber kTorqueModeRefused = 1019;
 
 inline constexpr AlarmNumber kHomingSwitchNotFound = 1101;
 inline constexpr AlarmNumber kHomingSwitchNotReleased = 1102;

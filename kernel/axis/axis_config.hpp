@@ -9,6 +9,7 @@
 #include "firmware_if/image/packets.hpp"
 #include "kernel/axis/inverter/inverter.hpp"
 #include "kernel/axis/ramp.hpp"
+#include "kernel/axis/torque/torque_control.hpp"
 
 namespace servogate::axis {
 
@@ -102,6 +103,7 @@ struct AxisConfig {
   double backlash = 0.0;          ///< >= 0
   std::vector<PitchPoint> pitch;  ///< rising positions; outside the table its end values hold
   BrakeData brake;
+  TorqueData torque;
   double jog_velocity = 50.0;  ///< continuous and incremental jogging
   double slow_velocity = 5.0;  ///< while not homed, and away from a hard limit
   double keep_alive_s = 0.1;   ///< a continuous jog without a keep-alive begins to stop after this

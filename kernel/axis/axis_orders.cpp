@@ -100,6 +100,7 @@ bool Axis::begin_plc(double goal, MotionLimits limits, bool endless) noexcept {
   if (own_motion_ && owner_ == AxisOwner::plc && !under_way && moving_)
     limits.acceleration = config_.limits.acceleration;  // it is being stopped
   if (!begin_own(AxisOwner::plc)) return false;
+  torque_.leave();
   if (under_way) limits.acceleration = std::max(limits.acceleration, goal_limits_.acceleration);
   manual_ = Manual::plc;
   goal_ = goal;
@@ -121,6 +122,21 @@ bool Axis::plc_move_at(int direction, MotionLimits limits) noexcept {
   return begin_plc(
       direction > 0 ? std::max(config_.travel_max, set_.x) : std::min(config_.travel_min, set_.x), limits,
       false);
+}
+
+bool Axis::plc_torque(double torque, double ramp, double velocity_limit) noexcept {
+  const bool possible = config_.torque.max > 0.0 && std::isfinite(torque) && velocity_limit > 0.0;
+  if (!possible || into_limit(torque) || !begin_own(AxisOwner::plc)) return false;
+  manual_ = Manual::torque;
+  torque_.begin(torque, ramp, std::min(velocity_limit, config_.limits.velocity));
+  return true;
+}
+
+bool Axis::torque_reached() const noexcept {
+  constexpr double kWindow = 2.0, kShare = 0.05;  // per cent of the rated torque, share of the wanted one
+  if (!torque_.arrived()) return false;
+  const double off = std::abs(torque_percent() - torque_.wanted());
+  return !drive_.torque_known || off <= std::max(kWindow, kShare * std::abs(torque_.wanted()));
 }
 
 HomingInputs Axis::homing_inputs(double dt) const noexcept {
@@ -155,6 +171,7 @@ bool Axis::home() noexcept {
 void Axis::stop() noexcept {
   if (!own_motion_) return;
   if (homing_.active()) homing_.abort(ramp_);
+  torque_.end();
   end_jog(image::JogEnd::asked);
   manual_ = Manual::rest;
   ramp_.stop(config_.limits);

@@ -92,7 +92,7 @@ void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
   actual_standing_ = std::abs(actual_velocity_) <= config_.standstill_velocity;
   const Sent& then = sent(config_.feedback_delay);
   actual_ = motor_ - then.compensation;
-  following_error_ = held_ && !homing_.drive_leads() ? then.command - actual_ : 0.0;
+  following_error_ = held_ && !homing_.drive_leads() && !torque_.leads() ? then.command - actual_ : 0.0;
   const double speed = std::abs(then.command - sent(config_.feedback_delay + 1).command) / dt;
   following_limit_ = config_.following_error_limit + config_.following_error_velocity * speed;
   following_warn_ = config_.following_error_warn + config_.following_error_velocity * speed;

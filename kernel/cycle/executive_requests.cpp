@@ -163,6 +163,7 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     case RequestKind::move_absolute:
     case RequestKind::move_relative:
     case RequestKind::move_velocity:
+    case RequestKind::torque:
     case RequestKind::axis_stop:
     case RequestKind::axis_reset:
       if (!carry_out_motion(request, axes_[axis])) refusal = Refusal::axis_moves;
@@ -224,6 +225,8 @@ bool Cycle::carry_out_motion(const Request& request, axis::Axis& a) noexcept {
       return a.plc_move_to(a.setpoint().x + request.value, limits);
     case RequestKind::move_velocity:
       return a.plc_move_at(request.value > 0.0 ? 1 : -1, limits);
+    case RequestKind::torque:
+      return a.plc_torque(request.value, request.acceleration, request.velocity);
     case RequestKind::axis_reset:
       a.reset();
       return true;

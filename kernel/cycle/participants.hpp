@@ -26,6 +26,8 @@ class Notices {
   std::span<const image::AlarmRecord> records() const noexcept {
     return {records_.data(), static_cast<std::size_t>(count_)};
   }
+  /// Faults that still find a place in this cycle.
+  int room() const noexcept { return kNoticesPerCycle - count_; }
   void clear() noexcept { count_ = 0; }
   std::uint32_t lost() const noexcept { return lost_; }
 

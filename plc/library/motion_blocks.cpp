@@ -14,6 +14,7 @@ TYPE AXIS_REF : STRUCT
   mc_refusal, mc_error : INT;
   mc_state, mc_result, mc_powered, mc_pad : USINT;
   mc_power_refusal : INT;
+  mc_torque : REAL;
   mc_position : LREAL;
   mc_order_number : DINT;
   mc_order, mc_power : USINT;
@@ -159,6 +160,16 @@ Valid := Enable AND NOT Error;
 Busy := Valid;
 IF Valid THEN Position := Axis.mc_position; END_IF;
 END_FUNCTION_BLOCK
+FUNCTION_BLOCK MC_ReadActualTorque
+VAR_IN_OUT Axis : AXIS_REF; END_VAR
+VAR_INPUT Enable : BOOL; END_VAR
+VAR_OUTPUT Valid, Busy, Error : BOOL; ErrorID : WORD; Torque : LREAL; END_VAR
+Error := Enable AND Axis.mc_state = 0;
+ErrorID := SEL(Error, WORD#0, WORD#3);
+Valid := Enable AND NOT Error;
+Busy := Valid;
+IF Valid THEN Torque := REAL_TO_LREAL(Axis.mc_torque); END_IF;
+END_FUNCTION_BLOCK
 )";
 
 // The other end of an AXIS_REF that belongs to no axis of a machine, for programs on a desk: velocity in
@@ -203,6 +214,7 @@ IF Axis.mc_order_number <> Axis.mc_taken THEN
   WANTED := Axis.mc_order;
   R := 0;
   WAY := Axis.mc_target;
+  IF WANTED = 8 THEN R := @N; END_IF;
   IF WANTED = 2 THEN WAY := WAY - Axis.mc_position; END_IF;
   IF WANTED >= 1 AND WANTED <= 4 THEN
     IF Axis.mc_state = 7 THEN R := @E;
@@ -286,6 +298,9 @@ constexpr Order kOrders[] = {
      "Axis.mc_target := SEL(Velocity < 0.0, LREAL#1.0, LREAL#-1.0); Axis.mc_velocity := ABS(Velocity); @L",
      "InVelocity", kUntilAborted},
     {"MC_Stop", "", "5", "", "Done", kStop},
+    {"MC_TorqueControl", "Torque, TorqueRamp, Velocity : LREAL;", "8",
+     "Axis.mc_target := Torque; Axis.mc_velocity := Velocity; Axis.mc_acceleration := TorqueRamp;",
+     "InTorque", kUntilAborted},
 };
 
 void fill(std::string& out, std::string_view text, const Order& o) {
@@ -326,8 +341,8 @@ void fill(std::string& out, std::string_view text, const Order& o) {
 // tests/machine_run compares them.
 std::string simulation() {
   std::string out = kSimulation;
-  constexpr std::string_view kNumbers[][2] = {
-      {"@T", "33"}, {"@V", "34"}, {"@B", "35"}, {"@S", "36"}, {"@E", "38"}};
+  constexpr std::string_view kNumbers[][2] = {{"@T", "33"}, {"@V", "34"}, {"@B", "35"},
+                                              {"@S", "36"}, {"@E", "38"}, {"@N", "46"}};
   for (const auto& [mark, number] : kNumbers)
     for (std::size_t at = out.find(mark); at != std::string::npos; at = out.find(mark))
       out.replace(at, mark.size(), number);

@@ -214,6 +214,46 @@ void add_homing(Plan& plan, const NodeConfig& node) {
   if (homing.acceleration > 0) plan.write_and_check(object::kHomingAcceleration, 0, 4, homing.acceleration);
 }
 
+/// What the device file or the machine file writes itself is theirs.
+bool given(const DriveProfile& profile, std::uint16_t index) {
+  return std::ranges::any_of(profile.settings, [index](const SdoSetting& s) { return s.index == index; });
+}
+
+// The factors are read in any case: with others every speed would be another one. A drive need not have them,
+// nor a ramp of its own for the quick stop.
+void add_vl(Plan& plan, const NodeConfig& node) {
+  if (!node.setup.vl) return;
+  const NodeVl& vl = *node.setup.vl;
+  for (std::uint8_t i = 0; i < 2; ++i) {
+    const auto sub = static_cast<std::uint8_t>(i + 1);
+    plan.check(object::kVlSetpointFactor, sub, 2, static_cast<std::uint16_t>(vl.set_point_factor[i]), 0xFFFF,
+               true);
+    plan.check(object::kVlDimensionFactor, sub, 4, static_cast<std::uint32_t>(vl.dimension_factor[i]),
+               0xFFFF'FFFF, true);
+  }
+  if (!given(node.profile, object::kVlMinMax)) {
+    plan.write_and_check(object::kVlMinMax, 1, 4, vl.least, true);
+    plan.write_and_check(object::kVlMinMax, 2, 4, vl.most, true);
+  }
+  if (vl.ramp.speed == 0) return;
+  for (const std::uint16_t ramp : {object::kVlAcceleration, object::kVlDeceleration, object::kVlQuickStop}) {
+    if (given(node.profile, ramp)) continue;
+    plan.write_and_check(ramp, 1, 4, vl.ramp.speed, ramp == object::kVlQuickStop);
+    plan.write_and_check(ramp, 2, 2, vl.ramp.seconds, ramp == object::kVlQuickStop);
+  }
+}
+
+void add_torque(Plan& plan, const NodeConfig& node) {
+  if (!node.setup.torque) return;
+  const NodeTorque& torque = *node.setup.torque;
+  if (torque.slope > 0 && !given(node.profile, object::kTorqueSlope))
+    plan.write_and_check(object::kTorqueSlope, 0, 4, torque.slope);
+  if (torque.slope > 0 && !given(node.profile, object::kTorqueProfileType))
+    plan.write_and_check(object::kTorqueProfileType, 0, 2, 0, true);  // linear
+  if (torque.max_speed > 0 && !given(node.profile, object::kMaxMotorSpeed))
+    plan.write_and_check(object::kMaxMotorSpeed, 0, 4, torque.max_speed, true);
+}
+
 struct PdoPlace {
   std::uint16_t parameter;
   std::uint16_t mapping;
@@ -333,6 +373,8 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
   if (node.setup.speed_ramp > 0)
     for (const std::uint16_t ramp : {object::kProfileAcceleration, object::kProfileDeceleration})
       plan.write_and_check(ramp, 0, 4, node.setup.speed_ramp);
+  add_vl(plan, node);
+  add_torque(plan, node);
   add_homing(plan, node);
   add_guarding(plan, node, segment);
   add_error_states(plan, node);

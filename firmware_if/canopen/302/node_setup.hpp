@@ -27,6 +27,25 @@ struct NodeHoming {
   std::uint32_t acceleration = 0;                  ///< 609Ah; 0: as it is
 };
 
+/// Change of speed of the velocity mode vl: so many units of 6042h in so many seconds.
+struct VlRamp {
+  std::uint32_t speed = 0;    ///< :01; 0: as it is
+  std::uint16_t seconds = 1;  ///< :02
+};
+/// Velocity mode vl, in units of 6042h. Source: CiA 402-2, "Velocity mode".
+struct NodeVl {
+  std::uint32_t least = 0, most = 0;  ///< 6046h
+  VlRamp ramp;                        ///< 6048h, 6049h, 604Ah
+  /// 604Bh and 604Ch, numerator and denominator, as the unit of 6042h was computed from.
+  std::int32_t set_point_factor[2] = {1, 1}, dimension_factor[2] = {1, 1};
+};
+
+/// Torque of the modes tq and cst. Source: CiA 402-2, "Profile torque mode".
+struct NodeTorque {
+  std::uint32_t slope = 0;  ///< 6087h, per mille of the rated torque in a second; 0: the drive has none (cst)
+  std::uint32_t max_speed = 0;  ///< 6080h, rpm of the motor, where the drive has it
+};
+
 /// What one node, not its make, is to be before it may run. Everything may be left out.
 struct NodeSetup {
   std::string software_version;  ///< 100Ah, compared to the letter
@@ -36,6 +55,8 @@ struct NodeSetup {
   std::optional<ConfigurationDate> configuration_date;
   bool store_configuration = false;  ///< what was written is stored by 1010h:01
   std::optional<NodeHoming> homing;
+  std::optional<NodeVl> vl;
+  std::optional<NodeTorque> torque;
   /// Ramp of a motion that the drive itself forms (profile velocity, profile position), in its own units:
   /// 6083h, 6084h; 0: as it is.
   std::uint32_t speed_ramp = 0;

@@ -13,7 +13,7 @@ namespace servogate::canopen {
 
 /// One process data object as the machine wants it. Source: CiA 301, 7.5.2.35-38.
 struct PdoWanted {
-  PdoMapping mapping;                  ///< count 0: this PDO is not used and gets disabled
+  PdoMapping mapping;  ///< count 0: this PDO is not used and gets disabled
   /// 1-240: every n-th SYNC; 0: at SYNC on event; 254/255: on event; TPDO 252/253: when it is asked for.
   std::uint8_t transmission_type = 1;
   std::uint16_t inhibit_100us = 0;  ///< TPDO on event: least distance between two, in 100 µs
@@ -69,7 +69,10 @@ struct DriveProfile {
   // Units of the drive's objects.
   std::int64_t counts_per_rev = 65536;  ///< of 607Ah and 6064h, per turn of the motor
   double velocity_unit_counts_s =
-      1.0;  ///< one unit of 60FFh, 606Ch, 6042h in counts/s (rpm: counts_per_rev / 60)
+      1.0;  ///< one unit of 60FFh and 606Ch in counts/s (rpm: counts_per_rev / 60)
+  /// One unit of 6042h and 6044h in counts/s: a turn of the motor a minute, times 604Bh, times 604Ch, by
+  /// CiA 402-2.
+  double vl_unit_counts_s = 65536 / 60.0;
   double acceleration_unit_counts_s2 = 1.0;  ///< one unit of 609Ah in counts/s2
   double torque_unit_permille = 1.0;         ///< one unit of 6071h and 6077h in per mille of the rated torque
 
@@ -82,8 +85,9 @@ struct DriveProfile {
   OperationMode position_mode = OperationMode::cyclic_sync_position;
   std::uint8_t ip_position_entry = 1;  ///< sub-index of 60C1h that takes the position
   std::uint8_t ip_velocity_entry = 0;  ///< the same for its velocity; 0: the record has none
-  bool ip_buffer = false;  ///< has 60C4h: closed and cleared by :06 until the drive interpolates
+  bool ip_buffer = false;              ///< has 60C4h: closed and cleared by :06 until the drive interpolates
   OperationMode velocity_mode = OperationMode::cyclic_sync_velocity;  ///< for DriveMode::csv: csv, pv or vl
+  OperationMode torque_mode = OperationMode::cyclic_sync_torque;      ///< for DriveMode::cst: cst or tq
 
   // Process data, index 0 = PDO 1.
   std::array<PdoWanted, 4> rpdo{};

@@ -42,6 +42,12 @@ constexpr Entry kEvents[] = {
      "place",
      "{0}: задание отстоит от действительного положения на {1} дискрет при разрешении работы; привод "
      "удерживает место"},
+    {"can-not-interpolating",
+     "{0}: in interpolated position mode bit 12 of the statusword (interpolation active) has not come for "
+     "{1} "
+     "ms; statusword {2}",
+     "{0}: в режиме интерполяции бит 12 слова состояния (интерполяция активна) не появился за {1} мс; слово "
+     "состояния {2}"},
     {"can-foreign-frame", "{0}: frame {1} [{2}] comes from somebody else; another master is on the bus",
      "{0}: кадр {1} [{2}] отправлен кем-то другим; на шине есть ещё один ведущий"},
     {"can-unknown-node", "{0}: node {1} is on the bus but not in the machine file",
@@ -204,6 +210,10 @@ std::vector<std::string> arguments_of(const BusEvent& e, std::string_view name, 
       add(std::to_string(e.refusal.waited_ms));
       add(hex(e.statusword, 4));
       add(describe_statusword(e.statusword, language));
+      break;
+    case BusEventKind::not_interpolating:
+      add(std::to_string(e.got));
+      add(hex(e.statusword, 4));
       break;
     case BusEventKind::foreign_frame:
     case BusEventKind::send_failed:

@@ -16,22 +16,24 @@ namespace servogate::canopen {
 
 enum class BusEventKind : std::uint8_t {
   none,
-  node_booted,     ///< all boot steps done, process data runs
-  boot_failed,     ///< `boot` says the step, what was expected and what came
-  emcy,            ///< `emcy`; error code 0: the error is gone
-  error_history,   ///< 1003h:`pdo` has an error code (`emcy`) of which no message has come
-  heartbeat_lost,  ///< no heartbeat for `got` ms, allowed are `expected`
-  node_restarted,  ///< a boot-up message of a node that was running
-  node_left,       ///< heartbeat shows another NMT state (`got`) than Operational
-  pdo_missing,     ///< process data (TPDO `pdo`) missing for `got` cycles
-  pdo_short,       ///< a TPDO with `got` bytes where `expected` are mapped (`frame`)
-  sdo_failed,      ///< an object read or written while running: `boot.index`, `boot.abort`
-  refused,         ///< the drive does not follow a transition: `refusal`, `statusword`
-  handover_held,   ///< the command is `got` counts off the actual position at Operation enabled; target is
-                   ///< held
-  foreign_frame,   ///< SYNC, NMT, RPDO or SDO request that we did not send (`frame`): another master on the
-                   ///< bus
-  unknown_node,    ///< heartbeat or EMCY of a node that is not configured
+  node_booted,        ///< all boot steps done, process data runs
+  boot_failed,        ///< `boot` says the step, what was expected and what came
+  emcy,               ///< `emcy`; error code 0: the error is gone
+  error_history,      ///< 1003h:`pdo` has an error code (`emcy`) of which no message has come
+  heartbeat_lost,     ///< no heartbeat for `got` ms, allowed are `expected`
+  node_restarted,     ///< a boot-up message of a node that was running
+  node_left,          ///< heartbeat shows another NMT state (`got`) than Operational
+  pdo_missing,        ///< process data (TPDO `pdo`) missing for `got` cycles
+  pdo_short,          ///< a TPDO with `got` bytes where `expected` are mapped (`frame`)
+  sdo_failed,         ///< an object read or written while running: `boot.index`, `boot.abort`
+  refused,            ///< the drive does not follow a transition: `refusal`, `statusword`
+  handover_held,      ///< the command is `got` counts off the actual position at Operation enabled; target is
+                      ///< held
+  not_interpolating,  ///< in interpolated position mode the drive does not show bit 12 of the statusword for
+                      ///< `got` ms, allowed are `expected`; `statusword`
+  foreign_frame,  ///< SYNC, NMT, RPDO or SDO request that we did not send (`frame`): another master on the
+                  ///< bus
+  unknown_node,   ///< heartbeat or EMCY of a node that is not configured
   send_failed,  ///< the transmit queue was full `got` times since this was said last; `frame` was dropped, or
                 ///< waits where the service repeats it
   bus_state,    ///< `bus_state` is the new one

@@ -185,6 +185,7 @@ void BusNode::start_operation(const NodeContext& context) noexcept {
   short_said_ = 0;
   refusal_said_ = false;
   handover_said_ = false;
+  interpolation_said_ = false;
   heartbeat_deadline_ns_ = context.now + heartbeat_timeout_ns_;
   link_->restart();
   history_.restart();
@@ -240,6 +241,14 @@ void BusNode::report_link(const NodeContext& context) noexcept {
     context.events.push(e);
   }
   handover_said_ = held;
+  const std::int32_t waited_ms = drive_->interpolation_waited_ms();
+  if (waited_ms != 0 && !interpolation_said_) {
+    BusEvent e = event(BusEventKind::not_interpolating, context);
+    e.expected = config_.profile.transition_timeout_ms;
+    e.got = waited_ms;
+    context.events.push(e);
+  }
+  interpolation_said_ = waited_ms != 0;
 }
 
 void BusNode::evaluate(image::ProcessImage& image, const NodeContext& context) noexcept {

@@ -114,6 +114,7 @@ class BusNode {
   std::uint8_t restarts_ = 0;
   bool refusal_said_ = false;
   bool handover_said_ = false;
+  bool interpolation_said_ = false;
   std::uint8_t leave_said_ = 0;  ///< so many of the objects that make it miss us
   bool questioned_ = false;      ///< the transfer under way answers a question from outside
 };

@@ -76,6 +76,7 @@ void check_drive(const NodeConfig& node) {
     require(find_field(profile.rpdo, object::kControlword).mapped(), "6040h is not mapped");
     require(find_field(profile.tpdo, object::kStatusword).mapped(), "6041h is not mapped");
   }
+  require(profile.vl_unit_counts_s != 0.0, "a unit is zero");
   require(profile.velocity_unit_counts_s != 0.0 && profile.torque_unit_permille != 0.0, "a unit is zero");
   require(profile.brake_bit < 32, "no such bit in 60FEh");
   require(profile.brake_bit < 0 || find_field(profile.rpdo, object::kDigitalOutputs, 1).mapped(),

@@ -55,6 +55,7 @@ class AxisCheck {
 
   /// Programs count their axes from the first on; the places of the MC_ blocks lie above the usual packet.
   void auxiliary() {
+    if (!a_.auxiliary && a_.torque_max > 0.0) error("torque_max", finding::kTorqueAuxiliary, {});
     if (!a_.auxiliary) {
       for (std::size_t i = 0; i < index_; ++i)
         if (machine_.axes[i].auxiliary)

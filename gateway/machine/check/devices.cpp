@@ -124,6 +124,7 @@ class DeviceUse {
                        {a.letter, std::to_string(a.home.drive_method), m_.node(a.drive)->device,
                         homing_methods_of(*device)});
       own_motion(a, *device, path);
+      torque(a, *device, path);
       if (a.brake.drive_output && !device->motor.brake_output)
         reading_.error(m_.where(path + ".brake.drive_output"), finding::kNoBrakeOutput,
                        {a.letter, m_.node(a.drive)->device});
@@ -232,6 +233,28 @@ class DeviceUse {
                        {a.letter, name, text::number(lag, 3) + unit,
                         text::number(a.max_velocity) + " " + text::unit_words(a.speed_unit()),
                         text::number(allowed, 3) + unit});
+  }
+
+  /// Torque set-points and what comes of them belong into every cycle.
+  void torque(const AxisConfig& a, const DeviceConfig& device, const std::string& path) {
+    if (a.torque_max <= 0.0 || !known(device)) return;
+    const std::string name = m_.node(a.drive)->device;
+    const auto mapped = [](const std::vector<PdoConfig>& pdos, std::uint16_t index) {
+      return std::any_of(pdos.begin(), pdos.end(), [index](const PdoConfig& pdo) {
+        return std::any_of(pdo.objects.begin(), pdo.objects.end(),
+                           [index](const PdoObject& o) { return o.index == index; });
+      });
+    };
+    if (!mapped(device.rpdos, 0x6071))
+      reading_.error(m_.where(path + ".torque_max"), finding::kTorqueUnmapped,
+                     {a.letter, name, "6071:00/16", "rpdo"});
+    if (!mapped(device.tpdos, 0x6077))
+      reading_.error(m_.where(path + ".torque_max"), finding::kTorqueUnmapped,
+                     {a.letter, name, "6077:00/16", "tpdo"});
+    const double rated = device.motor.rated_torque, peak = device.motor.peak_torque;
+    if (rated > 0.0 && peak > 0.0 && a.torque_max > 100.0 * peak / rated)
+      reading_.error(m_.where(path + ".torque_max"), finding::kTorqueAbovePeak,
+                     {a.letter, text::number(a.torque_max), text::number(100.0 * peak / rated, 1), name});
   }
 
   /// Where the mean is fine and the cycle of a SYNC that many wait for is not.

@@ -333,6 +333,16 @@ inline constexpr text::Entry kOwnMotionLag{
     "following_error_velocity do not allow ({4}): the axis would stop with a following error",
     "{0}: привод {1} отстаёт до {2} на {3}, а following_error_stop и following_error_velocity допускают {4}: "
     "ось остановится по рассогласованию"};
+inline constexpr text::Entry kTorqueAuxiliary{
+    "machine.torque_auxiliary",
+    "{0}: torque_max is for MC_TorqueControl, which moves axes with auxiliary = true only",
+    "{0}: torque_max нужен для MC_TorqueControl, который перемещает только оси с auxiliary = true"};
+inline constexpr text::Entry kTorqueUnmapped{"machine.torque_unmapped",
+                                             "{0}: torque_max needs {2} in a {3} of {1}",
+                                             "{0}: для torque_max нужен {2} в {3} устройства {1}"};
+inline constexpr text::Entry kTorqueAbovePeak{
+    "machine.torque_above_peak", "{0}: torque_max = {1} % is above the {2} % that the motor of {3} can give",
+    "{0}: torque_max = {1} % выше {2} %, которые даёт двигатель {3}"};
 inline constexpr text::Entry kSilentStatus{
     "machine.silent_status",
     "{0}: the statusword (tpdo {1}, transmission {2}) of {3} comes on event only: silence would not differ "

@@ -207,6 +207,15 @@ std::span<const Key> axis_keys() {
                            "погрешность шага: [машинная координата, погрешность], координаты по возрастанию"),
       key<&C::vertical>("vertical", {}, "the axis falls without power; needs a brake",
                         "ось падает без питания; нужен тормоз"),
+      key<&C::torque_max>(
+          "torque_max", {.unit = Unit::percent, .min = 0, .max = 1000},
+          "largest torque of MC_TorqueControl, of the motor's rated one (6076h); auxiliary axes "
+          "only; 0: not led by torque",
+          "наибольший момент MC_TorqueControl от номинального момента двигателя (6076h); только "
+          "для вспомогательных осей; 0: моментом не управляется"),
+      key<&C::torque_ramp>("torque_ramp", {.min = 0, .max = 100000, .computed = true},
+                           "greatest change of that torque, per cent a second; torque_max in a second",
+                           "наибольшее изменение этого момента, процентов в секунду; torque_max за секунду"),
       key<&C::home>("home", {}, "homing", "выход в ноль"),
       key<&C::brake>("brake", {}, "holding brake", "удерживающий тормоз"),
   };

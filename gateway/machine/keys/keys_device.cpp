@@ -85,6 +85,11 @@ std::span<const std::string_view> choices_of<SpeedMode>() {
   static constexpr std::string_view kNames[] = {"csv", "pv", "vl"};
   return kNames;
 }
+template <>
+std::span<const std::string_view> choices_of<TorqueMode>() {
+  static constexpr std::string_view kNames[] = {"cst", "tq"};
+  return kNames;
+}
 
 template <>
 const Section& section_of<BehaviourConfig>() {
@@ -119,8 +124,19 @@ const Section& section_of<BehaviourConfig>() {
           "position_mode ip: what 60C1h:01, :02 ... take: position, velocity; each is to be mapped",
           "position_mode ip: что принимают 60C1h:01, :02 ...: position, velocity; каждый "
           "должен быть отображён"),
-      key<&C::speed_mode>("speed_mode", {}, "mode of the drive for a speed command",
-                          "режим привода для задания скорости"),
+      key<&C::speed_mode>("speed_mode", {},
+                          "mode of the drive for a speed command; in vl the unit of 6042h and 6044h is 1 rpm "
+                          "of the motor, times "
+                          "604Bh and 604Ch where `objects` has them",
+                          "режим привода для задания скорости; в vl единица 6042h и 6044h — 1 об/мин "
+                          "двигателя, умноженный на "
+                          "604Bh и 604Ch, если они есть в `objects`"),
+      key<&C::torque_mode>(
+          "torque_mode", {},
+          "mode of the drive for a torque command (torque_max of an axis): cyclic (cst) or profile "
+          "torque (tq)",
+          "режим привода для задания момента (torque_max оси): циклический (cst) или профильный "
+          "(tq)"),
       key<&C::fault_reset>("fault_reset", {},
                            "a fault is reset by the edge or the level of controlword bit 7",
                            "ошибка сбрасывается фронтом или уровнем бита 7 управляющего слова"),

@@ -144,6 +144,22 @@ constexpr AlarmRow kTable[] = {
      "supply, before it stops at following_error_stop.",
      "Ось ещё следует за заданием, но хуже, чем при настройке: проверьте трение, смазку и питание привода, "
      "пока не сработал останов following_error_stop."},
+    {ax::kTorqueTooFast,
+     Reaction::stop_axes,
+     reset,
+     {"axis.torque_too_fast", "{0}: led by torque it moved at {1}/s, allowed are {2}/s",
+      "{0}: при управлении моментом скорость {1}/с, допустимо {2}/с"},
+     "Nothing held it against its torque (no part, a broken belt), or the load was stronger; try a smaller "
+     "TorqueRamp.",
+     "Ничто не удерживало ось (нет детали, порван ремень) или нагрузка сильнее; уменьшите TorqueRamp."},
+    {ax::kTorqueModeRefused,
+     Reaction::stop_and_power_off,
+     reset,
+     {"axis.torque_mode_refused",
+      "{0}: the drive does not show the mode that it was asked for, torque or position",
+      "{0}: привод не показывает запрошенный режим, момента или положения"},
+     "Compare `torque_mode` of the device file with 6502h and 6061h of the drive (`servogate od`).",
+     "Сравните `torque_mode` файла устройства с 6502h и 6061h привода (`servogate od`)."},
     {ax::kHomingSwitchNotFound,
      Reaction::stop_axes,
      reset,
@@ -367,6 +383,31 @@ constexpr AlarmRow kTable[] = {
       "узел {3}: в его истории ошибок ({8}) есть {5}, сообщения о которой не было"},
      "It may be the cause of what the node has reported; see its manual for the error code.",
      "Это может быть причиной того, о чём узел сообщил; код ошибки — в руководстве устройства."},
+    {alarm::kNotInterpolating,
+     Reaction::stop_axes,
+     reset,
+     {"bus.not_interpolating",
+      "node {3}: in interpolated position mode the drive has not begun to interpolate for {1} ms (bit 12 of "
+      "the "
+      "statusword was awaited for {2} ms); {4}",
+      "узел {3}: в режиме интерполяции привод не начал её за {1} мс (бит 12 слова состояния ожидался {2} "
+      "мс); "
+      "{4}"},
+     "Compare the record 60C1h, the period 60C2h and the buffer 60C4h with the manual of the drive, and with "
+     "ip_record, interpolation_base and ip_buffer of its device file.",
+     "Сравните запись 60C1h, период 60C2h и буфер 60C4h с руководством привода и с ip_record, "
+     "interpolation_base и ip_buffer его файла устройства."},
+    {alarm::kReportsLost,
+     Reaction::warn,
+     reset,
+     {"bus.reports_lost",
+      "bus {3}: {1} reports of nodes (emergency messages and others) came faster than they could be taken "
+      "and are "
+      "not shown",
+      "шина {3}: сообщения узлов (аварийные и другие) пришли быстрее, чем их можно принять; не показано: "
+      "{1}"},
+     "Look at the node that the alarms beside this one name; an inhibit time (1015h) keeps it from flooding.",
+     "Проверьте узел, названный соседними авариями; время запрета (1015h) ограничит поток сообщений."},
     // 3000: inputs and outputs
     {alarm::kSourceStale,
      Reaction::stop_on_path,

@@ -60,7 +60,7 @@ bool figures_are_lengths(image::AlarmNumber n) {
   return (n >= kFollowingError && n <= kSetpointStep) ||
          (n >= kHomingSwitchNotFound && n <= kHomingIndexNotFound) || n == kHomingLimitAgain ||
          n == kHomingInterrupted || n == kHomingIndexNearEdge || n == kHomingDriveFailed || n == kOffPath ||
-         n == kPlaceUnknown || n == kFollowingErrorHigh || n == kDriveOffline;
+         n == kPlaceUnknown || n == kFollowingErrorHigh || n == kTorqueTooFast || n == kDriveOffline;
 }
 
 /// Which figures of an alarm are places of the axis, not lengths: a diameter axis shows them as diameters.

@@ -24,6 +24,8 @@ bool same(const AlarmRecord& a, const AlarmRecord& b) noexcept {
          a.process == b.process && a.object_index == b.object_index &&
          a.object_subindex == b.object_subindex &&
          (a.number != alarm::kExternalAlarm || a.value == b.value) &&
+         // One error may be the cause of the next.
+         (a.number != alarm::kEmergencyMessage || a.error_code == b.error_code) &&
          // A SYNC, a command of the NMT master and a controlword of somebody else are different troubles.
          (a.number != alarm::kForeignFrame || a.value == b.value) &&
          (a.number != alarm::kProgramWarning || (a.line == b.line && a.limit == b.limit));

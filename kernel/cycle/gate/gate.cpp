@@ -37,8 +37,8 @@ constexpr std::uint32_t kPlaces = bit(RequestKind::set_place) | bit(RequestKind:
 constexpr std::uint32_t kPanel = kStops | kJogs | kResets | kProgram | bit(RequestKind::power) |
                                  bit(RequestKind::home) | bit(RequestKind::zero);
 /// Of the auxiliary axes, the PLC's alone.
-constexpr std::uint32_t kMoves =
-    bit(RequestKind::move_absolute) | bit(RequestKind::move_relative) | bit(RequestKind::move_velocity);
+constexpr std::uint32_t kMoves = bit(RequestKind::move_absolute) | bit(RequestKind::move_relative) |
+                                 bit(RequestKind::move_velocity) | bit(RequestKind::torque);
 constexpr std::uint32_t kAuxiliary = kMoves | bit(RequestKind::axis_power) | bit(RequestKind::axis_home) |
                                      bit(RequestKind::axis_stop) | bit(RequestKind::axis_reset);
 
@@ -147,6 +147,7 @@ class Decision {
   bool jog() noexcept;
   bool auxiliary() noexcept;
   bool move(const Axis& a) noexcept;
+  bool torque(const Axis& a) noexcept;
   bool inside_travel(const Axis& a) noexcept;
   bool keep_alive() noexcept;
   bool logic_scan() noexcept;
@@ -172,7 +173,7 @@ class Decision {
 };
 
 Answer Decision::run() noexcept {
-  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::logic_scan;
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::torque;
   if (!known)
     refuse(Refusal::unknown_request);
   else if ((may_ask(r_.asker) & bit(r_.kind)) == 0)
@@ -223,6 +224,7 @@ bool Decision::decide_kind() noexcept {
     case RequestKind::move_absolute:
     case RequestKind::move_relative:
     case RequestKind::move_velocity:
+    case RequestKind::torque:
     case RequestKind::axis_stop:
     case RequestKind::axis_reset:
       return auxiliary();
@@ -300,6 +302,7 @@ bool Decision::auxiliary() noexcept {
   if (c_.axis_stopping) return refuse(Refusal::axis_stopping, r_.axis);
   if (!ready(a)) return false;
   if (a.homing().active()) return refuse(Refusal::homing_runs);
+  if (r_.kind == RequestKind::torque) return torque(a);
   if (r_.kind != RequestKind::axis_home) return move(a);
   if (a.config().homing.method == axis::HomingMethod::none) return refuse(Refusal::no_home_needed, r_.axis);
   return a.standstill() || refuse(Refusal::axis_moves, r_.axis);
@@ -315,6 +318,26 @@ bool Decision::move(const Axis& a) noexcept {
   if (!(r_.acceleration >= 0.0 && r_.acceleration <= most.acceleration))
     return refuse(Refusal::acceleration_range, r_.axis, r_.acceleration, most.acceleration);
   return inside_travel(a);
+}
+
+/// Where the torque takes the axis is not known: it is watched on its way instead.
+bool Decision::torque(const Axis& a) noexcept {
+  const axis::AxisConfig& config = a.config();
+  if (!(config.torque.max > 0.0)) return refuse(Refusal::no_torque, r_.axis);
+  if (config.travel_limited && !a.homed()) return refuse(Refusal::not_homed, r_.axis);
+  if (a.moving() && a.owner() != AxisOwner::plc) return refuse(Refusal::axis_moves, r_.axis);
+  if (!(std::abs(r_.value) <= config.torque.max))
+    return refuse(Refusal::torque_range, r_.axis, r_.value, config.torque.max);
+  if (!(r_.velocity > 0.0 && r_.velocity <= config.limits.velocity))
+    return refuse(Refusal::velocity_range, r_.axis, r_.velocity, config.limits.velocity);
+  if (!(r_.acceleration >= 0.0 && r_.acceleration <= config.torque.ramp))
+    return refuse(Refusal::torque_ramp_range, r_.axis, r_.acceleration, config.torque.ramp);
+  const bool forward = r_.value > 0.0;
+  if (forward ? a.on_limit_plus() : r_.value < 0.0 && a.on_limit_minus())
+    return refuse(Refusal::on_hard_limit, r_.axis, forward ? 1 : -1);
+  if (!config.travel_limited || r_.value == 0.0) return true;
+  const double limit = forward ? config.travel_max : config.travel_min, x = a.setpoint().x;
+  return (forward ? x < limit : x > limit) || refuse(Refusal::at_soft_limit, r_.axis, x, limit);
 }
 
 bool Decision::inside_travel(const Axis& a) noexcept {

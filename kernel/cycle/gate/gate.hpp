@@ -61,6 +61,9 @@ enum class Refusal : std::uint16_t {
   logic_held,            ///< the PLC is held for single scans already
   logic_not_held,        ///< it is not held
   forces_full,           ///< no more places can be forced
+  no_torque,             ///< axis: the machine file gives it no torque
+  torque_range,          ///< axis; value; limit: the largest magnitude, per cent of the rated torque
+  torque_ramp_range,     ///< axis; value; limit: the greatest one, per cent a second
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis

@@ -105,8 +105,15 @@ constexpr text::Entry kTexts[] = {
     {"gate.logic_not_held", "the PLC is not held", "ПЛК не удерживается"},
     {"gate.forces_full", "too many places are forced: let some of them go first",
      "удерживается слишком много мест: сначала освободите некоторые"},
+    {"gate.no_torque", "{0} is not led by torque: the machine file gives it no `torque_max`",
+     "{0} не управляется моментом: в файле станка у неё нет `torque_max`"},
+    {"gate.torque_range", "{0} cannot be given {1} % of the rated torque: from -{2} to {2} % is possible",
+     "{0} не может получить {1} % номинального момента: возможно от -{2} до {2} %"},
+    {"gate.torque_ramp_range",
+     "{0} cannot change its torque by {1} % a second: 0 (its limit) and up to {2} % is possible",
+     "{0} не может менять момент на {1} % в секунду: возможно 0 (её предел) и до {2} %"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::forces_full) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::torque_ramp_range) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 
@@ -153,7 +160,8 @@ constexpr std::string_view kKinds[][2] = {{"none", "нет"},
                                           {"move an auxiliary axis", "перемещение вспомогательной оси"},
                                           {"stop an auxiliary axis", "останов вспомогательной оси"},
                                           {"reset an auxiliary axis", "сброс вспомогательной оси"},
-                                          {"hold the PLC for single scans", "отдельные сканы ПЛК"}};
+                                          {"hold the PLC for single scans", "отдельные сканы ПЛК"},
+                                          {"torque of an auxiliary axis", "момент вспомогательной оси"}};
 
 template <std::size_t N>
 std::string word(const std::string_view (&table)[N][2], double index, Language language) {

@@ -17,10 +17,10 @@ constexpr std::uint16_t kNoPower = static_cast<std::uint16_t>(Refusal::not_power
 
 consteval image::Place place(std::string_view name) { return image::field(image::kMotionFields, name); }
 
-constexpr RequestKind kRequests[] = {RequestKind::axis_stop,     RequestKind::axis_home,
-                                     RequestKind::move_absolute, RequestKind::move_relative,
-                                     RequestKind::move_velocity, RequestKind::axis_stop,
-                                     RequestKind::none,          RequestKind::axis_reset};
+constexpr RequestKind kRequests[] = {
+    RequestKind::axis_stop,     RequestKind::axis_home,     RequestKind::move_absolute,
+    RequestKind::move_relative, RequestKind::move_velocity, RequestKind::axis_stop,
+    RequestKind::none,          RequestKind::axis_reset,    RequestKind::torque};
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void PlcMotion::read(const image::ProcessImage& image, int axis) noexcept {
   axis_ = axis;
   wanted_.number = static_cast<std::int32_t>(number(place("mc_order_number")));
   const auto order = static_cast<int>(number(place("mc_order")));
-  wanted_.order = order <= static_cast<int>(Order::reset) ? static_cast<Order>(order) : Order::none;
+  wanted_.order = order <= static_cast<int>(Order::torque) ? static_cast<Order>(order) : Order::none;
   wanted_.power = number(place("mc_power")) != 0.0;
   wanted_.target = number(place("mc_target"));
   wanted_.velocity = number(place("mc_velocity"));
@@ -57,7 +57,7 @@ void PlcMotion::watch(const axis::Axis& axis, const Alarms& alarms, double secon
       fail(alarms.number);
     }
   }
-  const bool ended = result_ != Result::under_way && active_ != Order::velocity;
+  const bool ended = result_ != Result::under_way && !lasting();
   if (active_ != Order::none && active_ != Order::reset && !ended) watch_order(axis, alarms);
 }
 
@@ -86,6 +86,10 @@ void PlcMotion::watch_order(const axis::Axis& axis, const Alarms& alarms) noexce
     }
     fail(alarms.number != 0 ? alarms.number : kNoPower);
     error_stop_ = true;
+    return;
+  }
+  if (active_ == Order::torque) {
+    result_ = !axis.torque_led() ? Result::aborted : axis.torque_reached() ? Result::done : Result::under_way;
     return;
   }
   if (active_ == Order::velocity) {
@@ -159,6 +163,7 @@ PlcMotion::State PlcMotion::state(const axis::Axis& axis) const noexcept {
   if (!axis.motion_permitted()) return State::disabled;
   if (stopping_) return State::stopping;
   if (axis.homing().active()) return State::homing;
+  if (axis.torque_led()) return State::continuous_motion;
   if (axis.plc_moves()) return active_ == Order::velocity ? State::continuous_motion : State::discrete_motion;
   return axis.moving() ? State::discrete_motion : State::standstill;
 }
@@ -176,6 +181,7 @@ void PlcMotion::write(image::ProcessImage& image, const axis::Axis& axis) const 
   put(place("mc_result"), static_cast<double>(result_));
   put(place("mc_powered"), axis.motion_permitted() ? 1.0 : 0.0);
   put(place("mc_power_refusal"), power_refusal_);
+  put(place("mc_torque"), axis.torque_percent());
   put(place("mc_position"), axis.actual());
 }
 

@@ -54,13 +54,25 @@ class PlcMotion {
   bool resetting() const noexcept { return active_ == Order::reset && result_ == Result::under_way; }
 
  private:
-  enum class Order : std::uint8_t { none, home, absolute, relative, velocity, stop, end_of_stop, reset };
+  enum class Order : std::uint8_t {
+    none,
+    home,
+    absolute,
+    relative,
+    velocity,
+    stop,
+    end_of_stop,
+    reset,
+    torque
+  };
   enum class Result : std::uint8_t { under_way, done, aborted, error };
 
   State state(const axis::Axis& axis) const noexcept;
   void fail(std::uint16_t error) noexcept;
   void watch_order(const axis::Axis& axis, const Alarms& alarms) noexcept;
   void begin(const axis::Axis& axis) noexcept;
+  /// It lasts until another order takes over, whatever has been reached.
+  bool lasting() const noexcept { return active_ == Order::velocity || active_ == Order::torque; }
 
   struct Wanted {
     std::int32_t number = 0;

@@ -160,6 +160,26 @@ TEST(Quirks, a_record_of_position_and_velocity_is_filled_whole) {
   EXPECT_EQ(moved_in_ip(false), 0) << "no record is ever complete";
 }
 
+/// A drive that takes no part of a record of position alone is a drive that interpolates; one that never
+/// shows bit 12 has bit 4 of the controlword taken away on its way.
+TEST(Quirks, a_drive_that_never_begins_to_interpolate_is_named_once_with_what_was_awaited) {
+  Pair pair({}, [](NodeConfig& node) { use_ip(node); });
+  ASSERT_TRUE(pair.enable()) << pair.story;
+  pair.run(50);
+  EXPECT_EQ(pair.story, "");
+  mock::DriveFault fault;
+  fault.kind = mock::DriveFaultKind::rpdo_corrupted;
+  fault.value = 0x10;
+  pair.drive->inject(fault);
+  pair.run(400);
+  EXPECT_EQ(pair.story, "") << "a transition may take 500 ms";
+  pair.run(2000);
+  EXPECT_EQ(
+      pair.story,
+      "x: in interpolated position mode bit 12 of the statusword (interpolation active) has not come for "
+      "500 ms; statusword 0237h\n");
+}
+
 TEST(Quirks, a_drive_that_counts_60C2_in_tenths_of_a_millisecond_gets_it_so) {
   Pair untold({.interpolation_exponent = -4}, [](NodeConfig&) {});
   EXPECT_FALSE(boots(untold));

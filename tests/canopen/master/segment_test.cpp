@@ -261,7 +261,7 @@ TEST(Segment, runs_a_frequency_converter_in_vl_with_its_ramp_bits) {
   node.target = DriveTarget::spindle;
   node.profile.velocity_mode = OperationMode::velocity;
   node.profile.modes = supported_bit(OperationMode::velocity);
-  node.profile.velocity_unit_counts_s = 100.0;
+  node.profile.vl_unit_counts_s = 100.0;
   node.profile.rpdo[0].mapping.add({0x6040, 0, 16});
   node.profile.rpdo[0].mapping.add({0x6042, 0, 16});
   node.profile.tpdo[0].mapping.add({0x6041, 0, 16});

@@ -13,11 +13,8 @@ namespace object {
 inline constexpr std::uint16_t kVelocityDemand = 0x606B, kPositionWindowTime = 0x6068,
                                kVelocityWindow = 0x606D, kVelocityWindowTime = 0x606E,
                                kVelocityThreshold = 0x606F, kVelocityThresholdTime = 0x6070,
-                               kEndVelocity = 0x6082, kTorqueSlope = 0x6087,
-                               kProbeCounter = 0x60D5,  ///< 60D5h-60D8h
-    kPositiveTorqueLimit = 0x60E0, kNegativeTorqueLimit = 0x60E1, kVlMinMax = 0x6046,
-                               kVlAcceleration = 0x6048, kVlDeceleration = 0x6049, kVlSetpointFactor = 0x604B,
-                               kVlDimensionFactor = 0x604C, kInterpolationSubMode = 0x60C0;
+                               kEndVelocity = 0x6082, kProbeCounter = 0x60D5,  ///< 60D5h-60D8h
+    kPositiveTorqueLimit = 0x60E0, kNegativeTorqueLimit = 0x60E1, kInterpolationSubMode = 0x60C0;
 }  // namespace object
 
 /// Where drives on the market differ from CiA 402-2. A drive to the standard has the defaults.

@@ -76,7 +76,11 @@ DriveLink::DriveLink(const NodeConfig& node, const SegmentConfig& segment)
   in_.statusword = find_field(tpdo, object::kStatusword);
   in_.position = find_field(tpdo, object::kPositionActual);
   in_.velocity = find_field(tpdo, object::kVelocityActual);
-  if (!in_.velocity.mapped()) in_.velocity = find_field(tpdo, object::kVlVelocityActual);
+  speed_unit_ = profile_.velocity_unit_counts_s;
+  if (!in_.velocity.mapped()) {
+    in_.velocity = find_field(tpdo, object::kVlVelocityActual);
+    speed_unit_ = profile_.vl_unit_counts_s;
+  }
   in_.torque = find_field(tpdo, object::kTorqueActual);
   in_.inputs = find_field(tpdo, object::kDigitalInputs);
   in_.error_code = find_field(tpdo, object::kErrorCode);
@@ -94,6 +98,8 @@ void DriveLink::restart() noexcept {
   probe_.restart();
   homing_.restart();
   set_points_.restart();
+  interpolation_asked_ns_.reset();
+  interpolation_waited_ms_ = 0;
   statusword_ = 0;
   status_known_ = false;
   position_known_ = false;
@@ -127,7 +133,7 @@ OperationMode DriveLink::mode_of(DriveMode mode) const noexcept {
     case DriveMode::csv:
       return profile_.velocity_mode;
     case DriveMode::cst:
-      return OperationMode::cyclic_sync_torque;
+      return profile_.torque_mode;
     case DriveMode::homing:
       return OperationMode::homing;
     case DriveMode::none:
@@ -194,7 +200,7 @@ void DriveLink::take_position() noexcept {
 void DriveLink::take_velocity() noexcept {
   if (in_.velocity.mapped()) {
     if (data_.fresh(in_.velocity))
-      velocity_counts_s_ = static_cast<double>(data_.number(in_.velocity)) * profile_.velocity_unit_counts_s;
+      velocity_counts_s_ = static_cast<double>(data_.number(in_.velocity)) * speed_unit_;
     return;
   }
   if (!data_.fresh(in_.position) || cycles_since_position_ == 0) return;
@@ -320,18 +326,18 @@ std::int64_t DriveLink::target_position(const image::DriveCommand& command) noex
 void DriveLink::set_targets(const image::DriveCommand& command, std::int64_t target) noexcept {
   const bool enabled = control_.state() == DriveState::operation_enabled;
   const bool by_velocity = mode_wanted_ == profile_.velocity_mode && enabled;
-  const bool by_torque = mode_wanted_ == OperationMode::cyclic_sync_torque && enabled;
+  const bool by_torque = mode_wanted_ == profile_.torque_mode && enabled;
   if (mode_wanted_ == OperationMode::profile_position) target = set_points_.target().value_or(target);
   data_.set(out_.target_position, static_cast<std::uint64_t>(target));
   const double velocity = command.velocity_counts_s / profile_.velocity_unit_counts_s;
   const auto set = [this](const PdoField& field, bool wanted, double value, double limit = 2147483647.0) {
     if (field.mapped()) data_.set(field, wanted ? clamped(value, limit) : 0);
   };
-  set(out_.vl_velocity, by_velocity, velocity, 32767.0);
+  set(out_.vl_velocity, by_velocity, command.velocity_counts_s / profile_.vl_unit_counts_s, 32767.0);
   set(out_.target_velocity, by_velocity, velocity);
   set(out_.ip_velocity, following_ && !by_velocity, velocity);
   set(out_.velocity_offset, following_ && !by_velocity, velocity);
-  set(out_.target_torque, by_torque, command.torque_permille / profile_.torque_unit_permille);
+  set(out_.target_torque, by_torque, command.torque_permille / profile_.torque_unit_permille, 32767.0);
 }
 
 }  // namespace servogate::canopen

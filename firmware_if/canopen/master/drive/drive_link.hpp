@@ -48,6 +48,9 @@ class DriveLink final : public NodeLink {
   const image::DriveRefusal& refusal() const noexcept { return control_.refusal(); }
   /// Distance of command and held target while the hand-over waits at Operation enabled, otherwise 0.
   std::int64_t handover_difference() const noexcept { return handover_difference_; }
+  /// So long, in ms, a drive in interpolated position mode has been asked to interpolate and does not show
+  /// it, once that is longer than a transition may take; otherwise 0.
+  std::int32_t interpolation_waited_ms() const noexcept { return interpolation_waited_ms_; }
 
  private:
   enum class Access : std::uint8_t {
@@ -77,6 +80,7 @@ class DriveLink final : public NodeLink {
   void set_targets(const image::DriveCommand& command, std::int64_t target) noexcept;
   std::uint16_t mode_bits(image::Nanoseconds now, std::int64_t target) noexcept;
   void follow_interpolation() noexcept;
+  void watch_interpolation(image::Nanoseconds now) noexcept;
   bool interpolating() const noexcept;
   Access next_access(image::Nanoseconds now) noexcept;
   Access next_in_round() noexcept;
@@ -112,6 +116,7 @@ class DriveLink final : public NodeLink {
   std::int64_t last_position_counts_ = 0;
   std::int64_t cycles_since_position_ = 0;
   double velocity_counts_s_ = 0.0;
+  double speed_unit_ = 1.0;  ///< of the object that `velocity` is
   image::DriveState last_state_ = image::DriveState::offline;
   std::uint16_t error_code_ = 0;
   bool error_code_wanted_ = false;
@@ -133,6 +138,9 @@ class DriveLink final : public NodeLink {
   std::int64_t handover_difference_ = 0;
   Access access_ = Access::none;
   std::uint32_t access_value_ = 0;  ///< what a running write carries
+
+  std::optional<image::Nanoseconds> interpolation_asked_ns_;  ///< since then
+  std::int32_t interpolation_waited_ms_ = 0;
 
   /// 60C4h:06 as it is to be and as the drive has it.
   bool buffer_open_wanted_ = false, buffer_open_ = false, buffer_refused_ = false;

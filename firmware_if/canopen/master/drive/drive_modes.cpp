@@ -24,6 +24,7 @@ std::uint16_t DriveLink::mode_bits(image::Nanoseconds now, std::int64_t target) 
   const bool positions = enabled && mode_wanted_ == OperationMode::profile_position && mode_ready();
   if (!positions) set_points_.restart();
   follow_interpolation();
+  watch_interpolation(now);
   if (!enabled) return 0;
   switch (mode_wanted_) {
     case OperationMode::velocity:
@@ -50,6 +51,18 @@ std::uint16_t DriveLink::mode_bits(image::Nanoseconds now, std::int64_t target) 
 bool DriveLink::interpolating() const noexcept {
   return control_.state() == DriveState::operation_enabled && mode_ready() &&
          (statusword_ & statusword::kModeSpecific12);
+}
+
+/// The time runs from when everything that lies before bit 12 has been done.
+void DriveLink::watch_interpolation(image::Nanoseconds now) noexcept {
+  const bool asked = mode_wanted_ == OperationMode::interpolated_position && mode_ready() &&
+                     control_.state() == DriveState::operation_enabled &&
+                     (!profile_.ip_buffer || buffer_open_);
+  interpolation_waited_ms_ = 0;
+  if (!asked || interpolating()) return interpolation_asked_ns_.reset();
+  if (!interpolation_asked_ns_) interpolation_asked_ns_ = now;
+  const auto waited = static_cast<std::int32_t>((now - *interpolation_asked_ns_) / image::kMillisecond);
+  if (waited >= profile_.transition_timeout_ms) interpolation_waited_ms_ = waited;
 }
 
 // A record from before would be run to as soon as the drive interpolates. It is kept away from the drive:
