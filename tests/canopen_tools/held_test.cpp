@@ -63,6 +63,22 @@ TEST_F(HeldBus, is_locked_to_writes_and_commands_with_the_name_of_its_holder) {
   EXPECT_EQ(tool("sdo " + held_ + " 99 read 1000").code, 1) << "no node of the machine file";
 }
 
+TEST_F(HeldBus, by_a_control_that_was_stopped_is_still_held_and_nothing_is_done_on_it) {
+  ASSERT_TRUE(ready_) << control_->said();
+  control_->signal(SIGSTOP);
+  for (const char* words :
+       {"nmt BUS stop all --i-may-move", "sdo BUS 1 write 6040 6 --i-may-move", "scan BUS"}) {
+    std::string line = words;
+    line.replace(line.find("BUS"), 3, bus());
+    const Ended ended = tool(line);
+    EXPECT_EQ(ended.code, 1) << line;
+    EXPECT_TRUE(ended.err_has("runs and does not answer")) << ended.err;
+    EXPECT_TRUE(ended.err_has("it may hold the bus " + bus())) << ended.err;
+  }
+  control_->signal(SIGCONT);
+  EXPECT_EQ(tool("nmt " + held_ + " stop all --i-may-move").code, 1);
+}
+
 /// The mill runs a long line on the bus of the workbench, its drives in processes of their own.
 class HeldByRun : public Workbench {
  protected:

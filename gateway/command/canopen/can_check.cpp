@@ -10,11 +10,11 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
+#include "gateway/command/bus/named_bus.hpp"
 #include "gateway/command/canopen/bus/bit_rate_detection.hpp"
 #include "gateway/command/canopen/bus/foreign_master.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/command/bus/named_bus.hpp"
 
 namespace servogate::gateway::command {
 
@@ -305,7 +305,7 @@ int can_check(const CanCheckOptions& options) {
     return report.tell();
   }
   const std::optional<Holder> holder = holder_of(*named);
-  if (holder) {
+  if (holder && !holder->silent) {
     report.facts()["held_by"] = {{"machine", holder->machine}, {"socket", holder->socket}};
     if (named->url.starts_with("mock:")) {
       report.say(kHolder, {holder->machine, holder->socket});

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "drivers/clock.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/command/canopen/object_value.hpp"
@@ -29,6 +30,14 @@ const text::Entry kHeldByRun{
     "ended",
     "{0} не выполняется: шину {1} держит `servogate run` станка «{2}» ({3}); она освободится, когда прогон "
     "закончится"};
+const text::Entry kSilent{"can.holder-silent",
+                          "{0} is not done: the control at {1} runs and does not answer (stopped, or in a "
+                          "debugger?); it may hold the "
+                          "bus {2}. Let it go on (kill -CONT) or end it first",
+                          "{0} не выполняется: управление {1} работает и не отвечает (остановлено или в "
+                          "отладчике?); оно может держать "
+                          "шину {2}. Сначала продолжите его (kill -CONT) или завершите"};
+const text::Entry kThis{"can.this-command", "this command", "эта команда"};
 const text::Entry kNoConnection{"can.no-connection", "cannot reach the control at {0}: {1}",
                                 "нет связи с управлением {0}: {1}"};
 
@@ -45,12 +54,20 @@ json ask(SocketClient& connection, const json& request, int patience_ms) {
 std::optional<Holder> holder_at(const std::string& socket, const std::string& place) {
   SocketClient connection;
   if (!connection.connect(socket).empty()) return std::nullopt;
+  const image::Nanoseconds begin = drivers::clock_ns(CLOCK_MONOTONIC);
   const json held = ask(connection, {{"cmd", "buses"}, {"asker", "command_line"}}, kHolderPatience);
+  const bool closed = drivers::clock_ns(CLOCK_MONOTONIC) - begin < kHolderPatience * image::kMillisecond;
+  if (held.is_null() && !closed) {
+    Holder holder;
+    holder.socket = socket;
+    holder.silent = true;
+    return holder;
+  }
   if (!held.is_object()) return std::nullopt;
   for (const json& bus : held.value("buses", json::array())) {
     if (!same_place(bus.value("place", bus.value("url", "")), place)) continue;
     Holder holder{
-        socket, held.value("machine", ""), bus.value("name", ""), held.value("kind", "") == "run", {}};
+        socket, held.value("machine", ""), bus.value("name", ""), held.value("kind", "") == "run", false, {}};
     for (const json& n : bus.value("nodes", json::array()))
       holder.nodes.push_back({n.value("node", 0), n.value("name", ""), n.value("online", false)});
     return holder;
@@ -72,9 +89,13 @@ std::optional<Holder> holder_of(const NamedBus& bus) {
   if (bus.machine && !bus.machine->machine.run.socket.empty())
     add(bus.machine->machine.resolve(bus.machine->machine.run.socket));
   const std::string place = bus_place(bus.url);
-  for (const std::string& socket : sockets)
-    if (auto holder = holder_at(socket, place)) return holder;
-  return std::nullopt;
+  std::optional<Holder> silent;
+  for (const std::string& socket : sockets) {
+    auto holder = holder_at(socket, place);
+    if (holder && !holder->silent) return holder;
+    if (holder) silent = std::move(holder);
+  }
+  return silent;
 }
 
 bool find_holder(const std::string& bus, std::optional<Holder>& holder, int& code) {
@@ -82,10 +103,16 @@ bool find_holder(const std::string& bus, std::optional<Holder>& holder, int& cod
   code = kWrongUse;
   if (!named) return false;
   holder = holder_of(*named);
-  return true;
+  if (!holder || !holder->silent) return true;
+  code = refuse_held(*holder, bus, text::render(kThis, {}, text::user_language()));
+  return false;
 }
 
 int refuse_held(const Holder& holder, const std::string& url, const std::string& what) {
+  if (holder.silent) {
+    complain(kSilent, {what, holder.socket, url});
+    return kAlarm;
+  }
   complain(holder.run ? kHeldByRun : kHeld, {what, url, holder.machine, holder.socket});
   return kAlarm;
 }

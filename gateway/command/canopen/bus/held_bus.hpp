@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/command/canopen/bus/tool_bus.hpp"
 #include "gateway/command/bus/named_bus.hpp"
+#include "gateway/command/canopen/bus/tool_bus.hpp"
 #include "gateway/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::command {
@@ -18,6 +18,9 @@ struct Holder {
   std::string machine;  ///< name of its machine
   std::string bus;      ///< name of the bus in its machine file
   bool run = false;     ///< it is a `servogate run`, which ends by itself
+  /// It does not answer (it is stopped, in a debugger, or hangs), so that it cannot say whether it holds this
+  /// bus: it counts as its holder. Only `socket` is known.
+  bool silent = false;
   struct Node {
     int id = 0;
     std::string name;
@@ -26,11 +29,11 @@ struct Holder {
   std::vector<Node> nodes;
 };
 
-/// The running control or run of this user that holds this bus, however its url is written; nullopt: none
-/// does.
+/// The running control or run of this user that holds this bus, however its url is written, or one that does
+/// not answer; nullopt: none does.
 std::optional<Holder> holder_of(const NamedBus& bus);
 /// The same for a bus as the command line names it; false with `code`: the name is wrong, which has been
-/// said.
+/// said, or a control that does not answer may hold it.
 bool find_holder(const std::string& bus, std::optional<Holder>& holder, int& code);
 /// Says that the bus is held, and that `what` is not done therefore; the exit code.
 int refuse_held(const Holder& holder, const std::string& url, const std::string& what);
