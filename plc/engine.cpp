@@ -275,6 +275,7 @@ text::Finding Engine::describe(const ScanResult& r) const {
                                                &texts::kFaultConversion,
                                                &texts::kFaultSelector,
                                                &texts::kFaultText,
+                                               &texts::kFaultReference,
                                                &texts::kFaultPackets};
   text::Finding f;
   f.file = file_name(r.file);
@@ -302,6 +303,7 @@ std::string Engine::name_of(const Handle& h) const { return variable_name(*image
 std::string Engine::type_name(const Handle& h) const { return h.bit >= 0 ? "BOOL" : h.type->name; }
 
 std::string Engine::read(const Handle& h) const {
+  if (h.type->kind == Kind::reference) return reference_text(*image_, *h.type, data(h));
   return to_json(*h.type, state_->memory.data() + h.address, h.bit);
 }
 

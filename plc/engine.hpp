@@ -30,6 +30,7 @@ enum class Fault : std::uint8_t {
   conversion,          ///< a real that no value of the integer type stands for, or text that is no number
   selector,            ///< K of MUX names no input
   text_position,       ///< L or P of a string function is negative or lies outside the string
+  null_reference,      ///< dereference of NULL
   packet_size,         ///< packet K or SYVAR is smaller than the program was compiled for
 };
 

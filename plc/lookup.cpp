@@ -126,6 +126,7 @@ std::optional<Handle> find_global(const Image& image, const std::string& prefix,
 
 // The path below `type` that ends at an address.
 bool path_to(const Type& type, std::uint32_t base, const Handle& h, std::string& out) {
+  if (h.bit < 0 && base == h.address && &type == h.type) return true;
   if (type.kind != Kind::structure && type.kind != Kind::block && type.kind != Kind::array) {
     if (h.bit >= 0) out += "." + std::to_string((h.address - base) * 8 + static_cast<std::uint32_t>(h.bit));
     return h.bit >= 0 || base == h.address;
@@ -179,6 +180,22 @@ std::string variable_name(const Image& image, const Handle& h) {
       if (g.place < 0 && inside && path_to(*g.type, g.address, h, out)) return out;
     }
   return {};
+}
+
+std::string reference_text(const Image& image, const Type& type, const std::uint8_t* at) {
+  std::uint32_t address = 0;
+  std::memcpy(&address, at, sizeof address);
+  if (address == 0 || type.base == nullptr) return "\"NULL\"";
+  for (const ir::Global& g : image.globals)
+    if (g.place >= 0 && g.address == address && g.type == type.base) return "\"" + g.name + "\"";
+  for (const auto* list : {&image.globals, &image.programs})
+    for (const ir::Global& g : *list) {
+      std::string out = g.name;
+      const bool inside = address >= g.address && address < g.address + g.type->size;
+      if (g.place < 0 && inside && path_to(*g.type, g.address, {address, -1, -1, type.base}, out))
+        return "\"" + out + "\"";
+    }
+  return "\"REF\"";
 }
 
 std::vector<std::string> variable_names(const Image& image) {

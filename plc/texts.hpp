@@ -273,6 +273,23 @@ inline constexpr Entry kInstanceCopy{
 inline constexpr Entry kInstancesCopy{
     "plc-instances", "{0} holds instances of a function block; they are called one by one, not assigned",
     "{0} содержит экземпляры функционального блока: их вызывают по одному, а не присваивают"};
+inline constexpr Entry kNoReference{"plc-no-reference", "'^' needs a reference, not {0}",
+                                    "'^' применимо к ссылке, а не к {0}"};
+inline constexpr Entry kReferenceLasts{
+    "plc-reference",
+    "'{0}' does not last ({1}); REF takes variables of programs, function blocks, VAR_GLOBAL",
+    "'{0}' временная ({1}); REF возможно для переменных программ, функциональных блоков и VAR_GLOBAL"};
+inline constexpr Entry kReferenceBit{"plc-reference", "there is no reference to a single bit",
+                                     "ссылка на отдельный бит невозможна"};
+inline constexpr Entry kReferenceInstance{
+    "plc-reference", "'{0}' does not last ({1}), and {2} takes references to its own variables",
+    "'{0}' временная ({1}), а {2} берёт ссылки на свои переменные"};
+inline constexpr Entry kReferenceRetain{"plc-reference-retain",
+                                        "'{0}' holds a reference and cannot be retained",
+                                        "'{0}' содержит ссылку, сохранять её значение нельзя"};
+inline constexpr Entry kReferenceNever{"plc-reference-never",
+                                       "{1} is never {0}: this attempt always gives NULL",
+                                       "{1} никогда не {0}: результат попытки всегда NULL"};
 inline constexpr Entry kNotEnumValue{"plc-enum-value", "{0} has no value '{1}'{2}",
                                      "у {0} нет значения '{1}'{2}"};
 inline constexpr Entry kConstantFault{"plc-constant", "this constant cannot be computed: {0}",
@@ -309,6 +326,9 @@ inline constexpr Entry kFaultSelector{"plc-fault-selector", "task {0}: the selec
                                       "задача {0}: селектор MUX не указывает ни на один вход"};
 inline constexpr Entry kFaultText{"plc-fault-text", "task {0}: position outside the string",
                                   "задача {0}: позиция вне строки"};
+inline constexpr Entry kFaultReference{"plc-fault-reference",
+                                       "task {0}: a reference that is NULL was followed",
+                                       "задача {0}: обращение по ссылке, равной NULL"};
 inline constexpr Entry kFaultPackets{"plc-fault-packets", "packet K or SYVAR is smaller than compiled for",
                                      "пакет K или SYVAR меньше, чем при трансляции"};
 inline constexpr Entry kRunName{"plc-run-name", "there is no variable '{0}'", "переменной '{0}' нет"};

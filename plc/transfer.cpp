@@ -83,8 +83,10 @@ Transfer plan_transfer(const Image& from, const Image& to, bool all) {
   for (Leaf& leaf : variables(from, all)) before.emplace(key_of(leaf.name), std::move(leaf));
   for (const Leaf& leaf : variables(to, all)) {
     const auto old = before.find(key_of(leaf.name));
-    if (old == before.end() || !same_type(*old->second.type, *leaf.type)) {
+    const bool refers = leaf.type->kind == Kind::reference;  // addresses are others in another program
+    if (old == before.end() || refers || !same_type(*old->second.type, *leaf.type)) {
       t.fresh.push_back(leaf.name);
+      if (refers && old != before.end()) before.erase(old);
       continue;
     }
     ++t.kept;

@@ -121,6 +121,8 @@ std::string to_json(const Type& type, const std::uint8_t* at, int bit) {
     case Kind::character:
     case Kind::wide_character:
       return quoted(bytes_at(type, at));
+    case Kind::reference:
+      return integer_at(type, at) == 0 ? "\"NULL\"" : "\"REF\"";
     case Kind::array:
     case Kind::structure:
     case Kind::block:

@@ -70,7 +70,8 @@ bool Generator::calls(const ir::Expr& e) {
   return calls(e.place);
 }
 bool Generator::calls(const ir::Place& p) {
-  return std::any_of(p.steps.begin(), p.steps.end(), [](const ir::Step& s) { return calls(*s.index); });
+  return (p.pointer && calls(*p.pointer)) ||
+         std::any_of(p.steps.begin(), p.steps.end(), [](const ir::Step& s) { return calls(*s.index); });
 }
 
 // Evaluating it costs less than a jump and neither faults nor changes anything.
@@ -80,7 +81,7 @@ bool Generator::cheap(const ir::Expr& e, int depth) {
     case ExprKind::constant:
       return true;
     case ExprKind::load:
-      return e.place.steps.empty();
+      return !e.place.computed();
     case ExprKind::unary:
     case ExprKind::binary:
       if (e.op == Op::div || e.op == Op::mod || is_text(e.args[0]->type->kind)) return false;
@@ -115,6 +116,10 @@ Generator::Operand Generator::value_of(const ir::Expr& e, std::optional<Operand>
     }
     case ExprKind::load:
       return load(target(e.place), *e.type, into);
+    case ExprKind::address:
+      if (!into) return reference(e.place);
+      bind(*into, e.place);
+      return *into;
     case ExprKind::unary:
       return unary(e, into);
     case ExprKind::binary:
@@ -314,7 +319,7 @@ Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> int
   for (std::size_t i = 0; i < e.parameters.size(); ++i) {
     const ir::Parameter& p = e.parameters[i];
     if (!p.value) {
-      if (p.section == syntax::Section::output || p.place.steps.empty()) continue;
+      if (p.section == syntax::Section::output || !p.place.computed()) continue;
       bind(values[i] = temporary(4), p.place);
       continue;
     }
@@ -338,7 +343,7 @@ Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> int
            bounds(p.type->limits.low, p.type->limits.high, 0));
     if (p.value)
       copy(*p.type, frame + p.offset, values[i]);
-    else if (p.section != syntax::Section::output && !p.place.steps.empty())
+    else if (p.section != syntax::Section::output && p.place.computed())
       emit(Code::move_w4, frame + p.offset, values[i]);
     else if (p.section != syntax::Section::output)
       bind(frame + p.offset, p.place);

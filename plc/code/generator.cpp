@@ -87,6 +87,7 @@ std::uint16_t Generator::bounds(std::int64_t low, std::int64_t high, std::uint32
 
 void Generator::callees(const ir::Place& p, std::vector<int>& out) {
   for (const ir::Step& s : p.steps) callees(*s.index, out);
+  if (p.pointer) callees(*p.pointer, out);
 }
 
 void Generator::callees(const ir::Expr& e, std::vector<int>& out) {
@@ -250,7 +251,7 @@ void Generator::retained_cells(const std::string& name, const Type& type, std::u
     for (std::int64_t i = type.range.low; i <= type.range.high; ++i)
       retained_cells(name + "[" + std::to_string(i) + "]", *type.base,
                      address + static_cast<std::uint32_t>(i - type.range.low) * type.base->size, all);
-  } else if (all) {
+  } else if (all && type.kind != Kind::reference) {
     retained_cell(name, type, address, -1);
   }
 }

@@ -60,6 +60,7 @@ class Generator {
   };
   Target target(const ir::Place& p);
   Operand base(const ir::Place& p);
+  Operand followed(const ir::Place& p);
   Operand load(const Target& t, const Type& type, std::optional<Operand> into);
   void store(const Target& t, const Type& type, Operand value);
   Operand reference(const ir::Place& p);

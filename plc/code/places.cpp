@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "plc/code/generator.hpp"
 
 namespace servogate::plc::code {
@@ -21,15 +23,27 @@ Generator::Operand Generator::base(const ir::Place& p) {
   }
 }
 
+// The cell with the address that a reference holds; a copy where a subscript behind it calls a function.
+Generator::Operand Generator::followed(const ir::Place& p) {
+  Operand cell = value(*p.pointer);
+  if (std::any_of(p.steps.begin(), p.steps.end(), [](const ir::Step& s) { return calls(*s.index); })) {
+    const Operand kept = temporary(4);
+    emit(Code::move_w4, kept, cell);
+    cell = kept;
+  }
+  emit(Code::check_reference, cell);
+  return cell;
+}
+
 Generator::Target Generator::target(const ir::Place& p) {
   Target t;
-  t.where = base(p);
+  t.where = p.pointer ? followed(p) : base(p);
   t.bit = p.bit;
   if (p.root == ir::Root::shared) {
     const ir::SharedPlace& s = program_.places[p.cell];
     if (s.raw && s.place.format == image::Format::bl) t.bit = s.place.bit();
   }
-  if (p.root == ir::Root::reference || p.root == ir::Root::pointer) {
+  if (p.root == ir::Root::reference || p.root == ir::Root::pointer || p.pointer) {
     t.indirect = true;
     t.offset = p.offset;
   }

@@ -90,7 +90,7 @@ bool Walk::root(const ir::Place& p, Reference& out, std::uint32_t& offset) const
       if (within(g, p.cell + p.offset, out, offset)) return true;
     return false;
   }
-  if (p.root == ir::Root::pointer || unit_ < 0) return false;
+  if (p.root == ir::Root::pointer || p.pointer || unit_ < 0) return false;
   const ir::Unit& u = program_.units[static_cast<std::size_t>(unit_)];
   out.name = u.name;
   for (const ir::Global& g : program_.programs)
@@ -104,6 +104,7 @@ bool Walk::root(const ir::Place& p, Reference& out, std::uint32_t& offset) const
 
 void Walk::place(const ir::Place& p, const syntax::Location& at, bool write) {
   for (const ir::Step& s : p.steps) optional(s.index);
+  optional(p.pointer);
   Reference r;
   std::uint32_t offset = 0;
   if (at.line <= 0 || !root(p, r, offset)) return;
@@ -122,6 +123,7 @@ void Walk::place(const ir::Place& p, const syntax::Location& at, bool write) {
 
 void Walk::expression(const ir::Expr& e) {
   if (e.kind == ir::ExprKind::load) place(e.place, e.at, false);
+  if (e.kind == ir::ExprKind::address) place(e.place, e.at, true);
   for (const ir::ExprPtr& a : e.args) optional(a);
   for (const ir::Parameter& p : e.parameters) {
     optional(p.value);

@@ -61,7 +61,7 @@ void Generator::assign(const ir::Stmt& s) {
     return;
   }
   const bool direct =
-      s.place.steps.empty() && s.place.root != ir::Root::reference && s.place.root != ir::Root::pointer;
+      !s.place.computed() && s.place.root != ir::Root::reference && s.place.root != ir::Root::pointer;
   const Target t = direct ? target(s.place) : Target{};
   const bool scalar = !is_text(type.kind) && cell_of(type) != Cell::blob;
   if (direct && t.bit < 0 && scalar) {
@@ -199,7 +199,7 @@ void Generator::for_statement(const ir::Stmt& s) {
   value(*s.to, counter + 8);
   value(*s.by, counter + 16);
   const bool direct = s.place.root != ir::Root::reference && s.place.root != ir::Root::pointer &&
-                      s.place.steps.empty() && target(s.place).bit < 0;
+                      !s.place.computed() && target(s.place).bit < 0;
   const Operand control = direct ? base(s.place) : temporary(8);
   const Cell cell = cell_of(*s.place.type);
   const auto show = [&] {

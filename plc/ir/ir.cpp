@@ -10,6 +10,7 @@ Place Place::copy() const {
   p.offset = offset;
   p.bit = bit;
   p.type = type;
+  if (pointer) p.pointer = pointer->copy();
   for (const Step& s : steps) p.steps.push_back(s.copy());
   return p;
 }

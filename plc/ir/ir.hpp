@@ -110,6 +110,7 @@ enum class Root : std::uint8_t {
   reference,  ///< the variable's address stands at `cell` of the own memory (VAR_IN_OUT)
   shared,     ///< `cell` is an index of Program::places
   pointer,    ///< the variable's address stands at the fixed address `cell`
+  target,     ///< `pointer` is a reference to the variable
 };
 
 /// Where a value lives.
@@ -120,13 +121,17 @@ struct Place {
   std::vector<Step> steps;
   std::int8_t bit = -1;  ///< access to one bit of it; `type` is then BOOL
   const Type* type = nullptr;
+  ExprPtr pointer = nullptr;  ///< a dereference; NULL is a fault
 
+  /// Finding it takes more than an address: subscripts, a reference.
+  bool computed() const { return !steps.empty() || pointer != nullptr; }
   Place copy() const;
 };
 
 enum class ExprKind : std::uint8_t {
   constant,
   load,
+  address,  ///< REF of `place`
   unary,
   binary,
   convert,

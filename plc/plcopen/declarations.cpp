@@ -105,8 +105,12 @@ TypeReference Reader::type(const pugi::xml_node& holder, int depth) {
     t.low = expression(range.attribute("lower"), n);
     t.high = expression(range.attribute("upper"), n);
   } else if (name == "pointer") {
-    report_.error(t.location, texts::kUnsupported, {"POINTER"});
-    t.name = "BOOL";
+    const pugi::xml_node base = child(n, "baseType");
+    t.name = base ? "REF_TO" : "BOOL";
+    if (base)
+      t.element = std::make_unique<TypeReference>(type(base, depth + 1));
+    else
+      report_.error(t.location, texts::kXmlMissing, {"pointer", "baseType"});
   }
   return t;
 }

@@ -88,6 +88,7 @@ class Analyzer {
   };
   void check_member_place(const syntax::Variable& m, const Type& type, std::vector<MemberBits>& taken);
   const Type* resolve_structure(const syntax::TypeReference& t, const std::string& name);
+  const Type* resolve_reference(const syntax::TypeReference& t);
   const Type* resolve_enumeration(const syntax::TypeReference& t, const std::string& name);
   const Type* resolve_subrange(const syntax::TypeReference& t, const Type* base, const std::string& name);
   std::uint32_t append(Type& owner, Field field);
@@ -192,6 +193,24 @@ class Analyzer {
   std::vector<const Expression*> inputs(const Expression& e, std::string_view name,
                                         std::initializer_list<const char*> names, std::size_t least,
                                         std::size_t most);
+
+  // references.cpp: REF_TO, REF, ^, NULL, ?=.
+  /// A reference that begins with REF(x): its cell and the variable, both in the frame or at fixed addresses.
+  struct InitialReference {
+    const Type* frame;  ///< null: `cell` is an address
+    std::uint32_t cell;
+    ir::Place target;
+  };
+  ExprPtr reference_to(const Expression& e);
+  bool lasts(const Expression& variable);
+  std::optional<ir::Place> place_of_dereference(const Expression& e);
+  ExprPtr attempted(ExprPtr value, const Type& to);
+  bool initial_reference(Variable& v, const syntax::Variable& s, const Type* frame);
+  void check_references();
+  const Type* gives_references(const Type& type) const;
+  void bind_references();
+  void bind_references(const Type& type, std::uint32_t address);
+  void bind_reference(const InitialReference& r, std::uint32_t base);
 
   // calls.cpp
   ExprPtr call(const Expression& e, const Type* hint, bool as_statement);
@@ -326,6 +345,9 @@ class Analyzer {
   std::map<const Type*, std::uint32_t> limits_;  ///< where the limits of an array lie that was bound
   std::map<std::pair<int, std::uint32_t>, std::uint32_t> initial_values_;  ///< of inputs: unit, cell -> where
   const Type* limits_type_ = nullptr;
+  std::map<std::string, const Type*> open_types_;  ///< structures whose members are being resolved
+  std::vector<InitialReference> initial_references_;
+  std::set<int> referenced_units_;       ///< REF is taken of variables of their instances, inside
   bool open_arrays_ = false;             ///< the type being resolved may be ARRAY[*]
   const Expression* guarded_ = nullptr;  ///< the call whose EN and ENO are being dealt with
   bool no_marks_ = false;                ///< reads do not count as use

@@ -32,6 +32,7 @@ ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
       const auto unit = units_by_name_.find(key);
       if (const int function = function_named(callee); function >= 0) return function_call(e, function);
       if (is_standard(key)) return standard_call(e, key, hint);
+      if (key == "REF") return reference_to(e);
       if (v == nullptr) {
         std::vector<std::string> names = names_in_scope();
         for (const syntax::Unit& u : source_.units)
@@ -401,10 +402,10 @@ void Analyzer::block_call(const Expression& e, const ir::Place& named, int unit,
   if (current_ >= 0) here().calls.insert(unit);
   std::vector<const Variable*> matched;
   if (!check_arguments(e, unit, matched)) return;
-  if (named.root == ir::Root::instance && named.steps.empty())
+  if (named.root == ir::Root::instance && !named.computed())
     called_.insert({current_, named.cell + named.offset});
   ir::Place instance = named.copy();
-  if (!named.steps.empty()) {  // subscripts are computed once, whatever the call changes
+  if (named.computed()) {  // subscripts and references are computed once, whatever the call changes
     ir::Stmt choose;
     choose.kind = ir::StmtKind::bind;
     choose.at = e.location;

@@ -41,12 +41,14 @@ ir::Program Analyzer::run() {
   for (std::size_t u = 0; u < scopes_.size(); ++u)
     if (scopes_[u].source != nullptr) body(static_cast<int>(u));
   check_locations();
+  check_references();
   check_block_tasks();
   check_recursion();
   check_writers();
   check_usage();
   lay_out_places();
   bind_locations();
+  bind_references();
   return std::move(program_);
 }
 
@@ -135,6 +137,7 @@ const Type* Analyzer::resolve_written(const syntax::TypeReference& t, const std:
   if (!t.values.empty()) return resolve_enumeration(t, name);
   if (key_of(t.name) == "ARRAY") return resolve_array(t);
   if (key_of(t.name) == "STRUCT") return resolve_structure(t, name);
+  if (key_of(t.name) == "REF_TO" && t.element) return resolve_reference(t);
   const Type* named = resolve_named(t);
   if (t.low) return resolve_subrange(t, named, name);
   if (t.length && is_text(named->kind)) {
@@ -272,6 +275,9 @@ void Analyzer::check_member_place(const syntax::Variable& m, const Type& type,
 
 const Type* Analyzer::resolve_structure(const syntax::TypeReference& t, const std::string& name) {
   Type* s = types_->add(Kind::structure, name.empty() ? "STRUCT" : name);
+  const auto declared = declared_types_.find(key_of(name));
+  if (declared != declared_types_.end() && !source_.types[declared->second].initial)
+    open_types_[key_of(name)] = s;
   std::vector<MemberBits> taken;
   for (const syntax::Variable& m : t.members) {
     if (s->field(m.name) != nullptr) {
@@ -286,6 +292,7 @@ const Type* Analyzer::resolve_structure(const syntax::TypeReference& t, const st
   }
   s->size = std::max<std::uint32_t>(1, aligned(s->size, s->align));
   if (!s->image.empty()) s->image.resize(s->size);
+  open_types_.erase(key_of(name));
   return s;
 }
 
@@ -409,6 +416,7 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
   open_arrays_ = s.section == Section::in_out || (s.section == Section::input && function);
   v.type = s.type ? resolve(*s.type) : elementary(Kind::error);
   open_arrays_ = false;
+  if (v.retain && holds_reference(*v.type)) report_.error(s.location, texts::kReferenceRetain, {s.name});
   const bool alias = s.section == Section::external;
   if (alias) {
     const auto g = globals_by_name_.find(key_of(s.name));
@@ -425,7 +433,8 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
   } else if (v.type->kind != Kind::error) {
     if (s.edge != 0 && (s.section != Section::input || v.type->kind != Kind::boolean))
       report_.error(s.location, texts::kEdgeType);
-    if (s.initial) v.initial = initial_bytes(*s.initial, *v.type);
+    const bool refers = initial_reference(v, s, u.frame);
+    if (s.initial && !refers) v.initial = initial_bytes(*s.initial, *v.type);
     if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
     if (!s.address.empty()) {
       if (!declare_unlocated(u, v, s)) declare_located(v, s);
@@ -435,6 +444,7 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
       v.root = reference ? ir::Root::reference : ir::Root::instance;
       v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference, s.constant});
       if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
+      if (refers) initial_references_.back().cell = v.cell;
       if (v.type->open) append(*u.frame, {s.name + "$limits", limits_type(), 0, false, true});
     }
   }
@@ -530,8 +540,10 @@ void Analyzer::declare_globals(bool constants) {
     v.retain = s.retain;
     v.root = ir::Root::fixed;
     v.type = resolve(*s.type);
+    if (v.retain && holds_reference(*v.type)) report_.error(s.location, texts::kReferenceRetain, {s.name});
     if (v.type->kind != Kind::error) {
-      if (s.initial) v.initial = initial_bytes(*s.initial, *v.type);
+      const bool refers = initial_reference(v, s, nullptr);
+      if (s.initial && !refers) v.initial = initial_bytes(*s.initial, *v.type);
       if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
       if (s.address.ends_with("*")) {
         report_.error(s.address_location, texts::kUnlocatedGlobal, {s.address});
@@ -540,6 +552,7 @@ void Analyzer::declare_globals(bool constants) {
         declare_located(v, s);
       } else {
         v.cell = allocate(*v.type);
+        if (refers) initial_references_.back().cell = v.cell;
         std::copy(v.initial.begin(), v.initial.end(), program_.memory.begin() + v.cell);
         program_.globals.push_back({v.name, v.type, v.cell, -1, v.retain, v.constant});
       }

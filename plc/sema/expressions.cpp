@@ -50,6 +50,7 @@ ExprPtr Analyzer::expression(const Expression& e, const Type* hint) {
     case ExpressionKind::member:
     case ExpressionKind::index:
     case ExpressionKind::bit:
+    case ExpressionKind::dereference:
     case ExpressionKind::direct:
       return name_expression(e, hint);
     case ExpressionKind::call:
@@ -144,6 +145,8 @@ ExprPtr Analyzer::name_expression(const Expression& e, const Type* hint) {
     }
     if (v == nullptr && symbol(e.name) == nullptr)
       if (ExprPtr value = enumeration_value(e.name, e.location, hint)) return value;
+    if (v == nullptr && symbol(e.name) == nullptr && same_name(e.name, "NULL"))
+      return make_constant(types_->reference(nullptr), {}, e.location);
   }
   if (e.kind == ExpressionKind::member && leads_global(*e.operands[0])) {
     Expression plain;
@@ -261,6 +264,7 @@ ExprPtr Analyzer::combine(Op op, ExprPtr a, ExprPtr b, const Location& at, std::
     return out ? std::move(out) : refuse();
   }
   const Type* common = nullptr;
+  const bool references = x == Kind::reference && y == Kind::reference && (op == Op::eq || op == Op::ne);
   if (x == Kind::enumeration || y == Kind::enumeration) {
     if (a->type != b->type || !comparing(op)) return refuse();
     common = a->type;
@@ -294,7 +298,8 @@ ExprPtr Analyzer::combine(Op op, ExprPtr a, ExprPtr b, const Location& at, std::
       }
     }
   }
-  if (common == nullptr || common->kind == Kind::none || !is_elementary(common->kind)) return refuse();
+  if (common == nullptr || common->kind == Kind::none || !(references || is_elementary(common->kind)))
+    return refuse();
   const Kind k = common->kind;
   if (logical(op)     ? !(k == Kind::boolean || is_bits(k) || is_integer(k) || k == Kind::untyped_int)
       : comparing(op) ? false

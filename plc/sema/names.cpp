@@ -86,6 +86,8 @@ std::optional<ir::Place> Analyzer::place(const Expression& e, bool write) {
       return place_of_index(e, write);
     case ExpressionKind::bit:
       return place_of_bit(e, write);
+    case ExpressionKind::dereference:
+      return place_of_dereference(e);
     case ExpressionKind::held: {
       const auto held = held_.find(e.literal.magnitude);
       if (held == held_.end()) return std::nullopt;  // reported where it was to be kept

@@ -152,7 +152,9 @@ void Analyzer::assignment(const syntax::Statement& s, ir::Block& out) {
   auto target = place(*s.target, true);
   ExprPtr value =
       expression(*s.value, target ? (target->type->bounded ? target->type->base : target->type) : nullptr);
-  if (target) assign(std::move(*target), std::move(value), s.location, out);
+  if (!target) return;
+  if (s.attempt) value = attempted(std::move(value), *target->type);
+  assign(std::move(*target), std::move(value), s.location, out);
 }
 
 void Analyzer::assign(ir::Place target, ExprPtr value, const Location& at, ir::Block& out) {

@@ -68,11 +68,12 @@ enum class ExpressionKind : std::uint8_t {
   literal,
   typed,  ///< `name#...`: literal or enumeration value in `operands[0]` or `text`
   name,
-  direct,  ///< %IX0.0
-  member,  ///< operands[0] . name
-  bit,     ///< operands[0] . literal (bit access)
-  index,   ///< operands[0] [ operands[1..] ]
-  call,    ///< name or operands[0] ( arguments )
+  direct,       ///< %IX0.0
+  member,       ///< operands[0] . name
+  bit,          ///< operands[0] . literal (bit access)
+  index,        ///< operands[0] [ operands[1..] ]
+  dereference,  ///< operands[0] ^
+  call,         ///< name or operands[0] ( arguments )
   unary,
   binary,
   held,    ///< the value that the statement hold number `literal.magnitude` kept
@@ -143,17 +144,18 @@ struct Statement {
   std::vector<Branch> branches;
   Block body;  ///< of a loop; ELSE of IF and CASE
   bool has_else = false;
+  bool attempt = false;  ///< assign: ?=
 };
 
 /// What stands after the colon of a declaration.
 struct TypeReference {
   Location location;
-  std::string name;  ///< elementary, user type, or ARRAY, STRING, STRUCT
+  std::string name;  ///< elementary, user type, or ARRAY, STRING, STRUCT, REF_TO
   std::vector<std::pair<ExpressionPtr, ExpressionPtr>> ranges;  ///< of an array; two nulls: *
-  std::unique_ptr<TypeReference> element;
-  ExpressionPtr length;                                       ///< of a string
-  ExpressionPtr low, high;                                    ///< of a subrange
-  std::vector<std::pair<std::string, ExpressionPtr>> values;  ///< of an enumeration
+  std::unique_ptr<TypeReference> element;                       ///< of an array; what REF_TO leads to
+  ExpressionPtr length;                                         ///< of a string
+  ExpressionPtr low, high;                                      ///< of a subrange
+  std::vector<std::pair<std::string, ExpressionPtr>> values;    ///< of an enumeration
   std::vector<Location> value_locations;
   std::vector<struct Variable> members;  ///< of a structure
 };

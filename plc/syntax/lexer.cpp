@@ -340,8 +340,9 @@ class Lexer {
   }
   Token symbol() {
     Token t = start(TokenKind::symbol);
-    constexpr std::string_view known[] = {":=", "=>", "<=", ">=", "<>", "**", "..", "+", "-", "*", "/", "=",
-                                          "<",  ">",  "(",  ")",  "[",  "]",  ",",  ";", ":", ".", "&"};
+    constexpr std::string_view known[] = {":=", "=>", "?=", "^", "<=", ">=", "<>", "**", "..",
+                                          "+",  "-",  "*",  "/", "=",  "<",  ">",  "(",  ")",
+                                          "[",  "]",  ",",  ";", ":",  ".",  "&"};
     if (text_.substr(at_, 2) == "==") return foreign_operator(std::move(t), "==", "=");
     if (text_.substr(at_, 2) == "&&") return foreign_operator(std::move(t), "&&", "AND");
     for (const std::string_view s : known)

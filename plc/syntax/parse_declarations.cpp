@@ -165,6 +165,15 @@ TypeReference Parser::type_reference() {
     structure_type(t);
     return t;
   }
+  if (at("REF_TO") && ahead().kind == TokenKind::word) {
+    t.name = take().key;
+    t.element = std::make_unique<TypeReference>(type_reference());
+    return t;
+  }
+  if (at_any({"POINTER", "REFERENCE"}) && ahead().is("TO")) {
+    report_.error(now().location, texts::kForeign, {now().key + " TO", "REF_TO"});
+    throw SyntaxError{};
+  }
   if (at("(")) {
     enumeration_type(t);
     return t;

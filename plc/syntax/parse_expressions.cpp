@@ -124,6 +124,10 @@ ExpressionPtr Parser::postfix(ExpressionPtr e) {
       while (accept(","));
       expect_closing("]", "'['", where);
       e = std::move(index);
+    } else if (at("^")) {
+      ExpressionPtr target = make(ExpressionKind::dereference, take().location);
+      target->operands.push_back(std::move(e));
+      e = std::move(target);
     } else if (at(".")) {
       take();
       const bool bit = now().kind == TokenKind::literal && now().literal.kind == Kind::untyped_int;

@@ -90,7 +90,8 @@ StatementPtr Parser::simple_statement() {
     report_.error(now().location, texts::kAssignEqual);
     throw SyntaxError{};
   }
-  if (accept(":=")) {
+  if (at_any({":=", "?="})) {
+    s->attempt = take().is("?=");
     s->kind = StatementKind::assign;
     s->target = std::move(target);
     s->value = expression();

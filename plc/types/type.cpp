@@ -152,6 +152,7 @@ Cell cell_of(const Type& t) noexcept {
       return Cell::u16;
     case Kind::udint:
     case Kind::dword:
+    case Kind::reference:  // the address of the variable
       return Cell::u32;
     case Kind::ulint:
     case Kind::lword:
@@ -203,6 +204,11 @@ Conversion conversion(const Type& from, const Type& to) noexcept {
   if (&from == &to || from.kind == Kind::error || to.kind == Kind::error) return Conversion::same;
   if (from.kind == Kind::enumeration || to.kind == Kind::enumeration) return Conversion::none;
   if (is_elementary(from.kind) && is_elementary(to.kind)) return between(from.kind, to.kind);
+  if (from.kind == Kind::reference && to.kind == Kind::reference) {
+    if (from.base == nullptr || to.base == nullptr)
+      return from.base == nullptr ? Conversion::widening : Conversion::none;
+    return binds(*from.base, *to.base) ? Conversion::same : Conversion::none;
+  }
   if (from.kind == Kind::array && to.kind == Kind::array && !from.open && !to.open &&
       from.range.count() == to.range.count() && from.range.low == to.range.low && from.size == to.size)
     return conversion(*from.base, *to.base) == Conversion::same && range_fits(*from.base, *to.base)
@@ -215,6 +221,13 @@ bool range_fits(const Type& from, const Type& to) noexcept {
   const Type *f = &from, *t = &to;
   for (; f->kind == Kind::array && t->kind == Kind::array; f = f->base) t = t->base;
   return !t->bounded || (f->bounded && f->limits.low >= t->limits.low && f->limits.high <= t->limits.high);
+}
+
+bool holds_reference(const Type& type) noexcept {
+  if (type.kind == Kind::array) return holds_reference(*type.base);
+  if (type.kind != Kind::structure) return type.kind == Kind::reference;
+  return std::any_of(type.fields.begin(), type.fields.end(),
+                     [](const Field& f) { return holds_reference(*f.type); });
 }
 
 bool holds_instance(const Type& type) noexcept {
@@ -288,6 +301,15 @@ const Type* TypeTable::open_array(const Type* element) {
   t->open = true;
   t->base = element;
   t->range = {0, -1};
+  return t;
+}
+
+const Type* TypeTable::reference(const Type* target) {
+  for (const Type& t : all_)
+    if (t.kind == Kind::reference && t.base == target) return &t;
+  Type* t = add(Kind::reference, target == nullptr ? "NULL" : "REF_TO " + target->name);
+  t->base = target;
+  t->size = t->align = 4;
   return t;
 }
 

@@ -38,6 +38,7 @@ enum class Kind : std::uint8_t {
   string,
   wide_string,
   enumeration,
+  reference,
   array,
   structure,
   block,
@@ -81,10 +82,12 @@ struct Type {
   std::uint32_t align = 1;
   bool bounded = false;  ///< subrange: low..high of `limits`
   Dimension limits;
-  const Type* base = nullptr;  ///< element of an array, integer under an enumeration or subrange
-  Dimension range;             ///< of an array (several dimensions are arrays of arrays)
-  bool open = false;           ///< ARRAY[*]: the limits come with the actual array, `range` is empty
-  std::vector<Field> fields;   ///< of a structure or function block
+  /// Element of an array, integer under an enumeration or subrange, what a reference leads to (NULL:
+  /// nothing).
+  const Type* base = nullptr;
+  Dimension range;            ///< of an array (several dimensions are arrays of arrays)
+  bool open = false;          ///< ARRAY[*]: the limits come with the actual array, `range` is empty
+  std::vector<Field> fields;  ///< of a structure or function block
   std::vector<EnumValue> values;
   std::int32_t block = -1;          ///< function block: index of its body
   std::vector<std::uint8_t> image;  ///< initial value; empty: all zero
@@ -129,6 +132,8 @@ bool binds(const Type& actual, const Type& formal) noexcept;
 bool takes_output(const Type& actual, const Type& formal) noexcept;
 /// Every value of `from` is one of `to` as far as subranges go; of arrays those of the elements.
 bool range_fits(const Type& from, const Type& to) noexcept;
+/// It is a reference, or an element or member of it is one; what is inside of function blocks does not count.
+bool holds_reference(const Type& type) noexcept;
 /// It is a function block, or an element or member of it is one.
 bool holds_instance(const Type& type) noexcept;
 
@@ -145,6 +150,8 @@ class TypeTable {
   const Type* array(const Type* element, Dimension range);
   /// ARRAY[*] of it, for parameters (IEC 61131-3:2013, 6.5.3.4); it has no size.
   const Type* open_array(const Type* element);
+  /// REF_TO it; of nullptr the type of NULL.
+  const Type* reference(const Type* target);
   /// A new type that the caller fills; named types are found again by find().
   Type* add(Kind k, std::string name);
   /// Declares a name for a type; false when the name is taken.

@@ -319,6 +319,9 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
 #define SINGLE_address(AT)                                             \
   put(AT(ip->a), static_cast<std::uint32_t>(AT(ip->b) - mem) + ip->c); \
   NEXT()
+#define SINGLE_check_reference(AT)                                     \
+  if (get<std::uint32_t>(AT(ip->a)) == 0) FAIL(Fault::null_reference); \
+  NEXT()
 #define SINGLE_load_bit(AT)                                            \
   *AT(ip->a) = static_cast<std::uint8_t>((*AT(ip->b) >> ip->aux) & 1); \
   NEXT()

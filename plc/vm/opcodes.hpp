@@ -54,6 +54,7 @@ namespace servogate::plc::vm {
   SINGLE(move_text)                                                           \
   SINGLE(move_wide_text)                                                      \
   SINGLE(address)                                                             \
+  SINGLE(check_reference)                                                     \
   SINGLE(load_bit)                                                            \
   SINGLE(store_bit)                                                           \
   SINGLE(jump)                                                                \

@@ -422,6 +422,38 @@ TEST(Transfer, of_an_online_change_gives_an_instance_its_new_address) {
   EXPECT_EQ(p.number({Packet::k, Format::li, 12, 1}), 9);
 }
 
+TEST(Transfer, gives_references_their_initial_value_because_variables_move) {
+  Engine first(build(R"(PROGRAM Main
+VAR x, y : INT; set, lost : REF_TO INT; begun : REF_TO INT := REF(x); END_VAR
+set := REF(y); lost := set; begun^ := 5;
+END_PROGRAM)"));
+  image::Packets p;
+  first.scan(p, 0);
+  EXPECT_EQ(first.read(*first.find("set")), "\"Main.y\"");
+  Engine second(build(R"(PROGRAM Main
+VAR more : LREAL; y, x : INT; set : REF_TO INT; begun : REF_TO INT := REF(x); END_VAR
+IF set = NULL THEN begun^ := begun^ + 1; END_IF; more := 0.0; set := REF(y);
+END_PROGRAM)"));
+  const Transfer transfer = plan_transfer(first.image(), second.image(), true);
+  EXPECT_EQ(transfer.fresh, (std::vector<std::string>{"Main.more", "Main.set", "Main.begun"}));
+  EXPECT_EQ(transfer.given_up, std::vector<std::string>{"Main.lost"});
+  second.prepare_transfer(transfer);
+  second.take_over(first, transfer);
+  EXPECT_EQ(second.read(*second.find("set")), "\"NULL\"");
+  EXPECT_EQ(second.read(*second.find("begun")), "\"Main.x\"");
+  EXPECT_EQ(second.scan(p, 1).fault, Fault::none);
+  EXPECT_EQ(second.number(*second.find("x")), 6);
+}
+
+TEST(Engine, neither_writes_nor_forces_a_reference) {
+  Engine e(build("PROGRAM Main\nVAR x : INT; r : REF_TO INT; END_VAR\nr := REF(x);\nEND_PROGRAM"));
+  image::Packets p;
+  for (const char* value : {"NULL", "0", "16", "x"}) {
+    EXPECT_FALSE(e.write(p, *e.find("r"), value)) << value;
+    EXPECT_FALSE(e.force(*e.find("r"), value)) << value;
+  }
+}
+
 TEST(Engine, measures_tasks_always_and_blocks_when_somebody_looks) {
   Engine e(build(R"(FUNCTION_BLOCK Inner VAR n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
 FUNCTION_BLOCK Outer VAR i : Inner; END_VAR i(); i(); END_FUNCTION_BLOCK

@@ -80,6 +80,10 @@ Evaluator::Address Evaluator::address(const ir::Place& p, std::uint32_t self) {
     std::memcpy(&target, memory.data() + p.cell, 4);
     a.at = target + p.offset;
   }
+  if (p.pointer) {
+    a.at = static_cast<std::uint32_t>(evaluate(*p.pointer, self).i) + p.offset;
+    if (a.at == p.offset) throw Stopped{Fault::null_reference};
+  }
   for (const ir::Step& s : p.steps) {
     const Value index = evaluate(*s.index, self);
     const bool huge = cell_of(*s.index->type) == Cell::u64 && index.i < 0;
@@ -139,6 +143,8 @@ Evaluator::Value Evaluator::evaluate(const ir::Expr& e, std::uint32_t self) {
       return {e.value.i, e.value.r, {}};
     case ExprKind::load:
       return load(address(e.place, self), *e.type);
+    case ExprKind::address:
+      return {address(e.place, self).at, 0, {}};
     case ExprKind::unary:
       return unary(e, self);
     case ExprKind::binary:
