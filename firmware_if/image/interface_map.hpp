@@ -170,6 +170,9 @@ inline constexpr InterfaceField kMotionFields[] = {
      "reset, 8 torque"},
     {"mc_power", 37, 0, Format::by, Writer::plc,
      "1: drive power is wanted; it comes on with the rising edge"},
+    {"mc_direction", 38, 0, Format::by, Writer::plc,
+     "to a position of an endless rotary axis: 0 counting on, 1 up, 2 the shorter way, 3 down, 4 as it "
+     "turned last"},
     {"mc_target", 40, 0, Format::lr, Writer::plc,
      "position, distance (mm or degrees), direction (sign) or torque (per cent of the rated one)"},
     {"mc_velocity", 48, 0, Format::lr, Writer::plc, "speed, mm/s or degrees/s, above 0"},

@@ -311,7 +311,7 @@ void Cycle::move_auxiliary(PlcMotion& motion, axis::Axis& a) noexcept {
     alarms.number = first->number;
   motion.read(image_, a.index());
   motion.watch(a, alarms, image_.now.period_s());
-  for (Request request; motion.next(request);) motion.answer(request, handle(request), a);
+  for (Request request; motion.next(request, a);) motion.answer(request, handle(request), a);
   motion.write(image_, a);
 }
 

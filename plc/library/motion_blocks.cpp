@@ -9,6 +9,8 @@ namespace {
 
 // In memory as in packet K, image::kMotionFields: Analyzer::axis_reference puts it there.
 constexpr const char* kAxisRef = R"(
+TYPE MC_DIRECTION : USINT (mcNoDirection, mcPositiveDirection, mcShortestWay, mcNegativeDirection, mcCurrentDirection);
+END_TYPE
 TYPE AXIS_REF : STRUCT
   mc_taken, mc_active : DINT;
   mc_refusal, mc_error : INT;
@@ -17,7 +19,7 @@ TYPE AXIS_REF : STRUCT
   mc_torque : REAL;
   mc_position : LREAL;
   mc_order_number : DINT;
-  mc_order, mc_power : USINT;
+  mc_order, mc_power, mc_direction : USINT;
   mc_target, mc_velocity, mc_acceleration : LREAL;
 END_STRUCT; END_TYPE
 )";
@@ -186,7 +188,8 @@ END_VAR
 VAR_OUTPUT Velocity : LREAL; END_VAR
 VAR
   HAVE_TIME, IS_HOMED, POWER, ENDLESS, BRAKING : BOOL;
-  LAST, HOME_TIME : TIME; DT, WAY, GOAL, SPEED, ACC, WISH, STEP : LREAL; ORDER, WANTED : USINT; R : INT;
+  DOWN : BOOL;  (* the way it turned last *)
+  LAST, HOME_TIME : TIME; DT, WAY, AHEAD, GOAL, SPEED, ACC, WISH, STEP : LREAL; ORDER, WANTED : USINT; R : INT;
 END_VAR
 DT := 0.0;
 IF HAVE_TIME THEN DT := LINT_TO_LREAL(TIME_TO_LINT(TIME() - LAST)) / 1000.0; END_IF;
@@ -215,7 +218,20 @@ IF Axis.mc_order_number <> Axis.mc_taken THEN
   R := 0;
   WAY := Axis.mc_target;
   IF WANTED = 8 THEN R := @N; END_IF;
-  IF WANTED = 2 THEN WAY := WAY - Axis.mc_position; END_IF;
+  IF WANTED = 2 THEN
+    WAY := WAY - Axis.mc_position;
+    IF ENDLESS AND Axis.mc_direction >= 1 AND Axis.mc_direction <= 4 THEN
+      (* from where it would come to rest, less than a turn on *)
+      GOAL := Velocity * ABS(Velocity) / (2.0 * MaxAcceleration);
+      AHEAD := (WAY - GOAL) / 360.0;
+      AHEAD := (AHEAD - LINT_TO_LREAL(LREAL_TRUNC_LINT(AHEAD))) * 360.0;
+      IF AHEAD < -1.0E-6 THEN AHEAD := AHEAD + 360.0; END_IF;
+      IF AHEAD > 360.0 - 1.0E-6 THEN AHEAD := AHEAD - 360.0; END_IF;
+      IF AHEAD > 1.0E-6 AND (Axis.mc_direction = 3 OR Axis.mc_direction = 4 AND DOWN OR
+         Axis.mc_direction = 2 AND AHEAD > 180.0) THEN AHEAD := AHEAD - 360.0; END_IF;
+      WAY := GOAL + AHEAD;
+    END_IF;
+  END_IF;
   IF WANTED >= 1 AND WANTED <= 4 THEN
     IF Axis.mc_state = 7 THEN R := @E;
     ELSIF Axis.mc_state = 6 THEN R := @S;
@@ -258,6 +274,7 @@ ELSIF NOT BRAKING AND ORDER = 4 THEN
 END_IF;
 STEP := SEL(BRAKING, ACC, MaxAcceleration) * DT;
 Velocity := LIMIT(Velocity - STEP, WISH, Velocity + STEP);
+IF Velocity <> 0.0 THEN DOWN := Velocity < 0.0; END_IF;
 IF NOT BRAKING AND (ORDER = 2 OR ORDER = 3) AND ABS(GOAL - Axis.mc_position) <= ABS(Velocity) * DT + 1.0E-9 THEN
   Axis.mc_position := GOAL; Velocity := 0.0; Axis.mc_result := 1; ORDER := 0;
 ELSE
@@ -290,7 +307,8 @@ struct Order {
 constexpr std::string_view kMoveInputs = "Velocity, Acceleration, Deceleration : LREAL;";
 constexpr Order kOrders[] = {
     {"MC_Home", "", "1", "", "Done", kUntilDone},
-    {"MC_MoveAbsolute", "Position, @M", "2", "Axis.mc_target := Position; Axis.mc_velocity := Velocity; @L",
+    {"MC_MoveAbsolute", "Position, @M Direction : MC_DIRECTION;", "2",
+     "Axis.mc_target := Position; Axis.mc_direction := TO_USINT(Direction); Axis.mc_velocity := Velocity; @L",
      "Done", kUntilDone},
     {"MC_MoveRelative", "Distance, @M", "3", "Axis.mc_target := Distance; Axis.mc_velocity := Velocity; @L",
      "Done", kUntilDone},

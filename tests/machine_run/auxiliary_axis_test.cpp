@@ -18,7 +18,7 @@ using image::ProcessState;
 using image::RequestKind;
 
 constexpr const char* kDesk = R"(
-VAR_GLOBAL crash, on, ref, go, go2, spin, halt, again, free : BOOL; goal, goal2, speed : LREAL := 60.0; END_VAR
+VAR_GLOBAL crash, on, ref, go, go2, spin, halt, again, free : BOOL; goal, goal2, speed : LREAL := 60.0; way : MC_DIRECTION; END_VAR
 PROGRAM Main
 VAR p : MC_Power; h : MC_Home; m, n : MC_MoveAbsolute; v : MC_MoveVelocity; s : MC_Stop; r : MC_Reset;
   st : MC_ReadStatus; w : MC_ReadActualPosition; END_VAR
@@ -28,7 +28,7 @@ U.enable := TRUE; U.feed_enable := magazine_free;
 p(Axis := U, Enable := on);
 h(Axis := U, Execute := ref);
 m(Axis := U, Execute := go, Position := goal, Velocity := speed);
-n(Axis := U, Execute := go2, Position := goal2, Velocity := speed);
+n(Axis := U, Execute := go2, Position := goal2, Velocity := speed, Direction := way);
 v(Axis := U, Execute := spin, Velocity := -speed, Acceleration := 100.0);
 s(Axis := U, Execute := halt);
 r(Axis := U, Execute := again);
@@ -126,6 +126,61 @@ TEST(AuxiliaryAxis, takes_over_from_a_motion_under_way_without_a_jerk) {
   ASSERT_TRUE(desk.comes("Main.n.Done"));
   EXPECT_EQ(desk.axis("U").command, -20.0);
   EXPECT_EQ(desk.judge().verdict(), "");
+}
+
+/// Turns to a place of one turn in a direction and says where it is then.
+double turned(Desk& desk, double place, int direction) {
+  desk.set("goal2", place);
+  desk.set("way", direction);
+  desk.pulse("go2");
+  EXPECT_TRUE(desk.comes("Main.n.Done")) << place << " by " << direction;
+  return desk.axis("U").command;
+}
+
+TEST(AuxiliaryAxis, without_ends_turns_in_the_direction_that_is_asked_for) {
+  enum { kNone, kUp, kShortest, kDown, kCurrent };
+  Desk desk;
+  desk.ready();
+  EXPECT_EQ(turned(desk, 300.0, kShortest), -60.0);
+  EXPECT_EQ(turned(desk, 300.0, kUp), -60.0) << "it stands there already";
+  EXPECT_EQ(turned(desk, 300.0, kDown), -60.0);
+  EXPECT_EQ(turned(desk, 270.0, kUp), 270.0);
+  EXPECT_EQ(turned(desk, 280.0, kDown), -80.0);
+  EXPECT_EQ(turned(desk, 270.0, kCurrent), -90.0) << "down, as it turned last";
+  EXPECT_EQ(turned(desk, 30.0, kShortest), 30.0) << "120 degrees up";
+  EXPECT_EQ(turned(desk, 20.0, kCurrent), 380.0) << "up, as it turned last";
+  EXPECT_EQ(turned(desk, -350.0, kShortest), 370.0) << "the place 10";
+  EXPECT_EQ(turned(desk, 20.0, kNone), 20.0) << "counting on: a whole turn back";
+  EXPECT_EQ(desk.judge().verdict(), "");
+}
+
+TEST(AuxiliaryAxis, under_way_takes_the_place_that_lies_behind_its_braking_way) {
+  enum { kUp = 1, kDown = 3 };
+  Desk desk;
+  desk.in_motion();  // up at 60 deg/s
+  const double here = desk.axis("U").command;
+  desk.set("goal2", here + 1.0);
+  desk.set("way", kUp);
+  desk.pulse("go2");
+  ASSERT_TRUE(desk.comes("Main.n.Done"));
+  EXPECT_NEAR(desk.axis("U").command, here + 361.0, 1e-9)
+      << "1 degree ahead cannot be reached without turning back";
+  desk.set("goal", here + 500.0);
+  desk.pulse("go");
+  desk.run(1.0);
+  const double now = desk.axis("U").command;
+  desk.set("goal2", now - 1.0);
+  desk.set("way", kDown);
+  desk.pulse("go2");
+  ASSERT_TRUE(desk.comes("Main.n.Done"));
+  EXPECT_NEAR(desk.axis("U").command, now - 1.0, 1e-9) << "it turns round and goes down to it";
+  EXPECT_EQ(desk.judge().verdict(), "");
+}
+
+TEST(AuxiliaryAxis, with_ends_takes_no_notice_of_a_direction) {
+  Desk desk(true);
+  desk.ready();
+  EXPECT_EQ(turned(desk, 150.0, 3), 150.0);
 }
 
 TEST(AuxiliaryAxis, turns_at_a_speed_until_mc_stop_holds_it) {

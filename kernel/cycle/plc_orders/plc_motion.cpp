@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/cycle/plc_orders/plc_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware_if/image/interface_map.hpp"
@@ -32,6 +33,9 @@ void PlcMotion::read(const image::ProcessImage& image, int axis) noexcept {
   const auto order = static_cast<int>(number(place("mc_order")));
   wanted_.order = order <= static_cast<int>(Order::torque) ? static_cast<Order>(order) : Order::none;
   wanted_.power = number(place("mc_power")) != 0.0;
+  const auto direction = static_cast<int>(number(place("mc_direction")));
+  wanted_.direction =
+      direction <= static_cast<int>(Direction::current) ? static_cast<Direction>(direction) : Direction::none;
   wanted_.target = number(place("mc_target"));
   wanted_.velocity = number(place("mc_velocity"));
   wanted_.acceleration = number(place("mc_acceleration"));
@@ -43,6 +47,7 @@ void PlcMotion::fail(std::uint16_t error) noexcept {
 }
 
 void PlcMotion::watch(const axis::Axis& axis, const Alarms& alarms, double seconds) noexcept {
+  if (axis.setpoint().v != 0.0) turned_down_ = axis.setpoint().v < 0.0;
   if (power_ && power_permitted_ && !axis.power_requested()) {  // it fell by itself
     power_permitted_ = false;
     power_refusal_ = alarms.stop ? alarms.number : kNoPower;
@@ -109,7 +114,33 @@ void PlcMotion::watch_order(const axis::Axis& axis, const Alarms& alarms) noexce
     result_ = Result::done;
 }
 
-bool PlcMotion::next(Request& request) noexcept {
+/// Machine position for a place of one turn, in the direction that was asked for. An endless rotary axis has
+/// it once in every turn; the one that counts lies less than a turn from where the axis would come to rest if
+/// it stopped now, so that a motion under way neither passes it nor turns back.
+double PlcMotion::directed(const axis::Axis& axis) const noexcept {
+  constexpr double kTurn = 360.0, kSame = 1e-6;
+  const axis::AxisConfig& config = axis.config();
+  if (wanted_.direction == Direction::none || !config.rotary || config.travel_limited) return wanted_.target;
+  const axis::MotionState& now = axis.setpoint();
+  const double acceleration = wanted_.acceleration > 0.0
+                                  ? std::min(wanted_.acceleration, config.limits.acceleration)
+                                  : config.limits.acceleration;
+  const double jerk = config.limits.jerk;
+  // Speed once the acceleration present has been taken away, and the way to rest from it.
+  const double v = now.v + now.a * std::abs(now.a) / (2.0 * jerk);
+  const double stop = now.x + v * (std::abs(v) / (2.0 * acceleration) + acceleration / (2.0 * jerk));
+  double ahead = std::fmod(wanted_.target - stop, kTurn);
+  if (ahead < -kSame) ahead += kTurn;
+  if (ahead > kTurn - kSame) ahead -= kTurn;
+  const bool down = wanted_.direction == Direction::negative ||
+                    (wanted_.direction == Direction::current && turned_down_) ||
+                    (wanted_.direction == Direction::shortest && ahead > kTurn / 2.0);
+  if (down && ahead > kSame) ahead -= kTurn;
+  // Whole turns from the target, so that the place itself is not rounded.
+  return wanted_.target + kTurn * std::round((stop + ahead - wanted_.target) / kTurn);
+}
+
+bool PlcMotion::next(Request& request, const axis::Axis& axis) noexcept {
   request = {};
   request.asker = image::Asker::plc;
   request.axis = static_cast<std::int8_t>(axis_);
@@ -130,7 +161,7 @@ bool PlcMotion::next(Request& request) noexcept {
     }
     return false;
   }
-  request.value = wanted_.target;
+  request.value = wanted_.order == Order::absolute ? directed(axis) : wanted_.target;
   request.velocity = wanted_.velocity;
   request.acceleration = wanted_.acceleration;
   return true;

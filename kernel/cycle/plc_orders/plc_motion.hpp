@@ -16,7 +16,7 @@ namespace servogate::cycle {
 /// In each cycle, after the axis has read and before it is commanded, all real-time safe:
 ///     motion.read(image);
 ///     motion.watch(axis, alarms, seconds);
-///     for (Request r; motion.next(r);) motion.answer(r, handle(r), axis);
+///     for (Request r; motion.next(r, axis);) motion.answer(r, handle(r), axis);
 ///     motion.write(image, axis);
 class PlcMotion {
  public:
@@ -42,7 +42,7 @@ class PlcMotion {
   /// Follows the order in force to its end.
   void watch(const axis::Axis& axis, const Alarms& alarms, double seconds) noexcept;
   /// The next thing that the PLC asks for: at most power and one order in a cycle.
-  bool next(image::Request& request) noexcept;
+  bool next(image::Request& request, const axis::Axis& axis) noexcept;
   /// The gate's decision, carried out already.
   void answer(const image::Request& request, const image::Answer& answer, const axis::Axis& axis) noexcept;
   void write(image::ProcessImage& image, const axis::Axis& axis) const noexcept;
@@ -73,11 +73,16 @@ class PlcMotion {
   void begin(const axis::Axis& axis) noexcept;
   /// It lasts until another order takes over, whatever has been reached.
   bool lasting() const noexcept { return active_ == Order::velocity || active_ == Order::torque; }
+  double directed(const axis::Axis& axis) const noexcept;
+
+  /// Values of mc_direction.
+  enum class Direction : std::uint8_t { none, positive, shortest, negative, current };
 
   struct Wanted {
     std::int32_t number = 0;
     Order order = Order::none;
     bool power = false;
+    Direction direction = Direction::none;
     double target = 0.0, velocity = 0.0, acceleration = 0.0;
   };
   int axis_ = 0;
@@ -91,6 +96,7 @@ class PlcMotion {
   Result result_ = Result::under_way;
   double target_ = 0.0, wanted_speed_ = 0.0;  ///< of the order in force
   double reset_s_ = 0.0;
+  bool turned_down_ = false;  ///< the way the axis turned last
   bool stopping_ = false;
   bool error_stop_ = false;
 };
