@@ -302,10 +302,7 @@ std::string Engine::name_of(const Handle& h) const { return variable_name(*image
 
 std::string Engine::type_name(const Handle& h) const { return h.bit >= 0 ? "BOOL" : h.type->name; }
 
-std::string Engine::read(const Handle& h) const {
-  if (h.type->kind == Kind::reference) return reference_text(*image_, *h.type, data(h));
-  return to_json(*h.type, state_->memory.data() + h.address, h.bit);
-}
+std::string Engine::read(const Handle& h) const { return value_text(*image_, *h.type, data(h), h.bit); }
 
 double Engine::number(const Handle& h) const noexcept {
   const std::uint8_t* at = state_->memory.data() + h.address;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "plc/syntax/parser.hpp"
+#include "plc/values.hpp"
 #include "plc/vm/image.hpp"
 
 namespace servogate::plc {
@@ -182,7 +183,8 @@ std::string variable_name(const Image& image, const Handle& h) {
   return {};
 }
 
-std::string reference_text(const Image& image, const Type& type, const std::uint8_t* at) {
+std::string value_text(const Image& image, const Type& type, const std::uint8_t* at, int bit) {
+  if (type.kind != Kind::reference) return to_json(type, at, bit);
   std::uint32_t address = 0;
   std::memcpy(&address, at, sizeof address);
   if (address == 0 || type.base == nullptr) return "\"NULL\"";

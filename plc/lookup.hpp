@@ -13,8 +13,9 @@ namespace servogate::plc {
 std::optional<Handle> find_variable(const Image& image, std::string_view path);
 /// A path of the variable at an address, empty when there is none. Not real-time safe.
 std::string variable_name(const Image& image, const Handle& handle);
-/// A reference as JSON: the name of the variable that it leads to, or NULL. Not real-time safe.
-std::string reference_text(const Image& image, const Type& type, const std::uint8_t* at);
+/// A value as JSON, as to_json; a reference as the name of the variable that it leads to, or NULL. Not
+/// real-time safe.
+std::string value_text(const Image& image, const Type& type, const std::uint8_t* at, int bit = -1);
 /// Every variable that belongs to a program itself, and the places it uses, as paths. Not real-time safe.
 std::vector<std::string> variable_names(const Image& image);
 

@@ -37,8 +37,8 @@ inline constexpr Entry kTooDeep{"plc-depth", "nested deeper than {0} levels",
                                 "вложенность больше {0} уровней"};
 
 // Declarations.
-inline constexpr Entry kDuplicate{"plc-duplicate", "'{0}' is already declared in line {1}",
-                                  "'{0}' уже объявлено в строке {1}"};
+inline constexpr Entry kDuplicate{"plc-duplicate", "'{0}' is already declared in {1}",
+                                  "'{0}' уже объявлено в {1}"};
 inline constexpr Entry kReserved{"plc-reserved", "'{0}' is a standard name and cannot be declared again",
                                  "'{0}' является стандартным именем, повторно объявлять его нельзя"};
 inline constexpr Entry kUnknownType{"plc-unknown-type", "there is no type '{0}'{1}", "типа '{0}' нет{1}"};
@@ -79,8 +79,8 @@ inline constexpr Entry kBadAddress{"plc-address",
 inline constexpr Entry kAddressRange{"plc-address-range", "{0} lies outside its memory of {1} bytes",
                                      "{0} лежит вне своей памяти ({1} байт)"};
 inline constexpr Entry kAddressType{"plc-address-type", "{0} holds {1}, not {2}", "{0} хранит {1}, а не {2}"};
-inline constexpr Entry kAddressOverlap{"plc-overlap", "{0} shares memory with {1} of '{2}' in line {3}",
-                                       "{0} занимает ту же память, что {1} переменной '{2}' в строке {3}"};
+inline constexpr Entry kAddressOverlap{"plc-overlap", "{0} shares memory with {1} of '{2}' in {3}",
+                                       "{0} занимает ту же память, что {1} переменной '{2}' в {3}"};
 inline constexpr Entry kSymbolOverlap{
     "plc-overlap-symbol", "{0} shares memory with '{1}' of the machine ({2}); use that name",
     "{0} занимает ту же память, что «{1}» станка ({2}); используйте это имя"};
@@ -118,9 +118,8 @@ inline constexpr Entry kRecursion{"plc-recursion", "'{0}' calls itself ({1}); IE
 inline constexpr Entry kNoTask{"plc-no-task", "there is no TASK '{0}' in this resource",
                                "в этом ресурсе нет TASK '{0}'"};
 inline constexpr Entry kGlobalTwice{
-    "plc-duplicate",
-    "'{0}' is already declared in line {1}; all resources share one list of global variables",
-    "'{0}' уже объявлена в строке {1}; список глобальных переменных у всех ресурсов один"};
+    "plc-duplicate", "'{0}' is already declared in {1}; all resources share one list of global variables",
+    "'{0}' уже объявлена в {1}; список глобальных переменных у всех ресурсов один"};
 inline constexpr Entry kBlockTask{"plc-block-task", "'{0}' runs with TASK '{1}'; {2} cannot call it, too",
                                   "'{0}' выполняется в задаче '{1}'; вызывать его ещё и из {2} нельзя"};
 inline constexpr Entry kTaskInterval{"plc-task-interval",

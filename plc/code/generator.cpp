@@ -245,7 +245,7 @@ void Generator::retained_cells(const std::string& name, const Type& type, std::u
   if (type.kind == Kind::structure || type.kind == Kind::block) {
     for (const Field& f : type.fields)
       if (!f.reference && !f.constant)
-        retained_cells(name + "." + f.name, *f.type, address + f.offset, all || f.retain);
+        retained_cells(name + "." + f.name, *f.type, address + f.offset, (all && !f.non_retain) || f.retain);
   } else if (type.kind == Kind::array) {
     if (!all && type.base->kind != Kind::block) return;
     for (std::int64_t i = type.range.low; i <= type.range.high; ++i)

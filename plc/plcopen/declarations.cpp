@@ -25,6 +25,7 @@ void Reader::variables(const pugi::xml_node& list, syntax::Section section, std:
     v.name = attribute(n, "name");
     v.constant = list.attribute("constant").as_bool();
     v.retain = list.attribute("retain").as_bool();
+    v.non_retain = list.attribute("nonretain").as_bool();
     v.address = key_of(n.attribute("address").value());
     v.type = std::make_shared<TypeReference>(type_of(n, 0));
     if (const pugi::xml_node value = child(n, "initialValue")) v.initial = initial(value);

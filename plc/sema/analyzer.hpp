@@ -75,6 +75,7 @@ class Analyzer {
 
   // declarations.cpp: types, frames, globals.
   void declare_names();
+  std::string seen_at(const Location& there, const Location& here) const;
   void resolve_types();
   const Type* resolve_declared(std::size_t index);
   const Type* resolve(const syntax::TypeReference& t, const std::string& name = {});

@@ -14,7 +14,6 @@ using syntax::UnitKind;
 namespace {
 constexpr std::uint32_t kMaxBytes = 16u << 20;
 
-std::string line_of(const Location& at) { return std::to_string(at.line); }
 std::uint32_t aligned(std::uint32_t at, std::uint32_t to) { return (at + to - 1) / to * to; }
 }  // namespace
 
@@ -52,6 +51,13 @@ ir::Program Analyzer::run() {
   return std::move(program_);
 }
 
+// Where something stands: its line, with the file where that is another one.
+std::string Analyzer::seen_at(const Location& there, const Location& here) const {
+  const std::string line = std::to_string(there.line);
+  if (there.file == here.file) return text::both("line " + line, "строке " + line);
+  return program_.files[static_cast<std::size_t>(there.file)] + ":" + line;
+}
+
 void Analyzer::declare_names() {
   for (std::size_t i = 0; i < source_.types.size(); ++i) {
     const auto& d = source_.types[i];
@@ -63,7 +69,8 @@ void Analyzer::declare_names() {
       report_.error(source_.types[at->second].location, texts::kReserved, {d.name});
       at->second = i;  // what follows speaks of the standard one
     } else
-      report_.error(d.location, texts::kDuplicate, {d.name, line_of(source_.types[at->second].location)});
+      report_.error(d.location, texts::kDuplicate,
+                    {d.name, seen_at(source_.types[at->second].location, d.location)});
   }
   resolved_.resize(source_.types.size());
   resolving_.resize(source_.types.size());
@@ -77,10 +84,11 @@ void Analyzer::declare_names() {
       report_.error(s.location, texts::kReserved, {s.name});
     } else if (declared_types_.contains(key_of(s.name))) {
       report_.error(s.location, texts::kDuplicate,
-                    {s.name, line_of(source_.types[declared_types_[key_of(s.name)]].location)});
+                    {s.name, seen_at(source_.types[declared_types_[key_of(s.name)]].location, s.location)});
     } else if (known != units_by_name_.end() && !u.from_library) {
-      report_.error(s.location, texts::kDuplicate,
-                    {s.name, line_of(source_.units[static_cast<std::size_t>(known->second)].location)});
+      report_.error(
+          s.location, texts::kDuplicate,
+          {s.name, seen_at(source_.units[static_cast<std::size_t>(known->second)].location, s.location)});
     } else if (known == units_by_name_.end()) {
       units_by_name_[key_of(s.name)] = static_cast<int>(i);
     }
@@ -269,7 +277,8 @@ void Analyzer::check_member_place(const syntax::Variable& m, const Type& type,
   for (const MemberBits& other : taken)
     if (low < other.high && other.low < low + bits)
       report_.error(m.address_location, texts::kAddressOverlap,
-                    {a, other.member->address, other.member->name, line_of(other.member->address_location)});
+                    {a, other.member->address, other.member->name,
+                     seen_at(other.member->address_location, m.address_location)});
   taken.push_back({low, low + bits, &m});
 }
 
@@ -281,7 +290,7 @@ const Type* Analyzer::resolve_structure(const syntax::TypeReference& t, const st
   std::vector<MemberBits> taken;
   for (const syntax::Variable& m : t.members) {
     if (s->field(m.name) != nullptr) {
-      report_.error(m.location, texts::kDuplicate, {m.name, line_of(t.location)});
+      report_.error(m.location, texts::kDuplicate, {m.name, seen_at(t.location, m.location)});
       continue;
     }
     const Type* type = resolve(*m.type);
@@ -312,7 +321,8 @@ const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const 
   for (std::size_t i = 0; i < t.values.size(); ++i) {
     const auto& [value_name, value] = t.values[i];
     if (e->value_named(value_name) != nullptr)
-      report_.error(t.value_locations[i], texts::kDuplicate, {value_name, line_of(t.location)});
+      report_.error(t.value_locations[i], texts::kDuplicate,
+                    {value_name, seen_at(t.location, t.value_locations[i])});
     if (!counts) {  // each has a value of its own
       const auto given = value ? constant(*value, base) : std::nullopt;
       if (!value) report_.error(t.value_locations[i], texts::kNamedValue, {value_name, base->name});
@@ -402,7 +412,7 @@ void Analyzer::check_sections(const UnitScope& u, const syntax::Variable& v) {
 void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
   const auto [at, fresh] = u.by_name.emplace(key_of(s.name), u.variables.size());
   if (!fresh) {
-    report_.error(s.location, texts::kDuplicate, {s.name, line_of(u.variables[at->second].at)});
+    report_.error(s.location, texts::kDuplicate, {s.name, seen_at(u.variables[at->second].at, s.location)});
     return;
   }
   check_sections(u, s);
@@ -442,7 +452,7 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
       const bool instance = s.section == Section::input && v.type->kind == Kind::block;
       const bool reference = s.section == Section::in_out || v.type->open || instance;
       v.root = reference ? ir::Root::reference : ir::Root::instance;
-      v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference, s.constant});
+      v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference, s.constant, false, s.non_retain});
       if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
       if (refers) initial_references_.back().cell = v.cell;
       if (v.type->open) append(*u.frame, {s.name + "$limits", limits_type(), 0, false, true});
@@ -498,8 +508,9 @@ void Analyzer::lay_out(int index) {
       r.used = true;
       const auto [at, fresh] = u.by_name.emplace(key_of(r.name), u.variables.size());
       if (!fresh) {
-        report_.error(u.variables[at->second].at, texts::kDuplicate,
-                      {u.variables[at->second].name, line_of(u.source->location)});
+        report_.error(
+            u.variables[at->second].at, texts::kDuplicate,
+            {u.variables[at->second].name, seen_at(u.source->location, u.variables[at->second].at)});
         at->second = u.variables.size();
       }
       r.cell = append(*u.frame, {r.name, r.type, 0, false, false});
@@ -528,7 +539,7 @@ void Analyzer::declare_globals(bool constants) {
     if (!fresh) {
       const bool resources = s.resource != globals_[at->second].resource;
       report_.error(s.location, resources ? texts::kGlobalTwice : texts::kDuplicate,
-                    {s.name, line_of(globals_[at->second].at)});
+                    {s.name, seen_at(globals_[at->second].at, s.location)});
       continue;
     }
     Variable v;

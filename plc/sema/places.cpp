@@ -119,7 +119,7 @@ void Analyzer::warn_overlaps(const std::string& address, const image::Place& pla
                              bool direct) {
   for (const Located& l : located_)
     if (l.place.overlaps(place) && !(direct && l.place == place))
-      report_.warning(at, texts::kAddressOverlap, {address, l.text, l.name, std::to_string(l.at.line)});
+      report_.warning(at, texts::kAddressOverlap, {address, l.text, l.name, seen_at(l.at, at)});
   for (const image::Symbol& symbol : symbols_)
     if (symbol.place.overlaps(place)) {
       report_.warning(at, texts::kSymbolOverlap, {address, symbol.name, image::to_string(symbol.place)});

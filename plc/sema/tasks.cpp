@@ -144,7 +144,7 @@ std::string Analyzer::program_name(const syntax::Configuration& c, const syntax:
     if (!same_name(other.resource, p.resource))
       name = p.resource.empty() ? p.name : p.resource + "." + p.name;
     else if (&other < &p)
-      report_.error(p.location, texts::kDuplicate, {p.name, std::to_string(other.location.line)});
+      report_.error(p.location, texts::kDuplicate, {p.name, seen_at(other.location, p.location)});
   }
   return name;
 }
@@ -190,7 +190,7 @@ void Analyzer::configured_tasks() {
     };
     for (const syntax::Task& t : c.tasks) {
       if (const std::size_t other = find(t.resource, t.name); other != names.size())
-        report_.error(t.location, texts::kDuplicate, {t.name, std::to_string(c.tasks[other].location.line)});
+        report_.error(t.location, texts::kDuplicate, {t.name, seen_at(c.tasks[other].location, t.location)});
       names.emplace_back(t.resource, t.name);
       tasks.push_back(task_of(t));
       const bool shared = std::any_of(c.tasks.begin(), c.tasks.end(), [&](const syntax::Task& other) {

@@ -168,6 +168,7 @@ struct Variable {
   Section section = Section::local;
   std::string resource = {};  ///< of a global variable
   bool retain = false;
+  bool non_retain = false;
   bool constant = false;
   int edge = 0;         ///< +1 R_EDGE, -1 F_EDGE
   std::string address;  ///< AT: as written, "%QX0.0" or "SA128"

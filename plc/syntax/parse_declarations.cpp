@@ -83,9 +83,15 @@ void Parser::variables(std::vector<Variable>& out, Section section, bool in_unit
         report_.error(now().location, texts::kSectionPlace, {now().key, opener});
     } else if (at("CONSTANT")) {
       prototype.constant = true;
-    } else if (!at("NON_RETAIN")) {
+    } else if (at("NON_RETAIN")) {
+      prototype.non_retain = true;
+      if (section == Section::temp || section == Section::in_out || section == Section::external)
+        report_.error(now().location, texts::kSectionPlace, {now().key, opener});
+    } else {
       break;
     }
+  if (prototype.retain && prototype.non_retain)
+    report_.error(begin, texts::kSectionPlace, {"NON_RETAIN", opener + " RETAIN"});
   while (!at_end() && !at("END_VAR")) {
     if (now().kind == TokenKind::word && is_keyword(now().key) && in_unit) break;
     // A statement: END_VAR is missing.

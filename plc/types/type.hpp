@@ -59,7 +59,8 @@ struct Field {
   bool retain = false;
   bool reference = false;  ///< VAR_IN_OUT: the cell holds the address of the variable
   bool constant = false;
-  bool located = false;  ///< AT %Q*: a reference to the place that VAR_CONFIG gave this instance
+  bool located = false;     ///< AT %Q*: a reference to the place that VAR_CONFIG gave this instance
+  bool non_retain = false;  ///< not even in a retained instance
 };
 
 struct Dimension {

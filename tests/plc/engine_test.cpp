@@ -274,6 +274,25 @@ END_CONFIGURATION)";
   EXPECT_EQ(second.read(*second.find("lost.k")), "0");
 }
 
+TEST(Engine, keeps_nothing_of_a_retained_instance_that_is_declared_NON_RETAIN) {
+  Engine first(build(
+      R"(FUNCTION_BLOCK Inner VAR a : INT; END_VAR VAR NON_RETAIN b : INT; END_VAR a := a + 1; b := b + 1; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Outer VAR_INPUT NON_RETAIN in : INT; END_VAR VAR_OUTPUT out : INT; END_VAR VAR kept, list : Inner; END_VAR
+VAR NON_RETAIN cold : Inner; t : TON; END_VAR VAR RETAIN deep : INT; END_VAR
+kept(); cold(); list(); deep := deep + 1; out := in; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Own VAR RETAIN always : INT; END_VAR VAR plain : INT; END_VAR always := 1; plain := 1; END_FUNCTION_BLOCK
+VAR_GLOBAL RETAIN g : Inner; END_VAR
+PROGRAM Main
+VAR RETAIN o : Outer; END_VAR
+VAR NON_RETAIN n : Own; END_VAR
+o(in := 5); n(); g();
+END_PROGRAM)"));
+  std::vector<std::string> names;
+  for (const Retained& r : first.retained()) names.push_back(r.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"g.a", "Main.o.out", "Main.o.kept.a", "Main.o.list.a",
+                                             "Main.o.deep", "Main.n.always"}));
+}
+
 TEST(Engine, keeps_retained_places_of_a_packet_too) {
   const std::string source = R"(VAR_GLOBAL RETAIN counter AT %MD10 : DINT := 7; END_VAR
 PROGRAM Main
@@ -555,18 +574,6 @@ TEST(Engine, resolves_bare_names_only_where_one_program_runs) {
   EXPECT_TRUE(Engine(one).find("X"));
   EXPECT_FALSE(Engine(two).find("x"));
   EXPECT_TRUE(Engine(two).find("b.X"));
-}
-
-TEST(Compile, reads_several_files_and_names_the_right_one) {
-  const CompileResult r =
-      compile({{"one.st", "FUNCTION f : INT VAR_INPUT x : INT; END_VAR f := x; END_FUNCTION"},
-               {"two.st", "PROGRAM Main\nVAR a : INT; END_VAR\na := f(TRUE);\nEND_PROGRAM"}},
-              {});
-  ASSERT_EQ(r.findings.size(), 1u);
-  EXPECT_EQ(r.findings[0].str(text::Language::english),
-            "two.st:3:8: error: expected INT, found BOOL; write BOOL_TO_INT [plc-type]");
-  EXPECT_EQ(r.findings[0].str(text::Language::russian),
-            "two.st:3:8: error: ожидается INT, встречено BOOL; пишите BOOL_TO_INT [plc-type]");
 }
 
 }  // namespace
