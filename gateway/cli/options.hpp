@@ -21,6 +21,7 @@ struct RunOptions {
   std::string trace, report, html, record, can_log, state;
   double override_percent = 100.0;
   std::optional<double> patience_s;  ///< machine time that a program may wait for somebody; 0: for ever
+  std::vector<std::string> forces;   ///< NAME=VALUE
   bool quiet = false;
   bool start_now = false;
   bool json = false;

@@ -177,6 +177,9 @@ class Commands {
            "Machine time that a program may wait for somebody; 0: for ever. 60 s where nothing is real")
         ->type_name("SECONDS")
         ->check(number_within({0.0, 1e9, "s"}));
+    app.add_option("--force", o.forces,
+                   "NAME=VALUE, holds a variable or place for the whole run, may be repeated")
+        ->allow_extra_args(false);
     app.add_option("--state", o.state, "State directory; without one a virtual run leaves no state behind");
     app.add_flag("--start-now", o.start_now,
                  "Start without the operator's start, where the machine file allows it");

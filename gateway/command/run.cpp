@@ -13,6 +13,7 @@
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
+#include "gateway/command/plc/force_setting.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/compose/program/program_file.hpp"
@@ -23,6 +24,7 @@
 #include "gateway/run/realtime_loop.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/retained_keeper.hpp"
+#include "gateway/run/run_forces.hpp"
 #include "gateway/run/session.hpp"
 #include "gateway/run/words/ready_words.hpp"
 #include "gateway/run/words/stop_words.hpp"
@@ -133,6 +135,7 @@ class Run {
   std::unique_ptr<RecordWriter> record_;
   std::unique_ptr<CanLog> can_log_;
   std::unique_ptr<RetainedKeeper> keeper_;
+  std::unique_ptr<RunForces> forces_;
   double estimate_s_ = 0.0;
   long long estimate_blocks_ = 0;
   Clock::time_point begin_;
@@ -180,6 +183,9 @@ int Run::prepare() {
   control_->restore_references(state_);
   control_->restore_tool(state_);
   print_findings(control_->restore_retained(state_));
+  const auto forces = force_settings(options_.forces);
+  forces_ = std::make_unique<RunForces>(*control_);
+  if (!forces || print_findings(forces_->plan(*forces)) > 0) return kWrongUse;
   keeper_ = std::make_unique<RetainedKeeper>(*control_, options_.state, state_.retained_generation);
   if (!options_.can_log.empty()) can_log_ = std::make_unique<CanLog>(options_.can_log, *control_);
   if (!options_.record.empty()) record_ = begin_record(options_.record, options_.machine, state_, *control_);
@@ -240,7 +246,8 @@ void Run::announce() {
 
 void Run::take_answers(OperatorScript& script) {
   image::Answer answer;
-  while (control_->cycle().take_answer(answer)) script.take(answer);
+  while (control_->cycle().take_answer(answer))
+    if (!forces_->take(answer)) script.take(answer);
   for (static int seen = 0; seen < signals_seen(); ++seen) script.interrupt();
   prompt(script);
 }
@@ -275,7 +282,8 @@ bool Run::virtual_loop(OperatorScript& script, Session& session) {
     control_->step();
     session.after_cycle(0);
     take_answers(script);
-    script.poll(control_->cycle().image());
+    forces_->poll();
+    if (forces_->done()) script.poll(control_->cycle().image());
     if (!missing_noted_ && script.outcome() != OperatorScript::Outcome::under_way) {
       control_->cycle().alarms().snapshot(alarms);
       note_missing(script, control_->cycle().image(), alarms);
@@ -304,7 +312,8 @@ bool Run::realtime_loop(OperatorScript& script, Session& session) {
     // Nothing is published before the first cycles: that is no machine whose axes are all ready.
     if (static_cast<std::size_t>(image->axis_count) != loaded_.machine.axes.size()) continue;
     take_answers(script);
-    script.poll(*image);
+    forces_->poll();
+    if (forces_->done()) script.poll(*image);
     control_->cycle().read(*alarms);
     note_missing(script, *image, *alarms);
     follow(*image);
@@ -386,6 +395,7 @@ int Run::finish(const OperatorScript& script, Session& session,
                    patience()};
   }
   report.error = not_begun(script);
+  report.forces = forces_->active();
   report::Provenance& p = report.provenance;
   fill_provenance(p, options_, loaded_.machine, command_line);
   p.dialect = program_->dialect;

@@ -182,7 +182,7 @@ constexpr std::string_view kBody = R"html(
 <main>
 <noscript><section>This page draws its data with JavaScript. Для показа данных нужен JavaScript.</section></noscript>
 <div class="cards" id="cards"></div>
-<p class="warn" id="wait"></p>
+<p class="warn" id="wait"></p><p class="warn" id="forced"></p>
 <p class="warn" id="dropped"></p>
 <section><div class="head"><h2 data-t="limits"></h2></div><div class="axes" id="axes"></div></section>
 <section><div class="head"><h2 data-t="path"></h2><span class="grow"></span><label class="noprint"><input type="checkbox" id="rapids" checked><span data-t="rapids"></span></label>

@@ -160,6 +160,7 @@ Json json_of(const Report& r) {
   for (const text::Finding& f : r.findings) out["findings"].push_back(to_json(f));
   out["alarms"] = Json::array();
   for (const AlarmEntry& a : r.alarms) out["alarms"].push_back(to_json(a));
+  for (const ForceEntry& f : r.forces) out["forces"].push_back({{"name", f.name}, {"value", f.value}});
   out["axes"] = Json::object();
   for (const AxisReport& a : r.axes) out["axes"][a.letter] = to_json(a);
   out["virtual_speed"] = r.virtual_speed;

@@ -79,6 +79,11 @@ struct ErrorEntry {
   std::string code, text;
 };
 
+/// A variable or place that was held at a value.
+struct ForceEntry {
+  std::string name, value;
+};
+
 /// One axis: what was met, and what the machine file allows (0: no limit known).
 struct AxisReport {
   std::string letter;
@@ -135,6 +140,7 @@ struct Report {
                                     ///< or the control refused it, or its axes did not become ready
   std::vector<text::Finding> findings;  ///< errors for which the program was not begun
   std::vector<AlarmEntry> alarms;
+  std::vector<ForceEntry> forces;  ///< held from before the first motion to the end
   std::vector<AxisReport> axes;
   double virtual_speed = 0.0;  ///< simulated seconds per second
   Quantiles cycle_us;

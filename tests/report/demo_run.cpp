@@ -136,6 +136,7 @@ Report demo_report(const DemoRun& demo, int alarms) {
   r.provenance.nodes = {{"can", 1, "X drive", 0x1234, 0x5678, 0x10001, 1001}};
   r.provenance.command_line = {"servogate", "run", "examples/mill/machine.toml", "examples/mill/bracket.nc"};
   r.finished = alarms == 0;
+  r.forces = {{"door_closed", "TRUE"}};
   r.cycles = static_cast<std::int64_t>(demo.rows.size());
   r.time_s = static_cast<double>(r.cycles) * kPeriod;
   r.blocks = 16;

@@ -84,6 +84,7 @@ TEST(Html, carries_the_run_the_report_and_the_program) {
   EXPECT_EQ(data["program"]["lines"][4], "N50 X160");
   EXPECT_EQ(data["report"]["schema"], 1);
   EXPECT_EQ(data["report"]["alarms"][0]["number"], 3101);
+  EXPECT_EQ(data["report"]["forces"], (Json{{{"name", "door_closed"}, {"value", "TRUE"}}}));
   EXPECT_EQ(data["run"]["view"], Json({"X", "Y", "Z"}));
   ASSERT_EQ(data["run"]["series"][0]["name"], "X.position");
   const std::vector<float> x = floats(data["run"]["series"][0]["low"]);
@@ -168,7 +169,8 @@ Json expectations(const DemoRun& demo, const RecordedRun& run) {
       most = std::max({most, std::fabs(s.low[n]), std::fabs(s.high[n])});
     out["peaks"][s.name] = most;
   }
-  out["shown"] = {"Path speed",
+  out["shown"] = {"door_closed = TRUE",
+                  "Path speed",
                   "Velocity",
                   "Acceleration",
                   "Jerk",

@@ -68,5 +68,52 @@ TEST(PlcTest, knows_the_symbols_and_sources_of_a_machine) {
   EXPECT_EQ(e.code, 0) << e.err;
 }
 
+TEST(ForcedRun, lists_what_was_forced_in_its_report_and_page) {
+  Desk desk;
+  const Ended e = desk.line(
+      "$SG run $MILL --virtual -q --force lamp_red=TRUE --force Mill.change.alarm=5 --force %MW400=16#FF00 "
+      "--report r.json --html h.html --trace t.csv");
+  EXPECT_EQ(e.code, 0) << e.err;
+  const std::string report = desk.text("r.json");
+  const auto written = [&](const std::string& name, const std::string& value) {
+    return report.find("\"name\": \"" + name + "\",\n      \"value\": \"" + value + "\"") !=
+           std::string::npos;
+  };
+  EXPECT_TRUE(written("lamp_red", "TRUE")) << report;
+  EXPECT_TRUE(written("Mill.change.alarm", "5")) << report;
+  EXPECT_TRUE(written("%MW400", "16#FF00")) << report;
+  EXPECT_NE(desk.text("h.html").find(R"({"name":"lamp_red","value":"TRUE"})"), std::string::npos);
+  EXPECT_EQ(desk.line("awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == \"lamp_red\") c = i } "
+                      "NR > 100 && $c != 1 { exit 1 } END { if (!c) exit 2 }' t.csv")
+                .code,
+            0)
+      << "the whole run";
+}
+
+TEST(ForcedRun, gives_the_same_bytes_when_its_record_is_replayed) {
+  Desk desk;
+  EXPECT_EQ(desk.line("$SG run $MILL --virtual -q --force lamp_red=TRUE --force Mill.change.alarm=5 "
+                      "--trace t.csv --record r.rec")
+                .code,
+            0);
+  const Ended e = desk.line("$SG replay r.rec --against t.csv");
+  EXPECT_EQ(e.code, 0) << e.err;
+}
+
+TEST(ForcedRun, says_what_cannot_be_forced_before_anything_moves) {
+  Desk desk;
+  const auto refused = [&](const std::string& force, int code, const std::string& words) {
+    const Ended e = desk.line("$SG run $MILL --virtual -q --force " + force + " --report r.json");
+    EXPECT_EQ(e.code, code) << force;
+    EXPECT_TRUE(e.err_has(words)) << e.err;
+    EXPECT_EQ(desk.text("r.json").find("\"forces\""), std::string::npos) << force;
+  };
+  refused("lamp_red", 2, "'lamp_red' is not of the form NAME=VALUE");
+  refused("lamp_blue=TRUE", 2, "there is no variable or place 'lamp_blue'");
+  refused("lamp_red=maybe", 2, "'maybe' is no value for 'lamp_red'");
+  refused("Mill.change.alarm=TRUE", 2, "'TRUE' is no value for 'Mill.change.alarm'");
+  refused("estop_chain_ok=TRUE", 1, "the control refuses");
+}
+
 }  // namespace
 }  // namespace servogate::shell

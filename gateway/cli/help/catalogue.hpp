@@ -80,6 +80,8 @@ inline constexpr Translation kCatalogue[] = {
     {"Language of the program instead of the machine's own", "Язык программы вместо языка станка"},
     {"Language of the programs instead of the machine's own", "Язык программ вместо языка станка"},
     {"Feed override in per cent, 0 to 150", "Коррекция подачи в процентах, от 0 до 150"},
+    {"NAME=VALUE, holds a variable or place for the whole run, may be repeated",
+     "ИМЯ=ЗНАЧЕНИЕ, удерживает переменную или место весь прогон, можно повторять"},
     {"Machine time that a program may wait for somebody; 0: for ever. 60 s where nothing is real",
      "Сколько машинного времени программа может ждать кого-либо; 0: всегда. 60 с, где ничего настоящего нет"},
     {"State directory; without one a virtual run leaves no state behind",

@@ -9,6 +9,7 @@
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/control_client.hpp"
+#include "gateway/command/plc/force_setting.hpp"
 #include "gateway/command/signals.hpp"
 
 namespace servogate::gateway::command {
@@ -17,8 +18,6 @@ namespace {
 
 using nlohmann::json;
 
-const text::Entry kBadSetting{"plc-force.setting", "'{0}' is not of the form NAME=VALUE",
-                              "«{0}» не имеет вида ИМЯ=ЗНАЧЕНИЕ"};
 const text::Entry kWaits{"plc-force.waits", "Enter or Ctrl-C lets go", "Enter или Ctrl-C освобождает"};
 const text::Entry kNothing{"plc-force.nothing", "nothing is forced", "ничего не удерживается"};
 const text::Entry kRow{"plc-force.row", "{0} = {1} (by {2})", "{0} = {1} ({2})"};
@@ -56,22 +55,14 @@ int show(ControlClient& control, const PlcForceOptions& options) {
 }  // namespace
 
 int plc_force(const PlcForceOptions& options) {
-  std::vector<std::pair<std::string, std::string>> settings;
-  for (const std::string& s : options.settings) {
-    const std::size_t equal = s.find('=');
-    if (options.release) break;
-    if (equal == std::string::npos || equal == 0 || equal + 1 == s.size()) {
-      complain(kBadSetting, {s});
-      return kWrongUse;
-    }
-    settings.emplace_back(s.substr(0, equal), s.substr(equal + 1));
-  }
+  const auto settings = force_settings(options.release ? std::vector<std::string>() : options.settings);
+  if (!settings) return kWrongUse;
   ControlClient control;
   if (const int code = control.connect(options.socket); code != kDone) return code;
   if (options.release) return release(control, options);
-  if (settings.empty()) return show(control, options);
+  if (settings->empty()) return show(control, options);
   if (!options.stay) count_signals();
-  for (const auto& [name, value] : settings) {
+  for (const auto& [name, value] : *settings) {
     const json answer = control.ask("plc_force", {{"name", name}, {"value", value}, {"stay", options.stay}});
     const int code = ControlClient::tell(answer, options.json);
     if (code != kDone) return code;

@@ -140,6 +140,7 @@ function texts() {
   const steady = steadySignals(), names = (key, list) => list.length ? tr(key) + " — " + list.join(", ") : "";
   $("steady").textContent = steady.count && !S.constant ? tr("steady") + ": " + [names("on", steady.on), names("off", steady.off)].filter(Boolean).join("; ") : "";
   $("wait").textContent = R.wait ? [R.wait.text, R.wait.remedy].filter(Boolean).join(". ") : R.error ? R.error.text : "";
+  $("forced").textContent = R.forces ? tr("forced") + ": " + R.forces.map(f => f.name + " = " + f.value).join(", ") : "";
   $("dropped").textContent = R.trace_dropped ? tr("dropped", num(R.trace_dropped, 9)) : "";
   cards(); limitBars(); alarms(); timing(); provenance(); speedKey(); axisSwitches(); readout();
 }

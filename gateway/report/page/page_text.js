@@ -4,6 +4,7 @@ const TEXTS = {
   finished: ["Finished", "Выполнено"],
   unfinished: ["Not finished", "Не завершено"],
   alarms: ["Alarms", "Аварии"],
+  forced: ["Forced from outside during the whole run", "Удерживалось извне в течение всего прогона"],
   noAlarms: ["No alarms.", "Аварий нет."],
   time: ["Machine time", "Машинное время"],
   blocks: ["Blocks", "Кадры"],

@@ -61,10 +61,8 @@ class PlcDesk {
   json change(const LogicChange& change, double value, const PlcAsker& who);
   json ask(image::Request request, const PlcAsker& who);
   bool let_go(const Force& force, const PlcAsker& who);
-  std::vector<image::Request> place_requests(const std::string& name, const std::string& value, bool& wrong);
   json force_places(std::vector<image::Request> requests, const PlcAsker& who);
   const Force* force_of(const std::string& name) const;
-  std::optional<image::Place> place_of(const std::string& name) const;
   std::optional<std::string> forced_value(const std::string& name, const plc::Type& type) const;
   std::string log(const LogicChange& change, const json& told, const PlcAsker& who);
 

@@ -5,34 +5,30 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 
 #include "firmware_if/text/system_words.hpp"
-#include "gateway/cli/options.hpp"
+#include "gateway/compose/plc/force_plan.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/report/report.hpp"
-#include "gateway/server/plc/plc_view.hpp"
+#include "gateway/server/plc/plc_answers.hpp"
 #include "gateway/server/resident.hpp"
 #include "gateway/server/texts.hpp"
-#include "plc/types/direct_place.hpp"
-#include "plc/values.hpp"
-#include "plc/vm/image.hpp"
 
 namespace servogate::gateway {
 
 namespace {
 
 using nlohmann::json;
+using plc_answers::kNoVariable;
+using plc_answers::refused;
+using plc_answers::told;
 using text::Entry;
-
-constexpr int kScanPatience_ms = 2000;
 
 const Entry kNoPlc{"plc.none", "this machine has no PLC program", "у этого станка нет программы ПЛК"};
 const Entry kNoFiles{"plc.no-files", "cannot read {0}", "не читается {0}"};
@@ -48,16 +44,12 @@ const Entry kLoadLater{
     "убедившись, что станок может продолжать движение с новой логикой."};
 const Entry kNotLogged{"plc.not-logged", "the change of the PLC could not be written to the change log: {0}",
                        "замена программы ПЛК не записана в журнал: {0}"};
-const Entry kNoVariable{"plc.no-variable", "there is no variable or place '{0}'",
-                        "переменной или места «{0}» нет"};
 const Entry kNoValue{"plc.no-value", "'{0}' is no value for '{1}'", "«{0}» не является значением для «{1}»"};
 const Entry kForced{"plc.forced", "{0} is forced to {1}", "{0} удерживается на {1}"};
 const Entry kReleased{"plc.released", "{0} is let go", "{0} освобождена"};
 const Entry kNotForced{"plc.not-forced", "'{0}' is not forced", "«{0}» не удерживается"};
 const Entry kNothingForced{"plc.nothing-forced", "nothing is forced", "ничего не удерживается"};
 const Entry kAllReleased{"plc.all-released", "everything is let go", "всё освобождено"};
-const Entry kNoBody{"plc.no-body", "there is no program or instance '{0}'",
-                    "программы или экземпляра «{0}» нет"};
 const Entry kHeld{"plc.held-now", "the PLC is held; its outputs are off until it is let go",
                   "ПЛК удерживается; его выходы отключены, пока он не отпущен"};
 const Entry kStepped{"plc.stepped", "{0} scans done", "выполнено сканов: {0}"};
@@ -66,65 +58,11 @@ const Entry kGoes{"plc.goes",
                   "ПЛК снова работает; перед включением приводов выполните `servogate reset`"};
 const Entry kNotHolder{"plc.not-holder", "the PLC is not held by this client",
                        "этот клиент не удерживает ПЛК"};
-const Entry kTooManyNames{"plc.names", "at most {0} names at a time", "не более {0} имён за раз"};
-
-json told(const Entry& entry, const std::vector<std::string>& arguments, text::Language language) {
-  return {{"ok", true}, {"exit", kDone}, {"text", text::render(entry, arguments, language)}};
-}
-json refused(const Entry& entry, const std::vector<std::string>& arguments, int exit,
-             text::Language language) {
-  return {
-      {"ok", false}, {"code", entry.id}, {"text", text::render(entry, arguments, language)}, {"exit", exit}};
-}
 
 std::string joined(const std::vector<std::string>& list) {
   std::string out;
   for (const std::string& s : list) out += (out.empty() ? "" : ", ") + s;
   return out;
-}
-
-/// Type of an address (`%MW8`) by the format of its place; none of characters.
-constexpr plc::Kind kBitStrings[] = {plc::Kind::boolean, plc::Kind::byte,  plc::Kind::word,
-                                     plc::Kind::dword,   plc::Kind::dword, plc::Kind::lword};
-
-/// Type of the PLC that a place of a packet has; nullptr: characters.
-const plc::Type* type_of(const plc::TypeTable& types, image::Format format) {
-  constexpr plc::Kind kKinds[] = {plc::Kind::boolean, plc::Kind::usint, plc::Kind::int_,
-                                  plc::Kind::dint,    plc::Kind::real,  plc::Kind::lreal};
-  const auto i = static_cast<std::size_t>(format);
-  return i < std::size(kKinds) ? types.elementary(kKinds[i]) : nullptr;
-}
-
-std::optional<image::Place> machine_place(const machine::MachineConfig& m, const std::string& name) {
-  for (const image::Symbol& s : m.symbol_table())
-    if (plc::same_name(s.name, name)) return s.place;
-  return image::parse_place(name);
-}
-
-/// What stands at a place that the program has no variable for, as JSON: numbers by the type of the place,
-/// `%MW8` as a bit string, characters as a STRING. nullopt: the name is no place of this machine's packets.
-std::optional<std::string> place_text(const machine::MachineConfig& m, const plc::TypeTable& types,
-                                      const image::Packets& packets, const std::string& name) {
-  const auto direct = plc::direct_place(name);
-  const auto place = direct ? direct : machine_place(m, name);
-  if (!place || !packets.contains(*place)) return std::nullopt;
-  if (const plc::Type* type = type_of(types, place->format); type != nullptr && !direct) {
-    std::uint8_t bytes[8] = {};
-    plc::from_number(*type, packets.number(*place), bytes);
-    return plc::to_json(*type, bytes);
-  }
-  const std::uint8_t* at = packets.data(place->packet) + place->byte();
-  if (place->format == image::Format::bl) return packets.bit(*place) ? "true" : "false";
-  if (place->format != image::Format::ch) {
-    return plc::to_json(*types.elementary(kBitStrings[static_cast<std::size_t>(place->format)]), at);
-  }
-  plc::Type text;
-  text.kind = plc::Kind::string;
-  const std::size_t length = std::min<std::size_t>(place->bytes(), plc::kMaxStringCapacity);
-  std::vector<std::uint8_t> bytes(1 + length);
-  std::copy(at, at + length, bytes.begin() + 1);
-  bytes[0] = static_cast<std::uint8_t>(std::find(bytes.begin() + 1, bytes.end(), 0) - bytes.begin() - 1);
-  return plc::to_json(text, bytes.data());
 }
 
 }  // namespace
@@ -250,61 +188,6 @@ std::string PlcDesk::log(const LogicChange& change, const json& told, const PlcA
   return good ? std::string() : path + ": " + text::words_of(problem);
 }
 
-/// The place of a packet that a name means: of the program's variable there, a point of the machine, or an
-/// address. nullopt: a variable of the program alone, or nothing.
-std::optional<image::Place> PlcDesk::place_of(const std::string& name) const {
-  Control& control = resident_.control();
-  const std::shared_ptr<const LogicProgram> program = control.logic()->program();
-  if (const auto handle = program->engine.find(name)) {
-    if (handle->place < 0) return std::nullopt;
-    return program->engine.image().places[static_cast<std::size_t>(handle->place)].place;
-  }
-  const auto direct = plc::direct_place(name);
-  return direct ? direct : machine_place(control.machine(), name);
-}
-
-/// The requests that force a packet place to a value, none: the name is no place, or a string that a variable
-/// mirrors, which is held there. `wrong`: no such value.
-std::vector<image::Request> PlcDesk::place_requests(const std::string& name, const std::string& value,
-                                                    bool& wrong) {
-  const std::shared_ptr<const LogicProgram> program = resident_.control().logic()->program();
-  const bool variable = program->engine.find(name).has_value();
-  const std::optional<image::Place> place = place_of(name);
-  if (!place || (place->format == image::Format::ch && variable)) return {};
-  image::Request request;
-  request.kind = image::RequestKind::force;
-  request.packet = static_cast<std::uint8_t>(place->packet);
-  request.format = static_cast<std::uint8_t>(place->format);
-  request.index = place->index;
-  request.length = place->length;
-  if (place->format == image::Format::ch) {  // a request holds a number: one for each character
-    plc::Type text;
-    text.kind = plc::Kind::string;
-    text.size = 1 + place->bytes();
-    std::vector<std::uint8_t> bytes(text.size, ' ');
-    wrong = !plc::parse_value(text, value, bytes.data());
-    std::fill(bytes.begin() + 1 + (wrong ? 0 : bytes[0]), bytes.end(), ' ');
-    request.format = static_cast<std::uint8_t>(image::Format::by);
-    std::vector<image::Request> out;
-    for (std::uint32_t n = 0; n < place->bytes(); ++n) {
-      request.index = place->byte() + n;
-      request.length = 1;
-      request.value = bytes[1 + n];
-      out.push_back(request);
-    }
-    return out;
-  }
-  const plc::TypeTable& types = *program->engine.image().types;
-  const plc::Type* const number = type_of(types, place->format);
-  const plc::Type* const bits = types.elementary(kBitStrings[static_cast<std::size_t>(place->format)]);
-  std::uint8_t bytes[8] = {};
-  // `%MW8` is a bit string and as such has other literals than the number at its place.
-  wrong = !plc::parse_value(*number, value, bytes) &&
-          !(plc::direct_place(name) && plc::parse_value(*bits, value, bytes));
-  if (!wrong) request.value = plc::to_number(*number, bytes);
-  return {request};
-}
-
 /// All of them or none.
 json PlcDesk::force_places(std::vector<image::Request> requests, const PlcAsker& who) {
   for (std::size_t n = 0; n < requests.size(); ++n) {
@@ -326,11 +209,14 @@ json PlcDesk::force(const json& request, const PlcAsker& who) {
   f.value = request.value("value", "");
   f.user = who.user;
   f.owner = request.value("stay", false) ? 0 : who.connection;
-  bool wrong = false;
+  Control& control = resident_.control();
+  ForcePlan plan = plan_force(control.machine(), &control.logic()->program()->engine, f.name, f.value);
+  if (plan.kind == ForcePlan::Kind::unknown) return refused(kNoVariable, {f.name}, kWrongUse, who.language);
+  if (plan.kind == ForcePlan::Kind::no_value)
+    return refused(kNoValue, {f.value, f.name}, kWrongUse, who.language);
   json answer;
-  f.places = place_requests(f.name, f.value, wrong);
-  if (!f.places.empty()) {
-    if (wrong || f.value.empty()) return refused(kNoValue, {f.value, f.name}, kWrongUse, who.language);
+  if (plan.kind == ForcePlan::Kind::places) {
+    f.places = std::move(plan.requests);
     answer = force_places(f.places, who);
     for (image::Request& place : f.places) {
       place.kind = image::RequestKind::release_force;
@@ -341,10 +227,8 @@ json PlcDesk::force(const json& request, const PlcAsker& who) {
     change.kind = LogicChange::Kind::force;
     change.name = f.name;
     change.value = f.value;
-    change.number = resident_.control().next_logic_change();
-    if (!resident_.control().logic()->program()->engine.find(f.name))
-      return refused(kNoVariable, {f.name}, kWrongUse, who.language);
-    if (!resident_.control().prepare(change).possible)
+    change.number = control.next_logic_change();
+    if (!control.prepare(change).possible)
       return refused(kNoValue, {f.value, f.name}, kWrongUse, who.language);
     answer = this->change(change, 1.0, who);
   }
@@ -433,148 +317,6 @@ json PlcDesk::forced() const {
   for (const Force& f : forces_)
     out.push_back({{"name", f.name}, {"value", f.value}, {"user", f.user}, {"stays", f.owner == 0}});
   return out;
-}
-
-/// What forces it: by this name, by another one of the same variable, or of a place that it shares.
-const PlcDesk::Force* PlcDesk::force_of(const std::string& name) const {
-  const std::optional<image::Place> place = place_of(name);
-  const auto& engine = resident_.control().logic()->program()->engine;
-  const auto mine = engine.find(name);
-  for (const Force& f : forces_) {
-    if (plc::same_name(f.name, name)) return &f;
-    const auto other = place_of(f.name);
-    const auto handle = engine.find(f.name);
-    const bool same_place = place && other && place->overlaps(*other);
-    if (same_place || (mine && handle && mine->address == handle->address && mine->bit == handle->bit))
-      return &f;
-  }
-  return nullptr;
-}
-
-/// A packet place that is forced: what the packet holds, whatever the PLC has written.
-std::optional<std::string> PlcDesk::forced_value(const std::string& name, const plc::Type& type) const {
-  const Force* const force = force_of(name);
-  const std::optional<image::Place> place = place_of(name);
-  if (force == nullptr || force->places.empty() || !place || place->format == image::Format::ch ||
-      place->bytes() != type.size)
-    return std::nullopt;
-  const image::Packets& packets = resident_.image().packets;
-  std::array<std::uint8_t, 8> bytes{};
-  if (place->format == image::Format::bl)
-    bytes[0] = packets.bit(*place) ? 1 : 0;
-  else
-    std::memcpy(bytes.data(), packets.data(place->packet) + place->byte(), place->bytes());
-  return plc::to_json(type, bytes.data());
-}
-
-json PlcDesk::watch(const json& request, const PlcAsker& who) {
-  if (request.contains("body")) return watch_body(request.value("body", ""), who);
-  constexpr std::size_t kMostNames = 500;
-  PlcLogic& logic = *resident_.control().logic();
-  const std::shared_ptr<const LogicProgram> program = logic.program();
-  const plc::Image& image = program->engine.image();
-  const auto names = request.value("names", std::vector<std::string>{});
-  if (names.size() > kMostNames)
-    return refused(kTooManyNames, {std::to_string(kMostNames)}, kWrongUse, who.language);
-  LogicSample sample;
-  sample.profile = request.value("times", false);
-  std::vector<std::optional<plc::Handle>> handles;
-  for (const std::string& name : names) {
-    handles.push_back(program->engine.find(name));
-    if (handles.back()) {
-      sample.ranges.push_back({handles.back()->address, handles.back()->type->size});
-    } else if (!place_text(resident_.control().machine(), *image.types, resident_.image().packets, name)) {
-      return refused(kNoVariable, {name}, kWrongUse, who.language);
-    }
-  }
-  if (!logic.look(sample, kScanPatience_ms))
-    return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
-  const image::ProcessImage& now = resident_.image();
-  json values = json::array();
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    std::string text;
-    if (handles[i]) {
-      text = forced_value(names[i], *handles[i]->type)
-                 .value_or(plc::to_json(*handles[i]->type, sample.bytes.data() + at, handles[i]->bit));
-      at += handles[i]->type->size;
-    } else {
-      text = place_text(resident_.control().machine(), *image.types, now.packets, names[i]).value_or("null");
-    }
-    values.push_back({{"name", names[i]}, {"value", json::parse(text, nullptr, false)}});
-    if (const Force* f = force_of(names[i])) values.back()["forced"] = f->value;
-  }
-  json answer{{"ok", true},
-              {"exit", kDone},
-              {"schema", 1},
-              {"cycle", sample.at.number},
-              {"time_s", sample.at.seconds()},
-              {"values", values},
-              {"forced", forced()}};
-  if (!sample.profile) return answer;
-  const auto row = [](const std::string& name, const plc::Times& t) {
-    const double count = t.count > 0 ? static_cast<double>(t.count) : 1.0;
-    return json{{"name", name},
-                {"last_us", static_cast<double>(t.last) * 1e-3},
-                {"average_us", static_cast<double>(t.sum) * 1e-3 / count},
-                {"most_us", static_cast<double>(t.most) * 1e-3},
-                {"count", t.count}};
-  };
-  answer["tasks"] = answer["blocks"] = json::array();
-  for (std::size_t i = 0; i < sample.tasks.size(); ++i)
-    answer["tasks"].push_back(row(image.tasks[i].name, sample.tasks[i]));
-  for (std::size_t i = 0; i < sample.blocks.size(); ++i)
-    if (sample.blocks[i].count > 0) answer["blocks"].push_back(row(image.units[i].name, sample.blocks[i]));
-  return answer;
-}
-
-json PlcDesk::watch_body(const std::string& name, const PlcAsker& who) {
-  PlcLogic& logic = *resident_.control().logic();
-  const std::shared_ptr<const LogicProgram> program = logic.program();
-  const std::vector<std::string> programs = program_names(program->engine.image());
-  const std::string wanted = name.empty() && !programs.empty() ? programs.front() : name;
-  const WatchedBody body = watched_body(*program, wanted);
-  if (body.lines.empty()) return refused(kNoBody, {wanted}, kWrongUse, who.language);
-  LogicSample sample;
-  for (const WatchedLine& line : body.lines)
-    for (const WatchedValue& v : line.values) sample.ranges.push_back({v.address, v.type->size});
-  if (!logic.look(sample, kScanPatience_ms))
-    return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
-  std::size_t at = 0;
-  json lines = json::array();
-  for (const WatchedLine& line : body.lines) {
-    json values = json::array();
-    for (const WatchedValue& v : line.values) {
-      // Members of the body go without its name.
-      const std::string full = program->engine.find(v.name) ? v.name : wanted + "." + v.name;
-      const std::string text =
-          forced_value(full, *v.type).value_or(plc::to_json(*v.type, sample.bytes.data() + at));
-      values.push_back({{"name", v.name}, {"value", json::parse(text, nullptr, false)}});
-      if (const Force* f = force_of(full)) values.back()["forced"] = f->value;
-      at += v.type->size;
-    }
-    lines.push_back({{"line", line.line}, {"text", line.text}, {"values", values}});
-  }
-  return {{"ok", true},
-          {"exit", kDone},
-          {"schema", 1},
-          {"cycle", sample.at.number},
-          {"time_s", sample.at.seconds()},
-          {"body", wanted},
-          {"file", body.file},
-          {"lines", lines},
-          {"forced", forced()}};
-}
-
-json PlcDesk::list(const PlcAsker&) {
-  const std::shared_ptr<const LogicProgram> program = resident_.control().logic()->program();
-  json files = json::array();
-  for (const plc::SourceFile& f : program->sources) files.push_back(f.name);
-  json symbols = list_symbols(program->engine.image());
-  for (json& s : symbols)
-    if (const Force* f = force_of(s.value("name", ""))) s["forced"] = f->value;
-  return {{"ok", true},     {"exit", kDone},      {"schema", 1},
-          {"files", files}, {"symbols", symbols}, {"forced", forced()}};
 }
 
 }  // namespace servogate::gateway
