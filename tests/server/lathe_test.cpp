@@ -126,8 +126,7 @@ TEST(Lathe, says_places_of_X_as_diameters_wherever_they_are_the_reason) {
   ASSERT_EQ(shell.run({"input", "estop_chain_ok", "off"}).exit, 0);
   json alarm;
   ASSERT_TRUE(shell.until([&](const json& s) {
-    for (const json& a : s["alarms"])
-      if (a["number"] == 1107) alarm = a;
+    alarm = alarm_of(s, 1107);
     return !alarm.is_null();
   }));
   EXPECT_NE(alarm["text"].get<std::string>().find(" mm in diameter"), std::string::npos) << alarm;

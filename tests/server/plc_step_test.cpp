@@ -11,12 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-bool has_alarm(const json& status, int number) {
-  for (const json& a : status["alarms"])
-    if (a["number"] == number) return true;
-  return false;
-}
-
 TEST(SingleScans, show_the_values_of_each_and_let_the_plc_go) {
   Shell shell;
   shell.up();

@@ -99,27 +99,27 @@ void Execution::check_tool(int column) {
 
 /// M3 and its like say that the spindle turns; the speed has to stand before them or in their block.
 void Execution::check_start(const Word& word) {
-  if (state_.speed <= 0.0 && state_.speed_at.line == 0) {
+  if (state_.modes.speed <= 0.0 && state_.speed_at.line == 0) {
     Written place = written(word.column);
     warn(place, Fault::no_speed, {word_text(block_, word)});
   }
-  if (state_.speed > 0.0 && !state_.cutting && state_.modes.spindle == Function::surface_speed &&
+  if (state_.modes.speed > 0.0 && !state_.modes.cutting && state_.modes.spindle == Function::surface_speed &&
       surface_axis_ >= 0)
     fail(Fault::no_cutting_speed, word.column, {word_text(block_, word)});
 }
 
 /// The speed with which the spindle is to turn from here on; `word` asks for it.
 void Execution::check_speed(const Word& word) {
-  if (state_.speed <= 0.0) return;
+  if (state_.modes.speed <= 0.0) return;
   if (state_.modes.spindle == Function::surface_speed) {
     if (surface_axis_ < 0) fail(Fault::surface_speed_axis, word.column, {word_text(block_, word)});
     return;
   }
   const double low = machine_->spindle_min_rpm, high = machine_->spindle_max_rpm;
-  const std::string asked = text::number(state_.speed);
-  if (high > 0.0 && state_.speed > high * kSlack)
+  const std::string asked = text::number(state_.modes.speed);
+  if (high > 0.0 && state_.modes.speed > high * kSlack)
     warn(state_.speed_at, Fault::speed_above, {asked, text::number(high)});
-  else if (state_.speed * kSlack < low)
+  else if (state_.modes.speed * kSlack < low)
     warn(state_.speed_at, Fault::speed_below, {asked, text::number(low)});
 }
 
@@ -132,14 +132,14 @@ void Execution::check_dwell(const Word& word) {
 /// Speed of the spindle along the way to `to`, the largest where it changes; 0: not known.
 double Execution::spindle_rpm(const Position& to) const {
   const double high = machine_->spindle_max_rpm;
-  double rpm = state_.speed;
-  if (state_.cutting) {
+  double rpm = state_.modes.speed;
+  if (state_.modes.cutting) {
     if (surface_axis_ < 0) return 0.0;
     const double center = state_.frame.length(surface_axis_);
     const double from = state_.machine[at(surface_axis_)] - center, end = to[at(surface_axis_)] - center;
     const double radius = from * end <= 0.0 ? 0.0 : std::min(std::abs(from), std::abs(end));
     if (radius == 0.0) return high;
-    rpm = state_.speed * 1000.0 / (2.0 * std::numbers::pi * radius);
+    rpm = state_.modes.speed * 1000.0 / (2.0 * std::numbers::pi * radius);
   }
   return high > 0.0 ? std::min(rpm, high) : rpm;
 }

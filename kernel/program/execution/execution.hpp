@@ -169,7 +169,7 @@ class Execution : public ValueSource {
   void run_words();
   BlockWords gather();
   void take_g(BlockWords& words, const GRule& rule);
-  void return_modes(std::uint32_t one_shot, const Modes& before, double speed, bool cutting);
+  void return_modes(std::uint32_t one_shot, const Modes& before);
   void check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const;
   void check_profile(const BlockWords& words) const;
   void run_cycle_block(const BlockWords& words);

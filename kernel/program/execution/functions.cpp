@@ -65,13 +65,13 @@ void Execution::spindle_word(const BlockWords& words, const MRule* start, const 
       fail(Fault::no_spindle, words.speed->column, {word_text(block_, *words.speed)});
     const double speed = resolve(words.speed->value);
     if (!(speed >= 0.0 && speed <= 99999.99)) refuse_range("S", words.speed->value, speed, "0", "99999.99");
-    state_.cutting = state_.modes.spindle == Function::surface_speed;
-    const bool feet = state_.modes.unit == Function::inch && state_.cutting;
-    state_.speed = feet ? speed * kMetresPerFoot : speed;
+    state_.modes.cutting = state_.modes.spindle == Function::surface_speed;
+    const bool feet = state_.modes.unit == Function::inch && state_.modes.cutting;
+    state_.modes.speed = feet ? speed * kMetresPerFoot : speed;
     state_.speed_at = written(words.speed->column);
-  } else if (state_.cutting && state_.modes.spindle != Function::surface_speed) {
-    state_.speed = spindle_rpm(state_.machine);  // G97 keeps the speed of the moment
-    state_.cutting = state_.speed_told = false;
+  } else if (state_.modes.cutting && state_.modes.spindle != Function::surface_speed) {
+    state_.modes.speed = spindle_rpm(state_.machine);  // G97 keeps the speed of the moment
+    state_.modes.cutting = state_.speed_told = false;
   }
   const bool turns = start != nullptr && start->action != MAction::spindle_orient;
   if (turns) check_start(*start_word);
@@ -86,8 +86,8 @@ void Execution::emit_spindle(SpindleMode mode) {
   state_.spindle = mode;
   Spindle spindle;
   spindle.mode = mode;
-  spindle.speed = state_.speed;
-  spindle.surface_speed = state_.cutting;
+  spindle.speed = state_.modes.speed;
+  spindle.surface_speed = state_.modes.cutting;
   if (spindle.surface_speed && surface_axis_ >= 0) spindle.center = state_.frame.length(surface_axis_);
   emit(spindle);
   state_.speed_told = true;
@@ -162,7 +162,7 @@ void Execution::change_tool() {
     state_.frame.set_length(a, length);
   }
   frame_changed();
-  const bool by_radius = state_.cutting && state_.speed > 0.0;
+  const bool by_radius = state_.modes.cutting && state_.modes.speed > 0.0;
   if (by_radius && surface_axis_ >= 0 && state_.frame.length(surface_axis_) != center)
     emit_spindle(state_.spindle);
 }
@@ -171,8 +171,8 @@ double Execution::dwell_seconds() const {
   if (state_.modes.feed != Function::feed_revolution || state_.dwell <= 0.0) return state_.dwell;
   const int column = static_cast<int>(block_.body) + 1;
   if (state_.modes.spindle == Function::surface_speed) fail(Fault::dwell_surface_speed, column);
-  if (state_.speed <= 0.0) fail(Fault::dwell_no_speed, column);
-  return state_.dwell * 60.0 / state_.speed;
+  if (state_.modes.speed <= 0.0) fail(Fault::dwell_no_speed, column);
+  return state_.dwell * 60.0 / state_.modes.speed;
 }
 
 void Execution::dwell(double seconds) {

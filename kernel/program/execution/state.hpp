@@ -22,7 +22,9 @@ struct Modes {
   Function dimension = Function::absolute;
   Function feed = Function::feed_minute;
   Function spindle = Function::revolutions;
-  int axis1 = 0;  ///< plane: abscissa and ordinate
+  double speed = 0.0;    ///< S in rpm or, if `cutting`, m/min
+  bool cutting = false;  ///< what `speed` is, G96 or G97 of the block that set it
+  int axis1 = 0;         ///< plane: abscissa and ordinate
   int axis2 = 1;
   int normal = 2;  ///< axis across the plane, -1: none
 };
@@ -89,9 +91,7 @@ struct State {
   double feed = 0.0;                  ///< F as programmed, 0: never
   bool feed_inch = false;
   Written feed_at;
-  double speed = 0.0;      ///< S in rpm or, if `cutting`, m/min
-  bool cutting = false;    ///< what `speed` is, G96 or G97 of the block that set it
-  bool speed_told = true;  ///< the machine knows `speed`
+  bool speed_told = true;  ///< the machine knows the speed of `modes`
   Written speed_at;
   SpindleMode spindle = SpindleMode::stop;
   std::int32_t tool = 0;  ///< last T word

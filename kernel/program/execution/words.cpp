@@ -28,8 +28,6 @@ Plane plane_of(Function f) {
 /// Source: specification A 5.
 void Execution::run_words() {
   const Modes before = state_.modes;
-  const double speed = state_.speed;
-  const bool cutting = state_.cutting;
   const BlockWords words = gather();
   if (words.cycle != 0 || state_.cycle.number != 0) return run_cycle_block(words);
   const bool arc_words = arc_motion(state_.modes.motion) &&
@@ -41,7 +39,7 @@ void Execution::run_words() {
   store_feed(words);
   before_motion(words);
   if (moves) move(words);
-  if (moves && words.one_shot != 0) return_modes(words.one_shot, before, speed, cutting);
+  if (moves && words.one_shot != 0) return_modes(words.one_shot, before);
   after_motion(words);
 }
 
@@ -58,7 +56,7 @@ void Execution::run_cycle_block(const BlockWords& words) {
 
 /// The former mode comes back in the groups where a block with motion changes it for itself only, and the
 /// former S with its unit.
-void Execution::return_modes(std::uint32_t one_shot, const Modes& before, double speed, bool cutting) {
+void Execution::return_modes(std::uint32_t one_shot, const Modes& before) {
   const auto acted = [&](std::initializer_list<Function> functions) {
     return std::any_of(functions.begin(), functions.end(),
                        [&](Function f) { return (one_shot >> static_cast<int>(f) & 1u) != 0; });
@@ -69,9 +67,9 @@ void Execution::return_modes(std::uint32_t one_shot, const Modes& before, double
     modes.feed = before.feed;
   if (acted({Function::surface_speed, Function::revolutions}) && modes.spindle != before.spindle) {
     modes.spindle = before.spindle;
-    if (state_.cutting != cutting) {
-      state_.speed = speed;
-      state_.cutting = cutting;
+    if (modes.cutting != before.cutting) {
+      modes.speed = before.speed;
+      modes.cutting = before.cutting;
       state_.speed_told = false;
     }
   }

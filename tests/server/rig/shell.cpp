@@ -52,6 +52,12 @@ int ending_of(pid_t pid) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+json alarm_of(const json& status, int number) {
+  for (const json& a : status["alarms"])
+    if (a["number"] == number) return a;
+  return nullptr;
+}
+
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }

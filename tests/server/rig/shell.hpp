@@ -23,6 +23,12 @@ int ending_of(pid_t pid);
 
 bool contains(const std::string& text, const std::string& part);
 
+/// The alarm of that number in a status; null: it is not there.
+nlohmann::json alarm_of(const nlohmann::json& status, int number);
+inline bool has_alarm(const nlohmann::json& status, int number) {
+  return !alarm_of(status, number).is_null();
+}
+
 /// The program in a folder of its own; whatever it started is ended with it.
 class Shell {
  public:
