@@ -118,8 +118,13 @@ inline constexpr Entry kRecursion{"plc-recursion", "'{0}' calls itself ({1}); IE
 inline constexpr Entry kNoTask{"plc-no-task", "there is no TASK '{0}' in this resource",
                                "в этом ресурсе нет TASK '{0}'"};
 inline constexpr Entry kGlobalTwice{
-    "plc-duplicate", "'{0}' is already declared in {1}; all resources share one list of global variables",
-    "'{0}' уже объявлена в {1}; список глобальных переменных у всех ресурсов один"};
+    "plc-duplicate", "'{0}' is already declared in {1}; one of a resource and one of all cannot share a name",
+    "'{0}' уже объявлена в {1}; у переменной ресурса и у общей не может быть одного имени"};
+inline constexpr Entry kResourceType{
+    "plc-resource-type",
+    "'{0}' holds {1}, which uses variables that several resources have; declare it where it is used",
+    "'{0}' содержит {1}, а тот использует переменные, которые есть у нескольких ресурсов; объявите его там, "
+    "где он нужен"};
 inline constexpr Entry kBlockTask{"plc-block-task", "'{0}' runs with TASK '{1}'; {2} cannot call it, too",
                                   "'{0}' выполняется в задаче '{1}'; вызывать его ещё и из {2} нельзя"};
 inline constexpr Entry kTaskInterval{"plc-task-interval",

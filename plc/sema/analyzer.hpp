@@ -58,6 +58,7 @@ struct UnitScope {
   bool ready = false;   ///< frame laid out
   bool laying_out = false;
   bool from_library = false;
+  std::string resource;  ///< whose global variables it sees where several have one of a name
 };
 
 /// Turns the trees of all files into the typed representation and reports everything that does not hold. One
@@ -105,6 +106,15 @@ class Analyzer {
   void check_sections(const UnitScope& u, const syntax::Variable& v);
   std::uint32_t allocate(const Type& type);
   const Type* limits_type();
+
+  // resources.cpp: global variables of one name in several resources.
+  void part_resources();
+  std::vector<std::set<std::string>> all_mentions() const;
+  int copy_unit(std::size_t unit);
+  void refuse_shared_types();
+  std::string resource_here() const;
+  std::string global_key(std::string_view name) const;
+  int unit_named(std::string_view name) const;
 
   // places.cpp: packet places.
   std::optional<image::Place> parse_address(const std::string& text, const Location& at);
@@ -310,6 +320,9 @@ class Analyzer {
   std::map<std::string, int> units_by_name_;
   std::vector<Variable> globals_;
   std::map<std::string, std::size_t> globals_by_name_;
+  std::set<std::string> shared_names_;                      ///< of global variables, in several resources
+  std::map<std::pair<int, std::string>, int> by_resource_;  ///< unit, resource -> the unit in it
+  std::string resource_;                                    ///< of what is being looked at outside of units
   std::map<std::string, std::vector<const Type*>> enumerations_;  ///< value name -> types
   std::map<std::string, std::size_t> symbols_by_name_;
   std::map<std::string, std::uint32_t> shared_by_name_;
@@ -338,7 +351,7 @@ class Analyzer {
   std::vector<const Variable*> for_variables_;
   std::vector<int> instances_;  ///< programs: number of instances a unit has
   int current_ = -1;
-  std::map<const syntax::TypeReference*, const Type*> nameless_;
+  std::map<std::pair<const syntax::TypeReference*, std::string>, const Type*> nameless_;
   int loops_ = 0;
   std::int64_t lets_ = 0;
   std::map<std::uint64_t, ir::Place> held_;  ///< of the current body

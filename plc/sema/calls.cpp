@@ -71,10 +71,9 @@ ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
 // The FUNCTION that a call names; -1: none that is declared in text.
 int Analyzer::function_named(const Expression& callee) {
   if (callee.kind != ExpressionKind::name) return -1;
-  const auto unit = units_by_name_.find(key_of(callee.name));
-  const bool found = unit != units_by_name_.end() &&
-                     scopes_[static_cast<std::size_t>(unit->second)].source->kind == UnitKind::function;
-  return found ? unit->second : -1;
+  const int unit = unit_named(callee.name);
+  const bool found = unit >= 0 && scopes_[static_cast<std::size_t>(unit)].source->kind == UnitKind::function;
+  return found ? unit : -1;
 }
 
 const Variable* Analyzer::match(const syntax::Argument& a, std::size_t position, int unit,
@@ -339,12 +338,12 @@ ExprPtr Analyzer::enabled_value(const Expression& e) {
   const Expression& callee = *e.operands[0];
   bool global = false;
   const Variable* v = callee.kind == ExpressionKind::name ? find_variable(callee.name, global) : nullptr;
-  const auto unit = units_by_name_.find(key_of(callee.name));
-  const bool function = callee.kind == ExpressionKind::name && v == nullptr && unit != units_by_name_.end();
+  const int unit = unit_named(callee.name);
+  const bool function = callee.kind == ExpressionKind::name && v == nullptr && unit >= 0;
   ir::Place from;
   int index = -1;
   if (function) {
-    index = unit->second;
+    index = unit;
     from.cell = static_cast<std::uint32_t>(
         std::max<std::int64_t>(0, program_.units[static_cast<std::size_t>(index)].fixed_base));
   } else if (callee.kind != ExpressionKind::name || v != nullptr) {

@@ -29,6 +29,7 @@ Analyzer::Analyzer(const syntax::Source& source, const std::vector<image::Symbol
 
 ir::Program Analyzer::run() {
   declare_names();
+  part_resources();
   declare_globals(true);  // limits of types may be global constants
   resolve_types();
   declare_globals(false);
@@ -135,9 +136,11 @@ const Type* Analyzer::resolve_declared(std::size_t index) {
 const Type* Analyzer::resolve(const syntax::TypeReference& t, const std::string& name) {
   // What has no name of its own is one type for all variables of its list: x, y : (on, off);
   const bool nameless = name.empty() && (!t.values.empty() || key_of(t.name) == "STRUCT");
-  if (const auto known = nameless_.find(&t); nameless && known != nameless_.end()) return known->second;
+  // A structure may hold instances that are others in each resource; values are the same everywhere.
+  const std::pair key(&t, t.values.empty() ? resource_here() : std::string());
+  if (const auto known = nameless_.find(key); nameless && known != nameless_.end()) return known->second;
   const Type* type = resolve_written(t, name);
-  if (nameless) nameless_[&t] = type;
+  if (nameless) nameless_[key] = type;
   return type;
 }
 
@@ -164,16 +167,15 @@ const Type* Analyzer::resolve_named(const syntax::TypeReference& t) {
   const std::string key = key_of(t.name);
   if (const auto at = declared_types_.find(key); at != declared_types_.end())
     return resolve_declared(at->second);
-  if (const auto at = units_by_name_.find(key);
-      at != units_by_name_.end() &&
-      scopes_[static_cast<std::size_t>(at->second)].source->kind == UnitKind::function_block) {
-    UnitScope& u = scopes_[static_cast<std::size_t>(at->second)];
+  if (const int unit = unit_named(t.name);
+      unit >= 0 && scopes_[static_cast<std::size_t>(unit)].source->kind == UnitKind::function_block) {
+    UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
     if (u.laying_out) {
       report_.error(t.location, texts::kTypeCycle, {u.source->name});
       return elementary(Kind::error);
     }
     const int outer = current_;
-    lay_out(at->second);
+    lay_out(unit);
     current_ = outer;
     return u.frame;
   }
@@ -429,7 +431,7 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
   if (v.retain && holds_reference(*v.type)) report_.error(s.location, texts::kReferenceRetain, {s.name});
   const bool alias = s.section == Section::external;
   if (alias) {
-    const auto g = globals_by_name_.find(key_of(s.name));
+    const auto g = globals_by_name_.find(global_key(s.name));
     const image::Symbol* sym = g == globals_by_name_.end() ? symbol(s.name) : nullptr;
     if (g == globals_by_name_.end() && sym == nullptr) {
       report_.error(s.location, texts::kNoExternal, {s.name});
@@ -533,8 +535,10 @@ void Analyzer::lay_out(int index) {
 
 void Analyzer::declare_globals(bool constants) {
   current_ = -1;
-  for (const syntax::Variable& s : source_.globals) {
+  for (syntax::Variable s : source_.globals) {
     if (s.constant != constants) continue;
+    resource_ = s.resource;
+    if (shared_names_.contains(key_of(s.name))) s.name = s.resource + "." + s.name;
     const auto [at, fresh] = globals_by_name_.emplace(key_of(s.name), globals_.size());
     if (!fresh) {
       const bool resources = s.resource != globals_[at->second].resource;
@@ -570,6 +574,7 @@ void Analyzer::declare_globals(bool constants) {
     }
     globals_.push_back(std::move(v));
   }
+  resource_.clear();
 }
 
 }  // namespace servogate::plc::sema

@@ -68,8 +68,10 @@ std::optional<Analyzer::Reached> Analyzer::reach_path(const syntax::Configuratio
         return same_name(g.name, p.path[at]) || (at == 1 && same_name(g.name, p.path[0] + "." + p.path[1]));
       });
   const auto globals =
-      std::find_if(program_.globals.begin(), program_.globals.end(),
-                   [&](const ir::Global& g) { return g.place < 0 && same_name(g.name, p.path[at]); });
+      std::find_if(program_.globals.begin(), program_.globals.end(), [&](const ir::Global& g) {
+        return g.place < 0 &&
+               (same_name(g.name, p.path[at]) || (at == 1 && same_name(g.name, p.path[0] + "." + p.path[1])));
+      });
   const bool program = programs != program_.programs.end();
   if (!program && globals == program_.globals.end()) {
     report_.error(p.path_location, texts::kUnknownName, {p.path[at], ""});

@@ -21,7 +21,7 @@ Variable* Analyzer::find_variable(std::string_view name, bool& global) {
       v.used = true;
     }
   }
-  if (const auto at = globals_by_name_.find(key);
+  if (const auto at = globals_by_name_.find(global_key(name));
       at != globals_by_name_.end() && at->second < globals_.size()) {
     global = true;
     return &globals_[at->second];
@@ -52,8 +52,9 @@ std::vector<std::string> Analyzer::names_in_scope() const {
 
 void Analyzer::note_write(Variable& v, bool global, const Location& at) {
   v.written = true;
-  const bool constant = global && current_ >= 0 && here().by_name.contains(key_of(v.name)) &&
-                        here().variables[here().by_name[key_of(v.name)]].constant;  // VAR_EXTERNAL CONSTANT
+  const std::string own = key_of(v.name.substr(v.name.rfind('.') + 1));  // without a resource
+  const bool constant = global && current_ >= 0 && here().by_name.contains(own) &&
+                        here().variables[here().by_name[own]].constant;  // VAR_EXTERNAL CONSTANT
   if (v.constant || constant) {
     report_.error(at, texts::kWriteConstant, {v.name});
     return;

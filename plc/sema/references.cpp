@@ -19,9 +19,8 @@ const Type* Analyzer::resolve_reference(const syntax::TypeReference& t) {
   const std::string key = key_of(t.element->name);
   if (const auto open = open_types_.find(key); open != open_types_.end())
     return types_->reference(open->second);
-  const auto unit = units_by_name_.find(key);
-  if (unit != units_by_name_.end()) {
-    const UnitScope& u = scopes_[static_cast<std::size_t>(unit->second)];
+  if (const int unit = unit_named(key); unit >= 0) {
+    const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
     if (u.laying_out && u.source->kind == UnitKind::function_block) return types_->reference(u.frame);
   }
   const Type* target = resolve(*t.element);

@@ -62,10 +62,8 @@ void Analyzer::default_task() {
 }
 
 int Analyzer::program_unit(const syntax::ProgramInstance& p) {
-  const auto at = units_by_name_.find(key_of(p.type));
-  if (at != units_by_name_.end() &&
-      scopes_[static_cast<std::size_t>(at->second)].source->kind == UnitKind::program)
-    return at->second;
+  const int unit = unit_named(p.type);
+  if (unit >= 0 && scopes_[static_cast<std::size_t>(unit)].source->kind == UnitKind::program) return unit;
   std::vector<std::string> names;
   for (const syntax::Unit& u : source_.units)
     if (u.kind == UnitKind::program) names.push_back(u.name);
@@ -77,6 +75,7 @@ ir::Task Analyzer::task_of(const syntax::Task& t) {
   ir::Task task;
   task.name = t.name;
   current_ = -1;
+  resource_ = t.resource;
   if (!t.interval && !t.single) report_.error(t.location, texts::kTaskInterval);
   if (t.interval)
     if (const auto ns = constant(*t.interval, elementary(Kind::time))) {
@@ -106,6 +105,8 @@ ir::Task Analyzer::task_of(const syntax::Task& t) {
 
 // The instance's inputs, its call, its outputs.
 bool Analyzer::program_call(const syntax::ProgramInstance& p, const std::string& name, ir::Block& out) {
+  current_ = -1;
+  resource_ = p.resource;
   const int unit = program_unit(p);
   if (unit < 0) return false;
   ir::Place where;
@@ -224,6 +225,7 @@ void Analyzer::configured_tasks() {
           block_task(b, program, bodies[own].body);
       }
     }
+    resource_.clear();
     configured_paths(c);
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       tasks[i].unit = static_cast<int>(program_.units.size());
