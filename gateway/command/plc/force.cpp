@@ -7,9 +7,9 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
+#include "gateway/command/force_setting.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/control_client.hpp"
-#include "gateway/command/plc/force_setting.hpp"
 #include "gateway/command/signals.hpp"
 
 namespace servogate::gateway::command {

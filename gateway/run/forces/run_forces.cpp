@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/run/run_forces.hpp"
+#include "gateway/run/forces/run_forces.hpp"
 
 #include "gateway/compose/plc/force_plan.hpp"
 

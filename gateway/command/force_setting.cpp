@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/plc/force_setting.hpp"
+#include "gateway/command/force_setting.hpp"
 
 #include "gateway/cli/messages.hpp"
 
