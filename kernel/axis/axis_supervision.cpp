@@ -14,7 +14,9 @@ using image::DriveState;
 namespace {
 
 constexpr double kVelocityFilter = 0.01;  // s
-constexpr double kOffPathRest = 0.1;      // s
+/// Where process data may be missing for ever, so many in a row still mean nothing.
+constexpr std::uint32_t kMissedUnjudged = 3;
+constexpr double kOffPathRest = 0.1;  // s
 
 bool on(const image::ProcessImage& image, const std::optional<SwitchPlace>& s) noexcept {
   return s && image.packets.bit(s->place) != s->inverted;
@@ -73,6 +75,12 @@ void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
     following_error_ = 0.0;
     return;
   }
+  // What has not come is not judged: the axis neither stands nor falls behind because a frame is missing. How
+  // many may be missing is supervised by itself.
+  if (seen_counts_ && in.missed > 0 && in.missed <= std::max(config_.missed_limit, kMissedUnjudged)) {
+    last_missed_ = in.missed;
+    return;
+  }
   last_counts_ = in.position_counts;
   motor_ = scale_.position(in.position_counts);
   if (seen_counts_) {
@@ -85,7 +93,8 @@ void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
       raise(alarm::kEncoderJump, permitted, step);
       drop_reference();
     }
-    actual_velocity_ += (step / dt - actual_velocity_) * std::min(1.0, dt / kVelocityFilter);
+    const double span = in.missed == 0 ? dt * (1.0 + last_missed_) : dt;
+    actual_velocity_ += (step / span - actual_velocity_) * std::min(1.0, span / kVelocityFilter);
   }
   seen_counts_ = true;
   last_missed_ = in.missed;

@@ -329,8 +329,8 @@ TEST(Axis, tells_what_the_drive_did_when_it_fails) {
   {
     Rig rig;
     ASSERT_TRUE(rig.enable());
-    rig.shared().drive.missed = 3;
-    rig.run(1);
+    rig.drive.mute = true;
+    rig.run(3);
     EXPECT_TRUE(rig.raised(alarm::kPdoMissing));
   }
   {
@@ -339,6 +339,35 @@ TEST(Axis, tells_what_the_drive_did_when_it_fails) {
     rig.run(1);
     EXPECT_TRUE(rig.raised(alarm::kDriveRefuses));
   }
+}
+
+TEST(Axis, whose_process_data_do_not_come_is_not_said_to_fall_behind_or_to_stand) {
+  AxisConfig config = test::mill_axis();
+  config.missed_limit = 5;
+  config.following_error_warn = 0.05;
+  config.following_error_limit = 0.1;
+  Rig rig(config);
+  ASSERT_TRUE(rig.enable());
+  rig.axis.jog_increment(200.0);
+  rig.run(800);
+  const double speed = rig.shared().command_velocity;
+  ASSERT_GT(speed, 10.0);
+  for (int missing = 1; missing < 5; ++missing) {
+    rig.drive.mute = true;
+    rig.run(missing);
+    rig.drive.mute = false;
+    rig.run(50);
+  }
+  EXPECT_TRUE(rig.events.empty()) << rig.events.front().number;
+  rig.drive.mute = true;
+  rig.run(5);
+  ASSERT_FALSE(rig.events.empty());
+  EXPECT_EQ(rig.events.front().number, alarm::kPdoMissing) << "the cause comes first";
+  rig.drive.mute = false;
+  rig.drive.lost = true;
+  rig.run(1);
+  EXPECT_EQ(rig.events.back().number, alarm::kDriveOffline);
+  EXPECT_NEAR(rig.events.back().detail1, speed, 0.1 * speed);
 }
 
 TEST(Axis, notices_a_jump_of_the_encoder_and_is_not_homed_any_more) {

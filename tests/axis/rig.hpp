@@ -61,6 +61,7 @@ class FakeDrive {
   std::int64_t counts = 0;
   bool fault = false;
   bool lost = false;
+  bool mute = false;              ///< its process data do not come: the old ones stand
   bool torque_off = false;        ///< somebody took its torque: it cannot be enabled
   std::int64_t coast_counts = 0;  ///< moves so far each cycle while it does not follow
   std::uint32_t sequence = 0;
@@ -72,6 +73,8 @@ class FakeDrive {
   }
   /// Takes the command computed in the last cycle and gives the feedback read in this one.
   void cycle(const image::DriveCommand& c, image::DriveFeedback& f) {
+    f.missed = mute ? f.missed + 1 : 0;
+    if (mute) return;
     power_cycles_ = c.power && !fault ? power_cycles_ + 1 : 0;
     if (c.reset_fault) fault = false;
     const bool on = power_cycles_ > enable_cycles && !c.quick_stop && !torque_off;
