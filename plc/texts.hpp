@@ -174,6 +174,8 @@ inline constexpr Entry kXmlMissing{"plc-xml-missing", "<{0}> needs '{1}'", "<{0}
 inline constexpr Entry kXmlTwice{"plc-xml-twice", "localId {0} is given twice", "localId {0} задан дважды"};
 inline constexpr Entry kXmlNoElement{"plc-xml-element", "there is no element with localId {0}",
                                      "элемента с localId {0} нет"};
+inline constexpr Entry kBlockType{"plc-block-type", "this block is drawn as {0}, but '{1}' is {2}",
+                                  "этот блок нарисован как {0}, а '{1}' имеет тип {2}"};
 
 // Names and types in statements.
 inline constexpr Entry kUnknownName{"plc-unknown-name", "there is no variable '{0}'{1}",

@@ -415,6 +415,7 @@ class Lowering {
     Element& e = at(i);
     StatementPtr s = statement_of(StatementKind::call, e.location);
     s->value = call(i, name_path(e.instance, e.location));
+    s->value->name = e.name;
     emit(std::move(s));
   }
 

@@ -15,7 +15,7 @@ enum class ElementKind : std::uint8_t {
   rail,      ///< the left one: always TRUE
   contact,   ///< `operand` is what it reads
   coil,      ///< `operand` is what it writes
-  block,     ///< `instance` of a function block, or the function `name`
+  block,     ///< `instance` of a function block (and `name`, the type it is drawn as), or the function `name`
   action,    ///< `statement`, done under power; power goes on
   source,    ///< the value of `operand`
   sink,      ///< writes `operand`

@@ -229,6 +229,7 @@ class Analyzer {
   int function_named(const Expression& callee);
   ExprPtr initial_value(const Variable& v, int unit, const Location& at);
   void block_call(const Expression& e, const ir::Place& instance, int unit, ir::Block& out);
+  bool drawn_as(const Expression& call, const Type& instance);
   void block_input(const syntax::Argument& a, const Variable& parameter, const ir::Place& instance,
                    ir::Block& out);
   const Variable* match(const syntax::Argument& a, std::size_t position, int unit, bool with_outputs = false);

@@ -397,6 +397,22 @@ bool Analyzer::guarded(const syntax::Statement& s, ir::Block& out) {
   return true;
 }
 
+// An editor names a block twice, by its type and by its instance; both have to say the same. A name of a
+// library may stand before that of the type.
+bool Analyzer::drawn_as(const Expression& e, const Type& instance) {
+  const std::string name = e.name.substr(e.name.rfind('.') + 1);
+  if (name.empty() || same_name(name, instance.name)) return true;
+  const UnitScope& u = scopes_[static_cast<std::size_t>(instance.block)];
+  if (same_name(name, u.source->name)) return true;
+  const auto declared = declared_types_.find(key_of(name));
+  if (declared != declared_types_.end() && resolve_declared(declared->second)->block == instance.block)
+    return true;
+  std::string shown;
+  if (!dotted_symbol(*e.operands[0], shown)) shown = "(...)";
+  report_.error(e.location, texts::kBlockType, {name, shown, instance.name});
+  return false;
+}
+
 void Analyzer::block_call(const Expression& e, const ir::Place& named, int unit, ir::Block& out) {
   if (current_ >= 0) here().calls.insert(unit);
   std::vector<const Variable*> matched;

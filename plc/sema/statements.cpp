@@ -95,6 +95,7 @@ void Analyzer::statement(const syntax::Statement& s, ir::Block& out) {
         const auto instance = place(callee, false);
         if (!instance) return;
         if (instance->type->kind == Kind::block && !changeable(callee)) return;
+        if (instance->type->kind == Kind::block && !drawn_as(*s.value, *instance->type)) return;
         if (instance->type->kind == Kind::block)
           return block_call(*s.value, *instance, instance->type->block, out);
       }
