@@ -389,16 +389,17 @@ std::vector<std::pair<std::string, std::string>> Engine::forced() const {
 void Engine::prepare_transfer(const Transfer& t) {
   std::size_t bytes = 0;
   for (const Transfer::PlaceMove& m : t.places) bytes += m.size;
-  state_->given_back.resize(bytes);
-  state_->given_back_places.clear();
-  state_->given_back_places.reserve(t.places.size());
+  state_->given_back.resize(state_->given_back.size() + bytes);  // behind what was restored
+  state_->given_back_places.reserve(state_->given_back_places.size() + t.places.size());
 }
 
 void Engine::take_over(const Engine& before, const Transfer& t) noexcept {
   State& s = *state_;
   const std::uint8_t* from = before.state_->memory.data();
   for (const Transfer::Move& m : t.moves) std::memcpy(s.memory.data() + m.to, from + m.from, m.size);
-  std::uint32_t at = 0;
+  std::size_t bytes = 0;
+  for (const Transfer::PlaceMove& m : t.places) bytes += m.size;
+  auto at = static_cast<std::uint32_t>(s.given_back.size() - bytes);
   for (const Transfer::PlaceMove& m : t.places) {
     std::memcpy(s.given_back.data() + at, from + m.from, m.size);
     s.given_back_places.push_back({at, image_->places[m.place].address, m.size});  // reserved

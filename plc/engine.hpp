@@ -163,7 +163,7 @@ class Engine {
   /// before it. real-time safe: moves bytes only. `transfer` was planned for these two programs, and
   /// prepare_transfer() has seen it.
   void take_over(const Engine& before, const Transfer& transfer) noexcept;
-  /// Makes room for it. Not real-time safe.
+  /// Makes room for it; once, behind restore(). Not real-time safe.
   void prepare_transfer(const Transfer& transfer);
 
   /// Measures every task with this clock, nullptr: none. Before the first scan.

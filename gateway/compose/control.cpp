@@ -43,8 +43,8 @@ class SilentBus final : public image::CanBus {
 };
 const text::Entry kNotRestored{
     "compose.plc-not-restored",
-    "the retained value {2} of '{0}' is given up: the PLC has no such variable of type {1}",
-    "сохранённое значение {2} переменной «{0}» отброшено: в ПЛК нет такой переменной типа {1}"};
+    "the retained value {2} of '{0}' is kept aside: the PLC has no such variable of type {1}",
+    "сохранённое значение {2} переменной «{0}» отложено: в ПЛК нет такой переменной типа {1}"};
 const text::Entry kUnreadable{"compose.plc-unreadable", "cannot read the PLC source: {0}",
                               "исходный текст ПЛК не читается: {0}"};
 
@@ -285,6 +285,7 @@ std::vector<text::Finding> Control::restore_retained(const machine::MachineState
   for (const machine::RetainedVariable& v : state.retained) {
     const plc::Retained value{v.name, v.type, v.value};
     if (logic_ != nullptr && logic_->engine().restore({&value, 1}) != 0) continue;
+    if (logic_ != nullptr) logic_->set_aside(value);
     const machine::Where where = loaded_.machine.where("plc");
     findings.push_back({text::Severity::warning,
                         loaded_.machine.file,

@@ -29,11 +29,14 @@ bool RetainedKeeper::write_changed() {
   const std::shared_ptr<const LogicProgram> program = control_.logic()->program();
   const RetainedMemory& memory = program->retained;
   const bool same = program == program_ && memory.version() == written_;
-  if (same || memory.version() == 0 || program->engine.retain_bytes() == 0) return true;
+  const bool own = program->engine.retain_bytes() > 0;
+  if (same || (own ? memory.version() == 0 : program->aside.empty())) return true;
   std::vector<std::uint8_t> bytes;
   const std::uint64_t version = memory.read(bytes);
+  std::vector<plc::Retained> values = program->aside;
+  for (plc::Retained& v : program->engine.retained(bytes)) values.push_back(std::move(v));
   machine::MachineState state;
-  for (plc::Retained& v : program->engine.retained(bytes))
+  for (plc::Retained& v : values)
     state.retained.push_back({std::move(v.name), std::move(v.type), std::move(v.value)});
   state.retained_generation = generation_ + 1;
   std::string problem;

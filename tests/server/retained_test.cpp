@@ -114,9 +114,46 @@ TEST(RetainedVariables, without_a_variable_of_their_name_and_type_are_named) {
       << "PROGRAM Counter VAR RETAIN count : LINT; END_VAR count := count + 1; END_PROGRAM\n";
   shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
   EXPECT_NE(
-      shell.text("up.err").find("'Counter.count' is given up: the PLC has no such variable of type DINT"),
+      shell.text("up.err").find("'Counter.count' is kept aside: the PLC has no such variable of type DINT"),
       std::string::npos)
       << shell.text("up.err");
+}
+
+/// The value of a variable as `plc watch` shows it.
+std::int64_t watched(Shell& shell, const std::string& name) {
+  const json sample =
+      json::parse(shell.run({"plc", "watch", name, "--samples", "1", "--json"}).out, nullptr, false);
+  return sample.is_object() ? sample["values"][0]["value"].get<std::int64_t>() : -1;
+}
+
+TEST(RetainedVariables, that_a_loaded_program_does_not_have_are_named_and_come_back_with_one_that_has_them) {
+  Shell shell;
+  const std::string machine = counting_mill(shell), state = (shell.folder() / "state").string();
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+  ASSERT_TRUE(grows_beyond(state, 1000));
+  const std::string other = (shell.folder() / "mill.st").string();
+  const Outcome without = shell.run({"plc", "load", other});
+  EXPECT_EQ(without.exit, 0);
+  EXPECT_NE(without.out.find("kept aside until a program has them: Counter.count, Counter.again[1]"),
+            std::string::npos)
+      << without.out;
+  EXPECT_GT(kept_count(state), 1000) << "they stay on the disk";
+  const Outcome with = shell.run({"plc", "load", other, (shell.folder() / "counter.st").string(), "--json"});
+  const json told = json::parse(with.out, nullptr, false);
+  EXPECT_EQ(told["taken_back"].size(), 42u) << with.out;
+  EXPECT_TRUE(told["set_aside"].empty());
+  EXPECT_GT(watched(shell, "Counter.count"), 1000);
+}
+
+TEST(RetainedVariables, that_a_loaded_program_does_not_have_are_there_after_a_kill_and_a_new_start) {
+  Shell shell;
+  const std::string machine = counting_mill(shell), state = (shell.folder() / "state").string();
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+  ASSERT_TRUE(grows_beyond(state, 1000));
+  ASSERT_EQ(shell.run({"plc", "load", (shell.folder() / "mill.st").string()}).exit, 0);
+  shell.end(SIGKILL);
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
+  EXPECT_GT(watched(shell, "Counter.count"), 1000);
 }
 
 /// A tool that nobody remembers is changed into one that sits there already.

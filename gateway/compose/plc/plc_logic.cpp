@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <set>
 #include <thread>
 
 #include "kernel/cycle/alarm/alarm_table.hpp"
@@ -54,6 +55,28 @@ void copy_written(const plc::Image& program, const image::Packets& from, image::
       std::memcpy(to.data(s.place.packet) + s.place.byte(), from.data(s.place.packet) + s.place.byte(),
                   s.place.bytes());
   }
+}
+
+using RetainedKey = std::pair<std::string, std::string>;  ///< name, without case, and type
+
+std::set<RetainedKey> retained_of(const plc::Image& image) {
+  std::set<RetainedKey> out;
+  for (const plc::Image::RetainedCell& c : image.retained) out.insert({plc::key_of(c.name), c.type->name});
+  return out;
+}
+
+/// What `before` held at its last scan, or kept aside itself, and `now` has no variable for.
+std::vector<plc::Retained> left_over(const LogicProgram& before, const plc::Image& now) {
+  constexpr std::size_t kMost = 10'000;
+  std::vector<std::uint8_t> bytes;
+  const bool scanned = before.retained.read(bytes) != 0;
+  std::vector<plc::Retained> out = before.aside;
+  for (plc::Retained& v : scanned ? before.engine.retained(bytes) : before.engine.retained())
+    out.push_back(std::move(v));
+  const std::set<RetainedKey> known = retained_of(now);
+  std::erase_if(out, [&](const plc::Retained& v) { return known.contains({plc::key_of(v.name), v.type}); });
+  if (out.size() > kMost) out.erase(out.begin(), out.end() - kMost);
+  return out;
 }
 
 }  // namespace
@@ -258,6 +281,9 @@ PlcLogic::Plan PlcLogic::prepare_load(const LogicChange& change, Prepared& out,
   out.program = std::make_shared<LogicProgram>(compiled.image, change.files, change.number);
   out.program->dropped = dropped_places(before, *compiled.image);
   plc::Engine& engine = out.program->engine;
+  plan.fresh = out.transfer.fresh;
+  plan.given_up = out.transfer.given_up;
+  sort_retained(plan, engine);
   engine.measure(&stopwatch());
   engine.prepare_transfer(out.transfer);
   for (const auto& [name, value] : forced_) {
@@ -268,10 +294,30 @@ PlcLogic::Plan PlcLogic::prepare_load(const LogicChange& change, Prepared& out,
     else
       plan.forces_lost.push_back(name);
   }
-  plan.kept = out.transfer.kept;
-  plan.fresh = out.transfer.fresh;
-  plan.given_up = out.transfer.given_up;
+  plan.kept = out.transfer.kept + plan.taken_back.size();
   return plan;
+}
+
+// What was kept aside goes into variables that begin anew; what the running program has too much is kept
+// aside.
+void PlcLogic::sort_retained(Plan& plan, plc::Engine& engine) const {
+  const auto keys = [](const std::vector<std::string>& names) {
+    std::set<std::string> out;
+    for (const std::string& name : names) out.insert(plc::key_of(name));
+    return out;
+  };
+  const std::set<std::string> fresh = keys(plan.fresh), given_up = keys(plan.given_up);
+  for (const plc::Retained& v : shown_->aside)
+    if (fresh.contains(plc::key_of(v.name)) && engine.restore({&v, 1}) != 0)
+      plan.taken_back.push_back(v.name);
+  const std::set<std::string> back = keys(plan.taken_back);
+  std::erase_if(plan.fresh, [&](const std::string& name) { return back.contains(plc::key_of(name)); });
+  const std::set<RetainedKey> retained = retained_of(engine.image());
+  for (const plc::Image::RetainedCell& c : shown_->engine.image().retained) {
+    if (!given_up.contains(plc::key_of(c.name))) continue;
+    const bool same = retained.contains({plc::key_of(c.name), c.type->name});
+    (same ? plan.lost : plan.set_aside).push_back(c.name);
+  }
 }
 
 void PlcLogic::withdraw(std::uint32_t number) { delete ready_[number % kSlots].exchange(nullptr); }
@@ -289,6 +335,7 @@ void PlcLogic::settle() {
     if (!change->accepted) continue;
     switch (change->kind) {
       case LogicChange::Kind::load: {
+        change->program->aside = left_over(*shown_, change->program->engine.image());
         const std::scoped_lock lock(mutex_);
         shown_ = change->program;
         forced_ = change->forced;

@@ -29,6 +29,8 @@ struct LogicProgram {
   std::vector<plc::SourceFile> sources;
   std::uint32_t number;               ///< of the request that brought it, 0: from the start
   std::vector<image::Place> dropped;  ///< written by the program before and not by this one
+  /// Retained values that this program has no variable for, oldest first: they are kept for one that has.
+  std::vector<plc::Retained> aside;
 };
 
 /// What somebody wants to see of one scan: bytes of the engine's memory, all of the same scan.
@@ -62,6 +64,8 @@ class PlcLogic final : public cycle::Logic {
 
   /// The engine before the first cycle.
   plc::Engine& engine() noexcept { return shown_->engine; }
+  /// Keeps a retained value that the program has no variable for; before the first cycle.
+  void set_aside(plc::Retained value) { shown_->aside.push_back(std::move(value)); }
   /// The program that runs, as far as the outside knows it.
   std::shared_ptr<const LogicProgram> program() const;
   /// What stopped the program, with task, file and line, from a record of kPlcBudget or kPlcFault; empty when
@@ -75,6 +79,8 @@ class PlcLogic final : public cycle::Logic {
     std::size_t kept = 0;
     std::vector<std::string> fresh, given_up;  ///< variables by name
     std::vector<std::string> forces_lost;      ///< forced variables that the new program has not
+    /// Retained variables: whose value is kept for a program that has them, is there again, is lost.
+    std::vector<std::string> set_aside, taken_back, lost;
   };
   /// Makes a change ready for the request with its number. Not real-time safe.
   Plan prepare(const LogicChange& change, const std::vector<image::Symbol>& symbols,
@@ -96,6 +102,7 @@ class PlcLogic final : public cycle::Logic {
 
   Plan prepare_load(const LogicChange& change, Prepared& out, const std::vector<image::Symbol>& symbols,
                     const plc::Options& options);
+  void sort_retained(Plan& plan, plc::Engine& engine) const;
   bool carry_out(Prepared& change) noexcept;
   bool hold(const image::Request& request) noexcept;
   void stand_still(image::ProcessImage& image) noexcept;

@@ -36,6 +36,16 @@ const Entry kNotCompiled{"plc.errors", "the PLC program was not changed: it has 
                          "программа ПЛК не заменена: в ней есть ошибки"};
 const Entry kChanged{"plc.changed", "the PLC runs {0}: {1} values kept, {2} variables begin anew",
                      "ПЛК выполняет {0}: сохранено значений {1}, начато заново переменных {2}"};
+const Entry kSetAside{
+    "plc.set-aside",
+    "warning: {0} has no such retained variables; their values are kept aside until a program has them: {1}",
+    "предупреждение: в {0} нет таких сохраняемых переменных; их значения отложены для программы, где они "
+    "есть: {1}"};
+const Entry kTakenBack{"plc.taken-back", "their values from before are back: {0}",
+                       "возвращены прежние значения: {0}"};
+const Entry kLost{"plc.retained-lost",
+                  "warning: retained variables begin anew, for their types have changed: {0}",
+                  "предупреждение: сохраняемые переменные начаты заново, их типы изменились: {0}"};
 const Entry kLoadLater{
     "plc.load-later",
     "Load it when the program has ended and all axes rest; or with --online --while-running, once you have "
@@ -143,6 +153,18 @@ json PlcDesk::load(const json& request, const PlcAsker& who) {
     std::erase_if(forces_, [&](const Force& f) { return f.places.empty() && plc::same_name(f.name, name); });
   answer = told(kChanged, {joined(names), std::to_string(plan.kept), std::to_string(plan.fresh.size())},
                 who.language);
+  const std::string sources = joined(names);
+  const auto add = [&](const Entry& entry, const std::vector<std::string>& variables, bool named) {
+    if (variables.empty()) return;
+    std::vector<std::string> arguments;
+    if (named) arguments.push_back(sources);
+    arguments.push_back(joined(variables));
+    answer["text"] = answer["text"].get<std::string>() + "\n" + text::render(entry, arguments, who.language);
+  };
+  add(kTakenBack, plan.taken_back, false);
+  add(kSetAside, plan.set_aside, true);
+  add(kLost, plan.lost, false);
+  more.update({{"set_aside", plan.set_aside}, {"taken_back", plan.taken_back}, {"lost", plan.lost}});
   more.update({{"files", names},
                {"online", change.online},
                {"kept", plan.kept},
@@ -175,7 +197,9 @@ std::string PlcDesk::log(const LogicChange& change, const json& told, const PlcA
                    {"files", files},
                    {"kept", told["kept"]},
                    {"fresh", told["fresh"]},
-                   {"given_up", told["given_up"]}};
+                   {"given_up", told["given_up"]},
+                   {"set_aside", told["set_aside"]},
+                   {"taken_back", told["taken_back"]}};
   std::error_code code;
   std::filesystem::create_directories(resident_.state_path(), code);
   const std::string path = (std::filesystem::path(resident_.state_path()) / "plc-changes.jsonl").string();
