@@ -9,6 +9,9 @@ using text::Entry;
 // Reading the text.
 inline constexpr Entry kBadCharacter{"plc-character", "'{0}' does not belong in a program",
                                      "символ '{0}' в программе недопустим"};
+inline constexpr Entry kForeignName{
+    "plc-character", "'{0}' is no name: names have Latin letters, digits and single underlines",
+    "'{0}' не может быть именем: в именах латинские буквы, цифры и одиночные подчёркивания"};
 inline constexpr Entry kOpenComment{"plc-open-comment", "this comment never ends; expected '{0}'",
                                     "комментарий не закрыт; ожидается '{0}'"};
 inline constexpr Entry kOpenString{"plc-open-string", "this string does not end on its line; expected {0}",
@@ -216,6 +219,11 @@ inline constexpr Entry kLiteralRange{"plc-literal-range", "{0} does not fit into
 inline constexpr Entry kNarrowing{"plc-narrowing",
                                   "{0} may not fit into {1}; write {2} to say that it is meant",
                                   "{0} может не поместиться в {1}; если так задумано, пишите {2}"};
+inline constexpr Entry kShiftNumber{
+    "plc-shift", "{0} is for bit strings; write {1}_TO_{2} to say that the bits of {1} are meant",
+    "{0} применяется к битовым строкам; если нужны биты {1}, пишите {1}_TO_{2}"};
+inline constexpr Entry kPowerReal{"plc-type", "expected {0}, and ** gives LREAL; write LREAL_TO_{0}",
+                                  "ожидается {0}, а ** даёт LREAL; пишите LREAL_TO_{0}"};
 inline constexpr Entry kNotVariable{"plc-not-variable", "expected a variable", "ожидается переменная"};
 inline constexpr Entry kWriteConstant{"plc-write-constant", "'{0}' is a constant",
                                       "'{0}' является константой"};

@@ -83,7 +83,7 @@ void Parser::expect(std::string_view key) {
 
 void Parser::expect_closing(std::string_view key, std::string_view opener, const Location& begin) {
   if (accept(key)) return;
-  if (now().kind != TokenKind::end || !now().told)
+  if (!now().told)
     report_.error(now().location, texts::kUnclosed,
                   {"'" + std::string(key) + "'", std::string(opener), std::to_string(begin.line), found()});
   throw SyntaxError{};

@@ -68,6 +68,7 @@ class Parser {
 
   // Statements.
   Block block(std::initializer_list<std::string_view> ends);
+  void leave_body();
   StatementPtr statement();
   StatementPtr simple_statement();
   ExpressionPtr header(std::string_view closer);

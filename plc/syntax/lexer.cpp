@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <charconv>
+#include <set>
 
 #include "plc/syntax/time_literal.hpp"
 #include "plc/texts.hpp"
@@ -15,6 +16,14 @@ namespace {
 bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
 bool word_part(char c) { return letter(c) || digit(c); }
+// Letters of other scripts, which names have not (IEC 61131-3, 6.1.2); signs and symbols are none.
+bool foreign_letter(std::string_view text, std::size_t at) {
+  if (at >= text.size() || static_cast<unsigned char>(text[at]) < 0x80) return false;
+  const char32_t c = take_character(text, at);
+  const bool sign = c < 0xC0 || c == 0xD7 || c == 0xF7 || (c >= 0x2000 && c < 0x2C00) ||
+                    (c >= 0x3000 && c < 0x3040) || (c >= 0xFE00 && c <= 0xFF20);
+  return !sign;
+}
 
 class Lexer {
  public:
@@ -24,7 +33,9 @@ class Lexer {
   std::vector<Token> run() {
     std::vector<Token> out;
     while (skip_blank()) {
+      const std::size_t errors = report_.errors();
       out.push_back(next());
+      out.back().wrong = report_.errors() - errors;
       out.back().end = at_;
       out.back().text = text_.substr(out.back().offset, at_ - out.back().offset);
     }
@@ -45,6 +56,10 @@ class Lexer {
   }
   void step(std::size_t n) {
     for (; n > 0; --n) step();
+  }
+  void step_character() {
+    do step();
+    while (at_ < text_.size() && (static_cast<unsigned char>(text_[at_]) & 0xC0) == 0x80);
   }
   Token start(TokenKind kind) const {
     Token t;
@@ -90,7 +105,7 @@ class Lexer {
 
   Token next() {
     const char c = peek();
-    if (letter(c)) return word();
+    if (letter(c) || foreign_letter(text_, at_)) return word();
     if (digit(c)) return number();
     if (c == '\'' || c == '"') return string();
     if (c == '%') return direct();
@@ -99,8 +114,12 @@ class Lexer {
 
   Token word() {
     Token t = start(TokenKind::word);
-    while (word_part(peek())) step();
+    bool foreign = false;
+    for (; word_part(peek()) || foreign_letter(text_, at_); step_character())
+      foreign = foreign || !word_part(peek());
     t.key = key_of(text_.substr(t.offset, at_ - t.offset));
+    if (foreign && foreign_.insert(t.key).second)
+      report_.error(t.location, texts::kForeignName, {std::string(text_.substr(t.offset, at_ - t.offset))});
     if (t.key == "TRUE" || t.key == "FALSE") {
       t.kind = TokenKind::literal;
       t.literal.kind = Kind::boolean;
@@ -217,6 +236,7 @@ class Lexer {
     } else if (std::from_chars(body.data(), body.data() + body.size(), t.literal.magnitude).ec !=
                std::errc{}) {
       report_.error(t.location, texts::kHugeNumber, {body});
+      t.literal.magnitude = 1;
     }
     return t;
   }
@@ -236,6 +256,7 @@ class Lexer {
     const std::string whole(text_.substr(t.offset, at_ - t.offset));
     if (base == 0) {
       report_.error(t.location, texts::kBadNumber, {whole});
+      t.literal.magnitude = 1;
       return t;
     }
     const auto [end, error] =
@@ -365,7 +386,8 @@ class Lexer {
   int file_;
   Report& report_;
   std::size_t at_ = 0;
-  bool open_ = false;  ///< a comment has swallowed the rest
+  bool open_ = false;              ///< a comment has swallowed the rest
+  std::set<std::string> foreign_;  ///< names of other letters that were reported
   int line_, column_;
 };
 

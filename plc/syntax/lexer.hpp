@@ -27,7 +27,8 @@ struct Token {
   std::string text;        ///< as written
   std::string key;
   Literal literal;
-  bool told = false;  ///< of the end: why the text ends here was reported
+  bool told = false;      ///< why what is expected here does not come was reported
+  std::size_t wrong = 0;  ///< errors found in it while reading
 
   bool is(std::string_view k) const {
     return (kind == TokenKind::word || kind == TokenKind::symbol) && key == k;

@@ -57,7 +57,7 @@ void Parser::unit(UnitKind kind) {
     }
   }
   const std::string closer = "END_" + opener;
-  const std::size_t errors = report_.errors();
+  const std::size_t errors = report_.errors(), first = at_;
   if (now().kind == TokenKind::ladder) {
     u.ladder_location = now().location;
     u.ladder = take().literal.text;
@@ -66,6 +66,7 @@ void Parser::unit(UnitKind kind) {
     u.body = at_instruction_list() ? instruction_list(u.variables) : block({closer});
   }
   source_.body_errors += report_.errors() - errors;
+  for (std::size_t i = first; i < at_; ++i) source_.body_errors += list_[i].wrong;
   source_.units.push_back(std::move(u));
   expect_closing(closer, opener, begin);
 }

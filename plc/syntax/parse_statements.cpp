@@ -26,7 +26,10 @@ Block Parser::block(std::initializer_list<std::string_view> ends) {
       StatementPtr s = statement();
       if (s->kind != StatementKind::empty) out.push_back(std::move(s));
     } catch (const SyntaxError&) {
-      if (depth_ >= kMaxNesting - 1) throw;
+      if (depth_ >= kMaxNesting - 1) {  // the closing words would be taken for others: the body is left
+        leave_body();
+        throw;
+      }
       recover({";",
                "END_IF",
                "END_CASE",
@@ -55,6 +58,11 @@ Block Parser::block(std::initializer_list<std::string_view> ends) {
     }
   }
   return out;
+}
+
+void Parser::leave_body() {
+  recover({"END_PROGRAM", "END_FUNCTION", "END_FUNCTION_BLOCK"});
+  list_[at_].told = true;
 }
 
 StatementPtr Parser::statement() {
