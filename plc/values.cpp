@@ -103,6 +103,8 @@ std::string compound(const Type& type, const std::uint8_t* at) {
 
 std::string to_json(const Type& type, const std::uint8_t* at, int bit) {
   if (bit >= 0) return ((*at >> bit) & 1) != 0 ? "true" : "false";
+  for (const EnumValue& e : type.values)
+    if (std::memcmp(&e.value, at, type.size) == 0) return quoted(e.name);
   switch (type.kind) {
     case Kind::boolean:
       return *at != 0 ? "true" : "false";
@@ -135,11 +137,7 @@ std::string to_json(const Type& type, const std::uint8_t* at, int bit) {
     char buffer[48];
     return quoted({buffer, syntax::print_time(type.kind, v, buffer)});
   }
-  if (type.kind == Kind::enumeration) {
-    for (const EnumValue& e : type.values)
-      if (e.value == v) return quoted(e.name);
-    return to_json(*type.base, at);
-  }
+  if (type.kind == Kind::enumeration) return to_json(*type.base, at);
   return cell_of(type) == Cell::u64 ? std::to_string(static_cast<std::uint64_t>(v)) : std::to_string(v);
 }
 
@@ -237,7 +235,7 @@ bool parse_text(const Type& type, std::string_view text, std::uint8_t* out) {
 bool parse_value(const Type& type, std::string_view text, std::uint8_t* out) {
   if (is_text(type.kind) || is_character(type.kind)) return parse_text(type, text, out);
   if (!is_elementary(type.kind)) return false;
-  if (type.kind == Kind::enumeration) {
+  if (!type.values.empty()) {
     const std::size_t mark = text.find('#');
     if (const EnumValue* v =
             type.value_named(mark == std::string_view::npos ? text : text.substr(mark + 1))) {

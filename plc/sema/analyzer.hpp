@@ -128,7 +128,8 @@ class Analyzer {
   void lay_out_places();
 
   // constants.cpp: folding, initial values.
-  std::optional<Constant> constant(const Expression& e, const Type* type);
+  /// `hint`: the type whose named values are meant, when it is not `type` itself.
+  std::optional<Constant> constant(const Expression& e, const Type* type, const Type* hint = nullptr);
   std::optional<std::int64_t> constant_integer(const Expression& e);
   std::vector<std::uint8_t> initial_bytes(const Expression& e, const Type& type);
   void initial_list(const Expression& e, const Type& type, std::vector<std::uint8_t>& out);
@@ -170,6 +171,9 @@ class Analyzer {
   ExprPtr convert(ExprPtr e, const Type* to);
   ExprPtr scaled_time(ExprPtr e, const Type* to, const Location& at);
   ExprPtr recoded(ExprPtr e, const Type* to, const Location& at);
+  bool conversion_name(std::string_view key) const;
+  const Type* converted_type(std::string_view name);
+  ExprPtr to_enumeration(ExprPtr e, const Type* to, const Location& at);
   ExprPtr explicit_conversion(ExprPtr e, const Type* to, bool truncate, const Location& at);
   /// For an assignment: reports what does not fit, warns of narrowing.
   ExprPtr assignable(ExprPtr e, const Type* to);

@@ -171,6 +171,10 @@ Constant named_constant(const Type& type, const EnumValue& value) {
 }
 
 std::string constant_text(const Type& type, const Constant& c) {
+  for (const EnumValue& v : type.values) {
+    const Constant named = named_constant(type, v);
+    if (named.i == c.i && named.r == c.r) return v.name;
+  }
   if (type.kind == Kind::string) return "'" + c.s + "'";
   if (type.kind == Kind::wide_string) return "\"" + narrow(c.w) + "\"";
   if (is_real(type.kind) || type.kind == Kind::untyped_real) return text::number(c.r);
@@ -178,10 +182,6 @@ std::string constant_text(const Type& type, const Constant& c) {
   if (is_temporal(type.kind)) {
     char buffer[48];
     return {buffer, syntax::print_time(type.kind, c.i, buffer)};
-  }
-  for (const EnumValue& v : type.values) {
-    const Constant named = named_constant(type, v);
-    if (named.i == c.i && named.r == c.r) return v.name;
   }
   if (type.kind == Kind::enumeration) return constant_text(*type.base, c);
   return cell_of(type) == Cell::u64 ? std::to_string(static_cast<std::uint64_t>(c.i)) : std::to_string(c.i);
@@ -239,9 +239,9 @@ ExprPtr Analyzer::fold(ExprPtr e) {
   return make_constant(e->type, out, e->at);
 }
 
-std::optional<Constant> Analyzer::constant(const Expression& e, const Type* type) {
+std::optional<Constant> Analyzer::constant(const Expression& e, const Type* type, const Type* hint) {
   const std::size_t before = report_.errors();
-  ExprPtr value = assignable(expression(e, type), type);
+  ExprPtr value = assignable(expression(e, hint != nullptr ? hint : type), type);
   if (report_.errors() != before || value->type->kind == Kind::error) return std::nullopt;
   if (value->kind == ir::ExprKind::constant) return value->value;
   report_.error(e.location, texts::kNotConstant);

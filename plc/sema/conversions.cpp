@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
 
@@ -112,6 +115,90 @@ ExprPtr Analyzer::explicit_conversion(ExprPtr e, const Type* to, bool truncate, 
   return bad(at);
 }
 
+// Elementary types by every name that they have, and enumerations.
+bool Analyzer::conversion_name(std::string_view key) const {
+  if (key == "TRUNC") return true;
+  const auto known = [&](std::string_view n) {
+    const Type* t = types_->find(n);
+    if (t != nullptr) return is_elementary(t->kind);
+    const auto declared = declared_types_.find(std::string(n));
+    return declared != declared_types_.end() && !source_.types[declared->second].type.values.empty();
+  };
+  if (key.starts_with("BCD_TO_")) return known(key.substr(7));
+  if (key.starts_with("TO_BCD_")) return known(key.substr(7));
+  if (key.starts_with("TO_")) return known(key.substr(3));
+  if (key.starts_with("TRUNC_")) return known(key.substr(6));
+  for (const std::string_view mark : {"_BCD_TO_", "_TO_BCD_", "_TRUNC_", "_TO_"})
+    if (const std::size_t at = key.find(mark); at != std::string_view::npos)
+      return known(key.substr(0, at)) && known(key.substr(at + mark.size()));
+  return false;
+}
+
+const Type* Analyzer::converted_type(std::string_view name) {
+  if (name.empty()) return nullptr;
+  if (const Type* t = types_->find(name)) return t;
+  return resolve_declared(declared_types_.at(std::string(name)));
+}
+
+// A number becomes the value of an enumeration that it is; one that is none is a fault.
+ExprPtr Analyzer::to_enumeration(ExprPtr e, const Type* to, const Location& at) {
+  if (e->type == to || e->type->kind == Kind::error) return e;
+  if (e->type->kind == Kind::enumeration) e = explicit_conversion(std::move(e), e->type->base, false, at);
+  if (!is_integer(e->type->kind) && !is_bits(e->type->kind)) {
+    report_.error(at, texts::kMismatch, {"ANY_INT", e->type->name, ""});
+    return bad(at);
+  }
+  const Type* lint = elementary(Kind::lint);
+  const auto number = [&](std::int64_t v) {
+    Constant c;
+    c.i = v;
+    return make_constant(lint, std::move(c), at);
+  };
+  if (cell_of(*e->type) == Cell::u64 && e->kind != ExprKind::constant) {  // stays too large
+    ExprPtr cut = node(ExprKind::binary, e->type, at);
+    cut->op = Op::min;
+    cut->args.push_back(std::move(e));
+    cut->args.push_back(number(std::numeric_limits<std::int64_t>::max()));
+    cut->args.back()->type = cut->type;
+    e = std::move(cut);
+  }
+  e = convert(std::move(e), lint);
+  if (e->kind == ExprKind::constant) {
+    for (const EnumValue& v : to->values)
+      if (v.value == e->value.i) return make_constant(to, named_constant(*to, v), at);
+    report_.error(at, texts::kNotEnumValue, {to->name, std::to_string(e->value.i), ""});
+    return bad(at);
+  }
+  std::vector<std::int64_t> values;
+  for (const EnumValue& v : to->values) values.push_back(v.value);
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  Kept kept;
+  e = once(std::move(e), kept);
+  ExprPtr one_of_them;
+  for (std::size_t i = 0; i < values.size();) {  // one test for each run of values without a gap
+    std::size_t last = i;
+    while (last + 1 < values.size() && values[last + 1] == values[last] + 1) ++last;
+    ExprPtr inside = combine(Op::and_, combine(Op::ge, e->copy(), number(values[i]), at, ">="),
+                             combine(Op::le, e->copy(), number(values[last]), at, "<="), at, "AND");
+    one_of_them = one_of_them ? combine(Op::or_, std::move(one_of_them), std::move(inside), at, "OR")
+                              : std::move(inside);
+    i = last + 1;
+  }
+  // What no integer holds: converting it is the fault.
+  Constant beyond;
+  beyond.r = 1e300;
+  ExprPtr fault = node(ExprKind::convert, to->base, at);
+  fault->args.push_back(make_constant(elementary(Kind::lreal), beyond, at));
+  ExprPtr choice = node(ExprKind::choose, to->base, at);
+  choice->args.push_back(std::move(one_of_them));
+  choice->args.push_back(convert(std::move(e), to->base));
+  choice->args.push_back(std::move(fault));
+  ExprPtr out = node(ExprKind::reinterpret, to, at);
+  out->args.push_back(std::move(choice));
+  return around(std::move(out), std::move(kept));
+}
+
 // X_TO_Y, TO_Y, TRUNC, X_TRUNC_Y, TRUNC_Y, X_BCD_TO_Y, X_TO_BCD_Y (IEC 61131-3:2013, tables 22 to 27).
 ExprPtr Analyzer::conversion_call(std::string_view key, const Expression& e) {
   std::string from_name, to_name;
@@ -146,8 +233,9 @@ ExprPtr Analyzer::conversion_call(std::string_view key, const Expression& e) {
   } else {
     split("_TO_");
   }
-  const Type* from = from_name.empty() ? nullptr : types_->find(from_name);
-  const Type* to = types_->find(to_name);
+  const Type* from = converted_type(from_name);
+  const Type* to = converted_type(to_name);
+  if (to->kind == Kind::error) return bad(e.location);
   const auto in = inputs(e, key, {"IN"}, 1, 1);
   if (in.empty()) return bad(e.location);
   ExprPtr value = expression(*in[0], from);
@@ -180,6 +268,7 @@ ExprPtr Analyzer::conversion_call(std::string_view key, const Expression& e) {
     out->args.push_back(std::move(bcd));
     return fold_conversion(std::move(out));
   }
+  if (to->kind == Kind::enumeration) return to_enumeration(std::move(value), to, e.location);
   return explicit_conversion(std::move(value), to, truncate, e.location);
 }
 

@@ -124,7 +124,7 @@ const Type* Analyzer::resolve_declared(std::size_t index) {
     *own = *t;
     own->name = name;
     own->image = bytes;
-    if (t->kind == Kind::enumeration)
+    if (!t->values.empty())
       for (auto& [value, owners] : enumerations_)
         std::replace(owners.begin(), owners.end(), t, static_cast<const Type*>(own));
     t = is_elementary(own->kind) && own->kind != Kind::enumeration && !own->bounded ? own : own;
@@ -316,8 +316,9 @@ const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const 
     return elementary(Kind::error);
   }
   if (base->kind == Kind::error) return base;
-  Type* e = types_->add(Kind::enumeration, name.empty() ? "enumeration" : name);
-  e->base = base;
+  // With a base it is that type, with names for some of its values (6.4.4.3); without one it has no others.
+  Type* e = types_->add(t.name.empty() ? Kind::enumeration : base->kind, name.empty() ? "enumeration" : name);
+  e->base = elementary(base->kind);
   e->size = e->align = base->size;
   std::int64_t next = 0;
   for (std::size_t i = 0; i < t.values.size(); ++i) {
@@ -326,7 +327,7 @@ const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const 
       report_.error(t.value_locations[i], texts::kDuplicate,
                     {value_name, seen_at(t.location, t.value_locations[i])});
     if (!counts) {  // each has a value of its own
-      const auto given = value ? constant(*value, base) : std::nullopt;
+      const auto given = value ? constant(*value, e->base, e) : std::nullopt;
       if (!value) report_.error(t.value_locations[i], texts::kNamedValue, {value_name, base->name});
       next = 0;
       if (given) store_constant(*base, *given, reinterpret_cast<std::uint8_t*>(&next));
@@ -334,8 +335,11 @@ const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const 
       enumerations_[key_of(value_name)].push_back(e);
       continue;
     }
-    if (value)
+    if (value && !t.name.empty()) {
+      if (const auto given = constant(*value, e->base, e)) next = given->i;
+    } else if (value) {
       if (const auto given = constant_integer(*value)) next = *given;
+    }
     std::int64_t low = 0;
     std::uint64_t high = 0;
     integer_limits(base->kind, low, high);
@@ -438,9 +442,14 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
       v.type = elementary(Kind::error);
     } else {
       const Type* real = sym != nullptr ? type_of(sym->place) : globals_[g->second].type;
-      if (real != v.type && v.type->kind != Kind::error && real->kind != Kind::error)
+      if (real != v.type && v.type->kind != Kind::error && real->kind != Kind::error) {
         report_.error(s.location, texts::kExternalType, {s.name, real->name, v.type->name});
-      v.type = real;
+        v.type = elementary(Kind::error);  // whichever was meant, uses of it are not the mistake
+        v.used = true;
+        if (sym == nullptr) globals_[g->second].used = true;
+      } else {
+        v.type = real;
+      }
     }
   } else if (v.type->kind != Kind::error) {
     if (s.edge != 0 && (s.section != Section::input || v.type->kind != Kind::boolean))

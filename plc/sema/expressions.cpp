@@ -106,7 +106,8 @@ ExprPtr Analyzer::typed_literal(const Expression& e) {
     report_.error(e.location, texts::kUnknownType, {e.name, ""});
     return bad(e.location);
   }
-  if (type->kind == Kind::enumeration) {
+  if (const bool value = e.operands.empty();
+      !type->values.empty() && (value || type->kind == Kind::enumeration)) {
     const EnumValue* v = type->value_named(e.literal.text);
     if (v != nullptr) return make_constant(type, named_constant(*type, *v), e.location);
     std::vector<std::string> names;
@@ -160,7 +161,7 @@ ExprPtr Analyzer::name_expression(const Expression& e, const Type* hint) {
     const auto at = declared_types_.find(key_of(e.operands[0]->name));
     if (at != declared_types_.end() && find_variable(e.operands[0]->name, global) == nullptr) {
       const Type* t = resolve_declared(at->second);
-      if (t->kind == Kind::enumeration) {
+      if (!t->values.empty()) {
         Expression typed;
         typed.kind = ExpressionKind::typed;
         typed.location = e.location;
@@ -244,8 +245,8 @@ ExprPtr Analyzer::binary(const Expression& e, const Type* hint) {
   const Shown shown = op_of(e.op);
   const Type* inner = comparing(shown.op) ? nullptr : hint;
   ExprPtr a = expression(*e.operands[0], inner);
-  ExprPtr b = expression(*e.operands[1], a->type->kind == Kind::enumeration ? a->type : inner);
-  if (b->type->kind == Kind::enumeration && a->type->kind == Kind::enumeration && a->type != b->type)
+  ExprPtr b = expression(*e.operands[1], a->type->values.empty() ? inner : a->type);
+  if (!b->type->values.empty() && !a->type->values.empty() && a->type != b->type)
     a = expression(*e.operands[0], b->type);
   if (e.op == Operator::power) return power(std::move(a), std::move(b), e.location);
   return combine(shown.op, std::move(a), std::move(b), e.location, shown.text);
@@ -376,7 +377,9 @@ ExprPtr Analyzer::power(ExprPtr a, ExprPtr b, const Location& at) {
     };
     Constant c;
     c.r = std::pow(value(*a), value(*b));
-    return make_constant(elementary(Kind::untyped_real), c, at);
+    ExprPtr out = make_constant(elementary(Kind::untyped_real), c, at);
+    out->native = Native::power;  // for the message: no literal was written
+    return out;
   }
   std::vector<ExprPtr> args;
   args.push_back(explicit_conversion(std::move(a), result, false, at));
@@ -444,10 +447,10 @@ ExprPtr Analyzer::convert(ExprPtr e, const Type* to) {
 namespace {
 // As conversion functions call it: STRING[3] is STRING, a subrange its base.
 std::string plain_name(const Type& t) {
-  return t.bounded                     ? t.base->name
-         : t.kind == Kind::string      ? "STRING"
-         : t.kind == Kind::wide_string ? "WSTRING"
-                                       : t.name;
+  return t.bounded || (!t.values.empty() && t.kind != Kind::enumeration) ? t.base->name
+         : t.kind == Kind::string                                        ? "STRING"
+         : t.kind == Kind::wide_string                                   ? "WSTRING"
+                                                                         : t.name;
 }
 }  // namespace
 
@@ -476,6 +479,10 @@ ExprPtr Analyzer::assignable(ExprPtr e, const Type* to) {
       is_text(from.kind) && from.kind == to->kind ? Conversion::widening : conversion(from, *to);
   const bool alias = from.kind == to->kind && is_elementary(from.kind) && from.kind != Kind::enumeration;
   if (!alias && (c == Conversion::none || (bool_literal && e->kind != ExprKind::constant))) {
+    if (e->native == Native::power && from.kind == Kind::untyped_real && is_integer(to->kind)) {
+      report_.error(e->at, texts::kPowerReal, {plain_name(*to)});
+      return bad(e->at);
+    }
     std::string how;
     if (is_elementary(from.kind) && is_elementary(to->kind) && !is_untyped(from.kind) &&
         from.kind != Kind::enumeration && to->kind != Kind::enumeration)

@@ -17,7 +17,7 @@ Variable* Analyzer::find_variable(std::string_view name, bool& global) {
     UnitScope& u = here();
     if (const auto at = u.by_name.find(key); at != u.by_name.end() && at->second < u.variables.size()) {
       Variable& v = u.variables[at->second];
-      if (v.section != Section::external) return &v;
+      if (v.section != Section::external || v.type->kind == Kind::error) return &v;
       v.used = true;
     }
   }
@@ -378,7 +378,7 @@ std::optional<ir::Place> Analyzer::place_of_bit(const Expression& e, bool write)
 }
 
 ExprPtr Analyzer::enumeration_value(std::string_view name, const Location& at, const Type* hint) {
-  if (hint != nullptr && hint->kind == Kind::enumeration)
+  if (hint != nullptr)
     if (const EnumValue* v = hint->value_named(name))
       return make_constant(hint, named_constant(*hint, *v), at);
   const auto found = enumerations_.find(key_of(name));

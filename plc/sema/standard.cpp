@@ -14,22 +14,6 @@ namespace {
 bool listed(std::string_view key, std::initializer_list<std::string_view> names) {
   return std::find(names.begin(), names.end(), key) != names.end();
 }
-bool conversion_name(std::string_view key, const TypeTable& types) {
-  if (key == "TRUNC") return true;
-  const auto known = [&](std::string_view n) {
-    const Type* t = types.find(n);
-    return t != nullptr && is_elementary(t->kind);
-  };
-  if (key.starts_with("BCD_TO_")) return known(key.substr(7));
-  if (key.starts_with("TO_BCD_")) return known(key.substr(7));
-  if (key.starts_with("TO_")) return known(key.substr(3));
-  if (key.starts_with("TRUNC_")) return known(key.substr(6));
-  for (const std::string_view mark : {"_BCD_TO_", "_TO_BCD_", "_TRUNC_", "_TO_"})
-    if (const std::size_t at = key.find(mark); at != std::string_view::npos)
-      return known(key.substr(0, at)) && known(key.substr(at + mark.size()));
-  return false;
-}
-
 struct RealFunction {
   std::string_view name;
   Native native;
@@ -113,7 +97,7 @@ bool Analyzer::is_standard(std::string_view key) const {
                       "CONCAT_DATE_LTOD",
                       "LOWER_BOUND",
                       "UPPER_BOUND"}) ||
-         conversion_name(key, *types_);
+         conversion_name(key);
 }
 
 // The actual inputs in the order of the formal ones. Extensible functions take IN1, IN2 ... without names.
@@ -122,6 +106,11 @@ std::vector<const Expression*> Analyzer::inputs(const Expression& e, std::string
                                                 std::size_t most) {
   std::vector<const Expression*> out;
   const bool named = !e.arguments.empty() && !e.arguments[0].name.empty();
+  if (std::any_of(e.arguments.begin(), e.arguments.end(),
+                  [&](const syntax::Argument& a) { return !a.output && a.name.empty() == named; })) {
+    report_.error(e.location, texts::kMixed);
+    return out;
+  }
   if (e.arguments.size() < least || e.arguments.size() > most) {
     report_.error(e.location, texts::kCount,
                   {std::string(name), least == most ? std::to_string(least) : std::to_string(least) + "+",
@@ -167,7 +156,7 @@ std::vector<const Expression*> Analyzer::numbered_inputs(const Expression& e, st
       at = mux ? number + 1 : number - 1;
     }
     if (a.output || at >= out.size()) {
-      report_.error(a.location, a.name.empty() ? texts::kMixed : texts::kNoParameter,
+      report_.error(a.location, texts::kNoParameter,
                     {std::string(name), a.output ? "VAR_OUTPUT" : "VAR_INPUT", a.name, ""});
       return {};
     }
@@ -207,7 +196,7 @@ std::vector<ExprPtr> Analyzer::common_inputs(const std::vector<const Expression*
   std::vector<ExprPtr> out;
   const Type* common = nullptr;
   for (const Expression* e : in) {
-    ExprPtr v = expression(*e, common != nullptr && common->kind == Kind::enumeration ? common : hint);
+    ExprPtr v = expression(*e, common != nullptr && !common->values.empty() ? common : hint);
     if (v->type->kind == Kind::error) return {};
     const Type* with = common == nullptr   ? v->type
                        : v->type == common ? common
@@ -240,7 +229,7 @@ std::vector<ExprPtr> Analyzer::common_inputs(const std::vector<const Expression*
 }
 
 ExprPtr Analyzer::standard_call(const Expression& e, std::string_view key, const Type* hint) {
-  if (conversion_name(key, *types_)) return conversion_call(key, e);
+  if (conversion_name(key)) return conversion_call(key, e);
   if (listed(key, {"SEL", "LIMIT", "MUX", "MOVE"})) return selection_call(key, e, hint);
   if (listed(key, {"SHL", "SHR", "ROL", "ROR"})) return shift_call(key, e, hint);
   if (listed(key, {"LEN", "LEFT", "RIGHT", "MID", "CONCAT", "INSERT", "DELETE", "REPLACE", "FIND"}))
@@ -451,6 +440,12 @@ ExprPtr Analyzer::shift_call(std::string_view key, const Expression& e, const Ty
   if (!is_bits(value->type->kind) && !is_integer(value->type->kind)) {
     report_.error(value->at, texts::kMismatch, {"ANY_BIT", value->type->name, ""});
     return bad(e.location);
+  }
+  if (!is_bits(value->type->kind)) {
+    constexpr const char* kSame[] = {"BYTE", "WORD", "DWORD", "LWORD"};
+    const std::uint32_t size = cell_size(cell_of(*value->type));
+    report_.warning(value->at, texts::kShiftNumber,
+                    {std::string(key), value->type->name, kSame[size == 8 ? 3 : size / 2]});
   }
   const Native which = key == "SHL"   ? Native::shl
                        : key == "SHR" ? Native::shr
