@@ -7,6 +7,7 @@
 #include "plc/engine.hpp"
 #include "plc/lookup.hpp"
 #include "plc/texts.hpp"
+#include "plc/types/direct_place.hpp"
 #include "plc/values.hpp"
 #include "plc/vm/image.hpp"
 
@@ -21,7 +22,8 @@ struct Set {
 };
 struct Print {
   std::string name;
-  Handle handle;
+  std::optional<Handle> handle;  ///< none: what stands at `place`
+  image::Place place;
 };
 
 void refuse(RunResult& out, const text::Entry& entry, std::vector<std::string> arguments) {
@@ -53,15 +55,45 @@ std::vector<Set> resolve_sets(const RunRequest& r, const Engine& engine, RunResu
   return sets;
 }
 
-std::vector<Print> resolve_prints(const RunRequest& r, const Engine& engine, RunResult& out) {
+// A place that the program does not use: a symbol of the machine or an address.
+std::optional<image::Place> place_of(const RunRequest& r, const image::Packets& packets,
+                                     const std::string& name) {
+  std::optional<image::Place> place = direct_place(name);
+  for (const image::Symbol& s : r.symbols)
+    if (!place && same_name(s.name, name)) place = s.place;
+  if (!place) place = image::parse_place(name);
+  return place && packets.contains(*place) ? place : std::nullopt;
+}
+
+std::vector<Print> resolve_prints(const RunRequest& r, const Engine& engine, const image::Packets& packets,
+                                  RunResult& out) {
   std::vector<Print> prints;
   for (const std::string& name : r.prints.empty() ? variable_names(engine.image()) : r.prints) {
     if (const auto h = engine.find(name))
-      prints.push_back({name, *h});
+      prints.push_back({name, *h, {}});
+    else if (const auto place = place_of(r, packets, name))
+      prints.push_back({name, std::nullopt, *place});
     else
       refuse(out, texts::kRunName, {name});
   }
   return prints;
+}
+
+// An address (%MW5) is a bit string, any other name of a place the number or characters there.
+std::string place_text(const TypeTable& types, const image::Packets& packets, const Print& p) {
+  const image::Place& place = p.place;
+  if (place.format == image::Format::bl) return packets.bit(place) ? "true" : "false";
+  const std::uint8_t* at = packets.data(place.packet) + place.byte();
+  if (place.format == image::Format::ch) {
+    std::vector<std::uint8_t> text(1 + std::min(place.bytes(), kMaxStringCapacity));
+    std::copy(at, at + text.size() - 1, text.begin() + 1);
+    text[0] = static_cast<std::uint8_t>(std::find(text.begin() + 1, text.end(), 0) - text.begin() - 1);
+    return to_json(*types.elementary(Kind::string), text.data());
+  }
+  constexpr Kind kBits[] = {Kind::boolean, Kind::byte, Kind::word, Kind::dword, Kind::dword, Kind::lword};
+  constexpr Kind kNumbers[] = {Kind::boolean, Kind::usint, Kind::int_, Kind::dint, Kind::real, Kind::lreal};
+  const Kind* kinds = p.name.starts_with('%') ? kBits : kNumbers;
+  return to_json(*types.elementary(kinds[static_cast<std::size_t>(place.format)]), at);
 }
 
 std::string escaped(std::string_view s) {
@@ -121,7 +153,7 @@ RunResult run(const RunRequest& request, const std::function<bool(std::string_vi
   image::Packets packets;
   packets.resize(request.options.k_bytes, request.options.v_bytes);
   const std::vector<Set> sets = resolve_sets(request, engine, out);
-  const std::vector<Print> prints = resolve_prints(request, engine, out);
+  const std::vector<Print> prints = resolve_prints(request, engine, packets, out);
   if (out.end != RunResult::End::done) return out;
   std::size_t next = 0;
   for (std::int64_t cycle = 1; cycle <= request.cycles; ++cycle) {
@@ -136,7 +168,9 @@ RunResult run(const RunRequest& request, const std::function<bool(std::string_vi
     out.cycles = cycle;
     std::string json = "{\"cycle\":" + std::to_string(cycle) + ",\"values\":{";
     for (std::size_t i = 0; i < prints.size(); ++i)
-      json += (i == 0 ? "\"" : ",\"") + escaped(prints[i].name) + "\":" + engine.read(prints[i].handle);
+      json += (i == 0 ? "\"" : ",\"") + escaped(prints[i].name) + "\":" +
+              (prints[i].handle ? engine.read(*prints[i].handle)
+                                : place_text(*engine.image().types, packets, prints[i]));
     if (!line(json + "}}")) break;
   }
   return out;

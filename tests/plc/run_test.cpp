@@ -32,6 +32,22 @@ TEST(Run, prints_one_object_a_cycle_as_requested_and_takes_sets_at_their_cycle) 
                                       R"({"cycle":4,"values":{"MAIN.b":true,"t.ET":"T#20ms","a":true}})"}));
 }
 
+TEST(Run, places_that_the_program_does_not_use_are_printed_too) {
+  RunRequest r;
+  r.files = {{"a.st", "PROGRAM Main\nVAR w AT %MW4 : WORD; END_VAR\nw := 16#FFFE;\nEND_PROGRAM"}};
+  r.prints = {"%MW4", "%MB8", "%MW5", "SK4.IN", "SA16", "%QX1.0"};
+  r.cycles = 1;
+  std::vector<std::string> lines;
+  EXPECT_EQ(run(r, [&](std::string_view l) { return lines.emplace_back(l), true; }).end,
+            RunResult::End::done);
+  EXPECT_EQ(
+      lines,
+      (std::vector<std::string>{
+          R"({"cycle":1,"values":{"%MW4":65534,"%MB8":254,"%MW5":0,"SK4.IN":-2,"SA16":false,"%QX1.0":false}})"}));
+  r.prints = {"%MW5000", "nothing"};
+  EXPECT_EQ(run(r, [](std::string_view) { return true; }).findings.size(), 2u);
+}
+
 TEST(Run, names_to_print_may_have_several_subscripts) {
   EXPECT_EQ(parse_prints("a,x[2,3],y[1, 2].z,s.t"),
             (std::vector<std::string>{"a", "x[2,3]", "y[1, 2].z", "s.t"}));
