@@ -156,6 +156,24 @@ TEST(RetainedVariables, that_a_loaded_program_does_not_have_are_there_after_a_ki
   EXPECT_GT(watched(shell, "Counter.count"), 1000);
 }
 
+TEST(RetainedVariables, whose_type_has_other_limits_in_a_loaded_program_are_said_to_begin_anew) {
+  Shell shell;
+  const std::string machine = counting_mill(shell), mill = (shell.folder() / "mill.st").string();
+  const std::string level = (shell.folder() / "level.st").string();
+  const auto write_level = [&](const std::string& limits) {
+    std::ofstream(level) << "TYPE Percent : INT (" << limits << "); END_TYPE\n"
+                         << "PROGRAM Level VAR RETAIN p : Percent; END_VAR p := 7; END_PROGRAM\n";
+  };
+  write_level("0..50");
+  shell.up_file(machine, {"--virtual", "--speed", "5", "--state", (shell.folder() / "state").string()});
+  ASSERT_EQ(shell.run({"plc", "load", mill, level}).exit, 0);
+  write_level("0..100");
+  const Outcome other = shell.run({"plc", "load", mill, level});
+  EXPECT_NE(other.out.find("warning: retained variables begin anew, for their types have changed: Level.p"),
+            std::string::npos)
+      << other.out;
+}
+
 /// A tool that nobody remembers is changed into one that sits there already.
 TEST(ToolInTheSpindle, is_written_when_it_is_changed_and_known_after_a_power_cut) {
   Shell shell;
