@@ -68,7 +68,7 @@ class Parser {
 
   // Statements.
   Block block(std::initializer_list<std::string_view> ends);
-  void leave_body();
+  bool too_deep();
   StatementPtr statement();
   StatementPtr simple_statement();
   ExpressionPtr header(std::string_view closer);

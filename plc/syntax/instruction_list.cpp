@@ -299,6 +299,8 @@ class InstructionList {
       take();
       if (open_.size() >= kMaxNesting) {
         p_.report_.error(t.location, texts::kTooDeep, {std::to_string(kMaxNesting)});
+        p_.recover({"END_PROGRAM", "END_FUNCTION", "END_FUNCTION_BLOCK"});  // the list is left
+        open_.clear();
         throw SyntaxError{};
       }
       open_.push_back({std::move(left), k.op, k.inverted, t.location});

@@ -26,10 +26,7 @@ Block Parser::block(std::initializer_list<std::string_view> ends) {
       StatementPtr s = statement();
       if (s->kind != StatementKind::empty) out.push_back(std::move(s));
     } catch (const SyntaxError&) {
-      if (depth_ >= kMaxNesting - 1) {  // the closing words would be taken for others: the body is left
-        leave_body();
-        throw;
-      }
+      if (too_deep()) throw;
       recover({";",
                "END_IF",
                "END_CASE",
@@ -60,9 +57,12 @@ Block Parser::block(std::initializer_list<std::string_view> ends) {
   return out;
 }
 
-void Parser::leave_body() {
+// A mistake in the deepest statement: closing words would be taken for others, so the body is left.
+bool Parser::too_deep() {
+  if (depth_ < kMaxNesting - 1) return false;
   recover({"END_PROGRAM", "END_FUNCTION", "END_FUNCTION_BLOCK"});
   list_[at_].told = true;
+  return true;
 }
 
 StatementPtr Parser::statement() {
@@ -184,7 +184,7 @@ StatementPtr Parser::case_statement() {
     try {
       b.labels = labels();
     } catch (const SyntaxError&) {
-      if (depth_ >= kMaxNesting - 1) throw;
+      if (too_deep()) throw;
       recover({";", "ELSE", "END_CASE", "END_PROGRAM", "END_FUNCTION", "END_FUNCTION_BLOCK", "END_IF"});
       if (!accept(";")) break;
       continue;
@@ -196,7 +196,7 @@ StatementPtr Parser::case_statement() {
         StatementPtr inner = statement();
         if (inner->kind != StatementKind::empty) b.body.push_back(std::move(inner));
       } catch (const SyntaxError&) {
-        if (depth_ >= kMaxNesting - 1) throw;
+        if (too_deep()) throw;
         recover({";", "ELSE", "END_CASE", "END_PROGRAM", "END_FUNCTION", "END_FUNCTION_BLOCK", "END_IF"});
         accept(";");
         if (at_ == before) take();
