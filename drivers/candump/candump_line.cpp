@@ -72,7 +72,7 @@ std::string format(const image::CanFrame& f, image::Nanoseconds time, std::strin
   line += bus;
   std::snprintf(text, sizeof text, f.extended || f.error ? " %08X#" : " %03X#", id);
   line += text;
-  if (f.fd) line += "#0";
+  if (f.fd) line += {'#', "0123456789ABCDEF"[f.fd_flags & 0xF]};
   if (f.remote) line += f.length > 0 ? "R" + std::to_string(f.length) : "R";
   for (std::size_t i = 0; i < f.length && i < f.data.size() && !f.remote; ++i) {
     std::snprintf(text, sizeof text, "%02X", f.data[i]);
@@ -92,8 +92,9 @@ std::optional<Line> parse(std::string_view text) {
   frame = frame.substr(hash + 1);
   if (frame.starts_with('#')) {
     line.frame.fd = true;
-    if (frame.size() < 2) return std::nullopt;
-    frame = frame.substr(2);  // flags: bit rate switch, error state
+    if (frame.size() < 2 || !number(frame.substr(1, 1), 16, line.frame.fd_flags)) return std::nullopt;
+    line.frame.fd_flags &= image::kBitRateSwitch | image::kErrorStateIndicator;
+    frame = frame.substr(2);
   }
   if (!read_data(frame, line.frame)) return std::nullopt;
   line.frame.timestamp_ns = line.time;

@@ -7,12 +7,20 @@
 #include <cstring>
 
 namespace servogate::socketcan {
+namespace {
+
+// Those that travel on the wire; the kernel's own CANFD_FDF only says that the frame is one.
+constexpr std::uint8_t kFlags = image::kBitRateSwitch | image::kErrorStateIndicator;
+static_assert(image::kBitRateSwitch == CANFD_BRS && image::kErrorStateIndicator == CANFD_ESI);
+
+}  // namespace
 
 std::size_t to_kernel(const image::CanFrame& frame, canfd_frame& out) noexcept {
   std::memset(&out, 0, sizeof out);
   out.can_id = frame.extended ? (frame.id & CAN_EFF_MASK) | CAN_EFF_FLAG : frame.id & CAN_SFF_MASK;
   const std::size_t most = frame.fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN;
   out.len = static_cast<__u8>(std::min<std::size_t>(frame.length, most));
+  if (frame.fd) out.flags = frame.fd_flags & kFlags;
   if (frame.remote && !frame.fd) {
     out.can_id |= CAN_RTR_FLAG;
   } else {
@@ -32,6 +40,7 @@ bool from_kernel(const canfd_frame& in, std::size_t size, image::CanFrame& frame
                                            : static_cast<__u32>(CAN_SFF_MASK));
   const std::size_t most = frame.fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN;
   frame.length = static_cast<std::uint8_t>(std::min<std::size_t>(in.len, most));
+  frame.fd_flags = frame.fd ? in.flags & kFlags : std::uint8_t{0};
   frame.data = {};
   if (!frame.remote) std::copy_n(in.data, frame.length, frame.data.begin());
   return true;

@@ -146,8 +146,8 @@ std::size_t pack(const image::CanFrame& frame, double timestamp_s,
   w.byte(size);
   for (std::size_t i = 0; i < size; ++i) w.byte(frame.data[i]);
   w.flag("is_fd", frame.fd);
-  w.flag("bitrate_switch", frame.fd);
-  w.flag("error_state_indicator", false);
+  w.flag("bitrate_switch", frame.fd && (frame.fd_flags & image::kBitRateSwitch) != 0);
+  w.flag("error_state_indicator", frame.fd && (frame.fd_flags & image::kErrorStateIndicator) != 0);
   return w.size();
 }
 
@@ -170,12 +170,15 @@ bool unpack(std::span<const std::uint8_t> bytes, image::CanFrame& frame) noexcep
     if (name == "is_remote_frame") frame.remote = on;
     if (name == "is_error_frame") frame.error = on;
     if (name == "is_fd") frame.fd = on;
+    if (name == "bitrate_switch" && on) frame.fd_flags |= image::kBitRateSwitch;
+    if (name == "error_state_indicator" && on) frame.fd_flags |= image::kErrorStateIndicator;
     if (name == "dlc") frame.length = static_cast<std::uint8_t>(std::min<std::uint64_t>(v.number, 64));
     if (name == "data") {
       if (v.bytes.size() > frame.data.size()) return false;
       std::copy(v.bytes.begin(), v.bytes.end(), frame.data.begin());
     }
   }
+  if (!frame.fd) frame.fd_flags = 0;
   return identified && reader.good() && (frame.fd || frame.length <= 8);
 }
 

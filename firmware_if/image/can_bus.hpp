@@ -7,6 +7,10 @@
 
 namespace servogate::image {
 
+/// Flags of an FD frame, numbered as in linux/can.h and in a log of candump: the data was sent at the second
+/// bit rate (BRS); its sender is error-passive (ESI).
+inline constexpr std::uint8_t kBitRateSwitch = 1, kErrorStateIndicator = 2;
+
 /// One CAN frame, classic or FD. `id` has 11 bits, or 29 when `extended`.
 struct CanFrame {
   std::uint32_t id = 0;
@@ -16,6 +20,7 @@ struct CanFrame {
   bool error = false;  ///< an error frame of the interface, not data
   std::uint8_t length = 0;
   std::array<std::uint8_t, 64> data{};
+  std::uint8_t fd_flags = 0;  ///< kBitRateSwitch, kErrorStateIndicator; 0 for a classic frame
   /// Bits from start of frame to end of frame with its own stuff bits, where somebody has counted them
   /// already (can_wire.hpp); 0: not counted. Whoever changes the frame sets it back to 0.
   std::uint16_t wire_bits = 0;

@@ -61,12 +61,14 @@ TEST_F(Vcan, FD_frames_of_64_bytes_come_and_go) {
   CanFrame f;
   ASSERT_TRUE(wait_for(*bus, f));
   EXPECT_TRUE(f.fd);
+  EXPECT_EQ(f.fd_flags, image::kBitRateSwitch);
   EXPECT_EQ(f.length, 64);
   EXPECT_EQ(f.data[63], 0x77);
   auto other = open();
   EXPECT_TRUE(bus->send(f));
   ASSERT_TRUE(wait_for(*other, f));
   EXPECT_TRUE(f.fd);
+  EXPECT_EQ(f.fd_flags, image::kBitRateSwitch);
   EXPECT_EQ(f.length, 64);
 }
 

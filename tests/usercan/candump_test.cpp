@@ -17,7 +17,7 @@ TEST(CandumpLine, is_written_and_read_as_can_utils_has_it) {
     const char* text;
     std::uint32_t id;
     bool extended, remote, fd, error;
-    int length;
+    int length, flags = 0;
   } samples[] = {
       {"(1436509052.249713) vcan0 044#2A366C2BBA", 0x44, false, false, false, false, 5},
       {"(0000000000.000001) can0 000#", 0, false, false, false, false, 0},
@@ -25,6 +25,9 @@ TEST(CandumpLine, is_written_and_read_as_can_utils_has_it) {
       {"(1436509053.850870) can0 701#R", 0x701, false, true, false, false, 0},
       {"(1436509053.850870) can0 701#R4", 0x701, false, true, false, false, 4},
       {"(1436509053.850870) can0 123##000112233445566778899AABB", 0x123, false, false, true, false, 12},
+      {"(1436509053.850870) can0 123##1AABBCC", 0x123, false, false, true, false, 3, image::kBitRateSwitch},
+      {"(1436509053.850870) can0 123##2", 0x123, false, false, true, false, 0, image::kErrorStateIndicator},
+      {"(1436509053.850870) can0 00000123##3AA", 0x123, true, false, true, false, 1, 3},
       {"(1436509053.850870) can0 20000004#0008000000000000", 0x4, false, false, false, true, 8},
   };
   for (const auto& s : samples) {
@@ -36,14 +39,15 @@ TEST(CandumpLine, is_written_and_read_as_can_utils_has_it) {
     EXPECT_EQ(line->frame.fd, s.fd);
     EXPECT_EQ(line->frame.error, s.error);
     EXPECT_EQ(line->frame.length, s.length);
+    EXPECT_EQ(line->frame.fd_flags, s.flags);
     EXPECT_EQ(candump::format(line->frame, line->time, line->bus), s.text);
   }
 }
 
 TEST(CandumpLine, what_is_none_is_refused) {
-  for (const char* wrong :
-       {"", "vcan0 123#00", "(1.0) vcan0", "(1.0) vcan0 12#00", "(1.0) vcan0 800#00", "(1.0) vcan0 123#0",
-        "(1.0) vcan0 123#001122334455667788", "(x) vcan0 123#00", "(1.0 vcan0 123#00", "(1.0) vcan0 123##"})
+  for (const char* wrong : {"", "vcan0 123#00", "(1.0) vcan0", "(1.0) vcan0 12#00", "(1.0) vcan0 800#00",
+                            "(1.0) vcan0 123#0", "(1.0) vcan0 123#001122334455667788", "(x) vcan0 123#00",
+                            "(1.0 vcan0 123#00", "(1.0) vcan0 123##", "(1.0) vcan0 123##x00"})
     EXPECT_FALSE(candump::parse(wrong)) << wrong;
 }
 

@@ -87,8 +87,11 @@ TEST(MessagePack, what_is_packed_is_read_by_python_can_and_back) {
   CanFrame fd = make(0x18FF0001, {1});
   fd.fd = true;
   fd.length = 64;
-  const std::vector<CanFrame> frames = {make(0x181, {1, 2, 3}), make(0, {}), make(0x1FFFFFFF, {9}), remote,
-                                        fd};
+  CanFrame switched = fd, passive = fd;
+  switched.fd_flags = image::kBitRateSwitch;
+  passive.fd_flags = image::kErrorStateIndicator;
+  const std::vector<CanFrame> frames = {
+      make(0x181, {1, 2, 3}), make(0, {}), make(0x1FFFFFFF, {9}), remote, fd, switched, passive};
   const std::string file = scratch("packet");
   for (std::size_t i = 0; i < frames.size(); ++i) {
     std::array<std::uint8_t, kMaxPacket> packet;
@@ -112,6 +115,7 @@ TEST(MessagePack, what_is_packed_is_read_by_python_can_and_back) {
     EXPECT_EQ(again.extended, frames[i].extended);
     EXPECT_EQ(again.remote, frames[i].remote);
     EXPECT_EQ(again.fd, frames[i].fd);
+    EXPECT_EQ(again.fd_flags, frames[i].fd_flags);
     EXPECT_EQ(again.length, frames[i].length);
     EXPECT_EQ(again.data, frames[i].data);
   }
