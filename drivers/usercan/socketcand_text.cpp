@@ -14,9 +14,11 @@ bool number(std::string_view word, int base, T& value) noexcept {
 }
 
 bool identifier(std::string_view word, image::CanFrame& frame) noexcept {
-  if (!number(word, 16, frame.id) || frame.id > 0x1FFF'FFFF) return false;
-  frame.extended = word.size() == 8 || frame.id > 0x7FF;
-  return true;
+  constexpr std::size_t kWhole = 8, kBase = 3;
+  if (word.size() > kWhole || !number(word, 16, frame.id) || frame.id > 0x1FFF'FFFF) return false;
+  frame.extended = word.size() > kBase;
+  if (!frame.extended) return frame.id <= 0x7FF;
+  return word.size() == kWhole || word.front() != '0';
 }
 
 void add_identifier(Element& e, const image::CanFrame& frame) noexcept {

@@ -30,8 +30,9 @@ class Words {
 /// included. nullopt: none is complete yet.
 std::optional<std::string_view> find_element(std::string_view bytes, std::size_t& taken) noexcept;
 
-/// The words after "send" or "remote" from a participant: ID LEN B B ... An identifier of eight digits, or
-/// one above 7FFh, has 29 bits. False: no frame.
+/// The words after "send" or "remote" from a participant: ID LEN B B ... An identifier of eight digits has 29
+/// bits, and one of four to seven, which python-can writes without leading zeros; of up to three it has 11.
+/// False: no frame.
 bool read_send(Words words, bool remote, image::CanFrame& frame) noexcept;
 /// The words after "frame" or "remote" from a server: ID SEC.USEC DATA. The time stamp is the server's.
 bool read_frame(Words words, bool remote, image::CanFrame& frame) noexcept;

@@ -55,12 +55,15 @@ TEST(SocketcandText, an_identifier_of_eight_digits_has_29_bits) {
   EXPECT_EQ(f.id, 0x123u);
   ASSERT_TRUE(read_send(Words("123 0"), false, f));
   EXPECT_FALSE(f.extended);
+  ASSERT_TRUE(read_send(Words("12345 0"), false, f)) << "python-can leaves the zeros out";
+  EXPECT_TRUE(f.extended);
 }
 
 TEST(SocketcandText, what_is_no_frame_is_refused) {
   CanFrame f;
-  for (const char* wrong : {"", "123", "xyz 0", "123 9 1 2 3 4 5 6 7 8 9", "123 2 1", "123 1 1 2",
-                            "123 1 100", "20000000 0", "123 1 -1", "123 1 1x"})
+  for (const char* wrong :
+       {"", "123", "xyz 0", "123 9 1 2 3 4 5 6 7 8 9", "123 2 1", "123 1 1 2", "123 1 100", "20000000 0",
+        "800 1 AA", "FFF 0", "0123 0", "000000123 0", "123 1 -1", "123 1 1x"})
     EXPECT_FALSE(read_send(Words(wrong), false, f)) << wrong;
   for (const char* wrong :
        {"", "123", "123 1.2 123", "123 1.2 112233445566778899", "123 x 11", "123 1.1234567 11"})
