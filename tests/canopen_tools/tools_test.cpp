@@ -229,6 +229,45 @@ TEST_F(Workbench, lss_gives_a_device_another_node_id) {
   EXPECT_EQ(facts("sdo $BUS 17 read 1018:4")["value"], 5);
 }
 
+TEST_F(Workbench, lss_gives_no_node_id_to_several_devices_at_once) {
+  drives("5,6");
+  for (const char* steps : {"configuration node 7 waiting", "configuration inquire", "node 7"}) {
+    const Ended ended = tool("lss $BUS " + std::string(steps) + " --listen 0.1");
+    EXPECT_EQ(ended.code, 1) << steps;
+    EXPECT_TRUE(ended.err_has("2 devices answer (00000000:00010192:00010000:00000005|00000006)"))
+        << ended.err;
+    EXPECT_TRUE(ended.err_has("select VENDOR:PRODUCT:REVISION:SERIAL")) << ended.err;
+    EXPECT_EQ(ended.out.find("node-ID"), std::string::npos) << ended.out;
+  }
+  ASSERT_EQ(tool("nmt $BUS reset-comm --i-may-move --listen 0.1").code, 0);
+  EXPECT_EQ(facts("scan $BUS --seconds 0.3")["nodes"].size(), 2u) << "both have their own";
+  const json steps = facts("lss $BUS configuration store waiting --listen 0.1")["steps"];
+  EXPECT_EQ(steps[1]["devices"], 2) << "what all may be told";
+}
+
+TEST_F(Workbench, lss_gives_a_node_id_to_the_only_device_in_configuration) {
+  drives("5");
+  const Ended ended = tool("lss $BUS configuration node 17 store waiting --listen 0.1");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  ASSERT_EQ(tool("nmt $BUS reset-comm --i-may-move --listen 0.1").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 17 read 1018:4")["value"], 5);
+}
+
+TEST_F(Workbench, lss_leaves_no_device_in_configuration_when_it_scans_for_the_next) {
+  drives("5,6");
+  ASSERT_EQ(
+      tool("lss $BUS select 0:10192:10000:5 node none select 0:10192:10000:6 node none waiting --listen 0.1")
+          .code,
+      0);
+  ASSERT_EQ(tool("nmt $BUS reset-comm --i-may-move --listen 0.1").code, 0);
+  const Ended ended = tool("lss $BUS fastscan node 17 fastscan node 18 waiting --timeout 10 --listen 0.1");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const json nodes = facts("scan $BUS --seconds 0.3")["nodes"];
+  ASSERT_EQ(nodes.size(), 2u) << nodes;
+  EXPECT_EQ(nodes[0]["node"], 17);
+  EXPECT_EQ(nodes[1]["node"], 18);
+}
+
 TEST_F(Workbench, lss_says_that_nobody_answers_and_which_words_are_wrong) {
   const Ended ended = tool("lss $BUS fastscan --timeout 20 --listen 0.1");
   EXPECT_EQ(ended.code, 1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `servogate lss`: layer setting services, one after the other. Source: CiA 305.
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -41,6 +42,14 @@ const text::Entry kAllWaiting{"lss.waiting", "all devices are waiting again", "�
 const text::Entry kNode{
     "lss.node", "node-ID {0}; a device that had another takes it over with `nmt reset-comm`",
     "номер узла {0}; устройство, у которого был другой, примет его после `nmt reset-comm`"};
+const text::Entry kSeveral{"lss.several",
+                           "`{0}`: {1} devices answer ({2}), and this is for one: `select "
+                           "VENDOR:PRODUCT:REVISION:SERIAL` before it, "
+                           "or `fastscan` where they have no node-ID",
+                           "`{0}`: отвечают {1} (устройств), {2}, а это для одного: сначала `select "
+                           "ИЗГОТОВИТЕЛЬ:ИЗДЕЛИЕ:РЕВИЗИЯ:НОМЕР`, "
+                           "а без номеров узла — `fastscan`"};
+const text::Entry kDevices{"lss.devices", "{0}; {1} devices answer", "{0}; отвечают {1} (устройств)"};
 const text::Entry kRate{"lss.rate", "bit rate {0} bit/s", "скорость {0} бит/с"};
 const text::Entry kActivated{"lss.activated", "the new bit rate begins in {0} ms",
                              "новая скорость начнётся через {0} мс"};
@@ -57,10 +66,16 @@ std::string both_of(const text::Entry& entry, const std::vector<std::string>& ar
                     text::render(entry, arguments, text::Language::russian));
 }
 
-std::string identity_words(const canopen::LssIdentity& id) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%08X:%08X:%08X:%08X", id.part[0], id.part[1], id.part[2], id.part[3]);
+std::string part_words(std::uint32_t part) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%08X", part);
   return text;
+}
+
+std::string identity_words(const canopen::LssIdentity& id) {
+  std::string words;
+  for (const std::uint32_t part : id.part) words += (words.empty() ? "" : ":") + part_words(part);
+  return words;
 }
 
 json identity_json(const canopen::LssIdentity& id) {
@@ -122,27 +137,109 @@ class Layers {
 
   /// Waits for the end of the service that was started.
   canopen::LssStatus wait() {
+    answers_.clear();
     while (master_.busy() && !bus_.over()) {
       while (master_.poll(drivers::clock_ns(CLOCK_MONOTONIC), *bus_.transport().bus)) {
       }
       bus_.listen(2 * image::kMillisecond, [this](const image::CanFrame& frame) {
-        return frame.id == canopen::cob::kLssSlave && !frame.extended && master_.on_frame(frame);
+        return frame.id == canopen::cob::kLssSlave && !frame.extended && hear(frame);
       });
     }
     return master_.busy() ? canopen::LssStatus::no_answer : master_.result().status;
+  }
+  /// An answer; it is kept, so that those of several devices can be told.
+  bool hear(const image::CanFrame& frame) {
+    if (frame.length == 8 && frame.data[0] == static_cast<std::uint8_t>(master_.result().command))
+      std::copy_n(frame.data.begin(), 8, answers_.emplace_back().begin());
+    return master_.on_frame(frame);
+  }
+  /// After the first answer: those of the others.
+  void hear_others() {
+    bus_.listen(static_cast<image::Nanoseconds>(options_.timeout_ms * 1e6), [this](const auto& frame) {
+      if (frame.id == canopen::cob::kLssSlave && !frame.extended) hear(frame);
+      return false;
+    });
   }
   /// kDone, or what went wrong, said.
   int outcome(const Step& step) {
     const canopen::LssStatus status = wait();
     if (status == canopen::LssStatus::done) return kDone;
-    if (status == canopen::LssStatus::refused) {
-      const canopen::LssResult& r = master_.result();
-      complain(kRefused, {step.word, both_of(canopen::lss_error_text(r.command, r.error),
-                                             {std::to_string(r.error == 255 ? r.specific : r.error)})});
-    } else {
-      complain(kNobody, {step.word});
-    }
+    if (status == canopen::LssStatus::refused)
+      return refuse(step, master_.result().error, master_.result().specific);
+    complain(kNobody, {step.word});
     return kAlarm;
+  }
+  int refuse(const Step& step, std::uint8_t error, std::uint8_t specific) {
+    complain(kRefused, {step.word, both_of(canopen::lss_error_text(master_.result().command, error),
+                                           {std::to_string(error == 255 ? specific : error)})});
+    return kAlarm;
+  }
+  /// Of a setting that all devices in configuration take: none of them may refuse.
+  int outcome_of_all(const Step& step) {
+    if (const int code = outcome(step); code != kDone) return code;
+    hear_others();
+    for (const canopen::LssBytes& answer : answers_)
+      if (answer[1] != 0) return refuse(step, answer[1], answer[2]);
+    return kDone;
+  }
+  /// The words with the number of devices that answered, where they were several.
+  int say_of_all(const Step& step, const text::Entry& entry, const std::vector<std::string>& arguments,
+                 json facts = json::object()) {
+    facts["devices"] = answers_.size();
+    if (answers_.size() < 2) return say(step, entry, arguments, std::move(facts));
+    return say(step, kDevices, {both_of(entry, arguments), std::to_string(answers_.size())},
+               std::move(facts));
+  }
+
+  /// What the one device in configuration says of itself. Of several, who would answer at once, it is said
+  /// that they are, and nothing else is believed: kAlarm. Source: CiA 305: node-ID and inquiries are for
+  /// exactly one device in configuration state.
+  int identify(const Step& step, canopen::LssIdentity& id, std::uint32_t& node) {
+    std::size_t devices = 0;
+    std::string words;
+    for (int part = 0; part <= 4; ++part) {
+      if (part < 4)
+        master_.inquire(part);
+      else
+        master_.inquire_node();
+      if (const int code = outcome(step); code != kDone) return code;
+      hear_others();
+      std::vector<std::uint32_t> values;
+      for (const canopen::LssBytes& answer : answers_) values.push_back(canopen::lss_value(answer));
+      devices = std::max(devices, values.size());
+      if (part == 4) break;
+      id.part[static_cast<std::size_t>(part)] = values.front();
+      std::sort(values.begin(), values.end());
+      values.erase(std::unique(values.begin(), values.end()), values.end());
+      for (std::size_t i = 0; i < values.size(); ++i)
+        words += (i > 0 ? "|" : part > 0 ? ":" : "") + part_words(values[i]);
+    }
+    node = master_.result().value;
+    if (devices == 1) return kDone;
+    complain(kSeveral, {step.word, std::to_string(devices), words});
+    return kAlarm;
+  }
+  /// Before a service that is for one device: exactly one answers, and it alone is left in configuration,
+  /// since equal answers of several are one frame on a wire.
+  int single_out(const Step& step) {
+    if (one_) return kDone;
+    canopen::LssIdentity id;
+    std::uint32_t node = 0;
+    if (const int code = identify(step, id, node); code != kDone) return code;
+    return choose(step, id);
+  }
+  /// Only this device is in configuration afterwards.
+  int choose(const Step& step, const canopen::LssIdentity& id) {
+    all_wait();
+    master_.switch_selective(id);
+    const int code = outcome(step);
+    one_ = code == kDone;
+    return code;
+  }
+  void all_wait() {
+    one_ = false;
+    master_.switch_global(LssMode::waiting);
+    wait();
   }
   int say(const Step& step, const text::Entry& entry, const std::vector<std::string>& arguments,
           json facts = json::object()) {
@@ -153,40 +250,32 @@ class Layers {
   }
 
   int fastscan(const Step& step) {
+    all_wait();  // the one that is found is to be alone
     master_.fastscan();
     if (const int code = outcome(step); code != kDone) return code;
+    one_ = true;
     const canopen::LssIdentity found = master_.result().identity;
     return say(step, kFound, {identity_words(found)}, identity_json(found));
   }
   int select(const Step& step) {
     const auto id = identity_of(step.argument);
-    // Only this one is to be in configuration afterwards.
-    master_.switch_global(LssMode::waiting);
-    wait();
-    master_.switch_selective(*id);
-    if (const int code = outcome(step); code != kDone) return code;
+    if (const int code = choose(step, *id); code != kDone) return code;
     return say(step, kSelected, {identity_words(*id)}, identity_json(*id));
   }
   int configuration(const Step& step) {
+    one_ = false;
     master_.switch_global(LssMode::configuration);
     wait();
     return say(step, kAllConfiguration, {});
   }
   int waiting(const Step& step) {
-    master_.switch_global(LssMode::waiting);
-    wait();
+    all_wait();
     return say(step, kAllWaiting, {});
   }
   int inquire(const Step& step) {
     canopen::LssIdentity id;
-    for (int i = 0; i < 4; ++i) {
-      master_.inquire(i);
-      if (const int code = outcome(step); code != kDone) return code;
-      id.part[static_cast<std::size_t>(i)] = master_.result().value;
-    }
-    master_.inquire_node();
-    if (const int code = outcome(step); code != kDone) return code;
-    const std::uint32_t node = master_.result().value;
+    std::uint32_t node = 0;
+    if (const int code = identify(step, id, node); code != kDone) return code;
     json facts = identity_json(id);
     facts["node"] = node == canopen::kUnconfiguredNode ? json() : json(node);
     return say(
@@ -202,6 +291,7 @@ class Layers {
   int node(const Step& step) {
     const std::uint32_t id =
         step.argument == "none" ? canopen::kUnconfiguredNode : *number(step.argument, 10);
+    if (const int code = single_out(step); code != kDone) return code;
     master_.configure_node(static_cast<canopen::NodeId>(id));
     if (const int code = outcome(step); code != kDone) return code;
     return say(step, kNode, {step.argument}, {{"node", id}});
@@ -209,8 +299,8 @@ class Layers {
   int bit_rate(const Step& step) {
     const auto rate = *number(step.argument, 10);
     master_.configure_bit_rate(rate);
-    if (const int code = outcome(step); code != kDone) return code;
-    return say(step, kRate, {step.argument}, {{"bit_rate", rate}});
+    if (const int code = outcome_of_all(step); code != kDone) return code;
+    return say_of_all(step, kRate, {step.argument}, {{"bit_rate", rate}});
   }
   int activate(const Step& step) {
     master_.activate_bit_rate(static_cast<std::uint16_t>(*number(step.argument, 10)));
@@ -219,13 +309,15 @@ class Layers {
   }
   int store(const Step& step) {
     master_.store();
-    if (const int code = outcome(step); code != kDone) return code;
-    return say(step, kStored, {});
+    if (const int code = outcome_of_all(step); code != kDone) return code;
+    return say_of_all(step, kStored, {});
   }
 
   ToolBus& bus_;
   const LssOptions& options_;
   canopen::LssMaster master_;
+  bool one_ = false;  ///< exactly one device is in configuration
+  std::vector<canopen::LssBytes> answers_;
   json said_ = json::array();
 };
 
