@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <fstream>
+#include <iterator>
 
 #include "tests/canopen_tools/workbench.hpp"
 
@@ -76,6 +78,16 @@ TEST_F(SimulatedDrives, a_fault_comes_when_its_time_has_come) {
   EXPECT_EQ(value(1, "6041").get<int>() & 0x4F, 0x08) << "fault";
   EXPECT_EQ(value(2, "603F"), 0);
   EXPECT_EQ(facts("sdo $BUS 2 read 6083", 1)["abort"], 0x0609'0030);
+}
+
+TEST_F(SimulatedDrives, objects_that_cannot_be_simulated_are_named_and_have_their_warning) {
+  desk_.write("odd.eds",
+              "[DeviceInfo]\nVendorName=x\n[ManufacturerObjects]\nSupportedObjects=1\n1=0x2007\n[2007]\n"
+              "ParameterName=bad\nObjectType=0x7\nDataType=0x99\nAccessType=rw\nDefaultValue=5\n");
+  const usercan::Process& process = drives("4", {"--profile", path("odd.eds")});
+  EXPECT_TRUE(process.says("odd.eds:9: ")) << process.said();
+  EXPECT_TRUE(process.says("[2007] has the data type 0x99")) << process.said();
+  EXPECT_TRUE(process.says("left out, as it cannot be simulated: 2007h:00")) << process.said();
 }
 
 TEST_F(SimulatedDrives, a_script_with_a_mistake_is_refused_with_its_line) {

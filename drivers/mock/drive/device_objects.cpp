@@ -73,11 +73,16 @@ bool says_value(const canopen::Eds& sheet, const ObjectSpec& row) {
          (entry->value()->number.has_value() || canopen::size_of(row.type) == 0);
 }
 
-int entries_of(const canopen::Eds& sheet) {
-  int count = 0;
-  for (const auto& [index, whole] : sheet.objects)
-    count += whole.subs.empty() ? 1 : static_cast<int>(whole.subs.size());
-  return count;
+std::vector<ObjectPlace> all_but(const canopen::Eds& sheet, const std::set<Place>& shown) {
+  std::vector<ObjectPlace> places;
+  const auto look = [&](std::uint16_t index, std::uint8_t subindex) {
+    if (!shown.contains({index, subindex})) places.push_back({index, subindex});
+  };
+  for (const auto& [index, whole] : sheet.objects) {
+    if (whole.subs.empty()) look(index, 0);
+    for (const auto& [subindex, entry] : whole.subs) look(index, subindex);
+  }
+  return places;
 }
 
 }  // namespace
@@ -107,7 +112,7 @@ DeviceObjects device_objects(const SimulatedDriveConfig& config) {
   }
   for (const ObjectSpec& row : own)
     if (shown.count(place_of(row)) == 0) out.hidden.push_back(row);
-  out.left_out = entries_of(sheet) - static_cast<int>(shown.size());
+  out.left_out = all_but(sheet, shown);
   return out;
 }
 

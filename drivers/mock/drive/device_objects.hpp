@@ -11,8 +11,9 @@ namespace servogate::mock {
 struct DeviceObjects {
   std::vector<canopen::ObjectSpec> rows;
   std::vector<canopen::ObjectSpec>
-      hidden;        ///< rows that the simulation needs and the data sheet does not have
-  int left_out = 0;  ///< objects of the sheet that the simulation cannot have
+      hidden;  ///< rows that the simulation needs and the data sheet does not have
+  std::vector<ObjectPlace>
+      left_out;  ///< objects of the sheet that the simulation cannot have, in their order
 };
 
 /// The standard's objects with the values of the name plate; with a data sheet its objects instead. Texts

@@ -78,7 +78,9 @@ double SimulatedDrive::revolutions() const noexcept { return inside_->plant.revo
 std::int64_t SimulatedDrive::position_counts() const noexcept { return inside_->plant.counts(); }
 double SimulatedDrive::velocity_counts_s() const noexcept { return inside_->plant.state().velocity; }
 double SimulatedDrive::thermal() const noexcept { return inside_->plant.thermal(); }
-int SimulatedDrive::left_out() const noexcept { return inside_->objects.left_out; }
+const std::vector<ObjectPlace>& SimulatedDrive::left_out() const noexcept {
+  return inside_->objects.left_out;
+}
 double SimulatedDrive::torque_permille() const noexcept { return inside_->plant.state().torque; }
 std::int64_t SimulatedDrive::reported_position() const noexcept { return inside_->profile.position(); }
 

@@ -33,6 +33,13 @@ struct DriveSwitch {
   std::int64_t to = std::numeric_limits<std::int64_t>::max();
 };
 
+/// An object, by index and sub-index.
+struct ObjectPlace {
+  std::uint16_t index = 0;
+  std::uint8_t subindex = 0;
+  bool operator==(const ObjectPlace&) const = default;
+};
+
 /// What stands on the drive's name plate and how it is mounted.
 struct SimulatedDriveConfig {
   canopen::NodeId node_id = 1;  ///< canopen::kUnconfiguredNode: to be given by layer setting services
@@ -99,7 +106,7 @@ class SimulatedDrive final : public CanNode {
 
   /// Objects of the data sheet that the simulation cannot have: PDOs beyond the fourth, types that it does
   /// not know.
-  int left_out() const noexcept;
+  const std::vector<ObjectPlace>& left_out() const noexcept;
 
   /// Levels of the drive's inputs from the world. A switch of the configuration is OR-ed with it.
   void set_input(DriveSwitch::Input input, bool active) noexcept;

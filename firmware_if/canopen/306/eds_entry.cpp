@@ -9,7 +9,7 @@
 namespace servogate::canopen {
 namespace {
 
-constexpr std::uint16_t kUnsigned32 = 0x07, kBoolean = 0x01, kReal32 = 0x08;
+constexpr std::uint16_t kUnsigned32 = 0x07, kBoolean = 0x01, kReal32 = 0x08, kFirstStructure = 0x20;
 
 const text::Entry* oddity_text(NumberOddity oddity) noexcept {
   switch (oddity) {
@@ -109,7 +109,11 @@ std::uint16_t EdsFieldReader::data_type(std::uint16_t inherited) const {
     return kUnsigned32;
   }
   const auto type = static_cast<std::uint16_t>(found->value);
-  if (found->value == type && eds_type_known(type)) return type;
+  if (found->value == type && eds_type_known(type)) {
+    if (type >= kFirstStructure)
+      findings_.warn(eds_text::kStructureType, section_.entry("DataType")->line, {section_.name, hex(type)});
+    return type;
+  }
   findings_.warn(eds_text::kDataType, section_.entry("DataType")->line,
                  {section_.name, hex(static_cast<std::uint64_t>(found->value))});
   return kUnsigned32;

@@ -41,6 +41,12 @@ inline constexpr Entry kUtf16{"eds-utf16", "the file is UTF-16; CiA 306 has ASCI
                 "{0} = {1}, а возможны только 0 и 1; прочитано как 1"},
     kDataType{"eds-data-type", "[{0}] has no data type that CiA 301 knows ({1}); taken for UNSIGNED32",
               "[{0}]: тип данных неизвестен CiA 301 ({1}); принят UNSIGNED32"},
+    kStructureType{
+        "eds-structure-type",
+        "[{0}] has the data type {1}, a structure of a standard, profile or manufacturer; no single "
+        "object has one, its value stays text",
+        "[{0}]: тип данных {1} — структура стандарта, профиля или изготовителя; у одиночного "
+        "объекта её не бывает, значение остаётся текстом"},
     kNoDataType{"eds-no-data-type", "[{0}] has no DataType; taken for UNSIGNED32",
                 "[{0}]: нет DataType; принят UNSIGNED32"},
     kObjectType{"eds-object-type", "[{0}] has the object type {1}; taken for {2}",

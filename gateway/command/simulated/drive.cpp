@@ -12,6 +12,7 @@
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/bus/named_bus.hpp"
 #include "gateway/command/canopen/data_sheet.hpp"
+#include "gateway/command/canopen/object_value.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
@@ -43,8 +44,9 @@ const text::Entry kNoSwitch{
     "drive.no-switch",
     "--switch {0}: expected INPUT=FROM..TO in revolutions, as home=1.5..2 or positive_limit=3..; inputs: {1}",
     "--switch {0}: нужно ВХОД=ОТ..ДО в оборотах, например home=1.5..2 или positive_limit=3..; входы: {1}"};
-const text::Entry kLeftOut{"drive.left-out", "{0}: {1} objects cannot be simulated and are left out",
-                           "{0}: объектов, которые нельзя имитировать, {1}; они пропущены"};
+const text::Entry kLeftOut{"drive.left-out", "{0}: left out, as it cannot be simulated: {1}",
+                           "{0}: пропущено, имитировать нельзя: {1}"};
+const text::Entry kMoreLeftOut{"drive.more-left-out", " and {0} more", " и ещё {0}"};
 
 /// What is to be simulated, and where.
 struct Plan {
@@ -162,7 +164,7 @@ class Drives {
     }
   }
   /// Objects of the data sheet that no drive can have.
-  int left_out() const { return drives_.front()->left_out(); }
+  const std::vector<mock::ObjectPlace>& left_out() const { return drives_.front()->left_out(); }
   void advance_to(image::Nanoseconds now) {
     image::CanFrame frame;
     while (bus_.receive(frame)) {
@@ -187,7 +189,16 @@ class Drives {
 };
 
 void say_left_out(const DriveOptions& options, const Drives& drives) {
-  if (drives.left_out() > 0) complain(kLeftOut, {options.profile, std::to_string(drives.left_out())});
+  constexpr std::size_t kNamed = 20;
+  const auto& places = drives.left_out();
+  if (places.empty()) return;
+  std::string names;
+  for (std::size_t i = 0; i < places.size() && i < kNamed; ++i)
+    names += (i > 0 ? ", " : "") + address_text(places[i].index, places[i].subindex);
+  if (places.size() > kNamed)
+    names += text::render(kMoreLeftOut, std::vector<std::string>{std::to_string(places.size() - kNamed)},
+                          text::user_language());
+  complain(kLeftOut, {options.profile, names});
 }
 
 int live_in_lockstep(const DriveOptions& options, const Plan& plan, usercan::SocketcandBus& bus,

@@ -327,6 +327,13 @@ TEST(EdsWriter, whatever_was_understood_of_a_spoiled_file_reads_back_the_same) {
   }
 }
 
+TEST(EdsOddity, a_data_type_that_no_single_object_has_is_told_with_its_line) {
+  const auto r = with_object("DataType=0x99\nAccessType=rw\nDefaultValue=5\n");
+  EXPECT_NE(odd(r).find("eds-structure-type:4"), std::string::npos) << odd(r);
+  EXPECT_EQ(object_2000(r).data_type, 0x99);
+  EXPECT_TRUE(object_specs(r.eds, 1).empty());
+}
+
 TEST(EdsObjects, become_rows_of_a_dictionary_of_this_node) {
   const Eds eds = read_eds(file("clean.eds"), "clean.eds").eds;
   ObjectDictionary dictionary({object_specs(eds, 5)});

@@ -51,7 +51,7 @@ TEST(DataSheetDrive, has_the_objects_of_its_sheet_with_their_values_and_shows_no
   EXPECT_FALSE(hidden(objects, 0x6083));
   EXPECT_TRUE(hidden(objects, 0x6084)) << "the simulation needs it, the sheet has it not";
   EXPECT_TRUE(hidden(objects, 0x6060));
-  EXPECT_EQ(objects.left_out, 0);
+  EXPECT_TRUE(objects.left_out.empty());
 }
 
 TEST(DataSheetDrive, keeps_the_simulations_value_where_the_sheet_says_none) {
@@ -70,7 +70,7 @@ TEST(DataSheetDrive, leaves_out_what_its_services_have_no_room_for) {
   EXPECT_EQ(row(built, 0x1016)->value, 4) << "no more than the simulation watches";
   EXPECT_EQ(row(built, 0x1016, 9), nullptr);
   EXPECT_EQ(row(built, 0x1805, 1), nullptr);
-  EXPECT_EQ(built.left_out, 3);
+  EXPECT_EQ(built.left_out, (std::vector<ObjectPlace>{{0x1016, 9}, {0x1805, 0}, {0x1805, 1}}));
 }
 
 TEST(DataSheetDrive, on_the_bus_an_object_that_the_sheet_does_not_have_does_not_exist) {
