@@ -80,6 +80,23 @@ TEST_F(SimulatedDrives, a_fault_comes_when_its_time_has_come) {
   EXPECT_EQ(facts("sdo $BUS 2 read 6083", 1)["abort"], 0x0609'0030);
 }
 
+TEST_F(SimulatedDrives, a_configuration_of_another_node_comes_with_cob_ids_of_the_own_one) {
+  drives("9");
+  ASSERT_EQ(tool("sdo $BUS 9 write 6083 4711").code, 0);
+  ASSERT_EQ(tool("od $BUS 9 --save a.dcf").code, 0);
+  const usercan::Process& process = drives("10", {"--profile", path("a.dcf")});
+  EXPECT_TRUE(process.says("a.dcf is the configuration of node 9: node 10 takes its values"))
+      << process.said();
+  EXPECT_EQ(value(10, "6083"), 4711);
+  EXPECT_EQ(value(10, "1800:1"), 0x4000'018A);
+  EXPECT_EQ(value(10, "1400:1").get<std::int64_t>() & 0x7FF, 0x20A);
+  EXPECT_EQ(value(10, "1014"), 0x8A);
+  const Ended ended = tool("od $BUS 10 --compare a.dcf");
+  EXPECT_TRUE(ended.err_has("a.dcf is the configuration of node 9")) << ended.err;
+  EXPECT_EQ(ended.out.find("1800h"), std::string::npos) << ended.out;
+  EXPECT_FALSE(tool("od $BUS 9 --compare a.dcf").err_has("configuration of node"));
+}
+
 TEST_F(SimulatedDrives, objects_that_cannot_be_simulated_are_named_and_have_their_warning) {
   desk_.write("odd.eds",
               "[DeviceInfo]\nVendorName=x\n[ManufacturerObjects]\nSupportedObjects=1\n1=0x2007\n[2007]\n"

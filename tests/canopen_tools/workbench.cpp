@@ -14,7 +14,8 @@ usercan::Process& Workbench::drives(const std::string& nodes, const std::vector<
   words.insert(words.end(), options.begin(), options.end());
   drives_.push_back(std::make_unique<usercan::Process>(words));
   const std::size_t comma = nodes.rfind(',');
-  EXPECT_TRUE(drives_.back()->says("node " + nodes.substr(comma == std::string::npos ? 0 : comma + 1)))
+  EXPECT_TRUE(
+      drives_.back()->says("node " + nodes.substr(comma == std::string::npos ? 0 : comma + 1) + " on "))
       << drives_.back()->said();
   return *drives_.back();
 }

@@ -118,6 +118,10 @@ std::string write_eds(const Eds& eds);
 /// without one node 0 is written.
 std::string write_dcf(const Eds& eds);
 
+/// Makes the values of a DCF that follow from the node-ID it is of ($NODEID in the default, identifiers of
+/// the pre-defined connection set) sums with $NODEID, so that they are right for another node, too. How many.
+int follow_node(Eds& eds);
+
 /// Rows for an ObjectDictionary of this node, so that a device can be simulated from its data sheet. Types
 /// that the dictionary does not have are left out. Texts point into `eds`, which must live as long.
 std::vector<ObjectSpec> object_specs(const Eds& eds, NodeId node);

@@ -27,6 +27,9 @@ const text::Entry kBadRange{"od.bad-range", "'{0}' is no range; expected FIRST-L
                             "«{0}» — не диапазон; нужно FIRST-LAST в шестнадцатеричном виде: 2000-5FFF"};
 const text::Entry kSilent{"od.silent", "node {0} does not answer{1}", "узел {0} не отвечает{1}"};
 const text::Entry kSaved{"od.saved", "{0}: {1} values of node {2}", "{0}: значений узла {2} — {1}"};
+const text::Entry kOtherNode{
+    "od.other-node", "{0} is the configuration of node {1}; its COB-IDs are taken for those of node {2}",
+    "{0} — настройка узла {1}; её COB-ID приняты для узла {2}"};
 const text::Entry kEqual{"od.equal", "node {0} is as {1} has it: {2} parameters compared",
                          "узел {0} соответствует {1}: сравнено параметров: {2}"};
 const text::Entry kDiffers{"od.differs", "{0}: the device has {1}, the file {2}",
@@ -107,6 +110,9 @@ int save(const Work& work, const std::vector<ReadObject>& objects, const canopen
 
 int compare(const Work& work, const canopen::Eds& file) {
   int compared = 0;
+  const int of = file.commissioning ? file.commissioning->node : 0;
+  if (of != 0 && of != work.options.node)
+    complain(kOtherNode, {work.options.compare, std::to_string(of), std::to_string(work.options.node)});
   const std::vector<Difference> found = differences(work.access, work.node(), file, compared, work.over);
   const ObjectCatalogue catalogue(&file);
   json list = json::array();
@@ -124,6 +130,7 @@ int compare(const Work& work, const canopen::Eds& file) {
   if (work.options.json) {
     json out = head(work.options);
     out["compared"] = compared;
+    if (of != 0) out["file_node"] = of;
     out["differences"] = std::move(list);
     print_json(out);
   } else if (found.empty()) {
@@ -185,6 +192,7 @@ int od(const OdOptions& options) {
   std::optional<canopen::Eds> eds, file;
   if (!options.eds.empty() && !(eds = read_data_sheet(options.eds))) return kWrongUse;
   if (!options.compare.empty() && !(file = read_data_sheet(options.compare))) return kWrongUse;
+  if (file) canopen::follow_node(*file);
   const canopen::Eds* sheet = eds ? &*eds : nullptr;
   const canopen::Eds* other = file ? &*file : nullptr;
   int code = kDone;

@@ -44,6 +44,11 @@ const text::Entry kNoSwitch{
     "drive.no-switch",
     "--switch {0}: expected INPUT=FROM..TO in revolutions, as home=1.5..2 or positive_limit=3..; inputs: {1}",
     "--switch {0}: нужно ВХОД=ОТ..ДО в оборотах, например home=1.5..2 или positive_limit=3..; входы: {1}"};
+const text::Entry kOtherNode{
+    "drive.other-node",
+    "{0} is the configuration of node {1}: node {2} takes its values; COB-IDs that follow from the node-ID: "
+    "{3}",
+    "{0} — настройка узла {1}: узел {2} берёт её значения; COB-ID, следующих за номером узла: {3}"};
 const text::Entry kLeftOut{"drive.left-out", "{0}: left out, as it cannot be simulated: {1}",
                            "{0}: пропущено, имитировать нельзя: {1}"};
 const text::Entry kMoreLeftOut{"drive.more-left-out", " and {0} more", " и ещё {0}"};
@@ -76,11 +81,22 @@ int plan_from_machine(const DriveOptions& options, const NamedBus& named, Plan& 
 /// FILE.eds or FILE.dcf, as opposed to the name of a kind.
 bool is_sheet(const std::string& profile) { return profile.find('.') != std::string::npos; }
 
+/// A DCF is of one node; others get its values with COB-IDs of their own.
+void say_other_node(const DriveOptions& options, canopen::Eds& sheet) {
+  const int following = canopen::follow_node(sheet);
+  const int of = sheet.commissioning ? sheet.commissioning->node : 0;
+  for (const int id : options.nodes)
+    if (of != 0 && id != of)
+      complain(kOtherNode,
+               {options.profile, std::to_string(of), std::to_string(id), std::to_string(following)});
+}
+
 int plan_from_profile(const DriveOptions& options, Plan& plan) {
   std::shared_ptr<const canopen::Eds> sheet;
   if (is_sheet(options.profile)) {
     auto read = read_data_sheet(options.profile);
     if (!read) return kWrongUse;
+    say_other_node(options, *read);
     sheet = std::make_shared<const canopen::Eds>(std::move(*read));
   }
   for (const int id : options.nodes) {

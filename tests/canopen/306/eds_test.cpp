@@ -334,6 +334,36 @@ TEST(EdsOddity, a_data_type_that_no_single_object_has_is_told_with_its_line) {
   EXPECT_TRUE(object_specs(r.eds, 1).empty());
 }
 
+TEST(EdsNode, a_configuration_follows_the_node_id_of_another_node) {
+  const auto sub = [](const char* index, const char* lines) {
+    return std::string("[") + index + "]\nParameterName=X\nObjectType=7\nDataType=7\nAccessType=rw\n" +
+           lines + "\n";
+  };
+  const auto record = [](const char* index) {
+    return std::string("[") + index + "]\nParameterName=X\nObjectType=9\nSubNumber=1\n";
+  };
+  Eds eds =
+      read_eds(
+          "[DeviceComissioning]\nNodeID=9\n" + record("1800") + sub("1800sub1", "ParameterValue=0x40000189") +
+              record("1801") + sub("1801sub1", "ParameterValue=0x401") + record("1402") +
+              sub("1402sub1", "ParameterValue=0x80000409") + sub("1014", "ParameterValue=0x89") +
+              sub("2000", "DefaultValue=$NODEID+0x10\nParameterValue=0x19") + sub("2001", "ParameterValue=9"),
+          "x.dcf")
+          .eds;
+  EXPECT_EQ(follow_node(eds), 4);
+  const auto at_10 = [&](std::uint16_t index, std::uint8_t subindex) {
+    return eds.find(index, subindex)->value()->number->at(10);
+  };
+  EXPECT_EQ(at_10(0x1800, 1), 0x4000'018A);
+  EXPECT_EQ(at_10(0x1801, 1), 0x401) << "mapped by its user";
+  EXPECT_EQ(at_10(0x1402, 1), 0x8000'040A);
+  EXPECT_EQ(at_10(0x1014, 0), 0x8A);
+  EXPECT_EQ(at_10(0x2000, 0), 0x1A);
+  EXPECT_EQ(at_10(0x2001, 0), 9) << "a number that only looks like it";
+  EXPECT_EQ(eds.find(0x1800, 1)->value()->number->at(9), 0x4000'0189);
+  EXPECT_EQ(follow_node(eds), 0) << "once";
+}
+
 TEST(EdsObjects, become_rows_of_a_dictionary_of_this_node) {
   const Eds eds = read_eds(file("clean.eds"), "clean.eds").eds;
   ObjectDictionary dictionary({object_specs(eds, 5)});
