@@ -80,6 +80,35 @@ TEST_F(SimulatedDrives, a_fault_comes_when_its_time_has_come) {
   EXPECT_EQ(facts("sdo $BUS 2 read 6083", 1)["abort"], 0x0609'0030);
 }
 
+TEST_F(SimulatedDrives, a_node_id_that_is_on_the_bus_is_refused_whoever_would_take_it) {
+  drives("1");
+  for (const char* words :
+       {"drive $BUS --node 1", "drive $BUS --node 9,1", "io $BUS --node 1", "sim $MILL --bus can=$BUS"}) {
+    const Ended ended = tool(words);
+    EXPECT_EQ(ended.code, 1) << words;
+    EXPECT_TRUE(ended.err_has("node 1 is not simulated: a device with this node-ID is on " + bus()))
+        << ended.err;
+  }
+  EXPECT_EQ(facts("scan $BUS --seconds 0.3")["nodes"].size(), 1u);
+}
+
+TEST_F(SimulatedDrives, a_node_id_that_is_named_twice_is_refused) {
+  for (const char* words : {"drive $BUS --node 1,1", "io $BUS --node 4,5,4"}) {
+    const Ended ended = tool(words);
+    EXPECT_EQ(ended.code, 2) << words;
+    EXPECT_TRUE(ended.err_has("twice")) << ended.err;
+  }
+}
+
+TEST_F(SimulatedDrives, another_device_with_the_same_node_id_is_noticed_when_it_comes_later) {
+  const usercan::Process& process = drives("5");
+  const auto other = join();
+  EXPECT_TRUE(other->send(usercan::make(0x706, {0})));
+  EXPECT_TRUE(other->send(usercan::make(0x705, {0})));
+  EXPECT_TRUE(process.says("has the node-ID 5, too")) << process.said();
+  EXPECT_EQ(process.said().find("node-ID 6"), std::string::npos);
+}
+
 TEST_F(SimulatedDrives, a_configuration_of_another_node_comes_with_cob_ids_of_the_own_one) {
   drives("9");
   ASSERT_EQ(tool("sdo $BUS 9 write 6083 4711").code, 0);

@@ -165,6 +165,25 @@ TEST_F(HeldByRun, is_locked_to_logs_of_a_master_whoever_runs_it) {
   EXPECT_EQ(alarms(), std::vector<int>());
 }
 
+TEST_F(HeldByRun, has_no_room_for_a_second_device_with_the_node_id_of_one_that_lives) {
+  run(path(""));
+  ASSERT_TRUE(comes_on()) << run_->said();
+  for (const char* words : {"drive $BUS --node 1", "io $BUS --node 4", "sim $MILL --bus can=$BUS"}) {
+    const Ended ended = tool(words);
+    EXPECT_EQ(ended.code, 1) << words;
+    EXPECT_TRUE(ended.err_has("is not simulated: a device with this node-ID is on ")) << ended.err;
+  }
+  EXPECT_EQ(alarms(), std::vector<int>()) << texts_;
+}
+
+TEST_F(HeldByRun, takes_a_new_process_for_a_drive_that_was_killed) {
+  run(path(""));
+  ASSERT_TRUE(comes_on()) << run_->said();
+  living_.front().reset();
+  const usercan::Process again({"drive", bus(), "--node", "1"});
+  EXPECT_TRUE(again.says("node 1 on")) << again.said();
+}
+
 TEST_F(HeldByRun, of_somebody_else_is_heard_and_left_alone) {
   run(path("else"));
   ASSERT_TRUE(comes_on()) << run_->said();

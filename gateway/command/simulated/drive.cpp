@@ -17,6 +17,7 @@
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/command/simulated/fault_line.hpp"
+#include "gateway/command/simulated/node_presence.hpp"
 #include "gateway/command/simulated/switch_option.hpp"
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/simulated/drive_kind.hpp"
@@ -172,7 +173,7 @@ int plan_from_url(const DriveOptions& options, Plan& plan) {
 class Drives {
  public:
   Drives(const Plan& plan, image::CanBus& bus, image::Nanoseconds now, DriveDesk& desk)
-      : bus_(bus), desk_(desk), start_(now) {
+      : bus_(bus), desk_(desk), start_(now), twins_(plan.url, [this](int node) { return has(node); }) {
     for (const mock::SimulatedDriveConfig& config : plan.drives) {
       drives_.push_back(std::make_unique<mock::SimulatedDrive>(config));
       drives_.back()->connect(bus, now);
@@ -185,6 +186,7 @@ class Drives {
     image::CanFrame frame;
     while (bus_.receive(frame)) {
       frame.timestamp_ns = std::min(frame.timestamp_ns, now);
+      twins_.hear(frame);
       for (const auto& drive : drives_) drive->on_frame(frame);
     }
     for (const auto& drive : drives_) drive->advance_to(now);
@@ -197,9 +199,15 @@ class Drives {
   }
 
  private:
+  bool has(int node) const {
+    return std::any_of(drives_.begin(), drives_.end(),
+                       [node](const auto& d) { return d->node_id() == node; });
+  }
+
   image::CanBus& bus_;
   DriveDesk& desk_;
   image::Nanoseconds start_;
+  TwinWatch twins_;
   std::vector<std::unique_ptr<mock::SimulatedDrive>> drives_;
   std::vector<mock::SimulatedDrive*> all_;
 };
@@ -258,6 +266,7 @@ int live(const DriveOptions& options, const Plan& plan, const CanTransport& tran
 }  // namespace
 
 int drive(const DriveOptions& options) {
+  if (!each_once(options.nodes)) return kWrongUse;
   const auto named = named_bus(options.bus, options.bit_rate);
   if (!named) return kWrongUse;
   Plan plan{named->url, named->bit_rate, {}};
@@ -279,6 +288,11 @@ int drive(const DriveOptions& options) {
     complain(*why.entry, why.arguments);
     return kInfrastructure;
   }
+  // The control of the machine may be starting at the same time.
+  const bool ask = !named->machine.has_value();
+  if (transport->lockstep == nullptr)
+    if (const int code = may_join(*transport, plan.url, options.nodes, ask, signals); code != kDone)
+      return code;
   for (const mock::SimulatedDriveConfig& d : plan.drives)
     std::fprintf(stderr, "%s\n",
                  text::render(kLives, std::vector<std::string>{std::to_string(d.node_id), plan.url, d.name},

@@ -14,11 +14,12 @@
 #include "firmware_if/canopen/406/objects.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/commands.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/bus/named_bus.hpp"
+#include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
+#include "gateway/command/simulated/node_presence.hpp"
 #include "gateway/compose/can_transport.hpp"
 
 namespace servogate::gateway::command {
@@ -176,7 +177,8 @@ std::unique_ptr<Node> make_node(const IoOptions& options, int id) {
 
 class Nodes {
  public:
-  Nodes(const IoOptions& options, image::CanBus& bus, image::Nanoseconds now) : bus_(bus) {
+  Nodes(const IoOptions& options, image::CanBus& bus, image::Nanoseconds now)
+      : bus_(bus), twins_(options.bus, [this](int node) { return has(node); }) {
     for (const int id : options.nodes) {
       all_.push_back(make_node(options, id));
       all_.back()->device().connect(bus, now);
@@ -187,6 +189,7 @@ class Nodes {
     image::CanFrame frame;
     while (bus_.receive(frame)) {
       frame.timestamp_ns = std::min(frame.timestamp_ns, now);
+      twins_.hear(frame);
       for (const auto& n : all_) n->device().on_frame(frame);
     }
     for (const auto& n : all_) {
@@ -220,7 +223,12 @@ class Nodes {
   }
 
  private:
+  bool has(int node) const {
+    return std::any_of(all_.begin(), all_.end(), [node](const auto& n) { return n->id == node; });
+  }
+
   image::CanBus& bus_;
+  TwinWatch twins_;
   std::vector<std::unique_ptr<Node>> all_;
 };
 
@@ -265,6 +273,7 @@ int live_in_lockstep(const IoOptions& options, usercan::SocketcandBus& bus, cons
 }  // namespace
 
 int io(const IoOptions& options) {
+  if (!each_once(options.nodes)) return kWrongUse;
   const auto named = named_bus(options.bus, options.bit_rate);
   if (!named) return kWrongUse;
   const EndBySignal signals;
@@ -277,6 +286,10 @@ int io(const IoOptions& options) {
     complain(*why.entry, why.arguments);
     return kInfrastructure;
   }
+  if (transport->lockstep == nullptr)
+    if (const int code = may_join(*transport, named->url, options.nodes, !named->machine, signals);
+        code != kDone)
+      return code;
   const std::string name = make_node(options, 1)->name();
   for (const int node : options.nodes)
     std::fprintf(stderr, "%s\n",

@@ -11,10 +11,11 @@
 #include "drivers/clock.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/commands.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
+#include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
+#include "gateway/command/simulated/node_presence.hpp"
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/simulated/mock_world.hpp"
 
@@ -52,8 +53,9 @@ struct Served {
   std::size_t index;
   std::string name, url;
   std::uint32_t bit_rate;
-  std::size_t drives;
+  std::vector<int> nodes;
   CanTransport transport;
+  std::optional<TwinWatch> twins;
   std::vector<image::CanFrame> waiting;     ///< for the bus outside
   std::optional<image::CanFrame> entering;  ///< the wire inside is full
 };
@@ -78,7 +80,8 @@ bool find_urls(const SimOptions& options, machine::MachineConfig& m, std::vector
     if (b.mock()) complain(kInside, {b.name, b.url});
     if (b.lockstep()) complain(kLockstep, {b.url});
     if (b.mock() || b.lockstep()) return false;
-    buses.push_back({i, b.name, b.url, static_cast<std::uint32_t>(b.bit_rate), b.nodes.size(), {}, {}, {}});
+    buses.push_back({i, b.name, b.url, static_cast<std::uint32_t>(b.bit_rate), {}, {}, {}, {}, {}});
+    for (const machine::NodeConfig& node : b.nodes) buses.back().nodes.push_back(node.id);
     // Inside, the drives live on a simulated wire as in a control of their own.
     b.url = "mock:" + b.name;
   }
@@ -86,7 +89,8 @@ bool find_urls(const SimOptions& options, machine::MachineConfig& m, std::vector
   return !buses.empty();
 }
 
-bool open_buses(std::vector<Served>& buses) {
+/// kDone, or the exit code after saying what is wrong.
+int open_buses(std::vector<Served>& buses, const EndBySignal& signals) {
   for (Served& b : buses) {
     CanTransportOptions options;
     options.bit_rate = b.bit_rate;
@@ -94,15 +98,20 @@ bool open_buses(std::vector<Served>& buses) {
     auto opened = open_can(b.url, options, why);
     if (!opened) {
       complain(*why.entry, why.arguments);
-      return false;
+      return kInfrastructure;
     }
     b.transport = std::move(*opened);
-    std::fprintf(stderr, "%s\n",
-                 text::render(kServes, std::vector<std::string>{b.name, std::to_string(b.drives), b.url},
-                              text::user_language())
-                     .c_str());
+    if (const int code = may_join(b.transport, b.url, b.nodes, true, signals); code != kDone) return code;
+    b.twins.emplace(b.url, [nodes = b.nodes](int node) {
+      return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
+    });
+    std::fprintf(
+        stderr, "%s\n",
+        text::render(kServes, std::vector<std::string>{b.name, std::to_string(b.nodes.size()), b.url},
+                     text::user_language())
+            .c_str());
   }
-  return true;
+  return kDone;
 }
 
 /// Carries frames between a bus outside and the simulated wire of the same name. None is dropped: what the
@@ -110,7 +119,10 @@ bool open_buses(std::vector<Served>& buses) {
 void carry(Served& b, image::CanBus& inside) {
   image::CanFrame frame;
   while (b.entering || b.transport.bus->receive(frame)) {
-    if (b.entering) frame = *b.entering;
+    if (b.entering)
+      frame = *b.entering;
+    else
+      b.twins->hear(frame);
     b.entering.reset();
     if (frame.error || frame.fd) continue;  // classic devices hear no FD frame
     if (inside.send(frame)) continue;
@@ -183,7 +195,7 @@ bool play_point(MockWorld& world, const machine::MachineConfig& m, const std::st
 }
 
 int serve(const SimOptions& options, const machine::LoadResult& loaded, std::vector<Served>& buses,
-          DriveDesk& desk) {
+          DriveDesk& desk, const EndBySignal& signals) {
   constexpr image::Nanoseconds kShortest = 50 * image::kMicrosecond;
   MockWorld world(loaded);
   SwitchTeller teller(loaded.machine, world, options.json);
@@ -191,7 +203,6 @@ int serve(const SimOptions& options, const machine::LoadResult& loaded, std::vec
   for (const machine::BusConfig& bus : loaded.machine.buses)
     for (const machine::NodeConfig& node : bus.nodes)
       if (mock::SimulatedDrive* d = world.drive(bus.name + "." + node.name)) drives.push_back(d);
-  const EndBySignal signals;
   const image::Nanoseconds start = drivers::clock_ns(CLOCK_MONOTONIC);
   std::vector<pollfd> polled(buses.size() + 1);
   std::vector<bool> heard(buses.size());
@@ -229,13 +240,15 @@ int sim(const SimOptions& options) {
   if (!find_urls(options, loaded.machine, buses)) return kWrongUse;
   auto deeds = read_deeds(options.faults);
   if (!deeds) return kWrongUse;
-  if (!open_buses(buses)) return kInfrastructure;
+  const EndBySignal signals;
+  int code = open_buses(buses, signals);
+  if (code != kDone) return code;
   for (const machine::StationConfig& s : loaded.machine.stations)
     if (!s.over_bus() && s.mock())
       std::fprintf(stderr, "%s\n",
                    text::render(kNotServed, std::vector<std::string>{s.name}, text::user_language()).c_str());
   DriveDesk desk(std::move(*deeds), true);
-  int code = serve(options, loaded, buses, desk);
+  code = serve(options, loaded, buses, desk, signals);
   for (const Served& b : buses) code = unless_frames_lost(code, b.url, *b.transport.bus);
   return code;
 }

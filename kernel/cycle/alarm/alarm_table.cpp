@@ -360,8 +360,10 @@ constexpr AlarmRow kTable[] = {
      Reaction::stop_on_path,
      cause_gone,
      {"bus.node_restarted", "node {3}: has restarted by itself", "узел {3}: перезапустился сам"},
-     "Check the supply of the device and its watchdog; an axis has to be homed again.",
-     "Проверьте питание устройства и его сторожевой таймер; ось нужно снова вывести в ноль."},
+     "Check the supply of the device and its watchdog, and that no second device on the bus has its "
+     "node-ID; an axis has to be homed again.",
+     "Проверьте питание устройства и его сторожевой таймер и нет ли на шине второго устройства с его "
+     "номером узла; ось нужно снова вывести в ноль."},
     {alarm::kNodeLeft,
      Reaction::stop_on_path,
      cause_gone,
