@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "gateway/compose/bus_place.hpp"
+#include "gateway/machine/bus_place.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/run/standstill.hpp"
 #include "gateway/run/words/alarm_entries.hpp"
@@ -131,7 +131,7 @@ json buses_json(const machine::MachineConfig& m, const image::ProcessImage& imag
       nodes.push_back(
           {{"node", node.id}, {"name", node.name}, {"online", online(bus.name + "." + node.name)}});
     buses.push_back(
-        {{"name", bus.name}, {"url", bus.url}, {"place", bus_place(bus.url)}, {"nodes", std::move(nodes)}});
+        {{"name", bus.name}, {"url", bus.url}, {"place", machine::bus_place(bus.url)}, {"nodes", std::move(nodes)}});
   }
   return buses;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same bus written in different ways.
-#include "gateway/compose/bus_place.hpp"
+#include "gateway/machine/bus_place.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 namespace servogate::canopen_tools {
 namespace {
 
-using gateway::bus_place;
+using machine::bus_place;
 
-bool same(const char* a, const char* b) { return gateway::same_place(bus_place(a), bus_place(b)); }
+bool same(const char* a, const char* b) { return machine::same_bus(a, b); }
 
 TEST(BusPlace, a_unix_socket_is_one_place_however_the_way_to_it_is_written) {
   const std::string here = std::filesystem::current_path().string();
@@ -25,6 +25,13 @@ TEST(BusPlace, a_host_is_its_number) {
   EXPECT_EQ(bus_place("socketcand:no-such-host.invalid:1/can0"), "socketcand:no-such-host.invalid:1/can0");
   EXPECT_FALSE(same("socketcand:127.0.0.1:29536/can0", "socketcand:127.0.0.1:29537/can0"));
   EXPECT_TRUE(same("udp:239.74.163.2:43113", "udp:239.74.163.2:043113"));
+}
+
+TEST(BusPlace, names_of_hosts_are_looked_up_where_the_rest_is_equal) {
+  EXPECT_TRUE(machine::same_bus("socketcand:localhost:1/can0", "socketcand:localhost:01/can0"));
+  EXPECT_FALSE(machine::same_bus("socketcand:localhost:1/can0", "socketcand:localhost:1/can1"));
+  EXPECT_FALSE(machine::same_bus("mock:can", "socketcan:can"));
+  EXPECT_FALSE(machine::same_bus("", "mock:can"));
 }
 
 TEST(BusPlace, granted_time_is_on_the_bus_of_its_server) {

@@ -176,6 +176,18 @@ TEST_F(SimulatedDrives, sim_serves_the_drives_of_a_machine_and_tells_its_switche
   EXPECT_EQ(sim.wait(), 0);
 }
 
+TEST_F(SimulatedDrives, sim_serves_no_two_buses_on_one_wire) {
+  std::ifstream file(shell::source("tests/machine/broken/two_buses_on_one_wire.toml"));
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string wire = "url = \"mock:can\"";
+  text.replace(text.rfind(wire), wire.size(), "url = \"mock:can2\"");
+  desk_.write("two.toml", text);
+  EXPECT_EQ(tool("check two.toml").code, 0);
+  const Ended ended = tool("sim two.toml --bus can=$BUS --bus can2=socketcand:unix:./bus.sock/can0");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(ended.err_has("the buses 'can' and 'can2' would be one wire")) << ended.err;
+}
+
 TEST_F(SimulatedDrives, sim_says_that_a_mock_bus_can_be_reached_by_nobody) {
   const Ended ended = tool("sim $MILL");
   EXPECT_EQ(ended.code, 2);

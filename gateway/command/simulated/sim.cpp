@@ -18,6 +18,7 @@
 #include "gateway/command/simulated/node_presence.hpp"
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/simulated/mock_world.hpp"
+#include "gateway/machine/bus_place.hpp"
 
 namespace servogate::gateway::command {
 
@@ -37,6 +38,8 @@ const Entry kLockstep{"sim.lockstep",
                       "sim keeps pace with the wall clock; {0} has granted time: use `servogate drive`",
                       "sim идёт по настенным часам; у {0} выдаваемое время: для неё `servogate drive`"};
 const Entry kNoBuses{"sim.no-buses", "the machine file has no CAN bus", "в файле станка нет шины CAN"};
+const Entry kOneWire{"sim.one-wire", "the buses '{0}' and '{1}' would be one wire, {2}: each needs its own",
+                     "шины «{0}» и «{1}» оказались бы одним проводом, {2}: каждой нужен свой"};
 const Entry kServes{"sim.serves", "{0}: {1} simulated drives on {2}",
                     "{0}: имитируемых приводов на {2}: {1}"};
 const Entry kNotServed{"sim.not-served",
@@ -80,6 +83,11 @@ bool find_urls(const SimOptions& options, machine::MachineConfig& m, std::vector
     if (b.mock()) complain(kInside, {b.name, b.url});
     if (b.lockstep()) complain(kLockstep, {b.url});
     if (b.mock() || b.lockstep()) return false;
+    for (const Served& other : buses) {
+      if (!machine::same_bus(other.url, b.url)) continue;
+      complain(kOneWire, {other.name, b.name, b.url});
+      return false;
+    }
     buses.push_back({i, b.name, b.url, static_cast<std::uint32_t>(b.bit_rate), {}, {}, {}, {}, {}});
     for (const machine::NodeConfig& node : b.nodes) buses.back().nodes.push_back(node.id);
     // Inside, the drives live on a simulated wire as in a control of their own.

@@ -97,6 +97,10 @@ inline constexpr text::Entry kDeviceBroken{"machine.device_broken", "device file
 inline constexpr text::Entry kWrongDevice{"machine.wrong_device",
                                           "device \"{0}\" is a {1}, {2} is expected here",
                                           "устройство «{0}» — {1}, здесь ожидалось: {2}"};
+inline constexpr text::Entry kOneWire{
+    "machine.one_wire",
+    "bus \"{0}\" is the same wire as bus \"{1}\" in line {2}: each bus needs one of its own",
+    "шина «{0}» — тот же провод, что и шина «{1}» в строке {2}: каждой нужен свой"};
 inline constexpr text::Entry kNodeTwice{"machine.node_used_twice", "drive \"{0}\" already belongs to {1}",
                                         "привод «{0}» уже принадлежит: {1}"};
 inline constexpr text::Entry kNotSimulated{"machine.not_simulated",

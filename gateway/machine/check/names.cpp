@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "gateway/machine/bus_place.hpp"
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings.hpp"
 #include "kernel/program/interpreter.hpp"
@@ -70,11 +71,24 @@ void check_letters(const MachineConfig& machine, Reading& reading) {
   }
 }
 
+/// Two segments on one wire would take each other for a second master.
+void check_wire(const MachineConfig& machine, std::size_t b, Reading& reading) {
+  const BusConfig& bus = machine.buses[b];
+  for (std::size_t i = 0; i < b && !bus.url.empty(); ++i) {
+    const BusConfig& other = machine.buses[i];
+    if (!same_bus(other.url, bus.url)) continue;
+    const Where there = machine.where("bus." + std::to_string(i) + ".url");
+    return reading.error(machine.where("bus." + std::to_string(b) + ".url"), finding::kOneWire,
+                         {bus.name, other.name, std::to_string(there.line)});
+  }
+}
+
 void check_nodes(const MachineConfig& machine, Reading& reading) {
   NameSet buses(machine, reading, text::both("bus", "шина"));
   for (std::size_t b = 0; b < machine.buses.size(); ++b) {
     const std::string bus = "bus." + std::to_string(b);
     buses.add(machine.buses[b].name, bus + ".name");
+    check_wire(machine, b, reading);
     NameSet names(machine, reading, text::both("node", "узел"));
     NameSet ids(machine, reading, text::both("node id", "номер узла"));
     for (std::size_t n = 0; n < machine.buses[b].nodes.size(); ++n) {

@@ -9,7 +9,7 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/command/canopen/object_value.hpp"
-#include "gateway/compose/bus_place.hpp"
+#include "gateway/machine/bus_place.hpp"
 #include "gateway/server/socket/socket_path.hpp"
 
 namespace servogate::gateway::command {
@@ -65,7 +65,7 @@ std::optional<Holder> holder_at(const std::string& socket, const std::string& pl
   }
   if (!held.is_object()) return std::nullopt;
   for (const json& bus : held.value("buses", json::array())) {
-    if (!same_place(bus.value("place", bus.value("url", "")), place)) continue;
+    if (!machine::same_place(bus.value("place", bus.value("url", "")), place)) continue;
     Holder holder{
         socket, held.value("machine", ""), bus.value("name", ""), held.value("kind", "") == "run", false, {}};
     for (const json& n : bus.value("nodes", json::array()))
@@ -88,7 +88,7 @@ std::optional<Holder> holder_of(const NamedBus& bus) {
   if (const char* named = std::getenv("SERVOGATE_SOCKET"); named != nullptr) add(named);
   if (bus.machine && !bus.machine->machine.run.socket.empty())
     add(bus.machine->machine.resolve(bus.machine->machine.run.socket));
-  const std::string place = bus_place(bus.url);
+  const std::string place = machine::bus_place(bus.url);
   std::optional<Holder> silent;
   for (const std::string& socket : sockets) {
     auto holder = holder_at(socket, place);

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace servogate::gateway {
+namespace servogate::machine {
 
 /// Where the bus of a url is, in one way of writing for all processes of this computer: paths whole and
 /// without links, hosts as numbers, channels said; a lockstep bus is that of its server. Of what is no url:
@@ -14,4 +14,8 @@ std::string bus_place(std::string_view url);
 /// named by "any" may be every one.
 bool same_place(std::string_view a, std::string_view b);
 
-}  // namespace servogate::gateway
+/// The same of two urls. Names of hosts are looked up only where scheme and name are equal. Not real-time
+/// safe.
+bool same_bus(std::string_view url, std::string_view other);
+
+}  // namespace servogate::machine

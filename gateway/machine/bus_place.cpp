@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/bus_place.hpp"
+#include "gateway/machine/bus_place.hpp"
 
 #include <filesystem>
 
 #include "drivers/usercan/address.hpp"
 
-namespace servogate::gateway {
+namespace servogate::machine {
 
 namespace {
 
@@ -63,4 +63,15 @@ bool same_place(std::string_view a, std::string_view b) {
          channel_of(a) == channel_of(b);
 }
 
-}  // namespace servogate::gateway
+bool same_bus(std::string_view url, std::string_view other) {
+  const auto scheme = [](std::string_view u) { return u.substr(0, u.find(':')); };
+  const auto served = [&](std::string_view u) {
+    return scheme(u) == "socketcand" || scheme(u) == "lockstep";
+  };
+  const auto name = [](std::string_view u) { return u.substr(u.rfind('/') + 1); };
+  if (scheme(url) != scheme(other) && !(served(url) && served(other))) return false;
+  if (served(url) && name(url) != name(other)) return false;
+  return same_place(bus_place(url), bus_place(other));
+}
+
+}  // namespace servogate::machine
