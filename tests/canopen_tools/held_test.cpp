@@ -173,6 +173,7 @@ TEST_F(HeldByRun, has_no_room_for_a_second_device_with_the_node_id_of_one_that_l
     EXPECT_EQ(ended.code, 1) << words;
     EXPECT_TRUE(ended.err_has("is not simulated: a device with this node-ID is on ")) << ended.err;
   }
+  EXPECT_TRUE(tool("can check $BUS --seconds 1").out_has("127 (the control)"));
   EXPECT_EQ(alarms(), std::vector<int>()) << texts_;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "firmware_if/canopen/301/words/frame_words.hpp"
+#include "firmware_if/canopen/master/segment_config.hpp"
 #include "firmware_if/image/can_wire.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
@@ -228,6 +229,13 @@ void tell_adapter(Report& report, const std::string& url, gsusb::GsUsbBus& adapt
     report.wrong(kRising);
 }
 
+/// On a controlled bus 127 is the heartbeat of a servogate that controls it.
+std::string node_words(const Traffic& t, int node) {
+  const std::string number = std::to_string(node);
+  if (t.master.empty() || node != canopen::SegmentConfig().own_node) return number;
+  return text::both(number + " (the control)", number + " (управление)");
+}
+
 void tell_traffic(Report& report, const Traffic& t, const CanCheckOptions& options, std::uint32_t bit_rate) {
   const double load = static_cast<double>(t.bits) / (options.seconds * bit_rate) * 100.0;
   report.facts()["traffic"] = {{"seconds", options.seconds}, {"frames", t.frames},
@@ -240,7 +248,7 @@ void tell_traffic(Report& report, const Traffic& t, const CanCheckOptions& optio
                           std::to_string(bit_rate)});
   if (t.errors > 0) report.wrong(kErrorFrames, {std::to_string(t.errors)});
   std::string nodes;
-  for (const int node : t.nodes) nodes += (nodes.empty() ? "" : ", ") + std::to_string(node);
+  for (const int node : t.nodes) nodes += (nodes.empty() ? "" : ", ") + node_words(t, node);
   if (!nodes.empty()) report.say(kHeard, {nodes});
 }
 

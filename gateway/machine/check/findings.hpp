@@ -97,6 +97,9 @@ inline constexpr text::Entry kDeviceBroken{"machine.device_broken", "device file
 inline constexpr text::Entry kWrongDevice{"machine.wrong_device",
                                           "device \"{0}\" is a {1}, {2} is expected here",
                                           "устройство «{0}» — {1}, здесь ожидалось: {2}"};
+inline constexpr text::Entry kOwnNode{
+    "machine.own_node_id", "node-ID {0} is the control's own: its heartbeat has it; nodes have 1 to {1}",
+    "номер узла {0} занят самим управлением: с ним идёт его heartbeat; для узлов — от 1 до {1}"};
 inline constexpr text::Entry kOneWire{
     "machine.one_wire",
     "bus \"{0}\" is the same wire as bus \"{1}\" in line {2}: each bus needs one of its own",

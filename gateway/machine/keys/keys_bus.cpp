@@ -37,8 +37,8 @@ const Section& section_of<NodeConfig>() {
   static const Key keys[] = {
       key<&C::name>("name", {.required = true}, "name; others refer to the node as \"bus.name\"",
                     "имя; на узел ссылаются как \"шина.имя\""),
-      key<&C::id>("id", {.min = 1, .max = 127, .required = true}, "CANopen node-ID",
-                  "номер узла CANopen (Node-ID)"),
+      key<&C::id>("id", {.min = 1, .max = 127, .required = true}, "CANopen node-ID; 127 is the control's own",
+                  "номер узла CANopen (Node-ID); 127 занят самим управлением"),
       key<&C::device>("device", {.required = true, .refers = Refers::device}, "device file, without .toml",
                       "файл устройства, без .toml"),
       key<&C::heartbeat>("heartbeat", {.unit = Unit::second, .min = 0, .max = 60},
