@@ -73,8 +73,6 @@ class FakeDrive {
   }
   /// Takes the command computed in the last cycle and gives the feedback read in this one.
   void cycle(const image::DriveCommand& c, image::DriveFeedback& f) {
-    f.missed = mute ? f.missed + 1 : 0;
-    if (mute) return;
     power_cycles_ = c.power && !fault ? power_cycles_ + 1 : 0;
     if (c.reset_fault) fault = false;
     const bool on = power_cycles_ > enable_cycles && !c.quick_stop && !torque_off;
@@ -90,6 +88,8 @@ class FakeDrive {
       exact_ = static_cast<double>(counts);
     }
     latch(before, c.latch_arm);
+    f.missed = mute ? f.missed + 1 : 0;
+    if (mute) return;
     f.online = !lost;
     f.state = fault          ? image::DriveState::fault
               : torque_off   ? image::DriveState::switch_on_disabled
