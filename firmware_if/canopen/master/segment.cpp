@@ -187,6 +187,7 @@ struct Segment::Impl {
   image::Nanoseconds heartbeat_due_ns = 0, time_due_ns = 0;
   std::uint8_t sync_counter = 0;
   bool started = false;
+  bool heard = false;  ///< what waited on the bus before the first cycle has been taken
   std::size_t next_acyclic = 0;
   SdoBudget sdo;
   std::uint64_t send_failures = 0, send_failures_said = 0;
@@ -236,7 +237,8 @@ void Segment::Impl::say_send_failed(const ProcessImage& image, const image::CanF
 // Only the control speaks on these identifiers, and a bus does not give us our own frames back.
 void Segment::Impl::on_foreign(const CobId& cob, const image::CanFrame& frame,
                                const ProcessImage& image) noexcept {
-  if (foreign[static_cast<std::size_t>(cob.service)].pass(image.now.t_ns))
+  // What was said before the control began is nothing against it.
+  if (heard && foreign[static_cast<std::size_t>(cob.service)].pass(image.now.t_ns))
     say_frame(BusEventKind::foreign_frame, image, frame, cob.node);
 }
 
@@ -285,7 +287,9 @@ void Segment::Impl::watch_bus(const ProcessImage& image) noexcept {
 
 void Segment::Impl::drain(ProcessImage& image) noexcept {
   image::CanFrame frame;
-  for (int n = 0; n < kMaxFramesPerCycle && bus.receive(frame); ++n) dispatch(frame, image);
+  int n = 0;
+  while (n < kMaxFramesPerCycle && bus.receive(frame)) ++n, dispatch(frame, image);
+  heard = heard || n < kMaxFramesPerCycle;
   for (BusNode& node : nodes) node.evaluate(image, context(image));
 }
 

@@ -169,6 +169,19 @@ TEST_F(RunningRig, frames_of_another_master_are_named_once_a_second) {
   EXPECT_EQ(rig.count(BusEventKind::foreign_frame), 6);
 }
 
+TEST(Segment, does_not_hold_against_anybody_what_was_said_before_it_began) {
+  SegmentRig rig;
+  rig.start();
+  // More than one cycle takes.
+  for (int i = 0; i < 2000; ++i)
+    rig.network.waiting.push_back(frame(0x601, {0x40, 0x00, 0x10, 0, 0, 0, 0, 0}));
+  ASSERT_TRUE(rig.boot());
+  EXPECT_EQ(rig.count(BusEventKind::foreign_frame), 0);
+  rig.network.waiting.push_back(frame(0x601, {0x40, 0x00, 0x10, 0, 0, 0, 0, 0}));
+  rig.step();
+  EXPECT_EQ(rig.count(BusEventKind::foreign_frame), 1);
+}
+
 TEST_F(RunningRig, a_node_nobody_declared_is_named_once) {
   ASSERT_TRUE(ready);
   for (int i = 0; i < 10; ++i) {
