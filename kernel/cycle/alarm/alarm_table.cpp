@@ -565,20 +565,6 @@ constexpr AlarmRow kTable[] = {
 static_assert(std::is_sorted(std::begin(kTable), std::end(kTable),
                              [](const AlarmRow& a, const AlarmRow& b) { return a.number < b.number; }));
 
-constexpr std::string_view kReactionWords[][2] = {
-    {"none", "нет"},
-    {"warning", "предупреждение"},
-    {"stop at block end", "останов в конце кадра"},
-    {"stop on the path", "останов на траектории"},
-    {"stop of each axis", "останов каждой оси"},
-    {"stop of each axis, then power off", "останов каждой оси, затем отключение питания"},
-    {"quick stop", "быстрый останов"},
-    {"power off", "отключение питания"}};
-constexpr std::string_view kResetWords[][2] = {
-    {"reset", "сброс"},
-    {"reset after the cause has gone", "сброс после устранения причины"},
-    {"goes by itself", "снимается автоматически"}};
-
 }  // namespace
 
 std::span<const AlarmRow> alarm_table() noexcept { return kTable; }
@@ -588,14 +574,6 @@ const AlarmRow* find_alarm(image::AlarmNumber number) noexcept {
       std::lower_bound(std::begin(kTable), std::end(kTable), number,
                        [](const AlarmRow& r, image::AlarmNumber n) { return r.number < n; });
   return row != std::end(kTable) && row->number == number ? row : nullptr;
-}
-
-std::string_view words(image::Reaction reaction, text::Language language) {
-  return kReactionWords[static_cast<int>(reaction)][language == text::Language::russian];
-}
-
-std::string_view words(ResetCondition condition, text::Language language) {
-  return kResetWords[static_cast<int>(condition)][language == text::Language::russian];
 }
 
 }  // namespace servogate::cycle

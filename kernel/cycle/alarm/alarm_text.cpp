@@ -23,6 +23,20 @@ constexpr std::string_view kDriveStates[][2] = {{"offline", "нет связи"}
                                                 {"fault", "авария"}};
 constexpr int kStateCount = static_cast<int>(std::size(kDriveStates));
 
+constexpr std::string_view kReactionWords[][2] = {
+    {"none", "нет"},
+    {"warning", "предупреждение"},
+    {"stop at block end", "останов в конце кадра"},
+    {"stop on the path", "останов на траектории"},
+    {"stop of each axis", "останов каждой оси"},
+    {"stop of each axis, then power off", "останов каждой оси, затем отключение питания"},
+    {"quick stop", "быстрый останов"},
+    {"power off", "отключение питания"}};
+constexpr std::string_view kResetWords[][2] = {
+    {"reset", "сброс"},
+    {"reset after the cause has gone", "сброс после устранения причины"},
+    {"goes by itself", "снимается автоматически"}};
+
 /// detail1 of an overrun: 0 the thread woke up late, n the phase n - 1 of the cycle before (cycle::Phase).
 constexpr std::string_view kLatePhases[][2] = {
     {"waking up (the computer was busy elsewhere)", "пробуждение (компьютер был занят другим)"},
@@ -246,6 +260,14 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
 }
 
 }  // namespace
+
+std::string_view words(image::Reaction reaction, text::Language language) {
+  return kReactionWords[static_cast<int>(reaction)][language == text::Language::russian];
+}
+
+std::string_view words(ResetCondition condition, text::Language language) {
+  return kResetWords[static_cast<int>(condition)][language == text::Language::russian];
+}
 
 std::string statusword_text(std::uint16_t statusword, Language language) {
   const bool russian = language == Language::russian;
