@@ -31,6 +31,7 @@ struct DriveOptions {
   std::string profile;                ///< servo, stepper, spindle, or a data sheet
   std::vector<std::string> plant;     ///< KEY=VALUE
   std::vector<std::string> switches;  ///< INPUT=FROM..TO, revolutions
+  std::string pdo_map;                ///< variable, whole, fixed; empty: as the device file says
   FaultOptions faults;
   double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
 };

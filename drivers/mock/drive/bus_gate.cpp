@@ -7,42 +7,40 @@
 namespace servogate::mock {
 namespace {
 
-/// 180h, 280h, 380h, 480h + node. Source: CiA 301, 7.3.5, predefined connection set.
-bool means(std::uint32_t number, const image::CanFrame& frame) noexcept {
-  return number == 0 || frame.id >> 7 == 2 * number + 1;
+constexpr bool means(std::uint32_t wanted, std::uint32_t number) noexcept {
+  return wanted == 0 || wanted == number;
 }
 
 }  // namespace
 
 bool BusGate::send(const image::CanFrame& frame) noexcept {
   if (!bus_ || spoil_.silent) return true;
-  if (frame.id == canopen::cob::heartbeat(node_)) return spoil_.heartbeat_lost || bus_->send(frame);
-  if (frame.id == canopen::cob::sdo_response(node_))
+  if (frame.id == canopen::cob::heartbeat(device_.node())) return spoil_.heartbeat_lost || bus_->send(frame);
+  if (frame.id == canopen::cob::sdo_response(device_.node()))
     return spoil_.sdo_silent || send_later(frame, spoil_.sdo_delay_ns);
-  if (frame.id == canopen::cob::emcy(node_)) return bus_->send(frame);
-  return send_pdo(frame);
+  const int number = device_.transmit_pdo_of(frame.id);
+  return number > 0 ? send_pdo(frame, static_cast<std::uint32_t>(number)) : bus_->send(frame);
 }
 
-bool BusGate::send_pdo(image::CanFrame frame) noexcept {
-  if (spoil_.pdo_dropped_every > 0 && means(spoil_.dropped_number, frame) &&
+bool BusGate::send_pdo(image::CanFrame frame, std::uint32_t number) noexcept {
+  if (spoil_.pdo_dropped_every > 0 && means(spoil_.dropped_number, number) &&
       ++pdos_ % spoil_.pdo_dropped_every == 0)
     return true;
-  const auto same = [&frame](const image::CanFrame& f) { return f.length > 0 && f.id == frame.id; };
-  auto old = std::find_if(last_.begin(), last_.end(), same);
-  if (old == last_.end())
-    old = std::find_if(last_.begin(), last_.end(), [](const auto& f) { return f.length == 0; });
-  if (old != last_.end()) {
-    if (spoil_.pdo_repeated && means(spoil_.repeated_number, frame) && old->length > 0)
-      frame = *old;
-    else
-      *old = frame;
+  image::CanFrame& old = last_[number - 1];
+  if (spoil_.pdo_repeated && means(spoil_.repeated_number, number) && old.length > 0) {
+    const std::uint32_t id = frame.id;
+    frame = old;
+    frame.id = id;  // its master may have moved it meanwhile
+    frame.wire_bits = 0;
+  } else {
+    old = frame;
   }
-  if (spoil_.pdo_flip != 0 && means(spoil_.flipped_number, frame)) {
+  if (spoil_.pdo_flip != 0 && means(spoil_.flipped_number, number)) {
     const auto bytes = std::span(frame.data).first(frame.length);
     canopen::store_le(canopen::load_le(bytes) ^ spoil_.pdo_flip, bytes);
     frame.wire_bits = 0;
   }
-  return send_later(frame, means(spoil_.late_number, frame) ? spoil_.pdo_delay_ns : 0);
+  return send_later(frame, means(spoil_.late_number, number) ? spoil_.pdo_delay_ns : 0);
 }
 
 bool BusGate::send_later(const image::CanFrame& frame, image::Nanoseconds delay) noexcept {

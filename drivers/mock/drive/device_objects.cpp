@@ -85,13 +85,35 @@ std::vector<ObjectPlace> all_but(const canopen::Eds& sheet, const std::set<Place
   return places;
 }
 
+bool is_map(const ObjectSpec& row) {
+  return (row.index >= object::kRpdoMapping && row.index < object::kRpdoMapping + canopen::kPdos) ||
+         (row.index >= object::kTpdoMapping && row.index < object::kTpdoMapping + canopen::kPdos);
+}
+
+/// Maps that come with the device, because nobody can write them.
+void put_maps(const SimulatedDriveConfig& config, std::vector<ObjectSpec>& rows) {
+  if (config.map_access == canopen::MapAccess::variable || config.maps.empty()) return;
+  for (ObjectSpec& row : rows) {
+    if (!is_map(row)) continue;
+    row.value = 0;
+    for (const SimulatedDriveConfig::PdoMap& map : config.maps) {
+      const std::uint16_t first = map.transmit ? object::kTpdoMapping : object::kRpdoMapping;
+      if (row.index != first + map.number - 1 || row.subindex > map.mapping.count) continue;
+      row.value = row.subindex == 0 ? map.mapping.count : map.mapping.entries[row.subindex - 1u].word();
+    }
+  }
+}
+
 }  // namespace
 
 DeviceObjects device_objects(const SimulatedDriveConfig& config) {
   DeviceObjects out;
   const std::vector<ObjectSpec> own = own_rows(config);
   out.rows = own;
-  if (config.data_sheet == nullptr) return out;
+  if (config.data_sheet == nullptr) {
+    put_maps(config, out.rows);
+    return out;
+  }
   const canopen::Eds& sheet = *config.data_sheet;
   std::set<Place> shown;
   for (ObjectSpec row : canopen::object_specs(sheet, node_of(config))) {
@@ -112,6 +134,7 @@ DeviceObjects device_objects(const SimulatedDriveConfig& config) {
   }
   for (const ObjectSpec& row : own)
     if (shown.count(place_of(row)) == 0) out.hidden.push_back(row);
+  put_maps(config, out.rows);
   out.left_out = all_but(sheet, shown);
   return out;
 }

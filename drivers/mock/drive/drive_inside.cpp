@@ -67,7 +67,6 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
       next_servo += config.servo_period_ns;
     } else {
       if (any_lasting) expire(next_communication);
-      gate.set_node(slave.node());
       gate.advance_to(next_communication);
       slave.tick(next_communication);
       next_communication += kCommunicationPeriod;
@@ -177,6 +176,7 @@ void SimulatedDrive::Inside::inject(const DriveFault& f) noexcept {
   if (!lasts(f.kind)) return happen(f);
   lasting[static_cast<std::size_t>(f.kind)] = {f, f.duration_ns > 0 ? now + f.duration_ns : 0, true};
   if (f.kind == DriveFaultKind::rpdo_dropped) rpdos_dropped_of = 0;
+  if (f.kind == DriveFaultKind::pdo_dropped) gate.count_pdos_anew();
   if (f.kind == DriveFaultKind::encoder_loss) lost_encoder_position = plant.state().position;
   apply_to_gate();
 }

@@ -55,7 +55,7 @@ struct SimulatedDrive::Inside {
   canopen::Slave slave;
   std::optional<canopen::ProgramStore> programs;
   Plant plant;
-  BusGate gate;
+  BusGate gate{slave};
   canopen::ServoCommand command;
   canopen::DriveInputs inputs;
   std::array<bool, canopen::kDriveInputs> outside_level{};

@@ -31,6 +31,7 @@ SimulatedDrive::Inside::Inside(const SimulatedDriveConfig& c)
       slave(c.node_id, dictionary, profile),
       plant(c.plant, c.servo_period_ns) {
   profile.connect(slave.emcy());
+  slave.let_change_maps(c.map_access);
   if (c.program_memory > 0) {
     programs.emplace(dictionary, c.program_memory, canopen::ProgramStore::Times{});
     slave.use(*programs);
@@ -46,7 +47,7 @@ SimulatedDrive::SimulatedDrive(const SimulatedDriveConfig& config)
 SimulatedDrive::~SimulatedDrive() = default;
 
 void SimulatedDrive::connect(image::CanBus& bus, Nanoseconds now) {
-  inside_->gate.connect(bus, inside_->config.node_id);
+  inside_->gate.connect(bus);
   inside_->power_on(now);
 }
 

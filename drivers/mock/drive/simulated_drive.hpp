@@ -12,8 +12,10 @@
 #include "drivers/mock/drive/plant.hpp"
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/301/nmt.hpp"
+#include "firmware_if/canopen/301/pdo_mapping.hpp"
 #include "firmware_if/canopen/306/eds.hpp"
 #include "firmware_if/canopen/device/drive/drive_objects.hpp"
+#include "firmware_if/canopen/device/pdo_channel.hpp"
 #include "firmware_if/image/drive_link.hpp"
 #include "firmware_if/image/process_image.hpp"
 
@@ -61,6 +63,15 @@ struct SimulatedDriveConfig {
   std::size_t program_memory = 0;  ///< bytes for a program download (1F50h); 0: the device has none
   std::uint32_t program_identification = 0x0001'0000;  ///< 1F56h of the program that it comes with
   canopen::DriveQuirks quirks = {};
+  /// What a master may change of the PDO maps. Maps that it may not change are `maps` where there are any,
+  /// else those of the data sheet, else those of CiA 402-3.
+  canopen::MapAccess map_access = canopen::MapAccess::variable;
+  struct PdoMap {
+    bool transmit = false;  ///< 1A00h, else 1600h
+    int number = 1;         ///< 1-4
+    canopen::PdoMapping mapping;
+  };
+  std::vector<PdoMap> maps;  ///< of the others nothing is mapped
   /// EDS or DCF: the device has the objects of this sheet with their values, and shows no others. What the
   /// sheet says no value of keeps the simulation's. nullptr: it has all objects of the simulation.
   std::shared_ptr<const canopen::Eds> data_sheet;

@@ -102,6 +102,16 @@ AbortCode check_pdo_parameter(const ObjectDictionary& dictionary, std::uint16_t 
                  : check_communication(dictionary, index, subindex, value);
 }
 
+AbortCode check_pdo_map_access(const ObjectDictionary& dictionary, MapAccess access, std::uint16_t index,
+                               std::uint8_t subindex, std::uint32_t value) noexcept {
+  const bool mapping = index & 0x0200;
+  if (!mapping || access == MapAccess::variable) return AbortCode::none;
+  if (access == MapAccess::fixed) return AbortCode::read_only;
+  const auto slot = dictionary.find(index, subindex);
+  const auto own = static_cast<std::uint32_t>(dictionary.spec(slot).value);
+  return value == own || (subindex == 0 && value == 0) ? AbortCode::none : AbortCode::cannot_be_mapped;
+}
+
 void MappedObjects::load(const ObjectDictionary& dictionary, std::uint16_t mapping_index) noexcept {
   count_ = 0;
   std::uint32_t offset = 0;

@@ -33,6 +33,19 @@ constexpr bool restricted_cob_id(std::uint32_t id) noexcept {
 AbortCode check_pdo_parameter(const ObjectDictionary& dictionary, std::uint16_t index, std::uint8_t subindex,
                               std::uint32_t value) noexcept;
 
+/// What a device lets its master change of its PDO maps (1600h-1603h, 1A00h-1A03h). COB-IDs, transmission
+/// types and times can be written with all of them.
+enum class MapAccess : std::uint8_t {
+  variable,  ///< everything, as CiA 301 has it
+  whole,     ///< :00 takes 0 and its own count, an entry its own value; else 0604 0041h
+  fixed,     ///< nothing: 0601 0002h
+};
+
+/// Whether the device lets this value be written at all; its own maps are the defaults of `dictionary`.
+/// real-time safe.
+AbortCode check_pdo_map_access(const ObjectDictionary& dictionary, MapAccess access, std::uint16_t index,
+                               std::uint8_t subindex, std::uint32_t value) noexcept;
+
 /// Objects of a mapping with their places in the dictionary, for the cyclic path.
 class MappedObjects {
  public:

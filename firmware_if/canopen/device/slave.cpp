@@ -83,6 +83,14 @@ int Slave::receive_pdo_of(const image::CanFrame& frame) const noexcept {
   return 0;
 }
 
+int Slave::transmit_pdo_of(std::uint32_t id) const noexcept {
+  for (int n = 0; n < kPdos; ++n) {
+    const TransmitPdo& p = transmit_[static_cast<std::size_t>(n)];
+    if (p.valid() && p.id() == id) return n + 1;
+  }
+  return 0;
+}
+
 void Slave::on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexcept {
   if (!concerned(frame)) return;
   now_ = now;

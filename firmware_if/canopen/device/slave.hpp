@@ -61,6 +61,8 @@ class Slave final : private SdoObjects, private PdoSink, private PdoEvents, priv
   /// real-time safe.
   Slave(NodeId node, ObjectDictionary& dictionary, DeviceProfile& profile);
 
+  /// Which of its PDO maps a master may change; at first all.
+  void let_change_maps(MapAccess access) noexcept { map_access_ = access; }
   /// A program memory, for a dictionary with program_objects(); to be called before power_on().
   void use(ProgramStore& programs) noexcept { programs_ = &programs; }
 
@@ -87,6 +89,8 @@ class Slave final : private SdoObjects, private PdoSink, private PdoEvents, priv
   bool immediate(const image::CanFrame& frame) const noexcept;
   /// Which RPDO, 1-4, this frame is to the device; 0: none.
   int receive_pdo_of(const image::CanFrame& frame) const noexcept;
+  /// Which TPDO of the device, 1-4, has this identifier now; 0: none.
+  int transmit_pdo_of(std::uint32_t id) const noexcept;
   void on_frame(const image::CanFrame& frame, image::Nanoseconds now) noexcept;
   /// Timers; call every millisecond.
   void tick(image::Nanoseconds now) noexcept;
@@ -150,6 +154,7 @@ class Slave final : private SdoObjects, private PdoSink, private PdoEvents, priv
   NodeMonitor monitor_;
   LssSlave lss_;
   ProgramStore* programs_ = nullptr;
+  MapAccess map_access_ = MapAccess::variable;
   std::array<ReceivePdo, kPdos> receive_;
   std::array<TransmitPdo, kPdos> transmit_;
   bool any_event_driven_ = false;

@@ -79,7 +79,10 @@ AbortCode Slave::write(std::uint16_t index, std::uint8_t subindex,
 AbortCode Slave::check_communication_write(std::uint16_t index, std::uint8_t subindex,
                                            std::int64_t value) const noexcept {
   const auto word = static_cast<std::uint32_t>(value);
-  if (pdo_parameter(index)) return check_pdo_parameter(dictionary_, index, subindex, word);
+  if (pdo_parameter(index)) {
+    const AbortCode code = check_pdo_map_access(dictionary_, map_access_, index, subindex, word);
+    return code != AbortCode::none ? code : check_pdo_parameter(dictionary_, index, subindex, word);
+  }
   switch (index) {
     case object::kProgramControl:
       return programs_ ? programs_->check_control(value) : AbortCode::none;

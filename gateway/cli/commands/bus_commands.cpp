@@ -70,6 +70,10 @@ void add_drive(CLI::App& app, DriveOptions& o) {
                "Switch on an input that follows the shaft, in revolutions: home=1.5..2 positive_limit=3..")
       ->type_name("INPUT=FROM..TO")
       ->delimiter(',');
+  d.add_option("--pdo-map", o.pdo_map,
+               "What a master may change of the PDO maps: variable, whole (on and off), fixed (nothing)")
+      ->type_name("ACCESS")
+      ->check(CLI::IsMember({"variable", "whole", "fixed"}));
   add_faults(d, o.faults);
   add_bit_rate(d, o.bit_rate);
   d.footer(

@@ -128,6 +128,8 @@ inline constexpr Translation kCatalogue[] = {
      "Двигатель и нагрузка: inertia=0.002 friction=0.3 gravity=1.5 ..."},
     {"Switch on an input that follows the shaft, in revolutions: home=1.5..2 positive_limit=3..",
      "Выключатель на входе, следящий за валом, в оборотах: home=1.5..2 positive_limit=3.."},
+    {"What a master may change of the PDO maps: variable, whole (on and off), fixed (nothing)",
+     "Что ведущий может менять в отображениях PDO: variable — всё, whole — вкл. и выкл., fixed — ничего"},
     {"On standard input it takes faults as --fault, and clear [FAULT], input NAME on|off, load NM, status.",
      "Со стандартного ввода принимает отказы, как --fault, и clear [FAULT], input NAME on|off, load NM, "
      "status."},

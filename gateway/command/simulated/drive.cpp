@@ -147,6 +147,16 @@ int apply_switches(const DriveOptions& options, Plan& plan) {
   return kDone;
 }
 
+/// --pdo-map, for all drives.
+void apply_map_access(const DriveOptions& options, Plan& plan) {
+  using enum canopen::MapAccess;
+  constexpr std::pair<std::string_view, canopen::MapAccess> kNames[] = {
+      {"variable", variable}, {"whole", whole}, {"fixed", fixed}};
+  for (const auto& [name, access] : kNames)
+    if (name == options.pdo_map)
+      for (mock::SimulatedDriveConfig& drive : plan.drives) drive.map_access = access;
+}
+
 int plan_from_url(const DriveOptions& options, Plan& plan) {
   if (!options.profile.empty()) return plan_from_profile(options, plan);
   machine::DeviceResult device;
@@ -276,6 +286,7 @@ int drive(const DriveOptions& options) {
     return code;
   if (const int code = apply_plant(options, plan); code != kDone) return code;
   if (const int code = apply_switches(options, plan); code != kDone) return code;
+  apply_map_access(options, plan);
   auto deeds = read_deeds(options.faults);
   if (!deeds) return kWrongUse;
   const EndBySignal signals;

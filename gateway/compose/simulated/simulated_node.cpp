@@ -66,6 +66,17 @@ canopen::DriveQuirks quirks_of(const machine::DeviceConfig& device) {
   return q;
 }
 
+/// Its process data as its file has them: the maps of a drive that lets nobody write them.
+void put_maps(const machine::DeviceConfig& device, mock::SimulatedDriveConfig& drive) {
+  if (device.behaviour.fixed_pdo_map) drive.map_access = canopen::MapAccess::fixed;
+  for (const bool transmit : {false, true})
+    for (const machine::PdoConfig& pdo : transmit ? device.tpdos : device.rpdos) {
+      mock::SimulatedDriveConfig::PdoMap map{transmit, pdo.number, {}};
+      for (const machine::PdoObject& o : pdo.objects) map.mapping.add({o.index, o.subindex, o.bits});
+      drive.maps.push_back(map);
+    }
+}
+
 template <class Config>
 void put_name_plate(const machine::DeviceConfig& device, int node, Config& config) {
   config.node_id = static_cast<canopen::NodeId>(node);
@@ -118,7 +129,10 @@ mock::SimulatedDriveConfig simulated_device(const machine::DeviceConfig* device,
   if (device != nullptr && device->product_code != 0)
     drive.product_code = static_cast<std::uint32_t>(device->product_code);
   drive.plant = plant_of(device, nullptr, nullptr, nullptr);
-  if (device != nullptr) drive.quirks = quirks_of(*device);
+  if (device != nullptr) {
+    drive.quirks = quirks_of(*device);
+    put_maps(*device, drive);
+  }
   return drive;
 }
 

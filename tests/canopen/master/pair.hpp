@@ -14,7 +14,8 @@ inline constexpr std::int64_t kTurn = 262'144;
 
 /// One drive with its quirks, and a master with what its device file says.
 struct Pair {
-  Pair(const DriveQuirks& quirks, const std::function<void(NodeConfig&)>& told)
+  Pair(const DriveQuirks& quirks, const std::function<void(NodeConfig&)>& told,
+       const std::function<void(mock::SimulatedDriveConfig&)>& built = {})
       : bus(wire.add_endpoint("master")) {
     NodeConfig node;
     node.node = 1;
@@ -28,6 +29,7 @@ struct Pair {
     plate.plant.counts_per_rev = kTurn;
     plate.plant.start_rev = 0.3;
     plate.quirks = quirks;
+    if (built) built(plate);
     drive = std::make_unique<mock::SimulatedDrive>(plate);
     wire.attach(*drive);
     segment = std::make_unique<Segment>(bus, config);

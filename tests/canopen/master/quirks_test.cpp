@@ -200,5 +200,55 @@ TEST(Quirks, speeds_of_homing_go_in_the_drives_own_units_and_home_is_at_0_of_its
   EXPECT_EQ(pair.feedback().home_counts, 0);
 }
 
+/// A drive whose maps are these already, and that lets nobody change them.
+std::function<void(mock::SimulatedDriveConfig&)> with_fixed_maps(MapAccess access, std::uint32_t target) {
+  return [=](mock::SimulatedDriveConfig& plate) {
+    mock::SimulatedDriveConfig::PdoMap to{false, 1, {}}, from{true, 1, {}};
+    for (const std::uint32_t word : {0x6040'0010u, target}) to.mapping.add(MappingEntry::from_word(word));
+    for (const std::uint32_t word : {0x6041'0010u, 0x6064'0020u})
+      from.mapping.add(MappingEntry::from_word(word));
+    plate.map_access = access;
+    plate.maps = {to, from};
+  };
+}
+constexpr std::uint32_t kTargetPosition = 0x607A'0020, kTargetVelocity = 0x60FF'0020;
+void fixed(NodeConfig& node) { node.profile.pdo_map_fixed = true; }
+void not_told(NodeConfig&) {}
+
+TEST(Quirks, a_map_that_cannot_be_written_is_compared_where_the_file_says_so_and_the_drive_moves) {
+  Pair told({}, fixed, with_fixed_maps(MapAccess::fixed, kTargetPosition));
+  ASSERT_TRUE(told.enable()) << told.story;
+  const std::int64_t start = told.feedback().position_counts;
+  for (int i = 0; i < 200; ++i) {
+    told.command().position_counts += 100;
+    told.run(1);
+  }
+  told.run(20);
+  EXPECT_NEAR(static_cast<double>(told.feedback().position_counts - start), 20'000.0, 20.0) << told.story;
+}
+
+TEST(Quirks, a_map_that_cannot_be_written_stops_the_boot_where_the_file_does_not_say_so) {
+  Pair untold({}, not_told, with_fixed_maps(MapAccess::fixed, kTargetPosition));
+  EXPECT_FALSE(boots(untold));
+  EXPECT_NE(untold.story.find("writing 1600h:00"), std::string::npos) << untold.story;
+  EXPECT_NE(untold.story.find("(06010002h)"), std::string::npos) << untold.story;
+}
+
+TEST(Quirks, a_fixed_map_that_is_another_one_is_named_with_both) {
+  Pair told({}, fixed, with_fixed_maps(MapAccess::fixed, kTargetVelocity));
+  EXPECT_FALSE(boots(told));
+  for (const char* part : {"1600h:02", "expected 607A0020h", "got 60FF0020h"})
+    EXPECT_NE(told.story.find(part), std::string::npos) << told.story;
+}
+
+TEST(Quirks, maps_that_are_switched_as_a_whole_take_their_own_entries_and_no_others) {
+  Pair same({}, not_told, with_fixed_maps(MapAccess::whole, kTargetPosition));
+  EXPECT_TRUE(boots(same)) << same.story;
+  Pair other({}, not_told, with_fixed_maps(MapAccess::whole, kTargetVelocity));
+  EXPECT_FALSE(boots(other));
+  EXPECT_NE(other.story.find("writing 1600h:02"), std::string::npos) << other.story;
+  EXPECT_NE(other.story.find("(06040041h)"), std::string::npos) << other.story;
+}
+
 }  // namespace
 }  // namespace servogate::canopen

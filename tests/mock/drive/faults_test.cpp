@@ -96,6 +96,77 @@ TEST_F(DriveFaults, corrupted_and_repeated_pdos) {
   while (const auto f = b.take(0x185)) EXPECT_EQ(f->data, before->data);
 }
 
+// ---- TPDOs that their master has moved ----
+
+struct MovedPdos : DriveFaults {
+  static constexpr std::uint32_t kFirst = 0x3A5, kSecond = 0x1C0;  // neither is anybody's predefined TPDO
+  void SetUp() override {
+    DriveFaults::SetUp();
+    b.write(0x1800, 1, 0xC0000185, 4);
+    b.write(0x1800, 1, 0xC0000000 | kFirst, 4);
+    b.write(0x1800, 1, 0x40000000 | kFirst, 4);
+    b.write(0x1801, 2, 1, 1);
+    b.write(0x1801, 1, 0xC0000000 | kSecond, 4);
+    b.write(0x1801, 1, 0x40000000 | kSecond, 4);
+    cycles(2);
+    b.seen.clear();
+  }
+};
+
+TEST_F(MovedPdos, are_dropped_by_their_number) {
+  b.drive.inject({.kind = DriveFaultKind::pdo_dropped, .number = 1});
+  cycles(20);
+  EXPECT_EQ(b.count(kFirst), 0);
+  EXPECT_EQ(b.count(kSecond), 20);
+  b.drive.clear_faults();
+  b.drive.inject({.kind = DriveFaultKind::pdo_dropped, .every = 4, .number = 2});
+  b.seen.clear();
+  cycles(20);
+  EXPECT_EQ(b.count(kFirst), 20);
+  EXPECT_EQ(b.count(kSecond), 15);
+}
+
+TEST_F(MovedPdos, are_late_by_their_number) {
+  b.drive.inject({.kind = DriveFaultKind::pdo_late, .delay_ns = 5 * kMillisecond, .number = 1});
+  cycles(20);
+  EXPECT_NEAR(b.count(kFirst), 15, 1);
+  EXPECT_EQ(b.count(kSecond), 20);
+}
+
+TEST_F(MovedPdos, are_corrupted_by_their_number) {
+  b.drive.inject({.kind = DriveFaultKind::pdo_corrupted, .number = 1, .value = 0xFF});
+  cycles(1);
+  const auto good = static_cast<std::uint8_t>(b.drive.statusword());
+  EXPECT_EQ(b.take(kFirst)->data[0], good ^ 0xFF);
+  EXPECT_EQ(b.take(kSecond)->data[0], good);
+}
+
+TEST_F(MovedPdos, are_repeated_by_their_number_under_the_identifier_that_they_have_now) {
+  b.drive.inject({.kind = DriveFaultKind::pdo_repeated, .number = 1});
+  cycles(1);
+  const auto before = b.take(kFirst);
+  b.write(0x1800, 1, 0xC0000000 | kFirst, 4);
+  b.write(0x1800, 1, 0xC0000185, 4);
+  b.write(0x1800, 1, 0x40000185, 4);
+  for (int i = 1; i < 10; ++i) b.cycle(0x0F, 500 * i);
+  EXPECT_EQ(b.count(kFirst), 0);
+  ASSERT_GE(b.count(0x185), 8);
+  while (const auto f = b.take(0x185)) EXPECT_EQ(f->data, before->data);
+}
+
+TEST_F(MovedPdos, leave_what_is_no_pdo_alone_although_it_has_the_identifier_of_one) {
+  // EMCY moved to where TPDO1 is by default, which nobody uses now.
+  b.write(0x1014, 0, 0x80000085, 4);
+  ASSERT_EQ(b.write(0x1014, 0, 0x80000185, 4), 0u);
+  ASSERT_EQ(b.write(0x1014, 0, 0x00000185, 4), 0u);
+  b.drive.inject({.kind = DriveFaultKind::pdo_dropped});
+  b.seen.clear();
+  b.drive.inject({.kind = DriveFaultKind::emcy_only, .error_code = 0x4210});
+  cycles(5);
+  EXPECT_EQ(b.count(0x185), 1);
+  EXPECT_EQ(b.count(kFirst), 0);
+}
+
 // ---- what the drive hears ----
 
 TEST_F(DriveFaults, an_rpdo_that_does_not_come_leaves_the_drive_where_it_is) {

@@ -400,5 +400,58 @@ TEST(DriveSync, an_rpdo_after_the_synchronous_window_is_dropped) {
   EXPECT_EQ(b.read(0x607A), 0x10u) << "this one came 5 ms after SYNC";
 }
 
+// ---- maps that nobody can change ----
+
+SimulatedDriveConfig with_maps(canopen::MapAccess access) {
+  SimulatedDriveConfig c;
+  c.map_access = access;
+  return c;
+}
+
+TEST(DrivePdoMap, a_fixed_one_refuses_every_write_as_read_only_and_can_be_read) {
+  DriveBench b(with_maps(canopen::MapAccess::fixed));
+  for (const std::uint16_t map : {0x1600, 0x1603, 0x1A00, 0x1A03})
+    for (const auto& [sub, value, size] : {std::tuple{0, 0, 1}, {0, 1, 1}, {1, 0x60400010, 4}})
+      EXPECT_EQ(b.write(map, static_cast<std::uint8_t>(sub), value, size), 0x06010002u) << std::hex << map;
+  EXPECT_EQ(b.write(0x1400, 1, 0x80000205, 4), 0u) << "the COB-ID is another matter";
+  EXPECT_EQ(b.write(0x1600, 0, 0, 1), 0x06010002u) << "nor while the PDO is invalid";
+  EXPECT_EQ(b.write(0x1400, 2, 1, 1), 0u);
+  EXPECT_EQ(b.read(0x1600), 1u);
+  EXPECT_EQ(b.read(0x1600, 1), 0x60400010u);
+}
+
+TEST(DrivePdoMap, that_is_switched_as_a_whole_goes_off_and_on_while_its_pdo_is_invalid) {
+  DriveBench b(with_maps(canopen::MapAccess::whole));
+  EXPECT_EQ(b.write(0x1602, 1, 0x60400010, 4), 0x06010000u) << "its own entry, but :00 is not 0";
+  EXPECT_EQ(b.write(0x1600, 0, 0, 1), 0x06010000u) << "RPDO1 is valid";
+  EXPECT_EQ(b.write(0x1602, 0, 0, 1), 0u);
+  EXPECT_EQ(b.write(0x1602, 1, 0x60400010, 4), 0u) << "its own entry";
+  EXPECT_EQ(b.write(0x1602, 2, 0x60FF0020, 4), 0x06040041u) << "another one";
+  EXPECT_EQ(b.write(0x1602, 3, 0x60FF0020, 4), 0x06040041u) << "one more";
+  EXPECT_EQ(b.write(0x1602, 0, 1, 1), 0x06040041u) << "half of it";
+  EXPECT_EQ(b.write(0x1602, 0, 2, 1), 0u);
+  EXPECT_EQ(b.read(0x1602, 2), 0x607A0020u);
+}
+
+TEST(DrivePdoMap, of_a_device_is_there_from_power_on_and_nothing_else_is_mapped) {
+  SimulatedDriveConfig c = with_maps(canopen::MapAccess::fixed);
+  SimulatedDriveConfig::PdoMap map{true, 1, {}};
+  map.mapping.add(canopen::MappingEntry::from_word(0x60410010));
+  map.mapping.add(canopen::MappingEntry::from_word(0x60640020));
+  c.maps = {map};
+  DriveBench b(c);
+  EXPECT_EQ(b.read(0x1A00), 2u);
+  EXPECT_EQ(b.read(0x1A00, 2), 0x60640020u);
+  EXPECT_EQ(b.read(0x1600), 0u);
+  EXPECT_EQ(b.read(0x1A01, 1), 0u);
+  b.nmt(0x01);
+  b.run(5);
+  ASSERT_GE(b.count(0x185), 1);
+  EXPECT_EQ(b.take(0x185)->length, 6);
+  b.nmt(0x82);
+  b.run(20);
+  EXPECT_EQ(b.read(0x1A00, 2), 0x60640020u) << "and after a reset";
+}
+
 }  // namespace
 }  // namespace servogate::mock
