@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // `run --can-log`: what the simulated buses of a machine carry, as files.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "drivers/candump/candump_line.hpp"
+#include "tests/usercan/rig/mill.hpp"
 #include "tests/usercan/rig/process.hpp"
 #include "tests/usercan/rig/running_server.hpp"
 
@@ -81,6 +83,53 @@ TEST(CanLogs, what_is_written_is_read_by_play) {
   int heard = 0;
   while (heard < frames && wait_for(*bus, frame)) heard += (frame.id & 0x780) == 0x700;
   EXPECT_EQ(heard, frames);
+}
+
+/// Lines of a text that hold this.
+int lines_with(const std::string& text, const std::string& part) {
+  std::istringstream lines(text);
+  int n = 0;
+  for (std::string line; std::getline(lines, line);) n += line.find(part) != std::string::npos;
+  return n;
+}
+
+TEST(CanLogs, are_read_by_can_utils) {
+  if (shell("command -v log2asc log2long >/dev/null") != 0)
+    GTEST_SKIP() << "no can-utils here; install it so: .ci/packages --tests";
+  const std::string folder = scratch("logs");
+  const auto lines = log_of(kMachine, folder);
+  const std::string log = folder + "/can.log";
+  ASSERT_EQ(shell("log2asc -I " + log + " -O " + folder + "/can.asc can"), 0);
+  ASSERT_EQ(shell("log2long <" + log + " >" + folder + "/can.long"), 0);
+  const auto frames = static_cast<int>(lines.size());
+  EXPECT_EQ(lines_with(content(folder + "/can.asc"), " d "), frames) << "Vector ASC";
+  EXPECT_EQ(lines_with(content(folder + "/can.long"), "["), frames);
+  const auto syncs = std::count_if(lines.begin(), lines.end(),
+                                   [](const candump::Line& line) { return line.frame.id == 0x080; });
+  EXPECT_EQ(lines_with(content(folder + "/can.asc"), " 1  80  "), syncs);
+}
+
+TEST(CanLogs, of_a_machine_without_a_simulated_bus_are_refused_before_it_starts) {
+  const std::string folder = scratch("none");
+  const std::string machine = mill("socketcand:127.0.0.1:1/can0", patience());
+  for (const char* command : {"run", "up"}) {
+    std::vector<std::string> arguments = {command, machine, "--can-log", folder};
+    if (std::string(command) == "run") arguments.insert(arguments.begin() + 2, square());
+    Process refused(arguments);
+    EXPECT_EQ(refused.wait(), 2) << command << refused.said();
+    EXPECT_NE(refused.said().find("no CAN bus of this machine is simulated"), std::string::npos)
+        << refused.said();
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder + "/can.log"));
+}
+
+TEST(CanLogs, that_cannot_be_written_are_refused_before_the_machine_starts) {
+  const std::string file = scratch("a_file");
+  std::ofstream(file) << "in the way";
+  Process refused({"run", kMachine, square(), "--virtual", "-q", "--can-log", file});
+  EXPECT_NE(refused.wait(), 0);
+  EXPECT_NE(refused.said().find(file), std::string::npos) << refused.said();
+  EXPECT_EQ(content(file), "in the way");
 }
 
 }  // namespace
