@@ -85,6 +85,30 @@ TEST_F(DriveCsp, the_counter_wraps_at_32_bits_and_the_motion_goes_on) {
   EXPECT_EQ(w.drive.state(), image::DriveState::operation_enabled);
 }
 
+TEST_F(DriveCsp, bit_13_comes_after_the_time_of_6066_and_stays_until_the_fault_is_reset) {
+  b.write(0x6065, 0, 1000, 4);
+  b.write(0x6066, 0, 100, 2);
+  b.write(0x6072, 0, 0, 2);  // no torque: the shaft stays where it is
+  int outside = 0, before = 0;
+  for (int i = 1; i < 300 && b.drive.state() == image::DriveState::operation_enabled; ++i) {
+    b.cycle(0x0F, 100 * i);
+    const bool beyond = std::abs(b.drive.object(0x60F4)) > 1000;
+    outside += beyond;
+    before +=
+        beyond && b.drive.state() == image::DriveState::operation_enabled && (b.drive.statusword() & 0x2000);
+  }
+  EXPECT_NEAR(outside, 100, 3) << "ms";
+  EXPECT_EQ(before, 0) << "the time is not over";
+  b.run(200);
+  EXPECT_EQ(b.drive.state(), image::DriveState::fault);
+  EXPECT_TRUE(b.drive.statusword() & 0x2000);
+  b.cycle(0x00, 0);
+  b.cycle(0x80, 0);
+  b.cycle(0x80, 0);
+  EXPECT_EQ(b.drive.state(), image::DriveState::switch_on_disabled);
+  EXPECT_FALSE(b.drive.statusword() & 0x2000);
+}
+
 TEST_F(DriveCsp, a_following_error_beyond_its_window_and_time_is_fault_8611) {
   b.write(0x6065, 0, 1000, 4);
   b.write(0x6066, 0, 20, 2);

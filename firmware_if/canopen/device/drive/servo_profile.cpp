@@ -198,8 +198,7 @@ void ServoProfile::state_changed(DriveState before) noexcept {
 }
 
 void ServoProfile::fault(std::uint16_t error_code, bool coast, std::uint32_t detail) noexcept {
-  if (power_.state() == DriveState::fault || power_.state() == DriveState::fault_reaction_active) return;
-  if (active_error_ != 0) return;
+  if (in_fault() || active_error_ != 0) return;
   active_error_ = error_code;
   v_.error_code = error_code;
   power_.fault(coast);
@@ -230,25 +229,27 @@ void ServoProfile::on_abort_connection(std::uint16_t error_code) noexcept {
   }
 }
 
+// Bit 13 comes with the end of 6066h, not with the first tick outside of 6065h, and stays until the fault is
+// reset. Source: CiA 402-2, "Object 6066h: Following error time out".
 void ServoProfile::supervise() noexcept {
+  if (!in_fault()) following_exceeded_ = false;
   if (!power_.energised()) {
     following_time_ = 0.0;
-    following_exceeded_ = false;
     return;
   }
   if (!inputs_.torque_allowed) fault(kSafeTorqueOff, true);
   if (!inputs_.main_voltage) fault(kUnderVoltage, true);
   if (std::abs(servo_.velocity) > 1.2 * max_speed()) fault(kOverSpeed, true);
-  following_exceeded_ = false;
   if (command_.loop != ServoCommand::Loop::position || v_.following_window == kWindowOff) return;
   const double error = std::abs(following_error_);
   if (error <= static_cast<double>(v_.following_window)) {
     following_time_ = 0.0;
     return;
   }
-  following_exceeded_ = true;
   following_time_ += h_;
-  if (following_time_ * 1e3 > static_cast<double>(v_.following_timeout)) fault(kFollowingError, false);
+  if (following_time_ * 1e3 <= static_cast<double>(v_.following_timeout)) return;
+  following_exceeded_ = true;
+  fault(kFollowingError, false);
 }
 
 double ServoProfile::max_speed() const noexcept {
@@ -343,6 +344,9 @@ std::uint16_t ServoProfile::statusword() const noexcept {
   if (internal_limit_) word |= kInternalLimit;
   if (power_.state() == DriveState::operation_enabled) return static_cast<std::uint16_t>(word | mode_bits());
   if (power_.state() == DriveState::quick_stop_active && at_rest_) word |= kTargetReached;
+  const bool positions =
+      mode_ == OperationMode::profile_position || mode_ == OperationMode::cyclic_sync_position;
+  if (in_fault() && positions && following_exceeded_) word |= kModeSpecific13;
   // Homing is still attained when the power is off.
   if (mode_ == OperationMode::homing && homing_attained_) word |= kModeSpecific12 | kTargetReached;
   return word;

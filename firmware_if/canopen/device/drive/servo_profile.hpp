@@ -108,6 +108,10 @@ class ServoProfile final : public DeviceProfile {
   double max_speed() const noexcept;
   void interpolation_period_changed() noexcept;
   bool standstill() const noexcept;
+  bool in_fault() const noexcept {
+    return power_.state() == image::DriveState::fault ||
+           power_.state() == image::DriveState::fault_reaction_active;
+  }
   std::uint16_t mode_bits() const noexcept;
 
   ObjectDictionary& dictionary_;
