@@ -35,6 +35,7 @@ bool LssMaster::start(LssCommand command, Answer answer, LssCommand expected) no
   result_ = {};
   result_.status = LssStatus::busy;
   result_.command = command;
+  patience_ = timeout_;
   answer_ = answer;
   expected_ = expected;
   count_ = sent_ = 0;
@@ -112,12 +113,30 @@ bool LssMaster::identify_unconfigured() noexcept {
 
 bool LssMaster::fastscan() noexcept {
   if (!start(LssCommand::fastscan, Answer::presence, LssCommand::identified)) return false;
-  scanning_ = reset_ = true;
-  verifying_ = false;
+  later_scans_ = 0;
+  begin_scan();
+  return true;
+}
+
+void LssMaster::begin_scan() noexcept {
+  scanning_ = true;
+  scan_ = Scan::reset;
   part_ = 0;
   bit_ = 31;
+  result_.identity = {};
   ask_scan(kScanReset, 0);
-  return true;
+}
+
+// The device that was asked last may have taken the question for the last one: it would be in configuration
+// and take no part any more.
+void LssMaster::scan_again() noexcept {
+  if (later_scans_ == kLaterScans) return finish(LssStatus::no_answer);
+  ++later_scans_;
+  patience_ *= kLaterFactor;
+  begin_scan();
+  frames_[1] = frames_[0];
+  frames_[0] = lss_bytes(LssCommand::switch_global, static_cast<std::uint32_t>(LssMode::waiting));
+  count_ = 2;
 }
 
 void LssMaster::ask_scan(std::uint8_t bit, std::uint8_t next) noexcept {
@@ -131,20 +150,33 @@ void LssMaster::ask_scan(std::uint8_t bit, std::uint8_t next) noexcept {
 }
 
 // Bit by bit from the highest, assuming 0: whoever has it answers. The whole part is then asked for once
-// more, which moves the device on to the next one, and with the last into configuration state.
-void LssMaster::scanned(bool answered) noexcept {
-  if (reset_ || verifying_) {
-    if (!answered) return finish(LssStatus::no_answer);
-    if (verifying_ && part_ == 3) return finish(LssStatus::done);
-    if (verifying_) ++part_;
-    reset_ = verifying_ = false;
-    bit_ = 31;
-    return ask_scan(bit_, part_);
+// more, which moves the device on to the next one, and with the last into configuration state. An answer of
+// the last bit that comes late would pass for one to that question.
+void LssMaster::scanned(image::Nanoseconds now) noexcept {
+  switch (scan_) {
+    case Scan::reset:
+      if (!heard_) return scan_again();
+      scan_ = Scan::bit;
+      return ask_scan(bit_, part_);
+    case Scan::bit:
+      if (!heard_) result_.identity.part[part_] |= 1u << bit_;
+      if (bit_ > 0) return ask_scan(--bit_, part_);
+      scan_ = Scan::quiet;
+      heard_ = false;
+      deadline_ = now + patience_;
+      return;
+    case Scan::quiet:
+      if (heard_) return scan_again();
+      scan_ = Scan::whole;
+      return ask_scan(0, part_ == 3 ? std::uint8_t{0} : static_cast<std::uint8_t>(part_ + 1));
+    case Scan::whole:
+      if (!heard_) return scan_again();
+      if (part_ == 3) return finish(LssStatus::done);
+      ++part_;
+      bit_ = 31;
+      scan_ = Scan::bit;
+      return ask_scan(bit_, part_);
   }
-  if (!answered) result_.identity.part[part_] |= 1u << bit_;
-  if (bit_ > 0) return ask_scan(--bit_, part_);
-  verifying_ = true;
-  ask_scan(0, part_ == 3 ? std::uint8_t{0} : static_cast<std::uint8_t>(part_ + 1));
 }
 
 bool LssMaster::poll(image::Nanoseconds now, image::CanBus& bus) noexcept {
@@ -152,13 +184,13 @@ bool LssMaster::poll(image::Nanoseconds now, image::CanBus& bus) noexcept {
   if (sent_ < count_) {
     if (!bus.send(make_frame(cob::kLssMaster, frames_[static_cast<std::size_t>(sent_)]))) return false;
     ++sent_;
-    deadline_ = now + timeout_;
+    deadline_ = now + patience_;
     return true;
   }
   // Several devices may answer a scan; the next question waits for all of them.
   if (now < deadline_) return false;
   if (scanning_)
-    scanned(heard_);
+    scanned(now);
   else
     finish(answer_ == Answer::none ? LssStatus::done : LssStatus::no_answer);
   return false;

@@ -52,8 +52,13 @@ class LssMaster {
                 std::uint32_t highest_serial) noexcept;
   /// Whether a device without node-ID is there: done or no_answer.
   bool identify_unconfigured() noexcept;
-  /// Finds one device without node-ID; then it is in configuration state. no_answer: there is none.
+  /// Finds one device without node-ID; then it is in configuration state. no_answer: there is none. Silence
+  /// is an answer here: where nobody answers at first, or a found part is not confirmed, answers may come
+  /// later than the timeout. The devices are then told to wait and scanned again, up to kLaterScans times,
+  /// each with kLaterFactor times the patience.
   bool fastscan() noexcept;
+  static constexpr int kLaterScans = 2;
+  static constexpr int kLaterFactor = 4;
 
   bool busy() const noexcept { return result_.status == LssStatus::busy; }
   const LssResult& result() const noexcept { return result_; }
@@ -65,22 +70,28 @@ class LssMaster {
 
  private:
   enum class Answer : std::uint8_t { none, error_code, value, byte, presence };
+  /// What a scan waits for: anybody at all; who has 0 in this bit; that nobody comes late; who has the part.
+  enum class Scan : std::uint8_t { reset, bit, quiet, whole };
   static constexpr int kMostFrames = 6;
   bool start(LssCommand command, Answer answer, LssCommand expected) noexcept;
   void add(const LssBytes& bytes) noexcept { frames_[static_cast<std::size_t>(count_++)] = bytes; }
+  void begin_scan() noexcept;
+  void scan_again() noexcept;
   void ask_scan(std::uint8_t bit, std::uint8_t next) noexcept;
-  void scanned(bool answered) noexcept;
+  void scanned(image::Nanoseconds now) noexcept;
   void finish(LssStatus status) noexcept { result_.status = status; }
 
-  image::Nanoseconds timeout_;
+  image::Nanoseconds timeout_, patience_ = 0;
   LssResult result_;
   Answer answer_ = Answer::none;
   LssCommand expected_ = LssCommand::switched;
   std::array<LssBytes, kMostFrames> frames_{};
   int count_ = 0, sent_ = 0;
   image::Nanoseconds deadline_ = 0;
-  bool scanning_ = false, verifying_ = false, reset_ = false, heard_ = false;
+  bool scanning_ = false, heard_ = false;
+  Scan scan_ = Scan::reset;
   std::uint8_t part_ = 0, bit_ = 0;
+  int later_scans_ = 0;
 };
 
 }  // namespace servogate::canopen

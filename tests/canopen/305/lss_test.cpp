@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <memory>
 #include <random>
 
@@ -150,6 +151,9 @@ struct Wire {
   ScriptedBus bus;
   image::Nanoseconds now = 0;
   int frames = 0;
+  std::mt19937* late = nullptr;  ///< answers come up to `latest` later
+  image::Nanoseconds latest = 0;
+  std::deque<std::pair<image::Nanoseconds, LssBytes>> answers;
 
   LssSlave& add(const LssIdentity& identity, NodeId node = kUnconfiguredNode) {
     devices.push_back(std::make_unique<Device>());
@@ -164,10 +168,14 @@ struct Wire {
         ++frames;
         for (auto& s : slaves) {
           LssBytes answer{};
-          if (s->on_frame(f, now, answer)) master.on_frame(make_frame(cob::kLssSlave, answer));
+          if (s->on_frame(f, now, answer))
+            answers.emplace_back(late ? now + static_cast<image::Nanoseconds>((*late)() % (latest + 1)) : now,
+                                 answer);
         }
       }
       bus.sent.clear();
+      for (; !answers.empty() && answers.front().first <= now; answers.pop_front())
+        master.on_frame(make_frame(cob::kLssSlave, answers.front().second));
     }
     return master.result().status;
   }
@@ -209,7 +217,7 @@ TEST(LssMasterOnAWire, says_when_nobody_answers) {
   EXPECT_EQ(wire.run(), LssStatus::no_answer);
   wire.master.fastscan();
   EXPECT_EQ(wire.run(), LssStatus::no_answer);
-  EXPECT_EQ(wire.frames, 4 + 1 + 1);
+  EXPECT_EQ(wire.frames, 4 + 1 + 1 + 2 * 2) << "the scan with more patience, twice";
 }
 
 TEST(LssMasterOnAWire, identifies_by_ranges) {
@@ -248,6 +256,25 @@ TEST(LssFastscan, finds_every_device_of_any_number_and_gives_each_a_node) {
     }
     ASSERT_EQ(found.size(), wire.slaves.size());
   }
+}
+
+TEST(LssFastscan, scans_again_with_more_patience_where_answers_come_later_than_the_timeout) {
+  std::mt19937 random(3051);
+  int more_than_one_scan = 0;
+  for (int round = 0; round < 300; ++round) {
+    Wire wire;  // of a master that waits 20 ms, then 80 ms, then 320 ms
+    LssIdentity identity;
+    for (auto& part : identity.part) part = static_cast<std::uint32_t>(random());
+    wire.add(identity);
+    wire.late = &random;
+    wire.latest = (1 + round) * kMs;
+    wire.master.fastscan();
+    ASSERT_EQ(wire.run(), LssStatus::done) << round;
+    ASSERT_EQ(wire.master.result().identity, identity) << round;
+    ASSERT_EQ(wire.slaves[0]->mode(), LssMode::configuration) << round;
+    more_than_one_scan += wire.frames > 133;
+  }
+  EXPECT_GT(more_than_one_scan, 250);
 }
 
 TEST(LssFastscan, takes_133_requests) {
