@@ -214,13 +214,18 @@ class Analyzer {
   struct InitialReference {
     const Type* frame;  ///< null: `cell` is an address
     std::uint32_t cell;
-    ir::Place target;
+    std::optional<ir::Place> target;  ///< nothing: NULL
   };
   ExprPtr reference_to(const Expression& e);
   bool lasts(const Expression& variable);
   std::optional<ir::Place> place_of_dereference(const Expression& e);
   ExprPtr attempted(ExprPtr value, const Type& to);
-  bool initial_reference(Variable& v, const syntax::Variable& s, const Type* frame);
+  /// Of a declared variable. `lasting`: references to others may be in it; keep_references() then says where
+  /// the variable lies.
+  std::vector<std::uint8_t> initial_bytes(const syntax::Variable& s, const Type& type, bool lasting);
+  bool gather_reference(const Expression& e, const Type& type);
+  void repeat_references(std::size_t from, std::int64_t times, std::uint32_t stride);
+  void keep_references(const Type* frame, std::uint32_t cell);
   void check_references();
   const Type* gives_references(const Type& type) const;
   void bind_references();
@@ -366,6 +371,9 @@ class Analyzer {
   const Type* limits_type_ = nullptr;
   std::map<std::string, const Type*> open_types_;  ///< structures whose members are being resolved
   std::vector<InitialReference> initial_references_;
+  std::vector<InitialReference> gathered_;  ///< of the variable being declared, counted from it
+  std::uint32_t gather_at_ = 0;             ///< where in it the value being read lies
+  bool gathers_ = false;
   std::set<int> referenced_units_;       ///< REF is taken of variables of their instances, inside
   bool open_arrays_ = false;             ///< the type being resolved may be ARRAY[*]
   const Expression* guarded_ = nullptr;  ///< the call whose EN and ENO are being dealt with

@@ -271,6 +271,8 @@ std::vector<std::uint8_t> Analyzer::initial_bytes(const Expression& e, const Typ
     initial_list(e, type, out);
   } else if (type.kind == Kind::structure || type.kind == Kind::block) {
     initial_record(e, type, out);
+  } else if (type.kind == Kind::reference && gather_reference(e, type)) {
+    return out;  // the address is written when it is known
   } else if (const auto c = constant(e, &type)) {
     store_constant(type, *c, out.data());
   }
@@ -282,7 +284,7 @@ void Analyzer::initial_list(const Expression& e, const Type& type, std::vector<s
     if (e.kind == syntax::ExpressionKind::name) {  // a constant array
       bool global = false;
       const Variable* v = find_variable(e.name, global);
-      if (v != nullptr && v->constant && v->type == &type) {
+      if (v != nullptr && v->constant && v->type == &type && !holds_reference(type)) {
         out = v->initial;
         return;
       }
@@ -306,16 +308,21 @@ void Analyzer::initial_list(const Expression& e, const Type& type, std::vector<s
   }
   std::size_t at = 0;
   const std::uint32_t stride = element->size;
+  const std::uint32_t begin = gather_at_;
   for (std::size_t i = 0; i < e.operands.size(); ++i) {
     const std::int64_t times = e.repeats[i];
     if (e.operands[i]) {
+      const std::size_t references = gathered_.size();
+      gather_at_ = begin + static_cast<std::uint32_t>(at) * stride;
       const std::vector<std::uint8_t> bytes = initial_bytes(*e.operands[i], *element);
+      repeat_references(references, times, stride);
       for (std::int64_t r = 0; r < times; ++r)
         std::copy(bytes.begin(), bytes.end(),
                   out.begin() + static_cast<std::ptrdiff_t>((at + static_cast<std::size_t>(r)) * stride));
     }
     at += static_cast<std::size_t>(times);
   }
+  gather_at_ = begin;
 }
 
 void Analyzer::initial_record(const Expression& e, const Type& type, std::vector<std::uint8_t>& out) {
@@ -324,6 +331,7 @@ void Analyzer::initial_record(const Expression& e, const Type& type, std::vector
                   {"'(' (" + type.name + ")", text::both("a single value", "одно значение")});
     return;
   }
+  const std::uint32_t begin = gather_at_;
   for (const syntax::Argument& a : e.arguments) {
     const Field* f = type.field(a.name);
     if (f == nullptr || f->reference) {
@@ -332,9 +340,11 @@ void Analyzer::initial_record(const Expression& e, const Type& type, std::vector
       report_.error(a.location, texts::kNoMember, {type.name, a.name, syntax::suggestion(a.name, names)});
       continue;
     }
+    gather_at_ = begin + f->offset;
     const std::vector<std::uint8_t> bytes = initial_bytes(*a.value, *f->type);
     std::copy(bytes.begin(), bytes.end(), out.begin() + f->offset);
   }
+  gather_at_ = begin;
 }
 
 }  // namespace servogate::plc::sema

@@ -454,8 +454,7 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
   } else if (v.type->kind != Kind::error) {
     if (s.edge != 0 && (s.section != Section::input || v.type->kind != Kind::boolean))
       report_.error(s.location, texts::kEdgeType);
-    const bool refers = initial_reference(v, s, u.frame);
-    if (s.initial && !refers) v.initial = initial_bytes(*s.initial, *v.type);
+    if (s.initial) v.initial = initial_bytes(s, *v.type, !function);
     if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
     if (!s.address.empty()) {
       if (!declare_unlocated(u, v, s)) declare_located(v, s);
@@ -465,7 +464,7 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
       v.root = reference ? ir::Root::reference : ir::Root::instance;
       v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference, s.constant, false, s.non_retain});
       if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
-      if (refers) initial_references_.back().cell = v.cell;
+      keep_references(u.frame, v.cell);
       if (v.type->open) append(*u.frame, {s.name + "$limits", limits_type(), 0, false, true});
     }
   }
@@ -566,8 +565,7 @@ void Analyzer::declare_globals(bool constants) {
     v.type = resolve(*s.type);
     if (v.retain && holds_reference(*v.type)) report_.error(s.location, texts::kReferenceRetain, {s.name});
     if (v.type->kind != Kind::error) {
-      const bool refers = initial_reference(v, s, nullptr);
-      if (s.initial && !refers) v.initial = initial_bytes(*s.initial, *v.type);
+      if (s.initial) v.initial = initial_bytes(s, *v.type, true);
       if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);
       if (s.address.ends_with("*")) {
         report_.error(s.address_location, texts::kUnlocatedGlobal, {s.address});
@@ -576,7 +574,7 @@ void Analyzer::declare_globals(bool constants) {
         declare_located(v, s);
       } else {
         v.cell = allocate(*v.type);
-        if (refers) initial_references_.back().cell = v.cell;
+        keep_references(nullptr, v.cell);
         std::copy(v.initial.begin(), v.initial.end(), program_.memory.begin() + v.cell);
         program_.globals.push_back({v.name, v.type, v.cell, -1, v.retain, v.constant});
       }

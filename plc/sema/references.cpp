@@ -99,23 +99,52 @@ ExprPtr Analyzer::attempted(ExprPtr value, const Type& to) {
   return make_constant(types_->reference(nullptr), {}, value->at);
 }
 
-// r : REF_TO INT := REF(x): the address is known when everything has its place. `cell` is the caller's.
-bool Analyzer::initial_reference(Variable& v, const syntax::Variable& s, const Type* frame) {
-  const Expression* e = s.initial.get();
-  if (e == nullptr || v.type->kind != Kind::reference || e->kind != ExpressionKind::call ||
-      e->operands[0]->kind != ExpressionKind::name || !same_name(e->operands[0]->name, "REF"))
-    return false;
-  ExprPtr value = assignable(reference_to(*e), v.type);
-  if (value->type->kind == Kind::error) return false;
-  const bool function = frame != nullptr && here().source->kind == UnitKind::function;
-  const ir::Place& p = value->place;
-  if (value->kind != ir::ExprKind::address || p.computed() || p.root == ir::Root::reference || function ||
-      s.section == Section::temp || !s.address.empty()) {
-    report_.error(e->location, texts::kNotConstant);
+// r : REF_TO INT := REF(x), also inside of lists and records: the addresses are known when everything has its
+// place.
+std::vector<std::uint8_t> Analyzer::initial_bytes(const syntax::Variable& s, const Type& type, bool lasting) {
+  gathered_.clear();
+  gather_at_ = 0;
+  gathers_ = lasting && s.section != Section::temp && s.address.empty();
+  std::vector<std::uint8_t> out = initial_bytes(*s.initial, type);
+  gathers_ = false;
+  return out;
+}
+
+// False: not REF(x), or not where it can be kept. NULL is kept as well: it may stand for another initial
+// value of the block that a record belongs to.
+bool Analyzer::gather_reference(const Expression& e, const Type& type) {
+  if (!gathers_) return false;
+  const bool takes = e.kind == ExpressionKind::call && e.operands[0]->kind == ExpressionKind::name &&
+                     same_name(e.operands[0]->name, "REF");
+  if (!takes) {
+    gathered_.push_back({nullptr, gather_at_, std::nullopt});
     return false;
   }
-  initial_references_.push_back({frame, 0, std::move(value->place)});
+  ExprPtr value = assignable(reference_to(e), &type);
+  if (value->type->kind == Kind::error) return true;
+  const ir::Place& p = value->place;
+  if (value->kind != ir::ExprKind::address || p.computed() || p.root == ir::Root::reference)
+    report_.error(e.location, texts::kNotConstant);
+  else
+    gathered_.push_back({nullptr, gather_at_, std::move(value->place)});
   return true;
+}
+
+// The references of one value stand for those of `times` values, `stride` bytes apart.
+void Analyzer::repeat_references(std::size_t from, std::int64_t times, std::uint32_t stride) {
+  const std::size_t end = gathered_.size();
+  for (std::int64_t r = 1; r < times; ++r)
+    for (std::size_t i = from; i < end; ++i) {
+      InitialReference again{nullptr, gathered_[i].cell + static_cast<std::uint32_t>(r) * stride, {}};
+      if (gathered_[i].target) again.target = gathered_[i].target->copy();
+      gathered_.push_back(std::move(again));
+    }
+}
+
+void Analyzer::keep_references(const Type* frame, std::uint32_t cell) {
+  for (InitialReference& r : gathered_)
+    initial_references_.push_back({frame, cell + r.cell, std::move(r.target)});
+  gathered_.clear();
 }
 
 // The block below `type` that takes references to variables of its own, nullptr: none does.
@@ -154,11 +183,14 @@ void Analyzer::bind_references() {
 }
 
 void Analyzer::bind_reference(const InitialReference& r, std::uint32_t base) {
-  const ir::Place& p = r.target;
-  const std::uint32_t start = p.root == ir::Root::shared     ? program_.places[p.cell].address
-                              : p.root == ir::Root::instance ? base + p.cell
-                                                             : p.cell;
-  const std::uint32_t address = start + p.offset;
+  std::uint32_t address = 0;
+  if (r.target) {
+    const ir::Place& p = *r.target;
+    const std::uint32_t start = p.root == ir::Root::shared     ? program_.places[p.cell].address
+                                : p.root == ir::Root::instance ? base + p.cell
+                                                               : p.cell;
+    address = start + p.offset;
+  }
   std::memcpy(program_.memory.data() + base + r.cell, &address, sizeof address);
 }
 
@@ -169,10 +201,11 @@ void Analyzer::bind_references(const Type& type, std::uint32_t address) {
       bind_references(*type.base, address + static_cast<std::uint32_t>(i) * type.base->size);
     return;
   }
-  for (const InitialReference& r : initial_references_)
-    if (r.frame == &type) bind_reference(r, address);
   for (const Field& f : type.fields)
     if (!f.reference) bind_references(*f.type, address + f.offset);
+  // What the declaration of an instance says goes before what its block says.
+  for (const InitialReference& r : initial_references_)
+    if (r.frame == &type) bind_reference(r, address);
 }
 
 }  // namespace servogate::plc::sema
