@@ -48,6 +48,7 @@ struct Engine::State {
   std::vector<TaskState> tasks;
   ScanResult fault;
   bool first = true;
+  void apply_forces() noexcept;
 };
 
 namespace {
@@ -141,7 +142,19 @@ void drop(const Image::Shared& s, image::Packets& packets) noexcept {
     std::memset(to, s.place.format == image::Format::ch ? ' ' : 0, s.place.bytes());
 }
 
+std::array<std::uint8_t*, 3> packets_of(image::Packets& packets) noexcept {
+  return {packets.data(image::Packet::a), packets.data(image::Packet::k), packets.data(image::Packet::v)};
+}
+
 }  // namespace
+
+void Engine::State::apply_forces() noexcept {
+  for (const Forcing& f : forces)
+    if (f.handle.bit >= 0)
+      set_bit(memory.data() + f.handle.address, f.handle.bit, f.bytes[0] != 0);
+    else
+      std::memcpy(memory.data() + f.handle.address, f.bytes.data(), f.size);
+}
 
 Engine::Engine(std::shared_ptr<const Image> image)
     : image_(std::move(image)), state_(std::make_unique<State>()) {
@@ -172,37 +185,15 @@ void Engine::restart() {
   state_->given_back_places.clear();
 }
 
-ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexcept {
+// What the program sees of the packets, the first values of its places, and what is forced.
+void Engine::take_inputs(image::Packets& packets) noexcept {
   State& s = *state_;
-  const Image& im = *image_;
   std::uint8_t* const mem = s.memory.data();
-  if (s.fault.fault == Fault::none &&
-      (packets.size(image::Packet::k) < im.k_bytes || packets.size(image::Packet::v) < im.v_bytes)) {
-    s.fault = {};
-    s.fault.fault = Fault::packet_size;
-    return s.fault;
-  }
-  if (s.fault.fault == Fault::packet_size) return s.fault;
-  if (s.fault.fault != Fault::none) {
-    for (const Image::Shared& p : im.places)
-      if (p.written) drop(p, packets);
-    return s.fault;
-  }
-  const auto apply_forces = [&] {
-    for (const Forcing& f : s.forces)
-      if (f.handle.bit >= 0)
-        set_bit(mem + f.handle.address, f.handle.bit, f.bytes[0] != 0);
-      else
-        std::memcpy(mem + f.handle.address, f.bytes.data(), f.size);
-  };
-  std::uint8_t* const packet[] = {packets.data(image::Packet::a), packets.data(image::Packet::k),
-                                  packets.data(image::Packet::v)};
-  const auto in_packet = [&packet](const Move& m) {
-    return packet[static_cast<std::size_t>(m.packet)] + m.byte;
-  };
-  for (const Move& m : s.taken_in) take_in(m, in_packet(m), mem + m.address);
+  const std::array<std::uint8_t*, 3> packet = packets_of(packets);
+  for (const Move& m : s.taken_in)
+    take_in(m, packet[static_cast<std::size_t>(m.packet)] + m.byte, mem + m.address);
   if (s.first)
-    for (const Image::Shared& p : im.places)
+    for (const Image::Shared& p : image_->places)
       if (p.initialised) {
         if (p.raw && p.place.format == image::Format::bl)
           set_bit(mem + p.address, p.place.bit(), p.initial[0] != 0);
@@ -213,54 +204,91 @@ ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexce
     std::memcpy(mem + c.to, s.given_back.data() + c.from, c.size);
   s.given_back_places.clear();
   s.first = false;
-  apply_forces();
+  s.apply_forces();
+}
 
+void Engine::give_outputs(image::Packets& packets) noexcept {
+  State& s = *state_;
+  s.apply_forces();
+  const std::array<std::uint8_t*, 3> packet = packets_of(packets);
+  for (const Move& m : s.put_back)
+    put_back(m, packet[static_cast<std::size_t>(m.packet)] + m.byte, s.memory.data() + m.address);
+}
+
+void Engine::drop_outputs(image::Packets& packets) noexcept {
+  for (const Image::Shared& p : image_->places)
+    if (p.written) drop(p, packets);
+}
+
+// Whether a task runs in this scan; an interval then begins anew (IEC 61131-3, 6.8.2).
+bool Engine::due(std::size_t index, image::Nanoseconds t_ns) noexcept {
+  const Image::Task& task = image_->tasks[index];
+  State::TaskState& state = state_->tasks[index];
+  bool edge = false;
+  if (task.single >= 0) {
+    const bool level = state_->memory[static_cast<std::size_t>(task.single)] != 0;
+    edge = level && !state.last;
+    state.last = level;
+    if (!edge && (task.interval == 0 || level)) return false;
+  }
+  if (!edge && task.interval > 0 && t_ns < state.next) return false;
+  if (task.interval > 0) {
+    // On its own grid; a grid finer than the cycle runs once a cycle.
+    if (state.next == std::numeric_limits<image::Nanoseconds>::min()) state.next = t_ns;
+    state.next += ((t_ns - state.next) / task.interval + 1) * task.interval;
+  }
+  return true;
+}
+
+// By priority; a fault ends the scan and is named with its task and line.
+ScanResult Engine::run_tasks(image::Nanoseconds t_ns) noexcept {
+  State& s = *state_;
+  const Image& im = *image_;
   vm::Machine machine;
-  machine.memory = mem;
+  machine.memory = s.memory.data();
   machine.image = &im;
   machine.now_ns = t_ns;
   machine.budget = im.budget;
   machine.clock = s.clock;
   machine.blocks = s.clock != nullptr ? s.blocks : nullptr;
   ScanResult result;
-  for (std::size_t i = 0; i < im.tasks.size(); ++i) {
+  for (std::size_t i = 0; i < im.tasks.size() && result.fault == Fault::none; ++i) {
+    if (!due(i, t_ns)) continue;
     const Image::Task& task = im.tasks[i];
-    State::TaskState& state = s.tasks[i];
-    if (task.single >= 0) {
-      const bool level = mem[task.single] != 0;
-      const bool edge = level && !state.last;
-      state.last = level;
-      if (!edge && (task.interval == 0 || level)) continue;
-      if (!edge && t_ns < state.next) continue;
-    } else if (task.interval > 0 && t_ns < state.next) {
-      continue;
-    }
-    if (task.interval > 0) {
-      // On its own grid; a grid finer than the cycle runs once a cycle.
-      if (state.next == std::numeric_limits<image::Nanoseconds>::min()) state.next = t_ns;
-      state.next += ((t_ns - state.next) / task.interval + 1) * task.interval;
-    }
     machine.budget -= task.length;
     const image::Nanoseconds began = s.clock != nullptr ? s.clock->now_ns() : 0;
-    const Fault fault = machine.budget < 0 ? Fault::budget : vm::execute(machine, task.entry);
+    result.fault = machine.budget < 0 ? Fault::budget : vm::execute(machine, task.entry);
     if (s.clock != nullptr) s.task_times[i].add(s.clock->now_ns() - began);
-    if (fault == Fault::none) continue;
+    if (result.fault == Fault::none) continue;
     if (machine.budget < 0 && machine.at == 0) machine.at = task.entry;
-    result.fault = fault;
     result.task = static_cast<std::int16_t>(i);
     result.file = static_cast<std::int16_t>(im.lines[machine.at] >> 24);
     result.line = static_cast<std::int32_t>(im.lines[machine.at] & 0xFFFFFF);
-    break;
   }
   result.instructions = im.budget - machine.budget;
-  if (result.fault != Fault::none) {
-    s.fault = result;
-    for (const Image::Shared& p : im.places)
-      if (p.written) drop(p, packets);
-    return result;
+  return result;
+}
+
+ScanResult Engine::scan(image::Packets& packets, image::Nanoseconds t_ns) noexcept {
+  State& s = *state_;
+  if (s.fault.fault == Fault::none && (packets.size(image::Packet::k) < image_->k_bytes ||
+                                       packets.size(image::Packet::v) < image_->v_bytes)) {
+    s.fault = {};
+    s.fault.fault = Fault::packet_size;
   }
-  apply_forces();
-  for (const Move& m : s.put_back) put_back(m, in_packet(m), mem + m.address);
+  if (s.fault.fault == Fault::packet_size) return s.fault;
+  if (s.fault.fault != Fault::none) {
+    drop_outputs(packets);
+    return s.fault;
+  }
+  take_inputs(packets);
+  const ScanResult result = run_tasks(t_ns);
+  if (result.fault == Fault::none) {
+    give_outputs(packets);
+  } else {
+    s.fault = result;
+    drop_outputs(packets);
+  }
   return result;
 }
 

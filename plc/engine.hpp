@@ -178,6 +178,12 @@ class Engine {
 
  private:
   std::string name_of(const Handle& handle) const;
+  // The parts of a scan, real-time safe.
+  void take_inputs(image::Packets& packets) noexcept;
+  bool due(std::size_t index, image::Nanoseconds t_ns) noexcept;
+  ScanResult run_tasks(image::Nanoseconds t_ns) noexcept;
+  void give_outputs(image::Packets& packets) noexcept;
+  void drop_outputs(image::Packets& packets) noexcept;
   struct State;
   std::shared_ptr<const Image> image_;
   std::unique_ptr<State> state_;

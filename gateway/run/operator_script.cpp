@@ -77,6 +77,37 @@ void OperatorScript::take(const image::Answer& answer) {
 }
 
 void OperatorScript::poll(const ProcessImage& image) {
+  stop_where_interrupted();
+  if (stage_ == Stage::done) return;
+  if (stage_ == Stage::power_off) return switch_off(image);
+  if (outcome_ != Outcome::under_way) {
+    const ProcessState state = image.processes[0].state;
+    const bool busy =
+        state == ProcessState::running || state == ProcessState::held || state == ProcessState::waiting;
+    if (standing(image) && !busy) power_down(outcome_, image);
+    return;
+  }
+  if (refusal_.refusal != 0 && stage_ < Stage::running) return power_down(Outcome::refused, image);
+  if (last_refusal_.refusal != 0 && !asked_ && in_stage(image) > kRestPatience_s) {
+    refusal_ = last_refusal_;
+    return power_down(Outcome::refused, image);
+  }
+  switch (stage_) {
+    case Stage::button:
+      return await_button(image);
+    case Stage::power:
+      return switch_on(image);
+    case Stage::homing:
+      return home(image);
+    case Stage::start:
+      return start(image);
+    default:
+      return follow(image);
+  }
+}
+
+// Each interrupt acts once: the first stops on the path, a later one stops at once.
+void OperatorScript::stop_where_interrupted() {
   if (interrupts_ > interrupts_done_ && stage_ < Stage::power_off) {
     ++interrupts_done_;
     send(RequestKind::stop);
@@ -86,112 +117,102 @@ void OperatorScript::poll(const ProcessImage& image) {
     ++interrupts_done_;
     send(RequestKind::quick_stop);
   }
-  bool standing = true;
-  for (std::size_t a = 0; a < wishes_.letters.size(); ++a) standing = standing && !image.axes[a].moving;
-  if (outcome_ != Outcome::under_way && stage_ < Stage::power_off) {
-    const ProcessState state = image.processes[0].state;
-    const bool busy =
-        state == ProcessState::running || state == ProcessState::held || state == ProcessState::waiting;
-    if (standing && !busy) power_down(outcome_, image);
-    return;
+}
+
+bool OperatorScript::standing(const ProcessImage& image) const {
+  for (std::size_t a = 0; a < wishes_.letters.size(); ++a)
+    if (image.axes[a].moving) return false;
+  return true;
+}
+
+template <class Good>
+bool OperatorScript::missing(const ProcessImage& image, Good&& good) {
+  waiting_for_.clear();
+  for (std::size_t a = 0; a < wishes_.letters.size(); ++a)
+    if (!good(image.axes[a], a)) waiting_for_.push_back(wishes_.letters[a]);
+  return !waiting_for_.empty();
+}
+
+void OperatorScript::await_button(const ProcessImage& image) {
+  const bool known =
+      wishes_.start_source < 0 ||
+      image.sources[static_cast<std::size_t>(wishes_.start_source)].quality == image::Quality::good;
+  const bool pressed = wishes_.start_place && image.packets.bit(*wishes_.start_place);
+  const image::Nanoseconds now = image.now.t_ns;
+  if (known && pressed && released_ns_ >= 0 && now - released_ns_ >= kReleased_ns)
+    return enter(Stage::power, image);
+  if (!known || pressed)
+    released_ns_ = -1;
+  else if (released_ns_ < 0)
+    released_ns_ = now;
+}
+
+void OperatorScript::switch_on(const ProcessImage& image) {
+  const bool offline = missing(image, [](const image::AxisImage& a, std::size_t) { return a.drive.online; });
+  if (!offline && !asked_) {
+    asked_ = true;
+    send(RequestKind::reset);
+    send(RequestKind::power, 1.0);
+    entered_ns_ = image.now.t_ns;
   }
-  if (refusal_.refusal != 0 && stage_ < Stage::running) return power_down(Outcome::refused, image);
-  const auto missing = [&](auto&& good) {
+  const bool off = missing(image, [](const image::AxisImage& a, std::size_t) { return a.enabled; });
+  if (!off) return enter(Stage::homing, image);
+  const bool alarm = asked_ && image.alarms_active > 0 && in_stage(image) > 0.5;
+  if (alarm || in_stage(image) > kBootPatience_s) power_down(Outcome::alarm, image);
+}
+
+void OperatorScript::home(const ProcessImage& image) {
+  const bool open = missing(
+      image, [&](const image::AxisImage& a, std::size_t i) { return a.homed || !wishes_.needs_homing[i]; });
+  if (open && !asked_) {
+    asked_ = true;
+    send_in(image::Mode::home, RequestKind::home);
+  }
+  const bool busy = missing(
+      image, [](const image::AxisImage& a, std::size_t) { return a.owner != image::AxisOwner::homing; });
+  const bool stands = standing(image);
+  if (!open && !busy && stands) {
     waiting_for_.clear();
-    for (std::size_t a = 0; a < wishes_.letters.size(); ++a)
-      if (!good(image.axes[a], a)) waiting_for_.push_back(wishes_.letters[a]);
-    return !waiting_for_.empty();
-  };
-  if (last_refusal_.refusal != 0 && !asked_ && in_stage(image) > kRestPatience_s) {
-    refusal_ = last_refusal_;
-    return power_down(Outcome::refused, image);
+    return wishes_.program ? enter(Stage::start, image) : power_down(Outcome::finished, image);
   }
-  switch (stage_) {
-    case Stage::button: {
-      const bool known =
-          wishes_.start_source < 0 ||
-          image.sources[static_cast<std::size_t>(wishes_.start_source)].quality == image::Quality::good;
-      const bool pressed = wishes_.start_place && image.packets.bit(*wishes_.start_place);
-      const image::Nanoseconds now = image.now.t_ns;
-      if (known && pressed && released_ns_ >= 0 && now - released_ns_ >= kReleased_ns)
-        return enter(Stage::power, image);
-      if (!known || pressed)
-        released_ns_ = -1;
-      else if (released_ns_ < 0)
-        released_ns_ = now;
-      break;
-    }
-    case Stage::power: {
-      const bool offline = missing([](const image::AxisImage& a, std::size_t) { return a.drive.online; });
-      if (!offline && !asked_) {
-        asked_ = true;
-        send(RequestKind::reset);
-        send(RequestKind::power, 1.0);
-        entered_ns_ = image.now.t_ns;
-      }
-      const bool off = missing([](const image::AxisImage& a, std::size_t) { return a.enabled; });
-      if (!off) return enter(Stage::homing, image);
-      if (asked_ && image.alarms_active > 0 && in_stage(image) > 0.5)
-        return power_down(Outcome::alarm, image);
-      if (in_stage(image) > kBootPatience_s) return power_down(Outcome::alarm, image);
-      break;
-    }
-    case Stage::homing: {
-      const bool open = missing(
-          [&](const image::AxisImage& a, std::size_t i) { return a.homed || !wishes_.needs_homing[i]; });
-      if (open && !asked_) {
-        asked_ = true;
-        send_in(image::Mode::home, RequestKind::home);
-      }
-      const bool busy =
-          missing([](const image::AxisImage& a, std::size_t) { return a.owner != image::AxisOwner::homing; });
-      if (!open && !busy && standing) {
-        waiting_for_.clear();
-        return wishes_.program ? enter(Stage::start, image) : power_down(Outcome::finished, image);
-      }
-      if (image.alarms_active > 0 && standing && in_stage(image) > 0.5)
-        return power_down(Outcome::alarm, image);
-      if (in_stage(image) > kHomingPatience_s) return power_down(Outcome::alarm, image);
-      break;
-    }
-    case Stage::start:
-      if (!asked_) {
-        asked_ = true;
-        send(RequestKind::override_feed, wishes_.override_ratio);
-        if (wishes_.wait_for_start)
-          send(RequestKind::mode, static_cast<double>(image::Mode::automatic));
-        else
-          send_in(image::Mode::automatic, RequestKind::start);
-      }
-      if (image.processes[0].state != ProcessState::idle) enter(Stage::running, image);
-      break;
-    case Stage::running:
-      switch (image.processes[0].state) {
-        case ProcessState::ended:
-          return power_down(Outcome::finished, image);
-        case ProcessState::stopped_by_alarm:
-        case ProcessState::stopped:  // by the PLC: nobody else is there
-          return power_down(Outcome::alarm, image);
-        case ProcessState::idle:
-          return power_down(Outcome::stopped, image);
-        default:
-          give_up(image);
-          break;
-      }
-      break;
-    case Stage::power_off: {
-      if (!asked_ && standing) {
-        asked_ = true;
-        send(RequestKind::power, 0.0);
-      }
-      const bool off = (asked_ && axes_off(image)) || in_stage(image) > kAxesOffPatience_s;
-      const bool rest = spindles_rest(image) || in_stage(image) > kSpindlePatience_s;
-      if (off && rest) stage_ = Stage::done;
-      break;
-    }
-    case Stage::done:
-      break;
+  const bool alarm = image.alarms_active > 0 && stands && in_stage(image) > 0.5;
+  if (alarm || in_stage(image) > kHomingPatience_s) power_down(Outcome::alarm, image);
+}
+
+void OperatorScript::start(const ProcessImage& image) {
+  if (!asked_) {
+    asked_ = true;
+    send(RequestKind::override_feed, wishes_.override_ratio);
+    if (wishes_.wait_for_start)
+      send(RequestKind::mode, static_cast<double>(image::Mode::automatic));
+    else
+      send_in(image::Mode::automatic, RequestKind::start);
   }
+  if (image.processes[0].state != ProcessState::idle) enter(Stage::running, image);
+}
+
+void OperatorScript::follow(const ProcessImage& image) {
+  switch (image.processes[0].state) {
+    case ProcessState::ended:
+      return power_down(Outcome::finished, image);
+    case ProcessState::stopped_by_alarm:
+    case ProcessState::stopped:  // by the PLC: nobody else is there
+      return power_down(Outcome::alarm, image);
+    case ProcessState::idle:
+      return power_down(Outcome::stopped, image);
+    default:
+      return give_up(image);
+  }
+}
+
+void OperatorScript::switch_off(const ProcessImage& image) {
+  if (!asked_ && standing(image)) {
+    asked_ = true;
+    send(RequestKind::power, 0.0);
+  }
+  const bool off = (asked_ && axes_off(image)) || in_stage(image) > kAxesOffPatience_s;
+  const bool rest = spindles_rest(image) || in_stage(image) > kSpindlePatience_s;
+  if (off && rest) stage_ = Stage::done;
 }
 
 }  // namespace servogate::gateway

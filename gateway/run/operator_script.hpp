@@ -57,6 +57,18 @@ class OperatorScript {
   /// The request in the mode that it needs: both happen, or neither.
   void send_in(image::Mode mode, image::RequestKind kind);
   void enter(Stage stage, const image::ProcessImage& image);
+  void stop_where_interrupted();
+  bool standing(const image::ProcessImage& image) const;
+  /// Whether an axis is not `good(axis, index)`; those are what is waited for.
+  template <class Good>
+  bool missing(const image::ProcessImage& image, Good&& good);
+  // One stage each.
+  void await_button(const image::ProcessImage& image);
+  void switch_on(const image::ProcessImage& image);
+  void home(const image::ProcessImage& image);
+  void start(const image::ProcessImage& image);
+  void follow(const image::ProcessImage& image);
+  void switch_off(const image::ProcessImage& image);
   void give_up(const image::ProcessImage& image);
   void power_down(Outcome outcome, const image::ProcessImage& image);
   double in_stage(const image::ProcessImage& image) const;
