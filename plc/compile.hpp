@@ -29,6 +29,8 @@ struct Options {
   /// The machine's cycle, for the warning of tasks that ask for more; 0: not known.
   image::Nanoseconds cycle_ns = 0;
   bool warnings = true;
+  /// Declarations without a PROGRAM are a library and no mistake; nothing runs.
+  bool library = false;
 };
 
 /// What came out. `findings` are in the order of file, line and column; `image` is null when any is an error.

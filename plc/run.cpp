@@ -35,6 +35,15 @@ void refuse(RunResult& out, const text::Entry& entry, std::vector<std::string> a
   out.end = RunResult::End::wrong_use;
 }
 
+void refuse_value(RunResult& out, const RunSet& set, const Handle& handle, const Engine& engine) {
+  const std::size_t at = set.value.rfind('@');
+  std::vector<std::uint8_t> probe(std::max<std::size_t>(handle.type->size, 8));
+  if (at != std::string::npos && parse_value(*handle.type, set.value.substr(0, at), probe.data()))
+    refuse(out, texts::kRunCycleNumber, {set.value.substr(at + 1)});
+  else
+    refuse(out, texts::kRunValue, {set.value, set.name, engine.type_name(handle)});
+}
+
 std::vector<Set> resolve_sets(const RunRequest& r, const Engine& engine, RunResult& out) {
   std::vector<Set> sets;
   for (const RunSet& s : r.sets) {
@@ -45,7 +54,7 @@ std::vector<Set> resolve_sets(const RunRequest& r, const Engine& engine, RunResu
     }
     std::vector<std::uint8_t> probe(std::max<std::size_t>(h->type->size, 8));
     if (!parse_value(*h->type, s.value, probe.data()))
-      refuse(out, texts::kRunValue, {s.value, s.name, engine.type_name(*h)});
+      refuse_value(out, s, *h, engine);
     else if (s.cycle < 1 || s.cycle > r.cycles)
       refuse(out, texts::kRunCycle, {std::to_string(s.cycle), std::to_string(r.cycles)});
     else
@@ -178,7 +187,9 @@ RunResult run(const RunRequest& request, const std::function<bool(std::string_vi
 
 bool check(const std::vector<SourceFile>& files, const std::vector<image::Symbol>& symbols,
            const Options& options, std::vector<text::Finding>& findings) {
-  CompileResult r = compile(files, symbols, options);
+  Options wanted = options;
+  wanted.library = true;
+  CompileResult r = compile(files, symbols, wanted);
   findings = std::move(r.findings);
   return std::none_of(findings.begin(), findings.end(),
                       [](const text::Finding& f) { return f.severity == text::Severity::error; });

@@ -36,6 +36,10 @@ inline constexpr Entry kAssignEqual{"plc-assign", "'=' compares; write ':=' to a
                                     "'=' сравнивает; для присваивания пишите ':='"};
 inline constexpr Entry kForeign{"plc-foreign", "'{0}' is not known here; write '{1}'",
                                 "'{0}' здесь не применяется; пишите '{1}'"};
+inline constexpr Entry kReservedWord{"plc-reserved-word", "'{0}' is a word of the language and no name",
+                                     "'{0}' — слово языка и не может быть именем"};
+inline constexpr Entry kNoText{"plc-no-text", "this is no text: a byte {0}h stands here",
+                               "это не текст: здесь стоит байт {0}h"};
 inline constexpr Entry kTooDeep{"plc-depth", "nested deeper than {0} levels",
                                 "вложенность больше {0} уровней"};
 
@@ -328,6 +332,8 @@ inline constexpr Entry kFastTask{"plc-task-range", "priority {0}; 0 to 65535 is 
 // Running.
 inline constexpr Entry kFaultBudget{"plc-fault-budget", "task {0} exceeded its {1} instructions a scan here",
                                     "задача {0} превысила здесь {1} команд за цикл"};
+inline constexpr Entry kDividesByZero{"plc-division", "this divides by zero whenever it is computed",
+                                      "при каждом вычислении здесь деление на нуль"};
 inline constexpr Entry kFaultDivision{"plc-fault-division", "task {0} divided by zero",
                                       "задача {0}: деление на нуль"};
 inline constexpr Entry kFaultIndex{"plc-fault-index", "task {0}: subscript outside its array",
@@ -345,6 +351,8 @@ inline constexpr Entry kFaultReference{"plc-fault-reference",
                                        "задача {0}: обращение по ссылке, равной NULL"};
 inline constexpr Entry kFaultPackets{"plc-fault-packets", "packet K or SYVAR is smaller than compiled for",
                                      "пакет K или SYVAR меньше, чем при трансляции"};
+inline constexpr Entry kRunCycleNumber{"plc-run-cycle", "'{0}' behind '@' is no number of a cycle",
+                                       "'{0}' после '@' не является номером цикла"};
 inline constexpr Entry kRunName{"plc-run-name", "there is no variable '{0}'", "переменной '{0}' нет"};
 inline constexpr Entry kRunValue{"plc-run-value", "'{0}' is no value for '{1}' of type {2}",
                                  "'{0}' не является значением для '{1}' типа {2}"};

@@ -94,7 +94,8 @@ std::string Finding::excerpt() const {
   for (const char c : source) {
     if ((static_cast<unsigned char>(c) & 0xC0) != 0x80) ++at;  // a character of UTF-8 begins
     if (at < first || at >= first + kShown) continue;
-    shown += c;
+    const auto byte = static_cast<unsigned char>(c);
+    shown += c != '\t' && (byte < 0x20 || byte == 0x7F) ? '?' : c;
     if (at < column && (static_cast<unsigned char>(c) & 0xC0) != 0x80) below += c == '\t' ? '\t' : ' ';
   }
   const std::string number = std::to_string(line);

@@ -113,21 +113,28 @@ QD := CV <= 0;
 END_FUNCTION_BLOCK
 )";
 
-// IEC 61131-3:2013, table 36. A day or clock beyond its month or day counts on into the next.
+// IEC 61131-3:2013, table 36. Parts that are no date or no time of day are a fault, as is a part that does
+// not fit where it is split.
 constexpr const char* kDates = R"(
 FUNCTION CONCAT_DATE : DATE
 VAR_INPUT YEAR, MONTH, DAY : INT; END_VAR
-VAR Y, M, ERA, YOE, DOE : DINT; END_VAR
-M := (MONTH + 9) MOD 12;
+VAR MON : DINT(1..12); D : DINT(1..31); Y, M, ERA, YOE, DOE, LAST : DINT; END_VAR
+MON := MONTH;
+LAST := 30 + (MON + MON / 8) MOD 2;
+IF MON = 2 THEN LAST := SEL(YEAR MOD 4 = 0 AND YEAR MOD 100 <> 0 OR YEAR MOD 400 = 0, 28, 29); END_IF;
+D := SEL(DAY > LAST, DAY, 0);
+M := (MON + 9) MOD 12;
 Y := YEAR - M / 10;
 ERA := SEL(Y < 0, Y, Y - 399) / 400;
 YOE := Y - ERA * 400;
-DOE := YOE * 365 + YOE / 4 - YOE / 100 + (153 * M + 2) / 5 + DAY - 1;
+DOE := YOE * 365 + YOE / 4 - YOE / 100 + (153 * M + 2) / 5 + D - 1;
 CONCAT_DATE := LINT_TO_DATE((DINT_TO_LINT(ERA) * 146097 + DOE - 719468) * 86400);
 END_FUNCTION
 FUNCTION CONCAT_TOD : TOD
 VAR_INPUT HOUR, MINUTE, SECOND, MILLISECOND : INT; END_VAR
-CONCAT_TOD := LINT_TO_TOD(((HOUR * LINT#60 + MINUTE) * 60 + SECOND) * 1000 + MILLISECOND);
+VAR H : DINT(0..23); M, S : DINT(0..59); MS : DINT(0..999); END_VAR
+H := HOUR; M := MINUTE; S := SECOND; MS := MILLISECOND;
+CONCAT_TOD := DINT_TO_TOD(((H * 60 + M) * 60 + S) * 1000 + MS);
 END_FUNCTION
 FUNCTION CONCAT_DT : DT
 VAR_INPUT YEAR, MONTH, DAY, HOUR, MINUTE, SECOND, MILLISECOND : INT; END_VAR

@@ -262,6 +262,11 @@ ExprPtr Analyzer::conversion_call(std::string_view key, const Expression& e) {
     ExprPtr wide = node(ExprKind::convert, elementary(Kind::ulint), e.location);
     wide->args.push_back(std::move(value));
     one.push_back(fold_conversion(std::move(wide)));
+    if (to_bcd) {  // a number of more digits than there is place for is a fault
+      Constant bits;
+      bits.i = to->size * 8;
+      one.push_back(make_constant(elementary(Kind::ulint), bits, e.location));
+    }
     ExprPtr bcd = native(from_bcd ? Native::from_bcd : Native::to_bcd, elementary(Kind::ulint), e.location,
                          std::move(one));
     ExprPtr out = node(ExprKind::convert, to, e.location);

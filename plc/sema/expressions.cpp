@@ -313,6 +313,8 @@ ExprPtr Analyzer::combine(Op op, ExprPtr a, ExprPtr b, const Location& at, std::
     common = elementary(same[static_cast<int>(k) - static_cast<int>(Kind::byte)]);
   }
   if (op == Op::mod && (is_real(k) || k == Kind::untyped_real)) return refuse();
+  if (op == Op::div && is_integer(k) && b->kind == ExprKind::constant && b->value.i == 0)
+    report_.warning(at, texts::kDividesByZero);
   ExprPtr out = node(ExprKind::binary, comparing(op) ? elementary(Kind::boolean) : common, at);
   out->op = op;
   out->args.push_back(convert(std::move(a), common));

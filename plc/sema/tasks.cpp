@@ -52,7 +52,11 @@ void Analyzer::default_task() {
     all_bound(static_cast<int>(i), {}, u.location);
     body_unit.body.push_back(invoke_at(base, scopes_[i].frame, static_cast<int>(i), u.location));
   }
-  if (body_unit.body.empty()) report_.error({0, 1, 1}, texts::kNoProgram);
+  const auto own = [this](const auto& d) { return d.location.file != library_file_; };
+  const bool library = options_.library && (std::any_of(source_.units.begin(), source_.units.end(), own) ||
+                                            std::any_of(source_.types.begin(), source_.types.end(), own) ||
+                                            std::any_of(source_.globals.begin(), source_.globals.end(), own));
+  if (body_unit.body.empty() && !library) report_.error({0, 1, 1}, texts::kNoProgram);
   ir::Task task;
   task.name = "cycle";
   task.unit = static_cast<int>(program_.units.size());
@@ -237,7 +241,8 @@ void Analyzer::configured_tasks() {
   }
   std::stable_sort(program_.tasks.begin(), program_.tasks.end(),
                    [](const ir::Task& a, const ir::Task& b) { return a.priority < b.priority; });
-  if (program_.programs.empty() && !report_.failed()) report_.error({0, 1, 1}, texts::kNoProgram);
+  if (program_.programs.empty() && !options_.library && !report_.failed())
+    report_.error({0, 1, 1}, texts::kNoProgram);
 }
 
 void Analyzer::check_recursion() {

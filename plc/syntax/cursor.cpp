@@ -95,7 +95,7 @@ std::string Parser::identifier(std::string what) {
 }
 
 std::string Parser::found() const {
-  if (!at_end()) return "'" + now().text + "'";
+  if (!at_end()) return "'" + cropped(now().text) + "'";
   return piece_ ? text::both("the end", "конец") : text::both("the end of the file", "конец файла");
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <initializer_list>
+#include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,8 +14,8 @@ namespace servogate::plc::syntax {
 /// Thrown inside the parser after a finding was reported; caught where reading can go on.
 struct SyntaxError {};
 
-/// Reads the tokens of one file in order. The parser is this class with its three halves: declarations,
-/// statements and expressions, one file each.
+/// Reads the tokens of one file in order. The parser is this class with its parts: declarations, statements,
+/// expressions, and what is not supported, one file each.
 class Parser {
  public:
   Parser(std::string_view text, const Location& begin, Source& source, Report& report)
@@ -71,6 +73,7 @@ class Parser {
   bool too_deep();
   StatementPtr statement();
   StatementPtr simple_statement();
+  [[noreturn]] void foreign_assignment(const Expression& target);
   ExpressionPtr header(std::string_view closer);
   StatementPtr if_statement();
   StatementPtr case_statement();
@@ -80,6 +83,14 @@ class Parser {
   std::vector<Label> labels();
   bool at_label() const;
 
+  // What is not supported: told once, then read over.
+  void refuse(const Token& t);
+  bool skip_unsupported();
+  void skip_specifiers();
+  void skip_ancestry();
+  void path_words();
+  bool refuse_reserved();
+
   // Instruction List.
   friend class InstructionList;
   bool at_instruction_list() const;
@@ -87,6 +98,7 @@ class Parser {
 
   // Expressions.
   ExpressionPtr binary(int level);
+  void foreign_word(std::string_view own);
   ExpressionPtr unary();
   ExpressionPtr primary();
   ExpressionPtr postfix(ExpressionPtr e);
@@ -107,6 +119,8 @@ class Parser {
   int depth_ = 0;
   bool piece_ = false;
   std::uint64_t holds_ = 0;
+  std::set<std::string, std::less<>> refused_;  ///< words that were told to be not supported
+  std::size_t unsupported_ = 0;                 ///< how many were
   Source& source_;
   Report& report_;
 };

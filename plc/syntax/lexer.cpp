@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <charconv>
+#include <cstdio>
 #include <set>
 
 #include "plc/syntax/time_literal.hpp"
@@ -15,6 +16,8 @@ namespace {
 
 bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
+// No program has these, outside of white space.
+bool control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 bool word_part(char c) { return letter(c) || digit(c); }
 // Letters of other scripts, which names have not (IEC 61131-3, 6.1.2); signs and symbols are none.
 bool foreign_letter(std::string_view text, std::size_t at) {
@@ -118,8 +121,9 @@ class Lexer {
     for (; word_part(peek()) || foreign_letter(text_, at_); step_character())
       foreign = foreign || !word_part(peek());
     t.key = key_of(text_.substr(t.offset, at_ - t.offset));
+    foreign = foreign || t.key.find("__") != std::string::npos;
     if (foreign && foreign_.insert(t.key).second)
-      report_.error(t.location, texts::kForeignName, {std::string(text_.substr(t.offset, at_ - t.offset))});
+      report_.error(t.location, texts::kForeignName, {cropped(text_.substr(t.offset, at_ - t.offset))});
     if (t.key == "TRUE" || t.key == "FALSE") {
       t.kind = TokenKind::literal;
       t.literal.kind = Kind::boolean;
@@ -137,12 +141,20 @@ class Lexer {
     return time_literal(std::move(t), time);
   }
 
-  // A ladder is drawn, not written: its lines are taken as they are.
+  static bool begins_body(std::string_view before) {
+    constexpr std::string_view kEnd = "END_VAR";
+    return before.size() > kEnd.size() && same_name(before.substr(before.size() - kEnd.size()), kEnd) &&
+           !word_part(before[before.size() - kEnd.size() - 1]);
+  }
+  // A ladder is drawn, not written: its lines are taken as they are. LADDER ends its line.
   bool alone_on_line(std::size_t begin) const {
-    while (begin > 0 && (text_[begin - 1] == ' ' || text_[begin - 1] == '\t')) --begin;
+    const std::string_view before = text_.substr(0, begin);
+    const std::size_t line = before.find_last_not_of(" \t");
+    const bool first =
+        line == std::string_view::npos || before[line] == '\n' || begins_body(before.substr(0, line + 1));
     std::size_t end = at_;
     while (end < text_.size() && (text_[end] == ' ' || text_[end] == '\t' || text_[end] == '\r')) ++end;
-    return (begin == 0 || text_[begin - 1] == '\n') && end < text_.size() && text_[end] == '\n';
+    return first && end < text_.size() && text_[end] == '\n';
   }
   std::string found() const {
     std::size_t end = at_;
@@ -225,17 +237,17 @@ class Lexer {
         t.key = key_of(whole);
         return t;
       }
-      report_.error(t.location, texts::kBadNumber, {std::string(whole)});
+      report_.error(t.location, texts::kBadNumber, {cropped(whole)});
       t.literal.magnitude = 1;
       return t;
     }
     if (real || exponent) {
       t.literal.kind = Kind::untyped_real;
       if (std::from_chars(body.data(), body.data() + body.size(), t.literal.real).ec != std::errc{})
-        report_.error(t.location, texts::kHugeNumber, {body});
+        report_.error(t.location, texts::kHugeNumber, {cropped(body)});
     } else if (std::from_chars(body.data(), body.data() + body.size(), t.literal.magnitude).ec !=
                std::errc{}) {
-      report_.error(t.location, texts::kHugeNumber, {body});
+      report_.error(t.location, texts::kHugeNumber, {cropped(body)});
       t.literal.magnitude = 1;
     }
     return t;
@@ -255,16 +267,16 @@ class Lexer {
     const std::string body = clean(begin);
     const std::string whole(text_.substr(t.offset, at_ - t.offset));
     if (base == 0) {
-      report_.error(t.location, texts::kBadNumber, {whole});
+      report_.error(t.location, texts::kBadNumber, {cropped(whole)});
       t.literal.magnitude = 1;
       return t;
     }
     const auto [end, error] =
         std::from_chars(body.data(), body.data() + body.size(), t.literal.magnitude, base);
     if (error == std::errc::result_out_of_range)
-      report_.error(t.location, texts::kHugeNumber, {whole});
+      report_.error(t.location, texts::kHugeNumber, {cropped(whole)});
     else if (error != std::errc{} || end != body.data() + body.size())
-      report_.error(t.location, texts::kBadNumber, {whole});
+      report_.error(t.location, texts::kBadNumber, {cropped(whole)});
     return t;
   }
   std::string clean(std::size_t begin) const {
@@ -359,11 +371,22 @@ class Lexer {
     step(foreign.size());
     return t;
   }
+  // Of a binary file one finding says all; nothing behind it is read.
+  Token no_text(Token t) {
+    char hex[8];
+    std::snprintf(hex, sizeof hex, "%02X", static_cast<unsigned char>(peek()));
+    report_.error(t.location, texts::kNoText, {hex});
+    t.kind = TokenKind::bad;
+    at_ = text_.size();
+    open_ = true;
+    return t;
+  }
   Token symbol() {
     Token t = start(TokenKind::symbol);
     constexpr std::string_view known[] = {":=", "=>", "?=", "^", "<=", ">=", "<>", "**", "..",
                                           "+",  "-",  "*",  "/", "=",  "<",  ">",  "(",  ")",
                                           "[",  "]",  ",",  ";", ":",  ".",  "&"};
+    if (control(peek())) return no_text(std::move(t));
     if (text_.substr(at_, 2) == "==") return foreign_operator(std::move(t), "==", "=");
     if (text_.substr(at_, 2) == "&&") return foreign_operator(std::move(t), "&&", "AND");
     for (const std::string_view s : known)
@@ -374,6 +397,7 @@ class Lexer {
       }
     for (const auto& [foreign, own] : kForeignOperators)
       if (text_.substr(at_, 2) == foreign) return foreign_operator(std::move(t), foreign, own);
+    if (peek() == '!') return foreign_operator(std::move(t), "!", "NOT");
     std::size_t n = 1;
     while (at_ + n < text_.size() && (static_cast<unsigned char>(text_[at_ + n]) & 0xC0) == 0x80) ++n;
     report_.error(t.location, texts::kBadCharacter, {std::string(text_.substr(at_, n))});
@@ -386,7 +410,7 @@ class Lexer {
   int file_;
   Report& report_;
   std::size_t at_ = 0;
-  bool open_ = false;              ///< a comment has swallowed the rest
+  bool open_ = false;              ///< a comment has swallowed the rest, or the rest is no text
   std::set<std::string> foreign_;  ///< names of other letters that were reported
   int line_, column_;
 };

@@ -25,7 +25,7 @@ void Parser::declaration() {
   if (at("TYPE")) return types();
   if (at("VAR_GLOBAL")) return variables(source_.globals, Section::global, false);
   if (at("CONFIGURATION")) return configuration();
-  if (accept(";")) return;
+  if (accept(";") || skip_unsupported()) return;
   fail(text::both("PROGRAM, FUNCTION, FUNCTION_BLOCK, TYPE, VAR_GLOBAL or CONFIGURATION",
                   "PROGRAM, FUNCTION, FUNCTION_BLOCK, TYPE, VAR_GLOBAL или CONFIGURATION"));
 }
@@ -36,8 +36,10 @@ void Parser::unit(UnitKind kind) {
   const Location begin = take().location;
   Unit u;
   u.kind = kind;
+  skip_specifiers();
   u.location = now().location;
   u.name = identifier(text::both("a name", "имя"));
+  skip_ancestry();
   if (kind == UnitKind::function && accept(":")) u.result = std::make_unique<TypeReference>(type_reference());
   struct {
     std::string_view key;
@@ -57,7 +59,7 @@ void Parser::unit(UnitKind kind) {
     }
   }
   const std::string closer = "END_" + opener;
-  const std::size_t errors = report_.errors(), first = at_;
+  const std::size_t errors = report_.errors(), unsupported = unsupported_, first = at_;
   if (now().kind == TokenKind::ladder) {
     u.ladder_location = now().location;
     u.ladder = take().literal.text;
@@ -65,7 +67,8 @@ void Parser::unit(UnitKind kind) {
   } else {
     u.body = at_instruction_list() ? instruction_list(u.variables) : block({closer});
   }
-  source_.body_errors += report_.errors() - errors;
+  // With something left out, what the rest of the bodies says of it would be no mistake.
+  source_.body_errors += report_.errors() - errors - (unsupported_ - unsupported);
   for (std::size_t i = first; i < at_; ++i) source_.body_errors += list_[i].wrong;
   source_.units.push_back(std::move(u));
   expect_closing(closer, opener, begin);
@@ -88,13 +91,14 @@ void Parser::variables(std::vector<Variable>& out, Section section, bool in_unit
       prototype.non_retain = true;
       if (section == Section::temp || section == Section::in_out || section == Section::external)
         report_.error(now().location, texts::kSectionPlace, {now().key, opener});
-    } else {
+    } else if (skip_specifiers(); !at_any({"RETAIN", "PERSISTENT", "CONSTANT", "NON_RETAIN"})) {
       break;
     }
   if (prototype.retain && prototype.non_retain)
     report_.error(begin, texts::kSectionPlace, {"NON_RETAIN", opener + " RETAIN"});
   while (!at_end() && !at("END_VAR")) {
-    if (now().kind == TokenKind::word && is_keyword(now().key) && in_unit) break;
+    const bool names = ahead().is(":") || ahead().is(",") || ahead().is("AT");
+    if (now().kind == TokenKind::word && is_keyword(now().key) && in_unit && !names) break;
     // A statement: END_VAR is missing.
     if (in_unit && now().kind == TokenKind::word &&
         (ahead().is(":=") || ahead().is("(") || ahead().is("[") || ahead().is(".")))
@@ -118,7 +122,8 @@ void Parser::variable_list(std::vector<Variable>& out, const Variable& prototype
   do {
     Variable v = prototype;
     v.location = now().location;
-    v.name = identifier(text::both("the name of a variable", "имя переменной"));
+    v.name =
+        refuse_reserved() ? take().text : identifier(text::both("the name of a variable", "имя переменной"));
     if (at("AT")) address(v);
     list.push_back(std::move(v));
   } while (accept(","));

@@ -21,8 +21,29 @@ constexpr Binary kBinary[] = {
     {"**", Operator::power, 8},
 };
 constexpr int kTightest = 8;
+// CODESYS; AND and OR leave out the right side as they are.
+constexpr std::pair<std::string_view, std::string_view> kForeignWords[] = {{"AND_THEN", "AND"},
+                                                                           {"OR_ELSE", "OR"}};
 
 }  // namespace
+
+ExpressionPtr copy(const Expression& e) {
+  const auto same = [](const ExpressionPtr& p) { return p ? copy(*p) : nullptr; };
+  auto out = std::make_unique<Expression>();
+  out->kind = e.kind;
+  out->location = e.location;
+  out->op = e.op;
+  out->name = e.name;
+  out->literal = e.literal;
+  out->repeats = e.repeats;
+  for (const ExpressionPtr& o : e.operands) out->operands.push_back(same(o));
+  for (const Argument& a : e.arguments)
+    out->arguments.push_back({a.name, a.location, a.output, a.inverted, a.drawn, same(a.value)});
+  out->enable = same(e.enable);
+  out->enabled = same(e.enabled);
+  out->enabled_inverted = e.enabled_inverted;
+  return out;
+}
 
 ExpressionPtr Parser::make(ExpressionKind kind, const Location& at) {
   auto e = std::make_unique<Expression>();
@@ -40,6 +61,8 @@ ExpressionPtr Parser::binary(int level) {
   if (level > kTightest) return unary();
   ExpressionPtr left = binary(level + 1);
   for (int chain = 0;; ++chain) {
+    for (const auto& [foreign, own] : kForeignWords)
+      if (at(foreign) && ahead().kind != TokenKind::symbol) foreign_word(own);
     const Binary* found = nullptr;
     for (const Binary& b : kBinary)
       if (b.level == level && at(b.key)) found = &b;
@@ -55,6 +78,11 @@ ExpressionPtr Parser::binary(int level) {
     e->operands.push_back(binary(level + 1));
     left = std::move(e);
   }
+}
+
+void Parser::foreign_word(std::string_view own) {
+  report_.error(now().location, texts::kForeign, {now().text, std::string(own)});
+  list_[at_].key = own;
 }
 
 ExpressionPtr Parser::unary() {

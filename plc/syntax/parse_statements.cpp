@@ -68,7 +68,11 @@ bool Parser::too_deep() {
 StatementPtr Parser::statement() {
   const Nesting nesting(*this);
   const Location begin = now().location;
-  if (accept(";")) return make_statement(StatementKind::empty, begin);
+  if (accept(";") || skip_unsupported()) return make_statement(StatementKind::empty, begin);
+  if (ahead().is(":=") && refuse_reserved()) {
+    take();
+    throw SyntaxError{};
+  }
   if (at("IF")) return if_statement();
   if (at("CASE")) return case_statement();
   if (at("FOR")) return for_statement();
@@ -85,6 +89,15 @@ StatementPtr Parser::statement() {
     s = simple_statement();
   expect(";");
   return s;
+}
+
+// a += 1 and a++ of other languages.
+void Parser::foreign_assignment(const Expression& target) {
+  const std::string name = target.kind == ExpressionKind::name ? target.name : "...";
+  const std::string op = now().key, foreign = op + ahead().key;
+  const std::string rest = foreign.ends_with('=') ? "..." : "1";
+  report_.error(now().location, texts::kForeign, {foreign, name + " := " + name + " " + op + " " + rest});
+  throw SyntaxError{};
 }
 
 StatementPtr Parser::simple_statement() {
@@ -106,6 +119,7 @@ StatementPtr Parser::simple_statement() {
     if (at(":=")) fail("';'");
     return s;
   }
+  if (at_any({"+", "-", "*", "/"}) && (ahead().is("=") || ahead().is(now().key))) foreign_assignment(*target);
   if (target->kind != ExpressionKind::call) {
     if (!at(";")) fail(text::both("':=' or '('", "':=' или '('"));
     report_.error(begin, texts::kUseless);

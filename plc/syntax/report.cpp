@@ -73,4 +73,12 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
   return found == nullptr ? std::string() : "; '" + *found + "'?";
 }
 
+std::string cropped(std::string_view source) {
+  constexpr std::size_t kShown = 60;
+  if (source.size() <= kShown) return std::string(source);
+  std::size_t end = kShown;
+  while (end > 0 && (static_cast<unsigned char>(source[end]) & 0xC0) == 0x80) --end;
+  return std::string(source.substr(0, end)) + "...";
+}
+
 }  // namespace servogate::plc::syntax

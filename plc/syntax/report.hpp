@@ -44,5 +44,7 @@ class Report {
 /// as
 /// "; 'x'?".
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates);
+/// A piece of source for a sentence; of a long one the beginning.
+std::string cropped(std::string_view source);
 
 }  // namespace servogate::plc::syntax

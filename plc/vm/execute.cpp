@@ -396,6 +396,8 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
 
 failed:
   m.at = static_cast<std::uint32_t>(ip - code);
+  // Nobody has the file of the library; its caller's line says what was wrong.
+  while (depth > 0 && m.image->lines[m.at] >> 24 == m.image->files.size() - 1) m.at = frames[--depth].back - 1;
   return fault;
 }
 

@@ -127,10 +127,12 @@ Fault day_part(Machine&, Bytes* d, const Bytes* a, const Bytes*) noexcept {
 }
 Fault select_fault(Machine&, Bytes*, const Bytes*, const Bytes*) noexcept { return Fault::selector; }
 
-Fault to_bcd(Machine&, Bytes* d, const Bytes* a, const Bytes*) noexcept {
+// `b`: the number of bits that there are for the digits.
+Fault to_bcd(Machine&, Bytes* d, const Bytes* a, const Bytes* b) noexcept {
   auto v = get<std::uint64_t>(a);
+  const auto bits = static_cast<int>(get<std::uint64_t>(b));
   std::uint64_t out = 0;
-  for (int shift = 0; shift < 64; shift += 4, v /= 10) out |= v % 10 << shift;
+  for (int shift = 0; shift < bits; shift += 4, v /= 10) out |= v % 10 << shift;
   if (v != 0) return Fault::conversion;
   put(d, out);
   return Fault::none;

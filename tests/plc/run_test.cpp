@@ -83,7 +83,7 @@ TEST(Run, refuses_names_values_and_cycles_that_cannot_be) {
   RunRequest r;
   r.files = {{"a.st", "PROGRAM Main\nVAR a : BOOL; END_VAR\na := a;\nEND_PROGRAM"}};
   r.cycles = 2;
-  r.sets = {{"x", "1", 1}, {"a", "7", 1}, {"a", "TRUE", 3}};
+  r.sets = {{"x", "1", 1}, {"a", "7", 1}, {"a", "TRUE", 3}, {"a", "TRUE@soon", 1}};
   r.prints = {"y"};
   const RunResult out = run(r, [](std::string_view line) {
     ADD_FAILURE() << "nothing runs: " << line;
@@ -92,11 +92,29 @@ TEST(Run, refuses_names_values_and_cycles_that_cannot_be) {
   EXPECT_EQ(out.end, RunResult::End::wrong_use);
   std::vector<std::string> said;
   for (const text::Finding& f : out.findings) said.push_back(f.str(text::Language::english));
-  EXPECT_EQ(said,
-            (std::vector<std::string>{"plc run: error: there is no variable 'x' [plc-run-name]",
-                                      "plc run: error: '7' is no value for 'a' of type BOOL [plc-run-value]",
-                                      "plc run: error: cycle 3 is outside 1..2 [plc-run-cycle]",
-                                      "plc run: error: there is no variable 'y' [plc-run-name]"}));
+  EXPECT_EQ(said, (std::vector<std::string>{
+                      "plc run: error: there is no variable 'x' [plc-run-name]",
+                      "plc run: error: '7' is no value for 'a' of type BOOL [plc-run-value]",
+                      "plc run: error: cycle 3 is outside 1..2 [plc-run-cycle]",
+                      "plc run: error: 'soon' behind '@' is no number of a cycle [plc-run-cycle]",
+                      "plc run: error: there is no variable 'y' [plc-run-name]"}));
+}
+
+TEST(Run, a_library_can_be_checked_and_not_run) {
+  const std::vector<SourceFile> library = {
+      {"lib.st", "FUNCTION Twice : INT VAR_INPUT a : INT; END_VAR Twice := a * 2; END_FUNCTION"}};
+  std::vector<text::Finding> findings;
+  EXPECT_TRUE(check(library, {}, {}, findings));
+  EXPECT_TRUE(findings.empty());
+  EXPECT_TRUE(check({{"t.st", "TYPE A : INT; END_TYPE"}}, {}, {}, findings));
+  EXPECT_FALSE(check({{"lib.st", "FUNCTION F : INT F := TRUE; END_FUNCTION"}}, {}, {}, findings));
+  EXPECT_FALSE(check({{"empty.st", "// nothing"}}, {}, {}, findings)) << "neither a program nor a library";
+  RunRequest r;
+  r.files = library;
+  const RunResult out = run(r, [](std::string_view) { return true; });
+  EXPECT_EQ(out.end, RunResult::End::bad_source);
+  ASSERT_EQ(out.findings.size(), 1u);
+  EXPECT_EQ(out.findings[0].entry->id, "plc-no-program");
 }
 
 TEST(Run, takes_a_set_apart) {

@@ -63,5 +63,19 @@ TEST(Findings, show_the_part_of_a_long_line_that_they_speak_of) {
   EXPECT_EQ(shown.find('^') - (line + 1), shown.find("n;")) << shown;
 }
 
+TEST(Findings, of_a_file_that_is_no_text_are_one_and_show_no_byte_of_it) {
+  const std::string text =
+      std::string("PROGRAM p") + '\0' + "VAR a : INT; END_VAR " + '\x01' + " END_PROGRAM";
+  for (const std::string& source : {text, std::string(500, '\0'), "\x7F" + std::string("ELF") + '\x02'}) {
+    const CompileResult r = compile({{"a.st", source}}, {});
+    ASSERT_EQ(r.findings.size(), 1u) << source;
+    EXPECT_EQ(r.findings[0].entry->id, "plc-no-text");
+    const std::string shown = r.findings[0].excerpt();
+    EXPECT_EQ(std::count(shown.begin(), shown.end(), '\n'), 2) << shown;
+    EXPECT_TRUE(std::none_of(shown.begin(), shown.end(),
+                             [](char c) { return c != '\n' && (c == 0x7F || (c >= 0 && c < 0x20)); }));
+  }
+}
+
 }  // namespace
 }  // namespace servogate::plc
