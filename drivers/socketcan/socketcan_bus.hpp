@@ -60,6 +60,7 @@ class SocketCanBus final : public image::CanBus {
   bool receive(image::CanFrame& frame) noexcept override;
   image::CanState state() const noexcept override { return state_; }
   std::uint32_t bit_rate() const noexcept override { return bit_rate_; }
+  bool carries_fd() const noexcept override { return link_.fd; }
   std::uint64_t lost() const noexcept override { return statistics_.overflowed + statistics_.abandoned; }
 
   const SocketCanStatistics& statistics() const noexcept { return statistics_; }

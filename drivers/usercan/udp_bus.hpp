@@ -35,6 +35,7 @@ class UdpBus final : public image::CanBus {
   bool receive(image::CanFrame& frame) noexcept override;
   image::CanState state() const noexcept override { return image::CanState::error_active; }
   std::uint32_t bit_rate() const noexcept override { return config_.bit_rate; }
+  bool carries_fd() const noexcept override { return true; }
   std::uint64_t lost() const noexcept override { return overflowed_; }
   /// For poll(2): readable when something has come.
   int descriptor() const noexcept { return receiver_; }

@@ -54,6 +54,8 @@ class CanBus {
   /// Frames that this transport knows to be lost on the computer's side, sent or received: an overflowing
   /// buffer, a queue emptied when the link went down. Never a frame that send() refused. real-time safe.
   virtual std::uint64_t lost() const noexcept { return 0; }
+  /// Whether CAN FD frames pass; where they do not, send() refuses each. real-time safe.
+  virtual bool carries_fd() const noexcept { return false; }
 };
 
 /// Worst-case length on the wire in bits of a classic data frame, stuff bits and the interframe space

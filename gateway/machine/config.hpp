@@ -162,7 +162,7 @@ struct NodeConfig {
   std::string name;
   int id = 0;                    ///< CANopen node-ID 1-127
   std::string device;            ///< device file without .toml
-  double heartbeat = 0.1;        ///< s, producer time of the node; 0: none
+  double heartbeat = 0.1;        ///< s, producer time of the node
   int loss_cycles = 3;           ///< cycles without process data until the node counts as lost
   double boot_timeout = 0.0;     ///< s, wait for boot-up and for Operational; 0: the standard 2 s
   int boot_attempts = 0;         ///< before the failure is told; 0: the standard 3

@@ -10,6 +10,7 @@
 #include "firmware_if/canopen/406/objects.hpp"
 #include "firmware_if/canopen/master/drive/drive_fields.hpp"
 #include "gateway/files/read_file.hpp"
+#include "gateway/machine/check/boot_objects.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
 #include "gateway/machine/keys/findings.hpp"
 #include "gateway/machine/keys/reader.hpp"
@@ -54,16 +55,8 @@ class DeviceCheck {
   Where at(const std::string& path) const { return find_place(d_.places, path); }
 
   void objects() {
-    for (const auto& [text, value] : d_.objects) {
-      const Where where = at("objects." + text);
-      const auto object = parse_object(text);
-      const int bits = object && object->bits != 0 ? object->bits : 32;
-      if (!object || (bits != 8 && bits != 16 && bits != 32))
-        reading_.error(where, finding::kBadObject, {text, "6065:00/32"});
-      else if (value != std::nearbyint(value) || value < -std::ldexp(1.0, bits - 1) ||
-               value >= std::ldexp(1.0, bits))
-        reading_.error(where, finding::kObjectValue, {text, text::number(value), std::to_string(bits)});
-    }
+    for (const auto& [text, value] : d_.objects)
+      check_boot_object(text, value, &d_, at("objects." + text), reading_);
   }
 
   void pdos(const std::string& key, std::vector<PdoConfig>& list) {

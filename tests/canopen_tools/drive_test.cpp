@@ -136,6 +136,12 @@ TEST_F(SimulatedDrives, objects_that_cannot_be_simulated_are_named_and_have_thei
   EXPECT_TRUE(process.says("left out, as it cannot be simulated: 2007h:00")) << process.said();
 }
 
+TEST_F(SimulatedDrives, a_fault_for_a_node_of_another_process_is_refused) {
+  const Ended ended = tool("drive $BUS --node 1,2 --fault \"silent node=7\"");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(ended.err_has("no drive of this process has the node-ID 7")) << ended.err;
+}
+
 TEST_F(SimulatedDrives, a_script_with_a_mistake_is_refused_with_its_line) {
   desk_.write("faults.txt", "0.3 over_current\nsoon reset\n");
   const Ended ended = tool("drive $BUS --node 1 --script faults.txt");

@@ -210,6 +210,7 @@ TEST_F(Workbench, od_saves_a_configuration_and_finds_what_was_changed_since) {
   ASSERT_EQ(tool("od $BUS 5 --eds a.dcf --save b.dcf").code, 0);
   EXPECT_EQ(tool("od $BUS 5 --compare b.dcf").code, 0);
   EXPECT_NE(desk_.text("b.dcf").find("NodeID=0x5"), std::string::npos);
+  EXPECT_NE(desk_.text("b.dcf").find("LSS_SerialNumber=0x5"), std::string::npos);
 }
 
 TEST_F(Workbench, od_of_a_node_that_is_not_there_fails) {

@@ -70,6 +70,22 @@ TEST(Dump, what_is_played_onto_a_bus_is_what_is_dumped_from_it) {
     EXPECT_NE(frames.find(part), std::string::npos) << frames;
 }
 
+TEST(Dump, a_log_with_a_frame_that_the_bus_cannot_carry_is_not_begun) {
+  const std::string socket = scratch("bus.sock"), log = scratch("log");
+  const std::string url = "socketcand:unix:" + socket + "/can0";
+  const Process bus({"can", "bus", "can0", "--listen", "unix:" + socket});
+  ASSERT_TRUE(bus.says("can0 at")) << bus.said();
+  std::ofstream(log) << "(1.0) can0 122#01\n(1.0) can0 123##1AABBCC\n(1.1) can0 124#01\n";
+  Process dump({"dump", url});
+  Process play({"play", url, log});
+  EXPECT_EQ(play.wait(), 2);
+  EXPECT_NE(play.said().find("log:2: a CAN FD frame"), std::string::npos) << play.said();
+  EXPECT_NE(play.said().find("nothing was played"), std::string::npos) << play.said();
+  dump.signal(SIGTERM);
+  dump.wait();
+  EXPECT_EQ(dump.said().find("122#"), std::string::npos) << dump.said();
+}
+
 /// Frames of a log without their times and buses.
 std::vector<std::string> frames_of(const std::string& log) {
   std::vector<std::string> frames;

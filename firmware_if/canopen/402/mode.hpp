@@ -21,9 +21,11 @@ enum class OperationMode : std::int8_t {
   cyclic_sync_torque = 10,
 };
 
-/// Bit of a mode in "Supported drive modes" 6502h; 0 for none. real-time safe.
+/// Bit of a mode in "Supported drive modes" 6502h; 0 for none, for a manufacturer's mode, and for a reserved
+/// number that has no bit there (17 to 127). real-time safe.
 constexpr std::uint32_t supported_bit(OperationMode mode) noexcept {
-  return mode > OperationMode::none ? 1u << (static_cast<int>(mode) - 1) : 0u;
+  const int number = static_cast<int>(mode);
+  return number >= 1 && number <= 16 ? 1u << (number - 1) : 0u;
 }
 /// "csp", "pv" ...; "none" for 0, "manufacturer" for negative values. real-time safe.
 constexpr const char* short_name(OperationMode mode) noexcept {

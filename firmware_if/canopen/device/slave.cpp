@@ -284,8 +284,9 @@ void Slave::command(NmtCommand command) noexcept {
     case NmtCommand::start:
       return enter(NmtState::operational);
     case NmtCommand::stop:
-      if (state_ != NmtState::stopped) profile_.on_abort_connection(0);
-      return enter(NmtState::stopped);
+      if (state_ == NmtState::stopped) return;
+      enter(NmtState::stopped);  // what the profile has to tell waits: no EMCY in Stopped (CiA 301, table 39)
+      return profile_.on_abort_connection(0);
     case NmtCommand::enter_pre_operational:
       return enter(NmtState::pre_operational);
     case NmtCommand::reset_node:

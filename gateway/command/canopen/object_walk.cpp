@@ -186,6 +186,9 @@ canopen::Eds configuration_of(const std::vector<ReadObject>& objects, const cano
       take_value(*e, o);
   canopen::EdsCommissioning commissioning = dcf.commissioning.value_or(canopen::EdsCommissioning{});
   commissioning.node = node;
+  for (const ReadObject& o : objects)  // the serial number by which LSS finds it (CiA 306-1, 6.2)
+    if (o.index == canopen::object::kIdentity && o.subindex == 4 && o.outcome.data.size() == 4)
+      commissioning.lss_serial = static_cast<std::uint32_t>(canopen::load_le(o.outcome.data));
   commissioning.kbit_s = bit_rate / 1000;
   dcf.commissioning = commissioning;
   return dcf;

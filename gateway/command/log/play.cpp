@@ -25,8 +25,15 @@ const text::Entry kBadLine{"play.bad-line", "{0}:{1}: no line of a candump log",
 const text::Entry kMayMove{
     "play.may-move", "{0} may be a real bus, and what is played can move its drives: --i-may-move",
     "{0} может быть настоящей шиной, воспроизведение может двинуть приводы: --i-may-move"};
+const text::Entry kNoFd{
+    "play.no-fd", "{0}:{1}: a CAN FD frame, and {2} carries classic frames only; nothing was played",
+    "{0}:{1}: кадр CAN FD, а {2} переносит только классические кадры; ничего не воспроизведено"};
 using drivers::clock_ns;
-using Log = std::vector<candump::Line>;
+struct Played {
+  candump::Line line;
+  int number;  ///< of the line in its file
+};
+using Log = std::vector<Played>;
 
 constexpr const char* kWhat = "`play`";
 
@@ -45,7 +52,7 @@ int read_log(const std::string& name, Log& log) {
       complain(kBadLine, {name, std::to_string(number)});
       return kWrongUse;
     }
-    if (!line->frame.error) log.push_back(std::move(*line));
+    if (!line->frame.error) log.push_back({std::move(*line), number});
   }
   return kDone;
 }
@@ -53,8 +60,8 @@ int read_log(const std::string& name, Log& log) {
 /// What only a master sends is played onto a bus that has none; what devices send, too, where real ones are.
 int may_play(ToolBus& bus, const std::optional<Holder>& holder, const Log& log, const PlayOptions& options) {
   const bool nothing_real = bus.transport().nothing_real;
-  const bool commands = std::any_of(
-      log.begin(), log.end(), [](const candump::Line& line) { return canopen::sent_by_masters(line.frame); });
+  const bool commands = std::any_of(log.begin(), log.end(),
+                                    [](const Played& p) { return canopen::sent_by_masters(p.line.frame); });
   if (holder && (commands || !nothing_real)) return refuse_held(*holder, options.bus, kWhat);
   if (!nothing_real && !options.may_move) {
     complain(kMayMove, {options.bus});
@@ -63,11 +70,20 @@ int may_play(ToolBus& bus, const std::optional<Holder>& holder, const Log& log, 
   return commands ? must_be_idle(bus, kWhat, {}) : kDone;
 }
 
+/// Before the first frame: a log is played whole or not at all.
+int all_pass(ToolBus& bus, const Log& log, const PlayOptions& options) {
+  if (bus.transport().bus->carries_fd()) return kDone;
+  const auto fd = std::find_if(log.begin(), log.end(), [](const Played& p) { return p.line.frame.fd; });
+  if (fd == log.end()) return kDone;
+  complain(kNoFd, {options.file, std::to_string(fd->number), options.bus});
+  return kWrongUse;
+}
+
 int send_all(ToolBus& bus, const Log& log, const PlayOptions& options) {
   const auto ignore = [](const image::CanFrame&) { return false; };
   const image::Nanoseconds begin = clock_ns(CLOCK_MONOTONIC);
-  for (const candump::Line& line : log) {
-    const auto after = static_cast<double>(line.time - log.front().time) / options.speed;
+  for (const auto& [line, number] : log) {
+    const auto after = static_cast<double>(line.time - log.front().line.time) / options.speed;
     const image::Nanoseconds due = begin + static_cast<image::Nanoseconds>(after);
     for (bool sent = false; !sent;) {
       if (bus.ended()) return kStopped;
@@ -94,6 +110,7 @@ int play(const PlayOptions& options) {
   const auto bus = ToolBus::open(bus_options, code);
   if (bus == nullptr) return code;
   code = may_play(*bus, holder, log, options);
+  if (code == kDone) code = all_pass(*bus, log, options);
   if (code == kDone) code = send_all(*bus, log, options);
   return bus->finish(code);
 }

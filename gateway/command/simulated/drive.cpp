@@ -287,7 +287,7 @@ int drive(const DriveOptions& options) {
   if (const int code = apply_plant(options, plan); code != kDone) return code;
   if (const int code = apply_switches(options, plan); code != kDone) return code;
   apply_map_access(options, plan);
-  auto deeds = read_deeds(options.faults);
+  auto deeds = read_deeds(options.faults, options.nodes);
   if (!deeds) return kWrongUse;
   const EndBySignal signals;
   CanTransportOptions transport_options;

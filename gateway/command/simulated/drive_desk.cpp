@@ -70,7 +70,7 @@ bool later(const DriveDeed& a, const DriveDeed& b) { return a.at < b.at; }
 
 }  // namespace
 
-std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options) {
+std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options, std::span<const int> nodes) {
   std::vector<DriveDeed> deeds;
   std::string why;
   for (const std::string& line : options.faults) {
@@ -95,6 +95,11 @@ std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options) {
     }
     deeds.insert(deeds.end(), script->begin(), script->end());
   }
+  for (const DriveDeed& d : deeds)
+    if (d.node != 0 && d.at == 0 && std::find(nodes.begin(), nodes.end(), d.node) == nodes.end()) {
+      complain(kNobody, {std::to_string(d.node)});
+      return std::nullopt;
+    }
   std::stable_sort(deeds.begin(), deeds.end(), later);
   return deeds;
 }

@@ -11,8 +11,9 @@
 
 namespace servogate::gateway::command {
 
-/// Reads `--fault` and `--script` of a command. nullopt: wrong, which has been said (exit code kWrongUse).
-std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options);
+/// Reads `--fault` and `--script` of a command. What happens at the start has to be for one of `nodes`; later
+/// a drive may have got another node-ID. nullopt: wrong, which has been said (exit code kWrongUse).
+std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options, std::span<const int> nodes);
 
 /// Lets deeds happen to simulated drives: those of a script at their times, those of standard input as they
 /// come.

@@ -246,7 +246,9 @@ int sim(const SimOptions& options) {
   if (print_findings(loaded.findings) > 0) return kWrongUse;
   std::vector<Served> buses;
   if (!find_urls(options, loaded.machine, buses)) return kWrongUse;
-  auto deeds = read_deeds(options.faults);
+  std::vector<int> nodes;
+  for (const Served& b : buses) nodes.insert(nodes.end(), b.nodes.begin(), b.nodes.end());
+  auto deeds = read_deeds(options.faults, nodes);
   if (!deeds) return kWrongUse;
   const EndBySignal signals;
   int code = open_buses(buses, signals);

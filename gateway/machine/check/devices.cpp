@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "firmware_if/text/units.hpp"
+#include "gateway/machine/check/boot_objects.hpp"
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
@@ -55,6 +56,11 @@ std::string shorter_data(double load, double with_4_byte_pdo) {
                     "; с 4-байтными PDO загрузка была бы " + percent + " %");
 }
 
+std::string milliseconds(double seconds) {
+  const std::string ms = text::number(seconds * 1e3);
+  return text::both(ms + " ms", ms + " мс");
+}
+
 std::string kind_name(DeviceKind kind) {
   return std::string(choices_of<DeviceKind>()[static_cast<std::size_t>(kind)]);
 }
@@ -85,6 +91,10 @@ class DeviceUse {
           reading_.error(m_.where(path + ".device"), finding::kUnsupervised, {node.name, node.device});
         if (device != nullptr && known(*device) && device->drive()) status(*device, node, path);
         objects(node, path);
+        if (node.heartbeat * 1e9 < static_cast<double>(m_.cycle_ns()))
+          reading_.error(m_.where(path + ".heartbeat"), finding::kHeartbeatShort,
+                         {milliseconds(node.heartbeat), node.name,
+                          milliseconds(static_cast<double>(m_.cycle_ns()) * 1e-9)});
       }
   }
 
@@ -280,16 +290,9 @@ class DeviceUse {
   }
 
   void objects(const NodeConfig& node, const std::string& path) {
-    for (const auto& [name, value] : node.objects) {
-      const Where at = m_.where(path + ".objects." + name);
-      const auto object = parse_object(name);
-      const int bits = object && object->bits != 0 ? object->bits : 32;
-      if (!object || (bits != 8 && bits != 16 && bits != 32))
-        reading_.error(at, finding::kBadObject, {name, "6065:00/32"});
-      else if (value != std::nearbyint(value) || value < -std::ldexp(1.0, bits - 1) ||
-               value >= std::ldexp(1.0, bits))
-        reading_.error(at, finding::kObjectValue, {name, text::number(value), std::to_string(bits)});
-    }
+    for (const auto& [name, value] : node.objects)
+      check_boot_object(name, value, loaded_.device(node.device), m_.where(path + ".objects." + name),
+                        reading_);
   }
 
   void motor(const DeviceConfig& device, const std::string& name, const std::string& who,

@@ -97,9 +97,6 @@ inline constexpr text::Entry kDeviceBroken{"machine.device_broken", "device file
 inline constexpr text::Entry kWrongDevice{"machine.wrong_device",
                                           "device \"{0}\" is a {1}, {2} is expected here",
                                           "устройство «{0}» — {1}, здесь ожидалось: {2}"};
-inline constexpr text::Entry kOwnNode{
-    "machine.own_node_id", "node-ID {0} is the control's own: its heartbeat has it; nodes have 1 to {1}",
-    "номер узла {0} занят самим управлением: с ним идёт его heartbeat; для узлов — от 1 до {1}"};
 inline constexpr text::Entry kOneWire{
     "machine.one_wire",
     "bus \"{0}\" is the same wire as bus \"{1}\" in line {2}: each bus needs one of its own",
@@ -109,6 +106,10 @@ inline constexpr text::Entry kNodeTwice{"machine.node_used_twice", "drive \"{0}\
 inline constexpr text::Entry kNotSimulated{"machine.not_simulated",
                                            "`{0}`: \"{1}\" is not on a mock; nothing simulates it",
                                            "«{0}»: «{1}» не на имитаторе; его нечем имитировать"};
+inline constexpr text::Entry kPerhapsReal{
+    "machine.perhaps_real",
+    "bus \"{0}\": behind {1} there may be real devices, so `simulated` cannot hold for it",
+    "шина «{0}»: за {1} могут быть настоящие устройства, `simulated` к ней неприменимо"};
 // Places
 inline constexpr text::Entry kOverlap{"machine.overlap", "{0} of \"{1}\" overlaps {2} of \"{3}\" (line {4})",
                                       "{0} сигнала «{1}» перекрывает {2} сигнала «{3}» (строка {4})"};

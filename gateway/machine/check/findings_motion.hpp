@@ -250,6 +250,16 @@ inline constexpr text::Entry kBadObject{"machine.bad_object",
 inline constexpr text::Entry kObjectValue{"machine.object_value",
                                           "object {0}: {1} does not fit into {2} bits",
                                           "объект {0}: {1} не помещается в {2} бит"};
+inline constexpr text::Entry kObjectCommand{
+    "machine.object_command", "object {0} is a command that the control gives in its cycle; it is no setting",
+    "объект {0} — команда, которую управление даёт в цикле, а не настройка"};
+inline constexpr text::Entry kObjectOwned{
+    "machine.object_owned", "object {0} is written by the control itself; this value would be lost: {1}",
+    "объект {0} записывает само управление, это значение пропало бы: {1}"};
+inline constexpr text::Entry kHeartbeatShort{
+    "machine.heartbeat_short",
+    "heartbeat {0} of node \"{1}\" is shorter than the cycle of {2}: the control could not keep up with it",
+    "heartbeat {0} узла «{1}» короче цикла {2}: управление не успевало бы"};
 // Devices
 inline constexpr text::Entry kMotorTooFast{
     "machine.motor_too_fast", "{0}: {1} needs {2} rpm of the motor; {3} allows {4} rpm",

@@ -12,9 +12,6 @@ namespace servogate::machine {
 
 namespace {
 
-/// Of the heartbeat of the control, 127.
-const int kOwnNode = canopen::SegmentConfig().own_node;
-
 bool letter_or_underscore(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -100,9 +97,6 @@ void check_nodes(const MachineConfig& machine, Reading& reading) {
       const std::string path = bus + ".node." + std::to_string(n);
       names.add(node.name, path + ".name");
       if (node.id != 0) ids.add(std::to_string(node.id), path + ".id", false);
-      if (node.id == kOwnNode)
-        reading.error(machine.where(path + ".id"), finding::kOwnNode,
-                      {std::to_string(kOwnNode), std::to_string(kOwnNode - 1)});
     }
   }
 }

@@ -149,6 +149,17 @@ void check_drive_owners(const MachineConfig& machine, Reading& reading) {
         "spindle." + std::to_string(i) + ".drive");
 }
 
+/// A USB adapter, or a bus server of another computer: servers of simulated buses listen on loopback only.
+bool perhaps_real(std::string_view url) {
+  if (url.starts_with("gsusb:")) return true;
+  constexpr std::string_view kServed = "socketcand:";
+  if (!url.starts_with(kServed)) return false;
+  const std::string_view host = url.substr(kServed.size());
+  constexpr std::string_view kHere[] = {"unix:", "localhost:", "127.", "[::1]:", "::1:"};
+  return std::none_of(std::begin(kHere), std::end(kHere),
+                      [host](std::string_view here) { return host.starts_with(here); });
+}
+
 /// What [simulation] moves has to be a mock.
 void check_simulated(const MachineConfig& machine, Reading& reading) {
   const auto point = [&](const std::string& name, const std::string& path) {
@@ -177,6 +188,11 @@ void check_simulated(const MachineConfig& machine, Reading& reading) {
     else
       point(name, path);
   }
+  // Of an interface of Linux only its kind can tell, when it is opened.
+  for (std::size_t b = 0; b < machine.buses.size(); ++b)
+    if (machine.buses[b].simulated && perhaps_real(machine.buses[b].url))
+      reading.error(machine.where("bus." + std::to_string(b) + ".simulated"), finding::kPerhapsReal,
+                    {machine.buses[b].name, machine.buses[b].url});
   for (std::size_t i = 0; i < sim.drives.size(); ++i) {
     int bus = -1;
     const std::string path = "simulation.drive." + std::to_string(i) + ".node";

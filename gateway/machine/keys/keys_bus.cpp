@@ -37,12 +37,14 @@ const Section& section_of<NodeConfig>() {
   static const Key keys[] = {
       key<&C::name>("name", {.required = true}, "name; others refer to the node as \"bus.name\"",
                     "имя; на узел ссылаются как \"шина.имя\""),
-      key<&C::id>("id", {.min = 1, .max = 127, .required = true}, "CANopen node-ID; 127 is the control's own",
+      key<&C::id>("id", {.min = 1, .max = 126, .required = true}, "CANopen node-ID; 127 is the control's own",
                   "номер узла CANopen (Node-ID); 127 занят самим управлением"),
       key<&C::device>("device", {.required = true, .refers = Refers::device}, "device file, without .toml",
                       "файл устройства, без .toml"),
-      key<&C::heartbeat>("heartbeat", {.unit = Unit::second, .min = 0, .max = 60},
-                         "period of the node's heartbeat; 0: none", "период heartbeat узла; 0: нет"),
+      key<&C::heartbeat>("heartbeat", {.unit = Unit::second, .min = 0.001, .max = 60},
+                         "period of the node's heartbeat, not below the cycle time; the control's own is the "
+                         "shortest of its bus",
+                         "период heartbeat узла, не короче цикла; у управления — самый короткий на его шине"),
       key<&C::loss_cycles>("loss_cycles", {.min = 1, .max = 1000},
                            "cycles without process data until the node counts as lost",
                            "число циклов без данных процесса, после которого узел считается потерянным"),

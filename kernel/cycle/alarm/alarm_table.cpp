@@ -303,8 +303,10 @@ constexpr AlarmRow kTable[] = {
      cause_gone,
      {"drive.pdo_missing", "node {3}: {1} cycles without process data{6}, allowed fewer than {2}",
       "узел {3}: {1} тактов без данных процесса{6}, допустимо менее {2}"},
-     "Check supply and bus cable of the node, then bus load and termination.",
-     "Проверьте питание и кабель шины узла, затем загрузку шины и согласование линии."},
+     "Check supply and bus cable of the node, then bus load and termination. Of a drive that another process "
+     "simulates: the computer stalled; take a longer cycle_time or more loss_cycles.",
+     "Проверьте питание и кабель шины узла, затем загрузку шины и согласование линии. Если привод имитирует "
+     "другой процесс: компьютер не успел; увеличьте cycle_time или loss_cycles."},
     {alarm::kNodeLost,
      Reaction::stop_on_path,
      cause_gone,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "tests/mock/drive/drive_bench.hpp"
 
 namespace servogate::mock {
@@ -69,7 +71,8 @@ std::int64_t expected_home(int method) {
   return to_positive(base) ? mark_above(edge) : mark_below(edge);
 }
 
-void run_homing(DriveBench& b, int method) {
+/// To its end, or for so many milliseconds.
+void run_homing(DriveBench& b, int method, int most_ms = 30'000) {
   b.write(0x6098, 0, method, 1);
   b.write(0x6099, 1, 4 * kTurn, 4);
   b.write(0x6099, 2, kTurn / 2, 4);
@@ -78,7 +81,7 @@ void run_homing(DriveBench& b, int method) {
   b.enable();
   ASSERT_EQ(b.status() & 0x3400, 0x0400) << "not started";
   b.control(0x1F);
-  for (int i = 0; i < 30'000 && !(b.drive.statusword() & 0x3000); ++i) b.run(1);
+  for (int i = 0; i < most_ms && !(b.drive.statusword() & 0x3000); ++i) b.run(1);
 }
 
 TEST(DriveHoming, every_method_finds_its_edge_or_mark_from_every_side_of_the_rail) {
@@ -147,6 +150,51 @@ TEST(DriveHoming, a_home_switch_that_is_nowhere_is_a_homing_error_after_both_lim
   run_homing(b, 7);
   b.run(500);
   EXPECT_EQ(b.status() & 0x3400, 0x2400) << "error, at rest";
+}
+
+TEST(DriveHoming, goes_on_after_a_halt_and_finds_the_same_home_wherever_it_was_halted) {
+  std::mt19937 random(402);
+  for (const int method : {1, 2, 3, 6, 8, 11, 17, 18, 19, 22, 24, 27, 33, 34}) {
+    for (int round = 0; round < 6; ++round) {
+      SCOPED_TRACE(testing::Message() << "method " << method << ", round " << round);
+      DriveBench b(rail(method, 0.8));
+      run_homing(b, method, 1 + static_cast<int>(random() % 900));
+      for (int halts = 0; halts < 3 && !(b.drive.statusword() & 0x3000); ++halts) {
+        b.control(0x11F, 400);
+        EXPECT_TRUE(b.status() & 0x0400) << "at rest";
+        const auto rest = b.drive.position_counts();
+        b.run(50);
+        ASSERT_NEAR(static_cast<double>(b.drive.position_counts()), static_cast<double>(rest), 50.0);
+        b.control(0x1F, 1 + static_cast<int>(random() % 500));
+      }
+      for (int i = 0; i < 30'000 && !(b.drive.statusword() & 0x3000); ++i) b.run(1);
+      ASSERT_TRUE(b.drive.statusword() & 0x1000) << "attained";
+      const std::int64_t home = b.drive.position_counts() - b.drive.reported_position();
+      if (method < 33)
+        ASSERT_NEAR(static_cast<double>(home), static_cast<double>(expected_home(method)), 1.0);
+      else
+        ASSERT_EQ((home - kMark) % kTurn, 0) << "a zero mark";
+    }
+  }
+}
+
+TEST(DriveHoming, whose_start_bit_is_taken_away_in_a_halt_does_not_go_on) {
+  DriveBench b(rail(1, 2.0));
+  run_homing(b, 17, 200);
+  b.control(0x11F, 400);
+  b.control(0x10F, 10);
+  b.control(0x0F, 10);
+  const auto rest = b.drive.position_counts();
+  b.run(500);
+  EXPECT_NEAR(static_cast<double>(b.drive.position_counts()), static_cast<double>(rest), 50.0);
+  EXPECT_EQ(b.status() & 0x3400, 0x0400);
+  // A start in a halt waits for its end.
+  b.control(0x10F, 10);
+  b.control(0x11F, 300);
+  EXPECT_NEAR(static_cast<double>(b.drive.position_counts()), static_cast<double>(rest), 50.0);
+  b.control(0x1F);
+  for (int i = 0; i < 30'000 && !(b.drive.statusword() & 0x3000); ++i) b.run(1);
+  EXPECT_TRUE(b.drive.statusword() & 0x1000);
 }
 
 TEST(DriveHoming, homing_is_cancelled_by_a_fault_and_can_be_repeated) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/mock/drive/drive_bench.hpp"
@@ -15,6 +16,19 @@ struct DriveModes : testing::Test {
   void mode(int m) { ASSERT_EQ(b.write(0x6060, 0, m, 1), 0u); }
   std::int32_t position() { return b.read_signed(0x6064); }
 };
+
+TEST_F(DriveModes, every_number_that_is_no_supported_mode_is_refused_and_changes_nothing) {
+  constexpr int kSupported[] = {0, 1, 2, 3, 4, 6, 7, 8, 9, 10};
+  mode(3);
+  b.enable();
+  for (int m = -128; m < 128; ++m) {
+    const bool known = std::find(std::begin(kSupported), std::end(kSupported), m) != std::end(kSupported);
+    EXPECT_EQ(b.write(0x6060, 0, m, 1), known ? 0u : 0x06090030u) << m;
+    b.run(2);
+    EXPECT_EQ(static_cast<std::int8_t>(b.read(0x6061)), known ? m : 3) << m;
+    if (known) mode(3), b.run(2);
+  }
+}
 
 TEST_F(DriveModes, supported_modes_and_their_display_agree) {
   EXPECT_EQ(b.read(0x6502), 0x000003EFu);  // pp, vl, pv, tq, hm, ip, csp, csv, cst

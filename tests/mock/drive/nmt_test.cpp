@@ -126,6 +126,16 @@ struct DriveHeartbeatConsumer : testing::Test {
   }
 };
 
+TEST_F(DriveHeartbeatConsumer, emcy_is_kept_back_in_stopped) {
+  b.nmt(0x02);
+  b.run(500);
+  EXPECT_EQ(b.count(0x085), 0) << "not even of the stop itself (CiA 301, table 39)";
+  EXPECT_EQ(b.drive.state(), image::DriveState::fault) << "6007h = 1";
+  b.nmt(0x80);
+  b.run(5);
+  EXPECT_GE(b.count(0x085), 1) << "what has happened meanwhile is told";
+}
+
 TEST_F(DriveHeartbeatConsumer, watching_begins_with_the_first_heartbeat) {
   b.run(500);
   EXPECT_EQ(b.count(0x085), 0);

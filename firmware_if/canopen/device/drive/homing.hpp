@@ -40,7 +40,7 @@ class HomingSequence {
 
   /// False: the method is not supported.
   bool start(int method, const DriveInputs& inputs, const ServoState& servo) noexcept;
-  /// Leaves the sequence (homing start bit taken away, halt, mode change).
+  /// Leaves the sequence (homing start bit taken away, mode change).
   void cancel() noexcept { state_ = State::idle; }
   /// Speed wanted now, signed counts/s. `standstill`: the shaft rests.
   double tick(const DriveInputs& inputs, const ServoState& servo, double switch_speed, double zero_speed,

@@ -186,6 +186,14 @@ void ServoProfile::profile_velocity() noexcept {
   window_time_ = off <= static_cast<double>(v_.velocity_window) ? window_time_ + h_ : 0.0;
 }
 
+// Halt interrupts a homing. It goes on afterwards unless bit 4 was taken away meanwhile; an edge of bit 4
+// acts then. Source: CiA 402-2, controlword of the homing mode: bit 4 "start or continue".
+void ServoProfile::halt_homing() noexcept {
+  if (mode_ != OperationMode::homing || (v_.controlword & kStart)) return;
+  homing_.cancel();
+  start_bit_ = false;
+}
+
 void ServoProfile::homing() noexcept {
   const bool start = v_.controlword & kStart;
   if (start && !start_bit_) {

@@ -291,7 +291,7 @@ void ServoProfile::generate() noexcept {
   } else if (!power_.following()) {
     command_position();
   } else if (halted() && mode_ != OperationMode::none) {
-    homing_.cancel();
+    halt_homing();
     stop_motion(static_cast<StopKind>(std::min<std::int64_t>(v_.halt_option, 3)), slow_down());
   } else {
     run_mode();

@@ -89,6 +89,7 @@ class ServoProfile final : public DeviceProfile {
   void go_on_behind_target() noexcept;
   void stop_at_limit_switch() noexcept;
   void homing() noexcept;
+  void halt_homing() noexcept;
   void finish_homing() noexcept;
 
   void velocity_mode() noexcept;
