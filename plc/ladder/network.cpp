@@ -87,6 +87,7 @@ class Lowering {
     std::vector<std::pair<std::string, std::uint64_t>> pins;  ///< of a function: numbers of its held outputs
     std::uint64_t enabled = 0;                                ///< number of the held ENO
     bool has_enabled = false;
+    std::vector<std::pair<std::string, std::uint64_t>> pulses;  ///< of a block: held outputs with an edge
   };
 
   Element& at(int i) { return elements_[static_cast<std::size_t>(i)]; }
@@ -161,8 +162,11 @@ class Lowering {
     Element& e = at(i);
     switch (e.kind) {
       case ElementKind::rail:
-      case ElementKind::source:
       case ElementKind::continued:
+        return;
+      case ElementKind::source:
+        if (e.edge != 0)
+          keep_power(i, pulse(inverse(syntax::copy(*e.operand), e.inverted, e.location), e.edge, e.location));
         return;
       case ElementKind::contact:
         return contact(i);
@@ -207,16 +211,19 @@ class Lowering {
       case ElementKind::rail:
         return truth(true, from);
       case ElementKind::source:
+        if (e.edge != 0) break;
         return inverse(syntax::copy(*e.operand), e.inverted, e.location);
       case ElementKind::sink:
-        return syntax::copy(*e.operand);
+        if (e.read_edge != 0) break;
+        return inverse(syntax::copy(*e.operand), e.read_inverted, e.location);
       case ElementKind::block:
         return block_output(w, from);
       default:
-        if (state(w.element).has_power) return held(state(w.element).power, from);
-        report_.error(from, state(w.element).progress == Progress::running ? texts::kLoop : texts::kNoPower);
-        return expression_of(ExpressionKind::bad, from);
+        break;
     }
+    if (state(w.element).has_power) return held(state(w.element).power, from);
+    report_.error(from, state(w.element).progress == Progress::running ? texts::kLoop : texts::kNoPower);
+    return expression_of(ExpressionKind::bad, from);
   }
 
   ExpressionPtr block_output(const Wire& w, const Location& from) {
@@ -225,6 +232,8 @@ class Lowering {
     if (same_name(w.pin, "ENO") && s.has_enabled) return held(s.enabled, from);
     for (Pin& in : e.inputs)  // the right side of an in-out is its variable
       if (in.in_out && same_name(in.name, w.pin)) return joined_wires(in, e);
+    for (const auto& [name, number] : s.pulses)
+      if (same_name(name, w.pin)) return held(number, from);
     bool inverted = false;
     for (const Pin& out : e.outputs) inverted = inverted || (same_name(out.name, w.pin) && out.inverted);
     ExpressionPtr value;
@@ -342,18 +351,19 @@ class Lowering {
   void coil(int i) {
     Element& e = at(i);
     keep_power(i, input(i));
-    ExpressionPtr power = held(state(i).power, e.location);
-    if (e.edge != 0) power = pulse(std::move(power), e.edge, e.location);
-    if (e.storage == Storage::none) {
-      emit(assignment(syntax::copy(*e.operand), inverse(std::move(power), e.inverted, e.location),
-                      e.location));
-      return;
-    }
+    emit(store(e, held(state(i).power, e.location), e.location));
+  }
+
+  // What a coil or a variable does with the value that comes to it.
+  StatementPtr store(const Element& e, ExpressionPtr value, const Location& where) {
+    if (e.edge != 0) value = pulse(std::move(value), e.edge, e.location);
+    value = inverse(std::move(value), e.inverted, e.location);
+    if (e.storage == Storage::none) return assignment(syntax::copy(*e.operand), std::move(value), where);
     StatementPtr s = statement_of(e.storage == Storage::set ? StatementKind::set : StatementKind::reset,
                                   e.operand->location);
     s->target = syntax::copy(*e.operand);
-    s->value = inverse(std::move(power), e.inverted, e.location);
-    emit(std::move(s));
+    s->value = std::move(value);
+    return s;
   }
 
   void action(int i) {
@@ -365,14 +375,15 @@ class Lowering {
   // The variable takes the value; behind a block that was not enabled it keeps its own.
   void sink(int i) {
     Element& e = at(i);
-    ExpressionPtr value = input(i);
-    StatementPtr s = assignment(syntax::copy(*e.operand), inverse(std::move(value), e.inverted, e.location),
-                                e.operand->location);
+    StatementPtr s = store(e, input(i), e.operand->location);
     const Wire* w = e.inputs[0].wires.size() == 1 ? &e.inputs[0].wires[0] : nullptr;
     if (w != nullptr && only_when_enabled(*w))
       under(held(state(w->element).enabled, e.location), std::move(s), e.location);
     else
       emit(std::move(s));
+    if (e.read_edge != 0)
+      keep_power(
+          i, pulse(inverse(syntax::copy(*e.operand), e.read_inverted, e.location), e.read_edge, e.location));
   }
 
   // Arguments in the order of the drawing. EN becomes a test around the call, ENO is held.
@@ -417,6 +428,18 @@ class Lowering {
     s->value = call(i, name_path(e.instance, e.location));
     s->value->name = e.name;
     emit(std::move(s));
+    hold_pulses(i);
+  }
+  // Outputs with an edge are looked at once, behind the call.
+  void hold_pulses(int i) {
+    Element& e = at(i);
+    for (const Pin& out : e.outputs) {
+      if (out.edge == 0) continue;
+      const Wire self{i, out.name};
+      const std::uint64_t number =
+          hold(pulse(block_output(self, e.location), out.edge, e.location), e.location);
+      state(i).pulses.emplace_back(out.name, number);
+    }
   }
 
   // Every output that is used is held, for it lasts until the next call of the same function only.
@@ -433,7 +456,10 @@ class Lowering {
         for (const Wire& w : p.wires)
           if (w.element == i && !same_name(w.pin, "ENO")) hold_pin(i, w.pin, e.location, *s);
     for (const syntax::Argument& a : drawn) hold_pin(i, a.name, a.location, *s);
+    for (const Pin& out : e.outputs)
+      if (out.edge != 0) hold_pin(i, out.name, e.location, *s);
     emit(std::move(s));
+    hold_pulses(i);
     for (syntax::Argument& a : drawn) {
       const Location written = a.location;
       ExpressionPtr value = inverse(held(find_pin(state(i), a.name)->second, written), a.inverted, written);

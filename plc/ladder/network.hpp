@@ -54,8 +54,10 @@ struct Element {
   bool inverted = false;
   int edge = 0;
   Storage storage = Storage::none;
+  bool read_inverted = false;  ///< sink: as its variable is read behind it
+  int read_edge = 0;
   std::vector<Pin> inputs;                ///< contact, coil, sink, jump, leave, link, action: one
-  std::vector<Pin> outputs;               ///< of a block, those that are inverted
+  std::vector<Pin> outputs;               ///< of a block, as drawn
   std::vector<syntax::Argument> written;  ///< of a block: arguments in words
   double x = 0, y = 0;
   int order = 0;  ///< execution order given by its author, 0: none

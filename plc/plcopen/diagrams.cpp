@@ -30,9 +30,15 @@ constexpr Named kElements[] = {
 constexpr std::string_view kSilent[] = {"rightPowerRail", "comment", "vendorElement",
                                         "error",          "addData", "documentation"};
 
-int edge_of(const pugi::xml_node& n) {
-  const std::string_view edge = n.attribute("edge").value();
+int edge_of(const pugi::xml_node& n, const char* attribute = "edge") {
+  const std::string_view edge = n.attribute(attribute).value();
   return edge == "rising" ? 1 : edge == "falling" ? -1 : 0;
+}
+ladder::Storage storage_of(const pugi::xml_node& n, const char* attribute = "storage") {
+  const std::string_view storage = n.attribute(attribute).value();
+  return storage == "set"     ? ladder::Storage::set
+         : storage == "reset" ? ladder::Storage::reset
+                              : ladder::Storage::none;
 }
 
 }  // namespace
@@ -58,10 +64,7 @@ void Reader::diagram(const pugi::xml_node& n, syntax::Unit& u) {
     e.y = position.attribute("y").as_double();
     e.order = c.attribute("executionOrderId").as_int();
     element(c, e);
-    if (name == "inOutVariable" && e.inputs[0].wires.empty()) {  // only read
-      e.kind = ElementKind::source;
-      e.inputs.clear();
-    }
+    if (name == "inOutVariable") in_out(c, e);
     elements.push_back(std::move(e));
     nodes.push_back(c);
   }
@@ -72,10 +75,8 @@ void Reader::diagram(const pugi::xml_node& n, syntax::Unit& u) {
 void Reader::element(const pugi::xml_node& n, Element& e) {
   e.inverted = n.attribute("negated").as_bool();
   e.edge = edge_of(n);
-  const std::string_view storage = n.attribute("storage").value();
-  e.storage = storage == "set"     ? ladder::Storage::set
-              : storage == "reset" ? ladder::Storage::reset
-                                   : ladder::Storage::none;
+  e.storage = storage_of(n);
+  if (e.kind == ElementKind::source && e.storage != ladder::Storage::none) not_here(n, "storage");
   switch (e.kind) {
     case ElementKind::rail:
       return;
@@ -99,6 +100,26 @@ void Reader::element(const pugi::xml_node& n, Element& e) {
   if (!takes) return;
   e.inputs.emplace_back();
   wires(child(n, "connectionPointIn"), e.inputs[0]);
+}
+
+void Reader::not_here(const pugi::xml_node& n, const char* attribute) {
+  report_.error(where(n), texts::kUnsupported,
+                {std::string(attribute) + "=\"" + n.attribute(attribute).value() + "\""});
+}
+
+// Written at its left side, read at its right one.
+void Reader::in_out(const pugi::xml_node& n, Element& e) {
+  if (storage_of(n, "storageOut") != ladder::Storage::none) not_here(n, "storageOut");
+  e.read_inverted = n.attribute("negatedOut").as_bool();
+  e.read_edge = edge_of(n, "edgeOut");
+  e.inverted = n.attribute("negatedIn").as_bool();
+  e.edge = edge_of(n, "edgeIn");
+  e.storage = storage_of(n, "storageIn");
+  if (!e.inputs[0].wires.empty()) return;
+  e.kind = ElementKind::source;
+  e.inputs.clear();
+  e.inverted = e.read_inverted;
+  e.edge = e.read_edge;
 }
 
 // <variable> of a contact or coil, <expression> of a variable.
@@ -134,6 +155,7 @@ Pin Reader::block_pin(const pugi::xml_node& variable) {
   p.name = attribute(variable, "formalParameter");
   p.inverted = variable.attribute("negated").as_bool();
   p.edge = edge_of(variable);
+  if (storage_of(variable) != ladder::Storage::none) not_here(variable, "storage");
   return p;
 }
 
@@ -158,6 +180,7 @@ void Reader::block(const pugi::xml_node& n, Element& e) {
     const pugi::xml_node text = child(point, "expression");
     const std::string written = text ? text_of(text, begin) : std::string();
     if (written.empty()) continue;
+    if (e.outputs.back().edge != 0) not_here(v, "edge");
     syntax::Argument a;
     a.name = e.outputs.back().name;
     a.location = begin;

@@ -58,6 +58,8 @@ class Reader {
   void block(const pugi::xml_node& n, ladder::Element& e);
   void wires(const pugi::xml_node& point, ladder::Pin& pin);
   ladder::Pin block_pin(const pugi::xml_node& variable);
+  void not_here(const pugi::xml_node& n, const char* attribute);
+  void in_out(const pugi::xml_node& n, ladder::Element& e);
   void operand(const pugi::xml_node& n, ladder::Element& e);
   void connect(std::vector<ladder::Element>& elements, const std::vector<pugi::xml_node>& nodes);
 

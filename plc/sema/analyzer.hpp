@@ -164,6 +164,7 @@ class Analyzer {
   ExprPtr typed_literal(const Expression& e);
   ExprPtr name_expression(const Expression& e, const Type* hint);
   ExprPtr unary(const Expression& e, const Type* hint);
+  ExprPtr unary(syntax::Operator op, ExprPtr a, const Expression& e, const Type* hint);
   ExprPtr binary(const Expression& e, const Type* hint);
   ExprPtr combine(Op op, ExprPtr a, ExprPtr b, const Location& at, std::string_view shown);
   ExprPtr combine_times(Op op, ExprPtr& a, ExprPtr& b, const Location& at);

@@ -177,10 +177,13 @@ ExprPtr Analyzer::name_expression(const Expression& e, const Type* hint) {
 }
 
 ExprPtr Analyzer::unary(const Expression& e, const Type* hint) {
-  ExprPtr a = expression(*e.operands[0], hint);
+  return unary(e.op, expression(*e.operands[0], hint), e, hint);
+}
+
+ExprPtr Analyzer::unary(Operator op, ExprPtr a, const Expression& e, const Type* hint) {
   if (a->type->kind == Kind::error) return a;
   const Kind k = a->type->kind;
-  if (e.op == Operator::not_) {
+  if (op == Operator::not_) {
     if (k == Kind::untyped_int && hint != nullptr && (is_bits(hint->kind) || hint->kind == Kind::boolean))
       a = convert(std::move(a), hint);
     const Kind now = a->type->kind;
@@ -189,13 +192,13 @@ ExprPtr Analyzer::unary(const Expression& e, const Type* hint) {
       return bad(e.location);
     }
   } else if (!(is_signed(k) || is_real(k) || is_untyped(k) || k == Kind::time ||
-               (e.op == Operator::plus && is_unsigned(k)))) {
-    report_.error(e.location, texts::kOperand, {e.op == Operator::plus ? "+" : "-", a->type->name});
+               (op == Operator::plus && is_unsigned(k)))) {
+    report_.error(e.location, texts::kOperand, {op == Operator::plus ? "+" : "-", a->type->name});
     return bad(e.location);
   }
-  if (e.op == Operator::plus) return a;
+  if (op == Operator::plus) return a;
   ExprPtr out = node(ExprKind::unary, a->type, e.location);
-  out->op = e.op == Operator::not_ ? Op::not_ : Op::neg;
+  out->op = op == Operator::not_ ? Op::not_ : Op::neg;
   out->args.push_back(std::move(a));
   return fold(std::move(out));
 }

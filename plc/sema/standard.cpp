@@ -268,6 +268,7 @@ ExprPtr Analyzer::numeric_call(std::string_view key, const Expression& e, const 
     out->args = std::move(args);
     return fold(std::move(out));
   }
+  if (key == "NOT") return unary(syntax::Operator::not_, expression(*in[0], hint), e, hint);
   ExprPtr value = settle(expression(*in[0], hint),
                          hint != nullptr && is_real(hint->kind) ? hint : elementary(Kind::lreal));
   if (value->type->kind == Kind::error) return value;

@@ -95,6 +95,8 @@ class Parser {
   friend class InstructionList;
   bool at_instruction_list() const;
   Block instruction_list(const std::vector<Variable>& variables);
+  bool at_parameter_list() const;
+  ExpressionPtr parameter_list();
 
   // Expressions.
   ExpressionPtr binary(int level);
@@ -119,6 +121,7 @@ class Parser {
   int depth_ = 0;
   bool piece_ = false;
   std::uint64_t holds_ = 0;
+  class InstructionList* list_body_ = nullptr;  ///< the list being read
   std::set<std::string, std::less<>> refused_;  ///< words that were told to be not supported
   std::size_t unsupported_ = 0;                 ///< how many were
   Source& source_;

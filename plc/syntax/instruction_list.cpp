@@ -89,6 +89,7 @@ class InstructionList {
   InstructionList(Parser& p, const std::vector<Variable>& variables) : p_(p), variables_(variables) {}
 
   Block run() {
+    p_.list_body_ = this;
     find_labels();
     while (!at_end()) {
       line_ = p_.now().location.line;
@@ -108,7 +109,34 @@ class InstructionList {
       p_.report_.error(p_.now().location, texts::kUnclosed,
                        {"')'", "'('", std::to_string(open_.back().at.line), p_.found()});
     drop();
+    p_.list_body_ = nullptr;
     return std::move(out_);
+  }
+
+  // The value of a parameter as a list of its own: IN := ( LD x ANDN y ), a line each (IEC 61131-3, 7.2.3).
+  bool at_parameter_list() const {
+    const Token& t = p_.ahead();
+    const Known* k = t.kind == TokenKind::word ? known(t.key) : nullptr;
+    return p_.at("(") && k != nullptr && k->what == Instruction::load &&
+           t.location.line > p_.now().location.line;
+  }
+  ExpressionPtr parameter_list() {
+    const Parser::Nesting nesting(p_);
+    const Location begin = take().location;
+    if (result_ != nullptr) result_ = held(std::move(result_));
+    ExpressionPtr outside = std::move(result_);
+    std::vector<Open> open = std::move(open_);
+    open_.clear();
+    while (!at_end() && !(p_.at(")") && open_.empty())) {
+      line_ = p_.now().location.line;
+      line();
+    }
+    ExpressionPtr value = need(p_.now());
+    p_.expect_closing(")", "'('", begin);
+    last_line_ = p_.list_[p_.at_ - 1].location.line;
+    open_ = std::move(open);
+    result_ = std::move(outside);
+    return value;
   }
 
  private:
@@ -504,5 +532,8 @@ bool Parser::at_instruction_list() const {
 Block Parser::instruction_list(const std::vector<Variable>& variables) {
   return InstructionList(*this, variables).run();
 }
+
+bool Parser::at_parameter_list() const { return list_body_ != nullptr && list_body_->at_parameter_list(); }
+ExpressionPtr Parser::parameter_list() { return list_body_->parameter_list(); }
 
 }  // namespace servogate::plc::syntax

@@ -90,7 +90,9 @@ ExpressionPtr Parser::unary() {
                       : at("+")   ? Operator::plus
                       : at("NOT") ? Operator::not_
                                   : Operator::none;
-  if (op == Operator::none) return primary();
+  // NOT(IN := a) is the function.
+  const bool function = op == Operator::not_ && ahead().is("(") && ahead(3).is(":=");
+  if (op == Operator::none || function) return primary();
   const Nesting nesting(*this);
   const Location begin = take().location;
   ExpressionPtr operand = unary();
@@ -128,7 +130,7 @@ ExpressionPtr Parser::primary() {
     return e;
   }
   // AND, OR, XOR, MOD and NOT are functions too.
-  const bool operator_function = at_any({"AND", "OR", "XOR", "MOD"}) && ahead().is("(");
+  const bool operator_function = at_any({"AND", "OR", "XOR", "MOD", "NOT"}) && ahead().is("(");
   if (t.kind != TokenKind::word || (is_keyword(t.key) && !operator_function))
     fail(text::both("an expression", "выражение"));
   ExpressionPtr e = make(ExpressionKind::name, t.location);
@@ -214,7 +216,8 @@ void Parser::argument(Expression& call) {
     a.output = take().key == "=>";
     a.inverted = inverted;
   }
-  if (!(a.output && at_any({",", ")"}))) a.value = expression();
+  if (!(a.output && at_any({",", ")"})))
+    a.value = !a.name.empty() && at_parameter_list() ? parameter_list() : expression();
   const std::string key = key_of(a.name);
   if (key == "EN" && !a.output)
     call.enable = std::move(a.value);

@@ -18,13 +18,13 @@ using image::ProcessState;
 using image::RequestKind;
 
 constexpr const char* kDesk = R"(
-VAR_GLOBAL crash, on, ref, go, go2, spin, halt, again, free : BOOL; goal, goal2, speed : LREAL := 60.0; way : MC_DIRECTION; END_VAR
+VAR_GLOBAL permit : BOOL := TRUE; crash, on, ref, go, go2, spin, halt, again, free : BOOL; goal, goal2, speed : LREAL := 60.0; way : MC_DIRECTION; END_VAR
 PROGRAM Main
 VAR p : MC_Power; h : MC_Home; m, n : MC_MoveAbsolute; v : MC_MoveVelocity; s : MC_Stop; r : MC_Reset;
   st : MC_ReadStatus; w : MC_ReadActualPosition; END_VAR
 MC.estop_ok := estop_chain_ok; MC.power_on := estop_chain_ok;
 X.enable := TRUE; X.feed_enable := TRUE; NC.feed_enable := TRUE; NC.read_in_enable := TRUE; NC.m_ack := NC.m_strobe;
-U.enable := TRUE; U.feed_enable := magazine_free;
+U.enable := permit; U.feed_enable := magazine_free;
 p(Axis := U, Enable := on);
 h(Axis := U, Execute := ref);
 m(Axis := U, Execute := go, Position := goal, Velocity := speed);
@@ -249,6 +249,46 @@ TEST(AuxiliaryAxis, loses_its_power_with_the_emergency_stop_and_wants_a_reset_an
   EXPECT_FALSE(desk.axis("U").moving) << "the old order does not come back";
   desk.pulse("go");
   EXPECT_TRUE(desk.comes("Main.m.Done"));
+}
+
+TEST(AuxiliaryAxis, whose_enable_is_taken_away_wants_a_new_edge_of_mc_power_at_rest_as_in_motion) {
+  for (const bool moving : {false, true}) {
+    Desk desk;
+    desk.in_motion();
+    ASSERT_TRUE(moving || desk.comes("Main.m.Done"));
+    desk.set("permit", 0.0);
+    ASSERT_TRUE(desk.comes("Main.p.Error", 0.5)) << moving;
+    ASSERT_TRUE(desk.until([&] { return !desk.axis("U").drive_command.power; }, 3.0));
+    desk.run(0.1);
+    EXPECT_EQ(desk.get("Main.p.ErrorID"), moving ? static_cast<double>(axis::alarm::kEnableWithdrawn)
+                                                 : static_cast<double>(Refusal::not_powered));
+    EXPECT_FALSE(desk.on("Main.p.Status"));
+    desk.set("permit", 1.0);
+    desk.run(0.5);
+    if (moving) {
+      desk.pulse("again");
+      ASSERT_TRUE(desk.comes("Main.r.Done", 3.0)) << desk.alarm_list();
+    }
+    desk.run(3.0);
+    EXPECT_FALSE(desk.axis("U").drive_command.power) << "nothing comes on unasked";
+    EXPECT_TRUE(desk.on("Main.p.Error"));
+    desk.pulse("on");
+    ASSERT_TRUE(desk.comes("Main.p.Status", 3.0)) << moving;
+    EXPECT_FALSE(desk.on("Main.p.Error"));
+    desk.pulse("go2");
+    EXPECT_TRUE(desk.comes("Main.n.Done")) << desk.alarm_list();
+  }
+}
+
+TEST(AuxiliaryAxis, may_be_asked_for_power_before_it_is_permitted) {
+  Desk desk;
+  desk.set("permit", 0.0);
+  desk.set("on", 1.0);
+  desk.run(1.0);
+  EXPECT_FALSE(desk.on("Main.p.Status"));
+  EXPECT_FALSE(desk.on("Main.p.Error"));
+  desk.set("permit", 1.0);
+  EXPECT_TRUE(desk.comes("Main.p.Status", 3.0));
 }
 
 TEST(AuxiliaryAxis, stops_with_a_fault_of_its_drive_which_mc_reset_takes_back) {

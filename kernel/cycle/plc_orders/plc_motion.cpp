@@ -48,8 +48,14 @@ void PlcMotion::fail(std::uint16_t error) noexcept {
 
 void PlcMotion::watch(const axis::Axis& axis, const Alarms& alarms, double seconds) noexcept {
   if (axis.setpoint().v != 0.0) turned_down_ = axis.setpoint().v < 0.0;
-  if (power_ && power_permitted_ && !axis.power_requested()) {  // it fell by itself
+  // The alarm of an enable that was taken away in motion comes a cycle later.
+  if (power_ && !power_permitted_ && power_refusal_ == kNoPower && alarms.stop && axis.moving())
+    power_refusal_ = alarms.number;
+  powered_ = powered_ || axis.motion_permitted();
+  const bool withdrawn = powered_ && !axis.power_permitted();
+  if (power_ && power_permitted_ && (withdrawn || !axis.power_requested())) {  // it fell by itself
     power_permitted_ = false;
+    withdraw_ = axis.power_requested();
     power_refusal_ = alarms.stop ? alarms.number : kNoPower;
   }
   if (resetting()) {
@@ -144,9 +150,11 @@ bool PlcMotion::next(Request& request, const axis::Axis& axis) noexcept {
   request = {};
   request.asker = image::Asker::plc;
   request.axis = static_cast<std::int8_t>(axis_);
-  if (wanted_.power != power_) {
+  // An axis in motion first comes to rest by the alarm of the enable that it has lost.
+  const bool withdraws = withdraw_ && !axis.moving();
+  if (wanted_.power != power_ || withdraws) {
     request.kind = RequestKind::axis_power;
-    request.value = wanted_.power ? 1.0 : 0.0;
+    request.value = wanted_.power && !withdraws ? 1.0 : 0.0;
     return true;
   }
   if (wanted_.number == taken_) return false;
@@ -170,6 +178,11 @@ bool PlcMotion::next(Request& request, const axis::Axis& axis) noexcept {
 void PlcMotion::answer(const Request& request, const image::Answer& answer, const axis::Axis& axis) noexcept {
   if (request.kind == RequestKind::axis_power) {
     power_ = wanted_.power;
+    powered_ = false;
+    if (withdraw_) {
+      withdraw_ = false;
+      if (power_ && request.value == 0.0) return;
+    }
     power_refusal_ = answer.refusal;
     power_permitted_ = power_ && answer.refusal == 0;
     return;

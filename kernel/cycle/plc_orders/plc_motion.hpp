@@ -89,6 +89,8 @@ class PlcMotion {
   Wanted wanted_;
   bool power_ = false;  ///< as asked for last
   bool power_permitted_ = false;
+  bool powered_ = false;   ///< the power asked for has come
+  bool withdraw_ = false;  ///< what fell must not come back by itself
   std::uint16_t power_refusal_ = 0;
   std::int32_t taken_ = 0, active_number_ = 0;
   std::uint16_t refusal_ = 0, error_ = 0;
