@@ -117,7 +117,7 @@ LoadResult parse(std::string_view text, const std::string& path) {
     result.machine.places = std::move(reading.places);
     result.machine.unread = std::move(reading.unread);
     load_devices(result, reading, of_devices);
-    load_node_files(result, reading);
+    load_node_files(result, reading, of_devices);
     check_all(result, reading);
   }
   sort_findings(reading.findings);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/machine/node_files.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 
@@ -17,7 +18,8 @@ constexpr std::int64_t kMostOfNodeProgram = std::int64_t{64} << 20;
 
 class NodeFileReader {
  public:
-  NodeFileReader(LoadResult& result, Reading& reading) : result_(result), reading_(reading) {}
+  NodeFileReader(LoadResult& result, Reading& reading, std::vector<text::Finding>& of_files)
+      : result_(result), reading_(reading), of_files_(of_files) {}
 
   void read(const BusConfig& bus, const NodeConfig& node, const std::string& path) {
     LoadResult::NodeFiles files;
@@ -64,18 +66,23 @@ class NodeFileReader {
     const canopen::EdsResult dcf = canopen::read_eds(*bytes, node.configuration);
     const auto entries = canopen::configuration_of(dcf.eds, static_cast<canopen::NodeId>(node.id));
     if (entries.empty())
-      reading_.error(at(path + ".configuration"), finding::kEmptyConfiguration, {node.configuration});
+      return reading_.error(at(path + ".configuration"), finding::kEmptyConfiguration, {node.configuration});
+    for (text::Finding f : dcf.findings) {
+      f.column = std::max(f.column, 1);
+      of_files_.push_back(std::move(f));
+    }
     files.concise_dcf = canopen::write_concise_dcf(entries);
   }
 
   LoadResult& result_;
   Reading& reading_;
+  std::vector<text::Finding>& of_files_;
 };
 
 }  // namespace
 
-void load_node_files(LoadResult& result, Reading& reading) {
-  NodeFileReader reader(result, reading);
+void load_node_files(LoadResult& result, Reading& reading, std::vector<text::Finding>& of_files) {
+  NodeFileReader reader(result, reading, of_files);
   for (std::size_t b = 0; b < result.machine.buses.size(); ++b)
     for (std::size_t n = 0; n < result.machine.buses[b].nodes.size(); ++n)
       reader.read(result.machine.buses[b], result.machine.buses[b].nodes[n],

@@ -10,7 +10,8 @@ namespace servogate::machine {
 
 /// Reads the files that nodes name (program, DCF) into LoadResult::node_files; what is wrong with them is
 /// said at the key that names them. Not real-time safe.
-void load_node_files(LoadResult& result, Reading& reading);
+/// `of_files`: what the reader of a configuration finds odd in it, with its lines.
+void load_node_files(LoadResult& result, Reading& reading, std::vector<text::Finding>& of_files);
 
 /// "2026-11-22 14:30:00" (or without seconds, or the date alone) as 1020h has it. nullopt: no such day or
 /// time, or before 1984.

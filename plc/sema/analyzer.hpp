@@ -378,6 +378,7 @@ class Analyzer {
   std::set<int> referenced_units_;       ///< REF is taken of variables of their instances, inside
   bool open_arrays_ = false;             ///< the type being resolved may be ARRAY[*]
   const Expression* guarded_ = nullptr;  ///< the call whose EN and ENO are being dealt with
+  bool misplaced_ = false;               ///< a location of VAR_CONFIG went to nobody
   bool no_marks_ = false;                ///< reads do not count as use
 };
 

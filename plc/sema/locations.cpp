@@ -95,7 +95,10 @@ void Analyzer::configured_paths(const syntax::Configuration& c) {
   current_ = -1;
   for (const syntax::PathDeclaration& p : c.paths) {
     if (!p.name.empty()) continue;
+    const std::size_t errors = report_.errors();
     const auto found = reach_path(c, p);
+    // What it was meant for has no location then, which is no second mistake.
+    misplaced_ = misplaced_ || (!found && !p.address.empty());
     if (!found) continue;
     if (!p.address.empty() && found->owner == nullptr) {
       report_.error(p.address_location, texts::kNotLocatable, {found->name});
@@ -105,6 +108,7 @@ void Analyzer::configured_paths(const syntax::Configuration& c) {
       const std::vector<std::uint8_t> bytes = initial_bytes(*p.initial, *found->type);
       std::copy(bytes.begin(), bytes.end(), program_.memory.begin() + found->cell);
     }
+    misplaced_ = misplaced_ || (report_.errors() != errors && !p.address.empty());
   }
   for (const syntax::PathDeclaration& p : c.paths) {
     if (p.name.empty()) continue;
@@ -215,6 +219,7 @@ void Analyzer::check_locations() {
   for (const UnitScope& u : scopes_)
     if (u.frame != nullptr && u.source->kind == syntax::UnitKind::function)
       find_missing(u.source->name, *u.frame, 0, false, missing);
+  if (misplaced_) missing.clear();
   constexpr std::size_t kShown = 4;
   for (const auto& [v, paths] : missing) {  // one message for each declaration, with those it is missing for
     std::string shown;

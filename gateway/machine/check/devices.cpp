@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/text/units.hpp"
 #include "gateway/machine/check/boot_objects.hpp"
 #include "gateway/machine/check/check.hpp"
@@ -56,6 +57,8 @@ std::string shorter_data(double load, double with_4_byte_pdo) {
                     "; с 4-байтными PDO загрузка была бы " + percent + " %");
 }
 
+constexpr double kBootTimeout_s = 2.0;  ///< where the node says 0
+
 std::string milliseconds(double seconds) {
   const std::string ms = text::number(seconds * 1e3);
   return text::both(ms + " ms", ms + " мс");
@@ -95,6 +98,10 @@ class DeviceUse {
           reading_.error(m_.where(path + ".heartbeat"), finding::kHeartbeatShort,
                          {milliseconds(node.heartbeat), node.name,
                           milliseconds(static_cast<double>(m_.cycle_ns()) * 1e-9)});
+        const double patience = node.boot_timeout > 0.0 ? node.boot_timeout : kBootTimeout_s;
+        if (node.heartbeat >= patience)
+          reading_.error(m_.where(path + ".heartbeat"), finding::kHeartbeatLong,
+                         {milliseconds(node.heartbeat), node.name, milliseconds(patience)});
       }
   }
 
@@ -134,6 +141,7 @@ class DeviceUse {
                        {a.letter, std::to_string(a.home.drive_method), m_.node(a.drive)->device,
                         homing_methods_of(*device)});
       own_motion(a, *device, path);
+      every_cycle(a, *device, path);
       torque(a, *device, path);
       if (a.brake.drive_output && !device->motor.brake_output)
         reading_.error(m_.where(path + ".brake.drive_output"), finding::kNoBrakeOutput,
@@ -293,6 +301,22 @@ class DeviceUse {
     for (const auto& [name, value] : node.objects)
       check_boot_object(name, value, loaded_.device(node.device), m_.where(path + ".objects." + name),
                         reading_);
+  }
+
+  /// What stops and leads an axis may not wait: the stopping times of check count on it.
+  void every_cycle(const AxisConfig& a, const DeviceConfig& device, const std::string& path) {
+    namespace object = canopen::object;
+    for (const PdoConfig& pdo : device.rpdos) {
+      if (pdo.transmission < 2 || pdo.transmission > 240) continue;
+      const bool leads = std::any_of(pdo.objects.begin(), pdo.objects.end(), [](const PdoObject& o) {
+        return o.index == object::kControlword || o.index == object::kTargetPosition ||
+               o.index == object::kInterpolationData;
+      });
+      if (leads)
+        reading_.error(m_.where(path + ".drive"), finding::kSlowCommand,
+                       {a.letter, std::to_string(pdo.number), m_.node(a.drive)->device,
+                        std::to_string(pdo.transmission)});
+    }
   }
 
   void motor(const DeviceConfig& device, const std::string& name, const std::string& who,

@@ -260,6 +260,16 @@ inline constexpr text::Entry kHeartbeatShort{
     "machine.heartbeat_short",
     "heartbeat {0} of node \"{1}\" is shorter than the cycle of {2}: the control could not keep up with it",
     "heartbeat {0} узла «{1}» короче цикла {2}: управление не успевало бы"};
+inline constexpr text::Entry kHeartbeatLong{
+    "machine.heartbeat_long",
+    "heartbeat {0} of node \"{1}\" is not below its boot_timeout of {2}: its start would not be seen in time",
+    "heartbeat {0} узла «{1}» не короче его boot_timeout {2}: его пуск не был бы замечен вовремя"};
+inline constexpr text::Entry kSlowCommand{
+    "machine.slow_command",
+    "{0}: RPDO {1} of {2} goes with every {3}th SYNC only; controlword and position of an axis go with each "
+    "one",
+    "{0}: RPDO {1} устройства {2} идёт лишь с каждым {3}-м SYNC; слово управления и положение оси нужны с "
+    "каждым"};
 // Devices
 inline constexpr text::Entry kMotorTooFast{
     "machine.motor_too_fast", "{0}: {1} needs {2} rpm of the motor; {3} allows {4} rpm",
