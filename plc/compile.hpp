@@ -30,7 +30,7 @@ struct Options {
   image::Nanoseconds cycle_ns = 0;
   bool warnings = true;
   /// Declarations without a PROGRAM are a library and no mistake; nothing runs.
-  bool library = false;
+  bool program_optional = false;
 };
 
 /// What came out. `findings` are in the order of file, line and column; `image` is null when any is an error.

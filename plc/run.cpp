@@ -188,7 +188,7 @@ RunResult run(const RunRequest& request, const std::function<bool(std::string_vi
 bool check(const std::vector<SourceFile>& files, const std::vector<image::Symbol>& symbols,
            const Options& options, std::vector<text::Finding>& findings) {
   Options wanted = options;
-  wanted.library = true;
+  wanted.program_optional = true;
   CompileResult r = compile(files, symbols, wanted);
   findings = std::move(r.findings);
   return std::none_of(findings.begin(), findings.end(),

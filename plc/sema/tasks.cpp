@@ -53,9 +53,10 @@ void Analyzer::default_task() {
     body_unit.body.push_back(invoke_at(base, scopes_[i].frame, static_cast<int>(i), u.location));
   }
   const auto own = [this](const auto& d) { return d.location.file != library_file_; };
-  const bool library = options_.library && (std::any_of(source_.units.begin(), source_.units.end(), own) ||
-                                            std::any_of(source_.types.begin(), source_.types.end(), own) ||
-                                            std::any_of(source_.globals.begin(), source_.globals.end(), own));
+  const bool library =
+      options_.program_optional && (std::any_of(source_.units.begin(), source_.units.end(), own) ||
+                                    std::any_of(source_.types.begin(), source_.types.end(), own) ||
+                                    std::any_of(source_.globals.begin(), source_.globals.end(), own));
   if (body_unit.body.empty() && !library) report_.error({0, 1, 1}, texts::kNoProgram);
   ir::Task task;
   task.name = "cycle";
@@ -241,7 +242,7 @@ void Analyzer::configured_tasks() {
   }
   std::stable_sort(program_.tasks.begin(), program_.tasks.end(),
                    [](const ir::Task& a, const ir::Task& b) { return a.priority < b.priority; });
-  if (program_.programs.empty() && !options_.library && !report_.failed())
+  if (program_.programs.empty() && !options_.program_optional && !report_.failed())
     report_.error({0, 1, 1}, texts::kNoProgram);
 }
 
