@@ -165,8 +165,7 @@ class Lowering {
       case ElementKind::continued:
         return;
       case ElementKind::source:
-        if (e.edge != 0)
-          keep_power(i, pulse(inverse(syntax::copy(*e.operand), e.inverted, e.location), e.edge, e.location));
+        if (e.edge != 0) keep_pulse(i, inverse(syntax::copy(*e.operand), e.inverted, e.location), e.edge);
         return;
       case ElementKind::contact:
         return contact(i);
@@ -282,6 +281,10 @@ class Lowering {
     state(i).power = hold(std::move(value), at(i).location);
     state(i).has_power = true;
   }
+  void keep_pulse(int i, ExpressionPtr value, int edge) {
+    state(i).power = pulse(std::move(value), edge, at(i).location)->literal.magnitude;
+    state(i).has_power = true;
+  }
 
   // Several wires into one input are OR.
   ExpressionPtr joined_wires(const Pin& p, const Element& e) {
@@ -322,7 +325,7 @@ class Lowering {
     return expression_of(ExpressionKind::bad, e.location);
   }
 
-  // Stays TRUE for the one run in which the value rises (falls). The value is computed once.
+  // Stays TRUE for the one run in which the value rises (falls), held. The value is computed once.
   ExpressionPtr pulse(ExpressionPtr value, int edge, const Location& where) {
     const std::string last = "edge$" + std::to_string(unit_.variables.size());
     syntax::Variable v;
@@ -382,8 +385,7 @@ class Lowering {
     else
       emit(std::move(s));
     if (e.read_edge != 0)
-      keep_power(
-          i, pulse(inverse(syntax::copy(*e.operand), e.read_inverted, e.location), e.read_edge, e.location));
+      keep_pulse(i, inverse(syntax::copy(*e.operand), e.read_inverted, e.location), e.read_edge);
   }
 
   // Arguments in the order of the drawing. EN becomes a test around the call, ENO is held.
@@ -437,7 +439,7 @@ class Lowering {
       if (out.edge == 0) continue;
       const Wire self{i, out.name};
       const std::uint64_t number =
-          hold(pulse(block_output(self, e.location), out.edge, e.location), e.location);
+          pulse(block_output(self, e.location), out.edge, e.location)->literal.magnitude;
       state(i).pulses.emplace_back(out.name, number);
     }
   }
