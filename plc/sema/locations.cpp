@@ -97,10 +97,9 @@ void Analyzer::configured_paths(const syntax::Configuration& c) {
     if (!p.name.empty()) continue;
     const std::size_t errors = report_.errors();
     const auto found = reach_path(c, p);
-    // What it was meant for has no location then, which is no second mistake.
-    misplaced_ = misplaced_ || (!found && !p.address.empty());
-    if (!found) continue;
-    if (!p.address.empty() && found->owner == nullptr) {
+    if (!found) {
+      // reported
+    } else if (!p.address.empty() && found->owner == nullptr) {
       report_.error(p.address_location, texts::kNotLocatable, {found->name});
     } else if (!p.address.empty()) {
       locate(p, *found);
@@ -108,6 +107,7 @@ void Analyzer::configured_paths(const syntax::Configuration& c) {
       const std::vector<std::uint8_t> bytes = initial_bytes(*p.initial, *found->type);
       std::copy(bytes.begin(), bytes.end(), program_.memory.begin() + found->cell);
     }
+    // What it was meant for has no location then, which is no second mistake.
     misplaced_ = misplaced_ || (report_.errors() != errors && !p.address.empty());
   }
   for (const syntax::PathDeclaration& p : c.paths) {
