@@ -57,8 +57,6 @@ std::string shorter_data(double load, double with_4_byte_pdo) {
                     "; с 4-байтными PDO загрузка была бы " + percent + " %");
 }
 
-constexpr double kBootTimeout_s = 2.0;  ///< where the node says 0
-
 std::string milliseconds(double seconds) {
   const std::string ms = text::number(seconds * 1e3);
   return text::both(ms + " ms", ms + " мс");
@@ -98,7 +96,8 @@ class DeviceUse {
           reading_.error(m_.where(path + ".heartbeat"), finding::kHeartbeatShort,
                          {milliseconds(node.heartbeat), node.name,
                           milliseconds(static_cast<double>(m_.cycle_ns()) * 1e-9)});
-        const double patience = node.boot_timeout > 0.0 ? node.boot_timeout : kBootTimeout_s;
+        const double patience =
+            node.boot_timeout > 0.0 ? node.boot_timeout : canopen::SegmentConfig().boot_timeout_ms * 1e-3;
         if (node.heartbeat >= patience)
           reading_.error(m_.where(path + ".heartbeat"), finding::kHeartbeatLong,
                          {milliseconds(node.heartbeat), node.name, milliseconds(patience)});
