@@ -17,6 +17,9 @@ inline constexpr std::uint8_t kGeneric = 0x01, kCurrent = 0x02, kVoltage = 0x04,
                               kCommunication = 0x10, kDeviceProfile = 0x20, kManufacturer = 0x80;
 }
 
+/// The data of SYNC are not as 1019h has them. Source: CiA 301, 7.2.7.1, table 26.
+inline constexpr std::uint16_t kUnexpectedSyncLength = 0x8240;
+
 /// One emergency message. error_code 0 = "error reset or no error". Source: CiA 301, 7.2.7.
 struct Emcy {
   std::uint16_t error_code = 0;

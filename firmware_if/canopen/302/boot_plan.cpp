@@ -40,6 +40,10 @@ class Plan {
     add({Kind::read, step_, index, subindex, 4, wanted.value_or(0), wanted ? mask : 0, optional && !wanted,
          keep});
   }
+  /// Kept where the device has it.
+  void note(std::uint16_t index, std::uint8_t bytes, Keep keep) {
+    add({Kind::read, step_, index, 0, bytes, 0, 0, true, keep});
+  }
   void write_data(std::uint16_t index, std::uint8_t subindex, std::vector<std::uint8_t> data) {
     add({Kind::write, step_, index, subindex}).data = std::move(data);
   }
@@ -388,6 +392,9 @@ std::vector<BootAction> boot_plan(const NodeConfig& node, const SegmentConfig& s
     plan.write_and_check(object::kProducerHeartbeatTime, 0, 2,
                          static_cast<std::uint16_t>(heartbeat_ms(node, segment)));
   plan.step(BootStep::start);
+  // What put it into its fault before this control was there.
+  if (node.target != DriveTarget::io) plan.note(object::kErrorCode, 2, Keep::error_code);
+  if (segment.sync_counter_overflow > 0) plan.await(Kind::await_sync);
   plan.nmt(Kind::start);
   return actions;
 }

@@ -22,10 +22,19 @@ struct BootAction {
                     ///< object nothing is looked for
     await_flash,    ///< upload the flash status until it is no longer at work, and see that it has no error
     await_boot_up,  ///< wait for the boot-up message
+    await_sync,     ///< wait until SYNC runs, see SegmentConfig::sync_counter_overflow
     start,          ///< NMT start, then wait for a heartbeat with state Operational
   };
   /// Where a read value goes.
-  enum class Keep : std::uint8_t { nothing, device_type, vendor_id, product_code, revision, serial };
+  enum class Keep : std::uint8_t {
+    nothing,
+    device_type,
+    vendor_id,
+    product_code,
+    revision,
+    serial,
+    error_code
+  };
 
   Kind kind = Kind::write;
   BootStep step = BootStep::settings;

@@ -10,6 +10,11 @@ constexpr image::Nanoseconds kFlashPollNs = 20 * image::kMillisecond;
 constexpr std::uint32_t kFlashBusy = 1;
 // A device that stores all its parameters answers behind that (CiA 301, 7.5.2.13).
 constexpr image::Nanoseconds kStoreNs = 10 * image::kSecond;
+
+constexpr bool accesses(BootAction::Kind kind) noexcept {
+  return kind != BootAction::Kind::start && kind != BootAction::Kind::await_boot_up &&
+         kind != BootAction::Kind::await_sync;
+}
 }  // namespace
 
 void NodeBoot::restart_at(std::size_t action, SdoClient& sdo) noexcept {
@@ -18,6 +23,7 @@ void NodeBoot::restart_at(std::size_t action, SdoClient& sdo) noexcept {
   action_ = action;
   entered_ = false;
   list_size_ = list_entry_ = 0;
+  error_code_ = 0;
   nmt_state_ = NmtState::boot_up;
   describe_action();
 }
@@ -57,7 +63,7 @@ void NodeBoot::fail(BootProblem problem) noexcept {
   state_ = State::failed;
 }
 
-bool NodeBoot::poll(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) noexcept {
+bool NodeBoot::poll(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus, bool sync_runs) noexcept {
   if (state_ != State::running) return false;
   now_ = now;
   switch (plan_[action_].kind) {
@@ -69,6 +75,9 @@ bool NodeBoot::poll(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) 
       return command_and_wait(now, bus, NmtCommand::start, nmt_state_ == NmtState::operational);
     case BootAction::Kind::await_boot_up:
       return await_boot_up(now);
+    case BootAction::Kind::await_sync:
+      if (sync_runs) next();
+      return false;
     default:
       return access(now, sdo, bus);
   }
@@ -131,9 +140,7 @@ bool NodeBoot::command_and_wait(image::Nanoseconds now, image::CanBus& bus, NmtC
 bool NodeBoot::access(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) noexcept {
   if (entered_ && !sdo.busy()) {
     on_result(sdo);
-    if (state_ != State::running || plan_[action_].kind == BootAction::Kind::start ||
-        plan_[action_].kind == BootAction::Kind::await_boot_up)
-      return false;
+    if (state_ != State::running || !accesses(plan_[action_].kind)) return false;
   }
   if (!entered_ && now >= poll_again_ns_) entered_ = start_transfer(sdo);
   return sdo.poll(now, bus);
@@ -152,7 +159,9 @@ void NodeBoot::on_result(const SdoClient& sdo) noexcept {
         return jump(false);
       const bool missing = result.abort == AbortCode::object_does_not_exist ||
                            result.abort == AbortCode::subindex_does_not_exist;
-      return action.optional && missing ? next() : fail(BootProblem::aborted);
+      // What is only noted is no reason to refuse a device.
+      const bool noted = action.keep == BootAction::Keep::error_code;
+      return (action.optional && missing) || noted ? next() : fail(BootProblem::aborted);
     }
     case SdoStatus::no_answer:
       return fail(BootProblem::no_answer);
@@ -242,6 +251,9 @@ void NodeBoot::keep(std::uint32_t value) noexcept {
       break;
     case BootAction::Keep::serial:
       identity_.serial = value;
+      break;
+    case BootAction::Keep::error_code:
+      error_code_ = static_cast<std::uint16_t>(value);
       break;
     case BootAction::Keep::nothing:
       break;

@@ -39,12 +39,20 @@ class NodeBoot {
 
   /// Goes on as far as it can without waiting; sends at most one frame. True when it sent one. `sdo` is the
   /// node's client, which nobody else may use meanwhile.
-  bool poll(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus) noexcept;
+  bool poll(image::Nanoseconds now, SdoClient& sdo, image::CanBus& bus, bool sync_runs = true) noexcept;
 
   State state() const noexcept { return state_; }
   /// The action in hand; after a failure the one that failed, with what was expected and what came.
   const BootReport& report() const noexcept { return report_; }
   const NodeIdentity& identity() const noexcept { return identity_; }
+  /// 603Fh as it was before the start; 0: no error, or no such object.
+  std::uint16_t error_code() const noexcept { return error_code_; }
+  /// The node is not yet told what SYNC looks like.
+  bool before_sync() const noexcept { return state_ == State::running && report_.step <= BootStep::sync; }
+  /// Everything is written, and only SYNC is missing.
+  bool awaits_sync() const noexcept {
+    return state_ == State::running && plan_[action_].kind == BootAction::Kind::await_sync;
+  }
 
  private:
   void restart_at(std::size_t action, SdoClient& sdo) noexcept;
@@ -78,6 +86,7 @@ class NodeBoot {
   NmtState nmt_state_ = NmtState::boot_up;
   BootReport report_;
   NodeIdentity identity_;
+  std::uint16_t error_code_ = 0;
 };
 
 }  // namespace servogate::canopen

@@ -10,7 +10,7 @@ namespace servogate::canopen {
 namespace {
 
 constexpr std::uint16_t kHeartbeatLost = 0x8130, kBusOff = 0x8140, kPdoTooShort = 0x8210,
-                        kSyncLength = 0x8240, kRpdoTimeout = 0x8250;
+                        kRpdoTimeout = 0x8250;
 constexpr int kSegmentsPerTick = 2;
 constexpr ObjectDictionary::Range kCommunication{0x1000, 0x1FFF}, kApplication{0x2000, 0xFFFF};
 
@@ -199,8 +199,8 @@ void Slave::answer_remote(const image::CanFrame& frame) noexcept {
 void Slave::on_sync(const image::CanFrame& frame) noexcept {
   // With a counter the message has one byte, without one none. Source: CiA 301, 7.2.5.
   if (frame.length != (sync_overflow_ ? 1 : 0))
-    return emcy_.raise(kSyncLength, error_register::kCommunication);
-  emcy_.clear(kSyncLength);
+    return emcy_.raise(kUnexpectedSyncLength, error_register::kCommunication);
+  emcy_.clear(kUnexpectedSyncLength);
   window_end_ = now_ + sync_window_ * image::kMicrosecond;
   if (state_ == NmtState::operational) {
     const std::uint8_t counter = frame.length == 1 ? frame.data[0] : 0;

@@ -32,6 +32,7 @@ BusNode::BusNode(const NodeConfig& config, const SegmentConfig& segment)
       boot_pause_ns_(segment.boot_pause_ms * image::kMillisecond),
       first_limit_(segment.boot_timeout_ms * image::kMillisecond / segment.cycle_ns),
       boot_attempts_(config.setup.boot_attempts > 0 ? config.setup.boot_attempts : segment.boot_attempts),
+      sync_counter_(segment.sync_counter_overflow > 0),
       sdo_(config.node, sdo_timeout_ms(config, segment) * image::kMillisecond,
            static_cast<std::uint32_t>(
                std::max(0, config.setup.sdo_retries >= 0 ? config.setup.sdo_retries : segment.sdo_retries))),
@@ -118,11 +119,32 @@ void BusNode::on_emcy(const image::CanFrame& frame, const NodeContext& context) 
   const auto emcy = parse_emcy(frame);
   if (!emcy) return;
   emcy_.add(*emcy, context.now);
-  link_->on_emcy(emcy->error_code);
-  if (emcy->error_code != 0) history_.on_error(context.now);
+  // A node that boots among others that run hears SYNC with a counter before 1019h can be written again. Its
+  // message may come before the one that it has booted.
+  if (sync_counter_ && emcy->error_code == kUnexpectedSyncLength) {
+    sync_length_ = {*emcy, context.cycle};
+    return;
+  }
+  take_emcy(*emcy, context);
+}
+
+void BusNode::take_emcy(const Emcy& emcy, const NodeContext& context) noexcept {
+  link_->on_emcy(emcy.error_code);
+  if (emcy.error_code != 0) history_.on_error(context.now);
   BusEvent e = event(BusEventKind::emcy, context);
-  e.emcy = *emcy;
+  e.emcy = emcy;
   context.events.push(e);
+}
+
+/// Whether SYNC surprised a node in its boot is clear one cycle later.
+void BusNode::judge_sync_length(const NodeContext& context) noexcept {
+  if (!sync_length_ || context.cycle <= sync_length_->cycle) return;
+  if (phase_ != Phase::booting || !boot_.before_sync()) take_emcy(sync_length_->emcy, context);
+  sync_length_.reset();
+}
+
+bool BusNode::ready_for_sync() const noexcept {
+  return phase_ != Phase::booting || attempts_ > 0 || boot_.awaits_sync();
 }
 
 void BusNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& context) noexcept {
@@ -188,6 +210,7 @@ void BusNode::start_operation(const NodeContext& context) noexcept {
   interpolation_said_ = false;
   heartbeat_deadline_ns_ = context.now + heartbeat_timeout_ns_;
   link_->restart();
+  link_->on_emcy(boot_.error_code());
   history_.restart();
   faulty_ = false;
   BusEvent e = event(BusEventKind::node_booted, context);
@@ -225,7 +248,8 @@ void BusNode::supervise(bool on_time, const NodeContext& context) noexcept {
 void BusNode::report_link(const NodeContext& context) noexcept {
   if (drive_ == nullptr) return;
   const bool faulty = drive_->in_fault();
-  if (faulty && !faulty_) history_.on_error(context.now);
+  if (faulty && !faulty_ && !(drive_->error_code() == 0 && history_.tell_all()))
+    history_.on_error(context.now);
   faulty_ = faulty;
   const bool refused = drive_->refusal().waited_ms != 0;
   if (refused && !refusal_said_) {
@@ -252,6 +276,7 @@ void BusNode::report_link(const NodeContext& context) noexcept {
 }
 
 void BusNode::evaluate(image::ProcessImage& image, const NodeContext& context) noexcept {
+  judge_sync_length(context);
   if (phase_ == Phase::booting) follow_boot(context);
   if (phase_ == Phase::pausing && context.now >= pause_until_ns_) start_boot();
   if (phase_ == Phase::running) {
@@ -320,7 +345,7 @@ bool BusNode::send_acyclic(const NodeContext& context) noexcept {
     questioned_ = false;
   }
   if (send_guarding(context)) return true;
-  if (phase_ == Phase::booting) return boot_.poll(context.now, sdo_, context.bus);
+  if (phase_ == Phase::booting) return boot_.poll(context.now, sdo_, context.bus, context.sync_runs);
   if (phase_ == Phase::running && !sdo_.busy()) {
     const bool had_its_turn = questioned_;
     if (questioned_) context.question.finish(sdo_);

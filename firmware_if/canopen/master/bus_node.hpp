@@ -27,6 +27,7 @@ struct NodeContext {
   image::CanBus& bus;
   BusEventRing& events;
   ObjectQuestion& question;  ///< of somebody outside the cycle, to any node of the segment
+  bool sync_runs = true;     ///< see Segment: SYNC with a counter waits for those who must know of it
 };
 
 /// One configured node through its life: boot, operation under supervision, loss, boot again. All but the
@@ -41,6 +42,9 @@ class BusNode {
   const BootReport& boot_report() const noexcept { return boot_.report(); }
   const NodeIdentity& identity() const noexcept { return boot_.identity(); }
   const EmcyHistory& emcy_history() const noexcept { return emcy_; }
+
+  /// A SYNC with a counter does not meet it unprepared: it has been told of the counter, or does not answer.
+  bool ready_for_sync() const noexcept;
 
   /// A frame of this node: TPDO, SDO answer, heartbeat or emergency.
   void on_frame(Service service, const image::CanFrame& frame, const NodeContext& context) noexcept;
@@ -69,6 +73,8 @@ class BusNode {
   void on_heartbeat(const image::CanFrame& frame, const NodeContext& context) noexcept;
   void on_boot_up(const NodeContext& context) noexcept;
   void on_emcy(const image::CanFrame& frame, const NodeContext& context) noexcept;
+  void take_emcy(const Emcy& emcy, const NodeContext& context) noexcept;
+  void judge_sync_length(const NodeContext& context) noexcept;
   void on_tpdo(int number, const image::CanFrame& frame, const NodeContext& context) noexcept;
   void start_boot() noexcept;
   void follow_boot(const NodeContext& context) noexcept;
@@ -89,6 +95,7 @@ class BusNode {
   image::Nanoseconds heartbeat_timeout_ns_, boot_pause_ns_;
   std::int64_t first_limit_;
   std::int32_t boot_attempts_;
+  bool sync_counter_;
   std::optional<NodeGuard> guard_;  ///< of a node without heartbeat
 
   SdoClient sdo_;
@@ -97,6 +104,11 @@ class BusNode {
   DriveLink* drive_ = nullptr;  ///< link_, or nullptr
   IoLink* io_ = nullptr;        ///< the same
   EmcyHistory emcy_;
+  struct SyncLength {
+    Emcy emcy;
+    std::int64_t cycle = 0;
+  };
+  std::optional<SyncLength> sync_length_;  ///< 8240h of this cycle
   ErrorHistory history_;
   bool faulty_ = false;  ///< the drive shows a fault
 

@@ -128,7 +128,13 @@ struct Segment::Impl {
   }
 
   NodeContext context(const ProcessImage& image) noexcept {
-    return {static_cast<std::int16_t>(config.index), image.now.number, image.now.t_ns, bus, ring, question};
+    return {static_cast<std::int16_t>(config.index),
+            image.now.number,
+            image.now.t_ns,
+            bus,
+            ring,
+            question,
+            sync_runs};
   }
   BusEvent event(BusEventKind kind, const ProcessImage& image, NodeId node = 0) const noexcept;
   void say_frame(BusEventKind kind, const ProcessImage& image, const image::CanFrame& frame, NodeId node,
@@ -140,6 +146,7 @@ struct Segment::Impl {
   void watch_bus(const ProcessImage& image) noexcept;
   void drain(ProcessImage& image) noexcept;
   image::CanFrame next_sync() noexcept;
+  bool sync_may_run() const noexcept;
   void send_time(const ProcessImage& image) noexcept;
   void send_heartbeat(const ProcessImage& image) noexcept;
   void send_acyclic(const ProcessImage& image) noexcept;
@@ -186,6 +193,7 @@ struct Segment::Impl {
   image::CanState bus_state = image::CanState::error_active;
   image::Nanoseconds heartbeat_due_ns = 0, time_due_ns = 0;
   std::uint8_t sync_counter = 0;
+  bool sync_runs = false;
   bool started = false;
   bool heard = false;  ///< what waited on the bus before the first cycle has been taken
   std::size_t next_acyclic = 0;
@@ -309,6 +317,12 @@ image::CanFrame Segment::Impl::next_sync() noexcept {
   return make_frame(cob::kSync, {&sync_counter, 1});
 }
 
+// Before 1019h is written a counter is an error for the node (8240h), so the first one waits for all that
+// answer.
+bool Segment::Impl::sync_may_run() const noexcept {
+  return config.sync_counter_overflow == 0 || std::ranges::all_of(nodes, &BusNode::ready_for_sync);
+}
+
 void Segment::Impl::send_time(const ProcessImage& image) noexcept {
   if (config.time_ms <= 0 || image.now.t_ns < time_due_ns) return;
   if (!send_own(image, time_frame(config.time_at_start.after(image.now.t_ns)))) return;
@@ -349,7 +363,8 @@ void Segment::open_cycle(ProcessImage& image) noexcept {
   if (!my.started) my.heartbeat_due_ns = image.now.t_ns;
   my.started = true;
   my.watch_bus(image);
-  my.send_own(image, my.next_sync());
+  my.sync_runs = my.sync_runs || my.sync_may_run();
+  if (my.sync_runs) my.send_own(image, my.next_sync());
 }
 
 void Segment::receive(ProcessImage& image) noexcept {

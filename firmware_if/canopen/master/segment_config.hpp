@@ -45,7 +45,8 @@ struct SegmentConfig {
   std::int32_t heartbeat_ms = 100;          ///< producer time of every node and of the control
   std::int32_t heartbeat_timeout_ms = 300;  ///< consumer time on both sides
   std::int32_t max_missed_pdo = 3;          ///< process data missing in a row after which a node is offline
-  /// SYNC counter runs from 1 to this and begins anew (1019h); 0: SYNC has no counter. 2-240.
+  /// SYNC counter runs from 1 to this and begins anew (1019h); 0: SYNC has no counter. 2-240. With a counter
+  /// SYNC begins when it is written into all nodes that answer, and they are started then.
   std::uint8_t sync_counter_overflow = 0;
   std::int32_t sync_window_us = 0;  ///< 1007h of every node: later synchronous PDOs are dropped; 0: no window
   std::int32_t time_ms = 0;         ///< period of the TIME message; 0: none is sent

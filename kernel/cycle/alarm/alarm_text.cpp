@@ -175,6 +175,7 @@ std::string axis_name(const AlarmRecord& r, const AlarmNames& names) {
 std::string error_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
   const bool in_value = r.number == axis::alarm::kSpindleDriveFault && r.error_code == 0;
   const auto code = in_value ? static_cast<std::uint16_t>(r.value) : r.error_code;
+  if (code == 0) return language == Language::russian ? "без кода" : "without a code";
   std::string out = hex(code, 4);
   const std::string words =
       names.error_text ? names.error_text(r.axis, r.segment, r.node, code, language) : std::string();

@@ -56,6 +56,18 @@ TEST_F(History, that_is_full_gives_its_newest_entry) {
   EXPECT_EQ(rig.count(BusEventKind::error_history), 1);
 }
 
+TEST_F(History, names_a_fault_from_before_the_boot_where_603Fh_does_not) {
+  rig.start();
+  rig.device().raise_fault(0x7305, rig.network.waiting_out);
+  rig.network.waiting_out.clear();
+  holds({0x7305, 0x4310});
+  rig.device().erase(0x603F, 0);
+  ASSERT_TRUE(rig.run_until([this] { return rig.drive().state == image::DriveState::fault; }));
+  rig.run(200);
+  EXPECT_EQ(rig.count(BusEventKind::error_history), 2);
+  EXPECT_EQ(rig.count(BusEventKind::sdo_failed), 0);
+}
+
 TEST_F(History, is_asked_for_once_of_a_device_without_it) {
   rig.start();
   ASSERT_TRUE(rig.enable());

@@ -3,6 +3,7 @@
 // only the vocabulary of CiA 301 and CiA 402.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -350,6 +351,79 @@ TEST(SimulatedDrives, run_with_a_sync_counter_and_a_synchronous_window) {
   EXPECT_EQ(machine.drives[1]->object(0x1007), 900);
   machine.run(500);
   EXPECT_TRUE(machine.all(DriveState::operation_enabled));
+  EXPECT_EQ(machine.count(BusEventKind::emcy), 0) << machine.story();
+}
+
+TEST(SimulatedDrives, hear_no_sync_with_a_counter_before_all_that_answer_know_of_it) {
+  Machine machine(2);
+  machine.config.sync_counter_overflow = 240;
+  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
+  image::CanBus& listener = machine.wire.add_endpoint("listener");
+  int syncs = 0;
+  image::CanFrame frame;
+  const auto first = [&] {
+    while (listener.receive(frame))
+      if (frame.id == cob::kSync) {
+        EXPECT_EQ(frame.length, 1);
+        EXPECT_EQ(frame.data[0], syncs % 240 + 1);
+        ++syncs;
+      }
+    return syncs > 0;
+  };
+  ASSERT_TRUE(machine.run_until(first));
+  EXPECT_EQ(machine.drives[0]->object(0x1019), 240);
+  EXPECT_EQ(machine.drives[1]->object(0x1019), 240);
+  const int before = syncs;
+  for (int i = 0; i < 100; ++i) machine.run(1), first();
+  EXPECT_EQ(syncs, before + 100) << "and from then on with every cycle";
+}
+
+TEST(SimulatedDrives, with_a_sync_counter_do_not_wait_for_one_that_does_not_answer) {
+  Machine machine(2);
+  machine.config.sync_counter_overflow = 240;
+  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
+  const auto errors = [&] {
+    return std::ranges::count_if(machine.events, [](const BusEvent& e) {
+      return e.kind == BusEventKind::emcy && e.emcy.error_code != 0;
+    });
+  };
+  machine.drives[1]->inject({.kind = DriveFaultKind::silent});
+  ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; })) << machine.story();
+  machine.drives[1]->clear_faults();
+  ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[1].drive.online; })) << machine.story();
+  EXPECT_EQ(errors(), 0) << machine.story();
+  machine.drives[0]->inject({.kind = DriveFaultKind::reset});
+  ASSERT_TRUE(machine.run_until([&] { return !machine.image->axes[0].drive.online; })) << machine.story();
+  ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; })) << machine.story();
+  EXPECT_EQ(errors(), 0) << "8240h of one that boots among others that run\n" << machine.story();
+  machine.run(200);
+  EXPECT_TRUE(machine.image->axes[1].drive.online);
+}
+
+TEST(SimulatedDrives, that_run_with_a_sync_counter_tell_of_a_sync_without_one) {
+  Machine machine(1);
+  machine.config.sync_counter_overflow = 240;
+  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
+  image::CanBus& foreign = machine.wire.add_endpoint("foreign");
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  machine.wire.advance_to(machine.image->now.t_ns - 300'000);  // between two of ours
+  foreign.send(make_frame(cob::kSync, {}));
+  machine.run(5);
+  EXPECT_NE(machine.story().find("8240h"), std::string::npos) << machine.story();
+}
+
+TEST(SimulatedDrives, found_in_a_fault_show_its_code_from_the_first_cycle) {
+  Machine machine(1);
+  ASSERT_TRUE(machine.enable()) << machine.story();
+  machine.drives[0]->inject({.kind = DriveFaultKind::over_current});
+  machine.run(100);
+  // The control is started again; nobody has told this one of the fault.
+  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
+  machine.image->axes[0].drive = {};
+  machine.events.clear();
+  const auto& drive = machine.image->axes[0].drive;
+  ASSERT_TRUE(machine.run_until([&] { return drive.state == DriveState::fault; })) << machine.story();
+  EXPECT_EQ(drive.error_code, 0x2310) << machine.story();
 }
 
 TEST(SimulatedDrives, hear_the_time_of_day) {

@@ -127,8 +127,12 @@ bool DriveLink::finish_access(const SdoClient& sdo) noexcept {
   if (sdo.result().status == SdoStatus::done) return take_result(access, sdo);
   // Not asked again until the wish changes.
   if (access == Access::write_mode || access == Access::read_mode) mode_refused_ = true;
-  if (access == Access::read_error_code) error_code_wanted_ = false;
   if (access == Access::write_buffer) buffer_refused_ = true;
+  // A drive need not have 603Fh; then its messages and its history say what it is.
+  if (access == Access::read_error_code) {
+    error_code_wanted_ = false;
+    return true;
+  }
   // The loss of the node says enough of a request that nobody answers.
   if (profile_.sdo_only && sdo.result().status == SdoStatus::no_answer) return true;
   if (access == Access::write_probe || access == Access::read_probe_status ||

@@ -20,6 +20,13 @@ class ErrorHistory {
 
   /// The node has booted: what it remembers now is old.
   void restart() noexcept { *this = {}; }
+  /// The node was found with an error that nothing else names: what it remembers is new, too. False: it has
+  /// been read before.
+  bool tell_all() noexcept {
+    if (known_) return false;
+    known_ = std::uint8_t{0};
+    return true;
+  }
   /// Something has happened to the node.
   void on_error(image::Nanoseconds now) noexcept {
     if (!wanted_) due_ns_ = now + kSettleNs;
