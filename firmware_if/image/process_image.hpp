@@ -77,6 +77,13 @@ struct IoSource {
 };
 
 /// Load and health of one bus segment, for reports.
+/// One node of a CAN bus as its master sees it.
+struct BusNodeStatus {
+  bool online = false;                        ///< booted, and its process data come
+  static constexpr std::uint8_t kSilent = 1;  ///< no NMT state
+  std::uint8_t nmt_state = kSilent;           ///< as last heard (CiA 301, 7.2.8.3.2.2: 4, 5, 127), or kSilent
+};
+
 struct SegmentStatus {
   double load = 0.0;  ///< 0-1, over the last second
   double load_worst_cycle = 0.0;
@@ -84,6 +91,7 @@ struct SegmentStatus {
   std::uint64_t frames_received = 0;
   std::uint64_t errors = 0;
   bool operational = false;
+  std::array<BusNodeStatus, 128> nodes{};  ///< by node-ID
 };
 
 /// Modes of a process, in the order of the K place `NC.mode`.

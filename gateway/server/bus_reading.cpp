@@ -19,8 +19,10 @@ using nlohmann::json;
 
 /// What came of a question.
 struct ReadThrough {
-  /// `bus` is no bus of the machine, or it has no such node: what the question names wrongly.
+  /// `bus` is no bus of the machine, or the object is none: what the question names wrongly.
   bool unknown = false;
+  /// The bus has no such node.
+  bool foreign = false;
   /// Another question is under way, or the cycle does not come to it.
   bool no_answer = false;
   json answer;  ///< status, abort, data; null without an answer
@@ -60,14 +62,12 @@ ReadThrough read_object(Control& control, const json& request) {
   CanSupplier* supplier = supplier_of(control, request);
   const int node = number(request, "node"), index = number(request, "index"),
             subindex = number(request, "subindex");
-  const auto has_node = [&] {
-    const auto& nodes = supplier->segment().config().nodes;
-    return std::any_of(nodes.begin(), nodes.end(), [&](const auto& n) { return n.node == node; });
-  };
-  if (supplier == nullptr || index < 0 || index > 0xFFFF || subindex < 0 || subindex > 0xFF || !has_node()) {
-    out.unknown = true;
-    return out;
-  }
+  out.unknown =
+      supplier == nullptr || node < 0 || index < 0 || index > 0xFFFF || subindex < 0 || subindex > 0xFF;
+  if (out.unknown) return out;
+  const auto& nodes = supplier->segment().config().nodes;
+  out.foreign = std::none_of(nodes.begin(), nodes.end(), [&](const auto& n) { return n.node == node; });
+  if (out.foreign) return out;
   canopen::ObjectQuestion& question = supplier->question();
   out.no_answer = true;
   if (!question.ask(static_cast<canopen::NodeId>(node), static_cast<std::uint16_t>(index),
@@ -94,6 +94,12 @@ ReadThrough read_object(Control& control, const json& request) {
 Reply sdo_read(Control& control, const json& request, text::Language language) {
   ReadThrough read = read_object(control, request);
   if (read.unknown) return refuse(says::kNoSuchObject, {}, kWrongUse, language);
+  if (read.foreign) {
+    std::string names;
+    for (const auto& n : supplier_of(control, request)->segment().config().nodes)
+      names += (names.empty() ? "" : ", ") + std::to_string(n.node);
+    return refuse(says::kForeignNode, {std::to_string(number(request, "node")), names}, kAlarm, language);
+  }
   if (read.no_answer) return refuse(says::kObjectUnanswered, {}, kAlarm, language);
   return accept(says::kObjectRead, {}, language, std::move(read.answer));
 }

@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "firmware_if/text/units.hpp"
+#include "gateway/compose/simulated/played_input.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/run/words/jog_words.hpp"
 #include "gateway/server/bus_reading.hpp"
-#include "gateway/server/request/played_value.hpp"
 #include "gateway/server/request/request_form.hpp"
 #include "gateway/server/status.hpp"
 #include "gateway/server/texts.hpp"
@@ -113,7 +113,6 @@ class Dispatch {
   /// The answer to "not powered", with each condition that is missing.
   void add_missing(json& answer);
   /// What the request plays on a point; false: `refusal_` holds the answer.
-  bool input_value(const machine::PointConfig& point, MockWorld::Play& play);
   Reply down() {
     resident_.set_ending();  // nothing begins behind the answer
     Reply reply = good(says::kDown);
@@ -474,65 +473,20 @@ Reply Dispatch::reset() {
   return left.empty() ? good(says::kReset) : good(says::kResetLeft, {left});
 }
 
-bool Dispatch::input_value(const machine::PointConfig& point, MockWorld::Play& play) {
-  const json value = request_.value("value", json());
-  const auto wrong = [&](const text::Entry& entry, const std::vector<std::string>& arguments) {
-    refusal_ = fail(entry, arguments, kWrongUse);
-    return false;
-  };
-  if (value.is_string() && value.get<std::string>() == "auto") return true;
-  if (point.is_analog() && !value.is_number()) return wrong(says::kAnalogPoint, {point.name});
-  if (value.is_boolean())
-    play.value = value.get<bool>() ? 1.0 : 0.0;
-  else if (value.is_number())
-    play.value = value.get<double>();
-  else
-    return wrong(says::kNoNumber, {"value"});
-  const image::NumberRange range = range_of(point);
-  const bool inside = *play.value >= range.min && *play.value <= range.max;
-  if (inside && point.is_analog()) {
-    const auto [below, above] = next_to(point, *play.value);
-    const bool fits = below == *play.value || above == *play.value;
-    if (is_whole(point) && !fits)
-      return wrong(says::kInputSteps,
-                   {point.name, text::number(*play.value), text::number(below), text::number(above)});
-    play.value = above - *play.value > *play.value - below ? below : above;
-    return true;
-  }
-  if (inside && (*play.value == range.min || *play.value == range.max)) return true;
-  if (!point.is_analog()) return wrong(says::kDigitalPoint, {point.name, text::number(*play.value)});
-  return wrong(says::kInputRange,
-               {point.name, text::number(*play.value), text::number(range.min), text::number(range.max)});
-}
-
 Reply Dispatch::input() {
-  const std::string name = request_.value("point", "");
-  int station = -1;
-  const machine::PointConfig* point = machine().point(name, &station);
-  if (point == nullptr) {
-    std::string list;
-    for (const machine::StationConfig& s : machine().stations)
-      for (const machine::PointConfig& p : s.points)
-        if (p.is_input() && s.mock()) list += (list.empty() ? "" : ", ") + p.name;
-    return fail(says::kNoPoint, {name, list}, kWrongUse);
-  }
-  if (!point->is_input()) return fail(says::kOutput, {name}, kWrongUse);
-  const machine::StationConfig& s = machine().stations[static_cast<std::size_t>(station)];
-  if (!s.mock()) return fail(says::kRealPoint, {name, s.name, s.url}, kAlarm);
-  MockWorld::Play play;
-  if (!input_value(*point, play)) return refusal_;
-  switch (resident_.control().world().play_input(name, play)) {
-    case MockWorld::Played::follows_nothing:
-      return fail(says::kFollowsNothing, {name}, kWrongUse);
-    case MockWorld::Played::no_such_input:
-      return fail(says::kRealPoint, {name, s.name, s.url}, kAlarm);
-    case MockWorld::Played::done:
-      break;
-  }
-  if (!play.value) return good(says::kInputFollows, {name});
-  return good(says::kInput, {name, point->is_analog()   ? text::number(*play.value)
-                                   : *play.value != 0.0 ? "on"
-                                                        : "off"});
+  const json value = request_.value("value", json());
+  InputWish wish;
+  if (value.is_boolean())
+    wish = value.get<bool>();
+  else if (value.is_number())
+    wish = value.get<double>();
+  else if (value != "auto")
+    return fail(says::kNoNumber, {"value"}, kWrongUse);
+  const PlayedInput played =
+      play_input(machine(), resident_.control().world(), request_.value("point", ""), wish);
+  if (played.outcome == PlayedInput::Outcome::done) return good(*played.entry, played.arguments);
+  return fail(*played.entry, played.arguments,
+              played.outcome == PlayedInput::Outcome::wrong ? kWrongUse : kAlarm);
 }
 
 }  // namespace

@@ -113,25 +113,27 @@ json process_json(Resident& resident, const image::ProcessImage& image, int proc
           {"tool", p.tool}};
 }
 
-/// The buses of a machine: `name`, `url`, `place` (bus_place()), `nodes`.
+/// The buses of a machine: `name`, `url`, `place` (bus_place()), `nodes` with `online` (configured, and its
+/// process data come) and `nmt_state` (CiA 301: 4, 5, 127; null: nothing is heard of it).
 json buses_json(const machine::MachineConfig& m, const image::ProcessImage& image) {
   json buses = json::array();
-  const auto online = [&](const std::string& reference) {
-    for (int i = 0; i < image.axis_count; ++i)
-      if (const auto n = static_cast<std::size_t>(i); m.axes[n].drive == reference)
-        return image.axes[n].drive.online;
-    for (int i = 0; i < image.spindle_count; ++i)
-      if (const auto n = static_cast<std::size_t>(i); m.spindles[n].drive == reference)
-        return image.spindles[n].drive.online;
-    return false;
+  const auto state = [](std::uint8_t nmt) {
+    return nmt == image::BusNodeStatus::kSilent ? json() : json(nmt);
   };
-  for (const machine::BusConfig& bus : m.buses) {
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    const machine::BusConfig& bus = m.buses[b];
     json nodes = json::array();
-    for (const machine::NodeConfig& node : bus.nodes)
-      nodes.push_back(
-          {{"node", node.id}, {"name", node.name}, {"online", online(bus.name + "." + node.name)}});
-    buses.push_back(
-        {{"name", bus.name}, {"url", bus.url}, {"place", machine::bus_place(bus.url)}, {"nodes", std::move(nodes)}});
+    for (const machine::NodeConfig& node : bus.nodes) {
+      const image::BusNodeStatus& told = image.segments[b].nodes[static_cast<std::size_t>(node.id)];
+      nodes.push_back({{"node", node.id},
+                       {"name", node.name},
+                       {"online", told.online},
+                       {"nmt_state", state(told.nmt_state)}});
+    }
+    buses.push_back({{"name", bus.name},
+                     {"url", bus.url},
+                     {"place", machine::bus_place(bus.url)},
+                     {"nodes", std::move(nodes)}});
   }
   return buses;
 }

@@ -50,6 +50,10 @@ const Entry kNoJog{"socket.no-jog", "nothing jogs for this client", "для эт
 const Entry kNoSuchObject{"socket.no-such-object",
                           "sdo_read needs bus, node, index and subindex of a node of the machine file",
                           "sdo_read требует bus, node, index и subindex узла из файла станка"};
+const Entry kForeignNode{
+    "socket.foreign-node",
+    "node {0} is not in the machine file of the control that holds the bus; its nodes are {1}",
+    "узла {0} нет в файле станка управления, которое держит шину; её узлы: {1}"};
 const Entry kOnlyRead{
     "socket.only-read",
     "'{0}' is not for a `servogate run`: its socket says who holds the buses and reads objects",
@@ -57,28 +61,6 @@ const Entry kOnlyRead{
 const Entry kObjectUnanswered{
     "socket.object-unanswered", "the node does not run under this control, or somebody else reads just now",
     "узел сейчас не работает под этим управлением, либо в эту минуту читает кто-то другой"};
-const Entry kNoPoint{"socket.no-point", "the machine has no input '{0}'; it has {1}",
-                     "у станка нет входа «{0}»; есть {1}"};
-const Entry kOutput{"socket.output", "'{0}' is an output: the PLC drives it, not the world",
-                    "«{0}» — выход: им управляет ПЛК, а не внешний мир"};
-const Entry kRealPoint{
-    "socket.real-point",
-    "'{0}' is a real input (station '{1}', {2}): only inputs of mock stations can be played",
-    "«{0}» — настоящий вход (станция «{1}», {2}): разыгрывать можно только входы имитаций"};
-const Entry kAnalogPoint{"socket.analog-point", "'{0}' is analog: give it a number, not on or off",
-                         "«{0}» — аналоговый вход: нужно число, а не on или off"};
-const Entry kDigitalPoint{"socket.digital-point", "'{0}' is on or off (1 or 0), not {1}",
-                          "«{0}» — вход on или off (1 или 0), а не {1}"};
-const Entry kInputRange{"socket.input-range", "'{0}' cannot be {1}: from {2} to {3} is possible",
-                        "«{0}» не может быть {1}: возможно от {2} до {3}"};
-const Entry kInputSteps{"socket.input-steps", "'{0}' cannot be {1}: its register holds {2} or {3}",
-                        "«{0}» не может быть {1}: регистр вмещает {2} или {3}"};
-const Entry kFollowsNothing{
-    "socket.follows-nothing",
-    "'{0}' follows nothing by itself: `auto` is for switches that axes operate and for "
-    "inputs that an output operates",
-    "«{0}» ни за чем не следит: `auto` — для выключателей, которыми управляют оси, и для "
-    "входов, которыми управляют выходы"};
 const Entry kNotSaved{"socket.not-saved", "done, but the state was not saved: {0}",
                       "выполнено, но состояние не сохранено: {0}"};
 
@@ -116,9 +98,6 @@ const Entry kStopped{"said.stopped", "everything stops", "всё останав�
 const Entry kReset{"said.reset", "reset; no alarm is active", "сброс; активных аварий нет"};
 const Entry kResetLeft{"said.reset-left", "reset, but still active: {0}", "сброс, но ещё активны: {0}"};
 const Entry kOverride{"said.override", "feed override {0} %", "коррекция подачи {0} %"};
-const Entry kInput{"said.input", "input {0} is {1}", "вход {0}: {1}"};
-const Entry kInputFollows{"said.input-follows", "input {0} follows its axis again",
-                          "вход {0} снова следует за осью"};
 const Entry kObjectRead{"said.object-read", "the node has answered", "узел ответил"};
 const Entry kDown{"said.down", "the control stops the axes, switches the drives off and ends",
                   "управление останавливает оси, выключает приводы и завершает работу"};

@@ -31,17 +31,10 @@ extern const text::Entry kBlocksSeveral;     ///< more than one line typed
 extern const text::Entry kNoDistance;        ///< a jog by 0
 extern const text::Entry kBlockEmpty;        ///< nothing typed
 extern const text::Entry kNoJog;             ///< keep-alive without a jog
-extern const text::Entry kNoSuchObject;      ///< sdo_read: no such bus or node, or no object
+extern const text::Entry kNoSuchObject;      ///< sdo_read: no such bus, or no object
+extern const text::Entry kForeignNode;       ///< {0} node, {1} nodes of the bus
 extern const text::Entry kOnlyRead;          ///< {0} command; of a `servogate run`
 extern const text::Entry kObjectUnanswered;  ///< sdo_read: the node does not run, or somebody else reads
-extern const text::Entry kNoPoint;           ///< {0} point, {1} inputs of the machine
-extern const text::Entry kOutput;            ///< {0} point
-extern const text::Entry kRealPoint;         ///< {0} point, {1} station, {2} its url
-extern const text::Entry kAnalogPoint;       ///< {0} point
-extern const text::Entry kDigitalPoint;      ///< {0} point, {1} value
-extern const text::Entry kInputRange;        ///< {0} point, {1} value, {2} smallest, {3} largest
-extern const text::Entry kInputSteps;        ///< {0} point, {1} value, {2} and {3} those on either side
-extern const text::Entry kFollowsNothing;    ///< {0} point
 extern const text::Entry kNotSaved;          ///< {0} the system's words
 
 // accepted
@@ -60,10 +53,8 @@ extern const text::Entry kStarted;      ///< {0} program
 extern const text::Entry kTypedGoesOn;  ///< {0} block
 extern const text::Entry kStepped, kHeld, kManualStopped, kNothingHeld, kResumed, kStopped;
 extern const text::Entry kReset;
-extern const text::Entry kResetLeft;     ///< {0} alarms still active
-extern const text::Entry kOverride;      ///< {0} per cent
-extern const text::Entry kInput;         ///< {0} point, {1} level
-extern const text::Entry kInputFollows;  ///< {0} point
+extern const text::Entry kResetLeft;  ///< {0} alarms still active
+extern const text::Entry kOverride;   ///< {0} per cent
 extern const text::Entry kDown;
 extern const text::Entry kObjectRead;
 

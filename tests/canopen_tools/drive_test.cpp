@@ -182,6 +182,24 @@ TEST_F(SimulatedDrives, sim_serves_the_drives_of_a_machine_and_tells_its_switche
   EXPECT_EQ(sim.wait(), 0);
 }
 
+TEST_F(SimulatedDrives, sim_tells_what_became_of_a_played_input_and_names_the_inputs_there_are) {
+  const Ended ended = desk_.line(
+      "{ sleep 0.5; echo input door_closed off; echo input x_limit_plus on; echo input x_limit_plus auto; "
+      "echo input door_closed auto; echo input dor_closed on; echo input door_closed 3; echo input; "
+      "echo input home on node=1; sleep 0.5; } | timeout -s INT 3 $SG sim " +
+      shell::source("examples/mill/machine.toml") + " --bus can=" + bus());
+  EXPECT_TRUE(ended.out_has("input door_closed is off")) << ended.out;
+  EXPECT_TRUE(ended.out_has("input x_limit_plus is on")) << ended.out;
+  EXPECT_TRUE(ended.out_has("input x_limit_plus follows its axis or its output again\nx_limit_plus off"))
+      << ended.out;
+  EXPECT_TRUE(ended.err_has("'door_closed' follows nothing by itself")) << ended.err;
+  EXPECT_TRUE(ended.err_has("the machine has no input 'dor_closed'; it has ")) << ended.err;
+  EXPECT_TRUE(ended.err_has("; inputs of the drives are negative_limit, positive_limit, home")) << ended.err;
+  EXPECT_TRUE(ended.err_has("'door_closed' is on or off (1 or 0), not 3")) << ended.err;
+  EXPECT_TRUE(ended.err_has("expected input POINT on|off|auto|NUMBER")) << ended.err;
+  EXPECT_TRUE(ended.err_has("node 1: input home on")) << ended.err;
+}
+
 TEST_F(SimulatedDrives, sim_serves_no_two_buses_on_one_wire) {
   std::ifstream file(shell::source("tests/machine/broken/two_buses_on_one_wire.toml"));
   std::string text(std::istreambuf_iterator<char>(file), {});

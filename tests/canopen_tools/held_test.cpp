@@ -43,6 +43,8 @@ TEST_F(HeldBus, is_read_through_the_control_that_holds_it) {
   ASSERT_EQ(scanned["nodes"].size(), 4u);
   EXPECT_EQ(scanned["nodes"][0]["profile"], 402);
   EXPECT_TRUE(scanned["nodes"][0]["online"]);
+  EXPECT_EQ(scanned["nodes"][0]["state"], "operational");
+  EXPECT_TRUE(scanned["nodes"][0]["heartbeat_seen"]);
   EXPECT_EQ(facts("sdo " + held_ + " 1 read 1018:4")["value"], 1);
   EXPECT_EQ(facts("sdo " + held_ + " 1 read 1008")["value"], "Servogate simulated drive");
   EXPECT_EQ(facts("sdo " + held_ + " 2 read 5FFF", 1)["abort"], 0x0602'0000);
@@ -60,7 +62,11 @@ TEST_F(HeldBus, is_locked_to_writes_and_commands_with_the_name_of_its_holder) {
     EXPECT_TRUE(ended.err_has("is held by the running control of 'Three-axis mill'")) << ended.err;
   }
   EXPECT_TRUE(tool("can check " + held_).out_has("holds it"));
-  EXPECT_EQ(tool("sdo " + held_ + " 99 read 1000").code, 1) << "no node of the machine file";
+  const Ended foreign = tool("sdo " + held_ + " 99 read 1000");
+  EXPECT_EQ(foreign.code, 1);
+  EXPECT_TRUE(
+      foreign.err_has("node 99 is not in the machine file of the control that holds the bus; its nodes are"))
+      << foreign.err;
 }
 
 TEST_F(HeldBus, by_a_control_that_was_stopped_is_still_held_and_nothing_is_done_on_it) {

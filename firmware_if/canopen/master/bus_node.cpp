@@ -152,6 +152,7 @@ void BusNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& cont
   if (!state) return;
   if (*state == NmtState::boot_up) return on_boot_up(context);
   if (guard_ && guard_->on_answer(frame, context.now) == NodeGuard::Verdict::wrong_toggle) return;
+  nmt_state_ = *state;
   heartbeat_deadline_ns_ = context.now + heartbeat_timeout_ns_;
   if (phase_ == Phase::booting) {
     boot_.on_heartbeat(*state);
@@ -170,6 +171,7 @@ void BusNode::on_heartbeat(const image::CanFrame& frame, const NodeContext& cont
 }
 
 void BusNode::on_boot_up(const NodeContext& context) noexcept {
+  nmt_state_ = NmtState::pre_operational;  // CiA 301, 7.3.2.2: it is entered at once
   if (guard_) guard_->start(context.now);
   if (phase_ == Phase::booting && boot_.boot_up_belongs()) return boot_.on_boot_up();
   ++restarts_;
@@ -231,6 +233,7 @@ void BusNode::supervise(bool on_time, const NodeContext& context) noexcept {
     context.events.push(e);
     go_offline();
     sdo_.cancel();
+    nmt_state_.reset();
     phase_ = Phase::lost;
     return;
   }

@@ -39,6 +39,8 @@ class BusNode {
   NodeId id() const noexcept { return config_.node; }
   const NodeConfig& config() const noexcept { return config_; }
   bool online() const noexcept { return online_; }
+  /// NMT state as last heard; nullopt: nothing has been heard of it, or no more.
+  std::optional<NmtState> nmt_state() const noexcept { return nmt_state_; }
   const BootReport& boot_report() const noexcept { return boot_.report(); }
   const NodeIdentity& identity() const noexcept { return boot_.identity(); }
   const EmcyHistory& emcy_history() const noexcept { return emcy_; }
@@ -118,6 +120,7 @@ class BusNode {
   image::Nanoseconds pause_until_ns_ = 0;
   image::Nanoseconds heartbeat_deadline_ns_ = 0;
   bool online_ = false;
+  std::optional<NmtState> nmt_state_;
   bool seen_status_ = false;
   std::int64_t missed_ = 0;
   bool missing_said_ = false;

@@ -350,7 +350,13 @@ void Segment::Impl::fill_status(image::SegmentStatus& status) const noexcept {
   status.frames_received = bus.received;
   status.errors = bus.errors + send_failures;
   status.operational = !nodes.empty();
-  for (const BusNode& node : nodes) status.operational = status.operational && node.online();
+  for (const BusNode& node : nodes) {
+    status.operational = status.operational && node.online();
+    image::BusNodeStatus& told = status.nodes[node.id()];
+    told.online = node.online();
+    const auto state = node.nmt_state();
+    told.nmt_state = state ? static_cast<std::uint8_t>(*state) : image::BusNodeStatus::kSilent;
+  }
 }
 
 Segment::Segment(image::CanBus& bus, SegmentConfig config)

@@ -129,20 +129,22 @@ std::string hexadecimal(std::uint32_t value) {
 }
 
 std::string state_words(const Node& node) {
-  if (node.state) return nmt_state_words(*node.state);
-  if (node.online)
-    return *node.online ? text::both("online", "на связи") : text::both("not online", "не на связи");
-  return text::both("state unknown", "состояние неизвестно");
+  const std::string state =
+      node.state ? nmt_state_words(*node.state) : text::both("state unknown", "состояние неизвестно");
+  // A node that is heard and that its control cannot use, or not yet.
+  return node.online.value_or(true) ? state : state + text::both(", not online", ", не на связи");
+}
+
+bool heartbeat_seen(const Node& node) {
+  return node.heartbeats > 0 || (node.online && node.state && node.heartbeat_ms.value_or(0) > 0);
 }
 
 std::string heartbeat_words(const Node& node) {
   const std::uint32_t ms = node.heartbeat_ms.value_or(0);
   const std::string every = std::to_string(ms);
-  if (node.heartbeats > 0)
+  if (heartbeat_seen(node))
     return ms > 0 ? text::both("heartbeat every " + every + " ms", "heartbeat каждые " + every + " мс")
                   : text::both("heartbeat seen", "heartbeat виден");
-  if (node.online && ms > 0)
-    return text::both("heartbeat every " + every + " ms", "heartbeat каждые " + every + " мс");
   if (ms > 0)
     return text::both("heartbeat of " + every + " ms not seen",
                       "heartbeat с периодом " + every + " мс не виден");
@@ -177,7 +179,7 @@ json node_json(int id, const Node& node) {
   const auto or_null = [](const auto& value) { return value ? json(*value) : json(); };
   json out{{"node", id},
            {"state", node.state ? json(nmt_state_name(*node.state)) : json()},
-           {"heartbeat_seen", node.heartbeats > 0},
+           {"heartbeat_seen", heartbeat_seen(node)},
            {"heartbeat_ms", or_null(node.heartbeat_ms)},
            {"answers_sdo", node.answers_sdo},
            {"device_type", or_null(node.type)},
@@ -224,6 +226,7 @@ int scan_held(const ScanOptions& options, const Holder& holder) {
   for (const Holder::Node& n : holder.nodes) {
     Node& node = nodes[n.id];
     node.online = n.online;
+    node.state = n.state;
     read_facts(*bus, n.id, node);
     node.answers_sdo = node.type.has_value();
   }

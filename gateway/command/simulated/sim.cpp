@@ -5,17 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "drivers/clock.hpp"
 #include "gateway/cli/messages.hpp"
-#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/command/simulated/node_presence.hpp"
+#include "gateway/command/simulated/sim_points.hpp"
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/simulated/mock_world.hpp"
 #include "gateway/machine/bus_place.hpp"
@@ -46,10 +44,6 @@ const Entry kNotServed{"sim.not-served",
                        "station {0} can be reached by nobody outside; its switches are told here",
                        "станция {0} снаружи недоступна; её датчики сообщаются здесь"};
 const Entry kGone{"sim.gone", "the bus {0} is gone", "шина {0} исчезла"};
-const Entry kPoint{"sim.point", "{0} {1}", "{0} {1}"};
-const Entry kNoPoint{"sim.no-point", "there is no simulated input '{0}'", "нет имитируемого входа «{0}»"};
-const Entry kNoInput{"sim.bad-input", "'{0}': expected input POINT on|off|auto|NUMBER",
-                     "«{0}»: нужно input ТОЧКА on|off|auto|ЧИСЛО"};
 
 /// A bus of the machine and where it is served.
 struct Served {
@@ -143,70 +137,11 @@ void carry(Served& b, image::CanBus& inside) {
   b.waiting.erase(b.waiting.begin(), b.waiting.begin() + static_cast<std::ptrdiff_t>(sent));
 }
 
-/// Tells the switches that follow axes when they change.
-class SwitchTeller {
- public:
-  SwitchTeller(const machine::MachineConfig& m, const MockWorld& world, bool json)
-      : world_(world), json_(json) {
-    for (const machine::SimulatedSwitch& s : m.simulation.switches)
-      if (const int axis = m.axis_index(s.axis); axis >= 0) switches_.push_back({s, axis, std::nullopt});
-  }
-  void look(image::Nanoseconds since_start) {
-    for (Row& row : switches_) {
-      const double at = world_.axis_position(row.axis);
-      const bool on = at >= row.config.from && at <= row.config.to;
-      if (row.told == on) continue;
-      row.told = on;
-      if (json_)
-        print_line(nlohmann::json{
-            {"t", static_cast<double>(since_start) * 1e-9},
-            {"point", row.config.point},
-            {"on", on},
-            {"axis", row.config.axis},
-            {"position",
-             at}}.dump());
-      else
-        print_line(text::render(kPoint, std::vector<std::string>{row.config.point, on ? "on" : "off"},
-                                text::user_language()));
-      std::fflush(stdout);
-    }
-  }
-
- private:
-  struct Row {
-    machine::SimulatedSwitch config;
-    int axis;
-    std::optional<bool> told;
-  };
-  const MockWorld& world_;
-  bool json_;
-  std::vector<Row> switches_;
-};
-
-/// `input POINT on|off|auto|NUMBER` of a machine's point; false: the line is none of this kind.
-bool play_point(MockWorld& world, const machine::MachineConfig& m, const std::string& line) {
-  std::istringstream words(line);
-  std::string verb, point, level;
-  words >> verb >> point >> level;
-  if (verb != "input" || m.point(point) == nullptr) return false;
-  MockWorld::Play play;
-  char* end = nullptr;
-  const double number = std::strtod(level.c_str(), &end);
-  if (level == "on" || level == "off")
-    play.value = level == "on" ? 1.0 : 0.0;
-  else if (level != "auto" && (level.empty() || *end != '\0'))
-    return complain(kNoInput, {line}), true;
-  else if (level != "auto")
-    play.value = number;
-  if (world.play_input(point, play) != MockWorld::Played::done) complain(kNoPoint, {point});
-  return true;
-}
-
 int serve(const SimOptions& options, const machine::LoadResult& loaded, std::vector<Served>& buses,
           DriveDesk& desk, const EndBySignal& signals) {
   constexpr image::Nanoseconds kShortest = 50 * image::kMicrosecond;
   MockWorld world(loaded);
-  SwitchTeller teller(loaded.machine, world, options.json);
+  SimPoints points(loaded.machine, world, options.json);
   std::vector<mock::SimulatedDrive*> drives;
   for (const machine::BusConfig& bus : loaded.machine.buses)
     for (const machine::NodeConfig& node : bus.nodes)
@@ -220,9 +155,8 @@ int serve(const SimOptions& options, const machine::LoadResult& loaded, std::vec
     for (Served& b : buses) carry(b, *world.bus(b.index));
     world.advance_to(now);
     for (Served& b : buses) carry(b, *world.bus(b.index));
-    desk.advance(now, drives,
-                 [&](const std::string& line) { return play_point(world, loaded.machine, line); });
-    teller.look(now);
+    desk.advance(now, drives, [&](const std::string& line) { return points.play(line, now); });
+    points.look(now);
     for (std::size_t i = 0; i < buses.size(); ++i) {
       const bool down = buses[i].transport.bus->state() == image::CanState::down;
       if (down && heard[i] && buses[i].url.starts_with("socketcand:")) {

@@ -50,6 +50,12 @@ json ask(SocketClient& connection, const json& request, int patience_ms) {
   return json::parse(line, nullptr, false);
 }
 
+std::optional<canopen::NmtState> nmt_state(const json& node) {
+  const auto found = node.find("nmt_state");
+  if (found == node.end() || !found->is_number_integer()) return std::nullopt;
+  return static_cast<canopen::NmtState>(found->get<int>());
+}
+
 /// Holder of the bus if the control behind this socket has it.
 std::optional<Holder> holder_at(const std::string& socket, const std::string& place) {
   SocketClient connection;
@@ -69,7 +75,8 @@ std::optional<Holder> holder_at(const std::string& socket, const std::string& pl
     Holder holder{
         socket, held.value("machine", ""), bus.value("name", ""), held.value("kind", "") == "run", false, {}};
     for (const json& n : bus.value("nodes", json::array()))
-      holder.nodes.push_back({n.value("node", 0), n.value("name", ""), n.value("online", false)});
+      holder.nodes.push_back(
+          {n.value("node", 0), n.value("name", ""), n.value("online", false), nmt_state(n)});
     return holder;
   }
   return std::nullopt;

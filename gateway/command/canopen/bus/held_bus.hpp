@@ -25,6 +25,7 @@ struct Holder {
     int id = 0;
     std::string name;
     bool online = false;
+    std::optional<canopen::NmtState> state;
   };
   std::vector<Node> nodes;
 };

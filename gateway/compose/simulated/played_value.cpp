@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/request/played_value.hpp"
+#include "gateway/compose/simulated/played_value.hpp"
 
 #include <algorithm>
 #include <cmath>
