@@ -55,8 +55,8 @@ class DeviceCheck {
   Where at(const std::string& path) const { return find_place(d_.places, path); }
 
   void objects() {
-    for (const auto& [text, value] : d_.objects)
-      check_boot_object(text, value, &d_, at("objects." + text), reading_);
+    check_boot_objects(
+        d_.objects, &d_, [this](const std::string& name) { return at("objects." + name); }, reading_);
   }
 
   void pdos(const std::string& key, std::vector<PdoConfig>& list) {
@@ -65,6 +65,9 @@ class DeviceCheck {
       PdoConfig& pdo = list[i];
       const std::string path = key + "." + std::to_string(i);
       transmission(key, path, pdo);
+      if (key == "tpdo" && pdo.event > 0.0 && pdo.inhibit > pdo.event)
+        reading_.error(at(path + ".inhibit"), finding::kInhibitAboveEvent,
+                       {std::to_string(pdo.number), milliseconds(pdo.inhibit), milliseconds(pdo.event)});
       const auto [it, fresh] = numbers.try_emplace(pdo.number, at(path + ".number").line);
       if (!fresh)
         reading_.error(at(path + ".number"), finding::kPdoTwice,
@@ -94,6 +97,11 @@ class DeviceCheck {
                        {pdo.object_texts[k], "6040:00/16"});
         continue;
       }
+      // What is cut off would be another position.
+      const canopen::ObjectInfo* standard = d_.drive() ? canopen::find_object(object->index) : nullptr;
+      if (standard != nullptr && object->subindex == 0 && object->bits < standard->bits)
+        reading_.error(at(path + ".objects." + std::to_string(k)), finding::kPdoWidth,
+                       {pdo.object_texts[k], std::string(standard->name), std::to_string(standard->bits)});
       bits += object->bits;
       pdo.objects.push_back(*object);
     }

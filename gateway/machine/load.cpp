@@ -75,6 +75,7 @@ void check_all(LoadResult& result, Reading& reading) {
   check_control(machine, reading);
   check_safety(machine, reading);
   check_devices(result, reading);
+  check_bus_times(result, reading);
   check_can_stations(result, reading);
 }
 

@@ -98,6 +98,22 @@ TEST(Lockstep, time_ends_where_it_was_told_to) {
   EXPECT_TRUE(server.ends());
 }
 
+TEST(Lockstep, whoever_lets_time_creep_is_named) {
+  RunningServer server(participants(1));
+  auto a = server.join("a");
+  for (int i = 0; i < 1100; ++i) {
+    const auto now = a->wait_grant();
+    ASSERT_TRUE(now);
+    a->done(*now - 5);
+  }
+  a->wait_grant();
+  const auto notices = server.notices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_NE(notices[0].find("participant a has asked 1000 times in a row for no later time than"),
+            std::string::npos)
+      << notices[0];
+}
+
 TEST(Lockstep, whoever_leaves_is_named_and_the_others_go_on) {
   RunningServer server(participants(2));
   auto a = server.join("a"), b = server.join("b");

@@ -35,7 +35,7 @@ class Bus:
             self._expect(said, "ok")
 
     def wait(self):
-        """Waits for the next grant and returns the time granted; None: time has ended."""
+        """Waits for the next grant and returns the time granted; None: time has ended, or the server is gone."""
         self._heard = []
         while True:
             words = self._element()
@@ -64,7 +64,10 @@ class Bus:
     def done(self, wish):
         """Done with this instant; time is wanted again at `wish`, or when a frame has ended."""
         self._out.append(f"< done {self.now} {wish} >")
-        self._socket.sendall("".join(self._out).encode("ascii"))
+        try:
+            self._socket.sendall("".join(self._out).encode("ascii"))
+        except ConnectionError:
+            pass  # the server is gone: what it said before is still to be read, then wait() returns None
         self._out = []
 
     def close(self):
@@ -89,7 +92,10 @@ class Bus:
                 if words:
                     return words
                 continue
-            more = self._socket.recv(65536)
+            try:
+                more = self._socket.recv(65536)
+            except ConnectionError:  # it ended with something of ours unread
+                more = b""
             if not more:
                 return None
             self._bytes += more

@@ -73,6 +73,7 @@ class BusServer {
   void join_lockstep(Participant& who, std::string_view name);
   bool all_done() const;
   void grant();
+  void watch_wish(Participant& who);
   Nanoseconds next_time();
   void end_lockstep();
   void watch_for_stall();

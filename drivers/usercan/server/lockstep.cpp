@@ -20,8 +20,18 @@ const text::Entry kNobodyWantsTime{
     "usercan.nobody-wants-time", "time ends at {0} s: the bus is idle and no participant wants to go on",
     "время кончилось на {0} с: шина свободна и ни один участник не хочет продолжать"};
 
+const text::Entry kNoLaterTime{"usercan.no-later-time",
+                               "participant {0} has asked {1} times in a row for no later time than {2} s, "
+                               "which it has: time creeps on by "
+                               "nanoseconds",
+                               "участник {0} {1} раз подряд просит не более позднее время, чем {2} с, "
+                               "которое у него уже есть: время ползёт "
+                               "по наносекундам"};
+
 constexpr Nanoseconds kNever = std::numeric_limits<Nanoseconds>::max();
 constexpr Nanoseconds kPatience = 5 * image::kSecond;
+/// A participant may look at an instant again; so many times in a row it does not know what it does.
+constexpr int kWishesOfNow = 1000;
 
 std::string seconds(Nanoseconds t) { return text::number(static_cast<double>(t) * 1e-9, 9); }
 
@@ -67,6 +77,12 @@ Nanoseconds BusServer::next_time() {
     if (!begins) return std::max(next, now_ + 1);
     advance(next + 1);
   }
+}
+
+void BusServer::watch_wish(Participant& who) {
+  who.wishes_of_now = who.wish > now_ ? 0 : std::min(who.wishes_of_now + 1, kWishesOfNow + 1);
+  if (who.wishes_of_now == kWishesOfNow)
+    report_({&kNoLaterTime, {who.name(), std::to_string(kWishesOfNow), seconds(now_)}});
 }
 
 void BusServer::grant() {

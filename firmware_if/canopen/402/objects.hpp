@@ -21,7 +21,7 @@ inline constexpr std::uint16_t kDeviceType = 0x1000, kErrorRegister = 0x1001, kP
                                kProducerHeartbeatTime = 0x1017, kIdentity = 0x1018,
                                kSyncCounterOverflow = 0x1019, kErrorBehaviour = 0x1029,
                                kVerifyConfiguration = 0x1020, kProgramData = 0x1F50, kProgramControl = 0x1F51,
-                               kProgramIdentification = 0x1F56, kFlashStatus = 0x1F57,
+                               kRequestNmt = 0x1F82, kProgramIdentification = 0x1F56, kFlashStatus = 0x1F57,
                                kSdoServerParameter = 0x1200, kRpdoParameter = 0x1400, kRpdoMapping = 0x1600,
                                kTpdoParameter = 0x1800, kTpdoMapping = 0x1A00;
 // CiA 402-2

@@ -12,15 +12,23 @@ namespace {
 
 namespace object = canopen::object;
 
-/// Commands: what the gate to motion gives in each cycle. A target may stand at 0, for a drive that has it in
+/// Commands: what the gate to motion gives in each cycle, outputs among it, and what a device does at once
+/// (store, restore, program, NMT). A target may stand at 0, for a drive that has it in
 /// a PDO and does not follow it.
-bool is_command(int index, double value) {
+bool is_command(int index, int subindex, double value) {
   switch (index) {
     case object::kControlword:
     case object::kModesOfOperation:
     case object::kTargetPosition:
     case object::kInterpolationData:
+    case object::kStoreParameters:
+    case object::kRestoreParameters:
+    case object::kProgramData:
+    case object::kProgramControl:
+    case object::kRequestNmt:
       return true;
+    case object::kDigitalOutputs:
+      return subindex == 1;
     case object::kVlTargetVelocity:
     case object::kTargetVelocity:
     case object::kTargetTorque:
@@ -51,19 +59,34 @@ std::string owner(int index, const DeviceConfig* device) {
   return {};
 }
 
-}  // namespace
-
-void check_boot_object(const std::string& name, double value, const DeviceConfig* device, const Where& where,
-                       Reading& reading) {
+void check_object(const std::string& name, double value, const DeviceConfig* device, const Where& where,
+                  Reading& reading) {
   const auto object = parse_object(name);
   const int bits = object && object->bits != 0 ? object->bits : 32;
   if (!object || (bits != 8 && bits != 16 && bits != 32))
     return reading.error(where, finding::kBadObject, {name, "6065:00/32"});
   if (value != std::nearbyint(value) || value < -std::ldexp(1.0, bits - 1) || value >= std::ldexp(1.0, bits))
     return reading.error(where, finding::kObjectValue, {name, text::number(value), std::to_string(bits)});
-  if (is_command(object->index, value)) return reading.error(where, finding::kObjectCommand, {name});
+  if (is_command(object->index, object->subindex, value))
+    return reading.error(where, finding::kObjectCommand, {name});
+  if (object->index == object::kQuickStopOption && value == 0.0 && (device == nullptr || device->drive()))
+    return reading.error(where, finding::kQuickStopCoasts, {name});
   if (const std::string key = owner(object->index, device); !key.empty())
     reading.error(where, finding::kObjectOwned, {name, key});
+}
+
+}  // namespace
+
+void check_boot_objects(const std::map<std::string, double>& objects, const DeviceConfig* device,
+                        const std::function<Where(const std::string& name)>& where, Reading& reading) {
+  std::map<std::pair<int, int>, std::string> seen;
+  for (const auto& [name, value] : objects) {
+    check_object(name, value, device, where(name), reading);
+    const auto object = parse_object(name);
+    if (!object) continue;
+    const auto [it, fresh] = seen.try_emplace({object->index, object->subindex}, name);
+    if (!fresh) reading.error(where(name), finding::kObjectTwice, {name, it->second});
+  }
 }
 
 }  // namespace servogate::machine

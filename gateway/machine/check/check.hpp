@@ -22,10 +22,14 @@ void check_axes(const MachineConfig& machine, Reading& reading);
 void check_spindles(const MachineConfig& machine, Reading& reading);
 /// Emergency stop, start point, control alive: choices that are dangerous.
 void check_safety(const MachineConfig& machine, Reading& reading);
+/// Whether a CAN bus can be opened by such a url: `expected` forms in `check_control`'s words.
+bool is_can_url(std::string_view url);
 /// Cycle time, dialect words, transports and channels of stations.
 void check_control(const MachineConfig& machine, Reading& reading);
 /// Stations of kind canopen: their channels in the process data of their nodes.
 void check_can_stations(const LoadResult& loaded, Reading& reading);
+/// Heartbeats, guarding, deadlines, SYNC window and TIME against each other and the cycle.
+void check_bus_times(const LoadResult& loaded, Reading& reading);
 /// Bus load and speed of motors against the device files.
 void check_devices(const LoadResult& loaded, Reading& reading);
 

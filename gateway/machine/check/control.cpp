@@ -18,9 +18,6 @@ struct Transport {
   std::string_view scheme;
   bool port;
 };
-constexpr Transport kCan[] = {{"mock:", false},      {"socketcan:", false},     {"socketcand:unix:", false},
-                              {"socketcand:", true}, {"lockstep:unix:", false}, {"lockstep:", true},
-                              {"udp:", true},        {"gsusb:", false}};
 constexpr Transport kModbus[] = {{"mock:", false}, {"tcp:", true}, {"rtu:", false}};
 constexpr Transport kGpio[] = {{"mock:", false}, {"chip:", false}};
 
@@ -51,13 +48,14 @@ void check_buses(const MachineConfig& machine, Reading& reading) {
   for (std::size_t i = 0; i < machine.buses.size(); ++i) {
     const BusConfig& bus = machine.buses[i];
     const std::string path = "bus." + std::to_string(i);
-    if (!bus.url.empty())
-      check_url(bus.url, path + ".url", kCan,
-                text::both("mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, socketcand:unix:PATH/NAME, "
-                           "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
-                           "mock:ИМЯ, socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, socketcand:unix:ПУТЬ/ИМЯ, "
-                           "lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ"),
-                machine, reading);
+    if (!bus.url.empty() && !is_can_url(bus.url))
+      reading.error(
+          machine.where(path + ".url"), finding::kBadUrl,
+          {"url", bus.url,
+           text::both("mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, socketcand:unix:PATH/NAME, "
+                      "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
+                      "mock:ИМЯ, socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, socketcand:unix:ПУТЬ/ИМЯ, "
+                      "lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ")});
     const bool known = std::any_of(std::begin(kBitRates), std::end(kBitRates),
                                    [&](int k) { return bus.bit_rate == std::int64_t{k} * 1000; });
     if (bus.bit_rate != 0 && !known)

@@ -57,11 +57,6 @@ std::string shorter_data(double load, double with_4_byte_pdo) {
                     "; с 4-байтными PDO загрузка была бы " + percent + " %");
 }
 
-std::string milliseconds(double seconds) {
-  const std::string ms = text::number(seconds * 1e3);
-  return text::both(ms + " ms", ms + " мс");
-}
-
 std::string kind_name(DeviceKind kind) {
   return std::string(choices_of<DeviceKind>()[static_cast<std::size_t>(kind)]);
 }
@@ -92,15 +87,6 @@ class DeviceUse {
           reading_.error(m_.where(path + ".device"), finding::kUnsupervised, {node.name, node.device});
         if (device != nullptr && known(*device) && device->drive()) status(*device, node, path);
         objects(node, path);
-        if (node.heartbeat * 1e9 < static_cast<double>(m_.cycle_ns()))
-          reading_.error(m_.where(path + ".heartbeat"), finding::kHeartbeatShort,
-                         {milliseconds(node.heartbeat), node.name,
-                          milliseconds(static_cast<double>(m_.cycle_ns()) * 1e-9)});
-        const double patience =
-            node.boot_timeout > 0.0 ? node.boot_timeout : canopen::SegmentConfig().boot_timeout_ms * 1e-3;
-        if (node.heartbeat >= patience)
-          reading_.error(m_.where(path + ".heartbeat"), finding::kHeartbeatLong,
-                         {milliseconds(node.heartbeat), node.name, milliseconds(patience)});
       }
   }
 
@@ -297,25 +283,31 @@ class DeviceUse {
   }
 
   void objects(const NodeConfig& node, const std::string& path) {
-    for (const auto& [name, value] : node.objects)
-      check_boot_object(name, value, loaded_.device(node.device), m_.where(path + ".objects." + name),
-                        reading_);
+    check_boot_objects(
+        node.objects, loaded_.device(node.device),
+        [&](const std::string& name) { return m_.where(path + ".objects." + name); }, reading_);
   }
 
-  /// What stops and leads an axis may not wait: the stopping times of check count on it.
+  /// What stops and leads an axis, and what is known of it, may not wait: the stopping times of check and the
+  /// following error count on it.
   void every_cycle(const AxisConfig& a, const DeviceConfig& device, const std::string& path) {
     namespace object = canopen::object;
-    for (const PdoConfig& pdo : device.rpdos) {
-      if (pdo.transmission < 2 || pdo.transmission > 240) continue;
-      const bool leads = std::any_of(pdo.objects.begin(), pdo.objects.end(), [](const PdoObject& o) {
-        return o.index == object::kControlword || o.index == object::kTargetPosition ||
-               o.index == object::kInterpolationData;
-      });
-      if (leads)
-        reading_.error(m_.where(path + ".drive"), finding::kSlowCommand,
-                       {a.letter, std::to_string(pdo.number), m_.node(a.drive)->device,
-                        std::to_string(pdo.transmission)});
-    }
+    const auto slow = [&](const std::vector<PdoConfig>& pdos, std::initializer_list<int> leading,
+                          const text::Entry& entry) {
+      for (const PdoConfig& pdo : pdos) {
+        if (pdo.transmission < 2 || pdo.transmission > 240) continue;
+        const bool leads = std::any_of(pdo.objects.begin(), pdo.objects.end(), [&](const PdoObject& o) {
+          return std::find(leading.begin(), leading.end(), o.index) != leading.end();
+        });
+        if (leads)
+          reading_.error(m_.where(path + ".drive"), entry,
+                         {a.letter, std::to_string(pdo.number), m_.node(a.drive)->device,
+                          std::to_string(pdo.transmission)});
+      }
+    };
+    slow(device.rpdos, {object::kControlword, object::kTargetPosition, object::kInterpolationData},
+         finding::kSlowCommand);
+    slow(device.tpdos, {object::kStatusword, object::kPositionActual}, finding::kSlowFeedback);
   }
 
   void motor(const DeviceConfig& device, const std::string& name, const std::string& who,

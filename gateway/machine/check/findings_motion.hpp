@@ -251,8 +251,11 @@ inline constexpr text::Entry kObjectValue{"machine.object_value",
                                           "object {0}: {1} does not fit into {2} bits",
                                           "объект {0}: {1} не помещается в {2} бит"};
 inline constexpr text::Entry kObjectCommand{
-    "machine.object_command", "object {0} is a command that the control gives in its cycle; it is no setting",
-    "объект {0} — команда, которую управление даёт в цикле, а не настройка"};
+    "machine.object_command",
+    "object {0} is a command, which the control gives in its cycle or the device carries out at once; it is "
+    "no "
+    "setting",
+    "объект {0} — команда, которую управление даёт в цикле или устройство выполняет сразу, а не настройка"};
 inline constexpr text::Entry kObjectOwned{
     "machine.object_owned", "object {0} is written by the control itself; this value would be lost: {1}",
     "объект {0} записывает само управление, это значение пропало бы: {1}"};
@@ -270,6 +273,55 @@ inline constexpr text::Entry kSlowCommand{
     "one",
     "{0}: RPDO {1} устройства {2} идёт лишь с каждым {3}-м SYNC; слово управления и положение оси нужны с "
     "каждым"};
+inline constexpr text::Entry kSlowFeedback{
+    "machine.slow_feedback",
+    "{0}: TPDO {1} of {2} comes with every {3}th SYNC only; statusword and position of an axis come with "
+    "each "
+    "one",
+    "{0}: TPDO {1} устройства {2} приходит лишь с каждым {3}-м SYNC; слово состояния и положение оси нужны с "
+    "каждым"};
+inline constexpr text::Entry kGuardShort{
+    "machine.guard_short",
+    "node \"{0}\": guard_time {1} of device file \"{2}\" is shorter than the cycle of {3}: the control could "
+    "not keep up with it",
+    "узел «{0}»: guard_time {1} файла устройства «{2}» короче цикла {3}: управление не успевало бы"};
+inline constexpr text::Entry kGuardLong{
+    "machine.guard_long",
+    "boot_timeout {0} of node \"{1}\" is not above the guard_time of {2}: its start would not be seen in "
+    "time",
+    "boot_timeout {0} узла «{1}» не больше его guard_time {2}: его пуск не был бы замечен вовремя"};
+inline constexpr text::Entry kDeadlineShort{
+    "machine.deadline_short",
+    "node \"{0}\": rpdo {1} of device file \"{2}\" is missed after `event` {3}, and it goes every {4} only",
+    "узел «{0}»: rpdo {1} файла устройства «{2}» считается пропавшим через `event` {3}, а передаётся лишь "
+    "каждые {4}"};
+inline constexpr text::Entry kWindowShort{
+    "machine.sync_window",
+    "sync_window {0} of bus \"{1}\": SYNC and the process data of a cycle need {2} on the wire; what comes "
+    "later would be thrown away",
+    "sync_window {0} шины «{1}»: SYNC и данные процесса одного цикла занимают {2}; всё более позднее "
+    "отбрасывалось бы"};
+inline constexpr text::Entry kWindowLong{"machine.sync_window",
+                                         "sync_window {0} of bus \"{1}\" is longer than the cycle of {2}",
+                                         "sync_window {0} шины «{1}» длиннее цикла {2}"};
+inline constexpr text::Entry kTimeShort{
+    "machine.time_period",
+    "time_period {0} of bus \"{1}\" is shorter than {2}: TIME goes at most once in a cycle and a millisecond",
+    "time_period {0} шины «{1}» меньше {2}: TIME передаётся не чаще раза за цикл и за миллисекунду"};
+inline constexpr text::Entry kObjectTwice{
+    "machine.object_twice", "object {0} stands here already, as \"{1}\"; one of the two values would be lost",
+    "объект {0} здесь уже есть: «{1}»; одно из двух значений пропало бы"};
+inline constexpr text::Entry kQuickStopCoasts{
+    "machine.quick_stop_coasts",
+    "object {0} = 0: a quick stop would only take the torque away, and the axis would coast",
+    "объект {0} = 0: быстрый останов лишь снимал бы момент, и ось катилась бы дальше"};
+inline constexpr text::Entry kPdoWidth{"machine.pdo_width", "{0}: object {1} has {2} bits",
+                                       "{0}: у объекта {1} бит: {2}"};
+inline constexpr text::Entry kInhibitAboveEvent{"machine.pdo_inhibit",
+                                                "tpdo {0}: `inhibit` {1} lets it come less often than its "
+                                                "`event` of {2} says; nothing could keep to both",
+                                                "tpdo {0}: `inhibit` {1} не даёт передавать его так часто, "
+                                                "как велит `event` {2}; оба условия невыполнимы"};
 // Devices
 inline constexpr text::Entry kMotorTooFast{
     "machine.motor_too_fast", "{0}: {1} needs {2} rpm of the motor; {3} allows {4} rpm",

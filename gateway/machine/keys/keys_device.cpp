@@ -193,7 +193,7 @@ const Section& section_of<BehaviourConfig>() {
       key<&C::guard_time>("guard_time", {.unit = Unit::second, .min = 0, .max = 60},
                           "period of node guarding, for a drive without heartbeat (100Ch); 0: heartbeat",
                           "период опроса узла для привода без heartbeat (100Ch); 0: heartbeat"),
-      key<&C::life_time_factor>("life_time_factor", {.min = 1, .max = 255},
+      key<&C::life_time_factor>("life_time_factor", {.min = 2, .max = 255},
                                 "guard times of silence until either side counts as lost (100Dh)",
                                 "число периодов опроса без ответа до потери связи (100Dh)"),
       key<&C::connection_loss>("connection_loss", {},

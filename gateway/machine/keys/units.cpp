@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "firmware_if/text/finding.hpp"
+
 namespace servogate::machine {
 
 namespace {
@@ -96,6 +98,11 @@ std::string unit_name(Unit unit, AxisUnits axis) {
   }
   if (linear.empty() || rotary.empty()) return linear + rotary;
   return linear + " (" + rotary + ")";
+}
+
+std::string milliseconds(double seconds) {
+  const std::string ms = text::number(seconds * 1e3);
+  return text::both(ms + " ms", ms + " мс");
 }
 
 std::string unit_spellings(Unit unit, AxisUnits axis) {

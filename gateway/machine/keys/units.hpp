@@ -35,6 +35,9 @@ std::string unit_name(Unit unit, AxisUnits axis);
 /// Every spelling that is read, for messages, schema and reference: "mm/s, m/s, mm/min, m/min".
 std::string unit_spellings(Unit unit, AxisUnits axis);
 
+/// "2.5 ms", for messages about times of a bus.
+std::string milliseconds(double seconds);
+
 enum class QuantityError : std::uint8_t { none, not_a_number, no_unit, wrong_unit };
 struct Quantity {
   double value = 0.0;  ///< in the key's unit
