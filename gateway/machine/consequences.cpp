@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
 #include "firmware_if/text/units.hpp"
+#include "gateway/machine/can_channel.hpp"
 #include "gateway/machine/keys/json.hpp"
 
 namespace servogate::machine {
@@ -185,13 +187,57 @@ class Sentences {
     const double time = std::ceil((longest_stop_ + 3.0 * m_.control.cycle_time) * 100.0) / 100.0;
     double turning = 0.0;  // an inverter is told 0 at once and says nothing of its way to rest
     for (const SpindleConfig& s : m_.spindles)
-      if (s.speed_output.empty()) turning = std::max(turning, s.max_speed / s.acceleration);
+      if (s.speed_output.empty())
+        turning = std::max(turning, s.max_speed / s.acceleration + command_wait(s.drive));
+    turning = std::ceil(turning * 100.0 - 1e-6) / 100.0;
     const std::string seconds = text::number(turning, 2);
     say("emergency stop", kEmergencyStop,
         {text::number(time, 2), turning > 0.0 ? text::both(", the spindle after " + seconds + " s",
                                                            ", шпиндель через " + seconds + " с")
                                               : ""},
         {{"stop_time", time}, {"spindle_stop_time", turning}});
+  }
+
+  const DeviceConfig* device_of(const std::string& reference) const {
+    const NodeConfig* node = m_.node(reference);
+    return node == nullptr ? nullptr : loaded_.device(node->device);
+  }
+
+  /// How long a command may wait for its frame, beyond the cycle that gives it.
+  double command_wait(const std::string& reference) const {
+    namespace object = canopen::object;
+    const DeviceConfig* device = device_of(reference);
+    if (device == nullptr) return 0.0;
+    if (device->behaviour.sdo_only) return sdo_round(loaded_, reference);
+    return (slowest(device->rpdos,
+                    {object::kControlword, object::kTargetVelocity, object::kVlTargetVelocity}) -
+            1) *
+           m_.control.cycle_time;
+  }
+
+  /// The greatest n of "every n-th SYNC" of the PDOs that carry one of the objects; 1: none is slower.
+  static int slowest(const std::vector<PdoConfig>& pdos, const std::vector<int>& objects) {
+    int n = 1;
+    for (const PdoConfig& pdo : pdos)
+      if (pdo.cyclic() && std::any_of(pdo.objects.begin(), pdo.objects.end(), [&](const PdoObject& o) {
+            return std::find(objects.begin(), objects.end(), o.index) != objects.end();
+          }))
+        n = std::max(n, pdo.transmission);
+    return n;
+  }
+
+  /// Time between two looks at the signals of a station, s; 0: they are read in the cycle itself.
+  double read_every(const StationConfig& s) const {
+    if (s.kind == StationKind::modbus) return s.period;
+    const DeviceConfig* device = s.over_bus() ? device_of(s.node) : nullptr;
+    if (device == nullptr) return 0.0;
+    std::vector<int> objects;
+    for (const PointConfig& p : s.points) {
+      if (!p.is_input()) continue;
+      const auto found = channel_object(device->kind, p.channel, p.number);
+      objects.push_back(found ? found->object.index : canopen::object::kDigitalInputs);
+    }
+    return slowest(device->tpdos, objects) * m_.control.cycle_time;
   }
 
   void margin(const AxisConfig& a) {
@@ -209,8 +255,7 @@ class Sentences {
     int station = -1;
     if (h.switch_point.empty() || m_.point(h.switch_point, &station) == nullptr) return;
     const StationConfig& s = m_.stations[static_cast<std::size_t>(station)];
-    const bool modbus = s.kind == StationKind::modbus;
-    const double period = modbus ? s.period : m_.control.cycle_time;
+    const double period = std::max(read_every(s), m_.control.cycle_time);
     const bool index = h.method == HomingMethod::switch_and_index;
     // Without an index the slow edge is the zero; with one it only has to find the right turn.
     const double v = h.method == HomingMethod::switch_only ? h.slow : h.fast;
@@ -250,7 +295,7 @@ class Sentences {
 
   void station(const StationConfig& s) {
     // A poll may just have passed when a signal changes, and the answer then waits for its cycle.
-    const double age = (s.kind == StationKind::modbus ? s.period : 0.0) + m_.control.cycle_time;
+    const double age = read_every(s) + m_.control.cycle_time;
     say(s.name, kStation, {s.name, std::to_string(s.points.size()), text::number(age * 1e3)},
         {{"signals", static_cast<double>(s.points.size())}, {"age", age}});
   }

@@ -55,16 +55,30 @@ TEST(Consequences, say_the_stopping_distance) {
 }
 
 /// The stop of 0.6 s, 0.1 s to take a full acceleration back, 0.1 s for Z's brake, three cycles; rounded up.
+/// The spindle stops in 2 s, and its command may wait for nine cycles.
 TEST(Consequences, say_how_long_the_safety_relay_has_to_wait) {
   const auto told = [](const char* seconds) {
     return "emergency stop: all axes rest and their brakes hold after " + std::string(seconds) +
-           " s, the spindle after 2 s; the safety relay's delay t_d has to be longer";
+           " s, the spindle after 2.01 s; the safety relay's delay t_d has to be longer";
   };
   EXPECT_TRUE(has(said(mill()), told("0.81")));
   LoadResult slow_brake = mill();
   for (AxisConfig& a : slow_brake.machine.axes)
     if (a.brake.present()) a.brake.engage_delay = 0.4;
   EXPECT_TRUE(has(said(slow_brake), told("1.11")));
+}
+
+TEST(Consequences, count_how_long_a_spindle_waits_for_its_command) {
+  LoadResult loaded = mill();
+  const std::string name = loaded.machine.node(loaded.machine.spindles[0].drive)->device;
+  for (PdoConfig& pdo : loaded.devices.at(name).rpdos) pdo.transmission = 200;
+  bool told = false;
+  for (const Consequence& c : consequences(loaded))
+    if (c.figures.contains("spindle_stop_time")) {
+      told = true;
+      EXPECT_NEAR(c.figures.at("spindle_stop_time"), 2.2, 1e-9) << "2 s, and 199 cycles rounded up";
+    }
+  EXPECT_TRUE(told);
 }
 
 TEST(Consequences, stopping_distance_agrees_with_an_integration_of_the_jerk_profile) {

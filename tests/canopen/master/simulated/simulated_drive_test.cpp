@@ -3,17 +3,12 @@
 // only the vocabulary of CiA 301 and CiA 402.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
 
-#include "drivers/mock/can/can_segment.hpp"
-#include "drivers/mock/drive/simulated_drive.hpp"
-#include "firmware_if/canopen/302/concise_dcf.hpp"
-#include "firmware_if/canopen/device/program_store.hpp"
-#include "firmware_if/canopen/master/segment.hpp"
+#include "tests/canopen/master/simulated/simulated_drives.hpp"
 
 namespace servogate::canopen {
 namespace {
@@ -21,95 +16,8 @@ namespace {
 using image::DriveState;
 using mock::DriveFault;
 using mock::DriveFaultKind;
-
-constexpr std::int64_t kCountsPerRev = 262'144;
-
-/// Drives on one wire of 1 Mbit/s at 1 ms, run in virtual time.
-struct Machine {
-  explicit Machine(
-      int axes, void (*map)(DriveProfile&) = use_short_position_map,
-      image::Nanoseconds cycle_ns = image::kMillisecond, void (*setup)(NodeSetup&) = [](NodeSetup&) {},
-      std::size_t program_memory = 0)
-      : bus(wire.add_endpoint("master")) {
-    config.cycle_ns = cycle_ns;
-    for (int i = 0; i < axes; ++i) {
-      NodeConfig node;
-      node.node = static_cast<NodeId>(i + 1);
-      node.target_index = i;
-      node.profile.counts_per_rev = kCountsPerRev;
-      map(node.profile);
-      setup(node.setup);
-      config.nodes.push_back(node);
-      mock::SimulatedDriveConfig drive;
-      drive.node_id = node.node;
-      drive.plant.counts_per_rev = kCountsPerRev;
-      drive.plant.start_rev = 0.3 + 0.1 * i;
-      drive.plant.zero_mark_counts = 10'000;
-      drive.program_memory = program_memory;
-      drives.push_back(std::make_unique<mock::SimulatedDrive>(drive));
-      wire.attach(*drives.back());
-    }
-    segment = std::make_unique<Segment>(bus, config);
-    image->now.period_ns = cycle_ns;
-  }
-
-  void step() {
-    wire.advance_to(image->now.t_ns);
-    segment->open_cycle(*image);
-    segment->receive(*image);
-    if (control) control(*image);
-    segment->send(*image);
-    ++image->now.number;
-    image->now.t_ns += config.cycle_ns;
-    BusEvent e;
-    while (segment->events().pop(e)) events.push_back(e);
-  }
-  void run(int cycles) {
-    for (int i = 0; i < cycles; ++i) step();
-  }
-  template <class Condition>
-  bool run_until(Condition condition, int limit = 5000) {
-    for (int i = 0; i < limit && !condition(); ++i) step();
-    return condition();
-  }
-  bool all(DriveState state) const {
-    for (std::size_t i = 0; i < drives.size(); ++i)
-      if (image->axes[i].drive.state != state) return false;
-    return true;
-  }
-  bool enable() {
-    control = [](image::ProcessImage& im) {
-      for (auto& axis : im.axes) {
-        axis.drive_command.power = true;
-        axis.drive_command.mode = image::DriveMode::csp;
-        if (axis.drive.state != DriveState::operation_enabled)
-          axis.drive_command.position_counts = axis.drive.position_counts;
-      }
-    };
-    return run_until([this] { return all(DriveState::operation_enabled); });
-  }
-  int count(BusEventKind kind) const {
-    int n = 0;
-    for (const BusEvent& e : events) n += e.kind == kind;
-    return n;
-  }
-  std::string story() const {
-    std::string all_events;
-    for (const BusEvent& e : events)
-      all_events += std::to_string(e.t_ns / 1'000'000) + " ms node " + std::to_string(e.node) + ": " +
-                    describe(e, "drive", nullptr, text::Language::english) + "\n";
-    return all_events;
-  }
-
-  mock::CanSegment wire;
-  image::CanBus& bus;
-  SegmentConfig config;
-  std::vector<std::unique_ptr<mock::SimulatedDrive>> drives;
-  std::unique_ptr<Segment> segment;
-  std::unique_ptr<image::ProcessImage> image = std::make_unique<image::ProcessImage>();
-  std::function<void(image::ProcessImage&)> control;
-  std::vector<BusEvent> events;
-};
+using testing::kCountsPerRev;
+using testing::Machine;
 
 TEST(SimulatedDrives, three_come_to_operation_enabled_without_a_jump) {
   Machine machine(3);
@@ -341,77 +249,6 @@ TEST(SimulatedDrives, a_drive_without_heartbeat_is_guarded_and_its_loss_is_seen)
   EXPECT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; }));
 }
 
-TEST(SimulatedDrives, run_with_a_sync_counter_and_a_synchronous_window) {
-  Machine machine(2);
-  machine.config.sync_counter_overflow = 10;
-  machine.config.sync_window_us = 900;
-  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
-  ASSERT_TRUE(machine.enable());
-  EXPECT_EQ(machine.drives[0]->object(0x1019), 10);
-  EXPECT_EQ(machine.drives[1]->object(0x1007), 900);
-  machine.run(500);
-  EXPECT_TRUE(machine.all(DriveState::operation_enabled));
-  EXPECT_EQ(machine.count(BusEventKind::emcy), 0) << machine.story();
-}
-
-TEST(SimulatedDrives, hear_no_sync_with_a_counter_before_all_that_answer_know_of_it) {
-  Machine machine(2);
-  machine.config.sync_counter_overflow = 240;
-  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
-  image::CanBus& listener = machine.wire.add_endpoint("listener");
-  int syncs = 0;
-  image::CanFrame frame;
-  const auto first = [&] {
-    while (listener.receive(frame))
-      if (frame.id == cob::kSync) {
-        EXPECT_EQ(frame.length, 1);
-        EXPECT_EQ(frame.data[0], syncs % 240 + 1);
-        ++syncs;
-      }
-    return syncs > 0;
-  };
-  ASSERT_TRUE(machine.run_until(first));
-  EXPECT_EQ(machine.drives[0]->object(0x1019), 240);
-  EXPECT_EQ(machine.drives[1]->object(0x1019), 240);
-  const int before = syncs;
-  for (int i = 0; i < 100; ++i) machine.run(1), first();
-  EXPECT_EQ(syncs, before + 100) << "and from then on with every cycle";
-}
-
-TEST(SimulatedDrives, with_a_sync_counter_do_not_wait_for_one_that_does_not_answer) {
-  Machine machine(2);
-  machine.config.sync_counter_overflow = 240;
-  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
-  const auto errors = [&] {
-    return std::ranges::count_if(machine.events, [](const BusEvent& e) {
-      return e.kind == BusEventKind::emcy && e.emcy.error_code != 0;
-    });
-  };
-  machine.drives[1]->inject({.kind = DriveFaultKind::silent});
-  ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; })) << machine.story();
-  machine.drives[1]->clear_faults();
-  ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[1].drive.online; })) << machine.story();
-  EXPECT_EQ(errors(), 0) << machine.story();
-  machine.drives[0]->inject({.kind = DriveFaultKind::reset});
-  ASSERT_TRUE(machine.run_until([&] { return !machine.image->axes[0].drive.online; })) << machine.story();
-  ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; })) << machine.story();
-  EXPECT_EQ(errors(), 0) << "8240h of one that boots among others that run\n" << machine.story();
-  machine.run(200);
-  EXPECT_TRUE(machine.image->axes[1].drive.online);
-}
-
-TEST(SimulatedDrives, that_run_with_a_sync_counter_tell_of_a_sync_without_one) {
-  Machine machine(1);
-  machine.config.sync_counter_overflow = 240;
-  machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
-  image::CanBus& foreign = machine.wire.add_endpoint("foreign");
-  ASSERT_TRUE(machine.enable()) << machine.story();
-  machine.wire.advance_to(machine.image->now.t_ns - 300'000);  // between two of ours
-  foreign.send(make_frame(cob::kSync, {}));
-  machine.run(5);
-  EXPECT_NE(machine.story().find("8240h"), std::string::npos) << machine.story();
-}
-
 TEST(SimulatedDrives, found_in_a_fault_show_its_code_from_the_first_cycle) {
   Machine machine(1);
   ASSERT_TRUE(machine.enable()) << machine.story();
@@ -440,95 +277,6 @@ TEST(SimulatedDrives, hear_the_time_of_day) {
   ASSERT_GE(heard.size(), 2u);
   EXPECT_EQ(heard[0], (TimeOfDay{3'600'000, 15'000}));
   EXPECT_EQ(heard[1], (TimeOfDay{3'600'100, 15'000}));
-}
-
-/// A program of 5000 bytes and what a drive says of it.
-const std::vector<std::uint8_t>& new_program() {
-  static const std::vector<std::uint8_t> image = [] {
-    std::vector<std::uint8_t> bytes(5000);
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i * 37 >> 3);
-    return bytes;
-  }();
-  return image;
-}
-void with_new_program(NodeSetup& setup) {
-  setup.program = NodeProgram{new_program(), program_identification(new_program()), 1};
-}
-
-struct ProgramDownload : ::testing::Test {
-  Machine machine{1, use_short_position_map, image::kMillisecond, with_new_program, 10'000};
-  std::string failure() {
-    for (const BusEvent& e : machine.events)
-      if (e.kind == BusEventKind::boot_failed) return describe(e, "X", nullptr, text::Language::english);
-    return {};
-  }
-  bool boots(int cycles = 30'000) {
-    return machine.run_until([&] { return machine.image->axes[0].drive.online || !failure().empty(); },
-                             cycles) &&
-           failure().empty();
-  }
-};
-
-TEST_F(ProgramDownload, a_drive_with_another_program_gets_the_right_one_and_runs) {
-  ASSERT_TRUE(boots()) << failure();
-  EXPECT_EQ(machine.drives[0]->object(0x1F56, 1), program_identification(new_program()));
-  EXPECT_EQ(machine.drives[0]->object(0x1F51, 1), 1);
-  EXPECT_EQ(machine.drives[0]->object(0x1F57, 1), 0);
-  EXPECT_TRUE(machine.enable());
-}
-
-TEST_F(ProgramDownload, a_drive_that_has_it_already_is_left_alone) {
-  ASSERT_TRUE(boots());
-  const auto boot_time = [&] {
-    machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
-    const auto begin = machine.image->now.t_ns;
-    machine.image->axes[0].drive.online = false;
-    EXPECT_TRUE(boots());
-    return machine.image->now.t_ns - begin;
-  };
-  EXPECT_LT(boot_time(), 500 * image::kMillisecond)
-      << "clearing the flash alone takes 200 ms, writing it longer";
-}
-
-TEST_F(ProgramDownload, an_error_of_the_flash_is_named) {
-  machine.drives[0]->spoil_next_program(5);
-  EXPECT_FALSE(boots());
-  EXPECT_EQ(
-      failure(),
-      "X: boot stopped at step \"program of the device\": reading 1F57h:01 Flash status identification: "
-      "writing the flash failed (0000000Ah)");
-}
-
-TEST(SimulatedDrives, of_another_software_version_are_named_with_both_versions) {
-  Machine machine(1, use_short_position_map, image::kMillisecond,
-                  [](NodeSetup& setup) { setup.software_version = "2.7"; });
-  machine.run(1000);
-  ASSERT_EQ(machine.count(BusEventKind::boot_failed), 1);
-  EXPECT_EQ(machine.story(),
-            std::to_string(machine.events[0].t_ns / 1'000'000) +
-                " ms node 1: drive: boot stopped at step \"software version\": reading 100Ah:00 "
-                "Manufacturer software version: expected \"2.7\", got \"0.1\"\n");
-}
-
-TEST(SimulatedDrives, get_a_concise_dcf_where_its_date_is_another_one) {
-  Machine machine(1, use_short_position_map, image::kMillisecond, [](NodeSetup& setup) {
-    const std::vector<ConfigurationEntry> entries{{0x6065, 0, {0x10, 0x27, 0, 0}},
-                                                  {0x2100, 0, std::vector<std::uint8_t>(40, 'x')}};
-    setup.concise_dcf = write_concise_dcf(entries);
-    setup.configuration_date = ConfigurationDate{15'000, 3'600'000};
-  });
-  const auto boot = [&] {
-    machine.image->axes[0].drive.online = false;
-    machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
-    return machine.run_until([&] { return machine.image->axes[0].drive.online; });
-  };
-  ASSERT_TRUE(boot()) << machine.story();
-  EXPECT_EQ(machine.drives[0]->object(0x6065), 10'000);
-  EXPECT_EQ(machine.drives[0]->object(0x1020, 1), 15'000);
-  EXPECT_EQ(machine.drives[0]->object(0x1020, 2), 3'600'000);
-  // A reset of communication forgets 1020h, which nobody stored: the values are written again.
-  ASSERT_TRUE(boot());
-  EXPECT_EQ(machine.drives[0]->object(0x1020, 2), 3'600'000);
 }
 
 TEST(SimulatedDrives, without_csp_follow_in_interpolated_position) {
