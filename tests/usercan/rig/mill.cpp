@@ -31,6 +31,7 @@ Changes patience() {
   return {{"bit_rate = \"1 Mbit/s\"", "bit_rate = \"1 Mbit/s\"\nsimulated = true"},
           {"cycle_time = \"1 ms\"", "cycle_time = \"4 ms\""},
           {"following_error_stop = \"1 mm\"", "following_error_stop = \"100 mm\""},
+          {"following_error_warn = \"0.5 mm\"", "following_error_warn = \"90 mm\""},
           {"device = \"servo", patient + "\"servo"},
           {"device = \"spindle", patient + "\"spindle"}};
 }
