@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "firmware_if/canopen/301/emcy.hpp"
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/image/frame_record.hpp"
 #include "gateway/compose/axis_setup.hpp"
@@ -309,6 +310,22 @@ void Control::open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) n
   due_ns_ = due_ns;
 }
 
+/// The device file of the drive or node that an alarm is of.
+const machine::DeviceConfig* Control::device_of(const image::AlarmRecord& r) const {
+  const machine::MachineConfig& m = loaded_.machine;
+  std::string reference;
+  if (const auto i = static_cast<std::size_t>(r.axis); r.axis >= 0 && cycle::of_spindle(r))
+    reference = i < m.spindles.size() ? m.spindles[i].drive : "";
+  else if (r.axis >= 0)
+    reference = i < m.axes.size() ? m.axes[i].drive : "";
+  for (std::size_t b = 0; b < m.buses.size(); ++b)
+    for (const machine::NodeConfig& n : m.buses[b].nodes)
+      if (r.axis >= 0 ? m.buses[b].name + "." + n.name == reference
+                      : n.id == r.node && static_cast<std::size_t>(r.segment) == b)
+        return loaded_.device(n.device);
+  return nullptr;
+}
+
 cycle::AlarmNames Control::alarm_names() const {
   const machine::MachineConfig& m = loaded_.machine;
   cycle::AlarmNames names;
@@ -317,18 +334,10 @@ cycle::AlarmNames Control::alarm_names() const {
   for (const machine::AxisConfig& a : m.axes) names.diameters.push_back(a.diameter);
   for (const machine::BusConfig& b : m.buses) names.segments.push_back(b.name);
   for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
-  names.error_text = [this](int axis, int segment, int node, std::uint16_t code,
-                            text::Language language) -> std::string {
-    const machine::MachineConfig& config = loaded_.machine;
-    for (std::size_t b = 0; b < config.buses.size(); ++b)
-      for (const machine::NodeConfig& n : config.buses[b].nodes) {
-        const std::string reference = config.buses[b].name + "." + n.name;
-        const bool mine = axis >= 0 ? config.axes[static_cast<std::size_t>(axis)].drive == reference
-                                    : n.id == node && segment == static_cast<int>(b);
-        const machine::DeviceConfig* device = mine ? loaded_.device(n.device) : nullptr;
-        if (device != nullptr) return std::string(device->error_text(code, language));
-      }
-    return {};
+  names.error_text = [this](const image::AlarmRecord& r, std::uint16_t code, text::Language language) {
+    const machine::DeviceConfig* device = device_of(r);
+    const std::string_view own = device != nullptr ? device->error_text(code, language) : std::string_view();
+    return own.empty() ? text::render(canopen::error_code_text(code), {}, language) : std::string(own);
   };
   const auto node_at = [this](int segment, int node) -> const machine::NodeConfig* {
     if (segment < 0 || segment >= std::ssize(loaded_.machine.buses)) return nullptr;

@@ -93,6 +93,7 @@ class Control {
 
  private:
   explicit Control(const machine::LoadResult& loaded);
+  const machine::DeviceConfig* device_of(const image::AlarmRecord& record) const;
   bool compile_logic(std::vector<text::Finding>& findings);
   bool open_buses(std::vector<text::Finding>& findings, bool replay);
   void await_grants(image::Nanoseconds t);

@@ -156,7 +156,7 @@ TEST(AlarmText, decodes_status_word_and_error_code) {
   names.axes = {"X"};
   EXPECT_EQ(render(r, names, text::Language::english),
             "X: drive fault, error 0x8611, status word 0x0218 fault");
-  names.error_text = [](int, int, int, std::uint16_t code, text::Language) {
+  names.error_text = [](const image::AlarmRecord&, std::uint16_t code, text::Language) {
     return code == 0x8611 ? std::string("following error") : std::string();
   };
   EXPECT_EQ(render(r, names, text::Language::english),

@@ -266,6 +266,28 @@ TEST(Faults, of_one_drive_stops_the_healthy_axes_together_within_their_limits) {
   EXPECT_EQ(mill.judge().verdict(), "");
 }
 
+TEST(Faults, of_drives_have_the_words_of_their_own_device_file_or_of_the_standard) {
+  Mill mill(kLine);
+  const auto said = [&](int number, std::uint16_t code) {
+    image::AlarmRecord r;
+    r.number = number;
+    r.axis = 0;
+    r.error_code = code;
+    return cycle::render(r, mill.control().alarm_names(), text::Language::english);
+  };
+  const auto has = [](const std::string& text, const char* words) {
+    return text.find(words) != std::string::npos;
+  };
+  const std::string spindle = said(axis::alarm::kSpindleDriveFault, 0x8400);
+  EXPECT_TRUE(has(spindle, "(speed controller: deviation too large)")) << spindle;
+  const std::string axis = said(axis::alarm::kDriveFault, 0x8611);
+  EXPECT_TRUE(has(axis, "(following error too large)")) << axis;
+  const std::string standard = said(axis::alarm::kDriveFault, 0x8130);
+  EXPECT_TRUE(has(standard, "0x8130 (") && has(standard, "heartbeat")) << standard;
+  const std::string none = said(axis::alarm::kDriveFault, 0);
+  EXPECT_TRUE(has(none, "error without a code")) << none;
+}
+
 TEST(Faults, node_that_falls_silent_stops_the_program_and_is_named) {
   Moving mill;
   mill.inject("can.y", mock::DriveFaultKind::silent);

@@ -167,8 +167,7 @@ std::string frame_words(const AlarmRecord& r, const AlarmNames& names, Language 
 }
 
 std::string axis_name(const AlarmRecord& r, const AlarmNames& names) {
-  const bool spindle = r.number >= 1200 && r.number < 1300;
-  if (spindle) return r.axis > 0 ? "S" + std::to_string(r.axis + 1) : "S";
+  if (of_spindle(r)) return r.axis > 0 ? "S" + std::to_string(r.axis + 1) : "S";
   return r.axis < 0 ? "-" : name_at(names.axes, r.axis);
 }
 
@@ -177,8 +176,7 @@ std::string error_words(const AlarmRecord& r, const AlarmNames& names, Language 
   const auto code = in_value ? static_cast<std::uint16_t>(r.value) : r.error_code;
   if (code == 0) return language == Language::russian ? "без кода" : "without a code";
   std::string out = hex(code, 4);
-  const std::string words =
-      names.error_text ? names.error_text(r.axis, r.segment, r.node, code, language) : std::string();
+  const std::string words = names.error_text ? names.error_text(r, code, language) : std::string();
   return words.empty() ? out : out + " (" + words + ")";
 }
 

@@ -95,6 +95,11 @@ class AlarmList {
 };
 static_assert(std::is_trivially_copyable_v<AlarmSnapshot>);
 
+/// The record is of a spindle: its `axis` counts spindles.
+constexpr bool of_spindle(const image::AlarmRecord& r) noexcept {
+  return r.number >= 1200 && r.number < 1300;
+}
+
 /// Names that a record holds only as numbers.
 struct AlarmNames {
   std::vector<std::string> axes;
@@ -102,8 +107,9 @@ struct AlarmNames {
   std::vector<bool> diameters;     ///< axes whose positions people see as diameters; missing: none
   std::vector<std::string> segments;
   std::vector<std::string> sources;
-  /// Words of a drive's own error code, from its device file; empty result: only the number is shown.
-  std::function<std::string(int axis, int segment, int node, std::uint16_t code, text::Language)> error_text;
+  /// Words of the error code of the drive or node that the record names; empty result: only the number is
+  /// shown.
+  std::function<std::string(const image::AlarmRecord&, std::uint16_t code, text::Language)> error_text;
   /// A node as the machine file calls it, "can.y"; may be empty.
   std::function<std::string(int segment, int node)> node_name;
   /// Where and why a node's start-up failed, from a record of kBootFailed; may be empty.
