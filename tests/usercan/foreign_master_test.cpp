@@ -18,13 +18,13 @@ std::string url(const RunningServer& server) {
 TEST(OptionCodes, each_value_brakes_on_its_ramp_and_ends_in_its_state) {
   if (no_python_can()) GTEST_SKIP() << "no python-can here; install it so: .ci/packages --tests";
   RunningServer server;
-  const Process drive({"drive", url(server), "--node", "5", "--plant",
-                       "inertia=0.01,friction=0.002,viscous=0,torque=2.4,peak-torque=7.2"});
+  Process drive({"drive", url(server), "--node", "5", "--plant",
+                 "inertia=0.01,friction=0.002,viscous=0,torque=2.4,peak-torque=7.2"});
   ASSERT_TRUE(drive.says("node 5 on")) << drive.said();
   EXPECT_EQ(
       shell("/usr/bin/python3 " + counterpart("option_codes_master.py") + " 5 262144" + socketcand(server)),
       0)
-      << drive.said();
+      << "the drive " << drive.life();
 }
 
 struct Pdos {
@@ -38,12 +38,12 @@ TEST_P(ForeignPdos, are_what_a_master_in_python_expects) {
   RunningServer server;
   std::vector<std::string> arguments = {"drive", url(server), "--node", "5"};
   arguments.insert(arguments.end(), GetParam().options.begin(), GetParam().options.end());
-  const Process drive(arguments);
+  Process drive(arguments);
   ASSERT_TRUE(drive.says("node 5 on")) << drive.said();
   EXPECT_EQ(shell("/usr/bin/python3 " + counterpart("pdo_master.py") + " " + GetParam().name + " 5" +
                   socketcand(server)),
             0)
-      << drive.said();
+      << "the drive " << drive.life();
 }
 
 INSTANTIATE_TEST_SUITE_P(Drives, ForeignPdos,

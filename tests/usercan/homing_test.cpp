@@ -26,15 +26,15 @@ TEST_P(Homing, by_switches_and_index_ends_where_they_are) {
   const Rail& rail = GetParam();
   RunningServer server;
   const std::string port = std::to_string(server.address().port);
-  const Process drive({"drive", "socketcand:127.0.0.1:" + port + "/can0", "--node", "5", "--plant",
-                       "zero-mark=" + std::to_string(kMark) + ",start=0.7,end-stop-min=-6,end-stop-max=6",
-                       "--switch", std::string("negative_limit=..-2,positive_limit=2..,home=") + rail.home});
+  Process drive({"drive", "socketcand:127.0.0.1:" + port + "/can0", "--node", "5", "--plant",
+                 "zero-mark=" + std::to_string(kMark) + ",start=0.7,end-stop-min=-6,end-stop-max=6",
+                 "--switch", std::string("negative_limit=..-2,positive_limit=2..,home=") + rail.home});
   ASSERT_TRUE(drive.says("node 5 on")) << drive.said();
   EXPECT_EQ(shell("/usr/bin/python3 " + counterpart("homing_master.py") + " 5 " + std::to_string(kTurn) +
                   " " + std::to_string(kMark) + " " + counts(-2) + " " + counts(2) + " " + rail.from + " " +
                   rail.to + " socketcand can0 host=127.0.0.1 port=" + port),
             0)
-      << drive.said();
+      << "the drive " << drive.life();
 }
 
 INSTANTIATE_TEST_SUITE_P(Rails, Homing,

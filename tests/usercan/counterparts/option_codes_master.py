@@ -42,7 +42,9 @@ def sample():
     drive.send(0x080, [])
     first, second = drive.wait_for(0x180 + n), drive.wait_for(0x280 + n)
     if first is None or second is None:
-        sys.exit("no TPDOs with SYNC")
+        missing = " and ".join(f"TPDO{i + 1}" for i, content in enumerate((first, second)) if content is None)
+        heard = [f"{m.arbitration_id:03X}#{bytes(m.data).hex()}" for m in drive.heard[-8:]]
+        sys.exit(f"no {missing} with SYNC, heard last: {heard}; statusword by SDO {drive.status():04X}h")
     drive.heard = [m for m in drive.heard if m.arbitration_id not in (0x180 + n, 0x280 + n)]
     time.sleep(0.001)
     return Sample(first, second)

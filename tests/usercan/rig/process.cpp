@@ -21,6 +21,7 @@ Process::Process(const std::vector<std::string>& arguments) : file_(scratch("sai
   pid_ = fork();
   if (pid_ == 0) {
     setenv("LC_ALL", "C", 1);
+    dup2(open("/dev/null", O_RDONLY), 0);
     dup2(out, 1);
     dup2(out, 2);
     execv(argv[0], argv.data());
@@ -53,5 +54,15 @@ int Process::wait() {
 void Process::signal(int number) const { kill(pid_, number); }
 
 std::string Process::said() const { return content(file_); }
+
+std::string Process::life() {
+  int status = 0;
+  if (pid_ <= 0) return "has been waited for; it said: " + said();
+  if (waitpid(pid_, &status, WNOHANG) == 0) return "lives; it said: " + said();
+  pid_ = -1;
+  const std::string how = WIFSIGNALED(status) ? "by signal " + std::to_string(WTERMSIG(status))
+                                              : "with code " + std::to_string(WEXITSTATUS(status));
+  return "has ended " + how + "; it said: " + said();
+}
 
 }  // namespace servogate::usercan

@@ -21,6 +21,8 @@ class Process {
   int wait();
   void signal(int number) const;
   std::string said() const;
+  /// For a failure: whether it lives or how it has ended, and what it said.
+  std::string life();
 
  private:
   std::string file_;
