@@ -27,6 +27,7 @@ TEST(VlSpindle, turns_both_ways_at_the_programmed_speed_and_has_the_limits_of_th
   EXPECT_EQ(drive.object(0x6046, 2), 30'000);
   EXPECT_EQ(drive.object(0x6048, 1), 20'000);
   EXPECT_EQ(drive.object(0x6048, 2), 1);
+  EXPECT_EQ(drive.object(0x604A, 1), 20'000);
   ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
   ASSERT_TRUE(mill.until([&] { return drive.object(0x6042) == 24'000; }, 20.0)) << mill.alarm_list();
   mill.run(0.5);

@@ -449,6 +449,22 @@ TEST_F(DriveVl, factors_scale_the_unit_and_may_not_be_zero) {
   EXPECT_EQ(b.read(0x6043), 3000u);
 }
 
+TEST_F(DriveVl, quick_stop_and_a_ramp_that_is_taken_away_brake_on_604A) {
+  b.write(0x604A, 1, 1200, 4);  // 1200 rpm in 1 s
+  b.write(0x604A, 2, 1, 2);
+  EXPECT_EQ(b.write(0x604A, 1, 0, 4), 0x06090032u) << "no ramp at all";
+  for (const std::uint16_t stop : {0x0F, 0x7B}) {  // bit 4 away; quick stop
+    b.enable();
+    target(600);
+    b.control(0x7F, 1300);
+    ASSERT_NEAR(rpm(), 600, 3);
+    b.control(stop, 250);
+    EXPECT_NEAR(rpm(), 300, 20) << std::hex << stop;
+    b.run(350);
+    EXPECT_NEAR(rpm(), 0, 1) << std::hex << stop;
+  }
+}
+
 TEST_F(DriveVl, halt_ramps_to_rest) {
   target(300);
   b.control(0x7F, 700);

@@ -198,6 +198,13 @@ def quick_stop():
     drive.write(0x605A, 2, 2)
 
 
+def quick_stop_in_vl():
+    """Its ramp is 604Ah: 200 rpm in a second."""
+    drive.write(0x604A, 200, 4, 1)
+    drive.write(0x604A, 1, 2, 2)
+    trial("605Ah = 2 in vl", with_value(0x605A, 2, lambda: control(0x02)), 200 / 60 * turn, QUICK_STOP, OFF, mode=2)
+
+
 def shutdown_and_disable_operation():
     for index, word, end in ((0x605B, 0x06, READY), (0x605C, 0x07, ON)):
         for value, ramp in ((0, COAST), (1, SLOW)):
@@ -268,7 +275,7 @@ def abort_connection():
 
 
 set_up()
-for part in (quick_stop, shutdown_and_disable_operation, halt, fault_reaction, abort_connection):
+for part in (quick_stop, quick_stop_in_vl, shutdown_and_disable_operation, halt, fault_reaction, abort_connection):
     part()
 control(0x00)
 drive.bus.shutdown()

@@ -37,6 +37,9 @@ constexpr ObjectSpec kRows[] = {
     {0x6049, 0, unsigned8, constant, kNo, 2},
     {0x6049, 1, unsigned32, rw, kNo, 0, 1},
     {0x6049, 2, unsigned16, rw, kNo, 1},
+    {0x604A, 0, unsigned8, constant, kNo, 2},
+    {0x604A, 1, unsigned32, rw, kNo, 0, 1},
+    {0x604A, 2, unsigned16, rw, kNo, 1},
     {0x604B, 0, unsigned8, constant, kNo, 2},
     {0x604B, 1, integer16, rw, kNo, 1},
     {0x604B, 2, integer16, rw, kNo, 1},
@@ -157,6 +160,7 @@ std::vector<ObjectSpec> drive_objects(const DriveRatings& r) {
   set(object::kVlMinMax, 2, r.max_speed_rpm);
   set(object::kVlAcceleration, 1, 600);  // rpm in a second: 10 turns/s^2 as 6083h
   set(object::kVlDeceleration, 1, 600);
+  set(object::kVlQuickStop, 1, 6000);  // as 6085h
   set(object::kMaxProfileVelocity, 0, top);
   set(object::kMaxMotorSpeed, 0, r.max_speed_rpm);
   set(object::kProfileVelocity, 0, turn);
@@ -260,6 +264,8 @@ DriveVariables::DriveVariables(ObjectDictionary& od)
       vl_acceleration_time(od.variable(object::kVlAcceleration, 2)),
       vl_deceleration_speed(od.variable(object::kVlDeceleration, 1)),
       vl_deceleration_time(od.variable(object::kVlDeceleration, 2)),
+      vl_quick_stop_speed(od.variable(object::kVlQuickStop, 1)),
+      vl_quick_stop_time(od.variable(object::kVlQuickStop, 2)),
       vl_setpoint_numerator(od.variable(object::kVlSetpointFactor, 1)),
       vl_setpoint_denominator(od.variable(object::kVlSetpointFactor, 2)),
       vl_dimension_numerator(od.variable(object::kVlDimensionFactor, 1)),

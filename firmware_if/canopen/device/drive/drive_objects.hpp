@@ -59,9 +59,9 @@ struct DriveVariables {
       &max_acceleration, &max_deceleration, &torque_limit_positive, &torque_limit_negative, &following_actual,
       &digital_inputs, &digital_outputs, &digital_output_mask, &target_velocity, &supported_modes, &vl_target,
       &vl_demand, &vl_actual, &vl_min, &vl_max, &vl_acceleration_speed, &vl_acceleration_time,
-      &vl_deceleration_speed, &vl_deceleration_time, &vl_setpoint_numerator, &vl_setpoint_denominator,
-      &vl_dimension_numerator, &vl_dimension_denominator, &ip_record, &ip_buffer_size,
-      &ip_buffer_organisation, &ip_buffer_position, &ip_buffer_clear;
+      &vl_deceleration_speed, &vl_deceleration_time, &vl_quick_stop_speed, &vl_quick_stop_time,
+      &vl_setpoint_numerator, &vl_setpoint_denominator, &vl_dimension_numerator, &vl_dimension_denominator,
+      &ip_record, &ip_buffer_size, &ip_buffer_organisation, &ip_buffer_position, &ip_buffer_clear;
 };
 
 }  // namespace servogate::canopen

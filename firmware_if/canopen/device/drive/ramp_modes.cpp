@@ -59,7 +59,7 @@ void ServoProfile::velocity_mode() noexcept {
   const double acceleration = vl_ramp(v_.vl_acceleration_speed, v_.vl_acceleration_time);
   const double deceleration = vl_ramp(v_.vl_deceleration_speed, v_.vl_deceleration_time);
   if (!(v_.controlword & kRampEnabled)) {
-    const double d = static_cast<double>(v_.quick_stop_deceleration);
+    const double d = quick_stop_ramp();
     ramp_to(0.0, d, d);
   } else if (v_.controlword & kRampUnlocked) {
     ramp_to(vl_reference(), acceleration, deceleration);

@@ -304,6 +304,11 @@ double ServoProfile::slow_down() const noexcept {
                                                             : v_.profile_deceleration);
 }
 
+double ServoProfile::quick_stop_ramp() const noexcept {
+  if (mode_ == OperationMode::velocity) return vl_ramp(v_.vl_quick_stop_speed, v_.vl_quick_stop_time);
+  return static_cast<double>(v_.quick_stop_deceleration);
+}
+
 // Brings the shaft to rest from whatever moves it, in position control so that it stays there.
 void ServoProfile::stop_motion(StopKind kind, double slow_down) noexcept {
   if (command_.loop != ServoCommand::Loop::position)
@@ -320,8 +325,7 @@ void ServoProfile::stop_motion(StopKind kind, double slow_down) noexcept {
     demand_.velocity = 0.0;
     demand_.acceleration = 0.0;
   } else {
-    const double d =
-        kind == StopKind::quick_stop_ramp ? static_cast<double>(v_.quick_stop_deceleration) : slow_down;
+    const double d = kind == StopKind::quick_stop_ramp ? quick_stop_ramp() : slow_down;
     ramp_to(0.0, d, d);
   }
   cyclic_target_ = demand_.position;

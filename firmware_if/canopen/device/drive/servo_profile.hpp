@@ -67,6 +67,7 @@ class ServoProfile final : public DeviceProfile {
   void command_position() noexcept;
   void stop_motion(StopKind kind, double slow_down) noexcept;
   double slow_down() const noexcept;
+  double quick_stop_ramp() const noexcept;
   bool stopped_by_limit_switch(double direction) const noexcept;
   bool halted() const noexcept { return settings_.quirks.halt && (v_.controlword & controlword::kHalt); }
   AbortCode homing_method_taken(std::int64_t value) const noexcept;

@@ -65,7 +65,7 @@ TEST(Vl, gets_its_limits_and_ramps_written) {
   ASSERT_TRUE(pair.enabled()) << pair.story;
   EXPECT_EQ(pair.drive->object(0x6046, 1), 50);
   EXPECT_EQ(pair.drive->object(0x6046, 2), 20'000);
-  for (const std::uint16_t ramp : {0x6048, 0x6049}) {
+  for (const std::uint16_t ramp : {0x6048, 0x6049, 0x604A}) {
     EXPECT_EQ(pair.drive->object(ramp, 1), 10'000);
     EXPECT_EQ(pair.drive->object(ramp, 2), 2);
   }
