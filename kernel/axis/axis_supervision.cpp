@@ -121,8 +121,12 @@ void Axis::supervise_drive() noexcept {
   if (drive_.state == DriveState::fault || drive_.state == DriveState::fault_reaction_active) {
     if (!reset_pending_) raise(alarm::kDriveFault, 0.0, drive_.error_code);
   } else if (drive_.refusal.waited_ms > 0) {
+    // Enable operation is held back until the drive shows its mode: then it is 6061h that is waited for.
+    const bool mode_awaited = drive_.refusal.wanted == DriveState::operation_enabled &&
+                              drive_.refusal.from == DriveState::switched_on &&
+                              drive_.mode != image::DriveMode::csp;
     raise(alarm::kDriveRefuses, static_cast<double>(drive_.refusal.wanted),
-          static_cast<double>(drive_.refusal.from), drive_.refusal.waited_ms);
+          static_cast<double>(drive_.refusal.from), drive_.refusal.waited_ms, mode_awaited ? 1.0 : 0.0);
   }
   if (config_.missed_limit > 0 && drive_.missed >= config_.missed_limit)
     raise(alarm::kPdoMissing, config_.missed_limit, drive_.missed);

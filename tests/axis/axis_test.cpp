@@ -341,6 +341,23 @@ TEST(Axis, tells_what_the_drive_did_when_it_fails) {
   }
 }
 
+TEST(Axis, whose_drive_is_not_enabled_tells_whether_it_is_the_mode_that_is_missing) {
+  const auto awaited = [](image::DriveState from, image::DriveState wanted, image::DriveMode shown) {
+    Rig rig;
+    rig.shared().drive.refusal = {from, wanted, 2000};
+    rig.shared().drive.mode = shown;
+    rig.run(1);
+    for (const Event& e : rig.events)
+      if (e.number == alarm::kDriveRefuses) return e.detail2;
+    return -1.0;
+  };
+  using enum image::DriveState;
+  EXPECT_EQ(awaited(switched_on, operation_enabled, image::DriveMode::none), 1.0);
+  EXPECT_EQ(awaited(switched_on, operation_enabled, image::DriveMode::homing), 1.0);
+  EXPECT_EQ(awaited(switched_on, operation_enabled, image::DriveMode::csp), 0.0);
+  EXPECT_EQ(awaited(ready_to_switch_on, switched_on, image::DriveMode::none), 0.0);
+}
+
 TEST(Axis, whose_process_data_do_not_come_is_not_said_to_fall_behind_or_to_stand) {
   AxisConfig config = test::mill_axis();
   config.missed_limit = 5;

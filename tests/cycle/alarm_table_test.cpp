@@ -169,6 +169,15 @@ TEST(AlarmText, decodes_status_word_and_error_code) {
   EXPECT_EQ(render(r, names, text::Language::english),
             "X: the drive does not go from ready to switch on to switched on (waited 500 ms), status word "
             "0x0221 ready to switch on, no main voltage");
+  r.value = static_cast<double>(image::DriveState::switched_on);
+  r.limit = static_cast<double>(image::DriveState::operation_enabled);
+  r.statusword = 0x0233;
+  r.detail2 = 1.0;
+  EXPECT_EQ(
+      render(r, names, text::Language::english),
+      "X: the drive does not go from switched on to operation enabled (waited 500 ms), status word 0x0233 "
+      "switched on; its 6061h does not show the mode that it was given, and before that it is not enabled: "
+      "compare 6060h, 6061h and 6502h (`servogate od`)");
 }
 
 TEST(AlarmText, names_node_axis_and_bus_of_what_is_lost) {

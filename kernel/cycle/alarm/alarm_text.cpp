@@ -115,6 +115,16 @@ int state_of(std::uint16_t statusword) {
   }
 }
 
+/// Why a drive that would be ready is not enabled.
+std::string mode_awaited_words(Language language) {
+  return language == Language::russian ? "; его 6061h не показывает заданный режим, без этого он не "
+                                         "включается: сравните 6060h, 6061h и "
+                                         "6502h (`servogate od`)"
+                                       : "; its 6061h does not show the mode that it was given, and before "
+                                         "that it is not enabled: compare "
+                                         "6060h, 6061h and 6502h (`servogate od`)";
+}
+
 /// NMT state of a heartbeat.
 std::string nmt_words(int state, Language language) {
   const bool russian = language == Language::russian;
@@ -243,6 +253,7 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
   if (r.number == axis::alarm::kDriveRefuses) {
     out[1] = state_words(static_cast<int>(r.value), language);
     out[2] = state_words(static_cast<int>(r.limit), language);
+    out[7] = r.detail2 > 0.0 ? mode_awaited_words(language) : "";
   }
   if (r.number == axis::alarm::kFollowingError) out[7] = torque_words(r.detail2, language);
   if (r.number == axis::alarm::kHomingInterrupted) out[6] = break_words(r.detail1, out[0], language);
