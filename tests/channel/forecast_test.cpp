@@ -18,13 +18,15 @@ struct Machine {
   AxisMap axes;
 };
 
-Machine machine(double acceleration = 1e9, double jerk = 1e14) {
+Machine machine(double acceleration = 1e9, double jerk = 1e14, std::string_view letters = "XYZ") {
   Machine m;
-  for (const char* letter : {"X", "Y", "Z"}) {
+  for (const char letter : letters) {
     m.axes.machine.push_back(static_cast<int>(m.model.axes.size()));
     m.path.limits[m.model.axes.size()] = {500.0, acceleration, jerk};
-    m.model.axes.push_back({letter, false, false, false, -1e6, 1e6, 500.0});
+    m.path.rotary[m.model.axes.size()] = letter < 'U';
+    m.model.axes.push_back({std::string(1, letter), letter < 'U', false, false, -1e6, 1e6, 500.0});
   }
+  m.path.axis_count = static_cast<int>(letters.size());
   m.path.period_s = 1e-6;
   m.model.power_on = {"G94", "G97", "G90", "G71", "G29"};
   return m;
@@ -50,6 +52,18 @@ TEST(Forecast, of_axes_without_inertia_is_the_way_over_the_feed) {
   EXPECT_NEAR(9.4248 + 0.06, seconds("G0 X30\nG3 X0 Y30 I0 J0 F300"), 1e-3);
   EXPECT_NEAR(15.0, seconds("G93 G1 X50 F4"), 1e-3);
   EXPECT_NEAR(60.0, seconds("G95 F0.2\nS500 M3\nG1 X100"), 1e-3);
+}
+
+TEST(Forecast, drives_a_quarter_circle_in_the_planes_that_a_machine_of_two_or_five_axes_has) {
+  const double quarter = 9.4248;
+  const auto arc = [](const char* letters, const std::string& text) {
+    return seconds(text, machine(1e9, 1e14, letters));
+  };
+  EXPECT_NEAR(quarter + 0.06, arc("XZ", "G18\nG0 Z30\nG3 Z0 X30 I0 J0 F300"), 1e-3);
+  EXPECT_NEAR(quarter + 0.06, arc("ZX", "G18\nG0 Z30\nG3 Z0 X30 I0 J0 F300"), 1e-3);
+  EXPECT_NEAR(quarter + 0.06, arc("XYZAC", "G19\nG0 Y30\nG3 Y0 Z30 I0 J0 F300"), 1e-3);
+  EXPECT_NEAR(quarter + 0.06, arc("ACXYZ", "G17\nG0 X30\nG3 X0 Y30 I0 J0 F300"), 1e-3);
+  EXPECT_NEAR(quarter + 0.06, arc("UV", "(DPI,U,V)\nG0 U30\nG3 U0 V30 I0 J0 F300"), 1e-3);
 }
 
 TEST(Forecast, takes_a_cutting_speed_at_half_of_the_way) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -267,6 +268,110 @@ TEST(Property, random_programs_always_end_inside_of_the_travel) {
     finished += !error;
   }
   EXPECT_GT(finished, 100);
+}
+
+/// Machines that lack axes of the planes, or have more than three.
+std::vector<MachineModel> shapes() {
+  std::vector<MachineModel> out;
+  for (const char* letters : {"X", "Z", "C", "XZ", "XY", "YZ", "UV", "XYZAC", "XZABC", "XYZUVWABC"}) {
+    MachineModel machine = mill();
+    machine.axes.clear();
+    for (const char* letter = letters; *letter != '\0'; ++letter) {
+      const bool rotary = *letter >= 'A' && *letter <= 'C';
+      machine.axes.push_back({std::string(1, *letter), rotary, false, false, -300.0, 300.0, 500.0});
+    }
+    out.push_back(machine);
+    if (std::string_view(letters) != "XZ") continue;
+    out.back().axes[0].diameter = true;  // a lathe, and one that powers on in its plane
+    out.push_back(out.back());
+    out.back().power_on.push_back("G18");
+  }
+  return out;
+}
+
+/// Programs of words for axes that a machine may lack; arcs, helices, planes, cycles and rotations most.
+class PlaneAuthor {
+ public:
+  PlaneAuthor(std::uint64_t seed, const MachineModel& machine) : random_(seed), machine_(machine) {}
+
+  std::string program(int blocks) {
+    std::string text = "F600\n";
+    for (int i = 0; i < blocks; ++i) text += block() + "\n";
+    return text;
+  }
+
+ private:
+  int pick(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
+  std::string value() { return std::to_string(pick(60) - 30); }
+  std::string axis() {
+    return machine_.axes[static_cast<std::size_t>(pick(static_cast<int>(machine_.axes.size())))].letter;
+  }
+  std::string axis_word() { return " " + axis() + value(); }
+  std::string block() {
+    const std::string arc = pick(2) == 0 ? "G2" : "G3";
+    switch (pick(14)) {
+      case 0:
+        return arc + axis_word() + " R" + std::to_string(pick(80) - 20);
+      case 1:
+        return arc + " I" + value() + " J" + value();
+      case 2:
+        return arc + axis_word() + " I" + value() + " J" + value();
+      case 3:
+        return arc + axis_word() + " I" + value() + " J" + value() + " K" + std::to_string(1 + pick(5));
+      case 4:
+        return "I" + value() + " J" + value();
+      case 5:
+        return "G" + std::to_string(17 + pick(3));
+      case 6:
+        return "(DPI," + axis() + "," + axis() + ")";
+      case 7:
+        return "(URT," + std::to_string(pick(4) * 30) + ")";
+      case 8:
+        return "G8" + std::to_string(pick(7)) + axis_word() + " R" + value() + " I2";
+      case 9:
+        return "(SCF," + std::to_string(1 + pick(2)) + "," + axis() + ")";
+      case 10:
+        return "(MIR," + axis() + ")";
+      case 11:
+        return pick(2) == 0 ? "G91" : "G90";
+      case 12:
+        return "G79" + axis_word();
+      default:
+        return (pick(2) == 0 ? "G0" : "G1") + axis_word();
+    }
+  }
+  std::mt19937_64 random_;
+  const MachineModel& machine_;
+};
+
+TEST(Property, arcs_lie_in_planes_whose_axes_the_machine_has_whatever_machine_it_is) {
+  const std::uint64_t seed = fresh_seed();
+  std::map<std::size_t, int> arcs;
+  for (const MachineModel& machine : shapes()) {
+    PlaneAuthor author(seed, machine);
+    const std::size_t axes = machine.axes.size();
+    const auto judge = [&](const Command& command) -> std::optional<text::Finding> {
+      if (const auto* arc = std::get_if<Arc>(&command.what)) {
+        EXPECT_LT(arc->axis1, axes);
+        EXPECT_LT(arc->axis2, axes);
+        EXPECT_NE(arc->axis1, arc->axis2);
+        EXPECT_TRUE(std::isfinite(arc->center1) && std::isfinite(arc->center2) &&
+                    std::isfinite(arc->sweep_deg));
+        ++arcs[axes];
+      }
+      return std::nullopt;
+    };
+    for (int i = 0; i < 600; ++i) {
+      const std::string text = author.program(3 + i % 12);
+      const CheckReport report = check_program("nc110", machine, {}, "p.nc", text, {}, Position{}, judge);
+      ASSERT_EQ(axes, report.extents.size());
+      for (const auto& extent : report.extents)
+        ASSERT_TRUE(std::isfinite(extent.min) && std::isfinite(extent.max)) << text;
+      ASSERT_FALSE(testing::Test::HasFailure()) << machine.axes[0].letter << axes << "\n" << text;
+    }
+  }
+  EXPECT_EQ(0, arcs[1]) << "no plane";
+  for (const std::size_t axes : {2u, 5u, 9u}) EXPECT_GT(arcs[axes], 50) << axes;
 }
 
 /// The next step as a text, for comparison.

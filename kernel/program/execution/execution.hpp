@@ -126,6 +126,9 @@ class Execution : public ValueSource {
   /// After a change of the frame: the machine stands still, its programmed coordinates are new.
   void frame_changed();
   void set_plane(int axis1, int axis2, int normal);
+  /// Throws where the machine lacks an axis of the plane in force, as at power-on: what needs a plane (arcs,
+  /// rotation, cycles) has none then.
+  void need_plane(int column) const;
   /// Origin, mirror, rotation, scale, field and modes as after power-on; tool lengths and parameters stay.
   void reset();
 
@@ -169,6 +172,8 @@ class Execution : public ValueSource {
   void run_words();
   BlockWords gather();
   void take_g(BlockWords& words, const GRule& rule);
+  void select_plane(Function plane, bool required);
+  [[noreturn]] void refuse_plane(Function plane, int column) const;
   void return_modes(std::uint32_t one_shot, const Modes& before);
   void check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const;
   void check_profile(const BlockWords& words) const;

@@ -19,6 +19,8 @@ std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 }  // namespace
 
 void Execution::move(const BlockWords& words) {
+  const bool arcs = state_.modes.motion != Function::rapid && state_.modes.motion != Function::line;
+  if (arcs) need_plane(static_cast<int>(block_.body) + 1);
   const Position to = target_of(words);
   switch (state_.modes.motion) {
     case Function::rapid:

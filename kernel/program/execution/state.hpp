@@ -22,11 +22,12 @@ struct Modes {
   Function dimension = Function::absolute;
   Function feed = Function::feed_minute;
   Function spindle = Function::revolutions;
-  double speed = 0.0;    ///< S in rpm or, if `cutting`, m/min
-  bool cutting = false;  ///< what `speed` is, G96 or G97 of the block that set it
-  int axis1 = 0;         ///< plane: abscissa and ordinate
-  int axis2 = 1;
-  int normal = 2;  ///< axis across the plane, -1: none
+  double speed = 0.0;                   ///< S in rpm or, if `cutting`, m/min
+  bool cutting = false;                 ///< what `speed` is, G96 or G97 of the block that set it
+  Function plane = Function::plane_12;  ///< as selected last by a G word
+  int axis1 = -1;                       ///< abscissa and ordinate, -1: the machine lacks it
+  int axis2 = -1;
+  int normal = -1;  ///< axis across the plane, -1: none
 };
 
 /// Where the program stands, and what it has to come back to.

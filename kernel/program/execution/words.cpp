@@ -24,6 +24,27 @@ Plane plane_of(Function f) {
 
 }  // namespace
 
+/// `required`: a program asks for it. At power-on a machine may lack an axis of it.
+void Execution::select_plane(Function function, bool required) {
+  const Plane plane = plane_of(function);
+  const int axis1 = axes_.find(plane.axis1), axis2 = axes_.find(plane.axis2);
+  if (required && (axis1 < 0 || axis2 < 0)) refuse_plane(function, static_cast<int>(block_.body) + 1);
+  state_.modes.plane = function;
+  set_plane(axis1, axis2, axes_.find(plane.normal));
+}
+
+void Execution::refuse_plane(Function function, int column) const {
+  const Plane plane = plane_of(function);
+  const char lacking = axes_.find(plane.axis1) < 0 ? plane.axis1 : plane.axis2;
+  fail(Fault::plane_missing, column,
+       {std::to_string(plane.number), std::string(1, plane.axis1), std::string(1, plane.axis2),
+        std::string(1, lacking)});
+}
+
+void Execution::need_plane(int column) const {
+  if (state_.modes.axis1 < 0 || state_.modes.axis2 < 0) refuse_plane(state_.modes.plane, column);
+}
+
 /// A block of words: modes first, then the functions before the motion, the motion, and what ends the block.
 /// Source: specification A 5.
 void Execution::run_words() {
@@ -169,17 +190,9 @@ void Execution::take_g(BlockWords& words, const GRule& rule) {
       break;
     case Function::plane_12:
     case Function::plane_31:
-    case Function::plane_23: {
-      const Plane plane = plane_of(rule.function);
-      const int axis1 = axes_.find(plane.axis1), axis2 = axes_.find(plane.axis2);
-      const bool usable = axis1 >= 0 && axis2 >= 0;
-      if (!usable && words.block != nullptr)
-        fail(Fault::plane_missing, static_cast<int>(block_.body) + 1,
-             {std::to_string(plane.number), std::string(1, plane.axis1), std::string(1, plane.axis2),
-              std::string(1, axis1 < 0 ? plane.axis1 : plane.axis2)});
-      if (usable) set_plane(axis1, axis2, axes_.find(plane.normal));
+    case Function::plane_23:
+      select_plane(rule.function, words.block != nullptr);
       break;
-    }
     case Function::corner_limited:
     case Function::continuous:
     case Function::exact:

@@ -24,10 +24,13 @@ class Frame {
   void set_mirrored(int axis, bool on) noexcept;
   void set_rotation(double degrees) noexcept;
   double rotation() const noexcept { return angle_deg_; }
+  /// Plane of the rotation; without one of its axes (-1) nothing is turned.
   void set_plane(int axis1, int axis2) noexcept;
 
   /// True when an axis' machine coordinate depends on its own programmed coordinate only.
-  bool separate(int axis) const noexcept { return angle_deg_ == 0.0 || (axis != axis1_ && axis != axis2_); }
+  bool separate(int axis) const noexcept {
+    return angle_deg_ == 0.0 || axis1_ < 0 || axis2_ < 0 || (axis != axis1_ && axis != axis2_);
+  }
   /// No scale, mirror or rotation: programmed and machine coordinates differ by a shift.
   bool shift_only() const noexcept { return shift_only_; }
   double shift(int axis) const noexcept { return origin_[at(axis)] + length_[at(axis)]; }
@@ -47,7 +50,7 @@ class Frame {
   void renew() noexcept;
 
   int axes_;
-  int axis1_ = 0, axis2_ = 1;
+  int axis1_ = -1, axis2_ = -1;
   Position origin_{}, length_{}, scale_{};
   std::uint32_t mirror_ = 0;
   double angle_deg_ = 0.0, cos_ = 1.0, sin_ = 0.0;

@@ -107,7 +107,9 @@ void mir(Execution& run, const Operands& operands) {
 }
 
 void urt(Execution& run, const Operands& operands) {
-  run.state().frame.set_rotation(run.resolve(operands.items[0].value));
+  const double angle = run.resolve(operands.items[0].value);
+  if (angle != 0.0) run.need_plane(operands.column);
+  run.state().frame.set_rotation(angle);
   run.frame_changed();
 }
 

@@ -91,6 +91,7 @@ void define(Execution& run, const BlockWords& words) {
   if (state.cycle.number != 0)
     fail(Fault::cycle_active, words.cycle_word->column,
          {std::to_string(words.cycle), std::to_string(state.cycle.number)});
+  run.need_plane(words.cycle_word->column);
   Cycle cycle;
   cycle.number = words.cycle;
   cycle.axis = cycle_axis(run, words);
