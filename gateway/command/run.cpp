@@ -11,6 +11,7 @@
 
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
+#include "gateway/command/canopen/bus/sole_master.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/force_setting.hpp"
 #include "gateway/command/outputs.hpp"
@@ -129,6 +130,7 @@ class Run {
   std::shared_ptr<ProgramFile> program_ = std::make_shared<ProgramFile>();
   machine::MachineState state_;
   machine::StateLock lock_;
+  SoleMaster sole_master_;
   std::vector<text::Finding> wrong_;  ///< errors of the program: nothing moves
   std::unique_ptr<Control> control_;
   std::unique_ptr<RunServer> server_;
@@ -175,6 +177,7 @@ int Run::prepare() {
     estimate_s_ = check.seconds();
     estimate_blocks_ = check.report.executed;
   }
+  if (const int code = sole_master_.claim(loaded_); code != kDone) return code;
   std::vector<text::Finding> findings;
   control_ = Control::compose(loaded_, findings);
   const int errors = print_findings(findings);
@@ -220,6 +223,7 @@ int Run::execute(const std::vector<std::string>& command_line) {
   Session session(*control_, {options_.trace, options_.report, options_.html}, realtime());
   OperatorScript script(wishes(), [this](const image::Request& r) { return control_->cycle().post(r); });
   if (!wrong_.empty()) return finish(script, session, command_line);
+  if (const int code = SoleMaster::listen(*control_); code != kDone) return code;
   count_signals();
   if (realtime()) refuse_suspension();
   control_->world().close_operator_points();

@@ -7,6 +7,7 @@
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
+#include "gateway/command/canopen/bus/sole_master.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/signals.hpp"
@@ -100,11 +101,14 @@ int up(const UpOptions& options) {
     if (print_findings(kept.findings) > 0) return kWrongUse;
     state = std::move(kept.state);
   }
+  SoleMaster sole_master;
+  if (const int code = sole_master.claim(loaded); code != kDone) return code;
   std::vector<text::Finding> findings;
   const std::unique_ptr<Control> control = Control::compose(loaded, findings);
   const int errors = print_findings(findings);
   if (control == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
+  if (const int code = SoleMaster::listen(*control); code != kDone) return code;
   if (is_virtual) control->cycle().set_time_scale(options.speed);
   control->restore_references(state);
   control->restore_tool(state);

@@ -137,6 +137,8 @@ std::vector<socketcan::Filter> master_filters(const std::vector<int>& nodes) {
   std::vector<socketcan::Filter> filters = {{canopen::cob::kNmt, kWhole},
                                             {canopen::cob::kSync, kFunction},
                                             {canopen::cob::heartbeat(0), kFunction}};
+  // Of another master's nodes, too: they tell of it.
+  for (int number = 1; number <= 4; ++number) filters.push_back({canopen::cob::rpdo(number, 0), kFunction});
   for (const int node : nodes) filters.push_back({static_cast<std::uint32_t>(node), kNode});
   return filters;
 }

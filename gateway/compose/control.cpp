@@ -151,6 +151,11 @@ bool Control::infrastructure(const std::vector<text::Finding>& findings) {
   return std::any_of(findings.begin(), findings.end(), [](const auto& f) { return f.entry == &kNoBus; });
 }
 
+const CanTransport* Control::shared_bus(std::size_t bus) const noexcept {
+  const CanTransport& t = transports_[bus];
+  return t.bus != nullptr && t.descriptor >= 0 && t.lockstep == nullptr ? &t : nullptr;
+}
+
 std::uint64_t Control::frames_lost(std::size_t bus) const noexcept {
   return transports_[bus].bus != nullptr ? transports_[bus].bus->lost() : 0;
 }

@@ -88,6 +88,9 @@ class Control {
   bool nothing_real() const { return loaded_.machine.nothing_real(); }
   /// True when composing failed because of the computer (a bus that cannot be opened), not of a file.
   static bool infrastructure(const std::vector<text::Finding>& findings);
+  /// The transport of a bus that somebody else may use at any moment, too; nullptr: a mock bus, and one in
+  /// lockstep, whose participants are known before time begins.
+  const CanTransport* shared_bus(std::size_t bus) const noexcept;
   /// Frames that the transport of a bus knows to be lost, by bus.
   std::uint64_t frames_lost(std::size_t bus) const noexcept;
 

@@ -62,5 +62,22 @@ TEST(FrameWords, tell_masters_from_devices) {
   EXPECT_FALSE(sent_by_masters(f));
 }
 
+TEST(FrameWords, tell_who_leads_nodes_from_nodes_that_were_left_behind) {
+  constexpr NodeId kMaster = 127;
+  for (const std::uint32_t id : {0x000u, 0x080u, 0x201u, 0x57Fu, 0x77Fu})
+    EXPECT_TRUE(leads_nodes(frame(id), kMaster)) << id;
+  for (const std::uint32_t id : {0x081u, 0x181u, 0x4FFu, 0x581u, 0x701u, 0x100u, 0x7E5u})
+    EXPECT_FALSE(leads_nodes(frame(id), kMaster)) << id;
+  image::CanFrame guarding = frame(0x705);
+  guarding.remote = true;
+  EXPECT_TRUE(leads_nodes(guarding, kMaster));
+  EXPECT_TRUE(leads_nodes(frame(0x605, {0x2B, 0x40, 0x60, 0, 6, 0, 0, 0}), kMaster)) << "a controlword";
+  EXPECT_TRUE(leads_nodes(frame(0x605, {0x2B, 0x40, 0x68, 0, 6, 0, 0, 0}), kMaster)) << "of its second axis";
+  EXPECT_FALSE(leads_nodes(frame(0x605, {0x40, 0x40, 0x60, 0, 0, 0, 0, 0}), kMaster)) << "somebody reads";
+  image::CanFrame far = frame(0x77F);
+  far.extended = true;
+  EXPECT_FALSE(leads_nodes(far, kMaster));
+}
+
 }  // namespace
 }  // namespace servogate::canopen

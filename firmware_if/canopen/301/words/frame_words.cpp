@@ -77,6 +77,16 @@ std::string object_words(const image::CanFrame& frame) {
                 : text::both(std::string(", read ") + place, std::string(", чтение ") + place);
 }
 
+/// A download to 6040h, or to that of a further axis of the same node. Source: CiA 402-2, 800h an axis.
+bool writes_controlword(const image::CanFrame& frame) noexcept {
+  constexpr unsigned kControlword = 0x6040, kAxis = 0x800, kEnd = 0xA000;
+  const unsigned command = frame.data[0] >> 5;
+  const unsigned index = frame.data[1] | static_cast<unsigned>(frame.data[2]) << 8;
+  const bool writes = command == 1 || (command == 6 && (frame.data[0] & 1) == 0);
+  return frame.length == 8 && writes && index >= kControlword && index < kEnd &&
+         (index - kControlword) % kAxis == 0;
+}
+
 }  // namespace
 
 std::string frame_words(const image::CanFrame& frame) {
@@ -100,6 +110,14 @@ bool sent_by_masters(const image::CanFrame& frame) noexcept {
   if (id.service == Service::lss) return frame.id == cob::kLssMaster;
   const Row* row = row_of(frame, id);
   return row != nullptr && row->master;
+}
+
+bool leads_nodes(const image::CanFrame& frame, NodeId master) noexcept {
+  if (!frame.remote && !frame.error && frame.id == cob::heartbeat(master) && !frame.extended) return true;
+  if (!sent_by_masters(frame)) return false;
+  const Service service = classify(frame.id, frame.extended).service;
+  if (service == Service::sdo_request) return writes_controlword(frame);
+  return service != Service::time && service != Service::lss;
 }
 
 }  // namespace servogate::canopen

@@ -15,4 +15,9 @@ std::string frame_words(const image::CanFrame& frame);
 /// real-time safe.
 bool sent_by_masters(const image::CanFrame& frame) noexcept;
 
+/// Whether a frame shows that somebody leads nodes at this moment: NMT, SYNC, an RPDO, node guarding, a
+/// controlword by SDO, the heartbeat of a master whose node-ID is `master`. Nodes that a master left behind
+/// in Operational send nothing of it. real-time safe.
+bool leads_nodes(const image::CanFrame& frame, NodeId master) noexcept;
+
 }  // namespace servogate::canopen

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/command/canopen/bus/sole_master.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+
+#include "drivers/clock.hpp"
+#include "firmware_if/canopen/301/words/frame_words.hpp"
+#include "gateway/cli/messages.hpp"
+#include "gateway/cli/options.hpp"
+#include "gateway/command/canopen/bus/held_bus.hpp"
+#include "gateway/machine/bus_place.hpp"
+#include "gateway/server/socket/socket_path.hpp"
+
+namespace servogate::gateway::command {
+
+namespace {
+
+const text::Entry kStart{"master.start", "starting '{0}'", "запуск «{0}»"};
+const text::Entry kClaimed{"master.claimed",
+                           "'{0}' is not started: process {2} has just taken the bus {1}. Two masters would "
+                           "reset one another's drives "
+                           "in motion; end that one first",
+                           "«{0}» не запущен: шину {1} только что занял процесс {2}. Два ведущих сбрасывали "
+                           "бы приводы друг друга на "
+                           "ходу; сначала завершите тот"};
+const text::Entry kLed{
+    "master.led",
+    "'{0}' is not started: somebody else leads the bus {1}. Within {2} s came {3}. A second master would "
+    "reset "
+    "drives that are in motion; nothing was sent. End the other control, or take it off this bus",
+    "«{0}» не запущен: шиной {1} управляет кто-то другой. За {2} с пришли {3}. Второй ведущий сбросил бы "
+    "приводы на ходу; ничего не отправлено. Завершите другое управление или отключите его от этой шины"};
+
+constexpr double kLeast_s = 1.2;  ///< hears a heartbeat once a second
+constexpr double kMost_s = 10.0;
+constexpr double kHeartbeats = 1.5;
+
+std::string say(const text::Entry& entry, std::vector<std::string> arguments) {
+  return text::render(entry, arguments, text::user_language());
+}
+
+/// What was heard of one kind: how often, and its first frame.
+struct Heard {
+  image::CanFrame first;
+  int count = 0;
+};
+using HeardByIdentifier = std::map<std::uint32_t, Heard>;
+
+/// "SYNC (080h) 300 times, RPDO 1 of node 1 (201h) 300 times"; the rest is counted.
+std::string in_words(const HeardByIdentifier& heard) {
+  constexpr std::size_t kNamed = 4;
+  std::string words;
+  std::size_t n = 0;
+  for (const auto& [id, h] : heard) {
+    if (n++ == kNamed) break;
+    const std::string times = std::to_string(h.count);
+    words += (words.empty() ? "" : ", ") + canopen::frame_words(h.first) +
+             text::both(" " + times + (h.count == 1 ? " time" : " times"), " " + times + " раз");
+  }
+  if (heard.size() > kNamed) {
+    const std::string more = std::to_string(heard.size() - kNamed);
+    words += text::both(" and " + more + " more kinds", " и ещё других: " + more);
+  }
+  return words;
+}
+
+/// Letters, digits and dots of a place; what is cut off is told by its length.
+std::string claim_file(const std::string& place) {
+  std::string name;
+  for (const char c : place) name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' ? c : '-';
+  constexpr std::size_t kLongest = 120;
+  if (name.size() > kLongest)
+    name = name.substr(name.size() - kLongest) + "-" + std::to_string(std::hash<std::string>{}(place));
+  return socket_folder() + "/" + name + ".bus";
+}
+
+/// -1: the folder of the control sockets is not this user's, or cannot be made.
+int open_claim(const std::string& path) {
+  const std::filesystem::path folder = socket_folder();
+  std::error_code error;
+  if (std::filesystem::create_directories(folder, error)) ::chmod(folder.c_str(), 0700);
+  struct stat seen {};
+  if (::lstat(folder.c_str(), &seen) != 0 || seen.st_uid != ::getuid() || !S_ISDIR(seen.st_mode)) return -1;
+  return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+}
+
+std::string holder_in(int file) {
+  char number[32] = {};
+  const ssize_t length = ::pread(file, number, sizeof number - 1, 0);
+  return length > 0 ? std::string(number, static_cast<std::size_t>(length)) : "?";
+}
+
+}  // namespace
+
+SoleMaster::~SoleMaster() {
+  for (const int file : claims_) ::close(file);
+}
+
+int SoleMaster::claim(const machine::LoadResult& loaded) {
+  const machine::MachineConfig& m = loaded.machine;
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    const machine::BusConfig& bus = m.buses[b];
+    if (bus.mock()) continue;
+    if (const auto holder = holder_of({bus.url, 0, loaded, b}))
+      return refuse_held(*holder, bus.url, say(kStart, {m.name}));
+    const int file = open_claim(claim_file(machine::bus_place(bus.url)));
+    if (file < 0) continue;  // nobody finds this control either: listening is left
+    claims_.push_back(file);
+    if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+      complain(kClaimed, {m.name, bus.url, holder_in(file)});
+      return kAlarm;
+    }
+    const std::string number = std::to_string(::getpid());
+    if (::ftruncate(file, 0) != 0 || ::pwrite(file, number.data(), number.size(), 0) < 0) continue;
+  }
+  return kDone;
+}
+
+image::Nanoseconds SoleMaster::patience(const machine::MachineConfig& machine) {
+  double longest = kLeast_s;
+  for (const machine::BusConfig& bus : machine.buses)
+    for (const machine::NodeConfig& node : bus.nodes)
+      longest = std::max(longest, kHeartbeats * node.heartbeat);
+  return std::llround(std::min(longest, kMost_s) * 1e9);
+}
+
+int SoleMaster::listen(Control& control) {
+  const machine::MachineConfig& m = control.machine();
+  std::vector<HeardByIdentifier> heard(m.buses.size());
+  std::vector<pollfd> ears;
+  for (std::size_t b = 0; b < m.buses.size(); ++b)
+    if (const CanTransport* t = control.shared_bus(b); t != nullptr)
+      ears.push_back({t->descriptor, POLLIN, 0});
+  if (ears.empty()) return kDone;
+  const image::Nanoseconds patience = SoleMaster::patience(m);
+  const image::Nanoseconds until = drivers::clock_ns(CLOCK_MONOTONIC) + patience;
+  for (image::Nanoseconds left = patience; left > 0; left = until - drivers::clock_ns(CLOCK_MONOTONIC)) {
+    const timespec nap{0, std::min(left, 50 * image::kMillisecond)};
+    ppoll(ears.data(), ears.size(), &nap, nullptr);
+    for (std::size_t b = 0; b < m.buses.size(); ++b) {
+      const CanTransport* t = control.shared_bus(b);
+      image::CanFrame frame;
+      while (t != nullptr && t->bus->receive(frame)) {
+        if (!canopen::leads_nodes(frame, control.suppliers()[b]->segment().config().own_node)) continue;
+        Heard& h = heard[b][frame.id];
+        if (h.count++ == 0) h.first = frame;
+      }
+    }
+  }
+  int code = kDone;
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    if (heard[b].empty()) continue;
+    complain(kLed, {m.name, m.buses[b].url, text::number(static_cast<double>(patience) * 1e-9, 1),
+                    in_words(heard[b])});
+    code = kAlarm;
+  }
+  return code;
+}
+
+}  // namespace servogate::gateway::command
