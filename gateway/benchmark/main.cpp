@@ -10,51 +10,21 @@
 
 #include "bench/cycle/cycle_times.hpp"
 #include "gateway/benchmark/eight_axes.hpp"
-#include "gateway/compose/control.hpp"
-#include "gateway/compose/program/program_file.hpp"
+#include "gateway/run/running_machine.hpp"
 
 namespace {
 
 using namespace servogate;
 
-constexpr int kMeasuredCycles = 8;  ///< each so-many-th, as a virtual run does
-
-/// A composed machine behind the interface that the bench knows.
-class ComposedMachine final : public bench::Machine {
- public:
-  ComposedMachine(const machine::LoadResult& loaded, const std::string& program_path) {
-    std::vector<text::Finding> findings;
-    control_ = gateway::Control::compose(loaded, findings);
-    for (const text::Finding& f : findings) std::fprintf(stderr, "%s\n", f.str().c_str());
-    if (control_ == nullptr || gateway::open_program(loaded.machine, program_path, "", program_) != 0)
-      std::exit(2);
-    control_->process(0).load([this, program_path](const program::Position& start) {
-      return program::Interpreter(program_.dialect, program_.model, {}, program_path, program_.text,
-                                  program_.loader, start);
-    });
-    control_->world().close_operator_points();
-    control_->cycle().measure_every(kMeasuredCycles);
-  }
-  void step() override { control_->step(); }
-  const image::ProcessImage& image() const override { return control_->cycle().image(); }
-  bool post(const image::Request& request) override { return control_->cycle().post(request); }
-  image::Nanoseconds cycle_duration_ns() const override {
-    return control_->cycle().measured() ? control_->cycle().duration_ns() : -1;
-  }
-  bool inject(std::string_view device, std::string_view fault) override {
-    mock::SimulatedDrive* drive = control_->world().drive(device);
-    const auto kind = mock::drive_fault_kind(fault);
-    if (drive == nullptr || !kind) return false;
-    mock::DriveFault f;
-    f.kind = *kind;
-    drive->inject(f);
-    return true;
-  }
-
- private:
-  std::unique_ptr<gateway::Control> control_;
-  gateway::ProgramFile program_;
-};
+/// A machine with its program, ready to be measured.
+std::unique_ptr<bench::Machine> running(const machine::LoadResult& machine, const std::string& program) {
+  std::vector<text::Finding> findings;
+  auto running = gateway::RunningMachine::compose(machine, nullptr, {}, findings);
+  const bool good = running != nullptr && running->load(program, findings);
+  for (const text::Finding& f : findings) std::fprintf(stderr, "%s\n", f.str().c_str());
+  if (!good) std::exit(2);
+  return running;
+}
 
 machine::LoadResult load_or_exit(const std::string& path) {
   machine::LoadResult loaded = machine::load(path);
@@ -80,9 +50,8 @@ int main(int argc, char** argv) {
       runs);
 
   const machine::LoadResult mill = load_or_exit(source + "/examples/mill/machine.toml");
-  print("example mill, 3 axes, spindle, PLC", bench::median_of(runs, [&] {
-          return std::make_unique<ComposedMachine>(mill, source + "/examples/mill/bracket.nc");
-        }));
+  print("example mill, 3 axes, spindle, PLC",
+        bench::median_of(runs, [&] { return running(mill, source + "/examples/mill/bracket.nc"); }));
 
   const auto folder =
       std::filesystem::temp_directory_path() / ("servogate-bench-" + std::to_string(getpid()));
@@ -91,9 +60,8 @@ int main(int argc, char** argv) {
   std::ofstream(folder / "eight.nc") << gateway::eight_axis_program();
   std::ofstream(folder / "eight.toml") << gateway::eight_axis_machine("eight.st");
   const machine::LoadResult eight = load_or_exit((folder / "eight.toml").string());
-  print("8 axes, 3 segments, PLC of 1000 statements", bench::median_of(runs, [&] {
-          return std::make_unique<ComposedMachine>(eight, (folder / "eight.nc").string());
-        }));
+  print("8 axes, 3 segments, PLC of 1000 statements",
+        bench::median_of(runs, [&] { return running(eight, (folder / "eight.nc").string()); }));
   std::filesystem::remove_all(folder);
   std::printf(
       "Aims: p99 below 10 us for 8 axes, 300 x real time for the mill. Known: 3 axes of motion alone p99 "

@@ -7,8 +7,7 @@
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/files/read_file.hpp"
-#include "gateway/run/record_file.hpp"
-#include "gateway/run/session.hpp"
+#include "gateway/run/running_machine.hpp"
 
 namespace servogate::gateway::command {
 
@@ -80,61 +79,48 @@ void catch_up(Control& control, const cycle::CycleInputs& inputs) {
   }
 }
 
-}  // namespace
-
-int replay(const ReplayOptions& options) {
-  RecordReader record;
+/// The record, and the trace that it is compared with, can be read: kDone, or the exit code after saying why.
+int open_inputs(const ReplayOptions& options, RecordReader& record) {
   std::string error;
   if (!record.open(options.record, error)) {
     complain(kNoRecord, {options.record, error});
     return kWrongUse;
   }
-  if (const std::string why = options.against.empty() ? "" : files::why_unreadable(options.against);
-      !why.empty()) {
-    complain(kNoTrace, {options.against, why});
-    return kWrongUse;
-  }
+  const std::string why = options.against.empty() ? "" : files::why_unreadable(options.against);
+  if (why.empty()) return kDone;
+  complain(kNoTrace, {options.against, why});
+  return kWrongUse;
+}
+
+/// The machine of the record as the run found it; nullptr: it cannot be composed, which has been said.
+std::unique_ptr<RunningMachine> compose(const machine::LoadResult& loaded, RecordReader& record) {
   const RecordHeader& header = record.header();
-  const machine::LoadResult loaded = machine::load(header.machine);
-  if (print_findings(loaded.findings) > 0) return kWrongUse;
-  if (const int code = check_outputs(
-          {{"--trace", options.trace}}, "", loaded,
-          {{text::both("the record", "запись"), options.record}, {"--against", options.against}});
-      code != kDone)
-    return code;
   if (report::identify(header.machine).sha256 != header.machine_sha256) complain(kChanged, {header.machine});
+  auto state = std::make_unique<HeldState>();
+  state->state = header.state;
   std::vector<text::Finding> findings;
-  const std::unique_ptr<Control> control = Control::compose(loaded, findings, &record);
-  if (print_findings(findings) > 0 || control == nullptr) return kWrongUse;
-  control->cycle().set_time_scale(header.time_scale);
-  control->restore_references(header.state);
-  control->restore_tool(header.state);
-  control->restore_retained(header.state);
-  const std::vector<ProgramChange> changes = record.changes(loaded.machine);
+  auto machine = RunningMachine::compose(loaded, std::move(state),
+                                         {.time_scale = header.time_scale, .source = &record}, findings);
+  return print_findings(findings) > 0 ? nullptr : std::move(machine);
+}
+
+/// Repeats every cycle of the record.
+void repeat(RunningMachine& machine, RecordReader& record) {
+  Control& control = machine.control();
+  const std::vector<ProgramChange> changes = record.changes(machine.machine());
   std::size_t changed = 0;
-  std::string trace = options.trace;
-  if (trace.empty() && !options.against.empty()) trace = files::nameless_file(options.against, error);
-  if (!error.empty()) {
-    complain(kCannotWrite, {text::both("the replay's trace", "трассу повтора"), error});
-    return kInfrastructure;
-  }
-  Session session(*control, {trace, {}, {}}, false);
   while (const cycle::CycleInputs* next = record.next()) {
-    while (changed < changes.size() && due(*control, changes[changed], *next))
-      if (!carry_out(*control, changes[changed++])) break;
-    prepare_logic(*control, record.logic_changes(), *next);
-    catch_up(*control, *next);
-    session.wait_for_room();
-    if (!control->cycle().step()) break;
-    session.after_cycle(0);
+    while (changed < changes.size() && due(control, changes[changed], *next))
+      if (!carry_out(control, changes[changed++])) break;
+    prepare_logic(control, record.logic_changes(), *next);
+    catch_up(control, *next);
+    if (!machine.cycle()) break;
   }
-  if (const std::string problem = session.close(); !problem.empty()) {
-    std::fprintf(stderr, "servogate: %s: %s\n", trace.c_str(), problem.c_str());
-    return kInfrastructure;
-  }
-  const std::string cycles = std::to_string(control->cycle().count());
-  long difference = 0;
-  if (!options.against.empty()) difference = first_difference(options.against, trace);
+}
+
+/// Says what came of it, and gives the exit code.
+int judge(const ReplayOptions& options, const RecordReader& record, const std::string& cycles,
+          long difference) {
   if (options.json)
     print_formatted("{\"schema\":1,\"cycles\":%s,\"damaged\":%s,\"first_difference\":%ld}\n", cycles.c_str(),
                     record.damaged() ? "true" : "false", difference);
@@ -153,6 +139,36 @@ int replay(const ReplayOptions& options) {
                               text::user_language())
                      .c_str());
   return kDone;
+}
+
+}  // namespace
+
+int replay(const ReplayOptions& options) {
+  RecordReader record;
+  if (const int code = open_inputs(options, record); code != kDone) return code;
+  const machine::LoadResult loaded = machine::load(record.header().machine);
+  if (print_findings(loaded.findings) > 0) return kWrongUse;
+  if (const int code = check_outputs(
+          {{"--trace", options.trace}}, "", loaded,
+          {{text::both("the record", "запись"), options.record}, {"--against", options.against}});
+      code != kDone)
+    return code;
+  const auto machine = compose(loaded, record);
+  if (machine == nullptr) return kWrongUse;
+  std::string error, trace = options.trace;
+  if (trace.empty() && !options.against.empty()) trace = files::nameless_file(options.against, error);
+  if (!error.empty()) {
+    complain(kCannotWrite, {text::both("the replay's trace", "трассу повтора"), error});
+    return kInfrastructure;
+  }
+  machine->watch({trace, {}, {}});
+  repeat(*machine, record);
+  for (const RunningMachine::Lost& lost : machine->close_files()) {
+    std::fprintf(stderr, "servogate: %s: %s\n", trace.c_str(), lost.why.c_str());
+    return kInfrastructure;
+  }
+  const long difference = options.against.empty() ? 0 : first_difference(options.against, trace);
+  return judge(options, record, std::to_string(machine->control().cycle().count()), difference);
 }
 
 }  // namespace servogate::gateway::command

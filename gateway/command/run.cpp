@@ -6,8 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
-#include <mutex>
-#include <thread>
 
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
@@ -18,15 +16,9 @@
 #include "gateway/command/signals.hpp"
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/compose/program/program_file.hpp"
-#include "gateway/machine/state/state.hpp"
-#include "gateway/machine/state/state_lock.hpp"
-#include "gateway/run/can_log.hpp"
 #include "gateway/run/forces/run_forces.hpp"
 #include "gateway/run/operator_script.hpp"
-#include "gateway/run/realtime_loop.hpp"
-#include "gateway/run/record_file.hpp"
-#include "gateway/run/retained_keeper.hpp"
-#include "gateway/run/session.hpp"
+#include "gateway/run/running_machine.hpp"
 #include "gateway/run/words/ready_words.hpp"
 #include "gateway/run/words/stop_words.hpp"
 #include "gateway/run/words/wait_words.hpp"
@@ -79,6 +71,7 @@ constexpr double kPatience_s = 60.0;       ///< of machine time, where --patienc
 constexpr double kSilentWait_s = 5.0;      ///< a longer wait is said
 constexpr double kProgressPause_s = 0.25;  ///< of wall-clock time, on a terminal
 constexpr double kLogPause_s = 10.0;       ///< and in a file or pipe
+constexpr int kFollowedCycles = 256;
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point begin) {
@@ -109,13 +102,12 @@ class Run {
   bool waits_for_start() const { return !loaded_.machine.nothing_real() && !options_.start_now; }
   bool realtime() const { return options_.clock != ClockKind::virtual_time; }
   OperatorScript::Wishes wishes() const;
+  int give_up(int code);
   void announce();
-  bool virtual_loop(OperatorScript& script, Session& session);
-  bool realtime_loop(OperatorScript& script, Session& session);
+  bool loop(OperatorScript& script);
   void take_answers(OperatorScript& script);
   void prompt(const OperatorScript& script);
-  void note_missing(const OperatorScript& script, const image::ProcessImage& image,
-                    const cycle::AlarmSnapshot& alarms);
+  void note_missing(const OperatorScript& script);
   double patience() const;
   void follow(const image::ProcessImage& image);
   void progress(const image::ProcessImage& image);
@@ -123,20 +115,16 @@ class Run {
   int finish(const OperatorScript& script, Session& session, const std::vector<std::string>& command_line);
   std::optional<report::ErrorEntry> not_begun(const OperatorScript& script) const;
   void explain(const OperatorScript& script, const report::Report& report);
-  bool save_state();
 
   const RunOptions& options_;
   const machine::LoadResult& loaded_;
   std::shared_ptr<ProgramFile> program_ = std::make_shared<ProgramFile>();
-  machine::MachineState state_;
-  machine::StateLock lock_;
+  std::unique_ptr<HeldState> state_;  ///< until the machine has it
   SoleMaster sole_master_;
   std::vector<text::Finding> wrong_;  ///< errors of the program: nothing moves
-  std::unique_ptr<Control> control_;
+  std::unique_ptr<RunningMachine> machine_;
+  Control* control_ = nullptr;  ///< machine_'s
   std::unique_ptr<RunServer> server_;
-  std::unique_ptr<RecordWriter> record_;
-  std::unique_ptr<CanLog> can_log_;
-  std::unique_ptr<RetainedKeeper> keeper_;
   std::unique_ptr<RunForces> forces_;
   double estimate_s_ = 0.0;
   long long estimate_blocks_ = 0;
@@ -149,28 +137,21 @@ class Run {
   std::vector<MissingCondition> missing_;  ///< for the drives to be on, when the script gave up on them
   bool missing_noted_ = false;
   OperatorScript::Stage prompted_ = OperatorScript::Stage::done;  ///< what the operator was last asked for
-  std::int64_t overruns_ = 0;
   bool infrastructure_ = false;
   bool reported_ = false;
 };
 
 int Run::prepare() {
   const machine::MachineConfig& m = loaded_.machine;
-  if (!options_.state.empty()) {
-    if (const std::string why = lock_.take(options_.state); !why.empty()) {
-      complain(machine::kStateTaken, {options_.state, why});
-      return kInfrastructure;
-    }
-    const machine::StateDirectory::Loaded kept = machine::StateDirectory(options_.state).load();
-    if (print_findings(kept.findings) > 0) return kWrongUse;
-    state_ = kept.state;
-  }
+  int refused = kDone;
+  state_ = HeldState::hold(options_.state, refused);
+  if (state_ == nullptr) return refused;
   if (!options_.program.empty()) {
     if (const int code = open_program(m, options_.program, options_.dialect, *program_); code != kDone)
       return code;
     const ProgramFile& p = *program_;
     const ProgramCheck check =
-        prove_program(m, p, state_.tables, start_after_homing(m), channel::Forecast::Depth::timed);
+        prove_program(m, p, state_->state.tables, start_after_homing(m), channel::Forecast::Depth::timed);
     print_findings(check.report.findings);
     std::copy_if(check.report.findings.begin(), check.report.findings.end(), std::back_inserter(wrong_),
                  [](const text::Finding& f) { return f.severity == text::Severity::error; });
@@ -179,21 +160,18 @@ int Run::prepare() {
   }
   if (const int code = sole_master_.claim(loaded_); code != kDone) return code;
   std::vector<text::Finding> findings;
-  control_ = Control::compose(loaded_, findings);
+  machine_ = RunningMachine::compose(
+      loaded_, std::move(state_),
+      {.clock = options_.clock, .record = options_.record, .can_log = options_.can_log}, findings);
   const int errors = print_findings(findings);
-  if (control_ == nullptr)
+  if (machine_ == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
-  control_->restore_references(state_);
-  control_->restore_tool(state_);
-  print_findings(control_->restore_retained(state_));
+  control_ = &machine_->control();
   const auto forces = force_settings(options_.forces);
   forces_ = std::make_unique<RunForces>(*control_);
   if (!forces || print_findings(forces_->plan(*forces)) > 0) return kWrongUse;
-  keeper_ = std::make_unique<RetainedKeeper>(*control_, options_.state, state_.retained_generation);
-  if (!options_.can_log.empty()) can_log_ = std::make_unique<CanLog>(options_.can_log, *control_);
-  if (!options_.record.empty()) record_ = begin_record(options_.record, options_.machine, state_, *control_);
   if (!options_.program.empty())
-    control_->change({ProgramChange::Kind::program, 0, program_, state_.tables, {}});
+    control_->change({ProgramChange::Kind::program, 0, program_, machine_->learned().tables, {}});
   return kDone;
 }
 
@@ -219,20 +197,23 @@ OperatorScript::Wishes Run::wishes() const {
   return w;
 }
 
+/// Nothing has moved: what is written then (write_outputs_of_no_run) finds its files free.
+int Run::give_up(int code) {
+  machine_->close_files();
+  return code;
+}
+
 int Run::execute(const std::vector<std::string>& command_line) {
-  Session session(*control_, {options_.trace, options_.report, options_.html}, realtime());
-  OperatorScript script(wishes(), [this](const image::Request& r) { return control_->cycle().post(r); });
+  Session& session = machine_->watch({options_.trace, options_.report, options_.html});
+  OperatorScript script(wishes(), [this](const image::Request& r) { return machine_->post(r); });
   if (!wrong_.empty()) return finish(script, session, command_line);
-  if (const int code = SoleMaster::listen(*control_); code != kDone) return code;
+  if (const int code = SoleMaster::listen(*control_); code != kDone) return give_up(code);
   count_signals();
   if (realtime()) refuse_suspension();
-  control_->world().close_operator_points();
   announce();
   begin_ = Clock::now();
-  const bool ran = realtime() ? realtime_loop(script, session) : virtual_loop(script, session);
-  if (!ran) return kInfrastructure;
+  if (!loop(script)) return give_up(kInfrastructure);
   wall_s_ = seconds_since(begin_);
-  control_->take_leave();
   server_.reset();
   return finish(script, session, command_line);
 }
@@ -250,7 +231,7 @@ void Run::announce() {
 
 void Run::take_answers(OperatorScript& script) {
   image::Answer answer;
-  while (control_->cycle().take_answer(answer))
+  while (machine_->take(answer))
     if (!forces_->take(answer)) script.take(answer);
   for (static int seen = 0; seen < signals_seen(); ++seen) script.interrupt();
   prompt(script);
@@ -268,62 +249,27 @@ void Run::prompt(const OperatorScript& script) {
 }
 
 /// As it was in the cycle in which the script gave up, before it switches off what is on.
-void Run::note_missing(const OperatorScript& script, const image::ProcessImage& image,
-                       const cycle::AlarmSnapshot& alarms) {
+void Run::note_missing(const OperatorScript& script) {
   if (missing_noted_ || script.outcome() == OperatorScript::Outcome::under_way) return;
   missing_noted_ = true;
   const bool refused = script.outcome() == OperatorScript::Outcome::refused;
   if (refused || (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()))
-    missing_ = missing_for_power(*control_, image, alarms, text::user_language());
+    missing_ = missing_for_power(*control_, machine_->image(), machine_->alarms(), text::user_language());
 }
 
-bool Run::virtual_loop(OperatorScript& script, Session& session) {
-  cycle::AlarmSnapshot alarms;
-  while (!script.done()) {
-    session.wait_for_room();
-    if (record_ != nullptr) record_->wait_for_room();
-    if (can_log_ != nullptr) can_log_->wait_for_room();
-    control_->step();
-    session.after_cycle(0);
+bool Run::loop(OperatorScript& script) {
+  if (!machine_->begin(options_.quiet)) return false;
+  // Virtual time is looked at now and then only: a look costs more than a cycle.
+  const int each = machine_->moves_by_itself() ? 1 : kFollowedCycles;
+  for (int n = 1; !script.done(); ++n) {
+    machine_->step();
     take_answers(script);
     forces_->poll();
-    if (forces_->done()) script.poll(control_->cycle().image());
-    if (!missing_noted_ && script.outcome() != OperatorScript::Outcome::under_way) {
-      control_->cycle().alarms().snapshot(alarms);
-      note_missing(script, control_->cycle().image(), alarms);
-    }
-    if (control_->cycle().count() % 256 == 0) follow(control_->cycle().image());
+    if (forces_->done()) script.poll(machine_->image());
+    note_missing(script);
+    if (n % each == 0) follow(machine_->image());
   }
-  return true;
-}
-
-bool Run::realtime_loop(OperatorScript& script, Session& session) {
-  cycle::RealtimeSettings settings;
-  settings.priority = loaded_.machine.realtime.priority;
-  settings.cpu = loaded_.machine.realtime.cpu;
-  settings.best_effort = options_.clock == ClockKind::realtime_best_effort;
-  control_->cycle().publish_every(5);
-  RealtimeLoop loop(*control_, settings,
-                    [&session](Control&, image::Nanoseconds late) noexcept { session.after_cycle(late); });
-  const bool started = loop.start();
-  if (!started || !options_.quiet) loop.complain_of_refusals(started);
-  if (!started) return false;
-  auto image = std::make_unique<image::ProcessImage>();
-  auto alarms = std::make_unique<cycle::AlarmSnapshot>();
-  while (!script.done()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    control_->cycle().read(*image);
-    // Nothing is published before the first cycles: that is no machine whose axes are all ready.
-    if (static_cast<std::size_t>(image->axis_count) != loaded_.machine.axes.size()) continue;
-    take_answers(script);
-    forces_->poll();
-    if (forces_->done()) script.poll(*image);
-    control_->cycle().read(*alarms);
-    note_missing(script, *image, *alarms);
-    follow(*image);
-  }
-  loop.stop();
-  overruns_ = loop.overruns();
+  machine_->stop();
   return true;
 }
 
@@ -378,10 +324,8 @@ int Run::finish(const OperatorScript& script, Session& session,
   reported_ = true;
   follow(control_->cycle().image());
   end_progress();
-  written(options_.trace, session.close());
-  if (record_ != nullptr) written(options_.record, record_->close());
-  if (can_log_ != nullptr) written(options_.can_log, can_log_->close());
-  report::Report report = session.make_report(wall_s_, overruns_);
+  for (const RunningMachine::Lost& lost : machine_->close_files()) written(lost.path, lost.why);
+  report::Report report = session.make_report(wall_s_, machine_->overruns());
   report.finished = script.outcome() == OperatorScript::Outcome::finished;
   report.blocks_expected = estimate_blocks_;
   report.findings = wrong_;
@@ -416,7 +360,11 @@ int Run::finish(const OperatorScript& script, Session& session,
   }
   if (options_.json) print(report::to_json(report));
   explain(script, report);
-  if (!options_.state.empty() && wrong_.empty() && !save_state()) infrastructure_ = true;
+  if (wrong_.empty())
+    if (const std::string why = machine_->keep(); !why.empty()) {
+      complain(kCannotWrite, {options_.state, why});
+      infrastructure_ = true;
+    }
   return unless_frames_lost(infrastructure_ ? kInfrastructure : code_of(script.outcome()), *control_);
 }
 
@@ -468,41 +416,11 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
     std::fprintf(stderr, "%s\n", say(kBroken, {blocks, std::to_string(estimate_blocks_), time}).c_str());
 }
 
-bool Run::save_state() {
-  if (const program::Tables* tables = control_->process(0).feeder().tables(); tables != nullptr)
-    state_.tables = *tables;
-  const image::ProcessImage& image = control_->cycle().image();
-  const auto axes = control_->cycle().axes();
-  for (std::size_t a = 0; a < axes.size(); ++a) {
-    machine::HomingRecord& record = state_.homing[loaded_.machine.axes[a].letter];
-    record.valid = image.axes[a].homed;
-    record.offset_counts = axes[a].reference_counts();
-  }
-  state_.tool_in_spindle = image.processes[0].tool;
-  std::string error;
-  if (machine::StateDirectory(options_.state).save_all(state_, error)) error = keeper_->close();
-  if (error.empty()) return true;
-  complain(kCannotWrite, {options_.state, error});
-  return false;
-}
-
-}  // namespace
-
-namespace {
-
 /// What has to be right before a control is composed: kDone, or the exit code after saying why.
 int refuse_early(RunOptions& options, const machine::LoadResult& loaded) {
   if (!options.dialect.empty() && !known_dialect(options.dialect)) return kWrongUse;
   if (print_findings(loaded.findings) > 0) return kWrongUse;
-  if (options.clock == ClockKind::unset)
-    options.clock = loaded.machine.virtual_time() && loaded.machine.nothing_real() ? ClockKind::virtual_time
-                                                                                   : ClockKind::realtime;
-  if (options.clock == ClockKind::virtual_time)
-    for (const machine::BusConfig& bus : loaded.machine.buses)
-      if (!bus.mock() && !bus.lockstep()) {
-        complain(kVirtualNeedsMock, {bus.url});
-        return kWrongUse;
-      }
+  if (!settle_clock(loaded.machine, options.clock)) return kWrongUse;
   if (options.start_now && !loaded.machine.run.allow_start_now && !loaded.machine.nothing_real()) {
     complain(kStartNowForbidden, {});
     return kWrongUse;

@@ -70,6 +70,7 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
   if (!good || !c->open_buses(findings, source != nullptr)) return nullptr;
 
   c->world_ = std::make_unique<MockWorld>(c->loaded_);
+  c->faults_ = std::make_unique<MachineFaults>(m, *c->world_);
   cycle::CycleParts parts;
   parts.period_ns = m.cycle_ns();
   c->debounce_ = std::make_unique<Debounce>(m);
@@ -219,6 +220,7 @@ void Control::advance_world() {
   const image::Nanoseconds t = cycle_->count() * cycle_->period_ns();
   await_grants(t);
   world_->note_feedback(cycle_->image());
+  faults_->advance_to(t);
   world_->advance_to(t);
 }
 

@@ -12,6 +12,7 @@
 #include "gateway/compose/points/debounce.hpp"
 #include "gateway/compose/points/drive_points.hpp"
 #include "gateway/compose/program/program_change.hpp"
+#include "gateway/compose/simulated/machine_faults.hpp"
 #include "gateway/compose/simulated/mock_world.hpp"
 #include "gateway/machine/load.hpp"
 #include "gateway/machine/state/state.hpp"
@@ -68,6 +69,8 @@ class Control {
   const machine::MachineConfig& machine() const noexcept { return loaded_.machine; }
   channel::Process& process(int index) { return *processes_[static_cast<std::size_t>(index)]; }
   MockWorld& world() noexcept { return *world_; }
+  /// Faults on what is simulated, by name.
+  MachineFaults& faults() noexcept { return *faults_; }
   PlcLogic* logic() noexcept { return logic_.get(); }
   const std::vector<std::unique_ptr<CanSupplier>>& suppliers() const noexcept { return suppliers_; }
   /// Real time: the cycle that step() is about to run was due at this time of `clock`. From the first call on
@@ -103,6 +106,7 @@ class Control {
 
   machine::LoadResult loaded_;
   std::unique_ptr<MockWorld> world_;
+  std::unique_ptr<MachineFaults> faults_;
   std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
   std::optional<image::Nanoseconds> due_ns_;

@@ -12,9 +12,6 @@ namespace servogate::gateway {
 
 namespace {
 
-/// In virtual time each so-many-th cycle is measured: as good a statistic, and the stopwatch costs little.
-constexpr int kMeasuredCycles = 8;
-
 constexpr std::string_view kFollowed[] = {
     "running", "held",     "m_strobe", "m_ack",       "s_strobe",      "s_ack",          "t_strobe",
     "t_ack",   "enabled",  "homed",    "in_position", "on_limit_plus", "on_limit_minus", "brake_release",
@@ -68,7 +65,6 @@ Session::Session(Control& control, const Outputs& outputs, bool realtime)
       realtime_(realtime),
       statistics_(layout_),
       times_(phase_names()) {
-  if (!realtime) control.cycle().measure_every(kMeasuredCycles);
   if (realtime) sync_late_.resize(control.suppliers().size());
   sampled_.signals.clear();
   std::vector<std::unique_ptr<report::TraceSink>> sinks;

@@ -294,8 +294,8 @@ TEST(AuxiliaryAxis, may_be_asked_for_power_before_it_is_permitted) {
 TEST(AuxiliaryAxis, stops_with_a_fault_of_its_drive_which_mc_reset_takes_back) {
   Desk desk;
   desk.in_motion();
-  mock::DriveFault fault;
-  fault.kind = mock::DriveFaultKind::emcy;
+  fault::Fault fault;
+  fault.kind = fault::Kind::emcy;
   fault.error_code = 0x2310;
   desk.control().world().drive("can.u")->inject(fault);
   ASSERT_TRUE(desk.comes("Main.m.Error", 1.0)) << desk.alarm_list();

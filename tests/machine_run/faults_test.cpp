@@ -249,7 +249,7 @@ TEST(Faults, after_an_emergency_stop_the_machine_is_made_ready_and_works_again) 
 
 TEST(Faults, of_one_drive_stops_the_healthy_axes_together_within_their_limits) {
   Moving mill;
-  mill.inject("can.y", mock::DriveFaultKind::over_current);
+  mill.inject("can.y", fault::Kind::over_current);
   ASSERT_TRUE(mill.until([&] { return mill.process().state == ProcessState::stopped_by_alarm; }, 2.0))
       << mill.alarm_list();
   ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 1.0));
@@ -290,7 +290,7 @@ TEST(Faults, of_drives_have_the_words_of_their_own_device_file_or_of_the_standar
 
 TEST(Faults, node_that_falls_silent_stops_the_program_and_is_named) {
   Moving mill;
-  mill.inject("can.y", mock::DriveFaultKind::silent);
+  mill.inject("can.y", fault::Kind::silent);
   ASSERT_TRUE(mill.until([&] { return mill.process().state == ProcessState::stopped_by_alarm; }, 2.0))
       << mill.alarm_list();
   mill.run(1.0);

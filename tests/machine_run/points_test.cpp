@@ -79,8 +79,7 @@ TEST(DrivePoints, whose_message_alone_is_lost_read_what_is_declared_and_the_mess
   mill.run(0.2);
   const image::Place chain = place_of(mill.control(), "estop_chain_ok");
   ASSERT_TRUE(mill.image().packets.bit(chain));
-  mill.control().world().drive("can.x")->inject(
-      {.kind = mock::DriveFaultKind::pdo_dropped, .number = kInputsMessage});
+  mill.control().world().drive("can.x")->inject({.kind = fault::Kind::pdo_dropped, .number = kInputsMessage});
   ASSERT_TRUE(mill.until([&] { return mill.alarms(axis::alarm::kPdoMissing) > 0; }, 0.2))
       << mill.alarm_list();
   for (const image::AlarmRecord& r : mill.control().cycle().alarms().history())
@@ -95,7 +94,7 @@ TEST(DrivePoints, read_what_is_declared_for_a_loss_when_the_drive_is_silent) {
   ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
   const image::Place chain = place_of(mill.control(), "estop_chain_ok");
   EXPECT_TRUE(mill.image().packets.bit(chain));
-  mill.inject("can.x", mock::DriveFaultKind::silent);
+  mill.inject("can.x", fault::Kind::silent);
   EXPECT_TRUE(mill.until([&] { return !mill.axis("X").drive.online; }, 3.0));
   mill.run(0.002);
   EXPECT_FALSE(mill.image().packets.bit(chain)) << "a chain that nobody reports is open";

@@ -100,7 +100,7 @@ TEST(RealTimePath, of_the_whole_mill_from_boot_to_power_off_allocates_locks_and_
   mill.ask(RequestKind::start);
   mill.run(0.2);
   EXPECT_EQ(mill.verdict(), "") << "jogging and a second start";
-  mill.inject("can.y", mock::DriveFaultKind::over_current);
+  mill.inject("can.y", fault::Kind::over_current);
   mill.run(1.0);
   EXPECT_GT(mill.alarms(axis::alarm::kDriveFault), 0) << mill.alarm_list();
   mill.control().world().set_input("estop_chain_ok", false);
@@ -109,7 +109,7 @@ TEST(RealTimePath, of_the_whole_mill_from_boot_to_power_off_allocates_locks_and_
   mill.ask(RequestKind::reset);
   mill.run(0.1);
   EXPECT_EQ(mill.verdict(), "") << "drive fault, emergency stop, reset";
-  mill.inject("can.x", mock::DriveFaultKind::silent);
+  mill.inject("can.x", fault::Kind::silent);
   mill.run(1.0);
   EXPECT_EQ(mill.verdict(), "") << "a node falls silent";
   EXPECT_GT(mill.cycles(), 5000);

@@ -250,8 +250,8 @@ TEST(TorqueControl, is_refused_beyond_its_limits_and_on_an_axis_without_torque) 
 
 TEST(TorqueControl, of_a_drive_that_does_not_take_the_mode_is_an_alarm) {
   Clamp clamp;
-  mock::DriveFault fault;
-  fault.kind = mock::DriveFaultKind::sdo_abort;
+  fault::Fault fault;
+  fault.kind = fault::Kind::sdo_abort;
   fault.index = 0x6060;
   clamp.control().world().drive("can.u")->inject(fault);
   clamp.set("clamp", 1);

@@ -246,6 +246,11 @@ bool CanSegment::inject(const CanFault& fault) noexcept {
 }
 
 void CanSegment::clear_faults() noexcept { faults_.clear(); }
+void CanSegment::clear(const CanFault& fault) noexcept {
+  const auto same = std::find_if(faults_.begin(), faults_.end(),
+                                 [&](const ActiveFault& active) { return active.fault == fault; });
+  if (same != faults_.end()) faults_.erase(same);
+}
 
 void CanSegment::force_bus_off(int endpoint) noexcept {
   if (endpoint >= 0 && endpoint < endpoints()) endpoints_[static_cast<std::size_t>(endpoint)]->go_bus_off();

@@ -63,6 +63,7 @@ struct CanFault {
   std::uint32_t skip = 0;    ///< let so many matching frames pass first
   std::uint32_t count = 1;   ///< then hit so many; 0: all from then on
   Nanoseconds delay_ns = 0;  ///< of Kind::delay
+  bool operator==(const CanFault&) const = default;
 };
 
 /// Sees everything that happens on the wire, for records and tests. Called from advance_to().
@@ -124,6 +125,8 @@ class CanSegment final : public image::Simulated {
   /// Puts a fault on the wire; at most 16 at a time. False: no place. Faults work in the order of injection.
   bool inject(const CanFault& fault) noexcept;
   void clear_faults() noexcept;
+  /// Takes away the oldest fault that was injected like this.
+  void clear(const CanFault& fault) noexcept;
   /// Takes an endpoint off the bus as 256 transmit errors do; its pending frames are lost.
   void force_bus_off(int endpoint) noexcept;
   /// Lets a bus-off endpoint return after 128 times 11 recessive bits.

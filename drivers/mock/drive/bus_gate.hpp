@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
-#include "drivers/mock/drive/drive_fault.hpp"
 #include "firmware_if/canopen/device/slave.hpp"
+#include "firmware_if/fault/fault.hpp"
 #include "firmware_if/image/can_bus.hpp"
 
 namespace servogate::mock {

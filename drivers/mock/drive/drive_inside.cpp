@@ -5,44 +5,6 @@
 #include <span>
 
 namespace servogate::mock {
-namespace {
-
-constexpr std::string_view kNames[kFaultKinds] = {"silent",
-                                                  "deaf",
-                                                  "heartbeat_lost",
-                                                  "pdo_dropped",
-                                                  "pdo_late",
-                                                  "pdo_corrupted",
-                                                  "pdo_repeated",
-                                                  "rpdo_dropped",
-                                                  "rpdo_late",
-                                                  "rpdo_corrupted",
-                                                  "sdo_silent",
-                                                  "sdo_late",
-                                                  "sdo_abort",
-                                                  "stuck_state",
-                                                  "frozen",
-                                                  "encoder_loss",
-                                                  "emcy",
-                                                  "emcy_only",
-                                                  "over_current",
-                                                  "encoder_fault",
-                                                  "encoder_jump",
-                                                  "following_error",
-                                                  "over_temperature",
-                                                  "under_voltage",
-                                                  "reset"};
-
-constexpr bool lasts(DriveFaultKind kind) noexcept { return kind <= DriveFaultKind::encoder_loss; }
-
-}  // namespace
-
-std::optional<DriveFaultKind> drive_fault_kind(std::string_view name) noexcept {
-  const auto found = std::find(std::begin(kNames), std::end(kNames), name);
-  if (found == std::end(kNames)) return std::nullopt;
-  return static_cast<DriveFaultKind>(found - std::begin(kNames));
-}
-std::string_view name_of(DriveFaultKind kind) noexcept { return kNames[static_cast<std::size_t>(kind)]; }
 
 void SimulatedDrive::Inside::power_on(Nanoseconds t) noexcept {
   now = t;
@@ -55,7 +17,7 @@ void SimulatedDrive::Inside::power_on(Nanoseconds t) noexcept {
 
 void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
   while (next_servo <= t || next_communication <= t) {
-    if (spoiled(DriveFaultKind::frozen)) {
+    if (spoiled(fault::Kind::freeze)) {
       // Time passes it by.
       next_servo += next_servo <= t ? config.servo_period_ns : 0;
       if (next_communication > t) continue;
@@ -72,7 +34,7 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
       next_communication += kCommunicationPeriod;
     }
   }
-  if (late_count > 0 && !spoiled(DriveFaultKind::frozen)) hear_late(t);
+  if (late_count > 0 && !spoiled(fault::Kind::freeze)) hear_late(t);
   now = std::max(now, t);
 }
 
@@ -91,21 +53,21 @@ void SimulatedDrive::Inside::hear_late(Nanoseconds t) noexcept {
 // False: the frame does not get through now.
 bool SimulatedDrive::Inside::spoil_rpdo(CanFrame& frame) noexcept {
   const auto number = static_cast<std::uint32_t>(slave.receive_pdo_of(frame));
-  const auto hit = [&](DriveFaultKind kind) {
+  const auto hit = [&](fault::Kind kind) {
     return spoiled(kind) && (fault(kind).number == 0 || fault(kind).number == number);
   };
   if (number == 0) return true;
-  if (hit(DriveFaultKind::rpdo_dropped) &&
-      ++rpdos_dropped_of % std::max<std::uint32_t>(1, fault(DriveFaultKind::rpdo_dropped).every) == 0)
+  if (hit(fault::Kind::rpdo_dropped) &&
+      ++rpdos_dropped_of % std::max<std::uint32_t>(1, fault(fault::Kind::rpdo_dropped).every) == 0)
     return false;
-  if (hit(DriveFaultKind::rpdo_corrupted)) {
+  if (hit(fault::Kind::rpdo_corrupted)) {
     const auto bytes = std::span(frame.data).first(std::min<std::size_t>(frame.length, 8));
     canopen::store_le(
-        canopen::load_le(bytes) ^ static_cast<std::uint64_t>(fault(DriveFaultKind::rpdo_corrupted).value),
+        canopen::load_le(bytes) ^ static_cast<std::uint64_t>(fault(fault::Kind::rpdo_corrupted).value),
         bytes);
   }
-  if (!hit(DriveFaultKind::rpdo_late)) return true;
-  frame.timestamp_ns += fault(DriveFaultKind::rpdo_late).delay_ns;
+  if (!hit(fault::Kind::rpdo_late)) return true;
+  frame.timestamp_ns += fault(fault::Kind::rpdo_late).delay_ns;
   if (late_count < late.size()) late[late_count++] = frame;
   return false;
 }
@@ -129,9 +91,9 @@ void SimulatedDrive::Inside::servo_tick() noexcept {
   plant.step(command);
   if (config.plant.thermal_time_s > 0.0) watch_heat();
   read_inputs(before);
-  inputs.hold_state = any_lasting && spoiled(DriveFaultKind::stuck_state) &&
-                      profile.state() == fault(DriveFaultKind::stuck_state).state;
-  if (any_lasting && spoiled(DriveFaultKind::encoder_loss)) {
+  inputs.hold_state = any_lasting && spoiled(fault::Kind::stuck_state) &&
+                      profile.state() == fault(fault::Kind::stuck_state).state;
+  if (any_lasting && spoiled(fault::Kind::encoder_loss)) {
     canopen::ServoState servo = plant.state();
     servo.position = lost_encoder_position;
     servo.zero_mark = false;
@@ -162,9 +124,9 @@ void SimulatedDrive::Inside::read_inputs(std::int64_t before) noexcept {
 }
 
 bool SimulatedDrive::Inside::answer_with_abort(const CanFrame& frame) noexcept {
-  if (!any_lasting || !spoiled(DriveFaultKind::sdo_abort)) return false;
+  if (!any_lasting || !spoiled(fault::Kind::sdo_abort)) return false;
   if (frame.id != canopen::cob::sdo_request(slave.node()) || frame.length != 8) return false;
-  const DriveFault& f = fault(DriveFaultKind::sdo_abort);
+  const fault::Fault& f = fault(fault::Kind::sdo_abort);
   const auto index = static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8);
   if (f.index != 0 && f.index != index) return false;
   const auto answer = canopen::sdo_abort(index, frame.data[3], f.abort);
@@ -172,25 +134,38 @@ bool SimulatedDrive::Inside::answer_with_abort(const CanFrame& frame) noexcept {
   return true;
 }
 
-void SimulatedDrive::Inside::inject(const DriveFault& f) noexcept {
-  if (!lasts(f.kind)) return happen(f);
+void SimulatedDrive::Inside::inject(const fault::Fault& f) noexcept {
+  if (!fault::row(f.kind).happens_to(fault::Device::drive)) return;
+  if (!fault::lasts(f.kind)) return happen(f);
   lasting[static_cast<std::size_t>(f.kind)] = {f, f.duration_ns > 0 ? now + f.duration_ns : 0, true};
-  if (f.kind == DriveFaultKind::rpdo_dropped) rpdos_dropped_of = 0;
-  if (f.kind == DriveFaultKind::pdo_dropped) gate.count_pdos_anew();
-  if (f.kind == DriveFaultKind::encoder_loss) lost_encoder_position = plant.state().position;
+  if (f.kind == fault::Kind::rpdo_dropped) rpdos_dropped_of = 0;
+  if (f.kind == fault::Kind::pdo_dropped) gate.count_pdos_anew();
+  if (f.kind == fault::Kind::encoder_loss) lost_encoder_position = plant.state().position;
+  set_supply(f.kind, false);
   apply_to_gate();
 }
 
-void SimulatedDrive::Inside::clear(DriveFaultKind kind) noexcept {
-  lasting[static_cast<std::size_t>(kind)].active = false;
+void SimulatedDrive::Inside::clear(fault::Kind kind) noexcept {
+  end(lasting[static_cast<std::size_t>(kind)]);
   apply_to_gate();
+}
+
+void SimulatedDrive::Inside::end(Lasting& l) noexcept {
+  if (l.active) set_supply(l.fault.kind, true);
+  l.active = false;
+}
+
+// What the faults of the supply take away and give back.
+void SimulatedDrive::Inside::set_supply(fault::Kind kind, bool present) noexcept {
+  if (kind == fault::Kind::power_cut) inputs.main_voltage = present;
+  if (kind == fault::Kind::torque_off) inputs.torque_allowed = present;
 }
 
 void SimulatedDrive::Inside::expire(Nanoseconds t) noexcept {
   bool changed = false;
   for (Lasting& l : lasting) {
     if (!l.active || l.until == 0 || t < l.until) continue;
-    l.active = false;
+    end(l);
     changed = true;
   }
   if (changed) apply_to_gate();
@@ -199,43 +174,46 @@ void SimulatedDrive::Inside::expire(Nanoseconds t) noexcept {
 void SimulatedDrive::Inside::apply_to_gate() noexcept {
   any_lasting = std::any_of(lasting.begin(), lasting.end(), [](const Lasting& l) { return l.active; });
   BusGate::Spoil& s = gate.spoil();
-  s.silent = spoiled(DriveFaultKind::silent) || spoiled(DriveFaultKind::frozen);
-  s.heartbeat_lost = spoiled(DriveFaultKind::heartbeat_lost);
-  s.sdo_delay_ns = spoiled(DriveFaultKind::sdo_late) ? fault(DriveFaultKind::sdo_late).delay_ns : 0;
-  s.sdo_silent = spoiled(DriveFaultKind::sdo_silent);
-  s.pdo_repeated = spoiled(DriveFaultKind::pdo_repeated);
-  const auto number = [this](DriveFaultKind kind) { return spoiled(kind) ? fault(kind).number : 0; };
-  s.dropped_number = number(DriveFaultKind::pdo_dropped);
-  s.late_number = number(DriveFaultKind::pdo_late);
-  s.flipped_number = number(DriveFaultKind::pdo_corrupted);
-  s.repeated_number = number(DriveFaultKind::pdo_repeated);
-  const DriveFault& dropped = fault(DriveFaultKind::pdo_dropped);
-  s.pdo_dropped_every = spoiled(DriveFaultKind::pdo_dropped) ? std::max<std::uint32_t>(1, dropped.every) : 0;
-  s.pdo_delay_ns = spoiled(DriveFaultKind::pdo_late) ? fault(DriveFaultKind::pdo_late).delay_ns : 0;
-  s.pdo_flip = spoiled(DriveFaultKind::pdo_corrupted)
-                   ? static_cast<std::uint64_t>(fault(DriveFaultKind::pdo_corrupted).value)
+  s.silent = spoiled(fault::Kind::silent) || spoiled(fault::Kind::freeze);
+  s.heartbeat_lost = spoiled(fault::Kind::heartbeat_lost);
+  s.sdo_delay_ns = spoiled(fault::Kind::sdo_late) ? fault(fault::Kind::sdo_late).delay_ns : 0;
+  s.sdo_silent = spoiled(fault::Kind::sdo_silent);
+  s.pdo_repeated = spoiled(fault::Kind::pdo_repeated);
+  const auto number = [this](fault::Kind kind) { return spoiled(kind) ? fault(kind).number : 0; };
+  s.dropped_number = number(fault::Kind::pdo_dropped);
+  s.late_number = number(fault::Kind::pdo_late);
+  s.flipped_number = number(fault::Kind::pdo_corrupted);
+  s.repeated_number = number(fault::Kind::pdo_repeated);
+  const fault::Fault& dropped = fault(fault::Kind::pdo_dropped);
+  s.pdo_dropped_every = spoiled(fault::Kind::pdo_dropped) ? std::max<std::uint32_t>(1, dropped.every) : 0;
+  s.pdo_delay_ns = spoiled(fault::Kind::pdo_late) ? fault(fault::Kind::pdo_late).delay_ns : 0;
+  s.pdo_flip = spoiled(fault::Kind::pdo_corrupted)
+                   ? static_cast<std::uint64_t>(fault(fault::Kind::pdo_corrupted).value)
                    : 0;
 }
 
-void SimulatedDrive::Inside::happen(const DriveFault& f) noexcept {
+void SimulatedDrive::Inside::happen(const fault::Fault& f) noexcept {
   switch (f.kind) {
-    case DriveFaultKind::emcy:
+    case fault::Kind::emcy:
       return profile.fault(f.error_code, false);
-    case DriveFaultKind::emcy_only:
+    case fault::Kind::emcy_only:
       return slave.emcy().notify(f.error_code);
-    case DriveFaultKind::over_current:
+    case fault::Kind::over_current:
       return profile.fault(0x2310, true);
-    case DriveFaultKind::encoder_fault:
+    case fault::Kind::encoder_fault:
       return profile.fault(0x7305, true);
-    case DriveFaultKind::encoder_jump:
+    case fault::Kind::encoder_jump:
       return plant.jump_encoder(f.value);
-    case DriveFaultKind::following_error:
+    case fault::Kind::following_error:
       return profile.fault(0x8611, false);
-    case DriveFaultKind::over_temperature:
+    case fault::Kind::over_temperature:
       return profile.fault(0x4310, false);
-    case DriveFaultKind::under_voltage:
+    case fault::Kind::under_voltage:
       return profile.fault(0x3220, true);
-    case DriveFaultKind::reset:
+    case fault::Kind::flash_error:
+      if (programs) programs->spoil_next_write(static_cast<std::uint8_t>(f.error_code));
+      return;
+    case fault::Kind::reset:
       slave.reset_node(now);
       return power_on(now);
     default:

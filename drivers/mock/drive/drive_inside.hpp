@@ -13,11 +13,16 @@
 
 namespace servogate::mock {
 
-inline constexpr std::size_t kFaultKinds = static_cast<std::size_t>(DriveFaultKind::reset) + 1;
 inline constexpr Nanoseconds kCommunicationPeriod = image::kMillisecond;
 
 /// The parts of a simulated drive and how time and faults pass through them.
 struct SimulatedDrive::Inside {
+  struct Lasting {
+    fault::Fault fault;
+    Nanoseconds until = 0;  ///< 0: until cleared
+    bool active = false;
+  };
+
   explicit Inside(const SimulatedDriveConfig& c);
 
   void power_on(Nanoseconds t) noexcept;
@@ -32,21 +37,17 @@ struct SimulatedDrive::Inside {
   bool spoil_rpdo(CanFrame& frame) noexcept;
   void hear_late(Nanoseconds t) noexcept;
 
-  void inject(const DriveFault& fault) noexcept;
-  void happen(const DriveFault& fault) noexcept;
-  void clear(DriveFaultKind kind) noexcept;
+  void inject(const fault::Fault& fault) noexcept;
+  void happen(const fault::Fault& fault) noexcept;
+  void clear(fault::Kind kind) noexcept;
+  void end(Lasting& lasting_fault) noexcept;
+  void set_supply(fault::Kind kind, bool present) noexcept;
   void expire(Nanoseconds t) noexcept;
   void apply_to_gate() noexcept;
-  bool spoiled(DriveFaultKind kind) const noexcept { return lasting[static_cast<std::size_t>(kind)].active; }
-  const DriveFault& fault(DriveFaultKind kind) const noexcept {
+  bool spoiled(fault::Kind kind) const noexcept { return lasting[static_cast<std::size_t>(kind)].active; }
+  const fault::Fault& fault(fault::Kind kind) const noexcept {
     return lasting[static_cast<std::size_t>(kind)].fault;
   }
-
-  struct Lasting {
-    DriveFault fault;
-    Nanoseconds until = 0;  ///< 0: until cleared
-    bool active = false;
-  };
 
   SimulatedDriveConfig config;
   DeviceObjects objects;
@@ -60,7 +61,7 @@ struct SimulatedDrive::Inside {
   canopen::DriveInputs inputs;
   std::array<bool, canopen::kDriveInputs> outside_level{};
   std::int64_t lost_encoder_position = 0;
-  std::array<Lasting, kFaultKinds> lasting{};
+  std::array<Lasting, fault::kKinds> lasting{};
   bool any_lasting = false;
   std::uint32_t rpdos_dropped_of = 0;  ///< RPDOs since the fault began
   std::array<CanFrame, 32> late{};     ///< RPDOs on their way, with the time at which they arrive

@@ -55,8 +55,7 @@ const CanFilter* SimulatedDrive::filter() const noexcept { return &inside_->slav
 
 void SimulatedDrive::on_frame(const CanFrame& frame) noexcept {
   Inside& in = *inside_;
-  if (!in.slave.concerned(frame) || in.spoiled(DriveFaultKind::deaf) || in.spoiled(DriveFaultKind::frozen))
-    return;
+  if (!in.slave.concerned(frame) || in.spoiled(fault::Kind::deaf) || in.spoiled(fault::Kind::freeze)) return;
   if (in.slave.immediate(frame)) in.advance_to(frame.timestamp_ns);
   if (in.any_lasting) {
     CanFrame spoiled = frame;
@@ -101,15 +100,15 @@ void SimulatedDrive::set_safe_torque_off(bool torque_allowed) noexcept {
   inside_->inputs.torque_allowed = torque_allowed;
 }
 
-void SimulatedDrive::inject(const DriveFault& fault) noexcept { inside_->inject(fault); }
-void SimulatedDrive::clear(DriveFaultKind kind) noexcept { inside_->clear(kind); }
+void SimulatedDrive::inject(const fault::Fault& fault) noexcept { inside_->inject(fault); }
+void SimulatedDrive::clear(fault::Kind kind) noexcept { inside_->clear(kind); }
 void SimulatedDrive::clear_faults() noexcept {
-  for (std::size_t i = 0; i < kFaultKinds; ++i) inside_->clear(static_cast<DriveFaultKind>(i));
+  for (std::size_t i = 0; i < fault::kKinds; ++i) inside_->clear(static_cast<fault::Kind>(i));
 }
 void SimulatedDrive::spoil_next_program(std::uint8_t flash_error) noexcept {
   if (inside_->programs) inside_->programs->spoil_next_write(flash_error);
 }
-bool SimulatedDrive::faulted_with(DriveFaultKind kind) const noexcept { return inside_->spoiled(kind); }
+bool SimulatedDrive::faulted_with(fault::Kind kind) const noexcept { return inside_->spoiled(kind); }
 
 std::int64_t SimulatedDrive::object(std::uint16_t index, std::uint8_t subindex) noexcept {
   inside_->profile.refresh();

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "drivers/mock/can/can_segment.hpp"
-#include "drivers/mock/drive/drive_fault.hpp"
 #include "drivers/mock/drive/plant.hpp"
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/301/nmt.hpp"
@@ -16,6 +15,7 @@
 #include "firmware_if/canopen/306/eds.hpp"
 #include "firmware_if/canopen/device/drive/drive_objects.hpp"
 #include "firmware_if/canopen/device/pdo_channel.hpp"
+#include "firmware_if/fault/fault.hpp"
 #include "firmware_if/image/drive_link.hpp"
 #include "firmware_if/image/process_image.hpp"
 
@@ -133,12 +133,12 @@ class SimulatedDrive final : public CanNode {
   void set_safe_torque_off(bool torque_allowed) noexcept;
 
   /// Faults on command. inject() replaces a lasting fault of the same kind.
-  void inject(const DriveFault& fault) noexcept;
-  void clear(DriveFaultKind kind) noexcept;
+  void inject(const fault::Fault& fault) noexcept;
+  void clear(fault::Kind kind) noexcept;
   void clear_faults() noexcept;
   /// The next program that is written ends with this error of 1F57h. Nothing without program memory.
   void spoil_next_program(std::uint8_t flash_error) noexcept;
-  bool faulted_with(DriveFaultKind kind) const noexcept;
+  bool faulted_with(fault::Kind kind) const noexcept;
 
   /// A value of the object dictionary, 0 when there is none; for tests and displays.
   std::int64_t object(std::uint16_t index, std::uint8_t subindex = 0) noexcept;

@@ -134,5 +134,9 @@ void MockGpio::force_input(std::size_t n, bool on) {
 }
 
 void MockGpio::release_input(std::size_t n) { lines_[n].forced = false; }
+void MockGpio::set_bounce(std::size_t n, const Bounce& bounce) {
+  inputs_[n].bounce = bounce;
+  random_[n].seed(bounce.seed);
+}
 
 }  // namespace servogate::mock

@@ -17,8 +17,8 @@ namespace servogate::mock {
 /// control believes it to be. `axis` = index in the machine file's order.
 using AxisPosition = std::function<double(int axis)>;
 
-/// Limit switch: active at and beyond `mm`, towards + or -. Active closes the contact; of an inverted input, a
-/// normally closed switch, it opens it.
+/// Limit switch: active at and beyond `mm`, towards + or -. Active closes the contact; of an inverted input,
+/// a normally closed switch, it opens it.
 struct LimitSwitch {
   int axis = 0;
   double mm = 0.0;
@@ -82,6 +82,8 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
   /// Holds a line at a level whatever drives it (a stuck contact), and lets it go.
   void force_input(std::size_t n, bool on);
   void release_input(std::size_t n);
+  /// From its next change on the contact bounces like this.
+  void set_bounce(std::size_t n, const Bounce& bounce);
   /// The contact itself, before inversion, bounce included.
   bool input(std::size_t n) const noexcept { return lines_[n].level; }
   /// The physical level of an output, after inversion.

@@ -2,8 +2,7 @@
 #include "gateway/command/simulated/fault_line.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <iterator>
 
 namespace servogate::gateway::command {
 
@@ -15,53 +14,6 @@ std::string quoted(std::string_view word, std::string_view english, std::string_
   return text::both("'" + std::string(word) + "' " + std::string(english),
                     "«" + std::string(word) + "» " + std::string(russian));
 }
-
-/// A whole number, decimal or 0x.
-std::optional<std::int64_t> whole(std::string_view text) {
-  const bool minus = text.starts_with('-');
-  if (minus) text.remove_prefix(1);
-  const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
-  if (hexadecimal) text.remove_prefix(2);
-  std::int64_t value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value, hexadecimal ? 16 : 10);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return minus ? -value : value;
-}
-
-std::optional<double> real(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
-
-/// Seconds, or milliseconds with their unit.
-std::optional<image::Nanoseconds> duration(std::string_view text) {
-  double scale = 1e9;
-  if (text.ends_with("us")) scale = 1e3;
-  if (text.ends_with("ms")) scale = 1e6;
-  if (scale != 1e9)
-    text.remove_suffix(2);
-  else if (text.ends_with('s'))
-    text.remove_suffix(1);
-  const auto value = real(text);
-  if (!value || *value < 0.0 || *value > 1e9) return std::nullopt;
-  return std::llround(*value * scale);
-}
-
-struct State {
-  std::string_view name;
-  image::DriveState state;
-};
-constexpr State kStates[] = {{"not_ready_to_switch_on", image::DriveState::not_ready_to_switch_on},
-                             {"switch_on_disabled", image::DriveState::switch_on_disabled},
-                             {"ready_to_switch_on", image::DriveState::ready_to_switch_on},
-                             {"switched_on", image::DriveState::switched_on},
-                             {"operation_enabled", image::DriveState::operation_enabled},
-                             {"quick_stop_active", image::DriveState::quick_stop_active},
-                             {"fault", image::DriveState::fault}};
 
 struct InputName {
   std::string_view name;
@@ -87,45 +39,44 @@ std::string names_of(const Table& table) {
   return list;
 }
 
-bool set_duration(std::string_view text, image::Nanoseconds& out) {
-  const auto value = duration(text);
-  if (value) out = *value;
-  return value.has_value();
+/// KEY=VALUE: whose and when, or a parameter of the fault. False: `why`.
+bool read_pair(std::string_view key, std::string_view value, DriveDeed& deed, unsigned& given,
+               std::string& why) {
+  const auto spoilt = [&] {
+    why = quoted(std::string(key) + "=" + std::string(value), "is out of range, or no value of its kind",
+                 "вне пределов или не того вида");
+    return false;
+  };
+  if (key == "node") {
+    const auto node = fault::read_whole(value, 1, 127);
+    deed.node = static_cast<int>(node.value_or(0));
+    return node.has_value() || spoilt();
+  }
+  if (key == "at") {
+    const auto at = fault::read_time(value);
+    deed.at = at.value_or(0);
+    return at.has_value() || spoilt();
+  }
+  const fault::ParameterRow* parameter = fault::find_parameter(key);
+  if (parameter == nullptr) {
+    const std::string known = "node, at, " + fault::parameter_names();
+    why = quoted(key, "is not known; known: " + known, "неизвестно; известны: " + known);
+    return false;
+  }
+  given |= 1u << static_cast<unsigned>(parameter->parameter);
+  return parameter->set(value, deed.fault) || spoilt();
 }
 
-template <class T>
-bool set_whole(std::string_view text, std::int64_t min, std::int64_t max, T& out) {
-  const auto value = whole(text);
-  if (!value || *value < min || *value > max) return false;
-  out = static_cast<T>(*value);
+/// A fault takes what its row says. False: `why`.
+bool fits(const DriveDeed& deed, unsigned given, std::string& why) {
+  const unsigned taken = deed.kind == DriveDeed::Kind::fault ? fault::row(deed.fault.kind).parameters : 0;
+  for (const fault::ParameterRow& p : fault::parameters()) {
+    if ((given & ~taken & 1u << static_cast<unsigned>(p.parameter)) == 0) continue;
+    why = quoted(p.name, "means nothing to this", "здесь ничего не значит");
+    return false;
+  }
   return true;
 }
-
-/// KEY=VALUE of a fault. Which kind uses which key says DriveFault.
-struct Key {
-  std::string_view name;
-  bool (*set)(std::string_view value, DriveDeed& deed);
-};
-constexpr std::int64_t kMost32 = 0xFFFF'FFFF;
-constexpr Key kKeys[] = {
-    {"node", [](std::string_view v, DriveDeed& d) { return set_whole(v, 1, 127, d.node); }},
-    {"at", [](std::string_view v, DriveDeed& d) { return set_duration(v, d.at); }},
-    {"for", [](std::string_view v, DriveDeed& d) { return set_duration(v, d.fault.duration_ns); }},
-    {"delay", [](std::string_view v, DriveDeed& d) { return set_duration(v, d.fault.delay_ns); }},
-    {"number", [](std::string_view v, DriveDeed& d) { return set_whole(v, 1, 4, d.fault.number); }},
-    {"every", [](std::string_view v, DriveDeed& d) { return set_whole(v, 1, kMost32, d.fault.every); }},
-    {"value",
-     [](std::string_view v, DriveDeed& d) { return set_whole(v, INT64_MIN, INT64_MAX, d.fault.value); }},
-    {"code", [](std::string_view v, DriveDeed& d) { return set_whole(v, 1, 0xFFFF, d.fault.error_code); }},
-    {"index", [](std::string_view v, DriveDeed& d) { return set_whole(v, 0, 0xFFFF, d.fault.index); }},
-    {"abort", [](std::string_view v, DriveDeed& d) { return set_whole(v, 1, kMost32, d.fault.abort); }},
-    {"state",
-     [](std::string_view v, DriveDeed& d) {
-       const State* row = find_in(kStates, v);
-       if (row != nullptr) d.fault.state = row->state;
-       return row != nullptr;
-     }},
-};
 
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
@@ -137,13 +88,6 @@ std::vector<std::string_view> words_of(std::string_view line) {
     at = end;
   }
   return words;
-}
-
-/// A fault by its name; dashes do for underscores.
-std::optional<mock::DriveFaultKind> kind_of(std::string_view word) {
-  std::string name(word);
-  std::replace(name.begin(), name.end(), '-', '_');
-  return mock::drive_fault_kind(name);
 }
 
 /// What stands before the keys; false: `why`.
@@ -160,7 +104,7 @@ bool read_head(const std::vector<std::string_view>& plain, DriveDeed& deed, std:
   } else if (verb == "load") {
     deed.kind = DriveDeed::Kind::load;
     wanted = 1;
-    const auto nm = given > 0 ? real(plain[1]) : std::nullopt;
+    const auto nm = given > 0 ? fault::read_number(plain[1]) : std::nullopt;
     if (!nm) return wrong(quoted(verb, "needs a torque in N m", "требует момент в Н·м"));
     deed.load_nm = *nm;
   } else if (verb == "input") {
@@ -178,23 +122,18 @@ bool read_head(const std::vector<std::string_view>& plain, DriveDeed& deed, std:
     deed.kind =
         clear ? (given > 0 ? DriveDeed::Kind::clear : DriveDeed::Kind::clear_all) : DriveDeed::Kind::fault;
     const std::string_view name = clear && given > 0 ? plain[1] : verb;
-    const auto kind = kind_of(name);
-    if (!kind && deed.kind != DriveDeed::Kind::clear_all)
-      return wrong(
-          quoted(name, "is no fault; known: " + fault_names(), "— не отказ; известны: " + fault_names()));
-    if (kind) deed.fault.kind = *kind;
+    const fault::KindRow* row = fault::find_kind(name);
+    const bool known = row != nullptr && row->happens_to(fault::Device::drive);
+    if (!known && deed.kind != DriveDeed::Kind::clear_all) {
+      const std::string names = fault::names_for(static_cast<unsigned>(fault::Device::drive));
+      return wrong(quoted(name, "is no fault; known: " + names, "— не отказ; известны: " + names));
+    }
+    if (known) deed.fault.kind = row->kind;
   }
   return given <= wanted || wrong(quoted(plain[wanted + 1], "is too much", "лишнее"));
 }
 
 }  // namespace
-
-std::string fault_names() {
-  std::string list;
-  for (int i = 0; i <= static_cast<int>(mock::DriveFaultKind::reset); ++i)
-    list += (list.empty() ? "" : ", ") + std::string(mock::name_of(static_cast<mock::DriveFaultKind>(i)));
-  return list;
-}
 
 std::optional<mock::DriveSwitch::Input> drive_input(std::string_view name) {
   const InputName* row = find_in(kInputs, name);
@@ -206,6 +145,7 @@ std::string drive_input_names() { return names_of(kInputs); }
 std::optional<DriveDeed> parse_deed(std::string_view line, std::string& why) {
   DriveDeed deed;
   std::vector<std::string_view> plain;
+  unsigned given = 0;
   for (const std::string_view word : words_of(line)) {
     deed.words += (deed.words.empty() ? "" : " ") + std::string(word);
     const std::size_t equals = word.find('=');
@@ -213,22 +153,13 @@ std::optional<DriveDeed> parse_deed(std::string_view line, std::string& why) {
       plain.push_back(word);
       continue;
     }
-    const Key* key = find_in(kKeys, word.substr(0, equals));
-    if (key == nullptr) {
-      why = quoted(word.substr(0, equals), "is not known; known: " + names_of(kKeys),
-                   "неизвестно; известны: " + names_of(kKeys));
-      return std::nullopt;
-    }
-    if (!key->set(word.substr(equals + 1), deed)) {
-      why = quoted(word, "is out of range, or no value of its kind", "вне пределов или не того вида");
-      return std::nullopt;
-    }
+    if (!read_pair(word.substr(0, equals), word.substr(equals + 1), deed, given, why)) return std::nullopt;
   }
   if (plain.empty()) {
     why = text::both("a fault is missing", "не назван отказ");
     return std::nullopt;
   }
-  if (!read_head(plain, deed, why)) return std::nullopt;
+  if (!read_head(plain, deed, why) || !fits(deed, given, why)) return std::nullopt;
   return deed;
 }
 
@@ -242,7 +173,7 @@ std::optional<std::vector<DriveDeed>> parse_script(std::string_view text, int& n
     line = line.substr(0, line.find('#'));
     const auto words = words_of(line);
     if (words.empty()) continue;
-    const auto at = duration(words.front());
+    const auto at = fault::read_time(words.front());
     if (!at) {
       why = quoted(words.front(), "is no time in seconds", "— не время в секундах");
       return std::nullopt;

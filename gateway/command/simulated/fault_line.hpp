@@ -15,7 +15,7 @@ struct DriveDeed {
   enum class Kind { fault, clear, clear_all, input, load, status } kind = Kind::fault;
   int node = 0;               ///< node-ID; 0: all of this process
   image::Nanoseconds at = 0;  ///< after the start; of a script and of `at=`
-  mock::DriveFault fault;     ///< of fault and clear (its kind)
+  fault::Fault fault;         ///< of fault and clear (its kind)
   mock::DriveSwitch::Input input = mock::DriveSwitch::Input::home;
   bool on = false;       ///< of input
   double load_nm = 0.0;  ///< of load
@@ -24,13 +24,11 @@ struct DriveDeed {
 
 /// Reads a line: KIND [KEY=VALUE...], clear [KIND], input NAME on|off, load NM, status; each with node=N and
 /// at=S. Durations are seconds, or a number with ms. nullopt: `why` says what is wrong, in both languages.
-///   every=N delay=T value=N code=N index=N abort=N state=NAME for=T
+/// Kinds and the parameters that each takes are those of fault::kinds() that happen to a drive.
 std::optional<DriveDeed> parse_deed(std::string_view line, std::string& why);
 /// A script: lines SECONDS DEED in any order; empty ones and what follows # are comments. nullopt: `why` says
 /// what is wrong with line `number`, in both languages.
 std::optional<std::vector<DriveDeed>> parse_script(std::string_view text, int& number, std::string& why);
-/// Names of all faults, for a message.
-std::string fault_names();
 /// Inputs of a drive: "home", "negative_limit" ...; nullopt: no such input.
 std::optional<mock::DriveSwitch::Input> drive_input(std::string_view name);
 /// Their names, for a message.

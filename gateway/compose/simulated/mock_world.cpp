@@ -143,6 +143,7 @@ void MockWorld::add_gpio(const machine::LoadResult& loaded, const machine::Stati
   }
   gpios_.push_back(std::make_unique<mock::MockGpio>(
       std::move(inputs), std::move(outputs), [this](int axis) { return axis_position(axis); }, source));
+  chips_[station.name] = gpios_.back().get();
   io_.push_back(gpios_.back().get());
 }
 
@@ -237,6 +238,7 @@ void MockWorld::add_modbus(const machine::LoadResult& loaded, const machine::Sta
           {static_cast<std::uint16_t>(out->number), static_cast<std::uint16_t>(in->number),
            static_cast<image::Nanoseconds>(std::llround(loop.delay * 1e9)), loop.inverted});
   }
+  units_[station.name] = &lines_.back()->station(0);
   io_.push_back(lines_.back().get());
 }
 
@@ -416,6 +418,22 @@ mock::SimulatedEncoder* MockWorld::encoder(std::string_view reference) {
   for (Encoder& e : encoders_)
     if (e.reference == reference) return e.device.get();
   return nullptr;
+}
+
+mock::ModbusStation* MockWorld::modbus(std::string_view station) {
+  const auto found = units_.find(station);
+  return found != units_.end() ? found->second : nullptr;
+}
+
+mock::MockGpio* MockWorld::chip(std::string_view station) {
+  const auto found = chips_.find(station);
+  return found != chips_.end() ? found->second : nullptr;
+}
+
+MockWorld::Line MockWorld::line(std::string_view point) {
+  for (const Input& i : inputs_)
+    if (i.name == point && i.gpio) return {gpios_[i.device].get(), i.number, i.inverted};
+  return {};
 }
 
 void MockWorld::note_feedback(const image::ProcessImage& image) noexcept {

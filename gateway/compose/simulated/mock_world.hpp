@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <atomic>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -61,6 +63,17 @@ class MockWorld {
   mock::SimulatedIoModule* module(std::string_view reference);
   /// Encoder of a node, the same.
   mock::SimulatedEncoder* encoder(std::string_view reference);
+  /// Modbus station of that name, the same.
+  mock::ModbusStation* modbus(std::string_view station);
+  /// GPIO chip of the station of that name, the same.
+  mock::MockGpio* chip(std::string_view station);
+  /// The contact behind a digital input.
+  struct Line {
+    mock::MockGpio* chip = nullptr;  ///< nullptr: the point has none
+    std::size_t number = 0;
+    bool inverted = false;
+  };
+  Line line(std::string_view point);
   /// True position of a simulated axis, machine coordinates. An axis whose drive lives in another process is
   /// where its drive says, counted from where [[simulation.drive]] lets it stand at power-on.
   double axis_position(int axis) const;
@@ -165,6 +178,8 @@ class MockWorld {
   std::vector<std::unique_ptr<mock::MockGpio>> gpios_;
   std::vector<NodeWires> node_wires_;
   std::vector<std::unique_ptr<mock::MockModbusLine>> lines_;
+  std::map<std::string, mock::MockGpio*, std::less<>> chips_;       ///< by station
+  std::map<std::string, mock::ModbusStation*, std::less<>> units_;  ///< by station
   std::vector<image::CycleDevice*> io_;
   std::vector<Input> inputs_;
   std::vector<Output> outputs_;

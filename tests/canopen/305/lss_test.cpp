@@ -330,7 +330,7 @@ TEST(LssOnSimulatedDrives, two_without_node_are_found_named_and_boot) {
   EXPECT_EQ(others, (std::vector<std::string>{"705 00", "706 00"}));
   EXPECT_EQ(drives[0]->object(0x1400, 1), 0x205);
   EXPECT_EQ(drives[1]->object(0x1200, 2), 0x586);
-  drives[0]->inject({.kind = mock::DriveFaultKind::reset});
+  drives[0]->inject({.kind = fault::Kind::reset});
   others.clear();
   run(50);
   EXPECT_EQ(others, (std::vector<std::string>{"705 00"})) << "stored over power-off";

@@ -80,8 +80,8 @@ TEST_F(History, is_asked_for_once_of_a_device_without_it) {
 TEST(HistoryOfASimulatedDrive, says_nothing_where_all_of_its_messages_came) {
   Pair pair({}, [](NodeConfig&) {});
   ASSERT_TRUE(pair.enable()) << pair.story;
-  mock::DriveFault fault;
-  fault.kind = mock::DriveFaultKind::over_current;
+  fault::Fault fault;
+  fault.kind = fault::Kind::over_current;
   pair.drive->inject(fault);
   pair.run(500);
   EXPECT_EQ(pair.story.find("error history"), std::string::npos) << pair.story;
@@ -91,11 +91,11 @@ TEST(HistoryOfASimulatedDrive, says_nothing_where_all_of_its_messages_came) {
 TEST(HistoryOfASimulatedDrive, names_the_fault_whose_message_was_lost) {
   Pair pair({}, [](NodeConfig&) {});
   ASSERT_TRUE(pair.enable()) << pair.story;
-  mock::DriveFault silent, fault;
-  silent.kind = mock::DriveFaultKind::silent;
+  fault::Fault silent, fault;
+  silent.kind = fault::Kind::silent;
   silent.duration_ns = 2 * image::kMillisecond;
   pair.drive->inject(silent);
-  fault.kind = mock::DriveFaultKind::emcy_only;
+  fault.kind = fault::Kind::emcy_only;
   fault.error_code = 0x7305;
   pair.drive->inject(fault);  // nobody hears its message
   pair.run(20);

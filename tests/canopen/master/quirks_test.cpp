@@ -25,8 +25,8 @@ bool fault_is_reset(bool told) {
     if (told) node.profile.fault_reset = FaultReset::level;
   });
   EXPECT_TRUE(pair.enable()) << pair.story;
-  mock::DriveFault fault;
-  fault.kind = mock::DriveFaultKind::over_current;
+  fault::Fault fault;
+  fault.kind = fault::Kind::over_current;
   pair.drive->inject(fault);
   EXPECT_TRUE(pair.until([&] { return pair.feedback().state == DriveState::fault; }));
   pair.drive->clear_faults();
@@ -167,8 +167,8 @@ TEST(Quirks, a_drive_that_never_begins_to_interpolate_is_named_once_with_what_wa
   ASSERT_TRUE(pair.enable()) << pair.story;
   pair.run(50);
   EXPECT_EQ(pair.story, "");
-  mock::DriveFault fault;
-  fault.kind = mock::DriveFaultKind::rpdo_corrupted;
+  fault::Fault fault;
+  fault.kind = fault::Kind::rpdo_corrupted;
   fault.value = 0x10;
   pair.drive->inject(fault);
   pair.run(400);

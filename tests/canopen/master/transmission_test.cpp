@@ -31,8 +31,8 @@ struct Listener {
 };
 
 void drop_tpdos(Pair& pair) {
-  mock::DriveFault fault;
-  fault.kind = mock::DriveFaultKind::pdo_dropped;
+  fault::Fault fault;
+  fault.kind = fault::Kind::pdo_dropped;
   pair.drive->inject(fault);
 }
 

@@ -15,7 +15,6 @@ namespace servogate::machine_run {
 namespace {
 
 using image::RequestKind;
-using mock::DriveFaultKind;
 
 constexpr int kAxes = 3;
 using Point = std::array<double, kAxes>;
@@ -192,15 +191,15 @@ void Lossy::cut(const Case& c) {
     case Part::bus_off:
       return wire->force_bus_off(0);
     case Part::frozen:
-      return mill_.inject(drive, DriveFaultKind::frozen);
+      return mill_.inject(drive, fault::Kind::freeze);
     case Part::silent:
-      return mill_.inject(drive, DriveFaultKind::silent);
+      return mill_.inject(drive, fault::Kind::silent);
     case Part::heartbeat:
-      return mill_.inject(drive, DriveFaultKind::heartbeat_lost);
+      return mill_.inject(drive, fault::Kind::heartbeat_lost);
     case Part::process_data:
-      return mill_.inject(drive, DriveFaultKind::pdo_dropped);
+      return mill_.inject(drive, fault::Kind::pdo_dropped);
     case Part::restarted:
-      return mill_.inject(drive, DriveFaultKind::reset);
+      return mill_.inject(drive, fault::Kind::reset);
     case Part::left: {  // another master takes the node out of Operational
       image::CanBus& other = wire->add_endpoint("other");
       image::CanFrame stop;

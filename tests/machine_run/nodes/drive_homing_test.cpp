@@ -192,7 +192,7 @@ TEST_F(DriveHoming, a_drive_that_falls_out_of_operation_enabled_ends_it) {
   ASSERT_NO_FATAL_FAILURE(start(mill_homing("24")));
   ASSERT_EQ(home_x(), Refusal::none);
   ASSERT_TRUE(drive_homes());
-  mill->inject("can.x", mock::DriveFaultKind::over_current);
+  mill->inject("can.x", fault::Kind::over_current);
   ASSERT_TRUE(mill->until([&] { return mill->alarms(alarm::kDriveFault) > 0; }, 3.0)) << mill->alarm_list();
   mill->run(0.5);
   EXPECT_FALSE(x().homed);

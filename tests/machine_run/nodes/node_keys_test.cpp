@@ -99,7 +99,7 @@ TEST_F(NodeKeys, a_configuration_is_written_at_every_boot_or_where_1020_tells_an
     ASSERT_TRUE(online()) << first_words();
     EXPECT_EQ(writes(0x6065), 1);
     EXPECT_EQ(drive().object(0x6065), 12'345);
-    mill->inject("can.x", mock::DriveFaultKind::reset);
+    mill->inject("can.x", fault::Kind::reset);
     ASSERT_TRUE(mill->until([&] { return !mill->axis("X").drive.online; }, 5.0));
     ASSERT_TRUE(online());
     EXPECT_EQ(writes(0x6065), second_time) << keys;
@@ -112,7 +112,7 @@ TEST_F(NodeKeys, a_configuration_is_written_at_every_boot_or_where_1020_tells_an
 TEST_F(NodeKeys, a_silent_node_is_named_after_its_own_time_and_attempts) {
   const auto told_after = [&](const std::string& keys) {
     start(keys);
-    mill->inject("can.x", mock::DriveFaultKind::silent);
+    mill->inject("can.x", fault::Kind::silent);
     EXPECT_TRUE(mill->until([&] { return mill->alarms(cycle::alarm::kBootFailed) > 0; }, 60.0));
     return static_cast<double>(mill->image().now.t_ns) * 1e-9;
   };
@@ -128,7 +128,7 @@ TEST_F(NodeKeys, a_silent_node_is_named_after_its_own_time_and_attempts) {
 TEST_F(NodeKeys, a_slow_node_boots_where_it_is_given_the_time_for_its_answers) {
   const auto boots = [&](const std::string& keys) {
     start(keys);
-    drive().inject({.kind = mock::DriveFaultKind::sdo_late, .delay_ns = 300 * image::kMillisecond});
+    drive().inject({.kind = fault::Kind::sdo_late, .delay_ns = 300 * image::kMillisecond});
     EXPECT_TRUE(mill->until(
         [&] { return mill->axis("X").drive.online || mill->alarms(cycle::alarm::kBootFailed) > 0; }, 120.0));
     return mill->axis("X").drive.online;
@@ -141,7 +141,7 @@ TEST_F(NodeKeys, a_slow_node_boots_where_it_is_given_the_time_for_its_answers) {
 TEST_F(NodeKeys, an_error_code_is_told_in_the_words_of_the_device_file_in_both_languages) {
   ASSERT_NO_FATAL_FAILURE(start(""));
   ASSERT_TRUE(mill->power_on()) << mill->alarm_list();
-  mill->inject("can.x", mock::DriveFaultKind::over_current);
+  mill->inject("can.x", fault::Kind::over_current);
   ASSERT_TRUE(mill->until([&] { return mill->alarms(axis::alarm::kDriveFault) > 0; }, 2.0));
   for (const image::AlarmRecord& r : mill->control().cycle().alarms().history()) {
     if (r.number != axis::alarm::kDriveFault) continue;
@@ -173,7 +173,7 @@ Loss lose_x(const std::string& keys, Lost what = Lost::drive) {
   EXPECT_TRUE(mill.until([&] { return mill.axis("X").command > 50.0; }, 20.0));
   const std::int64_t cut = mill.image().now.number;
   if (what == Lost::drive)
-    mill.inject("can.x", mock::DriveFaultKind::silent);
+    mill.inject("can.x", fault::Kind::silent);
   else
     mill.control().world().wire(0)->force_bus_off(0);
   const image::AlarmNumber awaited = what == Lost::drive ? axis::alarm::kPdoMissing : cycle::alarm::kBusOff;

@@ -110,7 +110,7 @@ TEST(DriveBySdo, turns_an_auxiliary_axis_and_is_watched) {
       << drum.alarm_list();
   EXPECT_NEAR(drum.true_position(1), 90.0, 0.5);
   EXPECT_EQ(drum.alarm_list(), "");
-  drum.inject("can.u", mock::DriveFaultKind::sdo_silent);
+  drum.inject("can.u", fault::Kind::sdo_silent);
   ASSERT_TRUE(drum.until([&] { return drum.alarms(axis::alarm::kPdoMissing) > 0; }, 0.08))
       << drum.alarm_list();
   for (const image::AlarmRecord& r : drum.control().cycle().alarms().history())

@@ -12,12 +12,12 @@ namespace {
 /// An emergency message without a fault, while the drive is silent for so long.
 void warn(Mill& mill, const std::string& node, std::uint16_t code, image::Nanoseconds silent_ns) {
   mock::SimulatedDrive& drive = *mill.control().world().drive(node);
-  mock::DriveFault fault;
-  fault.kind = mock::DriveFaultKind::silent;
+  fault::Fault fault;
+  fault.kind = fault::Kind::silent;
   fault.duration_ns = silent_ns;
   drive.inject(fault);
   fault = {};
-  fault.kind = mock::DriveFaultKind::emcy_only;
+  fault.kind = fault::Kind::emcy_only;
   fault.error_code = code;
   drive.inject(fault);
 }
@@ -73,7 +73,7 @@ TEST(Reports, an_error_of_which_no_message_came_is_named_when_the_next_one_has_c
   mill.run(0.2);
   EXPECT_EQ(mill.alarms(cycle::alarm::kEmergencyMessage), 0) << "it did not get through";
   EXPECT_EQ(mill.alarms(cycle::alarm::kErrorHistory), 0);
-  mill.inject("can.y", mock::DriveFaultKind::over_temperature);
+  mill.inject("can.y", fault::Kind::over_temperature);
   mill.run(0.5);
   ASSERT_EQ(mill.alarms(cycle::alarm::kErrorHistory), 1) << mill.alarm_list();
   for (const image::AlarmRecord& r : mill.control().cycle().alarms().history()) {

@@ -7,9 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "gateway/run/realtime_loop.hpp"
-#include "gateway/run/record_file.hpp"
-#include "gateway/run/session.hpp"
+#include "gateway/run/running_machine.hpp"
 #include "gateway/server/resident.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"
@@ -24,18 +22,15 @@ using image::RequestKind;
 class RecordedControl {
  public:
   explicit RecordedControl(const Scratch& scratch)
-      : loaded_(machine::load(mill_file())),
-        control_(gateway::Control::compose(loaded_, findings_)),
-        record_(gateway::begin_record(scratch.path("record"), mill_file(), {}, *control_)),
-        session_(*control_, {scratch.path("trace.csv"), {}, {}}, true),
-        loop_(*control_, {.best_effort = true},
-              [this](gateway::Control&, image::Nanoseconds late) noexcept { session_.after_cycle(late); }) {
-    control_->cycle().publish_every(1);
-    control_->world().close_operator_points();
-    resident_ = std::make_unique<gateway::Resident>(*control_, machine::MachineState{}, std::string());
-    EXPECT_TRUE(loop_.start());
+      : running_(gateway::RunningMachine::compose(
+            machine::load(mill_file()), nullptr,
+            {.clock = gateway::ClockKind::realtime_best_effort, .record = scratch.path("record")},
+            findings_)),
+        resident_(running_->control(), machine::MachineState{}, std::string()) {
+    running_->watch({scratch.path("trace.csv"), {}, {}});
+    EXPECT_TRUE(running_->begin(true));
   }
-  gateway::Resident& resident() { return *resident_; }
+  gateway::Resident& resident() { return resident_; }
   /// True: accepted. Asks again while an axis is not quite at rest.
   bool ask(RequestKind kind, double value = 0.0, image::Mode mode = image::Mode::off) {
     for (int i = 0; i < 200; ++i) {
@@ -47,7 +42,7 @@ class RecordedControl {
   }
   bool until(const std::function<bool(const image::ProcessImage&)>& met) {
     for (int i = 0; i < 6000; ++i) {
-      if (met(resident_->image())) return true;
+      if (met(resident_.image())) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     return false;
@@ -60,15 +55,17 @@ class RecordedControl {
   bool load(const std::string& path) {
     std::vector<text::Finding> findings;
     for (int i = 0; i < 200; ++i) {
-      if (resident_->load(path, {}, findings) == gateway::Resident::Load::done) return true;
+      if (resident_.load(path, {}, findings) == gateway::Resident::Load::done) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     return false;
   }
   /// What went wrong with the files; empty: nothing.
   std::string close() {
-    loop_.stop();
-    return session_.close() + record_->close();
+    running_->stop();
+    std::string problems;
+    for (const auto& lost : running_->close_files()) problems += lost.path + ": " + lost.why;
+    return problems;
   }
 
  private:
@@ -77,16 +74,12 @@ class RecordedControl {
     r.kind = kind;
     r.value = value;
     image::Answer answer;
-    EXPECT_TRUE(resident_->ask(r, answer));
+    EXPECT_TRUE(resident_.ask(r, answer));
     return answer.refusal;
   }
-  machine::LoadResult loaded_;
   std::vector<text::Finding> findings_;
-  std::unique_ptr<gateway::Control> control_;
-  std::unique_ptr<gateway::RecordWriter> record_;
-  gateway::Session session_;
-  std::unique_ptr<gateway::Resident> resident_;
-  gateway::RealtimeLoop loop_;
+  std::unique_ptr<gateway::RunningMachine> running_;
+  gateway::Resident resident_;
 };
 
 TEST(ResidentRecord, of_a_plc_that_was_held_for_single_scans_replays_byte_by_byte) {

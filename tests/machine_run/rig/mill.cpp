@@ -75,27 +75,28 @@ Mill::Mill(std::string_view program, cycle::InputSource* source)
 Mill::Mill(const machine::LoadResult& loaded, std::string_view program, cycle::InputSource* source)
     : program_(program) {
   std::vector<text::Finding> findings;
-  control_ = gateway::Control::compose(loaded, findings, source);
-  if (control_ == nullptr) {
+  machine_ = gateway::RunningMachine::compose(loaded, nullptr, {.source = source}, findings);
+  if (machine_ == nullptr) {
     ADD_FAILURE() << "the mill is not composed";
     std::abort();
   }
+  control_ = &machine_->control();
   judge_ = std::make_unique<LimitJudge>(control_->machine());
   model_ = gateway::program_model(control_->machine());
   if (!program_.empty())
     control_->process(0).load([this](const program::Position& start) {
       return program::Interpreter("nc110", model_, {}, "test.nc", program_, {}, start);
     });
-  control_->world().close_operator_points();
 }
 
 void Mill::step() {
-  control_->advance_world();
-  control_->read_ahead();
-  if (step_cycle)
+  if (step_cycle) {
+    control_->advance_world();
+    control_->read_ahead();
     step_cycle(control_->cycle());
-  else
-    control_->cycle().step();
+  } else {
+    machine_->step();
+  }
   judge_->add(image());
   if (after_cycle) after_cycle();
 }
@@ -197,12 +198,9 @@ std::string Mill::alarm_list() const {
   return list;
 }
 
-void Mill::inject(std::string_view node, mock::DriveFaultKind kind) {
-  mock::SimulatedDrive* drive = control_->world().drive(node);
-  ASSERT_NE(drive, nullptr) << node;
-  mock::DriveFault fault;
-  fault.kind = kind;
-  drive->inject(fault);
+void Mill::inject(std::string_view device, const fault::Fault& fault) {
+  std::string why;
+  ASSERT_TRUE(machine_->inject(device, fault, why)) << text::in_language(why, text::Language::english);
 }
 
 image::Place place_of(const gateway::Control& control, std::string_view symbol) {

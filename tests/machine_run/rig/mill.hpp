@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gateway/compose/control.hpp"
+#include "gateway/run/running_machine.hpp"
 #include "kernel/cycle/gate/gate.hpp"
 
 namespace servogate::machine_run {
@@ -39,6 +39,7 @@ class Mill {
   /// The same with another machine file.
   Mill(const machine::LoadResult& machine, std::string_view program, cycle::InputSource* source = nullptr);
 
+  gateway::RunningMachine& machine() { return *machine_; }
   gateway::Control& control() { return *control_; }
   const image::ProcessImage& image() const { return control_->cycle().image(); }
   const image::ProcessStatus& process() const { return image().processes[0]; }
@@ -65,7 +66,9 @@ class Mill {
   std::string alarm_list() const;
   bool standing() const;
   double true_position(int axis) { return control_->world().axis_position(axis); }
-  void inject(std::string_view node, mock::DriveFaultKind kind);
+  /// A fault of the vocabulary on something simulated, at the beginning of the next cycle.
+  void inject(std::string_view device, const fault::Fault& fault);
+  void inject(std::string_view device, fault::Kind kind) { inject(device, fault::Fault{.kind = kind}); }
 
   /// Called after every cycle.
   std::function<void()> after_cycle;
@@ -77,7 +80,8 @@ class Mill {
 
   std::string program_;
   program::MachineModel model_;
-  std::unique_ptr<gateway::Control> control_;
+  std::unique_ptr<gateway::RunningMachine> machine_;
+  gateway::Control* control_ = nullptr;  ///< machine_'s
   std::unique_ptr<LimitJudge> judge_;
   std::uint64_t next_id_ = 1;
   image::Answer answer_;

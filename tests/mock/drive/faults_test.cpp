@@ -28,16 +28,20 @@ struct DriveFaults : testing::Test {
 };
 
 TEST_F(DriveFaults, names_and_kinds_belong_together) {
-  for (int i = 0; i <= static_cast<int>(DriveFaultKind::reset); ++i) {
-    const auto kind = static_cast<DriveFaultKind>(i);
-    EXPECT_EQ(drive_fault_kind(name_of(kind)), kind);
-    EXPECT_FALSE(name_of(kind).empty());
+  for (std::size_t i = 0; i < fault::kKinds; ++i) {
+    const auto kind = static_cast<fault::Kind>(i);
+    EXPECT_EQ(fault::row(kind).kind, kind) << "the rows stand in the order of the enumeration";
+    ASSERT_NE(fault::find_kind(fault::name_of(kind)), nullptr);
+    EXPECT_EQ(fault::find_kind(fault::name_of(kind))->kind, kind);
+    EXPECT_EQ(fault::lasts(kind), fault::row(kind).takes(fault::Parameter::duration));
   }
-  EXPECT_FALSE(drive_fault_kind("gremlins"));
+  for (std::size_t i = 0; i < fault::parameters().size(); ++i)
+    EXPECT_EQ(static_cast<std::size_t>(fault::parameters()[i].parameter), i);
+  EXPECT_EQ(fault::find_kind("gremlins"), nullptr);
 }
 
 TEST_F(DriveFaults, silent_sends_nothing_until_its_time_is_over) {
-  b.drive.inject({.kind = DriveFaultKind::silent, .duration_ns = 50 * kMillisecond});
+  b.drive.inject({.kind = fault::Kind::silent, .duration_ns = 50 * kMillisecond});
   cycles(45);
   EXPECT_TRUE(b.seen.empty());
   cycles(20);
@@ -46,7 +50,7 @@ TEST_F(DriveFaults, silent_sends_nothing_until_its_time_is_over) {
 }
 
 TEST_F(DriveFaults, deaf_hears_nothing) {
-  b.drive.inject({.kind = DriveFaultKind::deaf});
+  b.drive.inject({.kind = fault::Kind::deaf});
   cycles(10);
   EXPECT_EQ(b.count(0x185), 0);
   b.nmt(0x02);
@@ -57,40 +61,40 @@ TEST_F(DriveFaults, deaf_hears_nothing) {
 }
 
 TEST_F(DriveFaults, a_lost_heartbeat_takes_nothing_else_away) {
-  b.drive.inject({.kind = DriveFaultKind::heartbeat_lost});
+  b.drive.inject({.kind = fault::Kind::heartbeat_lost});
   cycles(100);
   EXPECT_EQ(b.count(0x705), 0);
   EXPECT_EQ(b.count(0x185), 100);
-  b.drive.clear(DriveFaultKind::heartbeat_lost);
+  b.drive.clear(fault::Kind::heartbeat_lost);
   cycles(100);
   EXPECT_NEAR(b.count(0x705), 10, 1);
 }
 
 TEST_F(DriveFaults, every_nth_pdo_can_be_dropped) {
-  b.drive.inject({.kind = DriveFaultKind::pdo_dropped, .every = 4});
+  b.drive.inject({.kind = fault::Kind::pdo_dropped, .every = 4});
   cycles(100);
   EXPECT_EQ(b.count(0x185), 75);
 }
 
 TEST_F(DriveFaults, late_pdos_come_in_the_next_cycle_with_the_old_content) {
-  b.drive.inject({.kind = DriveFaultKind::pdo_late, .delay_ns = 1500 * image::kMicrosecond});
+  b.drive.inject({.kind = fault::Kind::pdo_late, .delay_ns = 1500 * image::kMicrosecond});
   cycles(10);
   EXPECT_GE(b.count(0x185), 7);
   EXPECT_LT(b.count(0x185), 10);
 }
 
 TEST_F(DriveFaults, corrupted_and_repeated_pdos) {
-  b.drive.inject({.kind = DriveFaultKind::pdo_corrupted, .value = 0xFF});
+  b.drive.inject({.kind = fault::Kind::pdo_corrupted, .value = 0xFF});
   cycles(1);
   const auto good = static_cast<std::uint8_t>(b.drive.statusword());
   EXPECT_EQ(b.take(0x185)->data[0], good ^ 0xFF);
   b.drive.clear_faults();
   cycles(1);
-  b.drive.inject({.kind = DriveFaultKind::pdo_corrupted, .number = 2, .value = 0xFF});
+  b.drive.inject({.kind = fault::Kind::pdo_corrupted, .number = 2, .value = 0xFF});
   cycles(1);
   EXPECT_EQ(b.take(0x185)->data[0], good) << "TPDO1 is not TPDO2";
   b.drive.clear_faults();
-  b.drive.inject({.kind = DriveFaultKind::pdo_repeated});
+  b.drive.inject({.kind = fault::Kind::pdo_repeated});
   const auto before = b.take(0x185);
   for (int i = 1; i < 20; ++i) b.cycle(0x0F, 500 * i);
   while (const auto f = b.take(0x185)) EXPECT_EQ(f->data, before->data);
@@ -114,12 +118,12 @@ struct MovedPdos : DriveFaults {
 };
 
 TEST_F(MovedPdos, are_dropped_by_their_number) {
-  b.drive.inject({.kind = DriveFaultKind::pdo_dropped, .number = 1});
+  b.drive.inject({.kind = fault::Kind::pdo_dropped, .number = 1});
   cycles(20);
   EXPECT_EQ(b.count(kFirst), 0);
   EXPECT_EQ(b.count(kSecond), 20);
   b.drive.clear_faults();
-  b.drive.inject({.kind = DriveFaultKind::pdo_dropped, .every = 4, .number = 2});
+  b.drive.inject({.kind = fault::Kind::pdo_dropped, .every = 4, .number = 2});
   b.seen.clear();
   cycles(20);
   EXPECT_EQ(b.count(kFirst), 20);
@@ -127,14 +131,14 @@ TEST_F(MovedPdos, are_dropped_by_their_number) {
 }
 
 TEST_F(MovedPdos, are_late_by_their_number) {
-  b.drive.inject({.kind = DriveFaultKind::pdo_late, .delay_ns = 5 * kMillisecond, .number = 1});
+  b.drive.inject({.kind = fault::Kind::pdo_late, .delay_ns = 5 * kMillisecond, .number = 1});
   cycles(20);
   EXPECT_NEAR(b.count(kFirst), 15, 1);
   EXPECT_EQ(b.count(kSecond), 20);
 }
 
 TEST_F(MovedPdos, are_corrupted_by_their_number) {
-  b.drive.inject({.kind = DriveFaultKind::pdo_corrupted, .number = 1, .value = 0xFF});
+  b.drive.inject({.kind = fault::Kind::pdo_corrupted, .number = 1, .value = 0xFF});
   cycles(1);
   const auto good = static_cast<std::uint8_t>(b.drive.statusword());
   EXPECT_EQ(b.take(kFirst)->data[0], good ^ 0xFF);
@@ -142,7 +146,7 @@ TEST_F(MovedPdos, are_corrupted_by_their_number) {
 }
 
 TEST_F(MovedPdos, are_repeated_by_their_number_under_the_identifier_that_they_have_now) {
-  b.drive.inject({.kind = DriveFaultKind::pdo_repeated, .number = 1});
+  b.drive.inject({.kind = fault::Kind::pdo_repeated, .number = 1});
   cycles(1);
   const auto before = b.take(kFirst);
   b.write(0x1800, 1, 0xC0000000 | kFirst, 4);
@@ -159,9 +163,9 @@ TEST_F(MovedPdos, leave_what_is_no_pdo_alone_although_it_has_the_identifier_of_o
   b.write(0x1014, 0, 0x80000085, 4);
   ASSERT_EQ(b.write(0x1014, 0, 0x80000185, 4), 0u);
   ASSERT_EQ(b.write(0x1014, 0, 0x00000185, 4), 0u);
-  b.drive.inject({.kind = DriveFaultKind::pdo_dropped});
+  b.drive.inject({.kind = fault::Kind::pdo_dropped});
   b.seen.clear();
-  b.drive.inject({.kind = DriveFaultKind::emcy_only, .error_code = 0x4210});
+  b.drive.inject({.kind = fault::Kind::emcy_only, .error_code = 0x4210});
   cycles(5);
   EXPECT_EQ(b.count(0x185), 1);
   EXPECT_EQ(b.count(kFirst), 0);
@@ -170,7 +174,7 @@ TEST_F(MovedPdos, leave_what_is_no_pdo_alone_although_it_has_the_identifier_of_o
 // ---- what the drive hears ----
 
 TEST_F(DriveFaults, an_rpdo_that_does_not_come_leaves_the_drive_where_it_is) {
-  b.drive.inject({.kind = DriveFaultKind::rpdo_dropped});
+  b.drive.inject({.kind = fault::Kind::rpdo_dropped});
   for (int i = 1; i < 50; ++i) b.cycle(0x0F, 500 * i);
   EXPECT_EQ(b.drive.object(0x607A), 0);
   EXPECT_NEAR(static_cast<double>(b.drive.reported_position()), 0, 20);
@@ -183,7 +187,7 @@ TEST_F(DriveFaults, an_rpdo_that_does_not_come_leaves_the_drive_where_it_is) {
 }
 
 TEST_F(DriveFaults, every_nth_rpdo_can_be_dropped) {
-  b.drive.inject({.kind = DriveFaultKind::rpdo_dropped, .every = 3});
+  b.drive.inject({.kind = fault::Kind::rpdo_dropped, .every = 3});
   int missed = 0;
   for (int i = 1; i <= 30; ++i) {
     b.cycle(0x0F, i);
@@ -195,14 +199,14 @@ TEST_F(DriveFaults, every_nth_rpdo_can_be_dropped) {
 }
 
 TEST_F(DriveFaults, another_rpdo_than_the_one_that_is_named_comes_through) {
-  b.drive.inject({.kind = DriveFaultKind::rpdo_dropped, .number = 2});
+  b.drive.inject({.kind = fault::Kind::rpdo_dropped, .number = 2});
   b.cycle(0x0F, 77);
   b.cycle(0x0F, 77);
   EXPECT_EQ(b.drive.object(0x607A), 77);
 }
 
 TEST_F(DriveFaults, a_late_rpdo_acts_with_the_sync_behind_it) {
-  b.drive.inject({.kind = DriveFaultKind::rpdo_late, .delay_ns = 2500 * image::kMicrosecond});
+  b.drive.inject({.kind = fault::Kind::rpdo_late, .delay_ns = 2500 * image::kMicrosecond});
   for (int i = 1; i <= 20; ++i) b.cycle(0x0F, i);
   // Without the fault a SYNC makes the target of the cycle before it act: 19.
   EXPECT_NEAR(static_cast<double>(b.drive.object(0x607A)), 17, 1);
@@ -210,7 +214,7 @@ TEST_F(DriveFaults, a_late_rpdo_acts_with_the_sync_behind_it) {
 
 TEST_F(DriveFaults, a_corrupted_rpdo_acts_as_it_came) {
   // Bit 4 of the second byte of the target.
-  b.drive.inject({.kind = DriveFaultKind::rpdo_corrupted, .value = 0x1000'0000});
+  b.drive.inject({.kind = fault::Kind::rpdo_corrupted, .value = 0x1000'0000});
   b.cycle(0x0F, 5);
   b.cycle(0x0F, 5);
   EXPECT_EQ(b.drive.object(0x607A), 0x1005);
@@ -218,7 +222,7 @@ TEST_F(DriveFaults, a_corrupted_rpdo_acts_as_it_came) {
 }
 
 TEST_F(DriveFaults, the_deadline_1400_05_ends_what_dropped_or_late_rpdos_began) {
-  for (const auto kind : {DriveFaultKind::rpdo_dropped, DriveFaultKind::rpdo_late}) {
+  for (const auto kind : {fault::Kind::rpdo_dropped, fault::Kind::rpdo_late}) {
     for (const int option : {0, 1, 2, 3}) {
       b.write(0x6007, 0, option, 2);
       b.write(0x605A, 0, 6, 2);
@@ -251,31 +255,31 @@ TEST_F(DriveFaults, the_deadline_1400_05_ends_what_dropped_or_late_rpdos_began) 
 
 TEST_F(DriveFaults, sdo_requests_can_be_refused_or_left_without_an_answer) {
   b.drive.inject(
-      {.kind = DriveFaultKind::sdo_abort, .index = 0x6085, .abort = canopen::AbortCode::hardware_error});
+      {.kind = fault::Kind::sdo_abort, .index = 0x6085, .abort = canopen::AbortCode::hardware_error});
   EXPECT_EQ(b.write(0x6085, 0, 1000, 4), 0x06060000u);
   EXPECT_EQ(b.write(0x6084, 0, 1000, 4), 0u) << "another object";
   b.drive.clear_faults();
-  b.drive.inject({.kind = DriveFaultKind::sdo_late, .delay_ns = 20 * image::kMillisecond});
+  b.drive.inject({.kind = fault::Kind::sdo_late, .delay_ns = 20 * image::kMillisecond});
   EXPECT_TRUE(b.sdo({0x40, 0, 0x10, 0, 0, 0, 0, 0}).empty());
   int waited = 0;
   while (!b.take(0x585) && waited < 100) cycles(1), ++waited;
   EXPECT_GE(waited, 8);
   EXPECT_LE(waited, 21) << "20 ms behind the request";
   b.drive.clear_faults();
-  b.drive.inject({.kind = DriveFaultKind::sdo_silent});
+  b.drive.inject({.kind = fault::Kind::sdo_silent});
   EXPECT_TRUE(b.sdo({0x40, 0, 0x10, 0, 0, 0, 0, 0}).empty());
 }
 
 TEST_F(DriveFaults, each_fault_of_the_drive_has_its_error_code_and_register_bit) {
   struct Case {
-    DriveFaultKind kind;
+    fault::Kind kind;
     int code, bits;
   };
-  for (const Case c : {Case{DriveFaultKind::over_current, 0x2310, 0x03},
-                       {DriveFaultKind::encoder_fault, 0x7305, 0x21},
-                       {DriveFaultKind::following_error, 0x8611, 0x21},
-                       {DriveFaultKind::over_temperature, 0x4310, 0x09},
-                       {DriveFaultKind::under_voltage, 0x3220, 0x05}}) {
+  for (const Case c : {Case{fault::Kind::over_current, 0x2310, 0x03},
+                       {fault::Kind::encoder_fault, 0x7305, 0x21},
+                       {fault::Kind::following_error, 0x8611, 0x21},
+                       {fault::Kind::over_temperature, 0x4310, 0x09},
+                       {fault::Kind::under_voltage, 0x3220, 0x05}}) {
     b.seen.clear();
     b.drive.inject({.kind = c.kind});
     for (int i = 0; i < 50; ++i) b.cycle(0x0F, 0);
@@ -296,14 +300,14 @@ TEST_F(DriveFaults, each_fault_of_the_drive_has_its_error_code_and_register_bit)
 
 TEST_F(DriveFaults, an_encoder_jump_beyond_the_window_is_a_following_error) {
   b.write(0x6065, 0, 5000, 4);
-  b.drive.inject({.kind = DriveFaultKind::encoder_jump, .value = 400'000});
+  b.drive.inject({.kind = fault::Kind::encoder_jump, .value = 400'000});
   cycles(200);
   EXPECT_EQ(b.drive.error_code(), 0x8611);
 }
 
 TEST_F(DriveFaults, a_small_encoder_jump_moves_the_shaft_unnoticed) {
   const auto true_position = b.drive.position_counts();
-  b.drive.inject({.kind = DriveFaultKind::encoder_jump, .value = 300});
+  b.drive.inject({.kind = fault::Kind::encoder_jump, .value = 300});
   cycles(500);
   EXPECT_EQ(b.drive.state(), DriveState::operation_enabled);
   EXPECT_NEAR(static_cast<double>(b.drive.position_counts() - true_position), -300, 3);
@@ -311,7 +315,7 @@ TEST_F(DriveFaults, a_small_encoder_jump_moves_the_shaft_unnoticed) {
 
 TEST_F(DriveFaults, a_frozen_drive_stands_still_in_every_respect_and_goes_on_afterwards) {
   for (int i = 1; i < 100; ++i) b.cycle(0x0F, 1000 * i);
-  b.drive.inject({.kind = DriveFaultKind::frozen, .duration_ns = 100 * kMillisecond});
+  b.drive.inject({.kind = fault::Kind::freeze, .duration_ns = 100 * kMillisecond});
   const auto held = b.drive.position_counts();
   b.seen.clear();
   b.run(90);
@@ -324,7 +328,7 @@ TEST_F(DriveFaults, a_frozen_drive_stands_still_in_every_respect_and_goes_on_aft
 TEST_F(DriveFaults, a_reset_boots_again_and_an_incremental_encoder_begins_at_zero) {
   for (int i = 1; i < 100; ++i) b.cycle(0x0F, 1000 * i);
   const auto there = b.drive.position_counts();
-  b.drive.inject({.kind = DriveFaultKind::reset});
+  b.drive.inject({.kind = fault::Kind::reset});
   b.seen.clear();
   b.run(100);
   EXPECT_EQ(b.take(0x705)->data[0], 0x00);
@@ -477,7 +481,7 @@ TEST(DriveFleet, two_runs_are_equal_to_the_byte) {
     Eight e(3, r);
     e.segment.inject({.kind = CanFault::Kind::corrupt, .skip = 100, .count = 3});
     for (int i = 0; i < 400; ++i) {
-      if (i == 200) e.drives[1]->inject({.kind = DriveFaultKind::over_current});
+      if (i == 200) e.drives[1]->inject({.kind = fault::Kind::over_current});
       e.cycle(0x0F, static_cast<std::int64_t>(5'000.0 * i));
     }
   }

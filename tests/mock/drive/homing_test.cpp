@@ -203,7 +203,7 @@ TEST(DriveHoming, homing_is_cancelled_by_a_fault_and_can_be_repeated) {
   b.write(0x6060, 0, 6, 1);
   b.enable();
   b.control(0x1F, 100);
-  b.drive.inject({.kind = DriveFaultKind::over_current});
+  b.drive.inject({.kind = fault::Kind::over_current});
   b.run(500);
   EXPECT_EQ(b.drive.state(), image::DriveState::fault);
   b.control(0x80);

@@ -208,19 +208,19 @@ TEST_F(DriveHeartbeatConsumer, one_node_cannot_be_watched_twice) {
 TEST(DriveEmcy, the_history_holds_the_newest_first_and_is_cleared_by_writing_0) {
   DriveBench b;
   for (const int code : {0x1111, 0x2222, 0x3333})
-    b.drive.inject({.kind = DriveFaultKind::emcy_only, .error_code = static_cast<std::uint16_t>(code)});
+    b.drive.inject({.kind = fault::Kind::emcy_only, .error_code = static_cast<std::uint16_t>(code)});
   EXPECT_EQ(b.read(0x1003, 0), 3u);
   EXPECT_EQ(b.read(0x1003, 1) & 0xFFFF, 0x3333u);
   EXPECT_EQ(b.read(0x1003, 3) & 0xFFFF, 0x1111u);
   EXPECT_EQ(b.write(0x1003, 0, 0, 1), 0u);
   EXPECT_EQ(b.read(0x1003, 0), 0u);
-  for (int i = 0; i < 12; ++i) b.drive.inject({.kind = DriveFaultKind::emcy_only, .error_code = 0x1234});
+  for (int i = 0; i < 12; ++i) b.drive.inject({.kind = fault::Kind::emcy_only, .error_code = 0x1234});
   EXPECT_EQ(b.read(0x1003, 0), 8u) << "the oldest fall out";
 }
 
 TEST(DriveEmcy, the_history_takes_no_value_but_0_and_has_no_entries_beyond_its_count) {
   DriveBench b;
-  b.drive.inject({.kind = DriveFaultKind::emcy_only, .error_code = 0x1111});
+  b.drive.inject({.kind = fault::Kind::emcy_only, .error_code = 0x1111});
   EXPECT_EQ(b.write(0x1003, 0, 1, 1), 0x06090030u);
   EXPECT_EQ(b.write(0x1003, 0, 255, 1), 0x06090030u);
   EXPECT_EQ(b.write(0x1003, 1, 0, 4), 0x06010002u) << "an entry is read only";
@@ -232,7 +232,7 @@ TEST(DriveEmcy, the_history_takes_no_value_but_0_and_has_no_entries_beyond_its_c
 
 TEST(DriveEmcy, the_history_is_no_parameter_that_could_be_stored) {
   DriveBench b;
-  for (int i = 0; i < 3; ++i) b.drive.inject({.kind = DriveFaultKind::emcy_only, .error_code = 0x2222});
+  for (int i = 0; i < 3; ++i) b.drive.inject({.kind = fault::Kind::emcy_only, .error_code = 0x2222});
   ASSERT_EQ(b.write(0x1010, 1, 0x65766173, 4), 0u);
   b.nmt(0x82);
   b.run(20);
@@ -250,7 +250,7 @@ TEST(DriveEmcy, each_group_of_error_codes_has_its_bit_of_the_register) {
                                    {0x9000, 0x01},
                                    {0xFF12, 0x81}}) {
     DriveBench b;
-    b.drive.inject({.kind = DriveFaultKind::emcy, .error_code = static_cast<std::uint16_t>(code)});
+    b.drive.inject({.kind = fault::Kind::emcy, .error_code = static_cast<std::uint16_t>(code)});
     b.run(5);
     EXPECT_EQ(b.read(0x1001), static_cast<std::uint32_t>(bits)) << std::hex << code;
     b.control(0x80);
@@ -275,7 +275,7 @@ TEST(DriveEmcy, the_identifier_1014_can_be_switched_off_and_the_inhibit_time_spr
   DriveBench b;
   b.write(0x1015, 0, 200, 2);  // 20 ms
   b.seen.clear();
-  for (int i = 0; i < 3; ++i) b.drive.inject({.kind = DriveFaultKind::emcy_only, .error_code = 0xFF00});
+  for (int i = 0; i < 3; ++i) b.drive.inject({.kind = fault::Kind::emcy_only, .error_code = 0xFF00});
   b.run(10);
   EXPECT_EQ(b.count(0x085), 1);
   b.run(20);
@@ -284,7 +284,7 @@ TEST(DriveEmcy, the_identifier_1014_can_be_switched_off_and_the_inhibit_time_spr
   EXPECT_EQ(b.count(0x085), 3);
   EXPECT_EQ(b.write(0x1014, 0, 0x80000085, 4), 0u);
   b.seen.clear();
-  b.drive.inject({.kind = DriveFaultKind::emcy_only});
+  b.drive.inject({.kind = fault::Kind::emcy_only});
   b.run(30);
   EXPECT_EQ(b.count(0x085), 0);
 }

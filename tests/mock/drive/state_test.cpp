@@ -129,7 +129,7 @@ TEST_F(DriveStates, transition_12_disable_voltage_ends_a_quick_stop_that_stays) 
 }
 TEST_F(DriveStates, transitions_13_14_15_fault_reaction_fault_and_reset_by_the_edge_of_bit_7) {
   to_turning();
-  b.drive.inject({.kind = DriveFaultKind::emcy, .error_code = 0x5112});
+  b.drive.inject({.kind = fault::Kind::emcy, .error_code = 0x5112});
   b.run(2);
   EXPECT_EQ(state(), DriveState::fault_reaction_active);
   EXPECT_FALSE(resting());
@@ -145,7 +145,7 @@ TEST_F(DriveStates, transitions_13_14_15_fault_reaction_fault_and_reset_by_the_e
 }
 TEST_F(DriveStates, a_fault_reset_bit_that_is_held_resets_only_once) {
   b.control(0x80);
-  b.drive.inject({.kind = DriveFaultKind::over_current});
+  b.drive.inject({.kind = fault::Kind::over_current});
   b.run(5);
   EXPECT_EQ(state(), DriveState::fault);
   b.control(0x80);
@@ -159,7 +159,7 @@ TEST_F(DriveStates, a_fault_comes_from_every_state) {
     if (depth >= 1) b.control(0x06);
     if (depth >= 2) b.control(0x07);
     if (depth >= 3) b.control(0x0F);
-    b.drive.inject({.kind = DriveFaultKind::encoder_fault});
+    b.drive.inject({.kind = fault::Kind::encoder_fault});
     b.run(5);
     EXPECT_EQ(state(), DriveState::fault) << depth;
     EXPECT_EQ(b.read(0x603F), 0x7305u);
@@ -249,7 +249,7 @@ TEST_F(DriveStates, quick_stop_option_0_switches_the_drive_off) {
 TEST_F(DriveStates, fault_reaction_option_0_coasts) {
   to_turning();
   b.write(0x605E, 0, 0, 2);
-  b.drive.inject({.kind = DriveFaultKind::emcy, .error_code = 0x5112});
+  b.drive.inject({.kind = fault::Kind::emcy, .error_code = 0x5112});
   b.run(5);
   EXPECT_EQ(state(), DriveState::fault);
   EXPECT_FALSE(resting());
@@ -265,11 +265,11 @@ TEST_F(DriveStates, halt_stops_the_motion_and_keeps_operation_enabled) {
 }
 
 TEST_F(DriveStates, a_stuck_state_machine_refuses_the_transition_until_it_is_let_go) {
-  b.drive.inject({.kind = DriveFaultKind::stuck_state, .state = DriveState::ready_to_switch_on});
+  b.drive.inject({.kind = fault::Kind::stuck_state, .state = DriveState::ready_to_switch_on});
   to_switched_on();
   b.control(0x0F, 100);
   EXPECT_EQ(state(), DriveState::ready_to_switch_on);
-  b.drive.clear(DriveFaultKind::stuck_state);
+  b.drive.clear(fault::Kind::stuck_state);
   b.run(5);
   EXPECT_EQ(state(), DriveState::operation_enabled);
 }
@@ -323,7 +323,7 @@ TEST(DriveStatesAtRandom, every_status_word_decodes_and_only_transitions_of_the_
       const std::uint16_t word = random() % 8 ? words[random() % 8] : static_cast<std::uint16_t>(random());
       b.send(0x205, {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8)});
     }
-    if (random() % 200 == 0) b.drive.inject({.kind = DriveFaultKind::over_temperature});
+    if (random() % 200 == 0) b.drive.inject({.kind = fault::Kind::over_temperature});
     b.run(1);
     b.seen.clear();
     const DriveState now = b.drive.state();

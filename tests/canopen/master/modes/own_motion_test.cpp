@@ -128,8 +128,8 @@ TEST(OwnMotion, by_sdo_is_lost_when_no_answer_comes_in_time_and_back_when_one_co
     node.setup.sdo_timeout_ms = 50;
   });
   ASSERT_TRUE(pair.enable()) << pair.story;
-  mock::DriveFault fault;
-  fault.kind = mock::DriveFaultKind::sdo_silent;
+  fault::Fault fault;
+  fault.kind = fault::Kind::sdo_silent;
   pair.drive->inject(fault);
   pair.run(45);
   EXPECT_TRUE(pair.feedback().online);

@@ -13,8 +13,6 @@ namespace servogate::canopen {
 namespace {
 
 using image::DriveState;
-using mock::DriveFault;
-using mock::DriveFaultKind;
 using testing::Machine;
 
 TEST(SyncCounter, run_with_a_sync_counter_and_a_synchronous_window) {
@@ -63,12 +61,12 @@ TEST(SyncCounter, with_a_sync_counter_do_not_wait_for_one_that_does_not_answer) 
       return e.kind == BusEventKind::emcy && e.emcy.error_code != 0;
     });
   };
-  machine.drives[1]->inject({.kind = DriveFaultKind::silent});
+  machine.drives[1]->inject({.kind = fault::Kind::silent});
   ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; })) << machine.story();
   machine.drives[1]->clear_faults();
   ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[1].drive.online; })) << machine.story();
   EXPECT_EQ(errors(), 0) << machine.story();
-  machine.drives[0]->inject({.kind = DriveFaultKind::reset});
+  machine.drives[0]->inject({.kind = fault::Kind::reset});
   ASSERT_TRUE(machine.run_until([&] { return !machine.image->axes[0].drive.online; })) << machine.story();
   ASSERT_TRUE(machine.run_until([&] { return machine.image->axes[0].drive.online; })) << machine.story();
   EXPECT_EQ(errors(), 0) << "8240h of one that boots among others that run\n" << machine.story();

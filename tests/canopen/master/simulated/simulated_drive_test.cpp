@@ -14,8 +14,6 @@ namespace servogate::canopen {
 namespace {
 
 using image::DriveState;
-using mock::DriveFault;
-using mock::DriveFaultKind;
 using testing::kCountsPerRev;
 using testing::Machine;
 
@@ -109,8 +107,8 @@ TEST(SimulatedDrives, a_fault_is_told_and_reset) {
   Machine machine(2);
   ASSERT_TRUE(machine.enable()) << machine.story();
   machine.events.clear();
-  DriveFault fault;
-  fault.kind = DriveFaultKind::over_current;
+  fault::Fault fault;
+  fault.kind = fault::Kind::over_current;
   machine.drives[0]->inject(fault);
   auto& axis = machine.image->axes[0];
   ASSERT_TRUE(machine.run_until([&] { return axis.drive.state == DriveState::fault; }, 2000))
@@ -134,8 +132,8 @@ TEST(SimulatedDrives, a_lost_heartbeat_is_seen_and_the_others_go_on) {
   Machine machine(3);
   ASSERT_TRUE(machine.enable()) << machine.story();
   machine.events.clear();
-  DriveFault fault;
-  fault.kind = DriveFaultKind::heartbeat_lost;
+  fault::Fault fault;
+  fault.kind = fault::Kind::heartbeat_lost;
   machine.drives[1]->inject(fault);
   ASSERT_TRUE(machine.run_until([&] { return !machine.image->axes[1].drive.online; }, 500))
       << machine.story();
@@ -148,8 +146,8 @@ TEST(SimulatedDrives, dropped_pdos_are_counted_and_the_drive_comes_back) {
   Machine machine(2);
   ASSERT_TRUE(machine.enable()) << machine.story();
   machine.events.clear();
-  DriveFault fault;
-  fault.kind = DriveFaultKind::pdo_dropped;
+  fault::Fault fault;
+  fault.kind = fault::Kind::pdo_dropped;
   fault.duration_ns = 50 * image::kMillisecond;
   machine.drives[0]->inject(fault);
   ASSERT_TRUE(machine.run_until([&] { return !machine.image->axes[0].drive.online; }, 10)) << machine.story();
@@ -165,8 +163,8 @@ TEST(SimulatedDrives, a_stuck_state_is_a_refusal_with_its_name) {
   Machine machine(1);
   machine.config.nodes[0].profile.transition_timeout_ms = 300;
   machine.segment = std::make_unique<Segment>(machine.bus, machine.config);
-  DriveFault fault;
-  fault.kind = DriveFaultKind::stuck_state;
+  fault::Fault fault;
+  fault.kind = fault::Kind::stuck_state;
   fault.state = DriveState::switched_on;
   machine.drives[0]->inject(fault);
   EXPECT_FALSE(machine.enable());
@@ -180,8 +178,8 @@ TEST(SimulatedDrives, a_drive_that_restarts_is_booted_again_and_enabled_after_po
   Machine machine(2);
   ASSERT_TRUE(machine.enable()) << machine.story();
   machine.events.clear();
-  DriveFault fault;
-  fault.kind = DriveFaultKind::reset;
+  fault::Fault fault;
+  fault.kind = fault::Kind::reset;
   machine.drives[0]->inject(fault);
   auto& axis = machine.image->axes[0];
   ASSERT_TRUE(machine.run_until([&] { return !axis.drive.online; }, 500)) << machine.story();
@@ -196,8 +194,8 @@ TEST(SimulatedDrives, a_drive_that_restarts_is_booted_again_and_enabled_after_po
 
 TEST(SimulatedDrives, a_drive_that_does_not_answer_one_object_is_named_with_it) {
   Machine machine(1);
-  DriveFault fault;
-  fault.kind = DriveFaultKind::sdo_abort;
+  fault::Fault fault;
+  fault.kind = fault::Kind::sdo_abort;
   fault.index = 0x60C2;
   fault.abort = AbortCode::object_does_not_exist;
   machine.drives[0]->inject(fault);
@@ -242,7 +240,7 @@ TEST(SimulatedDrives, a_drive_without_heartbeat_is_guarded_and_its_loss_is_seen)
   machine.run(2000);
   EXPECT_TRUE(machine.image->axes[0].drive.online);
   EXPECT_EQ(machine.drives[0]->object(0x1001), 0) << "and the drive sees its master";
-  machine.drives[0]->inject({.kind = DriveFaultKind::heartbeat_lost});
+  machine.drives[0]->inject({.kind = fault::Kind::heartbeat_lost});
   EXPECT_TRUE(machine.run_until([&] { return !machine.image->axes[0].drive.online; }, 62 + 20))
       << "after guard time times life time factor";
   machine.drives[0]->clear_faults();
@@ -252,7 +250,7 @@ TEST(SimulatedDrives, a_drive_without_heartbeat_is_guarded_and_its_loss_is_seen)
 TEST(SimulatedDrives, found_in_a_fault_show_its_code_from_the_first_cycle) {
   Machine machine(1);
   ASSERT_TRUE(machine.enable()) << machine.story();
-  machine.drives[0]->inject({.kind = DriveFaultKind::over_current});
+  machine.drives[0]->inject({.kind = fault::Kind::over_current});
   machine.run(100);
   // The control is started again; nobody has told this one of the fault.
   machine.segment = std::make_unique<Segment>(machine.bus, machine.config);

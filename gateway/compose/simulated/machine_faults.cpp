@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/compose/simulated/machine_faults.hpp"
+
+#include <algorithm>
+
+namespace servogate::gateway {
+
+namespace {
+
+using fault::Device;
+using fault::Kind;
+
+constexpr unsigned bit(Device device) { return static_cast<unsigned>(device); }
+
+const text::Entry kNothingThere{"fault.no-device", "nothing simulated is called '{0}'; there are {1}",
+                                "среди имитируемого нет «{0}»; есть {1}"};
+const text::Entry kNotItsKind{"fault.not-its-kind", "'{0}' cannot be put on '{1}'; possible are {2}",
+                              "«{0}» не бывает у «{1}»; возможны {2}"};
+const text::Entry kNoSender{"fault.no-sender", "no node of '{0}' has the node-ID {1}",
+                            "у «{0}» нет узла с номером {1}"};
+
+std::string said(const text::Entry& entry, const std::vector<std::string>& arguments) {
+  return text::both(text::render(entry, arguments, text::Language::english),
+                    text::render(entry, arguments, text::Language::russian));
+}
+
+mock::CanFault::Kind on_wire(Kind kind) {
+  return kind == Kind::drop      ? mock::CanFault::Kind::drop
+         : kind == Kind::delay   ? mock::CanFault::Kind::delay
+         : kind == Kind::corrupt ? mock::CanFault::Kind::corrupt
+                                 : mock::CanFault::Kind::duplicate;
+}
+
+mock::StationFault of_station(const fault::Fault& f) {
+  using Of = mock::StationFault::Kind;
+  const Of kind = f.kind == Kind::silent    ? Of::silence
+                  : f.kind == Kind::slow    ? Of::slow
+                  : f.kind == Kind::corrupt ? Of::garbled
+                                            : Of::exception;
+  return {kind, static_cast<modbus::Exception>(f.exception), f.delay_ns};
+}
+
+}  // namespace
+
+MachineFaults::MachineFaults(const machine::MachineConfig& machine, MockWorld& world)
+    : machine_(machine), world_(world) {}
+
+std::optional<MachineFaults::Target> MachineFaults::find_on_bus(std::string_view device) const {
+  for (std::size_t b = 0; b < machine_.buses.size(); ++b) {
+    const machine::BusConfig& bus = machine_.buses[b];
+    if (!bus.mock()) continue;
+    Target target;
+    target.name = device;
+    target.devices = bit(Device::bus);
+    target.wire = world_.wire(b);
+    if (bus.name == device) return target;
+    for (std::size_t n = 0; n < bus.nodes.size(); ++n) {
+      if (bus.name + "." + bus.nodes[n].name != device) continue;
+      target.endpoint = static_cast<int>(n) + 1;  // behind the control
+      target.drive = world_.drive(device);
+      target.encoder = world_.encoder(device);
+      target.devices = bit(Device::node) | (target.drive != nullptr ? bit(Device::drive) : 0u) |
+                       (target.encoder != nullptr ? bit(Device::encoder) : 0u);
+      return target;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<MachineFaults::Target> MachineFaults::find(std::string_view device) const {
+  if (auto target = find_on_bus(device)) return target;
+  Target target;
+  target.name = device;
+  target.station = world_.modbus(device);
+  target.chip = world_.chip(device);
+  target.devices = target.station != nullptr ? bit(Device::station) : bit(Device::chip);
+  if (target.station != nullptr || target.chip != nullptr) return target;
+  target.line = world_.line(device);
+  target.devices = bit(Device::input);
+  return target.line.chip != nullptr ? std::optional(target) : std::nullopt;
+}
+
+std::string MachineFaults::names() const {
+  std::string list;
+  const auto add = [&](const std::string& name) { list += (list.empty() ? "" : ", ") + name; };
+  for (const machine::BusConfig& bus : machine_.buses) {
+    if (!bus.mock()) continue;
+    add(bus.name);
+    for (const machine::NodeConfig& node : bus.nodes) add(bus.name + "." + node.name);
+  }
+  for (const machine::StationConfig& station : machine_.stations) {
+    if (world_.modbus(station.name) != nullptr || world_.chip(station.name) != nullptr) add(station.name);
+    for (const machine::PointConfig& point : station.points)
+      if (world_.line(point.name).chip != nullptr) add(point.name);
+  }
+  return list;
+}
+
+int MachineFaults::endpoint_of(const Target& bus, int node) const {
+  for (const machine::BusConfig& b : machine_.buses)
+    for (std::size_t n = 0; b.name == bus.name && n < b.nodes.size(); ++n)
+      if (b.nodes[n].id == node) return static_cast<int>(n) + 1;
+  return -1;
+}
+
+bool MachineFaults::inject(std::string_view device, const fault::Fault& fault, std::string& why) {
+  const auto target = find(device);
+  if (!target) {
+    why = said(kNothingThere, {std::string(device), names()});
+    return false;
+  }
+  if ((fault::row(fault.kind).devices & target->devices) == 0) {
+    why = said(kNotItsKind, {std::string(fault::name_of(fault.kind)), std::string(device),
+                             fault::names_for(target->devices)});
+    return false;
+  }
+  fault::Fault meant = fault;
+  if (target->devices == bit(Device::bus) && fault.sender > 0) {
+    meant.sender = endpoint_of(*target, fault.sender);
+    if (meant.sender < 0) {
+      why = said(kNoSender, {std::string(device), std::to_string(fault.sender)});
+      return false;
+    }
+  }
+  wish({*target, meant, {}});
+  return true;
+}
+
+bool MachineFaults::clear(std::string_view device, std::optional<Kind> kind, std::string& why) {
+  const auto target = find(device);
+  if (!target) {
+    why = said(kNothingThere, {std::string(device), names()});
+    return false;
+  }
+  wish({*target, {}, kind});
+  return true;
+}
+
+void MachineFaults::wish(Wish wish) {
+  const std::scoped_lock lock(wishes_lock_);
+  wishes_.push_back(std::move(wish));
+  wished_.store(true, std::memory_order_release);
+}
+
+void MachineFaults::advance_to(image::Nanoseconds t) {
+  if (active_.empty() && !wished_.load(std::memory_order_acquire)) return;
+  for (std::size_t i = active_.size(); i-- > 0;) {
+    if (active_[i].until == 0 || t < active_[i].until) continue;
+    end(active_[i]);
+    active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  const std::scoped_lock lock(wishes_lock_);
+  wished_.store(false, std::memory_order_relaxed);
+  for (const Wish& w : wishes_) w.fault ? begin(w.target, *w.fault, t) : end_all(w.target, w.ends);
+  wishes_.clear();
+}
+
+void MachineFaults::begin(const Target& target, const fault::Fault& fault, image::Nanoseconds t) {
+  if (target.drive != nullptr && fault::row(fault.kind).happens_to(Device::drive))
+    return target.drive->inject(fault);  // which ends it by itself
+  const bool side_by_side = target.devices == bit(Device::bus);
+  if (!side_by_side) end_all(target, fault.kind);
+  apply(target, fault, true);
+  active_.push_back({target, fault, fault.duration_ns > 0 ? t + fault.duration_ns : 0});
+}
+
+void MachineFaults::end(const Active& active) { apply(active.target, active.fault, false); }
+
+void MachineFaults::end_all(const Target& target, std::optional<Kind> kind) {
+  if (target.drive != nullptr) kind ? target.drive->clear(*kind) : target.drive->clear_faults();
+  std::erase_if(active_, [&](const Active& a) {
+    const bool over = a.target.name == target.name && (!kind || a.fault.kind == *kind);
+    if (over) end(a);
+    return over;
+  });
+}
+
+void MachineFaults::apply(const Target& target, const fault::Fault& fault, bool begins) {
+  if (target.station != nullptr)
+    return target.station->inject(begins ? of_station(fault) : mock::StationFault{});
+  if (target.chip != nullptr) return target.chip->plug(!begins);
+  if (target.encoder != nullptr && fault.kind == Kind::unreadable)
+    return target.encoder->set_unreadable(begins);
+  if (target.wire != nullptr) return apply_to_wire(target, fault, begins);
+  const MockWorld::Line& line = target.line;
+  if (fault.kind == Kind::bounce)
+    line.chip->set_bounce(line.number, begins ? mock::Bounce{fault.delay_ns, fault.seed} : mock::Bounce{});
+  else if (begins)
+    line.chip->force_input(line.number, fault.level != line.inverted);
+  else
+    line.chip->release_input(line.number);
+}
+
+void MachineFaults::apply_to_wire(const Target& target, const fault::Fault& f, bool begins) {
+  mock::CanSegment& wire = *target.wire;
+  if (f.kind == Kind::unplug) return wire.set_connected(target.endpoint, !begins);
+  if (f.kind == Kind::bus_off)
+    return begins ? wire.force_bus_off(target.endpoint) : wire.restart(target.endpoint);
+  const mock::CanFault fault{on_wire(f.kind), f.id, f.mask, f.sender, f.skip, f.count, f.delay_ns};
+  if (begins)
+    wire.inject(fault);
+  else
+    wire.clear(fault);
+}
+
+}  // namespace servogate::gateway

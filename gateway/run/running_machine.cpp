@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/run/running_machine.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include "gateway/cli/messages.hpp"
+#include "gateway/compose/simulated/played_input.hpp"
+#include "gateway/run/paced_loop.hpp"
+#include "gateway/run/realtime_loop.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+/// In virtual time each so-many-th cycle is measured: as good a statistic, and the stopwatch costs little.
+constexpr int kMeasuredCycles = 8;
+constexpr int kPublishedCycles = 5;  ///< of real time: a reader looks every 10 ms
+constexpr auto kLook = std::chrono::milliseconds(10);
+constexpr int kFirstLooks = 200;
+
+}  // namespace
+
+std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, int& code) {
+  auto held = std::make_unique<HeldState>();
+  if (folder.empty()) return held;
+  held->folder = folder;
+  if (const std::string why = held->lock.take(folder); !why.empty()) {
+    complain(machine::kStateTaken, {folder, why});
+    code = kInfrastructure;
+    return nullptr;
+  }
+  machine::StateDirectory::Loaded kept = machine::StateDirectory(folder).load();
+  held->state = std::move(kept.state);
+  if (print_findings(kept.findings) == 0) return held;
+  code = kWrongUse;
+  return nullptr;
+}
+
+bool settle_clock(const machine::MachineConfig& machine, ClockKind& clock) {
+  if (clock == ClockKind::unset)
+    clock = machine.virtual_time() && machine.nothing_real() ? ClockKind::virtual_time : ClockKind::realtime;
+  if (clock != ClockKind::virtual_time) return true;
+  for (const machine::BusConfig& bus : machine.buses)
+    if (!bus.mock() && !bus.lockstep()) {
+      complain(kVirtualNeedsMock, {bus.url});
+      return false;
+    }
+  return true;
+}
+
+std::unique_ptr<RunningMachine> RunningMachine::compose(const machine::LoadResult& loaded,
+                                                        std::unique_ptr<HeldState> state,
+                                                        const RunSettings& settings,
+                                                        std::vector<text::Finding>& findings) {
+  if (state == nullptr) state = std::make_unique<HeldState>();
+  std::unique_ptr<Control> control = Control::compose(loaded, findings, settings.source);
+  if (control == nullptr) return nullptr;
+  control->cycle().set_time_scale(settings.pace > 0.0 ? settings.pace : settings.time_scale);
+  control->restore_references(state->state);
+  control->restore_tool(state->state);
+  const auto not_restored = control->restore_retained(state->state);
+  findings.insert(findings.end(), not_restored.begin(), not_restored.end());
+  return std::unique_ptr<RunningMachine>(new RunningMachine(std::move(state), settings, std::move(control)));
+}
+
+RunningMachine::RunningMachine(std::unique_ptr<HeldState> state, const RunSettings& settings,
+                               std::unique_ptr<Control> control)
+    : state_(std::move(state)),
+      settings_(settings),
+      control_(std::move(control)),
+      keeper_(*control_, state_->folder, state_->state.retained_generation) {
+  if (!settings_.record.empty())
+    record_ = begin_record(settings_.record, machine().file, learned(), *control_);
+  if (!settings_.can_log.empty()) can_log_ = std::make_unique<CanLog>(settings_.can_log, *control_);
+  if (settings_.clock == ClockKind::virtual_time) control_->cycle().measure_every(kMeasuredCycles);
+  if (settings_.source == nullptr) control_->world().close_operator_points();
+  if (!moves_by_itself()) return;
+  control_->cycle().publish_every(paced() ? 1 : kPublishedCycles);
+  image_ = std::make_unique<image::ProcessImage>();
+}
+
+RunningMachine::~RunningMachine() = default;
+
+Session& RunningMachine::watch(const Outputs& outputs) {
+  trace_ = outputs.trace;
+  session_ = std::make_unique<Session>(*control_, outputs, settings_.clock != ClockKind::virtual_time);
+  return *session_;
+}
+
+bool RunningMachine::begin(bool quiet) {
+  if (settings_.clock != ClockKind::virtual_time) return begin_realtime(quiet);
+  if (paced())
+    paced_loop_ =
+        std::make_unique<PacedLoop>(settings_.pace, control_->cycle(), [this] { return move_world(); });
+  return true;
+}
+
+bool RunningMachine::begin_realtime(bool quiet) {
+  const machine::MachineConfig& m = machine();
+  const cycle::RealtimeSettings settings{m.realtime.priority, m.realtime.cpu,
+                                         settings_.clock == ClockKind::realtime_best_effort};
+  realtime_loop_ = std::make_unique<RealtimeLoop>(*control_, settings,
+                                                  [this](Control&, image::Nanoseconds late_ns) noexcept {
+                                                    if (session_ != nullptr) session_->after_cycle(late_ns);
+                                                  });
+  const bool started = realtime_loop_->start();
+  if (!started || !quiet) realtime_loop_->complain_of_refusals(started);
+  return started;
+}
+
+void RunningMachine::stop() {
+  paced_loop_.reset();
+  if (realtime_loop_ != nullptr) realtime_loop_->stop();
+  control_->take_leave();
+}
+
+std::vector<RunningMachine::Lost> RunningMachine::close_files() {
+  std::vector<Lost> lost;
+  const auto note = [&lost](const std::string& path, std::string why) {
+    if (!why.empty()) lost.push_back({path, std::move(why)});
+  };
+  if (session_ != nullptr) note(trace_, session_->close());
+  if (record_ != nullptr) note(settings_.record, record_->close());
+  if (can_log_ != nullptr) note(settings_.can_log, can_log_->close());
+  return lost;
+}
+
+std::string RunningMachine::keep() {
+  if (state_->folder.empty()) return {};
+  machine::MachineState& state = state_->state;
+  if (const program::Tables* tables = control_->process(0).feeder().tables(); tables != nullptr)
+    state.tables = *tables;
+  const image::ProcessImage& now = control_->cycle().image();
+  const auto axes = control_->cycle().axes();
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    machine::HomingRecord& record = state.homing[machine().axes[a].letter];
+    record.valid = now.axes[a].homed;
+    record.offset_counts = axes[a].reference_counts();
+  }
+  state.tool_in_spindle = now.processes[0].tool;
+  std::string error;
+  if (!machine::StateDirectory(state_->folder).save_all(state, error)) return error;
+  return keep_retained();
+}
+
+void RunningMachine::wait_for_room() {
+  if (session_ != nullptr) session_->wait_for_room();
+  if (record_ != nullptr) record_->wait_for_room();
+  if (can_log_ != nullptr) can_log_->wait_for_room();
+}
+
+bool RunningMachine::cycle() {
+  wait_for_room();
+  return move_on();
+}
+
+bool RunningMachine::move_on() {
+  if (!control_->cycle().step()) return false;
+  if (session_ != nullptr) session_->after_cycle(0);
+  return true;
+}
+
+bool RunningMachine::move_world() {
+  wait_for_room();  // what passes on the wires is logged, too
+  control_->advance_world();
+  control_->read_ahead();
+  return move_on();
+}
+
+bool RunningMachine::step() {
+  if (!moves_by_itself()) return move_world();
+  // Nothing is published before the first cycles: that is no machine whose axes are all ready.
+  for (int n = 0; n == 0 || (image_->axis_count == 0 && n < kFirstLooks); ++n) {
+    std::this_thread::sleep_for(kLook);
+    control_->cycle().read(*image_);
+  }
+  return true;
+}
+
+const image::ProcessImage& RunningMachine::image() const {
+  return moves_by_itself() ? *image_ : control_->cycle().image();
+}
+
+const cycle::AlarmSnapshot& RunningMachine::alarms() {
+  if (moves_by_itself())
+    control_->cycle().read(alarms_);
+  else
+    control_->cycle().alarms().snapshot(alarms_);
+  return alarms_;
+}
+
+image::Nanoseconds RunningMachine::cycle_duration_ns() const {
+  return control_->cycle().measured() ? control_->cycle().duration_ns() : -1;
+}
+
+bool RunningMachine::load(const std::string& program, std::vector<text::Finding>& findings) {
+  auto file = std::make_shared<ProgramFile>();
+  if (!open_program(machine(), program, {}, *file, findings)) return false;
+  const ProgramCheck check = prove_program(machine(), *file, learned().tables, start_after_homing(machine()),
+                                           channel::Forecast::Depth::drivable);
+  findings.insert(findings.end(), check.report.findings.begin(), check.report.findings.end());
+  for (const text::Finding& f : check.report.findings)
+    if (f.severity == text::Severity::error) return false;
+  return control_->change({ProgramChange::Kind::program, 0, std::move(file), learned().tables, {}});
+}
+
+bool RunningMachine::play(const std::string& point, std::optional<double> value, std::string& why) {
+  const InputWish wish = value ? InputWish(*value) : InputWish();
+  const PlayedInput played = play_input(machine(), control_->world(), point, wish);
+  if (played.outcome == PlayedInput::Outcome::done) return true;
+  why = text::both(text::render(*played.entry, played.arguments, text::Language::english),
+                   text::render(*played.entry, played.arguments, text::Language::russian));
+  return false;
+}
+
+std::string RunningMachine::report() const {
+  return session_ != nullptr ? report::to_json(session_->make_report(0.0, overruns())) : std::string();
+}
+
+std::int64_t RunningMachine::overruns() const noexcept {
+  return realtime_loop_ != nullptr ? realtime_loop_->overruns() : 0;
+}
+
+}  // namespace servogate::gateway
