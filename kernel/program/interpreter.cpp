@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "kernel/program/execution/execution.hpp"
-#include "kernel/program/reading/findings.hpp"
+#include "kernel/program/findings.hpp"
 
 namespace servogate::program {
 namespace {
@@ -72,7 +72,7 @@ void Interpreter::adopt(Tables tables) { impl_->run.adopt(std::move(tables)); }
 void Interpreter::preset(int axis, double value) { impl_->run.preset(axis, value); }
 void Interpreter::set_switches(const OperatorSwitches& switches) {
   State& state = impl_->run.state();
-  state.execute_marked = state.execute_marked && (switches.skip_levels & 1u) == 0;
+  state.skip_levels |= switches.skip_levels;
   state.dry_run = state.dry_run || switches.dry_run;
 }
 int Interpreter::origin(int axis) const { return impl_->run.state().origin[static_cast<std::size_t>(axis)]; }

@@ -66,7 +66,7 @@ struct LoadedProgram {
   std::string text;
   std::string path;  ///< as findings name it; empty: the name by which it was called
 };
-/// Gives another program by its name (NC-110 CLS), nullopt when there is none.
+/// Gives another program by its name (a subprogram), nullopt when there is none.
 using ProgramLoader = std::function<std::optional<LoadedProgram>(std::string_view name)>;
 
 /// A power-on mode or value of the machine file that the language cannot take. Its program does not run.
@@ -88,7 +88,7 @@ struct Error {
 };
 using Step = std::variant<Command, NeedsSync, Error>;
 
-/// What the operator has set for a whole program. The program's own words (NC-110 USB, UVR) come after it.
+/// What the operator has set for a whole program. The program's own words  come after it.
 struct OperatorSwitches {
   std::uint16_t skip_levels = 0;  ///< bit 0: blocks marked with / are skipped; bit n: those with /n
   bool dry_run = false;           ///< feed motions run at rapid speed

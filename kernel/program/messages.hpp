@@ -27,7 +27,6 @@ enum class Fault : std::uint8_t {
   block_number_long,
   string_unclosed,
   bracket_unclosed,
-  after_bracket,
   cyrillic,
   lone_return,
   unknown_character,
@@ -48,6 +47,7 @@ enum class Fault : std::uint8_t {
   expected,
   g_with_parameter,
   value_missing,
+  arguments_many,
   expression_expected,
   closing_expected,
   function_unknown,
@@ -60,47 +60,26 @@ enum class Fault : std::uint8_t {
   equals_expected,
   variable_unknown,
   not_a_number,
-  place_bad,
+  parameter_unset,
   place_outside,
   place_range,
   text_too_long,
-  text_for_number,
-  number_for_text,
   place_protected,
-  text_compare,
   label_missing,
   repeat_depth,
   repeat_without_end,
   end_without_repeat,
-  repeat_count,
   call_depth,
   program_missing,
-  program_name,
   end_in_subprogram,
-  part_nested,
-  part_reversed,
-  jump_out_of_part,
   endless,
   block_limit,
-  code_unknown,
-  operand_missing,
-  operand_many,
-  operand_axis,
-  operand_axis_twice,
-  operand_axes_many,
-  text_long,
-  origin_range,
+  start_missing,
   origin_missing,
   origin_without_axis,
   scale_zero,
-  plane_in_profile,
   plane_missing,
-  dwell_range,
-  wait_form,
-  wait_format,
-  wait_bit,
   variable_range,
-  limits_pair,
   travel,
   field,
   feed_missing,
@@ -119,21 +98,10 @@ enum class Fault : std::uint8_t {
   helix_mismatch,
   helix_long,
   machine_zero_arc,
-  cycle_active,
-  cycle_motion,
-  cycle_depth,
-  cycle_hole,
-  cycle_step_missing,
-  cycle_step,
-  cycle_pecks,
   feed_missing_more,
-  function_in_profile,
   m_end_twice,
   spindle_conflict,
-  tool_form,
   no_spindle,
-  dwell_no_speed,
-  dwell_surface_speed,
   speed_above,
   speed_below,
   surface_speed_axis,
@@ -142,10 +110,6 @@ enum class Fault : std::uint8_t {
   feed_above,
   more_places,
   spindle_stands,
-  dwell_zero,
-  cycle_no_depth,
-  cycle_passes_depth,
-  cycle_return_below,
   no_speed,
   no_cutting_speed,
   not_executed,
@@ -162,25 +126,25 @@ std::span<const text::Entry> messages();
 /// The text of one message.
 const text::Entry& entry(Fault fault);
 
-/// Arguments of Fault::travel and Fault::field: a diameter axis is named so, with its places as diameters.
-/// `value`, `limit`: machine coordinates, a diameter axis' as radius.
+/// First arguments of Fault::travel and Fault::field: a diameter axis is named so, with its places as
+/// diameters. `value`, `limit`: machine coordinates, a diameter axis' as radius.
 std::vector<std::string> outside_arguments(const MachineModel::Axis& axis, double value, double limit);
 
 /// What was written, with the capitals A to Z that it would have.
 std::string in_capitals(std::string_view written);
-/// Last argument of Fault::unknown_word and Fault::code_unknown: that words have capital letters, where some
-/// of `written` are small and with capitals it is `known`; otherwise nothing.
+/// Last argument of Fault::unknown_word and its like: that words have capital letters, where some of
+/// `written` are small and with capitals it is `known`; otherwise nothing.
 std::string capitals_hint(std::string_view written, bool known);
 
 /// Thrown inside of this room only, caught in Interpreter: the block cannot be read or executed. `column`
 /// counts from 1.
 struct ProgramError {
-  Fault fault;
+  const text::Entry* entry;
   int column = 0;
   std::vector<std::string> arguments;
 };
 [[noreturn]] inline void fail(Fault fault, int column, std::vector<std::string> arguments = {}) {
-  throw ProgramError{fault, column, std::move(arguments)};
+  throw ProgramError{&entry(fault), column, std::move(arguments)};
 }
 
 }  // namespace servogate::program

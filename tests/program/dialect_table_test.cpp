@@ -34,13 +34,10 @@ constexpr MRule kM[] = {{3, true, MAction::spindle_cw}, {17, true, MAction::end}
 Dialect other() {
   Dialect dialect;
   dialect.name = "other";
-  dialect.lexis = {.comment = ';',
-                   .skip = '/',
-                   .label_quote = '\0',
-                   .request_sync = '\0',
-                   .cancel_sync = '\0',
-                   .tape = 'O',
-                   .bracket = Bracket::comment};
+  dialect.lexis = {.tape = 'O', .bracket = Bracket::comment};
+  dialect.expressions.variable = [](std::string_view, std::size_t&, const ValueSource*, double&) {
+    return false;
+  };
   dialect.arc_centre = ArcCentre::from_start;
   dialect.max_block_characters = 255;
   dialect.max_label_characters = 0;

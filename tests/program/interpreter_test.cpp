@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "kernel/program/canon.hpp"
 #include "kernel/program/messages.hpp"
+#include "kernel/program/nc110/messages.hpp"
 #include "tests/program/case_file.hpp"
 
 namespace servogate::program::tests {
@@ -215,10 +218,11 @@ TEST(Messages, have_both_languages_and_the_same_placeholders) {
       if (text.find(std::string{'{', c, '}'}) != std::string_view::npos) found += c;
     return found;
   };
-  std::string_view before;
-  for (const text::Entry& message : messages()) {
-    EXPECT_LT(before, message.id);
-    before = message.id;
+  std::set<std::string_view> ids;
+  std::vector<text::Entry> all(messages().begin(), messages().end());
+  all.insert(all.end(), nc110::messages().begin(), nc110::messages().end());
+  for (const text::Entry& message : all) {
+    EXPECT_TRUE(ids.insert(message.id).second) << message.id;
     EXPECT_FALSE(message.english.empty()) << message.id;
     EXPECT_EQ(placeholders(message.english), placeholders(message.russian)) << message.id;
     bool cyrillic = false;

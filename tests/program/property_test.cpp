@@ -10,6 +10,8 @@
 #include "kernel/program/canon.hpp"
 #include "kernel/program/check.hpp"
 #include "kernel/program/messages.hpp"
+#include "kernel/program/geometry/degrees.hpp"
+#include "kernel/program/nc110/nc110.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "tests/program/case_file.hpp"
 #include "tests/property_seed.hpp"
@@ -118,6 +120,7 @@ class FixedValues : public ValueSource {
  public:
   double parameter(int index, int) const override { return Grower::parameter(index); }
   double place(const image::Place&, int) const override { return 0.0; }
+  double system(int, int) const override { return 0.0; }
 };
 
 TEST(Property, random_expressions_have_the_value_of_an_independent_evaluation) {
@@ -127,11 +130,11 @@ TEST(Property, random_expressions_have_the_value_of_an_independent_evaluation) {
     const Tree tree = grower.grow(1 + i % 5);
     if (!std::isfinite(tree.value)) continue;
     std::size_t pos = 0;
-    const double got = evaluate(tree.text, pos, &values);
+    const double got = evaluate(nc110::expressions(), tree.text, pos, &values);
     ASSERT_EQ(tree.text.size(), pos) << tree.text;
     ASSERT_EQ(tree.value, got) << tree.text;
     pos = 0;
-    ASSERT_NO_THROW(evaluate(tree.text, pos, nullptr)) << tree.text;
+    ASSERT_NO_THROW(evaluate(nc110::expressions(), tree.text, pos, nullptr)) << tree.text;
   }
 }
 
@@ -144,7 +147,7 @@ TEST(Property, operators_bind_as_in_arithmetic) {
     const std::string text = text::number(a) + "-" + text::number(b) + "*" + text::number(d) + "/" +
                              text::number(c) + "-" + text::number(d) + "+" + text::number(a);
     std::size_t pos = 0;
-    ASSERT_EQ(a - b * d / c - d + a, evaluate(text, pos, &values)) << text;
+    ASSERT_EQ(a - b * d / c - d + a, evaluate(nc110::expressions(), text, pos, &values)) << text;
   }
 }
 

@@ -47,7 +47,7 @@ program::ProgramLoader program_loader(const std::string& main_program) {
     std::transform(lower.begin(), lower.end(), lower.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     for (const std::string& base : {std::string(name), lower})
-      for (const char* extension : {"", ".nc", ".NC"}) {
+      for (const char* extension : {"", ".nc", ".NC", ".SPF", ".spf"}) {
         std::string ignored;
         const std::filesystem::path path = folder / (base + extension);
         if (auto content = files::read_file(path.string(), files::kMostOfProgram, ignored))

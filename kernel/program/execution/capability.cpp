@@ -63,11 +63,11 @@ Written Execution::written(int column) const noexcept {
   return {state_.flow.file, line_number(), column, false};
 }
 
-void Execution::warn(Written& place, Fault fault, std::vector<std::string> arguments) {
+void Execution::warn(Written& place, const text::Entry& told, std::vector<std::string> arguments) {
   if (place.told) return;
   place.told = true;
   const std::string& file = path(place.file);
-  const text::Entry* kind = &entry(fault);
+  const text::Entry* kind = &told;
   const auto known = [&](const text::Finding& f) {
     return f.line == place.line && f.column == place.column && f.entry == kind && f.file == file;
   };
@@ -101,18 +101,18 @@ void Execution::check_tool(int column) {
 void Execution::check_start(const Word& word) {
   if (state_.modes.speed <= 0.0 && state_.speed_at.line == 0) {
     Written place = written(word.column);
-    warn(place, Fault::no_speed, {word_text(block_, word)});
+    warn(place, Fault::no_speed, {word_text(*dialect_, block_, word)});
   }
   if (state_.modes.speed > 0.0 && !state_.modes.cutting && state_.modes.spindle == Function::surface_speed &&
       surface_axis_ >= 0)
-    fail(Fault::no_cutting_speed, word.column, {word_text(block_, word)});
+    fail(Fault::no_cutting_speed, word.column, {word_text(*dialect_, block_, word)});
 }
 
 /// The speed with which the spindle is to turn from here on; `word` asks for it.
 void Execution::check_speed(const Word& word) {
   if (state_.modes.speed <= 0.0) return;
   if (state_.modes.spindle == Function::surface_speed) {
-    if (surface_axis_ < 0) fail(Fault::surface_speed_axis, word.column, {word_text(block_, word)});
+    if (surface_axis_ < 0) fail(Fault::surface_speed_axis, word.column, {word_text(*dialect_, block_, word)});
     return;
   }
   const double low = machine_->spindle_min_rpm, high = machine_->spindle_max_rpm;
@@ -121,12 +121,6 @@ void Execution::check_speed(const Word& word) {
     warn(state_.speed_at, Fault::speed_above, {asked, text::number(high)});
   else if (state_.modes.speed * kSlack < low)
     warn(state_.speed_at, Fault::speed_below, {asked, text::number(low)});
-}
-
-void Execution::check_dwell(const Word& word) {
-  if (state_.dwell > 0.0) return;
-  Written place = written(word.column);
-  warn(place, Fault::dwell_zero, {word_text(block_, word)});
 }
 
 /// Speed of the spindle along the way to `to`, the largest where it changes; 0: not known.
@@ -217,8 +211,9 @@ void Execution::check_feed(const BlockWords& words, double speed, const Reach& r
                                                                   : nullptr;
   Written once = written(own != nullptr ? own->column : 0);
   warn(own != nullptr ? once : state_.feed_at, Fault::feed_above,
-       {own != nullptr ? word_text(block_, *own) : "F" + text::number(state_.feed), per_minute(speed),
-        std::to_string(line_number()), per_minute(reach.speed), machine_->axes[at(reach.slowest)].letter});
+       {own != nullptr ? word_text(*dialect_, block_, *own) : "F" + text::number(state_.feed),
+        per_minute(speed), std::to_string(line_number()), per_minute(reach.speed),
+        machine_->axes[at(reach.slowest)].letter});
 }
 
 }  // namespace servogate::program

@@ -27,6 +27,13 @@ double variable_of(const MachineModel& machine, const char* name, double otherwi
   return at == machine.variables.end() ? otherwise : at->second;
 }
 
+int parameters_of(const ParameterSet& set, const MachineModel& machine) {
+  if (set.count_max == 0) return set.count;
+  const std::string name(set.letter);
+  return static_cast<int>(
+      std::clamp<double>(variable_of(machine, name.c_str(), set.count), set.count_min, set.count_max));
+}
+
 }  // namespace
 
 Execution::Execution(const Dialect& dialect, MachineModel machine, Tables tables, std::string file_name,
@@ -34,16 +41,16 @@ Execution::Execution(const Dialect& dialect, MachineModel machine, Tables tables
     : dialect_(&dialect), axes_(letters_of(machine)), loader_(std::move(loader)), process_(process) {
   if (machine.axes.size() > image::kMaxAxes) machine.axes.resize(image::kMaxAxes);
   machine_ = std::make_shared<const MachineModel>(std::move(machine));
-  sources_.push_back(std::make_shared<const Source>(file_name, std::move(text)));
+  sources_.push_back(std::make_shared<const Source>(dialect, file_name, std::move(text)));
   files_.push_back(std::move(file_name));
   resolution_ = variable_of(*machine_, "RESOLUTION", 0.0001);
   resolution_ = resolution_ > 0.0 ? std::round(1.0 / resolution_) : 0.0;
-  state_.parameters =
-      Parameters(static_cast<int>(std::clamp(variable_of(*machine_, "E", 1000.0), 31.0, 10000.0)));
+  state_.parameters = Parameters(dialect.parameters, parameters_of(dialect.parameters, *machine_));
   state_.tables = std::make_shared<const Tables>(std::move(tables));
   state_.machine = start;
   state_.frame = Frame(axis_count());
   learn_machine();
+  begin_flow();
   reset();
   apply_power_on();
 }
@@ -53,6 +60,7 @@ void Execution::reset() {
     const auto i = static_cast<std::size_t>(a);
     state_.frame.set_scale(a, 1.0);
     state_.frame.set_mirrored(a, false);
+    state_.frame.set_offset(a, 0.0);
     state_.origin[i] = 0;
     state_.field_min[i] = -1e300;
     state_.field_max[i] = 1e300;
@@ -64,6 +72,7 @@ void Execution::reset() {
     state_.frame.set_origin(a, origin);
   }
   state_.frame.set_rotation(0.0);
+  state_.modes.corner = dialect_->corner;
   state_.profile_open = false;
   state_.cycle = Cycle{};
   BlockWords none;
@@ -128,6 +137,10 @@ double Execution::place(const image::Place& place, int column) const {
   return view_.number(place, column);
 }
 
+double Execution::evaluate(std::size_t& pos) const {
+  return program::evaluate(dialect_->expressions, block_.line.substr(0, block_.end), pos, this);
+}
+
 double Execution::resolve(const Value& value) const {
   if (value.parameter < 0) return value.number;
   const double number = state_.parameters.get(value.parameter, value.column);
@@ -149,7 +162,7 @@ void Execution::refuse_range(std::string_view word, const Value& value, double n
                              const char* most) const {
   std::string named(word);
   if (value.parameter >= 0)
-    named += std::string(value.negative ? " = -E" : " = E") + std::to_string(value.parameter) + " = ";
+    named += (value.negative ? " = -" : " = ") + dialect_->parameters.name_of(value.parameter) + " = ";
   fail(Fault::out_of_range, value.column, {std::move(named), text::number(number), least, most});
 }
 
@@ -160,7 +173,7 @@ double Execution::length(int axis, const Value& value, bool halve) const {
   const double steps = a.rotary ? resolution_ * 10.0 : resolution_;
   if (steps != 0.0) number = std::nearbyint(number * steps) / steps;
   number *= unit_factor(axis);
-  return halve && a.diameter ? number / 2.0 : number;
+  return halve && a.diameter && state_.modes.across == Function::diameter ? number / 2.0 : number;
 }
 
 // --- packets ---
@@ -218,6 +231,8 @@ Step Execution::next(const image::Packets& packets, bool synchronised) {
   snapshot_used_ = want_fresh_ = false;
   try {
     if (power_on_error_) throw ProgramError(*power_on_error_);
+    if (state_.flow.line == Source::kNone)
+      fail(Fault::start_missing, 1, {std::string(1, dialect_->lexis.tape)});
     if (auto step = advance(synchronised)) return std::move(*step);
   } catch (const ProgramError& error) {
     return stop_with(error);
@@ -240,6 +255,7 @@ Step Execution::stop_with(const ProgramError& error) {
 bool Execution::pass_over_error() {
   const bool endless = since_command_ > kEndless;
   if (!last_ || !std::holds_alternative<Error>(*last_) || power_on_error_ || mdi_ || endless) return false;
+  if (state_.flow.line == Source::kNone) return false;
   last_.reset();
   if (state_.flow.line == line_ && line_ < source().lines()) ++state_.flow.line;
   return true;
@@ -250,7 +266,7 @@ text::Finding Execution::finding(const ProgramError& error) const {
   f.file = path(state_.flow.file);
   f.line = power_on_error_ ? 1 : line_number();
   f.column = error.column > 0 ? error.column : power_on_error_ ? 1 : column_of(-1);
-  f.entry = &entry(error.fault);
+  f.entry = dialect_->own(error.entry);
   f.arguments = error.arguments;
   return f;
 }
@@ -289,7 +305,8 @@ std::optional<Step> Execution::advance(bool synchronised) {
 /// One block. A value when it has to wait for the end of motion.
 std::optional<Step> Execution::read_ahead(bool synchronised) {
   read_block(*dialect_, axes_, source().line(line_), block_);
-  if (block_.kind == BlockKind::empty || (block_.skip && !state_.execute_marked)) {
+  const bool left_out = block_.skip && (state_.skip_levels >> block_.skip_level & 1u) != 0;
+  if (block_.kind == BlockKind::empty || left_out) {
     ++state_.flow.line;
     return std::nullopt;
   }
@@ -305,42 +322,20 @@ std::optional<Step> Execution::read_ahead(bool synchronised) {
 
 /// True when the block is to be read only after the motion before it has ended.
 bool Execution::must_wait() const {
-  if (block_.sync == Sync::request) return true;
-  if (block_.sync == Sync::cancel || block_.kind == BlockKind::words) return false;
-  const std::string_view text = block_.line.substr(0, block_.end);
-  if (block_.kind == BlockKind::code)
-    return text.substr(skip_spaces(text, block_.body + 1)).starts_with("WAI")
-               ? false
-               : names_signal(text, block_.body);
-  const std::size_t equals = text.find('=', block_.body);
-  return equals != std::string_view::npos && names_signal(text, equals + 1);
+  if (block_.sync != Sync::standard) return block_.sync == Sync::request;
+  return block_.kind == BlockKind::own_form && dialect_->own_form_waits != nullptr &&
+         dialect_->own_form_waits(block_);
 }
 
 void Execution::execute() {
-  switch (block_.kind) {
-    case BlockKind::words:
-      run_words();
-      break;
-    case BlockKind::assignments:
-      run_assignments();
-      break;
-    case BlockKind::code:
-      run_code();
-      break;
-    case BlockKind::empty:
-      break;
-  }
-}
-
-void Execution::run_code() {
-  read_operands(*dialect_, axes_, block_, operands_);
-  operands_.rule->run(*this, operands_);
+  if (block_.kind == BlockKind::words) return run_words();
+  if (block_.kind == BlockKind::own_form) dialect_->own_form(*this);
 }
 
 void Execution::finish(bool rewind) {
   emit(End{rewind});
   last_ = Step(queue_.back());
-  if (!rewind) return;  // M30 performs a RESET, the end of the text and M02 do not (specification A 3)
+  if (!rewind) return;
   reset();
   apply_power_on();
 }
@@ -363,7 +358,7 @@ void Execution::mdi(std::string_view block) {
     sources_.emplace_back();
   }
   sources_[static_cast<std::size_t>(state_.flow.file)] =
-      std::make_shared<const Source>("MDI", std::string(block));
+      std::make_shared<const Source>(*dialect_, "MDI", std::string(block));
 }
 
 }  // namespace servogate::program

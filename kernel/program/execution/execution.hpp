@@ -9,7 +9,7 @@
 #include "kernel/program/execution/state.hpp"
 #include "kernel/program/geometry/circle.hpp"
 #include "kernel/program/messages.hpp"
-#include "kernel/program/reading/operands.hpp"
+#include "kernel/program/reading/block.hpp"
 #include "kernel/program/reading/source.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "kernel/program/values/packet_view.hpp"
@@ -22,13 +22,21 @@ class Reach;
 struct BlockWords {
   const Block* block = nullptr;
   bool dwell = false, exact_once = false, machine_zero = false;
-  std::uint32_t one_shot = 0;  ///< bit of each Function that holds for this block only
-  int cycle = 0;               ///< number of a G word that defines a cycle
+  std::uint64_t one_shot = 0;         ///< bit of each Function that holds for this block only
+  Function then = Function::nothing;  ///< mode in force behind this block
+  void (*instead)(Execution&, const BlockWords&) = nullptr;  ///< takes the place of the motion ...
+  const Word* instead_word = nullptr;                        ///< ... and this word asks for it
+  int cycle = 0;                                             ///< number of a G word that defines a cycle
   const Word *cycle_word = nullptr, *dwell_word = nullptr;
   int axes = 0;
   std::array<const Word*, image::kMaxAxes> axis{};
   const Word *centre1 = nullptr, *centre2 = nullptr, *pitch = nullptr, *radius = nullptr, *radius2 = nullptr;
   const Word *feed = nullptr, *time = nullptr, *speed = nullptr, *tool = nullptr, *h = nullptr;
+  const Word *corrector = nullptr, *count = nullptr, *angle = nullptr, *amount = nullptr;
+  bool has_centres = false;                 ///< words of Meaning::centre_of
+  bool for_instead = false;                 ///< words that only `instead` can take
+  std::array<const Word*, 4> statements{};  ///< those that act at the end of the block
+  int statement_count = 0;
   std::array<const Word*, 8> m{};
   std::array<int, 8> m_code{};
   int m_count = 0;
@@ -61,12 +69,19 @@ class Execution : public ValueSource {
   const Source& main_source() const noexcept { return *sources_.front(); }
   State& state() noexcept { return state_; }
   const State& state() const noexcept { return state_; }
+  const Source& source() const { return *sources_[static_cast<std::size_t>(state_.flow.file)]; }
+  std::uint32_t line() const noexcept { return line_; }  ///< of the block that is executed, from 0
   int axis_count() const noexcept { return static_cast<int>(machine_->axes.size()); }
   bool rotary(int axis) const noexcept { return machine_->axes[static_cast<std::size_t>(axis)].rotary; }
 
   // --- values ---
   double parameter(int index, int column) const override;
   double place(const image::Place& place, int column) const override;
+  double system(int number, int column) const override {
+    return dialect_->system == nullptr ? 0.0 : dialect_->system(*this, number, column);
+  }
+  /// Value of an expression of the block, in its line from `pos` on; moves `pos` behind it.
+  double evaluate(std::size_t& pos) const;
   /// Number of a value, its parameter read. Throws ProgramError.
   double resolve(const Value& value) const;
   /// Refuses the value of a word outside of `least` to `most`; where a parameter gave it, its name is said.
@@ -82,6 +97,8 @@ class Execution : public ValueSource {
   // --- packets ---
   void write(const image::Place& place, double value, int column);
   void write(const image::Place& place, std::string_view characters, int column);
+  /// Characters that a write depends on are read from the snapshot.
+  void use_snapshot() const noexcept { snapshot_used_ = true; }
   std::string characters(const image::Place& place, int column) const {
     machine_read_ = true;
     return view_.text(place, column);
@@ -104,23 +121,24 @@ class Execution : public ValueSource {
   void end_profile() noexcept { state_.profile_open = false; }
 
   // --- motion of cycles ---
-  /// Rapid to the axes of a block, but for one.
+  /// Rapid to the axes of a block, but for one (-1: all).
   void position(const BlockWords& words, int without_axis);
+  /// A feed motion to the axes of a block.
+  void move(const BlockWords& words);
   /// One axis to a programmed coordinate, at rapid or at the feed in force; nothing where it stands there
   /// already.
   void go(int axis, double programmed, bool rapid);
   void dwell(double seconds);
-  /// TMR in seconds; with G95 it counts revolutions of the spindle.
-  double dwell_seconds() const;
   void emit_spindle(SpindleMode mode);
 
   // --- warnings (capability.cpp) ---
   /// A column of the block that is executed.
   Written written(int column) const noexcept;
   /// Tells of a place once.
-  void warn(Written& place, Fault fault, std::vector<std::string> arguments);
-  /// A dwell of TMR that is asked for at `word` while TMR is 0.
-  void check_dwell(const Word& word);
+  void warn(Written& place, const text::Entry& kind, std::vector<std::string> arguments);
+  void warn(Written& place, Fault fault, std::vector<std::string> arguments) {
+    warn(place, entry(fault), std::move(arguments));
+  }
 
   // --- frames ---
   /// After a change of the frame: the machine stands still, its programmed coordinates are new.
@@ -133,13 +151,30 @@ class Execution : public ValueSource {
   void reset();
 
   // --- flow ---
-  void jump(std::string_view label, int column);
-  void repeat(int count);
-  void end_repeat();
-  void call(std::string_view name, int column);
-  void run_part(std::string_view first, std::string_view last, int column1, int column2);
+  /// Line of a label of this file. Throws where there is none.
+  std::uint32_t label_line(std::string_view label, int column) const;
+  void jump(std::uint32_t line);
+  /// The lines from this one's on up to the end of the repeat, so often.
+  void repeat(int count, int column);
+  void end_repeat(int column);
+  /// Another program, so often; `arguments` are what it can ask for by number.
+  void call(std::string_view name, int times, int column);
+  /// A subprogram of this file that begins at a line.
+  void call(std::uint32_t line, int times, int column, std::vector<double> arguments = {});
+  /// Back from the subprogram; false: none has been called.
+  bool leave_subprogram();
+  /// Argument of the innermost call; 0 where it is missing.
+  double argument(std::size_t index) const;
+  void run_part(std::uint32_t first, std::uint32_t last);
+  /// The end of the main program; `rewind`: modes and frames are as after power-on then.
+  void finish(bool rewind);
 
   const Block& block() const noexcept { return block_; }
+  Block& block() noexcept { return block_; }
+  /// F, which stays in force where it is no matter of its block.
+  void store_feed(const BlockWords& words);
+  /// The lengths of a row of the tool table come into force; 0: none.
+  void use_lengths(int row);
 
  private:
   // power_on.cpp
@@ -154,29 +189,28 @@ class Execution : public ValueSource {
   std::optional<Step> read_ahead(bool synchronised);
   bool must_wait() const;
   void execute();
-  void run_code();
-  void finish(bool rewind);
   Step stop_with(const ProgramError& error);
   text::Finding finding(const ProgramError& error) const;
   int column_of(int axis) const noexcept { return program::column_of(block_, axis); }
-  const Source& source() const { return *sources_[static_cast<std::size_t>(state_.flow.file)]; }
+  std::string letter(Meaning meaning) const { return std::string(1, dialect_->letter_of(meaning)); }
+  void begin_flow();
+  void enter(Flow::Call call, std::size_t file, std::uint32_t line, int column);
   bool leave_part_or_file();
-
-  // assignments.cpp
-  void run_assignments();
-  void assign_parameter(std::size_t& pos);
-  void assign_place(std::size_t& pos);
-  void assign_variable(std::size_t& pos);
 
   // words.cpp
   void run_words();
   BlockWords gather();
+  void evaluate_words(Word& word);
+  void gather_word(BlockWords& words, const Word& word);
+  void gather_g(BlockWords& words, const Word& word, std::vector<const GRule*>& by_value);
+  void gather_centre(BlockWords& words, const Word& word) const;
+  void gather_statement(BlockWords& words, const Word& word);
   void take_g(BlockWords& words, const GRule& rule);
   void select_plane(Function plane, bool required);
   [[noreturn]] void refuse_plane(Function plane, int column) const;
-  void return_modes(std::uint32_t one_shot, const Modes& before);
+  void return_modes(const BlockWords& words, const Modes& before);
   void check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const;
-  void check_profile(const BlockWords& words) const;
+  void use_origin(int number, int column);
   void run_cycle_block(const BlockWords& words);
   void refuse_stray_words(const BlockWords& words) const;
 
@@ -185,6 +219,7 @@ class Execution : public ValueSource {
   void after_motion(const BlockWords& words);
   void spindle_word(const BlockWords& words, const MRule* start, const Word* start_word);
   void end_function(int code, const MRule* rule, int column);
+  void tool_words(const BlockWords& words);
   void change_tool();
 
   // capability.cpp
@@ -200,7 +235,6 @@ class Execution : public ValueSource {
   void check_feed(const BlockWords& words, double speed, const Reach& reach, bool linear);
 
   // motion.cpp
-  void move(const BlockWords& words);
   Position target_of(const BlockWords& words);
   void rapid(const Position& to);
   void line(const BlockWords& words, const Position& to);
@@ -213,7 +247,7 @@ class Execution : public ValueSource {
   Feed programmed_feed(const BlockWords& words, double length_mm, bool rotary_only);
   CornerRule corner_of(const BlockWords& words) const;
   void check_axis(int axis, double value, int column) const;
-  void store_feed(const BlockWords& words);
+  bool incremental(const Value& value) const noexcept;
 
   const Dialect* dialect_;
   std::shared_ptr<const MachineModel> machine_;
@@ -238,7 +272,6 @@ class Execution : public ValueSource {
   std::vector<SettingFault> setting_faults_;
   std::optional<ProgramError> power_on_error_;  ///< the first of them
   Block block_;
-  Operands operands_;
   std::uint32_t line_ = 0;
   long long since_command_ = 0;
   mutable bool snapshot_used_ = false;

@@ -16,6 +16,13 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 
+[[noreturn]] void refuse_field(const MachineModel::Axis& axis, double value, double limit,
+                               std::string_view word, int column) {
+  std::vector<std::string> arguments = outside_arguments(axis, value, limit);
+  arguments.emplace_back(word);
+  fail(Fault::field, column, std::move(arguments));
+}
+
 }  // namespace
 
 void Execution::move(const BlockWords& words) {
@@ -41,7 +48,6 @@ void Execution::move(const BlockWords& words) {
 Position Execution::target_of(const BlockWords& words) {
   Position& programmed = state_.programmed;
   Position to = state_.machine;
-  const bool incremental = state_.modes.dimension == Function::incremental && !words.machine_zero;
   const Frame& frame = state_.frame;
   bool turned = false;
   for (int a = 0; a < axis_count(); ++a) {
@@ -52,7 +58,7 @@ Position Execution::target_of(const BlockWords& words) {
       to[at(a)] = value + frame.length(a);
       continue;
     }
-    programmed[at(a)] = incremental ? programmed[at(a)] + value : value;
+    programmed[at(a)] = incremental(word->value) ? programmed[at(a)] + value : value;
     if (frame.shift_only())
       to[at(a)] = programmed[at(a)] + frame.shift(a);
     else if (frame.separate(a))
@@ -69,6 +75,11 @@ Position Execution::target_of(const BlockWords& words) {
   return to;
 }
 
+bool Execution::incremental(const Value& value) const noexcept {
+  if (value.dimension != Dimension::as_modes) return value.dimension == Dimension::incremental;
+  return state_.modes.dimension == Function::incremental;
+}
+
 /// Travel and working field. Source: specification A 23 (checked before the motion starts), B 6.3.
 void Execution::check_axis(int axis, double value, int column) const {
   const MachineModel::Axis& a = machine_->axes[at(axis)];
@@ -80,12 +91,12 @@ void Execution::check_axis(int axis, double value, int column) const {
       inside > state_.field_max[at(axis)] ? state_.field_max[at(axis)] : state_.field_min[at(axis)];
   if (inside > state_.field_max[at(axis)] + kTravelSlack ||
       inside < state_.field_min[at(axis)] - kTravelSlack)
-    fail(Fault::field, column, outside_arguments(a, inside, field));
+    refuse_field(a, inside, field, dialect_->terms.field, column);
 }
 
 void Execution::position(const BlockWords& words, int without_axis) {
   BlockWords rest = words;
-  rest.axis[at(without_axis)] = nullptr;
+  if (without_axis >= 0) rest.axis[at(without_axis)] = nullptr;
   const Position to = target_of(rest);
   rapid(to);
   state_.machine = to;
@@ -128,25 +139,37 @@ void Execution::line(const BlockWords& words, const Position& to) {
   emit(std::move(line));
 }
 
-/// Centre of the arc a block asks for, by R or by I and J.
+/// Centre of the arc a block asks for, by its radius or by the words of a centre.
 Point Execution::find_centre(const BlockWords& words, Point start, Point end, bool counter_clockwise) const {
   const int here = static_cast<int>(block_.body) + 1;
+  const bool one = words.centre1 != nullptr || words.centre2 != nullptr;
+  const bool both = words.centre1 != nullptr && words.centre2 != nullptr;
+  const auto letters = [this](std::string last) {
+    const bool named = dialect_->letter_of(Meaning::centre_1) != 0;
+    return std::vector<std::string>{named ? letter(Meaning::centre_1) : "I",
+                                    named ? letter(Meaning::centre_2) : "J, K", std::move(last)};
+  };
+  const auto r_word = [this] {
+    const WordRule* named = dialect_->word_of(Meaning::radius);
+    return named != nullptr ? std::string(named->name) + "=" : letter(Meaning::radius);
+  };
   if (words.radius == nullptr) {
-    if (words.centre1 == nullptr && words.centre2 == nullptr) fail(Fault::arc_words, here);
-    if (words.centre1 == nullptr || words.centre2 == nullptr)
-      fail(Fault::arc_centre_pair, here, {words.centre1 == nullptr ? "I" : "J"});
+    if (!one) fail(Fault::arc_words, here, letters(r_word()));
+    if (!both && dialect_->arc_centre != ArcCentre::from_start_any)
+      fail(Fault::arc_centre_pair, here,
+           letters(letter(words.centre1 == nullptr ? Meaning::centre_1 : Meaning::centre_2)));
     return arc_centre(words);
   }
   const int column = words.radius->column;
-  if (words.centre1 != nullptr || words.centre2 != nullptr) fail(Fault::arc_both, column);
+  if (one) fail(Fault::arc_both, column, letters(r_word()));
   const int a1 = state_.modes.axis1;
   const double r = length(a1, words.radius->value, false) * std::abs(state_.frame.scale(a1));
   if (r == 0.0) fail(Fault::arc_zero, column);
   const double chord = std::hypot(end.x - start.x, end.y - start.y);
-  if (chord == 0.0) fail(Fault::arc_full_by_radius, column);
+  if (chord == 0.0) fail(Fault::arc_full_by_radius, column, {r_word()});
   Point centre;
   if (!centre_by_radius(start, end, r, counter_clockwise, centre))
-    fail(Fault::arc_too_small, column, {text::number(r, 4), text::number(chord, 4)});
+    fail(Fault::arc_too_small, column, {text::number(r, 4), text::number(chord, 4), r_word()});
   return centre;
 }
 
@@ -162,7 +185,11 @@ void Execution::arc(const BlockWords& words, const Position& to) {
   const int a1 = state_.modes.axis1, a2 = state_.modes.axis2;
   const Frame& frame = state_.frame;
   const int here = static_cast<int>(block_.body) + 1;
-  if (words.machine_zero && !frame.shift_only()) fail(Fault::machine_zero_arc, here);
+  if (words.machine_zero && !frame.shift_only()) {
+    const auto rule = std::find_if(dialect_->g.begin(), dialect_->g.end(),
+                                   [](const GRule& g) { return g.function == Function::machine_zero; });
+    fail(Fault::machine_zero_arc, here, {"G" + std::to_string(rule->number)});
+  }
   if (std::abs(frame.scale(a1)) != std::abs(frame.scale(a2)))
     fail(Fault::arc_scaled, here, {machine_->axes[at(a1)].letter, machine_->axes[at(a2)].letter});
   const bool ccw = (state_.modes.motion == Function::arc_ccw) == (frame.sense(a1, a2) > 0);
@@ -192,20 +219,25 @@ void Execution::arc(const BlockWords& words, const Position& to) {
   emit(std::move(arc));
 }
 
-/// Centre by I and J in machine coordinates: absolute in the origin with G90, from the start with G91.
+/// Centre by its words in machine coordinates: absolute in the origin, or from the start.
 Point Execution::arc_centre(const BlockWords& words) const {
   const int a1 = state_.modes.axis1, a2 = state_.modes.axis2;
-  const double i = length(a1, words.centre1->value), j = length(a2, words.centre2->value);
   const Frame& frame = state_.frame;
+  const auto written = [&](int axis, const Word* word) {
+    return word == nullptr ? 0.0 : length(axis, word->value, dialect_->centre_as_diameter);
+  };
+  const double i = written(a1, words.centre1), j = written(a2, words.centre2);
   if (words.machine_zero && dialect_->arc_centre == ArcCentre::as_dimensions)
     return {i + frame.length(a1), j + frame.length(a2)};
+  const auto from_start = [&](const Word* word) {
+    if (word != nullptr && word->value.dimension != Dimension::as_modes)
+      return word->value.dimension == Dimension::incremental;
+    return state_.modes.dimension == Function::incremental ||
+           dialect_->arc_centre != ArcCentre::as_dimensions;
+  };
   Position centre{};
-  const bool incremental =
-      state_.modes.dimension == Function::incremental || dialect_->arc_centre == ArcCentre::from_start;
-  const double x = incremental ? frame.to_programmed(state_.machine, a1) : 0.0;
-  const double y = incremental ? frame.to_programmed(state_.machine, a2) : 0.0;
-  centre[at(a1)] = x + i;
-  centre[at(a2)] = y + j;
+  centre[at(a1)] = i + (from_start(words.centre1) ? frame.to_programmed(state_.machine, a1) : 0.0);
+  centre[at(a2)] = j + (from_start(words.centre2) ? frame.to_programmed(state_.machine, a2) : 0.0);
   return {frame.to_machine(centre, a1), frame.to_machine(centre, a2)};
 }
 
@@ -219,9 +251,10 @@ double Execution::helix_turns(const BlockWords& words, const Position& to, doubl
     for (int a = 0; a < axis_count(); ++a)
       if (words.axis[at(a)] != nullptr && a != state_.modes.axis1 && a != state_.modes.axis2) axis = a;
   const int column = words.pitch->column;
-  if (axis < 0 || words.axis[at(axis)] == nullptr) fail(Fault::helix_axis, column);
+  if (axis < 0 || words.axis[at(axis)] == nullptr) fail(Fault::helix_axis, column, {letter(Meaning::pitch)});
   const double pitch = length(axis, words.pitch->value) * std::abs(state_.frame.scale(axis));
-  if (pitch <= 0.0) fail(Fault::helix_pitch, words.pitch->value.column, {text::number(pitch, 4)});
+  if (pitch <= 0.0)
+    fail(Fault::helix_pitch, words.pitch->value.column, {text::number(pitch, 4), letter(Meaning::pitch)});
   const double total = 360.0 * std::abs(to[at(axis)] - state_.machine[at(axis)]) / pitch;
   const double turns = std::max(0.0, std::round((total - std::abs(sweep_deg)) / 360.0));
   if (turns > kMaxTurns) fail(Fault::helix_long, column, {text::number(turns, 0), text::number(kMaxTurns)});
@@ -235,8 +268,10 @@ double Execution::helix_turns(const BlockWords& words, const Position& to, doubl
 void Execution::store_feed(const BlockWords& words) {
   if (words.feed == nullptr) return;
   const double value = resolve(words.feed->value);
-  if (!(value >= 0.01 - 1e-12 && value <= 99999.99))
-    refuse_range("F", words.feed->value, value, "0.01", "99999.99");
+  const LetterRule& rule = dialect_->letters[static_cast<unsigned char>(words.feed->letter)];
+  if (!(value >= rule.min - 1e-12 && value <= rule.max))
+    refuse_range("F", words.feed->value, value, text::number(rule.min).c_str(),
+                 text::number(rule.max).c_str());
   if (state_.modes.feed == Function::feed_inverse) return;
   state_.feed = value;
   state_.feed_at = written(words.feed->column);
@@ -253,9 +288,10 @@ Feed Execution::feed_of(const BlockWords& words, double length_mm, bool rotary_o
 Feed Execution::programmed_feed(const BlockWords& words, double length_mm, bool rotary_only) {
   const int here = static_cast<int>(block_.body) + 1;
   if (words.time != nullptr) {
-    if (state_.modes.feed != Function::feed_minute) fail(Fault::block_time, words.time->column);
+    const std::string name = letter(Meaning::block_time);
+    if (state_.modes.feed != Function::feed_minute) fail(Fault::block_time, words.time->column, {name});
     const double seconds = resolve(words.time->value);
-    if (!(seconds > 0.0)) refuse_range("t", words.time->value, seconds, "0.001", "99999.999");
+    if (!(seconds > 0.0)) refuse_range(name, words.time->value, seconds, "0.001", "99999.999");
     return length_mm > 0.0 ? Feed{length_mm * 60.0 / seconds, FeedUnit::mm_per_min}
                            : Feed{60.0 / seconds, FeedUnit::inverse_time};
   }

@@ -2,7 +2,6 @@
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
-#include "kernel/program/reading/number.hpp"
 
 namespace servogate::program {
 namespace {
@@ -38,7 +37,7 @@ void Execution::apply_power_on() {
   setting_faults_.clear();
   power_on_error_.reset();
   const auto keep = [&](int mode, const std::string& variable, const ProgramError& error) {
-    setting_faults_.push_back({mode, variable, &entry(error.fault), error.arguments});
+    setting_faults_.push_back({mode, variable, error.entry, error.arguments});
     if (!power_on_error_) power_on_error_ = error;
   };
   for (std::size_t i = 0; i < machine_->power_on.size(); ++i) {
@@ -75,7 +74,8 @@ void Execution::power_on_mode(std::size_t index) {
 }
 
 void Execution::power_on_value(const std::string& name, double value) {
-  if (name == "E") return check_range(name, value, 31.0, 10000.0);
+  const ParameterSet& set = dialect_->parameters;
+  if (set.count_max > 0 && name == set.letter) return check_range(name, value, set.count_min, set.count_max);
   if (name == "RESOLUTION") return check_range(name, value, 0.0, 1.0);
   const VariableRule* rule = dialect_->find_variable(name);
   if (rule == nullptr) fail(Fault::variable_unknown, 0, {name});

@@ -1,16 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 
 #include "kernel/program/execution/execution.hpp"
 
 namespace servogate::program {
 namespace {
 
-bool feed_motion(Function f) {
-  return f == Function::line || f == Function::arc_cw || f == Function::arc_ccw;
-}
 bool arc_motion(Function f) { return f == Function::arc_cw || f == Function::arc_ccw; }
+
+using Mode = Function Modes::*;
+
+/// The mode that each function sets; null: it is none.
+constexpr std::array<Mode, kFunctions> modes_of_functions() {
+  std::array<Mode, kFunctions> of{};
+  const auto set = [&](Function first, Function last, Mode mode) {
+    for (auto f = static_cast<std::size_t>(first); f <= static_cast<std::size_t>(last); ++f) of[f] = mode;
+  };
+  set(Function::rapid, Function::arc_ccw, &Modes::motion);
+  set(Function::corner_limited, Function::exact, &Modes::corner);
+  set(Function::inch, Function::metric, &Modes::unit);
+  set(Function::absolute, Function::incremental, &Modes::dimension);
+  set(Function::diameter, Function::radius, &Modes::across);
+  set(Function::feed_inverse, Function::feed_revolution, &Modes::feed);
+  set(Function::surface_speed, Function::revolutions, &Modes::spindle);
+  return of;
+}
+constexpr std::array<Mode, kFunctions> kModes = modes_of_functions();
 
 struct Plane {
   int number;
@@ -53,22 +71,31 @@ void Execution::run_words() {
   if (words.cycle != 0 || state_.cycle.number != 0) return run_cycle_block(words);
   const bool arc_words = arc_motion(state_.modes.motion) &&
                          (words.centre1 != nullptr || words.centre2 != nullptr || words.radius != nullptr);
-  const bool moves = words.axes > 0 || arc_words;
+  const bool moves = words.instead == nullptr && (words.axes > 0 || arc_words);
   if (!moves || state_.modes.motion == Function::rapid) end_profile();
-  if (moves) check_profile(words);
-  refuse_stray_words(words);
-  store_feed(words);
+  if (moves && dialect_->profile != nullptr) dialect_->profile(*this, words);
+  if (words.instead == nullptr) {
+    refuse_stray_words(words);
+    store_feed(words);
+  }
   before_motion(words);
+  if (words.instead != nullptr) words.instead(*this, words);
   if (moves) move(words);
-  if (moves && words.one_shot != 0) return_modes(words.one_shot, before);
+  if (words.one_shot != 0 && (words.axes > 0 || moves)) return_modes(words, before);
+  if (words.then != Function::nothing)
+    state_.modes.*kModes[static_cast<std::size_t>(words.then)] = words.then;
   after_motion(words);
+  for (int i = 0; i < words.statement_count; ++i) {
+    const Word& word = *words.statements[static_cast<std::size_t>(i)];
+    word.rule->run(*this, word);
+  }
 }
 
 /// The dialect's cycle takes the place of the motion; a feed profile ends here.
 void Execution::run_cycle_block(const BlockWords& words) {
   end_profile();
   if (words.time != nullptr)
-    fail(Fault::word_without_function, words.time->column, {word_text(block_, *words.time)});
+    fail(Fault::word_without_function, words.time->column, {word_text(*dialect_, block_, *words.time)});
   store_feed(words);
   before_motion(words);
   dialect_->cycle(*this, words);
@@ -77,96 +104,155 @@ void Execution::run_cycle_block(const BlockWords& words) {
 
 /// The former mode comes back in the groups where a block with motion changes it for itself only, and the
 /// former S with its unit.
-void Execution::return_modes(std::uint32_t one_shot, const Modes& before) {
-  const auto acted = [&](std::initializer_list<Function> functions) {
-    return std::any_of(functions.begin(), functions.end(),
-                       [&](Function f) { return (one_shot >> static_cast<int>(f) & 1u) != 0; });
-  };
+void Execution::return_modes(const BlockWords& words, const Modes& before) {
   Modes& modes = state_.modes;
-  if (acted({Function::absolute, Function::incremental})) modes.dimension = before.dimension;
-  if (acted({Function::feed_inverse, Function::feed_minute, Function::feed_revolution}))
-    modes.feed = before.feed;
-  if (acted({Function::surface_speed, Function::revolutions}) && modes.spindle != before.spindle) {
-    modes.spindle = before.spindle;
-    if (modes.cutting != before.cutting) {
+  for (std::size_t f = 0; f < kFunctions; ++f) {
+    if ((words.one_shot >> f & 1u) == 0 || kModes[f] == nullptr) continue;
+    if (kModes[f] == &Modes::spindle && modes.spindle != before.spindle && modes.cutting != before.cutting) {
       modes.speed = before.speed;
       modes.cutting = before.cutting;
       state_.speed_told = false;
     }
+    modes.*kModes[f] = before.*kModes[f];
   }
-  if (acted({Function::inch, Function::metric})) modes.unit = before.unit;
-  if (acted({Function::corner_limited, Function::continuous, Function::exact})) modes.corner = before.corner;
 }
 
 BlockWords Execution::gather() {
   BlockWords words;
   words.block = &block_;
-  std::vector<const GRule*> rules;
-  const bool by_parameter =
-      std::any_of(block_.words.begin(), block_.words.begin() + block_.count,
-                  [](const Word& w) { return w.meaning == Meaning::g && w.value.parameter >= 0; });
+  std::vector<const GRule*> by_value;
   for (std::size_t i = 0; i < block_.count; ++i) {
-    const Word& word = block_.words[i];
-    switch (word.meaning) {
-      case Meaning::g: {
-        const GRule* rule = word.g;
-        if (by_parameter) {
-          const int number = whole(word.value, "G");
-          rule = dialect_->find_g(number);
-          if (rule == nullptr) fail(Fault::g_unknown, word.column, {std::to_string(number)});
-          rules.push_back(rule);
-          check_parameter_g(rules, word);
-        }
-        take_g(words, *rule);
-        if (rule->function == Function::cycle) words.cycle_word = &word;
-        if (rule->function == Function::dwell) words.dwell_word = &word;
-        break;
-      }
-      case Meaning::m: {
-        const int code = whole(word.value, "M");
-        if (code > 99) fail(Fault::out_of_range, word.value.column, {"M", std::to_string(code), "0", "99"});
-        words.m[static_cast<std::size_t>(words.m_count)] = &word;
-        words.m_code[static_cast<std::size_t>(words.m_count++)] = code;
-        break;
-      }
-      case Meaning::axis:
-        words.axis[static_cast<std::size_t>(word.axis)] = &word;
-        ++words.axes;
-        break;
-      case Meaning::centre_1:
-        words.centre1 = &word;
-        break;
-      case Meaning::centre_2:
-        words.centre2 = &word;
-        break;
-      case Meaning::pitch:
-        words.pitch = &word;
-        break;
-      case Meaning::radius:
-        (words.radius == nullptr ? words.radius : words.radius2) = &word;
-        break;
-      case Meaning::feed:
-        words.feed = &word;
-        break;
-      case Meaning::block_time:
-        words.time = &word;
-        break;
-      case Meaning::speed:
-        words.speed = &word;
-        break;
-      case Meaning::tool:
-        words.tool = &word;
-        break;
-      case Meaning::h:
-        words.h = &word;
-        break;
-      case Meaning::unknown:
-      case Meaning::later:
-      case Meaning::number:
-        break;
-    }
+    Word& word = block_.words[i];
+    if (word.value.expression != 0 || word.argument_count != 0) evaluate_words(word);
+    if (word.meaning == Meaning::g)
+      gather_g(words, word, by_value);
+    else
+      gather_word(words, word);
   }
+  if (words.has_centres)
+    for (std::size_t i = 0; i < block_.count; ++i)
+      if (block_.words[i].meaning == Meaning::centre_of) gather_centre(words, block_.words[i]);
   return words;
+}
+
+/// What the expressions of a word give takes the place of its number, in the block's order.
+void Execution::evaluate_words(Word& word) {
+  const auto take = [this](Value& value) {
+    if (value.expression == 0) return;
+    std::size_t pos = value.expression - 1u;
+    const double number = evaluate(pos);
+    value.number = value.negative ? -number : number;
+  };
+  take(word.value);
+  if (word.argument_count != 0)
+    for (std::size_t i = 0; i < word.argument_count; ++i) take(block_.arguments[i]);
+  if (word.letter == 0 || word.value.expression == 0) return;
+  const LetterRule& rule = dialect_->letters[static_cast<unsigned char>(word.letter)];
+  if (rule.min < rule.max && !(word.value.number >= rule.min && word.value.number <= rule.max))
+    fail(Fault::out_of_range, word.column,
+         {std::string(1, word.letter), text::number(word.value.number), text::number(rule.min),
+          text::number(rule.max)});
+}
+
+void Execution::gather_g(BlockWords& words, const Word& word, std::vector<const GRule*>& by_value) {
+  const GRule* rule = word.g;
+  if (rule == nullptr) {
+    const int number = whole(word.value, "G");
+    rule = dialect_->find_g(number);
+    if (rule == nullptr) fail(Fault::g_unknown, word.column, {std::to_string(number)});
+  }
+  if (word.g == nullptr || !by_value.empty()) {
+    // A number that is known only now: what reading could not judge is judged against all of the block.
+    if (by_value.empty())
+      for (const Word* other = block_.words.data(); other != &word; ++other)
+        if (other->meaning == Meaning::g) by_value.push_back(other->g);
+    by_value.push_back(rule);
+    check_parameter_g(by_value, word);
+  }
+  take_g(words, *rule);
+  if (rule->function == Function::cycle) words.cycle_word = &word;
+  if (rule->function == Function::dwell) words.dwell_word = &word;
+  if (rule->function == Function::own) {
+    words.instead = rule->motion;
+    words.instead_word = &word;
+  }
+  if (word.argument_count != 0 && rule->function != Function::own)
+    fail(Fault::not_executed, word.column,
+         {std::string(block_.line.substr(word.column - 1u, word.end - word.column + 1u))});
+}
+
+void Execution::gather_word(BlockWords& words, const Word& word) {
+  static constexpr std::array<std::pair<Meaning, const Word * BlockWords::*>, 12> kPlaces = {{
+      {Meaning::centre_1, &BlockWords::centre1},
+      {Meaning::centre_2, &BlockWords::centre2},
+      {Meaning::pitch, &BlockWords::pitch},
+      {Meaning::feed, &BlockWords::feed},
+      {Meaning::block_time, &BlockWords::time},
+      {Meaning::speed, &BlockWords::speed},
+      {Meaning::tool, &BlockWords::tool},
+      {Meaning::corrector, &BlockWords::corrector},
+      {Meaning::h, &BlockWords::h},
+      {Meaning::count, &BlockWords::count},
+      {Meaning::angle, &BlockWords::angle},
+      {Meaning::amount, &BlockWords::amount},
+  }};
+  switch (word.meaning) {
+    case Meaning::axis:
+      words.axis[static_cast<std::size_t>(word.axis)] = &word;
+      ++words.axes;
+      return;
+    case Meaning::m: {
+      const int code = whole(word.value, "M");
+      const LetterRule& rule = dialect_->letters['M'];
+      if (code > rule.max)
+        fail(Fault::out_of_range, word.value.column,
+             {"M", std::to_string(code), "0", text::number(rule.max)});
+      words.m[static_cast<std::size_t>(words.m_count)] = &word;
+      words.m_code[static_cast<std::size_t>(words.m_count++)] = code;
+      return;
+    }
+    case Meaning::radius:
+      (words.radius == nullptr ? words.radius : words.radius2) = &word;
+      return;
+    case Meaning::statement:
+      return gather_statement(words, word);
+    case Meaning::centre_of:
+      words.has_centres = true;
+      return;
+    case Meaning::count:
+    case Meaning::angle:
+    case Meaning::amount:
+      words.for_instead = true;
+      break;
+    default:
+      break;
+  }
+  for (const auto& [meaning, place] : kPlaces)
+    if (meaning == word.meaning) words.*place = &word;
+}
+
+/// Which centre of the plane a word of an axis is; known once the block's planes and axes are.
+void Execution::gather_centre(BlockWords& words, const Word& word) const {
+  if (word.axis == state_.modes.axis1)
+    words.centre1 = &word;
+  else if (word.axis == state_.modes.axis2)
+    words.centre2 = &word;
+  else
+    fail(Fault::word_without_function, word.column, {word_text(*dialect_, block_, word)});
+}
+
+void Execution::gather_statement(BlockWords& words, const Word& word) {
+  const WordRule& rule = *word.rule;
+  if (rule.when == When::in_order) return rule.run(*this, word);
+  if (rule.when == When::for_motion) {
+    if (words.instead != nullptr) fail(Fault::word_without_function, word.column, {std::string(rule.name)});
+    words.instead = rule.motion;
+    words.instead_word = &word;
+    return;
+  }
+  if (static_cast<std::size_t>(words.statement_count) == words.statements.size())
+    fail(Fault::too_many_words, word.column, {std::to_string(words.statements.size())});
+  words.statements[static_cast<std::size_t>(words.statement_count++)] = &word;
 }
 
 void Execution::check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const {
@@ -179,77 +265,59 @@ void Execution::check_parameter_g(const std::vector<const GRule*>& rules, const 
 }
 
 void Execution::take_g(BlockWords& words, const GRule& rule) {
-  Modes& modes = state_.modes;
-  if (rule.one_shot_with_motion) words.one_shot |= 1u << static_cast<int>(rule.function);
+  if (rule.one_shot_with_motion) words.one_shot |= std::uint64_t{1} << static_cast<int>(rule.function);
+  if (rule.then != Function::nothing) words.then = rule.then;
+  if (const Mode mode = kModes[static_cast<std::size_t>(rule.function)]; mode != nullptr) {
+    state_.modes.*mode = rule.function;
+    return;
+  }
   switch (rule.function) {
-    case Function::rapid:
-    case Function::line:
-    case Function::arc_cw:
-    case Function::arc_ccw:
-      modes.motion = rule.function;
-      break;
     case Function::plane_12:
     case Function::plane_31:
     case Function::plane_23:
-      select_plane(rule.function, words.block != nullptr);
-      break;
-    case Function::corner_limited:
-    case Function::continuous:
-    case Function::exact:
-      modes.corner = rule.function;
-      break;
-    case Function::inch:
-    case Function::metric:
-      modes.unit = rule.function;
-      break;
-    case Function::absolute:
-    case Function::incremental:
-      modes.dimension = rule.function;
-      break;
+      return select_plane(rule.function, words.block != nullptr);
+    case Function::work_offset:
+      return use_origin(rule.value, static_cast<int>(block_.body) + 1);
     case Function::machine_zero:
       words.machine_zero = true;
-      break;
+      return;
     case Function::dwell:
       words.dwell = true;
-      break;
+      return;
     case Function::exact_once:
       words.exact_once = true;
-      break;
-    case Function::feed_inverse:
-    case Function::feed_minute:
-    case Function::feed_revolution:
-      modes.feed = rule.function;
-      break;
-    case Function::surface_speed:
-    case Function::revolutions:
-      modes.spindle = rule.function;
-      break;
+      return;
     case Function::cycle:
       words.cycle = rule.number;
-      break;
+      return;
     case Function::cycle_off:
       state_.cycle = Cycle{};
-      break;
-    case Function::nothing:
-    case Function::later:
-      break;
+      return;
+    default:
+      return;
   }
 }
 
-/// M, S, T and H may not stand in a motion block of a continuous profile. Source: specification A 13.2,
-/// A 6.5.
-void Execution::check_profile(const BlockWords& words) const {
-  if (!feed_motion(state_.modes.motion) || state_.modes.corner == Function::exact) return;
-  const auto refuse = [&](const Word& word) {
-    fail(Fault::function_in_profile, word.column, {word_text(block_, word)});
-  };
-  for (const Word* word : {words.speed, words.tool, words.h})
-    if (word != nullptr) refuse(*word);
-  for (int i = 0; i < words.m_count; ++i) {
-    const MRule* rule = dialect_->find_m(words.m_code[static_cast<std::size_t>(i)]);
-    const bool allowed = rule != nullptr && rule->in_profile && !state_.profile_open;
-    if (!allowed) refuse(*words.m[static_cast<std::size_t>(i)]);
+/// A row of the origins for all axes; what it does not name, and row 0 where there is none, is machine zero.
+void Execution::use_origin(int number, int column) {
+  const auto& origins = state_.tables->origins;
+  const auto row = origins.find(number);
+  if (row == origins.end() && number != 0) {
+    std::string known = "0";
+    for (const auto& [other, values] : origins)
+      if (other != 0) known += ", " + std::to_string(other);
+    fail(Fault::origin_missing, column, {std::to_string(number), known});
   }
+  for (int a = 0; a < axis_count(); ++a) {
+    double value = 0.0;
+    if (row != origins.end())
+      if (const auto at = row->second.find(machine_->axes[static_cast<std::size_t>(a)].letter);
+          at != row->second.end())
+        value = at->second;
+    state_.frame.set_origin(a, value);
+    state_.origin[static_cast<std::size_t>(a)] = static_cast<std::int16_t>(number);
+  }
+  frame_changed();
 }
 
 /// Words that nothing in this block uses are told, not skipped.
@@ -257,13 +325,17 @@ void Execution::refuse_stray_words(const BlockWords& words) const {
   const bool arc = arc_motion(state_.modes.motion);
   const bool moves = words.axes > 0 || (arc && (words.centre1 || words.centre2 || words.radius));
   const auto refuse = [&](const Word* word) {
-    if (word != nullptr) fail(Fault::word_without_function, word->column, {word_text(block_, *word)});
+    if (word != nullptr)
+      fail(Fault::word_without_function, word->column, {word_text(*dialect_, block_, *word)});
   };
-  if (words.radius2 != nullptr) fail(Fault::word_twice, words.radius2->column, {"R"});
+  if (words.radius2 != nullptr)
+    fail(Fault::word_twice, words.radius2->column, {std::string(1, words.radius2->letter)});
   if (!arc)
     for (const Word* word : {words.centre1, words.centre2, words.radius, words.pitch}) refuse(word);
   if (!moves || state_.modes.motion == Function::rapid) refuse(words.time);
   if (!moves) refuse(words.pitch);
+  if (words.for_instead)
+    for (const Word* word : {words.count, words.angle, words.amount}) refuse(word);
 }
 
 }  // namespace servogate::program

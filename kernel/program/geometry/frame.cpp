@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/geometry/frame.hpp"
 
-#include "kernel/program/values/expression.hpp"
+#include "kernel/program/geometry/degrees.hpp"
 
 namespace servogate::program {
 

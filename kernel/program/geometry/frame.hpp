@@ -18,6 +18,9 @@ class Frame {
   void set_origin(int axis, double mm) noexcept { origin_[at(axis)] = mm; }
   double length(int axis) const noexcept { return length_[at(axis)]; }
   void set_length(int axis, double mm) noexcept { length_[at(axis)] = mm; }
+  /// Of the program's own zero from the origin, along the axes of the machine.
+  double offset(int axis) const noexcept { return offset_[at(axis)]; }
+  void set_offset(int axis, double mm) noexcept { offset_[at(axis)] = mm; }
   double scale(int axis) const noexcept { return scale_[at(axis)]; }
   void set_scale(int axis, double factor) noexcept;
   bool mirrored(int axis) const noexcept { return (mirror_ >> axis & 1u) != 0; }
@@ -33,7 +36,7 @@ class Frame {
   }
   /// No scale, mirror or rotation: programmed and machine coordinates differ by a shift.
   bool shift_only() const noexcept { return shift_only_; }
-  double shift(int axis) const noexcept { return origin_[at(axis)] + length_[at(axis)]; }
+  double shift(int axis) const noexcept { return origin_[at(axis)] + offset_[at(axis)] + length_[at(axis)]; }
 
   /// Machine coordinate of one axis of a programmed point.
   double to_machine(const Position& programmed, int axis) const noexcept;
@@ -51,7 +54,7 @@ class Frame {
 
   int axes_;
   int axis1_ = -1, axis2_ = -1;
-  Position origin_{}, length_{}, scale_{};
+  Position origin_{}, offset_{}, length_{}, scale_{};
   std::uint32_t mirror_ = 0;
   double angle_deg_ = 0.0, cos_ = 1.0, sin_ = 0.0;
   bool shift_only_ = true;

@@ -3,8 +3,11 @@
 
 namespace servogate::program {
 class Execution;
-struct Operands;
 }  // namespace servogate::program
+
+namespace servogate::program::nc110 {
+struct Operands;
+}  // namespace servogate::program::nc110
 
 /// The exceptions of NC-110: what its three-letter codes and its variables do. Named as the words of the
 /// language.

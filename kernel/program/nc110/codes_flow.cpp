@@ -4,7 +4,9 @@
 
 #include "kernel/program/execution/execution.hpp"
 #include "kernel/program/nc110/codes.hpp"
-#include "kernel/program/reading/number.hpp"
+#include "kernel/program/nc110/messages.hpp"
+#include "kernel/program/nc110/operands.hpp"
+#include "kernel/program/nc110/places.hpp"
 
 namespace servogate::program::nc110::code {
 namespace {
@@ -15,10 +17,6 @@ struct Side {
   double number = 0.0;
   std::string text;
 };
-
-bool names_place(std::string_view text) {
-  return text.starts_with("SA") || text.starts_with("SK") || text.starts_with("SYVAR");
-}
 
 Side read_side(Execution& run, const Operands& operands, const Operand& item) {
   const std::string_view line = operands.block->line.substr(0, item.end);
@@ -38,7 +36,7 @@ Side read_side(Execution& run, const Operands& operands, const Operand& item) {
     }
     pos = item.begin;
   }
-  side.number = evaluate(line, pos, &run);
+  side.number = evaluate(run.dialect().expressions, line, pos, &run);
   if (pos != item.end) fail(Fault::expected, static_cast<int>(pos) + 1, {","});
   return side;
 }
@@ -55,6 +53,17 @@ bool holds(std::string_view code, const T& a, const T& b) {
 
 int column(const Operand& item) { return static_cast<int>(item.begin) + 1; }
 
+/// Not out of a part that EPP runs.
+void jump(Execution& run, const Operands& operands, const Operand& label) {
+  const std::string_view name = operands.text(label);
+  const std::uint32_t target = run.label_line(name, column(label));
+  const Flow& flow = run.state().flow;
+  if (flow.part && flow.part->depth == flow.calls.size() &&
+      (target < flow.part->first || target > flow.part->last))
+    fail(Wrong::jump_out_of_part, column(label), {std::string(name)});
+  run.jump(target);
+}
+
 }  // namespace
 
 void rpt(Execution& run, const Operands& operands) {
@@ -62,11 +71,11 @@ void rpt(Execution& run, const Operands& operands) {
   const double count = run.resolve(item.value);
   const int most = run.dialect().max_repeat_count;
   if (!(count >= 0.0 && count <= most) || count != static_cast<int>(count))
-    fail(Fault::repeat_count, column(item), {text::number(count), std::to_string(most)});
-  run.repeat(static_cast<int>(count));
+    fail(Wrong::repeat_count, column(item), {text::number(count), std::to_string(most)});
+  run.repeat(static_cast<int>(count), operands.column);
 }
 
-void erp(Execution& run, const Operands&) { run.end_repeat(); }
+void erp(Execution& run, const Operands& operands) { run.end_repeat(operands.column); }
 
 void cls(Execution& run, const Operands& operands) {
   const Operand& item = operands.items[0];
@@ -76,30 +85,34 @@ void cls(Execution& run, const Operands& operands) {
       !name.empty() && name.size() <= run.dialect().max_program_name && is_capital(name[0]) &&
       std::all_of(name.begin(), name.end(), [](char c) { return is_capital(c) || is_digit(c); });
   if (!good)
-    fail(Fault::program_name, column(item),
+    fail(Wrong::program_name, column(item),
          {std::string(name), std::to_string(run.dialect().max_program_name)});
-  run.call(name, column(item));
+  run.call(name, 1, column(item));
 }
 
 void epp(Execution& run, const Operands& operands) {
   const Operand &first = operands.items[0], &last = operands.items[1];
-  run.run_part(operands.text(first), operands.text(last), column(first), column(last));
+  if (run.state().flow.part) fail(Wrong::part_nested, operands.column);
+  const std::uint32_t from = run.label_line(operands.text(first), column(first)),
+                      to = run.label_line(operands.text(last), column(last));
+  if (to < from)
+    fail(Wrong::part_reversed, column(first),
+         {std::string(operands.text(first)), std::string(operands.text(last))});
+  run.run_part(from, to);
 }
 
-void bnc(Execution& run, const Operands& operands) {
-  run.jump(operands.text(operands.items[0]), column(operands.items[0]));
-}
+void bnc(Execution& run, const Operands& operands) { jump(run, operands, operands.items[0]); }
 
 void branch(Execution& run, const Operands& operands) {
   Side a = read_side(run, operands, operands.items[0]);
   Side b = read_side(run, operands, operands.items[1]);
-  if (a.characters != b.characters) fail(Fault::text_compare, column(operands.items[a.characters ? 1 : 0]));
+  if (a.characters != b.characters) fail(Wrong::text_compare, column(operands.items[a.characters ? 1 : 0]));
   const std::size_t length = std::max(a.text.size(), b.text.size());
   a.text.resize(length, ' ');
   b.text.resize(length, ' ');
   const std::string_view code = operands.rule->name;
   const bool jumps = a.characters ? holds(code, a.text, b.text) : holds(code, a.number, b.number);
-  if (jumps) run.jump(operands.text(operands.items[2]), column(operands.items[2]));
+  if (jumps) jump(run, operands, operands.items[2]);
 }
 
 }  // namespace servogate::program::nc110::code

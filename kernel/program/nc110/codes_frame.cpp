@@ -5,6 +5,9 @@
 
 #include "kernel/program/execution/execution.hpp"
 #include "kernel/program/nc110/codes.hpp"
+#include "kernel/program/nc110/messages.hpp"
+#include "kernel/program/nc110/operands.hpp"
+#include "kernel/program/nc110/places.hpp"
 
 namespace servogate::program::nc110::code {
 namespace {
@@ -17,7 +20,7 @@ const std::string& letter(const Execution& run, int axis) { return run.machine()
 int origin_number(const Execution& run, const Operands& operands) {
   const double number = run.resolve(operands.items[0].value);
   if (!(number >= 0.0 && number <= kMaxOrigin) || number != static_cast<int>(number))
-    fail(Fault::origin_range, operands.items[0].value.column,
+    fail(Wrong::origin_range, operands.items[0].value.column,
          {std::string(operands.rule->name), std::to_string(kMaxOrigin), text::number(number)});
   return static_cast<int>(number);
 }
@@ -144,7 +147,7 @@ void rqo(Execution& run, const Operands& operands) {
 }
 
 void dpi(Execution& run, const Operands& operands) {
-  if (run.state().profile_open) fail(Fault::plane_in_profile, operands.column, {"DPI"});
+  if (run.state().profile_open) fail(Wrong::plane_in_profile, operands.column, {"DPI"});
   const int axis1 = operands.items[0].axis, axis2 = operands.items[1].axis;
   int normal = -1;
   if (run.axis_count() == 3) normal = 3 - axis1 - axis2;

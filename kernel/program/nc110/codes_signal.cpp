@@ -4,7 +4,9 @@
 
 #include "kernel/program/execution/execution.hpp"
 #include "kernel/program/nc110/codes.hpp"
-#include "kernel/program/reading/number.hpp"
+#include "kernel/program/nc110/messages.hpp"
+#include "kernel/program/nc110/operands.hpp"
+#include "kernel/program/nc110/places.hpp"
 
 namespace servogate::program::nc110::code {
 namespace {
@@ -14,8 +16,7 @@ constexpr double kMaxDelay = 32.0;  ///< s, specification B 7.2
 int column(std::size_t offset) { return static_cast<int>(offset) + 1; }
 
 bool names_value(std::string_view text) {
-  return text.starts_with("SA") || text.starts_with("SK") || text.starts_with("SYVAR") ||
-         (text.size() > 1 && text[0] == 'E' && is_digit(text[1]));
+  return names_place(text) || (text.size() > 1 && text[0] == 'E' && is_digit(text[1]));
 }
 
 std::string shown(Execution& run, const Operands& operands, const Operand& item) {
@@ -24,7 +25,7 @@ std::string shown(Execution& run, const Operands& operands, const Operand& item)
     const std::string_view inner = text.substr(1, text.size() - 2);
     const std::size_t most = run.dialect().max_message_characters;
     if (characters(inner) > most)
-      fail(Fault::text_long, column(item.begin), {std::to_string(characters(inner)), std::to_string(most)});
+      fail(Wrong::text_long, column(item.begin), {std::to_string(characters(inner)), std::to_string(most)});
     return std::string(inner);
   }
   const std::string_view line = operands.block->line.substr(0, item.end);
@@ -37,7 +38,7 @@ std::string shown(Execution& run, const Operands& operands, const Operand& item)
   }
   if (text.front() >= 'a' && text.front() <= 'z')
     fail(Fault::not_executed, column(item.begin), {std::string(text)});
-  const double value = evaluate(line, pos, &run);
+  const double value = evaluate(run.dialect().expressions, line, pos, &run);
   if (pos != item.end) fail(Fault::expected, column(pos), {","});
   return names_value(text) ? std::string(text) + "=" + text::number(value) : text::number(value);
 }
@@ -45,8 +46,8 @@ std::string shown(Execution& run, const Operands& operands, const Operand& item)
 Wait::Compare read_compare(const Operands& operands, std::size_t& pos, const image::Place& place) {
   using Compare = Wait::Compare;
   const char c = pos < operands.block->end ? operands.block->line[pos] : '\0';
-  if (c != '=' && c != '>' && c != '<' && c != '#') fail(Fault::wait_form, column(pos));
-  if (place.format == image::Format::bl && c != '=') fail(Fault::wait_bit, column(pos));
+  if (c != '=' && c != '>' && c != '<' && c != '#') fail(Wrong::wait_form, column(pos));
+  if (place.format == image::Format::bl && c != '=') fail(Wrong::wait_bit, column(pos));
   ++pos;
   return c == '=' ? Compare::eq : c == '>' ? Compare::gt : c == '<' ? Compare::lt : Compare::ne;
 }
@@ -65,7 +66,7 @@ void dis(Execution& run, const Operands& operands) {
 void dly(Execution& run, const Operands& operands) {
   const double seconds = run.resolve(operands.items[0].value);
   if (!(seconds >= 0.0 && seconds <= kMaxDelay))
-    fail(Fault::dwell_range, operands.items[0].value.column,
+    fail(Wrong::dwell_range, operands.items[0].value.column,
          {"DLY", text::number(seconds), text::number(kMaxDelay)});
   run.end_profile();
   run.emit(Dwell{seconds});
@@ -78,20 +79,20 @@ void wai(Execution& run, const Operands& operands) {
   std::size_t pos = item.begin;
   if (is_digit(line[pos]) || line[pos] == 'E')
     fail(Fault::not_executed, operands.column, {"WAI," + std::string(operands.text(item))});
-  if (line[pos] != 'S') fail(Fault::wait_form, column(pos));
+  if (line[pos] != 'S') fail(Wrong::wait_form, column(pos));
   const image::Place place = read_place(line, pos);
   if (place.format != image::Format::bl && place.format != image::Format::by &&
       place.format != image::Format::in) {
     const std::string text = image::to_string(place);
-    fail(Fault::wait_format, column(item.begin), {text.substr(text.find('.') + 1)});
+    fail(Wrong::wait_format, column(item.begin), {text.substr(text.find('.') + 1)});
   }
   Wait wait;
   wait.place = place;
   pos = skip_spaces(line, pos);
   wait.compare = read_compare(operands, pos, place);
   const int value_column = column(pos);
-  wait.value = evaluate(line, pos, &run);
-  if (pos != item.end) fail(Fault::wait_form, column(pos));
+  wait.value = evaluate(run.dialect().expressions, line, pos, &run);
+  if (pos != item.end) fail(Wrong::wait_form, column(pos));
   run.check_storable(place, wait.value, value_column);
   run.end_profile();
   run.state().flow.barrier = true;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
+#include "kernel/program/nc110/messages.hpp"
 #include "kernel/program/nc110/nc110.hpp"
 
 namespace servogate::program::nc110 {
@@ -14,7 +15,7 @@ constexpr int kMaxPecks = 10'000;
 std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 
 [[noreturn]] void stray(const Execution& run, const Word& word) {
-  fail(Fault::word_without_function, word.column, {word_text(run.block(), word)});
+  fail(Fault::word_without_function, word.column, {word_text(run.dialect(), run.block(), word)});
 }
 
 /// A level of the cycle's axis; with G91 from where the axis stands at this block (specification A 24,
@@ -32,11 +33,11 @@ int cycle_axis(const Execution& run, const BlockWords& words) {
     const Word* word = words.axis[at(a)];
     if (word == nullptr) continue;
     if (words.axes > 1 && (a == modes.axis1 || a == modes.axis2))
-      fail(Fault::cycle_motion, word->column, {word_text(run.block(), *word)});
-    if (found >= 0) fail(Fault::cycle_motion, word->column, {word_text(run.block(), *word)});
+      fail(Wrong::cycle_motion, word->column, {word_text(run.dialect(), run.block(), *word)});
+    if (found >= 0) fail(Wrong::cycle_motion, word->column, {word_text(run.dialect(), run.block(), *word)});
     found = a;
   }
-  if (found < 0) fail(Fault::cycle_depth, words.cycle_word->column, {std::to_string(words.cycle)});
+  if (found < 0) fail(Wrong::cycle_depth, words.cycle_word->column, {std::to_string(words.cycle)});
   return found;
 }
 
@@ -55,23 +56,24 @@ void check_levels(Execution& run, Cycle& cycle, double from) {
                     approach = text::number(cycle.approach, 4);
   const double down = cycle.depth - cycle.approach;
   if (down == 0.0)
-    run.warn(cycle.levels_at, Fault::cycle_no_depth, {number, depth, approach});
+    run.warn(cycle.levels_at, entry(Wrong::cycle_no_depth), {number, depth, approach});
   else if ((cycle.depth - from) * (cycle.approach - cycle.depth) > 0.0)
-    run.warn(cycle.levels_at, Fault::cycle_passes_depth, {number, depth, approach});
+    run.warn(cycle.levels_at, entry(Wrong::cycle_passes_depth), {number, depth, approach});
   else if ((cycle.retreat - cycle.approach) * down > 0.0)
-    run.warn(cycle.levels_at, Fault::cycle_return_below,
+    run.warn(cycle.levels_at, entry(Wrong::cycle_return_below),
              {number, depth, text::number(cycle.retreat, 4), approach});
 }
 
 void take_pecks(const Execution& run, const BlockWords& words, Cycle& cycle) {
   if (cycle.number != 83) {
     if (cycle.number == 84 && words.pitch != nullptr)
-      fail(Fault::not_executed, words.pitch->column, {"G84 with " + word_text(run.block(), *words.pitch)});
+      fail(Fault::not_executed, words.pitch->column,
+           {"G84 with " + word_text(run.dialect(), run.block(), *words.pitch)});
     for (const Word* word : {words.centre1, words.centre2, words.pitch})
       if (word != nullptr) stray(run, *word);
     return;
   }
-  if (words.centre1 == nullptr) fail(Fault::cycle_step_missing, words.cycle_word->column);
+  if (words.centre1 == nullptr) fail(Wrong::cycle_step_missing, words.cycle_word->column);
   cycle.step = std::abs(run.length(cycle.axis, words.centre1->value, false));
   cycle.factor = words.pitch != nullptr     ? run.resolve(words.pitch->value)
                  : words.centre2 != nullptr ? 1.0
@@ -81,7 +83,7 @@ void take_pecks(const Execution& run, const BlockWords& words, Cycle& cycle) {
   const bool removes = cycle.factor != 0.0;
   const double least = removes ? kClearance : 0.0;
   if (!(cycle.step > least))
-    fail(Fault::cycle_step, words.centre1->value.column, {text::number(cycle.step, 4), text::number(least)});
+    fail(Wrong::cycle_step, words.centre1->value.column, {text::number(cycle.step, 4), text::number(least)});
   if (removes && !(cycle.factor > 0.0)) run.refuse_range("K", words.pitch->value, cycle.factor, "0.001", "1");
 }
 
@@ -89,7 +91,7 @@ void take_pecks(const Execution& run, const BlockWords& words, Cycle& cycle) {
 void define(Execution& run, const BlockWords& words) {
   State& state = run.state();
   if (state.cycle.number != 0)
-    fail(Fault::cycle_active, words.cycle_word->column,
+    fail(Wrong::cycle_active, words.cycle_word->column,
          {std::to_string(words.cycle), std::to_string(state.cycle.number)});
   run.need_plane(words.cycle_word->column);
   Cycle cycle;
@@ -98,12 +100,12 @@ void define(Execution& run, const BlockWords& words) {
   cycle.approach = cycle.retreat = state.programmed[at(cycle.axis)];
   take_levels(run, words, cycle);
   take_pecks(run, words, cycle);
-  if (cycle.number == 82 || cycle.number == 89) run.check_dwell(*words.cycle_word);
+  if (cycle.number == 82 || cycle.number == 89) check_dwell(run, *words.cycle_word);
   state.cycle = cycle;
 }
 
-void dwell(Execution& run) {
-  const double seconds = run.dwell_seconds();
+void dwell_at_bottom(Execution& run) {
+  const double seconds = dwell_seconds(run);
   if (seconds > 0.0) run.dwell(seconds);
 }
 
@@ -111,11 +113,11 @@ void dwell(Execution& run) {
 void break_chips(Execution& run, const Cycle& cycle, double sign) {
   double bottom = cycle.approach;
   for (int pecks = 0; bottom != cycle.depth; ++pecks) {
-    if (pecks == kMaxPecks) fail(Fault::cycle_pecks, 0, {std::to_string(kMaxPecks)});
+    if (pecks == kMaxPecks) fail(Wrong::cycle_pecks, 0, {std::to_string(kMaxPecks)});
     bottom += sign * cycle.step;
     if ((bottom - cycle.depth) * sign > -1e-9) bottom = cycle.depth;
     run.go(cycle.axis, bottom, false);
-    dwell(run);
+    dwell_at_bottom(run);
   }
 }
 
@@ -124,8 +126,8 @@ void break_chips(Execution& run, const Cycle& cycle, double sign) {
 void remove_chips(Execution& run, const Cycle& cycle, double sign) {
   double from = cycle.approach, step = cycle.step;
   for (int pecks = 0;; ++pecks) {
-    if (pecks == kMaxPecks) fail(Fault::cycle_pecks, 0, {std::to_string(kMaxPecks)});
-    if (step <= kClearance) fail(Fault::cycle_step, 0, {text::number(step, 4), text::number(kClearance)});
+    if (pecks == kMaxPecks) fail(Wrong::cycle_pecks, 0, {std::to_string(kMaxPecks)});
+    if (step <= kClearance) fail(Wrong::cycle_step, 0, {text::number(step, 4), text::number(kClearance)});
     double bottom = from + sign * step;
     const bool last = (bottom - cycle.depth) * sign > -1e-9;
     if (last) bottom = cycle.depth;
@@ -152,7 +154,7 @@ void work(Execution& run) {
   } else {
     run.go(cycle.axis, cycle.depth, false);
   }
-  if (cycle.number == 82 || cycle.number == 89) dwell(run);
+  if (cycle.number == 82 || cycle.number == 89) dwell_at_bottom(run);
   const SpindleMode mode = run.state().spindle;
   if (cycle.number == 84) run.emit_spindle(reversed(mode));
   if (cycle.number == 86 && mode != SpindleMode::stop) {
@@ -177,7 +179,7 @@ void cycle(Execution& run, const BlockWords& words) {
   const Word* level_word = words.radius != nullptr ? words.radius : words.axis[at(active.axis)];
   if (places == 0) {
     if (level_word != nullptr)
-      fail(Fault::cycle_hole, level_word->column, {word_text(run.block(), *level_word)});
+      fail(Wrong::cycle_hole, level_word->column, {word_text(run.dialect(), run.block(), *level_word)});
     return;
   }
   run.position(words, active.axis);

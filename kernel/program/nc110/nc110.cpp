@@ -2,6 +2,7 @@
 #include "kernel/program/nc110/nc110.hpp"
 
 #include "kernel/program/nc110/codes.hpp"
+#include "kernel/program/nc110/operands.hpp"
 
 namespace servogate::program::nc110 {
 namespace {
@@ -172,6 +173,8 @@ constexpr VariableRule kVariables[] = {
 
 constexpr double kCoordinate = 99999.9999;
 
+constexpr WordRule kTool = {.name = "T", .meaning = Meaning::tool, .read = read_tool};
+
 constexpr std::array<LetterRule, 128> letters() {
   std::array<LetterRule, 128> rules{};
   const auto at = [&](char c) -> LetterRule& { return rules[static_cast<std::size_t>(c)]; };
@@ -188,16 +191,29 @@ constexpr std::array<LetterRule, 128> letters() {
   at('F') = {Meaning::feed, ParameterKind::real, 0.01, 99999.99};
   at('t') = {Meaning::block_time, ParameterKind::real, 0.001, 99999.999};
   at('S') = {Meaning::speed, ParameterKind::any, 0, 99999.99};
-  at('T') = {Meaning::tool, ParameterKind::whole, 0, 9999};
+  at('T') = {.meaning = Meaning::tool, .parameters = ParameterKind::whole, .max = 9999, .rule = &kTool};
   for (const char c : {'a', 'b', 'c', 'd', 'l', 'm', 'o', 'p', 'r', 's', 'u', 'v', 'w'})
     at(c) = {Meaning::later, ParameterKind::any, -kCoordinate, kCoordinate};
   return rules;
 }
 
-constexpr Dialect kDialect = {
+const Dialect kDialect = {
     .name = "nc110",
-    .lexis = {},
-    .arc_centre = ArcCentre::as_dimensions,
+    .lexis = {.label = LabelForm::quoted,
+              .request_sync = '#',
+              .cancel_sync = '&',
+              .tape = '%',
+              .bracket = Bracket::own_form,
+              .equals_is_own_form = true,
+              .g_first = true,
+              .comment_behind_words = false},
+    .terms = {.prefix = "/ \"LABEL\" N # or &",
+              .prefix_russian = "/ \"МЕТКА\" N # или &",
+              .repeat = "RPT",
+              .repeat_end = "ERP",
+              .field = "DLO"},
+    .expressions = expressions(),
+    .parameters = parameters(),
     .max_block_characters = 128,
     .max_label_characters = 6,
     .max_block_number_digits = 4,
@@ -210,14 +226,22 @@ constexpr Dialect kDialect = {
     .letters = letters(),
     .g = kG,
     .m = kM,
-    .codes = kCodes,
     .variables = kVariables,
-    .cycle = cycle,
     .conflict = conflict,
+    .value = parameter_for_number,
+    .mark = mark,
+    .own_form = own_form,
+    .own_form_waits = own_form_waits,
+    .judge = judge,
+    .profile = profile,
+    .cycle = cycle,
+    .dwell = dwell,
 };
 
 }  // namespace
 
 const Dialect& dialect() { return kDialect; }
+
+std::span<const CodeRule> codes() { return kCodes; }
 
 }  // namespace servogate::program::nc110

@@ -47,7 +47,8 @@ void mcd(Execution& run, double value, int column) {
 
 void usb(Execution& run, double value, int column) {
   check_switch("USB", value, column);
-  run.state().execute_marked = value != 0.0;
+  std::uint16_t& levels = run.state().skip_levels;
+  levels = static_cast<std::uint16_t>(value != 0.0 ? levels & ~1u : levels | 1u);
 }
 
 void uvr(Execution& run, double value, int column) {

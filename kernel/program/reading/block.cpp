@@ -6,14 +6,13 @@
 #include <utility>
 
 #include "kernel/program/messages.hpp"
-#include "kernel/program/reading/number.hpp"
 
 namespace servogate::program {
 namespace {
 
 int column(std::size_t offset) { return static_cast<int>(offset) + 1; }
 
-bool is_letter(char c) { return is_capital(c) || (c >= 'a' && c <= 'z'); }
+bool name_character(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
 bool label_character(char c) { return is_letter(c) || is_digit(c) || static_cast<unsigned char>(c) >= 128; }
 
@@ -29,8 +28,13 @@ std::string character_at(std::string_view line, std::size_t pos) {
   return std::string(line.substr(pos, end - pos));
 }
 
+[[noreturn]] void fail_prefix(const Dialect& dialect, int column, char c) {
+  const Terms& terms = dialect.terms;
+  fail(Fault::prefix_order, column, {std::string(1, c), text::both(terms.prefix, terms.prefix_russian)});
+}
+
 std::size_t read_label(const Dialect& dialect, std::string_view line, std::size_t pos) {
-  const std::size_t close = line.find(dialect.lexis.label_quote, pos + 1);
+  const std::size_t close = line.find('"', pos + 1);
   if (close == std::string_view::npos) fail(Fault::label_unclosed, column(pos));
   const std::string_view label = line.substr(pos + 1, close - pos - 1);
   if (label.empty() || characters(label) > dialect.max_label_characters ||
@@ -39,45 +43,65 @@ std::size_t read_label(const Dialect& dialect, std::string_view line, std::size_
   return close + 1;
 }
 
-std::int32_t read_number(std::string_view line, std::size_t& pos) {
+/// Offset of the colon behind a label that begins at `pos`; npos: no such label stands there.
+std::size_t colon_of_label(const Lexis& lexis, std::string_view line, std::size_t pos) {
+  if (lexis.label != LabelForm::colon || pos + 1 >= line.size()) return std::string_view::npos;
+  if (!is_letter(line[pos]) && line[pos] != '_') return std::string_view::npos;
+  if (!is_letter(line[pos + 1]) && line[pos + 1] != '_') return std::string_view::npos;
+  while (pos < line.size() && name_character(line[pos])) ++pos;
+  return pos < line.size() && line[pos] == ':' ? pos : std::string_view::npos;
+}
+
+bool is_block_number(const Dialect& dialect, char c) {
+  return static_cast<unsigned char>(c) < 128 &&
+         dialect.letters[static_cast<unsigned char>(c)].meaning == Meaning::number;
+}
+
+std::int32_t read_number(const Lexis& lexis, std::string_view line, std::size_t& pos) {
   const std::size_t start = pos++;
+  if (lexis.bare_block_number && (pos == line.size() || !is_digit(line[pos]))) return -1;
   const int number = read_index(line, pos);
   if (number < 0 || (pos < line.size() && line[pos] == '.')) fail(Fault::number_missing_block, column(start));
   return number;
 }
 
-int prefix_rank(const Dialect& dialect, char c) {
+enum class Prefix : std::uint8_t { none, skip, label, number, colon_label, sync };
+
+Prefix prefix_at(const Dialect& dialect, std::string_view line, std::size_t pos) {
   const Lexis& lexis = dialect.lexis;
-  if (c == '\0') return 0;
-  if (c == lexis.skip) return 1;
-  if (c == lexis.label_quote) return 2;
-  if (static_cast<unsigned char>(c) < 128 &&
-      dialect.letters[static_cast<unsigned char>(c)].meaning == Meaning::number)
-    return 3;
-  return c == lexis.request_sync || c == lexis.cancel_sync ? 4 : 0;
+  const char c = line[pos];
+  if (c == '\0') return Prefix::none;
+  if (c == lexis.skip) return Prefix::skip;
+  if (c == '"' && lexis.label == LabelForm::quoted) return Prefix::label;
+  if (is_block_number(dialect, c)) return Prefix::number;
+  if (c == lexis.request_sync || c == lexis.cancel_sync) return Prefix::sync;
+  return colon_of_label(lexis, line, pos) != std::string_view::npos ? Prefix::colon_label : Prefix::none;
 }
 
-/// The prefix `/ "LABEL" N # &` in its fixed order.
+/// The prefix in its fixed order.
 void read_prefix(const Dialect& dialect, std::string_view line, Block& block) {
   std::size_t pos = 0;
-  for (int rank = 0;;) {
+  for (Prefix before = Prefix::none;;) {
     pos = skip_spaces(line, pos);
     if (pos >= line.size()) break;
-    const char c = line[pos];
-    const int its_rank = prefix_rank(dialect, c);
-    if (its_rank == 0) break;
-    if (its_rank <= rank) fail(Fault::prefix_order, column(pos), {std::string(1, c)});
-    rank = its_rank;
-    if (its_rank == 1) {
+    const Prefix part = prefix_at(dialect, line, pos);
+    if (part == Prefix::none) break;
+    if (part <= before) fail_prefix(dialect, column(pos), line[pos]);
+    before = part;
+    if (part == Prefix::skip) {
       block.skip = true;
       ++pos;
-    } else if (its_rank == 2) {
-      pos = block.label_end = read_label(dialect, line, pos);
-    } else if (its_rank == 3) {
+      if (dialect.lexis.skip_levels && pos < line.size() && is_digit(line[pos]))
+        block.skip_level = static_cast<std::uint8_t>(line[pos++] - '0');
+    } else if (part == Prefix::label) {
+      pos = read_label(dialect, line, pos);
+    } else if (part == Prefix::colon_label) {
+      pos = colon_of_label(dialect.lexis, line, pos) + 1;
+    } else if (part == Prefix::number) {
       block.number_column = static_cast<std::uint16_t>(column(pos));
-      block.number = read_number(line, pos);
+      block.number = read_number(dialect.lexis, line, pos);
     } else {
-      block.sync = c == dialect.lexis.request_sync ? Sync::request : Sync::cancel;
+      block.sync = line[pos] == dialect.lexis.request_sync ? Sync::request : Sync::cancel;
       ++pos;
     }
   }
@@ -91,52 +115,12 @@ void check_range(const LetterRule& rule, char letter, const Value& value) {
 }
 
 bool is_whole(Meaning m) {
-  return m == Meaning::g || m == Meaning::m || m == Meaning::h || m == Meaning::tool || m == Meaning::number;
-}
-
-void check_parameter(const LetterRule& rule, char letter, const Value& value) {
-  static const std::string kKinds[] = {"", "E0-E24", "E25-E29 / E30...", ""};
-  if (rule.parameters == ParameterKind::any) return;
-  if (rule.parameters == ParameterKind::none) fail(Fault::g_with_parameter, value.column);
-  if ((rule.parameters == ParameterKind::whole) == (value.parameter < 25)) return;
-  fail(Fault::parameter_type, value.column,
-       {std::string(1, letter), kKinds[static_cast<int>(rule.parameters)], std::to_string(value.parameter)});
-}
-
-/// T and its corrector: the fraction is a number of its own, .1 and .10 are different correctors.
-std::size_t read_tool(std::string_view line, std::size_t pos, const LetterRule& rule, Word& word,
-                      Block& block) {
-  const std::size_t start = pos - 1;
-  const auto bad = [&] {
-    std::size_t end = line.find_first_of(" \t;", start);
-    end = std::min(end, line.size());
-    fail(Fault::tool_form, column(start), {std::string(line.substr(start, end - start))});
-  };
-  const auto part = [&](Value& value) {
-    value.column = static_cast<std::uint16_t>(column(pos));
-    const bool parameter = pos < line.size() && line[pos] == 'E';
-    if (parameter) ++pos;
-    const std::size_t digits = pos;
-    const int number = read_index(line, pos);
-    if (number < 0 || (!parameter && pos - digits > 4)) bad();
-    if (parameter) {
-      value.parameter = static_cast<std::int16_t>(std::min(number, 32767));
-      check_parameter(rule, 'T', value);
-    } else {
-      value.number = number;
-    }
-  };
-  part(word.value);
-  block.corrector = Value{};
-  if (pos < line.size() && line[pos] == '.') {
-    ++pos;
-    part(block.corrector);
-  }
-  return pos;
+  return m == Meaning::g || m == Meaning::m || m == Meaning::h || m == Meaning::tool ||
+         m == Meaning::number || m == Meaning::corrector;
 }
 
 void place_g(const Dialect& dialect, Word& word) {
-  if (word.value.parameter >= 0) return;
+  if (word.value.parameter >= 0 || word.value.expression != 0) return;
   word.g = dialect.find_g(static_cast<int>(word.value.number));
   if (word.g == nullptr) fail(Fault::g_unknown, word.column, {text::number(word.value.number)});
 }
@@ -220,11 +204,11 @@ void check_word(const Dialect& dialect, Block& block, Word& word, Met& met) {
   if (word.meaning == Meaning::g) {
     ++block.g_count;
     place_g(dialect, word);
-    if (met.operand != nullptr)
+    if (met.operand != nullptr && dialect.lexis.g_first)
       fail(Fault::g_after_operand, word.column,
-           {word.value.parameter >= 0 ? "E" + std::to_string(word.value.parameter)
+           {word.value.parameter >= 0 ? dialect.parameters.name_of(word.value.parameter)
                                       : text::number(word.value.number),
-            word_text(block, *met.operand)});
+            word_text(dialect, block, *met.operand)});
     return;
   }
   const bool operand = word.meaning >= Meaning::axis && word.meaning <= Meaning::radius;
@@ -233,6 +217,13 @@ void check_word(const Dialect& dialect, Block& block, Word& word, Met& met) {
     if (++met.m_words > dialect.max_m_words)
       fail(Fault::m_too_many, word.column,
            {std::to_string(met.m_words), std::to_string(dialect.max_m_words)});
+    return;
+  }
+  if (word.meaning == Meaning::statement) return;
+  if (word.letter == 0) {
+    const auto same = [&](const Word& other) { return &other != &word && other.rule == word.rule; };
+    if (std::any_of(block.words.begin(), block.words.begin() + block.count, same))
+      fail(Fault::word_twice, word.column, {std::string(word.rule->name)});
     return;
   }
   const std::uint64_t bit = std::uint64_t{1} << (word.letter - 'A');
@@ -244,91 +235,175 @@ void check_word(const Dialect& dialect, Block& block, Word& word, Met& met) {
   met.letters |= bit;
 }
 
-/// One word of the block; returns the offset behind it.
-std::size_t read_word(const Dialect& dialect, const AxisLetters& axes, Block& block, std::size_t pos,
-                      Word& word) {
-  const std::string_view line = block.line;
-  const char c = line[pos];
-  if (static_cast<unsigned char>(c) >= 128) fail_letter(dialect, block, pos);
-  const LetterRule& rule = dialect.letters[static_cast<unsigned char>(c)];
-  if (rule.meaning == Meaning::unknown) fail_letter(dialect, block, pos);
-  word.letter = c;
-  word.meaning = rule.meaning;
-  word.column = static_cast<std::uint16_t>(column(pos));
-  word.axis = -1;
-  word.g = nullptr;
-  if (rule.meaning == Meaning::number) fail(Fault::prefix_order, word.column, {"N"});
-  if (rule.meaning == Meaning::axis) {
-    word.axis = static_cast<std::int8_t>(axes.find(c));
-    if (word.axis < 0) fail(Fault::axis_missing, word.column, {std::string(1, c)});
+/// The list in brackets behind a G word: numbers and expressions, any of them left out.
+void read_arguments(BlockText& text, Word& word) {
+  const std::string_view line = text.line;
+  ++text.pos;
+  for (;;) {
+    if (text.block.argument_count == Block::kMaxArguments)
+      fail(Fault::arguments_many, text.column(),
+           {word_text(text.dialect, text.block, word), std::to_string(Block::kMaxArguments)});
+    Value& value = text.block.arguments[text.block.argument_count++];
+    ++word.argument_count;
+    value = Value{};
+    const char c = text.peek();
+    value.column = static_cast<std::uint16_t>(text.column());
+    value.bare = c == ',' || c == ')';
+    if (!value.bare) text.expression(value);
+    if (text.peek() == ')') break;
+    if (text.pos == line.size()) fail(Fault::bracket_unclosed, word.column);
+    text.expect(',');
   }
-  ++pos;
-  if (rule.meaning == Meaning::tool) {
-    word.value = Value{};
-    return read_tool(line, pos, rule, word, block);
-  }
-  const std::string_view name(&line[pos - 1], 1);
-  word.value = read_value(line, pos, name);
-  if (rule.meaning == Meaning::later) {
-    name_later_g(block);
-    fail(Fault::not_executed, word.column,
-         {std::string(line.substr(word.column - 1u, pos - word.column + 1u))});
-  }
-  if (word.value.parameter >= 0) {
-    check_parameter(rule, c, word.value);
-  } else {
-    if (word.value.bare) check_bare(dialect, rule, block, word, pos);
-    if (is_whole(rule.meaning) && (word.value.fraction || word.value.negative))
-      fail(Fault::whole_number, word.value.column,
-           {std::string(name),
-            std::string(line.substr(word.value.column - 1u, pos - word.value.column + 1u))});
-    check_range(rule, c, word.value);
-  }
-  return pos;
+  ++text.pos;
 }
 
-/// Offset behind spaces and, where brackets are comments, behind those (they nest).
-std::size_t skip_comments(const Dialect& dialect, const Block& block, std::size_t pos) {
-  pos = skip_spaces(block.line, pos);
-  while (dialect.lexis.bracket == Bracket::comment && pos < block.end && block.line[pos] == '(') {
-    const std::size_t open = pos;
+/// The number of a plain word: judged here where it is written out.
+void read_plain(BlockText& text, const LetterRule& rule, Word& word) {
+  const std::size_t start = word.column - 1u;
+  const std::string_view name(&text.line[start], 1);
+  word.value = read_value(text, name);
+  if (rule.meaning == Meaning::later) {
+    name_later_g(text.block);
+    fail(Fault::not_executed, word.column, {std::string(text.line.substr(start, text.pos - start))});
+  }
+  if (word.value.expression != 0) return;
+  if (word.value.parameter >= 0) return check_parameter(text.dialect, rule.parameters, name, word.value);
+  if (word.value.bare && !rule.bare) check_bare(text.dialect, rule, text.block, word, text.pos);
+  if (is_whole(rule.meaning) && (word.value.fraction || word.value.negative))
+    fail(Fault::whole_number, word.value.column,
+         {std::string(name),
+          std::string(text.line.substr(word.value.column - 1u, text.pos - word.value.column + 1u))});
+  check_range(rule, word.letter, word.value);
+}
+
+int axis_of(const BlockText& text, char letter, int column) {
+  const int axis = text.axes.find(letter);
+  if (axis < 0) fail(Fault::axis_missing, column, {std::string(1, letter)});
+  return axis;
+}
+
+/// What the rule of a statement or a named word reads.
+void read_by_rule(BlockText& text, Word& word) {
+  const WordRule& rule = *word.rule;
+  if (rule.meaning == Meaning::statement && rule.run == nullptr && rule.motion == nullptr) {
+    name_later_g(text.block);
+    fail(Fault::not_executed, word.column, {std::string(rule.name)});
+  }
+  if (rule.read != nullptr) return rule.read(text, word);
+  if (rule.meaning == Meaning::statement) return;
+  text.expect('=');
+  text.expression(word.value);
+}
+
+/// A word with a name of two letters or more; false: a single letter stands here.
+bool read_named(BlockText& text, Word& word) {
+  const std::string_view line = text.line;
+  const std::size_t start = text.pos;
+  const auto begins = [&](std::size_t i) {
+    return i < line.size() && (is_letter(line[i]) || line[i] == '_');
+  };
+  if (!begins(start) || !begins(start + 1)) return false;
+  std::size_t end = start;
+  while (end < line.size() && name_character(line[end])) ++end;
+  const std::string_view name = line.substr(start, end - start);
+  word.rule = text.dialect.find_word(name);
+  if (word.rule == nullptr) word.rule = text.dialect.find_word({});
+  if (word.rule == nullptr) fail(Fault::unknown_word, column(start), {std::string(name), {}});
+  word.meaning = word.rule->meaning;
+  word.text_begin = static_cast<std::uint16_t>(start);
+  word.text_end = static_cast<std::uint16_t>(end);
+  text.pos = end;
+  if (word.rule->axis != 0) word.axis = static_cast<std::int8_t>(axis_of(text, word.rule->axis, word.column));
+  read_by_rule(text, word);
+  return true;
+}
+
+/// One word of the block; the text stands behind it then.
+void read_word(BlockText& text, Word& word) {
+  const Dialect& dialect = text.dialect;
+  const std::size_t start = text.pos;
+  word.letter = 0;
+  word.axis = -1;
+  word.argument_count = 0;
+  word.g = nullptr;
+  word.rule = nullptr;
+  word.column = static_cast<std::uint16_t>(column(start));
+  if (dialect.lexis.named_words) {
+    word.value = Value{};
+    if (read_named(text, word)) return;
+  }
+  const char c = dialect.lexis.named_words ? capital(text.line[start]) : text.line[start];
+  if (static_cast<unsigned char>(c) >= 128) fail_letter(dialect, text.block, start);
+  const LetterRule& rule = dialect.letters[static_cast<unsigned char>(c)];
+  if (rule.meaning == Meaning::unknown) fail_letter(dialect, text.block, start);
+  word.letter = c;
+  word.meaning = rule.meaning;
+  if (rule.meaning == Meaning::number) fail_prefix(dialect, word.column, c);
+  if (rule.meaning == Meaning::axis) word.axis = static_cast<std::int8_t>(axis_of(text, c, word.column));
+  if (rule.meaning == Meaning::centre_of)
+    word.axis = static_cast<std::int8_t>(axis_of(text, rule.axis, word.column));
+  ++text.pos;
+  if (rule.rule != nullptr) {
+    word.rule = rule.rule;
+    word.value = Value{};
+    return read_by_rule(text, word);
+  }
+  read_plain(text, rule, word);
+  if (dialect.lexis.bracket == Bracket::argument && rule.meaning == Meaning::g && text.peek() == '(')
+    read_arguments(text, word);
+}
+
+/// Behind spaces and, where brackets are comments, behind those (they nest).
+void skip_comments(BlockText& text) {
+  const std::string_view line = text.line;
+  while (text.peek() == '(' && text.dialect.lexis.bracket == Bracket::comment) {
+    const std::size_t open = text.pos;
     int depth = 0;
     do {
-      if (pos == block.end) fail(Fault::bracket_unclosed, column(open));
-      depth += block.line[pos] == '(' ? 1 : block.line[pos] == ')' ? -1 : 0;
-      ++pos;
+      if (text.pos == line.size()) fail(Fault::bracket_unclosed, column(open));
+      depth += line[text.pos] == '(' ? 1 : line[text.pos] == ')' ? -1 : 0;
+      ++text.pos;
     } while (depth > 0);
-    pos = skip_spaces(block.line, pos);
   }
-  return pos;
 }
 
 void read_words(const Dialect& dialect, const AxisLetters& axes, Block& block) {
   Met met;
-  for (std::size_t pos = skip_comments(dialect, block, block.body); pos < block.end;) {
+  BlockText text{dialect, axes, block, block.line.substr(0, block.end), block.body};
+  for (skip_comments(text); text.pos < block.end; skip_comments(text)) {
     if (block.count == Block::kMaxWords)
-      fail(Fault::too_many_words, column(pos), {std::to_string(Block::kMaxWords)});
+      fail(Fault::too_many_words, text.column(), {std::to_string(Block::kMaxWords)});
     Word& word = block.words[block.count];
-    pos = skip_comments(dialect, block, read_word(dialect, axes, block, pos, word));
+    read_word(text, word);
+    word.end = static_cast<std::uint16_t>(text.pos);
     ++block.count;
     check_word(dialect, block, word, met);
   }
   if (block.g_count > 0) check_conflicts(dialect, block);
 }
 
+bool begins_comment(const Lexis& lexis, std::string_view line, std::size_t pos) {
+  const char c = line[pos];
+  if (c == lexis.comment) return c != '\0';
+  return c == lexis.comment_pair && c != '\0' && pos + 1 < line.size() && line[pos + 1] == c;
+}
+
 /// Offset of a comment that follows words, or the end of the line; says which kind of block stands here.
 void classify(const Lexis& lexis, Block& block) {
   const std::string_view line = block.line;
   block.end = line.size();
-  const bool code = lexis.bracket == Bracket::code && line[block.body] == '(';
-  block.kind = code ? BlockKind::code : BlockKind::words;
+  const bool bracket = lexis.bracket == Bracket::own_form && line[block.body] == '(';
+  block.kind = bracket ? BlockKind::own_form : BlockKind::words;
+  const auto bit = [](char c) { return std::uint64_t{1} << (static_cast<unsigned char>(c) & 63u); };
+  const std::uint64_t marks = bit('"') | bit('=') | bit(lexis.comment) | bit(lexis.comment_pair);
   bool quoted = false;
   for (std::size_t i = block.body; i < line.size(); ++i) {
     const char c = line[i];
+    if ((marks & bit(c)) == 0) continue;  // most characters, in one step
     if (c == '"') quoted = !quoted;
     if (quoted) continue;
-    if (c == '=' && block.kind == BlockKind::words) block.kind = BlockKind::assignments;
-    if (c == lexis.comment && c != '\0') {
+    if (c == '=' && lexis.equals_is_own_form) block.kind = BlockKind::own_form;
+    if (begins_comment(lexis, line, i)) {
       block.end = i;
       block.trailing_comment = true;
       break;
@@ -339,6 +414,29 @@ void classify(const Lexis& lexis, Block& block) {
 }
 
 }  // namespace
+
+void BlockText::expect(char c) {
+  if (peek() != c) fail(Fault::expected, column(), {std::string(1, c)});
+  ++pos;
+}
+
+void BlockText::bracketed(Value& value) {
+  const std::size_t open = pos;
+  value.expression = static_cast<std::uint16_t>(open + 1);
+  int depth = 0;
+  do {
+    if (pos == line.size()) fail(Fault::bracket_unclosed, program::column(open));
+    depth += line[pos] == '(' ? 1 : line[pos] == ')' ? -1 : 0;
+    ++pos;
+  } while (depth > 0);
+}
+
+void BlockText::expression(Value& value) {
+  pos = skip_spaces(line, pos);
+  value.column = static_cast<std::uint16_t>(column());
+  value.expression = static_cast<std::uint16_t>(pos + 1);
+  evaluate(dialect.expressions, line, pos, nullptr);
+}
 
 AxisLetters::AxisLetters(const std::vector<std::string>& letters) : AxisLetters() {
   for (std::size_t i = 0; i < letters.size(); ++i)
@@ -359,44 +457,104 @@ int column_of(const Block& block, int axis) noexcept {
   return column(block.body);
 }
 
-std::string word_text(const Block& block, const Word& word) {
+std::string word_text(const Dialect& dialect, const Block& block, const Word& word) {
+  const std::size_t start = word.column - 1u;
+  if (word.value.parameter >= 0)
+    return std::string(1, word.letter) + (word.value.negative ? "-" : "") +
+           dialect.parameters.name_of(word.value.parameter);
   std::size_t end = word.column;
   while (end < block.end && !is_letter(block.line[end]) && !is_space(block.line[end])) ++end;
-  if (word.value.parameter >= 0)
-    return std::string(1, word.letter) + (word.value.negative ? "-E" : "E") +
-           std::to_string(word.value.parameter);
-  return std::string(block.line.substr(word.column - 1u, end - word.column + 1u));
+  if (word.letter == 0 || word.value.expression != 0) end = word.end;
+  return std::string(block.line.substr(start, end - start));
 }
 
-Value read_value(std::string_view line, std::size_t& pos, std::string_view word) {
+void check_parameter(const Dialect& dialect, ParameterKind kind, std::string_view word, const Value& value) {
+  const ParameterSet& set = dialect.parameters;
+  if (kind == ParameterKind::any) return;
+  if (kind == ParameterKind::none) fail(Fault::g_with_parameter, value.column);
+  const bool whole = kind == ParameterKind::whole;
+  if (whole == (value.parameter < set.first_real)) return;
+  fail(Fault::parameter_type, value.column,
+       {std::string(word), std::string(whole ? set.whole_numbers : set.real_numbers),
+        set.name_of(value.parameter)});
+}
+
+namespace {
+
+/// A number as programs write it; with a comma for its point where the language has that.
+Decimal decimal_at(const Lexis& lexis, std::string_view line, std::size_t pos) {
+  Decimal number = read_decimal(line, pos);
+  const std::size_t comma = pos + number.length;
+  if (!lexis.decimal_comma || number.fraction || comma + 1 >= line.size() || line[comma] != ',' ||
+      !is_digit(line[comma + 1]))
+    return number;
+  std::size_t end = comma + 1;
+  while (end < line.size() && is_digit(line[end])) ++end;
+  std::string written(line.substr(pos, end - pos));
+  written[comma - pos] = '.';
+  return read_decimal(written, 0);
+}
+
+}  // namespace
+
+Value read_value(BlockText& text, std::string_view word) {
+  const std::string_view line = text.line;
   Value value;
-  std::size_t at = skip_spaces(line, pos);
+  std::size_t at = skip_spaces(line, text.pos);
   const bool sign = at < line.size() && (line[at] == '-' || line[at] == '+');
   value.column = static_cast<std::uint16_t>(column(at));
   if (sign) {
     value.negative = line[at] == '-';
     at = skip_spaces(line, at + 1);
   }
-  if (at < line.size() && line[at] == 'E') {
-    ++at;
-    const int index = read_index(line, at);
-    if (index < 0) fail(Fault::parameter_number_missing, column(at));
-    value.parameter = static_cast<std::int16_t>(std::min(index, 32767));
-    pos = at;
+  const Decimal number = decimal_at(text.dialect.lexis, line, at);
+  if (number.length != 0) {
+    value.number = value.negative ? -number.value : number.value;
+    value.fraction = number.fraction;
+    text.pos = at + number.length;
     return value;
   }
-  const Decimal number = read_decimal(line, at);
-  if (number.length == 0) {
-    if (sign)
-      fail(Fault::expected, column(at),
-           {text::both("number after " + std::string(word), "число после " + std::string(word))});
-    value.bare = true;
-    return value;
-  }
-  value.number = value.negative ? -number.value : number.value;
-  value.fraction = number.fraction;
-  pos = at + number.length;
+  const std::size_t behind_name = text.pos;
+  text.pos = at;
+  if (at < line.size() && text.dialect.value != nullptr && text.dialect.value(text, value)) return value;
+  text.pos = behind_name;
+  if (sign)
+    fail(Fault::expected, column(at),
+         {text::both("number after " + std::string(word), "число после " + std::string(word))});
+  value.bare = true;
   return value;
+}
+
+bool holds_nothing(const Lexis& lexis, std::string_view line, std::size_t first) noexcept {
+  if (first == line.size() || begins_comment(lexis, line, first)) return true;
+  return lexis.tape != '\0' && line[first] == lexis.tape;
+}
+
+std::size_t skip_prefix(const Dialect& dialect, std::string_view line, std::int32_t& number,
+                        std::string_view& label) noexcept {
+  std::size_t pos = skip_spaces(line, 0);
+  if (pos < line.size() && line[pos] == dialect.lexis.skip && line[pos] != '\0') {
+    ++pos;
+    if (dialect.lexis.skip_levels && pos < line.size() && is_digit(line[pos])) ++pos;
+    pos = skip_spaces(line, pos);
+  }
+  if (pos < line.size() && line[pos] == '"' && dialect.lexis.label == LabelForm::quoted) {
+    const std::size_t close = line.find('"', pos + 1);
+    if (close != std::string_view::npos) {
+      label = line.substr(pos + 1, close - pos - 1);
+      pos = close + 1;
+    }
+    return pos;
+  }
+  if (pos < line.size() && is_block_number(dialect, line[pos])) {
+    ++pos;
+    number = read_index(line, pos);
+    pos = skip_spaces(line, pos);
+  }
+  const std::size_t colon = colon_of_label(dialect.lexis, line, pos);
+  if (colon == std::string_view::npos) return pos;
+  label = line.substr(pos, colon - pos);
+  return skip_spaces(line, colon + 1);
 }
 
 void read_block(const Dialect& dialect, const AxisLetters& axes, std::string_view line, Block& block) {
@@ -404,12 +562,10 @@ void read_block(const Dialect& dialect, const AxisLetters& axes, std::string_vie
   block.kind = BlockKind::empty;
   block.sync = Sync::standard;
   block.skip = block.trailing_comment = false;
+  block.skip_level = 0;
   block.number = -1;
-  block.label_end = 0;
-  block.count = block.g_count = 0;
-  const std::size_t first = skip_spaces(line, 0);
-  if (first == line.size() || line[first] == dialect.lexis.comment || line[first] == dialect.lexis.tape)
-    return;
+  block.count = block.g_count = block.argument_count = 0;
+  if (holds_nothing(dialect.lexis, line, skip_spaces(line, 0))) return;
   if (line.size() > dialect.max_block_characters &&
       (characters(line) > dialect.max_block_characters || line.size() > 4 * dialect.max_block_characters))
     fail(Fault::block_too_long, static_cast<int>(dialect.max_block_characters) + 1,

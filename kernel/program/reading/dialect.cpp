@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "kernel/program/nc110/nc110.hpp"
-
 namespace servogate::program {
 namespace {
 
@@ -15,26 +13,36 @@ auto find_in(const Table& table, const Key& key, Field field) {
   return at == table.end() ? nullptr : &*at;
 }
 
+bool same_letters(std::string_view written, std::string_view name) {
+  return std::equal(written.begin(), written.end(), name.begin(), name.end(), [](char a, char b) {
+    return (a >= 'a' && a <= 'z' ? static_cast<char>(a - 'a' + 'A') : a) == b;
+  });
+}
+
 }  // namespace
 
 const GRule* Dialect::find_g(int number) const noexcept { return find_in(g, number, &GRule::number); }
 const MRule* Dialect::find_m(int code) const noexcept { return find_in(m, code, &MRule::code); }
-const CodeRule* Dialect::find_code(std::string_view code) const noexcept {
-  return find_in(codes, code, &CodeRule::name);
+const WordRule* Dialect::find_word(std::string_view word) const noexcept {
+  const auto at = std::find_if(words.begin(), words.end(),
+                               [&](const WordRule& row) { return same_letters(word, row.name); });
+  return at == words.end() ? nullptr : &*at;
 }
 const VariableRule* Dialect::find_variable(std::string_view variable) const noexcept {
   return find_in(variables, variable, &VariableRule::name);
 }
-
-std::span<const Dialect* const> all_dialects() {
-  static const Dialect* const all[] = {&nc110::dialect()};
-  return all;
+const text::Entry* Dialect::own(const text::Entry* shared) const noexcept {
+  for (const OwnError& row : errors)
+    if (shared == &program::entry(row.fault)) return &row.entry;
+  return shared;
 }
-
-const Dialect* find_dialect(std::string_view name) {
-  const auto all = all_dialects();
-  const auto at = std::find_if(all.begin(), all.end(), [&](const Dialect* d) { return d->name == name; });
-  return at == all.end() ? nullptr : *at;
+const WordRule* Dialect::word_of(Meaning meaning) const noexcept {
+  return find_in(words, meaning, &WordRule::meaning);
+}
+char Dialect::letter_of(Meaning meaning) const noexcept {
+  const auto at = std::find_if(letters.begin(), letters.end(),
+                               [&](const LetterRule& rule) { return rule.meaning == meaning; });
+  return at == letters.end() ? '\0' : static_cast<char>(at - letters.begin());
 }
 
 }  // namespace servogate::program

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/reading/source.hpp"
 
+#include <algorithm>
 #include <cstring>
 
-#include "kernel/program/reading/number.hpp"
+#include "kernel/program/reading/block.hpp"
 
 namespace servogate::program {
 
@@ -18,8 +19,11 @@ std::size_t last_of(std::string_view text) {
 
 }  // namespace
 
-Source::Source(std::string name, std::string text, std::string path)
-    : name_(std::move(name)), path_(path.empty() ? name_ : std::move(path)), text_(std::move(text)) {
+Source::Source(const Dialect& dialect, std::string name, std::string text, std::string path)
+    : dialect_(&dialect),
+      name_(std::move(name)),
+      path_(path.empty() ? name_ : std::move(path)),
+      text_(std::move(text)) {
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
   // CP/M and its heirs end a text with 1Ah, and may fill the last record up.
   const std::size_t end_mark = text_.find_first_of("\x1A", last_of(text_));
@@ -34,6 +38,7 @@ Source::Source(std::string name, std::string text, std::string path)
     p = found == nullptr ? end : static_cast<const char*>(found) + 1;
     starts_.push_back(static_cast<std::uint32_t>(p - begin));
   }
+  if (dialect.lexis.starts_at_tape) start_ = kNone;
   std::vector<std::uint32_t> open;
   for (std::uint32_t i = 0; i < lines(); ++i) index_line(i, open);
 }
@@ -64,33 +69,72 @@ std::string_view Source::line(std::uint32_t index) const noexcept {
 
 void Source::index_line(std::uint32_t index, std::vector<std::uint32_t>& open) {
   const std::string_view text = line(index);
-  std::size_t i = 0;
-  while (i < text.size() && is_space(text[i])) ++i;
-  if (i == text.size() || text[i] == ';' || text[i] == '%') return;
+  const Lexis& lexis = dialect_->lexis;
+  const std::size_t first = skip_spaces(text, 0);
+  if (holds_nothing(lexis, text, first)) {
+    const bool marks = start_ == kNone && first < text.size() && text[first] == lexis.tape;
+    if (marks) start_ = index + 1;
+    return;
+  }
   ++blocks_;
-  if (text[i] == '/')
-    for (++i; i < text.size() && is_space(text[i]);) ++i;
-  if (i < text.size() && text[i] == '"') {
-    const std::size_t close = text.find('"', i + 1);
-    if (close != std::string_view::npos) {
-      const std::string_view label = text.substr(i + 1, close - i - 1);
+  std::size_t pos = first;
+  if (lexis.label != LabelForm::none) {
+    std::string_view label;
+    std::int32_t number = -1;
+    pos = skip_prefix(*dialect_, text, number, label);
+    if (!label.empty()) {
       const auto [at, fresh] = labels_.emplace(label, index);
       if (!fresh) duplicates_.push_back({index, at->second, label});
-      i = close + 1;
     }
   }
-  const std::size_t bracket = text.find('(', i);
-  if (bracket == std::string_view::npos) return;
-  std::size_t word = bracket + 1;
-  while (word < text.size() && is_space(text[word])) ++word;
-  const std::string_view code = text.substr(word, 3);
-  if (code == "RPT") {
+  if (dialect_->mark == nullptr) return;
+  const LineMark mark = dialect_->mark(text, pos);
+  if (mark.kind == LineMark::Kind::definition) {
+    definitions_.emplace(index, mark.number);
+  } else if (mark.kind == LineMark::Kind::repeat) {
     open.push_back(index);
-  } else if (code == "ERP" && !open.empty()) {
+  } else if (mark.kind == LineMark::Kind::end_of_repeat && !open.empty()) {
     partners_.emplace(index, open.back());
     partners_.emplace(open.back(), index);
     open.pop_back();
   }
+}
+
+template <typename Is>
+std::uint32_t Source::find_line(std::uint32_t first, std::uint32_t last, Is is) const {
+  const bool down = last >= first;
+  for (std::uint32_t i = first; i < lines(); down ? ++i : --i) {
+    std::int32_t number = -1;
+    std::string_view label;
+    const std::string_view text = line(i);
+    if (!holds_nothing(dialect_->lexis, text, skip_spaces(text, 0))) {
+      skip_prefix(*dialect_, text, number, label);
+      if (is(number, label)) return i;
+    }
+    if (i == last) break;
+  }
+  return kNone;
+}
+
+std::uint32_t Source::find_label(std::string_view name, std::uint32_t first, std::uint32_t last) const {
+  return find_line(first, last, [name](std::int32_t, std::string_view label) { return label == name; });
+}
+
+std::uint32_t Source::find_number(std::int32_t wanted, std::uint32_t first, std::uint32_t last) const {
+  return find_line(first, last, [wanted](std::int32_t number, std::string_view) { return number == wanted; });
+}
+
+std::uint32_t Source::definition(std::int32_t number) const {
+  for (const auto& [line, its_number] : definitions_)
+    if (its_number == number) return line;
+  return kNone;
+}
+
+std::uint32_t Source::behind_definition(std::uint32_t line) const {
+  const auto next = definitions_.upper_bound(line);
+  std::uint32_t behind = next == definitions_.end() ? lines() : next->first;
+  if (start_ != kNone && start_ > line) behind = std::min(behind, start_);
+  return behind;
 }
 
 std::uint32_t Source::label(std::string_view name) const {

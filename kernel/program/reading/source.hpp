@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -8,14 +9,16 @@
 
 namespace servogate::program {
 
+struct Dialect;
+
 /// The text of one program file, read-only and shared by all copies of an interpreter: its lines, its labels
-/// and which repeat ends where. Lines count from 0 inside of this room, from 1 for people.
+/// and subprograms, and which repeat ends where. Lines count from 0 inside of this room, from 1 for people.
 class Source {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   /// `path`: where people find the file, for findings; empty: its name.
-  Source(std::string name, std::string text, std::string path = {});
+  Source(const Dialect& dialect, std::string name, std::string text, std::string path = {});
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
@@ -29,8 +32,19 @@ class Source {
 
   /// Line of a label, kNone when there is none. The first one counts where a label stands twice.
   std::uint32_t label(std::string_view name) const;
-  /// Line of the ERP that belongs to the RPT of a line and the reverse, kNone where the partner is missing.
+  /// The nearest line of `first` to `last` (from `first` on; backwards where `last` stands before it) that
+  /// has a label, or a block number. kNone: there is none.
+  std::uint32_t find_label(std::string_view name, std::uint32_t first, std::uint32_t last) const;
+  std::uint32_t find_number(std::int32_t number, std::uint32_t first, std::uint32_t last) const;
+  /// Line of the end that belongs to the repeat of a line and the reverse, kNone where the partner is
+  /// missing.
   std::uint32_t repeat_partner(std::uint32_t line) const;
+  /// Line that begins a subprogram of this file, kNone: there is none. `behind`: behind the last line of what
+  /// follows up to the next such line or the main program.
+  std::uint32_t definition(std::int32_t number) const;
+  std::uint32_t behind_definition(std::uint32_t line) const;
+  /// First line of the main program; kNone where the language wants a mark in front of it and there is none.
+  std::uint32_t start() const noexcept { return start_; }
 
   /// A label that stands a second time; `label` points into its line.
   struct Duplicate {
@@ -45,13 +59,18 @@ class Source {
  private:
   void put_line_ends();
   void index_line(std::uint32_t index, std::vector<std::uint32_t>& open);
+  template <typename Is>
+  std::uint32_t find_line(std::uint32_t first, std::uint32_t last, Is is) const;
 
+  const Dialect* dialect_;
   std::string name_;
   std::string path_;
   std::string text_;
   std::vector<std::uint32_t> starts_;
   std::unordered_map<std::string_view, std::uint32_t> labels_;
   std::unordered_map<std::uint32_t, std::uint32_t> partners_;
+  std::map<std::uint32_t, std::int32_t> definitions_;  ///< line to number
+  std::uint32_t start_ = 0;
   std::vector<Duplicate> duplicates_;
   std::uint32_t lone_return_ = kNone;
   int blocks_ = 0;

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "kernel/program/messages.hpp"
-#include "kernel/program/reading/number.hpp"
 
 namespace servogate::program {
 namespace {
@@ -146,22 +145,6 @@ void PacketView::remember(const image::Place& place, double value, std::string_v
     encode(place, value, write.bytes.data());
   }
   pending_.push_back(write);
-}
-
-image::Place read_place(std::string_view line, std::size_t& pos) {
-  const std::size_t start = pos;
-  while (pos < line.size() && is_capital(line[pos])) ++pos;
-  while (pos < line.size() && is_digit(line[pos])) ++pos;
-  if (pos < line.size() && line[pos] == '.') {
-    ++pos;
-    while (pos < line.size() && is_digit(line[pos])) ++pos;
-    const std::size_t format = pos;
-    while (pos < line.size() && is_capital(line[pos]) && pos < format + 2) ++pos;
-  }
-  const std::string_view name = line.substr(start, pos - start);
-  const auto place = image::parse_place(name);
-  if (!place) fail(Fault::place_bad, static_cast<int>(start) + 1, {std::string(name)});
-  return *place;
 }
 
 }  // namespace servogate::program

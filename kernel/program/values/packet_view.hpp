@@ -49,7 +49,4 @@ class PacketView {
   std::vector<Pending> pending_;
 };
 
-/// A place as text in an expression; throws ProgramError when it is none.
-image::Place read_place(std::string_view line, std::size_t& pos);
-
 }  // namespace servogate::program

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/program/reading/operands.hpp"
+#include "kernel/program/nc110/operands.hpp"
 
 #include <algorithm>
 #include <string>
 
-#include "kernel/program/messages.hpp"
-#include "kernel/program/reading/number.hpp"
+#include "kernel/program/nc110/messages.hpp"
 
-namespace servogate::program {
+namespace servogate::program::nc110 {
 namespace {
 
 int column(std::size_t offset) { return static_cast<int>(offset) + 1; }
@@ -37,7 +36,7 @@ std::string kind_name(char kind) {
 }
 
 void add_item(std::string_view line, Items& items, std::size_t from, std::size_t to, std::string_view code) {
-  if (items.count == items.at.size()) fail(Fault::operand_many, column(from), {std::string(code)});
+  if (items.count == items.at.size()) fail(Wrong::operand_many, column(from), {std::string(code)});
   from = std::min(skip_spaces(line, from), to);
   while (to > from && is_space(line[to - 1])) --to;
   items.at[items.count++] = {from, to};
@@ -59,7 +58,7 @@ Items split(const Block& block) {
       from = i + 1;
       if (depth > 0) continue;
       const std::size_t rest = skip_spaces(line, from);
-      if (rest < line.size()) fail(Fault::after_bracket, column(rest), {std::string(line.substr(rest))});
+      if (rest < line.size()) fail(Wrong::after_bracket, column(rest), {std::string(line.substr(rest))});
       return items;
     }
   }
@@ -68,8 +67,8 @@ Items split(const Block& block) {
 
 class OperandReader {
  public:
-  OperandReader(const AxisLetters& axes, const Items& items, Operands& out)
-      : axes_(axes), items_(items), out_(out), line_(out.block->line) {}
+  OperandReader(const Dialect& dialect, const AxisLetters& axes, const Items& items, Operands& out)
+      : dialect_(dialect), axes_(axes), items_(items), out_(out), line_(out.block->line) {}
 
   void run(std::string_view signature) {
     std::size_t required = signature.find('?');
@@ -87,14 +86,14 @@ class OperandReader {
       }
       if (repeated) ++s;
     }
-    if (next_ < items_.count) fail(Fault::operand_many, column(items_.at[next_].first), {code()});
+    if (next_ < items_.count) fail(Wrong::operand_many, column(items_.at[next_].first), {code()});
   }
 
  private:
   std::string code() const { return std::string(out_.rule->name); }
   [[noreturn]] void missing(char kind) const {
     const std::size_t at = next_ < items_.count ? items_.at[next_].first : items_.at[items_.count - 1].second;
-    fail(Fault::operand_missing, column(at), {code(), std::to_string(next_), kind_name(kind)});
+    fail(Wrong::operand_missing, column(at), {code(), std::to_string(next_), kind_name(kind)});
   }
 
   void one(char kind) {
@@ -121,34 +120,32 @@ class OperandReader {
       default:
         break;
     }
-    if (out_.count == Operands::kMax) fail(Fault::operand_many, column(item.begin), {code()});
+    if (out_.count == Operands::kMax) fail(Wrong::operand_many, column(item.begin), {code()});
     out_.items[out_.count++] = item;
   }
 
   void axis(Operand& item, std::size_t& pos) {
     const std::size_t start = item.begin;
-    if (!is_capital(line_[start])) fail(Fault::operand_axis, column(start), {code()});
-    if (item.kind == 'a' && item.end != start + 1) fail(Fault::operand_axis, column(start), {code()});
+    if (!is_capital(line_[start])) fail(Wrong::operand_axis, column(start), {code()});
+    if (item.kind == 'a' && item.end != start + 1) fail(Wrong::operand_axis, column(start), {code()});
     item.axis = axes_.find(line_[start]);
     if (item.axis < 0) fail(Fault::axis_missing, column(start), {std::string(1, line_[start])});
     for (std::size_t i = 0; i < out_.count; ++i)
       if (out_.items[i].axis == item.axis)
-        fail(Fault::operand_axis_twice, column(start), {code(), std::string(1, line_[start])});
+        fail(Wrong::operand_axis_twice, column(start), {code(), std::string(1, line_[start])});
     std::size_t named = 1;
     for (std::size_t i = 0; i < out_.count; ++i) named += out_.items[i].axis >= 0;
     if (named > kMaxAxesNamed)
-      fail(Fault::operand_axes_many, column(start),
+      fail(Wrong::operand_axes_many, column(start),
            {code(), std::to_string(named), std::to_string(kMaxAxesNamed)});
     pos = start;
   }
 
   Value value(std::size_t& pos, std::size_t end, std::string_view word, ParameterKind kind) {
-    const std::string_view text = line_.substr(0, end);
-    const Value v = read_value(text, pos, word);
-    if (v.parameter >= 0 && (kind == ParameterKind::whole) != (v.parameter < 25))
-      fail(Fault::parameter_type, v.column,
-           {code(), kind == ParameterKind::whole ? "E0-E24" : "E25-E29 / E30...",
-            std::to_string(v.parameter)});
+    BlockText text{dialect_, axes_, *out_.block, line_.substr(0, end), pos};
+    const Value v = read_value(text, word);
+    pos = text.pos;
+    if (v.parameter >= 0) check_parameter(dialect_, kind, code(), v);
     return v;
   }
 
@@ -172,7 +169,7 @@ class OperandReader {
         pos = items_.at[next_].first;
         item.end = items_.at[next_++].second;
       }
-      if (pos >= item.end) fail(Fault::limits_pair, column(item.begin));
+      if (pos >= item.end) fail(Wrong::limits_pair, column(item.begin));
       if (line_[pos] == letter[0]) ++pos;
       item.second = value(pos, item.end, letter, ParameterKind::real);
       pos = skip_spaces(line_, pos);
@@ -185,6 +182,7 @@ class OperandReader {
   }
 
   static constexpr std::size_t kMaxAxesNamed = 6;
+  const Dialect& dialect_;
   const AxisLetters& axes_;
   const Items& items_;
   Operands& out_;
@@ -192,33 +190,28 @@ class OperandReader {
   std::size_t next_ = 1;
 };
 
+const CodeRule* find_code(std::string_view code) {
+  const std::span<const CodeRule> all = codes();
+  const auto at = std::find_if(all.begin(), all.end(), [&](const CodeRule& row) { return row.name == code; });
+  return at == all.end() ? nullptr : &*at;
+}
+
 }  // namespace
 
-void read_operands(const Dialect& dialect, const AxisLetters& axes, const Block& block, Operands& out) {
+void read_operands(const Dialect& dialect, const AxisLetters& axes, Block& block, Operands& out) {
   out.block = &block;
   out.count = 0;
   out.column = column(block.body);
   const Items items = split(block);
   const auto [from, to] = items.at[0];
   const std::string_view code = block.line.substr(from, to - from);
-  out.rule = dialect.find_code(code);
+  out.rule = find_code(code);
   if (out.rule == nullptr)
-    fail(Fault::code_unknown, column(from),
+    fail(Wrong::code_unknown, column(from),
          {code.empty() ? "()" : std::string(code),
-          capitals_hint(code, dialect.find_code(in_capitals(code)) != nullptr)});
+          capitals_hint(code, find_code(in_capitals(code)) != nullptr)});
   if (out.rule->run == nullptr) fail(Fault::not_executed, column(from), {std::string(code)});
-  OperandReader(axes, items, out).run(out.rule->operands);
+  OperandReader(dialect, axes, items, out).run(out.rule->operands);
 }
 
-bool names_signal(std::string_view text, std::size_t pos) {
-  bool quoted = false;
-  for (std::size_t i = pos; i + 1 < text.size(); ++i) {
-    if (text[i] == '"') quoted = !quoted;
-    if (quoted || text[i] != 'S' || (text[i + 1] != 'A' && text[i + 1] != 'K')) continue;
-    if (i > pos && is_capital(text[i - 1])) continue;
-    if (i + 2 == text.size() || !is_capital(text[i + 2])) return true;
-  }
-  return false;
-}
-
-}  // namespace servogate::program
+}  // namespace servogate::program::nc110

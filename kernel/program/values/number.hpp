@@ -10,6 +10,15 @@ namespace servogate::program {
 constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 constexpr bool is_capital(char c) noexcept { return c >= 'A' && c <= 'Z'; }
 constexpr bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
+constexpr bool is_letter(char c) noexcept { return is_capital(c) || (c >= 'a' && c <= 'z'); }
+constexpr char capital(char c) noexcept {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+inline std::size_t skip_spaces(std::string_view text, std::size_t pos) noexcept {
+  while (pos < text.size() && is_space(text[pos])) ++pos;
+  return pos;
+}
 
 /// An unsigned decimal number as programs write it: digits, a point, digits; no exponent. Correctly rounded.
 struct Decimal {
