@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "kernel/cycle/alarm/alarms.hpp"
+#include "tests/places/places.hpp"
 
 namespace servogate::cycle {
 namespace {
@@ -47,7 +48,7 @@ TEST(AlarmTable, says_the_same_figures_in_both_languages) {
 }
 
 TEST(AlarmTable, has_a_row_for_every_number_that_the_code_raises) {
-  const std::string folder = SERVOGATE_SOURCE_DIR;
+  const std::string folder = tests::source_dir();
   int numbers = 0;
   for (const char* file : {"/kernel/axis/axis_alarms.hpp", "/kernel/cycle/alarm/alarm_table.hpp"}) {
     std::ifstream in(folder + file);
@@ -64,11 +65,11 @@ TEST(AlarmTable, has_a_row_for_every_number_that_the_code_raises) {
 }
 
 TEST(AlarmTable, is_the_source_of_the_manual_page) {
-  std::ifstream in(std::string(SERVOGATE_SOURCE_DIR) + "/docs/alarms.md", std::ios::binary);
+  std::ifstream in(tests::source_dir() + "/docs/alarms.md", std::ios::binary);
   std::stringstream page;
   page << in.rdbuf();
   if (page.str() == alarms_page()) return;
-  const std::string made = std::string(SERVOGATE_BINARY_DIR) + "/alarms.md";
+  const std::string made = tests::binary_dir() + "/alarms.md";
   std::ofstream(made, std::ios::binary) << alarms_page();
   FAIL() << "docs/alarms.md differs from the table; the page as it should be: " << made;
 }

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "tests/docs/markdown.hpp"
+#include "tests/places/places.hpp"
 
 namespace servogate::docs {
 namespace {
@@ -30,9 +31,9 @@ const std::map<std::string, std::set<std::string>>& known() {
     std::map<std::string, std::set<std::string>> out;
     const auto collect = [&out](const std::string& prefix, auto&& self) -> void {
       for (const std::string& c :
-           read_help(output_of(std::string(SERVOGATE_PROGRAM) + " " + prefix + " --help")).commands) {
+           read_help(output_of(tests::program() + " " + prefix + " --help")).commands) {
         const std::string name = prefix.empty() ? c : prefix + " " + c;
-        const Help help = read_help(output_of(std::string(SERVOGATE_PROGRAM) + " " + name + " --help"));
+        const Help help = read_help(output_of(tests::program() + " " + name + " --help"));
         if (help.commands.empty()) out[name] = {help.options.begin(), help.options.end()};
         if (!help.commands.empty()) self(name, self);
       }
@@ -44,7 +45,7 @@ const std::map<std::string, std::set<std::string>>& known() {
 }
 
 Markdown page() {
-  std::ifstream in(SERVOGATE_SOURCE_DIR "/docs/command-line.md");
+  std::ifstream in(tests::source_dir() + "/docs/command-line.md");
   std::stringstream text;
   text << in.rdbuf();
   return read_markdown(text.str());

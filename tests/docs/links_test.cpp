@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tests/docs/markdown.hpp"
+#include "tests/places/places.hpp"
 
 namespace servogate::docs {
 namespace {
@@ -23,7 +24,7 @@ std::string content(const fs::path& path) {
 /// All Markdown files of the source tree; builds and what runs leave behind are no part of it.
 std::vector<fs::path> documents() {
   std::vector<fs::path> out;
-  fs::recursive_directory_iterator it(SERVOGATE_SOURCE_DIR), end;
+  fs::recursive_directory_iterator it(tests::source_dir()), end;
   for (; it != end; ++it) {
     const std::string name = it->path().filename().string();
     if (it->is_directory() && (name == ".git" || name == "out" || name.rfind("build", 0) == 0))
@@ -60,7 +61,7 @@ TEST(Links, lead_to_files_that_exist) {
 }
 
 TEST(Links, a_dead_one_would_be_noticed) {
-  const fs::path folder = SERVOGATE_SOURCE_DIR;
+  const fs::path folder = tests::source_dir();
   EXPECT_EQ(
       dead_links(folder,
                  "[a](README.md) [b](docs/none.md#x)\n```\n[c](gone)\n```\n[d](#here) [e](http://x.y/z)\n"),
@@ -68,7 +69,7 @@ TEST(Links, a_dead_one_would_be_noticed) {
 }
 
 TEST(Folders, each_says_in_a_readme_what_lives_there) {
-  const fs::path tree = SERVOGATE_SOURCE_DIR;
+  const fs::path tree = tests::source_dir();
   std::set<fs::path> folders;
   for (const char* room : {"tests", "examples", "devices", "docs"}) {
     folders.insert(tree / room);

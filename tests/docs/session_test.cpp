@@ -11,6 +11,8 @@
 #include <sstream>
 #include <vector>
 
+#include "tests/places/places.hpp"
+
 namespace servogate::docs {
 namespace {
 
@@ -41,7 +43,7 @@ std::vector<Shown> shown_in(const std::string& document) {
   std::vector<Shown> out;
   bool fenced = false, open = false;
   int number = 0;
-  for (const std::string& line : lines_of(content(fs::path(SERVOGATE_SOURCE_DIR) / document))) {
+  for (const std::string& line : lines_of(content(fs::path(tests::source_dir()) / document))) {
     ++number;
     if (line.starts_with("```")) {
       fenced = !fenced;
@@ -60,7 +62,7 @@ std::vector<Shown> shown_in(const std::string& document) {
 std::string listing(const std::string& document, const std::string& name) {
   std::string out;
   int state = 0;
-  for (const std::string& line : lines_of(content(fs::path(SERVOGATE_SOURCE_DIR) / document))) {
+  for (const std::string& line : lines_of(content(fs::path(tests::source_dir()) / document))) {
     if (state == 0 && line == "`" + name + "`:") state = 1;
     if (state == 2 && line.starts_with("```")) break;
     if (state == 2) out += line + "\n";
@@ -88,7 +90,7 @@ class Terminal {
   Terminal() {
     std::string pattern = (fs::temp_directory_path() / "servogate-docs-XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
-    const fs::path tree = SERVOGATE_SOURCE_DIR;
+    const fs::path tree = tests::source_dir();
     fs::create_directory_symlink(tree / "examples", folder_ / "examples");
     std::ofstream(folder_ / "blink.st") << listing("docs/command-line.md", "blink.st");
     fs::create_directory(folder_ / "my");
@@ -115,7 +117,7 @@ class Terminal {
 
   std::vector<std::string> run(const std::string& command) const {
     const std::string line = "cd '" + folder_.string() + "' && LANG=C LC_ALL=C PATH=\"" +
-                             fs::path(SERVOGATE_PROGRAM).parent_path().string() + ":$PATH\" && { " + command +
+                             fs::path(tests::program()).parent_path().string() + ":$PATH\" && { " + command +
                              "; } 2>&1";
     std::string out;
     std::FILE* pipe = popen(line.c_str(), "r");

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "tests/places/places.hpp"
 
 namespace servogate::image {
 namespace {
@@ -128,7 +129,7 @@ TEST(InterfaceMap, a_field_of_the_second_process_lies_one_block_further) {
 }
 
 TEST(InterfaceMap, its_page_in_the_documents_says_what_the_tables_say) {
-  std::ifstream in(SERVOGATE_SOURCE_DIR "/docs/interface.md", std::ios::binary);
+  std::ifstream in(tests::source_dir() + "/docs/interface.md", std::ios::binary);
   const std::string page{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   EXPECT_EQ(page, interface_page());
 }

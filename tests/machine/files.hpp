@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "firmware_if/text/finding.hpp"
+#include "tests/places/places.hpp"
 
 namespace servogate::machine::test {
 
-inline std::string source(const std::string& path) { return std::string(SERVOGATE_SOURCE_DIR) + "/" + path; }
+inline std::string source(const std::string& path) { return tests::source_dir() + "/" + path; }
 
 inline std::string read_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -29,7 +30,7 @@ inline std::string lines_of(const std::vector<text::Finding>& findings, text::La
     shown.file = std::filesystem::path(f.file).filename().string();
     out += shown.str(language) + "\n";
   }
-  const std::string root = SERVOGATE_SOURCE_DIR;
+  const std::string root = tests::source_dir();
   for (std::size_t at = out.find(root); at != std::string::npos; at = out.find(root))
     out.replace(at, root.size(), "{source}");
   return out;
@@ -37,7 +38,7 @@ inline std::string lines_of(const std::vector<text::Finding>& findings, text::La
 
 /// A folder of its own for one test, empty at its start.
 inline std::string scratch(const std::string& name) {
-  const auto path = std::filesystem::path(SERVOGATE_BINARY_DIR) / "scratch_machine" / name;
+  const auto path = std::filesystem::path(tests::binary_dir()) / "scratch_machine" / name;
   std::filesystem::remove_all(path);
   std::filesystem::create_directories(path);
   return path.string();

@@ -14,6 +14,7 @@
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"
+#include "tests/places/places.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::machine_run {
@@ -97,8 +98,7 @@ TEST(Determinism, libm_without_fma_gives_other_last_bits_so_the_masked_run_means
   const Scratch scratch;
   const std::string path = scratch.path("fingerprint");
   const std::string command = "GLIBC_TUNABLES=" + kWithoutFma.at("GLIBC_TUNABLES") +
-                              " SERVOGATE_FINGERPRINT=" + path +
-                              " '" SERVOGATE_BINARY_DIR
+                              " SERVOGATE_FINGERPRINT=" + path + " '" + tests::binary_dir() +
                               "/tests/machine_run/test_machine_run'"
                               " --gtest_also_run_disabled_tests"
                               " --gtest_filter='*DISABLED_prints_the_fingerprint*' > /dev/null 2>&1";
@@ -115,7 +115,7 @@ TEST(Determinism, libm_without_fma_gives_other_last_bits_so_the_masked_run_means
 }
 
 TEST(Determinism, flags_forbid_fused_and_native_arithmetic) {
-  std::istringstream commands(read_all(SERVOGATE_BINARY_DIR "/compile_commands.json"));
+  std::istringstream commands(read_all(tests::binary_dir() + "/compile_commands.json"));
   int compilations = 0;
   for (std::string line; std::getline(commands, line);) {
     if (line.find("\"command\"") == std::string::npos || line.find(".cpp.o") == std::string::npos) continue;

@@ -6,13 +6,14 @@
 
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/canopen_setup.hpp"
+#include "tests/places/places.hpp"
 
 namespace servogate::gateway {
 namespace {
 
 /// The example lathe with another gear, encoder and unit of the spindle's speed.
 machine::LoadResult lathe(const std::string& spindle_keys, bool in_rpm, std::int64_t motor_counts = 0) {
-  std::ifstream in(SERVOGATE_SOURCE_DIR "/examples/lathe/machine.toml");
+  std::ifstream in(tests::source_dir() + "/examples/lathe/machine.toml");
   std::ostringstream text;
   text << in.rdbuf();
   std::string machine = text.str();
@@ -20,7 +21,7 @@ machine::LoadResult lathe(const std::string& spindle_keys, bool in_rpm, std::int
   const auto at = machine.find(encoder, machine.find("[[spindle]]"));
   EXPECT_NE(at, std::string::npos);
   machine.replace(at, encoder.size(), spindle_keys);
-  machine::LoadResult loaded = machine::parse(machine, SERVOGATE_SOURCE_DIR "/examples/lathe/machine.toml");
+  machine::LoadResult loaded = machine::parse(machine, tests::source_dir() + "/examples/lathe/machine.toml");
   loaded.devices.at("spindle-cia402").behaviour.velocity_in_rpm = in_rpm;
   loaded.devices.at("spindle-cia402").motor.counts_per_rev = motor_counts;
   return loaded;

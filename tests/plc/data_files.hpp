@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/places/places.hpp"
+
 namespace servogate::plc {
 
 /// One case of a data file: `=== title`, the program, `---`, the rest. Lines count from 1.
@@ -48,8 +50,7 @@ inline std::vector<DataCase> cases_of(const std::filesystem::path& path) {
 /// All files below tests/plc/`folder` that end in `extension`, sorted.
 inline std::vector<std::string> data_files(const std::string& folder, const std::string& extension) {
   std::vector<std::string> out;
-  for (const auto& e :
-       std::filesystem::directory_iterator(std::string(SERVOGATE_SOURCE_DIR) + "/tests/plc/" + folder))
+  for (const auto& e : std::filesystem::directory_iterator(tests::source_dir() + "/tests/plc/" + folder))
     if (e.path().extension() == extension) out.push_back(e.path().string());
   std::sort(out.begin(), out.end());
   return out;

@@ -7,6 +7,7 @@
 
 #include "plc/compile.hpp"
 #include "plc/engine.hpp"
+#include "tests/places/places.hpp"
 
 namespace servogate::plc {
 
@@ -16,7 +17,7 @@ class ExampleMachine {
   ExampleMachine(const std::string& source, const std::vector<std::string>& axes,
                  const std::vector<std::pair<std::string, int>>& inputs,
                  const std::vector<std::pair<std::string, int>>& outputs) {
-    std::ifstream file(std::string(SERVOGATE_SOURCE_DIR) + "/" + source);
+    std::ifstream file(tests::source_dir() + "/" + source);
     std::stringstream text;
     text << file.rdbuf();
     symbols_ = image::interface_symbols(1, axes, 1);

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "kernel/program/canon.hpp"
+#include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
 
 namespace servogate::program::tests {
@@ -38,7 +39,7 @@ std::vector<Sample> samples_of(const std::string& path) {
 }
 
 TEST(CanonDocument, shows_what_the_program_really_prints) {
-  const auto samples = samples_of(SERVOGATE_SOURCE_DIR "/docs/canon.md");
+  const auto samples = samples_of(servogate::tests::source_dir() + "/docs/canon.md");
   ASSERT_GE(samples.size(), 5u);
   std::string all;
   for (const Sample& sample : samples) {

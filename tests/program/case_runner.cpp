@@ -8,6 +8,7 @@
 
 #include "kernel/program/canon.hpp"
 #include "kernel/program/check.hpp"
+#include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
 
 namespace servogate::program::tests {
@@ -16,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kTolerance = 2e-4;  ///< the specification's numbers have four decimals
-const char* const kFolder = SERVOGATE_SOURCE_DIR "/tests/program";
+const std::string kFolder = servogate::tests::source_dir() + "/tests/program";
 
 /// What a case gives when it is run as `servogate canon` runs it.
 struct Outcome {

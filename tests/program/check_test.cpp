@@ -9,6 +9,7 @@
 
 #include "kernel/program/canon.hpp"
 #include "kernel/program/messages.hpp"
+#include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
 
 namespace servogate::program::tests {
@@ -21,7 +22,7 @@ std::string file_text(const std::string& path) {
   return text.str();
 }
 
-const std::string kMill = SERVOGATE_SOURCE_DIR "/examples/mill/";
+const std::string kMill = servogate::tests::source_dir() + "/examples/mill/";
 
 std::optional<std::string> from_mill(std::string_view name) {
   std::string text = file_text(kMill + std::string(name) + ".nc");

@@ -13,6 +13,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "tests/places/places.hpp"
 #include "tests/report/demo_run.hpp"
 
 namespace servogate::report {
@@ -196,7 +197,7 @@ TEST(Html, its_script_runs_and_reads_back_the_run_that_was_put_in) {
   const RecordedRun run = recorded(demo, all);
   ASSERT_EQ(write_file(folder / "page.html", to_html(demo_report(demo, 2), run, options_of(demo))), "");
   ASSERT_EQ(write_file(folder / "expected.json", expectations(demo, run).dump()), "");
-  const std::string smoke = std::string("node ") + SERVOGATE_SOURCE_DIR + "/tests/report/page_smoke.js ";
+  const std::string smoke = "node " + tests::source_dir() + "/tests/report/page_smoke.js ";
   EXPECT_EQ(std::system((smoke + (folder / "page.html") + " " + (folder / "expected.json")).c_str()), 0);
 
   const Json nothing{{"tolerance", 0},          {"start", 0},

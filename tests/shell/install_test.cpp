@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "tests/places/places.hpp"
 #include "tests/shell/line.hpp"
 
 namespace servogate::shell {
@@ -8,8 +9,8 @@ namespace {
 
 TEST(Installed, it_runs_from_its_own_folder_and_finds_the_device_files_beside_it) {
   const Desk desk;
-  const std::string install = std::string(CMAKE_PROGRAM) + " --install " SERVOGATE_BINARY_DIR
-                                                           " --prefix \"$PWD/there\" > install.log 2>&1";
+  const std::string install =
+      tests::cmake() + " --install " + tests::binary_dir() + " --prefix \"$PWD/there\" > install.log 2>&1";
   ASSERT_EQ(desk.line(install).code, 0) << desk.text("install.log");
   EXPECT_EQ(desk.line("there/bin/servogate check there/share/servogate/examples/mill/machine.toml").code, 0);
   // A device file that only the installed folder has.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shell/line.hpp"
+#include "tests/places/places.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ namespace servogate::shell {
 
 namespace fs = std::filesystem;
 
-std::string source(const std::string& path) { return std::string(SERVOGATE_SOURCE_DIR) + "/" + path; }
+std::string source(const std::string& path) { return tests::source_dir() + "/" + path; }
 
 Desk::Desk() {
   std::string pattern = (fs::temp_directory_path() / "servogate-shell-XXXXXX").string();
@@ -58,7 +59,7 @@ Ended Desk::line(const std::string& line, const std::string& language, double pa
       unsetenv(variable);
     setenv("LANG", language.c_str(), 1);
     setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
-    setenv("SG", SERVOGATE_PROGRAM, 1);
+    setenv("SG", tests::program().c_str(), 1);
     setenv("MILL", mill.c_str(), 1);
     setenv("BRACKET", bracket.c_str(), 1);
     execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "drivers/candump/candump_line.hpp"
+#include "tests/places/places.hpp"
 #include "tests/usercan/rig/mill.hpp"
 #include "tests/usercan/rig/process.hpp"
 #include "tests/usercan/rig/running_server.hpp"
@@ -19,7 +20,7 @@ std::string square() {
   return file;
 }
 
-const std::string kMachine = SERVOGATE_SOURCE_DIR "/examples/mill/machine.toml";
+const std::string kMachine = tests::source_dir() + "/examples/mill/machine.toml";
 
 std::vector<candump::Line> log_of(const std::string& machine, const std::string& folder, int code = 0) {
   Process run({"run", machine, square(), "--virtual", "-q", "--can-log", folder});

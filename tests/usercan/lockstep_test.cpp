@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
+#include "tests/places/places.hpp"
 #include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::usercan {
@@ -151,7 +152,9 @@ std::string run_of_three(int milliseconds) {
       EXPECT_EQ(shell("/usr/bin/python3 " + counterpart("lockstep_master.py") + " " + port + " > " + heard),
                 0);
     });
-    std::thread firmware([&] { EXPECT_EQ(shell(std::string(LOCKSTEP_PARTICIPANT) + " " + port + " 3"), 0); });
+    std::thread firmware([&] {
+      EXPECT_EQ(shell(tests::binary_dir() + "/tests/usercan/lockstep_participant" + " " + port + " 3"), 0);
+    });
     std::thread device([&] {
       auto bus = server.join("drive");
       mock::SimulatedDriveConfig node;

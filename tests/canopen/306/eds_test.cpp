@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/canopen/306/eds.hpp"
+#include "tests/places/places.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@ namespace servogate::canopen {
 namespace {
 
 std::string file(const std::string& name) {
-  std::ifstream in(std::string(SERVOGATE_SOURCE_DIR) + "/tests/canopen/306/data/" + name, std::ios::binary);
+  std::ifstream in(tests::source_dir() + "/tests/canopen/306/data/" + name, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
@@ -177,7 +178,10 @@ TEST(EdsOddity, any_line_end_will_do) {
 }
 
 TEST(EdsOddity, code_pages_and_utf16_are_read) {
-  auto r = read_eds("[2000]\nParameterName=\xC4" "chse\nObjectType=7\nDataType=5\nAccessType=rw\n", "x.eds");
+  auto r = read_eds(
+      "[2000]\nParameterName=\xC4"
+      "chse\nObjectType=7\nDataType=5\nAccessType=rw\n",
+      "x.eds");
   EXPECT_EQ(odd(r), "eds-code-page:2");
   EXPECT_EQ(object_2000(r).name,
             "\xC3\x84"

@@ -11,6 +11,7 @@
 #include "gateway/server/resident.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"
+#include "tests/places/places.hpp"
 
 namespace servogate::machine_run {
 namespace {
@@ -164,7 +165,7 @@ TEST(ResidentRecord, of_two_programs_with_a_stop_and_a_typed_block_between_repla
 
 /// The mill's PLC file, changed.
 std::string other_logic(const Scratch& scratch) {
-  std::ifstream in(std::string(SERVOGATE_SOURCE_DIR) + "/examples/mill/mill.st");
+  std::ifstream in(tests::source_dir() + "/examples/mill/mill.st");
   std::string text((std::istreambuf_iterator<char>(in)), {});
   const std::string lamp = "lamp_red := MC.alarm OR NOT MC.estop_ok;";
   const std::size_t at = text.find(lamp);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/machine_run/rig/program.hpp"
+#include "tests/places/places.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -41,9 +42,7 @@ std::string read_all(const std::string& path) {
   return std::move(out).str();
 }
 
-std::string source(std::string_view path) {
-  return std::string(SERVOGATE_SOURCE_DIR "/") + std::string(path);
-}
+std::string source(std::string_view path) { return tests::source_dir() + "/" + std::string(path); }
 
 std::string mill_file() { return source("examples/mill/machine.toml"); }
 
@@ -58,7 +57,7 @@ std::string changed_mill(const Scratch& scratch, const std::string& from, const 
 }
 
 Program::Program(const std::vector<std::string>& arguments, const Environment& environment) {
-  std::vector<std::string> all{SERVOGATE_PROGRAM};
+  std::vector<std::string> all{tests::program()};
   all.insert(all.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& a : all) argv.push_back(a.data());

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "gateway/compose/control.hpp"
+#include "tests/places/places.hpp"
 
 namespace servogate::gateway {
 namespace {
@@ -17,7 +18,7 @@ using image::RequestKind;
 class Brake : public ::testing::Test {
  protected:
   void SetUp() override {
-    loaded_ = machine::load(std::string(SERVOGATE_SOURCE_DIR) + "/examples/mill/machine.toml");
+    loaded_ = machine::load(tests::source_dir() + "/examples/mill/machine.toml");
     std::vector<text::Finding> findings;
     control_ = Control::compose(loaded_, findings);
     ASSERT_NE(control_, nullptr);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/server/rig/shell.hpp"
+#include "tests/places/places.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@ namespace {
 
 pid_t launch(const fs::path& folder, const std::string& name, std::vector<std::string> arguments,
              const std::string& language) {
-  arguments.insert(arguments.begin(), SERVOGATE_BINARY);
+  arguments.insert(arguments.begin(), tests::program());
   const std::string out = (folder / (name + ".out")).string(), err = (folder / (name + ".err")).string();
   const std::string runtime = folder.string();
   const pid_t pid = fork();
@@ -77,9 +78,7 @@ Shell::~Shell() {
   fs::remove_all(folder_, ignored);
 }
 
-std::string Shell::example(const std::string& path) {
-  return std::string(SERVOGATE_SOURCE_DIR) + "/examples/" + path;
-}
+std::string Shell::example(const std::string& path) { return tests::source_dir() + "/examples/" + path; }
 
 std::string Shell::text(const std::string& file) const {
   std::ifstream in(folder_ / file);

@@ -3,12 +3,13 @@
 
 #include <fstream>
 
+#include "tests/places/places.hpp"
 #include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::usercan {
 
 std::string mill(const std::string& url, const Changes& changes) {
-  const std::string example = std::string(SERVOGATE_SOURCE_DIR) + "/examples/mill/";
+  const std::string example = tests::source_dir() + "/examples/mill/";
   std::string text = content(example + "machine.toml");
   const auto replace = [&text](const std::string& from, const std::string& to) {
     std::size_t n = 0;

@@ -7,12 +7,13 @@
 
 #include <csignal>
 
+#include "tests/places/places.hpp"
 #include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::usercan {
 
 Process::Process(const std::vector<std::string>& arguments) : file_(scratch("said")) {
-  std::vector<std::string> words = {SERVOGATE_PROGRAM};
+  std::vector<std::string> words = {tests::program()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/usercan/rig/running_server.hpp"
+#include "tests/places/places.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -138,7 +139,7 @@ std::string content(const std::string& file) {
 }
 
 std::string counterpart(const std::string& name) {
-  return std::string(SERVOGATE_SOURCE_DIR) + "/tests/usercan/counterparts/" + name;
+  return tests::source_dir() + "/tests/usercan/counterparts/" + name;
 }
 
 }  // namespace servogate::usercan
