@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "kernel/program/fenix/fenix.hpp"
 #include "kernel/program/nc110/nc110.hpp"
+#include "kernel/program/sinumerik/sinumerik.hpp"
 
 namespace servogate::program {
 
 std::span<const Dialect* const> all_dialects() {
-  static const Dialect* const all[] = {&nc110::dialect()};
+  static const Dialect* const all[] = {&nc110::dialect(), &fenix::dialect(), &sinumerik::dialect()};
   return all;
 }
 

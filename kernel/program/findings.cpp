@@ -78,11 +78,23 @@ class FileReader {
     if (block_.trailing_comment && block_.kind != BlockKind::empty && !dialect.lexis.comment_behind_words)
       add(text::Severity::warning, Fault::trailing_comment,
           static_cast<int>(block_.line.find(dialect.lexis.comment, block_.end)) + 1, {});
+    if (block_.kind == BlockKind::words) judge_expressions();
     if (dialect.judge == nullptr || block_.kind == BlockKind::empty) return;
     const auto calls = [](void* where, std::string_view name) {
       static_cast<std::set<std::string>*>(where)->emplace(name);
     };
     dialect.judge({run_, source_, index, calls, &called_}, block_);
+  }
+
+  /// Their form; an expression in brackets has only been skipped so far.
+  void judge_expressions() const {
+    const auto judge = [&](const Value& value) {
+      std::size_t pos = value.expression - 1u;
+      if (value.expression != 0)
+        evaluate(run_.dialect().expressions, block_.line.substr(0, block_.end), pos, nullptr);
+    };
+    for (std::size_t i = 0; i < block_.count; ++i) judge(block_.words[i].value);
+    for (std::size_t i = 0; i < block_.argument_count; ++i) judge(block_.arguments[i]);
   }
 
   struct Count {

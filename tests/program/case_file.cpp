@@ -7,6 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/places/places.hpp"
+
 namespace servogate::program::tests {
 namespace {
 
@@ -35,7 +37,15 @@ class Reader {
   explicit Reader(const std::string& path) {
     case_.path = path;
     case_.name = std::filesystem::path(path).stem().string();
+    const std::filesystem::path below =
+        std::filesystem::relative(path, servogate::tests::source_dir() + "/tests/program");
+    case_.dialect = below.begin()->string();
+    for (const std::string& name : dialects())
+      if (name.starts_with(case_.dialect)) case_.dialect = name;
     case_.machine = mill();
+    if (case_.dialect == "nc110") return;
+    case_.machine.power_on.clear();  // those of the language
+    case_.machine.variables.clear();
   }
 
   CaseFile read() {

@@ -15,7 +15,8 @@ struct CaseFile {
     std::string text;
   };
   std::string path;
-  std::string name;  ///< file name without .test
+  std::string name;     ///< file name without .test
+  std::string dialect;  ///< whose name begins with that of its folder below tests/program
   MachineModel machine;
   Tables tables;
   Position start{};

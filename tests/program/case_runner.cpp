@@ -36,7 +36,7 @@ ProgramLoader loader_of(const CaseFile& c) {
 
 Outcome run(const CaseFile& c) {
   Outcome outcome;
-  Interpreter interpreter("nc110", c.machine, c.tables, c.name + ".nc", c.program, loader_of(c), c.start);
+  Interpreter interpreter(c.dialect, c.machine, c.tables, c.name + ".nc", c.program, loader_of(c), c.start);
   const auto error = write_canon(interpreter, c.machine, [&](std::string_view line) {
     outcome.commands.push_back(json::parse(line));
     return true;
@@ -120,7 +120,7 @@ void expect_place(const text::Finding& finding) {
 
 void expect_findings(const CaseFile& c) {
   const CheckReport report =
-      check_program("nc110", c.machine, c.tables, c.name + ".nc", c.program, loader_of(c), c.start);
+      check_program(c.dialect, c.machine, c.tables, c.name + ".nc", c.program, loader_of(c), c.start);
   for (const text::Finding& finding : report.findings) expect_place(finding);
   for (std::size_t i = 0; i < std::max(c.findings.size(), report.findings.size()); ++i) {
     const std::string got =

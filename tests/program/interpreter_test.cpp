@@ -160,7 +160,7 @@ TEST(Interpreter, names_a_language_that_this_build_does_not_read) {
   ASSERT_TRUE(std::holds_alternative<Error>(step));
   EXPECT_EQ("p.nc:1:1: error: there is no dialect rs274 [P903]",
             std::get<Error>(step).finding.str(text::Language::english));
-  EXPECT_EQ((std::vector<std::string>{"nc110"}), dialects());
+  EXPECT_EQ((std::vector<std::string>{"nc110", "fenix", "sinumerik-808d"}), dialects());
 }
 
 TEST(Interpreter, refuses_a_power_on_mode_that_is_none) {

@@ -9,8 +9,8 @@
 
 #include "kernel/program/canon.hpp"
 #include "kernel/program/check.hpp"
-#include "kernel/program/messages.hpp"
 #include "kernel/program/geometry/degrees.hpp"
+#include "kernel/program/messages.hpp"
 #include "kernel/program/nc110/nc110.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "tests/program/case_file.hpp"

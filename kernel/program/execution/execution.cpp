@@ -73,6 +73,7 @@ void Execution::reset() {
   }
   state_.frame.set_rotation(0.0);
   state_.modes.corner = dialect_->corner;
+  select_plane(dialect_->plane, false);
   state_.profile_open = false;
   state_.cycle = Cycle{};
   BlockWords none;

@@ -28,7 +28,7 @@ SpindleMode mode_of(MAction action) {
 
 /// T, then the spindle, then the M functions of the class "start of motion" in the order written, then H.
 void Execution::before_motion(const BlockWords& words) {
-  tool_words(words);
+  if (words.tool != nullptr || words.corrector != nullptr) tool_words(words);
   const MRule* start = nullptr;
   const Word* start_word = nullptr;
   for (int i = 0; i < words.m_count; ++i) {
@@ -54,7 +54,6 @@ void Execution::before_motion(const BlockWords& words) {
 
 /// T and the corrector: as one word, or each with its own.
 void Execution::tool_words(const BlockWords& words) {
-  if (words.tool == nullptr && words.corrector == nullptr) return;
   const Word& word = words.tool != nullptr ? *words.tool : *words.corrector;
   if (words.tool != nullptr) {
     state_.tool = whole(words.tool->value, "T");
@@ -122,7 +121,7 @@ void Execution::after_motion(const BlockWords& words) {
     const MRule* rule = dialect_->find_m(code);
     if (rule == nullptr || !rule->after_motion) continue;
     const bool ends = (rule->action >= MAction::stop && rule->action <= MAction::end_rewind) ||
-                      rule->action >= MAction::subprogram_end;
+                      rule->action == MAction::subprogram_end || rule->action == MAction::repeat_end;
     if (ends && last >= 0)
       fail(Fault::m_end_twice, words.m[static_cast<std::size_t>(i)]->column,
            {std::to_string(words.m_code[static_cast<std::size_t>(last)]), std::to_string(code)});

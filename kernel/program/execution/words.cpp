@@ -121,13 +121,24 @@ BlockWords Execution::gather() {
   BlockWords words;
   words.block = &block_;
   std::vector<const GRule*> by_value;
+  // G words first: an expression counts by the modes of its block.
+  for (std::size_t i = 0, left = block_.g_count; left > 0; ++i) {
+    Word& word = block_.words[i];
+    if (word.meaning != Meaning::g) continue;
+    if (word.value.expression != 0 || word.argument_count != 0) evaluate_words(word);
+    gather_g(words, word, by_value);
+    --left;
+  }
   for (std::size_t i = 0; i < block_.count; ++i) {
     Word& word = block_.words[i];
-    if (word.value.expression != 0 || word.argument_count != 0) evaluate_words(word);
-    if (word.meaning == Meaning::g)
-      gather_g(words, word, by_value);
-    else
+    if (word.meaning == Meaning::g) continue;
+    if (word.value.expression != 0) evaluate_words(word);
+    if (word.meaning == Meaning::axis) {
+      words.axis[static_cast<std::size_t>(word.axis)] = &word;
+      ++words.axes;
+    } else {
       gather_word(words, word);
+    }
   }
   if (words.has_centres)
     for (std::size_t i = 0; i < block_.count; ++i)
@@ -197,16 +208,14 @@ void Execution::gather_word(BlockWords& words, const Word& word) {
       {Meaning::amount, &BlockWords::amount},
   }};
   switch (word.meaning) {
-    case Meaning::axis:
-      words.axis[static_cast<std::size_t>(word.axis)] = &word;
-      ++words.axes;
-      return;
     case Meaning::m: {
       const int code = whole(word.value, "M");
       const LetterRule& rule = dialect_->letters['M'];
       if (code > rule.max)
         fail(Fault::out_of_range, word.value.column,
              {"M", std::to_string(code), "0", text::number(rule.max)});
+      if (const MRule* known = dialect_->find_m(code); known != nullptr && known->action == MAction::later)
+        fail(Fault::not_executed, word.column, {"M" + std::to_string(code)});
       words.m[static_cast<std::size_t>(words.m_count)] = &word;
       words.m_code[static_cast<std::size_t>(words.m_count++)] = code;
       return;

@@ -52,7 +52,13 @@ std::size_t colon_of_label(const Lexis& lexis, std::string_view line, std::size_
   return pos < line.size() && line[pos] == ':' ? pos : std::string_view::npos;
 }
 
-bool is_block_number(const Dialect& dialect, char c) {
+/// A block number begins at `pos`, not a name whose first letter is the same.
+bool is_block_number(const Dialect& dialect, std::string_view line, std::size_t pos) {
+  char c = line[pos];
+  if (dialect.lexis.named_words) {
+    c = capital(c);
+    if (pos + 1 < line.size() && (is_letter(line[pos + 1]) || line[pos + 1] == '_')) return false;
+  }
   return static_cast<unsigned char>(c) < 128 &&
          dialect.letters[static_cast<unsigned char>(c)].meaning == Meaning::number;
 }
@@ -73,7 +79,7 @@ Prefix prefix_at(const Dialect& dialect, std::string_view line, std::size_t pos)
   if (c == '\0') return Prefix::none;
   if (c == lexis.skip) return Prefix::skip;
   if (c == '"' && lexis.label == LabelForm::quoted) return Prefix::label;
-  if (is_block_number(dialect, c)) return Prefix::number;
+  if (is_block_number(dialect, line, pos)) return Prefix::number;
   if (c == lexis.request_sync || c == lexis.cancel_sync) return Prefix::sync;
   return colon_of_label(lexis, line, pos) != std::string_view::npos ? Prefix::colon_label : Prefix::none;
 }
@@ -546,7 +552,7 @@ std::size_t skip_prefix(const Dialect& dialect, std::string_view line, std::int3
     }
     return pos;
   }
-  if (pos < line.size() && is_block_number(dialect, line[pos])) {
+  if (pos < line.size() && is_block_number(dialect, line, pos)) {
     ++pos;
     number = read_index(line, pos);
     pos = skip_spaces(line, pos);
@@ -564,6 +570,7 @@ void read_block(const Dialect& dialect, const AxisLetters& axes, std::string_vie
   block.skip = block.trailing_comment = false;
   block.skip_level = 0;
   block.number = -1;
+  block.number_column = 0;
   block.count = block.g_count = block.argument_count = 0;
   if (holds_nothing(dialect.lexis, line, skip_spaces(line, 0))) return;
   if (line.size() > dialect.max_block_characters &&

@@ -21,7 +21,10 @@ bool same_letters(std::string_view written, std::string_view name) {
 
 }  // namespace
 
-const GRule* Dialect::find_g(int number) const noexcept { return find_in(g, number, &GRule::number); }
+const GRule* Dialect::find_g(int number) const noexcept {
+  const GRule* rule = find_in(g, number, &GRule::number);
+  return rule == nullptr ? other_g : rule;
+}
 const MRule* Dialect::find_m(int code) const noexcept { return find_in(m, code, &MRule::code); }
 const WordRule* Dialect::find_word(std::string_view word) const noexcept {
   const auto at = std::find_if(words.begin(), words.end(),

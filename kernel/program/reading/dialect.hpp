@@ -142,6 +142,7 @@ enum class MAction : std::uint8_t {
   tool_change,
   subprogram_end,  ///< not handed to the PLC
   repeat_end,      ///< not handed to the PLC
+  later,           ///< an M word of the language that is not executed in this version
 };
 struct MRule {
   std::uint16_t code;
@@ -236,6 +237,7 @@ struct Dialect {
   ParameterSet parameters;
   ArcCentre arc_centre = ArcCentre::as_dimensions;
   bool centre_as_diameter = true;  ///< the centre's word along a diameter axis counts as its coordinates do
+  Function plane = Function::plane_12;         ///< at power-on, where no G word says another
   Function corner = Function::corner_limited;  ///< at power-on, where no G word says another
   ToolChange tool_change = ToolChange::by_function;
   bool end_returns = false;          ///< the end of the program returns from a subprogram
@@ -251,6 +253,7 @@ struct Dialect {
   std::size_t max_message_characters;
   std::array<LetterRule, 128> letters;
   std::span<const GRule> g;
+  const GRule* other_g = nullptr;  ///< G words of other numbers; null: there are none
   std::span<const MRule> m;
   std::span<const WordRule> words = {};  ///< named words
   std::span<const VariableRule> variables;

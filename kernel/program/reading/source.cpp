@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 
 #include "kernel/program/reading/block.hpp"
 
@@ -78,7 +79,7 @@ void Source::index_line(std::uint32_t index, std::vector<std::uint32_t>& open) {
   }
   ++blocks_;
   std::size_t pos = first;
-  if (lexis.label != LabelForm::none) {
+  if (lexis.label == LabelForm::quoted && (text[first] == '"' || text[first] == lexis.skip)) {
     std::string_view label;
     std::int32_t number = -1;
     pos = skip_prefix(*dialect_, text, number, label);
@@ -117,7 +118,9 @@ std::uint32_t Source::find_line(std::uint32_t first, std::uint32_t last, Is is) 
 }
 
 std::uint32_t Source::find_label(std::string_view name, std::uint32_t first, std::uint32_t last) const {
-  return find_line(first, last, [name](std::int32_t, std::string_view label) { return label == name; });
+  return find_line(first, last, [this, name](std::int32_t, std::string_view label) {
+    return dialect_->lexis.named_words ? in_capitals(label) == in_capitals(name) : label == name;
+  });
 }
 
 std::uint32_t Source::find_number(std::int32_t wanted, std::uint32_t first, std::uint32_t last) const {
@@ -128,6 +131,14 @@ std::uint32_t Source::definition(std::int32_t number) const {
   for (const auto& [line, its_number] : definitions_)
     if (its_number == number) return line;
   return kNone;
+}
+
+std::pair<std::uint32_t, std::int32_t> Source::definition_at(std::uint32_t line) const {
+  const auto next = definitions_.upper_bound(line);
+  if (next == definitions_.begin()) return {kNone, 0};
+  const auto at = std::prev(next);
+  if (start_ != kNone && start_ > at->first && start_ <= line) return {kNone, 0};
+  return *at;
 }
 
 std::uint32_t Source::behind_definition(std::uint32_t line) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace servogate::program {
@@ -43,6 +44,8 @@ class Source {
   /// follows up to the next such line or the main program.
   std::uint32_t definition(std::int32_t number) const;
   std::uint32_t behind_definition(std::uint32_t line) const;
+  /// The subprogram in whose lines a line stands: where it begins, and its number. kNone: in none.
+  std::pair<std::uint32_t, std::int32_t> definition_at(std::uint32_t line) const;
   /// First line of the main program; kNone where the language wants a mark in front of it and there is none.
   std::uint32_t start() const noexcept { return start_; }
 

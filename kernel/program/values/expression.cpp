@@ -101,6 +101,7 @@ class Reader {
   double named() {
     std::size_t end = pos_;
     while (end < line_.size() && (language_.any_case ? is_letter(line_[end]) : is_capital(line_[end]))) ++end;
+    while (language_.any_case && end < line_.size() && is_digit(line_[end])) ++end;
     std::string name(line_.substr(pos_, end - pos_));
     if (language_.any_case) name = in_capitals(name);
     for (const FunctionRow& row : language_.functions)

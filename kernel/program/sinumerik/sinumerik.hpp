@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+
+#include "kernel/program/reading/dialect.hpp"
+
+namespace servogate::program::sinumerik {
+
+/// The language of the control SINUMERIK 808D in its own mode (G290) as a table
+/// (docs/dialects/sinumerik-808d.md).
+const Dialect& dialect();
+
+inline constexpr int kRParameters = 300;
+
+// statements.cpp: assignments, jumps, subprograms, messages
+extern const WordRule kAssignR, kCallByNumber, kSystemVariable;
+std::span<const WordRule> words();
+bool value_in_place_of_number(BlockText& text, Value& value);
+void judge(const Judgement& reading, const Block& block);
+/// G4 F: seconds
+void dwell(Execution& run, const BlockWords& words);
+
+// frames.cpp: the programmable frame
+void trans(Execution& run, const BlockWords& words);
+void atrans(Execution& run, const BlockWords& words);
+void rot(Execution& run, const BlockWords& words);
+void arot(Execution& run, const BlockWords& words);
+
+// expressions.cpp
+Expressions expressions();
+ParameterSet parameters();
+
+}  // namespace servogate::program::sinumerik
