@@ -1,0 +1,11 @@
+R1=2
+if R1==2 gotof next
+G0 X1
+NEXT: G0 X2
+GOTOF N100
+X3
+N100 X4
+GOTO END_
+X5
+END_:
+M2

@@ -1,0 +1,4 @@
+MSG("part 1; side A")
+STOPRE
+M8 M123 M1000
+MSG()
