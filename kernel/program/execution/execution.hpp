@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -171,6 +172,8 @@ class Execution : public ValueSource {
 
   const Block& block() const noexcept { return block_; }
   Block& block() noexcept { return block_; }
+  /// Refuses the words of a block that has no motion, but for those that its function takes.
+  void refuse_all_but(const BlockWords& words, std::initializer_list<const Word*> taken) const;
   /// F, which stays in force where it is no matter of its block.
   void store_feed(const BlockWords& words);
   /// The lengths of a row of the tool table come into force; 0: none.

@@ -329,6 +329,17 @@ void Execution::use_origin(int number, int column) {
   frame_changed();
 }
 
+void Execution::refuse_all_but(const BlockWords& words, std::initializer_list<const Word*> taken) const {
+  const auto refuse = [&](const Word* word) {
+    if (word == nullptr || std::find(taken.begin(), taken.end(), word) != taken.end()) return;
+    fail(Fault::word_without_function, word->column, {word_text(*dialect_, block_, *word)});
+  };
+  for (const Word* word : words.axis) refuse(word);
+  for (const Word* word : {words.centre1, words.centre2, words.pitch, words.radius, words.radius2, words.feed,
+                           words.time, words.count, words.angle, words.amount})
+    refuse(word);
+}
+
 /// Words that nothing in this block uses are told, not skipped.
 void Execution::refuse_stray_words(const BlockWords& words) const {
   const bool arc = arc_motion(state_.modes.motion);

@@ -195,6 +195,7 @@ void call_cycle(Execution& run, const BlockWords& words) {
   const int number = static_cast<int>(word.value.number);
   const std::uint32_t line = run.source().definition(kFirstCycle + number);
   if (line == Source::kNone) fail(Fault::g_unknown, word.column, {std::to_string(number)});
+  run.refuse_all_but(words, {});
   std::vector<double> arguments;
   for (std::size_t i = 0; i < word.argument_count; ++i) arguments.push_back(run.block().arguments[i].number);
   run.end_profile();
@@ -207,8 +208,13 @@ void dwell(Execution& run, const BlockWords& words) {
   double ms = 3000.0;
   int column = words.instead_word->column;
   const Word* word = words.amount;
-  for (const Word* axis : words.axis)
-    if (axis != nullptr) word = axis;
+  for (const Word* axis : words.axis) {
+    if (axis == nullptr) continue;
+    if (word != nullptr) run.refuse_all_but(words, {word, words.feed});  // of two times one counts
+    word = axis;
+  }
+  run.refuse_all_but(words, {word, words.feed});
+  run.store_feed(words);
   if (words.instead_word->argument_count > 0 && !block.arguments[0].bare) {
     ms = block.arguments[0].number;
   } else if (word != nullptr) {

@@ -27,19 +27,10 @@ Position shift(const Execution& run, const BlockWords& words) {
   return by;
 }
 
-void refuse(const Execution& run, const Word* word) {
-  if (word != nullptr)
-    fail(Fault::word_without_function, word->column, {word_text(run.dialect(), run.block(), *word)});
-}
-
-void refuse_others(const Execution& run, const BlockWords& words) {
-  for (const Word* word : {words.centre1, words.centre2, words.radius, words.feed, words.count, words.amount})
-    refuse(run, word);
-}
-
 void add_shift(Execution& run, const BlockWords& words) {
-  refuse_others(run, words);
-  refuse(run, words.angle);
+  BlockWords others = words;
+  others.axis = {};
+  run.refuse_all_but(others, {});
   Frame& frame = run.state().frame;
   Position by = shift(run, words);
   const Modes& modes = run.state().modes;
@@ -54,10 +45,10 @@ void add_shift(Execution& run, const BlockWords& words) {
 }
 
 void add_rotation(Execution& run, const BlockWords& words) {
-  refuse_others(run, words);
   for (const Word* word : words.axis)
     if (word != nullptr)
       fail(Fault::not_executed, word->column, {word_text(run.dialect(), run.block(), *word)});
+  run.refuse_all_but(words, {words.angle});
   Frame& frame = run.state().frame;
   const double angle = words.angle == nullptr ? 0.0 : run.resolve(words.angle->value);
   if (angle != 0.0) run.need_plane(words.angle->column);

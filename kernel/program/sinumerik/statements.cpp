@@ -125,9 +125,7 @@ void read_name_of_program(BlockText& text, Word&) {
 
 void call(Execution& run, const BlockWords& words) {
   const Word& word = *words.instead_word;
-  for (const Word* axis : words.axis)
-    if (axis != nullptr)
-      fail(Fault::word_without_function, axis->column, {word_text(run.dialect(), run.block(), *axis)});
+  run.refuse_all_but(words, {words.count});
   const double passes = words.count == nullptr ? 1.0 : run.resolve(words.count->value);
   if (!(passes >= 1.0 && passes <= kMostPasses))
     fail(Fault::out_of_range, words.count->column,
@@ -253,7 +251,7 @@ std::span<const WordRule> words() { return kWords; }
 
 /// X=10, X=R1*2, X=AC(20), X=IC(R3)
 bool value_in_place_of_number(BlockText& text, Value& value) {
-  if (text.line[text.pos] != '=') return false;
+  if (text.line[text.pos] != '=' || value.negative) return false;
   ++text.pos;
   text.peek();
   std::size_t pos = text.pos;
@@ -285,9 +283,7 @@ void dwell(Execution& run, const BlockWords& words) {
   const Word& g4 = *words.instead_word;
   if (words.speed != nullptr)
     fail(Fault::not_executed, words.speed->column, {word_text(run.dialect(), run.block(), *words.speed)});
-  for (const Word* axis : words.axis)
-    if (axis != nullptr)
-      fail(Fault::word_without_function, axis->column, {word_text(run.dialect(), run.block(), *axis)});
+  run.refuse_all_but(words, {words.feed});
   if (words.feed == nullptr) fail(Fault::value_missing, g4.column, {"G4", "F"});
   const double seconds = run.resolve(words.feed->value);
   if (!(seconds >= 0.0 && seconds <= kMostSeconds))
