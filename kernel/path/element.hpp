@@ -20,6 +20,10 @@ struct AxisLimits {
   double jerk = 0.0;
 };
 
+class Transformation;
+/// Path coordinates are those of the axes.
+const Transformation& identity() noexcept;
+
 /// The machine as this room sees it.
 struct Config {
   int axis_count = 3;  ///< 1 - kMaxAxes
@@ -28,6 +32,9 @@ struct Config {
   double period_s = 0.001;              ///< length of a cycle
   double largest_override = 1.5;        ///< feed override never exceeds this ratio
   std::uint32_t piece_capacity = 8192;  ///< look-ahead in pieces of geometry (about 0.8 kB each), >= 1024
+  /// Pieces that stay on the track behind the motion; an element makes three at most.
+  std::uint32_t pieces_behind = 3072;
+  const Transformation* transformation = &identity();  ///< axes/; from path coordinates to the axes
 };
 
 /// Where an element comes from, carried to the set-point: for displays, alarms and traces.
@@ -37,6 +44,7 @@ struct Tag {
   std::int32_t block = -1;  ///< N number
   std::int16_t process = 0;
   std::uint64_t command = 0;  ///< number of the block, rising along the path; the channel's own counting
+  std::uint32_t marks = 0;    ///< marks before it on the path (Planner::add_mark()); filled by the planner
   bool operator==(const Tag&) const = default;
 };
 

@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "kernel/path/axes/transformation.hpp"
 #include "kernel/path/follower.hpp"
 #include "kernel/path/planner.hpp"
 
 namespace servogate::path {
 
-Estimate estimate(const Config& config, const Vector& start, std::span<const Element> elements,
+Estimate estimate(const Config& machine, const Vector& start, std::span<const Element> elements,
                   double override_ratio) {
   constexpr std::int64_t kLongest = 1'000'000'000;  // cycles
+  Config config = machine;
+  config.pieces_behind = 0;
   Track track(config);
   Planner planner(config, track);
   Follower follower(config, track);
-  follower.set_position(start);
+  follower.set_position(to_axes(config, start));
   follower.set_override(std::max(override_ratio, 1e-3));
   planner.restart(start);
 
   Estimate out;
-  out.lowest = out.highest = start;
+  out.lowest = out.highest = to_axes(config, start);
   std::size_t next = 0;
   bool finished = false;
   for (; out.cycles < kLongest; ++out.cycles) {

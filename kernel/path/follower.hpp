@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <vector>
 
-#include "kernel/path/s_curve.hpp"
-#include "kernel/path/track.hpp"
+#include "kernel/path/law/motion.hpp"
+#include "kernel/path/track/window.hpp"
 
 namespace servogate::path {
 
@@ -19,7 +18,7 @@ enum class FollowerState : std::uint8_t {
   fault,  ///< the planner restarted elsewhere than the follower stands; set_position() or restart() clears it
 };
 
-/// The set-point of one cycle.
+/// The set-point of one cycle, of the axes.
 struct Sample {
   Vector position{}, velocity{}, acceleration{};  ///< mm, mm/s, mm/s2 (degrees)
   double feed = 0.0;                              ///< speed along the path, mm/s over the linear axes
@@ -30,6 +29,13 @@ struct Sample {
   bool rapid = false;         ///< the block in motion is a rapid
   std::uint32_t event = 0;    ///< at_event: which
   std::uint32_t starved = 0;  ///< cycles so far in which planning was late
+  std::uint32_t passed = 0;   ///< marks passed in this cycle (Planner::add_mark())
+  double passed_at = 0.0;     ///< where in the cycle the last of them was, 0 - 1 (its end)
+};
+
+/// Pieces that lie behind the motion and can still be read, by number in Track::pieces: [begin, end).
+struct Behind {
+  std::uint64_t begin = 0, end = 0;
 };
 
 /// The motion inside the cycle: owns place, speed and acceleration along the path. All functions are
@@ -68,51 +74,44 @@ class Follower {
   /// path begun.
   bool set_position(const Vector& at) noexcept;
   /// True while neither speed nor acceleration is present.
-  bool at_rest() const noexcept { return state_.v == 0.0 && state_.a == 0.0; }
+  bool at_rest() const noexcept { return motion_.at_rest(); }
+  /// The way back: the geometry that was driven, up to the piece in motion, at most to where the path was
+  /// begun and at least Config::pieces_behind of it, which the planner leaves alone until the next step().
+  Behind behind() const noexcept;
 
  private:
   void take_entries(std::uint64_t visible) noexcept;
-  void raise(const Span& update) noexcept;
   void start() noexcept;
   void pass_markers() noexcept;
-  void drop() noexcept;
   bool pass_marker(const Entry& entry) noexcept;
+  void drop() noexcept;
+  void drop_span(const Span& span) noexcept;
   void enter() noexcept;
   void leave() noexcept;
-  Goal goal(const MotionState& from) const noexcept;
-  bool replan() noexcept;
-  bool bridge() noexcept;
-  bool bridge_clears(const Profile& way, int spans, const Box& least) const noexcept;
-  void pass_spans() noexcept;
   void advance() noexcept;
+  void arrive(const Span& span) noexcept;
   bool rest_asked() const noexcept { return hold_ || stopping_ || override_ <= 0.0; }
   bool wants_rest() const noexcept { return rest_asked() || spindle_stands(); }
   bool spindle_stands() const noexcept;
-  double spindle_share(const Span& span) const noexcept;
+  Wish wish() const noexcept { return {wants_rest(), override_, spindle_}; }
   void locate() noexcept;
+  void place_on_axes() noexcept;
+  void pass_marks(std::uint32_t marks, double beyond) noexcept;
+  double behind_mark(std::uint32_t marks, double s, bool early) const noexcept;
   FollowerState report() const noexcept;
   Sample sample() noexcept;
-  const Entry& front() const noexcept { return window_[first_ % window_.size()]; }
-  Entry& entry_at(std::uint64_t n) noexcept { return window_[n % window_.size()]; }
-  bool empty() const noexcept { return first_ == last_; }
+  const Span& front() const noexcept { return *window_.span(0); }
 
   Config config_;
   Track& track_;
-  std::vector<Entry> window_;           ///< entries taken and not done, a ring
-  std::uint64_t first_ = 0, last_ = 0;  ///< entries in use
-  std::uint64_t staged_ = 0;            ///< end of those that wait for the rest of their batch, >= last_
-  std::uint64_t taken_ = 0;             ///< entries taken from the track
+  Window window_;
+  std::uint64_t taken_ = 0;  ///< entries taken from the track
+  Motion motion_;
 
-  bool in_span_ = false;  ///< front() is a span that is being driven
-  MotionState state_;     ///< within the span
-  Profile profile_;
-  double clock_ = 0.0;       ///< time within the profile
-  bool bridging_ = false;    ///< the profile leads to rest across spans, with acceleration at their ends
-  double base_ = 0.0;        ///< place of the present span's start in the profile's coordinate
-  bool stale_ = false;       ///< the profile wants planning anew
+  bool in_span_ = false;     ///< the first entry is a span that is being driven
   std::uint64_t piece_ = 0;  ///< number of the piece in motion
-
-  bool resting_wanted_ = false;  ///< what the profile was planned for
+  std::uint64_t begun_ = 0;  ///< of the first piece of this path
+  std::uint32_t marks_ = 0;  ///< passed or dropped so far
 
   bool hold_ = false, stopping_ = false, dropping_ = false;
   bool wait_stop_ = false, wait_event_ = false, fault_ = false;
@@ -121,6 +120,7 @@ class Follower {
   double spindle_ = -1.0;  ///< revolutions a second, below 0: as planned
   std::uint32_t starved_ = 0;
   Sample sample_;
+  std::uint64_t shown_ = ~std::uint64_t{0};  ///< number of the piece whose target the sample shows
 };
 
 }  // namespace servogate::path

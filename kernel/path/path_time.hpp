@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <deque>
 
+#include "kernel/path/law/motion.hpp"
 #include "kernel/path/planner.hpp"
-#include "kernel/path/track.hpp"
 
 namespace servogate::path {
 
-/// How long a path takes at override 1: the speeds are the planner's, each span's time is that of the S-curve
-/// which the follower lays in it. No cycle is stepped, so the cost goes with the elements and not with the
+/// How long a path takes at override 1: the spans are the planner's, the time of each is the law's
+/// (Timing). No cycle is stepped, so the cost goes with the elements and not with the
 /// time they take. Waiting for the axes to be in position is not counted. Not real-time safe.
 class PathTime {
  public:
@@ -26,15 +26,14 @@ class PathTime {
  private:
   void take_entries();
   void time_spans();
-  double time_span(const Span& span, const Span* behind);
 
   Config config_;
   Track track_;
   Planner planner_;
   std::deque<Span> spans_;   ///< published, not yet timed
   std::uint64_t taken_ = 0;  ///< entries of the track
-  double speed_ = 0.0;       ///< at the start of spans_.front()
-  double way_ = 0.0;         ///< time since the last rest, s
+  Timing timing_;
+  double way_ = 0.0;  ///< time since the last rest, s
   double seconds_ = 0.0;
 };
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <span>
 
-#include "kernel/path/track.hpp"
+#include "kernel/path/track/track.hpp"
 
 namespace servogate::path {
 
@@ -13,6 +13,7 @@ namespace servogate::path {
 /// real-time safe.
 class Planner {
  public:
+  /// All positions are path coordinates, see Config::transformation.
   Planner(const Config& config, Track& track);
   ~Planner();
   Planner(const Planner&) = delete;
@@ -26,6 +27,11 @@ class Planner {
   /// Appends an element. False: it cannot be driven, last_flaw() says why, and nothing has changed.
   bool add(const Element& element);
   Flaw last_flaw() const;
+
+  /// A mark in the end point of the elements before, which the motion passes without a rest: the follower
+  /// counts it in Sample::passed. The corner may be rounded there; its middle counts. Where the path stops,
+  /// it is passed when the path goes on.
+  void add_mark();
 
   /// The path comes to rest after the elements before; the follower reports the event and waits there until
   /// Follower::release_event().

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/path/geometry/piece.hpp"
+#include "kernel/path/bound/bound.hpp"
 
 #include <gtest/gtest.h>
 

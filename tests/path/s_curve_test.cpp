@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/path/s_curve.hpp"
+#include "kernel/path/law/s_curve.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "firmware_if/text/finding.hpp"
 #include "kernel/path/element.hpp"
-#include "kernel/path/geometry/piece.hpp"
+#include "kernel/path/shape/piece.hpp"
 #include "kernel/program/canonical.hpp"
 
 namespace servogate::channel {

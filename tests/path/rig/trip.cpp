@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "kernel/path/axes/transformation.hpp"
+
 namespace servogate::path::test {
 namespace {
 
@@ -17,9 +19,9 @@ class Rig {
         planner_(program.config, track_),
         follower_(program.config, track_),
         random_(seed) {
-    follower_.set_position(program.start);
+    first_.position = to_axes(program.config, program.start);
+    follower_.set_position(first_.position);
     planner_.restart(program.start);
-    first_.position = program.start;
   }
 
   bool chance(double p) { return std::uniform_real_distribution<double>(0, 1)(random_) < p; }

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "kernel/path/geometry/piece.hpp"
+#include "kernel/path/shape/piece.hpp"
 
 namespace servogate::path {
 

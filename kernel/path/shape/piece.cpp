@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/path/geometry/piece.hpp"
+#include "kernel/path/shape/piece.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -28,8 +28,8 @@ struct Piece {
   /// outside the plane. Blend: x = c0 + c1 u + ... + c5 u^5, u = (offset + s) / full.
   Vector c0{}, c1{}, c2{}, c3{}, c4{}, c5{};
   double center1 = 0.0, center2 = 0.0, radius = 0.0, radius_slope = 0.0, angle = 0.0, omega = 0.0;
-  double start = 0.0;  ///< parameter at the piece's start within its span; filled by the planner
-  double time = 0.0;   ///< running sum of the shortest times, s; filled by the planner
+  double start = 0.0;  ///< parameter at the piece's start within its span; filled by the law
+  double time = 0.0;   ///< running sum of the shortest times, s; filled by the law
   double rest = 0.0;   ///< path length from the piece's end to the end of the element `tag`
   Tag tag;             ///< element in motion; on a blend from its middle on
   Tag tag_before;      ///< on a blend up to its middle
@@ -81,17 +81,5 @@ bool joins_smoothly(const Piece& before, const Piece& after, int axes);
 
 /// Change of direction from the end of `before` to the start of `after`, radians, 0 - pi.
 double turn(const Piece& before, const Piece& after, int axes);
-
-/// What the parameter may do on a piece: anything with 0 <= velocity <= V, |acceleration| <= A and |jerk| <=
-/// J keeps every axis inside its limits.
-struct Box {
-  double velocity = 0.0, acceleration = 0.0, jerk = 0.0;
-};
-
-/// The box of a piece whose speed will not exceed `velocity_cap` (infinite: as fast as the limits).
-Box box(const Config& config, const Piece& piece, double velocity_cap);
-
-/// Largest speed over the linear axes (over all where none moves) for a parameter speed of 1.
-double path_rate(const Config& config, const Piece& piece);
 
 }  // namespace servogate::path

@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "kernel/path/geometry/piece.hpp"
+#include "kernel/path/bound/bound.hpp"
 
 namespace servogate::path {
 

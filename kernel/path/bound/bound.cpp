@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kernel/path/bound/bound.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/path/geometry/piece.hpp"
+#include "kernel/path/axes/transformation.hpp"
 
 namespace servogate::path {
 namespace {
@@ -31,6 +33,18 @@ struct Rows {
   const Row* end() const { return rows.data() + count; }
 };
 
+/// Position and derivatives on the axes.
+PathPoint on_axes(const Config& config, const Piece& piece, double s) {
+  PathPoint at = evaluate(piece, s, config.axis_count);
+  config.transformation->to_axes(at, config.axis_count);
+  return at;
+}
+
+void sample_line(const Config& config, const Piece& p, Rows& rows) {
+  const PathPoint at = on_axes(config, p, 0.0);
+  for (int i = 0; i < config.axis_count; ++i) rows.add(std::abs(at.d1[i]), 0.0, 0.0, config.limits[i]);
+}
+
 /// On an arc every combination of the derivatives is a sinusoid of the angle, so that between two samples it
 /// is at most 1 / cos(half the step) higher.
 void sample_arc(const Config& config, const Piece& p, Rows& rows) {
@@ -38,14 +52,17 @@ void sample_arc(const Config& config, const Piece& p, Rows& rows) {
   const int steps = std::clamp(static_cast<int>(std::ceil(sweep / 0.131)), 1, 48);
   const double factor = 1.0 / std::cos(0.5 * sweep / steps);
   const double span = sweep / std::abs(p.omega);
+  PathPoint even{p.c0, p.c1};  // what moves linearly with the angle
+  even.d1[p.axis1] = even.d1[p.axis2] = 0.0;
+  config.transformation->to_axes(even, config.axis_count);
   for (int k = 0; k <= steps; ++k) {
-    const PathPoint at = evaluate(p, span * k / steps, config.axis_count);
-    for (const int i : {static_cast<int>(p.axis1), static_cast<int>(p.axis2)})
-      rows.add(factor * std::abs(at.d1[i]), factor * std::abs(at.d2[i]), factor * std::abs(at.d3[i]),
-               config.limits[i]);
+    const PathPoint at = on_axes(config, p, span * k / steps);
+    for (int i = 0; i < config.axis_count; ++i) {
+      if (k > 0 && at.d2[i] == 0.0 && at.d3[i] == 0.0) continue;  // the same everywhere
+      rows.add(factor * std::abs(at.d1[i] - even.d1[i]) + std::abs(even.d1[i]), factor * std::abs(at.d2[i]),
+               factor * std::abs(at.d3[i]), config.limits[i]);
+    }
   }
-  for (int i = 0; i < config.axis_count; ++i)
-    if (i != p.axis1 && i != p.axis2) rows.add(std::abs(p.c1[i]), 0.0, 0.0, config.limits[i]);
 }
 
 /// On a blend a function f between samples h apart is at most h^2 / 8 max|f''| higher than at them; for the
@@ -56,11 +73,14 @@ void sample_blend(const Config& config, const Piece& p, Rows& rows) {
   const int n = config.axis_count;
   const double h = p.length / kSteps, e = h * h / 8.0;
   std::array<PathPoint, kSteps + 1> at;
-  for (int k = 0; k <= kSteps; ++k) at[k] = evaluate(p, h * k, n);
+  for (int k = 0; k <= kSteps; ++k) at[k] = on_axes(config, p, h * k);
+  const double full5 = std::pow(p.full, 5), slope4 = 24.0 / std::pow(p.full, 4);
+  PathPoint higher{p.c0, p.c4, {}, p.c5};  // the map takes any derivative as it takes the first
+  for (int i = 0; i < n; ++i) higher.d2[i] = p.c4[i] + 5.0 * p.c5[i];
+  config.transformation->to_axes(higher, n);
   for (int i = 0; i < n; ++i) {
-    const double fifth = 120.0 * std::abs(p.c5[i]) / std::pow(p.full, 5);
-    const double slope4 = 24.0 / std::pow(p.full, 4);
-    const double fourth = slope4 * std::max(std::abs(p.c4[i]), std::abs(p.c4[i] + 5.0 * p.c5[i]));
+    const double fifth = 120.0 * std::abs(higher.d3[i]) / full5;
+    const double fourth = slope4 * std::max(std::abs(higher.d1[i]), std::abs(higher.d2[i]));
     double third = 0.0;
     for (const PathPoint& point : at) third = std::max(third, std::abs(point.d3[i]));
     third += e * fifth;
@@ -97,7 +117,7 @@ double jerk_left(const Rows& rows, double v, double a) {
 Box box(const Config& config, const Piece& piece, double velocity_cap) {
   Rows rows;
   if (piece.shape == Piece::Shape::line) {
-    for (int i = 0; i < config.axis_count; ++i) rows.add(std::abs(piece.c1[i]), 0.0, 0.0, config.limits[i]);
+    sample_line(config, piece, rows);
   } else if (piece.shape == Piece::Shape::arc) {
     sample_arc(config, piece, rows);
   } else {
@@ -152,6 +172,17 @@ double path_rate(const Config& config, const Piece& p) {
     worst = std::max(worst, std::sqrt(linear) / p.full);
   }
   return std::max(1.0, worst);
+}
+
+Bound bound(const Config& config, const Piece& piece, const Pace& pace) {
+  Bound out;
+  out.feed.speed = pace.feed / path_rate(config, piece);
+  if (pace.turns > 0.0) out.feed.per_turn = out.feed.speed / pace.turns;
+  out.feed.turns = pace.turns;
+  out.feed.rapid = piece.rapid;
+  out.box = box(config, piece, std::min(pace.cap, out.feed.speed * config.largest_override));
+  out.feed.speed = std::min(out.feed.speed, out.box.velocity);
+  return out;
 }
 
 }  // namespace servogate::path

@@ -2,10 +2,8 @@
 #pragma once
 #include <cstdint>
 #include <deque>
-#include <vector>
 
-#include "kernel/path/s_curve.hpp"
-#include "kernel/path/track.hpp"
+#include "kernel/path/law/span.hpp"
 
 namespace servogate::path {
 
@@ -18,13 +16,13 @@ class Lookahead {
  public:
   /// `most_pieces`: when more pieces of geometry are waiting, the older half becomes final as it is, so that
   /// the track has room for both what is final and what is not.
-  explicit Lookahead(std::size_t most_pieces) : most_pieces_(most_pieces) {}
+  Lookahead(std::size_t most_pieces, SpanSink& sink) : most_pieces_(most_pieces), sink_(sink) {}
 
-  /// Appends a span (its number, exits and `final` are filled here). The entries to publish go to `out`.
-  void append(const Span& span, std::vector<Entry>& out);
+  /// Appends a span (its number, exits and `final` are filled here).
+  void append(const Span& span);
   /// The path rests behind the last span appended; everything becomes final.
-  void rest(bool confirm, std::vector<Entry>& out);
-  /// Forgets the spans that are not final; they must not have been published, or be dropped by the follower.
+  void rest(bool confirm);
+  /// Forgets the spans that are not final; they must not have been put, or be dropped by the follower.
   void clear();
   /// Number of the last span appended; markers carry it.
   std::uint64_t last_number() const { return next_ - 1; }
@@ -37,13 +35,14 @@ class Lookahead {
     double reach = 0.0, reach_nominal = 0.0;  ///< fastest arrival at the end of the span
     bool published = false, changed = false;
   };
-  void settle(std::vector<Entry>& out, bool resting);
+  void settle(bool resting);
   void arrive(std::size_t i);
   void pass_back();
   std::size_t settled(bool resting) const;
-  void publish(std::size_t final_count, std::vector<Entry>& out);
+  void publish(std::size_t final_count);
 
   std::size_t most_pieces_;
+  SpanSink& sink_;
   std::deque<Item> spans_;
   std::uint64_t next_ = 1;
   std::size_t waiting_pieces_ = 0, fresh_pieces_ = 0;

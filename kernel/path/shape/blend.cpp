@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/path/geometry/smoothing.hpp"
+#include "kernel/path/shape/smoothing.hpp"
 
 namespace servogate::path {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/path/geometry/smoothing.hpp"
+#include "kernel/path/shape/smoothing.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "kernel/path/shape/contour.hpp"
+
+namespace servogate::path {
+
+/// What the parameter may do on a piece: anything with 0 <= velocity <= V, |acceleration| <= A and |jerk| <=
+/// J keeps every axis inside its limits.
+struct Box {
+  double velocity = 0.0, acceleration = 0.0, jerk = 0.0;
+};
+
+/// How fast the program wants a piece driven, as parameter speed.
+struct Feed {
+  double speed = 0.0;     ///< at override 1, with the spindle turning as planned; within the box
+  double per_turn = 0.0;  ///< in one revolution of the spindle, 0: feed per time
+  double turns = 0.0;     ///< revolutions a second that `speed` is planned for
+  bool rapid = false;     ///< follows the override up to 1 only
+};
+
+/// What a place of the path allows.
+struct Bound {
+  Box box;
+  Feed feed;
+};
+
+/// The box of a piece whose speed will not exceed `velocity_cap` (infinite: as fast as the limits).
+Box box(const Config& config, const Piece& piece, double velocity_cap);
+
+/// Largest speed over the linear axes (over all where none moves) for a parameter speed of 1.
+double path_rate(const Config& config, const Piece& piece);
+
+/// Box and feed of a piece as the contour put it.
+Bound bound(const Config& config, const Piece& piece, const Pace& pace);
+
+}  // namespace servogate::path

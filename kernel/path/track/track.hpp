@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "kernel/path/law/span.hpp"
+#include "kernel/path/track/ring.hpp"
+
+namespace servogate::path {
+
+/// What the planner tells the follower, in order.
+struct Entry {
+  enum class Kind : std::uint8_t {
+    span,     ///< `span`; its pieces are already in Track::pieces
+    revise,   ///< span.number has the terms, stop and final of `span` from now on
+    event,    ///< the path rests here; report `event` and wait for release_event()
+    finish,   ///< nothing more is to be expected: rest here is no starvation
+    restart,  ///< the path goes on at `at` with piece span.first_piece; ends the dropping after a stop
+  };
+  Kind kind = Kind::span;
+  bool more = false;  ///< the next entry belongs with this one: neither may be used before both are seen
+  std::uint32_t event = 0;
+  Tag tag;  ///< of a marker
+  Span span;
+  Vector at{};
+};
+
+/// The one connection of planner and follower. The cycle reads entries.written() once per cycle, records it,
+/// and gives it to the follower: a replay that gives the same numbers gives the same set-points.
+struct Track {
+  explicit Track(const Config& config)
+      : pieces(config.piece_capacity < 1024 ? 1024 : config.piece_capacity, config.pieces_behind),
+        entries(2 * pieces.capacity()) {}
+  /// Where the entries of a path begin: numbers of its restart entry and of its first piece.
+  struct Begin {
+    std::uint64_t entry = 0, piece = 0;
+  };
+  Ring<Piece> pieces;  ///< those that are passed stay readable for a while, as a way back
+  Ring<Entry> entries;
+  /// Count for Follower::step(). real-time safe.
+  std::uint64_t visible() const noexcept { return entries.written(); }
+};
+
+}  // namespace servogate::path
