@@ -5,79 +5,16 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-#include <random>
 #include <vector>
 
+#include "bench/path/works.hpp"
 #include "kernel/path/follower.hpp"
 #include "kernel/path/planner.hpp"
 
 namespace {
 
 using namespace servogate::path;
-using Program = std::vector<Element>;
-
-Config machine(double acceleration, double jerk) {
-  Config config;
-  for (int i = 0; i < 3; ++i) config.limits[i] = {500.0, acceleration, jerk};
-  return config;
-}
-
-Element line(double x, double y, double z, double feed_mm_min) {
-  Element e;
-  e.to = {x, y, z};
-  e.feed = feed_mm_min / 60.0;
-  e.transition = {Continuation::continuous, 0.01, 0.0, 180.0, false};
-  return e;
-}
-
-Program polygon(double radius, int blocks, double step_angle, double feed) {
-  Program p;
-  for (int i = 1; i <= blocks; ++i)
-    p.push_back(
-        line(radius - radius * std::cos(step_angle * i), radius * std::sin(step_angle * i), 0.0, feed));
-  return p;
-}
-
-Program circle(double radius, double feed) {
-  Element e = line(0, 0, 0, feed);
-  e.kind = Element::Kind::arc;
-  e.center1 = radius;
-  e.sweep_deg = 360.0;
-  return {e};
-}
-
-Program collinear(int blocks, double step, double feed) {
-  Program p;
-  for (int i = 1; i <= blocks; ++i) p.push_back(line(step * i, 0, 0, feed));
-  return p;
-}
-
-Program zigzag(int blocks, double step, double feed) {
-  Program p;
-  for (int i = 1; i <= blocks; ++i) p.push_back(line(step * ((i + 1) / 2), step * (i / 2), 0, feed));
-  return p;
-}
-
-/// Heading a random walk of 0.03 rad a block in plan and 0.01 in elevation, kept inside 95 mm.
-Program random_walk(int blocks, double feed) {
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> plan(0.0, 0.03), elevation(0.0, 0.01);
-  std::uniform_real_distribution<double> length(0.1, 0.5);
-  Program p;
-  double x = 0, y = 0, z = 0, heading = 0, climb = 0;
-  for (int i = 0; i < blocks; ++i) {
-    heading += plan(random);
-    climb = std::clamp(climb + elevation(random), -0.5, 0.5);
-    const double l = length(random), to_center = std::atan2(-y, -x);
-    if (std::hypot(x, y) > 75.0) heading += 0.05 * std::sin(to_center - heading);
-    if (std::abs(z) > 75.0) climb -= 0.02 * std::copysign(1.0, z);
-    x += l * std::cos(climb) * std::cos(heading);
-    y += l * std::cos(climb) * std::sin(heading);
-    z += l * std::sin(climb);
-    p.push_back(line(x, y, z, feed));
-  }
-  return p;
-}
+using namespace servogate::bench;
 
 void row(const char* name, const Config& config, const Program& program, const char* known) {
   const Estimate e = estimate(config, {}, program);
@@ -143,7 +80,7 @@ void step_cost(const char* name, const Config& config, const Program& program, b
 }  // namespace
 
 int main() {
-  const Config mill = machine(1000, 10000), fast = machine(5000, 50000);
+  const Config mill = servogate::bench::mill(), fast = servogate::bench::fast();
   const double full = 2.0 * std::numbers::pi;
   row("mill: circle R20, one arc, F6000", mill, circle(20, 6000), "ideal 1.457");
   row("mill: circle R20, 1000 blocks, F6000", mill, polygon(20, 1000, full / 1000, 6000), "ideal 1.457");

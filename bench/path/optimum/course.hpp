@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "bench/path/optimum/optimum.hpp"
+#include "bench/path/works.hpp"
+
+namespace servogate::bench {
+
+/// The path that the kernel's shape room makes of a program, from rest to rest. All elements have one feed.
+struct Shaped {
+  std::vector<Course> courses;  ///< one between two stops
+  double length = 0.0;
+};
+Shaped shape_of(const path::Config& config, const Program& program);
+
+Limits limits_of(const path::Config& config);
+
+}  // namespace servogate::bench
