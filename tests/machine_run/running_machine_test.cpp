@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole machine through bench::Machine only, as benchmarks, bench and scenarios see it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gateway/run/running_machine.hpp"
+#include "tests/machine_run/rig/mill.hpp"
+#include "tests/machine_run/rig/program.hpp"
+
+namespace servogate::machine_run {
+namespace {
+
+using fault::Device;
+using fault::Fault;
+using fault::Kind;
+
+std::unique_ptr<gateway::RunningMachine> running(const machine::LoadResult& loaded) {
+  std::vector<text::Finding> findings;
+  auto machine = gateway::RunningMachine::compose(loaded, nullptr, {}, findings);
+  EXPECT_NE(machine, nullptr) << (findings.empty() ? "" : findings.front().str(text::Language::english));
+  return machine;
+}
+
+std::unique_ptr<gateway::RunningMachine> mill() { return running(machine::load(mill_file())); }
+
+void run(bench::Machine& machine, int cycles) {
+  for (int n = 0; n < cycles; ++n) ASSERT_TRUE(machine.step());
+}
+
+bool online(const bench::Machine& machine, int axis) {
+  return machine.image().axes[static_cast<std::size_t>(axis)].drive.online;
+}
+
+TEST(RunningMachine, takes_every_fault_of_the_vocabulary_on_a_device_that_it_happens_to) {
+  const std::pair<Device, const char*> devices[] = {
+      {Device::drive, "can.x"},   {Device::node, "can.x"}, {Device::bus, "can"},
+      {Device::station, "panel"}, {Device::chip, "gpio"},  {Device::input, "estop_chain_ok"},
+  };
+  const auto machine = mill();
+  run(*machine, 1000);
+  for (const fault::KindRow& row : fault::kinds())
+    for (const auto& [device, name] : devices) {
+      if (!row.happens_to(device)) continue;
+      std::string why;
+      EXPECT_TRUE(machine->inject(name, {.kind = row.kind, .duration_ns = 20 * image::kMillisecond}, why))
+          << row.name << " on " << name << ": " << text::in_language(why, text::Language::english);
+      run(*machine, 40);
+      EXPECT_TRUE(machine->clear(name, {}, why));
+    }
+}
+
+TEST(RunningMachine, names_what_there_is_when_a_fault_is_put_on_nothing_or_on_the_wrong_thing) {
+  const auto machine = mill();
+  std::string why;
+  EXPECT_FALSE(machine->inject("can.w", {.kind = Kind::silent}, why));
+  const std::string nothing = text::in_language(why, text::Language::english);
+  EXPECT_NE(nothing.find("can.x"), std::string::npos) << nothing;
+  EXPECT_NE(nothing.find("estop_chain_ok"), std::string::npos) << nothing;
+  EXPECT_FALSE(machine->inject("panel", {.kind = Kind::over_current}, why));
+  const std::string wrong = text::in_language(why, text::Language::english);
+  EXPECT_NE(wrong.find("silent, exception, slow, corrupt"), std::string::npos) << wrong;
+  EXPECT_FALSE(machine->inject("can", {.kind = Kind::drop, .sender = 99}, why));
+  EXPECT_FALSE(machine->clear("nobody", {}, why));
+}
+
+TEST(RunningMachine, an_unplugged_drive_is_lost_for_as_long_as_the_fault_lasts) {
+  const auto machine = mill();
+  run(*machine, 2000);
+  ASSERT_TRUE(online(*machine, 0));
+  std::string why;
+  ASSERT_TRUE(machine->inject("can.x", {.kind = Kind::unplug, .duration_ns = image::kSecond}, why));
+  run(*machine, 900);
+  EXPECT_FALSE(online(*machine, 0));
+  EXPECT_GT(machine->alarms().count, 0);
+  run(*machine, 4000);
+  EXPECT_TRUE(online(*machine, 0)) << "it is plugged in again by itself";
+}
+
+TEST(RunningMachine, frames_of_one_sender_are_dropped_on_a_bus_and_those_of_others_are_not) {
+  const auto machine = mill();
+  run(*machine, 2000);
+  std::string why;
+  ASSERT_TRUE(machine->inject("can", {.kind = Kind::drop, .sender = 1, .count = 0}, why));
+  run(*machine, 1000);
+  EXPECT_FALSE(online(*machine, 0));
+  EXPECT_TRUE(online(*machine, 1));
+  ASSERT_TRUE(machine->clear("can", Kind::drop, why));
+  run(*machine, 4000);
+  EXPECT_TRUE(online(*machine, 0));
+}
+
+TEST(RunningMachine, a_stuck_input_stays_whatever_is_played_and_a_silent_station_is_an_alarm) {
+  const auto machine = mill();
+  run(*machine, 2000);
+  const image::Place chain = place_of(machine->control(), "estop_chain_ok");
+  ASSERT_TRUE(machine->image().packets.bit(chain));
+  std::string why;
+  ASSERT_TRUE(machine->inject("estop_chain_ok", {.kind = Kind::stuck, .level = false}, why));
+  run(*machine, 100);
+  EXPECT_FALSE(machine->image().packets.bit(chain));
+  ASSERT_TRUE(machine->clear("estop_chain_ok", Kind::stuck, why));
+  run(*machine, 100);
+  EXPECT_TRUE(machine->image().packets.bit(chain));
+  const int before = machine->alarms().count;
+  ASSERT_TRUE(machine->inject("panel", {.kind = Kind::silent}, why));
+  run(*machine, 3000);
+  EXPECT_GT(machine->alarms().count, before);
+}
+
+TEST(RunningMachine, loads_plays_and_reports) {
+  const Scratch scratch;
+  const auto machine = mill();
+  machine->watch({});
+  std::vector<text::Finding> findings;
+  EXPECT_FALSE(machine->load(scratch.write("bad.nc", "N10 G1 X99999 F100\nN20 M30\n"), findings));
+  EXPECT_FALSE(findings.empty());
+  EXPECT_TRUE(machine->load(scratch.write("good.nc", "N10 M30\n"), findings));
+  std::string why;
+  EXPECT_TRUE(machine->play("door_closed", 0.0, why)) << why;
+  EXPECT_FALSE(machine->play("no_such_point", 0.0, why));
+  EXPECT_NE(why.find("no_such_point"), std::string::npos);
+  run(*machine, 100);
+  const auto report = nlohmann::json::parse(machine->report());
+  EXPECT_EQ(report["cycles"], 100);
+  EXPECT_FALSE(report["finished"]);
+}
+
+}  // namespace
+}  // namespace servogate::machine_run
