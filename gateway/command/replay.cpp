@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
@@ -119,14 +120,14 @@ void repeat(RunningMachine& machine, RecordReader& record) {
 }
 
 /// Says what came of it, and gives the exit code.
-int judge(const ReplayOptions& options, const RecordReader& record, const std::string& cycles,
-          long difference) {
+int judge(const ReplayOptions& options, const RecordReader& record, std::int64_t cycles, long difference) {
   if (options.json)
-    print_formatted("{\"schema\":1,\"cycles\":%s,\"damaged\":%s,\"first_difference\":%ld}\n", cycles.c_str(),
-                    record.damaged() ? "true" : "false", difference);
+    print_line(nlohmann::ordered_json{
+        {"schema", 1}, {"cycles", cycles}, {"damaged", record.damaged()}, {"first_difference", difference}}
+                   .dump());
   if (record.damaged()) {
     // How far a trace that ends here agrees says nothing new.
-    complain(kDamaged, {options.record, std::to_string(record.damaged_at()), cycles});
+    complain(kDamaged, {options.record, std::to_string(record.damaged_at()), std::to_string(cycles)});
     return kWrongUse;
   }
   if (difference != 0) {
@@ -135,8 +136,8 @@ int judge(const ReplayOptions& options, const RecordReader& record, const std::s
   }
   if (!options.json)
     std::fprintf(stderr, "%s\n",
-                 text::render(options.against.empty() ? kReplayed : kSame, std::vector<std::string>{cycles},
-                              text::user_language())
+                 text::render(options.against.empty() ? kReplayed : kSame,
+                              std::vector<std::string>{std::to_string(cycles)}, text::user_language())
                      .c_str());
   return kDone;
 }
@@ -168,7 +169,7 @@ int replay(const ReplayOptions& options) {
     return kInfrastructure;
   }
   const long difference = options.against.empty() ? 0 : first_difference(options.against, trace);
-  return judge(options, record, std::to_string(machine->control().cycle().count()), difference);
+  return judge(options, record, machine->control().cycle().count(), difference);
 }
 
 }  // namespace servogate::gateway::command

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "gateway/cli/standard_output.hpp"
@@ -11,7 +12,7 @@ int version(bool json) {
   const report::BuildIdentity id = report::build_identity();
   const std::string v(id.version), c(id.commit);
   if (json)
-    print_line("{\"schema\":1,\"version\":\"" + v + "\",\"commit\":\"" + c + "\"}");
+    print_line(nlohmann::ordered_json{{"schema", 1}, {"version", v}, {"commit", c}}.dump());
   else
     print_line("servogate " + v + (c.empty() ? "" : " (" + c + ")"));
   return kDone;

@@ -395,33 +395,28 @@ std::vector<Consequence> consequences(const LoadResult& loaded) { return Sentenc
 
 std::string to_json(const LoadResult& loaded, const std::vector<Consequence>& lines,
                     text::Language language) {
-  std::string out = "{\"schema\":1,\"machine\":" + json_string(loaded.machine.name) + ",\"consequences\":[";
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    out += i == 0 ? "" : ",";
-    out += "{\"subject\":" + json_string(lines[i].subject) + ",\"id\":" + json_string(lines[i].entry->id) +
-           ",\"text\":" + json_string(lines[i].str(language)) + ",\"figures\":{";
-    bool first = true;
-    for (const auto& [name, value] : lines[i].figures) {
-      out += (first ? "" : ",") + json_string(name) + ":" + json_number(value);
-      first = false;
-    }
-    out += "}}";
+  Json out{{"schema", 1}, {"machine", loaded.machine.name}, {"consequences", Json::array()}};
+  for (const Consequence& line : lines) {
+    Json figures = Json::object();
+    for (const auto& [name, value] : line.figures) figures[name] = json_number(value);
+    out["consequences"].push_back({{"subject", line.subject},
+                                   {"id", line.entry->id},
+                                   {"text", line.str(language)},
+                                   {"figures", std::move(figures)}});
   }
-  return out + "]}";
+  return written(out);
 }
 
 std::string to_json(const std::vector<text::Finding>& findings, text::Language language) {
-  std::string out = "[";
-  for (std::size_t i = 0; i < findings.size(); ++i) {
-    const text::Finding& f = findings[i];
-    out += i == 0 ? "" : ",";
-    out += "{\"file\":" + json_string(f.file) + ",\"line\":" + std::to_string(f.line) +
-           ",\"column\":" + std::to_string(f.column) +
-           ",\"severity\":" + (f.severity == text::Severity::error ? "\"error\"" : "\"warning\"") +
-           ",\"code\":" + json_string(f.entry->id) +
-           ",\"text\":" + json_string(text::render(*f.entry, f.arguments, language)) + "}";
-  }
-  return out + "]";
+  Json out = Json::array();
+  for (const text::Finding& f : findings)
+    out.push_back({{"file", f.file},
+                   {"line", f.line},
+                   {"column", f.column},
+                   {"severity", f.severity == text::Severity::error ? "error" : "warning"},
+                   {"code", f.entry->id},
+                   {"text", text::render(*f.entry, f.arguments, language)}});
+  return written(out);
 }
 
 }  // namespace servogate::machine

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "firmware_if/text/finding.hpp"
-#include "gateway/machine/keys/json.hpp"
 
 // toml++ 3.3 asserts on what stands after `[` before it checks it and says so properly ("[=" in a header).
 // Its assertions are switched off, and NDEBUG with them, which would make undefined behaviour of them.
@@ -70,6 +69,20 @@ Element convert(const toml::node& node) {
     out.kind = Element::Kind::date;
   }
   return out;
+}
+
+/// Length of the well-formed UTF-8 sequence at the front of a text that is not empty, 0: none. Source: RFC
+/// 3629, section 4.
+std::size_t utf8_sequence(std::string_view s) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(s[i]); };
+  const unsigned char b = byte(0);
+  const std::size_t n = b < 0x80 ? 1 : b < 0xC2 ? 0 : b < 0xE0 ? 2 : b < 0xF0 ? 3 : b < 0xF5 ? 4 : 0;
+  if (n == 0 || s.size() < n) return 0;
+  for (std::size_t i = 1; i < n; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  if (n == 3 && ((b == 0xE0 && byte(1) < 0xA0) || (b == 0xED && byte(1) > 0x9F))) return 0;
+  if (n == 4 && ((b == 0xF0 && byte(1) < 0x90) || (b == 0xF4 && byte(1) > 0x8F))) return 0;
+  return n;
 }
 
 /// The character at a line and column (code points), empty when there is none.

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cstddef>
+#include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 
 namespace servogate::machine {
 
-/// `text` as a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD.
-std::string json_string(std::string_view text);
-/// Length of the well-formed UTF-8 sequence at the front of a text that is not empty, 0: none. Source: RFC
-/// 3629.
-std::size_t utf8_sequence(std::string_view text);
-/// A number in the shortest form that reads back; what is not finite becomes null.
-std::string json_number(double value);
+/// Objects keep the order in which they were filled.
+using Json = nlohmann::ordered_json;
+
+/// A number as people write it: whole ones without a point; what is not finite becomes null.
+Json json_number(double value);
+/// The value as text; bytes that are no UTF-8 become U+FFFD. `indent` < 0: on one line.
+std::string written(const Json& value, int indent = -1);
 
 }  // namespace servogate::machine

@@ -10,170 +10,127 @@ namespace servogate::machine {
 
 namespace {
 
-class SchemaWriter {
- public:
-  std::string document(const Section& section, const std::string& title) {
-    out_ =
-        "{\n  \"$schema\": \"http://json-schema.org/draft-07/schema#\",\n  \"title\": " + json_string(title) +
-        ",\n";
-    body(section, 1);
-    return out_ + "\n}\n";
-  }
+Json object_of(const Section& section);
 
- private:
-  void indent(int depth) { out_.append(static_cast<std::size_t>(depth) * 2, ' '); }
+Json of_type(const char* type) { return Json::object({{"type", type}}); }
 
-  /// "type", "properties", "required" and "additionalProperties" of an object, without its braces.
-  void body(const Section& section, int depth) {
-    indent(depth);
-    out_ += "\"type\": \"object\",\n";
-    indent(depth);
-    out_ += "\"additionalProperties\": false,\n";
-    required(section, depth);
-    indent(depth);
-    out_ += "\"properties\": {\n";
-    for (std::size_t i = 0; i < section.keys.size(); ++i) {
-      property(section.keys[i], section.defaults(), depth + 1);
-      out_ += i + 1 == section.keys.size() ? "\n" : ",\n";
-    }
-    indent(depth);
-    out_ += "}";
-  }
+void set_bounds(const Key& key, const char* type, Json& out) {
+  out["type"] = type;
+  if (std::isfinite(key.rule.min))
+    out[key.rule.above_min ? "exclusiveMinimum" : "minimum"] = json_number(key.rule.min);
+  if (std::isfinite(key.rule.max)) out["maximum"] = json_number(key.rule.max);
+}
 
-  void required(const Section& section, int depth) {
-    std::string names;
-    for (const Key& key : section.keys)
-      if (key.rule.required) names += (names.empty() ? "" : ", ") + json_string(key.name);
-    if (names.empty()) return;
-    indent(depth);
-    out_ += "\"required\": [" + names + "],\n";
-  }
+/// A number in the key's unit, or a string of a number and one of the spellings.
+void set_quantity(const Key& key, const char* type, Json& out) {
+  if (key.rule.unit == Unit::none) return set_bounds(key, type, out);
+  std::string units;
+  for (const char c : unit_spellings(key.rule.unit, AxisUnits::either)) units += c == ',' ? '|' : c;
+  for (std::size_t at = units.find("| "); at != std::string::npos; at = units.find("| "))
+    units.erase(at + 1, 1);
+  Json plain;
+  set_bounds(key, type, plain);
+  const std::string pattern = "^ *[+-]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)? *(" + units + ") *$";
+  out["anyOf"] = {plain, {{"type", "string"}, {"pattern", pattern}}};
+}
 
-  void property(const Key& key, void* defaults, int depth) {
-    indent(depth);
-    out_ += json_string(key.name) + ": {\"description\": " + json_string(key.english);
-    if (const std::string value = default_value(key, defaults); !value.empty())
-      out_ += ", \"default\": " + value;
-    out_ += ", ";
-    type(key, depth);
-    out_ += "}";
-  }
+void set_list(Json items, Json& out) {
+  out["type"] = "array";
+  out["items"] = std::move(items);
+}
 
-  void type(const Key& key, int depth) {
-    switch (key.kind) {
-      case KeyKind::boolean:
-        out_ += "\"type\": \"boolean\"";
-        return;
-      case KeyKind::integer:
-      case KeyKind::long_integer:
-        quantity(key, "integer");
-        return;
-      case KeyKind::number:
-        quantity(key, "number");
-        return;
-      case KeyKind::text:
-        out_ += key.rule.required ? "\"type\": \"string\", \"minLength\": 1" : "\"type\": \"string\"";
-        return;
-      case KeyKind::choice:
-        choice(key);
-        return;
-      case KeyKind::place:
-        out_ +=
-            "\"type\": \"string\", \"pattern\": "
-            "\"^(SA|SK|SYVAR)[0-9]*(\\\\.(BL|BY|IN|LI|RE|LR|[0-9]*CH))?$\"";
-        return;
-      case KeyKind::texts:
-        out_ += "\"type\": \"array\", \"items\": {\"type\": \"string\"}";
-        return;
-      case KeyKind::numbers:
-        out_ += "\"type\": \"object\", \"additionalProperties\": {\"type\": \"number\"}";
-        return;
-      case KeyKind::ratio:
-        out_ += "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": {" +
-                bounds(key, "integer") + "}";
-        return;
-      case KeyKind::pairs:
-        out_ +=
-            "\"type\": \"array\", \"items\": {\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, "
-            "\"items\": {\"type\": \"number\"}}";
-        return;
-      case KeyKind::table:
-        out_ += "\n";
-        body(key.child(), depth + 1);
-        return;
-      case KeyKind::tables:
-        out_ += "\"type\": \"array\", \"items\": {\n";
-        body(key.child(), depth + 1);
-        out_ += "}";
-        return;
-    }
-  }
+void set_pair(Json items, Json& out) {
+  out["type"] = "array";
+  out["minItems"] = 2;
+  out["maxItems"] = 2;
+  out["items"] = std::move(items);
+}
 
-  static std::string bounds(const Key& key, const std::string& type) {
-    std::string out = "\"type\": \"" + type + "\"";
-    if (std::isfinite(key.rule.min))
-      out += std::string(key.rule.above_min ? ", \"exclusiveMinimum\": " : ", \"minimum\": ") +
-             json_number(key.rule.min);
-    if (std::isfinite(key.rule.max)) out += ", \"maximum\": " + json_number(key.rule.max);
-    return out;
-  }
-
-  /// A number in the key's unit, or a string of a number and one of the spellings.
-  void quantity(const Key& key, const std::string& type) {
-    if (key.rule.unit == Unit::none) {
-      out_ += bounds(key, type);
+void set_type(const Key& key, Json& out) {
+  Json inner;
+  switch (key.kind) {
+    case KeyKind::boolean:
+      out["type"] = "boolean";
       return;
-    }
-    std::string units;
-    for (const char c : unit_spellings(key.rule.unit, AxisUnits::either)) {
-      if (c == ',')
-        units += '|';
-      else
-        units += c;
-    }
-    for (std::size_t at = units.find("| "); at != std::string::npos; at = units.find("| "))
-      units.erase(at + 1, 1);
-    const std::string pattern = "^ *[+-]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)? *(" + units + ") *$";
-    out_ += "\"anyOf\": [{" + bounds(key, type) +
-            "}, {\"type\": \"string\", \"pattern\": " + json_string(pattern) + "}]";
+    case KeyKind::integer:
+    case KeyKind::long_integer:
+      return set_quantity(key, "integer", out);
+    case KeyKind::number:
+      return set_quantity(key, "number", out);
+    case KeyKind::text:
+      out["type"] = "string";
+      if (key.rule.required) out["minLength"] = 1;
+      return;
+    case KeyKind::choice:
+      for (const std::string_view choice : key.choices) out["enum"].push_back(std::string(choice));
+      return;
+    case KeyKind::place:
+      out["type"] = "string";
+      out["pattern"] = "^(SA|SK|SYVAR)[0-9]*(\\.(BL|BY|IN|LI|RE|LR|[0-9]*CH))?$";
+      return;
+    case KeyKind::texts:
+      return set_list(of_type("string"), out);
+    case KeyKind::numbers:
+      out["type"] = "object";
+      out["additionalProperties"] = of_type("number");
+      return;
+    case KeyKind::ratio:
+      set_bounds(key, "integer", inner);
+      return set_pair(std::move(inner), out);
+    case KeyKind::pairs:
+      set_pair(of_type("number"), inner);
+      return set_list(std::move(inner), out);
+    case KeyKind::table:
+      out.update(object_of(key.child()));
+      return;
+    case KeyKind::tables:
+      return set_list(object_of(key.child()), out);
   }
+}
 
-  void choice(const Key& key) {
-    out_ += "\"enum\": [";
-    for (std::size_t i = 0; i < key.choices.size(); ++i)
-      out_ += (i == 0 ? "" : ", ") + json_string(key.choices[i]);
-    out_ += "]";
+/// null: none that a file could have.
+Json default_of(const Key& key, void* defaults) {
+  if (key.rule.required || key.rule.computed) return {};
+  void* member = key.member(defaults);
+  switch (key.kind) {
+    case KeyKind::boolean:
+      return *static_cast<bool*>(member);
+    case KeyKind::integer:
+      return *static_cast<int*>(member);
+    case KeyKind::long_integer:
+      return *static_cast<std::int64_t*>(member);
+    case KeyKind::number:
+      return json_number(*static_cast<double*>(member));
+    case KeyKind::text:
+      return static_cast<std::string*>(member)->empty() ? Json() : Json(*static_cast<std::string*>(member));
+    case KeyKind::choice:
+      return std::string(key.choices[*static_cast<std::uint8_t*>(member)]);
+    default:
+      return {};
   }
+}
 
-  static std::string default_value(const Key& key, void* defaults) {
-    if (key.rule.required || key.rule.computed) return {};
-    void* member = key.member(defaults);
-    switch (key.kind) {
-      case KeyKind::boolean:
-        return *static_cast<bool*>(member) ? "true" : "false";
-      case KeyKind::integer:
-        return std::to_string(*static_cast<int*>(member));
-      case KeyKind::long_integer:
-        return std::to_string(*static_cast<std::int64_t*>(member));
-      case KeyKind::number:
-        return std::isfinite(*static_cast<double*>(member)) ? json_number(*static_cast<double*>(member)) : "";
-      case KeyKind::text:
-        return static_cast<std::string*>(member)->empty() ? ""
-                                                          : json_string(*static_cast<std::string*>(member));
-      case KeyKind::choice:
-        return json_string(key.choices[*static_cast<std::uint8_t*>(member)]);
-      default:
-        return {};
-    }
+Json object_of(const Section& section) {
+  Json out{{"type", "object"}, {"additionalProperties", false}};
+  for (const Key& key : section.keys)
+    if (key.rule.required) out["required"].push_back(std::string(key.name));
+  Json properties = Json::object();
+  for (const Key& key : section.keys) {
+    Json property = Json::object({{"description", std::string(key.english)}});
+    if (Json value = default_of(key, section.defaults()); !value.is_null()) property["default"] = value;
+    set_type(key, property);
+    properties[std::string(key.name)] = std::move(property);
   }
-
-  std::string out_;
-};
+  out["properties"] = std::move(properties);
+  return out;
+}
 
 }  // namespace
 
 std::string schema_of(const Section& section, const std::string& title) {
-  return SchemaWriter().document(section, title);
+  Json out{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+  out.update(object_of(section));
+  return written(out, 1) + "\n";
 }
 
 std::string json_schema() {
