@@ -22,6 +22,8 @@ const text::Entry kTravelLine{"check.extent", "{0}: {1} to {2} of {3} to {4} {5}
                               "{0}: от {1} до {2} при ходе от {3} до {4} {5}"};
 const text::Entry kTravelLineDiameter{"check.extent-diameter", "{0} (diameter): {1} to {2} of {3} to {4} {5}",
                                       "{0} (диаметр): от {1} до {2} при ходе от {3} до {4} {5}"};
+const text::Entry kTurnsLine{"check.extent-endless", "{0}: {1} to {2} {3}, without end",
+                             "{0}: от {1} до {2} {3}, ось без ограничения хода"};
 const text::Entry kTimeLine{
     "check.time",
     "{0}: {1} blocks, about {2} s: {3} s of motion ({4} mm at feed), {5} s of dwells; the PLC adds its "
@@ -30,6 +32,16 @@ const text::Entry kTimeLine{
     "ПЛК на функции M, S и T ({6})"};
 const text::Entry kToolLine{"check.tool", "tool {0} corrector {1}, first in line {2}, called {3} times",
                             "инструмент {0}, корректор {1}, впервые в строке {2}, вызовов: {3}"};
+const text::Entry kNoLogic{
+    "check.no-logic",
+    "[plc] names no sources: only a PLC program gives enables and acknowledgements, so that nothing can be "
+    "switched on and no program can start; examples/minimal has the least that does",
+    "в [plc] нет исходных текстов: разрешения и подтверждения даёт только программа ПЛК, поэтому ничего не "
+    "включится и программа не начнётся; наименьшая — в examples/minimal"};
+const text::Entry kSummary{"check.summary", "{0}, {1}", "{0}, {1}"};
+
+constexpr double kEndless = 1e9;  ///< MachineModel's travel of an axis without end is larger
+
 std::string sentence(const text::Entry& entry, const std::vector<std::string>& arguments) {
   return text::render(entry, arguments, text::user_language());
 }
@@ -45,7 +57,13 @@ void check_logic(const machine::MachineConfig& machine, std::vector<text::Findin
     }
     sources.push_back({machine.resolve(name), std::move(*content)});
   }
-  if (sources.empty()) return;
+  if (sources.empty()) {
+    const machine::Where where = machine.where("plc");
+    if (!machine.axes.empty())
+      findings.push_back(
+          {text::Severity::warning, machine.file, where.line, where.column, &kNoLogic, {}, {}});
+    return;
+  }
   std::vector<text::Finding> of_logic;
   plc::check(sources, machine.symbol_table(), logic_options(machine), of_logic);
   findings.insert(findings.end(), of_logic.begin(), of_logic.end());
@@ -86,9 +104,14 @@ void print_report(const ProgramCheck& check, const program::MachineModel& model,
     if (!e.moved) continue;
     const program::MachineModel::Axis& axis = model.axes[a];
     const auto place = [&](double v) { return text::number(axis.diameter ? 2.0 * v : v, 3); };
+    const std::string unit = text::unit_words(axis.rotary ? "deg" : "mm");
+    if (e.travel_max - e.travel_min >= kEndless) {
+      print_line("  " + sentence(kTurnsLine, {axis.letter, place(e.min), place(e.max), unit}));
+      continue;
+    }
     print_line("  " + sentence(axis.diameter ? kTravelLineDiameter : kTravelLine,
                                {axis.letter, place(e.min), place(e.max), place(e.travel_min),
-                                place(e.travel_max), text::unit_words(axis.rotary ? "deg" : "mm")}));
+                                place(e.travel_max), unit}));
   }
   for (const auto& t : report.tools)
     print_line("  " + sentence(kToolLine, {std::to_string(t.number), std::to_string(t.corrector),
@@ -104,9 +127,28 @@ void order_by_place(std::vector<text::Finding>& found) {
   });
 }
 
+int warnings_of(const std::vector<text::Finding>& findings) {
+  return static_cast<int>(std::count_if(findings.begin(), findings.end(), [](const text::Finding& f) {
+    return f.severity == text::Severity::warning;
+  }));
+}
+
+/// "no errors", "1 error", "2 errors".
+std::string counted(int n, const std::string& english, const std::string& russian) {
+  const std::string number = std::to_string(n);
+  return text::both((n == 0 ? "no" : number) + " " + english + (n == 1 ? "" : "s"),
+                    russian + (n == 0 ? " нет" : ": " + number));
+}
+
+/// The last line: what all of it comes to.
+void sum_up(int errors, int warnings) {
+  print_line(sentence(kSummary,
+                      {counted(errors, "error", "ошибок"), counted(warnings, "warning", "предупреждений")}));
+}
+
 /// What the programs of a command line came to.
 struct ProgramErrors {
-  int found = 0;
+  int found = 0, warnings = 0;
   bool unreadable = false;
 };
 
@@ -127,6 +169,7 @@ ProgramErrors check_programs(const CheckOptions& options, const machine::Machine
       found.insert(found.end(), result.report.findings.begin(), result.report.findings.end());
       order_by_place(found);
       errors.found += print_findings(found);
+      errors.warnings += warnings_of(found);
       if (options.json)
         entry = describe(result, program.model, name);
       else
@@ -162,6 +205,7 @@ int check(const CheckOptions& options) {
   if (machine_errors == 0) programs = check_programs(options, loaded.machine, json);
   if (options.json) print_line(json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   if (!loaded.readable || programs.unreadable) return kWrongUse;
+  if (!options.json) sum_up(machine_errors + programs.found, warnings_of(findings) + programs.warnings);
   return machine_errors + programs.found > 0 ? kAlarm : kDone;
 }
 

@@ -64,6 +64,7 @@ const text::Entry kPressFirst{"run.press-first",
 const text::Entry kPressSecond{"run.press-second", "ready: the start button '{0}' starts the program",
                                "готово: кнопка пуска «{0}» запускает программу"};
 const text::Entry kMissing{"run.missing", "  {0}\n    {1}", "  {0}\n    {1}"};
+const text::Entry kWritten{"run.written", "written: {0}", "записано: {0}"};
 const text::Entry kBroken{"run.broken-off", "broken off: {0} of about {1} blocks in {2} s of machine time",
                           "прервано: кадров {0} примерно из {1}, машинное время {2} с"};
 
@@ -328,6 +329,7 @@ int Run::finish(const OperatorScript& script, Session& session,
   report::Report report = session.make_report(wall_s_, machine_->overruns());
   report.finished = script.outcome() == OperatorScript::Outcome::finished;
   report.blocks_expected = estimate_blocks_;
+  report.stopped = script.outcome() == OperatorScript::Outcome::stopped;
   report.findings = wrong_;
   if (script.outcome() == OperatorScript::Outcome::waited) {
     const WaitWords w =
@@ -414,6 +416,11 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
     std::fprintf(stderr, "%s\n", say(kDone1, {blocks, time}).c_str());
   else if (report.blocks > 0)
     std::fprintf(stderr, "%s\n", say(kBroken, {blocks, std::to_string(estimate_blocks_), time}).c_str());
+  std::string files;
+  for (const std::string* path :
+       {&options_.html, &options_.report, &options_.trace, &options_.record, &options_.can_log})
+    if (!path->empty()) files += (files.empty() ? "" : ", ") + *path;
+  if (!files.empty() && !infrastructure_) std::fprintf(stderr, "%s\n", say(kWritten, {files}).c_str());
 }
 
 /// What has to be right before a control is composed: kDone, or the exit code after saying why.

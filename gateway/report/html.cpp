@@ -181,11 +181,13 @@ constexpr std::string_view kBody = R"html(
 <span class="noprint"><button data-lang="en">EN</button> <button data-lang="ru">RU</button> <button id="theme" data-t="theme"></button></span><span class="sub" id="sub"></span></div></header>
 <main>
 <noscript><section>This page draws its data with JavaScript. Для показа данных нужен JavaScript.</section></noscript>
+<p class="verdict" id="verdict"></p>
+<div class="table" id="findings"></div>
 <div class="cards" id="cards"></div>
-<p class="warn" id="wait"></p><p class="warn" id="forced"></p>
+<p class="warn" id="forced"></p>
 <p class="warn" id="dropped"></p>
 <section><div class="head"><h2 data-t="limits"></h2></div><div class="axes" id="axes"></div></section>
-<section><div class="head"><h2 data-t="path"></h2><span class="grow"></span><label class="noprint"><input type="checkbox" id="rapids" checked><span data-t="rapids"></span></label>
+<section id="path-section"><div class="head"><h2 data-t="path"></h2><span class="grow"></span><label class="noprint"><input type="checkbox" id="rapids" checked><span data-t="rapids"></span></label>
 <label class="noprint"><input type="checkbox" id="whole-path"><span data-t="wholePath"></span></label>
 <span class="speed-key" id="speed-key"></span></div>
 <div class="views"><div class="pane"><div class="head"><h3 data-t="plan"></h3><span class="grow"></span><button class="noprint" id="fit-plan" data-t="fit"></button></div>
@@ -193,9 +195,9 @@ constexpr std::string_view kBody = R"html(
 <div class="pane"><div class="head"><h3 data-t="view3"></h3><span class="grow"></span><button class="noprint" id="top-space" data-t="top"></button><button class="noprint" id="fit-space" data-t="iso"></button></div>
 <div class="view" id="space" tabindex="0"></div><p class="hint" data-t="hint3"></p></div></div>
 <p class="extents" id="extents"></p><div class="split" id="split"></div><div class="keys" id="split-key"></div></section>
-<section><div class="head"><h2 data-t="motion"></h2><span id="axis-switches"></span><span class="grow"></span><button class="noprint" id="whole" data-t="all"></button></div>
+<section id="motion-section"><div class="head"><h2 data-t="motion"></h2><span id="axis-switches"></span><span class="grow"></span><button class="noprint" id="whole" data-t="all"></button></div>
 <div id="charts"></div><p class="hint" data-t="hintTime"></p></section>
-<section><div class="head"><h2 data-t="signals"></h2><span class="grow"></span><label class="noprint"><input type="checkbox" id="constant"><span data-t="constant"></span></label></div>
+<section id="signal-section"><div class="head"><h2 data-t="signals"></h2><span class="grow"></span><label class="noprint"><input type="checkbox" id="constant"><span data-t="constant"></span></label></div>
 <p class="quiet" id="no-signals" data-t="noSignals"></p><div id="signals"></div><div id="lanes" tabindex="0"></div><p class="steady" id="steady"></p></section>
 <section id="alarm-section"><div class="head"><h2 data-t="alarms"></h2></div><div class="table" id="alarms"></div></section>
 <section><div class="head"><h2 data-t="timing"></h2></div><div class="timing" id="timing"></div></section>
@@ -203,7 +205,7 @@ constexpr std::string_view kBody = R"html(
 <div class="listing" id="listing"></div></section>
 <section><div class="head"><h2 data-t="provenance"></h2></div><div class="table" id="provenance"></div></section>
 </main>
-<footer class="transport"><button id="play">▶</button><select id="pace"><option value="0.1">0.1×</option><option value="1" selected>1×</option><option value="5">5×</option><option value="20">20×</option></select>
+<footer class="transport" id="transport"><button id="play">▶</button><select id="pace"><option value="0.1">0.1×</option><option value="1" selected>1×</option><option value="5">5×</option><option value="20">20×</option></select>
 <input type="range" id="slider"><span id="now"></span><span id="readout"></span></footer>
 )html";
 

@@ -18,6 +18,21 @@ constexpr const char* kReactions[] = {"none",         "warn",      "stop_at_bloc
                                       "stop_on_path", "stop_axes", "stop_and_power_off",
                                       "quick_stop",   "power_off"};
 
+const text::Entry kFinished{"report.finished", "the program came to its end: {0} blocks in {1} s",
+                            "программа выполнена до конца: кадров {0} за {1} с"};
+const text::Entry kFinishedWith{"report.finished-with",
+                                "the program came to its end, with {0} alarms; the first: {1}",
+                                "программа выполнена до конца, аварий: {0}; первая: {1}"};
+const text::Entry kRefused{"report.refused", "the program was not begun: {0}", "программа не начата: {0}"};
+const text::Entry kNotBegun{"report.not-begun", "nothing was begun: {0}", "ничего не начато: {0}"};
+const text::Entry kWaited{"report.waited", "stopped because nothing moved for {0} s any more: {1}",
+                          "остановлено: за {0} с ничего не сдвинулось: {1}"};
+const text::Entry kByAlarm{"report.by-alarm", "stopped by alarm {0}: {1}", "остановлено аварией {0}: {1}"};
+const text::Entry kStopped{"report.stopped", "stopped by the operator after {0} blocks",
+                           "остановлено оператором после кадров: {0}"};
+const text::Entry kUnfinished{"report.unfinished", "the program did not come to its end: {0} blocks in {1} s",
+                              "программа не дошла до конца: кадров {0} за {1} с"};
+
 std::string hex(std::uint32_t value, int digits) {
   char text[16];
   std::snprintf(text, sizeof text, "0x%0*X", digits, value);
@@ -74,6 +89,12 @@ Json to_json(const text::Finding& f) {
 Json to_json(const WaitEntry& w) {
   return {{"reason", w.reason}, {"text", w.text}, {"remedy", w.remedy},
           {"file", w.file},     {"line", w.line}, {"for_s", w.for_s}};
+}
+
+Json to_json(const Verdict& v) {
+  Json out{{"outcome", v.outcome}, {"text", v.text}};
+  if (!v.remedy.empty()) out["remedy"] = v.remedy;
+  return out;
 }
 
 Json to_json(const AlarmEntry& a) {
@@ -142,11 +163,44 @@ Json to_json(const SegmentReport& s) {
   return out;
 }
 
+/// What stopped the run: the first fault that asked for more than attention.
+const AlarmEntry* stopping(const Report& r) {
+  const auto found = std::find_if(r.alarms.begin(), r.alarms.end(), [](const AlarmEntry& a) {
+    return !a.consequence && a.record.reaction > image::Reaction::warn;
+  });
+  return found != r.alarms.end() ? &*found : nullptr;
+}
+
+std::string place_and_words(const text::Finding& f) {
+  const std::string words =
+      f.entry != nullptr ? text::render(*f.entry, f.arguments, text::user_language()) : "";
+  return f.line > 0 ? f.file + ":" + std::to_string(f.line) + ": " + words : words;
+}
+
 }  // namespace
+
+Verdict verdict_of(const Report& r) {
+  const auto say = [](const text::Entry& entry, std::vector<std::string> arguments) {
+    return text::render(entry, arguments, text::user_language());
+  };
+  const std::string blocks = std::to_string(r.blocks), time = text::number(r.time_s, 3);
+  if (r.finished && !r.alarms.empty())
+    return {"finished", say(kFinishedWith, {std::to_string(r.alarms.size()), r.alarms.front().text}),
+            r.alarms.front().remedy};
+  if (r.finished) return {"finished", say(kFinished, {blocks, time}), {}};
+  if (!r.findings.empty()) return {"refused", say(kRefused, {place_and_words(r.findings.front())}), {}};
+  if (r.error) return {"not_begun", say(kNotBegun, {r.error->text}), {}};
+  if (r.wait) return {"waited", say(kWaited, {text::number(r.wait->for_s, 1), r.wait->text}), r.wait->remedy};
+  if (const AlarmEntry* a = stopping(r); a != nullptr)
+    return {"alarm", say(kByAlarm, {std::to_string(a->record.number), a->text}), a->remedy};
+  if (r.stopped) return {"stopped", say(kStopped, {blocks}), {}};
+  return {"unfinished", say(kUnfinished, {blocks, time}), {}};
+}
 
 Json json_of(const Report& r) {
   Json out;
   out["schema"] = kReportSchema;
+  out["verdict"] = to_json(verdict_of(r));
   out["provenance"] = to_json(r.provenance);
   out["finished"] = r.finished;
   out["time_s"] = r.time_s;

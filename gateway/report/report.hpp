@@ -129,6 +129,7 @@ struct SegmentReport {
 struct Report {
   Provenance provenance;
   bool finished = false;  ///< the program came to its end (M02, M30, last line)
+  bool stopped = false;   ///< whoever ran it ended it
   double time_s = 0.0;    ///< machine time from cycle 0
   std::int64_t cycles = 0;
   std::int64_t overruns = 0;
@@ -157,6 +158,15 @@ struct Report {
 void fill_axes(Report& report, const TraceLayout& layout, const RunStatistics& statistics);
 /// Copies durations, lateness and phases into the report. `realtime` false leaves lateness out.
 void fill_cycle_times(Report& report, const CycleTimes& times, bool realtime);
+
+/// What came of a run and why: what page and JSON say first.
+struct Verdict {
+  std::string_view
+      outcome;  ///< "finished", "refused", "not_begun", "waited", "alarm", "stopped", "unfinished"
+  std::string text;
+  std::string remedy;  ///< empty: none is known
+};
+Verdict verdict_of(const Report& report);
 
 /// The report as JSON, `schema` first, indented, ended by a newline. Numbers that are not finite become null.
 std::string to_json(const Report& report);

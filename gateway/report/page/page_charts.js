@@ -232,21 +232,25 @@ function chart(box, spec) {
   return {draw};
 }
 
+/** Nothing is recorded of a run without a cycle. */
+function recorded(name) { return SERIES.has(name) && SERIES.get(name).low.length > 0; }
 function chartSpecs() {
   const out = [], kinds = [["velocity", "velocity", "mm/s", 1], ["acceleration", "acceleration", "mm/s²", 1],
     ["jerk", "jerk", "mm/s³", 1], ["error", "following_error", "µm", 1000]];
-  const single = (name, title, u) => SERIES.has(name) &&
+  const single = (name, title, u) => recorded(name) &&
     out.push({title, unit: u, curves: [{series: SERIES.get(name), label: "", colour: () => css("--accent")}]});
   single("path.speed", "pathSpeed", "mm/s");
   for (const [kind, limit, u, factor] of kinds)
-    out.push({title: kind, unit: AXES.length && AXES.every(a => a.report.unit === "deg") ? u.replace("mm", "deg").replace("µm", "mdeg") : u, factor,
-      curves: AXES.filter(a => SERIES.has(a.letter + "." + kind)).map(a => ({series: SERIES.get(a.letter + "." + kind),
-        label: a.letter, letter: a.letter, colour: () => axisColour(a.letter), limit: (a.report.limits || {})[limit]}))});
+    for (const turns of [false, true])
+      out.push({title: kind, unit: turns ? u.replace("mm", "deg").replace("µm", "arcsec") : u, factor: turns && u === "µm" ? 3600 : factor,
+        curves: AXES.filter(a => (a.report.unit === "deg") === turns && recorded(a.letter + "." + kind)).map(a => ({series: SERIES.get(a.letter + "." + kind),
+          label: a.letter, letter: a.letter, colour: () => axisColour(a.letter), limit: (a.report.limits || {})[limit]}))});
   for (const name of ["spindle", "spindle2"])
-    if (SERIES.has(name + ".cmd"))
+    if (recorded(name + ".cmd"))
       out.push({title: "spindle", unit: "rpm", curves: [
         {series: SERIES.get(name + ".cmd"), label: "→", colour: () => css("--axis-3")},
         {series: SERIES.get(name + ".act"), label: "", colour: () => css("--axis-4")}]});
-  if (out.length) out[out.length - 1].labels = true;
-  return out.filter(s => s.curves.length);
+  const drawn = out.filter(s => s.curves.length);
+  if (drawn.length) drawn[drawn.length - 1].labels = true;
+  return drawn;
 }

@@ -120,12 +120,29 @@ const CUT = (() => {
 /** What the path views show when they fit: the cut, or all there is. */
 function shownBox() { return S.whole ? BOX : CUT; }
 /** Length and time of feed, rapid and homing, and time standing still. */
+/** Seconds between t0 and t1 in which an axis moves that the path does not show: a rotary one, a fourth. */
+function otherMotion(t0, t1) {
+  const others = AXES.filter(a => !VIEW.includes(a.letter)).map(a => SERIES.get(a.letter + ".velocity")).filter(Boolean);
+  let seconds = 0;
+  for (let b = bucketAt(t0); others.length && b <= bucketAt(t1); ++b)
+    if (others.some(s => s.high[b] > 1e-6 || s.low[b] < -1e-6)) seconds += RUN.bucket;
+  return Math.min(seconds, t1 - t0);
+}
+/** Where an axis was that the path does not show; null: not known. */
+function placesOf(letter) {
+  const s = SERIES.get(letter + ".position");
+  return s && s.low.length ? [s.low.reduce((m, v) => Math.min(m, v), Infinity), s.high.reduce((m, v) => Math.max(m, v), -Infinity)] : null;
+}
 function amounts() {
   const out = {feed: 0, rapid: 0, homing: 0, feedTime: 0, rapidTime: 0, homingTime: 0};
   for (let i = 1; i < PATH.n; ++i) {
     const d = lengthOf(i), dt = PATH.t[i] - PATH.t[i - 1];
     const kind = kindOf(i);
-    if (kind === "jump" || (d < 4 * RUN.tolerance && dt > 20 * RUN.period)) continue;
+    if (kind === "jump") continue;
+    if (d < 4 * RUN.tolerance && dt > 20 * RUN.period) {
+      out[kind + "Time"] += otherMotion(PATH.t[i - 1], PATH.t[i]);
+      continue;
+    }
     out[kind] += d;
     out[kind + "Time"] += dt;
   }

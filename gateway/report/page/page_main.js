@@ -41,7 +41,7 @@ function limitBars() {
     ...kinds.map(([key, name, suffix]) => {
       const value = a.report["max_" + key] || 0, limit = (a.report.limits || {})[key], ratio = limit ? value / limit : 0;
       const fine = key === "following_error" && value < 0.1, of = limit ? " / " + num(limit, 4) + " " + unit(a.report.unit + suffix) : "";
-      const over = ratio > 1.001, text = fine ? num(value * 1000, 3) + " " + unit(a.report.unit === "deg" ? "mdeg" : "µm") + of :
+      const over = ratio > 1.001, text = fine ? (a.report.unit === "deg" ? num(value * 3600, 3) + unit("arcsec") : num(value * 1000, 3) + " " + unit("µm")) + of :
         num(value, 4) + (of || " " + unit(a.report.unit + suffix));
       return el("div", {class: "bar" + (over ? " over" : "")}, el("span", {class: "name"}, tr(name)), el("span", {class: "figure"}, text),
         el("span", {class: "track", title: limit ? "" : tr("noLimit")}, el("i", {style: `width:${clamp(100 * ratio, 0, 100)}%`})),
@@ -69,6 +69,11 @@ function alarms() {
     return el("tr", {class: later ? "later" : ""}, el("td", {}, String(a.number)), el("td", {}, seek), what, el("td", {}, alarmPlace(a)), el("td", {}, tr(a.reaction)));
   });
   fill("alarms", el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows)));
+}
+/** Errors for which the program was not begun. */
+function findings() {
+  fill("findings", R.findings ? el("table", {}, el("thead", {}, el("tr", {}, el("th", {}, tr("where")), el("th", {}, tr("errorsFound")))),
+    el("tbody", {}, ...R.findings.map(f => el("tr", {}, el("td", {}, f.file + ":" + f.line + ":" + f.column), el("td", {}, f.text + " [" + f.code + "]"))))) : null);
 }
 /** Quantiles of the cycle and its phases, and the load of each bus. */
 function timing() {
@@ -136,13 +141,17 @@ function texts() {
   const p = R.provenance, clock = p.clock === "virtual" ? tr("virtual") : p.clock;
   $("sub").textContent = [clock, p.dialect, p.machine && p.machine.path, ("servogate " + p.version + (p.commit ? " (" + p.commit + ")" : "")).trim()].filter(Boolean).join(" · ");
   const unitOf = letter => unit((AXES.find(a => a.letter === letter) || {report: {unit: "mm"}}).report.unit);
-  $("extents").textContent = tr("extents") + ": " + VIEW.map((letter, k) => letter && letter + " " + num(BOX.low[k], 6) + " … " + num(BOX.high[k], 6) + " " + unitOf(letter)).filter(Boolean).join(" · ");
+  const stretch = (letter, low, high) => letter + " " + num(low, 6) + " … " + num(high, 6) + " " + unitOf(letter);
+  const others = AXES.filter(a => !VIEW.includes(a.letter)).map(a => [a.letter, placesOf(a.letter)]).filter(o => o[1]);
+  $("extents").textContent = !PATH.n ? "" : tr("extents") + ": " + [...VIEW.map((letter, k) => letter && stretch(letter, BOX.low[k], BOX.high[k])),
+    ...others.map(([letter, [low, high]]) => stretch(letter, low, high))].filter(Boolean).join(" · ");
   const steady = steadySignals(), names = (key, list) => list.length ? tr(key) + " — " + list.join(", ") : "";
   $("steady").textContent = steady.count && !S.constant ? tr("steady") + ": " + [names("on", steady.on), names("off", steady.off)].filter(Boolean).join("; ") : "";
-  $("wait").textContent = R.wait ? [R.wait.text, R.wait.remedy].filter(Boolean).join(". ") : R.error ? R.error.text : "";
+  $("verdict").className = "verdict " + (clean ? "good" : "bad");
+  fill("verdict", R.verdict.text, R.verdict.remedy ? el("div", {class: "note"}, R.verdict.remedy) : null);
   $("forced").textContent = R.forces ? tr("forced") + ": " + R.forces.map(f => f.name + " = " + f.value).join(", ") : "";
   $("dropped").textContent = R.trace_dropped ? tr("dropped", num(R.trace_dropped, 9)) : "";
-  cards(); limitBars(); alarms(); timing(); provenance(); speedKey(); axisSwitches(); readout();
+  cards(); findings(); limitBars(); alarms(); timing(); provenance(); speedKey(); axisSwitches(); readout();
 }
 function readout() {
   const place = placeAt(S.cursor), parts = [];
@@ -191,6 +200,7 @@ function start() {
     $("charts").append(box);
     drawn.push(chart(box, spec));
   }
+  for (const id of ["path-section", "motion-section", "signal-section", "transport"]) $(id).hidden = !LINE.length;
   $("signals").hidden = SIGNALS.length === 0;
   $("no-signals").hidden = SIGNALS.length > 0;
   drawn.push(lanes($("lanes")));

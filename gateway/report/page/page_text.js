@@ -3,6 +3,7 @@
 const TEXTS = {
   finished: ["Finished", "Выполнено"],
   unfinished: ["Not finished", "Не завершено"],
+  errorsFound: ["What was found in the program", "Что найдено в программе"],
   alarms: ["Alarms", "Аварии"],
   forced: ["Forced from outside during the whole run", "Удерживалось извне в течение всего прогона"],
   noAlarms: ["No alarms.", "Аварий нет."],
@@ -112,8 +113,8 @@ const TEXTS = {
   block: ["block", "кадр"],
 };
 const UNITS_RU = {"mm": "мм", "mm/s": "мм/с", "mm/s²": "мм/с²", "mm/s³": "мм/с³", "deg": "°", "deg/s": "°/с",
-  "deg/s²": "°/с²", "deg/s³": "°/с³", "µm": "мкм", "rpm": "об/мин", "s": "с", "ms": "мс", "µs": "мкс", "m": "м", "mdeg": "0,001°"};
-const UNITS_EN = {"deg": "°", "deg/s": "°/s", "deg/s²": "°/s²", "deg/s³": "°/s³", "mdeg": "0.001°"};
+  "deg/s²": "°/с²", "deg/s³": "°/с³", "µm": "мкм", "rpm": "об/мин", "s": "с", "ms": "мс", "µs": "мкс", "m": "м", "arcsec": "″"};
+const UNITS_EN = {"deg": "°", "deg/s": "°/s", "deg/s²": "°/s²", "deg/s³": "°/s³", "arcsec": "″"};
 
 function tr(key, ...values) {
   const entry = TEXTS[key];
@@ -130,6 +131,7 @@ function num(v, digits = 4) {
 }
 /** A number with exactly `decimals`, or at most when `trim`. */
 function fixed(v, decimals, trim) {
+  if (v === null || v === undefined || !isFinite(v)) return "–";
   let text = v.toFixed(decimals);
   if (trim && text.includes(".")) text = text.replace(/\.?0+$/, "");
   if (/^-0(\.0*)?$/.test(text)) text = text.slice(1);
