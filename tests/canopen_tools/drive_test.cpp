@@ -164,6 +164,28 @@ TEST_F(SimulatedDrives, faults_come_on_command_by_standard_input) {
   EXPECT_EQ(status.value("state", ""), "fault") << ended.out;
 }
 
+TEST_F(SimulatedDrives, faults_by_the_names_of_a_machine_file_are_for_sim) {
+  desk_.write("faults.txt", "0.1 unplug device=can.x\n0.2 over_current\n");
+  const usercan::Process& process = drives("1", {"--script", path("faults.txt")});
+  EXPECT_TRUE(process.says("[drive.no-machine]")) << process.said();
+  for (const char* wrong : {"--fault unplug", "--fault 'silent every=3'", "--fault 'silent device='"})
+    EXPECT_EQ(tool("drive $BUS --node 9 " + std::string(wrong)).code, 2) << wrong;
+}
+
+TEST_F(SimulatedDrives, sim_unplugs_a_node_of_the_machine_file_for_a_time) {
+  usercan::Process sim({"sim", shell::source("examples/mill/machine.toml"), "--bus", "can=" + bus(),
+                        "--fault", "unplug device=can.x at=1 for=1.5", "--fault",
+                        "over_current device=panel at=0.1"});
+  EXPECT_TRUE(sim.says("possible are silent")) << "a Modbus station has no current: " << sim.said();
+  const auto answers = [&](bool wanted) {
+    return comes([&] { return json(tool("sdo $BUS 1 read 1000 --timeout 100 --listen 0.25").code); },
+                 [&](const json& code) { return (code == 0) == wanted; });
+  };
+  EXPECT_TRUE(sim.says("unplug device=can.x")) << sim.said();
+  EXPECT_TRUE(answers(false)) << "unplugged";
+  EXPECT_TRUE(answers(true)) << "plugged in again";
+}
+
 TEST_F(SimulatedDrives, overload_heats_the_motor_until_it_faults_and_cannot_be_reset_at_once) {
   drives("1", {"--plant", "gravity=4,thermal-time=0.5,brake=10"});
   switch_on(1);

@@ -23,6 +23,10 @@ const text::Entry kBadDeed{"drive.bad-fault", "{0}: {1}", "{0}: {1}"};
 const text::Entry kBadScript{"drive.bad-script", "{0}:{1}: {2}", "{0}:{1}: {2}"};
 const text::Entry kCannotRead{"drive.cannot-read", "cannot read {0}: {1}", "не читается {0}: {1}"};
 const text::Entry kHappened{"drive.happened", "node {0}: {1}", "узел {0}: {1}"};
+const text::Entry kOnDevice{"drive.on-device", "{0}", "{0}"};
+const text::Entry kNoMachine{"drive.no-machine",
+                             "device={0} is a name of a machine file: `servogate sim` has them; here node=N",
+                             "device={0} — имя из файла станка: они есть у `servogate sim`; здесь node=N"};
 const text::Entry kNobody{"drive.nobody", "no drive of this process has the node-ID {0}",
                           "у этого процесса нет привода с номером узла {0}"};
 
@@ -152,7 +156,16 @@ void DriveDesk::advance(image::Nanoseconds since_start, std::span<mock::Simulate
   }
 }
 
+void DriveDesk::perform_on_device(const DriveDeed& deed) {
+  std::string why;
+  if (!on_device_) return complain(kNoMachine, {deed.device});
+  if (!on_device_(deed, why)) return complain(kBadDeed, {deed.words, why});
+  std::fprintf(stderr, "%s\n",
+               text::render(kOnDevice, std::vector<std::string>{deed.words}, text::user_language()).c_str());
+}
+
 void DriveDesk::perform(const DriveDeed& deed, std::span<mock::SimulatedDrive* const> drives) {
+  if (!deed.device.empty()) return perform_on_device(deed);
   bool found = false;
   for (mock::SimulatedDrive* d : drives) {
     if (deed.node != 0 && deed.node != d->node_id()) continue;

@@ -24,6 +24,9 @@ class DriveDesk {
   /// Does what is due `since_start`. `other`: takes lines of standard input that are its own; false: not its.
   void advance(image::Nanoseconds since_start, std::span<mock::SimulatedDrive* const> drives,
                const std::function<bool(const std::string& line)>& other = {});
+  /// Who puts faults on devices by their names in a machine file; false: `why`, in both languages.
+  using OnDevice = std::function<bool(const DriveDeed& deed, std::string& why)>;
+  void set_devices(OnDevice on_device) { on_device_ = std::move(on_device); }
   /// For poll(2): -1 when standard input is not listened to just now.
   int descriptor() const;
 
@@ -31,11 +34,13 @@ class DriveDesk {
   void read_input();
   void take(const std::string& line, image::Nanoseconds since_start,
             const std::function<bool(const std::string& line)>& other);
-  static void perform(const DriveDeed& deed, std::span<mock::SimulatedDrive* const> drives);
+  void perform(const DriveDeed& deed, std::span<mock::SimulatedDrive* const> drives);
+  void perform_on_device(const DriveDeed& deed);
 
   std::vector<DriveDeed> waiting_;  ///< by time
   std::string input_;
   bool listening_;
+  OnDevice on_device_;
 };
 
 }  // namespace servogate::gateway::command

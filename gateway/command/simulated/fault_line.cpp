@@ -52,6 +52,10 @@ bool read_pair(std::string_view key, std::string_view value, DriveDeed& deed, un
     deed.node = static_cast<int>(node.value_or(0));
     return node.has_value() || spoilt();
   }
+  if (key == "device") {
+    deed.device = value;
+    return !value.empty() || spoilt();
+  }
   if (key == "at") {
     const auto at = fault::read_time(value);
     deed.at = at.value_or(0);
@@ -59,7 +63,7 @@ bool read_pair(std::string_view key, std::string_view value, DriveDeed& deed, un
   }
   const fault::ParameterRow* parameter = fault::find_parameter(key);
   if (parameter == nullptr) {
-    const std::string known = "node, at, " + fault::parameter_names();
+    const std::string known = "node, device, at, " + fault::parameter_names();
     why = quoted(key, "is not known; known: " + known, "неизвестно; известны: " + known);
     return false;
   }
@@ -123,9 +127,10 @@ bool read_head(const std::vector<std::string_view>& plain, DriveDeed& deed, std:
         clear ? (given > 0 ? DriveDeed::Kind::clear : DriveDeed::Kind::clear_all) : DriveDeed::Kind::fault;
     const std::string_view name = clear && given > 0 ? plain[1] : verb;
     const fault::KindRow* row = fault::find_kind(name);
-    const bool known = row != nullptr && row->happens_to(fault::Device::drive);
+    const unsigned meant = deed.device.empty() ? static_cast<unsigned>(fault::Device::drive) : ~0u;
+    const bool known = row != nullptr && (row->devices & meant) != 0;
     if (!known && deed.kind != DriveDeed::Kind::clear_all) {
-      const std::string names = fault::names_for(static_cast<unsigned>(fault::Device::drive));
+      const std::string names = fault::names_for(meant);
       return wrong(quoted(name, "is no fault; known: " + names, "— не отказ; известны: " + names));
     }
     if (known) deed.fault.kind = row->kind;

@@ -14,6 +14,7 @@ namespace servogate::gateway::command {
 struct DriveDeed {
   enum class Kind { fault, clear, clear_all, input, load, status } kind = Kind::fault;
   int node = 0;               ///< node-ID; 0: all of this process
+  std::string device = {};    ///< of `sim`: a name of its machine file instead of drives; empty: drives
   image::Nanoseconds at = 0;  ///< after the start; of a script and of `at=`
   fault::Fault fault;         ///< of fault and clear (its kind)
   mock::DriveSwitch::Input input = mock::DriveSwitch::Input::home;
@@ -23,8 +24,9 @@ struct DriveDeed {
 };
 
 /// Reads a line: KIND [KEY=VALUE...], clear [KIND], input NAME on|off, load NM, status; each with node=N and
-/// at=S. Durations are seconds, or a number with ms. nullopt: `why` says what is wrong, in both languages.
-/// Kinds and the parameters that each takes are those of fault::kinds() that happen to a drive.
+/// at=S; of `sim` faults and clear with device=NAME instead of node. Durations are seconds, or a number with
+/// ms. nullopt: `why` says what is wrong, in both languages. Kinds and the parameters that each takes are
+/// those of fault::kinds() that happen to a drive, with device= of all of them.
 std::optional<DriveDeed> parse_deed(std::string_view line, std::string& why);
 /// A script: lines SECONDS DEED in any order; empty ones and what follows # are comments. nullopt: `why` says
 /// what is wrong with line `number`, in both languages.

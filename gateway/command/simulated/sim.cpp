@@ -15,7 +15,7 @@
 #include "gateway/command/simulated/node_presence.hpp"
 #include "gateway/command/simulated/sim_points.hpp"
 #include "gateway/compose/can_transport.hpp"
-#include "gateway/compose/simulated/mock_world.hpp"
+#include "gateway/compose/simulated/machine_faults.hpp"
 #include "gateway/machine/bus_place.hpp"
 
 namespace servogate::gateway::command {
@@ -141,6 +141,13 @@ int serve(const SimOptions& options, const machine::LoadResult& loaded, std::vec
           DriveDesk& desk, const EndBySignal& signals) {
   constexpr image::Nanoseconds kShortest = 50 * image::kMicrosecond;
   MockWorld world(loaded);
+  MachineFaults faults(loaded.machine, world);
+  desk.set_devices([&](const DriveDeed& deed, std::string& why) {
+    using Kind = DriveDeed::Kind;
+    if (deed.kind == Kind::fault) return faults.inject(deed.device, deed.fault, why);
+    return faults.clear(deed.device, deed.kind == Kind::clear ? std::optional(deed.fault.kind) : std::nullopt,
+                        why);
+  });
   SimPoints points(loaded.machine, world, options.json);
   std::vector<mock::SimulatedDrive*> drives;
   for (const machine::BusConfig& bus : loaded.machine.buses)
@@ -153,6 +160,7 @@ int serve(const SimOptions& options, const machine::LoadResult& loaded, std::vec
     // The simulated world begins at zero.
     const image::Nanoseconds now = drivers::clock_ns(CLOCK_MONOTONIC) - start;
     for (Served& b : buses) carry(b, *world.bus(b.index));
+    faults.advance_to(now);
     world.advance_to(now);
     for (Served& b : buses) carry(b, *world.bus(b.index));
     desk.advance(now, drives, [&](const std::string& line) { return points.play(line, now); });
