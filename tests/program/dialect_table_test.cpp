@@ -43,8 +43,7 @@ Dialect other() {
   dialect.max_label_characters = 0;
   dialect.max_block_number_digits = 8;
   dialect.max_m_words = 1;
-  dialect.max_repeat_depth = dialect.max_repeat_count = dialect.max_call_depth = 0;
-  dialect.max_program_name = dialect.max_message_characters = 0;
+  dialect.max_repeat_depth = dialect.max_call_depth = 0;
   const auto set = [&](char letter, Meaning meaning) {
     dialect.letters[static_cast<std::size_t>(letter)] = {meaning, ParameterKind::none, -99999.0, 99999.0};
   };

@@ -11,6 +11,9 @@
 namespace servogate::program::nc110::code {
 namespace {
 
+constexpr int kMostRepeats = 99;
+constexpr std::size_t kProgramName = 6;  ///< characters
+
 /// One side of a comparison: a number, or characters.
 struct Side {
   bool characters = false;
@@ -69,7 +72,7 @@ void jump(Execution& run, const Operands& operands, const Operand& label) {
 void rpt(Execution& run, const Operands& operands) {
   const Operand& item = operands.items[0];
   const double count = run.resolve(item.value);
-  const int most = run.dialect().max_repeat_count;
+  const int most = kMostRepeats;
   if (!(count >= 0.0 && count <= most) || count != static_cast<int>(count))
     fail(Wrong::repeat_count, column(item), {text::number(count), std::to_string(most)});
   run.repeat(static_cast<int>(count), operands.column);
@@ -82,11 +85,9 @@ void cls(Execution& run, const Operands& operands) {
   std::string_view name = operands.text(item);
   name = name.substr(0, name.find('/'));
   const bool good =
-      !name.empty() && name.size() <= run.dialect().max_program_name && is_capital(name[0]) &&
+      !name.empty() && name.size() <= kProgramName && is_capital(name[0]) &&
       std::all_of(name.begin(), name.end(), [](char c) { return is_capital(c) || is_digit(c); });
-  if (!good)
-    fail(Wrong::program_name, column(item),
-         {std::string(name), std::to_string(run.dialect().max_program_name)});
+  if (!good) fail(Wrong::program_name, column(item), {std::string(name), std::to_string(kProgramName)});
   run.call(name, 1, column(item));
 }
 

@@ -11,6 +11,7 @@
 namespace servogate::program::nc110::code {
 namespace {
 
+constexpr std::size_t kShownCharacters = 32;
 constexpr double kMaxDelay = 32.0;  ///< s, specification B 7.2
 
 int column(std::size_t offset) { return static_cast<int>(offset) + 1; }
@@ -23,9 +24,9 @@ std::string shown(Execution& run, const Operands& operands, const Operand& item)
   const std::string_view text = operands.text(item);
   if (text.front() == '"') {
     const std::string_view inner = text.substr(1, text.size() - 2);
-    const std::size_t most = run.dialect().max_message_characters;
-    if (characters(inner) > most)
-      fail(Wrong::text_long, column(item.begin), {std::to_string(characters(inner)), std::to_string(most)});
+    if (characters(inner) > kShownCharacters)
+      fail(Wrong::text_long, column(item.begin),
+           {std::to_string(characters(inner)), std::to_string(kShownCharacters)});
     return std::string(inner);
   }
   const std::string_view line = operands.block->line.substr(0, item.end);

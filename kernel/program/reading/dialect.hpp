@@ -247,10 +247,7 @@ struct Dialect {
   std::size_t max_block_number_digits;
   int max_m_words;
   int max_repeat_depth;
-  int max_repeat_count;
   int max_call_depth;
-  std::size_t max_program_name;
-  std::size_t max_message_characters;
   std::array<LetterRule, 128> letters;
   std::span<const GRule> g;
   const GRule* other_g = nullptr;  ///< G words of other numbers; null: there are none
