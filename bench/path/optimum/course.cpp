@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "kernel/path/planner.hpp"
 
@@ -85,6 +86,39 @@ class Maker {
   std::vector<Laid> pieces_;
 };
 
+/// An element as the program means it: a line, or an arc in the plane of two axes.
+struct Leg {
+  Leg(const Triple& begin, const path::Element& element) : from(begin), e(element) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < kCourseAxes; ++k) {
+      const bool in_plane = arc() && (k == e.axis1 || k == e.axis2);
+      const double d = in_plane ? 0.0 : e.to[k] - from[k];
+      sum += d * d;
+    }
+    if (arc()) sum += std::pow(radius() * sweep(), 2);
+    length = std::sqrt(sum);
+  }
+
+  Triple at(double s) const {
+    const double share = length > 0.0 ? s / length : 1.0;
+    Triple x;
+    for (std::size_t k = 0; k < kCourseAxes; ++k) x[k] = from[k] + share * (e.to[k] - from[k]);
+    if (!arc()) return x;
+    const double angle = std::atan2(from[e.axis2] - e.center2, from[e.axis1] - e.center1) + share * sweep();
+    x[e.axis1] = e.center1 + radius() * std::cos(angle);
+    x[e.axis2] = e.center2 + radius() * std::sin(angle);
+    return x;
+  }
+
+  bool arc() const { return e.kind == path::Element::Kind::arc; }
+  double sweep() const { return e.sweep_deg / 180.0 * std::numbers::pi; }
+  double radius() const { return std::hypot(from[e.axis1] - e.center1, from[e.axis2] - e.center2); }
+
+  Triple from;
+  path::Element e;
+  double length = 0.0;
+};
+
 }  // namespace
 
 Shaped shape_of(const path::Config& config, const Program& program) {
@@ -119,6 +153,28 @@ Shaped shape_of(const path::Config& config, const Program& program) {
   for (const path::Span& span : spans) {
     for (std::uint64_t n = 0; n < span.pieces; ++n) maker.take(pieces[span.first_piece + n]);
     if (span.stop) maker.rest(out);
+  }
+  return out;
+}
+
+Line programmed(const Program& program, double step) {
+  Triple from{};
+  std::vector<Leg> legs;
+  double length = 0.0;
+  for (const path::Element& e : program) {
+    legs.push_back(Leg(from, e));
+    length += legs.back().length;
+    for (std::size_t k = 0; k < kCourseAxes; ++k) from[k] = e.to[k];
+  }
+  const auto count = static_cast<std::size_t>(std::ceil(length / step));
+  Line out;
+  out.step = length / static_cast<double>(count);
+  std::size_t n = 0;
+  double before = 0.0;
+  for (std::size_t i = 0; i <= count; ++i) {
+    const double s = out.step * static_cast<double>(i);
+    while (n + 1 < legs.size() && s > before + legs[n].length) before += legs[n++].length;
+    out.points.push_back(legs[n].at(std::min(s - before, legs[n].length)));
   }
   return out;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "bench/path/optimum/optimum.hpp"
+#include "bench/path/optimum/tube.hpp"
 #include "bench/path/works.hpp"
 
 namespace servogate::bench {
@@ -11,6 +11,9 @@ struct Shaped {
   double length = 0.0;
 };
 Shaped shape_of(const path::Config& config, const Program& program);
+
+/// The programmed path in even steps, about so long.
+Line programmed(const Program& program, double step);
 
 Limits limits_of(const path::Config& config);
 
