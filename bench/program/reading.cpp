@@ -80,7 +80,7 @@ double rate(const std::string& text, bool json) {
   return static_cast<double>(run.executed()) / seconds.count();
 }
 
-void print(const char* name, const std::string& text, bool json = false) {
+void measure(const char* name, const std::string& text, bool json) {
   std::array<double, 5> rates;
   std::generate(rates.begin(), rates.end(), [&] { return rate(text, json); });
   std::sort(rates.begin(), rates.end());
@@ -89,8 +89,13 @@ void print(const char* name, const std::string& text, bool json = false) {
 
 }  // namespace
 
+/// bench_program [LINES [WORDS]]: only the cases whose name has WORDS in it.
 int main(int argc, char** argv) {
   const int lines = argc > 1 ? std::max(1000, std::atoi(argv[1])) : 500'000;
+  const std::string only = argc > 2 ? argv[2] : "";
+  const auto print = [&](const std::string& name, const std::string& text, bool json = false) {
+    if (name.find(only) != std::string::npos) measure(name.c_str(), text, json);
+  };
   print("G1 X Y", lines_text(lines, false));
   print("N G1 X Y Z", lines_text(lines, true));
   print("G3 X Y I J", arcs_text(lines));
