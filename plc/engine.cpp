@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "plc/lookup.hpp"
+#include "plc/scan_watch.hpp"
 #include "plc/texts.hpp"
 #include "plc/transfer.hpp"
 #include "plc/values.hpp"
@@ -39,6 +40,8 @@ struct Engine::State {
   std::vector<Times> task_times;
   const image::Clock* clock = nullptr;
   Times* blocks = nullptr;
+  ScanWatch own_watch;
+  ScanWatch* watch = &own_watch;
   struct Copy {
     std::uint32_t from, to, size;
   };
@@ -251,20 +254,26 @@ ScanResult Engine::run_tasks(image::Nanoseconds t_ns) noexcept {
   machine.budget = im.budget;
   machine.clock = s.clock;
   machine.blocks = s.clock != nullptr ? s.blocks : nullptr;
+  machine.scan = s.watch->begin();
+  machine.ended = &s.watch->ended();
   ScanResult result;
   for (std::size_t i = 0; i < im.tasks.size() && result.fault == Fault::none; ++i) {
     if (!due(i, t_ns)) continue;
     const Image::Task& task = im.tasks[i];
     machine.budget -= task.length;
     const image::Nanoseconds began = s.clock != nullptr ? s.clock->now_ns() : 0;
-    result.fault = machine.budget < 0 ? Fault::budget : vm::execute(machine, task.entry);
+    machine.at = task.entry;
+    result.fault = machine.budget < 0 ? Fault::budget
+                   : machine.ended->load(std::memory_order_relaxed) == machine.scan
+                       ? Fault::overrun
+                       : vm::execute(machine, task.entry);
     if (s.clock != nullptr) s.task_times[i].add(s.clock->now_ns() - began);
     if (result.fault == Fault::none) continue;
-    if (machine.budget < 0 && machine.at == 0) machine.at = task.entry;
     result.task = static_cast<std::int16_t>(i);
     result.file = static_cast<std::int16_t>(im.lines[machine.at] >> 24);
     result.line = static_cast<std::int32_t>(im.lines[machine.at] & 0xFFFFFF);
   }
+  s.watch->close();
   result.instructions = im.budget - machine.budget;
   return result;
 }
@@ -304,6 +313,7 @@ text::Finding Engine::describe(const ScanResult& r) const {
                                                &texts::kFaultSelector,
                                                &texts::kFaultText,
                                                &texts::kFaultReference,
+                                               &texts::kFaultOverrun,
                                                &texts::kFaultPackets};
   text::Finding f;
   f.file = file_name(r.file);
@@ -439,6 +449,9 @@ void Engine::take_over(const Engine& before, const Transfer& t) noexcept {
 }
 
 void Engine::measure(const image::Clock* clock) noexcept { state_->clock = clock; }
+void Engine::watch(ScanWatch* watch) noexcept {
+  state_->watch = watch != nullptr ? watch : &state_->own_watch;
+}
 void Engine::profile(Times* blocks) noexcept { state_->blocks = blocks; }
 std::span<const Times> Engine::task_times() const noexcept { return state_->task_times; }
 

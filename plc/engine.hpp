@@ -16,6 +16,7 @@
 namespace servogate::plc {
 
 struct Image;
+class ScanWatch;
 struct Transfer;
 struct Type;
 
@@ -31,6 +32,7 @@ enum class Fault : std::uint8_t {
   selector,            ///< K of MUX names no input
   text_position,       ///< L or P of a string function is negative or lies outside the string
   null_reference,      ///< dereference of NULL
+  overrun,             ///< it did not come back in time and was ended from outside (ScanWatch)
   packet_size,         ///< packet K or SYVAR is smaller than the program was compiled for
 };
 
@@ -166,6 +168,9 @@ class Engine {
   /// Makes room for it; once, behind restore(). Not real-time safe.
   void prepare_transfer(const Transfer& transfer);
 
+  /// Who may end its scans; one watch for all engines that take turns in a cycle. Without one nobody can.
+  /// Before the first scan.
+  void watch(ScanWatch* watch) noexcept;
   /// Measures every task with this clock, nullptr: none. Before the first scan.
   void measure(const image::Clock* clock) noexcept;
   /// In the next scans also every call of a block, into one entry of `blocks` for each Image::units; nullptr:

@@ -349,6 +349,9 @@ inline constexpr Entry kFaultText{"plc-fault-text", "task {0}: position outside 
 inline constexpr Entry kFaultReference{"plc-fault-reference",
                                        "task {0}: a reference that is NULL was followed",
                                        "задача {0}: обращение по ссылке, равной NULL"};
+inline constexpr Entry kFaultOverrun{"plc-fault-overrun",
+                                     "task {0}: the scan did not come back and was ended here",
+                                     "задача {0}: скан не завершился вовремя и прерван здесь"};
 inline constexpr Entry kFaultPackets{"plc-fault-packets", "packet K or SYVAR is smaller than compiled for",
                                      "пакет K или SYVAR меньше, чем при трансляции"};
 inline constexpr Entry kRunCycleNumber{"plc-run-cycle", "'{0}' behind '@' is no number of a cycle",

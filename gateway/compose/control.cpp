@@ -178,7 +178,10 @@ void Control::await_grants(image::Nanoseconds t) {
 }
 
 void Control::watch_logic() noexcept {
-  cycle_->watch_logic(static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
+  if (logic_ != nullptr && logic_->scan_ended())
+    cycle_->watch_logic(PlcLogic::kLongestScan_ns, true);
+  else
+    cycle_->watch_logic(static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
 }
 
 PlcLogic::Plan Control::prepare(const LogicChange& change) {

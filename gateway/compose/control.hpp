@@ -76,8 +76,8 @@ class Control {
   /// Real time: the cycle that step() is about to run was due at this time of `clock`. From the first call on
   /// every SYNC is timed. real-time safe.
   void open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) noexcept;
-  /// Real time, behind every step: a scan of the PLC that took longer than [plc] watchdog is an alarm.
-  /// real-time safe.
+  /// Real time, behind every step: a scan of the PLC that took longer than [plc] watchdog is an alarm, and so
+  /// is one that was ended from outside. real-time safe.
   void watch_logic() noexcept;
   /// When the present cycle was due; nullopt: in virtual time.
   std::optional<image::Nanoseconds> due_ns() const noexcept { return due_ns_; }

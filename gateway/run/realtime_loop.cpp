@@ -29,6 +29,9 @@ bool RealtimeLoop::start() {
     cycle_thread_.join();
     return false;
   }
+  if (PlcLogic* logic = control_.logic(); logic != nullptr)
+    watchdog_ = std::make_unique<ScanWatchdog>(logic->scan_watch(), PlcLogic::kLongestScan_ns,
+                                               settings_.priority + 1);
   reader_thread_ = std::thread([this] {
     const image::Nanoseconds pause = std::max<image::Nanoseconds>(control_.cycle().period_ns() / 2, 200'000);
     while (!stop_.load(std::memory_order_relaxed)) {
@@ -77,6 +80,7 @@ void RealtimeLoop::stop() {
   stop_.store(true);
   if (cycle_thread_.joinable()) cycle_thread_.join();
   if (reader_thread_.joinable()) reader_thread_.join();
+  watchdog_.reset();  // the last scan may have needed it
 }
 
 }  // namespace servogate::gateway

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "gateway/compose/control.hpp"
+#include "gateway/run/scan_watchdog.hpp"
 #include "kernel/cycle/realtime.hpp"
 
 namespace servogate::gateway {
 
-/// Runs a Control in real time: one thread for the cycle at absolute times, one that reads ahead. The owner
-/// watches by Cycle::read() and speaks by Cycle::post().
+/// Runs a Control in real time: one thread for the cycle at absolute times, one that reads ahead, and with a
+/// PLC one that ends a scan which does not come back. The owner watches by Cycle::read() and speaks by
+/// Cycle::post().
 class RealtimeLoop {
  public:
   /// Called after every cycle on the real-time thread; must be real-time safe. `late_ns`: how late the thread
@@ -44,6 +46,7 @@ class RealtimeLoop {
   std::atomic<int> ready_{0};
   std::atomic<std::int64_t> overruns_{0};
   std::thread cycle_thread_, reader_thread_;
+  std::unique_ptr<ScanWatchdog> watchdog_;
 };
 
 }  // namespace servogate::gateway

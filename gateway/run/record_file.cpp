@@ -392,6 +392,7 @@ bool RecordReader::give(cycle::CycleInputs& inputs) noexcept {
   if (!has_next_) return false;
   inputs = next_;
   look_ahead();
+  inputs.scan_ended = has_next_ && cycle::tell_of_ended_scan(next_);
   return true;
 }
 

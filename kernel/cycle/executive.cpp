@@ -120,7 +120,10 @@ void Cycle::apply(const CycleInputs& in) noexcept {
 }
 
 void Cycle::run_logic() noexcept {
-  if (parts_.logic != nullptr) parts_.logic->scan(image_, notices_);
+  if (parts_.logic != nullptr) {
+    if (inputs_.scan_ended) parts_.logic->end_next_scan();
+    parts_.logic->scan(image_, notices_);
+  }
   force();  // what follows in this cycle sees it too
   for (const image::AlarmRecord& r : notices_.records()) raise(r);
   notices_.clear();
@@ -308,10 +311,11 @@ void Cycle::note_overrun(image::Nanoseconds late_ns) noexcept {
   notices_.add(r);
 }
 
-void Cycle::watch_logic(image::Nanoseconds limit_ns) noexcept {
-  const image::Nanoseconds took = phase_ns_[static_cast<std::size_t>(Phase::logic)];
-  if (limit_ns <= 0 || !measuring_ || took <= limit_ns) return;
+void Cycle::watch_logic(image::Nanoseconds limit_ns, bool ended) noexcept {
+  const image::Nanoseconds took = measuring_ ? phase_ns_[static_cast<std::size_t>(Phase::logic)] : 0;
+  if (!ended && (limit_ns <= 0 || took <= limit_ns)) return;
   image::AlarmRecord r;
+  if (ended) r.detail1 = kScanEnded;
   r.number = alarm::kPlcWatchdog;
   r.limit = static_cast<double>(limit_ns) / 1e6;
   r.value = static_cast<double>(took) / 1e6;

@@ -110,8 +110,9 @@ class Cycle {
   /// The owner of the loop reports a cycle that began late; past a limit this is an alarm. real-time safe.
   void note_overrun(image::Nanoseconds late_ns) noexcept;
   /// The owner of the loop asks, after a step that was measured, whether the logic has taken longer than
-  /// this; then it is an alarm. In virtual time nobody asks. real-time safe.
-  void watch_logic(image::Nanoseconds limit_ns) noexcept;
+  /// this, or was `ended` from outside after it; then it is an alarm. In virtual time nobody asks. real-time
+  /// safe.
+  void watch_logic(image::Nanoseconds limit_ns, bool ended = false) noexcept;
 
  private:
   struct Queues;

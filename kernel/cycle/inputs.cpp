@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/cycle/inputs.hpp"
 
+#include <algorithm>
 #include <cstring>
+
+#include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::cycle {
 
@@ -28,6 +31,12 @@ void put_changed(std::vector<std::uint8_t>& out, const std::array<T, N>& now, co
 }
 
 }  // namespace
+
+bool tell_of_ended_scan(const CycleInputs& in) noexcept {
+  return std::any_of(
+      in.notices.begin(), in.notices.begin() + in.notice_count,
+      [](const image::AlarmRecord& r) { return r.number == alarm::kPlcWatchdog && r.detail1 == kScanEnded; });
+}
 
 void InputEncoder::append(const CycleInputs& in, std::vector<std::uint8_t>& out) {
   put_varint(out, static_cast<std::uint64_t>(in.number - last_.number));

@@ -30,7 +30,13 @@ struct CycleInputs {
   std::array<image::Request, kRequestsPerCycle> requests{};
   std::uint8_t notice_count = 0;
   std::array<image::AlarmRecord, kNoticesPerCycle> notices{};  ///< faults reported by buses and devices
+  /// The scan of this cycle was ended from outside. Not known before it, so no part of what is written of
+  /// this cycle: the notice of it is an input of the next one, and whoever replays looks ahead.
+  bool scan_ended = false;
 };
+inline constexpr double kScanEnded = 1.0;  ///< detail1 of a notice of kPlcWatchdog
+/// The inputs of a cycle tell that the scan of the one before was ended from outside.
+bool tell_of_ended_scan(const CycleInputs& inputs) noexcept;
 
 /// Takes the inputs of each cycle as they are used. real-time safe.
 class InputTap {

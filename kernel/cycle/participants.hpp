@@ -51,6 +51,9 @@ class Logic {
     static_cast<void>(request);
     return false;
   }
+  /// The next scan ends before it does anything, with its fault: in the record that is being replayed
+  /// somebody ended it (CycleInputs::scan_ended).
+  virtual void end_next_scan() noexcept {}
 };
 
 /// What a process sees of the machine in one cycle.

@@ -162,8 +162,6 @@ void Generator::jump(std::int32_t number) {
     forward_[number].push_back(emit(Code::jump));
     return;
   }
-  // A jump back is charged what it repeats, which must not be nothing.
-  if (back->second == here()) emit(Code::jump, 0, 0, static_cast<Operand>(here() + 1));
   emit(Code::jump_back, 0, 0, static_cast<Operand>(back->second));
 }
 

@@ -204,6 +204,15 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
     goto failed;    \
   } while (false)
 
+// What may be executed before anybody looks again: paid for before it is done, and whoever watches from
+// outside is obeyed. A jump to itself repeats one instruction.
+#define CHARGE(instructions)                                                      \
+  do {                                                                            \
+    if ((m.budget -= (instructions)) < 0) FAIL(Fault::budget);                    \
+    if (m.ended->load(std::memory_order_relaxed) == m.scan) FAIL(Fault::overrun); \
+  } while (false)
+#define CHARGE_BACK() CHARGE(ip - (code + ip->c) + 1)
+
   DISPATCH();
 
 #define BINARY_CLASS_add Add
@@ -289,15 +298,15 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
   *AT(ip->a) = *AT(ip->b) ^ 1; \
   NEXT()
 #define SINGLE_move_bytes(AT)                \
-  m.budget -= ip->c >> 4;                    \
+  CHARGE(ip->c >> 4);                        \
   std::memmove(AT(ip->a), AT(ip->b), ip->c); \
   NEXT()
 #define SINGLE_load_bytes(AT)                                          \
-  m.budget -= ip->c >> 4;                                              \
+  CHARGE(ip->c >> 4);                                                  \
   std::memmove(AT(ip->a), mem + get<std::uint32_t>(AT(ip->b)), ip->c); \
   NEXT()
 #define SINGLE_store_bytes(AT)                                         \
-  m.budget -= ip->c >> 4;                                              \
+  CHARGE(ip->c >> 4);                                                  \
   std::memmove(mem + get<std::uint32_t>(AT(ip->a)), AT(ip->b), ip->c); \
   NEXT()
 #define SINGLE_move_text(AT)                                                             \
@@ -335,9 +344,9 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
 #define SINGLE_jump(AT) \
   ip = code + ip->c;    \
   DISPATCH()
-#define SINGLE_jump_back(AT)                                      \
-  if ((m.budget -= ip - (code + ip->c)) < 0) FAIL(Fault::budget); \
-  ip = code + ip->c;                                              \
+#define SINGLE_jump_back(AT) \
+  CHARGE_BACK();             \
+  ip = code + ip->c;         \
   DISPATCH()
 #define SINGLE_jump_true(AT)                    \
   ip = *AT(ip->a) != 0 ? code + ip->c : ip + 1; \
@@ -345,10 +354,10 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
 #define SINGLE_jump_false(AT)                   \
   ip = *AT(ip->a) == 0 ? code + ip->c : ip + 1; \
   DISPATCH()
-#define SINGLE_repeat_until(AT)                                   \
-  if (*AT(ip->a) != 0) NEXT();                                    \
-  if ((m.budget -= ip - (code + ip->c)) < 0) FAIL(Fault::budget); \
-  ip = code + ip->c;                                              \
+#define SINGLE_repeat_until(AT) \
+  if (*AT(ip->a) != 0) NEXT();  \
+  CHARGE_BACK();                \
+  ip = code + ip->c;            \
   DISPATCH()
 #define SINGLE_for_check(AT)                        \
   {                                                 \
@@ -357,18 +366,18 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
     ip = n.within() ? ip + 1 : code + ip->c;        \
   }                                                 \
   DISPATCH()
-#define SINGLE_for_next(AT)                                         \
-  {                                                                 \
-    if ((m.budget -= ip - (code + ip->c)) < 0) FAIL(Fault::budget); \
-    Counter n = get<Counter>(AT(ip->a));                            \
-    if (__builtin_add_overflow(n.value, n.step, &n.value)) NEXT();  \
-    show(n, AT(ip->b), static_cast<Cell>(ip->aux));                 \
-    put(AT(ip->a), n);                                              \
-    ip = n.within() ? code + ip->c : ip + 1;                        \
-  }                                                                 \
+#define SINGLE_for_next(AT)                                        \
+  {                                                                \
+    CHARGE_BACK();                                                 \
+    Counter n = get<Counter>(AT(ip->a));                           \
+    if (__builtin_add_overflow(n.value, n.step, &n.value)) NEXT(); \
+    show(n, AT(ip->b), static_cast<Cell>(ip->aux));                \
+    put(AT(ip->a), n);                                             \
+    ip = n.within() ? code + ip->c : ip + 1;                       \
+  }                                                                \
   DISPATCH()
 #define ENTER(where)                                                                                     \
-  if ((m.budget -= ip->c) < 0) FAIL(Fault::budget);                                                      \
+  CHARGE(ip->c);                                                                                         \
   if constexpr (kProfiled) profile.enter(m, depth, ip->a);                                               \
   frames[depth++] = {static_cast<std::uint32_t>(ip - code) + 1, static_cast<std::uint32_t>(self - mem)}; \
   self = (where);                                                                                        \
@@ -397,7 +406,8 @@ Fault run(Machine& m, std::uint32_t entry) noexcept {
 failed:
   m.at = static_cast<std::uint32_t>(ip - code);
   // Nobody has the file of the library; its caller's line says what was wrong.
-  while (depth > 0 && m.image->lines[m.at] >> 24 == m.image->files.size() - 1) m.at = frames[--depth].back - 1;
+  while (depth > 0 && m.image->lines[m.at] >> 24 == m.image->files.size() - 1)
+    m.at = frames[--depth].back - 1;
   return fault;
 }
 

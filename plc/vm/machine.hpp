@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
 #include <cstdint>
 
 #include "plc/engine.hpp"
@@ -14,6 +15,9 @@ struct Machine {
   const Image* image = nullptr;
   std::int64_t now_ns = 0;
   std::int64_t budget = 0;
+  std::uint64_t scan = 0;  ///< number of the scan in ...
+  const std::atomic<std::uint64_t>* ended =
+      nullptr;  ///< ... which it ends when it stands here; never null in execute()
   const std::uint8_t* extra[2] = {nullptr, nullptr};  ///< third and fourth input of a native function
   std::uint32_t at = 0;                               ///< instruction of a fault
   const image::Clock* clock = nullptr;                ///< measures calls, when `blocks` is there

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <thread>
 
 #include "plc/compile.hpp"
+#include "plc/scan_watch.hpp"
 #include "plc/transfer.hpp"
 #include "plc/vm/image.hpp"
 #include "tests/counting/allocations.hpp"
@@ -574,6 +577,73 @@ TEST(Engine, resolves_bare_names_only_where_one_program_runs) {
   EXPECT_TRUE(Engine(one).find("X"));
   EXPECT_FALSE(Engine(two).find("x"));
   EXPECT_TRUE(Engine(two).find("b.X"));
+}
+
+/// Ends the scan that is under way, from the test's own thread.
+ScanResult scan_until_ended(Engine& e, image::Packets& p, ScanWatch& watch) {
+  ScanResult result;
+  std::thread cycle([&] { result = e.scan(p, 0); });
+  while (watch.under_way() == 0) std::this_thread::yield();
+  watch.end(watch.under_way());
+  cycle.join();
+  return result;
+}
+
+TEST(Engine, a_scan_that_no_budget_ends_is_ended_from_outside_in_every_form_of_loop) {
+  Options unlimited;
+  unlimited.instruction_budget = std::numeric_limits<std::int64_t>::max();
+  for (const std::string loop : {"WHILE never = 0 DO ; END_WHILE;", "REPEAT UNTIL never > 0 END_REPEAT;",
+                                 "FOR i := 1 TO 3 BY never DO ; END_FOR;",
+                                 "FOR i := 0 TO 9223372036854775807 DO x := SIN(x); END_FOR;",
+                                 "WHILE TRUE DO s := s; END_WHILE;", "WHILE TRUE DO i := f(i); END_WHILE;"}) {
+    SCOPED_TRACE(loop);
+    Engine e(
+        build(std::string("FUNCTION f : LINT VAR_INPUT n : LINT; END_VAR f := n; END_FUNCTION\n"
+                          "PROGRAM Main VAR never : LINT; i : LINT; x : LREAL; s : ARRAY[0..999] OF LINT; "
+                          "END_VAR\nbit_out := TRUE;\n") +
+                  loop + "\nEND_PROGRAM",
+              kSymbols, unlimited));
+    ScanWatch watch;
+    e.watch(&watch);
+    image::Packets p;
+    p.set_bit(kSymbols[7].place, true);
+    const ScanResult r = scan_until_ended(e, p, watch);
+    EXPECT_EQ(r.fault, Fault::overrun);
+    if (loop.find("f(i)") == std::string::npos) {
+      EXPECT_EQ(
+          e.describe(r).str(text::Language::english),
+          "t.st:4:1: error: task cycle: the scan did not come back and was ended here [plc-fault-overrun]");
+    }
+    EXPECT_FALSE(p.bit(kSymbols[7].place)) << "what the program writes is off";
+    EXPECT_EQ(watch.under_way(), 0u);
+    EXPECT_EQ(e.scan(p, 1).fault, Fault::overrun) << "until the restart";
+    e.restart();
+    EXPECT_EQ(scan_until_ended(e, p, watch).fault, Fault::overrun);
+  }
+}
+
+TEST(Engine, ending_a_scan_that_is_over_ends_no_other) {
+  Engine e(
+      build("PROGRAM Main VAR i, n : DINT; END_VAR FOR i := 1 TO 10 DO n := n + 1; END_FOR; END_PROGRAM"));
+  ScanWatch watch;
+  e.watch(&watch);
+  image::Packets p;
+  ASSERT_EQ(e.scan(p, 0).fault, Fault::none);
+  watch.end(1);
+  ASSERT_EQ(e.scan(p, 1).fault, Fault::none);
+  watch.end_next();
+  EXPECT_EQ(e.scan(p, 2).fault, Fault::overrun);
+  EXPECT_EQ(e.read(*e.find("n")), "20") << "it did nothing";
+}
+
+TEST(Engine, a_loop_costs_what_it_repeats_and_at_least_one_instruction) {
+  const auto spent = [](const std::string& text) {
+    Engine e(build("PROGRAM Main VAR i : DINT; END_VAR " + text + " END_PROGRAM"));
+    image::Packets p;
+    return e.scan(p, 0).instructions;
+  };
+  const std::int64_t few = spent("FOR i := 1 TO 10 DO ; END_FOR;");
+  EXPECT_EQ(spent("FOR i := 1 TO 1010 DO ; END_FOR;") - few, 1000);
 }
 
 }  // namespace

@@ -97,6 +97,7 @@ PlcLogic::PlcLogic(std::shared_ptr<const plc::Image> image, std::vector<plc::Sou
     : shown_(std::make_shared<LogicProgram>(std::move(image), std::move(sources))) {
   running_ = shown_.get();
   running_->engine.measure(&stopwatch());
+  running_->engine.watch(&watch_);
 }
 
 PlcLogic::~PlcLogic() {
@@ -106,7 +107,7 @@ PlcLogic::~PlcLogic() {
 
 void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcept {
   if (begins_) kept_ = image.packets;
-  begins_ = false;
+  begins_ = ended_ = false;
   if (held_ && steps_ == 0) return stand_still(image);
   LogicProgram& program = *running_;
   const plc::Image& compiled = program.engine.image();
@@ -123,7 +124,10 @@ void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcep
     given_back_ = false;
   }
   const bool faulted = last_.fault != plc::Fault::none;
-  if (faulted && !faulted_) raise_fault(last_, notices);
+  if (faulted && !faulted_) {
+    raise_fault(last_, notices);
+    ended_ = last_.fault == plc::Fault::overrun;
+  }
   faulted_ = faulted;
   if (faulted) return;  // what an abandoned scan has left half done is not kept
   program.engine.snapshot_retained(program.retained.scratch());
@@ -159,7 +163,8 @@ void PlcLogic::stand_still(image::ProcessImage& image) noexcept {
 
 void PlcLogic::raise_fault(const plc::ScanResult& result, cycle::Notices& notices) const noexcept {
   image::AlarmRecord r;
-  r.number = result.fault == plc::Fault::budget ? cycle::alarm::kPlcBudget : cycle::alarm::kPlcFault;
+  const bool endless = result.fault == plc::Fault::budget || result.fault == plc::Fault::overrun;
+  r.number = endless ? cycle::alarm::kPlcBudget : cycle::alarm::kPlcFault;
   r.line = result.line;
   r.file = result.file;
   r.run = running_->number;
@@ -285,6 +290,7 @@ PlcLogic::Plan PlcLogic::prepare_load(const LogicChange& change, Prepared& out,
   plan.given_up = out.transfer.given_up;
   sort_retained(plan, engine);
   engine.measure(&stopwatch());
+  engine.watch(&watch_);
   engine.prepare_transfer(out.transfer);
   for (const auto& [name, value] : forced_) {
     const auto handle = engine.find(name);

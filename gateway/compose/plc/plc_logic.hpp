@@ -12,6 +12,7 @@
 #include "gateway/compose/plc/retained_memory.hpp"
 #include "kernel/cycle/participants.hpp"
 #include "plc/engine.hpp"
+#include "plc/scan_watch.hpp"
 #include "plc/transfer.hpp"
 
 namespace servogate::gateway {
@@ -62,6 +63,16 @@ class PlcLogic final : public cycle::Logic {
   /// lets it scan, and lets it go (RequestKind::logic_scan). real-time safe.
   bool order(const image::Request& request) noexcept override;
 
+  /// The scan of the cycle that was just run was ended from outside. real-time safe.
+  bool scan_ended() const noexcept { return ended_; }
+  /// real-time safe.
+  void end_next_scan() noexcept override { watch_.end_next(); }
+  /// In real time, what a scan may take before it is ended from outside: far more than any cycle, and less
+  /// than anybody waits for a stop.
+  static constexpr image::Nanoseconds kLongestScan_ns = 500 * image::kMillisecond;
+  /// Where it is ended.
+  plc::ScanWatch& scan_watch() noexcept { return watch_; }
+
   /// The engine before the first cycle.
   plc::Engine& engine() noexcept { return shown_->engine; }
   /// Keeps a retained value that the program has no variable for; before the first cycle.
@@ -110,8 +121,10 @@ class PlcLogic final : public cycle::Logic {
   void raise_fault(const plc::ScanResult& result, cycle::Notices& notices) const noexcept;
   void fill(LogicSample& sample, const image::CycleTime& now, const plc::ScanResult& result) noexcept;
 
+  plc::ScanWatch watch_;
   LogicProgram* running_;  ///< the cycle's
   bool faulted_ = false;
+  bool ended_ = false;  ///< in this cycle
   bool drops_ = false;  ///< the next scan is the first one of a program that came later
   // Held for single scans: what the program writes is kept here, and off in the packets.
   bool held_ = false;

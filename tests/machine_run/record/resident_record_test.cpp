@@ -9,6 +9,7 @@
 
 #include "gateway/run/running_machine.hpp"
 #include "gateway/server/resident.hpp"
+#include "kernel/cycle/alarm/alarm_table.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"
 #include "tests/places/places.hpp"
@@ -22,9 +23,9 @@ using image::RequestKind;
 /// The example mill as `servogate up --record` runs it, in real time on a busy computer, with an operator.
 class RecordedControl {
  public:
-  explicit RecordedControl(const Scratch& scratch)
+  explicit RecordedControl(const Scratch& scratch, const std::string& machine_file = mill_file())
       : running_(gateway::RunningMachine::compose(
-            machine::load(mill_file()), nullptr,
+            machine::load(machine_file), nullptr,
             {.clock = gateway::ClockKind::realtime_best_effort, .record = scratch.path("record")},
             findings_)),
         resident_(running_->control(), machine::MachineState{}, std::string()) {
@@ -32,6 +33,13 @@ class RecordedControl {
     EXPECT_TRUE(running_->begin(true));
   }
   gateway::Resident& resident() { return resident_; }
+  /// After close(): the only alarm of this number.
+  image::AlarmRecord alarm(image::AlarmNumber number) const {
+    std::vector<image::AlarmRecord> found = running_->control().cycle().alarms().history();
+    std::erase_if(found, [number](const image::AlarmRecord& r) { return r.number != number; });
+    EXPECT_EQ(found.size(), 1u) << number;
+    return found.empty() ? image::AlarmRecord{} : found.front();
+  }
   /// True: accepted. Asks again while an axis is not quite at rest.
   bool ask(RequestKind kind, double value = 0.0, image::Mode mode = image::Mode::off) {
     for (int i = 0; i < 200; ++i) {
@@ -82,6 +90,40 @@ class RecordedControl {
   std::unique_ptr<gateway::RunningMachine> running_;
   gateway::Resident resident_;
 };
+
+/// A scan that would come to its end, within its budget, after seconds.
+constexpr const char* kLongScan = R"(
+PROGRAM Main
+VAR i : DINT; x : LREAL := 0.5; END_VAR
+MC.estop_ok := estop_chain_ok;
+coolant := TIME() > T#200ms;
+IF TIME() > T#400ms THEN FOR i := 1 TO 200000000 DO x := SIN(COS(x)); END_FOR; END_IF;
+END_PROGRAM
+)";
+
+TEST(ResidentRecord, of_a_scan_that_was_ended_from_outside_replays_byte_by_byte) {
+  const Scratch scratch;
+  const std::string machine =
+      changed_mill(scratch, "\"mill.st\"]",
+                   "\"" + scratch.write("long.st", kLongScan) + "\"]\ninstruction_budget = 1000000000");
+  {
+    RecordedControl control(scratch, machine);
+    ASSERT_TRUE(
+        control.until([](const image::ProcessImage& i) { return i.now.t_ns > 700 * image::kMillisecond; }));
+    ASSERT_EQ(control.close(), "");
+    const image::AlarmRecord stopped = control.alarm(cycle::alarm::kPlcBudget);
+    EXPECT_EQ(stopped.line, 6);
+    EXPECT_EQ(stopped.reaction, image::Reaction::stop_and_power_off);
+    const image::AlarmRecord late = control.alarm(cycle::alarm::kPlcWatchdog);
+    EXPECT_EQ(late.cycle, stopped.cycle + 1);
+    EXPECT_EQ(late.limit, 500.0);
+    EXPECT_GE(late.value, late.limit);
+  }
+  const Ending replay =
+      servogate({"replay", scratch.path("record"), "--against", scratch.path("trace.csv"), "--json"});
+  EXPECT_EQ(replay.code, 0) << replay.err << replay.out;
+  EXPECT_NE(replay.out.find("\"first_difference\":0"), std::string::npos) << replay.out;
+}
 
 TEST(ResidentRecord, of_a_plc_that_was_held_for_single_scans_replays_byte_by_byte) {
   const Scratch scratch;
