@@ -2,6 +2,8 @@
 #include "plc/compile.hpp"
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 
 #include "plc/code/generator.hpp"
 #include "plc/front_end.hpp"
@@ -11,6 +13,7 @@
 #include "plc/plcopen/plcopen.hpp"
 #include "plc/sema/analyzer.hpp"
 #include "plc/syntax/parser.hpp"
+#include "plc/texts.hpp"
 
 namespace servogate::plc {
 
@@ -48,18 +51,25 @@ std::vector<std::string> file_names(const std::vector<SourceFile>& files) {
 }
 
 namespace {
+/// Where the lines of a text begin.
+std::vector<std::size_t> line_starts(std::string_view text) {
+  std::vector<std::size_t> out = {0};
+  for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
+    out.push_back(at + 1);
+  return out;
+}
+
 // Each finding gets the line that it speaks of.
 void show_sources(const std::vector<SourceFile>& files, std::vector<text::Finding>& findings) {
+  std::map<std::string_view, std::vector<std::size_t>> starts;
   for (text::Finding& f : findings) {
     const auto file =
         std::find_if(files.begin(), files.end(), [&](const SourceFile& s) { return s.name == f.file; });
     if (file == files.end()) continue;
-    std::size_t begin = 0;
-    for (int line = 1; line < f.line && begin != std::string::npos; ++line) {
-      begin = file->text.find('\n', begin);
-      if (begin != std::string::npos) ++begin;
-    }
-    if (begin == std::string::npos) continue;
+    auto& lines = starts[file->name];
+    if (lines.empty()) lines = line_starts(file->text);
+    if (f.line > std::ssize(lines)) continue;
+    const std::size_t begin = lines[static_cast<std::size_t>(std::max(f.line, 1)) - 1];
     f.source = file->text.substr(begin, file->text.find('\n', begin) - begin);
     while (!f.source.empty() && f.source.back() == '\r') f.source.pop_back();
   }
@@ -68,10 +78,14 @@ void show_sources(const std::vector<SourceFile>& files, std::vector<text::Findin
 
 CompileResult compile(std::vector<SourceFile> files, std::vector<image::Symbol> symbols,
                       const Options& options) {
-  syntax::Report report(file_names(files), options.warnings);
+  syntax::Report report(file_names(files), options.warnings, options.stop);
   CompileResult out;
-  if (auto program = analyze(files, symbols, options, report))
-    out.image = code::Generator(std::move(*program), options, report).run();
+  try {
+    if (auto program = analyze(files, symbols, options, report))
+      out.image = code::Generator(std::move(*program), options, report).run();
+  } catch (const syntax::Cancelled&) {
+    if (!report.failed()) report.error({}, texts::kCancelled);
+  }
   if (report.failed()) out.image = nullptr;
   out.findings = report.take();
   show_sources(files, out.findings);

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,12 @@ struct Options {
   bool warnings = true;
   /// Declarations without a PROGRAM are a library and no mistake; nothing runs.
   bool program_optional = false;
+  /// Instructions of all bodies together; more is the error `plc-code-size`, and compiling ends there. Each
+  /// takes 20 bytes, and another 10 or so while compiling.
+  std::size_t most_instructions = 4'000'000;
+  /// Whoever compiles beside something that must not wait asks here to stop, e.g. when a time is up:
+  /// compile() then returns soon, with the error `plc-compile-cancelled` and no image. Any thread may ask.
+  std::stop_token stop = {};
 };
 
 /// What came out. `findings` are in the order of file, line and column; `image` is null when any is an error.

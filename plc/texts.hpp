@@ -329,6 +329,18 @@ inline constexpr Entry kTaskShort{
 inline constexpr Entry kFastTask{"plc-task-range", "priority {0}; 0 to 65535 is possible",
                                  "приоритет {0}; возможны значения от 0 до 65535"};
 
+// The compilation itself.
+inline constexpr Entry kMoreErrors{"plc-more-errors", "{0} more errors: the first {1} are shown",
+                                   "ещё ошибок: {0}; показаны первые {1}"};
+inline constexpr Entry kMoreWarnings{"plc-more-warnings", "{0} more warnings: the first {1} are shown",
+                                     "ещё предупреждений: {0}; показаны первые {1}"};
+inline constexpr Entry kCancelled{
+    "plc-compile-cancelled", "compiling was ended before it was done: it took longer than is allowed here",
+    "трансляция прервана: она длилась дольше, чем здесь допустимо"};
+inline constexpr Entry kCodeSize{"plc-code-size",
+                                 "the program has more than {0} instructions, and this is where they end",
+                                 "в программе больше {0} команд, предел достигнут здесь"};
+
 // Running.
 inline constexpr Entry kFaultBudget{"plc-fault-budget", "task {0} exceeded its {1} instructions a scan here",
                                     "задача {0} превысила здесь {1} команд за цикл"};

@@ -68,21 +68,26 @@ Generator::Operand Generator::constant_integer(std::int64_t v, Cell cell) {
 }
 
 std::size_t Generator::emit(Code code, Operand a, Operand b, Operand c, std::uint16_t aux) {
+  report_.go_on();
+  if (here() >= options_.most_instructions) {
+    report_.error({static_cast<std::int16_t>(line_ >> 24), static_cast<int>(line_ & 0xFFFFFF), 1},
+                  texts::kCodeSize, {std::to_string(options_.most_instructions)});
+    throw syntax::Cancelled{};
+  }
   image_->code.push_back({static_cast<std::uint16_t>(static_cast<int>(code) * 2), aux, a, b, c});
   image_->lines.push_back(line_);
   return image_->code.size() - 1;
 }
 
 std::uint16_t Generator::bounds(std::int64_t low, std::int64_t high, std::uint32_t stride) {
-  const Image::Bounds b{low, high, stride};
   auto& all = image_->bounds;
-  const auto at = std::find(all.begin(), all.end(), b);
-  if (at != all.end()) return static_cast<std::uint16_t>(at - all.begin());
-  if (all.size() >= 65535)
+  const auto [at, fresh] = bounds_.try_emplace(
+      {low, high, stride}, static_cast<std::uint16_t>(std::min<std::size_t>(all.size(), 65534)));
+  if (fresh && all.size() >= 65535)
     report_.error({}, texts::kTooLarge, {"ARRAY", std::to_string(all.size()), "65535"});
-  else
-    all.push_back(b);
-  return static_cast<std::uint16_t>(all.size() - 1);
+  else if (fresh)
+    all.push_back({low, high, stride});
+  return at->second;
 }
 
 void Generator::callees(const ir::Place& p, std::vector<int>& out) {
@@ -127,7 +132,9 @@ void Generator::unit(int index) {
     out.depth = std::max(out.depth, units_[static_cast<std::size_t>(c)].depth + 1);
   }
   if (out.depth >= vm::kMaxCallDepth) {
-    report_.error(u.at, texts::kTooDeep, {std::to_string(vm::kMaxCallDepth)});
+    out.done = true;  // once, not for every way that leads here, nor for what calls it
+    if (out.depth == vm::kMaxCallDepth)
+      report_.error(u.at, texts::kTooDeep, {std::to_string(vm::kMaxCallDepth)});
     return;
   }
   current_ = index;
@@ -160,10 +167,10 @@ void Generator::resets(const ir::Unit& u) {
     for (++i; i < u.resets.size() && u.resets[i].offset <= (end + 7) / 8 * 8 && u.resets[i].offset >= end;
          ++i) {
       // The gap between is padding, or an input: only join over padding.
-      bool padding = true;
-      for (const Field& f : u.frame->fields)
-        padding = padding && !(f.offset >= end && f.offset < u.resets[i].offset);
-      if (!padding) break;
+      const auto& fields = u.frame->fields;
+      const auto next = std::lower_bound(fields.begin(), fields.end(), end,
+                                         [](const Field& f, std::uint32_t at) { return f.offset < at; });
+      if (next != fields.end() && next->offset < u.resets[i].offset) break;
       end = u.resets[i].offset + u.resets[i].size;
     }
     std::vector<std::uint8_t> bytes(end - from);

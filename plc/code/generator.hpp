@@ -2,6 +2,7 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "plc/compile.hpp"
@@ -120,6 +121,7 @@ class Generator {
   std::uint32_t top_ = 0, most_ = 0;      ///< temporaries of the current unit
   std::map<std::int64_t, Operand> kept_;  ///< where the values of let stand
   std::map<std::string, std::uint32_t> constants_;
+  std::map<std::tuple<std::int64_t, std::int64_t, std::uint32_t>, std::uint16_t> bounds_;
   std::vector<std::uint8_t> constant_memory_;
 };
 

@@ -2,6 +2,7 @@
 #include "plc/code/references.hpp"
 
 #include <algorithm>
+#include <map>
 #include <tuple>
 
 namespace servogate::plc::code {
@@ -26,12 +27,13 @@ class Walk {
   }
   void place(const ir::Place& p, const syntax::Location& at, bool write);
   bool root(const ir::Place& p, Reference& out, std::uint32_t& offset) const;
-  bool within(const ir::Global& owner, std::uint32_t address, Reference& out, std::uint32_t& offset) const;
 
   const ir::Program& program_;
   const Image& image_;
   std::vector<Reference> found_;
+  std::map<std::uint32_t, const ir::Global*> owners_;  ///< of the memory from an address on
   int unit_ = -1;
+  std::string unit_name_;  ///< of its only instance, where it is a program
 };
 
 /// Goes from a variable to the member at `offset`, as far as the way is the same in every scan.
@@ -49,10 +51,8 @@ void descend(Reference& out, std::uint32_t offset, const ir::Place& p) {
       continue;
     }
     if (t.kind != Kind::structure && t.kind != Kind::block) return;
-    const auto field = std::find_if(t.fields.begin(), t.fields.end(), [&](const Field& f) {
-      return offset >= f.offset && offset < f.offset + (f.reference ? 4 : f.type->size);
-    });
-    if (field == t.fields.end()) return;
+    const Field* field = t.field_at(offset);
+    if (field == nullptr) return;
     out.name += "." + field->name;
     out.cell += field->offset;
     offset -= field->offset;
@@ -60,18 +60,6 @@ void descend(Reference& out, std::uint32_t offset, const ir::Place& p) {
     out.bound = field->reference;
     if (out.bound) return;
   }
-}
-
-bool Walk::within(const ir::Global& owner, std::uint32_t address, Reference& out,
-                  std::uint32_t& offset) const {
-  if (owner.place >= 0 || address < owner.address || address >= owner.address + owner.type->size)
-    return false;
-  out.name = owner.name;
-  out.type = owner.type;
-  out.base = Reference::Base::fixed;
-  out.cell = owner.address;
-  offset = address - owner.address;
-  return true;
 }
 
 bool Walk::root(const ir::Place& p, Reference& out, std::uint32_t& offset) const {
@@ -84,17 +72,21 @@ bool Walk::root(const ir::Place& p, Reference& out, std::uint32_t& offset) const
     return true;
   }
   if (p.root == ir::Root::fixed) {
-    for (const ir::Global& g : program_.globals)
-      if (within(g, p.cell + p.offset, out, offset)) return true;
-    for (const ir::Global& g : program_.programs)
-      if (within(g, p.cell + p.offset, out, offset)) return true;
-    return false;
+    const std::uint32_t address = p.cell + p.offset;
+    const auto behind = owners_.upper_bound(address);
+    if (behind == owners_.begin()) return false;
+    const ir::Global& owner = *std::prev(behind)->second;
+    if (address - owner.address >= owner.type->size) return false;
+    out.name = owner.name;
+    out.type = owner.type;
+    out.base = Reference::Base::fixed;
+    out.cell = owner.address;
+    offset = address - owner.address;
+    return true;
   }
   if (p.root == ir::Root::pointer || p.pointer || unit_ < 0) return false;
   const ir::Unit& u = program_.units[static_cast<std::size_t>(unit_)];
-  out.name = u.name;
-  for (const ir::Global& g : program_.programs)
-    if (g.type == u.frame) out.name = g.name;
+  out.name = unit_name_;
   out.type = u.frame;
   out.base = Reference::Base::unit;
   out.cell = 0;
@@ -155,9 +147,17 @@ void Walk::statement(const ir::Stmt& s) {
 
 std::vector<Reference> Walk::run() {
   const int library = static_cast<int>(program_.files.size()) - 1;
+  for (const auto* list : {&program_.programs, &program_.globals})
+    for (const ir::Global& g : *list)
+      if (g.place < 0) owners_.emplace(g.address, &g);
+  std::map<const Type*, std::string> instances;
+  for (const ir::Global& g : program_.programs) instances[g.type] = g.name;
   for (std::size_t u = 0; u < program_.units.size(); ++u) {
-    if (program_.units[u].at.file >= library) continue;
+    const ir::Unit& unit = program_.units[u];
+    if (unit.at.file >= library) continue;
     unit_ = static_cast<int>(u);
+    const auto instance = instances.find(unit.frame);
+    unit_name_ = instance == instances.end() ? unit.name : instance->second;
     block(program_.units[u].body);
   }
   std::erase_if(found_, [&](const Reference& r) { return r.file >= library; });

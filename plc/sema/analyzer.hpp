@@ -36,6 +36,7 @@ struct Variable {
   std::vector<std::uint8_t> initial;
   bool used = false;
   bool written = false;
+  int edge = 0;  ///< R_EDGE 1, F_EDGE -1
   /// Bound to the caller's variable instead of copied.
   bool bound() const {
     return section == syntax::Section::in_out ||
@@ -93,7 +94,7 @@ class Analyzer {
   const Type* resolve_reference(const syntax::TypeReference& t);
   const Type* resolve_enumeration(const syntax::TypeReference& t, const std::string& name);
   const Type* resolve_subrange(const syntax::TypeReference& t, const Type* base, const std::string& name);
-  std::uint32_t append(Type& owner, Field field);
+  std::uint32_t append(Type& owner, Field field, const Location& at);
   void place_initial(std::vector<std::uint8_t>& image, std::uint32_t offset, const Type& type,
                      const std::vector<std::uint8_t>& bytes);
   void lay_out(int unit);
@@ -155,7 +156,7 @@ class Analyzer {
   std::optional<ir::Place> character_of(ir::Place base, const Expression& subscript);
   std::optional<ir::Place> place_of_symbol(const std::string& name, const Location& at, bool write);
   void note_write(Variable& v, bool global, const Location& at);
-  std::vector<std::string> names_in_scope() const;
+  std::vector<std::string> names_in_scope();
   ExprPtr enumeration_value(std::string_view name, const Location& at, const Type* hint);
 
   // expressions.cpp
@@ -228,7 +229,7 @@ class Analyzer {
   void repeat_references(std::size_t from, std::int64_t times, std::uint32_t stride);
   void keep_references(const Type* frame, std::uint32_t cell);
   void check_references();
-  const Type* gives_references(const Type& type) const;
+  const Type* gives_references(const Type& type, std::map<const Type*, const Type*>& known) const;
   void bind_references();
   void bind_references(const Type& type, std::uint32_t address);
   void bind_reference(const InitialReference& r, std::uint32_t base);
@@ -261,8 +262,9 @@ class Analyzer {
   void case_statement(const syntax::Statement& s, ir::Block& out);
   struct Chosen {
     Constant low, high;
-    int line;
+    Location at;
   };
+  void warn_chosen_twice(const std::vector<Chosen>& seen, const Type& type);
   void case_label(const syntax::Label& l, const Type& type, std::vector<Chosen>& seen);
   void for_statement(const syntax::Statement& s, ir::Block& out);
   void loop_statement(const syntax::Statement& s, ir::Block& out);
@@ -359,6 +361,7 @@ class Analyzer {
   std::set<std::string> direct_;              ///< addresses used without a declaration
   std::set<std::uint32_t> read_only_places_;  ///< declared AT %I
   std::set<std::string> unknown_;             ///< names reported in the current unit
+  std::size_t names_offered_ = 0;             ///< to suggestion(), in the whole compilation
   std::vector<const Variable*> for_variables_;
   std::vector<int> instances_;  ///< programs: number of instances a unit has
   int current_ = -1;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <set>
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
@@ -79,15 +80,20 @@ int Analyzer::function_named(const Expression& callee) {
 const Variable* Analyzer::match(const syntax::Argument& a, std::size_t position, int unit,
                                 bool with_outputs) {
   const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
-  const bool named = !a.name.empty();
-  std::size_t seen = 0;
-  for (const Variable& v : u.variables) {
-    const bool input = v.section == Section::input || v.section == Section::in_out;
-    const bool listed = !is_enable(v) && (input || (with_outputs && v.section == Section::output));
-    if (named ? same_name(v.name, a.name) && (a.output ? v.section == Section::output : input)
-              : listed && seen++ == position)
-      return &v;
+  const auto is_input = [](const Variable& v) {
+    return v.section == Section::input || v.section == Section::in_out;
+  };
+  if (!a.name.empty()) {
+    const auto at = u.by_name.find(key_of(a.name));
+    if (at == u.by_name.end()) return nullptr;
+    const Variable& v = u.variables[at->second];
+    return (a.output ? v.section == Section::output : is_input(v)) ? &v : nullptr;
   }
+  std::size_t seen = 0;
+  for (const Variable& v : u.variables)
+    if (!is_enable(v) && (is_input(v) || (with_outputs && v.section == Section::output)) &&
+        seen++ == position)
+      return &v;
   return nullptr;
 }
 
@@ -97,6 +103,7 @@ bool Analyzer::check_arguments(const Expression& e, int unit, std::vector<const 
   const UnitScope& u = scopes_[static_cast<std::size_t>(unit)];
   const std::size_t errors = report_.errors();
   std::size_t positional = 0, named = 0, inputs_known = 0, all_known = 0, position = 0;
+  std::set<const Variable*> given;
   for (const Variable& v : u.variables) {
     if (is_enable(v)) continue;
     const bool input = v.section == Section::input || v.section == Section::in_out;
@@ -121,8 +128,7 @@ bool Analyzer::check_arguments(const Expression& e, int unit, std::vector<const 
           a.location, texts::kNoParameter,
           {u.source->name, a.output ? "VAR_OUTPUT" : "VAR_INPUT", a.name, syntax::suggestion(a.name, names)});
     }
-    if (v != nullptr && std::find(matched.begin(), matched.end(), v) != matched.end())
-      report_.error(a.location, texts::kTwice, {v->name});
+    if (v != nullptr && !given.insert(v).second) report_.error(a.location, texts::kTwice, {v->name});
     matched.push_back(v);
   }
   if (positional > 0 && named > 0) report_.error(e.location, texts::kMixed);
@@ -131,8 +137,7 @@ bool Analyzer::check_arguments(const Expression& e, int unit, std::vector<const 
     report_.error(e.location, texts::kCount,
                   {u.source->name, std::to_string(inputs_known), std::to_string(positional)});
   for (const Variable& v : u.variables)
-    if (v.bound() && std::find(matched.begin(), matched.end(), &v) == matched.end() &&
-        report_.errors() == errors)
+    if (v.bound() && !given.contains(&v) && report_.errors() == errors)
       report_.error(e.location, v.section == Section::input ? texts::kInputMissing : texts::kInOutMissing,
                     {u.source->name, v.name});
   return report_.errors() == errors;
@@ -255,9 +260,9 @@ ExprPtr Analyzer::function_call(const Expression& e, int unit) {
     }
     out->parameters.push_back(std::move(p));
   }
+  const std::set<const Variable*> given(matched.begin(), matched.end());
   for (const Variable& v : u.variables) {  // inputs that are not given take their initial value
-    if (v.section != Section::input || v.bound() || v.type->kind == Kind::error ||
-        std::find(matched.begin(), matched.end(), &v) != matched.end())
+    if (v.section != Section::input || v.bound() || v.type->kind == Kind::error || given.contains(&v))
       continue;
     ir::Parameter p;
     p.offset = v.cell;

@@ -284,7 +284,7 @@ void Analyzer::initial_list(const Expression& e, const Type& type, std::vector<s
     if (e.kind == syntax::ExpressionKind::name) {  // a constant array
       bool global = false;
       const Variable* v = find_variable(e.name, global);
-      if (v != nullptr && v->constant && v->type == &type && !holds_reference(type)) {
+      if (v != nullptr && v->constant && v->type == &type && !type.holds_reference) {
         out = v->initial;
         return;
       }

@@ -227,23 +227,25 @@ const Type* Analyzer::resolve_open_array(const syntax::TypeReference& t, const T
 const Type* Analyzer::limits_type() {
   if (limits_type_ != nullptr) return limits_type_;
   Type* t = types_->add(Kind::structure, "$limits");
-  for (const char* name : {"low$", "high$", "stride$"}) append(*t, {name, elementary(Kind::lint)});
+  for (const char* name : {"low$", "high$", "stride$"}) append(*t, {name, elementary(Kind::lint)}, {});
   return limits_type_ = t;
 }
 
-std::uint32_t Analyzer::append(Type& owner, Field field) {
+std::uint32_t Analyzer::append(Type& owner, Field field, const Location& at) {
   const std::uint32_t align = field.reference ? 4 : std::max<std::uint32_t>(1, field.type->align);
   const std::uint32_t size = field.reference ? 4 : field.type->size;
   field.offset = aligned(owner.size, align);
   owner.size = field.offset + size;
   owner.align = std::max(owner.align, align);
   if (owner.size > kMaxBytes) {
-    report_.error({}, texts::kTooLarge, {owner.name, std::to_string(owner.size), std::to_string(kMaxBytes)});
-    owner.size = 0;
+    report_.error(at, texts::kTooLarge, {owner.name, std::to_string(owner.size), std::to_string(kMaxBytes)});
+    field.offset = 0;
+    owner.size = size;
+    owner.kind = Kind::error;  // whoever holds one of it is not the mistake
   }
   const std::uint32_t offset = field.offset;
   if (!field.reference) place_initial(owner.image, offset, *field.type, field.type->image);
-  owner.fields.push_back(std::move(field));
+  owner.add(std::move(field));
   return offset;
 }
 
@@ -297,7 +299,7 @@ const Type* Analyzer::resolve_structure(const syntax::TypeReference& t, const st
     }
     const Type* type = resolve(*m.type);
     if (!m.address.empty()) check_member_place(m, *type, taken);
-    const std::uint32_t offset = append(*s, {m.name, type, 0, false, false});
+    const std::uint32_t offset = append(*s, {m.name, type, 0, false, false}, m.location);
     if (m.initial && type->kind != Kind::error)
       place_initial(s->image, offset, *type, initial_bytes(*m.initial, *type));
   }
@@ -331,7 +333,7 @@ const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const 
       if (!value) report_.error(t.value_locations[i], texts::kNamedValue, {value_name, base->name});
       next = 0;
       if (given) store_constant(*base, *given, reinterpret_cast<std::uint8_t*>(&next));
-      e->values.push_back({value_name, next});
+      e->add(EnumValue{value_name, next});
       enumerations_[key_of(value_name)].push_back(e);
       continue;
     }
@@ -346,7 +348,7 @@ const Type* Analyzer::resolve_enumeration(const syntax::TypeReference& t, const 
     if (next < low || (next > 0 && static_cast<std::uint64_t>(next) > high))
       report_.error(t.value_locations[i], texts::kLiteralRange,
                     {std::to_string(next), base->name, std::to_string(low), std::to_string(high)});
-    e->values.push_back({value_name, next++});
+    e->add(EnumValue{value_name, next++});
     enumerations_[key_of(value_name)].push_back(e);
   }
   // The initial value of an enumeration is its first one (IEC 61131-3, 6.4.4.2).
@@ -416,6 +418,7 @@ void Analyzer::check_sections(const UnitScope& u, const syntax::Variable& v) {
 }
 
 void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
+  report_.go_on();
   const auto [at, fresh] = u.by_name.emplace(key_of(s.name), u.variables.size());
   if (!fresh) {
     report_.error(s.location, texts::kDuplicate, {s.name, seen_at(u.variables[at->second].at, s.location)});
@@ -428,11 +431,12 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
   v.section = s.section;
   v.constant = s.constant;
   v.retain = s.retain;
+  v.edge = s.edge;
   const bool function = u.source->kind == UnitKind::function;
   open_arrays_ = s.section == Section::in_out || (s.section == Section::input && function);
   v.type = s.type ? resolve(*s.type) : elementary(Kind::error);
   open_arrays_ = false;
-  if (v.retain && holds_reference(*v.type)) report_.error(s.location, texts::kReferenceRetain, {s.name});
+  if (v.retain && v.type->holds_reference) report_.error(s.location, texts::kReferenceRetain, {s.name});
   const bool alias = s.section == Section::external;
   if (alias) {
     const auto g = globals_by_name_.find(global_key(s.name));
@@ -462,10 +466,11 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
       const bool instance = s.section == Section::input && v.type->kind == Kind::block;
       const bool reference = s.section == Section::in_out || v.type->open || instance;
       v.root = reference ? ir::Root::reference : ir::Root::instance;
-      v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference, s.constant, false, s.non_retain});
+      v.cell = append(*u.frame, {s.name, v.type, 0, s.retain, reference, s.constant, false, s.non_retain},
+                      s.location);
       if (!reference) place_initial(u.frame->image, v.cell, *v.type, v.initial);
       keep_references(u.frame, v.cell);
-      if (v.type->open) append(*u.frame, {s.name + "$limits", limits_type(), 0, false, true});
+      if (v.type->open) append(*u.frame, {s.name + "$limits", limits_type(), 0, false, true}, s.location);
     }
   }
   if (v.constant && !s.initial && !alias)
@@ -482,7 +487,7 @@ void Analyzer::declare_edge(UnitScope& u, const syntax::Variable& s) {
   v.type = elementary(Kind::boolean);
   v.used = v.written = true;
   u.by_name[key_of(v.name)] = u.variables.size();
-  v.cell = append(*u.frame, {v.name, v.type, 0, false, false});
+  v.cell = append(*u.frame, {v.name, v.type, 0, false, false}, v.at);
   // As F_TRIG, an F_EDGE input that is FALSE at the first call has fallen (table 44).
   if (s.edge < 0) place_initial(u.frame->image, v.cell, *v.type, {1});
   u.variables.push_back(std::move(v));
@@ -523,7 +528,7 @@ void Analyzer::lay_out(int index) {
             {u.variables[at->second].name, seen_at(u.source->location, u.variables[at->second].at)});
         at->second = u.variables.size();
       }
-      r.cell = append(*u.frame, {r.name, r.type, 0, false, false});
+      r.cell = append(*u.frame, {r.name, r.type, 0, false, false}, r.at);
       u.variables.push_back(std::move(r));
     }
   }
@@ -545,6 +550,7 @@ void Analyzer::declare_globals(bool constants) {
   current_ = -1;
   for (syntax::Variable s : source_.globals) {
     if (s.constant != constants) continue;
+    report_.go_on();
     resource_ = s.resource;
     if (shared_names_.contains(key_of(s.name))) s.name = s.resource + "." + s.name;
     const auto [at, fresh] = globals_by_name_.emplace(key_of(s.name), globals_.size());
@@ -563,7 +569,7 @@ void Analyzer::declare_globals(bool constants) {
     v.retain = s.retain;
     v.root = ir::Root::fixed;
     v.type = resolve(*s.type);
-    if (v.retain && holds_reference(*v.type)) report_.error(s.location, texts::kReferenceRetain, {s.name});
+    if (v.retain && v.type->holds_reference) report_.error(s.location, texts::kReferenceRetain, {s.name});
     if (v.type->kind != Kind::error) {
       if (s.initial) v.initial = initial_bytes(s, *v.type, true);
       if (v.constant && is_elementary(v.type->kind) && s.initial) v.value = constant(*s.initial, v.type);

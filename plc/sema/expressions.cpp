@@ -40,6 +40,7 @@ ExprPtr Analyzer::native(Native n, const Type* type, const Location& at, std::ve
 }
 
 ExprPtr Analyzer::expression(const Expression& e, const Type* hint) {
+  report_.go_on();
   switch (e.kind) {
     case ExpressionKind::literal:
       return literal(e, hint);
@@ -468,7 +469,7 @@ ExprPtr Analyzer::assignable(ExprPtr e, const Type* to) {
         {e->kind == ExprKind::call ? program_.units[static_cast<std::size_t>(e->unit)].name : "()"});
     return bad(e->at);
   }
-  if (holds_instance(*to)) {
+  if (to->holds_instance) {
     report_.error(e->at, to->kind == Kind::block ? texts::kInstanceCopy : texts::kInstancesCopy, {to->name});
     return bad(e->at);
   }

@@ -27,7 +27,7 @@ bool Analyzer::declare_unlocated(UnitScope& u, Variable& v, const syntax::Variab
     return true;
   }
   v.root = ir::Root::reference;
-  v.cell = append(*u.frame, {s.name, v.type, 0, false, true, s.constant, true});
+  v.cell = append(*u.frame, {s.name, v.type, 0, false, true, s.constant, true}, s.location);
   return true;
 }
 
@@ -174,19 +174,10 @@ void Analyzer::locate(const syntax::PathDeclaration& p, const Reached& found) {
   c.place = static_cast<std::int32_t>(out.cell);
 }
 
-namespace {
-bool holds_location(const Type& type) {
-  if (type.kind == Kind::array) return holds_location(*type.base);
-  if (type.kind != Kind::structure && type.kind != Kind::block) return false;
-  return std::any_of(type.fields.begin(), type.fields.end(),
-                     [](const Field& f) { return f.located || (!f.reference && holds_location(*f.type)); });
-}
-}  // namespace
-
 // Instances that do not last (of functions, VAR_TEMP) cannot have a location.
 void Analyzer::find_missing(const std::string& name, const Type& type, std::uint32_t address, bool lasting,
                             Missing& out) {
-  if (!holds_location(type)) return;
+  if (!type.holds_location) return;
   if (type.kind == Kind::array) {
     for (std::int64_t i = type.range.low; i <= type.range.high; ++i)
       find_missing(name + "[" + std::to_string(i) + "]", *type.base,

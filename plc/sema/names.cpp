@@ -41,8 +41,12 @@ bool Analyzer::dotted_symbol(const Expression& e, std::string& name) const {
   return true;
 }
 
-std::vector<std::string> Analyzer::names_in_scope() const {
+// A suggestion is a courtesy: with very many names not every mistake gets one.
+std::vector<std::string> Analyzer::names_in_scope() {
   std::vector<std::string> out;
+  constexpr std::size_t kMostNames = 2'000'000;
+  names_offered_ += globals_.size() + symbols_.size() + (current_ >= 0 ? here().variables.size() : 0);
+  if (report_.full() || names_offered_ > kMostNames) return out;
   if (current_ >= 0)
     for (const Variable& v : scopes_[static_cast<std::size_t>(current_)].variables) out.push_back(v.name);
   for (const Variable& v : globals_) out.push_back(v.name);

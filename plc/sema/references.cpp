@@ -148,23 +148,26 @@ void Analyzer::keep_references(const Type* frame, std::uint32_t cell) {
 }
 
 // The block below `type` that takes references to variables of its own, nullptr: none does.
-const Type* Analyzer::gives_references(const Type& type) const {
-  if (type.kind == Kind::array) return gives_references(*type.base);
-  if (type.kind != Kind::structure && type.kind != Kind::block) return nullptr;
+const Type* Analyzer::gives_references(const Type& type, std::map<const Type*, const Type*>& known) const {
+  if (type.kind == Kind::array) return gives_references(*type.base, known);
+  if (!type.holds_instance) return nullptr;
   if (type.kind == Kind::block && referenced_units_.contains(type.block)) return &type;
+  if (const auto at = known.find(&type); at != known.end()) return at->second;
+  const Type* inside = nullptr;
   for (const Field& f : type.fields)
-    if (const Type* inside = f.reference ? nullptr : gives_references(*f.type)) return inside;
-  return nullptr;
+    if (inside == nullptr && !f.reference) inside = gives_references(*f.type, known);
+  return known[&type] = inside;
 }
 
 // After all bodies: an instance that does not last holds no variable that somebody may have a reference to.
 void Analyzer::check_references() {
   if (referenced_units_.empty()) return;
+  std::map<const Type*, const Type*> known;
   for (const UnitScope& u : scopes_)
     for (const Variable& v : u.variables) {
       const bool function = u.source->kind == UnitKind::function;
       if ((!function && v.section != Section::temp) || v.root != ir::Root::instance) continue;
-      if (const Type* block = gives_references(*v.type))
+      if (const Type* block = gives_references(*v.type, known))
         report_.error(v.at, texts::kReferenceInstance,
                       {v.name, function ? "FUNCTION" : "VAR_TEMP", block->name});
     }
@@ -195,7 +198,7 @@ void Analyzer::bind_reference(const InitialReference& r, std::uint32_t base) {
 }
 
 void Analyzer::bind_references(const Type& type, std::uint32_t address) {
-  if (!holds_instance(type)) return;
+  if (!type.holds_instance) return;
   if (type.kind == Kind::array) {
     for (std::int64_t i = 0; i < type.range.count(); ++i)
       bind_references(*type.base, address + static_cast<std::uint32_t>(i) * type.base->size);

@@ -36,9 +36,7 @@ void Analyzer::body(int unit) {
     const auto last = u.by_name.find(key_of(v.name + "$last"));
     if (last == u.by_name.end()) continue;
     const Variable& before = u.variables[last->second];
-    int edge = 1;
-    for (const syntax::Variable& s : u.source->variables)
-      if (same_name(s.name, v.name)) edge = s.edge;
+    const int edge = v.edge;
     ir::Place now, then;
     now.root = then.root = ir::Root::instance;
     now.type = then.type = elementary(Kind::boolean);
@@ -81,6 +79,7 @@ ir::Block Analyzer::block(const syntax::Block& b) {
 }
 
 void Analyzer::statement(const syntax::Statement& s, ir::Block& out) {
+  report_.go_on();
   if (drawn_call(s, out) || guarded(s, out)) return;
   switch (s.kind) {
     case StatementKind::assign:
@@ -337,31 +336,94 @@ void Analyzer::case_statement(const syntax::Statement& s, ir::Block& out) {
       branch.condition = make_constant(elementary(Kind::boolean), {}, s.location);
     stmt.branches.push_back(std::move(branch));
   }
+  if (good) warn_chosen_twice(seen, *type);
   stmt.body = block(s.body);
   if (good) out.push_back(std::move(stmt));
 }
+
+namespace {
+bool before(const Type& type, const Constant& a, const Constant& b) {
+  const Cell cell = cell_of(type);
+  return is_text(type.kind)  ? a.s < b.s || a.w < b.w
+         : cell >= Cell::f32 ? a.r < b.r
+         : cell == Cell::u64 ? static_cast<std::uint64_t>(a.i) < static_cast<std::uint64_t>(b.i)
+                             : a.i < b.i;
+}
+}  // namespace
 
 // One label or range of a CASE; of several that hold a value the first counts.
 void Analyzer::case_label(const syntax::Label& l, const Type& type, std::vector<Chosen>& seen) {
   const auto low = constant(*l.low, &type), high = l.high ? constant(*l.high, &type) : low;
   if (!low || !high) return;
-  const bool huge = cell_of(type) == Cell::u64;
-  const auto less = [&](const Constant& a, const Constant& b) {
-    return is_text(type.kind)           ? a.s < b.s || a.w < b.w
-           : cell_of(type) >= Cell::f32 ? a.r < b.r
-           : huge                       ? static_cast<std::uint64_t>(a.i) < static_cast<std::uint64_t>(b.i)
-                                        : a.i < b.i;
-  };
-  if (less(*high, *low)) {
+  if (before(type, *high, *low)) {
     report_.error(l.low->location, texts::kEmptyRange,
                   {constant_text(type, *low), constant_text(type, *high)});
     return;
   }
-  for (const Chosen& x : seen)
-    if (!less(x.high, *low) && !less(*high, x.low))
-      report_.warning(l.low->location, texts::kCaseTwice,
-                      {constant_text(type, less(*low, x.low) ? x.low : *low), std::to_string(x.line)});
-  seen.push_back({*low, *high, l.low->location.line});
+  seen.push_back({*low, *high, l.low->location});
+}
+
+namespace {
+/// Which of several labels was the first to hold a value: a tree over the values that labels begin or end
+/// with, in which a range is taken, and asked for, in as many steps as its number has digits.
+class FirstTaken {
+ public:
+  static constexpr std::size_t kNobody = std::numeric_limits<std::size_t>::max();
+  explicit FirstTaken(std::size_t values)
+      : first_(4 * std::max<std::size_t>(values, 1), kNobody), whole_(first_) {}
+
+  /// The first label that holds one of the values low to high; from now on `label` does, where nobody did.
+  std::size_t take(std::size_t low, std::size_t high, std::size_t label) {
+    return take(1, 0, first_.size() / 4 - 1, low, high, label);
+  }
+
+ private:
+  std::size_t take(std::size_t node, std::size_t begin, std::size_t end, std::size_t low, std::size_t high,
+                   std::size_t label) {
+    if (high < begin || end < low) return kNobody;
+    const std::size_t above = whole_[node];
+    std::size_t found = kNobody;
+    if (low <= begin && end <= high) {
+      found = first_[node];
+      whole_[node] = std::min(whole_[node], label);
+    } else {
+      const std::size_t middle = begin + (end - begin) / 2;
+      found = std::min(take(2 * node, begin, middle, low, high, label),
+                       take(2 * node + 1, middle + 1, end, low, high, label));
+    }
+    first_[node] = std::min(first_[node], label);
+    return std::min(found, above);
+  }
+
+  std::vector<std::size_t> first_;  ///< by node: of any value below it
+  std::vector<std::size_t> whole_;  ///< of every value below it
+};
+}  // namespace
+
+// A value that an earlier label has is never chosen here.
+void Analyzer::warn_chosen_twice(const std::vector<Chosen>& seen, const Type& type) {
+  const auto less = [&type](const Constant& a, const Constant& b) { return before(type, a, b); };
+  std::vector<const Constant*> values;
+  for (const Chosen& x : seen) values.insert(values.end(), {&x.low, &x.high});
+  std::sort(values.begin(), values.end(), [&](const auto* a, const auto* b) { return less(*a, *b); });
+  values.erase(
+      std::unique(values.begin(), values.end(), [&](const auto* a, const auto* b) { return !less(*a, *b); }),
+      values.end());
+  const auto index = [&](const Constant& c) {
+    return static_cast<std::size_t>(
+        std::lower_bound(values.begin(), values.end(), &c,
+                         [&](const auto* a, const auto* b) { return less(*a, *b); }) -
+        values.begin());
+  };
+  FirstTaken taken(values.size());
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Chosen& now = seen[i];
+    const std::size_t other = taken.take(index(now.low), index(now.high), i);
+    if (other == FirstTaken::kNobody) continue;
+    const Chosen& x = seen[other];
+    report_.warning(now.at, texts::kCaseTwice,
+                    {constant_text(type, less(now.low, x.low) ? x.low : now.low), std::to_string(x.at.line)});
+  }
 }
 
 void Analyzer::for_statement(const syntax::Statement& s, ir::Block& out) {

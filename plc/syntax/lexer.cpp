@@ -36,6 +36,7 @@ class Lexer {
   std::vector<Token> run() {
     std::vector<Token> out;
     while (skip_blank()) {
+      report_.go_on();
       const std::size_t errors = report_.errors();
       out.push_back(next());
       out.back().wrong = report_.errors() - errors;

@@ -66,6 +66,7 @@ bool Parser::too_deep() {
 }
 
 StatementPtr Parser::statement() {
+  report_.go_on();
   const Nesting nesting(*this);
   const Location begin = now().location;
   if (accept(";") || skip_unsupported()) return make_statement(StatementKind::empty, begin);

@@ -4,13 +4,19 @@
 #include <algorithm>
 #include <tuple>
 
+#include "plc/texts.hpp"
+
 namespace servogate::plc::syntax {
 
 void Report::add(text::Severity s, const Location& at, const text::Entry& entry,
                  std::vector<std::string> arguments) {
-  for (const Item& i : items_)
-    if (i.finding.severity == s && i.at.file == at.file && i.at.line == at.line && i.at.column == at.column)
-      return;
+  if (!places_.emplace(s, at.file, at.line, at.column).second) return;
+  const std::size_t kind = s == text::Severity::error ? 0 : 1;
+  if (kept_[kind] >= kMost) {
+    ++left_out_[kind];
+    return;
+  }
+  ++kept_[kind];
   Item item;
   item.at = at;
   item.finding.severity = s;
@@ -25,8 +31,7 @@ void Report::add(text::Severity s, const Location& at, const text::Entry& entry,
 
 void Report::error(const Location& at, const text::Entry& entry, std::vector<std::string> arguments) {
   ++errors_;
-  constexpr std::size_t kEnough = 200;
-  if (errors_ <= kEnough) add(text::Severity::error, at, entry, std::move(arguments));
+  add(text::Severity::error, at, entry, std::move(arguments));
 }
 
 void Report::warning(const Location& at, const text::Entry& entry, std::vector<std::string> arguments) {
@@ -40,6 +45,15 @@ std::vector<text::Finding> Report::take() {
   std::vector<text::Finding> out;
   for (Item& i : items_) out.push_back(std::move(i.finding));
   items_.clear();
+  const text::Entry* const more[] = {&texts::kMoreErrors, &texts::kMoreWarnings};
+  for (const std::size_t kind : {0, 1}) {
+    if (left_out_[kind] == 0) continue;
+    text::Finding f;
+    f.severity = kind == 0 ? text::Severity::error : text::Severity::warning;
+    f.entry = more[kind];
+    f.arguments = {std::to_string(left_out_[kind]), std::to_string(kMost)};
+    out.push_back(std::move(f));
+  }
   return out;
 }
 
@@ -66,7 +80,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
   std::size_t best = std::min<std::size_t>(key.size(), key.size() < 4 ? 2 : key.size() < 8 ? 3 : 4);
   const std::string* found = nullptr;
   for (const std::string& c : candidates) {
-    if (c.size() > 64) continue;
+    if (c.size() > 64 || c.size() + best <= key.size() || key.size() + best <= c.size()) continue;
     const std::size_t d = distance(key, key_of(c));
     if (d < best) best = d, found = &c;
   }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <set>
+#include <stop_token>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "firmware_if/text/finding.hpp"
@@ -8,17 +11,31 @@
 
 namespace servogate::plc::syntax {
 
-/// Collects findings. At one place only the first error is kept, so that one mistake is one message.
+/// Thrown where compiling is to end before its end (Options::stop, a limit that was reported); compile()
+/// catches it.
+struct Cancelled {};
+
+/// Collects findings. At one place only the first error is kept, so that one mistake is one message; of each
+/// severity the first kMost, and how many more there were.
 class Report {
  public:
-  explicit Report(std::vector<std::string> file_names, bool warnings = true)
-      : files_(std::move(file_names)), warnings_(warnings) {}
+  static constexpr std::size_t kMost = 200;
+
+  explicit Report(std::vector<std::string> file_names, bool warnings = true, std::stop_token stop = {})
+      : files_(std::move(file_names)), warnings_(warnings), stop_(std::move(stop)) {}
+
+  /// To be called in everything that a long source repeats: throws Cancelled once somebody has asked to stop.
+  void go_on() const {
+    if (stop_.stop_requested()) throw Cancelled{};
+  }
 
   void error(const Location& at, const text::Entry& entry, std::vector<std::string> arguments = {});
   void warning(const Location& at, const text::Entry& entry, std::vector<std::string> arguments = {});
   bool failed() const noexcept { return errors_ > 0; }
   std::size_t errors() const noexcept { return errors_; }
-  /// The findings in the order of file, line and column.
+  /// More errors are only counted: what would go into their sentences need not be looked for.
+  bool full() const noexcept { return kept_[0] >= kMost; }
+  /// The findings in the order of file, line and column; behind them, without a place, what was left out.
   std::vector<text::Finding> take();
   /// After syntax errors: a variable may only seem unused.
   void no_warnings() { warnings_ = false; }
@@ -36,8 +53,11 @@ class Report {
   std::vector<std::string> files_;
   bool warnings_;
   int hidden_ = -1;
+  std::stop_token stop_;
   std::size_t errors_ = 0;
+  std::size_t kept_[2] = {}, left_out_[2] = {};  ///< errors, warnings
   std::vector<Item> items_;
+  std::set<std::tuple<text::Severity, int, int, int>> places_;
 };
 
 /// ", did you mean 'x'?" for the candidate nearest to a name, or nothing. Used in English and Russian alike

@@ -110,15 +110,36 @@ bool same_name(std::string_view a, std::string_view b) {
 }
 
 const Field* Type::field(std::string_view key) const {
-  for (const Field& f : fields)
-    if (same_name(f.name, key)) return &f;
-  return nullptr;
+  const auto at = fields.empty() ? by_key_.end() : by_key_.find(key_of(key));
+  return at == by_key_.end() ? nullptr : &fields[at->second];
 }
 
 const EnumValue* Type::value_named(std::string_view key) const {
-  for (const EnumValue& v : values)
-    if (same_name(v.name, key)) return &v;
-  return nullptr;
+  const auto at = values.empty() ? by_key_.end() : by_key_.find(key_of(key));
+  return at == by_key_.end() ? nullptr : &values[at->second];
+}
+
+const Field* Type::field_at(std::uint32_t offset) const noexcept {
+  const auto after = std::upper_bound(fields.begin(), fields.end(), offset,
+                                      [](std::uint32_t o, const Field& f) { return o < f.offset; });
+  if (after == fields.begin()) return nullptr;
+  const Field& f = *std::prev(after);
+  return offset - f.offset < (f.reference ? 4 : f.type->size) ? &f : nullptr;
+}
+
+void Type::add(Field field) {
+  by_key_.emplace(key_of(field.name), fields.size());
+  if (kind == Kind::structure) {
+    holds_reference = holds_reference || field.type->holds_reference;
+    holds_instance = holds_instance || field.type->holds_instance;
+  }
+  holds_location = holds_location || field.located || (!field.reference && field.type->holds_location);
+  fields.push_back(std::move(field));
+}
+
+void Type::add(EnumValue value) {
+  by_key_.emplace(key_of(value.name), values.size());
+  values.push_back(std::move(value));
 }
 
 bool is_signed(Kind k) noexcept { return k >= Kind::sint && k <= Kind::lint; }
@@ -223,20 +244,6 @@ bool range_fits(const Type& from, const Type& to) noexcept {
   return !t->bounded || (f->bounded && f->limits.low >= t->limits.low && f->limits.high <= t->limits.high);
 }
 
-bool holds_reference(const Type& type) noexcept {
-  if (type.kind == Kind::array) return holds_reference(*type.base);
-  if (type.kind != Kind::structure) return type.kind == Kind::reference;
-  return std::any_of(type.fields.begin(), type.fields.end(),
-                     [](const Field& f) { return holds_reference(*f.type); });
-}
-
-bool holds_instance(const Type& type) noexcept {
-  if (type.kind == Kind::array) return holds_instance(*type.base);
-  if (type.kind != Kind::structure) return type.kind == Kind::block;
-  return std::any_of(type.fields.begin(), type.fields.end(),
-                     [](const Field& f) { return holds_instance(*f.type); });
-}
-
 bool takes_output(const Type& actual, const Type& formal) noexcept {
   const Type *a = &actual, *f = &formal;
   if (a->kind == Kind::error || f->kind == Kind::error) return true;
@@ -267,21 +274,19 @@ TypeTable::TypeTable() {
 }
 
 const Type* TypeTable::string(std::uint32_t capacity, Kind kind) {
-  for (const Type& t : all_)
-    if (t.kind == kind && t.size == text_size(kind, capacity)) return &t;
+  const Type*& known = strings_[{kind, capacity}];
+  if (known != nullptr) return known;
   const std::string name = kind == Kind::wide_string ? "WSTRING" : "STRING";
   const bool plain = capacity == kDefaultStringCapacity;
   Type* t = add(kind, plain ? name : name + "[" + std::to_string(capacity) + "]");
   t->size = text_size(kind, capacity);
   t->align = kind == Kind::wide_string ? 2 : 1;
-  return t;
+  return known = t;
 }
 
 const Type* TypeTable::array(const Type* element, Dimension range) {
-  for (const Type& t : all_)
-    if (t.kind == Kind::array && !t.open && t.base == element && t.range.low == range.low &&
-        t.range.high == range.high)
-      return &t;
+  const Type*& known = arrays_[{element, range.low, range.high}];
+  if (known != nullptr) return known;
   Type* t = add(Kind::array, "ARRAY[" + std::to_string(range.low) + ".." + std::to_string(range.high) +
                                  "] OF " + element->name);
   t->base = element;
@@ -291,32 +296,40 @@ const Type* TypeTable::array(const Type* element, Dimension range) {
   if (!element->image.empty())
     for (std::int64_t i = 0; i < range.count(); ++i)
       t->image.insert(t->image.end(), element->image.begin(), element->image.end());
-  return t;
+  t->holds_reference = element->holds_reference;
+  t->holds_instance = element->holds_instance;
+  t->holds_location = element->holds_location;
+  return known = t;
 }
 
 const Type* TypeTable::open_array(const Type* element) {
-  for (const Type& t : all_)
-    if (t.open && t.base == element) return &t;
+  const Type*& known = open_arrays_[element];
+  if (known != nullptr) return known;
   Type* t = add(Kind::array, "ARRAY[*] OF " + element->name);
   t->open = true;
   t->base = element;
   t->range = {0, -1};
-  return t;
+  t->holds_reference = element->holds_reference;
+  t->holds_instance = element->holds_instance;
+  t->holds_location = element->holds_location;
+  return known = t;
 }
 
 const Type* TypeTable::reference(const Type* target) {
-  for (const Type& t : all_)
-    if (t.kind == Kind::reference && t.base == target) return &t;
+  const Type*& known = references_[target];
+  if (known != nullptr) return known;
   Type* t = add(Kind::reference, target == nullptr ? "NULL" : "REF_TO " + target->name);
   t->base = target;
   t->size = t->align = 4;
-  return t;
+  return known = t;
 }
 
 Type* TypeTable::add(Kind k, std::string name) {
   Type& t = all_.emplace_back();
   t.kind = k;
   t.name = std::move(name);
+  t.holds_reference = k == Kind::reference;
+  t.holds_instance = k == Kind::block;
   return &t;
 }
 

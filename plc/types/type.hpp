@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <unordered_map>
 #include <vector>
 
 namespace servogate::plc {
@@ -88,7 +90,7 @@ struct Type {
   const Type* base = nullptr;
   Dimension range;            ///< of an array (several dimensions are arrays of arrays)
   bool open = false;          ///< ARRAY[*]: the limits come with the actual array, `range` is empty
-  std::vector<Field> fields;  ///< of a structure or function block
+  std::vector<Field> fields;  ///< of a structure or function block, by rising offset; add() keeps them
   std::vector<EnumValue> values;
   std::int32_t block = -1;          ///< function block: index of its body
   std::vector<std::uint8_t> image;  ///< initial value; empty: all zero
@@ -97,6 +99,19 @@ struct Type {
   std::uint32_t capacity() const noexcept { return kind == Kind::wide_string ? size / 2 - 1 : size - 1; }
   const Field* field(std::string_view key) const;
   const EnumValue* value_named(std::string_view key) const;
+  /// The member in which a byte lies, nullptr: none.
+  const Field* field_at(std::uint32_t offset) const noexcept;
+  void add(Field field);
+  void add(EnumValue value);
+
+  // Known when the type is made, so that nobody walks through types that hold types that hold types.
+  bool holds_reference =
+      false;  ///< it is one, or an element or member is; what is inside of blocks does not count
+  bool holds_instance = false;  ///< it is a function block, or an element or member is
+  bool holds_location = false;  ///< a variable AT %Q* is in it, or in a block in it
+
+ private:
+  std::unordered_map<std::string, std::size_t> by_key_;  ///< of fields or values
 };
 
 /// Names are matched without case: this is the form they are stored under.
@@ -133,10 +148,6 @@ bool binds(const Type& actual, const Type& formal) noexcept;
 bool takes_output(const Type& actual, const Type& formal) noexcept;
 /// Every value of `from` is one of `to` as far as subranges go; of arrays those of the elements.
 bool range_fits(const Type& from, const Type& to) noexcept;
-/// It is a reference, or an element or member of it is one; what is inside of function blocks does not count.
-bool holds_reference(const Type& type) noexcept;
-/// It is a function block, or an element or member of it is one.
-bool holds_instance(const Type& type) noexcept;
 
 /// All types of a compilation.
 class TypeTable {
@@ -165,6 +176,9 @@ class TypeTable {
  private:
   std::deque<Type> all_;
   std::map<std::string, const Type*> named_;
+  std::map<std::pair<Kind, std::uint32_t>, const Type*> strings_;
+  std::map<std::tuple<const Type*, std::int64_t, std::int64_t>, const Type*> arrays_;
+  std::map<const Type*, const Type*> open_arrays_, references_;
   const Type* by_kind_[static_cast<std::size_t>(Kind::untyped_real) + 1] = {};
 };
 
