@@ -17,12 +17,26 @@
 
 namespace servogate::plc {
 
+namespace {
+// By its mark, or because every other byte of its first characters is 0.
+bool is_utf16(std::string_view text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") ||
+         (text.size() >= 2 && (text[0] == '\0') != (text[1] == '\0'));
+}
+// Lines of old systems end with CR alone.
+void end_lines(std::string& text) {
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+}
+}  // namespace
+
 std::optional<ir::Program> analyze(const std::vector<SourceFile>& files,
                                    const std::vector<image::Symbol>& symbols, const Options& options,
                                    syntax::Report& report) {
   syntax::Source source;
   for (std::size_t i = 0; i < files.size(); ++i)
-    if (plcopen::is_xml(files[i].text))
+    if (is_utf16(files[i].text))
+      report.error({static_cast<std::int16_t>(i), 1, 1}, texts::kUtf16);
+    else if (plcopen::is_xml(files[i].text))
       plcopen::parse(files[i].text, static_cast<int>(i), source, report);
     else
       syntax::parse_st(files[i].text, static_cast<int>(i), source, report);
@@ -78,6 +92,7 @@ void show_sources(const std::vector<SourceFile>& files, std::vector<text::Findin
 
 CompileResult compile(std::vector<SourceFile> files, std::vector<image::Symbol> symbols,
                       const Options& options) {
+  for (SourceFile& f : files) end_lines(f.text);
   syntax::Report report(file_names(files), options.warnings, options.stop);
   CompileResult out;
   try {

@@ -17,8 +17,10 @@ namespace {
 
 struct Set {
   std::int64_t cycle;
-  Handle handle;
+  std::optional<Handle> handle;  ///< none: `value` stands at `place` before the scan
   std::string value;
+  image::Place place;
+  std::string name;
 };
 struct Print {
   std::string name;
@@ -35,35 +37,6 @@ void refuse(RunResult& out, const text::Entry& entry, std::vector<std::string> a
   out.end = RunResult::End::wrong_use;
 }
 
-void refuse_value(RunResult& out, const RunSet& set, const Handle& handle, const Engine& engine) {
-  const std::size_t at = set.value.rfind('@');
-  std::vector<std::uint8_t> probe(std::max<std::size_t>(handle.type->size, 8));
-  if (at != std::string::npos && parse_value(*handle.type, set.value.substr(0, at), probe.data()))
-    refuse(out, texts::kRunCycleNumber, {set.value.substr(at + 1)});
-  else
-    refuse(out, texts::kRunValue, {set.value, set.name, engine.type_name(handle)});
-}
-
-std::vector<Set> resolve_sets(const RunRequest& r, const Engine& engine, RunResult& out) {
-  std::vector<Set> sets;
-  for (const RunSet& s : r.sets) {
-    const auto h = engine.find(s.name);
-    if (!h) {
-      refuse(out, texts::kRunName, {s.name});
-      continue;
-    }
-    std::vector<std::uint8_t> probe(std::max<std::size_t>(h->type->size, 8));
-    if (!parse_value(*h->type, s.value, probe.data()))
-      refuse_value(out, s, *h, engine);
-    else if (s.cycle < 1 || s.cycle > r.cycles)
-      refuse(out, texts::kRunCycle, {std::to_string(s.cycle), std::to_string(r.cycles)});
-    else
-      sets.push_back({s.cycle, *h, s.value});
-  }
-  std::stable_sort(sets.begin(), sets.end(), [](const Set& a, const Set& b) { return a.cycle < b.cycle; });
-  return sets;
-}
-
 // A place that the program does not use: a symbol of the machine or an address.
 std::optional<image::Place> place_of(const RunRequest& r, const image::Packets& packets,
                                      const std::string& name) {
@@ -72,6 +45,64 @@ std::optional<image::Place> place_of(const RunRequest& r, const image::Packets& 
     if (!place && same_name(s.name, name)) place = s.place;
   if (!place) place = image::parse_place(name);
   return place && packets.contains(*place) ? place : std::nullopt;
+}
+
+// An address (%MW5) is a bit string, any other name of a place the number or characters there.
+const Type& type_at(const TypeTable& types, const image::Place& place, const std::string& name) {
+  constexpr Kind kBits[] = {Kind::boolean, Kind::byte, Kind::word, Kind::dword, Kind::dword, Kind::lword};
+  constexpr Kind kNumbers[] = {Kind::boolean, Kind::usint, Kind::int_, Kind::dint, Kind::real, Kind::lreal};
+  if (place.format == image::Format::ch) return *types.elementary(Kind::string);
+  const Kind* kinds = name.starts_with('%') ? kBits : kNumbers;
+  return *types.elementary(kinds[static_cast<std::size_t>(place.format)]);
+}
+
+void refuse_value(RunResult& out, const RunSet& set, const Type& type) {
+  const std::size_t at = set.value.rfind('@');
+  std::vector<std::uint8_t> probe(std::max<std::size_t>(type.size, 8));
+  if (at != std::string::npos && parse_value(type, set.value.substr(0, at), probe.data()))
+    refuse(out, texts::kRunCycleNumber, {set.value.substr(at + 1)});
+  else
+    refuse(out, texts::kRunValue, {set.value, set.name, type.name});
+}
+
+std::vector<Set> resolve_sets(const RunRequest& r, const Engine& engine, const image::Packets& packets,
+                              RunResult& out) {
+  std::vector<Set> sets;
+  for (const RunSet& s : r.sets) {
+    const auto h = engine.find(s.name);
+    const auto place = h ? std::nullopt : place_of(r, packets, s.name);
+    if (!h && !place) {
+      refuse(out, texts::kRunName, {s.name});
+      continue;
+    }
+    const Type& type = h ? *h->type : type_at(*engine.image().types, *place, s.name);
+    std::vector<std::uint8_t> probe(std::max<std::size_t>(type.size, 8));
+    if (!parse_value(type, s.value, probe.data()))
+      refuse_value(out, s, type);
+    else if (s.cycle < 1 || s.cycle > r.cycles)
+      refuse(out, texts::kRunCycle, {std::to_string(s.cycle), std::to_string(r.cycles)});
+    else
+      sets.push_back({s.cycle, h, s.value, place.value_or(image::Place{}), s.name});
+  }
+  std::stable_sort(sets.begin(), sets.end(), [](const Set& a, const Set& b) { return a.cycle < b.cycle; });
+  return sets;
+}
+
+void carry_out(const Set& set, Engine& engine, image::Packets& packets) {
+  if (set.handle) {
+    engine.write(packets, *set.handle, set.value);
+    return;
+  }
+  const image::Place& place = set.place;
+  const Type& type = type_at(*engine.image().types, place, set.name);
+  std::vector<std::uint8_t> value(std::max<std::size_t>(type.size, 8));
+  parse_value(type, set.value, value.data());
+  if (place.format == image::Format::bl)
+    packets.set_bit(place, value[0] != 0);
+  else if (place.format == image::Format::ch)
+    packets.set_characters(place, {reinterpret_cast<const char*>(value.data()) + 1, value[0]});
+  else
+    std::copy_n(value.data(), place.bytes(), packets.data(place.packet) + place.byte());
 }
 
 std::vector<Print> resolve_prints(const RunRequest& r, const Engine& engine, const image::Packets& packets,
@@ -88,7 +119,6 @@ std::vector<Print> resolve_prints(const RunRequest& r, const Engine& engine, con
   return prints;
 }
 
-// An address (%MW5) is a bit string, any other name of a place the number or characters there.
 std::string place_text(const TypeTable& types, const image::Packets& packets, const Print& p) {
   const image::Place& place = p.place;
   if (place.format == image::Format::bl) return packets.bit(place) ? "true" : "false";
@@ -99,10 +129,7 @@ std::string place_text(const TypeTable& types, const image::Packets& packets, co
     text[0] = static_cast<std::uint8_t>(std::find(text.begin() + 1, text.end(), 0) - text.begin() - 1);
     return to_json(*types.elementary(Kind::string), text.data());
   }
-  constexpr Kind kBits[] = {Kind::boolean, Kind::byte, Kind::word, Kind::dword, Kind::dword, Kind::lword};
-  constexpr Kind kNumbers[] = {Kind::boolean, Kind::usint, Kind::int_, Kind::dint, Kind::real, Kind::lreal};
-  const Kind* kinds = p.name.starts_with('%') ? kBits : kNumbers;
-  return to_json(*types.elementary(kinds[static_cast<std::size_t>(place.format)]), at);
+  return to_json(type_at(types, place, p.name), at);
 }
 
 std::string escaped(std::string_view s) {
@@ -161,13 +188,12 @@ RunResult run(const RunRequest& request, const std::function<bool(std::string_vi
   Engine engine(compiled.image);
   image::Packets packets;
   packets.resize(request.options.k_bytes, request.options.v_bytes);
-  const std::vector<Set> sets = resolve_sets(request, engine, out);
+  const std::vector<Set> sets = resolve_sets(request, engine, packets, out);
   const std::vector<Print> prints = resolve_prints(request, engine, packets, out);
   if (out.end != RunResult::End::done) return out;
   std::size_t next = 0;
   for (std::int64_t cycle = 1; cycle <= request.cycles; ++cycle) {
-    for (; next < sets.size() && sets[next].cycle == cycle; ++next)
-      engine.write(packets, sets[next].handle, sets[next].value);
+    for (; next < sets.size() && sets[next].cycle == cycle; ++next) carry_out(sets[next], engine, packets);
     const ScanResult scan = engine.scan(packets, (cycle - 1) * request.cycle_ns);
     if (scan.fault != Fault::none) {
       out.findings.push_back(engine.describe(scan));

@@ -48,6 +48,9 @@ inline constexpr Entry kDuplicate{"plc-duplicate", "'{0}' is already declared in
                                   "'{0}' уже объявлено в {1}"};
 inline constexpr Entry kReserved{"plc-reserved", "'{0}' is a standard name and cannot be declared again",
                                  "'{0}' является стандартным именем, повторно объявлять его нельзя"};
+inline constexpr Entry kStandardTaken{
+    "plc-standard-taken", "'{0}' is a standard type with these values: that one is taken, with its numbers",
+    "'{0}' — стандартный тип с этими значениями: взят он, с его номерами"};
 inline constexpr Entry kUnknownType{"plc-unknown-type", "there is no type '{0}'{1}", "типа '{0}' нет{1}"};
 inline constexpr Entry kTypeCycle{"plc-type-cycle", "'{0}' contains itself", "'{0}' содержит само себя"};
 inline constexpr Entry kOpenArrayPlace{"plc-open-array",
@@ -64,8 +67,8 @@ inline constexpr Entry kEmptyRange{"plc-empty-range",
                                    "диапазон {0}..{1} пуст; первой пишется нижняя граница"};
 inline constexpr Entry kTooLarge{"plc-too-large", "'{0}' needs {1} bytes; at most {2} are possible",
                                  "'{0}' занимает {1} байт; допустимо не более {2}"};
-inline constexpr Entry kStringLength{"plc-string-length", "a {1} holds 1 to 254 characters, not {0}",
-                                     "длина {1} от 1 до 254 символов, а не {0}"};
+inline constexpr Entry kStringLength{"plc-string-length", "a {1} holds 1 to 255 characters, not {0}",
+                                     "длина {1} от 1 до 255 символов, а не {0}"};
 inline constexpr Entry kSubrangeBase{"plc-subrange-base", "a subrange needs an integer type, not {0}",
                                      "поддиапазон возможен только для целого типа, а не {0}"};
 inline constexpr Entry kNamedBase{
@@ -328,6 +331,24 @@ inline constexpr Entry kTaskShort{
     "INTERVAL {0} короче такта станка {1}; задача выполняется один раз за такт"};
 inline constexpr Entry kFastTask{"plc-task-range", "priority {0}; 0 to 65535 is possible",
                                  "приоритет {0}; возможны значения от 0 до 65535"};
+
+inline constexpr Entry kBitsCopied{
+    "plc-bits-copied",
+    "this copies the bits of the {0} (1.0 is 16#{1}) and converts no number; for that, convert to {2} first",
+    "здесь копируются биты {0} (1.0 станет 16#{1}), число не преобразуется; для числа преобразуйте сначала в "
+    "{2}"};
+inline constexpr Entry kNumberToBits{"plc-number-to-bits",
+                                     "this converts the number; the bits of a {0} are those of a {1}",
+                                     "здесь преобразуется число; биты {0} лежат в {1}"};
+inline constexpr Entry kNoValueGiven{"plc-constant-value",
+                                     "the constant '{0}' has no value: it is what its type begins with",
+                                     "у константы «{0}» нет значения: она равна начальному значению типа"};
+inline constexpr Entry kAccessInProgram{
+    "plc-access-program",
+    "VAR_ACCESS of a PROGRAM is not carried out: from outside a variable has its own name, Program.variable",
+    "VAR_ACCESS в PROGRAM не действует: снаружи переменная доступна под своим именем, Программа.переменная"};
+inline constexpr Entry kUtf16{"plc-utf16", "the file is UTF-16: save it as UTF-8",
+                              "файл в UTF-16: сохраните его в UTF-8"};
 
 // The compilation itself.
 inline constexpr Entry kMoreErrors{"plc-more-errors", "{0} more errors: the first {1} are shown",

@@ -152,10 +152,29 @@ class Lowering {
     state(i).progress = Progress::running;
     for (const Pin& p : at(i).inputs)
       for (const Wire& w : p.wires)
-        if (w.element >= 0) evaluate(w.element);
+        if (w.element >= 0 && !written_later(w.element)) evaluate(w.element);
     write(i);
     state(i).progress = Progress::done;
     --depth_;
+  }
+
+  // A variable that takes what is being computed from it closes a loop: here it is read as it is, wherever
+  // the loop was entered, and written when its turn comes.
+  bool written_later(int i) {
+    if (at(i).kind != ElementKind::sink || state(i).progress != Progress::waiting) return false;
+    std::vector<int> open = {i};
+    std::vector<bool> seen(elements_.size());
+    while (!open.empty()) {
+      const int next = open.back();
+      open.pop_back();
+      if (state(next).progress == Progress::running) return true;
+      if (seen[static_cast<std::size_t>(next)] || state(next).progress == Progress::done) continue;
+      seen[static_cast<std::size_t>(next)] = true;
+      for (const Pin& p : at(next).inputs)
+        for (const Wire& w : p.wires)
+          if (w.element >= 0) open.push_back(w.element);
+    }
+    return false;
   }
 
   void write(int i) {

@@ -32,6 +32,7 @@ enum class Storage : std::uint8_t { none, set, reset };
 struct Wire {
   int element = -1;
   std::string pin;
+  std::string number = {};  ///< of the element in its file, while that is being read
 };
 
 /// An input or output. An input without a wire may have its value written at it.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cctype>
 #include <map>
 
 #include "plc/plcopen/reader.hpp"
@@ -39,6 +40,17 @@ ladder::Storage storage_of(const pugi::xml_node& n, const char* attribute = "sto
   return storage == "set"     ? ladder::Storage::set
          : storage == "reset" ? ladder::Storage::reset
                               : ladder::Storage::none;
+}
+
+/// The number of an element, which editors take from all of 64 bits, without blanks and zeros before it.
+std::string number_of(const pugi::xml_attribute& a) {
+  std::string_view digits = a.value();
+  while (!digits.empty() && (std::isspace(static_cast<unsigned char>(digits.front())) != 0 ||
+                             (digits.front() == '0' && digits.size() > 1)))
+    digits.remove_prefix(1);
+  while (!digits.empty() && std::isspace(static_cast<unsigned char>(digits.back())) != 0)
+    digits.remove_suffix(1);
+  return std::string(digits);
 }
 
 }  // namespace
@@ -146,7 +158,7 @@ void Reader::wires(const pugi::xml_node& point, Pin& pin) {
       if (!written.empty()) pin.value = syntax::parse_expression(written, begin, report_);
     }
     if (local_name(c) != "connection") continue;
-    pin.wires.push_back({c.attribute("refLocalId").as_int(-1), c.attribute("formalParameter").value()});
+    pin.wires.push_back({-1, c.attribute("formalParameter").value(), number_of(c.attribute("refLocalId"))});
   }
 }
 
@@ -192,18 +204,17 @@ void Reader::block(const pugi::xml_node& n, Element& e) {
 }
 
 void Reader::connect(std::vector<Element>& elements, const std::vector<pugi::xml_node>& nodes) {
-  std::map<int, int> by_number;
+  std::map<std::string, int> by_number;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const int number = nodes[i].attribute("localId").as_int(-1);
+    const std::string number = number_of(nodes[i].attribute("localId"));
     if (!by_number.emplace(number, static_cast<int>(i)).second)
-      report_.error(where(nodes[i]), texts::kXmlTwice, {std::to_string(number)});
+      report_.error(where(nodes[i]), texts::kXmlTwice, {number});
   }
   for (Element& e : elements)
     for (Pin& p : e.inputs)
       for (ladder::Wire& w : p.wires) {
-        const auto at = by_number.find(w.element);
-        if (at == by_number.end())
-          report_.error(p.location, texts::kXmlNoElement, {std::to_string(w.element)});
+        const auto at = by_number.find(w.number);
+        if (at == by_number.end()) report_.error(p.location, texts::kXmlNoElement, {w.number});
         w.element = at == by_number.end() ? -1 : at->second;
       }
 }

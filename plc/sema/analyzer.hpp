@@ -236,6 +236,7 @@ class Analyzer {
 
   // calls.cpp
   ExprPtr call(const Expression& e, const Type* hint, bool as_statement);
+  ExprPtr enabled_call(const Expression& e, const Type* hint);
   ExprPtr function_call(const Expression& e, int unit);
   int function_named(const Expression& callee);
   ExprPtr initial_value(const Variable& v, int unit, const Location& at);

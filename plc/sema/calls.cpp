@@ -3,6 +3,7 @@
 #include <cstring>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/texts.hpp"
@@ -24,7 +25,8 @@ bool is_enable(const Variable& v) {
 
 ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
   const Expression& callee = *e.operands[0];
-  if ((e.enable || e.enabled) && guarded_ != &e) report_.error(e.location, texts::kEnableNested);
+  if (e.enable && !e.enabled && guarded_ != &e) return enabled_call(e, hint);
+  if (e.enabled && guarded_ != &e) report_.error(e.location, texts::kEnableNested);
   if (callee.kind == ExpressionKind::name) {
     const std::string key = key_of(callee.name);
     bool global = false;
@@ -67,6 +69,27 @@ ExprPtr Analyzer::call(const Expression& e, const Type* hint, bool) {
   else
     report_.error(callee.location, texts::kNoValue, {shown});
   return bad(e.location);
+}
+
+// EN inside of an expression: FALSE calls nothing, and the value is what the type begins with.
+ExprPtr Analyzer::enabled_call(const Expression& e, const Type* hint) {
+  const Expression* outer = std::exchange(guarded_, &e);
+  ExprPtr enable = condition(*e.enable);
+  ExprPtr value = settle(call(e, hint, false), hint);
+  guarded_ = outer;
+  const Type& type = *value->type;
+  if (enable->type->kind == Kind::error || type.kind == Kind::error) return bad(e.location);
+  if (!is_elementary(type.kind)) {
+    report_.error(e.location, texts::kEnableNested);
+    return bad(e.location);
+  }
+  std::vector<std::uint8_t> bytes = type.image;
+  bytes.resize(type.size);
+  ExprPtr out = node(ExprKind::choose, value->type, e.location);
+  out->args.push_back(std::move(enable));
+  out->args.push_back(std::move(value));
+  out->args.push_back(make_constant(&type, stored_constant(type, bytes.data()), e.location));
+  return out;
 }
 
 // The FUNCTION that a call names; -1: none that is declared in text.

@@ -273,6 +273,15 @@ ExprPtr Analyzer::conversion_call(std::string_view key, const Expression& e) {
     out->args.push_back(std::move(bcd));
     return fold_conversion(std::move(out));
   }
+  const Kind real = value->type->kind;
+  if (is_real(real) && is_bits(to->kind)) {
+    const bool wide = real == Kind::lreal;
+    if (same_bits(real, to->kind))
+      report_.warning(e.location, texts::kBitsCopied,
+                      {value->type->name, wide ? "3FF0000000000000" : "3F800000", wide ? "ULINT" : "UDINT"});
+    else
+      report_.warning(e.location, texts::kNumberToBits, {value->type->name, wide ? "LWORD" : "DWORD"});
+  }
   if (to->kind == Kind::enumeration) return to_enumeration(std::move(value), to, e.location);
   return explicit_conversion(std::move(value), to, truncate, e.location);
 }

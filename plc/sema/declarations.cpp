@@ -59,6 +59,16 @@ std::string Analyzer::seen_at(const Location& there, const Location& here) const
   return program_.files[static_cast<std::size_t>(there.file)] + ":" + line;
 }
 
+namespace {
+// An enumeration whose names a standard one has as well, and that gives them no numbers of its own.
+bool within_standard(const syntax::TypeReference& own, const syntax::TypeReference& standard) {
+  return !own.values.empty() && std::all_of(own.values.begin(), own.values.end(), [&](const auto& v) {
+    return v.second == nullptr && std::any_of(standard.values.begin(), standard.values.end(),
+                                              [&](const auto& w) { return same_name(v.first, w.first); });
+  });
+}
+}  // namespace
+
 void Analyzer::declare_names() {
   for (std::size_t i = 0; i < source_.types.size(); ++i) {
     const auto& d = source_.types[i];
@@ -66,7 +76,10 @@ void Analyzer::declare_names() {
       report_.error(d.location, texts::kReserved, {d.name});
     else if (const auto [at, fresh] = declared_types_.emplace(key_of(d.name), i); fresh)
       continue;
-    else if (d.location.file == library_file_) {
+    else if (d.location.file == library_file_ && within_standard(source_.types[at->second].type, d.type)) {
+      report_.warning(source_.types[at->second].location, texts::kStandardTaken, {d.name});
+      at->second = i;
+    } else if (d.location.file == library_file_) {
       report_.error(source_.types[at->second].location, texts::kReserved, {d.name});
       at->second = i;  // what follows speaks of the standard one
     } else
@@ -473,8 +486,14 @@ void Analyzer::declare_variable(UnitScope& u, const syntax::Variable& s) {
       if (v.type->open) append(*u.frame, {s.name + "$limits", limits_type(), 0, false, true}, s.location);
     }
   }
-  if (v.constant && !s.initial && !alias)
-    report_.error(s.location, texts::kExpected, {"':='", text::both("no value", "его отсутствие")});
+  if (v.constant && !s.initial && !alias && v.type->kind != Kind::error) {
+    report_.warning(s.location, texts::kNoValueGiven, {s.name});
+    if (is_elementary(v.type->kind)) {
+      std::vector<std::uint8_t> bytes = v.type->image;
+      bytes.resize(v.type->size);
+      v.value = stored_constant(*v.type, bytes.data());
+    }
+  }
   u.variables.push_back(std::move(v));
 }
 
@@ -504,10 +523,16 @@ void Analyzer::lay_out(int index) {
   ir::Unit& unit = program_.units[static_cast<std::size_t>(index)];
   unit.frame = u.frame;
   const bool function = u.source->kind == UnitKind::function;
-  for (const syntax::Variable& v : u.source->variables) {
-    declare_variable(u, v);
-    declare_edge(u, v);
-  }
+  // Limits of arrays and values may name constants that stand further down.
+  const auto is_constant = [](const syntax::Variable& v) {
+    return v.constant && v.section == Section::local;
+  };
+  for (const bool constants : {true, false})
+    for (const syntax::Variable& v : u.source->variables) {
+      if (is_constant(v) != constants) continue;
+      declare_variable(u, v);
+      declare_edge(u, v);
+    }
   if (function) {
     u.result = u.source->result ? resolve(*u.source->result) : elementary(Kind::none);
     if (u.result->kind == Kind::block) {

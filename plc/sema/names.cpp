@@ -99,6 +99,7 @@ std::optional<ir::Place> Analyzer::place(const Expression& e, bool write) {
       return held->second.copy();
     }
     case ExpressionKind::direct: {
+      if (bool global = false; find_variable(e.name, global) != nullptr) return place_of_name(e, write);
       const auto p = parse_address(e.name, e.location);
       if (!p) return std::nullopt;
       ir::Place out;

@@ -51,6 +51,7 @@ class Parser {
   void unit(UnitKind kind);
   void variables(std::vector<Variable>& out, Section section, bool in_unit);
   void variable_list(std::vector<Variable>& out, const Variable& prototype);
+  bool nameless_place() const;
   void address(Variable& v);
   TypeReference type_reference();
   void array_type(TypeReference& t);
@@ -70,6 +71,7 @@ class Parser {
 
   // Statements.
   Block block(std::initializer_list<std::string_view> ends);
+  void tell_foreign_elsif();
   bool too_deep();
   StatementPtr statement();
   StatementPtr simple_statement();

@@ -51,7 +51,12 @@ void Parser::unit(UnitKind kind) {
     more = false;
     for (const auto& s : sections)
       if (at(s.key)) variables(u.variables, s.section, true), more = true;
-    if (at_any({"VAR_GLOBAL", "VAR_ACCESS", "VAR_CONFIG"})) {
+    if (kind == UnitKind::program && at("VAR_ACCESS")) {
+      report_.warning(now().location, texts::kAccessInProgram);
+      Configuration none;
+      paths(none, true);
+      more = true;
+    } else if (at_any({"VAR_GLOBAL", "VAR_ACCESS", "VAR_CONFIG"})) {
       report_.error(now().location, texts::kSectionPlace, {now().key, opener});
       recover({"END_VAR"});
       accept("END_VAR");
@@ -97,7 +102,7 @@ void Parser::variables(std::vector<Variable>& out, Section section, bool in_unit
   if (prototype.retain && prototype.non_retain)
     report_.error(begin, texts::kSectionPlace, {"NON_RETAIN", opener + " RETAIN"});
   while (!at_end() && !at("END_VAR")) {
-    const bool names = ahead().is(":") || ahead().is(",") || ahead().is("AT");
+    const bool names = ahead().is(":") || ahead().is(",") || ahead().is("AT") || nameless_place();
     if (now().kind == TokenKind::word && is_keyword(now().key) && in_unit && !names) break;
     // A statement: END_VAR is missing.
     if (in_unit && now().kind == TokenKind::word &&
@@ -122,8 +127,11 @@ void Parser::variable_list(std::vector<Variable>& out, const Variable& prototype
   do {
     Variable v = prototype;
     v.location = now().location;
-    v.name =
-        refuse_reserved() ? take().text : identifier(text::both("the name of a variable", "имя переменной"));
+    if (nameless_place())  // its address is its name
+      v.name = ahead().text;
+    else
+      v.name = refuse_reserved() ? take().text
+                                 : identifier(text::both("the name of a variable", "имя переменной"));
     if (at("AT")) address(v);
     list.push_back(std::move(v));
   } while (accept(","));
@@ -145,6 +153,9 @@ void Parser::variable_list(std::vector<Variable>& out, const Variable& prototype
     out.push_back(std::move(v));
   }
 }
+
+// VAR AT %IX1.1 : BOOL; (IEC 61131-3:2013, 6.5.5.2)
+bool Parser::nameless_place() const { return at("AT") && ahead().kind == TokenKind::direct; }
 
 // Behind AT: %IX0.0, or a place of a packet such as SK7.3CH, which is no sequence of IEC tokens.
 void Parser::address(Variable& v) {

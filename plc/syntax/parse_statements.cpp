@@ -15,7 +15,7 @@ StatementPtr make_statement(StatementKind kind, const Location& at) {
 
 Block Parser::block(std::initializer_list<std::string_view> ends) {
   Block out;
-  while (!at_end() && !at_any(ends)) {
+  for (tell_foreign_elsif(); !at_end() && !at_any(ends); tell_foreign_elsif()) {
     // A closing word of something outside ends this block too; the caller says what is missing.
     if (now().kind == TokenKind::word && is_keyword(now().key) &&
         (now().key.starts_with("END_") || at_any({"ELSE", "ELSIF", "UNTIL", "PROGRAM", "FUNCTION",
@@ -55,6 +55,16 @@ Block Parser::block(std::initializer_list<std::string_view> ends) {
     }
   }
   return out;
+}
+
+// ELSEIF of other languages: told as that, and read as what is meant.
+void Parser::tell_foreign_elsif() {
+  const bool condition =
+      at("ELSEIF") && (ahead().kind == TokenKind::word || ahead().kind == TokenKind::literal ||
+                       ahead().kind == TokenKind::direct || ahead().is("("));
+  if (!condition) return;
+  report_.error(now().location, texts::kForeign, {now().text, "ELSIF"});
+  list_[at_].key = "ELSIF";
 }
 
 // A mistake in the deepest statement: closing words would be taken for others, so the body is left.

@@ -28,8 +28,11 @@ std::optional<image::Place> direct_place(std::string_view text) {
   const char* end = key.data() + key.size();
   auto [next, error] = std::from_chars(key.data() + at, end, number);
   if (error != std::errc{} || number > 100'000) return std::nullopt;
-  if (size == 'X') {
-    if (next == end || *next != '.') return std::nullopt;
+  if (size == 'X' && next == end) {  // %QX75 and %Q75: the bit of that number (IEC 61131-3:2013, table 16)
+    bit = number % 8;
+    number /= 8;
+  } else if (size == 'X') {
+    if (*next != '.') return std::nullopt;
     const auto [last, bit_error] = std::from_chars(next + 1, end, bit);
     if (bit_error != std::errc{} || bit > 7) return std::nullopt;
     next = last;

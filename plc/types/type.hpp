@@ -157,7 +157,7 @@ class TypeTable {
   TypeTable& operator=(const TypeTable&) = delete;
 
   const Type* elementary(Kind k) const noexcept { return by_kind_[static_cast<std::size_t>(k)]; }
-  /// STRING[capacity] or WSTRING[capacity], 1 to 254 characters.
+  /// STRING[capacity] or WSTRING[capacity], 1 to 255 characters.
   const Type* string(std::uint32_t capacity, Kind kind = Kind::string);
   const Type* array(const Type* element, Dimension range);
   /// ARRAY[*] of it, for parameters (IEC 61131-3:2013, 6.5.3.4); it has no size.
@@ -183,7 +183,7 @@ class TypeTable {
 };
 
 inline constexpr std::uint32_t kDefaultStringCapacity = 80;
-inline constexpr std::uint32_t kMaxStringCapacity = 254;
+inline constexpr std::uint32_t kMaxStringCapacity = 255;
 /// Bytes of a text in memory: its length in one byte and the characters; of a WSTRING both have two bytes.
 constexpr std::uint32_t text_size(Kind kind, std::uint32_t characters) noexcept {
   return kind == Kind::wide_string ? 2 + 2 * characters : 1 + characters;

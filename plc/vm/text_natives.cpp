@@ -31,7 +31,7 @@ std::basic_string_view<C> text_at(const Bytes* p) noexcept {
   return {reinterpret_cast<const C*>(p + sizeof(Length)), get<Length>(p)};
 }
 
-// Results grow in a cell of 254 characters that no input shares; what is longer is cut.
+// Results grow in a cell of 255 characters that no input shares; what is longer is cut.
 template <typename C>
 struct Writer {
   Bytes* d;

@@ -37,5 +37,28 @@ TEST(Compile, reads_several_files_and_names_the_right_one) {
             "two.st:3:8: error: ожидается INT, встречено BOOL; пишите BOOL_TO_INT [plc-type]");
 }
 
+TEST(Compile, says_that_a_file_is_UTF_16_and_nothing_else_of_it) {
+  const std::string text = "PROGRAM Main VAR n : INT; END_VAR n := 1; END_PROGRAM";
+  std::string little, big;
+  for (const char c : text) {
+    little += {c, '\0'};
+    big += {'\0', c};
+  }
+  for (const std::string& utf16 : {"\xFF\xFE" + little, "\xFE\xFF" + big, little, big}) {
+    const CompileResult r = compile({{"t.st", utf16}}, {});
+    ASSERT_EQ(r.findings.size(), 1u);
+    EXPECT_EQ(r.findings[0].str(text::Language::english).substr(0, 56),
+              "t.st:1:1: error: the file is UTF-16: save it as UTF-8 [p");
+  }
+}
+
+TEST(Compile, counts_lines_that_end_with_a_carriage_return_alone) {
+  const CompileResult r =
+      compile({{"t.st", "PROGRAM Main\rVAR n : INT; END_VAR // a comment\rn := m;\rEND_PROGRAM\r"}}, {});
+  ASSERT_EQ(r.findings.size(), 1u);
+  EXPECT_EQ(r.findings[0].str(text::Language::english).substr(0, 11), "t.st:3:6: e");
+  EXPECT_EQ(r.findings[0].source, "n := m;");
+}
+
 }  // namespace
 }  // namespace servogate::plc
