@@ -19,7 +19,7 @@ struct Set {
   std::int64_t cycle;
   std::optional<Handle> handle;  ///< none: `value` stands at `place` before the scan
   std::string value;
-  image::Place place;
+  std::optional<image::Place> place;
   std::string name;
 };
 struct Print {
@@ -82,7 +82,7 @@ std::vector<Set> resolve_sets(const RunRequest& r, const Engine& engine, const i
     else if (s.cycle < 1 || s.cycle > r.cycles)
       refuse(out, texts::kRunCycle, {std::to_string(s.cycle), std::to_string(r.cycles)});
     else
-      sets.push_back({s.cycle, h, s.value, place.value_or(image::Place{}), s.name});
+      sets.push_back({s.cycle, h, s.value, place, s.name});
   }
   std::stable_sort(sets.begin(), sets.end(), [](const Set& a, const Set& b) { return a.cycle < b.cycle; });
   return sets;
@@ -93,7 +93,7 @@ void carry_out(const Set& set, Engine& engine, image::Packets& packets) {
     engine.write(packets, *set.handle, set.value);
     return;
   }
-  const image::Place& place = set.place;
+  const image::Place& place = *set.place;
   const Type& type = type_at(*engine.image().types, place, set.name);
   std::vector<std::uint8_t> value(std::max<std::size_t>(type.size, 8));
   parse_value(type, set.value, value.data());

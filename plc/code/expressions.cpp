@@ -308,54 +308,20 @@ Generator::Operand Generator::let(const ir::Expr& e, std::optional<Operand> into
   return value(*e.args[1], into);
 }
 
+namespace {
+bool is_output(const ir::Parameter& p) { return !p.value && p.section == syntax::Section::output; }
+}  // namespace
+
 Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> into) {
   const ir::Unit& u = program_.units[static_cast<std::size_t>(e.unit)];
   const auto frame = static_cast<std::uint32_t>(u.fixed_base);
-  std::vector<Operand> values(e.parameters.size());
-  const auto calling = [](const ir::Parameter& p) {
-    return p.value ? calls(*p.value) : p.section != syntax::Section::output && calls(p.place);
-  };
-  // All values and subscripts first: an argument may call the same function.
-  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
-    const ir::Parameter& p = e.parameters[i];
-    if (!p.value) {
-      if (p.section == syntax::Section::output || !p.place.computed()) continue;
-      bind(values[i] = temporary(4), p.place);
-      continue;
-    }
-    const bool later =
-        std::any_of(e.parameters.begin() + static_cast<std::ptrdiff_t>(i) + 1, e.parameters.end(), calling);
-    if (later && p.value->kind != ExprKind::constant) {
-      const Operand kept = temporary(p.type->size);
-      if (is_text(p.value->type->kind))
-        copy(*p.type, kept, value(*p.value));
-      else
-        value(*p.value, kept);
-      values[i] = kept;
-    } else {
-      values[i] = value(*p.value);
-    }
-  }
-  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
-    const ir::Parameter& p = e.parameters[i];
-    if (p.value && p.type->bounded && p.value->kind != ExprKind::constant)
-      emit(vm::code_for(Code::check_i8, cell_of(*p.type)), values[i], 0, 0,
-           bounds(p.type->limits.low, p.type->limits.high, 0));
-    if (p.value)
-      copy(*p.type, frame + p.offset, values[i]);
-    else if (p.section != syntax::Section::output && p.place.computed())
-      emit(Code::move_w4, frame + p.offset, values[i]);
-    else if (p.section != syntax::Section::output)
-      bind(frame + p.offset, p.place);
-  }
+  std::vector<Operand> values = argument_values(e);
+  pass(e, frame, values);
   const Unit& callee = units_[static_cast<std::size_t>(e.unit)];
   emit(Code::call, callee.entry, frame, callee.length);
-  const auto is_output = [](const ir::Parameter& p) {
-    return !p.value && p.section == syntax::Section::output;
-  };
   // The subscript of an output may call the function once more.
   const bool again = std::any_of(e.parameters.begin(), e.parameters.end(),
-                                 [&](const ir::Parameter& p) { return is_output(p) && calls(p.place); });
+                                 [](const ir::Parameter& p) { return is_output(p) && calls(p.place); });
   const auto kept = [&](const Type& type, Operand from) {
     if (!again) return from;
     const Operand to = temporary(type.size);
@@ -366,33 +332,77 @@ Generator::Operand Generator::call(const ir::Expr& e, std::optional<Operand> int
   const Operand result = gives ? kept(*e.type, frame + e.result) : 0;
   for (std::size_t i = 0; i < e.parameters.size(); ++i)
     if (is_output(e.parameters[i])) values[i] = kept(*e.parameters[i].type, frame + e.parameters[i].offset);
-  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
-    const ir::Parameter& p = e.parameters[i];
-    if (!is_output(p)) continue;
-    Operand from = values[i];
-    if (p.inverted) {
-      from = temporary(p.type->size);
-      invert(*p.type, from, values[i]);
-    }
-    const Type& to = *p.place.type;
-    if (to.kind != p.type->kind && is_integer(to.kind) && is_integer(p.type->kind)) {
-      std::int64_t low = 0;
-      std::uint64_t high = 0;
-      integer_limits(to.kind, low, high);
-      const Cell cell = cell_of(*p.type);
-      emit(vm::code_for(Code::check_i8, cell), from, 0, 0,
-           bounds(low, static_cast<std::int64_t>(high & (~std::uint64_t{0} >> 1)), 0));
-      const Operand converted_value = temporary(to.size);
-      emit(Code::native, converted_value, from, 0, vm::convert_function(cell, cell_of(to)));
-      store(target(p.place), to, converted_value);
-      continue;
-    }
-    store(target(p.place), *p.type, from);
-  }
+  for (std::size_t i = 0; i < e.parameters.size(); ++i)
+    if (is_output(e.parameters[i])) give(e.parameters[i], values[i]);
   if (!gives) return 0;
   const Operand out = into ? *into : temporary(e.type->size);
   copy(*e.type, out, result);
   return out;
+}
+
+// All values and subscripts before the first of them is passed: an argument may call the same function.
+std::vector<Generator::Operand> Generator::argument_values(const ir::Expr& e) {
+  const auto calling = [](const ir::Parameter& p) {
+    return p.value ? calls(*p.value) : !is_output(p) && calls(p.place);
+  };
+  std::vector<Operand> values(e.parameters.size());
+  std::size_t last = e.parameters.size();  // behind the last one that calls a function
+  while (last > 0 && !calling(e.parameters[last - 1])) --last;
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const ir::Parameter& p = e.parameters[i];
+    if (!p.value) {
+      if (!is_output(p) && p.place.computed()) bind(values[i] = temporary(4), p.place);
+      continue;
+    }
+    if (i + 1 >= last || p.value->kind == ExprKind::constant) {
+      values[i] = value(*p.value);
+      continue;
+    }
+    const Operand kept = temporary(p.type->size);
+    if (is_text(p.value->type->kind))
+      copy(*p.type, kept, value(*p.value));
+    else
+      value(*p.value, kept);
+    values[i] = kept;
+  }
+  return values;
+}
+
+void Generator::pass(const ir::Expr& e, std::uint32_t frame, const std::vector<Operand>& values) {
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const ir::Parameter& p = e.parameters[i];
+    const Operand to = frame + p.offset;
+    if (p.value && p.type->bounded && p.value->kind != ExprKind::constant)
+      emit(vm::code_for(Code::check_i8, cell_of(*p.type)), values[i], 0, 0,
+           bounds(p.type->limits.low, p.type->limits.high, 0));
+    if (p.value)
+      copy(*p.type, to, values[i]);
+    else if (!is_output(p) && p.place.computed())
+      emit(Code::move_w4, to, values[i]);
+    else if (!is_output(p))
+      bind(to, p.place);
+  }
+}
+
+// An output goes to its variable; to one of another integer type when its value fits.
+void Generator::give(const ir::Parameter& p, Operand from) {
+  if (p.inverted) {
+    const Operand inverted = temporary(p.type->size);
+    invert(*p.type, inverted, from);
+    from = inverted;
+  }
+  const Type& to = *p.place.type;
+  if (to.kind == p.type->kind || !is_integer(to.kind) || !is_integer(p.type->kind))
+    return store(target(p.place), *p.type, from);
+  std::int64_t low = 0;
+  std::uint64_t high = 0;
+  integer_limits(to.kind, low, high);
+  const Cell cell = cell_of(*p.type);
+  emit(vm::code_for(Code::check_i8, cell), from, 0, 0,
+       bounds(low, static_cast<std::int64_t>(high & (~std::uint64_t{0} >> 1)), 0));
+  const Operand converted_value = temporary(to.size);
+  emit(Code::native, converted_value, from, 0, vm::convert_function(cell, cell_of(to)));
+  store(target(p.place), to, converted_value);
 }
 
 }  // namespace servogate::plc::code

@@ -265,6 +265,7 @@ void Generator::retained_cells(const std::string& name, const Type& type, std::u
 
 void Generator::retained_cell(const std::string& name, const Type& type, std::uint32_t address,
                               std::int32_t place) {
+  report_.go_on();
   image_->retained.push_back({name, &type, address, image_->retain_bytes, place});
   image_->retain_bytes += type.size;
 }

@@ -86,6 +86,9 @@ class Generator {
   Operand choose(const ir::Expr& e, std::optional<Operand> into);
   Operand let(const ir::Expr& e, std::optional<Operand> into);
   Operand call(const ir::Expr& e, std::optional<Operand> into);
+  std::vector<Operand> argument_values(const ir::Expr& e);
+  void pass(const ir::Expr& e, std::uint32_t frame, const std::vector<Operand>& values);
+  void give(const ir::Parameter& p, Operand from);
   Operand stable(const ir::Expr& e, bool keep);
   Operand destination(const ir::Expr& e, std::optional<Operand> into);
   static bool calls(const ir::Expr& e);

@@ -253,7 +253,7 @@ std::uint32_t Analyzer::append(Type& owner, Field field, const Location& at) {
   if (owner.size > kMaxBytes) {
     report_.error(at, texts::kTooLarge, {owner.name, std::to_string(owner.size), std::to_string(kMaxBytes)});
     field.offset = 0;
-    owner.size = size;
+    owner.size = 0;
     owner.kind = Kind::error;  // whoever holds one of it is not the mistake
   }
   const std::uint32_t offset = field.offset;
@@ -524,8 +524,12 @@ void Analyzer::lay_out(int index) {
   unit.frame = u.frame;
   const bool function = u.source->kind == UnitKind::function;
   // Limits of arrays and values may name constants that stand further down.
+  // (REF, lists and records may name variables instead.)
   const auto is_constant = [](const syntax::Variable& v) {
-    return v.constant && v.section == Section::local;
+    using syntax::ExpressionKind;
+    const ExpressionKind kind = v.initial ? v.initial->kind : ExpressionKind::literal;
+    return v.constant && v.section == Section::local && kind != ExpressionKind::call &&
+           kind != ExpressionKind::list && kind != ExpressionKind::record;
   };
   for (const bool constants : {true, false})
     for (const syntax::Variable& v : u.source->variables) {

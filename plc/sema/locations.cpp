@@ -178,6 +178,7 @@ void Analyzer::locate(const syntax::PathDeclaration& p, const Reached& found) {
 void Analyzer::find_missing(const std::string& name, const Type& type, std::uint32_t address, bool lasting,
                             Missing& out) {
   if (!type.holds_location) return;
+  report_.go_on();
   if (type.kind == Kind::array) {
     for (std::int64_t i = type.range.low; i <= type.range.high; ++i)
       find_missing(name + "[" + std::to_string(i) + "]", *type.base,

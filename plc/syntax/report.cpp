@@ -50,6 +50,7 @@ std::vector<text::Finding> Report::take() {
     if (left_out_[kind] == 0) continue;
     text::Finding f;
     f.severity = kind == 0 ? text::Severity::error : text::Severity::warning;
+    if (!files_.empty()) f.file = files_.front();
     f.entry = more[kind];
     f.arguments = {std::to_string(left_out_[kind]), std::to_string(kMost)};
     out.push_back(std::move(f));

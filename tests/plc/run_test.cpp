@@ -48,6 +48,24 @@ TEST(Run, places_that_the_program_does_not_use_are_printed_too) {
   EXPECT_EQ(run(r, [](std::string_view) { return true; }).findings.size(), 2u);
 }
 
+TEST(Run, places_are_set_by_their_address_whether_or_not_the_program_has_a_name_for_them) {
+  RunRequest r;
+  r.files = {
+      {"a.st", "PROGRAM Main\nVAR in AT %IX0.1 : BOOL; n AT %MW4 : INT; END_VAR\nn := n + 1;\nEND_PROGRAM"}};
+  r.options.warnings = false;
+  r.sets = {{"%IX0.1", "TRUE", 2}, {"%MW4", "16#FF00", 2}, {"%MD40", "7", 1}, {"SK60.4CH", "'ab'", 1}};
+  r.prints = {"in", "n", "%MD40", "SK60.4CH"};
+  r.cycles = 2;
+  std::vector<std::string> lines;
+  const RunResult out = run(r, [&](std::string_view l) { return lines.emplace_back(l), true; });
+  EXPECT_EQ(out.end, RunResult::End::done) << out.findings[0].str(text::Language::english);
+  EXPECT_EQ(lines, (std::vector<std::string>{
+                       R"({"cycle":1,"values":{"in":false,"n":1,"%MD40":7,"SK60.4CH":"ab  "}})",
+                       R"({"cycle":2,"values":{"in":true,"n":-255,"%MD40":7,"SK60.4CH":"ab  "}})"}));
+  r.sets = {{"%IX0.1", "7", 1}, {"%MX9000.0", "TRUE", 1}};
+  EXPECT_EQ(run(r, [](std::string_view) { return true; }).findings.size(), 2u);
+}
+
 TEST(Run, names_to_print_may_have_several_subscripts) {
   EXPECT_EQ(parse_prints("a,x[2,3],y[1, 2].z,s.t"),
             (std::vector<std::string>{"a", "x[2,3]", "y[1, 2].z", "s.t"}));

@@ -128,12 +128,13 @@ TEST(Size, findings_beyond_two_hundred_are_counted) {
   const CompileResult warned = compile({{"t.st", "PROGRAM Main VAR\n" + unused + "END_VAR END_PROGRAM"}}, {});
   EXPECT_TRUE(warned.ok());
   ASSERT_EQ(warned.findings.size(), 201u);
-  EXPECT_EQ(said(warned).back(), "warning: 800 more warnings: the first 200 are shown [plc-more-warnings]");
+  EXPECT_EQ(said(warned).back(),
+            "t.st: warning: 800 more warnings: the first 200 are shown [plc-more-warnings]");
   const std::string unknown = repeated(1000, [](int i) { return "w" + n(i) + " := 1;\n"; });
   const CompileResult wrong = compile({{"t.st", "PROGRAM Main\n" + unknown + "END_PROGRAM"}}, {});
   EXPECT_FALSE(wrong.ok());
   ASSERT_EQ(wrong.findings.size(), 201u);
-  EXPECT_EQ(said(wrong).back(), "error: 800 more errors: the first 200 are shown [plc-more-errors]");
+  EXPECT_EQ(said(wrong).back(), "t.st: error: 800 more errors: the first 200 are shown [plc-more-errors]");
 }
 
 TEST(Compile, is_ended_by_whoever_asked_for_it_and_says_so) {
