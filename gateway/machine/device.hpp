@@ -88,6 +88,8 @@ struct BehaviourConfig {
   std::int64_t handover_counts = 0;         ///< 0: a quarter of a turn
   int brake_bit = -1;                       ///< bit of 60FEh:01, -1: none
   bool brake_bit_releases = true;
+  /// The drive closes its brake by itself with its power stage: before the torque goes where it brakes first.
+  bool brake_interlock = false;
   bool fixed_pdo_map = false;        ///< the map cannot be written: it is read and compared
   bool sdo_only = false;             ///< no process data: everything goes over SDO
   bool interpolation_period = true;  ///< the drive has 60C2h

@@ -42,7 +42,7 @@ TEST(DeviceFiles, servo_becomes_the_masters_profile) {
   EXPECT_FALSE(p.vendor_id.has_value());
 }
 
-TEST(DeviceFiles, brake_drive_maps_its_output_every_tenth_cycle_and_holds_its_load_when_the_bus_is_cut) {
+TEST(DeviceFiles, brake_drive_maps_its_output_every_tenth_cycle_and_closes_its_brake_with_its_power) {
   const canopen::DriveProfile p = drive_profile(device("servo-cia402-brake"), {}, 1000);
   EXPECT_EQ(p.brake_bit, 0);
   EXPECT_FALSE(p.brake_bit_releases);
@@ -51,10 +51,11 @@ TEST(DeviceFiles, brake_drive_maps_its_output_every_tenth_cycle_and_holds_its_lo
       return s.index == index && s.subindex == subindex && s.value == value;
     });
   };
-  EXPECT_EQ(p.settings.size(), 2u);
+  EXPECT_EQ(p.settings.size(), 3u);
   EXPECT_TRUE(sets(0x60FE, 2, 1));
-  EXPECT_TRUE(sets(0x605A, 0, 6)) << "quick stop keeps its torque";
-  EXPECT_EQ(p.abort_connection_option, 3);
+  EXPECT_TRUE(sets(0x605A, 0, 2)) << "ramps down before its torque goes";
+  EXPECT_TRUE(sets(0x605E, 0, 2)) << "in a fault, too";
+  EXPECT_EQ(p.abort_connection_option, 1);
   EXPECT_EQ(p.rpdo[1].transmission_type, 10);
   EXPECT_EQ(p.rpdo[1].mapping.entries[0], (canopen::MappingEntry{0x60FE, 1, 32}));
 }

@@ -91,15 +91,30 @@ double Plant::kinetic_energy() const noexcept {
 
 void Plant::step(const canopen::ServoCommand& command) noexcept {
   const double torque = loop_torque(command);
+  const bool closed = brake_closed(command.brake_released);
   if (compliant())
-    integrate_compliant(torque, !command.brake_released);
+    integrate_compliant(torque, closed);
   else
-    integrate(torque, !command.brake_released);
+    integrate(torque, closed);
   if (thermal_step_ > 0.0) {
     const double load = torque_ / config_.rated_torque_nm;
     thermal_ += thermal_step_ * (load * load - thermal_);
   }
   measure();
+}
+
+/// Spring and magnet take their time, either way.
+bool Plant::brake_closed(bool released) noexcept {
+  if (released != brake_holds_) {
+    brake_moves_ = 0.0;
+    return brake_holds_;
+  }
+  brake_moves_ += h_;
+  if (brake_moves_ > (released ? config_.brake_release_s : config_.brake_engage_s)) {
+    brake_holds_ = !released;
+    brake_moves_ = 0.0;
+  }
+  return brake_holds_;
 }
 
 double Plant::cogging() const noexcept {

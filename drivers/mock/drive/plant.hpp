@@ -22,6 +22,8 @@ struct PlantConfig {
   double velocity_gain = 0.0;               ///< N m s/rad; 0: inertia * 600/s
   double velocity_integral = 60.0;          ///< 1/s, reciprocal of the integral time
   double brake_torque_nm = 0.0;             ///< of a closed holding brake; 0: there is no brake
+  double brake_release_s = 0.05;            ///< from its command until it gives way; the drive waits as long
+  double brake_engage_s = 0.05;             ///< from its command until it holds
   std::int64_t zero_mark_counts =
       0;  ///< place of the zero mark inside a revolution, 0 ... counts_per_rev - 1
   double end_stop_min_rev = -1.0e12;  ///< rigid stops, revolutions of the shaft from the world's zero
@@ -79,6 +81,7 @@ class Plant {
   void integrate(double torque_command, bool brake_closed) noexcept;
   void integrate_compliant(double torque_command, bool brake_closed) noexcept;
   bool compliant() const noexcept { return substeps_ > 0; }
+  bool brake_closed(bool released) noexcept;
   double cogging() const noexcept;
   double stopped_at_rigid_stops(double& counts, double omega) noexcept;
   void measure() noexcept;
@@ -105,6 +108,8 @@ class Plant {
   double integral_ = 0.0;
   double load_torque_;
   bool at_stop_ = false;
+  bool brake_holds_ = true;
+  double brake_moves_ = 0.0;                      ///< s since it was told to change
   std::int64_t mark_below_ = 0, mark_above_ = 0;  ///< zero marks around the shaft, true counts
   std::int64_t encoder_error_ = 0;
   canopen::ServoState state_;

@@ -15,8 +15,8 @@ canopen::ServoProfileSettings settings_of(const SimulatedDriveConfig& c) {
   canopen::ServoProfileSettings s;
   s.servo_period = c.servo_period_ns;
   s.counts_per_rev = c.plant.counts_per_rev;
-  s.brake_release = ns(c.brake_release_s);
-  s.brake_engage = ns(c.brake_engage_s);
+  s.brake_release = ns(c.plant.brake_release_s);
+  s.brake_engage = ns(c.plant.brake_engage_s);
   s.quirks = c.quirks;
   return s;
 }

@@ -55,8 +55,6 @@ struct SimulatedDriveConfig {
   PlantConfig plant;
   bool absolute_encoder = false;  ///< false: 6064h is 0 at power-on wherever the shaft stands
   bool main_voltage = true;       ///< the DC link is charged
-  double brake_release_s = 0.05;  ///< of the holding brake, where the plant has one
-  double brake_engage_s = 0.05;
   double boot_time_s = 0.01;                     ///< from power-on to the boot-up message
   image::Nanoseconds servo_period_ns = 250'000;  ///< of loops and plant
   std::vector<DriveSwitch> switches;

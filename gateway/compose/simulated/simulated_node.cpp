@@ -48,8 +48,11 @@ mock::PlantConfig plant_of(const machine::DeviceConfig* device, const machine::S
       p.zero_mark_counts = positive_modulo(std::llround(extra->zero_mark * direction), p.counts_per_rev);
     }
   }
-  if (axis != nullptr && axis->brake.present() && axis->brake.drive_output)
+  if (axis != nullptr && axis->brake.present() && axis->brake.drive_output) {
     p.brake_torque_nm = p.peak_torque_nm;
+    p.brake_release_s = axis->brake.release_delay;
+    p.brake_engage_s = axis->brake.engage_delay;
+  }
   return p;
 }
 
@@ -58,6 +61,7 @@ canopen::DriveQuirks quirks_of(const machine::DeviceConfig& device) {
   const machine::BehaviourConfig& b = device.behaviour;
   canopen::DriveQuirks q;
   q.halt = b.halt;
+  q.brake_interlock = b.brake_interlock;
   if (b.fault_reset == machine::FaultResetBy::level) q.fault_reset_level_ns = 30'000'000;
   q.homing_method_here = static_cast<std::int8_t>(b.homing_method_here);
   q.homing_method_none = b.homing_method_none;

@@ -173,6 +173,12 @@ const Section& section_of<BehaviourConfig>() {
                          "бит 60FEh:01, управляющий тормозом; -1: нет"),
       key<&C::brake_bit_releases>("brake_bit_releases", {}, "1 in that bit releases the brake",
                                   "1 в этом бите отпускает тормоз"),
+      key<&C::brake_interlock>(
+          "brake_interlock", {},
+          "the drive closes its brake by itself with its power stage, whatever 60FEh says: before the torque "
+          "goes where it brakes first, else at once; false: the brake stays as the control left it",
+          "привод сам зажимает тормоз вместе с силовой частью, что бы ни было в 60FEh: после торможения — до "
+          "снятия момента, иначе сразу; false: тормоз остаётся, каким его оставила система"),
       key<&C::fixed_pdo_map>("fixed_pdo_map", {}, "the PDO map cannot be written, only compared",
                              "отображение PDO нельзя записать, только сравнить"),
       key<&C::sdo_only>(

@@ -86,8 +86,30 @@ TEST(DrivePlant, the_brake_holds_a_hanging_load_and_an_open_one_lets_it_fall) {
   run(plant, off, 1.0);
   EXPECT_EQ(plant.counts(), 0);
   off.brake_released = true;
-  run(plant, off, 0.1);
+  run(plant, off, 0.15);
   EXPECT_LT(plant.velocity_rad_s(), -100.0) << "a positive load pulls towards minus";
+}
+
+TEST(DrivePlant, a_brake_takes_its_time_to_give_way_and_to_hold) {
+  PlantConfig config;
+  config.load_torque_nm = 1.5;
+  config.brake_torque_nm = 50.0;
+  config.brake_release_s = 0.08;
+  config.brake_engage_s = 0.04;
+  Plant plant(config, kStep);
+  ServoCommand off;
+  run(plant, off, 0.1);
+  off.brake_released = true;
+  run(plant, off, 0.079);
+  EXPECT_EQ(plant.counts(), 0) << "it still holds";
+  run(plant, off, 0.02);
+  const double falling = plant.velocity_rad_s();
+  EXPECT_LT(falling, -10.0);
+  off.brake_released = false;
+  run(plant, off, 0.039);
+  EXPECT_LT(plant.velocity_rad_s(), falling - 30.0) << "the load falls on until it holds";
+  run(plant, off, 0.03);
+  EXPECT_EQ(plant.velocity_rad_s(), 0.0);
 }
 
 TEST(DrivePlant, the_position_loop_holds_against_a_load_to_the_count) {

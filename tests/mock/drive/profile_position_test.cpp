@@ -174,6 +174,32 @@ TEST_F(DriveSetPoints, without_bit_9_each_target_is_reached_before_the_next_moti
   EXPECT_NEAR(at(), 8.0, 1e-5);
 }
 
+TEST_F(DriveSetPoints, with_no_window_time_the_target_is_reached_in_its_window_and_not_on_the_way) {
+  b.write(0x6068, 0, 0, 2);
+  set_point(5);
+  while (at() < 4.9) {
+    EXPECT_FALSE(reached()) << at();
+    b.run(1);
+  }
+  b.run(300);
+  EXPECT_TRUE(reached());
+}
+
+TEST_F(DriveProfiles, with_no_window_time_the_speed_is_reached_in_its_window_and_not_before) {
+  mode(3);
+  b.write(0x606E, 0, 0, 2);
+  set(0x6083, 10);
+  b.enable();
+  set(0x60FF, 5);
+  b.run(2);
+  while (speed() < 4.9) {
+    EXPECT_FALSE(reached()) << speed();
+    b.run(1);
+  }
+  b.run(50);
+  EXPECT_TRUE(reached());
+}
+
 TEST_F(DriveSetPoints, with_bit_9_the_set_point_is_passed_with_the_speed_of_its_motion) {
   set_point(5);
   set(0x6081, 4);

@@ -118,6 +118,29 @@ TEST_F(DriveStates, transition_16_is_open_only_with_a_quick_stop_option_of_5_to_
     b.control(0x00);
   }
 }
+TEST_F(DriveStates, a_quick_stop_from_standstill_is_shown_by_a_pdo_of_its_cycle) {
+  constexpr std::uint16_t kMask = 0x6F, kQuickStopActive = 0x07;
+  for (const int cycle_ms : {1, 4, 20}) {
+    b.start_cyclic_position();
+    b.write(0x605A, 0, 2, 2);
+    const auto cycle = [&](std::uint16_t word) {
+      b.cycle(word, 0);
+      b.run(cycle_ms - 1);
+      std::uint16_t status = 0;
+      while (const auto f = b.take(0x185)) status = static_cast<std::uint16_t>(f->data[0] | f->data[1] << 8);
+      return status;
+    };
+    for (const std::uint16_t word : {0x06, 0x07, 0x0F})
+      for (int i = 0; i < 100 / cycle_ms + 3; ++i) cycle(word);
+    ASSERT_EQ(state(), DriveState::operation_enabled) << cycle_ms;
+    int shown = 0;
+    for (int i = 0; i < 6; ++i) shown += (cycle(0x02) & kMask) == kQuickStopActive ? 1 : 0;
+    EXPECT_GE(shown, 1) << cycle_ms << " ms";
+    EXPECT_LE(shown, 2) << "from standstill it need not brake";
+    EXPECT_EQ(state(), DriveState::switch_on_disabled);
+    b.nmt(0x80);
+  }
+}
 TEST_F(DriveStates, transition_12_disable_voltage_ends_a_quick_stop_that_stays) {
   b.write(0x605A, 0, 6, 2);
   to_turning();
@@ -278,8 +301,8 @@ TEST(DriveBrake, it_opens_before_operation_is_enabled_and_closes_before_the_powe
   SimulatedDriveConfig config;
   config.plant.brake_torque_nm = 8.0;
   config.plant.load_torque_nm = 1.5;  // a vertical axis
-  config.brake_release_s = 0.05;
-  config.brake_engage_s = 0.08;
+  config.plant.brake_release_s = 0.05;
+  config.plant.brake_engage_s = 0.08;
   DriveBench b(config);
   b.control(0x06);
   b.control(0x07, 20);

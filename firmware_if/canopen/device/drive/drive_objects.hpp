@@ -22,9 +22,11 @@ struct DriveQuirks {
   bool halt = true;  ///< bit 8 of the controlword acts
   std::int64_t fault_reset_level_ns =
       0;  ///< > 0: bit 7 resets a fault when it has been set for so long, by no edge
-  std::int8_t homing_method_here = 37;     ///< number of method 37, under which it is known only
-  bool homing_method_none = true;          ///< 6098h takes 0
-  bool homing_method_list = true;          ///< false: 60E3h is empty
+  std::int8_t homing_method_here = 37;  ///< number of method 37, under which it is known only
+  bool homing_method_none = true;       ///< 6098h takes 0
+  bool homing_method_list = true;       ///< false: 60E3h is empty
+  /// The brake is never open without torque, whatever 60FEh says.
+  bool brake_interlock = false;
   bool velocity_in_ip_record = false;      ///< 60C1h:02 is a velocity, and a record is complete with it
   std::int8_t interpolation_exponent = 1;  ///< the one that 60C2h:02 takes; 1: any
 };

@@ -127,6 +127,7 @@ void PowerState::enabled(const PowerInputs& in, ControlCommand command) noexcept
     case ControlCommand::quick_stop:
       if (o.quick_stop == 0) return disable(DriveState::switch_on_disabled);
       enter(DriveState::quick_stop_active);  // 11
+      quick_stop_left_ = pdo_cycle_ns_;
       engaging_ = false;
       return stop_then(kind_of(o.quick_stop), DriveState::switch_on_disabled);
     case ControlCommand::shutdown:
@@ -148,7 +149,11 @@ void PowerState::enabled(const PowerInputs& in, ControlCommand command) noexcept
 
 void PowerState::quick_stopping(const PowerInputs& in, ControlCommand command) noexcept {
   if (command == ControlCommand::disable_voltage) return disable(DriveState::switch_on_disabled);  // 12
-  if (in.options.quick_stop < 5) return finish_stop(in);                                           // 12
+  if (in.options.quick_stop < 5) {
+    quick_stop_left_ -= step_;
+    if (quick_stop_left_ < 0) finish_stop(in);  // 12
+    return;
+  }
   if (command != ControlCommand::enable_operation) return;
   stop_ = StopKind::none;
   enter(DriveState::operation_enabled);  // 16

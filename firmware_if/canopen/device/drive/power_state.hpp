@@ -43,6 +43,8 @@ class PowerState {
   }
   /// A drive without the edge: bit 7 resets a fault after so long; 0: by its rising edge.
   void set_fault_reset_level(image::Nanoseconds needed) noexcept { reset_needed_ns_ = needed; }
+  /// Time between two SYNC: Quick stop active lasts longer, so that it is seen from standstill, too.
+  void set_pdo_cycle(image::Nanoseconds time) noexcept { pdo_cycle_ns_ = time; }
   /// Power-on or reset: transition 0 and, with the next tick, 1.
   void reset() noexcept;
   void tick(const PowerInputs& in, image::Nanoseconds step) noexcept;
@@ -86,6 +88,7 @@ class PowerState {
   image::Nanoseconds release_ns_ = 0, engage_ns_ = 0, brake_left_ = 0;
   image::Nanoseconds reset_needed_ns_ = 0, reset_held_ns_ = 0;
   image::Nanoseconds step_ = 0;
+  image::Nanoseconds pdo_cycle_ns_ = image::kMillisecond, quick_stop_left_ = 0;
   std::uint32_t transitions_ = 0;
 };
 

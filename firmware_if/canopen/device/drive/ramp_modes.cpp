@@ -154,7 +154,7 @@ void ServoProfile::start_set_point() noexcept {
   set_point_active_ = true;
   set_point_waiting_ = false;
   passed_ = 0.0;
-  window_time_ = 0.0;
+  window_time_.reset();
 }
 
 /// Speed with which the motion under way shall arrive. Before a set-point with bit 9 it does not slow down,
@@ -169,10 +169,6 @@ double ServoProfile::arrival_speed(double target) noexcept {
   if (way * (direction != 0.0 ? direction : demand_.velocity) <= 0.0) return 0.0;
   const double d = deceleration_of(waiting_.deceleration);
   return std::sqrt(waiting_.end_velocity * waiting_.end_velocity + 2.0 * d * std::abs(way));
-}
-
-bool ServoProfile::target_reached() const noexcept {
-  return window_time_ * 1e3 >= static_cast<double>(v_.position_window_time);
 }
 
 /// Behind a target that was passed with 6082h that speed is kept, up to the software limits, until the next
@@ -203,8 +199,8 @@ void ServoProfile::position_to_target() noexcept {
     return;
   if (demand_.velocity != 0.0) passed_ = std::copysign(1.0, demand_.velocity);
   const double off = std::abs(target - static_cast<double>(servo_.position));
-  window_time_ = off <= static_cast<double>(v_.position_window) ? window_time_ + h_ : 0.0;
-  const bool done = passed_ != 0.0 || waiting_.change_on_target || target_reached();
+  watch_window(off <= static_cast<double>(v_.position_window));
+  const bool done = passed_ != 0.0 || waiting_.change_on_target || in_window(v_.position_window_time);
   if (set_point_waiting_ && done) start_set_point();
 }
 

@@ -23,7 +23,8 @@ void ServoProfile::select_mode() noexcept {
   forget_set_points();
   set_point_acknowledged_ = false;
   start_bit_ = v_.controlword & kStart;
-  window_time_ = threshold_time_ = 0.0;
+  window_time_.reset();
+  threshold_time_ = 0.0;
   new_target_ = false;
   buffer_.clear();
   if (command_.loop != ServoCommand::Loop::position) {
@@ -183,7 +184,7 @@ void ServoProfile::profile_velocity() noexcept {
   command_.acceleration = demand_.acceleration;
   command_.torque = 0.0;
   const double off = std::abs(static_cast<double>(v_.target_velocity) - servo_.velocity);
-  window_time_ = off <= static_cast<double>(v_.velocity_window) ? window_time_ + h_ : 0.0;
+  watch_window(off <= static_cast<double>(v_.velocity_window));
 }
 
 // Halt interrupts a homing. It goes on afterwards unless bit 4 was taken away meanwhile; an edge of bit 4
@@ -229,11 +230,10 @@ std::uint16_t ServoProfile::mode_bits() const noexcept {
     case OperationMode::profile_position:
       if (set_point_acknowledged_) word |= kModeSpecific12;
       if (following_exceeded_) word |= kModeSpecific13;
-      if (!set_point_active_ || passed_ != 0.0 || target_reached()) word |= kTargetReached;
+      if (!set_point_active_ || passed_ != 0.0 || in_window(v_.position_window_time)) word |= kTargetReached;
       return word;
     case OperationMode::profile_velocity:
-      if (!halted() && window_time_ * 1e3 >= static_cast<double>(v_.velocity_window_time))
-        word |= kTargetReached;
+      if (!halted() && in_window(v_.velocity_window_time)) word |= kTargetReached;
       // Speed is not zero any more once it has been above 606Fh for longer than 6070h.
       if (threshold_time_ * 1e3 <= static_cast<double>(v_.velocity_threshold_time)) word |= kModeSpecific12;
       return word;

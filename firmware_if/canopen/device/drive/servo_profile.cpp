@@ -14,6 +14,7 @@ using image::DriveState;
 constexpr std::uint16_t kUnderVoltage = 0x3220, kFollowingError = 0x8611, kOverSpeed = 0x8400,
                         kSafeTorqueOff = 0xFF01;
 constexpr std::int64_t kWindowOff = 0xFFFF'FFFF;
+constexpr image::Nanoseconds kLongestPdoCycle = 100 * image::kMillisecond;
 constexpr double kDcLinkMillivolts = 320'000.0;
 
 // Bit of the error register for an error code. Source: CiA 301, 7.5.2.2 and the groups of 7.2.7.1.
@@ -86,6 +87,12 @@ void ServoProfile::on_store() noexcept {
     dictionary_.forget({command, command});
 }
 
+// A state that no PDO shows is one that its master never learns of.
+void ServoProfile::on_sync(image::Nanoseconds now) noexcept {
+  if (sync_at_ > 0) power_.set_pdo_cycle(std::clamp(now - sync_at_, image::kMillisecond, kLongestPdoCycle));
+  sync_at_ = now;
+}
+
 AbortCode ServoProfile::before_write(ObjectDictionary::Slot slot, std::int64_t value) noexcept {
   const ObjectSpec& s = dictionary_.spec(slot);
   switch (s.index) {
@@ -156,11 +163,19 @@ const ServoCommand& ServoProfile::tick(const ServoState& servo, const DriveInput
   select_mode();
   generate();
   following_error_ = command_.position - static_cast<double>(servo_.position);
-  command_.brake_released = v_.digital_output_mask & 1 ? !(v_.digital_outputs & 1) : power_.brake_released();
+  command_.brake_released = brake_released();
   const auto most = static_cast<double>(v_.max_torque);
   command_.torque_limit_positive = std::min(most, static_cast<double>(v_.torque_limit_positive));
   command_.torque_limit_negative = std::min(most, static_cast<double>(v_.torque_limit_negative));
   return command_;
+}
+
+// The mask gives bit 0 of 60FEh:01, "set brake", to whoever leads the drive. Source: CiA 402-2, "Object
+// 60FEh: Digital outputs".
+bool ServoProfile::brake_released() const noexcept {
+  const bool by_bus = v_.digital_output_mask & 1;
+  const bool own = power_.brake_released() || (by_bus && !settings_.quirks.brake_interlock);
+  return own && !(by_bus && v_.digital_outputs & 1);
 }
 
 void ServoProfile::decide() noexcept {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "firmware_if/canopen/402/mode.hpp"
 #include "firmware_if/canopen/device/drive/drive_objects.hpp"
@@ -53,10 +54,12 @@ class ServoProfile final : public DeviceProfile {
   void refresh() noexcept override;
   void on_abort_connection(std::uint16_t error_code) noexcept override;
   void on_store() noexcept override;
+  void on_sync(image::Nanoseconds now) noexcept override;
   void on_reset() noexcept override;
   bool store_node(NodeId, std::uint32_t bit_s) noexcept override { return bit_s == 0; }
 
  private:
+  bool brake_released() const noexcept;
   void decide() noexcept;
   void state_changed(image::DriveState before) noexcept;
   void supervise() noexcept;
@@ -85,7 +88,16 @@ class ServoProfile final : public DeviceProfile {
   SetPoint set_point_given() const noexcept;
   double target_of(const SetPoint& p) noexcept;
   double arrival_speed(double target) noexcept;
-  bool target_reached() const noexcept;
+  void watch_window(bool inside) noexcept {
+    if (!inside)
+      window_time_.reset();
+    else
+      window_time_ = window_time_ ? *window_time_ + h_ : 0.0;
+  }
+  /// Inside of the window for as long as `window_ms` asks for; 0: as soon as it is inside.
+  bool in_window(std::int64_t window_ms) const noexcept {
+    return window_time_ && *window_time_ * 1e3 >= static_cast<double>(window_ms);
+  }
   void position_to_target() noexcept;
   void go_on_behind_target() noexcept;
   void stop_at_limit_switch() noexcept;
@@ -140,7 +152,9 @@ class ServoProfile final : public DeviceProfile {
   double following_time_ = 0.0;
   bool following_exceeded_ = false;
   double threshold_time_ = 0.0;  ///< how long the speed (pv) has been above 606Fh
-  double window_time_ = 0.0;     ///< how long the target (pp, pv) has been inside its window
+  /// How long the target (pp, pv) has been inside its window; nullopt: it is not.
+  std::optional<double> window_time_;
+  image::Nanoseconds sync_at_ = 0;
 
   // csp
   ObjectDictionary::Slot target_position_slot_, controlword_slot_, ip_record_slot_;
