@@ -64,6 +64,9 @@ struct BrakeConfig {
   double torque_delay = 0.05;  ///< s from Operation enabled until the drive surely holds the load
   double slip_window = 0.5;    ///< mm of movement permitted while the brake opens or closes
   double engage_delay = 0.0;   ///< s from the output to a closed brake; power stays on that long
+  /// s from the control's death until the relay that watches safety.control_alive takes the voltage from the
+  /// brake; 0: no relay does.
+  double relay_delay = 0.0;
   bool present() const { return drive_output || !point.empty(); }
 };
 
@@ -98,9 +101,10 @@ struct AxisConfig {
   double jog_velocity_not_homed = 0.0;    ///< mm/s, also off a hard limit; 0: a hundredth of max_velocity
   std::string limit_plus;                 ///< input points, TRUE = on the limit
   std::string limit_minus;
-  double hard_limit_plus =
-      kNoLimit;  ///< machine coordinate at which the switch works, for the braking margin
+  double hard_limit_plus = kNoLimit;  ///< machine coordinate at which the switch works
   double hard_limit_minus = -kNoLimit;
+  double mechanical_end_plus = kNoLimit;  ///< machine coordinate at which the axis runs into its end
+  double mechanical_end_minus = -kNoLimit;
   double backlash = 0.0;                           ///< mm, taken up when moving in minus direction
   std::vector<std::array<double, 2>> pitch_table;  ///< machine coordinate mm -> error mm, rising coordinates
   bool vertical = false;

@@ -8,6 +8,8 @@
 #include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
 #include "firmware_if/text/units.hpp"
 #include "gateway/machine/can_channel.hpp"
+#include "gateway/machine/check/control_death.hpp"
+#include "gateway/machine/check/overrun.hpp"
 #include "gateway/machine/keys/json.hpp"
 
 namespace servogate::machine {
@@ -19,10 +21,21 @@ constexpr text::Entry kScale{"consequence.scale", "{0}: {1} = {2} counts; {3} = 
 constexpr text::Entry kStop{"consequence.stop", "{0}: stops from {1} within {2}, in {3} s",
                             "{0}: останавливается с {1} на пути {2} за {3} с"};
 constexpr text::Entry kMargin{"consequence.limit_margin",
-                              "{0}: hard limits lie {1} and {2} outside the travel; a stop that begins on "
-                              "the switch ends within them from {3}",
-                              "{0}: аварийные концевики на {1} и {2} за ходом; остановка, начатая от "
-                              "концевика, укладывается в этот путь с {3}"};
+                              "{0}: the limit switches work {1} and {2} outside the travel",
+                              "{0}: концевики срабатывают на {1} и {2} за ходом"};
+constexpr text::Entry kOverrun{
+    "consequence.overrun",
+    "{0}: {1} behind the switch {0}{2} comes the mechanical end; a stop that begins on the switch ends "
+    "before it "
+    "from up to {3}; not homed the axis gets there at {4} and needs {5}",
+    "{0}: упор через {1} за концевиком {0}{2}; остановка от концевика укладывается в этот путь с {3} и ниже; "
+    "без нуля ось приходит туда на {4}, ей нужно {5}"};
+constexpr text::Entry kEndUnknown{
+    "consequence.end_unknown",
+    "{0}: whether a stop that begins on a limit switch ends before the mechanical end cannot be said: "
+    "mechanical_end_minus, mechanical_end_plus",
+    "{0}: успеет ли ось остановиться от концевика до упора, сказать нельзя: mechanical_end_minus, "
+    "mechanical_end_plus"};
 constexpr text::Entry kHome{"consequence.home", "home {0} on {1}, {2} ms: ±{3} at {4}{5}",
                             "выход в ноль {0} по {1}, {2} мс: ±{3} на {4}{5}"};
 constexpr text::Entry kFollowing{"consequence.following_error",
@@ -75,26 +88,24 @@ constexpr text::Entry kEmergencyStop{"consequence.emergency_stop",
                                      "задержка t_d реле безопасности должна быть больше"};
 constexpr text::Entry kBrake{"consequence.brake", "{0}: power goes {1} ms after the brake is told to engage",
                              "{0}: питание снимается через {1} мс после команды на зажатие тормоза"};
+constexpr text::Entry kControlDeath{"consequence.control_death",
+                                    "{0}: if the control dies at {1}, {2}; {3}: {4}",
+                                    "{0}: если управление остановится на {1}, {2}; {3}: {4}"};
 
-/// Way and time of a jerk-limited stop from speed v to rest. Where the acceleration is not reached, the
-/// profile is two ramps of jerk.
-struct Stop {
-  double way = 0.0;
-  double time = 0.0;
-};
-Stop stop_from(double v, double a, double j) {
-  const double time = v * j >= a * a ? v / a + a / j : 2.0 * std::sqrt(v / j);
-  return {v * time / 2.0, time};
+/// The greatest n of "every n-th SYNC" of the PDOs that carry one of the objects; 1: none is slower.
+int slowest(const std::vector<PdoConfig>& pdos, const std::vector<int>& objects) {
+  int n = 1;
+  for (const PdoConfig& pdo : pdos)
+    if (pdo.cyclic() && std::any_of(pdo.objects.begin(), pdo.objects.end(), [&](const PdoObject& o) {
+          return std::find(objects.begin(), objects.end(), o.index) != objects.end();
+        }))
+      n = std::max(n, pdo.transmission);
+  return n;
 }
 
-/// Greatest speed from which a stop fits into `way`.
-double speed_for(double way, double a, double j) {
-  double low = 0.0, high = 1e6;
-  for (int i = 0; i < 80; ++i) {
-    const double middle = (low + high) / 2.0;
-    (stop_from(middle, a, j).way <= way ? low : high) = middle;
-  }
-  return low;
+const DeviceConfig* device_of(const LoadResult& loaded, const std::string& reference) {
+  const NodeConfig* node = loaded.machine.node(reference);
+  return node == nullptr ? nullptr : loaded.device(node->device);
 }
 
 class Sentences {
@@ -179,6 +190,24 @@ class Sentences {
     if (a.brake.present())
       say(a.letter, kBrake, {a.letter, text::number(a.brake.engage_delay * 1e3)},
           {{"engage_delay", a.brake.engage_delay}});
+    dies(a);
+  }
+
+  void dies(const AxisConfig& a) {
+    const auto death = control_death(loaded_, a);
+    if (!death) return;
+    const ControlDeathWords words = words_of(*death, a);
+    std::map<std::string, double> figures;
+    const auto figure = [&figures](const char* name, double value) {
+      if (value != kNoLimit) figures[name] = value;
+    };
+    figure("notices", death->notices);
+    figure("following_error", death->follows);
+    figure("brake_closed", death->brake_closed);
+    figure("falls_for", death->falls_for);
+    if (death->falls_for != kNoLimit) figure("falls", death->falls);
+    say(a.letter, kControlDeath, {a.letter, speed(a.max_velocity), words.drive, words.brake, words.fall},
+        std::move(figures));
   }
 
   void emergency_stop() {
@@ -198,15 +227,10 @@ class Sentences {
         {{"stop_time", time}, {"spindle_stop_time", turning}});
   }
 
-  const DeviceConfig* device_of(const std::string& reference) const {
-    const NodeConfig* node = m_.node(reference);
-    return node == nullptr ? nullptr : loaded_.device(node->device);
-  }
-
   /// How long a command may wait for its frame, beyond the cycle that gives it.
   double command_wait(const std::string& reference) const {
     namespace object = canopen::object;
-    const DeviceConfig* device = device_of(reference);
+    const DeviceConfig* device = device_of(loaded_, reference);
     if (device == nullptr) return 0.0;
     if (device->behaviour.sdo_only) return sdo_round(loaded_, reference);
     return (slowest(device->rpdos,
@@ -215,38 +239,26 @@ class Sentences {
            m_.control.cycle_time;
   }
 
-  /// The greatest n of "every n-th SYNC" of the PDOs that carry one of the objects; 1: none is slower.
-  static int slowest(const std::vector<PdoConfig>& pdos, const std::vector<int>& objects) {
-    int n = 1;
-    for (const PdoConfig& pdo : pdos)
-      if (pdo.cyclic() && std::any_of(pdo.objects.begin(), pdo.objects.end(), [&](const PdoObject& o) {
-            return std::find(objects.begin(), objects.end(), o.index) != objects.end();
-          }))
-        n = std::max(n, pdo.transmission);
-    return n;
-  }
-
-  /// Time between two looks at the signals of a station, s; 0: they are read in the cycle itself.
-  double read_every(const StationConfig& s) const {
-    if (s.kind == StationKind::modbus) return s.period;
-    const DeviceConfig* device = s.over_bus() ? device_of(s.node) : nullptr;
-    if (device == nullptr) return 0.0;
-    std::vector<int> objects;
-    for (const PointConfig& p : s.points) {
-      if (!p.is_input()) continue;
-      const auto found = channel_object(device->kind, p.channel, p.number);
-      objects.push_back(found ? found->object.index : canopen::object::kDigitalInputs);
-    }
-    return slowest(device->tpdos, objects) * m_.control.cycle_time;
-  }
-
   void margin(const AxisConfig& a) {
     if (!std::isfinite(a.hard_limit_plus) || !std::isfinite(a.hard_limit_minus)) return;
     const double plus = a.hard_limit_plus - a.travel_max, minus = a.travel_min - a.hard_limit_minus;
-    const double way = std::max(0.0, std::min(plus, minus));
-    const double v = speed_for(way, a.max_acceleration, a.max_jerk);
-    say(a.letter, kMargin, {a.letter, length(minus), length(plus), speed(std::floor(v * 10.0) / 10.0)},
-        {{"margin_minus", minus}, {"margin_plus", plus}, {"safe_velocity", v}});
+    say(a.letter, kMargin, {a.letter, length(minus), length(plus)},
+        {{"margin_minus", minus}, {"margin_plus", plus}});
+    bool known = false;
+    for (const bool side : {false, true}) {
+      const auto o = overrun(loaded_, a, side);
+      if (!o) continue;
+      known = true;
+      say(a.letter, kOverrun,
+          {a.letter, length(o->room), side ? "+" : "-", speed(std::floor(o->safe_velocity * 10.0) / 10.0),
+           speed(o->velocity), length(o->way)},
+          {{"room", o->room},
+           {"safe_velocity", o->safe_velocity},
+           {"velocity", o->velocity},
+           {"overrun", o->way}});
+    }
+    if (!known && !(a.limit_plus.empty() && a.limit_minus.empty()))
+      say(a.letter, kEndUnknown, {a.letter}, {});
   }
 
   /// The switch is seen once in the period of its station: that long the axis moves on unseen.
@@ -255,7 +267,7 @@ class Sentences {
     int station = -1;
     if (h.switch_point.empty() || m_.point(h.switch_point, &station) == nullptr) return;
     const StationConfig& s = m_.stations[static_cast<std::size_t>(station)];
-    const double period = std::max(read_every(s), m_.control.cycle_time);
+    const double period = std::max(read_every(loaded_, s), m_.control.cycle_time);
     const bool index = h.method == HomingMethod::switch_and_index;
     // Without an index the slow edge is the zero; with one it only has to find the right turn.
     const double v = h.method == HomingMethod::switch_only ? h.slow : h.fast;
@@ -295,7 +307,7 @@ class Sentences {
 
   void station(const StationConfig& s) {
     // A poll may just have passed when a signal changes, and the answer then waits for its cycle.
-    const double age = read_every(s) + m_.control.cycle_time;
+    const double age = read_every(loaded_, s) + m_.control.cycle_time;
     say(s.name, kStation, {s.name, std::to_string(s.points.size()), text::number(age * 1e3)},
         {{"signals", static_cast<double>(s.points.size())}, {"age", age}});
   }
@@ -351,6 +363,19 @@ canopen::SegmentServices planned_services(const BusConfig& bus) {
 canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus) {
   return canopen::segment_load(static_cast<std::uint32_t>(bus.bit_rate), loaded.machine.cycle_ns(),
                                planned_nodes(loaded, bus), planned_services(bus));
+}
+
+double read_every(const LoadResult& loaded, const StationConfig& s) {
+  if (s.kind == StationKind::modbus) return s.period;
+  const DeviceConfig* device = s.over_bus() ? device_of(loaded, s.node) : nullptr;
+  if (device == nullptr) return 0.0;
+  std::vector<int> objects;
+  for (const PointConfig& p : s.points) {
+    if (!p.is_input()) continue;
+    const auto found = channel_object(device->kind, p.channel, p.number);
+    objects.push_back(found ? found->object.index : canopen::object::kDigitalInputs);
+  }
+  return slowest(device->tpdos, objects) * loaded.machine.control.cycle_time;
 }
 
 double sdo_round(const LoadResult& loaded, const std::string& reference) {

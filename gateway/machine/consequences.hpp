@@ -29,6 +29,8 @@ canopen::SegmentServices planned_services(const BusConfig& bus);
 /// Planned load of a segment with its devices' PDO maps.
 canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus);
 
+/// Time between two looks at the signals of a station, s; 0: they are read in the cycle itself.
+double read_every(const LoadResult& loaded, const StationConfig& station);
 /// Time between two set-points of a drive that only answers SDO, in seconds, at best; 0: it has process data,
 /// or there is no such node ("bus.node").
 double sdo_round(const LoadResult& loaded, const std::string& reference);

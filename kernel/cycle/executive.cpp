@@ -12,7 +12,6 @@
 namespace servogate::cycle {
 
 namespace {
-constexpr std::int64_t kAliveCycles = 50;  ///< between two changes of MC.control_alive
 constexpr const char* kPhaseNames[kPhases] = {"receive", "logic", "interpolate", "axes", "send", "publish"};
 }  // namespace
 
@@ -326,7 +325,7 @@ void Cycle::write_machine_places() noexcept {
   alarms_.write_interface(image_);
   image::Packets& k = image_.packets;
   // A level that stands still tells the safety relay: no cycles, cycles far too late, or no logic.
-  const bool alive = (count_ / kAliveCycles) % 2 != 0 && !alarms_.control_fails();
+  const bool alive = (count_ / places::kAliveCycles) % 2 != 0 && !alarms_.control_fails();
   k.set_bit(places::kControlAlive, alive);
   if (parts_.alive_place) k.set_bit(*parts_.alive_place, alive);
   k.set_bit(places::kReady, reaction_ < image::Reaction::stop_at_block_end && k.bit(places::kEstopOk));

@@ -16,4 +16,7 @@ inline constexpr image::Place kStart = image::field(image::kProcessFields, "star
 inline constexpr image::Place kReset = image::field(image::kProcessFields, "reset");
 inline constexpr image::Place kExternalAlarm = image::field(image::kProcessFields, "external_alarm");
 
+/// Cycles between two changes of kControlAlive.
+inline constexpr std::int64_t kAliveCycles = 50;
+
 }  // namespace servogate::cycle::places

@@ -118,17 +118,44 @@ TEST(Consequences, half_the_bit_rate_is_refused_with_what_would_fit) {
   EXPECT_NE(lines.find("it fits with a cycle of 2 ms"), std::string::npos) << lines;
 }
 
-TEST(Consequences, a_margin_between_travel_and_switch_gives_a_safe_speed) {
+TEST(Consequences, the_room_for_a_stop_is_what_lies_between_switch_and_mechanical_end) {
+  int sides = 0;
   for (const Consequence& c : consequences(mill())) {
     if (c.subject != "X" || !c.figures.contains("safe_velocity")) continue;
-    EXPECT_EQ(c.figures.at("margin_plus"), 5.0);
-    const double v = c.figures.at("safe_velocity");
-    // 62.99 mm/s: below the speed at which the acceleration limit is reached, two ramps of jerk: v * sqrt(v /
-    // j) = 5 mm.
-    EXPECT_NEAR(v * std::sqrt(v / 10000.0), 5.0, 1e-6);
+    ++sides;
+    EXPECT_EQ(c.figures.at("room"), 6.0) << "311 mm less 305 mm, not 305 mm less the travel";
+    // The switch is read in each cycle; three cycles pass until the stop begins. Below the speed at which the
+    // acceleration limit is reached it is two ramps of jerk: v * sqrt(v / j).
+    const auto way = [](double v) { return v * 0.003 + v * std::sqrt(v / 10000.0); };
+    EXPECT_NEAR(way(c.figures.at("safe_velocity")), 6.0, 1e-6);
+    EXPECT_EQ(c.figures.at("velocity"), 50.0) << "the search for the home switch is what is fastest";
+    EXPECT_NEAR(c.figures.at("overrun"), way(50.0), 1e-9);
+  }
+  EXPECT_EQ(sides, 2);
+}
+
+TEST(Consequences, without_the_mechanical_end_no_stop_is_called_within_it) {
+  const LoadResult loaded =
+      mill("mechanical_end_minus = \"-311 mm\"\nmechanical_end_plus = \"311 mm\"\n", "");
+  int said = 0;
+  for (const Consequence& c : consequences(loaded)) {
+    if (c.subject != "X") continue;
+    EXPECT_FALSE(c.figures.contains("safe_velocity")) << c.str();
+    said += std::string_view(c.entry->id) == "consequence.end_unknown" ? 1 : 0;
+  }
+  EXPECT_EQ(said, 1);
+}
+
+TEST(Consequences, of_the_control_s_death_are_said_for_each_axis_with_a_brake) {
+  for (const Consequence& c : consequences(mill())) {
+    if (std::string_view(c.entry->id) != "consequence.control_death") continue;
+    EXPECT_EQ(c.subject, "Z");
+    EXPECT_EQ(c.figures.at("notices"), 0.3);
+    EXPECT_EQ(c.figures.at("falls_for"), 0.0);
+    EXPECT_TRUE(c.str(text::Language::english).ends_with(": nothing falls")) << c.str();
     return;
   }
-  FAIL() << "no margin said";
+  FAIL() << "Z is hanging";
 }
 
 TEST(Consequences, json_carries_sentence_and_figures) {

@@ -30,6 +30,10 @@ void check_control(const MachineConfig& machine, Reading& reading);
 void check_can_stations(const LoadResult& loaded, Reading& reading);
 /// Heartbeats, guarding, deadlines, SYNC window and TIME against each other and the cycle.
 void check_bus_times(const LoadResult& loaded, Reading& reading);
+/// Mechanical ends: behind the switches, and far enough for a stop.
+void check_overrun(const LoadResult& loaded, Reading& reading);
+/// Axes with a brake: whether they fall when the control dies.
+void check_control_death(const LoadResult& loaded, Reading& reading);
 /// Bus load and speed of motors against the device files.
 void check_devices(const LoadResult& loaded, Reading& reading);
 

@@ -73,6 +73,18 @@ inline constexpr text::Entry kNoLimitSwitch{
 inline constexpr text::Entry kLimitInside{"machine.limit_inside",
                                           "{0}: {1} {2} lies inside the travel {3} to {4}",
                                           "{0}: {1} {2} лежит внутри хода от {3} до {4}"};
+inline constexpr text::Entry kEndInside{"machine.end_inside",
+                                        "{0}: {1} {2} does not lie behind {3}, where its switch works or its "
+                                        "travel ends",
+                                        "{0}: {1} {2} должен лежать за {3}, где срабатывает концевик или "
+                                        "кончается ход"};
+inline constexpr text::Entry kEndTooNear{
+    "machine.end_too_near",
+    "{0}: {2} from the switch {0}{1} to the mechanical end are too few: not homed it gets there at {3} and "
+    "stops "
+    "after {4}; up to {5} would fit (home.fast, jog_velocity_not_homed)",
+    "{0}: от концевика {0}{1} до упора {2} — мало: без нуля ось приходит туда на {3} и останавливается через "
+    "{4}; годится до {5} (home.fast, jog_velocity_not_homed)"};
 inline constexpr text::Entry kSamePoint{"machine.same_point",
                                         "{0}: `{1}` and `{2}` are the same point \"{3}\"",
                                         "{0}: «{1}» и «{2}» — один и тот же сигнал «{3}»"};
@@ -103,6 +115,20 @@ inline constexpr text::Entry kBrakeDelay{
     "machine.brake_delay",
     "{0}: brake.engage_delay is {1} ms, less than a cycle of {2} ms: power goes before the brake holds",
     "{0}: brake.engage_delay равен {1} мс, меньше такта {2} мс: питание снимется раньше, чем тормоз зажмёт"};
+inline constexpr text::Entry kFallsWithControl{"machine.falls_with_control",
+                                               "{0}: if the control dies at {1}, {2}; {3}: {4}; {5}",
+                                               "{0}: если управление остановится на {1}, {2}; {3}: {4}; {5}"};
+inline constexpr text::Entry kRelayWatchesNothing{
+    "machine.relay_watches_nothing",
+    "{0}: brake.relay_delay is the time of a relay that watches safety.control_alive, and there is none",
+    "{0}: brake.relay_delay — время реле, следящего за safety.control_alive, а этот выход не задан"};
+inline constexpr text::Entry kRelayTooQuick{"machine.relay_too_quick",
+                                            "{0}: brake.relay_delay is {1} ms, but safety.control_alive "
+                                            "changes every {2} ms only: the relay would fall "
+                                            "while the control lives",
+                                            "{0}: brake.relay_delay равен {1} мс, а safety.control_alive "
+                                            "меняется лишь каждые {2} мс: реле отпускало бы "
+                                            "при живом управлении"};
 inline constexpr text::Entry kBrakeTwo{"machine.brake_twice",
                                        "{0}: the brake has both `point` and `drive_output`",
                                        "{0}: у тормоза заданы и `point`, и `drive_output`"};

@@ -100,6 +100,12 @@ const Section& section_of<BrakeConfig>() {
       key<&C::engage_delay>("engage_delay", {.unit = Unit::second, .min = 0, .max = 10},
                             "time from the output to a closed brake; the drive holds that long",
                             "время от сигнала до зажатия тормоза; привод удерживает ось до его конца"),
+      key<&C::relay_delay>(
+          "relay_delay", {.unit = Unit::second, .min = 0, .max = 60},
+          "time from the last change of safety.control_alive until the relay that watches it "
+          "takes the voltage from the brake; 0: no relay does",
+          "время от последнего изменения safety.control_alive до снятия напряжения с тормоза "
+          "реле, которое за ним следит; 0: такого реле нет"),
   };
   static const Section section{"holding brake of the axis", "удерживающий тормоз оси", keys,
                                &default_object<C>};
@@ -191,14 +197,22 @@ std::span<const Key> axis_keys() {
       key<&C::limit_minus>("limit_minus", {.refers = Refers::digital_input},
                            "input point of the negative limit switch, 1 = on it",
                            "входной сигнал концевого выключателя «минус», 1 = сработал"),
-      key<&C::hard_limit_plus>(
-          "hard_limit_plus", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
-          "machine coordinate at which the positive switch works, for the braking margin",
-          "машинная координата срабатывания концевика «плюс», для запаса на торможение"),
+      key<&C::hard_limit_plus>("hard_limit_plus",
+                               {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                               "machine coordinate at which the positive switch works",
+                               "машинная координата срабатывания концевика «плюс»"),
       key<&C::hard_limit_minus>("hard_limit_minus",
                                 {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
                                 "machine coordinate at which the negative switch works",
                                 "машинная координата срабатывания концевика «минус»"),
+      key<&C::mechanical_end_plus>(
+          "mechanical_end_plus", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+          "machine coordinate at which the axis runs into its end, behind the positive switch: the room of a "
+          "stop that begins on the switch",
+          "машинная координата механического упора за концевиком «плюс»: путь для торможения от концевика"),
+      key<&C::mechanical_end_minus>("mechanical_end_minus",
+                                    {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                                    "the same behind the negative switch", "то же за концевиком «минус»"),
       key<&C::backlash>("backlash", {.unit = Unit::axis_length, .min = 0, .max = 10},
                         "backlash, taken up when moving in minus direction",
                         "люфт, выбирается при движении в минус"),
