@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/run/running_machine.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -15,7 +16,8 @@ namespace {
 
 /// In virtual time each so-many-th cycle is measured: as good a statistic, and the stopwatch costs little.
 constexpr int kMeasuredCycles = 8;
-constexpr int kPublishedCycles = 5;  ///< of real time: a reader looks every 10 ms
+constexpr image::Nanoseconds kPublished =
+    5 * image::kMillisecond;  ///< of real time: a reader looks every 10 ms
 constexpr auto kLook = std::chrono::milliseconds(10);
 constexpr int kFirstLooks = 200;
 
@@ -76,7 +78,8 @@ RunningMachine::RunningMachine(std::unique_ptr<HeldState> state, const RunSettin
   if (settings_.clock == ClockKind::virtual_time) control_->cycle().measure_every(kMeasuredCycles);
   if (settings_.source == nullptr) control_->world().close_operator_points();
   if (!moves_by_itself()) return;
-  control_->cycle().publish_every(paced() ? 1 : kPublishedCycles);
+  const auto cycles = static_cast<int>(kPublished / control_->cycle().period_ns());
+  control_->cycle().publish_every(paced() ? 1 : std::max(1, cycles));
   image_ = std::make_unique<image::ProcessImage>();
 }
 

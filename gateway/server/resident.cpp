@@ -42,10 +42,13 @@ bool Resident::ask(image::Request request, image::Answer& answer, int patience_m
   return false;
 }
 
-/// Waits for the next whole image, which holds what the answered request did.
+/// Waits for the next whole image, which holds what the answered request did: whoever asks for the status
+/// then must not be told of the time before.
 void Resident::catch_up() {
+  constexpr std::chrono::seconds kPatience{1};  // a cycle that answers goes on, however long it is
+  const auto end = std::chrono::steady_clock::now() + kPatience;
   const std::int64_t before = image().now.number;
-  for (int n = 0; n < 100 && image().now.number == before; ++n)
+  while (image().now.number == before && std::chrono::steady_clock::now() < end)
     std::this_thread::sleep_for(std::chrono::microseconds(500));
 }
 

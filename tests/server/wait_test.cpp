@@ -33,6 +33,32 @@ TEST(Power, is_on_when_the_command_has_ended_brakes_included) {
   EXPECT_FALSE(shell.status()["axes"][2]["enabled"].get<bool>());
 }
 
+/// The example mill with this cycle in real time, its drives on.
+void up_at(Shell& shell, const std::string& cycle_time) {
+  std::ifstream in(Shell::example("mill/machine.toml"));
+  std::string machine((std::istreambuf_iterator<char>(in)), {});
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"\"1 ms\"", "\"" + cycle_time + "\""},
+                                 {"\"mill.st\"", "\"" + Shell::example("mill/mill.st") + "\""}}) {
+    const std::size_t at = machine.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    machine.replace(at, from.size(), to);
+  }
+  std::ofstream(shell.folder() / "slow.toml") << machine;
+  shell.up_file((shell.folder() / "slow.toml").string(), {"--realtime=best-effort"});
+  ASSERT_EQ(shell.run({"power", "on"}).exit, 0);
+}
+
+TEST(Home, waits_for_all_axes_with_a_long_cycle_too) {
+  for (const char* cycle_time : {"15 ms", "20 ms"}) {
+    Shell shell;
+    up_at(shell, cycle_time);
+    const Outcome home = shell.run({"home", "--wait"});
+    EXPECT_EQ(home.exit, 0) << cycle_time << ": " << home.err;
+    for (const json& a : shell.status()["axes"])
+      EXPECT_TRUE(a["homed"].get<bool>()) << cycle_time << ": " << a["letter"];
+  }
+}
+
 TEST(Power, does_not_wait_when_it_is_told_so) {
   Shell shell;
   shell.up("mill", {"--virtual", "--speed", "0.05"});
