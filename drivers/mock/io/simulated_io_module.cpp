@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "drivers/mock/io/profiled_node.hpp"
+#include "firmware_if/canopen/401/objects.hpp"
 #include "firmware_if/canopen/device/communication_objects.hpp"
 #include "firmware_if/canopen/device/io/io_profile.hpp"
 
@@ -25,7 +26,14 @@ struct SimulatedIoModule::Inside {
   explicit Inside(const SimulatedIoConfig& c)
       : config(c),
         node(config.node_id, config.boot_time_s, rows_of(config), config.terminals,
-             static_cast<Nanoseconds>(std::llround(config.filter_s * 1e9))) {}
+             static_cast<Nanoseconds>(std::llround(config.filter_s * 1e9))) {
+    namespace io = canopen::io;
+    if (config.error_states) return;
+    for (const canopen::ObjectSpec& row : canopen::io_objects(config.node_id, config.terminals))
+      for (const std::uint16_t index : {io::kErrorModeOutput8, io::kErrorValueOutput8,
+                                        io::kErrorModeAnalogueOutput, io::kErrorValueAnalogueOutput})
+        if (row.index == index) node.dictionary.hide(node.dictionary.find(row.index, row.subindex));
+  }
 
   SimulatedIoConfig config;  ///< the dictionary's texts are its
   ProfiledNode<canopen::IoProfile> node;

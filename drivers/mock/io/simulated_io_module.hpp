@@ -21,6 +21,8 @@ struct SimulatedIoConfig {
   std::uint32_t serial_number = 1;
   double boot_time_s = 0.01;  ///< from power-on to the boot-up message
   double filter_s = 0.005;    ///< of an input whose filter 6003h switches on
+  /// Has 6206h, 6207h, 6443h and 6444h; false: it takes its outputs to 0, and nobody can change that.
+  bool error_states = true;
 };
 
 /// A complete CiA 301/401 I/O module in simulated time: digital and analogue terminals, change of state,

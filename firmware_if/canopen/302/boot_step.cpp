@@ -3,6 +3,8 @@
 
 #include <iterator>
 
+#include "firmware_if/canopen/402/objects.hpp"
+
 namespace servogate::canopen {
 namespace {
 
@@ -46,7 +48,47 @@ constexpr text::Entry kFlashErrors[] = {
 };
 constexpr text::Entry kFlashOther{"flash-other", "error {0} of the flash", "ошибка памяти {0}"};
 
+/// By step and object; object 0: any.
+struct Waiver {
+  BootStep step;
+  std::uint16_t index;
+  std::string_view key;
+};
+constexpr Waiver kWaivers[] = {
+    {BootStep::identity, 0x1018, "vendor_id, product_code, revision = 0"},
+    {BootStep::software_version, 0, "software_version = \"\""},
+    {BootStep::program, 0, "program_version = -1"},
+    {BootStep::supported_modes, 0, "check_modes = false"},
+    {BootStep::encoder_resolution, 0, "encoder.counts_per_rev, encoder.revolutions = 0"},
+    {BootStep::configuration, 0, "configuration"},
+    {BootStep::settings, object::kDigitalOutputs, "brake_bit = -1, objects"},
+    {BootStep::settings, 0, "objects"},
+    {BootStep::homing, object::kSupportedHomingMethods, "homing_method_list = false"},
+    {BootStep::homing, 0, "home.method, homing_method_none = false"},
+    {BootStep::node_guarding, 0, "guard_time = \"0 s\""},
+    {BootStep::heartbeat_consumer, 0, "heartbeat_consumer = false"},
+    {BootStep::abort_connection, 0, "connection_loss = \"none\""},
+    {BootStep::error_states, 0, "connection_loss = \"none\""},
+    {BootStep::sync, object::kSyncCounterOverflow, "sync_counter = false"},
+    {BootStep::sync, object::kSynchronousWindowLength, "sync_window = \"0 s\""},
+    {BootStep::sync, object::kCommunicationCyclePeriod, "cycle_period = false"},
+    {BootStep::rpdo, 0, "rpdo, fixed_pdo_map = true"},
+    {BootStep::tpdo, 0, "tpdo, fixed_pdo_map = true"},
+    {BootStep::interpolation_time, object::kInterpolationBuffer, "ip_buffer = false"},
+    {BootStep::interpolation_time, 0, "interpolation_period = false, interpolation_base"},
+    {BootStep::mode, 0, "position_mode, speed_mode"},
+    {BootStep::heartbeat_producer, 0, "heartbeat, guard_time"},
+};
+
 }  // namespace
+
+std::string_view boot_waiver(const BootReport& report) noexcept {
+  // Another value than the right one is no inability, and neither is silence.
+  if (report.index == 0 || report.problem != BootProblem::aborted) return {};
+  for (const Waiver& w : kWaivers)
+    if (w.step == report.step && (w.index == 0 || w.index == report.index)) return w.key;
+  return {};
+}
 
 const text::Entry& flash_error_text(std::uint32_t status) noexcept {
   const std::uint32_t code = status >> 1 & 0x7F;

@@ -76,6 +76,10 @@ struct BootReport {
 /// Words for the error in 1F57h (bits 1-7). Source: CiA 302-3, "Flash status identification". real-time safe.
 const text::Entry& flash_error_text(std::uint32_t status) noexcept;
 
+/// What a device file or machine file has to say of a device that refused the access because it cannot do it:
+/// `connection_loss = "none"`; empty: there is nothing to say. real-time safe.
+std::string_view boot_waiver(const BootReport& report) noexcept;
+
 /// Name of a step. real-time safe.
 const text::Entry& boot_step_text(BootStep step) noexcept;
 

@@ -86,6 +86,7 @@ constexpr Entry kNotInList{"can-not-in-list", "{0}: {1} is none of the {2} that 
 constexpr Entry kFlashError{"can-flash-error", "{0}: {3} ({2})", "{0}: {3} ({2})"};
 constexpr Entry kFlashTimeout{"can-flash-timeout", "{0}: the flash is still at work ({2})",
                               "{0}: память всё ещё занята ({2})"};
+constexpr Entry kWaiver{"can-waiver", " (of a device without it: {0})", " (для устройства без этого: {0})"};
 constexpr Entry kBadProtocol{"can-bad-protocol", "{0}: the answer is against the SDO protocol, {3} ({1})",
                              "{0}: ответ нарушает протокол SDO, {3} ({1})"};
 
@@ -143,6 +144,12 @@ std::string problem_words(const BootReport& report, Language language) {
   }
 }
 
+/// What may be said of a device that is not made for it.
+std::string waiver_words(const BootReport& report, Language language) {
+  const std::string_view key = boot_waiver(report);
+  return key.empty() ? std::string() : fill(kWaiver, {std::string(key)}, language);
+}
+
 std::string bytes_words(const std::uint8_t* bytes, std::size_t count) {
   std::string words;
   for (std::size_t i = 0; i < count; ++i) {
@@ -176,7 +183,7 @@ std::vector<std::string> arguments_of(const BusEvent& e, std::string_view name, 
   switch (e.kind) {
     case BusEventKind::boot_failed:
       add(fill(boot_step_text(e.boot.step), {}, language));
-      add(problem_words(e.boot, language));
+      add(problem_words(e.boot, language) + waiver_words(e.boot, language));
       break;
     case BusEventKind::emcy:
       add(hex(e.emcy.error_code, 4));

@@ -101,6 +101,7 @@ mock::SimulatedIoConfig simulated_module(const machine::DeviceConfig& device, in
   namespace io = canopen::io;
   mock::SimulatedIoConfig module;
   put_name_plate(device, node, module);
+  module.error_states = device.behaviour.connection_loss != machine::ConnectionLoss::none;
   const auto count = [](const std::vector<machine::PdoConfig>& pdos, std::uint16_t index, int each,
                         int most) {
     return static_cast<std::uint8_t>(std::min(each * machine::mapped_subindices(pdos, index), most));

@@ -54,6 +54,10 @@ class CanStation {
           m_.where(path + ".channel"), finding::kPointNotMapped,
           {p.channel_text, object_text(found->object), p.is_input() ? "tpdo" : "rpdo", node_->device});
     if (p.is_analog()) number(p, *found, path);
+    if (!p.is_input() && device_->behaviour.connection_loss == ConnectionLoss::none &&
+        (p.hold || p.loss != 0.0))
+      reading_.error(m_.where(path + (p.hold ? ".hold" : ".loss")), finding::kLossIsTheModules,
+                     {p.name, node_->device});
     if (p.channel == ChannelKind::di && pdo->transmission != 1) slow(p, *pdo);
   }
 
@@ -112,6 +116,11 @@ void check_owners(const LoadResult& loaded, Reading& reading) {
       if (!device->rpdos.empty() && !node.unsupervised &&
           !canopen::notices_silence(drive_profile(*device, node, 0)))
         reading.error(m.where(path + ".device"), finding::kUnsupervisedModule, {node.name, node.device});
+      if (device->behaviour.connection_loss == ConnectionLoss::none && !node.unsupervised)
+        for (const PdoConfig& pdo : device->rpdos)
+          if (pdo.event <= 0.0)
+            reading.error(m.where(path + ".device"), finding::kNoErrorStates,
+                          {node.name, node.device, std::to_string(pdo.number)});
     }
 }
 

@@ -124,11 +124,9 @@ class Hanging {
     }
     if (!b.point.empty() && loaded_.machine.point(b.point, &station) != nullptr) {
       const StationConfig& s = loaded_.machine.stations[static_cast<std::size_t>(station)];
-      int bus = -1;
-      if (s.kind == StationKind::canopen && loaded_.machine.node(s.node, &bus) != nullptr) {
+      if (const double silence = module_notices(s); silence != kNoLimit) {
         d.brake = Brake::station;
-        d.brake_closed =
-            heartbeat_missed(loaded_.machine.buses[static_cast<std::size_t>(bus)]) + b.engage_delay;
+        d.brake_closed = silence + b.engage_delay;
       }
     }
     if (b.relay_delay > 0.0 && !loaded_.machine.safety.control_alive.empty() &&
@@ -136,6 +134,21 @@ class Hanging {
       d.brake = Brake::relay;
       d.brake_closed = b.relay_delay + b.engage_delay;
     }
+  }
+
+  /// When an I/O module takes its outputs to where they belong without the control.
+  double module_notices(const StationConfig& station) const {
+    int bus = -1;
+    const NodeConfig* node = loaded_.machine.node(station.node, &bus);
+    const DeviceConfig* device = node == nullptr ? nullptr : loaded_.device(node->device);
+    if (station.kind != StationKind::canopen || device == nullptr || node->unsupervised) return kNoLimit;
+    double time =
+        device->behaviour.connection_loss != ConnectionLoss::none && device->behaviour.heartbeat_consumer
+            ? heartbeat_missed(loaded_.machine.buses[static_cast<std::size_t>(bus)])
+            : kNoLimit;
+    for (const PdoConfig& pdo : device->rpdos)
+      if (pdo.event > 0.0 && !pdo.remote()) time = std::min(time, pdo.event);
+    return time;
   }
 
   /// The torque goes not before `at`. What the ramp takes is not counted: a slow axis has none.

@@ -365,6 +365,19 @@ inline constexpr text::Entry kSpindleCounts{"machine.spindle_counts",
 inline constexpr text::Entry kNoBrakeOutput{"machine.no_brake_output",
                                             "{0}: brake.drive_output, but {1} has no brake output",
                                             "{0}: задан brake.drive_output, но у {1} нет выхода тормоза"};
+inline constexpr text::Entry kNoErrorStates{
+    "machine.no_error_states",
+    "node {0}: device file \"{1}\" says that nobody can set what its outputs do when the control is silent "
+    "(connection_loss = \"none\"), and rpdo {2} has no deadline: give it one (event), or say unsupervised = "
+    "true",
+    "узел {0}: по файлу устройства «{1}» поведение выходов при молчании управления не задаётся "
+    "(connection_loss = \"none\"), а у rpdo {2} нет срока: задайте его (event) либо unsupervised = true"};
+inline constexpr text::Entry kLossIsTheModules{"machine.loss_is_the_modules",
+                                               "{0}: device file \"{1}\" has connection_loss = \"none\": its "
+                                               "outputs go where the module lets them, neither hold nor "
+                                               "loss can be asked for",
+                                               "{0}: в файле устройства «{1}» connection_loss = \"none\": "
+                                               "выходы ведёт сам модуль, hold и loss задать нельзя"};
 inline constexpr text::Entry kUnsupervised{
     "machine.unsupervised",
     "{0}: the drive {1} would not notice that the control has died (no heartbeat consumer or guarding with a "

@@ -202,9 +202,14 @@ const Section& section_of<BehaviourConfig>() {
       key<&C::life_time_factor>("life_time_factor", {.min = 2, .max = 255},
                                 "guard times of silence until either side counts as lost (100Dh)",
                                 "число периодов опроса без ответа до потери связи (100Dh)"),
-      key<&C::connection_loss>("connection_loss", {},
-                               "what the drive does when its master falls silent (6007h)",
-                               "что делает привод, когда ведущий замолчал (6007h)"),
+      key<&C::connection_loss>(
+          "connection_loss", {},
+          "what the drive does when its master falls silent (6007h); none: nothing, and of an "
+          "I/O module that it has no 6206h, 6207h, 6443h and 6444h: its outputs then go where "
+          "the module lets them, after the deadline (`event`) that each rpdo needs",
+          "что делает привод, когда ведущий замолчал (6007h); none: ничего, а у модуля "
+          "ввода-вывода нет 6206h, 6207h, 6443h и 6444h: выходы ведёт сам модуль по истечении "
+          "срока (`event`), который нужен каждому rpdo"),
   };
   static const Section section{"where the drive differs from CiA 402", "отличия привода от CiA 402", keys,
                                &default_object<C>};

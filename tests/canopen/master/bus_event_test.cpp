@@ -80,11 +80,15 @@ TEST(BusEventText, names_step_object_and_reason_of_a_failed_boot) {
             true,           AbortCode::cannot_be_mapped, 0x60BA0020, 0};
   EXPECT_EQ(describe(e, "Y", nullptr, Language::english),
             "Y: boot stopped at step \"process data of the device (TPDO)\": writing 1A01h:02 TPDO mapping "
-            "parameter: refused by the device, the object cannot be mapped into a PDO (06040041h)");
+            "parameter: refused by the device, the object cannot be mapped into a PDO (06040041h) (of a "
+            "device without "
+            "it: tpdo, fixed_pdo_map = true)");
   EXPECT_EQ(describe(e, "Y", nullptr, Language::russian),
             "Y: загрузка остановилась на шаге «данные процесса от устройства (TPDO)»: запись 1A01h:02 "
             "TPDO mapping "
-            "parameter: отказ устройства, объект нельзя включить в PDO (06040041h)");
+            "parameter: отказ устройства, объект нельзя включить в PDO (06040041h) (для устройства без "
+            "этого: tpdo, "
+            "fixed_pdo_map = true)");
   e.boot.abort = static_cast<AbortCode>(0x12345678);
   EXPECT_NE(describe(e, "Y", nullptr, Language::english).find("SDO abort code 12345678h, not in CiA 301"),
             std::string::npos);
@@ -93,6 +97,28 @@ TEST(BusEventText, names_step_object_and_reason_of_a_failed_boot) {
   e.boot.expected = 4;
   e.boot.got = 2;
   EXPECT_NE(describe(e, "Y", nullptr, Language::english).find("expected 4 bytes, got 2"), std::string::npos);
+}
+
+TEST(BusEventText, of_a_failed_boot_names_the_key_that_waives_the_step_where_there_is_one) {
+  BusEvent e = event(BusEventKind::boot_failed);
+  const auto said = [&](BootStep step, std::uint16_t index, BootProblem problem = BootProblem::aborted) {
+    e.boot = {step, problem, index, 0, true, AbortCode::object_does_not_exist, 0, 0};
+    return describe(e, "Y", nullptr, Language::english);
+  };
+  EXPECT_TRUE(said(BootStep::abort_connection, 0x6007).ends_with("without it: connection_loss = \"none\")"));
+  EXPECT_TRUE(said(BootStep::error_states, 0x6206).ends_with("without it: connection_loss = \"none\")"));
+  EXPECT_TRUE(said(BootStep::supported_modes, 0x6502).ends_with("without it: check_modes = false)"));
+  EXPECT_TRUE(said(BootStep::sync, 0x1019).ends_with("without it: sync_counter = false)"));
+  for (int step = static_cast<int>(BootStep::software_version); step < static_cast<int>(BootStep::start);
+       ++step)
+    if (step != static_cast<int>(BootStep::sync)) {
+      EXPECT_NE(said(static_cast<BootStep>(step), 0x2000).find("(of a device without it: "),
+                std::string::npos)
+          << step;
+    }
+  EXPECT_EQ(said(BootStep::abort_connection, 0x6007, BootProblem::no_answer).find("without it"),
+            std::string::npos)
+      << "whoever is silent has nothing to be excused";
 }
 
 TEST(BusEventText, prefers_the_drives_own_words_for_its_error_codes) {

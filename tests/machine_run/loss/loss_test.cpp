@@ -39,6 +39,8 @@ struct Expected {
   std::vector<image::AlarmNumber> first;  ///< any of them is the first fault
   int found_within;                       ///< cycles from the cut to the alarm
 };
+constexpr std::int64_t kStoodFor = 1000;  ///< cycles
+
 Expected expected(Part part) {
   using namespace cycle::alarm;
   using axis::alarm::kPdoMissing;
@@ -345,7 +347,9 @@ std::string Lossy::place(const Case& c, const OnPath& path) {
 std::string Lossy::words(const Case& c, const image::AlarmRecord& fault) const {
   std::ostringstream wrong;
   for (const image::AlarmRecord& r : mill_.control().cycle().alarms().history())
-    if (r.reaction > image::Reaction::warn && r.first_fault != fault.sequence)
+    // Where all axes have stood for long, what a drive tells when it is heard again is told for itself.
+    if (r.reaction > image::Reaction::warn && r.first_fault != fault.sequence &&
+        !(r.number == axis::alarm::kDriveFault && r.axis == c.axis && r.cycle > fault.cycle + kStoodFor))
       wrong << r.number << " is no consequence of the first fault; ";
   const cycle::AlarmNames names = mill_.control().alarm_names();
   int bus = -1, node = -1;

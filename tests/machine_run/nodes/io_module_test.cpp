@@ -166,6 +166,29 @@ TEST_F(IoModuleOnTheBus, that_is_another_device_is_named_with_the_step_and_never
   EXPECT_EQ(module(mill).object(0x1017), 0) << "nothing was written";
 }
 
+TEST_F(IoModuleOnTheBus, without_error_states_works_and_goes_to_rest_by_the_deadline_of_its_outputs) {
+  machine::LoadResult loaded = mill_with_module();
+  machine::DeviceConfig& device = loaded.devices.at("io-cia401-16-16-4-2");
+  device.behaviour.connection_loss = machine::ConnectionLoss::none;
+  for (machine::PdoConfig& pdo : device.rpdos) pdo.event = 0.25;
+  Mill mill(loaded, "");
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  EXPECT_EQ(mill.alarms(cycle::alarm::kBootFailed), 0);
+  EXPECT_EQ(module(mill).object(0x1400, 5), 250);
+  const auto any_on = [&] {
+    for (std::uint8_t line = 0; line < 16; ++line)
+      if (module(mill).digital(line)) return true;
+    return false;
+  };
+  ASSERT_TRUE(mill.until(any_on, 5.0)) << "a lamp";
+  // The control dies: nobody steps its cycle any more.
+  const image::Nanoseconds now = mill.image().now.t_ns;
+  mill.control().world().advance_to(now + 200 * image::kMillisecond);
+  EXPECT_TRUE(any_on());
+  mill.control().world().advance_to(now + 300 * image::kMillisecond);
+  EXPECT_FALSE(any_on());
+}
+
 TEST_F(IoModuleOnTheBus, debounce_works_for_its_inputs) {
   Mill mill(mill_with_module([](std::string& text) {
               replace(text, "{ name = \"air_ok\", channel = \"di2\", place = \"SA18\" }",
