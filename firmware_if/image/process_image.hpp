@@ -45,6 +45,7 @@ struct AxisImage {
   double distance_to_go = 0.0;
   AxisOwner owner = AxisOwner::none;
   JogEnd jog_end = JogEnd::none;
+  Hand hand;             ///< that began its last jog; meaningful while it jogs
   bool enabled = false;  ///< drive in Operation enabled and following
   bool homed = false;
   bool in_position = false;

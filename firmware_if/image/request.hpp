@@ -13,8 +13,8 @@ enum class RequestKind : std::uint8_t {
   home,            ///< axis, or -1 for all in the machine's order
   jog_increment,   ///< axis, value = signed distance in mm or degrees, at most the axis' whole travel
   jog_continuous,  ///< axis, value = +1 or -1; needs keep_alive at least every 100 ms of the wall clock
-  keep_alive,
-  jog_stop,  ///< axis, or -1 for all; value 1: because its keep-alive was missed
+  keep_alive,      ///< axis, or -1 for all that this Hand jogs; no other hand's jog is kept alive by it
+  jog_stop,  ///< axis, or -1 for all; value 1: its keep-alive was missed, which ends this Hand's jog only
   zero,      ///< axis, value = the value the present position gets in the active origin
   mode,      ///< value = image::Mode
   start,
@@ -44,6 +44,15 @@ enum class RequestKind : std::uint8_t {
   torque,
 };
 
+/// Who holds a jog with a finger on the button: one connection, one pendant, the PLC. The dead-man of a
+/// continuous jog is its hand's alone: nobody else keeps it alive.
+struct Hand {
+  Asker asker = Asker::command_line;
+  std::uint32_t client =
+      0;  ///< number of the connection; 0: there are no several (PLC, a run's own operator)
+  friend constexpr bool operator==(const Hand&, const Hand&) = default;
+};
+
 /// A wish from outside, posted to the cycle through one bounded queue. Plain data.
 struct Request {
   std::uint64_t id = 0;  ///< chosen by the asker, returned in the answer
@@ -56,9 +65,13 @@ struct Request {
   std::int8_t mode = -1;
   std::uint8_t packet = 0, format = 0, length = 1;  ///< image::Place of set_place and force
   std::uint32_t index = 0;
+  std::uint32_t client = 0;  ///< of the asker, see Hand
   double value = 0.0;
   double velocity = 0.0;      ///< of moves: mm/s or degrees/s, above 0
   double acceleration = 0.0;  ///< of moves; 0: the axis' limit
+
+  /// real-time safe.
+  constexpr Hand hand() const noexcept { return {asker, client}; }
 };
 
 /// The gate's answer. `refusal` is 0 when accepted, otherwise a key of the gate's table of sentences

@@ -22,7 +22,7 @@ namespace servogate::gateway {
 
 namespace {
 
-constexpr int kRecordSchema = 4;
+constexpr int kRecordSchema = 5;
 constexpr std::size_t kQueued = 2048;
 constexpr std::size_t kChunk = 1 << 16;
 constexpr std::size_t kChunkHead = 8;  // length, checksum

@@ -90,6 +90,7 @@ class Dispatch {
   Reply jog();
   Reply jog_continuous();
   Reply keep_alive();
+  Reply jog_ended(const HeldJog& jog, image::JogEnd end, bool others) const;
   Reply jog_stop();
   Reply zero();
   Reply override_feed();
@@ -199,6 +200,7 @@ bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image
   r.kind = kind;
   r.axis = static_cast<std::int8_t>(axis);
   r.value = value;
+  r.client = static_cast<std::uint32_t>(connection_.number);
   if (mode) r.mode = static_cast<std::int8_t>(*mode);
   image::Answer answer;
   if (!resident_.ask(r, answer)) {
@@ -317,40 +319,63 @@ Reply Dispatch::jog_continuous() {
   const int index = axis(request_.value("axis", json()));
   if (index < 0 || !number("value", value, true)) return refusal_;
   if (!ask(RequestKind::jog_continuous, index, value, image::Mode::manual)) return refusal_;
-  connection_.jogs = index;
-  connection_.asker = asker_;
-  connection_.silent = false;
-  connection_.heard = std::chrono::steady_clock::now();
+  std::erase_if(connection_.jogs, [index](const HeldJog& j) { return j.axis == index; });
+  const image::Hand hand{asker_, static_cast<std::uint32_t>(connection_.number)};
+  connection_.jogs.push_back({index, hand, false, std::chrono::steady_clock::now()});
   return good(says::kJogs, {axis_config(index).letter, value > 0.0 ? "+" : "-"},
               {{"keep_alive_ms", kKeepAlive_ms}});
 }
 
+/// How the jog of this client ended; nullopt: it goes on.
+std::optional<image::JogEnd> end_of(const HeldJog& jog, const image::AxisImage& a) {
+  if (jog.silent) return image::JogEnd::silent;
+  const bool jogs = a.owner == image::AxisOwner::manual && a.hand == jog.hand;
+  if (a.hand == jog.hand && a.jog_end != image::JogEnd::none) return a.jog_end;
+  return jogs ? std::nullopt : std::optional(image::JogEnd::none);
+}
+
+Reply Dispatch::jog_ended(const HeldJog& jog, image::JogEnd end, bool others) const {
+  const std::string letter = axis_config(jog.axis).letter;
+  return {text_of({{"ok", true},
+                   {"exit", kDone},
+                   {"moving", others},
+                   {"axis", letter},
+                   {"reason", jog_end_name(end)},
+                   {"code", jog_end_code(end)},
+                   {"text", jog_end_words(end, letter, language_)}})};
+}
+
+/// Those of this connection only: the dead-man of a jog is its own client's.
 Reply Dispatch::keep_alive() {
-  if (connection_.jogs < 0) return fail(says::kNoJog, {}, kWrongUse);
-  const image::AxisImage& a = resident_.image().axes[static_cast<std::size_t>(connection_.jogs)];
-  const image::JogEnd end = connection_.silent ? image::JogEnd::silent : a.jog_end;
-  if (end != image::JogEnd::none || a.owner != image::AxisOwner::manual) {
-    const std::string letter = axis_config(connection_.jogs).letter;
-    connection_.jogs = -1;
-    return {text_of({{"ok", true},
-                     {"exit", kDone},
-                     {"moving", false},
-                     {"reason", jog_end_name(end)},
-                     {"code", jog_end_code(end)},
-                     {"text", jog_end_words(end, letter, language_)}})};
+  int index = -1;
+  if (request_.contains("axis") && (index = axis(request_["axis"])) < 0) return refusal_;
+  const auto meant = [index](const HeldJog& j) { return index < 0 || j.axis == index; };
+  std::vector<HeldJog>& jogs = connection_.jogs;
+  if (std::none_of(jogs.begin(), jogs.end(), meant)) return fail(says::kNoJog, {}, kWrongUse);
+  const image::ProcessImage& image = resident_.image();
+  std::optional<Reply> ended;
+  for (std::size_t i = jogs.size(); i-- > 0;) {
+    if (!meant(jogs[i])) continue;
+    const auto end = end_of(jogs[i], image.axes[static_cast<std::size_t>(jogs[i].axis)]);
+    if (!end) {
+      jogs[i].heard = std::chrono::steady_clock::now();
+      resident_.tell({.asker = jogs[i].hand.asker,
+                      .kind = RequestKind::keep_alive,
+                      .axis = static_cast<std::int8_t>(jogs[i].axis),
+                      .client = jogs[i].hand.client});
+    } else if (!ended) {  // one an answer
+      const HeldJog jog = jogs[i];
+      jogs.erase(jogs.begin() + static_cast<std::ptrdiff_t>(i));
+      ended = jog_ended(jog, *end, !jogs.empty());
+    }
   }
-  connection_.heard = std::chrono::steady_clock::now();
-  image::Request r;
-  r.kind = RequestKind::keep_alive;
-  r.asker = connection_.asker;
-  resident_.tell(r);
-  return {text_of({{"ok", true}, {"exit", kDone}, {"moving", true}})};
+  return ended ? *ended : Reply{text_of({{"ok", true}, {"exit", kDone}, {"moving", true}})};
 }
 
 Reply Dispatch::jog_stop() {
   int index = -1;
   if (request_.contains("axis") && (index = axis(request_["axis"])) < 0) return refusal_;
-  if (index < 0 || index == connection_.jogs) connection_.jogs = -1;
+  std::erase_if(connection_.jogs, [index](const HeldJog& j) { return index < 0 || j.axis == index; });
   return ask(RequestKind::jog_stop, index) ? good(says::kStopped) : refusal_;
 }
 
@@ -504,28 +529,29 @@ Reply dispatch(Resident& resident, std::string_view line, Connection& connection
 
 namespace {
 
-void stop_jog(Resident& resident, const Connection& connection) {
-  image::Request r;
-  r.kind = RequestKind::jog_stop;
-  r.value = 1.0;
-  r.asker = connection.asker;
-  r.axis = static_cast<std::int8_t>(connection.jogs);
-  resident.tell(r);
+void stop_jog(Resident& resident, const HeldJog& jog) {
+  resident.tell({.asker = jog.hand.asker,
+                 .kind = RequestKind::jog_stop,
+                 .axis = static_cast<std::int8_t>(jog.axis),
+                 .client = jog.hand.client,
+                 .value = 1.0});
 }
 
 }  // namespace
 
 void end_connection(Resident& resident, Connection& connection) {
+  for (const HeldJog& jog : connection.jogs) stop_jog(resident, jog);
+  connection.jogs.clear();
   resident.plc().release_of(connection.number);
-  if (connection.jogs >= 0) stop_jog(resident, connection);
-  connection.jogs = -1;
 }
 
-void watch_jog(Resident& resident, Connection& connection) {
-  if (connection.jogs < 0 || connection.silent || resident.speed() == 1.0) return;
-  if (std::chrono::steady_clock::now() - connection.heard < kSilence) return;
-  connection.silent = true;
-  stop_jog(resident, connection);
+void watch_jogs(Resident& resident, Connection& connection) {
+  if (resident.speed() == 1.0) return;
+  for (HeldJog& jog : connection.jogs) {
+    if (jog.silent || std::chrono::steady_clock::now() - jog.heard < kSilence) continue;
+    jog.silent = true;
+    stop_jog(resident, jog);
+  }
 }
 
 }  // namespace servogate::gateway

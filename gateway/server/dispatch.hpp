@@ -15,10 +15,10 @@ Reply dispatch(Resident& resident, std::string_view line, Connection& connection
 /// The client is gone: what only its keep-alive permitted ends now.
 void end_connection(Resident& resident, Connection& connection);
 
-/// To be called now and then, at most kLookAtJogs_ms apart while a client jogs: ends a jog whose client has
+/// To be called now and then, at most kLookAtJogs_ms apart while a client jogs: ends each jog whose client has
 /// been silent for 100 ms of the wall clock. In real time and virtual time at its pace the cycle itself
 /// judges by its own time; where time is scaled the machine's seconds say nothing of a living hand.
-void watch_jog(Resident& resident, Connection& connection);
+void watch_jogs(Resident& resident, Connection& connection);
 inline constexpr int kLookAtJogs_ms = 10;
 
 }  // namespace servogate::gateway

@@ -73,6 +73,8 @@ class Axis {
   /// first cycle.
   void set_time_scale(double scale) noexcept { time_scale_ = scale; }
   void jog_stop(image::JogEnd why = image::JogEnd::asked) noexcept;
+  /// Direction of the continuous jog under way; 0: there is none.
+  int jogs_on() const noexcept { return own_motion_ && manual_ == Manual::continuous ? jog_direction_ : 0; }
   /// A jog by increments is under way.
   bool increments() const noexcept { return own_motion_ && manual_ == Manual::increment; }
   /// What is left of it, with its sign.

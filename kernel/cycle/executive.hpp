@@ -134,6 +134,8 @@ class Cycle {
   void change_mode(int process, image::Mode mode) noexcept;
   bool carry_out_motion(const image::Request& request, axis::Axis& axis) noexcept;
   bool hold_logic(const image::Request& request) noexcept;
+  void keep_alive(axis::Axis& axis, const image::Hand& hand) noexcept;
+  void stop_jogs(const image::Request& request) noexcept;
   void jog_of_plc(axis::Axis& axis) noexcept;
   void follow_handwheel(Handwheel& wheel, axis::Axis& axis) noexcept;
   void move_auxiliary(PlcMotion& motion, axis::Axis& axis) noexcept;

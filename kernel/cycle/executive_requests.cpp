@@ -94,6 +94,7 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
   const auto hold_manual = [&] {
     manual_held_ = true;
     holder_ = request.asker;
+    if (request.axis >= 0) image_.axes[axis].hand = request.hand();
   };
   switch (request.kind) {
     case RequestKind::none:
@@ -123,14 +124,11 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
         refusal = Refusal::axis_moves;
       break;
     case RequestKind::keep_alive:
-      for (axis::Axis& a : axes_) a.keep_alive(image_.now.t_ns);
+      for (std::size_t i = 0; i < axes_.size(); ++i)
+        if (request.axis < 0 || i == axis) keep_alive(axes_[i], request.hand());
       break;
     case RequestKind::jog_stop:
-      for (std::size_t i = 0; i < axes_.size(); ++i) {
-        if (request.axis >= 0 && i != axis) continue;
-        axes_[i].jog_stop(request.value == 1.0 ? image::JogEnd::silent : image::JogEnd::asked);
-        if (request.asker != image::Asker::plc) handwheels_[i].stop();
-      }
+      stop_jogs(request);
       break;
     case RequestKind::quick_stop: {
       image::AlarmRecord r;
@@ -196,6 +194,22 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     }
   }
   return refusal;
+}
+
+/// The dead-man of a jog is its hand's: whoever else lives says nothing of it.
+void Cycle::keep_alive(axis::Axis& a, const image::Hand& hand) noexcept {
+  if (image_.axes[static_cast<std::size_t>(a.index())].hand == hand) a.keep_alive(image_.now.t_ns);
+}
+
+void Cycle::stop_jogs(const Request& request) noexcept {
+  const bool silent = request.value == 1.0;
+  for (axis::Axis& a : axes_) {
+    const auto i = static_cast<std::size_t>(a.index());
+    if (request.axis >= 0 && a.index() != request.axis) continue;
+    if (silent && image_.axes[i].hand != request.hand()) continue;  // that hand's fell silent, not this one's
+    a.jog_stop(silent ? image::JogEnd::silent : image::JogEnd::asked);
+    if (request.asker != image::Asker::plc) handwheels_[i].stop();
+  }
 }
 
 /// The alarm takes the power and the alive output, and keeps both away until the operator's reset.
@@ -291,7 +305,7 @@ void Cycle::jog_of_plc(axis::Axis& a) noexcept {
     request.value = wish;
     handle(request);
   } else if (wish != 0) {
-    a.keep_alive(image_.now.t_ns);
+    keep_alive(a, request.hand());
   }
   before = wish;
 }

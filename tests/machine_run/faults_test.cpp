@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "firmware_if/image/interface_map.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/run/words/ready_words.hpp"
 #include "tests/machine_run/rig/mill.hpp"
@@ -482,6 +483,54 @@ TEST(Faults, continuous_jog_without_keep_alive_begins_to_stop_within_100_ms) {
   EXPECT_LT(mill.axis("X").command_velocity, 100.0);
   ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 1.0));
   EXPECT_EQ(mill.judge().verdict(), "");
+}
+
+TEST(Faults, one_living_hand_keeps_no_other_jog_alive) {
+  Mill mill(kLine);
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  mill.ask(RequestKind::mode, static_cast<double>(Mode::manual));
+  const auto say = [&mill](std::uint32_t client, RequestKind kind, int axis, double value = 0.0) {
+    image::Request r;
+    r.kind = kind;
+    r.axis = static_cast<std::int8_t>(axis);
+    r.value = value;
+    r.client = client;
+    mill.post(r);
+  };
+  say(1, RequestKind::jog_continuous, 0, 1.0);
+  say(2, RequestKind::jog_continuous, 1, -1.0);
+  for (int i = 0; i < 20; ++i) {
+    say(2, RequestKind::keep_alive, i % 2 == 0 ? 1 : -1);
+    say(2, RequestKind::keep_alive, 0);
+    mill.run(0.05);
+  }
+  EXPECT_EQ(mill.axis("X").command_velocity, 0.0) << "the hand on X is dead";
+  EXPECT_EQ(mill.axis("X").jog_end, image::JogEnd::silent);
+  EXPECT_NEAR(mill.axis("Y").command_velocity, -100.0, 1e-6) << "and Y goes on in its own";
+  say(1, RequestKind::jog_stop, 1, 1.0);
+  mill.run(0.02);
+  EXPECT_NEAR(mill.axis("Y").command_velocity, -100.0, 1e-6) << "nor ends a dead hand another's jog";
+  mill.run(0.2);
+  ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 1.0));
+}
+
+TEST(Faults, the_jog_button_of_the_plc_keeps_no_jog_of_a_client_alive) {
+  Mill mill(kLine);
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  mill.ask(RequestKind::mode, static_cast<double>(Mode::manual));
+  ASSERT_EQ(mill.ask(RequestKind::jog_continuous, 1.0, 0), Refusal::none);
+  mill.run(0.05);
+  const image::Place button = image::field(image::kAxisFields, "jog_plus", image::axis_base(0));
+  image::Request force;
+  force.kind = RequestKind::force;
+  force.packet = static_cast<std::uint8_t>(button.packet);
+  force.format = static_cast<std::uint8_t>(button.format);
+  force.index = button.index;
+  force.value = 1.0;
+  mill.post(force);
+  mill.run(1.0);
+  EXPECT_EQ(mill.axis("X").command_velocity, 0.0);
+  EXPECT_EQ(mill.axis("X").jog_end, image::JogEnd::silent);
 }
 
 }  // namespace

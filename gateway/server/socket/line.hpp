@@ -17,14 +17,19 @@ struct Reply {
   bool down = false;  ///< the control is to end
 };
 
+/// A continuous jog that a client keeps alive.
+struct HeldJog {
+  int axis = 0;
+  image::Hand hand;                               ///< that holds it
+  bool silent = false;                            ///< it was ended because its client had fallen silent
+  std::chrono::steady_clock::time_point heard{};  ///< when that client last kept it alive
+};
+
 /// What the server remembers of a connection.
 struct Connection {
-  int jogs = -1;  ///< axis of the continuous jog that this client keeps alive, -1: none
-  image::Asker asker = image::Asker::command_line;  ///< who began it
-  bool silent = false;                              ///< it was ended because its client had fallen silent
-  std::chrono::steady_clock::time_point heard{};    ///< when that client last kept it alive
-  std::uint64_t number = 0;  ///< of this connection; what it forces at the PLC ends with it
-  std::string user;          ///< name of who opened it
+  std::vector<HeldJog> jogs;  ///< one an axis at most
+  std::uint64_t number = 0;   ///< of this connection; what it forces at the PLC ends with it
+  std::string user;           ///< name of who opened it
 };
 
 /// JSON as a line; what is no UTF-8 is replaced.

@@ -85,7 +85,7 @@ void LineServer::serve() {
       const bool reads = !c.closing && !c.backlog;
       fds.push_back({c.fd, static_cast<short>((reads ? POLLIN : 0) | (c.output.empty() ? 0 : POLLOUT)), 0});
       backlog = backlog || c.backlog;
-      jogs = jogs || c.connection.jogs >= 0;
+      jogs = jogs || !c.connection.jogs.empty();
     }
     if (poll(fds.data(), fds.size(), backlog ? 0 : look_after_ms(jogs)) < 0 && errno != EINTR) break;
     if (fds[0].revents != 0) break;

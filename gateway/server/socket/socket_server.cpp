@@ -26,7 +26,7 @@ Reply SocketServer::answer(std::string_view line, Connection& connection) {
 
 void SocketServer::let_go(Connection& connection) { end_connection(resident_, connection); }
 
-void SocketServer::watch(Connection& connection) { watch_jog(resident_, connection); }
+void SocketServer::watch(Connection& connection) { watch_jogs(resident_, connection); }
 
 int SocketServer::look_after_ms(bool jogs) const {
   if (jogs) return kLookAtJogs_ms;

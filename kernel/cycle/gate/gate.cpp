@@ -149,6 +149,7 @@ class Decision {
   bool move(const Axis& a) noexcept;
   bool torque(const Axis& a) noexcept;
   bool inside_travel(const Axis& a) noexcept;
+  bool in_own_hand(const Axis& a) noexcept;
   bool keep_alive() noexcept;
   bool logic_scan() noexcept;
   bool drives_off() noexcept;
@@ -279,6 +280,9 @@ bool Decision::jog() noexcept {
     return false;
   if (!ready(a) || !free(a)) return false;
   const bool forward = r_.value > 0.0;
+  // A hand on the other button stops the jog under way, whosever it is; the executive does that.
+  const bool against = continuous && a.jogs_on() * r_.value < 0.0;
+  if (!against && !in_own_hand(a)) return false;
   if (forward ? a.on_limit_plus() : a.on_limit_minus())
     return refuse(Refusal::on_hard_limit, r_.axis, forward ? 1 : -1);
   if (!a.homed() || !config.travel_limited) return true;
@@ -384,7 +388,16 @@ bool Decision::drives_off() noexcept {
   return true;
 }
 
-bool Decision::keep_alive() noexcept { return not_held_by_another(); }
+/// A continuous jog is its hand's alone: another one neither keeps it alive nor takes it over.
+bool Decision::in_own_hand(const Axis& a) noexcept {
+  const bool own = c_.image->axes[static_cast<std::size_t>(a.index())].hand == r_.hand();
+  return own || a.jogs_on() == 0 || refuse(Refusal::jogged_by_another, a.index());
+}
+
+bool Decision::keep_alive() noexcept {
+  if (!not_held_by_another()) return false;
+  return r_.axis < 0 || (axis_known() && in_own_hand(c_.axes[static_cast<std::size_t>(r_.axis)]));
+}
 
 bool Decision::zero() noexcept {
   if (!axis_known()) return false;

@@ -64,6 +64,7 @@ enum class Refusal : std::uint16_t {
   no_torque,             ///< axis: the machine file gives it no torque
   torque_range,          ///< axis; value; limit: the largest magnitude, per cent of the rated torque
   torque_ramp_range,     ///< axis; value; limit: the greatest one, per cent a second
+  jogged_by_another,     ///< axis: another hand (image::Hand) has the continuous jog under way
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis

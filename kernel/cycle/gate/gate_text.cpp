@@ -112,8 +112,11 @@ constexpr text::Entry kTexts[] = {
     {"gate.torque_ramp_range",
      "{0} cannot change its torque by {1} % a second: 0 (its limit) and up to {2} % is possible",
      "{0} не может менять момент на {1} % в секунду: возможно 0 (её предел) и до {2} %"},
+    {"gate.jogged_by_another",
+     "another client jogs {0}: wait until it has let go, or stop it (`servogate stop`)",
+     "{0} двигает другой клиент: дождитесь, пока он отпустит, или остановите (`servogate stop`)"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::torque_ramp_range) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::jogged_by_another) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 

@@ -201,6 +201,29 @@ TEST_F(Gate, blocks_everybody_but_the_one_who_holds_manual_control) {
   EXPECT_EQ(ask(RequestKind::keep_alive, 0, 0.0, Asker::pendant), Refusal::none);
 }
 
+TEST_F(Gate, leaves_a_continuous_jog_to_the_hand_that_began_it) {
+  image_.axes[0].hand = {Asker::command_line, 7};
+  ASSERT_TRUE(axes_[0].jog_continuous(1, image_.now.t_ns));
+  const auto of = [this](std::uint32_t client, RequestKind kind, int axis, double value) {
+    Request r;
+    r.kind = kind;
+    r.axis = static_cast<std::int8_t>(axis);
+    r.value = value;
+    r.client = client;
+    answer_ = decide(r, context_);
+    return static_cast<Refusal>(answer_.refusal);
+  };
+  EXPECT_EQ(of(8, RequestKind::keep_alive, 0, 0.0), Refusal::jogged_by_another);
+  EXPECT_EQ(english(), "another client jogs X: wait until it has let go, or stop it (`servogate stop`)");
+  EXPECT_EQ(of(8, RequestKind::jog_continuous, 0, 1.0), Refusal::jogged_by_another);
+  EXPECT_EQ(of(8, RequestKind::jog_increment, 0, 1.0), Refusal::jogged_by_another);
+  EXPECT_EQ(of(8, RequestKind::jog_continuous, 0, -1.0), Refusal::none) << "the executive stops it";
+  EXPECT_EQ(of(8, RequestKind::jog_continuous, 1, 1.0), Refusal::none) << "another axis";
+  EXPECT_EQ(of(8, RequestKind::jog_stop, 0, 0.0), Refusal::none) << "a stop is everybody's right";
+  EXPECT_EQ(of(7, RequestKind::keep_alive, 0, 0.0), Refusal::none);
+  EXPECT_EQ(of(7, RequestKind::jog_continuous, 0, 1.0), Refusal::none);
+}
+
 TEST_F(Gate, permits_on_a_hard_limit_only_the_way_back) {
   set(0, "limit_plus", true);
   run(1);
@@ -348,7 +371,7 @@ TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others)
 
 TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
   const auto table = refusal_texts();
-  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::torque_ramp_range) + 1);
+  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::jogged_by_another) + 1);
   for (std::size_t i = 1; i < table.size(); ++i) {
     image::Answer a;
     a.refusal = static_cast<std::uint16_t>(i);

@@ -117,11 +117,15 @@ bool Mill::until(const std::function<bool()>& met, double patience_s) {
 
 void Mill::post(RequestKind kind, double value, int axis) {
   image::Request r;
-  r.id = next_id_++;
   r.kind = kind;
   r.value = value;
   r.axis = static_cast<std::int8_t>(axis);
-  EXPECT_TRUE(control_->cycle().post(r));
+  post(r);
+}
+
+void Mill::post(image::Request request) {
+  request.id = next_id_++;
+  EXPECT_TRUE(control_->cycle().post(request));
 }
 
 cycle::Refusal Mill::ask(RequestKind kind, double value, int axis) {

@@ -56,6 +56,8 @@ class Mill {
   const image::Answer& answer() const { return answer_; }
   /// ask() without waiting for the answer.
   void post(image::RequestKind kind, double value = 0.0, int axis = -1);
+  /// The same with all that a request can say; its number is given here.
+  void post(image::Request request);
   /// Emergency stop chain closed, buses up, drives on, all axes homed, AUTO. False: it did not come to that.
   bool make_ready();
   /// Drives on, but nothing homed.

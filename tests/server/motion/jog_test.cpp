@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -86,6 +87,50 @@ TEST_F(JogCommand, ends_when_another_hand_asks_for_the_other_direction) {
   });
   EXPECT_EQ(o.exit, 3) << o.err;
   EXPECT_TRUE(contains(o.err, "[jog.asked]")) << o.err;
+}
+
+class JogOfTwo : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    shell_.up("mill", {"--virtual"});
+    ASSERT_EQ(shell_.run({"power", "on", "--wait"}).exit, 0);
+  }
+  Shell shell_;
+};
+
+TEST_F(JogOfTwo, stops_the_axis_of_the_frozen_hand_only_while_the_other_one_goes_on) {
+  std::atomic<bool> end{false};
+  std::thread other([&] {
+    SocketClient y;
+    std::string answer;
+    if (!y.connect(shell_.socket()).empty()) return;
+    while (!end) {
+      const bool moves = y.exchange(R"({"cmd":"keep_alive"})", answer) &&
+                         json::parse(answer, nullptr, false).value("moving", false);
+      // At first, and where it was late on a busy computer, it begins.
+      if (!moves) y.exchange(R"({"cmd":"jog_continuous","axis":"Y","value":-1})", answer);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  });
+  const auto moves = [](std::size_t axis) {
+    return [axis](const json& s) { return s["axes"][axis]["moving"].get<bool>(); };
+  };
+  EXPECT_TRUE(shell_.until(moves(1), 10.0));
+  const pid_t x = shell_.spawn({"jog", "X", "+"}, "jog-x");
+  EXPECT_TRUE(shell_.until(moves(0), 10.0));
+  kill(x, SIGSTOP);
+  const json frozen = shell_.status();
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  const json later = shell_.status();
+  end = true;
+  other.join();
+  kill(x, SIGKILL);
+  ending_of(x);
+  EXPECT_FALSE(x_moves(later));
+  EXPECT_EQ(later["axes"][0]["jog_end"]["reason"], "keep_alive");
+  // Not homed it jogs at 10 mm/s: kept alive it would have gone on for 30 mm.
+  EXPECT_LT(later["axes"][0]["command"].get<double>() - frozen["axes"][0]["command"].get<double>(), 10.0);
+  EXPECT_LT(later["axes"][1]["command"].get<double>() - frozen["axes"][1]["command"].get<double>(), -10.0);
 }
 
 TEST_F(JogCommand, by_a_distance_returns_when_the_axis_stands) {
