@@ -136,6 +136,7 @@ class Cycle {
   bool hold_logic(const image::Request& request) noexcept;
   void keep_alive(axis::Axis& axis, const image::Hand& hand) noexcept;
   void stop_jogs(const image::Request& request) noexcept;
+  void watch_forces() noexcept;
   void jog_of_plc(axis::Axis& axis) noexcept;
   void follow_handwheel(Handwheel& wheel, axis::Axis& axis) noexcept;
   void move_auxiliary(PlcMotion& motion, axis::Axis& axis) noexcept;

@@ -3,6 +3,7 @@
 
 #include "kernel/cycle/executive.hpp"
 #include "kernel/cycle/executive_queues.hpp"
+#include "kernel/cycle/gate/guarded_places.hpp"
 #include "kernel/cycle/interface_places.hpp"
 
 namespace servogate::cycle {
@@ -44,7 +45,7 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   context.estop_place = parts_.estop_place ? &*parts_.estop_place : nullptr;
   image::Answer answer = decide(request, context);
   if (answer.refusal != 0) return answer;
-  const image::Mode before = image_.processes[process].mode;
+  const image::Mode before = request.mode >= 0 ? image_.processes[process].mode : image::Mode::off;
   if (request.mode >= 0) change_mode(request.process, static_cast<image::Mode>(request.mode));
   answer.refusal = static_cast<std::uint16_t>(carry_out(request));
   if (answer.refusal == 0) return answer;
@@ -84,7 +85,19 @@ Refusal Cycle::write_place(const Request& request) noexcept {
   } else {
     return Refusal::forces_full;
   }
+  watch_forces();
   return Refusal::none;
+}
+
+/// As long as a guard is forced, whatever resets the alarms.
+void Cycle::watch_forces() noexcept {
+  const auto end = forced_.begin() + forced_count_;
+  image::AlarmRecord r;
+  r.number = alarm::kGuardForced;
+  if (std::any_of(forced_.begin(), end, [this](const Forced& f) { return guards_motion(f.place, axes_); }))
+    raise(r);
+  else
+    alarms_.cause_gone(r.number, r.axis);
 }
 
 // What the gate cannot know (an axis not yet quite at rest) makes a late refusal.
@@ -95,6 +108,13 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     manual_held_ = true;
     holder_ = request.asker;
     if (request.axis >= 0) image_.axes[axis].hand = request.hand();
+  };
+  const auto order = [&](int process) {
+    const std::uint32_t run = image_.processes[static_cast<std::size_t>(process)].run;
+    ProcessContext c = context(process);
+    const bool done = parts_.processes[static_cast<std::size_t>(process)]->order(request, c);
+    if (image_.processes[static_cast<std::size_t>(process)].run != run) alarms_.run_begins(process);
+    return done;
   };
   switch (request.kind) {
     case RequestKind::none:
@@ -145,6 +165,7 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       for (axis::Axis& a : axes_) a.reset();
       for (axis::Spindle& s : spindles_) s.reset();
       alarms_.reset([this](const image::AlarmRecord& r) { return still_present(r); });
+      watch_forces();
       if (request.kind == RequestKind::reset)
         for (std::size_t p = 0; p < parts_.processes.size(); ++p) {
           ProcessContext c = context(static_cast<int>(p));
@@ -177,21 +198,18 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
       // Whoever presses hold wants rest: jogs and homing, too, which nothing resumes.
       for (Handwheel& wheel : handwheels_) wheel.stop();
       stop_manual(request.kind == RequestKind::stop);
-      if (parts_.processes.empty()) break;
+      for (std::size_t p = 0; request.process < 0 && p < parts_.processes.size(); ++p)
+        if (!order(static_cast<int>(p))) refusal = Refusal::axis_moves;
+      if (request.process < 0 || parts_.processes.empty()) break;
       [[fallthrough]];
     case RequestKind::zero:
     case RequestKind::mode:
     case RequestKind::start:
     case RequestKind::step:
     case RequestKind::resume:
-    case RequestKind::override_feed: {
-      const auto process = static_cast<std::size_t>(request.process);
-      const std::uint32_t run = image_.processes[process].run;
-      ProcessContext c = context(request.process);
-      if (!parts_.processes[process]->order(request, c)) refusal = Refusal::axis_moves;
-      if (image_.processes[process].run != run) alarms_.run_begins(request.process);
+    case RequestKind::override_feed:
+      if (!order(request.process)) refusal = Refusal::axis_moves;
       break;
-    }
   }
   return refusal;
 }

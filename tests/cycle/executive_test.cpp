@@ -409,6 +409,70 @@ TEST(Executive, without_a_process_carries_out_all_that_speaks_to_none) {
     EXPECT_EQ(ask(kind), Refusal::no_such_process) << static_cast<int>(kind);
 }
 
+/// Remembers what it was ordered.
+class OrderedProcess final : public ProcessInCycle {
+ public:
+  void published(std::span<std::uint64_t>) const noexcept override {}
+  void interpolate(ProcessContext&) noexcept override {}
+  bool order(const Request& request, ProcessContext&) noexcept override {
+    last = request.kind;
+    return true;
+  }
+  bool loaded() const noexcept override { return false; }
+  RequestKind last = RequestKind::none;
+};
+
+TEST(Cycle, stops_and_holds_every_process_when_none_is_named) {
+  OrderedProcess first, second;
+  CycleParts parts;
+  parts.processes = {&first, &second};
+  Cycle cycle(std::move(parts));
+  const auto ask = [&](RequestKind kind, int process) {
+    first.last = second.last = RequestKind::none;
+    Request r;
+    r.kind = kind;
+    r.process = static_cast<std::int8_t>(process);
+    EXPECT_TRUE(cycle.post(r));
+    cycle.step();
+    image::Answer answer;
+    EXPECT_TRUE(cycle.take_answer(answer));
+    return static_cast<Refusal>(answer.refusal);
+  };
+  for (const RequestKind kind : {RequestKind::stop, RequestKind::hold}) {
+    EXPECT_EQ(ask(kind, -1), Refusal::none);
+    EXPECT_EQ(first.last, kind);
+    EXPECT_EQ(second.last, kind);
+    EXPECT_EQ(ask(kind, 1), Refusal::none);
+    EXPECT_EQ(first.last, RequestKind::none);
+    EXPECT_EQ(second.last, kind);
+    EXPECT_EQ(ask(kind, 2), Refusal::no_such_process);
+  }
+  EXPECT_EQ(ask(RequestKind::resume, -1), Refusal::no_such_process);
+}
+
+TEST(Cycle, warns_as_long_as_a_guard_is_forced_whatever_is_reset) {
+  Bench bench;
+  const auto force = [&bench](RequestKind kind, Place place, double value) {
+    return bench.ask(Bench::place_request(kind, place, value, image::Asker::command_line)).refusal;
+  };
+  const auto warned = [&bench] { return bench.cycle->alarms().active(alarm::kGuardForced); };
+  const Place guard = image::field(image::kMachineFields, "power_on", image::kMachineBase);
+  EXPECT_EQ(force(RequestKind::force, kWord, 12.0), 0);
+  EXPECT_FALSE(warned()) << "a word guards nothing";
+  EXPECT_EQ(force(RequestKind::force, guard, 1.0), 0);
+  EXPECT_TRUE(warned());
+  for (const RequestKind kind : {RequestKind::reset, RequestKind::acknowledge}) {
+    Request r;
+    r.kind = kind;
+    bench.ask(r);
+    EXPECT_TRUE(warned());
+  }
+  EXPECT_EQ(force(RequestKind::release_force, kWord, 0.0), 0);
+  EXPECT_TRUE(warned());
+  EXPECT_EQ(force(RequestKind::release_force, guard, 0.0), 0);
+  EXPECT_FALSE(warned());
+}
+
 /// A clock that stands unless the logic takes its time.
 class HandClock final : public image::Clock {
  public:

@@ -567,6 +567,35 @@ constexpr AlarmRow kTable[] = {
       "потеряно запросов: {1}, слишком много сразу"},
      "Ask less often.",
      "Отправляйте запросы реже."},
+    {alarm::kGuardForced,
+     Reaction::warn,
+     by_itself,
+     {"system.guard_forced",
+      "a switch, an enable or a brake is forced: what guards the machine may not be as it seems",
+      "принудительно удерживается выключатель, разрешение или тормоз: защита станка может быть не такой, "
+      "какой "
+      "кажется"},
+     "See `servogate plc force` for what is forced and by whom; let it go (`servogate plc force --release`).",
+     "Что удерживается и кем, покажет `servogate plc force`; освободите (`servogate plc force --release`)."},
+    {alarm::kStateFellBack,
+     Reaction::warn,
+     reset,
+     {"system.state_fell_back", "what the machine had learned was damaged: the copy before is in force",
+      "то, чему научился станок, повреждено: действует предыдущая копия"},
+     "See the messages at the start of the control for which file it was; check origins, tools and "
+     "references "
+     "before anything moves.",
+     "Какой это файл, сказано при запуске управления; до движения проверьте начала отсчёта, инструмент и "
+     "привязку "
+     "осей."},
+    {alarm::kRecordBroken,
+     Reaction::warn,
+     reset,
+     {"system.record_broken", "the record of this run is not written any more: the disk is full, or too slow",
+      "запись этого прогона больше не ведётся: диск полон или слишком медленный"},
+     "The machine goes on; what was recorded so far can be replayed. Make room and start the control anew.",
+     "Станок работает дальше; записанное до этого можно повторить. Освободите место и запустите управление "
+     "заново."},
 };
 
 static_assert(std::is_sorted(std::begin(kTable), std::end(kTable),

@@ -55,6 +55,9 @@ inline constexpr AlarmNumber kEmergencyStop = 6001;
 inline constexpr AlarmNumber kOverrunLimit = 6002;
 inline constexpr AlarmNumber kOperatorQuickStop = 6003;
 inline constexpr AlarmNumber kRequestsLost = 6004;
+inline constexpr AlarmNumber kGuardForced = 6005;
+inline constexpr AlarmNumber kStateFellBack = 6006;
+inline constexpr AlarmNumber kRecordBroken = 6007;
 }  // namespace alarm
 
 /// When an alarm may go.

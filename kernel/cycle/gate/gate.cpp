@@ -2,10 +2,13 @@
 #include "kernel/cycle/gate/gate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/gate/guarded_places.hpp"
 #include "kernel/cycle/interface_places.hpp"
 
 namespace servogate::cycle {
@@ -22,31 +25,52 @@ using image::RequestKind;
 
 namespace {
 
-constexpr std::uint32_t bit(RequestKind k) { return std::uint32_t{1} << static_cast<int>(k); }
-constexpr std::uint32_t kStops = bit(RequestKind::hold) | bit(RequestKind::stop) |
-                                 bit(RequestKind::quick_stop) | bit(RequestKind::jog_stop);
-constexpr std::uint32_t kJogs =
-    bit(RequestKind::jog_increment) | bit(RequestKind::jog_continuous) | bit(RequestKind::keep_alive);
-constexpr std::uint32_t kResets = bit(RequestKind::reset) | bit(RequestKind::acknowledge);
-constexpr std::uint32_t kProgram = bit(RequestKind::start) | bit(RequestKind::step) |
-                                   bit(RequestKind::resume) | bit(RequestKind::mode) |
-                                   bit(RequestKind::override_feed);
-constexpr std::uint32_t kPlaces = bit(RequestKind::set_place) | bit(RequestKind::force) |
-                                  bit(RequestKind::release_force) | bit(RequestKind::logic) |
-                                  bit(RequestKind::logic_scan);
-constexpr std::uint32_t kPanel = kStops | kJogs | kResets | kProgram | bit(RequestKind::power) |
-                                 bit(RequestKind::home) | bit(RequestKind::zero);
+/// A set of kinds of requests, however many there come to be.
+class Kinds {
+ public:
+  constexpr Kinds(std::initializer_list<RequestKind> kinds) noexcept {
+    for (const RequestKind k : kinds) words_[word(k)] |= bit(k);
+  }
+  constexpr bool has(RequestKind k) const noexcept { return (words_[word(k)] & bit(k)) != 0; }
+  constexpr Kinds operator|(const Kinds& other) const noexcept {
+    Kinds all = *this;
+    for (std::size_t w = 0; w < words_.size(); ++w) all.words_[w] |= other.words_[w];
+    return all;
+  }
+  constexpr Kinds without(RequestKind k) const noexcept {
+    Kinds rest = *this;
+    rest.words_[word(k)] &= ~bit(k);
+    return rest;
+  }
+
+ private:
+  static constexpr std::size_t word(RequestKind k) { return static_cast<std::size_t>(k) / 64; }
+  static constexpr std::uint64_t bit(RequestKind k) {
+    return std::uint64_t{1} << (static_cast<unsigned>(k) % 64);
+  }
+  std::array<std::uint64_t, 256 / 64> words_{};  // a kind is one byte
+};
+
+using enum RequestKind;
+
+constexpr Kinds kStops{hold, stop, quick_stop, jog_stop};
+constexpr Kinds kJogs{jog_increment, jog_continuous, keep_alive};
+constexpr Kinds kResets{reset, acknowledge};
+constexpr Kinds kProgram{start, step, resume, mode, override_feed};
+constexpr Kinds kPlaces{set_place, force, release_force, logic, logic_scan};
+constexpr Kinds kPanel = kStops | kJogs | kResets | kProgram | Kinds{power, home, zero};
 /// Of the auxiliary axes, the PLC's alone.
-constexpr std::uint32_t kMoves = bit(RequestKind::move_absolute) | bit(RequestKind::move_relative) |
-                                 bit(RequestKind::move_velocity) | bit(RequestKind::torque);
-constexpr std::uint32_t kAuxiliary = kMoves | bit(RequestKind::axis_power) | bit(RequestKind::axis_home) |
-                                     bit(RequestKind::axis_stop) | bit(RequestKind::axis_reset);
+constexpr Kinds kMoves{move_absolute, move_relative, move_velocity, torque};
+constexpr Kinds kAuxiliary = kMoves | Kinds{axis_power, axis_home, axis_stop, axis_reset};
+constexpr Kinds kBegins = kJogs | kMoves | Kinds{home, start, step, resume, power, axis_power, axis_home};
 
 /// What speaks to a process. All else works on a machine that has none (a bench of drives) just as well.
-constexpr std::uint32_t kOfProcess = kProgram | bit(RequestKind::hold) | bit(RequestKind::zero);
+constexpr Kinds kOfProcess = kProgram | Kinds{hold, zero};
+/// What may bring its mode along.
+constexpr Kinds kWithMode{home, jog_increment, jog_continuous, start, step};
 
 /// Who may ask for what at all. Stops are everybody's right.
-constexpr std::uint32_t may_ask(Asker asker) noexcept {
+constexpr Kinds may_ask(Asker asker) noexcept {
   switch (asker) {
     case Asker::command_line:
     case Asker::page:
@@ -55,15 +79,15 @@ constexpr std::uint32_t may_ask(Asker asker) noexcept {
     case Asker::pendant:
       return kPanel;
     case Asker::plc:
-      return (kPanel & ~bit(RequestKind::zero)) | kAuxiliary;
+      return kPanel.without(zero) | kAuxiliary;
     case Asker::modbus:
-      return kStops | bit(RequestKind::set_place);
+      return kStops | Kinds{set_place};
     case Asker::program:
       return kStops;
     case Asker::bench:
-      return kStops | kJogs | kResets | kPlaces | bit(RequestKind::power) | bit(RequestKind::home);
+      return kStops | kJogs | kResets | kPlaces | Kinds{power, home};
   }
-  return 0;
+  return {};
 }
 
 /// One decision under way: the first refusal stands.
@@ -92,7 +116,8 @@ class Decision {
     return (r_.axis >= 0 && r_.axis < std::ssize(c_.axes)) || refuse(Refusal::no_such_axis, -1, r_.axis);
   }
   bool process_known() noexcept {
-    const bool needed = (kOfProcess & bit(r_.kind)) != 0 || r_.mode >= 0 || c_.image->process_count > 0;
+    const bool needed = kOfProcess.has(r_.kind) || r_.mode >= 0 || c_.image->process_count > 0;
+    if (r_.process == -1 && kStops.has(r_.kind)) return true;  // all of them, as many as there are
     return !needed || (r_.process >= 0 && r_.process < c_.image->process_count) ||
            refuse(Refusal::no_such_process, -1, r_.process);
   }
@@ -166,6 +191,7 @@ class Decision {
   bool resume() noexcept;
   bool place(bool write) noexcept;
   bool not_of_emergency_stop(const image::Place& place) noexcept;
+  bool may_force(const image::Place& place) noexcept;
   bool decide_kind() noexcept;
 
   const Request& r_;
@@ -177,7 +203,7 @@ Answer Decision::run() noexcept {
   const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::torque;
   if (!known)
     refuse(Refusal::unknown_request);
-  else if ((may_ask(r_.asker) & bit(r_.kind)) == 0)
+  else if (!may_ask(r_.asker).has(r_.kind))
     refuse(Refusal::asker_may_not, -1, static_cast<double>(r_.kind));
   else if (!std::isfinite(r_.value))
     refuse(Refusal::bad_value, -1, r_.value);
@@ -419,11 +445,8 @@ bool Decision::mode() noexcept {
 
 /// A request that brings its mode along is one decision: what would refuse the mode refuses the request.
 bool Decision::mode_of_request() noexcept {
-  constexpr std::uint32_t kWithMode = bit(RequestKind::home) | bit(RequestKind::jog_increment) |
-                                      bit(RequestKind::jog_continuous) | bit(RequestKind::start) |
-                                      bit(RequestKind::step);
   if (r_.mode < 0) return true;
-  const bool possible = (kWithMode & bit(r_.kind)) != 0 && r_.mode <= static_cast<int>(Mode::home);
+  const bool possible = kWithMode.has(r_.kind) && r_.mode <= static_cast<int>(Mode::home);
   if (!possible) return refuse(Refusal::bad_value, -1, r_.mode, static_cast<double>(Mode::home));
   const bool same = c_.image->processes[static_cast<std::size_t>(r_.process)].mode == mode_in_force();
   return same || runs_on() || (no_program() && not_held_by_another());
@@ -485,6 +508,12 @@ bool Decision::not_of_emergency_stop(const image::Place& place) noexcept {
   return !(chain || places::kEstopOk.overlaps(place)) || refuse(Refusal::emergency_stop_place);
 }
 
+/// Whoever puts a guard out of force does it where nothing moves, as whoever would move would need it.
+bool Decision::may_force(const image::Place& place) noexcept {
+  if (!guards_motion(place, c_.axes) || withdraws(place, r_.value, c_.axes)) return true;
+  return no_program() && no_homing() && not_held_by_another() && all_at_rest(true);
+}
+
 bool Decision::place(bool write) noexcept {
   if (r_.packet > static_cast<int>(image::Packet::v) || r_.format > static_cast<int>(image::Format::ch))
     return refuse(Refusal::bad_value, -1, r_.packet);
@@ -496,7 +525,7 @@ bool Decision::place(bool write) noexcept {
   const std::uint64_t end = first + p.bytes();
   const std::uint32_t size = c_.image->packets.size(p.packet);
   if (end > size) return refuse(Refusal::place_outside, -1, static_cast<double>(first), size);
-  if (!write) return r_.kind != RequestKind::force || not_of_emergency_stop(p);
+  if (!write) return r_.kind != RequestKind::force || (not_of_emergency_stop(p) && may_force(p));
   constexpr std::uint32_t kInterfaceEnd = image::kMachineBase + image::kMachineBlock;
   bool interface = p.packet == image::Packet::k && first < kInterfaceEnd && end > image::kInterfaceBase;
   for (const Axis& a : c_.axes) {
@@ -523,11 +552,6 @@ Answer decide(const Request& request, const GateContext& context) noexcept {
   return Decision(request, context).run();
 }
 
-bool moves(RequestKind kind) noexcept {
-  return ((kJogs | bit(RequestKind::home) | bit(RequestKind::start) | bit(RequestKind::step) |
-           bit(RequestKind::resume) | bit(RequestKind::power) | kMoves | bit(RequestKind::axis_power) |
-           bit(RequestKind::axis_home)) &
-          bit(kind)) != 0;
-}
+bool moves(RequestKind kind) noexcept { return kBegins.has(kind); }
 
 }  // namespace servogate::cycle

@@ -13,6 +13,9 @@ namespace {
 
 using image::Asker;
 using image::AxisOwner;
+using image::Format;
+using image::Packet;
+using image::Place;
 using image::ProcessState;
 using image::Reaction;
 using image::Request;
@@ -345,7 +348,6 @@ TEST_F(Gate, names_the_command_that_helps_where_a_program_is_in_the_way_or_is_no
 
 TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others) {
   using enum image::Format;
-  using image::Packet;
   EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, by, 100, 1}), Refusal::none);
   EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::k, by, image::kInterfaceBase, 1}),
             Refusal::place_not_writable);
@@ -367,6 +369,50 @@ TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others)
       << "no wrap-round";
   EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::v, by, 199, 1}), Refusal::none);
   EXPECT_EQ(ask_place(RequestKind::set_place, {Packet::v, by, 200, 1}), Refusal::place_outside);
+}
+
+TEST_F(Gate, lets_nobody_force_what_guards_motion_while_something_moves) {
+  const auto force = [this](const Place& p, double value) {
+    Request r;
+    r.kind = RequestKind::force;
+    r.packet = static_cast<std::uint8_t>(p.packet), r.format = static_cast<std::uint8_t>(p.format);
+    r.index = p.index, r.length = p.length;
+    r.value = value;
+    answer_ = decide(r, context_);
+    return static_cast<Refusal>(answer_.refusal);
+  };
+  const auto of_y = [](const Place& p) { return image::at(p, image::axis_base(1)); };
+  constexpr Place kHomed = image::field(image::kAxisFields, "homed");
+  constexpr Place kLimit = image::field(image::kAxisFields, "limit_plus");
+  constexpr Place kOnLimit = image::field(image::kAxisFields, "on_limit_minus");
+  constexpr Place kEnable = image::field(image::kAxisFields, "enable");
+  constexpr Place kFeed = image::field(image::kAxisFields, "feed_enable");
+  axis::AxisConfig config = axes_[1].config();
+  config.limit_plus = axis::SwitchPlace{{Packet::a, Format::bl, 13, 1}, false};
+  axes_[1].configure(config, 1);
+  axes_[1].set_reference(0);
+  const Place power_on = image::field(image::kMachineFields, "power_on", image::kMachineBase);
+  const Place lamp{Packet::a, Format::bl, 77, 1};
+  const std::vector<Place> guards{{Packet::a, Format::bl, 13, 1},
+                                  {Packet::a, Format::by, 1, 1},
+                                  of_y(kHomed),
+                                  of_y(kLimit),
+                                  of_y(kOnLimit),
+                                  of_y(kEnable),
+                                  of_y(kFeed),
+                                  power_on};
+  for (const Place& p : guards) EXPECT_EQ(force(p, 1.0), Refusal::none) << "at rest";
+  ASSERT_TRUE(axes_[0].jog_increment(20.0));
+  for (const Place& p : guards) EXPECT_EQ(force(p, 1.0), Refusal::axis_moves) << p.index;
+  EXPECT_EQ(force(lamp, 1.0), Refusal::none);
+  for (const Place& p : {of_y(kEnable), of_y(kFeed), power_on})
+    EXPECT_EQ(force(p, 0.0), Refusal::none) << "a permission may be taken away at any time";
+  EXPECT_EQ(force(of_y(kLimit), 0.0), Refusal::axis_moves) << "this one would only hide a switch";
+  axes_[0].stop();
+  run(2000);
+  image_.processes[0].state = ProcessState::waiting;
+  image_.process_count = 1;
+  EXPECT_EQ(force(power_on, 1.0), Refusal::program_runs);
 }
 
 TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
