@@ -10,6 +10,7 @@
 #include "gateway/command/commands.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/signals.hpp"
+#include "gateway/compose/plc/compile_beside.hpp"
 
 namespace {
 
@@ -69,5 +70,7 @@ int main(int argc, char** argv) {
     complain(kFailed, {e.what()});
     exit_code = kInfrastructure;
   }
-  return end_output(exit_code, json);
+  const int code = end_output(exit_code, json);
+  if (compiles_on()) std::_Exit(code);  // it would meet a process that is being taken down
+  return code;
 }

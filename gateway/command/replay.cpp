@@ -59,7 +59,9 @@ void prepare_logic(Control& control, const std::vector<LogicChange>& changes,
     const image::Request& request = inputs.requests[static_cast<std::size_t>(i)];
     if (request.kind != image::RequestKind::logic || control.logic() == nullptr) continue;
     for (const LogicChange& change : changes)
-      if (change.number == request.index) control.prepare(change);
+      if (change.number == request.index)
+        control.prepare(change, change.kind == LogicChange::Kind::load ? control.compile(change.files, {})
+                                                                       : plc::CompileResult{});
   }
 }
 

@@ -12,7 +12,7 @@
 #include "gateway/command/signals.hpp"
 #include "gateway/run/running_machine.hpp"
 #include "gateway/server/socket/socket_path.hpp"
-#include "gateway/server/socket/socket_server.hpp"
+#include "gateway/server/socket_server.hpp"
 
 namespace servogate::gateway::command {
 

@@ -10,6 +10,7 @@
 #include "firmware_if/image/frame_record.hpp"
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/canopen_setup.hpp"
+#include "gateway/compose/plc/compile_beside.hpp"
 #include "gateway/compose/plc/logic_options.hpp"
 #include "gateway/compose/program/program_model.hpp"
 #include "gateway/files/read_file.hpp"
@@ -184,9 +185,13 @@ void Control::watch_logic() noexcept {
     cycle_->watch_logic(static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
 }
 
-PlcLogic::Plan Control::prepare(const LogicChange& change) {
-  PlcLogic::Plan plan =
-      logic_->prepare(change, loaded_.machine.symbol_table(), logic_options(loaded_.machine));
+plc::CompileResult Control::compile(const std::vector<plc::SourceFile>& files,
+                                    const std::stop_token& stop) const {
+  return compile_beside(files, loaded_.machine.symbol_table(), logic_options(loaded_.machine), stop);
+}
+
+PlcLogic::Plan Control::prepare(const LogicChange& change, plc::CompileResult compiled) {
+  PlcLogic::Plan plan = logic_->prepare(change, std::move(compiled));
   if (plan.possible && change_tap_ != nullptr) change_tap_->take(change);
   return plan;
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -49,9 +50,12 @@ class Control {
   /// Changes what a process will run, and shows it to the tap; any thread outside the cycle. False, and
   /// nothing changed: its program is being read just now.
   bool change(const ProgramChange& change);
-  /// Makes a change of the PLC ready for the request of its number, and shows it to the tap. Only with a PLC;
-  /// any one thread outside the cycle.
-  PlcLogic::Plan prepare(const LogicChange& change);
+  /// Compiles another PLC program for this machine. Any thread; ended by `stop`, and after kCompilePatience
+  /// by an error.
+  plc::CompileResult compile(const std::vector<plc::SourceFile>& files, const std::stop_token& stop) const;
+  /// Makes a change of the PLC ready for the request of its number, and shows it to the tap; `compiled`: what
+  /// compile() made of the files of a load. Only with a PLC; any one thread outside the cycle.
+  PlcLogic::Plan prepare(const LogicChange& change, plc::CompileResult compiled = {});
   /// A number for the next one.
   std::uint32_t next_logic_change() noexcept { return ++logic_changes_; }
   /// For records; before the first change.

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "gateway/cli/options.hpp"
-#include "gateway/server/texts.hpp"
+#include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
 

@@ -8,12 +8,13 @@
 
 #include "firmware_if/text/units.hpp"
 #include "gateway/compose/simulated/played_input.hpp"
+#include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
-#include "gateway/run/words/jog_words.hpp"
 #include "gateway/server/bus_reading.hpp"
+#include "gateway/server/desk/refusal.hpp"
 #include "gateway/server/request/request_form.hpp"
 #include "gateway/server/status.hpp"
-#include "gateway/server/texts.hpp"
+#include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
 
@@ -23,39 +24,54 @@ using image::RequestKind;
 using nlohmann::json;
 
 constexpr double kKeepAlive_ms = 30.0;  ///< of the wall clock, between two keep-alives of a jog
-constexpr std::chrono::milliseconds kSilence{100};
 
 constexpr std::size_t kFindingsSaid = 10;  ///< of a bad program; all of them stand in the answer's "findings"
 
-constexpr struct {
-  std::string_view name;
-  image::Asker asker;
-} kAskers[] = {{"command_line", image::Asker::command_line},
-               {"page", image::Asker::page},
-               {"pendant", image::Asker::pendant},
-               {"scenario", image::Asker::scenario},
-               {"modbus", image::Asker::modbus},
-               {"bench", image::Asker::bench}};
-
-/// Commands that are one request each, and what is said when it was accepted.
-constexpr struct {
-  std::string_view name;
-  RequestKind kind;
-  const text::Entry* said;
-} kRequests[] = {{"stop", RequestKind::stop, &says::kStopped},
-                 {"quick_stop", RequestKind::quick_stop, &says::kStopped}};
-
 std::string signed_number(double value) { return (value > 0.0 ? "+" : "") + text::number(value, 4); }
+
+/// Proves the loaded program with other tables, and goes on with `then`.
+Work prove_and(Resident& resident, Resident::Proof proof, Finish then) {
+  auto proven = std::make_shared<Resident::Proof>(std::move(proof));
+  Work work;
+  work.what = "check", work.name = resident.program();
+  work.run = [&resident, proven, then = std::move(then)](const std::stop_token& stop) -> Finish {
+    resident.prove(*proven, stop);
+    return [&resident, proven, then]() -> Outcome {
+      resident.proven(*proven);
+      return then();
+    };
+  };
+  return work;
+}
+
+/// Writes what has been learned, then answers.
+Work save_and(Resident& resident, Reply done, text::Language language) {
+  const auto problem = std::make_shared<std::string>();
+  Work work;
+  work.what = "save", work.bench = Work::Bench::files;
+  work.run = [&resident, saved = resident.to_save(), problem, done = std::move(done),
+              language](const std::stop_token&) -> Finish {
+    *problem = resident.write(saved);
+    return [problem, done, language]() -> Outcome {
+      return problem->empty() ? done : refuse(says::kNotSaved, {*problem}, kInfrastructure, language);
+    };
+  };
+  return work;
+}
 
 class Dispatch {
  public:
-  Dispatch(Resident& resident, const json& request, Connection& connection)
-      : resident_(resident), request_(request), connection_(connection) {}
+  Dispatch(Resident& resident, const Line& line)
+      : resident_(resident),
+        line_(line),
+        request_(line.request),
+        asker_(line.caller.asker),
+        language_(line.caller.language) {}
 
-  Reply run();
+  Outcome run();
 
  private:
-  using Handler = Reply (Dispatch::*)();
+  using Handler = Outcome (Dispatch::*)();
   struct Row {
     std::string_view name;
     Handler handler;
@@ -74,27 +90,25 @@ class Dispatch {
   /// Puts a request to the gate. True: accepted; otherwise `refusal_` holds the answer.
   /// `mode`: the mode that belongs to it; a refused request leaves the machine in the one it was in.
   bool ask(RequestKind kind, int axis = -1, double value = 0.0, std::optional<image::Mode> mode = {});
-  std::vector<std::string> as_people_write(image::Answer& answer) const;
   /// Index of the axis that `name` says; -1: `refusal_` holds the answer.
   int axis(const json& name);
   /// A number of the request; false: `refusal_` holds the answer.
   bool number(const char* key, double& value, bool needed);
   bool unit_is_own(int axis);
-  bool read_head();
+  /// The same request once more, behind the proof of the loaded program with the tables as they are now.
+  Outcome behind(Resident::Proof proof);
 
-  Reply status() { return {status_json(resident_, language_)}; }
-  Reply buses() { return {held_buses_json(machine(), resident_.image(), false)}; }
-  Reply alarms() { return {alarms_json(resident_, language_)}; }
-  Reply power();
-  Reply home();
-  Reply jog();
-  Reply jog_continuous();
-  Reply keep_alive();
-  Reply jog_ended(const HeldJog& jog, image::JogEnd end, bool others) const;
-  Reply jog_stop();
-  Reply zero();
-  Reply override_feed();
-  Reply load();
+  Outcome status() { return Reply{status_json(resident_, language_)}; }
+  Outcome buses() { return Reply{held_buses_json(machine(), resident_.image(), false)}; }
+  Outcome alarms() { return Reply{alarms_json(resident_, language_)}; }
+  Outcome power();
+  Outcome home();
+  Outcome jog();
+  Outcome jog_continuous();
+  Outcome zero();
+  Outcome override_feed();
+  Outcome load();
+  Outcome loaded(Resident::Load& load);
   std::string with_findings(const text::Entry& entry, const std::string& program,
                             const std::vector<text::Finding>& findings) const;
   /// What the gate would say: a program is under way.
@@ -102,35 +116,26 @@ class Dispatch {
     const auto why = resident_.stopping() ? cycle::Refusal::program_stopping : cycle::Refusal::program_runs;
     return fail(cycle::refusal_texts()[static_cast<std::size_t>(why)], {}, kAlarm);
   }
-  Reply start() { return begin(false); }
-  Reply step() { return begin(true); }
-  Reply begin(bool step);
-  Reply mdi();
-  Reply hold();
-  Reply resume();
-  Reply reset();
-  Reply input();
-  Reply sdo_read() { return gateway::sdo_read(resident_.control(), request_, language_); }
+  Outcome start() { return begin(false); }
+  Outcome step() { return begin(true); }
+  Outcome begin(bool step);
+  Outcome mdi();
+  Outcome resume();
+  Outcome reset();
+  Outcome input();
+  Outcome sdo_read() { return gateway::sdo_read(resident_.control(), request_, language_); }
   /// The answer to "not powered", with each condition that is missing.
   void add_missing(json& answer);
-  /// What the request plays on a point; false: `refusal_` holds the answer.
-  Reply down() {
-    resident_.set_ending();  // nothing begins behind the answer
-    Reply reply = good(says::kDown);
-    reply.down = true;
-    return reply;
-  }
-
   const machine::MachineConfig& machine() const { return resident_.control().machine(); }
   const machine::AxisConfig& axis_config(int index) const {
     return machine().axes[static_cast<std::size_t>(index)];
   }
 
   Resident& resident_;
+  const Line& line_;
   const json& request_;
-  Connection& connection_;
-  image::Asker asker_ = image::Asker::command_line;
-  text::Language language_ = text::user_language();
+  image::Asker asker_;
+  text::Language language_;
   Reply refusal_;
 };
 
@@ -141,57 +146,32 @@ const Dispatch::Row Dispatch::kRows[] = {{"status", &Dispatch::status},
                                          {"home", &Dispatch::home},
                                          {"jog", &Dispatch::jog},
                                          {"jog_continuous", &Dispatch::jog_continuous},
-                                         {"keep_alive", &Dispatch::keep_alive},
-                                         {"jog_stop", &Dispatch::jog_stop},
                                          {"zero", &Dispatch::zero},
                                          {"override", &Dispatch::override_feed},
                                          {"load", &Dispatch::load},
                                          {"start", &Dispatch::start},
                                          {"step", &Dispatch::step},
                                          {"mdi", &Dispatch::mdi},
-                                         {"hold", &Dispatch::hold},
                                          {"resume", &Dispatch::resume},
                                          {"reset", &Dispatch::reset},
                                          {"acknowledge", &Dispatch::reset},
                                          {"input", &Dispatch::input},
-                                         {"sdo_read", &Dispatch::sdo_read},
-                                         {"down", &Dispatch::down}};
+                                         {"sdo_read", &Dispatch::sdo_read}};
 
-/// What a control still does for its clients while it comes to its end.
-bool looks_or_stops(std::string_view command) {
-  static constexpr std::string_view kWords[] = {"status",   "buses",    "alarms",     "down",
-                                                "hold",     "stop",     "quick_stop", "jog_stop",
-                                                "sdo_read", "plc_list", "plc_watch",  "plc_go"};
+/// What a control still does for its clients while it comes to its end; stops have a road of their own.
+bool only_looks(std::string_view command) {
+  static constexpr std::string_view kWords[] = {"status",   "buses",     "alarms", "sdo_read",
+                                                "plc_list", "plc_watch", "plc_go"};
   return std::find(std::begin(kWords), std::end(kWords), command) != std::end(kWords);
 }
 
-Reply Dispatch::run() {
-  if (!read_head()) return refusal_;
+Outcome Dispatch::run() {
   const std::string command = request_.value("cmd", "");
-  if (resident_.ending() && !looks_or_stops(command)) return fail(says::kEnding, {}, kAlarm);
-  for (const auto& row : kRequests)
-    if (row.name == command) return ask(row.kind) ? good(*row.said) : refusal_;
+  if (resident_.ending() && !only_looks(command)) return fail(says::kEnding, {}, kAlarm);
   for (const Row& row : kRows)
     if (row.name == command) return (this->*row.handler)();
-  if (command.starts_with("plc_"))
-    return {text_of(
-        resident_.plc().carry_out(request_, {asker_, connection_.number, connection_.user, language_}))};
+  if (command.starts_with("plc_")) return resident_.plc().carry_out(request_, line_.caller);
   return fail(says::kUnknown, {command}, kWrongUse);
-}
-
-bool Dispatch::read_head() {
-  language_ = language_of(request_);
-  const std::string name = request_.value("asker", "command_line");
-  std::string known;
-  for (const auto& row : kAskers) {
-    if (row.name == name) {
-      asker_ = row.asker;
-      return true;
-    }
-    known += (known.empty() ? "" : ", ") + std::string(row.name);
-  }
-  refusal_ = fail(says::kUnknownAsker, {name, known}, kWrongUse);
-  return false;
 }
 
 bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image::Mode> mode) {
@@ -200,19 +180,21 @@ bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image
   r.kind = kind;
   r.axis = static_cast<std::int8_t>(axis);
   r.value = value;
-  r.client = static_cast<std::uint32_t>(connection_.number);
+  r.client = line_.caller.hand().client;
   if (mode) r.mode = static_cast<std::int8_t>(*mode);
   image::Answer answer;
-  if (!resident_.ask(r, answer)) {
-    refusal_ = fail(says::kNoAnswer, {}, kInfrastructure);
-    return false;
+  switch (resident_.ask(r, answer, line_.asked_at)) {
+    case RequestDesk::Outcome::silent:
+      refusal_ = fail(says::kNoAnswer, {}, kInfrastructure);
+      return false;
+    case RequestDesk::Outcome::overtaken:
+      refusal_ = fail(says::kOvertaken, {}, kAlarm);
+      return false;
+    case RequestDesk::Outcome::answered:
+      break;
   }
   if (answer.refusal == 0) return true;
-  const std::vector<std::string> units = as_people_write(answer);
-  json refused{{"ok", false},
-               {"code", cycle::refusal_texts()[answer.refusal].id},
-               {"text", cycle::render(answer, machine().letters(), language_, units)},
-               {"exit", kAlarm}};
+  json refused = refusal_json(answer, machine(), language_);
   const auto refusal = static_cast<cycle::Refusal>(answer.refusal);
   if (refusal == cycle::Refusal::not_powered || refusal == cycle::Refusal::emergency_stop)
     add_missing(refused);
@@ -230,27 +212,11 @@ void Dispatch::add_missing(json& answer) {
   answer["text"] = words;
 }
 
-/// The cycle knows radii only; of a diameter axis people see the diameter, and are told so. Gives the units
-/// of the axes.
-std::vector<std::string> Dispatch::as_people_write(image::Answer& answer) const {
-  std::vector<std::string> units = machine().unit_words();
-  const auto refusal = static_cast<cycle::Refusal>(answer.refusal);
-  const bool of_radius = refusal == cycle::Refusal::jog_range || refusal == cycle::Refusal::at_soft_limit;
-  const bool of_place = of_radius || refusal == cycle::Refusal::zero_range;
-  if (!of_place || answer.axis < 0 || !axis_config(answer.axis).diameter) return units;
-  units[static_cast<std::size_t>(answer.axis)] += text::both(" in diameter", " по диаметру");
-  if (of_radius) answer.value *= 2.0, answer.limit *= 2.0;
-  return units;
-}
-
 int Dispatch::axis(const json& name) {
-  const std::string letter = name.is_string() ? name.get<std::string>() : "";
-  const int index = machine().axis_index(letter);
-  if (index >= 0) return index;
-  std::string list;
-  for (const std::string& l : machine().letters()) list += (list.empty() ? "" : ", ") + l;
-  refusal_ = fail(says::kNoAxis, {letter, list}, kWrongUse);
-  return -1;
+  FormProblem problem;
+  const int index = axis_of(machine(), name, problem);
+  if (index < 0) refusal_ = fail(*problem.entry, problem.arguments, kWrongUse);
+  return index;
 }
 
 bool Dispatch::number(const char* key, double& value, bool needed) {
@@ -271,15 +237,14 @@ bool Dispatch::unit_is_own(int axis) {
   return false;
 }
 
-Reply Dispatch::power() {
+Outcome Dispatch::power() {
   double value = 0.0;
   if (!number("value", value, true)) return refusal_;
   if (value != 0.0 && value != 1.0) return fail(says::kNotSwitch, {"value"}, kWrongUse);
-  if (!ask(RequestKind::power, -1, value)) return refusal_;
-  return good(value != 0.0 ? says::kPowerOn : says::kPowerOff);
+  return ask(RequestKind::power, -1, value) ? good(says::kPowerOn) : refusal_;
 }
 
-Reply Dispatch::home() {
+Outcome Dispatch::home() {
   const json axes = request_.value("axes", json::array());
   std::uint32_t mask = 0;
   std::string names;
@@ -295,7 +260,7 @@ Reply Dispatch::home() {
   return mask == 0 ? good(says::kHomingAll) : good(says::kHoming, {names});
 }
 
-Reply Dispatch::jog() {
+Outcome Dispatch::jog() {
   double value = 0.0;
   const int index = axis(request_.value("axis", json()));
   if (index < 0 || !unit_is_own(index) || !number("value", value, true)) return refusal_;
@@ -314,87 +279,42 @@ Reply Dispatch::jog() {
   return good(says::kJog, {a.letter, signed_number(value), text::unit_words(a.unit())});
 }
 
-Reply Dispatch::jog_continuous() {
+Outcome Dispatch::jog_continuous() {
   double value = 0.0;
   const int index = axis(request_.value("axis", json()));
   if (index < 0 || !number("value", value, true)) return refusal_;
   if (!ask(RequestKind::jog_continuous, index, value, image::Mode::manual)) return refusal_;
-  std::erase_if(connection_.jogs, [index](const HeldJog& j) { return j.axis == index; });
-  const image::Hand hand{asker_, static_cast<std::uint32_t>(connection_.number)};
-  connection_.jogs.push_back({index, hand, false, std::chrono::steady_clock::now()});
-  return good(says::kJogs, {axis_config(index).letter, value > 0.0 ? "+" : "-"},
-              {{"keep_alive_ms", kKeepAlive_ms}});
+  Reply reply = good(says::kJogs, {axis_config(index).letter, value > 0.0 ? "+" : "-"},
+                     {{"keep_alive_ms", kKeepAlive_ms}});
+  reply.jog = HeldJog{index, line_.caller.hand(), std::chrono::steady_clock::now(), {}, false};
+  return reply;
 }
 
-/// How the jog of this client ended; nullopt: it goes on.
-std::optional<image::JogEnd> end_of(const HeldJog& jog, const image::AxisImage& a) {
-  if (jog.silent) return image::JogEnd::silent;
-  const bool jogs = a.owner == image::AxisOwner::manual && a.hand == jog.hand;
-  if (a.hand == jog.hand && a.jog_end != image::JogEnd::none) return a.jog_end;
-  return jogs ? std::nullopt : std::optional(image::JogEnd::none);
+Outcome Dispatch::behind(Resident::Proof proof) {
+  Resident& resident = resident_;
+  return prove_and(resident, std::move(proof),
+                   [&resident, line = line_] { return dispatch(resident, line); });
 }
 
-Reply Dispatch::jog_ended(const HeldJog& jog, image::JogEnd end, bool others) const {
-  const std::string letter = axis_config(jog.axis).letter;
-  return {text_of({{"ok", true},
-                   {"exit", kDone},
-                   {"moving", others},
-                   {"axis", letter},
-                   {"reason", jog_end_name(end)},
-                   {"code", jog_end_code(end)},
-                   {"text", jog_end_words(end, letter, language_)}})};
-}
-
-/// Those of this connection only: the dead-man of a jog is its own client's.
-Reply Dispatch::keep_alive() {
-  int index = -1;
-  if (request_.contains("axis") && (index = axis(request_["axis"])) < 0) return refusal_;
-  const auto meant = [index](const HeldJog& j) { return index < 0 || j.axis == index; };
-  std::vector<HeldJog>& jogs = connection_.jogs;
-  if (std::none_of(jogs.begin(), jogs.end(), meant)) return fail(says::kNoJog, {}, kWrongUse);
-  const image::ProcessImage& image = resident_.image();
-  std::optional<Reply> ended;
-  for (std::size_t i = jogs.size(); i-- > 0;) {
-    if (!meant(jogs[i])) continue;
-    const auto end = end_of(jogs[i], image.axes[static_cast<std::size_t>(jogs[i].axis)]);
-    if (!end) {
-      jogs[i].heard = std::chrono::steady_clock::now();
-      resident_.tell({.asker = jogs[i].hand.asker,
-                      .kind = RequestKind::keep_alive,
-                      .axis = static_cast<std::int8_t>(jogs[i].axis),
-                      .client = jogs[i].hand.client});
-    } else if (!ended) {  // one an answer
-      const HeldJog jog = jogs[i];
-      jogs.erase(jogs.begin() + static_cast<std::ptrdiff_t>(i));
-      ended = jog_ended(jog, *end, !jogs.empty());
-    }
-  }
-  return ended ? *ended : Reply{text_of({{"ok", true}, {"exit", kDone}, {"moving", true}})};
-}
-
-Reply Dispatch::jog_stop() {
-  int index = -1;
-  if (request_.contains("axis") && (index = axis(request_["axis"])) < 0) return refusal_;
-  std::erase_if(connection_.jogs, [index](const HeldJog& j) { return index < 0 || j.axis == index; });
-  return ask(RequestKind::jog_stop, index) ? good(says::kStopped) : refusal_;
-}
-
-Reply Dispatch::zero() {
+Outcome Dispatch::zero() {
   double value = 0.0;
   const int index = axis(request_.value("axis", json()));
   if (index < 0 || !unit_is_own(index) || !number("value", value, false)) return refusal_;
   if (!ask(RequestKind::zero, index, value)) return refusal_;
   const Resident::Zeroed zeroed = resident_.zero(index, value);
-  if (const std::string problem = resident_.save(); !problem.empty())
-    return fail(says::kNotSaved, {problem}, kInfrastructure);
   const machine::AxisConfig& a = axis_config(index);
-  return good(a.diameter ? says::kZeroDiameter : says::kZero,
-              {a.letter, text::number(value, 4), text::unit_words(a.unit()), std::to_string(zeroed.origin),
-               text::number(zeroed.place, 4)},
-              {{"origin", zeroed.origin}, {"place", zeroed.place}});
+  const Reply done = good(a.diameter ? says::kZeroDiameter : says::kZero,
+                          {a.letter, text::number(value, 4), text::unit_words(a.unit()),
+                           std::to_string(zeroed.origin), text::number(zeroed.place, 4)},
+                          {{"origin", zeroed.origin}, {"place", zeroed.place}});
+  // Nobody is told before the loaded program goes by it, and it lies on the disk.
+  Resident& resident = resident_;
+  const Finish save = [&resident, done, language = language_] { return save_and(resident, done, language); };
+  if (auto proof = resident.renew_tables()) return prove_and(resident, std::move(*proof), save);
+  return save();
 }
 
-Reply Dispatch::override_feed() {
+Outcome Dispatch::override_feed() {
   double value = 0.0;
   if (!number("value", value, true) || !ask(RequestKind::override_feed, -1, value / 100.0)) return refusal_;
   return good(says::kOverride, {text::number(value, 1)});
@@ -413,34 +333,52 @@ std::string Dispatch::with_findings(const text::Entry& entry, const std::string&
   return words;
 }
 
-Reply Dispatch::load() {
-  if (resident_.busy()) return busy();
-  std::vector<text::Finding> findings;
+Outcome Dispatch::load() {
   const std::string program = request_.value("program", "");
-  const Resident::Load loaded = resident_.load(program, request_.value("dialect", ""), findings);
-  if (loaded == Resident::Load::busy) return busy();
-  json more{{"findings", json::parse(machine::to_json(findings), nullptr, false)}};
-  if (loaded == Resident::Load::done)
-    return good(says::kLoaded, {program, std::to_string(resident_.blocks()), std::to_string(findings.size())},
-                more);
-  const std::string words = with_findings(says::kNotLoaded, program, findings);
-  const int exit = loaded == Resident::Load::not_opened ? kWrongUse : kAlarm;
-  more.update({{"ok", false}, {"exit", exit}, {"code", says::kNotLoaded.id}, {"text", words}});
-  return {text_of(more)};
+  if (resident_.busy()) {  // first of all what no waiting would mend
+    const std::string why = files::why_unreadable(program);
+    return why.empty() ? busy() : fail(says::kNotReadable, {program, why}, kWrongUse);
+  }
+  resident_.read_tables();
+  const auto load =
+      std::make_shared<Resident::Load>(resident_.begin_load(program, request_.value("dialect", "")));
+  Resident& resident = resident_;
+  Work work;
+  work.what = "load", work.name = load->path;
+  work.run = [&resident, load, line = line_](const std::stop_token& stop) -> Finish {
+    resident.read_and_prove(*load, stop);
+    return [&resident, load, line]() -> Outcome { return Dispatch(resident, line).loaded(*load); };
+  };
+  return work;
 }
 
-Reply Dispatch::begin(bool step) {
+Outcome Dispatch::loaded(Resident::Load& load) {
+  using End = Resident::Load::End;
+  const End end = resident_.busy() ? End::busy : resident_.finish(load);
+  if (end == End::busy) return busy();
+  if (end == End::other_tables) return this->load();  // the machine has changed them meanwhile
+  json more{{"findings", json::parse(machine::to_json(load.findings), nullptr, false)}};
+  if (end == End::done)
+    return good(says::kLoaded,
+                {load.path, std::to_string(resident_.blocks()), std::to_string(load.findings.size())}, more);
+  const std::string words = with_findings(says::kNotLoaded, load.path, load.findings);
+  const int exit = end == End::not_opened ? kWrongUse : kAlarm;
+  more.update({{"ok", false}, {"exit", exit}, {"code", says::kNotLoaded.id}, {"text", words}});
+  return Reply{text_of(more)};
+}
+
+Outcome Dispatch::begin(bool step) {
   std::optional<image::Mode> mode;
   const bool typed = resident_.typed();
   if (!typed && !resident_.busy()) {
     if (resident_.program().empty())
       return fail(cycle::refusal_texts()[static_cast<std::size_t>(cycle::Refusal::no_program)], {}, kAlarm);
-    resident_.take_tables();
+    if (auto proof = resident_.take_tables()) return behind(std::move(*proof));
     if (const auto& wrong = resident_.refused(); !wrong.empty())
-      return {text_of({{"ok", false},
-                       {"code", says::kNotStarted.id},
-                       {"text", with_findings(says::kNotStarted, resident_.program(), wrong)},
-                       {"exit", kAlarm}})};
+      return Reply{text_of({{"ok", false},
+                            {"code", says::kNotStarted.id},
+                            {"text", with_findings(says::kNotStarted, resident_.program(), wrong)},
+                            {"exit", kAlarm}})};
     mode = step ? image::Mode::step : image::Mode::automatic;
   } else if (!typed && !step && resident_.steps()) {
     mode = image::Mode::automatic;
@@ -452,12 +390,12 @@ Reply Dispatch::begin(bool step) {
   return step ? good(says::kStepped, {}, asked) : good(says::kStarted, {resident_.program()}, asked);
 }
 
-Reply Dispatch::mdi() {
+Outcome Dispatch::mdi() {
   const std::string block = request_.value("block", "");
   if (block.find_first_not_of(" \t") == std::string::npos) return fail(says::kBlockEmpty, {}, kWrongUse);
   if (block.find_first_of("\r\n") != std::string::npos) return fail(says::kBlocksSeveral, {}, kWrongUse);
   if (resident_.busy()) return busy();
-  resident_.take_tables();
+  if (auto proof = resident_.take_tables()) return behind(std::move(*proof));
   const std::vector<text::Finding> findings = resident_.check_block(block);
   if (!findings.empty() && findings.back().severity == text::Severity::error)
     return fail(says::kBlockWrong, {findings.back().str(language_)}, kAlarm);
@@ -472,33 +410,25 @@ Reply Dispatch::mdi() {
   return refusal_;
 }
 
-Reply Dispatch::resume() {
+Outcome Dispatch::resume() {
   const bool typed = resident_.typed();
   if (!ask(RequestKind::resume)) return refusal_;
   return typed ? good(says::kTypedGoesOn, {resident_.manual_block()}) : good(says::kResumed);
 }
 
-Reply Dispatch::hold() {
-  const bool busy = resident_.busy();
-  const image::ProcessImage& image = resident_.image();
-  const auto by_hand = [](const image::AxisImage& a) {
-    return a.moving && (a.owner == image::AxisOwner::manual || a.owner == image::AxisOwner::homing);
-  };
-  const bool jogs =
-      image.homing || std::any_of(image.axes.begin(), image.axes.begin() + image.axis_count, by_hand);
-  if (!ask(RequestKind::hold)) return refusal_;
-  return good(busy ? says::kHeld : jogs ? says::kManualStopped : says::kNothingHeld);
-}
-
-Reply Dispatch::reset() {
+Outcome Dispatch::reset() {
   const bool whole = request_.value("cmd", "") == "reset";
   if (!ask(whole ? RequestKind::reset : RequestKind::acknowledge)) return refusal_;
-  if (whole && !resident_.busy()) resident_.forget_modes();
   const std::string left = alarms_in_words(resident_, language_);
-  return left.empty() ? good(says::kReset) : good(says::kResetLeft, {left});
+  const Reply done = left.empty() ? good(says::kReset) : good(says::kResetLeft, {left});
+  if (!whole || resident_.busy()) return done;
+  auto proof = resident_.take_tables();
+  resident_.forget_modes();
+  if (!proof) return done;
+  return prove_and(resident_, std::move(*proof), [done]() -> Outcome { return done; });
 }
 
-Reply Dispatch::input() {
+Outcome Dispatch::input() {
   const json value = request_.value("value", json());
   InputWish wish;
   if (value.is_boolean())
@@ -516,41 +446,11 @@ Reply Dispatch::input() {
 
 }  // namespace
 
-Reply dispatch(Resident& resident, std::string_view line, Connection& connection) {
-  FormProblem problem;
-  const std::optional<json> request = read_request(line, problem);
-  if (!request) return refuse(*problem.entry, problem.arguments, kWrongUse, problem.language);
+Outcome dispatch(Resident& resident, const Line& line) {
   try {
-    return Dispatch(resident, *request, connection).run();
+    return Dispatch(resident, line).run();
   } catch (const json::exception&) {  // no request, whatever it is, ends a control
-    return refuse(says::kBadLine, {std::string(line.substr(0, 80))}, kWrongUse, problem.language);
-  }
-}
-
-namespace {
-
-void stop_jog(Resident& resident, const HeldJog& jog) {
-  resident.tell({.asker = jog.hand.asker,
-                 .kind = RequestKind::jog_stop,
-                 .axis = static_cast<std::int8_t>(jog.axis),
-                 .client = jog.hand.client,
-                 .value = 1.0});
-}
-
-}  // namespace
-
-void end_connection(Resident& resident, Connection& connection) {
-  for (const HeldJog& jog : connection.jogs) stop_jog(resident, jog);
-  connection.jogs.clear();
-  resident.plc().release_of(connection.number);
-}
-
-void watch_jogs(Resident& resident, Connection& connection) {
-  if (resident.speed() == 1.0) return;
-  for (HeldJog& jog : connection.jogs) {
-    if (jog.silent || std::chrono::steady_clock::now() - jog.heard < kSilence) continue;
-    jog.silent = true;
-    stop_jog(resident, jog);
+    return refuse(says::kBadLine, {text_of(line.request).substr(0, 80)}, kWrongUse, line.caller.language);
   }
 }
 

@@ -6,16 +6,24 @@
 #include <thread>
 #include <utility>
 
+#include "gateway/cli/messages.hpp"
+#include "gateway/server/words/texts.hpp"
+
 namespace servogate::gateway {
 
 namespace {
 
+constexpr int kAnswerPatience_ms = 2000;
 constexpr int kBlockPatience = 10'000;  ///< commands of a typed block that are looked at before it runs
 
 }  // namespace
 
 Resident::Resident(Control& control, machine::MachineState state, std::string state_path, double speed)
-    : control_(control), state_(std::move(state)), state_path_(std::move(state_path)), speed_(speed) {
+    : control_(control),
+      state_(std::move(state)),
+      state_path_(std::move(state_path)),
+      speed_(speed),
+      requests_(control.cycle()) {
   ProgramFile none;
   none.dialect = control.machine().control.dialect;
   none.model = program_model(control.machine());
@@ -24,22 +32,11 @@ Resident::Resident(Control& control, machine::MachineState state, std::string st
   arm(ProgramChange::Kind::program);
 }
 
-bool Resident::ask(image::Request request, image::Answer& answer, int patience_ms) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point end = Clock::now() + std::chrono::milliseconds(patience_ms);
-  request.id = next_id_++;
-  while (control_.cycle().take_answer(answer)) {
-  }  // of those that nobody waited for
-  if (!control_.cycle().post(request)) return false;
-  while (Clock::now() < end) {
-    while (control_.cycle().take_answer(answer))
-      if (answer.id == request.id) {
-        catch_up();
-        return true;
-      }
-    std::this_thread::sleep_for(std::chrono::microseconds(500));
-  }
-  return false;
+RequestDesk::Outcome Resident::ask(const image::Request& request, image::Answer& answer,
+                                   const Stops& asked_at) {
+  const RequestDesk::Outcome outcome = requests_.ask(request, answer, asked_at, kAnswerPatience_ms);
+  if (outcome == RequestDesk::Outcome::answered) catch_up();
+  return outcome;
 }
 
 /// Waits for the next whole image, which holds what the answered request did: whoever asks for the status
@@ -64,17 +61,9 @@ bool Resident::typed() { return busy() && image_.processes[0].typed; }
 
 bool Resident::steps() { return busy() && image_.processes[0].mode == image::Mode::step; }
 
-void Resident::tell(image::Request request) {
-  image::Answer unread;
-  while (control_.cycle().take_answer(unread)) {
-  }
-  request.id = next_id_++;
-  control_.cycle().post(request);
-}
-
 /// False: a program is being read just now, nothing was changed.
 bool Resident::arm(ProgramChange::Kind kind) {
-  prove_again();
+  own_tables_ = false;
   if (refused_.empty()) return control_.change({kind, 0, file_, state_.tables, {}});
   // Whoever starts, a start button too, must not find it.
   auto none = std::make_shared<ProgramFile>(*file_);
@@ -83,52 +72,83 @@ bool Resident::arm(ProgramChange::Kind kind) {
   return control_.change({kind, 0, std::move(none), state_.tables, {}});
 }
 
-/// What was proven of the loaded program holds for its tables only.
-void Resident::prove_again() {
-  if (state_.tables == proven_) return;
-  proven_ = state_.tables;
-  refused_.clear();
-  if (file_->path.empty()) return;
-  for (text::Finding& f : prove(*file_).report.findings)
-    if (f.severity == text::Severity::error) refused_.push_back(std::move(f));
+std::optional<Resident::Proof> Resident::renew_tables() {
+  // What was proven of the loaded program holds for its tables only.
+  if (!file_->path.empty() && !(state_.tables == proven_)) return Proof{file_, state_.tables, position(), {}};
+  arm(ProgramChange::Kind::tables);
+  return std::nullopt;
 }
 
-ProgramCheck Resident::prove(const ProgramFile& file) {
-  return prove_program(control_.machine(), file, state_.tables, {position(), false},
-                       channel::Forecast::Depth::drivable);
+void Resident::prove(Proof& proof, const std::stop_token& stop) const {
+  ProgramCheck check = prove_program(control_.machine(), *proof.file, proof.tables, {proof.at, false},
+                                     channel::Forecast::Depth::drivable, stop);
+  for (text::Finding& f : check.report.findings)
+    if (f.severity == text::Severity::error) proof.errors.push_back(std::move(f));
 }
 
-Resident::Load Resident::load(const std::string& path, const std::string& dialect,
-                              std::vector<text::Finding>& findings) {
-  auto file = std::make_shared<ProgramFile>();
-  if (!open_program(control_.machine(), path, dialect, *file, findings)) return Load::not_opened;
-  take_tables();
-  const ProgramCheck check = prove(*file);
-  findings.insert(findings.end(), check.report.findings.begin(), check.report.findings.end());
-  for (const text::Finding& f : findings)
-    if (f.severity == text::Severity::error) return Load::has_errors;
-  std::shared_ptr<const ProgramFile> before = std::exchange(file_, file);
+void Resident::proven(const Proof& proof) {
+  if (proof.file != file_) return;  // another program was loaded meanwhile
+  proven_ = proof.tables;
+  refused_ = proof.errors;
+  if (state_.tables == proven_) arm(ProgramChange::Kind::tables);
+}
+
+Resident::Load Resident::begin_load(std::string path, std::string dialect) {
+  Load load;
+  load.path = std::move(path);
+  load.dialect = std::move(dialect);
+  load.tables = state_.tables;
+  load.at = position();
+  return load;
+}
+
+void Resident::read_and_prove(Load& load, const std::stop_token& stop) const {
+  load.opened = open_program(control_.machine(), load.path, load.dialect, *load.file, load.findings);
+  if (!load.opened) return;
+  ProgramCheck check = prove_program(control_.machine(), *load.file, load.tables, {load.at, false},
+                                     channel::Forecast::Depth::drivable, stop);
+  load.findings.insert(load.findings.end(), check.report.findings.begin(), check.report.findings.end());
+  load.blocks = check.report.blocks;
+  const std::string& text = load.file->text;
+  load.lines = static_cast<int>(std::count(text.begin(), text.end(), '\n')) +
+               (text.empty() || text.back() == '\n' ? 0 : 1);
+}
+
+Resident::Load::End Resident::finish(Load& load) {
+  if (!load.opened) return Load::End::not_opened;
+  read_tables();
+  if (!(state_.tables == load.tables)) return Load::End::other_tables;
+  for (const text::Finding& f : load.findings)
+    if (f.severity == text::Severity::error) return Load::End::has_errors;
+  std::shared_ptr<const ProgramFile> before = std::exchange(file_, load.file);
   std::vector<text::Finding> refused_before = std::exchange(refused_, {});
-  proven_ = state_.tables;
+  const program::Tables proven_before = std::exchange(proven_, state_.tables);
   if (arm(ProgramChange::Kind::program)) {
-    blocks_ = check.report.blocks;
-    lines_ = static_cast<int>(std::count(file->text.begin(), file->text.end(), '\n')) +
-             (file->text.empty() || file->text.back() == '\n' ? 0 : 1);
-    return Load::done;
+    blocks_ = load.blocks;
+    lines_ = load.lines;
+    return Load::End::done;
   }
   file_ = std::move(before);  // a program began meanwhile
   refused_ = std::move(refused_before);
-  return Load::busy;
+  proven_ = proven_before;
+  return Load::End::busy;
 }
 
-void Resident::take_tables() {
-  {
+void Resident::read_tables() {
+  if (own_tables_) return;
+  const std::scoped_lock lock(control_.reading());
+  const program::Tables* tables = control_.process(0).feeder().tables();
+  if (tables != nullptr && !control_.process(0).feeder().reads()) state_.tables = *tables;
+}
+
+std::optional<Resident::Proof> Resident::take_tables() {
+  if (!own_tables_) {
     const std::scoped_lock lock(control_.reading());
     const program::Tables* tables = control_.process(0).feeder().tables();
-    if (tables == nullptr || control_.process(0).feeder().reads()) return;
+    if (tables == nullptr || control_.process(0).feeder().reads()) return std::nullopt;
     state_.tables = *tables;
   }
-  arm(ProgramChange::Kind::tables);
+  return renew_tables();
 }
 
 program::Position Resident::position() {
@@ -166,13 +186,10 @@ void Resident::set_manual_block(const std::string& block) {
   control_.change({ProgramChange::Kind::block, 0, {}, {}, block});
 }
 
-void Resident::forget_modes() {
-  take_tables();
-  control_.change({ProgramChange::Kind::modes, 0, {}, {}, {}});
-}
+void Resident::forget_modes() { control_.change({ProgramChange::Kind::modes, 0, {}, {}, {}}); }
 
 Resident::Zeroed Resident::zero(int axis, double value) {
-  take_tables();
+  read_tables();
   const program::Position at = position();
   std::optional<program::Interpreter> manual;
   {
@@ -182,20 +199,20 @@ Resident::Zeroed Resident::zero(int axis, double value) {
   const machine::AxisConfig& a = control_.machine().axes[static_cast<std::size_t>(axis)];
   manual->preset(axis, a.diameter ? value / 2.0 : value);
   state_.tables = manual->tables();
-  arm(ProgramChange::Kind::tables);
+  own_tables_ = true;
   const int origin = manual->origin(axis);
   return {origin, state_.tables.origins[origin][a.letter]};
 }
 
-std::string Resident::save() {
-  if (state_path_.empty()) return {};
-  {
+std::optional<machine::MachineState> Resident::to_save() {
+  if (state_path_.empty()) return std::nullopt;
+  if (!own_tables_) {
     const std::scoped_lock lock(control_.reading());
     if (const program::Tables* tables = control_.process(0).feeder().tables(); tables != nullptr)
       state_.tables = *tables;
   }
   const image::ProcessImage& now = image();
-  if (now.axis_count == 0) return {};  // no cycle yet: nothing was learned
+  if (now.axis_count == 0) return std::nullopt;  // no cycle yet: nothing was learned
   cycle::References references;
   control_.cycle().read(references);
   for (std::size_t a = 0; a < control_.machine().axes.size(); ++a) {
@@ -204,8 +221,13 @@ std::string Resident::save() {
     record.offset_counts = references[a];
   }
   state_.tool_in_spindle = now.processes[0].tool;
+  return state_;
+}
+
+std::string Resident::write(const std::optional<machine::MachineState>& state) const {
   std::string error;
-  return machine::StateDirectory(state_path_).save_all(state_, error) ? std::string() : error;
+  if (!state || machine::StateDirectory(state_path_).save_all(*state, error)) return {};
+  return error;
 }
 
 std::uint32_t Resident::homed() {
@@ -216,16 +238,49 @@ std::uint32_t Resident::homed() {
   return bits;
 }
 
-std::string Resident::look_after() {
+std::vector<Work> Resident::look_after() {
+  std::vector<Work> works;
   const std::uint32_t now = homed();
-  const bool found = (now & ~homed_seen_) != 0;
+  unsaved_ = unsaved_ || (now & ~homed_seen_) != 0;
   homed_seen_ = now;
   const bool busy_now = busy();
   const bool ended = busy_seen_ && !busy_now;
   busy_seen_ = busy_now;
-  if (ended) take_tables();
-  const bool changed = image().axis_count > 0 && image_.processes[0].tool != state_.tool_in_spindle;
-  return found || ended || changed ? save() : std::string();
+  if (ended)
+    if (auto proof = take_tables()) works.push_back(prove_later(std::move(*proof)));
+  const bool tool = image().axis_count > 0 && image_.processes[0].tool != state_.tool_in_spindle;
+  unsaved_ = unsaved_ || ended || tool;
+  if (unsaved_ && !saving_ && !state_path_.empty()) works.push_back(save_later());
+  return works;
+}
+
+Work Resident::prove_later(Proof proof) {
+  const auto proven = std::make_shared<Proof>(std::move(proof));
+  Work work;
+  work.what = "check", work.name = program();
+  work.run = [this, proven](const std::stop_token& stop) -> Finish {
+    prove(*proven, stop);
+    return [this, proven]() -> Outcome {
+      this->proven(*proven);
+      return Reply{};
+    };
+  };
+  return work;
+}
+
+Work Resident::save_later() {
+  unsaved_ = false;
+  saving_ = true;
+  Work work;
+  work.what = "save", work.bench = Work::Bench::files;
+  work.run = [this, saved = to_save()](const std::stop_token&) -> Finish {
+    return [this, problem = write(saved)]() -> Outcome {
+      saving_ = false;
+      if (!problem.empty()) complain(says::kNotSaved, {problem});
+      return Reply{};
+    };
+  };
+  return work;
 }
 
 const image::ProcessImage& Resident::image() {

@@ -1,41 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "gateway/compose/control.hpp"
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/machine/state/state.hpp"
+#include "gateway/server/desk/outcome.hpp"
+#include "gateway/server/desk/request_desk.hpp"
+#include "gateway/server/desk/works.hpp"
 #include "gateway/server/plc/plc_desk.hpp"
 
 namespace servogate::gateway {
 
 /// A Control that stays: its program, its learned state, and who speaks to it. Everything here is for one
-/// thread outside the cycle (the server's), except that the loop's owner runs the Control itself.
+/// thread outside the cycle (the desk's) unless it says otherwise; the loop's owner runs the Control itself.
 class Resident {
  public:
   /// `speed`: machine seconds per wall-clock second.
   Resident(Control& control, machine::MachineState state, std::string state_path, double speed = 1.0);
 
-  /// Posts one request and waits for the gate's answer, at most `patience_ms`. False: no answer in time.
-  bool ask(image::Request request, image::Answer& answer, int patience_ms = 2000);
-  /// Posts without waiting for the answer (keep-alive, stops).
-  void tell(image::Request request);
+  /// The way to the gate. Any thread.
+  RequestDesk& requests() noexcept { return requests_; }
+  /// Posts one request of a client and waits for the gate's answer and the image that shows what it did.
+  RequestDesk::Outcome ask(const image::Request& request, image::Answer& answer, const Stops& asked_at);
 
-  /// How a load went.
-  enum class Load {
-    done,
-    not_opened,  ///< the file cannot be read, or its language is not known
-    has_errors,  ///< of the program
-    busy         ///< a program has begun meanwhile
+  /// A program on its way to be loaded: begin_load(), read_and_prove(), finish().
+  struct Load {
+    enum class End {
+      done,
+      not_opened,    ///< the file cannot be read, or its language is not known
+      has_errors,    ///< of the program
+      busy,          ///< a program has begun meanwhile
+      other_tables,  ///< the tables with which it was proven have changed meanwhile
+    };
+    std::string path, dialect;
+    program::Tables tables;
+    program::Position at{};
+    std::shared_ptr<ProgramFile> file = std::make_shared<ProgramFile>();
+    bool opened = false;
+    std::vector<text::Finding> findings;
+    int blocks = 0, lines = 0;
   };
-  /// Loads a program that nothing can be proven wrong of with the tables as they are (prove_program);
-  /// findings are returned. Unless `done`, the one loaded before stays.
-  Load load(const std::string& path, const std::string& dialect, std::vector<text::Finding>& findings);
-  /// Takes over what the last run changed in the tables, before the next one starts.
-  void take_tables();
+  Load begin_load(std::string path, std::string dialect);
+  /// Reads the program and looks through it with the tables as they were (prove_program). Any thread; throws
+  /// Cancelled.
+  void read_and_prove(Load& load, const std::stop_token& stop) const;
+  /// Loads it unless something is wrong; then the one loaded before stays.
+  Load::End finish(Load& load);
+
+  /// The loaded program, to be looked through with other tables.
+  struct Proof {
+    std::shared_ptr<const ProgramFile> file;
+    program::Tables tables;
+    program::Position at{};
+    std::vector<text::Finding> errors;
+  };
+  /// Reads what the last run changed in the tables.
+  void read_tables();
+  /// The same before the next one starts, and the program goes by them. Where it has to be proven first, only
+  /// behind proven().
+  std::optional<Proof> take_tables();
+  /// The program goes by the tables as they are now; the same.
+  std::optional<Proof> renew_tables();
+  /// Any thread; throws Cancelled.
+  void prove(Proof& proof, const std::stop_token& stop) const;
+  void proven(const Proof& proof);
+
   /// What this block gives in the present modal state of MDI, before anything moves: warnings, and last the
   /// error that keeps it from running.
   std::vector<text::Finding> check_block(const std::string& block);
@@ -58,13 +93,15 @@ class Resident {
   /// the origin in force, after the gate has agreed.
   Zeroed zero(int axis, double value);
 
-  /// Writes what has been learned (homing, origins, tool); empty: done, otherwise what went wrong.
-  std::string save();
-  /// Called now and then by the server's thread: saves when an axis has found its reference or a program has
-  /// ended. Empty: fine.
-  std::string look_after();
+  /// What has been learned (homing, origins, tool); nullopt: nothing yet, or nothing is kept.
+  std::optional<machine::MachineState> to_save();
+  /// Writes it; empty: done, otherwise what went wrong. One thread at a time.
+  std::string write(const std::optional<machine::MachineState>& state) const;
+  std::string save() { return write(to_save()); }
+  /// Called now and then: what is to be done when an axis has found its reference or a program has ended.
+  std::vector<Work> look_after();
 
-  /// The control comes to its end: nothing is begun any more.
+  /// The control comes to its end: nothing is begun any more. Any thread.
   void set_ending() noexcept { ending_ = true; }
   bool ending() const noexcept { return ending_; }
   /// A program is under way (running, held or waiting).
@@ -84,6 +121,8 @@ class Resident {
   /// Folder of what is learned; empty: nothing is kept.
   const std::string& state_path() const noexcept { return state_path_; }
   PlcDesk& plc() noexcept { return plc_; }
+  /// What clients wait for that takes long.
+  Works& works() noexcept { return works_; }
   Control& control() noexcept { return control_; }
   /// Newest whole image and alarms.
   const image::ProcessImage& image();
@@ -91,9 +130,9 @@ class Resident {
 
  private:
   bool arm(ProgramChange::Kind kind);
-  void prove_again();
-  ProgramCheck prove(const ProgramFile& file);
   void catch_up();
+  Work prove_later(Proof proof);
+  Work save_later();
   program::Position position();
   std::uint32_t homed();
 
@@ -107,10 +146,13 @@ class Resident {
   int blocks_ = 0, lines_ = 0;
   std::string manual_block_;
   std::uint32_t homed_seen_ = 0;
-  bool busy_seen_ = false, ending_ = false;
-  std::uint64_t next_id_ = 1;
+  bool busy_seen_ = false, unsaved_ = false, saving_ = false;
+  bool own_tables_ = false;  ///< they were changed here, and no process has them yet
+  std::atomic<bool> ending_{false};
+  RequestDesk requests_;
   image::ProcessImage image_;
   cycle::AlarmSnapshot alarms_;
+  Works works_;
   PlcDesk plc_{*this};
 };
 

@@ -8,7 +8,7 @@
 #include "gateway/server/bus_reading.hpp"
 #include "gateway/server/request/request_form.hpp"
 #include "gateway/server/status.hpp"
-#include "gateway/server/texts.hpp"
+#include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
 
@@ -18,7 +18,7 @@ bool RunServer::needed(const machine::MachineConfig& machine) {
   return std::any_of(machine.buses.begin(), machine.buses.end(), [](const auto& b) { return !b.mock(); });
 }
 
-Reply RunServer::answer(std::string_view line, Connection&) {
+std::optional<Reply> RunServer::answer(std::string_view line, Connection&, const Ticket&) {
   FormProblem problem;
   const std::optional<json> request = read_request(line, problem);
   if (!request) return refuse(*problem.entry, problem.arguments, kWrongUse, problem.language);
@@ -26,7 +26,7 @@ Reply RunServer::answer(std::string_view line, Connection&) {
   const std::string command = request->value("cmd", "");
   if (command == "buses") {
     control_.cycle().read(image_);
-    return {held_buses_json(control_.machine(), image_, true)};
+    return Reply{held_buses_json(control_.machine(), image_, true)};
   }
   if (command == "sdo_read") return sdo_read(control_, *request, language);
   return refuse(says::kOnlyRead, {command}, kWrongUse, language);

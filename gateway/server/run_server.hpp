@@ -17,7 +17,7 @@ class RunServer final : public LineServer {
   ~RunServer() override { stop(); }
 
  private:
-  Reply answer(std::string_view line, Connection& connection) override;
+  std::optional<Reply> answer(std::string_view line, Connection& connection, const Ticket& ticket) override;
 
   Control& control_;
   image::ProcessImage image_;

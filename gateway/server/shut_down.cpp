@@ -2,6 +2,7 @@
 #include "gateway/server/shut_down.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/run/standstill.hpp"
@@ -22,6 +23,7 @@ const text::Entry kSpindleUnknown{"up.spindle-unknown",
                                   "the drive of a spindle does not answer: whether it stands cannot be seen",
                                   "привод шпинделя не отвечает: стоит ли шпиндель, не видно"};
 constexpr double kSilentWait_s = 0.5;
+constexpr double kAnswerPatience_s = 2.0;
 
 }  // namespace
 
@@ -34,31 +36,48 @@ double ShutDown::in_stage() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - entered_).count();
 }
 
+const image::ProcessImage& ShutDown::image() {
+  control_.cycle().read(*image_);
+  return *image_;
+}
+
 bool ShutDown::moving() {
-  const image::ProcessImage& image = resident_.image();
-  return std::any_of(image.axes.begin(), image.axes.begin() + image.axis_count,
+  const image::ProcessImage& now = image();
+  return std::any_of(now.axes.begin(), now.axes.begin() + now.axis_count,
                      [](const image::AxisImage& a) { return a.moving; });
 }
 
+/// The cycle has answered, or does not any more. A value of 0 switches off.
+bool ShutDown::asked(image::RequestKind kind) {
+  if (request_ == 0)
+    request_ = requests_.post(
+        {.kind = kind, .process = static_cast<std::int8_t>(kind == image::RequestKind::stop ? -1 : 0)});
+  if (!requests_.take(request_) && in_stage() < kAnswerPatience_s) return false;
+  requests_.forget(std::exchange(request_, 0));
+  return true;
+}
+
 bool ShutDown::look() {
-  image::Answer answer;
   switch (stage_) {
     case Stage::begin:
-      resident_.ask({.kind = image::RequestKind::stop}, answer);
-      enter(Stage::motion);
+      enter(Stage::stop);
+      [[fallthrough]];
+    case Stage::stop:
+      if (asked(image::RequestKind::stop)) enter(Stage::motion);
       break;
     case Stage::motion:
-      if (moving() && in_stage() < kAxesOffPatience_s) break;
-      resident_.ask({.kind = image::RequestKind::power, .value = 0.0}, answer);
-      enter(Stage::drives);
+      if (!moving() || in_stage() >= kAxesOffPatience_s) enter(Stage::power);
+      break;
+    case Stage::power:
+      if (asked(image::RequestKind::power)) enter(Stage::drives);
       break;
     case Stage::drives:
-      if (!axes_off(resident_.image()) && in_stage() < kAxesOffPatience_s) break;
-      if (!axes_off(resident_.image())) complain(kAxesOn, {text::number(kAxesOffPatience_s, 0)});
+      if (!axes_off(image()) && in_stage() < kAxesOffPatience_s) break;
+      if (!axes_off(image())) complain(kAxesOn, {text::number(kAxesOffPatience_s, 0)});
       enter(Stage::spindles);
       break;
     case Stage::spindles: {
-      const bool rest = spindles_rest(resident_.image());
+      const bool rest = spindles_rest(image());
       if (!rest && !said_ && in_stage() > kSilentWait_s) complain(kSpindleRunsDown, {}), said_ = true;
       if (rest || in_stage() > kSpindlePatience_s) end();
       break;
@@ -70,11 +89,11 @@ bool ShutDown::look() {
 }
 
 void ShutDown::end() {
-  const image::ProcessImage& image = resident_.image();
-  const bool rest = spindles_rest(image), known = spindles_answer(image, resident_.control().machine());
+  const image::ProcessImage& now = image();
+  const bool rest = spindles_rest(now), known = spindles_answer(now, control_.machine());
   if (!rest) complain(kSpindleTurns, {text::number(kSpindlePatience_s, 0)});
   if (!known) complain(kSpindleUnknown, {});
-  rests_ = rest && known && axes_off(image);
+  rests_ = rest && known && axes_off(now);
   enter(Stage::done);
 }
 

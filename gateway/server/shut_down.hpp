@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <chrono>
+#include <memory>
 
-#include "gateway/server/resident.hpp"
+#include "gateway/compose/control.hpp"
+#include "gateway/server/desk/request_desk.hpp"
 
 namespace servogate::gateway {
 
 /// The end of a control, look by look, so that its clients see it: motion stops on the path, the drives go
-/// off, the spindles run down. For the thread of the Resident.
+/// off, the spindles run down. It waits for nobody. For the socket's thread.
 class ShutDown {
  public:
-  explicit ShutDown(Resident& resident) : resident_(resident) {}
+  ShutDown(Control& control, RequestDesk& requests)
+      : control_(control), requests_(requests), image_(std::make_unique<image::ProcessImage>()) {}
 
   /// One look. True: everything rests, or it was waited for long enough; what does not rest has been said on
   /// standard error.
@@ -19,14 +22,20 @@ class ShutDown {
   bool rests() const noexcept { return rests_; }
 
  private:
-  enum class Stage { begin, motion, drives, spindles, done };
+  enum class Stage { begin, stop, motion, power, drives, spindles, done };
   void enter(Stage stage);
   double in_stage() const;
   bool moving();
+  bool asked(image::RequestKind kind);
   void end();
 
-  Resident& resident_;
+  const image::ProcessImage& image();
+
+  Control& control_;
+  RequestDesk& requests_;
+  std::unique_ptr<image::ProcessImage> image_;
   Stage stage_ = Stage::begin;
+  std::uint64_t request_ = 0;  ///< whose answer is waited for
   std::chrono::steady_clock::time_point entered_;
   bool said_ = false, rests_ = false;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/server/status.hpp"
 
+#include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -28,6 +30,9 @@ constexpr const char* kDriveStates[] = {
     "offline",     "not_ready_to_switch_on", "switch_on_disabled", "ready_to_switch_on",
     "switched_on", "operation_enabled",      "quick_stop_active",  "fault_reaction_active",
     "fault"};
+
+/// A measure as people want to read it: to a millionth, without the dust of binary fractions.
+double measure(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
 
 json finding_json(const text::Finding& finding, text::Language language) {
   return json::parse(machine::to_json(std::vector<text::Finding>{finding}, language), nullptr, false)[0];
@@ -108,8 +113,8 @@ json process_json(Resident& resident, const image::ProcessImage& image, int proc
           {"blocks_done", p.blocks_done},
           {"message", program_message(control, image, process)},
           {"wait", wait_json(wait_words(control, image, process, language))},
-          {"feed_mm_min", p.feed_mm_s * 60.0},
-          {"override_pct", p.override_ratio * 100.0},
+          {"feed_mm_min", measure(p.feed_mm_s * 60.0)},
+          {"override_pct", measure(p.override_ratio * 100.0)},
           {"tool", p.tool}};
 }
 
@@ -138,6 +143,17 @@ json buses_json(const machine::MachineConfig& m, const image::ProcessImage& imag
   return buses;
 }
 
+/// What clients wait for that takes long.
+json works_json(Resident& resident) {
+  json works = json::array();
+  const auto now = std::chrono::steady_clock::now();
+  for (const Works::Entry& w : resident.works().list())
+    works.push_back({{"what", w.what},
+                     {"name", w.name},
+                     {"for_s", measure(std::chrono::duration<double>(now - w.since).count())}});
+  return works;
+}
+
 }  // namespace
 
 std::string held_buses_json(const machine::MachineConfig& machine, const image::ProcessImage& image,
@@ -161,7 +177,7 @@ std::string status_json(Resident& resident, text::Language language) {
               {"exit", 0},
               {"schema", 1},
               {"machine", m.name},
-              {"time_s", image.now.seconds()},
+              {"time_s", measure(image.now.seconds())},
               {"program", resident.program()},
               {"blocks", resident.blocks()},
               {"lines", resident.lines()},
@@ -185,9 +201,9 @@ std::string status_json(Resident& resident, text::Language language) {
                               {"unit", m.axes[n].unit()},
                               {"diameter", m.axes[n].diameter},
                               {"auxiliary", m.axes[n].auxiliary},
-                              {"command", a.command * shown},
-                              {"position", a.actual * shown},
-                              {"following_error", a.following_error},
+                              {"command", measure(a.command * shown)},
+                              {"position", measure(a.actual * shown)},
+                              {"following_error", measure(a.following_error)},
                               {"enabled", a.enabled},
                               {"homed", a.homed},
                               {"moving", a.moving},
@@ -202,8 +218,8 @@ std::string status_json(Resident& resident, text::Language language) {
   for (int i = 0; i < image.spindle_count; ++i) {
     const image::SpindleImage& s = image.spindles[static_cast<std::size_t>(i)];
     status["spindles"].push_back(
-        {{"command_rpm", s.command_rpm},
-         {"actual_rpm", s.actual_rpm},
+        {{"command_rpm", measure(s.command_rpm)},
+         {"actual_rpm", measure(s.actual_rpm)},
          {"at_speed", s.at_speed},
          {"rests", spindle_lost(image, m, i) ? json() : json(spindle_rests(image, i))},
          {"drive", kDriveStates[static_cast<int>(s.drive.state)]}});
@@ -211,6 +227,7 @@ std::string status_json(Resident& resident, text::Language language) {
   status["buses"] = buses_json(m, image);
   status["alarms"] = alarm_list(resident, language);
   status["missing"] = missing_json(resident, language);
+  status["works"] = works_json(resident);
   status["forced"] = resident.plc().forced();
   status["plc_held_by"] = resident.plc().held_by().empty() ? json(nullptr) : json(resident.plc().held_by());
   return status.dump(-1, ' ', false, json::error_handler_t::replace);

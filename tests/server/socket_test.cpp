@@ -11,7 +11,7 @@
 #include <random>
 #include <thread>
 
-#include "gateway/server/socket/socket_server.hpp"
+#include "gateway/server/socket_server.hpp"
 #include "tests/property_seed.hpp"
 #include "tests/server/rig/shell.hpp"
 
@@ -241,7 +241,7 @@ TEST(Socket, answers_an_empty_line_too_so_that_answers_never_fall_behind_the_lin
   EXPECT_TRUE(json::parse(answer)["ok"]);
 }
 
-TEST(Socket, serves_32_clients_and_tells_the_33rd) {
+TEST(Socket, serves_32_clients_and_tells_the_33rd_that_only_its_stops_are_heard) {
   Shell shell;
   shell.up();
   std::vector<std::unique_ptr<SocketClient>> clients;
@@ -253,7 +253,14 @@ TEST(Socket, serves_32_clients_and_tells_the_33rd) {
   }
   SocketClient late;
   ASSERT_TRUE(late.connect(shell.socket()).empty());
-  ASSERT_TRUE(late.receive(answer, 5000));
+  ASSERT_TRUE(late.exchange(R"({"cmd":"hold"})", answer));
+  EXPECT_EQ(json::parse(answer)["ok"], true) << answer;
+  ASSERT_TRUE(late.exchange(R"({"cmd":"status"})", answer));
+  EXPECT_EQ(json::parse(answer)["code"], "socket.full");
+  EXPECT_FALSE(late.receive(answer, 5000)) << "closed";
+  SocketClient silent;
+  ASSERT_TRUE(silent.connect(shell.socket()).empty());
+  ASSERT_TRUE(silent.receive(answer, 20'000)) << "one that says nothing is told, too";
   EXPECT_EQ(json::parse(answer)["code"], "socket.full");
   for (auto& client : clients) ASSERT_TRUE(client->exchange(R"({"cmd":"alarms"})", answer));
   clients.pop_back();

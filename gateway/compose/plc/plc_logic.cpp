@@ -244,8 +244,7 @@ std::shared_ptr<const LogicProgram> PlcLogic::program() const {
   return shown_;
 }
 
-PlcLogic::Plan PlcLogic::prepare(const LogicChange& change, const std::vector<image::Symbol>& symbols,
-                                 const plc::Options& options) {
+PlcLogic::Plan PlcLogic::prepare(const LogicChange& change, plc::CompileResult compiled) {
   settle();
   Plan plan;
   auto prepared = std::make_unique<Prepared>();
@@ -255,7 +254,7 @@ PlcLogic::Plan PlcLogic::prepare(const LogicChange& change, const std::vector<im
   prepared->value = change.value;
   const plc::Engine& engine = shown_->engine;
   if (change.kind == LogicChange::Kind::load) {
-    plan = prepare_load(change, *prepared, symbols, options);
+    plan = prepare_load(change, *prepared, std::move(compiled));
   } else if (change.kind == LogicChange::Kind::release_all) {
     plan.possible = true;
   } else if (const auto handle = engine.find(change.name)) {
@@ -273,11 +272,8 @@ PlcLogic::Plan PlcLogic::prepare(const LogicChange& change, const std::vector<im
   return plan;
 }
 
-PlcLogic::Plan PlcLogic::prepare_load(const LogicChange& change, Prepared& out,
-                                      const std::vector<image::Symbol>& symbols,
-                                      const plc::Options& options) {
+PlcLogic::Plan PlcLogic::prepare_load(const LogicChange& change, Prepared& out, plc::CompileResult compiled) {
   Plan plan;
-  plc::CompileResult compiled = plc::compile(change.files, symbols, options);
   plan.findings = std::move(compiled.findings);
   if (compiled.image == nullptr) return plan;
   plan.possible = true;

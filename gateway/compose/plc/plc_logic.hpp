@@ -93,9 +93,9 @@ class PlcLogic final : public cycle::Logic {
     /// Retained variables: whose value is kept for a program that has them, is there again, is lost.
     std::vector<std::string> set_aside, taken_back, lost;
   };
-  /// Makes a change ready for the request with its number. Not real-time safe.
-  Plan prepare(const LogicChange& change, const std::vector<image::Symbol>& symbols,
-               const plc::Options& options);
+  /// Makes a change ready for the request with its number; `compiled`: the program of a load. Not real-time
+  /// safe.
+  Plan prepare(const LogicChange& change, plc::CompileResult compiled);
   /// Takes back what the gate has refused.
   void withdraw(std::uint32_t number);
   /// Takes note of what the cycle has carried out. Not real-time safe.
@@ -111,8 +111,7 @@ class PlcLogic final : public cycle::Logic {
   static constexpr std::size_t kSlots = 16;
   using Slots = std::array<std::atomic<Prepared*>, kSlots>;
 
-  Plan prepare_load(const LogicChange& change, Prepared& out, const std::vector<image::Symbol>& symbols,
-                    const plc::Options& options);
+  Plan prepare_load(const LogicChange& change, Prepared& out, plc::CompileResult compiled);
   void sort_retained(Plan& plan, plc::Engine& engine) const;
   bool carry_out(Prepared& change) noexcept;
   bool hold(const image::Request& request) noexcept;

@@ -56,20 +56,23 @@ Start start_after_homing(const machine::MachineConfig& machine) {
 
 ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramFile& file,
                            const program::Tables& tables, const program::Position& start,
-                           channel::Forecast::Depth depth) {
+                           channel::Forecast::Depth depth, const std::stop_token& stop) {
   const channel::ProcessConfig process = process_config(machine, 0);
   channel::Forecast forecast(depth, process.path, process.axes, start);
   ProgramCheck check;
   check.report = program::check_program(file.dialect, file.model, tables, file.path, file.text, file.loader,
-                                        start, [&](const program::Command& c) { return forecast.take(c); });
+                                        start, [&](const program::Command& c) {
+                                          if (stop.stop_requested()) throw Cancelled{};
+                                          return forecast.take(c);
+                                        });
   check.motion_s = forecast.motion_seconds();
   return check;
 }
 
 ProgramCheck prove_program(const machine::MachineConfig& machine, const ProgramFile& file,
-                           const program::Tables& tables, const Start& start,
-                           channel::Forecast::Depth depth) {
-  ProgramCheck check = check_program(machine, file, tables, start.at, depth);
+                           const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
+                           const std::stop_token& stop) {
+  ProgramCheck check = check_program(machine, file, tables, start.at, depth, stop);
   std::vector<text::Finding>& findings = check.report.findings;
   const auto of_run = findings.begin() + static_cast<std::ptrdiff_t>(check.report.of_run);
   if (std::none_of(of_run, findings.end(), is_error)) return check;
@@ -79,7 +82,7 @@ ProgramCheck prove_program(const machine::MachineConfig& machine, const ProgramF
     program::Position other = start.at;
     for (std::size_t a = 0; a < machine.program_axes(); ++a) other[a] += away * static_cast<double>(a + 1);
     const ProgramCheck from_there =
-        check_program(machine, file, tables, other, channel::Forecast::Depth::drivable);
+        check_program(machine, file, tables, other, channel::Forecast::Depth::drivable, stop);
     for (auto f = of_run; f != findings.end(); ++f)
       if (is_error(*f) && std::none_of(from_there.report.findings.begin(), from_there.report.findings.end(),
                                        [&](const text::Finding& g) { return same(*f, g); }))

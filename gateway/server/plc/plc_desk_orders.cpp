@@ -16,9 +16,10 @@
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/report/report.hpp"
+#include "gateway/server/desk/refusal.hpp"
 #include "gateway/server/plc/plc_answers.hpp"
 #include "gateway/server/resident.hpp"
-#include "gateway/server/texts.hpp"
+#include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
 
@@ -77,19 +78,17 @@ std::string joined(const std::vector<std::string>& list) {
 
 }  // namespace
 
-json PlcDesk::ask(image::Request request, const PlcAsker& who) {
+json PlcDesk::ask(image::Request request, const Caller& who) {
   request.asker = who.asker;
+  request.client = who.hand().client;
   image::Answer answer;
-  if (!resident_.ask(request, answer)) return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
+  if (resident_.ask(request, answer, resident_.requests().stops()) != RequestDesk::Outcome::answered)
+    return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
   if (answer.refusal == 0) return {{"ok", true}};
-  return {{"ok", false},
-          {"code", cycle::refusal_texts()[answer.refusal].id},
-          {"text", cycle::render(answer, resident_.control().machine().letters(), who.language,
-                                 resident_.control().machine().unit_words())},
-          {"exit", kAlarm}};
+  return refusal_json(answer, resident_.control().machine(), who.language);
 }
 
-json PlcDesk::change(const LogicChange& change, double value, const PlcAsker& who) {
+json PlcDesk::change(const LogicChange& change, double value, const Caller& who) {
   image::Request request;
   request.kind = image::RequestKind::logic;
   request.index = change.number;
@@ -100,38 +99,69 @@ json PlcDesk::change(const LogicChange& change, double value, const PlcAsker& wh
   return answer;
 }
 
-json PlcDesk::carry_out(const json& request, const PlcAsker& who) {
-  if (resident_.control().logic() == nullptr) return refused(kNoPlc, {}, kAlarm, who.language);
+Outcome PlcDesk::carry_out(const json& request, const Caller& who) {
+  using Handler = json (PlcDesk::*)(const json&, const Caller&);
+  static constexpr struct {
+    std::string_view command;
+    Handler handler;
+  } kRows[] = {{"plc_force", &PlcDesk::force}, {"plc_release", &PlcDesk::release},
+               {"plc_hold", &PlcDesk::hold},   {"plc_step", &PlcDesk::step},
+               {"plc_go", &PlcDesk::go},       {"plc_watch", &PlcDesk::watch},
+               {"plc_list", &PlcDesk::list}};
+  if (resident_.control().logic() == nullptr)
+    return Reply{text_of(refused(kNoPlc, {}, kAlarm, who.language))};
   resident_.control().logic()->settle();
   const std::string command = request.value("cmd", "");
   if (command == "plc_load") return load(request, who);
-  if (command == "plc_force") return force(request, who);
-  if (command == "plc_release") return release(request, who);
-  if (command == "plc_hold") return hold(who);
-  if (command == "plc_step") return step(request, who);
-  if (command == "plc_go") return go(who);
-  if (command == "plc_watch") return watch(request, who);
-  if (command == "plc_list") return list(who);
-  return refused(says::kUnknown, {command}, kWrongUse, who.language);
+  for (const auto& row : kRows)
+    if (row.command == command) return Reply{text_of((this->*row.handler)(request, who))};
+  return refuse(says::kUnknown, {command}, kWrongUse, who.language);
 }
 
-json PlcDesk::load(const json& request, const PlcAsker& who) {
-  Control& control = resident_.control();
-  std::vector<std::string> names = request.value("files", std::vector<std::string>{});
-  if (names.empty())
-    for (const std::string& source : control.machine().plc.sources)
-      names.push_back(control.machine().resolve(source));
+/// A program of the PLC on its way from its files into the cycle.
+struct PlcDesk::Load {
   LogicChange change;
-  change.kind = LogicChange::Kind::load;
-  change.online = request.value("online", false);
-  for (const std::string& name : names) {
-    std::string reason;
-    auto content = files::read_file(name, files::kMostOfSource, reason);
-    if (!content) return refused(kNoFiles, {name + ": " + reason}, kWrongUse, who.language);
-    change.files.push_back({name, std::move(*content)});
-  }
+  std::vector<std::string> names;
+  bool while_running = false;
+  std::string unreadable;  ///< what cannot be read, and why
+  plc::CompileResult compiled;
+};
+
+/// Reading and compiling happen beside the desk.
+Outcome PlcDesk::load(const json& request, const Caller& who) {
+  const Control& control = resident_.control();
+  const auto load = std::make_shared<Load>();
+  load->names = request.value("files", std::vector<std::string>{});
+  if (load->names.empty())
+    for (const std::string& source : control.machine().plc.sources)
+      load->names.push_back(control.machine().resolve(source));
+  load->change.kind = LogicChange::Kind::load;
+  load->change.online = request.value("online", false);
+  load->while_running = request.value("while_running", false);
+  Work work;
+  work.what = "plc_load", work.name = joined(load->names);
+  work.run = [this, &control, load, who](const std::stop_token& stop) -> Finish {
+    for (const std::string& name : load->names) {
+      std::string reason;
+      auto content = files::read_file(name, files::kMostOfSource, reason);
+      if (!content) load->unreadable = name + ": " + reason;
+      if (!content) break;
+      load->change.files.push_back({name, std::move(*content)});
+    }
+    if (load->unreadable.empty()) load->compiled = control.compile(load->change.files, stop);
+    if (stop.stop_requested()) throw Cancelled{};
+    return [this, load, who]() -> Outcome { return Reply{text_of(loaded(*load, who))}; };
+  };
+  return work;
+}
+
+json PlcDesk::loaded(Load& load, const Caller& who) {
+  if (!load.unreadable.empty()) return refused(kNoFiles, {load.unreadable}, kWrongUse, who.language);
+  Control& control = resident_.control();
+  LogicChange& change = load.change;
+  const std::vector<std::string>& names = load.names;
   change.number = control.next_logic_change();
-  const PlcLogic::Plan plan = control.prepare(change);
+  const PlcLogic::Plan plan = control.prepare(change, std::move(load.compiled));
   json more{{"findings", json::parse(machine::to_json(plan.findings), nullptr, false)}};
   if (!plan.possible) {
     json answer = refused(kNotCompiled, {}, kAlarm, who.language);
@@ -142,9 +172,9 @@ json PlcDesk::load(const json& request, const PlcAsker& who) {
     answer.update(more);
     return answer;
   }
-  json answer = this->change(change, request.value("while_running", false) ? 1.0 : 0.0, who);
+  json answer = this->change(change, load.while_running ? 1.0 : 0.0, who);
   if (!answer["ok"].get<bool>()) {
-    if (!change.online || !request.value("while_running", false))
+    if (!change.online || !load.while_running)
       answer["text"] = answer["text"].get<std::string>() + "\n" +
                        text::render(kLoadLater, std::vector<std::string>{}, who.language);
     return answer;
@@ -179,7 +209,7 @@ json PlcDesk::load(const json& request, const PlcAsker& who) {
 }
 
 /// One JSON object a line in plc-changes.jsonl of the state directory; empty: done, or there is none.
-std::string PlcDesk::log(const LogicChange& change, const json& told, const PlcAsker& who) {
+std::string PlcDesk::log(const LogicChange& change, const json& told, const Caller& who) {
   if (resident_.state_path().empty()) return {};
   char when[32] = "";
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -213,7 +243,7 @@ std::string PlcDesk::log(const LogicChange& change, const json& told, const PlcA
 }
 
 /// All of them or none.
-json PlcDesk::force_places(std::vector<image::Request> requests, const PlcAsker& who) {
+json PlcDesk::force_places(std::vector<image::Request> requests, const Caller& who) {
   for (std::size_t n = 0; n < requests.size(); ++n) {
     json answer = ask(requests[n], who);
     if (answer["ok"].get<bool>()) continue;
@@ -227,7 +257,7 @@ json PlcDesk::force_places(std::vector<image::Request> requests, const PlcAsker&
   return {{"ok", true}};
 }
 
-json PlcDesk::force(const json& request, const PlcAsker& who) {
+json PlcDesk::force(const json& request, const Caller& who) {
   Force f;
   f.name = request.value("name", "");
   f.value = request.value("value", "");
@@ -262,7 +292,7 @@ json PlcDesk::force(const json& request, const PlcAsker& who) {
   return told(kForced, {f.name, f.value}, who.language);
 }
 
-bool PlcDesk::let_go(const Force& force, const PlcAsker& who) {
+bool PlcDesk::let_go(const Force& force, const Caller& who) {
   if (!force.places.empty())
     return std::all_of(force.places.begin(), force.places.end(),
                        [&](const image::Request& r) { return ask(r, who)["ok"].get<bool>(); });
@@ -273,7 +303,7 @@ bool PlcDesk::let_go(const Force& force, const PlcAsker& who) {
   return !resident_.control().prepare(change).possible || this->change(change, 1.0, who)["ok"].get<bool>();
 }
 
-json PlcDesk::release(const json& request, const PlcAsker& who) {
+json PlcDesk::release(const json& request, const Caller& who) {
   const std::string name = request.value("name", "");
   const bool all = name.empty();
   if (all && forces_.empty()) return told(kNothingForced, {}, who.language);
@@ -288,7 +318,7 @@ json PlcDesk::release(const json& request, const PlcAsker& who) {
   return all ? told(kAllReleased, {}, who.language) : told(kReleased, {name}, who.language);
 }
 
-json PlcDesk::hold(const PlcAsker& who) {
+json PlcDesk::hold(const json&, const Caller& who) {
   image::Request request;
   request.kind = image::RequestKind::logic_scan;
   request.value = 1.0;
@@ -299,7 +329,7 @@ json PlcDesk::hold(const PlcAsker& who) {
   return told(kHeld, {}, who.language);
 }
 
-json PlcDesk::step(const json& request, const PlcAsker& who) {
+json PlcDesk::step(const json& request, const Caller& who) {
   if (held_by_ == 0 || held_by_ != who.connection) return refused(kNotHolder, {}, kAlarm, who.language);
   image::Request scans;
   scans.kind = image::RequestKind::logic_scan;
@@ -312,7 +342,7 @@ json PlcDesk::step(const json& request, const PlcAsker& who) {
   return told(kStepped, {std::to_string(scans.index)}, who.language);
 }
 
-json PlcDesk::go(const PlcAsker& who) {
+json PlcDesk::go(const json&, const Caller& who) {
   if (held_by_ == 0 || held_by_ != who.connection) return refused(kNotHolder, {}, kAlarm, who.language);
   image::Request request;
   request.kind = image::RequestKind::logic_scan;
@@ -325,9 +355,9 @@ json PlcDesk::go(const PlcAsker& who) {
 
 void PlcDesk::release_of(std::uint64_t connection) {
   if (connection != 0 && held_by_ == connection) {
-    PlcAsker gone;
+    Caller gone;
     gone.connection = connection;
-    go(gone);
+    go({}, gone);
   }
   for (std::size_t i = forces_.size(); i-- > 0;)
     if (forces_[i].owner == connection && connection != 0) {

@@ -8,7 +8,7 @@
 #include "gateway/server/plc/plc_desk.hpp"
 #include "gateway/server/plc/plc_view.hpp"
 #include "gateway/server/resident.hpp"
-#include "gateway/server/texts.hpp"
+#include "gateway/server/words/texts.hpp"
 #include "plc/lookup.hpp"
 #include "plc/types/direct_place.hpp"
 #include "plc/values.hpp"
@@ -91,7 +91,7 @@ std::optional<std::string> PlcDesk::forced_value(const std::string& name, const 
   return plc::to_json(type, bytes.data());
 }
 
-json PlcDesk::watch(const json& request, const PlcAsker& who) {
+json PlcDesk::watch(const json& request, const Caller& who) {
   if (request.contains("body")) return watch_body(request.value("body", ""), who);
   constexpr std::size_t kMostNames = 500;
   PlcLogic& logic = *resident_.control().logic();
@@ -153,7 +153,7 @@ json PlcDesk::watch(const json& request, const PlcAsker& who) {
   return answer;
 }
 
-json PlcDesk::watch_body(const std::string& name, const PlcAsker& who) {
+json PlcDesk::watch_body(const std::string& name, const Caller& who) {
   PlcLogic& logic = *resident_.control().logic();
   const std::shared_ptr<const LogicProgram> program = logic.program();
   const std::vector<std::string> programs = program_names(program->engine.image());
@@ -192,7 +192,7 @@ json PlcDesk::watch_body(const std::string& name, const PlcAsker& who) {
           {"forced", forced()}};
 }
 
-json PlcDesk::list(const PlcAsker&) {
+json PlcDesk::list(const json&, const Caller&) {
   const std::shared_ptr<const LogicProgram> program = resident_.control().logic()->program();
   json files = json::array();
   for (const plc::SourceFile& f : program->sources) files.push_back(f.name);

@@ -17,7 +17,7 @@
 #include "gateway/cli/options.hpp"
 #include "gateway/server/socket/socket_client.hpp"
 #include "gateway/server/socket/socket_path.hpp"
-#include "gateway/server/texts.hpp"
+#include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
 
@@ -54,7 +54,8 @@ std::string LineServer::bind() {
   const int problem = errno;
   umask(before);
   if (!bound) return text::words_of(problem);
-  if (listen(listener_, static_cast<int>(kMostClients)) != 0 || pipe2(wake_, O_CLOEXEC) != 0)
+  if (listen(listener_, static_cast<int>(kMostClients + kMostUrgent)) != 0 ||
+      pipe2(wake_, O_CLOEXEC | O_NONBLOCK) != 0)
     return text::words_of(errno);
   return {};
 }
@@ -66,8 +67,7 @@ void LineServer::start() {
 void LineServer::stop() {
   if (thread_.joinable()) {
     stop_ = true;
-    const char byte = 0;
-    [[maybe_unused]] const ssize_t ignored = write(wake_[1], &byte, 1);
+    wake();
     thread_.join();
   }
   if (wake_[0] >= 0) unlink(path_.c_str());  // bound by us
@@ -77,103 +77,201 @@ void LineServer::stop() {
   }
 }
 
+void LineServer::wake() noexcept {
+  const char byte = 0;
+  [[maybe_unused]] const ssize_t full_is_awake = write(wake_[1], &byte, 1);
+}
+
+void LineServer::reply(const Ticket& ticket, Reply reply) {
+  {
+    const std::scoped_lock lock(replies_mutex_);
+    replies_.emplace_back(ticket, std::move(reply));
+  }
+  wake();
+}
+
+bool LineServer::reads(const Client& client) const {
+  return !client.closing && !client.backlog && goes_on(client);
+}
+
 void LineServer::serve() {
   while (!stop_) {
     std::vector<pollfd> fds{{wake_[0], POLLIN, 0}, {listener_, POLLIN, 0}};
     bool backlog = false, jogs = false;
     for (const Client& c : clients_) {
-      const bool reads = !c.closing && !c.backlog;
-      fds.push_back({c.fd, static_cast<short>((reads ? POLLIN : 0) | (c.output.empty() ? 0 : POLLOUT)), 0});
+      fds.push_back(
+          {c.fd, static_cast<short>((reads(c) ? POLLIN : 0) | (c.output.empty() ? 0 : POLLOUT)), 0});
       backlog = backlog || c.backlog;
       jogs = jogs || !c.connection.jogs.empty();
     }
     if (poll(fds.data(), fds.size(), backlog ? 0 : look_after_ms(jogs)) < 0 && errno != EINTR) break;
-    if (fds[0].revents != 0) break;
-    for (std::size_t i = clients_.size(); i-- > 0;) {
-      if (serve_client(clients_[i], fds[i + 2].revents)) continue;
-      let_go(clients_[i].connection);
-      close(clients_[i].fd);
-      clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(i));
+    for (char drained[64]; read(wake_[0], drained, sizeof drained) > 0;) {
     }
+    deliver();
+    for (std::size_t i = clients_.size(); i-- > 0;)
+      if (!serve_client(clients_[i], fds[i + 2].revents)) remove(i);
     if (fds[1].revents != 0) accept_client();
     look();
   }
   ended();
+  deliver();
   for (Client& c : clients_) {
+    hand_out(c);
     write_client(c);
     let_go(c.connection);
+  }
+}
+
+void LineServer::remove(std::size_t client) {
+  let_go(clients_[client].connection);
+  close(clients_[client].fd);
+  clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(client));
+}
+
+/// Answers that came from elsewhere take the places of their lines; those whose client is gone have none.
+void LineServer::deliver() {
+  std::vector<std::pair<Ticket, Reply>> come;
+  {
+    const std::scoped_lock lock(replies_mutex_);
+    come.swap(replies_);
+  }
+  for (auto& [ticket, reply] : come) {
+    const auto client = std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) {
+      return c.connection.number == ticket.connection;
+    });
+    leaves(reply, client == clients_.end() ? nullptr : &client->connection);
+    if (client == clients_.end() || ticket.line < client->first_line) continue;
+    if (client->connection.urgent_line == ticket.line) client->connection.urgent_line = 0;
+    client->answers[ticket.line - client->first_line] = std::move(reply.line);
   }
 }
 
 /// False: the client is gone, or is to go.
 bool LineServer::serve_client(Client& client, short events) {
   if ((events & (POLLERR | POLLNVAL)) != 0) return false;
-  if ((events & (POLLIN | POLLHUP)) != 0 && !read_client(client)) return false;
+  const bool hung_up = (events & POLLHUP) != 0;
+  if ((events & (POLLIN | POLLHUP)) != 0 && !read_client(client, hung_up)) return false;
+  hand_out(client);
   if (!client.input.empty()) answer_lines(client);
   watch(client.connection);
-  return write_client(client) && !(client.closing && client.output.empty());
+  const bool silent = client.urgent_only && client.answers.empty() &&
+                      std::chrono::steady_clock::now() - client.heard > kUrgentPatience;
+  if (silent && !client.closing) refuse_client(client, says::kFull, kMostClients, kInfrastructure);
+  hand_out(client);
+  if (!write_client(client)) return false;
+  return !client.closing || client.backlog || !client.answers.empty() || !client.output.empty();
+}
+
+/// Answers leave in the order of their lines.
+void LineServer::hand_out(Client& client) {
+  while (!client.answers.empty() && client.answers.front()) {
+    client.output += *client.answers.front() + "\n";
+    client.answers.pop_front();
+    ++client.first_line;
+  }
+}
+
+/// The next line may be taken: the order of answers is kept for so many, and an urgent one comes first.
+bool LineServer::goes_on(const Client& client) {
+  return client.answers.size() < kMostWaiting && client.connection.urgent_line == 0;
+}
+
+std::size_t LineServer::ordinary_clients() const {
+  return static_cast<std::size_t>(
+      std::count_if(clients_.begin(), clients_.end(), [](const Client& c) { return !c.urgent_only; }));
 }
 
 void LineServer::accept_client() {
   const int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (fd < 0) return;
+  const bool full = ordinary_clients() >= kMostClients;
+  if (full) make_room();
   clients_.emplace_back();
   Client& client = clients_.back();
   client.fd = fd;
+  client.urgent_only = full;
   client.connection.number = ++connections_;
   client.connection.user = user_of(fd);
-  if (clients_.size() <= kMostClients) return;
-  client.output =
-      refuse(says::kFull, {std::to_string(kMostClients)}, kInfrastructure, text::user_language()).line + "\n";
-  write_client(client);
-  let_go(client.connection);
-  close(client.fd);
-  clients_.pop_back();
 }
 
-bool LineServer::read_client(Client& client) {
+/// The one that has been silent for the longest goes: whoever connects to stop something says so at once.
+void LineServer::make_room() {
+  if (clients_.size() < kMostClients + kMostUrgent) return;
+  std::size_t oldest = clients_.size();
+  for (std::size_t i = 0; i < clients_.size(); ++i)
+    if (clients_[i].urgent_only && (oldest == clients_.size() || clients_[i].heard < clients_[oldest].heard))
+      oldest = i;
+  if (oldest == clients_.size()) return;
+  refuse_client(clients_[oldest], says::kFull, kMostClients, kInfrastructure);
+  hand_out(clients_[oldest]);
+  write_client(clients_[oldest]);
+  remove(oldest);
+}
+
+/// Whoever only says that no more comes (shutdown) still gets its answers.
+bool LineServer::read_client(Client& client, bool hung_up) {
   char buffer[16384];
   const ssize_t got = recv(client.fd, buffer, sizeof buffer, 0);
   if (got < 0) return errno == EAGAIN || errno == EINTR;
-  if (got == 0) return false;
+  if (got == 0) {
+    client.closing = true;
+    return !hung_up;
+  }
+  if (client.closing) return true;  // it was refused
   client.input.append(buffer, static_cast<std::size_t>(got));
+  client.heard = std::chrono::steady_clock::now();
   return true;
 }
 
 void LineServer::answer_lines(Client& client) {
   client.backlog = false;
   std::size_t begin = 0;
-  for (int n = 0; n < kLinesPerTurn && !client.closing; ++n) {
+  for (int lines = 0; lines < kLinesPerTurn && goes_on(client); ++lines) {
     const std::size_t end = client.input.find('\n', begin);
     const std::size_t length = (end == std::string::npos ? client.input.size() : end) - begin;
-    if (length > kLongestLine) return refuse_long_line(client);
+    if (length > kLongestLine) return refuse_client(client, says::kLongLine, kLongestLine, kWrongUse);
     if (end == std::string::npos) break;
     std::string_view line(client.input.data() + begin, length);
     begin = end + 1;
     if (line.ends_with('\r')) line.remove_suffix(1);
-    const Reply reply = answer(line, client.connection);
-    client.output += reply.line + "\n";
+    if (client.urgent_only && ordinary_clients() < kMostClients) client.urgent_only = false;
+    if (client.urgent_only && !urgent(line))
+      return refuse_client(client, says::kFull, kMostClients, kInfrastructure);
+    take_line(client, line);
   }
   client.input.erase(0, begin);
-  client.backlog = client.input.find('\n') != std::string::npos;
+  hand_out(client);
+  client.backlog = goes_on(client) && client.input.find('\n') != std::string::npos;
 }
 
-void LineServer::refuse_long_line(Client& client) {
-  client.output +=
-      refuse(says::kLongLine, {std::to_string(kLongestLine)}, kWrongUse, text::user_language()).line + "\n";
+void LineServer::take_line(Client& client, std::string_view line) {
+  const Ticket ticket{client.connection.number, client.first_line + client.answers.size()};
+  client.answers.emplace_back();
+  std::optional<Reply> reply = answer(line, client.connection, ticket);
+  if (!reply) return;
+  leaves(*reply, &client.connection);
+  client.answers.back() = std::move(reply->line);
+}
+
+/// A last sentence behind the answers, then the client goes.
+void LineServer::refuse_client(Client& client, const text::Entry& entry, std::size_t limit, int exit) {
+  client.answers.emplace_back(refuse(entry, {std::to_string(limit)}, exit, text::user_language()).line);
   client.input.clear();
+  client.backlog = false;
   client.closing = true;
 }
 
 bool LineServer::write_client(Client& client) {
-  while (!client.output.empty()) {
-    const ssize_t sent =
-        ::send(client.fd, client.output.data(), client.output.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  std::size_t sent_all = 0;
+  while (sent_all < client.output.size()) {
+    const ssize_t sent = ::send(client.fd, client.output.data() + sent_all, client.output.size() - sent_all,
+                                MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0 && errno == EAGAIN) break;
     if (sent <= 0) return false;
-    client.output.erase(0, static_cast<std::size_t>(sent));
+    sent_all += static_cast<std::size_t>(sent);
   }
+  client.output.erase(0, sent_all);
   return client.output.size() <= kMostUnread;
 }
 

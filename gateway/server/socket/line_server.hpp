@@ -1,23 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <atomic>
+#include <chrono>
+#include <deque>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "gateway/server/socket/line.hpp"
 
 namespace servogate::gateway {
 
-/// A Unix stream socket (owner only), one JSON object a line each way, served by one thread that never waits
-/// for a client: what a client does not read is kept up to a limit, then the client is let go. What a line
-/// means is the business of who derives from it.
+/// A Unix stream socket (owner only), one JSON object a line each way, served by one thread that never waits:
+/// not for a client (what it does not read is kept up to a limit, then it is let go), and not for an answer
+/// (who derives from it may give that later, from any thread). Answers leave in the order of their lines.
+/// What a line means is the business of who derives from it.
 class LineServer {
  public:
   static constexpr std::size_t kMostClients = 32;
-  static constexpr std::size_t kLongestLine = 64 * 1024;  ///< bytes of a request without its line feed
+  /// Further ones are let in for urgent lines alone, so that nobody can occupy the way of a stop.
+  static constexpr std::size_t kMostUrgent = 16;
+  static constexpr std::chrono::seconds kUrgentPatience{5};  ///< with one of them that says nothing
+  static constexpr std::size_t kLongestLine = 64 * 1024;     ///< bytes of a request without its line feed
   static constexpr std::size_t kMostUnread = 1024 * 1024;
+  /// Lines of one connection whose answers are not there yet; more of it is read when one has come.
+  static constexpr std::size_t kMostWaiting = 64;
 
   explicit LineServer(std::string path) : path_(std::move(path)) {}
   /// Closes what connections stop() has left. Who derives from it has called stop() in its own destructor.
@@ -35,8 +46,19 @@ class LineServer {
   void stop();
 
  protected:
+  /// Gives the answer to a line that answer() gave none to. Any thread.
+  void reply(const Ticket& ticket, Reply reply);
+  /// Makes the thread look() now. Any thread.
+  void wake() noexcept;
+
   // All of them are called by the server's thread.
-  virtual Reply answer(std::string_view line, Connection& connection) = 0;
+  /// nullopt: the answer comes by reply().
+  virtual std::optional<Reply> answer(std::string_view line, Connection& connection,
+                                      const Ticket& ticket) = 0;
+  /// The line has to be heard however many clients there are.
+  virtual bool urgent(std::string_view /*line*/) const { return false; }
+  /// This answer is about to leave.
+  virtual void leaves(const Reply&, Connection*) {}
   /// The client is gone.
   virtual void let_go(Connection&) {}
   /// Now and then, for each connection.
@@ -52,22 +74,36 @@ class LineServer {
     int fd = -1;
     std::string input, output;
     Connection connection;
+    std::deque<std::optional<std::string>> answers;  ///< of the lines from first_line on
+    std::uint64_t first_line = 1;
+    std::chrono::steady_clock::time_point heard = std::chrono::steady_clock::now();
     bool backlog = false;  ///< whole lines are left from the last turn
+    bool urgent_only = false;
     bool closing = false;  ///< to be closed as soon as its answers have left
   };
   void serve();
   bool serve_client(Client& client, short events);
+  bool reads(const Client& client) const;
   void accept_client();
-  bool read_client(Client& client);
+  void make_room();
+  void remove(std::size_t client);
+  bool read_client(Client& client, bool hung_up);
   bool write_client(Client& client);
   void answer_lines(Client& client);
-  void refuse_long_line(Client& client);
+  void take_line(Client& client, std::string_view line);
+  void refuse_client(Client& client, const text::Entry& entry, std::size_t limit, int exit);
+  void hand_out(Client& client);
+  static bool goes_on(const Client& client);
+  void deliver();
+  std::size_t ordinary_clients() const;
 
   std::string path_;
   int listener_ = -1;
   int wake_[2] = {-1, -1};
   std::vector<Client> clients_;
   std::uint64_t connections_ = 0;  ///< so far; their numbers count from 1
+  std::mutex replies_mutex_;
+  std::vector<std::pair<Ticket, Reply>> replies_;  ///< that other threads have given
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

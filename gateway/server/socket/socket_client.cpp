@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "firmware_if/text/system_words.hpp"
-#include "gateway/server/texts.hpp"
+#include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
 

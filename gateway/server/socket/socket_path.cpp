@@ -11,7 +11,7 @@
 
 #include "firmware_if/text/system_words.hpp"
 #include "gateway/server/socket/socket_client.hpp"
-#include "gateway/server/texts.hpp"
+#include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
 
@@ -21,6 +21,12 @@ std::string socket_folder() {
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
   if (runtime != nullptr && *runtime != '\0') return std::string(runtime) + "/servogate";
   return "/tmp/servogate-" + std::to_string(getuid());
+}
+
+bool own_socket_folder() {
+  struct stat seen {};
+  if (lstat(socket_folder().c_str(), &seen) != 0) return true;
+  return S_ISDIR(seen.st_mode) && seen.st_uid == getuid() && (seen.st_mode & 022) == 0;
 }
 
 namespace {
@@ -42,6 +48,7 @@ std::string file_name(const std::string& machine_name) {
 
 std::vector<std::string> known(const char* extension) {
   std::vector<std::string> found;
+  if (!own_socket_folder()) return found;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(socket_folder(), error)) {
     const std::string path = entry.path().string();

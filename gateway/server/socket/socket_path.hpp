@@ -14,7 +14,11 @@ std::string default_socket(const std::string& machine_name);
 /// Socket of a `servogate run` of this process: other names than those of resident controls, so that clients
 /// do not take it for one.
 std::string run_socket(const std::string& machine_name);
-/// Sockets of resident controls in socket_folder(). Those that nobody listens on any more are removed.
+/// Whatever lies in socket_folder() was put there by this user: it is his directory, no link, and nobody else
+/// writes into it (a folder in /tmp can be anybody's). True also when it is missing.
+bool own_socket_folder();
+/// Sockets of resident controls in socket_folder(); none where that is not own_socket_folder(). Those that
+/// nobody listens on any more are removed.
 std::vector<std::string> known_sockets();
 /// The same of runs.
 std::vector<std::string> known_runs();

@@ -62,12 +62,25 @@ class RecordedControl {
     });
   }
   bool load(const std::string& path) {
-    std::vector<text::Finding> findings;
     for (int i = 0; i < 200; ++i) {
-      if (resident_.load(path, {}, findings) == gateway::Resident::Load::done) return true;
+      resident_.read_tables();
+      gateway::Resident::Load load = resident_.begin_load(path, {});
+      resident_.read_and_prove(load, {});
+      if (resident_.finish(load) == gateway::Resident::Load::End::done) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     return false;
+  }
+  /// The program goes by what the last run changed.
+  void take_tables() {
+    if (auto proof = resident_.take_tables()) {
+      resident_.prove(*proof, {});
+      resident_.proven(*proof);
+    }
+  }
+  bool answered(const image::Request& request, image::Answer& answer) {
+    return resident_.ask(request, answer, resident_.requests().stops()) ==
+           gateway::RequestDesk::Outcome::answered;
   }
   /// What went wrong with the files; empty: nothing.
   std::string close() {
@@ -83,7 +96,7 @@ class RecordedControl {
     r.kind = kind;
     r.value = value;
     image::Answer answer;
-    EXPECT_TRUE(resident_.ask(r, answer));
+    EXPECT_TRUE(answered(r, answer));
     return answer.refusal;
   }
   std::vector<text::Finding> findings_;
@@ -138,7 +151,7 @@ TEST(ResidentRecord, of_a_plc_that_was_held_for_single_scans_replays_byte_by_byt
       r.value = 2.0;
       r.index = scans;
       image::Answer answer;
-      ASSERT_TRUE(control.resident().ask(r, answer));
+      ASSERT_TRUE(control.answered(r, answer));
       ASSERT_EQ(answer.refusal, 0);
       std::this_thread::sleep_for(std::chrono::milliseconds(60));
     }
@@ -179,16 +192,16 @@ TEST(ResidentRecord, of_two_programs_with_a_stop_and_a_typed_block_between_repla
     ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.processes[0].line > 20; }));
     ASSERT_TRUE(control.ask(RequestKind::stop));
     ASSERT_TRUE(control.until_state(ProcessState::idle));
-    control.resident().take_tables();
+    control.take_tables();
     control.resident().set_manual_block("(UOT,0,X2)");
     ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::mdi));
     ASSERT_TRUE(control.until_state(ProcessState::ended));
-    control.resident().take_tables();
+    control.take_tables();
     control.resident().set_manual_block("G1 X12 Y3 F3000");
     ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::mdi));
     ASSERT_TRUE(control.until_state(ProcessState::ended));
     ASSERT_TRUE(control.load(second));
-    control.resident().take_tables();
+    control.take_tables();
     ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::automatic));
     ASSERT_TRUE(control.until_state(ProcessState::ended));
     ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::automatic)) << "and once more";
@@ -225,7 +238,12 @@ TEST(ResidentRecord, of_forces_and_another_PLC_program_replays_byte_by_byte) {
     ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.axes[2].drive.online; }));
     gateway::PlcDesk& desk = control.resident().plc();
     const auto ask = [&](const json& request) {
-      const json answer = desk.carry_out(request, {image::Asker::command_line, 7, "somebody", {}});
+      gateway::Outcome outcome = desk.carry_out(request, {image::Asker::command_line, 7, "somebody", {}});
+      while (const auto* work = std::get_if<gateway::Work>(&outcome)) {
+        const gateway::Finish finish = work->run({});
+        outcome = finish();
+      }
+      const json answer = json::parse(std::get<gateway::Reply>(outcome).line);
       return answer.value("ok", false) ? std::string() : answer.dump();
     };
     const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(120)); };

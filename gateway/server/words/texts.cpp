@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/texts.hpp"
+#include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway::says {
 
@@ -27,6 +27,9 @@ const Entry kNoNumber{"socket.no-number", "'{0}' must be a number", "«{0}» д�
 const Entry kNotSwitch{"socket.not-switch", "'{0}' must be 1 or 0", "«{0}» должно быть 1 или 0"};
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
                       "цикл не ответил; работает ли он?"};
+const Entry kOvertaken{
+    "socket.overtaken", "a stop came after this was asked for: nothing moves; ask again if it shall",
+    "после этого запроса пришёл останов: движения не будет; повторите запрос, если оно нужно"};
 const Entry kEnding{
     "socket.ending",
     "the control comes to its end: axes and spindles come to rest, `servogate status` shows them",
@@ -35,6 +38,7 @@ const Entry kComesOn{
     "socket.comes-on",
     "the drives are starting up just now: ask again in a moment, `servogate status` shows them",
     "приводы как раз включаются: повторите через мгновение, их показывает `servogate status`"};
+const Entry kNotReadable{"socket.not-readable", "{0} cannot be read: {1}", "{0} не читается: {1}"};
 const Entry kNotLoaded{"socket.not-loaded", "{0} was not loaded", "программа {0} не загружена"};
 const Entry kNotStarted{"socket.not-started",
                         "{0} is not started: with the origins and tools as they are now it has errors",

@@ -21,8 +21,10 @@ extern const text::Entry kNotUnit;           ///< {0} unit, {1} axis, {2} its un
 extern const text::Entry kNoNumber;          ///< {0} key
 extern const text::Entry kNotSwitch;         ///< {0} key
 extern const text::Entry kNoAnswer;          ///< the cycle stands
+extern const text::Entry kOvertaken;         ///< a stop came behind the request
 extern const text::Entry kEnding;            ///< nothing is begun any more
 extern const text::Entry kComesOn;           ///< the drives are about to be ready
+extern const text::Entry kNotReadable;       ///< {0} program, {1} why
 extern const text::Entry kNotLoaded;         ///< {0} program
 extern const text::Entry kNotStarted;        ///< {0} program
 extern const text::Entry kMoreFindings;      ///< {0} how many

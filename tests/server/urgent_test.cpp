@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// The road of stops and keep-alives: whatever else the server is busy with, they are heard.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/server/rig/shell.hpp"
+
+namespace servogate::gateway::testing {
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+class Urgent : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    shell_.up("mill", {"--virtual"});
+    ASSERT_TRUE(stopper_.connect(shell_.socket()).empty());
+  }
+  /// A part program that takes seconds to look through.
+  std::string long_program() {
+    const std::string path = (shell_.folder() / "long.nc").string();
+    std::ofstream out(path);
+    for (int n = 0; n < 700'000; ++n)
+      out << "G1 X" << n % 100 << "." << n % 7 << " Y" << n % 90 << " F1000\n";
+    out << "M30\n";
+    return path;
+  }
+  /// A PLC program that takes seconds to compile.
+  std::string long_logic() {
+    const std::string path = (shell_.folder() / "long.st").string();
+    std::ofstream out(path);
+    out << "PROGRAM Main\nVAR x, y : DINT; END_VAR\nCASE x OF\n";
+    for (int n = 0; n < 20'000; ++n) out << n << ": y := " << n << ";\n";
+    out << "END_CASE;\n";
+    for (int n = 0; n < 150'000; ++n) out << "y := (x + " << n << ") * y - x;\n";
+    out << "END_PROGRAM\n";
+    return path;
+  }
+  /// Sends a request that takes long, and waits until it is being worked for.
+  void begin(const json& request) {
+    ASSERT_TRUE(worker_.connect(shell_.socket()).empty());
+    ASSERT_TRUE(worker_.send(request.dump() + "\n"));
+    ASSERT_TRUE(shell_.until([&](const json& s) { return works(s, request["cmd"]); }, 20.0))
+        << "it was over before it was seen";
+  }
+  static bool works(const json& status, const std::string& what) {
+    for (const json& w : status["works"])
+      if (w["what"] == what) return true;
+    return false;
+  }
+  bool worker_has_its_answer() {
+    if (!answered_) answered_ = worker_.receive(worker_answer_, 0);
+    return answered_;
+  }
+  json say(const json& request) {
+    std::string answer;
+    EXPECT_TRUE(stopper_.exchange(request.dump(), answer));
+    return json::parse(answer, nullptr, false);
+  }
+  /// Stops of all kinds are answered before the work is, and, as far as this computer lets them, in time.
+  void every_stop_comes_first() {
+    std::vector<double> times_s;
+    for (int n = 0; n < 24 && !worker_has_its_answer(); ++n) {
+      const json request = n % 4 == 0   ? json{{"cmd", "hold"}}
+                           : n % 4 == 1 ? json{{"cmd", "stop"}}
+                           : n % 4 == 2 ? json{{"cmd", "jog_stop"}}
+                                        : json{{"cmd", "power"}, {"value", 0}};
+      const Clock::time_point begun = Clock::now();
+      const json answer = say(request);
+      times_s.push_back(std::chrono::duration<double>(Clock::now() - begun).count());
+      EXPECT_EQ(answer["ok"], true) << request << answer;
+    }
+    EXPECT_GE(times_s.size(), 8u) << "the work must last longer than this";
+    // The wall clock of a computer that others use too: the better half says what the control does.
+    std::sort(times_s.begin(), times_s.end());
+    EXPECT_LE(times_s[times_s.size() / 2], 0.1);
+  }
+
+  Shell shell_;
+  SocketClient stopper_, worker_;
+  std::string worker_answer_;
+  bool answered_ = false;
+};
+
+TEST_F(Urgent, stops_are_answered_while_a_part_program_is_looked_through) {
+  begin({{"cmd", "load"}, {"program", long_program()}});
+  every_stop_comes_first();
+  EXPECT_TRUE(answered_ || worker_.receive(worker_answer_, 120'000));
+  EXPECT_EQ(json::parse(worker_answer_)["ok"], true) << worker_answer_;
+}
+
+TEST_F(Urgent, stops_are_answered_while_the_plc_program_is_compiled) {
+  begin({{"cmd", "plc_load"}, {"files", {long_logic()}}});
+  every_stop_comes_first();
+  EXPECT_TRUE(answered_ || worker_.receive(worker_answer_, 120'000));
+}
+
+TEST_F(Urgent, a_stop_is_heard_behind_a_long_request_of_its_own_connection_and_answered_in_its_turn) {
+  const std::string program = long_program();
+  ASSERT_EQ(shell_.run({"power", "on", "--wait"}).exit, 0);
+  ASSERT_TRUE(worker_.connect(shell_.socket()).empty());
+  ASSERT_TRUE(worker_.send(json{{"cmd", "load"}, {"program", program}}.dump() + "\n" +
+                           R"({"cmd":"start"})"
+                           "\n"
+                           R"({"cmd":"power","value":0})"
+                           "\n"));
+  EXPECT_TRUE(
+      shell_.until([&](const json& s) { return s["axes"][0]["enabled"] == false && works(s, "load"); }, 30.0))
+      << "the drives go off before the program is looked through";
+  std::string answers[3];
+  for (std::string& answer : answers) ASSERT_TRUE(worker_.receive(answer, 120'000));
+  EXPECT_TRUE(json::parse(answers[0]).contains("findings")) << answers[0];
+  EXPECT_EQ(json::parse(answers[1])["code"], "socket.overtaken") << answers[1];
+  EXPECT_EQ(json::parse(answers[2])["text"], "the drives are being switched off") << answers[2];
+}
+
+TEST_F(Urgent, others_are_answered_and_jogs_kept_alive_while_somebody_loads) {
+  ASSERT_EQ(shell_.run({"power", "on", "--wait"}).exit, 0);
+  begin({{"cmd", "load"}, {"program", long_program()}});
+  int asked = 0;
+  for (; asked < 20 && !worker_has_its_answer(); ++asked) {
+    EXPECT_TRUE(say({{"cmd", "status"}}).contains("axes"));
+    EXPECT_TRUE(say({{"cmd", "jog"}, {"axis", "X"}, {"value", 0.01}}).contains("ok"));
+  }
+  EXPECT_GE(asked, 5);
+}
+
+TEST_F(Urgent, sigterm_ends_the_control_while_somebody_loads_and_the_load_is_given_up) {
+  begin({{"cmd", "load"}, {"program", long_program()}});
+  kill(shell_.pid(), SIGTERM);
+  ASSERT_TRUE(worker_.receive(worker_answer_, 60'000));
+  EXPECT_EQ(json::parse(worker_answer_)["code"], "socket.ending") << worker_answer_;
+  EXPECT_EQ(shell_.wait(), 0);
+}
+
+TEST_F(Urgent, connections_that_say_nothing_keep_nobody_from_stopping_the_machine) {
+  std::vector<std::unique_ptr<SocketClient>> idle;
+  std::string answer;
+  for (int n = 0; n < 80; ++n) {
+    idle.push_back(std::make_unique<SocketClient>());
+    ASSERT_TRUE(idle.back()->connect(shell_.socket()).empty()) << n;
+  }
+  for (const char* stop : {R"({"cmd":"hold"})", R"({"cmd":"quick_stop"})", R"({"cmd":"power","value":0})"}) {
+    SocketClient late;
+    ASSERT_TRUE(late.connect(shell_.socket()).empty());
+    ASSERT_TRUE(late.exchange(stop, answer)) << stop;
+    EXPECT_EQ(json::parse(answer)["ok"], true) << answer;
+  }
+}
+
+TEST_F(Urgent, a_flood_of_requests_holds_no_stop_up) {
+  std::vector<std::thread> floods;
+  std::atomic<bool> end{false};
+  for (int f = 0; f < 8; ++f)
+    floods.emplace_back([&] {
+      SocketClient client;
+      if (!client.connect(shell_.socket()).empty()) return;
+      const std::string wide = R"({"cmd":"status","unit":")" + std::string(50'000, 'x') + "\"}\n";
+      std::thread reader([&] {
+        for (std::string line; !end;) client.receive(line, 200);
+      });
+      while (!end && client.send(wide)) {
+      }
+      reader.join();
+    });
+  std::vector<double> times_s;
+  for (int n = 0; n < 20; ++n) {
+    const Clock::time_point begun = Clock::now();
+    EXPECT_EQ(say({{"cmd", "hold"}})["ok"], true);
+    times_s.push_back(std::chrono::duration<double>(Clock::now() - begun).count());
+  }
+  end = true;
+  for (std::thread& flood : floods) flood.join();
+  std::sort(times_s.begin(), times_s.end());
+  EXPECT_LE(times_s[times_s.size() / 2], 0.5) << "the flood itself wants this computer, too";
+}
+
+}  // namespace
+}  // namespace servogate::gateway::testing
