@@ -81,6 +81,9 @@ TEST_F(HeldBus, by_a_control_that_was_stopped_is_still_held_and_nothing_is_done_
     EXPECT_TRUE(ended.err_has("runs and does not answer")) << ended.err;
     EXPECT_TRUE(ended.err_has("it may hold the bus " + bus())) << ended.err;
   }
+  const Ended off = tool("sdo " + bus() + " 1 write 6040 0");
+  EXPECT_FALSE(off.err_has("runs and does not answer"))
+      << "switching off waits for no dead control: " << off.err;
   control_->signal(SIGCONT);
   EXPECT_EQ(tool("nmt " + held_ + " stop all --i-may-move").code, 1);
 }

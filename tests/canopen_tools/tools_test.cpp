@@ -141,6 +141,20 @@ TEST_F(Workbench, what_can_move_needs_the_word_and_a_bus_without_a_master) {
   EXPECT_EQ(facts("sdo $BUS 5 read 6041")["value"].get<int>() & 0x6F, 0x21);
 }
 
+TEST_F(Workbench, what_takes_the_torque_away_waits_for_nothing_and_asks_for_no_word) {
+  drives("5");
+  for (const char* step : {"6060 3", "6040 6", "6040 7", "6040 15"})
+    ASSERT_EQ(tool("sdo $BUS 5 write " + std::string(step) + " --i-may-move --listen 0.1").code, 0) << step;
+  const Sender master(join(), usercan::make(0x080, {}));
+  ASSERT_EQ(tool("sdo $BUS 5 write 6040 15").code, 2) << "that one enables";
+  ASSERT_EQ(tool("sdo $BUS 5 write 6040 15 --i-may-move").code, 1) << "and the bus is in use";
+  ASSERT_EQ(tool("sdo $BUS 5 write 6040 128").code, 2) << "the reset of a fault";
+  // Whoever listens first would have heard the master, and refused.
+  EXPECT_EQ(tool("sdo $BUS 5 write 6040 2").code, 0) << "quick stop";
+  EXPECT_EQ(tool("sdo $BUS 5 write 6040 0").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 5 read 6041 --anyway")["value"].get<int>() & 0x4F, 0x40);
+}
+
 TEST_F(Workbench, a_bus_in_use_is_refused_with_the_frame_that_shows_it) {
   drives("5");
   const struct {

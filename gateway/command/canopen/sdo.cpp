@@ -157,8 +157,10 @@ int write(const SdoOptions& options, const Request& request, ToolBus& bus) {
   const std::string what =
       text::both(text::render(kWrite, std::vector<std::string>{place}, text::Language::english),
                  text::render(kWrite, std::vector<std::string>{place}, text::Language::russian));
-  if (const int code =
-          can_move(request.at.index) ? may_move(bus, what, options) : must_be_idle(bus, what, options);
+  const bool at_once = takes_energy_away(request.at.index, request.at.subindex, request.data);
+  if (const int code = at_once                      ? kDone
+                       : can_move(request.at.index) ? may_move(bus, what, options)
+                                                    : must_be_idle(bus, what, options);
       code != kDone)
     return code;
   const SdoOutcome outcome = bus.write(static_cast<canopen::NodeId>(options.node), request.at.index,
@@ -201,8 +203,9 @@ int sdo(const SdoOptions& options) {
   }
   int code = kDone;
   std::optional<Holder> holder;
-  if (!find_holder(options.bus, holder, code)) return code;
   const bool writes = options.action == "write";
+  const bool at_once = writes && takes_energy_away(request.at.index, request.at.subindex, request.data);
+  if (!find_holder(options.bus, holder, code, at_once)) return code;
   if (holder && writes) return refuse_held(*holder, options.bus, "`sdo write`");
   if (holder) {
     const auto held = HeldBus::open(*holder, options.timeout_ms);

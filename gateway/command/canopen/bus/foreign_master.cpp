@@ -48,6 +48,13 @@ bool can_move(std::uint16_t index) {
   return std::find(std::begin(kObjects), std::end(kObjects), own) != std::end(kObjects);
 }
 
+bool takes_energy_away(std::uint16_t index, std::uint8_t subindex, std::span<const std::uint8_t> data) {
+  constexpr std::uint8_t kEnableVoltage = 1 << 1, kNoQuickStop = 1 << 2, kFaultReset = 1 << 7;
+  const bool controlword = index >= 0x6000 && index < 0xA000 && (index - 0x6000) % 0x800 == 0x40;
+  if (!controlword || subindex != 0 || data.size() != 2 || (data[0] & kFaultReset) != 0) return false;
+  return (data[0] & kEnableVoltage) == 0 || (data[0] & kNoQuickStop) == 0;
+}
+
 int must_be_idle(ToolBus& bus, const std::string& what, const CanopenBusOptions& options) {
   const double listen_s = options.listen_s.value_or(kSilenceBeforeWriting_s);
   const auto frame = foreign_master(bus, std::llround(listen_s * 1e9));

@@ -43,6 +43,7 @@ const text::Entry kNoConnection{"can.no-connection", "cannot reach the control a
 
 /// Patience with a control that only has to say what it holds, ms.
 constexpr int kHolderPatience = 2000;
+constexpr int kPatienceInAHurry = 100;  ///< with one that stands in the way of switching a drive off
 
 json ask(SocketClient& connection, const json& request, int patience_ms) {
   std::string line;
@@ -57,12 +58,12 @@ std::optional<canopen::NmtState> nmt_state(const json& node) {
 }
 
 /// Holder of the bus if the control behind this socket has it.
-std::optional<Holder> holder_at(const std::string& socket, const std::string& place) {
+std::optional<Holder> holder_at(const std::string& socket, const std::string& place, int patience_ms) {
   SocketClient connection;
   if (!connection.connect(socket).empty()) return std::nullopt;
   const image::Nanoseconds begin = drivers::clock_ns(CLOCK_MONOTONIC);
-  const json held = ask(connection, {{"cmd", "buses"}, {"asker", "command_line"}}, kHolderPatience);
-  const bool closed = drivers::clock_ns(CLOCK_MONOTONIC) - begin < kHolderPatience * image::kMillisecond;
+  const json held = ask(connection, {{"cmd", "buses"}, {"asker", "command_line"}}, patience_ms);
+  const bool closed = drivers::clock_ns(CLOCK_MONOTONIC) - begin < patience_ms * image::kMillisecond;
   if (held.is_null() && !closed) {
     Holder holder;
     holder.socket = socket;
@@ -84,7 +85,7 @@ std::optional<Holder> holder_at(const std::string& socket, const std::string& pl
 
 }  // namespace
 
-std::optional<Holder> holder_of(const NamedBus& bus) {
+std::optional<Holder> holder_of(const NamedBus& bus, int patience_ms) {
   std::vector<std::string> sockets = known_sockets();
   const std::vector<std::string> runs = known_runs();
   sockets.insert(sockets.end(), runs.begin(), runs.end());
@@ -98,18 +99,19 @@ std::optional<Holder> holder_of(const NamedBus& bus) {
   const std::string place = machine::bus_place(bus.url);
   std::optional<Holder> silent;
   for (const std::string& socket : sockets) {
-    auto holder = holder_at(socket, place);
+    auto holder = holder_at(socket, place, patience_ms);
     if (holder && !holder->silent) return holder;
     if (holder) silent = std::move(holder);
   }
   return silent;
 }
 
-bool find_holder(const std::string& bus, std::optional<Holder>& holder, int& code) {
+bool find_holder(const std::string& bus, std::optional<Holder>& holder, int& code, bool at_once) {
   const auto named = named_bus(bus, 0.0);
   code = kWrongUse;
   if (!named) return false;
-  holder = holder_of(*named);
+  holder = holder_of(*named, at_once ? kPatienceInAHurry : kHolderPatience);
+  if (holder && holder->silent && at_once) holder.reset();
   if (!holder || !holder->silent) return true;
   code = refuse_held(*holder, bus, text::render(kThis, {}, text::user_language()));
   return false;

@@ -32,10 +32,11 @@ struct Holder {
 
 /// The running control or run of this user that holds this bus, however its url is written, or one that does
 /// not answer; nullopt: none does.
-std::optional<Holder> holder_of(const NamedBus& bus);
+std::optional<Holder> holder_of(const NamedBus& bus, int patience_ms = 2000);
 /// The same for a bus as the command line names it; false with `code`: the name is wrong, which has been
-/// said, or a control that does not answer may hold it.
-bool find_holder(const std::string& bus, std::optional<Holder>& holder, int& code);
+/// said, or a control that does not answer may hold it. `at_once`: what takes energy away waits for no
+/// control that does not answer, and is not refused for it.
+bool find_holder(const std::string& bus, std::optional<Holder>& holder, int& code, bool at_once = false);
 /// Says that the bus is held, and that `what` is not done therefore; the exit code.
 int refuse_held(const Holder& holder, const std::string& url, const std::string& what);
 
