@@ -10,7 +10,6 @@ namespace servogate::files {
 inline constexpr std::int64_t kMostOfSettings = std::int64_t{4} << 20;   ///< machine, device and state files
 inline constexpr std::int64_t kMostOfSource = std::int64_t{16} << 20;    ///< Structured Text
 inline constexpr std::int64_t kMostOfProgram = std::int64_t{256} << 20;  ///< part programs
-inline constexpr std::int64_t kMostOfRecord = std::int64_t{4} << 30;     ///< written by `--record`
 
 /// The whole content of a regular file of at most `most` bytes. nullopt: `error` says why in both languages
 /// (text::both): missing, not permitted, a folder, a pipe or a device, too large. Never waits for a pipe's

@@ -14,7 +14,7 @@
 
 #include "firmware_if/text/system_words.hpp"
 #include "gateway/compose/program/program_model.hpp"
-#include "gateway/files/read_file.hpp"
+#include "gateway/files/mapped_file.hpp"
 #include "gateway/machine/state/state_text.hpp"
 #include "gateway/report/report.hpp"
 
@@ -23,6 +23,7 @@ namespace servogate::gateway {
 namespace {
 
 constexpr int kRecordSchema = 5;
+constexpr std::size_t kLongestHead = std::size_t{64} << 20;  ///< bytes of the line that heads a record
 constexpr std::size_t kQueued = 2048;
 constexpr std::size_t kChunk = 1 << 16;
 constexpr std::size_t kChunkHead = 8;  // length, checksum
@@ -190,9 +191,11 @@ void RecordWriter::write_chunk(std::string& bytes) {
   put_word(chunk, static_cast<std::uint32_t>(bytes.size()));
   put_word(chunk, queue_->checksum);
   chunk.append(bytes);
-  if (std::fwrite(chunk.data(), 1, chunk.size(), queue_->file) != chunk.size())
-    error_ = text::words_of(errno);
   bytes.clear();
+  if (failed_) return;  // what came behind a gap would be no record
+  if (std::fwrite(chunk.data(), 1, chunk.size(), queue_->file) == chunk.size()) return;
+  error_ = text::words_of(errno);
+  failed_ = true;
 }
 
 void RecordWriter::drain() {
@@ -263,8 +266,7 @@ bool RecordReader::read_head(const std::string& line, std::string& error) {
   return true;
 }
 
-void RecordReader::read_chunks(const std::string& content, std::size_t at) {
-  const std::string_view all(content);
+void RecordReader::read_chunks(std::string_view all, std::size_t at) {
   for (damaged_at_ = at; all.size() - at >= kChunkHead; damaged_at_ = at) {
     const std::size_t length = word_at(all.substr(at));
     if (length > all.size() - at - kChunkHead) return;
@@ -371,12 +373,14 @@ std::vector<ProgramChange> RecordReader::changes(const machine::MachineConfig& m
 }
 
 bool RecordReader::open(const std::string& path, std::string& error) {
-  const auto read = files::read_file(path, files::kMostOfRecord, error);
-  if (!read) return false;
-  const std::string& content = *read;
+  files::MappedFile file;
+  error = file.open(path);
+  if (!error.empty()) return false;
+  const std::string_view content = file.content();
   const std::size_t end = content.find('\n');
-  if (!read_head(content.substr(0, end == std::string::npos ? end : end + 1), error)) return false;
-  if (end != std::string::npos) read_chunks(content, end + 1);
+  const bool headed = end != std::string_view::npos && end < kLongestHead;
+  if (!read_head(std::string(content.substr(0, headed ? end + 1 : kLongestHead)), error)) return false;
+  if (headed) read_chunks(content, end + 1);
   decoder_ = std::make_unique<cycle::InputDecoder>(bytes_);
   look_ahead();
   if (!has_next_ && damaged_) error = say(kDamagedHead, {std::to_string(damaged_at_)});

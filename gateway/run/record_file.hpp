@@ -42,6 +42,8 @@ class RecordWriter final : public cycle::InputTap, public ProgramChangeTap {
   void wait_for_room();
   /// Writes what is queued and closes the file. The error (also: cycles were lost), empty: none.
   std::string close();
+  /// The file is not written any more, or lacks cycles. real-time safe.
+  bool broken() const noexcept { return failed_.load(std::memory_order_relaxed) || lost() != 0; }
   std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
  private:
@@ -50,7 +52,7 @@ class RecordWriter final : public cycle::InputTap, public ProgramChangeTap {
   void write_chunk(std::string& bytes);
   struct Queue;
   std::unique_ptr<Queue> queue_;
-  std::atomic<bool> stop_{false};
+  std::atomic<bool> stop_{false}, failed_{false};
   std::atomic<std::uint64_t> lost_{0};
   std::string error_;
   std::mutex loaded_mutex_;
@@ -86,7 +88,7 @@ class RecordReader final : public cycle::InputSource {
 
  private:
   bool read_head(const std::string& line, std::string& error);
-  void read_chunks(const std::string& content, std::size_t at);
+  void read_chunks(std::string_view all, std::size_t at);
   bool read_chunk(std::string_view bytes);
   bool read_change(std::string_view bytes);
   bool read_logic_change(std::string_view bytes);

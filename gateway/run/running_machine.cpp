@@ -9,6 +9,7 @@
 #include "gateway/compose/simulated/played_input.hpp"
 #include "gateway/run/paced_loop.hpp"
 #include "gateway/run/realtime_loop.hpp"
+#include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::gateway {
 
@@ -34,6 +35,7 @@ std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, int& code)
   }
   machine::StateDirectory::Loaded kept = machine::StateDirectory(folder).load();
   held->state = std::move(kept.state);
+  held->fell_back = kept.fell_back();
   if (print_findings(kept.findings) == 0) return held;
   code = kWrongUse;
   return nullptr;
@@ -72,6 +74,11 @@ RunningMachine::RunningMachine(std::unique_ptr<HeldState> state, const RunSettin
       settings_(settings),
       control_(std::move(control)),
       keeper_(*control_, state_->folder, state_->state.retained_generation) {
+  if (state_->fell_back) {
+    image::AlarmRecord r;
+    r.number = cycle::alarm::kStateFellBack;
+    control_->cycle().notices().add(r);
+  }
   if (!settings_.record.empty())
     record_ = begin_record(settings_.record, machine().file, learned(), *control_);
   if (!settings_.can_log.empty()) can_log_ = std::make_unique<CanLog>(settings_.can_log, *control_);
@@ -103,10 +110,8 @@ bool RunningMachine::begin_realtime(bool quiet) {
   const machine::MachineConfig& m = machine();
   const cycle::RealtimeSettings settings{m.realtime.priority, m.realtime.cpu,
                                          settings_.clock == ClockKind::realtime_best_effort};
-  realtime_loop_ = std::make_unique<RealtimeLoop>(*control_, settings,
-                                                  [this](Control&, image::Nanoseconds late_ns) noexcept {
-                                                    if (session_ != nullptr) session_->after_cycle(late_ns);
-                                                  });
+  realtime_loop_ = std::make_unique<RealtimeLoop>(
+      *control_, settings, [this](Control&, image::Nanoseconds late_ns) noexcept { after_cycle(late_ns); });
   const bool started = realtime_loop_->start();
   if (!started || !quiet) realtime_loop_->complain_of_refusals(started);
   return started;
@@ -160,8 +165,18 @@ bool RunningMachine::cycle() {
 
 bool RunningMachine::move_on() {
   if (!control_->cycle().step()) return false;
-  if (session_ != nullptr) session_->after_cycle(0);
+  after_cycle(0);
   return true;
+}
+
+/// real-time safe.
+void RunningMachine::after_cycle(image::Nanoseconds late_ns) noexcept {
+  if (session_ != nullptr) session_->after_cycle(late_ns);
+  if (record_ == nullptr || record_broken_ || !record_->broken()) return;
+  record_broken_ = true;
+  image::AlarmRecord r;
+  r.number = cycle::alarm::kRecordBroken;
+  control_->cycle().notices().add(r);
 }
 
 bool RunningMachine::move_world() {

@@ -26,6 +26,7 @@ struct HeldState {
   std::string folder;  ///< empty: nothing is kept
   machine::StateLock lock;
   machine::MachineState state;
+  bool fell_back = false;  ///< something in it was damaged, and is as it was before
 
   /// Takes and reads a folder; empty: none. nullptr: `code` is the exit code, and why not has been said.
   static std::unique_ptr<HeldState> hold(const std::string& folder, int& code);
@@ -115,12 +116,14 @@ class RunningMachine final : public bench::Machine {
   bool move_on();
   bool move_world();
   bool begin_realtime(bool quiet);
+  void after_cycle(image::Nanoseconds late_ns) noexcept;
 
   std::unique_ptr<HeldState> state_;
   RunSettings settings_;
   std::unique_ptr<Control> control_;
   std::unique_ptr<RecordWriter> record_;
   std::unique_ptr<CanLog> can_log_;
+  bool record_broken_ = false;  ///< and said so
   std::string trace_;
   std::unique_ptr<Session> session_;
   std::unique_ptr<image::ProcessImage> image_;  ///< newest whole one of a machine that moves by itself

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/machine/state/state.hpp"
+#include "gateway/machine/load.hpp"
+#include "gateway/machine/state/state_lock.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -378,6 +381,75 @@ TEST(StateDirectory, a_folder_that_cannot_be_written_is_said_in_words) {
   std::string error;
   EXPECT_FALSE(StateDirectory(folder + "/state").save(sample(), StatePart::tools, error));
   EXPECT_NE(error.find(folder + "/state"), std::string::npos) << error;
+}
+
+TEST(StateDirectory, that_is_there_already_keeps_its_mode) {
+  const std::string path = test::scratch("mode") + "/state";
+  std::filesystem::create_directory(path);
+  ASSERT_EQ(::chmod(path.c_str(), 0750), 0);
+  std::string error;
+  ASSERT_TRUE(StateDirectory(path).save(sample(), StatePart::tools, error)) << error;
+  StateLock lock;
+  EXPECT_EQ(lock.take(path), "");
+  struct stat info {};
+  ASSERT_EQ(::stat(path.c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0750u);
+}
+
+TEST(StateDirectory, follows_no_link_out_of_itself) {
+  const std::string folder = test::scratch("links");
+  std::filesystem::create_directory(folder + "/real");
+  std::filesystem::create_directory_symlink("real", folder + "/link");
+  std::string error;
+  for (const char* link : {"/link", "/link/"}) {
+    EXPECT_FALSE(StateDirectory(folder + link).save(sample(), StatePart::tools, error));
+    EXPECT_NE(error.find("is a link"), std::string::npos) << error;
+    EXPECT_NE(StateLock().take(folder + link).find("is a link"), std::string::npos);
+  }
+  const StateDirectory directory(folder + "/real");
+  test::write_text(folder + "/elsewhere", "not ours");
+  std::filesystem::create_symlink("../elsewhere", directory.file(StatePart::tools) + ".new");
+  std::filesystem::create_symlink("../elsewhere", folder + "/real/lock");
+  EXPECT_TRUE(directory.save(sample(), StatePart::tools, error)) << error;
+  EXPECT_NE(StateLock().take(folder + "/real"), "");
+  EXPECT_EQ(test::read_text(folder + "/elsewhere"), "not ours");
+}
+
+TEST(StateDirectory, of_another_user_is_not_written_into) {
+  const std::string path = test::scratch("foreign") + "/state";
+  std::filesystem::create_directory(path);
+  if (::chown(path.c_str(), 65534, 65534) != 0) GTEST_SKIP() << "only root can give a folder away";
+  std::string error;
+  EXPECT_FALSE(StateDirectory(path).save(sample(), StatePart::tools, error));
+  EXPECT_NE(error.find("belongs to another user"), std::string::npos) << error;
+}
+
+TEST(Toml, a_key_of_thousands_of_parts_is_an_error_with_its_place) {
+  std::string key = "a";
+  for (int n = 0; n < 20'000; ++n) key += ".a";
+  MachineState state;
+  for (const std::string& text : {key + " = 1\n", "[" + key + "]\n", "x = {" + key + " = 1}\n"}) {
+    const auto findings =
+        read_part("checksum = \"none\"\nschema = 1\n" + text, "s.toml", StatePart::gains, state);
+    EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), [](const text::Finding& f) {
+      return f.line == 3 && f.severity == text::Severity::error &&
+             f.str(text::Language::english).find("a key has at most 16 parts") != std::string::npos;
+    })) << test::lines_of(findings, text::Language::english);
+  }
+  const std::string path = test::scratch("deep") + "/machine.toml";
+  test::write_text(path, key + " = 1\n");
+  EXPECT_FALSE(load(path).findings.empty());
+}
+
+TEST(Toml, points_in_values_strings_and_comments_are_no_parts_of_keys) {
+  const std::string dots(40, '.');
+  MachineState state;
+  const auto findings =
+      read_part("checksum = \"none\"\n# " + dots + "\nschema = 1 # " + dots + "\nx = \"" + dots + "\\\"" +
+                    dots + "\"\ny = '''\n" + dots + "\n'''\nz = [1.5, 2.5, 3.5]\n",
+                "s.toml", StatePart::gains, state);
+  for (const text::Finding& f : findings)
+    EXPECT_EQ(f.str(text::Language::english).find("parts"), std::string::npos) << f.str();
 }
 
 TEST(Checksum, is_the_crc_of_ieee_802_3) { EXPECT_EQ(crc32("123456789"), 0xCBF43926u); }

@@ -16,6 +16,12 @@ const text::Entry kNoControl{
     "client.no-control",
     "no control is running (no socket in {0}); start one with `servogate up MACHINE.toml`",
     "управление не запущено (нет сокета в {0}); запуск: `servogate up MACHINE.toml`"};
+const text::Entry kForeignFolder{
+    "client.foreign-folder",
+    "the folder {0} is somebody else's, or others may write into it: nobody knows who listens there; remove "
+    "it, or choose a socket with --socket",
+    "каталог {0} чужой или открыт для записи другим: неизвестно, кто там отвечает; удалите его или укажите "
+    "сокет через --socket"};
 const text::Entry kManyControls{"client.many-controls",
                                 "several controls are running; choose one with --socket: {0}",
                                 "запущено несколько управлений; выберите одно через --socket: {0}"};
@@ -32,6 +38,10 @@ int find_socket(const std::string& socket, std::string& path) {
   if (const char* named = std::getenv("SERVOGATE_SOCKET"); named != nullptr && *named != '\0') {
     path = named;
     return kDone;
+  }
+  if (!own_socket_folder()) {
+    complain(kForeignFolder, {socket_folder()});
+    return kInfrastructure;
   }
   const std::vector<std::string> found = known_sockets();
   if (found.empty()) {

@@ -2,6 +2,8 @@
 #include "gateway/machine/keys/document.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "firmware_if/text/finding.hpp"
 
@@ -195,6 +197,48 @@ std::string in_both(const std::string& words) {
   return text::both(words, "это место не читается; слова читающей его библиотеки: «" + words + "»");
 }
 
+constexpr int kMostDots = 15;  ///< in a key; the library calls itself once for each
+
+/// The end of a string that begins at `at`; where it has none, that of the text.
+std::size_t behind_string(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const std::string three(3, quote);
+  const bool several_lines = text.substr(at, 3) == three;
+  const bool escapes = quote == '"';
+  for (std::size_t i = at + (several_lines ? 3 : 1); i < text.size(); ++i) {
+    if (escapes && text[i] == '\\')
+      ++i;
+    else if (several_lines ? text.substr(i, 3) == three : text[i] == quote || text[i] == '\n')
+      return i + (several_lines ? 3 : 1);
+  }
+  return text.size();
+}
+
+/// Where a key has too many parts; nullopt: nowhere.
+std::optional<Where> too_deep(std::string_view text) {
+  int dots = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (c == '"' || c == '\'') {
+      i = behind_string(text, i);
+      continue;
+    }
+    if (c == '#') {
+      i = std::min(text.find('\n', i), text.size());
+      continue;
+    }
+    if (c == '.' && ++dots > kMostDots) {
+      const std::size_t line = text.rfind('\n', i) == std::string_view::npos ? 0 : text.rfind('\n', i) + 1;
+      return Where{
+          1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n')),
+          1 + static_cast<int>(i - line)};
+    }
+    if (std::string_view("=\n[]{},").find(c) != std::string_view::npos) dots = 0;
+    ++i;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 const Element* Element::find(std::string_view name) const {
@@ -206,6 +250,12 @@ const Element* Element::find(std::string_view name) const {
 Document read_document(std::string_view source) {
   Document out;
   out.root.at = out.root.key_at = {1, 1};
+  if (const auto deep = too_deep(source)) {
+    const std::string parts = std::to_string(kMostDots + 1);
+    out.error = text::both("a key has at most " + parts + " parts", "у ключа не больше " + parts + " частей");
+    out.error_at = *deep;
+    return out;
+  }
   try {
     convert_table(toml::parse(source), out.root);
   } catch (const toml::parse_error& error) {

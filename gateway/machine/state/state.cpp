@@ -16,6 +16,7 @@
 #include "firmware_if/text/system_words.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/keys/findings.hpp"
+#include "gateway/machine/state/state_lock.hpp"
 #include "gateway/machine/state/state_text.hpp"
 
 namespace servogate::machine {
@@ -59,7 +60,10 @@ bool sync_folder(const std::string& folder) {
 }
 
 bool write_temporary(const std::string& temporary, std::string_view text) {
-  const Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  // What stands there is left from a save that was broken off, or leads elsewhere.
+  if (::unlink(temporary.c_str()) != 0 && errno != ENOENT) return false;
+  const Descriptor fd(
+      ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
   return fd.get() >= 0 && write_whole(fd.get(), text) && ::fsync(fd.get()) == 0;
 }
 
@@ -197,6 +201,12 @@ void load_retained(const std::string (&files)[2], MachineState& state, std::vect
 
 }  // namespace
 
+bool StateDirectory::Loaded::fell_back() const {
+  return std::any_of(findings.begin(), findings.end(), [](const text::Finding& f) {
+    return f.entry == &finding::kPreviousTaken || f.entry == &finding::kOtherCopyTaken;
+  });
+}
+
 bool StateDirectory::Loaded::ok() const { return !any_error(findings); }
 
 StateDirectory::StateDirectory(std::string path) : path_(std::move(path)) {}
@@ -217,13 +227,8 @@ StateDirectory::Loaded StateDirectory::load() const {
 }
 
 bool StateDirectory::save(const MachineState& state, StatePart part, std::string& error) const {
-  std::error_code code;
-  fs::create_directories(path_, code);
-  if (code) {
-    error = path_ + ": " + text::words_of(code.value());
-    return false;
-  }
-  ::chmod(path_.c_str(), 0700);
+  error = make_state_directory(path_);
+  if (!error.empty()) return false;
   const bool copies = part == StatePart::retained;
   const std::string name = copies ? retained_file(state.retained_generation) : file(part);
   const std::string text = write_part(state, part);

@@ -54,6 +54,8 @@ class StateDirectory {
     std::vector<text::Finding>
         findings;  ///< damaged files (warning when the previous one is taken, else error)
     bool ok() const;
+    /// Something was damaged, and a copy from before is taken.
+    bool fell_back() const;
   };
   /// Reads all parts. A missing folder or file is an empty part and no finding. A file that a person edited
   /// says `checksum = "none"` and is taken with a warning.

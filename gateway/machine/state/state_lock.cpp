@@ -29,16 +29,32 @@ std::string owner(int file) {
 
 }  // namespace
 
+std::string make_state_directory(const std::string& directory) {
+  std::error_code code;
+  std::string path = directory;
+  while (path.size() > 1 && path.ends_with('/')) path.pop_back();  // which would follow a link
+  struct stat seen {};
+  if (::lstat(path.c_str(), &seen) != 0) {
+    const bool made = std::filesystem::create_directories(path, code);
+    if (code) return path + ": " + text::words_of(code.value());
+    if (made && ::chmod(path.c_str(), 0700) != 0) return path + ": " + text::words_of(errno);
+    if (::lstat(path.c_str(), &seen) != 0) return path + ": " + text::words_of(errno);
+  }
+  if (S_ISLNK(seen.st_mode))
+    return text::both(path + " is a link: name the directory itself", path + " — ссылка: укажите сам каталог");
+  if (!S_ISDIR(seen.st_mode)) return path + ": " + text::words_of(ENOTDIR);
+  if (seen.st_uid != ::geteuid())
+    return text::both(path + " belongs to another user", path + " принадлежит другому пользователю");
+  return {};
+}
+
 StateLock::~StateLock() {
   if (file_ >= 0) ::close(file_);
 }
 
 std::string StateLock::take(const std::string& directory) {
-  std::error_code code;
-  const bool made = std::filesystem::create_directories(directory, code);
-  if (code) return directory + ": " + text::words_of(code.value());
-  if (made) ::chmod(directory.c_str(), 0700);
-  file_ = ::open((directory + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (std::string problem = make_state_directory(directory); !problem.empty()) return problem;
+  file_ = ::open((directory + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (file_ < 0) return directory + "/lock: " + text::words_of(errno);
   if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
     return text::both(

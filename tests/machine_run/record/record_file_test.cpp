@@ -5,8 +5,11 @@
 
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <random>
 
+#include "gateway/run/running_machine.hpp"
+#include "kernel/cycle/alarm/alarm_table.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/property_seed.hpp"
 
@@ -64,6 +67,32 @@ TEST(RecordFile, gives_back_header_and_cycles) {
   bool sound = false;
   EXPECT_EQ(cycles_of(path, sound, error), 100);
   EXPECT_TRUE(sound);
+}
+
+TEST(RecordFile, on_a_full_disk_is_an_alarm_of_the_machine_that_goes_on) {
+  std::vector<text::Finding> findings;
+  const auto machine = gateway::RunningMachine::compose(machine::load(mill_file()), nullptr,
+                                                        {.record = "/dev/full"}, findings);
+  ASSERT_NE(machine, nullptr);
+  const auto warned = [&] {
+    return machine->control().cycle().alarms().active(cycle::alarm::kRecordBroken);
+  };
+  EXPECT_FALSE(warned());
+  for (int n = 0; n < 200'000 && !warned(); ++n) ASSERT_TRUE(machine->step());
+  EXPECT_TRUE(warned());
+  machine->stop();
+  EXPECT_EQ(machine->close_files().size(), 1u);
+}
+
+TEST(RecordFile, is_read_however_large_it_is) {
+  const Scratch scratch;
+  const std::string path = small_record(scratch, 100);
+  bool sound = false;
+  std::string error;
+  // A hole of 5 GiB takes no room on the disk; what stands before it is given all the same.
+  std::filesystem::resize_file(path, std::uintmax_t{5} << 30);
+  EXPECT_EQ(cycles_of(path, sound, error), 100) << error;
+  EXPECT_FALSE(sound) << "what follows the end is damage";
 }
 
 TEST(RecordFile, gives_back_what_was_loaded_with_texts_tables_and_subprograms) {
