@@ -108,6 +108,44 @@ TEST(RunningMachine, a_stuck_input_stays_whatever_is_played_and_a_silent_station
   EXPECT_GT(machine->alarms().count, before);
 }
 
+class MovesByItself : public ::testing::TestWithParam<gateway::RunSettings> {};
+
+TEST_P(MovesByItself, and_step_waits_for_news_while_faults_and_requests_come_from_outside) {
+  std::vector<text::Finding> findings;
+  const auto machine =
+      gateway::RunningMachine::compose(machine::load(mill_file()), nullptr, GetParam(), findings);
+  ASSERT_NE(machine, nullptr);
+  ASSERT_TRUE(machine->begin(true));
+  const auto until = [&](const std::function<bool()>& met) {
+    for (int n = 0; n < 3000; ++n) {
+      if (met()) return true;
+      machine->step();
+    }
+    return false;
+  };
+  EXPECT_TRUE(until([&] { return online(*machine, 0); }));
+  std::string why;
+  ASSERT_TRUE(machine->inject("can.x", {.kind = Kind::unplug, .duration_ns = image::kSecond}, why));
+  EXPECT_TRUE(until([&] { return !online(*machine, 0); }));
+  EXPECT_GT(machine->alarms().count, 0);
+  EXPECT_TRUE(until([&] { return online(*machine, 0); }));
+  image::Request reset;
+  reset.id = 7;
+  reset.kind = image::RequestKind::reset;
+  ASSERT_TRUE(machine->post(reset));
+  image::Answer answer;
+  EXPECT_TRUE(until([&] { return machine->take(answer); }));
+  EXPECT_EQ(answer.id, 7u);
+  machine->stop();
+  EXPECT_TRUE(machine->close_files().empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(RunningMachine, MovesByItself,
+                         ::testing::Values(gateway::RunSettings{.pace = 10.0},
+                                           gateway::RunSettings{
+                                               .clock = gateway::ClockKind::realtime_best_effort}),
+                         [](const auto& named) { return named.index == 0 ? "paced" : "real_time"; });
+
 TEST(RunningMachine, loads_plays_and_reports) {
   const Scratch scratch;
   const auto machine = mill();
