@@ -146,8 +146,9 @@ void MachineFaults::advance_to(image::Nanoseconds t) {
   if (active_.empty() && !wished_.load(std::memory_order_acquire)) return;
   for (std::size_t i = active_.size(); i-- > 0;) {
     if (active_[i].until == 0 || t < active_[i].until) continue;
-    end(active_[i]);
+    const Active over = std::move(active_[i]);
     active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(i));
+    end(over);
   }
   const std::scoped_lock lock(wishes_lock_);
   wished_.store(false, std::memory_order_relaxed);
@@ -164,15 +165,23 @@ void MachineFaults::begin(const Target& target, const fault::Fault& fault, image
   active_.push_back({target, fault, fault.duration_ns > 0 ? t + fault.duration_ns : 0});
 }
 
-void MachineFaults::end(const Active& active) { apply(active.target, active.fault, false); }
+/// A Modbus station has one fault at a time: the newest that lasts still.
+void MachineFaults::end(const Active& active) {
+  apply(active.target, active.fault, false);
+  if (active.target.station == nullptr) return;
+  for (const Active& a : active_)
+    if (a.target.station == active.target.station) apply(a.target, a.fault, true);
+}
 
 void MachineFaults::end_all(const Target& target, std::optional<Kind> kind) {
   if (target.drive != nullptr) kind ? target.drive->clear(*kind) : target.drive->clear_faults();
+  std::vector<Active> over;
   std::erase_if(active_, [&](const Active& a) {
-    const bool over = a.target.name == target.name && (!kind || a.fault.kind == *kind);
-    if (over) end(a);
-    return over;
+    const bool ends = a.target.name == target.name && (!kind || a.fault.kind == *kind);
+    if (ends) over.push_back(a);
+    return ends;
   });
+  for (const Active& a : over) end(a);
 }
 
 void MachineFaults::apply(const Target& target, const fault::Fault& fault, bool begins) {

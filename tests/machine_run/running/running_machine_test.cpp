@@ -90,6 +90,21 @@ TEST(RunningMachine, frames_of_one_sender_are_dropped_on_a_bus_and_those_of_othe
   EXPECT_TRUE(online(*machine, 0));
 }
 
+TEST(RunningMachine, the_end_of_one_fault_of_a_station_leaves_another_in_force) {
+  const auto machine = mill();
+  run(*machine, 2000);
+  const mock::ModbusStation* panel = machine->control().world().modbus("panel");
+  ASSERT_NE(panel, nullptr);
+  std::string why;
+  ASSERT_TRUE(machine->inject("panel", {.kind = Kind::slow, .duration_ns = 100 * image::kMillisecond}, why));
+  ASSERT_TRUE(machine->inject("panel", {.kind = Kind::silent}, why));
+  run(*machine, 300);
+  EXPECT_EQ(panel->fault().kind, mock::StationFault::Kind::silence);
+  ASSERT_TRUE(machine->clear("panel", Kind::silent, why));
+  run(*machine, 1);
+  EXPECT_EQ(panel->fault().kind, mock::StationFault::Kind::none);
+}
+
 TEST(RunningMachine, a_stuck_input_stays_whatever_is_played_and_a_silent_station_is_an_alarm) {
   const auto machine = mill();
   run(*machine, 2000);
