@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cstdint>
 
+#include "firmware_if/image/detail.hpp"
 #include "firmware_if/image/time.hpp"
 
 namespace servogate::image {
@@ -36,6 +36,7 @@ struct AlarmRecord {
   std::int8_t axis = -1;  ///< index in the machine file's order, -1: none
   std::int16_t segment = -1;
   std::int16_t node = -1;
+  std::int16_t source = -1;  ///< index in ProcessImage::sources
   std::uint16_t object_index = 0;
   std::uint8_t object_subindex = 0;
   std::uint16_t statusword = 0;
@@ -48,7 +49,7 @@ struct AlarmRecord {
   double value = 0.0;       ///< ... and what was met, in the unit the table names
   double detail1 = 0.0;     ///< further figures that the table names, e.g. the velocity of a following error
   double detail2 = 0.0;
-  std::array<char, 32> text{};  ///< words that a device gave, ended by 0 and cut off; empty: none
+  Detail detail;  ///< what only its device and the words for people know
 };
 
 }  // namespace servogate::image

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "firmware_if/image/drive_link.hpp"
+#include "firmware_if/image/edges.hpp"
 #include "firmware_if/image/packets.hpp"
 #include "firmware_if/image/request.hpp"
 #include "firmware_if/image/time.hpp"
@@ -69,6 +70,12 @@ struct SpindleImage {
   DriveFeedback drive;
 };
 
+/// Where a part of a device is, for alarms that last while it is gone: a drive, a station of a bus.
+struct PartPlace {
+  std::int16_t segment = -1;  ///< -1: on no segment
+  std::int16_t node = -1;
+};
+
 /// Health of one source of points (a Modbus station, a GPIO chip, a drive's inputs).
 enum class Quality : std::uint8_t { never, good, stale, bad };
 struct IoSource {
@@ -77,7 +84,6 @@ struct IoSource {
   std::uint32_t errors = 0;
 };
 
-/// Load and health of one bus segment, for reports.
 /// One node of a CAN bus as its master sees it.
 struct BusNodeStatus {
   bool online = false;                        ///< booted, and its process data come
@@ -85,6 +91,7 @@ struct BusNodeStatus {
   std::uint8_t nmt_state = kSilent;           ///< as last heard (CiA 301, 7.2.8.3.2.2: 4, 5, 127), or kSilent
 };
 
+/// Load and health of one bus segment, for reports.
 struct SegmentStatus {
   double load = 0.0;  ///< 0-1, over the last second
   double load_worst_cycle = 0.0;
@@ -191,34 +198,12 @@ struct ProcessImage {
   std::array<SpindleImage, kMaxSpindles> spindles;
   std::array<ProcessStatus, kMaxProcesses> processes;
   std::array<IoSource, kMaxSources> sources;
+  Edges edges;  ///< of this cycle
   std::array<SegmentStatus, kMaxSegments> segments;
   std::uint32_t alarms_active = 0;  ///< number of unacknowledged alarms
   bool homing = false;              ///< an order to home is under way, between two of its axes, too
   std::uint32_t homing_left = 0;    ///< axes, as bits, that the last order to home has not brought to its end
 };
 static_assert(std::is_trivially_copyable_v<ProcessImage>);
-
-/// Something the cycle receives from and sends to: a bus with its nodes, an I/O chip. Suppliers of axes fill
-/// AxisImage::drive and consume AxisImage::drive_command; suppliers of points fill packet A.
-class CycleDevice {
- public:
-  virtual ~CycleDevice() = default;
-  /// First act of a cycle, of all devices before any of them receives: what has to leave at the cycle's own
-  /// time (SYNC). real-time safe.
-  virtual void open_cycle(ProcessImage& /*image*/) noexcept {}
-  /// Takes in what has come. real-time safe.
-  virtual void receive(ProcessImage& image) noexcept = 0;
-  /// Last act of a cycle: sends the commands computed in it. real-time safe.
-  virtual void send(ProcessImage& image) noexcept = 0;
-};
-
-/// Something that evolves with time beside the control: simulated devices on mock buses. Called by whoever
-/// owns the loop before each cycle; never by the cycle itself.
-class Simulated {
- public:
-  virtual ~Simulated() = default;
-  /// Brings the simulation to time t (never backwards).
-  virtual void advance_to(Nanoseconds t) = 0;
-};
 
 }  // namespace servogate::image

@@ -13,7 +13,7 @@ constexpr bool high_word_first(WordType t) noexcept {
   return t == WordType::u32_hl || t == WordType::i32_hl || t == WordType::f32_hl;
 }
 
-double raw_value(WordType type, std::uint16_t first, std::uint16_t second) noexcept {
+double number_of(WordType type, std::uint16_t first, std::uint16_t second) noexcept {
   const std::uint32_t high = high_word_first(type) ? first : second;
   const std::uint32_t both = high << 16 | (high_word_first(type) ? second : first);
   switch (type) {
@@ -80,13 +80,14 @@ void check_point(const Map& map, std::size_t n, const image::Packets& packets, s
   if (reach(block, p) > block.count) out.push_back({MapFault::Kind::point_outside, n});
   if (p.bit > 15 || (p.bit >= 0 && carries_bits(block.function)))
     out.push_back({MapFault::Kind::point_bit, n});
-  if (p.place.format == image::Format::ch || !packets.contains(p.place))
+  if (p.rule.place.format == image::Format::ch || !packets.contains(p.rule.place))
     out.push_back({MapFault::Kind::point_place, n});
-  if (p.scale == 0.0 || !std::isfinite(p.scale) || !std::isfinite(p.shift))
+  if (p.rule.scale == 0.0 || !std::isfinite(p.rule.scale) || !std::isfinite(p.rule.shift))
     out.push_back({MapFault::Kind::point_scale, n});
   for (std::size_t other = 0; other < n && !writes(block.function); ++other) {
     const Point& o = map.points[other];
-    if (o.block < map.blocks.size() && !writes(map.blocks[o.block].function) && o.place.overlaps(p.place))
+    if (o.block < map.blocks.size() && !writes(map.blocks[o.block].function) &&
+        o.rule.place.overlaps(p.rule.place))
       out.push_back({MapFault::Kind::point_shared_place, n});
   }
 }
@@ -100,65 +101,34 @@ std::vector<MapFault> check(const Map& map, const image::Packets& packets) {
   return out;
 }
 
-double value(const Block& block, const Point& p, const Data& data) noexcept {
-  if (carries_bits(block.function)) return data.bit(p.offset) != p.inverted ? 1.0 : 0.0;
+double raw_value(const Block& block, const Point& p, const Data& data) noexcept {
+  if (carries_bits(block.function)) return data.bit(p.offset) ? 1.0 : 0.0;
   const std::uint16_t first = data.words[p.offset];
-  if (p.bit >= 0) return ((first >> p.bit & 1) != 0) != p.inverted ? 1.0 : 0.0;
-  const std::uint16_t second = words_of(p.type) == 2 ? data.words[p.offset + 1u] : std::uint16_t{0};
-  return raw_value(p.type, first, second) * p.scale + p.shift;
+  if (p.bit >= 0) return (first >> p.bit & 1) != 0 ? 1.0 : 0.0;
+  return number_of(p.type, first, words_of(p.type) == 2 ? data.words[p.offset + 1u] : std::uint16_t{0});
 }
 
-void set_value(const Block& block, const Point& p, double v, Data& data) noexcept {
-  const bool on = (v != 0.0) != p.inverted;
+bool set_raw_value(const Block& block, const Point& p, double raw, Data& data) noexcept {
+  const bool on = raw != 0.0;
   if (carries_bits(block.function)) {
+    const bool was = data.bit(p.offset);
     data.set_bit(p.offset, on);
-    return;
+    return on != was;
   }
+  const std::size_t last = p.offset + words_of(p.type) - 1u;
   std::uint16_t& first = data.words[p.offset];
+  const std::uint16_t was[] = {first, data.words[last]};
   if (p.bit >= 0) {
     const auto mask = static_cast<std::uint16_t>(1u << p.bit);
     first = static_cast<std::uint16_t>(on ? first | mask : first & ~mask);
-    return;
+  } else if (const std::uint32_t bits = raw_bits(p.type, raw); words_of(p.type) == 1) {
+    first = static_cast<std::uint16_t>(bits);
+  } else {
+    const auto high = static_cast<std::uint16_t>(bits >> 16), low = static_cast<std::uint16_t>(bits);
+    first = high_word_first(p.type) ? high : low;
+    data.words[last] = high_word_first(p.type) ? low : high;
   }
-  const std::uint32_t raw = raw_bits(p.type, (v - p.shift) / p.scale);
-  if (words_of(p.type) == 1) {
-    first = static_cast<std::uint16_t>(raw);
-    return;
-  }
-  const auto high = static_cast<std::uint16_t>(raw >> 16), low = static_cast<std::uint16_t>(raw);
-  first = high_word_first(p.type) ? high : low;
-  data.words[p.offset + 1u] = high_word_first(p.type) ? low : high;
-}
-
-void scatter(const Map& map, std::size_t block, const Data& data, image::Packets& packets) noexcept {
-  for (const Point& p : map.points)
-    if (p.block == block) packets.set_number(p.place, value(map.blocks[block], p, data));
-}
-
-bool gather(const Map& map, std::size_t block, const image::Packets& packets, Data& data) noexcept {
-  const Block& b = map.blocks[block];
-  const bool bits = carries_bits(b.function);
-  bool changed = false;
-  for (const Point& p : map.points) {
-    if (p.block != block) continue;
-    if (bits) {
-      const bool on = packets.bit(p.place) != p.inverted;
-      if (data.bit(p.offset) == on) continue;
-      data.set_bit(p.offset, on);
-      changed = true;
-    } else {
-      const std::size_t last = p.offset + words_of(p.type) - 1u;
-      const std::uint16_t was[] = {data.words[p.offset], data.words[last]};
-      set_value(b, p, packets.number(p.place), data);
-      changed = changed || was[0] != data.words[p.offset] || was[1] != data.words[last];
-    }
-  }
-  return changed;
-}
-
-void apply_loss(const Map& map, std::size_t block, image::Packets& packets) noexcept {
-  for (const Point& p : map.points)
-    if (p.block == block && p.on_loss == OnLoss::value) packets.set_number(p.place, p.loss_value);
+  return first != was[0] || data.words[last] != was[1];
 }
 
 }  // namespace servogate::modbus

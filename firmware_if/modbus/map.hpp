@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware_if/image/packets.hpp"
-#include "firmware_if/image/time.hpp"
+#include "firmware_if/image/points/point_stage.hpp"
 #include "firmware_if/modbus/pdu.hpp"
 
 namespace servogate::modbus {
@@ -23,25 +22,17 @@ struct Block {
 enum class WordType : std::uint8_t { u16, i16, u32_hl, u32_lh, i32_hl, i32_lh, f32_hl, f32_lh };
 constexpr std::uint16_t words_of(WordType t) noexcept { return t <= WordType::i16 ? 1 : 2; }
 
-/// What a place of the packet gets when its station is lost.
-enum class OnLoss : std::uint8_t { hold, value };
-
-/// One point: where it lies in its block, and its place in packet A or K. Reading blocks write the place,
-/// writing blocks read it.
+/// One point: where it lies in its block, and its rule. Whether it is an input and digital follows from its
+/// block: reading blocks are inputs, bits digital.
 struct Point {
   std::size_t block = 0;     ///< index into Map::blocks
   std::uint16_t offset = 0;  ///< bit or register from the block's address
   std::int8_t bit = -1;      ///< bit 0-15 inside a register; -1: the whole register(s)
   WordType type = WordType::u16;
-  image::Place place;
-  bool inverted = false;  ///< bits only
-  double scale = 1.0;     ///< place = raw * scale + shift
-  double shift = 0.0;
-  OnLoss on_loss = OnLoss::hold;
-  double loss_value = 0.0;  ///< in the units of the place
+  image::PointRule rule;
 };
 
-/// Registers and coils of one bus as pure data.
+/// Registers and coils of one line as pure data.
 struct Map {
   std::vector<Block> blocks;
   std::vector<Point> points;
@@ -65,18 +56,10 @@ struct MapFault {
 /// All faults of a map; empty: it may be used. Not real-time safe.
 std::vector<MapFault> check(const Map& map, const image::Packets& packets);
 
-/// Value of a point in the data of its block, in the units of the place. real-time safe.
-double value(const Block& block, const Point& point, const Data& data) noexcept;
-/// Puts a value (units of the place) into the data of its block; rounded to nearest and clamped to what the
-/// registers hold. real-time safe.
-void set_value(const Block& block, const Point& point, double v, Data& data) noexcept;
-
-/// Data of a reading block into the places of its points. real-time safe (all points are looked at).
-void scatter(const Map& map, std::size_t block, const Data& data, image::Packets& packets) noexcept;
-/// Places of a writing block's points into its data; registers without a point keep their content. True: the
-/// data are not what they were. real-time safe.
-bool gather(const Map& map, std::size_t block, const image::Packets& packets, Data& data) noexcept;
-/// Loss values of a reading block's points into their places. real-time safe.
-void apply_loss(const Map& map, std::size_t block, image::Packets& packets) noexcept;
+/// A point as the data of its block have it; a bit: 0 or 1. real-time safe.
+double raw_value(const Block& block, const Point& point, const Data& data) noexcept;
+/// Puts a raw value into the data of its block; rounded to nearest and clamped to what the registers hold.
+/// True: the data are not what they were. real-time safe.
+bool set_raw_value(const Block& block, const Point& point, double raw, Data& data) noexcept;
 
 }  // namespace servogate::modbus

@@ -99,7 +99,7 @@ std::optional<axis::InverterConfig> inverter(const machine::MachineConfig& m,
   return c;
 }
 
-axis::DrivePlace drive_place(const machine::MachineConfig& m, std::string_view reference) {
+image::PartPlace drive_place(const machine::MachineConfig& m, std::string_view reference) {
   int bus = -1;
   const machine::NodeConfig* node = m.node(reference, &bus);
   if (node == nullptr) return {};

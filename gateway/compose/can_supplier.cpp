@@ -5,6 +5,7 @@
 #include <iterator>
 #include <span>
 
+#include "firmware_if/canopen/302/boot_detail.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/image/frame_record.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
@@ -38,9 +39,6 @@ constexpr Row kAlarms[] = {
 constexpr BusEventKind kLosses[] = {BusEventKind::heartbeat_lost, BusEventKind::pdo_missing,
                                     BusEventKind::node_restarted, BusEventKind::node_left};
 
-/// A boot report in AlarmRecord::detail2: its problem, and these.
-constexpr unsigned kWriting = 16, kAborted = 32;
-
 struct StateRow {
   image::CanState state;
   image::AlarmNumber number;
@@ -51,6 +49,15 @@ constexpr StateRow kStates[] = {
     {image::CanState::down, cycle::alarm::kBusDown},
 };
 
+void describe_boot(const canopen::BootReport& report, image::AlarmRecord& record) noexcept {
+  const bool aborted = report.abort != canopen::AbortCode::none;
+  record.object_index = report.index;
+  record.object_subindex = report.subindex;
+  record.limit = static_cast<double>(report.expected);
+  record.value = static_cast<double>(aborted ? static_cast<std::uint32_t>(report.abort) : report.got);
+  record.detail.put(canopen::boot_detail(report));
+}
+
 }  // namespace
 
 void CanSupplier::open_cycle(image::ProcessImage& image) noexcept {
@@ -58,32 +65,34 @@ void CanSupplier::open_cycle(image::ProcessImage& image) noexcept {
   segment_.open_cycle(image);
 }
 
-void CanSupplier::receive(image::ProcessImage& image) noexcept {
+void CanSupplier::receive(image::ProcessImage& image, image::Notices& notices) noexcept {
   segment_.receive(image);
+  for (DrivePoints& drive : drives_) drive.receive(image);
+  // What finds no place in this cycle waits in the ring for the next one; a few are left to others.
+  constexpr int kOfOthers = 4;
   canopen::BusEvent event;
-  while (room() && segment_.events().pop(event)) report(event);
-  report_lost();
+  while (notices.room() > kOfOthers && segment_.events().pop(event)) report(event, notices);
+  report_lost(notices);
 }
 
-/// What finds no place in this cycle waits in the ring for the next one; a few are left to others.
-bool CanSupplier::room() const noexcept {
-  constexpr int kOfOthers = 4;
-  return notices_ == nullptr || notices_->room() > kOfOthers;
+void CanSupplier::send(image::ProcessImage& image) noexcept {
+  for (DrivePoints& drive : drives_) drive.send(image);
+  segment_.send(image);
 }
 
 /// What the full ring swallowed.
-void CanSupplier::report_lost() noexcept {
+void CanSupplier::report_lost(image::Notices& notices) noexcept {
   const std::uint32_t lost = segment_.events().lost();
-  if (notices_ == nullptr || lost == lost_said_ || notices_->room() == 0) return;
+  if (lost == lost_said_ || notices.room() == 0) return;
   image::AlarmRecord r;
   r.number = cycle::alarm::kReportsLost;
   r.segment = static_cast<std::int16_t>(segment_.config().index);
   r.value = lost - lost_said_;
-  notices_->add(r);
+  notices.add(r);
   lost_said_ = lost;
 }
 
-void CanSupplier::report(const canopen::BusEvent& event) noexcept {
+void CanSupplier::report(const canopen::BusEvent& event, image::Notices& notices) const noexcept {
   image::AlarmRecord r;
   for (const Row& row : kAlarms)
     if (row.kind == event.kind) r.number = row.number;
@@ -91,7 +100,7 @@ void CanSupplier::report(const canopen::BusEvent& event) noexcept {
   if (event.kind == BusEventKind::bus_state)
     for (const StateRow& row : kStates)
       if (row.state == event.bus_state) r.number = row.number;
-  if (r.number == 0 || notices_ == nullptr) return;
+  if (r.number == 0) return;
   r.segment = event.segment;
   if (event.node != 0) r.node = event.node;
   r.error_code = event.emcy.error_code;
@@ -106,9 +115,11 @@ void CanSupplier::report(const canopen::BusEvent& event) noexcept {
   }
   if (event.kind == BusEventKind::foreign_frame) {
     const std::size_t length = std::min<std::size_t>(event.frame.length, event.frame.data.size());
-    image::pack_frame(canopen::make_frame(event.frame.id, std::span(event.frame.data).first(length)), r);
+    r.value = event.frame.id;
+    r.detail.put(
+        image::frame_detail(canopen::make_frame(event.frame.id, std::span(event.frame.data).first(length))));
   }
-  if (event.kind == BusEventKind::boot_failed) pack(event.boot, r);
+  if (event.kind == BusEventKind::boot_failed) describe_boot(event.boot, r);
   // Without its bus no node is reached: the strongest of what their losses demand.
   if (r.number == cycle::alarm::kBusOff || r.number == cycle::alarm::kBusDown)
     for (const canopen::NodeConfig& n : segment_.config().nodes)
@@ -119,37 +130,7 @@ void CanSupplier::report(const canopen::BusEvent& event) noexcept {
     if (n.target == canopen::DriveTarget::axis) r.axis = static_cast<std::int8_t>(n.target_index);
     if (lost) r.reaction = n.loss_reaction;
   }
-  notices_->add(r);
-}
-
-void pack(const canopen::BootReport& report, image::AlarmRecord& record) noexcept {
-  const bool aborted = report.abort != canopen::AbortCode::none;
-  record.object_index = report.index;
-  record.object_subindex = report.subindex;
-  record.limit = static_cast<double>(report.expected);
-  record.value = static_cast<double>(aborted ? static_cast<std::uint32_t>(report.abort) : report.got);
-  record.text = report.got_text.bytes;
-  record.detail1 = static_cast<double>(report.step);
-  record.detail2 =
-      static_cast<double>(report.problem) + (report.writing ? kWriting : 0.0) + (aborted ? kAborted : 0.0);
-}
-
-canopen::BootReport unpack(const image::AlarmRecord& record) noexcept {
-  canopen::BootReport report;
-  const auto flags = static_cast<unsigned>(record.detail2);
-  report.step = static_cast<canopen::BootStep>(record.detail1);
-  report.problem = static_cast<canopen::BootProblem>(flags % kWriting);
-  report.writing = (flags & kWriting) != 0;
-  report.index = record.object_index;
-  report.subindex = record.object_subindex;
-  report.expected = static_cast<std::uint32_t>(record.limit);
-  const auto value = static_cast<std::uint32_t>(record.value);
-  if ((flags & kAborted) != 0)
-    report.abort = static_cast<canopen::AbortCode>(value);
-  else
-    report.got = value;
-  report.got_text.bytes = record.text;
-  return report;
+  notices.add(r);
 }
 
 }  // namespace servogate::gateway

@@ -3,16 +3,17 @@
 #include <vector>
 
 #include "firmware_if/canopen/master/segment.hpp"
-#include "kernel/cycle/participants.hpp"
+#include "firmware_if/image/cycle_device.hpp"
+#include "gateway/compose/points/drive_points.hpp"
 
 namespace servogate::gateway {
 
-/// A CANopen segment as a device of the cycle whose bus events become alarms.
+/// A CANopen segment as a device of the cycle: its bus events become alarms, the inputs and outputs of its
+/// drives points.
 class CanSupplier final : public image::CycleDevice {
  public:
-  CanSupplier(image::CanBus& bus, canopen::SegmentConfig config) : segment_(bus, std::move(config)) {}
-  /// Where faults are reported; set before the first cycle.
-  void report_to(cycle::Notices& notices) noexcept { notices_ = &notices; }
+  CanSupplier(image::CanBus& bus, canopen::SegmentConfig config, std::vector<DrivePoints> drives)
+      : segment_(bus, std::move(config)), drives_(std::move(drives)) {}
 
   /// From now on sync_ns() says when each SYNC went. Before the first cycle.
   void time_sync(const image::Clock& clock) noexcept { clock_ = &clock; }
@@ -22,9 +23,9 @@ class CanSupplier final : public image::CycleDevice {
   /// Sends SYNC. real-time safe.
   void open_cycle(image::ProcessImage& image) noexcept override;
   /// real-time safe.
-  void receive(image::ProcessImage& image) noexcept override;
+  void receive(image::ProcessImage& image, image::Notices& notices) noexcept override;
   /// real-time safe.
-  void send(image::ProcessImage& image) noexcept override { segment_.send(image); }
+  void send(image::ProcessImage& image) noexcept override;
 
   /// See canopen::Segment. real-time safe.
   bool leave(image::Nanoseconds now) noexcept { return segment_.leave(now); }
@@ -34,20 +35,14 @@ class CanSupplier final : public image::CycleDevice {
   canopen::ObjectQuestion& question() noexcept { return segment_.question(); }
 
  private:
-  void report(const canopen::BusEvent& event) noexcept;
-  bool room() const noexcept;
-  void report_lost() noexcept;
+  void report(const canopen::BusEvent& event, image::Notices& notices) const noexcept;
+  void report_lost(image::Notices& notices) noexcept;
 
   canopen::Segment segment_;
-  cycle::Notices* notices_ = nullptr;
+  std::vector<DrivePoints> drives_;
   const image::Clock* clock_ = nullptr;
   image::Nanoseconds sync_ns_ = 0;
   std::uint32_t lost_said_ = 0;
 };
-
-/// A start-up that failed in the figures of an alarm record (kBootFailed), and back; texts that a device
-/// should have said and did not are not kept. real-time safe.
-void pack(const canopen::BootReport& report, image::AlarmRecord& record) noexcept;
-canopen::BootReport unpack(const image::AlarmRecord& record) noexcept;
 
 }  // namespace servogate::gateway

@@ -7,6 +7,7 @@
 
 #include "firmware_if/canopen/402/objects.hpp"
 #include "gateway/compose/axis_setup.hpp"
+#include "gateway/compose/points/point_rules.hpp"
 #include "gateway/machine/can_channel.hpp"
 
 namespace servogate::gateway {
@@ -95,16 +96,10 @@ canopen::IoStation io_station(const machine::StationConfig& station, const machi
     const auto channel = machine::channel_object(device.kind, p.channel, p.number);
     if (!channel) continue;
     canopen::IoPoint point;
-    point.input = p.is_input();
+    point.rule = point_rule(p);
     point.index = channel->object.index;
     point.subindex = channel->object.subindex;
     point.bit = channel->bit;
-    point.place = p.place;
-    point.inverted = p.inverted;
-    point.hold = p.hold;
-    point.loss = p.loss;
-    point.scale = p.scale;
-    point.shift = p.shift;
     out.points.push_back(point);
   }
   return out;

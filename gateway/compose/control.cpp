@@ -7,6 +7,7 @@
 
 #include "firmware_if/canopen/301/emcy.hpp"
 #include "firmware_if/canopen/301/words/frame_words.hpp"
+#include "firmware_if/canopen/302/boot_detail.hpp"
 #include "firmware_if/image/frame_record.hpp"
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/canopen_setup.hpp"
@@ -66,35 +67,29 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
     good = false;
   };
   for (std::size_t s = 0; s < m.stations.size(); ++s)
-    if (!m.stations[s].mock())
-      refuse("station." + std::to_string(s) + ".url", m.stations[s].name, m.stations[s].url);
+    if (int line = -1; !m.stations[s].mock())
+      refuse(m.line(m.stations[s].line, &line) != nullptr ? "line." + std::to_string(line) + ".url"
+                                                          : "station." + std::to_string(s) + ".url",
+             m.stations[s].name, m.stations[s].url);
   if (!good || !c->open_buses(findings, source != nullptr)) return nullptr;
 
   c->world_ = std::make_unique<MockWorld>(c->loaded_);
   c->faults_ = std::make_unique<MachineFaults>(m, *c->world_);
   cycle::CycleParts parts;
   parts.period_ns = m.cycle_ns();
-  c->debounce_ = std::make_unique<Debounce>(m);
-  const std::vector<DriveStation> drives = drive_stations(m);
-  c->drive_inputs_ = std::make_unique<DriveInputs>(drives);
-  c->drive_outputs_ = std::make_unique<DriveOutputs>(drives);
-  if (!c->debounce_->empty()) parts.devices.push_back(&c->debounce_->before());
-  if (!drives.empty()) parts.devices.push_back(c->drive_outputs_.get());
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
     image::CanBus* bus = m.buses[b].mock() ? c->world_->bus(b) : c->transports_[b].bus.get();
-    c->suppliers_.push_back(
-        std::make_unique<CanSupplier>(*bus, segment_config(c->loaded_, static_cast<int>(b))));
+    c->suppliers_.push_back(std::make_unique<CanSupplier>(
+        *bus, segment_config(c->loaded_, static_cast<int>(b)), drive_points(m, m.buses[b].name)));
     parts.devices.push_back(c->suppliers_.back().get());
     for (const canopen::NodeConfig& node : c->suppliers_.back()->segment().config().nodes)
       if (node.target == canopen::DriveTarget::io)
-        parts.source_places[static_cast<std::size_t>(node.target_index)] = {static_cast<std::int16_t>(b),
+        parts.sources[static_cast<std::size_t>(node.target_index)].place = {static_cast<std::int16_t>(b),
                                                                             node.node};
   }
   for (image::CycleDevice* device : c->world_->io()) parts.devices.push_back(device);
-  if (!drives.empty()) parts.devices.push_back(c->drive_inputs_.get());
-  if (!c->debounce_->empty()) parts.devices.push_back(&c->debounce_->after());
   for (std::size_t s = 0; s < m.stations.size(); ++s)
-    parts.watched_sources[s] = !m.stations[s].over_bus();  // the loss of a node is said by its bus
+    parts.sources[s].watched = !m.stations[s].over_bus();  // the loss of a node is said by its bus
   parts.logic = c->logic_.get();
   for (int p = 0; p < m.control.processes; ++p) {
     c->processes_.push_back(std::make_unique<channel::Process>(process_config(m, p)));
@@ -113,7 +108,6 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
   parts.stopwatch = &c->stopwatch_;
   c->cycle_ = std::make_unique<cycle::Cycle>(std::move(parts));
   c->cycle_->attach(source);
-  for (const auto& supplier : c->suppliers_) supplier->report_to(c->cycle_->notices());
   return c;
 }
 
@@ -365,19 +359,22 @@ cycle::AlarmNames Control::alarm_names() const {
     return n == nullptr ? std::string()
                         : loaded_.machine.buses[static_cast<std::size_t>(segment)].name + "." + n->name;
   };
-  names.boot_failure = [node_at](const image::AlarmRecord& record, text::Language language) -> std::string {
+  const auto boot_words = [node_at](const image::AlarmRecord& record, const canopen::BootDetail& detail,
+                                    text::Language language) -> std::string {
     canopen::BusEvent event;
     event.kind = canopen::BusEventKind::boot_failed;
-    event.boot = unpack(record);
+    event.boot = canopen::boot_report(detail);
     if (const machine::NodeConfig* n = node_at(record.segment, record.node); n != nullptr)
       event.boot.expected_text = canopen::BootText(n->software_version);
     const std::string words = canopen::describe(event, {}, nullptr, language);
     return words.starts_with(": ") ? words.substr(2) : words;
   };
-  names.foreign_frame = [](const image::AlarmRecord& record, text::Language language) {
-    return text::render({"", "{0}", "{0}"},
-                        std::vector<std::string>{canopen::frame_words(image::unpack_frame(record))},
-                        language);
+  names.detail = [boot_words](const image::AlarmRecord& record, text::Language language) -> std::string {
+    if (const auto boot = record.detail.get<canopen::BootDetail>())
+      return boot_words(record, *boot, language);
+    if (const auto frame = record.detail.get<image::FrameDetail>())
+      return text::in_language(canopen::frame_words(image::frame_of(*frame)), language);
+    return {};
   };
   names.program_file = [this](int process, std::uint32_t run, int file) -> std::string {
     if (process < 0 || process >= std::ssize(processes_)) return {};

@@ -10,8 +10,6 @@
 #include "gateway/compose/can_supplier.hpp"
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/plc/plc_logic.hpp"
-#include "gateway/compose/points/debounce.hpp"
-#include "gateway/compose/points/drive_points.hpp"
 #include "gateway/compose/program/program_change.hpp"
 #include "gateway/compose/simulated/machine_faults.hpp"
 #include "gateway/compose/simulated/mock_world.hpp"
@@ -114,9 +112,6 @@ class Control {
   std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
   std::optional<image::Nanoseconds> due_ns_;
-  std::unique_ptr<Debounce> debounce_;
-  std::unique_ptr<DriveInputs> drive_inputs_;
-  std::unique_ptr<DriveOutputs> drive_outputs_;
   std::unique_ptr<PlcLogic> logic_;
   std::vector<std::unique_ptr<channel::Process>> processes_;
   std::mutex reading_;

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware_if/modbus/coalesce.hpp"
+#include "gateway/compose/points/point_rules.hpp"
+
 namespace servogate::gateway {
 
 namespace {
@@ -38,35 +41,58 @@ Channels channels(const machine::ModbusMap& m, machine::ChannelKind kind) {
 }  // namespace
 
 modbus::Map modbus_map(const machine::StationConfig& station, const machine::ModbusMap& layout) {
-  modbus::Map map;
-  const auto period = static_cast<image::Nanoseconds>(std::llround(station.period * 1e9));
   constexpr machine::ChannelKind kKinds[] = {machine::ChannelKind::di, machine::ChannelKind::dq,
                                              machine::ChannelKind::ai, machine::ChannelKind::aq};
+  std::vector<modbus::Range> wanted;
   for (const machine::ChannelKind kind : kKinds) {
     const Channels c = channels(layout, kind);
-    const std::size_t first_block = map.blocks.size();
-    const int most = modbus::max_count(c.function);
-    for (int at = 0; at < c.items(); at += most)
-      map.blocks.push_back({static_cast<std::uint8_t>(station.unit), c.function,
-                            static_cast<std::uint16_t>(c.address + at),
-                            static_cast<std::uint16_t>(std::min(most, c.items() - at)), period});
+    wanted.push_back(
+        {c.function, static_cast<std::uint16_t>(c.address), static_cast<std::uint32_t>(c.items())});
+  }
+  modbus::Map map;
+  map.blocks = modbus::coalesce(wanted, static_cast<std::uint8_t>(station.unit),
+                                static_cast<image::Nanoseconds>(std::llround(station.period * 1e9)));
+  for (const machine::ChannelKind kind : kKinds) {
+    const Channels c = channels(layout, kind);
     for (const machine::PointConfig& p : station.points) {
       if (p.channel != kind || p.number < 0 || p.number >= c.count) continue;
       const int item = c.packed ? p.number / kRegisterBits : p.number;
+      const auto spot = modbus::spot_of(map.blocks, c.function, static_cast<std::uint32_t>(c.address + item));
+      if (!spot) continue;
       modbus::Point point;
-      point.block = first_block + static_cast<std::size_t>(item / most);
-      point.offset = static_cast<std::uint16_t>(item % most);
+      point.block = spot->block;
+      point.offset = spot->offset;
       if (c.packed) point.bit = static_cast<std::int8_t>(p.number % kRegisterBits);
-      point.place = p.place;
-      point.inverted = p.inverted;
-      point.on_loss = p.hold ? modbus::OnLoss::hold : modbus::OnLoss::value;
-      point.loss_value = p.loss;
-      point.scale = p.scale;
-      point.shift = p.shift;
+      point.rule = point_rule(p);
       map.points.push_back(point);
     }
   }
   return map;
+}
+
+std::vector<LineStation> stations_of_line(const machine::LoadResult& loaded, const std::string& line) {
+  std::vector<LineStation> out;
+  const std::vector<machine::StationConfig>& stations = loaded.machine.stations;
+  for (std::size_t s = 0; s < stations.size(); ++s) {
+    if (stations[s].kind != machine::StationKind::modbus || stations[s].line != line) continue;
+    const machine::DeviceConfig* device = loaded.device(stations[s].device);
+    out.push_back(
+        {&stations[s], device != nullptr ? device->modbus : machine::ModbusMap{}, static_cast<int>(s)});
+  }
+  return out;
+}
+
+modbus::Map line_map(const std::vector<LineStation>& stations) {
+  modbus::Map whole;
+  for (const LineStation& s : stations) {
+    modbus::Map one = modbus_map(*s.station, s.layout);
+    for (modbus::Point& p : one.points) {
+      p.block += whole.blocks.size();
+      whole.points.push_back(p);
+    }
+    whole.blocks.insert(whole.blocks.end(), one.blocks.begin(), one.blocks.end());
+  }
+  return whole;
 }
 
 }  // namespace servogate::gateway

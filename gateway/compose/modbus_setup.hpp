@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
+#include <vector>
+
 #include "firmware_if/modbus/map.hpp"
 #include "gateway/machine/load.hpp"
 
@@ -10,5 +13,16 @@ namespace servogate::gateway {
 /// permits, with the points of the machine file. Points whose channel the device has not are left out (the
 /// check refuses them).
 modbus::Map modbus_map(const machine::StationConfig& station, const machine::ModbusMap& layout);
+
+/// A station of a line and its place among the sources.
+struct LineStation {
+  const machine::StationConfig* station = nullptr;
+  machine::ModbusMap layout;
+  int source = 0;
+};
+/// The stations of a line by its name, in the order of the machine file.
+std::vector<LineStation> stations_of_line(const machine::LoadResult& loaded, const std::string& line);
+/// The maps of all of them as that of the line.
+modbus::Map line_map(const std::vector<LineStation>& stations);
 
 }  // namespace servogate::gateway

@@ -34,6 +34,14 @@ const PointConfig* MachineConfig::point(std::string_view wanted, int* station) c
   return nullptr;
 }
 
+const LineConfig* MachineConfig::line(std::string_view wanted, int* index) const {
+  const auto it =
+      std::find_if(lines.begin(), lines.end(), [&](const LineConfig& l) { return l.name == wanted; });
+  if (it == lines.end()) return nullptr;
+  if (index != nullptr) *index = static_cast<int>(it - lines.begin());
+  return &*it;
+}
+
 const NodeConfig* MachineConfig::node(std::string_view reference, int* bus, int* index) const {
   const std::size_t dot = reference.find('.');
   if (dot == std::string_view::npos) return nullptr;

@@ -220,23 +220,32 @@ struct PointConfig {
   bool hold = false;   ///< keeps the last value while the station is lost, instead of `loss`
   double scale = 1.0;  ///< analog: value in packet A = raw * scale + shift
   double shift = 0.0;
-  double debounce = 0.0;  ///< s
+  double debounce = 0.0;    ///< s
+  double hysteresis = 0.0;  ///< analog input, in the unit of packet A
   std::string comment;
   bool is_input() const { return channel == ChannelKind::di || channel == ChannelKind::ai; }
   bool is_analog() const { return channel == ChannelKind::ai || channel == ChannelKind::aq; }
 };
 
-/// [[station]]: a Modbus station, a GPIO chip, the digital inputs and outputs of a drive, or a node of CiA
+/// [[line]]: a Modbus line, one wire or one TCP peer, with the stations that name it.
+struct LineConfig {
+  std::string name;
+  std::string url;             ///< "mock:NAME", "tcp:HOST:PORT", "rtu:/dev/..."
+  std::int64_t baud = 115200;  ///< bit/s, of RTU and of a mock
+  double timeout = 0.1;        ///< s until an answer is late
+};
+
+/// [[station]]: a Modbus unit, a GPIO chip, the digital inputs and outputs of a drive, or a node of CiA
 /// 401 or CiA 406.
 struct StationConfig {
   std::string name;
   StationKind kind = StationKind::gpio;
-  std::string url;  ///< modbus: "mock:NAME", "tcp:HOST:PORT", "rtu:/dev/..."; gpio: "mock:NAME", "chip:LABEL"
+  std::string line;      ///< modbus: name of a [[line]]
+  std::string url;       ///< gpio: "mock:NAME", "chip:LABEL"; modbus: that of its line, by the loader
   std::string node;      ///< drive, canopen: "bus.node"
   std::string device;    ///< device file without .toml, modbus
   int unit = 1;          ///< modbus unit identifier
   double period = 0.02;  ///< s between polls, modbus; GPIO is read every cycle
-  double timeout = 0.1;  ///< s until an answer is late
   std::vector<PointConfig> points;
   /// Its points come over a node of a bus.
   bool over_bus() const { return kind == StationKind::drive || kind == StationKind::canopen; }
@@ -353,6 +362,7 @@ struct MachineConfig {
   std::vector<BusConfig> buses;
   std::vector<AxisConfig> axes;
   std::vector<SpindleConfig> spindles;
+  std::vector<LineConfig> lines;
   std::vector<StationConfig> stations;
   std::vector<SymbolConfig> symbols;
   SimulationConfig simulation;
@@ -372,6 +382,8 @@ struct MachineConfig {
   int axis_index(std::string_view letter) const;
   /// A point by name (case as written), nullptr: none. `station` gets its station's index where asked for.
   const PointConfig* point(std::string_view name, int* station = nullptr) const;
+  /// A Modbus line by name, nullptr: none. `index` gets its place where asked for.
+  const LineConfig* line(std::string_view name, int* index = nullptr) const;
   /// A node by "bus.node", nullptr: none. The out-parameters get the indices where asked for.
   const NodeConfig* node(std::string_view reference, int* bus = nullptr, int* index = nullptr) const;
   /// True when what a station has comes from a mock, or over a bus on which nothing is real.

@@ -115,6 +115,7 @@ Json to_json(const AlarmEntry& a) {
   if (r.process >= 0) out["process"] = r.process + 1;
   if (r.segment >= 0) out["segment"] = r.segment;
   if (r.node >= 0) out["node"] = r.node;
+  if (r.source >= 0) out["source"] = r.source;
   if (r.object_index != 0) out["object"] = hex(r.object_index, 4) + ":" + std::to_string(r.object_subindex);
   if (r.statusword != 0) out["statusword"] = hex(r.statusword, 4);
   if (r.error_code != 0) out["error_code"] = hex(r.error_code, 4);

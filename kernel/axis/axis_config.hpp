@@ -69,12 +69,6 @@ struct BrakeData {
   double slip_window = 0.5;     ///< permitted movement while the brake opens or closes, mm
 };
 
-/// Where a drive is, for alarms: index of its bus segment and its node there; -1: on none.
-struct DrivePlace {
-  std::int16_t segment = -1;
-  std::int16_t node = -1;
-};
-
 /// Everything an axis is, as plain data from the machine file. mm or degrees, seconds; a lathe's X is a
 /// radius.
 struct AxisConfig {
@@ -107,7 +101,7 @@ struct AxisConfig {
   double jog_velocity = 50.0;  ///< continuous and incremental jogging
   double slow_velocity = 5.0;  ///< while not homed, and away from a hard limit
   double keep_alive_s = 0.1;   ///< a continuous jog without a keep-alive begins to stop after this
-  DrivePlace drive;
+  image::PartPlace drive;
   int feedback_delay = 2;          ///< cycles from a command to the feedback that shows it carried out, 1-15
   std::uint32_t missed_limit = 3;  ///< consecutive cycles without process data, then an alarm
   image::Reaction loss_reaction =
@@ -131,7 +125,7 @@ struct SpindleConfig {
   double orient_timeout = 10.0;
   double orient_gain = 5.0;  ///< 1/s, speed for each degree of error; below 1 / (2 x dead time)
   bool encoder = true;       ///< the supplier gives counts; without them no oriented stop
-  DrivePlace drive;
+  image::PartPlace drive;
   std::optional<InverterConfig> inverter;  ///< supplies the spindle instead of a drive, without an encoder
   std::uint32_t missed_limit = 3;
 };

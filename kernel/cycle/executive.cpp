@@ -78,12 +78,13 @@ void Cycle::stamp(Phase phase) noexcept {
 }
 
 bool Cycle::receive() noexcept {
+  image_.edges.clear();
   if (source_ != nullptr) {
     if (!source_->give(inputs_)) return false;
     apply(inputs_);
   } else {
     for (image::CycleDevice* d : parts_.devices) d->open_cycle(image_);
-    for (image::CycleDevice* d : parts_.devices) d->receive(image_);
+    for (image::CycleDevice* d : parts_.devices) d->receive(image_, notices_);
     capture(inputs_);
     if (tap_ != nullptr) tap_->take(inputs_);
   }
@@ -100,6 +101,7 @@ void Cycle::capture(CycleInputs& in) noexcept {
     for (std::size_t i = 0; i < spindles_.size(); ++i) in.spindles[i] = image_.spindles[i].drive;
     std::memcpy(in.packet_a.data(), image_.packets.data(image::Packet::a), in.packet_a.size());
     in.sources = image_.sources;
+    in.edges = image_.edges;
   }
   for (std::size_t p = 0; p < parts_.processes.size(); ++p)
     parts_.processes[p]->published(
@@ -116,6 +118,7 @@ void Cycle::apply(const CycleInputs& in) noexcept {
   for (std::size_t i = 0; i < spindles_.size(); ++i) image_.spindles[i].drive = in.spindles[i];
   std::memcpy(image_.packets.data(image::Packet::a), in.packet_a.data(), in.packet_a.size());
   image_.sources = in.sources;
+  image_.edges = in.edges;
 }
 
 void Cycle::run_logic() noexcept {
@@ -185,7 +188,7 @@ void Cycle::collect_events() noexcept {
         r.statusword = drive.statusword;
         r.error_code = drive.error_code;
         const axis::AxisConfig& config = axes_[static_cast<std::size_t>(axis)].config();
-        const axis::DrivePlace& place = config.drive;
+        const image::PartPlace& place = config.drive;
         if (e.number == axis::alarm::kDriveOffline || e.number == axis::alarm::kPdoMissing)
           r.reaction = config.loss_reaction;
         r.segment = place.segment;
@@ -237,10 +240,10 @@ void Cycle::watch_machine() noexcept {
   for (std::size_t s = 0; s < source_quality_.size(); ++s) {
     const image::Quality q = image_.sources[s].quality;
     if (q == source_quality_[s]) continue;
-    if (parts_.watched_sources[s] && q >= image::Quality::stale) {
+    if (parts_.sources[s].watched && q >= image::Quality::stale) {
       image::AlarmRecord r;
       r.number = q == image::Quality::stale ? alarm::kSourceStale : alarm::kSourceBad;
-      r.segment = static_cast<std::int16_t>(s);
+      r.source = static_cast<std::int16_t>(s);
       r.value = static_cast<double>(image_.now.t_ns - image_.sources[s].updated_ns) / 1e6;
       raise(r);
     }
@@ -256,36 +259,30 @@ bool Cycle::still_present(const image::AlarmRecord& r) const noexcept {
       return logic_held_;
     case alarm::kSourceStale:
     case alarm::kSourceBad:
-      return r.segment >= 0 &&
-             image_.sources[static_cast<std::size_t>(r.segment)].quality >= image::Quality::stale;
+      return r.source >= 0 &&
+             image_.sources[static_cast<std::size_t>(r.source)].quality >= image::Quality::stale;
     case alarm::kExternalAlarm:
       return r.process >= 0 &&
              external_alarm_[static_cast<std::size_t>(r.process)] == static_cast<std::int16_t>(r.value);
-    case alarm::kNodeLost:
-    case alarm::kNodeRestarted:
-    case alarm::kNodeLeft:
-    case alarm::kBusOff:
-    case alarm::kBusDown:
-    case axis::alarm::kPdoMissing:
-      return nodes_missing(r);
     default:
       break;
   }
+  if (is_of_part(r.number)) return part_missing(r);
   if (r.axis >= 0) return axes_[static_cast<std::size_t>(r.axis)].present(r.number);
   return std::any_of(spindles_.begin(), spindles_.end(),
                      [&](const axis::Spindle& s) { return s.present(r.number); });
 }
 
-/// The drive or I/O module that a record names, or one on the segment that it names, is not there.
-bool Cycle::nodes_missing(const image::AlarmRecord& r) const noexcept {
-  const auto meant = [&r](const axis::DrivePlace& place) {
+/// The part of a device that a record names, or one on the segment that it names, is not there.
+bool Cycle::part_missing(const image::AlarmRecord& r) const noexcept {
+  const auto meant = [&r](const image::PartPlace& place) {
     return r.segment == place.segment && (r.node < 0 || r.node == place.node);
   };
-  const auto missing = [&meant](const axis::DrivePlace& place, const image::DriveFeedback& drive) {
+  const auto missing = [&meant](const image::PartPlace& place, const image::DriveFeedback& drive) {
     return meant(place) && !drive.online;
   };
-  for (std::size_t s = 0; s < parts_.source_places.size(); ++s)
-    if (parts_.source_places[s].segment >= 0 && meant(parts_.source_places[s]) &&
+  for (std::size_t s = 0; s < parts_.sources.size(); ++s)
+    if (parts_.sources[s].place.segment >= 0 && meant(parts_.sources[s].place) &&
         image_.sources[s].quality != image::Quality::good)
       return true;
   for (std::size_t i = 0; i < axes_.size(); ++i)

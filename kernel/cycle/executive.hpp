@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "firmware_if/image/cycle_device.hpp"
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/image/request.hpp"
 #include "kernel/axis/axis.hpp"
@@ -26,6 +27,12 @@ enum class Phase : std::uint8_t { receive, logic, interpolate, axes, send, publi
 inline constexpr int kPhases = 6;
 const char* name(Phase phase) noexcept;
 
+/// A source of points as the cycle sees it.
+struct SourceInCycle {
+  bool watched = false;    ///< a stale or bad one is an alarm; otherwise its device tells
+  image::PartPlace place;  ///< where on a bus it is: an alarm of that place stays while it is gone
+};
+
 /// What a cycle is made of. All pointers outlive the cycle.
 struct CycleParts {
   image::Nanoseconds period_ns = image::kMillisecond;
@@ -37,9 +44,7 @@ struct CycleParts {
   std::uint32_t k_bytes = image::kPacketKDefaultSize;
   std::uint32_t syvar_bytes = image::kSyvarDefaultSize;
   const image::Clock* stopwatch = nullptr;  ///< measures the phases; nullptr: phases are not measured
-  std::array<bool, image::kMaxSources> watched_sources{};  ///< a stale or bad one is an alarm
-  /// Where on a bus a source is; segment -1: on none. An alarm of that place stays while its source is gone.
-  std::array<axis::DrivePlace, image::kMaxSources> source_places{};
+  std::array<SourceInCycle, image::kMaxSources> sources{};
   std::optional<image::Place>
       estop_place;  ///< emergency-stop chain: FALSE opens MC.estop_ok whatever the logic says
   std::optional<image::Place> alive_place;  ///< output that toggles as MC.control_alive does
@@ -76,7 +81,7 @@ class Cycle {
   /// Publishes snapshots every `cycles` cycles; 0: never (a virtual run whose owner looks at image() itself).
   void publish_every(int cycles) noexcept { publish_every_ = cycles; }
 
-  /// Where devices and the gateway report faults from inside receive().
+  /// Where the owner of the loop reports faults between two cycles; devices are given it in receive().
   Notices& notices() noexcept { return notices_; }
   /// Machine seconds in a second of the wall clock where time is scaled (virtual time with --speed): what is
   /// asked of a living hand, the keep-alive of a jog, is judged by it. Before the first step.
@@ -150,7 +155,7 @@ class Cycle {
   ProcessContext context(int process) noexcept;
   void raise(const image::AlarmRecord& record) noexcept;
   bool still_present(const image::AlarmRecord& record) const noexcept;
-  bool nodes_missing(const image::AlarmRecord& record) const noexcept;
+  bool part_missing(const image::AlarmRecord& record) const noexcept;
   void begin_measuring() noexcept;
   void stamp(Phase phase) noexcept;
 

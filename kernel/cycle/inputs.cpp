@@ -30,6 +30,18 @@ void put_changed(std::vector<std::uint8_t>& out, const std::array<T, N>& now, co
     if (((mask >> i) & 1) != 0) put_raw(out, &now[i], sizeof(T));
 }
 
+void put_edges(std::vector<std::uint8_t>& out, const image::Edges& now, const image::Edges& last) {
+  put_varint(out, now.list().size());
+  for (const image::Edge& e : now.list()) {
+    out.push_back(static_cast<std::uint8_t>(e.place.packet));
+    out.push_back(static_cast<std::uint8_t>(e.place.format));
+    put_varint(out, e.place.index);
+    out.push_back(e.level ? 1 : 0);
+    put_raw(out, &e.t_ns, sizeof e.t_ns);
+  }
+  put_varint(out, now.lost() - last.lost());
+}
+
 }  // namespace
 
 bool tell_of_ended_scan(const CycleInputs& in) noexcept {
@@ -51,6 +63,7 @@ void InputEncoder::append(const CycleInputs& in, std::vector<std::uint8_t>& out)
       out.push_back(in.packet_a[i]);
     }
   put_changed(out, in.sources, last_.sources);
+  put_edges(out, in.edges, last_.edges);
   std::uint64_t moved = 0;
   for (std::size_t i = 0; i < in.visible.size(); ++i)
     if (in.visible[i] != last_.visible[i]) moved |= std::uint64_t{1} << i;
@@ -86,6 +99,29 @@ void InputDecoder::raw(void* to, std::size_t bytes) noexcept {
   at_ += bytes;
 }
 
+void InputDecoder::edges() noexcept {
+  last_.edges.clear();
+  const std::uint64_t count = varint();
+  if (count > image::Edges::kCapacity) damaged_ = true;
+  for (std::uint64_t i = 0; i < count && !damaged_; ++i) {
+    image::Edge edge;
+    std::uint8_t packet = 0, format = 0, level = 0;
+    raw(&packet, 1);
+    raw(&format, 1);
+    edge.place.index = static_cast<std::uint32_t>(varint());
+    raw(&level, 1);
+    raw(&edge.t_ns, sizeof edge.t_ns);
+    damaged_ = damaged_ || packet > static_cast<std::uint8_t>(image::Packet::v) ||
+               format > static_cast<std::uint8_t>(image::Format::ch);
+    if (damaged_) break;
+    edge.place.packet = static_cast<image::Packet>(packet);
+    edge.place.format = static_cast<image::Format>(format);
+    edge.level = level != 0;
+    last_.edges.add(edge);
+  }
+  last_.edges.note_lost(static_cast<std::uint32_t>(varint()));
+}
+
 bool InputDecoder::give(CycleInputs& in) noexcept {
   if (damaged_ || at_ >= bytes_.size()) return false;
   const auto changed = [&](auto& items) {
@@ -106,6 +142,7 @@ bool InputDecoder::give(CycleInputs& in) noexcept {
       damaged_ = true;
   }
   changed(last_.sources);
+  edges();
   const std::uint64_t moved = varint();
   for (std::size_t i = 0; i < last_.visible.size() && !damaged_; ++i)
     if ((moved >> i & 1) != 0) last_.visible[i] += varint();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/notices.hpp"
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/image/request.hpp"
 
@@ -15,7 +16,7 @@ namespace servogate::cycle {
 inline constexpr int kCrossingsEach = 5;  ///< ways across the real-time line to one process
 inline constexpr int kCrossings = kCrossingsEach * image::kMaxProcesses;
 inline constexpr int kRequestsPerCycle = 16;  ///< requests taken in one cycle; more wait for the next one
-inline constexpr int kNoticesPerCycle = 16;   ///< faults that devices report in one cycle; more are counted
+using image::kNoticesPerCycle;
 
 /// Everything that comes from outside in one cycle. Whoever has these has the run: the rest is a function of
 /// them (docs/architecture.md, rule 1).
@@ -25,6 +26,7 @@ struct CycleInputs {
   std::array<image::DriveFeedback, image::kMaxSpindles> spindles{};
   std::array<std::uint8_t, image::kPacketASize> packet_a{};
   std::array<image::IoSource, image::kMaxSources> sources{};
+  image::Edges edges;
   std::array<std::uint64_t, kCrossings> visible{};  ///< how far each way was filled
   std::uint8_t request_count = 0;
   std::array<image::Request, kRequestsPerCycle> requests{};
@@ -74,6 +76,7 @@ class InputDecoder final : public InputSource {
  private:
   std::uint64_t varint() noexcept;
   void raw(void* to, std::size_t bytes) noexcept;
+  void edges() noexcept;
 
   std::span<const std::uint8_t> bytes_;
   std::size_t at_ = 0;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cstdint>
 #include <span>
 
 #include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/cycle_device.hpp"
+#include "firmware_if/image/notices.hpp"
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/image/request.hpp"
 #include "kernel/axis/axis.hpp"
@@ -13,29 +14,7 @@
 
 namespace servogate::cycle {
 
-/// Faults that somebody reports to the cycle; the executive makes alarms of them. Bounded. real-time safe.
-class Notices {
- public:
-  /// Reports a fault; beyond kNoticesPerCycle in one cycle it is only counted.
-  void add(const image::AlarmRecord& record) noexcept {
-    if (count_ < kNoticesPerCycle)
-      records_[static_cast<std::size_t>(count_++)] = record;
-    else
-      ++lost_;
-  }
-  std::span<const image::AlarmRecord> records() const noexcept {
-    return {records_.data(), static_cast<std::size_t>(count_)};
-  }
-  /// Faults that still find a place in this cycle.
-  int room() const noexcept { return kNoticesPerCycle - count_; }
-  void clear() noexcept { count_ = 0; }
-  std::uint32_t lost() const noexcept { return lost_; }
-
- private:
-  std::array<image::AlarmRecord, kNoticesPerCycle> records_{};
-  int count_ = 0;
-  std::uint32_t lost_ = 0;
-};
+using image::Notices;
 
 /// The machine's logic, called once a cycle between reading inputs and moving axes. Everything real-time
 /// safe.

@@ -34,7 +34,7 @@ constexpr Place kCodes[] = {nc("m_code"), nc("s_value"), nc("t_number"), nc("h_c
 
 }  // namespace
 
-void IdealDrives::receive(image::ProcessImage& image) noexcept {
+void IdealDrives::receive(image::ProcessImage& image, image::Notices&) noexcept {
   for (std::size_t i = 0; i < kAxes; ++i) {
     image::DriveFeedback& f = image.axes[i].drive;
     const bool on = commands_[i].power && !fault[i] && !commands_[i].quick_stop;

@@ -23,7 +23,7 @@ inline constexpr double kSpindleMax = 4000.0;  ///< rpm
 /// Drives that follow each command exactly two cycles later, like a fast bus.
 class IdealDrives final : public image::CycleDevice {
  public:
-  void receive(image::ProcessImage& image) noexcept override;
+  void receive(image::ProcessImage& image, image::Notices& notices) noexcept override;
   void send(image::ProcessImage& image) noexcept override;
   std::array<bool, kAxes> fault{};  ///< falls out of Operation enabled
   std::array<bool, kAxes> stuck{};  ///< does not move any more, and says so

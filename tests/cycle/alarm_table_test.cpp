@@ -215,7 +215,7 @@ TEST(AlarmText, of_a_foreign_frame_says_what_it_means_or_at_least_its_identifier
   AlarmNames names;
   names.segments = {"can"};
   EXPECT_EQ(render(r, names, text::Language::english), "bus can: somebody else sends 0x205");
-  names.foreign_frame = [](const image::AlarmRecord& record, text::Language) {
+  names.detail = [](const image::AlarmRecord& record, text::Language) {
     return record.value == 0x205 ? std::string("RPDO 1 of node 5 (205h)") : std::string();
   };
   EXPECT_EQ(render(r, names, text::Language::english),

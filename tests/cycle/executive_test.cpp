@@ -25,7 +25,7 @@ using image::RequestKind;
 class Io final : public image::CycleDevice {
  public:
   explicit Io(std::string& order) : order_(order) {}
-  void receive(image::ProcessImage& image) noexcept override {
+  void receive(image::ProcessImage& image, image::Notices&) noexcept override {
     order_ += 'r';
     image.packets.set_bit({Packet::a, Format::bl, 0, 1}, input);
   }

@@ -25,6 +25,11 @@ bool same_inputs(const CycleInputs& a, const CycleInputs& b) {
   for (std::size_t i = 0; i < a.axes.size(); ++i) good = good && same(a.axes[i], b.axes[i]);
   for (std::size_t i = 0; i < a.spindles.size(); ++i) good = good && same(a.spindles[i], b.spindles[i]);
   for (std::size_t i = 0; i < a.sources.size(); ++i) good = good && same(a.sources[i], b.sources[i]);
+  good = good && a.edges.lost() == b.edges.lost() && a.edges.list().size() == b.edges.list().size();
+  for (std::size_t i = 0; good && i < a.edges.list().size(); ++i) {
+    const image::Edge &one = a.edges.list()[i], &other = b.edges.list()[i];
+    good = one.place == other.place && one.level == other.level && one.t_ns == other.t_ns;
+  }
   for (std::size_t i = 0; i < a.request_count; ++i) good = good && same(a.requests[i], b.requests[i]);
   for (std::size_t i = 0; i < a.notice_count; ++i) good = good && same(a.notices[i], b.notices[i]);
   return good;
@@ -46,6 +51,11 @@ void next(CycleInputs& in, std::mt19937_64& random) {
   for (std::uint64_t n = random() % 8; n > 0; --n)
     in.packet_a[random() % in.packet_a.size()] = static_cast<std::uint8_t>(random());
   if (random() % 5 == 0) in.sources[random() % in.sources.size()].updated_ns = in.number * 1000000;
+  in.edges.clear();
+  for (std::uint64_t n = random() % 5 == 0 ? random() % 40 : 0; n > 0; --n)
+    in.edges.add({{image::Packet::a, image::Format::bl, static_cast<std::uint32_t>(random() % 8192), 1},
+                  random() % 2 == 0,
+                  static_cast<image::Nanoseconds>(random())});
   for (std::uint64_t& v : in.visible) v += random() % 3 == 0 ? random() % 100000 : 0;
   in.request_count = static_cast<std::uint8_t>(random() % 7 == 0 ? random() % (kRequestsPerCycle + 1) : 0);
   for (std::size_t i = 0; i < in.request_count; ++i) {

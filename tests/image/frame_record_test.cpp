@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include "firmware_if/image/alarm.hpp"
 
 namespace servogate::image {
 namespace {
@@ -15,8 +15,8 @@ TEST(FrameRecord, brings_a_frame_through_an_alarm_record) {
   frame.length = 8;
   for (std::uint8_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(0xFF - i);
   AlarmRecord record;
-  pack_frame(frame, record);
-  const CanFrame back = unpack_frame(record);
+  record.detail.put(frame_detail(frame));
+  const CanFrame back = frame_of(*record.detail.get<FrameDetail>());
   EXPECT_EQ(back.id, frame.id);
   EXPECT_EQ(back.extended, frame.extended);
   EXPECT_EQ(back.length, frame.length);
@@ -24,20 +24,29 @@ TEST(FrameRecord, brings_a_frame_through_an_alarm_record) {
   CanFrame remote;
   remote.id = 0x705;
   remote.remote = true;
-  pack_frame(remote, record);
-  EXPECT_TRUE(unpack_frame(record).remote);
-  EXPECT_EQ(unpack_frame(record).length, 0);
+  EXPECT_TRUE(frame_of(frame_detail(remote)).remote);
+  EXPECT_EQ(frame_of(frame_detail(remote)).length, 0);
 }
 
-TEST(FrameRecord, with_nothing_but_an_identifier_is_a_frame_without_bytes) {
+TEST(FrameRecord, of_a_damaged_file_has_eight_bytes_at_most) {
+  FrameDetail damaged;
+  damaged.length = 255;
+  EXPECT_EQ(frame_of(damaged).length, 8);
+}
+
+/// Fields of another device than a CAN bus.
+struct OtherFields {
+  static constexpr DetailKind kDetail = DetailKind::canopen_boot;
+  std::uint32_t number = 0;
+};
+
+TEST(Detail, gives_its_fields_to_whom_they_belong_only) {
   AlarmRecord record;
-  record.value = 0x205;
-  EXPECT_EQ(unpack_frame(record).id, 0x205u);
-  EXPECT_EQ(unpack_frame(record).length, 0);
-  for (const double odd : {-1.0, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
-    record.value = record.limit = record.detail1 = record.detail2 = odd;
-    EXPECT_LE(unpack_frame(record).length, 8);
-  }
+  EXPECT_EQ(record.detail.kind(), DetailKind::none);
+  EXPECT_FALSE(record.detail.get<OtherFields>().has_value());
+  record.detail.put(OtherFields{7});
+  EXPECT_EQ(record.detail.get<OtherFields>()->number, 7u);
+  EXPECT_FALSE(record.detail.get<FrameDetail>().has_value());
 }
 
 }  // namespace

@@ -98,6 +98,45 @@ TEST(Stations, a_machine_works_with_packed_inputs_and_registers_that_begin_elsew
   EXPECT_EQ(response.exception, modbus::Exception::illegal_data_address);
 }
 
+/// The mill with a second unit on the line of its panel.
+machine::LoadResult mill_with_two_units() {
+  return changed_mill([](std::string& text) {
+    const std::string panel = "[[station]]  # everything that may be 20 ms old";
+    replace(text, panel,
+            "[[station]]\nname = \"cabinet\"\nkind = \"modbus\"\nline = \"panel\"\nunit = 7\n"
+            "device = \"modbus-io-16-16-4-2\"\nperiod = \"40 ms\"\npoints = [\n"
+            "  { name = \"cabinet_fan\", channel = \"dq0\", place = \"SA200\" },\n"
+            "  { name = \"cabinet_warm\", channel = \"di3\", place = \"SA201\", loss = 1 },\n]\n\n" +
+                panel);
+    replace(text, "url = \"mock:panel\"\n", "url = \"mock:panel\"\nbaud = 1000000\ntimeout = \"20 ms\"\n");
+  });
+}
+
+TEST(Stations, several_units_share_a_line_and_one_that_is_lost_leaves_the_others_their_data) {
+  Mill mill(mill_with_two_units(), {});
+  const auto bit = [&](const char* name) { return mill.image().packets.bit(place_of(mill.control(), name)); };
+  const auto quality = [&](std::size_t source) { return mill.image().sources[source].quality; };
+  auto* line = dynamic_cast<mock::MockModbusLine*>(mill.control().world().io()[1]);
+  ASSERT_NE(line, nullptr);
+  ASSERT_EQ(line->stations(), 2u);
+  EXPECT_EQ(mill.control().world().io().size(), 2u) << "the line is one device of the cycle";
+  mill.control().world().set_input("cabinet_warm", true);
+  mill.run(0.5);
+  EXPECT_EQ(quality(1), image::Quality::good);
+  EXPECT_EQ(quality(2), image::Quality::good);
+  EXPECT_TRUE(bit("cabinet_warm"));
+  EXPECT_TRUE(bit("door_closed"));
+  mill.control().world().set_input("cabinet_warm", false);
+  mill.run(0.2);
+  EXPECT_FALSE(bit("cabinet_warm"));
+  line->station(0).inject({mock::StationFault::Kind::silence});
+  mill.run(1.0);
+  EXPECT_EQ(quality(1), image::Quality::bad);
+  EXPECT_TRUE(bit("cabinet_warm")) << "its value of loss";
+  EXPECT_EQ(quality(2), image::Quality::good);
+  EXPECT_TRUE(bit("door_closed"));
+}
+
 TEST(Stations, what_a_lost_station_shows_on_the_wire_is_the_loss_of_each_output) {
   const machine::LoadResult loaded = changed_mill([](std::string& text) {
     const std::string lamp = "name = \"lamp_red\", channel = \"dq4\", place = \"SA68\"";

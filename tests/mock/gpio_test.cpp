@@ -17,7 +17,14 @@ image::Place place(const char* text) { return *image::parse_place(text); }
 
 GpioInput input(const char* name, InputSource source, const char* at, bool inverted = false,
                 Bounce bounce = {}) {
-  return {name, source, place(at), inverted, bounce};
+  image::PointRule rule;
+  rule.place = place(at);
+  rule.inverted = inverted;
+  return {name, source, rule, bounce};
+}
+
+GpioOutput output(const char* name, const char* at, bool inverted = false) {
+  return {name, input(name, SetInput{}, at, inverted).rule};
 }
 
 struct Slide {
@@ -30,7 +37,9 @@ struct Slide {
 void cycle(MockGpio& chip, image::ProcessImage& image, Nanoseconds t) {
   chip.advance_to(t);
   image.now.t_ns = t;
-  chip.receive(image);
+  image::Notices notices;
+  image.edges.clear();
+  chip.receive(image, notices);
   chip.send(image);
 }
 
@@ -139,7 +148,7 @@ TEST(MockGpio, a_stuck_contact_stays_where_it_is_held_until_released) {
 }
 
 TEST(MockGpio, drives_outputs_from_packet_A_and_counts_their_edges) {
-  MockGpio chip({}, {{"lamp", place("SA16"), false}, {"enable", place("SA17"), true}});
+  MockGpio chip({}, {output("lamp", "SA16"), output("enable", "SA17", true)});
   image::ProcessImage image;
   EXPECT_FALSE(chip.output(0));
   EXPECT_TRUE(chip.output(1)) << "an inverted output rests high";
@@ -154,18 +163,72 @@ TEST(MockGpio, drives_outputs_from_packet_A_and_counts_their_edges) {
   EXPECT_EQ(chip.output_index("nothing"), -1);
 }
 
-TEST(MockGpio, an_unplugged_chip_says_so_and_keeps_its_places) {
-  MockGpio chip({input("door", SetInput{true}, "SA0")}, {}, {}, 3);
+TEST(MockGpio, an_unplugged_chip_says_so_and_its_inputs_have_their_values_of_loss) {
+  GpioInput door = input("door", SetInput{true}, "SA0"), air = input("air", SetInput{true}, "SA1"),
+            kept = input("kept", SetInput{true}, "SA2"), brake = input("brake", SetInput{false}, "SA3");
+  kept.rule.hold = true;
+  brake.rule.loss = 1.0;
+  air.rule.debounce_ns = kMillisecond * 50;
+  MockGpio chip({door, air, kept, brake}, {}, {}, 3);
   image::ProcessImage image;
-  cycle(chip, image, 5 * kMillisecond);
+  for (int ms = 0; ms < 60; ++ms) cycle(chip, image, ms * kMillisecond);
   EXPECT_EQ(image.sources[3].quality, image::Quality::good);
-  EXPECT_EQ(image.sources[3].updated_ns, 5 * kMillisecond);
+  EXPECT_EQ(image.sources[3].updated_ns, 59 * kMillisecond);
+  const auto inputs = [&] {
+    std::string levels;
+    for (const char* at : {"SA0", "SA1", "SA2", "SA3"}) levels += image.packets.bit(place(at)) ? '1' : '0';
+    return levels;
+  };
+  EXPECT_EQ(inputs(), "1110");
   chip.plug(false);
-  chip.set_input(0, false);
-  cycle(chip, image, 6 * kMillisecond);
+  cycle(chip, image, 60 * kMillisecond);
   EXPECT_EQ(image.sources[3].quality, image::Quality::bad);
-  EXPECT_TRUE(image.packets.bit(place("SA0")));
-  EXPECT_EQ(image.sources[3].updated_ns, 5 * kMillisecond);
+  EXPECT_EQ(image.sources[3].updated_ns, 59 * kMillisecond);
+  EXPECT_EQ(image.sources[3].errors, 1u);
+  EXPECT_EQ(inputs(), "0011") << "at once, debounced ones too";
+  chip.plug(true);
+  cycle(chip, image, 61 * kMillisecond);
+  EXPECT_EQ(image.sources[3].quality, image::Quality::good);
+  EXPECT_EQ(inputs(), "1010") << "what comes back has to last again";
+}
+
+TEST(MockGpio, that_was_never_plugged_in_is_missed) {
+  MockGpio chip({input("door", SetInput{true}, "SA0")}, {}, {}, 3);
+  chip.plug(false);
+  image::ProcessImage image;
+  for (int ms = 0; ms < 90; ++ms) cycle(chip, image, ms * kMillisecond);
+  EXPECT_EQ(image.sources[3].quality, image::Quality::never);
+  for (int ms = 90; ms < 120; ++ms) cycle(chip, image, ms * kMillisecond);
+  EXPECT_EQ(image.sources[3].quality, image::Quality::bad);
+}
+
+TEST(MockGpio, tells_each_edge_of_a_bouncing_contact_with_its_time) {
+  GpioInput door = input("door", SetInput{}, "SA5", true, {4 * kMillisecond, 7});
+  door.rule.debounce_ns = 20 * kMillisecond;
+  MockGpio chip({door}, {});
+  image::ProcessImage image;
+  cycle(chip, image, 0);
+  EXPECT_TRUE(image.edges.list().empty()) << "the first level is no edge";
+  chip.set_input(0, true);
+  Nanoseconds last = 0;
+  std::uint64_t edges = 0;
+  bool level = true;  // inverted: the open contact is TRUE
+  for (int ms = 1; ms <= 10; ++ms) {
+    cycle(chip, image, ms * kMillisecond);
+    for (const image::Edge& e : image.edges.list()) {
+      EXPECT_EQ(e.place, place("SA5"));
+      EXPECT_EQ(e.level, level = !level);
+      EXPECT_GE(e.t_ns, last);
+      EXPECT_LE(e.t_ns, ms * kMillisecond);
+      last = e.t_ns;
+      ++edges;
+    }
+  }
+  EXPECT_EQ(edges, chip.edges(0));
+  EXPECT_GT(edges, 1u);
+  EXPECT_EQ(image.edges.lost(), 0u);
+  EXPECT_NE(last % kMillisecond, 0) << "finer than the cycle";
+  EXPECT_TRUE(image.packets.bit(place("SA5"))) << "while packet A waits for the debouncing";
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ modbus::Map example_map(std::uint8_t unit = 1) {
     modbus::Point p;
     p.block = block;
     p.offset = n;
-    p.place = place(at);
+    p.rule.place = place(at);
+    p.rule.hold = true;
     map.points.push_back(p);
   };
   for (std::uint16_t n = 0; n < 16; ++n) add(0, n, "SA" + std::to_string(n));
@@ -47,7 +48,7 @@ struct Loop {
     for (const Nanoseconds end = t + duration; t < end; t += kMillisecond) {
       line.advance_to(t);
       image.now.t_ns = t;
-      line.receive(image);
+      line.receive(image, notices);
       line.send(image);
     }
   }
@@ -57,6 +58,7 @@ struct Loop {
 
   MockModbusLine& line;
   image::ProcessImage image;
+  image::Notices notices;
   Nanoseconds t = 0;
 };
 
@@ -144,7 +146,7 @@ TEST(MockModbusLine, a_loop_back_wire_answers_after_its_delay) {
 
 TEST(MockModbusLine, a_silent_station_turns_stale_then_bad_and_its_points_take_their_loss_values) {
   modbus::Map map = example_map();
-  map.points[0].on_loss = modbus::OnLoss::value;  // SA0 falls to 0, SA1 holds
+  map.points[0].rule.hold = false;  // SA0 falls to 0, SA1 holds
   LineSettings settings;
   settings.answer_timeout_ns = 30 * kMillisecond;
   MockModbusLine line(settings, map, {StationSettings{}});
@@ -227,7 +229,7 @@ TEST(MockModbusLine, a_dead_station_does_not_slow_its_neighbour) {
   modbus::Map second = example_map(2);
   for (auto& p : second.points) {
     p.block += 4;
-    p.place = image::at(p.place, p.place.packet == image::Packet::a ? 32 : 128);
+    p.rule.place = image::at(p.rule.place, p.rule.place.packet == image::Packet::a ? 32 : 128);
     map.points.push_back(p);
   }
   map.blocks.insert(map.blocks.end(), second.blocks.begin(), second.blocks.end());
@@ -237,10 +239,10 @@ TEST(MockModbusLine, a_dead_station_does_not_slow_its_neighbour) {
   LineSettings settings;
   settings.baud = 1'000'000;
   settings.answer_timeout_ns = 20 * kMillisecond;
-  settings.retries = 0;
+  settings.poll.retries = 0;
   StationSettings one;
   one.answer_delay_ns = two.answer_delay_ns = 200'000;
-  MockModbusLine line(settings, map, {one, two}, 4);
+  MockModbusLine line(settings, map, {one, two}, {4, 5});
   line.station(0).inject({StationFault::Kind::silence});
   Loop loop(line);
   int good = 0;

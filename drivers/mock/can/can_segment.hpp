@@ -10,6 +10,7 @@
 
 #include "firmware_if/image/can_wire.hpp"
 #include "firmware_if/image/process_image.hpp"
+#include "firmware_if/image/simulated.hpp"
 
 namespace servogate::mock {
 

@@ -18,6 +18,7 @@
 #include "firmware_if/fault/fault.hpp"
 #include "firmware_if/image/drive_link.hpp"
 #include "firmware_if/image/process_image.hpp"
+#include "firmware_if/image/simulated.hpp"
 
 namespace servogate::mock {
 

@@ -15,6 +15,19 @@ int find(const std::vector<T>& lines, std::string_view name) noexcept {
 }
 
 constexpr std::uint64_t kFlipsPerBounce = 24;
+/// A chip that has never been there is missed after this time.
+constexpr image::Nanoseconds kNeverPlugged = 100 * image::kMillisecond;
+
+std::vector<image::PointRule> rules_of(const std::vector<GpioInput>& inputs,
+                                       const std::vector<GpioOutput>& outputs) {
+  std::vector<image::PointRule> rules;
+  for (const GpioInput& input : inputs) rules.push_back(input.rule);
+  for (const GpioOutput& output : outputs) {
+    rules.push_back(output.rule);
+    rules.back().input = false;
+  }
+  return rules;
+}
 
 }  // namespace
 
@@ -23,19 +36,10 @@ MockGpio::MockGpio(std::vector<GpioInput> inputs, std::vector<GpioOutput> output
     : inputs_(std::move(inputs)),
       outputs_(std::move(outputs)),
       position_(std::move(position)),
-      source_(source) {
+      stage_(rules_of(inputs_, outputs_), source, {{0, kNeverPlugged}}) {
   lines_.resize(inputs_.size());
-  for (std::size_t n = 0; n < inputs_.size(); ++n) {
-    const image::Place& place = inputs_[n].place;
-    random_.emplace_back(inputs_[n].bounce.seed);
-    lines_[n].inverted = inputs_[n].inverted;
-    if (place.packet != image::Packet::a || place.format != image::Format::bl) continue;
-    if (place.byte() >= image::kPacketASize) continue;
-    lines_[n].byte = place.byte();
-    lines_[n].mask = static_cast<std::uint8_t>(1u << place.bit());
-  }
-  driven_.resize(outputs_.size());
-  for (std::size_t n = 0; n < outputs_.size(); ++n) driven_[n] = outputs_[n].inverted;
+  for (const GpioInput& input : inputs_) random_.emplace_back(input.bounce.seed);
+  for (const GpioOutput& output : outputs_) driven_.push_back(output.rule.inverted);
   output_edges_.resize(outputs_.size());
 }
 
@@ -44,21 +48,28 @@ bool MockGpio::contact(const GpioInput& input) const {
   if (!position_) return false;
   if (const auto* limit = std::get_if<LimitSwitch>(&input.source)) {
     const double at = position_(limit->axis);
-    return (limit->positive ? at >= limit->mm : at <= limit->mm) != input.inverted;
+    return (limit->positive ? at >= limit->mm : at <= limit->mm) != input.rule.inverted;
   }
   const auto& home = std::get<HomeSwitch>(input.source);
   const double at = position_(home.axis);
-  return (at >= home.mm && at <= home.mm + home.width_mm) != input.inverted;
+  return (at >= home.mm && at <= home.mm + home.width_mm) != input.rule.inverted;
 }
 
-void MockGpio::move(Line& line, bool wanted, const Bounce& settings, std::mt19937_64& random,
-                    image::Nanoseconds t) {
+void MockGpio::flip(std::size_t n, bool level, image::Nanoseconds t) {
+  lines_[n].level = level;
+  ++lines_[n].edges;
+  if (plugged_) stage_.edge(n, level, t);
+}
+
+void MockGpio::move(std::size_t n, bool wanted, image::Nanoseconds t) {
+  Line& line = lines_[n];
   if (!line.started) {
     line.started = true;
     line.contact = line.level = wanted;
     return;
   }
-  const auto bounce = static_cast<std::uint64_t>(std::max<image::Nanoseconds>(settings.time_ns, 0));
+  const auto bounce = static_cast<std::uint64_t>(std::max<image::Nanoseconds>(inputs_[n].bounce.time_ns, 0));
+  std::mt19937_64& random = random_[n];
   if (wanted != line.contact) {
     line.contact = wanted;
     line.settle_ns = t + static_cast<image::Nanoseconds>(
@@ -66,53 +77,37 @@ void MockGpio::move(Line& line, bool wanted, const Bounce& settings, std::mt1993
     line.next_flip_ns = t;
   }
   while (line.next_flip_ns < line.settle_ns && line.next_flip_ns <= t) {
-    line.level = !line.level;
-    ++line.edges;
+    flip(n, !line.level, line.next_flip_ns);
     const std::uint64_t step = bounce / kFlipsPerBounce + 1;
     line.next_flip_ns += static_cast<image::Nanoseconds>(step + random() % step);
   }
-  if (t >= line.settle_ns && line.level != line.contact) {
-    line.level = line.contact;
-    ++line.edges;
-  }
+  if (t >= line.settle_ns && line.level != line.contact)
+    flip(n, line.contact, std::min(t, std::max(line.settle_ns, line.next_flip_ns)));
 }
 
 void MockGpio::advance_to(image::Nanoseconds t) {
   t_ns_ = std::max(t_ns_, t);
   for (std::size_t n = 0; n < lines_.size(); ++n) {
-    Line& line = lines_[n];
+    const Line& line = lines_[n];
     const bool wanted = line.forced ? line.forced_level : contact(inputs_[n]);
-    if (!line.settled(wanted)) move(line, wanted, inputs_[n].bounce, random_[n], t_ns_);
+    if (!line.settled(wanted)) move(n, wanted, t_ns_);
   }
 }
 
-void MockGpio::receive(image::ProcessImage& image) noexcept {
-  const bool known = source_ >= 0 && source_ < image::kMaxSources;
-  if (!plugged_) {
-    if (known) image.sources[static_cast<std::size_t>(source_)].quality = image::Quality::bad;
-    return;
+void MockGpio::receive(image::ProcessImage& image, image::Notices&) noexcept {
+  if (plugged_) {
+    for (std::size_t n = 0; n < lines_.size(); ++n) stage_.take(n, lines_[n].level ? 1.0 : 0.0);
+    stage_.fresh(0, t_ns_);
+  } else {
+    stage_.lost(0);
   }
-  std::uint8_t* const packet_a = image.packets.data(image::Packet::a);
-  for (std::size_t n = 0; n < lines_.size(); ++n) {
-    const Line& line = lines_[n];
-    const bool on = line.level != line.inverted;
-    if (line.mask == 0) {
-      image.packets.set_bit(inputs_[n].place, on);
-      continue;
-    }
-    std::uint8_t& byte = packet_a[line.byte];
-    byte = static_cast<std::uint8_t>(on ? byte | line.mask : byte & ~line.mask);
-  }
-  if (!known) return;
-  image::IoSource& source = image.sources[static_cast<std::size_t>(source_)];
-  source.quality = image::Quality::good;
-  source.updated_ns = t_ns_;
+  stage_.settle(image);
 }
 
 void MockGpio::send(image::ProcessImage& image) noexcept {
   if (!plugged_) return;
   for (std::size_t n = 0; n < outputs_.size(); ++n) {
-    const bool level = image.packets.bit(outputs_[n].place) != outputs_[n].inverted;
+    const bool level = stage_.level(inputs_.size() + n, image.packets);
     if (level == driven_[n]) continue;
     driven_[n] = level;
     ++output_edges_[n];

@@ -9,7 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "firmware_if/image/process_image.hpp"
+#include "firmware_if/image/cycle_device.hpp"
+#include "firmware_if/image/points/point_stage.hpp"
+#include "firmware_if/image/simulated.hpp"
 
 namespace servogate::mock {
 
@@ -46,19 +48,17 @@ struct Bounce {
 struct GpioInput {
   std::string name;
   InputSource source;
-  image::Place place;
-  bool inverted = false;  ///< the place is TRUE while the contact is open (a normally closed switch)
+  image::PointRule rule;  ///< `inverted`: a switch is a normally closed one
   Bounce bounce;
 };
 /// One output line.
 struct GpioOutput {
   std::string name;
-  image::Place place;
-  bool inverted = false;
+  image::PointRule rule;
 };
 
 /// A simulated GPIO chip. As Simulated it follows the axes; as CycleDevice it moves lines to and from packet
-/// A.
+/// A, and tells each edge with its time.
 class MockGpio final : public image::CycleDevice, public image::Simulated {
  public:
   /// `source` = index in image.sources, -1: none. Without `position` switches stay off.
@@ -69,7 +69,7 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
   void follow(AxisPosition position) { position_ = std::move(position); }
 
   /// real-time safe.
-  void receive(image::ProcessImage& image) noexcept override;
+  void receive(image::ProcessImage& image, image::Notices& notices) noexcept override;
   /// real-time safe.
   void send(image::ProcessImage& image) noexcept override;
   void advance_to(image::Nanoseconds t) override;
@@ -91,7 +91,8 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
   /// Changes of a line since the start, bounces included.
   std::uint64_t edges(std::size_t n) const noexcept { return lines_[n].edges; }
   std::uint64_t output_edges(std::size_t n) const noexcept { return output_edges_[n]; }
-  /// The chip answers (true) or is unplugged: then its places keep their values and its quality is bad.
+  /// The chip answers (true) or is unplugged: then its points have their values of loss and its quality is
+  /// bad.
   void plug(bool plugged) noexcept { plugged_ = plugged; }
 
  private:
@@ -101,9 +102,6 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
     bool started = false;
     bool forced = false;
     bool forced_level = false;
-    bool inverted = false;
-    std::uint8_t mask = 0;   ///< of its bit in packet A; 0: its place is elsewhere
-    std::uint32_t byte = 0;  ///< in packet A
     image::Nanoseconds settle_ns = 0;
     image::Nanoseconds next_flip_ns = 0;
     std::uint64_t edges = 0;
@@ -113,12 +111,13 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
     }
   };
   bool contact(const GpioInput& input) const;
-  void move(Line& line, bool wanted, const Bounce& bounce, std::mt19937_64& random, image::Nanoseconds t);
+  void move(std::size_t n, bool wanted, image::Nanoseconds t);
+  void flip(std::size_t n, bool level, image::Nanoseconds t);
 
   std::vector<GpioInput> inputs_;
   std::vector<GpioOutput> outputs_;
   AxisPosition position_;
-  int source_;
+  image::PointStage stage_;  ///< inputs, then outputs
   std::vector<Line> lines_;
   std::vector<std::mt19937_64> random_;  ///< of each line; large, and asked only while it bounces
   std::vector<bool> driven_;

@@ -172,10 +172,10 @@ void add_error_states(Plan& plan, const NodeConfig& node) {
       std::uint32_t mode = digital ? 0xFF : 1, value = 0;  // lines that are no point go to 0
       for (const IoPoint& p : node.io.points) {
         if (p.index != mapped.index || p.subindex != mapped.subindex) continue;
-        if (p.hold) mode &= ~(1u << std::max<int>(0, p.bit));
-        if (digital && p.loss != 0.0) value |= 1u << p.bit;
+        if (p.rule.hold) mode &= ~(1u << std::max<int>(0, p.bit));
+        if (digital && p.rule.loss != 0.0) value |= 1u << p.bit;
         // The 16 bits of a channel stand in the upper half.
-        if (!digital) value = static_cast<std::uint32_t>(std::lround(p.loss)) << 16;
+        if (!digital) value = static_cast<std::uint32_t>(std::lround(p.rule.loss)) << 16;
       }
       plan.write_and_check(digital ? io::kErrorModeOutput8 : io::kErrorModeAnalogueOutput, mapped.subindex, 1,
                            mode);

@@ -44,9 +44,9 @@ void require(bool condition, const char* what) {
 void check_io(const NodeConfig& node) {
   const DriveProfile& profile = node.profile;
   for (const IoPoint& p : node.io.points) {
-    const PdoField field = find_field(p.input ? profile.tpdo : profile.rpdo, p.index, p.subindex);
+    const PdoField field = find_field(p.rule.input ? profile.tpdo : profile.rpdo, p.index, p.subindex);
     require(field.mapped() && p.bit < field.bits, "a point is in no PDO");
-    require(p.scale != 0.0, "the scale of a point is zero");
+    require(p.rule.scale != 0.0, "the scale of a point is zero");
   }
   for (const PdoWanted& pdo : profile.tpdo)
     require(!pdo.used() || cycles_between(pdo, image::kMillisecond) > 0, "a TPDO that need never come");

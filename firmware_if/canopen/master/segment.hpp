@@ -20,35 +20,35 @@ struct NodeStatus {
   std::uint32_t emcy_count = 0;
 };
 
-/// CANopen master of one CAN bus with its drives (CiA 402), I/O modules (CiA 401) and encoders (CiA 406), as
-/// a device of the cycle.
+/// CANopen master of one CAN bus with its drives (CiA 402), I/O modules (CiA 401) and encoders (CiA 406), for
+/// a device of the cycle to carry.
 ///
 /// SYNC k opens cycle k: it is the first frame of the cycle, and of several segments all SYNCs leave before
 /// any is received from. A drive latches its actual values and applies the RPDO it got before at SYNC; the
 /// TPDOs it answers after SYNC k are read in cycle k + 1. Nodes boot, are lost and come back while the cycle
 /// runs; everything that is not process data goes over SDO in a bounded number of frames per cycle.
-class Segment final : public image::CycleDevice {
+class Segment final {
  public:
   /// The bus must live longer. Copies and prepares everything; allocates here and never again. Throws
   /// std::invalid_argument for a configuration that cannot run (two nodes with one ID, a target out of range,
   /// a statusword or controlword that is not mapped); the machine file's check says that earlier and better.
   Segment(image::CanBus& bus, SegmentConfig config);
-  ~Segment() override;
+  ~Segment();
   Segment(const Segment&) = delete;
   Segment& operator=(const Segment&) = delete;
 
   /// SYNC. real-time safe.
-  void open_cycle(image::ProcessImage& image) noexcept override;
+  void open_cycle(image::ProcessImage& image) noexcept;
   /// All received frames, then AxisImage::drive, SpindleImage::drive, inputs into packet A; behind
   /// open_cycle() of the same cycle. real-time safe.
-  void receive(image::ProcessImage& image) noexcept override;
+  void receive(image::ProcessImage& image) noexcept;
   /// RPDOs of drive_command and of outputs in packet A, then heartbeat, NMT and SDO. real-time safe.
-  void send(image::ProcessImage& image) noexcept override;
+  void send(image::ProcessImage& image) noexcept;
 
-  /// Behind the last cycle, again and again with the time that goes on, until it is true: drives without torque
-  /// go to Pre-operational and no longer miss the heartbeat of the control (1016h or life guarding), so that
-  /// its end is no fault to them. A drive with torque and an I/O module go on watching: their own reaction is
-  /// what is wanted of them. real-time safe.
+  /// Behind the last cycle, again and again with the time that goes on, until it is true: drives without
+  /// torque go to Pre-operational and no longer miss the heartbeat of the control (1016h or life guarding),
+  /// so that its end is no fault to them. A drive with torque and an I/O module go on watching: their own
+  /// reaction is what is wanted of them. real-time safe.
   bool leave(image::Nanoseconds now) noexcept;
 
   /// Reading an object of a node that runs, from outside the cycle; one asker. real-time safe.

@@ -3,9 +3,13 @@
 
 #include <optional>
 
+#include "gateway/compose/points/point_rules.hpp"
+
 namespace servogate::gateway {
 
 namespace {
+
+constexpr int kBits = 32;
 
 std::optional<DriveSeat> seat_of(const machine::MachineConfig& m, const std::string& node) {
   for (std::size_t a = 0; a < m.axes.size(); ++a)
@@ -15,58 +19,44 @@ std::optional<DriveSeat> seat_of(const machine::MachineConfig& m, const std::str
   return std::nullopt;
 }
 
-template <typename Image>
-auto& drive_of(Image& image, const DriveSeat& seat) noexcept {
-  return seat.spindle ? image.spindles[seat.index].drive : image.axes[seat.index].drive;
-}
-
 }  // namespace
 
-std::vector<DriveStation> drive_stations(const machine::MachineConfig& m) {
-  std::vector<DriveStation> stations;
+DrivePoints::DrivePoints(const machine::StationConfig& station, DriveSeat seat, int source)
+    : seat_(seat), stage_(point_rules(station), source) {
+  for (const machine::PointConfig& p : station.points)
+    masks_.push_back(p.number >= 0 && p.number < kBits ? std::uint32_t{1} << p.number : 0);
+}
+
+void DrivePoints::receive(image::ProcessImage& image) noexcept {
+  const image::DriveFeedback& drive =
+      seat_.spindle ? image.spindles[seat_.index].drive : image.axes[seat_.index].drive;
+  if (drive.online)
+    stage_.fresh(0, image.now.t_ns);
+  else
+    stage_.lost(0);
+  for (std::size_t n = 0; drive.online && n < stage_.size(); ++n)
+    if (stage_.rule(n).input && masks_[n] != 0)
+      stage_.take(n, (drive.digital_inputs & masks_[n]) != 0 ? 1.0 : 0.0);
+  stage_.settle(image);
+}
+
+void DrivePoints::send(image::ProcessImage& image) noexcept {
+  std::uint32_t levels = 0;
+  for (std::size_t n = 0; n < stage_.size(); ++n)
+    if (!stage_.rule(n).input && stage_.level(n, image.packets)) levels |= masks_[n];
+  image::DriveCommand& command =
+      seat_.spindle ? image.spindles[seat_.index].drive_command : image.axes[seat_.index].drive_command;
+  command.digital_outputs = levels;
+}
+
+std::vector<DrivePoints> drive_points(const machine::MachineConfig& m, const std::string& bus) {
+  std::vector<DrivePoints> out;
   for (std::size_t s = 0; s < m.stations.size(); ++s) {
-    const machine::StationConfig& config = m.stations[s];
-    const auto seat = seat_of(m, config.node);
-    if (config.kind != machine::StationKind::drive || !seat) continue;
-    DriveStation station{*seat, s, {}, {}};
-    for (const machine::PointConfig& p : config.points) {
-      if (p.number < 0 || p.number >= 32) continue;
-      auto& points = p.is_input() ? station.inputs : station.outputs;
-      points.push_back({std::uint32_t{1} << p.number, p.place, p.inverted, p.hold, p.loss != 0.0});
-    }
-    stations.push_back(std::move(station));
+    const machine::StationConfig& station = m.stations[s];
+    if (station.kind != machine::StationKind::drive || !station.node.starts_with(bus + ".")) continue;
+    if (const auto seat = seat_of(m, station.node)) out.emplace_back(station, *seat, static_cast<int>(s));
   }
-  return stations;
-}
-
-void DriveInputs::receive(image::ProcessImage& image) noexcept {
-  for (const DriveStation& station : stations_) {
-    const image::DriveFeedback& drive = drive_of(image, station.seat);
-    for (const DrivePoint& p : station.inputs) {
-      if (drive.online)
-        image.packets.set_bit(p.place, ((drive.digital_inputs & p.mask) != 0) != p.inverted);
-      else if (!p.hold)
-        image.packets.set_bit(p.place, p.on_loss);
-    }
-    image::IoSource& source = image.sources[station.source];
-    if (drive.online) {
-      source.quality = image::Quality::good;
-      source.updated_ns = image.now.t_ns;
-    } else if (source.quality != image::Quality::never) {
-      source.quality = image::Quality::bad;
-    }
-  }
-}
-
-void DriveOutputs::send(image::ProcessImage& image) noexcept {
-  for (const DriveStation& station : stations_) {
-    std::uint32_t levels = 0;
-    for (const DrivePoint& p : station.outputs)
-      if (image.packets.bit(p.place) != p.inverted) levels |= p.mask;
-    image::DriveCommand& command = station.seat.spindle ? image.spindles[station.seat.index].drive_command
-                                                        : image.axes[station.seat.index].drive_command;
-    command.digital_outputs = levels;
-  }
+  return out;
 }
 
 }  // namespace servogate::gateway

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gateway/compose/modbus_setup.hpp"
+#include "gateway/compose/points/point_rules.hpp"
 #include "gateway/compose/simulated/simulated_node.hpp"
 
 namespace servogate::gateway {
@@ -50,7 +51,11 @@ MockWorld::MockWorld(const machine::LoadResult& loaded) {
   for (const machine::StationConfig& station : m.stations) {
     if (station.over_bus()) add_node_wires(loaded, station);
     if (station.mock() && station.kind == machine::StationKind::gpio) add_gpio(loaded, station, source);
-    if (station.mock() && station.kind == machine::StationKind::modbus) add_modbus(loaded, station, source);
+    // A line stands where its first station does.
+    if (const machine::LineConfig* line = m.line(station.line);
+        line != nullptr && station.mock() && station.kind == machine::StationKind::modbus &&
+        stations_of_line(loaded, line->name).front().station == &station)
+      add_line(loaded, *line);
     ++source;
   }
   add_turrets(m);
@@ -109,8 +114,7 @@ void MockWorld::add_node(const machine::LoadResult& loaded, const machine::BusCo
 mock::GpioInput MockWorld::contact(const machine::MachineConfig& m, const machine::PointConfig& p) {
   mock::GpioInput input;
   input.name = p.name;
-  input.place = p.place;
-  input.inverted = p.inverted;
+  input.rule = point_rule(p);
   const auto initial = m.simulation.initial.find(p.name);
   input.source = mock::SetInput{initial != m.simulation.initial.end() && initial->second != 0.0};
   for (const machine::SimulatedSwitch& s : m.simulation.switches) {
@@ -133,7 +137,7 @@ void MockWorld::add_gpio(const machine::LoadResult& loaded, const machine::Stati
   for (const machine::PointConfig& p : station.points) {
     if (!p.is_input()) {
       outputs_.push_back({p.name, gpios_.size(), outputs.size(), true, p.inverted});
-      outputs.push_back({p.name, p.place, p.inverted});
+      outputs.push_back({p.name, point_rule(p)});
       continue;
     }
     mock::GpioInput input = contact(loaded.machine, p);
@@ -203,42 +207,55 @@ void MockWorld::carry_wires(const NodeWires& wires) {
   if (wires.drive != nullptr) wires.drive->set_general_inputs(general);
 }
 
-void MockWorld::add_modbus(const machine::LoadResult& loaded, const machine::StationConfig& station,
-                           int source) {
-  const machine::MachineConfig& m = loaded.machine;
-  const machine::DeviceConfig* device = loaded.device(station.device);
-  const machine::ModbusMap layout = device != nullptr ? device->modbus : machine::ModbusMap{};
-  mock::StationSettings settings = station_settings(station, layout);
-  for (const machine::PointConfig& p : station.points) {
+/// The unit of that number on the line that is made next.
+mock::StationSettings MockWorld::add_unit(const machine::MachineConfig& m, const LineStation& unit,
+                                          std::size_t n) {
+  mock::StationSettings settings = station_settings(*unit.station, unit.layout);
+  for (const machine::PointConfig& p : unit.station->points) {
     const auto initial = m.simulation.initial.find(p.name);
     const double value = initial != m.simulation.initial.end() ? initial->second : 0.0;
     const auto number = static_cast<std::size_t>(p.number);
     if (p.channel == machine::ChannelKind::di && number < settings.initial_inputs.size()) {
       settings.initial_inputs[number] = value != 0.0;
       inputs_.push_back({p.name, lines_.size(), number, false, p.inverted});
+      inputs_.back().unit = n;
     } else if (p.channel == machine::ChannelKind::ai && number < settings.initial_analog.size()) {
       settings.initial_analog[number] = static_cast<std::uint16_t>(value);
       inputs_.push_back({p.name, lines_.size(), number, false, false, true, false, p.scale, p.shift});
+      inputs_.back().unit = n;
     } else if (p.channel == machine::ChannelKind::dq) {
       outputs_.push_back({p.name, lines_.size(), number, false, p.inverted});
+      outputs_.back().unit = n;
     }
   }
-  mock::LineSettings line;
-  line.answer_timeout_ns = static_cast<image::Nanoseconds>(std::llround(station.timeout * 1e9));
-  lines_.push_back(std::make_unique<mock::MockModbusLine>(
-      line, modbus_map(station, layout), std::vector<mock::StationSettings>{settings}, source));
-  for (const machine::SimulatedLoop& loop : m.simulation.loops) {
-    const machine::PointConfig* out = m.point(loop.output);
-    const machine::PointConfig* in = m.point(loop.input);
-    const auto here = [&](const machine::PointConfig* p) {
-      return p != nullptr && p >= station.points.data() && p < station.points.data() + station.points.size();
-    };
-    if (here(out) && here(in))
-      lines_.back()->station(0).add_loopback(
-          {static_cast<std::uint16_t>(out->number), static_cast<std::uint16_t>(in->number),
-           static_cast<image::Nanoseconds>(std::llround(loop.delay * 1e9)), loop.inverted});
+  return settings;
+}
+
+void MockWorld::add_line(const machine::LoadResult& loaded, const machine::LineConfig& config) {
+  const machine::MachineConfig& m = loaded.machine;
+  const std::vector<LineStation> units = stations_of_line(loaded, config.name);
+  std::vector<mock::StationSettings> settings;
+  std::vector<int> sources;
+  for (const LineStation& unit : units) {
+    settings.push_back(add_unit(m, unit, settings.size()));
+    sources.push_back(unit.source);
   }
-  units_[station.name] = &lines_.back()->station(0);
+  mock::LineSettings line;
+  line.baud = static_cast<std::uint32_t>(config.baud);
+  line.answer_timeout_ns = static_cast<image::Nanoseconds>(std::llround(config.timeout * 1e9));
+  lines_.push_back(
+      std::make_unique<mock::MockModbusLine>(line, line_map(units), std::move(settings), sources));
+  for (const machine::SimulatedLoop& loop : m.simulation.loops) {
+    int from = -1, to = -1;
+    const machine::PointConfig* out = m.point(loop.output, &from);
+    const machine::PointConfig* in = m.point(loop.input, &to);
+    for (std::size_t n = 0; n < units.size(); ++n)
+      if (out != nullptr && in != nullptr && from == units[n].source && to == units[n].source)
+        lines_.back()->station(n).add_loopback(
+            {static_cast<std::uint16_t>(out->number), static_cast<std::uint16_t>(in->number),
+             static_cast<image::Nanoseconds>(std::llround(loop.delay * 1e9)), loop.inverted});
+  }
+  for (std::size_t n = 0; n < units.size(); ++n) units_[units[n].station->name] = &lines_.back()->station(n);
   io_.push_back(lines_.back().get());
 }
 
@@ -319,14 +336,14 @@ image::CanBus* MockWorld::bus(std::size_t index) { return endpoints_[index]; }
 bool MockWorld::drive_input(const Input& i, bool on) {
   const bool contact = on != i.inverted;
   return i.gpio ? gpios_[i.device]->set_input(i.number, contact)
-                : lines_[i.device]->station(0).set_input(static_cast<std::uint16_t>(i.number), contact);
+                : lines_[i.device]->station(i.unit).set_input(static_cast<std::uint16_t>(i.number), contact);
 }
 
 bool MockWorld::motor_on(const Output& o) const {
   if (o.module != nullptr) return o.module->digital(static_cast<std::uint8_t>(o.number)) != o.inverted;
   if (o.drive != nullptr) return ((o.drive->digital_outputs() >> o.number & 1) != 0) != o.inverted;
   const bool level = o.gpio ? gpios_[o.device]->output(o.number)
-                            : lines_[o.device]->station(0).output(static_cast<std::uint16_t>(o.number));
+                            : lines_[o.device]->station(o.unit).output(static_cast<std::uint16_t>(o.number));
   return level != o.inverted;
 }
 
@@ -376,7 +393,7 @@ void MockWorld::play_looped(std::size_t input, const Play& play) {
   const bool contact = play.value.value_or(0.0) != 0.0;
   if (i.gpio) {
     if (i.held) drive_input(i, contact);
-  } else if (mock::ModbusStation& station = lines_[i.device]->station(0); i.held) {
+  } else if (mock::ModbusStation& station = lines_[i.device]->station(i.unit); i.held) {
     station.hold_input(static_cast<std::uint16_t>(i.number), contact != i.inverted);
   } else {
     station.let_go_input(static_cast<std::uint16_t>(i.number));
@@ -394,8 +411,8 @@ void MockWorld::play_raw(const Input& i, double raw) {
     i.module->set_analogue(static_cast<std::uint8_t>(i.number),
                            static_cast<std::int16_t>(within(-32768.0, 32767.0)));
   else
-    lines_[i.device]->station(0).set_analog_input(static_cast<std::uint16_t>(i.number),
-                                                  static_cast<std::uint16_t>(within(0.0, kLargestRegister)));
+    lines_[i.device]->station(i.unit).set_analog_input(
+        static_cast<std::uint16_t>(i.number), static_cast<std::uint16_t>(within(0.0, kLargestRegister)));
 }
 
 void MockWorld::close_operator_points() {

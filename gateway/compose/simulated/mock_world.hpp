@@ -16,6 +16,7 @@
 #include "drivers/mock/io/simulated_encoder.hpp"
 #include "drivers/mock/io/simulated_io_module.hpp"
 #include "drivers/mock/modbus/modbus_line.hpp"
+#include "gateway/compose/modbus_setup.hpp"
 #include "gateway/machine/load.hpp"
 
 namespace servogate::gateway {
@@ -106,6 +107,7 @@ class MockWorld {
     mock::SimulatedEncoder* encoder = nullptr;  ///< analog: its position instead
     bool looped = false;                        ///< follows an output: a loop or an indexer
     bool held = false;                          ///< looped, and played by somebody
+    std::size_t unit = 0;                       ///< of a Modbus line
   };
   struct Output {
     std::string name;
@@ -115,6 +117,7 @@ class MockWorld {
     bool inverted;
     const mock::SimulatedDrive* drive = nullptr;      ///< its output `number` instead
     const mock::SimulatedIoModule* module = nullptr;  ///< the same
+    std::size_t unit = 0;                             ///< of a Modbus line
   };
   /// What is wired to the inputs of a simulated drive or I/O module: contacts of gpios_[wires], line by line
   /// a bit of 60FDh or a terminal.
@@ -153,7 +156,9 @@ class MockWorld {
   mock::GpioInput contact(const machine::MachineConfig& machine, const machine::PointConfig& point);
   void carry_wires(const NodeWires& wires);
   void play_raw(const Input& input, double raw);
-  void add_modbus(const machine::LoadResult& loaded, const machine::StationConfig& station, int source);
+  void add_line(const machine::LoadResult& loaded, const machine::LineConfig& line);
+  mock::StationSettings add_unit(const machine::MachineConfig& machine, const LineStation& unit,
+                                 std::size_t number);
   void add_turrets(const machine::MachineConfig& machine);
   void add_wires(const machine::MachineConfig& machine);
   void carry(Wire& wire, image::Nanoseconds t);

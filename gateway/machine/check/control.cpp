@@ -81,14 +81,11 @@ class StationCheck {
       not_here("url", s_.url);
       not_here("device", s_.device);
     } else {
-      needed("url", s_.url);
       not_here("node", s_.node);
     }
-    if (s_.kind == StationKind::modbus) needed("device", s_.device);
-    if (!s_.url.empty() && s_.kind == StationKind::modbus)
-      check_url(s_.url, path_ + "url", kModbus,
-                text::both("mock:NAME, tcp:HOST:PORT, rtu:/dev/...", "mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/..."),
-                machine_, reading_);
+    if (s_.kind == StationKind::gpio) needed("url", s_.url);
+    if (s_.kind == StationKind::modbus) modbus();
+    if (s_.kind != StationKind::modbus) not_here("line", s_.line);
     if (!s_.url.empty() && s_.kind == StationKind::gpio)
       check_url(s_.url, path_ + "url", kGpio, text::both("mock:NAME, chip:LABEL", "mock:ИМЯ, chip:МЕТКА"),
                 machine_, reading_);
@@ -96,6 +93,10 @@ class StationCheck {
       if (s_.points[i].debounce > 0.0 && s_.points[i].channel != ChannelKind::di)
         reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".debounce"),
                        finding::kDebounceKind, {s_.points[i].channel_text});
+    for (std::size_t i = 0; i < s_.points.size(); ++i)
+      if (s_.points[i].hysteresis > 0.0 && s_.points[i].channel != ChannelKind::ai)
+        reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".hysteresis"),
+                       finding::kHysteresisKind, {s_.points[i].channel_text});
     if (s_.kind == StationKind::modbus || s_.kind == StationKind::canopen) return;
     for (std::size_t i = 0; i < s_.points.size(); ++i)
       if (s_.points[i].is_analog())
@@ -104,6 +105,21 @@ class StationCheck {
   }
 
  private:
+  void modbus() {
+    needed("device", s_.device);
+    if (machine_.places.contains(path_ + "url"))
+      return reading_.error(machine_.where(path_ + "url"), finding::kStationUrl, {s_.url, s_.name});
+    needed("line", s_.line);
+    if (s_.line.empty()) return;
+    if (machine_.line(s_.line) == nullptr)
+      return reading_.error(machine_.where(path_ + "line"), finding::kNoLine, {s_.line});
+    for (const StationConfig& other : machine_.stations) {
+      if (&other == &s_) return;
+      if (other.kind == StationKind::modbus && other.line == s_.line && other.unit == s_.unit)
+        return reading_.error(machine_.where(path_ + "unit"), finding::kUnitTwice,
+                              {std::to_string(s_.unit), s_.line, other.name});
+    }
+  }
   void needed(const std::string& key, const std::string& value) {
     if (value.empty()) reading_.error(machine_.where(path_ + "kind"), finding::kKeyNeeded, {key, kind_});
   }
@@ -117,6 +133,14 @@ class StationCheck {
   Reading& reading_;
   std::string kind_;
 };
+
+void check_lines(const MachineConfig& machine, Reading& reading) {
+  for (std::size_t i = 0; i < machine.lines.size(); ++i)
+    if (const LineConfig& line = machine.lines[i]; !line.url.empty())
+      check_url(line.url, "line." + std::to_string(i) + ".url", kModbus,
+                text::both("mock:NAME, tcp:HOST:PORT, rtu:/dev/...", "mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/..."),
+                machine, reading);
+}
 
 void check_simulation(const MachineConfig& machine, Reading& reading) {
   for (std::size_t i = 0; i < machine.simulation.switches.size(); ++i) {
@@ -226,6 +250,7 @@ void check_control(const MachineConfig& machine, Reading& reading) {
                   {machine.control.dialect, known});
   }
   check_buses(machine, reading);
+  check_lines(machine, reading);
   for (std::size_t i = 0; i < machine.stations.size(); ++i) StationCheck(machine, i, reading).all();
   check_simulation(machine, reading);
 }

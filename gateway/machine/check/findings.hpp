@@ -76,6 +76,20 @@ inline constexpr text::Entry kMaskedOutput{
 inline constexpr text::Entry kDebounceKind{"machine.debounce_kind",
                                            "`debounce`: channel \"{0}\" is no digital input",
                                            "`debounce`: канал «{0}» не является дискретным входом"};
+inline constexpr text::Entry kStationUrl{
+    "machine.station_url",
+    "`url` of a Modbus station is a key of its line now: [[line]] with name = \"{1}\" and url = \"{0}\", and "
+    "line = \"{1}\" here",
+    "`url` станции Modbus теперь задаётся у её линии: [[line]] с name = \"{1}\" и url = \"{0}\", а здесь "
+    "line = \"{1}\""};
+inline constexpr text::Entry kNoLine{"machine.no_line", "no [[line]] has the name \"{0}\"",
+                                     "нет [[line]] с именем «{0}»"};
+inline constexpr text::Entry kUnitTwice{"machine.unit_twice",
+                                        "unit {0} of line \"{1}\" is that of station \"{2}\" already",
+                                        "адрес {0} на линии «{1}» уже занят станцией «{2}»"};
+inline constexpr text::Entry kHysteresisKind{"machine.hysteresis_kind",
+                                             "`hysteresis`: channel \"{0}\" is no analog input",
+                                             "`hysteresis`: канал «{0}» не является аналоговым входом"};
 inline constexpr text::Entry kAnalogOnGpio{"machine.analog_on_gpio",
                                            "channel \"{0}\": a {1} station has digital channels only",
                                            "канал «{0}»: у станции вида {1} только дискретные каналы"};

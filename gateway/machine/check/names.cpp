@@ -127,12 +127,18 @@ void take_channel(MachineConfig& machine, std::size_t s, std::size_t p, Reading&
 }
 
 void check_points(MachineConfig& machine, Reading& reading) {
+  NameSet lines(machine, reading, text::both("line", "линия"));
+  for (std::size_t l = 0; l < machine.lines.size(); ++l)
+    lines.add(machine.lines[l].name, "line." + std::to_string(l) + ".name");
   NameSet stations(machine, reading, text::both("station", "станция"));
   // Points and free symbols share one name space: the PLC and the part program see both.
   NameSet names(machine, reading, text::both("name", "имя"));
   for (std::size_t s = 0; s < machine.stations.size(); ++s) {
     const std::string station = "station." + std::to_string(s);
     stations.add(machine.stations[s].name, station + ".name");
+    StationConfig& config = machine.stations[s];
+    if (const LineConfig* line = machine.line(config.line); line != nullptr && config.url.empty())
+      config.url = line->url;
     NameSet channels(machine, reading, text::both("channel", "канал"));
     for (std::size_t p = 0; p < machine.stations[s].points.size(); ++p) {
       take_channel(machine, s, p, reading);

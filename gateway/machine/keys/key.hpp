@@ -89,6 +89,13 @@ struct Key {
   void* (*item)(void* list, std::size_t index) = nullptr;
 };
 
+/// A key that older files have, and where its meaning is now.
+struct MovedKey {
+  std::string_view name;
+  std::string_view english;
+  std::string_view russian;
+};
+
 /// One table of the file.
 struct Section {
   std::string_view english;
@@ -96,6 +103,7 @@ struct Section {
   std::span<const Key> keys;
   void* (*defaults)();   ///< a default-made object of its struct
   bool is_axis = false;  ///< its `type` chooses the axis units
+  std::span<const MovedKey> moved = {};
 };
 
 /// Specialised in the keys_*.cpp beside the table.

@@ -173,9 +173,31 @@ const Section& section_of<PointConfig>() {
       key<&C::shift>("shift", {.min = -kLargestSignal, .max = kLargestSignal}, "see scale", "см. scale"),
       key<&C::debounce>("debounce", {.unit = Unit::second, .min = 0, .max = 1}, "time a change must last",
                         "время, которое изменение должно продержаться"),
+      key<&C::hysteresis>("hysteresis", {.min = 0, .max = kLargestSignal},
+                          "analog input: a change smaller than this is not shown, in the unit of packet A",
+                          "аналоговый вход: меньшее изменение не показывается, в единицах пакета A"),
       key<&C::comment>("comment", {}, "meaning for people", "пояснение для людей"),
   };
   static const Section section{"a wire of the machine", "сигнал станка", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<LineConfig>() {
+  using C = LineConfig;
+  static const Key keys[] = {
+      key<&C::name>("name", {.required = true}, "name of the line", "имя линии"),
+      key<&C::url>("url", {.required = true}, "mock:NAME, tcp:HOST:PORT, rtu:/dev/...",
+                   "mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/..."),
+      key<&C::baud>("baud", {.unit = Unit::bit_per_s, .min = 1200, .max = 4000000},
+                    "rate of a serial line; a mock line takes the same time for its characters",
+                    "скорость последовательной линии; имитатор тратит на символы столько же времени"),
+      key<&C::timeout>("timeout", {.unit = Unit::second, .min = 0.001, .max = 60},
+                       "an answer later than this is lost", "ответ позже этого времени считается потерянным"),
+  };
+  static const Section section{"a Modbus line: one wire or one TCP peer with its units",
+                               "линия Modbus: один провод или один узел TCP со своими станциями", keys,
+                               &default_object<C>};
   return section;
 }
 
@@ -185,8 +207,8 @@ const Section& section_of<StationConfig>() {
   static const Key keys[] = {
       key<&C::name>("name", {.required = true}, "name of the station", "имя станции"),
       key<&C::kind>("kind", {.required = true}, "what carries the signals", "чем передаются сигналы"),
-      key<&C::url>("url", {}, "modbus: mock:NAME, tcp:HOST:PORT, rtu:/dev/...; gpio: mock:NAME, chip:LABEL",
-                   "modbus: mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/...; gpio: mock:ИМЯ, chip:МЕТКА"),
+      key<&C::line>("line", {}, "modbus: the line that it is on, by name", "modbus: имя линии станции"),
+      key<&C::url>("url", {}, "gpio: mock:NAME, chip:LABEL", "gpio: mock:ИМЯ, chip:МЕТКА"),
       key<&C::node>("node", {.refers = Refers::node}, "kinds drive and canopen: the node as \"bus.node\"",
                     "виды drive и canopen: узел в виде \"шина.узел\""),
       key<&C::device>("device", {.refers = Refers::device}, "device file, without .toml",
@@ -194,11 +216,11 @@ const Section& section_of<StationConfig>() {
       key<&C::unit>("unit", {.min = 0, .max = 255}, "Modbus unit identifier", "адрес устройства Modbus"),
       key<&C::period>("period", {.unit = Unit::second, .min = 0.001, .max = 10}, "time between polls, modbus",
                       "период опроса, modbus"),
-      key<&C::timeout>("timeout", {.unit = Unit::second, .min = 0.001, .max = 60},
-                       "an answer later than this is lost", "ответ позже этого времени считается потерянным"),
       key<&C::points>("points", {}, "the signals", "сигналы"),
   };
-  static const Section section{"a source of signals", "источник сигналов", keys, &default_object<C>};
+  static const MovedKey moved[] = {{"timeout", "`timeout` of its [[line]]", "`timeout` в её [[line]]"}};
+  static const Section section{
+      "a source of signals", "источник сигналов", keys, &default_object<C>, false, moved};
   return section;
 }
 

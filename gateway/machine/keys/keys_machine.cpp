@@ -244,6 +244,7 @@ const Section& section_of<MachineConfig>() {
       key<&C::buses>("bus", {}, "CAN segments", "сегменты CAN"),
       key<&C::axes>("axis", {.required = true}, "axes", "оси"),
       key<&C::spindles>("spindle", {}, "spindles", "шпиндели"),
+      key<&C::lines>("line", {}, "Modbus lines", "линии Modbus"),
       key<&C::stations>("station", {}, "sources of signals", "источники сигналов"),
       key<&C::symbols>("symbol", {}, "free places with names", "именованные свободные адреса"),
       key<&C::simulation>("simulation", {}, "what the mocks do", "поведение имитаторов"),

@@ -321,9 +321,14 @@ std::string report_unknown(const Element& child, const Section& section, const s
     names.emplace_back(key.name);
     all += (all.empty() ? "" : ", ") + std::string(key.name);
   }
-  const std::string near = text::nearest(child.key, names);
   const Slot slot{section.keys[0], path.empty() ? child.key : path + "." + child.key, AxisUnits::linear,
                   reading};
+  for (const MovedKey& moved : section.moved) {
+    if (moved.name != child.key) continue;
+    reading.error(child.key_at, finding::kMovedKey, {slot.shown(), text::both(moved.english, moved.russian)});
+    return {};
+  }
+  const std::string near = text::nearest(child.key, names);
   if (near.empty())
     reading.error(child.key_at, finding::kUnknownKeyList, {slot.shown(), all});
   else

@@ -45,6 +45,8 @@ const Section& section_of<BusConfig>();
 template <>
 const Section& section_of<PointConfig>();
 template <>
+const Section& section_of<LineConfig>();
+template <>
 const Section& section_of<StationConfig>();
 template <>
 const Section& section_of<SymbolConfig>();

@@ -612,4 +612,10 @@ const AlarmRow* find_alarm(image::AlarmNumber number) noexcept {
   return row != std::end(kTable) && row->number == number ? row : nullptr;
 }
 
+bool is_of_part(image::AlarmNumber number) noexcept {
+  constexpr image::AlarmNumber kOfParts[] = {alarm::kNodeLost, alarm::kNodeRestarted, alarm::kNodeLeft,
+                                             alarm::kBusOff,   alarm::kBusDown,       ax::kPdoMissing};
+  return std::find(std::begin(kOfParts), std::end(kOfParts), number) != std::end(kOfParts);
+}
+
 }  // namespace servogate::cycle

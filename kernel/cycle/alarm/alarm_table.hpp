@@ -85,6 +85,10 @@ std::span<const AlarmRow> alarm_table() noexcept;
 /// Row of a number, nullptr when there is none. real-time safe.
 const AlarmRow* find_alarm(image::AlarmNumber number) noexcept;
 
+/// The alarm says that a part of a device is gone: its cause lasts while that part, or one of the segment
+/// that the record names, is not in the image. real-time safe.
+bool is_of_part(image::AlarmNumber number) noexcept;
+
 /// Words for reactions and reset conditions, for people. Not real-time safe.
 std::string_view words(image::Reaction reaction, text::Language language);
 std::string_view words(ResetCondition condition, text::Language language);

@@ -151,16 +151,19 @@ bool of_a_bus(image::AlarmNumber n) {
 }
 
 std::string where(const AlarmRecord& r, const AlarmNames& names, Language language) {
-  if (r.number >= 3000 && r.number < 4000) return name_at(names.sources, r.segment >= 0 ? r.segment : r.node);
+  if (r.source >= 0) return name_at(names.sources, r.source);
   if (r.node >= 0 && !of_a_bus(r.number)) return node_words(r, names, language);
   return r.segment < 0 ? "-" : name_at(names.segments, r.segment);
 }
 
+std::string detail_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
+  return names.detail ? names.detail(r, language) : std::string();
+}
+
 std::string boot_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
-  std::string words = names.boot_failure ? names.boot_failure(r, language) : std::string();
+  const std::string words = detail_words(r, names, language);
   if (!words.empty()) return words;
-  return (language == Language::russian ? "запуск прерван на шаге " : "start-up failed at step ") +
-         text::number(r.detail1, 0);
+  return language == Language::russian ? "запуск не удался" : "start-up failed";
 }
 
 std::string plc_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
@@ -172,7 +175,7 @@ std::string plc_words(const AlarmRecord& r, const AlarmNames& names, Language la
 }
 
 std::string frame_words(const AlarmRecord& r, const AlarmNames& names, Language language) {
-  const std::string words = names.foreign_frame ? names.foreign_frame(r, language) : std::string();
+  const std::string words = detail_words(r, names, language);
   return words.empty() ? hex(static_cast<unsigned>(r.value), 3) : words;
 }
 

@@ -21,7 +21,7 @@ bool is_fault(const AlarmRecord& r) noexcept { return r.reaction >= Reaction::st
 
 bool same(const AlarmRecord& a, const AlarmRecord& b) noexcept {
   return a.number == b.number && a.axis == b.axis && a.node == b.node && a.segment == b.segment &&
-         a.process == b.process && a.object_index == b.object_index &&
+         a.source == b.source && a.process == b.process && a.object_index == b.object_index &&
          a.object_subindex == b.object_subindex &&
          (a.number != alarm::kExternalAlarm || a.value == b.value) &&
          // One error may be the cause of the next.

@@ -33,8 +33,8 @@ class AlarmList {
 
   /// Stores a fault. From `record` are taken: number, axis, node and all that describes the place and the
   /// figures; reaction where it is stronger than the table's. Sequence, first fault, cycle and time are set
-  /// here. The same fault (number, axis, node, segment, process, object) while active is not stored twice.
-  /// Returns the sequence. real-time safe.
+  /// here. The same fault (number, axis, node, segment, source, process, object) while active is not stored
+  /// twice. Returns the sequence. real-time safe.
   std::uint32_t raise(const image::AlarmRecord& record, const image::CycleTime& now) noexcept;
   /// A process begins a run: the warnings of the run before it that go by themselves
   /// (ResetCondition::by_itself) end; others stay. real-time safe.
@@ -112,10 +112,8 @@ struct AlarmNames {
   std::function<std::string(const image::AlarmRecord&, std::uint16_t code, text::Language)> error_text;
   /// A node as the machine file calls it, "can.y"; may be empty.
   std::function<std::string(int segment, int node)> node_name;
-  /// Where and why a node's start-up failed, from a record of kBootFailed; may be empty.
-  std::function<std::string(const image::AlarmRecord&, text::Language)> boot_failure;
-  /// What a frame says that somebody else sent, from a record of kForeignFrame; may be empty.
-  std::function<std::string(const image::AlarmRecord&, text::Language)> foreign_frame;
+  /// What AlarmRecord::detail says: why a start-up failed, which frame somebody else sent; may be empty.
+  std::function<std::string(const image::AlarmRecord&, text::Language)> detail;
   /// Path of a file of a run as people open it (ProcessStatus::run, ::file); may be empty.
   std::function<std::string(int process, std::uint32_t run, int file)> program_file;
   /// What a program's interpreter found (program errors and warnings; its number in `value`) with file, line

@@ -20,20 +20,21 @@ image::Place at(const char* text) { return *image::parse_place(text); }
 
 IoPoint digital(bool input, int number, const char* place) {
   IoPoint p;
-  p.input = input;
+  p.rule.input = input;
   p.index = input ? io::kReadInput8 : io::kWriteOutput8;
   p.subindex = static_cast<std::uint8_t>(number / 8 + 1);
   p.bit = static_cast<std::int8_t>(number % 8);
-  p.place = at(place);
+  p.rule.place = at(place);
   return p;
 }
 
 IoPoint analogue(bool input, int number, const char* place) {
   IoPoint p;
-  p.input = input;
+  p.rule.input = input;
+  p.rule.digital = false;
   p.index = input ? io::kReadAnalogueInput16 : io::kWriteAnalogueOutput16;
   p.subindex = static_cast<std::uint8_t>(number + 1);
-  p.place = at(place);
+  p.rule.place = at(place);
   return p;
 }
 
@@ -107,14 +108,14 @@ struct Bench {
 
 TEST(IoNode, terminals_are_places_of_packet_a_both_ways) {
   IoPoint closed = digital(true, 9, "SA1");
-  closed.inverted = true;
+  closed.rule.inverted = true;
   IoPoint valve = digital(false, 15, "SA65");
-  valve.inverted = true;
+  valve.rule.inverted = true;
   IoPoint pressure = analogue(true, 1, "SA10.RE");
-  pressure.scale = 0.5;
-  pressure.shift = 10.0;
+  pressure.rule.scale = 0.5;
+  pressure.rule.shift = 10.0;
   IoPoint speed = analogue(false, 0, "SA12.RE");
-  speed.scale = 0.1;
+  speed.rule.scale = 0.1;
   Bench b({digital(true, 0, "SA0"), closed, digital(false, 0, "SA64"), valve, pressure, speed});
   b.start();
   ASSERT_TRUE(b.boot());
@@ -152,11 +153,11 @@ TEST(IoNode, a_digital_input_is_one_cycle_old) {
 
 TEST(IoNode, error_states_follow_the_points_and_are_written_before_any_pdo) {
   IoPoint kept = digital(false, 1, "SA65"), opens = digital(false, 10, "SA66");
-  kept.hold = true;
-  opens.loss = 1.0;
+  kept.rule.hold = true;
+  opens.rule.loss = 1.0;
   IoPoint rest = analogue(false, 0, "SA12.IN"), stays = analogue(false, 1, "SA13.IN");
-  rest.loss = -5.0;
-  stays.hold = true;
+  rest.rule.loss = -5.0;
+  stays.rule.hold = true;
   Bench b({kept, opens, rest, stays});
   b.start();
   ASSERT_TRUE(b.boot());
@@ -182,11 +183,11 @@ TEST(IoNode, error_states_follow_the_points_and_are_written_before_any_pdo) {
 TEST(IoNode, a_cut_cable_is_one_event_and_both_ends_bring_the_outputs_where_their_loss_says) {
   IoPoint kept = digital(false, 0, "SA64"), falls = digital(false, 1, "SA65"),
           rises = digital(false, 2, "SA66");
-  kept.hold = true;
-  rises.loss = 1.0;
+  kept.rule.hold = true;
+  rises.rule.loss = 1.0;
   IoPoint door = digital(true, 0, "SA0"), air = digital(true, 1, "SA1"), chain = digital(true, 2, "SA2");
-  air.hold = true;
-  door.loss = 1.0;
+  air.rule.hold = true;
+  door.rule.loss = 1.0;
   Bench b({kept, falls, rises, door, air, chain});
   b.start();
   ASSERT_TRUE(b.boot());

@@ -19,8 +19,8 @@ constexpr int kPanelEndpoint = 1;     ///< after the control
 /// The mill whose Modbus panel is a module on the bus of the drives, and its emergency-stop chain with it.
 void on_the_bus(std::string& text) {
   replace(text,
-          "kind = \"modbus\"\nurl = \"mock:panel\"\ndevice = \"modbus-io-16-16-4-2\"\nunit = 1\n"
-          "period = \"20 ms\"\ntimeout = \"100 ms\"\n",
+          "kind = \"modbus\"\nline = \"panel\"\ndevice = \"modbus-io-16-16-4-2\"\nunit = 1\n"
+          "period = \"20 ms\"\n",
           "kind = \"canopen\"\nnode = \"io.panel\"\n");
   replace(text, "# ---------------------------------------------------------------- axes\n",
           "[[bus]]\nname = \"io\"\nurl = \"mock:io\"\nbit_rate = \"1 Mbit/s\"\n"

@@ -5,7 +5,7 @@
 #include "firmware_if/canopen/master/io/io_station.hpp"
 #include "firmware_if/canopen/master/node_link.hpp"
 #include "firmware_if/canopen/master/segment_config.hpp"
-#include "firmware_if/image/process_image.hpp"
+#include "firmware_if/image/points/point_stage.hpp"
 
 namespace servogate::canopen {
 
@@ -28,15 +28,10 @@ class IoLink final : public NodeLink {
   void apply(const image::Packets& packets, bool online) noexcept;
 
  private:
-  struct Terminal {
-    IoPoint point;
-    PdoField field;
-  };
-
-  std::size_t source_;
   PdoWatch watch_;
   ProcessData data_;
-  std::vector<Terminal> inputs_, outputs_;
+  image::PointStage stage_;
+  std::vector<PdoField> fields_;  ///< of each point of the stage
 };
 
 }  // namespace servogate::canopen

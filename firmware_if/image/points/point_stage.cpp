@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/image/points/point_stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace servogate::image {
+
+PointStage::PointStage(std::vector<PointRule> points, int source, std::vector<AgeLimits> groups)
+    : source_(source) {
+  for (PointRule& rule : points) points_.push_back({rule});
+  if (groups.empty()) groups.emplace_back();
+  for (const AgeLimits& limits : groups) groups_.push_back({limits});
+}
+
+void PointStage::take(std::size_t n, double raw) noexcept {
+  Point& p = points_[n];
+  const double value =
+      p.rule.digital ? ((raw != 0.0) != p.rule.inverted ? 1.0 : 0.0) : raw * p.rule.scale + p.rule.shift;
+  if (p.known && !p.rule.digital && std::abs(value - p.value) < p.rule.hysteresis) return;
+  p.value = value;
+  p.known = true;
+}
+
+void PointStage::edge(std::size_t n, bool raw, Nanoseconds t) noexcept {
+  Point& p = points_[n];
+  // What comes back with its source is no edge.
+  const bool was_known = p.known && !groups_[p.rule.group].lost, was = p.value != 0.0;
+  take(n, raw ? 1.0 : 0.0);
+  const bool level = p.value != 0.0;
+  if (was_known && level != was) edges_.add({p.rule.place, level, t});
+}
+
+void PointStage::fresh(std::size_t group, Nanoseconds t) noexcept {
+  groups_[group].updated_ns = t;
+  groups_[group].lost = false;
+}
+
+void PointStage::lost(std::size_t group) noexcept {
+  Group& g = groups_[group];
+  if (!g.lost && g.updated_ns >= 0) ++errors_;
+  g.lost = true;
+}
+
+Quality PointStage::quality(std::size_t group, Nanoseconds t) const noexcept {
+  const Group& g = groups_[group];
+  const Nanoseconds age = t - std::max(g.updated_ns, start_ns_);
+  if (g.limits.bad_ns > 0 && age > g.limits.bad_ns) return Quality::bad;
+  if (g.updated_ns < 0) return Quality::never;
+  if (g.lost) return Quality::bad;
+  return g.limits.stale_ns > 0 && age > g.limits.stale_ns ? Quality::stale : Quality::good;
+}
+
+void PointStage::settle(ProcessImage& image) noexcept {
+  if (start_ns_ < 0) start_ns_ = image.now.t_ns;
+  for (Point& p : points_) {
+    if (!p.rule.input) continue;
+    const Group& g = groups_[p.rule.group];
+    const bool gone = g.lost || quality(p.rule.group, image.now.t_ns) == Quality::bad;
+    if (gone && !p.rule.hold) {
+      // At once: what may not be trusted does not wait for its debouncing.
+      p.value = p.rule.digital ? (p.rule.loss != 0.0 ? 1.0 : 0.0) : p.rule.loss;
+      p.known = p.started = true;
+      p.seen = p.shown = p.value != 0.0;
+    }
+    show(p, image);
+  }
+  for (const Edge& e : edges_.list()) image.edges.add(e);
+  image.edges.note_lost(edges_.take_lost());
+  edges_.clear();
+  judge(image);
+}
+
+void PointStage::show(Point& p, ProcessImage& image) noexcept {
+  if (!p.rule.digital) {
+    if (p.known) image.packets.set_number(p.rule.place, p.value);
+    return;
+  }
+  const bool level = p.known ? p.value != 0.0 : image.packets.bit(p.rule.place);
+  if (!p.started) {
+    p.started = true;
+    p.seen = p.shown = level;
+  }
+  if (level != p.seen) {
+    p.seen = level;
+    p.changed_ns = image.now.t_ns;
+  }
+  if (image.now.t_ns - p.changed_ns >= p.rule.debounce_ns) p.shown = p.seen;
+  if (p.known) image.packets.set_bit(p.rule.place, p.shown);
+}
+
+void PointStage::judge(ProcessImage& image) const noexcept {
+  if (source_ < 0 || source_ >= kMaxSources) return;
+  const auto severity = [](Quality q) {
+    return q == Quality::bad ? 3 : q == Quality::stale ? 2 : q == Quality::never ? 1 : 0;
+  };
+  IoSource health{Quality::good, 0, errors_};
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const Quality q = quality(g, image.now.t_ns);
+    if (severity(q) > severity(health.quality)) health.quality = q;
+    health.updated_ns = std::max(health.updated_ns, groups_[g].updated_ns);
+  }
+  image.sources[static_cast<std::size_t>(source_)] = health;
+}
+
+double PointStage::raw(std::size_t n, const Packets& packets) const noexcept {
+  const PointRule& rule = points_[n].rule;
+  if (rule.digital) return level(n, packets) ? 1.0 : 0.0;
+  return (packets.number(rule.place) - rule.shift) / rule.scale;
+}
+
+}  // namespace servogate::image

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/modbus/exchange.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace servogate::modbus {
+
+Exchange::Exchange(Map map, const std::vector<Unit>& units, int stale_after_periods)
+    : map_(std::move(map)), blocks_(map_.blocks.size()) {
+  std::vector<std::vector<image::PointRule>> rules(units.size());
+  std::vector<std::vector<image::AgeLimits>> limits(units.size());
+  for (std::size_t n = 0; n < blocks_.size(); ++n) {
+    const Block& block = map_.blocks[n];
+    const auto unit = std::ranges::find(units, block.unit, &Unit::unit);
+    if (unit == units.end())
+      throw std::invalid_argument("a block names Modbus unit " + std::to_string(block.unit) +
+                                  ", which no station has");
+    blocks_[n].unit = static_cast<std::size_t>(unit - units.begin());
+    auto& groups = limits[blocks_[n].unit];
+    blocks_[n].group = groups.size();
+    const image::Nanoseconds stale = block.period_ns * stale_after_periods;
+    groups.push_back({stale, 2 * stale});
+  }
+  for (const Point& p : map_.points) {
+    BlockState& block = blocks_[p.block];
+    const Function function = map_.blocks[p.block].function;
+    image::PointRule rule = p.rule;
+    rule.input = !writes(function);
+    rule.digital = carries_bits(function) || p.bit >= 0;
+    rule.group = static_cast<std::uint16_t>(block.group);
+    block.points.push_back({p, rules[block.unit].size()});
+    rules[block.unit].push_back(rule);
+  }
+  for (std::size_t u = 0; u < units.size(); ++u)
+    stages_.emplace_back(std::move(rules[u]), units[u].source, std::move(limits[u]));
+}
+
+void Exchange::take(const Outcome& outcome) noexcept {
+  const BlockState& block = blocks_[outcome.block];
+  image::PointStage& stage = stages_[block.unit];
+  if (!outcome.good) return stage.fault();
+  stage.fresh(block.group, outcome.end_ns);
+  if (writes(map_.blocks[outcome.block].function)) return;
+  for (const Carried& p : block.points)
+    stage.take(p.in_stage, raw_value(map_.blocks[outcome.block], p.point, outcome.data));
+}
+
+void Exchange::receive(image::ProcessImage& image) noexcept {
+  for (image::PointStage& stage : stages_) stage.settle(image);
+}
+
+void Exchange::send(const image::ProcessImage& image, WriteSink& sink) noexcept {
+  for (std::size_t n = 0; n < blocks_.size(); ++n) {
+    BlockState& block = blocks_[n];
+    if (!writes(map_.blocks[n].function)) continue;
+    bool changed = !block.armed;
+    for (const Carried& p : block.points)
+      changed = set_raw_value(map_.blocks[n], p.point, stages_[block.unit].raw(p.in_stage, image.packets),
+                              block.data) ||
+                changed;
+    if (!changed) continue;
+    block.armed = true;
+    sink.write(n, block.data, image.now.t_ns);
+  }
+}
+
+}  // namespace servogate::modbus
