@@ -27,6 +27,7 @@ std::atomic<int> given_up{0};
 struct Shared {
   std::mutex mutex;
   std::condition_variable_any wake;
+  std::stop_source end;  ///< of the compiler, when it was given up
   bool done = false, given_up = false;
   plc::CompileResult result;
 };
@@ -48,8 +49,10 @@ plc::CompileResult compile_beside(std::vector<plc::SourceFile> files, std::vecto
   const std::string first = files.empty() ? std::string() : files.front().name;
   if (compiles_on()) return refused(first, kStillCompiles, {});
   const auto shared = std::make_shared<Shared>();
-  std::thread([shared, options, files = std::move(files), symbols = std::move(symbols)]() mutable {
-    plc::CompileResult result = plc::compile(std::move(files), std::move(symbols), options);
+  plc::Options ended = options;
+  ended.stop = shared->end.get_token();
+  std::thread([shared, ended, files = std::move(files), symbols = std::move(symbols)]() mutable {
+    plc::CompileResult result = plc::compile(std::move(files), std::move(symbols), ended);
     const std::scoped_lock lock(shared->mutex);
     shared->result = std::move(result);
     shared->done = true;
@@ -60,6 +63,7 @@ plc::CompileResult compile_beside(std::vector<plc::SourceFile> files, std::vecto
   shared->wake.wait_for(lock, stop, patience, [&] { return shared->done; });
   if (shared->done) return std::move(shared->result);
   shared->given_up = true;
+  shared->end.request_stop();
   ++given_up;
   if (stop.stop_requested()) return {};
   return refused(first, kTooLong, {text::number(static_cast<double>(patience.count()) / 1000.0, 1)});

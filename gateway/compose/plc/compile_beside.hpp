@@ -12,7 +12,7 @@ namespace servogate::gateway {
 inline constexpr std::chrono::seconds kCompilePatience{60};
 
 /// plc::compile() with an end: by `stop` (no finding, no image) and by `patience` (an error). What was given
-/// up goes on by itself until it is done, touching nothing of anybody's; while it does, nothing else is
+/// up is ended (plc::Options::stop) and touches nothing of anybody's until it is; so long nothing else is
 /// compiled here. Any thread.
 plc::CompileResult compile_beside(std::vector<plc::SourceFile> files, std::vector<image::Symbol> symbols,
                                   const plc::Options& options, const std::stop_token& stop,

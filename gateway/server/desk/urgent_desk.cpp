@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kSilence{100};    ///< of the wall clock, then a hand is dead
 constexpr std::chrono::milliseconds kOften{5};        ///< more keep-alives than these say nothing new
 constexpr std::chrono::milliseconds kPatience{2000};  ///< with a cycle that does not answer
-constexpr std::chrono::milliseconds kCatchUp{50};     ///< with the image that holds what the answer did
+constexpr std::chrono::seconds kCatchUp{1};  ///< with the image that shows it, however long cycles are
 
 struct Row {
   std::string_view command;
