@@ -116,6 +116,7 @@ bool take_station(const machine::LoadResult& loaded, const machine::NodeConfig& 
     n.target = canopen::DriveTarget::io;
     n.target_index = static_cast<int>(s);
     n.io = io_station(m.stations[s], *device);
+    n.io.error_states = device->behaviour.connection_loss != machine::ConnectionLoss::none;
     n.setup.counts_per_rev = given(device->encoder.counts_per_rev);
     n.setup.revolutions = given(device->encoder.revolutions);
     return true;

@@ -174,9 +174,14 @@ void Control::await_grants(image::Nanoseconds t) {
 
 void Control::watch_logic() noexcept {
   if (logic_ != nullptr && logic_->scan_ended())
-    cycle_->watch_logic(PlcLogic::kLongestScan_ns, true);
+    cycle_->watch_logic(longest_scan_ns(), true);
   else
     cycle_->watch_logic(static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
+}
+
+image::Nanoseconds Control::longest_scan_ns() const noexcept {
+  return std::max(PlcLogic::kLongestScan_ns,
+                  static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
 }
 
 plc::CompileResult Control::compile(const std::vector<plc::SourceFile>& files,

@@ -81,6 +81,9 @@ class Control {
   /// Real time, behind every step: a scan of the PLC that took longer than [plc] watchdog is an alarm, and so
   /// is one that was ended from outside. real-time safe.
   void watch_logic() noexcept;
+  /// Real time: a scan that has not come back after this time is ended from outside: half a second, or
+  /// [plc] watchdog where that allows more. real-time safe.
+  image::Nanoseconds longest_scan_ns() const noexcept;
   /// When the present cycle was due; nullopt: in virtual time.
   std::optional<image::Nanoseconds> due_ns() const noexcept { return due_ns_; }
   /// Behind the last cycle, by whoever owned the loop: drives that others go on to speak with no longer miss

@@ -30,7 +30,7 @@ bool RealtimeLoop::start() {
     return false;
   }
   if (PlcLogic* logic = control_.logic(); logic != nullptr)
-    watchdog_ = std::make_unique<ScanWatchdog>(logic->scan_watch(), PlcLogic::kLongestScan_ns,
+    watchdog_ = std::make_unique<ScanWatchdog>(logic->scan_watch(), control_.longest_scan_ns(),
                                                settings_.priority + 1);
   reader_thread_ = std::thread([this] {
     const image::Nanoseconds pause = std::max<image::Nanoseconds>(control_.cycle().period_ns() / 2, 200'000);

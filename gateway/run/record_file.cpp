@@ -377,9 +377,10 @@ bool RecordReader::open(const std::string& path, std::string& error) {
   error = file.open(path);
   if (!error.empty()) return false;
   const std::string_view content = file.content();
-  const std::size_t end = content.find('\n');
-  const bool headed = end != std::string_view::npos && end < kLongestHead;
-  if (!read_head(std::string(content.substr(0, headed ? end + 1 : kLongestHead)), error)) return false;
+  const std::string_view head = content.substr(0, kLongestHead);
+  const std::size_t end = head.find('\n');
+  const bool headed = end != std::string_view::npos;
+  if (!read_head(std::string(headed ? head.substr(0, end + 1) : head), error)) return false;
   if (headed) read_chunks(content, end + 1);
   decoder_ = std::make_unique<cycle::InputDecoder>(bytes_);
   look_ahead();

@@ -101,7 +101,7 @@ class Terminal {
     bool brake = false;
     for (std::size_t i = 0; i < machine.size(); ++i) {
       const std::map<std::size_t, std::string> changed{
-          {55, "max_velocity = \"500 mm\""}, {87, "lead = \"5 mm/rev\""}, {140, "brakes = true"}};
+          {55, "max_velocity = \"500 mm\""}, {89, "lead = \"5 mm/rev\""}, {146, "brakes = true"}};
       const auto found = changed.find(i + 1);
       wrong << (found != changed.end() ? found->second : machine[i]) << "\n";
       if (machine[i].starts_with("[")) brake = machine[i] == "[axis.brake]";

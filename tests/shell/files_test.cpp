@@ -60,7 +60,7 @@ TEST_F(Files, that_are_too_large_are_refused_before_they_are_read) {
   expect("$SG check machine.toml", "larger than 4 MiB");
   expect("$SG run $MILL big.nc --virtual", "larger than 256 MiB");
   expect("$SG plc check big.st", "larger than 16 MiB");
-  expect("$SG replay big.record", "larger than 4096 MiB");
+  expect("$SG replay big.record", "not a record of servogate");  // a record may be as large
 }
 
 TEST_F(Files, that_a_machine_file_names_are_met_with_the_same_care) {

@@ -164,7 +164,7 @@ void add_error_states(Plan& plan, const NodeConfig& node) {
   if (node.target != DriveTarget::io) return;
   plan.step(BootStep::error_states);
   plan.write_and_check(object::kErrorBehaviour, 1, 1, 0, true);
-  if (!node.profile.abort_connection_option) return;  // it has none of these objects
+  if (!node.io.error_states) return;
   for (const PdoWanted& pdo : node.profile.rpdo)
     for (const MappingEntry& mapped : pdo.mapping.used()) {
       const bool digital = mapped.index == io::kWriteOutput8;

@@ -171,19 +171,20 @@ TEST_F(IoModuleOnTheBus, without_error_states_works_and_goes_to_rest_by_the_dead
   machine::DeviceConfig& device = loaded.devices.at("io-cia401-16-16-4-2");
   device.behaviour.connection_loss = machine::ConnectionLoss::none;
   for (machine::PdoConfig& pdo : device.rpdos) pdo.event = 0.25;
-  Mill mill(loaded, "");
+  Mill mill(loaded, "N10 M8\nN20 M0\nN30 M30\n");
   ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
   EXPECT_EQ(mill.alarms(cycle::alarm::kBootFailed), 0);
+  EXPECT_EQ(mill.ask(RequestKind::start), Refusal::none);
   EXPECT_EQ(module(mill).object(0x1400, 5), 250);
   const auto any_on = [&] {
     for (std::uint8_t line = 0; line < 16; ++line)
       if (module(mill).digital(line)) return true;
     return false;
   };
-  ASSERT_TRUE(mill.until(any_on, 5.0)) << "a lamp";
-  // The control dies: nobody steps its cycle any more.
+  ASSERT_TRUE(mill.until(any_on, 5.0)) << "coolant";
+  // The control dies: nobody steps its cycle any more. Its last frame is 0.1 s old at most.
   const image::Nanoseconds now = mill.image().now.t_ns;
-  mill.control().world().advance_to(now + 200 * image::kMillisecond);
+  mill.control().world().advance_to(now + 100 * image::kMillisecond);
   EXPECT_TRUE(any_on());
   mill.control().world().advance_to(now + 300 * image::kMillisecond);
   EXPECT_FALSE(any_on());

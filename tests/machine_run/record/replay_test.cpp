@@ -133,7 +133,7 @@ TEST(Replay, says_which_schema_a_record_of_another_version_has) {
   const Scratch scratch;
   const Ending e = servogate({"replay", scratch.write("r", "{\"servogate\":\"record\",\"schema\":1}\n")});
   EXPECT_EQ(e.code, 2);
-  EXPECT_NE(e.err.find("it is of schema 1, this version of servogate reads schema 4"), std::string::npos)
+  EXPECT_NE(e.err.find("it is of schema 1, this version of servogate reads schema 5"), std::string::npos)
       << e.err;
   const Ending empty = servogate({"replay", scratch.write("empty", "")});
   EXPECT_NE(empty.err.find("the file is empty"), std::string::npos) << empty.err;

@@ -19,6 +19,9 @@ struct IoPoint {
 /// What one node carries of the machine's points.
 struct IoStation {
   std::vector<IoPoint> points;
+  /// The module has 6206h, 6207h, 6443h and 6444h; false: where its outputs go without a master cannot be
+  /// told.
+  bool error_states = true;
 };
 
 }  // namespace servogate::canopen
