@@ -68,6 +68,9 @@ struct PlayOptions {
   double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
   double speed = 1.0;
   bool may_move = false;
+  std::vector<int> nodes;        ///< whose frames are played; empty: of all
+  std::vector<std::string> ids;  ///< identifiers or ranges "180-1FF", hexadecimal; empty: all
+  std::string sender;            ///< "master" or "devices"; empty: of both
 };
 
 /// Longer than any usual SYNC period, and not in the way of who reads one object after the other.

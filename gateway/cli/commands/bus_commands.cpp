@@ -150,9 +150,20 @@ void add_play(CLI::App& app, PlayOptions& o) {
   p.add_option("--speed", o.speed, "Times the log's own speed, 0.001 to 100000")
       ->type_name("TIMES")
       ->check(number_within({0.001, 1e5, text::both("times", "раз")}));
+  p.add_option("--node", o.nodes,
+               "Only frames to and from these nodes, and SYNC and TIME; several with commas")
+      ->type_name("N,...")
+      ->delimiter(',')
+      ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
+  p.add_option("--from", o.sender, "Only what a master sent, or only what devices sent")
+      ->type_name("SENDER")
+      ->check(one_of({"master", "devices"}));
+  p.add_option("--id", o.ids, "Only these identifiers, hexadecimal: 181, 180-1FF; several with commas")
+      ->type_name("ID,...")
+      ->delimiter(',');
   p.add_flag("--i-may-move", o.may_move, "Real drives on the bus may move");
   add_bit_rate(p, o.bit_rate);
-  p.footer("Example: servogate play socketcan:vcan0 run.log");
+  p.footer("Example: servogate play socketcan:vcan0 run.log --from master");
 }
 
 }  // namespace

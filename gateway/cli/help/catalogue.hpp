@@ -162,6 +162,12 @@ inline constexpr Translation kCatalogue[] = {
      "Снова отправляет кадры из журнала candump в их ритме."},
     {"Log of `servogate dump` or `candump -l`", "Журнал `servogate dump` или `candump -l`"},
     {"Times the log's own speed, 0.001 to 100000", "Во сколько раз быстрее журнала, от 0.001 до 100000"},
+    {"Only frames to and from these nodes, and SYNC and TIME; several with commas",
+     "Только кадры к этим узлам и от них, а также SYNC и TIME; несколько через запятую"},
+    {"Only what a master sent, or only what devices sent",
+     "Только посланное ведущим или только посланное устройствами"},
+    {"Only these identifiers, hexadecimal: 181, 180-1FF; several with commas",
+     "Только эти идентификаторы, шестнадцатеричные: 181, 180-1FF; несколько через запятую"},
     {"Real drives on the bus may move", "Настоящие приводы на шине могут двигаться"},
     // CANopen
     {"Patience with an answer in ms, 1 to 60000", "Сколько ждать ответа, в мс, от 1 до 60000"},

@@ -9,9 +9,9 @@
 #include "drivers/clock.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/commands.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/bus/named_bus.hpp"
+#include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/compose/can_transport.hpp"
 

@@ -9,10 +9,12 @@
 #include "drivers/clock.hpp"
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "gateway/cli/messages.hpp"
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/canopen/bus/foreign_master.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/canopen/bus/tool_bus.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/log/frame_filter.hpp"
 #include "gateway/files/read_file.hpp"
 
 namespace servogate::gateway::command {
@@ -28,6 +30,17 @@ const text::Entry kMayMove{
 const text::Entry kNoFd{
     "play.no-fd", "{0}:{1}: a CAN FD frame, and {2} carries classic frames only; nothing was played",
     "{0}:{1}: кадр CAN FD, а {2} переносит только классические кадры; ничего не воспроизведено"};
+const text::Entry kPlayed{"play.played", "{0} of {1} frames were played",
+                          "воспроизведено кадров: {0} из {1}"};
+const text::Entry kLeftOut{"play.left-out", "left out: {0}", "пропущено: {0}"};
+const text::Entry kTwoSenders{
+    "play.two-senders",
+    "{0} came from the bus as well while the log was played: two senders of one identifier disturb each "
+    "other. "
+    "`--from master` leaves out what devices sent, `--node` and `--id` choose what is played",
+    "{0}: эти кадры во время воспроизведения приходили и с шины, два отправителя одного идентификатора "
+    "мешают "
+    "друг другу. `--from master` пропускает то, что послали устройства; `--node` и `--id` выбирают кадры"};
 using drivers::clock_ns;
 struct Played {
   candump::Line line;
@@ -37,8 +50,14 @@ using Log = std::vector<Played>;
 
 constexpr const char* kWhat = "`play`";
 
+/// What of the file is played, and what is not.
+struct Sorted {
+  Log log;
+  FrameCount left_out;
+};
+
 /// kDone, or the exit code after saying what is wrong with the file.
-int read_log(const std::string& name, Log& log) {
+int read_log(const std::string& name, const FrameFilter& filter, Sorted& sorted) {
   if (const std::string why = files::why_unreadable(name); !why.empty()) {
     complain(kCannotRead, {name, why});
     return kWrongUse;
@@ -52,7 +71,11 @@ int read_log(const std::string& name, Log& log) {
       complain(kBadLine, {name, std::to_string(number)});
       return kWrongUse;
     }
-    if (!line->frame.error) log.push_back({std::move(*line), number});
+    if (line->frame.error) continue;
+    if (!filter.passes(line->frame))
+      sorted.left_out.add(line->frame);
+    else
+      sorted.log.push_back({std::move(*line), number});
   }
   return kDone;
 }
@@ -79,8 +102,13 @@ int all_pass(ToolBus& bus, const Log& log, const PlayOptions& options) {
   return kWrongUse;
 }
 
-int send_all(ToolBus& bus, const Log& log, const PlayOptions& options) {
-  const auto ignore = [](const image::CanFrame&) { return false; };
+/// `played` counts what was played, `heard` what came from others with an identifier that was played.
+int send_all(ToolBus& bus, const Log& log, const PlayOptions& options, FrameCount& played,
+             FrameCount& heard) {
+  const auto compare = [&](const image::CanFrame& frame) {
+    if (!frame.error && played.has(frame)) heard.add(frame);
+    return false;
+  };
   const image::Nanoseconds begin = clock_ns(CLOCK_MONOTONIC);
   for (const auto& [line, number] : log) {
     const auto after = static_cast<double>(line.time - log.front().line.time) / options.speed;
@@ -90,17 +118,33 @@ int send_all(ToolBus& bus, const Log& log, const PlayOptions& options) {
       const image::Nanoseconds early = due - clock_ns(CLOCK_MONOTONIC);
       if (early <= 0) sent = bus.transport().bus->send(line.frame);
       if (!sent && bus.gone()) return kInfrastructure;
-      bus.listen(early > 0 ? early : sent ? 0 : image::kMillisecond, ignore);
+      if (sent) played.add(line.frame);
+      bus.listen(early > 0 ? early : sent ? 0 : image::kMillisecond, compare);
     }
   }
   return kDone;
 }
 
+void tell(const FrameCount& played, const FrameCount& heard, const Sorted& sorted) {
+  const auto all = static_cast<std::int64_t>(sorted.log.size()) + sorted.left_out.frames();
+  std::string line =
+      text::render(kPlayed, std::vector<std::string>{std::to_string(played.frames()), std::to_string(all)},
+                   text::user_language());
+  if (sorted.left_out.frames() > 0)
+    line += "; " +
+            text::render(kLeftOut, std::vector<std::string>{sorted.left_out.words()}, text::user_language());
+  print_line(line);
+  if (heard.frames() > 0) complain(kTwoSenders, {heard.words()});
+}
+
 }  // namespace
 
 int play(const PlayOptions& options) {
-  Log log;
-  int code = read_log(options.file, log);
+  FrameFilter filter;
+  if (!filter.set(options)) return kWrongUse;
+  Sorted sorted;
+  const Log& log = sorted.log;
+  int code = read_log(options.file, filter, sorted);
   if (code != kDone) return code;
   std::optional<Holder> holder;
   if (!find_holder(options.bus, holder, code)) return code;
@@ -111,7 +155,11 @@ int play(const PlayOptions& options) {
   if (bus == nullptr) return code;
   code = may_play(*bus, holder, log, options);
   if (code == kDone) code = all_pass(*bus, log, options);
-  if (code == kDone) code = send_all(*bus, log, options);
+  if (code == kDone) {
+    FrameCount played, heard;
+    code = send_all(*bus, log, options, played, heard);
+    tell(played, heard, sorted);
+  }
   return bus->finish(code);
 }
 
