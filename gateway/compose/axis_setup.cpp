@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "gateway/machine/consequences.hpp"
+
 namespace servogate::gateway {
 
 namespace {
@@ -150,6 +152,7 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
   if (a.brake.present()) {
     c.brake.output = a.brake.drive_output ? axis::BrakeOutput::drive : axis::BrakeOutput::place;
     if (const machine::PointConfig* p = m.point(a.brake.point); p != nullptr) c.brake.place.place = p->place;
+    c.brake.command_time = machine::brake_command_time(loaded, a);
     c.brake.torque_delay = a.brake.torque_delay;
     c.brake.slip_window = a.brake.slip_window;
     c.brake.release_delay = a.brake.release_delay;

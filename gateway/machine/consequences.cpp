@@ -171,8 +171,8 @@ class Sentences {
         {{"stop_distance", stop.way}, {"stop_time", stop.time}});
     // The stop may begin in full acceleration, which has to be taken back first.
     const double back = std::min(a.max_acceleration / a.max_jerk, std::sqrt(a.max_velocity / a.max_jerk));
-    longest_stop_ =
-        std::max(longest_stop_, stop.time + back + (a.brake.present() ? a.brake.engage_delay : 0.0));
+    longest_stop_ = std::max(longest_stop_, stop.time + back + brake_command_time(loaded_, a) +
+                                                (a.brake.present() ? a.brake.engage_delay : 0.0));
     margin(a);
     if (const double lag = own_motion_lag(loaded_, a); lag > 0.0)
       say(a.letter, kOwnMotion, {a.letter, length(lag), speed(a.max_velocity)}, {{"lag", lag}});
@@ -187,9 +187,11 @@ class Sentences {
           {{"at_rest", a.following_error_warn}, {"at_max_velocity", warns}});
     }
     home(a);
-    if (a.brake.present())
-      say(a.letter, kBrake, {a.letter, text::number(a.brake.engage_delay * 1e3)},
-          {{"engage_delay", a.brake.engage_delay}});
+    if (a.brake.present()) {
+      const double after = brake_command_time(loaded_, a) + a.brake.engage_delay;
+      say(a.letter, kBrake, {a.letter, text::number(after * 1e3)},
+          {{"engage_delay", a.brake.engage_delay}, {"power_off_after", after}});
+    }
     dies(a);
   }
 
@@ -376,6 +378,25 @@ double read_every(const LoadResult& loaded, const StationConfig& s) {
     objects.push_back(found ? found->object.index : canopen::object::kDigitalInputs);
   }
   return slowest(device->tpdos, objects) * loaded.machine.control.cycle_time;
+}
+
+double brake_command_time(const LoadResult& loaded, const AxisConfig& axis) {
+  const MachineConfig& m = loaded.machine;
+  if (!axis.brake.present()) return 0.0;
+  const double cycle = m.control.cycle_time;
+  if (axis.brake.drive_output) {
+    const DeviceConfig* device = device_of(loaded, axis.drive);
+    return (device == nullptr ? 1 : slowest(device->rpdos, {canopen::object::kDigitalOutputs})) * cycle;
+  }
+  int station = -1;
+  const PointConfig* point = m.point(axis.brake.point, &station);
+  if (point == nullptr) return cycle;
+  const StationConfig& s = m.stations[static_cast<std::size_t>(station)];
+  if (s.kind == StationKind::modbus) return s.period + cycle;
+  const DeviceConfig* device = s.over_bus() ? device_of(loaded, s.node) : nullptr;
+  if (device == nullptr) return cycle;
+  const auto found = channel_object(device->kind, point->channel, point->number);
+  return slowest(device->rpdos, {found ? found->object.index : canopen::object::kDigitalOutputs}) * cycle;
 }
 
 double sdo_round(const LoadResult& loaded, const std::string& reference) {

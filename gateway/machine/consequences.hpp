@@ -31,6 +31,9 @@ canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus
 
 /// Time between two looks at the signals of a station, s; 0: they are read in the cycle itself.
 double read_every(const LoadResult& loaded, const StationConfig& station);
+/// Time from the cycle that works the brake of an axis until its output has the command, at the latest, s; 0:
+/// it has none. Process data of every n-th SYNC leave within n cycles and act at the SYNC behind them.
+double brake_command_time(const LoadResult& loaded, const AxisConfig& axis);
 /// Time between two set-points of a drive that only answers SDO, in seconds, at best; 0: it has process data,
 /// or there is no such node ("bus.node").
 double sdo_round(const LoadResult& loaded, const std::string& reference);

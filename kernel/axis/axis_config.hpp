@@ -63,6 +63,8 @@ enum class BrakeOutput : std::uint8_t { none, drive, place };
 struct BrakeData {
   BrakeOutput output = BrakeOutput::none;
   SwitchPlace place;            ///< of BrakeOutput::place: TRUE releases (inverted: FALSE releases)
+  double command_time = 0.0;    ///< from the cycle of a command until the output has it, at the latest; the
+                                ///< release and engage delays begin there
   double torque_delay = 0.05;   ///< from Operation enabled until the drive surely holds the load
   double release_delay = 0.10;  ///< from the release until the axis may move
   double engage_delay = 0.10;   ///< from engaging until the power may go

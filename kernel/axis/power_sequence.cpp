@@ -73,7 +73,7 @@ PowerSequence::Outputs PowerSequence::step(const Inputs& in) noexcept {
     case State::releasing:
       if (!in.wanted)
         enter(State::engaging);
-      else if (in_state_s_ >= brake_.release_delay)
+      else if (in_state_s_ >= brake_.command_time + brake_.release_delay)
         enter(State::ready);
       break;
     case State::ready:
@@ -85,7 +85,8 @@ PowerSequence::Outputs PowerSequence::step(const Inputs& in) noexcept {
     case State::engaging:
       break;
   }
-  if (state_ == State::engaging && (!has_brake() || in_state_s_ >= brake_.engage_delay)) enter(State::off);
+  if (state_ == State::engaging && (!has_brake() || in_state_s_ >= brake_.command_time + brake_.engage_delay))
+    enter(State::off);
   const bool open = state_ == State::releasing || state_ == State::ready || state_ == State::stopping;
   return {state_ != State::off, open && has_brake(), quick_ && state_ != State::off};
 }

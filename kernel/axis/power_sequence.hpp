@@ -12,6 +12,7 @@ namespace servogate::axis {
 /// On: power, Operation enabled, torque delay, brake opens, release delay, motion permitted.
 /// Off, and with the reaction stop and power off: the axis has come to rest, brake closes, engage delay,
 /// power goes. A drive that lets go by itself meanwhile, or in its quick stop: the brake closes at once.
+/// The delays of the brake begin when its output has the command, BrakeData::command_time behind the cycle.
 /// Reaction power off: the brake closes at once; an axis with a brake keeps its torque (in the drive's quick
 /// stop) for the engage delay, so that the load does not drop; one without loses power at once.
 class PowerSequence {

@@ -43,6 +43,28 @@ TEST(Brake, opens_after_torque_is_there_and_permits_motion_after_its_delay) {
   EXPECT_EQ(rig.plc("brake_release"), 1.0);
 }
 
+TEST(Brake, delays_begin_when_its_output_has_the_command) {
+  AxisConfig slow = vertical();
+  slow.brake.command_time = 0.150;
+  Rig rig(slow);
+  rig.axis.request_power(true);
+  int open = -1, ready = -1;
+  for (int i = 0; i < 500 && ready < 0; ++i) {
+    rig.cycle();
+    if (open < 0 && brake_open(rig)) open = i;
+    if (rig.axis.motion_permitted()) ready = i;
+  }
+  EXPECT_NEAR(ready - open, 250, 2) << "no motion against a brake that is only being opened";
+  rig.axis.request_power(false);
+  int closed = -1, off = -1;
+  for (int i = 0; i < 500 && off < 0; ++i) {
+    rig.cycle();
+    if (closed < 0 && !brake_open(rig)) closed = i;
+    if (!rig.shared().drive_command.power) off = i;
+  }
+  EXPECT_NEAR(off - closed, 230, 2) << "no loss of torque before the brake has closed";
+}
+
 TEST(Brake, on_a_stop_the_axis_ramps_down_then_the_brake_closes_then_power_goes) {
   Rig rig(vertical());
   ASSERT_TRUE(rig.enable());

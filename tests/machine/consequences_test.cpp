@@ -54,18 +54,38 @@ TEST(Consequences, say_the_stopping_distance) {
   EXPECT_TRUE(has(said(mill()), "X: stops from 500 mm/s within 150 mm, in 0.6 s"));
 }
 
-/// The stop of 0.6 s, 0.1 s to take a full acceleration back, 0.1 s for Z's brake, three cycles; rounded up.
-/// The spindle stops in 2 s, and its command may wait for nine cycles.
+/// The stop of 0.6 s, 0.1 s to take a full acceleration back, 0.1 s for Z's brake and ten cycles until it is
+/// told, three cycles; rounded up. The spindle stops in 2 s, and its command may wait for nine cycles.
 TEST(Consequences, say_how_long_the_safety_relay_has_to_wait) {
   const auto told = [](const char* seconds) {
     return "emergency stop: all axes rest and their brakes hold after " + std::string(seconds) +
            " s, the spindle after 2.01 s; the safety relay's delay t_d has to be longer";
   };
-  EXPECT_TRUE(has(said(mill()), told("0.81")));
+  EXPECT_TRUE(has(said(mill()), told("0.82")));
   LoadResult slow_brake = mill();
   for (AxisConfig& a : slow_brake.machine.axes)
     if (a.brake.present()) a.brake.engage_delay = 0.4;
-  EXPECT_TRUE(has(said(slow_brake), told("1.11")));
+  EXPECT_TRUE(has(said(slow_brake), told("1.12")));
+}
+
+TEST(Consequences, a_brake_is_told_as_late_as_its_process_data_or_its_station_go) {
+  LoadResult loaded = mill();
+  AxisConfig& z = loaded.machine.axes.at(2);
+  EXPECT_NEAR(brake_command_time(loaded, z), 0.010, 1e-12) << "its drive takes outputs with every tenth SYNC";
+  EXPECT_TRUE(has(said(loaded), "Z: power goes 110 ms after the brake is told to engage"));
+  loaded.machine.control.cycle_time = 0.015;
+  EXPECT_NEAR(brake_command_time(loaded, z), 0.150, 1e-12);
+  loaded.machine.control.cycle_time = 0.001;
+  z.brake.drive_output = false;
+  const auto by = [&](StationKind kind) {
+    for (const StationConfig& s : loaded.machine.stations)
+      for (const PointConfig& p : s.points)
+        if (s.kind == kind && !p.is_input()) z.brake.point = p.name;
+    return brake_command_time(loaded, z);
+  };
+  EXPECT_NEAR(by(StationKind::gpio), 0.001, 1e-12);
+  EXPECT_NEAR(by(StationKind::modbus), 0.021, 1e-12) << "the poll of its line, and a cycle";
+  EXPECT_EQ(brake_command_time(loaded, loaded.machine.axes.at(0)), 0.0) << "X has no brake";
 }
 
 TEST(Consequences, count_how_long_a_spindle_waits_for_its_command) {
