@@ -6,6 +6,8 @@
 #include "gateway/cli/commands/bus_commands.hpp"
 #include "gateway/cli/commands/canopen_commands.hpp"
 #include "gateway/cli/commands/plc_commands.hpp"
+#include "gateway/cli/help/completion.hpp"
+#include "gateway/cli/help/manual_page.hpp"
 #include "gateway/cli/help/russian.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/quantities.hpp"
@@ -104,6 +106,7 @@ class Commands {
     add_plc_commands(app_, line.plc);
     add_bus_commands(app_, line.bus);
     add_canopen_commands(app_, line.bus);
+    written_down();
     flags_take_no_value(app_);
   }
 
@@ -275,11 +278,29 @@ class Commands {
     app.add_flag("--json", o.json, "As JSON");
   }
 
+  void written_down() {
+    command("man", "Prints the manual page of all commands.",
+            "servogate man > servogate.1 && man ./servogate.1");
+    CLI::App& app =
+        command("completion", "Prints a script with which the shell completes commands and options.",
+                "source <(servogate completion bash)");
+    app.add_option("SHELL", shell_, "bash; zsh reads the same script after `bashcompinit`")
+        ->required()
+        ->check(one_of({"bash", "zsh"}));
+  }
+
   CommandLine& line_;
   CLI::App app_{"servogate: a Linux computer becomes the control of a machine"};
   bool virtual_time_ = false;
   std::string realtime_;
+  std::string shell_;
 };
+
+/// What the declarations themselves answer; empty: a command to be carried out.
+std::string written_down(CLI::App& app, const std::string& command) {
+  if (command == "man") return manual_page(app);
+  return command == "completion" ? bash_completion(app) : std::string();
+}
 
 const CLI::App* subcommand(const CLI::App& app, std::string_view name) {
   const auto found = app.get_subcommands([&](const CLI::App* c) { return c->get_name() == name; });
@@ -326,6 +347,11 @@ std::optional<CommandLine> parse_command_line(int argc, char** argv, int& exit_c
   }
   if (complain_of_empty(app)) return std::nullopt;
   commands.settle();
+  if (const std::string page = written_down(app, line.command); !page.empty()) {
+    print(page);
+    exit_code = kDone;
+    return std::nullopt;
+  }
   return line;
 }
 

@@ -53,13 +53,15 @@ CLI::Validator number_within(const Limits& limits) {
 }
 
 CLI::Validator one_of(std::vector<std::string> words) {
+  std::string names;
+  for (const std::string& word : words) names += (names.empty() ? "" : " ") + word;
   const auto check = [words = std::move(words)](std::string& word) -> std::string {
     if (std::find(words.begin(), words.end(), word) != words.end()) return {};
     std::string list;
     for (const std::string& w : words) list += (list.empty() ? "" : ", ") + w;
     return quoted(word, "is not one of " + list, "не входит в список: " + list);
   };
-  return {check, ""};
+  return {check, "", names};
 }
 
 }  // namespace servogate::gateway

@@ -15,7 +15,8 @@ struct Limits {
 /// A check for an option that says what is wrong, in both languages (text::both): not a number, or outside
 /// the limits, which it names with their unit.
 CLI::Validator number_within(const Limits& limits);
-/// The same for one word of a list.
+/// The same for one word of a list. The validator's name is the list, for who writes options down
+/// (choices.hpp).
 CLI::Validator one_of(std::vector<std::string> words);
 
 }  // namespace servogate::gateway

@@ -73,7 +73,7 @@ void add_drive(CLI::App& app, DriveOptions& o) {
   d.add_option("--pdo-map", o.pdo_map,
                "What a master may change of the PDO maps: variable, whole (on and off), fixed (nothing)")
       ->type_name("ACCESS")
-      ->check(CLI::IsMember({"variable", "whole", "fixed"}));
+      ->check(one_of({"variable", "whole", "fixed"}));
   add_faults(d, o.faults);
   add_bit_rate(d, o.bit_rate);
   d.footer(
@@ -98,7 +98,7 @@ void add_io(CLI::App& app, IoOptions& o) {
       ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
   c.add_option("--kind", o.kind, "module (the default) or encoder")
       ->type_name("KIND")
-      ->check(CLI::IsMember({"module", "encoder"}));
+      ->check(one_of({"module", "encoder"}));
   add_terminals(c, "--di", o.digital_inputs, 64, "Digital inputs, 0 to 64");
   add_terminals(c, "--dq", o.digital_outputs, 64, "Digital outputs, 0 to 64");
   add_terminals(c, "--ai", o.analogue_inputs, 12, "Analogue inputs, 0 to 12");
