@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -35,9 +35,9 @@ struct Options {
   /// Instructions of all bodies together; more is the error `plc-code-size`, and compiling ends there. Each
   /// takes 20 bytes, and another 10 or so while compiling.
   std::size_t most_instructions = 4'000'000;
-  /// Whoever compiles beside something that must not wait asks here to stop, e.g. when a time is up:
-  /// compile() then returns soon, with the error `plc-compile-cancelled` and no image. Any thread may ask.
-  std::stop_token stop = {};
+  /// Asked again and again, for every line in every stage, when there is one: true, e.g. when a time is up,
+  /// and compile() asks no more and returns, with the error `plc-compile-cancelled` and no image.
+  std::function<bool()> stop = {};
 };
 
 /// What came out. `findings` are in the order of file, line and column; `image` is null when any is an error.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <set>
-#include <stop_token>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -21,12 +21,12 @@ class Report {
  public:
   static constexpr std::size_t kMost = 200;
 
-  explicit Report(std::vector<std::string> file_names, bool warnings = true, std::stop_token stop = {})
+  explicit Report(std::vector<std::string> file_names, bool warnings = true, std::function<bool()> stop = {})
       : files_(std::move(file_names)), warnings_(warnings), stop_(std::move(stop)) {}
 
-  /// To be called in everything that a long source repeats: throws Cancelled once somebody has asked to stop.
+  /// To be called in everything that a long source repeats: throws Cancelled once it is to stop.
   void go_on() const {
-    if (stop_.stop_requested()) throw Cancelled{};
+    if (stop_ && stop_()) throw Cancelled{};
   }
 
   void error(const Location& at, const text::Entry& entry, std::vector<std::string> arguments = {});
@@ -53,7 +53,7 @@ class Report {
   std::vector<std::string> files_;
   bool warnings_;
   int hidden_ = -1;
-  std::stop_token stop_;
+  std::function<bool()> stop_;
   std::size_t errors_ = 0;
   std::size_t kept_[2] = {}, left_out_[2] = {};  ///< errors, warnings
   std::vector<Item> items_;

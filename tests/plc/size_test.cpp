@@ -2,8 +2,9 @@
 // Sources that are large or deep, as machines write them: what they come to, and how compiling them is ended.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <functional>
-#include <thread>
+#include <limits>
 
 #include "plc/compile.hpp"
 #include "plc/engine.hpp"
@@ -137,40 +138,41 @@ TEST(Size, findings_beyond_two_hundred_are_counted) {
   EXPECT_EQ(said(wrong).back(), "t.st: error: 800 more errors: the first 200 are shown [plc-more-errors]");
 }
 
-TEST(Compile, is_ended_by_whoever_asked_for_it_and_says_so) {
-  std::stop_source stop;
+/// Compiles until it has asked `looks` times whether to stop; how often it has asked is said in `asked`.
+CompileResult compile_until(const std::string& text, std::int64_t looks, std::int64_t& asked) {
   Options options;
-  options.stop = stop.get_token();
-  const std::string text = "PROGRAM Main VAR n : INT; END_VAR n := 1; END_PROGRAM";
-  EXPECT_TRUE(compile({{"t.st", text}}, {}, options).ok());
-  stop.request_stop();
-  const CompileResult r = compile({{"t.st", text}}, {}, options);
-  EXPECT_FALSE(r.ok());
-  ASSERT_EQ(r.findings.size(), 1u);
-  EXPECT_EQ(r.findings[0].entry->id, "plc-compile-cancelled");
+  asked = 0;
+  options.stop = [&asked, looks] { return ++asked >= looks; };
+  return compile({{"t.st", text}}, {}, options);
+}
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+std::string assignments(int count) {
+  return "PROGRAM Main VAR\n" + repeated(count, [](int i) { return "v" + n(i) + " : DINT;\n"; }) +
+         "END_VAR\n" +
+         repeated(count, [](int i) { return "v" + n(i) + " := v" + n(i) + " * 3 + " + n(i) + ";\n"; }) +
+         "END_PROGRAM";
 }
 
-TEST(Compile, is_ended_while_it_reads_declares_analyzes_and_generates) {
-  const std::string text =
-      "PROGRAM Main VAR\n" + repeated(50'000, [](int i) { return "v" + n(i) + " : DINT;\n"; }) + "END_VAR\n" +
-      repeated(50'000, [](int i) { return "v" + n(i) + " := v" + n(i) + " * 3 + " + n(i) + ";\n"; }) +
-      "END_PROGRAM";
-  for (const int delay_ms : {0, 20, 100, 300}) {
-    std::stop_source stop;
-    Options options;
-    options.stop = stop.get_token();
-    std::thread other([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
-      stop.request_stop();
-    });
-    const CompileResult r = compile({{"t.st", text}}, {}, options);
-    other.join();
-    if (r.ok()) continue;  // it was quicker
-    EXPECT_EQ(said(r),
+TEST(Compile, is_ended_wherever_it_asks_at_once_and_says_so) {
+  const std::string text = assignments(100);
+  std::int64_t all = 0, asked = 0;
+  EXPECT_TRUE(compile_until(text, kNever, all).ok());
+  for (std::int64_t i = 0; i <= 100; ++i) {
+    const std::int64_t look = 1 + (all - 1) * i / 100;
+    EXPECT_EQ(said(compile_until(text, look, asked)),
               (std::vector<std::string>{
                   "t.st: error: compiling was ended before it was done: it took longer than is allowed here "
                   "[plc-compile-cancelled]"}));
+    EXPECT_EQ(asked, look) << "of " << all << ": nothing follows it";
   }
+}
+
+TEST(Compile, asks_in_each_of_its_stages_for_every_line) {
+  std::int64_t few = 0, many = 0;
+  EXPECT_TRUE(compile_until(assignments(100), kNever, few).ok());
+  EXPECT_TRUE(compile_until(assignments(1100), kNever, many).ok());
+  EXPECT_GE(many - few, 1000 * 5) << "read, declared, parsed, analyzed, generated";
 }
 
 TEST(Compile, a_program_of_more_instructions_than_are_allowed_is_refused_where_they_end) {

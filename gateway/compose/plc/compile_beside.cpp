@@ -50,7 +50,7 @@ plc::CompileResult compile_beside(std::vector<plc::SourceFile> files, std::vecto
   if (compiles_on()) return refused(first, kStillCompiles, {});
   const auto shared = std::make_shared<Shared>();
   plc::Options ended = options;
-  ended.stop = shared->end.get_token();
+  ended.stop = [end = shared->end.get_token()] { return end.stop_requested(); };
   std::thread([shared, ended, files = std::move(files), symbols = std::move(symbols)]() mutable {
     plc::CompileResult result = plc::compile(std::move(files), std::move(symbols), ended);
     const std::scoped_lock lock(shared->mutex);
