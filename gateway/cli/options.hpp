@@ -38,6 +38,8 @@ struct ClientOptions {
   std::string command;
   std::vector<std::string> arguments;
   std::string socket;
+  bool history = false;  ///< of `alarms`: what has happened instead
+  int last = 100;        ///< events of it
   bool json = false;
   bool wait = false;     ///< until what was begun has ended
   bool no_wait = false;  ///< of `power` and `jog`, which wait of themselves

@@ -50,7 +50,7 @@ constexpr ClientCommand kClients[] = {
     {"input",
      "Plays an input of a mock machine: on, off, a number, or auto (a switch follows its axis again).",
      "POINT on|off|auto|NUMBER", "servogate input estop_chain_ok off"},
-    {"alarms", "Lists the alarms with cause and remedy.", "", "servogate alarms"},
+    {"alarms", "Lists the alarms with cause and remedy.", "", "servogate alarms --history"},
     {"down", "Stops the axes in a controlled way, switches the drives off, ends the control.", "",
      "servogate down"},
 };
@@ -223,6 +223,12 @@ class Commands {
     }
     app.add_option("--socket", o.socket, "Control socket instead of the default");
     app.add_flag("--json", o.json, "As JSON");
+    if (std::string_view(c.name) == "alarms") {
+      app.add_flag("--history", o.history, "What has happened and who did what, instead; the newest last");
+      app.add_option("--last", o.last, "Events of the history, 1 to 1000; 100 without it")
+          ->type_name("N")
+          ->check(number_within({1.0, 1000.0, text::both("events", "событий"), true}));
+    }
     if (!c.waits) return;
     app.add_flag("--wait", o.wait, "Waits until it has ended; exit 1 after an alarm, 3 when it was stopped");
     if (std::string_view(c.name) == "power" || std::string_view(c.name) == "jog")

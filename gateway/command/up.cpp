@@ -10,6 +10,9 @@
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/signals.hpp"
+#include "gateway/history/event_log.hpp"
+#include "gateway/history/texts.hpp"
+#include "gateway/report/report.hpp"
 #include "gateway/run/running_machine.hpp"
 #include "gateway/server/socket/socket_path.hpp"
 #include "gateway/server/socket_server.hpp"
@@ -85,7 +88,8 @@ int up(const UpOptions& options) {
   int code = check_outputs({{"--record", options.record}}, folder, loaded, {});
   if (code == kDone) code = check_can_log(options.can_log, loaded);
   if (code != kDone) return code;
-  std::unique_ptr<SocketServer> server;  // its connections end last, after the state's lock
+  std::unique_ptr<history::EventLog> history;  // the last to go
+  std::unique_ptr<SocketServer> server;        // its connections end last, after the state's lock
   auto state = HeldState::hold(folder, code);
   if (state == nullptr) return code;
   SoleMaster sole_master;
@@ -94,8 +98,10 @@ int up(const UpOptions& options) {
   if (running == nullptr) return code;
   if (code = SoleMaster::listen(running->control()); code != kDone) return code;
 
+  history = std::make_unique<history::EventLog>(history::EventLog::Places{folder, true});
   Resident resident(running->control(), running->learned(), folder,
                     clock == ClockKind::virtual_time ? options.speed : 1.0);
+  resident.keep_history(*history);
   const std::string socket = socket_of(options, m);
   count_signals();  // from here on there is something to be put away
   if (clock != ClockKind::virtual_time) refuse_suspension();
@@ -109,7 +115,11 @@ int up(const UpOptions& options) {
   std::fprintf(
       stderr, "%s\n",
       text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()).c_str());
+  history->note(
+      history::event("up", history::says::kUp, {m.name, std::string(report::build_identity().version)}, 0.0));
   serve(*server);
+  const double ended_s = static_cast<double>(resident.image().now.t_ns) * 1e-9;
+  history->note(history::event("down", history::says::kDown, {m.name}, ended_s));
   if (!put_away(*running, resident)) return kInfrastructure;
   return unless_frames_lost(server->rests() ? kDone : kAlarm, running->control());
 }

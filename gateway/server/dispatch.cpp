@@ -25,6 +25,7 @@ using nlohmann::json;
 
 constexpr double kKeepAlive_ms = 30.0;  ///< of the wall clock, between two keep-alives of a jog
 
+constexpr double kHistory = 100.0;         ///< events, where a client does not say how many
 constexpr std::size_t kFindingsSaid = 10;  ///< of a bad program; all of them stand in the answer's "findings"
 
 std::string signed_number(double value) { return (value > 0.0 ? "+" : "") + text::number(value, 4); }
@@ -101,6 +102,7 @@ class Dispatch {
   Outcome status() { return Reply{status_json(resident_, language_)}; }
   Outcome buses() { return Reply{held_buses_json(machine(), resident_.image(), false)}; }
   Outcome alarms() { return Reply{alarms_json(resident_, language_)}; }
+  Outcome history();
   Outcome power();
   Outcome home();
   Outcome jog();
@@ -139,29 +141,22 @@ class Dispatch {
   Reply refusal_;
 };
 
-const Dispatch::Row Dispatch::kRows[] = {{"status", &Dispatch::status},
-                                         {"buses", &Dispatch::buses},
-                                         {"alarms", &Dispatch::alarms},
-                                         {"power", &Dispatch::power},
-                                         {"home", &Dispatch::home},
-                                         {"jog", &Dispatch::jog},
-                                         {"jog_continuous", &Dispatch::jog_continuous},
-                                         {"zero", &Dispatch::zero},
-                                         {"override", &Dispatch::override_feed},
-                                         {"load", &Dispatch::load},
-                                         {"start", &Dispatch::start},
-                                         {"step", &Dispatch::step},
-                                         {"mdi", &Dispatch::mdi},
-                                         {"resume", &Dispatch::resume},
-                                         {"reset", &Dispatch::reset},
-                                         {"acknowledge", &Dispatch::reset},
-                                         {"input", &Dispatch::input},
-                                         {"sdo_read", &Dispatch::sdo_read}};
+const Dispatch::Row Dispatch::kRows[] = {
+    {"status", &Dispatch::status},     {"buses", &Dispatch::buses},
+    {"alarms", &Dispatch::alarms},     {"history", &Dispatch::history},
+    {"power", &Dispatch::power},       {"home", &Dispatch::home},
+    {"jog", &Dispatch::jog},           {"jog_continuous", &Dispatch::jog_continuous},
+    {"zero", &Dispatch::zero},         {"override", &Dispatch::override_feed},
+    {"load", &Dispatch::load},         {"start", &Dispatch::start},
+    {"step", &Dispatch::step},         {"mdi", &Dispatch::mdi},
+    {"resume", &Dispatch::resume},     {"reset", &Dispatch::reset},
+    {"acknowledge", &Dispatch::reset}, {"input", &Dispatch::input},
+    {"sdo_read", &Dispatch::sdo_read}};
 
 /// What a control still does for its clients while it comes to its end; stops have a road of their own.
 bool only_looks(std::string_view command) {
-  static constexpr std::string_view kWords[] = {"status",   "buses",     "alarms", "sdo_read",
-                                                "plc_list", "plc_watch", "plc_go"};
+  static constexpr std::string_view kWords[] = {"status",   "buses",    "alarms",    "history",
+                                                "sdo_read", "plc_list", "plc_watch", "plc_go"};
   return std::find(std::begin(kWords), std::end(kWords), command) != std::end(kWords);
 }
 
@@ -172,6 +167,14 @@ Outcome Dispatch::run() {
     if (row.name == command) return (this->*row.handler)();
   if (command.starts_with("plc_")) return resident_.plc().carry_out(request_, line_.caller);
   return fail(says::kUnknown, {command}, kWrongUse);
+}
+
+Outcome Dispatch::history() {
+  double count = kHistory;
+  if (!number("count", count, false)) return refusal_;
+  const double most = history::EventLog::kRemembered;
+  return Reply{
+      history_json(resident_.history(), static_cast<std::size_t>(std::clamp(count, 0.0, most)), language_)};
 }
 
 bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image::Mode> mode) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gateway/cli/messages.hpp"
+#include "gateway/history/request_words.hpp"
 #include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
@@ -238,7 +239,20 @@ std::uint32_t Resident::homed() {
   return bits;
 }
 
+void Resident::keep_history(history::EventLog& log) {
+  history_ = &log;
+  requests_.set_witness([this, now = std::make_shared<image::ProcessImage>()](const image::Request& request,
+                                                                              const image::Answer& answer) {
+    control_.cycle().read(*now);
+    history_->note(history::request_event(request, answer, control_.machine(),
+                                          static_cast<double>(now->now.t_ns) * 1e-9));
+  });
+}
+
 std::vector<Work> Resident::look_after() {
+  requests_.look_after();
+  if (history_ != nullptr)
+    for (history::Event& e : watch_.look(image(), alarms())) history_->note(std::move(e));
   std::vector<Work> works;
   const std::uint32_t now = homed();
   unsaved_ = unsaved_ || (now & ~homed_seen_) != 0;

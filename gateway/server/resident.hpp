@@ -9,6 +9,7 @@
 
 #include "gateway/compose/control.hpp"
 #include "gateway/compose/program/program_check.hpp"
+#include "gateway/history/machine_watch.hpp"
 #include "gateway/machine/state/state.hpp"
 #include "gateway/server/desk/outcome.hpp"
 #include "gateway/server/desk/request_desk.hpp"
@@ -23,6 +24,12 @@ class Resident {
  public:
   /// `speed`: machine seconds per wall-clock second.
   Resident(Control& control, machine::MachineState state, std::string state_path, double speed = 1.0);
+
+  /// From here on the history has what happens to the machine and who asks for what. Before anybody asks;
+  /// `log` outlives this.
+  void keep_history(history::EventLog& log);
+  /// nullptr: none is kept.
+  history::EventLog* history() const noexcept { return history_; }
 
   /// The way to the gate. Any thread.
   RequestDesk& requests() noexcept { return requests_; }
@@ -152,6 +159,8 @@ class Resident {
   RequestDesk requests_;
   image::ProcessImage image_;
   cycle::AlarmSnapshot alarms_;
+  history::EventLog* history_ = nullptr;
+  history::MachineWatch watch_{control_};
   Works works_;
   PlcDesk plc_{*this};
 };

@@ -253,6 +253,21 @@ std::string alarms_in_words(Resident& resident, text::Language language) {
   return words;
 }
 
+std::string history_json(const history::EventLog* log, std::size_t count, text::Language language) {
+  json events = json::array();
+  for (const history::Event& e : log == nullptr ? std::vector<history::Event>() : log->last(count))
+    events.push_back({{"time", e.time},
+                      {"machine_s", measure(e.machine_s)},
+                      {"kind", e.kind},
+                      {"id", e.id},
+                      {"number", e.number},
+                      {"who", e.who},
+                      {"text", e.text(language)}});
+  json answer{{"ok", true}, {"exit", 0}, {"schema", 1}, {"events", events}, {"problem", nullptr}};
+  if (log != nullptr && !log->problem().empty()) answer["problem"] = log->problem();
+  return answer.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 std::string alarms_json(Resident& resident, text::Language language) {
   const image::ProcessImage& image = resident.image();
   json answer{{"ok", true}, {"exit", 0}, {"schema", 1}, {"alarms", alarm_list(resident, language)}};

@@ -24,6 +24,8 @@ const text::Entry kOn{"client.on", "the drives are on, the brakes open",
                       "приводы включены, тормоза отпущены"};
 const text::Entry kOff{"client.off", "the drives are off", "приводы выключены"};
 const text::Entry kNoAlarms{"client.no-alarms", "no alarm is active", "активных аварий нет"};
+const text::Entry kNotKept{"client.history-not-kept", "the history is not written to the disk: {0}",
+                           "история не записывается на диск: {0}"};
 const text::Entry kAsked{"client.stopped",
                          "stopped by the operator; what was asked of the control goes on: `servogate status` "
                          "shows it",
@@ -48,6 +50,17 @@ void wait_until_closed(SocketClient& connection) {
   std::string line;
   while (connection.receive(line, kLongestEnd_ms)) {
   }
+}
+
+/// "2026-11-23 20:15:07.250Z  alarm 1001: ..."
+void print_history(const json& reply) {
+  for (const json& e : reply.value("events", json::array())) {
+    std::string time = of(e, "time");
+    if (const std::size_t t = time.find('T'); t != std::string::npos) time[t] = ' ';
+    if (!print_line(time + "  " + of(e, "text"))) return;
+  }
+  if (const auto problem = reply.find("problem"); problem != reply.end() && problem->is_string())
+    complain(kNotKept, {problem->get<std::string>()});
 }
 
 /// A client and what its command waits for.
@@ -86,6 +99,8 @@ void show(const ClientOptions& options, const json& request, const Manner& manne
   } else if (options.command == "status" || manner.waits) {
     print_status(reply);
     print_alarms(reply["alarms"]);
+  } else if (options.command == "alarms" && options.history) {
+    print_history(reply);
   } else if (options.command == "alarms") {
     if (reply["alarms"].empty()) print_line(say(kNoAlarms));
     print_alarms(reply["alarms"]);

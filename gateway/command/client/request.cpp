@@ -43,7 +43,10 @@ json request_of(const ClientOptions& options) {
   };
   std::string_view rest;
   double value = 0.0;
-  if (c == "home") {
+  if (c == "alarms" && options.history) {
+    r["cmd"] = "history";
+    r["count"] = options.last;
+  } else if (c == "home") {
     r["axes"] = a;
   } else if (c == "jog") {
     r["axis"] = a[0];

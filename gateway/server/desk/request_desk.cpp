@@ -4,6 +4,8 @@
 #include <chrono>
 #include <thread>
 
+#include "gateway/history/request_words.hpp"
+
 namespace servogate::gateway {
 
 using image::RequestKind;
@@ -14,8 +16,18 @@ Stops RequestDesk::stops() const {
 }
 
 void RequestDesk::collect() {
-  for (image::Answer answer; cycle_.take_answer(answer);)
+  for (image::Answer answer; cycle_.take_answer(answer);) {
     if (const auto waiting = awaited_.find(answer.id); waiting != awaited_.end()) waiting->second = answer;
+    if (const auto seen = witnessed_.find(answer.id); seen != witnessed_.end()) {
+      witness_(seen->second, answer);
+      witnessed_.erase(seen);
+    }
+  }
+}
+
+void RequestDesk::look_after() {
+  const std::scoped_lock lock(mutex_);
+  collect();
 }
 
 /// The queue keeps its order: a stop stands in front of all that is posted behind it.
@@ -23,6 +35,7 @@ std::uint64_t RequestDesk::post_locked(image::Request& request) {
   collect();
   request.id = next_id_++;
   if (!cycle_.post(request)) return 0;
+  if (witness_ && history::kept(request.kind)) witnessed_.emplace(request.id, request);
   const bool off = request.kind == RequestKind::power && request.value == 0.0;
   if (off || request.kind == RequestKind::stop || request.kind == RequestKind::quick_stop ||
       request.kind == RequestKind::hold)

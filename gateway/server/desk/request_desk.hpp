@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -22,6 +23,13 @@ class RequestDesk {
  public:
   explicit RequestDesk(cycle::Cycle& cycle) : cycle_(cycle) {}
   RequestDesk(const RequestDesk&) = delete;
+
+  /// Sees every request that history::kept() with its answer, under the desk's lock: it must not wait. Set
+  /// before anybody asks.
+  using Witness = std::function<void(const image::Request&, const image::Answer&)>;
+  void set_witness(Witness witness) { witness_ = std::move(witness); }
+  /// Hears answers that nobody waits for. Now and then.
+  void look_after();
 
   Stops stops() const;
   /// Posts a request whose answer take() gives; its number. 0: the cycle's queue is full.
@@ -51,6 +59,8 @@ class RequestDesk {
   Stops stops_;
   std::uint64_t next_id_ = 1;
   std::map<std::uint64_t, std::optional<image::Answer>> awaited_;
+  Witness witness_;
+  std::map<std::uint64_t, image::Request> witnessed_;  ///< not answered yet
 };
 
 }  // namespace servogate::gateway

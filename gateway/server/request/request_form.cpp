@@ -47,7 +47,8 @@ constexpr struct {
                {"", "body", kText},         {"", "times", kSwitch},        {"", "stay", kSwitch},
                {"", "files", kList},        {"", "online", kSwitch},       {"", "while_running", kSwitch},
                {"", "bus", kText},          {"", "node", kNumber},         {"", "index", kNumber},
-               {"", "subindex", kNumber},   {"", "scans", kNumber}};
+               {"", "subindex", kNumber},   {"", "scans", kNumber},
+               {"", "count", kNumber}};
 
 /// Without which a request says nothing.
 constexpr struct {
