@@ -244,7 +244,10 @@ void Axis::report_path_end(double dt) noexcept {
   if (off_path_rest_s_ < kOffPathRest) return;
   off_path_ = false;
   const double off = actual_ - path_end_;
-  if (std::abs(off) > config_.in_position_window) raise(alarm::kOffPath, path_end_, off);
+  // Let go where the path stood already, it has only settled into its brake.
+  const bool settles = !path_moved_ && config_.brake.output != BrakeOutput::none;
+  const double allowed = config_.in_position_window + (settles ? config_.brake.slip_window : 0.0);
+  if (std::abs(off) > allowed) raise(alarm::kOffPath, path_end_, off);
 }
 
 void Axis::update_in_position(double dt) noexcept {

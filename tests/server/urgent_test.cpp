@@ -4,7 +4,6 @@
 #include <signal.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <memory>
@@ -159,19 +158,17 @@ TEST_F(Urgent, connections_that_say_nothing_keep_nobody_from_stopping_the_machin
 }
 
 TEST_F(Urgent, a_flood_of_requests_holds_no_stop_up) {
-  std::vector<std::thread> floods;
-  std::atomic<bool> end{false};
+  std::vector<std::jthread> floods;
   for (int f = 0; f < 8; ++f)
-    floods.emplace_back([&] {
+    floods.emplace_back([&](const std::stop_token& end) {
       SocketClient client;
       if (!client.connect(shell_.socket()).empty()) return;
       const std::string wide = R"({"cmd":"status","unit":")" + std::string(50'000, 'x') + "\"}\n";
-      std::thread reader([&] {
-        for (std::string line; !end;) client.receive(line, 200);
+      const std::jthread reader([&] {
+        for (std::string line; !end.stop_requested();) client.receive(line, 200);
       });
-      while (!end && client.send(wide)) {
+      while (!end.stop_requested() && client.send(wide)) {
       }
-      reader.join();
     });
   std::vector<double> times_s;
   for (int n = 0; n < 20; ++n) {
@@ -179,8 +176,8 @@ TEST_F(Urgent, a_flood_of_requests_holds_no_stop_up) {
     EXPECT_EQ(say({{"cmd", "hold"}})["ok"], true);
     times_s.push_back(std::chrono::duration<double>(Clock::now() - begun).count());
   }
-  end = true;
-  for (std::thread& flood : floods) flood.join();
+  for (std::jthread& flood : floods) flood.request_stop();
+  floods.clear();
   std::sort(times_s.begin(), times_s.end());
   EXPECT_LE(times_s[times_s.size() / 2], 0.5) << "the flood itself wants this computer, too";
 }

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -57,8 +56,12 @@ TEST_F(JogCommand, goes_on_at_twenty_times_the_wall_clock_until_Ctrl_C_and_says_
   double way = 0.0;
   const Outcome o = while_it_jogs([&](pid_t client) {
     const double from = shell_.status()["axes"][0]["command"];
-    std::this_thread::sleep_for(std::chrono::milliseconds(400));
-    way = shell_.status()["axes"][0]["command"].get<double>() - from;
+    shell_.until(
+        [&](const json& s) {
+          way = s["axes"][0]["command"].get<double>() - from;
+          return way > 20.0 || !x_moves(s);
+        },
+        10.0);
     kill(client, SIGINT);
   });
   EXPECT_EQ(o.exit, 0) << o.err;
@@ -99,14 +102,13 @@ class JogOfTwo : public ::testing::Test {
 };
 
 TEST_F(JogOfTwo, stops_the_axis_of_the_frozen_hand_only_while_the_other_one_goes_on) {
-  std::atomic<bool> end{false};
-  std::thread other([&] {
+  std::jthread other([&](const std::stop_token& end) {
     SocketClient y;
     std::string answer;
     if (!y.connect(shell_.socket()).empty()) return;
-    while (!end) {
-      const bool moves = y.exchange(R"({"cmd":"keep_alive"})", answer) &&
-                         json::parse(answer, nullptr, false).value("moving", false);
+    while (!end.stop_requested()) {
+      const bool moves =
+          y.exchange(R"({"cmd":"keep_alive"})", answer) && contains(answer, R"("moving":true)");
       // At first, and where it was late on a busy computer, it begins.
       if (!moves) y.exchange(R"({"cmd":"jog_continuous","axis":"Y","value":-1})", answer);
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -122,7 +124,7 @@ TEST_F(JogOfTwo, stops_the_axis_of_the_frozen_hand_only_while_the_other_one_goes
   const json frozen = shell_.status();
   std::this_thread::sleep_for(std::chrono::seconds(3));
   const json later = shell_.status();
-  end = true;
+  other.request_stop();
   other.join();
   kill(x, SIGKILL);
   ending_of(x);

@@ -8,10 +8,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <thread>
 
 namespace servogate::gateway::testing {
@@ -27,6 +31,8 @@ pid_t launch(const fs::path& folder, const std::string& name, std::vector<std::s
   const std::string out = (folder / (name + ".out")).string(), err = (folder / (name + ".err")).string();
   const std::string runtime = folder.string();
   const pid_t pid = fork();
+  // Less than zero is everybody to kill().
+  if (pid < 0) throw std::runtime_error("no process for " + name + ": " + std::strerror(errno));
   if (pid != 0) return pid;
   const int out_fd = open(out.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
   const int err_fd = open(err.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
@@ -65,7 +71,8 @@ bool contains(const std::string& text, const std::string& part) {
 
 Shell::Shell() {
   std::string pattern = (fs::temp_directory_path() / "servogate-test-XXXXXX").string();
-  folder_ = mkdtemp(pattern.data());
+  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no folder " + pattern);
+  folder_ = pattern;
 }
 
 Shell::~Shell() {
@@ -106,11 +113,10 @@ void Shell::up_file(const std::string& machine, const std::vector<std::string>& 
   arguments.insert(arguments.end(), more.begin(), more.end());
   up_ = spawn(arguments, "up");
   const bool online = until([](const json& s) {
-    for (const json& a : s.value("axes", json::array()))
-      if (a["drive"] == "offline") return false;
-    return s.contains("axes");
+    return std::none_of(s["axes"].begin(), s["axes"].end(),
+                        [](const json& a) { return a["drive"] == "offline"; });
   });
-  ASSERT_TRUE(online) << text("up.err");
+  if (!online) throw std::runtime_error("the drives do not come: " + text("up.err"));
 }
 
 int Shell::wait() {
@@ -120,23 +126,43 @@ int Shell::wait() {
 }
 
 int Shell::end(int signal) {
+  if (up_ <= 0) throw std::runtime_error("no control to be ended");
   kill(up_, signal);
   return wait();
 }
 
-json Shell::ask(const json& request) {
+std::optional<json> Shell::answer_to(const json& request) {
   SocketClient client;
   std::string answer;
-  if (!client.connect(socket()).empty() || !client.exchange(request.dump(), answer)) return json::object();
-  return json::parse(answer, nullptr, false);
+  if (!client.connect(socket()).empty() || !client.exchange(request.dump(), answer)) return std::nullopt;
+  return json::parse(answer);
+}
+
+json Shell::ask(const json& request) {
+  std::optional<json> answer = answer_to(request);
+  if (!answer) throw std::runtime_error("no control answers " + request.dump() + ": " + text("up.err"));
+  return std::move(*answer);
+}
+
+json Shell::status() {
+  json answer = ask({{"cmd", "status"}});
+  if (!answer.contains("axes")) throw std::runtime_error("no status: " + answer.dump());
+  return answer;
 }
 
 bool Shell::until(const std::function<bool(const json&)>& good, double patience_s) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience_s));
-  for (; Clock::now() < end; std::this_thread::sleep_for(std::chrono::milliseconds(5)))
-    if (good(status())) return true;
+  for (; Clock::now() < end; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    const std::optional<json> now = answer_to({{"cmd", "status"}});
+    if (now && now->contains("axes") && good(*now)) return true;
+    siginfo_t ended{};
+    const bool gone = !now && up_ > 0 &&
+                      waitid(P_PID, static_cast<id_t>(up_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+                      ended.si_pid == up_;
+    if (gone) throw std::runtime_error("the control has ended: " + text("up.err"));
+  }
   return false;
 }
 
@@ -150,8 +176,11 @@ bool Shell::plc_becomes(const std::string& name, const json& wanted) {
 }
 
 void Shell::ready() {
-  ASSERT_EQ(run({"power", "on", "--wait"}).exit, 0);
-  ASSERT_EQ(run({"home", "--wait"}).exit, 0);
+  for (const char* command : {"power on", "home"}) {
+    const Outcome done =
+        command == std::string("home") ? run({"home", "--wait"}) : run({"power", "on", "--wait"});
+    if (done.exit != 0) throw std::runtime_error(std::string(command) + ": " + done.err);
+  }
 }
 
 }  // namespace servogate::gateway::testing

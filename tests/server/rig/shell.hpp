@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ inline bool has_alarm(const nlohmann::json& status, int number) {
   return !alarm_of(status, number).is_null();
 }
 
-/// The program in a folder of its own; whatever it started is ended with it.
+/// The program in a folder of its own; whatever it started is ended with it. What a test builds on and does
+/// not come to be (up(), ready(), an answer) is an exception: it fails that test, and the next one begins.
 class Shell {
  public:
   Shell();
@@ -51,10 +53,12 @@ class Shell {
   int wait();
   pid_t pid() const { return up_; }
 
-  /// One request on the socket, answered.
+  /// One request on the socket, answered; throws where nobody answers.
   nlohmann::json ask(const nlohmann::json& request);
-  nlohmann::json status() { return ask({{"cmd", "status"}}); }
-  /// Asks for the status until `good` says so; false after `patience_s`.
+  /// Throws where there is none.
+  nlohmann::json status();
+  /// Asks for the status until `good` says so, which sees whole ones only; false after `patience_s`. Throws
+  /// when the control has ended.
   bool until(const std::function<bool(const nlohmann::json&)>& good, double patience_s = 30.0);
   /// Value of a variable or place of the PLC; null: there is none.
   nlohmann::json plc_value(const std::string& name);
@@ -69,6 +73,8 @@ class Shell {
   static std::string example(const std::string& path);
 
  private:
+  std::optional<nlohmann::json> answer_to(const nlohmann::json& request);
+
   std::filesystem::path folder_;
   std::string name_ = "three-axis-mill.sock";
   pid_t up_ = -1;
