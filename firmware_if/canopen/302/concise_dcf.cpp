@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/canopen/302/concise_dcf.hpp"
 
+#include "firmware_if/canopen/306/value_text.hpp"
+
 namespace servogate::canopen {
 namespace {
 
@@ -21,8 +23,9 @@ void add_entry(std::vector<ConfigurationEntry>& out, std::uint16_t index, std::u
   if (e.parameter_value->number) {
     const auto bytes = static_cast<std::size_t>(eds_type_bits(e.data_type) + 7) / 8;
     append(entry.data, static_cast<std::uint64_t>(e.parameter_value->number->at(node)), bytes);
-  } else {
-    entry.data.assign(e.parameter_value->text.begin(), e.parameter_value->text.end());
+  } else if (const ValueType* type = type_numbered(e.data_type)) {
+    // Texts as they are, OCTET_STRING and the like from their hexadecimal digits.
+    if (auto data = encode_value(e.parameter_value->text, *type)) entry.data = std::move(*data);
   }
   if (!entry.data.empty()) out.push_back(std::move(entry));
 }

@@ -38,22 +38,6 @@ void append_utf8(std::string& out, std::uint32_t c) {
   }
 }
 
-bool valid_utf8(std::string_view bytes) noexcept {
-  for (std::size_t i = 0; i < bytes.size();) {
-    const auto c = static_cast<unsigned char>(bytes[i]);
-    const std::size_t more = c < 0x80                ? 0
-                             : c >= 0xC2 && c < 0xE0 ? 1
-                             : c >= 0xE0 && c < 0xF0 ? 2
-                             : c >= 0xF0 && c < 0xF5 ? 3
-                                                     : 9;
-    if (more == 9 || i + more >= bytes.size() + (more == 0 ? 1 : 0)) return false;
-    for (std::size_t k = 1; k <= more; ++k)
-      if ((static_cast<unsigned char>(bytes[i + k]) & 0xC0) != 0x80) return false;
-    i += more + 1;
-  }
-  return true;
-}
-
 std::string from_utf16(std::string_view bytes, bool big_endian) {
   std::string out;
   for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
@@ -161,6 +145,22 @@ void EdsFindings::warn(const text::Entry& entry, int line, std::vector<std::stri
 }
 void EdsFindings::error(const text::Entry& entry, int line, std::vector<std::string> arguments) {
   add(text::Severity::error, entry, line, std::move(arguments));
+}
+
+bool valid_utf8(std::string_view bytes) noexcept {
+  for (std::size_t i = 0; i < bytes.size();) {
+    const auto c = static_cast<unsigned char>(bytes[i]);
+    const std::size_t more = c < 0x80                ? 0
+                             : c >= 0xC2 && c < 0xE0 ? 1
+                             : c >= 0xE0 && c < 0xF0 ? 2
+                             : c >= 0xF0 && c < 0xF5 ? 3
+                                                     : 9;
+    if (more == 9 || i + more >= bytes.size() + (more == 0 ? 1 : 0)) return false;
+    for (std::size_t k = 1; k <= more; ++k)
+      if ((static_cast<unsigned char>(bytes[i + k]) & 0xC0) != 0x80) return false;
+    i += more + 1;
+  }
+  return true;
 }
 
 bool same_word(std::string_view a, std::string_view b) noexcept {

@@ -38,6 +38,7 @@ class EdsFindings {
   std::vector<text::Finding> findings_;
 };
 
+bool valid_utf8(std::string_view bytes) noexcept;
 /// Equal but for the case of the letters A-Z.
 bool same_word(std::string_view a, std::string_view b) noexcept;
 

@@ -87,8 +87,11 @@ canopen::EdsEntry entry_of(const ReadObject& o, std::string name) {
   return e;
 }
 
-void take_value(canopen::EdsEntry& e, const ReadObject& o) {
-  e.parameter_value = canopen::EdsValue{eds_value_text(o.outcome.data, e.data_type), std::nullopt};
+bool take_value(canopen::EdsEntry& e, const ReadObject& o) {
+  auto text = eds_value_text(o.outcome.data, e.data_type);
+  e.parameter_value.reset();
+  if (text) e.parameter_value = canopen::EdsValue{std::move(*text), std::nullopt};
+  return e.parameter_value.has_value();
 }
 
 canopen::Eds sheet_of(const std::vector<ReadObject>& objects) {
@@ -96,7 +99,7 @@ canopen::Eds sheet_of(const std::vector<ReadObject>& objects) {
   const auto number = [&](std::uint8_t subindex) {
     for (const ReadObject& o : objects)
       if (o.index == object::kIdentity && o.subindex == subindex && o.outcome.ok())
-        return eds_value_text(o.outcome.data, 0x07);
+        return eds_value_text(o.outcome.data, 0x07).value_or("0");
     return std::string("0");
   };
   eds.file_info = {
@@ -179,11 +182,11 @@ std::vector<ReadObject> walk(SdoAccess& access, NodeId node, const std::vector<I
 }
 
 canopen::Eds configuration_of(const std::vector<ReadObject>& objects, const canopen::Eds* eds, NodeId node,
-                              std::uint32_t bit_rate) {
+                              std::uint32_t bit_rate, std::vector<std::string>& not_saved) {
   canopen::Eds dcf = eds != nullptr ? *eds : sheet_of(objects);
   for (const ReadObject& o : objects)
     if (canopen::EdsEntry* e = dcf.find(o.index, o.subindex); e != nullptr && o.outcome.ok())
-      take_value(*e, o);
+      if (!take_value(*e, o)) not_saved.push_back(address_text(o.index, o.subindex));
   canopen::EdsCommissioning commissioning = dcf.commissioning.value_or(canopen::EdsCommissioning{});
   commissioning.node = node;
   for (const ReadObject& o : objects)  // the serial number by which LSS finds it (CiA 306-1, 6.2)

@@ -33,9 +33,11 @@ std::vector<ReadObject> walk(SdoAccess& access, canopen::NodeId node, const std:
 std::vector<IndexRange> standard_areas();
 
 /// A DCF of what was read: the data sheet's objects with their values as the node has them, or, without a
-/// sheet, what was found with the types that the standards have or the length suggests.
+/// sheet, what was found with the types that the standards have or the length suggests. `not_saved` gets the
+/// places whose value no DCF can hold (canopen::eds_value_text).
 canopen::Eds configuration_of(const std::vector<ReadObject>& objects, const canopen::Eds* eds,
-                              canopen::NodeId node, std::uint32_t bit_rate);
+                              canopen::NodeId node, std::uint32_t bit_rate,
+                              std::vector<std::string>& not_saved);
 
 /// A parameter that is not as a file has it.
 struct Difference {

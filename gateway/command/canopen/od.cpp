@@ -27,6 +27,8 @@ const text::Entry kBadRange{"od.bad-range", "'{0}' is no range; expected FIRST-L
                             "«{0}» — не диапазон; нужно FIRST-LAST в шестнадцатеричном виде: 2000-5FFF"};
 const text::Entry kSilent{"od.silent", "node {0} does not answer{1}", "узел {0} не отвечает{1}"};
 const text::Entry kSaved{"od.saved", "{0}: {1} values of node {2}", "{0}: значений узла {2} — {1}"};
+const text::Entry kNotSaved{"od.not-saved", "{0}: not saved, a DCF cannot hold their values: {1}",
+                            "{0}: не сохранены, их значения нельзя записать в DCF: {1}"};
 const text::Entry kOtherNode{
     "od.other-node", "{0} is the configuration of node {1}; its COB-IDs are taken for those of node {2}",
     "{0} — настройка узла {1}; её COB-ID приняты для узла {2}"};
@@ -95,11 +97,15 @@ void print_objects(const Work& work, const ObjectCatalogue& catalogue,
 
 int save(const Work& work, const std::vector<ReadObject>& objects, const canopen::Eds* eds) {
   std::ofstream file(work.options.save, std::ios::binary);
-  file << canopen::write_dcf(configuration_of(objects, eds, work.node(), work.bit_rate));
+  std::vector<std::string> not_saved;
+  file << canopen::write_dcf(configuration_of(objects, eds, work.node(), work.bit_rate, not_saved));
   if (!file.flush()) {
     complain(kCannotWrite, {work.options.save, text::words_of(errno)});
     return kInfrastructure;
   }
+  std::string places;
+  for (const std::string& place : not_saved) places += (places.empty() ? "" : ", ") + place;
+  if (!places.empty()) complain(kNotSaved, {work.options.save, places});
   const auto read =
       std::count_if(objects.begin(), objects.end(), [](const auto& o) { return o.outcome.ok(); });
   std::fprintf(
