@@ -227,6 +227,43 @@ TEST_F(Workbench, od_saves_a_configuration_and_finds_what_was_changed_since) {
   EXPECT_NE(desk_.text("b.dcf").find("LSS_SerialNumber=0x5"), std::string::npos);
 }
 
+TEST_F(Workbench, od_finds_no_difference_to_what_it_has_saved_whatever_the_type) {
+  std::string sheet =
+      "[FileInfo]\nFileName=own.eds\n[DeviceInfo]\nVendorName=x\n[ManufacturerObjects]\n"
+      "SupportedObjects=4\n";
+  const struct {
+    const char *index, *type, *word, *value;
+  } rows[] = {{"2001", "0x0008", "f32", "1.17549435e-38"},
+              {"2002", "0x0009", "str", "'Привод оси X; 5%'"},
+              {"2003", "0x0015", "i64", "-9223372036854775808"},
+              {"2004", "0x001B", "u64", "0xFFFFFFFFFFFFFFFF"}};
+  int n = 0;
+  for (const auto& r : rows) sheet += std::to_string(++n) + "=0x" + r.index + "\n";
+  for (const auto& r : rows)
+    sheet += "[" + std::string(r.index) + "]\nParameterName=own\nObjectType=0x7\nDataType=" + r.type +
+             "\nAccessType=rw\nPDOMapping=0\n";
+  desk_.write("own.eds", sheet);
+  drives("5", {"--profile", path("own.eds")});
+  for (const auto& r : rows)
+    ASSERT_EQ(tool("sdo $BUS 5 write " + std::string(r.index) + " " + r.value + " " + r.word).code, 0);
+  const Ended saved = tool("od $BUS 5 --eds own.eds --save own.dcf");
+  ASSERT_EQ(saved.code, 0) << saved.err;
+  EXPECT_FALSE(saved.err_has("not saved")) << saved.err;
+  EXPECT_TRUE(saved.err_has("4 values of node 5")) << saved.err;
+  const json compared = facts("od $BUS 5 --compare own.dcf");
+  EXPECT_EQ(compared["differences"].size(), 0u) << compared;
+  EXPECT_EQ(compared["compared"], 4) << "none is left out";
+  EXPECT_NE(desk_.text("own.dcf").find("ParameterValue=Привод оси X; 5%\r\n"), std::string::npos);
+}
+
+TEST_F(Workbench, od_names_what_a_configuration_cannot_hold) {
+  drives("5");
+  ASSERT_EQ(tool("sdo $BUS 5 write 2100 ' indented' str").code, 0);
+  const Ended saved = tool("od $BUS 5 --range 2000-21FF --save a.dcf");
+  EXPECT_EQ(saved.code, 0);
+  EXPECT_TRUE(saved.err_has("a DCF cannot hold their values: 2100h:00")) << saved.err;
+}
+
 TEST_F(Workbench, od_of_a_node_that_is_not_there_fails) {
   const Ended ended = tool("od $BUS 9 --timeout 50");
   EXPECT_EQ(ended.code, 1);
