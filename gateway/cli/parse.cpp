@@ -330,8 +330,12 @@ std::optional<CommandLine> parse_command_line(int argc, char** argv, int& exit_c
   Commands commands(line);
   CLI::App& app = commands.app();
   exit_code = kWrongUse;
-  static char version[] = "version";
+  static char version[] = "version", help[] = "--help";
   if (argc == 2 && std::string_view(argv[1]) == "--version") argv[1] = version;
+  if (argc >= 2 && std::string_view(argv[1]) == "help") {  // `help plc run` as `plc run --help`
+    std::rotate(argv + 1, argv + 2, argv + argc);
+    argv[argc - 1] = help;
+  }
   const char* first = argc > 1 ? argv[1] : nullptr;
   if (unknown_command(app, "", first)) return std::nullopt;
   for (const char* group : {"plc", "can"})

@@ -28,6 +28,8 @@ constexpr Wrong kWrong[] = {
     {"$SG run $MILL \"\"", "`servogate run`: PROGRAM is empty", "«servogate run»: PROGRAM пуст"},
     {"$SG run $MILL --trace \"\"", "`servogate run`: --trace is empty", "«servogate run»: --trace пуст"},
     {"$SG run $MILL --virtual=1", "--virtual takes no value", "ключ --virtual не принимает значения"},
+    {"$SG help chek", "unknown command 'chek'; did you mean 'check'?", "неизвестная команда «chek»"},
+    {"$SG drive mock:can --node 127", "outside 1 to 126 (node-ID)", "вне пределов от 1 до 126"},
     {"$SG transmogrify", "unknown command 'transmogrify'; `servogate --help` lists them",
      "неизвестная команда «transmogrify»; их перечисляет"},
     {"$SG run $MILL --trcae x.csv", "`servogate run` has no option '--trcae'; did you mean '--trace'?",
@@ -61,6 +63,15 @@ constexpr Wrong kWrong[] = {
     {"$SG plc run a.st --cycle-ms 1e300", "--cycle-ms: '1e300' is outside 0.001 to 60000 ms",
      "--cycle-ms: «1e300» вне пределов от 0.001 до 60000 мс"},
 };
+
+TEST(Help, is_what_help_asks_for_too) {
+  const Desk desk;
+  for (const char* words : {"", "run", "plc run", "can bus"}) {
+    const Ended asked = desk.line("$SG help " + std::string(words));
+    EXPECT_EQ(asked.code, 0) << words;
+    EXPECT_EQ(asked.out, desk.line("$SG " + std::string(words) + " --help").out) << words;
+  }
+}
 
 TEST(Words, that_mean_nothing_are_named_in_the_users_language_in_one_short_line) {
   const Desk desk;

@@ -32,6 +32,8 @@ void add_can_bus(CLI::App& can, CanBusOptions& o) {
   bus.footer("Example: servogate can bus can0 --listen 127.0.0.1:29536");
 }
 
+/// 127 is the node-ID of a control's own heartbeat.
+constexpr const char* kNodes = "Node-ID, 1 to 126; several with commas";
 constexpr const char* kBus = "Url of the bus, or MACHINE.toml#bus";
 
 void add_can_restart(CLI::App& can, CanRestartOptions& o) {
@@ -53,11 +55,11 @@ void add_faults(CLI::App& app, FaultOptions& o) {
 void add_drive(CLI::App& app, DriveOptions& o) {
   CLI::App& d = *app.add_subcommand("drive", "Simulated CiA 402 drives on a bus, as a process of their own.");
   d.add_option("BUS", o.bus, kBus)->required();
-  d.add_option("--node", o.nodes, "Node-ID, 1 to 127; several with commas")
+  d.add_option("--node", o.nodes, kNodes)
       ->type_name("N,...")
       ->required()
       ->delimiter(',')
-      ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
+      ->check(number_within({1.0, 126.0, text::both("(node-ID)", "(номер узла)"), true}));
   d.add_option("--device", o.device, "Device file whose motor and name plate the drives have, without .toml")
       ->type_name("NAME");
   d.add_option("--profile", o.profile, "servo (the default), stepper, spindle, or a data sheet: FILE.eds")
@@ -91,11 +93,11 @@ void add_io(CLI::App& app, IoOptions& o) {
   CLI::App& c = *app.add_subcommand(
       "io", "Simulated I/O modules (CiA 401) or encoders (CiA 406) on a bus, in their own process.");
   c.add_option("BUS", o.bus, kBus)->required();
-  c.add_option("--node", o.nodes, "Node-ID, 1 to 127; several with commas")
+  c.add_option("--node", o.nodes, kNodes)
       ->type_name("N,...")
       ->required()
       ->delimiter(',')
-      ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
+      ->check(number_within({1.0, 126.0, text::both("(node-ID)", "(номер узла)"), true}));
   c.add_option("--kind", o.kind, "module (the default) or encoder")
       ->type_name("KIND")
       ->check(one_of({"module", "encoder"}));

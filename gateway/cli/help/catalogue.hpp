@@ -118,7 +118,7 @@ inline constexpr Translation kCatalogue[] = {
     {"File of lines SECONDS FAULT", "Файл из строк СЕКУНДЫ ОТКАЗ"},
     {"Simulated CiA 402 drives on a bus, as a process of their own.",
      "Имитируемые приводы CiA 402 на шине, отдельным процессом."},
-    {"Node-ID, 1 to 127; several with commas", "Номер узла, от 1 до 127; несколько через запятую"},
+    {"Node-ID, 1 to 126; several with commas", "Номер узла, от 1 до 126; несколько через запятую"},
     {"Node-ID, 1 to 127", "Номер узла, от 1 до 127"},
     {"Device file whose motor and name plate the drives have, without .toml",
      "Файл устройства, чьи двигатель и паспорт у приводов, без .toml"},
