@@ -77,6 +77,8 @@ void Axis::step_power(double dt, PowerSequence::Outputs& out) noexcept {
   PowerSequence::Inputs in;
   in.wanted = power_requested_ && power_permitted_;
   in.at_rest = held_ ? !moving_ : actual_standing_;
+  in.standing = actual_standing_;
+  in.feedback_s = config_.feedback_delay * dt;
   in.drive = drive_.online ? drive_.state : image::DriveState::offline;
   in.reaction = reaction_;
   in.dt = dt;

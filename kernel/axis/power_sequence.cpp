@@ -8,6 +8,8 @@ using image::Reaction;
 
 namespace {
 
+constexpr double kSag = 0.010;  ///< s in which a load shows that it sags as its brake opens
+
 /// In a quick stop: the drive still has its torque.
 bool brakes(DriveState drive) noexcept {
   return drive == DriveState::operation_enabled || drive == DriveState::quick_stop_active ||
@@ -42,6 +44,13 @@ void PowerSequence::drop(const Inputs& in) noexcept {
   }
 }
 
+/// A load that hangs on the brake sags into the position loop as it opens: motion begins from rest, and waits
+/// no longer for it than for the brake.
+bool PowerSequence::open_and_settled(const Inputs& in) const noexcept {
+  const double seen = brake_.command_time + brake_.release_delay + in.feedback_s + kSag;
+  return in_state_s_ >= seen && (in.standing || in_state_s_ >= seen + brake_.release_delay);
+}
+
 PowerSequence::Outputs PowerSequence::step(const Inputs& in) noexcept {
   in_state_s_ += in.dt;
   lost_ = false;
@@ -73,7 +82,7 @@ PowerSequence::Outputs PowerSequence::step(const Inputs& in) noexcept {
     case State::releasing:
       if (!in.wanted)
         enter(State::engaging);
-      else if (in_state_s_ >= brake_.command_time + brake_.release_delay)
+      else if (open_and_settled(in))
         enter(State::ready);
       break;
     case State::ready:

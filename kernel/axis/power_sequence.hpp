@@ -12,7 +12,8 @@ namespace servogate::axis {
 /// On: power, Operation enabled, torque delay, brake opens, release delay, motion permitted.
 /// Off, and with the reaction stop and power off: the axis has come to rest, brake closes, engage delay,
 /// power goes. A drive that lets go by itself meanwhile, or in its quick stop: the brake closes at once.
-/// The delays of the brake begin when its output has the command, BrakeData::command_time behind the cycle.
+/// The delays of the brake begin when its output has the command, BrakeData::command_time behind the cycle;
+/// motion waits until the feedback shows the open brake, and the load settled on the drive.
 /// Reaction power off: the brake closes at once; an axis with a brake keeps its torque (in the drive's quick
 /// stop) for the engage delay, so that the load does not drop; one without loses power at once.
 class PowerSequence {
@@ -27,8 +28,10 @@ class PowerSequence {
     engaging,   ///< brake closes, torque still there
   };
   struct Inputs {
-    bool wanted = false;  ///< power asked for and permitted
-    bool at_rest = true;  ///< the set-point stands (feedback: during a quick stop)
+    bool wanted = false;      ///< power asked for and permitted
+    bool at_rest = true;      ///< the set-point stands (feedback: during a quick stop)
+    bool standing = true;     ///< by the feedback
+    double feedback_s = 0.0;  ///< from a command to the feedback that shows it carried out
     image::DriveState drive = image::DriveState::offline;
     image::Reaction reaction = image::Reaction::none;
     double dt = 0.001;
@@ -55,6 +58,7 @@ class PowerSequence {
   bool has_brake() const noexcept { return brake_.output != BrakeOutput::none; }
   void enter(State s) noexcept;
   void drop(const Inputs& in) noexcept;
+  bool open_and_settled(const Inputs& in) const noexcept;
 
   BrakeData brake_;
   State state_ = State::off;

@@ -54,7 +54,7 @@ TEST(Brake, delays_begin_when_its_output_has_the_command) {
     if (open < 0 && brake_open(rig)) open = i;
     if (rig.axis.motion_permitted()) ready = i;
   }
-  EXPECT_NEAR(ready - open, 250, 2) << "no motion against a brake that is only being opened";
+  EXPECT_NEAR(ready - open, 262, 2) << "no motion against a brake that is only being opened";
   rig.axis.request_power(false);
   int closed = -1, off = -1;
   for (int i = 0; i < 500 && off < 0; ++i) {

@@ -65,7 +65,7 @@ TEST(Faults, emergency_stop_in_motion_stops_every_axis_within_its_limits_and_onl
   mill.run(2.0);
   EXPECT_TRUE(driven);
   EXPECT_TRUE(brake_open);
-  EXPECT_NEAR(engaging, 100, 2) << "the drive of Z holds until its brake has closed";
+  EXPECT_NEAR(engaging, 110, 2) << "the drive of Z holds until its brake, told within ten cycles, has closed";
   for (const char* letter : {"X", "Y", "Z"}) EXPECT_FALSE(mill.axis(letter).drive_command.power) << letter;
   EXPECT_NEAR(mill.true_position(2), z, 0.1) << "the load does not drop";
   EXPECT_EQ(mill.judge().verdict(), "");
