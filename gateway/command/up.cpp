@@ -14,6 +14,8 @@
 #include "gateway/history/texts.hpp"
 #include "gateway/report/report.hpp"
 #include "gateway/run/running_machine.hpp"
+#include "gateway/server/desk/desk.hpp"
+#include "gateway/server/resident.hpp"
 #include "gateway/server/socket/socket_path.hpp"
 #include "gateway/server/socket_server.hpp"
 
@@ -56,11 +58,12 @@ std::unique_ptr<RunningMachine> compose(const UpOptions& options, const machine:
 }
 
 /// Until somebody ends it, and everything rests.
-void serve(SocketServer& server) {
-  while (signals_seen() == 0 && !server.down_requested())
+void serve(Desk& desk, SocketServer& server) {
+  while (signals_seen() == 0 && !desk.down_requested())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  server.shut_down();
-  while (!server.at_rest()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  desk.shut_down();
+  while (!desk.at_rest()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  desk.stop();  // whoever still waits is answered
   server.stop();
 }
 
@@ -105,23 +108,25 @@ int up(const UpOptions& options) {
   const std::string socket = socket_of(options, m);
   count_signals();  // from here on there is something to be put away
   if (clock != ClockKind::virtual_time) refuse_suspension();
-  server = std::make_unique<SocketServer>(resident, socket);
+  Desk desk(resident);
+  server = std::make_unique<SocketServer>(desk, socket);
   if (const std::string problem = server->bind(); !problem.empty()) {
     complain(kNoSocket, {socket, problem});
     return kInfrastructure;
   }
   if (!running->begin()) return kInfrastructure;
+  desk.start();
   server->start();
   std::fprintf(
       stderr, "%s\n",
       text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()).c_str());
   history->note(
       history::event("up", history::says::kUp, {m.name, std::string(report::build_identity().version)}, 0.0));
-  serve(*server);
+  serve(desk, *server);
   const double ended_s = static_cast<double>(resident.image().now.t_ns) * 1e-9;
   history->note(history::event("down", history::says::kDown, {m.name}, ended_s));
   if (!put_away(*running, resident)) return kInfrastructure;
-  return unless_frames_lost(server->rests() ? kDone : kAlarm, running->control());
+  return unless_frames_lost(desk.rests() ? kDone : kAlarm, running->control());
 }
 
 }  // namespace servogate::gateway::command

@@ -189,7 +189,7 @@ void Resident::set_manual_block(const std::string& block) {
 
 void Resident::forget_modes() { control_.change({ProgramChange::Kind::modes, 0, {}, {}, {}}); }
 
-Resident::Zeroed Resident::zero(int axis, double value) {
+Zeroed Resident::zero(int axis, double value) {
   read_tables();
   const program::Position at = position();
   std::optional<program::Interpreter> manual;

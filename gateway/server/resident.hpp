@@ -91,11 +91,6 @@ class Resident {
   /// MDI begins with the power-on modes again.
   void forget_modes();
 
-  /// What zero() did.
-  struct Zeroed {
-    int origin = 0;      ///< number of the origin in force
-    double place = 0.0;  ///< machine coordinate of its zero now, mm or degrees (radius)
-  };
   /// Gives the present position of an axis a value (as programs write it: a diameter on a diameter axis) in
   /// the origin in force, after the gate has agreed.
   Zeroed zero(int axis, double value);

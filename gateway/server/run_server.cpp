@@ -2,34 +2,32 @@
 #include "gateway/server/run_server.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "gateway/cli/options.hpp"
 #include "gateway/server/bus_reading.hpp"
+#include "gateway/server/reply/reply_json.hpp"
 #include "gateway/server/request/request_form.hpp"
 #include "gateway/server/status.hpp"
 #include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
 
-using nlohmann::json;
-
 bool RunServer::needed(const machine::MachineConfig& machine) {
   return std::any_of(machine.buses.begin(), machine.buses.end(), [](const auto& b) { return !b.mock(); });
 }
 
-std::optional<Reply> RunServer::answer(std::string_view line, Connection&, const Ticket&) {
+std::optional<std::string> RunServer::answer(std::string_view line, Connection&, const LinePlace&) {
   FormProblem problem;
-  const std::optional<json> request = read_request(line, problem);
-  if (!request) return refuse(*problem.entry, problem.arguments, kWrongUse, problem.language);
-  const text::Language language = language_of(*request);
-  const std::string command = request->value("cmd", "");
-  if (command == "buses") {
+  const std::optional<ReadRequest> request = read_request(line, problem);
+  if (!request) return line_of(refuse(*problem.entry, problem.arguments, kWrongUse, problem.language));
+  if (ask::is_any<ask::Buses>(request->command)) {
     control_.cycle().read(image_);
-    return Reply{held_buses_json(control_.machine(), image_, true)};
+    Reply reply;
+    reply.content = held_buses(control_.machine(), image_, true);
+    return line_of(reply);
   }
-  if (command == "sdo_read") return sdo_read(control_, *request, language);
-  return refuse(says::kOnlyRead, {command}, kWrongUse, language);
+  if (const auto* wanted = std::get_if<ask::SdoRead>(&request->command))
+    return line_of(sdo_read(control_, *wanted, request->language));
+  return line_of(refuse(says::kOnlyRead, {request->name}, kWrongUse, request->language));
 }
 
 }  // namespace servogate::gateway

@@ -17,7 +17,8 @@ class RunServer final : public LineServer {
   ~RunServer() override { stop(); }
 
  private:
-  std::optional<Reply> answer(std::string_view line, Connection& connection, const Ticket& ticket) override;
+  std::optional<std::string> answer(std::string_view line, Connection& connection,
+                                    const LinePlace& place) override;
 
   Control& control_;
   image::ProcessImage image_;

@@ -9,7 +9,7 @@
 namespace servogate::gateway {
 
 /// The end of a control, look by look, so that its clients see it: motion stops on the path, the drives go
-/// off, the spindles run down. It waits for nobody. For the socket's thread.
+/// off, the spindles run down. It waits for nobody. For one thread.
 class ShutDown {
  public:
   ShutDown(Control& control, RequestDesk& requests)

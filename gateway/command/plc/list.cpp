@@ -6,6 +6,7 @@
 #include "gateway/command/plc/control_client.hpp"
 #include "gateway/command/plc/sources.hpp"
 #include "gateway/server/plc/plc_view.hpp"
+#include "gateway/server/reply/reply_json.hpp"
 
 namespace servogate::gateway::command {
 
@@ -48,7 +49,7 @@ int list_files(const PlcListOptions& options, json& answer) {
       plc::compile(std::move(sources), surroundings.symbols, surroundings.options);
   print_findings(compiled.findings);
   if (!compiled.ok()) return kWrongUse;
-  answer = {{"schema", 1}, {"files", options.files}, {"symbols", list_symbols(*compiled.image)}};
+  answer = json::parse(line_of(PlcSymbols{options.files, list_symbols(*compiled.image), {}}));
   return kDone;
 }
 

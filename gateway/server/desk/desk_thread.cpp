@@ -2,9 +2,7 @@
 #include "gateway/server/desk/desk_thread.hpp"
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 
-#include "gateway/cli/options.hpp"
 #include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
@@ -21,15 +19,15 @@ void DeskThread::start() {
   thread_ = std::thread([this] { run(); });
 }
 
-void DeskThread::take(Line line) {
+void DeskThread::take(Question question) {
   const std::scoped_lock lock(mutex_);
-  queues_[line.ticket.connection].lines.push_back(std::move(line));
+  queues_[question.ticket.client].questions.push_back(std::move(question));
   wake_.notify_one();
 }
 
-void DeskThread::gone(std::uint64_t connection) {
+void DeskThread::gone(std::uint64_t client) {
   const std::scoped_lock lock(mutex_);
-  queues_[connection].gone = true;
+  queues_[client].gone = true;
   wake_.notify_one();
 }
 
@@ -48,10 +46,10 @@ void DeskThread::stop() {
   for (const Done& done : done_) {
     Outcome outcome = done.finish ? done.finish() : Outcome(Work{});
     Reply* const reply = std::get_if<Reply>(&outcome);
-    if (done.line.ticket.connection != 0)
-      give_(done.line.ticket, reply != nullptr
-                                  ? std::move(*reply)
-                                  : refuse(says::kEnding, {}, kAlarm, done.line.caller.language));
+    if (done.question.ticket.client != 0)
+      give_(done.question.ticket, reply != nullptr
+                                      ? std::move(*reply)
+                                      : refuse(says::kEnding, {}, kAlarm, done.question.caller.language));
   }
 }
 
@@ -69,18 +67,19 @@ void DeskThread::run() {
   }
 }
 
-/// One thing: what was worked for, else a line of the next connection in turn. False: there is nothing.
+/// One thing: what was worked for, else a question of the next client in turn. False: there is nothing.
 bool DeskThread::turn(std::unique_lock<std::mutex>& lock) {
   if (!done_.empty()) {
     Done done = std::move(done_.front());
     done_.pop_front();
     lock.unlock();
-    settle(done.line, done.finish ? done.finish()
-                                  : Outcome(refuse(says::kEnding, {}, kAlarm, done.line.caller.language)));
+    settle(done.question, done.finish
+                              ? done.finish()
+                              : Outcome(refuse(says::kEnding, {}, kAlarm, done.question.caller.language)));
     lock.lock();
     return true;
   }
-  const auto waits = [](const Queue& q) { return !q.works && (q.gone || !q.lines.empty()); };
+  const auto waits = [](const Queue& q) { return !q.works && (q.gone || !q.questions.empty()); };
   auto next = queues_.upper_bound(served_);
   for (std::size_t n = 0; n <= queues_.size(); ++n, ++next) {
     if (next == queues_.end()) next = queues_.begin();
@@ -88,44 +87,44 @@ bool DeskThread::turn(std::unique_lock<std::mutex>& lock) {
   }
   if (next == queues_.end() || !waits(next->second)) return false;
   served_ = next->first;
-  if (next->second.lines.empty()) {
+  if (next->second.questions.empty()) {
     queues_.erase(next);
     lock.unlock();
     resident_.plc().release_of(served_);
     lock.lock();
     return true;
   }
-  const Line line = std::move(next->second.lines.front());
-  next->second.lines.pop_front();
+  const Question question = std::move(next->second.questions.front());
+  next->second.questions.pop_front();
   next->second.works = true;
   lock.unlock();
-  settle(line, dispatch(resident_, line));
+  settle(question, dispatch(resident_, question));
   lock.lock();
   return true;
 }
 
-void DeskThread::settle(const Line& line, Outcome outcome) {
+void DeskThread::settle(const Question& question, Outcome outcome) {
   if (Work* work = std::get_if<Work>(&outcome))
-    order(line, std::move(*work));
+    order(question, std::move(*work));
   else
-    answered(line, std::move(std::get<Reply>(outcome)));
+    answered(question, std::move(std::get<Reply>(outcome)));
 }
 
-void DeskThread::answered(const Line& line, Reply reply) {
-  resident_.works().end(line.ticket);
-  if (line.ticket.connection == 0) return;
-  give_(line.ticket, std::move(reply));
+void DeskThread::answered(const Question& question, Reply reply) {
+  resident_.works().end(question.ticket);
+  if (question.ticket.client == 0) return;
+  give_(question.ticket, std::move(reply));
   const std::scoped_lock lock(mutex_);
-  if (const auto queue = queues_.find(line.ticket.connection); queue != queues_.end())
+  if (const auto queue = queues_.find(question.ticket.client); queue != queues_.end())
     queue->second.works = false;
 }
 
-void DeskThread::order(Line line, Work work) {
-  resident_.works().begin(line.ticket, work.what, work.name);
+void DeskThread::order(Question question, Work work) {
+  resident_.works().begin(question.ticket, work.what, work.name);
   Workshop& shop = work.bench == Work::Bench::files ? files_ : thought_;
-  shop.take(std::move(work), [this, line = std::move(line)](Finish finish) {
+  shop.take(std::move(work), [this, question = std::move(question)](Finish finish) {
     const std::scoped_lock lock(mutex_);
-    done_.push_back({line, std::move(finish)});
+    done_.push_back({question, std::move(finish)});
     wake_.notify_one();
   });
 }

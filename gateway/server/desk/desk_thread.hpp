@@ -15,8 +15,8 @@
 
 namespace servogate::gateway {
 
-/// Carries out what clients ask for, one request after the other, on a thread of its own: connections take
-/// turns, and of one connection the next request waits for the answer of the one before. What takes long is
+/// Carries out what clients ask for, one request after the other, on a thread of its own: clients take
+/// turns, and of one client the next request waits for the answer of the one before. What takes long is
 /// done in workshops, meanwhile others are answered.
 class DeskThread {
  public:
@@ -30,9 +30,9 @@ class DeskThread {
   /// Starts the thread; what it is given before waits.
   void start();
   // Any thread:
-  void take(Line line);
+  void take(Question question);
   /// The client is gone: behind what it has asked for, what it held at the PLC is let go.
-  void gone(std::uint64_t connection);
+  void gone(std::uint64_t client);
   /// The control comes to its end: what is being thought about is given up.
   void cancel() { thought_.cancel(); }
   /// Ends the thread behind the request under way; what is to be written is written. Once.
@@ -40,26 +40,26 @@ class DeskThread {
 
  private:
   struct Queue {
-    std::deque<Line> lines;
-    bool works = false;  ///< the answer to a line is being worked for
+    std::deque<Question> questions;
+    bool works = false;  ///< the answer to one is being worked for
     bool gone = false;
   };
   struct Done {
-    Line line;
+    Question question;
     Finish finish;
   };
   void run();
   bool turn(std::unique_lock<std::mutex>& lock);
-  void settle(const Line& line, Outcome outcome);
-  void answered(const Line& line, Reply reply);
-  void order(Line line, Work work);
+  void settle(const Question& question, Outcome outcome);
+  void answered(const Question& question, Reply reply);
+  void order(Question question, Work work);
 
   Resident& resident_;
   Give give_;
   std::mutex mutex_;
   std::condition_variable wake_;
-  std::map<std::uint64_t, Queue> queues_;  ///< by connection
-  std::uint64_t served_ = 0;               ///< connection whose turn it was last
+  std::map<std::uint64_t, Queue> queues_;  ///< by client
+  std::uint64_t served_ = 0;               ///< client whose turn it was last
   std::deque<Done> done_;
   bool end_ = false;
   Workshop thought_, files_;

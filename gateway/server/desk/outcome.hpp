@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "gateway/compose/program/program_check.hpp"
-#include "gateway/server/socket/line.hpp"
+#include "gateway/server/reply/reply.hpp"
 
 namespace servogate::gateway {
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/server/desk/refusal.hpp"
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "gateway/cli/options.hpp"
 #include "kernel/cycle/gate/gate.hpp"
 
 namespace servogate::gateway {
@@ -28,13 +26,14 @@ std::vector<std::string> as_people_write(image::Answer& answer, const machine::M
 
 }  // namespace
 
-nlohmann::json refusal_json(image::Answer answer, const machine::MachineConfig& machine,
-                            text::Language language) {
+Reply refused_by_gate(image::Answer answer, const machine::MachineConfig& machine, text::Language language) {
   const std::vector<std::string> units = as_people_write(answer, machine);
-  return {{"ok", false},
-          {"code", cycle::refusal_texts()[answer.refusal].id},
-          {"text", cycle::render(answer, machine.letters(), language, units)},
-          {"exit", kAlarm}};
+  Reply reply;
+  reply.ok = false;
+  reply.exit = kAlarm;
+  reply.code = cycle::refusal_texts()[answer.refusal].id;
+  reply.text = cycle::render(answer, machine.letters(), language, units);
+  return reply;
 }
 
 }  // namespace servogate::gateway

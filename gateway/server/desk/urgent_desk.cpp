@@ -2,9 +2,7 @@
 #include "gateway/server/desk/urgent_desk.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "gateway/cli/options.hpp"
 #include "gateway/run/words/jog_words.hpp"
 #include "gateway/server/desk/refusal.hpp"
 #include "gateway/server/words/texts.hpp"
@@ -14,7 +12,6 @@ namespace servogate::gateway {
 namespace {
 
 using image::RequestKind;
-using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kSilence{100};    ///< of the wall clock, then a hand is dead
@@ -22,23 +19,18 @@ constexpr std::chrono::milliseconds kOften{5};        ///< more keep-alives than
 constexpr std::chrono::milliseconds kPatience{2000};  ///< with a cycle that does not answer
 constexpr std::chrono::seconds kCatchUp{1};  ///< with the image that shows it, however long cycles are
 
+/// What is posted for a command, and said of it.
 struct Row {
-  std::string_view command;
   RequestKind kind;
   const text::Entry* said;
 };
-constexpr Row kRows[] = {{"stop", RequestKind::stop, &says::kStopped},
-                         {"quick_stop", RequestKind::quick_stop, &says::kStopped},
-                         {"hold", RequestKind::hold, nullptr},
-                         {"jog_stop", RequestKind::jog_stop, &says::kStopped},
-                         {"power", RequestKind::power, &says::kPowerOff}};
-
-/// How the jog of this client ended; nullopt: it goes on.
-std::optional<image::JogEnd> end_of(const HeldJog& jog, const image::AxisImage& a) {
-  if (jog.silent) return image::JogEnd::silent;
-  if (!(a.hand == jog.hand)) return image::JogEnd::none;  // another hand has begun a jog meanwhile
-  if (a.jog_end != image::JogEnd::none) return a.jog_end;
-  return a.owner == image::AxisOwner::manual ? std::nullopt : std::optional(image::JogEnd::none);
+std::optional<Row> row_of(const ask::Command& command) {
+  if (ask::is_any<ask::Stop>(command)) return Row{RequestKind::stop, &says::kStopped};
+  if (ask::is_any<ask::QuickStop>(command)) return Row{RequestKind::quick_stop, &says::kStopped};
+  if (ask::is_any<ask::Hold>(command)) return Row{RequestKind::hold, nullptr};
+  if (ask::is_any<ask::JogStop>(command)) return Row{RequestKind::jog_stop, &says::kStopped};
+  if (ask::is_any<ask::Power>(command)) return Row{RequestKind::power, &says::kPowerOff};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -56,35 +48,42 @@ const image::ProcessImage& UrgentDesk::image() {
   return *image_;
 }
 
-std::optional<Reply> UrgentDesk::take(const json& request, const Caller& caller, Connection& connection,
-                                      const Ticket& ticket, bool ending) {
-  const std::string command = request.value("cmd", "");
-  if (command == "keep_alive") {
+/// How the jog of this client ended; nullopt: it goes on.
+std::optional<image::JogEnd> UrgentDesk::end_of(const HeldJog& jog, const image::AxisImage& a) {
+  if (jog.silent) return image::JogEnd::silent;
+  if (!(a.hand == jog.hand)) return image::JogEnd::none;  // another hand has begun a jog meanwhile
+  if (a.jog_end != image::JogEnd::none) return a.jog_end;
+  return a.owner == image::AxisOwner::manual ? std::nullopt : std::optional(image::JogEnd::none);
+}
+
+std::optional<Reply> UrgentDesk::take(const Question& question, bool ending) {
+  const Caller& caller = question.caller;
+  if (const auto* wanted = std::get_if<ask::KeepAlive>(&question.command)) {
     if (ending) return refuse(says::kEnding, {}, kAlarm, caller.language);
-    return keep_alive(request, caller, connection);
+    return keep_alive(*wanted, question);
   }
-  const auto row =
-      std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) { return r.command == command; });
-  if (row == std::end(kRows)) return refuse(says::kUnknown, {command}, kWrongUse, caller.language);
+  const std::optional<Row> row = row_of(question.command);
+  if (!row) return refuse(says::kUnknown, {}, kWrongUse, caller.language);
   image::Request r{.asker = caller.asker, .kind = row->kind, .process = -1, .client = caller.hand().client};
   if (row->kind == RequestKind::power) r.process = 0;
-  if (row->kind == RequestKind::jog_stop && request.contains("axis")) {
-    FormProblem problem;
-    const int axis = axis_of(control_.machine(), request["axis"], problem);
-    if (axis < 0) return refuse(*problem.entry, problem.arguments, kWrongUse, caller.language);
-    r.axis = static_cast<std::int8_t>(axis);
+  if (const auto* jog = std::get_if<ask::JogStop>(&question.command)) {
+    if (jog->axis) {
+      FormProblem problem;
+      const int axis = axis_of(control_.machine(), *jog->axis, problem);
+      if (axis < 0) return refuse(*problem.entry, problem.arguments, kWrongUse, caller.language);
+      r.axis = static_cast<std::int8_t>(axis);
+    }
+    if (const auto own = jogs_.find(question.ticket.client); own != jogs_.end())
+      std::erase_if(own->second, [&](const HeldJog& j) { return r.axis < 0 || j.axis == r.axis; });
   }
-  if (row->kind == RequestKind::jog_stop)
-    std::erase_if(connection.jogs, [&](const HeldJog& j) { return r.axis < 0 || j.axis == r.axis; });
   Pending pending;
-  pending.ticket = ticket;
-  pending.caller = caller;
+  pending.ticket = question.ticket;
+  pending.language = caller.language;
   pending.said = row->said != nullptr ? row->said : &said_of_hold();
   pending.asked = Clock::now();
   pending.id = requests_.post(r);
   if (pending.id == 0) return refuse(says::kNoAnswer, {}, kInfrastructure, caller.language);
   pending_.push_back(std::move(pending));
-  connection.urgent_line = ticket.line;
   return std::nullopt;
 }
 
@@ -112,47 +111,49 @@ std::optional<Reply> UrgentDesk::answer_of(Pending& p) {
     if (!p.answer && Clock::now() - p.asked < kPatience) return std::nullopt;
     if (!p.answer) {
       requests_.forget(p.id);
-      return refuse(says::kNoAnswer, {}, kInfrastructure, p.caller.language);
+      return refuse(says::kNoAnswer, {}, kInfrastructure, p.language);
     }
     p.answered_in = image().now.number;
     p.asked = Clock::now();
   }
   if (image().now.number == p.answered_in && Clock::now() - p.asked < kCatchUp) return std::nullopt;
-  if (p.answer->refusal == 0) return accept(*p.said, {}, p.caller.language, json::object());
-  return Reply{text_of(refusal_json(*p.answer, control_.machine(), p.caller.language))};
+  if (p.answer->refusal == 0) return accept(*p.said, {}, p.language);
+  return refused_by_gate(*p.answer, control_.machine(), p.language);
 }
 
-void UrgentDesk::look(const Give& give) {
+std::vector<std::pair<Ticket, Reply>> UrgentDesk::look() {
+  std::vector<std::pair<Ticket, Reply>> come;
   std::erase_if(pending_, [&](Pending& p) {
     std::optional<Reply> reply = answer_of(p);
-    if (reply) give(p.ticket, std::move(*reply));
+    if (reply) come.emplace_back(p.ticket, std::move(*reply));
     return reply.has_value();
   });
+  return come;
 }
 
 Reply UrgentDesk::ended(const HeldJog& jog, image::JogEnd end, bool others, text::Language language) const {
   const std::string letter = control_.machine().axes[static_cast<std::size_t>(jog.axis)].letter;
-  return {text_of({{"ok", true},
-                   {"exit", kDone},
-                   {"moving", others},
-                   {"axis", letter},
-                   {"reason", jog_end_name(end)},
-                   {"code", jog_end_code(end)},
-                   {"text", jog_end_words(end, letter, language)}})};
+  Reply reply;
+  reply.code = jog_end_code(end);
+  reply.text = jog_end_words(end, letter, language);
+  reply.content = JogState{others, letter, jog_end_name(end)};
+  return reply;
 }
 
-/// Those of this connection only: the dead-man of a jog is its own client's.
-Reply UrgentDesk::keep_alive(const json& request, const Caller& caller, Connection& connection) {
+/// Those of this client only: the dead-man of a jog is its own client's.
+Reply UrgentDesk::keep_alive(const ask::KeepAlive& wanted, const Question& question) {
+  const text::Language language = question.caller.language;
   int index = -1;
-  if (request.contains("axis")) {
+  if (wanted.axis) {
     FormProblem problem;
-    index = axis_of(control_.machine(), request["axis"], problem);
-    if (index < 0) return refuse(*problem.entry, problem.arguments, kWrongUse, caller.language);
+    index = axis_of(control_.machine(), *wanted.axis, problem);
+    if (index < 0) return refuse(*problem.entry, problem.arguments, kWrongUse, language);
   }
   const auto meant = [index](const HeldJog& j) { return index < 0 || j.axis == index; };
-  std::vector<HeldJog>& jogs = connection.jogs;
-  if (std::none_of(jogs.begin(), jogs.end(), meant))
-    return refuse(says::kNoJog, {}, kWrongUse, caller.language);
+  const auto own = jogs_.find(question.ticket.client);
+  if (own == jogs_.end() || std::none_of(own->second.begin(), own->second.end(), meant))
+    return refuse(says::kNoJog, {}, kWrongUse, language);
+  std::vector<HeldJog>& jogs = own->second;
   const image::ProcessImage& now = image();
   std::optional<Reply> gone;
   for (std::size_t i = jogs.size(); i-- > 0;) {
@@ -162,7 +163,7 @@ Reply UrgentDesk::keep_alive(const json& request, const Caller& caller, Connecti
     if (end && !gone) {  // one an answer
       const HeldJog last = jog;
       jogs.erase(jogs.begin() + static_cast<std::ptrdiff_t>(i));
-      gone = ended(last, *end, !jogs.empty(), caller.language);
+      gone = ended(last, *end, !jogs.empty(), language);
     }
     if (end) continue;
     jog.heard = Clock::now();
@@ -173,35 +174,42 @@ Reply UrgentDesk::keep_alive(const json& request, const Caller& caller, Connecti
                     .axis = static_cast<std::int8_t>(jog.axis),
                     .client = jog.hand.client});
   }
-  return gone ? *gone : Reply{text_of({{"ok", true}, {"exit", kDone}, {"moving", true}})};
+  if (gone) return *gone;
+  Reply reply;
+  reply.content = JogState{true, {}, {}};
+  return reply;
 }
 
-void UrgentDesk::stop(const HeldJog& jog) {
-  requests_.tell({.asker = jog.hand.asker,
+void UrgentDesk::stop(int axis, const image::Hand& hand) {
+  requests_.tell({.asker = hand.asker,
                   .kind = RequestKind::jog_stop,
-                  .axis = static_cast<std::int8_t>(jog.axis),
-                  .client = jog.hand.client,
+                  .axis = static_cast<std::int8_t>(axis),
+                  .client = hand.client,
                   .value = 1.0});
 }
 
-void UrgentDesk::begin(const HeldJog& jog, Connection* connection) {
-  if (connection == nullptr) return stop(jog);
-  std::erase_if(connection->jogs, [&](const HeldJog& j) { return j.axis == jog.axis; });
-  connection->jogs.push_back(jog);
+void UrgentDesk::begin(std::uint64_t client, const JogBegun& jog) {
+  std::vector<HeldJog>& jogs = jogs_[client];
+  std::erase_if(jogs, [&](const HeldJog& j) { return j.axis == jog.axis; });
+  jogs.push_back({jog.axis, jog.hand, Clock::now(), {}, false});
 }
 
-void UrgentDesk::watch(Connection& connection) {
+void UrgentDesk::watch() {
+  std::erase_if(jogs_, [](const auto& own) { return own.second.empty(); });
   if (speed_ == 1.0) return;
-  for (HeldJog& jog : connection.jogs) {
-    if (jog.silent || Clock::now() - jog.heard < kSilence) continue;
-    jog.silent = true;
-    stop(jog);
-  }
+  for (auto& [client, jogs] : jogs_)
+    for (HeldJog& jog : jogs) {
+      if (jog.silent || Clock::now() - jog.heard < kSilence) continue;
+      jog.silent = true;
+      stop(jog.axis, jog.hand);
+    }
 }
 
-void UrgentDesk::let_go(Connection& connection) {
-  for (const HeldJog& jog : connection.jogs) stop(jog);
-  connection.jogs.clear();
+void UrgentDesk::let_go(std::uint64_t client) {
+  const auto own = jogs_.find(client);
+  if (own == jogs_.end()) return;
+  for (const HeldJog& jog : own->second) stop(jog.axis, jog.hand);
+  jogs_.erase(own);
 }
 
 }  // namespace servogate::gateway

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "gateway/server/socket/line.hpp"
+#include "gateway/server/desk/question.hpp"
 
 namespace servogate::gateway {
 
@@ -19,7 +19,7 @@ class Works {
     std::chrono::steady_clock::time_point since;
   };
   void begin(const Ticket& ticket, std::string what, std::string name) {
-    if (ticket.connection == 0) return;
+    if (ticket.client == 0) return;
     const auto same = find(ticket);  // one work may lead to another
     if (same != list_.end())
       same->what = std::move(what), same->name = std::move(name);
@@ -34,7 +34,7 @@ class Works {
  private:
   std::vector<Entry>::iterator find(const Ticket& ticket) {
     return std::find_if(list_.begin(), list_.end(),
-                        [&](const Entry& e) { return e.ticket.connection == ticket.connection; });
+                        [&](const Entry& e) { return e.ticket.client == ticket.client; });
   }
   std::vector<Entry> list_;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include "gateway/compose/plc/logic_change.hpp"
 #include "gateway/server/desk/outcome.hpp"
 #include "gateway/server/request/caller.hpp"
+#include "gateway/server/request/command.hpp"
 #include "plc/types/type.hpp"
 
 namespace servogate::gateway {
@@ -24,15 +24,14 @@ class PlcDesk {
  public:
   explicit PlcDesk(Resident& resident) : resident_(resident) {}
 
-  /// Carries out `plc_load`, `plc_force`, `plc_release`, `plc_hold`, `plc_step`, `plc_go`, `plc_watch` or
-  /// `plc_list`; the answer is what docs/control-socket.md says.
-  Outcome carry_out(const nlohmann::json& request, const Caller& who);
+  /// Carries out what is ask::of_plc().
+  Outcome carry_out(const ask::Command& command, const Caller& who);
   /// Lets go what a connection has forced, and the PLC where it holds it.
   void release_of(std::uint64_t connection);
   /// Who holds the PLC for single scans; empty: nobody.
   const std::string& held_by() const noexcept { return holder_; }
   /// All that is forced: name, value, who, and whether it stays.
-  nlohmann::json forced() const;
+  std::vector<ForcedValue> forced() const;
 
  private:
   struct Force {
@@ -41,26 +40,26 @@ class PlcDesk {
     std::vector<image::Request> places;
     std::uint64_t owner = 0;  ///< connection; 0: it stays
   };
-  using json = nlohmann::json;
   struct Load;
-  Outcome load(const json& request, const Caller& who);
-  json loaded(Load& load, const Caller& who);
-  json force(const json& request, const Caller& who);
-  json release(const json& request, const Caller& who);
-  json hold(const json& request, const Caller& who);
-  json step(const json& request, const Caller& who);
-  json go(const json& request, const Caller& who);
-  json watch(const json& request, const Caller& who);
-  json watch_body(const std::string& name, const Caller& who);
-  json list(const json& request, const Caller& who);
-  json times(json answer, const Caller& who);
-  json change(const LogicChange& change, double value, const Caller& who);
-  json ask(image::Request request, const Caller& who);
+  Outcome take(const ask::PlcLoad& wanted, const Caller& who);
+  Outcome take(const ask::PlcForce& wanted, const Caller& who);
+  Outcome take(const ask::PlcRelease& wanted, const Caller& who);
+  Outcome take(const ask::PlcHold& wanted, const Caller& who);
+  Outcome take(const ask::PlcStep& wanted, const Caller& who);
+  Outcome take(const ask::PlcGo& wanted, const Caller& who);
+  Outcome take(const ask::PlcWatch& wanted, const Caller& who);
+  Outcome take(const ask::PlcList& wanted, const Caller& who);
+  Reply loaded(Load& load, const Caller& who);
+  Outcome watch_body(const std::string& name, const Caller& who);
+  Reply change(const LogicChange& change, double value, const Caller& who);
+  /// What the gate answers; accepted: nothing but that.
+  Reply ask(image::Request request, const Caller& who);
   bool let_go(const Force& force, const Caller& who);
-  json force_places(std::vector<image::Request> requests, const Caller& who);
+  Reply force_places(std::vector<image::Request> requests, const Caller& who);
   const Force* force_of(const std::string& name) const;
   std::optional<std::string> forced_value(const std::string& name, const plc::Type& type) const;
-  std::string log(const LogicChange& change, const json& told, const Caller& who);
+  PlcValue value_of(const std::string& shown, const std::string& name, const plc::Type& type,
+                    std::string text) const;
 
   Resident& resident_;
   std::vector<Force> forces_;

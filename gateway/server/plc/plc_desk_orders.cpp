@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/server/plc/plc_desk.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
 #include <cmath>
-#include <ctime>
-#include <filesystem>
 
-#include "firmware_if/text/system_words.hpp"
 #include "gateway/compose/plc/force_plan.hpp"
 #include "gateway/files/read_file.hpp"
-#include "gateway/machine/consequences.hpp"
-#include "gateway/report/report.hpp"
 #include "gateway/server/desk/refusal.hpp"
+#include "gateway/server/plc/change_log.hpp"
 #include "gateway/server/plc/plc_answers.hpp"
 #include "gateway/server/resident.hpp"
 #include "gateway/server/words/texts.hpp"
@@ -25,10 +16,7 @@ namespace servogate::gateway {
 
 namespace {
 
-using nlohmann::json;
 using plc_answers::kNoVariable;
-using plc_answers::refused;
-using plc_answers::told;
 using text::Entry;
 
 const Entry kNoPlc{"plc.none", "this machine has no PLC program", "у этого станка нет программы ПЛК"};
@@ -78,44 +66,38 @@ std::string joined(const std::vector<std::string>& list) {
 
 }  // namespace
 
-json PlcDesk::ask(image::Request request, const Caller& who) {
+Reply PlcDesk::ask(image::Request request, const Caller& who) {
   request.asker = who.asker;
   request.client = who.hand().client;
   image::Answer answer;
   if (resident_.ask(request, answer, resident_.requests().stops()) != RequestDesk::Outcome::answered)
-    return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
-  if (answer.refusal == 0) return {{"ok", true}};
-  return refusal_json(answer, resident_.control().machine(), who.language);
+    return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
+  if (answer.refusal == 0) return {};
+  return refused_by_gate(answer, resident_.control().machine(), who.language);
 }
 
-json PlcDesk::change(const LogicChange& change, double value, const Caller& who) {
+Reply PlcDesk::change(const LogicChange& change, double value, const Caller& who) {
   image::Request request;
   request.kind = image::RequestKind::logic;
   request.index = change.number;
   request.value = value;
-  json answer = ask(request, who);
-  if (!answer["ok"].get<bool>()) resident_.control().logic()->withdraw(change.number);
+  Reply answer = ask(request, who);
+  if (!answer.ok) resident_.control().logic()->withdraw(change.number);
   resident_.control().logic()->settle();
   return answer;
 }
 
-Outcome PlcDesk::carry_out(const json& request, const Caller& who) {
-  using Handler = json (PlcDesk::*)(const json&, const Caller&);
-  static constexpr struct {
-    std::string_view command;
-    Handler handler;
-  } kRows[] = {{"plc_force", &PlcDesk::force}, {"plc_release", &PlcDesk::release},
-               {"plc_hold", &PlcDesk::hold},   {"plc_step", &PlcDesk::step},
-               {"plc_go", &PlcDesk::go},       {"plc_watch", &PlcDesk::watch},
-               {"plc_list", &PlcDesk::list}};
-  if (resident_.control().logic() == nullptr)
-    return Reply{text_of(refused(kNoPlc, {}, kAlarm, who.language))};
+Outcome PlcDesk::carry_out(const ask::Command& command, const Caller& who) {
+  if (resident_.control().logic() == nullptr) return refuse(kNoPlc, {}, kAlarm, who.language);
   resident_.control().logic()->settle();
-  const std::string command = request.value("cmd", "");
-  if (command == "plc_load") return load(request, who);
-  for (const auto& row : kRows)
-    if (row.command == command) return Reply{text_of((this->*row.handler)(request, who))};
-  return refuse(says::kUnknown, {command}, kWrongUse, who.language);
+  return std::visit(
+      [&](const auto& wanted) -> Outcome {
+        if constexpr (requires { this->take(wanted, who); })
+          return take(wanted, who);
+        else
+          return refuse(says::kUnknown, {}, kWrongUse, who.language);  // of_plc() keeps it away
+      },
+      command);
 }
 
 /// A program of the PLC on its way from its files into the cycle.
@@ -128,16 +110,16 @@ struct PlcDesk::Load {
 };
 
 /// Reading and compiling happen beside the desk.
-Outcome PlcDesk::load(const json& request, const Caller& who) {
+Outcome PlcDesk::take(const ask::PlcLoad& wanted, const Caller& who) {
   const Control& control = resident_.control();
   const auto load = std::make_shared<Load>();
-  load->names = request.value("files", std::vector<std::string>{});
+  load->names = wanted.files;
   if (load->names.empty())
     for (const std::string& source : control.machine().plc.sources)
       load->names.push_back(control.machine().resolve(source));
   load->change.kind = LogicChange::Kind::load;
-  load->change.online = request.value("online", false);
-  load->while_running = request.value("while_running", false);
+  load->change.online = wanted.online;
+  load->while_running = wanted.while_running;
   Work work;
   work.what = "plc_load", work.name = joined(load->names);
   work.run = [this, &control, load, who](const std::stop_token& stop) -> Finish {
@@ -150,103 +132,63 @@ Outcome PlcDesk::load(const json& request, const Caller& who) {
     }
     if (load->unreadable.empty()) load->compiled = control.compile(load->change.files, stop);
     if (stop.stop_requested()) throw Cancelled{};
-    return [this, load, who]() -> Outcome { return Reply{text_of(loaded(*load, who))}; };
+    return [this, load, who]() -> Outcome { return loaded(*load, who); };
   };
   return work;
 }
 
-json PlcDesk::loaded(Load& load, const Caller& who) {
-  if (!load.unreadable.empty()) return refused(kNoFiles, {load.unreadable}, kWrongUse, who.language);
+Reply PlcDesk::loaded(Load& load, const Caller& who) {
+  if (!load.unreadable.empty()) return refuse(kNoFiles, {load.unreadable}, kWrongUse, who.language);
   Control& control = resident_.control();
   LogicChange& change = load.change;
-  const std::vector<std::string>& names = load.names;
   change.number = control.next_logic_change();
   const PlcLogic::Plan plan = control.prepare(change, std::move(load.compiled));
-  json more{{"findings", json::parse(machine::to_json(plan.findings), nullptr, false)}};
   if (!plan.possible) {
-    json answer = refused(kNotCompiled, {}, kAlarm, who.language);
-    std::string words = answer["text"];
-    for (const text::Finding& f : plan.findings) words += "\n" + f.str(who.language) + "\n" + f.excerpt();
-    while (words.ends_with('\n')) words.pop_back();
-    answer["text"] = words;
-    answer.update(more);
+    Reply answer = refuse(kNotCompiled, {}, kAlarm, who.language);
+    for (const text::Finding& f : plan.findings)
+      answer.text += "\n" + f.str(who.language) + "\n" + f.excerpt();
+    while (answer.text.ends_with('\n')) answer.text.pop_back();
+    PlcLoaded found;
+    found.findings = plan.findings;
+    answer.content = std::move(found);
     return answer;
   }
-  json answer = this->change(change, load.while_running ? 1.0 : 0.0, who);
-  if (!answer["ok"].get<bool>()) {
+  Reply refused = this->change(change, load.while_running ? 1.0 : 0.0, who);
+  if (!refused.ok) {
     if (!change.online || !load.while_running)
-      answer["text"] = answer["text"].get<std::string>() + "\n" +
-                       text::render(kLoadLater, std::vector<std::string>{}, who.language);
-    return answer;
+      refused.text += "\n" + text::render(kLoadLater, std::vector<std::string>{}, who.language);
+    return refused;
   }
   for (const std::string& name : plan.forces_lost)
     std::erase_if(forces_, [&](const Force& f) { return f.places.empty() && plc::same_name(f.name, name); });
-  answer = told(kChanged, {joined(names), std::to_string(plan.kept), std::to_string(plan.fresh.size())},
-                who.language);
-  const std::string sources = joined(names);
+  const PlcLoaded told{plan.findings, true,          load.names,       change.online,  plan.kept,
+                       plan.fresh,    plan.given_up, plan.forces_lost, plan.set_aside, plan.taken_back,
+                       plan.lost};
+  const std::string sources = joined(load.names);
+  Reply answer = accept(kChanged, {sources, std::to_string(plan.kept), std::to_string(plan.fresh.size())},
+                        who.language, told);
   const auto add = [&](const Entry& entry, const std::vector<std::string>& variables, bool named) {
     if (variables.empty()) return;
     std::vector<std::string> arguments;
     if (named) arguments.push_back(sources);
     arguments.push_back(joined(variables));
-    answer["text"] = answer["text"].get<std::string>() + "\n" + text::render(entry, arguments, who.language);
+    answer.text += "\n" + text::render(entry, arguments, who.language);
   };
   add(kTakenBack, plan.taken_back, false);
   add(kSetAside, plan.set_aside, true);
   add(kLost, plan.lost, false);
-  more.update({{"set_aside", plan.set_aside}, {"taken_back", plan.taken_back}, {"lost", plan.lost}});
-  more.update({{"files", names},
-               {"online", change.online},
-               {"kept", plan.kept},
-               {"fresh", plan.fresh},
-               {"given_up", plan.given_up},
-               {"forces_lost", plan.forces_lost}});
-  answer.update(more);
-  if (const std::string problem = log(change, answer, who); !problem.empty())
-    answer["text"] = answer["text"].get<std::string>() + "\n" +
-                     text::render(kNotLogged, std::vector<std::string>{problem}, who.language);
+  const std::string problem =
+      log_change(resident_.state_path(), change, told, who, resident_.image().now.number);
+  if (!problem.empty())
+    answer.text += "\n" + text::render(kNotLogged, std::vector<std::string>{problem}, who.language);
   return answer;
 }
 
-/// One JSON object a line in plc-changes.jsonl of the state directory; empty: done, or there is none.
-std::string PlcDesk::log(const LogicChange& change, const json& told, const Caller& who) {
-  if (resident_.state_path().empty()) return {};
-  char when[32] = "";
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::strftime(when, sizeof when, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  json files = json::array();
-  for (const plc::SourceFile& f : change.files)
-    files.push_back({{"path", f.name}, {"sha256", report::sha256(f.text)}});
-  const json entry{{"schema", 1},
-                   {"when", when},
-                   {"user", who.user},
-                   {"cycle", resident_.image().now.number},
-                   {"online", change.online},
-                   {"files", files},
-                   {"kept", told["kept"]},
-                   {"fresh", told["fresh"]},
-                   {"given_up", told["given_up"]},
-                   {"set_aside", told["set_aside"]},
-                   {"taken_back", told["taken_back"]}};
-  std::error_code code;
-  std::filesystem::create_directories(resident_.state_path(), code);
-  const std::string path = (std::filesystem::path(resident_.state_path()) / "plc-changes.jsonl").string();
-  const std::string line = entry.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-  const bool good = fd >= 0 && ::write(fd, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
-                    ::fsync(fd) == 0;
-  const int problem = errno;
-  if (fd >= 0) ::close(fd);
-  return good ? std::string() : path + ": " + text::words_of(problem);
-}
-
 /// All of them or none.
-json PlcDesk::force_places(std::vector<image::Request> requests, const Caller& who) {
+Reply PlcDesk::force_places(std::vector<image::Request> requests, const Caller& who) {
   for (std::size_t n = 0; n < requests.size(); ++n) {
-    json answer = ask(requests[n], who);
-    if (answer["ok"].get<bool>()) continue;
+    Reply answer = ask(requests[n], who);
+    if (answer.ok) continue;
     while (n-- > 0) {
       requests[n].kind = image::RequestKind::release_force;
       requests[n].value = 0.0;
@@ -254,21 +196,21 @@ json PlcDesk::force_places(std::vector<image::Request> requests, const Caller& w
     }
     return answer;
   }
-  return {{"ok", true}};
+  return {};
 }
 
-json PlcDesk::force(const json& request, const Caller& who) {
+Outcome PlcDesk::take(const ask::PlcForce& wanted, const Caller& who) {
   Force f;
-  f.name = request.value("name", "");
-  f.value = request.value("value", "");
+  f.name = wanted.name;
+  f.value = wanted.value;
   f.user = who.user;
-  f.owner = request.value("stay", false) ? 0 : who.connection;
+  f.owner = wanted.stay ? 0 : who.connection;
   Control& control = resident_.control();
   ForcePlan plan = plan_force(control.machine(), &control.logic()->program()->engine, f.name, f.value);
-  if (plan.kind == ForcePlan::Kind::unknown) return refused(kNoVariable, {f.name}, kWrongUse, who.language);
+  if (plan.kind == ForcePlan::Kind::unknown) return refuse(kNoVariable, {f.name}, kWrongUse, who.language);
   if (plan.kind == ForcePlan::Kind::no_value)
-    return refused(kNoValue, {f.value, f.name}, kWrongUse, who.language);
-  json answer;
+    return refuse(kNoValue, {f.value, f.name}, kWrongUse, who.language);
+  Reply answer;
   if (plan.kind == ForcePlan::Kind::places) {
     f.places = std::move(plan.requests);
     answer = force_places(f.places, who);
@@ -283,81 +225,81 @@ json PlcDesk::force(const json& request, const Caller& who) {
     change.value = f.value;
     change.number = control.next_logic_change();
     if (!control.prepare(change).possible)
-      return refused(kNoValue, {f.value, f.name}, kWrongUse, who.language);
+      return refuse(kNoValue, {f.value, f.name}, kWrongUse, who.language);
     answer = this->change(change, 1.0, who);
   }
-  if (!answer["ok"].get<bool>()) return answer;
+  if (!answer.ok) return answer;
   std::erase_if(forces_, [&](const Force& other) { return plc::same_name(other.name, f.name); });
   forces_.push_back(f);
-  return told(kForced, {f.name, f.value}, who.language);
+  return accept(kForced, {f.name, f.value}, who.language);
 }
 
 bool PlcDesk::let_go(const Force& force, const Caller& who) {
   if (!force.places.empty())
     return std::all_of(force.places.begin(), force.places.end(),
-                       [&](const image::Request& r) { return ask(r, who)["ok"].get<bool>(); });
+                       [&](const image::Request& r) { return ask(r, who).ok; });
   LogicChange change;
   change.kind = LogicChange::Kind::release;
   change.name = force.name;
   change.number = resident_.control().next_logic_change();
-  return !resident_.control().prepare(change).possible || this->change(change, 1.0, who)["ok"].get<bool>();
+  return !resident_.control().prepare(change).possible || this->change(change, 1.0, who).ok;
 }
 
-json PlcDesk::release(const json& request, const Caller& who) {
-  const std::string name = request.value("name", "");
+Outcome PlcDesk::take(const ask::PlcRelease& wanted, const Caller& who) {
+  const std::string& name = wanted.name;
   const bool all = name.empty();
-  if (all && forces_.empty()) return told(kNothingForced, {}, who.language);
+  if (all && forces_.empty()) return accept(kNothingForced, {}, who.language);
   bool found = false;
   for (std::size_t i = forces_.size(); i-- > 0;) {
     if (!all && !plc::same_name(forces_[i].name, name)) continue;
     found = true;
-    if (!let_go(forces_[i], who)) return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
+    if (!let_go(forces_[i], who)) return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
     forces_.erase(forces_.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  if (!found) return refused(kNotForced, {name}, kWrongUse, who.language);
-  return all ? told(kAllReleased, {}, who.language) : told(kReleased, {name}, who.language);
+  if (!found) return refuse(kNotForced, {name}, kWrongUse, who.language);
+  return all ? accept(kAllReleased, {}, who.language) : accept(kReleased, {name}, who.language);
 }
 
-json PlcDesk::hold(const json&, const Caller& who) {
+Outcome PlcDesk::take(const ask::PlcHold&, const Caller& who) {
   image::Request request;
   request.kind = image::RequestKind::logic_scan;
   request.value = 1.0;
-  const json answer = ask(request, who);
-  if (!answer["ok"].get<bool>()) return answer;
+  Reply answer = ask(request, who);
+  if (!answer.ok) return answer;
   held_by_ = who.connection;
   holder_ = who.user;
-  return told(kHeld, {}, who.language);
+  return accept(kHeld, {}, who.language);
 }
 
-json PlcDesk::step(const json& request, const Caller& who) {
-  if (held_by_ == 0 || held_by_ != who.connection) return refused(kNotHolder, {}, kAlarm, who.language);
+Outcome PlcDesk::take(const ask::PlcStep& asked, const Caller& who) {
+  if (held_by_ == 0 || held_by_ != who.connection) return refuse(kNotHolder, {}, kAlarm, who.language);
   image::Request scans;
   scans.kind = image::RequestKind::logic_scan;
   scans.value = 2.0;
-  const double wanted = request.value("scans", 1.0);
+  const double wanted = asked.scans;
   const bool whole = wanted >= 1.0 && wanted <= 1e9 && wanted == std::floor(wanted);
   scans.index = whole ? static_cast<std::uint32_t>(wanted) : 0;  // which the gate refuses
-  const json answer = ask(scans, who);
-  if (!answer["ok"].get<bool>()) return answer;
-  return told(kStepped, {std::to_string(scans.index)}, who.language);
+  Reply answer = ask(scans, who);
+  if (!answer.ok) return answer;
+  return accept(kStepped, {std::to_string(scans.index)}, who.language);
 }
 
-json PlcDesk::go(const json&, const Caller& who) {
-  if (held_by_ == 0 || held_by_ != who.connection) return refused(kNotHolder, {}, kAlarm, who.language);
+Outcome PlcDesk::take(const ask::PlcGo&, const Caller& who) {
+  if (held_by_ == 0 || held_by_ != who.connection) return refuse(kNotHolder, {}, kAlarm, who.language);
   image::Request request;
   request.kind = image::RequestKind::logic_scan;
-  const json answer = ask(request, who);
-  if (!answer["ok"].get<bool>()) return answer;
+  Reply answer = ask(request, who);
+  if (!answer.ok) return answer;
   held_by_ = 0;
   holder_.clear();
-  return told(kGoes, {}, who.language);
+  return accept(kGoes, {}, who.language);
 }
 
 void PlcDesk::release_of(std::uint64_t connection) {
   if (connection != 0 && held_by_ == connection) {
     Caller gone;
     gone.connection = connection;
-    go({}, gone);
+    take(ask::PlcGo{}, gone);
   }
   for (std::size_t i = forces_.size(); i-- > 0;)
     if (forces_[i].owner == connection && connection != 0) {
@@ -366,10 +308,9 @@ void PlcDesk::release_of(std::uint64_t connection) {
     }
 }
 
-json PlcDesk::forced() const {
-  json out = json::array();
-  for (const Force& f : forces_)
-    out.push_back({{"name", f.name}, {"value", f.value}, {"user", f.user}, {"stays", f.owner == 0}});
+std::vector<ForcedValue> PlcDesk::forced() const {
+  std::vector<ForcedValue> out;
+  for (const Force& f : forces_) out.push_back({f.name, f.value, f.user, f.owner == 0});
   return out;
 }
 

@@ -18,9 +18,7 @@ namespace servogate::gateway {
 
 namespace {
 
-using nlohmann::json;
 using plc_answers::kNoVariable;
-using plc_answers::refused;
 using text::Entry;
 
 constexpr int kScanPatience_ms = 2000;
@@ -91,116 +89,115 @@ std::optional<std::string> PlcDesk::forced_value(const std::string& name, const 
   return plc::to_json(type, bytes.data());
 }
 
-json PlcDesk::watch(const json& request, const Caller& who) {
-  if (request.contains("body")) return watch_body(request.value("body", ""), who);
+/// A value with what is forced of it. `shown`: name that the answer has; `text`: as the PLC has written it.
+PlcValue PlcDesk::value_of(const std::string& shown, const std::string& name, const plc::Type& type,
+                           std::string text) const {
+  PlcValue value{shown, forced_value(name, type).value_or(std::move(text)), {}};
+  if (const Force* f = force_of(name)) value.forced = f->value;
+  return value;
+}
+
+Outcome PlcDesk::take(const ask::PlcWatch& wanted, const Caller& who) {
+  if (wanted.body) return watch_body(*wanted.body, who);
   constexpr std::size_t kMostNames = 500;
+  const machine::MachineConfig& machine = resident_.control().machine();
   PlcLogic& logic = *resident_.control().logic();
   const std::shared_ptr<const LogicProgram> program = logic.program();
   const plc::Image& image = program->engine.image();
-  const auto names = request.value("names", std::vector<std::string>{});
+  const std::vector<std::string>& names = wanted.names;
   if (names.size() > kMostNames)
-    return refused(kTooManyNames, {std::to_string(kMostNames)}, kWrongUse, who.language);
+    return refuse(kTooManyNames, {std::to_string(kMostNames)}, kWrongUse, who.language);
   LogicSample sample;
-  sample.profile = request.value("times", false);
+  sample.profile = wanted.times;
   std::vector<std::optional<plc::Handle>> handles;
   for (const std::string& name : names) {
     handles.push_back(program->engine.find(name));
-    if (handles.back()) {
+    if (handles.back())
       sample.ranges.push_back({handles.back()->address, handles.back()->type->size});
-    } else if (!place_text(resident_.control().machine(), *image.types, resident_.image().packets, name)) {
-      return refused(kNoVariable, {name}, kWrongUse, who.language);
-    }
+    else if (!place_text(machine, *image.types, resident_.image().packets, name))
+      return refuse(kNoVariable, {name}, kWrongUse, who.language);
   }
   if (!logic.look(sample, kScanPatience_ms))
-    return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
+    return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
   const image::ProcessImage& now = resident_.image();
-  json values = json::array();
+  PlcValues seen;
+  seen.cycle = sample.at.number;
+  seen.time_s = sample.at.seconds();
   std::size_t at = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    std::string text;
     if (handles[i]) {
-      text =
-          forced_value(names[i], *handles[i]->type)
-              .value_or(plc::value_text(image, *handles[i]->type, sample.bytes.data() + at, handles[i]->bit));
-      at += handles[i]->type->size;
+      const plc::Type& type = *handles[i]->type;
+      seen.values.push_back(value_of(
+          names[i], names[i], type, plc::value_text(image, type, sample.bytes.data() + at, handles[i]->bit)));
+      at += type.size;
     } else {
-      text = place_text(resident_.control().machine(), *image.types, now.packets, names[i]).value_or("null");
+      PlcValue value{names[i], place_text(machine, *image.types, now.packets, names[i]).value_or("null"), {}};
+      if (const Force* f = force_of(names[i])) value.forced = f->value;
+      seen.values.push_back(std::move(value));
     }
-    values.push_back({{"name", names[i]}, {"value", json::parse(text, nullptr, false)}});
-    if (const Force* f = force_of(names[i])) values.back()["forced"] = f->value;
   }
-  json answer{{"ok", true},
-              {"exit", kDone},
-              {"schema", 1},
-              {"cycle", sample.at.number},
-              {"time_s", sample.at.seconds()},
-              {"values", values},
-              {"forced", forced()}};
-  if (!sample.profile) return answer;
+  seen.forced = forced();
+  seen.timed = sample.profile;
   const auto row = [](const std::string& name, const plc::Times& t) {
     const double count = t.count > 0 ? static_cast<double>(t.count) : 1.0;
-    return json{{"name", name},
-                {"last_us", static_cast<double>(t.last) * 1e-3},
-                {"average_us", static_cast<double>(t.sum) * 1e-3 / count},
-                {"most_us", static_cast<double>(t.most) * 1e-3},
-                {"count", t.count}};
+    return PlcTimes{name, static_cast<double>(t.last) * 1e-3, static_cast<double>(t.sum) * 1e-3 / count,
+                    static_cast<double>(t.most) * 1e-3, static_cast<std::uint64_t>(t.count)};
   };
-  answer["tasks"] = answer["blocks"] = json::array();
   for (std::size_t i = 0; i < sample.tasks.size(); ++i)
-    answer["tasks"].push_back(row(image.tasks[i].name, sample.tasks[i]));
+    seen.tasks.push_back(row(image.tasks[i].name, sample.tasks[i]));
   for (std::size_t i = 0; i < sample.blocks.size(); ++i)
-    if (sample.blocks[i].count > 0) answer["blocks"].push_back(row(image.units[i].name, sample.blocks[i]));
-  return answer;
+    if (sample.blocks[i].count > 0) seen.blocks.push_back(row(image.units[i].name, sample.blocks[i]));
+  Reply reply;
+  reply.content = std::move(seen);
+  return reply;
 }
 
-json PlcDesk::watch_body(const std::string& name, const Caller& who) {
+Outcome PlcDesk::watch_body(const std::string& name, const Caller& who) {
   PlcLogic& logic = *resident_.control().logic();
   const std::shared_ptr<const LogicProgram> program = logic.program();
   const std::vector<std::string> programs = program_names(program->engine.image());
   const std::string wanted = name.empty() && !programs.empty() ? programs.front() : name;
   const WatchedBody body = watched_body(*program, wanted);
-  if (body.lines.empty()) return refused(kNoBody, {wanted}, kWrongUse, who.language);
+  if (body.lines.empty()) return refuse(kNoBody, {wanted}, kWrongUse, who.language);
   LogicSample sample;
   for (const WatchedLine& line : body.lines)
     for (const WatchedValue& v : line.values) sample.ranges.push_back({v.address, v.type->size});
   if (!logic.look(sample, kScanPatience_ms))
-    return refused(says::kNoAnswer, {}, kInfrastructure, who.language);
+    return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
+  PlcBody seen;
+  seen.cycle = sample.at.number;
+  seen.time_s = sample.at.seconds();
+  seen.body = wanted;
+  seen.file = body.file;
+  seen.forced = forced();
   std::size_t at = 0;
-  json lines = json::array();
   for (const WatchedLine& line : body.lines) {
-    json values = json::array();
+    seen.lines.push_back({line.line, line.text, {}});
     for (const WatchedValue& v : line.values) {
       // Members of the body go without its name.
       const std::string full = program->engine.find(v.name) ? v.name : wanted + "." + v.name;
-      const std::string text =
-          forced_value(full, *v.type)
-              .value_or(plc::value_text(program->engine.image(), *v.type, sample.bytes.data() + at));
-      values.push_back({{"name", v.name}, {"value", json::parse(text, nullptr, false)}});
-      if (const Force* f = force_of(full)) values.back()["forced"] = f->value;
+      seen.lines.back().values.push_back(
+          value_of(v.name, full, *v.type,
+                   plc::value_text(program->engine.image(), *v.type, sample.bytes.data() + at)));
       at += v.type->size;
     }
-    lines.push_back({{"line", line.line}, {"text", line.text}, {"values", values}});
   }
-  return {{"ok", true},
-          {"exit", kDone},
-          {"schema", 1},
-          {"cycle", sample.at.number},
-          {"time_s", sample.at.seconds()},
-          {"body", wanted},
-          {"file", body.file},
-          {"lines", lines},
-          {"forced", forced()}};
+  Reply reply;
+  reply.content = std::move(seen);
+  return reply;
 }
 
-json PlcDesk::list(const json&, const Caller&) {
+Outcome PlcDesk::take(const ask::PlcList&, const Caller&) {
   const std::shared_ptr<const LogicProgram> program = resident_.control().logic()->program();
-  json files = json::array();
-  for (const plc::SourceFile& f : program->sources) files.push_back(f.name);
-  json symbols = list_symbols(program->engine.image());
-  for (json& s : symbols)
-    if (const Force* f = force_of(s.value("name", ""))) s["forced"] = f->value;
-  return {{"ok", true},     {"exit", kDone},      {"schema", 1},
-          {"files", files}, {"symbols", symbols}, {"forced", forced()}};
+  PlcSymbols list;
+  for (const plc::SourceFile& f : program->sources) list.files.push_back(f.name);
+  list.symbols = list_symbols(program->engine.image());
+  for (PlcSymbol& s : list.symbols)
+    if (const Force* f = force_of(s.name)) s.forced = f->value;
+  list.forced = forced();
+  Reply reply;
+  reply.content = std::move(list);
+  return reply;
 }
 
 }  // namespace servogate::gateway

@@ -14,34 +14,27 @@ namespace servogate::gateway {
 
 namespace {
 
-using nlohmann::json;
 using plc::Image;
 
-struct Row {
-  std::string name, type, place;
-  bool retain = false;
-  std::vector<std::string> written, read;
-};
-
-std::vector<Row> rows_of(const Image& image) {
-  std::vector<Row> programs, rows;
-  const auto members = [&](std::vector<Row>& out, const std::string& owner, const plc::Type& frame) {
+std::vector<PlcSymbol> rows_of(const Image& image) {
+  std::vector<PlcSymbol> programs, rows;
+  const auto members = [&](std::vector<PlcSymbol>& out, const std::string& owner, const plc::Type& frame) {
     for (const plc::Field& f : frame.fields)
       if (f.name.find('$') == std::string::npos)
-        out.push_back({owner + "." + f.name, f.type->name, "", f.retain, {}, {}});
+        out.push_back({owner + "." + f.name, f.type->name, "", f.retain, {}, {}, {}});
   };
   for (const plc::ir::Global& p : image.programs) {
     members(programs, p.name, *p.type);
-    for (Row& r : programs)  // AT %Q* has its place through VAR_CONFIG
+    for (PlcSymbol& r : programs)  // AT %Q* has its place through VAR_CONFIG
       if (const auto h = plc::find_variable(image, r.name); r.place.empty() && h && h->place >= 0)
         r.place = image::to_string(image.places[static_cast<std::size_t>(h->place)].place);
   }
   for (const Image::Shared& s : image.places)
     if (std::none_of(programs.begin(), programs.end(),
-                     [&](const Row& r) { return plc::same_name(r.name, s.name); }))
-      rows.push_back({s.name, s.type->name, image::to_string(s.place), false, {}, {}});
+                     [&](const PlcSymbol& r) { return plc::same_name(r.name, s.name); }))
+      rows.push_back({s.name, s.type->name, image::to_string(s.place), false, {}, {}, {}});
   for (const plc::ir::Global& g : image.globals)
-    if (g.place < 0) rows.push_back({g.name, g.type->name, "", g.retain, {}, {}});
+    if (g.place < 0) rows.push_back({g.name, g.type->name, "", g.retain, {}, {}, {}});
   std::move(programs.begin(), programs.end(), std::back_inserter(rows));
   for (const Image::Unit& u : image.units)
     if (!u.from_library && u.kind != plc::syntax::UnitKind::program && u.frame != nullptr)
@@ -50,7 +43,7 @@ std::vector<Row> rows_of(const Image& image) {
 }
 
 /// The declared variable that a reference belongs to: the longest row that its name begins with.
-Row* owner_of(std::map<std::string, Row*>& rows, const std::string& name) {
+PlcSymbol* owner_of(std::map<std::string, PlcSymbol*>& rows, const std::string& name) {
   std::string key = plc::key_of(name);
   for (;;) {
     const auto at = rows.find(key);
@@ -97,26 +90,18 @@ bool find_body(const LogicProgram& program, const std::string& name, int& unit, 
 
 }  // namespace
 
-json list_symbols(const Image& image) {
-  std::vector<Row> rows = rows_of(image);
-  std::map<std::string, Row*> by_name;
-  for (Row& r : rows) by_name.emplace(plc::key_of(r.name), &r);
+std::vector<PlcSymbol> list_symbols(const Image& image) {
+  std::vector<PlcSymbol> rows = rows_of(image);
+  std::map<std::string, PlcSymbol*> by_name;
+  for (PlcSymbol& r : rows) by_name.emplace(plc::key_of(r.name), &r);
   for (const Image::Reference& r : image.references) {
-    Row* row = owner_of(by_name, r.name);
+    PlcSymbol* row = owner_of(by_name, r.name);
     if (row == nullptr) continue;
     std::vector<std::string>& list = r.write ? row->written : row->read;
     const std::string where = image.files[static_cast<std::size_t>(r.file)] + ":" + std::to_string(r.line);
     if (std::find(list.begin(), list.end(), where) == list.end()) list.push_back(where);
   }
-  json out = json::array();
-  for (const Row& r : rows)
-    out.push_back({{"name", r.name},
-                   {"type", r.type},
-                   {"place", r.place},
-                   {"retain", r.retain},
-                   {"written", r.written},
-                   {"read", r.read}});
-  return out;
+  return rows;
 }
 
 WatchedBody watched_body(const LogicProgram& program, const std::string& name) {

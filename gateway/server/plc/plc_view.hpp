@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "gateway/compose/plc/plc_logic.hpp"
+#include "gateway/server/reply/plc_reply.hpp"
 
 namespace servogate::gateway {
 
 /// The symbols of a PLC program as `plc list` gives them: name, type, place in a packet, retain, and the
 /// places of the source (`mill.st:33`) where each is written and read. Members of function blocks stand as
 /// `Block.member`, for all instances.
-nlohmann::json list_symbols(const plc::Image& image);
+std::vector<PlcSymbol> list_symbols(const plc::Image& image);
 
 /// What a watch shows beside the lines of a body.
 struct WatchedValue {

@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "firmware_if/image/request.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "gateway/machine/config.hpp"
-#include "gateway/server/request/request_form.hpp"
 
 namespace servogate::gateway {
+
+/// Why a question cannot be taken: a sentence of says:: and its arguments.
+struct FormProblem {
+  const text::Entry* entry = nullptr;
+  std::vector<std::string> arguments;
+  text::Language language = text::user_language();  ///< in which it is asked, as far as that can be read
+};
 
 /// Who has sent a request, and how it is to be answered.
 struct Caller {
   image::Asker asker = image::Asker::command_line;
-  std::uint64_t connection = 0;
-  std::string user;  ///< name on the computer
+  std::uint64_t connection = 0;  ///< the client's number at the desk
+  std::string user;              ///< name on the computer
   text::Language language = text::user_language();
 
   image::Hand hand() const noexcept { return {asker, static_cast<std::uint32_t>(connection)}; }
 };
 
-/// Fills asker and language from the request; false: nobody of that name may ask here.
-bool read_caller(const nlohmann::json& request, Caller& caller, FormProblem& problem);
-
-/// Index of the axis that `name` says; -1: the machine has none of that name.
-int axis_of(const machine::MachineConfig& machine, const nlohmann::json& name, FormProblem& problem);
-
-/// The request takes motion or energy away, or keeps a jog alive: it does not wait behind others.
-bool is_urgent(const nlohmann::json& request);
+/// Index of the axis with this letter; -1: the machine has none.
+int axis_of(const machine::MachineConfig& machine, const std::string& letter, FormProblem& problem);
 
 }  // namespace servogate::gateway

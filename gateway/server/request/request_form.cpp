@@ -47,8 +47,7 @@ constexpr struct {
                {"", "body", kText},         {"", "times", kSwitch},        {"", "stay", kSwitch},
                {"", "files", kList},        {"", "online", kSwitch},       {"", "while_running", kSwitch},
                {"", "bus", kText},          {"", "node", kNumber},         {"", "index", kNumber},
-               {"", "subindex", kNumber},   {"", "scans", kNumber},
-               {"", "count", kNumber}};
+               {"", "subindex", kNumber},   {"", "scans", kNumber},        {"", "count", kNumber}};
 
 /// Without which a request says nothing.
 constexpr struct {
@@ -79,8 +78,7 @@ void wrong_type(std::string_view key, const Type& type, const std::string& stand
   problem.arguments = {std::string(key), text::both(type.english, type.russian), stands};
 }
 
-}  // namespace
-
+/// Language that a request asks for by `language`; without it the control's own.
 text::Language language_of(const json& request) {
   const auto found = request.find("language");
   if (found != request.end() && *found == "ru") return text::Language::russian;
@@ -88,7 +86,8 @@ text::Language language_of(const json& request) {
   return text::user_language();
 }
 
-std::optional<json> read_request(std::string_view line, FormProblem& problem) {
+/// An object each of whose known fields has its type; `cmd` is there. nullopt: `problem` says what is wrong.
+std::optional<json> read_object(std::string_view line, FormProblem& problem) {
   if (line.find_first_not_of(" \t") == std::string_view::npos) {
     problem = {&says::kNoObject, {text::both("an empty line", "пустая строка")}};
     return std::nullopt;
@@ -143,6 +142,169 @@ std::optional<json> read_request(std::string_view line, FormProblem& problem) {
       wrong_type(needed.key, kText, text::both("missing", "поля нет"), problem);
       return std::nullopt;
     }
+  return request;
+}
+
+constexpr struct {
+  std::string_view name;
+  image::Asker asker;
+} kAskers[] = {{"command_line", image::Asker::command_line},
+               {"page", image::Asker::page},
+               {"pendant", image::Asker::pendant},
+               {"scenario", image::Asker::scenario},
+               {"modbus", image::Asker::modbus},
+               {"bench", image::Asker::bench}};
+
+/// False: nobody of that name may ask here.
+bool read_asker(const json& request, image::Asker& asker, FormProblem& problem) {
+  const std::string name = request.value("asker", "command_line");
+  std::string known;
+  for (const auto& row : kAskers) {
+    if (row.name == name) {
+      asker = row.asker;
+      return true;
+    }
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+  }
+  problem.entry = &says::kUnknownAsker;
+  problem.arguments = {name, known};
+  return false;
+}
+
+/// The fields of a command, whose types have been looked at.
+class Fields {
+ public:
+  Fields(const json& request, FormProblem& problem) : request_(request), problem_(problem) {}
+  std::string text(const char* key) const { return request_.value(key, ""); }
+  std::optional<std::string> text_if(const char* key) const {
+    return request_.contains(key) ? std::optional(text(key)) : std::nullopt;
+  }
+  std::vector<std::string> list(const char* key) const {
+    return request_.value(key, std::vector<std::string>{});
+  }
+  bool is_set(const char* key) const { return request_.value(key, false); }
+  double number(const char* key, double otherwise) const { return request_.value(key, otherwise); }
+  /// One without which the command says nothing.
+  double needed(const char* key) {
+    if (!request_.contains(key)) refuse(says::kNoNumber, key);
+    return number(key, 0.0);
+  }
+  bool switched(const char* key) {
+    const double value = needed(key);
+    if (request_.contains(key) && value != 0.0 && value != 1.0) refuse(says::kNotSwitch, key);
+    return value != 0.0;
+  }
+  /// A whole number from 0 to `most`; -1: it is none.
+  int whole(const char* key, std::int64_t most) const {
+    const auto found = request_.find(key);
+    if (found == request_.end() || !found->is_number_integer()) return -1;
+    const bool large = found->is_number_unsigned() && found->get<std::uint64_t>() > 0xFFFF;
+    const auto value = large ? -1 : found->get<std::int64_t>();
+    return value >= 0 && value <= most ? static_cast<int>(value) : -1;
+  }
+  std::variant<std::monostate, bool, double> played(const char* key) {
+    const json value = request_.value(key, json());
+    if (value.is_boolean()) return value.get<bool>();
+    if (value.is_number()) return value.get<double>();
+    if (value != "auto") refuse(says::kNoNumber, key);
+    return {};
+  }
+
+ private:
+  void refuse(const text::Entry& entry, const char* key) {
+    problem_.entry = &entry;
+    problem_.arguments = {key};
+  }
+  const json& request_;
+  FormProblem& problem_;
+};
+
+using ask::Command;
+constexpr struct {
+  std::string_view name;
+  Command (*read)(Fields& f);
+} kCommands[] = {
+    {"status", [](Fields&) -> Command { return ask::Status{}; }},
+    {"buses", [](Fields&) -> Command { return ask::Buses{}; }},
+    {"alarms", [](Fields&) -> Command { return ask::Alarms{}; }},
+    {"history", [](Fields& f) -> Command { return ask::History{f.number("count", 100.0)}; }},
+    {"sdo_read",
+     [](Fields& f) -> Command {
+       return ask::SdoRead{f.text("bus"), f.whole("node", 0xFFFF), f.whole("index", 0xFFFF),
+                           f.whole("subindex", 0xFF)};
+     }},
+    {"power", [](Fields& f) -> Command { return ask::Power{f.switched("value")}; }},
+    {"home", [](Fields& f) -> Command { return ask::Home{f.list("axes")}; }},
+    {"jog",
+     [](Fields& f) -> Command {
+       return ask::Jog{f.text("axis"), f.needed("value"), f.text("unit")};
+     }},
+    {"jog_continuous",
+     [](Fields& f) -> Command {
+       return ask::JogContinuous{f.text("axis"), f.needed("value")};
+     }},
+    {"zero",
+     [](Fields& f) -> Command {
+       return ask::Zero{f.text("axis"), f.number("value", 0.0), f.text("unit")};
+     }},
+    {"override", [](Fields& f) -> Command { return ask::Override{f.needed("value")}; }},
+    {"load",
+     [](Fields& f) -> Command {
+       return ask::Load{f.text("program"), f.text("dialect")};
+     }},
+    {"start", [](Fields&) -> Command { return ask::Start{}; }},
+    {"step", [](Fields&) -> Command { return ask::Step{}; }},
+    {"mdi", [](Fields& f) -> Command { return ask::Mdi{f.text("block")}; }},
+    {"resume", [](Fields&) -> Command { return ask::Resume{}; }},
+    {"reset", [](Fields&) -> Command { return ask::Reset{}; }},
+    {"acknowledge", [](Fields&) -> Command { return ask::Acknowledge{}; }},
+    {"input",
+     [](Fields& f) -> Command {
+       return ask::Input{f.text("point"), f.played("value")};
+     }},
+    {"stop", [](Fields&) -> Command { return ask::Stop{}; }},
+    {"quick_stop", [](Fields&) -> Command { return ask::QuickStop{}; }},
+    {"hold", [](Fields&) -> Command { return ask::Hold{}; }},
+    {"jog_stop", [](Fields& f) -> Command { return ask::JogStop{f.text_if("axis")}; }},
+    {"keep_alive", [](Fields& f) -> Command { return ask::KeepAlive{f.text_if("axis")}; }},
+    {"down", [](Fields&) -> Command { return ask::Down{}; }},
+    {"plc_load",
+     [](Fields& f) -> Command {
+       return ask::PlcLoad{f.list("files"), f.is_set("online"), f.is_set("while_running")};
+     }},
+    {"plc_force",
+     [](Fields& f) -> Command {
+       return ask::PlcForce{f.text("name"), f.text("value"), f.is_set("stay")};
+     }},
+    {"plc_release", [](Fields& f) -> Command { return ask::PlcRelease{f.text("name")}; }},
+    {"plc_hold", [](Fields&) -> Command { return ask::PlcHold{}; }},
+    {"plc_step", [](Fields& f) -> Command { return ask::PlcStep{f.number("scans", 1.0)}; }},
+    {"plc_go", [](Fields&) -> Command { return ask::PlcGo{}; }},
+    {"plc_watch",
+     [](Fields& f) -> Command {
+       return ask::PlcWatch{f.list("names"), f.is_set("times"), f.text_if("body")};
+     }},
+    {"plc_list", [](Fields&) -> Command { return ask::PlcList{}; }},
+};
+
+}  // namespace
+
+std::optional<ReadRequest> read_request(std::string_view line, FormProblem& problem) {
+  const std::optional<json> object = read_object(line, problem);
+  ReadRequest request;
+  if (!object || !read_asker(*object, request.asker, problem)) return std::nullopt;
+  request.language = problem.language;
+  const std::string name = request.name = object->value("cmd", "");
+  const auto row =
+      std::find_if(std::begin(kCommands), std::end(kCommands), [&](const auto& r) { return r.name == name; });
+  if (row == std::end(kCommands)) {
+    problem.entry = &says::kUnknown;
+    problem.arguments = {name};
+    return std::nullopt;
+  }
+  Fields fields(*object, problem);
+  request.command = row->read(fields);
+  if (problem.entry != nullptr) return std::nullopt;
   return request;
 }
 

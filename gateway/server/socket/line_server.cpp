@@ -14,7 +14,7 @@
 #include <cstring>
 
 #include "firmware_if/text/system_words.hpp"
-#include "gateway/cli/options.hpp"
+#include "gateway/server/reply/reply_json.hpp"
 #include "gateway/server/socket/socket_client.hpp"
 #include "gateway/server/socket/socket_path.hpp"
 #include "gateway/server/words/texts.hpp"
@@ -23,6 +23,7 @@ namespace servogate::gateway {
 
 namespace {
 
+constexpr int kLook_ms = 200;      ///< at clients that say nothing
 constexpr int kLinesPerTurn = 16;  ///< so that a client who floods leaves room for the others
 
 /// Name of who is at the other end; its number where it has none.
@@ -82,10 +83,10 @@ void LineServer::wake() noexcept {
   [[maybe_unused]] const ssize_t full_is_awake = write(wake_[1], &byte, 1);
 }
 
-void LineServer::reply(const Ticket& ticket, Reply reply) {
+void LineServer::reply(const LinePlace& place, std::string answer) {
   {
     const std::scoped_lock lock(replies_mutex_);
-    replies_.emplace_back(ticket, std::move(reply));
+    replies_.emplace_back(place, std::move(answer));
   }
   wake();
 }
@@ -97,23 +98,20 @@ bool LineServer::reads(const Client& client) const {
 void LineServer::serve() {
   while (!stop_) {
     std::vector<pollfd> fds{{wake_[0], POLLIN, 0}, {listener_, POLLIN, 0}};
-    bool backlog = false, jogs = false;
+    bool backlog = false;
     for (const Client& c : clients_) {
       fds.push_back(
           {c.fd, static_cast<short>((reads(c) ? POLLIN : 0) | (c.output.empty() ? 0 : POLLOUT)), 0});
       backlog = backlog || c.backlog;
-      jogs = jogs || !c.connection.jogs.empty();
     }
-    if (poll(fds.data(), fds.size(), backlog ? 0 : look_after_ms(jogs)) < 0 && errno != EINTR) break;
+    if (poll(fds.data(), fds.size(), backlog ? 0 : kLook_ms) < 0 && errno != EINTR) break;
     for (char drained[64]; read(wake_[0], drained, sizeof drained) > 0;) {
     }
     deliver();
     for (std::size_t i = clients_.size(); i-- > 0;)
       if (!serve_client(clients_[i], fds[i + 2].revents)) remove(i);
     if (fds[1].revents != 0) accept_client();
-    look();
   }
-  ended();
   deliver();
   for (Client& c : clients_) {
     hand_out(c);
@@ -130,19 +128,18 @@ void LineServer::remove(std::size_t client) {
 
 /// Answers that came from elsewhere take the places of their lines; those whose client is gone have none.
 void LineServer::deliver() {
-  std::vector<std::pair<Ticket, Reply>> come;
+  std::vector<std::pair<LinePlace, std::string>> come;
   {
     const std::scoped_lock lock(replies_mutex_);
     come.swap(replies_);
   }
-  for (auto& [ticket, reply] : come) {
+  for (auto& [place, answer] : come) {
     const auto client = std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) {
-      return c.connection.number == ticket.connection;
+      return c.connection.number == place.connection;
     });
-    leaves(reply, client == clients_.end() ? nullptr : &client->connection);
-    if (client == clients_.end() || ticket.line < client->first_line) continue;
-    if (client->connection.urgent_line == ticket.line) client->connection.urgent_line = 0;
-    client->answers[ticket.line - client->first_line] = std::move(reply.line);
+    if (client == clients_.end() || place.line < client->first_line) continue;
+    if (client->connection.urgent_line == place.line) client->connection.urgent_line = 0;
+    client->answers[place.line - client->first_line] = std::move(answer);
   }
 }
 
@@ -153,7 +150,6 @@ bool LineServer::serve_client(Client& client, short events) {
   if ((events & (POLLIN | POLLHUP)) != 0 && !read_client(client, hung_up)) return false;
   hand_out(client);
   if (!client.input.empty()) answer_lines(client);
-  watch(client.connection);
   const bool silent = client.urgent_only && client.answers.empty() &&
                       std::chrono::steady_clock::now() - client.heard > kUrgentPatience;
   if (silent && !client.closing) refuse_client(client, says::kFull, kMostClients, kInfrastructure);
@@ -245,17 +241,14 @@ void LineServer::answer_lines(Client& client) {
 }
 
 void LineServer::take_line(Client& client, std::string_view line) {
-  const Ticket ticket{client.connection.number, client.first_line + client.answers.size()};
+  const LinePlace place{client.connection.number, client.first_line + client.answers.size()};
   client.answers.emplace_back();
-  std::optional<Reply> reply = answer(line, client.connection, ticket);
-  if (!reply) return;
-  leaves(*reply, &client.connection);
-  client.answers.back() = std::move(reply->line);
+  client.answers.back() = answer(line, client.connection, place);
 }
 
 /// A last sentence behind the answers, then the client goes.
 void LineServer::refuse_client(Client& client, const text::Entry& entry, std::size_t limit, int exit) {
-  client.answers.emplace_back(refuse(entry, {std::to_string(limit)}, exit, text::user_language()).line);
+  client.answers.emplace_back(line_of(refuse(entry, {std::to_string(limit)}, exit, text::user_language())));
   client.input.clear();
   client.backlog = false;
   client.closing = true;

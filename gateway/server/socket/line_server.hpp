@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -11,9 +12,22 @@
 #include <utility>
 #include <vector>
 
-#include "gateway/server/socket/line.hpp"
+#include "firmware_if/text/finding.hpp"
 
 namespace servogate::gateway {
+
+/// What the server remembers of a connection, and who derives from it.
+struct Connection {
+  std::uint64_t number = 0;       ///< of this connection; counts from 1
+  std::string user;               ///< name of who opened it
+  std::uint64_t client = 0;       ///< its number at the desk; 0: it has none yet
+  std::uint64_t urgent_line = 0;  ///< that is being answered; what stands behind it waits. 0: none
+};
+
+/// Which line of which connection; both count from 1.
+struct LinePlace {
+  std::uint64_t connection = 0, line = 0;
+};
 
 /// A Unix stream socket (owner only), one JSON object a line each way, served by one thread that never waits:
 /// not for a client (what it does not read is kept up to a limit, then it is let go), and not for an answer
@@ -46,30 +60,20 @@ class LineServer {
   void stop();
 
  protected:
-  /// Gives the answer to a line that answer() gave none to. Any thread.
-  void reply(const Ticket& ticket, Reply reply);
-  /// Makes the thread look() now. Any thread.
-  void wake() noexcept;
+  /// Gives the answer to a line that answer() gave none to: a line without its end. Any thread.
+  void reply(const LinePlace& place, std::string answer);
 
   // All of them are called by the server's thread.
   /// nullopt: the answer comes by reply().
-  virtual std::optional<Reply> answer(std::string_view line, Connection& connection,
-                                      const Ticket& ticket) = 0;
+  virtual std::optional<std::string> answer(std::string_view line, Connection& connection,
+                                            const LinePlace& place) = 0;
   /// The line has to be heard however many clients there are.
   virtual bool urgent(std::string_view /*line*/) const { return false; }
-  /// This answer is about to leave.
-  virtual void leaves(const Reply&, Connection*) {}
   /// The client is gone.
   virtual void let_go(Connection&) {}
-  /// Now and then, for each connection.
-  virtual void watch(Connection&) {}
-  /// Now and then, at most look_after_ms() apart.
-  virtual void look() {}
-  virtual int look_after_ms(bool /*a client jogs*/) const { return 200; }
-  /// The thread ends.
-  virtual void ended() {}
 
  private:
+  void wake() noexcept;
   struct Client {
     int fd = -1;
     std::string input, output;
@@ -103,7 +107,7 @@ class LineServer {
   std::vector<Client> clients_;
   std::uint64_t connections_ = 0;  ///< so far; their numbers count from 1
   std::mutex replies_mutex_;
-  std::vector<std::pair<Ticket, Reply>> replies_;  ///< that other threads have given
+  std::vector<std::pair<LinePlace, std::string>> replies_;  ///< that other threads have given
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

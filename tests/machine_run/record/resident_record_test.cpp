@@ -230,33 +230,32 @@ std::string other_logic(const Scratch& scratch) {
 }
 
 TEST(ResidentRecord, of_forces_and_another_PLC_program_replays_byte_by_byte) {
-  using nlohmann::json;
   const Scratch scratch;
   const std::string plc = other_logic(scratch);
   {
     RecordedControl control(scratch);
     ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.axes[2].drive.online; }));
     gateway::PlcDesk& desk = control.resident().plc();
-    const auto ask = [&](const json& request) {
-      gateway::Outcome outcome = desk.carry_out(request, {image::Asker::command_line, 7, "somebody", {}});
+    const auto ask = [&](const gateway::ask::Command& command) {
+      gateway::Outcome outcome = desk.carry_out(command, {image::Asker::command_line, 7, "somebody", {}});
       while (const auto* work = std::get_if<gateway::Work>(&outcome)) {
         const gateway::Finish finish = work->run({});
         outcome = finish();
       }
-      const json answer = json::parse(std::get<gateway::Reply>(outcome).line);
-      return answer.value("ok", false) ? std::string() : answer.dump();
+      const auto& reply = std::get<gateway::Reply>(outcome);
+      return reply.ok ? std::string() : reply.text;
     };
     const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(120)); };
-    EXPECT_EQ(ask({{"cmd", "plc_force"}, {"name", "door_closed"}, {"value", "FALSE"}}), "");
-    EXPECT_EQ(ask({{"cmd", "plc_force"}, {"name", "Mill.coolant_on"}, {"value", "TRUE"}}), "");
-    EXPECT_EQ(ask({{"cmd", "plc_force"}, {"name", "mist"}, {"value", "TRUE"}}), "");
+    EXPECT_EQ(ask(gateway::ask::PlcForce{"door_closed", "FALSE", false}), "");
+    EXPECT_EQ(ask(gateway::ask::PlcForce{"Mill.coolant_on", "TRUE", false}), "");
+    EXPECT_EQ(ask(gateway::ask::PlcForce{"mist", "TRUE", false}), "");
     wait();
-    EXPECT_EQ(ask({{"cmd", "plc_load"}, {"files", {plc}}, {"online", true}}), "");
+    EXPECT_EQ(ask(gateway::ask::PlcLoad{{plc}, true, false}), "");
     wait();
-    EXPECT_EQ(ask({{"cmd", "plc_release"}, {"name", "Mill.coolant_on"}}), "");
+    EXPECT_EQ(ask(gateway::ask::PlcRelease{"Mill.coolant_on"}), "");
     desk.release_of(7);
     wait();
-    EXPECT_EQ(ask({{"cmd", "plc_load"}}), "");
+    EXPECT_EQ(ask(gateway::ask::PlcLoad{}), "");
     wait();
     ASSERT_EQ(control.close(), "");
   }

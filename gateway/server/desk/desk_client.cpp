@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/server/desk/desk_client.hpp"
+
+#include <utility>
+
+namespace servogate::gateway {
+
+DeskClient::DeskClient(Desk& desk, image::Asker asker, std::string user, text::Language language)
+    : desk_(desk),
+      caller_{asker, 0, std::move(user), language},
+      number_(desk.open([this](std::uint64_t question, Reply reply) {
+        const std::scoped_lock lock(mutex_);
+        answers_.emplace(question, std::move(reply));
+        came_.notify_all();
+      })) {}
+
+DeskClient::~DeskClient() { desk_.close(number_); }
+
+std::uint64_t DeskClient::ask(ask::Command command) {
+  std::uint64_t question = 0;
+  {
+    const std::scoped_lock lock(mutex_);
+    question = ++asked_;
+  }
+  desk_.ask(number_, question, std::move(command), caller_);
+  return question;
+}
+
+std::optional<Reply> DeskClient::take(std::uint64_t question) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = answers_.extract(question);
+  return found.empty() ? std::nullopt : std::optional(std::move(found.mapped()));
+}
+
+std::optional<Reply> DeskClient::ask(ask::Command command, std::chrono::milliseconds patience) {
+  const std::uint64_t question = ask(std::move(command));
+  std::unique_lock lock(mutex_);
+  came_.wait_for(lock, patience, [&] { return answers_.contains(question); });
+  lock.unlock();
+  return take(question);
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// What a client can ask the control for, one type for each command of docs/control-socket.md. Axes are said
+/// by their letters; lengths are as programs write them, in the unit of the axis (a diameter on a diameter
+/// axis).
+namespace servogate::gateway::ask {
+
+// What is looked at.
+struct Status {};
+struct Buses {};
+struct Alarms {};
+/// The last events, oldest first.
+struct History {
+  double count = 100.0;
+};
+/// An object of a node, read over the bus by the control that holds it. A number out of its range: -1.
+struct SdoRead {
+  std::string bus;
+  int node = -1, index = -1, subindex = -1;
+};
+
+// What the machine is to do.
+struct Power {
+  bool on = false;
+};
+struct Home {
+  std::vector<std::string> axes;  ///< empty: all
+};
+struct Jog {
+  std::string axis;
+  double value = 0.0;
+  std::string unit;  ///< that was meant; empty: the axis' own
+};
+/// Until it is stopped or not kept alive any more.
+struct JogContinuous {
+  std::string axis;
+  double value = 0.0;  ///< its sign is the direction
+};
+/// Gives the present place of an axis this value in the origin in force.
+struct Zero {
+  std::string axis;
+  double value = 0.0;
+  std::string unit;
+};
+struct Override {
+  double percent = 100.0;
+};
+struct Load {
+  std::string program, dialect;  ///< dialect empty: the machine's
+};
+struct Start {};
+struct Step {};
+struct Mdi {
+  std::string block;
+};
+struct Resume {};
+struct Reset {};
+struct Acknowledge {};
+/// Plays an input of a simulated station; neither a level nor a number: it follows the world again.
+struct Input {
+  std::string point;
+  std::variant<std::monostate, bool, double> value;
+};
+
+// What takes motion or energy away, or keeps a jog alive.
+struct Stop {};
+struct QuickStop {};
+struct Hold {};
+struct JogStop {
+  std::optional<std::string> axis;  ///< none: all
+};
+struct KeepAlive {
+  std::optional<std::string> axis;  ///< none: whatever this client jogs
+};
+/// The end of the control.
+struct Down {};
+
+// The PLC.
+struct PlcLoad {
+  std::vector<std::string> files;  ///< empty: those of the machine file
+  bool online = false, while_running = false;
+};
+struct PlcForce {
+  std::string name, value;
+  bool stay = false;  ///< beyond the client
+};
+struct PlcRelease {
+  std::string name;  ///< empty: everything
+};
+struct PlcHold {};
+struct PlcStep {
+  double scans = 1.0;
+};
+struct PlcGo {};
+struct PlcWatch {
+  std::vector<std::string> names;
+  bool times = false;               ///< of tasks and blocks, too
+  std::optional<std::string> body;  ///< instead of names: a program or an instance, empty: the first program
+};
+struct PlcList {};
+
+using Command =
+    std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero, Override,
+                 Load, Start, Step, Mdi, Resume, Reset, Acknowledge, Input, Stop, QuickStop, Hold, JogStop,
+                 KeepAlive, Down, PlcLoad, PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
+
+template <typename... Kinds>
+bool is_any(const Command& command) noexcept {
+  return (std::holds_alternative<Kinds>(command) || ...);
+}
+
+/// It takes motion or energy away, or keeps a jog alive: it does not wait behind others.
+inline bool is_urgent(const Command& command) noexcept {
+  const auto* const power = std::get_if<Power>(&command);
+  return is_any<Stop, QuickStop, Hold, JogStop, KeepAlive, Down>(command) || (power != nullptr && !power->on);
+}
+/// What a control still does for its clients while it comes to its end, beside what is urgent.
+inline bool only_looks(const Command& command) noexcept {
+  return is_any<Status, Buses, Alarms, History, SdoRead, PlcList, PlcWatch, PlcGo>(command);
+}
+inline bool of_plc(const Command& command) noexcept {
+  return is_any<PlcLoad, PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>(command);
+}
+
+}  // namespace servogate::gateway::ask
