@@ -34,7 +34,7 @@ const text::Entry kRefused{"run.refused", "the control refuses: {0}", "упра�
 const text::Entry kNotReady{"run.not-ready", "these axes did not become ready: {0}",
                             "эти оси не пришли в готовность: {0}"};
 const text::Entry kNotAnnounced{"run.not-announced",
-                                "tools cannot see that this run holds its buses: no socket {0}: {1}",
+                                "other tools cannot see that this run uses its buses: no socket {0}: {1}",
                                 "инструменты не увидят, что этот прогон держит шины: нет сокета {0}: {1}"};
 const text::Entry kAlarmLine{"run.alarm", "alarm {0}: {1}", "авария {0}: {1}"};
 const text::Entry kConsequence{"run.consequence", "  from it alarm {0}: {1}", "  из-за неё авария {0}: {1}"};

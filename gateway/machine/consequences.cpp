@@ -25,19 +25,19 @@ constexpr text::Entry kMargin{"consequence.limit_margin",
                               "{0}: концевики срабатывают на {1} и {2} за ходом"};
 constexpr text::Entry kOverrun{
     "consequence.overrun",
-    "{0}: {1} behind the switch {0}{2} comes the mechanical end; a stop that begins on the switch ends "
-    "before it "
-    "from up to {3}; not homed the axis gets there at {4} and needs {5}",
-    "{0}: упор через {1} за концевиком {0}{2}; остановка от концевика укладывается в этот путь с {3} и ниже; "
-    "без нуля ось приходит туда на {4}, ей нужно {5}"};
+    "{0}: the mechanical end is {1} beyond the limit switch {0}{2}; a stop that starts at the switch ends in "
+    "time from up to {3}; before homing the axis arrives at {4} and needs {5}",
+    "{0}: упор в {1} за концевиком {0}{2}; от концевика ось успевает остановиться при скорости до {3}; до "
+    "выхода в ноль она подходит к нему на {4} и тормозит на пути {5}"};
 constexpr text::Entry kEndUnknown{
     "consequence.end_unknown",
-    "{0}: whether a stop that begins on a limit switch ends before the mechanical end cannot be said: "
-    "mechanical_end_minus, mechanical_end_plus",
-    "{0}: успеет ли ось остановиться от концевика до упора, сказать нельзя: mechanical_end_minus, "
+    "{0}: it is not known whether a stop that starts at a limit switch ends before the mechanical end: set "
+    "mechanical_end_minus and mechanical_end_plus",
+    "{0}: неизвестно, успеет ли ось остановиться между концевиком и упором: задайте mechanical_end_minus и "
     "mechanical_end_plus"};
-constexpr text::Entry kHome{"consequence.home", "home {0} on {1}, {2} ms: ±{3} at {4}{5}",
-                            "выход в ноль {0} по {1}, {2} мс: ±{3} на {4}{5}"};
+constexpr text::Entry kHome{"consequence.home",
+                            "home {0}: the switch is read over {1} every {2} ms, ±{3} at {4}{5}",
+                            "выход в ноль {0}: датчик читается через {1} каждые {2} мс, ±{3} на {4}{5}"};
 constexpr text::Entry kFollowing{"consequence.following_error",
                                  "{0}: stops at a following error of {1} at rest, {2} at {3}",
                                  "{0}: останов при рассогласовании {1} в покое, {2} на {3}"};
@@ -45,52 +45,47 @@ constexpr text::Entry kFollowingWarn{"consequence.following_error_warn",
                                      "{0}: warns at a following error of {1} at rest, {2} at {3}",
                                      "{0}: предупреждение при рассогласовании {1} в покое, {2} на {3}"};
 constexpr text::Entry kInverter{"consequence.inverter",
-                                "{0}: {1} rpm is {2} in the register of {3}, standstill is {4}; turns {5}, "
-                                "no encoder: what it really does is "
-                                "not seen",
-                                "{0}: {1} об/мин — {2} в регистре {3}, покой — {4}; вращение {5}, датчика "
-                                "нет: что происходит на деле, не видно"};
+                                "{0}: {1} rpm is {2} in the register of {3}, standstill is {4}; turns {5}; "
+                                "no encoder, so its real speed is not known",
+                                "{0}: {1} об/мин — {2} в регистре {3}, покой — {4}; вращение {5}; датчика "
+                                "нет, поэтому действительная скорость неизвестна"};
 constexpr text::Entry kSpindle{"consequence.spindle",
                                "{0}: {1} to {2} rpm, {3} s to full speed; the motor turns at {4} rpm",
                                "{0}: от {1} до {2} об/мин, {3} с до полной частоты; двигатель {4} об/мин"};
 constexpr text::Entry kBus{
     "consequence.bus_load",
-    "bus {0}: {1} nodes load it by {2} % on average, {3} % if everything falls into one cycle; both with the "
-    "most "
-    "stuff bits that frames can need, a run measures those that are sent",
-    "шина {0}: узлов {1}, загрузка в среднем {2} %, {3} %, если всё совпадёт в одном цикле; и то и другое с "
-    "наибольшим числом вставных битов, а прогон измеряет переданные"};
+    "bus {0}: {1} nodes, load {2} % on average, {3} % if all messages fall into one cycle; both figures "
+    "assume the most stuff bits possible, a run reports the load that it measures",
+    "шина {0}: узлов {1}, загрузка {2} % в среднем и {3} %, если все сообщения попадут в один цикл; обе "
+    "величины — при наибольшем числе вставных битов, измеренную загрузку показывает отчёт прогона"};
 constexpr text::Entry kFullestCycle{
     "consequence.fullest_cycle",
-    "bus {0}: the fullest cycle, with service data beside all that may fall into it, would take {1} % "
-    "(process "
-    "data {2} %); what goes with every SYNC is in time even then, the rest may end in the next cycle",
-    "шина {0}: самый заполненный цикл вместе с сервисными данными занял бы {1} % (данные процесса {2} %); "
-    "то, что "
-    "передаётся с каждым SYNC, успевает и тогда, остальное может закончиться в следующем цикле"};
+    "bus {0}: the busiest possible cycle takes {1} % with service data, {2} % with process data alone; what "
+    "is due with every SYNC is in time even then, the rest may finish in the next cycle",
+    "шина {0}: самый загруженный цикл занимает {1} % с сервисными данными, {2} % с одними данными процесса; "
+    "то, что передаётся с каждым SYNC, успевает и тогда, остальное может закончиться в следующем цикле"};
 constexpr text::Entry kBySdo{"consequence.by_sdo",
-                             "{0}: only answers SDO: a set-point and its actual value every {1} ms at best; "
-                             "without an answer for {2} ms it "
-                             "counts as lost",
-                             "{0}: отвечает только по SDO: задание и ответное положение в лучшем случае раз "
-                             "в {1} мс; без ответа {2} мс "
-                             "считается потерянным"};
+                             "{0}: reached by SDO only: set-point and actual value are exchanged every {1} "
+                             "ms at best; after {2} ms without an answer the drive counts as lost",
+                             "{0}: связь только по SDO: задание и ответное положение в лучшем случае раз в "
+                             "{1} мс; без ответа {2} мс привод считается потерянным"};
 constexpr text::Entry kOwnMotion{
     "consequence.own_motion",
-    "{0}: its drive forms the motion by itself (profile position) and is up to {1} behind at {2}",
+    "{0}: its drive plans the motion itself (profile position mode) and lags by up to {1} at {2}",
     "{0}: движение строит сам привод (режим позиционирования), отставание до {1} на {2}"};
 constexpr text::Entry kStation{"consequence.station", "{0}: {1} signals, up to {2} ms old",
                                "{0}: сигналов {1}, возраст до {2} мс"};
 constexpr text::Entry kEmergencyStop{"consequence.emergency_stop",
-                                     "emergency stop: all axes rest and their brakes hold after {0} s{1}; "
-                                     "the safety relay's delay t_d has to be longer",
+                                     "emergency stop: all axes are at rest with their brakes closed after "
+                                     "{0} s{1}; the safety relay's delay t_d must be longer",
                                      "аварийный останов: все оси стоят, тормоза держат через {0} с{1}; "
                                      "задержка t_d реле безопасности должна быть больше"};
-constexpr text::Entry kBrake{"consequence.brake", "{0}: power goes {1} ms after the brake is told to engage",
+constexpr text::Entry kBrake{"consequence.brake",
+                             "{0}: power is switched off {1} ms after the brake is told to close",
                              "{0}: питание снимается через {1} мс после команды на зажатие тормоза"};
 constexpr text::Entry kControlDeath{"consequence.control_death",
-                                    "{0}: if the control dies at {1}, {2}; {3}: {4}",
-                                    "{0}: если управление остановится на {1}, {2}; {3}: {4}"};
+                                    "{0}: if the control dies at {1}: {2}; {3}; {4}",
+                                    "{0}: если управление прекратит работу на {1}: {2}; {3}; {4}"};
 
 /// The greatest n of "every n-th SYNC" of the PDOs that carry one of the objects; 1: none is slower.
 int slowest(const std::vector<PdoConfig>& pdos, const std::vector<int>& objects) {
@@ -278,7 +273,8 @@ class Sentences {
     say(a.letter, kHome,
         {a.letter, kNames[static_cast<std::size_t>(s.kind)], text::number(period * 1e3),
          uncertainty(v * period), speed(v),
-         index ? text::both(", the index makes it exact", ", точность даёт нулевая метка") : ""},
+         index ? text::both("; the index pulse then gives the exact zero", "; точный ноль даёт нулевая метка")
+               : ""},
         {{"uncertainty", v * period}, {"velocity", v}, {"period", period}});
   }
 
@@ -301,7 +297,8 @@ class Sentences {
                  rest = std::round((0.0 - p->shift) / p->scale);
     const std::string ways = s.ccw_output.empty()
                                  ? text::both("clockwise only", "только по часовой стрелке")
-                                 : text::both("both ways, through standstill", "в обе стороны, через покой");
+                                 : text::both("in both directions, reversing through standstill",
+                                              "в обе стороны, реверс через остановку");
     say(subject, kInverter,
         {who, text::number(s.max_speed), text::number(full), s.speed_output, text::number(rest), ways},
         {{"register_at_max_speed", full}, {"register_at_rest", rest}});

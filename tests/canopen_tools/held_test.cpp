@@ -59,7 +59,7 @@ TEST_F(HeldBus, is_locked_to_writes_and_commands_with_the_name_of_its_holder) {
     line.replace(line.find("BUS"), 3, held_);
     const Ended ended = tool(line);
     EXPECT_EQ(ended.code, 1) << line;
-    EXPECT_TRUE(ended.err_has("is held by the running control of 'Three-axis mill'")) << ended.err;
+    EXPECT_TRUE(ended.err_has("the running control of 'Three-axis mill' uses bus")) << ended.err;
   }
   EXPECT_TRUE(tool("can check " + held_).out_has("holds it"));
   const Ended foreign = tool("sdo " + held_ + " 99 read 1000");
@@ -78,11 +78,11 @@ TEST_F(HeldBus, by_a_control_that_was_stopped_is_still_held_and_nothing_is_done_
     line.replace(line.find("BUS"), 3, bus());
     const Ended ended = tool(line);
     EXPECT_EQ(ended.code, 1) << line;
-    EXPECT_TRUE(ended.err_has("runs and does not answer")) << ended.err;
-    EXPECT_TRUE(ended.err_has("it may hold the bus " + bus())) << ended.err;
+    EXPECT_TRUE(ended.err_has("is running but does not answer")) << ended.err;
+    EXPECT_TRUE(ended.err_has("it may be using bus " + bus())) << ended.err;
   }
   const Ended off = tool("sdo " + bus() + " 1 write 6040 0");
-  EXPECT_FALSE(off.err_has("runs and does not answer"))
+  EXPECT_FALSE(off.err_has("is running but does not answer"))
       << "switching off waits for no dead control: " << off.err;
   control_->signal(SIGCONT);
   EXPECT_EQ(tool("nmt " + held_ + " stop all --i-may-move").code, 1);
@@ -147,14 +147,14 @@ TEST_F(HeldByRun, is_locked_to_every_write_and_command_and_the_run_is_named) {
                             "nmt $BUS stop all --i-may-move", "lss $BUS inquire"}) {
     const Ended ended = tool(words);
     EXPECT_EQ(ended.code, 1) << words;
-    EXPECT_TRUE(ended.err_has("is held by a `servogate run` of 'Three-axis mill'")) << ended.err;
+    EXPECT_TRUE(ended.err_has("a `servogate run` of 'Three-axis mill' uses bus")) << ended.err;
   }
   EXPECT_TRUE(tool("can check $BUS --seconds 0.3").out_has("holds it"));
   EXPECT_TRUE(tool("status").err_has("no control is running")) << "clients do not take it for a control";
   for (const char* words : {"status", "power on", "down"}) {
     const Ended refused = tool(std::string(words) + " --socket servogate/*.run");
     EXPECT_EQ(refused.code, 2) << words;
-    EXPECT_TRUE(refused.err_has("is not for a `servogate run`")) << refused.err;
+    EXPECT_TRUE(refused.err_has("a `servogate run` does not take")) << refused.err;
   }
   EXPECT_EQ(alarms(), std::vector<int>());
 }
@@ -166,10 +166,10 @@ TEST_F(HeldByRun, is_locked_to_logs_of_a_master_whoever_runs_it) {
   ASSERT_TRUE(comes_on()) << run_->said();
   const Ended held = tool("play $BUS stop.log");
   EXPECT_EQ(held.code, 1);
-  EXPECT_TRUE(held.err_has("`play` is not done: the bus")) << held.err;
+  EXPECT_TRUE(held.err_has("`play` is refused: a `servogate run` of")) << held.err;
   const Ended heard = desk_.line("XDG_RUNTIME_DIR=$PWD/else $SG play " + bus() + " stop.log");
   EXPECT_EQ(heard.code, 1);
-  EXPECT_TRUE(heard.err_has("`play` is not done: somebody controls this bus")) << heard.err;
+  EXPECT_TRUE(heard.err_has("`play` is not done: another master controls this bus")) << heard.err;
   EXPECT_EQ(tool("play $BUS drive.log").code, 0) << "a device among simulated ones";
   EXPECT_EQ(alarms(), std::vector<int>());
 }
@@ -200,12 +200,13 @@ TEST_F(HeldByRun, of_somebody_else_is_heard_and_left_alone) {
   for (const char* words : {"sdo $BUS 1 read 6041", "od $BUS 1", "scan $BUS"}) {
     const Ended ended = tool(words);
     EXPECT_EQ(ended.code, 1) << words;
-    EXPECT_TRUE(ended.err_has("somebody controls this bus")) << ended.err;
-    EXPECT_TRUE(ended.err_has("--anyway reads all the same")) << ended.err;
+    EXPECT_TRUE(ended.err_has("another master controls this bus")) << ended.err;
+    EXPECT_TRUE(ended.err_has("--anyway reads regardless")) << ended.err;
   }
   const Ended written = tool("sdo $BUS 1 write 1801:1 0x40000281");
   EXPECT_EQ(written.code, 1);
-  EXPECT_TRUE(written.err_has("writing 1801h:01 is not done: somebody controls this bus")) << written.err;
+  EXPECT_TRUE(written.err_has("writing 1801h:01 is not done: another master controls this bus"))
+      << written.err;
   EXPECT_EQ(tool("sdo $BUS 1 write 1801:1 0x40000281 --anyway").code, 2);
   EXPECT_EQ(alarms(), std::vector<int>());
 }

@@ -87,8 +87,8 @@ TEST_F(SecondControl, is_refused_by_the_name_of_the_first_where_it_can_be_asked)
   for (const std::string& line : {start("up", "--state s"), start("run", "short.nc")}) {
     const Ended ended = watched(line, noticed);
     EXPECT_EQ(ended.code, 1) << ended.err;
-    EXPECT_TRUE(ended.err_has("starting 'Another machine' is not done: the bus " + bus() +
-                              " is held by a `servogate run` of 'Three-axis mill'"))
+    EXPECT_TRUE(ended.err_has(
+        "starting 'Another machine' is refused: a `servogate run` of 'Three-axis mill' uses bus " + bus()))
         << ended.err;
   }
   EXPECT_EQ(noticed.commands, 0);
@@ -104,8 +104,8 @@ TEST_F(SecondControl, hears_a_first_one_that_it_cannot_ask_and_leaves_its_drives
   for (const std::string& line : {start("up", "--state s"), start("run", "short.nc")}) {
     const Ended ended = watched(line, noticed);
     EXPECT_EQ(ended.code, 1) << ended.err;
-    for (const char* words : {"'Another machine' is not started: somebody else leads the bus ",
-                              "SYNC (080h) ", "RPDO 1 of node 1 (201h) ", " times", "nothing was sent"})
+    for (const char* words : {"'Another machine' is not started: another master controls bus ",
+                              "SYNC (080h) ", "RPDO 1 of node 1 (201h) ", " times", "Nothing was sent"})
       EXPECT_TRUE(ended.err_has(words)) << words << "\n" << ended.err;
   }
   EXPECT_EQ(noticed.commands, 0);
@@ -125,7 +125,7 @@ TEST_F(SecondControl, starts_when_the_first_was_killed_and_its_drives_speak_on) 
   Noticed noticed;
   const Ended ended = watched(start("run", "short.nc"), noticed);
   EXPECT_FALSE(ended.err_has("is not started")) << ended.err;
-  EXPECT_FALSE(ended.err_has("is not done")) << ended.err;
+  EXPECT_FALSE(ended.err_has("is refused")) << ended.err;
   EXPECT_GE(noticed.commands, 4) << "it takes the drives over, faults of the loss included\n" << ended.err;
 }
 
@@ -137,7 +137,7 @@ TEST_F(SecondControl, that_starts_at_the_same_time_is_one_too_many) {
   EXPECT_EQ(desk_.text(first ? "a.code" : "b.code"), "0\n") << desk_.text("a") << desk_.text("b");
   EXPECT_EQ(desk_.text(first ? "b.code" : "a.code"), "1\n") << desk_.text("a") << desk_.text("b");
   const std::string refused = desk_.text(first ? "b" : "a");
-  EXPECT_NE(refused.find("has just taken the bus " + bus()), std::string::npos) << refused;
+  EXPECT_NE(refused.find("has just taken bus " + bus()), std::string::npos) << refused;
 }
 
 }  // namespace

@@ -346,7 +346,7 @@ TEST_F(Workbench, can_check_says_who_speaks_and_who_controls) {
   EXPECT_FALSE(said["traffic"]["controlled"]);
   EXPECT_GT(said["traffic"]["load_percent"], 0.1);
   const Sender sender(join(), usercan::make(0x080, {}));
-  EXPECT_TRUE(tool("can check $BUS --seconds 0.5").out_has("somebody controls this bus: SYNC (080h)"));
+  EXPECT_TRUE(tool("can check $BUS --seconds 0.5").out_has("another master controls this bus: SYNC (080h)"));
   EXPECT_EQ(tool("can check $BUS --detect").code, 4) << "there is nothing to set";
 }
 

@@ -214,14 +214,14 @@ TEST(AlarmText, of_a_foreign_frame_says_what_it_means_or_at_least_its_identifier
   r.value = 0x205;
   AlarmNames names;
   names.segments = {"can"};
-  EXPECT_EQ(render(r, names, text::Language::english), "bus can: somebody else sends 0x205");
+  EXPECT_EQ(render(r, names, text::Language::english), "bus can: another master sends 0x205");
   names.detail = [](const image::AlarmRecord& record, text::Language) {
     return record.value == 0x205 ? std::string("RPDO 1 of node 5 (205h)") : std::string();
   };
   EXPECT_EQ(render(r, names, text::Language::english),
-            "bus can: somebody else sends RPDO 1 of node 5 (205h)");
+            "bus can: another master sends RPDO 1 of node 5 (205h)");
   EXPECT_EQ(render(r, names, text::Language::russian),
-            "шина can: кто-то посторонний шлёт: RPDO 1 of node 5 (205h)");
+            "шина can: другой ведущий передаёт RPDO 1 of node 5 (205h)");
 }
 
 TEST(AlarmText, knows_every_state_of_the_status_word) {
@@ -285,7 +285,7 @@ TEST(AlarmText, gives_places_of_a_diameter_axis_as_diameters_and_lengths_as_they
   r.value = 0.5;
   r.limit = 20.0;
   EXPECT_EQ(render(r, names, text::Language::english),
-            "X: stands 0.5 mm off the place 40 mm in diameter at which the path ended");
+            "X: stopped 0.5 mm away from the end of the path at 40 mm in diameter");
 }
 
 }  // namespace

@@ -40,12 +40,14 @@ TEST(Consequences, say_how_far_a_home_switch_on_modbus_is_off) {
   text.insert(text.find(door), "  { name = \"x_home\", channel = \"di6\", place = \"SA6\" },\n");
   const LoadResult loaded = parse(text, test::source("examples/mill/machine.toml"));
   ASSERT_TRUE(loaded.ok()) << test::lines_of(loaded.findings, text::Language::english);
-  EXPECT_TRUE(has(said(loaded), "home X on Modbus, 20 ms: ±1.0 mm at 50 mm/s, the index makes it exact"));
+  EXPECT_TRUE(has(said(loaded),
+                  "home X: the switch is read over Modbus every 20 ms, ±1.0 mm at 50 mm/s; the index pulse "
+                  "then gives the exact zero"));
 }
 
 TEST(Consequences, without_an_index_the_slow_edge_counts) {
   const LoadResult loaded = mill("method = \"switch_and_index\"", "method = \"switch\"");
-  EXPECT_TRUE(has(said(loaded), "home X on GPIO, 1 ms: ±0.005 mm at 5 mm/s"));
+  EXPECT_TRUE(has(said(loaded), "home X: the switch is read over GPIO every 1 ms, ±0.005 mm at 5 mm/s"));
 }
 
 /// 250 ms of rising and falling jerk-limited deceleration by hand: v / a + a / j = 0.5 + 0.1 s, way v * t
@@ -58,8 +60,8 @@ TEST(Consequences, say_the_stopping_distance) {
 /// told, three cycles; rounded up. The spindle stops in 2 s, and its command may wait for nine cycles.
 TEST(Consequences, say_how_long_the_safety_relay_has_to_wait) {
   const auto told = [](const char* seconds) {
-    return "emergency stop: all axes rest and their brakes hold after " + std::string(seconds) +
-           " s, the spindle after 2.01 s; the safety relay's delay t_d has to be longer";
+    return "emergency stop: all axes are at rest with their brakes closed after " + std::string(seconds) +
+           " s, the spindle after 2.01 s; the safety relay's delay t_d must be longer";
   };
   EXPECT_TRUE(has(said(mill()), told("0.82")));
   LoadResult slow_brake = mill();
@@ -172,7 +174,7 @@ TEST(Consequences, of_the_control_s_death_are_said_for_each_axis_with_a_brake) {
     EXPECT_EQ(c.subject, "Z");
     EXPECT_EQ(c.figures.at("notices"), 0.3);
     EXPECT_EQ(c.figures.at("falls_for"), 0.0);
-    EXPECT_TRUE(c.str(text::Language::english).ends_with(": nothing falls")) << c.str();
+    EXPECT_TRUE(c.str(text::Language::english).ends_with("; the axis does not fall")) << c.str();
     return;
   }
   FAIL() << "Z is hanging";

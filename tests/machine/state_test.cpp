@@ -216,17 +216,17 @@ TEST(StateDirectory, with_no_whole_generation_of_a_part_says_what_is_lost_and_wh
     const std::string whole = test::read_text(file);
     const auto last = [&] { return directory.load().findings.back(); };
     test::write_text(file, whole.substr(0, whole.size() / 2));
-    EXPECT_TRUE(directory.load().ok()) << "the generation before is taken";
+    EXPECT_TRUE(directory.load().ok()) << "the previous generation is used";
     test::write_text(previous, whole.substr(0, whole.size() / 3));
     ASSERT_FALSE(directory.load().ok());
     EXPECT_EQ(last().entry->id, "state.part_lost");
     const std::string both = last().str(text::Language::english);
-    for (const std::string& said : {file + ":1:1: error: neither this file nor " + previous,
-                                    std::string(p.lost), std::string("move both away, and ") + p.remedy})
+    for (const std::string& said : {file + ":1:1: error: both this file and " + previous, std::string(p.lost),
+                                    std::string("move both away, and ") + p.remedy})
       EXPECT_NE(both.find(said), std::string::npos) << both;
     EXPECT_NE(last().str(text::Language::russian).find(p.russian), std::string::npos);
     std::filesystem::remove(previous);
-    EXPECT_NE(last().str(text::Language::english).find("there is no other generation, " + previous),
+    EXPECT_NE(last().str(text::Language::english).find("there is no other generation (" + previous),
               std::string::npos);
     std::filesystem::rename(file, previous);
     EXPECT_EQ(last().file, previous);
@@ -345,9 +345,8 @@ TEST(StateDirectory, a_file_edited_by_hand_says_so_and_is_taken) {
   text = "checksum = \"none\"\n" + text.substr(text.find('\n') + 1) + "\"Y.position_gain\" = 20\n";
   MachineState state;
   const auto findings = read_part(text, "gains.toml", StatePart::gains, state);
-  EXPECT_EQ(
-      test::lines_of(findings, text::Language::english),
-      "gains.toml:1:1: warning: edited by hand (checksum = \"none\"); taken as it stands [state.edited]\n");
+  EXPECT_EQ(test::lines_of(findings, text::Language::english),
+            "gains.toml:1:1: warning: edited by hand (checksum = \"none\"); used as it is [state.edited]\n");
   EXPECT_EQ(state.gains.at("Y.position_gain"), 20.0);
 }
 
@@ -357,12 +356,11 @@ TEST(StateDirectory, wrong_values_of_an_edited_file_are_named_with_their_place) 
       "checksum = \"none\"\nschema = 1\npart = \"tools\"\ntool_in_spindle = 1.5\n[[corrector]]\nnumber = "
       "1\nlength = 3\ndiameter = nan\n",
       "tools.toml", StatePart::tools, state);
-  EXPECT_EQ(
-      test::lines_of(findings, text::Language::english),
-      "tools.toml:1:1: warning: edited by hand (checksum = \"none\"); taken as it stands [state.edited]\n"
-      "tools.toml:4:19: error: `tool_in_spindle`: an integer is expected [state.value]\n"
-      "tools.toml:7:10: error: `length`: a table axis = mm is expected [state.value]\n"
-      "tools.toml:8:12: error: `diameter`: a finite number is expected [state.value]\n");
+  EXPECT_EQ(test::lines_of(findings, text::Language::english),
+            "tools.toml:1:1: warning: edited by hand (checksum = \"none\"); used as it is [state.edited]\n"
+            "tools.toml:4:19: error: `tool_in_spindle`: an integer is expected [state.value]\n"
+            "tools.toml:7:10: error: `length`: a table axis = mm is expected [state.value]\n"
+            "tools.toml:8:12: error: `diameter`: a finite number is expected [state.value]\n");
 }
 
 TEST(StateDirectory, another_schema_or_part_is_refused) {

@@ -377,8 +377,8 @@ TEST(Faults, behind_an_open_door_nothing_starts_homes_or_jogs_and_what_jogs_come
   EXPECT_EQ(mill.ask(RequestKind::start), Refusal::feed_not_enabled);
   EXPECT_EQ(
       cycle::render(mill.answer(), {"X", "Y", "Z"}, text::Language::english),
-      "X: the PLC does not permit motion (X.feed_enable is FALSE: see in its program for what, an open door "
-      "for instance)");
+      "X: the PLC does not permit motion: X.feed_enable is FALSE (an open door, for example; the PLC program "
+      "shows the reason)");
   ASSERT_EQ(mill.ask(RequestKind::mode, static_cast<double>(image::Mode::manual)), Refusal::none);
   EXPECT_EQ(mill.ask(RequestKind::jog_increment, 1.0, 0), Refusal::feed_not_enabled);
   EXPECT_EQ(mill.ask(RequestKind::jog_continuous, 1.0, 1), Refusal::feed_not_enabled);

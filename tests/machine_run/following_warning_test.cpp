@@ -27,7 +27,7 @@ TEST(FollowingWarning, the_warning_of_a_following_error_names_axis_error_and_lim
   EXPECT_EQ(warning.reaction, image::Reaction::warn);
   const std::string words = cycle::render(warning, mill.control().alarm_names(), text::Language::english);
   EXPECT_TRUE(words.starts_with("X: following error ")) << words;
-  EXPECT_NE(words.find(" mm, a warning from 0.001 mm, at "), std::string::npos) << words;
+  EXPECT_NE(words.find(" mm, warning limit 0.001 mm, at "), std::string::npos) << words;
 }
 
 TEST(FollowingWarning, the_mill_as_it_is_has_no_following_error_worth_a_warning) {

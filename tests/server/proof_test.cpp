@@ -87,7 +87,7 @@ TEST_F(Proof, does_not_start_a_program_that_a_new_origin_drives_out_of_the_trave
   for (const char* command : {"start", "step"}) {
     const Outcome o = shell_.run({command});
     EXPECT_EQ(o.exit, 1);
-    EXPECT_TRUE(contains(o.err, "with the origins and tools as they are now")) << o.err;
+    EXPECT_TRUE(contains(o.err, "with the present origins and tools")) << o.err;
     EXPECT_TRUE(contains(o.err, "shifted.nc:1:8: error: X would go to 310")) << o.err;
   }
   EXPECT_EQ(shell_.status()["axes"][0]["command"], before);

@@ -218,7 +218,7 @@ TEST_F(Stops, that_others_cause_are_said_while_the_command_goes_on_waiting) {
         [&](const json&) { return shell_.text("start.err").find(words) != std::string::npos; });
   };
   EXPECT_TRUE(said(
-      "is held by a feed hold of the operator or the PLC; going on waiting\n    `servogate resume` goes on."))
+      "is held by a feed hold of the operator or the PLC; still waiting\n    `servogate resume` goes on."))
       << shell_.text("start.err");
   ASSERT_EQ(shell_.run({"resume"}).exit, 0);
   ASSERT_EQ(shell_.run({"input", "door_closed", "off"}).exit, 0);
@@ -227,7 +227,7 @@ TEST_F(Stops, that_others_cause_are_said_while_the_command_goes_on_waiting) {
   ASSERT_TRUE(waits("operator_hold"));
   ASSERT_EQ(shell_.run({"resume"}).exit, 0);
   ASSERT_TRUE(waits("signal"));
-  EXPECT_TRUE(said("the program waits until cycle_start (SA20.BL) = 1; it is 0; going on waiting"))
+  EXPECT_TRUE(said("the program waits until cycle_start (SA20.BL) = 1; it is 0; still waiting"))
       << shell_.text("start.err");
   ASSERT_EQ(shell_.run({"input", "cycle_start", "on"}).exit, 0);
   EXPECT_EQ(ending_of(client), 0) << shell_.text("start.err");

@@ -81,7 +81,7 @@ TEST(Interrupt, of_a_client_whose_control_does_not_answer_ends_it_with_3) {
       "silent.sock & "
       "p=$!; until [ -e asked ]; do sleep 0.01; done; kill -INT $p; wait $p; echo code $?; kill $k");
   EXPECT_EQ(e.out, "code 3\n") << e.err;
-  EXPECT_TRUE(e.err_has("what was asked of the control goes on")) << e.err;
+  EXPECT_TRUE(e.err_has("the control carries on with what it was asked to do")) << e.err;
 }
 
 TEST(Broken, program_without_a_single_block_done_counts_none) {

@@ -64,7 +64,8 @@ const Entry kQuiet{"check.quiet", "no frame came within {0} s", "за {0} с н�
 const Entry kTraffic{"check.traffic", "frames within {1} s: {0}, {2} % of the bit rate of {3} bit/s",
                      "кадров за {1} с: {0}, {2} % скорости {3} бит/с"};
 const Entry kHeard{"check.heard", "nodes heard: {0}", "слышны узлы: {0}"};
-const Entry kMaster{"check.master", "somebody controls this bus: {0}", "этой шиной кто-то управляет: {0}"};
+const Entry kMaster{"check.master", "another master controls this bus: {0}",
+                    "этой шиной кто-то управляет: {0}"};
 const Entry kHolder{"check.holder", "the running control of '{0}' holds it ({1})",
                     "её держит работающее управление «{0}» ({1})"};
 const Entry kIdle{"check.idle", "nobody controls it", "ею никто не управляет"};

@@ -27,16 +27,16 @@ using canopen::NodeId;
 using nlohmann::json;
 namespace object = canopen::object;
 
-const text::Entry kUsed{"scan.in-use", "somebody controls this bus (its frame {0} was seen); scan only reads",
+const text::Entry kUsed{"scan.in-use",
+                        "another master controls this bus (its frame {0} was seen); scan only reads",
                         "этой шиной кто-то управляет (виден его кадр {0}); scan только читает"};
 const text::Entry kThrough{"scan.through", "read through the running control of '{0}', which holds the bus",
                            "читается через работающее управление «{0}», которое держит шину"};
-const text::Entry kNobody{
-    "scan.nobody",
-    "nobody answers and nobody is heard: look at power, wiring, termination and bit rate "
-    "(`servogate can check`)",
-    "никто не отвечает и никого не слышно: проверьте питание, кабель, терминаторы и "
-    "скорость (`servogate can check`)"};
+const text::Entry kNobody{"scan.nobody",
+                          "no node answers and no message is heard: check power, wiring, termination and bit "
+                          "rate (`servogate can check`)",
+                          "никто не отвечает и никого не слышно: проверьте питание, кабель, терминаторы и "
+                          "скорость (`servogate can check`)"};
 const text::Entry kNode{"scan.node", "node {0}: {1}, {2}, {3}", "узел {0}: {1}, {2}, {3}"};
 const text::Entry kNodeNoObjects{"scan.node-no-objects", "node {0}: {1}, {2}, does not answer SDO",
                                  "узел {0}: {1}, {2}, на SDO не отвечает"};

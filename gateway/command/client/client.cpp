@@ -27,8 +27,8 @@ const text::Entry kNoAlarms{"client.no-alarms", "no alarm is active", "акти�
 const text::Entry kNotKept{"client.history-not-kept", "the history is not written to the disk: {0}",
                            "история не записывается на диск: {0}"};
 const text::Entry kAsked{"client.stopped",
-                         "stopped by the operator; what was asked of the control goes on: `servogate status` "
-                         "shows it",
+                         "stopped by the operator; the control carries on with what it was asked to do "
+                         "(`servogate status` shows it)",
                          "остановлено оператором; запрошенное у управления продолжается: его покажет "
                          "`servogate status`"};
 

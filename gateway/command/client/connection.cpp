@@ -18,10 +18,10 @@ const text::Entry kNoControl{
     "управление не запущено (нет сокета в {0}); запуск: `servogate up MACHINE.toml`"};
 const text::Entry kForeignFolder{
     "client.foreign-folder",
-    "the folder {0} is somebody else's, or others may write into it: nobody knows who listens there; remove "
-    "it, or choose a socket with --socket",
-    "каталог {0} чужой или открыт для записи другим: неизвестно, кто там отвечает; удалите его или укажите "
-    "сокет через --socket"};
+    "the folder {0} belongs to someone else or others may write into it, so the socket in it cannot be "
+    "trusted; remove the folder, or choose a socket with --socket",
+    "каталог {0} чужой, или в него могут писать другие, поэтому сокету в нём нельзя доверять; удалите "
+    "каталог или укажите сокет ключом --socket"};
 const text::Entry kManyControls{"client.many-controls",
                                 "several controls are running; choose one with --socket: {0}",
                                 "запущено несколько управлений; выберите одно через --socket: {0}"};

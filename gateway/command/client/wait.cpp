@@ -28,28 +28,28 @@ const text::Entry kNotOn{"client.not-on", "not switched on within {0} s: {1}{2}"
                          "не включились за {0} с: {1}{2}"};
 const text::Entry kNotOff{"client.not-off", "not switched off within {0} s: {1}",
                           "не выключились за {0} с: {1}"};
-const text::Entry kNoCycle{"client.no-cycle", "the control answers, but its cycle does not run",
+const text::Entry kNoCycle{"client.no-cycle", "the control answers, but its cycle is not running",
                            "управление отвечает, но его цикл не работает"};
 
 const text::Entry kHomingEnded{
     "client.homing-ended",
-    "homing was stopped by somebody else (reset, stop or hold): `servogate home` again",
+    "homing was stopped by someone else (reset, stop or hold): run `servogate home` again",
     "выход в ноль остановлен кем-то другим (reset, stop или hold): повторите `servogate "
     "home`"};
 const text::Entry kOffByOperator{"client.stopped-off", "stopped by the operator: the drives are off",
                                  "остановлено оператором: приводы выключены"};
 const text::Entry kControlEnds{
     "client.control-ends",
-    "the control comes to its end (`servogate down` or a signal): what was under way has been stopped",
+    "the control is shutting down (`servogate down` or a signal): what was in progress has been stopped",
     "управление завершается (`servogate down` или сигнал): то, что выполнялось, остановлено"};
 const text::Entry kUnreachable{
     "client.unreachable",
-    "no answer from the drive of {0}: whether it is off cannot be seen; a cut supply (emergency stop) is "
-    "sure",
-    "привод {0} не отвечает: выключен ли он, не видно; надёжно — снять питание (аварийный останов)"};
+    "no answer from the drive of {0}: it may still be on; only cutting its supply (emergency stop) is "
+    "certain",
+    "привод {0} не отвечает: возможно, он включён; наверняка — только снять питание (аварийный останов)"};
 
 const text::Entry kStopsAt{"client.programmed-stop", "{0}\n    {1}", "{0}\n    {1}"};
-const text::Entry kWaitsFor{"client.waits-for", "{0}; going on waiting\n    {1}",
+const text::Entry kWaitsFor{"client.waits-for", "{0}; still waiting\n    {1}",
                             "{0}; ожидание продолжается\n    {1}"};
 
 constexpr auto kLook = std::chrono::milliseconds(50);

@@ -11,12 +11,13 @@ namespace {
 
 const text::Entry kBySignals{
     "program.by-signals",
-    "with all signals off this block gives an error: {0} ({1}); whether it does on the machine shows when it "
-    "is reached",
+    "with all signals off this block gives an error: {0} ({1}); on the machine that is decided when the "
+    "block is reached",
     "при всех сигналах, равных нулю, кадр даёт ошибку: {0} ({1}); что будет на станке, покажет выполнение"};
 const text::Entry kByPlace{
     "program.by-place",
-    "from where the axes stand now this block gives an error: {0} ({1}); elsewhere it need not",
+    "from the present position of the axes this block gives an error: {0} ({1}); from another position it "
+    "may not",
     "с нынешнего положения осей кадр даёт ошибку: {0} ({1}); с другого её может не быть"};
 
 /// What tells whether an error depends on where the axes stand: odd amounts, mm or degrees, that no program

@@ -182,9 +182,9 @@ std::string reaction_words(Reaction r) {
     case Reaction::holds:
       return text::both("and keeps its torque", "и сохраняет момент");
     case Reaction::ramps_down:
-      return text::both("and its torque goes when it has braked", "и после торможения момент снимается");
+      return text::both("and loses its torque after braking", "и после торможения снимает момент");
     case Reaction::lets_go:
-      return text::both("and its torque goes at once", "и момент снимается сразу");
+      return text::both("and loses its torque at once", "и сразу снимает момент");
   }
   return {};
 }
@@ -194,34 +194,37 @@ std::string drive_words(const ControlDeath& d) {
   if (d.follows != kNoLimit) {
     const std::string when = d.following_known
                                  ? text::both("after ", "через ") + ms(d.follows)
-                                 : text::both("perhaps at once (6065h and 6066h are the drive's own)",
-                                              "возможно, сразу (6065h и 6066h заданы в приводе)");
-    words = text::both("its drive trips on its following error ", "привод отключается по рассогласованию ") +
+                                 : text::both("after a time that 6065h and 6066h in the drive decide",
+                                              "через время, заданное в приводе (6065h и 6066h)");
+    words = text::both("the drive trips on following error ", "привод отключается по рассогласованию ") +
             when + " " + reaction_words(d.on_following) + ", ";
-    words += d.notices == kNoLimit
-                 ? text::both("and does not notice the silence", "а молчания не замечает")
-                 : text::both("or notices the silence after ", "либо замечает молчание через ") +
-                       ms(d.notices) + " " + reaction_words(d.on_silence);
+    words += d.notices == kNoLimit ? text::both("and does not detect that the control is silent",
+                                                "а пропажи управления не обнаруживает")
+                                   : text::both("or detects that the control is silent after ",
+                                                "либо обнаруживает пропажу управления через ") +
+                                         ms(d.notices) + " " + reaction_words(d.on_silence);
     return words;
   }
   if (d.notices == kNoLimit)
-    return text::both("its drive does not notice it and keeps its torque",
-                      "привод этого не замечает и сохраняет момент");
-  return text::both("its drive notices the silence after ", "привод замечает молчание через ") +
+    return text::both("the drive does not detect it and keeps its torque",
+                      "привод этого не обнаруживает и сохраняет момент");
+  return text::both("the drive detects that the control is silent after ",
+                    "привод обнаруживает пропажу управления через ") +
          ms(d.notices) + " " + reaction_words(d.on_silence);
 }
 
 std::string brake_words(const ControlDeath& d, const AxisConfig& a) {
   switch (d.brake) {
     case Brake::drive:
-      return text::both("the drive closes the brake with its power stage",
-                        "тормоз зажимает сам привод вместе с силовой частью");
+      return text::both("the drive closes the brake together with its power stage",
+                        "тормоз накладывает сам привод вместе с силовой частью");
     case Brake::station:
-      return text::both("the module of its brake closes it within ", "модуль тормоза зажимает его за ") +
+      return text::both("the module that switches the brake closes it within ",
+                        "модуль тормоза накладывает его за ") +
              ms(d.brake_closed);
     case Brake::relay:
-      return text::both("the relay behind safety.control_alive closes the brake within ",
-                        "реле за safety.control_alive зажимает тормоз за ") +
+      return text::both("the relay on safety.control_alive closes the brake within ",
+                        "реле по сигналу safety.control_alive накладывает тормоз за ") +
              ms(d.brake_closed);
     case Brake::nobody: {
       const std::string output = a.brake.drive_output ? "60FEh" : "\"" + a.brake.point + "\"";
@@ -236,7 +239,7 @@ std::string fall_words(const ControlDeath& d, const AxisConfig& a) {
   if (d.falls_for == kNoLimit)
     return text::both("the axis falls until something stops it",
                       "ось падает, пока что-нибудь её не остановит");
-  if (d.falls_for <= 0.0) return text::both("nothing falls", "ничего не падает");
+  if (d.falls_for <= 0.0) return text::both("the axis does not fall", "ось не падает");
   std::string words = text::both("the axis falls for up to ", "ось падает до ") + ms(d.falls_for);
   if (d.falls > 0.0)
     words += text::both(", by up to ", ", на расстояние до ") + text::number(d.falls, 1) + " " +
@@ -265,17 +268,17 @@ namespace {
 std::string remedy(const ControlDeath& d, const AxisConfig& a) {
   if (d.worst == Reaction::lets_go && !d.by_order)
     return text::both(
-        "let the drive brake first: 605Ah and 605Eh other than 0, connection_loss fault or quick_stop",
-        "пусть привод сначала тормозит: 605Ah и 605Eh не 0, connection_loss fault или quick_stop");
+        "make the drive brake first: 605Ah and 605Eh other than 0, connection_loss fault or quick_stop",
+        "сначала должен тормозить привод: 605Ah и 605Eh не 0, connection_loss fault или quick_stop");
   return a.brake.drive_output
              ? text::both(
-                   "let the drive work the brake by itself (brake_interlock of its device file), or hang "
-                   "the brake's supply on a relay that watches safety.control_alive (brake.relay_delay)",
-                   "пусть тормозом управляет сам привод (brake_interlock файла устройства), либо питайте "
-                   "тормоз через реле, следящее за safety.control_alive (brake.relay_delay)")
+                   "let the drive operate the brake (brake_interlock in its device file), or supply the "
+                   "brake through a relay that watches safety.control_alive (brake.relay_delay)",
+                   "поручите тормоз приводу (brake_interlock файла устройства) либо питайте тормоз через "
+                   "реле, следящее за safety.control_alive (brake.relay_delay)")
              : text::both(
-                   "hang the brake on the drive (drive_output, brake_interlock), or its supply on a quick "
-                   "relay that watches safety.control_alive (brake.relay_delay)",
+                   "connect the brake to the drive (drive_output, brake_interlock), or supply it through a "
+                   "fast relay that watches safety.control_alive (brake.relay_delay)",
                    "подключите тормоз к приводу (drive_output, brake_interlock) либо питайте его через "
                    "быстрое реле, следящее за safety.control_alive (brake.relay_delay)");
 }

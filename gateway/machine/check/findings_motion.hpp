@@ -80,55 +80,56 @@ inline constexpr text::Entry kEndInside{"machine.end_inside",
                                         "кончается ход"};
 inline constexpr text::Entry kEndTooNear{
     "machine.end_too_near",
-    "{0}: {2} from the switch {0}{1} to the mechanical end are too few: not homed it gets there at {3} and "
-    "stops "
-    "after {4}; up to {5} would fit (home.fast, jog_velocity_not_homed)",
-    "{0}: от концевика {0}{1} до упора {2} — мало: без нуля ось приходит туда на {3} и останавливается через "
-    "{4}; годится до {5} (home.fast, jog_velocity_not_homed)"};
+    "{0}: the mechanical end is only {2} beyond the limit switch {0}{1}: before homing the axis arrives at "
+    "{3} and needs {4} to stop; reduce home.fast and jog_velocity_not_homed to {5} or less",
+    "{0}: упор всего в {2} за концевиком {0}{1}: до выхода в ноль ось подходит на {3} и тормозит на пути "
+    "{4}; уменьшите home.fast и jog_velocity_not_homed до {5} или ниже"};
 inline constexpr text::Entry kSamePoint{"machine.same_point",
                                         "{0}: `{1}` and `{2}` are the same point \"{3}\"",
                                         "{0}: «{1}» и «{2}» — один и тот же сигнал «{3}»"};
 inline constexpr text::Entry kHomeSwitchAtOnce{
     "machine.home_switch_at_once",
-    "{0} and {1} would be homed at once (`home.order` {3}) on the same switch \"{2}\", which does not tell "
-    "which of them is on it: give one of them another `home.order`",
+    "{0} and {1} would home at the same time (`home.order` {3}) on the same switch \"{2}\", which cannot "
+    "tell the axes apart: give one of them another `home.order`",
     "{0} и {1} выходили бы в ноль одновременно (`home.order` {3}) по одному датчику «{2}», а он не "
     "различает оси: задайте одной из них другой `home.order`"};
 inline constexpr text::Entry kHomeSwitchShared{
     "machine.home_switch_shared",
-    "{0} and {1} have the same home switch \"{2}\": homing finds a wrong zero, or none, while the other axis "
-    "is "
-    "on it; let `home.final_position` leave it",
-    "У осей {0} и {1} один датчик нуля «{2}»: пока на нём другая ось, ноль будет найден неверно или не "
-    "найден; пусть `home.final_position` уводит ось с датчика"};
+    "{0} and {1} share the home switch \"{2}\": while one axis is on it, homing the other finds a wrong zero "
+    "or none; choose `home.final_position` so that the axis leaves the switch",
+    "У осей {0} и {1} общий датчик нуля «{2}»: пока одна ось стоит на нём, другая найдёт неверный ноль или "
+    "не найдёт его; задайте `home.final_position` так, чтобы ось сходила с датчика"};
 inline constexpr text::Entry kVerticalBrake{
-    "machine.vertical_without_brake", "{0} is vertical and has no brake: it falls when power goes",
+    "machine.vertical_without_brake",
+    "{0} is vertical and has no brake: it falls when its power is switched off",
     "{0}: вертикальная ось без тормоза: при снятии питания она упадёт"};
 inline constexpr text::Entry kBrakeModbus{
     "machine.brake_over_modbus", "{0}: the brake \"{1}\" is switched over Modbus, up to {2} ms late",
     "{0}: тормоз «{1}» переключается через Modbus с опозданием до {2} мс"};
 inline constexpr text::Entry kBrakeLoss{
     "machine.brake_loss",
-    "{0}: when its station is lost the brake \"{1}\" would not engage: loss = {2}, hold = false",
-    "{0}: при потере станции тормоз «{1}» не зажмёт: нужно loss = {2}, hold = false"};
+    "{0}: if its station is lost, the brake \"{1}\" does not close: set loss = {2}, hold = false",
+    "{0}: при потере станции тормоз «{1}» не наложится: нужно loss = {2}, hold = false"};
 inline constexpr text::Entry kBrakeDelay{
     "machine.brake_delay",
-    "{0}: brake.engage_delay is {1} ms, less than a cycle of {2} ms: power goes before the brake holds",
-    "{0}: brake.engage_delay равен {1} мс, меньше такта {2} мс: питание снимется раньше, чем тормоз зажмёт"};
-inline constexpr text::Entry kFallsWithControl{"machine.falls_with_control",
-                                               "{0}: if the control dies at {1}, {2}; {3}: {4}; {5}",
-                                               "{0}: если управление остановится на {1}, {2}; {3}: {4}; {5}"};
+    "{0}: brake.engage_delay is {1} ms, less than a cycle of {2} ms: the power is off before the brake holds",
+    "{0}: brake.engage_delay равен {1} мс, меньше такта {2} мс: питание снимется раньше, чем тормоз удержит "
+    "ось"};
+inline constexpr text::Entry kFallsWithControl{
+    "machine.falls_with_control", "{0}: if the control dies at {1}: {2}; {3}; {4}. Remedy: {5}",
+    "{0}: если управление прекратит работу на {1}: {2}; {3}; {4}. Что сделать: {5}"};
 inline constexpr text::Entry kRelayWatchesNothing{
     "machine.relay_watches_nothing",
-    "{0}: brake.relay_delay is the time of a relay that watches safety.control_alive, and there is none",
+    "{0}: brake.relay_delay describes a relay that watches safety.control_alive, but no such output is "
+    "declared",
     "{0}: brake.relay_delay — время реле, следящего за safety.control_alive, а этот выход не задан"};
-inline constexpr text::Entry kRelayTooQuick{"machine.relay_too_quick",
-                                            "{0}: brake.relay_delay is {1} ms, but safety.control_alive "
-                                            "changes every {2} ms only: the relay would fall "
-                                            "while the control lives",
-                                            "{0}: brake.relay_delay равен {1} мс, а safety.control_alive "
-                                            "меняется лишь каждые {2} мс: реле отпускало бы "
-                                            "при живом управлении"};
+inline constexpr text::Entry kRelayTooQuick{
+    "machine.relay_too_quick",
+    "{0}: brake.relay_delay is {1} ms, but safety.control_alive changes only every {2} ms: the relay would "
+    "drop out while the control is alive",
+    "{0}: brake.relay_delay равен {1} мс, а safety.control_alive "
+    "меняется лишь каждые {2} мс: реле отпускало бы "
+    "при живом управлении"};
 inline constexpr text::Entry kBrakeTwo{"machine.brake_twice",
                                        "{0}: the brake has both `point` and `drive_output`",
                                        "{0}: у тормоза заданы и `point`, и `drive_output`"};
@@ -147,8 +148,8 @@ inline constexpr text::Entry kFollowingBeyondTravel{
     "{0}: following_error_stop {1} больше всего хода {2}: он ничего не остановит"};
 inline constexpr text::Entry kWindowBeyondFollowing{
     "machine.window_beyond_following",
-    "{0}: in_position_window {1} is above following_error_stop {2}: an exact stop would wait for nothing",
-    "{0}: in_position_window {1} больше following_error_stop {2}: точный останов ничего бы не ждал"};
+    "{0}: in_position_window {1} is above following_error_stop {2}: an exact stop would not wait at all",
+    "{0}: in_position_window {1} больше following_error_stop {2}: точный останов вообще не ждал бы"};
 inline constexpr text::Entry kNoCsv{
     "machine.no_csv",
     "{0}: in this version the drive closes the position loop: control = \"csp\", and no position_gain",
@@ -223,12 +224,10 @@ inline constexpr text::Entry kEstopLoss{
     "«{0}»: при потере станции цепь аварийного останова должна читаться как 0 (loss = 0, hold = false)"};
 inline constexpr text::Entry kMockGuard{
     "machine.mock_guards_real_drive",
-    "\"{0}\" is a mock input ({1}) and no wire can open it, but bus \"{2}\" is real: name a real input, or "
-    "declare "
-    "the bench with safety.mock_inputs_guard_real_drives = true",
-    "«{0}»: имитируемый вход ({1}), который не разомкнёт никакой провод, а шина «{2}» настоящая: нужен "
-    "настоящий "
-    "вход, либо объявите стенд: safety.mock_inputs_guard_real_drives = true"};
+    "\"{0}\" is a mock input ({1}) that no wire can open, but bus \"{2}\" is real: name a real input, or, "
+    "for a bench without a machine, set safety.mock_inputs_guard_real_drives = true",
+    "«{0}»: имитируемый вход ({1}), его не разомкнёт никакой провод, а шина «{2}» настоящая: укажите "
+    "настоящий вход либо, для стенда без станка, safety.mock_inputs_guard_real_drives = true"};
 inline constexpr text::Entry kMockGuardDeclared{
     "machine.mock_guard_declared",
     "safety.mock_inputs_guard_real_drives: no emergency stop and no limit switch of this file stops a real "
@@ -367,31 +366,29 @@ inline constexpr text::Entry kNoBrakeOutput{"machine.no_brake_output",
                                             "{0}: задан brake.drive_output, но у {1} нет выхода тормоза"};
 inline constexpr text::Entry kNoErrorStates{
     "machine.no_error_states",
-    "node {0}: device file \"{1}\" says that nobody can set what its outputs do when the control is silent "
-    "(connection_loss = \"none\"), and rpdo {2} has no deadline: give it one (event), or say unsupervised = "
-    "true",
+    "node {0}: device file \"{1}\" says that the state of its outputs cannot be set for when the control "
+    "falls silent (connection_loss = \"none\"), and rpdo {2} has no deadline: give it one (event), or set "
+    "unsupervised = true",
     "узел {0}: по файлу устройства «{1}» поведение выходов при молчании управления не задаётся "
     "(connection_loss = \"none\"), а у rpdo {2} нет срока: задайте его (event) либо unsupervised = true"};
-inline constexpr text::Entry kLossIsTheModules{"machine.loss_is_the_modules",
-                                               "{0}: device file \"{1}\" has connection_loss = \"none\": its "
-                                               "outputs go where the module lets them, neither hold nor "
-                                               "loss can be asked for",
-                                               "{0}: в файле устройства «{1}» connection_loss = \"none\": "
-                                               "выходы ведёт сам модуль, hold и loss задать нельзя"};
+inline constexpr text::Entry kLossIsTheModules{
+    "machine.loss_is_the_modules",
+    "{0}: device file \"{1}\" has connection_loss = \"none\": the module itself decides what its outputs do, "
+    "hold and loss cannot be set",
+    "{0}: в файле устройства «{1}» connection_loss = \"none\": "
+    "выходы ведёт сам модуль, hold и loss задать нельзя"};
 inline constexpr text::Entry kUnsupervised{
     "machine.unsupervised",
-    "{0}: the drive {1} would not notice that the control has died (no heartbeat consumer or guarding with a "
-    "reaction, no deadline of an RPDO); unsupervised = true waives that",
-    "{0}: привод {1} не заметит гибели управления (нет контроля heartbeat или опроса с реакцией, нет срока "
-    "RPDO); отказаться от этого можно ключом unsupervised = true"};
+    "{0}: the drive {1} would not detect a dead control (no heartbeat consumer or guarding with a reaction, "
+    "no RPDO deadline); unsupervised = true accepts that",
+    "{0}: привод {1} не обнаружит, что управление прекратило работу (нет контроля heartbeat или опроса с "
+    "реакцией, нет срока RPDO); с этим можно согласиться ключом unsupervised = true"};
 inline constexpr text::Entry kUnsupervisedModule{
     "machine.unsupervised",
-    "{0}: the module {1} would not notice that the control has died, and its outputs would stay (no "
-    "heartbeat "
-    "consumer, no guarding, no deadline of an RPDO); unsupervised = true waives that",
-    "{0}: модуль {1} не заметит гибели управления, и его выходы останутся (нет контроля heartbeat, опроса, "
-    "срока "
-    "RPDO); отказаться от этого можно ключом unsupervised = true"};
+    "{0}: the module {1} would not detect a dead control and would keep its outputs (no heartbeat consumer, "
+    "no guarding, no RPDO deadline); unsupervised = true accepts that",
+    "{0}: модуль {1} не обнаружит, что управление прекратило работу, и сохранит выходы (нет контроля "
+    "heartbeat, опроса, срока RPDO); с этим можно согласиться ключом unsupervised = true"};
 inline constexpr text::Entry kPdoSize{"machine.pdo_size", "{0} {1} maps {2} bits; 64 fit",
                                       "{0} {1}: отображено {2} бит; помещается 64"};
 inline constexpr text::Entry kPdoTwice{"machine.pdo_twice", "{0} {1} is already declared in line {2}",
@@ -456,22 +453,18 @@ inline constexpr text::Entry kTorqueAbovePeak{
     "{0}: torque_max = {1} % выше {2} %, которые даёт двигатель {3}"};
 inline constexpr text::Entry kSilentStatus{
     "machine.silent_status",
-    "{0}: the statusword (tpdo {1}, transmission {2}) of {3} comes on event only: silence would not differ "
-    "from "
-    "loss. Take 1 to 240, or give the tpdo an `event` time; silent_status = true waives that",
+    "{0}: the statusword of {3} (tpdo {1}, transmission {2}) is sent on event only, so that silence cannot "
+    "be told from loss. Use 1 to 240, or give the tpdo an `event` time; silent_status = true accepts that",
     "{0}: слово состояния (tpdo {1}, тип {2}) устройства {3} передаётся только по событию: молчание не "
     "отличить "
     "от потери. Возьмите тип 1-240 или задайте для tpdo `event`; silent_status = true снимает это "
     "требование"};
 inline constexpr text::Entry kPdosTooLate{
     "machine.pdos_late",
-    "bus {0}: a cycle into which all slower process data fall, too, takes up to {1} %: {2}, due with every "
-    "SYNC, "
-    "would come a cycle late; the mean of {3} % hides that. A longer cycle helps, or a lower PDO number for "
-    "it",
-    "шина {0}: цикл, на который приходятся и все более редкие данные процесса, занимает до {1} %: {2}, "
-    "нужный с "
-    "каждым SYNC, опоздает на цикл; в среднем это {3} %. Поможет больший такт или меньший номер PDO"};
+    "bus {0}: the busiest cycle takes up to {1} %, so that {2}, due with every SYNC, would come a cycle late "
+    "(the average of {3} % hides this). Use a longer cycle, or a lower PDO number for it",
+    "шина {0}: самый загруженный цикл занимает до {1} %: {2}, нужный с каждым SYNC, опоздает на цикл (в "
+    "среднем {3} %, и этого не видно). Поможет больший такт или меньший номер PDO"};
 
 inline constexpr text::Entry kPdoNeverComes{"machine.pdo_never_comes",
                                             "tpdo {0}: with transmission {1} and no `event` it need never "

@@ -16,33 +16,30 @@ std::uint32_t crc32(std::string_view bytes);
 
 namespace finding {
 inline constexpr text::Entry kPreviousTaken{"state.previous_taken",
-                                            "damaged; the generation before is taken from {0}",
+                                            "damaged; the previous generation is used, from {0}",
                                             "повреждён; взято предыдущее поколение из {0}"};
 inline constexpr text::Entry kOtherCopyTaken{
     "state.other_copy_taken",
     "the retained values are those of this copy, generation {0}: the other is damaged",
     "сохраняемые значения взяты из этой копии, поколение {0}: другая повреждена"};
-inline constexpr text::Entry kRetainedLost{
-    "state.retained_lost",
-    "the retained values of the PLC are lost: neither this copy nor {0} is whole; move both away to begin "
-    "with "
-    "the initial values",
-    "сохраняемые значения ПЛК утрачены: ни эта копия, ни {0} не цела; уберите обе, чтобы начать с начальных "
-    "значений"};
+inline constexpr text::Entry kRetainedLost{"state.retained_lost",
+                                           "the retained values of the PLC are lost: both this copy and {0} "
+                                           "are damaged; move both away to start with the initial values",
+                                           "сохраняемые значения ПЛК утрачены: и эта копия, и {0} "
+                                           "повреждены; уберите обе, чтобы начать с начальных значений"};
 /// {0} the other generation's file; {1} what is lost, {2} what to do then: halves of text::both.
 inline constexpr text::Entry kPartLost{
     "state.part_lost",
-    "neither this file nor {0}, the generation before it, is whole: {1}; move both away, and {2}",
-    "ни этот файл, ни {0}, предыдущее поколение, не цел: {1}; уберите оба, и {2}"};
+    "both this file and {0}, the previous generation, are damaged: {1}; move both away, and {2}",
+    "и этот файл, и {0}, предыдущее поколение, повреждены: {1}; уберите оба, и {2}"};
 inline constexpr text::Entry kPartLostAlone{
     "state.part_lost",
-    "this file is not whole, and there is no other generation, {0}: {1}; move it away, and {2}",
-    "файл не цел, а другого поколения, {0}, нет: {1}; уберите его, и {2}"};
+    "this file is damaged, and there is no other generation ({0}): {1}; move it away, and {2}",
+    "файл повреждён, а другого поколения ({0}) нет: {1}; уберите его, и {2}"};
 inline constexpr text::Entry kChecksum{
-    "state.checksum", "checksum {0} does not fit the content ({1}): cut off or changed",
+    "state.checksum", "checksum {0} does not match the content ({1}): the file is cut off or changed",
     "контрольная сумма {0} не подходит к содержимому ({1}): обрезан или изменён"};
-inline constexpr text::Entry kEdited{"state.edited",
-                                     "edited by hand (checksum = \"none\"); taken as it stands",
+inline constexpr text::Entry kEdited{"state.edited", "edited by hand (checksum = \"none\"); used as it is",
                                      "изменён вручную (checksum = \"none\"); взят как есть"};
 inline constexpr text::Entry kStateSyntax{"state.syntax", "TOML syntax: {0}", "синтаксис TOML: {0}"};
 inline constexpr text::Entry kStateSchema{"state.schema", "schema {0} is not 1", "schema {0}, а не 1"};

@@ -23,11 +23,11 @@ constexpr Row kRows[] = {
       "{0} остановлена запросом (hold, stop, reset или jog_stop)"}},
     {"keep_alive",
      {"jog.keep-alive",
-      "{0} has stopped: no keep-alive of whoever jogs has come for 100 ms (a computer that is too busy?)",
-      "{0} остановилась: 100 мс не было подтверждения от того, кто её перемещает (компьютер слишком "
-      "занят?)"}},
+      "{0} has stopped: no keep-alive from the jogging client for 100 ms (is the computer too busy?)",
+      "{0} остановилась: 100 мс не было подтверждения от клиента, который её перемещает (компьютер "
+      "перегружен?)"}},
     {"feed_enable",
-     {"jog.feed-enable", "{0} has stopped: the PLC does not permit its feed any more (feed_enable is FALSE)",
+     {"jog.feed-enable", "{0} has stopped: the PLC no longer permits its motion (feed_enable is FALSE)",
       "{0} остановилась: ПЛК больше не разрешает её подачу (feed_enable = FALSE)"}},
     {"travel",
      {"jog.travel", "{0} has stopped: it is at the end of its travel",

@@ -28,20 +28,21 @@ const Entry kNotSwitch{"socket.not-switch", "'{0}' must be 1 or 0", "«{0}» д�
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
                       "цикл не ответил; работает ли он?"};
 const Entry kOvertaken{
-    "socket.overtaken", "a stop came after this was asked for: nothing moves; ask again if it shall",
-    "после этого запроса пришёл останов: движения не будет; повторите запрос, если оно нужно"};
+    "socket.overtaken",
+    "a stop came after this request, so nothing moves; repeat the request if the motion is still wanted",
+    "после этого запроса пришёл останов, поэтому движения нет; если оно ещё нужно, повторите запрос"};
 const Entry kEnding{
     "socket.ending",
-    "the control comes to its end: axes and spindles come to rest, `servogate status` shows them",
+    "the control is shutting down: axes and spindles are coming to rest (`servogate status` shows them)",
     "управление завершается: оси и шпиндели останавливаются, их показывает `servogate status`"};
 const Entry kComesOn{
     "socket.comes-on",
-    "the drives are starting up just now: ask again in a moment, `servogate status` shows them",
+    "the drives are just being switched on: try again in a moment (`servogate status` shows them)",
     "приводы как раз включаются: повторите через мгновение, их показывает `servogate status`"};
 const Entry kNotReadable{"socket.not-readable", "{0} cannot be read: {1}", "{0} не читается: {1}"};
 const Entry kNotLoaded{"socket.not-loaded", "{0} was not loaded", "программа {0} не загружена"};
 const Entry kNotStarted{"socket.not-started",
-                        "{0} is not started: with the origins and tools as they are now it has errors",
+                        "{0} is not started: with the present origins and tools it has errors",
                         "программа {0} не пущена: с нынешними началами и инструментом в ней ошибки"};
 const Entry kMoreFindings{"socket.more-findings", "and {0} more; `servogate check` shows all of them",
                           "и ещё {0}; все показывает `servogate check`"};
@@ -60,10 +61,11 @@ const Entry kForeignNode{
     "узла {0} нет в файле станка управления, которое держит шину; её узлы: {1}"};
 const Entry kOnlyRead{
     "socket.only-read",
-    "'{0}' is not for a `servogate run`: its socket says who holds the buses and reads objects",
-    "«{0}» — не для `servogate run`: его сокет говорит, кто держит шины, и читает объекты"};
+    "a `servogate run` does not take '{0}': its socket only says which buses it uses, and reads objects",
+    "`servogate run` не принимает «{0}»: его сокет лишь говорит, какие шины он держит, и читает объекты"};
 const Entry kObjectUnanswered{
-    "socket.object-unanswered", "the node does not run under this control, or somebody else reads just now",
+    "socket.object-unanswered",
+    "the node is not running under this control, or another client is reading from it",
     "узел сейчас не работает под этим управлением, либо в эту минуту читает кто-то другой"};
 const Entry kNotSaved{"socket.not-saved", "done, but the state was not saved: {0}",
                       "выполнено, но состояние не сохранено: {0}"};
@@ -78,7 +80,7 @@ const Entry kJogDiameter{"said.jog-diameter", "{0} moves by {1} mm in diameter (
                          "{0} перемещается на {1} мм по диаметру (суппорт на {2} мм)"};
 const Entry kJogClipped{"said.jog-clipped", "{0} moves to its travel limit only, {1} {2}",
                         "{0} перемещается только до границы зоны, {1} {2}"};
-const Entry kJogs{"said.jogs", "{0} jogs {1}: it goes on while this client keeps asking",
+const Entry kJogs{"said.jogs", "{0} jogs {1} for as long as this client keeps asking",
                   "{0} движется в направлении {1}, пока клиент это подтверждает"};
 const Entry kZero{"said.zero", "{0} is {1} {2} here (origin {3} at {4})",
                   "{0} здесь равна {1} {2} (начало {3} в {4})"};

@@ -27,11 +27,10 @@ constexpr text::Entry kTexts[] = {
     {"gate.not_homed", "{0} is not homed: run `servogate home {0}` first",
      "{0} не выведена в ноль: сначала выполните `servogate home {0}`"},
     {"gate.feed_not_enabled",
-     "{0}: the PLC does not permit motion ({0}.feed_enable is FALSE: see in its program for what, an open "
-     "door for "
-     "instance)",
-     "{0}: ПЛК не разрешает движение ({0}.feed_enable = FALSE: причину, например открытую дверь, ищите в его "
-     "программе)"},
+     "{0}: the PLC does not permit motion: {0}.feed_enable is FALSE (an open door, for example; the PLC "
+     "program shows the reason)",
+     "{0}: ПЛК не разрешает движение: {0}.feed_enable = FALSE (например, открыта дверь; причину ищите в "
+     "программе ПЛК)"},
     {"gate.program_runs", "a program runs: end it first (`servogate reset`)",
      "выполняется программа: сначала завершите её (`servogate reset`)"},
     {"gate.program_does_not_run", "no program runs: `servogate start` starts the loaded one",
@@ -39,11 +38,10 @@ constexpr text::Entry kTexts[] = {
     {"gate.program_not_held", "the program runs and is not held: `servogate hold` holds it",
      "программа выполняется и не приостановлена: приостановит её `servogate hold`"},
     {"gate.not_stepping",
-     "the program runs in AUTO and would go on to its end: `servogate resume` does that, `servogate reset` "
-     "ends it",
-     "программа выполняется в АВТО и прошла бы до конца: для этого есть `servogate resume`, `servogate "
-     "reset` её "
-     "завершит"},
+     "the program was started in AUTO and cannot be stepped: `servogate resume` continues it to its end, "
+     "`servogate reset` ends it",
+     "программа пущена в АВТО, её нельзя выполнять по кадрам: `servogate resume` продолжит её до конца, "
+     "`servogate reset` завершит"},
     {"gate.no_program", "no program is loaded: run `servogate load PROGRAM` first",
      "программа не загружена: сначала выполните `servogate load PROGRAM`"},
     {"gate.wrong_mode", "not possible in mode {1}", "невозможно в режиме {1}"},
@@ -53,8 +51,10 @@ constexpr text::Entry kTexts[] = {
     {"gate.axis_moves", "{0} moves: wait until it stands", "{0} движется: дождитесь останова"},
     {"gate.manual_held", "{1} holds manual control", "ручным управлением владеет {1}"},
     {"gate.on_hard_limit",
-     "{0} is on its limit switch: only a jog away from it is possible ({1} is not), `servogate jog`",
-     "{0} на концевом выключателе: возможен только ручной ход от него (не {1}), `servogate jog`"},
+     "{0} is on its limit switch: it can only be jogged away from it (`servogate jog`), so {1} is not "
+     "possible",
+     "{0} на концевом выключателе: её можно только отвести от него вручную (`servogate jog`), {1} "
+     "невозможно"},
     {"gate.at_soft_limit", "{0} is at its travel limit {2} {3} already",
      "{0} уже на границе зоны перемещения {2} {3}"},
     {"gate.no_home_needed", "{0} needs no homing", "{0} не требует выхода в ноль"},
@@ -83,7 +83,7 @@ constexpr text::Entry kTexts[] = {
     {"gate.acceleration_range",
      "{0} cannot accelerate with {1} {3}/s2: 0 (its limit) and up to {2} {3}/s2 is possible",
      "{0} не может разгоняться с {1} {3}/с2: возможно 0 (её предел) и до {2} {3}/с2"},
-    {"gate.axis_stopping", "{0} is held by MC_Stop until its Execute falls",
+    {"gate.axis_stopping", "{0} is held by MC_Stop until its Execute becomes FALSE",
      "{0} удерживается MC_Stop, пока не снят его Execute"},
     {"gate.drives_not_wanted", "{0}: the operator has not switched the drives on",
      "{0}: оператор не включил приводы"},
@@ -97,15 +97,15 @@ constexpr text::Entry kTexts[] = {
     {"gate.handwheel_stopped", "{0} was stopped: select the handwheel anew",
      "{0} остановлена: выберите маховик заново"},
     {"gate.drives_on",
-     "a drive is on or a spindle turns: the PLC is held with the drives off only (`servogate power off`)",
-     "включён привод или вращается шпиндель: ПЛК удерживается только при выключенных приводах (`servogate "
+     "a drive is on or a spindle turns: the PLC can be held only when they are off (`servogate power off`)",
+     "включён привод или вращается шпиндель: ПЛК можно удерживать, только когда они выключены (`servogate "
      "power off`)"},
     {"gate.logic_held", "the PLC is held for single scans already",
      "ПЛК уже удерживается для отдельных сканов"},
     {"gate.logic_not_held", "the PLC is not held", "ПЛК не удерживается"},
-    {"gate.forces_full", "too many places are forced: let some of them go first",
+    {"gate.forces_full", "too many places are forced: release some of them first",
      "удерживается слишком много мест: сначала освободите некоторые"},
-    {"gate.no_torque", "{0} is not led by torque: the machine file gives it no `torque_max`",
+    {"gate.no_torque", "{0} cannot be torque-controlled: it has no `torque_max` in the machine file",
      "{0} не управляется моментом: в файле станка у неё нет `torque_max`"},
     {"gate.torque_range", "{0} cannot be given {1} % of the rated torque: from -{2} to {2} % is possible",
      "{0} не может получить {1} % номинального момента: возможно от -{2} до {2} %"},
@@ -113,8 +113,8 @@ constexpr text::Entry kTexts[] = {
      "{0} cannot change its torque by {1} % a second: 0 (its limit) and up to {2} % is possible",
      "{0} не может менять момент на {1} % в секунду: возможно 0 (её предел) и до {2} %"},
     {"gate.jogged_by_another",
-     "another client jogs {0}: wait until it has let go, or stop it (`servogate stop`)",
-     "{0} двигает другой клиент: дождитесь, пока он отпустит, или остановите (`servogate stop`)"},
+     "another client is jogging {0}: wait until it stops, or stop the axis (`servogate hold`)",
+     "{0} двигает другой клиент: дождитесь, пока он закончит, или остановите ось (`servogate hold`)"},
 };
 static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::jogged_by_another) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,

@@ -76,8 +76,8 @@ TEST_F(Gate, names_the_axis_that_is_without_power_or_without_feed_enable) {
   run(1);
   EXPECT_EQ(ask(RequestKind::jog_continuous, 1, 1), Refusal::feed_not_enabled);
   EXPECT_EQ(english(),
-            "Y: the PLC does not permit motion (Y.feed_enable is FALSE: see in its program for what, an open "
-            "door for instance)");
+            "Y: the PLC does not permit motion: Y.feed_enable is FALSE (an open door, for example; the PLC "
+            "program shows the reason)");
 }
 
 TEST_F(Gate, tells_who_wants_to_move_an_axis_that_is_being_switched_off_to_wait) {
@@ -217,7 +217,8 @@ TEST_F(Gate, leaves_a_continuous_jog_to_the_hand_that_began_it) {
     return static_cast<Refusal>(answer_.refusal);
   };
   EXPECT_EQ(of(8, RequestKind::keep_alive, 0, 0.0), Refusal::jogged_by_another);
-  EXPECT_EQ(english(), "another client jogs X: wait until it has let go, or stop it (`servogate stop`)");
+  EXPECT_EQ(english(),
+            "another client is jogging X: wait until it stops, or stop the axis (`servogate hold`)");
   EXPECT_EQ(of(8, RequestKind::jog_continuous, 0, 1.0), Refusal::jogged_by_another);
   EXPECT_EQ(of(8, RequestKind::jog_increment, 0, 1.0), Refusal::jogged_by_another);
   EXPECT_EQ(of(8, RequestKind::jog_continuous, 0, -1.0), Refusal::none) << "the executive stops it";
@@ -231,8 +232,9 @@ TEST_F(Gate, permits_on_a_hard_limit_only_the_way_back) {
   set(0, "limit_plus", true);
   run(1);
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0), Refusal::on_hard_limit);
-  EXPECT_EQ(english(),
-            "X is on its limit switch: only a jog away from it is possible (+ is not), `servogate jog`");
+  EXPECT_EQ(
+      english(),
+      "X is on its limit switch: it can only be jogged away from it (`servogate jog`), so + is not possible");
   EXPECT_EQ(ask(RequestKind::jog_continuous, 0, 1.0), Refusal::on_hard_limit);
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, -1.0), Refusal::none);
   EXPECT_EQ(ask(RequestKind::jog_increment, 1, 1.0), Refusal::none);

@@ -77,7 +77,7 @@ TEST(Waits, for_an_open_door_are_none_for_the_program_is_not_begun) {
   EXPECT_EQ(run.ending.code, 1);
   EXPECT_FALSE(run.report.contains("wait"));
   EXPECT_TRUE(
-      says(run.ending, "the control refuses: X: the PLC does not permit motion (X.feed_enable is FALSE"))
+      says(run.ending, "the control refuses: X: the PLC does not permit motion: X.feed_enable is FALSE"))
       << run.ending.err;
 }
 

@@ -168,7 +168,7 @@ TEST_F(JogCommand, that_the_plc_ends_says_so_and_is_no_success) {
             .get<bool>());
   });
   EXPECT_EQ(o.exit, 1);
-  EXPECT_TRUE(contains(o.err, "the PLC does not permit its feed")) << o.err;
+  EXPECT_TRUE(contains(o.err, "the PLC no longer permits its motion")) << o.err;
 }
 
 TEST_F(HomedJogCommand, that_the_end_of_the_travel_ends_says_so) {

@@ -12,19 +12,21 @@ namespace servogate::gateway::command {
 
 namespace {
 
-const text::Entry kMayMove{"can.may-move", "{0} can move a drive: --i-may-move says that it may",
-                           "{0} может двинуть привод: --i-may-move разрешает это"};
-const text::Entry kInUse{"can.in-use",
-                         "{0} is not done: somebody controls this bus, its frame {1} came within {2} s",
-                         "{0} не выполняется: этой шиной кто-то управляет, за {2} с пришёл его кадр {1}"};
+const text::Entry kMayMove{
+    "can.may-move", "{0} can move a drive; if that is intended, add --i-may-move",
+    "{0} может привести привод в движение; если это и требуется, добавьте --i-may-move"};
+const text::Entry kInUse{
+    "can.in-use", "{0} is refused: another master controls this bus (its frame {1} was seen within {2} s)",
+    "{0} не выполняется: этой шиной управляет другой ведущий (за {2} с получен его кадр {1})"};
 
 const text::Entry kNotRead{
     "can.not-read",
-    "somebody controls this bus, its frame {0} came within {1} s, and no running control of this user holds "
-    "it: requests from here would come between its own. Ask it, or end it; --anyway reads all the same",
-    "этой шиной кто-то управляет, за {1} с пришёл его кадр {0}, а работающего управления этого пользователя "
-    "на ней нет: запросы отсюда вклинились бы между его запросами. Спросите его или завершите; --anyway "
-    "читает несмотря на это"};
+    "another master controls this bus (its frame {0} was seen within {1} s), and it is not a control of this "
+    "user. Requests sent from here would get mixed up with its own. Read through that master, or stop it "
+    "first; --anyway reads regardless",
+    "этой шиной управляет другой ведущий (за {1} с получен его кадр {0}), и это не управление, запущенное "
+    "этим пользователем. Запросы отсюда перемешались бы с его запросами. Читайте через него или сначала "
+    "остановите его; с --anyway чтение выполняется всё равно"};
 
 }  // namespace
 

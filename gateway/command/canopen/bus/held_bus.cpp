@@ -20,23 +20,21 @@ using nlohmann::json;
 
 const text::Entry kHeld{
     "can.held",
-    "{0} is not done: the bus {1} is held by the running control of '{2}' ({3}); `servogate "
-    "down` ends it",
+    "{0} is refused: the running control of '{2}' uses bus {1} ({3}); `servogate down` ends that control",
     "{0} не выполняется: шину {1} держит работающее управление «{2}» ({3}); его завершает "
     "`servogate down`"};
 const text::Entry kHeldByRun{
     "can.held-by-run",
-    "{0} is not done: the bus {1} is held by a `servogate run` of '{2}' ({3}); it is free when the run has "
-    "ended",
+    "{0} is refused: a `servogate run` of '{2}' uses bus {1} ({3}); the bus is free when that run has ended",
     "{0} не выполняется: шину {1} держит `servogate run` станка «{2}» ({3}); она освободится, когда прогон "
     "закончится"};
-const text::Entry kSilent{"can.holder-silent",
-                          "{0} is not done: the control at {1} runs and does not answer (stopped, or in a "
-                          "debugger?); it may hold the "
-                          "bus {2}. Let it go on (kill -CONT) or end it first",
-                          "{0} не выполняется: управление {1} работает и не отвечает (остановлено или в "
-                          "отладчике?); оно может держать "
-                          "шину {2}. Сначала продолжите его (kill -CONT) или завершите"};
+const text::Entry kSilent{
+    "can.holder-silent",
+    "{0} is refused: the control at {1} is running but does not answer (stopped, or in a debugger?), and it "
+    "may be using bus {2}. Let it continue (kill -CONT) or end it first",
+    "{0} не выполняется: управление {1} работает и не отвечает (остановлено или в "
+    "отладчике?); оно может держать "
+    "шину {2}. Сначала продолжите его (kill -CONT) или завершите"};
 const text::Entry kThis{"can.this-command", "this command", "эта команда"};
 const text::Entry kNoConnection{"can.no-connection", "cannot reach the control at {0}: {1}",
                                 "нет связи с управлением {0}: {1}"};

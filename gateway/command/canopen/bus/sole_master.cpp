@@ -28,19 +28,17 @@ namespace {
 
 const text::Entry kStart{"master.start", "starting '{0}'", "запуск «{0}»"};
 const text::Entry kClaimed{"master.claimed",
-                           "'{0}' is not started: process {2} has just taken the bus {1}. Two masters would "
-                           "reset one another's drives "
-                           "in motion; end that one first",
+                           "'{0}' is not started: process {2} has just taken bus {1}. Two masters would "
+                           "reset each other's drives in motion; end that process first",
                            "«{0}» не запущен: шину {1} только что занял процесс {2}. Два ведущих сбрасывали "
-                           "бы приводы друг друга на "
-                           "ходу; сначала завершите тот"};
-const text::Entry kLed{
-    "master.led",
-    "'{0}' is not started: somebody else leads the bus {1}. Within {2} s came {3}. A second master would "
-    "reset "
-    "drives that are in motion; nothing was sent. End the other control, or take it off this bus",
-    "«{0}» не запущен: шиной {1} управляет кто-то другой. За {2} с пришли {3}. Второй ведущий сбросил бы "
-    "приводы на ходу; ничего не отправлено. Завершите другое управление или отключите его от этой шины"};
+                           "бы приводы друг друга на ходу; сначала завершите тот процесс"};
+const text::Entry kLed{"master.led",
+                       "'{0}' is not started: another master controls bus {1}; within {2} s it sent {3}. A "
+                       "second master would reset drives that are in motion. Nothing was sent from here. End "
+                       "the other control, or disconnect it from this bus",
+                       "«{0}» не запущен: шиной {1} управляет другой ведущий; за {2} с от него пришли {3}. "
+                       "Второй ведущий сбросил бы приводы на ходу. Отсюда ничего не отправлено. Завершите "
+                       "другое управление или отключите его от этой шины"};
 
 constexpr double kLeast_s = 1.2;  ///< hears a heartbeat once a second
 constexpr double kMost_s = 10.0;
