@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the documents show of a terminal is what the terminal shows: every `$ servogate` of them that needs no
-// running control is run, and its lines are compared. `...` stands for any lines.
+// running control is run, and its lines are compared. `...` stands for any lines. Documents of docs/ru/ show
+// the program in Russian.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -115,10 +116,10 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  std::vector<std::string> run(const std::string& command) const {
-    const std::string line = "cd '" + folder_.string() + "' && LANG=C LC_ALL=C PATH=\"" +
-                             fs::path(tests::program()).parent_path().string() + ":$PATH\" && { " + command +
-                             "; } 2>&1";
+  std::vector<std::string> run(const std::string& command, const std::string& language) const {
+    const std::string line =
+        "cd '" + folder_.string() + "' && export LANG=" + language + " LC_ALL=" + language + " PATH=\"" +
+        fs::path(tests::program()).parent_path().string() + ":$PATH\" && { " + command + "; } 2>&1";
     std::string out;
     std::FILE* pipe = popen(line.c_str(), "r");
     if (pipe == nullptr) return {};
@@ -139,6 +140,10 @@ bool needs_no_control(const std::string& command) {
   return false;
 }
 
+std::string language_of(const std::string& document) {
+  return document.starts_with("docs/ru/") ? "ru_RU.UTF-8" : "C";
+}
+
 class Documents : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Documents, show_what_the_program_says) {
@@ -147,7 +152,7 @@ TEST_P(Documents, show_what_the_program_says) {
   for (const Shown& shown : shown_in(GetParam())) {
     if (!needs_no_control(shown.command)) continue;
     ++run;
-    const std::vector<std::string> real = terminal.run(shown.command);
+    const std::vector<std::string> real = terminal.run(shown.command, language_of(GetParam()));
     std::string text;
     for (const std::string& line : real) text += line + "\n";
     EXPECT_TRUE(matches(shown.lines, real)) << shown.place << ": $ " << shown.command << "\n" << text;
@@ -157,12 +162,20 @@ TEST_P(Documents, show_what_the_program_says) {
 
 INSTANTIATE_TEST_SUITE_P(All, Documents,
                          ::testing::Values("docs/command-line.md", "docs/first-machine.md",
-                                           "docs/trace-and-report.md"),
+                                           "docs/trace-and-report.md", "docs/ru/first-machine.md"),
                          [](const auto& document) {
-                           std::string name = fs::path(document.param).stem().string();
-                           for (char& c : name) c = c == '-' ? '_' : c;
+                           std::string name = fs::path(document.param).relative_path().replace_extension();
+                           name.erase(0, std::string("docs/").size());
+                           for (char& c : name) c = c == '-' || c == '/' ? '_' : c;
                            return name;
                          });
+
+TEST(Documents, in_russian_are_compared_with_a_program_that_speaks_russian) {
+  const Terminal terminal;
+  const std::string command = "servogate check nowhere.toml";
+  EXPECT_NE(terminal.run(command, language_of("docs/ru/safety.md")),
+            terminal.run(command, language_of("docs/safety.md")));
+}
 
 TEST(Documents, a_line_that_is_not_there_would_be_noticed) {
   EXPECT_TRUE(matches({"a", "...", "c"}, {"a", "b", "b", "c"}));

@@ -192,10 +192,9 @@ std::string reaction_words(Reaction r) {
 std::string drive_words(const ControlDeath& d) {
   std::string words;
   if (d.follows != kNoLimit) {
-    const std::string when = d.following_known
-                                 ? text::both("after ", "через ") + ms(d.follows)
-                                 : text::both("after a time that 6065h and 6066h in the drive decide",
-                                              "через время, заданное в приводе (6065h и 6066h)");
+    const std::string when = d.following_known ? text::both("after ", "через ") + ms(d.follows)
+                                               : text::both("(6065h and 6066h in the drive say when)",
+                                                            "(когда — задают 6065h и 6066h привода)");
     words = text::both("the drive trips on following error ", "привод отключается по рассогласованию ") +
             when + " " + reaction_words(d.on_following) + ", ";
     words += d.notices == kNoLimit ? text::both("and does not detect that the control is silent",
