@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "gateway/cli/standard_output.hpp"
+
 namespace servogate::gateway {
 
 const text::Entry kCannotRead{"cli.cannot-read", "cannot read the file: {0}", "файл не читается: {0}"};
@@ -36,6 +38,7 @@ const LastError& last_error() noexcept { return last; }
 
 int print_findings(const std::vector<text::Finding>& findings) {
   int errors = 0;
+  keep_order();
   for (const text::Finding& f : findings) {
     std::fprintf(stderr, "%s\n%s", f.str().c_str(), f.excerpt().c_str());
     if (f.severity != text::Severity::error) continue;
@@ -46,6 +49,7 @@ int print_findings(const std::vector<text::Finding>& findings) {
 
 void complain(const text::Entry& entry, const std::vector<std::string>& arguments) {
   last = {std::string(entry.id), text::render(entry, arguments, text::user_language())};
+  keep_order();
   std::fprintf(stderr, "servogate: %s [%s]\n", last.text.c_str(), last.code.c_str());
 }
 

@@ -56,6 +56,11 @@ bool print_formatted(const char* format, ...) {
   return note(written >= 0);
 }
 
+void keep_order() {
+  errno = 0;
+  if (failure == 0) note(std::fflush(stdout) == 0);
+}
+
 bool has_printed() noexcept { return printed; }
 
 std::string error_object(const LastError& error, int code) {
@@ -66,8 +71,7 @@ std::string error_object(const LastError& error, int code) {
 
 int end_output(int code, bool json) {
   if (json && !printed && code != kDone) print_line(error_object(last_error(), code));
-  errno = 0;
-  if (failure == 0) note(std::fflush(stdout) == 0);
+  keep_order();
   if (failure == 0 || failure == EPIPE) return code;
   complain(kOutputLost, {text::words_of(failure)});
   return kInfrastructure;

@@ -22,6 +22,10 @@ bool print_line(std::string_view line);
 /// The same as printf has it.
 [[gnu::format(printf, 1, 2)]] bool print_formatted(const char* format, ...);
 
+/// Writes what is buffered, so that what is said next on standard error stands behind it where both go to one
+/// file.
+void keep_order();
+
 /// Something stands on standard output, or will. May be called by a signal handler.
 bool has_printed() noexcept;
 

@@ -169,7 +169,7 @@ TEST_F(HeldByRun, is_locked_to_logs_of_a_master_whoever_runs_it) {
   EXPECT_TRUE(held.err_has("`play` is refused: a `servogate run` of")) << held.err;
   const Ended heard = desk_.line("XDG_RUNTIME_DIR=$PWD/else $SG play " + bus() + " stop.log");
   EXPECT_EQ(heard.code, 1);
-  EXPECT_TRUE(heard.err_has("`play` is not done: another master controls this bus")) << heard.err;
+  EXPECT_TRUE(heard.err_has("`play` is refused: another master controls this bus")) << heard.err;
   EXPECT_EQ(tool("play $BUS drive.log").code, 0) << "a device among simulated ones";
   EXPECT_EQ(alarms(), std::vector<int>());
 }
@@ -205,7 +205,7 @@ TEST_F(HeldByRun, of_somebody_else_is_heard_and_left_alone) {
   }
   const Ended written = tool("sdo $BUS 1 write 1801:1 0x40000281");
   EXPECT_EQ(written.code, 1);
-  EXPECT_TRUE(written.err_has("writing 1801h:01 is not done: another master controls this bus"))
+  EXPECT_TRUE(written.err_has("writing 1801h:01 is refused: another master controls this bus"))
       << written.err;
   EXPECT_EQ(tool("sdo $BUS 1 write 1801:1 0x40000281 --anyway").code, 2);
   EXPECT_EQ(alarms(), std::vector<int>());
@@ -216,7 +216,8 @@ TEST_F(HeldByRun, is_told_of_who_reads_all_the_same) {
   ASSERT_TRUE(comes_on()) << run_->said();
   EXPECT_EQ(tool("sdo $BUS 1 read 6041 --anyway").code, 0);
   EXPECT_EQ(alarms(), std::vector<int>{kForeignFrame});
-  EXPECT_NE(texts_.find("somebody else sends SDO request of node 1, read 6041h:00 (601h)"), std::string::npos)
+  EXPECT_NE(texts_.find("another master sends SDO request of node 1, read 6041h:00 (601h)"),
+            std::string::npos)
       << texts_;
 }
 

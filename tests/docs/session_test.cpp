@@ -163,13 +163,14 @@ TEST_P(Documents, show_what_the_program_says) {
     for (const std::string& line : real) text += line + "\n";
     EXPECT_TRUE(matches(shown.lines, real)) << shown.place << ": $ " << shown.command << "\n" << text;
   }
-  EXPECT_GE(run, 2);
+  EXPECT_GE(run, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Documents,
                          ::testing::Values("docs/command-line.md", "docs/command-line-tutorial.md",
                                            "docs/plc-tutorial.md", "docs/first-machine.md",
-                                           "docs/trace-and-report.md", "docs/ru/first-machine.md"),
+                                           "docs/trace-and-report.md", "docs/dialects/nc110.md",
+                                           "docs/ru/first-machine.md", "docs/ru/dialects/nc110.md"),
                          [](const auto& document) {
                            std::string name = fs::path(document.param).relative_path().replace_extension();
                            name.erase(0, std::string("docs/").size());
