@@ -74,7 +74,7 @@ TEST(Consequences, a_brake_is_told_as_late_as_its_process_data_or_its_station_go
   LoadResult loaded = mill();
   AxisConfig& z = loaded.machine.axes.at(2);
   EXPECT_NEAR(brake_command_time(loaded, z), 0.010, 1e-12) << "its drive takes outputs with every tenth SYNC";
-  EXPECT_TRUE(has(said(loaded), "Z: power goes 110 ms after the brake is told to engage"));
+  EXPECT_TRUE(has(said(loaded), "Z: power is switched off 110 ms after the brake is told to close"));
   loaded.machine.control.cycle_time = 0.015;
   EXPECT_NEAR(brake_command_time(loaded, z), 0.150, 1e-12);
   loaded.machine.control.cycle_time = 0.001;
