@@ -4,6 +4,7 @@
 // the program in Russian.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -150,6 +151,12 @@ std::string language_of(const std::string& document) {
   return document.starts_with("docs/ru/") ? "ru_RU.UTF-8" : "C";
 }
 
+/// Every page that shows a session that can be run.
+constexpr const char* kPages[] = {"docs/command-line.md",     "docs/command-line-tutorial.md",
+                                  "docs/plc-tutorial.md",     "docs/first-machine.md",
+                                  "docs/trace-and-report.md", "docs/dialects/nc110.md",
+                                  "docs/ru/first-machine.md", "docs/ru/dialects/nc110.md"};
+
 class Documents : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Documents, show_what_the_program_says) {
@@ -166,23 +173,31 @@ TEST_P(Documents, show_what_the_program_says) {
   EXPECT_GE(run, 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Documents,
-                         ::testing::Values("docs/command-line.md", "docs/command-line-tutorial.md",
-                                           "docs/plc-tutorial.md", "docs/first-machine.md",
-                                           "docs/trace-and-report.md", "docs/dialects/nc110.md",
-                                           "docs/ru/first-machine.md", "docs/ru/dialects/nc110.md"),
-                         [](const auto& document) {
-                           std::string name = fs::path(document.param).relative_path().replace_extension();
-                           name.erase(0, std::string("docs/").size());
-                           for (char& c : name) c = c == '-' || c == '/' ? '_' : c;
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, Documents, ::testing::ValuesIn(kPages), [](const auto& document) {
+  std::string name = fs::path(document.param).relative_path().replace_extension();
+  name.erase(0, std::string("docs/").size());
+  for (char& c : name) c = c == '-' || c == '/' ? '_' : c;
+  return name;
+});
 
 TEST(Documents, in_russian_are_compared_with_a_program_that_speaks_russian) {
   const Terminal terminal("docs/ru/safety.md");
   const std::string command = "servogate check nowhere.toml";
   EXPECT_NE(terminal.run(command, language_of("docs/ru/safety.md")),
             terminal.run(command, language_of("docs/safety.md")));
+}
+
+TEST(Documents, with_a_session_are_all_run) {
+  const fs::path tree = tests::source_dir();
+  for (const auto& entry : fs::recursive_directory_iterator(tree / "docs")) {
+    if (entry.path().extension() != ".md") continue;
+    const std::string document = fs::relative(entry.path(), tree).string();
+    const std::vector<Shown> shown = shown_in(document);
+    const bool session =
+        std::any_of(shown.begin(), shown.end(), [](const Shown& s) { return needs_no_control(s.command); });
+    EXPECT_EQ(session, std::find(std::begin(kPages), std::end(kPages), document) != std::end(kPages))
+        << document;
+  }
 }
 
 TEST(Documents, a_line_that_is_not_there_would_be_noticed) {
