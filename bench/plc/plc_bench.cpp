@@ -8,8 +8,8 @@
 #include <string>
 
 #include "bench/plc/by_hand.hpp"
-#include "plc/compile.hpp"
-#include "plc/engine.hpp"
+#include "plc/compile/compile.hpp"
+#include "plc/engine/engine.hpp"
 
 namespace {
 

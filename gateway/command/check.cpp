@@ -12,7 +12,7 @@
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/machine/state/state.hpp"
-#include "plc/run.hpp"
+#include "plc/run/run.hpp"
 
 namespace servogate::gateway::command {
 

@@ -53,15 +53,16 @@ bool carry_out(Control& control, const ProgramChange& change) {
 }
 
 /// Makes ready what the requests of the next cycle change of the PLC.
-void prepare_logic(Control& control, const std::vector<LogicChange>& changes,
+void prepare_logic(Control& control, const std::vector<plc::LogicChange>& changes,
                    const cycle::CycleInputs& inputs) {
   for (int i = 0; i < inputs.request_count; ++i) {
     const image::Request& request = inputs.requests[static_cast<std::size_t>(i)];
     if (request.kind != image::RequestKind::logic || control.logic() == nullptr) continue;
-    for (const LogicChange& change : changes)
+    for (const plc::LogicChange& change : changes)
       if (change.number == request.index)
-        control.prepare(change, change.kind == LogicChange::Kind::load ? control.compile(change.files, {})
-                                                                       : plc::CompileResult{});
+        control.prepare(change, change.kind == plc::LogicChange::Kind::load
+                                    ? control.compile(change.files, {})
+                                    : plc::CompileResult{});
   }
 }
 

@@ -15,7 +15,7 @@
 #include "gateway/compose/plc/logic_options.hpp"
 #include "gateway/compose/program/program_model.hpp"
 #include "gateway/files/read_file.hpp"
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 
 namespace servogate::gateway {
 
@@ -31,6 +31,9 @@ const text::Entry kPerhapsReal{
     "machine waits for its operator",
     "шина «{0}» объявлена имитацией, но за «{1}» может быть настоящая: уберите `simulated`, и станок будет "
     "ждать оператора"};
+
+/// Far more than any cycle, and less than anybody waits for a stop.
+constexpr image::Nanoseconds kLongestScan_ns = 500 * image::kMillisecond;
 
 /// Stands in for a bus while a record is replayed: what came in comes from the record.
 class SilentBus final : public image::CanBus {
@@ -53,7 +56,8 @@ const text::Entry kUnreadable{"compose.plc-unreadable", "cannot read the PLC sou
 
 }  // namespace
 
-Control::Control(const machine::LoadResult& loaded) : loaded_(loaded) {}
+Control::Control(const machine::LoadResult& loaded)
+    : loaded_(loaded), symbols_(loaded_.machine.symbol_table()) {}
 Control::~Control() = default;
 
 std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
@@ -180,17 +184,16 @@ void Control::watch_logic() noexcept {
 }
 
 image::Nanoseconds Control::longest_scan_ns() const noexcept {
-  return std::max(PlcLogic::kLongestScan_ns,
-                  static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
+  return std::max(kLongestScan_ns, static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
 }
 
 plc::CompileResult Control::compile(const std::vector<plc::SourceFile>& files,
                                     const std::stop_token& stop) const {
-  return compile_beside(files, loaded_.machine.symbol_table(), logic_options(loaded_.machine), stop);
+  return compile_beside(files, symbols_, logic_options(loaded_.machine), stop);
 }
 
-PlcLogic::Plan Control::prepare(const LogicChange& change, plc::CompileResult compiled) {
-  PlcLogic::Plan plan = logic_->prepare(change, std::move(compiled));
+plc::Logic::Plan Control::prepare(const plc::LogicChange& change, plc::CompileResult compiled) {
+  plc::Logic::Plan plan = logic_->prepare(change, std::move(compiled));
   if (plan.possible && change_tap_ != nullptr) change_tap_->take(change);
   return plan;
 }
@@ -216,10 +219,10 @@ bool Control::compile_logic(std::vector<text::Finding>& findings) {
     file.text = std::move(*content);
     sources.push_back(std::move(file));
   }
-  plc::CompileResult compiled = plc::compile(sources, m.symbol_table(), logic_options(m));
+  plc::CompileResult compiled = plc::compile(sources, symbols_, logic_options(m));
   findings.insert(findings.end(), compiled.findings.begin(), compiled.findings.end());
   if (!compiled.ok()) return false;
-  logic_ = std::make_unique<PlcLogic>(compiled.image, std::move(sources));
+  logic_ = std::make_unique<plc::Logic>(compiled.image, std::move(sources), stopwatch_);
   return true;
 }
 

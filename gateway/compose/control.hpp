@@ -9,7 +9,6 @@
 
 #include "gateway/compose/can_supplier.hpp"
 #include "gateway/compose/can_transport.hpp"
-#include "gateway/compose/plc/plc_logic.hpp"
 #include "gateway/compose/program/program_change.hpp"
 #include "gateway/compose/simulated/machine_faults.hpp"
 #include "gateway/compose/simulated/mock_world.hpp"
@@ -18,6 +17,7 @@
 #include "kernel/channel/process.hpp"
 #include "kernel/cycle/clocks.hpp"
 #include "kernel/cycle/executive.hpp"
+#include "plc/logic/logic.hpp"
 
 namespace servogate::gateway {
 
@@ -53,7 +53,7 @@ class Control {
   plc::CompileResult compile(const std::vector<plc::SourceFile>& files, const std::stop_token& stop) const;
   /// Makes a change of the PLC ready for the request of its number, and shows it to the tap; `compiled`: what
   /// compile() made of the files of a load. Only with a PLC; any one thread outside the cycle.
-  PlcLogic::Plan prepare(const LogicChange& change, plc::CompileResult compiled = {});
+  plc::Logic::Plan prepare(const plc::LogicChange& change, plc::CompileResult compiled = {});
   /// A number for the next one.
   std::uint32_t next_logic_change() noexcept { return ++logic_changes_; }
   /// For records; before the first change.
@@ -69,11 +69,13 @@ class Control {
 
   cycle::Cycle& cycle() noexcept { return *cycle_; }
   const machine::MachineConfig& machine() const noexcept { return loaded_.machine; }
+  /// Its symbol table, made once.
+  const std::vector<image::Symbol>& symbols() const noexcept { return symbols_; }
   channel::Process& process(int index) { return *processes_[static_cast<std::size_t>(index)]; }
   MockWorld& world() noexcept { return *world_; }
   /// Faults on what is simulated, by name.
   MachineFaults& faults() noexcept { return *faults_; }
-  PlcLogic* logic() noexcept { return logic_.get(); }
+  plc::Logic* logic() noexcept { return logic_.get(); }
   const std::vector<std::unique_ptr<CanSupplier>>& suppliers() const noexcept { return suppliers_; }
   /// Real time: the cycle that step() is about to run was due at this time of `clock`. From the first call on
   /// every SYNC is timed. real-time safe.
@@ -110,17 +112,18 @@ class Control {
   void await_grants(image::Nanoseconds t);
 
   machine::LoadResult loaded_;
+  const std::vector<image::Symbol> symbols_;
   std::unique_ptr<MockWorld> world_;
   std::unique_ptr<MachineFaults> faults_;
   std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
   std::optional<image::Nanoseconds> due_ns_;
-  std::unique_ptr<PlcLogic> logic_;
+  cycle::MonotonicClock stopwatch_;
+  std::unique_ptr<plc::Logic> logic_;
   std::vector<std::unique_ptr<channel::Process>> processes_;
   std::mutex reading_;
   ProgramChangeTap* change_tap_ = nullptr;
   std::uint32_t logic_changes_ = 0;
-  cycle::MonotonicClock stopwatch_;
   std::unique_ptr<cycle::Cycle> cycle_;
 };
 

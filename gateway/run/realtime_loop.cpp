@@ -29,7 +29,7 @@ bool RealtimeLoop::start() {
     cycle_thread_.join();
     return false;
   }
-  if (PlcLogic* logic = control_.logic(); logic != nullptr)
+  if (plc::Logic* logic = control_.logic(); logic != nullptr)
     watchdog_ = std::make_unique<ScanWatchdog>(logic->scan_watch(), control_.longest_scan_ns(),
                                                settings_.priority + 1);
   reader_thread_ = std::thread([this] {

@@ -31,7 +31,7 @@ constexpr std::size_t kChunkHead = 8;  // length, checksum
 constexpr char kCycleChunk = 'c', kChangeChunk = 'p', kSubprogramChunk = 's', kLogicChunk = 'l';
 /// Index = ProgramChange::Kind.
 constexpr std::string_view kChangeNames[] = {"program", "tables", "block", "modes"};
-/// Index = LogicChange::Kind.
+/// Index = plc::LogicChange::Kind.
 constexpr std::string_view kLogicNames[] = {"load", "force", "release", "release_all"};
 constexpr machine::StatePart kTableParts[] = {machine::StatePart::origins, machine::StatePart::tools};
 constexpr machine::StatePart kParts[] = {machine::StatePart::origins, machine::StatePart::tools,
@@ -154,7 +154,7 @@ void RecordWriter::take(const ProgramChange& change) {
 }
 
 /// A line of JSON, then the texts of the files one behind the other, byte for byte.
-void RecordWriter::take(const LogicChange& change) {
+void RecordWriter::take(const plc::LogicChange& change) {
   nlohmann::json head{{"kind", kLogicNames[static_cast<std::size_t>(change.kind)]},
                       {"number", change.number},
                       {"online", change.online},
@@ -305,8 +305,8 @@ bool RecordReader::read_logic_change(std::string_view bytes) {
   try {
     const auto name = std::find(std::begin(kLogicNames), std::end(kLogicNames), head.value("kind", ""));
     if (name == std::end(kLogicNames)) return false;
-    LogicChange change;
-    change.kind = static_cast<LogicChange::Kind>(name - std::begin(kLogicNames));
+    plc::LogicChange change;
+    change.kind = static_cast<plc::LogicChange::Kind>(name - std::begin(kLogicNames));
     change.number = head.value("number", 0u);
     change.online = head.value("online", false);
     change.name = head.value("name", "");

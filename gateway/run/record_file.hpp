@@ -36,7 +36,7 @@ class RecordWriter final : public cycle::InputTap, public ProgramChangeTap {
   void take(const cycle::CycleInputs& inputs) noexcept override;
   /// Any thread but the cycle's; what take() sees of it later stands behind it in the file.
   void take(const ProgramChange& change) override;
-  void take(const LogicChange& change) override;
+  void take(const plc::LogicChange& change) override;
   void take_subprogram(std::string_view name, std::string_view text) override;
   /// Blocks until take() is sure to succeed; for virtual time.
   void wait_for_room();
@@ -80,7 +80,7 @@ class RecordReader final : public cycle::InputSource {
   /// whose inputs have seen n changes. Programs and subprograms have the texts that they had then.
   std::vector<ProgramChange> changes(const machine::MachineConfig& machine) const;
   /// What was prepared for the PLC, each before the cycle whose requests name its number.
-  const std::vector<LogicChange>& logic_changes() const noexcept { return logic_changes_; }
+  const std::vector<plc::LogicChange>& logic_changes() const noexcept { return logic_changes_; }
   /// True once next() has met the place where the record is cut off or changed.
   bool damaged() const noexcept { return damaged_; }
   /// Byte of the file at which the first unsound chunk begins; meaningful when damaged().
@@ -97,7 +97,7 @@ class RecordReader final : public cycle::InputSource {
   RecordHeader header_;
   std::vector<std::uint8_t> bytes_;
   std::vector<ProgramChange> changes_;
-  std::vector<LogicChange> logic_changes_;
+  std::vector<plc::LogicChange> logic_changes_;
   std::vector<std::shared_ptr<ProgramFile>> files_;  ///< of the changes; their models are the machine's
   std::shared_ptr<std::map<std::string, std::string, std::less<>>> subprograms_;  ///< of the newest file
   std::unique_ptr<cycle::InputDecoder> decoder_;

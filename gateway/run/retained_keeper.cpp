@@ -26,8 +26,8 @@ RetainedKeeper::RetainedKeeper(Control& control, std::string folder, std::int64_
 RetainedKeeper::~RetainedKeeper() { close(); }
 
 bool RetainedKeeper::write_changed() {
-  const std::shared_ptr<const LogicProgram> program = control_.logic()->program();
-  const RetainedMemory& memory = program->retained;
+  const std::shared_ptr<const plc::LogicProgram> program = control_.logic()->program();
+  const plc::RetainedMemory& memory = program->retained;
   const bool same = program == program_ && memory.version() == written_;
   const bool own = program->engine.retain_bytes() > 0;
   if (same || (own ? memory.version() == 0 : program->aside.empty())) return true;

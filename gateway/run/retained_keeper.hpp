@@ -33,8 +33,8 @@ class RetainedKeeper {
   Control& control_;
   machine::StateDirectory directory_;
   std::int64_t generation_;
-  std::shared_ptr<const LogicProgram> program_;  ///< whose values are on the disk
-  std::uint64_t written_ = 0;                    ///< and their version
+  std::shared_ptr<const plc::LogicProgram> program_;  ///< whose values are on the disk
+  std::uint64_t written_ = 0;                         ///< and their version
   std::string problem_;
   std::mutex mutex_;
   std::condition_variable wake_;

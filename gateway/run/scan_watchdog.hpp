@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "firmware_if/image/time.hpp"
-#include "plc/scan_watch.hpp"
+#include "plc/engine/scan_watch.hpp"
 
 namespace servogate::gateway {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware_if/image/cycle_device.hpp"
+#include "firmware_if/image/logic.hpp"
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/image/request.hpp"
 #include "kernel/axis/axis.hpp"
@@ -37,7 +38,7 @@ struct SourceInCycle {
 struct CycleParts {
   image::Nanoseconds period_ns = image::kMillisecond;
   std::vector<image::CycleDevice*> devices;  ///< received from and sent to in this order
-  Logic* logic = nullptr;
+  image::Logic* logic = nullptr;
   std::vector<ProcessInCycle*> processes;  ///< in number order
   std::vector<axis::AxisConfig> axes;
   std::vector<axis::SpindleConfig> spindles;

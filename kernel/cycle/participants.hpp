@@ -16,25 +16,6 @@ namespace servogate::cycle {
 
 using image::Notices;
 
-/// The machine's logic, called once a cycle between reading inputs and moving axes. Everything real-time
-/// safe.
-class Logic {
- public:
-  virtual ~Logic() = default;
-  /// One scan on packets A and K; faults (budget, division by zero ...) go into `notices`.
-  virtual void scan(image::ProcessImage& image, Notices& notices) noexcept = 0;
-  /// Carries out a change (RequestKind::logic) that the gate has let pass, between two scans. False: it is
-  /// not there any more. Or holds the logic, lets it scan, or lets it go (RequestKind::logic_scan): from the
-  /// next cycle on, while it is held, what it writes is FALSE or 0.
-  virtual bool order(const image::Request& request) noexcept {
-    static_cast<void>(request);
-    return false;
-  }
-  /// The next scan ends before it does anything, with its fault: in the record that is being replayed
-  /// somebody ended it (CycleInputs::scan_ended).
-  virtual void end_next_scan() noexcept {}
-};
-
 /// What a process sees of the machine in one cycle.
 struct ProcessContext {
   image::ProcessImage& image;

@@ -6,7 +6,7 @@
 
 #include "plc/code/references.hpp"
 #include "plc/sema/analyzer.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::code {
 

@@ -5,9 +5,9 @@
 #include <tuple>
 #include <vector>
 
-#include "plc/compile.hpp"
 #include "plc/ir/ir.hpp"
 #include "plc/syntax/report.hpp"
+#include "plc/terms/options.hpp"
 #include "plc/vm/image.hpp"
 #include "plc/vm/machine.hpp"
 

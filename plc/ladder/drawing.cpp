@@ -10,7 +10,7 @@
 
 #include "plc/ladder/network.hpp"
 #include "plc/syntax/parser.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::ladder {
 

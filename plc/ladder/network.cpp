@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::ladder {
 

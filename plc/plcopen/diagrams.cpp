@@ -5,7 +5,7 @@
 
 #include "plc/plcopen/reader.hpp"
 #include "plc/syntax/parser.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::plcopen {
 

@@ -6,7 +6,7 @@
 
 #include "plc/plcopen/plcopen.hpp"
 #include "plc/syntax/parser.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::plcopen {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "firmware_if/image/interface_map.hpp"
-#include "plc/compile.hpp"
 #include "plc/ir/ir.hpp"
 #include "plc/syntax/report.hpp"
+#include "plc/terms/options.hpp"
 
 namespace servogate::plc::sema {
 
@@ -62,6 +62,13 @@ struct UnitScope {
   std::string resource;  ///< whose global variables it sees where several have one of a name
 };
 
+/// Bytes that one variable may take; all of a program together four times as much.
+inline constexpr std::uint32_t kMaxBytes = 16u << 20;
+
+constexpr std::uint32_t aligned(std::uint32_t at, std::uint32_t to) noexcept {
+  return (at + to - 1) / to * to;
+}
+
 /// Turns the trees of all files into the typed representation and reports everything that does not hold. One
 /// object, one compilation; its parts are the .cpp files of this folder.
 class Analyzer {
@@ -75,9 +82,20 @@ class Analyzer {
  private:
   friend class Scope;
 
-  // declarations.cpp: types, frames, globals.
+  // declarations.cpp: names, frames, globals.
   void declare_names();
   std::string seen_at(const Location& there, const Location& here) const;
+  void lay_out(int unit);
+  void declare_variable(UnitScope& u, const syntax::Variable& v);
+  void declare_edge(UnitScope& u, const syntax::Variable& v);
+  void declare_globals(bool constants);
+  void declare_located(Variable& out, const syntax::Variable& v, bool configured = false);
+  void warn_overlaps(const std::string& address, const image::Place& place, const Location& at,
+                     bool direct = false);
+  void check_sections(const UnitScope& u, const syntax::Variable& v);
+  std::uint32_t allocate(const Type& type);
+
+  // written_types.cpp: types as they are written, and their layout.
   void resolve_types();
   const Type* resolve_declared(std::size_t index);
   const Type* resolve(const syntax::TypeReference& t, const std::string& name = {});
@@ -97,15 +115,6 @@ class Analyzer {
   std::uint32_t append(Type& owner, Field field, const Location& at);
   void place_initial(std::vector<std::uint8_t>& image, std::uint32_t offset, const Type& type,
                      const std::vector<std::uint8_t>& bytes);
-  void lay_out(int unit);
-  void declare_variable(UnitScope& u, const syntax::Variable& v);
-  void declare_edge(UnitScope& u, const syntax::Variable& v);
-  void declare_globals(bool constants);
-  void declare_located(Variable& out, const syntax::Variable& v, bool configured = false);
-  void warn_overlaps(const std::string& address, const image::Place& place, const Location& at,
-                     bool direct = false);
-  void check_sections(const UnitScope& u, const syntax::Variable& v);
-  std::uint32_t allocate(const Type& type);
   const Type* limits_type();
 
   // resources.cpp: global variables of one name in several resources.

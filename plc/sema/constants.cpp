@@ -6,7 +6,7 @@
 
 #include "plc/sema/analyzer.hpp"
 #include "plc/syntax/time_literal.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 #include "plc/types/characters.hpp"
 
 namespace servogate::plc::sema {

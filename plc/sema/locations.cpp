@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "plc/sema/analyzer.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 /// The paths of VAR_ACCESS and VAR_CONFIG, and AT %I*, %Q*, %M* (IEC 61131-3:2013, 6.5.5.3 and 6.8.2): each
 /// instance holds the address of its place, which VAR_CONFIG names. None is ever without: a missing location

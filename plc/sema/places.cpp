@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "plc/sema/analyzer.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 #include "plc/types/direct_place.hpp"
 
 namespace servogate::plc::sema {

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "plc/sema/analyzer.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 /// REF_TO, REF, ^, NULL and ?= (IEC 61131-3:2013, 6.4.4.10). A reference is the address of a variable of its
 /// type, or 0. All variables lie at one place for good, so that none can lead to memory of another type; what

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "plc/sema/analyzer.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 /// Global variables of one name in several resources (IEC 61131-3:2013, 6.8.2): each is its own, called
 /// `Resource.name` from outside. A unit that uses one of them, itself or by what it calls, is compiled once

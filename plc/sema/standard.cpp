@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "plc/sema/analyzer.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::sema {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::syntax {
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "plc/syntax/cursor.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::syntax {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "plc/syntax/time_literal.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 #include "plc/types/characters.hpp"
 
 namespace servogate::plc::syntax {

@@ -2,7 +2,7 @@
 #include <cctype>
 
 #include "plc/syntax/cursor.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::syntax {
 

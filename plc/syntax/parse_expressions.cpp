@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plc/syntax/cursor.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::syntax {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "plc/syntax/cursor.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 /// What other systems have and this one has not is told as that, once, and read over, so that the rest of the
 /// file is checked as if it were not there.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc::syntax {
 

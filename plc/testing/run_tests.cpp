@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "firmware_if/text/nearest.hpp"
-#include "plc/engine.hpp"
-#include "plc/lookup.hpp"
+#include "plc/engine/engine.hpp"
 #include "plc/syntax/time_literal.hpp"
 #include "plc/testing/texts.hpp"
-#include "plc/values.hpp"
+#include "plc/variables/lookup.hpp"
+#include "plc/variables/values.hpp"
 #include "plc/vm/image.hpp"
 
 namespace servogate::plc::testing {

@@ -7,7 +7,7 @@
 
 #include "firmware_if/image/interface_map.hpp"
 #include "firmware_if/text/finding.hpp"
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 #include "plc/testing/test_file.hpp"
 
 namespace servogate::plc::testing {

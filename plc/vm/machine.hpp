@@ -3,7 +3,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "plc/engine.hpp"
+#include "plc/terms/scan_result.hpp"
 #include "plc/vm/image.hpp"
 #include "plc/vm/opcodes.hpp"
 

@@ -47,7 +47,7 @@ struct Strobe {
 };
 
 /// The machine builder's logic: permits everything and acknowledges what it is told to.
-class TestLogic final : public cycle::Logic {
+class TestLogic final : public image::Logic {
  public:
   void scan(image::ProcessImage& image, cycle::Notices& notices) noexcept override;
   int delay_cycles = 3;      ///< from strobe to acknowledge

@@ -40,7 +40,7 @@ class Io final : public image::CycleDevice {
 };
 
 /// Copies the input to the output; permits everything.
-class CopyLogic final : public Logic {
+class CopyLogic final : public image::Logic {
  public:
   explicit CopyLogic(std::string& order) : order_(order) {}
   void scan(image::ProcessImage& image, Notices&) noexcept override {
@@ -479,7 +479,7 @@ class HandClock final : public image::Clock {
   image::Nanoseconds now_ns() const noexcept override { return now; }
   image::Nanoseconds now = 0;
 };
-class SlowLogic final : public Logic {
+class SlowLogic final : public image::Logic {
  public:
   explicit SlowLogic(HandClock& clock) : clock_(clock) {}
   void scan(image::ProcessImage&, Notices&) noexcept override { clock_.now += takes; }

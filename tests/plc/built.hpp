@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "plc/compile.hpp"
-#include "plc/engine.hpp"
+#include "plc/compile/compile.hpp"
+#include "plc/engine/engine.hpp"
 #include "plc/vm/image.hpp"
 
 namespace servogate::plc {

@@ -2,7 +2,7 @@
 // Several files as one program.
 #include <gtest/gtest.h>
 
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 
 namespace servogate::plc {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cctype>
 
-#include "plc/run.hpp"
+#include "plc/run/run.hpp"
 #include "plc/syntax/time_literal.hpp"
 #include "tests/plc/data_files.hpp"
 

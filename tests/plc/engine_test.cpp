@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plc/engine.hpp"
+#include "plc/engine/engine.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 #include "plc/vm/image.hpp"
 #include "tests/counting/allocations.hpp"
 #include "tests/plc/built.hpp"

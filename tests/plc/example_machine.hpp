@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "plc/compile.hpp"
-#include "plc/engine.hpp"
+#include "plc/compile/compile.hpp"
+#include "plc/engine/engine.hpp"
 #include "tests/places/places.hpp"
 
 namespace servogate::plc {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <random>
 
-#include "plc/compile.hpp"
-#include "plc/engine.hpp"
+#include "plc/compile/compile.hpp"
+#include "plc/engine/engine.hpp"
 
 namespace servogate::plc {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plc/run.hpp"
+#include "plc/run/run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans that somebody else ends, because they do not come back.
-#include "plc/scan_watch.hpp"
+#include "plc/engine/scan_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
-#include "plc/compile.hpp"
-#include "plc/engine.hpp"
+#include "plc/compile/compile.hpp"
+#include "plc/engine/engine.hpp"
 #include "plc/vm/image.hpp"
 
 namespace servogate::plc {

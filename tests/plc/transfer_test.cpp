@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a changed program takes over from the one before it, and what stands at an address of its own.
-#include "plc/transfer.hpp"
+#include "plc/engine/transfer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 #include "tests/plc/data_files.hpp"
 
 namespace servogate::plc {

@@ -8,7 +8,7 @@
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/sources.hpp"
 #include "gateway/machine/consequences.hpp"
-#include "plc/run.hpp"
+#include "plc/run/run.hpp"
 
 namespace servogate::gateway::command {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 
 namespace servogate::gateway::command {
 

@@ -4,7 +4,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 
 namespace servogate::gateway {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "gateway/machine/config.hpp"
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 
 namespace servogate::gateway {
 

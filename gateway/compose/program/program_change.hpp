@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "gateway/compose/plc/logic_change.hpp"
 #include "gateway/compose/program/program_file.hpp"
 #include "kernel/channel/feeder.hpp"
 #include "kernel/program/interpreter.hpp"
+#include "plc/logic/logic_change.hpp"
 
 namespace servogate::gateway {
 
@@ -34,7 +34,7 @@ class ProgramChangeTap {
  public:
   virtual ~ProgramChangeTap() = default;
   virtual void take(const ProgramChange& change) = 0;
-  virtual void take(const LogicChange& change) = 0;
+  virtual void take(const plc::LogicChange& change) = 0;
   virtual void take_subprogram(std::string_view name, std::string_view text) = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/run/forces/run_forces.hpp"
 
-#include "gateway/compose/plc/force_plan.hpp"
+#include "plc/logic/force_plan.hpp"
 
 namespace servogate::gateway {
 
@@ -16,19 +16,19 @@ std::vector<text::Finding> RunForces::plan(const std::vector<report::ForceEntry>
   std::vector<text::Finding> findings;
   const plc::Engine* program = control_.logic() == nullptr ? nullptr : &control_.logic()->engine();
   for (const report::ForceEntry& w : wanted) {
-    ForcePlan plan = plan_force(control_.machine(), program, w.name, w.value);
-    if (plan.kind == ForcePlan::Kind::unknown || plan.kind == ForcePlan::Kind::no_value) {
+    plc::ForcePlan plan = plc::plan_force(control_.symbols(), program, w.name, w.value);
+    if (plan.kind == plc::ForcePlan::Kind::unknown || plan.kind == plc::ForcePlan::Kind::no_value) {
       text::Finding f;
       f.file = "--force";
-      f.entry = plan.kind == ForcePlan::Kind::unknown ? &kNoVariable : &kNoValue;
+      f.entry = plan.kind == plc::ForcePlan::Kind::unknown ? &kNoVariable : &kNoValue;
       f.arguments = {w.name, w.value};
       findings.push_back(std::move(f));
       continue;
     }
     const int entry = static_cast<int>(wanted_.size());
-    if (plan.kind == ForcePlan::Kind::variable) plan.requests.emplace_back();
+    if (plan.kind == plc::ForcePlan::Kind::variable) plan.requests.emplace_back();
     for (const image::Request& r : plan.requests)
-      steps_.push_back({r, entry, plan.kind == ForcePlan::Kind::variable, false});
+      steps_.push_back({r, entry, plan.kind == plc::ForcePlan::Kind::variable, false});
     steps_.back().last = true;
     wanted_.push_back(w);
   }
@@ -41,8 +41,8 @@ void RunForces::poll() {
   image::Request request = step.request;
   if (step.variable) {
     const report::ForceEntry& entry = wanted_[static_cast<std::size_t>(step.entry)];
-    LogicChange change;
-    change.kind = LogicChange::Kind::force;
+    plc::LogicChange change;
+    change.kind = plc::LogicChange::Kind::force;
     change.name = entry.name;
     change.value = entry.value;
     change.number = control_.next_logic_change();

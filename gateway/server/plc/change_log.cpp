@@ -17,7 +17,7 @@ namespace servogate::gateway {
 
 using nlohmann::json;
 
-std::string log_change(const std::string& state_path, const LogicChange& change, const PlcLoaded& told,
+std::string log_change(const std::string& state_path, const plc::LogicChange& change, const PlcLoaded& told,
                        const Caller& who, std::int64_t cycle) {
   if (state_path.empty()) return {};
   char when[32] = "";

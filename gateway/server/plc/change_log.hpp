@@ -3,15 +3,15 @@
 #include <cstdint>
 #include <string>
 
-#include "gateway/compose/plc/logic_change.hpp"
 #include "gateway/server/reply/plc_reply.hpp"
 #include "gateway/server/request/caller.hpp"
+#include "plc/logic/logic_change.hpp"
 
 namespace servogate::gateway {
 
 /// Notes another program of the PLC in plc-changes.jsonl of the state directory, one JSON object a line.
 /// Empty: done, or there is no directory; otherwise what went wrong.
-std::string log_change(const std::string& state_path, const LogicChange& change, const PlcLoaded& told,
+std::string log_change(const std::string& state_path, const plc::LogicChange& change, const PlcLoaded& told,
                        const Caller& who, std::int64_t cycle);
 
 }  // namespace servogate::gateway

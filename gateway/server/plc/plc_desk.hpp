@@ -8,10 +8,10 @@
 
 #include "firmware_if/image/request.hpp"
 #include "firmware_if/text/finding.hpp"
-#include "gateway/compose/plc/logic_change.hpp"
 #include "gateway/server/desk/outcome.hpp"
 #include "gateway/server/request/caller.hpp"
 #include "gateway/server/request/command.hpp"
+#include "plc/logic/logic_change.hpp"
 #include "plc/types/type.hpp"
 
 namespace servogate::gateway {
@@ -51,7 +51,7 @@ class PlcDesk {
   Outcome take(const ask::PlcList& wanted, const Caller& who);
   Reply loaded(Load& load, const Caller& who);
   Outcome watch_body(const std::string& name, const Caller& who);
-  Reply change(const LogicChange& change, double value, const Caller& who);
+  Reply change(const plc::LogicChange& change, double value, const Caller& who);
   /// What the gate answers; accepted: nothing but that.
   Reply ask(image::Request request, const Caller& who);
   bool let_go(const Force& force, const Caller& who);

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/compose/plc/force_plan.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/server/desk/refusal.hpp"
 #include "gateway/server/plc/change_log.hpp"
 #include "gateway/server/plc/plc_answers.hpp"
 #include "gateway/server/resident.hpp"
 #include "gateway/server/words/texts.hpp"
+#include "plc/logic/force_plan.hpp"
 
 namespace servogate::gateway {
 
@@ -76,7 +76,7 @@ Reply PlcDesk::ask(image::Request request, const Caller& who) {
   return refused_by_gate(answer, resident_.control().machine(), who.language);
 }
 
-Reply PlcDesk::change(const LogicChange& change, double value, const Caller& who) {
+Reply PlcDesk::change(const plc::LogicChange& change, double value, const Caller& who) {
   image::Request request;
   request.kind = image::RequestKind::logic;
   request.index = change.number;
@@ -102,7 +102,7 @@ Outcome PlcDesk::carry_out(const ask::Command& command, const Caller& who) {
 
 /// A program of the PLC on its way from its files into the cycle.
 struct PlcDesk::Load {
-  LogicChange change;
+  plc::LogicChange change;
   std::vector<std::string> names;
   bool while_running = false;
   std::string unreadable;  ///< what cannot be read, and why
@@ -117,7 +117,7 @@ Outcome PlcDesk::take(const ask::PlcLoad& wanted, const Caller& who) {
   if (load->names.empty())
     for (const std::string& source : control.machine().plc.sources)
       load->names.push_back(control.machine().resolve(source));
-  load->change.kind = LogicChange::Kind::load;
+  load->change.kind = plc::LogicChange::Kind::load;
   load->change.online = wanted.online;
   load->while_running = wanted.while_running;
   Work work;
@@ -140,9 +140,9 @@ Outcome PlcDesk::take(const ask::PlcLoad& wanted, const Caller& who) {
 Reply PlcDesk::loaded(Load& load, const Caller& who) {
   if (!load.unreadable.empty()) return refuse(kNoFiles, {load.unreadable}, kWrongUse, who.language);
   Control& control = resident_.control();
-  LogicChange& change = load.change;
+  plc::LogicChange& change = load.change;
   change.number = control.next_logic_change();
-  const PlcLogic::Plan plan = control.prepare(change, std::move(load.compiled));
+  const plc::Logic::Plan plan = control.prepare(change, std::move(load.compiled));
   if (!plan.possible) {
     Reply answer = refuse(kNotCompiled, {}, kAlarm, who.language);
     for (const text::Finding& f : plan.findings)
@@ -206,12 +206,14 @@ Outcome PlcDesk::take(const ask::PlcForce& wanted, const Caller& who) {
   f.user = who.user;
   f.owner = wanted.stay ? 0 : who.connection;
   Control& control = resident_.control();
-  ForcePlan plan = plan_force(control.machine(), &control.logic()->program()->engine, f.name, f.value);
-  if (plan.kind == ForcePlan::Kind::unknown) return refuse(kNoVariable, {f.name}, kWrongUse, who.language);
-  if (plan.kind == ForcePlan::Kind::no_value)
+  plc::ForcePlan plan =
+      plc::plan_force(control.symbols(), &control.logic()->program()->engine, f.name, f.value);
+  if (plan.kind == plc::ForcePlan::Kind::unknown)
+    return refuse(kNoVariable, {f.name}, kWrongUse, who.language);
+  if (plan.kind == plc::ForcePlan::Kind::no_value)
     return refuse(kNoValue, {f.value, f.name}, kWrongUse, who.language);
   Reply answer;
-  if (plan.kind == ForcePlan::Kind::places) {
+  if (plan.kind == plc::ForcePlan::Kind::places) {
     f.places = std::move(plan.requests);
     answer = force_places(f.places, who);
     for (image::Request& place : f.places) {
@@ -219,8 +221,8 @@ Outcome PlcDesk::take(const ask::PlcForce& wanted, const Caller& who) {
       place.value = 0.0;
     }
   } else {
-    LogicChange change;
-    change.kind = LogicChange::Kind::force;
+    plc::LogicChange change;
+    change.kind = plc::LogicChange::Kind::force;
     change.name = f.name;
     change.value = f.value;
     change.number = control.next_logic_change();
@@ -238,8 +240,8 @@ bool PlcDesk::let_go(const Force& force, const Caller& who) {
   if (!force.places.empty())
     return std::all_of(force.places.begin(), force.places.end(),
                        [&](const image::Request& r) { return ask(r, who).ok; });
-  LogicChange change;
-  change.kind = LogicChange::Kind::release;
+  plc::LogicChange change;
+  change.kind = plc::LogicChange::Kind::release;
   change.name = force.name;
   change.number = resident_.control().next_logic_change();
   return !resident_.control().prepare(change).possible || this->change(change, 1.0, who).ok;

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstring>
+#include <span>
+#include <vector>
 
-#include "gateway/compose/plc/force_plan.hpp"
+#include "gateway/compose/plc/look.hpp"
 #include "gateway/server/plc/plc_answers.hpp"
 #include "gateway/server/plc/plc_desk.hpp"
 #include "gateway/server/plc/plc_view.hpp"
 #include "gateway/server/resident.hpp"
 #include "gateway/server/words/texts.hpp"
-#include "plc/lookup.hpp"
+#include "plc/logic/force_plan.hpp"
 #include "plc/types/direct_place.hpp"
-#include "plc/values.hpp"
+#include "plc/variables/lookup.hpp"
+#include "plc/variables/places.hpp"
+#include "plc/variables/values.hpp"
 #include "plc/vm/image.hpp"
 
 namespace servogate::gateway {
@@ -21,7 +26,7 @@ namespace {
 using plc_answers::kNoVariable;
 using text::Entry;
 
-constexpr int kScanPatience_ms = 2000;
+constexpr std::chrono::milliseconds kScanPatience{2000};
 
 const Entry kNoBody{"plc.no-body", "there is no program or instance '{0}'",
                     "программы или экземпляра «{0}» нет"};
@@ -29,12 +34,12 @@ const Entry kTooManyNames{"plc.names", "at most {0} names at a time", "не бо
 
 /// What stands at a place that the program has no variable for, as JSON: numbers by the type of the place,
 /// `%MW8` as a bit string, characters as a STRING. nullopt: the name is no place of this machine's packets.
-std::optional<std::string> place_text(const machine::MachineConfig& m, const plc::TypeTable& types,
+std::optional<std::string> place_text(std::span<const image::Symbol> symbols, const plc::TypeTable& types,
                                       const image::Packets& packets, const std::string& name) {
   const auto direct = plc::direct_place(name);
-  const auto place = place_of(m, nullptr, name);
+  const auto place = plc::place_of(symbols, name);
   if (!place || !packets.contains(*place)) return std::nullopt;
-  if (const plc::Type* type = number_type(types, place->format); type != nullptr && !direct) {
+  if (const plc::Type* type = plc::number_type(types, place->format); type != nullptr && !direct) {
     std::uint8_t bytes[8] = {};
     plc::from_number(*type, packets.number(*place), bytes);
     return plc::to_json(*type, bytes);
@@ -42,7 +47,7 @@ std::optional<std::string> place_text(const machine::MachineConfig& m, const plc
   const std::uint8_t* at = packets.data(place->packet) + place->byte();
   if (place->format == image::Format::bl) return packets.bit(*place) ? "true" : "false";
   if (place->format != image::Format::ch) {
-    return plc::to_json(*bit_string_type(types, place->format), at);
+    return plc::to_json(*plc::bit_string_type(types, place->format), at);
   }
   plc::Type text;
   text.kind = plc::Kind::string;
@@ -57,13 +62,13 @@ std::optional<std::string> place_text(const machine::MachineConfig& m, const plc
 
 /// What forces it: by this name, by another one of the same variable, or of a place that it shares.
 const PlcDesk::Force* PlcDesk::force_of(const std::string& name) const {
-  const machine::MachineConfig& machine = resident_.control().machine();
+  const std::vector<image::Symbol>& symbols = resident_.control().symbols();
   const auto& engine = resident_.control().logic()->program()->engine;
-  const std::optional<image::Place> place = place_of(machine, &engine, name);
+  const std::optional<image::Place> place = plc::place_of(symbols, &engine, name);
   const auto mine = engine.find(name);
   for (const Force& f : forces_) {
     if (plc::same_name(f.name, name)) return &f;
-    const auto other = place_of(machine, &engine, f.name);
+    const auto other = plc::place_of(symbols, &engine, f.name);
     const auto handle = engine.find(f.name);
     const bool same_place = place && other && place->overlaps(*other);
     if (same_place || (mine && handle && mine->address == handle->address && mine->bit == handle->bit))
@@ -76,7 +81,7 @@ const PlcDesk::Force* PlcDesk::force_of(const std::string& name) const {
 std::optional<std::string> PlcDesk::forced_value(const std::string& name, const plc::Type& type) const {
   const Force* const force = force_of(name);
   const std::optional<image::Place> place =
-      place_of(resident_.control().machine(), &resident_.control().logic()->program()->engine, name);
+      plc::place_of(resident_.control().symbols(), &resident_.control().logic()->program()->engine, name);
   if (force == nullptr || force->places.empty() || !place || place->format == image::Format::ch ||
       place->bytes() != type.size)
     return std::nullopt;
@@ -100,25 +105,24 @@ PlcValue PlcDesk::value_of(const std::string& shown, const std::string& name, co
 Outcome PlcDesk::take(const ask::PlcWatch& wanted, const Caller& who) {
   if (wanted.body) return watch_body(*wanted.body, who);
   constexpr std::size_t kMostNames = 500;
-  const machine::MachineConfig& machine = resident_.control().machine();
-  PlcLogic& logic = *resident_.control().logic();
-  const std::shared_ptr<const LogicProgram> program = logic.program();
+  const std::vector<image::Symbol>& symbols = resident_.control().symbols();
+  plc::Logic& logic = *resident_.control().logic();
+  const std::shared_ptr<const plc::LogicProgram> program = logic.program();
   const plc::Image& image = program->engine.image();
   const std::vector<std::string>& names = wanted.names;
   if (names.size() > kMostNames)
     return refuse(kTooManyNames, {std::to_string(kMostNames)}, kWrongUse, who.language);
-  LogicSample sample;
+  plc::LogicSample sample;
   sample.profile = wanted.times;
   std::vector<std::optional<plc::Handle>> handles;
   for (const std::string& name : names) {
     handles.push_back(program->engine.find(name));
     if (handles.back())
       sample.ranges.push_back({handles.back()->address, handles.back()->type->size});
-    else if (!place_text(machine, *image.types, resident_.image().packets, name))
+    else if (!place_text(symbols, *image.types, resident_.image().packets, name))
       return refuse(kNoVariable, {name}, kWrongUse, who.language);
   }
-  if (!logic.look(sample, kScanPatience_ms))
-    return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
+  if (!look(logic, sample, kScanPatience)) return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
   const image::ProcessImage& now = resident_.image();
   PlcValues seen;
   seen.cycle = sample.at.number;
@@ -131,7 +135,7 @@ Outcome PlcDesk::take(const ask::PlcWatch& wanted, const Caller& who) {
           names[i], names[i], type, plc::value_text(image, type, sample.bytes.data() + at, handles[i]->bit)));
       at += type.size;
     } else {
-      PlcValue value{names[i], place_text(machine, *image.types, now.packets, names[i]).value_or("null"), {}};
+      PlcValue value{names[i], place_text(symbols, *image.types, now.packets, names[i]).value_or("null"), {}};
       if (const Force* f = force_of(names[i])) value.forced = f->value;
       seen.values.push_back(std::move(value));
     }
@@ -153,17 +157,16 @@ Outcome PlcDesk::take(const ask::PlcWatch& wanted, const Caller& who) {
 }
 
 Outcome PlcDesk::watch_body(const std::string& name, const Caller& who) {
-  PlcLogic& logic = *resident_.control().logic();
-  const std::shared_ptr<const LogicProgram> program = logic.program();
+  plc::Logic& logic = *resident_.control().logic();
+  const std::shared_ptr<const plc::LogicProgram> program = logic.program();
   const std::vector<std::string> programs = program_names(program->engine.image());
   const std::string wanted = name.empty() && !programs.empty() ? programs.front() : name;
   const WatchedBody body = watched_body(*program, wanted);
   if (body.lines.empty()) return refuse(kNoBody, {wanted}, kWrongUse, who.language);
-  LogicSample sample;
+  plc::LogicSample sample;
   for (const WatchedLine& line : body.lines)
     for (const WatchedValue& v : line.values) sample.ranges.push_back({v.address, v.type->size});
-  if (!logic.look(sample, kScanPatience_ms))
-    return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
+  if (!look(logic, sample, kScanPatience)) return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
   PlcBody seen;
   seen.cycle = sample.at.number;
   seen.time_s = sample.at.seconds();
@@ -188,7 +191,7 @@ Outcome PlcDesk::watch_body(const std::string& name, const Caller& who) {
 }
 
 Outcome PlcDesk::take(const ask::PlcList&, const Caller&) {
-  const std::shared_ptr<const LogicProgram> program = resident_.control().logic()->program();
+  const std::shared_ptr<const plc::LogicProgram> program = resident_.control().logic()->program();
   PlcSymbols list;
   for (const plc::SourceFile& f : program->sources) list.files.push_back(f.name);
   list.symbols = list_symbols(program->engine.image());

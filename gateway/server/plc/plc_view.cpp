@@ -7,7 +7,7 @@
 #include <map>
 
 #include "firmware_if/image/packets.hpp"
-#include "plc/lookup.hpp"
+#include "plc/variables/lookup.hpp"
 #include "plc/vm/image.hpp"
 
 namespace servogate::gateway {
@@ -67,7 +67,7 @@ std::string line_of(const std::string& text, int line) {
 }
 
 /// Where a body runs: its unit, and the address of the instance.
-bool find_body(const LogicProgram& program, const std::string& name, int& unit, std::uint32_t& base) {
+bool find_body(const plc::LogicProgram& program, const std::string& name, int& unit, std::uint32_t& base) {
   const Image& image = program.engine.image();
   const plc::Type* frame = nullptr;
   for (const plc::ir::Global& p : image.programs)
@@ -104,7 +104,7 @@ std::vector<PlcSymbol> list_symbols(const Image& image) {
   return rows;
 }
 
-WatchedBody watched_body(const LogicProgram& program, const std::string& name) {
+WatchedBody watched_body(const plc::LogicProgram& program, const std::string& name) {
   const Image& image = program.engine.image();
   WatchedBody body;
   int unit = -1, first = 0, last = 0, file = -1;

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/compose/plc/plc_logic.hpp"
 #include "gateway/server/reply/plc_reply.hpp"
+#include "plc/logic/logic.hpp"
 
 namespace servogate::gateway {
 
@@ -31,7 +31,7 @@ struct WatchedBody {
 
 /// The lines of a program, or of an instance of a function block (`Mill.change`), with the elementary
 /// variables that stand in each; empty lines: there is no such body.
-WatchedBody watched_body(const LogicProgram& program, const std::string& name);
+WatchedBody watched_body(const plc::LogicProgram& program, const std::string& name);
 /// Names of the programs.
 std::vector<std::string> program_names(const plc::Image& image);
 

@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "plc/compile.hpp"
-#include "plc/engine.hpp"
-#include "plc/lookup.hpp"
+#include "plc/compile/compile.hpp"
+#include "plc/engine/engine.hpp"
+#include "plc/variables/lookup.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "plc/engine.hpp"
+#include "plc/engine/engine.hpp"
 #include "plc/ir/ir.hpp"
 
 namespace servogate::plc {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/plc/two_paths/two_paths.hpp"
 
-#include "plc/compile.hpp"
-#include "plc/front_end.hpp"
-#include "plc/lookup.hpp"
-#include "plc/values.hpp"
+#include "plc/compile/compile.hpp"
+#include "plc/compile/front_end.hpp"
+#include "plc/variables/lookup.hpp"
+#include "plc/variables/values.hpp"
 #include "plc/vm/image.hpp"
 #include "tests/plc/two_paths/evaluator.hpp"
 

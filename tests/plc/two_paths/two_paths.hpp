@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "plc/engine.hpp"
+#include "plc/engine/engine.hpp"
 
 namespace servogate::plc {
 

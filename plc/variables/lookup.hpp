@@ -1,13 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "plc/engine.hpp"
-
 namespace servogate::plc {
+
+struct Image;
+struct Type;
+
+/// A variable found by name. Valid as long as the Image it came from. `type` is never null in a handle that
+/// Engine::find gave.
+struct Handle {
+  std::uint32_t address = 0;  ///< byte in the engine's memory
+  std::int32_t place = -1;    ///< index of the packet place it mirrors, -1: none
+  std::int8_t bit = -1;       ///< bit in that byte, -1: the whole variable
+  const Type* type = nullptr;
+};
 
 /// The variable that a path names in a compiled program; see Engine::find. Not real-time safe.
 std::optional<Handle> find_variable(const Image& image, std::string_view path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plc/transfer.hpp"
+#include "plc/engine/transfer.hpp"
 
 #include <algorithm>
 #include <map>

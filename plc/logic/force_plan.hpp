@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "firmware_if/image/interface_map.hpp"
 #include "firmware_if/image/packets.hpp"
 #include "firmware_if/image/request.hpp"
-#include "gateway/machine/config.hpp"
-#include "plc/engine.hpp"
-#include "plc/types/type.hpp"
+#include "plc/engine/engine.hpp"
 
-namespace servogate::gateway {
+namespace servogate::plc {
 
 /// What it takes to hold a variable or a place of a packet at a value: the same for every client and for
 /// `servogate run`. Not real-time safe, as all of this header.
@@ -24,18 +25,14 @@ struct ForcePlan {
   Kind kind = Kind::unknown;
   std::vector<image::Request> requests;
 };
-/// `program`: nullptr without a PLC. Of a variable of the program the value is looked at as well.
-ForcePlan plan_force(const machine::MachineConfig& machine, const plc::Engine* program,
-                     const std::string& name, const std::string& value);
+/// `symbols` of the machine; `program`: nullptr without a PLC. Of a variable of the program the value is
+/// looked at as well.
+ForcePlan plan_force(std::span<const image::Symbol> symbols, const Engine* program, const std::string& name,
+                     const std::string& value);
 
 /// The place of a packet that a name means: of the program's variable there, a point of the machine, or an
 /// address. nullopt: a variable of the program alone, or nothing.
-std::optional<image::Place> place_of(const machine::MachineConfig& machine, const plc::Engine* program,
+std::optional<image::Place> place_of(std::span<const image::Symbol> symbols, const Engine* program,
                                      const std::string& name);
 
-/// Type of the PLC that a place of a packet has as a number; nullptr: characters.
-const plc::Type* number_type(const plc::TypeTable& types, image::Format format);
-/// The same as a bit string, as which `%MW8` has other literals; nullptr: characters.
-const plc::Type* bit_string_type(const plc::TypeTable& types, image::Format format);
-
-}  // namespace servogate::gateway
+}  // namespace servogate::plc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plc/engine.hpp"
+#include "plc/engine/engine.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,11 @@
 #include <cstring>
 #include <limits>
 
-#include "plc/lookup.hpp"
-#include "plc/scan_watch.hpp"
-#include "plc/texts.hpp"
-#include "plc/transfer.hpp"
-#include "plc/values.hpp"
+#include "plc/engine/scan_watch.hpp"
+#include "plc/engine/transfer.hpp"
+#include "plc/terms/texts.hpp"
+#include "plc/variables/lookup.hpp"
+#include "plc/variables/values.hpp"
 #include "plc/vm/machine.hpp"
 
 namespace servogate::plc {

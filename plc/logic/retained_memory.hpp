@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-namespace servogate::gateway {
+namespace servogate::plc {
 
 /// The bytes of all retained variables on their way out of the cycle: one writer that never waits, any number
 /// of readers that get the values of one scan, never a mixture of two. The words are relaxed atomics under a
-/// sequence, as in cycle::Snapshot, of a size that is known only when a program is there.
+/// sequence; how many there are is known only when a program is there.
 class RetainedMemory {
  public:
   explicit RetainedMemory(std::size_t bytes) : newest_(bytes), words_((bytes + 7) / 8) {}
@@ -32,4 +32,4 @@ class RetainedMemory {
   std::atomic<std::uint64_t> sequence_{0};
 };
 
-}  // namespace servogate::gateway
+}  // namespace servogate::plc

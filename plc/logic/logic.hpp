@@ -8,30 +8,31 @@
 #include <utility>
 #include <vector>
 
-#include "gateway/compose/plc/logic_change.hpp"
-#include "gateway/compose/plc/retained_memory.hpp"
-#include "kernel/cycle/participants.hpp"
-#include "plc/engine.hpp"
-#include "plc/scan_watch.hpp"
-#include "plc/transfer.hpp"
+#include "firmware_if/image/logic.hpp"
+#include "plc/compile/compile.hpp"
+#include "plc/engine/engine.hpp"
+#include "plc/engine/scan_watch.hpp"
+#include "plc/engine/transfer.hpp"
+#include "plc/logic/logic_change.hpp"
+#include "plc/logic/retained_memory.hpp"
 
-namespace servogate::gateway {
+namespace servogate::plc {
 
 /// A program with everything that belongs to it.
 struct LogicProgram {
-  LogicProgram(std::shared_ptr<const plc::Image> image, std::vector<plc::SourceFile> files,
+  LogicProgram(std::shared_ptr<const Image> image, std::vector<SourceFile> files,
                std::uint32_t its_number = 0)
       : engine(std::move(image)),
         retained(engine.retain_bytes()),
         sources(std::move(files)),
         number(its_number) {}
-  plc::Engine engine;
+  Engine engine;
   RetainedMemory retained;
-  std::vector<plc::SourceFile> sources;
+  std::vector<SourceFile> sources;
   std::uint32_t number;               ///< of the request that brought it, 0: from the start
   std::vector<image::Place> dropped;  ///< written by the program before and not by this one
   /// Retained values that this program has no variable for, oldest first: they are kept for one that has.
-  std::vector<plc::Retained> aside;
+  std::vector<Retained> aside;
 };
 
 /// What somebody wants to see of one scan: bytes of the engine's memory, all of the same scan.
@@ -41,11 +42,11 @@ struct LogicSample {
   };
   std::vector<Range> ranges;
   std::vector<std::uint8_t> bytes;        ///< the ranges one behind the other
-  const LogicProgram* program = nullptr;  ///< that the ranges belong to; set by look()
+  const LogicProgram* program = nullptr;  ///< that the ranges belong to; set by ask()
   bool profile = false;                   ///< measure every call of a block in this scan
-  std::vector<plc::Times> blocks, tasks;
+  std::vector<Times> blocks, tasks;
   image::CycleTime at;
-  plc::ScanResult result;
+  ScanResult result;
 };
 
 /// The PLC as the cycle's logic: its faults become alarms, its retained variables leave the cycle after every
@@ -53,12 +54,13 @@ struct LogicSample {
 ///
 /// Threads: scan() and order() are the cycle's; program() may be asked by any; the rest belongs to one thread
 /// outside (or under a lock).
-class PlcLogic final : public cycle::Logic {
+class Logic final : public image::Logic {
  public:
-  PlcLogic(std::shared_ptr<const plc::Image> image, std::vector<plc::SourceFile> sources);
-  ~PlcLogic() override;
+  /// `stopwatch` outlives it; tasks and blocks are measured with it, and nothing depends on what it says.
+  Logic(std::shared_ptr<const Image> image, std::vector<SourceFile> sources, const image::Clock& stopwatch);
+  ~Logic() override;
   /// real-time safe.
-  void scan(image::ProcessImage& image, cycle::Notices& notices) noexcept override;
+  void scan(image::ProcessImage& image, image::Notices& notices) noexcept override;
   /// Carries out the change that prepare() has made ready under the request's index, or holds the program,
   /// lets it scan, and lets it go (RequestKind::logic_scan). real-time safe.
   bool order(const image::Request& request) noexcept override;
@@ -67,16 +69,13 @@ class PlcLogic final : public cycle::Logic {
   bool scan_ended() const noexcept { return ended_; }
   /// real-time safe.
   void end_next_scan() noexcept override { watch_.end_next(); }
-  /// In real time, what a scan may take before it is ended from outside: far more than any cycle, and less
-  /// than anybody waits for a stop.
-  static constexpr image::Nanoseconds kLongestScan_ns = 500 * image::kMillisecond;
-  /// Where it is ended.
-  plc::ScanWatch& scan_watch() noexcept { return watch_; }
+  /// Where scans are ended from outside.
+  ScanWatch& scan_watch() noexcept { return watch_; }
 
   /// The engine before the first cycle.
-  plc::Engine& engine() noexcept { return shown_->engine; }
+  Engine& engine() noexcept { return shown_->engine; }
   /// Keeps a retained value that the program has no variable for; before the first cycle.
-  void set_aside(plc::Retained value) { shown_->aside.push_back(std::move(value)); }
+  void set_aside(Retained value) { shown_->aside.push_back(std::move(value)); }
   /// The program that runs, as far as the outside knows it.
   std::shared_ptr<const LogicProgram> program() const;
   /// What stopped the program, with task, file and line, from a record of kPlcBudget or kPlcFault; empty when
@@ -95,7 +94,7 @@ class PlcLogic final : public cycle::Logic {
   };
   /// Makes a change ready for the request with its number; `compiled`: the program of a load. Not real-time
   /// safe.
-  Plan prepare(const LogicChange& change, plc::CompileResult compiled);
+  Plan prepare(const LogicChange& change, CompileResult compiled);
   /// Takes back what the gate has refused.
   void withdraw(std::uint32_t number);
   /// Takes note of what the cycle has carried out. Not real-time safe.
@@ -103,24 +102,31 @@ class PlcLogic final : public cycle::Logic {
   /// Names and values of forced variables, as far as settle() knows.
   const std::vector<std::pair<std::string, std::string>>& forced() const noexcept { return forced_; }
 
-  /// Has the next scan fill a sample. False: no scan came within the time.
-  bool look(LogicSample& sample, int patience_ms);
+  /// Has the next scan fill a sample, which stays the cycle's until it is filled or taken back. One at a
+  /// time. Not real-time safe.
+  void ask(LogicSample& sample);
+  bool filled(const LogicSample& sample) const noexcept {
+    return filled_.load(std::memory_order_acquire) == &sample;
+  }
+  /// Takes the sample back that was asked for. False: the cycle has begun with it, and fills it in this scan.
+  bool take_back() noexcept { return wanted_.exchange(nullptr) != nullptr; }
 
  private:
   struct Prepared;
   static constexpr std::size_t kSlots = 16;
   using Slots = std::array<std::atomic<Prepared*>, kSlots>;
 
-  Plan prepare_load(const LogicChange& change, Prepared& out, plc::CompileResult compiled);
-  void sort_retained(Plan& plan, plc::Engine& engine) const;
+  Plan prepare_load(const LogicChange& change, Prepared& out, CompileResult compiled);
+  void sort_retained(Plan& plan, Engine& engine) const;
   bool carry_out(Prepared& change) noexcept;
   bool hold(const image::Request& request) noexcept;
   void stand_still(image::ProcessImage& image) noexcept;
-  plc::ScanResult run_program(image::ProcessImage& image) noexcept;
-  void raise_fault(const plc::ScanResult& result, cycle::Notices& notices) const noexcept;
-  void fill(LogicSample& sample, const image::CycleTime& now, const plc::ScanResult& result) noexcept;
+  ScanResult run_program(image::ProcessImage& image) noexcept;
+  void raise_fault(const ScanResult& result, image::Notices& notices) const noexcept;
+  void fill(LogicSample& sample, const image::CycleTime& now, const ScanResult& result) noexcept;
 
-  plc::ScanWatch watch_;
+  const image::Clock& stopwatch_;
+  ScanWatch watch_;
   LogicProgram* running_;  ///< the cycle's
   bool faulted_ = false;
   bool ended_ = false;  ///< in this cycle
@@ -132,7 +138,7 @@ class PlcLogic final : public cycle::Logic {
   std::uint32_t steps_ = 0;         ///< scans that are still to be run
   image::Nanoseconds held_ns_ = 0;  ///< so far the program's time is behind
   image::Packets kept_;
-  plc::ScanResult last_;
+  ScanResult last_;
   Slots ready_{}, done_{};
   std::atomic<LogicSample*> wanted_{nullptr}, filled_{nullptr};
 
@@ -141,4 +147,4 @@ class PlcLogic final : public cycle::Logic {
   std::vector<std::pair<std::string, std::string>> forced_;
 };
 
-}  // namespace servogate::gateway
+}  // namespace servogate::plc

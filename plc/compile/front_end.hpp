@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 #include "plc/ir/ir.hpp"
 #include "plc/syntax/report.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/plc/retained_memory.hpp"
+#include "plc/logic/retained_memory.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-namespace servogate::gateway {
+namespace servogate::plc {
 
 std::uint64_t RetainedMemory::word(std::size_t index) const noexcept {
   std::uint64_t w = 0;
@@ -38,4 +38,4 @@ std::uint64_t RetainedMemory::read(std::vector<std::uint8_t>& out) const {
   }
 }
 
-}  // namespace servogate::gateway
+}  // namespace servogate::plc

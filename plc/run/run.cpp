@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plc/run.hpp"
+#include "plc/run/run.hpp"
 
 #include <algorithm>
 #include <charconv>
 
-#include "plc/engine.hpp"
-#include "plc/lookup.hpp"
-#include "plc/texts.hpp"
-#include "plc/types/direct_place.hpp"
-#include "plc/values.hpp"
+#include "plc/engine/engine.hpp"
+#include "plc/terms/texts.hpp"
+#include "plc/variables/lookup.hpp"
+#include "plc/variables/places.hpp"
+#include "plc/variables/values.hpp"
 #include "plc/vm/image.hpp"
 
 namespace servogate::plc {
@@ -38,22 +38,17 @@ void refuse(RunResult& out, const text::Entry& entry, std::vector<std::string> a
 }
 
 // A place that the program does not use: a symbol of the machine or an address.
-std::optional<image::Place> place_of(const RunRequest& r, const image::Packets& packets,
+std::optional<image::Place> place_in(const RunRequest& r, const image::Packets& packets,
                                      const std::string& name) {
-  std::optional<image::Place> place = direct_place(name);
-  for (const image::Symbol& s : r.symbols)
-    if (!place && same_name(s.name, name)) place = s.place;
-  if (!place) place = image::parse_place(name);
+  const std::optional<image::Place> place = place_of(r.symbols, name);
   return place && packets.contains(*place) ? place : std::nullopt;
 }
 
 // An address (%MW5) is a bit string, any other name of a place the number or characters there.
 const Type& type_at(const TypeTable& types, const image::Place& place, const std::string& name) {
-  constexpr Kind kBits[] = {Kind::boolean, Kind::byte, Kind::word, Kind::dword, Kind::dword, Kind::lword};
-  constexpr Kind kNumbers[] = {Kind::boolean, Kind::usint, Kind::int_, Kind::dint, Kind::real, Kind::lreal};
-  if (place.format == image::Format::ch) return *types.elementary(Kind::string);
-  const Kind* kinds = name.starts_with('%') ? kBits : kNumbers;
-  return *types.elementary(kinds[static_cast<std::size_t>(place.format)]);
+  const Type* const type =
+      name.starts_with('%') ? bit_string_type(types, place.format) : number_type(types, place.format);
+  return type != nullptr ? *type : *types.elementary(Kind::string);
 }
 
 void refuse_value(RunResult& out, const RunSet& set, const Type& type) {
@@ -70,7 +65,7 @@ std::vector<Set> resolve_sets(const RunRequest& r, const Engine& engine, const i
   std::vector<Set> sets;
   for (const RunSet& s : r.sets) {
     const auto h = engine.find(s.name);
-    const auto place = h ? std::nullopt : place_of(r, packets, s.name);
+    const auto place = h ? std::nullopt : place_in(r, packets, s.name);
     if (!h && !place) {
       refuse(out, texts::kRunName, {s.name});
       continue;
@@ -111,7 +106,7 @@ std::vector<Print> resolve_prints(const RunRequest& r, const Engine& engine, con
   for (const std::string& name : r.prints.empty() ? variable_names(engine.image()) : r.prints) {
     if (const auto h = engine.find(name))
       prints.push_back({name, *h, {}});
-    else if (const auto place = place_of(r, packets, name))
+    else if (const auto place = place_in(r, packets, name))
       prints.push_back({name, std::nullopt, *place});
     else
       refuse(out, texts::kRunName, {name});

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plc/lookup.hpp"
+#include "plc/variables/lookup.hpp"
 
 #include <algorithm>
 #include <cstring>
 
 #include "plc/syntax/parser.hpp"
-#include "plc/values.hpp"
+#include "plc/variables/values.hpp"
 #include "plc/vm/image.hpp"
 
 namespace servogate::plc {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "plc/compile.hpp"
+#include "plc/terms/options.hpp"
 
-namespace servogate::gateway {
+namespace servogate::plc {
 
 /// A change of the PLC that is prepared outside the cycle and carried out by a request of kind
 /// image::RequestKind::logic, whose index is `number`. Records keep both.
@@ -20,8 +20,8 @@ struct LogicChange {
   Kind kind = Kind::load;
   std::uint32_t number = 0;
   bool online = false;  ///< load: every variable keeps its value, not the retained ones only
-  std::vector<plc::SourceFile> files;
+  std::vector<SourceFile> files;
   std::string name, value;
 };
 
-}  // namespace servogate::gateway
+}  // namespace servogate::plc

@@ -1,31 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/plc/plc_logic.hpp"
+#include "plc/logic/logic.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <set>
-#include <thread>
 
-#include "kernel/cycle/alarm/alarm_table.hpp"
-#include "kernel/cycle/clocks.hpp"
+#include "firmware_if/image/alarm_numbers.hpp"
 #include "plc/vm/image.hpp"
 
-namespace servogate::gateway {
+namespace servogate::plc {
 
 namespace {
 
-const cycle::MonotonicClock& stopwatch() {
-  static const cycle::MonotonicClock clock;
-  return clock;
-}
-
-bool same_variable(const std::string& a, const std::string& b) { return plc::same_name(a, b); }
-
 /// Places that the old program writes and the new one does not.
-std::vector<image::Place> dropped_places(const plc::Image& before, const plc::Image& now) {
+std::vector<image::Place> dropped_places(const Image& before, const Image& now) {
   std::vector<image::Place> out;
-  for (const plc::Image::Shared& old : before.places) {
+  for (const Image::Shared& old : before.places) {
     const bool goes_on = std::any_of(now.places.begin(), now.places.end(),
                                      [&](const auto& s) { return s.written && s.place == old.place; });
     if (old.written && !goes_on) out.push_back(old.place);
@@ -40,14 +30,14 @@ void clear(const image::Place& place, image::Packets& packets) noexcept {
     packets.set_number(place, 0.0);
 }
 
-void clear_written(const plc::Image& program, image::Packets& packets) noexcept {
-  for (const plc::Image::Shared& s : program.places)
+void clear_written(const Image& program, image::Packets& packets) noexcept {
+  for (const Image::Shared& s : program.places)
     if (s.written) clear(s.place, packets);
 }
 
 /// What the program writes, from one copy of the packets into another.
-void copy_written(const plc::Image& program, const image::Packets& from, image::Packets& to) noexcept {
-  for (const plc::Image::Shared& s : program.places) {
+void copy_written(const Image& program, const image::Packets& from, image::Packets& to) noexcept {
+  for (const Image::Shared& s : program.places) {
     if (!s.written) continue;
     if (s.place.format == image::Format::bl)
       to.set_bit(s.place, from.bit(s.place));
@@ -59,22 +49,22 @@ void copy_written(const plc::Image& program, const image::Packets& from, image::
 
 using RetainedKey = std::pair<std::string, std::string>;  ///< name, without case, and type
 
-std::set<RetainedKey> retained_of(const plc::Image& image) {
+std::set<RetainedKey> retained_of(const Image& image) {
   std::set<RetainedKey> out;
-  for (const plc::Image::RetainedCell& c : image.retained) out.insert({plc::key_of(c.name), c.type->name});
+  for (const Image::RetainedCell& c : image.retained) out.insert({key_of(c.name), c.type->name});
   return out;
 }
 
 /// What `before` held at its last scan, or kept aside itself, and `now` has no variable for.
-std::vector<plc::Retained> left_over(const LogicProgram& before, const plc::Image& now) {
+std::vector<Retained> left_over(const LogicProgram& before, const Image& now) {
   constexpr std::size_t kMost = 10'000;
   std::vector<std::uint8_t> bytes;
   const bool scanned = before.retained.read(bytes) != 0;
-  std::vector<plc::Retained> out = before.aside;
-  for (plc::Retained& v : scanned ? before.engine.retained(bytes) : before.engine.retained())
+  std::vector<Retained> out = before.aside;
+  for (Retained& v : scanned ? before.engine.retained(bytes) : before.engine.retained())
     out.push_back(std::move(v));
   const std::set<RetainedKey> known = retained_of(now);
-  std::erase_if(out, [&](const plc::Retained& v) { return known.contains({plc::key_of(v.name), v.type}); });
+  std::erase_if(out, [&](const Retained& v) { return known.contains({key_of(v.name), v.type}); });
   if (out.size() > kMost) out.erase(out.begin(), out.end() - kMost);
   return out;
 }
@@ -82,35 +72,36 @@ std::vector<plc::Retained> left_over(const LogicProgram& before, const plc::Imag
 }  // namespace
 
 /// A change on its way into the cycle and back.
-struct PlcLogic::Prepared {
+struct Logic::Prepared {
   LogicChange::Kind kind = LogicChange::Kind::load;
   std::uint32_t number = 0;
   std::shared_ptr<LogicProgram> program;
-  plc::Transfer transfer;
-  plc::Forcing forcing;
+  Transfer transfer;
+  Forcing forcing;
   std::string name, value;
   std::vector<std::pair<std::string, std::string>> forced;  ///< of the new program
   bool accepted = false;
 };
 
-PlcLogic::PlcLogic(std::shared_ptr<const plc::Image> image, std::vector<plc::SourceFile> sources)
-    : shown_(std::make_shared<LogicProgram>(std::move(image), std::move(sources))) {
+Logic::Logic(std::shared_ptr<const Image> image, std::vector<SourceFile> sources,
+             const image::Clock& stopwatch)
+    : stopwatch_(stopwatch), shown_(std::make_shared<LogicProgram>(std::move(image), std::move(sources))) {
   running_ = shown_.get();
-  running_->engine.measure(&stopwatch());
+  running_->engine.measure(&stopwatch_);
   running_->engine.watch(&watch_);
 }
 
-PlcLogic::~PlcLogic() {
+Logic::~Logic() {
   for (Slots* slots : {&ready_, &done_})
     for (auto& slot : *slots) delete slot.load();
 }
 
-void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcept {
+void Logic::scan(image::ProcessImage& image, image::Notices& notices) noexcept {
   if (begins_) kept_ = image.packets;
   begins_ = ended_ = false;
   if (held_ && steps_ == 0) return stand_still(image);
   LogicProgram& program = *running_;
-  const plc::Image& compiled = program.engine.image();
+  const Image& compiled = program.engine.image();
   if (!given_back_) copy_written(compiled, kept_, image.packets);
   given_back_ = true;
   if (drops_)
@@ -123,10 +114,10 @@ void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcep
     clear_written(compiled, image.packets);
     given_back_ = false;
   }
-  const bool faulted = last_.fault != plc::Fault::none;
+  const bool faulted = last_.fault != Fault::none;
   if (faulted && !faulted_) {
     raise_fault(last_, notices);
-    ended_ = last_.fault == plc::Fault::overrun;
+    ended_ = last_.fault == Fault::overrun;
   }
   faulted_ = faulted;
   if (faulted) return;  // what an abandoned scan has left half done is not kept
@@ -135,13 +126,13 @@ void PlcLogic::scan(image::ProcessImage& image, cycle::Notices& notices) noexcep
 }
 
 /// One scan, which fills the sample that somebody waits for; of several that were asked for, the last one.
-plc::ScanResult PlcLogic::run_program(image::ProcessImage& image) noexcept {
-  plc::Engine& engine = running_->engine;
+ScanResult Logic::run_program(image::ProcessImage& image) noexcept {
+  Engine& engine = running_->engine;
   const bool shown = wanted_.load(std::memory_order_relaxed) != nullptr && steps_ <= 1;
   LogicSample* const sample = shown ? wanted_.exchange(nullptr) : nullptr;
   const bool own = sample != nullptr && sample->program == running_;
   if (own && sample->profile) engine.profile(sample->blocks.data());
-  const plc::ScanResult result = engine.scan(image.packets, image.now.t_ns - held_ns_);
+  const ScanResult result = engine.scan(image.packets, image.now.t_ns - held_ns_);
   if (sample == nullptr) return result;
   engine.profile(nullptr);
   if (own) fill(*sample, image.now, result);
@@ -150,7 +141,7 @@ plc::ScanResult PlcLogic::run_program(image::ProcessImage& image) noexcept {
 }
 
 /// A cycle without a scan: the program's time stands, and what it writes is off.
-void PlcLogic::stand_still(image::ProcessImage& image) noexcept {
+void Logic::stand_still(image::ProcessImage& image) noexcept {
   held_ns_ += image.now.period_ns;
   clear_written(running_->engine.image(), image.packets);
   given_back_ = false;
@@ -161,10 +152,10 @@ void PlcLogic::stand_still(image::ProcessImage& image) noexcept {
   filled_.store(sample, std::memory_order_release);
 }
 
-void PlcLogic::raise_fault(const plc::ScanResult& result, cycle::Notices& notices) const noexcept {
+void Logic::raise_fault(const ScanResult& result, image::Notices& notices) const noexcept {
   image::AlarmRecord r;
-  const bool endless = result.fault == plc::Fault::budget || result.fault == plc::Fault::overrun;
-  r.number = endless ? cycle::alarm::kPlcBudget : cycle::alarm::kPlcFault;
+  const bool endless = result.fault == Fault::budget || result.fault == Fault::overrun;
+  r.number = endless ? image::alarm::kPlcBudget : image::alarm::kPlcFault;
   r.line = result.line;
   r.file = result.file;
   r.run = running_->number;
@@ -174,7 +165,7 @@ void PlcLogic::raise_fault(const plc::ScanResult& result, cycle::Notices& notice
 }
 
 /// The gate has decided whether it may.
-bool PlcLogic::hold(const image::Request& request) noexcept {
+bool Logic::hold(const image::Request& request) noexcept {
   const bool holds = request.value != 0.0;
   begins_ = begins_ || (holds && !held_);
   held_ = holds;
@@ -182,11 +173,10 @@ bool PlcLogic::hold(const image::Request& request) noexcept {
   return true;
 }
 
-void PlcLogic::fill(LogicSample& sample, const image::CycleTime& now,
-                    const plc::ScanResult& result) noexcept {
+void Logic::fill(LogicSample& sample, const image::CycleTime& now, const ScanResult& result) noexcept {
   std::uint8_t* to = sample.bytes.data();
   for (const LogicSample::Range& r : sample.ranges) {
-    plc::Handle handle;
+    Handle handle;
     handle.address = r.address;
     std::memcpy(to, running_->engine.data(handle), r.size);
     to += r.size;
@@ -197,7 +187,7 @@ void PlcLogic::fill(LogicSample& sample, const image::CycleTime& now,
   sample.result = result;
 }
 
-bool PlcLogic::order(const image::Request& request) noexcept {
+bool Logic::order(const image::Request& request) noexcept {
   if (request.kind == image::RequestKind::logic_scan) return hold(request);
   auto& slot = ready_[request.index % kSlots];
   Prepared* const change = slot.exchange(nullptr, std::memory_order_acq_rel);
@@ -208,7 +198,7 @@ bool PlcLogic::order(const image::Request& request) noexcept {
   return accepted;
 }
 
-bool PlcLogic::carry_out(Prepared& change) noexcept {
+bool Logic::carry_out(Prepared& change) noexcept {
   switch (change.kind) {
     case LogicChange::Kind::load:
       change.program->engine.take_over(running_->engine, change.transfer);
@@ -228,23 +218,23 @@ bool PlcLogic::carry_out(Prepared& change) noexcept {
   return false;
 }
 
-std::string PlcLogic::fault_words(const image::AlarmRecord& record, text::Language language) const {
+std::string Logic::fault_words(const image::AlarmRecord& record, text::Language language) const {
   const std::shared_ptr<const LogicProgram> of = program();
   if (of->number != record.run) return {};
-  plc::ScanResult result;
-  result.fault = static_cast<plc::Fault>(static_cast<int>(record.value));
+  ScanResult result;
+  result.fault = static_cast<Fault>(static_cast<int>(record.value));
   result.task = static_cast<std::int16_t>(record.detail1);
   result.file = static_cast<std::int16_t>(record.file);
   result.line = record.line;
   return of->engine.describe(result).str(language);
 }
 
-std::shared_ptr<const LogicProgram> PlcLogic::program() const {
+std::shared_ptr<const LogicProgram> Logic::program() const {
   const std::scoped_lock lock(mutex_);
   return shown_;
 }
 
-PlcLogic::Plan PlcLogic::prepare(const LogicChange& change, plc::CompileResult compiled) {
+Logic::Plan Logic::prepare(const LogicChange& change, CompileResult compiled) {
   settle();
   Plan plan;
   auto prepared = std::make_unique<Prepared>();
@@ -252,7 +242,7 @@ PlcLogic::Plan PlcLogic::prepare(const LogicChange& change, plc::CompileResult c
   prepared->number = change.number;
   prepared->name = change.name;
   prepared->value = change.value;
-  const plc::Engine& engine = shown_->engine;
+  const Engine& engine = shown_->engine;
   if (change.kind == LogicChange::Kind::load) {
     plan = prepare_load(change, *prepared, std::move(compiled));
   } else if (change.kind == LogicChange::Kind::release_all) {
@@ -272,20 +262,20 @@ PlcLogic::Plan PlcLogic::prepare(const LogicChange& change, plc::CompileResult c
   return plan;
 }
 
-PlcLogic::Plan PlcLogic::prepare_load(const LogicChange& change, Prepared& out, plc::CompileResult compiled) {
+Logic::Plan Logic::prepare_load(const LogicChange& change, Prepared& out, CompileResult compiled) {
   Plan plan;
   plan.findings = std::move(compiled.findings);
   if (compiled.image == nullptr) return plan;
   plan.possible = true;
-  const plc::Image& before = shown_->engine.image();
-  out.transfer = plc::plan_transfer(before, *compiled.image, change.online);
+  const Image& before = shown_->engine.image();
+  out.transfer = plan_transfer(before, *compiled.image, change.online);
   out.program = std::make_shared<LogicProgram>(compiled.image, change.files, change.number);
   out.program->dropped = dropped_places(before, *compiled.image);
-  plc::Engine& engine = out.program->engine;
+  Engine& engine = out.program->engine;
   plan.fresh = out.transfer.fresh;
   plan.given_up = out.transfer.given_up;
   sort_retained(plan, engine);
-  engine.measure(&stopwatch());
+  engine.measure(&stopwatch_);
   engine.watch(&watch_);
   engine.prepare_transfer(out.transfer);
   for (const auto& [name, value] : forced_) {
@@ -302,36 +292,35 @@ PlcLogic::Plan PlcLogic::prepare_load(const LogicChange& change, Prepared& out, 
 
 // What was kept aside goes into variables that begin anew; what the running program has too much is kept
 // aside.
-void PlcLogic::sort_retained(Plan& plan, plc::Engine& engine) const {
+void Logic::sort_retained(Plan& plan, Engine& engine) const {
   const auto keys = [](const std::vector<std::string>& names) {
     std::set<std::string> out;
-    for (const std::string& name : names) out.insert(plc::key_of(name));
+    for (const std::string& name : names) out.insert(key_of(name));
     return out;
   };
   const std::set<std::string> fresh = keys(plan.fresh), given_up = keys(plan.given_up);
-  for (const plc::Retained& v : shown_->aside)
-    if (fresh.contains(plc::key_of(v.name)) && engine.restore({&v, 1}) != 0)
-      plan.taken_back.push_back(v.name);
+  for (const Retained& v : shown_->aside)
+    if (fresh.contains(key_of(v.name)) && engine.restore({&v, 1}) != 0) plan.taken_back.push_back(v.name);
   const std::set<std::string> back = keys(plan.taken_back);
-  std::erase_if(plan.fresh, [&](const std::string& name) { return back.contains(plc::key_of(name)); });
+  std::erase_if(plan.fresh, [&](const std::string& name) { return back.contains(key_of(name)); });
   const std::set<RetainedKey> retained = retained_of(engine.image());
-  for (const plc::Image::RetainedCell& c : shown_->engine.image().retained) {
-    if (!given_up.contains(plc::key_of(c.name))) continue;
-    const bool same = retained.contains({plc::key_of(c.name), c.type->name});
+  for (const Image::RetainedCell& c : shown_->engine.image().retained) {
+    if (!given_up.contains(key_of(c.name))) continue;
+    const bool same = retained.contains({key_of(c.name), c.type->name});
     (same ? plan.lost : plan.set_aside).push_back(c.name);
   }
 }
 
-void PlcLogic::withdraw(std::uint32_t number) { delete ready_[number % kSlots].exchange(nullptr); }
+void Logic::withdraw(std::uint32_t number) { delete ready_[number % kSlots].exchange(nullptr); }
 
-void PlcLogic::settle() {
+void Logic::settle() {
   std::vector<std::unique_ptr<Prepared>> done;
   for (auto& slot : done_)
     if (Prepared* change = slot.exchange(nullptr, std::memory_order_acq_rel); change != nullptr)
       done.emplace_back(change);
   std::sort(done.begin(), done.end(), [](const auto& a, const auto& b) { return a->number < b->number; });
   const auto forget = [this](const std::string& name) {
-    std::erase_if(forced_, [&](const auto& f) { return same_variable(f.first, name); });
+    std::erase_if(forced_, [&](const auto& f) { return same_name(f.first, name); });
   };
   for (const auto& change : done) {
     if (!change->accepted) continue;
@@ -357,24 +346,17 @@ void PlcLogic::settle() {
   }
 }
 
-bool PlcLogic::look(LogicSample& sample, int patience_ms) {
+void Logic::ask(LogicSample& sample) {
   settle();
   std::size_t bytes = 0;
   for (const LogicSample::Range& r : sample.ranges) bytes += r.size;
   sample.bytes.assign(bytes, 0);
   sample.program = shown_.get();
-  const plc::Image& image = shown_->engine.image();
+  const Image& image = shown_->engine.image();
   sample.blocks.assign(sample.profile ? image.units.size() : 0, {});
   sample.tasks.assign(image.tasks.size(), {});
   filled_.store(nullptr);
   wanted_.store(&sample, std::memory_order_release);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(patience_ms);
-  while (filled_.load(std::memory_order_acquire) != &sample) {
-    std::this_thread::sleep_for(std::chrono::microseconds(300));
-    // Taken back only while the cycle has not begun with it.
-    if (std::chrono::steady_clock::now() > end && wanted_.exchange(nullptr) != nullptr) return false;
-  }
-  return true;
 }
 
-}  // namespace servogate::gateway
+}  // namespace servogate::plc

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "firmware_if/image/time.hpp"
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 
 namespace servogate::plc {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plc/values.hpp"
+#include "plc/variables/values.hpp"
 
 #include <charconv>
 #include <cmath>

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plc/compile.hpp"
+#include "plc/compile/compile.hpp"
 
 #include <algorithm>
 #include <map>
 #include <string_view>
 
 #include "plc/code/generator.hpp"
-#include "plc/front_end.hpp"
+#include "plc/compile/front_end.hpp"
 #include "plc/ladder/drawing.hpp"
 #include "plc/library/motion_blocks.hpp"
 #include "plc/library/standard_blocks.hpp"
 #include "plc/plcopen/plcopen.hpp"
 #include "plc/sema/analyzer.hpp"
 #include "plc/syntax/parser.hpp"
-#include "plc/texts.hpp"
+#include "plc/terms/texts.hpp"
 
 namespace servogate::plc {
 
