@@ -74,6 +74,7 @@ struct BrakeData {
 /// Everything an axis is, as plain data from the machine file. mm or degrees, seconds; a lathe's X is a
 /// radius.
 struct AxisConfig {
+  int process = 0;  ///< whose programs move it, and nobody else's
   bool rotary = false;
   bool auxiliary = false;                ///< the PLC moves it (magazine, chuck); no program, nobody by hand
   std::int64_t counts_numerator = 1000;  ///< exactly numerator / denominator counts make one mm or degree
@@ -112,6 +113,7 @@ struct AxisConfig {
 
 /// A spindle, as plain data from the machine file.
 struct SpindleConfig {
+  int process = 0;                       ///< whose S, M3, M4, M5 and M19 it obeys
   std::int64_t counts_numerator = 4096;  ///< exactly numerator / denominator counts make one revolution
   std::int64_t counts_denominator = 1;
   int count_direction = 1;  ///< +1: counts rise clockwise (M3)

@@ -24,6 +24,7 @@ class Spindle {
   /// `index` is the spindle's place in the image. Not for the cycle.
   void configure(const SpindleConfig& config, int index);
   const SpindleConfig& config() const noexcept { return config_; }
+  int index() const noexcept { return index_; }
 
   /// What the program wants; `rpm` without sign, clamped to the configured range. What this spindle cannot do
   /// (an oriented stop without an encoder, a direction without a relay) is a stop and an alarm. real-time

@@ -12,12 +12,91 @@ namespace {
 constexpr int kCommandsPerWork = 64;
 constexpr std::uint32_t kSpareEvents = 8;
 
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
+/// What the cycle is to do for a command.
+struct ForCycle {
+  EventKind kind;
+  Event event;
+  bool at_once = false;  ///< not in the order of the path
 };
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
+
+/// A command as an event, its place left to the feeder; nullopt: nothing is to be done in the cycle.
+class Translation {
+ public:
+  using Result = std::optional<ForCycle>;
+  /// `view`: what the interpreter sees of its own writes.
+  Translation(PathElements& elements, ProgramTexts& texts, image::Packets& view)
+      : elements_(elements), texts_(texts), view_(view) {}
+
+  template <class Motion>
+  Result operator()(const Motion&) const {
+    return std::nullopt;
+  }
+  Result operator()(const program::Dwell& d) const {
+    ForCycle order{EventKind::dwell, {}};
+    order.event.value = d.seconds;
+    return order;
+  }
+  Result operator()(const program::Spindle& s) const {
+    elements_.take(s);
+    ForCycle order{EventKind::spindle, {}};
+    order.event.value = s.speed;
+    order.event.limit = s.limit_rpm;
+    order.event.center = s.center;
+    order.event.number = s.number;
+    order.event.mode = s.mode;
+    order.event.flag = s.surface_speed;
+    return order;
+  }
+  Result operator()(const program::Tool& t) const {
+    if (t.activate) return std::nullopt;
+    ForCycle order = coded(EventKind::tool, t.number);
+    order.event.code2 = t.corrector;
+    return order;
+  }
+  Result operator()(const program::MFunction& m) const { return coded(EventKind::m_function, m.code); }
+  Result operator()(const program::HFunction& h) const { return coded(EventKind::h_function, h.code); }
+  Result operator()(const program::Message& m) const {
+    return coded(EventKind::message, texts_.add_message(m.text));
+  }
+  Result operator()(const program::WritePlace& w) const {
+    ForCycle order{EventKind::write, {}, !w.synchronous};
+    Event& e = order.event;
+    e.place = w.place;
+    e.value = w.value;
+    e.length = static_cast<std::uint8_t>(std::min(w.characters.size(), e.characters.size()));
+    std::copy_n(w.characters.begin(), e.length, e.characters.begin());
+    if (e.length != 0)
+      view_.set_characters(w.place, w.characters);
+    else
+      view_.set_number(w.place, w.value);
+    return order;
+  }
+  Result operator()(const program::Wait& w) const {
+    ForCycle order{EventKind::wait, {}};
+    order.event.place = w.place;
+    order.event.value = w.value;
+    order.event.compare = w.compare;
+    return order;
+  }
+  Result operator()(const program::Stop& s) const {
+    return ForCycle{s.optional ? EventKind::optional_stop : EventKind::stop, {}};
+  }
+  Result operator()(const program::End& end_of_program) const {
+    ForCycle order{EventKind::end, {}};
+    order.event.flag = end_of_program.rewind;
+    return order;
+  }
+
+ private:
+  static ForCycle coded(EventKind kind, std::int32_t code) {
+    ForCycle order{kind, {}};
+    order.event.code = code;
+    return order;
+  }
+  PathElements& elements_;
+  ProgramTexts& texts_;
+  image::Packets& view_;
+};
 
 /// Something has been done when it is through: STEP stops behind it. A programmed stop waits by itself.
 bool acts(const program::Command& command) {
@@ -268,81 +347,32 @@ void Feeder::accept(const program::Command& command) {
   last_executed_ = executed();
   last_file_ = command.file;
   acted_in_block_ = (acted_in_block_ || acts(command)) && !stops(command);
-  Event e;
-  std::visit(Overloaded{
-                 [&](const program::Rapid&) { move(command); },
-                 [&](const program::Line&) { move(command); },
-                 [&](const program::Arc&) { move(command); },
-                 [&](const program::Thread&) { fail(placed(*not_driven(command), command)); },
-                 [&](const program::Probe&) { fail(placed(*not_driven(command), command)); },
-                 [&](const program::Dwell& d) {
-                   e.value = d.seconds;
-                   event(EventKind::dwell, command, e);
-                 },
-                 [&](const program::Spindle& s) {
-                   elements_.take(s);
-                   e.value = s.speed;
-                   e.limit = s.limit_rpm;
-                   e.center = s.center;
-                   e.number = s.number;
-                   e.mode = s.mode;
-                   e.flag = s.surface_speed;
-                   event(EventKind::spindle, command, e);
-                 },
-                 [&](const program::Tool& t) {
-                   if (t.activate) return;
-                   e.code = t.number;
-                   e.code2 = t.corrector;
-                   event(EventKind::tool, command, e);
-                 },
-                 [&](const program::MFunction& m) {
-                   e.code = m.code;
-                   event(EventKind::m_function, command, e);
-                 },
-                 [&](const program::HFunction& h) {
-                   e.code = h.code;
-                   event(EventKind::h_function, command, e);
-                 },
-                 [&](const program::Message& m) {
-                   e.code = texts_.add_message(m.text);
-                   event(EventKind::message, command, e);
-                 },
-                 [&](const program::WritePlace& w) {
-                   e.place = w.place;
-                   e.value = w.value;
-                   e.length = static_cast<std::uint8_t>(std::min(w.characters.size(), e.characters.size()));
-                   std::copy_n(w.characters.begin(), e.length, e.characters.begin());
-                   if (e.length != 0)
-                     view_.set_characters(w.place, w.characters);
-                   else
-                     view_.set_number(w.place, w.value);
-                   if (w.synchronous) {
-                     event(EventKind::write, command, e);
-                   } else {
-                     e.kind = EventKind::write;
-                     e.generation = generation_;
-                     link_.at_once.push(e);
-                   }
-                 },
-                 [&](const program::Wait& w) {
-                   e.place = w.place;
-                   e.value = w.value;
-                   e.compare = w.compare;
-                   event(EventKind::wait, command, e);
-                 },
-                 [&](const program::Stop& s) {
-                   event(s.optional ? EventKind::optional_stop : EventKind::stop, command, e);
-                 },
-                 [&](const program::End& end_of_program) {
-                   e.flag = end_of_program.rewind;
-                   event(EventKind::end, command, e);
-                   end();
-                 },
-             },
-             command.what);
+  if (is_motion(command)) {
+    move(command);
+    return;
+  }
+  if (const std::optional<text::Finding> finding = not_driven(command))
+    return fail(placed(*finding, command));
+  std::optional<ForCycle> order = std::visit(Translation{elements_, texts_, view_}, command.what);
+  if (!order) return;
+  if (order->at_once) {
+    order->event.kind = order->kind;
+    order->event.generation = generation_;
+    link_.at_once.push(order->event);
+  } else {
+    event(order->kind, command, order->event);
+  }
+  if (order->kind == EventKind::end) end();
 }
 
 bool Feeder::move(const program::Command& command) {
+  if (const int axis = elements_.foreign_axis(command, position_); axis >= 0) {
+    text::Finding finding =
+        placed(foreign(interpreter_->machine().axes[static_cast<std::size_t>(axis)].letter), command);
+    finding.column = interpreter_->column(command.file, command.line, axis);
+    fail(finding);
+    return false;
+  }
   path::Element element = elements_.element(command, planner_.position());
   element.tag = tag(command);
   if (planner_.add(element)) return true;

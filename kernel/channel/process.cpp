@@ -300,7 +300,11 @@ void Process::apply_hold(cycle::ProcessContext& c) noexcept {
     follower_.resume();
   const double by_plc = k.number(at(kFeedOverride, base_)) / 100.0;
   follower_.set_override(by_plc > 0.0 ? by_plc : override_);
-  follower_.set_spindle(c.spindles.empty() ? -1.0 : std::abs(c.image.spindles[0].command_rpm) / 60.0);
+  const axis::Spindle* turns = spindle(0, c);
+  follower_.set_spindle(
+      turns == nullptr
+          ? -1.0
+          : std::abs(c.image.spindles[static_cast<std::size_t>(turns->index())].command_rpm) / 60.0);
 }
 
 void Process::drive_axes(const path::Sample& sample, cycle::ProcessContext& c) noexcept {

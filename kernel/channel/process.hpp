@@ -91,6 +91,8 @@ class Process final : public cycle::ProcessInCycle {
   bool in_position(cycle::ProcessContext& c) const noexcept;
   void surface_speed(cycle::ProcessContext& c) noexcept;
   void stop_spindles(cycle::ProcessContext& c) noexcept;
+  /// The n-th spindle of this process, in the machine's order; nullptr: it has none.
+  axis::Spindle* spindle(std::size_t n, const cycle::ProcessContext& c) const noexcept;
   void write_status(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
   void raise(image::AlarmNumber number, const Event& event, double value, double limit,
              cycle::ProcessContext& c) noexcept;
@@ -123,6 +125,7 @@ class Process final : public cycle::ProcessInCycle {
   Stage stage_ = Stage::none;
   Event event_;
   double waited_s_ = 0.0;
+  std::uint8_t surface_spindle_ = 0;  ///< of this process, that turns by a cutting speed
   double surface_speed_ = 0.0, surface_limit_ = 0.0, surface_center_ = 0.0;
   double last_speed_ = -1.0;
   path::Tag shown_;               ///< of the motion that the status has shown

@@ -165,9 +165,11 @@ bool Process::handshake(HandshakeWord word, std::int32_t code, double value, con
 }
 
 bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
-  if (e.number >= c.spindles.size()) return true;
-  axis::Spindle& spindle = c.spindles[e.number];
+  axis::Spindle* told = this->spindle(e.number, c);
+  if (told == nullptr) return true;
+  axis::Spindle& spindle = *told;
   if (stage_ == Stage::entered) {
+    surface_spindle_ = e.number;
     surface_speed_ = e.flag ? e.value : 0.0;
     surface_limit_ = e.limit;
     surface_center_ = e.center;
@@ -181,15 +183,24 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
   return handshake(HandshakeWord::s, 0, last_speed_, e, c);
 }
 
+axis::Spindle* Process::spindle(std::size_t n, const cycle::ProcessContext& c) const noexcept {
+  for (axis::Spindle& s : c.spindles)
+    if (s.config().process == config_.index && n-- == 0) return &s;
+  return nullptr;
+}
+
 void Process::stop_spindles(cycle::ProcessContext& c) noexcept {
-  for (axis::Spindle& spindle : c.spindles) spindle.order(axis::SpindleMode::stop, 0.0);
+  for (axis::Spindle& s : c.spindles)
+    if (s.config().process == config_.index) s.order(axis::SpindleMode::stop, 0.0);
   surface_speed_ = 0.0;
 }
 
 /// As long as the spindle turns by it: a typed G96 holds for the next block, and for jogging, too.
 void Process::surface_speed(cycle::ProcessContext& c) noexcept {
-  if (surface_speed_ <= 0.0 || config_.axes.surface_speed_axis < 0 || c.spindles.empty()) return;
-  axis::Spindle& spindle = c.spindles[0];
+  if (surface_speed_ <= 0.0 || config_.axes.surface_speed_axis < 0) return;
+  axis::Spindle* turns = this->spindle(surface_spindle_, c);
+  if (turns == nullptr) return;
+  axis::Spindle& spindle = *turns;
   if (spindle.mode() != axis::SpindleMode::cw && spindle.mode() != axis::SpindleMode::ccw) return;
   const axis::Axis& axis = c.axes[static_cast<std::size_t>(config_.axes.surface_speed_axis)];
   if (!axis.homed()) return;

@@ -174,7 +174,7 @@ void Cycle::run_axes() noexcept {
 void Cycle::collect_events() noexcept {
   for (const image::AlarmRecord& r : notices_.records()) raise(r);
   notices_.clear();
-  const auto collect = [this](const axis::Events& events, int axis) {
+  const auto collect = [this](const axis::Events& events, int axis, int process) {
     for (const axis::Event& e : events) {
       image::AlarmRecord r;
       r.number = e.number;
@@ -194,25 +194,32 @@ void Cycle::collect_events() noexcept {
         r.segment = place.segment;
         r.node = place.node;
       }
-      r.line = image_.processes[0].line;
-      r.file = image_.processes[0].file;
-      r.run = image_.processes[0].run;
+      const image::ProcessStatus& program = image_.processes[static_cast<std::size_t>(process)];
+      r.line = program.line;
+      r.file = program.file;
+      r.run = program.run;
       raise(r);
     }
   };
   bool rest = true;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    collect(axes_[i].events(), static_cast<int>(i));
+    collect(axes_[i].events(), static_cast<int>(i), axes_[i].config().process);
     if (axes_[i].homing().state() == axis::Homing::State::done)
       alarms_.cause_gone(axis::alarm::kHomingInterrupted, static_cast<int>(i));
     rest = rest && axes_[i].standstill();
   }
-  for (const axis::Spindle& s : spindles_) collect(s.events(), -1);
+  for (const axis::Spindle& s : spindles_) collect(s.events(), -1, s.config().process);
   alarms_.note_rest(rest);
   if (manual_held_ && rest && !homing_.running()) manual_held_ = false;
 }
 
 void Cycle::raise(const image::AlarmRecord& record) noexcept { alarms_.raise(record, image_.now); }
+
+void Cycle::raise(image::AlarmNumber number) noexcept {
+  image::AlarmRecord record;
+  record.number = number;
+  raise(record);
+}
 
 void Cycle::watch_machine() noexcept {
   if (parts_.estop_place && !image_.packets.bit(*parts_.estop_place))

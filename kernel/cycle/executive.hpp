@@ -135,12 +135,20 @@ class Cycle {
   void handle_requests() noexcept;
   void handle_plc_requests() noexcept;
   image::Answer handle(const image::Request& request) noexcept;
+  // What the gate has let pass, a part of the requests each. What it cannot know (an axis not yet quite at
+  // rest) makes a late refusal.
   Refusal carry_out(const image::Request& request) noexcept;
+  Refusal carry_out_manual(const image::Request& request) noexcept;
+  Refusal carry_out_motion(const image::Request& request, axis::Axis& axis) noexcept;
+  Refusal order(int process, const image::Request& request) noexcept;
+  Refusal end_or_hold(const image::Request& request) noexcept;
+  void switch_power(const image::Request& request) noexcept;
+  void reset(const image::Request& request) noexcept;
   Refusal write_place(const image::Request& request) noexcept;
   void change_mode(int process, image::Mode mode) noexcept;
-  bool carry_out_motion(const image::Request& request, axis::Axis& axis) noexcept;
   bool hold_logic(const image::Request& request) noexcept;
   void keep_alive(axis::Axis& axis, const image::Hand& hand) noexcept;
+  void keep_alive(const image::Request& request) noexcept;
   void stop_jogs(const image::Request& request) noexcept;
   void watch_forces() noexcept;
   void jog_of_plc(axis::Axis& axis) noexcept;
@@ -155,6 +163,7 @@ class Cycle {
   void publish() noexcept;
   ProcessContext context(int process) noexcept;
   void raise(const image::AlarmRecord& record) noexcept;
+  void raise(image::AlarmNumber number) noexcept;
   bool still_present(const image::AlarmRecord& record) const noexcept;
   bool part_missing(const image::AlarmRecord& record) const noexcept;
   void begin_measuring() noexcept;

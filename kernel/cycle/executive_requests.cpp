@@ -92,91 +92,40 @@ Refusal Cycle::write_place(const Request& request) noexcept {
 /// As long as a guard is forced, whatever resets the alarms.
 void Cycle::watch_forces() noexcept {
   const auto end = forced_.begin() + forced_count_;
-  image::AlarmRecord r;
-  r.number = alarm::kGuardForced;
   if (std::any_of(forced_.begin(), end, [this](const Forced& f) { return guards_motion(f.place, axes_); }))
-    raise(r);
+    raise(alarm::kGuardForced);
   else
-    alarms_.cause_gone(r.number, r.axis);
+    alarms_.cause_gone(alarm::kGuardForced, -1);
 }
 
-// What the gate cannot know (an axis not yet quite at rest) makes a late refusal.
 Refusal Cycle::carry_out(const Request& request) noexcept {
-  Refusal refusal = Refusal::none;
-  const auto axis = static_cast<std::size_t>(request.axis < 0 ? 0 : request.axis);
-  const auto hold_manual = [&] {
-    manual_held_ = true;
-    holder_ = request.asker;
-    if (request.axis >= 0) image_.axes[axis].hand = request.hand();
-  };
-  const auto order = [&](int process) {
-    const std::uint32_t run = image_.processes[static_cast<std::size_t>(process)].run;
-    ProcessContext c = context(process);
-    const bool done = parts_.processes[static_cast<std::size_t>(process)]->order(request, c);
-    if (image_.processes[static_cast<std::size_t>(process)].run != run) alarms_.run_begins(process);
-    return done;
-  };
   switch (request.kind) {
     case RequestKind::none:
       break;
     case RequestKind::power:
-      power_request_ = request.value != 0.0;
-      power_asker_ = request.asker;
-      for (axis::Axis& a : axes_)
-        if (!power_request_ || !a.config().auxiliary) a.request_power(power_request_);
+      switch_power(request);
       break;
     case RequestKind::home:
-      if (homing_.start(axes_, homing_mask(request, axes_)))
-        hold_manual();
-      else
-        refusal = Refusal::axis_moves;
-      break;
     case RequestKind::jog_increment:
-      if (axes_[axis].jog_increment(request.value))
-        hold_manual();
-      else
-        refusal = Refusal::axis_moves;
-      break;
     case RequestKind::jog_continuous:
-      if (axes_[axis].jog_continuous(request.value < 0.0 ? -1 : 1, image_.now.t_ns))
-        hold_manual();
-      else
-        refusal = Refusal::axis_moves;
-      break;
+      return carry_out_manual(request);
     case RequestKind::keep_alive:
-      for (std::size_t i = 0; i < axes_.size(); ++i)
-        if (request.axis < 0 || i == axis) keep_alive(axes_[i], request.hand());
+      keep_alive(request);
       break;
     case RequestKind::jog_stop:
       stop_jogs(request);
       break;
-    case RequestKind::quick_stop: {
-      image::AlarmRecord r;
-      r.number = alarm::kOperatorQuickStop;
-      raise(r);
+    case RequestKind::quick_stop:
+      raise(alarm::kOperatorQuickStop);
       break;
-    }
     case RequestKind::reset:
-      for (Handwheel& wheel : handwheels_)
-        if (wheel.moves()) wheel.stop();
-      stop_manual(true);
-      [[fallthrough]];
     case RequestKind::acknowledge:
-      for (axis::Axis& a : axes_) a.reset();
-      for (axis::Spindle& s : spindles_) s.reset();
-      alarms_.reset([this](const image::AlarmRecord& r) { return still_present(r); });
-      watch_forces();
-      if (request.kind == RequestKind::reset)
-        for (std::size_t p = 0; p < parts_.processes.size(); ++p) {
-          ProcessContext c = context(static_cast<int>(p));
-          parts_.processes[p]->order(request, c);
-        }
+      reset(request);
       break;
     case RequestKind::set_place:
     case RequestKind::force:
     case RequestKind::release_force:
-      refusal = write_place(request);
-      break;
+      return write_place(request);
     case RequestKind::axis_power:
     case RequestKind::axis_home:
     case RequestKind::move_absolute:
@@ -185,33 +134,89 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     case RequestKind::torque:
     case RequestKind::axis_stop:
     case RequestKind::axis_reset:
-      if (!carry_out_motion(request, axes_[axis])) refusal = Refusal::axis_moves;
-      break;
+      return carry_out_motion(request, axes_[static_cast<std::size_t>(request.axis)]);
     case RequestKind::logic:
-      if (parts_.logic == nullptr || !parts_.logic->order(request)) refusal = Refusal::logic_not_changed;
-      break;
+      return parts_.logic != nullptr && parts_.logic->order(request) ? Refusal::none
+                                                                     : Refusal::logic_not_changed;
     case RequestKind::logic_scan:
-      if (!hold_logic(request)) refusal = Refusal::logic_not_changed;
-      break;
+      return hold_logic(request) ? Refusal::none : Refusal::logic_not_changed;
     case RequestKind::stop:
     case RequestKind::hold:
-      // Whoever presses hold wants rest: jogs and homing, too, which nothing resumes.
-      for (Handwheel& wheel : handwheels_) wheel.stop();
-      stop_manual(request.kind == RequestKind::stop);
-      for (std::size_t p = 0; request.process < 0 && p < parts_.processes.size(); ++p)
-        if (!order(static_cast<int>(p))) refusal = Refusal::axis_moves;
-      if (request.process < 0 || parts_.processes.empty()) break;
-      [[fallthrough]];
+      return end_or_hold(request);
     case RequestKind::zero:
     case RequestKind::mode:
     case RequestKind::start:
     case RequestKind::step:
     case RequestKind::resume:
     case RequestKind::override_feed:
-      if (!order(request.process)) refusal = Refusal::axis_moves;
-      break;
+      return order(request.process, request);
   }
+  return Refusal::none;
+}
+
+void Cycle::switch_power(const Request& request) noexcept {
+  power_request_ = request.value != 0.0;
+  power_asker_ = request.asker;
+  for (axis::Axis& a : axes_)
+    if (!power_request_ || !a.config().auxiliary) a.request_power(power_request_);
+}
+
+/// Homing and jogs: whoever asks holds manual control until all stands.
+Refusal Cycle::carry_out_manual(const Request& request) noexcept {
+  const auto axis = static_cast<std::size_t>(request.axis < 0 ? 0 : request.axis);
+  const bool begun = request.kind == RequestKind::home ? homing_.start(axes_, homing_mask(request, axes_))
+                     : request.kind == RequestKind::jog_increment
+                         ? axes_[axis].jog_increment(request.value)
+                         : axes_[axis].jog_continuous(request.value < 0.0 ? -1 : 1, image_.now.t_ns);
+  if (!begun) return Refusal::axis_moves;
+  manual_held_ = true;
+  holder_ = request.asker;
+  if (request.axis >= 0) image_.axes[axis].hand = request.hand();
+  return Refusal::none;
+}
+
+Refusal Cycle::order(int process, const Request& request) noexcept {
+  const auto p = static_cast<std::size_t>(process);
+  const std::uint32_t run = image_.processes[p].run;
+  ProcessContext c = context(process);
+  const bool done = parts_.processes[p]->order(request, c);
+  if (image_.processes[p].run != run) alarms_.run_begins(process);
+  return done ? Refusal::none : Refusal::axis_moves;
+}
+
+/// Whoever presses hold wants rest: jogs and homing, too, which nothing resumes.
+Refusal Cycle::end_or_hold(const Request& request) noexcept {
+  for (Handwheel& wheel : handwheels_) wheel.stop();
+  stop_manual(request.kind == RequestKind::stop);
+  if (parts_.processes.empty()) return Refusal::none;
+  if (request.process >= 0) return order(request.process, request);
+  Refusal refusal = Refusal::none;
+  for (std::size_t p = 0; p < parts_.processes.size(); ++p)
+    if (const Refusal late = order(static_cast<int>(p), request); late != Refusal::none) refusal = late;
   return refusal;
+}
+
+/// Alarms as far as their causes are gone; a reset ends what is under way, too.
+void Cycle::reset(const Request& request) noexcept {
+  const bool ends = request.kind == RequestKind::reset;
+  if (ends) {
+    for (Handwheel& wheel : handwheels_)
+      if (wheel.moves()) wheel.stop();
+    stop_manual(true);
+  }
+  for (axis::Axis& a : axes_) a.reset();
+  for (axis::Spindle& s : spindles_) s.reset();
+  alarms_.reset([this](const image::AlarmRecord& r) { return still_present(r); });
+  watch_forces();
+  for (std::size_t p = 0; ends && p < parts_.processes.size(); ++p) {
+    ProcessContext c = context(static_cast<int>(p));
+    parts_.processes[p]->order(request, c);
+  }
+}
+
+void Cycle::keep_alive(const Request& request) noexcept {
+  for (axis::Axis& a : axes_)
+    if (request.axis < 0 || request.axis == a.index()) keep_alive(a, request.hand());
 }
 
 /// The dead-man of a jog is its hand's: whoever else lives says nothing of it.
@@ -235,36 +240,35 @@ bool Cycle::hold_logic(const Request& request) noexcept {
   if (parts_.logic == nullptr || !parts_.logic->order(request)) return false;
   logic_held_ = request.value != 0.0;
   if (request.value != 1.0) return true;
-  image::AlarmRecord r;
-  r.number = alarm::kPlcHeld;
-  raise(r);
+  raise(alarm::kPlcHeld);
   return true;
 }
 
-bool Cycle::carry_out_motion(const Request& request, axis::Axis& a) noexcept {
+Refusal Cycle::carry_out_motion(const Request& request, axis::Axis& a) noexcept {
+  const auto begun = [](bool yes) { return yes ? Refusal::none : Refusal::axis_moves; };
   axis::MotionLimits limits = a.config().limits;
   limits.velocity = request.velocity;
   if (request.acceleration > 0.0) limits.acceleration = request.acceleration;
   switch (request.kind) {
     case RequestKind::axis_power:
       a.request_power(request.value != 0.0);
-      return true;
+      return Refusal::none;
     case RequestKind::axis_home:
-      return a.home();
+      return begun(a.home());
     case RequestKind::move_absolute:
-      return a.plc_move_to(request.value, limits);
+      return begun(a.plc_move_to(request.value, limits));
     case RequestKind::move_relative:
-      return a.plc_move_to(a.setpoint().x + request.value, limits);
+      return begun(a.plc_move_to(a.setpoint().x + request.value, limits));
     case RequestKind::move_velocity:
-      return a.plc_move_at(request.value > 0.0 ? 1 : -1, limits);
+      return begun(a.plc_move_at(request.value > 0.0 ? 1 : -1, limits));
     case RequestKind::torque:
-      return a.plc_torque(request.value, request.acceleration, request.velocity);
+      return begun(a.plc_torque(request.value, request.acceleration, request.velocity));
     case RequestKind::axis_reset:
       a.reset();
-      return true;
+      return Refusal::none;
     default:
       a.stop();
-      return true;
+      return Refusal::none;
   }
 }
 
@@ -278,9 +282,11 @@ void Cycle::stop_manual(bool with_plc) noexcept {
 
 void Cycle::handle_plc_requests() noexcept {
   const bool pressed = parts_.start_place && image_.packets.bit(*parts_.start_place);
-  if (pressed && !start_pressed_) {
+  // The machine's one button is for all its processes; one without a program refuses it.
+  for (std::size_t p = 0; pressed && !start_pressed_ && p < parts_.processes.size(); ++p) {
     Request request;
     request.asker = image::Asker::pendant;
+    request.process = static_cast<std::int8_t>(p);
     request.kind = RequestKind::start;
     handle(request);
   }

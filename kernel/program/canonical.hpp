@@ -25,13 +25,13 @@ struct Feed {
 enum class Transition : std::uint8_t {
   exact_stop,      ///< speed zero and in position at the end
   continuous,      ///< rounded within the contour tolerance, no further slow-down
-  corner_limited,  ///< as continuous, corner speed by ERF and MCD as well (NC-110 G27)
+  corner_limited,  ///< as continuous, and the corner speed by the error and angle below
 };
 struct CornerRule {
   Transition transition = Transition::exact_stop;
   double tolerance_mm = 0.0;     ///< contour tolerance of this element; 0: stop at its end
-  double erf_mm = 0.0;           ///< NC-110 ERF
-  double max_angle_deg = 180.0;  ///< NC-110 MCD as an angle; a sharper corner stops
+  double erf_mm = 0.0;           ///< form error that bounds the corner speed
+  double max_angle_deg = 180.0;  ///< a sharper corner stops
 };
 
 struct Rapid {
@@ -70,7 +70,7 @@ struct Spindle {
   /// axis, that is its length along it.
   double center = 0.0;
 };
-/// Tool word. `activate` true: the corrector takes effect here (NC-110: with M06), else a preselection.
+/// Tool word. `activate` true: the corrector takes effect here, else it is a preselection.
 struct Tool {
   std::int32_t number = 0;
   std::int32_t corrector = 0;
@@ -94,7 +94,7 @@ struct WritePlace {
   std::string characters;   ///< for CH places
   bool synchronous = true;  ///< wait for the motion before it; otherwise at once
 };
-/// Waits until a place compares as wished (NC-110 WAI); canon reports and passes it.
+/// Waits until a place compares as wished; canon reports and passes it.
 struct Wait {
   image::Place place;
   enum class Compare : std::uint8_t { eq, ne, lt, le, gt, ge } compare = Compare::eq;

@@ -33,8 +33,8 @@ struct MachineModel {
   double spindle_max_rpm = 0.0;  ///< 0: not known, S is not compared with it
   int tool_places = 0;           ///< of the magazine or turret: T takes 0 to this number; 0: not known
   double contour_tolerance_mm = 0.01;
-  /// Power-on modes and values in the dialect's own words, e.g. {"G94", "G97", "G90", "G71", "G27"} and
-  /// {"ERF", 0.01}, {"MCD", 2}.
+  /// Power-on modes and values in the dialect's own words, e.g. {"G94", "G97", "G90", "G71"}; the values of
+  /// its variables by their names.
   std::vector<std::string> power_on;
   std::map<std::string, double> variables;
   std::vector<int> synchronous_m;  ///< reserved for dialects that let the machine builder choose
@@ -109,7 +109,7 @@ class Interpreter {
 
   /// The next canonical command. `packets`: the shared memories as this process may see them now;
   /// `synchronised`: true when all motion before this point has ended and `packets` is a snapshot taken after
-  /// that. Asynchronous writes (`&`, SYVAR without `#`) come out as WritePlace with synchronous = false. Not
+  /// that. Writes that do not wait for the motion come out as WritePlace with synchronous = false. Not
   /// real-time safe. Never throws on bad programs. After End or Error it keeps returning the same.
   Step next(const image::Packets& packets, bool synchronised);
 
@@ -139,7 +139,7 @@ class Interpreter {
   /// Position at which the next motion starts: the end of the last motion command, absolute machine
   /// coordinates.
   const Position& position() const;
-  /// Tables with the changes that the program made (RQO ...).
+  /// Tables with the changes that the program made.
   const Tables& tables() const;
   /// Blocks in the main program, and blocks executed so far, for progress.
   int block_count() const;

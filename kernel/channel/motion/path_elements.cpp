@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/channel/channel_texts.hpp"
 #include "kernel/channel/surface_speed.hpp"
+#include "kernel/channel/texts.hpp"
 
 namespace servogate::channel {
 
@@ -32,6 +32,21 @@ path::Vector PathElements::path_position(const program::Position& at) const {
   for (std::size_t i = 0; i < axes_.machine.size(); ++i)
     path[i] = at[static_cast<std::size_t>(axes_.machine[i])];
   return path;
+}
+
+int PathElements::foreign_axis(const program::Command& command, const program::Position& stands) const {
+  const program::Position* to = nullptr;
+  if (const auto* rapid = std::get_if<program::Rapid>(&command.what)) to = &rapid->to;
+  if (const auto* line = std::get_if<program::Line>(&command.what)) to = &line->to;
+  if (const auto* arc = std::get_if<program::Arc>(&command.what)) to = &arc->to;
+  if (to == nullptr) return -1;
+  constexpr double kStands = 1e-9;  // mm or degrees
+  for (std::size_t a = 0; a < to->size(); ++a) {
+    const bool own =
+        std::find(axes_.machine.begin(), axes_.machine.end(), static_cast<int>(a)) != axes_.machine.end();
+    if (!own && std::abs((*to)[a] - stands[a]) > kStands) return static_cast<int>(a);
+  }
+  return -1;
 }
 
 void PathElements::take(const program::Spindle& spindle) {
@@ -129,6 +144,13 @@ bool is_motion(const program::Command& command) {
   return std::holds_alternative<program::Rapid>(command.what) ||
          std::holds_alternative<program::Line>(command.what) ||
          std::holds_alternative<program::Arc>(command.what);
+}
+
+text::Finding foreign(const std::string& letter) {
+  text::Finding finding;
+  finding.entry = &texts::kForeignAxis;
+  finding.arguments = {letter};
+  return finding;
 }
 
 text::Finding cannot_drive(path::Flaw flaw) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "firmware_if/text/finding.hpp"
@@ -33,6 +34,9 @@ class PathElements {
 
   /// The path axes of a machine position.
   path::Vector path_position(const program::Position& at) const;
+  /// A machine axis that a motion command would take away from where it `stands` although it is another
+  /// process'; -1: none. A program's own axes are those of the path.
+  int foreign_axis(const program::Command& command, const program::Position& stands) const;
   /// From here on feeds per revolution are those of this spindle word.
   void take(const program::Spindle& spindle);
   /// Rapid, Line or Arc of a command that begins at `from`; its tag is left empty.
@@ -53,6 +57,8 @@ class PathElements {
 
 /// True for Rapid, Line and Arc.
 bool is_motion(const program::Command& command);
+/// Why a motion of an axis of another process is refused; the place is for the caller to fill in.
+text::Finding foreign(const std::string& letter);
 /// What keeps an element with this flaw from being driven; the place is for the caller to fill in.
 text::Finding cannot_drive(path::Flaw flaw);
 /// A motion command that no part of the path room knows yet (thread, probe); nullopt: it is none.

@@ -128,8 +128,11 @@ class Decision {
   }
   bool no_program() noexcept {
     for (int p = 0; p < c_.image->process_count; ++p)
-      if (busy(state(p))) return under_way(p);
+      if (!no_program_of(p)) return false;
     return true;
+  }
+  bool no_program_of(int process) noexcept {
+    return process >= c_.image->process_count || !busy(state(process)) || under_way(process);
   }
   /// What is said of a program that runs, or stops just now.
   bool under_way(int process) noexcept {
@@ -160,11 +163,14 @@ class Decision {
     const bool others = o == AxisOwner::plc || o == AxisOwner::bench;
     return !others || own || refuse(Refusal::axis_owned, a.index(), static_cast<double>(o));
   }
-  bool all_at_rest(bool with_auxiliary) noexcept {
+  bool all_at_rest() noexcept {
     for (const Axis& a : c_.axes)
-      if (a.moving() && (with_auxiliary || !a.config().auxiliary))
-        return refuse(Refusal::axis_moves, a.index());
+      if (a.moving()) return refuse(Refusal::axis_moves, a.index());
     return true;
+  }
+  /// The axis is one that the programs of the request's process move.
+  bool of_process(const Axis& a) const noexcept {
+    return !a.config().auxiliary && a.config().process == r_.process;
   }
   bool power() noexcept;
   bool not_switching_off(const Axis& a) noexcept;
@@ -243,7 +249,7 @@ bool Decision::decide_kind() noexcept {
     case RequestKind::release_force:
       return place(false);
     case RequestKind::logic:
-      return r_.value == 1.0 || (no_program() && no_homing() && all_at_rest(true));
+      return r_.value == 1.0 || (no_program() && no_homing() && all_at_rest());
     case RequestKind::logic_scan:
       return logic_scan();
     case RequestKind::axis_power:
@@ -280,8 +286,10 @@ bool Decision::home() noexcept {
     return refuse(Refusal::bad_value, -1, r_.value, all);
   const std::uint32_t mask = homing_mask(r_, c_.axes);
   const bool named = r_.axis >= 0 || r_.value != 0.0;
-  if (!no_alarm(Reaction::stop_on_path) || !no_program() || !no_homing() || !not_held_by_another())
-    return false;
+  if (!no_alarm(Reaction::stop_on_path)) return false;
+  for (const Axis& a : c_.axes)
+    if ((mask >> a.index() & 1u) != 0 && !no_program_of(a.config().process)) return false;
+  if (!no_homing() || !not_held_by_another()) return false;
   for (const Axis& a : c_.axes) {
     if ((mask >> a.index() & 1u) == 0) continue;
     if (named && a.config().homing.method == axis::HomingMethod::none)
@@ -302,7 +310,8 @@ bool Decision::jog() noexcept {
   const double longest = config.travel_limited ? config.travel_max - config.travel_min : kLargestCoordinate;
   if (!continuous && std::abs(r_.value) > longest)
     return refuse(Refusal::jog_range, r_.axis, r_.value, longest);
-  if (!no_alarm(Reaction::stop_on_path) || !no_program() || !no_homing() || !not_held_by_another())
+  if (!no_alarm(Reaction::stop_on_path) || !no_program_of(config.process) || !no_homing() ||
+      !not_held_by_another())
     return false;
   if (!ready(a) || !free(a)) return false;
   const bool forward = r_.value > 0.0;
@@ -429,8 +438,8 @@ bool Decision::zero() noexcept {
   if (!axis_known()) return false;
   if (std::abs(r_.value) > kLargestCoordinate)
     return refuse(Refusal::zero_range, r_.axis, r_.value, kLargestCoordinate);
-  if (!no_program()) return false;
   const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
+  if (!no_program_of(a.config().process)) return false;
   if (!free(a)) return false;
   if (!a.homed()) return refuse(Refusal::not_homed, r_.axis);
   return !a.moving() || refuse(Refusal::axis_moves, r_.axis);
@@ -440,7 +449,7 @@ bool Decision::mode() noexcept {
   const bool valid =
       r_.value >= 0.0 && r_.value <= static_cast<double>(Mode::home) && r_.value == std::floor(r_.value);
   if (!valid) return refuse(Refusal::bad_value, -1, r_.value, static_cast<double>(Mode::home));
-  return no_program() && not_held_by_another();
+  return no_program_of(r_.process) && not_held_by_another();
 }
 
 /// A request that brings its mode along is one decision: what would refuse the mode refuses the request.
@@ -449,7 +458,7 @@ bool Decision::mode_of_request() noexcept {
   const bool possible = kWithMode.has(r_.kind) && r_.mode <= static_cast<int>(Mode::home);
   if (!possible) return refuse(Refusal::bad_value, -1, r_.mode, static_cast<double>(Mode::home));
   const bool same = c_.image->processes[static_cast<std::size_t>(r_.process)].mode == mode_in_force();
-  return same || runs_on() || (no_program() && not_held_by_another());
+  return same || runs_on() || (no_program_of(r_.process) && not_held_by_another());
 }
 
 /// A program that is stepped through may be started to run to its end.
@@ -480,7 +489,7 @@ bool Decision::start() noexcept {
   if (m >= Mode::manual) return refuse(Refusal::wrong_mode, -1, static_cast<double>(m));
   if (!no_alarm(Reaction::stop_at_block_end) || !no_homing() || !not_held_by_another()) return false;
   for (const Axis& a : c_.axes) {
-    if (a.config().auxiliary) continue;
+    if (!of_process(a)) continue;
     if (!a.homed()) return refuse(Refusal::not_homed, a.index());
     // A program knows no slow way off a switch: that is jogging's.
     if (a.on_limit_plus() || a.on_limit_minus())
@@ -498,8 +507,11 @@ bool Decision::resume() noexcept {
   if (s == ProcessState::running) return refuse(Refusal::program_not_held, -1, r_.process);
   // Behind an open door nothing is begun that its closing would let go.
   for (const Axis& a : c_.axes)
-    if (!a.config().auxiliary && !feed_enabled(a)) return false;
-  return no_alarm(Reaction::stop_at_block_end) && no_homing() && not_held_by_another() && all_at_rest(false);
+    if (of_process(a) && !feed_enabled(a)) return false;
+  if (!no_alarm(Reaction::stop_at_block_end) || !no_homing() || !not_held_by_another()) return false;
+  for (const Axis& a : c_.axes)
+    if (of_process(a) && a.moving()) return refuse(Refusal::axis_moves, a.index());
+  return true;
 }
 
 /// The chain and what is made of it are shown as they are, whoever asks.
@@ -511,7 +523,7 @@ bool Decision::not_of_emergency_stop(const image::Place& place) noexcept {
 /// Whoever puts a guard out of force does it where nothing moves, as whoever would move would need it.
 bool Decision::may_force(const image::Place& place) noexcept {
   if (!guards_motion(place, c_.axes) || withdraws(place, r_.value, c_.axes)) return true;
-  return no_program() && no_homing() && not_held_by_another() && all_at_rest(true);
+  return no_program() && no_homing() && not_held_by_another() && all_at_rest();
 }
 
 bool Decision::place(bool write) noexcept {

@@ -7,6 +7,9 @@ namespace servogate::channel::texts {
 inline constexpr text::Entry kNotDriven{"channel.not-driven",
                                         "the command '{0}' cannot be driven by this version",
                                         "команда «{0}» в этой версии не исполняется приводами"};
+inline constexpr text::Entry kForeignAxis{
+    "channel.foreign-axis", "{0} belongs to another process: its programs move it",
+    "ось {0} принадлежит другому процессу: её перемещают его программы"};
 inline constexpr text::Entry kCannotDrive{"channel.cannot-drive", "this element cannot be driven: {0}",
                                           "этот элемент нельзя отработать: {0}"};
 
