@@ -83,6 +83,12 @@ std::string say(const text::Entry& entry, const std::vector<std::string>& argume
   return text::render(entry, arguments, text::user_language());
 }
 
+/// A sentence that the page can show in either language.
+std::string twice(const text::Entry& entry, const std::vector<std::string>& arguments) {
+  return text::both(text::render(entry, arguments, text::Language::english),
+                    text::render(entry, arguments, text::Language::russian));
+}
+
 int code_of(OperatorScript::Outcome outcome) {
   return outcome == OperatorScript::Outcome::finished  ? kDone
          : outcome == OperatorScript::Outcome::stopped ? kStopped
@@ -109,6 +115,7 @@ class Run {
   void take_answers(OperatorScript& script);
   void prompt(const OperatorScript& script);
   void note_missing(const OperatorScript& script);
+  std::vector<MissingCondition> missing_in_both() const;
   double patience() const;
   void follow(const image::ProcessImage& image);
   void progress(const image::ProcessImage& image);
@@ -255,7 +262,20 @@ void Run::note_missing(const OperatorScript& script) {
   missing_noted_ = true;
   const bool refused = script.outcome() == OperatorScript::Outcome::refused;
   if (refused || (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()))
-    missing_ = missing_for_power(*control_, machine_->image(), machine_->alarms(), text::user_language());
+    missing_ = missing_in_both();
+}
+
+std::vector<MissingCondition> Run::missing_in_both() const {
+  const auto in = [&](text::Language language) {
+    return missing_for_power(*control_, machine_->image(), machine_->alarms(), language);
+  };
+  std::vector<MissingCondition> out = in(text::Language::english);
+  const std::vector<MissingCondition> russian = in(text::Language::russian);
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    out[n].text = text::both(out[n].text, russian[n].text);
+    out[n].remedy = text::both(out[n].remedy, russian[n].remedy);
+  }
+  return out;
 }
 
 bool Run::loop(OperatorScript& script) {
@@ -332,14 +352,16 @@ int Run::finish(const OperatorScript& script, Session& session,
   report.stopped = script.outcome() == OperatorScript::Outcome::stopped;
   report.findings = wrong_;
   if (script.outcome() == OperatorScript::Outcome::waited) {
-    const WaitWords w =
-        wait_words(*control_, control_->cycle().image(), 0, script.given_up(), text::user_language());
+    const auto words = [&](text::Language language) {
+      return wait_words(*control_, control_->cycle().image(), 0, script.given_up(), language);
+    };
+    const WaitWords w = words(text::Language::english), russian = words(text::Language::russian);
     const image::WaitReason reason = script.given_up().reason;
     const bool for_operator =
         reason == image::WaitReason::program_stop || reason == image::WaitReason::optional_stop;
     report.wait = {std::string(w.reason),
-                   w.text,
-                   for_operator ? say(kNoOperator, {}) : w.remedy,
+                   text::both(w.text, russian.text),
+                   for_operator ? twice(kNoOperator, {}) : text::both(w.remedy, russian.remedy),
                    w.file,
                    w.line,
                    patience()};
@@ -375,18 +397,21 @@ int Run::finish(const OperatorScript& script, Session& session,
 std::optional<report::ErrorEntry> Run::not_begun(const OperatorScript& script) const {
   report::ErrorEntry error;
   if (script.outcome() == OperatorScript::Outcome::refused) {
+    const auto why = [&](text::Language language) {
+      return cycle::render(script.refusal(), loaded_.machine.letters(), language,
+                           loaded_.machine.unit_words());
+    };
     error = {std::string(kRefused.id),
-             say(kRefused, {cycle::render(script.refusal(), loaded_.machine.letters(), text::user_language(),
-                                          loaded_.machine.unit_words())})};
+             twice(kRefused, {text::both(why(text::Language::english), why(text::Language::russian))})};
   } else if (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()) {
     std::string axes;
     for (const std::string& a : script.waiting_for()) axes += (axes.empty() ? "" : ", ") + a;
-    error = {std::string(kNotReady.id), say(kNotReady, {axes})};
+    error = {std::string(kNotReady.id), twice(kNotReady, {axes})};
   } else {
     return std::nullopt;
   }
   for (const MissingCondition& m : missing_)
-    if (m.reason != "alarm") error.text += "\n" + say(kMissing, {m.text, m.remedy});
+    if (m.reason != "alarm") error.text += "\n" + twice(kMissing, {m.text, m.remedy});
   return error;
 }
 
@@ -395,13 +420,13 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
     std::fprintf(
         stderr, "%s\n%s%s\n",
         say(a.consequence ? kConsequence : kAlarmLine, {std::to_string(a.record.number), a.text}).c_str(),
-        a.consequence ? "    " : "  ", a.remedy.c_str());
+        a.consequence ? "    " : "  ", text::in_language(a.remedy).c_str());
   if (report.wait) {
     complain(kGaveUp, {report.wait->text, text::number(report.wait->for_s, 1)});
-    std::fprintf(stderr, "  %s\n", report.wait->remedy.c_str());
+    std::fprintf(stderr, "  %s\n", text::in_language(report.wait->remedy).c_str());
   }
   if (report.error) {
-    const std::string& words = report.error->text;
+    const std::string words = text::in_language(report.error->text);
     const std::size_t end = std::min(words.find('\n'), words.size());
     std::fprintf(stderr, "servogate: %s [%s]%s\n", words.substr(0, end).c_str(), report.error->code.c_str(),
                  words.substr(end).c_str());

@@ -4,16 +4,17 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cerrno>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <string_view>
 
 #include "firmware_if/text/finding.hpp"
 #include "firmware_if/text/system_words.hpp"
 #include "gateway/report/page/page_files.hpp"
+#include "gateway/report/record/column.hpp"
 #include "gateway/report/report_json.hpp"
 
 namespace servogate::report {
@@ -22,18 +23,21 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::size_t kMaxListing = 20'000;
-constexpr std::size_t kSeriesBudget = 3'000'000;  ///< bytes of base64 for all series
+constexpr int kPageSchema = 2;  ///< of the data in a page, which another page may be laid over
+constexpr std::size_t kMaxListing = 200'000;
+constexpr double kPathQuantum = 1e-5;  ///< mm
+/// A browser refuses whatever would come from elsewhere.
+constexpr const char* kPolicy =
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
 
-std::string base64(const unsigned char* data, std::size_t size) {
+std::string base64(std::string_view data) {
   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto byte = [&](std::size_t i) { return std::uint32_t{static_cast<unsigned char>(data[i])}; };
   std::string out;
-  out.reserve((size + 2) / 3 * 4);
-  for (std::size_t i = 0; i < size; i += 3) {
-    const std::size_t rest = std::min<std::size_t>(size - i, 3);
-    std::uint32_t v = static_cast<std::uint32_t>(data[i]) << 16;
-    if (rest > 1) v |= static_cast<std::uint32_t>(data[i + 1]) << 8;
-    if (rest > 2) v |= data[i + 2];
+  out.reserve((data.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < data.size(); i += 3) {
+    const std::size_t rest = std::min<std::size_t>(data.size() - i, 3);
+    const std::uint32_t v = byte(i) << 16 | (rest > 1 ? byte(i + 1) << 8 : 0) | (rest > 2 ? byte(i + 2) : 0);
     out += kDigits[v >> 18];
     out += kDigits[v >> 12 & 63];
     out += rest > 1 ? kDigits[v >> 6 & 63] : '=';
@@ -42,70 +46,71 @@ std::string base64(const unsigned char* data, std::size_t size) {
   return out;
 }
 
-/// Little-endian 32-bit values as base64, whatever this computer's own order is.
-template <typename T>
-std::string packed(const std::vector<T>& values) {
-  static_assert(sizeof(T) == 4);
-  std::vector<unsigned char> bytes;
-  bytes.reserve(4 * values.size());
-  for (const T v : values) {
-    const auto bits = std::bit_cast<std::uint32_t>(v);
-    for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<unsigned char>(bits >> shift));
-  }
-  return base64(bytes.data(), bytes.size());
+Json to_json(const Column& c) {
+  return {{"n", c.count}, {"q", c.quantum}, {"o", c.order}, {"d", base64(c.bytes)}};
 }
 
-/// Merges `factor` neighbouring buckets into one.
-template <typename T, typename Pick>
-std::vector<T> merged(const std::vector<T>& in, std::size_t factor, Pick pick) {
-  if (factor == 1) return in;
-  std::vector<T> out;
-  for (std::size_t n = 0; n < in.size(); n += factor) {
-    T v = in[n];
-    for (std::size_t k = n + 1; k < std::min(n + factor, in.size()); ++k) v = pick(v, in[k]);
-    out.push_back(v);
-  }
-  return out;
+template <typename Values>
+Json column(const Values& values, double quantum, int order = 1) {
+  return to_json(pack(std::vector<double>(values.begin(), values.end()), quantum, order));
 }
 
-std::size_t merge_factor(const RecordedRun& run) {
-  std::size_t bytes = run.line.size() * 16 / 3;
-  for (const Series& s : run.series) bytes += (s.low == s.high ? 1 : 2) * s.low.size() * 16 / 3;
-  std::size_t factor = 1;
-  // Merged buckets have two edges, so a run of single values first doubles before it shrinks.
-  while (bytes / factor * (factor > 1 ? 2 : 1) > kSeriesBudget) ++factor;
-  return factor;
+/// Finer than a screen shows, in about three bytes a value.
+double quantum_of(const Series& s) {
+  float most = 0;
+  for (const auto* edge : {&s.low, &s.high})
+    for (const float v : *edge) most = std::max(most, std::fabs(v));
+  return most > 0 ? std::ldexp(double{most}, -20) : 1.0;
 }
 
-Json series_json(const RecordedRun& run, std::size_t factor) {
+Json series_json(const RecordedRun& run) {
   Json out = Json::array();
   for (const Series& s : run.series) {
-    const auto low = merged(s.low, factor, [](float a, float b) { return std::min(a, b); });
-    const auto high = merged(s.high, factor, [](float a, float b) { return std::max(a, b); });
-    Json one{{"name", s.name}, {"unit", s.unit}, {"low", packed(low)}};
-    if (high != low) one["high"] = packed(high);
+    const double quantum = quantum_of(s);
+    Json one{{"name", s.name}, {"unit", s.unit}, {"low", column(s.low, quantum)}};
+    if (s.high != s.low) one["high"] = column(s.high, quantum);
     out.push_back(std::move(one));
   }
   return out;
 }
 
-Json path_json(const PathLine& path) {
-  return {{"x", packed(path.x)},
-          {"y", packed(path.y)},
-          {"z", packed(path.z)},
-          {"t", packed(path.t)},
-          {"speed", packed(path.speed)},
-          {"line", packed(path.line)},
-          {"rapid", base64(path.rapid.data(), path.rapid.size())}};
+Json path_json(const PathLine& path, double moment_s) {
+  return {{"x", column(path.x, kPathQuantum)}, {"y", column(path.y, kPathQuantum)},
+          {"z", column(path.z, kPathQuantum)}, {"t", column(path.t, moment_s)},
+          {"speed", column(path.speed, 1e-3)}, {"deviation", column(path.deviation, 1e-6)},
+          {"line", column(path.line, 1)},      {"tool", column(path.tool, 1)},
+          {"rapid", column(path.rapid, 1)}};
+}
+
+Json every_json(const RecordedRun& run) {
+  Json out{{"channels", Json::array()}, {"stretches", Json::array()}};
+  for (const Channel& c : run.channels) out["channels"].push_back(c.name);
+  for (const CycleStretch& s : run.stretches) {
+    Json columns = Json::array();
+    for (const Column& c : s.columns) columns.push_back(to_json(c));
+    out["stretches"].push_back(
+        {{"first", s.first - run.first_cycle}, {"lead", s.lead}, {"columns", std::move(columns)}});
+  }
+  return out;
+}
+
+Json lines_json(const RecordedRun& run) {
+  std::vector<double> number, first, total;
+  for (const auto& [line, time] : run.line_times) {
+    number.push_back(line);
+    first.push_back(time.first_s);
+    total.push_back(time.total_s);
+  }
+  return {{"number", column(number, 1)}, {"first", column(first, 1e-5)}, {"total", column(total, 1e-5)}};
 }
 
 Json run_json(const RecordedRun& run) {
-  const std::size_t factor = merge_factor(run);
+  const double moment_s = run.period_s / 8;  // times are those of cycles
   Json out;
   out["period"] = run.period_s;
   out["start"] = run.start_s;
   out["duration"] = run.duration_s;
-  out["bucket"] = run.bucket_s * static_cast<double>(factor);
+  out["bucket"] = run.bucket_s;
   out["tolerance"] = run.path_tolerance;
   out["axes"] = run.axes;
   out["view"] = Json::array();
@@ -113,31 +118,31 @@ Json run_json(const RecordedRun& run) {
     out["view"].push_back(axis < 0 || axis >= static_cast<int>(run.axes.size())
                               ? std::string()
                               : run.axes[static_cast<std::size_t>(axis)]);
-  out["series"] = series_json(run, factor);
-  out["line"] = packed(merged(run.line, factor, [](std::int32_t, std::int32_t later) { return later; }));
-  out["path"] = path_json(run.path);
+  out["series"] = series_json(run);
+  out["every"] = every_json(run);
+  out["line"] = column(run.line, 1);
+  out["path"] = path_json(run.path, moment_s);
   out["signals"] = Json::array();
   for (const SignalTrack& s : run.signals)
     out["signals"].push_back({{"name", s.name},
                               {"initial", s.initial},
-                              {"toggles", packed(s.toggles)},
+                              {"toggles", column(s.toggles, moment_s)},
                               {"truncated", s.truncated_s}});
-  out["lines"] = Json::array();
-  for (const auto& [line, time] : run.line_times) out["lines"].push_back({line, time.first_s, time.total_s});
+  out["lines"] = lines_json(run);
   return out;
 }
 
-Json listing(std::string_view text) {
-  Json out = Json::array();
-  while (!text.empty() && out.size() < kMaxListing) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    out.push_back(std::string(line));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  if (!text.empty()) out.push_back("…");
-  return out;
+std::string valid_utf8(const std::string& text) {
+  const std::string quoted = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return Json::parse(quoted).get<std::string>();
+}
+
+/// The first kMaxListing lines.
+std::string listing(std::string_view text) {
+  std::size_t end = 0;
+  for (std::size_t n = 0; n < kMaxListing && end < text.size(); ++n)
+    end = std::min(text.find('\n', end), text.size() - 1) + 1;
+  return valid_utf8(std::string(text.substr(0, end))) + (end < text.size() ? "…" : "");
 }
 
 std::string escaped(std::string_view text) {
@@ -171,71 +176,40 @@ std::string embedded(const Json& data) {
   return out;
 }
 
-std::string valid_utf8(const std::string& text) {
-  const std::string quoted = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-  return Json::parse(quoted).get<std::string>();
-}
-
-constexpr std::string_view kBody = R"html(
-<header><div class="in"><h1 id="title"></h1><span id="state" class="badge"></span><span class="grow"></span>
-<span class="noprint"><button data-lang="en">EN</button> <button data-lang="ru">RU</button> <button id="theme" data-t="theme"></button></span><span class="sub" id="sub"></span></div></header>
-<main>
-<noscript><section>This page draws its data with JavaScript. Для показа данных нужен JavaScript.</section></noscript>
-<p class="verdict" id="verdict"></p>
-<div class="table" id="findings"></div>
-<div class="cards" id="cards"></div>
-<p class="warn" id="forced"></p>
-<p class="warn" id="dropped"></p>
-<section><div class="head"><h2 data-t="limits"></h2></div><div class="axes" id="axes"></div></section>
-<section id="path-section"><div class="head"><h2 data-t="path"></h2><span class="grow"></span><label class="noprint"><input type="checkbox" id="rapids" checked><span data-t="rapids"></span></label>
-<label class="noprint"><input type="checkbox" id="whole-path"><span data-t="wholePath"></span></label>
-<span class="speed-key" id="speed-key"></span></div>
-<div class="views"><div class="pane"><div class="head"><h3 data-t="plan"></h3><span class="grow"></span><button class="noprint" id="fit-plan" data-t="fit"></button></div>
-<div class="view" id="plan" tabindex="0"></div><p class="hint" data-t="hintPlan"></p></div>
-<div class="pane"><div class="head"><h3 data-t="view3"></h3><span class="grow"></span><button class="noprint" id="top-space" data-t="top"></button><button class="noprint" id="fit-space" data-t="iso"></button></div>
-<div class="view" id="space" tabindex="0"></div><p class="hint" data-t="hint3"></p></div></div>
-<p class="extents" id="extents"></p><div class="split" id="split"></div><div class="keys" id="split-key"></div></section>
-<section id="motion-section"><div class="head"><h2 data-t="motion"></h2><span id="axis-switches"></span><span class="grow"></span><button class="noprint" id="whole" data-t="all"></button></div>
-<div id="charts"></div><p class="hint" data-t="hintTime"></p></section>
-<section id="signal-section"><div class="head"><h2 data-t="signals"></h2><span class="grow"></span><label class="noprint"><input type="checkbox" id="constant"><span data-t="constant"></span></label></div>
-<p class="quiet" id="no-signals" data-t="noSignals"></p><div id="signals"></div><div id="lanes" tabindex="0"></div><p class="steady" id="steady"></p></section>
-<section id="alarm-section"><div class="head"><h2 data-t="alarms"></h2></div><div class="table" id="alarms"></div></section>
-<section><div class="head"><h2 data-t="timing"></h2></div><div class="timing" id="timing"></div></section>
-<section id="program"><div class="head"><h2 data-t="program"></h2><span class="note" id="program-name"></span><span class="grow"></span><label class="noprint"><input type="checkbox" id="follow" checked><span data-t="follow"></span></label></div>
-<div class="listing" id="listing"></div></section>
-<section><div class="head"><h2 data-t="provenance"></h2></div><div class="table" id="provenance"></div></section>
-</main>
-<footer class="transport" id="transport"><button id="play">▶</button><select id="pace"><option value="0.1">0.1×</option><option value="1" selected>1×</option><option value="5">5×</option><option value="20">20×</option></select>
-<input type="range" id="slider"><span id="now"></span><span id="readout"></span></footer>
-)html";
-
 }  // namespace
 
 std::string to_html(const Report& report, const RecordedRun& run, const HtmlOptions& options) {
+  const std::string language = options.language == text::Language::russian ? "ru" : "en";
   Json data;
+  data["schema"] = kPageSchema;
   data["title"] = options.title;
-  data["language"] = options.language == text::Language::russian ? "ru" : "en";
-  data["program"] = {{"name", options.program_name}, {"lines", listing(options.program_text)}};
-  data["report"] = json_of(report);
+  data["language"] = language;
+  data["program"] = {{"name", options.program_name},
+                     {"text", base64(deflated(listing(options.program_text)))}};
+  data["report"] = {{"en", json_of(report, text::Language::english)},
+                    {"ru", json_of(report, text::Language::russian)}};
   data["run"] = run_json(run);
   const std::string title = escaped(valid_utf8(options.title.empty() ? "servogate" : options.title));
-  const std::string language = options.language == text::Language::russian ? "ru" : "en";
   std::string out = "<!DOCTYPE html>\n<html lang=\"" + language + "\"><head><meta charset=\"utf-8\">" +
+                    "<meta http-equiv=\"Content-Security-Policy\" content=\"" + kPolicy + "\">" +
                     "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">" +
                     "<meta name=\"generator\" content=\"servogate\">\n<title>" + title +
                     "</title>\n<style>\n";
   out += kPageStyle;
-  out += "</style></head>\n<body>";
-  std::string body(kBody);
+  out += "</style></head>\n<body>\n";
+  std::string body(kPageBody);
   const auto put = [&](std::string_view before, const std::string& text) {
     const std::size_t at = body.find(before);
     body.insert(at + before.size(), text);
   };
   put("id=\"title\">", title);
   put("id=\"program-name\">", escaped(valid_utf8(options.program_name)));
+  put("id=\"notices\">", escaped(kPageNotices));
   out += body;
   out += "<script type=\"application/json\" id=\"data\">" + embedded(data) +
-         "</script>\n<script>\n\"use strict\";(() => {\n";
+         "</script>\n<script id=\"libraries\">\n";
+  out += kPageLibraries;
+  out += "</script>\n<script id=\"page\">\n\"use strict\";(async () => {\n";
   out += kPageScript;
   out += "})();\n</script>\n</body></html>\n";
   return out;

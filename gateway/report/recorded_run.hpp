@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/report/record/every_cycle.hpp"
 #include "gateway/report/trace.hpp"
 
 namespace servogate::report {
@@ -28,6 +29,10 @@ struct PathLine {
   /// The stretch that ends at this vertex: 0 feed, 1 rapid or motion outside the program (homing, jog), 2 a
   /// jump of the coordinates (homing, drives off) that is no motion.
   std::vector<std::uint8_t> rapid;
+  /// Largest following error across the direction of motion on that stretch, mm; along it the tool is late,
+  /// not off the path.
+  std::vector<float> deviation;
+  std::vector<std::int32_t> tool;
 };
 
 /// On/off signal: the state before cycle 0, and the times at which it turned over.
@@ -47,7 +52,8 @@ struct LineTime {
 /// A run in bounded memory, however long: what the HTML report draws.
 struct RecordedRun {
   double period_s = 0.001;
-  double start_s = 0.0;
+  std::int64_t first_cycle = 0;
+  double start_s = 0.0;  ///< of the first cycle
   double duration_s = 0.0;
   double bucket_s = 0.001;                   ///< length of a bucket of every series
   std::vector<std::string> axes;             ///< letters
@@ -56,16 +62,21 @@ struct RecordedRun {
   std::vector<std::int32_t> line;            ///< line in motion at the end of each bucket
   PathLine path;
   double path_tolerance = 0.0;  ///< mm
+  /// Every cycle, the whole run or its newest part and what is around alarms: X.position, X.error, X.derived
+  /// (how many derivatives of the position are valid, 0 to 3), path.speed, spindle.cmd, spindle.act ...
+  std::vector<Channel> channels;
+  std::vector<CycleStretch> stretches;
   std::vector<SignalTrack> signals;
   std::map<std::int32_t, LineTime> line_times;
 };
 
 /// How much a RunRecorder keeps.
 struct RunRecorderOptions {
-  std::size_t max_buckets = 12000;   ///< then pairs of buckets are merged
-  std::size_t max_vertices = 40000;  ///< of the path; then the tolerance is doubled
-  std::size_t max_toggles = 4000;    ///< per signal
-  double path_tolerance = 0.001;     ///< mm, to start with
+  std::size_t max_buckets = 6000;      ///< then pairs of buckets are merged
+  std::size_t max_vertices = 200'000;  ///< of the path; then the tolerance is doubled
+  std::size_t max_toggles = 4000;      ///< per signal
+  std::size_t max_bytes = 3'000'000;   ///< of every cycle, packed; then the oldest stretches go
+  double path_tolerance = 0.001;       ///< mm, to start with
   std::array<int, 3> view_axes{0, 1,
                                2};      ///< plan: x to the right, y up; a lathe draws Z to the right and X up
   std::vector<std::string> axis_units;  ///< "mm" or "deg" per axis; missing: "mm"

@@ -11,6 +11,7 @@
 namespace servogate::report {
 
 using Json = nlohmann::ordered_json;
+using text::Language;
 
 namespace {
 
@@ -76,19 +77,22 @@ Json to_json(const Provenance& p) {
   return out;
 }
 
-Json to_json(const text::Finding& f) {
+Json to_json(const text::Finding& f, Language language) {
   return {{"file", f.file},
           {"line", f.line},
           {"column", f.column},
           {"severity", f.severity == text::Severity::error ? "error" : "warning"},
           {"code", f.entry != nullptr ? std::string(f.entry->id) : std::string()},
-          {"text",
-           f.entry != nullptr ? text::render(*f.entry, f.arguments, text::user_language()) : std::string()}};
+          {"text", f.entry != nullptr ? text::render(*f.entry, f.arguments, language) : std::string()}};
 }
 
-Json to_json(const WaitEntry& w) {
-  return {{"reason", w.reason}, {"text", w.text}, {"remedy", w.remedy},
-          {"file", w.file},     {"line", w.line}, {"for_s", w.for_s}};
+Json to_json(const WaitEntry& w, Language language) {
+  return {{"reason", w.reason},
+          {"text", text::in_language(w.text, language)},
+          {"remedy", text::in_language(w.remedy, language)},
+          {"file", w.file},
+          {"line", w.line},
+          {"for_s", w.for_s}};
 }
 
 Json to_json(const Verdict& v) {
@@ -97,13 +101,13 @@ Json to_json(const Verdict& v) {
   return out;
 }
 
-Json to_json(const AlarmEntry& a) {
+Json to_json(const AlarmEntry& a, Language language) {
   const image::AlarmRecord& r = a.record;
   Json out;
   out["number"] = r.number;
   out["id"] = a.id;
-  out["text"] = a.text;
-  out["remedy"] = a.remedy;
+  out["text"] = text::in_language(a.text, language);
+  out["remedy"] = text::in_language(a.remedy, language);
   out["sequence"] = r.sequence;
   out["first_fault"] = r.first_fault;
   out["reaction"] =
@@ -121,7 +125,7 @@ Json to_json(const AlarmEntry& a) {
   if (r.error_code != 0) out["error_code"] = hex(r.error_code, 4);
   if (r.line > 0) out["line"] = r.line;
   if (r.block >= 0) out["block"] = r.block;
-  if (a.finding) out["finding"] = to_json(*a.finding);
+  if (a.finding) out["finding"] = to_json(*a.finding, language);
   if (!a.finding && (r.limit != 0.0 || r.value != 0.0)) {
     out["limit"] = r.limit;
     out["value"] = r.value;
@@ -131,6 +135,7 @@ Json to_json(const AlarmEntry& a) {
 
 Json to_json(const AxisReport& a) {
   Json out{{"unit", a.unit},
+           {"diameter", a.diameter},
            {"max_velocity", a.max_velocity},
            {"max_acceleration", a.max_acceleration},
            {"max_jerk", a.max_jerk},
@@ -172,36 +177,38 @@ const AlarmEntry* stopping(const Report& r) {
   return found != r.alarms.end() ? &*found : nullptr;
 }
 
-std::string place_and_words(const text::Finding& f) {
-  const std::string words =
-      f.entry != nullptr ? text::render(*f.entry, f.arguments, text::user_language()) : "";
+std::string place_and_words(const text::Finding& f, Language language) {
+  const std::string words = f.entry != nullptr ? text::render(*f.entry, f.arguments, language) : "";
   return f.line > 0 ? f.file + ":" + std::to_string(f.line) + ": " + words : words;
 }
 
 }  // namespace
 
-Verdict verdict_of(const Report& r) {
-  const auto say = [](const text::Entry& entry, std::vector<std::string> arguments) {
-    return text::render(entry, arguments, text::user_language());
+Verdict verdict_of(const Report& r, Language language) {
+  const auto say = [&](const text::Entry& entry, std::vector<std::string> arguments) {
+    return text::render(entry, arguments, language);
   };
+  const auto remedy = [&](const std::string& words) { return text::in_language(words, language); };
   const std::string blocks = std::to_string(r.blocks), time = text::number(r.time_s, 3);
   if (r.finished && !r.alarms.empty())
     return {"finished", say(kFinishedWith, {std::to_string(r.alarms.size()), r.alarms.front().text}),
-            r.alarms.front().remedy};
+            remedy(r.alarms.front().remedy)};
   if (r.finished) return {"finished", say(kFinished, {blocks, time}), {}};
-  if (!r.findings.empty()) return {"refused", say(kRefused, {place_and_words(r.findings.front())}), {}};
+  if (!r.findings.empty())
+    return {"refused", say(kRefused, {place_and_words(r.findings.front(), language)}), {}};
   if (r.error) return {"not_begun", say(kNotBegun, {r.error->text}), {}};
-  if (r.wait) return {"waited", say(kWaited, {text::number(r.wait->for_s, 1), r.wait->text}), r.wait->remedy};
+  if (r.wait)
+    return {"waited", say(kWaited, {text::number(r.wait->for_s, 1), r.wait->text}), remedy(r.wait->remedy)};
   if (const AlarmEntry* a = stopping(r); a != nullptr)
-    return {"alarm", say(kByAlarm, {std::to_string(a->record.number), a->text}), a->remedy};
+    return {"alarm", say(kByAlarm, {std::to_string(a->record.number), a->text}), remedy(a->remedy)};
   if (r.stopped) return {"stopped", say(kStopped, {blocks}), {}};
   return {"unfinished", say(kUnfinished, {blocks, time}), {}};
 }
 
-Json json_of(const Report& r) {
+Json json_of(const Report& r, Language language) {
   Json out;
   out["schema"] = kReportSchema;
-  out["verdict"] = to_json(verdict_of(r));
+  out["verdict"] = to_json(verdict_of(r, language));
   out["provenance"] = to_json(r.provenance);
   out["finished"] = r.finished;
   out["time_s"] = r.time_s;
@@ -210,11 +217,11 @@ Json json_of(const Report& r) {
   out["starved"] = r.starved;
   out["blocks"] = r.blocks;
   if (r.blocks_expected > 0) out["blocks_expected"] = r.blocks_expected;
-  if (r.wait) out["wait"] = to_json(*r.wait);
-  if (r.error) out["error"] = {{"code", r.error->code}, {"text", r.error->text}};
-  for (const text::Finding& f : r.findings) out["findings"].push_back(to_json(f));
+  if (r.wait) out["wait"] = to_json(*r.wait, language);
+  if (r.error) out["error"] = {{"code", r.error->code}, {"text", text::in_language(r.error->text, language)}};
+  for (const text::Finding& f : r.findings) out["findings"].push_back(to_json(f, language));
   out["alarms"] = Json::array();
-  for (const AlarmEntry& a : r.alarms) out["alarms"].push_back(to_json(a));
+  for (const AlarmEntry& a : r.alarms) out["alarms"].push_back(to_json(a, language));
   for (const ForceEntry& f : r.forces) out["forces"].push_back({{"name", f.name}, {"value", f.value}});
   out["axes"] = Json::object();
   for (const AxisReport& a : r.axes) out["axes"][a.letter] = to_json(a);
@@ -231,7 +238,7 @@ Json json_of(const Report& r) {
 }
 
 std::string to_json(const Report& report) {
-  return json_of(report).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_of(report, text::user_language()).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Quantiles quantiles_us(const Histogram& h) {

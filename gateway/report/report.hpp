@@ -53,7 +53,7 @@ struct Provenance {
   std::vector<std::string> command_line;
 };
 
-/// An alarm with the words of the one table, already in the reader's language.
+/// An alarm with the words of the one table; a run's report has them in both languages (text::both()).
 struct AlarmEntry {
   image::AlarmRecord record;
   std::string id;
@@ -88,6 +88,7 @@ struct ForceEntry {
 struct AxisReport {
   std::string letter;
   std::string unit = "mm";  ///< "mm" or "deg"
+  bool diameter = false;    ///< people read and write diameters; all values here are of the radius
   double max_velocity = 0.0, max_acceleration = 0.0, max_jerk = 0.0, max_following_error = 0.0;
   double limit_velocity = 0.0, limit_acceleration = 0.0, limit_jerk = 0.0, limit_following_error = 0.0;
   double travel_min = 0.0, travel_max = 0.0;  ///< both 0: without end
@@ -166,9 +167,10 @@ struct Verdict {
   std::string text;
   std::string remedy;  ///< empty: none is known
 };
-Verdict verdict_of(const Report& report);
+Verdict verdict_of(const Report& report, text::Language language = text::user_language());
 
-/// The report as JSON, `schema` first, indented, ended by a newline. Numbers that are not finite become null.
+/// The report as JSON in the user's language, `schema` first, indented, ended by a newline. Numbers that are
+/// not finite become null.
 std::string to_json(const Report& report);
 
 /// SHA-256 as 64 hex digits.

@@ -66,6 +66,7 @@ void AxisStatistics::add(std::int64_t cycle, double period_s, const TraceAxis& a
   if (axis.enabled) max_error_ = std::max(max_error_, std::fabs(axis.following_error));
   const bool continues = known_ > 0 && axis.enabled && cycle == last_cycle_ + 1 && axis.homed == last_homed_;
   if (!continues) known_ = 0;
+  derived_ = known_;
   std::array<double, 3> next{};
   double difference = axis.command - position_;
   for (int order = 0; order < 3 && order < known_; ++order) {

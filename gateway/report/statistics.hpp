@@ -53,9 +53,12 @@ class AxisStatistics {
   double max_following_error() const noexcept { return max_error_; }
   /// Derivatives of the newest cycle, 0 where too few cycles stand behind it: velocity, acceleration, jerk.
   const std::array<double, 3>& derivatives() const noexcept { return now_; }
+  /// How many of them have enough cycles behind them, 0 to 3.
+  int derived() const noexcept { return derived_; }
 
  private:
   int known_ = 0;  ///< how many of position, velocity, acceleration of the last cycle are valid
+  int derived_ = 0;
   std::int64_t last_cycle_ = 0;
   bool last_homed_ = false;
   double position_ = 0.0;

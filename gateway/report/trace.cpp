@@ -17,6 +17,8 @@ void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRo
   row.feed_mm_s = image.processes[0].feed_mm_s;
   row.line = image.processes[0].line;
   row.rapid = image.packets.bit(kRapid);
+  row.tool = image.processes[0].tool;
+  row.alarms = image.alarms_active;
   const std::size_t axes = std::min(layout.axes.size(), row.axes.size());
   for (std::size_t a = 0; a < axes; ++a) {
     const image::AxisImage& from = image.axes[a];

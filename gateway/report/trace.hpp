@@ -48,9 +48,11 @@ struct TraceSpindle {
 struct TraceRow {
   std::int64_t cycle = 0;
   image::Nanoseconds t_ns = 0;
-  double feed_mm_s = 0.0;  ///< speed of the set-point along the path
-  std::int32_t line = 0;   ///< line of the block in motion, 0: none
-  bool rapid = false;      ///< the block in motion is a rapid
+  double feed_mm_s = 0.0;    ///< speed of the set-point along the path
+  std::int32_t line = 0;     ///< line of the block in motion, 0: none
+  bool rapid = false;        ///< the block in motion is a rapid
+  std::int32_t tool = 0;     ///< number of the tool in process 1, 0: none
+  std::uint32_t alarms = 0;  ///< not acknowledged
   std::array<TraceAxis, image::kMaxAxes> axes{};
   std::array<TraceSpindle, image::kMaxSpindles> spindles{};
   std::array<std::uint64_t, kMaxTraceSignals / 64> signals{};  ///< bit n = layout signal n
@@ -58,8 +60,8 @@ struct TraceRow {
   bool signal(std::size_t n) const noexcept { return ((signals[n / 64] >> (n % 64)) & 1u) != 0; }
 };
 
-/// Fills a row from the image as it stands at the end of a cycle (process 1 gives feed, line and rapid).
-/// real-time safe.
+/// Fills a row from the image as it stands at the end of a cycle (process 1 gives feed, line, rapid and
+/// tool). real-time safe.
 void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRow& row) noexcept;
 
 /// Takes rows in order, on the recorder's own thread. Errors are kept, never thrown: a full disk stops a

@@ -132,11 +132,18 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
   r.blocks = image.processes[0].blocks_done;
   r.finished = image.processes[0].state == image::ProcessState::ended;
   r.virtual_speed = wall_s > 0.0 ? r.time_s / wall_s : 0.0;
-  r.alarms = alarm_entries(control_, cycle.alarms().history(), text::user_language());
+  // In both languages: the page has a switch.
+  r.alarms = alarm_entries(control_, cycle.alarms().history(), text::Language::english);
+  const auto russian = alarm_entries(control_, cycle.alarms().history(), text::Language::russian);
+  for (std::size_t n = 0; n < r.alarms.size(); ++n) {
+    r.alarms[n].text = text::both(r.alarms[n].text, russian[n].text);
+    r.alarms[n].remedy = text::both(r.alarms[n].remedy, russian[n].remedy);
+  }
   report::fill_axes(r, layout_, statistics_);
   for (std::size_t a = 0; a < r.axes.size() && a < m.axes.size(); ++a) {
     const machine::AxisConfig& axis = m.axes[a];
     r.axes[a].unit = axis.unit();
+    r.axes[a].diameter = axis.diameter;
     r.axes[a].limit_velocity = axis.max_velocity;
     r.axes[a].limit_acceleration = axis.max_acceleration;
     r.axes[a].limit_jerk = axis.max_jerk;

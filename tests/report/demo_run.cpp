@@ -64,6 +64,8 @@ struct Machine {
     row.t_ns = row.cycle * demo.layout.period_ns;
     row.line = line;
     row.rapid = rapid;
+    row.tool = line <= 9 ? 1 : 2;
+    row.alarms = row.cycle >= 9000 ? 1 : 0;
     double speed2 = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double v = (at[a] - last[a]) / kPeriod;
@@ -152,7 +154,7 @@ Report demo_report(const DemoRun& demo, int alarms) {
     a.travel_min = -300;
     a.travel_max = 300;
   }
-  CycleTimes times({"receive", "plc", "interpolate", "axes", "send"});
+  CycleTimes times({"receive", "logic", "interpolate", "axes", "send"});
   for (int i = 0; i < 2000; ++i) {
     const std::int64_t phases[] = {400 + i % 90, 700, 800, 300, 500 + i % 40};
     times.add(2800 + i % 300, 0, phases);
@@ -179,9 +181,11 @@ Report demo_report(const DemoRun& demo, int alarms) {
     a.record.node = 1;
     a.axis = "X";
     a.id = n == 0 ? "following_error" : "drive_fault";
-    a.text =
-        n == 0 ? "Axis X follows its set-point with too large an error" : "Drive of axis X reports a fault";
-    a.remedy = "Look for a blocked axis; check gains and limits.";
+    a.text = n == 0 ? text::both("Axis X follows its set-point with too large an error",
+                                 "Ось X следует за заданием со слишком большой ошибкой")
+                    : text::both("Drive of axis X reports a fault", "Привод оси X сообщает об отказе");
+    a.remedy = text::both("Look for a blocked axis; check gains and limits.",
+                          "Проверьте, не зажата ли ось; проверьте усиления и пределы.");
     r.alarms.push_back(a);
   }
   return r;

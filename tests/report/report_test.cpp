@@ -60,7 +60,7 @@ TEST(Report, carries_every_field_of_the_contract) {
   EXPECT_EQ(bands[7]["to_us"], 128.0);
   EXPECT_EQ(bands[7]["count"], 3);
   EXPECT_EQ(bands[8]["count"], 1);
-  EXPECT_EQ(j["phases_us"]["plc"]["max"], 0.7);
+  EXPECT_EQ(j["phases_us"]["logic"]["max"], 0.7);
   EXPECT_FALSE(j.contains("lateness_us"));
 }
 

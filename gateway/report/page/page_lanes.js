@@ -1,152 +1,104 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signals as a timing diagram, and the program beside the time that each of its lines took.
+// Signals as a timing diagram: uPlot has the time axis, the zoom and the cursor, this paints the lanes.
+const LANE = 24;
 
-function lanes(box) {
-  const L = layers(box), TOP = 4;
-  let asked = false, LANE = 24;
-  const shown = () => SIGNALS.filter(s => S.constant || s.toggles.length > 0);
-  const rows = () => shown().length + 1;
-  const laneTop = k => TOP + k * LANE;
-  const bottom = () => laneTop(rows());
+/** Parts of the window in which one line is in motion: [line, from, to]. */
+function linesBetween(t0, t1) {
+  const out = [], last = RUN.bucketAt(t1);
+  for (let b = RUN.bucketAt(t0), from = b; b <= last; ++b) {
+    if (b < last && RUN.line[b + 1] === RUN.line[from]) continue;
+    if (RUN.line[from] > 0) out.push([RUN.line[from], RUN.start + from * RUN.bucket, RUN.start + (b + 1) * RUN.bucket]);
+    from = b + 1;
+  }
+  return out;
+}
+/** Parts of the window in which a signal is on: [from, to]. */
+function onBetween(signal, t0, t1) {
+  const out = [];
+  let i = before(signal.toggles, t0), state = RUN.signalAt(signal, t0), from = t0;
+  for (++i; ; ++i) {
+    const to = i >= signal.toggles.length ? t1 : Math.min(signal.toggles[i], t1);
+    if (state && to > from) out.push([from, to]);
+    if (to >= t1) return out;
+    [state, from] = [!state, to];
+  }
+}
 
-  function drawLineLane(g) {
-    const top = laneTop(0) + 4, height = 16, b1 = bucketAt(S.t1);
-    const fills = [css("--lane-a"), css("--lane-b")];
-    let from = bucketAt(S.t0), odd = 0, lastX = -1e9;
-    for (let b = from; b <= b1; ++b) {
-      if (b < b1 && LINE[b + 1] === LINE[from]) continue;
-      const x0 = Math.max(gutter(), xOf(box, RUN.start + from * RUN.bucket)), x1 = Math.min(box.clientWidth - RIGHT, xOf(box, RUN.start + (b + 1) * RUN.bucket));
-      if (LINE[from] > 0) {
-        g.fillStyle = fills[odd ^= 1];
-        g.fillRect(x0, top, Math.max(x1 - x0 - 0.5, 0.5), height);
-        const label = String(LINE[from]);
-        if (x1 - x0 > 8 + 7 * label.length && x0 > lastX) {
-          g.fillStyle = css("--text");
-          g.textAlign = "center"; g.textBaseline = "middle";
-          g.fillText(label, (x0 + x1) / 2, top + height / 2 + 0.5);
-          lastX = x0;
-        }
-      }
-      from = b + 1;
+function lanes(parent) {
+  const row = timeRow(parent, "lanes"), shown = () => RUN.signals.filter(s => S.constant || s.toggles.length > 0);
+  const height = () => (shown().length + 1) * LANE + 8 + 26;
+  const u = new uPlot(timeOptions(row.plot, height(), true, {series: [{show: false}], axis: {values: (v, at) => at.map(() => ""), grid: {show: false}},
+    draw: [paint, alarmMarks]}), [[0, 1], [null, null]], row.plot);
+  timeInput(u, row.plot);
+
+  function paint(v) {
+    const {ctx, bbox} = v, scale = devicePixelRatio, x = t => clamp(v.valToPos(t, "x", true), bbox.left, bbox.left + bbox.width);
+    const top = k => bbox.top + k * LANE * scale;
+    ctx.save();
+    ctx.font = 11 * scale + "px system-ui,sans-serif";
+    ctx.textAlign = "center";
+    ctx.textBaseline = "middle";
+    let odd = 0;
+    for (const [line, from, to] of linesBetween(S.t0, S.t1)) {
+      const [a, b] = [x(from), x(to)];
+      ctx.fillStyle = css((odd ^= 1) ? "--lane-b" : "--lane-a");
+      ctx.fillRect(a, top(0) + 4 * scale, Math.max(b - a - 0.5, 0.5), 16 * scale);
+      if (b - a < (8 + 7 * String(line).length) * scale) continue;
+      ctx.fillStyle = css("--text");
+      ctx.fillText(String(line), (a + b) / 2, top(0) + 12.5 * scale);
     }
+    ctx.lineWidth = 1.4 * scale;
+    shown().forEach((s, n) => lane(ctx, s, x, top(n + 1) + 5 * scale, top(n + 2) - 5 * scale, bbox.left + bbox.width, scale));
+    ctx.restore();
   }
-  function drawSignal(g, s, k) {
-    const high = laneTop(k) + (compact() ? 18 : 5), low = laneTop(k) + LANE - 5, right = box.clientWidth - RIGHT;
-    let i = before(s.toggles, S.t0), state = signalAt(s, S.t0), x = gutter();
-    const line = new Path2D(), fill = new Path2D();
-    line.moveTo(x, state ? high : low);
-    for (++i; ; ++i) {
-      const end = i >= s.toggles.length || s.toggles[i] > S.t1, to = end ? right : xOf(box, s.toggles[i]);
-      line.lineTo(to, state ? high : low);
-      if (state) fill.rect(x, high, to - x, low - high);
-      if (end) break;
-      state = !state;
-      line.lineTo(to, state ? high : low);
-      x = to;
+  function lane(ctx, s, x, high, low, right, scale) {
+    ctx.strokeStyle = css("--lane-line");
+    ctx.fillStyle = css("--lane-on");
+    ctx.beginPath();
+    ctx.moveTo(x(S.t0), low);
+    for (const [from, to] of onBetween(s, S.t0, S.t1)) {
+      const [a, b] = [x(from), x(to)];
+      ctx.fillRect(a, high, b - a, low - high);
+      for (const [px, py] of [[a, low], [a, high], [b, high], [b, low]]) ctx.lineTo(px, py);
     }
-    g.fillStyle = css("--lane-on");
-    g.fill(fill);
-    g.strokeStyle = css("--lane-line");
-    g.lineWidth = 1.4;
-    g.stroke(line);
-    if (s.truncated >= 0 && s.truncated < S.t1) hatch(g, Math.max(gutter(), xOf(box, s.truncated)), high, right, low);
+    ctx.lineTo(right, low);
+    ctx.stroke();
+    if (s.truncated < 0 || s.truncated >= S.t1) return;
+    // From here on it changed too often to be kept.
+    const from = x(s.truncated);
+    ctx.fillStyle = css("--panel");
+    ctx.fillRect(from, high - 2 * scale, right - from, low - high + 4 * scale);
+    ctx.strokeStyle = css("--faint");
+    ctx.beginPath();
+    for (let at = from; at < right; at += 6 * scale) {
+      ctx.moveTo(at, low);
+      ctx.lineTo(Math.min(at + low - high, right), high);
+    }
+    ctx.stroke();
   }
-  function hatch(g, x0, y0, x1, y1) {
-    g.save();
-    g.fillStyle = css("--panel");
-    g.fillRect(x0, y0 - 2, x1 - x0, y1 - y0 + 4);
-    g.beginPath(); g.rect(x0, y0, x1 - x0, y1 - y0); g.clip();
-    g.strokeStyle = css("--faint");
-    g.beginPath();
-    for (let x = x0 - (y1 - y0); x < x1; x += 6) { g.moveTo(x, y1); g.lineTo(x + (y1 - y0), y0); }
-    g.stroke();
-    g.restore();
-  }
+  const update = inNextFrame(() => draw());
   function draw() {
-    asked = false;
-    LANE = compact() ? 38 : 24;
-    box.style.height = bottom() + 26 + "px";
-    L.resize();
-    const g = L.context("base");
-    for (let k = 1; k < rows(); k += 2) {
-      g.fillStyle = css("--stripe");
-      g.fillRect(0, laneTop(k), box.clientWidth, LANE);
-    }
-    timeGrid(g, box, TOP, bottom(), true);
-    g.save();
-    g.beginPath(); g.rect(gutter(), 0, plotWidth(box), box.clientHeight); g.clip();
-    drawLineLane(g);
-    shown().forEach((s, k) => drawSignal(g, s, k + 1));
-    alarmMarks(g, box, TOP, bottom());
-    g.restore();
+    u.batch(() => {
+      u.setSize({width: Math.max(row.plot.clientWidth, 80), height: height()});
+      u.setData([[S.t0, S.t1], [null, null]], false);
+      u.setScale("x", {min: S.t0, max: S.t1});
+      u.setScale("y", {min: 0, max: 1});
+    });
     follow();
   }
   function follow() {
-    const g = L.context("over"), room = gutter() - 30;
-    g.textAlign = "left"; g.textBaseline = "middle";
-    g.fillStyle = css("--faint");
-    g.fillText(compact() ? String(lineAt(S.cursor) || "–") : tr("line") + " " + (lineAt(S.cursor) || "–"), 2, laneTop(0) + 12);
-    shown().forEach((s, k) => {
-      const y = laneTop(k + 1) + (compact() ? 9 : LANE / 2), state = signalAt(s, S.cursor);
-      g.fillStyle = css("--text");
-      g.fillText(clipText(g, s.name, compact() ? box.clientWidth - 30 : room), compact() ? 16 : 2, y);
-      g.beginPath();
-      g.arc(compact() ? 7 : gutter() - 14, y, 4, 0, 2 * Math.PI);
-      g.fillStyle = g.strokeStyle = css(state ? "--good" : "--faint");
-      if (state) g.fill(); else g.stroke();
-    });
-    cursorMark(g, box, TOP, bottom());
+    followCursor(u);
+    row.names.replaceChildren(el("span", {class: "lane"}, tr("line") + " " + (RUN.lineAt(S.cursor) || "–")),
+      ...shown().map(s => el("span", {class: "lane" + (RUN.signalAt(s, S.cursor) ? " on" : ""), title: s.name}, s.name)));
   }
-  function redraw() {
-    if (!asked) requestAnimationFrame(draw);
-    asked = true;
-  }
-  timeInput(box);
-  for (const type of ["window", "theme", "size", "constant", "lang"]) on(type, redraw);
+  for (const type of ["window", "theme", "size", "constant", "lang"]) on(type, update);
   on("cursor", follow);
-  redraw();
+  update();
   return {draw};
 }
 
 /** Names of signals that never changed, by state, for the sentence below the diagram. */
 function steadySignals() {
-  const steady = SIGNALS.filter(s => s.toggles.length === 0), names = state => steady.filter(s => s.initial === state).map(s => s.name);
+  const steady = RUN.signals.filter(s => s.toggles.length === 0), names = state => steady.filter(s => s.initial === state).map(s => s.name);
   return {on: names(true), off: names(false), count: steady.length};
-}
-
-function listing(box) {
-  const rows = [];
-  let marked = null, longest = 0;
-  for (const l of LINES.values()) longest = Math.max(longest, l.total);
-  D.program.lines.forEach((text, i) => {
-    const n = i + 1, spent = LINES.get(n);
-    const bar = el("span", {class: "spent"});
-    if (spent) {
-      bar.append(el("i", {style: `width:${(100 * spent.total / longest).toFixed(1)}%`}), el("b", {}, ""));
-      bar.dataset.seconds = spent.total;
-    }
-    const row = el("div", {class: "row" + (spent ? " used" : "")}, el("span", {class: "n"}, String(n)), el("span", {class: "code"}, text || " "), bar);
-    row.addEventListener("pointerenter", () => { S.line = n; emit("line"); });
-    if (spent) row.addEventListener("click", () => setCursor(spent.first));
-    rows.push(row);
-  });
-  box.append(...rows);
-  box.addEventListener("pointerleave", () => { S.line = 0; emit("line"); });
-  function label() {
-    for (const bar of box.querySelectorAll(".spent[data-seconds]"))
-      bar.lastChild.textContent = num(+bar.dataset.seconds, 3) + " " + unit("s");
-  }
-  function follow() {
-    const row = rows[lineAt(S.cursor) - 1] || null;
-    if (row === marked) return;
-    if (marked) marked.classList.remove("now");
-    marked = row;
-    if (!row) return;
-    row.classList.add("now");
-    if (S.follow) box.scrollTop = row.offsetTop - box.clientHeight / 2;
-  }
-  on("cursor", follow);
-  on("lang", label);
-  label();
-  follow();
 }

@@ -1,137 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts the page together: cards, tables, controls, the transport bar at the foot.
-function isDark() {
-  return S.theme ? S.theme === "dark" : window.matchMedia("(prefers-color-scheme: dark)").matches;
-}
-const $ = id => document.getElementById(id);
-function fill(id, ...children) { $(id).replaceChildren(...children.filter(c => c !== null)); }
-
-function card(title, value, note, kind) {
-  return el("div", {class: "card " + (kind || "")}, el("h3", {}, title), el("p", {class: "value"}, value), note ? el("p", {class: "note"}, note) : null);
-}
-function clockText(seconds) {
-  if (seconds < 60) return num(seconds, 4) + " " + unit("s");
-  const minutes = Math.floor(seconds / 60);
-  return minutes + ":" + fixed(seconds - 60 * minutes, 1).padStart(4, "0");
-}
-function cards() {
-  const a = amounts(), worst = R.segments.reduce((m, s) => Math.max(m, s.load_worst_cycle), 0);
-  const load = R.segments.reduce((m, s) => Math.max(m, s.load), 0), first = R.alarms[0];
-  const metres = v => v >= 1000 ? num(v / 1000, 4) + " " + unit("m") : num(v, 4) + " " + unit("mm");
-  const out = [
-    card(tr("time"), clockText(R.time_s), tr("cyclesOf", num(R.cycles, 9), num(RUN.period * 1000) + " " + unit("ms"))),
-    card(tr("blocks"), num(R.blocks, 9), R.finished || !R.blocks_expected ? D.program.name : tr("ofAbout", num(R.blocks_expected, 9))),
-    card(tr("alarms"), String(R.alarms.length), first ? first.text : tr("noAlarms"), R.alarms.length ? "bad" : "good"),
-    card(tr("pathLength"), metres(a.feed + a.rapid), tr("feedPath") + " " + metres(a.feed) + ", " + tr("rapidPath") + " " + metres(a.rapid) + (a.homing ? ", " + tr("homingPath") + " " + metres(a.homing) : "")),
-    card(tr("cycleTime"), num(R.cycle_us.p99, 3) + " " + unit("µs"), "p50\u00a0" + num(R.cycle_us.p50, 3) + " · " + tr("max") + "\u00a0" + num(R.cycle_us.max, 3)),
-  ];
-  if (R.virtual_speed > 0) out.push(card(tr("speed"), num(R.virtual_speed, 3), tr("timesReal")));
-  if (R.lateness_us) out.push(card(tr("late"), num(R.lateness_us.p99, 3) + " " + unit("µs"), tr("max") + "\u00a0" + num(R.lateness_us.max, 3)));
-  out.push(card(tr("overruns"), num(R.overruns, 9), tr("starved") + ": " + num(R.starved, 9), R.overruns + R.starved > 0 ? "bad" : ""));
-  if (R.segments.length) out.push(card(tr("busLoad"), num(100 * load, 3) + " %", tr("worst") + " " + num(100 * worst, 3) + " %", load > 0.8 ? "bad" : ""));
-  fill("cards", ...out);
-  const parts = [["feed", a.feedTime, "feedPath"], ["rapid", a.rapidTime, "rapidPath"], ["homing", a.homingTime, "homingPath"], ["still", a.still, "still"]];
-  const total = Math.max(a.feedTime + a.rapidTime + a.homingTime + a.still, 1e-9);
-  fill("split", ...parts.filter(p => p[1] > 0).map(([kind, t]) => el("i", {class: kind, style: `width:${100 * t / total}%`})));
-  fill("split-key", el("span", {class: "lead"}, tr("moving") + ": "), ...parts.map(([kind, t, name]) => el("span", {class: "key " + kind}, tr(name) + " " + clockText(t))));
-}
-function limitBars() {
-  const kinds = [["velocity", "velocity", "/s", 1], ["acceleration", "acceleration", "/s²", 1], ["jerk", "jerk", "/s³", 1], ["following_error", "error", "", 1]];
-  fill("axes", ...AXES.map(a => el("div", {class: "axis"}, el("h3", {style: `color:${axisColour(a.letter)}`}, a.letter),
-    ...kinds.map(([key, name, suffix]) => {
-      const value = a.report["max_" + key] || 0, limit = (a.report.limits || {})[key], ratio = limit ? value / limit : 0;
-      const fine = key === "following_error" && value < 0.1, of = limit ? " / " + num(limit, 4) + " " + unit(a.report.unit + suffix) : "";
-      const over = ratio > 1.001, text = fine ? (a.report.unit === "deg" ? num(value * 3600, 3) + unit("arcsec") : num(value * 1000, 3) + " " + unit("µm")) + of :
-        num(value, 4) + (of || " " + unit(a.report.unit + suffix));
-      return el("div", {class: "bar" + (over ? " over" : "")}, el("span", {class: "name"}, tr(name)), el("span", {class: "figure"}, text),
-        el("span", {class: "track", title: limit ? "" : tr("noLimit")}, el("i", {style: `width:${clamp(100 * ratio, 0, 100)}%`})),
-        el("span", {class: "percent"}, limit ? num(100 * ratio, 3) + " %" : "–"));
-    }))));
-}
-function alarmPlace(a) {
-  const out = [];
-  if (a.axis) out.push(tr("axis") + " " + a.axis);
-  if (a.node !== undefined) out.push(tr("node") + " " + a.node);
-  if (a.object) out.push(a.object);
-  if (a.line) out.push(tr("line").toLowerCase() + " " + a.line);
-  if (a.block !== undefined) out.push("N" + a.block);
-  if (a.error_code) out.push(a.error_code);
-  return out.join(", ") || "–";
-}
-function alarms() {
-  if (!R.alarms.length) return fill("alarms", el("p", {class: "quiet"}, tr("noAlarms")));
-  const head = ["number", "at", "what", "where", "reaction"].map(k => el("th", {}, tr(k)));
-  const rows = R.alarms.map(a => {
-    const later = a.first_fault && a.first_fault !== a.sequence, root = R.alarms.find(o => o.sequence === a.first_fault);
-    const what = el("td", {}, el("strong", {}, a.text), el("div", {class: "note"}, a.remedy || ""),
-      later ? el("div", {class: "note"}, tr("consequence") + " " + (root ? root.number : a.first_fault)) : null);
-    const seek = el("button", {class: "link", onclick: () => setCursor(a.t)}, fixed(a.t, 3) + " " + unit("s"));
-    return el("tr", {class: later ? "later" : ""}, el("td", {}, String(a.number)), el("td", {}, seek), what, el("td", {}, alarmPlace(a)), el("td", {}, tr(a.reaction)));
-  });
-  fill("alarms", el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows)));
-}
-/** Errors for which the program was not begun. */
-function findings() {
-  fill("findings", R.findings ? el("table", {}, el("thead", {}, el("tr", {}, el("th", {}, tr("where")), el("th", {}, tr("errorsFound")))),
-    el("tbody", {}, ...R.findings.map(f => el("tr", {}, el("td", {}, f.file + ":" + f.line + ":" + f.column), el("td", {}, f.text + " [" + f.code + "]"))))) : null);
-}
-/** Quantiles of the cycle and its phases, and the load of each bus. */
-function timing() {
-  const row = (name, q, kind) => el("tr", {class: kind || ""}, el("th", {}, name), ...["p50", "p99", "p999", "max"].map(k => el("td", {class: "figure"}, num(q[k], 3))));
-  const rows = [row(tr("cycle"), R.cycle_us, "sum")];
-  for (const [name, q] of Object.entries(R.phases_us)) rows.push(row(name, q));
-  if (R.lateness_us) rows.push(row(tr("lateness"), R.lateness_us));
-  const heads = (...names) => el("thead", {}, el("tr", {}, ...names.map((n, k) => el("th", {class: k ? "figure" : ""}, n))));
-  const phases = el("table", {}, heads(unit("µs"), "p50", "p99", "p99.9", tr("max")), el("tbody", {}, ...rows));
-  const buses = el("table", {}, heads(tr("segment"), tr("load"), tr("worst"), tr("sent"), tr("received"), tr("errors")), el("tbody", {}, ...R.segments.map(s =>
-    el("tr", {}, el("th", {}, s.name), ...[num(100 * s.load, 3) + " %", num(100 * s.load_worst_cycle, 3) + " %", num(s.frames_sent, 9), num(s.frames_received, 9), num(s.errors, 9)]
-      .map(v => el("td", {class: "figure"}, v))))));
-  fill("timing", el("div", {class: "table"}, phases), R.segments.length ? el("div", {class: "table"}, buses) : null,
-    ...R.segments.filter(s => s.sync_late_us).map(lateSync), R.sync_skew_us ? el("p", {class: "note"}, tr("syncSkew") + ": " + quantiles(R.sync_skew_us)) : null);
-}
-const quantiles = q => ["p50", "p99", "p999", "max"].map(k => k + " " + num(q[k], 3)).join(", ") + " " + unit("µs");
-/** Histogram of the lateness of SYNC on one bus, a bar for each doubling. */
-function lateSync(s) {
-  const most = s.sync_late_histogram.reduce((m, b) => Math.max(m, b.count), 1);
-  const bar = b => el("div", {class: "late", style: `width:${Math.max(1, Math.round(200 * b.count / most))}px`});
-  const rows = s.sync_late_histogram.map(b => el("tr", {}, el("th", {}, `${num(b.from_us, 3)}–${num(b.to_us, 3)} ${unit("µs")}`),
-    el("td", {class: "figure"}, String(b.count)), el("td", {}, bar(b))));
-  return el("div", {class: "table"}, el("p", {class: "note"}, `${tr("syncLate")} ${s.name}: ${quantiles(s.sync_late_us)}`), el("table", {}, el("tbody", {}, ...rows)));
-}
-function provenance() {
-  const p = R.provenance, rows = [];
-  const add = (key, ...value) => value.some(Boolean) && rows.push(el("tr", {}, el("th", {}, tr(key)), el("td", {}, ...value)));
-  const file = f => f && el("span", {}, f.path + " ", el("code", {class: "hash", title: "SHA-256"}, f.sha256 || "–"));
-  const list = (key, items) => add(key, ...items.map(i => el("div", {}, i)));
-  add("version", p.version);
-  add("commit", p.commit && el("code", {}, p.commit));
-  add("machine", file(p.machine));
-  add("programFile", file(p.program));
-  list("plc", p.plc.map(file));
-  add("dialect", p.dialect);
-  add("seed", String(p.seed));
-  add("clock", p.clock);
-  list("buses", p.buses.map(b => `${b.name}: ${b.protocol}, ${b.transport} (${b.kind})`));
-  list("nodes", p.nodes.map(n => `${n.bus} ${n.node}: ${n.name} ${n.vendor} ${n.product} ${n.revision} ${n.serial}`));
-  add("kernel", p.kernel);
-  add("processor", p.processor);
-  add("command", el("code", {}, p.command_line.join(" ")));
-  add("resolution", tr("resolutionText", num(RUN.bucket * 1000) + " " + unit("ms"), num(RUN.tolerance * 1000) + " " + unit("µm")));
-  fill("provenance", el("table", {}, el("tbody", {}, ...rows)));
-}
+// Puts the page together: controls, the transport bar at the foot, the run that is laid over this one.
 function speedKey() {
-  const stops = Array.from({length: 9}, (_, k) => speedColour(k / 8)).join(",");
-  fill("speed-key", el("span", {}, "0"), el("i", {style: `background:linear-gradient(90deg,${stops})`}), el("span", {}, num(SPEED_MAX, 3) + " " + unit("mm/s")),
-    el("span", {class: "key dash"}, tr("rapidPath")), el("span", {class: "key dots"}, tr("homingPath")));
+  const stops = Array.from({length: 9}, (_, k) => "rgb(" + rampColour(k / 8, isDark()).map(c => Math.round(255 * c)).join(",") + ")").join(","), most = colourMax();
+  const scale = S.colour === "deviation" ? num(most * 1000, 3) + " " + unit("µm") : num(most, 3) + " " + unit("mm/s");
+  const keys = S.colour === "tool" ? tools().map((tool, n) => el("span", {class: "key", style: `--c:var(--axis-${n % 8})`}, "T" + tool)) :
+    [el("span", {}, "0"), el("i", {style: `background:linear-gradient(90deg,${stops})`}), el("span", {}, scale)];
+  fill("speed-key", ...keys, el("span", {class: "key dash"}, tr("rapidPath")), el("span", {class: "key dots"}, tr("homingPath")), OTHER ? el("span", {class: "key line"}, tr("otherRun")) : null);
+}
+/** What of the path is shown: tools as switches, operations as a list. */
+function filters() {
+  const all = tools();
+  fill("tools", ...(all.length > 1 ? all : []).map(tool => el("button", {class: "chip" + (S.tools.size && !S.tools.has(tool) ? " out" : ""), style: "--c:var(--accent)", onclick: () => {
+    if (!S.tools.delete(tool)) S.tools.add(tool);
+    emit("tools");
+  }}, "T" + tool)));
+  $("operation").hidden = OPERATIONS.length < 2;
+  fill("operation", el("option", {value: "-1"}, tr("allOperations")), ...OPERATIONS.map((o, i) => el("option", {value: String(i)}, o.name)));
+  $("operation").value = String(S.operation);
+  fill("colour", ...["speed", "deviation", ...(all.length > 1 ? ["tool"] : [])].map(key => el("option", {value: key}, tr("colour." + key))));
+  $("colour").value = S.colour;
 }
 function axisSwitches() {
-  fill("axis-switches", ...AXES.map(a => el("button", {class: "chip" + (S.hidden.has(a.letter) ? " out" : ""), style: `--c:${axisColour(a.letter)}`, onclick: () => {
+  fill("axis-switches", ...RUN.axes.map(a => el("button", {class: "chip" + (S.hidden.has(a.letter) ? " out" : ""), style: `--c:${axisColour(a.letter)}`, onclick: () => {
     if (!S.hidden.delete(a.letter)) S.hidden.add(a.letter);
     axisSwitches();
     emit("series");
   }}, a.letter)));
 }
 function texts() {
+  const R = report();
   document.documentElement.lang = S.lang;
   for (const e of document.querySelectorAll("[data-t]")) e.textContent = tr(e.dataset.t);
   const clean = R.finished && !R.alarms.length;
@@ -140,27 +37,30 @@ function texts() {
   for (const b of document.querySelectorAll("[data-lang]")) b.classList.toggle("chosen", b.dataset.lang === S.lang);
   const p = R.provenance, clock = p.clock === "virtual" ? tr("virtual") : p.clock;
   $("sub").textContent = [clock, p.dialect, p.machine && p.machine.path, ("servogate " + p.version + (p.commit ? " (" + p.commit + ")" : "")).trim()].filter(Boolean).join(" · ");
-  const unitOf = letter => unit((AXES.find(a => a.letter === letter) || {report: {unit: "mm"}}).report.unit);
-  const stretch = (letter, low, high) => letter + " " + num(low, 6) + " … " + num(high, 6) + " " + unitOf(letter);
-  const others = AXES.filter(a => !VIEW.includes(a.letter)).map(a => [a.letter, placesOf(a.letter)]).filter(o => o[1]);
-  $("extents").textContent = !PATH.n ? "" : tr("extents") + ": " + [...VIEW.map((letter, k) => letter && stretch(letter, BOX.low[k], BOX.high[k])),
-    ...others.map(([letter, [low, high]]) => stretch(letter, low, high))].filter(Boolean).join(" · ");
-  const steady = steadySignals(), names = (key, list) => list.length ? tr(key) + " — " + list.join(", ") : "";
-  $("steady").textContent = steady.count && !S.constant ? tr("steady") + ": " + [names("on", steady.on), names("off", steady.off)].filter(Boolean).join("; ") : "";
   $("verdict").className = "verdict " + (clean ? "good" : "bad");
   fill("verdict", R.verdict.text, R.verdict.remedy ? el("div", {class: "note"}, R.verdict.remedy) : null);
   $("forced").textContent = R.forces ? tr("forced") + ": " + R.forces.map(f => f.name + " = " + f.value).join(", ") : "";
   $("dropped").textContent = R.trace_dropped ? tr("dropped", num(R.trace_dropped, 9)) : "";
-  cards(); findings(); limitBars(); alarms(); timing(); provenance(); speedKey(); axisSwitches(); readout();
+  if (!RUN) return;
+  const unitOf = letter => unit((RUN.axis(letter) || {report: {unit: "mm"}}).report.unit);
+  const stretch = (letter, low, high) => RUN.shownName(letter) + " " + num(low * RUN.shownTimes(letter), 6) + " … " + num(high * RUN.shownTimes(letter), 6) + " " + unitOf(letter);
+  const others = RUN.axes.filter(a => !RUN.view.includes(a.letter)).map(a => [a.letter, RUN.placesOf(a.letter)]).filter(o => o[1]);
+  $("extents").textContent = !RUN.path.n ? "" : tr("extents") + ": " + [...RUN.view.map((letter, k) => letter && stretch(letter, RUN.box.low[k], RUN.box.high[k])),
+    ...others.map(([letter, [low, high]]) => stretch(letter, low, high))].filter(Boolean).join(" · ");
+  $("turned").textContent = RUN.turned ? tr("turned", RUN.view[1]) : "";
+  const steady = steadySignals(), names = (key, list) => list.length ? tr(key) + " — " + list.join(", ") : "";
+  $("steady").textContent = steady.count && !S.constant ? tr("steady") + ": " + [names("on", steady.on), names("off", steady.off)].filter(Boolean).join("; ") : "";
+  cards(); findings(); limitBars(); alarms(); timing(); provenance(); speedKey(); filters(); axisSwitches(); comparison(); readout(); resolution();
 }
+function resolution() { if (RUN.line.length) $("resolution").textContent = resolutionWords(timeGrid(() => emit("unpacked"))); }
 function readout() {
-  const place = placeAt(S.cursor), parts = [];
-  for (const a of AXES) {
-    const v = VIEW.indexOf(a.letter), value = v >= 0 && place ? [place.x, place.y, place.z][v] : valueAt(a.letter + ".position", S.cursor);
-    parts.push(el("span", {class: "pos", style: `--c:${axisColour(a.letter)}`}, el("b", {}, a.letter), fixed(value, 3)));
+  const place = RUN.placeAt(S.cursor), parts = [];
+  for (const a of RUN.axes) {
+    const v = RUN.view.indexOf(a.letter), value = v >= 0 && place ? [place.x, place.y, place.z][v] : RUN.valueAt(a.letter + ".position", S.cursor);
+    parts.push(el("span", {class: "pos", style: `--c:${axisColour(a.letter)}`}, el("b", {}, RUN.shownName(a.letter)), fixed(value * RUN.shownTimes(a.letter), 3)));
   }
-  parts.push(el("span", {class: "pos"}, el("b", {}, "F"), num(valueAt("path.speed", S.cursor), 4) + " " + unit("mm/s")));
-  parts.push(el("span", {class: "pos"}, el("b", {}, tr("line")), String(lineAt(S.cursor) || "–")));
+  parts.push(el("span", {class: "pos"}, el("b", {}, "F"), num(RUN.valueAt("path.speed", S.cursor), 4) + " " + unit("mm/s")));
+  parts.push(el("span", {class: "pos"}, el("b", {}, tr("line")), String(RUN.lineAt(S.cursor) || "–")));
   fill("readout", ...parts);
   $("now").textContent = fixed(S.cursor, 3) + " " + unit("s");
   $("slider").value = S.cursor;
@@ -169,13 +69,13 @@ function readout() {
 }
 function play() {
   S.playing = S.playing ? 0 : performance.now();
-  if (S.playing && S.cursor >= T_END - RUN.period) setCursor(RUN.start);
+  if (S.playing && S.cursor >= RUN.end - RUN.period) setCursor(RUN.start);
   let last = performance.now();
   const step = now => {
     if (!S.playing) return;
     const t = S.cursor + (now - last) / 1000 * +$("pace").value;
     last = now;
-    if (t >= T_END) S.playing = 0;
+    if (t >= RUN.end) S.playing = 0;
     setCursor(t);
     requestAnimationFrame(step);
   };
@@ -189,54 +89,88 @@ function setTheme(theme) {
   texts();
 }
 
-function start() {
-  const asked = new URLSearchParams(location.hash.slice(1));  // report.html#t=12.3&theme=dark&lang=ru
-  if (asked.get("lang")) S.lang = asked.get("lang") === "ru" ? "ru" : "en";
-  if (R.alarms.length) $("cards").after($("alarm-section"));
-  const plan = pathView($("plan"), planView()), turning = spaceView(), space = pathView($("space"), turning);
-  const drawn = [plan, space];
-  for (const spec of chartSpecs()) {
-    const box = el("div", {class: "chart" + (spec.labels ? " last" : ""), tabindex: "0"});
-    $("charts").append(box);
-    drawn.push(chart(box, spec));
+/** The data of another page of this program; null when the text is no such page. */
+function dataOf(html) {
+  // In pieces: whole, these would end the element in which this stands.
+  const start = "<" + 'script type="application/json" id="data">', at = html.indexOf(start), end = html.indexOf("</" + "script>", at);
+  if (at < 0 || end < 0) return null;
+  const data = JSON.parse(html.slice(at + start.length, end));
+  return data.schema === D.schema && data.run.axes.length ? data : null;
+}
+/** Lays another run over this one, so that both programs begin to move at the same time. */
+async function lay(html) {
+  let data = null;
+  try { data = dataOf(html); } catch (error) { data = null; }
+  $("compare-trouble").textContent = data ? "" : tr("noPage");
+  if (data) {
+    OTHER = await Run.of(data);
+    OTHER.shift = RUN.begin - OTHER.begin;
   }
-  for (const id of ["path-section", "motion-section", "signal-section", "transport"]) $(id).hidden = !LINE.length;
-  $("signals").hidden = SIGNALS.length === 0;
-  $("no-signals").hidden = SIGNALS.length > 0;
-  drawn.push(lanes($("lanes")));
-  if (D.program.lines.length) listing($("listing")); else $("program").hidden = true;
+  $("compare-off").hidden = !OTHER;
+  texts();
+  emit("other");
+}
+
+function controls(plan) {
+  for (const b of document.querySelectorAll("[data-lang]")) b.addEventListener("click", () => { S.lang = b.dataset.lang; texts(); emit("lang"); });
+  $("theme").addEventListener("click", () => setTheme(isDark() ? "light" : "dark"));
+  for (const name of Object.keys(DIRECTIONS)) $("look-" + name).addEventListener("click", () => plan.look(name));
+  $("whole").addEventListener("click", () => setWindow(RUN.start, RUN.end));
+  $("rapids").addEventListener("change", e => { S.rapids = e.target.checked; emit("rapids"); });
+  $("whole-path").addEventListener("change", e => { S.whole = e.target.checked; emit("rapids"); plan.look("iso"); });
+  $("colour").addEventListener("change", e => { S.colour = e.target.value; emit("colour"); });
+  $("operation").addEventListener("change", e => { S.operation = +e.target.value; emit("operation"); });
+  for (const type of ["colour", "tools", "operation", "other"]) on(type, () => { speedKey(); filters(); });
+  $("constant").addEventListener("change", e => { S.constant = e.target.checked; texts(); emit("constant"); });
+  $("follow").addEventListener("change", e => { S.follow = e.target.checked; });
+  $("compare").addEventListener("change", async e => { if (e.target.files && e.target.files[0]) await lay(await e.target.files[0].text()); });
+  $("compare-off").addEventListener("click", () => { OTHER = null; $("compare-off").hidden = true; $("compare").value = ""; texts(); emit("other"); });
   $("slider").min = RUN.start;
-  $("slider").max = T_END;
+  $("slider").max = RUN.end;
   $("slider").step = RUN.period;
   $("slider").addEventListener("input", e => setCursor(+e.target.value));
   $("play").addEventListener("click", play);
-  for (const b of document.querySelectorAll("[data-lang]")) b.addEventListener("click", () => { S.lang = b.dataset.lang; texts(); emit("lang"); });
-  $("theme").addEventListener("click", () => setTheme(isDark() ? "light" : "dark"));
-  $("fit-plan").addEventListener("click", plan.fit);
-  $("fit-space").addEventListener("click", () => { turning.turn(-0.65, 0.6); space.redraw(); });
-  $("top-space").addEventListener("click", () => { turning.turn(0, Math.PI / 2); space.redraw(); });
-  $("whole").addEventListener("click", () => setWindow(RUN.start, T_END));
-  $("rapids").addEventListener("change", e => { S.rapids = e.target.checked; emit("rapids"); });
-  $("whole-path").addEventListener("change", e => { S.whole = e.target.checked; plan.fit(); turning.fit(); space.redraw(); });
-  $("constant").addEventListener("change", e => { S.constant = e.target.checked; texts(); emit("constant"); });
-  $("follow").addEventListener("change", e => { S.follow = e.target.checked; });
-  on("cursor", readout);
-  let size = 0;
-  new ResizeObserver(() => {
-    cancelAnimationFrame(size);
-    size = requestAnimationFrame(() => emit("size"));
-  }).observe(document.body);
-  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { if (!S.theme) setTheme(null); });
-  window.addEventListener("beforeprint", () => { document.documentElement.dataset.theme = "light"; const was = S.theme; S.theme = "light"; texts(); drawn.forEach(d => d.draw()); S.theme = was; });
-  window.addEventListener("afterprint", () => setTheme(S.theme));
   document.addEventListener("keydown", e => {
     if (e.target.tagName === "INPUT" || e.target.tagName === "SELECT") return;
     if (e.key === " " && e.target.tagName !== "BUTTON") { e.preventDefault(); play(); }
     if (e.key === "ArrowLeft" || e.key === "ArrowRight") setCursor(S.cursor + (e.key === "ArrowLeft" ? -1 : 1) * (e.shiftKey ? 100 : 1) * RUN.period);
   });
-  setTheme(asked.get("theme"));
-  plan.redraw();
-  space.redraw();
-  setCursor(asked.get("t") ? +asked.get("t") : R.alarms.length ? R.alarms[0].t : RUN.start + 0.5 * RUN.duration);
 }
-start();
+
+async function start() {
+  const asked = new URLSearchParams(location.hash.slice(1));  // report.html#t=12.3&theme=dark&lang=ru
+  if (asked.get("lang")) S.lang = asked.get("lang") === "ru" ? "ru" : "en";
+  texts();  // what came of the run and why stands there whatever this browser cannot do
+  RUN = await Run.of(D);
+  [S.t0, S.t1] = [RUN.start, RUN.end];
+  OPERATIONS = operationsOf(RUN.program, [...RUN.lines.keys()]);
+  if (report().alarms.length) $("cards").after($("alarm-section"));
+  for (const id of ["path-section", "motion-section", "signal-section", "transport"]) $(id).hidden = !RUN.line.length;
+  // Sizes are taken from what is shown.
+  $("signals").hidden = RUN.signals.length === 0;
+  $("no-signals").hidden = RUN.signals.length > 0;
+  const drawn = [];
+  if (RUN.program.length) drawn.push(listing($("listing"))); else $("program").hidden = true;
+  const plan = pathView($("space"));
+  drawn.push(plan);
+  for (const spec of chartSpecs()) drawn.push(chart($("charts"), spec));
+  drawn.push(lanes($("lanes")));
+  controls(plan);
+  on("cursor", readout);
+  for (const type of ["window", "unpacked"]) on(type, resolution);
+  const resized = inNextFrame(() => emit("size"));
+  new ResizeObserver(resized).observe(document.body);
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { if (!S.theme) setTheme(null); });
+  window.addEventListener("beforeprint", () => { document.documentElement.dataset.theme = "light"; const was = S.theme; S.theme = "light"; texts(); drawn.forEach(d => d.draw()); S.theme = was; });
+  window.addEventListener("afterprint", () => setTheme(S.theme));
+  setTheme(asked.get("theme"));
+  const first = report().alarms[0];
+  setCursor(asked.get("t") ? +asked.get("t") : first ? first.t : RUN.start + 0.5 * RUN.duration);
+}
+try {
+  await start();
+} catch (error) {
+  $("broken").textContent = tr("broken", String(error));
+  $("broken").hidden = false;
+  throw error;
+}

@@ -1,334 +1,240 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path: a plan with equal scales and a view that turns. Both colour the feed by speed and follow the cursor.
-const SPEED_STEPS = 24;
-const SPEED_MAX = (() => {
-  let most = 0;
-  for (let i = 0; i < PATH.n; ++i) if (!PATH.rapid[i] && PATH.speed[i] > most) most = PATH.speed[i];
-  return most || 1;
-})();
-const RAMP = {
-  light: [[68, 34, 120], [49, 94, 168], [22, 142, 132], [110, 170, 44], [214, 120, 10]],
-  dark: [[140, 110, 240], [80, 160, 250], [52, 208, 180], [170, 222, 90], [255, 176, 64]],
-};
-function speedColour(ratio) {
-  const ramp = RAMP[isDark() ? "dark" : "light"], x = clamp(ratio, 0, 1) * (ramp.length - 1);
-  const i = Math.min(Math.floor(x), ramp.length - 2), s = x - i;
-  return "rgb(" + ramp[i].map((c, k) => Math.round(c + s * (ramp[i + 1][k] - c))).join(",") + ")";
-}
+// The path in space, drawn by three.js: plan, front, side or any other direction of one parallel projection.
+const DIRECTIONS = {plan: [0, -1e-6, 1], front: [0, -1, 0], side: [1, 0, 0], iso: [0.62, -1, 0.75]};
+const FAT_MOST = 15000;      // stretches that are drawn two pixels wide; more are hairlines, and all without a graphics card
+const TURNING_MOST = 30000;  // stretches while the view turns: a computer without a graphics card keeps up
+const TURNED_COPIES = 24;  // of a turned contour around its axis; fewer of a long one
 
-/** Draws all stretches by groups of equal colour; px, py = screen coordinates of the vertices. */
-function drawStretches(g, px, py) {
-  const groups = Array.from({length: SPEED_STEPS}, () => new Path2D());
-  for (let i = 1; i < PATH.n; ++i) {
-    if (PATH.rapid[i]) continue;
-    const mean = (PATH.speed[i] + PATH.speed[i - 1]) / 2, p = groups[Math.min(SPEED_STEPS - 1, Math.floor(mean / SPEED_MAX * SPEED_STEPS))];
-    p.moveTo(px[i - 1], py[i - 1]);
-    p.lineTo(px[i], py[i]);
+function pathView(box) {
+  const {BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineDashedMaterial, LineMaterial, LineSegments, LineSegments2,
+    LineSegmentsGeometry, OrbitControls, OrthographicCamera, Scene, Vector3, WebGLRenderer} = LIBRARIES;
+  let renderer;
+  try {
+    renderer = new WebGLRenderer({antialias: true, alpha: true, preserveDrawingBuffer: true});
+  } catch (error) {
+    box.append(el("p", {class: "quiet", "data-t": "noWebgl"}, tr("noWebgl")));
+    return {draw() {}, look() {}};
   }
-  g.lineCap = g.lineJoin = "round";
-  if (S.rapids) {
-    g.lineWidth = 1.2;
-    for (const [kind, dash] of [["rapid", [5, 4]], ["homing", [1.5, 3.5]]]) {
-      // Dashes need whole polylines, not single stretches.
-      const whole = new Path2D();
-      for (let i = 1; i < PATH.n; ++i) {
-        if (kindOf(i) !== kind) continue;
-        if (i === 1 || kindOf(i - 1) !== kind) whole.moveTo(px[i - 1], py[i - 1]);
-        whole.lineTo(px[i], py[i]);
-      }
-      g.strokeStyle = css("--" + kind);
-      g.setLineDash(dash);
-      g.stroke(whole);
+  const gl = renderer.getContext(), info = gl && gl.getExtension("WEBGL_debug_renderer_info");
+  const fatMost = info && /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) ? 0 : FAT_MOST;
+  renderer.outputColorSpace = "srgb-linear";  // colours come as the style has them
+  box.append(renderer.domElement);
+  const layer = box.appendChild(el("div", {class: "labels"})), tool = layer.appendChild(el("i", {class: "tool"})), tip = box.appendChild(el("div", {class: "tip"}));
+  const scene = new Scene(), camera = new OrthographicCamera(-1, 1, 1, -1, -1, 1);
+  camera.up.set(0, 0, 1);
+  const controls = new OrbitControls(camera, renderer.domElement);
+  controls.zoomToCursor = true;
+  [controls.minZoom, controls.maxZoom] = [0.2, 1e4];
+
+  const steady = object => Object.assign(object, {frustumCulled: false});  // their geometry changes
+  const plain = material => scene.add(steady(new LineSegments(new BufferGeometry(), material))).children.at(-1);
+  const fat = (width, options) => scene.add(new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({linewidth: width, ...options}))).children.at(-1);
+  const grid = plain(new LineBasicMaterial()), frame = plain(new LineBasicMaterial()), travel = plain(new LineDashedMaterial());
+  const rapid = plain(new LineDashedMaterial()), homing = plain(new LineDashedMaterial());
+  const other = fat(1.6, {transparent: true, opacity: 0.6}), otherHair = plain(new LineBasicMaterial({transparent: true, opacity: 0.6})), feed = fat(2, {vertexColors: true}), hair = plain(new LineBasicMaterial({vertexColors: true})), coarse = plain(new LineBasicMaterial({vertexColors: true})), mark = fat(8, {transparent: true, opacity: 0.45, depthTest: false});
+  const turned = scene.add(new Group()).children.at(-1), shell = new BufferGeometry();
+  let seen = [], direction = "iso", reach = 1, size = "", asked = "iso";
+
+  const setPlain = (object, positions) => {
+    object.geometry.dispose();
+    object.geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));
+    if (object.material.isLineDashedMaterial) object.computeLineDistances();
+    object.visible = positions.length > 0;
+  };
+  const setFat = (object, positions, colours) => {
+    object.visible = positions.length > 0;
+    if (!object.visible) return;
+    object.geometry.dispose();
+    object.geometry = new LineSegmentsGeometry();
+    object.geometry.setPositions(positions);
+    if (colours) object.geometry.setColors(colours);
+  };
+  const paint = (object, name) => object.material.color.setRGB(...rgb(css(name)));
+
+  function fillScene() {
+    for (const [object, name] of [[grid, "--grid"], [frame, "--axis-line"], [travel, "--faint"], [rapid, "--rapid"], [homing, "--homing"], [other, "--other"], [otherHair, "--other"], [mark, "--mark"]]) paint(object, name);
+    const kind = wanted => stretchesOf(RUN, i => RUN.kindOf(i) === wanted && (wanted !== "feed" || chosen(i)), wanted === "feed" ? colouring() : null);
+    const cut = kind("feed"), [fast, home] = S.rapids ? [kind("rapid"), kind("homing")] : [{positions: [], vertices: []}, {positions: [], vertices: []}];
+    const many = cut.vertices.length > fatMost, none = new Float32Array(0);
+    setFat(feed, many ? none : cut.positions, cut.colours);
+    setPlain(hair, many ? cut.positions : none);
+    if (many) hair.geometry.setAttribute("color", new BufferAttribute(cut.colours, 3));
+    const rough = coarser(cut, TURNING_MOST);
+    setPlain(coarse, rough.positions);
+    coarse.geometry.setAttribute("color", new BufferAttribute(rough.colours, 3));
+    turning(false);
+    setPlain(rapid, fast.positions);
+    setPlain(homing, home.positions);
+    const laid = OTHER ? stretchesOf(OTHER, i => OTHER.kindOf(i) === "feed").positions : none, manyLaid = laid.length > 6 * fatMost;
+    setFat(other, manyLaid ? none : laid);
+    setPlain(otherHair, manyLaid ? laid : none);
+    seen = [...cut.vertices, ...fast.vertices, ...home.vertices];
+    setPlain(travel, S.whole && travelOf(0) && travelOf(1) ? rectangle(travelOf(0), travelOf(1)) : []);
+    revolve(cut);
+    markLine();
+    draw();
+  }
+  const rectangle = ([x0, x1], [y0, y1]) => [x0, y0, 0, x1, y0, 0, x1, y0, 0, x1, y1, 0, x1, y1, 0, x0, y1, 0, x0, y1, 0, x0, y0, 0];
+  /** While it turns a path is drawn in hairlines, a long one coarsely. */
+  function turning(now) {
+    const drawn = object => object.geometry.attributes.position.count > 0;
+    coarse.visible = now && drawn(coarse);
+    hair.visible = !now && drawn(hair);
+    feed.visible = !now && !drawn(hair) && drawn(coarse);
+  }
+  /** A turned contour stands around the spindle: mirrored on the other side, thinly all around. */
+  function revolve(cut) {
+    turned.clear();
+    if (!RUN.turned || !cut.vertices.length) return;
+    shell.dispose();
+    shell.setAttribute("position", new BufferAttribute(cut.positions, 3));
+    shell.setAttribute("color", new BufferAttribute(cut.colours, 3));
+    const copies = clamp(Math.floor(6e5 / cut.vertices.length), 2, TURNED_COPIES) & ~1;
+    for (let k = 1; k < copies; ++k) {
+      const opposite = 2 * k === copies, copy = steady(new LineSegments(shell, new LineBasicMaterial({vertexColors: true, transparent: true, opacity: opposite ? 0.75 : 0.16})));
+      copy.rotation.x = 2 * Math.PI * k / copies;
+      turned.add(copy);
     }
-    g.setLineDash([]);
+    const circles = new BufferGeometry(), material = new LineBasicMaterial({transparent: true, opacity: 0.35});
+    circles.setAttribute("position", new BufferAttribute(Float32Array.from(ringsOf(cut.positions)), 3));
+    material.color.setRGB(...rgb(css("--axis-line")));
+    turned.add(steady(new LineSegments(circles, material)));
   }
-  g.lineWidth = 1.6;
-  groups.forEach((p, k) => {
-    g.strokeStyle = speedColour((k + 0.5) / SPEED_STEPS);
-    g.stroke(p);
-  });
-}
-function drawLine(g, px, py, line) {
-  if (!line) return;
-  const p = new Path2D();
-  for (let i = 1; i < PATH.n; ++i) {
-    if (PATH.line[i] !== line || PATH.rapid[i] === 2) continue;
-    p.moveTo(px[i - 1], py[i - 1]);
-    p.lineTo(px[i], py[i]);
+  function markLine() {
+    const line = S.line || RUN.lineAt(S.cursor);
+    if (line === mark.line && mark.of === seen) return;
+    [mark.line, mark.of] = [line, seen];
+    setFat(mark, line ? stretchesOf(RUN, i => RUN.path.line[i] === line).positions : new Float32Array(0));
   }
-  g.lineCap = "round";
-  g.strokeStyle = css("--mark");
-  g.globalAlpha = 0.35;
-  g.lineWidth = 9;
-  g.stroke(p);
-  g.globalAlpha = 1;
-}
-function drawTool(g, x, y) {
-  g.fillStyle = css("--mark");
-  g.strokeStyle = css("--panel");
-  g.lineWidth = 2;
-  g.beginPath();
-  g.arc(x, y, 5.5, 0, 2 * Math.PI);
-  g.fill();
-  g.stroke();
-}
-/** Nearest vertex on the screen within 14 px, or -1. */
-function nearest(px, py, x, y) {
-  let best = 14 * 14, at = -1;
-  for (let i = 0; i < PATH.n; ++i) {
-    if (PATH.rapid[i] === 2 || (!S.rapids && PATH.rapid[i])) continue;
-    // The nearest point of the stretch, so that long lines can be met between their ends.
-    let d = (px[i] - x) ** 2 + (py[i] - y) ** 2;
-    if (i > 0) {
-      const ux = px[i] - px[i - 1], uy = py[i] - py[i - 1], u2 = ux * ux + uy * uy;
-      const s = u2 > 0 ? clamp(((x - px[i - 1]) * ux + (y - py[i - 1]) * uy) / u2, 0, 1) : 1;
-      d = (px[i - 1] + s * ux - x) ** 2 + (py[i - 1] + s * uy - y) ** 2;
-      if (d < best) { best = d; at = i - 1 + s; }
-    } else if (d < best) { best = d; at = i; }
-  }
-  return at;
-}
-/** Time at a fractional vertex index. */
-function timeAt(index) {
-  const i = Math.floor(index), j = Math.min(i + 1, PATH.n - 1);
-  let [low, high] = [PATH.t[i], PATH.t[j]];
-  for (let n = 0; n < 30; ++n) {
-    const mid = (low + high) / 2;
-    if (wayAt(i, mid) < index - i) low = mid; else high = mid;
-  }
-  return high;
-}
 
-/** What both views share: projection in, drawing and pointer handling out. */
-function pathView(box, view) {
-  const L = layers(box), tip = box.appendChild(el("div", {class: "tip"}));
-  const px = new Float32Array(PATH.n), py = new Float32Array(PATH.n);
-  let asked = false, ready = false;
-  function project() {
-    view.prepare(box.clientWidth, box.clientHeight);
-    for (let i = 0; i < PATH.n; ++i) [px[i], py[i]] = view.project(PATH.x[i], PATH.y[i], PATH.z[i]);
+  /** Shows the whole box from a direction. */
+  function look(name) {
+    const view = shownBox(), centre = [0, 1, 2].map(k => (view.low[k] + view.high[k]) / 2);
+    asked = direction = name;
+    reach = Math.max(1e-3, Math.hypot(...[0, 1, 2].map(k => view.high[k] - view.low[k])) / 2);
+    const far = 20 * Math.max(reach, ...[0, 1, 2].map(k => RUN.box.high[k] - RUN.box.low[k]));
+    [camera.near, camera.far, camera.zoom] = [-far, far, 1];
+    controls.target.set(...centre);
+    camera.position.set(...centre).addScaledVector(new Vector3(...DIRECTIONS[name]).normalize(), reach);
+    camera.lookAt(controls.target);
+    camera.updateMatrixWorld();
+    let [rx, ry] = [1e-3, 1e-3];
+    for (let n = 0; n < 8; ++n) {
+      const p = new Vector3(...[0, 1, 2].map(k => (n >> k & 1 ? view.high : view.low)[k])).applyMatrix4(camera.matrixWorldInverse);
+      [rx, ry] = [Math.max(rx, Math.abs(p.x)), Math.max(ry, Math.abs(p.y))];
+    }
+    const [w, h] = [Math.max(box.clientWidth, 2), Math.max(box.clientHeight, 2)], unitsPerPixel = Math.max(2 * rx / Math.max(w - 90, 10), 2 * ry / Math.max(h - 70, 10));
+    [camera.left, camera.right, camera.top, camera.bottom] = [-w, w, h, -h].map(v => v / 2 * unitsPerPixel);
+    camera.updateProjectionMatrix();
+    controls.update();
+    render();
   }
-  function draw() {
-    asked = false;
-    L.resize();
-    project();
-    const g = L.context("base");
-    view.scenery(g, box.clientWidth, box.clientHeight);
-    drawStretches(g, px, py);
-    ready = true;
-    follow();
+  /** Pixels of a place: a parallel projection is one matrix. */
+  function projector() {
+    camera.updateMatrixWorld();
+    const [w, h] = [box.clientWidth, box.clientHeight], m = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse).elements;
+    return (x, y, z) => [(m[0] * x + m[4] * y + m[8] * z + m[12] + 1) * w / 2, (1 - m[1] * x - m[5] * y - m[9] * z - m[13]) * h / 2];
   }
-  function follow() {
-    if (!ready) return;
-    const g = L.context("over"), place = placeAt(S.cursor);
-    drawLine(g, px, py, S.line || lineAt(S.cursor));
-    if (place) drawTool(g, ...view.project(place.x, place.y, place.z));
+  const fromAbove = () => Math.abs(camera.position.x - controls.target.x) + Math.abs(camera.position.y - controls.target.y) < 1e-3 * reach;
+  const labelPool = [];
+  let labels = 0;
+  function label(text, [x, y], kind, colour) {
+    const out = labelPool[labels] || (labelPool[labels] = layer.appendChild(el("span")));
+    ++labels;
+    out.textContent = text;
+    out.className = kind;
+    out.style.cssText = `left:${x}px;top:${y}px;` + (colour ? `color:${colour}` : "");
   }
-  function redraw() {
-    if (!asked) requestAnimationFrame(draw);
-    asked = true;
+  /** The floor's grid: over all that is in sight from above, else under the box. */
+  function floor(at) {
+    const view = shownBox(), lines = [], above = fromAbove(), k2 = view.low[2];
+    const wide = (camera.right - camera.left) / camera.zoom, high = (camera.top - camera.bottom) / camera.zoom, c = controls.target;
+    const range = above ? [[c.x - wide / 2, c.x + wide / 2], [c.y - high / 2, c.y + high / 2]] : [0, 1].map(k => [view.low[k], view.high[k]]);
+    const step = ticks(...range[0], above ? box.clientWidth / 90 : 8);
+    labels = 0;
+    [0, 1].forEach(k => {
+      const [low, up] = range[1 - k], times = RUN.shownTimes(RUN.view[k]);
+      for (let n = Math.ceil(range[k][0] / step.step); n * step.step <= range[k][1]; ++n) {
+        const v = n * step.step, from = k ? [low, v, k2] : [v, low, k2], to = k ? [up, v, k2] : [v, up, k2], text = fixed(v * times, step.decimals), [px, py] = at(...from);
+        lines.push(...from, ...to);
+        if (above) label(text, k ? [6, py] : [px, box.clientHeight - 12], k ? "tick left" : "tick");
+        else if (view.high[k] - view.low[k] > 0) label(text, [px, py + 10], "tick");
+      }
+    });
+    setPlain(grid, lines);
+    setPlain(frame, above ? [] : edgesOf(view));
+    const shown = RUN.view.map(letter => letter && RUN.shownName(letter));
+    if (above) {
+      if (shown[0]) label(shown[0] + " →", [box.clientWidth - 26, box.clientHeight - 30], "letter", axisColour(RUN.view[0]));
+      if (shown[1]) label("↑ " + shown[1], [24, 14], "letter", axisColour(RUN.view[1]));
+    } else {
+      shown.forEach((letter, k) => {
+        const end = view.low.map((v, n) => n === k ? view.high[n] + 0.06 * reach : v);
+        if (letter) label(letter, at(...end), "letter", axisColour(RUN.view[k]));
+      });
+    }
+    for (const out of labelPool.splice(labels)) out.remove();
   }
-  function hover(x, y) {
-    const at = nearest(px, py, x, y);
-    box.classList.toggle("found", at >= 0);
-    tip.style.display = at < 0 ? "none" : "block";
-    if (at < 0) return;
-    const t = timeAt(at), place = placeAt(t);
+  function render() {
+    const now = box.clientWidth + "x" + box.clientHeight + "@" + devicePixelRatio;
+    if (now !== size) {
+      size = now;
+      renderer.setPixelRatio(devicePixelRatio);
+      renderer.setSize(box.clientWidth, box.clientHeight);
+      if (asked) return look(asked);
+    }
+    // Dashes keep their length on the screen.
+    const pixel = (camera.right - camera.left) / camera.zoom / Math.max(box.clientWidth, 1);
+    for (const [object, dash, gap] of [[rapid, 5, 4], [homing, 1.5, 3.5], [travel, 8, 4]]) [object.material.dashSize, object.material.gapSize] = [dash * pixel, gap * pixel];
+    floor(projector());
+    renderer.render(scene, camera);
+    placeTool();
+  }
+  function placeTool() {
+    const place = RUN.placeAt(S.cursor);
+    tool.style.display = place ? "block" : "none";
+    if (!place) return;
+    const [x, y] = projector()(place.x, place.y, place.z);
+    tool.style.transform = `translate(${x}px,${y}px)`;
+  }
+  const draw = inNextFrame(render);
+  const follow = () => {
+    const was = mark.line;
+    markLine();
+    if (mark.line !== was) draw(); else placeTool();
+  };
+
+  function hover(e) {
+    const r = box.getBoundingClientRect(), [x, y] = [e.clientX - r.left, e.clientY - r.top], p = RUN.path, at = projector();
+    const found = nearest(seen, i => at(p.x[i], p.y[i], p.z[i]), x, y);
+    box.classList.toggle("found", found >= 0);
+    tip.style.display = found < 0 ? "none" : "block";
+    if (found < 0) return;
+    const t = RUN.timeAt(found), place = RUN.placeAt(t), i = Math.ceil(found);
     setCursor(t);
-    const coordinates = VIEW.map((letter, k) => letter && letter + " " + fixed([place.x, place.y, place.z][k], 3)).filter(Boolean);
-    tip.textContent = coordinates.join("  ") + "\n" + tr("line") + " " + lineAt(t) + " · " + num(valueAt("path.speed", t)) + " " +
-      unit("mm/s") + " · " + fixed(t, 3) + " " + unit("s");
+    const where = RUN.view.map((letter, k) => letter && RUN.shownName(letter) + " " + fixed([place.x, place.y, place.z][k] * RUN.shownTimes(letter), 3)).filter(Boolean);
+    tip.textContent = where.join("  ") + "\n" + tr("line") + " " + (p.line[i] || "–") + (p.tool[i] ? " · T" + p.tool[i] : "") + " · " + num(RUN.valueAt("path.speed", t)) + " " +
+      unit("mm/s") + " · " + fixed(t, 3) + " " + unit("s") + "\n" + tr("deviation") + " " + num(p.deviation[i] * 1000, 3) + " " + unit("µm");
     tip.style.left = clamp(x + 14, 4, Math.max(4, box.clientWidth - tip.offsetWidth - 4)) + "px";
     tip.style.top = clamp(y + 16, 4, Math.max(4, box.clientHeight - tip.offsetHeight - 4)) + "px";
   }
-  let drag = null;
-  box.addEventListener("pointerdown", e => {
-    drag = {x: e.offsetX, y: e.offsetY};
-    box.setPointerCapture(e.pointerId);
-    box.focus({preventScroll: true});
-  });
-  box.addEventListener("pointermove", e => {
-    const r = box.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top;
-    if (!drag) return hover(x, y);
-    view.drag(x - drag.x, y - drag.y, e.shiftKey || e.buttons === 2 || e.buttons === 4);
-    drag = {x, y};
-    redraw();
-  });
-  box.addEventListener("pointerup", () => { drag = null; });
-  box.addEventListener("pointerleave", () => { tip.style.display = "none"; });
-  box.addEventListener("contextmenu", e => e.preventDefault());
-  box.addEventListener("wheel", e => {
-    if (!e.ctrlKey && !e.metaKey && document.activeElement !== box) return;
-    e.preventDefault();
-    const r = box.getBoundingClientRect();
-    view.zoom(Math.exp(-e.deltaY * 0.0015), e.clientX - r.left, e.clientY - r.top);
-    redraw();
-  }, {passive: false});
-  box.addEventListener("dblclick", () => { view.fit(); redraw(); });
-  for (const type of ["theme", "size", "rapids", "lang"]) on(type, redraw);
+  let pressed = false, moved = null;
+  const hoverSoon = inNextFrame(() => { if (moved && !pressed) hover(moved); });
+  box.addEventListener("pointerdown", () => { pressed = true; tip.style.display = "none"; box.focus({preventScroll: true}); }, {capture: true});
+  for (const type of ["pointerup", "pointercancel"]) window.addEventListener(type, () => { pressed = false; });
+  box.addEventListener("pointermove", e => { moved = e; hoverSoon(); });
+  box.addEventListener("pointerleave", () => { moved = null; tip.style.display = "none"; });
+  // The page scrolls until somebody has clicked into the view.
+  box.addEventListener("wheel", e => { controls.enableZoom = e.ctrlKey || e.metaKey || document.activeElement === box; }, {capture: true, passive: true});
+  box.addEventListener("dblclick", () => look(direction));
+  controls.addEventListener("start", () => turning(true));
+  controls.addEventListener("end", () => { turning(false); draw(); });
+  controls.addEventListener("change", () => { asked = null; draw(); });
+  const refill = inNextFrame(fillScene);
+  for (const type of ["theme", "rapids", "colour", "tools", "operation", "other"]) on(type, refill);
+  for (const type of ["size", "lang"]) on(type, draw);
   for (const type of ["cursor", "line"]) on(type, follow);
-  return {redraw, fit() { view.fit(); redraw(); }, draw};
-}
-
-/** Travel of the machine along axis k of the view, [low, high]; null where it has no end. */
-function travelOf(k) {
-  const axis = AXES.find(a => a.letter === VIEW[k]), limits = axis && axis.report.limits;
-  return limits && limits.travel_max !== undefined ? [limits.travel_min, limits.travel_max] : null;
-}
-
-/** The plan: x to the right, y up, one scale. */
-function planView() {
-  let scale = 0, cx = 0, cy = 0, w = 1, h = 1, fitted = true;
-  const travel = [travelOf(0), travelOf(1)];
-  /** "Everything" has the box of the machine's travel in it. */
-  const planBox = () => {
-    const box = shownBox(), low = [...box.low], high = [...box.high];
-    if (S.whole) travel.forEach((ends, k) => {
-      if (ends) [low[k], high[k]] = [Math.min(low[k], ends[0]), Math.max(high[k], ends[1])];
-    });
-    return {low, high};
-  };
-  const drawTravel = (g, width, height) => {
-    if (!travel[0] || !travel[1]) return;
-    const [x0, y0] = view.project(travel[0][0], travel[1][1]), [x1, y1] = view.project(travel[0][1], travel[1][0]);
-    g.fillStyle = css("--travel");
-    for (const [x, y, w, h] of [[0, 0, x0, height], [x1, 0, width - x1, height], [x0, 0, x1 - x0, y0], [x0, y1, x1 - x0, height - y1]])
-      if (w > 0 && h > 0) g.fillRect(x, y, w, h);
-    g.strokeStyle = css("--faint");
-    g.lineWidth = 1.2;
-    g.setLineDash([8, 4]);
-    g.strokeRect(x0, y0, x1 - x0, y1 - y0);
-    g.setLineDash([]);
-    if (y0 < 0 || y0 > height || x0 > width || x1 < 0) return;
-    g.fillStyle = css("--faint");
-    g.textAlign = "left"; g.textBaseline = "bottom";
-    g.fillText(tr("travel"), Math.max(x0, 0) + 4, y0 > 16 ? y0 - 3 : y0 + 15);
-  };
-  const view = {
-    fit() { fitted = true; },
-    prepare(width, height) {
-      [w, h] = [width, height];
-      if (!fitted) return;
-      const box = planBox(), dx = box.high[0] - box.low[0], dy = box.high[1] - box.low[1];
-      scale = Math.min((w - 72) / Math.max(dx, 1e-3), (h - 64) / Math.max(dy, 1e-3));
-      if (!isFinite(scale) || dx + dy <= 0) scale = 1;
-      [cx, cy] = [(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2];
-    },
-    project(x, y) { return [w / 2 + 14 + (x - cx) * scale, h / 2 - 10 - (y - cy) * scale]; },
-    drag(dx, dy) { fitted = false; cx -= dx / scale; cy += dy / scale; },
-    zoom(factor, x, y) {
-      fitted = false;
-      const ux = cx + (x - w / 2 - 14) / scale, uy = cy - (y - h / 2 + 10) / scale;
-      scale = clamp(scale * factor, 1e-3, 1e6);
-      cx = ux - (x - w / 2 - 14) / scale;
-      cy = uy + (y - h / 2 + 10) / scale;
-    },
-    scenery(g, width, height) {
-      const left = cx - (w / 2 + 14) / scale, right = cx + (w / 2 - 14) / scale;
-      const low = cy - (h / 2 + 10) / scale, high = cy + (h / 2 - 10) / scale;
-      const step = ticks(left, right, width / 80).step;
-      g.strokeStyle = css("--grid");
-      g.fillStyle = css("--faint");
-      g.lineWidth = 1;
-      const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-      for (let k = Math.ceil(left / step); k * step <= right; ++k) {
-        const x = Math.round(view.project(k * step, 0)[0]) + 0.5;
-        g.beginPath(); g.moveTo(x, 0); g.lineTo(x, height); g.stroke();
-        g.textAlign = "center"; g.textBaseline = "bottom";
-        if (x > 30) g.fillText(fixed(k * step, decimals), x, height - 4);
-      }
-      for (let k = Math.ceil(low / step); k * step <= high; ++k) {
-        const y = Math.round(view.project(0, k * step)[1]) + 0.5;
-        g.beginPath(); g.moveTo(0, y); g.lineTo(width, y); g.stroke();
-        g.textAlign = "left"; g.textBaseline = "middle";
-        if (y < height - 18) g.fillText(fixed(k * step, decimals), 4, y);
-      }
-      drawTravel(g, width, height);
-      g.font = "600 " + css("--canvas-font");
-      g.fillStyle = axisColour(VIEW[0]); g.textAlign = "right"; g.textBaseline = "bottom";
-      g.fillText((VIEW[0] || "") + " →", width - 8, height - 18);
-      g.fillStyle = axisColour(VIEW[1]); g.textAlign = "left"; g.textBaseline = "top";
-      g.fillText("↑ " + (VIEW[1] || ""), 8, 6);
-    },
-  };
-  return view;
-}
-
-/** The view that turns: parallel projection, yaw about the vertical axis, then pitch. */
-function spaceView() {
-  let yaw = -0.65, pitch = 0.6, zoom = 1, mx = 0, my = 0, w = 1, h = 1;
-  let box = shownBox(), centre = [0, 0, 0], scale = 1, cosY, sinY, cosP, sinP;
-  const raw = (x, y, z) => {
-    const a = x - centre[0], b = y - centre[1], c = z - centre[2];
-    const u = a * cosY - b * sinY, v = a * sinY + b * cosY;
-    return [u, -(v * sinP + c * cosP)];
-  };
-  const corners = () => [0, 1, 2, 3, 4, 5, 6, 7].map(n => [0, 1, 2].map(k => (n >> k & 1 ? box.high : box.low)[k]));
-  const view = {
-    fit() { zoom = 1; mx = my = 0; },
-    turn(y, p) { [yaw, pitch] = [y, p]; view.fit(); },
-    prepare(width, height) {
-      [w, h] = [width, height];
-      box = shownBox();
-      centre = [0, 1, 2].map(k => (box.low[k] + box.high[k]) / 2);
-      [cosY, sinY, cosP, sinP] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
-      // The sphere around everything keeps its size while it turns; a flat path may fill more.
-      let rx = 1e-3, ry = 1e-3;
-      for (const c of corners()) {
-        const [u, v] = raw(...c);
-        rx = Math.max(rx, Math.abs(u));
-        ry = Math.max(ry, Math.abs(v));
-      }
-      scale = zoom * Math.min((w - 56) / (2 * rx), (h - 64) / (2 * ry));
-    },
-    project(x, y, z) {
-      const [u, v] = raw(x, y, z);
-      return [w / 2 + mx + u * scale, h / 2 + my + v * scale];
-    },
-    drag(dx, dy, move) {
-      if (move) { mx += dx; my += dy; return; }
-      yaw += dx * 0.008;
-      pitch = clamp(pitch + dy * 0.008, -Math.PI / 2, Math.PI / 2);
-    },
-    zoom(factor, x, y) {
-      const before = zoom;
-      zoom = clamp(zoom * factor, 0.2, 200);
-      const f = zoom / before;
-      mx = (x - w / 2) - f * (x - w / 2 - mx);
-      my = (y - h / 2) - f * (y - h / 2 - my);
-    },
-    scenery(g, width, height) {
-      const c = corners();
-      g.strokeStyle = css("--grid");
-      g.lineWidth = 1;
-      for (let n = 0; n < 8; ++n)
-        for (let k = 0; k < 3; ++k) {
-          if (n >> k & 1) continue;
-          g.beginPath();
-          g.moveTo(...view.project(...c[n]));
-          g.lineTo(...view.project(...c[n | 1 << k]));
-          g.stroke();
-        }
-      const span = Math.max(box.high[0] - box.low[0], box.high[1] - box.low[1], 1e-3), step = ticks(0, span, 8).step;
-      g.globalAlpha = 0.6;
-      for (const k of [0, 1])
-        for (let n = Math.ceil(box.low[k] / step); n * step <= box.high[k]; ++n) {
-          const from = [box.low[0], box.low[1], box.low[2]], to = [box.high[0], box.high[1], box.low[2]];
-          from[k] = to[k] = n * step;
-          g.beginPath(); g.moveTo(...view.project(...from)); g.lineTo(...view.project(...to)); g.stroke();
-        }
-      g.globalAlpha = 1;
-      const o = [46, height - 46];
-      VIEW.forEach((letter, k) => {
-        if (!letter) return;
-        const unitVector = [0, 1, 2].map(n => centre[n] + (n === k ? 1 : 0)), [u, v] = raw(...unitVector);
-        g.strokeStyle = g.fillStyle = axisColour(letter);
-        g.lineWidth = 2;
-        g.beginPath(); g.moveTo(...o); g.lineTo(o[0] + 30 * u, o[1] + 30 * v); g.stroke();
-        g.textAlign = "center"; g.textBaseline = "middle";
-        g.fillText(letter, o[0] + 39 * u, o[1] + 39 * v);
-      });
-    },
-  };
-  return view;
+  fillScene();
+  look(direction);
+  return {draw: render, look, camera, controls, renderer};
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace servogate::report {
 
@@ -31,7 +32,8 @@ bool corner_stone(const std::vector<PathVertex>& path, std::size_t n,
                   const PathThinning& tolerance) noexcept {
   if (n + 1 >= path.size()) return true;
   // The attributes belong to the stretch that ends at a point, so the point before a change has to stay.
-  return path[n + 1].kind != path[n].kind || (tolerance.keep_lines && path[n + 1].line != path[n].line);
+  return path[n + 1].kind != path[n].kind || path[n + 1].tool != path[n].tool ||
+         (tolerance.keep_lines && path[n + 1].line != path[n].line);
 }
 
 void keep_between(const std::vector<PathVertex>& path, std::size_t first, std::size_t last,
@@ -70,8 +72,13 @@ void thin(std::vector<PathVertex>& path, std::size_t from, const PathThinning& t
     a = n;
   }
   std::size_t out = from;
-  for (std::size_t n = from; n < path.size(); ++n)
-    if (keep[n]) path[out++] = path[n];
+  float deviation = 0;
+  for (std::size_t n = from; n < path.size(); ++n) {
+    deviation = std::max(deviation, path[n].deviation);
+    if (!keep[n]) continue;
+    path[out] = path[n];
+    path[out++].deviation = std::exchange(deviation, 0.0f);
+  }
   path.resize(out);
 }
 
@@ -89,14 +96,21 @@ PathThinning BoundedPath::thinning() const noexcept {
 
 void BoundedPath::add(const PathVertex& v) {
   fastest_ = std::max(fastest_, v.speed);
-  const bool changed = !path_.empty() && (v.line != last_.line || v.kind != last_.kind);
-  if (changed && pending_) path_.push_back(last_);
+  const bool changed =
+      !path_.empty() && (v.line != last_.line || v.kind != last_.kind || v.tool != last_.tool);
+  if (changed && pending_) keep_last();
   last_ = v;
+  left_out_ = std::max(left_out_, v.deviation);
   pending_ = true;
   if (!path_.empty() && distance(v, path_.back()) < first_tolerance_ / 4) return;
-  path_.push_back(v);
-  pending_ = false;
+  keep_last();
   if (path_.size() - thinned_ > 2 * max_vertices_) compact(2 * max_vertices_);
+}
+
+void BoundedPath::keep_last() {
+  path_.push_back(last_);
+  path_.back().deviation = std::exchange(left_out_, 0.0f);
+  pending_ = false;
 }
 
 void BoundedPath::compact(std::size_t most) {
@@ -109,7 +123,7 @@ void BoundedPath::compact(std::size_t most) {
 }
 
 void BoundedPath::finish() {
-  if (pending_ && (path_.empty() || distance(last_, path_.back()) > 0)) path_.push_back(last_);
+  if (pending_ && (path_.empty() || distance(last_, path_.back()) > 0)) keep_last();
   pending_ = false;
   compact(max_vertices_);
 }

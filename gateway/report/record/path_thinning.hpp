@@ -15,6 +15,8 @@ struct PathVertex {
   float x = 0, y = 0, z = 0, t = 0, speed = 0;
   std::int32_t line = 0;
   StretchKind kind = StretchKind::feed;  ///< of the stretch that ends here
+  float deviation = 0;                   ///< largest on that stretch
+  std::int32_t tool = 0;
 };
 
 /// How far a thinned polyline may be from the points that were left out.
@@ -26,7 +28,8 @@ struct PathThinning {
 
 /// Leaves out the points from index `from` on that the rest describes within the tolerances (Douglas and
 /// Peucker, "The reduction of the number of points required to represent a digitized line", 1973). First and
-/// last point and changes between feed, rapid and jump stay. O(n log n) usually. Not real-time safe.
+/// last point and changes of kind or tool stay; a deviation goes on to the next point that stays. O(n log n)
+/// usually. Not real-time safe.
 void thin(std::vector<PathVertex>& path, std::size_t from, const PathThinning& tolerance);
 
 /// A path in bounded memory: thinned while it grows; its tolerance doubles whenever it grows too long.
@@ -44,6 +47,7 @@ class BoundedPath {
 
  private:
   void compact(std::size_t most);
+  void keep_last();
   PathThinning thinning() const noexcept;
 
   std::size_t max_vertices_;
@@ -53,6 +57,7 @@ class BoundedPath {
   std::vector<PathVertex> path_;
   PathVertex last_;
   bool pending_ = false;  ///< last_ is not in path_
+  float left_out_ = 0;    ///< largest deviation of points behind path_.back() that were left out
 };
 
 }  // namespace servogate::report

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "gateway/report/record/path_thinning.hpp"
 #include "gateway/report/recorded_run.hpp"
@@ -9,7 +11,7 @@ namespace servogate::report {
 
 namespace {
 
-constexpr std::size_t kMaxLines = 50'000;
+constexpr std::size_t kMaxLines = 200'000;
 constexpr std::size_t kPerAxis = 5;
 
 template <typename T, typename Merge>
@@ -30,6 +32,9 @@ struct RunRecorder::Impl {
   BoundedPath path;
   std::vector<AxisStatistics> axes;
   std::vector<float> values;  ///< of the present cycle, in the order of run.series
+  std::optional<EveryCycle> every;
+  std::vector<double> cycle_values;  ///< of the present cycle, in the order of its channels
+  std::uint32_t alarms = 0;
   std::vector<bool> signal_states;
   std::array<bool, 2 * image::kMaxAxes> axis_states{};  ///< enabled and homed of the last row
   bool started = false;
@@ -43,6 +48,9 @@ struct RunRecorder::Impl {
   }
 
   void name_series();
+  void name_channels();
+  void keep_cycle(const TraceRow& row);
+  float deviation(const TraceRow& row) const;
   void measure(const TraceRow& row);
   void store(std::int64_t cycle, std::int32_t line);
   void halve_all();
@@ -69,6 +77,54 @@ void RunRecorder::Impl::name_series() {
     run.series.push_back({name + ".act", "rpm", {}, {}});
   }
   values.resize(run.series.size());
+}
+
+void RunRecorder::Impl::name_channels() {
+  // A jerk is a third difference: at short cycles a position has to be finer for the same jerk.
+  const double ratio = std::min(1.0, run.period_s / 1e-3);
+  const double position = std::max(1e-12, 1e-9 * ratio * ratio * ratio);
+  for (const std::string& letter : run.axes) {
+    run.channels.push_back({letter + ".position", position, 3});
+    run.channels.push_back({letter + ".error", 1e-6, 2});
+    run.channels.push_back({letter + ".derived", 1, 1});
+  }
+  run.channels.push_back({"path.speed", 1e-4, 2});
+  for (std::size_t n = kPerAxis * run.axes.size() + 1; n < run.series.size(); ++n)
+    run.channels.push_back({run.series[n].name, 1e-2, 1});
+  every.emplace(run.channels, options.max_bytes);
+  cycle_values.resize(run.channels.size());
+}
+
+void RunRecorder::Impl::keep_cycle(const TraceRow& row) {
+  std::size_t n = 0;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    cycle_values[n++] = row.axes[a].command;
+    cycle_values[n++] = row.axes[a].enabled ? row.axes[a].following_error : 0.0;
+    cycle_values[n++] = axes[a].derived();
+  }
+  cycle_values[n++] = row.feed_mm_s;
+  for (std::size_t s = 0; n < cycle_values.size(); ++s) {
+    cycle_values[n++] = row.spindles[s].command_rpm;
+    cycle_values[n++] = row.spindles[s].actual_rpm;
+  }
+  every->add(row.cycle, cycle_values, row.alarms > alarms);
+  alarms = row.alarms;
+}
+
+/// What of the following error lies across the direction of motion; all of it at rest.
+float RunRecorder::Impl::deviation(const TraceRow& row) const {
+  double error2 = 0.0, velocity2 = 0.0, product = 0.0;
+  for (const int axis : run.view_axes) {
+    if (axis < 0) continue;
+    const auto a = static_cast<std::size_t>(axis);
+    if (!row.axes[a].enabled) return 0.0f;
+    const double e = row.axes[a].following_error, v = axes[a].derivatives()[0];
+    error2 += e * e;
+    velocity2 += v * v;
+    product += e * v;
+  }
+  const double along2 = velocity2 > 1e-6 ? product * product / velocity2 : 0.0;
+  return static_cast<float>(std::sqrt(std::max(0.0, error2 - along2)));
 }
 
 void RunRecorder::Impl::measure(const TraceRow& row) {
@@ -140,7 +196,7 @@ void RunRecorder::Impl::follow_path(const TraceRow& row) {
   };
   path.add({coordinate(0), coordinate(1), coordinate(2),
             static_cast<float>(static_cast<double>(row.t_ns) * 1e-9), static_cast<float>(row.feed_mm_s),
-            row.line, kind(row)});
+            row.line, kind(row), deviation(row), row.tool});
 }
 
 void RunRecorder::Impl::follow_signals(const TraceRow& row) {
@@ -190,15 +246,17 @@ void RunRecorder::begin(const TraceLayout& layout) {
   for (const TraceSignal& s : i.layout.signals) i.run.signals.push_back({s.name, false, {}, -1.0});
   i.signal_states.resize(i.layout.signals.size());
   i.name_series();
+  i.name_channels();
 }
 
 void RunRecorder::row(const TraceRow& row) {
   Impl& i = *impl_;
   if (!i.started) {
-    i.first_cycle = row.cycle;
+    i.first_cycle = i.run.first_cycle = row.cycle;
     i.run.start_s = static_cast<double>(row.t_ns) * 1e-9;
   }
   i.measure(row);
+  i.keep_cycle(row);
   i.store(row.cycle, row.line);
   i.follow_path(row);
   i.follow_signals(row);
@@ -210,6 +268,10 @@ void RunRecorder::row(const TraceRow& row) {
 void RunRecorder::end(std::uint64_t) {
   Impl& i = *impl_;
   i.path.finish();
+  if (i.every) {
+    i.every->finish();
+    i.run.stretches.assign(i.every->stretches().begin(), i.every->stretches().end());
+  }
   i.run.path_tolerance = i.path.tolerance();
   i.run.bucket_s = i.run.period_s * static_cast<double>(i.stride);
   if (i.started) i.run.duration_s = static_cast<double>(i.last_cycle - i.first_cycle + 1) * i.run.period_s;
@@ -221,6 +283,8 @@ void RunRecorder::end(std::uint64_t) {
     i.run.path.speed.push_back(v.speed);
     i.run.path.line.push_back(v.line);
     i.run.path.rapid.push_back(static_cast<std::uint8_t>(v.kind));
+    i.run.path.deviation.push_back(v.deviation);
+    i.run.path.tool.push_back(v.tool);
   }
 }
 
