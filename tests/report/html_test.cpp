@@ -311,6 +311,18 @@ TEST(Html, its_script_runs_and_reads_back_the_run_that_was_put_in) {
   ASSERT_EQ(write_file(folder / "expected.json", close.dump()), "");
   EXPECT_EQ(std::system((smoke + (folder / "page.html") + " " + (folder / "expected.json")).c_str()), 0);
 
+  // A lathe: Z to the right, X up; people read diameters.
+  RunRecorderOptions lathe;
+  lathe.view_axes = {2, 0, -1};
+  Report turned = demo_report(demo);
+  turned.axes[0].diameter = true;
+  const Json diameters{{"tolerance", 0},          {"start", 0},
+                       {"card", "No alarms"},     {"samples", Json::array()},
+                       {"peaks", Json::object()}, {"shown", {"X⌀ 0 … 320 mm", "X is a diameter"}}};
+  ASSERT_EQ(write_file(folder / "page.html", to_html(turned, recorded(demo, lathe), options_of(demo))), "");
+  ASSERT_EQ(write_file(folder / "expected.json", diameters.dump()), "");
+  EXPECT_EQ(std::system((smoke + (folder / "page.html") + " " + (folder / "expected.json")).c_str()), 0);
+
   const Json nothing{{"tolerance", 0},          {"start", 0},
                      {"card", "0 s"},           {"samples", Json::array()},
                      {"peaks", Json::object()}, {"shown", Json::array()}};

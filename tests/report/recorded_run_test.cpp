@@ -93,6 +93,67 @@ TEST(RunRecorder, the_thinned_path_stays_within_its_tolerance_of_every_set_point
   }
 }
 
+TEST(EveryCycle, forgets_the_oldest_first_and_what_is_around_an_alarm_last) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> noise(-1.0, 1.0);
+  EveryCycle every({{"a", 1e-6, 0}}, 100'000);
+  const std::int64_t alarm = 60'000;
+  for (std::int64_t n = 0; n < 400'000; ++n) every.add(n, {noise(random)}, n == alarm);
+  every.finish();
+  std::size_t bytes = 0;
+  bool around = false;
+  for (const CycleStretch& s : every.stretches()) {
+    bytes += s.bytes;
+    const auto rows = static_cast<std::int64_t>(s.columns[0].count);
+    around |= s.first <= alarm && alarm < s.first + rows;
+  }
+  EXPECT_LE(bytes, 100'000u);
+  EXPECT_TRUE(around) << "the alarm's stretch is older than others that went";
+  const CycleStretch& last = every.stretches().back();
+  EXPECT_EQ(last.first + static_cast<std::int64_t>(last.columns[0].count), 400'000)
+      << "the end of the run stays";
+  EXPECT_EQ(std::count_if(every.stretches().begin(), every.stretches().end(),
+                          [](const CycleStretch& s) { return s.first < 50'000; }),
+            0)
+      << "the oldest went";
+}
+
+TEST(EveryCycle, a_lost_cycle_begins_a_stretch_without_a_past) {
+  EveryCycle every({{"a", 1, 1}}, 100'000);
+  for (const std::int64_t n : {5, 6, 7, 9, 10}) every.add(n, {static_cast<double>(n)}, false);
+  every.finish();
+  ASSERT_EQ(every.stretches().size(), 2u);
+  EXPECT_EQ(every.stretches()[0].first, 5);
+  EXPECT_EQ(every.stretches()[1].first, 9);
+  EXPECT_EQ(every.stretches()[1].lead, 0);
+}
+
+TEST(RunRecorder, a_deviation_lies_across_the_path_and_survives_thinning) {
+  TraceLayout layout;
+  layout.axes = {"X", "Y", "Z"};
+  RunRecorder recorder;
+  recorder.begin(layout);
+  for (int n = 0; n < 3000; ++n) {  // along X at 100 mm/s, late by 5 mm, and once off the path by 0.03 mm
+    TraceRow row;
+    row.cycle = n;
+    row.t_ns = n * image::kMillisecond;
+    row.line = 1;
+    row.feed_mm_s = 100;
+    for (std::size_t a = 0; a < 3; ++a) row.axes[a].enabled = row.axes[a].homed = true;
+    row.axes[0].command = 0.1 * n;
+    row.axes[0].following_error = 5.0;
+    row.axes[1].following_error = n == 1234 ? 0.03 : 0.001;
+    recorder.row(row);
+  }
+  recorder.end(0);
+  const PathLine& path = recorder.run().path;
+  EXPECT_LT(path.x.size(), 20u) << "a straight line";
+  float most = 0;
+  for (std::size_t i = 0; i < path.x.size(); ++i)
+    if (path.t[i] > 0.01f) most = std::max(most, path.deviation[i]);
+  EXPECT_NEAR(most, 0.03, 1e-6) << "being late is no deviation";
+}
+
 TEST(BoundedPath, random_walks_stay_within_tolerance_and_length) {
   const std::uint64_t seed = servogate::test::property_seed();
   std::mt19937_64 random(seed);
