@@ -18,6 +18,8 @@ constexpr unsigned kChip = static_cast<unsigned>(Device::chip);
 constexpr unsigned kInput = static_cast<unsigned>(Device::input);
 constexpr unsigned kBus = static_cast<unsigned>(Device::bus);
 constexpr unsigned kNode = static_cast<unsigned>(Device::node);
+constexpr unsigned kModule = static_cast<unsigned>(Device::module);
+constexpr unsigned kControl = static_cast<unsigned>(Device::control);
 
 template <class... P>
 constexpr unsigned takes(P... parameters) {
@@ -67,6 +69,13 @@ constexpr KindRow kKindRows[kKinds] = {
     {Kind::repeat, "repeat", kBus, kFrames, "frames are received twice"},
     {Kind::unplug, "unplug", kNode | kChip, kFor, "nothing comes from it and nothing reaches it"},
     {Kind::bus_off, "bus_off", kNode, kFor, "its controller is bus-off, as after 256 transmit errors"},
+    {Kind::kill, "kill", kDrive | kEncoder | kModule | kStation, kFor,
+     "its electronics die: nothing is sent, heard or held, outputs and torque are gone; then it starts as "
+     "after "
+     "power-on"},
+    {Kind::swapped, "swapped", kDrive | kEncoder | kModule, takes(duration, value),
+     "another device with its node-ID takes its place, and boots with the product code `value` (1018h:02; 0: "
+     "the next one)"},
     {Kind::stuck, "stuck", kInput, takes(duration, level), "the point stays at a level, whatever drives it"},
     {Kind::bounce, "bounce", kInput, takes(duration, Parameter::delay, seed),
      "after a change the contact flickers for half of `delay` to all of it"},
@@ -82,6 +91,8 @@ constexpr KindRow kKindRows[kKinds] = {
     {Kind::flash_error, "flash_error", kDrive, takes(code),
      "the next program written to it ends with this error of 1F57h"},
     {Kind::reset, "reset", kDrive, 0, "restarts as after power-on"},
+    {Kind::late_cycle, "late_cycle", kControl, takes(Parameter::delay),
+     "the next cycle begins so much later, and what it drives lives on meanwhile"},
 };
 
 struct State {
@@ -126,7 +137,7 @@ constexpr ParameterRow kParameterRows[] = {
     {every, "every", "1 to 4294967295", [](Text v, Fault& f) { return set_whole(v, 1, kMost32, f.every); }},
     {number, "number", "of the PDO, 1 to 4; none: any",
      [](Text v, Fault& f) { return set_whole(v, 1, 4, f.number); }},
-    {value, "value", "bits, or counts",
+    {value, "value", "bits, counts, or a product code",
      [](Text v, Fault& f) { return set_whole(v, INT64_MIN, INT64_MAX, f.value); }},
     {code, "code", "error code, 1 to 0xFFFF",
      [](Text v, Fault& f) { return set_whole(v, 1, 0xFFFF, f.error_code); }},

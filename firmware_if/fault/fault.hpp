@@ -14,14 +14,16 @@
 namespace servogate::fault {
 
 /// What a fault happens to. Values are bits of KindRow::devices.
-enum class Device : std::uint8_t {
-  drive = 1,    ///< a CiA 402 drive
-  encoder = 2,  ///< a CiA 406 encoder
-  station = 4,  ///< a Modbus station
-  chip = 8,     ///< a GPIO chip
-  input = 16,   ///< one contact of a chip, a drive or an I/O module
-  bus = 32,     ///< the wire of a CAN segment
-  node = 64,    ///< the connection of a device to its wire
+enum class Device : std::uint16_t {
+  drive = 1,      ///< a CiA 402 drive
+  encoder = 2,    ///< a CiA 406 encoder
+  station = 4,    ///< a Modbus station
+  chip = 8,       ///< a GPIO chip
+  input = 16,     ///< one contact of a chip, a drive or an I/O module
+  bus = 32,       ///< the wire of a CAN segment
+  node = 64,      ///< the connection of a device to its wire
+  module = 128,   ///< a CiA 401 I/O module
+  control = 256,  ///< the computer that controls the machine
 };
 
 /// The first group lasts until its time is over or it is cleared; the second happens once. Meanings, devices
@@ -54,6 +56,8 @@ enum class Kind : std::uint8_t {
   repeat,
   unplug,
   bus_off,
+  kill,
+  swapped,
   stuck,
   bounce,
   emcy,
@@ -66,8 +70,9 @@ enum class Kind : std::uint8_t {
   under_voltage,
   flash_error,
   reset,
+  late_cycle,
 };
-inline constexpr std::size_t kKinds = static_cast<std::size_t>(Kind::reset) + 1;
+inline constexpr std::size_t kKinds = static_cast<std::size_t>(Kind::late_cycle) + 1;
 
 /// A parameter by its bit in KindRow::parameters.
 enum class Parameter : std::uint8_t {

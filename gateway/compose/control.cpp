@@ -78,7 +78,7 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
   if (!good || !c->open_buses(findings, source != nullptr)) return nullptr;
 
   c->world_ = std::make_unique<MockWorld>(c->loaded_);
-  c->faults_ = std::make_unique<MachineFaults>(m, *c->world_);
+  c->faults_ = std::make_unique<MachineFaults>(m, *c->world_, true);
   cycle::CycleParts parts;
   parts.period_ns = m.cycle_ns();
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
@@ -226,12 +226,15 @@ bool Control::compile_logic(std::vector<text::Finding>& findings) {
   return true;
 }
 
-void Control::advance_world() {
+image::Nanoseconds Control::advance_world() {
   const image::Nanoseconds t = cycle_->count() * cycle_->period_ns();
-  await_grants(t);
-  world_->note_feedback(cycle_->image());
   faults_->advance_to(t);
-  world_->advance_to(t);
+  const image::Nanoseconds late = faults_->take_lateness();
+  world_ahead_ns_ += late;
+  await_grants(t + world_ahead_ns_);
+  world_->note_feedback(cycle_->image());
+  world_->advance_to(t + world_ahead_ns_);
+  return late;
 }
 
 void Control::take_leave() {
@@ -242,7 +245,7 @@ void Control::take_leave() {
   bool done = false;
   for (image::Nanoseconds t = begin; !done && t < begin + kPatience_ns; t += cycle_->period_ns()) {
     if (granted)
-      await_grants(t);
+      await_grants(t + world_ahead_ns_);
     else
       std::this_thread::sleep_for(std::chrono::nanoseconds(cycle_->period_ns()));
     done = true;
@@ -313,12 +316,6 @@ std::vector<text::Finding> Control::restore_retained(const machine::MachineState
                         {v.name, v.type, v.value}});
   }
   return findings;
-}
-
-bool Control::step() {
-  advance_world();
-  read_ahead();
-  return cycle_->step();
 }
 
 void Control::open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) noexcept {

@@ -22,8 +22,7 @@
 namespace servogate::gateway {
 
 /// A whole machine put together from its file: cycle, axes, PLC, processes, buses real or simulated. The one
-/// place where rooms meet. Who owns a Control owns its loop: step() in virtual time, or run() of
-/// RealtimeLoop.
+/// place where rooms meet. Who owns a Control owns its loop: RunningMachine.
 class Control {
  public:
   /// Puts the machine together. nullptr when something is wrong with it (`findings` says what: PLC program, a
@@ -33,13 +32,11 @@ class Control {
                                           cycle::InputSource* source = nullptr);
   ~Control();
 
-  /// One cycle in virtual time: the simulated world up to it, reading ahead, then the cycle. False: a
-  /// replayed record has ended.
-  bool step();
-  /// Brings the simulated world to the beginning of the next cycle; part of step(), and of the real-time
-  /// loop.
-  void advance_world();
-  /// Reads ahead in all processes. Part of step(); in real time its own thread calls it again and again.
+  /// Brings the simulated world to the beginning of the next cycle, before it. How late that cycle comes by a
+  /// fault (late_cycle), 0: on time; the world has lived through that, too, and in real time the owner of the
+  /// loop waits so much longer.
+  image::Nanoseconds advance_world();
+  /// Reads ahead in all processes, before a cycle; in real time its own thread calls it again and again.
   /// False: nothing more can be read before the cycle goes on.
   bool read_ahead();
 
@@ -118,6 +115,7 @@ class Control {
   std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
   std::optional<image::Nanoseconds> due_ns_;
+  image::Nanoseconds world_ahead_ns_ = 0;  ///< what late cycles let the world live longer
   cycle::MonotonicClock stopwatch_;
   std::unique_ptr<plc::Logic> logic_;
   std::vector<std::unique_ptr<channel::Process>> processes_;

@@ -53,8 +53,8 @@ void RealtimeLoop::cycle_thread() {
   image::Nanoseconds base = clock_.now_ns() + 5 * period;
   for (std::int64_t n = 0; !stop_.load(std::memory_order_relaxed); ++n) {
     const image::Nanoseconds due = base + n * period;
-    control_.advance_world();
-    clock_.sleep_until(due);
+    const image::Nanoseconds asked_late = control_.advance_world();
+    clock_.sleep_until(due + asked_late);
     const image::Nanoseconds late = clock_.now_ns() - due;
     if (late > period) {
       overruns_.fetch_add(1, std::memory_order_relaxed);

@@ -160,12 +160,16 @@ void RunningMachine::wait_for_room() {
 
 bool RunningMachine::cycle() {
   wait_for_room();
-  return move_on();
+  return move_on(0);
 }
 
-bool RunningMachine::move_on() {
+bool RunningMachine::move_on(image::Nanoseconds late_ns) {
+  if (late_ns > control_->cycle().period_ns()) {  // as the real-time loop counts them
+    late_cycles_.fetch_add(1, std::memory_order_relaxed);
+    control_->cycle().note_overrun(late_ns, false);
+  }
   if (!control_->cycle().step()) return false;
-  after_cycle(0);
+  after_cycle(late_ns);
   return true;
 }
 
@@ -181,9 +185,9 @@ void RunningMachine::after_cycle(image::Nanoseconds late_ns) noexcept {
 
 bool RunningMachine::move_world() {
   wait_for_room();  // what passes on the wires is logged, too
-  control_->advance_world();
+  const image::Nanoseconds late_ns = control_->advance_world();
   control_->read_ahead();
-  return move_on();
+  return move_on(late_ns);
 }
 
 bool RunningMachine::step() {
@@ -237,7 +241,8 @@ std::string RunningMachine::report() const {
 }
 
 std::int64_t RunningMachine::overruns() const noexcept {
-  return realtime_loop_ != nullptr ? realtime_loop_->overruns() : 0;
+  return realtime_loop_ != nullptr ? realtime_loop_->overruns()
+                                   : late_cycles_.load(std::memory_order_relaxed);
 }
 
 }  // namespace servogate::gateway

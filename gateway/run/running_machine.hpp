@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -105,7 +106,7 @@ class RunningMachine final : public bench::Machine {
   const machine::MachineState& learned() const noexcept { return state_->state; }
   /// It moves in a loop of its own.
   bool moves_by_itself() const noexcept { return settings_.clock != ClockKind::virtual_time || paced(); }
-  /// Late cycles of real time.
+  /// Late cycles: of real time, and by a fault.
   std::int64_t overruns() const noexcept;
 
  private:
@@ -113,7 +114,7 @@ class RunningMachine final : public bench::Machine {
                  std::unique_ptr<Control> control);
   bool paced() const noexcept { return settings_.pace > 0.0; }
   void wait_for_room();
-  bool move_on();
+  bool move_on(image::Nanoseconds late_ns);
   bool move_world();
   bool begin_realtime(bool quiet);
   void after_cycle(image::Nanoseconds late_ns) noexcept;
@@ -128,6 +129,7 @@ class RunningMachine final : public bench::Machine {
   std::unique_ptr<Session> session_;
   std::unique_ptr<image::ProcessImage> image_;  ///< newest whole one of a machine that moves by itself
   cycle::AlarmSnapshot alarms_;
+  std::atomic<std::int64_t> late_cycles_{0};  ///< of virtual time
   RetainedKeeper keeper_;
   std::unique_ptr<PacedLoop> paced_loop_;
   std::unique_ptr<RealtimeLoop> realtime_loop_;

@@ -301,14 +301,14 @@ bool Cycle::part_missing(const image::AlarmRecord& r) const noexcept {
   return false;
 }
 
-void Cycle::note_overrun(image::Nanoseconds late_ns) noexcept {
+void Cycle::note_overrun(image::Nanoseconds late_ns, bool by_clock) noexcept {
   ++overruns_;
   if (late_ns < 2 * parts_.period_ns) return;
   image::AlarmRecord r;
   r.number = alarm::kOverrunLimit;
   r.limit = static_cast<double>(2 * parts_.period_ns) / 1e6;
   r.value = static_cast<double>(late_ns) / 1e6;
-  if (duration_ns_ > parts_.period_ns)  // the cycle before was too long: name its longest phase
+  if (by_clock && duration_ns_ > parts_.period_ns)  // the cycle before was too long: name its longest phase
     r.detail1 =
         1.0 + static_cast<double>(std::max_element(phase_ns_.begin(), phase_ns_.end()) - phase_ns_.begin());
   notices_.add(r);

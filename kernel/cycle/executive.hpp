@@ -113,8 +113,10 @@ class Cycle {
   /// Number of cycles done.
   std::int64_t count() const noexcept { return count_; }
   image::Nanoseconds period_ns() const noexcept { return parts_.period_ns; }
-  /// The owner of the loop reports a cycle that began late; past a limit this is an alarm. real-time safe.
-  void note_overrun(image::Nanoseconds late_ns) noexcept;
+  /// The owner of the loop reports a cycle that began late; past a limit this is an alarm. It names the
+  /// longest phase of a cycle before that was too long, but in virtual time (`by_clock` false), where what
+  /// the computer took means nothing. real-time safe.
+  void note_overrun(image::Nanoseconds late_ns, bool by_clock = true) noexcept;
   /// The owner of the loop asks, after a step that was measured, whether the logic has taken longer than
   /// this, or was `ended` from outside after it; then it is an alarm. In virtual time nobody asks. real-time
   /// safe.

@@ -13,9 +13,9 @@ namespace servogate::fault {
 namespace {
 
 constexpr std::pair<Device, const char*> kDevices[] = {
-    {Device::drive, "drive"},    {Device::encoder, "encoder"}, {Device::station, "Modbus station"},
-    {Device::chip, "GPIO chip"}, {Device::input, "input"},     {Device::bus, "bus"},
-    {Device::node, "node"}};
+    {Device::drive, "drive"},    {Device::encoder, "encoder"},   {Device::station, "Modbus station"},
+    {Device::chip, "GPIO chip"}, {Device::input, "input"},       {Device::bus, "bus"},
+    {Device::node, "node"},      {Device::module, "I/O module"}, {Device::control, "control"}};
 
 void append(std::string& list, const std::string& word) { list += (list.empty() ? "" : ", ") + word; }
 

@@ -39,8 +39,8 @@ class CanSegment::Endpoint final : public image::CanBus {
   image::CanState state() const noexcept override;
   std::uint32_t bit_rate() const noexcept override { return segment_.config_.bit_rate; }
 
-  /// Takes part in the traffic: plugged in and not bus-off.
-  bool on_bus() const noexcept { return connected_ && !bus_off(); }
+  /// Takes part in the traffic: plugged in, alive and not bus-off.
+  bool on_bus() const noexcept { return connected_ && !bus_off() && (node_ == nullptr || node_->alive()); }
   bool bus_off() const noexcept { return segment_.now_ < recover_at_; }
   /// Earliest time at which it offers a frame.
   Nanoseconds ready_at() const noexcept;

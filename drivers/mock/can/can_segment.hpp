@@ -36,6 +36,8 @@ class CanNode {
   virtual void advance_to(Nanoseconds t) noexcept = 0;
   /// Earliest time at which the node wants to be advanced although no frame comes. real-time safe.
   virtual Nanoseconds next_action_ns() const noexcept = 0;
+  /// False: without supply it takes no part in the traffic, and acknowledges nothing. real-time safe.
+  virtual bool alive() const noexcept { return true; }
 };
 
 /// Sizes and rate of a segment. Memory is taken in the constructor and in attach(), never later.

@@ -30,6 +30,8 @@ class BusGate final : public image::CanBus {
   Spoil& spoil() noexcept { return spoil_; }
   /// Every n-th TPDO is counted from the next one on.
   void count_pdos_anew() noexcept { pdos_ = 0; }
+  /// What was kept back is not sent any more.
+  void forget_late() noexcept { late_count_ = 0; }
   /// Sends what was kept back until now.
   void advance_to(image::Nanoseconds now) noexcept;
 

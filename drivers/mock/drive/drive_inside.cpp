@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <span>
 
+#include "firmware_if/canopen/402/objects.hpp"
+
 namespace servogate::mock {
 
 void SimulatedDrive::Inside::power_on(Nanoseconds t) noexcept {
@@ -15,9 +17,24 @@ void SimulatedDrive::Inside::power_on(Nanoseconds t) noexcept {
   slave.power_on(gate, t, static_cast<Nanoseconds>(config.boot_time_s * 1e9));
 }
 
+// Everything volatile is gone, and nothing of it is told on the bus.
+void SimulatedDrive::Inside::start_again() noexcept {
+  gate.spoil().silent = true;
+  slave.reset_node(now);
+  late_count = 0;
+  gate.forget_late();
+  command = {};
+  power_on(now);
+  apply_to_gate();
+}
+
+void SimulatedDrive::Inside::show_product(std::int64_t code) noexcept {
+  dictionary.set_default(canopen::object::kIdentity, 2, code);
+}
+
 void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
   while (next_servo <= t || next_communication <= t) {
-    if (spoiled(fault::Kind::freeze)) {
+    if (spoiled(fault::Kind::freeze) && !spoiled(fault::Kind::kill)) {
       // Time passes it by.
       next_servo += next_servo <= t ? config.servo_period_ns : 0;
       if (next_communication > t) continue;
@@ -29,8 +46,10 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
       next_servo += config.servo_period_ns;
     } else {
       if (any_lasting) expire(next_communication);
-      gate.advance_to(next_communication);
-      slave.tick(next_communication);
+      if (!spoiled(fault::Kind::kill)) {
+        gate.advance_to(next_communication);
+        slave.tick(next_communication);
+      }
       next_communication += kCommunicationPeriod;
     }
   }
@@ -89,6 +108,7 @@ void SimulatedDrive::Inside::watch_heat() noexcept {
 void SimulatedDrive::Inside::servo_tick() noexcept {
   const std::int64_t before = plant.counts();
   plant.step(command);
+  if (spoiled(fault::Kind::kill)) return;  // the mechanics alone
   if (config.plant.thermal_time_s > 0.0) watch_heat();
   read_inputs(before);
   inputs.hold_state = any_lasting && spoiled(fault::Kind::stuck_state) &&
@@ -137,12 +157,20 @@ bool SimulatedDrive::Inside::answer_with_abort(const CanFrame& frame) noexcept {
 void SimulatedDrive::Inside::inject(const fault::Fault& f) noexcept {
   if (!fault::row(f.kind).happens_to(fault::Device::drive)) return;
   if (!fault::lasts(f.kind)) return happen(f);
+  if (f.kind == fault::Kind::swapped && !spoiled(f.kind))
+    own_product = dictionary.get(canopen::object::kIdentity, 2);
   lasting[static_cast<std::size_t>(f.kind)] = {f, f.duration_ns > 0 ? now + f.duration_ns : 0, true};
+  begin(f);
+  apply_to_gate();
+}
+
+void SimulatedDrive::Inside::begin(const fault::Fault& f) noexcept {
   if (f.kind == fault::Kind::rpdo_dropped) rpdos_dropped_of = 0;
   if (f.kind == fault::Kind::pdo_dropped) gate.count_pdos_anew();
   if (f.kind == fault::Kind::encoder_loss) lost_encoder_position = plant.state().position;
+  if (f.kind == fault::Kind::swapped) show_product(f.value != 0 ? f.value & 0xFFFF'FFFF : own_product + 1);
+  if (f.kind == fault::Kind::swapped || f.kind == fault::Kind::kill) start_again();
   set_supply(f.kind, false);
-  apply_to_gate();
 }
 
 void SimulatedDrive::Inside::clear(fault::Kind kind) noexcept {
@@ -151,8 +179,11 @@ void SimulatedDrive::Inside::clear(fault::Kind kind) noexcept {
 }
 
 void SimulatedDrive::Inside::end(Lasting& l) noexcept {
-  if (l.active) set_supply(l.fault.kind, true);
+  if (!l.active) return;
   l.active = false;
+  set_supply(l.fault.kind, true);
+  if (l.fault.kind == fault::Kind::swapped) show_product(own_product);
+  if (l.fault.kind == fault::Kind::swapped || l.fault.kind == fault::Kind::kill) start_again();
 }
 
 // What the faults of the supply take away and give back.
@@ -162,6 +193,7 @@ void SimulatedDrive::Inside::set_supply(fault::Kind kind, bool present) noexcept
 }
 
 void SimulatedDrive::Inside::expire(Nanoseconds t) noexcept {
+  now = std::max(now, t);
   bool changed = false;
   for (Lasting& l : lasting) {
     if (!l.active || l.until == 0 || t < l.until) continue;
@@ -174,7 +206,7 @@ void SimulatedDrive::Inside::expire(Nanoseconds t) noexcept {
 void SimulatedDrive::Inside::apply_to_gate() noexcept {
   any_lasting = std::any_of(lasting.begin(), lasting.end(), [](const Lasting& l) { return l.active; });
   BusGate::Spoil& s = gate.spoil();
-  s.silent = spoiled(fault::Kind::silent) || spoiled(fault::Kind::freeze);
+  s.silent = spoiled(fault::Kind::silent) || spoiled(fault::Kind::freeze) || spoiled(fault::Kind::kill);
   s.heartbeat_lost = spoiled(fault::Kind::heartbeat_lost);
   s.sdo_delay_ns = spoiled(fault::Kind::sdo_late) ? fault(fault::Kind::sdo_late).delay_ns : 0;
   s.sdo_silent = spoiled(fault::Kind::sdo_silent);

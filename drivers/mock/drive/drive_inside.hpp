@@ -26,6 +26,8 @@ struct SimulatedDrive::Inside {
   explicit Inside(const SimulatedDriveConfig& c);
 
   void power_on(Nanoseconds t) noexcept;
+  void start_again() noexcept;
+  void show_product(std::int64_t code) noexcept;
   void advance_to(Nanoseconds t) noexcept;
   void servo_tick() noexcept;
   void watch_heat() noexcept;
@@ -40,6 +42,7 @@ struct SimulatedDrive::Inside {
   void inject(const fault::Fault& fault) noexcept;
   void happen(const fault::Fault& fault) noexcept;
   void clear(fault::Kind kind) noexcept;
+  void begin(const fault::Fault& fault) noexcept;
   void end(Lasting& lasting_fault) noexcept;
   void set_supply(fault::Kind kind, bool present) noexcept;
   void expire(Nanoseconds t) noexcept;
@@ -61,6 +64,7 @@ struct SimulatedDrive::Inside {
   canopen::DriveInputs inputs;
   std::array<bool, canopen::kDriveInputs> outside_level{};
   std::int64_t lost_encoder_position = 0;
+  std::int64_t own_product = 0;  ///< 1018h:02 of the device itself
   std::array<Lasting, fault::kKinds> lasting{};
   bool any_lasting = false;
   std::uint32_t rpdos_dropped_of = 0;  ///< RPDOs since the fault began

@@ -55,7 +55,9 @@ const CanFilter* SimulatedDrive::filter() const noexcept { return &inside_->slav
 
 void SimulatedDrive::on_frame(const CanFrame& frame) noexcept {
   Inside& in = *inside_;
-  if (!in.slave.concerned(frame) || in.spoiled(fault::Kind::deaf) || in.spoiled(fault::Kind::freeze)) return;
+  if (!in.slave.concerned(frame) || in.spoiled(fault::Kind::deaf) || in.spoiled(fault::Kind::freeze) ||
+      in.spoiled(fault::Kind::kill))
+    return;
   if (in.slave.immediate(frame)) in.advance_to(frame.timestamp_ns);
   if (in.any_lasting) {
     CanFrame spoiled = frame;
@@ -67,6 +69,7 @@ void SimulatedDrive::on_frame(const CanFrame& frame) noexcept {
 
 void SimulatedDrive::advance_to(Nanoseconds t) noexcept { inside_->advance_to(t); }
 Nanoseconds SimulatedDrive::next_action_ns() const noexcept { return inside_->next_communication; }
+bool SimulatedDrive::alive() const noexcept { return !inside_->spoiled(fault::Kind::kill); }
 
 canopen::NodeId SimulatedDrive::node_id() const noexcept { return inside_->slave.node(); }
 image::DriveState SimulatedDrive::state() const noexcept { return inside_->profile.state(); }

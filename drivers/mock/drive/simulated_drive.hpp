@@ -54,8 +54,8 @@ struct SimulatedDriveConfig {
   std::uint32_t revision = 0x0001'0000;
   std::uint32_t serial_number = 1;
   PlantConfig plant;
-  bool absolute_encoder = false;  ///< false: 6064h is 0 at power-on wherever the shaft stands
-  bool main_voltage = true;       ///< the DC link is charged
+  bool absolute_encoder = false;                 ///< false: 6064h is 0 at power-on wherever the shaft stands
+  bool main_voltage = true;                      ///< the DC link is charged
   double boot_time_s = 0.01;                     ///< from power-on to the boot-up message
   image::Nanoseconds servo_period_ns = 250'000;  ///< of loops and plant
   std::vector<DriveSwitch> switches;
@@ -94,6 +94,7 @@ class SimulatedDrive final : public CanNode {
   void on_frame(const CanFrame& frame) noexcept override;
   void advance_to(Nanoseconds t) noexcept override;
   Nanoseconds next_action_ns() const noexcept override;
+  bool alive() const noexcept override;
 
   /// As it is now; layer setting services can change it.
   canopen::NodeId node_id() const noexcept;

@@ -36,6 +36,9 @@ const CanFilter* SimulatedEncoder::filter() const noexcept { return &inside_->no
 void SimulatedEncoder::on_frame(const CanFrame& frame) noexcept { inside_->node.on_frame(frame); }
 void SimulatedEncoder::advance_to(Nanoseconds t) noexcept { inside_->node.advance_to(t); }
 Nanoseconds SimulatedEncoder::next_action_ns() const noexcept { return inside_->node.next; }
+bool SimulatedEncoder::alive() const noexcept { return inside_->node.alive; }
+void SimulatedEncoder::supply(bool present) noexcept { inside_->node.supply(present); }
+void SimulatedEncoder::swap(std::optional<std::uint32_t> product) noexcept { inside_->node.swap(product); }
 
 void SimulatedEncoder::set_position(std::int64_t counts) noexcept {
   inside_->node.profile.set_position(counts);

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "drivers/mock/can/can_segment.hpp"
@@ -37,7 +38,13 @@ class SimulatedEncoder final : public CanNode {
   void on_frame(const CanFrame& frame) noexcept override;
   void advance_to(Nanoseconds t) noexcept override;
   Nanoseconds next_action_ns() const noexcept override;
+  bool alive() const noexcept override;
 
+  /// Takes its supply away (false), or gives it back: it starts as after power-on.
+  void supply(bool present) noexcept;
+  /// Another device takes its place, with this product code (1018h:02; 0: the next one); nullopt: the device
+  /// itself is back.
+  void swap(std::optional<std::uint32_t> product) noexcept;
   /// Where the shaft stands, counts of the disc from its zero over any number of turns.
   void set_position(std::int64_t counts) noexcept;
   std::int64_t position() const noexcept;

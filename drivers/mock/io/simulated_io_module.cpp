@@ -48,6 +48,9 @@ const CanFilter* SimulatedIoModule::filter() const noexcept { return &inside_->n
 void SimulatedIoModule::on_frame(const CanFrame& frame) noexcept { inside_->node.on_frame(frame); }
 void SimulatedIoModule::advance_to(Nanoseconds t) noexcept { inside_->node.advance_to(t); }
 Nanoseconds SimulatedIoModule::next_action_ns() const noexcept { return inside_->node.next; }
+bool SimulatedIoModule::alive() const noexcept { return inside_->node.alive; }
+void SimulatedIoModule::supply(bool present) noexcept { inside_->node.supply(present); }
+void SimulatedIoModule::swap(std::optional<std::uint32_t> product) noexcept { inside_->node.swap(product); }
 
 canopen::NmtState SimulatedIoModule::nmt_state() const noexcept { return inside_->node.slave.state(); }
 void SimulatedIoModule::set_digital(std::uint8_t line, bool level) noexcept {
@@ -57,10 +60,10 @@ void SimulatedIoModule::set_analogue(std::uint8_t channel, std::int16_t value) n
   inside_->node.profile.set_analogue(channel, value);
 }
 bool SimulatedIoModule::digital(std::uint8_t line) const noexcept {
-  return inside_->node.profile.digital(line);
+  return inside_->node.alive && inside_->node.profile.digital(line);
 }
 std::int16_t SimulatedIoModule::analogue(std::uint8_t channel) const noexcept {
-  return inside_->node.profile.analogue(channel);
+  return inside_->node.alive ? inside_->node.profile.analogue(channel) : std::int16_t{0};
 }
 std::int64_t SimulatedIoModule::object(std::uint16_t index, std::uint8_t subindex) const noexcept {
   return inside_->node.dictionary.get(index, subindex);

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "drivers/mock/can/can_segment.hpp"
@@ -41,7 +42,13 @@ class SimulatedIoModule final : public CanNode {
   void on_frame(const CanFrame& frame) noexcept override;
   void advance_to(Nanoseconds t) noexcept override;
   Nanoseconds next_action_ns() const noexcept override;
+  bool alive() const noexcept override;
 
+  /// Takes its supply away (false), or gives it back: it starts as after power-on.
+  void supply(bool present) noexcept;
+  /// Another device takes its place, with this product code (1018h:02; 0: the next one); nullopt: the device
+  /// itself is back.
+  void swap(std::optional<std::uint32_t> product) noexcept;
   canopen::NmtState nmt_state() const noexcept;
   /// Levels from the world; lines and channels count from 0.
   void set_digital(std::uint8_t line, bool level) noexcept;

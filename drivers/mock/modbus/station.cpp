@@ -26,13 +26,21 @@ void ModbusStation::add_loopback(const Loopback& wire) {
   advance_to(now_ns_);
 }
 
+void ModbusStation::inject(const StationFault& fault) {
+  using enum StationFault::Kind;
+  if (fault.kind == dead && fault_.kind != dead) lose_supply();
+  // Its watchdog begins to run with its supply.
+  if (fault.kind != dead && fault_.kind == dead) last_request_ns_ = now_ns_;
+  fault_ = fault;
+}
+
 image::Nanoseconds ModbusStation::answer_delay_ns() const noexcept {
   return settings_.answer_delay_ns + (fault_.kind == StationFault::Kind::slow ? fault_.extra_ns : 0);
 }
 
 bool ModbusStation::serve(image::Nanoseconds t, const modbus::Pdu& request, modbus::Pdu& answer) {
   advance_to(t);
-  if (fault_.kind == StationFault::Kind::silence) return false;
+  if (fault_.kind == StationFault::Kind::silence || fault_.kind == StationFault::Kind::dead) return false;
   ++served_;
   last_request_ns_ = t;
   modbus::Request asked;
@@ -128,7 +136,9 @@ void ModbusStation::drive(Wire& wire, bool out, image::Nanoseconds t) {
 
 void ModbusStation::advance_to(image::Nanoseconds t) {
   now_ns_ = std::max(now_ns_, t);
-  if (settings_.watchdog_ns > 0 && now_ns_ - last_request_ns_ > settings_.watchdog_ns) lose_outputs();
+  if (settings_.watchdog_ns > 0 && fault_.kind != StationFault::Kind::dead &&
+      now_ns_ - last_request_ns_ > settings_.watchdog_ns)
+    lose_outputs();
   for (Wire& wire : wires_) {
     if (!wire.pending || now_ns_ < wire.due_ns) continue;
     wire.pending = false;
@@ -150,6 +160,11 @@ void ModbusStation::lose_outputs() {
       write_coil(static_cast<std::uint16_t>(n), l.value != 0, last_request_ns_ + settings_.watchdog_ns);
   for (std::size_t n = 0; n < holding_.size(); ++n)
     if (const OutputLoss l = loss(settings_.holding_loss, n); !l.hold) holding_[n] = l.value;
+}
+
+void ModbusStation::lose_supply() {
+  for (std::size_t n = 0; n < coils_.size(); ++n) write_coil(static_cast<std::uint16_t>(n), false, now_ns_);
+  std::fill(holding_.begin(), holding_.end(), std::uint16_t{0});
 }
 
 bool ModbusStation::set_input(std::uint16_t n, bool on) {

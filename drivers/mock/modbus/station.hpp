@@ -51,6 +51,7 @@ struct StationFault {
     exception,  ///< answers every request with `exception`
     slow,       ///< answers `extra_ns` later
     garbled,    ///< the answer's checksum is wrong
+    dead,       ///< without supply: no answer, its outputs are off and stay off until somebody writes them
   } kind = Kind::none;
   modbus::Exception exception = modbus::Exception::server_device_failure;
   image::Nanoseconds extra_ns = 0;
@@ -64,7 +65,7 @@ class ModbusStation {
 
   const StationSettings& settings() const noexcept { return settings_; }
   void add_loopback(const Loopback& wire);
-  void inject(const StationFault& fault) noexcept { fault_ = fault; }
+  void inject(const StationFault& fault);
   const StationFault& fault() const noexcept { return fault_; }
 
   /// Serves one request that was complete at time t. False: no answer will come.
@@ -102,6 +103,7 @@ class ModbusStation {
   bool input_register(std::size_t address, std::uint16_t& word) const noexcept;
   void follow(const Wire& wire);
   void lose_outputs();
+  void lose_supply();
   void write_coil(std::uint16_t n, bool on, image::Nanoseconds t);
   void drive(Wire& wire, bool output, image::Nanoseconds t);
 

@@ -29,8 +29,9 @@ class LssSlave {
 
   LssMode mode() const noexcept { return mode_; }
   NodeId active_node() const noexcept { return active_; }
-  /// Power-on with the stored node-ID.
-  void power_on(NodeId node) noexcept {
+  /// Power-on with the stored node-ID and what the device is.
+  void power_on(NodeId node, const LssIdentity& identity) noexcept {
+    identity_ = identity;
     active_ = pending_ = node;
     mode_ = LssMode::waiting;
     change_ = Change::none;

@@ -49,7 +49,7 @@ void Slave::power_on(image::CanBus& bus, image::Nanoseconds now, image::Nanoseco
   bus_ = &bus;
   now_ = now;
   if (stored_node_ != node_) take_node(stored_node_);
-  lss_.power_on(stored_node_);
+  lss_.power_on(stored_node_, identity_of(dictionary_));
   emcy_.connect(&bus);
   monitor_.connect(&bus);
   boot_at_ = now + boot_time;

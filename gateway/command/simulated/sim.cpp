@@ -141,7 +141,7 @@ int serve(const SimOptions& options, const machine::LoadResult& loaded, std::vec
           DriveDesk& desk, const EndBySignal& signals) {
   constexpr image::Nanoseconds kShortest = 50 * image::kMicrosecond;
   MockWorld world(loaded);
-  MachineFaults faults(loaded.machine, world);
+  MachineFaults faults(loaded.machine, world, false);
   desk.set_devices([&](const DriveDeed& deed, std::string& why) {
     using Kind = DriveDeed::Kind;
     if (deed.kind == Kind::fault) return faults.inject(deed.device, deed.fault, why);

@@ -36,14 +36,24 @@ mock::StationFault of_station(const fault::Fault& f) {
   const Of kind = f.kind == Kind::silent    ? Of::silence
                   : f.kind == Kind::slow    ? Of::slow
                   : f.kind == Kind::corrupt ? Of::garbled
+                  : f.kind == Kind::kill    ? Of::dead
                                             : Of::exception;
   return {kind, static_cast<modbus::Exception>(f.exception), f.delay_ns};
 }
 
+/// False: the fault is neither.
+template <class Node>
+bool supply_or_swap(Node& node, const fault::Fault& f, bool begins) {
+  if (f.kind == Kind::kill) node.supply(!begins);
+  if (f.kind == Kind::swapped)
+    node.swap(begins ? std::optional(static_cast<std::uint32_t>(f.value)) : std::nullopt);
+  return f.kind == Kind::kill || f.kind == Kind::swapped;
+}
+
 }  // namespace
 
-MachineFaults::MachineFaults(const machine::MachineConfig& machine, MockWorld& world)
-    : machine_(machine), world_(world) {}
+MachineFaults::MachineFaults(const machine::MachineConfig& machine, MockWorld& world, bool controlled)
+    : machine_(machine), world_(world), controlled_(controlled) {}
 
 std::optional<MachineFaults::Target> MachineFaults::find_on_bus(std::string_view device) const {
   for (std::size_t b = 0; b < machine_.buses.size(); ++b) {
@@ -59,8 +69,10 @@ std::optional<MachineFaults::Target> MachineFaults::find_on_bus(std::string_view
       target.endpoint = static_cast<int>(n) + 1;  // behind the control
       target.drive = world_.drive(device);
       target.encoder = world_.encoder(device);
+      target.module = world_.module(device);
       target.devices = bit(Device::node) | (target.drive != nullptr ? bit(Device::drive) : 0u) |
-                       (target.encoder != nullptr ? bit(Device::encoder) : 0u);
+                       (target.encoder != nullptr ? bit(Device::encoder) : 0u) |
+                       (target.module != nullptr ? bit(Device::module) : 0u);
       return target;
     }
   }
@@ -76,8 +88,8 @@ std::optional<MachineFaults::Target> MachineFaults::find(std::string_view device
   target.devices = target.station != nullptr ? bit(Device::station) : bit(Device::chip);
   if (target.station != nullptr || target.chip != nullptr) return target;
   target.line = world_.line(device);
-  target.devices = bit(Device::input);
-  return target.line.chip != nullptr ? std::optional(target) : std::nullopt;
+  target.devices = target.line.chip != nullptr ? bit(Device::input) : bit(Device::control);
+  return target.line.chip != nullptr || has_control(device) ? std::optional(target) : std::nullopt;
 }
 
 std::string MachineFaults::names() const {
@@ -93,6 +105,7 @@ std::string MachineFaults::names() const {
     for (const machine::PointConfig& point : station.points)
       if (world_.line(point.name).chip != nullptr) add(point.name);
   }
+  if (controlled_) add(std::string(kControl));
   return list;
 }
 
@@ -159,18 +172,27 @@ void MachineFaults::advance_to(image::Nanoseconds t) {
 void MachineFaults::begin(const Target& target, const fault::Fault& fault, image::Nanoseconds t) {
   if (target.drive != nullptr && fault::row(fault.kind).happens_to(Device::drive))
     return target.drive->inject(fault);  // which ends it by itself
+  if (fault.kind == Kind::late_cycle) {
+    lateness_ns_ += fault.delay_ns;
+    return;
+  }
   const bool side_by_side = target.devices == bit(Device::bus);
   if (!side_by_side) end_all(target, fault.kind);
-  apply(target, fault, true);
   active_.push_back({target, fault, fault.duration_ns > 0 ? t + fault.duration_ns : 0});
+  target.station != nullptr ? settle(*target.station) : apply(target, fault, true);
 }
 
-/// A Modbus station has one fault at a time: the newest that lasts still.
 void MachineFaults::end(const Active& active) {
-  apply(active.target, active.fault, false);
-  if (active.target.station == nullptr) return;
+  active.target.station != nullptr ? settle(*active.target.station)
+                                   : apply(active.target, active.fault, false);
+}
+
+/// A Modbus station has one fault at a time: the newest that lasts still, but a dead one has no other.
+void MachineFaults::settle(mock::ModbusStation& station) const {
+  mock::StationFault now;
   for (const Active& a : active_)
-    if (a.target.station == active.target.station) apply(a.target, a.fault, true);
+    if (a.target.station == &station && now.kind != mock::StationFault::Kind::dead) now = of_station(a.fault);
+  station.inject(now);
 }
 
 void MachineFaults::end_all(const Target& target, std::optional<Kind> kind) {
@@ -185,11 +207,11 @@ void MachineFaults::end_all(const Target& target, std::optional<Kind> kind) {
 }
 
 void MachineFaults::apply(const Target& target, const fault::Fault& fault, bool begins) {
-  if (target.station != nullptr)
-    return target.station->inject(begins ? of_station(fault) : mock::StationFault{});
   if (target.chip != nullptr) return target.chip->plug(!begins);
   if (target.encoder != nullptr && fault.kind == Kind::unreadable)
     return target.encoder->set_unreadable(begins);
+  if (target.encoder != nullptr && supply_or_swap(*target.encoder, fault, begins)) return;
+  if (target.module != nullptr && supply_or_swap(*target.module, fault, begins)) return;
   if (target.wire != nullptr) return apply_to_wire(target, fault, begins);
   const MockWorld::Line& line = target.line;
   if (fault.kind == Kind::bounce)

@@ -138,7 +138,7 @@ TEST_F(LssSlaveTest, is_identified_by_ranges_that_hold_it) {
 
 TEST_F(LssSlaveTest, without_a_node_it_answers_who_has_none) {
   EXPECT_EQ(ask({0x4C, 0, 0, 0, 0, 0, 0, 0}), "7E4 50 00 00 00 00 00 00 00");
-  slave.power_on(5);
+  slave.power_on(5, {{0x11, 0x22, 0x10002, 0x1234}});
   EXPECT_EQ(ask({0x4C, 0, 0, 0, 0, 0, 0, 0}), "");
   EXPECT_EQ(ask({0x51, 0, 0, 0, 0, 0x80, 0, 0}), "");
 }

@@ -70,6 +70,58 @@ TEST_F(DriveFaults, a_lost_heartbeat_takes_nothing_else_away) {
   EXPECT_NEAR(b.count(0x705), 10, 1);
 }
 
+TEST_F(DriveFaults, a_dead_drive_has_no_torque_and_comes_back_with_its_power_on_state) {
+  b.write(0x6083, 0, 4711, 4);
+  ASSERT_EQ(b.read(0x6083), 4711u);
+  for (int i = 1; i <= 40; ++i) b.cycle(0x0F, 300 * i);
+  ASSERT_EQ(b.drive.state(), DriveState::operation_enabled);
+  const double speed = b.drive.velocity_counts_s();
+  ASSERT_GT(speed, 200'000.0);
+  b.seen.clear();
+  b.drive.inject({.kind = fault::Kind::kill, .duration_ns = 100 * kMillisecond});
+  for (int i = 41; i <= 130; ++i) b.cycle(0x0F, 300 * i);
+  EXPECT_TRUE(b.seen.empty());
+  EXPECT_NEAR(b.drive.torque_permille(), 0.0, 1e-6);
+  EXPECT_LT(b.drive.velocity_counts_s(), speed) << "it coasts";
+  b.run(30);
+  const auto boot_up = b.take(0x705);
+  ASSERT_TRUE(boot_up);
+  EXPECT_EQ(boot_up->data[0], 0) << "the boot-up message comes before anything else";
+  EXPECT_EQ(b.drive.nmt_state(), canopen::NmtState::pre_operational);
+  EXPECT_EQ(b.drive.state(), DriveState::switch_on_disabled);
+  EXPECT_NE(b.read(0x6083), 4711u) << "what was not stored is gone";
+  EXPECT_EQ(b.read(0x1017), 0u);
+}
+
+TEST_F(DriveFaults, nobody_acknowledges_what_is_sent_to_a_dead_drive_that_is_alone) {
+  b.drive.inject({.kind = fault::Kind::kill});
+  b.send(0x080, {});
+  b.run(10);
+  EXPECT_EQ(b.master.state(), image::CanState::error_passive);
+  b.drive.clear(fault::Kind::kill);
+  b.run(50);
+  EXPECT_EQ(b.count(0x705), 1) << "its boot-up message";
+}
+
+TEST_F(DriveFaults, a_swapped_drive_boots_as_another_product_until_the_right_one_is_back) {
+  const std::uint32_t own = b.read(0x1018, 2);
+  b.drive.inject({.kind = fault::Kind::swapped});
+  b.run(30);
+  EXPECT_EQ(b.count(0x705), 1);
+  EXPECT_EQ(b.drive.nmt_state(), canopen::NmtState::pre_operational) << "and has to be configured anew";
+  EXPECT_EQ(b.read(0x1018, 2), own + 1);
+  EXPECT_EQ(b.read(0x1018, 1), 0u);
+  b.drive.inject({.kind = fault::Kind::swapped, .value = 0xCAFE});
+  b.run(30);
+  EXPECT_EQ(b.read(0x1018, 2), 0xCAFEu);
+  b.nmt(0x82);
+  b.run(30);
+  EXPECT_EQ(b.read(0x1018, 2), 0xCAFEu) << "a reset makes no other device of it";
+  b.drive.clear_faults();
+  b.run(30);
+  EXPECT_EQ(b.read(0x1018, 2), own);
+}
+
 TEST_F(DriveFaults, every_nth_pdo_can_be_dropped) {
   b.drive.inject({.kind = fault::Kind::pdo_dropped, .every = 4});
   cycles(100);

@@ -35,6 +35,20 @@ TEST(Encoder, says_what_it_is_and_what_it_can_tell_apart) {
   EXPECT_EQ(b.read(0x6504), 1u);
 }
 
+TEST(Encoder, keeps_its_place_without_supply_and_loses_what_was_configured) {
+  EncoderBench b;
+  b.write(0x6000, 0, 0x0001, 2);
+  b.encoder.supply(false);
+  b.seen.clear();
+  b.encoder.set_position(1234);
+  b.run(200);
+  EXPECT_TRUE(b.seen.empty());
+  b.encoder.supply(true);
+  b.run(30);
+  EXPECT_EQ(b.count(0x705), 1);
+  EXPECT_EQ(b.read(0x6004), 1234u) << "absolute, and the code sequence is that of power-on";
+}
+
 TEST(Encoder, goes_round_at_the_end_of_its_turns_both_ways) {
   EncoderBench b;
   EXPECT_EQ(b.at(0), 0u);

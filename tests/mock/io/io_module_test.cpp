@@ -55,6 +55,42 @@ TEST(IoModule, sends_its_inputs_on_becoming_operational_and_then_when_they_chang
   EXPECT_EQ(b.read(0x6000, 2), 0x02u);
 }
 
+TEST(IoModule, without_supply_is_silent_with_all_outputs_off_and_boots_when_it_is_back) {
+  IoBench b;
+  b.start();
+  b.write(0x6200, 1, 0xFF, 1);
+  b.write(0x6411, 1, 1000, 2);
+  ASSERT_TRUE(b.module.digital(0));
+  ASSERT_EQ(b.module.analogue(0), 1000);
+  b.seen.clear();
+  b.module.supply(false);
+  b.module.set_digital(3, true);
+  b.run(50);
+  EXPECT_TRUE(b.seen.empty());
+  EXPECT_FALSE(b.module.digital(0));
+  EXPECT_EQ(b.module.analogue(0), 0);
+  b.module.supply(true);
+  b.run(30);
+  EXPECT_EQ(b.count(0x705), 1);
+  EXPECT_EQ(b.module.nmt_state(), canopen::NmtState::pre_operational);
+  EXPECT_FALSE(b.module.digital(0)) << "nobody has written it since";
+  EXPECT_EQ(b.read(0x6000, 1), 0x08u) << "the world went on meanwhile";
+}
+
+TEST(IoModule, another_one_in_its_place_says_so_until_the_right_one_is_back) {
+  IoBench b;
+  const std::uint32_t own = b.read(0x1018, 2);
+  b.module.swap(0);
+  b.run(30);
+  EXPECT_EQ(b.read(0x1018, 2), own + 1);
+  b.module.swap(77);
+  b.run(30);
+  EXPECT_EQ(b.read(0x1018, 2), 77u);
+  b.module.swap(std::nullopt);
+  b.run(30);
+  EXPECT_EQ(b.read(0x1018, 2), own);
+}
+
 TEST(IoModule, changes_that_are_masked_are_no_events_and_are_read_all_the_same) {
   IoBench b;
   b.write(0x6006, 1, 0x00, 1);  // no change is an event ...

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "gateway/compose/control.hpp"
+#include "gateway/run/running_machine.hpp"
 #include "tests/places/places.hpp"
 
 namespace servogate::gateway {
@@ -20,24 +20,23 @@ class Brake : public ::testing::Test {
   void SetUp() override {
     loaded_ = machine::load(tests::source_dir() + "/examples/mill/machine.toml");
     std::vector<text::Finding> findings;
-    control_ = Control::compose(loaded_, findings);
-    ASSERT_NE(control_, nullptr);
+    machine_ = RunningMachine::compose(loaded_, nullptr, {}, findings);
+    ASSERT_NE(machine_, nullptr);
     z_ = loaded_.machine.axis_index("Z");
     slip_ = loaded_.machine.axes[static_cast<std::size_t>(z_)].brake.slip_window;
-    control_->world().close_operator_points();
     step(1500);
     ASSERT_TRUE(drive().object(0x60FE, 2) == 1) << "the brake belongs to the output";
     EXPECT_FALSE(drive().brake_released());
     mark_ = place();
   }
 
-  mock::SimulatedDrive& drive() { return *control_->world().drive("can.z"); }
-  double place() { return control_->world().axis_position(z_); }
-  bool enabled() { return control_->cycle().image().axes[static_cast<std::size_t>(z_)].enabled; }
+  mock::SimulatedDrive& drive() { return *machine_->control().world().drive("can.z"); }
+  double place() { return machine_->control().world().axis_position(z_); }
+  bool enabled() { return machine_->image().axes[static_cast<std::size_t>(z_)].enabled; }
 
   void step(int cycles) {
     for (int n = 0; n < cycles; ++n) {
-      control_->step();
+      machine_->step();
       if (mark_) dropped_ = std::max(dropped_, std::abs(place() - *mark_));
     }
   }
@@ -45,7 +44,7 @@ class Brake : public ::testing::Test {
     image::Request r;
     r.kind = kind;
     r.value = value;
-    ASSERT_TRUE(control_->cycle().post(r));
+    ASSERT_TRUE(machine_->post(r));
   }
   void power(bool on) {
     post(RequestKind::power, on ? 1.0 : 0.0);
@@ -55,7 +54,7 @@ class Brake : public ::testing::Test {
   }
 
   machine::LoadResult loaded_;
-  std::unique_ptr<Control> control_;
+  std::unique_ptr<RunningMachine> machine_;
   int z_ = -1;
   double slip_ = 0.0;
   std::optional<double> mark_;
@@ -73,7 +72,7 @@ TEST_F(Brake, holds_the_head_while_the_drives_go_on_and_off) {
 
 TEST_F(Brake, holds_the_head_through_an_emergency_stop) {
   power(true);
-  ASSERT_TRUE(control_->world().set_input("estop_chain_ok", false));
+  ASSERT_TRUE(machine_->control().world().set_input("estop_chain_ok", false));
   step(3000);
   EXPECT_FALSE(enabled());
   EXPECT_FALSE(drive().brake_released());
