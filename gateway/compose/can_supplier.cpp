@@ -7,7 +7,7 @@
 
 #include "firmware_if/canopen/302/boot_detail.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
-#include "firmware_if/image/frame_record.hpp"
+#include "firmware_if/image/frames/frame_record.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
 
 namespace servogate::gateway {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "firmware_if/canopen/master/segment_config.hpp"
+#include "firmware_if/canopen/302/segment_config.hpp"
 #include "gateway/machine/load.hpp"
 
 /// The machine file's buses and device files in the terms of the CANopen master. Not real-time safe.

@@ -8,7 +8,7 @@
 #include "firmware_if/canopen/301/emcy.hpp"
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/canopen/302/boot_detail.hpp"
-#include "firmware_if/image/frame_record.hpp"
+#include "firmware_if/image/frames/frame_record.hpp"
 #include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/canopen_setup.hpp"
 #include "gateway/compose/plc/compile_beside.hpp"

@@ -6,11 +6,8 @@
 #include <filesystem>
 
 #include "firmware_if/text/units.hpp"
-#include "gateway/machine/keys/reader.hpp"
 
 namespace servogate::machine {
-
-Where MachineConfig::where(std::string_view path) const { return find_place(places, path); }
 
 std::string MachineConfig::resolve(std::string_view relative) const {
   return (std::filesystem::path(file).parent_path() / std::filesystem::path(relative)).string();

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "firmware_if/image/can_wire.hpp"
+#include "firmware_if/image/frames/can_wire.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::image {

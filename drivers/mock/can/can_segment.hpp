@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware_if/image/can_wire.hpp"
+#include "firmware_if/image/frames/can_wire.hpp"
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/image/simulated.hpp"
 

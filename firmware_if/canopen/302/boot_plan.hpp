@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "firmware_if/canopen/302/boot_step.hpp"
+#include "firmware_if/canopen/302/segment_config.hpp"
 #include "firmware_if/canopen/402/drive_profile.hpp"
-#include "firmware_if/canopen/master/segment_config.hpp"
 
 namespace servogate::canopen {
 

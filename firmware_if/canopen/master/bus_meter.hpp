@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware_if/image/can_wire.hpp"
+#include "firmware_if/image/frames/can_wire.hpp"
 #include "firmware_if/image/time.hpp"
 
 namespace servogate::canopen {

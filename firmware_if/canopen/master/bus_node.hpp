@@ -10,12 +10,12 @@
 #include "firmware_if/canopen/301/node_guard.hpp"
 #include "firmware_if/canopen/301/sdo_client.hpp"
 #include "firmware_if/canopen/302/node_boot.hpp"
+#include "firmware_if/canopen/302/segment_config.hpp"
 #include "firmware_if/canopen/master/bus_event.hpp"
 #include "firmware_if/canopen/master/drive/drive_link.hpp"
 #include "firmware_if/canopen/master/io/io_link.hpp"
 #include "firmware_if/canopen/master/object_question.hpp"
 #include "firmware_if/canopen/master/sdo/error_history.hpp"
-#include "firmware_if/canopen/master/segment_config.hpp"
 
 namespace servogate::canopen {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware_if/canopen/master/segment_config.hpp"
-#include "firmware_if/image/can_wire.hpp"
+#include "firmware_if/canopen/302/segment_config.hpp"
+#include "firmware_if/image/frames/can_wire.hpp"
 #include "firmware_if/text/finding.hpp"
 
 namespace servogate::canopen {

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "firmware_if/canopen/301/words/frame_words.hpp"
-#include "firmware_if/canopen/master/segment_config.hpp"
-#include "firmware_if/image/can_wire.hpp"
+#include "firmware_if/canopen/302/segment_config.hpp"
+#include "firmware_if/image/frames/can_wire.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"

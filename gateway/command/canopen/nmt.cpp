@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "firmware_if/canopen/inspect/device_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/canopen/bus/foreign_master.hpp"
 #include "gateway/command/canopen/bus/guarding.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
-#include "gateway/command/canopen/device_words.hpp"
 #include "gateway/command/commands.hpp"
 
 namespace servogate::gateway::command {
@@ -89,8 +89,8 @@ int tell(const NmtOptions& options, const States& states, const Row& row) {
   for (const auto& [id, state] : states) {
     const bool there = state == row.result;
     all = all && there;
-    list.push_back({{"node", id}, {"state", nmt_state_name(state)}});
-    const std::vector<std::string> words{std::to_string(id), nmt_state_words(state)};
+    list.push_back({{"node", id}, {"state", canopen::nmt_state_name(state)}});
+    const std::vector<std::string> words{std::to_string(id), canopen::nmt_state_words(state)};
     if (there && !options.json) print_line(text::render(kState, words, text::user_language()));
     if (!there) complain(kElsewhere, words);
   }

@@ -9,10 +9,10 @@
 
 namespace servogate::gateway::command {
 
-nlohmann::json json_value(std::span<const std::uint8_t> bytes, const ValueType* type) {
+nlohmann::json json_value(std::span<const std::uint8_t> bytes, const canopen::ValueType* type) {
   if (type != nullptr && canopen::is_text(*type)) return canopen::text_of(bytes);
-  if (type == nullptr || canopen::is_bytes(*type)) return hex_text(bytes);
-  if (!may_be(bytes, *type)) return nullptr;
+  if (type == nullptr || canopen::is_bytes(*type)) return canopen::hex_text(bytes);
+  if (!canopen::may_be(bytes, *type)) return nullptr;
   if (canopen::eds_type_real(type->data_type)) {
     const double value = canopen::real_of(bytes);
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();

@@ -7,13 +7,16 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/canopen/inspect/object_catalogue.hpp"
+#include "firmware_if/canopen/inspect/object_walk.hpp"
 #include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/canopen/bus/foreign_master.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
-#include "gateway/command/canopen/object_walk.hpp"
+#include "gateway/command/canopen/data_sheet.hpp"
+#include "gateway/command/canopen/object_value.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/files/output_files.hpp"
 
@@ -21,6 +24,16 @@ namespace servogate::gateway::command {
 
 namespace {
 
+using canopen::address_text;
+using canopen::Difference;
+using canopen::guess_type;
+using canopen::hex_text;
+using canopen::IndexRange;
+using canopen::ObjectCatalogue;
+using canopen::parse_address;
+using canopen::ReadObject;
+using canopen::show_value;
+using canopen::ValueType;
 using nlohmann::json;
 
 const text::Entry kBadRange{"od.bad-range", "'{0}' is no range; expected FIRST-LAST, hexadecimal: 2000-5FFF",
@@ -98,7 +111,8 @@ void print_objects(const Work& work, const ObjectCatalogue& catalogue,
 int save(const Work& work, const std::vector<ReadObject>& objects, const canopen::Eds* eds) {
   std::ofstream file(work.options.save, std::ios::binary);
   std::vector<std::string> not_saved;
-  file << canopen::write_dcf(configuration_of(objects, eds, work.node(), work.bit_rate, not_saved));
+  file << canopen::write_dcf(
+      canopen::saved_configuration(objects, eds, work.node(), work.bit_rate, not_saved));
   if (!file.flush()) {
     complain(kCannotWrite, {work.options.save, text::words_of(errno)});
     return kInfrastructure;
@@ -119,7 +133,8 @@ int compare(const Work& work, const canopen::Eds& file) {
   const int of = file.commissioning ? file.commissioning->node : 0;
   if (of != 0 && of != work.options.node)
     complain(kOtherNode, {work.options.compare, std::to_string(of), std::to_string(work.options.node)});
-  const std::vector<Difference> found = differences(work.access, work.node(), file, compared, work.over);
+  const std::vector<Difference> found =
+      canopen::differences(work.access, work.node(), file, compared, work.over);
   const ObjectCatalogue catalogue(&file);
   json list = json::array();
   for (const Difference& d : found) {
@@ -167,9 +182,10 @@ int work_on(const Work& work, const canopen::Eds* eds, const canopen::Eds* file,
     return kAlarm;
   }
   if (file != nullptr) return compare(work, *file);
-  const std::vector<ReadObject> objects = eds != nullptr && work.options.range.empty()
-                                              ? read_listed(work.access, work.node(), *eds, work.over)
-                                              : walk(work.access, work.node(), ranges, work.over);
+  const std::vector<ReadObject> objects =
+      eds != nullptr && work.options.range.empty()
+          ? canopen::read_listed(work.access, work.node(), *eds, work.over)
+          : canopen::walk(work.access, work.node(), ranges, work.over);
   if (work.over()) return kInfrastructure;
   print_objects(work, ObjectCatalogue(eds), objects);
   if (!objects.empty() && !objects.back().outcome.answered()) {
@@ -182,7 +198,7 @@ int work_on(const Work& work, const canopen::Eds* eds, const canopen::Eds* file,
 }  // namespace
 
 int od(const OdOptions& options) {
-  std::vector<IndexRange> ranges = standard_areas();
+  std::vector<IndexRange> ranges = canopen::standard_areas();
   if (!options.range.empty()) {
     ranges.resize(1);
     if (!parse_range(options.range, ranges.front())) {

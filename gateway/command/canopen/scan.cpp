@@ -8,6 +8,7 @@
 #include "drivers/clock.hpp"
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/inspect/device_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -15,7 +16,6 @@
 #include "gateway/command/canopen/bus/guarding.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/canopen/bus/tool_bus.hpp"
-#include "gateway/command/canopen/device_words.hpp"
 #include "gateway/command/canopen/object_value.hpp"
 #include "gateway/command/commands.hpp"
 
@@ -107,10 +107,10 @@ void read_facts(SdoAccess& access, int number, Node& node) {
                                       object::kSoftwareVersion};
   for (std::size_t i = 0; i < 3; ++i) {
     const SdoOutcome name = access.read(id, kNames[i], 0);
-    if (name.ok()) node.names[i] = json_value(name.data, type_named("str")).get<std::string>();
+    if (name.ok()) node.names[i] = json_value(name.data, canopen::type_named("str")).get<std::string>();
   }
   node.heartbeat_ms = number_of(access, id, object::kProducerHeartbeatTime, 0);
-  if (node.type && has_profile(*node.type, 402))
+  if (node.type && canopen::has_profile(*node.type, 402))
     node.modes = number_of(access, id, object::kSupportedDriveModes, 0);
 }
 
@@ -129,8 +129,8 @@ std::string hexadecimal(std::uint32_t value) {
 }
 
 std::string state_words(const Node& node) {
-  const std::string state =
-      node.state ? nmt_state_words(*node.state) : text::both("state unknown", "состояние неизвестно");
+  const std::string state = node.state ? canopen::nmt_state_words(*node.state)
+                                       : text::both("state unknown", "состояние неизвестно");
   // A node that is heard and that its control cannot use, or not yet.
   return node.online.value_or(true) ? state : state + text::both(", not online", ", не на связи");
 }
@@ -162,7 +162,8 @@ void print_node(int id, const Node& node) {
     print_line(say(kNodeNoObjects, {number, state_words(node), heartbeat_words(node)}));
     return;
   }
-  print_line(say(kNode, {number, state_words(node), heartbeat_words(node), device_type_words(*node.type)}));
+  print_line(
+      say(kNode, {number, state_words(node), heartbeat_words(node), canopen::device_type_words(*node.type)}));
   std::string names;
   for (const std::string& name : node.names)
     if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
@@ -172,13 +173,13 @@ void print_node(int id, const Node& node) {
                say(kIdentity, {hexadecimal(*node.identity[0]), hexadecimal(node.identity[1].value_or(0)),
                                hexadecimal(node.identity[2].value_or(0)),
                                std::to_string(node.identity[3].value_or(0))}));
-  if (node.modes) print_line("  " + say(kModes, {drive_modes(*node.modes)}));
+  if (node.modes) print_line("  " + say(kModes, {canopen::drive_modes(*node.modes)}));
 }
 
 json node_json(int id, const Node& node) {
   const auto or_null = [](const auto& value) { return value ? json(*value) : json(); };
   json out{{"node", id},
-           {"state", node.state ? json(nmt_state_name(*node.state)) : json()},
+           {"state", node.state ? json(canopen::nmt_state_name(*node.state)) : json()},
            {"heartbeat_seen", heartbeat_seen(node)},
            {"heartbeat_ms", or_null(node.heartbeat_ms)},
            {"answers_sdo", node.answers_sdo},
@@ -193,10 +194,10 @@ json node_json(int id, const Node& node) {
   if (node.online) out["online"] = *node.online;
   if (!node.type) return out;
   out["profile"] = *node.type & 0xFFFF;
-  out["device"] = say({"", "{0}", "{0}"}, {device_type_words(*node.type)});
+  out["device"] = say({"", "{0}", "{0}"}, {canopen::device_type_words(*node.type)});
   if (!node.modes) return out;
   out["modes"] = json::array();
-  std::string words = drive_modes(*node.modes) + " ";
+  std::string words = canopen::drive_modes(*node.modes) + " ";
   for (std::size_t at = 0, end = 0; (end = words.find(' ', at)) != std::string::npos; at = end + 1)
     if (end > at) out["modes"].push_back(words.substr(at, end - at));
   return out;

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/canopen/inspect/moving_objects.hpp"
+#include "firmware_if/canopen/inspect/object_catalogue.hpp"
 #include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
@@ -23,6 +25,20 @@ namespace servogate::gateway::command {
 
 namespace {
 
+using canopen::address_text;
+using canopen::can_move;
+using canopen::encode_value;
+using canopen::guess_type;
+using canopen::hex_text;
+using canopen::may_be;
+using canopen::ObjectAddress;
+using canopen::ObjectCatalogue;
+using canopen::parse_address;
+using canopen::show_value;
+using canopen::takes_energy_away;
+using canopen::type_named;
+using canopen::type_words;
+using canopen::ValueType;
 using nlohmann::json;
 
 const text::Entry kBadObject{"sdo.bad-object",

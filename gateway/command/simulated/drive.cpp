@@ -8,11 +8,11 @@
 #include <filesystem>
 
 #include "drivers/clock.hpp"
+#include "firmware_if/canopen/306/value_text.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/bus/named_bus.hpp"
 #include "gateway/command/canopen/data_sheet.hpp"
-#include "gateway/command/canopen/object_value.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
@@ -228,7 +228,7 @@ void say_left_out(const DriveOptions& options, const Drives& drives) {
   if (places.empty()) return;
   std::string names;
   for (std::size_t i = 0; i < places.size() && i < kNamed; ++i)
-    names += (i > 0 ? ", " : "") + address_text(places[i].index, places[i].subindex);
+    names += (i > 0 ? ", " : "") + canopen::address_text(places[i].index, places[i].subindex);
   if (places.size() > kNamed)
     names += text::render(kMoreLeftOut, std::vector<std::string>{std::to_string(places.size() - kNamed)},
                           text::user_language());

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "firmware_if/canopen/master/segment_config.hpp"
+#include "firmware_if/canopen/302/segment_config.hpp"
 #include "gateway/machine/bus_place.hpp"
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings.hpp"

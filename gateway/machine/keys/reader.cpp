@@ -413,6 +413,8 @@ Where find_place(const Places& places, std::string_view path) {
   }
 }
 
+Where MachineConfig::where(std::string_view path) const { return find_place(places, path); }
+
 void sort_findings(std::vector<text::Finding>& findings) {
   const auto place = [](const text::Finding& f) { return std::tie(f.file, f.line, f.column); };
   std::stable_sort(findings.begin(), findings.end(),

@@ -4,12 +4,12 @@
 #include <optional>
 
 #include "firmware_if/canopen/301/sdo_client.hpp"
+#include "firmware_if/canopen/302/segment_config.hpp"
 #include "firmware_if/canopen/402/drive_control.hpp"
 #include "firmware_if/canopen/402/homing_watch.hpp"
 #include "firmware_if/canopen/402/set_point_handshake.hpp"
 #include "firmware_if/canopen/402/touch_probe.hpp"
 #include "firmware_if/canopen/master/node_link.hpp"
-#include "firmware_if/canopen/master/segment_config.hpp"
 
 namespace servogate::canopen {
 

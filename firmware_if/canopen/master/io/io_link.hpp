@@ -2,9 +2,9 @@
 #pragma once
 #include <vector>
 
-#include "firmware_if/canopen/master/io/io_station.hpp"
+#include "firmware_if/canopen/302/io_station.hpp"
+#include "firmware_if/canopen/302/segment_config.hpp"
 #include "firmware_if/canopen/master/node_link.hpp"
-#include "firmware_if/canopen/master/segment_config.hpp"
 #include "firmware_if/image/points/point_stage.hpp"
 
 namespace servogate::canopen {

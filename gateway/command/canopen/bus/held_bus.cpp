@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/clock.hpp"
+#include "firmware_if/canopen/306/value_text.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
-#include "gateway/command/canopen/object_value.hpp"
 #include "gateway/machine/bus_place.hpp"
 #include "gateway/server/socket/socket_path.hpp"
 
@@ -154,7 +154,7 @@ SdoOutcome HeldBus::read(canopen::NodeId node, std::uint16_t index, std::uint8_t
   outcome.status = status == "done"      ? canopen::SdoStatus::done
                    : status == "aborted" ? canopen::SdoStatus::aborted
                                          : canopen::SdoStatus::no_answer;
-  const auto bytes = encode_value(answer.value("data", ""), *type_named("hex"));
+  const auto bytes = canopen::encode_value(answer.value("data", ""), *canopen::type_named("hex"));
   if (bytes) outcome.data = *bytes;
   return outcome;
 }

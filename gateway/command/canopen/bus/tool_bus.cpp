@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "drivers/clock.hpp"
 #include "gateway/cli/messages.hpp"
@@ -17,9 +16,6 @@ namespace servogate::gateway::command {
 
 namespace {
 
-const text::Entry kNoAnswer{"sdo.no-answer", "no answer", "нет ответа"};
-const text::Entry kBadProtocol{"sdo.bad-protocol", "the answer is against CiA 301: {0}",
-                               "ответ противоречит CiA 301: {0}"};
 const text::Entry kGone{"can.gone", "the bus {0} is gone", "шина {0} исчезла"};
 
 constexpr image::Nanoseconds kPatience = 2 * image::kSecond;  ///< for room in the send queue
@@ -29,22 +25,7 @@ constexpr std::size_t kLargestObject = std::size_t{64} << 20;
 
 image::Nanoseconds now() { return drivers::clock_ns(CLOCK_MONOTONIC); }
 
-std::string abort_words(canopen::AbortCode code, text::Language language) {
-  char number[16];
-  const auto value = static_cast<std::uint32_t>(code);
-  std::snprintf(number, sizeof number, "%04X %04Xh", value >> 16, value & 0xFFFF);
-  return std::string(number) + ": " +
-         text::render(canopen::abort_text(code), std::vector<std::string>{number}, language);
-}
-
 }  // namespace
-
-std::string SdoOutcome::why(text::Language language) const {
-  if (status == canopen::SdoStatus::aborted) return abort_words(abort, language);
-  if (status == canopen::SdoStatus::bad_protocol)
-    return text::render(kBadProtocol, std::vector<std::string>{abort_words(abort, language)}, language);
-  return text::render(kNoAnswer, {}, language);
-}
 
 std::unique_ptr<ToolBus> ToolBus::open(const CanopenBusOptions& options, int& code) {
   code = kWrongUse;

@@ -10,35 +10,15 @@
 
 #include "firmware_if/canopen/301/nmt.hpp"
 #include "firmware_if/canopen/301/sdo_client.hpp"
+#include "firmware_if/canopen/inspect/sdo_access.hpp"
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/compose/can_transport.hpp"
 
 namespace servogate::gateway::command {
 
-/// What an SDO access came to.
-struct SdoOutcome {
-  canopen::SdoStatus status = canopen::SdoStatus::no_answer;
-  canopen::AbortCode abort = canopen::AbortCode::none;
-  std::vector<std::uint8_t> data;  ///< what was read
-  bool ok() const noexcept { return status == canopen::SdoStatus::done; }
-  /// The device answered, with data or with an abort.
-  bool answered() const noexcept {
-    return status == canopen::SdoStatus::done || status == canopen::SdoStatus::aborted;
-  }
-  /// "0602 0000h: the object does not exist in the device", or that nobody answers.
-  std::string why(text::Language language = text::user_language()) const;
-};
-
-/// How the command line tools reach the objects of a node: over a bus of their own, or through the control
-/// that holds it.
-class SdoAccess {
- public:
-  virtual ~SdoAccess() = default;
-  virtual SdoOutcome read(canopen::NodeId node, std::uint16_t index, std::uint8_t subindex) = 0;
-  virtual SdoOutcome write(canopen::NodeId node, std::uint16_t index, std::uint8_t subindex,
-                           std::span<const std::uint8_t> data) = 0;
-};
+using canopen::SdoAccess;
+using canopen::SdoOutcome;
 
 /// A bus as a command line tool uses it: opened for this command, in the computer's time, waiting for
 /// answers. Not real-time safe.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/check/control_death.hpp"
+#include "gateway/machine/check/stops/control_death.hpp"
 
 #include <algorithm>
 #include <cmath>

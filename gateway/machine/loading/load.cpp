@@ -11,7 +11,7 @@
 #include "gateway/machine/check/findings.hpp"
 #include "gateway/machine/keys/findings.hpp"
 #include "gateway/machine/keys/sections.hpp"
-#include "gateway/machine/node_files.hpp"
+#include "gateway/machine/loading/node_files.hpp"
 
 namespace servogate::machine {
 

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/canopen/object_walk.hpp"
+#include "firmware_if/canopen/inspect/object_walk.hpp"
 
 #include <algorithm>
 
 #include "firmware_if/canopen/402/objects.hpp"
-#include "gateway/command/canopen/bus/foreign_master.hpp"
+#include "firmware_if/canopen/inspect/known_object.hpp"
+#include "firmware_if/canopen/inspect/moving_objects.hpp"
 
-namespace servogate::gateway::command {
+namespace servogate::canopen {
 
 namespace {
-
-namespace object = canopen::object;
-using canopen::AbortCode;
-using canopen::EdsAccess;
-using canopen::NodeId;
 
 constexpr std::uint16_t kDomain = 0x0F;
 /// An area is left after so many indices in a row that do not exist.
@@ -65,20 +61,20 @@ void walk_range(SdoAccess& access, NodeId node, IndexRange range, std::vector<Re
   }
 }
 
-bool to_be_read(const canopen::EdsEntry& e) {
+bool to_be_read(const EdsEntry& e) {
   return e.access != EdsAccess::wo && e.data_type != 0 && e.data_type != kDomain && (e.flags & 2) == 0;
 }
 
 template <class Take>
-void each_entry(const canopen::Eds& eds, Take take) {
+void each_entry(const Eds& eds, Take take) {
   for (const auto& [index, object] : eds.objects) {
     if (object.subs.empty()) take(index, std::uint8_t{0}, object.entry, false);
     for (const auto& [subindex, entry] : object.subs) take(index, subindex, entry, true);
   }
 }
 
-canopen::EdsEntry entry_of(const ReadObject& o, std::string name) {
-  canopen::EdsEntry e;
+EdsEntry entry_of(const ReadObject& o, std::string name) {
+  EdsEntry e;
   e.name = std::move(name);
   const auto known = known_object(o.index, o.subindex);
   e.data_type = known ? known->data_type : guess_type(o.outcome.data)->data_type;
@@ -87,15 +83,15 @@ canopen::EdsEntry entry_of(const ReadObject& o, std::string name) {
   return e;
 }
 
-bool take_value(canopen::EdsEntry& e, const ReadObject& o) {
+bool take_value(EdsEntry& e, const ReadObject& o) {
   auto text = eds_value_text(o.outcome.data, e.data_type);
   e.parameter_value.reset();
-  if (text) e.parameter_value = canopen::EdsValue{std::move(*text), std::nullopt};
+  if (text) e.parameter_value = EdsValue{std::move(*text), std::nullopt};
   return e.parameter_value.has_value();
 }
 
-canopen::Eds sheet_of(const std::vector<ReadObject>& objects) {
-  canopen::Eds eds;
+Eds sheet_of(const std::vector<ReadObject>& objects) {
+  Eds eds;
   const auto number = [&](std::uint8_t subindex) {
     for (const ReadObject& o : objects)
       if (o.index == object::kIdentity && o.subindex == subindex && o.outcome.ok())
@@ -108,15 +104,15 @@ canopen::Eds sheet_of(const std::vector<ReadObject>& objects) {
       {"VendorNumber", number(1)}, {"ProductNumber", number(2)}, {"RevisionNumber", number(3)}};
   for (const ReadObject& o : objects) {
     if (!o.outcome.ok()) continue;
-    std::string name(canopen::object_name(o.index));
+    std::string name(object_name(o.index));
     if (name.empty()) name = "Object " + address_text(o.index, 0).substr(0, 5);
-    canopen::EdsObject& whole = eds.objects[o.index];
+    EdsObject& whole = eds.objects[o.index];
     if (!o.record) {
       whole.entry = entry_of(o, name);
       continue;
     }
     whole.entry.name = name;
-    whole.entry.type = canopen::EdsObjectType::record;
+    whole.entry.type = EdsObjectType::record;
     whole.entry.data_type = 0;
     const std::string sub =
         o.subindex == 0 ? "Highest sub-index supported" : name + " " + std::to_string(o.subindex);
@@ -126,7 +122,7 @@ canopen::Eds sheet_of(const std::vector<ReadObject>& objects) {
 }
 
 /// A parameter, as opposed to a live value, a command or a service behind an object.
-bool is_parameter(std::uint16_t index, const canopen::EdsEntry& e) {
+bool is_parameter(std::uint16_t index, const EdsEntry& e) {
   if (index == object::kPredefinedErrorField || index == object::kStoreParameters ||
       index == object::kRestoreParameters || can_move(index) || (e.flags & 1) != 0)
     return false;
@@ -135,14 +131,14 @@ bool is_parameter(std::uint16_t index, const canopen::EdsEntry& e) {
 }
 
 /// The bytes that a value of a file means; nullopt: it says none that could be compared.
-std::optional<std::vector<std::uint8_t>> bytes_of(const canopen::EdsEntry& e, NodeId node) {
-  const canopen::EdsValue* value = e.value();
+std::optional<std::vector<std::uint8_t>> bytes_of(const EdsEntry& e, NodeId node) {
+  const EdsValue* value = e.value();
   const ValueType* type = type_numbered(e.data_type);
   if (value == nullptr || type == nullptr) return std::nullopt;
-  const int bits = canopen::eds_type_bits(e.data_type);
+  const int bits = eds_type_bits(e.data_type);
   if (value->number && bits > 0) {
     std::vector<std::uint8_t> out(static_cast<std::size_t>(std::max(1, bits / 8)));
-    canopen::store_le(static_cast<std::uint64_t>(value->number->at(node)), out);
+    store_le(static_cast<std::uint64_t>(value->number->at(node)), out);
     return out;
   }
   if (value->text.empty() && type->name != "str") return std::nullopt;
@@ -162,11 +158,11 @@ std::vector<IndexRange> standard_areas() {
           {0x1800, 0x19FF}, {0x1A00, 0x1BFF}, {0x1F50, 0x1F9F}, {0x6000, 0x67FF}};
 }
 
-std::vector<ReadObject> read_listed(SdoAccess& access, NodeId node, const canopen::Eds& eds,
+std::vector<ReadObject> read_listed(SdoAccess& access, NodeId node, const Eds& eds,
                                     const std::function<bool()>& over) {
   std::vector<ReadObject> out;
   bool silent = false;
-  each_entry(eds, [&](std::uint16_t index, std::uint8_t subindex, const canopen::EdsEntry& e, bool record) {
+  each_entry(eds, [&](std::uint16_t index, std::uint8_t subindex, const EdsEntry& e, bool record) {
     if (silent || over() || !to_be_read(e)) return;
     out.push_back({index, subindex, access.read(node, index, subindex), record});
     silent = !out.back().outcome.answered();
@@ -181,28 +177,28 @@ std::vector<ReadObject> walk(SdoAccess& access, NodeId node, const std::vector<I
   return out;
 }
 
-canopen::Eds configuration_of(const std::vector<ReadObject>& objects, const canopen::Eds* eds, NodeId node,
-                              std::uint32_t bit_rate, std::vector<std::string>& not_saved) {
-  canopen::Eds dcf = eds != nullptr ? *eds : sheet_of(objects);
+Eds saved_configuration(const std::vector<ReadObject>& objects, const Eds* eds, NodeId node,
+                        std::uint32_t bit_rate, std::vector<std::string>& not_saved) {
+  Eds dcf = eds != nullptr ? *eds : sheet_of(objects);
   for (const ReadObject& o : objects)
-    if (canopen::EdsEntry* e = dcf.find(o.index, o.subindex); e != nullptr && o.outcome.ok())
+    if (EdsEntry* e = dcf.find(o.index, o.subindex); e != nullptr && o.outcome.ok())
       if (!take_value(*e, o)) not_saved.push_back(address_text(o.index, o.subindex));
-  canopen::EdsCommissioning commissioning = dcf.commissioning.value_or(canopen::EdsCommissioning{});
+  EdsCommissioning commissioning = dcf.commissioning.value_or(EdsCommissioning{});
   commissioning.node = node;
   for (const ReadObject& o : objects)  // the serial number by which LSS finds it (CiA 306-1, 6.2)
-    if (o.index == canopen::object::kIdentity && o.subindex == 4 && o.outcome.data.size() == 4)
-      commissioning.lss_serial = static_cast<std::uint32_t>(canopen::load_le(o.outcome.data));
+    if (o.index == object::kIdentity && o.subindex == 4 && o.outcome.data.size() == 4)
+      commissioning.lss_serial = static_cast<std::uint32_t>(load_le(o.outcome.data));
   commissioning.kbit_s = bit_rate / 1000;
   dcf.commissioning = commissioning;
   return dcf;
 }
 
-std::vector<Difference> differences(SdoAccess& access, NodeId node, const canopen::Eds& file, int& compared,
+std::vector<Difference> differences(SdoAccess& access, NodeId node, const Eds& file, int& compared,
                                     const std::function<bool()>& over) {
   std::vector<Difference> out;
   compared = 0;
   bool silent = false;
-  each_entry(file, [&](std::uint16_t index, std::uint8_t subindex, const canopen::EdsEntry& e, bool) {
+  each_entry(file, [&](std::uint16_t index, std::uint8_t subindex, const EdsEntry& e, bool) {
     if (silent || over() || !is_parameter(index, e)) return;
     const auto wanted = bytes_of(e, node);
     if (!wanted) return;
@@ -216,4 +212,4 @@ std::vector<Difference> differences(SdoAccess& access, NodeId node, const canope
   return out;
 }
 
-}  // namespace servogate::gateway::command
+}  // namespace servogate::canopen

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/canopen/device/known_object.hpp"
+#include "firmware_if/canopen/inspect/known_object.hpp"
 
 #include <algorithm>
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <string>
 #include <vector>
 
-#include "gateway/command/canopen/bus/tool_bus.hpp"
-#include "gateway/command/canopen/data_sheet.hpp"
+#include "firmware_if/canopen/306/eds.hpp"
+#include "firmware_if/canopen/306/value_text.hpp"
+#include "firmware_if/canopen/inspect/sdo_access.hpp"
 
-namespace servogate::gateway::command {
+namespace servogate::canopen {
 
 /// An object as the node has it.
 struct ReadObject {
@@ -24,20 +26,19 @@ struct IndexRange {
 
 /// Reads what a data sheet lists: neither what can only be written, nor domains, nor what the sheet excludes
 /// from a scan (ObjFlags bit 1). Refusals are among the results.
-std::vector<ReadObject> read_listed(SdoAccess& access, canopen::NodeId node, const canopen::Eds& eds,
+std::vector<ReadObject> read_listed(SdoAccess& access, NodeId node, const Eds& eds,
                                     const std::function<bool()>& over);
 /// Finds the objects of a node without a data sheet: in `range`, or in the areas that the standards use
 /// (1000h to 10FFh, SDO and PDO parameters, 1F50h to 1F9Fh, 6000h to 67FFh). What does not exist is left out.
-std::vector<ReadObject> walk(SdoAccess& access, canopen::NodeId node, const std::vector<IndexRange>& ranges,
+std::vector<ReadObject> walk(SdoAccess& access, NodeId node, const std::vector<IndexRange>& ranges,
                              const std::function<bool()>& over);
 std::vector<IndexRange> standard_areas();
 
 /// A DCF of what was read: the data sheet's objects with their values as the node has them, or, without a
 /// sheet, what was found with the types that the standards have or the length suggests. `not_saved` gets the
-/// places whose value no DCF can hold (canopen::eds_value_text).
-canopen::Eds configuration_of(const std::vector<ReadObject>& objects, const canopen::Eds* eds,
-                              canopen::NodeId node, std::uint32_t bit_rate,
-                              std::vector<std::string>& not_saved);
+/// places whose value no DCF can hold (eds_value_text).
+Eds saved_configuration(const std::vector<ReadObject>& objects, const Eds* eds, NodeId node,
+                        std::uint32_t bit_rate, std::vector<std::string>& not_saved);
 
 /// A parameter that is not as a file has it.
 struct Difference {
@@ -49,7 +50,7 @@ struct Difference {
 };
 /// Compares the parameters of a file with the node: what can be written or is constant, and the identity. Not
 /// compared: values that only live (ro), commands (controlword, set-points), history, save and load.
-std::vector<Difference> differences(SdoAccess& access, canopen::NodeId node, const canopen::Eds& file,
-                                    int& compared, const std::function<bool()>& over);
+std::vector<Difference> differences(SdoAccess& access, NodeId node, const Eds& file, int& compared,
+                                    const std::function<bool()>& over);
 
-}  // namespace servogate::gateway::command
+}  // namespace servogate::canopen

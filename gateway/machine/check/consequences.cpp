@@ -8,8 +8,8 @@
 #include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
 #include "firmware_if/text/units.hpp"
 #include "gateway/machine/can_channel.hpp"
-#include "gateway/machine/check/control_death.hpp"
-#include "gateway/machine/check/overrun.hpp"
+#include "gateway/machine/check/stops/control_death.hpp"
+#include "gateway/machine/check/stops/overrun.hpp"
 #include "gateway/machine/keys/json.hpp"
 
 namespace servogate::machine {

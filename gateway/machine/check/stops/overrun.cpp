@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/check/overrun.hpp"
+#include "gateway/machine/check/stops/overrun.hpp"
 
 #include <algorithm>
 #include <cmath>

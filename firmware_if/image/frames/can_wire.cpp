@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/image/can_wire.hpp"
+#include "firmware_if/image/frames/can_wire.hpp"
 
 #include <algorithm>
 #include <array>

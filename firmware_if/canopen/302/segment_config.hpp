@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "firmware_if/canopen/301/time_of_day.hpp"
+#include "firmware_if/canopen/302/io_station.hpp"
 #include "firmware_if/canopen/302/node_setup.hpp"
 #include "firmware_if/canopen/402/drive_profile.hpp"
-#include "firmware_if/canopen/master/io/io_station.hpp"
 #include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/time.hpp"
 

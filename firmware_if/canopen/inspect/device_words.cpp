@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/command/canopen/device_words.hpp"
+#include "firmware_if/canopen/inspect/device_words.hpp"
 
 #include "firmware_if/canopen/402/mode.hpp"
 #include "firmware_if/text/finding.hpp"
 
-namespace servogate::gateway::command {
+namespace servogate::canopen {
 
 namespace {
 
@@ -106,29 +106,29 @@ std::string device_type_words(std::uint32_t device_type) {
                     words_in(device_type, text::Language::russian));
 }
 
-std::string nmt_state_words(canopen::NmtState state) {
+std::string nmt_state_words(NmtState state) {
   switch (state) {
-    case canopen::NmtState::boot_up:
+    case NmtState::boot_up:
       return text::both("boot-up", "запуск");
-    case canopen::NmtState::stopped:
+    case NmtState::stopped:
       return text::both("stopped", "остановлен");
-    case canopen::NmtState::operational:
+    case NmtState::operational:
       return text::both("operational", "в работе");
-    case canopen::NmtState::pre_operational:
+    case NmtState::pre_operational:
       break;
   }
   return text::both("pre-operational", "предрабочее состояние");
 }
 
-const char* nmt_state_name(canopen::NmtState state) {
+const char* nmt_state_name(NmtState state) {
   switch (state) {
-    case canopen::NmtState::boot_up:
+    case NmtState::boot_up:
       return "boot_up";
-    case canopen::NmtState::stopped:
+    case NmtState::stopped:
       return "stopped";
-    case canopen::NmtState::operational:
+    case NmtState::operational:
       return "operational";
-    case canopen::NmtState::pre_operational:
+    case NmtState::pre_operational:
       break;
   }
   return "pre_operational";
@@ -137,13 +137,13 @@ const char* nmt_state_name(canopen::NmtState state) {
 std::string drive_modes(std::uint32_t supported, const char* between) {
   std::string words;
   for (int mode = 1; mode <= 11; ++mode) {
-    const auto m = static_cast<canopen::OperationMode>(mode);
-    if ((supported & canopen::supported_bit(m)) == 0) continue;
+    const auto m = static_cast<OperationMode>(mode);
+    if ((supported & supported_bit(m)) == 0) continue;
     // cstca has no place in the master's own list. Source: CiA 402-2, "Object 6502h".
-    const std::string name = mode == 11 ? "cstca" : canopen::short_name(m);
+    const std::string name = mode == 11 ? "cstca" : short_name(m);
     words += (words.empty() ? "" : between) + name;
   }
   return words;
 }
 
-}  // namespace servogate::gateway::command
+}  // namespace servogate::canopen

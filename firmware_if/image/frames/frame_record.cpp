@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/image/frame_record.hpp"
+#include "firmware_if/image/frames/frame_record.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/node_files.hpp"
+#include "gateway/machine/loading/node_files.hpp"
 
 #include <algorithm>
 #include <chrono>
