@@ -15,7 +15,7 @@
 #include "gateway/report/report.hpp"
 #include "gateway/run/running_machine.hpp"
 #include "gateway/server/desk/desk.hpp"
-#include "gateway/server/resident.hpp"
+#include "gateway/server/resident/resident.hpp"
 #include "gateway/server/socket/socket_path.hpp"
 #include "gateway/server/socket_server.hpp"
 

@@ -9,11 +9,11 @@
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/canopen/302/boot_detail.hpp"
 #include "firmware_if/image/frames/frame_record.hpp"
-#include "gateway/compose/axis_setup.hpp"
-#include "gateway/compose/canopen_setup.hpp"
 #include "gateway/compose/plc/compile_beside.hpp"
 #include "gateway/compose/plc/logic_options.hpp"
 #include "gateway/compose/program/program_model.hpp"
+#include "gateway/compose/setup/axis_setup.hpp"
+#include "gateway/compose/setup/canopen_setup.hpp"
 #include "gateway/files/read_file.hpp"
 #include "plc/compile/compile.hpp"
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "gateway/server/bus_reading.hpp"
+#include "gateway/server/dispatch/bus_reading.hpp"
+#include "gateway/server/dispatch/status.hpp"
 #include "gateway/server/reply/reply_json.hpp"
 #include "gateway/server/request/request_form.hpp"
-#include "gateway/server/status.hpp"
 #include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "gateway/compose/axis_setup.hpp"
-#include "gateway/compose/canopen_setup.hpp"
+#include "gateway/compose/setup/axis_setup.hpp"
+#include "gateway/compose/setup/canopen_setup.hpp"
 #include "tests/places/places.hpp"
 
 namespace servogate::gateway {

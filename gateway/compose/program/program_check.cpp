@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "gateway/compose/axis_setup.hpp"
+#include "gateway/compose/setup/axis_setup.hpp"
 
 namespace servogate::gateway {
 

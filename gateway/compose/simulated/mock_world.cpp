@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/compose/modbus_setup.hpp"
 #include "gateway/compose/points/point_rules.hpp"
+#include "gateway/compose/setup/modbus_setup.hpp"
 #include "gateway/compose/simulated/simulated_node.hpp"
 
 namespace servogate::gateway {

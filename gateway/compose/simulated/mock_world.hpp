@@ -16,7 +16,7 @@
 #include "drivers/mock/io/simulated_encoder.hpp"
 #include "drivers/mock/io/simulated_io_module.hpp"
 #include "drivers/mock/modbus/modbus_line.hpp"
-#include "gateway/compose/modbus_setup.hpp"
+#include "gateway/compose/setup/modbus_setup.hpp"
 #include "gateway/machine/load.hpp"
 
 namespace servogate::gateway {

@@ -6,7 +6,7 @@
 
 #include "firmware_if/canopen/401/objects.hpp"
 #include "firmware_if/canopen/device/io/io_profile.hpp"
-#include "gateway/compose/axis_setup.hpp"
+#include "gateway/compose/setup/axis_setup.hpp"
 #include "gateway/machine/can_channel.hpp"
 
 namespace servogate::gateway {

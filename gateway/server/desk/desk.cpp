@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "gateway/server/resident.hpp"
+#include "gateway/server/resident/resident.hpp"
 #include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "gateway/server/desk/desk_thread.hpp"
+#include "gateway/server/desk/shut_down.hpp"
 #include "gateway/server/desk/urgent_desk.hpp"
-#include "gateway/server/shut_down.hpp"
 
 namespace servogate::gateway {
 

@@ -90,7 +90,7 @@ bool DeskThread::turn(std::unique_lock<std::mutex>& lock) {
   if (next->second.questions.empty()) {
     queues_.erase(next);
     lock.unlock();
-    resident_.plc().release_of(served_);
+    plc_.release_of(served_);
     lock.lock();
     return true;
   }
@@ -98,7 +98,7 @@ bool DeskThread::turn(std::unique_lock<std::mutex>& lock) {
   next->second.questions.pop_front();
   next->second.works = true;
   lock.unlock();
-  settle(question, dispatch(resident_, question));
+  settle(question, dispatch(resident_, plc_, question));
   lock.lock();
   return true;
 }

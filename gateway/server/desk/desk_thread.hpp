@@ -9,9 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "gateway/server/desk/workshop.hpp"
-#include "gateway/server/dispatch.hpp"
-#include "gateway/server/resident.hpp"
+#include "gateway/server/dispatch/dispatch.hpp"
+#include "gateway/server/plc/plc_desk.hpp"
+#include "gateway/server/resident/resident.hpp"
+#include "gateway/server/work/workshop.hpp"
 
 namespace servogate::gateway {
 
@@ -55,6 +56,7 @@ class DeskThread {
   void order(Question question, Work work);
 
   Resident& resident_;
+  PlcDesk plc_{resident_};
   Give give_;
   std::mutex mutex_;
   std::condition_variable wake_;

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "gateway/run/words/jog_words.hpp"
-#include "gateway/server/desk/refusal.hpp"
+#include "gateway/server/gate/refusal.hpp"
 #include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {

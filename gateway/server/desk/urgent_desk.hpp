@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "gateway/compose/control.hpp"
-#include "gateway/server/desk/question.hpp"
 #include "gateway/server/reply/reply.hpp"
+#include "gateway/server/work/question.hpp"
 
 namespace servogate::gateway {
 

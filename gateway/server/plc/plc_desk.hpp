@@ -8,9 +8,9 @@
 
 #include "firmware_if/image/request.hpp"
 #include "firmware_if/text/finding.hpp"
-#include "gateway/server/desk/outcome.hpp"
 #include "gateway/server/request/caller.hpp"
 #include "gateway/server/request/command.hpp"
+#include "gateway/server/work/outcome.hpp"
 #include "plc/logic/logic_change.hpp"
 #include "plc/types/type.hpp"
 

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "gateway/files/read_file.hpp"
-#include "gateway/server/desk/refusal.hpp"
+#include "gateway/server/gate/refusal.hpp"
 #include "gateway/server/plc/change_log.hpp"
 #include "gateway/server/plc/plc_answers.hpp"
-#include "gateway/server/resident.hpp"
+#include "gateway/server/resident/resident.hpp"
 #include "gateway/server/words/texts.hpp"
 #include "plc/logic/force_plan.hpp"
 

@@ -10,7 +10,7 @@
 #include "gateway/server/plc/plc_answers.hpp"
 #include "gateway/server/plc/plc_desk.hpp"
 #include "gateway/server/plc/plc_view.hpp"
-#include "gateway/server/resident.hpp"
+#include "gateway/server/resident/resident.hpp"
 #include "gateway/server/words/texts.hpp"
 #include "plc/logic/force_plan.hpp"
 #include "plc/types/direct_place.hpp"

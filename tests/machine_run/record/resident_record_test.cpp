@@ -8,7 +8,8 @@
 #include <thread>
 
 #include "gateway/run/running_machine.hpp"
-#include "gateway/server/resident.hpp"
+#include "gateway/server/plc/plc_desk.hpp"
+#include "gateway/server/resident/resident.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"
@@ -235,7 +236,7 @@ TEST(ResidentRecord, of_forces_and_another_PLC_program_replays_byte_by_byte) {
   {
     RecordedControl control(scratch);
     ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.axes[2].drive.online; }));
-    gateway::PlcDesk& desk = control.resident().plc();
+    gateway::PlcDesk desk(control.resident());
     const auto ask = [&](const gateway::ask::Command& command) {
       gateway::Outcome outcome = desk.carry_out(command, {image::Asker::command_line, 7, "somebody", {}});
       while (const auto* work = std::get_if<gateway::Work>(&outcome)) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "gateway/server/desk/question.hpp"
+#include "gateway/server/work/question.hpp"
 
 namespace servogate::gateway {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "gateway/compose/control.hpp"
-#include "gateway/server/desk/request_desk.hpp"
+#include "gateway/server/gate/request_desk.hpp"
 
 namespace servogate::gateway {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "gateway/server/desk/request_desk.hpp"
+#include "gateway/server/gate/request_desk.hpp"
 #include "gateway/server/request/caller.hpp"
 #include "gateway/server/request/command.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/desk/workshop.hpp"
+#include "gateway/server/work/workshop.hpp"
 
 #include <utility>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/shut_down.hpp"
+#include "gateway/server/desk/shut_down.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/axis_setup.hpp"
+#include "gateway/compose/setup/axis_setup.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Between clients and the gate: whose answer is whose, and what a stop does to what was asked before it.
-#include "gateway/server/desk/request_desk.hpp"
+#include "gateway/server/gate/request_desk.hpp"
 
 #include <gtest/gtest.h>
 
 #include <future>
 
-#include "gateway/server/desk/workshop.hpp"
+#include "gateway/server/work/workshop.hpp"
 
 namespace servogate::gateway {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/bus_reading.hpp"
+#include "gateway/server/dispatch/bus_reading.hpp"
 
 #include <algorithm>
 #include <chrono>

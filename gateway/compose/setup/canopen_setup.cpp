@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/canopen_setup.hpp"
+#include "gateway/compose/setup/canopen_setup.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "firmware_if/canopen/402/objects.hpp"
-#include "gateway/compose/axis_setup.hpp"
 #include "gateway/compose/points/point_rules.hpp"
+#include "gateway/compose/setup/axis_setup.hpp"
 #include "gateway/machine/can_channel.hpp"
 
 namespace servogate::gateway {

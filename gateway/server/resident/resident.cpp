@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/resident.hpp"
+#include "gateway/server/resident/resident.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <thread>
 
-#include "gateway/server/desk/outcome.hpp"
+#include "gateway/server/work/outcome.hpp"
 
 namespace servogate::gateway {
 

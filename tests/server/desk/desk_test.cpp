@@ -12,7 +12,7 @@
 
 #include "gateway/run/running_machine.hpp"
 #include "gateway/server/desk/desk_client.hpp"
-#include "gateway/server/resident.hpp"
+#include "gateway/server/resident/resident.hpp"
 #include "gateway/server/socket_server.hpp"
 #include "tests/places/places.hpp"
 #include "tests/server/rig/shell.hpp"

@@ -11,10 +11,9 @@
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/history/machine_watch.hpp"
 #include "gateway/machine/state/state.hpp"
-#include "gateway/server/desk/outcome.hpp"
-#include "gateway/server/desk/request_desk.hpp"
-#include "gateway/server/desk/works.hpp"
-#include "gateway/server/plc/plc_desk.hpp"
+#include "gateway/server/gate/request_desk.hpp"
+#include "gateway/server/work/outcome.hpp"
+#include "gateway/server/work/works.hpp"
 
 namespace servogate::gateway {
 
@@ -122,7 +121,6 @@ class Resident {
   double speed() const noexcept { return speed_; }
   /// Folder of what is learned; empty: nothing is kept.
   const std::string& state_path() const noexcept { return state_path_; }
-  PlcDesk& plc() noexcept { return plc_; }
   /// What clients wait for that takes long.
   Works& works() noexcept { return works_; }
   Control& control() noexcept { return control_; }
@@ -157,7 +155,6 @@ class Resident {
   history::EventLog* history_ = nullptr;
   history::MachineWatch watch_{control_};
   Works works_;
-  PlcDesk plc_{*this};
 };
 
 }  // namespace servogate::gateway

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/status.hpp"
+#include "gateway/server/dispatch/status.hpp"
 
 #include <chrono>
 #include <span>
@@ -89,7 +89,7 @@ HeldBuses held_buses(const machine::MachineConfig& machine, const image::Process
   return {run, machine.name, bus_reports(machine, image)};
 }
 
-StatusReport status_report(Resident& resident, text::Language language) {
+StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Language language) {
   const image::ProcessImage& image = resident.image();
   const machine::MachineConfig& m = resident.control().machine();
   StatusReport status;
@@ -118,8 +118,8 @@ StatusReport status_report(Resident& resident, text::Language language) {
   status.alarms = alarm_rows(resident, language);
   status.missing = missing_now(resident, language);
   status.works = work_reports(resident);
-  status.forced = resident.plc().forced();
-  status.plc_held_by = resident.plc().held_by();
+  status.forced = plc.forced();
+  status.plc_held_by = plc.held_by();
   return status;
 }
 

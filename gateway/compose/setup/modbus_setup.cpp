@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/compose/modbus_setup.hpp"
+#include "gateway/compose/setup/modbus_setup.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/desk/request_desk.hpp"
+#include "gateway/server/gate/request_desk.hpp"
 
 #include <chrono>
 #include <thread>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/dispatch.hpp"
+#include "gateway/server/dispatch/dispatch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,11 @@
 #include "firmware_if/text/units.hpp"
 #include "gateway/compose/simulated/played_input.hpp"
 #include "gateway/files/read_file.hpp"
-#include "gateway/server/bus_reading.hpp"
-#include "gateway/server/desk/refusal.hpp"
-#include "gateway/server/resident.hpp"
-#include "gateway/server/status.hpp"
+#include "gateway/server/dispatch/bus_reading.hpp"
+#include "gateway/server/dispatch/status.hpp"
+#include "gateway/server/gate/refusal.hpp"
+#include "gateway/server/plc/plc_desk.hpp"
+#include "gateway/server/resident/resident.hpp"
 #include "gateway/server/words/texts.hpp"
 
 namespace servogate::gateway {
@@ -58,8 +59,8 @@ Work save_and(Resident& resident, Reply done, text::Language language) {
 
 class Dispatch {
  public:
-  Dispatch(Resident& resident, const Question& question)
-      : resident_(resident), question_(question), language_(question.caller.language) {}
+  Dispatch(Resident& resident, PlcDesk& plc, const Question& question)
+      : resident_(resident), plc_(plc), question_(question), language_(question.caller.language) {}
 
   Outcome run();
   Outcome loaded(Resident::Load& load, const ask::Load& wanted);
@@ -85,7 +86,7 @@ class Dispatch {
   Outcome behind(Resident::Proof proof);
 
   // One for each kind of question.
-  Outcome take(const ask::Status&) { return looked(status_report(resident_, language_)); }
+  Outcome take(const ask::Status&) { return looked(status_report(resident_, plc_, language_)); }
   Outcome take(const ask::Buses&) { return looked(held_buses(machine(), resident_.image(), false)); }
   Outcome take(const ask::Alarms&) { return looked(alarm_report(resident_, language_)); }
   Outcome take(const ask::History& wanted) {
@@ -132,6 +133,7 @@ class Dispatch {
   }
 
   Resident& resident_;
+  PlcDesk& plc_;
   const Question& question_;
   text::Language language_;
   Reply refusal_;
@@ -140,7 +142,7 @@ class Dispatch {
 Outcome Dispatch::run() {
   const ask::Command& command = question_.command;
   if (resident_.ending() && !ask::only_looks(command)) return fail(says::kEnding, {}, kAlarm);
-  if (ask::of_plc(command)) return resident_.plc().carry_out(command, question_.caller);
+  if (ask::of_plc(command)) return plc_.carry_out(command, question_.caller);
   return std::visit(
       [this](const auto& wanted) -> Outcome {
         if constexpr (requires { this->take(wanted); })
@@ -248,7 +250,7 @@ Outcome Dispatch::take(const ask::JogContinuous& wanted) {
 Outcome Dispatch::behind(Resident::Proof proof) {
   Resident& resident = resident_;
   return prove_and(resident, std::move(proof),
-                   [&resident, question = question_] { return dispatch(resident, question); });
+                   [&resident, &plc = plc_, question = question_] { return dispatch(resident, plc, question); });
 }
 
 Outcome Dispatch::take(const ask::Zero& wanted) {
@@ -298,10 +300,10 @@ Outcome Dispatch::take(const ask::Load& wanted) {
   Resident& resident = resident_;
   Work work;
   work.what = "load", work.name = load->path;
-  work.run = [&resident, load, question = question_](const std::stop_token& stop) -> Finish {
+  work.run = [&resident, &plc = plc_, load, question = question_](const std::stop_token& stop) -> Finish {
     resident.read_and_prove(*load, stop);
-    return [&resident, load, question]() -> Outcome {
-      return Dispatch(resident, question).loaded(*load, std::get<ask::Load>(question.command));
+    return [&resident, &plc, load, question]() -> Outcome {
+      return Dispatch(resident, plc, question).loaded(*load, std::get<ask::Load>(question.command));
     };
   };
   return work;
@@ -391,6 +393,8 @@ Outcome Dispatch::take(const ask::Input& wanted) {
 
 }  // namespace
 
-Outcome dispatch(Resident& resident, const Question& question) { return Dispatch(resident, question).run(); }
+Outcome dispatch(Resident& resident, PlcDesk& plc, const Question& question) {
+  return Dispatch(resident, plc, question).run();
+}
 
 }  // namespace servogate::gateway

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/server/desk/refusal.hpp"
+#include "gateway/server/gate/refusal.hpp"
 
 #include <string>
 #include <vector>

@@ -2,13 +2,14 @@
 #pragma once
 #include <string>
 
+#include "gateway/server/plc/plc_desk.hpp"
 #include "gateway/server/reply/status_report.hpp"
-#include "gateway/server/resident.hpp"
+#include "gateway/server/resident/resident.hpp"
 
 namespace servogate::gateway {
 
 /// State of a running control.
-StatusReport status_report(Resident& resident, text::Language language);
+StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Language language);
 /// Active alarms with cause and remedy.
 AlarmReport alarm_report(Resident& resident, text::Language language);
 /// The last `count` events of the history.
