@@ -42,9 +42,9 @@ constexpr image::Place kAcks[] = {
     field(image::kProcessFields, "t_ack"), field(image::kProcessFields, "h_ack")};
 
 /// Permits everything and acknowledges every word of both processes at once.
-class Permits final : public cycle::Logic {
+class Permits final : public image::Logic {
  public:
-  void scan(image::ProcessImage& image, cycle::Notices&) noexcept override {
+  void scan(image::ProcessImage& image, image::Notices&) noexcept override {
     image::Packets& k = image.packets;
     k.set_bit(field(image::kMachineFields, "estop_ok", image::kMachineBase), true);
     k.set_bit(field(image::kMachineFields, "power_on", image::kMachineBase), true);
