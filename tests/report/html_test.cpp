@@ -208,7 +208,8 @@ TEST(Html, an_empty_run_is_still_a_page) {
   EXPECT_NE(html.find("<title>servogate</title>"), std::string::npos);
 }
 
-/// Single cycles, by differences of what was put in, and bands of a quarter of a second.
+/// Single cycles, by differences of what was put in, and bands of 256 ms, a whole number of the parts that a
+/// page keeps.
 void cycles_expected(Json& out, const DemoRun& demo) {
   out["cycles"] = Json::array();
   for (const std::size_t n : {600u, 3300u, 8192u, 8193u, 9001u, 17'000u}) {
@@ -225,10 +226,10 @@ void cycles_expected(Json& out, const DemoRun& demo) {
                                {"spindle.act", demo.rows[n].spindles[0].actual_rpm}}}});
   }
   Json low = Json::array(), high = Json::array();
-  for (std::size_t n = 0; n + 250 <= demo.rows.size(); n += 250) {
+  for (std::size_t n = 0; n + 256 <= demo.rows.size(); n += 256) {
     const auto [least, most] =
         std::minmax_element(demo.rows.begin() + static_cast<std::ptrdiff_t>(n),
-                            demo.rows.begin() + static_cast<std::ptrdiff_t>(n + 250),
+                            demo.rows.begin() + static_cast<std::ptrdiff_t>(n + 256),
                             [](const TraceRow& a, const TraceRow& b) { return a.feed_mm_s < b.feed_mm_s; });
     low.push_back(least->feed_mm_s);
     high.push_back(most->feed_mm_s);

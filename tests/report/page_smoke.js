@@ -139,13 +139,13 @@ async function cycles(page, run) {
   }
   if (!expected.band) return;
   page.setWindow(run.start, run.end);
-  const wide = {...page.timeGrid(() => {}), every: false, step: 0.25, first: run.start, at: Float64Array.from({length: Math.floor(run.duration / 0.25)}, (_, k) => run.start + (k + 0.5) * 0.25)};
+  const wide = {...page.timeGrid(() => {}), every: false, step: 0.256, first: run.start, at: Float64Array.from({length: Math.floor(run.duration / 0.256)}, (_, k) => run.start + (k + 0.5) * 0.256)};
   const {low, high} = page.bands(run, expected.band.name, wide);
   expected.band.low.forEach((v, k) => {
     near(low[k], v, 1e-5 * expected.band.size, `lower edge of band ${k}`);
     near(high[k], expected.band.high[k], 1e-5 * expected.band.size, `upper edge of band ${k}`);
   });
-  check(page.resolutionWords(wide).includes("250 ms"), "a band does not say how long it is: " + page.resolutionWords(wide));
+  check(page.resolutionWords(wide).includes("256 ms"), "a band does not say how long it is: " + page.resolutionWords(wide));
 }
 function ways(run) {
   const a = run.amounts();
