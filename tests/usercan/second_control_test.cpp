@@ -31,7 +31,7 @@ TEST_F(Udp, a_control_hears_who_leads_the_bus_and_sends_nothing) {
   EXPECT_EQ(control.wait(), 1) << control.said();
   stop = true;
   leads.join();
-  for (const char* words : {"somebody else leads the bus udp:", "SYNC (080h) ", "RPDO 1 of node 5 (205h) "})
+  for (const char* words : {"another master controls bus udp:", "SYNC (080h) ", "RPDO 1 of node 5 (205h) "})
     EXPECT_NE(control.said().find(words), std::string::npos) << words << "\n" << control.said();
   EXPECT_EQ(heard, 0);
 }
