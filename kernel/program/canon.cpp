@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "kernel/program/check.hpp"
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 
 namespace servogate::program {
 namespace {

@@ -30,7 +30,7 @@ enum class Transition : std::uint8_t {
 struct CornerRule {
   Transition transition = Transition::exact_stop;
   double tolerance_mm = 0.0;     ///< contour tolerance of this element; 0: stop at its end
-  double erf_mm = 0.0;           ///< form error that bounds the corner speed
+  double corner_error_mm = 0.0;  ///< form error that bounds the corner speed
   double max_angle_deg = 180.0;  ///< a sharper corner stops
 };
 

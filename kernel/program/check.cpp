@@ -10,7 +10,7 @@
 
 #include "kernel/program/canon.hpp"
 #include "kernel/program/geometry/circle.hpp"
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 
 namespace servogate::program {
 namespace {
@@ -134,7 +134,8 @@ void add_travel(CheckReport& report, const Interpreter& interpreter, const Machi
     report.findings.push_back(
         {text::Severity::error, interpreter.path(extent.outside_file), extent.outside_line,
          interpreter.column(extent.outside_file, extent.outside_line, static_cast<int>(a)),
-         &entry(Fault::travel), outside_arguments(machine.axes[a], value, limit)});
+         &entry(Fault::travel),
+         outside_arguments(machine.axes[a].letter, machine.axes[a].diameter, value, limit)});
     if (survey.outside_by_machine(a)) report.by_machine.push_back(report.findings.size() - 1);
   }
 }

@@ -108,7 +108,7 @@ void motion_fields(Writer& w, const Feed& feed, const CornerRule& corner) {
   w.field("feed_unit", feed_unit(feed.unit));
   w.field("transition", kTransitions[static_cast<int>(corner.transition)]);
   if (corner.transition == Transition::corner_limited) {
-    w.field("erf", corner.erf_mm);
+    w.field("corner_error", corner.corner_error_mm);
     w.field("max_angle", corner.max_angle_deg);
   }
 }

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "kernel/program/canon.hpp"
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 #include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
 

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "kernel/program/canon.hpp"
-#include "kernel/program/messages.hpp"
-#include "kernel/program/nc110/messages.hpp"
+#include "kernel/program/nc110/texts.hpp"
+#include "kernel/program/texts.hpp"
 #include "tests/program/case_file.hpp"
 
 namespace servogate::program::tests {

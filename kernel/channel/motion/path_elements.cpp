@@ -16,7 +16,7 @@ path::Transition transition(const program::CornerRule& corner) {
   path::Transition t;
   t.continuation = static_cast<path::Continuation>(corner.transition);
   t.tolerance = corner.tolerance_mm;
-  t.erf = corner.erf_mm;
+  t.erf = corner.corner_error_mm;
   t.max_angle_deg = corner.max_angle_deg;
   t.confirm = true;
   return t;

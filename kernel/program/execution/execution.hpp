@@ -9,9 +9,9 @@
 
 #include "kernel/program/execution/state.hpp"
 #include "kernel/program/geometry/circle.hpp"
-#include "kernel/program/messages.hpp"
 #include "kernel/program/reading/block.hpp"
 #include "kernel/program/reading/source.hpp"
+#include "kernel/program/texts.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "kernel/program/values/packet_view.hpp"
 

@@ -18,7 +18,7 @@ std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 
 [[noreturn]] void refuse_field(const MachineModel::Axis& axis, double value, double limit,
                                std::string_view word, int column) {
-  std::vector<std::string> arguments = outside_arguments(axis, value, limit);
+  std::vector<std::string> arguments = outside_arguments(axis.letter, axis.diameter, value, limit);
   arguments.emplace_back(word);
   fail(Fault::field, column, std::move(arguments));
 }
@@ -85,7 +85,7 @@ void Execution::check_axis(int axis, double value, int column) const {
   const MachineModel::Axis& a = machine_->axes[at(axis)];
   const double limit = value > a.travel_max ? a.travel_max : a.travel_min;
   if (value > a.travel_max + kTravelSlack || value < a.travel_min - kTravelSlack)
-    fail(Fault::travel, column, outside_arguments(a, value, limit));
+    fail(Fault::travel, column, outside_arguments(a.letter, a.diameter, value, limit));
   const double inside = value - state_.frame.length(axis);
   const double field =
       inside > state_.field_max[at(axis)] ? state_.field_max[at(axis)] : state_.field_min[at(axis)];
@@ -314,10 +314,10 @@ CornerRule Execution::corner_of(const BlockWords& words) const {
   if (mode == Function::continuous) {
     rule.transition = Transition::continuous;
     rule.tolerance_mm = tolerance;
-  } else if (state_.erf_mm > 0.0) {
+  } else if (state_.corner_error_mm > 0.0) {
     rule.transition = Transition::corner_limited;
-    rule.tolerance_mm = std::min(tolerance, state_.erf_mm);
-    rule.erf_mm = state_.erf_mm;
+    rule.tolerance_mm = std::min(tolerance, state_.corner_error_mm);
+    rule.corner_error_mm = state_.corner_error_mm;
     rule.max_angle_deg = state_.max_angle_deg;
   }
   return rule;

@@ -102,7 +102,7 @@ struct State {
   std::int32_t tool = 0;  ///< last T word
   std::int32_t corrector = 0;
   double dwell = 0.0;  ///< set by a variable, s or revolutions
-  double erf_mm = 0.0;
+  double corner_error_mm = 0.0;
   double max_angle_deg = 0.0;     ///< a sharper corner stops
   double allowance = 0.0;         ///< mm
   std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit

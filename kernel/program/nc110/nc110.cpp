@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/nc110/nc110.hpp"
 
-#include "kernel/program/nc110/codes.hpp"
-#include "kernel/program/nc110/operands.hpp"
+#include "kernel/program/nc110/codes/codes.hpp"
+#include "kernel/program/nc110/codes/operands.hpp"
 
 namespace servogate::program::nc110 {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 
 namespace servogate::program {
 namespace {

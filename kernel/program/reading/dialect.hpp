@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "kernel/program/values/parameters.hpp"
 

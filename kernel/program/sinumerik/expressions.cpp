@@ -5,8 +5,8 @@
 #include <string>
 
 #include "kernel/program/geometry/degrees.hpp"
-#include "kernel/program/messages.hpp"
 #include "kernel/program/sinumerik/sinumerik.hpp"
+#include "kernel/program/texts.hpp"
 #include "kernel/program/values/number.hpp"
 
 namespace servogate::program::sinumerik {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 #include "kernel/program/values/number.hpp"
 
 namespace servogate::program {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 
 namespace servogate::program {
 namespace {

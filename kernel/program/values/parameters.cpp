@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 
 namespace servogate::program {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 
 #include <iterator>
 
@@ -164,9 +164,10 @@ static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::findings_m
 
 std::span<const text::Entry> messages() { return kMessages; }
 
-std::vector<std::string> outside_arguments(const MachineModel::Axis& axis, double value, double limit) {
-  const double shown = axis.diameter ? 2.0 : 1.0;
-  return {axis.diameter ? text::both(axis.letter + " (diameter)", axis.letter + " (диаметр)") : axis.letter,
+std::vector<std::string> outside_arguments(const std::string& letter, bool diameter, double value,
+                                           double limit) {
+  const double shown = diameter ? 2.0 : 1.0;
+  return {diameter ? text::both(letter + " (diameter)", letter + " (диаметр)") : letter,
           text::number(shown * value, 4), text::number(shown * limit, 4)};
 }
 

@@ -2,8 +2,8 @@
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
-#include "kernel/program/nc110/messages.hpp"
 #include "kernel/program/nc110/nc110.hpp"
+#include "kernel/program/nc110/texts.hpp"
 
 namespace servogate::program::nc110 {
 

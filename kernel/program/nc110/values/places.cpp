@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/program/nc110/places.hpp"
+#include "kernel/program/nc110/values/places.hpp"
 
 #include <string>
 
-#include "kernel/program/nc110/messages.hpp"
+#include "kernel/program/nc110/texts.hpp"
 #include "kernel/program/values/number.hpp"
 
 namespace servogate::program::nc110 {

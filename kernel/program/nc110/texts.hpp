@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/program/messages.hpp"
+#include "kernel/program/texts.hpp"
 
 namespace servogate::program::nc110 {
 

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "kernel/program/execution/execution.hpp"
-#include "kernel/program/nc110/codes.hpp"
+#include "kernel/program/nc110/codes/codes.hpp"
 
 namespace servogate::program::nc110::variable {
 namespace {
@@ -34,7 +34,7 @@ void uov(Execution& run, double value, int column) {
 
 void erf(Execution& run, double value, int column) {
   check("ERF", value, 0.0, 1000.0, column);
-  run.state().erf_mm = value * unit(run);
+  run.state().corner_error_mm = value * unit(run);
 }
 
 /// sin of the angle up to 90 degrees, 1 + sin(angle - 90) beyond. Source: specification A 13.4.

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "firmware_if/text/finding.hpp"
-#include "kernel/program/interpreter.hpp"
 
 namespace servogate::program {
 
@@ -128,7 +127,8 @@ const text::Entry& entry(Fault fault);
 
 /// First arguments of Fault::travel and Fault::field: a diameter axis is named so, with its places as
 /// diameters. `value`, `limit`: machine coordinates, a diameter axis' as radius.
-std::vector<std::string> outside_arguments(const MachineModel::Axis& axis, double value, double limit);
+std::vector<std::string> outside_arguments(const std::string& letter, bool diameter, double value,
+                                           double limit);
 
 /// What was written, with the capitals A to Z that it would have.
 std::string in_capitals(std::string_view written);

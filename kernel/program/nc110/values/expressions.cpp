@@ -6,9 +6,9 @@
 #include <string>
 
 #include "kernel/program/geometry/degrees.hpp"
-#include "kernel/program/nc110/messages.hpp"
 #include "kernel/program/nc110/nc110.hpp"
-#include "kernel/program/nc110/places.hpp"
+#include "kernel/program/nc110/texts.hpp"
+#include "kernel/program/nc110/values/places.hpp"
 #include "kernel/program/reading/block.hpp"
 
 /// Source: NC-110 programmer's manual, "E parameters", table 2.8 (specification B 2.1, B 2.2).

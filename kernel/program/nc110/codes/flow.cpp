@@ -3,10 +3,10 @@
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
-#include "kernel/program/nc110/codes.hpp"
-#include "kernel/program/nc110/messages.hpp"
-#include "kernel/program/nc110/operands.hpp"
-#include "kernel/program/nc110/places.hpp"
+#include "kernel/program/nc110/codes/codes.hpp"
+#include "kernel/program/nc110/codes/operands.hpp"
+#include "kernel/program/nc110/texts.hpp"
+#include "kernel/program/nc110/values/places.hpp"
 
 namespace servogate::program::nc110::code {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/program/nc110/operands.hpp"
+#include "kernel/program/nc110/codes/operands.hpp"
 
 #include <algorithm>
 #include <string>
 
-#include "kernel/program/nc110/messages.hpp"
+#include "kernel/program/nc110/texts.hpp"
 
 namespace servogate::program::nc110 {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/execution/execution.hpp"
-#include "kernel/program/nc110/messages.hpp"
 #include "kernel/program/nc110/nc110.hpp"
+#include "kernel/program/nc110/texts.hpp"
 
 namespace servogate::program::nc110 {
 

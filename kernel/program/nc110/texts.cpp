@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/program/nc110/messages.hpp"
+#include "kernel/program/nc110/texts.hpp"
 
 #include <iterator>
 
