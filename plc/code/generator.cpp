@@ -37,7 +37,7 @@ std::shared_ptr<const Image> Generator::run() {
   }
   link();
   tables();
-  image_->references = references(program_, *image_);
+  image_->references = references(program_);
   return report_.failed() ? nullptr : image_;
 }
 

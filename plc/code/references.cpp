@@ -13,7 +13,7 @@ using Reference = Image::Reference;
 
 class Walk {
  public:
-  Walk(const ir::Program& program, const Image& image) : program_(program), image_(image) {}
+  explicit Walk(const ir::Program& program) : program_(program) {}
   std::vector<Reference> run();
 
  private:
@@ -29,7 +29,6 @@ class Walk {
   bool root(const ir::Place& p, Reference& out, std::uint32_t& offset) const;
 
   const ir::Program& program_;
-  const Image& image_;
   std::vector<Reference> found_;
   std::map<std::uint32_t, const ir::Global*> owners_;  ///< of the memory from an address on
   int unit_ = -1;
@@ -172,8 +171,8 @@ std::vector<Reference> Walk::run() {
 
 }  // namespace
 
-std::vector<Image::Reference> references(const ir::Program& program, const Image& image) {
-  return Walk(program, image).run();
+std::vector<Image::Reference> references(const ir::Program& program) {
+  return Walk(program).run();
 }
 
 }  // namespace servogate::plc::code

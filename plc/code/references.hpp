@@ -7,7 +7,7 @@
 namespace servogate::plc::code {
 
 /// Where every variable of the program's own files is read and written, in the order of files, lines and
-/// columns. `image` has its places, programs and units already.
-std::vector<Image::Reference> references(const ir::Program& program, const Image& image);
+/// columns.
+std::vector<Image::Reference> references(const ir::Program& program);
 
 }  // namespace servogate::plc::code
