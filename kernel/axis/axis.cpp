@@ -30,6 +30,7 @@ void Axis::read(image::ProcessImage& image) noexcept {
   read_feedback(shared.drive, image.now.period_s());
   supervise_drive();
   supervise_position();
+  supervise_switches();
   shared.actual = actual_;
   shared.following_error = following_error_;
   shared.limit_plus = limit_plus_;

@@ -31,7 +31,7 @@ struct Setpoint {
 ///   set_process(setpoint)       interpolation, where a process owns the axis
 ///   react(reaction)             the strongest reaction in force
 ///   command(image)              set-point, supervision, drive command, K places
-/// Events found in a cycle stand in events() until the next read().
+/// Events found by read() and by command() stand in events() until clear_events() or the next read().
 class Axis {
  public:
   /// Takes the configuration; `index` is the axis' place in the image. Not for the cycle (allocates).
@@ -45,6 +45,7 @@ class Axis {
   void react(image::Reaction reaction) noexcept { reaction_ = reaction; }
   void command(image::ProcessImage& image) noexcept;
   const Events& events() const noexcept { return events_; }
+  void clear_events() noexcept { events_.clear(); }
   /// True while the cause of an alarm of this axis is still there: its reset condition is not met.
   bool present(image::AlarmNumber number) const noexcept;
 
@@ -186,6 +187,7 @@ class Axis {
   void supervise_drive() noexcept;
   void supervise_position() noexcept;
   void warn_of_following_error() noexcept;
+  void supervise_switches() noexcept;
   void supervise_setpoint() noexcept;
   bool leaves_travel(const MotionState& state) noexcept;
   void supervise_power(PowerSequence::State before) noexcept;

@@ -151,7 +151,9 @@ void Axis::warn_of_following_error() noexcept {
     events_.add({alarm::kFollowingErrorHigh, following_warn_, following_error_, actual_velocity_, 0.0});
 }
 
-void Axis::supervise_setpoint() noexcept {
+/// Judges the motion of the cycle before when the switches are read, so that the set-point of this cycle is
+/// already the stop's; and once more the motion that began in this cycle.
+void Axis::supervise_switches() noexcept {
   if (!held_) return;
   // A program never takes an axis to its switches: one that works is a limit that was passed or a broken
   // wire, wherever the axis goes or rests. Others move away from the switch that they stood on; one that
@@ -165,7 +167,11 @@ void Axis::supervise_setpoint() noexcept {
     raise(plus ? alarm::kHardLimitPlus : alarm::kHardLimitMinus, 0.0, actual_);
     if (!stopped_by_reaction_) take_away();
   }
-  if (set_.v == 0.0) return;
+}
+
+void Axis::supervise_setpoint() noexcept {
+  supervise_switches();
+  if (!held_ || set_.v == 0.0) return;
   if (!stopped_by_reaction_ && own_motion_ && leaves_travel(set_)) take_away();
 }
 

@@ -39,6 +39,7 @@ class Spindle {
   void react(image::Reaction reaction) noexcept { reaction_ = reaction; }
   void command(image::ProcessImage& image) noexcept;
   const Events& events() const noexcept { return events_; }
+  void clear_events() noexcept { events_.clear(); }
   bool present(image::AlarmNumber number) const noexcept;
   void reset() noexcept;
 

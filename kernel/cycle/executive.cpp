@@ -43,6 +43,7 @@ bool Cycle::step() noexcept {
   for (axis::Axis& a : axes_) a.read(image_);
   for (axis::Spindle& s : spindles_) s.read(image_);
   watch_machine();
+  collect_events();  // what the axes have just read acts in this cycle
   handle_requests();
   reaction_ = alarms_.reaction();
   // Who wants the drives on after this has to say so again.
@@ -168,12 +169,13 @@ void Cycle::run_axes() noexcept {
     s.react(reaction_);
     s.command(image_);
   }
+  for (const image::AlarmRecord& r : notices_.records()) raise(r);
+  notices_.clear();
   collect_events();
+  note_rest();
 }
 
 void Cycle::collect_events() noexcept {
-  for (const image::AlarmRecord& r : notices_.records()) raise(r);
-  notices_.clear();
   const auto collect = [this](const axis::Events& events, int axis, int process) {
     for (const axis::Event& e : events) {
       image::AlarmRecord r;
@@ -201,14 +203,23 @@ void Cycle::collect_events() noexcept {
       raise(r);
     }
   };
-  bool rest = true;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    collect(axes_[i].events(), static_cast<int>(i), axes_[i].config().process);
-    if (axes_[i].homing().state() == axis::Homing::State::done)
-      alarms_.cause_gone(axis::alarm::kHomingInterrupted, static_cast<int>(i));
-    rest = rest && axes_[i].standstill();
+  for (axis::Axis& a : axes_) {
+    collect(a.events(), a.index(), a.config().process);
+    a.clear_events();
   }
-  for (const axis::Spindle& s : spindles_) collect(s.events(), -1, s.config().process);
+  for (axis::Spindle& s : spindles_) {
+    collect(s.events(), -1, s.config().process);
+    s.clear_events();
+  }
+}
+
+void Cycle::note_rest() noexcept {
+  bool rest = true;
+  for (const axis::Axis& a : axes_) {
+    if (a.homing().state() == axis::Homing::State::done)
+      alarms_.cause_gone(axis::alarm::kHomingInterrupted, a.index());
+    rest = rest && a.standstill();
+  }
   alarms_.note_rest(rest);
   if (manual_held_ && rest && !homing_.running()) manual_held_ = false;
 }
@@ -259,6 +270,7 @@ void Cycle::watch_machine() noexcept {
 }
 
 bool Cycle::still_present(const image::AlarmRecord& r) const noexcept {
+  if (r.cycle == image_.now.number) return true;  // nobody who asks for a reset in this cycle has seen it
   switch (r.number) {
     case alarm::kEmergencyStop:
       return !image_.packets.bit(places::kEstopOk);

@@ -160,6 +160,7 @@ class Cycle {
   void run_processes() noexcept;
   void run_axes() noexcept;
   void collect_events() noexcept;
+  void note_rest() noexcept;
   void write_machine_places() noexcept;
   void force() noexcept;
   void publish() noexcept;
