@@ -2,6 +2,7 @@
 #include "drivers/usercan/udp_bus.hpp"
 
 #include <arpa/inet.h>
+#include <net/if.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -17,10 +18,11 @@ namespace {
 
 const text::Entry kNoGroup{"usercan.no-group", "{0} is no multicast address (224.0.0.0 to 239.255.255.255)",
                            "{0} — не групповой адрес (от 224.0.0.0 до 239.255.255.255)"};
-const text::Entry kNoMulticast{
-    "usercan.no-multicast",
-    "multicast to {0} is not possible here: {1}. A route for it: ip route add 224.0.0.0/4 dev lo",
-    "групповая рассылка на {0} здесь невозможна: {1}. Маршрут: ip route add 224.0.0.0/4 dev lo"};
+const text::Entry kNoMulticast{"usercan.no-multicast",
+                               "multicast to {0} on the loopback interface is not possible here: {1}. Bring "
+                               "it up with: ip link set lo up",
+                               "групповая рассылка на {0} по интерфейсу loopback здесь невозможна: {1}. "
+                               "Включить его: ip link set lo up"};
 
 constexpr int kReceiveBytes = 4 << 20;
 
@@ -29,25 +31,34 @@ bool set_option(int s, int level, int option, const T& value) {
   return setsockopt(s, level, option, &value, sizeof value) == 0;
 }
 
+/// The group is joined there and nowhere else: what another computer sends to it is not heard.
+constexpr char kHere[] = "lo";
+
 /// Receives from the group only; the port is shared with the other participants.
 bool set_up_receiver(int s, const sockaddr_in& group) {
   const int on = 1, off = 0;
-  ip_mreq membership{};
+  ip_mreqn membership{};
   membership.imr_multiaddr = group.sin_addr;
+  membership.imr_ifindex = static_cast<int>(if_nametoindex(kHere));
   if (!set_option(s, SOL_SOCKET, SO_RCVBUFFORCE, kReceiveBytes))
     set_option(s, SOL_SOCKET, SO_RCVBUF, kReceiveBytes);
-  return set_option(s, SOL_SOCKET, SO_REUSEADDR, on) && set_option(s, SOL_SOCKET, SO_TIMESTAMPNS, on) &&
-         set_option(s, SOL_SOCKET, SO_RXQ_OVFL, on) && set_option(s, IPPROTO_IP, IP_MULTICAST_ALL, off) &&
+  return membership.imr_ifindex != 0 && set_option(s, SOL_SOCKET, SO_REUSEADDR, on) &&
+         set_option(s, SOL_SOCKET, SO_TIMESTAMPNS, on) && set_option(s, SOL_SOCKET, SO_RXQ_OVFL, on) &&
+         set_option(s, IPPROTO_IP, IP_MULTICAST_ALL, off) &&
          bind(s, reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
          set_option(s, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership);
 }
 
 bool set_up_sender(int s, const sockaddr_in& group, std::uint16_t& own_port) {
   const unsigned char stay_here = 0, loop = 1;
+  ip_mreqn here{};
+  here.imr_ifindex = static_cast<int>(if_nametoindex(kHere));
   sockaddr_in any{};
   any.sin_family = AF_INET;
+  any.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof any;
-  const bool good = set_option(s, IPPROTO_IP, IP_MULTICAST_TTL, stay_here) &&
+  const bool good = set_option(s, IPPROTO_IP, IP_MULTICAST_IF, here) &&
+                    set_option(s, IPPROTO_IP, IP_MULTICAST_TTL, stay_here) &&
                     set_option(s, IPPROTO_IP, IP_MULTICAST_LOOP, loop) &&
                     bind(s, reinterpret_cast<const sockaddr*>(&any), sizeof any) == 0 &&
                     connect(s, reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&

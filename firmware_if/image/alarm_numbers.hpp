@@ -21,6 +21,8 @@ inline constexpr AlarmNumber kPdoShort = 2020;
 inline constexpr AlarmNumber kErrorHistory = 2021;
 inline constexpr AlarmNumber kNotInterpolating = 2022;
 inline constexpr AlarmNumber kReportsLost = 2023;
+inline constexpr AlarmNumber kForeignRequest = 2024;
+inline constexpr AlarmNumber kLeadLost = 2025;
 
 inline constexpr AlarmNumber kSourceStale = 3001;
 inline constexpr AlarmNumber kSourceBad = 3002;

@@ -32,6 +32,8 @@ constexpr Row kAlarms[] = {
     {BusEventKind::node_left, cycle::alarm::kNodeLeft},
     {BusEventKind::not_interpolating, cycle::alarm::kNotInterpolating},
     {BusEventKind::foreign_frame, cycle::alarm::kForeignFrame},
+    {BusEventKind::foreign_request, cycle::alarm::kForeignRequest},
+    {BusEventKind::lead_lost, cycle::alarm::kLeadLost},
     {BusEventKind::send_failed, cycle::alarm::kBusSendOverflow},
 };
 
@@ -60,8 +62,24 @@ void describe_boot(const canopen::BootReport& report, image::AlarmRecord& record
 
 }  // namespace
 
+void CanSupplier::listened(image::Nanoseconds now) noexcept {
+  alive_ns_ = now;
+  segment_.listened();
+}
+
+/// Whoever was stopped (a signal, a debugger, the system) for so long may have been replaced: another control
+/// listens longer than this before it begins.
+void CanSupplier::look_at_clock() noexcept {
+  constexpr image::Nanoseconds kReplaced = image::kSecond;
+  if (clock_ == nullptr) return;
+  const image::Nanoseconds now = clock_->now_ns();
+  if (alive_ns_ != 0 && now - alive_ns_ >= kReplaced) segment_.came_back(now - alive_ns_);
+  alive_ns_ = now;
+}
+
 void CanSupplier::open_cycle(image::ProcessImage& image) noexcept {
-  if (clock_ != nullptr) sync_ns_ = clock_->now_ns();
+  look_at_clock();
+  if (clock_ != nullptr) sync_ns_ = alive_ns_;
   segment_.open_cycle(image);
 }
 
@@ -77,6 +95,7 @@ void CanSupplier::receive(image::ProcessImage& image, image::Notices& notices) n
 
 void CanSupplier::send(image::ProcessImage& image) noexcept {
   for (DrivePoints& drive : drives_) drive.send(image);
+  look_at_clock();  // set-points of a cycle in which it was stopped are of yesterday
   segment_.send(image);
 }
 
@@ -113,9 +132,11 @@ void CanSupplier::report(const canopen::BusEvent& event, image::Notices& notices
     r.object_subindex = event.pdo;
     r.detail1 = 0.0;
   }
-  if (event.kind == BusEventKind::foreign_frame) {
+  if (event.kind == BusEventKind::foreign_frame || event.kind == BusEventKind::foreign_request ||
+      event.kind == BusEventKind::lead_lost) {
     const std::size_t length = std::min<std::size_t>(event.frame.length, event.frame.data.size());
     r.value = event.frame.id;
+    r.limit = event.kind == BusEventKind::lead_lost ? static_cast<double>(event.got) / 1000.0 : 0.0;
     r.detail.put(
         image::frame_detail(canopen::make_frame(event.frame.id, std::span(event.frame.data).first(length))));
   }

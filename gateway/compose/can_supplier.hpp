@@ -20,6 +20,9 @@ class CanSupplier final : public image::CycleDevice {
   /// Time by that clock at which the SYNC of this cycle was handed to the bus. real-time safe.
   image::Nanoseconds sync_ns() const noexcept { return sync_ns_; }
 
+  /// The bus has been listened to until this moment of the clock of time_sync(). Before the first cycle.
+  void listened(image::Nanoseconds now) noexcept;
+
   /// Sends SYNC. real-time safe.
   void open_cycle(image::ProcessImage& image) noexcept override;
   /// real-time safe.
@@ -35,6 +38,7 @@ class CanSupplier final : public image::CycleDevice {
   canopen::ObjectQuestion& question() noexcept { return segment_.question(); }
 
  private:
+  void look_at_clock() noexcept;
   void report(const canopen::BusEvent& event, image::Notices& notices) const noexcept;
   void report_lost(image::Notices& notices) noexcept;
 
@@ -42,6 +46,7 @@ class CanSupplier final : public image::CycleDevice {
   std::vector<DrivePoints> drives_;
   const image::Clock* clock_ = nullptr;
   image::Nanoseconds sync_ns_ = 0;
+  image::Nanoseconds alive_ns_ = 0;  ///< when the control was certainly running; 0: nobody knows
   std::uint32_t lost_said_ = 0;
 };
 

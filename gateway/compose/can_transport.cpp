@@ -6,6 +6,7 @@
 
 #include "drivers/gsusb/libusb_port.hpp"
 #include "firmware_if/canopen/301/cob_id.hpp"
+#include "firmware_if/canopen/master/master_claim.hpp"
 
 namespace servogate::gateway {
 namespace {
@@ -132,11 +133,13 @@ std::optional<CanTransport> open_can(std::string_view url, const CanTransportOpt
 }
 
 std::vector<socketcan::Filter> master_filters(const std::vector<int>& nodes) {
-  constexpr std::uint32_t kNode = 0x07F, kFunction = 0x780, kWhole = 0x7FF;
+  constexpr std::uint32_t kNode = 0x07F, kFunction = 0x780, kWhole = 0x7FF,
+                          kAnnouncements = kWhole & ~(canopen::MasterClaim::kCobs - 1);
   // Function code and node-ID share the identifier: CiA 301, 7.3.5.
   std::vector<socketcan::Filter> filters = {{canopen::cob::kNmt, kWhole},
                                             {canopen::cob::kSync, kFunction},
-                                            {canopen::cob::heartbeat(0), kFunction}};
+                                            {canopen::cob::heartbeat(0), kFunction},
+                                            {canopen::MasterClaim::kFirstCob, kAnnouncements}};
   // Of another master's nodes, too: they tell of it.
   for (int number = 1; number <= 4; ++number) filters.push_back({canopen::cob::rpdo(number, 0), kFunction});
   for (const int node : nodes) filters.push_back({static_cast<std::uint32_t>(node), kNode});

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A control that would become the second master of a bus is refused, and the first one's axes never notice.
+#include <algorithm>
 #include <csignal>
-
 #include <fstream>
+#include <map>
 
+#include "drivers/clock.hpp"
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "tests/canopen_tools/workbench.hpp"
 #include "tests/usercan/rig/mill.hpp"
@@ -72,9 +74,35 @@ class SecondControl : public Workbench {
     const json report = json::parse(desk_.text("report.json"), nullptr, false);
     return report.is_object() ? report["alarms"] : json("no report");
   }
+  /// Another control that nobody finds by its socket.
+  std::unique_ptr<usercan::Process> up(const std::string& machine, const std::string& name) const {
+    setenv("XDG_RUNTIME_DIR", path(name).c_str(), 1);
+    auto control = std::make_unique<usercan::Process>(
+        std::vector<std::string>{"up", machine, "--realtime=best-effort", "--state", path(name + ".state"),
+                                 "--socket", path(name + ".sock")});
+    unsetenv("XDG_RUNTIME_DIR");
+    return control;
+  }
+  /// Numbers of the alarms of that control.
+  std::vector<int> alarms_of(const std::string& name) const {
+    std::vector<int> numbers;
+    for (const json& alarm : facts("status --socket " + path(name + ".sock"))["alarms"])
+      numbers.push_back(alarm["number"]);
+    return numbers;
+  }
+  /// What has come until now, however much of it still waits in the server.
+  template <class Handler>
+  static void read_until_now(usercan::SocketcandBus& ear, Handler handler) {
+    const image::Nanoseconds now = drivers::clock_ns(CLOCK_MONOTONIC);
+    for (image::CanFrame frame; usercan::wait_for(ear, frame) && frame.timestamp_ns < now;) handler(frame);
+  }
+  static bool has(const std::vector<int>& numbers, int number) {
+    return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
+  }
   std::string start(const std::string& command, const std::string& more = "") const {
     return "$SG " + command + " " + other_ + " " + more + " --realtime=best-effort";
   }
+  static constexpr int kForeignFrame = 2014, kLeadLost = 2025;
   std::string machine_, other_;
   std::vector<std::unique_ptr<usercan::Process>> drives_;
   std::unique_ptr<usercan::Process> first_;
@@ -138,6 +166,76 @@ TEST_F(SecondControl, that_starts_at_the_same_time_is_one_too_many) {
   EXPECT_EQ(desk_.text(first ? "b.code" : "a.code"), "1\n") << desk_.text("a") << desk_.text("b");
   const std::string refused = desk_.text(first ? "b" : "a");
   EXPECT_NE(refused.find("has just taken bus " + bus()), std::string::npos) << refused;
+}
+
+TEST_F(SecondControl, that_starts_at_the_same_time_and_cannot_be_asked_gives_way) {
+  for (int i = 0; i < 3; ++i) {
+    const std::string a = "a" + std::to_string(i), b = "b" + std::to_string(i);
+    const auto first = up(machine_, a), second = up(other_, b);
+    const auto leads = [](const usercan::Process& control) {
+      return control.said().find("is up; control socket") != std::string::npos;
+    };
+    // Half a minute at most, which a stalled computer keeps.
+    for (int n = 0; n < 300 && !leads(*first) && !leads(*second); ++n) usleep(100'000);
+    const bool is_first = leads(*first);
+    EXPECT_EQ((is_first ? second : first)->wait(), 1) << first->said() << second->said();
+    EXPECT_TRUE(leads(is_first ? *first : *second)) << first->said() << second->said();
+    const std::string refused = (is_first ? second : first)->said();
+    EXPECT_NE(refused.find("is not started: another "), std::string::npos) << refused;
+    EXPECT_FALSE(has(alarms_of(is_first ? a : b), kForeignFrame));
+  }
+}
+
+TEST_F(SecondControl, that_took_the_place_of_a_stopped_one_keeps_it_when_that_one_wakes_up) {
+  run(path("else"));
+  ASSERT_TRUE(cuts()) << first_->said();
+  first_->signal(SIGSTOP);
+  const auto second = up(other_, "second");
+  ASSERT_TRUE(second->says("is up; control socket")) << second->said();
+  const auto ear = join();
+  first_->signal(SIGCONT);
+  EXPECT_NE(first_->wait(), 0) << first_->said();
+  // A signal may come between two frames of a cycle; of the next one there is nothing.
+  std::map<std::uint32_t, int> enabled;
+  image::CanFrame frame;
+  read_until_now(*ear, [&](const image::CanFrame& f) {
+    if (canopen::classify(f.id).service == canopen::Service::rpdo1 && f.length >= 2 &&
+        (f.data[0] & 0x0F) == 0x0F)
+      ++enabled[f.id];
+  });
+  for (const auto& [id, count] : enabled) EXPECT_LE(count, 1) << std::hex << id;
+  bool said = false;
+  const json report = json::parse(desk_.text("report.json"), nullptr, false);
+  ASSERT_TRUE(report.is_object()) << first_->said();
+  for (const json& alarm : report["alarms"]) said = said || alarm["number"] == kLeadLost;
+  EXPECT_TRUE(said) << report["alarms"];
+  EXPECT_FALSE(has(alarms_of("second"), kLeadLost)) << "one of them leads the bus";
+  while (ear->receive(frame)) continue;
+  do {
+    ASSERT_TRUE(usercan::wait_for(*ear, frame)) << second->life();
+  } while (frame.id != canopen::cob::kSync);
+}
+
+TEST_F(SecondControl, that_sends_set_points_all_the_same_stops_the_axes_and_takes_their_power) {
+  run(path("else"));
+  ASSERT_TRUE(cuts()) << first_->said();
+  const auto ear = join();
+  ear->send(usercan::make(0x202, {0x0F, 0, 0, 0, 0, 0}));
+  EXPECT_NE(first_->wait(), 0) << first_->said();
+  const json report = json::parse(desk_.text("report.json"), nullptr, false);
+  ASSERT_TRUE(report.is_object()) << first_->said();
+  json heard;
+  for (const json& alarm : report["alarms"])
+    if (alarm["number"] == kForeignFrame) heard = alarm;
+  ASSERT_TRUE(heard.is_object()) << report["alarms"];
+  EXPECT_NE(heard["text"].get<std::string>().find("another master sends RPDO 1 of node 2 (202h)"),
+            std::string::npos)
+      << heard;
+  int controlword = -1;
+  read_until_now(*ear, [&](const image::CanFrame& f) {
+    if (f.id == 0x202) controlword = f.data[0];
+  });
+  EXPECT_NE(controlword & 0x0F, 0x0F) << "the power is off at the end";
 }
 
 }  // namespace

@@ -350,5 +350,30 @@ TEST_F(Workbench, can_check_says_who_speaks_and_who_controls) {
   EXPECT_EQ(tool("can check $BUS --detect").code, 4) << "there is nothing to set";
 }
 
+TEST_F(Workbench, can_check_finds_a_bus_that_another_protocol_shares_not_healthy) {
+  image::CanFrame foreign = usercan::make(0x18FF1234, {1, 2, 3});
+  foreign.extended = true;
+  const Sender sender(join(), foreign);
+  const json said = facts("can check $BUS --seconds 0.5", 1);
+  EXPECT_FALSE(said["ok"]);
+  EXPECT_GT(said["traffic"]["frames_29_bit"], 0);
+  EXPECT_TRUE(tool("can check $BUS --seconds 0.5").out_has("29-bit identifiers, the first (18FF1234h)"));
+}
+
+TEST_F(Workbench, can_check_finds_a_full_bus_not_healthy) {
+  // Five times of what 10 kbit/s carry, so that processes may come late to their turn.
+  std::vector<std::unique_ptr<Sender>> senders;
+  for (std::uint32_t id = 0x181; id < 0x189; ++id)
+    senders.push_back(std::make_unique<Sender>(
+        join(), usercan::make(id, {0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55})));
+  const json said = facts("can check $BUS --bit-rate 10000 --seconds 1", 1);
+  EXPECT_FALSE(said["ok"]);
+  EXPECT_GT(said["traffic"]["load_percent"], 90);
+  EXPECT_NE(said["sentences"].dump().find("of the bit rate is taken: frames of low priority"),
+            std::string::npos)
+      << said["sentences"];
+  EXPECT_EQ(tool("can check $BUS --seconds 0.5").code, 0) << "1 Mbit/s carry that easily";
+}
+
 }  // namespace
 }  // namespace servogate::canopen_tools

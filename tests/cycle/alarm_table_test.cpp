@@ -222,6 +222,18 @@ TEST(AlarmText, of_a_foreign_frame_says_what_it_means_or_at_least_its_identifier
             "bus can: another master sends RPDO 1 of node 5 (205h)");
   EXPECT_EQ(render(r, names, text::Language::russian),
             "шина can: другой ведущий передаёт RPDO 1 of node 5 (205h)");
+  r.number = alarm::kLeadLost;
+  r.limit = 3.5;
+  EXPECT_EQ(
+      render(r, names, text::Language::english),
+      "bus can: this control stood still for 3.5 s, and another one leads the bus now: it sends RPDO 1 of "
+      "node 5 (205h). This control sends nothing any more");
+}
+
+TEST(AlarmTable, of_another_master_stops_the_machine_and_takes_the_power) {
+  for (const image::AlarmNumber number : {alarm::kForeignFrame, alarm::kLeadLost})
+    EXPECT_EQ(find_alarm(number)->reaction, image::Reaction::stop_and_power_off) << number;
+  EXPECT_EQ(find_alarm(alarm::kForeignRequest)->reaction, image::Reaction::warn);
 }
 
 TEST(AlarmText, knows_every_state_of_the_status_word) {

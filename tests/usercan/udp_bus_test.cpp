@@ -4,6 +4,7 @@
 #include "drivers/usercan/message_pack.hpp"
 #include "drivers/usercan/udp_bus.hpp"
 #include "tests/counting/allocations.hpp"
+#include "tests/skip_here.hpp"
 #include "tests/usercan/rig/own_network.hpp"
 #include "tests/usercan/rig/running_server.hpp"
 
@@ -35,6 +36,24 @@ TEST_F(Udp, runs_with_ports_of_their_own_do_not_hear_each_other) {
   CanFrame f;
   ASSERT_TRUE(wait_for(*c, f));
   EXPECT_FALSE(b->receive(f));
+}
+
+TEST_F(Udp, what_another_computer_sends_to_the_group_is_not_heard) {
+  // A network card by which the system's routes send multicast, as on a computer in a network.
+  if (shell("ip link add card type veth peer name other && ip addr add 192.0.2.1/24 dev card && "
+            "ip link set card up && ip link set other up && ip route replace 239.74.163.3 dev card") != 0)
+    SKIP_HERE("no network card can be made here");
+  drivers::Notice why;
+  const auto a = UdpBus::open({"239.74.163.3", 43208, 0}, why),
+             b = UdpBus::open({"239.74.163.3", 43208, 0}, why);
+  ASSERT_TRUE(a && b) << why.str(text::Language::english);
+  EXPECT_EQ(shell("awk '/card/ {on = 1; next} /^[0-9]/ {on = 0} on' /proc/net/igmp | grep -qi 03A34AEF"), 1)
+      << "joined on the card";
+  ASSERT_TRUE(a->send(make(0x181, {1})));
+  CanFrame f;
+  ASSERT_TRUE(wait_for(*b, f)) << "the participants of this computer hear one another";
+  EXPECT_EQ(f.id, 0x181u);
+  EXPECT_EQ(shell("ip link del card"), 0);
 }
 
 TEST_F(Udp, datagrams_that_nobody_read_in_time_are_counted) {

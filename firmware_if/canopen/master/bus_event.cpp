@@ -50,6 +50,13 @@ constexpr Entry kEvents[] = {
      "состояния {2}"},
     {"can-foreign-frame", "{0}: frame {1} [{2}] comes from somebody else; another master is on the bus",
      "{0}: кадр {1} [{2}] отправлен кем-то другим; на шине есть ещё один ведущий"},
+    {"can-foreign-request", "{0}: request {1} [{2}] comes from somebody else",
+     "{0}: запрос {1} [{2}] отправлен кем-то другим"},
+    {"can-lead-lost",
+     "{0}: this control stood still for {3} ms and another one leads the bus now, as frame {1} [{2}] shows; "
+     "nothing is sent any more",
+     "{0}: управление стояло {3} мс, и шиной управляет другое, как показывает кадр {1} [{2}]; больше ничего "
+     "не отправляется"},
     {"can-unknown-node", "{0}: node {1} is on the bus but not in the machine file",
      "{0}: узел {1} есть на шине, но не описан в файле станка"},
     {"can-send-failed", "{0}: frame {1} was not sent, the transmit queue is full",
@@ -223,9 +230,12 @@ std::vector<std::string> arguments_of(const BusEvent& e, std::string_view name, 
       add(hex(e.statusword, 4));
       break;
     case BusEventKind::foreign_frame:
+    case BusEventKind::foreign_request:
+    case BusEventKind::lead_lost:
     case BusEventKind::send_failed:
       add(hex(e.frame.id, 3));
       add(bytes_words(e.frame.data.data(), e.frame.length < 8 ? e.frame.length : 8));
+      add(std::to_string(e.got));
       break;
     case BusEventKind::unknown_node:
       add(std::to_string(e.node));

@@ -31,9 +31,12 @@ enum class BusEventKind : std::uint8_t {
                       ///< held
   not_interpolating,  ///< in interpolated position mode the drive does not show bit 12 of the statusword for
                       ///< `got` ms, allowed are `expected`; `statusword`
-  foreign_frame,  ///< SYNC, NMT, RPDO or SDO request that we did not send (`frame`): another master on the
-                  ///< bus
-  unknown_node,   ///< heartbeat or EMCY of a node that is not configured
+  foreign_frame,      ///< somebody else leads nodes on the bus: NMT, SYNC, RPDO ... that we did not send
+                      ///< (`frame`)
+  foreign_request,    ///< somebody else asks a node of ours by SDO (`frame`)
+  lead_lost,     ///< the control stood still for `got` ms, and another one leads the bus by `frame`: we are
+                 ///< silent
+  unknown_node,  ///< heartbeat or EMCY of a node that is not configured
   send_failed,  ///< the transmit queue was full `got` times since this was said last; `frame` was dropped, or
                 ///< waits where the service repeats it
   bus_state,    ///< `bus_state` is the new one

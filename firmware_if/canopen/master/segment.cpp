@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/master/bus_lead.hpp"
 #include "firmware_if/canopen/master/bus_meter.hpp"
 #include "firmware_if/canopen/master/bus_node.hpp"
 #include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
@@ -118,7 +119,10 @@ SegmentConfig checked(SegmentConfig config) {
 
 struct Segment::Impl {
   Impl(image::CanBus& can, SegmentConfig segment)
-      : config(checked(std::move(segment))), bus(can), sdo(config, can.bit_rate()) {
+      : config(checked(std::move(segment))),
+        bus(can),
+        lead(config.own_node, config.cycle_ns),
+        sdo(config, can.bit_rate()) {
     nodes.reserve(config.nodes.size());
     index_of.fill(-1);
     for (const NodeConfig& node : config.nodes) {
@@ -142,7 +146,10 @@ struct Segment::Impl {
   void say_send_failed(const ProcessImage& image, const image::CanFrame& frame, NodeId node) noexcept;
   bool send_own(const ProcessImage& image, const image::CanFrame& frame) noexcept;
   void dispatch(const image::CanFrame& frame, const ProcessImage& image) noexcept;
-  void on_foreign(const CobId& cob, const image::CanFrame& frame, const ProcessImage& image) noexcept;
+  bool concerns_us(const CobId& cob) const noexcept;
+  void on_leading(const CobId& cob, const image::CanFrame& frame, const ProcessImage& image) noexcept;
+  void on_request(const CobId& cob, const image::CanFrame& frame, const ProcessImage& image) noexcept;
+  void watch_lead(const ProcessImage& image) noexcept;
   void watch_bus(const ProcessImage& image) noexcept;
   void drain(ProcessImage& image) noexcept;
   image::CanFrame next_sync() noexcept;
@@ -186,6 +193,7 @@ struct Segment::Impl {
 
   SegmentConfig config;
   CountingBus bus;
+  BusLead lead;
   std::vector<BusNode> nodes;
   std::array<std::int8_t, 128> index_of{};
   BusEventRing ring;
@@ -199,8 +207,9 @@ struct Segment::Impl {
   std::size_t next_acyclic = 0;
   SdoBudget sdo;
   std::uint64_t send_failures = 0, send_failures_said = 0;
-  Throttle send_failed;
-  std::array<Throttle, kServices> foreign;
+  Throttle send_failed, foreign_request, lead_lost;
+  std::int64_t foreign_cycle = -1;      ///< in which a foreign frame was said last ...
+  std::bitset<kServices> foreign_said;  ///< ... and of which services
   std::bitset<128> unknown_said;
 };
 
@@ -242,27 +251,52 @@ void Segment::Impl::say_send_failed(const ProcessImage& image, const image::CanF
   send_failures_said = send_failures;
 }
 
-// Only the control speaks on these identifiers, and a bus does not give us our own frames back.
-void Segment::Impl::on_foreign(const CobId& cob, const image::CanFrame& frame,
+/// One of each service in a cycle.
+void Segment::Impl::on_leading(const CobId& cob, const image::CanFrame& frame,
                                const ProcessImage& image) noexcept {
-  // What was said before the control began is nothing against it.
-  if (heard && foreign[static_cast<std::size_t>(cob.service)].pass(image.now.t_ns))
-    say_frame(BusEventKind::foreign_frame, image, frame, cob.node);
+  if (foreign_cycle != image.now.number) foreign_said.reset();
+  foreign_cycle = image.now.number;
+  if (foreign_said.test(static_cast<std::size_t>(cob.service))) return;
+  foreign_said.set(static_cast<std::size_t>(cob.service));
+  say_frame(BusEventKind::foreign_frame, image, frame, cob.node);
+}
+
+/// Of somebody else's nodes nothing is said; but to whoever has just come back they tell of another control.
+bool Segment::Impl::concerns_us(const CobId& cob) const noexcept {
+  return lead.silent() || cob.service == Service::nmt || cob.service == Service::sync ||
+         cob.node == config.own_node || index_of[cob.node] >= 0;
+}
+
+void Segment::Impl::on_request(const CobId& cob, const image::CanFrame& frame,
+                               const ProcessImage& image) noexcept {
+  if (foreign_request.pass(image.now.t_ns)) say_frame(BusEventKind::foreign_request, image, frame, cob.node);
+}
+
+/// Behind the frames of a cycle. Somebody who leads the bus counts until it has been silent for a while, so
+/// that no power comes on between two of its frames.
+void Segment::Impl::watch_lead(const ProcessImage& image) noexcept {
+  if (lead.lost()) {
+    if (lead_lost.pass(image.now.t_ns))
+      say_frame(BusEventKind::lead_lost, image, lead.other(), 0, lead.away() / image::kMillisecond);
+    return;
+  }
+  if (!lead.other_there(image.now.t_ns) || foreign_cycle == image.now.number) return;
+  const image::CanFrame& frame = lead.other();
+  say_frame(BusEventKind::foreign_frame, image, frame, classify(frame.id, frame.extended).node);
 }
 
 void Segment::Impl::dispatch(const image::CanFrame& frame, const ProcessImage& image) noexcept {
-  if (frame.error || frame.remote || frame.fd) return;
+  if (frame.error || frame.fd || lead.lost()) return;
   const CobId cob = classify(frame.id, frame.extended);
+  // What was said before the control began is nothing against it.
+  if ((heard || lead.silent()) && concerns_us(cob) && lead.on_frame(frame, image.now.t_ns)) {
+    if (!lead.lost()) on_leading(cob, frame, image);
+    return;
+  }
+  if (frame.remote) return;
   switch (cob.service) {
-    case Service::nmt:
-    case Service::sync:
-      return on_foreign(cob, frame, image);
-    case Service::rpdo1:
-    case Service::rpdo2:
-    case Service::rpdo3:
-    case Service::rpdo4:
     case Service::sdo_request:
-      if (index_of[cob.node] >= 0) on_foreign(cob, frame, image);
+      if (heard && index_of[cob.node] >= 0) on_request(cob, frame, image);
       return;
     case Service::tpdo1:
     case Service::tpdo2:
@@ -278,7 +312,7 @@ void Segment::Impl::dispatch(const image::CanFrame& frame, const ProcessImage& i
   if (const int i = index_of[cob.node]; i >= 0)
     return nodes[static_cast<std::size_t>(i)].on_frame(cob.service, frame, context(image));
   if (cob.service != Service::emcy && cob.service != Service::heartbeat) return;
-  if (cob.node == config.own_node) return on_foreign(cob, frame, image);
+  if (cob.node == config.own_node) return heard ? on_request(cob, frame, image) : void();
   if (unknown_said.test(cob.node)) return;
   unknown_said.set(cob.node);
   say_frame(BusEventKind::unknown_node, image, frame, cob.node);
@@ -298,6 +332,8 @@ void Segment::Impl::drain(ProcessImage& image) noexcept {
   int n = 0;
   while (n < kMaxFramesPerCycle && bus.receive(frame)) ++n, dispatch(frame, image);
   heard = heard || n < kMaxFramesPerCycle;
+  lead.look_on(n < kMaxFramesPerCycle);
+  watch_lead(image);
   for (BusNode& node : nodes) node.evaluate(image, context(image));
 }
 
@@ -363,6 +399,9 @@ Segment::Segment(image::CanBus& bus, SegmentConfig config)
     : impl_(std::make_unique<Impl>(bus, std::move(config))) {}
 Segment::~Segment() = default;
 
+void Segment::came_back(image::Nanoseconds away) noexcept { impl_->lead.came_back(away); }
+void Segment::listened() noexcept { impl_->heard = true; }
+
 void Segment::open_cycle(ProcessImage& image) noexcept {
   Impl& my = *impl_;
   if (my.started) my.bus.meter.close_cycle(image.now.period_ns, my.bus.bit_rate());
@@ -370,7 +409,7 @@ void Segment::open_cycle(ProcessImage& image) noexcept {
   my.started = true;
   my.watch_bus(image);
   my.sync_runs = my.sync_runs || my.sync_may_run();
-  if (my.sync_runs) my.send_own(image, my.next_sync());
+  if (my.sync_runs && !my.lead.silent()) my.send_own(image, my.next_sync());
 }
 
 void Segment::receive(ProcessImage& image) noexcept {
@@ -381,6 +420,7 @@ void Segment::receive(ProcessImage& image) noexcept {
 
 void Segment::send(ProcessImage& image) noexcept {
   Impl& my = *impl_;
+  if (my.lead.silent()) return;
   for (BusNode& node : my.nodes) {
     image::CanFrame dropped;
     const int lost = node.send_process_data(image, my.context(image), dropped);
@@ -394,6 +434,7 @@ void Segment::send(ProcessImage& image) noexcept {
 
 bool Segment::leave(image::Nanoseconds now) noexcept {
   Impl& my = *impl_;
+  if (my.lead.silent() || my.lead.other_there(now)) return true;
   const NodeContext context{static_cast<std::int16_t>(my.config.index), 0, now, my.bus, my.ring, my.question};
   image::CanFrame frame;
   for (int n = 0; n < kMaxFramesPerCycle && my.bus.receive(frame); ++n) {

@@ -27,6 +27,9 @@ struct NodeStatus {
 /// any is received from. A drive latches its actual values and applies the RPDO it got before at SYNC; the
 /// TPDOs it answers after SYNC k are read in cycle k + 1. Nodes boot, are lost and come back while the cycle
 /// runs; everything that is not process data goes over SDO in a bounded number of frames per cycle.
+///
+/// A bus has one master: frames of somebody else that lead nodes are told in every cycle in which they come,
+/// and for a second behind the last.
 class Segment final {
  public:
   /// The bus must live longer. Copies and prepares everything; allocates here and never again. Throws
@@ -36,6 +39,13 @@ class Segment final {
   ~Segment();
   Segment(const Segment&) = delete;
   Segment& operator=(const Segment&) = delete;
+
+  /// This control did not run for `away`, and another one may have taken its place: until all that waited on
+  /// the bus has been heard, and for BusLead::kLook, nothing is sent. If somebody else leads the bus it stays
+  /// so for good (lead_lost). real-time safe.
+  void came_back(image::Nanoseconds away) noexcept;
+  /// The bus has been listened to until now: what comes before the first cycle counts, too.
+  void listened() noexcept;
 
   /// SYNC. real-time safe.
   void open_cycle(image::ProcessImage& image) noexcept;
@@ -48,7 +58,7 @@ class Segment final {
   /// Behind the last cycle, again and again with the time that goes on, until it is true: drives without
   /// torque go to Pre-operational and no longer miss the heartbeat of the control (1016h or life guarding),
   /// so that its end is no fault to them. A drive with torque and an I/O module go on watching: their own
-  /// reaction is what is wanted of them. real-time safe.
+  /// reaction is what is wanted of them. Where somebody else leads the bus nothing is said. real-time safe.
   bool leave(image::Nanoseconds now) noexcept;
 
   /// Reading an object of a node that runs, from outside the cycle; one asker. real-time safe.

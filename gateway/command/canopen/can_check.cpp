@@ -7,6 +7,7 @@
 
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/canopen/302/segment_config.hpp"
+#include "firmware_if/canopen/master/segment_load.hpp"
 #include "firmware_if/image/frames/can_wire.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
@@ -63,6 +64,25 @@ const Entry kQueue{
 const Entry kQuiet{"check.quiet", "no frame came within {0} s", "за {0} с не пришло ни одного кадра"};
 const Entry kTraffic{"check.traffic", "frames within {1} s: {0}, {2} % of the bit rate of {3} bit/s",
                      "кадров за {1} с: {0}, {2} % скорости {3} бит/с"};
+const Entry kFull{
+    "check.full",
+    "{0} % of the bit rate is taken: frames of low priority, heartbeats first, come late or not at "
+    "all. A bus with drives should stay below {1} %: raise the bit rate, lengthen the cycle, or "
+    "divide the nodes among two buses",
+    "занято {0} % скорости: кадры низкого приоритета, прежде всего heartbeat, приходят поздно или "
+    "не приходят. Для приводов шина не должна быть занята более чем на {1} %: увеличьте скорость "
+    "или такт либо разделите узлы на две шины"};
+const Entry kNearlyFull{"check.nearly-full",
+                        "{0} % of the bit rate is taken; above {1} % frames of low priority come late",
+                        "занято {0} % скорости; свыше {1} % кадры низкого приоритета приходят поздно"};
+const Entry kLong{
+    "check.29-bit",
+    "{0} frames had 29-bit identifiers, the first {1}: they are not of CANopen. A device of "
+    "another protocol (J1939, for example) shares this bus; give it a bus of its own, as its "
+    "traffic is in no load that `check` plans",
+    "кадров с 29-битными идентификаторами: {0}, первый {1}; в CANopen таких нет. На этой шине есть "
+    "устройство другого протокола (например, J1939); дайте ему отдельную шину: его кадры не "
+    "входят в загрузку, которую считает `check`"};
 const Entry kHeard{"check.heard", "nodes heard: {0}", "слышны узлы: {0}"};
 const Entry kMaster{"check.master", "another master controls this bus: {0}",
                     "этой шиной кто-то управляет: {0}"};
@@ -121,6 +141,8 @@ const StateRow& row_of(CanState state) {
 /// What came while it listened.
 struct Traffic {
   std::uint64_t frames = 0, bits = 0, errors = 0;
+  std::uint64_t extended = 0;  ///< with 29-bit identifiers
+  image::CanFrame first_extended;
   std::set<int> nodes;
   std::string master;  ///< its first frame, both languages
 };
@@ -134,6 +156,7 @@ Traffic listen(ToolBus& bus, double seconds) {
     }
     ++t.frames;
     t.bits += image::known_bits(frame) + image::kIntermissionBits;
+    if (frame.extended && t.extended++ == 0) t.first_extended = frame;
     const canopen::CobId id = canopen::classify(frame.id, frame.extended);
     using canopen::Service;
     if (!frame.remote && (id.service == Service::heartbeat || id.service == Service::emcy ||
@@ -237,16 +260,29 @@ std::string node_words(const Traffic& t, int node) {
   return text::both(number + " (the control)", number + " (управление)");
 }
 
+/// By the limits for which `check` plans a machine.
+void tell_load(Report& report, double percent) {
+  const auto words = [](double limit) { return text::number(limit * 100.0, 0); };
+  if (percent > canopen::kLoadError * 100.0)
+    report.wrong(kFull, {text::number(percent, 1), words(canopen::kLoadWarning)});
+  else if (percent > canopen::kLoadWarning * 100.0)
+    report.say(kNearlyFull, {text::number(percent, 1), words(canopen::kLoadError)});
+}
+
 void tell_traffic(Report& report, const Traffic& t, const CanCheckOptions& options, std::uint32_t bit_rate) {
   const double load = static_cast<double>(t.bits) / (options.seconds * bit_rate) * 100.0;
-  report.facts()["traffic"] = {{"seconds", options.seconds}, {"frames", t.frames},
-                               {"error_frames", t.errors},   {"load_percent", load},
-                               {"nodes", t.nodes},           {"controlled", !t.master.empty()}};
+  report.facts()["traffic"] = {{"seconds", options.seconds},     {"frames", t.frames},
+                               {"error_frames", t.errors},       {"load_percent", load},
+                               {"frames_29_bit", t.extended},    {"nodes", t.nodes},
+                               {"controlled", !t.master.empty()}};
   if (t.frames == 0)
     report.say(kQuiet, {text::number(options.seconds)});
   else
     report.say(kTraffic, {std::to_string(t.frames), text::number(options.seconds), text::number(load, 1),
                           std::to_string(bit_rate)});
+  tell_load(report, load);
+  if (t.extended > 0)
+    report.wrong(kLong, {std::to_string(t.extended), canopen::frame_words(t.first_extended)});
   if (t.errors > 0) report.wrong(kErrorFrames, {std::to_string(t.errors)});
   std::string nodes;
   for (const int node : t.nodes) nodes += (nodes.empty() ? "" : ", ") + node_words(t, node);

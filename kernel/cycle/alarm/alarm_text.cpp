@@ -147,7 +147,7 @@ std::string node_words(const AlarmRecord& r, const AlarmNames& names, Language l
 bool of_a_bus(image::AlarmNumber n) {
   using namespace alarm;
   return n == kBusOff || n == kBusErrorPassive || n == kBusDown || n == kBusSendOverflow ||
-         n == kForeignFrame;
+         n == kForeignFrame || n == kForeignRequest || n == kLeadLost;
 }
 
 std::string where(const AlarmRecord& r, const AlarmNames& names, Language language) {
@@ -268,7 +268,8 @@ std::vector<std::string> arguments(const AlarmRecord& r, const AlarmNames& names
                                   : " (TPDO" + text::number(r.detail1, 0) + ")";
   if (r.number == alarm::kPlcBudget || r.number == alarm::kPlcFault) out[6] = plc_words(r, names, language);
   if (r.number == alarm::kNodeLeft) out[1] = nmt_words(static_cast<int>(r.value), language);
-  if (r.number == alarm::kForeignFrame) out[8] = frame_words(r, names, language);
+  if (r.number == alarm::kForeignFrame || r.number == alarm::kForeignRequest || r.number == alarm::kLeadLost)
+    out[8] = frame_words(r, names, language);
   return out;
 }
 

@@ -27,7 +27,7 @@ bool same(const AlarmRecord& a, const AlarmRecord& b) noexcept {
          // One error may be the cause of the next.
          (a.number != alarm::kEmergencyMessage || a.error_code == b.error_code) &&
          // A SYNC, a command of the NMT master and a controlword of somebody else are different troubles.
-         (a.number != alarm::kForeignFrame || a.value == b.value) &&
+         ((a.number != alarm::kForeignFrame && a.number != alarm::kForeignRequest) || a.value == b.value) &&
          (a.number != alarm::kProgramWarning || (a.line == b.line && a.limit == b.limit));
 }
 

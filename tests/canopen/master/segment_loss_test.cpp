@@ -145,43 +145,6 @@ TEST_F(RunningRig, a_node_that_leaves_operational_is_said) {
   EXPECT_FALSE(rig.drive().online);
 }
 
-TEST_F(RunningRig, frames_of_another_master_are_named_once_a_second) {
-  ASSERT_TRUE(ready);
-  for (int i = 0; i < 100; ++i) {
-    rig.network.waiting.push_back(frame(0x80, {}));
-    rig.network.waiting.push_back(frame(0x000, {0x80, 0x01}));
-    rig.network.waiting.push_back(frame(0x201, {0x0F, 0, 1, 2, 3, 4}));
-    rig.network.waiting.push_back(frame(0x602, {0x40, 0x41, 0x60, 0, 0, 0, 0, 0}));
-    rig.network.waiting.push_back(frame(0x77F, {0x05}));
-    rig.network.waiting.push_back(frame(0x215, {1}));  // RPDO of a node that is none of ours
-    rig.step();
-  }
-  EXPECT_EQ(rig.count(BusEventKind::foreign_frame), 5);
-  std::vector<std::string> sentences;
-  for (const BusEvent& e : rig.events)
-    if (e.kind == BusEventKind::foreign_frame)
-      sentences.push_back(describe(e, "can0", nullptr, text::Language::english));
-  EXPECT_EQ(sentences[2],
-            "can0: frame 201h [0F 00 01 02 03 04] comes from somebody else; another master is on the bus");
-  rig.run(1000);
-  rig.network.waiting.push_back(frame(0x80, {}));
-  rig.step();
-  EXPECT_EQ(rig.count(BusEventKind::foreign_frame), 6);
-}
-
-TEST(Segment, does_not_hold_against_anybody_what_was_said_before_it_began) {
-  SegmentRig rig;
-  rig.start();
-  // More than one cycle takes.
-  for (int i = 0; i < 2000; ++i)
-    rig.network.waiting.push_back(frame(0x601, {0x40, 0x00, 0x10, 0, 0, 0, 0, 0}));
-  ASSERT_TRUE(rig.boot());
-  EXPECT_EQ(rig.count(BusEventKind::foreign_frame), 0);
-  rig.network.waiting.push_back(frame(0x601, {0x40, 0x00, 0x10, 0, 0, 0, 0, 0}));
-  rig.step();
-  EXPECT_EQ(rig.count(BusEventKind::foreign_frame), 1);
-}
-
 TEST_F(RunningRig, a_node_nobody_declared_is_named_once) {
   ASSERT_TRUE(ready);
   for (int i = 0; i < 10; ++i) {

@@ -13,9 +13,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <random>
 
 #include "drivers/clock.hpp"
 #include "firmware_if/canopen/301/words/frame_words.hpp"
+#include "firmware_if/canopen/master/master_claim.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
@@ -40,6 +42,14 @@ const text::Entry kLed{"master.led",
                        "Второй ведущий сбросил бы приводы на ходу. Отсюда ничего не отправлено. Завершите "
                        "другое управление или отключите его от этой шины"};
 
+const text::Entry kLate{
+    "master.late",
+    "'{0}' is not started: another control starts on bus {1} at the same time, and was "
+    "first. Nothing was sent to any device from here. Let one of the two lead the bus",
+    "«{0}» не запущен: на шине {1} в то же время запускается другое управление, и оно было "
+    "первым. Отсюда ни одному устройству ничего не отправлено. Пусть шиной управляет "
+    "одно из двух"};
+
 constexpr double kLeast_s = 1.2;  ///< hears a heartbeat once a second
 constexpr double kMost_s = 10.0;
 constexpr double kHeartbeats = 1.5;
@@ -54,6 +64,31 @@ struct Heard {
   int count = 0;
 };
 using HeardByIdentifier = std::map<std::uint32_t, Heard>;
+
+/// A bus while it is listened to.
+struct Listening {
+  CanSupplier* supplier = nullptr;
+  const CanTransport* transport = nullptr;
+  std::string url;
+  canopen::MasterClaim claim;
+  HeardByIdentifier heard;
+
+  canopen::MasterClaim::State hear(image::Nanoseconds now) {
+    image::CanFrame frame;
+    while (transport->bus->receive(frame)) {
+      claim.on_frame(frame);
+      if (!canopen::leads_nodes(frame, supplier->segment().config().own_node)) continue;
+      Heard& h = heard[frame.id];
+      if (h.count++ == 0) h.first = frame;
+    }
+    return claim.poll(now, *transport->bus);
+  }
+};
+
+std::uint64_t random_number() {
+  std::random_device chance;
+  return std::uint64_t{chance()} << 32 | chance();
+}
 
 /// "SYNC (080h) 300 times, RPDO 1 of node 1 (201h) 300 times"; the rest is counted.
 std::string in_words(const HeardByIdentifier& heard) {
@@ -71,6 +106,17 @@ std::string in_words(const HeardByIdentifier& heard) {
     words += text::both(" and " + more + " more kinds", " и ещё других: " + more);
   }
   return words;
+}
+
+/// kAlarm when the bus is somebody else's, which is said.
+int tell(const Listening& bus, const std::string& machine, double listened_s) {
+  using State = canopen::MasterClaim::State;
+  if (bus.claim.state() != State::led && bus.claim.state() != State::late) return kDone;
+  if (bus.heard.empty())
+    complain(kLate, {machine, bus.url});
+  else
+    complain(kLed, {machine, bus.url, text::number(listened_s, 1), in_words(bus.heard)});
+  return kAlarm;
 }
 
 /// Letters, digits and dots of a place; what is cut off is told by its length.
@@ -134,35 +180,40 @@ image::Nanoseconds SoleMaster::patience(const machine::MachineConfig& machine) {
 }
 
 int SoleMaster::listen(Control& control) {
+  using State = canopen::MasterClaim::State;
   const machine::MachineConfig& m = control.machine();
-  std::vector<HeardByIdentifier> heard(m.buses.size());
-  std::vector<pollfd> ears;
-  for (std::size_t b = 0; b < m.buses.size(); ++b)
-    if (const CanTransport* t = control.shared_bus(b); t != nullptr)
-      ears.push_back({t->descriptor, POLLIN, 0});
-  if (ears.empty()) return kDone;
   const image::Nanoseconds patience = SoleMaster::patience(m);
-  const image::Nanoseconds until = drivers::clock_ns(CLOCK_MONOTONIC) + patience;
-  for (image::Nanoseconds left = patience; left > 0; left = until - drivers::clock_ns(CLOCK_MONOTONIC)) {
-    const timespec nap{0, std::min(left, 50 * image::kMillisecond)};
+  const std::uint64_t chance = random_number();  // one number on all buses: nobody is first on one of two
+  std::vector<Listening> buses;
+  std::vector<pollfd> ears;
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    const CanTransport* t = control.shared_bus(b);
+    if (t == nullptr) continue;
+    CanSupplier* supplier = control.suppliers()[b].get();
+    buses.push_back(
+        {supplier, t, m.buses[b].url, {supplier->segment().config().own_node, patience, chance}, {}});
+    ears.push_back({t->descriptor, POLLIN, 0});
+  }
+  const image::Nanoseconds begin = drivers::clock_ns(CLOCK_MONOTONIC);
+  for (Listening& bus : buses) bus.claim.begin(begin);
+  image::Nanoseconds now = begin;
+  // Whoever leads the bus is heard out, so that it can be said what comes and how often.
+  for (bool more = !buses.empty(); more;) {
+    const timespec nap{0, 5 * image::kMillisecond};
     ppoll(ears.data(), ears.size(), &nap, nullptr);
-    for (std::size_t b = 0; b < m.buses.size(); ++b) {
-      const CanTransport* t = control.shared_bus(b);
-      image::CanFrame frame;
-      while (t != nullptr && t->bus->receive(frame)) {
-        if (!canopen::leads_nodes(frame, control.suppliers()[b]->segment().config().own_node)) continue;
-        Heard& h = heard[b][frame.id];
-        if (h.count++ == 0) h.first = frame;
-      }
+    now = drivers::clock_ns(CLOCK_MONOTONIC);
+    bool lost = false, open = false;
+    for (Listening& bus : buses) {
+      const State state = bus.hear(now);
+      lost = lost || state == State::led || state == State::late;
+      open = open || state < State::leads;
     }
+    more = now - begin < patience || (open && !lost);
   }
   int code = kDone;
-  for (std::size_t b = 0; b < m.buses.size(); ++b) {
-    if (heard[b].empty()) continue;
-    complain(kLed, {m.name, m.buses[b].url, text::number(static_cast<double>(patience) * 1e-9, 1),
-                    in_words(heard[b])});
-    code = kAlarm;
-  }
+  const double listened_s = static_cast<double>(now - begin) * 1e-9;
+  for (const Listening& bus : buses) code = std::max(code, tell(bus, m.name, listened_s));
+  for (Listening& bus : buses) bus.supplier->listened(now);
   return code;
 }
 

@@ -25,7 +25,8 @@ class SoleMaster {
   /// the same time one does. kDone, or kAlarm after saying who has the bus.
   int claim(const machine::LoadResult& loaded);
   /// Listens for whoever is no control of this user. Nodes that a master left behind speak, too: only what
-  /// leads nodes counts (canopen::leads_nodes()). kDone, or kAlarm after saying what was heard and how often.
+  /// leads nodes counts (canopen::leads_nodes()). Of several controls that listen at the same time one goes
+  /// on (canopen::MasterClaim). kDone, or kAlarm after saying what was heard and how often.
   static int listen(Control& control);
 
   /// How long listen() listens: longer than the slowest SYNC of a control, a heartbeat once a second, and

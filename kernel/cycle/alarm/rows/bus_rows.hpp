@@ -63,11 +63,13 @@ inline constexpr AlarmRow kBusRows[] = {
      "Check termination and shielding before it goes bus off.",
      "Проверьте согласование и экраны, пока шина не отключилась."},
     {alarm::kForeignFrame,
-     image::Reaction::warn,
+     image::Reaction::stop_and_power_off,
      ResetCondition::reset,
      {"bus.foreign_frame", "bus {3}: another master sends {8}", "шина {3}: другой ведущий передаёт {8}"},
-     "Find the second master; there must be only one.",
-     "Найдите второго ведущего: он должен быть один."},
+     "A bus has one master. Find the other one and end it. As long as it sends, the alarm returns after each "
+     "reset.",
+     "Ведущий на шине может быть только один. Найдите другого и завершите его. Пока он передаёт, авария "
+     "возвращается после каждого сброса."},
     {alarm::kBootFailed,
      image::Reaction::stop_at_block_end,
      ResetCondition::reset,
@@ -143,6 +145,26 @@ inline constexpr AlarmRow kBusRows[] = {
      "Look at the node named in the neighbouring alarms; an inhibit time (1015h) keeps it from flooding the "
      "bus.",
      "Проверьте узел, названный соседними авариями; время запрета (1015h) ограничит поток сообщений."},
+    {alarm::kForeignRequest,
+     image::Reaction::warn,
+     ResetCondition::reset,
+     {"bus.foreign_request", "bus {3}: somebody else sends {8}", "шина {3}: кто-то другой передаёт {8}"},
+     "A tool on this bus asks the same nodes as the control, and their answers get mixed up. Read through "
+     "the "
+     "control (servogate sdo, od), or end the tool.",
+     "Программа на этой шине опрашивает те же узлы, что и управление, и ответы перемешиваются. Читайте через "
+     "управление (servogate sdo, od) или завершите эту программу."},
+    {alarm::kLeadLost,
+     image::Reaction::stop_and_power_off,
+     ResetCondition::reset,
+     {"bus.lead_lost",
+      "bus {3}: this control stood still for {2} s, and another one leads the bus now: it sends {8}. This "
+      "control sends nothing any more",
+      "шина {3}: управление стояло {2} с, и теперь шину ведёт другое: оно передаёт {8}. Это управление "
+      "больше "
+      "ничего не передаёт"},
+     "End this control. To lead the bus again, end the other one first, then start this one.",
+     "Завершите это управление. Чтобы снова вести шину, сначала завершите другое, затем запустите это."},
 };
 
 }  // namespace servogate::cycle
