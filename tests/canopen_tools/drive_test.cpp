@@ -1,24 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // `servogate drive` and `servogate sim` as products: kinds, plants, faults.
-#include <unistd.h>
-
 #include <csignal>
 #include <fstream>
 #include <iterator>
 
 #include "tests/canopen_tools/workbench.hpp"
+#include "tests/comes.hpp"
 
 namespace servogate::canopen_tools {
 namespace {
 
-/// Waits until a tool's facts satisfy something; half a minute at most.
+/// Waits until a tool's facts satisfy something.
 template <class Facts, class Satisfied>
 bool comes(Facts facts, Satisfied satisfied) {
-  for (int i = 0; i < 120; ++i) {
-    if (satisfied(facts())) return true;
-    usleep(250'000);
-  }
-  return false;
+  return tests::comes([&] { return satisfied(facts()); });
+}
+
+/// A shell line that feeds a simulation by its standard input, step by step, each when the one before has
+/// been heard: `heard FILE WORDS` waits for them there; `say WORDS` says them.
+std::string fed(const std::string& command, const std::string& steps) {
+  return "heard() { while ! grep -qF -- \"$2\" $1; do sleep 0.02; done; }; say() { echo \"$@\" >&3; }; "
+         "mkfifo in; : >out; : >err; " +
+         command + " <in >out 2>err & p=$!; exec 3>in; " + steps +
+         "; kill -INT $p; wait $p; cat out; cat err >&2";
 }
 
 class SimulatedDrives : public Workbench {
@@ -38,7 +42,7 @@ class SimulatedDrives : public Workbench {
 TEST_F(SimulatedDrives, a_stepper_and_a_spindle_say_what_they_are_and_which_modes_they_have) {
   drives("1", {"--profile", "stepper"});
   drives("2", {"--profile", "spindle"});
-  const json nodes = facts("scan $BUS --seconds 0.3")["nodes"];
+  const json nodes = facts("scan $BUS")["nodes"];
   ASSERT_EQ(nodes.size(), 2u);
   EXPECT_EQ(nodes[0]["device"], "stepper drive (CiA 402)");
   EXPECT_EQ(nodes[0]["modes"], json::parse(R"(["pp","pv","hm","ip","csp","csv"])"));
@@ -89,7 +93,7 @@ TEST_F(SimulatedDrives, a_node_id_that_is_on_the_bus_is_refused_whoever_would_ta
     EXPECT_TRUE(ended.err_has("node 1 is not simulated: a device with this node-ID is on " + bus()))
         << ended.err;
   }
-  EXPECT_EQ(facts("scan $BUS --seconds 0.3")["nodes"].size(), 1u);
+  EXPECT_EQ(facts("scan $BUS")["nodes"].size(), 1u);
 }
 
 TEST_F(SimulatedDrives, a_node_id_that_is_named_twice_is_refused) {
@@ -150,11 +154,11 @@ TEST_F(SimulatedDrives, a_script_with_a_mistake_is_refused_with_its_line) {
 }
 
 TEST_F(SimulatedDrives, faults_come_on_command_by_standard_input) {
-  const Ended ended = desk_.line(
-      "{ sleep 0.5; echo emcy code=0x8611; echo status; sleep 0.5; echo status; echo nonsense; sleep 0.2; } "
-      "| "
-      "timeout -s INT 4 $SG drive " +
-      bus() + " --node 5");
+  const Ended ended =
+      desk_.line(fed("$SG drive " + bus() + " --node 5",
+                     "say emcy code=0x8611; heard err 'node 5: emcy'; "
+                     "while ! grep -q '\"state\":\"fault\"' out; do say status; sleep 0.1; done; "
+                     "say nonsense; heard err nonsense"));
   EXPECT_TRUE(ended.err_has("node 5: emcy code=0x8611")) << ended.err;
   EXPECT_TRUE(ended.err_has("'nonsense' is no fault")) << ended.err;
   const std::size_t last = ended.out.rfind("{", ended.out.size());
@@ -174,7 +178,7 @@ TEST_F(SimulatedDrives, faults_by_the_names_of_a_machine_file_are_for_sim) {
 
 TEST_F(SimulatedDrives, sim_unplugs_a_node_of_the_machine_file_for_a_time) {
   usercan::Process sim({"sim", shell::source("examples/mill/machine.toml"), "--bus", "can=" + bus(),
-                        "--fault", "unplug device=can.x at=1 for=1.5", "--fault",
+                        "--fault", "unplug device=can.x at=1 for=6", "--fault",
                         "over_current device=panel at=0.1"});
   EXPECT_TRUE(sim.says("possible are silent")) << "a Modbus station has no current: " << sim.said();
   const auto answers = [&](bool wanted) {
@@ -197,7 +201,7 @@ TEST_F(SimulatedDrives, sim_serves_the_drives_of_a_machine_and_tells_its_switche
   usercan::Process sim(
       {"sim", shell::source("examples/mill/machine.toml"), "--bus", "can=" + bus(), "--json"});
   ASSERT_TRUE(sim.says("simulated drives on")) << sim.said();
-  const json nodes = facts("scan $BUS --seconds 0.3")["nodes"];
+  const json nodes = facts("scan $BUS")["nodes"];
   ASSERT_EQ(nodes.size(), 4u) << nodes;
   EXPECT_TRUE(sim.says("\"point\"")) << sim.said();
   sim.signal(SIGINT);
@@ -206,10 +210,10 @@ TEST_F(SimulatedDrives, sim_serves_the_drives_of_a_machine_and_tells_its_switche
 
 TEST_F(SimulatedDrives, sim_tells_what_became_of_a_played_input_and_names_the_inputs_there_are) {
   const Ended ended = desk_.line(
-      "{ sleep 0.5; echo input door_closed off; echo input x_limit_plus on; echo input x_limit_plus auto; "
-      "echo input door_closed auto; echo input dor_closed on; echo input door_closed 3; echo input; "
-      "echo input home on node=1; sleep 0.5; } | timeout -s INT 3 $SG sim " +
-      shell::source("examples/mill/machine.toml") + " --bus can=" + bus());
+      fed("$SG sim " + shell::source("examples/mill/machine.toml") + " --bus can=" + bus(),
+          "say input door_closed off; say input x_limit_plus on; say input x_limit_plus auto; "
+          "say input door_closed auto; say input dor_closed on; say input door_closed 3; say input; "
+          "say input home on node=1; heard err 'node 1: input home on'; heard out 'x_limit_plus off'"));
   EXPECT_TRUE(ended.out_has("input door_closed is off")) << ended.out;
   EXPECT_TRUE(ended.out_has("input x_limit_plus is on")) << ended.out;
   EXPECT_TRUE(ended.out_has("input x_limit_plus follows its axis or its output again\nx_limit_plus off"))

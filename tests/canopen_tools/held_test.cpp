@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include "tests/canopen_tools/workbench.hpp"
+#include "tests/comes.hpp"
 #include "tests/usercan/rig/mill.hpp"
 
 namespace servogate::canopen_tools {
@@ -20,16 +21,13 @@ class HeldBus : public Workbench {
   }
   /// The drives have booted.
   bool online() {
-    for (int i = 0; i < 100; ++i) {
+    return tests::comes([&] {
       const json status = json::parse(tool("status --json").out, nullptr, false);
-      if (status.is_object() && status.contains("buses")) {
-        bool all = true;
-        for (const json& node : status["buses"][0]["nodes"]) all = all && node["online"] == true;
-        if (all) return true;
-      }
-      usleep(200'000);
-    }
-    return false;
+      if (!status.is_object() || !status.contains("buses")) return false;
+      for (const json& node : status["buses"][0]["nodes"])
+        if (node["online"] != true) return false;
+      return true;
+    });
   }
   const std::string held_ = shell::source("examples/mill/machine.toml") + "#can";
   std::unique_ptr<usercan::Process> control_;

@@ -19,7 +19,7 @@ class SimulatedModules : public Workbench {
 
 TEST_F(SimulatedModules, a_module_is_found_with_its_kind_and_tells_its_outputs) {
   usercan::Process& io = modules({"--node", "9", "--di", "8", "--aq", "0"});
-  const json nodes = facts("scan $BUS --seconds 0.3")["nodes"];
+  const json nodes = facts("scan $BUS")["nodes"];
   ASSERT_EQ(nodes.size(), 1u);
   EXPECT_EQ(nodes[0]["node"], 9);
   EXPECT_EQ(nodes[0]["device_type"], 0x0007'0191);
@@ -33,7 +33,7 @@ TEST_F(SimulatedModules, a_module_is_found_with_its_kind_and_tells_its_outputs) 
 
 TEST_F(SimulatedModules, an_encoder_is_one_for_the_tools_of_a_bus) {
   modules({"--node", "9", "--kind", "encoder", "--counts", "1000", "--turns", "16"});
-  const json nodes = facts("scan $BUS --seconds 0.3")["nodes"];
+  const json nodes = facts("scan $BUS")["nodes"];
   ASSERT_EQ(nodes.size(), 1u);
   EXPECT_EQ(nodes[0]["device_type"], 0x0002'0196);
   EXPECT_EQ(facts("sdo $BUS 9 read 6501")["value"], 1000);
@@ -46,7 +46,7 @@ TEST_F(SimulatedModules, an_encoder_is_one_for_the_tools_of_a_bus) {
 
 TEST_F(SimulatedModules, several_modules_live_in_one_process) {
   modules({"--node", "9,10"});
-  EXPECT_EQ(facts("scan $BUS --seconds 0.3")["nodes"].size(), 2u);
+  EXPECT_EQ(facts("scan $BUS")["nodes"].size(), 2u);
 }
 
 TEST_F(SimulatedModules, more_terminals_than_a_module_has_are_refused) {

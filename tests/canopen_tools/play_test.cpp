@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/canopen_tools/workbench.hpp"
+#include "tests/usercan/rig/running_server.hpp"
 
 namespace servogate::canopen_tools {
 namespace {
@@ -29,8 +30,12 @@ class Play : public Workbench {
     const Ended ended = tool("play $BUS run.log " + options);
     EXPECT_EQ(ended.code, 0) << ended.err;
     said_ = ended;
+    // Behind all that was played, and behind every answer to it.
+    constexpr std::uint32_t kMark = 0x7FF;
+    const auto last = join();
+    EXPECT_TRUE(last->send(usercan::make(kMark, {})));
     std::vector<std::string> ids;
-    for (image::CanFrame frame; listener->receive(frame);) {
+    for (image::CanFrame frame; usercan::wait_for(*listener, frame) && frame.id != kMark;) {
       char id[16];
       std::snprintf(id, sizeof id, frame.extended ? "%08X" : "%03X", frame.id);
       ids.emplace_back(id);
@@ -75,7 +80,7 @@ TEST_F(Play, beside_a_live_drive_warns_of_identifiers_that_both_send) {
   desk_.write("run.log",
               "(1.00) can0 601#4000100000000000\n"
               "(1.00) can0 581#4300100092010200\n"
-              "(1.50) can0 080#\n");
+              "(3.00) can0 080#\n");
   const Ids ids = played("");
   EXPECT_EQ(std::count(ids.begin(), ids.end(), "581"), 2) << "the drive answers as well";
   EXPECT_TRUE(said_.err_has("581 (1) came from the bus as well")) << said_.err;

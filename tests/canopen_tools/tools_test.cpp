@@ -35,7 +35,7 @@ class Sender {
 
 TEST_F(Workbench, scan_names_every_node_with_identity_modes_and_state) {
   drives("1,5");
-  const json nodes = facts("scan $BUS --seconds 0.5")["nodes"];
+  const json nodes = facts("scan $BUS")["nodes"];
   ASSERT_EQ(nodes.size(), 2u) << nodes;
   const json& five = nodes[1];
   EXPECT_EQ(five["node"], 5);
@@ -53,7 +53,7 @@ TEST_F(Workbench, scan_sees_heartbeats_and_the_state_they_tell) {
   drives("7");
   ASSERT_EQ(tool("sdo $BUS 7 write 1017 50").code, 0);
   ASSERT_EQ(tool("nmt $BUS start 7 --i-may-move --listen 0.1").code, 0);
-  const json node = facts("scan $BUS --seconds 0.5")["nodes"][0];
+  const json node = facts("scan $BUS")["nodes"][0];
   EXPECT_TRUE(node["heartbeat_seen"]);
   EXPECT_EQ(node["heartbeat_ms"], 50);
   EXPECT_EQ(node["state"], "operational");
@@ -176,7 +176,7 @@ TEST_F(Workbench, a_bus_in_use_is_refused_with_the_frame_that_shows_it) {
     EXPECT_EQ(read.code, 1) << master.words;
     EXPECT_TRUE(read.err_has(master.words)) << read.err;
     EXPECT_EQ(tool("sdo $BUS 5 read 6041 --anyway").code, 0);
-    EXPECT_EQ(facts("scan $BUS --seconds 0.3 --anyway")["nodes"].size(), 1u);
+    EXPECT_EQ(facts("scan $BUS --anyway")["nodes"].size(), 1u);
   }
 }
 
@@ -292,7 +292,7 @@ TEST_F(Workbench, lss_gives_no_node_id_to_several_devices_at_once) {
     EXPECT_EQ(ended.out.find("node-ID"), std::string::npos) << ended.out;
   }
   ASSERT_EQ(tool("nmt $BUS reset-comm --i-may-move --listen 0.1").code, 0);
-  EXPECT_EQ(facts("scan $BUS --seconds 0.3")["nodes"].size(), 2u) << "both have their own";
+  EXPECT_EQ(facts("scan $BUS")["nodes"].size(), 2u) << "both have their own";
   const json steps = facts("lss $BUS configuration store waiting --listen 0.1")["steps"];
   EXPECT_EQ(steps[1]["devices"], 2) << "what all may be told";
 }
@@ -312,9 +312,9 @@ TEST_F(Workbench, lss_leaves_no_device_in_configuration_when_it_scans_for_the_ne
           .code,
       0);
   ASSERT_EQ(tool("nmt $BUS reset-comm --i-may-move --listen 0.1").code, 0);
-  const Ended ended = tool("lss $BUS fastscan node 17 fastscan node 18 waiting --timeout 10 --listen 0.1");
+  const Ended ended = tool("lss $BUS fastscan node 17 fastscan node 18 waiting --timeout 100 --listen 0.1");
   ASSERT_EQ(ended.code, 0) << ended.err;
-  const json nodes = facts("scan $BUS --seconds 0.3")["nodes"];
+  const json nodes = facts("scan $BUS")["nodes"];
   ASSERT_EQ(nodes.size(), 2u) << nodes;
   EXPECT_EQ(nodes[0]["node"], 17);
   EXPECT_EQ(nodes[1]["node"], 18);
@@ -341,12 +341,12 @@ TEST_F(Workbench, can_restart_is_for_interfaces_of_linux_that_are_there) {
 TEST_F(Workbench, can_check_says_who_speaks_and_who_controls) {
   drives("5");
   ASSERT_EQ(tool("sdo $BUS 5 write 1017 20").code, 0);
-  json said = facts("can check $BUS --seconds 0.5");
+  json said = facts("can check $BUS");
   EXPECT_EQ(said["traffic"]["nodes"], json::parse("[5]"));
   EXPECT_FALSE(said["traffic"]["controlled"]);
-  EXPECT_GT(said["traffic"]["load_percent"], 0.1);
+  EXPECT_GT(said["traffic"]["load_percent"], 0.0);
   const Sender sender(join(), usercan::make(0x080, {}));
-  EXPECT_TRUE(tool("can check $BUS --seconds 0.5").out_has("another master controls this bus: SYNC (080h)"));
+  EXPECT_TRUE(tool("can check $BUS").out_has("another master controls this bus: SYNC (080h)"));
   EXPECT_EQ(tool("can check $BUS --detect").code, 4) << "there is nothing to set";
 }
 

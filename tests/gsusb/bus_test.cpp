@@ -7,6 +7,7 @@
 
 #include "drivers/clock.hpp"
 #include "drivers/gsusb/gsusb_bus.hpp"
+#include "tests/comes.hpp"
 #include "tests/counting/allocations.hpp"
 #include "tests/gsusb/plugged_adapter.hpp"
 
@@ -31,14 +32,13 @@ class GsUsb : public ::testing::Test {
     plugged_ = std::make_shared<Plugged>(adapter);
     return GsUsbBus::open(std::make_unique<PluggedPort>(plugged_), config, why_);
   }
-  /// Patience enough for a computer that is busy with something else.
   template <typename Condition>
   static bool comes(Condition condition) {
-    for (int i = 0; i < 10'000; ++i) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return false;
+    return tests::comes(condition, std::chrono::milliseconds(1));
+  }
+  /// The adapter has taken all that it gets before it has sent something.
+  bool adapter_is_full() {
+    return comes([&] { return plugged_->with([](const SimulatedAdapter& a) { return a.waiting() == 10; }); });
   }
   static bool wait_for(image::CanBus& bus, CanFrame& f) {
     return comes([&] { return bus.receive(f); });
@@ -93,7 +93,7 @@ TEST_F(GsUsb, the_descriptor_is_readable_when_a_frame_has_come_and_not_before) {
   pollfd p{bus->descriptor(), POLLIN, 0};
   EXPECT_EQ(poll(&p, 1, 0), 0);
   other().send(frame(0x705));
-  EXPECT_EQ(poll(&p, 1, 10'000), 1);
+  EXPECT_EQ(poll(&p, 1, 120'000), 1);
   CanFrame f;
   while (bus->receive(f)) {
   }
@@ -111,9 +111,8 @@ TEST_F(GsUsb, what_waits_leaves_by_priority_and_a_full_queue_refuses) {
     taken += more ? 1 : 0;
     return taken == 20;
   }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_TRUE(adapter_is_full());
   ASSERT_TRUE(bus->send(frame(0x080, 0xFF)));
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
   plugged_->wire.acknowledge(true);
   CanFrame f;
   int at = 0;
@@ -138,7 +137,7 @@ TEST_F(GsUsb, an_adapter_that_is_unplugged_is_down_and_what_waited_is_counted) {
   EXPECT_EQ(bus->lost(), 5u);
   EXPECT_FALSE(bus->send(frame(0x181)));
   pollfd p{bus->descriptor(), POLLIN, 0};
-  EXPECT_EQ(poll(&p, 1, 10'000), 1) << "whoever waits for frames hears of it";
+  EXPECT_EQ(poll(&p, 1, 120'000), 1) << "whoever waits for frames hears of it";
   EXPECT_FALSE(bus->ask_state());
 }
 
@@ -147,7 +146,7 @@ TEST_F(GsUsb, after_bus_off_nothing_stale_is_sent_and_the_controller_comes_back)
   ASSERT_NE(bus, nullptr);
   plugged_->wire.acknowledge(false);
   for (std::uint8_t i = 0; i < 30; ++i) ASSERT_TRUE(bus->send(frame(0x181, i)));
-  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  ASSERT_TRUE(adapter_is_full());
   plugged_->with([](SimulatedAdapter& a) { a.go_bus_off(1); });
   CanFrame f;
   ASSERT_TRUE(wait_for(*bus, f));

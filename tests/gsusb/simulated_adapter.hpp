@@ -42,6 +42,8 @@ class SimulatedAdapter {
 
   void go_bus_off(std::uint32_t now_us);
   bool started() const { return started_; }
+  /// Frames of the computer that are not on the bus yet.
+  std::size_t waiting() const { return from_host_.size(); }
   bool listens_only() const { return (flags_ & 1u) != 0; }
   /// bit/s that the computer has set.
   double bit_rate() const;

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/comes.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"
 
@@ -350,12 +351,11 @@ class LongRun {
                                 "Y0\n(ERP)\n(ERP)\nN40 M30\n"),
                   "--virtual", "--trace", trace_, "--report", scratch.path("r.json"), "-q"}) {
     // The trace grows by more than 250 bytes a cycle; homing is over after some 6000.
-    for (int i = 0; i < 60000; ++i) {  // five minutes: a sanitizer on a busy computer is slow
+    EXPECT_TRUE(tests::comes([&] {
       std::error_code ignored;
       const auto size = std::filesystem::file_size(trace_, ignored);
-      if (!ignored && size > 250 * 10000) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+      return !ignored && size > 250 * 10000;
+    }));
   }
   Program& program() { return program_; }
   const std::string& trace() const { return trace_; }

@@ -26,7 +26,7 @@ TEST(Files, a_damaged_state_whose_copy_before_is_in_force_is_an_alarm) {
                              std::filesystem::copy_options::overwrite_existing);
   std::ofstream(state + "/homing.toml", std::ios::app) << "damaged = true\n";
   shell.up("mill", {"--virtual", "--state", state});
-  ASSERT_TRUE(shell.until([](const json& s) { return has_alarm(s, 6006); }, 5.0));
+  ASSERT_TRUE(shell.until([](const json& s) { return has_alarm(s, 6006); }));
   EXPECT_EQ(alarm_of(shell.status(), 6006)["warning"], true) << "the machine may run all the same";
 }
 

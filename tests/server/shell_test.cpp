@@ -80,7 +80,7 @@ TEST(Commands, switch_on_jog_with_a_leading_minus_and_switch_off) {
 
 TEST(Commands, home_the_named_axes_only_and_show_it_in_the_status) {
   Shell shell;
-  shell.up();
+  shell.up("mill", {"--virtual"});
   ASSERT_EQ(shell.run({"power", "on", "--wait"}).exit, 0);
   ASSERT_EQ(shell.run({"home", "X", "Y"}).exit, 0);
   EXPECT_TRUE(shell.status()["homing"].get<bool>());
@@ -161,16 +161,15 @@ TEST(Commands, save_the_references_when_homing_has_found_them) {
   Shell shell;
   shell.up("mill", {"--virtual", "--speed", "20", "--state", (shell.folder() / "state").string()});
   shell.ready();
-  for (int n = 0; n < 100 && !contains(shell.text("state/homing.toml"), "valid = true"); ++n)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_TRUE(contains(shell.text("state/homing.toml"), "valid = true"));
+  EXPECT_TRUE(
+      shell.until([&](const json&) { return contains(shell.text("state/homing.toml"), "valid = true"); }));
 }
 
 TEST(Commands, load_start_step_hold_and_resume_a_program) {
   Shell shell;
   shell.up("mill", {"--virtual", "--speed", "5"});
   shell.ready();
-  std::ofstream(shell.folder() / "long.nc") << "N10 G1 X100 F3000\nN20 M0\nN30 X-100\nN40 M2\n";
+  std::ofstream(shell.folder() / "long.nc") << "N10 G1 X100 F300\nN20 M0\nN30 X-100 F6000\nN40 M2\n";
   const std::string program = (shell.folder() / "long.nc").string();
   const Outcome loaded = shell.run({"load", program});
   EXPECT_EQ(loaded.exit, 0);

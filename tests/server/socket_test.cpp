@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "gateway/server/socket_server.hpp"
+#include "tests/comes.hpp"
 #include "tests/property_seed.hpp"
 #include "tests/server/rig/shell.hpp"
 
@@ -20,115 +21,65 @@ namespace servogate::gateway::testing {
 namespace {
 
 using nlohmann::json;
-
-struct Point {
-  double t_s, x;
-};
-
-/// Machine time and set-point of X for `wall_s`, as fast as the socket answers.
-std::vector<Point> follow_x(SocketClient& client, double wall_s) {
-  using Clock = std::chrono::steady_clock;
-  std::vector<Point> points;
-  std::string answer;
-  const Clock::time_point end =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s));
-  do {  // twice at least: whoever measures needs two
-    if (!client.exchange(R"({"cmd":"status"})", answer)) throw std::runtime_error("no control answers");
-    const json s = json::parse(answer);
-    points.push_back({s.at("time_s"), s.at("axes").at(0).at("command")});
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  } while (Clock::now() < end || points.size() < 2);
-  return points;
-}
-
-double speed(const Point& from, const Point& to) {
-  return to.t_s > from.t_s ? (to.x - from.x) / (to.t_s - from.t_s) : 0.0;
-}
-
-/// Machine time at which the axis is first seen slower than it jogged; and where it stands in the end.
-double slower_from(const std::vector<Point>& points, double jog_speed) {
-  for (std::size_t i = 8; i < points.size(); ++i)
-    if (std::abs(speed(points[i - 8], points[i])) < 0.95 * jog_speed) return points[i - 8].t_s;
-  return 1e9;
-}
+constexpr int kPatience_ms = 120'000;
 
 class Jog : public ::testing::Test {
  protected:
   void SetUp() override {
     shell_.up("mill", {"--virtual"});
     ASSERT_EQ(shell_.run({"power", "on", "--wait"}).exit, 0);
-    ASSERT_TRUE(watcher_.connect(shell_.socket()).empty());
-  }
-  /// Steady speed of a jog that is under way.
-  double steady() {
-    follow_x(watcher_, 0.25);
-    const std::vector<Point> points = follow_x(watcher_, 0.1);
-    return speed(points.front(), points.back());
   }
   Shell shell_;
-  SocketClient watcher_;
 };
 
-/// Jogs, kills the client and gives the time until the axis is seen slower, in seconds of the machine. Less
-/// than zero: on a busy computer the client itself was late and the jog had ended before.
-double delay_after_kill(Shell& shell, SocketClient& watcher, double v, pid_t client) {
-  const double killed_s = follow_x(watcher, 0.01).back().t_s;
+// That the axis begins to stop a tenth of a second after the last keep-alive: tests/axis/limits_test.cpp.
+TEST_F(Jog, stops_when_its_client_is_killed) {
+  const pid_t client = shell_.spawn({"jog", "X", "+"}, "jog");
+  const auto moved_or_over = [](const json& s) {
+    return s["axes"][0]["moving"].get<bool>() || s["axes"][0]["jog_end"].is_object();
+  };
+  ASSERT_TRUE(shell_.until(moved_or_over));
+  const json before = shell_.status();
   kill(client, SIGKILL);
   waitpid(client, nullptr, 0);
-  const std::vector<Point> points = follow_x(watcher, 1.0);
-  EXPECT_DOUBLE_EQ(points.back().x, points[points.size() - 2].x);
-  EXPECT_TRUE(shell.until([](const json& s) { return !s["axes"][0]["moving"].get<bool>(); }, 5.0));
-  const double delay_s = slower_from(points, v) - killed_s;
-  std::printf("jogged at %.1f mm/s, slower %.1f ms after the last look before the kill\n", v, delay_s * 1e3);
-  return delay_s;
-}
-
-TEST_F(Jog, stops_within_100_ms_when_its_client_is_killed) {
-  // Clocks of three processes: only the best of several looks says what the control does, not what the
-  // computer does.
-  double best_s = 1e9;
-  for (int attempt = 0; attempt < 8 && best_s > 0.1; ++attempt) {
-    const pid_t client = shell_.spawn({"jog", "X", attempt % 2 == 0 ? "+" : "-"}, "jog");
-    EXPECT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["moving"].get<bool>(); }, 5.0));
-    const double v = std::abs(steady());
-    const double delay_s = delay_after_kill(shell_, watcher_, v, client);
-    if (v > 1.0 && delay_s > -0.02) best_s = std::min(best_s, delay_s);
-  }
-  EXPECT_LE(best_s, 0.1);
-}
-
-TEST_F(Jog, stops_within_100_ms_when_its_client_falls_silent) {
-  SocketClient client;
-  std::string answer;
-  ASSERT_TRUE(client.connect(shell_.socket()).empty());
-  ASSERT_TRUE(client.exchange(R"({"cmd":"jog_continuous","axis":"X","value":-1})", answer));
-  EXPECT_TRUE(json::parse(answer)["ok"].get<bool>()) << answer;
-  EXPECT_NEAR(json::parse(answer)["keep_alive_ms"].get<double>(), 30.0, 1e-9);
-  const std::vector<Point> points = follow_x(watcher_, 1.5);
-  EXPECT_DOUBLE_EQ(points.back().x, points[points.size() - 2].x);
-  double last_motion_s = 0.0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    if (points[i].x != points[i - 1].x) last_motion_s = points[i].t_s;
-  // 100 ms of silence and the time to speed up and down again at the slow jog of an axis without reference.
-  EXPECT_LE(last_motion_s - points.front().t_s, 0.1 + 0.35);
-  ASSERT_TRUE(client.exchange(R"({"cmd":"keep_alive"})", answer));
-  EXPECT_FALSE(json::parse(answer).value("moving", true)) << "its end is said";
+  ASSERT_TRUE(shell_.until([](const json& s) { return !s["axes"][0]["moving"].get<bool>(); }));
+  const json after = shell_.status();
+  EXPECT_EQ(after["axes"][0]["jog_end"]["reason"], "keep_alive") << after["axes"][0];
+  std::printf("X stands %.2f mm and less than %.0f ms behind the last look before the kill\n",
+              after["axes"][0]["command"].get<double>() - before["axes"][0]["command"].get<double>(),
+              1e3 * (after["time_s"].get<double>() - before["time_s"].get<double>()));
 }
 
 TEST_F(Jog, goes_on_while_its_client_keeps_asking_and_nobody_else_may_do_that_for_it) {
-  SocketClient client;
+  SocketClient client, other;
   std::string answer;
   ASSERT_TRUE(client.connect(shell_.socket()).empty());
-  ASSERT_TRUE(watcher_.exchange(R"({"cmd":"keep_alive"})", answer));
+  ASSERT_TRUE(other.connect(shell_.socket()).empty());
+  ASSERT_TRUE(other.exchange(R"({"cmd":"keep_alive"})", answer));
   EXPECT_EQ(json::parse(answer)["code"], "socket.no-jog");
-  ASSERT_TRUE(client.exchange(R"({"cmd":"jog_continuous","axis":"X","value":1})", answer));
-  for (int n = 0; n < 40; ++n) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    ASSERT_TRUE(client.exchange(R"({"cmd":"keep_alive"})", answer));
-    ASSERT_TRUE(json::parse(answer)["moving"].get<bool>()) << n;
-  }
+  // By the wall clock, for a hand lives by it: one that came within a tenth of a second keeps the axis
+  // moving, and one that this computer held up takes hold again. Twenty in a row are four times what silence
+  // lasts.
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point heard;
+  int in_time = 0;
+  ASSERT_TRUE(tests::comes(
+      [&] {
+        const Clock::time_point sent = Clock::now();
+        const char* request =
+            in_time == 0 ? R"({"cmd":"jog_continuous","axis":"X","value":1})" : R"({"cmd":"keep_alive"})";
+        if (!client.exchange(request, answer)) throw std::runtime_error("no control answers");
+        const bool late = in_time > 0 && Clock::now() - heard > std::chrono::milliseconds(100);
+        const json said = json::parse(answer);
+        const bool moves = in_time == 0 ? said["ok"].get<bool>() : said.value("moving", false);
+        EXPECT_TRUE(moves || late || in_time == 0) << in_time << ": " << answer;
+        heard = sent;
+        in_time = moves && !late ? in_time + 1 : 0;
+        return in_time > 20;
+      },
+      std::chrono::milliseconds(20)));
   ASSERT_TRUE(client.exchange(R"({"cmd":"jog_stop","axis":"X"})", answer));
-  EXPECT_TRUE(shell_.until([](const json& s) { return !s["axes"][0]["moving"].get<bool>(); }, 2.0));
+  EXPECT_TRUE(shell_.until([](const json& s) { return !s["axes"][0]["moving"].get<bool>(); }));
 }
 
 TEST_F(Jog, names_who_holds_manual_control) {
@@ -207,9 +158,9 @@ TEST(Socket, lets_a_client_go_whose_line_never_ends) {
   const std::string endless(200'000, '[');
   client.send(endless);
   std::string answer;
-  ASSERT_TRUE(client.receive(answer, 5000));
+  ASSERT_TRUE(client.receive(answer, kPatience_ms));
   EXPECT_EQ(json::parse(answer)["code"], "socket.long-line");
-  EXPECT_FALSE(client.receive(answer, 5000)) << "closed";
+  EXPECT_FALSE(client.receive(answer, kPatience_ms)) << "closed";
   EXPECT_EQ(shell.run({"status"}).exit, 0);
 }
 
@@ -259,14 +210,14 @@ TEST(Socket, serves_32_clients_and_tells_the_33rd_that_only_its_stops_are_heard)
   EXPECT_EQ(json::parse(answer)["ok"], true) << answer;
   ASSERT_TRUE(late.exchange(R"({"cmd":"status"})", answer));
   EXPECT_EQ(json::parse(answer)["code"], "socket.full");
-  EXPECT_FALSE(late.receive(answer, 5000)) << "closed";
+  EXPECT_FALSE(late.receive(answer, kPatience_ms)) << "closed";
   SocketClient silent;
   ASSERT_TRUE(silent.connect(shell.socket()).empty());
-  ASSERT_TRUE(silent.receive(answer, 20'000)) << "one that says nothing is told, too";
+  ASSERT_TRUE(silent.receive(answer, kPatience_ms)) << "one that says nothing is told, too";
   EXPECT_EQ(json::parse(answer)["code"], "socket.full");
   for (auto& client : clients) ASSERT_TRUE(client->exchange(R"({"cmd":"alarms"})", answer));
   clients.pop_back();
-  EXPECT_TRUE(shell.until([](const json& s) { return s.contains("axes"); }, 5.0));
+  EXPECT_TRUE(shell.until([](const json& s) { return s.contains("axes"); }));
 }
 
 TEST(Socket, does_not_wait_for_a_client_that_does_not_read) {

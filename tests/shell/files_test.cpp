@@ -24,7 +24,7 @@ class Files : public ::testing::Test {
     desk_.write("one.nc", "N10 G0 X1\nN20 M30\n");
   }
   void expect(const std::string& line, const std::string& said) {
-    const Ended e = desk_.line(line, "C", 20.0);
+    const Ended e = desk_.line(line);
     EXPECT_EQ(e.code, 2) << line << ": " << e.err;
     EXPECT_TRUE(e.err_has(said)) << line << ": " << e.err.substr(0, 500);
   }
@@ -69,13 +69,13 @@ TEST_F(Files, that_a_machine_file_names_are_met_with_the_same_care) {
                       "sed 's/\"mill.st\"/\"pipe\"/' m.toml > n.toml && rm -r devices.none 2>/dev/null; true")
                 .code,
             0);
-  const Ended device = desk_.line("$SG check m.toml", "C", 20.0);
+  const Ended device = desk_.line("$SG check m.toml");
   EXPECT_EQ(device.code, 1) << "the machine file itself can be read: " << device.err;
   EXPECT_TRUE(
       device.err_has("servo-cia402.toml:1:1: error: the file cannot be read: not a regular file but a pipe"))
       << device.err;
   ASSERT_EQ(desk_.line("rm -r devices").code, 0);
-  const Ended logic = desk_.line("$SG check n.toml", "C", 20.0);
+  const Ended logic = desk_.line("$SG check n.toml");
   EXPECT_EQ(logic.code, 1);
   EXPECT_TRUE(logic.err_has("file \"pipe\" cannot be read: not a regular file but a pipe")) << logic.err;
 }
@@ -102,7 +102,7 @@ TEST_F(Files, that_may_not_be_read_are_told_from_those_that_are_wrong) {
 }
 
 TEST_F(Files, are_complained_of_in_russian_to_a_russian) {
-  const Ended e = desk_.line("$SG check pipe", "ru_RU.UTF-8", 20.0);
+  const Ended e = desk_.line("$SG check pipe", "ru_RU.UTF-8");
   EXPECT_TRUE(e.err_has("файл не читается: не обычный файл, а канал")) << e.err;
   const Ended missing = desk_.line("$SG check $MILL none.nc", "ru_RU.UTF-8");
   EXPECT_TRUE(missing.err_has("нет такого файла или каталога")) << missing.err;

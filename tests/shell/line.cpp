@@ -45,7 +45,7 @@ std::string Desk::text(const std::string& name) const {
 
 bool Desk::has(const std::string& name) const { return fs::exists(path(name)); }
 
-Ended Desk::line(const std::string& line, const std::string& language, double patience_s) const {
+Ended Desk::line(const std::string& line, const std::string& language) const {
   const std::string out = path(".out"), err = path(".err"), mill = source("examples/mill/machine.toml"),
                     bracket = source("examples/mill/bracket.nc");
   const pid_t pid = fork();
@@ -66,7 +66,7 @@ Ended Desk::line(const std::string& line, const std::string& language, double pa
     _exit(127);
   }
   setpgid(pid, pid);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience_s);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(10);
   int status = 0;
   bool late = false;
   while (waitpid(pid, &status, WNOHANG) == 0) {

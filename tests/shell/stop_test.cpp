@@ -17,10 +17,10 @@ const std::string kTakenOver =
 /// The same, then sends it.
 const std::string kInterrupt = kTakenOver + "kill -INT $p; wait $p; echo code $?";
 
-/// Reading it takes longer than the signal.
+/// Reading it takes seconds, and the signal comes at its begin.
 std::string long_program() {
   std::string program;
-  for (int n = 0; n < 300'000; ++n) program += "G1 X" + std::to_string(n % 200) + " F6000\n";
+  for (int n = 0; n < 1'500'000; ++n) program += "G1 X" + std::to_string(n % 200) + " F6000\n";
   return program + "M30\n";
 }
 

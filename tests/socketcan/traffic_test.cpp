@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <ctime>
 
+#include "tests/comes.hpp"
 #include "tests/counting/allocations.hpp"
 #include "tests/socketcan/vcan.hpp"
 
@@ -26,15 +27,21 @@ image::Nanoseconds monotonic() {
 TEST_F(Vcan, what_is_sent_is_what_candump_shows) {
   auto bus = open();
   const std::string file = ::testing::TempDir() + name_;
-  ASSERT_TRUE(shell("candump -L -n 3 -T 4000 " + name_ + " > " + file + " & sleep 0.5"));
+  // candump listens once it has shown a mark.
+  ASSERT_TRUE(shell("candump -L " + name_ + " > " + file + " & echo $! > " + file + ".pid"));
+  const auto shown = [&] { return output_of("cut -d' ' -f3 " + file + " | grep -v '^7FF#'"); };
+  ASSERT_TRUE(tests::comes([&] {
+    EXPECT_TRUE(shell("cansend " + name_ + " 7FF#"));
+    return shell("grep -q '7FF#' " + file);
+  }));
   EXPECT_TRUE(bus->send(frame(0x181, {0xDE, 0xAD})));
   EXPECT_TRUE(bus->send(frame(0x18FF1234, {1, 2, 3, 4, 5, 6, 7, 8})));
   CanFrame remote = frame(0x701, {});
   remote.remote = true;
   EXPECT_TRUE(bus->send(remote));
-  ASSERT_TRUE(shell("sleep 0.5"));
-  const std::string seen = output_of("cut -d' ' -f3 " + file);
-  EXPECT_EQ(seen, "181#DEAD\n18FF1234#0102030405060708\n701#R\n");
+  EXPECT_TRUE(tests::comes([&] { return shown() == "181#DEAD\n18FF1234#0102030405060708\n701#R\n"; }))
+      << shown();
+  EXPECT_TRUE(shell("kill $(cat " + file + ".pid)"));
 }
 
 TEST_F(Vcan, what_cansend_sends_is_received_with_the_kernels_time) {

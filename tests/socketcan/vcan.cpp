@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/socketcan/vcan.hpp"
+#include "tests/comes.hpp"
 
 #include <poll.h>
 #include <unistd.h>
@@ -42,23 +43,16 @@ std::unique_ptr<SocketCanBus> Vcan::open(SocketCanConfig config) {
 }
 
 bool Vcan::wait_for(SocketCanBus& bus, image::CanFrame& frame) {
-  for (int i = 0; i < 20; ++i) {
-    if (bus.receive(frame)) return true;
-    pollfd p{bus.descriptor(), POLLIN, 0};
-    poll(&p, 1, 100);
-  }
-  return false;
+  return tests::comes([&] { return bus.receive(frame); }, std::chrono::milliseconds(1));
 }
 
 bool Vcan::reaches(SocketCanBus& bus, image::CanState state) {
   image::CanFrame frame;
-  for (int i = 0; i < 200; ++i) {
+  return tests::comes([&] {
     while (bus.receive(frame)) {
     }
-    if (bus.state() == state) return true;
-    usleep(10'000);
-  }
-  return false;
+    return bus.state() == state;
+  });
 }
 
 }  // namespace servogate::socketcan

@@ -22,9 +22,9 @@ class Vcan : public ::testing::Test {
 
   /// Opens the test's interface; fails the test when that is refused.
   std::unique_ptr<SocketCanBus> open(SocketCanConfig config = {});
-  /// Waits up to two seconds for a frame, nothing else.
+  /// Waits for a frame, nothing else.
   static bool wait_for(SocketCanBus& bus, image::CanFrame& frame);
-  /// Reads until the state is this one, two seconds at most.
+  /// Reads until the state is this one.
   static bool reaches(SocketCanBus& bus, image::CanState state);
 
   std::string name_;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <csignal>
 #include <fstream>
 #include <sstream>
 
 #include "drivers/candump/candump_line.hpp"
+#include "tests/comes.hpp"
 #include "tests/usercan/rig/process.hpp"
 #include "tests/usercan/rig/running_server.hpp"
 
@@ -51,6 +50,16 @@ TEST(CandumpLine, what_is_none_is_refused) {
     EXPECT_FALSE(candump::parse(wrong)) << wrong;
 }
 
+/// Plays a log again and again until a dump that is being started has come to the bus and heard this of it.
+bool played_until(const Process& dump, const std::string& heard, const std::string& url,
+                  const std::string& log) {
+  return tests::comes([&] {
+    Process play({"play", url, log});
+    EXPECT_EQ(play.wait(), 0) << play.said();
+    return dump.said().find(heard) != std::string::npos;
+  });
+}
+
 TEST(Dump, what_is_played_onto_a_bus_is_what_is_dumped_from_it) {
   const std::string socket = scratch("bus.sock"), log = scratch("log");
   const std::string url = "socketcand:unix:" + socket + "/can0";
@@ -59,11 +68,7 @@ TEST(Dump, what_is_played_onto_a_bus_is_what_is_dumped_from_it) {
   std::ofstream(log) << "(100.000000) can0 181#DEAD\n(100.010000) can0 00012345#\n(100.010000) can0 701#R1\n"
                         "(100.020000) can0 080#\n";
   Process dump({"dump", url, "--count", "4"});
-  // Played until the dump has come to the bus.
-  for (int i = 0; i < 100 && dump.said().find("080#") == std::string::npos; ++i) {
-    Process play({"play", url, log});
-    ASSERT_EQ(play.wait(), 0) << play.said();
-  }
+  ASSERT_TRUE(played_until(dump, "080#", url, log));
   EXPECT_EQ(dump.wait(), 0);
   std::string frames = dump.said();
   for (const char* part : {"can0 181#DEAD\n", "can0 00012345#\n", "can0 701#R1\n", "can0 080#\n"})
@@ -102,12 +107,11 @@ std::vector<std::string> dumped_while_playing(const std::string& url, const std:
   const std::string mark = scratch("mark");
   std::ofstream(mark) << "(1.000000) can0 77E#\n";
   Process dump({"dump", url});
-  for (int i = 0; i < 100 && dump.said().find("77E#") == std::string::npos; ++i)
-    EXPECT_EQ(Process({"play", url, mark}).wait(), 0);
+  EXPECT_TRUE(played_until(dump, "77E#", url, mark));
   const std::size_t marks = frames_of(dump.said()).size();
   Process play({"play", url, log});
   EXPECT_EQ(play.wait(), 0) << play.said();
-  for (int i = 0; i < 1000 && frames_of(dump.said()).size() < marks + frames; ++i) usleep(10'000);
+  EXPECT_TRUE(tests::comes([&] { return frames_of(dump.said()).size() >= marks + frames; }));
   dump.signal(SIGTERM);
   EXPECT_EQ(dump.wait(), 0);
   std::istringstream lines(dump.said());
@@ -148,10 +152,7 @@ TEST(Dump, of_a_bus_that_goes_away_says_so_and_ends_as_trouble_of_the_computer) 
   ASSERT_TRUE(bus.says("can0 at")) << bus.said();
   std::ofstream(log) << "(100.000000) can0 080#\n";
   Process dump({"dump", url});
-  for (int i = 0; i < 100 && dump.said().find("080#") == std::string::npos; ++i) {
-    Process play({"play", url, log});
-    ASSERT_EQ(play.wait(), 0) << play.said();
-  }
+  ASSERT_TRUE(played_until(dump, "080#", url, log));
   bus.signal(SIGTERM);
   EXPECT_EQ(dump.wait(), 4);
   EXPECT_NE(dump.said().find("gone down"), std::string::npos) << dump.said();

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/comes.hpp"
 #include "tests/usercan/rig/mill.hpp"
 #include "tests/usercan/rig/running_server.hpp"
 
@@ -42,7 +43,8 @@ TEST_P(Wires, the_mill_runs_in_real_time_on_a_bus_between_processes_without_righ
     Process run({"run", machine, program(), "--realtime=best-effort", "-q"});
     EXPECT_EQ(run.wait(), 0) << run.said();
     EXPECT_EQ(run.said().find("alarm"), std::string::npos) << time << " run: " << run.said();
-    // Long enough for drives that miss their control to say so.
+    // Drives that are told so do not miss their control, for any time; this is one in which they could say
+    // so.
     std::this_thread::sleep_for(std::chrono::milliseconds(700));
   }
   const std::string wire_log = content(log);
@@ -66,7 +68,16 @@ TEST(Processes, drives_that_may_be_real_stay_off_until_somebody_presses_the_butt
   const Process living({"drive", "socketcand:unix:" + socket + "/can0", "--node", "1,2,3,4"});
   Process run({"run", machine, program(), "--realtime=best-effort", "-q", "--trace", trace});
   ASSERT_TRUE(run.says("the start button 'cycle_start' switches the drives on")) << run.said();
-  std::this_thread::sleep_for(std::chrono::seconds(3));
+  // Until the drives have been addressed for a while; they stay off for any time.
+  ASSERT_TRUE(tests::comes(
+      [&] {
+        const std::string heard = content(log);
+        std::size_t at = 0;
+        int seen = 0;
+        while ((at = heard.find(" 201#", at)) != std::string::npos) ++seen, ++at;
+        return seen > 500;
+      },
+      std::chrono::milliseconds(50)));
   run.signal(SIGINT);
   EXPECT_EQ(run.wait(), 3) << run.said();
   // Controlwords of the RPDOs: none with Enable operation (bit 3).

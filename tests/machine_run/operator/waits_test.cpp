@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/comes.hpp"
 #include "tests/machine_run/rig/program.hpp"
 
 namespace servogate::machine_run {
@@ -109,12 +110,11 @@ TEST(Waits, for_ever_with_a_patience_of_zero_until_the_operator_stops_them) {
   Program run({"run", mill_file(), scratch.write("w.nc", "N10 (WAI,SA20=1)\nN20 M30\n"), "--patience", "0",
                "--trace", scratch.path("t.csv")});
   // Homing takes some 6 s of machine time; 100 s of it are 100000 rows.
-  for (int i = 0; i < 60000; ++i) {
+  ASSERT_TRUE(tests::comes([&] {
     std::error_code ignored;
     const auto size = std::filesystem::file_size(scratch.path("t.csv"), ignored);
-    if (!ignored && size > 250 * 100000) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+    return !ignored && size > 250 * 100000;
+  }));
   run.signal(SIGINT);
   const Ending e = run.wait();
   EXPECT_EQ(e.code, 3) << e.err;

@@ -2,12 +2,15 @@
 // A record of a run, in virtual or in real time, replays to the same bytes.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <thread>
 
 #include "gateway/machine/state/state.hpp"
+#include "tests/comes.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"
 
@@ -62,7 +65,13 @@ TEST(Replay, of_a_run_stopped_by_its_operator_in_real_time_is_equal) {
       scratch.write("long.nc", "N10 G90 G94 G71\nN20 G1 X200 Y150 F3000\nN30 X0\nN40 M30\n");
   Program run({"run", source("examples/mill/machine.toml"), program, "--realtime=best-effort", "--record",
                scratch.path("r"), "--trace", scratch.path("t"), "-q"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  // Until the run has begun: stopped then, or at any time after, it replays.
+  ASSERT_TRUE(tests::comes(
+      [&] {
+        return std::filesystem::exists(scratch.path("t")) &&
+               read_all(scratch.path("t")).find("\n1.") != std::string::npos;
+      },
+      std::chrono::milliseconds(50)));
   run.signal(SIGINT);
   const Ending ended = run.wait();
   ASSERT_TRUE(ended.code == 3 || ended.code == 1) << ended.code << ended.err;

@@ -11,6 +11,7 @@
 #include "gateway/server/plc/plc_desk.hpp"
 #include "gateway/server/resident/resident.hpp"
 #include "kernel/cycle/alarm/alarm_table.hpp"
+#include "tests/comes.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"
 #include "tests/places/places.hpp"
@@ -43,19 +44,18 @@ class RecordedControl {
   }
   /// True: accepted. Asks again while an axis is not quite at rest.
   bool ask(RequestKind kind, double value = 0.0, image::Mode mode = image::Mode::off) {
-    for (int i = 0; i < 200; ++i) {
+    return tests::comes([&] {
       if (mode != image::Mode::off) post(RequestKind::mode, static_cast<double>(mode));
-      if (post(kind, value) == 0) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
+      return post(kind, value) == 0;
+    });
   }
   bool until(const std::function<bool(const image::ProcessImage&)>& met) {
-    for (int i = 0; i < 6000; ++i) {
-      if (met(resident_.image())) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    return false;
+    return tests::comes([&] { return met(resident_.image()); });
+  }
+  /// So many cycles on, however long the computer takes for them.
+  bool go_on(std::int64_t cycles) {
+    const std::int64_t end = resident_.image().now.number + cycles;
+    return until([end](const image::ProcessImage& i) { return i.now.number >= end; });
   }
   bool until_state(ProcessState state) {
     return until([state](const image::ProcessImage& i) {
@@ -63,14 +63,12 @@ class RecordedControl {
     });
   }
   bool load(const std::string& path) {
-    for (int i = 0; i < 200; ++i) {
+    return tests::comes([&] {
       resident_.read_tables();
       gateway::Resident::Load load = resident_.begin_load(path, {});
       resident_.read_and_prove(load, {});
-      if (resident_.finish(load) == gateway::Resident::Load::End::done) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    return false;
+      return resident_.finish(load) == gateway::Resident::Load::End::done;
+    });
   }
   /// The program goes by what the last run changed.
   void take_tables() {
@@ -105,13 +103,14 @@ class RecordedControl {
   gateway::Resident resident_;
 };
 
-/// A scan that would come to its end, within its budget, after seconds.
+/// A scan that ends by nothing else within the half second that it is given, however fast the computer: each
+/// of the thousand million instructions that it may take turns a number into text.
 constexpr const char* kLongScan = R"(
 PROGRAM Main
-VAR i : DINT; x : LREAL := 0.5; END_VAR
+VAR x : LREAL := 0.1; words : STRING; END_VAR
 MC.estop_ok := estop_chain_ok;
 coolant := TIME() > T#200ms;
-IF TIME() > T#400ms THEN FOR i := 1 TO 200000000 DO x := SIN(COS(x)); END_FOR; END_IF;
+IF TIME() > T#400ms THEN WHILE TRUE DO words := CONCAT(LREAL_TO_STRING(x), LREAL_TO_STRING(x)); END_WHILE; END_IF;
 END_PROGRAM
 )";
 
@@ -154,7 +153,7 @@ TEST(ResidentRecord, of_a_plc_that_was_held_for_single_scans_replays_byte_by_byt
       image::Answer answer;
       ASSERT_TRUE(control.answered(r, answer));
       ASSERT_EQ(answer.refusal, 0);
-      std::this_thread::sleep_for(std::chrono::milliseconds(60));
+      ASSERT_TRUE(control.go_on(60));
     }
     ASSERT_TRUE(control.ask(RequestKind::logic_scan, 0.0));
     ASSERT_TRUE(control.ask(RequestKind::reset));
@@ -246,7 +245,7 @@ TEST(ResidentRecord, of_forces_and_another_PLC_program_replays_byte_by_byte) {
       const auto& reply = std::get<gateway::Reply>(outcome);
       return reply.ok ? std::string() : reply.text;
     };
-    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(120)); };
+    const auto wait = [&] { EXPECT_TRUE(control.go_on(120)); };
     EXPECT_EQ(ask(gateway::ask::PlcForce{"door_closed", "FALSE", false}), "");
     EXPECT_EQ(ask(gateway::ask::PlcForce{"Mill.coolant_on", "TRUE", false}), "");
     EXPECT_EQ(ask(gateway::ask::PlcForce{"mist", "TRUE", false}), "");

@@ -84,8 +84,8 @@ Program::~Program() {
 
 void Program::signal(int number) const { kill(pid_, number); }
 
-Ending Program::wait(double patience_s) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience_s);
+Ending Program::wait() {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(10);
   int status = 0;
   while (waitpid(pid_, &status, WNOHANG) == 0) {
     if (std::chrono::steady_clock::now() > end) kill(pid_, SIGKILL);

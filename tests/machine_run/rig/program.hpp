@@ -48,8 +48,8 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
   void signal(int number) const;
-  /// Waits for the end; kills it after `patience_s`.
-  Ending wait(double patience_s = 60.0);
+  /// Waits for the end; kills it after ten minutes, when it hangs.
+  Ending wait();
 
  private:
   Scratch scratch_;

@@ -541,8 +541,9 @@ TEST(DriveFleet, two_runs_are_equal_to_the_byte) {
   EXPECT_EQ(first.bytes, second.bytes);
 }
 
-TEST(DriveFleet, three_drives_and_their_bus_run_far_faster_than_real_time) {
+TEST(DriveFleet, says_how_much_faster_than_real_time_three_drives_and_their_bus_run) {
   Eight e(3);
+  e.received = 0;
   double best = 1e9;
   for (int round = 0; round < 5; ++round) {
     const auto start = std::chrono::steady_clock::now();
@@ -552,8 +553,7 @@ TEST(DriveFleet, three_drives_and_their_bus_run_far_faster_than_real_time) {
   }
   std::printf("           3 drives, 7 frames: %.2f us a millisecond, %.0f x real time\n", best * 1e6,
               1e-3 / best);
-  // Sanitizers and a loaded machine are slower; a broken loop would be slower by far more.
-  EXPECT_LT(best, 200e-6);
+  EXPECT_EQ(e.received, 5 * 2000 * 3) << "all of them answered each time";
 }
 
 }  // namespace

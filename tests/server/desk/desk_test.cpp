@@ -14,6 +14,7 @@
 #include "gateway/server/desk/desk_client.hpp"
 #include "gateway/server/resident/resident.hpp"
 #include "gateway/server/socket_server.hpp"
+#include "tests/comes.hpp"
 #include "tests/places/places.hpp"
 #include "tests/server/rig/shell.hpp"
 
@@ -61,10 +62,7 @@ class DeskOfAMill : public ::testing::Test {
   }
   Reply said(ask::Command command) { return said_by(pendant_, std::move(command)); }
   bool until(const std::function<bool(const StatusReport&)>& good) {
-    for (const auto end = std::chrono::steady_clock::now() + 60s; std::chrono::steady_clock::now() < end;
-         std::this_thread::sleep_for(5ms))
-      if (good(std::get<StatusReport>(said(ask::Status{}).content))) return true;
-    return false;
+    return tests::comes([&] { return good(std::get<StatusReport>(said(ask::Status{}).content)); });
   }
   json line(const json& request) {
     std::string answer;
@@ -92,12 +90,11 @@ TEST_F(DeskOfAMill, gives_a_client_of_this_process_and_one_of_the_socket_their_o
     EXPECT_EQ(line({{"cmd", "jog"}, {"axis", "W"}, {"value", 1}})["text"],
               "the machine has no axis 'W'; it has X, Y, Z");
     std::optional<Reply> answer, refusal;
-    for (const auto end = std::chrono::steady_clock::now() + 60s;
-         !(answer && refusal) && std::chrono::steady_clock::now() < end; std::this_thread::sleep_for(1ms)) {
+    ASSERT_TRUE(tests::comes([&] {
       if (!answer) answer = pendant_.take(mine);
       if (!refusal) refusal = pendant_.take(next);
-    }
-    ASSERT_TRUE(answer && refusal) << n;
+      return answer && refusal;
+    })) << n;
     EXPECT_EQ(std::holds_alternative<HeldBuses>(answer->content), n % 2 == 0);
     EXPECT_EQ(refusal->text, "the machine has no axis 'Q'; it has X, Y, Z");
     EXPECT_FALSE(pendant_.take(mine)) << "once";
@@ -134,10 +131,8 @@ TEST_F(DeskOfAMill, tells_every_client_that_the_control_ends) {
   EXPECT_EQ(line({{"cmd", "home"}})["code"], "socket.ending");
   desk_.shut_down();
   EXPECT_EQ(said(ask::Home{}).code, "socket.ending");
-  for (const auto end = std::chrono::steady_clock::now() + 60s;
-       !desk_.at_rest() && std::chrono::steady_clock::now() < end;)
-    std::this_thread::sleep_for(5ms);
-  EXPECT_TRUE(desk_.at_rest() && desk_.rests());
+  EXPECT_TRUE(tests::comes([&] { return desk_.at_rest(); }));
+  EXPECT_TRUE(desk_.rests());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "tests/comes.hpp"
 #include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {
@@ -24,23 +25,25 @@ class JogCommand : public ::testing::Test {
       ASSERT_EQ(shell_.run({"home", "--wait"}).exit, 0);
     }
   }
-  /// What `jog X DIRECTION` says when `happens` comes while it moves. Its own keep-alive may be late on a
-  /// computer that others use too: then all begins again, with a new control.
+  /// What `jog X DIRECTION` says when `happens` comes while it moves. A hand that a busy computer holds up
+  /// for a tenth of a second of the wall clock is a dead one, as it must be: then all begins again, with a
+  /// new control, and it is said.
   template <typename Happens>
   Outcome while_it_jogs(Happens&& happens, const std::string& direction = "+") {
     Outcome last;
-    for (int attempt = 0; attempt < 8 && !HasFatalFailure(); ++attempt) {
-      if (attempt > 0) {
-        shell_.end(SIGINT);
-        SetUp();
-      }
+    EXPECT_TRUE(tests::comes([&] {
       const pid_t client = shell_.spawn({"jog", "X", direction}, "jog");
-      EXPECT_TRUE(shell_.until(x_moves, 10.0));
+      EXPECT_TRUE(
+          shell_.until([](const json& s) { return x_moves(s) || s["axes"][0]["jog_end"].is_object(); }));
       happens(client);
       last = {ending_of(client), shell_.text("jog.out"), shell_.text("jog.err")};
       EXPECT_FALSE(x_moves(shell_.status())) << "the command ends when the axis stands";
-      if (!contains(last.err, "[jog.keep-alive]")) break;
-    }
+      if (HasFatalFailure() || !contains(last.err, "[jog.keep-alive]")) return true;
+      std::printf("this computer held the hand up for too long; once more\n");
+      shell_.end(SIGINT);
+      SetUp();
+      return false;
+    }));
     return last;
   }
   bool homed_ = false;
@@ -56,12 +59,10 @@ TEST_F(JogCommand, goes_on_at_twenty_times_the_wall_clock_until_Ctrl_C_and_says_
   double way = 0.0;
   const Outcome o = while_it_jogs([&](pid_t client) {
     const double from = shell_.status()["axes"][0]["command"];
-    shell_.until(
-        [&](const json& s) {
-          way = s["axes"][0]["command"].get<double>() - from;
-          return way > 20.0 || !x_moves(s);
-        },
-        10.0);
+    shell_.until([&](const json& s) {
+      way = s["axes"][0]["command"].get<double>() - from;
+      return way > 20.0 || !x_moves(s);
+    });
     kill(client, SIGINT);
   });
   EXPECT_EQ(o.exit, 0) << o.err;
@@ -75,7 +76,7 @@ TEST_F(JogCommand, ends_at_a_silent_hand_with_that_as_its_reason) {
   ASSERT_TRUE(client.connect(shell_.socket()).empty());
   ASSERT_TRUE(client.exchange(R"({"cmd":"jog_continuous","axis":"X","value":1})", answer));
   EXPECT_EQ(json::parse(answer)["keep_alive_ms"], 30.0) << answer;
-  ASSERT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["jog_end"].is_object(); }, 10.0));
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["jog_end"].is_object(); }));
   EXPECT_EQ(shell_.status()["axes"][0]["jog_end"]["reason"], "keep_alive");
   ASSERT_TRUE(client.exchange(R"({"cmd":"keep_alive"})", answer));
   EXPECT_EQ(json::parse(answer)["moving"], false) << answer;
@@ -84,10 +85,11 @@ TEST_F(JogCommand, ends_at_a_silent_hand_with_that_as_its_reason) {
 }
 
 TEST_F(JogCommand, ends_when_another_hand_asks_for_the_other_direction) {
+  json answer;
   const Outcome o = while_it_jogs([&](pid_t) {
-    EXPECT_EQ(shell_.ask({{"cmd", "jog_continuous"}, {"axis", "X"}, {"value", -1}})["code"],
-              "gate.axis_moves");
+    answer = shell_.ask({{"cmd", "jog_continuous"}, {"axis", "X"}, {"value", -1}});
   });
+  EXPECT_EQ(answer["code"], "gate.axis_moves");
   EXPECT_EQ(o.exit, 3) << o.err;
   EXPECT_TRUE(contains(o.err, "[jog.asked]")) << o.err;
 }
@@ -95,7 +97,7 @@ TEST_F(JogCommand, ends_when_another_hand_asks_for_the_other_direction) {
 class JogOfTwo : public ::testing::Test {
  protected:
   void SetUp() override {
-    shell_.up("mill", {"--virtual"});
+    shell_.up("mill", {"--virtual", "--speed", "0.5"});
     ASSERT_EQ(shell_.run({"power", "on", "--wait"}).exit, 0);
   }
   Shell shell_;
@@ -117,22 +119,22 @@ TEST_F(JogOfTwo, stops_the_axis_of_the_frozen_hand_only_while_the_other_one_goes
   const auto moves = [](std::size_t axis) {
     return [axis](const json& s) { return s["axes"][axis]["moving"].get<bool>(); };
   };
-  EXPECT_TRUE(shell_.until(moves(1), 10.0));
+  EXPECT_TRUE(shell_.until(moves(1)));
   const pid_t x = shell_.spawn({"jog", "X", "+"}, "jog-x");
-  EXPECT_TRUE(shell_.until(moves(0), 10.0));
+  EXPECT_TRUE(
+      shell_.until([&](const json& s) { return moves(0)(s) || s["axes"][0]["jog_end"].is_object(); }));
   kill(x, SIGSTOP);
+  EXPECT_TRUE(shell_.until([&](const json& s) { return !x_moves(s); }));
   const json frozen = shell_.status();
-  std::this_thread::sleep_for(std::chrono::seconds(3));
-  const json later = shell_.status();
+  EXPECT_EQ(frozen["axes"][0]["jog_end"]["reason"], "keep_alive");
+  EXPECT_TRUE(shell_.until([&](const json& s) {
+    return s["axes"][1]["command"].get<double>() < frozen["axes"][1]["command"].get<double>() - 4.0;
+  })) << "the other one goes on";
+  EXPECT_EQ(shell_.status()["axes"][0]["command"], frozen["axes"][0]["command"]);
   other.request_stop();
   other.join();
   kill(x, SIGKILL);
   ending_of(x);
-  EXPECT_FALSE(x_moves(later));
-  EXPECT_EQ(later["axes"][0]["jog_end"]["reason"], "keep_alive");
-  // Not homed it jogs at 10 mm/s: kept alive it would have gone on for 30 mm.
-  EXPECT_LT(later["axes"][0]["command"].get<double>() - frozen["axes"][0]["command"].get<double>(), 10.0);
-  EXPECT_LT(later["axes"][1]["command"].get<double>() - frozen["axes"][1]["command"].get<double>(), -10.0);
 }
 
 TEST_F(JogCommand, by_a_distance_returns_when_the_axis_stands) {

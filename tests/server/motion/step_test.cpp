@@ -53,7 +53,7 @@ TEST(Step, is_refused_for_a_program_that_was_started_as_a_whole_and_is_held) {
   shell.up();
   shell.ready();
   const std::string program = (shell.folder() / "whole.nc").string();
-  std::ofstream(program) << "G1 X100 F600\nX0\nM30\n";
+  std::ofstream(program) << "G1 X100 F30\nX0\nM30\n";
   ASSERT_EQ(shell.run({"load", program}).exit, 0);
   ASSERT_EQ(shell.run({"start"}).exit, 0);
   ASSERT_TRUE(shell.until([](const json& s) { return s["axes"][0]["command"] > 1.0; }));

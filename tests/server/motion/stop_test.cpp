@@ -27,8 +27,8 @@ class Stopped : public ::testing::Test {
 };
 
 TEST_F(Stopped, by_power_off_is_no_alarm_and_names_who_did_it_and_what_to_do_next) {
-  begin("N10 G90 G94 G71\nN20 G1 X200 F600\nN30 M2\n");
-  ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 100.0; }));
+  begin("N10 G90 G94 G71\nN20 G1 X200 F60\nN30 M2\n");
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 10.0; }));
   const Outcome off = shell_.run({"power", "off"});
   EXPECT_EQ(off.exit, 0) << off.err;
   EXPECT_TRUE(contains(off.out, "the drives are off")) << off.out;
@@ -43,7 +43,7 @@ TEST_F(Stopped, by_power_off_is_no_alarm_and_names_who_did_it_and_what_to_do_nex
   EXPECT_TRUE(contains(shell_.run({"status"}, "ru_RU.UTF-8").out, "приводы выключены во время выполнения"));
   ASSERT_EQ(shell_.run({"power", "on"}).exit, 0);
   ASSERT_EQ(shell_.run({"start"}).exit, 0);
-  EXPECT_TRUE(shell_.until([](const json& now) { return now["state"] == "running"; }, 5.0));
+  EXPECT_TRUE(shell_.until([](const json& now) { return now["state"] == "running"; }));
   EXPECT_TRUE(shell_.status()["stop"].is_null());
 }
 
@@ -51,7 +51,7 @@ TEST_F(Stopped, by_power_off_while_it_waits_is_the_same) {
   begin("N10 G0 X1\nN20 M0\nN30 M2\n");
   ASSERT_TRUE(shell_.until([](const json& s) { return s["state"] == "waiting"; }));
   ASSERT_EQ(shell_.run({"power", "off"}).exit, 0);
-  EXPECT_TRUE(shell_.until([](const json& s) { return s["state"] == "stopped"; }, 5.0)) << shell_.status();
+  EXPECT_TRUE(shell_.until([](const json& s) { return s["state"] == "stopped"; })) << shell_.status();
   EXPECT_EQ(shell_.status()["stop"]["cause"], "drives_off");
 }
 
@@ -61,7 +61,7 @@ TEST_F(Stopped, by_the_plc_at_rest_names_the_enable_and_where_to_look) {
   ASSERT_EQ(
       shell_.ask({{"cmd", "plc_force"}, {"name", "X.enable"}, {"value", "FALSE"}, {"stay", true}})["ok"],
       true);
-  ASSERT_TRUE(shell_.until([](const json& s) { return s["state"] == "stopped"; }, 5.0)) << shell_.status();
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["state"] == "stopped"; })) << shell_.status();
   const json stop = shell_.status()["stop"];
   EXPECT_EQ(stop["cause"], "enable_withdrawn");
   EXPECT_TRUE(contains(stop["text"], "X.enable")) << stop;
@@ -71,16 +71,16 @@ TEST_F(Stopped, by_the_plc_at_rest_names_the_enable_and_where_to_look) {
 TEST_F(Stopped, blocks_that_were_typed_are_shown_as_that_and_not_as_a_subprogram) {
   std::ofstream(shell_.folder() / "part.nc") << "N10 G0 X1\nN20 M2\n";
   ASSERT_EQ(shell_.run({"load", (shell_.folder() / "part.nc").string()}).exit, 0);
-  ASSERT_EQ(shell_.run({"mdi", "G1 X100 F600"}).exit, 0);
-  ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 100.0; }));
+  ASSERT_EQ(shell_.run({"mdi", "G1 X200 F60"}).exit, 0);
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 10.0; }));
   const std::string out = shell_.run({"status"}).out;
-  EXPECT_TRUE(contains(out, "typed block: G1 X100 F600\n")) << out;
+  EXPECT_TRUE(contains(out, "typed block: G1 X200 F60\n")) << out;
   EXPECT_TRUE(contains(out, "part.nc: 2 blocks\n")) << out;
   EXPECT_FALSE(contains(out, "subprogram")) << out;
-  EXPECT_TRUE(contains(shell_.run({"status"}, "ru_RU.UTF-8").out, "введённый кадр: G1 X100 F600"));
-  EXPECT_EQ(shell_.status()["block"], "G1 X100 F600");
+  EXPECT_TRUE(contains(shell_.run({"status"}, "ru_RU.UTF-8").out, "введённый кадр: G1 X200 F60"));
+  EXPECT_EQ(shell_.status()["block"], "G1 X200 F60");
   ASSERT_EQ(shell_.run({"reset"}).exit, 0);
-  EXPECT_TRUE(shell_.until([](const json& s) { return s["block"].is_null(); }, 5.0));
+  EXPECT_TRUE(shell_.until([](const json& s) { return s["block"].is_null(); }));
 }
 
 TEST_F(Stopped, warnings_of_a_block_go_when_the_next_one_starts) {
@@ -91,8 +91,8 @@ TEST_F(Stopped, warnings_of_a_block_go_when_the_next_one_starts) {
 }
 
 TEST_F(Stopped, status_is_all_in_the_users_language) {
-  begin("N10 (DIS,\"A\")\nN20 G1 X50 F600\nN30 M2\n");
-  ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 100.0; }));
+  begin("N10 (DIS,\"A\")\nN20 G1 X200 F60\nN30 M2\n");
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["feed_mm_min"] > 10.0; }));
   const std::string out = shell_.run({"status"}, "ru_RU.UTF-8").out;
   for (const char* part :
        {"авто, выполняется", "строка 2 из 3", "подача ", "мм/мин", "инструмент",
@@ -124,8 +124,7 @@ TEST(Start, that_is_refused_because_the_drives_are_off_names_each_missing_condit
 
 TEST_F(Stopped, power_off_returns_when_nothing_is_driven_any_more) {
   ASSERT_EQ(shell_.run({"jog", "X", "+100mm", "--no-wait"}).exit, 0);
-  ASSERT_TRUE(shell_.until([](const json& s) { return s["axes"][0]["moving"].get<bool>(); }));
-  EXPECT_EQ(shell_.run({"power", "off"}).exit, 0);
+  EXPECT_EQ(shell_.run({"power", "off"}).exit, 0) << "in the middle of it, or behind it";
   const json s = shell_.status();
   for (const json& a : s["axes"]) {
     EXPECT_FALSE(a["moving"].get<bool>()) << a;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The PLC against the clock of the wall: a scan over its watchdog, and single scans between which none runs.
-// A scan of this program takes some microseconds, the watchdog 40 ms, the long scan about 150 ms on a
-// computer of 2020, and half a second ends a scan: a computer has to be far busier, or faster, to make one of
-// them another.
+// A scan that ends, and how long it took: tests/cycle/executive_test.cpp, in virtual time. Here it is one
+// that cannot end, so that the clock decides nothing but when it is ended.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -15,19 +14,16 @@ namespace {
 
 using nlohmann::json;
 
-/// Runs beside the logic of the mill. The loop stays below the instruction budget: turning numbers into text
-/// is one instruction each and takes its time.
+/// Runs beside the logic of the mill. Its loop ends by nothing else within the watchdog's two seconds,
+/// however fast the computer: each of the thousand million instructions that it may take turns a number into
+/// text.
 constexpr const char* kBeside = R"(
 PROGRAM Beside
-VAR begin, begun : BOOL; turn, scans : DINT; words : STRING; number : LREAL := 0.1; END_VAR
+VAR begin : BOOL; scans : DINT; words : STRING; number : LREAL := 0.1; END_VAR
 scans := scans + 1;
-IF begin AND NOT begun THEN
-  begun := TRUE;
-  FOR turn := 1 TO 400_000 DO
-    words := CONCAT(LREAL_TO_STRING(number), LREAL_TO_STRING(number + 0.3));
-    number := number * 1.0000001;
-  END_FOR;
-END_IF;
+WHILE begin DO
+  words := CONCAT(LREAL_TO_STRING(number), LREAL_TO_STRING(number));
+END_WHILE;
 END_PROGRAM
 )";
 
@@ -38,7 +34,7 @@ void up(Shell& shell) {
   const std::string sources = "sources = [\"mill.st\"]";
   ASSERT_NE(machine.find(sources), std::string::npos);
   machine.replace(machine.find(sources), sources.size(),
-                  "sources = [\"mill.st\", \"beside.st\"]\nwatchdog = \"40 ms\"\n"
+                  "sources = [\"mill.st\", \"beside.st\"]\nwatchdog = \"2 s\"\n"
                   "instruction_budget = 1000000000");
   std::ofstream(shell.folder() / "machine.toml") << machine;
   std::ofstream(shell.folder() / "beside.st") << kBeside;
@@ -57,17 +53,19 @@ TEST(RealTimeLogic, over_its_watchdog_stops_the_machine_with_the_alarm_that_says
   Shell shell;
   up(shell);
   ASSERT_EQ(shell.run({"power", "on", "--wait"}).exit, 0);
-  json status = shell.status();
-  EXPECT_TRUE(any_axis_on(status));
-  EXPECT_FALSE(has_alarm(status, 5005)) << status["alarms"];
+  EXPECT_TRUE(any_axis_on(shell.status()));
   shell.run({"plc", "force", "Beside.begin=TRUE", "--stay"});  // its answer may come too late
-  ASSERT_TRUE(shell.until([](const json& s) { return has_alarm(s, 5005); }, 120.0)) << shell.status();
+  ASSERT_TRUE(shell.until([](const json& s) { return has_alarm(s, 5005); })) << shell.status();
   EXPECT_TRUE(shell.until([](const json& s) { return !any_axis_on(s); }));
   const json alarm = alarm_of(shell.status(), 5005);
   EXPECT_TRUE(contains(alarm["text"], "a scan of the PLC took")) << alarm;
-  EXPECT_TRUE(contains(alarm["text"], "allowed 40 ms")) << alarm;
+  EXPECT_TRUE(contains(alarm["text"], "allowed 2000 ms")) << alarm;
   EXPECT_TRUE(contains(shell.run({"alarms"}).out, "5005"));
-  EXPECT_EQ(shell.plc_value("Beside.begun"), true) << "the program goes on";
+  EXPECT_TRUE(has_alarm(shell.status(), 5002)) << "and it was ended";
+  ASSERT_EQ(shell.run({"plc", "force", "--release"}).exit, 0);
+  const Outcome loaded = shell.run({"plc", "load"});
+  EXPECT_EQ(loaded.exit, 0) << "the program begins anew: " << loaded.err;
+  EXPECT_TRUE(shell.plc_becomes("MC.estop_ok", true));
   EXPECT_EQ(shell.run({"reset"}).exit, 0);
   EXPECT_FALSE(has_alarm(shell.status(), 5005));
   EXPECT_TRUE(shell.until([&](const json&) {

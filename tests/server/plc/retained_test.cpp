@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "gateway/machine/state/state.hpp"
+#include "tests/comes.hpp"
 #include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {
@@ -57,9 +58,7 @@ std::int64_t kept_count(const std::string& state) {
 }
 
 bool grows_beyond(const std::string& state, std::int64_t count) {
-  for (int n = 0; n < 500; ++n, std::this_thread::sleep_for(std::chrono::milliseconds(20)))
-    if (kept_count(state) > count) return true;
-  return false;
+  return tests::comes([&] { return kept_count(state) > count; }, std::chrono::milliseconds(20));
 }
 
 TEST(RetainedVariables, survive_kill_9_at_any_time_and_are_never_a_mixture_of_two_scans) {
@@ -69,7 +68,7 @@ TEST(RetainedVariables, survive_kill_9_at_any_time_and_are_never_a_mixture_of_tw
   for (int life = 0; life < 8; ++life) {
     shell.up_file(machine, {"--virtual", "--speed", "5", "--state", state});
     ASSERT_TRUE(grows_beyond(state, before)) << "life " << life;
-    std::this_thread::sleep_for(std::chrono::milliseconds(7 * life));
+    std::this_thread::sleep_for(std::chrono::milliseconds(7 * life));  // any time will do
     EXPECT_EQ(shell.end(SIGKILL), 128 + SIGKILL);
     const std::int64_t now = kept_count(state);
     EXPECT_GT(now, before) << "life " << life << ": it went on from what was kept";
@@ -183,7 +182,7 @@ TEST(ToolInTheSpindle, is_written_when_it_is_changed_and_known_after_a_power_cut
   shell.ready();
   ASSERT_EQ(shell.run({"mdi", "T2.2 M6", "--wait"}).exit, 0);
   EXPECT_TRUE(shell.until(
-      [&](const json&) { return contains(shell.text("state/tools.toml"), "tool_in_spindle = 2"); }, 10.0));
+      [&](const json&) { return contains(shell.text("state/tools.toml"), "tool_in_spindle = 2"); }));
   EXPECT_EQ(shell.end(SIGKILL), 128 + SIGKILL);
   shell.up("mill", how);
   EXPECT_EQ(shell.status()["processes"][0]["tool"], 2);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/server/rig/shell.hpp"
+#include "tests/comes.hpp"
 #include "tests/places/places.hpp"
 
 #include <fcntl.h>
@@ -10,13 +11,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 
 namespace servogate::gateway::testing {
 
@@ -150,11 +149,8 @@ json Shell::status() {
   return answer;
 }
 
-bool Shell::until(const std::function<bool(const json&)>& good, double patience_s) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point end =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience_s));
-  for (; Clock::now() < end; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+bool Shell::until(const std::function<bool(const json&)>& good) {
+  return tests::comes([&] {
     const std::optional<json> now = answer_to({{"cmd", "status"}});
     if (now && now->contains("axes") && good(*now)) return true;
     siginfo_t ended{};
@@ -162,8 +158,8 @@ bool Shell::until(const std::function<bool(const json&)>& good, double patience_
                       waitid(P_PID, static_cast<id_t>(up_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
                       ended.si_pid == up_;
     if (gone) throw std::runtime_error("the control has ended: " + text("up.err"));
-  }
-  return false;
+    return false;
+  });
 }
 
 json Shell::plc_value(const std::string& name) {
@@ -172,7 +168,7 @@ json Shell::plc_value(const std::string& name) {
 }
 
 bool Shell::plc_becomes(const std::string& name, const json& wanted) {
-  return until([&](const json&) { return plc_value(name) == wanted; }, 20.0);
+  return until([&](const json&) { return plc_value(name) == wanted; });
 }
 
 void Shell::ready() {

@@ -57,9 +57,9 @@ class Shell {
   nlohmann::json ask(const nlohmann::json& request);
   /// Throws where there is none.
   nlohmann::json status();
-  /// Asks for the status until `good` says so, which sees whole ones only; false after `patience_s`. Throws
-  /// when the control has ended.
-  bool until(const std::function<bool(const nlohmann::json&)>& good, double patience_s = 30.0);
+  /// Asks for the status until `good` says so, which sees whole ones only; false after two minutes, so that
+  /// no computer is too slow for it. Throws when the control has ended.
+  bool until(const std::function<bool(const nlohmann::json&)>& good);
   /// Value of a variable or place of the PLC; null: there is none.
   nlohmann::json plc_value(const std::string& name);
   /// Waits until it has this value.

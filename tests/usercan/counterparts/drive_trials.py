@@ -183,6 +183,12 @@ def nmt(command):
     time.sleep(0.02)
 
 
+def answered():
+    """What has come of all that was sent before, however long it took: the drive answers in its turn."""
+    drive.status()
+    return drive.listen(0)
+
+
 def map_pdo(parameter, entries, cob, kind):
     drive.write(parameter, 0x80000000 | cob, 4, 1)
     drive.write(parameter + 0x200, 0, 1)
@@ -199,13 +205,14 @@ def process_data():
         check(drive.refusal(0x1A00, value, 1 if sub == 0 else 4, sub), code, f"1A00h:{sub:02X} of a valid PDO")
     map_pdo(0x1800, [0x60410010, 0x60640020], 0x180 + n, 1)
     map_pdo(0x1801, [0x606C0020], 0x280 + n, 3)
-    drive.listen(0.05)
+    answered()
+    seen = []
     for i in range(6):
         drive.send(0x080, [])
-        time.sleep(0.01)
+        seen += answered()
         if i == 2:  # another PDO, while this one counts its SYNCs
             map_pdo(0x1802, [0x60770010], 0x380 + n, 1)
-    heard = [m.arbitration_id for m in drive.listen(0.3)]
+    heard = [m.arbitration_id for m in seen]
     check([heard.count(c + n) for c in (0x180, 0x280, 0x380)], [6, 2, 3], "TPDOs of six SYNCs")
     for bad, code in ((0x60410020, 0x06070010), (0x60400008, 0x06070010), (0x5FFF0010, 0x06020000),
                       (0x607D0320, 0x06090011), (0x60980008, 0x06040041)):
@@ -229,15 +236,15 @@ def sync_counter():
     drive.write(0x1801, 3, 1, 6)
     drive.write(0x1801, 0x280 + n, 4, 1)
     nmt(0x01)
-    drive.listen(0.05)
+    answered()
     came = []
     for counter in (1, 2, 3, 4, 1, 2, 3, 4):
         drive.send(0x080, [counter])
-        if any(m.arbitration_id == 0x280 + n for m in drive.listen(0.1)):
+        if any(m.arbitration_id == 0x280 + n for m in answered()):
             came.append(counter)
     check(came, [3, 3], "TPDO2 with 1800h:06 = 3, each fourth SYNC")
     drive.send(0x080, [])
-    emcy = drive.wait_for(0x080 + n, 5)
+    emcy = drive.wait_for(0x080 + n)
     check(emcy is not None and int.from_bytes(emcy[:2], "little"), 0x8240, "EMCY for a SYNC without its counter")
     nmt(0x80)
     drive.write(0x1801, 0x80000280 + n, 4, 1)

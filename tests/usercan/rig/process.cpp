@@ -7,6 +7,7 @@
 
 #include <csignal>
 
+#include "tests/comes.hpp"
 #include "tests/places/places.hpp"
 #include "tests/usercan/rig/running_server.hpp"
 
@@ -38,11 +39,7 @@ Process::~Process() {
 }
 
 bool Process::says(const std::string& text) const {
-  for (int i = 0; i < 3000; ++i) {
-    if (said().find(text) != std::string::npos) return true;
-    usleep(10'000);
-  }
-  return false;
+  return tests::comes([&] { return said().find(text) != std::string::npos; });
 }
 
 int Process::wait() {

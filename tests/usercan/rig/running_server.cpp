@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/usercan/rig/running_server.hpp"
+#include "tests/comes.hpp"
 #include "tests/places/places.hpp"
 
 #include <sys/wait.h>
@@ -64,8 +65,7 @@ std::unique_ptr<SocketcandBus> RunningServer::join(const std::string& lockstep, 
 }
 
 bool RunningServer::ends() {
-  for (int i = 0; i < 6000 && !ended_; ++i) usleep(10'000);
-  return ended_;
+  return tests::comes([&] { return ended_.load(); });
 }
 
 std::vector<std::string> RunningServer::notices() {
@@ -91,11 +91,7 @@ LivingDrive::~LivingDrive() {
 }
 
 bool wait_for(image::CanBus& bus, image::CanFrame& frame) {
-  for (int i = 0; i < 5000; ++i) {
-    if (bus.receive(frame)) return true;
-    usleep(1000);
-  }
-  return false;
+  return tests::comes([&] { return bus.receive(frame); }, std::chrono::milliseconds(1));
 }
 
 image::CanFrame make(std::uint32_t id, std::initializer_list<std::uint8_t> bytes) {
