@@ -8,12 +8,8 @@ namespace {
 template <std::size_t N>
 void add(std::vector<Symbol>& out, const std::string& prefix, const InterfaceField (&table)[N],
          std::uint32_t base) {
-  for (const InterfaceField& f : table) {
-    const std::uint32_t byte = base + f.byte;
-    const Place place{Packet::k, f.format,
-                      f.format == Format::bl ? byte * 8 + f.bit : byte / format_size(f.format), 1};
-    out.push_back({prefix + "." + std::string(f.name), place, f.writer, std::string(f.comment)});
-  }
+  for (const InterfaceField& f : table)
+    out.push_back({prefix + "." + std::string(f.name), place(f, base), f.writer, std::string(f.comment)});
 }
 
 std::string numbered(const char* name, int index) {
@@ -25,12 +21,12 @@ void table(std::string& out, const std::string& title, const std::string& prefix
            const InterfaceField (&fields)[N]) {
   constexpr const char* kFormats[] = {"BL", "BY", "IN", "LI", "RE", "LR", "CH"};
   out += "\n## " + title + "\n\n" + base +
-         "\n\n| symbol | byte | bit | format | written by | meaning |\n|---|---|---|---|---|---|\n";
+         "\n\n| symbol | byte | bit | format | written by | guard | meaning |\n|---|---|---|---|---|---|---|\n";
   for (const InterfaceField& f : fields) {
     const std::string bit = f.format == Format::bl ? std::to_string(f.bit) : std::string();
     out += "| `" + prefix + std::string(f.name) + "` | +" + std::to_string(f.byte) + " | " + bit + " | " +
            kFormats[static_cast<int>(f.format)] + " | " + (f.writer == Writer::nc ? "NC" : "PLC") + " | " +
-           std::string(f.comment) + " |\n";
+           (f.guards ? "yes" : "") + " | " + std::string(f.comment) + " |\n";
   }
 }
 
@@ -44,7 +40,9 @@ std::string interface_page() {
       " on; part programs and PLC use the bytes below as they like. Bytes count from the beginning of the "
       "block; words are "
       "little-endian. In Structured Text every symbol is a global variable, in a part program the same place "
-      "is `SKn`.\n";
+      "is `SKn`.\n\nA place with `yes` in the column *guard* guards motion or energy: it permits or stops "
+      "them, or tells the PLC whether something moves. `plc force` forces and releases such a place only at "
+      "standstill, and warning 6005 is active as long as it is forced. `MC.estop_ok` is never forced.\n";
   const auto at_byte = [](std::uint32_t byte) { return std::to_string(byte); };
   table(out, "Processes", "NC.",
         "`NC.` is process 1, `NC2.` process 2 and so on. Process p begins at byte " +

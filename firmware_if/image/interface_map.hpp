@@ -51,21 +51,26 @@ struct InterfaceField {
   Format format;
   Writer writer;
   std::string_view comment;
+  /// It guards motion or energy: it permits them, stops them, or tells the PLC whether something moves.
+  /// Forced it is a protection out of action, so it is forced and released at standstill only, with a
+  /// warning (kernel/cycle/gate/guarded_places.hpp).
+  bool guards = false;
 };
+inline constexpr bool kGuards = true;
 
 /// The blocks, as tables; the generated documentation and the symbols come from them.
 inline constexpr InterfaceField kProcessFields[] = {
     {"mode", 0, 0, Format::by, Writer::nc, "0 off, 1 MDI, 2 AUTO, 3 STEP, 4 MANU, 5 MANJ, 6 PROF, 7 HOME"},
     {"state", 1, 0, Format::by, Writer::nc,
-     "0 idle, 1 running, 2 held, 3 waiting, 4 stopped by alarm, 5 ended, 6 stopped without an alarm"},
+     "0 idle, 1 running, 2 held, 3 waiting, 4 stopped by alarm, 5 ended, 6 stopped without an alarm", kGuards},
     {"m_strobe", 2, 0, Format::bl, Writer::nc, "an M code stands in m_code; stays until m_ack"},
     {"s_strobe", 2, 1, Format::bl, Writer::nc, "a spindle word stands in s_value; stays until s_ack"},
     {"t_strobe", 2, 2, Format::bl, Writer::nc, "a tool word stands in t_number; stays until t_ack"},
     {"h_strobe", 2, 3, Format::bl, Writer::nc, "an H word stands in h_code; stays until h_ack"},
-    {"running", 2, 4, Format::bl, Writer::nc, "a program runs"},
+    {"running", 2, 4, Format::bl, Writer::nc, "a program runs", kGuards},
     {"held", 2, 5, Format::bl, Writer::nc,
-     "feed hold of the operator or by stop: the program waits for start or resume"},
-    {"in_position", 2, 6, Format::bl, Writer::nc, "all axes of the process are in position"},
+     "feed hold of the operator or by stop: the program waits for start or resume", kGuards},
+    {"in_position", 2, 6, Format::bl, Writer::nc, "all axes of the process are in position", kGuards},
     {"rapid", 2, 7, Format::bl, Writer::nc, "the block in motion is a rapid"},
     {"program_end", 3, 0, Format::bl, Writer::nc, "the program has ended (M02, M30)"},
     {"m_code", 4, 0, Format::in, Writer::nc, "M code handed over"},
@@ -76,71 +81,71 @@ inline constexpr InterfaceField kProcessFields[] = {
     {"line", 20, 0, Format::li, Writer::nc, "line of the block in motion"},
     {"feed", 24, 0, Format::re, Writer::nc, "path speed, mm/min"},
     {"override", 28, 0, Format::by, Writer::nc, "feed override in force, per cent"},
-    {"alarm", 30, 0, Format::in, Writer::nc, "number of the first active alarm, 0: none"},
-    {"m_ack", 32, 0, Format::bl, Writer::plc, "the M code is carried out"},
-    {"s_ack", 32, 1, Format::bl, Writer::plc, "the spindle word is carried out"},
-    {"t_ack", 32, 2, Format::bl, Writer::plc, "the tool word is carried out"},
-    {"h_ack", 32, 3, Format::bl, Writer::plc, "the H code is carried out"},
+    {"alarm", 30, 0, Format::in, Writer::nc, "number of the first active alarm, 0: none", kGuards},
+    {"m_ack", 32, 0, Format::bl, Writer::plc, "the M code is carried out", kGuards},
+    {"s_ack", 32, 1, Format::bl, Writer::plc, "the spindle word is carried out", kGuards},
+    {"t_ack", 32, 2, Format::bl, Writer::plc, "the tool word is carried out", kGuards},
+    {"h_ack", 32, 3, Format::bl, Writer::plc, "the H code is carried out", kGuards},
     {"start", 32, 4, Format::bl, Writer::plc, "rising edge: cycle start"},
     {"stop", 32, 5, Format::bl, Writer::plc,
-     "TRUE: feed hold; when it is FALSE again, start or resume goes on (feed_enable goes on by itself)"},
-    {"reset", 32, 6, Format::bl, Writer::plc, "rising edge: reset"},
+     "TRUE: feed hold; when it is FALSE again, start or resume goes on (feed_enable goes on by itself)", kGuards},
+    {"reset", 32, 6, Format::bl, Writer::plc, "rising edge: reset", kGuards},
     {"m_unknown", 32, 7, Format::bl, Writer::plc, "with m_ack: the PLC does not know this M code"},
-    {"feed_enable", 33, 0, Format::bl, Writer::plc, "TRUE permits feed; FALSE holds"},
+    {"feed_enable", 33, 0, Format::bl, Writer::plc, "TRUE permits feed; FALSE holds", kGuards},
     {"read_in_enable", 33, 1, Format::bl, Writer::plc,
      "TRUE permits the next function: M, S, T, H, a wait, a reading or writing of signals; feed_enable is "
-     "for motion"},
+     "for motion", kGuards},
     {"optional_stop", 33, 3, Format::bl, Writer::plc, "M01 stops"},
     {"dry_run", 33, 4, Format::bl, Writer::plc,
      "taken over when a program starts: feed motions run at rapid speed, to see the path without a part"},
     {"feed_override", 34, 0, Format::by, Writer::plc, "per cent 1-150; 0: the operator's value"},
-    {"external_alarm", 36, 0, Format::in, Writer::plc, "number of an alarm the PLC raises, 0: none"},
+    {"external_alarm", 36, 0, Format::in, Writer::plc, "number of an alarm the PLC raises, 0: none", kGuards},
     {"skip_levels", 38, 0, Format::in, Writer::plc,
      "taken over when a program starts: bit 0 skips the blocks marked with /, bit n those marked with /n"},
 };
 inline constexpr InterfaceField kAxisFields[] = {
-    {"enabled", 0, 0, Format::bl, Writer::nc, "the drive is in Operation enabled"},
-    {"homed", 0, 1, Format::bl, Writer::nc, "the axis is referenced"},
-    {"in_position", 0, 2, Format::bl, Writer::nc, "inside the in-position window at standstill"},
-    {"moving", 0, 3, Format::bl, Writer::nc, "the set-point moves"},
-    {"alarm", 0, 4, Format::bl, Writer::nc, "an alarm names this axis"},
-    {"on_limit_plus", 0, 5, Format::bl, Writer::nc, "on the positive hard limit"},
-    {"on_limit_minus", 0, 6, Format::bl, Writer::nc, "on the negative hard limit"},
-    {"brake_release", 0, 7, Format::bl, Writer::nc, "TRUE: the holding brake is to be open"},
+    {"enabled", 0, 0, Format::bl, Writer::nc, "the drive is in Operation enabled", kGuards},
+    {"homed", 0, 1, Format::bl, Writer::nc, "the axis is referenced", kGuards},
+    {"in_position", 0, 2, Format::bl, Writer::nc, "inside the in-position window at standstill", kGuards},
+    {"moving", 0, 3, Format::bl, Writer::nc, "the set-point moves", kGuards},
+    {"alarm", 0, 4, Format::bl, Writer::nc, "an alarm names this axis", kGuards},
+    {"on_limit_plus", 0, 5, Format::bl, Writer::nc, "on the positive hard limit", kGuards},
+    {"on_limit_minus", 0, 6, Format::bl, Writer::nc, "on the negative hard limit", kGuards},
+    {"brake_release", 0, 7, Format::bl, Writer::nc, "TRUE: the holding brake is to be open", kGuards},
     {"owner", 1, 0, Format::by, Writer::nc, "0 none, 1 process, 2 manual, 3 homing, 4 PLC, 5 bench"},
     {"handwheel_refusal", 2, 0, Format::in, Writer::nc,
      "why the last counts of its handwheel did not move the axis, 0: they did; numbers as ErrorID"},
-    {"position", 4, 0, Format::re, Writer::nc, "measured position, machine coordinates, mm or degrees"},
-    {"enable", 8, 0, Format::bl, Writer::plc, "TRUE permits the drive to be on"},
-    {"limit_plus", 8, 1, Format::bl, Writer::plc, "TRUE: on the positive limit, beside the axis' own input"},
-    {"limit_minus", 8, 2, Format::bl, Writer::plc, "TRUE: on the negative limit"},
-    {"home_switch", 8, 3, Format::bl, Writer::plc, "TRUE: on the home switch, beside the axis' own input"},
-    {"feed_enable", 8, 4, Format::bl, Writer::plc, "TRUE permits motion of this axis"},
+    {"position", 4, 0, Format::re, Writer::nc, "measured position, machine coordinates, mm or degrees", kGuards},
+    {"enable", 8, 0, Format::bl, Writer::plc, "TRUE permits the drive to be on", kGuards},
+    {"limit_plus", 8, 1, Format::bl, Writer::plc, "TRUE: on the positive limit, beside the axis' own input", kGuards},
+    {"limit_minus", 8, 2, Format::bl, Writer::plc, "TRUE: on the negative limit", kGuards},
+    {"home_switch", 8, 3, Format::bl, Writer::plc, "TRUE: on the home switch, beside the axis' own input", kGuards},
+    {"feed_enable", 8, 4, Format::bl, Writer::plc, "TRUE permits motion of this axis", kGuards},
     {"jog_plus", 8, 5, Format::bl, Writer::plc, "jogs while TRUE"},
     {"jog_minus", 8, 6, Format::bl, Writer::plc, "jogs while TRUE"},
     {"handwheel", 9, 0, Format::by, Writer::plc, "the axis follows handwheel 1 or 2; 0: none"},
 };
 inline constexpr InterfaceField kSpindleFields[] = {
-    {"run", 0, 0, Format::bl, Writer::nc, "the program wants the spindle to turn"},
-    {"cw", 0, 1, Format::bl, Writer::nc, "clockwise"},
-    {"ccw", 0, 2, Format::bl, Writer::nc, "counter-clockwise"},
-    {"orient", 0, 3, Format::bl, Writer::nc, "oriented stop is wanted"},
-    {"at_speed", 0, 4, Format::bl, Writer::nc, "measured speed inside the window"},
-    {"zero_speed", 0, 5, Format::bl, Writer::nc, "standstill"},
-    {"oriented", 0, 6, Format::bl, Writer::nc, "stands at the angle of the oriented stop"},
-    {"command", 4, 0, Format::re, Writer::nc, "commanded speed, rpm, + clockwise"},
-    {"actual", 8, 0, Format::re, Writer::nc, "measured speed, rpm"},
-    {"enable", 12, 0, Format::bl, Writer::plc, "TRUE permits the spindle to turn"},
+    {"run", 0, 0, Format::bl, Writer::nc, "the program wants the spindle to turn", kGuards},
+    {"cw", 0, 1, Format::bl, Writer::nc, "clockwise", kGuards},
+    {"ccw", 0, 2, Format::bl, Writer::nc, "counter-clockwise", kGuards},
+    {"orient", 0, 3, Format::bl, Writer::nc, "oriented stop is wanted", kGuards},
+    {"at_speed", 0, 4, Format::bl, Writer::nc, "measured speed inside the window", kGuards},
+    {"zero_speed", 0, 5, Format::bl, Writer::nc, "standstill", kGuards},
+    {"oriented", 0, 6, Format::bl, Writer::nc, "stands at the angle of the oriented stop", kGuards},
+    {"command", 4, 0, Format::re, Writer::nc, "commanded speed, rpm, + clockwise", kGuards},
+    {"actual", 8, 0, Format::re, Writer::nc, "measured speed, rpm", kGuards},
+    {"enable", 12, 0, Format::bl, Writer::plc, "TRUE permits the spindle to turn", kGuards},
     {"override", 16, 0, Format::by, Writer::plc, "per cent 50-125; 0: 100"},
 };
 inline constexpr InterfaceField kMachineFields[] = {
-    {"control_alive", 0, 0, Format::bl, Writer::nc, "toggles while the control runs, for the safety relay"},
-    {"ready", 0, 1, Format::bl, Writer::nc, "no alarm, drives may be switched on"},
-    {"alarm", 0, 2, Format::bl, Writer::nc, "any alarm is active"},
-    {"power_request", 0, 3, Format::bl, Writer::nc, "the operator wants the drives on"},
+    {"control_alive", 0, 0, Format::bl, Writer::nc, "toggles while the control runs, for the safety relay", kGuards},
+    {"ready", 0, 1, Format::bl, Writer::nc, "no alarm, drives may be switched on", kGuards},
+    {"alarm", 0, 2, Format::bl, Writer::nc, "any alarm is active", kGuards},
+    {"power_request", 0, 3, Format::bl, Writer::nc, "the operator wants the drives on", kGuards},
     {"estop_ok", 4, 0, Format::bl, Writer::plc,
-     "TRUE: the emergency-stop chain is closed; FALSE: the axes stop, the brakes close, the power goes"},
-    {"power_on", 4, 1, Format::bl, Writer::plc, "TRUE permits drive power"},
+     "TRUE: the emergency-stop chain is closed; FALSE: the axes stop, the brakes close, the power goes", kGuards},
+    {"power_on", 4, 1, Format::bl, Writer::plc, "TRUE permits drive power", kGuards},
     {"handwheel1", 8, 0, Format::li, Writer::plc, "counter of handwheel 1; only what it changes by counts"},
     {"handwheel1_step", 12, 0, Format::re, Writer::plc,
      "mm or degrees for one count; below 0 turns it round"},
@@ -154,13 +159,13 @@ inline constexpr InterfaceField kMotionFields[] = {
     {"mc_taken", 0, 0, Format::li, Writer::nc, "number of the last order that was decided on"},
     {"mc_active", 4, 0, Format::li, Writer::nc, "number of the order in force, 0: none"},
     {"mc_refusal", 8, 0, Format::in, Writer::nc, "why the last order was refused, 0: accepted"},
-    {"mc_error", 10, 0, Format::in, Writer::nc, "number of the alarm that stopped the axis, 0: none"},
+    {"mc_error", 10, 0, Format::in, Writer::nc, "number of the alarm that stopped the axis, 0: none", kGuards},
     {"mc_state", 12, 0, Format::by, Writer::nc,
      "0 no axis, 1 disabled, 2 standstill, 3 homing, 4 discrete motion, 5 continuous motion, 6 stopping, "
-     "7 stopped by an error"},
+     "7 stopped by an error", kGuards},
     {"mc_result", 13, 0, Format::by, Writer::nc,
      "of the order in force: 0 under way, 1 done (at speed, at torque), 2 aborted, 3 error"},
-    {"mc_powered", 14, 0, Format::by, Writer::nc, "1: the drive holds the axis, and it may move"},
+    {"mc_powered", 14, 0, Format::by, Writer::nc, "1: the drive holds the axis, and it may move", kGuards},
     {"mc_power_refusal", 16, 0, Format::in, Writer::nc, "why mc_power was refused or fell, 0: it was not"},
     {"mc_torque", 20, 0, Format::re, Writer::nc, "measured torque, per cent of the rated one"},
     {"mc_position", 24, 0, Format::lr, Writer::nc, "measured position, machine coordinates, mm or degrees"},
@@ -169,7 +174,7 @@ inline constexpr InterfaceField kMotionFields[] = {
      "0 none (stops), 1 home, 2 to a position, 3 by a distance, 4 at a speed, 5 stop, 6 end of the stop, 7 "
      "reset, 8 torque"},
     {"mc_power", 37, 0, Format::by, Writer::plc,
-     "1: drive power is wanted; it comes on with the rising edge"},
+     "1: drive power is wanted; it comes on with the rising edge", kGuards},
     {"mc_direction", 38, 0, Format::by, Writer::plc,
      "to a position of an endless rotary axis: 0 counting on, 1 up, 2 the shorter way, 3 down, 4 as it "
      "turned last"},
@@ -189,15 +194,16 @@ std::vector<Symbol> interface_symbols(int processes, const std::vector<std::stri
 /// The page docs/interface.md: every place of the interface with its meaning. Not real-time safe.
 std::string interface_page();
 
+/// Place of a row in the block that begins at `base`. real-time safe.
+constexpr Place place(const InterfaceField& f, std::uint32_t base) noexcept {
+  const std::uint32_t byte = base + f.byte;
+  return {Packet::k, f.format, f.format == Format::bl ? byte * 8 + f.bit : byte / format_size(f.format), 1};
+}
 /// Place of one field, for code inside the cycle. A misspelt name does not compile. real-time safe.
 template <std::size_t N>
 consteval Place field(const InterfaceField (&table)[N], std::string_view name, std::uint32_t base = 0) {
   for (const InterfaceField& f : table)
-    if (f.name == name) {
-      const std::uint32_t byte = base + f.byte;
-      return {Packet::k, f.format, f.format == Format::bl ? byte * 8 + f.bit : byte / format_size(f.format),
-              1};
-    }
+    if (f.name == name) return place(f, base);
   throw "no such interface field";
 }
 /// The same place moved by whole bytes (a block base is a multiple of 4). real-time safe.

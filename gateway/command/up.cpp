@@ -105,6 +105,7 @@ int up(const UpOptions& options) {
   Resident resident(running->control(), running->learned(), folder,
                     clock == ClockKind::virtual_time ? options.speed : 1.0);
   resident.keep_history(*history);
+  if (clock != ClockKind::virtual_time) resident.requests().set_longest_wait(RequestDesk::kLongestWait);
   const std::string socket = socket_of(options, m);
   count_signals();  // from here on there is something to be put away
   if (clock != ClockKind::virtual_time) refuse_suspension();

@@ -17,6 +17,14 @@ bool has_torque(const image::DriveFeedback& drive) noexcept {
 
 }  // namespace
 
+bool nothing_moves(const image::ProcessImage& image) noexcept {
+  for (int n = 0; n < image.axis_count; ++n)
+    if (image.axes[static_cast<std::size_t>(n)].moving) return false;
+  for (int s = 0; s < image.spindle_count; ++s)
+    if (image.spindles[static_cast<std::size_t>(s)].running) return false;
+  return !image.homing;
+}
+
 bool axes_off(const image::ProcessImage& image) noexcept {
   for (int n = 0; n < image.axis_count; ++n) {
     // `enabled` falls as soon as the brake begins to close, the torque behind it.

@@ -10,6 +10,9 @@ namespace servogate::gateway {
 inline constexpr double kAxesOffPatience_s = 5.0;
 inline constexpr double kSpindlePatience_s = 60.0;
 
+/// No axis moves or is homed, no spindle is ordered to turn or still turns. Real-time safe.
+bool nothing_moves(const image::ProcessImage& image) noexcept;
+
 /// No axis stands under power or moves. Real-time safe.
 bool axes_off(const image::ProcessImage& image) noexcept;
 

@@ -17,7 +17,12 @@ std::optional<std::string> SocketServer::answer(std::string_view line, Connectio
     });
   if (ask::is_urgent(request->command)) connection.urgent_line = place.line;
   desk_.ask(connection.client, place.line, std::move(request->command),
-            {request->asker, 0, connection.user, request->language});
+            {.asker = request->asker,
+             .user = connection.user,
+             .language = request->language,
+             .since = connection.since,
+             .left = connection.ended,
+             .gone = nullptr});
   return std::nullopt;
 }
 

@@ -108,7 +108,7 @@ void Cycle::capture(CycleInputs& in) noexcept {
     parts_.processes[p]->published(
         std::span(in.visible).subspan(p * ProcessInCycle::kCrossingsEach, ProcessInCycle::kCrossingsEach));
   in.request_count = 0;
-  while (in.request_count < kRequestsPerCycle && queues_->requests.try_dequeue(in.requests[in.request_count]))
+  while (in.request_count < kRequestsPerCycle && take_request(in.requests[in.request_count]))
     ++in.request_count;
   in.notice_count = 0;
   for (const image::AlarmRecord& r : notices_.records()) in.notices[in.notice_count++] = r;

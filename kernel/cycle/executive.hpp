@@ -50,7 +50,12 @@ struct CycleParts {
       estop_place;  ///< emergency-stop chain: FALSE opens MC.estop_ok whatever the logic says
   std::optional<image::Place> alive_place;  ///< output that toggles as MC.control_alive does
   std::optional<image::Place> start_place;  ///< operator's start button: its rising edge asks for cycle start
+  /// By which the age of requests is judged; nullptr: CLOCK_MONOTONIC, which a stopped process does not stop.
+  const image::Clock* request_clock = nullptr;
 };
+
+/// Of one posted request, for Cycle::withdraw(). 0: it was not posted.
+using Claim = std::uint32_t;
 
 /// Drive counts at each axis' home position, meaningful while the axis is homed.
 using References = std::array<std::int64_t, image::kMaxAxes>;
@@ -72,7 +77,16 @@ class Cycle {
   bool step() noexcept;
 
   /// Posts a request; false: the queue is full. Answers come in order. real-time safe.
-  bool post(const image::Request& request) noexcept;
+  bool post(const image::Request& request) noexcept { return post_for(request, 0, kForAnyTime) != 0; }
+  /// The same of one that has lain for `lain_ns` already and is refused (too_old) where it has lain for more
+  /// than `limit_ns` of the request clock when a cycle comes to it, unless it is never_too_old(). A record
+  /// holds nothing of what was refused for its age or withdrawn. 0: the queue is full. real-time safe.
+  Claim post_for(const image::Request& request, image::Nanoseconds lain_ns,
+                 image::Nanoseconds limit_ns) noexcept;
+  static constexpr image::Nanoseconds kForAnyTime = -1;
+  /// Takes a posted request back, for the thread that posts. True: no cycle takes it, and no answer comes;
+  /// false: one has taken it. Never both. real-time safe.
+  bool withdraw(Claim claim) noexcept;
   /// Takes the oldest answer. real-time safe.
   bool take_answer(image::Answer& answer) noexcept;
   /// Copies the newest published image and alarms. Not for the cycle.
@@ -131,6 +145,8 @@ class Cycle {
 
   bool receive() noexcept;
   void capture(CycleInputs& in) noexcept;
+  bool take_request(image::Request& request) noexcept;
+  const image::Clock& request_clock() const noexcept;
   void apply(const CycleInputs& in) noexcept;
   void run_logic() noexcept;
   void watch_machine() noexcept;

@@ -11,7 +11,51 @@ namespace servogate::cycle {
 using image::Request;
 using image::RequestKind;
 
-bool Cycle::post(const Request& request) noexcept { return queues_->requests.try_enqueue(request); }
+namespace {
+constexpr int kLooksPerCycle = 2 * kRequestsPerCycle;  ///< at requests that may turn out to be none
+}  // namespace
+
+Claim Cycle::post_for(const Request& request, image::Nanoseconds lain_ns,
+                      image::Nanoseconds limit_ns) noexcept {
+  Queues& q = *queues_;
+  const Claim claim = q.last_claim + 1 != 0 ? q.last_claim + 1 : 1;
+  std::atomic<Claim>& open = q.open[claim % Queues::kMost];
+  if (open.load(std::memory_order_acquire) != 0) return 0;  // so many are under way
+  const bool ages = limit_ns != kForAnyTime;
+  const Queues::Posted posted{request, claim, ages ? request_clock().now_ns() - lain_ns : 0, limit_ns};
+  open.store(claim, std::memory_order_relaxed);
+  if (!q.requests.try_enqueue(posted)) {
+    open.store(0, std::memory_order_relaxed);
+    return 0;
+  }
+  return q.last_claim = claim;
+}
+
+bool Cycle::withdraw(Claim claim) noexcept { return claim != 0 && queues_->take(claim); }
+
+const image::Clock& Cycle::request_clock() const noexcept {
+  return parts_.request_clock != nullptr ? *parts_.request_clock : queues_->wall;
+}
+
+/// The next request that is neither withdrawn nor too old; those are no inputs of the cycle.
+bool Cycle::take_request(Request& request) noexcept {
+  Queues::Posted posted;
+  for (int n = 0; n < kLooksPerCycle && queues_->requests.try_dequeue(posted); ++n) {
+    if (!queues_->take(posted.claim)) continue;
+    request = posted.request;
+    if (posted.limit_ns == kForAnyTime) return true;
+    const image::Nanoseconds age = request_clock().now_ns() - posted.since_ns;
+    if (age <= posted.limit_ns || never_too_old(request)) return true;
+    image::Answer answer;
+    answer.id = request.id;
+    answer.refusal = static_cast<std::uint16_t>(Refusal::too_old);
+    answer.value = static_cast<double>(age) / 1e6;
+    answer.limit = static_cast<double>(posted.limit_ns) / 1e6;
+    queues_->answers.try_enqueue(answer);
+  }
+  return false;
+}
+
 bool Cycle::take_answer(image::Answer& answer) noexcept { return queues_->answers.try_dequeue(answer); }
 
 void Cycle::handle_requests() noexcept {
@@ -26,6 +70,7 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   GateContext context;
   context.image = &image_;
   context.axes = axes_;
+  context.spindles = spindles_;
   context.reaction = alarms_.reaction();
   if (const image::AlarmRecord* first = alarms_.first(); first != nullptr)
     context.first_alarm = first->number;
@@ -92,7 +137,8 @@ Refusal Cycle::write_place(const Request& request) noexcept {
 /// As long as a guard is forced, whatever resets the alarms.
 void Cycle::watch_forces() noexcept {
   const auto end = forced_.begin() + forced_count_;
-  if (std::any_of(forced_.begin(), end, [this](const Forced& f) { return guards_motion(f.place, axes_); }))
+  const GuardedMachine machine{image_.process_count, axes_, spindles_};
+  if (std::any_of(forced_.begin(), end, [&](const Forced& f) { return guards_motion(f.place, machine); }))
     raise(alarm::kGuardForced);
   else
     alarms_.cause_gone(alarm::kGuardForced, -1);

@@ -453,29 +453,6 @@ TEST(Cycle, stops_and_holds_every_process_when_none_is_named) {
   EXPECT_EQ(ask(RequestKind::resume, -1), Refusal::no_such_process);
 }
 
-TEST(Cycle, warns_as_long_as_a_guard_is_forced_whatever_is_reset) {
-  Bench bench;
-  const auto force = [&bench](RequestKind kind, Place place, double value) {
-    return bench.ask(Bench::place_request(kind, place, value, image::Asker::command_line)).refusal;
-  };
-  const auto warned = [&bench] { return bench.cycle->alarms().active(alarm::kGuardForced); };
-  const Place guard = image::field(image::kMachineFields, "power_on", image::kMachineBase);
-  EXPECT_EQ(force(RequestKind::force, kWord, 12.0), 0);
-  EXPECT_FALSE(warned()) << "a word guards nothing";
-  EXPECT_EQ(force(RequestKind::force, guard, 1.0), 0);
-  EXPECT_TRUE(warned());
-  for (const RequestKind kind : {RequestKind::reset, RequestKind::acknowledge}) {
-    Request r;
-    r.kind = kind;
-    bench.ask(r);
-    EXPECT_TRUE(warned());
-  }
-  EXPECT_EQ(force(RequestKind::release_force, kWord, 0.0), 0);
-  EXPECT_TRUE(warned());
-  EXPECT_EQ(force(RequestKind::release_force, guard, 0.0), 0);
-  EXPECT_FALSE(warned());
-}
-
 /// A clock that stands unless the logic takes its time.
 class HandClock final : public image::Clock {
  public:

@@ -57,6 +57,7 @@ void Desk::close(std::uint64_t client) {
     const auto found = clients_.find(client);
     if (found == clients_.end()) return;
     gone = std::move(found->second);
+    *gone->gone = true;
     clients_.erase(found);
     urgent_.let_go(client);
   }
@@ -67,6 +68,8 @@ void Desk::close(std::uint64_t client) {
 
 void Desk::ask(std::uint64_t client, std::uint64_t question, ask::Command command, Caller caller) {
   caller.connection = client;
+  caller.gone = gone_of(client);
+  if (caller.left) *caller.gone = true;
   const text::Language language = caller.language;
   Question asked{{client, question}, std::move(command), std::move(caller), resident_.requests().stops()};
   if (!ask::is_urgent(asked.command)) return desk_.take(std::move(asked));
@@ -84,6 +87,13 @@ void Desk::ask(std::uint64_t client, std::uint64_t question, ask::Command comman
     wake_.notify_one();
   }
   if (reply) give(asked.ticket, std::move(*reply));
+}
+
+/// Of a client that is gone already, too.
+std::shared_ptr<std::atomic<bool>> Desk::gone_of(std::uint64_t client) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = clients_.find(client);
+  return found != clients_.end() ? found->second->gone : std::make_shared<std::atomic<bool>>(true);
 }
 
 void Desk::give(const Ticket& ticket, Reply reply) {

@@ -54,7 +54,9 @@ class Desk {
   struct Client {
     std::mutex giving;
     Give give;  ///< none: it is gone
+    std::shared_ptr<std::atomic<bool>> gone = std::make_shared<std::atomic<bool>>(false);
   };
+  std::shared_ptr<std::atomic<bool>> gone_of(std::uint64_t client);
   void give(const Ticket& ticket, Reply reply);
   void watch();
   std::chrono::milliseconds pause() const;

@@ -7,7 +7,7 @@ namespace servogate::gateway {
 
 DeskClient::DeskClient(Desk& desk, image::Asker asker, std::string user, text::Language language)
     : desk_(desk),
-      caller_{asker, 0, std::move(user), language},
+      caller_{.asker = asker, .user = std::move(user), .language = language, .gone = nullptr},
       number_(desk.open([this](std::uint64_t question, Reply reply) {
         const std::scoped_lock lock(mutex_);
         answers_.emplace(question, std::move(reply));
@@ -22,7 +22,9 @@ std::uint64_t DeskClient::ask(ask::Command command) {
     const std::scoped_lock lock(mutex_);
     question = ++asked_;
   }
-  desk_.ask(number_, question, std::move(command), caller_);
+  Caller caller = caller_;
+  caller.since = std::chrono::steady_clock::now();
+  desk_.ask(number_, question, std::move(command), std::move(caller));
   return question;
 }
 

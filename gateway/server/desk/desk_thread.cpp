@@ -63,6 +63,7 @@ void DeskThread::run() {
     looked = now;
     lock.unlock();
     for (Work& work : resident_.look_after()) order({}, std::move(work));
+    plc_.look_after();
     lock.lock();
   }
 }

@@ -111,7 +111,7 @@ std::optional<Reply> UrgentDesk::answer_of(Pending& p) {
     if (!p.answer && Clock::now() - p.asked < kPatience) return std::nullopt;
     if (!p.answer) {
       requests_.forget(p.id);
-      return refuse(says::kNoAnswer, {}, kInfrastructure, p.language);
+      return refuse(says::kLeftToCycle, {}, kInfrastructure, p.language);
     }
     p.answered_in = image().now.number;
     p.asked = Clock::now();
@@ -155,6 +155,8 @@ Reply UrgentDesk::keep_alive(const ask::KeepAlive& wanted, const Question& quest
     return refuse(says::kNoJog, {}, kWrongUse, language);
   std::vector<HeldJog>& jogs = own->second;
   const image::ProcessImage& now = image();
+  // Of a keep-alive that lay somewhere nobody knows whether its hand still lives.
+  const bool lives = !requests_.stale({.kind = RequestKind::keep_alive}, question.asked());
   std::optional<Reply> gone;
   for (std::size_t i = jogs.size(); i-- > 0;) {
     HeldJog& jog = jogs[i];
@@ -165,7 +167,7 @@ Reply UrgentDesk::keep_alive(const ask::KeepAlive& wanted, const Question& quest
       jogs.erase(jogs.begin() + static_cast<std::ptrdiff_t>(i));
       gone = ended(last, *end, !jogs.empty(), language);
     }
-    if (end) continue;
+    if (end || !lives) continue;
     jog.heard = Clock::now();
     if (jog.heard - jog.told < kOften) continue;
     jog.told = jog.heard;

@@ -162,9 +162,12 @@ bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image
   r.client = question_.caller.hand().client;
   if (mode) r.mode = static_cast<std::int8_t>(*mode);
   image::Answer answer;
-  switch (resident_.ask(r, answer, question_.asked_at)) {
+  switch (resident_.ask(r, answer, question_.asked())) {
     case RequestDesk::Outcome::silent:
-      refusal_ = fail(says::kNoAnswer, {}, kInfrastructure);
+      refusal_ = fail(says::kWithdrawn, {}, kInfrastructure);
+      return false;
+    case RequestDesk::Outcome::taken:
+      refusal_ = fail(says::kLeftToCycle, {}, kInfrastructure);
       return false;
     case RequestDesk::Outcome::overtaken:
       refusal_ = fail(says::kOvertaken, {}, kAlarm);

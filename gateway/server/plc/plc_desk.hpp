@@ -26,8 +26,11 @@ class PlcDesk {
 
   /// Carries out what is ask::of_plc().
   Outcome carry_out(const ask::Command& command, const Caller& who);
-  /// Lets go what a connection has forced, and the PLC where it holds it.
+  /// Lets go what a connection has forced, and the PLC where it holds it. What guards motion or energy stays
+  /// forced until the machine stands; look_after() sees to it.
   void release_of(std::uint64_t connection);
+  /// Now and then: what is left of connections that are gone.
+  void look_after();
   /// Who holds the PLC for single scans; empty: nobody.
   const std::string& held_by() const noexcept { return holder_; }
   /// All that is forced: name, value, who, and whether it stays.
@@ -39,6 +42,7 @@ class PlcDesk {
     /// Of a packet place: the requests that let it go; none: a variable. Of characters one for each.
     std::vector<image::Request> places;
     std::uint64_t owner = 0;  ///< connection; 0: it stays
+    bool left = false;        ///< its connection is gone
   };
   struct Load;
   Outcome take(const ask::PlcLoad& wanted, const Caller& who);
@@ -54,7 +58,8 @@ class PlcDesk {
   Reply change(const plc::LogicChange& change, double value, const Caller& who);
   /// What the gate answers; accepted: nothing but that.
   Reply ask(image::Request request, const Caller& who);
-  bool let_go(const Force& force, const Caller& who);
+  Reply let_go(const Force& force, const Caller& who);
+  void let_go_left();
   Reply force_places(std::vector<image::Request> requests, const Caller& who);
   const Force* force_of(const std::string& name) const;
   std::optional<std::string> forced_value(const std::string& name, const plc::Type& type) const;

@@ -2,9 +2,11 @@
 #include "gateway/server/plc/plc_desk.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "gateway/files/read_file.hpp"
+#include "gateway/run/standstill.hpp"
 #include "gateway/server/gate/refusal.hpp"
 #include "gateway/server/plc/change_log.hpp"
 #include "gateway/server/plc/plc_answers.hpp"
@@ -49,6 +51,7 @@ const Entry kReleased{"plc.released", "{0} is let go", "{0} освобожден
 const Entry kNotForced{"plc.not-forced", "'{0}' is not forced", "«{0}» не удерживается"};
 const Entry kNothingForced{"plc.nothing-forced", "nothing is forced", "ничего не удерживается"};
 const Entry kAllReleased{"plc.all-released", "everything is let go", "всё освобождено"};
+const Entry kStaysForced{"plc.stays-forced", "{0} stays forced: {1}", "{0} остаётся удержанным: {1}"};
 const Entry kHeld{"plc.held-now", "the PLC is held; its outputs are off until it is let go",
                   "ПЛК удерживается; его выходы отключены, пока он не отпущен"};
 const Entry kStepped{"plc.stepped", "{0} scans done", "выполнено сканов: {0}"};
@@ -70,8 +73,16 @@ Reply PlcDesk::ask(image::Request request, const Caller& who) {
   request.asker = who.asker;
   request.client = who.hand().client;
   image::Answer answer;
-  if (resident_.ask(request, answer, resident_.requests().stops()) != RequestDesk::Outcome::answered)
-    return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
+  switch (resident_.ask(request, answer, {resident_.requests().stops(), who.since, who.gone})) {
+    case RequestDesk::Outcome::silent:
+      return refuse(says::kWithdrawn, {}, kInfrastructure, who.language);
+    case RequestDesk::Outcome::taken:
+      return refuse(says::kLeftToCycle, {}, kInfrastructure, who.language);
+    case RequestDesk::Outcome::overtaken:
+      return refuse(says::kOvertaken, {}, kAlarm, who.language);
+    case RequestDesk::Outcome::answered:
+      break;
+  }
   if (answer.refusal == 0) return {};
   return refused_by_gate(answer, resident_.control().machine(), who.language);
 }
@@ -132,7 +143,11 @@ Outcome PlcDesk::take(const ask::PlcLoad& wanted, const Caller& who) {
     }
     if (load->unreadable.empty()) load->compiled = control.compile(load->change.files, stop);
     if (stop.stop_requested()) throw Cancelled{};
-    return [this, load, who]() -> Outcome { return loaded(*load, who); };
+    return [this, load, who]() -> Outcome {
+      Caller now = who;
+      now.since = std::chrono::steady_clock::now();  // while it was worked for it did not lie
+      return loaded(*load, now);
+    };
   };
   return work;
 }
@@ -236,15 +251,15 @@ Outcome PlcDesk::take(const ask::PlcForce& wanted, const Caller& who) {
   return accept(kForced, {f.name, f.value}, who.language);
 }
 
-bool PlcDesk::let_go(const Force& force, const Caller& who) {
-  if (!force.places.empty())
-    return std::all_of(force.places.begin(), force.places.end(),
-                       [&](const image::Request& r) { return ask(r, who).ok; });
+Reply PlcDesk::let_go(const Force& force, const Caller& who) {
+  for (const image::Request& r : force.places)
+    if (Reply refused = ask(r, who); !refused.ok) return refused;
+  if (!force.places.empty()) return {};
   plc::LogicChange change;
   change.kind = plc::LogicChange::Kind::release;
   change.name = force.name;
   change.number = resident_.control().next_logic_change();
-  return !resident_.control().prepare(change).possible || this->change(change, 1.0, who).ok;
+  return resident_.control().prepare(change).possible ? this->change(change, 1.0, who) : Reply{};
 }
 
 Outcome PlcDesk::take(const ask::PlcRelease& wanted, const Caller& who) {
@@ -255,7 +270,11 @@ Outcome PlcDesk::take(const ask::PlcRelease& wanted, const Caller& who) {
   for (std::size_t i = forces_.size(); i-- > 0;) {
     if (!all && !plc::same_name(forces_[i].name, name)) continue;
     found = true;
-    if (!let_go(forces_[i], who)) return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
+    if (Reply refused = let_go(forces_[i], who); !refused.ok) {
+      refused.text = text::render(kStaysForced, std::vector<std::string>{forces_[i].name, refused.text},
+                                  who.language);
+      return refused;
+    }
     forces_.erase(forces_.begin() + static_cast<std::ptrdiff_t>(i));
   }
   if (!found) return refuse(kNotForced, {name}, kWrongUse, who.language);
@@ -303,11 +322,18 @@ void PlcDesk::release_of(std::uint64_t connection) {
     gone.connection = connection;
     take(ask::PlcGo{}, gone);
   }
-  for (std::size_t i = forces_.size(); i-- > 0;)
-    if (forces_[i].owner == connection && connection != 0) {
-      let_go(forces_[i], {});
-      forces_.erase(forces_.begin() + static_cast<std::ptrdiff_t>(i));
-    }
+  for (Force& f : forces_) f.left = f.left || (connection != 0 && f.owner == connection);
+  let_go_left();
+}
+
+void PlcDesk::let_go_left() {
+  std::erase_if(forces_, [this](const Force& f) { return f.left && let_go(f, {}).ok; });
+}
+
+/// Asked only where it may be granted: each request is kept in the history.
+void PlcDesk::look_after() {
+  const bool any = std::any_of(forces_.begin(), forces_.end(), [](const Force& f) { return f.left; });
+  if (any && !resident_.busy() && nothing_moves(resident_.image())) let_go_left();
 }
 
 std::vector<ForcedValue> PlcDesk::forced() const {

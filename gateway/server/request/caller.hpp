@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
+#include <chrono>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +26,11 @@ struct Caller {
   std::uint64_t connection = 0;  ///< the client's number at the desk
   std::string user;              ///< name on the computer
   text::Language language = text::user_language();
+  /// From then on the request may have lain, in the socket too.
+  std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
+  bool left = false;  ///< its connection had ended when the request was taken from it
+  /// Becomes true when the client is gone; none: nobody can go. Set by the desk.
+  std::shared_ptr<std::atomic<bool>> gone;
 
   image::Hand hand() const noexcept { return {asker, static_cast<std::uint32_t>(connection)}; }
 };

@@ -34,8 +34,8 @@ Resident::Resident(Control& control, machine::MachineState state, std::string st
 }
 
 RequestDesk::Outcome Resident::ask(const image::Request& request, image::Answer& answer,
-                                   const Stops& asked_at) {
-  const RequestDesk::Outcome outcome = requests_.ask(request, answer, asked_at, kAnswerPatience_ms);
+                                   const Asked& asked) {
+  const RequestDesk::Outcome outcome = requests_.ask(request, answer, asked, kAnswerPatience_ms);
   if (outcome == RequestDesk::Outcome::answered) catch_up();
   return outcome;
 }

@@ -33,7 +33,7 @@ class Resident {
   /// The way to the gate. Any thread.
   RequestDesk& requests() noexcept { return requests_; }
   /// Posts one request of a client and waits for the gate's answer and the image that shows what it did.
-  RequestDesk::Outcome ask(const image::Request& request, image::Answer& answer, const Stops& asked_at);
+  RequestDesk::Outcome ask(const image::Request& request, image::Answer& answer, const Asked& asked);
 
   /// A program on its way to be loaded: begin_load(), read_and_prove(), finish().
   struct Load {

@@ -23,8 +23,15 @@ namespace servogate::gateway {
 
 namespace {
 
-constexpr int kLook_ms = 200;      ///< at clients that say nothing
+// At clients that say nothing. So finely is known since when something may have lain in a socket.
+constexpr int kLook_ms = 10;
 constexpr int kLinesPerTurn = 16;  ///< so that a client who floods leaves room for the others
+
+/// The other end is closed; one that only says no more (shutdown) still listens.
+bool hung_up(int fd) {
+  pollfd end{fd, 0, 0};
+  return poll(&end, 1, 0) > 0 && (end.revents & POLLHUP) != 0;
+}
 
 /// Name of who is at the other end; its number where it has none.
 std::string user_of(int fd) {
@@ -104,7 +111,12 @@ void LineServer::serve() {
           {c.fd, static_cast<short>((reads(c) ? POLLIN : 0) | (c.output.empty() ? 0 : POLLOUT)), 0});
       backlog = backlog || c.backlog;
     }
-    if (poll(fds.data(), fds.size(), backlog ? 0 : kLook_ms) < 0 && errno != EINTR) break;
+    const Clock::time_point looked = Clock::now();
+    const int ready = poll(fds.data(), fds.size(), backlog ? 0 : kLook_ms);
+    if (ready < 0 && errno != EINTR) break;
+    if (ready >= 0 && fds[1].revents == 0) nobody_ = looked;
+    for (std::size_t i = 0; ready >= 0 && i < clients_.size(); ++i)
+      if ((fds[i + 2].events & POLLIN) != 0 && fds[i + 2].revents == 0) clients_[i].empty = looked;
     for (char drained[64]; read(wake_[0], drained, sizeof drained) > 0;) {
     }
     deliver();
@@ -146,8 +158,7 @@ void LineServer::deliver() {
 /// False: the client is gone, or is to go.
 bool LineServer::serve_client(Client& client, short events) {
   if ((events & (POLLERR | POLLNVAL)) != 0) return false;
-  const bool hung_up = (events & POLLHUP) != 0;
-  if ((events & (POLLIN | POLLHUP)) != 0 && !read_client(client, hung_up)) return false;
+  if ((events & (POLLIN | POLLHUP)) != 0 && !read_client(client)) return false;
   hand_out(client);
   if (!client.input.empty()) answer_lines(client);
   const bool silent = client.urgent_only && client.answers.empty() &&
@@ -185,6 +196,7 @@ void LineServer::accept_client() {
   clients_.emplace_back();
   Client& client = clients_.back();
   client.fd = fd;
+  client.empty = nobody_;
   client.urgent_only = full;
   client.connection.number = ++connections_;
   client.connection.user = user_of(fd);
@@ -204,25 +216,45 @@ void LineServer::make_room() {
   remove(oldest);
 }
 
-/// Whoever only says that no more comes (shutdown) still gets its answers.
-bool LineServer::read_client(Client& client, bool hung_up) {
+/// Whoever only says that no more comes (shutdown) still gets its answers. Whether the other end is closed is
+/// asked behind the reading: what was read had its client then, or has not.
+bool LineServer::read_client(Client& client) {
   char buffer[16384];
+  const Clock::time_point now = Clock::now();
   const ssize_t got = recv(client.fd, buffer, sizeof buffer, 0);
   if (got < 0) return errno == EAGAIN || errno == EINTR;
+  client.connection.ended = hung_up(client.fd);
   if (got == 0) {
     client.closing = true;
-    return !hung_up;
+    return !client.connection.ended;
   }
   if (client.closing) return true;  // it was refused
   client.input.append(buffer, static_cast<std::size_t>(got));
-  client.heard = std::chrono::steady_clock::now();
+  client.arrivals.push_back({client.input.size(), client.empty});
+  if (static_cast<std::size_t>(got) < sizeof buffer) client.empty = now;
+  client.heard = now;
   return true;
+}
+
+/// A line is there when its end is.
+LineServer::Clock::time_point LineServer::since_of(const Client& client, std::size_t end) {
+  const auto arrival = std::find_if(client.arrivals.begin(), client.arrivals.end(),
+                                    [end](const Arrival& a) { return a.end > end; });
+  return arrival != client.arrivals.end() ? arrival->since : Clock::now();
+}
+
+/// Takes what was dealt with from the front of the input.
+void LineServer::drop(Client& client, std::size_t bytes) {
+  client.input.erase(0, bytes);
+  while (!client.arrivals.empty() && client.arrivals.front().end <= bytes) client.arrivals.pop_front();
+  for (Arrival& a : client.arrivals) a.end -= bytes;
 }
 
 void LineServer::answer_lines(Client& client) {
   client.backlog = false;
   std::size_t begin = 0;
-  for (int lines = 0; lines < kLinesPerTurn && goes_on(client); ++lines) {
+  // Behind a closed connection no turn may come any more, and no answer is waited for.
+  for (int lines = 0; client.connection.ended || (lines < kLinesPerTurn && goes_on(client)); ++lines) {
     const std::size_t end = client.input.find('\n', begin);
     const std::size_t length = (end == std::string::npos ? client.input.size() : end) - begin;
     if (length > kLongestLine) return refuse_client(client, says::kLongLine, kLongestLine, kWrongUse);
@@ -230,12 +262,13 @@ void LineServer::answer_lines(Client& client) {
     std::string_view line(client.input.data() + begin, length);
     begin = end + 1;
     if (line.ends_with('\r')) line.remove_suffix(1);
+    client.connection.since = since_of(client, end);
     if (client.urgent_only && ordinary_clients() < kMostClients) client.urgent_only = false;
     if (client.urgent_only && !urgent(line))
       return refuse_client(client, says::kFull, kMostClients, kInfrastructure);
     take_line(client, line);
   }
-  client.input.erase(0, begin);
+  drop(client, begin);
   hand_out(client);
   client.backlog = goes_on(client) && client.input.find('\n') != std::string::npos;
 }
@@ -249,7 +282,7 @@ void LineServer::take_line(Client& client, std::string_view line) {
 /// A last sentence behind the answers, then the client goes.
 void LineServer::refuse_client(Client& client, const text::Entry& entry, std::size_t limit, int exit) {
   client.answers.emplace_back(line_of(refuse(entry, {std::to_string(limit)}, exit, text::user_language())));
-  client.input.clear();
+  drop(client, client.input.size());
   client.backlog = false;
   client.closing = true;
 }

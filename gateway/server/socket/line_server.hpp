@@ -22,6 +22,9 @@ struct Connection {
   std::string user;               ///< name of who opened it
   std::uint64_t client = 0;       ///< its number at the desk; 0: it has none yet
   std::uint64_t urgent_line = 0;  ///< that is being answered; what stands behind it waits. 0: none
+  /// From then on the line at hand may have lain, in the socket or here: it was not there before.
+  std::chrono::steady_clock::time_point since;
+  bool ended = false;  ///< the other end has closed it: nobody waits for an answer
 };
 
 /// Which line of which connection; both count from 1.
@@ -74,13 +77,21 @@ class LineServer {
 
  private:
   void wake() noexcept;
+  using Clock = std::chrono::steady_clock;
+  /// The bytes of the input up to `end` were not there before `since`.
+  struct Arrival {
+    std::size_t end = 0;
+    Clock::time_point since;
+  };
   struct Client {
     int fd = -1;
     std::string input, output;
+    std::deque<Arrival> arrivals;            ///< of what is in `input`
+    Clock::time_point empty = Clock::now();  ///< the last time when nothing was left in the socket
     Connection connection;
     std::deque<std::optional<std::string>> answers;  ///< of the lines from first_line on
     std::uint64_t first_line = 1;
-    std::chrono::steady_clock::time_point heard = std::chrono::steady_clock::now();
+    Clock::time_point heard = Clock::now();
     bool backlog = false;  ///< whole lines are left from the last turn
     bool urgent_only = false;
     bool closing = false;  ///< to be closed as soon as its answers have left
@@ -91,18 +102,21 @@ class LineServer {
   void accept_client();
   void make_room();
   void remove(std::size_t client);
-  bool read_client(Client& client, bool hung_up);
+  bool read_client(Client& client);
   bool write_client(Client& client);
   void answer_lines(Client& client);
   void take_line(Client& client, std::string_view line);
   void refuse_client(Client& client, const text::Entry& entry, std::size_t limit, int exit);
   void hand_out(Client& client);
   static bool goes_on(const Client& client);
+  static Clock::time_point since_of(const Client& client, std::size_t end);
+  static void drop(Client& client, std::size_t bytes);
   void deliver();
   std::size_t ordinary_clients() const;
 
   std::string path_;
   int listener_ = -1;
+  Clock::time_point nobody_ = Clock::now();  ///< the last time when nobody waited at the listener
   int wake_[2] = {-1, -1};
   std::vector<Client> clients_;
   std::uint64_t connections_ = 0;  ///< so far; their numbers count from 1

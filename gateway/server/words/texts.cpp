@@ -27,6 +27,12 @@ const Entry kNoNumber{"socket.no-number", "'{0}' must be a number", "«{0}» д�
 const Entry kNotSwitch{"socket.not-switch", "'{0}' must be 1 or 0", "«{0}» должно быть 1 или 0"};
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
                       "цикл не ответил; работает ли он?"};
+const Entry kLeftToCycle{"socket.left-to-cycle",
+                         "the cycle did not answer; it carries the request out when it goes on",
+                         "цикл не ответил; он выполнит запрос, когда продолжится"};
+const Entry kWithdrawn{"socket.withdrawn",
+                       "the cycle did not answer; the request was withdrawn and nothing was done",
+                       "цикл не ответил; запрос отозван, ничего не сделано"};
 const Entry kOvertaken{
     "socket.overtaken",
     "a stop came after this request, so nothing moves; repeat the request if the motion is still wanted",

@@ -21,6 +21,8 @@ extern const text::Entry kNotUnit;           ///< {0} unit, {1} axis, {2} its un
 extern const text::Entry kNoNumber;          ///< {0} key
 extern const text::Entry kNotSwitch;         ///< {0} key
 extern const text::Entry kNoAnswer;          ///< the cycle stands
+extern const text::Entry kWithdrawn;         ///< the same, and the request was withdrawn
+extern const text::Entry kLeftToCycle;       ///< the same, and the request was not
 extern const text::Entry kOvertaken;         ///< a stop came behind the request
 extern const text::Entry kEnding;            ///< nothing is begun any more
 extern const text::Entry kComesOn;           ///< the drives are about to be ready

@@ -20,6 +20,8 @@ struct Question {
   ask::Command command;
   Caller caller;
   Stops asked_at;  ///< when it came
+
+  Asked asked() const { return {asked_at, caller.since, caller.gone}; }
 };
 
 }  // namespace servogate::gateway

@@ -64,6 +64,10 @@ constexpr Kinds kMoves{move_absolute, move_relative, move_velocity, torque};
 constexpr Kinds kAuxiliary = kMoves | Kinds{axis_power, axis_home, axis_stop, axis_reset};
 constexpr Kinds kBegins = kJogs | kMoves | Kinds{home, start, step, resume, power, axis_power, axis_home};
 
+/// Never too old. Of these kinds a value of 0 only takes away: power off, an override of 0.
+constexpr Kinds kTakesAway = kStops | Kinds{reset, axis_stop, axis_reset};
+constexpr Kinds kTakesAwayAtZero{power, axis_power, override_feed};
+
 /// What speaks to a process. All else works on a machine that has none (a bench of drives) just as well.
 constexpr Kinds kOfProcess = kProgram | Kinds{hold, zero};
 /// What may bring its mode along.
@@ -198,6 +202,7 @@ class Decision {
   bool place(bool write) noexcept;
   bool not_of_emergency_stop(const image::Place& place) noexcept;
   bool may_force(const image::Place& place) noexcept;
+  bool at_standstill() noexcept;
   bool decide_kind() noexcept;
 
   const Request& r_;
@@ -520,10 +525,24 @@ bool Decision::not_of_emergency_stop(const image::Place& place) noexcept {
   return !(chain || places::kEstopOk.overlaps(place)) || refuse(Refusal::emergency_stop_place);
 }
 
-/// Whoever puts a guard out of force does it where nothing moves, as whoever would move would need it.
+/// Whoever puts a guard out of force, or back, does it where nothing moves: either may let something go.
 bool Decision::may_force(const image::Place& place) noexcept {
-  if (!guards_motion(place, c_.axes) || withdraws(place, r_.value, c_.axes)) return true;
-  return no_program() && no_homing() && not_held_by_another() && all_at_rest();
+  const bool guard = guards_motion(place, {c_.image->process_count, c_.axes, c_.spindles});
+  return !guard || (at_standstill() && not_held_by_another());
+}
+
+/// Nothing moves, and nothing is ordered that a permission would let move.
+bool Decision::at_standstill() noexcept {
+  for (int p = 0; p < c_.image->process_count; ++p)
+    if (busy(state(p)) || (c_.stopping >> p & 1u) != 0) return refuse(Refusal::guard_program, -1, p);
+  if (c_.homing_runs) return refuse(Refusal::guard_homing);
+  for (const Axis& a : c_.axes)
+    if (a.moving()) return refuse(Refusal::guard_axis, a.index());
+  for (int s = 0; s < c_.image->spindle_count; ++s) {
+    const image::SpindleImage& spindle = c_.image->spindles[static_cast<std::size_t>(s)];
+    if (spindle.running || spindle.command_rpm != 0.0) return refuse(Refusal::guard_spindle, -1, s);
+  }
+  return true;
 }
 
 bool Decision::place(bool write) noexcept {
@@ -537,7 +556,7 @@ bool Decision::place(bool write) noexcept {
   const std::uint64_t end = first + p.bytes();
   const std::uint32_t size = c_.image->packets.size(p.packet);
   if (end > size) return refuse(Refusal::place_outside, -1, static_cast<double>(first), size);
-  if (!write) return r_.kind != RequestKind::force || (not_of_emergency_stop(p) && may_force(p));
+  if (!write) return (r_.kind != RequestKind::force || not_of_emergency_stop(p)) && may_force(p);
   constexpr std::uint32_t kInterfaceEnd = image::kMachineBase + image::kMachineBlock;
   bool interface = p.packet == image::Packet::k && first < kInterfaceEnd && end > image::kInterfaceBase;
   for (const Axis& a : c_.axes) {
@@ -565,5 +584,9 @@ Answer decide(const Request& request, const GateContext& context) noexcept {
 }
 
 bool moves(RequestKind kind) noexcept { return kBegins.has(kind); }
+
+bool never_too_old(const Request& request) noexcept {
+  return kTakesAway.has(request.kind) || (kTakesAwayAtZero.has(request.kind) && request.value == 0.0);
+}
 
 }  // namespace servogate::cycle

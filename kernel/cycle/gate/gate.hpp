@@ -10,6 +10,7 @@
 #include "firmware_if/image/request.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "kernel/axis/axis.hpp"
+#include "kernel/axis/spindle.hpp"
 
 namespace servogate::cycle {
 
@@ -65,6 +66,13 @@ enum class Refusal : std::uint16_t {
   torque_range,          ///< axis; value; limit: the largest magnitude, per cent of the rated torque
   torque_ramp_range,     ///< axis; value; limit: the greatest one, per cent a second
   jogged_by_another,     ///< axis: another hand (image::Hand) has the continuous jog under way
+  // A place that guards motion or energy is forced, changed and released at standstill only:
+  guard_program,  ///< value: the process whose program is in progress
+  guard_homing,
+  guard_axis,     ///< axis: it moves
+  guard_spindle,  ///< value: index of the spindle that is to turn or still turns
+  too_old,        ///< value: how long it lay before a cycle could take it, ms; limit: the longest it may
+  client_gone,    ///< whoever asked is not there any more
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis
@@ -75,6 +83,7 @@ inline constexpr double kLargestCoordinate = 99'999.999;
 struct GateContext {
   const image::ProcessImage* image = nullptr;
   std::span<const axis::Axis> axes;
+  std::span<const axis::Spindle> spindles;
   image::Reaction reaction = image::Reaction::none;  ///< in force
   image::AlarmNumber first_alarm = 0;
   bool program_loaded = false;  ///< of the request's process
@@ -101,6 +110,11 @@ image::Answer decide(const image::Request& request, const GateContext& context) 
 
 /// The request begins or continues motion, or makes it possible. real-time safe.
 bool moves(image::RequestKind kind) noexcept;
+
+/// The request takes something away (motion, energy, a program under way) and begins nothing: it is carried
+/// out however old it is, and whoever asked. Every other one is refused when it lay too long or its client is
+/// gone: what was right to begin then may hurt somebody now. real-time safe.
+bool never_too_old(const image::Request& request) noexcept;
 
 /// "the command line": an asker as people call it. Not real-time safe.
 std::string asker_words(image::Asker asker, text::Language language);

@@ -115,8 +115,35 @@ constexpr text::Entry kTexts[] = {
     {"gate.jogged_by_another",
      "another client is jogging {0}: wait until it stops, or stop the axis (`servogate hold`)",
      "{0} двигает другой клиент: дождитесь, пока он закончит, или остановите ось (`servogate hold`)"},
+    {"gate.guard_program",
+     "this place guards motion or energy and is forced or released only at standstill: a program is in "
+     "progress (`servogate reset` ends it)",
+     "это место защищает от движения или включения, его удерживают и освобождают только при останове: "
+     "выполняется программа (`servogate reset` завершит её)"},
+    {"gate.guard_homing",
+     "this place guards motion or energy and is forced or released only at standstill: homing is under way "
+     "(`servogate stop` stops it)",
+     "это место защищает от движения или включения, его удерживают и освобождают только при останове: идёт "
+     "выход в ноль (`servogate stop` остановит его)"},
+    {"gate.guard_axis",
+     "this place guards motion or energy and is forced or released only at standstill: {0} moves "
+     "(`servogate stop` stops it)",
+     "это место защищает от движения или включения, его удерживают и освобождают только при останове: {0} "
+     "движется (`servogate stop` остановит её)"},
+    {"gate.guard_spindle",
+     "this place guards motion or energy and is forced or released only at standstill: spindle {1} is "
+     "ordered to turn or still turns (`servogate reset` stops it)",
+     "это место защищает от движения или включения, его удерживают и освобождают только при останове: "
+     "шпинделю {1} задано вращение, или он ещё вращается (`servogate reset` остановит его)"},
+    {"gate.too_old",
+     "the request waited for {1} ms before the control could carry it out, and {2} ms is the longest: nothing "
+     "was done; send it again if it is still wanted",
+     "запрос ждал {1} мс, прежде чем управление смогло его выполнить, а можно не больше {2} мс: ничего не "
+     "сделано; если он ещё нужен, повторите его"},
+    {"gate.client_gone", "the client that sent the request has gone: nothing was done",
+     "клиента, который послал запрос, уже нет: ничего не сделано"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::jogged_by_another) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::client_gone) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 
@@ -186,6 +213,7 @@ std::string value_words(const image::Answer& answer, Language language) {
     case Refusal::on_hard_limit:
       return answer.value > 0.0 ? "+" : "-";
     case Refusal::no_such_process:
+    case Refusal::guard_spindle:
       return text::number(answer.value + 1);
     case Refusal::override_range:
       return text::number(answer.value * 100.0, 4);

@@ -13,21 +13,10 @@ using image::Place;
 
 namespace {
 
-constexpr Place kPowerOn = image::field(image::kMachineFields, "power_on", image::kMachineBase);
-
-/// Of an axis: add its base.
-constexpr Place kSaid[] = {
-    image::field(image::kAxisFields, "enabled"),       image::field(image::kAxisFields, "homed"),
-    image::field(image::kAxisFields, "on_limit_plus"), image::field(image::kAxisFields, "on_limit_minus"),
-    image::field(image::kAxisFields, "limit_plus"),    image::field(image::kAxisFields, "limit_minus"),
-    image::field(image::kAxisFields, "home_switch"),   image::field(image::kAxisFields, "brake_release")};
-constexpr Place kPermitted[] = {image::field(image::kAxisFields, "enable"),
-                                image::field(image::kAxisFields, "feed_enable")};
-
 template <std::size_t N>
-bool of_axis(const Place (&places)[N], const Place& place, const axis::Axis& axis) noexcept {
-  return std::any_of(std::begin(places), std::end(places), [&](const Place& p) {
-    return image::at(p, image::axis_base(axis.index())).overlaps(place);
+bool marked(const image::InterfaceField (&block)[N], std::uint32_t base, const Place& place) noexcept {
+  return std::any_of(std::begin(block), std::end(block), [&](const image::InterfaceField& f) {
+    return f.guards && image::place(f, base).overlaps(place);
   });
 }
 
@@ -35,26 +24,32 @@ bool is_switch(const std::optional<axis::SwitchPlace>& s, const Place& place) no
   return s && s->place.overlaps(place);
 }
 
-bool is_permission(const Place& place, std::span<const axis::Axis> axes) noexcept {
-  return kPowerOn.overlaps(place) || std::any_of(axes.begin(), axes.end(), [&](const axis::Axis& a) {
-           return of_axis(kPermitted, place, a);
-         });
+bool of_axis(const axis::Axis& axis, const Place& place) noexcept {
+  const axis::AxisConfig& c = axis.config();
+  return marked(image::kAxisFields, image::axis_base(axis.index()), place) ||
+         (c.auxiliary && marked(image::kMotionFields, image::motion_base(axis.index()), place)) ||
+         is_switch(c.limit_plus, place) || is_switch(c.limit_minus, place) ||
+         is_switch(c.home_switch, place) ||
+         (c.brake.output == axis::BrakeOutput::place && c.brake.place.place.overlaps(place));
+}
+
+bool of_spindle(const axis::Spindle& spindle, const Place& place) noexcept {
+  if (marked(image::kSpindleFields, image::spindle_base(spindle.index()), place)) return true;
+  const std::optional<axis::InverterConfig>& inverter = spindle.config().inverter;
+  return inverter && (inverter->speed.overlaps(place) || (inverter->cw && inverter->cw->overlaps(place)) ||
+                      (inverter->ccw && inverter->ccw->overlaps(place)));
 }
 
 }  // namespace
 
-bool guards_motion(const Place& place, std::span<const axis::Axis> axes) noexcept {
-  if (is_permission(place, axes)) return true;
-  return std::any_of(axes.begin(), axes.end(), [&](const axis::Axis& a) {
-    const axis::AxisConfig& c = a.config();
-    return of_axis(kSaid, place, a) || is_switch(c.limit_plus, place) || is_switch(c.limit_minus, place) ||
-           is_switch(c.home_switch, place) ||
-           (c.brake.output == axis::BrakeOutput::place && c.brake.place.place.overlaps(place));
-  });
-}
-
-bool withdraws(const Place& place, double value, std::span<const axis::Axis> axes) noexcept {
-  return place.format == image::Format::bl && value == 0.0 && is_permission(place, axes);
+bool guards_motion(const Place& place, const GuardedMachine& machine) noexcept {
+  if (marked(image::kMachineFields, image::kMachineBase, place)) return true;
+  for (int p = 0; p < machine.processes; ++p)
+    if (marked(image::kProcessFields, image::process_base(p), place)) return true;
+  return std::any_of(machine.axes.begin(), machine.axes.end(),
+                     [&](const axis::Axis& a) { return of_axis(a, place); }) ||
+         std::any_of(machine.spindles.begin(), machine.spindles.end(),
+                     [&](const axis::Spindle& s) { return of_spindle(s, place); });
 }
 
 }  // namespace servogate::cycle

@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <future>
+#include <memory>
+#include <thread>
 
 #include "gateway/server/work/workshop.hpp"
 
@@ -44,12 +48,13 @@ TEST_F(RequestDeskTest, begins_nothing_that_was_asked_for_before_a_stop) {
     ASSERT_TRUE(desk_.tell(stop));
     for (const RequestKind kind : {RequestKind::start, RequestKind::step, RequestKind::resume,
                                    RequestKind::home, RequestKind::jog_increment})
-      EXPECT_EQ(desk_.ask({.kind = kind, .value = 1.0}, answer_, before, 0), RequestDesk::Outcome::overtaken);
-    EXPECT_EQ(desk_.ask({.kind = RequestKind::power, .value = 1.0}, answer_, before, 0),
+      EXPECT_EQ(desk_.ask({.kind = kind, .value = 1.0}, answer_, {before}, 0), RequestDesk::Outcome::overtaken);
+    EXPECT_EQ(desk_.ask({.kind = RequestKind::power, .value = 1.0}, answer_, {before}, 0),
               RequestDesk::Outcome::overtaken);
-    EXPECT_EQ(desk_.ask({.kind = RequestKind::reset}, answer_, before, 0), RequestDesk::Outcome::silent)
+    EXPECT_EQ(desk_.ask({.kind = RequestKind::acknowledge}, answer_, {before}, 0),
+              RequestDesk::Outcome::silent)
         << "posted: it moves nothing";
-    EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, desk_.stops(), 0),
+    EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, {desk_.stops()}, 0),
               RequestDesk::Outcome::silent)
         << "posted: it was asked for behind the stop";
     cycle_.step();
@@ -59,12 +64,88 @@ TEST_F(RequestDeskTest, begins_nothing_that_was_asked_for_before_a_stop) {
 TEST_F(RequestDeskTest, takes_a_jog_stop_for_a_stop_of_jogs_only_and_a_dead_hand_for_none) {
   const Stops before = desk_.stops();
   ASSERT_TRUE(desk_.tell({.kind = RequestKind::jog_stop, .axis = 0, .value = 1.0}));
-  EXPECT_EQ(desk_.ask({.kind = RequestKind::jog_continuous, .value = 1.0}, answer_, before, 0),
+  EXPECT_EQ(desk_.ask({.kind = RequestKind::jog_continuous, .value = 1.0}, answer_, {before}, 0),
             RequestDesk::Outcome::silent);
   ASSERT_TRUE(desk_.tell({.kind = RequestKind::jog_stop}));
-  EXPECT_EQ(desk_.ask({.kind = RequestKind::jog_continuous, .value = 1.0}, answer_, before, 0),
+  EXPECT_EQ(desk_.ask({.kind = RequestKind::jog_continuous, .value = 1.0}, answer_, {before}, 0),
             RequestDesk::Outcome::overtaken);
-  EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, before, 0), RequestDesk::Outcome::silent);
+  EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, {before}, 0), RequestDesk::Outcome::silent);
+}
+
+/// A desk whose requests may lie for 100 ms, over a cycle with one axis.
+class AgeOfRequests : public ::testing::Test {
+ protected:
+  AgeOfRequests() { desk_.set_longest_wait(RequestDesk::kLongestWait); }
+  static cycle::CycleParts parts() {
+    cycle::CycleParts parts;
+    parts.axes = {axis::AxisConfig{}};
+    return parts;
+  }
+  static Asked asked(std::chrono::seconds ago) { return {{}, std::chrono::steady_clock::now() - ago, {}}; }
+  cycle::Refusal refusal() const { return static_cast<cycle::Refusal>(answer_.refusal); }
+  bool power_wanted() {
+    cycle_.step();
+    return cycle_.axes()[0].power_requested();
+  }
+  static constexpr image::Request kPower{.kind = RequestKind::power, .value = 1.0};
+  cycle::Cycle cycle_{parts()};
+  RequestDesk desk_{cycle_};
+  image::Answer answer_;
+};
+
+TEST_F(AgeOfRequests, refuses_what_would_begin_something_once_it_has_lain_and_says_how_long) {
+  const Asked before = asked(std::chrono::seconds(3));
+  for (const RequestKind kind : {RequestKind::start, RequestKind::step, RequestKind::resume,
+                                 RequestKind::home, RequestKind::jog_increment, RequestKind::jog_continuous,
+                                 RequestKind::power, RequestKind::force, RequestKind::logic_scan}) {
+    EXPECT_EQ(desk_.ask({.kind = kind, .value = 1.0}, answer_, before, 0), RequestDesk::Outcome::answered);
+    EXPECT_EQ(refusal(), cycle::Refusal::too_old);
+    EXPECT_GE(answer_.value, 3000.0);
+    EXPECT_EQ(answer_.limit, 100.0);
+  }
+  EXPECT_FALSE(power_wanted());
+}
+
+TEST_F(AgeOfRequests, refuses_what_would_begin_something_when_its_client_is_gone) {
+  Asked now;
+  now.gone = std::make_shared<std::atomic<bool>>(true);
+  EXPECT_EQ(desk_.ask(kPower, answer_, now, 0), RequestDesk::Outcome::answered);
+  EXPECT_EQ(refusal(), cycle::Refusal::client_gone);
+  EXPECT_FALSE(power_wanted());
+}
+
+TEST_F(AgeOfRequests, withdraws_what_waits_for_the_cycle_when_its_client_goes) {
+  const auto gone = std::make_shared<std::atomic<bool>>(false);
+  const auto asks = std::async(std::launch::async, [&] {
+    const auto outcome = desk_.ask(kPower, answer_, {{}, std::chrono::steady_clock::now(), gone}, 600'000);
+    return outcome == RequestDesk::Outcome::answered && (refusal() == cycle::Refusal::client_gone);
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // most likely it is posted then
+  *gone = true;
+  asks.wait();
+  EXPECT_EQ(refusal(), cycle::Refusal::client_gone);
+  EXPECT_FALSE(power_wanted()) << "no cycle finds it";
+}
+
+TEST_F(AgeOfRequests, withdraws_what_the_cycle_did_not_answer_in_time) {
+  EXPECT_EQ(desk_.ask(kPower, answer_, {}, 0), RequestDesk::Outcome::silent);
+  EXPECT_FALSE(power_wanted());
+}
+
+TEST_F(AgeOfRequests, carries_stops_out_however_old_they_are_whoever_asked_and_whenever_the_cycle_comes) {
+  desk_.set_longest_wait(std::chrono::minutes(10));  // that this computer may need between two lines
+  ASSERT_TRUE(desk_.tell(kPower));
+  ASSERT_TRUE(power_wanted());
+  desk_.set_longest_wait(RequestDesk::kLongestWait);
+  Asked before = asked(std::chrono::seconds(3));
+  before.gone = std::make_shared<std::atomic<bool>>(true);
+  for (const RequestKind kind : {RequestKind::stop, RequestKind::hold, RequestKind::quick_stop,
+                                 RequestKind::jog_stop, RequestKind::reset, RequestKind::power}) {
+    EXPECT_EQ(desk_.ask({.kind = kind, .process = -1, .value = 0.0}, answer_, before, 0),
+              RequestDesk::Outcome::taken)
+        << "it is left to the cycle";
+  }
+  EXPECT_FALSE(power_wanted()) << "power off has come";
 }
 
 TEST(Workshop, does_what_waits_before_it_closes_and_begins_nothing_once_it_is_cancelled) {

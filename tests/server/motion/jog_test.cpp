@@ -164,10 +164,7 @@ TEST_F(JogCommand, that_an_alarm_ends_says_so_and_is_no_success) {
 
 TEST_F(JogCommand, that_the_plc_ends_says_so_and_is_no_success) {
   const Outcome o = while_it_jogs([&](pid_t) {
-    ASSERT_TRUE(
-        shell_
-            .ask({{"cmd", "plc_force"}, {"name", "X.feed_enable"}, {"value", "FALSE"}, {"stay", true}})["ok"]
-            .get<bool>());
+    ASSERT_EQ(shell_.run({"input", "door_closed", "off"}).exit, 0);
   });
   EXPECT_EQ(o.exit, 1);
   EXPECT_TRUE(contains(o.err, "the PLC no longer permits its motion")) << o.err;

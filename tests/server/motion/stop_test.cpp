@@ -56,11 +56,17 @@ TEST_F(Stopped, by_power_off_while_it_waits_is_the_same) {
 }
 
 TEST_F(Stopped, by_the_plc_at_rest_names_the_enable_and_where_to_look) {
+  std::ifstream in(Shell::example("mill/mill.st"));
+  std::string logic((std::istreambuf_iterator<char>(in)), {});
+  const std::string before = "X.enable := MC.power_on;", body = "PROGRAM Mill\n";
+  ASSERT_NE(logic.find(before), std::string::npos);
+  logic.replace(logic.find(before), before.size(), "X.enable := MC.power_on AND NOT away;");
+  logic.replace(logic.find(body), body.size(), body + "VAR away : BOOL; END_VAR\n");
+  std::ofstream(shell_.folder() / "mill.st") << logic;
+  ASSERT_EQ(shell_.run({"plc", "load", "--online", (shell_.folder() / "mill.st").string()}).exit, 0);
   begin("N10 G0 X1\nN20 M0\nN30 M2\n");
   ASSERT_TRUE(shell_.until([](const json& s) { return s["state"] == "waiting"; }));
-  ASSERT_EQ(
-      shell_.ask({{"cmd", "plc_force"}, {"name", "X.enable"}, {"value", "FALSE"}, {"stay", true}})["ok"],
-      true);
+  ASSERT_EQ(shell_.run({"plc", "force", "Mill.away=TRUE", "--stay"}).exit, 0);
   ASSERT_TRUE(shell_.until([](const json& s) { return s["state"] == "stopped"; })) << shell_.status();
   const json stop = shell_.status()["stop"];
   EXPECT_EQ(stop["cause"], "enable_withdrawn");

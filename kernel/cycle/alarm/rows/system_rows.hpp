@@ -37,8 +37,9 @@ inline constexpr AlarmRow kSystemRows[] = {
      image::Reaction::warn,
      ResetCondition::by_itself,
      {"system.guard_forced",
-      "a switch, an enable or a brake is forced: a protection of the machine may be out of action",
-      "принудительно удерживается выключатель, разрешение или тормоз: защита станка может не действовать"},
+      "a place that guards motion or energy is forced: a protection of the machine may be out of action",
+      "принудительно удерживается место, которое защищает от движения или включения: защита станка может не "
+      "действовать"},
      "`servogate plc force` shows what is forced and by whom; `servogate plc force --release` releases it.",
      "Что и кем удерживается, показывает `servogate plc force`; `servogate plc force --release` "
      "освобождает."},
