@@ -60,21 +60,45 @@ std::string render(const Entry& entry, std::span<const std::string> arguments, L
   return out;
 }
 
+namespace {
+
+/// Length of the printable character of UTF-8 at `at`; 0: there is none. Controls of both ASCII and Latin-1
+/// are none, nor is what turns the direction of writing.
+std::size_t printable(std::string_view words, std::size_t at) noexcept {
+  const auto byte = [&](std::size_t n) {
+    return at + n < words.size() ? static_cast<unsigned char>(words[at + n]) : 0U;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7F ? 1 : 0;
+  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+  for (std::size_t n = 1; n < length; ++n)
+    if ((byte(n) & 0xC0) != 0x80) return 0;
+  if (first == 0xC2 && byte(1) < 0xA0) return 0;
+  const unsigned turns = first == 0xE2 ? byte(1) << 8 | byte(2) : 0;
+  return (turns >= 0x80AA && turns <= 0x80AE) || (turns >= 0x81A6 && turns <= 0x81A9) ? 0 : length;
+}
+
+}  // namespace
+
 std::string visible(std::string_view words) {
   static constexpr char kHex[] = "0123456789ABCDEF";
   std::string out;
-  for (const char c : words) {
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte >= 0x20 && byte != 0x7F) || c == '\n')
-      out += c;
-    else
+  for (std::size_t at = 0; at < words.size();) {
+    const char c = words[at];
+    const std::size_t length = c == '\n' || c == '\t' ? 1 : printable(words, at);
+    if (length > 0) {
+      out += words.substr(at, length);
+    } else {
+      const auto byte = static_cast<unsigned char>(c);
       out += std::string("\\x") + kHex[byte >> 4] + kHex[byte & 0xF];
+    }
+    at += std::max<std::size_t>(length, 1);
   }
   return out;
 }
 
 std::string Finding::str(Language language) const {
-  std::string out = file;
+  std::string out = visible(file);
   if (line > 0) out += ":" + std::to_string(line);
   if (line > 0 && column > 0) out += ":" + std::to_string(column);
   out += severity == Severity::error ? ": error: " : ": warning: ";
@@ -91,12 +115,16 @@ std::string Finding::excerpt() const {
   std::string shown, below;
   int at = 0;
   const int first = column > kShown / 2 ? column - kShown / 2 : 1;
-  for (const char c : source) {
-    if ((static_cast<unsigned char>(c) & 0xC0) != 0x80) ++at;  // a character of UTF-8 begins
-    if (at < first || at >= first + kShown) continue;
-    const auto byte = static_cast<unsigned char>(c);
-    shown += c != '\t' && (byte < 0x20 || byte == 0x7F) ? '?' : c;
-    if (at < column && (static_cast<unsigned char>(c) & 0xC0) != 0x80) below += c == '\t' ? '\t' : ' ';
+  for (std::size_t i = 0; i < source.size();) {
+    const std::size_t length = printable(source, i);
+    // A byte that is no character of UTF-8 counts as one.
+    if (length > 0 || (static_cast<unsigned char>(source[i]) & 0xC0) != 0x80) ++at;
+    const bool tab = source[i] == '\t';
+    if (at >= first && at < first + kShown) {
+      shown += tab ? "\t" : length > 0 ? source.substr(i, length) : "?";
+      if (at < column) below += tab ? '\t' : ' ';
+    }
+    i += std::max<std::size_t>(length, 1);
   }
   const std::string number = std::to_string(line);
   return " " + number + " | " + shown + "\n " + std::string(number.size(), ' ') + " | " + below + "^\n";

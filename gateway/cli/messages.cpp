@@ -36,6 +36,8 @@ LastError last;
 
 const LastError& last_error() noexcept { return last; }
 
+void tell(std::string_view words) { std::fprintf(stderr, "%s\n", text::visible(words).c_str()); }
+
 int print_findings(const std::vector<text::Finding>& findings) {
   int errors = 0;
   keep_order();
@@ -50,7 +52,7 @@ int print_findings(const std::vector<text::Finding>& findings) {
 void complain(const text::Entry& entry, const std::vector<std::string>& arguments) {
   last = {std::string(entry.id), text::render(entry, arguments, text::user_language())};
   keep_order();
-  std::fprintf(stderr, "servogate: %s [%s]\n", last.text.c_str(), last.code.c_str());
+  tell("servogate: " + last.text + " [" + last.code + "]");
 }
 
 }  // namespace servogate::gateway

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <limits>
 
+#include "firmware_if/text/decimal_comma.hpp"
 #include "firmware_if/text/finding.hpp"
 
 namespace servogate::gateway {
@@ -40,7 +41,10 @@ CLI::Validator number_within(const Limits& limits) {
   const auto check = [limits](std::string& word) -> std::string {
     double value = 0.0;
     const std::string_view digits = std::string_view(word).substr(word.starts_with('+') ? 1 : 0);
-    if (!reads(digits, limits.whole, value))
+    const bool number = reads(digits, limits.whole, value);
+    if (const std::string point = text::with_decimal_point(word); !number && !limits.whole && !point.empty())
+      return quoted(word, "has a decimal comma; write " + point, "— десятичная запятая; пишите " + point);
+    if (!number)
       return limits.whole ? quoted(word, "is no whole number", "— не целое число")
                           : quoted(word, "is no number", "— не число");
     // False for "nan", too.

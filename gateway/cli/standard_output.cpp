@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -43,17 +44,21 @@ bool print(std::string_view text) {
   return note(std::fwrite(text.data(), 1, text.size(), stdout) == text.size());
 }
 
-bool print_line(std::string_view line) { return print(line) && print("\n"); }
+bool print_line(std::string_view line) { return print(text::visible(line)) && print("\n"); }
+
+bool print_exact(std::string_view json) { return print(json) && print("\n"); }
 
 bool print_formatted(const char* format, ...) {
   if (failure != 0) return false;
-  printed = true;
-  std::va_list arguments;
+  std::va_list arguments, again;
   va_start(arguments, format);
-  errno = 0;
-  const int written = std::vfprintf(stdout, format, arguments);
+  va_copy(again, arguments);
+  std::string words(static_cast<std::size_t>(std::max(0, std::vsnprintf(nullptr, 0, format, arguments))),
+                    '\0');
+  std::vsnprintf(words.data(), words.size() + 1, format, again);
+  va_end(again);
   va_end(arguments);
-  return note(written >= 0);
+  return print(text::visible(words));
 }
 
 void keep_order() {
@@ -70,7 +75,7 @@ std::string error_object(const LastError& error, int code) {
 }
 
 int end_output(int code, bool json) {
-  if (json && !printed && code != kDone) print_line(error_object(last_error(), code));
+  if (json && !printed && code != kDone) print_exact(error_object(last_error(), code));
   keep_order();
   if (failure == 0 || failure == EPIPE) return code;
   complain(kOutputLost, {text::words_of(failure)});

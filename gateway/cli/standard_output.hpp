@@ -14,12 +14,16 @@ namespace servogate::gateway {
 /// and makes a closed pipe an error of the write instead of the end of a process that moves a machine.
 void prepare_streams();
 
-/// Appends to standard output. False: the rest is in vain, nobody reads it or it cannot be written.
+/// Appends to standard output as it is. False: the rest is in vain, nobody reads it or it cannot be written.
 bool print(std::string_view text);
-/// The same with a line end.
+/// The same for people, with a line end: what would command a terminal as text::visible() shows it.
 bool print_line(std::string_view line);
+/// The same on standard error.
+void tell(std::string_view words);
+/// print_line() for programs, to the byte, with a line end: JSON.
+bool print_exact(std::string_view json);
 
-/// The same as printf has it.
+/// print_line() without the line end, formatted as by printf.
 [[gnu::format(printf, 1, 2)]] bool print_formatted(const char* format, ...);
 
 /// Writes what is buffered, so that what is said next on standard error stands behind it where both go to one

@@ -9,6 +9,7 @@
 #include "drivers/usercan/server/bus_server.hpp"
 #include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/messages.hpp"
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
 
@@ -23,7 +24,7 @@ const text::Entry kUntilWithoutLockstep{"can.until-without-lockstep", "--until n
                                         "--until требует --lockstep"};
 
 void say(const drivers::Notice& notice) {
-  std::fprintf(stderr, "servogate: %s [%s]\n", notice.str().c_str(), std::string(notice.entry->id).c_str());
+  tell("servogate: " + notice.str() + " [" + std::string(notice.entry->id) + "]");
 }
 
 /// Every frame of a bus as `candump -l` writes it.
@@ -79,12 +80,9 @@ int can_bus(const CanBusOptions& options) {
   }
   std::string names;
   for (const std::string& name : options.names) names += (names.empty() ? "" : ", ") + name;
-  std::fprintf(
-      stderr, "%s\n",
-      text::render(kServing,
-                   std::vector<std::string>{server->address().str(), names, text::number(options.bit_rate)},
-                   text::user_language())
-          .c_str());
+  tell(text::render(kServing,
+                    std::vector<std::string>{server->address().str(), names, text::number(options.bit_rate)},
+                    text::user_language()));
   while (!signals.ended() && server->serve(100 * image::kMillisecond)) {
   }
   if (log == nullptr || log->good()) return kDone;

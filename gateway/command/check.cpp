@@ -60,8 +60,7 @@ void check_logic(const machine::MachineConfig& machine, std::vector<text::Findin
   if (sources.empty()) {
     const machine::Where where = machine.where("plc");
     if (!machine.axes.empty())
-      findings.push_back(
-          {text::Severity::warning, machine.file, where.line, where.column, &kNoLogic, {}, {}});
+      findings.push_back({text::Severity::error, machine.file, where.line, where.column, &kNoLogic, {}, {}});
     return;
   }
   std::vector<text::Finding> of_logic;
@@ -203,7 +202,7 @@ int check(const CheckOptions& options) {
   }
   ProgramErrors programs;
   if (machine_errors == 0) programs = check_programs(options, loaded.machine, json);
-  if (options.json) print_line(json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (options.json) print_exact(json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   if (!loaded.readable || programs.unreadable) return kWrongUse;
   if (!options.json) sum_up(machine_errors + programs.found, warnings_of(findings) + programs.warnings);
   return machine_errors + programs.found > 0 ? kAlarm : kDone;

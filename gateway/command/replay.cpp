@@ -125,9 +125,9 @@ void repeat(RunningMachine& machine, RecordReader& record) {
 /// Says what came of it, and gives the exit code.
 int judge(const ReplayOptions& options, const RecordReader& record, std::int64_t cycles, long difference) {
   if (options.json)
-    print_line(nlohmann::ordered_json{
+    print_exact(nlohmann::ordered_json{
         {"schema", 1}, {"cycles", cycles}, {"damaged", record.damaged()}, {"first_difference", difference}}
-                   .dump());
+                    .dump());
   if (record.damaged()) {
     // How far a trace that ends here agrees says nothing new.
     complain(kDamaged, {options.record, std::to_string(record.damaged_at()), std::to_string(cycles)});
@@ -138,10 +138,8 @@ int judge(const ReplayOptions& options, const RecordReader& record, std::int64_t
     return kAlarm;
   }
   if (!options.json)
-    std::fprintf(stderr, "%s\n",
-                 text::render(options.against.empty() ? kReplayed : kSame,
-                              std::vector<std::string>{std::to_string(cycles)}, text::user_language())
-                     .c_str());
+    tell(text::render(options.against.empty() ? kReplayed : kSame,
+                      std::vector<std::string>{std::to_string(cycles)}, text::user_language()));
   return kDone;
 }
 
@@ -168,7 +166,7 @@ int replay(const ReplayOptions& options) {
   machine->watch({trace, {}, {}});
   repeat(*machine, record);
   for (const RunningMachine::Lost& lost : machine->close_files()) {
-    std::fprintf(stderr, "servogate: %s: %s\n", trace.c_str(), lost.why.c_str());
+    tell("servogate: " + trace + ": " + lost.why);
     return kInfrastructure;
   }
   const long difference = options.against.empty() ? 0 : first_difference(options.against, trace);

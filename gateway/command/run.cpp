@@ -33,6 +33,8 @@ namespace {
 const text::Entry kRefused{"run.refused", "the control refuses: {0}", "управление отказывает: {0}"};
 const text::Entry kNotReady{"run.not-ready", "these axes did not become ready: {0}",
                             "эти оси не пришли в готовность: {0}"};
+const text::Entry kNotHomed{"run.not-homed", "homing ended before these axes had their zero: {0}",
+                            "выход в ноль закончился раньше, чем эти оси нашли ноль: {0}"};
 const text::Entry kNotAnnounced{"run.not-announced",
                                 "other tools cannot see that this run uses its buses: no socket {0}: {1}",
                                 "инструменты не увидят, что этот прогон держит шины: нет сокета {0}: {1}"};
@@ -72,6 +74,7 @@ constexpr double kPatience_s = 60.0;       ///< of machine time, where --patienc
 constexpr double kSilentWait_s = 5.0;      ///< a longer wait is said
 constexpr double kProgressPause_s = 0.25;  ///< of wall-clock time, on a terminal
 constexpr double kLogPause_s = 10.0;       ///< and in a file or pipe
+constexpr double kHomingSpare_s = 60.0;    ///< beyond the `timeout` of all axes, for what stands between them
 constexpr int kFollowedCycles = 256;
 
 using Clock = std::chrono::steady_clock;
@@ -198,10 +201,14 @@ OperatorScript::Wishes Run::wishes() const {
           loaded_.machine.point(loaded_.machine.run.start_point, &w.start_source))
     w.start_place = button->place;
   w.patience_s = patience();
+  w.fault = [this] { return fault_stands(machine_->alarms()); };
+  w.homing_patience_s = kHomingSpare_s;
   w.letters = loaded_.machine.letters();
   w.letters.resize(loaded_.machine.program_axes());
-  for (const machine::AxisConfig& a : loaded_.machine.axes)
+  for (const machine::AxisConfig& a : loaded_.machine.axes) {
     w.needs_homing.push_back(a.home.method != machine::HomingMethod::none);
+    w.homing_patience_s += a.home.timeout;
+  }
   return w;
 }
 
@@ -249,10 +256,8 @@ void Run::take_answers(OperatorScript& script) {
 void Run::prompt(const OperatorScript& script) {
   if (!waits_for_start() || script.stage() == prompted_) return;
   const std::string& button = loaded_.machine.run.start_point;
-  if (script.stage() == OperatorScript::Stage::button)
-    std::fprintf(stderr, "%s\n", say(kPressFirst, {button}).c_str());
-  if (script.stage() == OperatorScript::Stage::start)
-    std::fprintf(stderr, "%s\n", say(kPressSecond, {button}).c_str());
+  if (script.stage() == OperatorScript::Stage::button) tell(say(kPressFirst, {button}));
+  if (script.stage() == OperatorScript::Stage::start) tell(say(kPressSecond, {button}));
   prompted_ = script.stage();
 }
 
@@ -301,14 +306,14 @@ void Run::follow(const image::ProcessImage& image) {
   for (; message_said_ < p.message; ++message_said_)
     if (const auto words = control_->process(0).texts().message(message_said_ + 1); words) {
       end_progress();
-      std::fprintf(stderr, "%s\n", say(kMessage, {*words}).c_str());
+      tell(say(kMessage, {*words}));
     }
   const auto wait = wait_words(*control_, image, 0, text::user_language());
   if (wait && needs_somebody(p.wait.reason) && wait->for_s >= kSilentWait_s &&
       wait_said_ != p.wait.since_ns) {
     wait_said_ = p.wait.since_ns;
     end_progress();
-    std::fprintf(stderr, "%s\n", say(kWaits, {wait->text, text::number(wait->for_s, 1)}).c_str());
+    tell(say(kWaits, {wait->text, text::number(wait->for_s, 1)}));
   }
   progress(image);
 }
@@ -406,7 +411,9 @@ std::optional<report::ErrorEntry> Run::not_begun(const OperatorScript& script) c
   } else if (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()) {
     std::string axes;
     for (const std::string& a : script.waiting_for()) axes += (axes.empty() ? "" : ", ") + a;
-    error = {std::string(kNotReady.id), twice(kNotReady, {axes})};
+    const bool homing = script.came_to() == OperatorScript::Stage::homing;
+    const text::Entry& entry = homing ? kNotHomed : kNotReady;
+    error = {std::string(entry.id), twice(entry, {axes})};
   } else {
     return std::nullopt;
   }
@@ -417,35 +424,32 @@ std::optional<report::ErrorEntry> Run::not_begun(const OperatorScript& script) c
 
 void Run::explain(const OperatorScript& script, const report::Report& report) {
   for (const report::AlarmEntry& a : report.alarms)
-    std::fprintf(
-        stderr, "%s\n%s%s\n",
-        say(a.consequence ? kConsequence : kAlarmLine, {std::to_string(a.record.number), a.text}).c_str(),
-        a.consequence ? "    " : "  ", text::in_language(a.remedy).c_str());
+    tell(say(a.consequence ? kConsequence : kAlarmLine, {std::to_string(a.record.number), a.text}) + "\n" +
+         (a.consequence ? "    " : "  ") + text::in_language(a.remedy));
   if (report.wait) {
     complain(kGaveUp, {report.wait->text, text::number(report.wait->for_s, 1)});
-    std::fprintf(stderr, "  %s\n", text::in_language(report.wait->remedy).c_str());
+    tell("  " + text::in_language(report.wait->remedy));
   }
   if (report.error) {
     const std::string words = text::in_language(report.error->text);
     const std::size_t end = std::min(words.find('\n'), words.size());
-    std::fprintf(stderr, "servogate: %s [%s]%s\n", words.substr(0, end).c_str(), report.error->code.c_str(),
-                 words.substr(end).c_str());
+    tell("servogate: " + words.substr(0, end) + " [" + report.error->code + "]" + words.substr(end));
   }
   if (const auto stop = stop_words(*control_, control_->cycle().image(), 0, text::user_language()); stop)
-    std::fprintf(stderr, "%s\n  %s\n", stop->text.c_str(), stop->remedy.c_str());
+    tell(stop->text + "\n  " + stop->remedy);
   if (script.outcome() == OperatorScript::Outcome::stopped && report.blocks == 0)
-    std::fprintf(stderr, "%s\n", say(kStoppedEarly, {}).c_str());
+    tell(say(kStoppedEarly, {}));
   if (options_.quiet) return;
   const std::string blocks = std::to_string(report.blocks), time = text::number(report.time_s, 3);
   if (script.outcome() == OperatorScript::Outcome::finished)
-    std::fprintf(stderr, "%s\n", say(kDone1, {blocks, time}).c_str());
+    tell(say(kDone1, {blocks, time}));
   else if (report.blocks > 0)
-    std::fprintf(stderr, "%s\n", say(kBroken, {blocks, std::to_string(estimate_blocks_), time}).c_str());
+    tell(say(kBroken, {blocks, std::to_string(estimate_blocks_), time}));
   std::string files;
   for (const std::string* path :
        {&options_.html, &options_.report, &options_.trace, &options_.record, &options_.can_log})
     if (!path->empty()) files += (files.empty() ? "" : ", ") + *path;
-  if (!files.empty() && !infrastructure_) std::fprintf(stderr, "%s\n", say(kWritten, {files}).c_str());
+  if (!files.empty() && !infrastructure_) tell(say(kWritten, {files}));
 }
 
 /// What has to be right before a control is composed: kDone, or the exit code after saying why.

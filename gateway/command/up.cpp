@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "gateway/cli/messages.hpp"
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/canopen/bus/sole_master.hpp"
 #include "gateway/command/commands.hpp"
@@ -118,9 +119,7 @@ int up(const UpOptions& options) {
   if (!running->begin()) return kInfrastructure;
   desk.start();
   server->start();
-  std::fprintf(
-      stderr, "%s\n",
-      text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()).c_str());
+  tell(text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()));
   history->note(
       history::event("up", history::says::kUp, {m.name, std::string(report::build_identity().version)}, 0.0));
   serve(desk, *server);

@@ -12,7 +12,7 @@ int version(bool json) {
   const report::BuildIdentity id = report::build_identity();
   const std::string v(id.version), c(id.commit);
   if (json)
-    print_line(nlohmann::ordered_json{{"schema", 1}, {"version", v}, {"commit", c}}.dump());
+    print_exact(nlohmann::ordered_json{{"schema", 1}, {"version", v}, {"commit", c}}.dump());
   else
     print_line("servogate " + v + (c.empty() ? "" : " (" + c + ")"));
   return kDone;

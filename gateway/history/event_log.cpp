@@ -118,7 +118,9 @@ void EventLog::remember(Event event) {
 void EventLog::note(Event event) {
   if (event.time.empty()) event.time = utc_now();
   if (file_) file_->log(spdlog::level::info, spdlog::string_view_t(line_of(event)));
-  if (console_) console_->log(spdlog::level::info, spdlog::string_view_t(event.text(text::user_language())));
+  if (console_)
+    console_->log(spdlog::level::info,
+                  spdlog::string_view_t(text::visible(event.text(text::user_language()))));
   const std::scoped_lock lock(mutex_);
   remember(std::move(event));
 }

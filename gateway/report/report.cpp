@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "gateway/report/report_json.hpp"
@@ -26,6 +27,8 @@ const text::Entry kFinishedWith{"report.finished-with",
                                 "программа выполнена до конца, аварий: {0}; первая: {1}"};
 const text::Entry kRefused{"report.refused", "the program was not begun: {0}", "программа не начата: {0}"};
 const text::Entry kNotBegun{"report.not-begun", "nothing was begun: {0}", "ничего не начато: {0}"};
+const text::Entry kNotBegunFrom{"report.not-begun", "nothing was begun: {0}; alarm {1}: {2}",
+                                "ничего не начато: {0}; авария {1}: {2}"};
 const text::Entry kWaited{"report.waited", "stopped because nothing moved for {0} s any more: {1}",
                           "остановлено: за {0} с ничего не сдвинулось: {1}"};
 const text::Entry kByAlarm{"report.by-alarm", "stopped by alarm {0}: {1}", "остановлено аварией {0}: {1}"};
@@ -38,6 +41,12 @@ std::string hex(std::uint32_t value, int digits) {
   char text[16];
   std::snprintf(text, sizeof text, "0x%0*X", digits, value);
   return text;
+}
+
+/// What was measured, to the ninth decimal: no tail of binary fractions.
+double rounded(double value) {
+  constexpr double kNinth = 1e9, kExact = 1e6;
+  return std::abs(value) < kExact ? std::round(value * kNinth) / kNinth : value;
 }
 
 Json to_json(const FileIdentity& f) { return {{"path", f.path}, {"sha256", f.sha256}}; }
@@ -114,7 +123,7 @@ Json to_json(const AlarmEntry& a, Language language) {
       kReactions[std::min<std::size_t>(static_cast<std::size_t>(r.reaction), std::size(kReactions) - 1)];
   out["active"] = r.active;
   out["cycle"] = r.cycle;
-  out["t"] = static_cast<double>(r.t_ns) * 1e-9;
+  out["t"] = static_cast<double>(r.t_ns) / 1e9;  // 9.69, not 9.690000000000001
   if (!a.axis.empty()) out["axis"] = a.axis;
   if (r.process >= 0) out["process"] = r.process + 1;
   if (r.segment >= 0) out["segment"] = r.segment;
@@ -127,8 +136,8 @@ Json to_json(const AlarmEntry& a, Language language) {
   if (r.block >= 0) out["block"] = r.block;
   if (a.finding) out["finding"] = to_json(*a.finding, language);
   if (!a.finding && (r.limit != 0.0 || r.value != 0.0)) {
-    out["limit"] = r.limit;
-    out["value"] = r.value;
+    out["limit"] = rounded(r.limit);
+    out["value"] = rounded(r.value);
   }
   return out;
 }
@@ -136,10 +145,10 @@ Json to_json(const AlarmEntry& a, Language language) {
 Json to_json(const AxisReport& a) {
   Json out{{"unit", a.unit},
            {"diameter", a.diameter},
-           {"max_velocity", a.max_velocity},
-           {"max_acceleration", a.max_acceleration},
-           {"max_jerk", a.max_jerk},
-           {"max_following_error", a.max_following_error}};
+           {"max_velocity", rounded(a.max_velocity)},
+           {"max_acceleration", rounded(a.max_acceleration)},
+           {"max_jerk", rounded(a.max_jerk)},
+           {"max_following_error", rounded(a.max_following_error)}};
   Json limits = Json::object();
   if (a.limit_velocity > 0) limits["velocity"] = a.limit_velocity;
   if (a.limit_acceleration > 0) limits["acceleration"] = a.limit_acceleration;
@@ -155,8 +164,8 @@ Json to_json(const AxisReport& a) {
 
 Json to_json(const SegmentReport& s) {
   Json out{{"name", s.name},
-           {"load", s.load},
-           {"load_worst_cycle", s.load_worst_cycle},
+           {"load", rounded(s.load)},
+           {"load_worst_cycle", rounded(s.load_worst_cycle)},
            {"frames_sent", s.frames_sent},
            {"frames_received", s.frames_received},
            {"errors", s.errors}};
@@ -182,6 +191,20 @@ std::string place_and_words(const text::Finding& f, Language language) {
   return f.line > 0 ? f.file + ":" + std::to_string(f.line) + ": " + words : words;
 }
 
+Verdict not_begun(const Report& r, Language language) {
+  const auto say = [&](const text::Entry& entry, std::vector<std::string> arguments) {
+    return text::render(entry, arguments, language);
+  };
+  const AlarmEntry* cause = stopping(r);
+  if (cause == nullptr && !r.alarms.empty()) cause = &r.alarms.back();
+  const std::string words = text::in_language(r.error->text, language);
+  if (cause == nullptr) return {"not_begun", say(kNotBegun, {words}), {}};
+  return {"not_begun",
+          say(kNotBegunFrom,
+              {words.substr(0, words.find('\n')), std::to_string(cause->record.number), cause->text}),
+          text::in_language(cause->remedy, language)};
+}
+
 }  // namespace
 
 Verdict verdict_of(const Report& r, Language language) {
@@ -196,7 +219,7 @@ Verdict verdict_of(const Report& r, Language language) {
   if (r.finished) return {"finished", say(kFinished, {blocks, time}), {}};
   if (!r.findings.empty())
     return {"refused", say(kRefused, {place_and_words(r.findings.front(), language)}), {}};
-  if (r.error) return {"not_begun", say(kNotBegun, {r.error->text}), {}};
+  if (r.error) return not_begun(r, language);
   if (r.wait)
     return {"waited", say(kWaited, {text::number(r.wait->for_s, 1), r.wait->text}), remedy(r.wait->remedy)};
   if (const AlarmEntry* a = stopping(r); a != nullptr)
@@ -225,7 +248,7 @@ Json json_of(const Report& r, Language language) {
   for (const ForceEntry& f : r.forces) out["forces"].push_back({{"name", f.name}, {"value", f.value}});
   out["axes"] = Json::object();
   for (const AxisReport& a : r.axes) out["axes"][a.letter] = to_json(a);
-  out["virtual_speed"] = r.virtual_speed;
+  out["virtual_speed"] = rounded(r.virtual_speed);
   out["cycle_us"] = to_json(r.cycle_us);
   if (r.lateness_us) out["lateness_us"] = to_json(*r.lateness_us);
   out["phases_us"] = Json::object();

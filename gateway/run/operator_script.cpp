@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/run/operator_script.hpp"
 
+#include <algorithm>
+
 #include "gateway/run/standstill.hpp"
 #include "gateway/run/words/wait_words.hpp"
 #include "kernel/cycle/gate/gate.hpp"
@@ -16,9 +18,15 @@ namespace {
 /// mean it.
 constexpr image::Nanoseconds kReleased_ns = 200'000'000;
 constexpr double kBootPatience_s = 15.0;
-constexpr double kHomingPatience_s = 300.0;
 constexpr double kRestPatience_s = 10.0;
+constexpr double kSettled_s = 0.5;  ///< what a stage brings about has begun by then
 }  // namespace
+
+bool fault_stands(const cycle::AlarmSnapshot& alarms) noexcept {
+  const auto fault = [](const image::AlarmRecord& r) { return r.reaction > image::Reaction::warn; };
+  return alarms.reaction > image::Reaction::warn ||
+         std::any_of(alarms.records.begin(), alarms.records.begin() + alarms.count, fault);
+}
 
 OperatorScript::OperatorScript(Wishes wishes, Post post)
     : wishes_(std::move(wishes)),
@@ -49,6 +57,7 @@ void OperatorScript::enter(Stage stage, const ProcessImage& image) {
 
 void OperatorScript::power_down(Outcome outcome, const ProcessImage& image) {
   outcome_ = outcome;
+  ended_in_ = stage_;
   enter(Stage::power_off, image);
 }
 
@@ -125,6 +134,10 @@ bool OperatorScript::standing(const ProcessImage& image) const {
   return true;
 }
 
+bool OperatorScript::failed(const ProcessImage& image) const {
+  return image.alarms_active > 0 && wishes_.fault();
+}
+
 template <class Good>
 bool OperatorScript::missing(const ProcessImage& image, Good&& good) {
   waiting_for_.clear();
@@ -157,26 +170,27 @@ void OperatorScript::switch_on(const ProcessImage& image) {
   }
   const bool off = missing(image, [](const image::AxisImage& a, std::size_t) { return a.enabled; });
   if (!off) return enter(Stage::homing, image);
-  const bool alarm = asked_ && image.alarms_active > 0 && in_stage(image) > 0.5;
+  const bool alarm = asked_ && in_stage(image) > kSettled_s && failed(image);
   if (alarm || in_stage(image) > kBootPatience_s) power_down(Outcome::alarm, image);
 }
 
 void OperatorScript::home(const ProcessImage& image) {
+  const bool busy = missing(
+      image, [](const image::AxisImage& a, std::size_t) { return a.owner != image::AxisOwner::homing; });
   const bool open = missing(
       image, [&](const image::AxisImage& a, std::size_t i) { return a.homed || !wishes_.needs_homing[i]; });
   if (open && !asked_) {
     asked_ = true;
     send_in(image::Mode::home, RequestKind::home);
   }
-  const bool busy = missing(
-      image, [](const image::AxisImage& a, std::size_t) { return a.owner != image::AxisOwner::homing; });
   const bool stands = standing(image);
-  if (!open && !busy && stands) {
-    waiting_for_.clear();
+  if (!open && !busy && stands)
     return wishes_.program ? enter(Stage::start, image) : power_down(Outcome::finished, image);
-  }
-  const bool alarm = image.alarms_active > 0 && stands && in_stage(image) > 0.5;
-  if (alarm || in_stage(image) > kHomingPatience_s) power_down(Outcome::alarm, image);
+  // A warning alone is no reason to give up, but an order that ended without its axes homed is.
+  homing_begun_ = homing_begun_ || image.homing || busy;
+  const bool over = homing_begun_ && !image.homing && !busy;
+  const bool gave_up = stands && in_stage(image) > kSettled_s && (over || failed(image));
+  if (gave_up || in_stage(image) > wishes_.homing_patience_s) power_down(Outcome::alarm, image);
 }
 
 void OperatorScript::start(const ProcessImage& image) {

@@ -8,8 +8,12 @@
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/image/request.hpp"
 #include "firmware_if/text/finding.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::gateway {
+
+/// Whether an alarm stands that is more than a warning.
+bool fault_stands(const cycle::AlarmSnapshot& alarms) noexcept;
 
 /// What `servogate run` does in an operator's place, one step after the other, by requests like anybody's:
 /// drives on, home what is not homed, AUTO, start, wait for the end, drives off. With `wait_for_start`
@@ -28,15 +32,16 @@ class OperatorScript {
     std::optional<image::Place> start_place;  ///< of that person's button; needed with wait_for_start
     int start_source = -1;                    ///< whose age says whether the button is known, -1: nobody's
     double patience_s = 0.0;           ///< machine time that a program may wait for somebody; 0: for ever
+    double homing_patience_s = 300.0;  ///< machine time in which all axes have homed, or never will
     std::vector<std::string> letters;  ///< of the axes that programs move; auxiliary ones are the PLC's
     std::vector<bool> needs_homing;
+    std::function<bool()> fault;  ///< fault_stands(); asked only while there is any alarm
   };
   using Post = std::function<bool(const image::Request&)>;
 
   OperatorScript(Wishes wishes, Post post);
 
-  /// Looks at the image of a cycle and posts what comes next. `homing_failed`: the sequence ended without
-  /// success.
+  /// Looks at the image of a cycle and posts what comes next.
   void poll(const image::ProcessImage& image);
   /// An answer of the gate to one of its requests.
   void take(const image::Answer& answer);
@@ -45,6 +50,8 @@ class OperatorScript {
 
   bool done() const noexcept { return stage_ == Stage::done; }
   Stage stage() const noexcept { return stage_; }
+  /// The stage in which the outcome came about; before that, the present one.
+  Stage came_to() const noexcept { return stage_ >= Stage::power_off ? ended_in_ : stage_; }
   Outcome outcome() const noexcept { return outcome_; }
   const image::Answer& refusal() const noexcept { return refusal_; }
   /// What the program waited for when the outcome is `waited`.
@@ -59,6 +66,8 @@ class OperatorScript {
   void enter(Stage stage, const image::ProcessImage& image);
   void stop_where_interrupted();
   bool standing(const image::ProcessImage& image) const;
+  /// Something stands in the way that is more than a warning.
+  bool failed(const image::ProcessImage& image) const;
   /// Whether an axis is not `good(axis, index)`; those are what is waited for.
   template <class Good>
   bool missing(const image::ProcessImage& image, Good&& good);
@@ -75,7 +84,7 @@ class OperatorScript {
 
   Wishes wishes_;
   Post post_;
-  Stage stage_;
+  Stage stage_, ended_in_ = Stage::done;
   Outcome outcome_ = Outcome::under_way;
   image::Answer refusal_;
   image::Answer last_refusal_;  ///< of a request that is asked again
@@ -84,6 +93,7 @@ class OperatorScript {
   image::Nanoseconds entered_ns_ = 0;
   std::uint64_t next_id_ = 1;
   bool asked_ = false;
+  bool homing_begun_ = false;
   image::Nanoseconds released_ns_ = -1;  ///< since when the start button is known to be released
   int interrupts_ = 0, interrupts_done_ = 0;
 };

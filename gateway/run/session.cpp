@@ -126,7 +126,7 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
   const machine::MachineConfig& m = control_.machine();
   const image::ProcessImage& image = cycle.image();
   r.cycles = cycle.count();
-  r.time_s = static_cast<double>(cycle.count() * cycle.period_ns()) * 1e-9;
+  r.time_s = static_cast<double>(cycle.count() * cycle.period_ns()) / 1e9;
   r.overruns = overruns;
   r.starved = image.processes[0].starved;
   r.blocks = image.processes[0].blocks_done;

@@ -218,11 +218,15 @@ TEST(StateDirectory, with_no_whole_generation_of_a_part_says_what_is_lost_and_wh
     test::write_text(file, whole.substr(0, whole.size() / 2));
     EXPECT_TRUE(directory.load().ok()) << "the previous generation is used";
     test::write_text(previous, whole.substr(0, whole.size() / 3));
-    ASSERT_FALSE(directory.load().ok());
+    // Without the gains that were found, those of the machine file hold.
+    const bool gains = p.part == StatePart::gains;
+    ASSERT_EQ(directory.load().ok(), gains);
+    EXPECT_EQ(directory.load().fell_back(), gains);
     EXPECT_EQ(last().entry->id, "state.part_lost");
     const std::string both = last().str(text::Language::english);
-    for (const std::string& said : {file + ":1:1: error: both this file and " + previous, std::string(p.lost),
-                                    std::string("move both away, and ") + p.remedy})
+    for (const std::string& said :
+         {file + (gains ? ":1:1: warning: " : ":1:1: error: ") + "both this file and " + previous,
+          std::string(p.lost), std::string("move both away, and ") + p.remedy})
       EXPECT_NE(both.find(said), std::string::npos) << both;
     EXPECT_NE(last().str(text::Language::russian).find(p.russian), std::string::npos);
     std::filesystem::remove(previous);
@@ -233,6 +237,20 @@ TEST(StateDirectory, with_no_whole_generation_of_a_part_says_what_is_lost_and_wh
     std::filesystem::remove(previous);
     EXPECT_TRUE(directory.load().findings.empty());
   }
+}
+
+TEST(StateDirectory, leaves_damaged_gains_as_they_are_when_it_saves_all_parts) {
+  const StateDirectory directory(test::scratch("damaged-gains"));
+  std::string error;
+  ASSERT_TRUE(directory.save_all(sample(), error)) << error;
+  const std::string damaged = "checksum = \"none\"\nX.position_gain = 3o\n";
+  test::write_text(directory.file(StatePart::gains), damaged);
+  const StateDirectory::Loaded loaded = directory.load();
+  ASSERT_TRUE(loaded.ok()) << "a run goes on";
+  EXPECT_TRUE(loaded.state.gains.empty());
+  EXPECT_EQ(loaded.state.counters, sample().counters);
+  ASSERT_TRUE(directory.save_all(loaded.state, error)) << error;
+  EXPECT_EQ(test::read_text(directory.file(StatePart::gains)), damaged);
 }
 
 /// A machine that counts: what generation n of the retained variables holds.

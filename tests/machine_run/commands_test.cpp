@@ -299,6 +299,58 @@ TEST(Run, that_is_refused_or_never_gets_ready_says_why_in_its_report) {
   }
 }
 
+TEST(Run, goes_on_through_a_warning_during_homing_to_the_end_of_its_program) {
+  const Scratch scratch;
+  const std::string machine =
+      changed_mill(scratch, "following_error_warn = \"0.5 mm\"", "following_error_warn = \"0.005 mm\"");
+  const std::string program = scratch.write("x.nc", "N10 G90 G71 G94\nN20 G1 X5 F1000\nN30 M30\n");
+  const Ending e = servogate({"run", machine, program, "--virtual", "--json"});
+  EXPECT_EQ(e.code, 0) << e.err;
+  EXPECT_NE(e.err.find("alarm 1017"), std::string::npos) << "there was a warning: " << e.err;
+  EXPECT_TRUE(parsed(e.out)["finished"].get<bool>()) << e.err;
+}
+
+TEST(Run, whose_homing_fails_names_the_alarm_and_the_axes_without_a_zero) {
+  const Scratch scratch;
+  const std::string machine = changed_mill(scratch, "switch = \"x_home\"", "switch = \"x_limit_plus_2\"");
+  std::string text = read_all(machine);
+  const std::string point = "  { name = \"estop_chain_ok\"";
+  ASSERT_NE(text.find(point), std::string::npos);
+  text.insert(text.find(point), "  { name = \"x_limit_plus_2\", channel = \"di20\", place = \"SA30\" },\n");
+  const Ending e = servogate({"run", scratch.write("dead.toml", text), "--virtual", "--json"});
+  EXPECT_EQ(e.code, 1) << e.err;
+  EXPECT_NE(e.err.find("[run.not-homed]"), std::string::npos) << e.err;
+  const json report = parsed(e.out);
+  EXPECT_EQ(report["error"]["code"], "run.not-homed");
+  EXPECT_FALSE(report["alarms"].empty()) << "a switch that never works";
+}
+
+TEST(Run, shows_the_message_of_a_program_without_letting_it_command_the_terminal) {
+  const Scratch scratch;
+  const std::string program = scratch.write("dis.nc",
+                                            "N10 (DIS,\"a\x1b]0;b\x07 \xC2\x9B"
+                                            "c\")\nN20 G4 F1\nN30 M30\n");
+  const Ending e = servogate({"run", mill_file(), program, "--virtual"});
+  EXPECT_NE(e.err.find("a\\x1B]0;b\\x07 \\xC2\\x9B"
+                       "c"),
+            std::string::npos)
+      << e.err;
+  EXPECT_EQ(e.err.find('\x1b'), std::string::npos);
+}
+
+TEST(Run, goes_on_with_the_gains_of_the_machine_file_when_the_saved_ones_are_damaged) {
+  const Scratch scratch;
+  const std::string nc = scratch.write("end.nc", "N10 M30\n"), state = scratch.path("state");
+  ASSERT_EQ(servogate({"run", mill_file(), nc, "--virtual", "--state", state, "-q"}).code, 0);
+  scratch.write("state/gains.toml", "checksum = \"none\"\n\x1b[2J = 1\n");
+  const Ending e = servogate({"run", mill_file(), nc, "--virtual", "--state", state, "--json"});
+  EXPECT_EQ(e.code, 0) << e.err;
+  EXPECT_NE(e.err.find("alarm 6006"), std::string::npos) << e.err;
+  EXPECT_NE(e.err.find("gains.toml"), std::string::npos) << e.err;
+  EXPECT_EQ(e.err.find('\x1b'), std::string::npos) << e.err;
+  EXPECT_TRUE(parsed(e.out)["finished"].get<bool>());
+}
+
 TEST(Run, that_an_alarm_ends_is_one_with_the_alarm_in_report_and_words) {
   const Scratch scratch;
   // The PLC of the mill does not know M77.

@@ -66,15 +66,16 @@ TEST(Verdict, of_a_run_that_waited_for_ever_has_its_remedy) {
   EXPECT_TRUE(says(verdict["remedy"], "servogate up")) << verdict;
 }
 
-TEST(Check, says_that_a_machine_without_plc_can_never_start) {
+TEST(Check, refuses_a_machine_without_plc_which_can_never_start) {
   const Scratch scratch;
   std::string text = read_all(source("examples/minimal/machine.toml"));
   const std::string plc = "[plc]\nsources = [\"minimal.st\"]\n";
   ASSERT_TRUE(says(text, plc));
   text.replace(text.find(plc), plc.size(), "");
   const Ending e = servogate({"check", scratch.write("machine.toml", text)});
-  EXPECT_TRUE(says(e.err, "[check.no-logic]")) << e.err;
-  EXPECT_EQ(last_line(e.out), "no errors, 5 warnings") << e.out;
+  EXPECT_EQ(e.code, 1);
+  EXPECT_TRUE(says(e.err, "error: [plc] names no sources")) << e.err;
+  EXPECT_EQ(last_line(e.out), "1 error, 4 warnings") << e.out;
 }
 
 TEST(Check, ends_with_what_all_of_it_comes_to) {

@@ -78,7 +78,10 @@ TEST_F(Jog, goes_on_while_its_client_keeps_asking_and_nobody_else_may_do_that_fo
         return in_time > 20;
       },
       std::chrono::milliseconds(20)));
+  ASSERT_TRUE(other.exchange(R"({"cmd":"jog_stop","axis":"Y"})", answer));
+  EXPECT_EQ(json::parse(answer)["text"], "this axis is not being jogged: there is nothing to stop");
   ASSERT_TRUE(client.exchange(R"({"cmd":"jog_stop","axis":"X"})", answer));
+  EXPECT_EQ(json::parse(answer)["text"], "the jog of this axis stops");
   EXPECT_TRUE(shell_.until([](const json& s) { return !s["axes"][0]["moving"].get<bool>(); }));
 }
 

@@ -20,6 +20,41 @@ TEST(Finding, prints_file_line_column_severity_text_and_code) {
             "bracket.nc: warning: X выходит за пределы хода: 301 мм [sample.limit]");
 }
 
+TEST(Visible, leaves_no_byte_that_commands_a_terminal) {
+  const struct {
+    std::string words, shown;
+  } rows[] = {
+      {"\x1b[2J\x1b]0;title\x07", "\\x1B[2J\\x1B]0;title\\x07"},
+      {"a\tb\nc\rd", "a\tb\nc\\x0Dd"},
+      {"\xC2\x9B"
+       "31m",
+       "\\xC2\\x9B"
+       "31m"},  // CSI of Latin-1 as UTF-8
+      {"\x9B"
+       "31m",
+       "\\x9B"
+       "31m"},  // and as a byte
+      {"\x7f", "\\x7F"},
+      {"\xE2\x80\xAE"
+       "cba",
+       "\\xE2\\x80\\xAE"
+       "cba"},  // from right to left
+      {"ось \u00B5 \u20AC \U0001F600", "ось \u00B5 \u20AC \U0001F600"},
+      {"\xD0", "\\xD0"},  // cut off
+      {std::string("a\0b", 3),
+       "a\\x00"
+       "b"},
+  };
+  for (const auto& row : rows) EXPECT_EQ(visible(row.words), row.shown);
+}
+
+TEST(Finding, of_a_file_with_a_wild_name_and_a_wild_line_shows_both_visibly) {
+  const Finding f{Severity::error, "a\x1b[2J.nc", 1, 5, &kSample, {"X\x1b", "1"}, "N1 \xC2\x9BX"};
+  EXPECT_EQ(f.str(Language::english),
+            "a\\x1B[2J.nc:1:5: error: X\\x1B leaves the travel at 1 mm [sample.limit]");
+  EXPECT_EQ(f.excerpt(), " 1 | N1 ??X\n   |      ^\n");
+}
+
 TEST(Render, keeps_a_placeholder_without_an_argument_visible) {
   EXPECT_EQ(render(kSample, std::vector<std::string>{"X"}, Language::english),
             "X leaves the travel at {1} mm");

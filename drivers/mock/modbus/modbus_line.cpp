@@ -3,16 +3,20 @@
 
 #include <algorithm>
 
+#include "firmware_if/modbus/line_time.hpp"
+
 namespace servogate::mock {
 
 using image::Nanoseconds;
+using modbus::LineTime;
 
 namespace {
 
-// RTU adds station address and checksum to a PDU. Source: Modbus over Serial Line V1.02, section 2.5.1.
-constexpr std::size_t kRtuOverhead = 3;
-constexpr int kBitsPerCharacter = 11;
-constexpr Nanoseconds kFastSilence = 1'750'000;  // fixed above 19200 baud, section 2.5.1.1
+// A machine file is checked against these.
+static_assert(LineSettings{}.stale_after_periods == modbus::kStaleAfterPeriods);
+static_assert(StationSettings{}.answer_delay_ns == modbus::kAnswerDelay);
+
+constexpr std::size_t kRtuOverhead = 3;  // station address and checksum
 
 std::vector<modbus::Unit> units_of(const std::vector<StationSettings>& stations,
                                    const std::vector<int>& sources) {
@@ -39,18 +43,13 @@ std::size_t MockModbusLine::station_of(std::uint8_t unit) const noexcept {
 }
 
 Nanoseconds MockModbusLine::characters_ns(std::size_t count) const noexcept {
-  if (line_.baud == 0) return 0;
-  return static_cast<Nanoseconds>(count) * kBitsPerCharacter * image::kSecond / line_.baud;
+  return LineTime(line_.baud).characters(count);
 }
 
-Nanoseconds MockModbusLine::silence_ns() const noexcept {
-  if (line_.baud == 0) return 0;
-  return line_.baud > 19200 ? kFastSilence : characters_ns(7) / 2;
-}
+Nanoseconds MockModbusLine::silence_ns() const noexcept { return LineTime(line_.baud).silence(); }
 
 Nanoseconds MockModbusLine::transaction_ns(const modbus::Block& b, Nanoseconds answer_delay) const noexcept {
-  return line_.latency_ns + characters_ns(request_size(b.function, b.count) + kRtuOverhead) + answer_delay +
-         characters_ns(response_size(b.function, b.count) + kRtuOverhead) + silence_ns();
+  return line_.latency_ns + LineTime(line_.baud).transaction(b, answer_delay);
 }
 
 double MockModbusLine::planned_load() const noexcept {
@@ -85,8 +84,7 @@ bool MockModbusLine::open(Nanoseconds t) {
   now_.active = true;
   now_.station = station_of(b.unit);
   now_.served = now_.answered = false;
-  now_.arrival_ns =
-      next->start_ns + line_.latency_ns / 2 + characters_ns(request_size(b.function, b.count) + kRtuOverhead);
+  now_.arrival_ns = next->start_ns + line_.latency_ns / 2 + LineTime(line_.baud).request(b);
   now_.end_ns = now_.arrival_ns;
   now_.request = poller_.begin(*next);
   return true;

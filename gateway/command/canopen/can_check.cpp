@@ -188,7 +188,7 @@ class Report {
     facts_["ok"] = healthy_;
     facts_["sentences"] = sentences_;
     if (options_.json)
-      print_line(facts_.dump(1, ' ', false, json::error_handler_t::replace));
+      print_exact(facts_.dump(1, ' ', false, json::error_handler_t::replace));
     else
       for (const std::string& s : sentences_) print_line(s);
     return healthy_ ? kDone : kAlarm;
@@ -301,13 +301,11 @@ int detect(const CanCheckOptions& options, const std::string& url,
     return kWrongUse;
   }
   const EndBySignal signals;
-  const auto tell = [&](std::uint32_t rate) {
-    std::fprintf(
-        stderr, "%s\n",
-        text::render(kTrying, std::vector<std::string>{std::to_string(rate)}, text::user_language()).c_str());
+  const auto trying = [&](std::uint32_t rate) {
+    tell(text::render(kTrying, std::vector<std::string>{std::to_string(rate)}, text::user_language()));
     return !signals.ended();
   };
-  const DetectedRate found = adapter ? detect_bit_rate(url, tell) : detect_bit_rate(*link, tell);
+  const DetectedRate found = adapter ? detect_bit_rate(url, trying) : detect_bit_rate(*link, trying);
   if (signals.ended()) return kStopped;
   if (!found.problem.empty()) {
     complain(kCannotDetect, {adapter ? url : link->name, found.problem});

@@ -119,7 +119,7 @@ class Layers {
       code = one(step);
       if (code != kDone) break;
     }
-    if (options_.json) print_line(json{{"schema", 1}, {"ok", code == kDone}, {"steps", said_}}.dump(1));
+    if (options_.json) print_exact(json{{"schema", 1}, {"ok", code == kDone}, {"steps", said_}}.dump(1));
     return code;
   }
 

@@ -95,7 +95,7 @@ int tell(const NmtOptions& options, const States& states, const Row& row) {
     if (!there) complain(kElsewhere, words);
   }
   if (options.json)
-    print_line(
+    print_exact(
         json{{"schema", 1}, {"command", options.command}, {"node", options.node}, {"states", list}}.dump(1));
   if (states.empty()) complain(kSilent, {});
   return all ? kDone : kAlarm;

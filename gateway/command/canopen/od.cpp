@@ -78,7 +78,7 @@ json place_json(const ObjectCatalogue& catalogue, std::uint16_t index, std::uint
 }
 
 json head(const OdOptions& options) { return {{"schema", 1}, {"node", options.node}}; }
-void print_json(const json& out) { print_line(out.dump(1, ' ', false, json::error_handler_t::replace)); }
+void print_json(const json& out) { print_exact(out.dump(1, ' ', false, json::error_handler_t::replace)); }
 
 void print_objects(const Work& work, const ObjectCatalogue& catalogue,
                    const std::vector<ReadObject>& objects) {
@@ -122,9 +122,7 @@ int save(const Work& work, const std::vector<ReadObject>& objects, const canopen
   if (!places.empty()) complain(kNotSaved, {work.options.save, places});
   const auto read =
       std::count_if(objects.begin(), objects.end(), [](const auto& o) { return o.outcome.ok(); });
-  std::fprintf(
-      stderr, "%s\n",
-      say(kSaved, {work.options.save, std::to_string(read), std::to_string(work.options.node)}).c_str());
+  tell(say(kSaved, {work.options.save, std::to_string(read), std::to_string(work.options.node)}));
   return kDone;
 }
 

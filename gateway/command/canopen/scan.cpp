@@ -209,10 +209,10 @@ int tell(const ScanOptions& options, const Nodes& nodes, const std::string& mast
     if (!master.empty()) out["controlled_by_frame"] = say({"", "{0}", "{0}"}, {master});
     if (holder != nullptr) out["held_by"] = {{"machine", holder->machine}, {"socket", holder->socket}};
     for (const auto& [id, node] : nodes) out["nodes"].push_back(node_json(id, node));
-    print_line(out.dump(1, ' ', false, json::error_handler_t::replace));
+    print_exact(out.dump(1, ' ', false, json::error_handler_t::replace));
   } else {
-    if (holder != nullptr) std::fprintf(stderr, "%s\n", say(kThrough, {holder->machine}).c_str());
-    if (!master.empty()) std::fprintf(stderr, "%s\n", say(kUsed, {master}).c_str());
+    if (holder != nullptr) gateway::tell(say(kThrough, {holder->machine}));
+    if (!master.empty()) gateway::tell(say(kUsed, {master}));
     for (const auto& [id, node] : nodes) print_node(id, node);
   }
   if (!nodes.empty()) return kDone;

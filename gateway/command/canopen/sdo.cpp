@@ -122,7 +122,7 @@ json head(const SdoOptions& options, const Request& request) {
           {"name", request.name}};
 }
 
-void print_json(const json& out) { print_line(out.dump(1, ' ', false, json::error_handler_t::replace)); }
+void print_json(const json& out) { print_exact(out.dump(1, ' ', false, json::error_handler_t::replace)); }
 
 int fail(const SdoOptions& options, const Request& request, const SdoOutcome& outcome,
          const std::string& instead) {

@@ -40,8 +40,7 @@ std::string say(const text::Entry& entry) { return text::render(entry, {}, text:
 void print_refusal(const json& reply) {
   const std::string words = of(reply, "text");
   const std::size_t end = std::min(words.find('\n'), words.size());
-  std::fprintf(stderr, "servogate: %s [%s]%s\n", words.substr(0, end).c_str(), of(reply, "code").c_str(),
-               words.substr(end).c_str());
+  tell("servogate: " + words.substr(0, end) + " [" + of(reply, "code") + "]" + words.substr(end));
 }
 
 /// The control ends its connections when state and record are written and the axes and drives are at rest.
@@ -127,14 +126,14 @@ int client(const ClientOptions& options) {
   if (reply.is_null()) return connection_lost(path);
   int code = reply.value("exit", kInfrastructure);
   if (code == kDone && manner.waits) {
-    if (!options.json) std::fprintf(stderr, "%s\n", of(reply, "text").c_str());
+    if (!options.json) tell(of(reply, "text"));
     code = manner.jog ? follow_jog(connection, request, reply) : wait_for_end(connection, request, reply);
     if (!reply.is_null()) reply["exit"] = code;
   }
   if (code == kDone && request["cmd"] == "down") wait_until_closed(connection);
   if (reply.is_null()) return connection_lost(path);
   if (options.json)
-    print_line(reply.dump(1, ' ', false, json::error_handler_t::replace));
+    print_exact(reply.dump(1, ' ', false, json::error_handler_t::replace));
   else
     show(options, request, manner, code, reply);
   return code;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "firmware_if/text/decimal_comma.hpp"
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/messages.hpp"
 
@@ -15,6 +16,8 @@ using nlohmann::json;
 namespace {
 
 const text::Entry kBadNumber{"client.bad-number", "'{0}' is not {1}", "«{0}» — не {1}"};
+const text::Entry kComma{"client.decimal-comma", "'{0}' has a decimal comma; write {1}",
+                         "в «{0}» десятичная запятая; пишите {1}"};
 const text::Entry kArguments{"client.arguments", "`{0}` takes: {1}", "`{0}` принимает: {1}"};
 
 /// A finite number at the front of `text`; `rest`: what is behind it.
@@ -22,7 +25,7 @@ bool parse_number(std::string_view text, double& value, std::string_view& rest) 
   if (!text.empty() && text[0] == '+') text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   rest = text.substr(static_cast<std::size_t>(end - text.data()));
-  return error == std::errc{} && std::isfinite(value);
+  return error == std::errc{} && std::isfinite(value) && !rest.starts_with(',');
 }
 
 }  // namespace
@@ -33,12 +36,17 @@ json request_of(const ClientOptions& options) {
   json r{{"cmd", c},
          {"asker", "command_line"},
          {"language", text::user_language() == text::Language::russian ? "ru" : "en"}};
+  const auto comma = [](const std::string& what) {
+    const std::string point = text::with_decimal_point(what);
+    if (!point.empty()) complain(kComma, {what, point});
+    return !point.empty();
+  };
   const auto wrong = [&](const char* takes) {
-    complain(kArguments, {c, takes});
+    if (a.empty() || !comma(a.back())) complain(kArguments, {c, takes});
     return json();
   };
   const auto not_a = [&](const std::string& what, std::string_view english, std::string_view russian) {
-    complain(kBadNumber, {what, text::both(english, russian)});
+    if (!comma(what)) complain(kBadNumber, {what, text::both(english, russian)});
     return json();
   };
   std::string_view rest;

@@ -11,6 +11,7 @@
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/run/standstill.hpp"
 
@@ -64,10 +65,8 @@ std::string of(const json& object, const char* key) { return object.value(key, s
 
 /// A wait of the program and who has to do what, on standard error.
 void tell(const text::Entry& entry, const json& wait) {
-  std::fprintf(stderr, "%s\n",
-               text::render(entry, std::vector<std::string>{of(wait, "text"), of(wait, "remedy")},
-                            text::user_language())
-                   .c_str());
+  gateway::tell(text::render(entry, std::vector<std::string>{of(wait, "text"), of(wait, "remedy")},
+                             text::user_language()));
 }
 
 /// What was asked for, as far as waiting has to tell it apart.

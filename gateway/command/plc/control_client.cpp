@@ -26,10 +26,9 @@ json ControlClient::ask(const std::string& command, json more) {
 int ControlClient::tell(const json& answer, bool as_json) {
   if (answer.is_null()) return kInfrastructure;
   if (as_json)
-    print_line(answer.dump(-1, ' ', false, json::error_handler_t::replace));
+    print_exact(answer.dump(-1, ' ', false, json::error_handler_t::replace));
   else if (!answer.value("ok", false))
-    std::fprintf(stderr, "servogate: %s [%s]\n", answer.value("text", "").c_str(),
-                 answer.value("code", "").c_str());
+    gateway::tell("servogate: " + answer.value("text", "") + " [" + answer.value("code", "") + "]");
   return answer.value("exit", static_cast<int>(kInfrastructure));
 }
 

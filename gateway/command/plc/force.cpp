@@ -41,7 +41,7 @@ int show(ControlClient& control, const PlcForceOptions& options) {
   if (status.is_null()) return kInfrastructure;
   const json forced = status.value("forced", json::array());
   if (options.json) {
-    print_line(json{{"schema", 1}, {"forced", forced}}.dump(-1, ' ', false, json::error_handler_t::replace));
+    print_exact(json{{"schema", 1}, {"forced", forced}}.dump(-1, ' ', false, json::error_handler_t::replace));
     return kDone;
   }
   if (forced.empty()) print_line(text::render(kNothing, {}, text::user_language()));
@@ -71,7 +71,7 @@ int plc_force(const PlcForceOptions& options) {
   if (options.stay) return kDone;
   // The control lets go when this connection ends, however it ends; asking now and then shows when it is
   // gone.
-  std::fprintf(stderr, "%s\n", text::render(kWaits, {}, text::user_language()).c_str());
+  tell(text::render(kWaits, {}, text::user_language()));
   while (signals_seen() == 0) {
     pollfd in{STDIN_FILENO, POLLIN, 0};
     if (poll(&in, 1, 200) > 0) break;

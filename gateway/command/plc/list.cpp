@@ -59,7 +59,7 @@ int plc_list(const PlcListOptions& options) {
   json answer;
   if (!options.files.empty()) {
     if (const int code = list_files(options, answer); code != kDone) return code;
-    if (options.json) print_line(answer.dump(-1, ' ', false, json::error_handler_t::replace));
+    if (options.json) print_exact(answer.dump(-1, ' ', false, json::error_handler_t::replace));
   } else {
     ControlClient control;
     if (const int code = control.connect(options.socket); code != kDone) return code;

@@ -57,10 +57,11 @@ int plc_check(const PlcCheckOptions& options) {
   const bool good = plc::check(files, surroundings.symbols, surroundings.options, findings);
   const int errors = print_findings(findings);
   if (options.json)
-    print_line(nlohmann::json{{"schema", 1},
-                              {"errors", errors},
-                              {"findings", nlohmann::json::parse(machine::to_json(findings), nullptr, false)}}
-                   .dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+    print_exact(
+        nlohmann::json{{"schema", 1},
+                       {"errors", errors},
+                       {"findings", nlohmann::json::parse(machine::to_json(findings), nullptr, false)}}
+            .dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   return good ? kDone : kAlarm;
 }
 

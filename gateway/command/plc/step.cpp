@@ -50,7 +50,7 @@ class Stepping {
   }
   /// Scans as they are typed, until the end of the input or a signal.
   int by_hand() {
-    std::fprintf(stderr, "%s\n", text::render(kWaits, {}, text::user_language()).c_str());
+    tell(text::render(kWaits, {}, text::user_language()));
     while (const std::optional<std::string> line = next_line()) {
       int count = line->empty() ? 1 : 0;
       std::from_chars(line->data(), line->data() + line->size(), count);

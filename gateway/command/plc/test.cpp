@@ -115,7 +115,7 @@ int Tests::run() {
   int code = kDone;
   for (const std::string& path : tests_) code = std::max(code, run_file(path));
   if (options_.json)
-    print_line(json{{"schema", 1}, {"tests", told_}, {"failed", failed_}}.dump(
+    print_exact(json{{"schema", 1}, {"tests", told_}, {"failed", failed_}}.dump(
         -1, ' ', false, json::error_handler_t::replace));
   else
     print_line(text::render(kSummary,

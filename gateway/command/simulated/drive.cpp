@@ -10,6 +10,7 @@
 #include "drivers/clock.hpp"
 #include "firmware_if/canopen/306/value_text.hpp"
 #include "gateway/cli/messages.hpp"
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/bus/named_bus.hpp"
 #include "gateway/command/canopen/data_sheet.hpp"
@@ -305,10 +306,8 @@ int drive(const DriveOptions& options) {
     if (const int code = may_join(*transport, plan.url, options.nodes, ask, signals); code != kDone)
       return code;
   for (const mock::SimulatedDriveConfig& d : plan.drives)
-    std::fprintf(stderr, "%s\n",
-                 text::render(kLives, std::vector<std::string>{std::to_string(d.node_id), plan.url, d.name},
-                              text::user_language())
-                     .c_str());
+    tell(text::render(kLives, std::vector<std::string>{std::to_string(d.node_id), plan.url, d.name},
+                      text::user_language()));
   // Standard input has no place in granted time.
   DriveDesk desk(std::move(*deeds), transport->lockstep == nullptr);
   const int code = transport->lockstep != nullptr

@@ -64,7 +64,7 @@ void perform_on(mock::SimulatedDrive& d, const DriveDeed& deed) {
     case DriveDeed::Kind::load:
       return d.set_load_torque(deed.load_nm);
     case DriveDeed::Kind::status:
-      print_line(status_of(d).dump());
+      print_exact(status_of(d).dump());
       std::fflush(stdout);
       return;
   }
@@ -160,8 +160,7 @@ void DriveDesk::perform_on_device(const DriveDeed& deed) {
   std::string why;
   if (!on_device_) return complain(kNoMachine, {deed.device});
   if (!on_device_(deed, why)) return complain(kBadDeed, {deed.words, why});
-  std::fprintf(stderr, "%s\n",
-               text::render(kOnDevice, std::vector<std::string>{deed.words}, text::user_language()).c_str());
+  tell(text::render(kOnDevice, std::vector<std::string>{deed.words}, text::user_language()));
 }
 
 void DriveDesk::perform(const DriveDeed& deed, std::span<mock::SimulatedDrive* const> drives) {
@@ -171,10 +170,8 @@ void DriveDesk::perform(const DriveDeed& deed, std::span<mock::SimulatedDrive* c
     if (deed.node != 0 && deed.node != d->node_id()) continue;
     found = true;
     if (deed.kind != DriveDeed::Kind::status)
-      std::fprintf(stderr, "%s\n",
-                   text::render(kHappened, std::vector<std::string>{std::to_string(d->node_id()), deed.words},
-                                text::user_language())
-                       .c_str());
+      tell(text::render(kHappened, std::vector<std::string>{std::to_string(d->node_id()), deed.words},
+                        text::user_language()));
     perform_on(*d, deed);
   }
   if (!found) complain(kNobody, {std::to_string(deed.node)});

@@ -292,10 +292,8 @@ int io(const IoOptions& options) {
       return code;
   const std::string name = make_node(options, 1)->name();
   for (const int node : options.nodes)
-    std::fprintf(stderr, "%s\n",
-                 text::render(kLives, std::vector<std::string>{std::to_string(node), named->url, name},
-                              text::user_language())
-                     .c_str());
+    tell(text::render(kLives, std::vector<std::string>{std::to_string(node), named->url, name},
+                      text::user_language()));
   const int code = transport->lockstep != nullptr ? live_in_lockstep(options, *transport->lockstep, signals)
                                                   : live(options, named->url, *transport, signals);
   return unless_frames_lost(code, named->url, *transport->bus);

@@ -8,6 +8,7 @@
 
 #include "drivers/clock.hpp"
 #include "gateway/cli/messages.hpp"
+#include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
@@ -107,11 +108,8 @@ int open_buses(std::vector<Served>& buses, const EndBySignal& signals) {
     b.twins.emplace(b.url, [nodes = b.nodes](int node) {
       return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
     });
-    std::fprintf(
-        stderr, "%s\n",
-        text::render(kServes, std::vector<std::string>{b.name, std::to_string(b.nodes.size()), b.url},
-                     text::user_language())
-            .c_str());
+    tell(text::render(kServes, std::vector<std::string>{b.name, std::to_string(b.nodes.size()), b.url},
+                      text::user_language()));
   }
   return kDone;
 }
@@ -197,8 +195,7 @@ int sim(const SimOptions& options) {
   if (code != kDone) return code;
   for (const machine::StationConfig& s : loaded.machine.stations)
     if (!s.over_bus() && s.mock())
-      std::fprintf(stderr, "%s\n",
-                   text::render(kNotServed, std::vector<std::string>{s.name}, text::user_language()).c_str());
+      tell(text::render(kNotServed, std::vector<std::string>{s.name}, text::user_language()));
   DriveDesk desk(std::move(*deeds), true);
   code = serve(options, loaded, buses, desk, signals);
   for (const Served& b : buses) code = unless_frames_lost(code, b.url, *b.transport.bus);

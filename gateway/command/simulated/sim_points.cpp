@@ -27,7 +27,7 @@ std::string say(const text::Entry& entry, const std::vector<std::string>& argume
   return text::render(entry, arguments, text::user_language());
 }
 
-double seconds(image::Nanoseconds time) { return static_cast<double>(time) * 1e-9; }
+double seconds(image::Nanoseconds time) { return static_cast<double>(time) / 1e9; }
 
 /// nullopt: no level.
 std::optional<InputWish> wish_of(const std::string& word) {
@@ -56,7 +56,7 @@ void SimPoints::look(image::Nanoseconds since_start) {
     if (row.told == on) continue;
     row.told = on;
     if (json_)
-      print_line(json{
+      print_exact(json{
           {"t", seconds(since_start)},
           {"point", row.config.point},
           {"on", on},
@@ -92,10 +92,10 @@ bool SimPoints::play(const std::string& line, image::Nanoseconds since_start) {
       row.told.reset();
     }
   if (json_)
-    print_line(json{{"t", seconds(since_start)},
-                    {"point", point},
-                    {"played", played.value ? json(*played.value) : json("auto")}}
-                   .dump());
+    print_exact(json{{"t", seconds(since_start)},
+                     {"point", point},
+                     {"played", played.value ? json(*played.value) : json("auto")}}
+                    .dump());
   else
     print_line(said);
   std::fflush(stdout);

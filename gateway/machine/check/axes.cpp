@@ -165,6 +165,23 @@ class AxisCheck {
             {"hard_limit_minus", length(a_.hard_limit_minus), length(a_.travel_min), length(a_.travel_max)});
     over_modbus("limit_plus", a_.limit_plus);
     over_modbus("limit_minus", a_.limit_minus);
+    switch_of_another("limit_plus", a_.limit_plus);
+    switch_of_another("limit_minus", a_.limit_minus);
+  }
+  /// Limit switches of several axes may be one chain: it stops all of them. As a home switch it would be
+  /// found by one axis and stop the other.
+  void switch_of_another(std::string_view key, const std::string& point) {
+    if (point.empty()) return;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const AxisConfig& other = machine_.axes[i];
+      if (i == index_) continue;
+      if (other.home.switch_point == point)
+        error(key, finding::kHomeIsLimit, {std::string(key), other.letter, point});
+      for (const auto& [name, theirs] :
+           {std::pair{"limit_plus", &other.limit_plus}, {"limit_minus", &other.limit_minus}})
+        if (i < index_ && *theirs == point)
+          warning(key, finding::kLimitShared, {std::string(key), other.letter, name, point});
+    }
   }
   void same(std::string_view key, const std::string& one, std::string_view other_key,
             const std::string& other) {

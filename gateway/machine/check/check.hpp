@@ -30,6 +30,8 @@ void check_control(const MachineConfig& machine, Reading& reading);
 void check_can_stations(const LoadResult& loaded, Reading& reading);
 /// Heartbeats, guarding, deadlines, SYNC window and TIME against each other and the cycle.
 void check_bus_times(const LoadResult& loaded, Reading& reading);
+/// What takes longer than somebody waits for it: homing, brakes, spindles, Modbus lines.
+void check_waits(const LoadResult& loaded, Reading& reading);
 /// Mechanical ends: behind the switches, and far enough for a stop.
 void check_overrun(const LoadResult& loaded, Reading& reading);
 /// Axes with a brake: whether they fall when the control dies.

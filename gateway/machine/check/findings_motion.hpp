@@ -99,6 +99,20 @@ inline constexpr text::Entry kHomeSwitchShared{
     "or none; choose `home.final_position` so that the axis leaves the switch",
     "У осей {0} и {1} общий датчик нуля «{2}»: пока одна ось стоит на нём, другая найдёт неверный ноль или "
     "не найдёт его; задайте `home.final_position` так, чтобы ось сходила с датчика"};
+inline constexpr text::Entry kHomeIsLimit{
+    "machine.home_is_limit",
+    "{0}: `{1}` is the home switch \"{3}\" of {2}: {2} driving over it would stop {0} as at its limit; give "
+    "each of them a switch of its own",
+    "{0}: «{1}» — датчик нуля «{3}» оси {2}: проходя по нему, {2} останавливала бы {0}, как на концевике; "
+    "нужны отдельные датчики"};
+inline constexpr text::Entry kLimitShared{
+    "machine.limit_shared",
+    "{0}: `{1}` and `{3}` of {2} are the same switch \"{4}\": it stops both axes, each of them moves off it "
+    "in "
+    "its own direction only, and no message can tell which one is on it",
+    "{0}: «{1}» и «{3}» оси {2} — один и тот же концевик «{4}»: он останавливает обе оси, каждая сходит с "
+    "него "
+    "только в свою сторону, и ни одно сообщение не скажет, какая из них на нём"};
 inline constexpr text::Entry kVerticalBrake{
     "machine.vertical_without_brake",
     "{0} is vertical and has no brake: it falls when its power is switched off",

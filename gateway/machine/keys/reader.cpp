@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "firmware_if/text/decimal_comma.hpp"
 #include "firmware_if/text/nearest.hpp"
 #include "gateway/machine/keys/findings.hpp"
 
@@ -105,15 +106,6 @@ bool in_range(const Slot& slot, const Element& e, double value, const Quantity* 
   return true;
 }
 
-/// "10,5 mm" as "10.5 mm"; empty: there is no decimal comma.
-std::string with_decimal_point(std::string text) {
-  const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
-  const std::size_t comma = text.find(',');
-  if (comma == std::string::npos || comma == 0 || !digit(comma - 1) || !digit(comma + 1)) return {};
-  text[comma] = '.';
-  return text;
-}
-
 /// A number, or a string with a unit where the key has one.
 bool read_number(const Slot& slot, const Element& e, double& out) {
   const Unit unit = slot.key.rule.unit;
@@ -121,12 +113,13 @@ bool read_number(const Slot& slot, const Element& e, double& out) {
     if (!in_range(slot, e, e.number())) return false;
     out = e.number();
   } else if (e.kind == Element::Kind::string && unit != Unit::none) {
-    const Quantity q = parse_quantity(e.string, unit, slot.axis);
+    Quantity q = parse_quantity(e.string, unit, slot.axis);
     const std::string name = unit_name(unit, slot.axis);
-    if (const std::string point = with_decimal_point(e.string);
+    if (const std::string point = text::with_decimal_point(e.string);
         q.error != QuantityError::none && !point.empty()) {
-      slot.error(e, finding::kDecimalComma, e.string, point);
-      return false;
+      q = parse_quantity(point, unit, slot.axis);
+      if (q.error == QuantityError::none) slot.error(e, finding::kDecimalComma, e.string, point);
+      if (q.error == QuantityError::none) return false;
     }
     if (q.error == QuantityError::not_a_number) {
       slot.error(e, finding::kNotANumber, e.string, text::both("a number in " + name, "число в " + name));

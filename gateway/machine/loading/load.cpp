@@ -76,6 +76,7 @@ void check_all(LoadResult& result, Reading& reading) {
   check_safety(machine, reading);
   check_devices(result, reading);
   check_bus_times(result, reading);
+  check_waits(result, reading);
   check_overrun(result, reading);
   check_control_death(result, reading);
   check_can_stations(result, reading);

@@ -62,8 +62,7 @@ bool sync_folder(const std::string& folder) {
 bool write_temporary(const std::string& temporary, std::string_view text) {
   // What stands there is left from a save that was broken off, or leads elsewhere.
   if (::unlink(temporary.c_str()) != 0 && errno != ENOENT) return false;
-  const Descriptor fd(
-      ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
+  const Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
   return fd.get() >= 0 && write_whole(fd.get(), text) && ::fsync(fd.get()) == 0;
 }
 
@@ -158,10 +157,13 @@ void load_part(const std::string& file, StatePart part, MachineState& state,
     findings.push_back({text::Severity::warning, file, 1, 1, &finding::kPreviousTaken, {previous}});
     return;
   }
-  findings.insert(findings.end(), problems.begin(), problems.end());
-  findings.insert(findings.end(), of_previous.begin(), of_previous.end());
-  findings.push_back(file_there ? loss_of(part, file, previous, previous_there)
+  problems.insert(problems.end(), of_previous.begin(), of_previous.end());
+  problems.push_back(file_there ? loss_of(part, file, previous, previous_there)
                                 : loss_of(part, previous, file, false));
+  // A machine moves as well by the gains of its file.
+  if (part == StatePart::gains)
+    for (text::Finding& f : problems) f.severity = text::Severity::warning;
+  findings.insert(findings.end(), problems.begin(), problems.end());
 }
 
 /// The retained variables from the newest whole copy.
@@ -203,6 +205,9 @@ void load_retained(const std::string (&files)[2], MachineState& state, std::vect
 
 bool StateDirectory::Loaded::fell_back() const {
   return std::any_of(findings.begin(), findings.end(), [](const text::Finding& f) {
+    const bool gains = (f.entry == &finding::kPartLost || f.entry == &finding::kPartLostAlone) &&
+                       f.severity == text::Severity::warning;
+    if (gains) return true;
     return f.entry == &finding::kPreviousTaken || f.entry == &finding::kOtherCopyTaken;
   });
 }
@@ -239,8 +244,10 @@ bool StateDirectory::save(const MachineState& state, StatePart part, std::string
 }
 
 bool StateDirectory::save_all(const MachineState& state, std::string& error) const {
-  return std::all_of(std::begin(kParts), std::end(kParts),
-                     [&](StatePart part) { return save(state, part, error); });
+  return std::all_of(std::begin(kParts), std::end(kParts), [&](StatePart part) {
+    // Without gains there is nothing to save, and damaged ones stay as they are.
+    return (part == StatePart::gains && state.gains.empty()) || save(state, part, error);
+  });
 }
 
 }  // namespace servogate::machine

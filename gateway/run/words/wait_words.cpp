@@ -228,8 +228,8 @@ WaitWords wait_words(Control& control, const image::ProcessImage& image, int pro
   w.reason = row.reason;
   w.line = wait.line;
   w.file = control.process(process).texts().file(status.run, status.file);
-  w.since_s = static_cast<double>(wait.since_ns) * 1e-9;
-  w.for_s = static_cast<double>(image.now.t_ns - wait.since_ns) * 1e-9;
+  w.since_s = static_cast<double>(wait.since_ns) / 1e9;
+  w.for_s = static_cast<double>(image.now.t_ns - wait.since_ns) / 1e9;
   w.word = word_of(wait);
   if (wait.axis >= 0) w.axis = m.axes[static_cast<std::size_t>(wait.axis)].letter;
   if (is_operators(wait.reason)) w.written_by = "operator";
@@ -240,8 +240,8 @@ WaitWords wait_words(Control& control, const image::ProcessImage& image, int pro
                                                       w.word, w.axis, text::number(wait.value, 3)},
                                            language);
   if (w.remedy.empty())
-    w.remedy = text::render(
-        row.remedy, std::array{named(w), std::string(), plc_sources(m), w.word, w.axis}, language);
+    w.remedy = text::render(row.remedy, std::array{named(w), std::string(), plc_sources(m), w.word, w.axis},
+                            language);
   const std::string file = std::filesystem::path(w.file).filename().string();
   w.text = text::render(w.line > 0 && !file.empty() ? kHere : kSomewhere,
                         std::array{std::to_string(w.line), file, happens}, language);

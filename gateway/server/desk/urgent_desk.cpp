@@ -28,9 +28,19 @@ std::optional<Row> row_of(const ask::Command& command) {
   if (ask::is_any<ask::Stop>(command)) return Row{RequestKind::stop, &says::kStopped};
   if (ask::is_any<ask::QuickStop>(command)) return Row{RequestKind::quick_stop, &says::kStopped};
   if (ask::is_any<ask::Hold>(command)) return Row{RequestKind::hold, nullptr};
-  if (ask::is_any<ask::JogStop>(command)) return Row{RequestKind::jog_stop, &says::kStopped};
+  if (ask::is_any<ask::JogStop>(command)) return Row{RequestKind::jog_stop, nullptr};
   if (ask::is_any<ask::Power>(command)) return Row{RequestKind::power, &says::kPowerOff};
   return std::nullopt;
+}
+
+/// What a jog_stop of an axis meets, or of all where `axis` < 0.
+const text::Entry& said_of_jog_stop(const image::ProcessImage& now, int axis) {
+  bool jogged = false;
+  for (int a = 0; a < now.axis_count; ++a)
+    jogged = jogged || ((axis < 0 || a == axis) &&
+                        now.axes[static_cast<std::size_t>(a)].owner == image::AxisOwner::manual);
+  if (axis >= 0) return jogged ? says::kJogStopped : says::kNotJogged;
+  return jogged ? says::kJogsStopped : says::kNothingJogged;
 }
 
 }  // namespace
@@ -73,13 +83,16 @@ std::optional<Reply> UrgentDesk::take(const Question& question, bool ending) {
       if (axis < 0) return refuse(*problem.entry, problem.arguments, kWrongUse, caller.language);
       r.axis = static_cast<std::int8_t>(axis);
     }
-    if (const auto own = jogs_.find(question.ticket.client); own != jogs_.end())
-      std::erase_if(own->second, [&](const HeldJog& j) { return r.axis < 0 || j.axis == r.axis; });
   }
   Pending pending;
   pending.ticket = question.ticket;
   pending.language = caller.language;
-  pending.said = row->said != nullptr ? row->said : &said_of_hold();
+  const bool jogs = row->kind == RequestKind::jog_stop;
+  pending.said = row->said != nullptr ? row->said
+                 : jogs               ? &said_of_jog_stop(image(), r.axis)
+                                      : &said_of_hold();
+  if (const auto own = jogs_.find(question.ticket.client); jogs && own != jogs_.end())
+    std::erase_if(own->second, [&](const HeldJog& j) { return r.axis < 0 || j.axis == r.axis; });
   pending.asked = Clock::now();
   pending.id = requests_.post(r);
   if (pending.id == 0) return refuse(says::kNoAnswer, {}, kInfrastructure, caller.language);

@@ -55,7 +55,8 @@ extern const text::Entry kBlockRuns;
 extern const text::Entry kLoaded;       ///< {0} program, {1} blocks, {2} warnings
 extern const text::Entry kStarted;      ///< {0} program
 extern const text::Entry kTypedGoesOn;  ///< {0} block
-extern const text::Entry kStepped, kHeld, kManualStopped, kNothingHeld, kResumed, kStopped;
+extern const text::Entry kStepped, kHeld, kManualStopped, kNothingHeld, kResumed, kStopped, kJogsStopped,
+    kNothingJogged, kJogStopped, kNotJogged;
 extern const text::Entry kReset;
 extern const text::Entry kResetLeft;  ///< {0} alarms still active
 extern const text::Entry kOverride;   ///< {0} per cent

@@ -186,12 +186,20 @@ std::string comma_hint(std::string_view line, std::size_t pos) {
   fail(Fault::unknown_word, column(pos), {run, capitals_hint(run, meant)});
 }
 
+/// No word begins at `pos` for a person: a letter that is none, or one that is not executed and has no
+/// number.
+bool is_no_word(const Dialect& dialect, std::string_view line, std::size_t pos) {
+  if (pos >= line.size() || !is_letter(line[pos])) return false;
+  const Meaning meaning = dialect.letters[static_cast<unsigned char>(line[pos])].meaning;
+  return meaning == Meaning::unknown ||
+         (meaning == Meaning::later && pos + 1 < line.size() && is_letter(line[pos + 1]));
+}
+
 /// A letter alone is 0, where 0 is possible; one with letters behind it that are no words is none.
 void check_bare(const Dialect& dialect, const LetterRule& rule, const Block& block, const Word& word,
                 std::size_t pos) {
   const std::string_view line = block.line;
-  const bool letters = pos < block.end && is_letter(line[pos]) &&
-                       dialect.letters[static_cast<unsigned char>(line[pos])].meaning == Meaning::unknown;
+  const bool letters = is_no_word(dialect, line.substr(0, block.end), pos);
   if (!letters && rule.min <= 0.0 && rule.max >= 0.0) return;
   name_later_g(block);
   fail(Fault::value_missing, word.column,

@@ -44,6 +44,7 @@ class Operated {
     w.start_place = mill_.control().machine().point("cycle_start", &w.start_source)->place;
     w.letters = mill_.control().machine().letters();
     w.needs_homing.assign(w.letters.size(), true);
+    w.fault = [this] { return gateway::fault_stands(mill_.machine().alarms()); };
     return w;
   }
   Mill mill_;
@@ -88,6 +89,18 @@ TEST(Operator, does_not_take_a_button_that_was_stuck_from_the_beginning_for_a_pr
   run.mill().run(1.0);
   run.button(true);
   EXPECT_TRUE(run.reaches(OperatorScript::Stage::homing));
+}
+
+TEST(Operator, whose_homing_somebody_ended_gives_up_and_names_the_axes_that_are_not_homed) {
+  Operated run(false);
+  ASSERT_TRUE(run.reaches(OperatorScript::Stage::homing)) << run.mill().alarm_list();
+  ASSERT_TRUE(run.mill().until([&] { return run.mill().axis("Z").moving; }));
+  run.mill().control().cycle().post(
+      {.id = 1000, .asker = image::Asker::page, .kind = image::RequestKind::hold});
+  ASSERT_TRUE(run.reaches(OperatorScript::Stage::done)) << run.mill().alarm_list();
+  EXPECT_EQ(run.script().outcome(), OperatorScript::Outcome::alarm);
+  EXPECT_EQ(run.script().came_to(), OperatorScript::Stage::homing);
+  EXPECT_EQ(run.script().waiting_for(), (std::vector<std::string>{"X", "Y", "Z"}));
 }
 
 TEST(Operator, that_is_interrupted_before_the_button_ends_with_everything_off) {

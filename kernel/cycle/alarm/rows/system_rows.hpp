@@ -46,8 +46,12 @@ inline constexpr AlarmRow kSystemRows[] = {
     {alarm::kStateFellBack,
      image::Reaction::warn,
      ResetCondition::reset,
-     {"system.state_fell_back", "the saved state of the machine was damaged: the previous copy is in use",
-      "сохранённое состояние станка повреждено: используется предыдущая копия"},
+     {"system.state_fell_back",
+      "the saved state of the machine was damaged: the previous copy is in use, or, without a whole copy of "
+      "the "
+      "gains, those of the machine file",
+      "сохранённое состояние станка повреждено: используется предыдущая копия либо, если нет целой копии "
+      "коэффициентов, коэффициенты файла станка"},
      "The messages at the start of the control name the file. Check origins, tools and references before "
      "anything moves.",
      "Файл назван в сообщениях при запуске управления. До движения проверьте начала отсчёта, инструмент и "
