@@ -93,9 +93,17 @@ std::string Shell::text(const std::string& file) const {
   return content.str();
 }
 
+// A computer that is held up for a tenth of a second makes a real-time control refuse a request as too old:
+// whoever still means it sends it again.
 Outcome Shell::run(const std::vector<std::string>& arguments, const std::string& language) {
-  const int code = ending_of(launch(folder_, "run", arguments, language));
-  return {code, text("run.out"), text("run.err")};
+  Outcome done;
+  tests::comes([&] {
+    done.exit = ending_of(launch(folder_, "run", arguments, language));
+    done.out = text("run.out");
+    done.err = text("run.err");
+    return !contains(done.err, "before the control could carry it out");
+  });
+  return done;
 }
 
 pid_t Shell::spawn(const std::vector<std::string>& arguments, const std::string& name) {
@@ -138,7 +146,11 @@ std::optional<json> Shell::answer_to(const json& request) {
 }
 
 json Shell::ask(const json& request) {
-  std::optional<json> answer = answer_to(request);
+  std::optional<json> answer;
+  tests::comes([&] {
+    answer = answer_to(request);
+    return !answer || answer->value("code", "") != "gate.too_old";
+  });
   if (!answer) throw std::runtime_error("no control answers " + request.dump() + ": " + text("up.err"));
   return std::move(*answer);
 }
