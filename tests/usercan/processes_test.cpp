@@ -43,9 +43,9 @@ TEST_P(Wires, the_mill_runs_in_real_time_on_a_bus_between_processes_without_righ
     Process run({"run", machine, program(), "--realtime=best-effort", "-q"});
     EXPECT_EQ(run.wait(), 0) << run.said();
     EXPECT_EQ(run.said().find("alarm"), std::string::npos) << time << " run: " << run.said();
-    // Drives that are told so do not miss their control, for any time; this is one in which a missed heartbeat
-    // (1 s, and half as long again) is said.
-    std::this_thread::sleep_for(std::chrono::milliseconds(2000));
+    // Drives that are told so do not miss their control, for any time; this is longer than the three seconds after
+    // which they would say that it is missing.
+    std::this_thread::sleep_for(std::chrono::milliseconds(3500));
   }
   const std::string wire_log = content(log);
   EXPECT_EQ(wire_log.find("3081110000000000"), std::string::npos) << "8130h: a heartbeat was missed";
