@@ -78,8 +78,9 @@ class RecordedControl {
     }
   }
   bool answered(const image::Request& request, image::Answer& answer) {
-    return resident_.ask(request, answer, resident_.requests().stops()) ==
-           gateway::RequestDesk::Outcome::answered;
+    gateway::Asked asked;
+    asked.stops = resident_.requests().stops();
+    return resident_.ask(request, answer, asked) == gateway::RequestDesk::Outcome::answered;
   }
   /// What went wrong with the files; empty: nothing.
   std::string close() {
@@ -236,8 +237,11 @@ TEST(ResidentRecord, of_forces_and_another_PLC_program_replays_byte_by_byte) {
     RecordedControl control(scratch);
     ASSERT_TRUE(control.until([](const image::ProcessImage& i) { return i.axes[2].drive.online; }));
     gateway::PlcDesk desk(control.resident());
+    gateway::Caller caller;
+    caller.connection = 7;
+    caller.user = "somebody";
     const auto ask = [&](const gateway::ask::Command& command) {
-      gateway::Outcome outcome = desk.carry_out(command, {image::Asker::command_line, 7, "somebody", {}});
+      gateway::Outcome outcome = desk.carry_out(command, caller);
       while (const auto* work = std::get_if<gateway::Work>(&outcome)) {
         const gateway::Finish finish = work->run({});
         outcome = finish();

@@ -17,6 +17,13 @@ namespace {
 
 using image::RequestKind;
 
+/// Asked for just now, when clients had asked for so many stops.
+Asked asked_before(const Stops& stops) {
+  Asked asked;
+  asked.stops = stops;
+  return asked;
+}
+
 class RequestDeskTest : public ::testing::Test {
  protected:
   cycle::Cycle cycle_{cycle::CycleParts{}};
@@ -48,13 +55,13 @@ TEST_F(RequestDeskTest, begins_nothing_that_was_asked_for_before_a_stop) {
     ASSERT_TRUE(desk_.tell(stop));
     for (const RequestKind kind : {RequestKind::start, RequestKind::step, RequestKind::resume,
                                    RequestKind::home, RequestKind::jog_increment})
-      EXPECT_EQ(desk_.ask({.kind = kind, .value = 1.0}, answer_, {before}, 0), RequestDesk::Outcome::overtaken);
-    EXPECT_EQ(desk_.ask({.kind = RequestKind::power, .value = 1.0}, answer_, {before}, 0),
+      EXPECT_EQ(desk_.ask({.kind = kind, .value = 1.0}, answer_, asked_before(before), 0), RequestDesk::Outcome::overtaken);
+    EXPECT_EQ(desk_.ask({.kind = RequestKind::power, .value = 1.0}, answer_, asked_before(before), 0),
               RequestDesk::Outcome::overtaken);
-    EXPECT_EQ(desk_.ask({.kind = RequestKind::acknowledge}, answer_, {before}, 0),
+    EXPECT_EQ(desk_.ask({.kind = RequestKind::acknowledge}, answer_, asked_before(before), 0),
               RequestDesk::Outcome::silent)
         << "posted: it moves nothing";
-    EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, {desk_.stops()}, 0),
+    EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, asked_before(desk_.stops()), 0),
               RequestDesk::Outcome::silent)
         << "posted: it was asked for behind the stop";
     cycle_.step();
@@ -64,12 +71,12 @@ TEST_F(RequestDeskTest, begins_nothing_that_was_asked_for_before_a_stop) {
 TEST_F(RequestDeskTest, takes_a_jog_stop_for_a_stop_of_jogs_only_and_a_dead_hand_for_none) {
   const Stops before = desk_.stops();
   ASSERT_TRUE(desk_.tell({.kind = RequestKind::jog_stop, .axis = 0, .value = 1.0}));
-  EXPECT_EQ(desk_.ask({.kind = RequestKind::jog_continuous, .value = 1.0}, answer_, {before}, 0),
+  EXPECT_EQ(desk_.ask({.kind = RequestKind::jog_continuous, .value = 1.0}, answer_, asked_before(before), 0),
             RequestDesk::Outcome::silent);
   ASSERT_TRUE(desk_.tell({.kind = RequestKind::jog_stop}));
-  EXPECT_EQ(desk_.ask({.kind = RequestKind::jog_continuous, .value = 1.0}, answer_, {before}, 0),
+  EXPECT_EQ(desk_.ask({.kind = RequestKind::jog_continuous, .value = 1.0}, answer_, asked_before(before), 0),
             RequestDesk::Outcome::overtaken);
-  EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, {before}, 0), RequestDesk::Outcome::silent);
+  EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, asked_before(before), 0), RequestDesk::Outcome::silent);
 }
 
 /// A desk whose requests may lie for 100 ms, over a cycle with one axis.
