@@ -202,13 +202,12 @@ void Lossy::cut(const Case& c) {
       return mill_.inject(drive, fault::Kind::pdo_dropped);
     case Part::restarted:
       return mill_.inject(drive, fault::Kind::reset);
-    case Part::left: {  // another master takes the node out of Operational
-      image::CanBus& other = wire->add_endpoint("other");
+    case Part::left: {  // stopped by a frame that the control does not hear: that it hears is another fault
       image::CanFrame stop;
       stop.length = 2;
       stop.data[0] = 2;
       stop.data[1] = static_cast<std::uint8_t>(machine_.machine.node(drive)->id);
-      other.send(stop);
+      mill_.control().world().drive(drive)->on_frame(stop);
       return;
     }
   }
