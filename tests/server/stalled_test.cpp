@@ -36,7 +36,8 @@ class Stalled : public ::testing::Test {
   /// Refusals of this code in the history.
   std::size_t refused(const std::string& code) {
     std::size_t n = 0;
-    for (const json& event : shell_.ask({{"cmd", "history"}})["events"])
+    const json history = shell_.ask({{"cmd", "history"}});
+    for (const json& event : history["events"])
       if (event.dump().find(code) != std::string::npos) ++n;
     return n;
   }
