@@ -302,7 +302,7 @@ TEST(Run, that_is_refused_or_never_gets_ready_says_why_in_its_report) {
 TEST(Run, goes_on_through_a_warning_during_homing_to_the_end_of_its_program) {
   const Scratch scratch;
   const std::string machine =
-      changed_mill(scratch, "following_error_warn = \"0.5 mm\"", "following_error_warn = \"0.005 mm\"");
+      changed_mill(scratch, "following_error_warn = \"0.5 mm\"", "following_error_warn = \"0.0005 mm\"");
   const std::string program = scratch.write("x.nc", "N10 G90 G71 G94\nN20 G1 X5 F1000\nN30 M30\n");
   const Ending e = servogate({"run", machine, program, "--virtual", "--json"});
   EXPECT_EQ(e.code, 0) << e.err;
