@@ -465,8 +465,10 @@ TEST(Run, interrupted_once_stops_on_the_path_within_the_limits_and_writes_everyt
 TEST(Run, interrupted_twice_is_a_quick_stop) {
   const Scratch scratch;
   LongRun run(scratch);
+  run.program().signal(SIGSTOP);  // so that a fast computer has not ended before the second one
   run.program().signal(SIGINT);
   run.program().signal(SIGTERM);  // both count; two equal ones may arrive as one
+  run.program().signal(SIGCONT);
   const Ending e = run.program().wait();
   EXPECT_EQ(e.code, 3) << e.err;
   const json report = parsed(read_all(scratch.path("r.json")));
