@@ -159,7 +159,43 @@ TEST(PointStage, a_source_is_as_good_as_its_worst_group) {
   stage.fresh(0, image->now.t_ns);
   stage.settle(*image);
   EXPECT_EQ(image->sources[0].quality, Quality::stale);
-  EXPECT_EQ(image->sources[0].updated_ns, 2 * kMillisecond);
+}
+
+TEST(PointStage, tells_the_age_of_the_group_that_is_too_old_not_of_the_freshest) {
+  PointRule slow = digital("SA1"), slower = digital("SA2");
+  slow.group = 1;
+  slower.group = 2;
+  const AgeLimits limits{3 * kMillisecond, 6 * kMillisecond};
+  PointStage stage({digital("SA0"), slow, slower}, 0, {limits, limits, limits});
+  auto image = std::make_unique<ProcessImage>();
+  image->now.t_ns = 100 * kMillisecond;
+  for (std::size_t group = 0; group < 3; ++group) stage.fresh(group, (100 + group) * kMillisecond);
+  stage.settle(*image);
+  image->now.t_ns = 105 * kMillisecond;
+  stage.fresh(0, image->now.t_ns);
+  stage.settle(*image);
+  EXPECT_EQ(image->sources[0].quality, Quality::stale);
+  EXPECT_EQ(image->sources[0].updated_ns, 101 * kMillisecond) << "4 ms old, 0 ms and 3 ms are not";
+  image->now.t_ns = 107 * kMillisecond + 1;
+  stage.fresh(0, image->now.t_ns);
+  stage.settle(*image);
+  EXPECT_EQ(image->sources[0].quality, Quality::bad) << "the slow one, while the slower one is stale";
+  EXPECT_EQ(image->sources[0].updated_ns, 101 * kMillisecond);
+  stage.fresh(1, image->now.t_ns);
+  stage.settle(*image);
+  EXPECT_EQ(image->sources[0].quality, Quality::stale);
+  EXPECT_EQ(image->sources[0].updated_ns, 102 * kMillisecond);
+}
+
+TEST(PointStage, tells_of_a_group_that_never_came_how_long_it_is_awaited) {
+  PointStage stage({digital("SA0")}, 0, {{3 * kMillisecond, 6 * kMillisecond}});
+  auto image = std::make_unique<ProcessImage>();
+  for (const int ms : {1000, 1007}) {
+    image->now.t_ns = ms * kMillisecond;
+    stage.settle(*image);
+  }
+  EXPECT_EQ(image->sources[0].quality, Quality::bad);
+  EXPECT_EQ(image->sources[0].updated_ns, 1000 * kMillisecond);
 }
 
 TEST(PointStage, tells_edges_with_their_times_and_counts_those_without_room) {

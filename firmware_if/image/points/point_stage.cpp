@@ -94,12 +94,16 @@ void PointStage::judge(ProcessImage& image) const noexcept {
   const auto severity = [](Quality q) {
     return q == Quality::bad ? 3 : q == Quality::stale ? 2 : q == Quality::never ? 1 : 0;
   };
-  IoSource health{Quality::good, 0, errors_};
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
+  // Of the worst groups the oldest: what is said of the age is of what is stale, not of what came just now.
+  IoSource health{quality(0, image.now.t_ns), groups_[0].updated_ns, errors_};
+  for (std::size_t g = 1; g < groups_.size(); ++g) {
     const Quality q = quality(g, image.now.t_ns);
-    if (severity(q) > severity(health.quality)) health.quality = q;
-    health.updated_ns = std::max(health.updated_ns, groups_[g].updated_ns);
+    const int worse = severity(q) - severity(health.quality);
+    if (worse > 0 || (worse == 0 && groups_[g].updated_ns < health.updated_ns))
+      health = {q, groups_[g].updated_ns, errors_};
   }
+  // Of one that never came: how long it is awaited.
+  if (health.updated_ns < 0) health.updated_ns = start_ns_;
   image.sources[static_cast<std::size_t>(source_)] = health;
 }
 
