@@ -8,6 +8,7 @@
 #include "drivers/clock.hpp"
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "tests/canopen_tools/workbench.hpp"
+#include "tests/comes.hpp"
 #include "tests/usercan/rig/mill.hpp"
 
 namespace servogate::canopen_tools {
@@ -175,8 +176,8 @@ TEST_F(SecondControl, that_starts_at_the_same_time_and_cannot_be_asked_gives_way
     const auto leads = [](const usercan::Process& control) {
       return control.said().find("is up; control socket") != std::string::npos;
     };
-    // Half a minute at most, which a stalled computer keeps.
-    for (int n = 0; n < 300 && !leads(*first) && !leads(*second); ++n) usleep(100'000);
+    ASSERT_TRUE(tests::comes([&] { return leads(*first) || leads(*second); }))
+        << first->said() << second->said();
     const bool is_first = leads(*first);
     EXPECT_EQ((is_first ? second : first)->wait(), 1) << first->said() << second->said();
     EXPECT_TRUE(leads(is_first ? *first : *second)) << first->said() << second->said();

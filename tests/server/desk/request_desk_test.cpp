@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "gateway/server/work/workshop.hpp"
+#include "tests/comes.hpp"
 
 namespace servogate::gateway {
 namespace {
@@ -55,7 +56,8 @@ TEST_F(RequestDeskTest, begins_nothing_that_was_asked_for_before_a_stop) {
     ASSERT_TRUE(desk_.tell(stop));
     for (const RequestKind kind : {RequestKind::start, RequestKind::step, RequestKind::resume,
                                    RequestKind::home, RequestKind::jog_increment})
-      EXPECT_EQ(desk_.ask({.kind = kind, .value = 1.0}, answer_, asked_before(before), 0), RequestDesk::Outcome::overtaken);
+      EXPECT_EQ(desk_.ask({.kind = kind, .value = 1.0}, answer_, asked_before(before), 0),
+                RequestDesk::Outcome::overtaken);
     EXPECT_EQ(desk_.ask({.kind = RequestKind::power, .value = 1.0}, answer_, asked_before(before), 0),
               RequestDesk::Outcome::overtaken);
     EXPECT_EQ(desk_.ask({.kind = RequestKind::acknowledge}, answer_, asked_before(before), 0),
@@ -76,18 +78,32 @@ TEST_F(RequestDeskTest, takes_a_jog_stop_for_a_stop_of_jogs_only_and_a_dead_hand
   ASSERT_TRUE(desk_.tell({.kind = RequestKind::jog_stop}));
   EXPECT_EQ(desk_.ask({.kind = RequestKind::jog_continuous, .value = 1.0}, answer_, asked_before(before), 0),
             RequestDesk::Outcome::overtaken);
-  EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, asked_before(before), 0), RequestDesk::Outcome::silent);
+  EXPECT_EQ(desk_.ask({.kind = RequestKind::start}, answer_, asked_before(before), 0),
+            RequestDesk::Outcome::silent);
 }
+
+/// Stands still, and counts how often it is read: once when a request is posted that can grow too old.
+class CountedClock final : public image::Clock {
+ public:
+  image::Nanoseconds now_ns() const noexcept override {
+    ++reads;
+    return 0;
+  }
+  mutable std::atomic<int> reads{0};
+};
 
 /// A desk whose requests may lie for 100 ms, over a cycle with one axis.
 class AgeOfRequests : public ::testing::Test {
  protected:
   AgeOfRequests() { desk_.set_longest_wait(RequestDesk::kLongestWait); }
-  static cycle::CycleParts parts() {
+  cycle::CycleParts parts() const {
     cycle::CycleParts parts;
     parts.axes = {axis::AxisConfig{}};
+    parts.request_clock = &clock_;
     return parts;
   }
+  /// Asked for so far ahead that no computer is slow enough to make it too old.
+  static Asked asked_in_time() { return asked(-std::chrono::hours(1)); }
   static Asked asked(std::chrono::seconds ago) { return {{}, std::chrono::steady_clock::now() - ago, {}}; }
   cycle::Refusal refusal() const { return static_cast<cycle::Refusal>(answer_.refusal); }
   bool power_wanted() {
@@ -95,6 +111,7 @@ class AgeOfRequests : public ::testing::Test {
     return cycle_.axes()[0].power_requested();
   }
   static constexpr image::Request kPower{.kind = RequestKind::power, .value = 1.0};
+  CountedClock clock_;
   cycle::Cycle cycle_{parts()};
   RequestDesk desk_{cycle_};
   image::Answer answer_;
@@ -123,11 +140,11 @@ TEST_F(AgeOfRequests, refuses_what_would_begin_something_when_its_client_is_gone
 
 TEST_F(AgeOfRequests, withdraws_what_waits_for_the_cycle_when_its_client_goes) {
   const auto gone = std::make_shared<std::atomic<bool>>(false);
-  const auto asks = std::async(std::launch::async, [&] {
-    const auto outcome = desk_.ask(kPower, answer_, {{}, std::chrono::steady_clock::now(), gone}, 600'000);
-    return outcome == RequestDesk::Outcome::answered && (refusal() == cycle::Refusal::client_gone);
-  });
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // most likely it is posted then
+  Asked request = asked_in_time();
+  request.gone = gone;
+  const auto asks = std::async(std::launch::async, [&] { desk_.ask(kPower, answer_, request, 600'000); });
+  ASSERT_TRUE(tests::comes([&] { return clock_.reads > 0; }));
+  desk_.stops();  // under the desk's lock: it is posted now
   *gone = true;
   asks.wait();
   EXPECT_EQ(refusal(), cycle::Refusal::client_gone);
@@ -135,7 +152,7 @@ TEST_F(AgeOfRequests, withdraws_what_waits_for_the_cycle_when_its_client_goes) {
 }
 
 TEST_F(AgeOfRequests, withdraws_what_the_cycle_did_not_answer_in_time) {
-  EXPECT_EQ(desk_.ask(kPower, answer_, {}, 0), RequestDesk::Outcome::silent);
+  EXPECT_EQ(desk_.ask(kPower, answer_, asked_in_time(), 0), RequestDesk::Outcome::silent);
   EXPECT_FALSE(power_wanted());
 }
 
