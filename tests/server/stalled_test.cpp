@@ -3,6 +3,7 @@
 // control stood for no time, stops always.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/wait.h>
 
 #include <chrono>
 #include <fstream>
@@ -25,6 +26,8 @@ class Stalled : public ::testing::Test {
   template <typename Say>
   void while_it_stands(const Say& say) {
     ASSERT_EQ(kill(shell_.pid(), SIGSTOP), 0);
+    siginfo_t stopped{};  // a signal is sent before it acts
+    ASSERT_EQ(waitid(P_PID, static_cast<id_t>(shell_.pid()), &stopped, WSTOPPED), 0);
     say();
     std::this_thread::sleep_for(kStall);
     ASSERT_EQ(kill(shell_.pid(), SIGCONT), 0);
