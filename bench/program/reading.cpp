@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/interpreter/interpreter.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/program/canon.hpp"
+#include "kernel/program/check/canon.hpp"
 
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"

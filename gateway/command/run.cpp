@@ -24,7 +24,7 @@
 #include "gateway/run/words/wait_words.hpp"
 #include "gateway/server/run_server.hpp"
 #include "gateway/server/socket/socket_path.hpp"
-#include "kernel/program/check.hpp"
+#include "kernel/program/check/check.hpp"
 
 namespace servogate::gateway::command {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "firmware_if/image/packets.hpp"
-#include "kernel/program/canonical.hpp"
+#include "kernel/program/commands/canonical.hpp"
 
 namespace servogate::channel {
 

@@ -14,7 +14,7 @@
 #include "kernel/channel/motion/path_elements.hpp"
 #include "kernel/channel/program_texts.hpp"
 #include "kernel/path/planner.hpp"
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/interpreter/interpreter.hpp"
 
 namespace servogate::channel {
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "kernel/program/check.hpp"
+#include "kernel/program/check/check.hpp"
 
 namespace servogate::channel::test {
 namespace {

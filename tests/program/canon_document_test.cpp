@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "kernel/program/canon.hpp"
+#include "kernel/program/check/canon.hpp"
 #include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
 

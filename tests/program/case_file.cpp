@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "kernel/program/languages/languages.hpp"
 #include "tests/places/places.hpp"
 
 namespace servogate::program::tests {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/interpreter/interpreter.hpp"
 
 namespace servogate::program::tests {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "kernel/program/canon.hpp"
-#include "kernel/program/check.hpp"
+#include "kernel/program/check/canon.hpp"
+#include "kernel/program/check/check.hpp"
 #include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/program/check.hpp"
+#include "kernel/program/check/check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "kernel/program/canon.hpp"
-#include "kernel/program/texts.hpp"
+#include "kernel/program/check/canon.hpp"
+#include "kernel/program/faults/texts.hpp"
 #include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
 

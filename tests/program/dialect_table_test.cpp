@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/program/execution/execution.hpp"
-#include "kernel/program/nc110/nc110.hpp"
+#include "kernel/program/languages/nc110/nc110.hpp"
 #include "tests/program/case_file.hpp"
 
 namespace servogate::program::tests {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/interpreter/interpreter.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "kernel/program/canon.hpp"
-#include "kernel/program/nc110/texts.hpp"
-#include "kernel/program/texts.hpp"
+#include "kernel/program/check/canon.hpp"
+#include "kernel/program/faults/texts.hpp"
+#include "kernel/program/languages/languages.hpp"
+#include "kernel/program/languages/nc110/faults/texts.hpp"
 #include "tests/program/case_file.hpp"
 
 namespace servogate::program::tests {

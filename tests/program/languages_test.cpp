@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "kernel/program/canon.hpp"
-#include "kernel/program/check.hpp"
+#include "kernel/program/check/canon.hpp"
+#include "kernel/program/check/check.hpp"
 #include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
 #include "tests/property_seed.hpp"

@@ -7,11 +7,11 @@
 #include <numbers>
 #include <random>
 
-#include "kernel/program/canon.hpp"
-#include "kernel/program/check.hpp"
+#include "kernel/program/check/canon.hpp"
+#include "kernel/program/check/check.hpp"
+#include "kernel/program/faults/texts.hpp"
 #include "kernel/program/geometry/degrees.hpp"
-#include "kernel/program/nc110/nc110.hpp"
-#include "kernel/program/texts.hpp"
+#include "kernel/program/languages/nc110/values/expressions.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "tests/program/case_file.hpp"
 #include "tests/property_seed.hpp"

@@ -7,7 +7,7 @@
 
 #include "gateway/compose/program/program_file.hpp"
 #include "kernel/channel/feeder.hpp"
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/interpreter/interpreter.hpp"
 #include "plc/logic/logic_change.hpp"
 
 namespace servogate::gateway {

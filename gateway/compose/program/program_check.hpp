@@ -4,7 +4,7 @@
 
 #include "gateway/compose/program/program_file.hpp"
 #include "kernel/channel/motion/forecast.hpp"
-#include "kernel/program/check.hpp"
+#include "kernel/program/check/check.hpp"
 
 namespace servogate::gateway {
 

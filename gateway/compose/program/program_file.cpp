@@ -5,6 +5,7 @@
 
 #include "gateway/files/encoding.hpp"
 #include "gateway/files/read_file.hpp"
+#include "kernel/program/languages/languages.hpp"
 
 namespace servogate::gateway {
 

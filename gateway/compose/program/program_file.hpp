@@ -7,7 +7,7 @@
 #include "gateway/cli/options.hpp"
 #include "gateway/compose/program/program_model.hpp"
 #include "gateway/machine/load.hpp"
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/interpreter/interpreter.hpp"
 
 namespace servogate::gateway {
 

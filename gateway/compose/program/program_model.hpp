@@ -3,7 +3,7 @@
 #include <string>
 
 #include "gateway/machine/config.hpp"
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/interpreter/interpreter.hpp"
 
 namespace servogate::gateway {
 

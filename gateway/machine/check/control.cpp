@@ -7,7 +7,8 @@
 #include "gateway/machine/check/findings.hpp"
 #include "gateway/machine/check/findings_motion.hpp"
 #include "gateway/machine/keys/sections.hpp"
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/interpreter/interpreter.hpp"
+#include "kernel/program/languages/languages.hpp"
 
 namespace servogate::machine {
 

@@ -6,7 +6,7 @@
 #include "gateway/machine/bus_place.hpp"
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings.hpp"
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/languages/languages.hpp"
 
 namespace servogate::machine {
 

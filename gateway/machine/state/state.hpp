@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware_if/text/finding.hpp"
-#include "kernel/program/interpreter.hpp"
+#include "kernel/program/execution/state/machine.hpp"
 
 namespace servogate::machine {
 

@@ -8,7 +8,7 @@
 #include "firmware_if/text/finding.hpp"
 #include "kernel/path/element.hpp"
 #include "kernel/path/shape/piece.hpp"
-#include "kernel/program/canonical.hpp"
+#include "kernel/program/commands/canonical.hpp"
 
 namespace servogate::channel {
 

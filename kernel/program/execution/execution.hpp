@@ -7,11 +7,13 @@
 #include <string_view>
 #include <vector>
 
-#include "kernel/program/execution/state.hpp"
+#include "kernel/program/execution/state/state.hpp"
+#include "kernel/program/execution/state/step.hpp"
+#include "kernel/program/faults/texts.hpp"
 #include "kernel/program/geometry/circle.hpp"
 #include "kernel/program/reading/block.hpp"
+#include "kernel/program/reading/loader.hpp"
 #include "kernel/program/reading/source.hpp"
-#include "kernel/program/texts.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "kernel/program/values/packet_view.hpp"
 

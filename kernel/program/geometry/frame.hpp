@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "kernel/program/canonical.hpp"
+#include "kernel/program/commands/canonical.hpp"
 
 namespace servogate::program {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "kernel/program/texts.hpp"
+#include "kernel/program/faults/texts.hpp"
 
 namespace servogate::program {
 namespace {

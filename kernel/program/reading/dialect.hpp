@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "kernel/program/texts.hpp"
+#include "kernel/program/faults/texts.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "kernel/program/values/parameters.hpp"
 
@@ -285,10 +285,5 @@ struct Dialect {
   /// The letter that has a meaning, 0: none.
   char letter_of(Meaning meaning) const noexcept;
 };
-
-/// The dialect of a name, nullptr when this build does not read it.
-const Dialect* find_dialect(std::string_view name);
-/// All dialects of this build.
-std::span<const Dialect* const> all_dialects();
 
 }  // namespace servogate::program

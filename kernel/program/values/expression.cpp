@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "kernel/program/texts.hpp"
+#include "kernel/program/faults/texts.hpp"
 #include "kernel/program/values/number.hpp"
 
 namespace servogate::program {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "kernel/program/texts.hpp"
+#include "kernel/program/faults/texts.hpp"
 
 namespace servogate::program {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kernel/program/texts.hpp"
+#include "kernel/program/faults/texts.hpp"
 
 namespace servogate::program {
 

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/program/canon.hpp"
-#include "kernel/program/check.hpp"
+#include "kernel/program/check/canon.hpp"
+#include "kernel/program/check/check.hpp"
 
 namespace servogate::program::fuzz {
 

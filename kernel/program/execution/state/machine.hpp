@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "firmware_if/image/packets.hpp"
+#include "firmware_if/text/finding.hpp"
+
+namespace servogate::program {
+
+/// What an interpreter must know of the machine. Filled from the machine file by the gateway.
+struct MachineModel {
+  struct Axis {
+    std::string letter;
+    bool rotary = false;
+    bool diameter = false;
+    bool alternative_inch = false;
+    double travel_min = -1e9, travel_max = 1e9;  ///< mm or degrees; lathe X as radius
+    double rapid = 0.0;                          ///< largest speed, mm/s or degrees/s; 0: not known
+  };
+  std::vector<Axis> axes;
+  int spindles = 1;
+  double spindle_min_rpm = 0.0;  ///< of the spindle that S speaks to; 0: as slow as one likes
+  double spindle_max_rpm = 0.0;  ///< 0: not known, S is not compared with it
+  int tool_places = 0;           ///< of the magazine or turret: T takes 0 to this number; 0: not known
+  double contour_tolerance_mm = 0.01;
+  /// Power-on modes and values in the dialect's own words, e.g. {"G94", "G97", "G90", "G71"}; the values of
+  /// its variables by their names.
+  std::vector<std::string> power_on;
+  std::map<std::string, double> variables;
+  std::vector<int> synchronous_m;  ///< reserved for dialects that let the machine builder choose
+  /// A place that part programs must not write, and the name of who writes it (an input, the control).
+  struct Protected {
+    image::Place place;
+    std::string owner;
+  };
+  std::vector<Protected> protected_places;
+  std::uint32_t k_bytes = image::kPacketKDefaultSize;  ///< sizes of the packets of a dry run (check, canon)
+  std::uint32_t syvar_bytes = image::kSyvarDefaultSize;
+};
+
+/// Tables an interpreter reads and, for some words, changes; kept in the state directory by the gateway.
+struct Tables {
+  struct Corrector {
+    std::map<std::string, double> length;  ///< axis letter to mm
+    double diameter = 0.0;
+    bool operator==(const Corrector&) const = default;
+  };
+  std::map<int, std::map<std::string, double>> origins;  ///< number to axis letter to mm
+  std::map<int, Corrector> correctors;
+  bool operator==(const Tables&) const = default;
+};
+
+/// A power-on mode or value of the machine file that the language cannot take. Its program does not run.
+struct SettingFault {
+  int mode = -1;         ///< index in MachineModel::power_on, -1: it is a variable
+  std::string variable;  ///< its name in MachineModel::variables
+  const text::Entry* entry = nullptr;
+  std::vector<std::string> arguments;
+};
+
+}  // namespace servogate::program

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "kernel/program/commands/canonical.hpp"
+#include "kernel/program/execution/state/machine.hpp"
+#include "kernel/program/geometry/frame.hpp"
+#include "kernel/program/reading/dialect.hpp"
+#include "kernel/program/values/parameters.hpp"
+
+namespace servogate::program {
+
+/// Modal functions in force.
+struct Modes {
+  Function motion = Function::rapid;
+  Function corner = Function::corner_limited;
+  Function unit = Function::metric;
+  Function dimension = Function::absolute;
+  Function feed = Function::feed_minute;
+  Function spindle = Function::revolutions;
+  Function across = Function::diameter;  ///< how words of a diameter axis count
+  double speed = 0.0;                    ///< S in rpm or, if `cutting`, m/min
+  bool cutting = false;                  ///< what `speed` is, G96 or G97 of the block that set it
+  Function plane = Function::plane_12;   ///< as selected last by a G word
+  int axis1 = -1;                        ///< abscissa and ordinate, -1: the machine lacks it
+  int axis2 = -1;
+  int normal = -1;  ///< axis across the plane, -1: none
+};
+
+/// Where the program stands, and what it has to come back to.
+struct Flow {
+  struct Call {
+    int file = 0;
+    std::uint32_t back = 0;   ///< line at which the caller goes on
+    std::size_t loops = 0;    ///< repeats open in the caller
+    std::uint32_t first = 0;  ///< line at which the called program begins
+    int left = 1;             ///< how often it still runs, this time counted
+    std::vector<double> arguments = {};
+  };
+  struct Loop {
+    std::size_t depth;  ///< number of calls at the repeat
+    std::uint32_t first;
+    std::uint32_t last;
+    int left;
+  };
+  struct Part {
+    std::size_t depth;
+    std::uint32_t first;
+    std::uint32_t last;
+    std::uint32_t back;
+    std::size_t loops;
+  };
+  int file = 0;
+  std::uint32_t line = 0;  ///< next line to read
+  std::vector<Call> calls;
+  std::vector<Loop> loops;
+  std::optional<Part> part;
+  bool barrier = false;  ///< the next block is read only after the motion before it
+};
+
+/// Where a modal word was written that the control may have to speak of later.
+struct Written {
+  int file = 0;
+  int line = 0;  ///< 0: nowhere, it is a power-on value
+  int column = 0;
+  bool told = false;  ///< its warning has been given
+};
+
+/// A canned cycle in force. Lengths in programmed coordinates, mm.
+struct Cycle {
+  int number = 0;  ///< G word, 0: none
+  int axis = 2;    ///< along which it works
+  double depth = 0.0;
+  double approach = 0.0;  ///< down to here at rapid
+  double retreat = 0.0;   ///< back to here
+  double step = 0.0;      ///< first one of a deep hole, > 0
+  double factor = 0.0;    ///< of a step to the one before, 0: chips are broken, not removed
+  double min_step = 0.0;
+  Written levels_at;           ///< the word that gave the levels in force
+  bool spindle_rests = false;  ///< stopped at the bottom of a hole, to start again before the next one
+};
+
+/// Everything of an interpreter that changes while a program runs; a plain value.
+struct State {
+  Modes modes;
+  Frame frame;
+  Position programmed{};  ///< end of the last motion in programmed coordinates (mm, degrees, radius)
+  Position machine{};     ///< the same in machine coordinates
+  std::array<std::int16_t, image::kMaxAxes>
+      origin{};                       ///< number of the absolute origin in force, of each axis
+  Position field_min{}, field_max{};  ///< machine coordinates without the tool length
+  double feed = 0.0;                  ///< F as programmed, 0: never
+  bool feed_inch = false;
+  Written feed_at;
+  bool speed_told = true;  ///< the machine knows the speed of `modes`
+  Written speed_at;
+  SpindleMode spindle = SpindleMode::stop;
+  std::int32_t tool = 0;  ///< last T word
+  std::int32_t corrector = 0;
+  double dwell = 0.0;  ///< set by a variable, s or revolutions
+  double corner_error_mm = 0.0;
+  double max_angle_deg = 0.0;     ///< a sharper corner stops
+  double allowance = 0.0;         ///< mm
+  std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit
+  bool dry_run = false;           ///< feed motions at rapid speed
+  int optional_stop = -1;         ///< -1: left to the operator's switch
+  bool profile_open = false;      ///< inside of a running chain of feed blocks without a stop
+  Cycle cycle;
+  Parameters parameters;
+  std::shared_ptr<const Tables> tables;
+  Flow flow;
+  long long executed = 0;
+};
+
+}  // namespace servogate::program

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/program/faults/texts.hpp"
+
+#include <iterator>
+
+namespace servogate::program {
+namespace {
+
+constexpr text::Entry kMessages[] = {
+    {"P101", "a block has {0} characters, at most {1} are allowed",
+     "в кадре {0} символов, допускается не более {1}"},
+    {"P102", "the label has no closing quote", "у метки нет закрывающей кавычки"},
+    {"P103", "the label \"{0}\" must have 1 to {1} letters or digits",
+     "метка «{0}» должна состоять из 1–{1} букв или цифр"},
+    {"P104", "{0} stands in the wrong place: a block begins with {1} in this order",
+     "{0} стоит не на месте: кадр начинается с {1} в этом порядке"},
+    {"P105", "N needs a number without sign and fraction", "после N нужен номер без знака и дробной части"},
+    {"P106", "the label {0} stands already in line {1}; jumps go there",
+     "метка {0} уже стоит в строке {1}; переходы идут туда"},
+    {"P107", "the old control knows comments only as blocks of their own; the text after ; is ignored",
+     "старая система знает комментарий только отдельным кадром; текст после ; пропущен"},
+    {"P108", "block number {0} has more than {1} digits", "в номере кадра {0} больше {1} цифр"},
+    {"P109", "the text has no closing quote", "у текста нет закрывающей кавычки"},
+    {"P110", "the block in brackets has no closing bracket", "у кадра в скобках нет закрывающей скобки"},
+    {"P112", "the letter {0} is Cyrillic and only looks like the Latin {1}: write the Latin letter",
+     "буква {0} русская и только похожа на латинскую {1}: напишите латинскую"},
+    {"P113", "this line ends with CR alone; such ends are taken as line ends",
+     "строка кончается одним CR; такие концы приняты за концы строк"},
+    {"P201", "the character {0} has no meaning here{1}", "символ {0} здесь не имеет смысла{1}"},
+    {"P202", "the language has no word {0}{1}", "в языке нет слова {0}{1}"},
+    {"P203", "this machine has no axis {0}", "на этом станке нет оси {0}"},
+    {"P204", "the word {0} stands twice in the block", "слово {0} стоит в кадре дважды"},
+    {"P205", "more than {0} words in the block", "в кадре больше {0} слов"},
+    {"P206", "{0}{1} is outside of {2} to {3}", "{0}{1} вне пределов от {2} до {3}"},
+    {"P207", "{0} takes a whole number without sign, not {1}",
+     "{0} принимает целое число без знака, а не {1}"},
+    {"P208", "{0} takes {1}, not {2}", "{0} принимает {1}, а не {2}"},
+    {"P209", "{0} needs the number of a parameter", "после {0} нужен номер параметра"},
+    {"P210", "the number cannot be read", "число не читается"},
+    {"P211", "the language has no G{0}", "в языке нет G{0}"},
+    {"P212", "G{0} and G{1} may not stand in one block", "G{0} и G{1} не могут стоять в одном кадре"},
+    {"P213", "G{0} stands after {1}: G words come before the operands",
+     "G{0} стоит после {1}: слова G идут перед операндами"},
+    {"P214", "{0} M words in one block, at most {1} are allowed",
+     "слов M в кадре {0}, допускается не более {1}"},
+    {"P215", "{0} has no meaning in this block", "слово {0} в этом кадре не имеет смысла"},
+    {"P216", "{0} expected here", "здесь ожидается {0}"},
+    {"P217", "no parameter can stand for this number", "параметр здесь не может заменить число"},
+    {"P218", "{0} needs a number, and {1} has none", "{0} требует числа, а в {1} его нет"},
+    {"P219", "{0} takes at most {1} arguments", "{0} принимает не более {1} аргументов"},
+    {"P301", "a number, a parameter, a function or a place is expected here",
+     "здесь ожидается число, параметр, функция или место памяти"},
+    {"P302", "a closing bracket is expected here", "здесь ожидается закрывающая скобка"},
+    {"P303", "the language has no function or variable {0}", "в языке нет функции или переменной {0}"},
+    {"P304", "{0} takes two values divided by a comma", "{0} принимает два значения через запятую"},
+    {"P305", "division by zero", "деление на ноль"},
+    {"P306", "{0} of {1} has no value", "{0} от {1} не имеет значения"},
+    {"P307", "{0} does not exist, the last parameter is {1}", "{0} не существует, последний параметр {1}"},
+    {"P308", "{0} does not fit into {1} ({2}, {3} to {4})", "{0} не помещается в {1} ({2}, от {3} до {4})"},
+    {"P309", "{0} holds characters; a number is needed here", "{0} хранит символы; здесь нужно число"},
+    {"P310", "= expected after {0}", "после {0} ожидается ="},
+    {"P311", "the language has no variable {0}", "в языке нет переменной {0}"},
+    {"P312", "the result is too large for a number", "результат слишком велик"},
+    {"P313", "{0} has no value yet", "{0} ещё не имеет значения"},
+    {"P402", "{0} lies outside of the packet of {1} bytes", "{0} лежит за пределами пакета в {1} байт"},
+    {"P403", "{0} does not fit into {1} ({2} to {3})", "{0} не помещается в {1} (от {2} до {3})"},
+    {"P404", "the text has {0} characters, {1} takes {2}", "в тексте {0} символов, {1} вмещает {2}"},
+    {"P407", "{0} is written by {1}, a program must not write it",
+     "{0} пишет {1}, программе писать сюда нельзя"},
+    {"P501", "no block has the label {0}", "ни один кадр не имеет метки {0}"},
+    {"P502", "repeats are nested deeper than {0}", "вложенность повторов больше {0}"},
+    {"P503", "{0} without {1}", "{0} без {1}"},
+    {"P504", "{0} without {1}", "{0} без {1}"},
+    {"P506", "subprograms are nested deeper than {0}", "вложенность подпрограмм больше {0}"},
+    {"P507", "the program {0} is not there", "программы {0} нет"},
+    {"P509", "M{0} inside of the subprogram {1}: a subprogram returns at its end",
+     "M{0} в подпрограмме {1}: подпрограмма возвращается в своём конце"},
+    {"P513", "{0} blocks without a motion or another command: the program does not end",
+     "{0} кадров без движения и других команд: программа не кончается"},
+    {"P514", "{0} blocks executed, the program does not end", "выполнено {0} кадров, программа не кончается"},
+    {"P515", "no line begins with {0}: without it nothing is executed",
+     "ни одна строка не начинается с {0}: без него ничего не выполняется"},
+    {"P612", "the origin {0} is not in the table, which has {1}",
+     "начала отсчёта {0} нет в таблице, в ней есть {1}"},
+    {"P613", "the origin {0} has no value for {1}, only for {2}",
+     "в начале отсчёта {0} нет значения для {1}, есть только для {2}"},
+    {"P614", "the scale must not be 0", "масштаб не может быть 0"},
+    {"P617", "the plane of G{0} needs the axes {1} and {2}, this machine lacks {3}",
+     "плоскости G{0} нужны оси {1} и {2}, на этом станке нет {3}"},
+    {"P625", "{0} = {1} is outside of {2} to {3}", "{0} = {1} вне пределов от {2} до {3}"},
+    {"P701", "{0} would go to {1}, the travel ends at {2}", "{0} вышла бы на {1}, ход кончается на {2}"},
+    {"P702", "{0} would go to {1}, the working field ends at {2} ({3})",
+     "{0} вышла бы на {1}, рабочее поле кончается на {2} ({3})"},
+    {"P703", "no feed: F was never programmed", "нет подачи: F ещё не задавалась"},
+    {"P704", "G93 needs F in each motion block", "G93 требует F в каждом кадре движения"},
+    {"P705", "{0} goes with G94 only", "{0} допустимо только с G94"},
+    {"P706", "profile not congruent: the radius is {0} at the start and {1} at the end",
+     "профиль не конгруэнтен: радиус в начале {0}, в конце {1}"},
+    {"P707", "an arc needs {0} and {1}, or {2}", "дуге нужны {0} и {1} или {2}"},
+    {"P708", "an arc needs both {0} and {1}, {2} is missing", "дуге нужны и {0}, и {1}, нет {2}"},
+    {"P709", "an arc takes {0} and {1} or {2}, not both",
+     "дуга принимает либо {0} и {1}, либо {2}, но не вместе"},
+    {"P710", "a full circle cannot be programmed with {0}", "полную окружность нельзя задать через {0}"},
+    {"P711", "profile not congruent: {2}{0} is shorter than half the way of {1}",
+     "профиль не конгруэнтен: {2}{0} меньше половины хорды {1}"},
+    {"P712", "an arc of radius 0", "дуга нулевого радиуса"},
+    {"P713", "an arc cannot be scaled differently along {0} and {1}",
+     "дугу нельзя масштабировать по {0} и {1} по-разному"},
+    {"P714", "{1}{0}: the pitch of a helix must be above 0",
+     "{1}{0}: шаг винтовой линии должен быть больше 0"},
+    {"P715", "{0} needs a motion of an axis outside of the plane",
+     "для {0} нужно движение оси вне плоскости"},
+    {"P716", "the helix turns {0} degrees by its depth and pitch, the programmed arc gives {1}",
+     "по глубине и шагу винтовая линия поворачивает на {0}°, запрограммированная дуга даёт {1}°"},
+    {"P717", "the helix has {0} turns, at most {1} are allowed",
+     "винтовая линия имеет {0} витков, допускается не более {1}"},
+    {"P718", "{0} goes with an arc only where no rotation, mirror or scale is active",
+     "{0} с дугой допустимо только без поворота, зеркала и масштаба"},
+    {"P726", "more blocks without a feed: {0}, the last one in line {1}",
+     "ещё кадров без подачи: {0}, последний в строке {1}"},
+    {"P802", "M{0} and M{1} cannot both end the block", "M{0} и M{1} не могут вместе завершать кадр"},
+    {"P803", "M{0} and M{1} contradict each other", "M{0} и M{1} противоречат друг другу"},
+    {"P805", "{0}: this machine has no spindle", "{0}: на этом станке нет шпинделя"},
+    {"P808", "S{0} is above the {1} rpm of the spindle: it turns at {1}",
+     "S{0} больше наибольших {1} об/мин шпинделя: он вращается с {1}"},
+    {"P809", "S{0} is below the {1} rpm of the spindle: it turns at {1}",
+     "S{0} меньше наименьших {1} об/мин шпинделя: он вращается с {1}"},
+    {"P810",
+     "{0}: a cutting speed (G96) needs an axis programmed in diameter, this machine has none; program G97, "
+     "or "
+     "name it in power_on",
+     "{0}: скорости резания (G96) нужна ось, программируемая в диаметре, на этом станке её нет; задайте G97 "
+     "в программе или в power_on"},
+    {"P811", "T{0}: the magazine of this machine has {1} places", "T{0}: в магазине этого станка мест {1}"},
+    {"P812", "the corrector {0} is not in the tool table: its lengths count as 0",
+     "корректора {0} нет в таблице инструмента: его вылеты считаются нулевыми"},
+    {"P813", "{0} asks for {1}/min; in line {2} the axes reach {3}/min ({4}), the motion is as fast as that",
+     "{0} требует {1}/мин; в строке {2} оси достигают {3}/мин ({4}), с этой скоростью и идёт движение"},
+    {"P814", "further places of {0} are not named", "остальные места с {0} не названы"},
+    {"P815",
+     "the feed is per revolution (G95), and the program has not started the spindle: the motion waits until "
+     "it "
+     "turns",
+     "подача на оборот (G95), а программа не включила шпиндель: движение ждёт, пока он не завращается"},
+    {"P820", "{0} turns the spindle, and no S says how fast: it stands until one does",
+     "{0} включает шпиндель, а S не задано: он стоит, пока S не появится"},
+    {"P821",
+     "{0} turns the spindle by a cutting speed (G96), and the last S was written in rpm: write S in m/min "
+     "into the block",
+     "{0} включает шпиндель по скорости резания (G96), а последнее S задано в об/мин: запишите в кадре S в "
+     "м/мин"},
+    {"P901", "{0} is not executed in this version", "{0} в этой версии не выполняется"},
+    {"P902", "the power-on mode {0} is not one of this language", "режим включения {0} не из этого языка"},
+    {"P903", "there is no dialect {0}", "нет языка {0}"},
+    {"P904", "{0} is no mode: it holds for its block only", "{0} не режим: действует только в своём кадре"},
+    {"P905", "{0} and {1} exclude one another: of a group one mode is in force",
+     "{0} и {1} исключают друг друга: из группы действует один режим"},
+    {"P906", "the mode {0} stands twice", "режим {0} назван дважды"},
+    {"P907", "from here on {0} more {1} are not named", "отсюда ещё {0} {1} не названо"},
+};
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::findings_many) + 1);
+
+}  // namespace
+
+std::span<const text::Entry> messages() { return kMessages; }
+
+std::vector<std::string> outside_arguments(const std::string& letter, bool diameter, double value,
+                                           double limit) {
+  const double shown = diameter ? 2.0 : 1.0;
+  return {diameter ? text::both(letter + " (diameter)", letter + " (диаметр)") : letter,
+          text::number(shown * value, 4), text::number(shown * limit, 4)};
+}
+
+std::string in_capitals(std::string_view written) {
+  std::string out(written);
+  for (char& c : out)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return out;
+}
+
+std::string capitals_hint(std::string_view written, bool known) {
+  const std::string meant = in_capitals(written);
+  if (!known || meant == written) return {};
+  return text::both(": words are written in capital letters, " + meant,
+                    ": слова пишутся прописными буквами, " + meant);
+}
+
+const text::Entry& entry(Fault fault) { return kMessages[static_cast<std::size_t>(fault)]; }
+
+}  // namespace servogate::program

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace servogate::program {
+class Execution;
+}  // namespace servogate::program
+
+namespace servogate::program::nc110 {
+struct Operands;
+}  // namespace servogate::program::nc110
+
+/// The exceptions of NC-110: what its three-letter codes and its variables do. Named as the words of the
+/// language.
+namespace servogate::program::nc110::code {
+
+// flow.cpp; source: specification B 5
+void rpt(Execution& run, const Operands& operands);
+void erp(Execution& run, const Operands& operands);
+void cls(Execution& run, const Operands& operands);
+void epp(Execution& run, const Operands& operands);
+void bnc(Execution& run, const Operands& operands);
+void branch(Execution& run, const Operands& operands);
+
+// frame.cpp; source: specification B 4, B 6
+void uao(Execution& run, const Operands& operands);
+void uot(Execution& run, const Operands& operands);
+void uio(Execution& run, const Operands& operands);
+void mir(Execution& run, const Operands& operands);
+void urt(Execution& run, const Operands& operands);
+void scf(Execution& run, const Operands& operands);
+void rqo(Execution& run, const Operands& operands);
+void dpi(Execution& run, const Operands& operands);
+void dlo(Execution& run, const Operands& operands);
+
+// signal.cpp; source: specification B 7, B 15.3
+void dis(Execution& run, const Operands& operands);
+void dly(Execution& run, const Operands& operands);
+void wai(Execution& run, const Operands& operands);
+
+}  // namespace servogate::program::nc110::code
+
+namespace servogate::program::nc110::variable {
+
+// variables.cpp; source: specification A 19, A 13.4
+void tmr(Execution& run, double value, int column);
+void uov(Execution& run, double value, int column);
+void erf(Execution& run, double value, int column);
+void mcd(Execution& run, double value, int column);
+void usb(Execution& run, double value, int column);
+void uso(Execution& run, double value, int column);
+void uvr(Execution& run, double value, int column);
+
+}  // namespace servogate::program::nc110::variable

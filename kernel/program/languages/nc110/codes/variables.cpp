@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <numbers>
+
+#include "kernel/program/execution/execution.hpp"
+#include "kernel/program/languages/nc110/codes/codes.hpp"
+
+namespace servogate::program::nc110::variable {
+namespace {
+
+void check(const char* name, double value, double min, double max, int column) {
+  if (!(value >= min && value <= max))
+    fail(Fault::variable_range, column, {name, text::number(value), text::number(min), text::number(max)});
+}
+
+void check_switch(const char* name, double value, int column) {
+  if (value != 0.0 && value != 1.0)
+    fail(Fault::variable_range, column, {name, text::number(value), "0", "1"});
+}
+
+double unit(Execution& run) { return run.state().modes.unit == Function::inch ? 25.4 : 1.0; }
+
+}  // namespace
+
+void tmr(Execution& run, double value, int column) {
+  check("TMR", value, 0.0, run.state().modes.feed == Function::feed_revolution ? 30000.0 : 60.0, column);
+  run.state().dwell = value;
+}
+
+void uov(Execution& run, double value, int column) {
+  check("UOV", value, -99999.9999, 99999.9999, column);
+  run.state().allowance = value * unit(run);
+}
+
+void erf(Execution& run, double value, int column) {
+  check("ERF", value, 0.0, 1000.0, column);
+  run.state().corner_error_mm = value * unit(run);
+}
+
+/// sin of the angle up to 90 degrees, 1 + sin(angle - 90) beyond. Source: specification A 13.4.
+void mcd(Execution& run, double value, int column) {
+  check("MCD", value, 0.0, 2.0, column);
+  const double beyond = value > 1.0 ? 90.0 : 0.0;
+  const double sine = value > 1.0 ? value - 1.0 : value;
+  run.state().max_angle_deg = beyond + std::asin(sine) * 180.0 / std::numbers::pi;
+}
+
+void usb(Execution& run, double value, int column) {
+  check_switch("USB", value, column);
+  std::uint16_t& levels = run.state().skip_levels;
+  levels = static_cast<std::uint16_t>(value != 0.0 ? levels & ~1u : levels | 1u);
+}
+
+void uvr(Execution& run, double value, int column) {
+  check_switch("UVR", value, column);
+  run.state().dry_run = value != 0.0;
+}
+
+void uso(Execution& run, double value, int column) {
+  check_switch("USO", value, column);
+  run.state().optional_stop = value != 0.0 ? 1 : 0;
+}
+
+}  // namespace servogate::program::nc110::variable

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kernel/program/faults/texts.hpp"
+
+namespace servogate::program::nc110 {
+
+/// What only NC-110 has to say, in the ranges of program::Fault.
+enum class Wrong : std::uint8_t {
+  after_bracket,
+  place_bad,
+  text_for_number,
+  number_for_text,
+  text_compare,
+  repeat_count,
+  program_name,
+  part_nested,
+  part_reversed,
+  jump_out_of_part,
+  code_unknown,
+  operand_missing,
+  operand_many,
+  operand_axis,
+  operand_axis_twice,
+  operand_axes_many,
+  text_long,
+  origin_range,
+  plane_in_profile,
+  dwell_range,
+  wait_form,
+  wait_format,
+  wait_bit,
+  limits_pair,
+  cycle_active,
+  cycle_motion,
+  cycle_depth,
+  cycle_hole,
+  cycle_step_missing,
+  cycle_step,
+  cycle_pecks,
+  function_in_profile,
+  tool_form,
+  dwell_no_speed,
+  dwell_surface_speed,
+  dwell_zero,
+  cycle_no_depth,
+  cycle_passes_depth,
+  cycle_return_below,
+};
+
+/// All texts, in the order of Wrong.
+std::span<const text::Entry> messages();
+const text::Entry& entry(Wrong wrong);
+
+[[noreturn]] inline void fail(Wrong wrong, int column, std::vector<std::string> arguments = {}) {
+  throw ProgramError{&entry(wrong), column, std::move(arguments)};
+}
+
+}  // namespace servogate::program::nc110

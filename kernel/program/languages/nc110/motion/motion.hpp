@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "kernel/program/reading/dialect.hpp"
+
+namespace servogate::program::nc110 {
+
+/// Canned cycles G81-G86 and G89 (G84 for a floating holder). Source: specification A 10.
+void cycle(Execution& run, const BlockWords& words);
+
+/// TMR in seconds; with G95 it counts revolutions of the spindle.
+double dwell_seconds(const Execution& run);
+/// A dwell of TMR that is asked for at `word` while TMR is 0.
+void check_dwell(Execution& run, const Word& word);
+void dwell(Execution& run, const Word& word);
+/// M, S, T and H in a running profile.
+void profile(const Execution& run, const BlockWords& words);
+
+}  // namespace servogate::program::nc110
