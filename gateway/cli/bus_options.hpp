@@ -15,6 +15,7 @@ struct CanBusOptions {
   int lockstep = 0;
   double until = 0.0;  ///< s
   std::string log;
+  bool json = false;
 };
 
 /// What goes wrong with simulated drives.
@@ -34,6 +35,7 @@ struct DriveOptions {
   std::string pdo_map;                ///< variable, whole, fixed; empty: as the device file says
   FaultOptions faults;
   double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
+  bool json = false;
 };
 
 /// `servogate io`: simulated I/O modules as a process of their own.
@@ -44,6 +46,7 @@ struct IoOptions {
   int digital_inputs = 16, digital_outputs = 16, analogue_inputs = 4, analogue_outputs = 2;
   int counts_per_rev = 8192, revolutions = 4096;  ///< of an encoder
   double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
+  bool json = false;
 };
 
 /// `servogate sim`: the simulated devices of a machine for somebody else's controller.
@@ -60,6 +63,7 @@ struct DumpOptions {
   double bit_rate = 0.0;   ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
   std::int64_t count = 0;  ///< frames, 0: no end
   double seconds = 0.0;    ///< 0: no end
+  bool json = false;
 };
 
 /// `servogate play`: such a log back onto a bus.
@@ -71,6 +75,7 @@ struct PlayOptions {
   std::vector<int> nodes;        ///< whose frames are played; empty: of all
   std::vector<std::string> ids;  ///< identifiers or ranges "180-1FF", hexadecimal; empty: all
   std::string sender;            ///< "master" or "devices"; empty: of both
+  bool json = false;
 };
 
 /// Longer than any usual SYNC period, and not in the way of who reads one object after the other.
@@ -126,6 +131,7 @@ struct NmtOptions : CanopenBusOptions {
 /// `servogate can restart`.
 struct CanRestartOptions {
   std::string bus;
+  bool json = false;
 };
 
 /// `servogate can check`.

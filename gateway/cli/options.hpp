@@ -31,6 +31,7 @@ struct UpOptions {
   std::string machine, state, socket, record, can_log;
   ClockKind clock = ClockKind::unset;
   double speed = 1.0;
+  bool json = false;
 };
 
 /// A client of a running control: `servogate status`, `home X Z`, `jog X +1mm` ...

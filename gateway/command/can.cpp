@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "drivers/candump/candump_line.hpp"
 #include "drivers/usercan/server/bus_server.hpp"
 #include "firmware_if/text/system_words.hpp"
+#include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
@@ -64,9 +66,14 @@ int can_bus(const CanBusOptions& options) {
   config.until = std::llround(options.until * 1e9);
   drivers::Notice why;
   const EndBySignal signals;
-  const auto server = usercan::BusServer::open(config, say, why);
+  const auto report = [json = options.json](const drivers::Notice& notice) {
+    say(notice);
+    if (json)
+      print_json_line({{"event", "notice"}, {"code", std::string(notice.entry->id)}, {"text", notice.str()}});
+  };
+  const auto server = usercan::BusServer::open(config, report, why);
   if (server == nullptr) {
-    say(why);
+    complain(*why.entry, why.arguments);
     return kInfrastructure;
   }
   std::unique_ptr<Log> log;
@@ -83,6 +90,11 @@ int can_bus(const CanBusOptions& options) {
   tell(text::render(kServing,
                     std::vector<std::string>{server->address().str(), names, text::number(options.bit_rate)},
                     text::user_language()));
+  if (options.json)
+    print_json_line({{"event", "serving"},
+                     {"address", server->address().str()},
+                     {"buses", options.names},
+                     {"bit_rate", options.bit_rate}});
   while (!signals.ended() && server->serve(100 * image::kMillisecond)) {
   }
   if (log == nullptr || log->good()) return kDone;

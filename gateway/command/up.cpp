@@ -2,8 +2,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
@@ -120,13 +122,28 @@ int up(const UpOptions& options) {
   desk.start();
   server->start();
   tell(text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()));
+  if (options.json)
+    print_json_line({{"event", "up"},
+                     {"machine", m.name},
+                     {"socket", socket},
+                     {"clock", clock == ClockKind::virtual_time ? "virtual" : "realtime"},
+                     {"version", report::build_identity().version}});
   history->note(
       history::event("up", history::says::kUp, {m.name, std::string(report::build_identity().version)}, 0.0));
   serve(desk, *server);
   const double ended_s = static_cast<double>(resident.image().now.t_ns) * 1e-9;
   history->note(history::event("down", history::says::kDown, {m.name}, ended_s));
-  if (!put_away(*running, resident)) return kInfrastructure;
-  return unless_frames_lost(desk.rests() ? kDone : kAlarm, running->control());
+  const bool saved = put_away(*running, resident);
+  int ended = saved ? desk.rests() ? kDone : kAlarm : kInfrastructure;
+  ended = unless_frames_lost(ended, running->control());
+  if (options.json)
+    print_json_line({{"event", "down"},
+                     {"machine", m.name},
+                     {"t", ended_s},
+                     {"at_rest", desk.rests()},
+                     {"saved", saved},
+                     {"exit", ended}});
+  return ended;
 }
 
 }  // namespace servogate::gateway::command

@@ -16,7 +16,12 @@ std::optional<image::Place> Analyzer::parse_address(const std::string& text, con
       text.starts_with("%") ? direct_place(text) : image::parse_place(key_of(text));
   if (const image::Symbol* s = p ? nullptr : symbol(text)) p = s->place;
   if (!p) {
-    report_.error(at, texts::kBadAddress, {text});
+    // Hierarchical addresses (IEC 61131-3:2013, 6.5.5.2) end in nothing here: there are no racks.
+    const auto points = std::count(text.begin(), text.end(), '.');
+    if (text.starts_with("%") && points > 1)
+      report_.error(at, texts::kAddressNumbers, {text, std::to_string(points + 1)});
+    else
+      report_.error(at, texts::kBadAddress, {text});
     return std::nullopt;
   }
   std::uint32_t limit = p->packet == Packet::a   ? image::kPacketASize

@@ -86,6 +86,10 @@ inline constexpr Entry kEdgeType{"plc-edge", "R_EDGE and F_EDGE belong to a BOOL
 inline constexpr Entry kBadAddress{"plc-address",
                                    "'{0}' is no address; write %IX0.0, %QW4, %MD2, SA128 or SK10.IN",
                                    "'{0}' не является адресом; пишите %IX0.0, %QW4, %MD2, SA128 или SK10.IN"};
+inline constexpr Entry kAddressNumbers{
+    "plc-address-numbers",
+    "'{0}' has {1} numbers; an address has a byte and a bit, as %IX0.7, or one number, as %IW4",
+    "в «{0}» чисел: {1}; в адресе есть байт и бит, как в %IX0.7, или одно число, как в %IW4"};
 inline constexpr Entry kAddressRange{"plc-address-range", "{0} lies outside its memory of {1} bytes",
                                      "{0} лежит вне своей памяти ({1} байт)"};
 inline constexpr Entry kAddressType{"plc-address-type", "{0} holds {1}, not {2}", "{0} хранит {1}, а не {2}"};

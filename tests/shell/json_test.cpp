@@ -85,6 +85,27 @@ TEST(Json, of_plc_check_holds_the_findings) {
   EXPECT_EQ(bad["findings"][0]["line"], 3);
 }
 
+TEST(Json, of_up_says_that_it_is_up_and_how_it_went_down) {
+  const Desk desk;
+  const Ended e = desk.line(
+      "$SG up $MILL --virtual --socket s.sock --json > up.json & "
+      "until $SG status --socket s.sock > status.txt 2>&1; do sleep 0.05; done; "
+      "$SG down --socket s.sock && wait $!");
+  ASSERT_EQ(e.code, 0) << e.err;
+  const std::string said = desk.text("up.json");
+  const std::size_t first = said.find('\n');
+  const json up = json::parse(said.substr(0, first), nullptr, false);
+  const json down = json::parse(said.substr(first + 1), nullptr, false);
+  ASSERT_TRUE(up.is_object() && down.is_object()) << said;
+  EXPECT_EQ(up["schema"], 1);
+  EXPECT_EQ(up["event"], "up");
+  EXPECT_EQ(up["socket"], "s.sock");
+  EXPECT_EQ(up["clock"], "virtual");
+  EXPECT_EQ(down["event"], "down");
+  EXPECT_EQ(down["at_rest"], true);
+  EXPECT_EQ(down["exit"], 0);
+}
+
 TEST(Dialect, that_nobody_knows_is_wrong_use_with_and_without_a_program) {
   const Desk desk;
   desk.write("one.nc", "N10 G0 X1\nN20 M30\n");

@@ -9,6 +9,8 @@ namespace servogate::gateway {
 
 namespace {
 
+constexpr const char* kJson = "What happens as JSON, one object a line";
+
 void add_bit_rate(CLI::App& app, double& rate) {
   app.add_option("--bit-rate", rate, "Bit rate of the bus in bit/s, 10000 to 1000000")
       ->type_name("BIT/S")
@@ -29,6 +31,7 @@ void add_can_bus(CLI::App& can, CanBusOptions& o) {
       ->type_name("S")
       ->check(number_within({0.0, 1e9, text::both("s", "с")}));
   bus.add_option("--log", o.log, "Writes every frame of the first bus to this file, as candump -l does");
+  bus.add_flag("--json", o.json, kJson);
   bus.footer("Example: servogate can bus can0 --listen 127.0.0.1:29536");
 }
 
@@ -40,6 +43,7 @@ void add_can_restart(CLI::App& can, CanRestartOptions& o) {
   CLI::App& c =
       *can.add_subcommand("restart", "Lets an interface that went bus-off take part in its bus again.");
   c.add_option("BUS", o.bus, kBus)->required();
+  c.add_flag("--json", o.json, "As JSON");
   c.footer("Example: sudo servogate can restart socketcan:can0");
 }
 
@@ -78,6 +82,7 @@ void add_drive(CLI::App& app, DriveOptions& o) {
       ->check(one_of({"variable", "whole", "fixed"}));
   add_faults(d, o.faults);
   add_bit_rate(d, o.bit_rate);
+  d.add_flag("--json", o.json, kJson);
   d.footer(
       "On standard input it takes faults as --fault, and clear [FAULT], input NAME on|off, load NM, status.\n"
       "Example: servogate drive socketcand:127.0.0.1:29536/can0 --node 1,2,3");
@@ -114,6 +119,7 @@ void add_io(CLI::App& app, IoOptions& o) {
       ->type_name("N")
       ->check(counted);
   add_bit_rate(c, o.bit_rate);
+  c.add_flag("--json", o.json, kJson);
   c.footer(
       "On standard input it takes di3 on, di3 off, ai0 1200, status; an encoder position 1200, speed 500,\n"
       "blind on, blind off, status. It prints its outputs as they change.\n"
@@ -128,7 +134,7 @@ void add_sim(CLI::App& app, SimOptions& o) {
       ->type_name("NAME=URL")
       ->allow_extra_args(false);
   add_faults(s, o.faults);
-  s.add_flag("--json", o.json, "Switches as JSON");
+  s.add_flag("--json", o.json, kJson);
   s.footer("Example: servogate sim examples/mill/machine.toml --bus can=socketcan:vcan0");
 }
 
@@ -142,6 +148,7 @@ void add_dump(CLI::App& app, DumpOptions& o) {
       ->type_name("S")
       ->check(number_within({0.001, 1e9, text::both("s", "с")}));
   add_bit_rate(d, o.bit_rate);
+  d.add_flag("--json", o.json, "Frames as JSON, one object a line");
   d.footer("Example: servogate dump socketcan:can0 > run.log");
 }
 
@@ -165,6 +172,7 @@ void add_play(CLI::App& app, PlayOptions& o) {
       ->delimiter(',');
   p.add_flag("--i-may-move", o.may_move, "Real drives on the bus may move");
   add_bit_rate(p, o.bit_rate);
+  p.add_flag("--json", o.json, "As JSON");
   p.footer("Example: servogate play socketcan:vcan0 run.log --from master");
 }
 

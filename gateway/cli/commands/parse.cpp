@@ -206,6 +206,7 @@ class Commands {
     app.add_option("--can-log", o.can_log,
                    "Writes the frames of each simulated CAN bus to BUS.log in this folder")
         ->type_name("DIR");
+    app.add_flag("--json", o.json, "What happens as JSON, one object a line");
   }
 
   void client(const ClientCommand& c) {

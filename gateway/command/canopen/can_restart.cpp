@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // `servogate can restart`: a controller that has taken itself off the bus takes part again.
 #include <cerrno>
+#include <nlohmann/json.hpp>
 
 #include "drivers/socketcan/link.hpp"
 #include "firmware_if/text/system_words.hpp"
+#include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/commands.hpp"
 #include "gateway/command/bus/named_bus.hpp"
+#include "gateway/command/commands.hpp"
 
 namespace servogate::gateway::command {
 
@@ -39,6 +41,16 @@ const Entry kRestarted{
     "error counters",
     "{0} снова участвует в обмене; найдите причину, счётчики ошибок покажет `servogate can check`"};
 
+/// What became of it, where nothing failed.
+int tell(const CanRestartOptions& options, const std::string& name, bool restarted) {
+  if (options.json)
+    print_json_line({{"interface", name}, {"restarted", restarted}});
+  else
+    print_line(text::render(restarted ? kRestarted : kNotOff, std::vector<std::string>{name},
+                            text::user_language()));
+  return kDone;
+}
+
 }  // namespace
 
 int can_restart(const CanRestartOptions& options) {
@@ -59,10 +71,7 @@ int can_restart(const CanRestartOptions& options) {
     complain(kDown, {name, rate > 0 ? socketcan::command_up(*link, rate) : "ip link set " + name + " up"});
     return kInfrastructure;
   }
-  if (link->state != image::CanState::bus_off) {
-    print_line(text::render(kNotOff, std::vector<std::string>{name}, text::user_language()));
-    return kDone;
-  }
+  if (link->state != image::CanState::bus_off) return tell(options, name, false);
   if (const int error = socketcan::restart_link(link->index); error != 0) {
     if (error == EPERM)
       complain(kRights, {name});
@@ -70,8 +79,7 @@ int can_restart(const CanRestartOptions& options) {
       complain(kRefused, {name, text::words_of(error)});
     return kInfrastructure;
   }
-  print_line(text::render(kRestarted, std::vector<std::string>{name}, text::user_language()));
-  return kDone;
+  return tell(options, name, true);
 }
 
 }  // namespace servogate::gateway::command

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "drivers/candump/candump_line.hpp"
 #include "drivers/clock.hpp"
@@ -44,6 +45,26 @@ std::string short_name(const std::string& named) {
   return at == std::string::npos || at + 1 == named.size() ? named : named.substr(at + 1);
 }
 
+/// A frame for programs: "id" hexadecimal with 3 digits or, of an extended one, 8; "t" s since 1970.
+nlohmann::json object_of(const image::CanFrame& frame, image::Nanoseconds time, const std::string& bus) {
+  const std::string text = candump::format(frame, time, bus);
+  // "(T) BUS ID#DATA", "ID#R3", "ID##FDATA": identifier and data as can-utils writes them.
+  const std::string word = text.substr(text.rfind(' ') + 1);
+  const std::size_t hash = word.find('#');
+  nlohmann::json out{{"schema", 1},
+                     {"t", static_cast<double>(time) / 1e9},
+                     {"bus", bus},
+                     {"id", word.substr(0, hash)},
+                     {"data", ""}};
+  if (frame.remote)
+    out["remote"] = true;
+  else
+    out["data"] = word.substr(hash + (frame.fd ? 3 : 1));
+  if (frame.fd) out["fd"] = true;
+  if (frame.error) out["error"] = true;
+  return out;
+}
+
 void wait_readable(int descriptor, image::Nanoseconds at_most) {
   pollfd p{descriptor, POLLIN, 0};
   const timespec limit{at_most / image::kSecond, at_most % image::kSecond};
@@ -66,8 +87,9 @@ int dump(const DumpOptions& options) {
   while (wanted && !down && !signals.ended() && (until == 0 || clock_ns(CLOCK_MONOTONIC) < until)) {
     while (wanted && transport->bus->receive(frame)) {
       const image::Nanoseconds time = frame.timestamp_ns + drivers::realtime_ahead();
-      wanted =
-          print_line(candump::format(frame, time, name)) && (options.count == 0 || ++count < options.count);
+      wanted = (options.json ? print_exact(object_of(frame, time, name).dump())
+                             : print_line(candump::format(frame, time, name))) &&
+               (options.count == 0 || ++count < options.count);
     }
     std::fflush(stdout);  // whoever reads along sees what has come
     down = transport->bus->state() == image::CanState::down;

@@ -74,14 +74,24 @@ bool FrameCount::has(const image::CanFrame& frame) const {
   return by_id_.contains({frame.extended, frame.id});
 }
 
+std::string FrameCount::Id::text() const {
+  char text[16];
+  std::snprintf(text, sizeof text, extended ? "%08X" : "%03X", id);
+  return text;
+}
+
+std::map<std::string, std::int64_t> FrameCount::counts() const {
+  std::map<std::string, std::int64_t> counts;
+  for (const auto& [id, count] : by_id_) counts[id.text()] = count;
+  return counts;
+}
+
 std::string FrameCount::words() const {
   std::string words;
   std::size_t shown = 0;
   for (const auto& [id, count] : by_id_) {
     if (shown++ == kShown) break;
-    char text[16];
-    std::snprintf(text, sizeof text, id.extended ? "%08X" : "%03X", id.id);
-    words += (words.empty() ? "" : ", ") + std::string(text) + " (" + std::to_string(count) + ")";
+    words += (words.empty() ? "" : ", ") + id.text() + " (" + std::to_string(count) + ")";
   }
   if (by_id_.size() <= kShown) return words;
   const std::string more = std::to_string(by_id_.size() - kShown);

@@ -43,12 +43,15 @@ class FrameCount {
   std::int64_t frames() const noexcept { return frames_; }
   /// In both languages (text::both); empty: none.
   std::string words() const;
+  /// All of them, identifier as in words() to number.
+  std::map<std::string, std::int64_t> counts() const;
 
  private:
   struct Id {
     bool extended = false;
     std::uint32_t id = 0;
     auto operator<=>(const Id&) const = default;
+    std::string text() const;  ///< "181", "18FF0001"
   };
   std::map<Id, std::int64_t> by_id_;
   std::int64_t frames_ = 0;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "drivers/candump/candump_line.hpp"
 #include "drivers/clock.hpp"
 #include "firmware_if/canopen/301/words/frame_words.hpp"
+#include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/canopen/bus/foreign_master.hpp"
@@ -125,7 +127,7 @@ int send_all(ToolBus& bus, const Log& log, const PlayOptions& options, FrameCoun
   return kDone;
 }
 
-void tell(const FrameCount& played, const FrameCount& heard, const Sorted& sorted) {
+void tell(const FrameCount& played, const FrameCount& heard, const Sorted& sorted, bool as_json) {
   const auto all = static_cast<std::int64_t>(sorted.log.size()) + sorted.left_out.frames();
   std::string line =
       text::render(kPlayed, std::vector<std::string>{std::to_string(played.frames()), std::to_string(all)},
@@ -133,7 +135,13 @@ void tell(const FrameCount& played, const FrameCount& heard, const Sorted& sorte
   if (sorted.left_out.frames() > 0)
     line += "; " +
             text::render(kLeftOut, std::vector<std::string>{sorted.left_out.words()}, text::user_language());
-  print_line(line);
+  if (as_json)
+    print_json_line({{"played", played.frames()},
+                     {"of", all},
+                     {"left_out", sorted.left_out.counts()},
+                     {"two_senders", heard.counts()}});
+  else
+    print_line(line);
   if (heard.frames() > 0) complain(kTwoSenders, {heard.words()});
 }
 
@@ -158,7 +166,7 @@ int play(const PlayOptions& options) {
   if (code == kDone) {
     FrameCount played, heard;
     code = send_all(*bus, log, options, played, heard);
-    tell(played, heard, sorted);
+    tell(played, heard, sorted, options.json);
   }
   return bus->finish(code);
 }

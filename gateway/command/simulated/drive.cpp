@@ -6,9 +6,11 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "drivers/clock.hpp"
 #include "firmware_if/canopen/306/value_text.hpp"
+#include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
@@ -234,6 +236,10 @@ void say_left_out(const DriveOptions& options, const Drives& drives) {
     names += text::render(kMoreLeftOut, std::vector<std::string>{std::to_string(places.size() - kNamed)},
                           text::user_language());
   complain(kLeftOut, {options.profile, names});
+  if (!options.json) return;
+  nlohmann::json objects = nlohmann::json::array();
+  for (const mock::ObjectPlace& p : places) objects.push_back(canopen::address_text(p.index, p.subindex));
+  print_json_line({{"event", "left_out"}, {"profile", options.profile}, {"objects", objects}});
 }
 
 int live_in_lockstep(const DriveOptions& options, const Plan& plan, usercan::SocketcandBus& bus,
@@ -305,11 +311,14 @@ int drive(const DriveOptions& options) {
   if (transport->lockstep == nullptr)
     if (const int code = may_join(*transport, plan.url, options.nodes, ask, signals); code != kDone)
       return code;
-  for (const mock::SimulatedDriveConfig& d : plan.drives)
+  for (const mock::SimulatedDriveConfig& d : plan.drives) {
     tell(text::render(kLives, std::vector<std::string>{std::to_string(d.node_id), plan.url, d.name},
                       text::user_language()));
+    if (options.json)
+      print_json_line({{"event", "node"}, {"node", d.node_id}, {"bus", plan.url}, {"device", d.name}});
+  }
   // Standard input has no place in granted time.
-  DriveDesk desk(std::move(*deeds), transport->lockstep == nullptr);
+  DriveDesk desk(std::move(*deeds), transport->lockstep == nullptr, options.json);
   const int code = transport->lockstep != nullptr
                        ? live_in_lockstep(options, plan, *transport->lockstep, desk, signals)
                        : live(options, plan, *transport, desk, signals);

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/files/read_file.hpp"
@@ -38,7 +39,8 @@ constexpr const char* kStates[] = {
 json status_of(mock::SimulatedDrive& d) {
   char code[8];
   std::snprintf(code, sizeof code, "%04X", d.error_code());
-  return {{"node", d.node_id()},
+  return {{"event", "status"},
+          {"node", d.node_id()},
           {"state", kStates[static_cast<int>(d.state())]},
           {"nmt", static_cast<int>(d.nmt_state())},
           {"statusword", d.statusword()},
@@ -64,11 +66,11 @@ void perform_on(mock::SimulatedDrive& d, const DriveDeed& deed) {
     case DriveDeed::Kind::load:
       return d.set_load_torque(deed.load_nm);
     case DriveDeed::Kind::status:
-      print_exact(status_of(d).dump());
-      std::fflush(stdout);
-      return;
+      return print_json_line(status_of(d));
   }
 }
+
+double seconds(image::Nanoseconds time) { return static_cast<double>(time) / 1e9; }
 
 bool later(const DriveDeed& a, const DriveDeed& b) { return a.at < b.at; }
 
@@ -108,8 +110,8 @@ std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options, st
   return deeds;
 }
 
-DriveDesk::DriveDesk(std::vector<DriveDeed> script, bool listening)
-    : waiting_(std::move(script)), listening_(listening) {
+DriveDesk::DriveDesk(std::vector<DriveDeed> script, bool listening, bool json)
+    : waiting_(std::move(script)), listening_(listening), json_(json) {
   // A process in the background of a terminal must not be stopped for having looked at it.
   if (listening_) std::signal(SIGTTIN, SIG_IGN);
 }
@@ -152,26 +154,34 @@ void DriveDesk::advance(image::Nanoseconds since_start, std::span<mock::Simulate
   while (!waiting_.empty() && waiting_.front().at <= since_start) {
     const DriveDeed deed = waiting_.front();
     waiting_.erase(waiting_.begin());
-    perform(deed, drives);
+    perform(deed, since_start, drives);
   }
 }
 
-void DriveDesk::perform_on_device(const DriveDeed& deed) {
+void DriveDesk::perform_on_device(const DriveDeed& deed, image::Nanoseconds since_start) {
   std::string why;
   if (!on_device_) return complain(kNoMachine, {deed.device});
   if (!on_device_(deed, why)) return complain(kBadDeed, {deed.words, why});
   tell(text::render(kOnDevice, std::vector<std::string>{deed.words}, text::user_language()));
+  if (json_)
+    print_json_line(
+        {{"event", "done"}, {"t", seconds(since_start)}, {"device", deed.device}, {"what", deed.words}});
 }
 
-void DriveDesk::perform(const DriveDeed& deed, std::span<mock::SimulatedDrive* const> drives) {
-  if (!deed.device.empty()) return perform_on_device(deed);
+void DriveDesk::perform(const DriveDeed& deed, image::Nanoseconds since_start,
+                        std::span<mock::SimulatedDrive* const> drives) {
+  if (!deed.device.empty()) return perform_on_device(deed, since_start);
   bool found = false;
   for (mock::SimulatedDrive* d : drives) {
     if (deed.node != 0 && deed.node != d->node_id()) continue;
     found = true;
-    if (deed.kind != DriveDeed::Kind::status)
+    if (deed.kind != DriveDeed::Kind::status) {
       tell(text::render(kHappened, std::vector<std::string>{std::to_string(d->node_id()), deed.words},
                         text::user_language()));
+      if (json_)
+        print_json_line(
+            {{"event", "done"}, {"t", seconds(since_start)}, {"node", d->node_id()}, {"what", deed.words}});
+    }
     perform_on(*d, deed);
   }
   if (!found) complain(kNobody, {std::to_string(deed.node)});

@@ -19,8 +19,9 @@ std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options, st
 /// come.
 class DriveDesk {
  public:
-  /// `listening`: reads standard input, too, until its end.
-  DriveDesk(std::vector<DriveDeed> script, bool listening);
+  /// `listening`: reads standard input, too, until its end. `json`: what is done is said on standard output,
+  /// too, an object a line.
+  DriveDesk(std::vector<DriveDeed> script, bool listening, bool json);
   /// Does what is due `since_start`. `other`: takes lines of standard input that are its own; false: not its.
   void advance(image::Nanoseconds since_start, std::span<mock::SimulatedDrive* const> drives,
                const std::function<bool(const std::string& line)>& other = {});
@@ -34,12 +35,13 @@ class DriveDesk {
   void read_input();
   void take(const std::string& line, image::Nanoseconds since_start,
             const std::function<bool(const std::string& line)>& other);
-  void perform(const DriveDeed& deed, std::span<mock::SimulatedDrive* const> drives);
-  void perform_on_device(const DriveDeed& deed);
+  void perform(const DriveDeed& deed, image::Nanoseconds since_start,
+               std::span<mock::SimulatedDrive* const> drives);
+  void perform_on_device(const DriveDeed& deed, image::Nanoseconds since_start);
 
   std::vector<DriveDeed> waiting_;  ///< by time
   std::string input_;
-  bool listening_;
+  bool listening_, json_;
   OnDevice on_device_;
 };
 

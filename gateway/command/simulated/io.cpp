@@ -7,11 +7,13 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "drivers/clock.hpp"
 #include "drivers/mock/io/simulated_encoder.hpp"
 #include "drivers/mock/io/simulated_io_module.hpp"
 #include "firmware_if/canopen/406/objects.hpp"
+#include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
@@ -56,11 +58,14 @@ class Node {
   virtual bool set(std::string_view what, std::string_view value) = 0;
 
   int id = 0;
+  bool json = false;
 
  protected:
   /// "7.dq3 on", "7.aq0 -1200".
-  void say(const std::string& what, const std::string& value) const {
-    print_line(std::to_string(id) + "." + what + " " + value);
+  void say(const std::string& what, const nlohmann::json& value) const {
+    if (json) return print_json_line({{"event", "output"}, {"node", id}, {"name", what}, {"value", value}});
+    print_line(std::to_string(id) + "." + what + " " +
+               (value.is_boolean() ? value.get<bool>() ? "on" : "off" : value.dump()));
   }
 };
 
@@ -77,12 +82,12 @@ class Module final : public Node {
   void print(bool all) override {
     for (std::size_t i = 0; i < digital_.size(); ++i) {
       const bool now = device_.digital(static_cast<std::uint8_t>(i));
-      if (all || now != digital_[i]) say("dq" + std::to_string(i), now ? "on" : "off");
+      if (all || now != digital_[i]) say("dq" + std::to_string(i), now);
       digital_[i] = now;
     }
     for (std::size_t i = 0; i < analogue_.size(); ++i) {
       const std::int16_t now = device_.analogue(static_cast<std::uint8_t>(i));
-      if (all || now != analogue_[i]) say("aq" + std::to_string(i), std::to_string(now));
+      if (all || now != analogue_[i]) say("aq" + std::to_string(i), now);
       analogue_[i] = now;
     }
   }
@@ -123,7 +128,7 @@ class Encoder final : public Node {
     Node::advance_to(now);
   }
   void print(bool all) override {
-    if (all) say("position", std::to_string(device_.object(canopen::encoder::kPositionValue)));
+    if (all) say("position", device_.object(canopen::encoder::kPositionValue));
   }
   bool set(std::string_view what, std::string_view value) override {
     constexpr std::int64_t kFar = std::int64_t{1} << 40;
@@ -172,6 +177,7 @@ std::unique_ptr<Node> make_node(const IoOptions& options, int id) {
     node = std::make_unique<Module>(c);
   }
   node->id = id;
+  node->json = options.json;
   return node;
 }
 
@@ -234,7 +240,7 @@ class Nodes {
 
 int live(const IoOptions& options, const std::string& url, const CanTransport& transport,
          const EndBySignal& signals) {
-  DriveDesk desk({}, true);
+  DriveDesk desk({}, true, options.json);
   Nodes nodes(options, *transport.bus, drivers::clock_ns(CLOCK_MONOTONIC));
   const auto take = [&](const std::string& line) {
     nodes.take(line);
@@ -291,9 +297,12 @@ int io(const IoOptions& options) {
         code != kDone)
       return code;
   const std::string name = make_node(options, 1)->name();
-  for (const int node : options.nodes)
+  for (const int node : options.nodes) {
     tell(text::render(kLives, std::vector<std::string>{std::to_string(node), named->url, name},
                       text::user_language()));
+    if (options.json)
+      print_json_line({{"event", "node"}, {"node", node}, {"bus", named->url}, {"device", name}});
+  }
   const int code = transport->lockstep != nullptr ? live_in_lockstep(options, *transport->lockstep, signals)
                                                   : live(options, named->url, *transport, signals);
   return unless_frames_lost(code, named->url, *transport->bus);

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "drivers/clock.hpp"
+#include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
@@ -93,7 +95,7 @@ bool find_urls(const SimOptions& options, machine::MachineConfig& m, std::vector
 }
 
 /// kDone, or the exit code after saying what is wrong.
-int open_buses(std::vector<Served>& buses, const EndBySignal& signals) {
+int open_buses(std::vector<Served>& buses, bool as_json, const EndBySignal& signals) {
   for (Served& b : buses) {
     CanTransportOptions options;
     options.bit_rate = b.bit_rate;
@@ -110,6 +112,7 @@ int open_buses(std::vector<Served>& buses, const EndBySignal& signals) {
     });
     tell(text::render(kServes, std::vector<std::string>{b.name, std::to_string(b.nodes.size()), b.url},
                       text::user_language()));
+    if (as_json) print_json_line({{"event", "serving"}, {"bus", b.name}, {"url", b.url}, {"nodes", b.nodes}});
   }
   return kDone;
 }
@@ -191,12 +194,12 @@ int sim(const SimOptions& options) {
   auto deeds = read_deeds(options.faults, nodes);
   if (!deeds) return kWrongUse;
   const EndBySignal signals;
-  int code = open_buses(buses, signals);
+  int code = open_buses(buses, options.json, signals);
   if (code != kDone) return code;
   for (const machine::StationConfig& s : loaded.machine.stations)
     if (!s.over_bus() && s.mock())
       tell(text::render(kNotServed, std::vector<std::string>{s.name}, text::user_language()));
-  DriveDesk desk(std::move(*deeds), true);
+  DriveDesk desk(std::move(*deeds), true, options.json);
   code = serve(options, loaded, buses, desk, signals);
   for (const Served& b : buses) code = unless_frames_lost(code, b.url, *b.transport.bus);
   return code;

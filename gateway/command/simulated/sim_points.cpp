@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/simulated/fault_line.hpp"
@@ -56,16 +57,15 @@ void SimPoints::look(image::Nanoseconds since_start) {
     if (row.told == on) continue;
     row.told = on;
     if (json_)
-      print_exact(json{
-          {"t", seconds(since_start)},
-          {"point", row.config.point},
-          {"on", on},
-          {"axis", row.config.axis},
-          {"position",
-           at}}.dump());
+      print_json_line({{"event", "switch"},
+                       {"t", seconds(since_start)},
+                       {"point", row.config.point},
+                       {"on", on},
+                       {"axis", row.config.axis},
+                       {"position", at}});
     else
       print_line(say(kPoint, {row.config.point, on ? "on" : "off"}));
-    std::fflush(stdout);
+    keep_order();
   }
 }
 
@@ -92,13 +92,13 @@ bool SimPoints::play(const std::string& line, image::Nanoseconds since_start) {
       row.told.reset();
     }
   if (json_)
-    print_exact(json{{"t", seconds(since_start)},
+    print_json_line({{"event", "input"},
+                     {"t", seconds(since_start)},
                      {"point", point},
-                     {"played", played.value ? json(*played.value) : json("auto")}}
-                    .dump());
+                     {"played", played.value ? json(*played.value) : json("auto")}});
   else
     print_line(said);
-  std::fflush(stdout);
+  keep_order();
   return true;
 }
 
