@@ -7,6 +7,7 @@
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/compose/devices/open_devices.hpp"
 #include "gateway/compose/plc/logic_options.hpp"
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/files/read_file.hpp"
@@ -190,7 +191,10 @@ int check(const CheckOptions& options) {
   if (!options.dialect.empty() && !known_dialect(options.dialect)) return kWrongUse;
   const machine::LoadResult loaded = machine::load(options.machine);
   std::vector<text::Finding> findings = loaded.findings;
-  if (loaded.ok()) check_logic(loaded.machine, findings);
+  if (loaded.ok()) {
+    check_logic(loaded.machine, findings);
+    check_devices(loaded, findings);
+  }
   const int machine_errors = print_findings(findings);
   nlohmann::json json;
   if (options.json) {

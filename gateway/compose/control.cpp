@@ -9,6 +9,7 @@
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/canopen/302/boot_detail.hpp"
 #include "firmware_if/image/frames/frame_record.hpp"
+#include "gateway/compose/devices/open_devices.hpp"
 #include "gateway/compose/plc/compile_beside.hpp"
 #include "gateway/compose/plc/logic_options.hpp"
 #include "gateway/compose/program/program_model.hpp"
@@ -21,9 +22,6 @@ namespace servogate::gateway {
 
 namespace {
 
-const text::Entry kNoDriver{"compose.no-driver",
-                            "station '{0}': no driver for '{1}' in this version; mock:NAME works",
-                            "станция «{0}»: для «{1}» в этой версии нет драйвера; работает mock:ИМЯ"};
 const text::Entry kNoBus{"compose.no-bus", "bus '{0}': {1}", "шина «{0}»: {1}"};
 const text::Entry kPerhapsReal{
     "compose.perhaps-real",
@@ -64,20 +62,12 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
                                           std::vector<text::Finding>& findings, cycle::InputSource* source) {
   std::unique_ptr<Control> c(new Control(loaded));
   const machine::MachineConfig& m = c->loaded_.machine;
-  bool good = c->compile_logic(findings);
-  const auto refuse = [&](const std::string& path, const std::string& name, const std::string& url) {
-    const machine::Where where = m.where(path);
-    findings.push_back({text::Severity::error, m.file, where.line, where.column, &kNoDriver, {name, url}});
-    good = false;
-  };
-  for (std::size_t s = 0; s < m.stations.size(); ++s)
-    if (int line = -1; !m.stations[s].mock())
-      refuse(m.line(m.stations[s].line, &line) != nullptr ? "line." + std::to_string(line) + ".url"
-                                                          : "station." + std::to_string(s) + ".url",
-             m.stations[s].name, m.stations[s].url);
-  if (!good || !c->open_buses(findings, source != nullptr)) return nullptr;
+  const bool logic = c->compile_logic(findings), devices = check_devices(c->loaded_, findings);
+  if (!logic || !devices || !c->open_buses(findings, source != nullptr)) return nullptr;
 
-  c->world_ = std::make_unique<MockWorld>(c->loaded_);
+  c->world_ = simulated_world(c->loaded_);
+  c->devices_ = open_devices(c->loaded_, *c->world_, source != nullptr, findings);
+  if (infrastructure(findings)) return nullptr;
   c->faults_ = std::make_unique<MachineFaults>(m, *c->world_, true);
   cycle::CycleParts parts;
   parts.period_ns = m.cycle_ns();
@@ -91,7 +81,7 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
         parts.sources[static_cast<std::size_t>(node.target_index)].place = {static_cast<std::int16_t>(b),
                                                                             node.node};
   }
-  for (image::CycleDevice* device : c->world_->io()) parts.devices.push_back(device);
+  for (const auto& device : c->devices_) parts.devices.push_back(device.get());
   for (std::size_t s = 0; s < m.stations.size(); ++s)
     parts.sources[s].watched = !m.stations[s].over_bus();  // the loss of a node is said by its bus
   parts.logic = c->logic_.get();
@@ -148,7 +138,8 @@ bool Control::open_buses(std::vector<text::Finding>& findings, bool replay) {
 }
 
 bool Control::infrastructure(const std::vector<text::Finding>& findings) {
-  return std::any_of(findings.begin(), findings.end(), [](const auto& f) { return f.entry == &kNoBus; });
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const auto& f) { return f.entry == &kNoBus || device_not_opened(f); });
 }
 
 const CanTransport* Control::shared_bus(std::size_t bus) const noexcept {

@@ -11,7 +11,7 @@
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/program/program_change.hpp"
 #include "gateway/compose/simulated/machine_faults.hpp"
-#include "gateway/compose/simulated/mock_world.hpp"
+#include "gateway/compose/simulated/world_setup.hpp"
 #include "gateway/machine/load.hpp"
 #include "gateway/machine/state/state.hpp"
 #include "kernel/channel/process.hpp"
@@ -26,7 +26,8 @@ namespace servogate::gateway {
 class Control {
  public:
   /// Puts the machine together. nullptr when something is wrong with it (`findings` says what: PLC program, a
-  /// bus that this build cannot open). With `source` devices are not opened: the inputs come from a record.
+  /// bus or device that cannot be opened). With `source` devices are not opened: the inputs come from a
+  /// record.
   static std::unique_ptr<Control> compose(const machine::LoadResult& loaded,
                                           std::vector<text::Finding>& findings,
                                           cycle::InputSource* source = nullptr);
@@ -69,7 +70,7 @@ class Control {
   /// Its symbol table, made once.
   const std::vector<image::Symbol>& symbols() const noexcept { return symbols_; }
   channel::Process& process(int index) { return *processes_[static_cast<std::size_t>(index)]; }
-  MockWorld& world() noexcept { return *world_; }
+  mock::World& world() noexcept { return *world_; }
   /// Faults on what is simulated, by name.
   MachineFaults& faults() noexcept { return *faults_; }
   plc::Logic* logic() noexcept { return logic_.get(); }
@@ -93,7 +94,8 @@ class Control {
   cycle::AlarmNames alarm_names() const;
   /// True when nothing real can move.
   bool nothing_real() const { return loaded_.machine.nothing_real(); }
-  /// True when composing failed because of the computer (a bus that cannot be opened), not of a file.
+  /// True when composing failed because of the computer (a bus or device that cannot be opened), not
+  /// of a file.
   static bool infrastructure(const std::vector<text::Finding>& findings);
   /// The transport of a bus that somebody else may use at any moment, too; nullptr: a mock bus, and one in
   /// lockstep, whose participants are known before time begins.
@@ -110,8 +112,9 @@ class Control {
 
   machine::LoadResult loaded_;
   const std::vector<image::Symbol> symbols_;
-  std::unique_ptr<MockWorld> world_;
+  std::unique_ptr<mock::World> world_;
   std::unique_ptr<MachineFaults> faults_;
+  std::vector<std::unique_ptr<image::CycleDevice>> devices_;  ///< of no bus, in the order of the file
   std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
   std::optional<image::Nanoseconds> due_ns_;

@@ -249,7 +249,6 @@ TEST(MachineFile, words_put_into_russian_sentences_are_russian) {
   } rows[] = {
       {"letter = \"Y\"", "letter = \"X\"", "«X»: повторяет описание из строки "},
       {"channel = \"di1\"", "channel = \"di0\"", "«di0»: повторяет описание из строки "},
-      {"\"mock:gpio\"", "\"nothing:gpio\"", "ожидалось mock:ИМЯ, chip:МЕТКА"},
       {"SA25.IN", "SA250", "здесь ожидается слово (SA16.IN, .LI, .RE)"},
       {"min_speed = ", "min_speed = 9000 # ", "min_speed 9000 об/мин не меньше max_speed 6000 об/мин"},
   };

@@ -427,7 +427,7 @@ TEST(Faults, hard_limit_permits_motion_only_away_from_it_and_slowly) {
   mill.ask(RequestKind::mode, static_cast<double>(Mode::manual));
   ASSERT_EQ(mill.ask(RequestKind::jog_increment, 50.0, 0), Refusal::none);
   mill.run(0.3);
-  ASSERT_EQ(mill.control().world().play_input("x_limit_plus", {1.0}), gateway::MockWorld::Played::done);
+  ASSERT_EQ(mill.control().world().play_input("x_limit_plus", {1.0}), mock::World::Played::done);
   ASSERT_TRUE(mill.until([&] { return mill.alarms(axis::alarm::kHardLimitPlus) > 0; }, 0.5))
       << mill.alarm_list();
   ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 1.0));

@@ -39,9 +39,7 @@ class InverterMill : public Mill {
   explicit InverterMill(std::string_view program) : Mill(changed_mill(put_on_an_inverter), program) {
     after_cycle = [this] { watch(); };
   }
-  mock::ModbusStation& panel() {
-    return dynamic_cast<mock::MockModbusLine&>(*control().world().io()[1]).station(0);
-  }
+  mock::ModbusStation& panel() { return *control().world().modbus("panel"); }
   /// What the terminals of the station show: register, relay of M3, relay of M4 (which is inverted).
   int wire() { return panel().analog_output(0); }
   bool cw() { return panel().output(6); }

@@ -112,7 +112,7 @@ TEST(Debounce, lets_through_what_has_lasted_from_a_chip_and_from_a_polled_statio
   auto& world = mill.control().world();
   const image::Place home = place_of(mill.control(), "y_home");
   const auto play = [&](const char* point, double value) {
-    EXPECT_EQ(world.play_input(point, {value}), gateway::MockWorld::Played::done);
+    EXPECT_EQ(world.play_input(point, {value}), mock::World::Played::done);
   };
   play("y_home", 0.0);
   mill.run(0.02);
@@ -144,15 +144,15 @@ TEST(Debounce, lets_through_what_has_lasted_from_a_chip_and_from_a_polled_statio
 TEST(LoopedInput, that_is_played_stays_so_whatever_its_output_does_until_it_is_let_go) {
   Mill mill("N10 T2.2 M6\nN20 M30\n");
   ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
-  gateway::MockWorld& world = mill.control().world();
+  mock::World& world = mill.control().world();
   const image::Place clamped = place_of(mill.control(), "tool_clamped");
   ASSERT_TRUE(mill.image().packets.bit(clamped));
-  ASSERT_EQ(world.play_input("tool_clamped", {0.0}), gateway::MockWorld::Played::done);
+  ASSERT_EQ(world.play_input("tool_clamped", {0.0}), mock::World::Played::done);
   ASSERT_EQ(mill.ask(RequestKind::start), Refusal::none);
   EXPECT_TRUE(mill.until([&] { return mill.alarms(cycle::alarm::kExternalAlarm) > 0; }, 10.0))
       << mill.alarm_list();
   EXPECT_FALSE(mill.image().packets.bit(clamped)) << "the valve is closed, the clamp does not report";
-  ASSERT_EQ(world.play_input("tool_clamped", {}), gateway::MockWorld::Played::done);
+  ASSERT_EQ(world.play_input("tool_clamped", {}), mock::World::Played::done);
   EXPECT_TRUE(mill.until([&] { return mill.image().packets.bit(clamped); }, 1.0));
 }
 

@@ -87,7 +87,7 @@ TEST(Stations, a_machine_works_with_packed_inputs_and_registers_that_begin_elsew
   EXPECT_EQ(mill.image().sources[1].quality, image::Quality::good);
   EXPECT_EQ(mill.image().sources[1].errors, 0u);
 
-  auto* line = dynamic_cast<mock::MockModbusLine*>(mill.control().world().io()[1]);
+  mock::MockModbusLine* line = mill.control().world().line_of("panel");
   ASSERT_NE(line, nullptr);
   modbus::Pdu request, answer;
   modbus::Response response;
@@ -116,10 +116,10 @@ TEST(Stations, several_units_share_a_line_and_one_that_is_lost_leaves_the_others
   Mill mill(mill_with_two_units(), {});
   const auto bit = [&](const char* name) { return mill.image().packets.bit(place_of(mill.control(), name)); };
   const auto quality = [&](std::size_t source) { return mill.image().sources[source].quality; };
-  auto* line = dynamic_cast<mock::MockModbusLine*>(mill.control().world().io()[1]);
+  mock::MockModbusLine* line = mill.control().world().line_of("panel");
   ASSERT_NE(line, nullptr);
   ASSERT_EQ(line->stations(), 2u);
-  EXPECT_EQ(mill.control().world().io().size(), 2u) << "the line is one device of the cycle";
+  EXPECT_EQ(mill.control().world().line_of("cabinet"), line);
   mill.control().world().set_input("cabinet_warm", true);
   mill.run(0.5);
   EXPECT_EQ(quality(1), image::Quality::good);
@@ -144,7 +144,7 @@ TEST(Stations, what_a_lost_station_shows_on_the_wire_is_the_loss_of_each_output)
   });
   Mill mill(loaded, {});
   mill.run(0.3);
-  auto* line = dynamic_cast<mock::MockModbusLine*>(mill.control().world().io()[1]);
+  mock::MockModbusLine* line = mill.control().world().line_of("panel");
   ASSERT_NE(line, nullptr);
   line->station(0).advance_to(mill.image().now.t_ns + 2 * image::kSecond);
   EXPECT_TRUE(line->station(0).output(4));

@@ -15,8 +15,7 @@ PointStage::PointStage(std::vector<PointRule> points, int source, std::vector<Ag
 
 void PointStage::take(std::size_t n, double raw) noexcept {
   Point& p = points_[n];
-  const double value =
-      p.rule.digital ? ((raw != 0.0) != p.rule.inverted ? 1.0 : 0.0) : raw * p.rule.scale + p.rule.shift;
+  const double value = value_of(p.rule, raw);
   if (p.known && !p.rule.digital && std::abs(value - p.value) < p.rule.hysteresis) return;
   p.value = value;
   p.known = true;
@@ -109,8 +108,7 @@ void PointStage::judge(ProcessImage& image) const noexcept {
 
 double PointStage::raw(std::size_t n, const Packets& packets) const noexcept {
   const PointRule& rule = points_[n].rule;
-  if (rule.digital) return level(n, packets) ? 1.0 : 0.0;
-  return (packets.number(rule.place) - rule.shift) / rule.scale;
+  return raw_of(rule, rule.digital ? (packets.bit(rule.place) ? 1.0 : 0.0) : packets.number(rule.place));
 }
 
 }  // namespace servogate::image

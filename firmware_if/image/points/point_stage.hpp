@@ -6,24 +6,10 @@
 #include <vector>
 
 #include "firmware_if/image/edges.hpp"
+#include "firmware_if/image/points/point_rule.hpp"
 #include "firmware_if/image/process_image.hpp"
 
 namespace servogate::image {
-
-/// One point of a station as the machine file declares it, whatever carries it.
-struct PointRule {
-  Place place;
-  bool input = true;
-  bool digital = true;
-  bool inverted = false;  ///< digital: the wire's 1 is 0 in the packet
-  bool hold = false;      ///< keeps its value while its source is lost, instead of `loss`
-  double loss = 0.0;      ///< in the packet for an input, on the wire for an output
-  double scale = 1.0;     ///< not 0; analog: value in the packet = raw * scale + shift
-  double shift = 0.0;
-  Nanoseconds debounce_ns = 0;  ///< digital input: a change is shown after it has lasted so long
-  double hysteresis = 0.0;      ///< analog input: a smaller change than this is not shown, units of the place
-  std::uint16_t group = 0;      ///< of the points that are read together and age together
-};
 
 /// When a group is too old; 0: its device says by itself when it is lost.
 struct AgeLimits {

@@ -141,7 +141,8 @@ void carry(Served& b, image::CanBus& inside) {
 int serve(const SimOptions& options, const machine::LoadResult& loaded, std::vector<Served>& buses,
           DriveDesk& desk, const EndBySignal& signals) {
   constexpr image::Nanoseconds kShortest = 50 * image::kMicrosecond;
-  MockWorld world(loaded);
+  const auto made = simulated_world(loaded);
+  mock::World& world = *made;
   MachineFaults faults(loaded.machine, world, false);
   desk.set_devices([&](const DriveDeed& deed, std::string& why) {
     using Kind = DriveDeed::Kind;

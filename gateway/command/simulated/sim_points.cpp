@@ -42,7 +42,7 @@ std::optional<InputWish> wish_of(const std::string& word) {
 
 }  // namespace
 
-SimPoints::SimPoints(const machine::MachineConfig& machine, MockWorld& world, bool json)
+SimPoints::SimPoints(const machine::MachineConfig& machine, mock::World& world, bool json)
     : machine_(machine), world_(world), json_(json) {
   for (const machine::SimulatedSwitch& s : machine.simulation.switches)
     if (const int axis = machine.axis_index(s.axis); axis >= 0)

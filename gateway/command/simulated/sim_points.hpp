@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/compose/simulated/mock_world.hpp"
+#include "gateway/compose/simulated/world_setup.hpp"
 #include "gateway/machine/config.hpp"
 
 namespace servogate::gateway::command {
@@ -14,7 +14,7 @@ namespace servogate::gateway::command {
 class SimPoints {
  public:
   /// Both must live longer. `json`: what is told is a line of JSON each.
-  SimPoints(const machine::MachineConfig& machine, MockWorld& world, bool json);
+  SimPoints(const machine::MachineConfig& machine, mock::World& world, bool json);
   /// Tells what has changed.
   void look(image::Nanoseconds since_start);
   /// `input POINT on|off|auto|NUMBER` with a word of what came of it; false: the line is none of this kind.
@@ -29,7 +29,7 @@ class SimPoints {
     std::optional<bool> told;
   };
   const machine::MachineConfig& machine_;
-  MockWorld& world_;
+  mock::World& world_;
   bool json_;
   std::vector<Switch> switches_;
 };

@@ -52,7 +52,7 @@ bool supply_or_swap(Node& node, const fault::Fault& f, bool begins) {
 
 }  // namespace
 
-MachineFaults::MachineFaults(const machine::MachineConfig& machine, MockWorld& world, bool controlled)
+MachineFaults::MachineFaults(const machine::MachineConfig& machine, mock::World& world, bool controlled)
     : machine_(machine), world_(world), controlled_(controlled) {}
 
 std::optional<MachineFaults::Target> MachineFaults::find_on_bus(std::string_view device) const {
@@ -87,9 +87,9 @@ std::optional<MachineFaults::Target> MachineFaults::find(std::string_view device
   target.chip = world_.chip(device);
   target.devices = target.station != nullptr ? bit(Device::station) : bit(Device::chip);
   if (target.station != nullptr || target.chip != nullptr) return target;
-  target.line = world_.line(device);
-  target.devices = target.line.chip != nullptr ? bit(Device::input) : bit(Device::control);
-  return target.line.chip != nullptr || has_control(device) ? std::optional(target) : std::nullopt;
+  target.contact = world_.contact(device);
+  target.devices = target.contact.chip != nullptr ? bit(Device::input) : bit(Device::control);
+  return target.contact.chip != nullptr || has_control(device) ? std::optional(target) : std::nullopt;
 }
 
 std::string MachineFaults::names() const {
@@ -103,7 +103,7 @@ std::string MachineFaults::names() const {
   for (const machine::StationConfig& station : machine_.stations) {
     if (world_.modbus(station.name) != nullptr || world_.chip(station.name) != nullptr) add(station.name);
     for (const machine::PointConfig& point : station.points)
-      if (world_.line(point.name).chip != nullptr) add(point.name);
+      if (world_.contact(point.name).chip != nullptr) add(point.name);
   }
   if (controlled_) add(std::string(kControl));
   return list;
@@ -213,13 +213,14 @@ void MachineFaults::apply(const Target& target, const fault::Fault& fault, bool 
   if (target.encoder != nullptr && supply_or_swap(*target.encoder, fault, begins)) return;
   if (target.module != nullptr && supply_or_swap(*target.module, fault, begins)) return;
   if (target.wire != nullptr) return apply_to_wire(target, fault, begins);
-  const MockWorld::Line& line = target.line;
+  const mock::World::Contact& contact = target.contact;
   if (fault.kind == Kind::bounce)
-    line.chip->set_bounce(line.number, begins ? mock::Bounce{fault.delay_ns, fault.seed} : mock::Bounce{});
+    contact.chip->set_bounce(contact.number,
+                             begins ? mock::Bounce{fault.delay_ns, fault.seed} : mock::Bounce{});
   else if (begins)
-    line.chip->force_input(line.number, fault.level != line.inverted);
+    contact.chip->force_input(contact.number, image::raw_of(contact.rule, fault.level ? 1.0 : 0.0) != 0.0);
   else
-    line.chip->release_input(line.number);
+    contact.chip->release_input(contact.number);
 }
 
 void MachineFaults::apply_to_wire(const Target& target, const fault::Fault& f, bool begins) {

@@ -7,8 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/mock/world/world.hpp"
 #include "firmware_if/fault/fault.hpp"
-#include "gateway/compose/simulated/mock_world.hpp"
+#include "gateway/machine/config.hpp"
 
 namespace servogate::gateway {
 
@@ -21,7 +22,7 @@ class MachineFaults {
   static constexpr std::string_view kControl = "control";
 
   /// Both outlive it. `controlled`: a cycle of this process drives the machine, and can be late.
-  MachineFaults(const machine::MachineConfig& machine, MockWorld& world, bool controlled);
+  MachineFaults(const machine::MachineConfig& machine, mock::World& world, bool controlled);
 
   /// From any thread; it happens with the next advance_to(). A lasting fault replaces the same kind on the
   /// same device; of a bus several stay side by side. False: `why` says why it cannot, in both languages.
@@ -45,7 +46,7 @@ class MachineFaults {
     mock::SimulatedIoModule* module = nullptr;
     mock::ModbusStation* station = nullptr;
     mock::MockGpio* chip = nullptr;
-    MockWorld::Line line = {};
+    mock::World::Contact contact = {};
   };
   struct Wish {
     Target target;
@@ -71,7 +72,7 @@ class MachineFaults {
   int endpoint_of(const Target& bus, int node) const;
 
   const machine::MachineConfig& machine_;
-  MockWorld& world_;
+  mock::World& world_;
   bool controlled_;
   image::Nanoseconds lateness_ns_ = 0;
   std::vector<Active> active_;

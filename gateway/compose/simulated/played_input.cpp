@@ -74,7 +74,7 @@ std::optional<double> value_for(const machine::PointConfig& point, const InputWi
 
 }  // namespace
 
-PlayedInput play_input(const machine::MachineConfig& machine, MockWorld& world, const std::string& name,
+PlayedInput play_input(const machine::MachineConfig& machine, mock::World& world, const std::string& name,
                        const InputWish& wish) {
   int station = -1;
   const machine::PointConfig* point = machine.point(name, &station);
@@ -89,11 +89,11 @@ PlayedInput play_input(const machine::MachineConfig& machine, MockWorld& world, 
     if (!value) return played;
   }
   switch (world.play_input(name, {value})) {
-    case MockWorld::Played::follows_nothing:
+    case mock::World::Played::follows_nothing:
       return refused(Outcome::wrong, kFollowsNothing, {name});
-    case MockWorld::Played::no_such_input:
+    case mock::World::Played::no_such_input:
       return played;
-    case MockWorld::Played::done:
+    case mock::World::Played::done:
       break;
   }
   if (!value) return {Outcome::done, &kFollows, {name}, std::nullopt};

@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "drivers/mock/world/world.hpp"
 #include "firmware_if/text/finding.hpp"
-#include "gateway/compose/simulated/mock_world.hpp"
 #include "gateway/machine/config.hpp"
 
 namespace servogate::gateway {
@@ -28,8 +28,8 @@ struct PlayedInput {
   std::optional<double> value;  ///< the point's value from now on; nullopt: it follows
 };
 
-/// Plays an input of a simulated station, see MockWorld::play_input(). Not real-time safe.
-PlayedInput play_input(const machine::MachineConfig& machine, MockWorld& world, const std::string& point,
+/// Plays an input of a simulated station, see mock::World::play_input(). Not real-time safe.
+PlayedInput play_input(const machine::MachineConfig& machine, mock::World& world, const std::string& point,
                        const InputWish& wish);
 
 }  // namespace servogate::gateway

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/compose/simulated/mock_world.hpp"
+#include "drivers/mock/world/world.hpp"
 
 namespace servogate::gateway {
 
@@ -18,7 +18,7 @@ bool whole_place(const machine::PointConfig& point) { return point.place.format 
 image::NumberRange range_of(const machine::PointConfig& point) {
   if (!point.is_analog()) return {0.0, 1.0};
   const image::NumberRange place = image::number_range(point.place.format);
-  const double end = MockWorld::kLargestRegister * point.scale + point.shift;
+  const double end = mock::World::kLargestRegister * point.scale + point.shift;
   return {std::max(place.min, std::min(point.shift, end)), std::min(place.max, std::max(point.shift, end))};
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "gateway/machine/check/check.hpp"
 #include "gateway/machine/check/findings.hpp"
@@ -13,33 +12,6 @@
 namespace servogate::machine {
 
 namespace {
-
-/// "scheme:" of a transport and whether something has to follow the colon in a form with a port.
-struct Transport {
-  std::string_view scheme;
-  bool port;
-};
-constexpr Transport kModbus[] = {{"mock:", false}, {"tcp:", true}, {"rtu:", false}};
-constexpr Transport kGpio[] = {{"mock:", false}, {"chip:", false}};
-
-bool port_fits(std::string_view rest) {
-  rest = rest.substr(0, rest.find('/'));
-  const std::size_t colon = rest.rfind(':');
-  if (colon == std::string_view::npos || colon == 0) return false;
-  const std::string_view port = rest.substr(colon + 1);
-  return !port.empty() && port.size() <= 5 &&
-         port.find_first_not_of("0123456789") == std::string_view::npos &&
-         std::stoi(std::string(port)) >= 1 && std::stoi(std::string(port)) <= 65535;
-}
-
-void check_url(const std::string& url, const std::string& path, std::span<const Transport> known,
-               std::string_view expected, const MachineConfig& machine, Reading& reading) {
-  const bool fits = std::any_of(known.begin(), known.end(), [&](const Transport& t) {
-    return url.starts_with(t.scheme) && url.size() > t.scheme.size() &&
-           (!t.port || port_fits(std::string_view(url).substr(t.scheme.size())));
-  });
-  if (!fits) reading.error(machine.where(path), finding::kBadUrl, {"url", url, std::string(expected)});
-}
 
 void check_buses(const MachineConfig& machine, Reading& reading) {
   if (machine.buses.size() > static_cast<std::size_t>(image::kMaxSegments))
@@ -87,9 +59,6 @@ class StationCheck {
     if (s_.kind == StationKind::gpio) needed("url", s_.url);
     if (s_.kind == StationKind::modbus) modbus();
     if (s_.kind != StationKind::modbus) not_here("line", s_.line);
-    if (!s_.url.empty() && s_.kind == StationKind::gpio)
-      check_url(s_.url, path_ + "url", kGpio, text::both("mock:NAME, chip:LABEL", "mock:ИМЯ, chip:МЕТКА"),
-                machine_, reading_);
     for (std::size_t i = 0; i < s_.points.size(); ++i)
       if (s_.points[i].debounce > 0.0 && s_.points[i].channel != ChannelKind::di)
         reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".debounce"),
@@ -134,14 +103,6 @@ class StationCheck {
   Reading& reading_;
   std::string kind_;
 };
-
-void check_lines(const MachineConfig& machine, Reading& reading) {
-  for (std::size_t i = 0; i < machine.lines.size(); ++i)
-    if (const LineConfig& line = machine.lines[i]; !line.url.empty())
-      check_url(line.url, "line." + std::to_string(i) + ".url", kModbus,
-                text::both("mock:NAME, tcp:HOST:PORT, rtu:/dev/...", "mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/..."),
-                machine, reading);
-}
 
 void check_simulation(const MachineConfig& machine, Reading& reading) {
   for (std::size_t i = 0; i < machine.simulation.switches.size(); ++i) {
@@ -251,7 +212,6 @@ void check_control(const MachineConfig& machine, Reading& reading) {
                   {machine.control.dialect, known});
   }
   check_buses(machine, reading);
-  check_lines(machine, reading);
   for (std::size_t i = 0; i < machine.stations.size(); ++i) StationCheck(machine, i, reading).all();
   check_simulation(machine, reading);
 }

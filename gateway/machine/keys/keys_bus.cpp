@@ -187,8 +187,8 @@ const Section& section_of<LineConfig>() {
   using C = LineConfig;
   static const Key keys[] = {
       key<&C::name>("name", {.required = true}, "name of the line", "имя линии"),
-      key<&C::url>("url", {.required = true}, "mock:NAME, tcp:HOST:PORT, rtu:/dev/...",
-                   "mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/..."),
+      key<&C::url>("url", {.required = true}, "what carries the line: mock:NAME",
+                   "чем передаётся линия: mock:ИМЯ"),
       key<&C::baud>("baud", {.unit = Unit::bit_per_s, .min = 1200, .max = 4000000},
                     "rate of a serial line; a mock line takes the same time for its characters",
                     "скорость последовательной линии; имитатор тратит на символы столько же времени"),
@@ -208,7 +208,7 @@ const Section& section_of<StationConfig>() {
       key<&C::name>("name", {.required = true}, "name of the station", "имя станции"),
       key<&C::kind>("kind", {.required = true}, "what carries the signals", "чем передаются сигналы"),
       key<&C::line>("line", {}, "modbus: the line that it is on, by name", "modbus: имя линии станции"),
-      key<&C::url>("url", {}, "gpio: mock:NAME, chip:LABEL", "gpio: mock:ИМЯ, chip:МЕТКА"),
+      key<&C::url>("url", {}, "gpio: the chip: mock:NAME", "gpio: микросхема: mock:ИМЯ"),
       key<&C::node>("node", {.refers = Refers::node}, "kinds drive and canopen: the node as \"bus.node\"",
                     "виды drive и canopen: узел в виде \"шина.узел\""),
       key<&C::device>("device", {.refers = Refers::device}, "device file, without .toml",

@@ -34,7 +34,7 @@ TEST(EncoderOnTheBus, is_compared_at_boot_and_its_counts_are_a_point_of_packet_a
   encoder.set_position(20'000'123);
   mill.run(0.02);
   EXPECT_EQ(mill.image().packets.number(counts), 20'000'123.0);
-  EXPECT_EQ(mill.control().world().play_input("table_counts", {77.0}), gateway::MockWorld::Played::done);
+  EXPECT_EQ(mill.control().world().play_input("table_counts", {77.0}), mock::World::Played::done);
   mill.run(0.02);
   EXPECT_EQ(mill.image().packets.number(counts), 77.0);
   encoder.set_unreadable(true);
@@ -58,15 +58,15 @@ TEST(EncoderOnTheBus, of_another_resolution_is_refused_at_its_boot_with_both_num
   machine::LoadResult loaded = with_encoder(kPoints);
   machine::LoadResult expected = loaded;
   expected.devices.at("encoder-cia406").encoder.counts_per_rev = 4096;
-  gateway::MockWorld another(loaded);
+  const auto another = gateway::simulated_world(loaded);
   // The plan of a machine file that wants 4096 counts, carried out on an encoder that has 8192.
   const canopen::SegmentConfig config = gateway::segment_config(expected, 0);
-  canopen::Segment segment(*another.bus(0), config);
+  canopen::Segment segment(*another->bus(0), config);
   auto image = std::make_unique<image::ProcessImage>();
   image->now.period_ns = config.cycle_ns;
   canopen::BusEvent event, failed;
   for (int i = 0; i < 3000 && failed.kind == canopen::BusEventKind::none; ++i) {
-    another.advance_to(image->now.t_ns);
+    another->advance_to(image->now.t_ns);
     segment.open_cycle(*image);
     segment.receive(*image);
     segment.send(*image);

@@ -83,7 +83,7 @@ TEST_F(IoModuleOnTheBus, works_the_program_and_the_plc_with_its_points) {
   ASSERT_TRUE(mill.until([&] { return mill.process().state == image::ProcessState::ended; }))
       << mill.alarm_list();
   EXPECT_TRUE(coolant) << "M8, by the PLC, at the terminal";
-  EXPECT_EQ(mill.control().world().play_input("air_pressure", {650.0}), gateway::MockWorld::Played::done);
+  EXPECT_EQ(mill.control().world().play_input("air_pressure", {650.0}), mock::World::Played::done);
   mill.run(0.1);
   EXPECT_EQ(mill.image().packets.number(place_of(mill.control(), "air_pressure")), 650.0);
 }

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Inputs and outputs open by a table: what no row opens is refused at its place, by `check` and by compose()
+// with the same words.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <tuple>
+
+#include "gateway/compose/devices/device_table.hpp"
+#include "gateway/compose/devices/open_devices.hpp"
+#include "tests/machine_run/rig/mill.hpp"
+#include "tests/machine_run/rig/program.hpp"
+
+namespace servogate::machine_run {
+namespace {
+
+machine::LoadResult mill_with_url(const std::string& from, const std::string& to) {
+  return changed_mill(
+      [&](std::string& text) { replace(text, "url = \"" + from + "\"", "url = \"" + to + "\""); });
+}
+
+std::string lines_of(const std::vector<text::Finding>& findings) {
+  std::string lines;
+  for (const text::Finding& f : findings) lines += f.str(text::Language::english) + "\n";
+  return lines;
+}
+
+TEST(Devices, whose_url_no_row_opens_are_refused_by_check_and_by_compose_with_the_same_words) {
+  for (const auto& [from, to, kind] : {std::tuple{"mock:gpio", "nothing:gpio", "station 'gpio'"},
+                                       {"mock:gpio", "mock:", "station 'gpio'"},
+                                       {"mock:panel", "tcp10.0.0.5", "line 'panel'"}}) {
+    const machine::LoadResult loaded = mill_with_url(from, to);
+    std::vector<text::Finding> checked, composed;
+    EXPECT_FALSE(gateway::check_devices(loaded, checked)) << to;
+    EXPECT_EQ(gateway::Control::compose(loaded, composed), nullptr) << to;
+    EXPECT_EQ(lines_of(checked), lines_of(composed));
+    ASSERT_EQ(checked.size(), 1u);
+    EXPECT_GT(checked[0].line, 0);
+    const std::string words = checked[0].str(text::Language::english);
+    EXPECT_NE(words.find(std::string(kind) + ": nothing opens '" + to + "'"), std::string::npos) << words;
+    EXPECT_NE(words.find("mock:NAME"), std::string::npos) << words;
+    EXPECT_FALSE(gateway::Control::infrastructure(composed)) << "the file is wrong, not the computer";
+  }
+}
+
+TEST(Devices, of_the_example_are_its_chip_and_its_line_in_the_order_of_the_file) {
+  const machine::LoadResult loaded = machine::load(source("examples/mill/machine.toml"));
+  const auto world = gateway::simulated_world(loaded);
+  std::vector<text::Finding> findings;
+  EXPECT_TRUE(gateway::check_devices(loaded, findings));
+  EXPECT_EQ(gateway::open_devices(loaded, *world, false, findings).size(), 2u);
+  EXPECT_TRUE(findings.empty()) << lines_of(findings);
+}
+
+TEST(Devices, have_one_row_for_each_scheme_of_a_kind) {
+  std::set<std::pair<int, std::string_view>> seen;
+  for (const gateway::DeviceRow& row : gateway::device_rows()) {
+    EXPECT_TRUE(seen.emplace(static_cast<int>(row.kind), row.scheme).second) << row.scheme;
+    EXPECT_TRUE(row.scheme.ends_with(':')) << row.scheme;
+  }
+}
+
+}  // namespace
+}  // namespace servogate::machine_run
