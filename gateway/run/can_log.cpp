@@ -88,7 +88,7 @@ std::vector<files::NamedPath> CanLog::files_of(const std::string& folder,
 CanLog::CanLog(const std::string& folder, Control& control) : control_(control) {
   const std::vector<machine::BusConfig>& buses = control_.machine().buses;
   for (std::size_t i = 0; i < buses.size(); ++i)
-    if (mock::CanSegment* segment = control_.world().segment(i); segment != nullptr)
+    if (mock::CanSegment* segment = control_.world().wire(i); segment != nullptr)
       wires_.push_back(std::make_unique<Wire>(*segment, buses[i].name, file_of(folder, buses[i].name)));
   thread_ = std::thread([this] { drain(); });
 }
