@@ -14,8 +14,8 @@ int canon(const CanonOptions& options) {
   ProgramFile program;
   if (const int code = open_program(loaded.machine, options.program, options.dialect, program); code != kDone)
     return code;
-  program::Interpreter interpreter(program.dialect, program.model, {}, options.program, program.text,
-                                   program.loader, {});
+  program::Interpreter interpreter(program.dialect, program.model, program_tables(loaded.machine),
+                                   options.program, program.text, program.loader, {});
   const auto error = program::write_canon(interpreter, program.model, print_line);
   print_findings(interpreter.warnings());
   if (!error) return kDone;

@@ -12,7 +12,6 @@
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/files/read_file.hpp"
 #include "gateway/machine/consequences.hpp"
-#include "gateway/machine/state/state.hpp"
 #include "plc/run/run.hpp"
 
 namespace servogate::gateway::command {
@@ -155,10 +154,7 @@ struct ProgramErrors {
 ProgramErrors check_programs(const CheckOptions& options, const machine::MachineConfig& machine,
                              nlohmann::json& json) {
   ProgramErrors errors;
-  // The origins and tools in force, where the machine has been used; a damaged state is the running
-  // control's matter.
-  const program::Tables tables =
-      machine::StateDirectory(machine.resolve(machine.run.state)).load().state.tables;
+  const program::Tables tables = program_tables(machine);
   for (const std::string& name : options.programs) {
     ProgramFile program;
     std::vector<text::Finding> found;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/machine_run/rig/program.hpp"
@@ -87,6 +88,34 @@ TEST(Capability, names_correctors_that_the_kept_tool_table_does_not_hold) {
             std::string::npos)
       << run.err;
   EXPECT_EQ(run.err.find(program + ":1:1: warning"), std::string::npos) << run.err;
+}
+
+TEST(Capability, goes_by_the_kept_origins_and_tools_alike_in_check_canon_and_run) {
+  const Scratch scratch;
+  const std::string mill = changed_mill(scratch, "state = \"state\"", "state = \"kept\"");
+  const std::string kept = scratch.path("kept"),
+                    inside = scratch.write("inside.nc", "T1.1 M6\nG0 X10\nM30\n"),
+                    outside = scratch.write("outside.nc", "G0 X20\nM30\n");
+  std::filesystem::create_directory(kept);
+  scratch.write("kept/origins.toml",
+                "checksum = \"none\"\nschema = 1\npart = \"origins\"\n[origins]\n\"0\" = { X = 285.0 }\n");
+  scratch.write("kept/tools.toml",
+                "checksum = \"none\"\nschema = 1\npart = \"tools\"\ntool_in_spindle = "
+                "0\n[[corrector]]\nnumber = 1\nlength = { X "
+                "= 3.5 }\ndiameter = 0.0\n");
+  const Ending canon = servogate({"canon", mill, inside});
+  EXPECT_EQ(canon.code, 0) << canon.err;
+  EXPECT_NE(canon.out.find("\"to\":{\"X\":298.5,"), std::string::npos) << canon.out;
+  const Ending check = servogate({"check", mill, inside, "--json"});
+  EXPECT_EQ(json::parse(check.out)["programs"][0]["extents"]["X"]["max"], 298.5) << check.err;
+  const std::string beyond = outside + ":1:4: error: X would go to 305, the travel ends at 300 [P701]";
+  for (const std::vector<std::string>& line : {std::vector<std::string>{"check", mill, outside},
+                                               {"canon", mill, outside},
+                                               {"run", mill, outside, "--state", kept}}) {
+    const Ending e = servogate(line);
+    EXPECT_EQ(e.code, 1) << line[0];
+    EXPECT_NE(e.err.find(beyond), std::string::npos) << line[0] << ": " << e.err;
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "gateway/files/read_file.hpp"
+#include "gateway/machine/state/state.hpp"
 
 namespace servogate::gateway {
 
@@ -38,6 +39,10 @@ program::MachineModel program_model(const machine::MachineConfig& machine) {
   for (const image::Symbol& s : machine.symbol_table())
     if (s.writer != image::Writer::program) model.protected_places.push_back({s.place, s.name});
   return model;
+}
+
+program::Tables program_tables(const machine::MachineConfig& machine) {
+  return machine::StateDirectory(machine.resolve(machine.run.state)).load().state.tables;
 }
 
 program::ProgramLoader program_loader(const std::string& main_program) {
