@@ -68,7 +68,7 @@ void Execution::need_plane(int column) const {
 void Execution::run_words() {
   const Modes before = state_.modes;
   const BlockWords words = gather();
-  if (words.cycle != 0 || state_.cycle.number != 0) return run_cycle_block(words);
+  if (words.cycle != 0 || !state_.cycle.name.empty()) return run_cycle_block(words);
   const bool arc_words = arc_motion(state_.modes.motion) &&
                          (words.centre1 != nullptr || words.centre2 != nullptr || words.radius != nullptr);
   const bool moves = words.instead == nullptr && (words.axes > 0 || arc_words);

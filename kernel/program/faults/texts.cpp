@@ -116,6 +116,8 @@ constexpr text::Entry kMessages[] = {
      "винтовая линия имеет {0} витков, допускается не более {1}"},
     {"P718", "{0} goes with an arc only where no rotation, mirror or scale is active",
      "{0} с дугой допустимо только без поворота, зеркала и масштаба"},
+    {"P724", "{0}: the step {1} must be above {2}", "{0}: шаг {1} должен быть больше {2}"},
+    {"P725", "{0} would take more than {1} steps", "{0} потребовал бы больше {1} шагов"},
     {"P726", "more blocks without a feed: {0}, the last one in line {1}",
      "ещё кадров без подачи: {0}, последний в строке {1}"},
     {"P802", "M{0} and M{1} cannot both end the block", "M{0} и M{1} не могут вместе завершать кадр"},
@@ -149,6 +151,18 @@ constexpr text::Entry kMessages[] = {
      "into the block",
      "{0} включает шпиндель по скорости резания (G96), а последнее S задано в об/мин: запишите в кадре S в "
      "м/мин"},
+    {"P817", "{0}: the depth {1} is the level {2} where the work begins: nothing is worked",
+     "{0}: глубина {1} совпадает с уровнем {2}, с которого начинается работа: обработки не будет"},
+    {"P818",
+     "{0}: the depth {1} lies before the level {2} where the work begins: the axis passes it at rapid and "
+     "works backwards",
+     "{0}: глубина {1} лежит перед уровнем {2}, с которого начинается работа: ось проходит её на быстром "
+     "ходу и работает назад"},
+    {"P819",
+     "{0}: from the bottom at {1} the tool returns to {2}, not back over the level {3} where the work "
+     "begins",
+     "{0}: со дна на {1} инструмент возвращается на {2}, а не назад за уровень {3}, с которого начинается "
+     "работа"},
     {"P901", "{0} is not executed in this version", "{0} в этой версии не выполняется"},
     {"P902", "the power-on mode {0} is not one of this language", "режим включения {0} не из этого языка"},
     {"P903", "there is no dialect {0}", "нет языка {0}"},

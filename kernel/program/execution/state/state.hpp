@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "kernel/program/commands/canonical.hpp"
@@ -70,17 +71,23 @@ struct Written {
   bool told = false;  ///< its warning has been given
 };
 
-/// A canned cycle in force. Lengths in programmed coordinates, mm.
+/// A canned cycle in force, in terms of the machine (cycles/). Lengths in programmed coordinates, mm.
 struct Cycle {
-  int number = 0;  ///< G word, 0: none
-  int axis = 2;    ///< along which it works
-  double depth = 0.0;
-  double approach = 0.0;  ///< down to here at rapid
-  double retreat = 0.0;   ///< back to here
-  double step = 0.0;      ///< first one of a deep hole, > 0
-  double factor = 0.0;    ///< of a step to the one before, 0: chips are broken, not removed
+  std::string name;           ///< as the language writes it; empty: none is in force
+  int axis = 2;               ///< along which it works
+  double approach = 0.0;      ///< down to here at rapid ...
+  double depth = 0.0;         ///< ... and to here at the feed in force
+  double retreat = 0.0;       ///< back to here
+  bool back_at_feed = false;  ///< up to `approach`, from there at rapid
+  double step = 0.0;          ///< first one of a deep hole, 0: it is made in one
+  double factor = 0.0;        ///< of a step to the one before, 0: chips are broken, not removed
   double min_step = 0.0;
-  Written levels_at;           ///< the word that gave the levels in force
+  double clearance = 0.0;  ///< above the last bottom at which removing chips comes back
+  bool dwells = false;     ///< at the bottom of each step ...
+  double dwell_s = 0.0;    ///< ... so long, as the language counts it at this hole
+  enum class Spindle : std::uint8_t { turns, reverses, stops };
+  Spindle at_bottom = Spindle::turns;  ///< reversed until back at `approach`, stopped until the next hole
+  Written levels_at;                   ///< the word that gave the levels in force
   bool spindle_rests = false;  ///< stopped at the bottom of a hole, to start again before the next one
 };
 

@@ -42,16 +42,14 @@ constexpr text::Entry kMessages[] = {
      "WAI принимает места форматов BL, BY и IN, а не {0}"},
     {"P624", "a bit can only be waited for with =", "бит можно ждать только со знаком ="},
     {"P626", "DLO needs two values for an axis", "DLO требует двух значений для оси"},
-    {"P719", "G{0} while the cycle G{1} is active: end it with G80 first",
-     "G{0} при активном цикле G{1}: сначала завершите его G80"},
+    {"P719", "G{0} while the cycle {1} is active: end it with G80 first",
+     "G{0} при активном цикле {1}: сначала завершите его G80"},
     {"P720", "{0} in the block that defines a cycle: only the axis of the cycle stands there",
      "{0} в кадре задания цикла: там стоит только ось цикла"},
     {"P721", "G{0} needs the depth of one axis", "G{0} требует глубины по одной оси"},
     {"P722", "{0} without a place: a hole needs another axis than that of the cycle",
      "{0} без места: для отверстия нужна ось, кроме оси цикла"},
     {"P723", "G83 needs I, the first step", "G83 требует I — первого шага"},
-    {"P724", "G83: the step {0} must be above {1}", "G83: шаг {0} должен быть больше {1}"},
-    {"P725", "G83 would take more than {0} steps", "G83 потребовал бы больше {0} шагов"},
     {"P801",
      "{0} in a motion block of a continuous profile (G27, G28): put it into a G00 block or a block of its "
      "own",
@@ -64,20 +62,8 @@ constexpr text::Entry kMessages[] = {
      "TMR при G95 считается в оборотах, G96 не даёт постоянной скорости"},
     {"P816", "{0} dwells for TMR, and TMR is 0: there is no dwell",
      "{0} выдерживает время TMR, а TMR равно 0: выдержки не будет"},
-    {"P817", "G{0}: the depth {1} is the level {2} where the work begins: nothing is worked",
-     "G{0}: глубина {1} совпадает с уровнем {2}, с которого начинается работа: обработки не будет"},
-    {"P818",
-     "G{0}: the depth {1} lies before the level {2} where the work begins: the axis passes it at rapid and "
-     "works backwards",
-     "G{0}: глубина {1} лежит перед уровнем {2}, с которого начинается работа: ось проходит её на быстром "
-     "ходу и работает назад"},
-    {"P819",
-     "G{0}: from the bottom at {1} the tool returns to {2}, not back over the level {3} where the work "
-     "begins",
-     "G{0}: со дна на {1} инструмент возвращается на {2}, а не назад за уровень {3}, с которого начинается "
-     "работа"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::cycle_return_below) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::dwell_zero) + 1);
 
 }  // namespace
 

@@ -41,16 +41,11 @@ enum class Wrong : std::uint8_t {
   cycle_depth,
   cycle_hole,
   cycle_step_missing,
-  cycle_step,
-  cycle_pecks,
   function_in_profile,
   tool_form,
   dwell_no_speed,
   dwell_surface_speed,
   dwell_zero,
-  cycle_no_depth,
-  cycle_passes_depth,
-  cycle_return_below,
 };
 
 /// All texts, in the order of Wrong.
