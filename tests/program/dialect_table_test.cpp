@@ -82,7 +82,7 @@ Outcome run(const Dialect& dialect, const std::string& text) {
     }
     const auto& command = std::get<Command>(step);
     if (std::holds_alternative<End>(command.what)) return out;
-    std::string json = to_json(command, {"X", "Y", "Z"}, execution.files());
+    std::string json = to_json(command, {"X", "Y", "Z"}, execution.flow().names());
     out.commands.push_back(json.substr(0, json.find(",\"Z\"")));
   }
 }

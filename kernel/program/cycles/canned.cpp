@@ -10,21 +10,21 @@ namespace {
 constexpr int kMaxPecks = 10'000;
 
 void check_levels(Execution& run, Cycle& cycle) {
-  const double from = run.state().programmed[static_cast<std::size_t>(cycle.axis)];
+  const double from = run.state().frames.programmed[static_cast<std::size_t>(cycle.axis)];
   const std::string depth = text::number(cycle.depth, 4), approach = text::number(cycle.approach, 4);
   const double down = cycle.depth - cycle.approach;
   if (down == 0.0)
-    run.warn(cycle.levels_at, Fault::cycle_no_depth, {cycle.name, depth, approach});
+    run.capability().warn(cycle.levels_at, Fault::cycle_no_depth, {cycle.name, depth, approach});
   else if ((cycle.depth - from) * (cycle.approach - cycle.depth) > 0.0)
-    run.warn(cycle.levels_at, Fault::cycle_passes_depth, {cycle.name, depth, approach});
+    run.capability().warn(cycle.levels_at, Fault::cycle_passes_depth, {cycle.name, depth, approach});
   else if ((cycle.retreat - cycle.approach) * down > 0.0)
-    run.warn(cycle.levels_at, Fault::cycle_return_below,
-             {cycle.name, depth, text::number(cycle.retreat, 4), approach});
+    run.capability().warn(cycle.levels_at, Fault::cycle_return_below,
+                          {cycle.name, depth, text::number(cycle.retreat, 4), approach});
 }
 
 void go_down(Execution& run, const Cycle& cycle, double to) {
-  run.go(cycle.axis, to, false);
-  if (cycle.dwell_s > 0.0) run.dwell(cycle.dwell_s);
+  run.motion().go(cycle.axis, to, false);
+  if (cycle.dwell_s > 0.0) run.motion().dwell(cycle.dwell_s);
 }
 
 /// The chip is broken, the tool stays in the hole.
@@ -49,9 +49,9 @@ void remove_chips(Execution& run, const Cycle& cycle, double sign) {
     const double bottom = from + sign * step;
     if ((bottom - cycle.depth) * sign > -1e-9) return go_down(run, cycle, cycle.depth);
     go_down(run, cycle, bottom);
-    run.go(cycle.axis, cycle.approach, true);
+    run.motion().go(cycle.axis, cycle.approach, true);
     from += sign * (step - cycle.clearance);
-    run.go(cycle.axis, from, true);
+    run.motion().go(cycle.axis, from, true);
     step = std::max(step * cycle.factor, cycle.min_step);
   }
 }
@@ -64,9 +64,9 @@ SpindleMode reversed(SpindleMode mode) {
 
 void work_hole(Execution& run, Cycle& cycle) {
   check_levels(run, cycle);
-  run.go(cycle.axis, cycle.approach, true);
-  const SpindleMode mode = run.state().spindle;
-  if (cycle.spindle_rests) run.emit_spindle(mode);
+  run.motion().go(cycle.axis, cycle.approach, true);
+  const SpindleMode mode = run.state().motion.spindle;
+  if (cycle.spindle_rests) run.motion().turn_spindle(mode);
   cycle.spindle_rests = false;
   const double sign = cycle.depth < cycle.approach ? -1.0 : 1.0;
   if (cycle.step == 0.0)
@@ -74,15 +74,15 @@ void work_hole(Execution& run, Cycle& cycle) {
   else
     cycle.factor != 0.0 ? remove_chips(run, cycle, sign) : break_chips(run, cycle, sign);
   const bool reverses = cycle.at_bottom == Cycle::Spindle::reverses;
-  if (reverses) run.emit_spindle(reversed(mode));
+  if (reverses) run.motion().turn_spindle(reversed(mode));
   if (cycle.at_bottom == Cycle::Spindle::stops && mode != SpindleMode::stop) {
-    run.emit_spindle(SpindleMode::stop);
-    run.state().spindle = mode;
+    run.motion().turn_spindle(SpindleMode::stop);
+    run.state().motion.spindle = mode;
     cycle.spindle_rests = true;
   }
-  if (cycle.back_at_feed) run.go(cycle.axis, cycle.approach, false);
-  if (reverses) run.emit_spindle(mode);
-  run.go(cycle.axis, cycle.retreat, true);
+  if (cycle.back_at_feed) run.motion().go(cycle.axis, cycle.approach, false);
+  if (reverses) run.motion().turn_spindle(mode);
+  run.motion().go(cycle.axis, cycle.retreat, true);
 }
 
 }  // namespace servogate::program

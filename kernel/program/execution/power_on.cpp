@@ -35,20 +35,20 @@ void check_range(const std::string& name, double value, double min, double max) 
 
 /// Modes first, since they tell the units of the values. What is wrong is kept, all of it.
 void Execution::apply_power_on() {
-  setting_faults_.clear();
-  power_on_error_.reset();
+  data_.setting_faults.clear();
+  data_.power_on_error.reset();
   const auto keep = [&](int mode, const std::string& variable, const ProgramError& error) {
-    setting_faults_.push_back({mode, variable, error.entry, error.arguments});
-    if (!power_on_error_) power_on_error_ = error;
+    data_.setting_faults.push_back({mode, variable, error.entry, error.arguments});
+    if (!data_.power_on_error) data_.power_on_error = error;
   };
-  for (std::size_t i = 0; i < machine_->power_on.size(); ++i) {
+  for (std::size_t i = 0; i < machine_.power_on.size(); ++i) {
     try {
       power_on_mode(i);
     } catch (const ProgramError& error) {
       keep(static_cast<int>(i), {}, error);
     }
   }
-  for (const auto& [name, value] : machine_->variables) {
+  for (const auto& [name, value] : machine_.variables) {
     try {
       power_on_value(name, value);
     } catch (const ProgramError& error) {
@@ -58,16 +58,16 @@ void Execution::apply_power_on() {
 }
 
 void Execution::power_on_mode(std::size_t index) {
-  const std::string& word = machine_->power_on[index];
-  const GRule* rule = mode_of(*dialect_, word);
+  const std::string& word = machine_.power_on[index];
+  const GRule* rule = mode_of(dialect_, word);
   if (rule == nullptr) fail(Fault::power_on_bad, 0, {word});
   if (rule->function == Function::later) fail(Fault::not_executed, 0, {word});
   if (!is_mode(rule->function)) fail(Fault::power_on_for_block, 0, {word});
   for (std::size_t i = 0; i < index; ++i) {
-    const GRule* before = mode_of(*dialect_, machine_->power_on[i]);
+    const GRule* before = mode_of(dialect_, machine_.power_on[i]);
     if (before == rule) fail(Fault::power_on_twice, 0, {word});
     if (before != nullptr && before->group == rule->group)
-      fail(Fault::power_on_excluded, 0, {machine_->power_on[i], word});
+      fail(Fault::power_on_excluded, 0, {machine_.power_on[i], word});
   }
   BlockWords none;
   none.block = &block_;
@@ -75,10 +75,10 @@ void Execution::power_on_mode(std::size_t index) {
 }
 
 void Execution::power_on_value(const std::string& name, double value) {
-  const ParameterSet& set = dialect_->parameters;
+  const ParameterSet& set = dialect_.parameters;
   if (set.count_max > 0 && name == set.letter) return check_range(name, value, set.count_min, set.count_max);
   if (name == "RESOLUTION") return check_range(name, value, 0.0, 1.0);
-  const VariableRule* rule = dialect_->find_variable(name);
+  const VariableRule* rule = dialect_.find_variable(name);
   if (rule == nullptr) fail(Fault::variable_unknown, 0, {name});
   if (rule->set == nullptr) fail(Fault::not_executed, 0, {name});
   rule->set(*this, value, 0);

@@ -30,57 +30,26 @@ constexpr std::array<Mode, kFunctions> modes_of_functions() {
 }
 constexpr std::array<Mode, kFunctions> kModes = modes_of_functions();
 
-struct Plane {
-  int number;
-  char axis1, axis2, normal;
-};
-Plane plane_of(Function f) {
-  if (f == Function::plane_12) return {17, 'X', 'Y', 'Z'};
-  if (f == Function::plane_31) return {18, 'Z', 'X', 'Y'};
-  return {19, 'Y', 'Z', 'X'};
-}
-
 }  // namespace
-
-/// `required`: a program asks for it. At power-on a machine may lack an axis of it.
-void Execution::select_plane(Function function, bool required) {
-  const Plane plane = plane_of(function);
-  const int axis1 = axes_.find(plane.axis1), axis2 = axes_.find(plane.axis2);
-  if (required && (axis1 < 0 || axis2 < 0)) refuse_plane(function, static_cast<int>(block_.body) + 1);
-  state_.modes.plane = function;
-  set_plane(axis1, axis2, axes_.find(plane.normal));
-}
-
-void Execution::refuse_plane(Function function, int column) const {
-  const Plane plane = plane_of(function);
-  const char lacking = axes_.find(plane.axis1) < 0 ? plane.axis1 : plane.axis2;
-  fail(Fault::plane_missing, column,
-       {std::to_string(plane.number), std::string(1, plane.axis1), std::string(1, plane.axis2),
-        std::string(1, lacking)});
-}
-
-void Execution::need_plane(int column) const {
-  if (state_.modes.axis1 < 0 || state_.modes.axis2 < 0) refuse_plane(state_.modes.plane, column);
-}
 
 /// A block of words: modes first, then the functions before the motion, the motion, and what ends the block.
 /// Source: specification A 5.
 void Execution::run_words() {
   const Modes before = state_.modes;
   const BlockWords words = gather();
-  if (words.cycle != 0 || !state_.cycle.name.empty()) return run_cycle_block(words);
+  if (words.cycle != 0 || !state_.motion.cycle.name.empty()) return run_cycle_block(words);
   const bool arc_words = arc_motion(state_.modes.motion) &&
                          (words.centre1 != nullptr || words.centre2 != nullptr || words.radius != nullptr);
   const bool moves = words.instead == nullptr && (words.axes > 0 || arc_words);
-  if (!moves || state_.modes.motion == Function::rapid) end_profile();
-  if (moves && dialect_->profile != nullptr) dialect_->profile(*this, words);
+  if (!moves || state_.modes.motion == Function::rapid) motion_.end_profile();
+  if (moves && dialect_.profile != nullptr) dialect_.profile(*this, words);
   if (words.instead == nullptr) {
     refuse_stray_words(words);
-    store_feed(words);
+    motion_.store_feed(words);
   }
   before_motion(words);
   if (words.instead != nullptr) words.instead(*this, words);
-  if (moves) move(words);
+  if (moves) motion_.move(words);
   if (words.one_shot != 0 && (words.axes > 0 || moves)) return_modes(words, before);
   if (words.then != Function::nothing)
     state_.modes.*kModes[static_cast<std::size_t>(words.then)] = words.then;
@@ -93,12 +62,12 @@ void Execution::run_words() {
 
 /// The dialect's cycle takes the place of the motion; a feed profile ends here.
 void Execution::run_cycle_block(const BlockWords& words) {
-  end_profile();
+  motion_.end_profile();
   if (words.time != nullptr)
-    fail(Fault::word_without_function, words.time->column, {word_text(*dialect_, block_, *words.time)});
-  store_feed(words);
+    fail(Fault::word_without_function, words.time->column, {word_text(dialect_, block_, *words.time)});
+  motion_.store_feed(words);
   before_motion(words);
-  dialect_->cycle(*this, words);
+  dialect_.cycle(*this, words);
   after_motion(words);
 }
 
@@ -111,7 +80,7 @@ void Execution::return_modes(const BlockWords& words, const Modes& before) {
     if (kModes[f] == &Modes::spindle && modes.spindle != before.spindle && modes.cutting != before.cutting) {
       modes.speed = before.speed;
       modes.cutting = before.cutting;
-      state_.speed_told = false;
+      state_.motion.speed_told = false;
     }
     modes.*kModes[f] = before.*kModes[f];
   }
@@ -158,7 +127,7 @@ void Execution::evaluate_words(Word& word) {
   if (word.argument_count != 0)
     for (std::size_t i = 0; i < word.argument_count; ++i) take(block_.arguments[i]);
   if (word.letter == 0 || word.value.expression == 0) return;
-  const LetterRule& rule = dialect_->letters[static_cast<unsigned char>(word.letter)];
+  const LetterRule& rule = dialect_.letters[static_cast<unsigned char>(word.letter)];
   if (rule.min < rule.max && !(word.value.number >= rule.min && word.value.number <= rule.max))
     fail(Fault::out_of_range, word.column,
          {std::string(1, word.letter), text::number(word.value.number), text::number(rule.min),
@@ -168,8 +137,8 @@ void Execution::evaluate_words(Word& word) {
 void Execution::gather_g(BlockWords& words, const Word& word, std::vector<const GRule*>& by_value) {
   const GRule* rule = word.g;
   if (rule == nullptr) {
-    const int number = whole(word.value, "G");
-    rule = dialect_->find_g(number);
+    const int number = numbers_.whole(word.value, "G");
+    rule = dialect_.find_g(number);
     if (rule == nullptr) fail(Fault::g_unknown, word.column, {std::to_string(number)});
   }
   if (word.g == nullptr || !by_value.empty()) {
@@ -209,12 +178,12 @@ void Execution::gather_word(BlockWords& words, const Word& word) {
   }};
   switch (word.meaning) {
     case Meaning::m: {
-      const int code = whole(word.value, "M");
-      const LetterRule& rule = dialect_->letters['M'];
+      const int code = numbers_.whole(word.value, "M");
+      const LetterRule& rule = dialect_.letters['M'];
       if (code > rule.max)
         fail(Fault::out_of_range, word.value.column,
              {"M", std::to_string(code), "0", text::number(rule.max)});
-      if (const MRule* known = dialect_->find_m(code); known != nullptr && known->action == MAction::later)
+      if (const MRule* known = dialect_.find_m(code); known != nullptr && known->action == MAction::later)
         fail(Fault::not_executed, word.column, {"M" + std::to_string(code)});
       words.m[static_cast<std::size_t>(words.m_count)] = &word;
       words.m_code[static_cast<std::size_t>(words.m_count++)] = code;
@@ -242,12 +211,12 @@ void Execution::gather_word(BlockWords& words, const Word& word) {
 
 /// Which centre of the plane a word of an axis is; known once the block's planes and axes are.
 void Execution::gather_centre(BlockWords& words, const Word& word) const {
-  if (word.axis == state_.modes.axis1)
+  if (word.axis == state_.frames.axis1)
     words.centre1 = &word;
-  else if (word.axis == state_.modes.axis2)
+  else if (word.axis == state_.frames.axis2)
     words.centre2 = &word;
   else
-    fail(Fault::word_without_function, word.column, {word_text(*dialect_, block_, word)});
+    fail(Fault::word_without_function, word.column, {word_text(dialect_, block_, word)});
 }
 
 void Execution::gather_statement(BlockWords& words, const Word& word) {
@@ -267,7 +236,7 @@ void Execution::gather_statement(BlockWords& words, const Word& word) {
 void Execution::check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const {
   const GRule& second = *rules.back();
   for (std::size_t i = 0; i + 1 < rules.size(); ++i)
-    if (rules[i]->group == second.group || dialect_->conflict(rules[i]->number, second.number))
+    if (rules[i]->group == second.group || dialect_.conflict(rules[i]->number, second.number))
       fail(Fault::g_conflict, last.column, {std::to_string(rules[i]->number), std::to_string(second.number)});
   if (second.function == Function::later)
     fail(Fault::not_executed, last.column, {"G" + std::to_string(second.number)});
@@ -284,9 +253,9 @@ void Execution::take_g(BlockWords& words, const GRule& rule) {
     case Function::plane_12:
     case Function::plane_31:
     case Function::plane_23:
-      return select_plane(rule.function, words.block != nullptr);
+      return frames_.select_plane(rule.function, words.block != nullptr, static_cast<int>(block_.body) + 1);
     case Function::work_offset:
-      return use_origin(rule.value, static_cast<int>(block_.body) + 1);
+      return frames_.use_origin(rule.value, static_cast<int>(block_.body) + 1);
     case Function::machine_zero:
       words.machine_zero = true;
       return;
@@ -300,39 +269,17 @@ void Execution::take_g(BlockWords& words, const GRule& rule) {
       words.cycle = rule.number;
       return;
     case Function::cycle_off:
-      state_.cycle = Cycle{};
+      state_.motion.cycle = Cycle{};
       return;
     default:
       return;
   }
 }
 
-/// A row of the origins for all axes; what it does not name, and row 0 where there is none, is machine zero.
-void Execution::use_origin(int number, int column) {
-  const auto& origins = state_.tables->origins;
-  const auto row = origins.find(number);
-  if (row == origins.end() && number != 0) {
-    std::string known = "0";
-    for (const auto& [other, values] : origins)
-      if (other != 0) known += ", " + std::to_string(other);
-    fail(Fault::origin_missing, column, {std::to_string(number), known});
-  }
-  for (int a = 0; a < axis_count(); ++a) {
-    double value = 0.0;
-    if (row != origins.end())
-      if (const auto at = row->second.find(machine_->axes[static_cast<std::size_t>(a)].letter);
-          at != row->second.end())
-        value = at->second;
-    state_.frame.set_origin(a, value);
-    state_.origin[static_cast<std::size_t>(a)] = static_cast<std::int16_t>(number);
-  }
-  frame_changed();
-}
-
 void Execution::refuse_all_but(const BlockWords& words, std::initializer_list<const Word*> taken) const {
   const auto refuse = [&](const Word* word) {
     if (word == nullptr || std::find(taken.begin(), taken.end(), word) != taken.end()) return;
-    fail(Fault::word_without_function, word->column, {word_text(*dialect_, block_, *word)});
+    fail(Fault::word_without_function, word->column, {word_text(dialect_, block_, *word)});
   };
   for (const Word* word : words.axis) refuse(word);
   for (const Word* word : {words.centre1, words.centre2, words.pitch, words.radius, words.radius2, words.feed,
@@ -346,7 +293,7 @@ void Execution::refuse_stray_words(const BlockWords& words) const {
   const bool moves = words.axes > 0 || (arc && (words.centre1 || words.centre2 || words.radius));
   const auto refuse = [&](const Word* word) {
     if (word != nullptr)
-      fail(Fault::word_without_function, word->column, {word_text(*dialect_, block_, *word)});
+      fail(Fault::word_without_function, word->column, {word_text(dialect_, block_, *word)});
   };
   if (words.radius2 != nullptr)
     fail(Fault::word_twice, words.radius2->column, {std::string(1, words.radius2->letter)});

@@ -115,7 +115,7 @@ class FileReader {
 
 std::vector<text::Finding> find_all(const Execution& run) {
   std::vector<text::Finding> out;
-  FileReader main(run, run.main_source(), out);
+  FileReader main(run, run.flow().main_source(), out);
   main.read();
   std::set<std::string> done;
   std::vector<std::string> open(main.called().begin(), main.called().end());
@@ -123,7 +123,7 @@ std::vector<text::Finding> find_all(const Execution& run) {
     const std::string name = open.back();
     open.pop_back();
     if (!done.insert(name).second) continue;
-    const auto loaded = run.loader() ? run.loader()(name) : std::nullopt;
+    const auto loaded = run.flow().loader() ? run.flow().loader()(name) : std::nullopt;
     if (!loaded) continue;
     const Source source(run.dialect(), name, loaded->text, loaded->path);
     FileReader reader(run, source, out);

@@ -59,23 +59,27 @@ std::vector<SettingFault> Interpreter::setting_faults() const {
 }
 const std::vector<text::Finding>& Interpreter::warnings() const { return impl_->run.warnings(); }
 const MachineModel& Interpreter::machine() const { return impl_->run.machine(); }
-const std::vector<std::string>& Interpreter::files() const { return impl_->run.files(); }
-const std::string& Interpreter::path(int file) const { return impl_->run.path(file); }
-int Interpreter::column(int file, int line, int axis) const { return impl_->run.column_at(file, line, axis); }
-const Position& Interpreter::position() const { return impl_->run.state().machine; }
-const Tables& Interpreter::tables() const { return *impl_->run.state().tables; }
-int Interpreter::block_count() const { return impl_->run.main_source().blocks(); }
+const std::vector<std::string>& Interpreter::files() const { return impl_->run.flow().names(); }
+const std::string& Interpreter::path(int file) const { return impl_->run.flow().path(file); }
+int Interpreter::column(int file, int line, int axis) const {
+  return impl_->run.flow().column_at(file, line, axis);
+}
+const Position& Interpreter::position() const { return impl_->run.state().frames.machine; }
+const Tables& Interpreter::tables() const { return *impl_->run.state().frames.tables; }
+int Interpreter::block_count() const { return impl_->run.flow().main_source().blocks(); }
 long long Interpreter::executed() const { return impl_->run.state().executed; }
 bool Interpreter::machine_read() const { return impl_->run.machine_read(); }
 void Interpreter::mdi(std::string_view block) { impl_->run.mdi(block); }
 void Interpreter::reposition(const Position& at) { impl_->run.reposition(at); }
-void Interpreter::adopt(Tables tables) { impl_->run.adopt(std::move(tables)); }
-void Interpreter::preset(int axis, double value) { impl_->run.preset(axis, value); }
+void Interpreter::adopt(Tables tables) { impl_->run.frames().adopt(std::move(tables)); }
+void Interpreter::preset(int axis, double value) { impl_->run.frames().preset(axis, value); }
 void Interpreter::set_switches(const OperatorSwitches& switches) {
   State& state = impl_->run.state();
   state.skip_levels |= switches.skip_levels;
-  state.dry_run = state.dry_run || switches.dry_run;
+  state.motion.dry_run = state.motion.dry_run || switches.dry_run;
 }
-int Interpreter::origin(int axis) const { return impl_->run.state().origin[static_cast<std::size_t>(axis)]; }
+int Interpreter::origin(int axis) const {
+  return impl_->run.state().frames.origin[static_cast<std::size_t>(axis)];
+}
 
 }  // namespace servogate::program

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -39,6 +40,14 @@ struct MachineModel {
   std::vector<Protected> protected_places;
   std::uint32_t k_bytes = image::kPacketKDefaultSize;  ///< sizes of the packets of a dry run (check, canon)
   std::uint32_t syvar_bytes = image::kSyvarDefaultSize;
+
+  int axis_count() const noexcept { return static_cast<int>(axes.size()); }
+  bool rotary(int axis) const noexcept { return axes[static_cast<std::size_t>(axis)].rotary; }
+  /// A variable by its name, `otherwise` where the machine file does not have it.
+  double variable(const char* name, double otherwise) const {
+    const auto at = variables.find(name);
+    return at == variables.end() ? otherwise : at->second;
+  }
 };
 
 /// Tables an interpreter reads and, for some words, changes; kept in the state directory by the gateway.

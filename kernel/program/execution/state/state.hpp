@@ -26,14 +26,10 @@ struct Modes {
   Function across = Function::diameter;  ///< how words of a diameter axis count
   double speed = 0.0;                    ///< S in rpm or, if `cutting`, m/min
   bool cutting = false;                  ///< what `speed` is, G96 or G97 of the block that set it
-  Function plane = Function::plane_12;   ///< as selected last by a G word
-  int axis1 = -1;                        ///< abscissa and ordinate, -1: the machine lacks it
-  int axis2 = -1;
-  int normal = -1;  ///< axis across the plane, -1: none
 };
 
 /// Where the program stands, and what it has to come back to.
-struct Flow {
+struct FlowState {
   struct Call {
     int file = 0;
     std::uint32_t back = 0;   ///< line at which the caller goes on
@@ -60,7 +56,8 @@ struct Flow {
   std::vector<Call> calls;
   std::vector<Loop> loops;
   std::optional<Part> part;
-  bool barrier = false;  ///< the next block is read only after the motion before it
+  bool barrier = false;    ///< the next block is read only after the motion before it
+  bool went_back = false;  ///< a jump has led back since the block began
 };
 
 /// Where a modal word was written that the control may have to speak of later.
@@ -91,35 +88,48 @@ struct Cycle {
   bool spindle_rests = false;  ///< stopped at the bottom of a hole, to start again before the next one
 };
 
-/// Everything of an interpreter that changes while a program runs; a plain value.
-struct State {
-  Modes modes;
+/// Coordinates, the frame that leads between them, and the tables behind it.
+struct FramesState {
   Frame frame;
-  Position programmed{};  ///< end of the last motion in programmed coordinates (mm, degrees, radius)
-  Position machine{};     ///< the same in machine coordinates
-  std::array<std::int16_t, image::kMaxAxes>
-      origin{};                       ///< number of the absolute origin in force, of each axis
-  Position field_min{}, field_max{};  ///< machine coordinates without the tool length
-  double feed = 0.0;                  ///< F as programmed, 0: never
+  Position programmed{};                               ///< end of the last motion in programmed coordinates
+  Position machine{};                                  ///< the same in machine coordinates
+  std::array<std::int16_t, image::kMaxAxes> origin{};  ///< number of the origin in force, of each axis
+  Position field_min{}, field_max{};                   ///< machine coordinates without the tool length
+  Function plane = Function::plane_12;                 ///< as selected last by a G word
+  int axis1 = -1;                                      ///< abscissa and ordinate, -1: the machine lacks it
+  int axis2 = -1;
+  int normal = -1;        ///< axis across the plane, -1: none
+  std::int32_t tool = 0;  ///< last T word
+  std::int32_t corrector = 0;
+  std::shared_ptr<const Tables> tables;
+};
+
+/// What motion goes by beside the modes.
+struct MotionState {
+  double feed = 0.0;  ///< F as programmed, 0: never
   bool feed_inch = false;
   Written feed_at;
   bool speed_told = true;  ///< the machine knows the speed of `modes`
   Written speed_at;
   SpindleMode spindle = SpindleMode::stop;
-  std::int32_t tool = 0;  ///< last T word
-  std::int32_t corrector = 0;
   double dwell = 0.0;  ///< set by a variable, s or revolutions
   double corner_error_mm = 0.0;
-  double max_angle_deg = 0.0;     ///< a sharper corner stops
-  double allowance = 0.0;         ///< mm
-  std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit
-  bool dry_run = false;           ///< feed motions at rapid speed
-  int optional_stop = -1;         ///< -1: left to the operator's switch
-  bool profile_open = false;      ///< inside of a running chain of feed blocks without a stop
+  double max_angle_deg = 0.0;  ///< a sharper corner stops
+  double allowance = 0.0;      ///< mm
+  bool dry_run = false;        ///< feed motions at rapid speed
+  bool profile_open = false;   ///< inside of a running chain of feed blocks without a stop
   Cycle cycle;
+};
+
+/// Everything of an interpreter that changes while a program runs; a plain value.
+struct State {
+  Modes modes;
   Parameters parameters;
-  std::shared_ptr<const Tables> tables;
-  Flow flow;
+  FlowState flow;
+  FramesState frames;
+  MotionState motion;
+  std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit
+  int optional_stop = -1;         ///< -1: left to the operator's switch
   long long executed = 0;
 };
 

@@ -92,10 +92,10 @@ ParameterSet parameters() {
 /// block's motion, of X a diameter where that counts in this block. Source: specification 4.
 double system_value(const Execution& run, int number, int column) {
   const State& state = run.state();
-  if (number < 20) return run.argument(static_cast<std::size_t>(number));
+  if (number < 20) return run.flow().argument(static_cast<std::size_t>(number));
   switch (number) {
     case 20:
-      return state.feed;
+      return state.motion.feed;
     case 21:
       return state.modes.speed;
     case 22:
@@ -109,7 +109,7 @@ double system_value(const Execution& run, int number, int column) {
       if (axis < 0) fail(Fault::axis_missing, column, {std::string(1, "XYZCU"[number - 24])});
       const auto i = static_cast<std::size_t>(axis);
       const bool diameter = run.machine().axes[i].diameter && state.modes.across == Function::diameter;
-      return state.programmed[i] * (diameter ? 2.0 : 1.0);
+      return state.frames.programmed[i] * (diameter ? 2.0 : 1.0);
     }
     case 29:
       return 0.0;  // chips are not broken: G67 is not executed

@@ -80,8 +80,9 @@ Lines region(const Source& source, std::uint32_t line) {
 
 void jump(Execution& run, const Word& word) {
   if (word.value.number == 0.0) return;
-  const Lines lines = region(run.source(), run.line());
-  run.jump(target(run.source(), run.block().text(word), lines.first, lines.behind, word.column));
+  const Lines lines = region(run.flow().source(), run.flow().line());
+  run.flow().jump(
+      target(run.flow().source(), run.block().text(word), lines.first, lines.behind, word.column));
 }
 
 // --- L7: a subprogram begins (no block number) or is called; what stands behind a call is not read
@@ -95,10 +96,10 @@ void read_call(BlockText& text, Word& word) {
 
 void call(Execution& run, const Word& word) {
   if (is_definition(run.block())) return;
-  const std::uint32_t line = run.source().definition(word.text_begin);
+  const std::uint32_t line = run.flow().source().definition(word.text_begin);
   if (line == Source::kNone)
     fail(Fault::program_missing, word.column, {"L" + std::to_string(word.text_begin)});
-  run.call(line + 1, 1, word.column);
+  run.flow().call(line + 1, 1, word.column);
 }
 
 // --- H5: what follows up to M20, so often
@@ -109,10 +110,10 @@ void read_repeat(BlockText& text, Word& word) {
 }
 
 void repeat(Execution& run, const Word& word) {
-  const double count = std::trunc(run.resolve(word.value));
+  const double count = std::trunc(run.numbers().resolve(word.value));
   if (count > kMostRepeats)
     fail(Fault::out_of_range, word.column, {"H", text::number(count), "0", text::number(kMostRepeats)});
-  run.repeat(count > 0.0 ? static_cast<int>(count) : 0, word.column);
+  run.flow().repeat(count > 0.0 ? static_cast<int>(count) : 0, word.column);
 }
 
 // --- @900 ... #
@@ -120,7 +121,7 @@ void repeat(Execution& run, const Word& word) {
 void read_header(BlockText& text, Word& word) { read_number_of(text, word, "@", 0, 999); }
 
 void end_cycle(Execution& run, const Word& word) {
-  if (!run.leave_subprogram())
+  if (!run.flow().leave_subprogram())
     fail(Fault::end_without_repeat, word.column, {std::string(word.rule->name), "@"});
 }
 
@@ -193,13 +194,13 @@ void judge(const Judgement& reading, const Block& block) {
 void call_cycle(Execution& run, const BlockWords& words) {
   const Word& word = *words.instead_word;
   const int number = static_cast<int>(word.value.number);
-  const std::uint32_t line = run.source().definition(kFirstCycle + number);
+  const std::uint32_t line = run.flow().source().definition(kFirstCycle + number);
   if (line == Source::kNone) fail(Fault::g_unknown, word.column, {std::to_string(number)});
   run.refuse_all_but(words, {});
   std::vector<double> arguments;
   for (std::size_t i = 0; i < word.argument_count; ++i) arguments.push_back(run.block().arguments[i].number);
-  run.end_profile();
-  run.call(line + 1, 1, word.column, std::move(arguments));
+  run.motion().end_profile();
+  run.flow().call(line + 1, 1, word.column, std::move(arguments));
 }
 
 /// Milliseconds as an argument, or of any axis' word or E, which then moves nothing; 3 s without.
@@ -214,16 +215,16 @@ void dwell(Execution& run, const BlockWords& words) {
     word = axis;
   }
   run.refuse_all_but(words, {word, words.feed});
-  run.store_feed(words);
+  run.motion().store_feed(words);
   if (words.instead_word->argument_count > 0 && !block.arguments[0].bare) {
     ms = block.arguments[0].number;
   } else if (word != nullptr) {
-    ms = run.resolve(word->value);
+    ms = run.numbers().resolve(word->value);
     column = word->column;
   }
   if (!(ms >= 0.0 && ms / 1000.0 <= kMostSeconds))
     fail(Fault::out_of_range, column, {"G4 ", text::number(ms), "0", text::number(kMostSeconds * 1000.0)});
-  run.dwell(ms / 1000.0);
+  run.motion().dwell(ms / 1000.0);
 }
 
 }  // namespace servogate::program::fenix

@@ -14,16 +14,17 @@ namespace {
 std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 
 void clear(Execution& run) {
-  Frame& frame = run.state().frame;
-  for (int a = 0; a < run.axis_count(); ++a) frame.set_offset(a, 0.0);
+  Frame& frame = run.state().frames.frame;
+  for (int a = 0; a < run.machine().axis_count(); ++a) frame.set_offset(a, 0.0);
   frame.set_rotation(0.0);
 }
 
 /// The words of a shift; along a diameter axis they count as radii.
 Position shift(const Execution& run, const BlockWords& words) {
   Position by{};
-  for (int a = 0; a < run.axis_count(); ++a)
-    if (const Word* word = words.axis[at(a)]; word != nullptr) by[at(a)] = run.length(a, word->value, false);
+  for (int a = 0; a < run.machine().axis_count(); ++a)
+    if (const Word* word = words.axis[at(a)]; word != nullptr)
+      by[at(a)] = run.numbers().length(a, word->value, false);
   return by;
 }
 
@@ -31,17 +32,17 @@ void add_shift(Execution& run, const BlockWords& words) {
   BlockWords others = words;
   others.axis = {};
   run.refuse_all_but(others, {});
-  Frame& frame = run.state().frame;
+  Frame& frame = run.state().frames.frame;
   Position by = shift(run, words);
-  const Modes& modes = run.state().modes;
-  if (frame.rotation() != 0.0 && modes.axis1 >= 0 && modes.axis2 >= 0) {
-    const double x = by[at(modes.axis1)], y = by[at(modes.axis2)];
+  const FramesState& frames = run.state().frames;
+  if (frame.rotation() != 0.0 && frames.axis1 >= 0 && frames.axis2 >= 0) {
+    const double x = by[at(frames.axis1)], y = by[at(frames.axis2)];
     const double c = cos_deg(frame.rotation()), s = sin_deg(frame.rotation());
-    by[at(modes.axis1)] = x * c - y * s;
-    by[at(modes.axis2)] = x * s + y * c;
+    by[at(frames.axis1)] = x * c - y * s;
+    by[at(frames.axis2)] = x * s + y * c;
   }
-  for (int a = 0; a < run.axis_count(); ++a) frame.set_offset(a, frame.offset(a) + by[at(a)]);
-  run.frame_changed();
+  for (int a = 0; a < run.machine().axis_count(); ++a) frame.set_offset(a, frame.offset(a) + by[at(a)]);
+  run.frames().changed();
 }
 
 void add_rotation(Execution& run, const BlockWords& words) {
@@ -49,11 +50,11 @@ void add_rotation(Execution& run, const BlockWords& words) {
     if (word != nullptr)
       fail(Fault::not_executed, word->column, {word_text(run.dialect(), run.block(), *word)});
   run.refuse_all_but(words, {words.angle});
-  Frame& frame = run.state().frame;
-  const double angle = words.angle == nullptr ? 0.0 : run.resolve(words.angle->value);
-  if (angle != 0.0) run.need_plane(words.angle->column);
+  Frame& frame = run.state().frames.frame;
+  const double angle = words.angle == nullptr ? 0.0 : run.numbers().resolve(words.angle->value);
+  if (angle != 0.0) run.frames().need_plane(words.angle->column);
   frame.set_rotation(std::fmod(frame.rotation() + angle, 360.0));
-  run.frame_changed();
+  run.frames().changed();
 }
 
 }  // namespace

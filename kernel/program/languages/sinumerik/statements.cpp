@@ -102,7 +102,7 @@ std::uint32_t find_target(const Source& source, std::uint32_t line, const Jump& 
 
 void jump(Execution& run, const Word& word) {
   const Jump asked = jump_of(run.block().text(word), word.column);
-  run.jump(find_target(run.source(), run.line(), asked, word.column));
+  run.flow().jump(find_target(run.flow().source(), run.flow().line(), asked, word.column));
 }
 
 void jump_if(Execution& run, const Word& word) {
@@ -126,16 +126,16 @@ void read_name_of_program(BlockText& text, Word&) {
 void call(Execution& run, const BlockWords& words) {
   const Word& word = *words.instead_word;
   run.refuse_all_but(words, {words.count});
-  const double passes = words.count == nullptr ? 1.0 : run.resolve(words.count->value);
+  const double passes = words.count == nullptr ? 1.0 : run.numbers().resolve(words.count->value);
   if (!(passes >= 1.0 && passes <= kMostPasses))
     fail(Fault::out_of_range, words.count->column,
          {"P", text::number(passes), "1", text::number(kMostPasses)});
-  run.end_profile();
-  run.call(in_capitals(run.block().text(word)), static_cast<int>(passes), word.column);
+  run.motion().end_profile();
+  run.flow().call(in_capitals(run.block().text(word)), static_cast<int>(passes), word.column);
 }
 
 void leave(Execution& run, const Word&) {
-  if (!run.leave_subprogram()) run.finish(false);
+  if (!run.flow().leave_subprogram()) run.finish(false);
 }
 
 // --- MSG("text"), STOPRE, DIAMON, DIAMOF
@@ -285,11 +285,11 @@ void dwell(Execution& run, const BlockWords& words) {
     fail(Fault::not_executed, words.speed->column, {word_text(run.dialect(), run.block(), *words.speed)});
   run.refuse_all_but(words, {words.feed});
   if (words.feed == nullptr) fail(Fault::value_missing, g4.column, {"G4", "F"});
-  const double seconds = run.resolve(words.feed->value);
+  const double seconds = run.numbers().resolve(words.feed->value);
   if (!(seconds >= 0.0 && seconds <= kMostSeconds))
     fail(Fault::out_of_range, words.feed->column,
          {"F", text::number(seconds), "0", text::number(kMostSeconds)});
-  run.dwell(seconds);
+  run.motion().dwell(seconds);
 }
 
 }  // namespace servogate::program::sinumerik

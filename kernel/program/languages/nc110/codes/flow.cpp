@@ -59,26 +59,26 @@ int column(const Operand& item) { return static_cast<int>(item.begin) + 1; }
 /// Not out of a part that EPP runs.
 void jump(Execution& run, const Operands& operands, const Operand& label) {
   const std::string_view name = operands.text(label);
-  const std::uint32_t target = run.label_line(name, column(label));
-  const Flow& flow = run.state().flow;
+  const std::uint32_t target = run.flow().label_line(name, column(label));
+  const FlowState& flow = run.state().flow;
   if (flow.part && flow.part->depth == flow.calls.size() &&
       (target < flow.part->first || target > flow.part->last))
     fail(Wrong::jump_out_of_part, column(label), {std::string(name)});
-  run.jump(target);
+  run.flow().jump(target);
 }
 
 }  // namespace
 
 void rpt(Execution& run, const Operands& operands) {
   const Operand& item = operands.items[0];
-  const double count = run.resolve(item.value);
+  const double count = run.numbers().resolve(item.value);
   const int most = kMostRepeats;
   if (!(count >= 0.0 && count <= most) || count != static_cast<int>(count))
     fail(Wrong::repeat_count, column(item), {text::number(count), std::to_string(most)});
-  run.repeat(static_cast<int>(count), operands.column);
+  run.flow().repeat(static_cast<int>(count), operands.column);
 }
 
-void erp(Execution& run, const Operands& operands) { run.end_repeat(operands.column); }
+void erp(Execution& run, const Operands& operands) { run.flow().end_repeat(operands.column); }
 
 void cls(Execution& run, const Operands& operands) {
   const Operand& item = operands.items[0];
@@ -88,18 +88,18 @@ void cls(Execution& run, const Operands& operands) {
       !name.empty() && name.size() <= kProgramName && is_capital(name[0]) &&
       std::all_of(name.begin(), name.end(), [](char c) { return is_capital(c) || is_digit(c); });
   if (!good) fail(Wrong::program_name, column(item), {std::string(name), std::to_string(kProgramName)});
-  run.call(name, 1, column(item));
+  run.flow().call(name, 1, column(item));
 }
 
 void epp(Execution& run, const Operands& operands) {
   const Operand &first = operands.items[0], &last = operands.items[1];
   if (run.state().flow.part) fail(Wrong::part_nested, operands.column);
-  const std::uint32_t from = run.label_line(operands.text(first), column(first)),
-                      to = run.label_line(operands.text(last), column(last));
+  const std::uint32_t from = run.flow().label_line(operands.text(first), column(first)),
+                      to = run.flow().label_line(operands.text(last), column(last));
   if (to < from)
     fail(Wrong::part_reversed, column(first),
          {std::string(operands.text(first)), std::string(operands.text(last))});
-  run.run_part(from, to);
+  run.flow().run_part(from, to);
 }
 
 void bnc(Execution& run, const Operands& operands) { jump(run, operands, operands.items[0]); }

@@ -65,11 +65,11 @@ void dis(Execution& run, const Operands& operands) {
 }
 
 void dly(Execution& run, const Operands& operands) {
-  const double seconds = run.resolve(operands.items[0].value);
+  const double seconds = run.numbers().resolve(operands.items[0].value);
   if (!(seconds >= 0.0 && seconds <= kMaxDelay))
     fail(Wrong::dwell_range, operands.items[0].value.column,
          {"DLY", text::number(seconds), text::number(kMaxDelay)});
-  run.end_profile();
+  run.motion().end_profile();
   run.emit(Dwell{seconds});
 }
 
@@ -95,7 +95,7 @@ void wai(Execution& run, const Operands& operands) {
   wait.value = evaluate(run.dialect().expressions, line, pos, &run);
   if (pos != item.end) fail(Wrong::wait_form, column(pos));
   run.check_storable(place, wait.value, value_column);
-  run.end_profile();
+  run.motion().end_profile();
   run.state().flow.barrier = true;
   run.emit(wait);
 }

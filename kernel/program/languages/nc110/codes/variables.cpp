@@ -24,17 +24,17 @@ double unit(Execution& run) { return run.state().modes.unit == Function::inch ? 
 
 void tmr(Execution& run, double value, int column) {
   check("TMR", value, 0.0, run.state().modes.feed == Function::feed_revolution ? 30000.0 : 60.0, column);
-  run.state().dwell = value;
+  run.state().motion.dwell = value;
 }
 
 void uov(Execution& run, double value, int column) {
   check("UOV", value, -99999.9999, 99999.9999, column);
-  run.state().allowance = value * unit(run);
+  run.state().motion.allowance = value * unit(run);
 }
 
 void erf(Execution& run, double value, int column) {
   check("ERF", value, 0.0, 1000.0, column);
-  run.state().corner_error_mm = value * unit(run);
+  run.state().motion.corner_error_mm = value * unit(run);
 }
 
 /// sin of the angle up to 90 degrees, 1 + sin(angle - 90) beyond. Source: specification A 13.4.
@@ -42,7 +42,7 @@ void mcd(Execution& run, double value, int column) {
   check("MCD", value, 0.0, 2.0, column);
   const double beyond = value > 1.0 ? 90.0 : 0.0;
   const double sine = value > 1.0 ? value - 1.0 : value;
-  run.state().max_angle_deg = beyond + std::asin(sine) * 180.0 / std::numbers::pi;
+  run.state().motion.max_angle_deg = beyond + std::asin(sine) * 180.0 / std::numbers::pi;
 }
 
 void usb(Execution& run, double value, int column) {
@@ -53,7 +53,7 @@ void usb(Execution& run, double value, int column) {
 
 void uvr(Execution& run, double value, int column) {
   check_switch("UVR", value, column);
-  run.state().dry_run = value != 0.0;
+  run.state().motion.dry_run = value != 0.0;
 }
 
 void uso(Execution& run, double value, int column) {

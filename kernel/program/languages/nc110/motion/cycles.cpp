@@ -20,18 +20,18 @@ std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 /// A level of the cycle's axis; with G91 from where the axis stands at this block (specification A 24,
 /// decision 32).
 double level(const Execution& run, int axis, const Word& word) {
-  const double value = run.length(axis, word.value);
+  const double value = run.numbers().length(axis, word.value);
   const bool incremental = run.state().modes.dimension == Function::incremental;
-  return incremental ? run.state().programmed[at(axis)] + value : value;
+  return incremental ? run.state().frames.programmed[at(axis)] + value : value;
 }
 
 int cycle_axis(const Execution& run, const BlockWords& words) {
-  const Modes& modes = run.state().modes;
+  const FramesState& frames = run.state().frames;
   int found = -1;
-  for (int a = 0; a < run.axis_count(); ++a) {
+  for (int a = 0; a < run.machine().axis_count(); ++a) {
     const Word* word = words.axis[at(a)];
     if (word == nullptr) continue;
-    if (words.axes > 1 && (a == modes.axis1 || a == modes.axis2))
+    if (words.axes > 1 && (a == frames.axis1 || a == frames.axis2))
       fail(Wrong::cycle_motion, word->column, {word_text(run.dialect(), run.block(), *word)});
     if (found >= 0) fail(Wrong::cycle_motion, word->column, {word_text(run.dialect(), run.block(), *word)});
     found = a;
@@ -46,7 +46,7 @@ void take_levels(const Execution& run, const BlockWords& words, Cycle& cycle) {
   const Word* depth = words.axis[at(cycle.axis)];
   if (depth != nullptr) cycle.depth = level(run, cycle.axis, *depth);
   if (const Word* word = depth != nullptr ? depth : words.radius; word != nullptr)
-    cycle.levels_at = run.written(word->column);
+    cycle.levels_at = run.capability().written(word->column);
 }
 
 void take_pecks(const Execution& run, const BlockWords& words, Cycle& cycle) {
@@ -59,30 +59,32 @@ void take_pecks(const Execution& run, const BlockWords& words, Cycle& cycle) {
     return;
   }
   if (words.centre1 == nullptr) fail(Wrong::cycle_step_missing, words.cycle_word->column);
-  cycle.step = std::abs(run.length(cycle.axis, words.centre1->value, false));
-  cycle.factor = words.pitch != nullptr     ? run.resolve(words.pitch->value)
+  cycle.step = std::abs(run.numbers().length(cycle.axis, words.centre1->value, false));
+  cycle.factor = words.pitch != nullptr     ? run.numbers().resolve(words.pitch->value)
                  : words.centre2 != nullptr ? 1.0
                                             : 0.0;
   if (words.centre2 != nullptr && words.pitch != nullptr)
-    cycle.min_step = std::abs(run.length(cycle.axis, words.centre2->value, false));
+    cycle.min_step = std::abs(run.numbers().length(cycle.axis, words.centre2->value, false));
   const bool removes = cycle.factor != 0.0;
   cycle.clearance = removes ? kClearance : 0.0;
   if (!(cycle.step > cycle.clearance))
     fail(Fault::cycle_step, words.centre1->value.column,
          {cycle.name, text::number(cycle.step, 4), text::number(cycle.clearance)});
-  if (removes && !(cycle.factor > 0.0)) run.refuse_range("K", words.pitch->value, cycle.factor, "0.001", "1");
+  if (removes && !(cycle.factor > 0.0))
+    run.numbers().refuse_range("K", words.pitch->value, cycle.factor, "0.001", "1");
 }
 
 /// The block of the G word only stores the cycle.
 void define(Execution& run, const BlockWords& words) {
   State& state = run.state();
-  if (!state.cycle.name.empty())
-    fail(Wrong::cycle_active, words.cycle_word->column, {std::to_string(words.cycle), state.cycle.name});
-  run.need_plane(words.cycle_word->column);
+  if (!state.motion.cycle.name.empty())
+    fail(Wrong::cycle_active, words.cycle_word->column,
+         {std::to_string(words.cycle), state.motion.cycle.name});
+  run.frames().need_plane(words.cycle_word->column);
   Cycle cycle;
   cycle.name = "G" + std::to_string(words.cycle);
   cycle.axis = cycle_axis(run, words);
-  cycle.approach = cycle.retreat = state.programmed[at(cycle.axis)];
+  cycle.approach = cycle.retreat = state.frames.programmed[at(cycle.axis)];
   take_levels(run, words, cycle);
   take_pecks(run, words, cycle);
   cycle.dwells = words.cycle == 82 || words.cycle == 89;
@@ -91,7 +93,7 @@ void define(Execution& run, const BlockWords& words) {
   cycle.back_at_feed = words.cycle == 84 || words.cycle == 85 || words.cycle == 89;
   if (words.cycle == 84) cycle.at_bottom = Cycle::Spindle::reverses;
   if (words.cycle == 86) cycle.at_bottom = Cycle::Spindle::stops;
-  state.cycle = cycle;
+  state.motion.cycle = cycle;
 }
 
 }  // namespace
@@ -100,7 +102,7 @@ void cycle(Execution& run, const BlockWords& words) {
   if (words.cycle != 0) return define(run, words);
   for (const Word* word : {words.centre1, words.centre2, words.pitch})
     if (word != nullptr) stray(run, *word);
-  Cycle& active = run.state().cycle;
+  Cycle& active = run.state().motion.cycle;
   const bool depth = words.axis[at(active.axis)] != nullptr;
   const int places = words.axes - (depth ? 1 : 0);
   const Word* level_word = words.radius != nullptr ? words.radius : words.axis[at(active.axis)];
@@ -109,7 +111,7 @@ void cycle(Execution& run, const BlockWords& words) {
       fail(Wrong::cycle_hole, level_word->column, {word_text(run.dialect(), run.block(), *level_word)});
     return;
   }
-  run.position(words, active.axis);
+  run.motion().position(words, active.axis);
   take_levels(run, words, active);
   if (active.dwells) active.dwell_s = dwell_seconds(run);
   work_hole(run, active);

@@ -19,7 +19,7 @@ void profile(const Execution& run, const BlockWords& words) {
     if (word != nullptr) refuse(*word);
   for (int i = 0; i < words.m_count; ++i) {
     const MRule* rule = run.dialect().find_m(words.m_code[static_cast<std::size_t>(i)]);
-    const bool allowed = rule != nullptr && rule->in_profile && !state.profile_open;
+    const bool allowed = rule != nullptr && rule->in_profile && !state.motion.profile_open;
     if (!allowed) refuse(*words.m[static_cast<std::size_t>(i)]);
   }
 }

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/program/execution/motion/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace servogate::program {
+namespace {
+
+constexpr double kMaxTurns = 1000.0;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
+
+}  // namespace
+
+void Motion::move(const BlockWords& words) {
+  const bool arcs = modes_.motion != Function::rapid && modes_.motion != Function::line;
+  if (arcs) frames_.need_plane(here());
+  const Position to = target_of(words);
+  switch (modes_.motion) {
+    case Function::rapid:
+      output_.emit(Rapid{to});
+      break;
+    case Function::line:
+      line(words, to);
+      break;
+    default:
+      arc(words, to);
+      break;
+  }
+  state_.profile_open = modes_.motion != Function::rapid && modes_.corner != Function::exact;
+  at_.machine = to;
+}
+
+/// End of the motion in machine coordinates; the programmed coordinates are kept beside it.
+Position Motion::target_of(const BlockWords& words) {
+  Position& programmed = at_.programmed;
+  Position to = at_.machine;
+  const Frame& frame = at_.frame;
+  bool turned = false;
+  for (int a = 0; a < machine_.axis_count(); ++a) {
+    const Word* word = words.axis[at(a)];
+    if (word == nullptr) continue;
+    const double value = numbers_.length(a, word->value);
+    if (words.machine_zero) {
+      to[at(a)] = value + frame.length(a);
+      continue;
+    }
+    programmed[at(a)] = incremental(word->value) ? programmed[at(a)] + value : value;
+    if (frame.shift_only())
+      to[at(a)] = programmed[at(a)] + frame.shift(a);
+    else if (frame.separate(a))
+      to[at(a)] = frame.to_machine(programmed, a);
+    else
+      turned = true;
+  }
+  if (turned)
+    for (const int a : {at_.axis1, at_.axis2}) to[at(a)] = frame.to_machine(programmed, a);
+  if (words.machine_zero)
+    for (int a = 0; a < machine_.axis_count(); ++a) programmed[at(a)] = frame.to_programmed(to, a);
+  for (int a = 0; a < machine_.axis_count(); ++a)
+    if (words.axis[at(a)] != nullptr || turned) frames_.check_axis(a, to[at(a)], column_of(block_, a));
+  return to;
+}
+
+bool Motion::incremental(const Value& value) const noexcept {
+  if (value.dimension != Dimension::as_modes) return value.dimension == Dimension::incremental;
+  return modes_.dimension == Function::incremental;
+}
+
+void Motion::position(const BlockWords& words, int without_axis) {
+  BlockWords rest = words;
+  if (without_axis >= 0) rest.axis[at(without_axis)] = nullptr;
+  const Position to = target_of(rest);
+  output_.emit(Rapid{to});
+  at_.machine = to;
+}
+
+void Motion::go(int axis, double programmed, bool at_rapid) {
+  if (std::abs(at_.programmed[at(axis)] - programmed) < 1e-9) return;
+  at_.programmed[at(axis)] = programmed;
+  Position to = at_.machine;
+  for (const int a : {axis, at_.axis1, at_.axis2}) {
+    if (a != axis && (at_.frame.separate(a) || at_.frame.separate(axis))) continue;
+    to[at(a)] = at_.frame.to_machine(at_.programmed, a);
+    frames_.check_axis(a, to[at(a)], column_of(block_, a));
+  }
+  if (at_rapid) {
+    output_.emit(Rapid{to});
+  } else {
+    const Line line{to, feed_of(BlockWords{}, 0.0, machine_.rotary(axis)), CornerRule{}};
+    capability_.check_line(BlockWords{}, line);
+    output_.emit(line);
+  }
+  at_.machine = to;
+}
+
+void Motion::line(const BlockWords& words, const Position& to) {
+  double square = 0.0;
+  bool linear = false, turns = false;
+  for (int a = 0; a < machine_.axis_count(); ++a) {
+    const double delta = to[at(a)] - at_.machine[at(a)];
+    square += delta * delta;
+    if (delta != 0.0) (machine_.rotary(a) ? turns : linear) = true;
+  }
+  Line line;
+  line.to = to;
+  line.feed = feed_of(words, words.time != nullptr ? std::sqrt(square) : 0.0, turns && !linear);
+  line.corner = corner_of(words);
+  capability_.check_line(words, line);
+  output_.emit(std::move(line));
+}
+
+/// Centre of the arc a block asks for, by its radius or by the words of a centre.
+Point Motion::find_centre(const BlockWords& words, Point start, Point end, bool counter_clockwise) const {
+  const bool one = words.centre1 != nullptr || words.centre2 != nullptr;
+  const bool both = words.centre1 != nullptr && words.centre2 != nullptr;
+  const auto letters = [this](std::string last) {
+    const bool named = dialect_.letter_of(Meaning::centre_1) != 0;
+    return std::vector<std::string>{named ? letter(Meaning::centre_1) : "I",
+                                    named ? letter(Meaning::centre_2) : "J, K", std::move(last)};
+  };
+  const auto r_word = [this] {
+    const WordRule* named = dialect_.word_of(Meaning::radius);
+    return named != nullptr ? std::string(named->name) + "=" : letter(Meaning::radius);
+  };
+  if (words.radius == nullptr) {
+    if (!one) fail(Fault::arc_words, here(), letters(r_word()));
+    if (!both && dialect_.arc_centre != ArcCentre::from_start_any)
+      fail(Fault::arc_centre_pair, here(),
+           letters(letter(words.centre1 == nullptr ? Meaning::centre_1 : Meaning::centre_2)));
+    return arc_centre(words);
+  }
+  const int column = words.radius->column;
+  if (one) fail(Fault::arc_both, column, letters(r_word()));
+  const int a1 = at_.axis1;
+  const double r = numbers_.length(a1, words.radius->value, false) * std::abs(at_.frame.scale(a1));
+  if (r == 0.0) fail(Fault::arc_zero, column);
+  const double chord = std::hypot(end.x - start.x, end.y - start.y);
+  if (chord == 0.0) fail(Fault::arc_full_by_radius, column, {r_word()});
+  Point centre;
+  if (!centre_by_radius(start, end, r, counter_clockwise, centre))
+    fail(Fault::arc_too_small, column, {text::number(r, 4), text::number(chord, 4), r_word()});
+  return centre;
+}
+
+/// Length of a circular motion with all that moves beside it.
+double Motion::helix_length(const Arc& arc, double radius) const {
+  double square = std::pow(arc.sweep_deg * kDegree * radius, 2);
+  for (int a = 0; a < machine_.axis_count(); ++a)
+    if (a != arc.axis1 && a != arc.axis2) square += std::pow(arc.to[at(a)] - at_.machine[at(a)], 2);
+  return std::sqrt(square);
+}
+
+void Motion::arc(const BlockWords& words, const Position& to) {
+  const int a1 = at_.axis1, a2 = at_.axis2;
+  const Frame& frame = at_.frame;
+  if (words.machine_zero && !frame.shift_only()) {
+    const auto rule = std::find_if(dialect_.g.begin(), dialect_.g.end(),
+                                   [](const GRule& g) { return g.function == Function::machine_zero; });
+    fail(Fault::machine_zero_arc, here(), {"G" + std::to_string(rule->number)});
+  }
+  if (std::abs(frame.scale(a1)) != std::abs(frame.scale(a2)))
+    fail(Fault::arc_scaled, here(), {machine_.axes[at(a1)].letter, machine_.axes[at(a2)].letter});
+  const bool ccw = (modes_.motion == Function::arc_ccw) == (frame.sense(a1, a2) > 0);
+  const Point start{at_.machine[at(a1)], at_.machine[at(a2)]}, end{to[at(a1)], to[at(a2)]};
+  const Point centre = find_centre(words, start, end, ccw);
+  const double r1 = std::hypot(start.x - centre.x, start.y - centre.y);
+  const double r2 = std::hypot(end.x - centre.x, end.y - centre.y);
+  if (std::abs(r1 - r2) > kRadiusTolerance + 1e-9)
+    fail(Fault::not_congruent, here(), {text::number(r1, 4), text::number(r2, 4)});
+  if (r1 < 1e-9) fail(Fault::arc_zero, here());
+
+  Arc arc;
+  arc.to = to;
+  arc.axis1 = static_cast<std::uint8_t>(a1);
+  arc.axis2 = static_cast<std::uint8_t>(a2);
+  arc.center1 = centre.x;
+  arc.center2 = centre.y;
+  arc.sweep_deg = sweep(start, end, centre, ccw);
+  const double turns = helix_turns(words, to, arc.sweep_deg, r1);
+  arc.sweep_deg += arc.sweep_deg < 0.0 ? -360.0 * turns : 360.0 * turns;
+  const Box box = extent(start, end, centre, arc.sweep_deg);
+  for (const double x : {box.low.x, box.high.x}) frames_.check_axis(a1, x, column_of(block_, a1));
+  for (const double y : {box.low.y, box.high.y}) frames_.check_axis(a2, y, column_of(block_, a2));
+  const double length = helix_length(arc, r1);
+  arc.feed = feed_of(words, length, false);
+  arc.corner = corner_of(words);
+  capability_.check_arc(words, arc, r1, length);
+  output_.emit(std::move(arc));
+}
+
+/// Centre by its words in machine coordinates: absolute in the origin, or from the start.
+Point Motion::arc_centre(const BlockWords& words) const {
+  const int a1 = at_.axis1, a2 = at_.axis2;
+  const Frame& frame = at_.frame;
+  const auto written = [&](int axis, const Word* word) {
+    return word == nullptr ? 0.0 : numbers_.length(axis, word->value, dialect_.centre_as_diameter);
+  };
+  const double i = written(a1, words.centre1), j = written(a2, words.centre2);
+  if (words.machine_zero && dialect_.arc_centre == ArcCentre::as_dimensions)
+    return {i + frame.length(a1), j + frame.length(a2)};
+  const auto from_start = [&](const Word* word) {
+    if (word != nullptr && word->value.dimension != Dimension::as_modes)
+      return word->value.dimension == Dimension::incremental;
+    return modes_.dimension == Function::incremental || dialect_.arc_centre != ArcCentre::as_dimensions;
+  };
+  Position centre{};
+  centre[at(a1)] = i + (from_start(words.centre1) ? frame.to_programmed(at_.machine, a1) : 0.0);
+  centre[at(a2)] = j + (from_start(words.centre2) ? frame.to_programmed(at_.machine, a2) : 0.0);
+  return {frame.to_machine(centre, a1), frame.to_machine(centre, a2)};
+}
+
+/// Whole turns beyond the programmed arc: the total angle is 360 degrees times depth over pitch.
+/// Source: specification A 9.4, A 24 decision 20.
+double Motion::helix_turns(const BlockWords& words, const Position& to, double sweep_deg,
+                           double radius) const {
+  if (words.pitch == nullptr) return 0.0;
+  int axis = at_.normal;
+  if (axis < 0 || words.axis[at(axis)] == nullptr)
+    for (int a = 0; a < machine_.axis_count(); ++a)
+      if (words.axis[at(a)] != nullptr && a != at_.axis1 && a != at_.axis2) axis = a;
+  const int column = words.pitch->column;
+  if (axis < 0 || words.axis[at(axis)] == nullptr) fail(Fault::helix_axis, column, {letter(Meaning::pitch)});
+  const double pitch = numbers_.length(axis, words.pitch->value) * std::abs(at_.frame.scale(axis));
+  if (pitch <= 0.0)
+    fail(Fault::helix_pitch, words.pitch->value.column, {text::number(pitch, 4), letter(Meaning::pitch)});
+  const double total = 360.0 * std::abs(to[at(axis)] - at_.machine[at(axis)]) / pitch;
+  const double turns = std::max(0.0, std::round((total - std::abs(sweep_deg)) / 360.0));
+  if (turns > kMaxTurns) fail(Fault::helix_long, column, {text::number(turns, 0), text::number(kMaxTurns)});
+  const double slack = kRadiusTolerance / radius / kDegree + 1e-6;
+  if (std::abs(total - std::abs(sweep_deg) - 360.0 * turns) > slack)
+    fail(Fault::helix_mismatch, column, {text::number(total, 3), text::number(std::abs(sweep_deg), 3)});
+  return turns;
+}
+
+/// F that stays, unless it belongs to its block only (G93).
+void Motion::store_feed(const BlockWords& words) {
+  if (words.feed == nullptr) return;
+  const double value = numbers_.resolve(words.feed->value);
+  const LetterRule& rule = dialect_.letters[static_cast<unsigned char>(words.feed->letter)];
+  if (!(value >= rule.min - 1e-12 && value <= rule.max))
+    numbers_.refuse_range("F", words.feed->value, value, text::number(rule.min).c_str(),
+                          text::number(rule.max).c_str());
+  if (modes_.feed == Function::feed_inverse) return;
+  state_.feed = value;
+  state_.feed_at = capability_.written(words.feed->column);
+  state_.feed_inch = modes_.unit == Function::inch;
+}
+
+/// What the block asks for is checked in a dry run, too.
+Feed Motion::feed_of(const BlockWords& words, double length_mm, bool rotary_only) {
+  const Feed programmed = programmed_feed(words, length_mm, rotary_only);
+  if (!state_.dry_run || capability_.all_rapids() <= 0.0) return programmed;
+  return {capability_.all_rapids() * 60.0, FeedUnit::mm_per_min};
+}
+
+Feed Motion::programmed_feed(const BlockWords& words, double length_mm, bool rotary_only) {
+  if (words.time != nullptr) {
+    const std::string name = letter(Meaning::block_time);
+    if (modes_.feed != Function::feed_minute) fail(Fault::block_time, words.time->column, {name});
+    const double seconds = numbers_.resolve(words.time->value);
+    if (!(seconds > 0.0)) numbers_.refuse_range(name, words.time->value, seconds, "0.001", "99999.999");
+    return length_mm > 0.0 ? Feed{length_mm * 60.0 / seconds, FeedUnit::mm_per_min}
+                           : Feed{60.0 / seconds, FeedUnit::inverse_time};
+  }
+  if (modes_.feed == Function::feed_inverse) {
+    if (words.feed == nullptr) fail(Fault::feed_inverse, here());
+    return {numbers_.resolve(words.feed->value), FeedUnit::inverse_time};
+  }
+  if (state_.feed <= 0.0) fail(Fault::feed_missing, here());
+  const double factor = state_.feed_inch && !rotary_only ? 25.4 : 1.0;
+  return {state_.feed * factor,
+          modes_.feed == Function::feed_revolution ? FeedUnit::mm_per_rev : FeedUnit::mm_per_min};
+}
+
+/// How this element passes into the next one. Source: specification A 13.
+CornerRule Motion::corner_of(const BlockWords& words) const {
+  CornerRule rule;
+  const Function mode = modes_.corner;
+  const double tolerance = machine_.contour_tolerance_mm;
+  if (mode == Function::exact || words.exact_once || words.dwell) return rule;
+  if (mode == Function::continuous) {
+    rule.transition = Transition::continuous;
+    rule.tolerance_mm = tolerance;
+  } else if (state_.corner_error_mm > 0.0) {
+    rule.transition = Transition::corner_limited;
+    rule.tolerance_mm = std::min(tolerance, state_.corner_error_mm);
+    rule.corner_error_mm = state_.corner_error_mm;
+    rule.max_angle_deg = state_.max_angle_deg;
+  }
+  return rule;
+}
+
+void Motion::turn_spindle(SpindleMode mode) {
+  state_.spindle = mode;
+  Spindle spindle;
+  spindle.mode = mode;
+  spindle.speed = modes_.speed;
+  spindle.surface_speed = modes_.cutting;
+  if (spindle.surface_speed && capability_.surface_axis() >= 0)
+    spindle.center = at_.frame.length(capability_.surface_axis());
+  output_.emit(spindle);
+  state_.speed_told = true;
+}
+
+void Motion::dwell(double seconds) {
+  end_profile();
+  output_.emit(Dwell{seconds});
+}
+
+}  // namespace servogate::program

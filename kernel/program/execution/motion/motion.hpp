@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "kernel/program/execution/capability/capability.hpp"
+#include "kernel/program/execution/flow/output.hpp"
+#include "kernel/program/execution/frames/frames.hpp"
+#include "kernel/program/execution/frames/numbers.hpp"
+#include "kernel/program/geometry/circle.hpp"
+
+namespace servogate::program {
+
+/// Rapids, lines, arcs and helices with their feeds and corners; dwells, and the spindle's words.
+class Motion {
+ public:
+  Motion(const Dialect& dialect, const MachineModel& machine, const Block& block, const Numbers& numbers,
+         const Modes& modes, FramesState& at, MotionState& state, Frames& frames, Capability& capability,
+         Output& output)
+      : dialect_(dialect),
+        machine_(machine),
+        block_(block),
+        numbers_(numbers),
+        modes_(modes),
+        at_(at),
+        state_(state),
+        frames_(frames),
+        capability_(capability),
+        output_(output) {}
+
+  /// The motion of a block, by the mode in force.
+  void move(const BlockWords& words);
+  /// Rapid to the axes of a block, but for one (-1: all).
+  void position(const BlockWords& words, int without_axis);
+  /// One axis to a programmed coordinate, at rapid or at the feed in force; nothing where it stands there
+  /// already.
+  void go(int axis, double programmed, bool rapid);
+  void dwell(double seconds);
+  void turn_spindle(SpindleMode mode);
+  /// F, which stays in force where it is no matter of its block.
+  void store_feed(const BlockWords& words);
+  /// Ends a continuous profile: what follows is no feed motion.
+  void end_profile() noexcept { state_.profile_open = false; }
+
+ private:
+  Position target_of(const BlockWords& words);
+  void line(const BlockWords& words, const Position& to);
+  void arc(const BlockWords& words, const Position& to);
+  Point find_centre(const BlockWords& words, Point start, Point end, bool counter_clockwise) const;
+  double helix_length(const Arc& arc, double radius) const;
+  Point arc_centre(const BlockWords& words) const;
+  double helix_turns(const BlockWords& words, const Position& to, double sweep_deg, double radius) const;
+  Feed feed_of(const BlockWords& words, double length_mm, bool rotary_only);
+  Feed programmed_feed(const BlockWords& words, double length_mm, bool rotary_only);
+  CornerRule corner_of(const BlockWords& words) const;
+  bool incremental(const Value& value) const noexcept;
+  int here() const noexcept { return static_cast<int>(block_.body) + 1; }
+  std::string letter(Meaning meaning) const { return std::string(1, dialect_.letter_of(meaning)); }
+
+  const Dialect& dialect_;
+  const MachineModel& machine_;
+  const Block& block_;
+  const Numbers& numbers_;
+  const Modes& modes_;
+  FramesState& at_;
+  MotionState& state_;
+  Frames& frames_;
+  Capability& capability_;
+  Output& output_;
+};
+
+}  // namespace servogate::program
