@@ -107,14 +107,15 @@ struct Fault {
   std::uint16_t index = 0;
   canopen::AbortCode abort = canopen::AbortCode::general_error;
   image::DriveState state = image::DriveState::switched_on;
-  std::uint32_t id = 0;        ///< frames with (id & mask) == (this & mask)
-  std::uint32_t mask = 0;      ///< 0: every frame
-  int sender = -1;             ///< node-ID, 0: the control; -1: any
-  std::uint32_t skip = 0;      ///< frames that pass first
-  std::uint32_t count = 1;     ///< frames that are hit then; 0: all
+  std::uint32_t id = 0;     ///< frames with (id & mask) == (this & mask)
+  std::uint32_t mask = 0;   ///< 0: every frame
+  int sender = -1;          ///< node-ID, 0: the control; of a CAN segment the number of its endpoint; -1: any
+  std::uint32_t skip = 0;   ///< frames that pass first
+  std::uint32_t count = 1;  ///< frames that are hit then; 0: all
   std::uint8_t exception = 4;  ///< Modbus V1.1b3, section 7
   bool level = false;
   std::uint64_t seed = 1;
+  bool operator==(const Fault&) const = default;
 };
 
 /// A kind: its name as people write it, whom it happens to, what it takes, what it does.

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "firmware_if/image/detail.hpp"
+#include "firmware_if/image/part_place.hpp"
 #include "firmware_if/image/time.hpp"
 
 namespace servogate::image {
@@ -19,7 +20,7 @@ enum class Reaction : std::uint8_t {
   power_off,           ///< at once: brakes engage, power goes, what moves coasts
 };
 
-/// Number of an alarm: the key of the one alarm table (kernel/cycle/alarm_table.hpp).
+/// Number of an alarm: its row in the one alarm table (alarms/alarm_table.hpp).
 using AlarmNumber = std::uint16_t;
 
 /// One fault as it happened. Plain data, so that the cycle can write it; texts come from the table.
@@ -33,14 +34,12 @@ struct AlarmRecord {
   std::int64_t cycle = 0;
   Nanoseconds t_ns = 0;
   std::int8_t process = -1;
-  std::int8_t axis = -1;  ///< index in the machine file's order, -1: none
-  std::int16_t segment = -1;
-  std::int16_t node = -1;
+  std::int8_t axis = -1;     ///< index in the machine file's order, -1: none
+  PartPlace part;            ///< part of a device that it is of
   std::int16_t source = -1;  ///< index in ProcessImage::sources
-  std::uint16_t object_index = 0;
-  std::uint8_t object_subindex = 0;
-  std::uint16_t statusword = 0;
-  std::uint16_t error_code = 0;
+  /// Tells faults of one number at one place apart: an error code, an identifier, an object. While one is
+  /// active, only a fault with another key is an alarm of its own.
+  std::uint64_t key = 0;
   std::int32_t line = 0;  ///< line of the block in motion, 0: none
   std::int32_t file = 0;  ///< its file in run `run` of the process (ProcessStatus)
   std::uint32_t run = 0;

@@ -3,10 +3,11 @@
 #include "firmware_if/image/alarm.hpp"
 
 /// Numbers of the alarms that devices, programs, the PLC and the cycle itself raise; whoever notices a fault
-/// names its number, and the alarm table has the rest (kernel/cycle/alarm). Those of axes and spindles (1000)
-/// and of drives as the axis sees them (2001-2004) are in kernel/axis/axis_alarms.hpp.
+/// names its number, and the room that raises it has its row (alarms/alarm_table.hpp). Those of axes and
+/// spindles (1000) and of drives as the axis sees them (2001-2003) are in kernel/axis/axis_alarms.hpp.
 namespace servogate::image::alarm {
 
+inline constexpr AlarmNumber kPdoMissing = 2004;
 inline constexpr AlarmNumber kNodeLost = 2010;
 inline constexpr AlarmNumber kEmergencyMessage = 2011;
 inline constexpr AlarmNumber kBusOff = 2012;

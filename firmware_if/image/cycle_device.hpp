@@ -10,9 +10,15 @@ namespace servogate::image {
 /// - puts actual values into AxisImage::drive and SpindleImage::drive, and takes their commands,
 /// - puts points into packet A through a PointStage, which knows what a point is worth without its device,
 /// - shows in the image which of its parts are there: IoSource::quality of a station, DriveFeedback::online,
-/// - tells what happened as notices (AlarmRecord with its own fields in AlarmRecord::detail),
+/// - tells what happened as notices (AlarmRecord with its own fields in AlarmRecord::detail; rows and words
+/// of its
+///   alarms are handed in by its room, alarms/alarm_table.hpp),
 /// - tells edges of its inputs with their times (ProcessImage::edges), where it knows them.
 /// What it says of presence stands in the image and nowhere else, so that the replay of a record sees it too.
+/// A facility that the cycle cannot wait for (a serial line, edges of a GPIO chip, a HID device) has a thread
+/// of its own: the device starts it where it is opened and ends it in its destructor, both outside real time;
+/// thread and cycle share bounded lock-free queues only, which receive() empties and send() fills, and an age
+/// that rises when the thread falls silent.
 class CycleDevice {
  public:
   virtual ~CycleDevice() = default;

@@ -10,7 +10,7 @@
 namespace servogate::image {
 
 /// Whose fields a Detail holds. A new kind is a line here; the cycle looks at none of them.
-enum class DetailKind : std::uint16_t { none, can_frame, canopen_boot };
+enum class DetailKind : std::uint16_t { none, can_frame, canopen_boot, drive_report };
 
 /// The own fields of a notice, which its device writes and the words for people read: one plain struct, by
 /// value. Everything is real-time safe.

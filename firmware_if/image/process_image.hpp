@@ -70,17 +70,11 @@ struct SpindleImage {
   DriveFeedback drive;
 };
 
-/// Where a part of a device is, for alarms that last while it is gone: a drive, a station of a bus.
-struct PartPlace {
-  std::int16_t segment = -1;  ///< -1: on no segment
-  std::int16_t node = -1;
-};
-
 /// Health of one source of points (a Modbus station, a GPIO chip, a drive's inputs).
 enum class Quality : std::uint8_t { never, good, stale, bad };
 struct IoSource {
   Quality quality = Quality::never;
-  Nanoseconds updated_ns = 0;  ///< time of the newest data
+  Nanoseconds updated_ns = 0;  ///< time of the newest data of the group that is worst
   std::uint32_t errors = 0;
 };
 

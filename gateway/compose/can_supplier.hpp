@@ -39,7 +39,6 @@ class CanSupplier final : public image::CycleDevice {
 
  private:
   void look_at_clock() noexcept;
-  void report(const canopen::BusEvent& event, image::Notices& notices) const noexcept;
   void report_lost(image::Notices& notices) noexcept;
 
   canopen::Segment segment_;

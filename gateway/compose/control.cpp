@@ -6,9 +6,6 @@
 #include <thread>
 
 #include "firmware_if/canopen/301/emcy.hpp"
-#include "firmware_if/canopen/301/words/frame_words.hpp"
-#include "firmware_if/canopen/302/boot_detail.hpp"
-#include "firmware_if/image/frames/frame_record.hpp"
 #include "gateway/compose/devices/open_devices.hpp"
 #include "gateway/compose/plc/compile_beside.hpp"
 #include "gateway/compose/plc/logic_options.hpp"
@@ -69,7 +66,9 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
   c->devices_ = open_devices(c->loaded_, *c->world_, source != nullptr, findings);
   if (infrastructure(findings)) return nullptr;
   c->faults_ = std::make_unique<MachineFaults>(m, *c->world_, true);
+  c->alarm_rooms_ = c->alarm_rooms();
   cycle::CycleParts parts;
+  parts.alarms = &c->alarm_rooms_->table();
   parts.period_ns = m.cycle_ns();
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
     image::CanBus* bus = m.buses[b].mock() ? c->world_->bus(b) : c->transports_[b].bus.get();
@@ -315,74 +314,61 @@ void Control::open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) n
   due_ns_ = due_ns;
 }
 
-/// The device file of the drive or node that an alarm is of.
+/// The device file of the drive or part that an alarm is of.
 const machine::DeviceConfig* Control::device_of(const image::AlarmRecord& r) const {
-  const machine::MachineConfig& m = loaded_.machine;
-  std::string reference;
-  if (const auto i = static_cast<std::size_t>(r.axis); r.axis >= 0 && cycle::of_spindle(r))
-    reference = i < m.spindles.size() ? m.spindles[i].drive : "";
-  else if (r.axis >= 0)
-    reference = i < m.axes.size() ? m.axes[i].drive : "";
-  for (std::size_t b = 0; b < m.buses.size(); ++b)
-    for (const machine::NodeConfig& n : m.buses[b].nodes)
-      if (r.axis >= 0 ? m.buses[b].name + "." + n.name == reference
-                      : n.id == r.node && static_cast<std::size_t>(r.segment) == b)
-        return loaded_.device(n.device);
+  const machine::NodeConfig* node = node_of(r.part);
+  if (r.axis >= 0 && static_cast<std::size_t>(r.axis) < loaded_.machine.axes.size())
+    node = loaded_.machine.node(loaded_.machine.axes[static_cast<std::size_t>(r.axis)].drive);
+  return node != nullptr ? loaded_.device(node->device) : nullptr;
+}
+
+const machine::NodeConfig* Control::node_of(const image::PartPlace& place) const {
+  if (place.device < 0 || place.device >= std::ssize(loaded_.machine.buses)) return nullptr;
+  for (const machine::NodeConfig& n : loaded_.machine.buses[static_cast<std::size_t>(place.device)].nodes)
+    if (n.id == place.part) return &n;
   return nullptr;
 }
 
-cycle::AlarmNames Control::alarm_names() const {
+std::unique_ptr<AlarmRooms> Control::alarm_rooms() const {
+  const auto process = [this](int p) {
+    return p >= 0 && p < std::ssize(processes_) ? processes_[static_cast<std::size_t>(p)].get() : nullptr;
+  };
+  canopen::MasterAlarmWords bus([this](const image::PartPlace& place) {
+    const machine::NodeConfig* node = node_of(place);
+    return node != nullptr ? node->software_version : std::string();
+  });
+  channel::ProgramAlarmWords program(
+      [process](int p, std::uint32_t run, int file) {
+        return process(p) != nullptr ? process(p)->texts().file(run, file) : std::string();
+      },
+      [process](int p, int number, text::Language language) {
+        const auto finding = process(p) != nullptr ? process(p)->texts().finding(number) : std::nullopt;
+        return finding ? finding->str(language) : std::string();
+      });
+  plc::LogicAlarmWords logic([this](const image::AlarmRecord& record, text::Language language) {
+    return logic_ != nullptr ? logic_->fault_words(record, language) : std::string();
+  });
+  return std::make_unique<AlarmRooms>(std::move(bus), std::move(program), std::move(logic));
+}
+
+image::AlarmNames Control::alarm_names() const {
   const machine::MachineConfig& m = loaded_.machine;
-  cycle::AlarmNames names;
+  image::AlarmNames names;
+  names.table = &alarm_rooms_->table();
   names.axes = m.letters();
   names.units = m.unit_words();
   for (const machine::AxisConfig& a : m.axes) names.diameters.push_back(a.diameter);
-  for (const machine::BusConfig& b : m.buses) names.segments.push_back(b.name);
+  for (const machine::BusConfig& b : m.buses) names.devices.push_back(b.name);
   for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
   names.error_text = [this](const image::AlarmRecord& r, std::uint16_t code, text::Language language) {
     const machine::DeviceConfig* device = device_of(r);
     const std::string_view own = device != nullptr ? device->error_text(code, language) : std::string_view();
     return own.empty() ? text::render(canopen::error_code_text(code), {}, language) : std::string(own);
   };
-  const auto node_at = [this](int segment, int node) -> const machine::NodeConfig* {
-    if (segment < 0 || segment >= std::ssize(loaded_.machine.buses)) return nullptr;
-    for (const machine::NodeConfig& n : loaded_.machine.buses[static_cast<std::size_t>(segment)].nodes)
-      if (n.id == node) return &n;
-    return nullptr;
-  };
-  names.node_name = [this, node_at](int segment, int node) -> std::string {
-    const machine::NodeConfig* n = node_at(segment, node);
+  names.part_name = [this](const image::PartPlace& place) {
+    const machine::NodeConfig* n = node_of(place);
     return n == nullptr ? std::string()
-                        : loaded_.machine.buses[static_cast<std::size_t>(segment)].name + "." + n->name;
-  };
-  const auto boot_words = [node_at](const image::AlarmRecord& record, const canopen::BootDetail& detail,
-                                    text::Language language) -> std::string {
-    canopen::BusEvent event;
-    event.kind = canopen::BusEventKind::boot_failed;
-    event.boot = canopen::boot_report(detail);
-    if (const machine::NodeConfig* n = node_at(record.segment, record.node); n != nullptr)
-      event.boot.expected_text = canopen::BootText(n->software_version);
-    const std::string words = canopen::describe(event, {}, nullptr, language);
-    return words.starts_with(": ") ? words.substr(2) : words;
-  };
-  names.detail = [boot_words](const image::AlarmRecord& record, text::Language language) -> std::string {
-    if (const auto boot = record.detail.get<canopen::BootDetail>())
-      return boot_words(record, *boot, language);
-    if (const auto frame = record.detail.get<image::FrameDetail>())
-      return text::in_language(canopen::frame_words(image::frame_of(*frame)), language);
-    return {};
-  };
-  names.program_file = [this](int process, std::uint32_t run, int file) -> std::string {
-    if (process < 0 || process >= std::ssize(processes_)) return {};
-    return processes_[static_cast<std::size_t>(process)]->texts().file(run, file);
-  };
-  names.plc_fault = [this](const image::AlarmRecord& record, text::Language language) -> std::string {
-    return logic_ == nullptr ? std::string() : logic_->fault_words(record, language);
-  };
-  names.program_finding = [this](int process, int number, text::Language language) -> std::string {
-    if (process < 0 || process >= std::ssize(processes_)) return {};
-    const auto finding = processes_[static_cast<std::size_t>(process)]->texts().finding(number);
-    return finding ? finding->str(language) : std::string();
+                        : loaded_.machine.buses[static_cast<std::size_t>(place.device)].name + "." + n->name;
   };
   return names;
 }

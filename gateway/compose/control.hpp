@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware_if/image/alarms/alarm_text.hpp"
+#include "gateway/compose/alarms/alarm_rooms.hpp"
 #include "gateway/compose/can_supplier.hpp"
 #include "gateway/compose/can_transport.hpp"
 #include "gateway/compose/program/program_change.hpp"
@@ -91,7 +93,7 @@ class Control {
   /// nothing on buses that end with this process.
   void take_leave();
   /// Names for the sentences of alarms.
-  cycle::AlarmNames alarm_names() const;
+  image::AlarmNames alarm_names() const;
   /// True when nothing real can move.
   bool nothing_real() const { return loaded_.machine.nothing_real(); }
   /// True when composing failed because of the computer (a bus or device that cannot be opened), not
@@ -106,12 +108,15 @@ class Control {
  private:
   explicit Control(const machine::LoadResult& loaded);
   const machine::DeviceConfig* device_of(const image::AlarmRecord& record) const;
+  const machine::NodeConfig* node_of(const image::PartPlace& place) const;
+  std::unique_ptr<AlarmRooms> alarm_rooms() const;
   bool compile_logic(std::vector<text::Finding>& findings);
   bool open_buses(std::vector<text::Finding>& findings, bool replay);
   void await_grants(image::Nanoseconds t);
 
   machine::LoadResult loaded_;
   const std::vector<image::Symbol> symbols_;
+  std::unique_ptr<AlarmRooms> alarm_rooms_;  ///< outlives the cycle
   std::unique_ptr<mock::World> world_;
   std::unique_ptr<MachineFaults> faults_;
   std::vector<std::unique_ptr<image::CycleDevice>> devices_;  ///< of no bus, in the order of the file

@@ -126,12 +126,9 @@ Json to_json(const AlarmEntry& a, Language language) {
   out["t"] = static_cast<double>(r.t_ns) / 1e9;  // 9.69, not 9.690000000000001
   if (!a.axis.empty()) out["axis"] = a.axis;
   if (r.process >= 0) out["process"] = r.process + 1;
-  if (r.segment >= 0) out["segment"] = r.segment;
-  if (r.node >= 0) out["node"] = r.node;
   if (r.source >= 0) out["source"] = r.source;
-  if (r.object_index != 0) out["object"] = hex(r.object_index, 4) + ":" + std::to_string(r.object_subindex);
-  if (r.statusword != 0) out["statusword"] = hex(r.statusword, 4);
-  if (r.error_code != 0) out["error_code"] = hex(r.error_code, 4);
+  for (const image::AlarmFact& fact : a.facts)
+    std::visit([&](const auto& value) { out[fact.key] = value; }, fact.value);
   if (r.line > 0) out["line"] = r.line;
   if (r.block >= 0) out["block"] = r.block;
   if (a.finding) out["finding"] = to_json(*a.finding, language);

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/alarms/alarm_table.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "gateway/report/statistics.hpp"
 
@@ -59,9 +59,10 @@ struct AlarmEntry {
   std::string id;
   std::string text;
   std::string remedy;
-  std::string axis;                      ///< letter, empty: none
-  bool consequence = false;              ///< stands behind its first fault
-  std::optional<text::Finding> finding;  ///< of a program error: file, line, column and words
+  std::string axis;                          ///< letter, empty: none
+  std::vector<image::AlarmFact> facts = {};  ///< what its device and its room say of it
+  bool consequence = false;                  ///< stands behind its first fault
+  std::optional<text::Finding> finding;      ///< of a program error: file, line, column and words
 };
 
 /// What the program waited for when the run was given up because nothing moved any more.

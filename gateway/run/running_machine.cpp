@@ -9,7 +9,7 @@
 #include "gateway/compose/simulated/played_input.hpp"
 #include "gateway/run/paced_loop.hpp"
 #include "gateway/run/realtime_loop.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::gateway {
 

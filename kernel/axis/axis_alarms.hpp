@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/alarm_numbers.hpp"
 
-/// Numbers of the alarms that this room raises; their texts stand in kernel/cycle/alarm/alarm_table.cpp.
+/// Numbers of the alarms that this room raises; their texts stand in alarms/axis_rows.hpp.
 namespace servogate::axis::alarm {
 
 using image::AlarmNumber;
@@ -48,11 +49,16 @@ inline constexpr AlarmNumber kSpindleOutputLost = 1206;
 inline constexpr AlarmNumber kDriveFault = 2001;
 inline constexpr AlarmNumber kDriveRefuses = 2002;
 inline constexpr AlarmNumber kDriveOffline = 2003;
-inline constexpr AlarmNumber kPdoMissing = 2004;
+using image::alarm::kPdoMissing;  ///< whose row is that of the bus
 
 }  // namespace servogate::axis::alarm
 
 namespace servogate::axis {
+
+/// The axis has lost its drive: AxisConfig::loss_reaction says what follows. real-time safe.
+constexpr bool is_drive_loss(image::AlarmNumber number) noexcept {
+  return number == alarm::kDriveOffline || number == alarm::kPdoMissing;
+}
 
 /// Something an axis or spindle found wrong in this cycle; the executive makes an alarm record of it.
 struct Event {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "firmware_if/image/interface_map.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::channel {
 
@@ -355,6 +355,9 @@ void Process::raise(image::AlarmNumber number, const Event& event, double value,
   r.block = event.block;
   r.value = value;
   r.limit = limit;
+  if (number == cycle::alarm::kProgramWarning)  // the same one in the same line is said once
+    r.key = std::uint64_t{static_cast<std::uint32_t>(event.line)} << 32 |
+            static_cast<std::uint32_t>(static_cast<std::int64_t>(limit));
   c.notices.add(r);
 }
 

@@ -6,7 +6,7 @@
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/channel/process.hpp"
 #include "kernel/channel/surface_speed.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::channel {
 

@@ -5,7 +5,7 @@
 
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/channel/process.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::channel {
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "firmware_if/image/alarms/drive_report.hpp"
 #include "kernel/cycle/executive_queues.hpp"
 #include "kernel/cycle/interface_places.hpp"
 
@@ -17,7 +18,8 @@ constexpr const char* kPhaseNames[kPhases] = {"receive", "logic", "interpolate",
 
 const char* name(Phase phase) noexcept { return kPhaseNames[static_cast<int>(phase)]; }
 
-Cycle::Cycle(CycleParts parts) : parts_(std::move(parts)), queues_(std::make_unique<Queues>()) {
+Cycle::Cycle(CycleParts parts)
+    : parts_(std::move(parts)), alarms_(parts_.alarms), queues_(std::make_unique<Queues>()) {
   image_.axis_count = static_cast<int>(parts_.axes.size());
   image_.spindle_count = static_cast<int>(parts_.spindles.size());
   image_.process_count = static_cast<int>(parts_.processes.size());
@@ -187,14 +189,13 @@ void Cycle::collect_events() noexcept {
       r.detail2 = e.detail2;
       if (axis >= 0) {
         const image::DriveFeedback& drive = image_.axes[static_cast<std::size_t>(axis)].drive;
-        r.statusword = drive.statusword;
-        r.error_code = drive.error_code;
+        image::DriveReport report;
+        report.statusword = drive.statusword;
+        report.error_code = drive.error_code;
+        r.detail.put(report);
         const axis::AxisConfig& config = axes_[static_cast<std::size_t>(axis)].config();
-        const image::PartPlace& place = config.drive;
-        if (e.number == axis::alarm::kDriveOffline || e.number == axis::alarm::kPdoMissing)
-          r.reaction = config.loss_reaction;
-        r.segment = place.segment;
-        r.node = place.node;
+        if (axis::is_drive_loss(e.number)) r.reaction = config.loss_reaction;
+        r.part = config.drive;
       }
       const image::ProcessStatus& program = image_.processes[static_cast<std::size_t>(process)];
       r.line = program.line;
@@ -251,6 +252,7 @@ void Cycle::watch_machine() noexcept {
       r.number = alarm::kExternalAlarm;
       r.process = static_cast<std::int8_t>(p);
       r.value = number;
+      r.key = static_cast<std::uint16_t>(number);
       raise(r);
     }
     external_alarm_[p] = number;
@@ -286,22 +288,23 @@ bool Cycle::still_present(const image::AlarmRecord& r) const noexcept {
     default:
       break;
   }
-  if (is_of_part(r.number)) return part_missing(r);
+  if (parts_.alarms != nullptr && parts_.alarms->mark(r.number) == image::AlarmMark::of_part)
+    return part_missing(r);
   if (r.axis >= 0) return axes_[static_cast<std::size_t>(r.axis)].present(r.number);
   return std::any_of(spindles_.begin(), spindles_.end(),
                      [&](const axis::Spindle& s) { return s.present(r.number); });
 }
 
-/// The part of a device that a record names, or one on the segment that it names, is not there.
+/// The part that a record names, or where it names none any part of its device, is not there.
 bool Cycle::part_missing(const image::AlarmRecord& r) const noexcept {
   const auto meant = [&r](const image::PartPlace& place) {
-    return r.segment == place.segment && (r.node < 0 || r.node == place.node);
+    return r.part.device == place.device && (r.part.part < 0 || r.part.part == place.part);
   };
   const auto missing = [&meant](const image::PartPlace& place, const image::DriveFeedback& drive) {
     return meant(place) && !drive.online;
   };
   for (std::size_t s = 0; s < parts_.sources.size(); ++s)
-    if (parts_.sources[s].place.segment >= 0 && meant(parts_.sources[s].place) &&
+    if (parts_.sources[s].place.device >= 0 && meant(parts_.sources[s].place) &&
         image_.sources[s].quality != image::Quality::good)
       return true;
   for (std::size_t i = 0; i < axes_.size(); ++i)

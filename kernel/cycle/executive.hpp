@@ -31,7 +31,7 @@ const char* name(Phase phase) noexcept;
 /// A source of points as the cycle sees it.
 struct SourceInCycle {
   bool watched = false;    ///< a stale or bad one is an alarm; otherwise its device tells
-  image::PartPlace place;  ///< where on a bus it is: an alarm of that place stays while it is gone
+  image::PartPlace place;  ///< the part of a device that it is: an alarm of that part stays while it is gone
 };
 
 /// What a cycle is made of. All pointers outlive the cycle.
@@ -42,6 +42,8 @@ struct CycleParts {
   std::vector<ProcessInCycle*> processes;  ///< in number order
   std::vector<axis::AxisConfig> axes;
   std::vector<axis::SpindleConfig> spindles;
+  /// What each alarm does; outlives the cycle. nullptr: every alarm stops the axes.
+  const image::AlarmTable* alarms = nullptr;
   std::uint32_t k_bytes = image::kPacketKDefaultSize;
   std::uint32_t syvar_bytes = image::kSyvarDefaultSize;
   const image::Clock* stopwatch = nullptr;  ///< measures the phases; nullptr: phases are not measured

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/channel/rig.hpp"
+#include "tests/alarms.hpp"
 
 #include <gtest/gtest.h>
 
@@ -118,6 +119,7 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   config.path.axis_count = kAxes;
   config.handshake_timeout_s = handshake_timeout_s;
   cycle::CycleParts parts;
+  parts.alarms = &tests::alarm_table();
   const char* letters[] = {"X", kind == RigKind::rotary ? "B" : "Y", "Z"};
   if (kind == RigKind::lathe) config.axes.surface_speed_axis = 0;
   config.axes.spindle_max_rpm = model_.spindle_max_rpm = kSpindleMax;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "kernel/channel/process.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "kernel/cycle/executive.hpp"
 
 namespace servogate::channel::test {

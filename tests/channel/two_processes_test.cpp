@@ -7,6 +7,7 @@
 #include <string>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "tests/alarms.hpp"
 #include "tests/channel/rig.hpp"
 
 namespace servogate::channel::test {
@@ -69,6 +70,7 @@ class TwoProcesses : public ::testing::Test {
     model.power_on = {"G94", "G97", "G90", "G71", "G27"};
     model.variables = {{"ERF", 0.01}, {"MCD", 2}};
     cycle::CycleParts parts;
+    parts.alarms = &tests::alarm_table();
     std::array<ProcessConfig, 2> configs;
     for (ProcessConfig& config : configs) config.path.axis_count = 0;
     for (int a = 0; a < kAxes; ++a) {

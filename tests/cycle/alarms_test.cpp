@@ -7,6 +7,7 @@
 #include <random>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "tests/alarms.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::cycle {
@@ -27,7 +28,7 @@ AlarmRecord of(image::AlarmNumber number, int axis = -1) {
 const auto kNothingPresent = [](const AlarmRecord&) { return false; };
 
 TEST(AlarmList, stamps_a_record_and_takes_the_reaction_of_the_table) {
-  AlarmList list;
+  AlarmList list(&tests::alarm_table());
   EXPECT_EQ(list.raise(of(axis::alarm::kFollowingError, 2), at(77)), 1u);
   const AlarmRecord* r = list.first();
   ASSERT_NE(r, nullptr);
@@ -38,19 +39,19 @@ TEST(AlarmList, stamps_a_record_and_takes_the_reaction_of_the_table) {
   EXPECT_EQ(list.reaction(), Reaction::stop_axes);
 }
 
-TEST(AlarmList, has_each_kind_of_foreign_frame_once) {
-  AlarmList list;
+TEST(AlarmList, tells_faults_of_one_number_and_place_apart_by_their_key) {
+  AlarmList list(&tests::alarm_table());
   image::AlarmRecord sync = of(alarm::kForeignFrame), nmt = sync;
-  sync.segment = nmt.segment = 0;
-  sync.value = 0x080;
-  nmt.value = 0x000;
+  sync.part.device = nmt.part.device = 0;
+  sync.key = 0x080;
+  nmt.key = 0x000;
   EXPECT_EQ(list.raise(sync, at(1)), 1u);
   EXPECT_EQ(list.raise(nmt, at(2)), 2u) << "both are of no node";
   EXPECT_EQ(list.raise(sync, at(3)), 1u);
 }
 
 TEST(AlarmList, takes_a_stronger_reaction_of_the_machine_file_and_no_weaker_one) {
-  AlarmList list;
+  AlarmList list(&tests::alarm_table());
   AlarmRecord strong = of(axis::alarm::kFollowingError, 0), weak = of(axis::alarm::kFollowingError, 1);
   strong.reaction = Reaction::power_off;
   weak.reaction = Reaction::warn;
@@ -61,7 +62,7 @@ TEST(AlarmList, takes_a_stronger_reaction_of_the_machine_file_and_no_weaker_one)
 }
 
 TEST(AlarmList, tells_a_failing_control_from_a_failing_machine) {
-  AlarmList list;
+  AlarmList list(&tests::alarm_table());
   list.raise(of(alarm::kEmergencyStop), at(1));
   list.raise(of(axis::alarm::kDriveFault, 0), at(1));
   EXPECT_FALSE(list.control_fails());
@@ -75,7 +76,7 @@ TEST(AlarmList, tells_a_failing_control_from_a_failing_machine) {
 }
 
 TEST(AlarmList, does_not_store_the_same_active_fault_twice) {
-  AlarmList list;
+  AlarmList list(&tests::alarm_table());
   const auto first = list.raise(of(axis::alarm::kFollowingError, 0), at(1));
   EXPECT_EQ(list.raise(of(axis::alarm::kFollowingError, 0), at(2)), first);
   EXPECT_NE(list.raise(of(axis::alarm::kFollowingError, 1), at(2)), first);
@@ -83,7 +84,7 @@ TEST(AlarmList, does_not_store_the_same_active_fault_twice) {
 }
 
 TEST(AlarmList, groups_what_follows_under_the_first_fault_until_the_machine_rests) {
-  AlarmList list;
+  AlarmList list(&tests::alarm_table());
   list.raise(of(alarm::kStarved), at(0));  // a warning before it is nobody's consequence
   const auto first = list.raise(of(axis::alarm::kDriveFault, 1), at(10));
   list.note_rest(false);
@@ -106,7 +107,7 @@ TEST(AlarmList, groups_what_follows_under_the_first_fault_until_the_machine_rest
 }
 
 TEST(AlarmList, keeps_after_a_reset_only_what_waits_for_its_cause) {
-  AlarmList list;
+  AlarmList list(&tests::alarm_table());
   list.raise(of(axis::alarm::kHardLimitPlus, 0), at(1));  // reset is enough
   list.raise(of(axis::alarm::kDriveFault, 0), at(2));     // the cause has to go
   int asked = 0;
@@ -124,7 +125,7 @@ TEST(AlarmList, keeps_after_a_reset_only_what_waits_for_its_cause) {
 }
 
 TEST(AlarmList, lets_only_warnings_go_by_themselves) {
-  AlarmList list;
+  AlarmList list(&tests::alarm_table());
   AlarmRecord starved = of(alarm::kStarved), warned = of(alarm::kProgramWarning);
   starved.process = 1;
   warned.process = 0;
@@ -144,7 +145,7 @@ TEST(AlarmList, lets_only_warnings_go_by_themselves) {
 }
 
 TEST(AlarmList, writes_what_the_plc_sees) {
-  AlarmList list;
+  AlarmList list(&tests::alarm_table());
   image::ProcessImage image;
   image.axis_count = 3;
   image.process_count = 2;
@@ -172,10 +173,10 @@ TEST(AlarmList, writes_what_the_plc_sees) {
 }
 
 TEST(AlarmList, stays_bounded_counts_what_it_drops_and_still_reacts_to_it) {
-  AlarmList list;
+  AlarmList list(&tests::alarm_table());
   for (int i = 0; i < AlarmList::kCapacity; ++i) {
     AlarmRecord r = of(alarm::kNodeLost);
-    r.node = static_cast<std::int16_t>(i);
+    r.part.part = static_cast<std::int16_t>(i);
     list.raise(r, at(i));
   }
   list.raise(of(alarm::kEmergencyStop), at(999));
@@ -184,7 +185,7 @@ TEST(AlarmList, stays_bounded_counts_what_it_drops_and_still_reacts_to_it) {
   list.snapshot(s);
   EXPECT_EQ(s.dropped, 1u);
   EXPECT_EQ(s.count, AlarmSnapshot::kCapacity);
-  EXPECT_EQ(s.records[0].node, 0);
+  EXPECT_EQ(s.records[0].part.part, 0);
   list.reset(kNothingPresent);
   EXPECT_EQ(list.reaction(), Reaction::none);
   list.raise(of(alarm::kEmergencyStop), at(1000));
@@ -195,13 +196,13 @@ TEST(AlarmList, stays_bounded_counts_what_it_drops_and_still_reacts_to_it) {
 TEST(AlarmList, holds_its_invariants_over_random_histories) {
   const auto seed = static_cast<unsigned>(servogate::test::property_seed());
   std::mt19937_64 random(seed);
-  const auto table = alarm_table();
+  const auto table = tests::alarm_table().rows();
   for (int run = 0; run < 200; ++run) {
-    AlarmList list;
+    AlarmList list(&tests::alarm_table());
     for (int i = 0; i < 500; ++i) {
       const auto dice = random() % 100;
       if (dice < 60)
-        list.raise(of(table[random() % table.size()].number, static_cast<int>(random() % 8) - 1), at(i));
+        list.raise(of(table[random() % table.size()]->number, static_cast<int>(random() % 8) - 1), at(i));
       else if (dice < 90)
         list.note_rest(dice < 80);
       else if (dice < 97)

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "kernel/cycle/executive.hpp"
+#include "tests/alarms.hpp"
 
 namespace servogate::cycle {
 namespace {
@@ -28,6 +29,7 @@ class RequestAge : public ::testing::Test {
  protected:
   RequestAge() {
     CycleParts parts;
+    parts.alarms = &tests::alarm_table();
     parts.axes = {axis::AxisConfig{}};
     parts.request_clock = &clock_;
     cycle_ = std::make_unique<Cycle>(std::move(parts));
@@ -65,23 +67,40 @@ struct Row {
   bool always;
 };
 constexpr Row kRows[] = {
-    {RequestKind::power, 1.0, false},          {RequestKind::power, 0.0, true},
-    {RequestKind::home, 0.0, false},           {RequestKind::jog_increment, 1.0, false},
-    {RequestKind::jog_continuous, 1.0, false}, {RequestKind::keep_alive, 0.0, false},
-    {RequestKind::jog_stop, 0.0, true},        {RequestKind::jog_stop, 1.0, true},
-    {RequestKind::zero, 0.0, false},           {RequestKind::mode, 1.0, false},
-    {RequestKind::start, 0.0, false},          {RequestKind::step, 0.0, false},
-    {RequestKind::hold, 0.0, true},            {RequestKind::resume, 0.0, false},
-    {RequestKind::stop, 0.0, true},            {RequestKind::reset, 0.0, true},
-    {RequestKind::override_feed, 1.0, false},  {RequestKind::override_feed, 0.0, true},
-    {RequestKind::quick_stop, 0.0, true},      {RequestKind::acknowledge, 0.0, false},
-    {RequestKind::set_place, 0.0, false},      {RequestKind::force, 0.0, false},
-    {RequestKind::release_force, 0.0, false},  {RequestKind::logic, 1.0, false},
-    {RequestKind::axis_power, 1.0, false},     {RequestKind::axis_power, 0.0, true},
-    {RequestKind::axis_home, 0.0, false},      {RequestKind::move_absolute, 0.0, false},
-    {RequestKind::move_relative, 0.0, false},  {RequestKind::move_velocity, 1.0, false},
-    {RequestKind::axis_stop, 0.0, true},       {RequestKind::axis_reset, 0.0, true},
-    {RequestKind::logic_scan, 0.0, false},     {RequestKind::torque, 0.0, false},
+    {RequestKind::power, 1.0, false},
+    {RequestKind::power, 0.0, true},
+    {RequestKind::home, 0.0, false},
+    {RequestKind::jog_increment, 1.0, false},
+    {RequestKind::jog_continuous, 1.0, false},
+    {RequestKind::keep_alive, 0.0, false},
+    {RequestKind::jog_stop, 0.0, true},
+    {RequestKind::jog_stop, 1.0, true},
+    {RequestKind::zero, 0.0, false},
+    {RequestKind::mode, 1.0, false},
+    {RequestKind::start, 0.0, false},
+    {RequestKind::step, 0.0, false},
+    {RequestKind::hold, 0.0, true},
+    {RequestKind::resume, 0.0, false},
+    {RequestKind::stop, 0.0, true},
+    {RequestKind::reset, 0.0, true},
+    {RequestKind::override_feed, 1.0, false},
+    {RequestKind::override_feed, 0.0, true},
+    {RequestKind::quick_stop, 0.0, true},
+    {RequestKind::acknowledge, 0.0, false},
+    {RequestKind::set_place, 0.0, false},
+    {RequestKind::force, 0.0, false},
+    {RequestKind::release_force, 0.0, false},
+    {RequestKind::logic, 1.0, false},
+    {RequestKind::axis_power, 1.0, false},
+    {RequestKind::axis_power, 0.0, true},
+    {RequestKind::axis_home, 0.0, false},
+    {RequestKind::move_absolute, 0.0, false},
+    {RequestKind::move_relative, 0.0, false},
+    {RequestKind::move_velocity, 1.0, false},
+    {RequestKind::axis_stop, 0.0, true},
+    {RequestKind::axis_reset, 0.0, true},
+    {RequestKind::logic_scan, 0.0, false},
+    {RequestKind::torque, 0.0, false},
 };
 
 TEST_F(RequestAge, is_no_reason_against_what_takes_away_and_one_against_all_that_begins) {

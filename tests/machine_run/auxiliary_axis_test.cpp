@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "kernel/axis/axis_alarms.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 
@@ -381,7 +381,7 @@ TEST(AuxiliaryAxis, stops_and_goes_off_when_the_logic_fails) {
   ASSERT_TRUE(desk.until([&] { return desk.alarms(cycle::alarm::kPlcFault) > 0; }, 0.1));
   for (const image::AlarmRecord& r : desk.control().cycle().alarms().history())
     if (r.number == cycle::alarm::kPlcFault) {
-      const std::string words = cycle::render(r, desk.control().alarm_names(), text::Language::english);
+      const std::string words = image::render(r, desk.control().alarm_names(), text::Language::english);
       EXPECT_NE(words.find(".st:"), std::string::npos) << words;
       EXPECT_NE(words.find("divided by zero"), std::string::npos) << words;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "firmware_if/image/alarms/drive_report.hpp"
 #include "firmware_if/image/interface_map.hpp"
 #include "gateway/machine/consequences.hpp"
 #include "gateway/run/words/ready_words.hpp"
@@ -259,7 +260,7 @@ TEST(Faults, of_one_drive_stops_the_healthy_axes_together_within_their_limits) {
   for (const image::AlarmRecord& r : history)
     if (r.number == axis::alarm::kDriveFault) {
       EXPECT_EQ(r.axis, 1);
-      EXPECT_EQ(r.error_code, 0x2310);
+      EXPECT_EQ(r.detail.get<image::DriveReport>().value_or(image::DriveReport{}).error_code, 0x2310);
       EXPECT_EQ(r.line, 2);
     }
   // X and Z on one line still: their ways keep the ratio of the programmed line.
@@ -273,8 +274,8 @@ TEST(Faults, of_drives_have_the_words_of_their_own_device_file_or_of_the_standar
     image::AlarmRecord r;
     r.number = number;
     r.axis = 0;
-    r.error_code = code;
-    return cycle::render(r, mill.control().alarm_names(), text::Language::english);
+    r.detail.put(image::DriveReport{0, code, 0, 0});
+    return image::render(r, mill.control().alarm_names(), text::Language::english);
   };
   const auto has = [](const std::string& text, const char* words) {
     return text.find(words) != std::string::npos;

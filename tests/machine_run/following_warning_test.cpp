@@ -25,7 +25,7 @@ TEST(FollowingWarning, the_warning_of_a_following_error_names_axis_error_and_lim
   EXPECT_EQ(mill.alarms(axis::alarm::kFollowingErrorHigh), 1) << mill.alarm_list();
   const image::AlarmRecord warning = mill.control().cycle().alarms().history().front();
   EXPECT_EQ(warning.reaction, image::Reaction::warn);
-  const std::string words = cycle::render(warning, mill.control().alarm_names(), text::Language::english);
+  const std::string words = image::render(warning, mill.control().alarm_names(), text::Language::english);
   EXPECT_TRUE(words.starts_with("X: following error ")) << words;
   EXPECT_NE(words.find(" mm, warning limit 0.001 mm, at "), std::string::npos) << words;
 }

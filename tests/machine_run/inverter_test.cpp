@@ -104,7 +104,7 @@ TEST(InverterMill, a_lost_station_stops_the_program_and_drops_its_own_outputs) {
   InverterMill mill(kBothWays);
   ASSERT_TRUE(mill.start()) << mill.alarm_list();
   ASSERT_TRUE(mill.until([&] { return mill.wire() == 6000; }, 30.0)) << mill.alarm_list();
-  mill.panel().inject({mock::StationFault::Kind::silence});
+  mill.panel().inject({.kind = fault::Kind::silent});
   ASSERT_TRUE(mill.until([&] { return mill.alarms(axis::alarm::kSpindleOutputLost) == 1; }, 1.0))
       << mill.alarm_list();
   EXPECT_EQ(mill.alarms(cycle::alarm::kSourceStale), 1);
@@ -123,7 +123,7 @@ TEST(InverterMill, refuses_an_oriented_stop_with_its_reason) {
   const auto history = mill.control().cycle().alarms().history();
   ASSERT_FALSE(history.empty());
   EXPECT_EQ(history.front().number, axis::alarm::kSpindleNoEncoder) << mill.alarm_list();
-  EXPECT_EQ(cycle::render(history.front(), mill.control().alarm_names(), text::Language::english),
+  EXPECT_EQ(image::render(history.front(), mill.control().alarm_names(), text::Language::english),
             "S: no oriented stop: the spindle has no encoder");
 }
 

@@ -129,7 +129,7 @@ TEST(Stations, several_units_share_a_line_and_one_that_is_lost_leaves_the_others
   mill.control().world().set_input("cabinet_warm", false);
   mill.run(0.2);
   EXPECT_FALSE(bit("cabinet_warm"));
-  line->station(0).inject({mock::StationFault::Kind::silence});
+  line->station(0).inject({.kind = fault::Kind::silent});
   mill.run(1.0);
   EXPECT_EQ(quality(1), image::Quality::bad);
   EXPECT_TRUE(bit("cabinet_warm")) << "its value of loss";

@@ -156,7 +156,7 @@ TEST(MockModbusLine, a_silent_station_turns_stale_then_bad_and_its_points_take_t
   loop.run(100 * kMillisecond);
   ASSERT_EQ(loop.source().quality, Quality::good);
   const Nanoseconds last = loop.source().updated_ns;
-  line.station(0).inject({StationFault::Kind::silence});
+  line.station(0).inject({.kind = fault::Kind::silent});
   loop.run(80 * kMillisecond);
   EXPECT_EQ(loop.source().quality, Quality::stale);
   EXPECT_TRUE(loop.bit("SA0"));
@@ -176,7 +176,7 @@ TEST(MockModbusLine, an_exception_is_counted_and_kept_by_its_code) {
   MockModbusLine line({}, example_map(), {StationSettings{}});
   Loop loop(line);
   loop.run(50 * kMillisecond);
-  line.station(0).inject({StationFault::Kind::exception, modbus::Exception::server_device_busy});
+  line.station(0).inject({.kind = fault::Kind::exception, .exception = 6});
   loop.run(300 * kMillisecond);
   EXPECT_EQ(line.last_exception(0), modbus::Exception::server_device_busy);
   EXPECT_GT(line.errors(0), 5u);
@@ -199,13 +199,13 @@ TEST(MockModbusLine, a_slow_answer_within_patience_arrives_and_one_beyond_it_is_
   MockModbusLine line(settings, example_map(), {StationSettings{}});
   Loop loop(line);
   line.station(0).set_input(2, true);
-  line.station(0).inject({StationFault::Kind::slow, {}, 40 * kMillisecond});
+  line.station(0).inject({.kind = fault::Kind::slow, .delay_ns = 40 * kMillisecond});
   loop.run(40 * kMillisecond);
   EXPECT_FALSE(loop.bit("SA2"));
   loop.run(200 * kMillisecond);
   EXPECT_TRUE(loop.bit("SA2"));
   EXPECT_EQ(line.errors(0), 0u);
-  line.station(0).inject({StationFault::Kind::slow, {}, 60 * kMillisecond});
+  line.station(0).inject({.kind = fault::Kind::slow, .delay_ns = 60 * kMillisecond});
   line.station(0).set_input(2, false);
   loop.run(300 * kMillisecond);
   EXPECT_TRUE(loop.bit("SA2"));
@@ -216,7 +216,7 @@ TEST(MockModbusLine, a_garbled_answer_is_repeated_before_it_counts_as_lost) {
   MockModbusLine line({}, example_map(), {StationSettings{}});
   Loop loop(line);
   loop.run(40 * kMillisecond);
-  line.station(0).inject({StationFault::Kind::garbled});
+  line.station(0).inject({.kind = fault::Kind::corrupt});
   loop.run(4 * kMillisecond);
   line.station(0).inject({});
   loop.run(100 * kMillisecond);
@@ -243,7 +243,7 @@ TEST(MockModbusLine, a_dead_station_does_not_slow_its_neighbour) {
   StationSettings one;
   one.answer_delay_ns = two.answer_delay_ns = 200'000;
   MockModbusLine line(settings, map, {one, two}, {4, 5});
-  line.station(0).inject({StationFault::Kind::silence});
+  line.station(0).inject({.kind = fault::Kind::silent});
   Loop loop(line);
   int good = 0;
   loop.run(200 * kMillisecond);

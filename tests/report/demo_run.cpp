@@ -178,7 +178,7 @@ Report demo_report(const DemoRun& demo, int alarms) {
     a.record.block = 80;
     a.record.limit = 2.0;
     a.record.value = 2.013;
-    a.record.node = 1;
+    a.record.part = {0, 1};
     a.axis = "X";
     a.id = n == 0 ? "following_error" : "drive_fault";
     a.text = n == 0 ? text::both("Axis X follows its set-point with too large an error",

@@ -20,7 +20,7 @@ bool CanSegment::Endpoint::send(const CanFrame& frame) noexcept {
   segment_.waiting_ |= bit();
   p.not_before = segment_.now_;
   if (!segment_.faults_.empty())
-    if (const CanFault* fault = segment_.fault_for(frame, number_, true)) p.not_before += fault->delay_ns;
+    if (const fault::Fault* fault = segment_.fault_for(frame, number_, true)) p.not_before += fault->delay_ns;
   return true;
 }
 

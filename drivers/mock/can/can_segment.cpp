@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/mock/can/can_segment.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <iterator>
 #include <stdexcept>
 
 #include "drivers/mock/can/can_endpoint.hpp"
@@ -133,10 +135,11 @@ void CanSegment::start_frame() noexcept {
   attempt_.key = best->key;
   attempt_.bits = best->frame.wire_bits;
   attempt_.drop = attempt_.duplicate = false;
-  if (const CanFault* fault = faults_.empty() ? nullptr : fault_for(attempt_.frame, attempt_.sender, false)) {
-    attempt_.error |= fault->kind == CanFault::Kind::corrupt;
-    attempt_.drop = fault->kind == CanFault::Kind::drop;
-    attempt_.duplicate = fault->kind == CanFault::Kind::duplicate;
+  if (const fault::Fault* fault =
+          faults_.empty() ? nullptr : fault_for(attempt_.frame, attempt_.sender, false)) {
+    attempt_.error |= fault->kind == fault::Kind::corrupt;
+    attempt_.drop = fault->kind == fault::Kind::drop;
+    attempt_.duplicate = fault->kind == fault::Kind::repeat;
   }
   attempt_.unacknowledged = !attempt_.error && !acknowledged(attempt_.senders);
   if (attempt_.error) attempt_.bits = attempt_.bits * 3 / 4 + kErrorFrameBits;
@@ -220,11 +223,11 @@ bool CanSegment::acknowledged(std::uint64_t senders) const noexcept {
   return false;
 }
 
-const CanFault* CanSegment::fault_for(const CanFrame& frame, int sender, bool queued) noexcept {
+const fault::Fault* CanSegment::fault_for(const CanFrame& frame, int sender, bool queued) noexcept {
   for (ActiveFault& a : faults_) {
-    const CanFault& f = a.fault;
-    if ((f.kind == CanFault::Kind::delay) != queued) continue;
-    if ((frame.id & f.mask) != (f.match & f.mask) || (f.sender >= 0 && f.sender != sender)) continue;
+    const fault::Fault& f = a.fault;
+    if ((f.kind == fault::Kind::delay) != queued) continue;
+    if ((frame.id & f.mask) != (f.id & f.mask) || (f.sender >= 0 && f.sender != sender)) continue;
     if (a.passed < f.skip) {
       ++a.passed;
     } else if (f.count == 0 || a.hit < f.count) {
@@ -235,7 +238,10 @@ const CanFault* CanSegment::fault_for(const CanFrame& frame, int sender, bool qu
   return nullptr;
 }
 
-bool CanSegment::inject(const CanFault& fault) noexcept {
+bool CanSegment::inject(const fault::Fault& fault) noexcept {
+  constexpr fault::Kind kOfWire[] = {fault::Kind::drop, fault::Kind::delay, fault::Kind::corrupt,
+                                     fault::Kind::repeat};
+  if (std::find(std::begin(kOfWire), std::end(kOfWire), fault.kind) == std::end(kOfWire)) return false;
   if (faults_.size() == kMaxFaults) {
     const auto used_up = [](const ActiveFault& a) { return a.fault.count > 0 && a.hit >= a.fault.count; };
     std::erase_if(faults_, used_up);
@@ -246,7 +252,7 @@ bool CanSegment::inject(const CanFault& fault) noexcept {
 }
 
 void CanSegment::clear_faults() noexcept { faults_.clear(); }
-void CanSegment::clear(const CanFault& fault) noexcept {
+void CanSegment::clear(const fault::Fault& fault) noexcept {
   const auto same = std::find_if(faults_.begin(), faults_.end(),
                                  [&](const ActiveFault& active) { return active.fault == fault; });
   if (same != faults_.end()) faults_.erase(same);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware_if/fault/fault.hpp"
 #include "firmware_if/image/frames/can_wire.hpp"
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/image/simulated.hpp"
@@ -50,23 +51,6 @@ struct CanSegmentConfig {
   bool priority_mailboxes = true;
   /// A bus-off endpoint returns by itself after 128 times 11 recessive bits; false: only by restart().
   bool automatic_restart = false;
-};
-
-/// What somebody spoils on the wire. Frames match when (id & mask) == (match & mask) and the sender fits.
-struct CanFault {
-  enum class Kind : std::uint8_t {
-    drop,       ///< the frame occupies the bus, and nobody receives it
-    delay,      ///< it is offered for arbitration `delay_ns` later
-    corrupt,    ///< a bit error at three quarters of the frame: error frame, error counters, retransmission
-    duplicate,  ///< it is received twice
-  } kind = Kind::drop;
-  std::uint32_t match = 0;
-  std::uint32_t mask = 0;    ///< 0: every frame
-  int sender = -1;           ///< endpoint number, -1: any
-  std::uint32_t skip = 0;    ///< let so many matching frames pass first
-  std::uint32_t count = 1;   ///< then hit so many; 0: all from then on
-  Nanoseconds delay_ns = 0;  ///< of Kind::delay
-  bool operator==(const CanFault&) const = default;
 };
 
 /// Sees everything that happens on the wire, for records and tests. Called from advance_to().
@@ -125,11 +109,14 @@ class CanSegment final : public image::Simulated {
   /// start).
   double load() const noexcept;
 
-  /// Puts a fault on the wire; at most 16 at a time. False: no place. Faults work in the order of injection.
-  bool inject(const CanFault& fault) noexcept;
+  /// Puts a fault on the wire: drop (the frame occupies the bus, and nobody receives it), delay (it is
+  /// offered for arbitration later), corrupt (a bit error at three quarters of the frame: error frame, error
+  /// counters, retransmission), repeat (it is received twice). Faults work in the order of injection, at most
+  /// 16 at a time. False: no place, or no fault of a wire.
+  bool inject(const fault::Fault& fault) noexcept;
   void clear_faults() noexcept;
-  /// Takes away the oldest fault that was injected like this.
-  void clear(const CanFault& fault) noexcept;
+  /// Takes away the oldest fault that is equal to this one.
+  void clear(const fault::Fault& fault) noexcept;
   /// Takes an endpoint off the bus as 256 transmit errors do; its pending frames are lost.
   void force_bus_off(int endpoint) noexcept;
   /// Lets a bus-off endpoint return after 128 times 11 recessive bits.
@@ -142,7 +129,7 @@ class CanSegment final : public image::Simulated {
  private:
   class Endpoint;
   struct ActiveFault {
-    CanFault fault;
+    fault::Fault fault;
     std::uint32_t passed = 0;
     std::uint32_t hit = 0;
   };
@@ -173,7 +160,7 @@ class CanSegment final : public image::Simulated {
   void account(std::uint32_t bits) noexcept;
   bool acknowledged(std::uint64_t senders) const noexcept;
   /// Next fault for a frame: the delaying kind when it is queued, the others when it is on the wire.
-  const CanFault* fault_for(const CanFrame& frame, int sender, bool queued) noexcept;
+  const fault::Fault* fault_for(const CanFrame& frame, int sender, bool queued) noexcept;
 
   CanSegmentConfig config_;
   std::uint64_t bit_ns_;  ///< length of a bit where that is a whole number, otherwise 0

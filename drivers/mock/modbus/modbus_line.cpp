@@ -103,8 +103,8 @@ void MockModbusLine::serve() {
   now_.end_ns = !answered                         ? patience
                 : delay > line_.answer_timeout_ns ? std::max(patience, complete)
                                                   : complete;
-  now_.answered =
-      answered && delay <= line_.answer_timeout_ns && station.fault().kind != StationFault::Kind::garbled;
+  now_.answered = answered && delay <= line_.answer_timeout_ns &&
+                  !(station.fault() && station.fault()->kind == fault::Kind::corrupt);
   now_.served = true;
 }
 

@@ -26,27 +26,35 @@ void ModbusStation::add_loopback(const Loopback& wire) {
   advance_to(now_ns_);
 }
 
-void ModbusStation::inject(const StationFault& fault) {
-  using enum StationFault::Kind;
-  if (fault.kind == dead && fault_.kind != dead) lose_supply();
+bool ModbusStation::inject(const fault::Fault& fault) {
+  if (!fault::row(fault.kind).happens_to(fault::Device::station)) return false;
+  change_fault(fault);
+  return true;
+}
+
+void ModbusStation::clear_fault() { change_fault(std::nullopt); }
+
+void ModbusStation::change_fault(const std::optional<fault::Fault>& fault) {
+  const bool dead = has(fault::Kind::kill), dies = fault && fault->kind == fault::Kind::kill;
+  if (dies && !dead) lose_supply();
   // Its watchdog begins to run with its supply.
-  if (fault.kind != dead && fault_.kind == dead) last_request_ns_ = now_ns_;
+  if (!dies && dead) last_request_ns_ = now_ns_;
   fault_ = fault;
 }
 
 image::Nanoseconds ModbusStation::answer_delay_ns() const noexcept {
-  return settings_.answer_delay_ns + (fault_.kind == StationFault::Kind::slow ? fault_.extra_ns : 0);
+  return settings_.answer_delay_ns + (has(fault::Kind::slow) ? fault_->delay_ns : 0);
 }
 
 bool ModbusStation::serve(image::Nanoseconds t, const modbus::Pdu& request, modbus::Pdu& answer) {
   advance_to(t);
-  if (fault_.kind == StationFault::Kind::silence || fault_.kind == StationFault::Kind::dead) return false;
+  if (has(fault::Kind::silent) || has(fault::Kind::kill)) return false;
   ++served_;
   last_request_ns_ = t;
   modbus::Request asked;
   modbus::Response response;
-  response.exception =
-      fault_.kind == StationFault::Kind::exception ? fault_.exception : decode_request(request.view(), asked);
+  response.exception = has(fault::Kind::exception) ? static_cast<Exception>(fault_->exception)
+                                                   : decode_request(request.view(), asked);
   if (response.exception == Exception::none)
     response = answer_to(asked);
   else
@@ -136,7 +144,7 @@ void ModbusStation::drive(Wire& wire, bool out, image::Nanoseconds t) {
 
 void ModbusStation::advance_to(image::Nanoseconds t) {
   now_ns_ = std::max(now_ns_, t);
-  if (settings_.watchdog_ns > 0 && fault_.kind != StationFault::Kind::dead &&
+  if (settings_.watchdog_ns > 0 && !has(fault::Kind::kill) &&
       now_ns_ - last_request_ns_ > settings_.watchdog_ns)
     lose_outputs();
   for (Wire& wire : wires_) {

@@ -2,8 +2,10 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "firmware_if/fault/fault.hpp"
 #include "firmware_if/image/time.hpp"
 #include "firmware_if/modbus/pdu.hpp"
 
@@ -43,20 +45,6 @@ struct Loopback {
   bool inverted = false;
 };
 
-/// What a station does wrong.
-struct StationFault {
-  enum class Kind : std::uint8_t {
-    none,
-    silence,    ///< no answer
-    exception,  ///< answers every request with `exception`
-    slow,       ///< answers `extra_ns` later
-    garbled,    ///< the answer's checksum is wrong
-    dead,       ///< without supply: no answer, its outputs are off and stay off until somebody writes them
-  } kind = Kind::none;
-  modbus::Exception exception = modbus::Exception::server_device_failure;
-  image::Nanoseconds extra_ns = 0;
-};
-
 /// A Modbus I/O station in process: a server on bytes, with wires, a watchdog and faults. Requests have
 /// addresses; everything else here counts channels from 0. Times are simulated.
 class ModbusStation {
@@ -65,8 +53,13 @@ class ModbusStation {
 
   const StationSettings& settings() const noexcept { return settings_; }
   void add_loopback(const Loopback& wire);
-  void inject(const StationFault& fault);
-  const StationFault& fault() const noexcept { return fault_; }
+  /// Its one fault from now on: silent (no answer), exception (answers every request with it), slow (answers
+  /// `delay_ns` later), corrupt (the answer's checksum is wrong), kill (without supply: no answer, its
+  /// outputs are off and stay off until somebody writes them). False, and nothing changed: no fault of a
+  /// station.
+  bool inject(const fault::Fault& fault);
+  void clear_fault();
+  const std::optional<fault::Fault>& fault() const noexcept { return fault_; }
 
   /// Serves one request that was complete at time t. False: no answer will come.
   bool serve(image::Nanoseconds t, const modbus::Pdu& request, modbus::Pdu& answer);
@@ -111,7 +104,10 @@ class ModbusStation {
   std::vector<bool> inputs_, held_, coils_;
   std::vector<std::uint16_t> analog_in_, holding_;
   std::vector<Wire> wires_;
-  StationFault fault_;
+  bool has(fault::Kind kind) const noexcept { return fault_ && fault_->kind == kind; }
+  void change_fault(const std::optional<fault::Fault>& fault);
+
+  std::optional<fault::Fault> fault_;
   image::Nanoseconds now_ns_ = 0;
   image::Nanoseconds last_request_ns_ = 0;
   std::uint64_t served_ = 0;

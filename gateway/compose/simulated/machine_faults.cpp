@@ -24,23 +24,6 @@ std::string said(const text::Entry& entry, const std::vector<std::string>& argum
                     text::render(entry, arguments, text::Language::russian));
 }
 
-mock::CanFault::Kind on_wire(Kind kind) {
-  return kind == Kind::drop      ? mock::CanFault::Kind::drop
-         : kind == Kind::delay   ? mock::CanFault::Kind::delay
-         : kind == Kind::corrupt ? mock::CanFault::Kind::corrupt
-                                 : mock::CanFault::Kind::duplicate;
-}
-
-mock::StationFault of_station(const fault::Fault& f) {
-  using Of = mock::StationFault::Kind;
-  const Of kind = f.kind == Kind::silent    ? Of::silence
-                  : f.kind == Kind::slow    ? Of::slow
-                  : f.kind == Kind::corrupt ? Of::garbled
-                  : f.kind == Kind::kill    ? Of::dead
-                                            : Of::exception;
-  return {kind, static_cast<modbus::Exception>(f.exception), f.delay_ns};
-}
-
 /// False: the fault is neither.
 template <class Node>
 bool supply_or_swap(Node& node, const fault::Fault& f, bool begins) {
@@ -189,10 +172,13 @@ void MachineFaults::end(const Active& active) {
 
 /// A Modbus station has one fault at a time: the newest that lasts still, but a dead one has no other.
 void MachineFaults::settle(mock::ModbusStation& station) const {
-  mock::StationFault now;
+  std::optional<fault::Fault> now;
   for (const Active& a : active_)
-    if (a.target.station == &station && now.kind != mock::StationFault::Kind::dead) now = of_station(a.fault);
-  station.inject(now);
+    if (a.target.station == &station && !(now && now->kind == Kind::kill)) now = a.fault;
+  if (!now)
+    station.clear_fault();
+  else
+    station.inject(*now);
 }
 
 void MachineFaults::end_all(const Target& target, std::optional<Kind> kind) {
@@ -228,11 +214,10 @@ void MachineFaults::apply_to_wire(const Target& target, const fault::Fault& f, b
   if (f.kind == Kind::unplug) return wire.set_connected(target.endpoint, !begins);
   if (f.kind == Kind::bus_off)
     return begins ? wire.force_bus_off(target.endpoint) : wire.restart(target.endpoint);
-  const mock::CanFault fault{on_wire(f.kind), f.id, f.mask, f.sender, f.skip, f.count, f.delay_ns};
   if (begins)
-    wire.inject(fault);
+    wire.inject(f);
   else
-    wire.clear(fault);
+    wire.clear(f);
 }
 
 }  // namespace servogate::gateway

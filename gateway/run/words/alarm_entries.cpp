@@ -12,13 +12,14 @@ bool is_of_program(image::AlarmNumber number) {
 }
 
 report::AlarmEntry entry_of(Control& control, const image::AlarmRecord& record,
-                            const cycle::AlarmNames& names, text::Language language) {
+                            const image::AlarmNames& names, text::Language language) {
   report::AlarmEntry entry;
   entry.record = record;
-  if (const cycle::AlarmRow* row = cycle::find_alarm(record.number); row != nullptr)
+  if (const image::AlarmRow* row = names.table->find(record.number); row != nullptr)
     entry.id = std::string(row->text.id);
-  entry.text = cycle::render(record, names, language);
-  entry.remedy = cycle::render_remedy(record, names, language);
+  entry.text = image::render(record, names, language);
+  entry.remedy = image::render_remedy(record, names, language);
+  entry.facts = image::facts_of(record, names);
   if (record.axis >= 0) entry.axis = control.machine().axes[static_cast<std::size_t>(record.axis)].letter;
   if (is_of_program(record.number) && record.process >= 0)
     entry.finding = control.process(record.process).texts().finding(static_cast<int>(record.value));
@@ -29,7 +30,7 @@ report::AlarmEntry entry_of(Control& control, const image::AlarmRecord& record,
 
 std::vector<report::AlarmEntry> alarm_entries(Control& control, std::span<const image::AlarmRecord> records,
                                               text::Language language) {
-  const cycle::AlarmNames names = control.alarm_names();
+  const image::AlarmNames names = control.alarm_names();
   std::vector<report::AlarmEntry> entries;
   std::vector<bool> taken(records.size(), false);
   const auto take = [&](std::size_t n, bool consequence) {

@@ -138,12 +138,12 @@ class Look {
     if (!letters.empty()) add("drive", say(kOffline, letters), say(kSupply), letters);
   }
   void alarms() {
-    const cycle::AlarmNames names = control_.alarm_names();
+    const image::AlarmNames names = control_.alarm_names();
     for (int i = 0; i < alarms_.count; ++i) {
       const image::AlarmRecord& r = alarms_.records[static_cast<std::size_t>(i)];
       if (r.reaction < image::Reaction::stop_on_path || r.sequence != r.first_fault) continue;
-      add("alarm", say(kAlarm, std::to_string(r.number), cycle::render(r, names, language_)),
-          cycle::render_remedy(r, names, language_));
+      add("alarm", say(kAlarm, std::to_string(r.number), image::render(r, names, language_)),
+          image::render_remedy(r, names, language_));
     }
   }
   void not_enabled() {

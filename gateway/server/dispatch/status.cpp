@@ -20,7 +20,7 @@ std::vector<AlarmRow> alarm_rows(Resident& resident, text::Language language) {
   const std::span records(alarms.records.data(), static_cast<std::size_t>(alarms.count));
   std::vector<AlarmRow> rows;
   for (report::AlarmEntry& entry : alarm_entries(resident.control(), records, language)) {
-    std::string reaction(cycle::words(entry.record.reaction, language));
+    std::string reaction(image::words(entry.record.reaction, language));
     rows.push_back({std::move(entry), std::move(reaction)});
   }
   return rows;
@@ -130,12 +130,12 @@ std::vector<MissingCondition> missing_now(Resident& resident, text::Language lan
 }
 
 std::string alarms_in_words(Resident& resident, text::Language language) {
-  const cycle::AlarmNames names = resident.control().alarm_names();
+  const image::AlarmNames names = resident.control().alarm_names();
   const cycle::AlarmSnapshot& alarms = resident.alarms();
   std::string words;
   for (int i = 0; i < alarms.count; ++i) {
     const image::AlarmRecord& r = alarms.records[static_cast<std::size_t>(i)];
-    words += (words.empty() ? "" : "; ") + std::to_string(r.number) + " " + cycle::render(r, names, language);
+    words += (words.empty() ? "" : "; ") + std::to_string(r.number) + " " + image::render(r, names, language);
   }
   return words;
 }

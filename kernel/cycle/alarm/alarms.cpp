@@ -20,15 +20,8 @@ constexpr int kRestCycles = 250;
 bool is_fault(const AlarmRecord& r) noexcept { return r.reaction >= Reaction::stop_at_block_end; }
 
 bool same(const AlarmRecord& a, const AlarmRecord& b) noexcept {
-  return a.number == b.number && a.axis == b.axis && a.node == b.node && a.segment == b.segment &&
-         a.source == b.source && a.process == b.process && a.object_index == b.object_index &&
-         a.object_subindex == b.object_subindex &&
-         (a.number != alarm::kExternalAlarm || a.value == b.value) &&
-         // One error may be the cause of the next.
-         (a.number != alarm::kEmergencyMessage || a.error_code == b.error_code) &&
-         // A SYNC, a command of the NMT master and a controlword of somebody else are different troubles.
-         ((a.number != alarm::kForeignFrame && a.number != alarm::kForeignRequest) || a.value == b.value) &&
-         (a.number != alarm::kProgramWarning || (a.line == b.line && a.limit == b.limit));
+  return a.number == b.number && a.axis == b.axis && a.part == b.part && a.source == b.source &&
+         a.process == b.process && a.key == b.key;
 }
 
 }  // namespace
@@ -47,7 +40,7 @@ std::uint32_t AlarmList::raise(const AlarmRecord& record, const image::CycleTime
     const AlarmRecord& r = records_[static_cast<std::size_t>(i)];
     if (r.active && same(r, record)) return r.sequence;
   }
-  const AlarmRow* row = find_alarm(record.number);
+  const image::AlarmRow* row = row_of(record.number);
   AlarmRecord made = record;
   made.reaction = std::max(record.reaction, row != nullptr ? row->reaction : Reaction::stop_axes);
   made.active = true;
@@ -72,16 +65,16 @@ void AlarmList::run_begins(int process) noexcept {
   for (int i = 0; i < stored_; ++i) {
     AlarmRecord& r = records_[static_cast<std::size_t>(i)];
     if (!r.active || r.process != process) continue;
-    const AlarmRow* row = find_alarm(r.number);
-    if (row != nullptr && row->reset == ResetCondition::by_itself) r.active = false;
+    const image::AlarmRow* row = row_of(r.number);
+    if (row != nullptr && row->reset == image::ResetCondition::by_itself) r.active = false;
   }
   recount();
 }
 
 void AlarmList::cause_gone(image::AlarmNumber number, int axis) noexcept {
   if (active_ == 0 || !active(number, axis)) return;
-  const AlarmRow* row = find_alarm(number);
-  if (row == nullptr || row->reset != ResetCondition::by_itself) return;
+  const image::AlarmRow* row = row_of(number);
+  if (row == nullptr || row->reset != image::ResetCondition::by_itself) return;
   for (int i = 0; i < stored_; ++i) {
     AlarmRecord& r = records_[static_cast<std::size_t>(i)];
     if (r.number == number && r.axis == axis) r.active = false;
@@ -94,9 +87,9 @@ void AlarmList::note_rest(bool at_rest) noexcept {
   if (rest_cycles_ >= kRestCycles) group_ = 0;
 }
 
-bool AlarmList::waits_for_cause(const AlarmRecord& r) noexcept {
-  const AlarmRow* row = find_alarm(r.number);
-  return row != nullptr && row->reset == ResetCondition::cause_gone;
+bool AlarmList::waits_for_cause(const AlarmRecord& r) const noexcept {
+  const image::AlarmRow* row = row_of(r.number);
+  return row != nullptr && row->reset == image::ResetCondition::cause_gone;
 }
 
 int AlarmList::after_reset() noexcept {
@@ -104,11 +97,6 @@ int AlarmList::after_reset() noexcept {
   recount();
   if (active_ == 0) group_ = 0;
   return active_;
-}
-
-/// No cycles in time, or no logic that looks after the machine.
-static bool fails_control(image::AlarmNumber number) noexcept {
-  return number == alarm::kOverrunLimit || (number >= alarm::kPlcBudget && number <= alarm::kPlcWatchdog);
 }
 
 void AlarmList::recount() noexcept {
@@ -119,7 +107,8 @@ void AlarmList::recount() noexcept {
     const AlarmRecord& r = records_[static_cast<std::size_t>(i)];
     if (!r.active) continue;
     ++active_;
-    control_fails_ = control_fails_ || fails_control(r.number);
+    control_fails_ =
+        control_fails_ || (table_ != nullptr && table_->mark(r.number) == image::AlarmMark::fails_control);
     reaction_ = std::max(reaction_, r.reaction);
   }
 }

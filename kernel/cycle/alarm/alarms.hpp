@@ -2,17 +2,18 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <functional>
-#include <string>
 #include <type_traits>
 #include <vector>
 
 #include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/alarm_numbers.hpp"
+#include "firmware_if/image/alarms/alarm_table.hpp"
 #include "firmware_if/image/process_image.hpp"
-#include "firmware_if/text/finding.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/axis/axis_alarms.hpp"
 
 namespace servogate::cycle {
+
+namespace alarm = image::alarm;
 
 /// Alarms as a reader outside the cycle sees them, oldest first. Trivially copyable.
 struct AlarmSnapshot {
@@ -31,9 +32,13 @@ class AlarmList {
  public:
   static constexpr int kCapacity = 256;
 
+  /// `table`: its rows say what an alarm does; outlives the list. nullptr: every alarm stops the axes and
+  /// goes with the operator's reset.
+  explicit AlarmList(const image::AlarmTable* table = nullptr) : table_(table) {}
+
   /// Stores a fault. From `record` are taken: number, axis, node and all that describes the place and the
   /// figures; reaction where it is stronger than the table's. Sequence, first fault, cycle and time are set
-  /// here. The same fault (number, axis, node, segment, source, process, object) while active is not stored
+  /// here. The same fault (number, axis, part, source, process, key) while active is not stored
   /// twice. Returns the sequence. real-time safe.
   std::uint32_t raise(const image::AlarmRecord& record, const image::CycleTime& now) noexcept;
   /// A process begins a run: the warnings of the run before it that go by themselves
@@ -61,8 +66,8 @@ class AlarmList {
   /// The strongest reaction in force. real-time safe.
   image::Reaction reaction() const noexcept { return reaction_; }
   int active_count() const noexcept { return active_; }
-  /// An active alarm says that the control itself fails its task: late cycles (6002), logic that stopped,
-  /// is held or takes too long (5002 to 5005). real-time safe.
+  /// An active alarm says that the control itself fails its task: late cycles, logic that stopped, is
+  /// held or takes too long (AlarmMark::fails_control). real-time safe.
   bool control_fails() const noexcept { return control_fails_; }
   /// The oldest active first fault, nullptr: none. Warnings only when there is no fault. real-time safe.
   const image::AlarmRecord* first() const noexcept;
@@ -77,11 +82,15 @@ class AlarmList {
   std::vector<image::AlarmRecord> history() const;
 
  private:
-  static bool waits_for_cause(const image::AlarmRecord& r) noexcept;
+  const image::AlarmRow* row_of(image::AlarmNumber number) const noexcept {
+    return table_ != nullptr ? table_->find(number) : nullptr;
+  }
+  bool waits_for_cause(const image::AlarmRecord& r) const noexcept;
   int after_reset() noexcept;
   void recount() noexcept;
   int place_for_new() noexcept;
 
+  const image::AlarmTable* table_;
   std::array<image::AlarmRecord, kCapacity> records_{};
   int stored_ = 0;
   int active_ = 0;
@@ -94,43 +103,5 @@ class AlarmList {
   image::Reaction reaction_ = image::Reaction::none;
 };
 static_assert(std::is_trivially_copyable_v<AlarmSnapshot>);
-
-/// The record is of a spindle: its `axis` counts spindles.
-constexpr bool of_spindle(const image::AlarmRecord& r) noexcept {
-  return r.number >= 1200 && r.number < 1300;
-}
-
-/// Names that a record holds only as numbers.
-struct AlarmNames {
-  std::vector<std::string> axes;
-  std::vector<std::string> units;  ///< of each axis; missing: mm
-  std::vector<bool> diameters;     ///< axes whose positions people see as diameters; missing: none
-  std::vector<std::string> segments;
-  std::vector<std::string> sources;
-  /// Words of the error code of the drive or node that the record names; empty result: only the number is
-  /// shown.
-  std::function<std::string(const image::AlarmRecord&, std::uint16_t code, text::Language)> error_text;
-  /// A node as the machine file calls it, "can.y"; may be empty.
-  std::function<std::string(int segment, int node)> node_name;
-  /// What AlarmRecord::detail says: why a start-up failed, which frame somebody else sent; may be empty.
-  std::function<std::string(const image::AlarmRecord&, text::Language)> detail;
-  /// Path of a file of a run as people open it (ProcessStatus::run, ::file); may be empty.
-  std::function<std::string(int process, std::uint32_t run, int file)> program_file;
-  /// What a program's interpreter found (program errors and warnings; its number in `value`) with file, line
-  /// and column; may be empty.
-  std::function<std::string(int process, int number, text::Language)> program_finding;
-  /// What stopped the PLC program, from a record of kPlcBudget or kPlcFault; may be empty.
-  std::function<std::string(const image::AlarmRecord&, text::Language)> plc_fault;
-  /// Text of an alarm that the PLC raises (number in `value`); may be empty.
-  std::function<std::string(int number, text::Language)> external_text;
-};
-
-/// Sentence of a record, e.g. `X: following error 1.24 mm, allowed 1 mm, at 103.2 mm/s and 71 % torque`.
-/// Not real-time safe.
-std::string render(const image::AlarmRecord& record, const AlarmNames& names, text::Language language);
-/// What to do about it. Not real-time safe.
-std::string render_remedy(const image::AlarmRecord& record, const AlarmNames& names, text::Language language);
-/// A CiA 402 status word in words, e.g. `0x0218 fault, warning`. Not real-time safe.
-std::string statusword_text(std::uint16_t statusword, text::Language language);
 
 }  // namespace servogate::cycle

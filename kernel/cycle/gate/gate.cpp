@@ -7,7 +7,7 @@
 #include <initializer_list>
 
 #include "firmware_if/image/interface_map.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "kernel/cycle/gate/guarded_places.hpp"
 #include "kernel/cycle/interface_places.hpp"
 

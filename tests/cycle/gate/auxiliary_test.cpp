@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/cycle/gate/rig.hpp"
 
 namespace servogate::cycle {

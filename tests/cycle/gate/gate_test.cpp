@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/cycle/gate/rig.hpp"
 #include "tests/property_seed.hpp"
 

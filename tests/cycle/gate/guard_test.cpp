@@ -11,6 +11,7 @@
 
 #include "kernel/cycle/executive.hpp"
 #include "kernel/cycle/gate/guarded_places.hpp"
+#include "tests/alarms.hpp"
 #include "tests/cycle/gate/rig.hpp"
 
 namespace servogate::cycle {
@@ -194,11 +195,12 @@ TEST_F(Guards, that_are_refused_name_what_moves_and_the_command_that_stops_it) {
 TEST(GuardTable, marks_what_permits_motion_what_stops_it_and_what_says_that_something_moves) {
   const std::vector<Row> rows = interface();
   for (const char* name :
-       {"NC.feed_enable", "NC.stop", "NC.reset", "NC.read_in_enable", "NC.external_alarm", "NC.m_ack",
-        "NC.running", "NC2.feed_enable", "NC2.stop", "X.enable", "X.feed_enable", "X.limit_plus",
-        "X.limit_minus", "X.home_switch", "X.homed", "X.moving", "X.brake_release", "Y.enable", "Y.mc_power",
-        "Y.mc_powered", "S.enable", "S.zero_speed", "S.run", "S2.enable", "MC.estop_ok", "MC.power_on",
-        "MC.ready", "MC.control_alive"}) {
+       {"NC.feed_enable", "NC.stop",         "NC.reset",        "NC.read_in_enable", "NC.external_alarm",
+        "NC.m_ack",       "NC.running",      "NC2.feed_enable", "NC2.stop",          "X.enable",
+        "X.feed_enable",  "X.limit_plus",    "X.limit_minus",   "X.home_switch",     "X.homed",
+        "X.moving",       "X.brake_release", "Y.enable",        "Y.mc_power",        "Y.mc_powered",
+        "S.enable",       "S.zero_speed",    "S.run",           "S2.enable",         "MC.estop_ok",
+        "MC.power_on",    "MC.ready",        "MC.control_alive"}) {
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == name; });
     ASSERT_NE(row, rows.end()) << name;
     EXPECT_TRUE(row->guards) << name;
@@ -217,6 +219,7 @@ class IdleProcess final : public ProcessInCycle {
 TEST(GuardWarning, lasts_as_long_as_any_guard_is_forced_whatever_is_reset) {
   IdleProcess processes[kProcesses];
   CycleParts parts;
+  parts.alarms = &tests::alarm_table();
   for (IdleProcess& p : processes) parts.processes.push_back(&p);
   parts.axes = {axis::AxisConfig{}, guarded_axis({})};
   parts.spindles = {axis::SpindleConfig{}, inverter_spindle()};

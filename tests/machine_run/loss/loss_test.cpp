@@ -350,7 +350,7 @@ std::string Lossy::words(const Case& c, const image::AlarmRecord& fault) const {
     if (r.reaction > image::Reaction::warn && r.first_fault != fault.sequence &&
         !(r.number == axis::alarm::kDriveFault && r.axis == c.axis && r.cycle > fault.cycle + kStoodFor))
       wrong << r.number << " is no consequence of the first fault; ";
-  const cycle::AlarmNames names = mill_.control().alarm_names();
+  const image::AlarmNames names = mill_.control().alarm_names();
   int bus = -1, node = -1;
   const machine::BusConfig& its = bus_of(c.axis, bus, node);
   const machine::NodeConfig& n = its.nodes[static_cast<std::size_t>(node)];
@@ -361,9 +361,9 @@ std::string Lossy::words(const Case& c, const image::AlarmRecord& fault) const {
     const std::string of_node = (russian ? "узел " : "node ") + std::to_string(n.id) + " (" + its.name + "." +
                                 n.name + (russian ? ", ось " : ", axis ") + letter + ")";
     const std::string& part = c.part == Part::bus_off ? of_bus : of_node;
-    const std::string said = cycle::render(fault, names, language);
+    const std::string said = image::render(fault, names, language);
     if (said.find(part) == std::string::npos) wrong << '"' << said << "\" does not name " << part << "; ";
-    if (cycle::render_remedy(fault, names, language).empty()) wrong << "no remedy; ";
+    if (image::render_remedy(fault, names, language).empty()) wrong << "no remedy; ";
   }
   return wrong.str();
 }

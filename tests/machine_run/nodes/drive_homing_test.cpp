@@ -218,7 +218,7 @@ TEST_F(DriveHoming, by_a_method_that_the_drive_does_not_have_is_refused_at_boot_
   EXPECT_FALSE(other.power_on());
   const auto history = other.control().cycle().alarms().history();
   ASSERT_FALSE(history.empty());
-  EXPECT_EQ(cycle::render(history.front(), other.control().alarm_names(), text::Language::english),
+  EXPECT_EQ(image::render(history.front(), other.control().alarm_names(), text::Language::english),
             "node 1 (can.x, axis X): boot stopped at step \"homing by the drive\": reading 60E3h:00 "
             "Supported homing "
             "methods: 36 is none of the 32 that the device has");

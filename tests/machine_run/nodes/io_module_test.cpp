@@ -119,12 +119,12 @@ TEST_F(IoModuleOnTheBus, lost_is_one_fault_that_names_node_and_segment_and_stops
   ASSERT_TRUE(mill.until([&] { return !stops(mill).empty(); }, 1.0));
   const image::AlarmRecord fault = stops(mill).front();
   EXPECT_EQ(fault.number, axis::alarm::kPdoMissing);
-  EXPECT_EQ(fault.node, kPanelNode);
+  EXPECT_EQ(fault.part.part, kPanelNode);
   EXPECT_EQ(fault.reaction, image::Reaction::stop_on_path);
   EXPECT_LE(fault.cycle - cut_at, 5);
-  const std::string said = cycle::render(fault, mill.control().alarm_names(), text::Language::english);
+  const std::string said = image::render(fault, mill.control().alarm_names(), text::Language::english);
   EXPECT_NE(said.find("9 (io.panel)"), std::string::npos) << said;
-  EXPECT_FALSE(cycle::render_remedy(fault, mill.control().alarm_names(), text::Language::english).empty());
+  EXPECT_FALSE(image::render_remedy(fault, mill.control().alarm_names(), text::Language::english).empty());
   ASSERT_TRUE(mill.until([&] { return mill.standing(); }, 2.0));
   EXPECT_FALSE(bit(mill, "door_closed")) << "loss = 0";
   EXPECT_TRUE(bit(mill, "tool_clamped")) << "hold";

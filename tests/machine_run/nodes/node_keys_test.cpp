@@ -47,7 +47,7 @@ struct NodeKeys : testing::Test {
   std::string first_words() {
     const auto history = mill->control().cycle().alarms().history();
     if (history.empty()) return {};
-    return cycle::render(history.front(), mill->control().alarm_names(), text::Language::english);
+    return image::render(history.front(), mill->control().alarm_names(), text::Language::english);
   }
 };
 
@@ -146,7 +146,7 @@ TEST_F(NodeKeys, an_error_code_is_told_in_the_words_of_the_device_file_in_both_l
   for (const image::AlarmRecord& r : mill->control().cycle().alarms().history()) {
     if (r.number != axis::alarm::kDriveFault) continue;
     const auto words = [&](text::Language language) {
-      return cycle::render(r, mill->control().alarm_names(), language);
+      return image::render(r, mill->control().alarm_names(), language);
     };
     EXPECT_NE(words(text::Language::english).find("continuous over-current at the output"), std::string::npos)
         << words(text::Language::english);

@@ -115,7 +115,7 @@ TEST(DriveBySdo, turns_an_auxiliary_axis_and_is_watched) {
       << drum.alarm_list();
   for (const image::AlarmRecord& r : drum.control().cycle().alarms().history())
     if (r.number == axis::alarm::kPdoMissing) {
-      const std::string words = cycle::render(r, drum.control().alarm_names(), text::Language::english);
+      const std::string words = image::render(r, drum.control().alarm_names(), text::Language::english);
       EXPECT_NE(words.find("(SDO)"), std::string::npos) << words;
       EXPECT_EQ(r.reaction, image::Reaction::stop_on_path);
     }

@@ -4,10 +4,15 @@
 
 #include <set>
 
+#include "firmware_if/image/alarms/drive_report.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {
 namespace {
+
+image::DriveReport report_of(const image::AlarmRecord& r) {
+  return r.detail.get<image::DriveReport>().value_or(image::DriveReport{});
+}
 
 /// An emergency message without a fault, while the drive is silent for so long.
 void warn(Mill& mill, const std::string& node, std::uint16_t code, image::Nanoseconds silent_ns) {
@@ -40,7 +45,7 @@ TEST(Reports, of_all_nodes_at_once_are_all_shown) {
   mill.run(0.1);
   std::set<int> codes;
   for (const image::AlarmRecord& r : mill.control().cycle().alarms().history())
-    if (r.number == cycle::alarm::kEmergencyMessage) codes.insert(r.error_code);
+    if (r.number == cycle::alarm::kEmergencyMessage) codes.insert(report_of(r).error_code);
   EXPECT_EQ(codes.size(), 30u) << mill.alarm_list();
   EXPECT_GT(most, 8) << "this test is about many in one cycle";
   EXPECT_EQ(mill.alarms(cycle::alarm::kReportsLost), 0);
@@ -60,7 +65,7 @@ TEST(Reports, that_never_end_are_counted_where_they_find_no_place) {
   EXPECT_EQ(mill.alarms(cycle::alarm::kEmergencyMessage), 1) << "the same from the same node";
   for (const image::AlarmRecord& r : mill.control().cycle().alarms().history())
     if (r.number == cycle::alarm::kReportsLost) {
-      EXPECT_EQ(r.segment, 0);
+      EXPECT_EQ(r.part.device, 0);
       EXPECT_GT(r.value, 0.0);
     }
 }
@@ -78,10 +83,10 @@ TEST(Reports, an_error_of_which_no_message_came_is_named_when_the_next_one_has_c
   ASSERT_EQ(mill.alarms(cycle::alarm::kErrorHistory), 1) << mill.alarm_list();
   for (const image::AlarmRecord& r : mill.control().cycle().alarms().history()) {
     if (r.number != cycle::alarm::kErrorHistory) continue;
-    EXPECT_EQ(r.error_code, 0x7305);
-    EXPECT_EQ(r.node, 2);
+    EXPECT_EQ(report_of(r).error_code, 0x7305);
+    EXPECT_EQ(r.part.part, 2);
     EXPECT_EQ(r.axis, 1);
-    EXPECT_EQ(r.object_index, 0x1003);
+    EXPECT_EQ(report_of(r).object_index, 0x1003);
   }
 }
 

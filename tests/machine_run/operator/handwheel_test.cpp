@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 

@@ -2,7 +2,7 @@
 // A PLC that is held for single scans: nobody looks after the machine, so nothing of it may be on.
 #include <gtest/gtest.h>
 
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 

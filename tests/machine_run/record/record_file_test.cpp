@@ -9,7 +9,7 @@
 #include <random>
 
 #include "gateway/run/running_machine.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/property_seed.hpp"
 

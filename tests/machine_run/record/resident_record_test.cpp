@@ -10,7 +10,7 @@
 #include "gateway/run/running_machine.hpp"
 #include "gateway/server/plc/plc_desk.hpp"
 #include "gateway/server/resident/resident.hpp"
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/comes.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/canopen/302/boot_detail.hpp"
 #include "gateway/run/running_machine.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
@@ -120,7 +121,8 @@ TEST(RunningMachine, a_device_in_the_place_of_another_is_refused_at_its_boot_by_
   const cycle::AlarmSnapshot& all = machine->alarms();
   for (int i = 0; i < all.count; ++i) {
     const image::AlarmRecord& r = all.records[static_cast<std::size_t>(i)];
-    said |= r.number == cycle::alarm::kBootFailed && r.object_index == 0x1018 && r.object_subindex == 2 &&
+    const auto boot = r.detail.get<canopen::BootDetail>();
+    said |= r.number == cycle::alarm::kBootFailed && boot && boot->index == 0x1018 && boot->subindex == 2 &&
             r.limit == 4711.0 && r.value == 815.0;
   }
   EXPECT_TRUE(said) << "1018h:02 with what was expected and what came";
@@ -206,10 +208,11 @@ TEST(RunningMachine, the_end_of_one_fault_of_a_station_leaves_another_in_force) 
   ASSERT_TRUE(machine->inject("panel", {.kind = Kind::slow, .duration_ns = 100 * image::kMillisecond}, why));
   ASSERT_TRUE(machine->inject("panel", {.kind = Kind::silent}, why));
   run(*machine, 300);
-  EXPECT_EQ(panel->fault().kind, mock::StationFault::Kind::silence);
+  ASSERT_TRUE(panel->fault());
+  EXPECT_EQ(panel->fault()->kind, fault::Kind::silent);
   ASSERT_TRUE(machine->clear("panel", Kind::silent, why));
   run(*machine, 1);
-  EXPECT_EQ(panel->fault().kind, mock::StationFault::Kind::none);
+  EXPECT_FALSE(panel->fault());
 }
 
 TEST(RunningMachine, a_stuck_input_stays_whatever_is_played_and_a_silent_station_is_an_alarm) {

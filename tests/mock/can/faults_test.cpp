@@ -34,7 +34,7 @@ struct CanFaults : testing::Test {
 };
 
 TEST_F(CanFaults, a_dropped_frame_occupies_the_bus_and_reaches_nobody) {
-  ASSERT_TRUE(segment.inject({.kind = CanFault::Kind::drop, .match = 0x185, .mask = 0x7FF, .count = 1}));
+  ASSERT_TRUE(segment.inject({.kind = fault::Kind::drop, .id = 0x185, .mask = 0x7FF, .count = 1}));
   send(0x185);
   send(0x186);
   send(0x185);
@@ -44,8 +44,13 @@ TEST_F(CanFaults, a_dropped_frame_occupies_the_bus_and_reaches_nobody) {
   EXPECT_EQ(segment.statistics().frames, 3u);
 }
 
+TEST_F(CanFaults, that_do_not_happen_to_a_wire_are_refused) {
+  EXPECT_FALSE(segment.inject({.kind = fault::Kind::over_current}));
+  EXPECT_FALSE(segment.inject({.kind = fault::Kind::silent}));
+}
+
 TEST_F(CanFaults, skip_lets_frames_pass_before_the_fault) {
-  segment.inject({.kind = CanFault::Kind::drop, .skip = 2, .count = 1});
+  segment.inject({.kind = fault::Kind::drop, .skip = 2, .count = 1});
   for (const std::uint32_t id : {1u, 2u, 3u, 4u}) send(id);
   const auto got = after(kMillisecond);
   ASSERT_EQ(got.size(), 3u);
@@ -53,7 +58,7 @@ TEST_F(CanFaults, skip_lets_frames_pass_before_the_fault) {
 }
 
 TEST_F(CanFaults, a_delayed_frame_lets_others_pass) {
-  segment.inject({.kind = CanFault::Kind::delay, .match = 1, .mask = 0x7FF, .delay_ns = 500 * kMicrosecond});
+  segment.inject({.kind = fault::Kind::delay, .delay_ns = 500 * kMicrosecond, .id = 1, .mask = 0x7FF});
   send(1);
   send(2);
   const auto got = after(2 * kMillisecond);
@@ -63,7 +68,7 @@ TEST_F(CanFaults, a_delayed_frame_lets_others_pass) {
 }
 
 TEST_F(CanFaults, a_duplicated_frame_is_received_twice) {
-  segment.inject({.kind = CanFault::Kind::duplicate});
+  segment.inject({.kind = fault::Kind::repeat});
   send(1);
   EXPECT_EQ(after(kMillisecond).size(), 2u);
 }
@@ -73,7 +78,7 @@ TEST_F(CanFaults, a_corrupted_frame_is_repeated_after_an_error_frame_and_arrives
   f.id = 1;
   f.length = 8;
   const Nanoseconds clean = frame_bits(f) * kMicrosecond;
-  segment.inject({.kind = CanFault::Kind::corrupt});
+  segment.inject({.kind = fault::Kind::corrupt});
   send(1);
   const auto got = after(kMillisecond);
   ASSERT_EQ(got.size(), 1u);
@@ -83,7 +88,7 @@ TEST_F(CanFaults, a_corrupted_frame_is_repeated_after_an_error_frame_and_arrives
 }
 
 TEST_F(CanFaults, a_wire_that_always_breaks_frames_takes_the_sender_off_the_bus) {
-  segment.inject({.kind = CanFault::Kind::corrupt, .count = 0});
+  segment.inject({.kind = fault::Kind::corrupt, .count = 0});
   send(1);
   // Twelve errors: 96 = warning; 16: 128 = passive; 32: 256 = off.
   bool warned = false, passive = false;
@@ -150,11 +155,12 @@ TEST_F(CanFaults, two_senders_of_the_same_frame_pass_as_one) {
 }
 
 TEST_F(CanFaults, at_most_sixteen_faults_wait_at_a_time_and_used_ones_make_room) {
-  for (int i = 0; i < 16; ++i) EXPECT_TRUE(segment.inject({.match = 5, .mask = 0x7FF}));
-  EXPECT_FALSE(segment.inject({}));
+  for (int i = 0; i < 16; ++i)
+    EXPECT_TRUE(segment.inject({.kind = fault::Kind::drop, .id = 5, .mask = 0x7FF}));
+  EXPECT_FALSE(segment.inject({.kind = fault::Kind::drop}));
   send(5);
   after(kMillisecond);
-  EXPECT_TRUE(segment.inject({}));
+  EXPECT_TRUE(segment.inject({.kind = fault::Kind::drop}));
   segment.clear_faults();
   send(5);
   EXPECT_EQ(after(kMillisecond).size(), 1u);

@@ -26,7 +26,7 @@ TEST(DriveMemory, nothing_is_allocated_by_cycles_faults_or_sdo_traffic) {
     b.master.send(sync);
     b.master.send(pdo);
     if (i % 10 == 0) b.master.send(sdo);
-    if (i == 500) b.segment.inject({.kind = CanFault::Kind::corrupt, .count = 5});
+    if (i == 500) b.segment.inject({.kind = fault::Kind::corrupt, .count = 5});
     if (i == 1000) b.drive.inject({.kind = fault::Kind::pdo_late, .delay_ns = 700'000});
     if (i == 1500) b.drive.inject({.kind = fault::Kind::over_current});
     b.segment.advance_to(b.now += image::kMillisecond);

@@ -531,7 +531,7 @@ TEST(DriveFleet, two_runs_are_equal_to_the_byte) {
   Recorder first, second;
   for (Recorder* r : {&first, &second}) {
     Eight e(3, r);
-    e.segment.inject({.kind = CanFault::Kind::corrupt, .skip = 100, .count = 3});
+    e.segment.inject({.kind = fault::Kind::corrupt, .skip = 100, .count = 3});
     for (int i = 0; i < 400; ++i) {
       if (i == 200) e.drives[1]->inject({.kind = fault::Kind::over_current});
       e.cycle(0x0F, static_cast<std::int64_t>(5'000.0 * i));

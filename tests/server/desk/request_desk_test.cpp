@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "gateway/server/work/workshop.hpp"
+#include "tests/alarms.hpp"
 #include "tests/comes.hpp"
 
 namespace servogate::gateway {
@@ -98,6 +99,7 @@ class AgeOfRequests : public ::testing::Test {
   AgeOfRequests() { desk_.set_longest_wait(RequestDesk::kLongestWait); }
   cycle::CycleParts parts() const {
     cycle::CycleParts parts;
+    parts.alarms = &tests::alarm_table();
     parts.axes = {axis::AxisConfig{}};
     parts.request_clock = &clock_;
     return parts;

@@ -1,41 +1,79 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "firmware_if/image/alarms/alarm_table.hpp"
 
 namespace servogate::cycle {
 
-/// Alarms of real time and system: 6000.
-inline constexpr AlarmRow kSystemRows[] = {
-    {alarm::kEmergencyStop,
+/// Alarms that the cycle raises by itself: of sources of points (3000), of the PLC as it sees it (5000), of
+/// real time and system (6000).
+inline constexpr image::AlarmRow kCycleRows[] = {
+    {image::alarm::kSourceStale,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::cause_gone,
+     {"io.stale", "{3}: does not answer, its data are {1} ms old", "{3}: не отвечает, возраст данных {1} мс"},
+     "Check supply and connection of the station.",
+     "Проверьте питание и связь со станцией."},
+    {image::alarm::kSourceBad,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::cause_gone,
+     {"io.bad", "{3}: answers with errors, its last good data are {1} ms old",
+      "{3}: отвечает с ошибками, последние верные данные {1} мс назад"},
+     "Check the addresses of the station in the machine file.",
+     "Проверьте адреса станции в файле станка."},
+    {image::alarm::kExternalAlarm,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::cause_gone,
+     {"plc.external", "alarm {1} of the machine", "авария станка {1}"},
+     "See the machine builder's list.",
+     "Смотрите перечень изготовителя станка."},
+    {image::alarm::kPlcHeld,
      image::Reaction::stop_and_power_off,
-     ResetCondition::cause_gone,
+     image::ResetCondition::cause_gone,
+     {"plc.held", "the PLC is or was held for single scans: nothing can be switched on before a reset",
+      "ПЛК удерживается или удерживался для отдельных сканов: до сброса ничего нельзя включить"},
+     "End `servogate plc step`, then reset and switch the drives on again.",
+     "Завершите `servogate plc step`, затем выполните сброс и снова включите приводы.",
+     image::AlarmMark::fails_control},
+    {image::alarm::kPlcWatchdog,
+     image::Reaction::stop_and_power_off,
+     image::ResetCondition::reset,
+     {"plc.watchdog", "a scan of the PLC took {1} ms, allowed {2} ms",
+      "скан ПЛК длился {1} мс, допустимо {2} мс"},
+     "`servogate plc watch --times` shows what takes the time; shorten it, or raise [plc] watchdog.",
+     "Что занимает время, показывает `servogate plc watch --times`; сократите это или увеличьте [plc] "
+     "watchdog.",
+     image::AlarmMark::fails_control},
+    {image::alarm::kEmergencyStop,
+     image::Reaction::stop_and_power_off,
+     image::ResetCondition::cause_gone,
      {"system.emergency_stop", "emergency stop", "аварийный останов"},
      "Remove the danger, unlock the button, reset, then switch the drives on again.",
      "Устраните опасность, отпустите кнопку, выполните сброс и снова включите приводы."},
-    {alarm::kOverrunLimit,
+    {image::alarm::kOverrunLimit,
      image::Reaction::stop_on_path,
-     ResetCondition::reset,
+     image::ResetCondition::reset,
      {"system.overruns", "a cycle began {1} ms late, allowed {2} ms; what took the time: {6}",
       "такт начался с опозданием {1} мс, допустимо {2} мс; время ушло на: {6}"},
      "Use an isolated processor ([realtime] cpu) or a longer cycle; the report holds the times of each "
      "phase.",
-     "Выделите процессор ([realtime] cpu) или увеличьте такт; времена фаз есть в отчёте."},
-    {alarm::kOperatorQuickStop,
+     "Выделите процессор ([realtime] cpu) или увеличьте такт; времена фаз есть в отчёте.",
+     image::AlarmMark::fails_control},
+    {image::alarm::kOperatorQuickStop,
      image::Reaction::quick_stop,
-     ResetCondition::reset,
+     image::ResetCondition::reset,
      {"system.quick_stop", "quick stop by the operator", "быстрый останов оператором"},
      "Reset, then switch the drives on again.",
      "Выполните сброс и снова включите приводы."},
-    {alarm::kRequestsLost,
+    {image::alarm::kRequestsLost,
      image::Reaction::warn,
-     ResetCondition::by_itself,
+     image::ResetCondition::by_itself,
      {"system.requests_lost", "{1} requests were lost: too many at once",
       "потеряно запросов: {1}, слишком много сразу"},
      "Send requests less often.",
      "Отправляйте запросы реже."},
-    {alarm::kGuardForced,
+    {image::alarm::kGuardForced,
      image::Reaction::warn,
-     ResetCondition::by_itself,
+     image::ResetCondition::by_itself,
      {"system.guard_forced",
       "a place that guards motion or energy is forced: a protection of the machine may be out of action",
       "принудительно удерживается место, которое защищает от движения или включения: защита станка может не "
@@ -43,9 +81,9 @@ inline constexpr AlarmRow kSystemRows[] = {
      "`servogate plc force` shows what is forced and by whom; `servogate plc force --release` releases it.",
      "Что и кем удерживается, показывает `servogate plc force`; `servogate plc force --release` "
      "освобождает."},
-    {alarm::kStateFellBack,
+    {image::alarm::kStateFellBack,
      image::Reaction::warn,
-     ResetCondition::reset,
+     image::ResetCondition::reset,
      {"system.state_fell_back",
       "the saved state of the machine was damaged: the previous copy is in use, or, without a whole copy of "
       "the "
@@ -56,9 +94,9 @@ inline constexpr AlarmRow kSystemRows[] = {
      "anything moves.",
      "Файл назван в сообщениях при запуске управления. До движения проверьте начала отсчёта, инструмент и "
      "привязку осей."},
-    {alarm::kRecordBroken,
+    {image::alarm::kRecordBroken,
      image::Reaction::warn,
-     ResetCondition::reset,
+     image::ResetCondition::reset,
      {"system.record_broken", "this run is no longer being recorded: the disk is full or too slow",
       "запись этого прогона больше не ведётся: диск полон или слишком медленный"},
      "The machine keeps running; what was recorded so far can be replayed. Free some disk space and restart "

@@ -2,14 +2,14 @@
 #include <iterator>
 #include <vector>
 
-#include "kernel/cycle/alarm/alarm_table.hpp"
+#include "firmware_if/image/alarms/alarm_text.hpp"
 
-namespace servogate::cycle {
+namespace servogate::image {
 
 namespace {
 
 struct Room {
-  image::AlarmNumber first;
+  AlarmNumber first;
   std::string_view english;
 };
 constexpr Room kRooms[] = {{1000, "Axes and spindles"},
@@ -24,22 +24,23 @@ constexpr std::string_view kPlaceholders[] = {"AXIS",  "VALUE",   "LIMIT",   "WH
 
 }  // namespace
 
-std::string alarms_page() {
+std::string alarms_page(const AlarmTable& table) {
   const std::vector<std::string> names(std::begin(kPlaceholders), std::end(kPlaceholders));
   std::string page =
-      "# Alarms\n\nMade from the alarm table (`kernel/cycle/alarm/alarm_table.cpp`); do not edit. The "
+      "# Alarms\n\nMade from the alarm tables of the rooms (`gateway/compose/alarms`); do not edit. The "
       "reaction is "
       "the default; a\n"
       "machine file may ask for a stronger one. While the machine reacts to a first fault, further faults "
       "are its\n"
       "consequences and are shown under it.\n";
-  image::AlarmNumber room_end = 0;
-  for (const AlarmRow& row : alarm_table()) {
+  AlarmNumber room_end = 0;
+  for (const AlarmRow* each : table.rows()) {
+    const AlarmRow& row = *each;
     if (row.number >= room_end) {
       for (const Room& room : kRooms)
         if (row.number / 1000 == room.first / 1000)
           page += "\n## " + std::to_string(room.first) + " " + std::string(room.english) + "\n";
-      room_end = static_cast<image::AlarmNumber>((row.number / 1000 + 1) * 1000);
+      room_end = static_cast<AlarmNumber>((row.number / 1000 + 1) * 1000);
     }
     page += "\n### " + std::to_string(row.number) + " `" + std::string(row.text.id) + "`\n\n";
     page += "- " + text::render(row.text, names, text::Language::english) + "\n";
@@ -52,4 +53,4 @@ std::string alarms_page() {
   return page;
 }
 
-}  // namespace servogate::cycle
+}  // namespace servogate::image
