@@ -11,11 +11,6 @@ const text::Entry kCannotRead{"cli.cannot-read", "cannot read the file: {0}", "�
 const text::Entry kCannotWrite{"cli.cannot-write", "cannot write {0}: {1}", "не удаётся записать {0}: {1}"};
 const text::Entry kOutputLost{"cli.output-lost", "cannot write to standard output: {0}",
                               "не удаётся записать в стандартный вывод: {0}"};
-const text::Entry kUnknownDialect{"cli.unknown-dialect", "dialect '{0}' is not known; known: {1}",
-                                  "диалект «{0}» неизвестен; известны: {1}"};
-const text::Entry kVirtualNeedsMock{
-    "cli.virtual-needs-mock", "'{0}' is a real bus: virtual time is for mock buses only; use --realtime",
-    "«{0}» — настоящая шина: виртуальное время только для имитаций; нужен --realtime"};
 const text::Entry kStartNowForbidden{
     "cli.start-now-forbidden",
     "--start-now is not allowed by this machine file ([run] allow_start_now = true allows it)",

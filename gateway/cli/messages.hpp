@@ -8,11 +8,9 @@
 namespace servogate::gateway {
 
 /// Sentences of the command line itself.
-extern const text::Entry kCannotRead;        ///< {0} system's words
-extern const text::Entry kCannotWrite;       ///< {0} path, {1} system's words
-extern const text::Entry kOutputLost;        ///< {0} system's words
-extern const text::Entry kUnknownDialect;    ///< {0} name, {1} known ones
-extern const text::Entry kVirtualNeedsMock;  ///< {0} bus
+extern const text::Entry kCannotRead;   ///< {0} system's words
+extern const text::Entry kCannotWrite;  ///< {0} path, {1} system's words
+extern const text::Entry kOutputLost;   ///< {0} system's words
 extern const text::Entry kStartNowForbidden;
 extern const text::Entry kNoStartButton;
 extern const text::Entry kLeavesTravel;  ///< {0} axis, {1} from, {2} to, {3} travel min, {4} travel max

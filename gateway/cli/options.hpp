@@ -6,14 +6,10 @@
 
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/cli/plc_options.hpp"
+#include "gateway/run/clock_kind.hpp"
+#include "gateway/run/exit_code.hpp"
 
 namespace servogate::gateway {
-
-/// Exit codes of every command: a contract (docs/command-line.md).
-enum ExitCode : int { kDone = 0, kAlarm = 1, kWrongUse = 2, kStopped = 3, kInfrastructure = 4 };
-
-/// How time passes.
-enum class ClockKind { unset, virtual_time, realtime, realtime_best_effort };
 
 struct RunOptions {
   std::string machine, program, dialect;

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/check/canon.hpp"
 
+#include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/compose/program/program_file.hpp"
+#include "gateway/command/program_option.hpp"
 
 namespace servogate::gateway::command {
 
 int canon(const CanonOptions& options) {
-  if (!options.dialect.empty() && !known_dialect(options.dialect)) return kWrongUse;
+  if (const int code = check_dialect(options.dialect); code != kDone) return code;
   const machine::LoadResult loaded = machine::load(options.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
   ProgramFile program;
-  if (const int code = open_program(loaded.machine, options.program, options.dialect, program); code != kDone)
+  if (const int code = open_program_or_say(loaded.machine, options.program, options.dialect, program);
+      code != kDone)
     return code;
   program::Interpreter interpreter(program.dialect, program.model, program_tables(loaded.machine),
                                    options.program, program.text, program.loader, {});

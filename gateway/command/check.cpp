@@ -7,6 +7,7 @@
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/program_option.hpp"
 #include "gateway/compose/devices/open_devices.hpp"
 #include "gateway/compose/plc/logic_options.hpp"
 #include "gateway/compose/program/program_check.hpp"
@@ -184,7 +185,7 @@ ProgramErrors check_programs(const CheckOptions& options, const machine::Machine
 }  // namespace
 
 int check(const CheckOptions& options) {
-  if (!options.dialect.empty() && !known_dialect(options.dialect)) return kWrongUse;
+  if (const int code = check_dialect(options.dialect); code != kDone) return code;
   const machine::LoadResult loaded = machine::load(options.machine);
   std::vector<text::Finding> findings = loaded.findings;
   if (loaded.ok()) {

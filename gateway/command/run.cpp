@@ -12,7 +12,9 @@
 #include "gateway/command/canopen/bus/sole_master.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/force_setting.hpp"
+#include "gateway/command/machine_start.hpp"
 #include "gateway/command/outputs.hpp"
+#include "gateway/command/program_option.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/compose/program/program_file.hpp"
@@ -155,10 +157,10 @@ class Run {
 int Run::prepare() {
   const machine::MachineConfig& m = loaded_.machine;
   int refused = kDone;
-  state_ = HeldState::hold(options_.state, refused);
+  state_ = hold_state(options_.state, refused);
   if (state_ == nullptr) return refused;
   if (!options_.program.empty()) {
-    if (const int code = open_program(m, options_.program, options_.dialect, *program_); code != kDone)
+    if (const int code = open_program_or_say(m, options_.program, options_.dialect, *program_); code != kDone)
       return code;
     const ProgramFile& p = *program_;
     const ProgramCheck check =
@@ -171,9 +173,12 @@ int Run::prepare() {
   }
   if (const int code = sole_master_.claim(loaded_); code != kDone) return code;
   std::vector<text::Finding> findings;
-  machine_ = RunningMachine::compose(
-      loaded_, std::move(state_),
-      {.clock = options_.clock, .record = options_.record, .can_log = options_.can_log}, findings);
+  machine_ = RunningMachine::compose(loaded_, std::move(state_),
+                                     {.clock = options_.clock,
+                                      .record = options_.record,
+                                      .can_log = options_.can_log,
+                                      .announce = to_standard_error()},
+                                     findings);
   const int errors = print_findings(findings);
   if (machine_ == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
@@ -284,7 +289,7 @@ std::vector<MissingCondition> Run::missing_in_both() const {
 }
 
 bool Run::loop(OperatorScript& script) {
-  if (!machine_->begin(options_.quiet)) return false;
+  if (!begin(*machine_, options_.quiet)) return false;
   // Virtual time is looked at now and then only: a look costs more than a cycle.
   const int each = machine_->moves_by_itself() ? 1 : kFollowedCycles;
   for (int n = 1; !script.done(); ++n) {
@@ -454,7 +459,7 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
 
 /// What has to be right before a control is composed: kDone, or the exit code after saying why.
 int refuse_early(RunOptions& options, const machine::LoadResult& loaded) {
-  if (!options.dialect.empty() && !known_dialect(options.dialect)) return kWrongUse;
+  if (const int code = check_dialect(options.dialect); code != kDone) return code;
   if (print_findings(loaded.findings) > 0) return kWrongUse;
   if (!settle_clock(loaded.machine, options.clock)) return kWrongUse;
   if (options.start_now && !loaded.machine.run.allow_start_now && !loaded.machine.nothing_real()) {

@@ -11,6 +11,7 @@
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/canopen/bus/sole_master.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/machine_start.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/history/event_log.hpp"
@@ -52,7 +53,8 @@ std::unique_ptr<RunningMachine> compose(const UpOptions& options, const machine:
                                          {.clock = clock,
                                           .pace = clock == ClockKind::virtual_time ? options.speed : 0.0,
                                           .record = options.record,
-                                          .can_log = options.can_log},
+                                          .can_log = options.can_log,
+                                          .announce = to_standard_error()},
                                          findings);
   const int errors = print_findings(findings);
   if (running == nullptr)
@@ -96,7 +98,7 @@ int up(const UpOptions& options) {
   if (code != kDone) return code;
   std::unique_ptr<history::EventLog> history;  // the last to go
   std::unique_ptr<SocketServer> server;        // its connections end last, after the state's lock
-  auto state = HeldState::hold(folder, code);
+  auto state = hold_state(folder, code);
   if (state == nullptr) return code;
   SoleMaster sole_master;
   if (code = sole_master.claim(loaded); code != kDone) return code;
@@ -107,6 +109,7 @@ int up(const UpOptions& options) {
   history = std::make_unique<history::EventLog>(history::EventLog::Places{folder, true});
   Resident resident(running->control(), running->learned(), folder,
                     clock == ClockKind::virtual_time ? options.speed : 1.0);
+  resident.announce_to(to_standard_error());
   resident.keep_history(*history);
   if (clock != ClockKind::virtual_time) resident.requests().set_longest_wait(RequestDesk::kLongestWait);
   const std::string socket = socket_of(options, m);
@@ -118,7 +121,7 @@ int up(const UpOptions& options) {
     complain(kNoSocket, {socket, problem});
     return kInfrastructure;
   }
-  if (!running->begin()) return kInfrastructure;
+  if (!begin(*running)) return kInfrastructure;
   desk.start();
   server->start();
   tell(text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()));

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "gateway/cli/messages.hpp"
-
 namespace servogate::gateway {
 
 namespace {
@@ -71,9 +69,10 @@ void RealtimeLoop::cycle_thread() {
   }
 }
 
-void RealtimeLoop::complain_of_refusals(bool started) const {
+void RealtimeLoop::add_refusals(bool started, std::vector<Refusal>& refusals) const {
   for (const cycle::RealtimeRefusal& r : refusals_)
-    if (started || r.needed) complain(started ? kWithout : kRefused, {r.what, r.cause, r.remedy});
+    if (started || r.needed)
+      refusals.push_back({started ? &kWithout : &kRefused, {r.what, r.cause, r.remedy}});
 }
 
 void RealtimeLoop::stop() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gateway/compose/control.hpp"
+#include "gateway/run/announce.hpp"
 #include "gateway/run/scan_watchdog.hpp"
 #include "kernel/cycle/realtime.hpp"
 
@@ -29,9 +30,9 @@ class RealtimeLoop {
   bool start();
   /// Ends both threads after the cycle under way.
   void stop();
-  /// After start(): says on standard error what the system refused, and the command that grants it: as what
-  /// kept the loop from starting, or as what it goes on without.
-  void complain_of_refusals(bool started) const;
+  /// After start(): what the system refused, and the command that grants it: as what kept the loop from
+  /// starting, or as what it goes on without.
+  void add_refusals(bool started, std::vector<Refusal>& refusals) const;
   std::int64_t overruns() const noexcept { return overruns_.load(std::memory_order_relaxed); }
 
  private:

@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "gateway/cli/messages.hpp"
-
 namespace servogate::gateway {
 
 namespace {
@@ -18,8 +16,9 @@ const text::Entry kNotKept{"run.retained-not-kept", "the retained values of the 
 
 }  // namespace
 
-RetainedKeeper::RetainedKeeper(Control& control, std::string folder, std::int64_t generation)
-    : control_(control), directory_(folder), generation_(generation) {
+RetainedKeeper::RetainedKeeper(Control& control, std::string folder, std::int64_t generation,
+                               Announce announce)
+    : control_(control), announce_(std::move(announce)), directory_(folder), generation_(generation) {
   if (control.logic() != nullptr && !folder.empty()) thread_ = std::thread([this] { keep(); });
 }
 
@@ -41,7 +40,7 @@ bool RetainedKeeper::write_changed() {
   state.retained_generation = generation_ + 1;
   std::string problem;
   if (!directory_.save(state, machine::StatePart::retained, problem)) {
-    if (problem_.empty()) complain(kNotKept, {problem});
+    if (problem_.empty() && announce_) announce_(kNotKept, {problem});
     problem_ = problem;
     return false;
   }

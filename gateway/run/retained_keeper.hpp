@@ -8,6 +8,7 @@
 
 #include "gateway/compose/control.hpp"
 #include "gateway/machine/state/state.hpp"
+#include "gateway/run/announce.hpp"
 
 namespace servogate::gateway {
 
@@ -17,8 +18,8 @@ namespace servogate::gateway {
 class RetainedKeeper {
  public:
   /// `generation`: MachineState::retained_generation of what was loaded. A machine without PLC, and an empty
-  /// `folder`, keep nothing.
-  RetainedKeeper(Control& control, std::string folder, std::int64_t generation);
+  /// `folder`, keep nothing. `announce`: hears, from the thread, what could not be written.
+  RetainedKeeper(Control& control, std::string folder, std::int64_t generation, Announce announce = {});
   ~RetainedKeeper();
   RetainedKeeper(const RetainedKeeper&) = delete;
 
@@ -31,6 +32,7 @@ class RetainedKeeper {
   bool write_changed();
 
   Control& control_;
+  Announce announce_;
   machine::StateDirectory directory_;
   std::int64_t generation_;
   std::shared_ptr<const plc::LogicProgram> program_;  ///< whose values are on the disk

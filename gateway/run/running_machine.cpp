@@ -5,7 +5,6 @@
 #include <chrono>
 #include <thread>
 
-#include "gateway/cli/messages.hpp"
 #include "gateway/compose/simulated/played_input.hpp"
 #include "gateway/run/paced_loop.hpp"
 #include "gateway/run/realtime_loop.hpp"
@@ -22,35 +21,40 @@ constexpr image::Nanoseconds kPublished =
 constexpr auto kLook = std::chrono::milliseconds(10);
 constexpr int kFirstLooks = 200;
 
+const text::Entry kVirtualNeedsMock{
+    "cli.virtual-needs-mock", "'{0}' is a real bus: virtual time is for mock buses only; use --realtime",
+    "«{0}» — настоящая шина: виртуальное время только для имитаций; нужен --realtime"};
+
 }  // namespace
 
-std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, int& code) {
+std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, Refusal& taken,
+                                           std::vector<text::Finding>& findings) {
   auto held = std::make_unique<HeldState>();
   if (folder.empty()) return held;
   held->folder = folder;
   if (const std::string why = held->lock.take(folder); !why.empty()) {
-    complain(machine::kStateTaken, {folder, why});
-    code = kInfrastructure;
+    taken = {&machine::kStateTaken, {folder, why}};
     return nullptr;
   }
   machine::StateDirectory::Loaded kept = machine::StateDirectory(folder).load();
   held->state = std::move(kept.state);
   held->fell_back = kept.fell_back();
-  if (print_findings(kept.findings) == 0) return held;
-  code = kWrongUse;
-  return nullptr;
+  findings.insert(findings.end(), kept.findings.begin(), kept.findings.end());
+  const bool good = std::ranges::none_of(
+      kept.findings, [](const text::Finding& f) { return f.severity == text::Severity::error; });
+  return good ? std::move(held) : nullptr;
 }
 
-bool settle_clock(const machine::MachineConfig& machine, ClockKind& clock) {
-  if (clock == ClockKind::unset)
-    clock = machine.virtual_time() && machine.nothing_real() ? ClockKind::virtual_time : ClockKind::realtime;
-  if (clock != ClockKind::virtual_time) return true;
+ClockKind clock_of(const machine::MachineConfig& machine, ClockKind asked, Refusal& refusal) {
+  if (asked == ClockKind::unset)
+    asked = machine.virtual_time() && machine.nothing_real() ? ClockKind::virtual_time : ClockKind::realtime;
+  if (asked != ClockKind::virtual_time) return asked;
   for (const machine::BusConfig& bus : machine.buses)
     if (!bus.mock() && !bus.lockstep()) {
-      complain(kVirtualNeedsMock, {bus.url});
-      return false;
+      refusal = {&kVirtualNeedsMock, {bus.url}};
+      return ClockKind::unset;
     }
-  return true;
+  return asked;
 }
 
 std::unique_ptr<RunningMachine> RunningMachine::compose(const machine::LoadResult& loaded,
@@ -73,7 +77,7 @@ RunningMachine::RunningMachine(std::unique_ptr<HeldState> state, const RunSettin
     : state_(std::move(state)),
       settings_(settings),
       control_(std::move(control)),
-      keeper_(*control_, state_->folder, state_->state.retained_generation) {
+      keeper_(*control_, state_->folder, state_->state.retained_generation, settings.announce) {
   if (state_->fell_back) {
     image::AlarmRecord r;
     r.number = cycle::alarm::kStateFellBack;
@@ -98,22 +102,22 @@ Session& RunningMachine::watch(const Outputs& outputs) {
   return *session_;
 }
 
-bool RunningMachine::begin(bool quiet) {
-  if (settings_.clock != ClockKind::virtual_time) return begin_realtime(quiet);
+bool RunningMachine::begin(std::vector<Refusal>& refusals) {
+  if (settings_.clock != ClockKind::virtual_time) return begin_realtime(refusals);
   if (paced())
     paced_loop_ =
         std::make_unique<PacedLoop>(settings_.pace, control_->cycle(), [this] { return move_world(); });
   return true;
 }
 
-bool RunningMachine::begin_realtime(bool quiet) {
+bool RunningMachine::begin_realtime(std::vector<Refusal>& refusals) {
   const machine::MachineConfig& m = machine();
   const cycle::RealtimeSettings settings{m.realtime.priority, m.realtime.cpu,
                                          settings_.clock == ClockKind::realtime_best_effort};
   realtime_loop_ = std::make_unique<RealtimeLoop>(
       *control_, settings, [this](Control&, image::Nanoseconds late_ns) noexcept { after_cycle(late_ns); });
   const bool started = realtime_loop_->start();
-  if (!started || !quiet) realtime_loop_->complain_of_refusals(started);
+  realtime_loop_->add_refusals(started, refusals);
   return started;
 }
 

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "bench/machine.hpp"
-#include "gateway/cli/options.hpp"
 #include "gateway/compose/control.hpp"
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/machine/state/state.hpp"
 #include "gateway/machine/state/state_lock.hpp"
+#include "gateway/run/announce.hpp"
 #include "gateway/run/can_log.hpp"
+#include "gateway/run/clock_kind.hpp"
 #include "gateway/run/record_file.hpp"
 #include "gateway/run/retained_keeper.hpp"
 #include "gateway/run/session.hpp"
@@ -29,13 +30,15 @@ struct HeldState {
   machine::MachineState state;
   bool fell_back = false;  ///< something in it was damaged, and is as it was before
 
-  /// Takes and reads a folder; empty: none. nullptr: `code` is the exit code, and why not has been said.
-  static std::unique_ptr<HeldState> hold(const std::string& folder, int& code);
+  /// Takes and reads a folder; empty: none. nullptr: somebody else holds it (`taken`), or one of `findings`
+  /// is an error; warnings come with it, too.
+  static std::unique_ptr<HeldState> hold(const std::string& folder, Refusal& taken,
+                                         std::vector<text::Finding>& findings);
 };
 
-/// Settles how time passes: as asked, else virtual where the machine file says so and nothing is real. False:
-/// virtual time is asked for on a bus that has its own, which has been said.
-bool settle_clock(const machine::MachineConfig& machine, ClockKind& clock);
+/// How time passes: as asked, else virtual where the machine file says so and nothing is real. unset: virtual
+/// time is asked for on a bus that has its own, and `refusal` says so.
+ClockKind clock_of(const machine::MachineConfig& machine, ClockKind asked, Refusal& refusal);
 
 /// How a machine is run.
 struct RunSettings {
@@ -44,6 +47,7 @@ struct RunSettings {
   double pace = 0.0;
   double time_scale = 1.0;                ///< Cycle::time_scale() where it is not the pace
   std::string record = {}, can_log = {};  ///< file and folder; empty: none
+  Announce announce = {};                 ///< what it has to say while it runs
   cycle::InputSource* source = nullptr;   ///< the inputs come from a record: no device is opened
 };
 
@@ -62,8 +66,8 @@ class RunningMachine final : public bench::Machine {
   /// Statistics, trace and picture from the next cycle on. Before the first.
   Session& watch(const Outputs& outputs);
   /// Starts the loop of a machine that moves by itself; nothing in virtual time without a pace. False: the
-  /// system refuses real time, which has been said. `quiet`: what it goes on without is not said.
-  bool begin(bool quiet = false);
+  /// system refuses real time. `refusals`: why, or what it goes on without.
+  bool begin(std::vector<Refusal>& refusals);
   /// Ends that loop, and leaves buses that others go on with (Control::take_leave). Files stay open.
   void stop();
   /// What closing a file brought to light.
@@ -116,7 +120,7 @@ class RunningMachine final : public bench::Machine {
   void wait_for_room();
   bool move_on(image::Nanoseconds late_ns);
   bool move_world();
-  bool begin_realtime(bool quiet);
+  bool begin_realtime(std::vector<Refusal>& refusals);
   void after_cycle(image::Nanoseconds late_ns) noexcept;
 
   std::unique_ptr<HeldState> state_;

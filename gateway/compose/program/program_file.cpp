@@ -23,27 +23,22 @@ const text::Entry kLikelyEncoding{
     "UTF-8",
     "текст не в UTF-8, похоже на {0}: слова в нём не показать. Преобразуйте: iconv -f {0} -t UTF-8"};
 
-}  // namespace
-
-namespace {
-
-std::string list_of(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
-bool is_known(const std::string& dialect, const std::vector<std::string>& known) {
-  return std::find(known.begin(), known.end(), dialect) != known.end();
-}
+const text::Entry kUnreadable{"cli.cannot-read", "cannot read the file: {0}", "файл не читается: {0}"};
 
 }  // namespace
+
+const text::Entry kUnknownDialect{"cli.unknown-dialect", "dialect '{0}' is not known; known: {1}",
+                                  "диалект «{0}» неизвестен; известны: {1}"};
 
 bool known_dialect(const std::string& dialect) {
   const std::vector<std::string> known = program::dialects();
-  if (is_known(dialect, known)) return true;
-  complain(kUnknownDialect, {dialect, list_of(known)});
-  return false;
+  return std::find(known.begin(), known.end(), dialect) != known.end();
+}
+
+std::string dialect_names() {
+  std::string list;
+  for (const std::string& name : program::dialects()) list += (list.empty() ? "" : ", ") + name;
+  return list;
 }
 
 bool open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
@@ -53,11 +48,10 @@ bool open_program(const machine::MachineConfig& machine, const std::string& path
     return false;
   };
   out.dialect = dialect.empty() ? machine.control.dialect : dialect;
-  const std::vector<std::string> known = program::dialects();
-  if (!is_known(out.dialect, known)) return error(kUnknownDialect, {out.dialect, list_of(known)});
+  if (!known_dialect(out.dialect)) return error(kUnknownDialect, {out.dialect, dialect_names()});
   std::string reason;
   auto content = files::read_file(path, files::kMostOfProgram, reason);
-  if (!content) return error(kCannotRead, {reason});
+  if (!content) return error(kUnreadable, {reason});
   if (const int line = files::first_line_not_utf8(*content); line > 0) {
     const std::string likely(files::likely_russian_encoding(*content));
     findings.push_back(
@@ -68,14 +62,6 @@ bool open_program(const machine::MachineConfig& machine, const std::string& path
   out.model = program_model(machine);
   out.loader = program_loader(path);
   return true;
-}
-
-int open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
-                 ProgramFile& out) {
-  std::vector<text::Finding> findings;
-  const bool opened = open_program(machine, path, dialect, out, findings);
-  print_findings(findings);
-  return opened ? kDone : kWrongUse;
 }
 
 }  // namespace servogate::gateway

@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/cli/messages.hpp"
-#include "gateway/cli/options.hpp"
+#include "firmware_if/text/finding.hpp"
 #include "gateway/compose/program/program_model.hpp"
 #include "gateway/machine/load.hpp"
 #include "kernel/program/interpreter/interpreter.hpp"
@@ -19,15 +18,16 @@ struct ProgramFile {
   program::ProgramLoader loader;
 };
 
-/// The name is one of a language; otherwise it is said on standard error that it is not.
+extern const text::Entry kUnknownDialect;  ///< {0} name, {1} known ones
+
+/// The name is one of a language.
 bool known_dialect(const std::string& dialect);
+/// Names of all languages, for a message.
+std::string dialect_names();
 
 /// Reads the program and settles its dialect (`dialect`, empty: the machine's own). False: a finding says why
 /// not, `out` is unchanged but for its dialect. The program's own errors are the interpreter's.
 bool open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
                   ProgramFile& out, std::vector<text::Finding>& findings);
-/// The same for a command: prints the finding, and gives kDone or kWrongUse.
-int open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
-                 ProgramFile& out);
 
 }  // namespace servogate::gateway

@@ -23,7 +23,7 @@ constexpr milliseconds kLook{200};
 Desk::Desk(Resident& resident)
     : resident_(resident),
       urgent_(resident.control(), resident.requests(), resident.speed()),
-      shut_down_(resident.control(), resident.requests()),
+      shut_down_(resident.control(), resident.requests(), resident.announce()),
       desk_(resident, [this](const Ticket& ticket, Reply reply) { give(ticket, std::move(reply)); }) {}
 
 void Desk::start() {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "gateway/cli/messages.hpp"
 #include "gateway/run/standstill.hpp"
 
 namespace servogate::gateway {
@@ -73,12 +72,12 @@ bool ShutDown::look() {
       break;
     case Stage::drives:
       if (!axes_off(image()) && in_stage() < kAxesOffPatience_s) break;
-      if (!axes_off(image())) complain(kAxesOn, {text::number(kAxesOffPatience_s, 0)});
+      if (!axes_off(image())) announce(kAxesOn, {text::number(kAxesOffPatience_s, 0)});
       enter(Stage::spindles);
       break;
     case Stage::spindles: {
       const bool rest = spindles_rest(image());
-      if (!rest && !said_ && in_stage() > kSilentWait_s) complain(kSpindleRunsDown, {}), said_ = true;
+      if (!rest && !said_ && in_stage() > kSilentWait_s) announce(kSpindleRunsDown, {}), said_ = true;
       if (rest || in_stage() > kSpindlePatience_s) end();
       break;
     }
@@ -91,8 +90,8 @@ bool ShutDown::look() {
 void ShutDown::end() {
   const image::ProcessImage& now = image();
   const bool rest = spindles_rest(now), known = spindles_answer(now, control_.machine());
-  if (!rest) complain(kSpindleTurns, {text::number(kSpindlePatience_s, 0)});
-  if (!known) complain(kSpindleUnknown, {});
+  if (!rest) announce(kSpindleTurns, {text::number(kSpindlePatience_s, 0)});
+  if (!known) announce(kSpindleUnknown, {});
   rests_ = rest && known && axes_off(now);
   enter(Stage::done);
 }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "gateway/compose/control.hpp"
+#include "gateway/run/announce.hpp"
 #include "gateway/server/gate/request_desk.hpp"
 
 namespace servogate::gateway {
@@ -12,11 +13,15 @@ namespace servogate::gateway {
 /// off, the spindles run down. It waits for nobody. For one thread.
 class ShutDown {
  public:
-  ShutDown(Control& control, RequestDesk& requests)
-      : control_(control), requests_(requests), image_(std::make_unique<image::ProcessImage>()) {}
+  /// `announce`: hears what does not rest.
+  ShutDown(Control& control, RequestDesk& requests, Announce announce)
+      : control_(control),
+        requests_(requests),
+        announce_(std::move(announce)),
+        image_(std::make_unique<image::ProcessImage>()) {}
 
-  /// One look. True: everything rests, or it was waited for long enough; what does not rest has been said on
-  /// standard error.
+  /// One look. True: everything rests, or it was waited for long enough; what does not rest has been
+  /// announced.
   bool look();
   /// After look() was true: the axes are off and every spindle is known to stand.
   bool rests() const noexcept { return rests_; }
@@ -28,11 +33,15 @@ class ShutDown {
   bool moving();
   bool asked(image::RequestKind kind);
   void end();
+  void announce(const text::Entry& entry, const std::vector<std::string>& arguments) const {
+    if (announce_) announce_(entry, arguments);
+  }
 
   const image::ProcessImage& image();
 
   Control& control_;
   RequestDesk& requests_;
+  Announce announce_;
   std::unique_ptr<image::ProcessImage> image_;
   Stage stage_ = Stage::begin;
   std::uint64_t request_ = 0;  ///< whose answer is waited for

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "gateway/cli/options.hpp"
+#include "gateway/run/exit_code.hpp"
 #include "gateway/run/words/ready_words.hpp"
 #include "gateway/server/reply/plc_reply.hpp"
 #include "gateway/server/reply/status_report.hpp"

@@ -6,7 +6,6 @@
 #include <thread>
 #include <utility>
 
-#include "gateway/cli/messages.hpp"
 #include "gateway/history/request_words.hpp"
 #include "gateway/server/words/texts.hpp"
 
@@ -33,8 +32,7 @@ Resident::Resident(Control& control, machine::MachineState state, std::string st
   arm(ProgramChange::Kind::program);
 }
 
-RequestDesk::Outcome Resident::ask(const image::Request& request, image::Answer& answer,
-                                   const Asked& asked) {
+RequestDesk::Outcome Resident::ask(const image::Request& request, image::Answer& answer, const Asked& asked) {
   const RequestDesk::Outcome outcome = requests_.ask(request, answer, asked, kAnswerPatience_ms);
   if (outcome == RequestDesk::Outcome::answered) catch_up();
   return outcome;
@@ -290,7 +288,7 @@ Work Resident::save_later() {
   work.run = [this, saved = to_save()](const std::stop_token&) -> Finish {
     return [this, problem = write(saved)]() -> Outcome {
       saving_ = false;
-      if (!problem.empty()) complain(says::kNotSaved, {problem});
+      if (!problem.empty() && announce_) announce_(says::kNotSaved, {problem});
       return Reply{};
     };
   };

@@ -11,6 +11,7 @@
 #include "gateway/compose/program/program_check.hpp"
 #include "gateway/history/machine_watch.hpp"
 #include "gateway/machine/state/state.hpp"
+#include "gateway/run/announce.hpp"
 #include "gateway/server/gate/request_desk.hpp"
 #include "gateway/server/work/outcome.hpp"
 #include "gateway/server/work/works.hpp"
@@ -24,6 +25,9 @@ class Resident {
   /// `speed`: machine seconds per wall-clock second.
   Resident(Control& control, machine::MachineState state, std::string state_path, double speed = 1.0);
 
+  /// Who hears what cannot be kept or does not rest. Before anybody asks.
+  void announce_to(Announce announce) { announce_ = std::move(announce); }
+  const Announce& announce() const noexcept { return announce_; }
   /// From here on the history has what happens to the machine and who asks for what. Before anybody asks;
   /// `log` outlives this.
   void keep_history(history::EventLog& log);
@@ -136,6 +140,7 @@ class Resident {
   program::Position position();
   std::uint32_t homed();
 
+  Announce announce_;
   Control& control_;
   machine::MachineState state_;
   std::string state_path_;

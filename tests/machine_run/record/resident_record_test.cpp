@@ -32,7 +32,8 @@ class RecordedControl {
             findings_)),
         resident_(running_->control(), machine::MachineState{}, std::string()) {
     running_->watch({scratch.path("trace.csv"), {}, {}});
-    EXPECT_TRUE(running_->begin(true));
+    std::vector<gateway::Refusal> refusals;
+    EXPECT_TRUE(running_->begin(refusals));
   }
   gateway::Resident& resident() { return resident_; }
   /// After close(): the only alarm of this number.

@@ -240,7 +240,8 @@ TEST_P(MovesByItself, and_step_waits_for_news_while_faults_and_requests_come_fro
   const auto machine =
       gateway::RunningMachine::compose(machine::load(mill_file()), nullptr, GetParam(), findings);
   ASSERT_NE(machine, nullptr);
-  ASSERT_TRUE(machine->begin(true));
+  std::vector<gateway::Refusal> refusals;
+  ASSERT_TRUE(machine->begin(refusals));
   const auto until = [&](const std::function<bool()>& met) {
     for (int n = 0; n < 3000; ++n) {
       if (met()) return true;

@@ -33,7 +33,8 @@ class DeskOfAMill : public ::testing::Test {
         resident_(running_->control(), machine::MachineState{}, std::string(), 2.0) {}
   void SetUp() override {
     ASSERT_EQ(server_.bind(), "");
-    ASSERT_TRUE(running_->begin());
+    std::vector<gateway::Refusal> refusals;
+    ASSERT_TRUE(running_->begin(refusals));
     desk_.start();
     server_.start();
     ASSERT_EQ(socket_.connect(path_), "");
