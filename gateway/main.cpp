@@ -10,7 +10,7 @@
 #include "gateway/command/commands.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/signals.hpp"
-#include "gateway/compose/plc/compile_beside.hpp"
+#include "gateway/control/compose/plc/compile_beside.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "firmware_if/image/alarms/alarm_text.hpp"
-#include "gateway/compose/alarms/alarm_rooms.hpp"
+#include "gateway/control/compose/alarms/alarm_rooms.hpp"
 
 namespace servogate::tests {
 

@@ -10,7 +10,7 @@
 
 #include "bench/cycle/cycle_times.hpp"
 #include "gateway/benchmark/eight_axes.hpp"
-#include "gateway/run/running_machine.hpp"
+#include "gateway/control/run/running_machine.hpp"
 
 namespace {
 

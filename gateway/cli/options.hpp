@@ -6,8 +6,8 @@
 
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/cli/plc_options.hpp"
-#include "gateway/run/clock_kind.hpp"
-#include "gateway/run/exit_code.hpp"
+#include "gateway/control/run/clock_kind.hpp"
+#include "gateway/control/run/exit_code.hpp"
 
 namespace servogate::gateway {
 

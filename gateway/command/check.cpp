@@ -8,11 +8,11 @@
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/program_option.hpp"
-#include "gateway/compose/devices/open_devices.hpp"
-#include "gateway/compose/plc/logic_options.hpp"
-#include "gateway/compose/program/program_check.hpp"
-#include "gateway/files/read_file.hpp"
-#include "gateway/machine/consequences.hpp"
+#include "gateway/control/compose/devices/open_devices.hpp"
+#include "gateway/control/compose/plc/logic_options.hpp"
+#include "gateway/control/compose/program/program_check.hpp"
+#include "machine/consequences.hpp"
+#include "machine/files/read_file.hpp"
 #include "plc/run/run.hpp"
 
 namespace servogate::gateway::command {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/report/report.hpp"
+#include "report/report.hpp"
 
 namespace servogate::gateway::command {
 

@@ -2,7 +2,7 @@
 #include "gateway/command/machine_start.hpp"
 
 #include "gateway/cli/messages.hpp"
-#include "gateway/run/exit_code.hpp"
+#include "gateway/control/run/exit_code.hpp"
 
 namespace servogate::gateway::command {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "gateway/run/running_machine.hpp"
+#include "gateway/control/run/running_machine.hpp"
 
 /// What a command says when a machine is about to run.
 namespace servogate::gateway::command {

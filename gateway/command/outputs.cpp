@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "gateway/cli/messages.hpp"
-#include "gateway/report/html.hpp"
-#include "gateway/report/recorded_run.hpp"
-#include "gateway/report/trace.hpp"
-#include "gateway/run/can_log.hpp"
-#include "gateway/run/session.hpp"
+#include "gateway/control/run/can_log.hpp"
+#include "gateway/control/run/session.hpp"
+#include "report/html.hpp"
+#include "report/recorded_run.hpp"
+#include "report/trace.hpp"
 
 namespace servogate::gateway::command {
 

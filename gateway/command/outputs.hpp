@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "gateway/cli/options.hpp"
-#include "gateway/files/output_files.hpp"
-#include "gateway/machine/load.hpp"
-#include "gateway/report/report.hpp"
+#include "machine/files/output_files.hpp"
+#include "machine/load.hpp"
+#include "report/report.hpp"
 
 namespace servogate::gateway::command {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "gateway/compose/program/program_file.hpp"
+#include "gateway/control/compose/program/program_file.hpp"
 
 namespace servogate::gateway::command {
 

@@ -7,8 +7,8 @@
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/outputs.hpp"
-#include "gateway/files/read_file.hpp"
-#include "gateway/run/running_machine.hpp"
+#include "gateway/control/run/running_machine.hpp"
+#include "machine/files/read_file.hpp"
 
 namespace servogate::gateway::command {
 

@@ -14,14 +14,14 @@
 #include "gateway/command/machine_start.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/signals.hpp"
-#include "gateway/history/event_log.hpp"
-#include "gateway/history/texts.hpp"
-#include "gateway/report/report.hpp"
-#include "gateway/run/running_machine.hpp"
-#include "gateway/server/desk/desk.hpp"
-#include "gateway/server/resident/resident.hpp"
-#include "gateway/server/socket/socket_path.hpp"
-#include "gateway/server/socket_server.hpp"
+#include "gateway/control/history/event_log.hpp"
+#include "gateway/control/history/texts.hpp"
+#include "gateway/control/run/running_machine.hpp"
+#include "gateway/control/server/desk/desk.hpp"
+#include "gateway/control/server/resident/resident.hpp"
+#include "gateway/control/server/socket/socket_path.hpp"
+#include "gateway/control/server/socket/socket_server.hpp"
+#include "report/report.hpp"
 
 namespace servogate::gateway::command {
 

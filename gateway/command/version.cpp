@@ -4,7 +4,7 @@
 
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/report/report.hpp"
+#include "report/report.hpp"
 
 namespace servogate::gateway::command {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same bus written in different ways.
-#include "gateway/machine/bus_place.hpp"
+#include "machine/bus_place.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/history/event_log.hpp"
+#include "gateway/control/history/event_log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <regex>
 #include <thread>
 
-#include "gateway/history/request_words.hpp"
-#include "gateway/history/texts.hpp"
+#include "gateway/control/history/request_words.hpp"
+#include "gateway/control/history/texts.hpp"
 
 namespace servogate::gateway::history {
 namespace {

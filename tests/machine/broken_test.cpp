@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <set>
 
-#include "gateway/machine/device.hpp"
-#include "gateway/machine/load.hpp"
+#include "machine/device.hpp"
+#include "machine/load.hpp"
 #include "tests/machine/files.hpp"
 
 namespace servogate::machine {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/consequences.hpp"
+#include "machine/consequences.hpp"
 
 #include <gtest/gtest.h>
 

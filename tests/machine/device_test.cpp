@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/device.hpp"
+#include "machine/device.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <set>
 
-#include "gateway/machine/device.hpp"
-#include "gateway/machine/keys/key.hpp"
-#include "gateway/machine/keys/sections.hpp"
-#include "gateway/machine/state/state_text.hpp"
+#include "machine/device.hpp"
+#include "machine/keys/key.hpp"
+#include "machine/keys/sections.hpp"
+#include "machine/state/state_text.hpp"
 #include "tests/machine/files.hpp"
 
 namespace servogate::machine {

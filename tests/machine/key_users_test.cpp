@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "gateway/machine/keys/key.hpp"
-#include "gateway/machine/keys/sections.hpp"
+#include "machine/keys/key.hpp"
+#include "machine/keys/sections.hpp"
 #include "tests/machine/files.hpp"
 
 namespace servogate::machine {
@@ -54,7 +54,7 @@ TEST(KeyUsers, every_key_of_the_files_has_somebody_who_makes_it_work) {
 
 /// Checks and words about a machine; nothing that moves one.
 bool only_speaks(const std::string& file) {
-  return file.starts_with("gateway/machine/check/") || file.starts_with("gateway/machine/consequences");
+  return file.starts_with("machine/check/") || file.starts_with("machine/consequences");
 }
 
 /// As a word of a line that is no comment.
@@ -77,8 +77,7 @@ TEST(KeyUsers, who_is_said_to_make_a_key_work_knows_it) {
     if (user.how == "people") continue;
     ASSERT_TRUE(user.how == "acts" || user.how == "check") << key << ": " << user.how;
     EXPECT_TRUE(user.file.starts_with("gateway/")) << key;
-    EXPECT_EQ(user.how == "check", only_speaks(user.file) && user.file != "gateway/machine/check/names.cpp")
-        << key;
+    EXPECT_EQ(user.how == "check", only_speaks(user.file) && user.file != "machine/check/names.cpp") << key;
     ASSERT_TRUE(std::filesystem::exists(test::source(user.file))) << key << ": " << user.file;
     EXPECT_TRUE(reads(test::read_text(test::source(user.file)), user.member))
         << key << ": " << user.file << " does not read " << user.member << " any more";

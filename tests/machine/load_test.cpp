@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/load.hpp"
+#include "machine/load.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "gateway/machine/consequences.hpp"
-#include "gateway/machine/load.hpp"
+#include "machine/consequences.hpp"
+#include "machine/load.hpp"
 #include "tests/machine/files.hpp"
 
 namespace servogate::machine {

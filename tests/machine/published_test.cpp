@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <functional>
 
-#include "gateway/machine/keys/reader.hpp"
-#include "gateway/machine/keys/sections.hpp"
-#include "gateway/machine/load.hpp"
-#include "gateway/machine/published/published.hpp"
+#include "machine/keys/reader.hpp"
+#include "machine/keys/sections.hpp"
+#include "machine/load.hpp"
+#include "machine/published/published.hpp"
 #include "tests/machine/files.hpp"
 
 namespace servogate::machine {

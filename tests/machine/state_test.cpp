@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/machine/state/state.hpp"
-#include "gateway/machine/load.hpp"
-#include "gateway/machine/state/state_lock.hpp"
+#include "machine/state/state.hpp"
+#include "machine/load.hpp"
+#include "machine/state/state_lock.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <random>
 
-#include "gateway/machine/state/state_text.hpp"
+#include "machine/state/state_text.hpp"
 #include "tests/machine/files.hpp"
 
 namespace servogate::machine {

@@ -6,8 +6,8 @@
 #include <set>
 #include <tuple>
 
-#include "gateway/compose/devices/device_table.hpp"
-#include "gateway/compose/devices/open_devices.hpp"
+#include "gateway/control/compose/devices/device_table.hpp"
+#include "gateway/control/compose/devices/open_devices.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 

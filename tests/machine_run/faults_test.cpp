@@ -7,8 +7,8 @@
 
 #include "firmware_if/image/alarms/drive_report.hpp"
 #include "firmware_if/image/interface_map.hpp"
-#include "gateway/machine/consequences.hpp"
-#include "gateway/run/words/ready_words.hpp"
+#include "gateway/control/run/words/ready_words.hpp"
+#include "machine/consequences.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/property_seed.hpp"
 

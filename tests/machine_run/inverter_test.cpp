@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "gateway/machine/consequences.hpp"
+#include "machine/consequences.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {

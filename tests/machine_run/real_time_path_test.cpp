@@ -9,8 +9,8 @@
 #include <mutex>
 #include <thread>
 
-#include "gateway/run/record_file.hpp"
-#include "gateway/run/session.hpp"
+#include "gateway/control/run/record_file.hpp"
+#include "gateway/control/run/session.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"

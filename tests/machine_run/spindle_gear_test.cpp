@@ -4,8 +4,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "gateway/compose/setup/axis_setup.hpp"
-#include "gateway/compose/setup/canopen_setup.hpp"
+#include "gateway/control/compose/setup/axis_setup.hpp"
+#include "gateway/control/compose/setup/canopen_setup.hpp"
 #include "tests/places/places.hpp"
 
 namespace servogate::gateway {

@@ -2,7 +2,7 @@
 // The Modbus station of the example mill as its device file describes it.
 #include <gtest/gtest.h>
 
-#include "gateway/compose/setup/modbus_setup.hpp"
+#include "gateway/control/compose/setup/modbus_setup.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 

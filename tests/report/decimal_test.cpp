@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/report/decimal.hpp"
+#include "report/decimal.hpp"
 #include "tests/property_seed.hpp"
 
 #include <gtest/gtest.h>

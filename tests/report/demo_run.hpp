@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/report/html.hpp"
+#include "report/html.hpp"
 
 namespace servogate::report {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/report/html.hpp"
+#include "report/html.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -122,7 +122,7 @@ TEST(Html, needs_nothing_from_outside_itself) {
 }
 
 TEST(Html, libraries_are_the_files_whose_hashes_stand_beside_them_and_their_licences_are_in_the_page) {
-  const std::string folder = tests::source_dir() + "/gateway/report/page/vendor/";
+  const std::string folder = tests::source_dir() + "/report/page/vendor/";
   std::ifstream sums(folder + "SHA256SUMS");
   int files = 0;
   for (std::string hash, name; sums >> hash >> name; ++files)

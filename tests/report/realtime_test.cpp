@@ -7,8 +7,8 @@
 #include <iostream>
 #include <memory>
 
-#include "gateway/report/statistics.hpp"
-#include "gateway/report/trace.hpp"
+#include "report/statistics.hpp"
+#include "report/trace.hpp"
 #include "tests/counting/allocations.hpp"
 #include "tests/report/demo_run.hpp"
 

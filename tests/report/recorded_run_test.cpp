@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/report/recorded_run.hpp"
+#include "report/recorded_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <iostream>
 #include <random>
 
-#include "gateway/report/record/path_thinning.hpp"
-#include "gateway/report/statistics.hpp"
+#include "report/record/path_thinning.hpp"
+#include "report/statistics.hpp"
 #include "tests/property_seed.hpp"
 #include "tests/report/demo_run.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/report/report.hpp"
+#include "report/report.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

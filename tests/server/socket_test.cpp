@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "gateway/server/socket_server.hpp"
+#include "gateway/control/server/socket/socket_server.hpp"
 #include "tests/comes.hpp"
 #include "tests/property_seed.hpp"
 #include "tests/server/rig/shell.hpp"

@@ -2,7 +2,7 @@
 // What a run is to write is looked at before anything moves.
 #include <gtest/gtest.h>
 
-#include "gateway/files/output_files.hpp"
+#include "machine/files/output_files.hpp"
 #include "tests/shell/line.hpp"
 
 namespace servogate::shell {

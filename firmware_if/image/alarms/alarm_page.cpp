@@ -27,7 +27,8 @@ constexpr std::string_view kPlaceholders[] = {"AXIS",  "VALUE",   "LIMIT",   "WH
 std::string alarms_page(const AlarmTable& table) {
   const std::vector<std::string> names(std::begin(kPlaceholders), std::end(kPlaceholders));
   std::string page =
-      "# Alarms\n\nMade from the alarm tables of the rooms (`gateway/compose/alarms`); do not edit. The "
+      "# Alarms\n\nMade from the alarm tables of the rooms (`gateway/control/compose/alarms`); do not edit. "
+      "The "
       "reaction is "
       "the default; a\n"
       "machine file may ask for a stronger one. While the machine reacts to a first fault, further faults "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "gateway/compose/can_transport.hpp"
-#include "gateway/compose/control.hpp"
+#include "gateway/control/compose/can_transport.hpp"
+#include "gateway/control/compose/control.hpp"
 
 /// A command whose bus lost frames on this computer has shown nothing: that is trouble of the computer
 /// (kInfrastructure), never a result. One place for all commands that have a bus.

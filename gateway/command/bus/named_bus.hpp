@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "gateway/machine/load.hpp"
+#include "machine/load.hpp"
 
 namespace servogate::gateway::command {
 

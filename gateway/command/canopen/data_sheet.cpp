@@ -2,7 +2,7 @@
 #include "gateway/command/canopen/data_sheet.hpp"
 
 #include "gateway/cli/messages.hpp"
-#include "gateway/files/read_file.hpp"
+#include "machine/files/read_file.hpp"
 
 namespace servogate::gateway::command {
 

@@ -18,7 +18,7 @@
 #include "gateway/command/canopen/data_sheet.hpp"
 #include "gateway/command/canopen/object_value.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/files/output_files.hpp"
+#include "machine/files/output_files.hpp"
 
 namespace servogate::gateway::command {
 

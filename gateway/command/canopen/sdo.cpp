@@ -18,8 +18,8 @@
 #include "gateway/command/canopen/data_sheet.hpp"
 #include "gateway/command/canopen/object_value.hpp"
 #include "gateway/command/commands.hpp"
-#include "gateway/files/output_files.hpp"
-#include "gateway/files/read_file.hpp"
+#include "machine/files/output_files.hpp"
+#include "machine/files/read_file.hpp"
 
 namespace servogate::gateway::command {
 

@@ -12,7 +12,7 @@
 #include "gateway/command/client/wait.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
-#include "gateway/server/socket/socket_client.hpp"
+#include "gateway/control/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::command {
 

@@ -6,7 +6,7 @@
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
-#include "gateway/server/socket/socket_path.hpp"
+#include "gateway/control/server/socket/socket_path.hpp"
 
 namespace servogate::gateway::command {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "gateway/server/socket/socket_client.hpp"
+#include "gateway/control/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::command {
 

@@ -13,7 +13,7 @@
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/signals.hpp"
-#include "gateway/run/standstill.hpp"
+#include "gateway/control/run/standstill.hpp"
 
 namespace servogate::gateway::command {
 

@@ -14,7 +14,7 @@
 #include "gateway/command/bus/named_bus.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
-#include "gateway/compose/can_transport.hpp"
+#include "gateway/control/compose/can_transport.hpp"
 
 namespace servogate::gateway::command {
 

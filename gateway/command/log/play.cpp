@@ -17,7 +17,7 @@
 #include "gateway/command/canopen/bus/tool_bus.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/log/frame_filter.hpp"
-#include "gateway/files/read_file.hpp"
+#include "machine/files/read_file.hpp"
 
 namespace servogate::gateway::command {
 

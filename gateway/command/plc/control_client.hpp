@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "gateway/server/socket/socket_client.hpp"
+#include "gateway/control/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::command {
 

@@ -5,8 +5,8 @@
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/control_client.hpp"
 #include "gateway/command/plc/sources.hpp"
-#include "gateway/server/plc/plc_view.hpp"
-#include "gateway/server/reply/reply_json.hpp"
+#include "gateway/control/server/desk/plc/plc_view.hpp"
+#include "gateway/control/server/protocol/reply_json.hpp"
 
 namespace servogate::gateway::command {
 

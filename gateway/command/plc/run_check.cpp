@@ -7,7 +7,7 @@
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/sources.hpp"
-#include "gateway/machine/consequences.hpp"
+#include "machine/consequences.hpp"
 #include "plc/run/run.hpp"
 
 namespace servogate::gateway::command {

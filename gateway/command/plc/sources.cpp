@@ -2,9 +2,9 @@
 #include "gateway/command/plc/sources.hpp"
 
 #include "gateway/cli/messages.hpp"
-#include "gateway/compose/plc/logic_options.hpp"
-#include "gateway/files/read_file.hpp"
-#include "gateway/machine/load.hpp"
+#include "gateway/control/compose/plc/logic_options.hpp"
+#include "machine/files/read_file.hpp"
+#include "machine/load.hpp"
 
 namespace servogate::gateway::command {
 

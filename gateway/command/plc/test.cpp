@@ -10,8 +10,8 @@
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/sources.hpp"
-#include "gateway/files/read_file.hpp"
-#include "gateway/machine/consequences.hpp"
+#include "machine/consequences.hpp"
+#include "machine/files/read_file.hpp"
 
 namespace servogate::gateway::command {
 

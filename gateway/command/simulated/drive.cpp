@@ -22,9 +22,9 @@
 #include "gateway/command/simulated/fault_line.hpp"
 #include "gateway/command/simulated/node_presence.hpp"
 #include "gateway/command/simulated/switch_option.hpp"
-#include "gateway/compose/can_transport.hpp"
-#include "gateway/compose/simulated/drive_kind.hpp"
-#include "gateway/compose/simulated/simulated_node.hpp"
+#include "gateway/control/compose/can_transport.hpp"
+#include "gateway/control/compose/simulated/drive_kind.hpp"
+#include "gateway/control/compose/simulated/simulated_node.hpp"
 
 namespace servogate::gateway::command {
 

@@ -12,7 +12,7 @@
 #include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/files/read_file.hpp"
+#include "machine/files/read_file.hpp"
 
 namespace servogate::gateway::command {
 

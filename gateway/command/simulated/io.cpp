@@ -22,7 +22,7 @@
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/command/simulated/node_presence.hpp"
-#include "gateway/compose/can_transport.hpp"
+#include "gateway/control/compose/can_transport.hpp"
 
 namespace servogate::gateway::command {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gateway/command/signals.hpp"
-#include "gateway/compose/can_transport.hpp"
+#include "gateway/control/compose/can_transport.hpp"
 
 namespace servogate::gateway::command {
 

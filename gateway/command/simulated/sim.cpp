@@ -17,9 +17,9 @@
 #include "gateway/command/simulated/drive_desk.hpp"
 #include "gateway/command/simulated/node_presence.hpp"
 #include "gateway/command/simulated/sim_points.hpp"
-#include "gateway/compose/can_transport.hpp"
-#include "gateway/compose/simulated/machine_faults.hpp"
-#include "gateway/machine/bus_place.hpp"
+#include "gateway/control/compose/can_transport.hpp"
+#include "gateway/control/compose/simulated/machine_faults.hpp"
+#include "machine/bus_place.hpp"
 
 namespace servogate::gateway::command {
 

@@ -11,7 +11,7 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/simulated/fault_line.hpp"
-#include "gateway/compose/simulated/played_input.hpp"
+#include "gateway/control/compose/simulated/played_input.hpp"
 
 namespace servogate::gateway::command {
 

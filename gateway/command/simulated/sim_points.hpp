@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/compose/simulated/world_setup.hpp"
-#include "gateway/machine/config.hpp"
+#include "gateway/control/compose/simulated/world_setup.hpp"
+#include "machine/config.hpp"
 
 namespace servogate::gateway::command {
 

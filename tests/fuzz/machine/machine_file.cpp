@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "gateway/machine/consequences.hpp"
-#include "gateway/machine/load.hpp"
-#include "gateway/machine/state/state.hpp"
+#include "machine/consequences.hpp"
+#include "machine/load.hpp"
+#include "machine/state/state.hpp"
 
 using namespace servogate;
 

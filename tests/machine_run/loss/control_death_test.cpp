@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/machine/check/stops/control_death.hpp"
+#include "machine/check/stops/control_death.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {

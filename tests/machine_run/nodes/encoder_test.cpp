@@ -2,7 +2,7 @@
 // An absolute encoder (CiA 406) on the bus of the drives is a point of packet A.
 #include <gtest/gtest.h>
 
-#include "gateway/compose/setup/canopen_setup.hpp"
+#include "gateway/control/compose/setup/canopen_setup.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware_if/canopen/401/objects.hpp"
-#include "gateway/machine/consequences.hpp"
+#include "machine/consequences.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {

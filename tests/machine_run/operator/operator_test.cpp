@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `servogate run` does in an operator's place, and what it leaves to the person at a real machine.
-#include "gateway/run/operator_script.hpp"
+#include "gateway/control/run/operator_script.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is known of spindles when a control is to end.
-#include "gateway/run/standstill.hpp"
+#include "gateway/control/run/standstill.hpp"
 
 #include <gtest/gtest.h>
 

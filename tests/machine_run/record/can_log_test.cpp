@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "gateway/run/can_log.hpp"
+#include "gateway/control/run/can_log.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/run/record_file.hpp"
+#include "gateway/control/run/record_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <random>
 
-#include "gateway/run/running_machine.hpp"
+#include "gateway/control/run/running_machine.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/property_seed.hpp"
@@ -74,9 +74,7 @@ TEST(RecordFile, on_a_full_disk_is_an_alarm_of_the_machine_that_goes_on) {
   const auto machine = gateway::RunningMachine::compose(machine::load(mill_file()), nullptr,
                                                         {.record = "/dev/full"}, findings);
   ASSERT_NE(machine, nullptr);
-  const auto warned = [&] {
-    return machine->control().cycle().alarms().active(cycle::alarm::kRecordBroken);
-  };
+  const auto warned = [&] { return machine->control().cycle().alarms().active(cycle::alarm::kRecordBroken); };
   EXPECT_FALSE(warned());
   for (int n = 0; n < 200'000 && !warned(); ++n) ASSERT_TRUE(machine->step());
   EXPECT_TRUE(warned());

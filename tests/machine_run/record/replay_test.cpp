@@ -9,7 +9,7 @@
 #include <fstream>
 #include <thread>
 
-#include "gateway/machine/state/state.hpp"
+#include "machine/state/state.hpp"
 #include "tests/comes.hpp"
 #include "tests/machine_run/rig/program.hpp"
 #include "tests/machine_run/rig/programs.hpp"

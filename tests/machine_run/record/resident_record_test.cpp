@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "gateway/run/running_machine.hpp"
-#include "gateway/server/plc/plc_desk.hpp"
-#include "gateway/server/resident/resident.hpp"
+#include "gateway/control/run/running_machine.hpp"
+#include "gateway/control/server/desk/plc/plc_desk.hpp"
+#include "gateway/control/server/resident/resident.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/comes.hpp"
 #include "tests/machine_run/rig/program.hpp"

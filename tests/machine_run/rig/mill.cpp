@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "gateway/compose/program/program_model.hpp"
+#include "gateway/control/compose/program/program_model.hpp"
 #include "tests/machine_run/rig/program.hpp"
 
 namespace servogate::machine_run {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gateway/run/running_machine.hpp"
+#include "gateway/control/run/running_machine.hpp"
 #include "kernel/cycle/gate/gate.hpp"
 
 namespace servogate::machine_run {

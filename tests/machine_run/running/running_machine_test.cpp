@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/canopen/302/boot_detail.hpp"
-#include "gateway/run/running_machine.hpp"
+#include "gateway/control/run/running_machine.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // The desk and its clients: one that is no socket, in this process and without a word of JSON, beside one
 // that asks in lines.
-#include "gateway/server/desk/desk.hpp"
+#include "gateway/control/server/desk/desk.hpp"
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "gateway/run/running_machine.hpp"
-#include "gateway/server/desk/desk_client.hpp"
-#include "gateway/server/resident/resident.hpp"
-#include "gateway/server/socket_server.hpp"
+#include "gateway/control/run/running_machine.hpp"
+#include "gateway/control/server/desk/desk_client.hpp"
+#include "gateway/control/server/resident/resident.hpp"
+#include "gateway/control/server/socket/socket_server.hpp"
 #include "tests/comes.hpp"
 #include "tests/places/places.hpp"
 #include "tests/server/rig/shell.hpp"
@@ -124,6 +125,27 @@ TEST_F(DeskOfAMill, ends_what_a_client_held_with_the_client_and_leaves_the_other
   }
   EXPECT_TRUE(until([](const StatusReport& s) { return !s.axes[0].axis.moving && s.forced.size() == 1; }));
   EXPECT_EQ(line({{"cmd", "status"}})["forced"][0]["name"], "door_closed");
+}
+
+TEST_F(DeskOfAMill, gives_a_subscriber_one_whole_cycle_after_the_other_until_it_leaves) {
+  std::atomic<int> seen{0}, backwards{0};
+  std::atomic<bool> moved{false};
+  {
+    DeskClient page(desk_, image::Asker::page, "the page", text::Language::english);
+    std::int64_t last = -1;
+    page.subscribe(1ms, [&](const image::ProcessImage& image, const cycle::AlarmSnapshot&) {
+      if (image.now.number <= last) ++backwards;
+      last = image.now.number;
+      if (image.axes[0].moving) moved = true;
+      ++seen;
+    });
+    ASSERT_TRUE(said(ask::Jog{"X", 20.0, {}}).ok);
+    EXPECT_TRUE(tests::comes([&] { return seen > 20 && moved; }));
+    EXPECT_EQ(backwards, 0) << "never the same cycle twice";
+  }
+  const int then = seen;
+  EXPECT_TRUE(until([](const StatusReport& s) { return !s.axes[0].axis.moving; }));
+  EXPECT_EQ(seen, then) << "the client has gone";
 }
 
 TEST_F(DeskOfAMill, tells_every_client_that_the_control_ends) {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "gateway/machine/state/state_lock.hpp"
+#include "machine/state/state_lock.hpp"
 #include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Between clients and the gate: whose answer is whose, and what a stop does to what was asked before it.
-#include "gateway/server/gate/request_desk.hpp"
+#include "gateway/control/server/resident/request_desk.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <memory>
 #include <thread>
 
-#include "gateway/server/work/workshop.hpp"
+#include "gateway/control/server/resident/work/workshop.hpp"
 #include "tests/alarms.hpp"
 #include "tests/comes.hpp"
 

@@ -2,7 +2,7 @@
 // Lines that are no requests, or whose fields have another type: each is answered with a sentence of our own.
 #include <gtest/gtest.h>
 
-#include "gateway/server/request/request_form.hpp"
+#include "gateway/control/server/protocol/request_form.hpp"
 #include "tests/server/rig/shell.hpp"
 
 namespace servogate::gateway::testing {

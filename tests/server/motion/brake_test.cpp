@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "gateway/run/running_machine.hpp"
+#include "gateway/control/run/running_machine.hpp"
 #include "tests/places/places.hpp"
 
 namespace servogate::gateway {

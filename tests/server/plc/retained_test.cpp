@@ -7,7 +7,7 @@
 #include <fstream>
 #include <thread>
 
-#include "gateway/machine/state/state.hpp"
+#include "machine/state/state.hpp"
 #include "tests/comes.hpp"
 #include "tests/server/rig/shell.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/server/socket/socket_client.hpp"
+#include "gateway/control/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::testing {
 

@@ -6,7 +6,7 @@
 #include "drivers/clock.hpp"
 #include "drivers/socketcan/socketcan_bus.hpp"
 #include "firmware_if/text/system_words.hpp"
-#include "gateway/compose/can_transport.hpp"
+#include "gateway/control/compose/can_transport.hpp"
 
 namespace servogate::gateway::command {
 

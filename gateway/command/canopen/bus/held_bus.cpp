@@ -9,8 +9,8 @@
 #include "firmware_if/canopen/306/value_text.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
-#include "gateway/machine/bus_place.hpp"
-#include "gateway/server/socket/socket_path.hpp"
+#include "gateway/control/server/socket/socket_path.hpp"
+#include "machine/bus_place.hpp"
 
 namespace servogate::gateway::command {
 

@@ -8,7 +8,7 @@
 
 #include "gateway/command/bus/named_bus.hpp"
 #include "gateway/command/canopen/bus/tool_bus.hpp"
-#include "gateway/server/socket/socket_client.hpp"
+#include "gateway/control/server/socket/socket_client.hpp"
 
 namespace servogate::gateway::command {
 

@@ -21,8 +21,8 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
-#include "gateway/machine/bus_place.hpp"
-#include "gateway/server/socket/socket_path.hpp"
+#include "gateway/control/server/socket/socket_path.hpp"
+#include "machine/bus_place.hpp"
 
 namespace servogate::gateway::command {
 

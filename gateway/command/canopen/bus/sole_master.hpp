@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "firmware_if/image/time.hpp"
-#include "gateway/compose/control.hpp"
-#include "gateway/machine/load.hpp"
+#include "gateway/control/compose/control.hpp"
+#include "machine/load.hpp"
 
 namespace servogate::gateway::command {
 

@@ -13,7 +13,7 @@
 #include "firmware_if/canopen/inspect/sdo_access.hpp"
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/command/signals.hpp"
-#include "gateway/compose/can_transport.hpp"
+#include "gateway/control/compose/can_transport.hpp"
 
 namespace servogate::gateway::command {
 

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/control/compose/control.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "firmware_if/canopen/301/emcy.hpp"
+#include "gateway/control/compose/devices/open_devices.hpp"
+#include "gateway/control/compose/plc/compile_beside.hpp"
+#include "gateway/control/compose/plc/logic_options.hpp"
+#include "gateway/control/compose/program/program_model.hpp"
+#include "gateway/control/compose/setup/axis_setup.hpp"
+#include "gateway/control/compose/setup/canopen_setup.hpp"
+#include "machine/files/read_file.hpp"
+#include "plc/compile/compile.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+const text::Entry kNoBus{"compose.no-bus", "bus '{0}': {1}", "шина «{0}»: {1}"};
+const text::Entry kPerhapsReal{
+    "compose.perhaps-real",
+    "bus '{0}' is said to be simulated, but a real one may be behind '{1}': leave `simulated` out, and the "
+    "machine waits for its operator",
+    "шина «{0}» объявлена имитацией, но за «{1}» может быть настоящая: уберите `simulated`, и станок будет "
+    "ждать оператора"};
+
+/// Far more than any cycle, and less than anybody waits for a stop.
+constexpr image::Nanoseconds kLongestScan_ns = 500 * image::kMillisecond;
+
+/// Stands in for a bus while a record is replayed: what came in comes from the record.
+class SilentBus final : public image::CanBus {
+ public:
+  explicit SilentBus(std::uint32_t bit_rate) : bit_rate_(bit_rate) {}
+  bool send(const image::CanFrame&) noexcept override { return true; }
+  bool receive(image::CanFrame&) noexcept override { return false; }
+  image::CanState state() const noexcept override { return image::CanState::error_active; }
+  std::uint32_t bit_rate() const noexcept override { return bit_rate_; }
+
+ private:
+  std::uint32_t bit_rate_;
+};
+const text::Entry kNotRestored{
+    "compose.plc-not-restored",
+    "the retained value {2} of '{0}' is kept aside: the PLC has no such variable of type {1}",
+    "сохранённое значение {2} переменной «{0}» отложено: в ПЛК нет такой переменной типа {1}"};
+const text::Entry kUnreadable{"compose.plc-unreadable", "cannot read the PLC source: {0}",
+                              "исходный текст ПЛК не читается: {0}"};
+
+}  // namespace
+
+Control::Control(const machine::LoadResult& loaded)
+    : loaded_(loaded), symbols_(loaded_.machine.symbol_table()) {}
+Control::~Control() = default;
+
+std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
+                                          std::vector<text::Finding>& findings, cycle::InputSource* source) {
+  std::unique_ptr<Control> c(new Control(loaded));
+  const machine::MachineConfig& m = c->loaded_.machine;
+  const bool logic = c->compile_logic(findings), devices = check_devices(c->loaded_, findings);
+  if (!logic || !devices || !c->open_buses(findings, source != nullptr)) return nullptr;
+
+  c->world_ = simulated_world(c->loaded_);
+  c->devices_ = open_devices(c->loaded_, *c->world_, source != nullptr, findings);
+  if (infrastructure(findings)) return nullptr;
+  c->faults_ = std::make_unique<MachineFaults>(m, *c->world_, true);
+  c->alarm_rooms_ = c->alarm_rooms();
+  cycle::CycleParts parts;
+  parts.alarms = &c->alarm_rooms_->table();
+  parts.period_ns = m.cycle_ns();
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    image::CanBus* bus = m.buses[b].mock() ? c->world_->bus(b) : c->transports_[b].bus.get();
+    c->suppliers_.push_back(std::make_unique<CanSupplier>(
+        *bus, segment_config(c->loaded_, static_cast<int>(b)), drive_points(m, m.buses[b].name)));
+    parts.devices.push_back(c->suppliers_.back().get());
+    for (const canopen::NodeConfig& node : c->suppliers_.back()->segment().config().nodes)
+      if (node.target == canopen::DriveTarget::io)
+        parts.sources[static_cast<std::size_t>(node.target_index)].place = {static_cast<std::int16_t>(b),
+                                                                            node.node};
+  }
+  for (const auto& device : c->devices_) parts.devices.push_back(device.get());
+  for (std::size_t s = 0; s < m.stations.size(); ++s)
+    parts.sources[s].watched = !m.stations[s].over_bus();  // the loss of a node is said by its bus
+  parts.logic = c->logic_.get();
+  for (int p = 0; p < m.control.processes; ++p) {
+    c->processes_.push_back(std::make_unique<channel::Process>(process_config(m, p)));
+    parts.processes.push_back(c->processes_.back().get());
+  }
+  for (const machine::AxisConfig& a : m.axes) parts.axes.push_back(axis_config(c->loaded_, a));
+  for (const machine::SpindleConfig& s : m.spindles) parts.spindles.push_back(spindle_config(c->loaded_, s));
+  parts.k_bytes = static_cast<std::uint32_t>(m.control.k_size);
+  parts.syvar_bytes = static_cast<std::uint32_t>(m.control.syvar_size);
+  if (const machine::PointConfig* estop = m.point(m.safety.estop); estop != nullptr)
+    parts.estop_place = estop->place;
+  if (const machine::PointConfig* alive = m.point(m.safety.control_alive); alive != nullptr)
+    parts.alive_place = alive->place;
+  if (const machine::PointConfig* start = m.point(m.run.start_point); start != nullptr)
+    parts.start_place = start->place;
+  parts.stopwatch = &c->stopwatch_;
+  c->cycle_ = std::make_unique<cycle::Cycle>(std::move(parts));
+  c->cycle_->attach(source);
+  return c;
+}
+
+bool Control::open_buses(std::vector<text::Finding>& findings, bool replay) {
+  const machine::MachineConfig& m = loaded_.machine;
+  bool good = true;
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    const machine::BusConfig& bus = m.buses[b];
+    const auto rate = static_cast<std::uint32_t>(bus.bit_rate);
+    transports_.emplace_back();
+    if (bus.mock()) continue;
+    if (replay) {
+      transports_.back().bus = std::make_unique<SilentBus>(rate);
+      continue;
+    }
+    std::vector<int> nodes;
+    for (const machine::NodeConfig& node : bus.nodes) nodes.push_back(node.id);
+    drivers::Notice why;
+    auto opened = open_can(bus.url, {rate, false, master_filters(nodes), "control"}, why);
+    const machine::Where where = m.where("bus." + std::to_string(b) + ".url");
+    const auto refuse = [&](const text::Entry& entry, const std::string& text) {
+      findings.push_back(
+          {text::Severity::error, m.file, where.line, where.column, &entry, {bus.name, text}, {}});
+      good = false;
+    };
+    if (!opened)
+      refuse(kNoBus, text::both(why.str(text::Language::english), why.str(text::Language::russian)));
+    else if (bus.nothing_real() && !opened->nothing_real)
+      refuse(kPerhapsReal, bus.url);
+    else
+      transports_.back() = std::move(*opened);
+  }
+  return good;
+}
+
+bool Control::infrastructure(const std::vector<text::Finding>& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const auto& f) { return f.entry == &kNoBus || device_not_opened(f); });
+}
+
+const CanTransport* Control::shared_bus(std::size_t bus) const noexcept {
+  const CanTransport& t = transports_[bus];
+  return t.bus != nullptr && t.descriptor >= 0 && t.lockstep == nullptr ? &t : nullptr;
+}
+
+std::uint64_t Control::frames_lost(std::size_t bus) const noexcept {
+  return transports_[bus].bus != nullptr ? transports_[bus].bus->lost() : 0;
+}
+
+/// Time that other processes live in goes on to the beginning of the next cycle, with everything that happens
+/// until then.
+void Control::await_grants(image::Nanoseconds t) {
+  for (bool more = true; more;) {
+    more = false;
+    for (CanTransport& transport : transports_)
+      if (transport.lockstep != nullptr && (t > 0 || transport.lockstep->granted() > 0))
+        transport.lockstep->done(t);
+    for (CanTransport& transport : transports_) {
+      if (transport.lockstep == nullptr) continue;
+      const auto granted = transport.lockstep->wait_grant();
+      more = more || (granted && *granted < t);
+    }
+  }
+}
+
+void Control::watch_logic() noexcept {
+  if (logic_ != nullptr && logic_->scan_ended())
+    cycle_->watch_logic(longest_scan_ns(), true);
+  else
+    cycle_->watch_logic(static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
+}
+
+image::Nanoseconds Control::longest_scan_ns() const noexcept {
+  return std::max(kLongestScan_ns, static_cast<image::Nanoseconds>(loaded_.machine.plc.watchdog * 1e9));
+}
+
+plc::CompileResult Control::compile(const std::vector<plc::SourceFile>& files,
+                                    const std::stop_token& stop) const {
+  return compile_beside(files, symbols_, logic_options(loaded_.machine), stop);
+}
+
+plc::Logic::Plan Control::prepare(const plc::LogicChange& change, plc::CompileResult compiled) {
+  plc::Logic::Plan plan = logic_->prepare(change, std::move(compiled));
+  if (plan.possible && change_tap_ != nullptr) change_tap_->take(change);
+  return plan;
+}
+
+bool Control::compile_logic(std::vector<text::Finding>& findings) {
+  const machine::MachineConfig& m = loaded_.machine;
+  if (m.plc.sources.empty()) return true;
+  std::vector<plc::SourceFile> sources;
+  for (std::size_t i = 0; i < m.plc.sources.size(); ++i) {
+    plc::SourceFile file{m.resolve(m.plc.sources[i]), {}};
+    std::string error;
+    auto content = files::read_file(file.name, files::kMostOfSource, error);
+    if (!content) {
+      const machine::Where where = m.where("plc.sources");
+      findings.push_back({text::Severity::error,
+                          m.file,
+                          where.line,
+                          where.column,
+                          &kUnreadable,
+                          {file.name + ": " + error}});
+      return false;
+    }
+    file.text = std::move(*content);
+    sources.push_back(std::move(file));
+  }
+  plc::CompileResult compiled = plc::compile(sources, symbols_, logic_options(m));
+  findings.insert(findings.end(), compiled.findings.begin(), compiled.findings.end());
+  if (!compiled.ok()) return false;
+  logic_ = std::make_unique<plc::Logic>(compiled.image, std::move(sources), stopwatch_);
+  return true;
+}
+
+image::Nanoseconds Control::advance_world() {
+  const image::Nanoseconds t = cycle_->count() * cycle_->period_ns();
+  faults_->advance_to(t);
+  const image::Nanoseconds late = faults_->take_lateness();
+  world_ahead_ns_ += late;
+  await_grants(t + world_ahead_ns_);
+  world_->note_feedback(cycle_->image());
+  world_->advance_to(t + world_ahead_ns_);
+  return late;
+}
+
+void Control::take_leave() {
+  constexpr image::Nanoseconds kPatience_ns = 500 * image::kMillisecond;
+  const image::Nanoseconds begin = cycle_->count() * cycle_->period_ns();
+  const bool granted = std::any_of(transports_.begin(), transports_.end(),
+                                   [](const CanTransport& t) { return t.lockstep != nullptr; });
+  bool done = false;
+  for (image::Nanoseconds t = begin; !done && t < begin + kPatience_ns; t += cycle_->period_ns()) {
+    if (granted)
+      await_grants(t + world_ahead_ns_);
+    else
+      std::this_thread::sleep_for(std::chrono::nanoseconds(cycle_->period_ns()));
+    done = true;
+    for (const auto& supplier : suppliers_) {
+      const auto bus = static_cast<std::size_t>(supplier->segment().config().index);
+      if (transports_[bus].bus != nullptr) done = supplier->leave(t) && done;
+    }
+  }
+}
+
+bool Control::read_ahead() {
+  const std::scoped_lock lock(reading_);
+  bool more = false;
+  for (const auto& process : processes_) more = process->work() || more;
+  return more;
+}
+
+bool Control::change(const ProgramChange& change) {
+  const std::scoped_lock lock(reading_);
+  channel::Process& p = process(change.process);
+  const bool loads =
+      change.kind == ProgramChange::Kind::program || change.kind == ProgramChange::Kind::tables;
+  if (loads && p.feeder().reads()) return false;
+  // What a record keeps of it lies before what its subprograms are.
+  if (change_tap_ != nullptr) change_tap_->take(change);
+  switch (change.kind) {
+    case ProgramChange::Kind::program:
+      p.load(interpreter_factory(change, change_tap_), change.tables);
+      break;
+    case ProgramChange::Kind::tables:
+      p.renew(interpreter_factory(change, change_tap_), change.tables);
+      break;
+    case ProgramChange::Kind::block:
+      p.set_manual_block(change.block);
+      break;
+    case ProgramChange::Kind::modes:
+      p.forget_manual();
+      break;
+  }
+  return true;
+}
+
+void Control::restore_references(const machine::MachineState& state) {
+  const std::vector<machine::AxisConfig>& axes = loaded_.machine.axes;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (const auto kept = state.homing.find(axes[a].letter);
+        kept != state.homing.end() && kept->second.valid &&
+        axes[a].home.method == machine::HomingMethod::absolute)
+      cycle_->set_reference(static_cast<int>(a), kept->second.offset_counts);
+}
+
+void Control::restore_tool(const machine::MachineState& state) {
+  cycle_->initial_image().processes[0].tool = static_cast<std::uint16_t>(state.tool_in_spindle);
+}
+
+std::vector<text::Finding> Control::restore_retained(const machine::MachineState& state) {
+  std::vector<text::Finding> findings;
+  for (const machine::RetainedVariable& v : state.retained) {
+    const plc::Retained value{v.name, v.type, v.value};
+    if (logic_ != nullptr && logic_->engine().restore({&value, 1}) != 0) continue;
+    if (logic_ != nullptr) logic_->set_aside(value);
+    const machine::Where where = loaded_.machine.where("plc");
+    findings.push_back({text::Severity::warning,
+                        loaded_.machine.file,
+                        where.line,
+                        where.column,
+                        &kNotRestored,
+                        {v.name, v.type, v.value}});
+  }
+  return findings;
+}
+
+void Control::open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) noexcept {
+  if (!due_ns_)
+    for (const auto& supplier : suppliers_) supplier->time_sync(clock);
+  due_ns_ = due_ns;
+}
+
+/// The device file of the drive or part that an alarm is of.
+const machine::DeviceConfig* Control::device_of(const image::AlarmRecord& r) const {
+  const machine::NodeConfig* node = node_of(r.part);
+  if (r.axis >= 0 && static_cast<std::size_t>(r.axis) < loaded_.machine.axes.size())
+    node = loaded_.machine.node(loaded_.machine.axes[static_cast<std::size_t>(r.axis)].drive);
+  return node != nullptr ? loaded_.device(node->device) : nullptr;
+}
+
+const machine::NodeConfig* Control::node_of(const image::PartPlace& place) const {
+  if (place.device < 0 || place.device >= std::ssize(loaded_.machine.buses)) return nullptr;
+  for (const machine::NodeConfig& n : loaded_.machine.buses[static_cast<std::size_t>(place.device)].nodes)
+    if (n.id == place.part) return &n;
+  return nullptr;
+}
+
+std::unique_ptr<AlarmRooms> Control::alarm_rooms() const {
+  const auto process = [this](int p) {
+    return p >= 0 && p < std::ssize(processes_) ? processes_[static_cast<std::size_t>(p)].get() : nullptr;
+  };
+  canopen::MasterAlarmWords bus([this](const image::PartPlace& place) {
+    const machine::NodeConfig* node = node_of(place);
+    return node != nullptr ? node->software_version : std::string();
+  });
+  channel::ProgramAlarmWords program(
+      [process](int p, std::uint32_t run, int file) {
+        return process(p) != nullptr ? process(p)->texts().file(run, file) : std::string();
+      },
+      [process](int p, int number, text::Language language) {
+        const auto finding = process(p) != nullptr ? process(p)->texts().finding(number) : std::nullopt;
+        return finding ? finding->str(language) : std::string();
+      });
+  plc::LogicAlarmWords logic([this](const image::AlarmRecord& record, text::Language language) {
+    return logic_ != nullptr ? logic_->fault_words(record, language) : std::string();
+  });
+  return std::make_unique<AlarmRooms>(std::move(bus), std::move(program), std::move(logic));
+}
+
+image::AlarmNames Control::alarm_names() const {
+  const machine::MachineConfig& m = loaded_.machine;
+  image::AlarmNames names;
+  names.table = &alarm_rooms_->table();
+  names.axes = m.letters();
+  names.units = m.unit_words();
+  for (const machine::AxisConfig& a : m.axes) names.diameters.push_back(a.diameter);
+  for (const machine::BusConfig& b : m.buses) names.devices.push_back(b.name);
+  for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
+  names.error_text = [this](const image::AlarmRecord& r, std::uint16_t code, text::Language language) {
+    const machine::DeviceConfig* device = device_of(r);
+    const std::string_view own = device != nullptr ? device->error_text(code, language) : std::string_view();
+    return own.empty() ? text::render(canopen::error_code_text(code), {}, language) : std::string(own);
+  };
+  names.part_name = [this](const image::PartPlace& place) {
+    const machine::NodeConfig* n = node_of(place);
+    return n == nullptr ? std::string()
+                        : loaded_.machine.buses[static_cast<std::size_t>(place.device)].name + "." + n->name;
+  };
+  return names;
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/control/compose/devices/device_table.hpp"
+
+#include "firmware_if/text/finding.hpp"
+#include "gateway/control/compose/devices/world_device.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+bool not_empty(std::string_view rest) { return !rest.empty(); }
+
+const std::string kMockForm = text::both("mock:NAME", "mock:ИМЯ");
+
+const DeviceRow kRows[] = {
+    {DeviceKind::line, "mock:", kMockForm, true, not_empty, open_world_device},
+    {DeviceKind::chip, "mock:", kMockForm, true, not_empty, open_world_device},
+};
+
+}  // namespace
+
+std::span<const DeviceRow> device_rows() { return kRows; }
+
+const DeviceRow* device_row(DeviceKind kind, std::string_view url) {
+  for (const DeviceRow& row : kRows)
+    if (row.kind == kind && url.starts_with(row.scheme) && row.well_formed(url.substr(row.scheme.size())))
+      return &row;
+  return nullptr;
+}
+
+std::string device_forms(DeviceKind kind) {
+  std::string english, russian;
+  for (const DeviceRow& row : kRows) {
+    if (row.kind != kind) continue;
+    const std::string form(row.form);
+    english += (english.empty() ? "" : ", ") + text::in_language(form, text::Language::english);
+    russian += (russian.empty() ? "" : ", ") + text::in_language(form, text::Language::russian);
+  }
+  return text::both(english, russian);
+}
+
+}  // namespace servogate::gateway

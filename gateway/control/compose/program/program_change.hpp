@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "gateway/control/compose/program/program_file.hpp"
+#include "kernel/channel/feeder.hpp"
+#include "kernel/program/interpreter/interpreter.hpp"
+#include "plc/logic/logic_change.hpp"
+
+namespace servogate::gateway {
+
+/// Something that was changed outside the cycle about what a process will run. Beside the inputs of the
+/// cycles this is all that comes from outside; a record keeps both.
+struct ProgramChange {
+  enum class Kind : std::uint8_t {
+    program,  ///< `file` is the program for the next starts, with `tables`
+    tables,   ///< the same program with other tables
+    block,    ///< the next start in MDI mode runs `block`
+    modes,    ///< MDI has its power-on modes again
+  };
+  Kind kind = Kind::program;
+  int process = 0;
+  std::shared_ptr<const ProgramFile> file;  ///< of `program` and `tables`
+  program::Tables tables;
+  std::string block;
+};
+
+/// Sees what Control::change() carries out, the subprograms that were read for it, and what
+/// Control::prepare() makes ready for the PLC. Called outside the cycle, by one thread at a time.
+class ProgramChangeTap {
+ public:
+  virtual ~ProgramChangeTap() = default;
+  virtual void take(const ProgramChange& change) = 0;
+  virtual void take(const plc::LogicChange& change) = 0;
+  virtual void take_subprogram(std::string_view name, std::string_view text) = 0;
+};
+
+/// Constructs interpreters for a change that loads a program; what they read of subprograms is shown to `tap`
+/// (may be nullptr).
+channel::InterpreterFactory interpreter_factory(const ProgramChange& change, ProgramChangeTap* tap);
+
+}  // namespace servogate::gateway

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <stop_token>
+
+#include "gateway/control/compose/program/program_file.hpp"
+#include "kernel/channel/motion/forecast.hpp"
+#include "kernel/program/check/check.hpp"
+
+namespace servogate::gateway {
+
+/// What a program without its machine comes to.
+struct ProgramCheck {
+  program::CheckReport report;  ///< its findings may begin with that of the file's encoding
+  double motion_s = 0.0;        ///< of all motion at an override of 100 %; 0 unless timed
+  double seconds() const { return motion_s + report.dwell_seconds; }
+};
+
+/// Where the axes stand when the program begins.
+struct Start {
+  program::Position at{};
+  bool known = false;  ///< false: they may stand elsewhere by then
+};
+/// Where homing leaves the axes; known where it moves all of them.
+Start start_after_homing(const machine::MachineConfig& machine);
+
+/// Thrown by what a stop token has ended.
+struct Cancelled {};
+
+/// Runs the program to its end without the machine (program::check_program), from `start`, and asks the
+/// channel whether its motion can be driven, and for how long. Throws Cancelled soon after `stop` asks for
+/// it. Not real-time safe.
+ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramFile& file,
+                           const program::Tables& tables, const program::Position& start,
+                           channel::Forecast::Depth depth, const std::stop_token& stop = {});
+
+/// The same for a program that is about to run: an error stays one only where the machine cannot make a
+/// difference. One that is met after the program has read a signal, or only from some places of the axes,
+/// becomes a warning which says so.
+ProgramCheck prove_program(const machine::MachineConfig& machine, const ProgramFile& file,
+                           const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
+                           const std::stop_token& stop = {});
+
+}  // namespace servogate::gateway

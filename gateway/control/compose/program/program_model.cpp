@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/control/compose/program/program_model.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "machine/files/read_file.hpp"
+#include "machine/state/state.hpp"
+
+namespace servogate::gateway {
+
+program::MachineModel program_model(const machine::MachineConfig& machine) {
+  program::MachineModel model;
+  for (const machine::AxisConfig& a : machine.axes) {
+    if (a.auxiliary) continue;  // behind all others
+    program::MachineModel::Axis axis;
+    axis.letter = a.letter;
+    axis.rotary = a.type == machine::AxisType::rotary;
+    axis.diameter = a.diameter;
+    if (!a.endless()) {
+      axis.travel_min = a.travel_min;
+      axis.travel_max = a.travel_max;
+    }
+    axis.rapid = a.max_velocity;
+    model.axes.push_back(axis);
+  }
+  model.spindles = static_cast<int>(machine.spindles.size());
+  if (!machine.spindles.empty()) {
+    model.spindle_min_rpm = machine.spindles[0].min_speed;
+    model.spindle_max_rpm = machine.spindles[0].max_speed;
+  }
+  model.tool_places = machine.control.tool_places;
+  model.contour_tolerance_mm = machine.control.contour_tolerance;
+  model.k_bytes = static_cast<std::uint32_t>(machine.control.k_size);
+  model.syvar_bytes = static_cast<std::uint32_t>(machine.control.syvar_size);
+  model.power_on = machine.control.power_on;
+  model.variables = machine.control.variables;
+  for (const image::Symbol& s : machine.symbol_table())
+    if (s.writer != image::Writer::program) model.protected_places.push_back({s.place, s.name});
+  return model;
+}
+
+program::Tables program_tables(const machine::MachineConfig& machine) {
+  return machine::StateDirectory(machine.resolve(machine.run.state)).load().state.tables;
+}
+
+program::ProgramLoader program_loader(const std::string& main_program) {
+  const std::filesystem::path folder = std::filesystem::path(main_program).parent_path();
+  return [folder](std::string_view name) -> std::optional<program::LoadedProgram> {
+    std::string lower(name);
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    for (const std::string& base : {std::string(name), lower})
+      for (const char* extension : {"", ".nc", ".NC", ".SPF", ".spf"}) {
+        std::string ignored;
+        const std::filesystem::path path = folder / (base + extension);
+        if (auto content = files::read_file(path.string(), files::kMostOfProgram, ignored))
+          return program::LoadedProgram{std::move(*content), path.string()};
+      }
+    return std::nullopt;
+  };
+}
+
+}  // namespace servogate::gateway

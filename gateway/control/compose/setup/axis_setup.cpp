@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/control/compose/setup/axis_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "machine/consequences.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+int sign(machine::Direction d) { return d == machine::Direction::plus ? 1 : -1; }
+
+axis::HomingMethod method(machine::HomingMethod m) {
+  switch (m) {
+    case machine::HomingMethod::switch_and_index:
+      return axis::HomingMethod::switch_and_index;
+    case machine::HomingMethod::switch_only:
+      return axis::HomingMethod::switch_only;
+    case machine::HomingMethod::index:
+      return axis::HomingMethod::index_only;
+    case machine::HomingMethod::drive:
+      return axis::HomingMethod::drive;
+    case machine::HomingMethod::absolute:
+      return axis::HomingMethod::absolute;
+    case machine::HomingMethod::none:
+      return axis::HomingMethod::none;
+  }
+  return axis::HomingMethod::none;
+}
+
+/// Whether a method of CiA 402-2 turns round at a limit switch, or has one for its home.
+bool turns_at_limit(int method) {
+  const int without_index = method > 16 && method < 31 ? method - 16 : method;
+  return without_index == 1 || without_index == 2 || (without_index >= 7 && without_index <= 14) ||
+         method < 0;
+}
+
+axis::HomingData homing(const machine::AxisConfig& a) {
+  axis::HomingData h;
+  h.method = method(a.home.method);
+  h.direction = sign(a.home.direction);
+  h.release_direction = sign(a.home.index_direction);
+  if (a.home.fast > 0.0) h.fast = a.home.fast;
+  if (a.home.slow > 0.0) h.slow = a.home.slow;
+  h.position = a.home.position;
+  h.final_move = a.home.final_move;
+  h.final_position = a.home.final_position;
+  h.max_travel = a.home.max_travel > 0.0 ? a.home.max_travel : 1.2 * (a.travel_max - a.travel_min);
+  h.max_index_travel = a.home.index_max_travel > 0.0
+                           ? a.home.index_max_travel
+                           : 1.5 * a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
+  // The ramp down from the search and up again, and a second for what the switch takes.
+  if (turns_at_limit(a.home.drive_method)) h.drive_limit_time = 2.0 * h.fast / a.homing_acceleration() + 1.0;
+  h.timeout_s = a.home.timeout;
+  h.order = a.home.order;
+  h.index_spacing = a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
+  return h;
+}
+
+std::optional<axis::SwitchPlace> switch_place(const machine::MachineConfig& m, const std::string& point) {
+  const machine::PointConfig* p = point.empty() ? nullptr : m.point(point);
+  if (p == nullptr) return std::nullopt;
+  return axis::SwitchPlace{p->place, false};
+}
+
+/// Exact ratio counts : units from whole counts, a gear of whole numbers, and a lead known to 1e-6.
+void exact_ratio(std::int64_t counts, std::int64_t gear_motor, std::int64_t gear_screw, double lead,
+                 std::int64_t& numerator, std::int64_t& denominator) {
+  constexpr std::int64_t kLeadSteps = 1'000'000;
+  std::int64_t lead_steps = std::llround(lead * kLeadSteps);
+  std::int64_t steps = kLeadSteps;
+  const std::int64_t common = std::gcd(lead_steps, steps);
+  lead_steps /= common;
+  steps /= common;
+  numerator = counts * gear_motor * steps;
+  denominator = gear_screw * lead_steps;
+  const std::int64_t divisor = std::gcd(numerator, denominator);
+  numerator /= divisor;
+  denominator /= divisor;
+}
+
+/// The outputs of an inverter; nothing when a drive supplies the spindle.
+std::optional<axis::InverterConfig> inverter(const machine::MachineConfig& m,
+                                             const machine::SpindleConfig& s) {
+  axis::InverterConfig c;
+  const auto place = [&](const std::string& name) -> std::optional<image::Place> {
+    int station = -1;
+    const machine::PointConfig* p = name.empty() ? nullptr : m.point(name, &station);
+    if (p == nullptr) return std::nullopt;
+    if (station < image::kMaxSources) c.sources |= std::uint32_t{1} << station;
+    return p->place;
+  };
+  const auto speed = place(s.speed_output);
+  if (!speed) return std::nullopt;
+  c.speed = *speed;
+  c.cw = place(s.cw_output);
+  c.ccw = place(s.ccw_output);
+  return c;
+}
+
+image::PartPlace drive_place(const machine::MachineConfig& m, std::string_view reference) {
+  int bus = -1;
+  const machine::NodeConfig* node = m.node(reference, &bus);
+  if (node == nullptr) return {};
+  return {static_cast<std::int16_t>(bus), static_cast<std::int16_t>(node->id)};
+}
+
+}  // namespace
+
+image::Reaction loss_reaction(machine::LossReaction reaction) {
+  switch (reaction) {
+    case machine::LossReaction::stop_axes:
+      return image::Reaction::stop_axes;
+    case machine::LossReaction::stop_and_power_off:
+      return image::Reaction::stop_and_power_off;
+    case machine::LossReaction::quick_stop:
+      return image::Reaction::quick_stop;
+    case machine::LossReaction::power_off:
+      return image::Reaction::power_off;
+    case machine::LossReaction::stop_on_path:
+      break;
+  }
+  return image::Reaction::stop_on_path;
+}
+
+axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& a) {
+  const machine::MachineConfig& m = loaded.machine;
+  axis::AxisConfig c;
+  c.rotary = a.type == machine::AxisType::rotary;
+  c.auxiliary = a.auxiliary;
+  exact_ratio(a.counts_per_rev, a.gear[0], a.gear[1], a.lead, c.counts_numerator, c.counts_denominator);
+  c.count_direction = sign(a.direction);
+  c.limits = {a.max_velocity, a.max_acceleration, a.max_jerk};
+  c.travel_limited = !a.endless();
+  c.travel_min = a.travel_min;
+  c.travel_max = a.travel_max;
+  if (a.following_error_stop > 0.0) c.following_error_limit = a.following_error_stop;
+  c.following_error_warn = a.following_error_warn;
+  c.following_error_velocity = a.following_error_velocity;
+  c.in_position_window = a.in_position_window;
+  c.in_position_time = a.in_position_time;
+  c.in_position_timeout = a.in_position_timeout;
+  c.homing = homing(a);
+  c.limit_plus = switch_place(m, a.limit_plus);
+  c.limit_minus = switch_place(m, a.limit_minus);
+  c.home_switch = switch_place(m, a.home.switch_point);
+  c.backlash = a.backlash;
+  for (const auto& point : a.pitch_table) c.pitch.push_back({point[0], point[1], point[1]});
+  if (a.brake.present()) {
+    c.brake.output = a.brake.drive_output ? axis::BrakeOutput::drive : axis::BrakeOutput::place;
+    if (const machine::PointConfig* p = m.point(a.brake.point); p != nullptr) c.brake.place.place = p->place;
+    c.brake.command_time = machine::brake_command_time(loaded, a);
+    c.brake.torque_delay = a.brake.torque_delay;
+    c.brake.slip_window = a.brake.slip_window;
+    c.brake.release_delay = a.brake.release_delay;
+    c.brake.engage_delay = a.brake.engage_delay;
+  }
+  c.torque = {a.torque_max, a.greatest_torque_ramp()};
+  c.jog_velocity = a.jog();
+  c.slow_velocity = a.jog_not_homed();
+  c.drive = drive_place(m, a.drive);
+  if (const machine::NodeConfig* node = m.node(a.drive); node != nullptr) {
+    // A target of cycle k leaves in k, acts at SYNC k + 1 and is read back one cycle after it was latched.
+    if (const machine::DeviceConfig* device = loaded.device(node->device); device != nullptr)
+      c.feedback_delay = 2 + device->behaviour.command_delay;
+    c.missed_limit = static_cast<std::uint32_t>(node->loss_cycles);
+    // Its values come when they come; the segment knows when an answer is overdue.
+    if (const machine::DeviceConfig* device = loaded.device(node->device);
+        device != nullptr && device->behaviour.sdo_only)
+      c.missed_limit = 0;
+    c.loss_reaction = loss_reaction(node->loss_reaction);
+  }
+  return c;
+}
+
+std::int64_t counts_per_motor_turn(const machine::SpindleConfig& s) {
+  return std::llround(static_cast<double>(s.counts_per_rev) * static_cast<double>(s.gear[1]) /
+                      static_cast<double>(s.gear[0]));
+}
+
+axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& s) {
+  axis::SpindleConfig c;
+  c.drive = drive_place(loaded.machine, s.drive);
+  c.inverter = inverter(loaded.machine, s);
+  c.encoder = s.has_encoder();
+  if (s.has_encoder()) {
+    c.counts_numerator = s.counts_per_rev;
+    c.counts_denominator = 1;
+  } else if (const machine::NodeConfig* node = loaded.machine.node(s.drive); node != nullptr) {
+    // The drive counts at its motor.
+    const machine::DeviceConfig* device = loaded.device(node->device);
+    if (device != nullptr && device->motor.counts_per_rev > 0)
+      exact_ratio(device->motor.counts_per_rev, s.gear[0], s.gear[1], 1.0, c.counts_numerator,
+                  c.counts_denominator);
+  }
+  c.count_direction = sign(s.direction);
+  c.max_rpm = s.max_speed;
+  c.min_rpm = s.min_speed;
+  c.acceleration = s.acceleration;
+  c.at_speed_window = s.at_speed_window / 100.0;
+  c.at_speed_timeout = s.at_speed_timeout;
+  c.orient_angle = s.orient_angle;
+  c.orient_rpm = s.orient_speed;
+  return c;
+}
+
+channel::ProcessConfig process_config(const machine::MachineConfig& m, int index) {
+  channel::ProcessConfig c;
+  c.index = index;
+  c.path.period_s = m.control.cycle_time;
+  c.path.axis_count = std::min<int>(static_cast<int>(m.program_axes()), path::kMaxAxes);
+  for (int i = 0; i < c.path.axis_count; ++i) {
+    const machine::AxisConfig& a = m.axes[static_cast<std::size_t>(i)];
+    c.axes.machine.push_back(i);
+    c.path.limits[static_cast<std::size_t>(i)] = {a.max_velocity, a.max_acceleration, a.max_jerk};
+    c.path.rotary[static_cast<std::size_t>(i)] = a.type == machine::AxisType::rotary;
+    if (a.diameter) c.axes.surface_speed_axis = i;
+  }
+  if (!m.spindles.empty()) {
+    c.axes.spindle_min_rpm = m.spindles[0].min_speed;
+    c.axes.spindle_max_rpm = m.spindles[0].max_speed;
+  }
+  c.handshake_timeout_s = m.plc.handshake_timeout;
+  return c;
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "kernel/axis/axis_config.hpp"
+#include "kernel/channel/process.hpp"
+#include "machine/load.hpp"
+
+/// The machine file's axes and spindles in the terms of the kernel. Not real-time safe.
+namespace servogate::gateway {
+
+/// What the machine does when a node is lost, as the kernel has it.
+image::Reaction loss_reaction(machine::LossReaction reaction);
+
+axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& axis);
+axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& spindle);
+/// Counts of a spindle's encoder in one turn of its motor, to the nearest; 0: no encoder. What a drive calls
+/// a revolution is one of its motor.
+std::int64_t counts_per_motor_turn(const machine::SpindleConfig& spindle);
+/// Process `index` with all axes of the machine as its path axes (the first kMaxPathAxes).
+channel::ProcessConfig process_config(const machine::MachineConfig& machine, int index);
+
+}  // namespace servogate::gateway

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/control/history/request_words.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "firmware_if/text/units.hpp"
+#include "gateway/control/history/texts.hpp"
+#include "kernel/cycle/gate/gate.hpp"
+
+namespace servogate::gateway::history {
+
+namespace {
+
+using image::RequestKind;
+using text::Entry;
+
+/// {0} the axis, {1} the value as `shown` has it.
+struct Row {
+  RequestKind kind;
+  enum class Value { none, plain, sign, on_off, percent } shown;
+  Entry words;
+};
+constexpr Row kRows[] = {
+    {RequestKind::power, Row::Value::on_off, {"history.ask-power", "drives {1}", "приводы {1}"}},
+    {RequestKind::home, Row::Value::none, {"history.ask-home", "home {0}", "поиск нулевой точки {0}"}},
+    {RequestKind::jog_increment, Row::Value::plain, {"history.ask-jog", "jog {0} by {1}", "шаг {0} на {1}"}},
+    {RequestKind::jog_continuous, Row::Value::sign, {"history.ask-jog-on", "jog {0} {1}", "толчок {0} {1}"}},
+    {RequestKind::jog_stop, Row::Value::none, {"history.ask-jog-stop", "end of the jog", "конец толчка"}},
+    {RequestKind::zero,
+     Row::Value::plain,
+     {"history.ask-zero", "set {0} to {1}", "присвоить {0} значение {1}"}},
+    {RequestKind::start, Row::Value::none, {"history.ask-start", "start", "пуск"}},
+    {RequestKind::step, Row::Value::none, {"history.ask-step", "one block", "один кадр"}},
+    {RequestKind::hold, Row::Value::none, {"history.ask-hold", "feed hold", "останов подачи"}},
+    {RequestKind::resume, Row::Value::none, {"history.ask-resume", "resume", "продолжение"}},
+    {RequestKind::stop, Row::Value::none, {"history.ask-stop", "stop", "стоп"}},
+    {RequestKind::reset, Row::Value::none, {"history.ask-reset", "reset", "сброс"}},
+    {RequestKind::override_feed,
+     Row::Value::percent,
+     {"history.ask-override", "feed override {1}", "коррекция подачи {1}"}},
+    {RequestKind::quick_stop, Row::Value::none, {"history.ask-quick-stop", "quick stop", "быстрый останов"}},
+    {RequestKind::acknowledge,
+     Row::Value::none,
+     {"history.ask-acknowledge", "acknowledge alarms", "подтверждение аварий"}},
+    {RequestKind::force,
+     Row::Value::plain,
+     {"history.ask-force", "force a place to {1}", "фиксация места: {1}"}},
+    {RequestKind::release_force, Row::Value::none, {"history.ask-release", "end a force", "снятие фиксации"}},
+    {RequestKind::logic,
+     Row::Value::none,
+     {"history.ask-logic", "another PLC program", "другая программа ПЛК"}},
+    {RequestKind::logic_scan,
+     Row::Value::none,
+     {"history.ask-scan", "hold the PLC or run single scans", "останов ПЛК или отдельные циклы"}},
+};
+
+const Row* row_of(RequestKind kind) noexcept {
+  const auto found =
+      std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) { return r.kind == kind; });
+  return found == std::end(kRows) ? nullptr : &*found;
+}
+
+std::string shown(const Row& row, double value) {
+  switch (row.shown) {
+    case Row::Value::plain:
+      return text::number(value, 4);
+    case Row::Value::sign:
+      return value < 0.0 ? "-" : "+";
+    case Row::Value::on_off:
+      return value != 0.0 ? text::both("on", "включить") : text::both("off", "выключить");
+    case Row::Value::percent:
+      return text::number(value * 100.0, 1) + " %";
+    case Row::Value::none:
+      break;
+  }
+  return {};
+}
+
+}  // namespace
+
+bool kept(RequestKind kind) noexcept { return row_of(kind) != nullptr; }
+
+Event request_event(const image::Request& request, const image::Answer& answer,
+                    const machine::MachineConfig& machine, double machine_s) {
+  const Row& row = *row_of(request.kind);
+  const auto in = [&](text::Language language) {
+    const std::string axis = request.axis >= 0 ? machine.axes[static_cast<std::size_t>(request.axis)].letter
+                                               : text::both("all axes", "всех осей");
+    return text::render(row.words, std::array{axis, shown(row, request.value)}, language);
+  };
+  const auto asker = [&](text::Language language) { return cycle::asker_words(request.asker, language); };
+  const auto refusal = [&](text::Language language) {
+    return cycle::render(answer, machine.letters(), language, machine.unit_words());
+  };
+  const std::string who = text::both(asker(text::Language::english), asker(text::Language::russian));
+  const std::string what = text::both(in(text::Language::english), in(text::Language::russian));
+  Event e =
+      answer.refusal == 0
+          ? event("request", says::kAsked, {who, what}, machine_s)
+          : event("refused", says::kRefused,
+                  {who, what, text::both(refusal(text::Language::english), refusal(text::Language::russian))},
+                  machine_s);
+  e.id = std::string(answer.refusal == 0 ? row.words.id : cycle::refusal_texts()[answer.refusal].id);
+  e.who = asker(text::Language::english);
+  return e;
+}
+
+}  // namespace servogate::gateway::history

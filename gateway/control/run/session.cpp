@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/control/run/session.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "gateway/control/run/words/alarm_entries.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+constexpr std::string_view kFollowed[] = {
+    "running", "held",     "m_strobe", "m_ack",       "s_strobe",      "s_ack",          "t_strobe",
+    "t_ack",   "enabled",  "homed",    "in_position", "on_limit_plus", "on_limit_minus", "brake_release",
+    "run",     "at_speed", "estop_ok", "power_on",    "ready",         "alarm"};
+
+std::vector<std::string> phase_names() {
+  std::vector<std::string> names;
+  for (int p = 0; p < cycle::kPhases; ++p) names.emplace_back(cycle::name(static_cast<cycle::Phase>(p)));
+  return names;
+}
+
+report::RunRecorderOptions picture_options(const machine::MachineConfig& m) {
+  report::RunRecorderOptions options;
+  const int x = m.axis_index("X"), z = m.axis_index("Z");
+  if (x >= 0 && z >= 0 && m.axes[static_cast<std::size_t>(x)].diameter) options.view_axes = {z, x, -1};
+  for (const machine::AxisConfig& a : m.axes) options.axis_units.emplace_back(a.unit());
+  return options;
+}
+
+}  // namespace
+
+std::vector<report::TraceSignal> trace_signals(const machine::MachineConfig& machine) {
+  std::vector<report::TraceSignal> signals;
+  for (const machine::StationConfig& station : machine.stations)
+    for (const machine::PointConfig& p : station.points)
+      if (!p.is_analog()) signals.push_back({p.name, p.place});
+  for (const image::Symbol& s : machine.symbol_table()) {
+    const std::size_t dot = s.name.find('.');
+    if (dot == std::string::npos || s.place.format != image::Format::bl) continue;
+    const std::string_view field = std::string_view(s.name).substr(dot + 1);
+    if (std::find(std::begin(kFollowed), std::end(kFollowed), field) != std::end(kFollowed))
+      signals.push_back({s.name, s.place});
+  }
+  if (signals.size() > report::kMaxTraceSignals) signals.resize(report::kMaxTraceSignals);
+  return signals;
+}
+
+report::TraceLayout trace_layout(const machine::MachineConfig& machine) {
+  report::TraceLayout layout;
+  layout.period_ns = machine.cycle_ns();
+  layout.axes = machine.letters();
+  layout.spindles = static_cast<int>(machine.spindles.size());
+  layout.signals = trace_signals(machine);
+  return layout;
+}
+
+Session::Session(Control& control, const Outputs& outputs, bool realtime)
+    : control_(control),
+      layout_(trace_layout(control.machine())),
+      sampled_(layout_),
+      realtime_(realtime),
+      statistics_(layout_),
+      times_(phase_names()) {
+  if (realtime) sync_late_.resize(control.suppliers().size());
+  sampled_.signals.clear();
+  std::vector<std::unique_ptr<report::TraceSink>> sinks;
+  if (!outputs.trace.empty()) sinks.push_back(std::make_unique<report::CsvSink>(outputs.trace));
+  if (!outputs.html.empty()) {
+    auto picture = std::make_unique<report::RunRecorder>(picture_options(control.machine()));
+    picture_ = picture.get();
+    sinks.push_back(std::move(picture));
+  }
+  if (sinks.empty()) return;
+  sampled_.signals = layout_.signals;
+  recorder_ = std::make_unique<report::TraceRecorder>(layout_, std::move(sinks));
+}
+
+Session::~Session() = default;
+
+void Session::wait_for_room() {
+  if (recorder_ != nullptr) recorder_->wait_for_room();
+}
+
+void Session::after_cycle(image::Nanoseconds late_ns) noexcept {
+  const cycle::Cycle& cycle = control_.cycle();
+  report::sample(cycle.image(), sampled_, row_);
+  statistics_.add(row_);
+  if (cycle.measured()) times_.add(cycle.duration_ns(), late_ns, cycle.phase_ns().data());
+  time_sync();
+  if (recorder_ != nullptr) recorder_->record(row_);
+}
+
+// How late each SYNC was against the absolute time of its cycle, and how far apart those of several buses.
+void Session::time_sync() noexcept {
+  const auto due = control_.due_ns();
+  if (!due || sync_late_.empty()) return;
+  image::Nanoseconds first = std::numeric_limits<image::Nanoseconds>::max(), last = 0;
+  for (std::size_t b = 0; b < sync_late_.size(); ++b) {
+    const image::Nanoseconds sent = control_.suppliers()[b]->sync_ns();
+    sync_late_[b].add(sent - *due);
+    first = std::min(first, sent);
+    last = std::max(last, sent);
+  }
+  sync_skew_.add(last - first);
+}
+
+std::string Session::close() {
+  if (recorder_ == nullptr) return {};
+  recorder_->close();
+  for (const auto& sink : recorder_->sinks())
+    if (std::string error = sink->error(); !error.empty()) return error;
+  return {};
+}
+
+const report::RecordedRun* Session::picture() const {
+  return picture_ != nullptr ? &picture_->run() : nullptr;
+}
+
+report::Report Session::make_report(double wall_s, std::int64_t overruns) const {
+  report::Report r;
+  const cycle::Cycle& cycle = control_.cycle();
+  const machine::MachineConfig& m = control_.machine();
+  const image::ProcessImage& image = cycle.image();
+  r.cycles = cycle.count();
+  r.time_s = static_cast<double>(cycle.count() * cycle.period_ns()) / 1e9;
+  r.overruns = overruns;
+  r.starved = image.processes[0].starved;
+  r.blocks = image.processes[0].blocks_done;
+  r.finished = image.processes[0].state == image::ProcessState::ended;
+  r.virtual_speed = wall_s > 0.0 ? r.time_s / wall_s : 0.0;
+  // In both languages: the page has a switch.
+  r.alarms = alarm_entries(control_, cycle.alarms().history(), text::Language::english);
+  const auto russian = alarm_entries(control_, cycle.alarms().history(), text::Language::russian);
+  for (std::size_t n = 0; n < r.alarms.size(); ++n) {
+    r.alarms[n].text = text::both(r.alarms[n].text, russian[n].text);
+    r.alarms[n].remedy = text::both(r.alarms[n].remedy, russian[n].remedy);
+  }
+  report::fill_axes(r, layout_, statistics_);
+  for (std::size_t a = 0; a < r.axes.size() && a < m.axes.size(); ++a) {
+    const machine::AxisConfig& axis = m.axes[a];
+    r.axes[a].unit = axis.unit();
+    r.axes[a].diameter = axis.diameter;
+    r.axes[a].limit_velocity = axis.max_velocity;
+    r.axes[a].limit_acceleration = axis.max_acceleration;
+    r.axes[a].limit_jerk = axis.max_jerk;
+    if (!axis.endless()) {
+      r.axes[a].travel_min = axis.travel_min;
+      r.axes[a].travel_max = axis.travel_max;
+    }
+    r.axes[a].limit_following_error =
+        axis.following_error_stop + axis.following_error_velocity * axis.max_velocity;
+  }
+  report::fill_cycle_times(r, times_, realtime_);
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    const image::SegmentStatus& s = image.segments[b];
+    r.segments.push_back(
+        {m.buses[b].name, s.load, s.load_worst_cycle, s.frames_sent, s.frames_received, s.errors, {}});
+    if (b < sync_late_.size() && sync_late_[b].count() > 0)
+      r.segments.back().sync = report::sync_report(sync_late_[b]);
+    r.provenance.buses.push_back({m.buses[b].name, m.buses[b].url, m.buses[b].mock()});
+  }
+  if (sync_late_.size() > 1) r.sync_skew_us = report::quantiles_us(sync_skew_);
+  for (const machine::StationConfig& s : m.stations)  // what comes over a segment is in its nodes
+    if (!s.over_bus())
+      r.provenance.buses.push_back(
+          {s.name, s.url, s.mock(), s.kind == machine::StationKind::modbus ? "modbus" : "gpio"});
+  for (std::size_t s = 0; s < control_.suppliers().size(); ++s) {
+    const canopen::Segment& segment = control_.suppliers()[s]->segment();
+    for (std::size_t n = 0; n < segment.config().nodes.size(); ++n) {
+      const canopen::NodeStatus status = segment.node_status(n);
+      r.provenance.nodes.push_back({segment.config().name, status.node, segment.config().nodes[n].name,
+                                    status.vendor_id, status.product_code, status.revision, status.serial});
+    }
+  }
+  if (recorder_ != nullptr) r.trace_dropped = recorder_->dropped();
+  return r;
+}
+
+}  // namespace servogate::gateway

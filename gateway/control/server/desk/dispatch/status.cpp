@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/control/server/desk/dispatch/status.hpp"
+
+#include <chrono>
+#include <span>
+
+#include "gateway/control/run/standstill.hpp"
+#include "gateway/control/run/words/alarm_entries.hpp"
+#include "gateway/control/run/words/jog_words.hpp"
+#include "machine/bus_place.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+constexpr std::string_view kTypedFile = "MDI";  ///< what the interpreter calls the file of typed blocks
+
+std::vector<AlarmRow> alarm_rows(Resident& resident, text::Language language) {
+  const cycle::AlarmSnapshot& alarms = resident.alarms();
+  const std::span records(alarms.records.data(), static_cast<std::size_t>(alarms.count));
+  std::vector<AlarmRow> rows;
+  for (report::AlarmEntry& entry : alarm_entries(resident.control(), records, language)) {
+    std::string reaction(image::words(entry.record.reaction, language));
+    rows.push_back({std::move(entry), std::move(reaction)});
+  }
+  return rows;
+}
+
+/// File of the block in motion; a typed block is in none, but what it calls is.
+std::string file_in_motion(Control& control, const image::ProcessStatus& p, int process) {
+  if (p.line <= 0) return {};
+  const std::string file = control.process(process).texts().file(p.run, p.file);
+  return p.typed && file == kTypedFile ? std::string() : file;
+}
+
+ProcessReport process_report(Resident& resident, const image::ProcessImage& image, int process,
+                             text::Language language) {
+  Control& control = resident.control();
+  const image::ProcessStatus& p = image.processes[static_cast<std::size_t>(process)];
+  ProcessReport report;
+  report.status = p;
+  if (p.typed) report.block = resident.manual_block();
+  report.stop = stop_words(control, image, process, language);
+  report.file = file_in_motion(control, p, process);
+  report.message = program_message(control, image, process);
+  report.wait = wait_words(control, image, process, language);
+  return report;
+}
+
+AxisReport axis_report(const machine::AxisConfig& config, const image::AxisImage& a,
+                       text::Language language) {
+  const double shown = config.diameter ? 2.0 : 1.0;
+  AxisReport report;
+  report.letter = config.letter;
+  report.unit = config.unit();
+  report.diameter = config.diameter;
+  report.auxiliary = config.auxiliary;
+  report.command = a.command * shown;
+  report.position = a.actual * shown;
+  report.axis = a;
+  if (a.jog_end != image::JogEnd::none) report.jog_end = jog_end_words(a.jog_end, config.letter, language);
+  return report;
+}
+
+std::vector<BusReport> bus_reports(const machine::MachineConfig& m, const image::ProcessImage& image) {
+  std::vector<BusReport> buses;
+  for (std::size_t b = 0; b < m.buses.size(); ++b) {
+    const machine::BusConfig& bus = m.buses[b];
+    BusReport report{bus.name, bus.url, std::string(machine::bus_place(bus.url)), {}};
+    for (const machine::NodeConfig& node : bus.nodes)
+      report.nodes.push_back(
+          {node.id, node.name, image.segments[b].nodes[static_cast<std::size_t>(node.id)]});
+    buses.push_back(std::move(report));
+  }
+  return buses;
+}
+
+std::vector<WorkReport> work_reports(Resident& resident) {
+  std::vector<WorkReport> works;
+  const auto now = std::chrono::steady_clock::now();
+  for (const Works::Entry& w : resident.works().list())
+    works.push_back({w.what, w.name, std::chrono::duration<double>(now - w.since).count()});
+  return works;
+}
+
+}  // namespace
+
+HeldBuses held_buses(const machine::MachineConfig& machine, const image::ProcessImage& image, bool run) {
+  return {run, machine.name, bus_reports(machine, image)};
+}
+
+StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Language language) {
+  const image::ProcessImage& image = resident.image();
+  const machine::MachineConfig& m = resident.control().machine();
+  StatusReport status;
+  status.machine = m.name;
+  status.program = resident.program();
+  status.time_s = image.now.seconds();
+  status.blocks = resident.blocks();
+  status.lines = resident.lines();
+  status.homing = image.homing;
+  status.ending = resident.ending();
+  status.language = language;
+  for (int p = 0; p < image.process_count; ++p)
+    status.processes.push_back(process_report(resident, image, p, language));
+  for (int i = 0; i < image.axis_count; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    status.homing = status.homing || image.axes[n].owner == image::AxisOwner::homing;
+    if ((image.homing_left >> i & 1u) != 0) status.homing_left.push_back(m.axes[n].letter);
+    status.axes.push_back(axis_report(m.axes[n], image.axes[n], language));
+  }
+  for (int i = 0; i < image.spindle_count; ++i) {
+    SpindleReport spindle{image.spindles[static_cast<std::size_t>(i)], {}};
+    if (!spindle_lost(image, m, i)) spindle.rests = spindle_rests(image, i);
+    status.spindles.push_back(spindle);
+  }
+  status.buses = bus_reports(m, image);
+  status.alarms = alarm_rows(resident, language);
+  status.missing = missing_now(resident, language);
+  status.works = work_reports(resident);
+  status.forced = plc.forced();
+  status.plc_held_by = plc.held_by();
+  return status;
+}
+
+std::vector<MissingCondition> missing_now(Resident& resident, text::Language language) {
+  const image::ProcessImage& image = resident.image();
+  if (static_cast<std::size_t>(image.axis_count) != resident.control().machine().axes.size()) return {};
+  return missing_for_power(resident.control(), image, resident.alarms(), language);
+}
+
+std::string alarms_in_words(Resident& resident, text::Language language) {
+  const image::AlarmNames names = resident.control().alarm_names();
+  const cycle::AlarmSnapshot& alarms = resident.alarms();
+  std::string words;
+  for (int i = 0; i < alarms.count; ++i) {
+    const image::AlarmRecord& r = alarms.records[static_cast<std::size_t>(i)];
+    words += (words.empty() ? "" : "; ") + std::to_string(r.number) + " " + image::render(r, names, language);
+  }
+  return words;
+}
+
+HistoryReport history_report(const history::EventLog* log, std::size_t count, text::Language language) {
+  if (log == nullptr) return {{}, {}, language};
+  return {log->last(count), log->problem(), language};
+}
+
+AlarmReport alarm_report(Resident& resident, text::Language language) {
+  const image::ProcessImage& image = resident.image();
+  AlarmReport report{alarm_rows(resident, language), {}, language};
+  for (int p = 0; p < image.process_count; ++p)
+    if (auto wait = wait_words(resident.control(), image, p, language)) report.waits.push_back(*wait);
+  return report;
+}
+
+}  // namespace servogate::gateway

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/control/server/protocol/status_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "gateway/control/run/words/jog_words.hpp"
+#include "machine/consequences.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kModes[] = {"off", "mdi", "auto", "step", "manual", "increment", "profile", "home"};
+constexpr const char* kStates[] = {"idle",  "running", "held", "waiting", "stopped_by_alarm",
+                                   "ended", "stopped"};
+constexpr const char* kOwners[] = {"none", "process", "manual", "homing", "plc", "bench"};
+constexpr const char* kDriveStates[] = {
+    "offline",     "not_ready_to_switch_on", "switch_on_disabled", "ready_to_switch_on",
+    "switched_on", "operation_enabled",      "quick_stop_active",  "fault_reaction_active",
+    "fault"};
+
+/// A measure as people want to read it: to a millionth, without the dust of binary fractions.
+double measure(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
+
+json list_of(const std::vector<AlarmRow>& alarms, text::Language language) {
+  json list = json::array();
+  for (const auto& [a, reaction] : alarms) {
+    const image::AlarmRecord& r = a.record;
+    list.push_back({{"number", r.number},
+                    {"id", a.id},
+                    {"text", a.text},
+                    {"remedy", a.remedy},
+                    {"first", !a.consequence},
+                    {"sequence", r.sequence},
+                    {"first_fault", r.first_fault},
+                    {"time_s", static_cast<double>(r.t_ns) * 1e-9},
+                    {"line", r.line},
+                    {"reaction", reaction},
+                    {"warning", r.reaction <= image::Reaction::warn}});
+    if (a.finding)
+      list.back()["finding"] =
+          json::parse(machine::to_json(std::vector<text::Finding>{*a.finding}, language), nullptr, false)[0];
+  }
+  return list;
+}
+
+json json_of(const WaitWords& w) {
+  json out{{"reason", w.reason}, {"text", w.text},       {"remedy", w.remedy}, {"file", w.file},
+           {"line", w.line},     {"since_s", w.since_s}, {"for_s", w.for_s}};
+  const auto add = [&](const char* key, std::string_view words) {
+    if (!words.empty()) out[key] = words;
+  };
+  add("place", w.place);
+  add("symbol", w.symbol);
+  add("written_by", w.written_by);
+  add("axis", w.axis);
+  add("word", w.word);
+  if (w.wanted) {
+    out["compare"] = w.compare;
+    out["wanted"] = *w.wanted;
+    out["actual"] = *w.actual;
+  }
+  return out;
+}
+
+json json_of(const ProcessReport& p) {
+  json stop;
+  if (p.stop) stop = {{"cause", p.stop->cause}, {"text", p.stop->text}, {"remedy", p.stop->remedy}};
+  return {{"mode", kModes[static_cast<int>(p.status.mode)]},
+          {"state", kStates[static_cast<int>(p.status.state)]},
+          {"block", p.block ? json(*p.block) : json()},
+          {"stop", stop},
+          {"line", p.status.line},
+          {"file", p.file},
+          {"blocks_done", p.status.blocks_done},
+          {"message", p.message},
+          {"wait", p.wait ? json_of(*p.wait) : json()},
+          {"feed_mm_min", measure(p.status.feed_mm_s * 60.0)},
+          {"override_pct", measure(p.status.override_ratio * 100.0)},
+          {"tool", p.status.tool}};
+}
+
+json json_of(const AxisReport& r) {
+  const image::AxisImage& a = r.axis;
+  json end;
+  if (a.jog_end != image::JogEnd::none)
+    end = {{"reason", jog_end_name(a.jog_end)}, {"code", jog_end_code(a.jog_end)}, {"text", r.jog_end}};
+  return {{"letter", r.letter},
+          {"unit", r.unit},
+          {"diameter", r.diameter},
+          {"auxiliary", r.auxiliary},
+          {"command", measure(r.command)},
+          {"position", measure(r.position)},
+          {"following_error", measure(a.following_error)},
+          {"enabled", a.enabled},
+          {"homed", a.homed},
+          {"moving", a.moving},
+          {"in_position", a.in_position},
+          {"owner", kOwners[static_cast<int>(a.owner)]},
+          {"jog_end", end},
+          {"drive", kDriveStates[static_cast<int>(a.drive.state)]},
+          {"on_limit", a.limit_plus    ? 1
+                       : a.limit_minus ? -1
+                                       : 0}};
+}
+
+json json_of(const SpindleReport& r) {
+  return {{"command_rpm", measure(r.spindle.command_rpm)},
+          {"actual_rpm", measure(r.spindle.actual_rpm)},
+          {"at_speed", r.spindle.at_speed},
+          {"rests", r.rests ? json(*r.rests) : json()},
+          {"drive", kDriveStates[static_cast<int>(r.spindle.drive.state)]}};
+}
+
+/// `nmt_state` is that of CiA 301: 4, 5, 127; null: nothing is heard of the node.
+json json_of(const std::vector<BusReport>& buses) {
+  json list = json::array();
+  for (const BusReport& bus : buses) {
+    json nodes = json::array();
+    for (const BusNodeReport& n : bus.nodes)
+      nodes.push_back(
+          {{"node", n.node},
+           {"name", n.name},
+           {"online", n.told.online},
+           {"nmt_state",
+            n.told.nmt_state == image::BusNodeStatus::kSilent ? json() : json(n.told.nmt_state)}});
+    list.push_back({{"name", bus.name}, {"url", bus.url}, {"place", bus.place}, {"nodes", std::move(nodes)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+json json_of(const std::vector<MissingCondition>& missing) {
+  json list = json::array();
+  for (const MissingCondition& c : missing)
+    list.push_back({{"reason", c.reason}, {"text", c.text}, {"remedy", c.remedy}, {"axes", c.axes}});
+  return list;
+}
+
+json json_of(const std::vector<ForcedValue>& forced) {
+  json list = json::array();
+  for (const ForcedValue& f : forced)
+    list.push_back({{"name", f.name}, {"value", f.value}, {"user", f.user}, {"stays", f.stays}});
+  return list;
+}
+
+void write(json& answer, const StatusReport& s) {
+  answer.update({{"schema", 1},
+                 {"machine", s.machine},
+                 {"time_s", measure(s.time_s)},
+                 {"program", s.program},
+                 {"blocks", s.blocks},
+                 {"lines", s.lines},
+                 {"homing", s.homing},
+                 {"homing_left", s.homing_left},
+                 {"ending", s.ending},
+                 {"processes", json::array()},
+                 {"spindles", json::array()}});
+  for (std::size_t p = 0; p < s.processes.size(); ++p) {
+    json process = json_of(s.processes[p]);
+    if (p == 0) answer.update(process);
+    process["process"] = p + 1;
+    answer["processes"].push_back(std::move(process));
+  }
+  for (const AxisReport& a : s.axes) answer["axes"].push_back(json_of(a));
+  for (const SpindleReport& r : s.spindles) answer["spindles"].push_back(json_of(r));
+  answer["buses"] = json_of(s.buses);
+  answer["alarms"] = list_of(s.alarms, s.language);
+  answer["missing"] = json_of(s.missing);
+  answer["works"] = json::array();
+  for (const WorkReport& w : s.works)
+    answer["works"].push_back({{"what", w.what}, {"name", w.name}, {"for_s", measure(w.for_s)}});
+  answer["forced"] = json_of(s.forced);
+  answer["plc_held_by"] = s.plc_held_by.empty() ? json() : json(s.plc_held_by);
+}
+
+void write(json& answer, const AlarmReport& report) {
+  answer["schema"] = 1;
+  answer["alarms"] = list_of(report.alarms, report.language);
+  for (const WaitWords& wait : report.waits) answer["waits"].push_back(json_of(wait));
+}
+
+void write(json& answer, const HistoryReport& report) {
+  json events = json::array();
+  for (const history::Event& e : report.events)
+    events.push_back({{"time", e.time},
+                      {"machine_s", measure(e.machine_s)},
+                      {"kind", e.kind},
+                      {"id", e.id},
+                      {"number", e.number},
+                      {"who", e.who},
+                      {"text", e.text(report.language)}});
+  answer.update({{"schema", 1},
+                 {"events", events},
+                 {"problem", report.problem.empty() ? json() : json(report.problem)}});
+}
+
+void write(json& answer, const HeldBuses& held) {
+  answer.update({{"schema", 1},
+                 {"kind", held.run ? "run" : "control"},
+                 {"machine", held.machine},
+                 {"buses", json_of(held.buses)}});
+}
+
+}  // namespace servogate::gateway

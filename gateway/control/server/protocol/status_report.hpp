@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_if/image/process_image.hpp"
+#include "gateway/control/history/event_log.hpp"
+#include "gateway/control/run/words/ready_words.hpp"
+#include "gateway/control/run/words/stop_words.hpp"
+#include "gateway/control/run/words/wait_words.hpp"
+#include "gateway/control/server/protocol/plc_reply.hpp"
+#include "report/report.hpp"
+
+namespace servogate::gateway {
+
+/// One process of a running control: its part of the image, and what that means in words.
+struct ProcessReport {
+  image::ProcessStatus status;
+  std::optional<std::string> block;  ///< that was typed and is under way
+  std::optional<StopWords> stop;
+  std::string file;  ///< of the block in motion; empty: none, or a typed one
+  std::string message;
+  std::optional<WaitWords> wait;
+};
+
+/// One axis; places are as people see them.
+struct AxisReport {
+  std::string letter, unit;
+  bool diameter = false, auxiliary = false;
+  double command = 0.0, position = 0.0;  ///< in `unit`, a diameter on a diameter axis
+  image::AxisImage axis;                 ///< in radius
+  std::string jog_end;                   ///< why its last jog ended; empty: it goes on, or there was none
+};
+
+struct SpindleReport {
+  image::SpindleImage spindle;
+  std::optional<bool> rests;  ///< none: its drive does not answer
+};
+
+struct BusNodeReport {
+  int node = 0;
+  std::string name;
+  image::BusNodeStatus told;
+};
+struct BusReport {
+  std::string name, url, place;
+  std::vector<BusNodeReport> nodes;
+};
+
+struct AlarmRow {
+  report::AlarmEntry entry;
+  std::string reaction;
+};
+
+/// What somebody waits for that takes long.
+struct WorkReport {
+  std::string what, name;
+  double for_s = 0.0;
+};
+
+/// State of a running control: modes, program, axes, spindles, buses, alarms, and what waits for whom.
+struct StatusReport {
+  std::string machine, program;
+  double time_s = 0.0;
+  int blocks = 0, lines = 0;
+  bool homing = false, ending = false;
+  std::vector<std::string> homing_left;
+  std::vector<ProcessReport> processes;
+  std::vector<AxisReport> axes;
+  std::vector<SpindleReport> spindles;
+  std::vector<BusReport> buses;
+  std::vector<AlarmRow> alarms;
+  std::vector<MissingCondition> missing;
+  std::vector<WorkReport> works;
+  std::vector<ForcedValue> forced;
+  std::string plc_held_by;  ///< empty: nobody
+  text::Language language = text::Language::english;
+};
+
+/// Active alarms with cause and remedy, and what the processes wait for.
+struct AlarmReport {
+  std::vector<AlarmRow> alarms;
+  std::vector<WaitWords> waits;
+  text::Language language = text::Language::english;
+};
+
+/// The last events of the history, oldest first.
+struct HistoryReport {
+  std::vector<history::Event> events;
+  std::string problem;  ///< why its file is not written any more; empty: it is
+  text::Language language = text::Language::english;
+};
+
+/// Who holds which buses, with their nodes.
+struct HeldBuses {
+  bool run = false;  ///< it is a `servogate run`
+  std::string machine;
+  std::vector<BusReport> buses;
+};
+
+}  // namespace servogate::gateway

@@ -1,0 +1,465 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "machine/consequences.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
+#include "firmware_if/text/units.hpp"
+#include "machine/can_channel.hpp"
+#include "machine/check/stops/control_death.hpp"
+#include "machine/check/stops/overrun.hpp"
+#include "machine/keys/json.hpp"
+
+namespace servogate::machine {
+
+namespace {
+
+constexpr text::Entry kScale{"consequence.scale", "{0}: {1} = {2} counts; {3} = {4} rpm",
+                             "{0}: {1} = {2} дискрет; {3} = {4} об/мин"};
+constexpr text::Entry kStop{"consequence.stop", "{0}: stops from {1} within {2}, in {3} s",
+                            "{0}: останавливается с {1} на пути {2} за {3} с"};
+constexpr text::Entry kMargin{"consequence.limit_margin",
+                              "{0}: the limit switches work {1} and {2} outside the travel",
+                              "{0}: концевики срабатывают на {1} и {2} за ходом"};
+constexpr text::Entry kOverrun{
+    "consequence.overrun",
+    "{0}: the mechanical end is {1} beyond the limit switch {0}{2}; a stop that starts at the switch ends in "
+    "time from up to {3}; before homing the axis arrives at {4} and needs {5}",
+    "{0}: упор в {1} за концевиком {0}{2}; от концевика ось успевает остановиться при скорости до {3}; до "
+    "выхода в ноль она подходит к нему на {4} и тормозит на пути {5}"};
+constexpr text::Entry kEndUnknown{
+    "consequence.end_unknown",
+    "{0}: it is not known whether a stop that starts at a limit switch ends before the mechanical end: set "
+    "mechanical_end_minus and mechanical_end_plus",
+    "{0}: неизвестно, успеет ли ось остановиться между концевиком и упором: задайте mechanical_end_minus и "
+    "mechanical_end_plus"};
+constexpr text::Entry kHome{"consequence.home",
+                            "home {0}: the switch is read over {1} every {2} ms, ±{3} at {4}{5}",
+                            "выход в ноль {0}: датчик читается через {1} каждые {2} мс, ±{3} на {4}{5}"};
+constexpr text::Entry kFollowing{"consequence.following_error",
+                                 "{0}: stops at a following error of {1} at rest, {2} at {3}",
+                                 "{0}: останов при рассогласовании {1} в покое, {2} на {3}"};
+constexpr text::Entry kFollowingWarn{"consequence.following_error_warn",
+                                     "{0}: warns at a following error of {1} at rest, {2} at {3}",
+                                     "{0}: предупреждение при рассогласовании {1} в покое, {2} на {3}"};
+constexpr text::Entry kInverter{"consequence.inverter",
+                                "{0}: {1} rpm is {2} in the register of {3}, standstill is {4}; turns {5}; "
+                                "no encoder, so its real speed is not known",
+                                "{0}: {1} об/мин — {2} в регистре {3}, покой — {4}; вращение {5}; датчика "
+                                "нет, поэтому действительная скорость неизвестна"};
+constexpr text::Entry kSpindle{"consequence.spindle",
+                               "{0}: {1} to {2} rpm, {3} s to full speed; the motor turns at {4} rpm",
+                               "{0}: от {1} до {2} об/мин, {3} с до полной частоты; двигатель {4} об/мин"};
+constexpr text::Entry kBus{
+    "consequence.bus_load",
+    "bus {0}: {1} nodes, load {2} % on average, {3} % if all messages fall into one cycle; both figures "
+    "assume the most stuff bits possible, a run reports the load that it measures",
+    "шина {0}: узлов {1}, загрузка {2} % в среднем и {3} %, если все сообщения попадут в один цикл; обе "
+    "величины — при наибольшем числе вставных битов, измеренную загрузку показывает отчёт прогона"};
+constexpr text::Entry kFullestCycle{
+    "consequence.fullest_cycle",
+    "bus {0}: the busiest possible cycle takes {1} % with service data, {2} % with process data alone; what "
+    "is due with every SYNC is in time even then, the rest may finish in the next cycle",
+    "шина {0}: самый загруженный цикл занимает {1} % с сервисными данными, {2} % с одними данными процесса; "
+    "то, что передаётся с каждым SYNC, успевает и тогда, остальное может закончиться в следующем цикле"};
+constexpr text::Entry kBySdo{"consequence.by_sdo",
+                             "{0}: reached by SDO only: set-point and actual value are exchanged every {1} "
+                             "ms at best; after {2} ms without an answer the drive counts as lost",
+                             "{0}: связь только по SDO: задание и ответное положение в лучшем случае раз в "
+                             "{1} мс; без ответа {2} мс привод считается потерянным"};
+constexpr text::Entry kOwnMotion{
+    "consequence.own_motion",
+    "{0}: its drive plans the motion itself (profile position mode) and lags by up to {1} at {2}",
+    "{0}: движение строит сам привод (режим позиционирования), отставание до {1} на {2}"};
+constexpr text::Entry kStation{"consequence.station", "{0}: {1} signals, up to {2} ms old",
+                               "{0}: сигналов {1}, возраст до {2} мс"};
+constexpr text::Entry kEmergencyStop{"consequence.emergency_stop",
+                                     "emergency stop: all axes are at rest with their brakes closed after "
+                                     "{0} s{1}; the safety relay's delay t_d must be longer",
+                                     "аварийный останов: все оси стоят, тормоза держат через {0} с{1}; "
+                                     "задержка t_d реле безопасности должна быть больше"};
+constexpr text::Entry kBrake{"consequence.brake",
+                             "{0}: power is switched off {1} ms after the brake is told to close",
+                             "{0}: питание снимается через {1} мс после команды на зажатие тормоза"};
+constexpr text::Entry kControlDeath{"consequence.control_death",
+                                    "{0}: if the control dies at {1}: {2}; {3}; {4}",
+                                    "{0}: если управление прекратит работу на {1}: {2}; {3}; {4}"};
+
+/// The greatest n of "every n-th SYNC" of the PDOs that carry one of the objects; 1: none is slower.
+int slowest(const std::vector<PdoConfig>& pdos, const std::vector<int>& objects) {
+  int n = 1;
+  for (const PdoConfig& pdo : pdos)
+    if (pdo.cyclic() && std::any_of(pdo.objects.begin(), pdo.objects.end(), [&](const PdoObject& o) {
+          return std::find(objects.begin(), objects.end(), o.index) != objects.end();
+        }))
+      n = std::max(n, pdo.transmission);
+  return n;
+}
+
+const DeviceConfig* device_of(const LoadResult& loaded, const std::string& reference) {
+  const NodeConfig* node = loaded.machine.node(reference);
+  return node == nullptr ? nullptr : loaded.device(node->device);
+}
+
+class Sentences {
+ public:
+  explicit Sentences(const LoadResult& loaded) : loaded_(loaded), m_(loaded.machine) {}
+
+  std::vector<Consequence> all() {
+    for (const BusConfig& bus : m_.buses) this->bus(bus);
+    for (const AxisConfig& a : m_.axes)
+      if (a.lead > 0.0 && a.counts_per_rev > 0 && a.max_velocity > 0.0 && a.max_acceleration > 0.0 &&
+          a.max_jerk > 0.0)
+        axis(a);
+    emergency_stop();
+    for (std::size_t i = 0; i < m_.spindles.size(); ++i) spindle(m_.spindles[i], static_cast<int>(i));
+    for (const StationConfig& s : m_.stations) station(s);
+    return std::move(lines_);
+  }
+
+ private:
+  void say(std::string subject, const text::Entry& entry, std::vector<std::string> arguments,
+           std::map<std::string, double> figures) {
+    lines_.push_back({std::move(subject), &entry, std::move(arguments), std::move(figures)});
+  }
+
+  void bus(const BusConfig& bus) {
+    if (bus.bit_rate <= 0) return;
+    const canopen::SegmentLoad load = segment_load(loaded_, bus);
+    say("bus " + bus.name, kBus,
+        {bus.name, std::to_string(bus.nodes.size()), text::number(load.load * 100.0, 1),
+         text::number(load.worst_cycle * 100.0, 1)},
+        {{"load", load.load},
+         {"worst_cycle", load.worst_cycle},
+         {"nodes", static_cast<double>(bus.nodes.size())}});
+    const double fullest = load.worst_cycle + load.worst_service_data;
+    if (!bus.nodes.empty() && fullest > 1.0 &&
+        canopen::late_pdos(load, static_cast<std::uint32_t>(bus.bit_rate), m_.cycle_ns()).empty())
+      say("bus " + bus.name, kFullestCycle,
+          {bus.name, text::number(fullest * 100.0, 1), text::number(load.worst_process_data * 100.0, 1)},
+          {{"fullest_cycle", fullest}, {"process_data", load.worst_process_data}});
+    for (const NodeConfig& node : bus.nodes) by_sdo(bus, node);
+  }
+
+  void by_sdo(const BusConfig& bus, const NodeConfig& node) {
+    const double period = sdo_round(loaded_, bus.name + "." + node.name);
+    if (period <= 0.0) return;
+    const double patience = node.sdo_timeout > 0.0
+                                ? node.sdo_timeout
+                                : static_cast<double>(canopen::SegmentConfig{}.sdo_timeout_ms) * 1e-3;
+    say(bus.name + "." + node.name, kBySdo,
+        {bus.name + "." + node.name, text::number(period * 1e3), text::number(patience * 1e3)},
+        {{"period", period}, {"patience", patience}});
+  }
+
+  void axis(const AxisConfig& a) {
+    unit_ = text::unit_words(a.unit());
+    speed_unit_ = text::unit_words(a.speed_unit());
+    const double counts = a.counts_per_unit(), rpm = a.motor_rpm(a.max_velocity);
+    say(a.letter, kScale,
+        {a.letter, "1 " + unit_, text::number(counts, 4), speed(a.max_velocity), text::number(rpm, 1)},
+        {{"counts_per_unit", counts}, {"max_velocity", a.max_velocity}, {"motor_rpm", rpm}});
+    const Stop stop = stop_from(a.max_velocity, a.max_acceleration, a.max_jerk);
+    say(a.letter, kStop, {a.letter, speed(a.max_velocity), length(stop.way), text::number(stop.time, 3)},
+        {{"stop_distance", stop.way}, {"stop_time", stop.time}});
+    // The stop may begin in full acceleration, which has to be taken back first.
+    const double back = std::min(a.max_acceleration / a.max_jerk, std::sqrt(a.max_velocity / a.max_jerk));
+    longest_stop_ = std::max(longest_stop_, stop.time + back + brake_command_time(loaded_, a) +
+                                                (a.brake.present() ? a.brake.engage_delay : 0.0));
+    margin(a);
+    if (const double lag = own_motion_lag(loaded_, a); lag > 0.0)
+      say(a.letter, kOwnMotion, {a.letter, length(lag), speed(a.max_velocity)}, {{"lag", lag}});
+    const double moving = a.following_error_stop + a.following_error_velocity * a.max_velocity;
+    say(a.letter, kFollowing,
+        {a.letter, length(a.following_error_stop), length(moving), speed(a.max_velocity)},
+        {{"at_rest", a.following_error_stop}, {"at_max_velocity", moving}});
+    if (a.following_error_warn > 0.0) {
+      const double warns = a.following_error_warn + a.following_error_velocity * a.max_velocity;
+      say(a.letter, kFollowingWarn,
+          {a.letter, length(a.following_error_warn), length(warns), speed(a.max_velocity)},
+          {{"at_rest", a.following_error_warn}, {"at_max_velocity", warns}});
+    }
+    home(a);
+    if (a.brake.present()) {
+      const double after = brake_command_time(loaded_, a) + a.brake.engage_delay;
+      say(a.letter, kBrake, {a.letter, text::number(after * 1e3)},
+          {{"engage_delay", a.brake.engage_delay}, {"power_off_after", after}});
+    }
+    dies(a);
+  }
+
+  void dies(const AxisConfig& a) {
+    const auto death = control_death(loaded_, a);
+    if (!death) return;
+    const ControlDeathWords words = words_of(*death, a);
+    std::map<std::string, double> figures;
+    const auto figure = [&figures](const char* name, double value) {
+      if (value != kNoLimit) figures[name] = value;
+    };
+    figure("notices", death->notices);
+    figure("following_error", death->follows);
+    figure("brake_closed", death->brake_closed);
+    figure("falls_for", death->falls_for);
+    if (death->falls_for != kNoLimit) figure("falls", death->falls);
+    say(a.letter, kControlDeath, {a.letter, speed(a.max_velocity), words.drive, words.brake, words.fall},
+        std::move(figures));
+  }
+
+  void emergency_stop() {
+    if (longest_stop_ <= 0.0) return;
+    // The input is read, answered and obeyed in three cycles.
+    const double time = std::ceil((longest_stop_ + 3.0 * m_.control.cycle_time) * 100.0) / 100.0;
+    double turning = 0.0;  // an inverter is told 0 at once and says nothing of its way to rest
+    for (const SpindleConfig& s : m_.spindles)
+      if (s.speed_output.empty())
+        turning = std::max(turning, s.max_speed / s.acceleration + command_wait(s.drive));
+    turning = std::ceil(turning * 100.0 - 1e-6) / 100.0;
+    const std::string seconds = text::number(turning, 2);
+    say("emergency stop", kEmergencyStop,
+        {text::number(time, 2), turning > 0.0 ? text::both(", the spindle after " + seconds + " s",
+                                                           ", шпиндель через " + seconds + " с")
+                                              : ""},
+        {{"stop_time", time}, {"spindle_stop_time", turning}});
+  }
+
+  /// How long a command may wait for its frame, beyond the cycle that gives it.
+  double command_wait(const std::string& reference) const {
+    namespace object = canopen::object;
+    const DeviceConfig* device = device_of(loaded_, reference);
+    if (device == nullptr) return 0.0;
+    if (device->behaviour.sdo_only) return sdo_round(loaded_, reference);
+    return (slowest(device->rpdos,
+                    {object::kControlword, object::kTargetVelocity, object::kVlTargetVelocity}) -
+            1) *
+           m_.control.cycle_time;
+  }
+
+  void margin(const AxisConfig& a) {
+    if (!std::isfinite(a.hard_limit_plus) || !std::isfinite(a.hard_limit_minus)) return;
+    const double plus = a.hard_limit_plus - a.travel_max, minus = a.travel_min - a.hard_limit_minus;
+    say(a.letter, kMargin, {a.letter, length(minus), length(plus)},
+        {{"margin_minus", minus}, {"margin_plus", plus}});
+    bool known = false;
+    for (const bool side : {false, true}) {
+      const auto o = overrun(loaded_, a, side);
+      if (!o) continue;
+      known = true;
+      say(a.letter, kOverrun,
+          {a.letter, length(o->room), side ? "+" : "-", speed(std::floor(o->safe_velocity * 10.0) / 10.0),
+           speed(o->velocity), length(o->way)},
+          {{"room", o->room},
+           {"safe_velocity", o->safe_velocity},
+           {"velocity", o->velocity},
+           {"overrun", o->way}});
+    }
+    if (!known && !(a.limit_plus.empty() && a.limit_minus.empty()))
+      say(a.letter, kEndUnknown, {a.letter}, {});
+  }
+
+  /// The switch is seen once in the period of its station: that long the axis moves on unseen.
+  void home(const AxisConfig& a) {
+    const HomingConfig& h = a.home;
+    int station = -1;
+    if (h.switch_point.empty() || m_.point(h.switch_point, &station) == nullptr) return;
+    const StationConfig& s = m_.stations[static_cast<std::size_t>(station)];
+    const double period = std::max(read_every(loaded_, s), m_.control.cycle_time);
+    const bool index = h.method == HomingMethod::switch_and_index;
+    // Without an index the slow edge is the zero; with one it only has to find the right turn.
+    const double v = h.method == HomingMethod::switch_only ? h.slow : h.fast;
+    if (v <= 0.0) return;
+    static constexpr const char* kNames[] = {"Modbus", "GPIO", "CAN", "CAN"};
+    say(a.letter, kHome,
+        {a.letter, kNames[static_cast<std::size_t>(s.kind)], text::number(period * 1e3),
+         uncertainty(v * period), speed(v),
+         index ? text::both("; the index pulse then gives the exact zero", "; точный ноль даёт нулевая метка")
+               : ""},
+        {{"uncertainty", v * period}, {"velocity", v}, {"period", period}});
+  }
+
+  void spindle(const SpindleConfig& s, int index) {
+    const double motor = s.max_speed * static_cast<double>(s.gear[0]) / static_cast<double>(s.gear[1]);
+    const std::string who = s.name.empty() ? "S" + (index == 0 ? "" : std::to_string(index + 1)) : s.name;
+    say("S" + (index == 0 ? std::string() : std::to_string(index + 1)), kSpindle,
+        {who, text::number(s.min_speed), text::number(s.max_speed),
+         text::number(s.max_speed / s.acceleration, 2), text::number(motor, 1)},
+        {{"max_speed", s.max_speed},
+         {"motor_rpm", motor},
+         {"time_to_full_speed", s.max_speed / s.acceleration}});
+    inverter(s, "S" + (index == 0 ? std::string() : std::to_string(index + 1)), who);
+  }
+
+  void inverter(const SpindleConfig& s, const std::string& subject, const std::string& who) {
+    const PointConfig* p = s.speed_output.empty() ? nullptr : m_.point(s.speed_output);
+    if (p == nullptr || p->scale == 0.0) return;
+    const double full = std::round((s.max_speed - p->shift) / p->scale),
+                 rest = std::round((0.0 - p->shift) / p->scale);
+    const std::string ways = s.ccw_output.empty()
+                                 ? text::both("clockwise only", "только по часовой стрелке")
+                                 : text::both("in both directions, reversing through standstill",
+                                              "в обе стороны, реверс через остановку");
+    say(subject, kInverter,
+        {who, text::number(s.max_speed), text::number(full), s.speed_output, text::number(rest), ways},
+        {{"register_at_max_speed", full}, {"register_at_rest", rest}});
+  }
+
+  void station(const StationConfig& s) {
+    // A poll may just have passed when a signal changes, and the answer then waits for its cycle.
+    const double age = read_every(loaded_, s) + m_.control.cycle_time;
+    say(s.name, kStation, {s.name, std::to_string(s.points.size()), text::number(age * 1e3)},
+        {{"signals", static_cast<double>(s.points.size())}, {"age", age}});
+  }
+
+  std::string length(double v) const { return text::number(v, 3) + " " + unit_; }
+  /// With a decimal always: what is not known is no exact number.
+  std::string uncertainty(double v) const {
+    const std::string number = text::number(v, 3);
+    return number + (number.find('.') == std::string::npos ? ".0 " : " ") + unit_;
+  }
+  std::string speed(double v) const { return text::number(v, 3) + " " + speed_unit_; }
+
+  const LoadResult& loaded_;
+  const MachineConfig& m_;
+  std::vector<Consequence> lines_;
+  std::string unit_, speed_unit_;
+  double longest_stop_ = 0.0;  ///< with the engaging of its brake, s
+};
+
+}  // namespace
+
+std::string Consequence::str(text::Language language) const {
+  return text::render(*entry, arguments, language);
+}
+
+std::vector<canopen::NodeConfig> planned_nodes(const LoadResult& loaded, const BusConfig& bus) {
+  std::vector<canopen::NodeConfig> out;
+  for (const NodeConfig& node : bus.nodes) {
+    const DeviceConfig* device = loaded.device(node.device);
+    if (device == nullptr) continue;
+    canopen::NodeConfig planned;
+    planned.node = static_cast<canopen::NodeId>(node.id);
+    planned.name = node.name;
+    planned.profile = drive_profile(*device, node, 0);
+    if (device->terminals()) planned.target = canopen::DriveTarget::io;
+    planned.heartbeat_ms = static_cast<std::int32_t>(std::lround(node.heartbeat * 1e3));
+    out.push_back(std::move(planned));
+  }
+  return out;
+}
+
+canopen::SegmentServices planned_services(const BusConfig& bus) {
+  canopen::SegmentServices out;
+  for (const NodeConfig& node : bus.nodes)
+    if (node.heartbeat > 0.0)
+      out.heartbeat_ms =
+          std::min(out.heartbeat_ms, static_cast<std::int32_t>(std::lround(node.heartbeat * 1e3)));
+  out.sync_counter = bus.sync_counter;
+  out.time_ms = static_cast<std::int32_t>(std::lround(bus.time_period * 1e3));
+  return out;
+}
+
+canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus) {
+  return canopen::segment_load(static_cast<std::uint32_t>(bus.bit_rate), loaded.machine.cycle_ns(),
+                               planned_nodes(loaded, bus), planned_services(bus));
+}
+
+double read_every(const LoadResult& loaded, const StationConfig& s) {
+  if (s.kind == StationKind::modbus) return s.period;
+  const DeviceConfig* device = s.over_bus() ? device_of(loaded, s.node) : nullptr;
+  if (device == nullptr) return 0.0;
+  std::vector<int> objects;
+  for (const PointConfig& p : s.points) {
+    if (!p.is_input()) continue;
+    const auto found = channel_object(device->kind, p.channel, p.number);
+    objects.push_back(found ? found->object.index : canopen::object::kDigitalInputs);
+  }
+  return slowest(device->tpdos, objects) * loaded.machine.control.cycle_time;
+}
+
+double brake_command_time(const LoadResult& loaded, const AxisConfig& axis) {
+  const MachineConfig& m = loaded.machine;
+  if (!axis.brake.present()) return 0.0;
+  const double cycle = m.control.cycle_time;
+  if (axis.brake.drive_output) {
+    const DeviceConfig* device = device_of(loaded, axis.drive);
+    return (device == nullptr ? 1 : slowest(device->rpdos, {canopen::object::kDigitalOutputs})) * cycle;
+  }
+  int station = -1;
+  const PointConfig* point = m.point(axis.brake.point, &station);
+  if (point == nullptr) return cycle;
+  const StationConfig& s = m.stations[static_cast<std::size_t>(station)];
+  if (s.kind == StationKind::modbus) return s.period + cycle;
+  const DeviceConfig* device = s.over_bus() ? device_of(loaded, s.node) : nullptr;
+  if (device == nullptr) return cycle;
+  const auto found = channel_object(device->kind, point->channel, point->number);
+  return slowest(device->rpdos, {found ? found->object.index : canopen::object::kDigitalOutputs}) * cycle;
+}
+
+double sdo_round(const LoadResult& loaded, const std::string& reference) {
+  int index = -1;
+  const NodeConfig* node = loaded.machine.node(reference, &index);
+  if (node == nullptr) return 0.0;
+  const BusConfig& bus = loaded.machine.buses[static_cast<std::size_t>(index)];
+  if (bus.bit_rate <= 0) return 0.0;
+  canopen::SegmentConfig segment;
+  segment.cycle_ns = loaded.machine.cycle_ns();
+  segment.nodes = planned_nodes(loaded, bus);
+  const canopen::SegmentServices services = planned_services(bus);
+  segment.heartbeat_ms = services.heartbeat_ms;
+  segment.time_ms = services.time_ms;
+  const bool spindle = std::any_of(loaded.machine.spindles.begin(), loaded.machine.spindles.end(),
+                                   [&](const SpindleConfig& s) { return s.drive == reference; });
+  for (canopen::NodeConfig& planned : segment.nodes) {
+    if (planned.node != node->id) continue;
+    if (spindle) planned.target = canopen::DriveTarget::spindle;
+    return static_cast<double>(
+               canopen::sdo_round_ns(segment, planned, static_cast<std::uint32_t>(bus.bit_rate))) *
+           1e-9;
+  }
+  return 0.0;
+}
+
+double own_motion_lag(const LoadResult& loaded, const AxisConfig& axis) {
+  const NodeConfig* node = loaded.machine.node(axis.drive);
+  const DeviceConfig* device = node == nullptr ? nullptr : loaded.device(node->device);
+  if (device == nullptr || device->behaviour.position_mode != PositionMode::pp ||
+      axis.max_acceleration <= 0.0)
+    return 0.0;
+  // The handshake of a set-point by process data: given, answered, withdrawn, answered.
+  constexpr double kCyclesOfHandshake = 8.0;
+  const double by_sdo = sdo_round(loaded, axis.drive);
+  const double between = by_sdo > 0.0 ? by_sdo : kCyclesOfHandshake * loaded.machine.control.cycle_time;
+  return axis.max_velocity * axis.max_velocity / (2.0 * axis.max_acceleration) +
+         2.0 * axis.max_velocity * between;
+}
+
+std::vector<Consequence> consequences(const LoadResult& loaded) { return Sentences(loaded).all(); }
+
+std::string to_json(const LoadResult& loaded, const std::vector<Consequence>& lines,
+                    text::Language language) {
+  Json out{{"schema", 1}, {"machine", loaded.machine.name}, {"consequences", Json::array()}};
+  for (const Consequence& line : lines) {
+    Json figures = Json::object();
+    for (const auto& [name, value] : line.figures) figures[name] = json_number(value);
+    out["consequences"].push_back({{"subject", line.subject},
+                                   {"id", line.entry->id},
+                                   {"text", line.str(language)},
+                                   {"figures", std::move(figures)}});
+  }
+  return written(out);
+}
+
+std::string to_json(const std::vector<text::Finding>& findings, text::Language language) {
+  Json out = Json::array();
+  for (const text::Finding& f : findings)
+    out.push_back({{"file", f.file},
+                   {"line", f.line},
+                   {"column", f.column},
+                   {"severity", f.severity == text::Severity::error ? "error" : "warning"},
+                   {"code", f.entry->id},
+                   {"text", text::render(*f.entry, f.arguments, language)}});
+  return written(out);
+}
+
+}  // namespace servogate::machine

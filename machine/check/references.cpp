@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include "firmware_if/text/nearest.hpp"
+#include "machine/check/check.hpp"
+#include "machine/check/findings.hpp"
+#include "machine/files/read_file.hpp"
+#include "machine/keys/sections.hpp"
+
+namespace servogate::machine {
+
+namespace {
+
+struct Names {
+  std::vector<std::string> points, nodes, axes;
+};
+
+Names all_names(const MachineConfig& machine) {
+  Names out;
+  for (const StationConfig& s : machine.stations)
+    for (const PointConfig& p : s.points) out.points.push_back(p.name);
+  for (const BusConfig& b : machine.buses)
+    for (const NodeConfig& n : b.nodes) out.nodes.push_back(b.name + "." + n.name);
+  out.axes = machine.letters();
+  return out;
+}
+
+std::string hint(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string near = text::nearest(word, candidates);
+  if (!near.empty())
+    return text::both("; did you mean \"" + near + "\"?", "; имелось в виду «" + near + "»?");
+  return "";
+}
+
+std::string point_kind(const PointConfig& p) {
+  switch (p.channel) {
+    case ChannelKind::di:
+      return text::both("a digital input", "дискретный вход");
+    case ChannelKind::dq:
+      return text::both("a digital output", "дискретный выход");
+    case ChannelKind::ai:
+      return text::both("an analog input", "аналоговый вход");
+    case ChannelKind::aq:
+      return text::both("an analog output", "аналоговый выход");
+  }
+  return {};
+}
+
+struct Wanted {
+  std::string words;
+  bool (*fits)(const PointConfig& p);
+};
+Wanted wanted_point(Refers refers) {
+  switch (refers) {
+    case Refers::digital_input:
+      return {text::both("a digital input", "дискретный вход"),
+              [](const PointConfig& p) { return p.channel == ChannelKind::di; }};
+    case Refers::digital_output:
+      return {text::both("a digital output", "дискретный выход"),
+              [](const PointConfig& p) { return p.channel == ChannelKind::dq; }};
+    case Refers::analog_output:
+      return {text::both("an analog output", "аналоговый выход"),
+              [](const PointConfig& p) { return p.channel == ChannelKind::aq; }};
+    default:
+      return {"", [](const PointConfig&) { return true; }};
+  }
+}
+
+/// Path as a person sees it, list positions left out.
+std::string shown(std::string_view path) {
+  std::string out;
+  while (!path.empty()) {
+    const std::size_t dot = std::min(path.find('.'), path.size());
+    const std::string_view part = path.substr(0, dot);
+    if (part.find_first_not_of("0123456789") != std::string_view::npos)
+      out += (out.empty() ? "" : ".") + std::string(part);
+    path.remove_prefix(std::min(dot + 1, path.size()));
+  }
+  return out;
+}
+
+class ReferenceCheck {
+ public:
+  ReferenceCheck(const MachineConfig& machine, Reading& reading)
+      : machine_(machine), reading_(reading), names_(all_names(machine)) {}
+
+  void text(const Key& key, const std::string& value, const std::string& path) {
+    if (value.empty()) return;
+    const Where at = machine_.where(path);
+    const std::string name = shown(path);
+    switch (key.rule.refers) {
+      case Refers::nothing:
+      case Refers::device:
+        return;  // device files: check_devices
+      case Refers::axis:
+        if (machine_.axis_index(value) < 0)
+          reading_.error(at, finding::kNoSuch,
+                         {name, text::both("axis", "оси"), value, hint(value, names_.axes)});
+        return;
+      case Refers::node:
+        if (machine_.node(value) == nullptr)
+          reading_.error(at, finding::kNoSuch,
+                         {name, text::both("node", "узла"), value, hint(value, names_.nodes)});
+        return;
+      case Refers::file: {
+        const std::string source = machine_.resolve(value);
+        std::error_code error;
+        if (!std::filesystem::exists(source, error))
+          reading_.error(at, finding::kNoFile, {name, value});
+        else if (const std::string why = files::why_unreadable(source); !why.empty())
+          reading_.error(at, finding::kUnreadableFile, {name, value, why});
+        return;
+      }
+      default:
+        point(key, value, at, name);
+    }
+  }
+
+ private:
+  void point(const Key& key, const std::string& value, Where at, const std::string& name) {
+    const PointConfig* p = machine_.point(value);
+    const Wanted wanted = wanted_point(key.rule.refers);
+    if (p == nullptr)
+      reading_.error(at, finding::kNoSuch,
+                     {name, text::both("point", "сигнала"), value, hint(value, names_.points)});
+    else if (!wanted.fits(*p))
+      reading_.error(at, finding::kWrongPoint, {name, value, point_kind(*p), wanted.words});
+  }
+
+  const MachineConfig& machine_;
+  Reading& reading_;
+  Names names_;
+};
+
+/// Every drive moves one thing only.
+void check_drive_owners(const MachineConfig& machine, Reading& reading) {
+  std::map<std::string, std::string> owners;
+  const auto own = [&](const std::string& drive, const std::string& who, const std::string& path) {
+    if (drive.empty()) return;
+    const auto [it, fresh] = owners.try_emplace(drive, who);
+    if (!fresh) reading.error(machine.where(path), finding::kNodeTwice, {drive, it->second});
+  };
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    own(machine.axes[i].drive, text::both("axis " + machine.axes[i].letter, "ось " + machine.axes[i].letter),
+        "axis." + std::to_string(i) + ".drive");
+  for (std::size_t i = 0; i < machine.spindles.size(); ++i)
+    own(machine.spindles[i].drive,
+        text::both("spindle " + std::to_string(i + 1), "шпиндель " + std::to_string(i + 1)),
+        "spindle." + std::to_string(i) + ".drive");
+}
+
+/// A USB adapter, or a bus server of another computer: servers of simulated buses listen on loopback only.
+bool perhaps_real(std::string_view url) {
+  if (url.starts_with("gsusb:")) return true;
+  constexpr std::string_view kServed = "socketcand:";
+  if (!url.starts_with(kServed)) return false;
+  const std::string_view host = url.substr(kServed.size());
+  constexpr std::string_view kHere[] = {"unix:", "localhost:", "127.", "[::1]:", "::1:"};
+  return std::none_of(std::begin(kHere), std::end(kHere),
+                      [host](std::string_view here) { return host.starts_with(here); });
+}
+
+/// What [simulation] moves has to be a mock.
+void check_simulated(const MachineConfig& machine, Reading& reading) {
+  const auto point = [&](const std::string& name, const std::string& path) {
+    int station = -1;
+    if (machine.point(name, &station) == nullptr) return;
+    const StationConfig& s = machine.stations[static_cast<std::size_t>(station)];
+    if (!s.mock()) reading.error(machine.where(path), finding::kNotSimulated, {shown(path), name});
+  };
+  const SimulationConfig& sim = machine.simulation;
+  for (std::size_t i = 0; i < sim.switches.size(); ++i)
+    point(sim.switches[i].point, "simulation.switch." + std::to_string(i) + ".point");
+  for (std::size_t i = 0; i < sim.loops.size(); ++i)
+    point(sim.loops[i].input, "simulation.loop." + std::to_string(i) + ".input");
+  for (std::size_t i = 0; i < sim.indexers.size(); ++i)
+    for (std::size_t k = 0; k < sim.indexers[i].inputs.size(); ++k)
+      point(sim.indexers[i].inputs[k],
+            "simulation.indexer." + std::to_string(i) + ".inputs." + std::to_string(k));
+  for (std::size_t i = 0; i < sim.operator_closes.size(); ++i)
+    point(sim.operator_closes[i], "simulation.operator_closes." + std::to_string(i));
+  for (const auto& [name, value] : sim.initial) {
+    const std::string path = "simulation.initial." + name;
+    if (machine.point(name) == nullptr)
+      reading.error(machine.where(path), finding::kNoSuch,
+                    {"simulation.initial", text::both("point", "сигнала"), name,
+                     hint(name, all_names(machine).points)});
+    else
+      point(name, path);
+  }
+  // Of an interface of Linux only its kind can tell, when it is opened.
+  for (std::size_t b = 0; b < machine.buses.size(); ++b)
+    if (machine.buses[b].simulated && perhaps_real(machine.buses[b].url))
+      reading.error(machine.where("bus." + std::to_string(b) + ".simulated"), finding::kPerhapsReal,
+                    {machine.buses[b].name, machine.buses[b].url});
+  for (std::size_t i = 0; i < sim.drives.size(); ++i) {
+    int bus = -1;
+    const std::string path = "simulation.drive." + std::to_string(i) + ".node";
+    if (machine.node(sim.drives[i].node, &bus) != nullptr &&
+        !machine.buses[static_cast<std::size_t>(bus)].nothing_real())
+      reading.error(machine.where(path), finding::kNotSimulated, {shown(path), sim.drives[i].node});
+  }
+}
+
+}  // namespace
+
+void check_references(const MachineConfig& machine, Reading& reading) {
+  ReferenceCheck check(machine, reading);
+  // The walk hands out writable members; this visitor only reads them.
+  visit_keys(section_of<MachineConfig>(), const_cast<MachineConfig*>(&machine),
+             [&](const Key& key, void* member, const std::string& path) {
+               if (key.kind == KeyKind::text) check.text(key, *static_cast<std::string*>(member), path);
+               if (key.kind != KeyKind::texts) return;
+               const auto& list = *static_cast<std::vector<std::string>*>(member);
+               for (std::size_t i = 0; i < list.size(); ++i)
+                 check.text(key, list[i], path + "." + std::to_string(i));
+             });
+  check_drive_owners(machine, reading);
+  check_simulated(machine, reading);
+}
+
+}  // namespace servogate::machine

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "machine/keys/key.hpp"
+#include "machine/keys/sections.hpp"
+
+namespace servogate::machine {
+
+template <>
+std::span<const std::string_view> choices_of<AxisType>() {
+  static constexpr std::string_view kNames[] = {"linear", "rotary"};
+  return kNames;
+}
+template <>
+std::span<const std::string_view> choices_of<Direction>() {
+  static constexpr std::string_view kNames[] = {"plus", "minus"};
+  return kNames;
+}
+template <>
+std::span<const std::string_view> choices_of<HomingMethod>() {
+  static constexpr std::string_view kNames[] = {"switch_and_index", "switch", "index", "drive",
+                                                "absolute",         "none"};
+  return kNames;
+}
+template <>
+std::span<const std::string_view> choices_of<ControlMode>() {
+  static constexpr std::string_view kNames[] = {"csp", "csv"};
+  return kNames;
+}
+
+template <>
+const Section& section_of<HomingConfig>() {
+  using C = HomingConfig;
+  static const Key keys[] = {
+      key<&C::method>("method", {}, "how the axis finds its zero; none: zero where it is switched on",
+                      "способ выхода в ноль; none: ноль там, где ось включена"),
+      key<&C::direction>("direction", {}, "direction of the search for the switch",
+                         "направление поиска датчика нуля"),
+      key<&C::switch_point>("switch", {.refers = Refers::digital_input}, "input point of the home switch",
+                            "входной сигнал датчика нуля"),
+      key<&C::fast>("fast", {.unit = Unit::axis_velocity, .min = 0, .max = kFastest},
+                    "speed of the search for the switch", "скорость поиска датчика нуля"),
+      key<&C::slow>("slow", {.unit = Unit::axis_velocity, .min = 0, .max = kFastest},
+                    "speed of leaving the switch and of the search for the index",
+                    "скорость съезда с датчика и поиска нулевой метки"),
+      key<&C::index_direction>(
+          "index_direction", {},
+          "the edge of the switch is crossed slowly and the index sought in this direction",
+          "направление медленного прохода края датчика и поиска нулевой метки"),
+      key<&C::index_max_travel>("index_max_travel",
+                                {.unit = Unit::axis_length, .min = 0, .max = kLongest, .computed = true},
+                                "the search for the index gives up after this; one and a half motor turns",
+                                "предел пути поиска нулевой метки; полтора оборота двигателя"),
+      key<&C::drive_method>("drive_method", {.min = -128, .max = 127},
+                            "method drive: number of the method by CiA 402-2 (6098h); fast, slow and "
+                            "acceleration go to the drive (6099h, 609Ah)",
+                            "способ drive: номер метода по CiA 402-2 (6098h); fast, slow и acceleration "
+                            "передаются приводу (6099h, 609Ah)"),
+      key<&C::acceleration>("acceleration",
+                            {.unit = Unit::axis_acceleration, .min = 0, .max = kSteepest, .computed = true},
+                            "method drive: acceleration of the drive's homing; that of the axis",
+                            "способ drive: ускорение при выходе в ноль; ускорение оси"),
+      key<&C::position>("position", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                        "machine coordinate of the index (of the switch edge without one)",
+                        "машинная координата нулевой метки (без метки: края датчика)"),
+      key<&C::max_travel>("max_travel",
+                          {.unit = Unit::axis_length, .min = 0, .max = kLongest, .computed = true},
+                          "the search for the switch gives up after this; 1.2 times the travel",
+                          "предел пути поиска датчика; 1,2 хода оси"),
+      key<&C::final_move>("final_move", {}, "drive to final_position after referencing",
+                          "перейти в final_position после выхода в ноль"),
+      key<&C::final_position>("final_position",
+                              {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                              "where the axis goes after referencing, machine coordinates",
+                              "куда ось идёт после выхода в ноль, машинные координаты"),
+      key<&C::timeout>("timeout", {.unit = Unit::second, .min = 1, .max = 3600},
+                       "time for the whole of homing", "время на весь выход в ноль"),
+      key<&C::order>("order", {.min = 1, .max = 16}, "axes of the same order home together, lower ones first",
+                     "оси с равным номером выходят в ноль вместе, меньшие номера раньше"),
+  };
+  static const Section section{"homing of the axis", "выход оси в ноль", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<BrakeConfig>() {
+  using C = BrakeConfig;
+  static const Key keys[] = {
+      key<&C::point>("point", {.refers = Refers::digital_output}, "output point of the brake, 1 = open",
+                     "выходной сигнал тормоза, 1 = отпущен"),
+      key<&C::drive_output>("drive_output", {}, "the brake hangs on the drive's own brake output",
+                            "тормоз подключён к собственному выходу привода"),
+      key<&C::release_delay>("release_delay", {.unit = Unit::second, .min = 0, .max = 10},
+                             "time from the output to an open brake; no motion before",
+                             "время от сигнала до отпускания тормоза; до него движения нет"),
+      key<&C::torque_delay>("torque_delay", {.unit = Unit::second, .min = 0, .max = 10},
+                            "time from Operation enabled until the drive surely holds the load",
+                            "время от включения привода до надёжного удержания груза"),
+      key<&C::slip_window>("slip_window", {.unit = Unit::axis_length, .min = 0, .max = 100},
+                           "movement permitted while the brake opens or closes",
+                           "допустимое смещение при отпускании и зажатии тормоза"),
+      key<&C::engage_delay>("engage_delay", {.unit = Unit::second, .min = 0, .max = 10},
+                            "time from the output to a closed brake; the drive holds that long",
+                            "время от сигнала до зажатия тормоза; привод удерживает ось до его конца"),
+      key<&C::relay_delay>(
+          "relay_delay", {.unit = Unit::second, .min = 0, .max = 60},
+          "time from the last change of safety.control_alive until the relay that watches it "
+          "takes the voltage from the brake; 0: no relay does",
+          "время от последнего изменения safety.control_alive до снятия напряжения с тормоза "
+          "реле, которое за ним следит; 0: такого реле нет"),
+  };
+  static const Section section{"holding brake of the axis", "удерживающий тормоз оси", keys,
+                               &default_object<C>};
+  return section;
+}
+
+namespace {
+std::span<const Key> axis_keys() {
+  using C = AxisConfig;
+  static const Key keys[] = {
+      key<&C::letter>("letter", {.required = true}, "axis letter, A to Z", "буква оси, от A до Z"),
+      key<&C::name>("name", {}, "name for people", "название для людей"),
+      key<&C::type>("type", {}, "kind of axis; it chooses mm or degrees for every key below",
+                    "вид оси; определяет мм или градусы для всех ключей ниже"),
+      key<&C::diameter>("diameter", {}, "programs and displays show the diameter; this file holds radii",
+                        "программа и индикация показывают диаметр; в этом файле радиусы"),
+      key<&C::auxiliary>(
+          "auxiliary", {},
+          "moved by the MC_ blocks of the PLC alone (magazine, chuck); stands behind the axes of the "
+          "programs",
+          "ось перемещает только ПЛК блоками MC_ (магазин, патрон); стоит после осей программ"),
+      key<&C::drive>("drive", {.required = true, .refers = Refers::node}, "the drive as \"bus.node\"",
+                     "привод в виде \"шина.узел\""),
+      key<&C::lead>("lead", {.unit = Unit::axis_lead, .min = 0.001, .max = 1e5, .required = true},
+                    "travel per turn of the screw", "перемещение на оборот винта"),
+      key<&C::gear>("gear", {.min = 1, .max = 1e6}, "exact gear ratio, motor turns : screw turns",
+                    "точное передаточное отношение, обороты двигателя : обороты винта"),
+      key<&C::counts_per_rev>("counts_per_rev",
+                              {.unit = Unit::counts, .min = 1, .max = kMostCounts, .required = true},
+                              "drive counts per turn of the motor", "дискрет привода на оборот двигателя"),
+      key<&C::direction>("direction", {}, "minus: rising counts are falling coordinates",
+                         "minus: растущий счёт означает убывающую координату"),
+      key<&C::control>("control", {},
+                       "who closes the position loop: csp the drive; csv, the kernel, is not in this version",
+                       "кто замыкает контур положения: csp — привод; csv, ядро, в этой версии нет"),
+      key<&C::position_gain>("position_gain", {.unit = Unit::per_s, .min = 0, .max = 1000},
+                             "gain of the kernel's position loop (csv), not in this version",
+                             "коэффициент контура положения ядра (csv), в этой версии нет"),
+      key<&C::max_velocity>(
+          "max_velocity", {.unit = Unit::axis_velocity, .min = kSlowest, .max = kFastest, .required = true},
+          "limit of velocity, also of rapids", "предел скорости, он же скорость ускоренного хода"),
+      key<&C::max_acceleration>(
+          "max_acceleration",
+          {.unit = Unit::axis_acceleration, .min = kSlowest, .max = kSteepest, .required = true},
+          "limit of acceleration", "предел ускорения"),
+      key<&C::max_jerk>("max_jerk",
+                        {.unit = Unit::axis_jerk, .min = kSlowest, .max = kHardest, .required = true},
+                        "limit of jerk", "предел рывка"),
+      key<&C::travel_min>(
+          "travel_min", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest, .required = true},
+          "lower software limit, machine coordinates; a rotary axis with both limits 0 is endless",
+          "нижний программный предел, машинные координаты; круговая ось с нулевыми пределами бесконечна"),
+      key<&C::travel_max>("travel_max",
+                          {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest, .required = true},
+                          "upper software limit", "верхний программный предел"),
+      key<&C::following_error_warn>("following_error_warn",
+                                    {.unit = Unit::axis_length, .min = 0, .max = kLongest},
+                                    "following error that raises warning 1017, at standstill; 0: none",
+                                    "рассогласование, вызывающее предупреждение 1017, в покое; 0: нет"),
+      key<&C::following_error_stop>(
+          "following_error_stop",
+          {.unit = Unit::axis_length, .min = 0, .max = kLongest, .above_min = true, .required = true},
+          "following error that stops the machine, at standstill",
+          "рассогласование, останавливающее станок, в покое"),
+      key<&C::following_error_velocity>("following_error_velocity",
+                                        {.unit = Unit::second, .min = 0, .max = 10},
+                                        "following error allowed in addition per unit of speed",
+                                        "добавка к допустимому рассогласованию на единицу скорости"),
+      key<&C::in_position_window>("in_position_window",
+                                  {.unit = Unit::axis_length, .min = 0, .max = kLongest, .above_min = true},
+                                  "window of the exact stop", "окно точного позиционирования"),
+      key<&C::in_position_time>("in_position_time", {.unit = Unit::second, .min = 0, .max = 10},
+                                "time inside the window", "время нахождения в окне"),
+      key<&C::in_position_timeout>(
+          "in_position_timeout", {.unit = Unit::second, .min = 0, .max = 60},
+          "alarm when not in position this long after the set-point stopped; 0: none",
+          "авария, если ось не в позиции столько времени после остановки задания; 0: нет"),
+      key<&C::jog_velocity>(
+          "jog_velocity", {.unit = Unit::axis_velocity, .min = 0, .max = kFastest, .computed = true},
+          "speed of jogging; a tenth of max_velocity", "скорость ручного хода; десятая часть max_velocity"),
+      key<&C::jog_velocity_not_homed>(
+          "jog_velocity_not_homed",
+          {.unit = Unit::axis_velocity, .min = 0, .max = kFastest, .computed = true},
+          "speed before homing and off a hard limit; a hundredth of max_velocity",
+          "скорость до выхода в ноль и при съезде с аварийного концевика; сотая часть max_velocity"),
+      key<&C::limit_plus>("limit_plus", {.refers = Refers::digital_input},
+                          "input point of the positive limit switch, 1 = on it",
+                          "входной сигнал концевого выключателя «плюс», 1 = сработал"),
+      key<&C::limit_minus>("limit_minus", {.refers = Refers::digital_input},
+                           "input point of the negative limit switch, 1 = on it",
+                           "входной сигнал концевого выключателя «минус», 1 = сработал"),
+      key<&C::hard_limit_plus>("hard_limit_plus",
+                               {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                               "machine coordinate at which the positive switch works",
+                               "машинная координата срабатывания концевика «плюс»"),
+      key<&C::hard_limit_minus>("hard_limit_minus",
+                                {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                                "machine coordinate at which the negative switch works",
+                                "машинная координата срабатывания концевика «минус»"),
+      key<&C::mechanical_end_plus>(
+          "mechanical_end_plus", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+          "machine coordinate at which the axis runs into its end, behind the positive switch: the room of a "
+          "stop that begins on the switch",
+          "машинная координата механического упора за концевиком «плюс»: путь для торможения от концевика"),
+      key<&C::mechanical_end_minus>("mechanical_end_minus",
+                                    {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                                    "the same behind the negative switch", "то же за концевиком «минус»"),
+      key<&C::backlash>("backlash", {.unit = Unit::axis_length, .min = 0, .max = 10},
+                        "backlash, taken up when moving in minus direction",
+                        "люфт, выбирается при движении в минус"),
+      key<&C::pitch_table>("pitch_table", {},
+                           "pitch error: [machine coordinate, error] with rising coordinates",
+                           "погрешность шага: [машинная координата, погрешность], координаты по возрастанию"),
+      key<&C::vertical>("vertical", {}, "the axis falls without power; needs a brake",
+                        "ось падает без питания; нужен тормоз"),
+      key<&C::torque_max>(
+          "torque_max", {.unit = Unit::percent, .min = 0, .max = 1000},
+          "largest torque of MC_TorqueControl, of the motor's rated one (6076h); auxiliary axes "
+          "only; 0: not led by torque",
+          "наибольший момент MC_TorqueControl от номинального момента двигателя (6076h); только "
+          "для вспомогательных осей; 0: моментом не управляется"),
+      key<&C::torque_ramp>("torque_ramp", {.min = 0, .max = 100000, .computed = true},
+                           "greatest change of that torque, per cent a second; torque_max in a second",
+                           "наибольшее изменение этого момента, процентов в секунду; torque_max за секунду"),
+      key<&C::home>("home", {}, "homing", "выход в ноль"),
+      key<&C::brake>("brake", {}, "holding brake", "удерживающий тормоз"),
+  };
+  return keys;
+}
+}  // namespace
+
+template <>
+const Section& section_of<AxisConfig>() {
+  static const Section section{"an axis, in the order of positions in traces and programs",
+                               "ось; порядок осей тот же, что в трассах и программах", axis_keys(),
+                               &default_object<AxisConfig>, true};
+  return section;
+}
+
+template <>
+const Section& section_of<SpindleConfig>() {
+  using C = SpindleConfig;
+  static const Key keys[] = {
+      key<&C::name>("name", {}, "name for people", "название для людей"),
+      key<&C::drive>("drive", {.refers = Refers::node}, "the drive as \"bus.node\"; or `speed_output`",
+                     "привод в виде \"шина.узел\"; или `speed_output`"),
+      key<&C::speed_output>(
+          "speed_output", {.refers = Refers::analog_output},
+          "analog output point of an inverter; its value is the speed in rpm, without sign",
+          "аналоговый выход к преобразователю; его значение — частота вращения в об/мин, без знака"),
+      key<&C::cw_output>(
+          "cw_output", {.refers = Refers::digital_output},
+          "output point of the relay for clockwise (M03); without relays the speed alone turns it",
+          "выход реле вращения по часовой стрелке (M03); без реле вращением управляет одна скорость"),
+      key<&C::ccw_output>("ccw_output", {.refers = Refers::digital_output},
+                          "output point of the relay for counter-clockwise (M04); without it M04 is an alarm",
+                          "выход реле вращения против часовой стрелки (M04); без него M04 — авария"),
+      key<&C::min_speed>("min_speed", {.unit = Unit::rpm, .min = 0, .max = 200000}, "slowest speed",
+                         "наименьшая частота вращения"),
+      key<&C::max_speed>("max_speed",
+                         {.unit = Unit::rpm, .min = 0, .max = 200000, .above_min = true, .required = true},
+                         "fastest speed", "наибольшая частота вращения"),
+      key<&C::acceleration>("acceleration",
+                            {.unit = Unit::rpm_per_s, .min = 0, .max = 1e6, .above_min = true},
+                            "ramp of the speed", "темп разгона"),
+      key<&C::gear>("gear", {.min = 1, .max = 1e6}, "exact gear ratio, motor turns : spindle turns",
+                    "точное передаточное отношение, обороты двигателя : обороты шпинделя"),
+      key<&C::counts_per_rev>("counts_per_rev", {.unit = Unit::counts, .min = 0, .max = kMostCounts},
+                              "encoder counts per turn of the spindle; 0: no encoder",
+                              "дискрет датчика на оборот шпинделя; 0: датчика нет"),
+      key<&C::direction>("direction", {}, "minus: clockwise is falling counts",
+                         "minus: по часовой стрелке счёт убывает"),
+      key<&C::at_speed_window>("at_speed_window", {.unit = Unit::percent, .min = 0.1, .max = 50},
+                               "deviation within which the spindle is at speed",
+                               "отклонение, при котором частота считается достигнутой"),
+      key<&C::at_speed_timeout>("at_speed_timeout", {.unit = Unit::second, .min = 0, .max = 600},
+                                "alarm when not at speed this long after the ramp; 0: none",
+                                "авария, если частота не достигнута за это время после разгона; 0: нет"),
+      key<&C::orient_angle>("orient_angle", {.min = 0, .max = 360}, "angle of the oriented stop in degrees",
+                            "угол ориентированного останова в градусах"),
+      key<&C::orient_speed>("orient_speed", {.unit = Unit::rpm, .min = 0, .max = 10000},
+                            "speed of the oriented stop", "частота вращения при ориентации"),
+  };
+  static const Section section{"a spindle", "шпиндель", keys, &default_object<C>};
+  return section;
+}
+
+}  // namespace servogate::machine

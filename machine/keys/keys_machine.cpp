@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "machine/keys/key.hpp"
+#include "machine/keys/sections.hpp"
+
+namespace servogate::machine {
+
+template <>
+const Section& section_of<ControlConfig>() {
+  using C = ControlConfig;
+  static const Key keys[] = {
+      key<&C::cycle_time>("cycle_time", {.unit = Unit::second, .min = 0.00025, .max = kLongestCycle},
+                          "period of the cycle", "период цикла"),
+      key<&C::dialect>("dialect", {}, "language of the part programs", "язык управляющих программ"),
+      key<&C::power_on>("power_on", {}, "modal words in force after power-on",
+                        "модальные функции после включения"),
+      key<&C::variables>("variables", {},
+                         "variables of the dialect after power-on, in its own units: ERF, MCD",
+                         "переменные языка после включения, в его единицах: ERF, MCD"),
+      key<&C::contour_tolerance>("contour_tolerance",
+                                 {.unit = Unit::mm, .min = 0, .max = 10, .above_min = true},
+                                 "greatest distance between set-points and programmed path",
+                                 "наибольшее отклонение заданной траектории от программной"),
+      key<&C::tool_places>("tool_places", {.min = 0, .max = 9999},
+                           "places of the magazine or turret, T takes 0 to this number; 0: any T",
+                           "мест в магазине или револьверной головке, T — от 0 до этого числа; 0: любой T"),
+      key<&C::processes>("processes", {.min = 1, .max = image::kMaxProcesses},
+                         "part programs that run side by side",
+                         "число параллельных процессов (управляющих программ)"),
+      key<&C::k_size>("k_size", {.unit = Unit::bytes, .min = 1024, .max = image::kPacketKMaxSize},
+                      "size of packet K", "размер пакета K"),
+      key<&C::syvar_size>("syvar_size", {.unit = Unit::bytes, .min = 1, .max = image::kSyvarMaxSize},
+                          "size of the SYVAR memory", "размер памяти SYVAR"),
+  };
+  static const Section section{"the control", "система управления", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<RunConfig>() {
+  using C = RunConfig;
+  static const Key keys[] = {
+      key<&C::allow_start_now>("allow_start_now", {}, "`run --start-now` may start on real buses",
+                               "разрешает `run --start-now` на настоящих шинах"),
+      key<&C::start_point>("start_point", {.refers = Refers::digital_input},
+                           "input point of the operator's start button, for buses that are no mock",
+                           "вход кнопки «Пуск» оператора, для настоящих шин"),
+      key<&C::socket>("socket", {.computed = true}, "control socket; $XDG_RUNTIME_DIR/servogate/NAME.sock",
+                      "сокет управления; $XDG_RUNTIME_DIR/servogate/ИМЯ.sock"),
+      key<&C::state>("state", {}, "state directory, seen from the machine file's folder",
+                     "каталог состояния, относительно папки файла станка"),
+  };
+  static const Section section{"starting and control socket", "пуск и сокет управления", keys,
+                               &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<RealtimeConfig>() {
+  using C = RealtimeConfig;
+  static const Key keys[] = {
+      key<&C::cpu>("cpu", {.min = -1, .max = 1023}, "processor of the cycle; -1: any",
+                   "процессор цикла; -1: любой"),
+      key<&C::priority>("priority", {.min = 1, .max = 98}, "SCHED_FIFO priority of the cycle",
+                        "приоритет цикла SCHED_FIFO"),
+  };
+  static const Section section{"real-time thread", "поток реального времени", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<SafetyConfig>() {
+  using C = SafetyConfig;
+  static const Key keys[] = {
+      key<&C::estop>("estop", {.refers = Refers::digital_input},
+                     "input point of the emergency-stop chain, 1 = closed; never over Modbus",
+                     "вход цепи аварийного останова, 1 = замкнута; никогда через Modbus"),
+      key<&C::control_alive>(
+          "control_alive", {.refers = Refers::digital_output},
+          "output point that the control toggles while it runs in time, for the safety relay",
+          "выход, который управление переключает, пока успевает в такт, для реле безопасности"),
+      key<&C::mock_inputs_guard_real_drives>(
+          "mock_inputs_guard_real_drives", {},
+          "mock inputs may stand for the emergency stop and the limit switches of drives on a real bus: "
+          "a bench without a machine",
+          "имитируемые входы могут заменять аварийный останов и концевики приводов на настоящей шине: "
+          "стенд без станка"),
+  };
+  static const Section section{"signals of the safety circuit", "сигналы цепи безопасности", keys,
+                               &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<PlcConfig>() {
+  using C = PlcConfig;
+  static const Key keys[] = {
+      key<&C::sources>("sources", {.refers = Refers::file},
+                       "source files, seen from the machine file's folder",
+                       "исходные файлы, относительно папки файла станка"),
+      key<&C::handshake_timeout>("handshake_timeout",
+                                 {.unit = Unit::second, .min = 0, .max = 3600, .above_min = true},
+                                 "an M, S, T or H word not acknowledged within this is an alarm",
+                                 "функция M, S, T или H без подтверждения за это время вызывает аварию"),
+      key<&C::instruction_budget>("instruction_budget", {.min = 1000, .max = 1e9},
+                                  "instructions of one scan with all its tasks; a scan that needs more is "
+                                  "stopped: alarm 5002",
+                                  "команд в одном скане со всеми задачами; скан, которому нужно больше, "
+                                  "останавливается: авария 5002"),
+      key<&C::watchdog>("watchdog", {.unit = Unit::second, .min = 0, .max = 10},
+                        "longest time of a scan in real time, more is alarm 5005; 0: not watched",
+                        "наибольшее время скана в реальном времени, больше — авария 5005; 0: без контроля"),
+  };
+  static const Section section{"the PLC", "ПЛК", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<SimulatedSwitch>() {
+  using C = SimulatedSwitch;
+  static const Key keys[] = {
+      key<&C::point>("point", {.required = true, .refers = Refers::digital_input},
+                     "input point of a mock station", "вход имитируемой станции"),
+      key<&C::axis>("axis", {.required = true, .refers = Refers::axis},
+                    "axis whose simulated position it follows",
+                    "ось, за имитируемым положением которой он следует"),
+      key<&C::from>("from", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                    "the switch works from here, machine coordinates",
+                    "начало зоны срабатывания, машинные координаты"),
+      key<&C::to>("to", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                  "the switch works up to here", "конец зоны срабатывания"),
+  };
+  static const Section section{"a mock switch that follows an axis",
+                               "имитируемый выключатель, следующий за осью", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<SimulatedLoop>() {
+  using C = SimulatedLoop;
+  static const Key keys[] = {
+      key<&C::output>("output", {.required = true, .refers = Refers::digital_output}, "output point",
+                      "выход"),
+      key<&C::input>("input", {.required = true, .refers = Refers::digital_input},
+                     "input point of a mock station that follows it",
+                     "вход имитируемой станции, который за ним следует"),
+      key<&C::inverted>("inverted", {}, "the input is the opposite", "вход противоположен выходу"),
+      key<&C::delay>("delay", {.unit = Unit::second, .min = 0, .max = 3600}, "time from output to input",
+                     "время от выхода до входа"),
+  };
+  static const Section section{"a mock input that follows an output",
+                               "имитируемый вход, следующий за выходом", keys, &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<SimulatedIndexer>() {
+  using C = SimulatedIndexer;
+  static const Key keys[] = {
+      key<&C::output>("output", {.required = true, .refers = Refers::digital_output},
+                      "output point of the motor", "выход двигателя"),
+      key<&C::inputs>("inputs", {.required = true, .refers = Refers::digital_input},
+                      "position inputs of a mock station, in the order in which they come",
+                      "входы позиций имитируемой станции в порядке их следования"),
+      key<&C::step>("step", {.unit = Unit::second, .min = 0.01, .max = 60},
+                    "time from one position to the next", "время от одной позиции до следующей"),
+  };
+  static const Section section{
+      "a mock turret or magazine that turns while its motor runs",
+      "имитируемая револьверная головка или магазин, вращается при включённом двигателе", keys,
+      &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<SimulatedDrive>() {
+  using C = SimulatedDrive;
+  static const Key keys[] = {
+      key<&C::node>("node", {.required = true, .refers = Refers::node}, "the drive as \"bus.node\"",
+                    "привод в виде \"шина.узел\""),
+      key<&C::start>("start", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                     "position of the axis at power-on, machine coordinates",
+                     "положение оси при включении, машинные координаты"),
+      key<&C::zero_mark>("zero_mark", {.unit = Unit::counts, .min = -kMostCounts, .max = kMostCounts},
+                         "counts from machine zero to the nearest zero mark in plus direction",
+                         "дискрет от машинного нуля до ближайшей нулевой метки в направлении плюс"),
+      key<&C::inertia>("inertia", {.unit = Unit::kg_m2, .min = 0, .max = 1000, .computed = true},
+                       "moment of inertia of the load seen from the motor; the motor's own",
+                       "момент инерции нагрузки, приведённый к двигателю; как у двигателя"),
+      key<&C::friction_coulomb>("friction_coulomb", {.unit = Unit::newton_metre, .min = 0, .max = 1000},
+                                "dry friction", "сухое трение"),
+      key<&C::friction_viscous>("friction_viscous", {.unit = Unit::newton_metre_s_rad, .min = 0, .max = 1000},
+                                "viscous friction", "вязкое трение"),
+      key<&C::gravity_torque>("gravity_torque", {.unit = Unit::newton_metre, .min = -1000, .max = 1000},
+                              "torque of the weight of a vertical axis", "момент от веса вертикальной оси"),
+      key<&C::max_torque>("max_torque",
+                          {.unit = Unit::newton_metre, .min = 0, .max = 10000, .computed = true},
+                          "torque limit; the device file's peak torque",
+                          "предел момента; пиковый момент из файла устройства"),
+      key<&C::absolute_encoder>("absolute_encoder", {}, "the encoder keeps its count without power",
+                                "датчик сохраняет счёт без питания"),
+      key<&C::end_stop_min>("end_stop_min", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                            "rigid stop, machine coordinates", "жёсткий упор, машинные координаты"),
+      key<&C::end_stop_max>("end_stop_max", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                            "rigid stop, machine coordinates", "жёсткий упор, машинные координаты"),
+  };
+  static const Section section{"the plant behind a simulated drive", "механика за имитируемым приводом", keys,
+                               &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<SimulationConfig>() {
+  using C = SimulationConfig;
+  static const Key keys[] = {
+      key<&C::initial>("initial", {}, "values of mock inputs at start: point = value",
+                       "начальные значения имитируемых входов: сигнал = значение"),
+      key<&C::operator_closes>(
+          "operator_closes", {.refers = Refers::digital_input},
+          "mock inputs that the operator of `run` sets to 1: the emergency-stop chain",
+          "имитируемые входы, которые устанавливает оператор `run`: цепь аварийного останова"),
+      key<&C::switches>("switch", {}, "switches that follow axes", "выключатели, следующие за осями"),
+      key<&C::loops>("loop", {}, "inputs that follow outputs", "входы, следующие за выходами"),
+      key<&C::indexers>("indexer", {}, "turrets and magazines", "револьверные головки и магазины"),
+      key<&C::drives>("drive", {}, "plants of the simulated drives", "механика имитируемых приводов"),
+  };
+  static const Section section{"what the mocks do; without effect on anything real",
+                               "поведение имитаторов; на настоящие устройства не влияет", keys,
+                               &default_object<C>};
+  return section;
+}
+
+template <>
+const Section& section_of<MachineConfig>() {
+  using C = MachineConfig;
+  static const Key keys[] = {
+      key<&C::schema>("schema", {.min = 1, .max = 1, .required = true}, "version of this format",
+                      "версия формата"),
+      key<&C::name>("name", {.required = true}, "name of the machine", "название станка"),
+      key<&C::control>("control", {}, "the control", "система управления"),
+      key<&C::run>("run", {}, "starting and control socket", "пуск и сокет управления"),
+      key<&C::realtime>("realtime", {}, "real-time thread", "поток реального времени"),
+      key<&C::safety>("safety", {}, "signals of the safety circuit", "сигналы цепи безопасности"),
+      key<&C::plc>("plc", {}, "the PLC", "ПЛК"),
+      key<&C::buses>("bus", {}, "CAN segments", "сегменты CAN"),
+      key<&C::axes>("axis", {.required = true}, "axes", "оси"),
+      key<&C::spindles>("spindle", {}, "spindles", "шпиндели"),
+      key<&C::lines>("line", {}, "Modbus lines", "линии Modbus"),
+      key<&C::stations>("station", {}, "sources of signals", "источники сигналов"),
+      key<&C::symbols>("symbol", {}, "free places with names", "именованные свободные адреса"),
+      key<&C::simulation>("simulation", {}, "what the mocks do", "поведение имитаторов"),
+  };
+  static const Section section{"machine file", "файл станка", keys, &default_object<C>};
+  return section;
+}
+
+}  // namespace servogate::machine

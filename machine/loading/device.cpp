@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "machine/device.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "firmware_if/canopen/401/objects.hpp"
+#include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/406/objects.hpp"
+#include "firmware_if/canopen/master/drive/drive_fields.hpp"
+#include "machine/check/boot_objects.hpp"
+#include "machine/check/findings_motion.hpp"
+#include "machine/files/read_file.hpp"
+#include "machine/keys/findings.hpp"
+#include "machine/keys/reader.hpp"
+#include "machine/keys/sections.hpp"
+
+namespace servogate::machine {
+
+namespace {
+
+/// A whole number of the given base from the front of `text`.
+template <typename Number>
+bool take(std::string_view& text, int base, Number& out) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out, base);
+  if (error != std::errc{} || end == text.data()) return false;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+class DeviceCheck {
+ public:
+  DeviceCheck(DeviceConfig& device, Reading& reading) : d_(device), reading_(reading) {}
+
+  void all() {
+    objects();
+    pdos("rpdo", d_.rpdos);
+    pdos("tpdo", d_.tpdos);
+    modbus();
+    homing_methods();
+    ip_record();
+    if (!d_.places.contains("kind")) return;  // unknown kind: said by the reader
+    if (d_.terminals()) terminals();
+    write_only();
+    if (!d_.drive()) return;
+    modes();
+    if (d_.behaviour.sdo_only) return sdo_only();
+    mapped_for_nothing();
+    word("RPDO", d_.rpdos, 0x6040, "controlword");
+    word("TPDO", d_.tpdos, 0x6041, "statusword");
+  }
+
+ private:
+  Where at(const std::string& path) const { return find_place(d_.places, path); }
+
+  void objects() {
+    check_boot_objects(
+        d_.objects, &d_, [this](const std::string& name) { return at("objects." + name); }, reading_);
+  }
+
+  void pdos(const std::string& key, std::vector<PdoConfig>& list) {
+    std::map<int, int> numbers;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      PdoConfig& pdo = list[i];
+      const std::string path = key + "." + std::to_string(i);
+      transmission(key, path, pdo);
+      if (key == "tpdo" && pdo.event > 0.0 && pdo.inhibit > pdo.event)
+        reading_.error(at(path + ".inhibit"), finding::kInhibitAboveEvent,
+                       {std::to_string(pdo.number), milliseconds(pdo.inhibit), milliseconds(pdo.event)});
+      const auto [it, fresh] = numbers.try_emplace(pdo.number, at(path + ".number").line);
+      if (!fresh)
+        reading_.error(at(path + ".number"), finding::kPdoTwice,
+                       {key, std::to_string(pdo.number), std::to_string(it->second)});
+      mapping(key, path, pdo);
+    }
+  }
+
+  /// Reserved are 241 to 251; only a TPDO can be asked for, and so often as `event` says.
+  void transmission(const std::string& key, const std::string& path, const PdoConfig& pdo) {
+    const std::string type = std::to_string(pdo.transmission);
+    if (pdo.remote() && key == "rpdo")
+      reading_.error(at(path + ".transmission"), finding::kPdoRemoteRpdo, {type});
+    else if (pdo.remote() && pdo.event <= 0.0)
+      reading_.error(at(path + ".transmission"), finding::kPdoRemotePeriod,
+                     {std::to_string(pdo.number), type});
+    else if (pdo.transmission > 240 && pdo.transmission < 254 && !pdo.remote())
+      reading_.error(at(path + ".transmission"), finding::kPdoTransmission, {type});
+  }
+
+  void mapping(const std::string& key, const std::string& path, PdoConfig& pdo) {
+    int bits = 0;
+    for (std::size_t k = 0; k < pdo.object_texts.size(); ++k) {
+      const auto object = parse_object(pdo.object_texts[k]);
+      if (!object || object->bits == 0 || object->bits > 64) {
+        reading_.error(at(path + ".objects." + std::to_string(k)), finding::kBadObject,
+                       {pdo.object_texts[k], "6040:00/16"});
+        continue;
+      }
+      // What is cut off would be another position.
+      const canopen::ObjectInfo* standard = d_.drive() ? canopen::find_object(object->index) : nullptr;
+      if (standard != nullptr && object->subindex == 0 && object->bits < standard->bits)
+        reading_.error(at(path + ".objects." + std::to_string(k)), finding::kPdoWidth,
+                       {pdo.object_texts[k], std::string(standard->name), std::to_string(standard->bits)});
+      bits += object->bits;
+      pdo.objects.push_back(*object);
+    }
+    if (bits > 64)
+      reading_.error(at(path + ".objects"), finding::kPdoSize,
+                     {key, std::to_string(pdo.number), std::to_string(bits)});
+  }
+
+  /// The loss of a module is seen by its process data, and what its outputs do then comes from their points.
+  void terminals() {
+    for (std::size_t i = 0; i < d_.tpdos.size(); ++i) {
+      const PdoConfig& pdo = d_.tpdos[i];
+      if ((pdo.transmission < 1 || pdo.transmission > 240) && pdo.event <= 0.0)
+        reading_.error(at("tpdo." + std::to_string(i) + ".transmission"), finding::kPdoNeverComes,
+                       {std::to_string(pdo.number), std::to_string(pdo.transmission)});
+    }
+    if (d_.kind != DeviceKind::canopen_io) return;
+    namespace io = canopen::io;
+    static constexpr std::uint16_t kOurs[] = {
+        canopen::object::kErrorBehaviour, io::kPolarityOutput8,         io::kErrorModeOutput8,
+        io::kErrorValueOutput8,           io::kErrorModeAnalogueOutput, io::kErrorValueAnalogueOutput};
+    for (const auto& [text, value] : d_.objects)
+      if (const auto object = parse_object(text);
+          object && std::find(std::begin(kOurs), std::end(kOurs), object->index) != std::end(kOurs))
+        reading_.error(at("objects." + text), finding::kObjectOfPoints, {text});
+  }
+
+  void homing_methods() {
+    for (std::size_t i = 0; i < d_.behaviour.homing_methods.size(); ++i) {
+      const std::string& text = d_.behaviour.homing_methods[i];
+      std::string_view rest = text;
+      int number = 0;
+      if (!take(rest, 10, number) || !rest.empty() || number < -128 || number > 127 || number == 0)
+        reading_.error(at("behaviour.homing_methods." + std::to_string(i)), finding::kHomingNumber, {text});
+    }
+  }
+
+  /// Where ip is the mode for positions, every entry of its record is in an RPDO, the position among them.
+  void ip_record() {
+    const auto& record = d_.behaviour.ip_record;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      const Where where = at("behaviour.ip_record." + std::to_string(i));
+      if (record[i] != "position" && record[i] != "velocity")
+        reading_.error(where, finding::kUnknownChoice,
+                       {"behaviour.ip_record", record[i], "position, velocity"});
+      else if (d_.behaviour.position_mode == PositionMode::ip &&
+               !maps(d_.rpdos, 0x60C1, static_cast<int>(i) + 1))
+        reading_.error(where, finding::kIpRecord, {"60C1:0" + std::to_string(i + 1) + "/32", record[i]});
+    }
+    if (std::find(record.begin(), record.end(), "position") == record.end())
+      reading_.error(at("behaviour.ip_record"), finding::kIpNoPosition, {});
+  }
+
+  static bool maps(const std::vector<PdoConfig>& pdos, std::uint16_t index, int subindex) {
+    for (const PdoConfig& pdo : pdos)
+      for (const PdoObject& o : pdo.objects)
+        if (o.index == index && o.subindex == subindex) return true;
+    return false;
+  }
+
+  void modbus() {
+    const ModbusMap& m = d_.modbus;
+    const struct {
+      const char* key;
+      int address, items;
+    } kinds[] = {{"modbus.di_address", m.di_address, m.di_items()},
+                 {"modbus.dq_address", m.dq_address, m.dq_count},
+                 {"modbus.ai_address", m.ai_address, m.ai_count},
+                 {"modbus.aq_address", m.aq_address, m.aq_count}};
+    for (const auto& k : kinds)
+      if (k.address + k.items > 0x10000)
+        reading_.error(at(k.key), finding::kModbusBehindEnd,
+                       {k.key, std::to_string(k.items), std::to_string(k.address)});
+    const bool apart =
+        m.di_address + m.di_items() <= m.ai_address || m.ai_address + m.ai_count <= m.di_address;
+    if (m.di_as_registers && m.di_count > 0 && m.ai_count > 0 && !apart)
+      reading_.error(at("modbus.di_as_registers"), finding::kModbusOverlap,
+                     {std::to_string(m.di_address), std::to_string(m.di_address + m.di_items() - 1),
+                      std::to_string(m.ai_address), std::to_string(m.ai_address + m.ai_count - 1)});
+  }
+
+  void word(const std::string& what, const std::vector<PdoConfig>& list, std::uint16_t index,
+            const std::string& name) {
+    for (const PdoConfig& pdo : list)
+      for (const PdoObject& o : pdo.objects)
+        if (o.index == index) return;
+    char hex[8];
+    std::snprintf(hex, sizeof hex, "%04Xh", index);
+    reading_.error(at(what == "RPDO" ? "rpdo" : "tpdo"), finding::kPdoNoWord, {what, hex, name});
+  }
+
+  void modes();
+
+  void sdo_only() {
+    for (const auto& [key, list] : {std::pair("rpdo", &d_.rpdos), std::pair("tpdo", &d_.tpdos)})
+      if (!list->empty()) reading_.error(at(key), finding::kSdoOnlyPdo, {key});
+    const BehaviourConfig& b = d_.behaviour;
+    const bool spindle = d_.kind == DeviceKind::spindle;
+    if (spindle ? b.speed_mode == SpeedMode::csv : b.position_mode != PositionMode::pp)
+      reading_.error(at("behaviour.sdo_only"), finding::kSdoOnlyMode,
+                     {spindle ? "speed_mode" : "position_mode", spindle ? "pv, vl" : "pp"});
+    if (b.brake_bit >= 0) reading_.error(at("behaviour.brake_bit"), finding::kSdoOnlyBrake, {});
+  }
+
+  bool has_setting(const PdoObject& o) const {
+    return std::any_of(d_.objects.begin(), d_.objects.end(), [&o](const auto& setting) {
+      const auto object = parse_object(setting.first);
+      return object && object->index == o.index && object->subindex == o.subindex;
+    });
+  }
+
+  /// What the drive is sent and nobody gives would be 0: a torque limit of 0, for one. What it sends and
+  /// nobody takes loads the bus.
+  void mapped_for_nothing() {
+    const canopen::DriveProfile profile = drive_profile(d_, NodeConfig{}, 0);
+    const auto each = [&](const std::string& key, const std::vector<PdoConfig>& list, const auto& found) {
+      for (std::size_t i = 0; i < list.size(); ++i)
+        for (std::size_t k = 0; k < list[i].objects.size(); ++k)
+          if (list[i].objects[k].index >= 0x20 && list[i].objects.size() == list[i].object_texts.size())
+            found(list[i].objects[k], list[i],
+                  at(key + "." + std::to_string(i) + ".objects." + std::to_string(k)), k);
+    };
+    each("rpdo", d_.rpdos, [&](const PdoObject& o, const PdoConfig& pdo, const Where& where, std::size_t k) {
+      if (!canopen::written_in_cycle(profile, o.index, o.subindex) && !has_setting(o))
+        reading_.error(where, finding::kNobodyWrites, {pdo.object_texts[k], std::to_string(pdo.number)});
+    });
+    if (d_.behaviour.fixed_pdo_map) return;  // the drive sends it whether it is wanted or not
+    each("tpdo", d_.tpdos, [&](const PdoObject& o, const PdoConfig& pdo, const Where& where, std::size_t k) {
+      if (!canopen::read_in_cycle(o.index, o.subindex))
+        reading_.warning(where, finding::kNobodyReads, {pdo.object_texts[k], std::to_string(pdo.number)});
+    });
+  }
+
+  void write_only() {
+    for (std::size_t i = 0; i < d_.write_only.size(); ++i)
+      if (!parse_object(d_.write_only[i]))
+        reading_.error(at("write_only." + std::to_string(i)), finding::kBadObject,
+                       {d_.write_only[i], "60C4:06/8"});
+  }
+
+  DeviceConfig& d_;
+  Reading& reading_;
+};
+
+struct ModeName {
+  std::string_view name;
+  canopen::OperationMode mode;
+};
+constexpr ModeName kModes[] = {
+    {"pp", canopen::OperationMode::profile_position},
+    {"vl", canopen::OperationMode::velocity},
+    {"pv", canopen::OperationMode::profile_velocity},
+    {"tq", canopen::OperationMode::profile_torque},
+    {"hm", canopen::OperationMode::homing},
+    {"ip", canopen::OperationMode::interpolated_position},
+    {"csp", canopen::OperationMode::cyclic_sync_position},
+    {"csv", canopen::OperationMode::cyclic_sync_velocity},
+    {"cst", canopen::OperationMode::cyclic_sync_torque},
+};
+
+canopen::OperationMode mode_of(std::string_view name) {
+  for (const ModeName& m : kModes)
+    if (m.name == name) return m.mode;
+  return canopen::OperationMode::none;
+}
+
+void DeviceCheck::modes() {
+  for (std::size_t i = 0; i < d_.behaviour.modes.size(); ++i)
+    if (mode_of(d_.behaviour.modes[i]) == canopen::OperationMode::none)
+      reading_.error(at("behaviour.modes." + std::to_string(i)), finding::kUnknownChoice,
+                     {"behaviour.modes", d_.behaviour.modes[i], "pp, vl, pv, tq, hm, ip, csp, csv, cst"});
+}
+
+}  // namespace
+
+bool has_homing_method(const DeviceConfig& device, int method) {
+  const auto& listed = device.behaviour.homing_methods;
+  if (!listed.empty()) return std::find(listed.begin(), listed.end(), std::to_string(method)) != listed.end();
+  return (method >= 1 && method <= 14) || (method >= 17 && method <= 30) || (method >= 33 && method <= 37);
+}
+
+namespace {
+
+void put_pdos(const std::vector<PdoConfig>& from, std::array<canopen::PdoWanted, 4>& to) {
+  for (const PdoConfig& pdo : from) {
+    if (pdo.number < 1 || pdo.number > 4) continue;
+    canopen::PdoWanted& wanted = to[static_cast<std::size_t>(pdo.number - 1)];
+    wanted.transmission_type = static_cast<std::uint8_t>(pdo.transmission);
+    wanted.inhibit_100us = static_cast<std::uint16_t>(std::lround(pdo.inhibit * 1e4));
+    wanted.event_ms = static_cast<std::uint16_t>(std::lround(pdo.event * 1e3));
+    for (const PdoObject& o : pdo.objects) wanted.mapping.add({o.index, o.subindex, o.bits});
+  }
+}
+
+void put_settings(const std::map<std::string, double>& from, const std::vector<std::string>& write_only,
+                  std::vector<canopen::SdoSetting>& to) {
+  for (const auto& [text, value] : from) {
+    const auto object = parse_object(text);
+    if (!object) continue;
+    canopen::SdoSetting setting;
+    setting.index = object->index;
+    setting.subindex = object->subindex;
+    setting.bytes = static_cast<std::uint8_t>(object->bits == 0 ? 4 : object->bits / 8);
+    setting.value = static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+    setting.read_back = std::none_of(write_only.begin(), write_only.end(), [&](const std::string& name) {
+      const auto other = parse_object(name);
+      return other && other->index == object->index && other->subindex == object->subindex;
+    });
+    to.push_back(setting);
+  }
+}
+
+std::optional<std::uint32_t> given(std::int64_t value) {
+  if (value == 0) return std::nullopt;
+  return static_cast<std::uint32_t>(value);
+}
+
+void put_behaviour(const BehaviourConfig& b, canopen::DriveProfile& p) {
+  p.torque_unit_permille = b.torque_unit;
+  p.acceleration_unit_counts_s2 = b.acceleration_unit;
+  p.halt = b.halt;
+  p.homing_method_here = static_cast<std::int8_t>(b.homing_method_here);
+  p.homing_method_none = b.homing_method_none;
+  p.homing_method_list = b.homing_method_list;
+  p.velocity_unit_counts_s =
+      b.velocity_in_rpm ? static_cast<double>(p.counts_per_rev) / 60.0 : b.velocity_unit;
+  p.modes = 0;
+  for (const std::string& m : b.modes) p.modes |= canopen::supported_bit(mode_of(m));
+  p.check_modes = b.check_modes;
+  static constexpr std::string_view kPosition[] = {"csp", "ip", "pp"};
+  p.position_mode = mode_of(kPosition[static_cast<std::size_t>(b.position_mode)]);
+  p.ip_buffer = b.ip_buffer && b.position_mode == PositionMode::ip;
+  const auto entry = [&b](std::string_view what) {
+    const auto found = std::find(b.ip_record.begin(), b.ip_record.end(), what);
+    return static_cast<std::uint8_t>(found == b.ip_record.end() ? 0 : found - b.ip_record.begin() + 1);
+  };
+  p.ip_position_entry = entry("position");
+  p.ip_velocity_entry = entry("velocity");
+  static constexpr std::string_view kSpeed[] = {"csv", "pv", "vl"};
+  p.velocity_mode = mode_of(kSpeed[static_cast<std::size_t>(b.speed_mode)]);
+  static constexpr std::string_view kTorque[] = {"cst", "tq"};
+  p.torque_mode = mode_of(kTorque[static_cast<std::size_t>(b.torque_mode)]);
+  p.fault_reset =
+      b.fault_reset == FaultResetBy::level ? canopen::FaultReset::level : canopen::FaultReset::edge;
+  p.fault_reset_hold_ms = static_cast<std::int32_t>(std::lround(b.fault_reset_hold * 1e3));
+  p.transition_timeout_ms = static_cast<std::int32_t>(std::lround(b.transition_timeout * 1e3));
+  p.handover_counts = b.handover_counts;
+  p.brake_bit = static_cast<std::int8_t>(b.brake_bit);
+  p.brake_bit_releases = b.brake_bit_releases;
+  p.pdo_map_fixed = b.fixed_pdo_map;
+  p.sdo_only = b.sdo_only;
+  p.interpolation_base = b.interpolation_period
+                             ? std::optional<std::int8_t>(static_cast<std::int8_t>(b.interpolation_base))
+                             : std::nullopt;
+  p.command_delay_cycles = static_cast<std::uint8_t>(b.command_delay);
+  p.has_cycle_period = b.cycle_period;
+  p.has_heartbeat_consumer = b.heartbeat_consumer;
+  p.guard_time_ms = static_cast<std::uint16_t>(std::lround(b.guard_time * 1e3));
+  p.life_time_factor = static_cast<std::uint8_t>(b.life_time_factor);
+  p.abort_connection_option = b.connection_loss == ConnectionLoss::none
+                                  ? std::nullopt
+                                  : std::optional<std::int16_t>(static_cast<std::int16_t>(b.connection_loss));
+}
+
+}  // namespace
+
+int PdoConfig::bytes() const {
+  int bits = 0;
+  for (const PdoObject& o : objects) bits += o.bits;
+  return (bits + 7) / 8;
+}
+
+Where DeviceConfig::where(std::string_view path) const { return find_place(places, path); }
+
+std::string_view DeviceConfig::error_text(std::uint16_t code, text::Language language) const {
+  for (const DeviceError& e : errors)
+    if (e.code == code) return language == text::Language::russian ? e.russian : e.english;
+  return {};
+}
+
+bool DeviceResult::ok() const {
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const text::Finding& f) { return f.severity == text::Severity::error; });
+}
+
+std::optional<PdoObject> parse_object(std::string_view text) {
+  PdoObject out;
+  if (text.size() < 4 || !take(text, 16, out.index)) return std::nullopt;
+  if (text.starts_with(':')) {
+    text.remove_prefix(1);
+    if (!take(text, 16, out.subindex)) return std::nullopt;
+  }
+  if (text.starts_with('/')) {
+    text.remove_prefix(1);
+    if (!take(text, 10, out.bits) || out.bits == 0) return std::nullopt;
+  }
+  if (!text.empty()) return std::nullopt;
+  return out;
+}
+
+VlFactor vl_factor(const canopen::DriveProfile& profile, std::uint16_t index) {
+  VlFactor factor;
+  for (const canopen::SdoSetting& s : profile.settings) {  // a node's own come later
+    if (s.index != index || s.value == 0) continue;
+    const auto value = s.bytes == 2 ? static_cast<std::int16_t>(s.value) : static_cast<std::int32_t>(s.value);
+    if (s.subindex == 1) factor.numerator = value;
+    if (s.subindex == 2) factor.denominator = value;
+  }
+  return factor;
+}
+
+canopen::DriveProfile drive_profile(const DeviceConfig& device, const NodeConfig& node,
+                                    std::int64_t counts_per_rev) {
+  canopen::DriveProfile p;
+  p.name = node.device;
+  p.manufacturer = device.manufacturer;
+  p.description = device.description;
+  p.vendor_id = given(device.vendor_id);
+  p.product_code = given(device.product_code);
+  p.revision = given(device.revision);
+  p.counts_per_rev = counts_per_rev > 0 ? counts_per_rev : device.motor.counts_per_rev;
+  put_behaviour(device.behaviour, p);
+  if (device.kind == DeviceKind::canopen_io) p.device_type = canopen::io::kDeviceProfile;
+  if (device.kind == DeviceKind::canopen_encoder) p.device_type = canopen::encoder::kDeviceProfile;
+  if (device.terminals()) p.abort_connection_option.reset();  // 6007h is something else there
+  put_pdos(device.rpdos, p.rpdo);
+  put_pdos(device.tpdos, p.tpdo);
+  put_settings(device.objects, device.write_only, p.settings);
+  put_settings(node.objects, device.write_only, p.settings);
+  double rpm = 1.0;
+  for (const VlFactor factor :
+       {vl_factor(p, canopen::object::kVlSetpointFactor), vl_factor(p, canopen::object::kVlDimensionFactor)})
+    rpm *= static_cast<double>(factor.numerator) / factor.denominator;
+  p.vl_unit_counts_s = rpm * static_cast<double>(p.counts_per_rev) / 60.0;
+  for (const DeviceError& e : device.errors)
+    p.error_texts.push_back({static_cast<std::uint16_t>(e.code), e.english, e.russian});
+  return p;
+}
+
+DeviceResult parse_device(std::string_view text, const std::string& file) {
+  DeviceResult out;
+  Reading reading;
+  reading.file = file;
+  out.device.file = file;
+  if (read_file_text(text, section_of<DeviceConfig>(), &out.device, reading)) {
+    if (reading.unread.contains("kind")) reading.places.erase("kind");
+    out.device.places = std::move(reading.places);
+    DeviceCheck(out.device, reading).all();
+  }
+  sort_findings(reading.findings);
+  out.findings = std::move(reading.findings);
+  return out;
+}
+
+DeviceResult load_device(const std::string& path) {
+  std::string reason;
+  if (const auto text = files::read_file(path, files::kMostOfSettings, reason))
+    return parse_device(*text, path);
+  DeviceResult out;
+  out.findings.push_back({text::Severity::error, path, 1, 1, &finding::kFileMissing, {reason}});
+  return out;
+}
+
+}  // namespace servogate::machine

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/trace.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "firmware_if/image/interface_map.hpp"
+
+namespace servogate::report {
+
+void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRow& row) noexcept {
+  constexpr image::Place kRapid = image::field(image::kProcessFields, "rapid", image::process_base(0));
+  row.cycle = image.now.number;
+  row.t_ns = image.now.t_ns;
+  row.feed_mm_s = image.processes[0].feed_mm_s;
+  row.line = image.processes[0].line;
+  row.rapid = image.packets.bit(kRapid);
+  row.tool = image.processes[0].tool;
+  row.alarms = image.alarms_active;
+  const std::size_t axes = std::min(layout.axes.size(), row.axes.size());
+  for (std::size_t a = 0; a < axes; ++a) {
+    const image::AxisImage& from = image.axes[a];
+    row.axes[a] = {
+        from.command, from.actual, from.following_error, from.command_velocity, from.command_acceleration,
+        from.enabled, from.homed};
+  }
+  const std::size_t spindles =
+      std::min<std::size_t>(static_cast<std::size_t>(layout.spindles), row.spindles.size());
+  for (std::size_t s = 0; s < spindles; ++s)
+    row.spindles[s] = {image.spindles[s].command_rpm, image.spindles[s].actual_rpm};
+  row.signals.fill(0);
+  const std::size_t signals = std::min<std::size_t>(layout.signals.size(), kMaxTraceSignals);
+  for (std::size_t n = 0; n < signals; ++n)
+    if (image.packets.bit(layout.signals[n].place)) row.signals[n / 64] |= std::uint64_t{1} << (n % 64);
+}
+
+struct TraceRecorder::Impl {
+  TraceLayout layout;
+  std::vector<std::unique_ptr<TraceSink>> sinks;
+  /// A ring of one producer and one consumer: row n lies in slot n % size from `accepted` > n until
+  /// `consumed` > n. All slots exist from the start, so no page of them is touched for the first time inside
+  /// a cycle.
+  std::vector<TraceRow> slots;
+  alignas(64) std::atomic<std::uint64_t> accepted{0};  ///< written by the producer alone
+  alignas(64) std::atomic<std::uint64_t> consumed{0};  ///< written by the writer thread alone
+  std::atomic<std::uint64_t> dropped{0};
+  std::atomic<bool> closing{false};
+  std::thread writer;
+
+  Impl(TraceLayout l, std::vector<std::unique_ptr<TraceSink>> s, std::size_t rows)
+      : layout(std::move(l)), sinks(std::move(s)), slots(std::max<std::size_t>(rows, 1)) {}
+
+  /// Takes what is there, at most `most` rows; wakes a producer that waits for room.
+  std::size_t drain(std::size_t most) {
+    const std::uint64_t from = consumed.load(std::memory_order_relaxed);
+    const std::uint64_t ready = accepted.load(std::memory_order_acquire);
+    const std::uint64_t to = std::min<std::uint64_t>(ready, from + most);
+    for (std::uint64_t n = from; n < to; ++n)
+      for (const auto& sink : sinks) sink->row(slots[n % slots.size()]);
+    if (to > from) {
+      consumed.store(to, std::memory_order_release);
+      consumed.notify_one();
+    }
+    return static_cast<std::size_t>(to - from);
+  }
+
+  void run() {
+    for (const auto& sink : sinks) sink->begin(layout);
+    const std::size_t batch = std::max<std::size_t>(slots.size() / 8, 1);
+    for (;;) {
+      const bool last = closing.load(std::memory_order_acquire);
+      if (drain(batch) > 0) continue;
+      if (last) break;
+      // The producer must not have to wake anybody: that would be a system call in the cycle.
+      std::this_thread::sleep_for(std::chrono::microseconds(500));
+    }
+    for (const auto& sink : sinks) sink->end(dropped.load());
+  }
+};
+
+TraceRecorder::TraceRecorder(TraceLayout layout, std::vector<std::unique_ptr<TraceSink>> sinks,
+                             std::size_t capacity)
+    : impl_(std::make_unique<Impl>(std::move(layout), std::move(sinks), capacity)) {
+  impl_->writer = std::thread([this] { impl_->run(); });
+}
+
+TraceRecorder::~TraceRecorder() { close(); }
+
+const TraceLayout& TraceRecorder::layout() const noexcept { return impl_->layout; }
+
+bool TraceRecorder::record(const TraceRow& row) noexcept {
+  Impl& i = *impl_;
+  const std::uint64_t n = i.accepted.load(std::memory_order_relaxed);
+  if (n - i.consumed.load(std::memory_order_acquire) >= i.slots.size()) {
+    i.dropped.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  i.slots[n % i.slots.size()] = row;
+  i.accepted.store(n + 1, std::memory_order_release);
+  return true;
+}
+
+void TraceRecorder::wait_for_room() {
+  for (;;) {
+    const std::uint64_t done = impl_->consumed.load(std::memory_order_acquire);
+    if (impl_->accepted.load(std::memory_order_relaxed) - done < impl_->slots.size()) return;
+    impl_->consumed.wait(done, std::memory_order_acquire);
+  }
+}
+
+void TraceRecorder::close() {
+  impl_->closing.store(true, std::memory_order_release);
+  if (impl_->writer.joinable()) impl_->writer.join();
+}
+
+std::uint64_t TraceRecorder::recorded() const noexcept {
+  return impl_->accepted.load(std::memory_order_relaxed);
+}
+std::uint64_t TraceRecorder::dropped() const noexcept {
+  return impl_->dropped.load(std::memory_order_relaxed);
+}
+const std::vector<std::unique_ptr<TraceSink>>& TraceRecorder::sinks() const noexcept { return impl_->sinks; }
+
+}  // namespace servogate::report
