@@ -4,7 +4,7 @@
 
 /// Numbers of the alarms that devices, programs, the PLC and the cycle itself raise; whoever notices a fault
 /// names its number, and the room that raises it has its row (alarms/alarm_table.hpp). Those of axes and
-/// spindles (1000) and of drives as the axis sees them (2001-2003) are in kernel/axis/axis_alarms.hpp.
+/// spindles (1000) and of drives as the axis sees them (2001-2003) are in kernel/axis/alarms/axis_alarms.hpp.
 namespace servogate::image::alarm {
 
 inline constexpr AlarmNumber kPdoMissing = 2004;

@@ -5,13 +5,13 @@
 
 #include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/process_image.hpp"
-#include "kernel/axis/axis_alarms.hpp"
-#include "kernel/axis/axis_config.hpp"
-#include "kernel/axis/compensation.hpp"
+#include "kernel/axis/alarms/axis_alarms.hpp"
+#include "kernel/axis/config/axis_config.hpp"
+#include "kernel/axis/control/compensation.hpp"
+#include "kernel/axis/control/power_sequence.hpp"
 #include "kernel/axis/homing/homing.hpp"
-#include "kernel/axis/power_sequence.hpp"
-#include "kernel/axis/ramp.hpp"
-#include "kernel/axis/scale.hpp"
+#include "kernel/axis/setpoint/ramp.hpp"
+#include "kernel/axis/setpoint/scale.hpp"
 #include "kernel/axis/torque/torque_control.hpp"
 
 namespace servogate::axis {

@@ -4,9 +4,9 @@
 
 #include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/process_image.hpp"
-#include "kernel/axis/axis_alarms.hpp"
-#include "kernel/axis/axis_config.hpp"
-#include "kernel/axis/scale.hpp"
+#include "kernel/axis/alarms/axis_alarms.hpp"
+#include "kernel/axis/config/axis_config.hpp"
+#include "kernel/axis/setpoint/scale.hpp"
 
 namespace servogate::axis {
 

@@ -8,7 +8,7 @@
 
 #include "kernel/channel/feeder.hpp"
 #include "kernel/channel/handshake.hpp"
-#include "kernel/cycle/participants.hpp"
+#include "kernel/cycle/boundary/participants.hpp"
 #include "kernel/path/follower.hpp"
 
 namespace servogate::channel {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "kernel/channel/motion/surface_speed.hpp"
 #include "kernel/channel/process.hpp"
-#include "kernel/channel/surface_speed.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
 
 namespace servogate::channel {

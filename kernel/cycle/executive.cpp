@@ -8,7 +8,7 @@
 
 #include "firmware_if/image/alarms/drive_report.hpp"
 #include "kernel/cycle/executive_queues.hpp"
-#include "kernel/cycle/interface_places.hpp"
+#include "kernel/cycle/gate/interface_places.hpp"
 
 namespace servogate::cycle {
 

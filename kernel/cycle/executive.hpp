@@ -11,15 +11,15 @@
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/image/request.hpp"
 #include "kernel/axis/axis.hpp"
-#include "kernel/axis/homing/homing_sequence.hpp"
+#include "kernel/axis/homing_sequence.hpp"
 #include "kernel/axis/spindle.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
+#include "kernel/cycle/boundary/inputs.hpp"
+#include "kernel/cycle/boundary/participants.hpp"
+#include "kernel/cycle/boundary/snapshot.hpp"
 #include "kernel/cycle/gate/gate.hpp"
-#include "kernel/cycle/inputs.hpp"
-#include "kernel/cycle/participants.hpp"
 #include "kernel/cycle/plc_orders/handwheel.hpp"
 #include "kernel/cycle/plc_orders/plc_motion.hpp"
-#include "kernel/cycle/snapshot.hpp"
 
 namespace servogate::cycle {
 

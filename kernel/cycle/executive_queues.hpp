@@ -5,7 +5,7 @@
 #include <array>
 #include <atomic>
 
-#include "kernel/cycle/clocks.hpp"
+#include "kernel/cycle/boundary/clocks.hpp"
 #include "kernel/cycle/executive.hpp"
 
 namespace servogate::cycle {

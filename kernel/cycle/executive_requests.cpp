@@ -4,7 +4,7 @@
 #include "kernel/cycle/executive.hpp"
 #include "kernel/cycle/executive_queues.hpp"
 #include "kernel/cycle/gate/guarded_places.hpp"
-#include "kernel/cycle/interface_places.hpp"
+#include "kernel/cycle/gate/interface_places.hpp"
 
 namespace servogate::cycle {
 

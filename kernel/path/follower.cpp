@@ -37,13 +37,13 @@ void Follower::set_spindle(double revolutions) noexcept {
   if (revolutions == spindle_) return;
   spindle_ = revolutions;
   for (const int n : {0, 1})
-    if (const Span* span = window_.span(n); span != nullptr && span->terms.feed.per_turn > 0.0)
+    if (const Span* span = window_.span(n); span != nullptr && follows_spindle(span->terms))
       motion_.renew();
 }
 
 bool Follower::spindle_stands() const noexcept {
   const Span* span = window_.span(0);
-  return span != nullptr && spindle_share(span->terms.feed, spindle_) < kSlowestShare;
+  return span != nullptr && spindle_share(span->terms, spindle_) < kSlowestShare;
 }
 
 void Follower::release_event() noexcept {

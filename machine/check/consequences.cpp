@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "firmware_if/canopen/402/objects.hpp"
-#include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
+#include "firmware_if/canopen/master/sdo_budget.hpp"
 #include "firmware_if/text/units.hpp"
 #include "machine/can_channel.hpp"
 #include "machine/check/stops/control_death.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/axis/compensation.hpp"
+#include "kernel/axis/control/compensation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "kernel/axis/homing/homing_sequence.hpp"
+#include "kernel/axis/homing_sequence.hpp"
 #include "tests/axis/rig.hpp"
 
 namespace servogate::axis {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/axis/power_sequence.hpp"
+#include "kernel/axis/control/power_sequence.hpp"
 
 #include <gtest/gtest.h>
 

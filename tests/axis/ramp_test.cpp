@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/axis/ramp.hpp"
+#include "kernel/axis/setpoint/ramp.hpp"
 #include "tests/property_seed.hpp"
 
 #include <gtest/gtest.h>

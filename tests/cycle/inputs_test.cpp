@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/cycle/inputs.hpp"
+#include "kernel/cycle/boundary/inputs.hpp"
 #include "tests/property_seed.hpp"
 
 #include <gtest/gtest.h>

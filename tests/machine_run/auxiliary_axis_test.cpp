@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "kernel/axis/axis_alarms.hpp"
+#include "kernel/axis/alarms/axis_alarms.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"

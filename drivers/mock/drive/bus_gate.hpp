@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware_if/canopen/device/slave.hpp"
+#include "firmware_if/canopen/device/node/slave.hpp"
 #include "firmware_if/fault/fault.hpp"
 #include "firmware_if/image/can_bus.hpp"
 

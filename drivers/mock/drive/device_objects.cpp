@@ -8,9 +8,9 @@
 
 #include "firmware_if/canopen/305/lss_frame.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
-#include "firmware_if/canopen/device/communication_objects.hpp"
 #include "firmware_if/canopen/device/drive/drive_objects.hpp"
-#include "firmware_if/canopen/device/program_store.hpp"
+#include "firmware_if/canopen/device/node/communication_objects.hpp"
+#include "firmware_if/canopen/device/node/program_store.hpp"
 
 namespace servogate::mock {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "drivers/mock/drive/simulated_drive.hpp"
-#include "firmware_if/canopen/device/object_dictionary.hpp"
+#include "firmware_if/canopen/device/dictionary/object_dictionary.hpp"
 
 namespace servogate::mock {
 

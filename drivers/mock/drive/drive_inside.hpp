@@ -8,8 +8,8 @@
 #include "drivers/mock/drive/bus_gate.hpp"
 #include "drivers/mock/drive/device_objects.hpp"
 #include "drivers/mock/drive/simulated_drive.hpp"
-#include "firmware_if/canopen/device/communication_objects.hpp"
 #include "firmware_if/canopen/device/drive/servo_profile.hpp"
+#include "firmware_if/canopen/device/node/communication_objects.hpp"
 
 namespace servogate::mock {
 

@@ -14,7 +14,7 @@
 #include "firmware_if/canopen/301/pdo_mapping.hpp"
 #include "firmware_if/canopen/306/eds.hpp"
 #include "firmware_if/canopen/device/drive/drive_objects.hpp"
-#include "firmware_if/canopen/device/pdo_channel.hpp"
+#include "firmware_if/canopen/device/node/pdo_channel.hpp"
 #include "firmware_if/fault/fault.hpp"
 #include "firmware_if/image/drive_link.hpp"
 #include "firmware_if/image/process_image.hpp"

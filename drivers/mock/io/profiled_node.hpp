@@ -7,8 +7,8 @@
 
 #include "drivers/mock/can/can_segment.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
-#include "firmware_if/canopen/device/object_dictionary.hpp"
-#include "firmware_if/canopen/device/slave.hpp"
+#include "firmware_if/canopen/device/dictionary/object_dictionary.hpp"
+#include "firmware_if/canopen/device/node/slave.hpp"
 
 namespace servogate::mock {
 

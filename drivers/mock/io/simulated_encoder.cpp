@@ -3,7 +3,7 @@
 
 #include "drivers/mock/io/profiled_node.hpp"
 #include "firmware_if/canopen/406/objects.hpp"
-#include "firmware_if/canopen/device/communication_objects.hpp"
+#include "firmware_if/canopen/device/node/communication_objects.hpp"
 
 namespace servogate::mock {
 namespace {

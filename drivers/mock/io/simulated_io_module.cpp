@@ -5,8 +5,8 @@
 
 #include "drivers/mock/io/profiled_node.hpp"
 #include "firmware_if/canopen/401/objects.hpp"
-#include "firmware_if/canopen/device/communication_objects.hpp"
 #include "firmware_if/canopen/device/io/io_profile.hpp"
+#include "firmware_if/canopen/device/node/communication_objects.hpp"
 
 namespace servogate::mock {
 namespace {

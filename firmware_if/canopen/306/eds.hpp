@@ -9,7 +9,7 @@
 
 #include "firmware_if/canopen/306/eds_number.hpp"
 #include "firmware_if/canopen/306/ini.hpp"
-#include "firmware_if/canopen/device/object_dictionary.hpp"
+#include "firmware_if/canopen/device/dictionary/object_dictionary.hpp"
 #include "firmware_if/text/finding.hpp"
 
 namespace servogate::canopen {

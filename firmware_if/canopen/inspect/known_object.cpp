@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "firmware_if/canopen/device/communication_objects.hpp"
 #include "firmware_if/canopen/device/drive/drive_objects.hpp"
+#include "firmware_if/canopen/device/node/communication_objects.hpp"
 
 namespace servogate::canopen {
 

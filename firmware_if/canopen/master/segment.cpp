@@ -10,7 +10,7 @@
 #include "firmware_if/canopen/master/bus_lead.hpp"
 #include "firmware_if/canopen/master/bus_meter.hpp"
 #include "firmware_if/canopen/master/bus_node.hpp"
-#include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
+#include "firmware_if/canopen/master/sdo_budget.hpp"
 
 namespace servogate::canopen {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "firmware_if/canopen/302/segment_config.hpp"
-#include "firmware_if/canopen/master/bus_event.hpp"
+#include "firmware_if/canopen/master/events/bus_event.hpp"
 #include "firmware_if/canopen/master/object_question.hpp"
 #include "firmware_if/image/can_bus.hpp"
 #include "firmware_if/image/process_image.hpp"

@@ -15,7 +15,7 @@
 #include "gateway/control/compose/simulated/machine_faults.hpp"
 #include "gateway/control/compose/simulated/world_setup.hpp"
 #include "kernel/channel/process.hpp"
-#include "kernel/cycle/clocks.hpp"
+#include "kernel/cycle/boundary/clocks.hpp"
 #include "kernel/cycle/executive.hpp"
 #include "machine/load.hpp"
 #include "machine/state/state.hpp"

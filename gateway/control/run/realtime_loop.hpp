@@ -9,7 +9,7 @@
 #include "gateway/control/compose/control.hpp"
 #include "gateway/control/run/announce.hpp"
 #include "gateway/control/run/scan_watchdog.hpp"
-#include "kernel/cycle/realtime.hpp"
+#include "kernel/cycle/boundary/realtime.hpp"
 
 namespace servogate::gateway {
 

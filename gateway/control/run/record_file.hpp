@@ -11,7 +11,7 @@
 
 #include "firmware_if/text/finding.hpp"
 #include "gateway/control/compose/control.hpp"
-#include "kernel/cycle/inputs.hpp"
+#include "kernel/cycle/boundary/inputs.hpp"
 #include "machine/state/state.hpp"
 
 namespace servogate::gateway {

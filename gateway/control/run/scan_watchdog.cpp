@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "kernel/cycle/clocks.hpp"
-#include "kernel/cycle/realtime.hpp"
+#include "kernel/cycle/boundary/clocks.hpp"
+#include "kernel/cycle/boundary/realtime.hpp"
 
 namespace servogate::gateway {
 

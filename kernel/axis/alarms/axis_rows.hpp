@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "firmware_if/image/alarms/alarm_table.hpp"
-#include "kernel/axis/axis_alarms.hpp"
+#include "kernel/axis/alarms/axis_alarms.hpp"
 
 namespace servogate::axis {
 

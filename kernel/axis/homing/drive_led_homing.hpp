@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "firmware_if/image/drive_link.hpp"
-#include "kernel/axis/axis_config.hpp"
+#include "kernel/axis/config/axis_config.hpp"
 
 namespace servogate::axis {
 

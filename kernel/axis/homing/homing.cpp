@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/axis/axis_alarms.hpp"
+#include "kernel/axis/alarms/axis_alarms.hpp"
 
 namespace servogate::axis {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "firmware_if/image/alarm.hpp"
-#include "kernel/axis/axis_config.hpp"
+#include "kernel/axis/config/axis_config.hpp"
 #include "kernel/axis/homing/drive_led_homing.hpp"
-#include "kernel/axis/ramp.hpp"
+#include "kernel/axis/setpoint/ramp.hpp"
 
 namespace servogate::axis {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/channel/surface_speed.hpp"
-#include "kernel/channel/texts.hpp"
+#include "kernel/channel/motion/surface_speed.hpp"
+#include "kernel/channel/motion/texts.hpp"
 
 namespace servogate::channel {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware_if/text/finding.hpp"
-#include "kernel/path/element.hpp"
+#include "kernel/path/shape/element.hpp"
 #include "kernel/path/shape/piece.hpp"
 #include "kernel/program/commands/canonical.hpp"
 

@@ -9,7 +9,7 @@
 #include "firmware_if/image/alarm_numbers.hpp"
 #include "firmware_if/image/alarms/alarm_table.hpp"
 #include "firmware_if/image/process_image.hpp"
-#include "kernel/axis/axis_alarms.hpp"
+#include "kernel/axis/alarms/axis_alarms.hpp"
 
 namespace servogate::cycle {
 

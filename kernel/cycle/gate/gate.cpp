@@ -9,7 +9,7 @@
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
 #include "kernel/cycle/gate/guarded_places.hpp"
-#include "kernel/cycle/interface_places.hpp"
+#include "kernel/cycle/gate/interface_places.hpp"
 
 namespace servogate::cycle {
 

@@ -16,6 +16,12 @@ struct Wish {
 inline double spindle_share(const Feed& feed, double spindle) noexcept {
   return feed.per_turn > 0.0 && spindle >= 0.0 ? spindle / feed.turns : 1.0;
 }
+/// The same of the terms of a span. real-time safe.
+inline double spindle_share(const Terms& terms, double spindle) noexcept {
+  return spindle_share(terms.feed, spindle);
+}
+/// The span is driven by the spindle's speed (feed per revolution). real-time safe.
+inline bool follows_spindle(const Terms& terms) noexcept { return terms.feed.per_turn > 0.0; }
 
 /// The law inside the cycle: owns place, speed and acceleration within the span in motion, and is the only
 /// one to know how they go on. It drives by the terms of the spans, and has the branch for what they did not

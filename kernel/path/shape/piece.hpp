@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "kernel/path/element.hpp"
+#include "kernel/path/shape/element.hpp"
 
 namespace servogate::path {
 

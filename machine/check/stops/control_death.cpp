@@ -7,7 +7,7 @@
 #include "firmware_if/canopen/302/concise_dcf.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/text/units.hpp"
-#include "kernel/cycle/interface_places.hpp"
+#include "kernel/cycle/gate/interface_places.hpp"
 #include "machine/check/check.hpp"
 #include "machine/check/findings_motion.hpp"
 #include "machine/consequences.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/canopen/master/bus_event.hpp"
+#include "firmware_if/canopen/master/events/bus_event.hpp"
 
 #include <gtest/gtest.h>
 

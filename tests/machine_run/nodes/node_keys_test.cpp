@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "firmware_if/canopen/device/program_store.hpp"
+#include "firmware_if/canopen/device/node/program_store.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 

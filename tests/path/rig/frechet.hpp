@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "kernel/path/element.hpp"
+#include "kernel/path/shape/element.hpp"
 
 namespace servogate::path::test {
 

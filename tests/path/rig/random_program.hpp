@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "kernel/path/element.hpp"
+#include "kernel/path/shape/element.hpp"
 
 namespace servogate::path::test {
 

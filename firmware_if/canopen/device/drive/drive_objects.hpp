@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "firmware_if/canopen/402/objects.hpp"
-#include "firmware_if/canopen/device/object_dictionary.hpp"
+#include "firmware_if/canopen/device/dictionary/object_dictionary.hpp"
 
 namespace servogate::canopen {
 

@@ -3,9 +3,9 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware_if/canopen/device/dictionary/object_dictionary.hpp"
 #include "firmware_if/canopen/device/drive/homing.hpp"
 #include "firmware_if/canopen/device/drive/servo.hpp"
-#include "firmware_if/canopen/device/object_dictionary.hpp"
 
 namespace servogate::canopen {
 

@@ -11,7 +11,7 @@
 #include "firmware_if/canopen/device/drive/power_state.hpp"
 #include "firmware_if/canopen/device/drive/probe_latch.hpp"
 #include "firmware_if/canopen/device/drive/servo.hpp"
-#include "firmware_if/canopen/device/slave.hpp"
+#include "firmware_if/canopen/device/node/slave.hpp"
 
 namespace servogate::canopen {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "firmware_if/canopen/301/cob_id.hpp"
-#include "firmware_if/canopen/device/object_dictionary.hpp"
-#include "firmware_if/canopen/device/slave.hpp"
+#include "firmware_if/canopen/device/dictionary/object_dictionary.hpp"
+#include "firmware_if/canopen/device/node/slave.hpp"
 
 namespace servogate::canopen {
 

@@ -6,7 +6,7 @@
 
 #include "firmware_if/canopen/401/objects.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
-#include "firmware_if/canopen/device/pdo_channel.hpp"
+#include "firmware_if/canopen/device/node/pdo_channel.hpp"
 
 namespace servogate::canopen {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "firmware_if/canopen/device/io/io_objects.hpp"
-#include "firmware_if/canopen/device/slave.hpp"
+#include "firmware_if/canopen/device/node/slave.hpp"
 
 namespace servogate::canopen {
 

@@ -7,7 +7,7 @@
 
 #include "firmware_if/canopen/301/sdo_block.hpp"
 #include "firmware_if/canopen/301/sdo_codec.hpp"
-#include "firmware_if/canopen/device/object_dictionary.hpp"
+#include "firmware_if/canopen/device/dictionary/object_dictionary.hpp"
 #include "firmware_if/image/time.hpp"
 
 namespace servogate::canopen {

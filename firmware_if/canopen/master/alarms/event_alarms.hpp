@@ -2,8 +2,8 @@
 #pragma once
 #include <optional>
 
-#include "firmware_if/canopen/master/bus_event.hpp"
-#include "firmware_if/canopen/master/segment.hpp"
+#include "firmware_if/canopen/302/segment_config.hpp"
+#include "firmware_if/canopen/master/events/bus_event.hpp"
 #include "firmware_if/image/alarm.hpp"
 
 namespace servogate::canopen {

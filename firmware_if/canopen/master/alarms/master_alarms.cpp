@@ -4,7 +4,7 @@
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/canopen/302/boot_detail.hpp"
 #include "firmware_if/canopen/master/alarms/master_rows.hpp"
-#include "firmware_if/canopen/master/bus_event.hpp"
+#include "firmware_if/canopen/master/events/bus_event.hpp"
 #include "firmware_if/image/alarms/alarm_text.hpp"
 #include "firmware_if/image/alarms/drive_report.hpp"
 #include "firmware_if/image/frames/frame_record.hpp"

@@ -9,7 +9,7 @@
 #include "firmware_if/canopen/402/homing_watch.hpp"
 #include "firmware_if/canopen/402/set_point_handshake.hpp"
 #include "firmware_if/canopen/402/touch_probe.hpp"
-#include "firmware_if/canopen/master/node_link.hpp"
+#include "firmware_if/canopen/master/pdo/node_link.hpp"
 
 namespace servogate::canopen {
 

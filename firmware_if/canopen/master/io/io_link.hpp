@@ -4,7 +4,7 @@
 
 #include "firmware_if/canopen/302/io_station.hpp"
 #include "firmware_if/canopen/302/segment_config.hpp"
-#include "firmware_if/canopen/master/node_link.hpp"
+#include "firmware_if/canopen/master/pdo/node_link.hpp"
 #include "firmware_if/image/points/point_stage.hpp"
 
 namespace servogate::canopen {

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "kernel/axis/axis_config.hpp"
+#include "kernel/axis/config/axis_config.hpp"
 #include "kernel/channel/process.hpp"
 #include "machine/load.hpp"
 

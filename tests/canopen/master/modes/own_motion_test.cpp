@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "firmware_if/canopen/master/sdo/sdo_budget.hpp"
+#include "firmware_if/canopen/master/sdo_budget.hpp"
 #include "tests/canopen/master/pair.hpp"
 
 namespace servogate::canopen {

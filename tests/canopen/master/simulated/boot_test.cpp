@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "firmware_if/canopen/302/concise_dcf.hpp"
-#include "firmware_if/canopen/device/program_store.hpp"
+#include "firmware_if/canopen/device/node/program_store.hpp"
 #include "tests/canopen/master/simulated/simulated_drives.hpp"
 
 namespace servogate::canopen {

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "firmware_if/image/alarm.hpp"
+#include "firmware_if/image/cycle_device.hpp"
+#include "firmware_if/image/notices.hpp"
+#include "firmware_if/image/process_image.hpp"
+#include "firmware_if/image/request.hpp"
+#include "kernel/axis/axis.hpp"
+#include "kernel/axis/spindle.hpp"
+#include "kernel/cycle/boundary/inputs.hpp"
+
+namespace servogate::cycle {
+
+using image::Notices;
+
+/// What a process sees of the machine in one cycle.
+struct ProcessContext {
+  image::ProcessImage& image;
+  std::span<axis::Axis> axes;
+  std::span<axis::Spindle> spindles;
+  std::span<const std::uint64_t> visible;  ///< how far its own crossing queues may be read in this cycle
+  image::Reaction reaction;                ///< the strongest one in force
+  bool drives_wanted;                      ///< the operator has asked for the drives to be on
+  image::Asker drives_asker;               ///< whose request that was, or the one that they be off
+  Notices& notices;
+};
+
+/// A part-program process as the cycle sees it. Everything real-time safe.
+class ProcessInCycle {
+ public:
+  static constexpr int kCrossingsEach = cycle::kCrossingsEach;
+  virtual ~ProcessInCycle() = default;
+  /// How far its crossing queues are filled at this moment, kCrossingsEach numbers. They speak of the run
+  /// under way and begin at 0 with it, so that what was read of a run given up leaves no trace in a record.
+  virtual void published(std::span<std::uint64_t> counts) const noexcept = 0;
+  /// One cycle: handshakes, path, set-points of the axes that the process owns.
+  virtual void interpolate(ProcessContext& context) noexcept = 0;
+  /// Carries out a request that the gate has let pass (start, step, hold, resume, stop, reset, override,
+  /// mode).
+  /// False: it cannot start because an axis is not at rest or belongs to somebody else.
+  virtual bool order(const image::Request& request, ProcessContext& context) noexcept = 0;
+  /// A program is loaded and may be started.
+  virtual bool loaded() const noexcept = 0;
+  /// The program has been ended, and its path is not at rest yet. For any thread.
+  virtual bool stopping() const noexcept { return false; }
+};
+
+}  // namespace servogate::cycle
