@@ -64,8 +64,9 @@ class NodeFileReader {
     const auto bytes = content(node.configuration, files::kMostOfSettings, path + ".configuration");
     if (!bytes) return;
     const canopen::EdsResult dcf = canopen::read_eds(*bytes, node.configuration);
+    const bool broken = !dcf.eds.objects.empty() && !dcf.ok();
     const auto entries = canopen::configuration_of(dcf.eds, static_cast<canopen::NodeId>(node.id));
-    if (entries.empty())
+    if (entries.empty() && !broken)
       return reading_.error(at(path + ".configuration"), finding::kEmptyConfiguration, {node.configuration});
     for (text::Finding f : dcf.findings) {
       f.column = std::max(f.column, 1);

@@ -264,6 +264,28 @@ TEST_F(Workbench, od_names_what_a_configuration_cannot_hold) {
   EXPECT_TRUE(saved.err_has("a DCF cannot hold their values: 2100h:00")) << saved.err;
 }
 
+TEST_F(Workbench, an_empty_text_is_written_saved_and_found_again) {
+  drives("5");
+  ASSERT_EQ(tool("sdo $BUS 5 write 2100 'X axis' str").code, 0);
+  desk_.write("nothing", "");
+  ASSERT_EQ(tool("sdo $BUS 5 write 2100 @nothing str").code, 0);
+  EXPECT_EQ(facts("sdo $BUS 5 read 2100 str")["value"], "");
+  const Ended saved = tool("od $BUS 5 --range 2100-2100 --save a.dcf");
+  ASSERT_EQ(saved.code, 0);
+  EXPECT_FALSE(saved.err_has("cannot hold")) << saved.err;
+  EXPECT_NE(desk_.text("a.dcf").find("ParameterValue=\r\n"), std::string::npos) << desk_.text("a.dcf");
+  EXPECT_EQ(tool("sdo $BUS 5 write 6083 @nothing u32").code, 2) << "a number is never empty";
+}
+
+TEST_F(Workbench, a_dcf_with_bytes_that_are_none_is_refused_with_its_line) {
+  desk_.write("bad.dcf",
+              "[2000]\nParameterName=key\nObjectType=7\nDataType=10\nAccessType=rw\nParameterValue=hello\n");
+  const Ended ended = tool("od $BUS 5 --compare bad.dcf");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(ended.err_has("bad.dcf:6: error: [2000] ParameterValue = hello: bytes are expected"))
+      << ended.err;
+}
+
 TEST_F(Workbench, od_of_a_node_that_is_not_there_fails) {
   const Ended ended = tool("od $BUS 9 --timeout 50");
   EXPECT_EQ(ended.code, 1);

@@ -25,7 +25,7 @@ void SdoClient::restart() noexcept {
 
 bool SdoClient::download(std::uint16_t index, std::uint8_t subindex,
                          std::span<const std::uint8_t> data) noexcept {
-  if (busy() || data.empty() || data.size() > kBuffer) return false;
+  if (busy() || data.size() > kBuffer) return false;
   std::ranges::copy(data, buffer_.begin());
   source_ = nullptr;
   target_ = nullptr;
@@ -43,7 +43,7 @@ bool SdoClient::download(std::uint16_t index, std::uint8_t subindex, std::uint64
 
 bool SdoClient::download_from(std::uint16_t index, std::uint8_t subindex,
                               std::span<const std::uint8_t> data) noexcept {
-  if (busy() || data.empty() || data.size() > 0xFFFF'FFFFu) return false;
+  if (busy() || data.size() > 0xFFFF'FFFFu) return false;
   source_ = data.data();
   target_ = nullptr;
   length_ = static_cast<std::uint32_t>(data.size());
@@ -81,8 +81,9 @@ SdoBytes SdoClient::request() noexcept {
 
 SdoBytes SdoClient::initiate_request() const noexcept {
   if (!result_.download) return sdo_request::upload(result_.index, result_.subindex);
-  if (length_ > 4) return sdo_request::download_segmented(result_.index, result_.subindex, length_);
-  return sdo_request::download_expedited(result_.index, result_.subindex, std::span(memory(), length_));
+  if (expedited())
+    return sdo_request::download_expedited(result_.index, result_.subindex, std::span(memory(), length_));
+  return sdo_request::download_segmented(result_.index, result_.subindex, length_);
 }
 
 SdoBytes SdoClient::segment_request() const noexcept {
@@ -179,7 +180,7 @@ bool SdoClient::on_plain_frame(const SdoBytes& bytes) noexcept {
 
 void SdoClient::on_initiate(const SdoFrame& answer) noexcept {
   if (result_.download) {
-    if (length_ <= 4) {
+    if (expedited()) {
       position_ = length_;
       return finish(SdoStatus::done, AbortCode::none);
     }

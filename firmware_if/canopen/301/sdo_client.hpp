@@ -54,13 +54,13 @@ class SdoClient {
   SdoClient(NodeId node, image::Nanoseconds timeout_ns, std::uint32_t retries) noexcept
       : node_(node), timeout_ns_(timeout_ns), retries_(retries) {}
 
-  /// Starts writing at most kBuffer bytes, which are copied. False when busy or when the size does not fit (0
-  /// does not).
+  /// Starts writing at most kBuffer bytes, which are copied; none at all is the empty string. False when busy
+  /// or when the size does not fit.
   bool download(std::uint16_t index, std::uint8_t subindex, std::span<const std::uint8_t> data) noexcept;
   /// The same for a little-endian integer of 1, 2, 4 or 8 bytes.
   bool download(std::uint16_t index, std::uint8_t subindex, std::uint64_t value, std::uint8_t bytes) noexcept;
-  /// Starts writing any number of bytes (0 excepted) out of the caller's memory, which must stay as it is
-  /// until the transfer has ended. False when busy.
+  /// Starts writing any number of bytes out of the caller's memory, which must stay as it is until the
+  /// transfer has ended. False when busy.
   bool download_from(std::uint16_t index, std::uint8_t subindex, std::span<const std::uint8_t> data) noexcept;
   /// Starts reading. False when busy. A longer object than kBuffer ends with AbortCode::out_of_memory.
   bool upload(std::uint16_t index, std::uint8_t subindex) noexcept;
@@ -117,6 +117,8 @@ class SdoClient {
   void on_timeout() noexcept;
   bool send_abort(image::CanBus& bus) noexcept;
   SdoBytes request() noexcept;
+  /// A download in one frame. No data at all, the empty string, go in a segment: a frame holds one to four.
+  bool expedited() const noexcept { return length_ >= 1 && length_ <= 4; }
   SdoBytes initiate_request() const noexcept;
   SdoBytes segment_request() const noexcept;
   void finish(SdoStatus status, AbortCode abort) noexcept;

@@ -16,18 +16,21 @@ bool pdo_parameter(std::uint16_t index) noexcept { return index >= 0x1400 && ind
 
 void add_entry(std::vector<ConfigurationEntry>& out, std::uint16_t index, std::uint8_t subindex,
                const EdsEntry& e, NodeId node) {
-  const bool writable = e.access == EdsAccess::rw || e.access == EdsAccess::rwr ||
-                        e.access == EdsAccess::rww || e.access == EdsAccess::wo;
-  if (!e.parameter_value || !writable || (e.flags & 1) || e.parameter_value == e.default_value) return;
+  if (!e.parameter_value || !eds_writable(e.access) || (e.flags & 1) || e.parameter_value == e.default_value)
+    return;
   ConfigurationEntry entry{index, subindex, {}};
   if (e.parameter_value->number) {
     const auto bytes = static_cast<std::size_t>(eds_type_bits(e.data_type) + 7) / 8;
     append(entry.data, static_cast<std::uint64_t>(e.parameter_value->number->at(node)), bytes);
-  } else if (const ValueType* type = type_numbered(e.data_type)) {
-    // Texts as they are, OCTET_STRING and the like from their hexadecimal digits.
-    if (auto data = encode_value(e.parameter_value->text, *type)) entry.data = std::move(*data);
+  } else {
+    // Texts as they are, OCTET_STRING and the like from their hexadecimal digits. What is no value of its
+    // type the reader of the file has told as an error.
+    const ValueType* type = type_numbered(e.data_type);
+    auto data = type != nullptr ? encode_value(e.parameter_value->text, *type) : std::nullopt;
+    if (!data) return;
+    entry.data = std::move(*data);
   }
-  if (!entry.data.empty()) out.push_back(std::move(entry));
+  out.push_back(std::move(entry));
 }
 
 }  // namespace
@@ -40,7 +43,7 @@ std::optional<std::vector<ConfigurationEntry>> parse_concise_dcf(std::span<const
   for (std::uint64_t i = 0; i < count; ++i) {
     if (bytes.size() < kHead) return std::nullopt;
     const auto size = static_cast<std::size_t>(load_le(bytes.subspan(3, 4)));
-    if (size == 0 || size > bytes.size() - kHead) return std::nullopt;
+    if (size > bytes.size() - kHead) return std::nullopt;
     const auto data = bytes.subspan(kHead, size);
     entries.push_back(
         {static_cast<std::uint16_t>(load_le(bytes.first(2))), bytes[2], {data.begin(), data.end()}});

@@ -31,6 +31,7 @@ enum class EdsObjectType : std::uint8_t {
 struct EdsValue {
   std::string text;
   std::optional<EdsNumber> number;
+  std::string octets = {};  ///< read from a file, of a type of bytes (OCTET_STRING, DOMAIN ...): those bytes
   bool operator==(const EdsValue&) const = default;
 };
 
@@ -43,7 +44,7 @@ struct EdsEntry {
   bool pdo_mapping = false;
   std::uint32_t flags = 0;  ///< ObjFlags: bit 0 not written by a download of a DCF, bit 1 not read by a scan
   std::optional<EdsValue> default_value, low_limit, high_limit;
-  std::optional<EdsValue> parameter_value;  ///< of a DCF
+  std::optional<EdsValue> parameter_value;  ///< of a DCF; an empty text is the empty string
   std::string denotation;                   ///< of a DCF: the user's name of it
   bool operator==(const EdsEntry&) const = default;
 
@@ -104,12 +105,14 @@ struct Eds {
 struct EdsResult {
   Eds eds;
   std::vector<text::Finding> findings;
-  /// There is at least one object.
-  bool ok() const noexcept { return !eds.objects.empty(); }
+  /// There is at least one object, and no error.
+  bool ok() const noexcept;
 };
 
-/// Reads an EDS or DCF. `file` is how findings call it. Every oddity is a warning with its line; the only
-/// error is a file without objects. Not real-time safe, as everything here.
+/// Reads an EDS or DCF. `file` is how findings call it. Every oddity is a warning with its line. Errors are a
+/// file without objects, and a ParameterValue that is to be written into the device and is no value of its
+/// type of bytes. An empty ParameterValue is the empty string of VISIBLE_STRING, OCTET_STRING and
+/// UNICODE_STRING, and none of other types. Not real-time safe, as everything here.
 EdsResult read_eds(std::string_view bytes, std::string_view file);
 
 /// The data sheet as CiA 306 has it: sections in order, lists counted, numbers hexadecimal.
@@ -130,6 +133,14 @@ std::vector<ObjectSpec> object_specs(const Eds& eds, NodeId node);
 int eds_type_bits(std::uint16_t data_type) noexcept;
 bool eds_type_signed(std::uint16_t data_type) noexcept;
 bool eds_type_known(std::uint16_t data_type) noexcept;
+/// VISIBLE_STRING, OCTET_STRING, UNICODE_STRING: a value may be empty.
+constexpr bool eds_type_string(std::uint16_t data_type) noexcept {
+  return data_type >= 0x09 && data_type <= 0x0B;
+}
+/// A download may write it: rw, rwr, rww, wo.
+constexpr bool eds_writable(EdsAccess access) noexcept {
+  return access != EdsAccess::ro && access != EdsAccess::constant;
+}
 /// REAL32, REAL64: values are written as decimal fractions.
 constexpr bool eds_type_real(std::uint16_t data_type) noexcept {
   return data_type == 0x08 || data_type == 0x11;

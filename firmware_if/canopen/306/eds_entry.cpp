@@ -5,11 +5,14 @@
 #include <charconv>
 
 #include "firmware_if/canopen/306/eds_text.hpp"
+#include "firmware_if/canopen/306/value_text.hpp"
 
 namespace servogate::canopen {
 namespace {
 
-constexpr std::uint16_t kUnsigned32 = 0x07, kBoolean = 0x01, kReal32 = 0x08, kFirstStructure = 0x20;
+constexpr std::uint16_t kUnsigned32 = 0x07, kBoolean = 0x01, kReal32 = 0x08, kTimeOfDay = 0x0C,
+                        kTimeDifference = 0x0D, kFirstStructure = 0x20;
+constexpr std::size_t kTimeBytes = 6;  ///< milliseconds and days; CiA 301, 7.1.6.5 and 7.1.6.6
 
 const text::Entry* oddity_text(NumberOddity oddity) noexcept {
   switch (oddity) {
@@ -164,6 +167,40 @@ std::optional<EdsValue> EdsFieldReader::real(const IniEntry& field) const {
   return EdsValue{field.value, EdsNumber{std::bit_cast<std::int64_t>(value), false}};
 }
 
+// Bytes are written by their hexadecimal digits. What is none of them stays as a text without a meaning.
+EdsValue EdsFieldReader::text_or_bytes(const IniEntry& field, std::uint16_t data_type,
+                                       bool to_be_written) const {
+  EdsValue found{field.value, std::nullopt};
+  const ValueType* type = type_numbered(data_type);
+  if (type != nullptr && is_text(*type)) return found;
+  const text::Entry* wrong = &eds_text::kNoBytesOfType;
+  if (type != nullptr) {
+    const auto bytes = encode_value(field.value, *type);
+    const bool time = data_type == kTimeOfDay || data_type == kTimeDifference;
+    if (bytes && (!time || bytes->size() == kTimeBytes)) {
+      found.octets.assign(bytes->begin(), bytes->end());
+      return found;
+    }
+    wrong = bytes ? &eds_text::kNotSixBytes : &eds_text::kNotBytes;
+  }
+  const std::vector<std::string> arguments{section_.name, field.key, field.value, hex(data_type)};
+  if (to_be_written)
+    findings_.error(*wrong, field.line, arguments);
+  else if (type != nullptr)  // of a structure data_type() has said it
+    findings_.warn(*wrong, field.line, arguments);
+  return found;
+}
+
+std::optional<EdsValue> EdsFieldReader::parameter(std::string_view key, const EdsEntry& e) const {
+  const IniEntry* field = section_.entry(key);
+  if (field == nullptr) return std::nullopt;
+  if (field->value.empty()) return eds_type_string(e.data_type) ? std::optional(EdsValue{}) : std::nullopt;
+  if (eds_type_real(e.data_type) || eds_type_bits(e.data_type) > 0) return value(key, e.data_type);
+  // A value that is the default anyway is not written (configuration_of).
+  const bool other = !e.default_value || e.default_value->text != field->value;
+  return text_or_bytes(*field, e.data_type, other && eds_writable(e.access) && (e.flags & 1) == 0);
+}
+
 std::optional<EdsValue> EdsFieldReader::value(std::string_view key, std::uint16_t data_type) const {
   const IniEntry* field = section_.entry(key);
   if (!field || field->value.empty()) return std::nullopt;
@@ -174,7 +211,7 @@ std::optional<EdsValue> EdsFieldReader::value(std::string_view key, std::uint16_
           std::bit_cast<std::uint32_t>(static_cast<float>(std::bit_cast<double>(found->number->value)));
     return found;
   }
-  if (eds_type_bits(data_type) == 0) return EdsValue{field->value, std::nullopt};
+  if (eds_type_bits(data_type) == 0) return text_or_bytes(*field, data_type, false);
   auto found = number(key);
   if (!found) return std::nullopt;
   if (!fits(*found, data_type, *field)) {
@@ -211,7 +248,7 @@ EdsEntry EdsFieldReader::entry(bool top, std::uint16_t inherited_type) const {
   e.access = access();
   e.pdo_mapping = boolean("PDOMapping");
   e.default_value = value("DefaultValue", e.data_type);
-  e.parameter_value = value("ParameterValue", e.data_type);
+  e.parameter_value = parameter("ParameterValue", e);
   e.low_limit = value("LowLimit", e.data_type);
   e.high_limit = value("HighLimit", e.data_type);
   drop_wrong_limits(e);

@@ -22,12 +22,16 @@ class EdsFieldReader {
   EdsEntry entry(bool top, std::uint16_t inherited_type = 0) const;
   /// A value of this data type; nullopt when there is none or it does not fit.
   std::optional<EdsValue> value(std::string_view key, std::uint16_t data_type) const;
+  /// A value of a DCF for `e`, whose other fields are there: empty, it is the empty string, where its type
+  /// has one. One that is to be written and cannot be is an error.
+  std::optional<EdsValue> parameter(std::string_view key, const EdsEntry& e) const;
 
  private:
   EdsObjectType object_type() const;
   std::uint16_t data_type(std::uint16_t inherited) const;
   EdsAccess access() const;
   std::optional<EdsValue> real(const IniEntry& field) const;
+  EdsValue text_or_bytes(const IniEntry& field, std::uint16_t data_type, bool to_be_written) const;
   bool fits(EdsNumber& number, std::uint16_t data_type, const IniEntry& field) const;
   void drop_wrong_limits(EdsEntry& entry) const;
 

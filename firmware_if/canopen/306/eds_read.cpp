@@ -207,7 +207,7 @@ class EdsReader {
       if (part == SectionName::Part::names) sub->second.name = e.value;
       if (part == SectionName::Part::denotations) sub->second.denotation = e.value;
       if (part == SectionName::Part::values)
-        if (auto value = fields.value(e.key, sub->second.data_type)) sub->second.parameter_value = value;
+        if (auto value = fields.parameter(e.key, sub->second)) sub->second.parameter_value = value;
     }
   }
 

@@ -55,6 +55,17 @@ inline constexpr Entry kUtf16{"eds-utf16", "the file is UTF-16; CiA 306 has ASCI
             "[{0}]: тип доступа «{1}»; принят {2}"},
     kOutOfType{"eds-out-of-type", "[{0}] {1} = {2} does not fit its data type; left out",
                "[{0}] {1} = {2} не помещается в тип данных; пропущено"},
+    kNotBytes{
+        "eds-not-bytes",
+        "[{0}] {1} = {2}: bytes are expected (data type {3}), two hexadecimal digits each; not used",
+        "[{0}] {1} = {2}: нужны байты (тип данных {3}), по две шестнадцатеричные цифры; не используется"},
+    kNotSixBytes{"eds-not-six-bytes",
+                 "[{0}] {1} = {2}: a time (data type {3}) has six bytes, twelve hexadecimal digits; not used",
+                 "[{0}] {1} = {2}: время (тип данных {3}) — это шесть байтов, двенадцать шестнадцатеричных "
+                 "цифр; не используется"},
+    kNoBytesOfType{"eds-no-bytes-of-type",
+                   "[{0}] {1} = {2} cannot be written: the data type {3} is no single value",
+                   "[{0}] {1} = {2} нельзя записать: тип данных {3} — не одиночное значение"},
     kLimits{"eds-limits", "[{0}] LowLimit is above HighLimit; both left out",
             "[{0}]: LowLimit больше HighLimit; оба пропущены"},
     kSectionName{"eds-section-name", "section [{0}] is read as [{1}]", "секция [{0}] прочитана как [{1}]"},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Data types by their numbers in CiA 301, 7.4.7, and the small questions to a data sheet.
+#include <algorithm>
 #include <array>
 
 #include "firmware_if/canopen/306/eds.hpp"
@@ -84,6 +85,12 @@ bool eds_type_known(std::uint16_t data_type) noexcept {
   return data_type < kTypes.size() ? kTypes[data_type].bits >= 0 : data_type >= 0x20 && data_type < 0x260;
 }
 std::string_view eds_access_word(EdsAccess access) noexcept { return kAccess[static_cast<int>(access)]; }
+
+bool EdsResult::ok() const noexcept {
+  return !eds.objects.empty() && std::none_of(findings.begin(), findings.end(), [](const text::Finding& f) {
+    return f.severity == text::Severity::error;
+  });
+}
 
 const EdsEntry* Eds::find(std::uint16_t index, std::uint8_t subindex) const noexcept {
   const auto object = objects.find(index);

@@ -138,7 +138,9 @@ class IniReader {
 
 void EdsFindings::add(text::Severity severity, const text::Entry& entry, int line,
                       std::vector<std::string> arguments) {
-  if (findings_.size() < kMost) findings_.push_back({severity, file_, line, 0, &entry, std::move(arguments)});
+  // However much is odd, an error is told.
+  const std::size_t most = severity == text::Severity::error ? 2 * kMost : kMost;
+  if (findings_.size() < most) findings_.push_back({severity, file_, line, 0, &entry, std::move(arguments)});
 }
 void EdsFindings::warn(const text::Entry& entry, int line, std::vector<std::string> arguments) {
   add(text::Severity::warning, entry, line, std::move(arguments));

@@ -23,7 +23,7 @@ struct IniSection {
   const IniEntry* entry(std::string_view key) const noexcept;
 };
 
-/// Warnings about one file, at most kMost of them.
+/// Findings about one file: at most kMost, then only errors, as many again.
 class EdsFindings {
  public:
   static constexpr std::size_t kMost = 500;

@@ -124,9 +124,9 @@ bool fits(std::span<const std::uint8_t> bytes, const ValueType& type) {
 /// A line "key=value" of a data sheet gives it back unchanged.
 bool fits_a_line(std::string_view text) {
   const auto plain = [](char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7F; };
-  return !text.empty() && valid_utf8(text) && std::all_of(text.begin(), text.end(), plain) &&
-         text.front() != ' ' && text.back() != ' ' &&
-         !(text.size() >= 2 && text.front() == '"' && text.back() == '"');
+  if (text.empty()) return true;
+  return valid_utf8(text) && std::all_of(text.begin(), text.end(), plain) && text.front() != ' ' &&
+         text.back() != ' ' && !(text.size() >= 2 && text.front() == '"' && text.back() == '"');
 }
 
 /// The fewest digits that are read back as the same number.
@@ -250,7 +250,7 @@ std::optional<std::string> eds_value_text(std::span<const std::uint8_t> bytes, s
     std::string text(bytes.begin(), bytes.end());
     return fits_a_line(text) ? std::optional(std::move(text)) : std::nullopt;
   }
-  if (bytes.empty()) return std::nullopt;
+  if (bytes.empty()) return eds_type_string(data_type) ? std::optional(std::string()) : std::nullopt;
   if (type == nullptr || is_bytes(*type) || !fits(bytes, *type)) return hex_text(bytes);
   if (eds_type_real(data_type))
     return bytes.size() == 4 ? shortest(static_cast<float>(real_of(bytes))) : shortest(real_of(bytes));

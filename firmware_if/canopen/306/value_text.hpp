@@ -53,8 +53,9 @@ std::string show_value(std::span<const std::uint8_t> bytes, const ValueType* typ
 /// "DEAD": the bytes in the order of the wire.
 std::string hex_text(std::span<const std::uint8_t> bytes, const char* between = "");
 /// The value as an EDS or DCF has it: "0x1234", "-5", text, bytes in hexadecimal. nullopt: a text that a line
-/// of such a file cannot hold (control characters, blanks at an end, Latin-1), or that is empty: read back it
-/// would be another one. What it gives is read back to the byte, but for zeros at the end of a text.
+/// of such a file cannot hold (control characters, blanks at an end, Latin-1): read back it would be another
+/// one; and no bytes at all where the type is no string. What it gives is read back to the byte as a
+/// ParameterValue, but for zeros at the end of a text.
 std::optional<std::string> eds_value_text(std::span<const std::uint8_t> bytes, std::uint16_t data_type);
 
 }  // namespace servogate::canopen

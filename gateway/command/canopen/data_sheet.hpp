@@ -7,8 +7,8 @@
 
 namespace servogate::gateway::command {
 
-/// Reads an EDS or DCF and prints what is odd about it. nullopt: it cannot be read or has no objects, which
-/// has been said (exit code kWrongUse).
+/// Reads an EDS or DCF and prints what is odd about it. nullopt: it cannot be read, has no objects or an
+/// error, which has been said (exit code kWrongUse).
 std::optional<canopen::Eds> read_data_sheet(const std::string& path);
 
 }  // namespace servogate::gateway::command

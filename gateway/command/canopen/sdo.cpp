@@ -50,8 +50,8 @@ const text::Entry kNoType{
     "тип объекта {0} здесь неизвестен: укажите его ({1}) или файл описания через --eds"};
 const text::Entry kBadValue{"sdo.bad-value", "'{0}' is no value of the type {1}",
                             "«{0}» — не значение типа {1}"};
-const text::Entry kEmpty{"sdo.empty", "SDO carries no value of zero bytes",
-                         "SDO не передаёт значение из нуля байт"};
+const text::Entry kEmpty{"sdo.empty", "only a text or bytes (str, hex) may be empty",
+                         "пустыми бывают только текст и байты (str, hex)"};
 const text::Entry kNoValue{"sdo.no-value", "`servogate sdo write` needs a value",
                            "для `servogate sdo write` нужно значение"};
 const text::Entry kTooMuch{"sdo.too-much", "`servogate sdo read` takes a type only, no value",
@@ -90,7 +90,8 @@ int read_value(const std::string& word, Request& request) {
     if (!data) return wrong(kBadValue, {word, std::string(request.type->name)});
     request.data = *data;
   }
-  return request.data.empty() ? wrong(kEmpty, {}) : kDone;
+  const bool may_be_empty = request.type != nullptr && canopen::eds_type_string(request.type->data_type);
+  return request.data.empty() && !may_be_empty ? wrong(kEmpty, {}) : kDone;
 }
 
 int read_request(const SdoOptions& options, const ObjectCatalogue& catalogue, Request& request) {

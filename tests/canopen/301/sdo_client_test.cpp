@@ -239,8 +239,18 @@ TEST_F(SdoClientTest, cancel_tells_the_device_and_frees_the_client) {
   EXPECT_EQ(client.result().status, SdoStatus::idle);
 }
 
-TEST_F(SdoClientTest, nothing_and_too_much_cannot_be_written) {
-  EXPECT_FALSE(client.download(0x2000, 0, Bytes{}));
+TEST_F(SdoClientTest, an_empty_string_is_written_in_a_segment_without_data) {
+  ASSERT_TRUE(client.download(0x2000, 3, Bytes{}));
+  poll();
+  answer({0x60, 0x00, 0x20, 0x03, 0, 0, 0, 0});
+  poll();
+  answer({0x20, 0, 0, 0, 0, 0, 0, 0});
+  EXPECT_EQ(bus.take_sent(), (Lines{"601 21 00 20 03 00 00 00 00", "601 0F 00 00 00 00 00 00 00"}));
+  EXPECT_EQ(client.result().status, SdoStatus::done);
+  EXPECT_EQ(client.result().size, 0u);
+}
+
+TEST_F(SdoClientTest, too_much_cannot_be_written) {
   EXPECT_FALSE(client.download(0x2000, 0, Bytes(SdoClient::kBuffer + 1)));
   EXPECT_FALSE(client.download(0x2000, 0, 1, 9));
   EXPECT_TRUE(client.download(0x2000, 0, Bytes(SdoClient::kBuffer)));

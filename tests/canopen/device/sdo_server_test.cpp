@@ -75,6 +75,14 @@ TEST_F(SdoServerTest, takes_an_object_in_blocks) {
   EXPECT_EQ(domain.stored, kTen);
 }
 
+TEST_F(SdoServerTest, takes_an_empty_string) {
+  domain.stored = kTen;
+  EXPECT_EQ(ask({0x21, 0x00, 0x20, 0, 0, 0, 0, 0}), (Bytes{0x60, 0x00, 0x20, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(ask({0x0F, 0, 0, 0, 0, 0, 0, 0}), (Bytes{0x20, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(domain.writes, 1);
+  EXPECT_TRUE(domain.stored.empty());
+}
+
 TEST_F(SdoServerTest, a_wrong_checksum_or_length_leaves_the_object_as_it_was) {
   for (const bool wrong_crc : {true, false}) {
     ask({0xC6, 0x00, 0x20, 0, 10, 0, 0, 0});
