@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "firmware_if/canopen/306/value_text.hpp"
 #include "tests/canopen_tools/workbench.hpp"
 #include "tests/comes.hpp"
 
@@ -138,6 +139,48 @@ TEST_F(SimulatedDrives, objects_that_cannot_be_simulated_are_named_and_have_thei
   EXPECT_TRUE(process.says("odd.eds:9: ")) << process.said();
   EXPECT_TRUE(process.says("[2007] has the data type 0x99")) << process.said();
   EXPECT_TRUE(process.says("left out, as it cannot be simulated: 2007h:00")) << process.said();
+}
+
+TEST_F(SimulatedDrives, a_sheet_may_have_wide_numbers_times_unicode_and_long_bytes) {
+  std::string octets;
+  for (int i = 0; i < 100; ++i) octets += "A5";
+  const struct {
+    const char *index, *type, *value, *word, *again;
+  } rows[] = {{"2001", "0x0011", "-0.1", "f64", "6.02214076e23"},
+              {"2002", "0x000B", "1A044104", "hex", "5804"},
+              {"2003", "0x000C", "010203040506", "hex", "FFFFFFFFFFFF"},
+              {"2004", "0x000D", "060504030201", "hex", "000000000001"},
+              {"2005", "0x000A", octets.c_str(), "hex", "00FF"},
+              {"2006", "0x0010", "-8388608", "i24", "8388607"},
+              {"2007", "0x0014", "-1", "i56", "-36028797018963968"},
+              {"2008", "0x0018", "0xFFFFFFFFFF", "u40", "1"},
+              {"2009", "0x000F", octets.c_str(), "domain", "01"}};
+  std::string sheet = "[DeviceInfo]\nVendorName=x\n[ManufacturerObjects]\nSupportedObjects=9\n";
+  int n = 0;
+  for (const auto& r : rows) sheet += std::to_string(++n) + "=0x" + r.index + "\n";
+  for (const auto& r : rows)
+    sheet += "[" + std::string(r.index) +
+             "]\nParameterName=own\nObjectType=" + (r.word == std::string("domain") ? "2" : "7") +
+             "\nDataType=" + r.type + "\nAccessType=rw\nDefaultValue=" + r.value + "\n";
+  desk_.write("wide.eds", sheet);
+  const usercan::Process& process = drives("4", {"--profile", path("wide.eds")});
+  EXPECT_EQ(process.said().find("left out"), std::string::npos) << process.said();
+  EXPECT_EQ(process.said().find("warning"), std::string::npos) << process.said();
+  const auto reads = [&](const char* index, const std::string& word) {
+    return facts("sdo $BUS 4 read " + std::string(index) + " " + word)["bytes"];
+  };
+  for (const auto& r : rows) {
+    const std::string word = r.word;
+    const auto bytes = canopen::encode_value(
+        r.value, *canopen::type_named(std::string(r.value).starts_with("0x") ? "u40" : word));
+    ASSERT_TRUE(bytes) << r.index;
+    EXPECT_EQ(reads(r.index, word), canopen::hex_text(*bytes)) << r.index;
+    ASSERT_EQ(tool("sdo $BUS 4 write " + std::string(r.index) + " " + r.again + " " + word).code, 0)
+        << r.index;
+    EXPECT_EQ(reads(r.index, word),
+              canopen::hex_text(*canopen::encode_value(r.again, *canopen::type_named(word))))
+        << r.index;
+  }
 }
 
 TEST_F(SimulatedDrives, a_fault_for_a_node_of_another_process_is_refused) {

@@ -70,7 +70,8 @@ bool can_have(const ObjectSpec& row, const std::vector<ObjectSpec>& own) {
 bool says_value(const canopen::Eds& sheet, const ObjectSpec& row) {
   const canopen::EdsEntry* entry = sheet.find(row.index, row.subindex);
   return entry != nullptr && entry->value() != nullptr &&
-         (entry->value()->number.has_value() || canopen::size_of(row.type) == 0);
+         (entry->value()->number.has_value() || canopen::size_of(row.type) == 0 ||
+          !entry->value()->octets.empty());
 }
 
 std::vector<ObjectPlace> all_but(const canopen::Eds& sheet, const std::set<Place>& shown) {

@@ -125,8 +125,9 @@ std::string write_dcf(const Eds& eds);
 /// the pre-defined connection set) sums with $NODEID, so that they are right for another node, too. How many.
 int follow_node(Eds& eds);
 
-/// Rows for an ObjectDictionary of this node, so that a device can be simulated from its data sheet. Types
-/// that the dictionary does not have are left out. Texts point into `eds`, which must live as long.
+/// Rows for an ObjectDictionary of this node, so that a device can be simulated from its data sheet that was
+/// read from a file. Structure types are left out, as no object of one value has them. Texts and domains have
+/// room for 1024 and 65536 bytes, or their longer default. They point into `eds`, which must live as long.
 std::vector<ObjectSpec> object_specs(const Eds& eds, NodeId node);
 
 /// Bits of a data type of CiA 301; 0: text, domain or unknown.

@@ -21,10 +21,28 @@ constexpr std::array<Type, 0x1C> kTypes{{
 
 constexpr std::string_view kAccess[] = {"ro", "wo", "rw", "rwr", "rww", "const"};
 
-// What an ObjectDictionary can hold, one to one by number.
+constexpr std::uint16_t kDomain = 0x0F;
+
+// What an ObjectDictionary can hold, one to one by number: every data type of CiA 301 that is one value.
 constexpr bool dictionary_has(std::uint16_t type) noexcept {
-  return (type >= 0x01 && type <= 0x09) || type == 0x0F || type == 0x15 || type == 0x1B;
+  return type < kTypes.size() && kTypes[type].bits >= 0;
 }
+
+/// Memory for strings and domains that a device may be given later, as much as a data sheet of a real device
+/// asks for. Beyond it (a sheet of nonsense) there is room for the defaults.
+class Rooms {
+ public:
+  std::uint32_t take(std::uint16_t data_type) noexcept {
+    constexpr std::uint32_t kString = 1024, kLongDomain = 65'536;
+    const std::uint32_t wanted = data_type == kDomain ? kLongDomain : kString;
+    if (wanted > left_) return 0;
+    left_ -= wanted;
+    return wanted;
+  }
+
+ private:
+  std::uint32_t left_ = 32u << 20;
+};
 
 Access access_of(EdsAccess access) noexcept {
   switch (access) {
@@ -54,8 +72,16 @@ Mappable mappable_of(const EdsEntry& e) noexcept {
   }
 }
 
+/// TIME_OF_DAY and TIME_DIFFERENCE: their bytes in the order of the wire.
+std::int64_t octets_number(std::string_view octets) noexcept {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < octets.size() && i < 8; ++i)
+    value |= static_cast<std::uint64_t>(static_cast<std::uint8_t>(octets[i])) << 8 * i;
+  return static_cast<std::int64_t>(value);
+}
+
 void add_row(std::vector<ObjectSpec>& rows, std::uint16_t index, std::uint8_t subindex, const EdsEntry& e,
-             NodeId node) {
+             NodeId node, Rooms& rooms) {
   if (!dictionary_has(e.data_type)) return;
   ObjectSpec row;
   row.index = index;
@@ -64,9 +90,14 @@ void add_row(std::vector<ObjectSpec>& rows, std::uint16_t index, std::uint8_t su
   row.access = access_of(e.access);
   row.mappable = mappable_of(e);
   if (const EdsValue* value = e.value()) {
-    if (value->number) row.value = value->number->at(node);
-    row.text = value->text;
+    if (value->number)
+      row.value = value->number->at(node);
+    else if (size_of(row.type) > 0)
+      row.value = octets_number(value->octets);
+    else
+      row.text = row.type == DataType::visible_string ? value->text : value->octets;
   }
+  if (size_of(row.type) == 0) row.room = rooms.take(e.data_type);
   if (e.low_limit && e.low_limit->number) row.low = e.low_limit->number->at(node);
   if (e.high_limit && e.high_limit->number) row.high = e.high_limit->number->at(node);
   rows.push_back(row);
@@ -110,9 +141,10 @@ std::string_view Eds::device(std::string_view key) const noexcept {
 
 std::vector<ObjectSpec> object_specs(const Eds& eds, NodeId node) {
   std::vector<ObjectSpec> rows;
+  Rooms rooms;
   for (const auto& [index, object] : eds.objects) {
-    if (object.subs.empty()) add_row(rows, index, 0, object.entry, node);
-    for (const auto& [subindex, entry] : object.subs) add_row(rows, index, subindex, entry, node);
+    if (object.subs.empty()) add_row(rows, index, 0, object.entry, node, rooms);
+    for (const auto& [subindex, entry] : object.subs) add_row(rows, index, subindex, entry, node, rooms);
   }
   return rows;
 }

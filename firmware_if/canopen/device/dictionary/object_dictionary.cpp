@@ -2,6 +2,7 @@
 #include "firmware_if/canopen/device/dictionary/object_dictionary.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 
 #include "firmware_if/canopen/301/cob_id.hpp"
@@ -19,6 +20,21 @@ constexpr bool writable(const ObjectSpec& s) noexcept {
   return s.access == Access::rw || s.access == Access::wo;
 }
 
+double real_of(DataType type, std::int64_t bits) noexcept {
+  if (type == DataType::real32) return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+  return std::bit_cast<double>(bits);
+}
+
+/// The limits of a REAL are bits as its value is; none where they are wider than any number.
+AbortCode check_real(const ObjectSpec& s, std::int64_t bits) noexcept {
+  const double value = real_of(s.type, bits);
+  if (s.high != std::numeric_limits<std::int64_t>::max() && value > real_of(s.type, s.high))
+    return AbortCode::value_too_high;
+  if (s.low != std::numeric_limits<std::int64_t>::min() && value < real_of(s.type, s.low))
+    return AbortCode::value_too_low;
+  return AbortCode::none;
+}
+
 }  // namespace
 
 ObjectDictionary::ObjectDictionary(std::initializer_list<std::span<const ObjectSpec>> tables) {
@@ -34,10 +50,26 @@ ObjectDictionary::ObjectDictionary(std::initializer_list<std::span<const ObjectS
   for (const ObjectSpec& s : specs_) {
     const bool text = size_of(s.type) == 0;
     text_of_.push_back(text ? static_cast<int>(texts_.size()) : -1);
-    if (text) texts_.emplace_back();
+    if (text) texts_.push_back({nullptr, std::max<std::size_t>({s.room, s.text.size(), kMaxText}), 0});
     stored_.push_back(s.value);
   }
   values_ = stored_;
+  make_texts();
+}
+
+void ObjectDictionary::make_texts() {
+  std::size_t all = 0, longest = 0;
+  for (const Text& t : texts_) {
+    all += t.room;
+    longest = std::max(longest, t.room);
+  }
+  text_memory_ = std::make_unique_for_overwrite<char[]>(all);
+  staging_ = std::make_unique_for_overwrite<std::uint8_t[]>(longest);
+  char* next = text_memory_.get();
+  for (Text& t : texts_) {
+    t.bytes = next;
+    next += t.room;
+  }
   for (Slot slot = 0; slot < size(); ++slot) set_text(slot, spec(slot).text);
 }
 
@@ -103,15 +135,21 @@ std::string_view ObjectDictionary::text(Slot slot) const noexcept {
   const int place = text_of_[static_cast<std::size_t>(slot)];
   if (place < 0) return {};
   const Text& t = texts_[static_cast<std::size_t>(place)];
-  return {t.bytes.data(), t.length};
+  return {t.bytes, t.length};
 }
 
 void ObjectDictionary::set_text(Slot slot, std::string_view text) noexcept {
   const int place = text_of_[static_cast<std::size_t>(slot)];
   if (place < 0) return;
   Text& t = texts_[static_cast<std::size_t>(place)];
-  t.length = std::min(text.size(), kMaxText);
-  std::copy_n(text.begin(), t.length, t.bytes.begin());
+  t.length = std::min(text.size(), t.room);
+  std::copy_n(text.begin(), t.length, t.bytes);
+}
+
+std::span<std::uint8_t> ObjectDictionary::staging(Slot slot) noexcept {
+  const int place = text_of_[static_cast<std::size_t>(slot)];
+  if (place < 0) return {};
+  return {staging_.get(), texts_[static_cast<std::size_t>(place)].room};
 }
 
 std::size_t ObjectDictionary::encode(Slot slot, std::span<std::uint8_t> bytes) const noexcept {
@@ -120,7 +158,7 @@ std::size_t ObjectDictionary::encode(Slot slot, std::span<std::uint8_t> bytes) c
     store_le(static_cast<std::uint64_t>(value(slot)), bytes.first(size));
     return size;
   }
-  const std::string_view t = text(slot);
+  const std::string_view t = text(slot).substr(0, bytes.size());
   std::copy(t.begin(), t.end(), bytes.begin());
   return t.size();
 }
@@ -130,7 +168,10 @@ AbortCode ObjectDictionary::decode(Slot slot, std::span<const std::uint8_t> byte
   const ObjectSpec& s = spec(slot);
   if (!writable(s)) return AbortCode::read_only;
   const std::size_t size = size_of(s.type);
-  if (size == 0) return bytes.size() > kMaxText ? AbortCode::length_too_high : AbortCode::none;
+  if (size == 0) {
+    const auto place = static_cast<std::size_t>(text_of_[static_cast<std::size_t>(slot)]);
+    return bytes.size() > texts_[place].room ? AbortCode::length_too_high : AbortCode::none;
+  }
   if (bytes.size() > size) return AbortCode::length_too_high;
   if (bytes.size() < size) return AbortCode::length_too_low;
   const std::uint64_t raw = load_le(bytes);
@@ -142,6 +183,7 @@ AbortCode ObjectDictionary::decode(Slot slot, std::span<const std::uint8_t> byte
 AbortCode ObjectDictionary::check_range(Slot slot, std::int64_t value) const noexcept {
   const ObjectSpec& s = spec(slot);
   if (s.type == DataType::boolean && value > 1) return AbortCode::value_too_high;
+  if (is_real(s.type)) return check_real(s, value);
   if (s.type == DataType::unsigned64 && value < 0)  // beyond 2^63 - 1
     return s.high == std::numeric_limits<std::int64_t>::max() ? AbortCode::none : AbortCode::value_too_high;
   if (value > s.high) return AbortCode::value_too_high;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,36 +24,34 @@ enum class DataType : std::uint8_t {
   unsigned32 = 0x07,
   real32 = 0x08,  ///< its bits, as an unsigned number
   visible_string = 0x09,
+  octet_string = 0x0A,
+  unicode_string = 0x0B,
+  time_of_day = 0x0C,      ///< its six bytes, as an unsigned number
+  time_difference = 0x0D,  ///< the same
   domain = 0x0F,
+  integer24 = 0x10,
+  real64 = 0x11,  ///< its bits
+  integer40 = 0x12,
+  integer48 = 0x13,
+  integer56 = 0x14,
   integer64 = 0x15,
+  unsigned24 = 0x16,
+  unsigned40 = 0x18,
+  unsigned48 = 0x19,
+  unsigned56 = 0x1A,
   unsigned64 = 0x1B,
 };
+/// Length in bytes by number of the type; 0 for strings and domains, and for what is no DataType.
+inline constexpr std::array<std::uint8_t, 0x1C> kTypeSizes{0, 1, 1, 2, 4, 1, 2, 4, 4, 0, 0, 0, 6, 6,
+                                                           0, 0, 3, 8, 5, 6, 7, 8, 3, 0, 5, 6, 7, 8};
 /// Length in bytes; 0 for strings and domains. real-time safe.
-constexpr std::uint8_t size_of(DataType type) noexcept {
-  switch (type) {
-    case DataType::boolean:
-    case DataType::integer8:
-    case DataType::unsigned8:
-      return 1;
-    case DataType::integer16:
-    case DataType::unsigned16:
-      return 2;
-    case DataType::integer32:
-    case DataType::unsigned32:
-    case DataType::real32:
-      return 4;
-    case DataType::integer64:
-    case DataType::unsigned64:
-      return 8;
-    case DataType::visible_string:
-    case DataType::domain:
-      return 0;
-  }
-  return 0;
-}
+constexpr std::uint8_t size_of(DataType type) noexcept { return kTypeSizes[static_cast<std::size_t>(type)]; }
 constexpr bool is_signed(DataType type) noexcept {
-  return type == DataType::integer8 || type == DataType::integer16 || type == DataType::integer32 ||
-         type == DataType::integer64;
+  return (type >= DataType::integer8 && type <= DataType::integer32) || type == DataType::integer24 ||
+         (type >= DataType::integer40 && type <= DataType::integer64);
+}
+constexpr bool is_real(DataType type) noexcept {
+  return type == DataType::real32 || type == DataType::real64;
 }
 
 enum class Access : std::uint8_t { ro, wo, rw, constant };
@@ -70,10 +69,11 @@ struct ObjectSpec {
   std::int64_t value = 0;  ///< default
   std::int64_t low = std::numeric_limits<std::int64_t>::min();
   std::int64_t high = std::numeric_limits<std::int64_t>::max();
-  std::string_view text = {};  ///< default of a string
+  std::string_view text = {};  ///< default of a string or domain: its bytes
+  std::uint32_t room = 0;  ///< of a string or domain, in bytes: at least this and its default and kMaxText
 };
 
-/// Room of a string or domain.
+/// Room of a string or domain that asks for no more.
 inline constexpr std::size_t kMaxText = 64;
 
 /// Values behind static tables of objects. All memory is taken in the constructor; addresses of values never
@@ -113,10 +113,14 @@ class ObjectDictionary {
   void set_default(std::uint16_t index, std::uint8_t subindex, std::int64_t value) noexcept;
 
   std::string_view text(Slot slot) const noexcept;
-  /// Cut off after kMaxText characters.
+  /// Cut off where its room ends.
   void set_text(Slot slot, std::string_view text) noexcept;
+  /// Memory for a text or domain that is still to come, as long as the room of this row; it is the same for
+  /// all rows. Empty: the row is a number.
+  std::span<std::uint8_t> staging(Slot slot) noexcept;
 
-  /// Bytes of a value as they go over the bus; `bytes` has at least kMaxText. Returns their number.
+  /// Bytes of a value as they go over the bus; `bytes` has at least kMaxText, and of a longer text only what
+  /// fits is given. Returns their number.
   std::size_t encode(Slot slot, std::span<std::uint8_t> bytes) const noexcept;
   /// Checks access, length and range of a download and gives the number it means.
   AbortCode decode(Slot slot, std::span<const std::uint8_t> bytes, std::int64_t& value) const noexcept;
@@ -137,14 +141,18 @@ class ObjectDictionary {
 
  private:
   struct Text {
-    std::array<char, kMaxText> bytes{};
-    std::size_t length = 0;
+    char* bytes = nullptr;  ///< in text_memory_
+    std::size_t room = 0, length = 0;
   };
+  void make_texts();
   std::vector<ObjectSpec> specs_;  ///< by index, then sub-index
   std::vector<std::int64_t> values_, stored_;
   std::vector<bool> hidden_;  ///< empty: none is
   std::vector<Text> texts_;   ///< of the string rows, in order
   std::vector<int> text_of_;  ///< row -> place in texts_, -1
+  // Not filled at first, so that room which is never used costs no memory of the computer.
+  std::unique_ptr<char[]> text_memory_;
+  std::unique_ptr<std::uint8_t[]> staging_;
 };
 
 }  // namespace servogate::canopen

@@ -99,6 +99,7 @@ class Slave final : private SdoObjects, private PdoSink, private PdoEvents, priv
 
  private:
   std::span<std::uint8_t> room(std::uint16_t index, std::uint8_t subindex) noexcept override;
+  std::span<const std::uint8_t> content(std::uint16_t index, std::uint8_t subindex) noexcept override;
   bool supports(std::uint32_t bit_s) noexcept override { return profile_.supports_bit_rate(bit_s); }
   bool store(NodeId node, std::uint32_t bit_s) noexcept override;
   void node_assigned() noexcept override;

@@ -30,8 +30,17 @@ AbortCode Slave::read(std::uint16_t index, std::uint8_t subindex, std::span<std:
   return AbortCode::none;
 }
 
-std::span<std::uint8_t> Slave::room(std::uint16_t index, std::uint8_t) noexcept {
-  return programs_ && index == object::kProgramData ? programs_->room() : std::span<std::uint8_t>{};
+std::span<std::uint8_t> Slave::room(std::uint16_t index, std::uint8_t subindex) noexcept {
+  if (programs_ && index == object::kProgramData) return programs_->room();
+  const auto slot = dictionary_.find_visible(index, subindex);
+  return slot == ObjectDictionary::kNone ? std::span<std::uint8_t>{} : dictionary_.staging(slot);
+}
+
+std::span<const std::uint8_t> Slave::content(std::uint16_t index, std::uint8_t subindex) noexcept {
+  const auto slot = dictionary_.find_visible(index, subindex);
+  if (slot == ObjectDictionary::kNone) return {};
+  const std::string_view text = dictionary_.text(slot);
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 AbortCode Slave::may_write(std::uint16_t index, std::uint8_t subindex, std::size_t& size) noexcept {

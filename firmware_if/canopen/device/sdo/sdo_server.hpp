@@ -16,7 +16,7 @@ namespace servogate::canopen {
 class SdoObjects {
  public:
   virtual ~SdoObjects() = default;
-  /// Bytes of an object; `bytes` holds kMaxText. real-time safe.
+  /// Bytes of an object; `bytes` holds kMaxText, of a longer one what fits. real-time safe.
   virtual AbortCode read(std::uint16_t index, std::uint8_t subindex, std::span<std::uint8_t> bytes,
                          std::size_t& size) noexcept = 0;
   /// `bytes` lie in room(), where that gave some. real-time safe.
@@ -26,11 +26,11 @@ class SdoObjects {
   /// safe.
   virtual AbortCode may_write(std::uint16_t index, std::uint8_t subindex, std::size_t& size) noexcept = 0;
 
-  /// Memory of a domain that may be longer than kMaxText: downloads go there directly. Empty: there is none,
-  /// and the server's own kMaxText bytes are used. real-time safe.
+  /// Memory for a download that may be longer than kMaxText; write() is given it at the end. Empty: there is
+  /// none, and the server's own kMaxText bytes are used. real-time safe.
   virtual std::span<std::uint8_t> room(std::uint16_t, std::uint8_t) noexcept { return {}; }
-  /// Content of a domain that may be longer than kMaxText, which stays until the transfer has ended; asked
-  /// for after read() allowed the access. Empty: what read() gave counts. real-time safe.
+  /// Content of a text or domain that may be longer than kMaxText, which stays until the transfer has ended;
+  /// asked for after read() allowed the access. Empty: what read() gave counts. real-time safe.
   virtual std::span<const std::uint8_t> content(std::uint16_t, std::uint8_t) noexcept { return {}; }
 };
 
