@@ -32,6 +32,7 @@ struct DriveOptions {
   std::string profile;                ///< servo, stepper, spindle, or a data sheet
   std::vector<std::string> plant;     ///< KEY=VALUE
   std::vector<std::string> switches;  ///< INPUT=FROM..TO, revolutions
+  std::string write_eds;              ///< file for the data sheet of the simulated device
   std::string pdo_map;                ///< variable, whole, fixed; empty: as the device file says
   FaultOptions faults;
   double bit_rate = 0.0;  ///< bit/s; 0: that of the interface, 1 Mbit/s where the bus has none
@@ -111,7 +112,7 @@ struct SdoOptions : CanopenBusOptions {
 /// `servogate od`: the whole object dictionary of a node.
 struct OdOptions : CanopenBusOptions {
   int node = 0;
-  std::string eds, save, compare;
+  std::string eds, save, compare, write_eds;
   std::string range;  ///< FIRST-LAST, hexadecimal; empty: the standard areas
 };
 

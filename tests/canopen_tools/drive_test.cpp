@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `servogate drive` and `servogate sim` as products: kinds, plants, faults.
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <iterator>
@@ -28,6 +29,14 @@ std::string fed(const std::string& command, const std::string& steps) {
 
 class SimulatedDrives : public Workbench {
  protected:
+  /// What `od` shows of a node, but for what is that of one device: its serial number.
+  json objects(int node, const std::string& more) {
+    json all = facts("od $BUS " + std::to_string(node) + more)["objects"];
+    const auto own = [](const json& o) { return o["index"] == "1018" && o["subindex"] == 4; };
+    all.erase(std::remove_if(all.begin(), all.end(), own), all.end());
+    for (json& o : all) o.erase("name");
+    return all;
+  }
   json value(int node, const std::string& object) {
     return facts("sdo $BUS " + std::to_string(node) + " read " + object)["value"];
   }
@@ -180,6 +189,109 @@ TEST_F(SimulatedDrives, a_sheet_may_have_wide_numbers_times_unicode_and_long_byt
     EXPECT_EQ(reads(r.index, word),
               canopen::hex_text(*canopen::encode_value(r.again, *canopen::type_named(word))))
         << r.index;
+  }
+}
+
+TEST_F(SimulatedDrives, the_eds_of_a_simulated_drive_makes_the_same_drive_again) {
+  const usercan::Process& first = drives("5", {"--profile", "spindle", "--write-eds", path("own.eds")});
+  EXPECT_TRUE(first.says("own.eds: EDS of node 5, ")) << first.said();
+  const json before = objects(5, "");
+  EXPECT_GT(before.size(), 250u);
+  const usercan::Process& process = drives("6", {"--profile", path("own.eds")});
+  EXPECT_EQ(process.said().find("own.eds:"), std::string::npos)
+      << "not a word about the file: " << process.said();
+  EXPECT_EQ(process.said().find("left out"), std::string::npos) << process.said();
+  // The same but for what follows from the node-ID.
+  const json after = objects(6, "");
+  ASSERT_EQ(after.size(), before.size());
+  int of_the_node = 0;
+  for (std::size_t i = 0; i < after.size(); ++i)
+    if (after[i] != before[i]) {
+      EXPECT_EQ(after[i]["value"].get<std::int64_t>() - before[i]["value"].get<std::int64_t>(), 1)
+          << after[i];
+      ++of_the_node;
+    }
+  EXPECT_EQ(of_the_node, 1 + 2 + 8) << "EMCY, the SDO server, the PDOs";
+}
+
+TEST_F(SimulatedDrives, an_eds_is_written_of_one_node_and_not_over_what_the_drive_is_made_of) {
+  Ended ended = tool("drive $BUS --node 1,2 --write-eds x.eds");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(ended.err_has("--write-eds is for one node; --node has 2")) << ended.err;
+  desk_.write("s.eds", "[2000]\nParameterName=a\nObjectType=7\nDataType=7\nAccessType=rw\n");
+  ended = tool("drive $BUS --node 1 --profile s.eds --write-eds s.eds");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(ended.err_has("--write-eds would overwrite --profile, s.eds")) << ended.err;
+  EXPECT_EQ(tool("drive $BUS --node 1 --write-eds missing/x.eds").code, 4);
+}
+
+TEST_F(SimulatedDrives, od_writes_an_eds_of_which_a_drive_answers_as_the_one_that_was_read) {
+  desk_.write(
+      "own.eds",
+      "[DeviceInfo]\nVendorName=x\n[OptionalObjects]\nSupportedObjects=2\n1=0x1000\n2=0x6083\n"
+      "[ManufacturerObjects]\nSupportedObjects=3\n1=0x2001\n2=0x2002\n3=0x4ABC\n"
+      "[1000]\nParameterName=Type\nObjectType=7\nDataType=7\nAccessType=ro\nDefaultValue=0x20192\n"
+      "[6083]\nParameterName=a\nObjectType=7\nDataType=7\nAccessType=rw\nDefaultValue=4711\n"
+      "[2001]\nParameterName=a\nObjectType=7\nDataType=3\nAccessType=rw\nDefaultValue=-5\n"
+      "[2002]\nParameterName=a\nObjectType=7\nDataType=9\nAccessType=rw\nDefaultValue=some words\n"
+      "[4ABC]\nParameterName=a\nObjectType=7\nDataType=0x18\nAccessType=rw\nDefaultValue=0x0102030405\n");
+  drives("5", {"--profile", path("own.eds")});
+  const Ended ended = tool("od $BUS 5 --write-eds read.eds");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(ended.err_has("read.eds: EDS of node 5, 5 entries; types guessed from the length: 3"))
+      << ended.err;
+  const std::string text = desk_.text("read.eds");
+  EXPECT_NE(text.find("2001h:00 2002h:00 4ABCh:00\r\n"), std::string::npos) << text;
+  const usercan::Process& process = drives("6", {"--profile", path("read.eds")});
+  EXPECT_EQ(process.said().find("read.eds:"), std::string::npos)
+      << "not a word about the file: " << process.said();
+  const auto bytes = [&](int node) {
+    json all = json::array();
+    for (const char* object : {"1000", "6083", "2001", "2002", "4ABC"})
+      all.push_back(facts("sdo $BUS " + std::to_string(node) + " read " + object)["bytes"]);
+    return all;
+  };
+  EXPECT_EQ(bytes(6), bytes(5));
+  // A given sheet knows the types.
+  const Ended given = tool("od $BUS 5 --eds own.eds --write-eds given.eds");
+  ASSERT_EQ(given.code, 0) << given.err;
+  EXPECT_TRUE(given.err_has("types guessed from the length: 0")) << given.err;
+  EXPECT_NE(desk_.text("given.eds").find("DataType=0x0018\r\n"), std::string::npos);
+  EXPECT_EQ(tool("od $BUS 5 --eds own.eds --write-eds own.eds").code, 2)
+      << "it would overwrite what it reads";
+  EXPECT_EQ(tool("od $BUS 5 --compare own.eds --write-eds y.eds").code, 2);
+}
+
+TEST_F(SimulatedDrives, od_prefers_the_eds_that_a_device_stores_itself) {
+  const std::string stored =
+      "[FileInfo]\nFileName=maker.eds\n[OptionalObjects]\nSupportedObjects=1\n1=0x1000\n"
+      "[1000]\nParameterName=Type of the maker\nObjectType=7\nDataType=7\nAccessType=ro\nDefaultValue=5\n";
+  const auto sheet = [&](const std::string& content, const char* format) {
+    return "[DeviceInfo]\nVendorName=x\n[1000]\nParameterName=a\nObjectType=7\nDataType=7\nAccessType=ro\n"
+           "[1021]\nParameterName=Store EDS\nObjectType=2\nAccessType=ro\nDefaultValue=" +
+           canopen::hex_text({reinterpret_cast<const std::uint8_t*>(content.data()), content.size()}) +
+           "\n[1022]\nParameterName=Format\nObjectType=7\nDataType=5\nAccessType=ro\nDefaultValue=" + format +
+           "\n";
+  };
+  desk_.write("own.eds", sheet(stored, "0"));
+  desk_.write("packed.eds", sheet(stored, "0x80"));
+  desk_.write("junk.eds", sheet(std::string(200, 'x'), "0"));
+  drives("5", {"--profile", path("own.eds")});
+  drives("6", {"--profile", path("packed.eds")});
+  drives("7", {"--profile", path("junk.eds")});
+  const Ended ended = tool("od $BUS 5 --write-eds read.eds");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(ended.err_has("read.eds: the EDS that node 5 itself stores in 1021h, " +
+                            std::to_string(stored.size()) + " bytes"))
+      << ended.err;
+  EXPECT_TRUE(ended.out_has("Type of the maker")) << ended.out;
+  EXPECT_EQ(desk_.text("read.eds"), stored) << "to the byte";
+  for (const auto& [node, why] :
+       {std::pair("6", "format of its maker (1022h = 128)"), {"7", "1021h is no EDS"}}) {
+    const Ended other = tool("od $BUS " + std::string(node) + " --range 1000-1030 --write-eds other.eds");
+    EXPECT_EQ(other.code, 0) << other.err;
+    EXPECT_TRUE(other.err_has(why)) << other.err;
+    EXPECT_TRUE(other.err_has("other.eds: EDS of node ")) << other.err;
   }
 }
 

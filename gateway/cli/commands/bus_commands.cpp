@@ -80,6 +80,8 @@ void add_drive(CLI::App& app, DriveOptions& o) {
                "What a master may change of the PDO maps: variable, whole (on and off), fixed (nothing)")
       ->type_name("ACCESS")
       ->check(one_of({"variable", "whole", "fixed"}));
+  d.add_option("--write-eds", o.write_eds,
+               "Writes the EDS of the simulated drive to this file, then goes on");
   add_faults(d, o.faults);
   add_bit_rate(d, o.bit_rate);
   d.add_flag("--json", o.json, kJson);

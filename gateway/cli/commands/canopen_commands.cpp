@@ -88,7 +88,11 @@ void add_od(CLI::App& app, OdOptions& o) {
   c.add_option("--save", o.save, "Writes what was read to this DCF");
   CLI::Option* compare =
       c.add_option("--compare", o.compare, "Compares with this DCF; exit 1 when a parameter differs");
+  CLI::Option* write_eds =
+      c.add_option("--write-eds", o.write_eds,
+                   "Writes an EDS of the node to this file: its own (1021h), or from what was read");
   range->excludes(compare);
+  write_eds->excludes(compare);
   add_timeout(c, o);
   add_no_block(c, o);
   add_anyway(c, o);

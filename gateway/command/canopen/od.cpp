@@ -17,6 +17,7 @@
 #include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/canopen/data_sheet.hpp"
 #include "gateway/command/canopen/object_value.hpp"
+#include "gateway/command/canopen/sheet_file.hpp"
 #include "gateway/command/commands.hpp"
 #include "machine/files/output_files.hpp"
 
@@ -45,6 +46,16 @@ const text::Entry kNotSaved{"od.not-saved", "{0}: not saved, a DCF cannot hold t
 const text::Entry kOtherNode{
     "od.other-node", "{0} is the configuration of node {1}; its COB-IDs are taken for those of node {2}",
     "{0} — настройка узла {1}; её COB-ID приняты для узла {2}"};
+const text::Entry kOwnSheet{"od.own-sheet", "{0}: the EDS that node {1} itself stores in 1021h, {2} bytes",
+                            "{0}: EDS, который узел {1} сам хранит в 1021h, байтов: {2}"};
+const text::Entry kOwnFormat{
+    "od.own-format",
+    "the EDS that node {0} stores in 1021h is in a format of its maker (1022h = {1}); not used",
+    "EDS, который узел {0} хранит в 1021h, в формате изготовителя (1022h = {1}); не используется"};
+const text::Entry kOwnBroken{"od.own-broken", "what node {0} stores in 1021h is no EDS; not used",
+                             "то, что узел {0} хранит в 1021h, — не EDS; не используется"};
+const text::Entry kOwnUnread{"od.own-unread", "the EDS that node {0} stores in 1021h cannot be read: {1}",
+                             "EDS, который узел {0} хранит в 1021h, не читается: {1}"};
 const text::Entry kEqual{"od.equal", "node {0} is as {1} has it: {2} parameters compared",
                          "узел {0} соответствует {1}: сравнено параметров: {2}"};
 const text::Entry kDiffers{"od.differs", "{0}: the device has {1}, the file {2}",
@@ -126,6 +137,55 @@ int save(const Work& work, const std::vector<ReadObject>& objects, const canopen
   return kDone;
 }
 
+/// The data sheet that a device stores itself. Source: CiA 301, 7.5.2.20 and 7.5.2.21 (1021h, 1022h).
+struct OwnSheet {
+  std::string bytes;
+  canopen::Eds eds;
+};
+std::optional<OwnSheet> own_sheet(const Work& work) {
+  constexpr std::uint16_t kStoreEds = 0x1021, kStoreFormat = 0x1022;
+  const std::string node = std::to_string(work.options.node);
+  const SdoOutcome stored = work.access.read(work.node(), kStoreEds, 0);
+  if (stored.abort == canopen::AbortCode::object_does_not_exist || (stored.ok() && stored.data.empty()))
+    return std::nullopt;
+  if (!stored.ok()) {
+    complain(kOwnUnread, {node, stored.why()});
+    return std::nullopt;
+  }
+  const SdoOutcome format = work.access.read(work.node(), kStoreFormat, 0);
+  if (format.ok() && canopen::load_le(format.data) != 0) {
+    complain(kOwnFormat, {node, std::to_string(canopen::load_le(format.data))});
+    return std::nullopt;
+  }
+  OwnSheet own{{stored.data.begin(), stored.data.end()}, {}};
+  canopen::EdsResult read = canopen::read_eds(own.bytes, "1021h");
+  if (!read.ok()) {
+    complain(kOwnBroken, {node});
+    return std::nullopt;
+  }
+  print_findings(read.findings);
+  own.eds = std::move(read.eds);
+  return own;
+}
+
+int write_own(const Work& work, const OwnSheet& own) {
+  if (const int code = write_bytes(work.options.write_eds, own.bytes); code != kDone) return code;
+  tell(say(kOwnSheet,
+           {work.options.write_eds, std::to_string(work.options.node), std::to_string(own.bytes.size())}));
+  return kDone;
+}
+
+int write_found(const Work& work, std::vector<ReadObject> objects, const canopen::Eds* eds,
+                const std::vector<IndexRange>& ranges) {
+  canopen::SheetOrigin origin = sheet_origin(work.options.write_eds, "servogate od");
+  origin.node = work.node();
+  origin.bit_rate = work.bit_rate;
+  if (eds == nullptr || !work.options.range.empty()) origin.ranges = ranges;
+  if (eds == nullptr) canopen::read_unused_places(work.access, work.node(), objects, work.over);
+  if (work.over()) return kInfrastructure;
+  return write_sheet(work.options.write_eds, canopen::sheet_of_device(objects, eds, origin), work.node());
+}
+
 int compare(const Work& work, const canopen::Eds& file) {
   int compared = 0;
   const int of = file.commissioning ? file.commissioning->node : 0;
@@ -180,6 +240,8 @@ int work_on(const Work& work, const canopen::Eds* eds, const canopen::Eds* file,
     return kAlarm;
   }
   if (file != nullptr) return compare(work, *file);
+  const std::optional<OwnSheet> own = work.options.write_eds.empty() ? std::nullopt : own_sheet(work);
+  if (own && eds == nullptr) eds = &own->eds;
   const std::vector<ReadObject> objects =
       eds != nullptr && work.options.range.empty()
           ? canopen::read_listed(work.access, work.node(), *eds, work.over)
@@ -190,13 +252,18 @@ int work_on(const Work& work, const canopen::Eds* eds, const canopen::Eds* file,
     complain(kSilent, {std::to_string(work.options.node), ""});
     return kAlarm;
   }
-  return work.options.save.empty() ? kDone : save(work, objects, eds);
+  if (!work.options.save.empty())
+    if (const int code = save(work, objects, eds); code != kDone) return code;
+  if (work.options.write_eds.empty()) return kDone;
+  return own ? write_own(work, *own) : write_found(work, objects, eds, ranges);
 }
 
 }  // namespace
 
 int od(const OdOptions& options) {
   std::vector<IndexRange> ranges = canopen::standard_areas();
+  // An EDS is to have the manufacturer's objects, too, although it takes a while to look for them.
+  if (!options.write_eds.empty()) ranges.push_back({0x2000, 0x5FFF});
   if (!options.range.empty()) {
     ranges.resize(1);
     if (!parse_range(options.range, ranges.front())) {
@@ -204,8 +271,9 @@ int od(const OdOptions& options) {
       return kWrongUse;
     }
   }
-  if (const auto problem = files::problem_of_outputs(
-          {{"--save", options.save}}, {{"--eds", options.eds}, {"--compare", options.compare}})) {
+  if (const auto problem =
+          files::problem_of_outputs({{"--save", options.save}, {"--write-eds", options.write_eds}},
+                                    {{"--eds", options.eds}, {"--compare", options.compare}})) {
     complain(*problem->entry, problem->arguments);
     return problem->wrong_use ? kWrongUse : kInfrastructure;
   }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/clock.hpp"
+#include "drivers/mock/drive/device_objects.hpp"
 #include "firmware_if/canopen/306/value_text.hpp"
 #include "gateway/cli/json_line.hpp"
 #include "gateway/cli/messages.hpp"
@@ -16,6 +17,7 @@
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/bus/named_bus.hpp"
 #include "gateway/command/canopen/data_sheet.hpp"
+#include "gateway/command/canopen/sheet_file.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/command/simulated/drive_desk.hpp"
@@ -25,6 +27,7 @@
 #include "gateway/control/compose/can_transport.hpp"
 #include "gateway/control/compose/simulated/drive_kind.hpp"
 #include "gateway/control/compose/simulated/simulated_node.hpp"
+#include "machine/files/output_files.hpp"
 
 namespace servogate::gateway::command {
 
@@ -55,6 +58,8 @@ const text::Entry kOtherNode{
     "{0} — настройка узла {1}: узел {2} берёт её значения; COB-ID, следующих за номером узла: {3}"};
 const text::Entry kLeftOut{"drive.left-out", "{0}: left out, as it cannot be simulated: {1}",
                            "{0}: пропущено, имитировать нельзя: {1}"};
+const text::Entry kOneEds{"drive.one-eds", "--write-eds is for one node; --node has {0}",
+                          "--write-eds — для одного узла, а в --node их {0}"};
 const text::Entry kMoreLeftOut{"drive.more-left-out", " and {0} more", " и ещё {0}"};
 
 /// What is to be simulated, and where.
@@ -280,10 +285,35 @@ int live(const DriveOptions& options, const Plan& plan, const CanTransport& tran
   return kDone;
 }
 
+/// Whether the file of --write-eds can be asked for.
+int check_eds_file(const DriveOptions& options) {
+  if (options.write_eds.empty()) return kDone;
+  if (options.nodes.size() != 1) {
+    complain(kOneEds, {std::to_string(options.nodes.size())});
+    return kWrongUse;
+  }
+  const auto problem = files::problem_of_outputs(
+      {{"--write-eds", options.write_eds}},
+      {{"--profile", is_sheet(options.profile) ? options.profile : ""}, {"--script", options.faults.script}});
+  if (!problem) return kDone;
+  complain(*problem->entry, problem->arguments);
+  return problem->wrong_use ? kWrongUse : kInfrastructure;
+}
+
+int write_eds(const DriveOptions& options, const mock::SimulatedDriveConfig& config) {
+  canopen::SheetOrigin origin = sheet_origin(options.write_eds, "servogate drive");
+  origin.node = config.node_id;
+  const mock::DeviceObjects objects = mock::device_objects(config);
+  return write_sheet(options.write_eds,
+                     canopen::sheet_of_rows(objects.rows, objects.hidden, config.data_sheet.get(), origin),
+                     config.node_id);
+}
+
 }  // namespace
 
 int drive(const DriveOptions& options) {
   if (!each_once(options.nodes)) return kWrongUse;
+  if (const int code = check_eds_file(options); code != kDone) return code;
   const auto named = named_bus(options.bus, options.bit_rate);
   if (!named) return kWrongUse;
   Plan plan{named->url, named->bit_rate, {}};
@@ -294,6 +324,8 @@ int drive(const DriveOptions& options) {
   if (const int code = apply_plant(options, plan); code != kDone) return code;
   if (const int code = apply_switches(options, plan); code != kDone) return code;
   apply_map_access(options, plan);
+  if (!options.write_eds.empty())
+    if (const int code = write_eds(options, plan.drives.front()); code != kDone) return code;
   auto deeds = read_deeds(options.faults, options.nodes);
   if (!deeds) return kWrongUse;
   const EndBySignal signals;
