@@ -109,10 +109,10 @@ const Entry kResumed{"said.resumed", "the program goes on", "программа 
 const Entry kStopped{"said.stopped", "everything stops", "всё останавливается"};
 const Entry kJogStopped{"said.jog-stopped", "the jog of this axis stops",
                         "ручной ход этой оси останавливается"};
-const Entry kJogsStopped{"said.jog-stopped", "all jogs stop", "ручной ход всех осей останавливается"};
+const Entry kJogsStopped{"said.jogs-stopped", "all jogs stop", "ручной ход всех осей останавливается"};
 const Entry kNotJogged{"said.not-jogged", "this axis is not being jogged: there is nothing to stop",
                        "эту ось не перемещают вручную: останавливать нечего"};
-const Entry kNothingJogged{"said.not-jogged", "no axis is being jogged: there is nothing to stop",
+const Entry kNothingJogged{"said.nothing-jogged", "no axis is being jogged: there is nothing to stop",
                            "ни одну ось не перемещают вручную: останавливать нечего"};
 const Entry kReset{"said.reset", "reset; no alarm is active", "сброс; активных аварий нет"};
 const Entry kResetLeft{"said.reset-left", "reset, but still active: {0}", "сброс, но ещё активны: {0}"};
