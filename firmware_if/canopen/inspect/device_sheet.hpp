@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware_if/canopen/306/eds.hpp"
-#include "firmware_if/canopen/device/object_dictionary.hpp"
+#include "firmware_if/canopen/device/dictionary/object_dictionary.hpp"
 #include "firmware_if/canopen/inspect/object_walk.hpp"
 
 /// Data sheets (EDS) of devices that have none. Not real-time safe.
