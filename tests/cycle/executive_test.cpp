@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "tests/alarms.hpp"
 
 namespace servogate::cycle {
 namespace {
@@ -68,6 +69,7 @@ class Bench {
  public:
   explicit Bench(bool with_process = true) : io(order), logic(order) {
     CycleParts parts;
+    parts.alarms = &tests::alarm_table();
     parts.devices = {&io};
     parts.logic = &logic;
     if (with_process) parts.processes = {&process};
@@ -119,6 +121,7 @@ class LookedAt final : public image::Clock {
 TEST(Cycle, measures_each_phase_of_every_nth_cycle_and_asks_no_clock_in_between) {
   LookedAt clock;
   CycleParts parts;
+  parts.alarms = &tests::alarm_table();
   parts.stopwatch = &clock;
   Cycle cycle(std::move(parts));
   cycle.measure_every(3);
@@ -234,6 +237,7 @@ TEST(Cycle, toggles_the_alive_output_as_long_as_it_keeps_its_time) {
   CopyLogic logic(order);
   IdleProcess process;
   CycleParts parts;
+  parts.alarms = &tests::alarm_table();
   parts.devices = {&io};
   parts.logic = &logic;
   parts.processes = {&process};
@@ -428,6 +432,7 @@ class OrderedProcess final : public ProcessInCycle {
 TEST(Cycle, stops_and_holds_every_process_when_none_is_named) {
   OrderedProcess first, second;
   CycleParts parts;
+  parts.alarms = &tests::alarm_table();
   parts.processes = {&first, &second};
   Cycle cycle(std::move(parts));
   const auto ask = [&](RequestKind kind, int process) {
@@ -473,6 +478,7 @@ TEST(Cycle, raises_the_watchdog_of_the_logic_in_the_cycle_behind_the_slow_one) {
   HandClock clock;
   SlowLogic logic(clock);
   CycleParts parts;
+  parts.alarms = &tests::alarm_table();
   parts.logic = &logic;
   parts.stopwatch = &clock;
   Cycle cycle(std::move(parts));

@@ -111,7 +111,7 @@ TEST(InverterMill, a_lost_station_stops_the_program_and_drops_its_own_outputs) {
   mill.run(1.0);
   EXPECT_TRUE(mill.off()) << "by its watchdog";
   EXPECT_EQ(mill.process().state, ProcessState::stopped_by_alarm);
-  mill.panel().inject({});
+  mill.panel().clear_fault();
   mill.run(2.0);
   EXPECT_TRUE(mill.off()) << "what comes back turns nothing";
 }

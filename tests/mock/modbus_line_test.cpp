@@ -166,7 +166,7 @@ TEST(MockModbusLine, a_silent_station_turns_stale_then_bad_and_its_points_take_t
   EXPECT_TRUE(loop.bit("SA1"));
   EXPECT_LE(loop.source().updated_ns, last + 20 * kMillisecond);
   EXPECT_GE(loop.source().errors, 2u);
-  line.station(0).inject({});
+  line.station(0).clear_fault();
   loop.run(700 * kMillisecond);
   EXPECT_EQ(loop.source().quality, Quality::good);
   EXPECT_TRUE(loop.bit("SA0"));
@@ -218,7 +218,7 @@ TEST(MockModbusLine, a_garbled_answer_is_repeated_before_it_counts_as_lost) {
   loop.run(40 * kMillisecond);
   line.station(0).inject({.kind = fault::Kind::corrupt});
   loop.run(4 * kMillisecond);
-  line.station(0).inject({});
+  line.station(0).clear_fault();
   loop.run(100 * kMillisecond);
   EXPECT_GE(line.errors(0), 1u);
   EXPECT_EQ(loop.source().quality, Quality::good);
