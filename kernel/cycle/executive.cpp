@@ -178,11 +178,13 @@ void Cycle::run_axes() noexcept {
 }
 
 void Cycle::collect_events() noexcept {
-  const auto collect = [this](const axis::Events& events, int axis, int process) {
+  const auto collect = [this](const axis::Events& events, int axis, int process,
+                              const image::PartPlace& drive_of) {
     for (const axis::Event& e : events) {
       image::AlarmRecord r;
       r.number = e.number;
       r.axis = static_cast<std::int8_t>(axis);
+      r.part = drive_of;
       r.limit = e.limit;
       r.value = e.value;
       r.detail1 = e.detail1;
@@ -195,7 +197,6 @@ void Cycle::collect_events() noexcept {
         r.detail.put(report);
         const axis::AxisConfig& config = axes_[static_cast<std::size_t>(axis)].config();
         if (axis::is_drive_loss(e.number)) r.reaction = config.loss_reaction;
-        r.part = config.drive;
       }
       const image::ProcessStatus& program = image_.processes[static_cast<std::size_t>(process)];
       r.line = program.line;
@@ -205,11 +206,11 @@ void Cycle::collect_events() noexcept {
     }
   };
   for (axis::Axis& a : axes_) {
-    collect(a.events(), a.index(), a.config().process);
+    collect(a.events(), a.index(), a.config().process, a.config().drive);
     a.clear_events();
   }
   for (axis::Spindle& s : spindles_) {
-    collect(s.events(), -1, s.config().process);
+    collect(s.events(), -1, s.config().process, s.config().drive);
     s.clear_events();
   }
 }

@@ -273,7 +273,9 @@ TEST(Faults, of_drives_have_the_words_of_their_own_device_file_or_of_the_standar
   const auto said = [&](int number, std::uint16_t code) {
     image::AlarmRecord r;
     r.number = number;
-    r.axis = 0;
+    const bool spindle = number == axis::alarm::kSpindleDriveFault;
+    r.axis = static_cast<std::int8_t>(spindle ? -1 : 0);
+    r.part = {0, static_cast<std::int16_t>(spindle ? 4 : 1)};
     r.detail.put(image::DriveReport{0, code, 0, 0});
     return image::render(r, mill.control().alarm_names(), text::Language::english);
   };

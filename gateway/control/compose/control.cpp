@@ -317,8 +317,6 @@ void Control::open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) n
 /// The device file of the drive or part that an alarm is of.
 const machine::DeviceConfig* Control::device_of(const image::AlarmRecord& r) const {
   const machine::NodeConfig* node = node_of(r.part);
-  if (r.axis >= 0 && static_cast<std::size_t>(r.axis) < loaded_.machine.axes.size())
-    node = loaded_.machine.node(loaded_.machine.axes[static_cast<std::size_t>(r.axis)].drive);
   return node != nullptr ? loaded_.device(node->device) : nullptr;
 }
 
