@@ -227,12 +227,19 @@ struct PointConfig {
   bool is_analog() const { return channel == ChannelKind::ai || channel == ChannelKind::aq; }
 };
 
+/// Of each character on a serial line.
+enum class LineParity : std::uint8_t { none, even, odd };
+
 /// [[line]]: a Modbus line, one wire or one TCP peer, with the stations that name it.
 struct LineConfig {
   std::string name;
   std::string url;             ///< "mock:NAME", "tcp:HOST:PORT", "rtu:/dev/..."
   std::int64_t baud = 115200;  ///< bit/s, of RTU and of a mock
-  double timeout = 0.1;        ///< s until an answer is late
+  /// RTU. Defaults of Modbus over Serial Line V1.02, 2.5.1: even, and 11 bits a character whatever the
+  /// parity.
+  LineParity parity = LineParity::even;
+  int stop_bits = 0;     ///< RTU; 0: what makes 11 bits
+  double timeout = 0.1;  ///< s until an answer is late
 };
 
 /// [[station]]: a Modbus unit, a GPIO chip, the digital inputs and outputs of a drive, or a node of CiA

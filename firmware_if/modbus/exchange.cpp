@@ -66,4 +66,14 @@ void Exchange::send(const image::ProcessImage& image, WriteSink& sink) noexcept 
   }
 }
 
+void Exchange::leave(WriteSink& sink) noexcept {
+  for (std::size_t n = 0; n < blocks_.size(); ++n) {
+    BlockState& block = blocks_[n];
+    if (!block.armed) continue;
+    for (const Carried& p : block.points)
+      if (!p.point.rule.hold) set_raw_value(map_.blocks[n], p.point, p.point.rule.loss, block.data);
+    sink.write(n, block.data, 0);
+  }
+}
+
 }  // namespace servogate::modbus

@@ -29,6 +29,10 @@ class Exchange {
   /// Outputs that have changed, and all of them the first time.
   void send(const image::ProcessImage& image, WriteSink& sink) noexcept;
 
+  /// What the outputs are left with when the control ends: their values of loss, but for those that hold.
+  /// Nothing where nothing was sent.
+  void leave(WriteSink& sink) noexcept;
+
   const Map& map() const noexcept { return map_; }
 
  private:

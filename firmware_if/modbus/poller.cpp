@@ -7,8 +7,23 @@ namespace servogate::modbus {
 
 using image::Nanoseconds;
 
+namespace {
+
+/// An answer to a read tells its function and how much there is, not from where. Those to multiple writes
+/// carry the address.
+bool answers_alike(const Block& a, const Block& b) noexcept {
+  return a.unit == b.unit && a.function == b.function && !writes(a.function) &&
+         response_size(a.function, a.count) == response_size(b.function, b.count);
+}
+
+}  // namespace
+
 Poller::Poller(PollSettings settings, std::vector<Block> blocks)
-    : settings_(settings), blocks_(std::move(blocks)), states_(blocks_.size()), health_(256) {}
+    : settings_(settings), blocks_(std::move(blocks)), states_(blocks_.size()), health_(256) {
+  for (std::size_t a = 0; a < blocks_.size(); ++a)
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      if (a != b && answers_alike(blocks_[a], blocks_[b])) states_[a].alike.push_back(b);
+}
 
 void Poller::start_at(Nanoseconds t) noexcept {
   for (State& state : states_) state.due_ns = t;
@@ -16,7 +31,10 @@ void Poller::start_at(Nanoseconds t) noexcept {
 
 Nanoseconds Poller::ready_ns(std::size_t block) const noexcept {
   const Health& health = health_[blocks_[block].unit];
-  return health.lost ? std::max(states_[block].due_ns, health.retry_ns) : states_[block].due_ns;
+  Nanoseconds ready = health.lost ? std::max(states_[block].due_ns, health.retry_ns) : states_[block].due_ns;
+  if (states_[block].alike.empty()) return ready;
+  for (const std::size_t other : states_[block].alike) ready = std::max(ready, states_[other].awaited_ns);
+  return std::max(ready, states_[block].awaited_ns);
 }
 
 std::optional<Poller::Next> Poller::next(Nanoseconds idle_since) const noexcept {
@@ -55,6 +73,8 @@ Outcome Poller::answered(const Response& response, Nanoseconds end) noexcept {
     return outcome;
   }
   State& state = states_[now_.block];
+  // This may be the late answer to what was repeated.
+  if (now_.attempt > 0) state.awaited_ns = end + settings_.late_ns;
   health_of(now_.block).lost = false;
   const bool written = writes(response.function);
   if (written && state.changed) state.due_ns = std::min(state.due_ns, end);
@@ -66,6 +86,7 @@ Outcome Poller::answered(const Response& response, Nanoseconds end) noexcept {
 Outcome Poller::unanswered(Nanoseconds end) noexcept {
   Health& health = health_of(now_.block);
   const Outcome outcome = failed(end);
+  states_[now_.block].awaited_ns = end + settings_.late_ns;
   if (!health.lost && now_.attempt < settings_.retries) {
     repeat_ = Next{now_.block, now_.attempt + 1, end};
     return outcome;

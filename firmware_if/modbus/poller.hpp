@@ -13,6 +13,10 @@ struct PollSettings {
   int retries = 1;  ///< repeats of an unanswered transaction before its unit counts as lost
   /// How often a lost unit is tried again, once and one block, so that it does not slow its neighbours.
   image::Nanoseconds lost_retry_ns = 500 * image::kMillisecond;
+  /// Where an answer does not say which request it answers (a serial line): blocks of a unit whose answers
+  /// look the same are left alone so long after one of them got none and was repeated. Until then a late
+  /// answer comes to nobody who could take it for his.
+  image::Nanoseconds late_ns = 0;
 };
 
 /// What came of a transaction.
@@ -68,8 +72,10 @@ class Poller final : public WriteSink {
   struct State {
     Data data;  ///< next to write
     image::Nanoseconds due_ns = 0;
-    bool armed = false;    ///< there is something to write
-    bool changed = false;  ///< since it last went out
+    image::Nanoseconds awaited_ns = -1;  ///< an answer to it may come as late as that
+    bool armed = false;                  ///< there is something to write
+    bool changed = false;                ///< since it last went out
+    std::vector<std::size_t> alike;      ///< other blocks whose answers could be taken for its own
   };
   struct Health {
     std::uint32_t errors = 0;

@@ -117,9 +117,6 @@ inline constexpr text::Entry kOneWire{
     "шина «{0}» — тот же провод, что и шина «{1}» в строке {2}: каждой нужен свой"};
 inline constexpr text::Entry kNodeTwice{"machine.node_used_twice", "drive \"{0}\" already belongs to {1}",
                                         "привод «{0}» уже принадлежит: {1}"};
-inline constexpr text::Entry kNotSimulated{"machine.not_simulated",
-                                           "`{0}`: \"{1}\" is not on a mock; nothing simulates it",
-                                           "«{0}»: «{1}» не на имитаторе; его нечем имитировать"};
 inline constexpr text::Entry kPerhapsReal{
     "machine.perhaps_real",
     "bus \"{0}\": behind {1} there may be real devices, so `simulated` cannot hold for it",

@@ -160,46 +160,19 @@ bool perhaps_real(std::string_view url) {
                       [host](std::string_view here) { return host.starts_with(here); });
 }
 
-/// What [simulation] moves has to be a mock.
+/// Initial values are of points that there are. What is said of something real is of the same machine on a
+/// desk, and has no effect here.
 void check_simulated(const MachineConfig& machine, Reading& reading) {
-  const auto point = [&](const std::string& name, const std::string& path) {
-    int station = -1;
-    if (machine.point(name, &station) == nullptr) return;
-    const StationConfig& s = machine.stations[static_cast<std::size_t>(station)];
-    if (!s.mock()) reading.error(machine.where(path), finding::kNotSimulated, {shown(path), name});
-  };
-  const SimulationConfig& sim = machine.simulation;
-  for (std::size_t i = 0; i < sim.switches.size(); ++i)
-    point(sim.switches[i].point, "simulation.switch." + std::to_string(i) + ".point");
-  for (std::size_t i = 0; i < sim.loops.size(); ++i)
-    point(sim.loops[i].input, "simulation.loop." + std::to_string(i) + ".input");
-  for (std::size_t i = 0; i < sim.indexers.size(); ++i)
-    for (std::size_t k = 0; k < sim.indexers[i].inputs.size(); ++k)
-      point(sim.indexers[i].inputs[k],
-            "simulation.indexer." + std::to_string(i) + ".inputs." + std::to_string(k));
-  for (std::size_t i = 0; i < sim.operator_closes.size(); ++i)
-    point(sim.operator_closes[i], "simulation.operator_closes." + std::to_string(i));
-  for (const auto& [name, value] : sim.initial) {
-    const std::string path = "simulation.initial." + name;
+  for (const auto& [name, value] : machine.simulation.initial)
     if (machine.point(name) == nullptr)
-      reading.error(machine.where(path), finding::kNoSuch,
+      reading.error(machine.where("simulation.initial." + name), finding::kNoSuch,
                     {"simulation.initial", text::both("point", "сигнала"), name,
                      hint(name, all_names(machine).points)});
-    else
-      point(name, path);
-  }
   // Of an interface of Linux only its kind can tell, when it is opened.
   for (std::size_t b = 0; b < machine.buses.size(); ++b)
     if (machine.buses[b].simulated && perhaps_real(machine.buses[b].url))
       reading.error(machine.where("bus." + std::to_string(b) + ".simulated"), finding::kPerhapsReal,
                     {machine.buses[b].name, machine.buses[b].url});
-  for (std::size_t i = 0; i < sim.drives.size(); ++i) {
-    int bus = -1;
-    const std::string path = "simulation.drive." + std::to_string(i) + ".node";
-    if (machine.node(sim.drives[i].node, &bus) != nullptr &&
-        !machine.buses[static_cast<std::size_t>(bus)].nothing_real())
-      reading.error(machine.where(path), finding::kNotSimulated, {shown(path), sim.drives[i].node});
-  }
 }
 
 }  // namespace

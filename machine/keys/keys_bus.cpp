@@ -20,6 +20,11 @@ std::span<const std::string_view> choices_of<image::Writer>() {
 }
 
 template <>
+std::span<const std::string_view> choices_of<LineParity>() {
+  static constexpr std::string_view kNames[] = {"none", "even", "odd"};
+  return kNames;
+}
+template <>
 std::span<const std::string_view> choices_of<LossReaction>() {
   static constexpr std::string_view kNames[] = {"stop_on_path", "stop_axes", "stop_and_power_off",
                                                 "quick_stop", "power_off"};
@@ -187,11 +192,16 @@ const Section& section_of<LineConfig>() {
   using C = LineConfig;
   static const Key keys[] = {
       key<&C::name>("name", {.required = true}, "name of the line", "имя линии"),
-      key<&C::url>("url", {.required = true}, "what carries the line: mock:NAME",
-                   "чем передаётся линия: mock:ИМЯ"),
+      key<&C::url>("url", {.required = true}, "what carries the line: mock:NAME, tcp:HOST:PORT, rtu:/dev/...",
+                   "чем передаётся линия: mock:ИМЯ, tcp:ХОСТ:ПОРТ, rtu:/dev/..."),
       key<&C::baud>("baud", {.unit = Unit::bit_per_s, .min = 1200, .max = 4000000},
                     "rate of a serial line; a mock line takes the same time for its characters",
                     "скорость последовательной линии; имитатор тратит на символы столько же времени"),
+      key<&C::parity>("parity", {}, "rtu: even is the standard's; many devices are delivered with none",
+                      "rtu: even — по стандарту; многие устройства поставляются с none"),
+      key<&C::stop_bits>("stop_bits", {.min = 0, .max = 2},
+                         "rtu: stop bits; 0: as the standard says, 1 with parity and 2 without",
+                         "rtu: стоповые биты; 0: по стандарту, 1 с чётностью и 2 без неё"),
       key<&C::timeout>("timeout", {.unit = Unit::second, .min = 0.001, .max = 60},
                        "an answer later than this is lost", "ответ позже этого времени считается потерянным"),
   };

@@ -247,7 +247,8 @@ const Section& section_of<MachineConfig>() {
       key<&C::lines>("line", {}, "Modbus lines", "линии Modbus"),
       key<&C::stations>("station", {}, "sources of signals", "источники сигналов"),
       key<&C::symbols>("symbol", {}, "free places with names", "именованные свободные адреса"),
-      key<&C::simulation>("simulation", {}, "what the mocks do", "поведение имитаторов"),
+      key<&C::simulation>("simulation", {}, "what the mocks do; without effect on what is real",
+                          "поведение имитаторов; на настоящее не действует"),
   };
   static const Section section{"machine file", "файл станка", keys, &default_object<C>};
   return section;

@@ -21,6 +21,30 @@ TEST(MachineFile, mill_reads_without_a_finding) {
   EXPECT_EQ(test::lines_of(mill().findings, text::Language::english), "");
 }
 
+TEST(MachineFile, says_of_the_simulation_of_real_inputs_nothing_as_it_has_no_effect_on_them) {
+  std::string text = example("mill");
+  for (const auto& [mock, real] : {std::pair<std::string, std::string>{"mock:gpio", "chip:gpiochip0"},
+                                   {"mock:panel", "rtu:/dev/ttyUSB0"}}) {
+    const std::size_t at = text.find(mock);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, mock.size(), real);
+    const LoadResult loaded = parse(text, source("examples/mill/machine.toml"));
+    EXPECT_FALSE(loaded.machine.nothing_real()) << real;
+    for (const text::Finding& f : loaded.findings)
+      EXPECT_EQ(f.severity, text::Severity::warning) << f.str(text::Language::english);
+  }
+}
+
+TEST(MachineFile, a_line_has_even_parity_unless_it_says_another) {
+  EXPECT_EQ(mill().machine.lines.at(0).parity, LineParity::even);
+  std::string text = example("mill");
+  const std::string url = "url = \"mock:panel\"";
+  text.replace(text.find(url), url.size(), "url = \"rtu:/dev/ttyUSB0\"\nparity = \"none\"\nstop_bits = 1");
+  const LoadResult loaded = parse(text, source("examples/mill/machine.toml"));
+  EXPECT_EQ(loaded.machine.lines.at(0).parity, LineParity::none);
+  EXPECT_EQ(loaded.machine.lines.at(0).stop_bits, 1);
+}
+
 TEST(MachineFile, lathe_reads_without_a_finding) {
   EXPECT_EQ(test::lines_of(lathe().findings, text::Language::english), "");
 }

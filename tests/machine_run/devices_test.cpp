@@ -60,5 +60,36 @@ TEST(Devices, have_one_row_for_each_scheme_of_a_kind) {
   }
 }
 
+TEST(Devices, a_line_whose_host_is_not_there_opens_and_its_stations_are_lost) {
+  // Port 9 of loopback: nobody listens there, and if somebody does it is no Modbus.
+  const machine::LoadResult loaded = mill_with_url("mock:panel", "tcp:127.0.0.1:9");
+  EXPECT_FALSE(loaded.machine.nothing_real());
+  Mill mill(loaded, {});
+  mill.run(0.5);
+  EXPECT_GT(mill.alarms(image::alarm::kSourceBad), 0) << mill.alarm_list();
+  EXPECT_EQ(mill.control().world().line_of("panel"), nullptr) << "nothing is simulated in its place";
+}
+
+TEST(Devices, a_serial_device_that_is_not_there_is_refused_by_the_computer_with_what_mends_it) {
+  std::vector<text::Finding> findings;
+  EXPECT_EQ(gateway::Control::compose(mill_with_url("mock:panel", "rtu:/dev/no-such-line"), findings),
+            nullptr);
+  EXPECT_TRUE(gateway::Control::infrastructure(findings));
+  EXPECT_NE(
+      lines_of(findings).find("line 'panel': there is no /dev/no-such-line: is the adapter plugged in?"),
+      std::string::npos)
+      << lines_of(findings);
+}
+
+TEST(Devices, that_are_real_do_not_live_in_virtual_time) {
+  const machine::LoadResult loaded = mill_with_url("mock:panel", "tcp:127.0.0.1:9");
+  gateway::Refusal refusal;
+  EXPECT_EQ(gateway::clock_of(loaded.machine, gateway::ClockKind::virtual_time, refusal),
+            gateway::ClockKind::unset);
+  EXPECT_NE(refusal.entry, nullptr);
+  EXPECT_EQ(gateway::clock_of(loaded.machine, gateway::ClockKind::unset, refusal),
+            gateway::ClockKind::realtime);
+}
+
 }  // namespace
 }  // namespace servogate::machine_run

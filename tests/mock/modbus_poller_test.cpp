@@ -106,6 +106,27 @@ TEST(ModbusPoller, an_exception_is_an_answer_and_is_not_repeated) {
   EXPECT_EQ(wire.poller.last_exception(1), Exception::server_device_busy);
 }
 
+TEST(ModbusPoller, leaves_blocks_alone_that_a_late_answer_could_be_taken_for) {
+  Block second = read_of(1), other = read_of(1), neighbour = read_of(2);
+  second.address = 16;
+  other.function = Function::read_input_registers;
+  PollSettings settings;
+  settings.late_ns = 1000 * kMillisecond;
+  Wire wire({read_of(1), second, other, neighbour}, settings);
+  wire.dead = "1";
+  wire.run(kMillisecond);
+  EXPECT_EQ(wire.order, "b") << "the round begins behind the first block";
+  wire.dead.clear();
+  wire.run(900 * kMillisecond);
+  EXPECT_EQ(std::count(wire.order.begin(), wire.order.end(), 'a'), 0) << "its answer looks like that of b";
+  EXPECT_EQ(std::count(wire.order.begin(), wire.order.end(), 'b'), 2) << "once more at once";
+  EXPECT_GT(std::count(wire.order.begin(), wire.order.end(), 'c'), 30);
+  EXPECT_GT(std::count(wire.order.begin(), wire.order.end(), 'd'), 30);
+  wire.run(1500 * kMillisecond);
+  EXPECT_GT(std::count(wire.order.begin(), wire.order.end(), 'a'), 10);
+  EXPECT_GT(std::count(wire.order.begin(), wire.order.end(), 'b'), 10);
+}
+
 TEST(ModbusPoller, an_output_that_was_not_taken_is_written_again) {
   Wire wire({write_of(1, 1000 * kMillisecond)}, {0, 30 * kMillisecond});
   Data data;

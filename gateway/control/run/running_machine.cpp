@@ -54,6 +54,11 @@ ClockKind clock_of(const machine::MachineConfig& machine, ClockKind asked, Refus
       refusal = {&kVirtualNeedsMock, {bus.url}};
       return ClockKind::unset;
     }
+  for (const machine::StationConfig& station : machine.stations)
+    if (!station.mock()) {
+      refusal = {&kVirtualNeedsMock, {station.url}};
+      return ClockKind::unset;
+    }
   return asked;
 }
 

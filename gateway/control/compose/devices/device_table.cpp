@@ -2,6 +2,7 @@
 #include "gateway/control/compose/devices/device_table.hpp"
 
 #include "firmware_if/text/finding.hpp"
+#include "gateway/control/compose/devices/modbus_device.hpp"
 #include "gateway/control/compose/devices/world_device.hpp"
 
 namespace servogate::gateway {
@@ -11,9 +12,12 @@ namespace {
 bool not_empty(std::string_view rest) { return !rest.empty(); }
 
 const std::string kMockForm = text::both("mock:NAME", "mock:ИМЯ");
+const std::string kTcpForm = text::both("tcp:HOST:PORT", "tcp:ХОСТ:ПОРТ");
 
 const DeviceRow kRows[] = {
     {DeviceKind::line, "mock:", kMockForm, true, not_empty, open_world_device},
+    {DeviceKind::line, "tcp:", kTcpForm, false, is_tcp_peer, open_modbus},
+    {DeviceKind::line, "rtu:", "rtu:/dev/...", false, is_serial_device, open_modbus},
     {DeviceKind::chip, "mock:", kMockForm, true, not_empty, open_world_device},
 };
 
