@@ -46,6 +46,9 @@ int carry_out(const CommandLine& line) {
   if (line.command == "od") return command::od(line.bus.od);
   if (line.command == "lss") return command::lss(line.bus.lss);
   if (line.command == "nmt") return command::nmt(line.bus.nmt);
+  if (line.command == "modbus read") return command::modbus_read(line.bus.modbus_read);
+  if (line.command == "modbus write") return command::modbus_write(line.bus.modbus_write);
+  if (line.command == "modbus scan") return command::modbus_scan(line.bus.modbus_scan);
   if (line.command == "drive") return command::drive(line.bus.drive);
   if (line.command == "io") return command::io(line.bus.io);
   if (line.command == "sim") return command::sim(line.bus.sim);

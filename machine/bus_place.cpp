@@ -37,16 +37,27 @@ std::string adapter_place(std::string_view rest) {
   return "gsusb:" + std::string(rest) + (has_channel ? "" : "/0");
 }
 
+std::string peer_place(std::string_view rest) {
+  const auto address = usercan::parse_address(rest);
+  return "tcp:" + (address ? address_place(*address) : std::string(rest));
+}
+
+/// Names below /dev/serial/by-id are links.
+std::string serial_place(std::string_view rest) {
+  std::error_code error;
+  const auto whole = std::filesystem::weakly_canonical(std::filesystem::path(rest), error);
+  return "rtu:" + (error ? std::string(rest) : whole.string());
+}
+
 std::string_view channel_of(std::string_view place) { return place.substr(place.rfind('/') + 1); }
 
 struct Scheme {
   std::string_view name;
   std::string (*place)(std::string_view rest);
 };
-constexpr Scheme kSchemes[] = {{"socketcand:", &served_place},
-                               {"lockstep:", &served_place},
-                               {"udp:", &udp_place},
-                               {"gsusb:", &adapter_place}};
+constexpr Scheme kSchemes[] = {{"socketcand:", &served_place}, {"lockstep:", &served_place},
+                               {"udp:", &udp_place},           {"tcp:", &peer_place},
+                               {"rtu:", &serial_place},        {"gsusb:", &adapter_place}};
 
 }  // namespace
 

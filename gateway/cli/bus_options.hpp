@@ -141,6 +141,23 @@ struct CanCheckOptions : CanopenBusOptions {
   bool detect = false;
 };
 
+/// `servogate modbus read`, `write` and `scan`: a Modbus line by hand.
+struct ModbusOptions {
+  std::string line;       ///< url, or MACHINE.toml#line
+  double baud = 115'200;  ///< bit/s, of a serial device named by its url
+  std::string parity = "even";
+  int stop_bits = 0;  ///< 0: as the standard says
+  double timeout_ms = 500.0;
+  int unit = 1;
+  std::string kind;  ///< coils, inputs, registers, input-registers
+  int address = 0;
+  int count = 1;                    ///< of read
+  std::vector<std::string> values;  ///< of write
+  int first = 1, last = 247;        ///< of scan
+  bool may_move = false;
+  bool json = false;
+};
+
 /// Options of the commands that work on a bus.
 struct BusCommands {
   CanBusOptions can_bus;
@@ -156,6 +173,7 @@ struct BusCommands {
   OdOptions od;
   LssOptions lss;
   NmtOptions nmt;
+  ModbusOptions modbus_read, modbus_write, modbus_scan;
 };
 
 }  // namespace servogate::gateway

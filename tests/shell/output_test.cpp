@@ -88,12 +88,13 @@ TEST(Help, of_every_command_is_in_the_users_language) {
   Desk desk;
   const std::regex english_words("([a-z]+ ){3,}");
   for (const char* command :
-       {"",        "version",   "run",      "up",       "status",    "home",      "jog",      "zero",
-        "mdi",     "load",      "start",    "step",     "hold",      "resume",    "reset",    "override",
-        "power",   "input",     "alarms",   "down",     "check",     "canon",     "replay",   "plc",
-        "plc run", "plc check", "plc test", "plc list", "plc watch", "plc force", "plc load", "can",
-        "can bus", "can check", "drive",    "sim",      "dump",      "play",      "scan",     "sdo",
-        "od",      "lss",       "nmt"}) {
+       {"",          "version",   "run",         "up",           "status",     "home",      "jog",
+        "zero",      "mdi",       "load",        "start",        "step",       "hold",      "resume",
+        "reset",     "override",  "power",       "input",        "alarms",     "down",      "check",
+        "canon",     "replay",    "plc",         "plc run",      "plc check",  "plc test",  "plc list",
+        "plc watch", "plc force", "plc load",    "can",          "can bus",    "can check", "drive",
+        "sim",       "dump",      "play",        "scan",         "sdo",        "od",        "lss",
+        "nmt",       "modbus",    "modbus read", "modbus write", "modbus scan"}) {
     const Ended e = desk.line(std::string("$SG ") + command + " --help", "ru_RU.UTF-8");
     EXPECT_EQ(e.code, 0) << command;
     std::istringstream lines(e.out);

@@ -5,6 +5,7 @@
 #include "firmware_if/text/finding.hpp"
 #include "gateway/cli/commands/bus_commands.hpp"
 #include "gateway/cli/commands/canopen_commands.hpp"
+#include "gateway/cli/commands/modbus_commands.hpp"
 #include "gateway/cli/commands/plc_commands.hpp"
 #include "gateway/cli/help/completion.hpp"
 #include "gateway/cli/help/manual_page.hpp"
@@ -106,6 +107,7 @@ class Commands {
     add_plc_commands(app_, line.plc);
     add_bus_commands(app_, line.bus);
     add_canopen_commands(app_, line.bus);
+    add_modbus_commands(app_, line.bus);
     written_down();
     flags_take_no_value(app_);
   }
@@ -116,7 +118,7 @@ class Commands {
   void settle() {
     const CLI::App* chosen = app_.get_subcommands().front();
     line_.command = chosen->get_name();
-    if (line_.command == "plc" || line_.command == "can")
+    if (line_.command == "plc" || line_.command == "can" || line_.command == "modbus")
       line_.command += " " + chosen->get_subcommands().front()->get_name();
     line_.client.command = line_.command;
     for (std::string& argument : line_.client.arguments) unshield(argument);

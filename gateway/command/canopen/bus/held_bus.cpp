@@ -69,7 +69,9 @@ std::optional<Holder> holder_at(const std::string& socket, const std::string& pl
     return holder;
   }
   if (!held.is_object()) return std::nullopt;
-  for (const json& bus : held.value("buses", json::array())) {
+  json all = held.value("buses", json::array());
+  for (const json& line : held.value("lines", json::array())) all.push_back(line);
+  for (const json& bus : all) {
     if (!machine::same_place(bus.value("place", bus.value("url", "")), place)) continue;
     Holder holder{
         socket, held.value("machine", ""), bus.value("name", ""), held.value("kind", "") == "run", false, {}};

@@ -12,7 +12,7 @@
 
 namespace servogate::gateway::command {
 
-/// A running control that holds a bus.
+/// A running control that holds a bus or a line.
 struct Holder {
   std::string socket;   ///< path of its control socket
   std::string machine;  ///< name of its machine

@@ -200,10 +200,14 @@ void write(json& answer, const HistoryReport& report) {
 }
 
 void write(json& answer, const HeldBuses& held) {
+  json lines = json::array();
+  for (const LineReport& line : held.lines)
+    lines.push_back({{"name", line.name}, {"url", line.url}, {"place", line.place}});
   answer.update({{"schema", 1},
                  {"kind", held.run ? "run" : "control"},
                  {"machine", held.machine},
-                 {"buses", json_of(held.buses)}});
+                 {"buses", json_of(held.buses)},
+                 {"lines", std::move(lines)}});
 }
 
 }  // namespace servogate::gateway

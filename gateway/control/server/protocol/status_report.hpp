@@ -94,11 +94,17 @@ struct HistoryReport {
   text::Language language = text::Language::english;
 };
 
-/// Who holds which buses, with their nodes.
+/// A Modbus line that is real.
+struct LineReport {
+  std::string name, url, place;
+};
+
+/// Who holds which buses, with their nodes, and which lines.
 struct HeldBuses {
   bool run = false;  ///< it is a `servogate run`
   std::string machine;
   std::vector<BusReport> buses;
+  std::vector<LineReport> lines;
 };
 
 }  // namespace servogate::gateway

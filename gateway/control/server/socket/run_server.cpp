@@ -12,7 +12,8 @@
 namespace servogate::gateway {
 
 bool RunServer::needed(const machine::MachineConfig& machine) {
-  return std::any_of(machine.buses.begin(), machine.buses.end(), [](const auto& b) { return !b.mock(); });
+  const auto outside = [](const auto& part) { return !part.mock(); };
+  return std::ranges::any_of(machine.buses, outside) || std::ranges::any_of(machine.stations, outside);
 }
 
 std::optional<std::string> RunServer::answer(std::string_view line, Connection&, const LinePlace&) {

@@ -86,7 +86,11 @@ std::vector<WorkReport> work_reports(Resident& resident) {
 }  // namespace
 
 HeldBuses held_buses(const machine::MachineConfig& machine, const image::ProcessImage& image, bool run) {
-  return {run, machine.name, bus_reports(machine, image)};
+  HeldBuses held{run, machine.name, bus_reports(machine, image), {}};
+  for (const machine::LineConfig& line : machine.lines)
+    if (!line.url.starts_with("mock:"))
+      held.lines.push_back({line.name, line.url, machine::bus_place(line.url)});
+  return held;
 }
 
 StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Language language) {
