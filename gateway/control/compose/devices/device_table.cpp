@@ -2,6 +2,7 @@
 #include "gateway/control/compose/devices/device_table.hpp"
 
 #include "firmware_if/text/finding.hpp"
+#include "gateway/control/compose/devices/gpio_device.hpp"
 #include "gateway/control/compose/devices/modbus_device.hpp"
 #include "gateway/control/compose/devices/world_device.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 
 bool not_empty(std::string_view rest) { return !rest.empty(); }
 
+const std::string kChipForm = text::both("chip:LABEL", "chip:МЕТКА");
 const std::string kMockForm = text::both("mock:NAME", "mock:ИМЯ");
 const std::string kTcpForm = text::both("tcp:HOST:PORT", "tcp:ХОСТ:ПОРТ");
 
@@ -19,6 +21,7 @@ const DeviceRow kRows[] = {
     {DeviceKind::line, "tcp:", kTcpForm, false, is_tcp_peer, open_modbus},
     {DeviceKind::line, "rtu:", "rtu:/dev/...", false, is_serial_device, open_modbus},
     {DeviceKind::chip, "mock:", kMockForm, true, not_empty, open_world_device},
+    {DeviceKind::chip, "chip:", kChipForm, false, not_empty, open_gpio_device},
 };
 
 }  // namespace

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "gateway/control/compose/devices/device_table.hpp"
+
+namespace servogate::gateway {
+
+/// The row of chip: urls: a GPIO chip of this computer by its label or name; the number of a point's channel
+/// is its line.
+std::unique_ptr<image::CycleDevice> open_gpio_device(const DeviceRequest& request, drivers::Notice& why);
+
+}  // namespace servogate::gateway
