@@ -95,8 +95,8 @@ TEST_F(Rest, is_to_be_seen_by_clients_to_its_end_and_nothing_begins_in_it) {
     EXPECT_EQ(refused["code"], "socket.ending") << command;
   }
   EXPECT_EQ(shell_.ask({{"cmd", "power"}, {"value", 1}})["code"], "socket.ending");
-  EXPECT_EQ(shell_.run({"status"}).exit, 0);
-  EXPECT_EQ(shell_.run({"down"}).exit, 0) << "a second one waits for the same end";
+  EXPECT_EQ(shell_.ask({{"cmd", "status"}})["ending"], true);
+  EXPECT_EQ(shell_.ask({{"cmd", "down"}})["ok"], true) << "a second one waits for the same end";
   int status = 0;
   waitpid(down, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 0);
