@@ -31,6 +31,8 @@ const Entry kNotAllowed{
     "правило udev для /dev/gpiochip*, затем войти заново"};
 const Entry kNoLine{"gpio.no-line", "'{0}': the GPIO chip {1} has no line {2}; its lines are 0 to {3}",
                     "«{0}»: у микросхемы GPIO {1} нет линии {2}; её линии — от 0 до {3}"};
+const Entry kTooMany{"gpio.too-many", "the GPIO chip {0} can carry {1} lines of one direction, not {2}",
+                     "микросхема GPIO {0}: не более {1} линий одного направления, а не {2}"};
 const Entry kHeld{
     "gpio.line-held",
     "'{0}': line {2} of the GPIO chip {1} is held by '{3}'; end that program or its overlay",
@@ -91,10 +93,12 @@ struct GpioChip::Lines {
 
   bool find_lines(const std::string& name, const std::vector<Line>& wanted, gpiod_line_bulk& bulk,
                   drivers::Notice& why) {
+    if (wanted.size() > kMostLines)
+      return fail(why, kTooMany, {name, std::to_string(kMostLines), std::to_string(wanted.size())});
     for (const Line& w : wanted) {
       const unsigned count = gpiod_chip_num_lines(chip.get());
       gpiod_line* line = w.offset < count ? gpiod_chip_get_line(chip.get(), w.offset) : nullptr;
-      if (line == nullptr || gpiod_line_bulk_num_lines(&bulk) >= kMostLines)
+      if (line == nullptr)
         return fail(why, kNoLine,
                     {w.name, name, std::to_string(w.offset), std::to_string(count > 0 ? count - 1 : 0)});
       if (gpiod_line_is_used(line)) {
@@ -153,11 +157,13 @@ std::unique_ptr<GpioChip> GpioChip::open(const ChipConfig& config, drivers::Noti
 
 void GpioChip::receive(image::ProcessImage& image, image::Notices&) noexcept {
   Lines& l = *lines_;
-  if (!l.inputs_taken || gpiod_line_get_value_bulk(&l.inputs, l.levels.data()) == 0) {
+  const bool read = !l.inputs_taken || gpiod_line_get_value_bulk(&l.inputs, l.levels.data()) == 0;
+  // Outputs that cannot be written are as bad as inputs that cannot be read.
+  if (read && !l.stale) {
     for (std::size_t n = 0; n < l.inputs_of.size(); ++n) l.stage.take(n, l.levels[n]);
     l.stage.fresh(0, image.now.t_ns);
   } else {
-    l.stage.fault();
+    if (!read) l.stage.fault();
     l.stage.lost(0);
   }
   l.stage.settle(image);

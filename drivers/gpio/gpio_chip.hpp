@@ -29,9 +29,9 @@ inline constexpr std::size_t kMostLines = 64;
 
 /// A GPIO chip as a device of the cycle. In receive() the levels of all inputs are read by one system call,
 /// so that an emergency stop or a limit switch acts in the cycle in which it is read; in send() all outputs
-/// are written by one, when one of them has changed. A chip that does not answer any more (unplugged) gives
-/// its inputs their values of loss. At its end it writes the values of loss and lets the lines go; what a
-/// line that nobody holds does then is the chip's affair.
+/// are written by one, when one of them has changed. A chip that does not answer any more (unplugged), for
+/// reading or for writing, gives its inputs their values of loss, and its source is bad. At its end it writes
+/// the values of loss and lets the lines go; what a line that nobody holds does then is the chip's affair.
 class GpioChip final : public image::CycleDevice {
  public:
   /// Takes the lines; outputs begin at their values of loss. nullptr: `why` says what is wrong and what mends
