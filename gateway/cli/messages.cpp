@@ -7,7 +7,6 @@
 
 namespace servogate::gateway {
 
-const text::Entry kCannotRead{"cli.cannot-read", "cannot read the file: {0}", "файл не читается: {0}"};
 const text::Entry kCannotWrite{"cli.cannot-write", "cannot write {0}: {1}", "не удаётся записать {0}: {1}"};
 const text::Entry kOutputLost{"cli.output-lost", "cannot write to standard output: {0}",
                               "не удаётся записать в стандартный вывод: {0}"};

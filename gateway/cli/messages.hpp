@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "firmware_if/text/finding.hpp"
+#include "machine/files/read_file.hpp"
 
 namespace servogate::gateway {
 
 /// Sentences of the command line itself.
-extern const text::Entry kCannotRead;   ///< {0} system's words
+using files::kCannotRead;
 extern const text::Entry kCannotWrite;  ///< {0} path, {1} system's words
 extern const text::Entry kOutputLost;   ///< {0} system's words
 extern const text::Entry kStartNowForbidden;

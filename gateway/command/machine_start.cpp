@@ -12,7 +12,7 @@ Announce to_standard_error() {
 }
 
 std::unique_ptr<HeldState> hold_state(const std::string& folder, int& code) {
-  Refusal taken;
+  drivers::Notice taken;
   std::vector<text::Finding> findings;
   auto state = HeldState::hold(folder, taken, findings);
   print_findings(findings);
@@ -23,16 +23,16 @@ std::unique_ptr<HeldState> hold_state(const std::string& folder, int& code) {
 }
 
 bool settle_clock(const machine::MachineConfig& machine, ClockKind& clock) {
-  Refusal refusal;
+  drivers::Notice refusal;
   clock = clock_of(machine, clock, refusal);
   if (refusal.entry != nullptr) complain(*refusal.entry, refusal.arguments);
   return clock != ClockKind::unset;
 }
 
 bool begin(RunningMachine& machine, bool quiet) {
-  std::vector<Refusal> refusals;
+  std::vector<drivers::Notice> refusals;
   const bool begun = machine.begin(refusals);
-  for (const Refusal& r : refusals)
+  for (const drivers::Notice& r : refusals)
     if (!begun || !quiet) complain(*r.entry, r.arguments);
   return begun;
 }

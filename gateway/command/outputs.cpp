@@ -18,20 +18,6 @@ const text::Entry kNothingToLog{
     "can-log.no-bus", "--can-log: no CAN bus of this machine is simulated; `servogate dump` reads a real one",
     "--can-log: у станка нет имитируемой шины CAN; настоящую читает `servogate dump`"};
 
-std::string_view name_of(ClockKind clock) {
-  switch (clock) {
-    case ClockKind::virtual_time:
-      return "virtual";
-    case ClockKind::realtime:
-      return "realtime";
-    case ClockKind::realtime_best_effort:
-      return "realtime=best-effort";
-    case ClockKind::unset:
-      break;
-  }
-  return {};
-}
-
 }  // namespace
 
 int check_outputs(const std::vector<files::NamedPath>& outputs, const std::string& state,

@@ -129,7 +129,7 @@ int up(const UpOptions& options) {
     print_json_line({{"event", "up"},
                      {"machine", m.name},
                      {"socket", socket},
-                     {"clock", clock == ClockKind::virtual_time ? "virtual" : "realtime"},
+                     {"clock", name_of(clock)},
                      {"version", report::build_identity().version}});
   history->note(
       history::event("up", history::says::kUp, {m.name, std::string(report::build_identity().version)}, 0.0));

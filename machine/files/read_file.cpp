@@ -10,10 +10,11 @@
 #include <limits>
 #include <string_view>
 
-#include "firmware_if/text/finding.hpp"
 #include "firmware_if/text/system_words.hpp"
 
 namespace servogate::files {
+
+const text::Entry kCannotRead{"cli.cannot-read", "cannot read the file: {0}", "файл не читается: {0}"};
 
 namespace {
 

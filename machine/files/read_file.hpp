@@ -4,7 +4,12 @@
 #include <optional>
 #include <string>
 
+#include "firmware_if/text/finding.hpp"
+
 namespace servogate::files {
+
+/// What is said of it: {0} why, as read_file() gives it.
+extern const text::Entry kCannotRead;
 
 /// Most bytes that are read of a file, by what it is; more is taken for a mistake of its name.
 inline constexpr std::int64_t kMostOfSettings = std::int64_t{4} << 20;   ///< machine, device and state files

@@ -83,7 +83,7 @@ TEST(Devices, a_serial_device_that_is_not_there_is_refused_by_the_computer_with_
 
 TEST(Devices, that_are_real_do_not_live_in_virtual_time) {
   const machine::LoadResult loaded = mill_with_url("mock:panel", "tcp:127.0.0.1:9");
-  gateway::Refusal refusal;
+  drivers::Notice refusal;
   EXPECT_EQ(gateway::clock_of(loaded.machine, gateway::ClockKind::virtual_time, refusal),
             gateway::ClockKind::unset);
   EXPECT_NE(refusal.entry, nullptr);

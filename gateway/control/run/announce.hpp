@@ -12,10 +12,4 @@ namespace servogate::gateway {
 /// error, a page, a test). Called from any thread outside the cycle; empty: nobody listens.
 using Announce = std::function<void(const text::Entry& entry, const std::vector<std::string>& arguments)>;
 
-/// Why a machine cannot be run, or what it goes on without.
-struct Refusal {
-  const text::Entry* entry = nullptr;  ///< nullptr: nothing to say
-  std::vector<std::string> arguments = {};
-};
-
 }  // namespace servogate::gateway

@@ -69,7 +69,7 @@ void RealtimeLoop::cycle_thread() {
   }
 }
 
-void RealtimeLoop::add_refusals(bool started, std::vector<Refusal>& refusals) const {
+void RealtimeLoop::add_refusals(bool started, std::vector<drivers::Notice>& refusals) const {
   for (const cycle::RealtimeRefusal& r : refusals_)
     if (started || r.needed)
       refusals.push_back({started ? &kWithout : &kRefused, {r.what, r.cause, r.remedy}});

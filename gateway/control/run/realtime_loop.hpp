@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
+#include "drivers/notice.hpp"
 #include "gateway/control/compose/control.hpp"
-#include "gateway/control/run/announce.hpp"
 #include "gateway/control/run/scan_watchdog.hpp"
 #include "kernel/cycle/boundary/realtime.hpp"
 
@@ -32,7 +32,7 @@ class RealtimeLoop {
   void stop();
   /// After start(): what the system refused, and the command that grants it: as what kept the loop from
   /// starting, or as what it goes on without.
-  void add_refusals(bool started, std::vector<Refusal>& refusals) const;
+  void add_refusals(bool started, std::vector<drivers::Notice>& refusals) const;
   std::int64_t overruns() const noexcept { return overruns_.load(std::memory_order_relaxed); }
 
  private:

@@ -27,7 +27,7 @@ const text::Entry kVirtualNeedsMock{
 
 }  // namespace
 
-std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, Refusal& taken,
+std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, drivers::Notice& taken,
                                            std::vector<text::Finding>& findings) {
   auto held = std::make_unique<HeldState>();
   if (folder.empty()) return held;
@@ -45,7 +45,7 @@ std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, Refusal& t
   return good ? std::move(held) : nullptr;
 }
 
-ClockKind clock_of(const machine::MachineConfig& machine, ClockKind asked, Refusal& refusal) {
+ClockKind clock_of(const machine::MachineConfig& machine, ClockKind asked, drivers::Notice& refusal) {
   if (asked == ClockKind::unset)
     asked = machine.virtual_time() && machine.nothing_real() ? ClockKind::virtual_time : ClockKind::realtime;
   if (asked != ClockKind::virtual_time) return asked;
@@ -107,7 +107,7 @@ Session& RunningMachine::watch(const Outputs& outputs) {
   return *session_;
 }
 
-bool RunningMachine::begin(std::vector<Refusal>& refusals) {
+bool RunningMachine::begin(std::vector<drivers::Notice>& refusals) {
   if (settings_.clock != ClockKind::virtual_time) return begin_realtime(refusals);
   if (paced())
     paced_loop_ =
@@ -115,7 +115,7 @@ bool RunningMachine::begin(std::vector<Refusal>& refusals) {
   return true;
 }
 
-bool RunningMachine::begin_realtime(std::vector<Refusal>& refusals) {
+bool RunningMachine::begin_realtime(std::vector<drivers::Notice>& refusals) {
   const machine::MachineConfig& m = machine();
   const cycle::RealtimeSettings settings{m.realtime.priority, m.realtime.cpu,
                                          settings_.clock == ClockKind::realtime_best_effort};

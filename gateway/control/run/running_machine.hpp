@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/machine.hpp"
+#include "drivers/notice.hpp"
 #include "gateway/control/compose/control.hpp"
 #include "gateway/control/compose/program/program_check.hpp"
 #include "gateway/control/run/announce.hpp"
@@ -32,13 +33,13 @@ struct HeldState {
 
   /// Takes and reads a folder; empty: none. nullptr: somebody else holds it (`taken`), or one of `findings`
   /// is an error; warnings come with it, too.
-  static std::unique_ptr<HeldState> hold(const std::string& folder, Refusal& taken,
+  static std::unique_ptr<HeldState> hold(const std::string& folder, drivers::Notice& taken,
                                          std::vector<text::Finding>& findings);
 };
 
 /// How time passes: as asked, else virtual where the machine file says so and nothing is real. unset: virtual
 /// time is asked for on a bus that has its own, and `refusal` says so.
-ClockKind clock_of(const machine::MachineConfig& machine, ClockKind asked, Refusal& refusal);
+ClockKind clock_of(const machine::MachineConfig& machine, ClockKind asked, drivers::Notice& refusal);
 
 /// How a machine is run.
 struct RunSettings {
@@ -67,7 +68,7 @@ class RunningMachine final : public bench::Machine {
   Session& watch(const Outputs& outputs);
   /// Starts the loop of a machine that moves by itself; nothing in virtual time without a pace. False: the
   /// system refuses real time. `refusals`: why, or what it goes on without.
-  bool begin(std::vector<Refusal>& refusals);
+  bool begin(std::vector<drivers::Notice>& refusals);
   /// Ends that loop, and leaves buses that others go on with (Control::take_leave). Files stay open.
   void stop();
   /// What closing a file brought to light.
@@ -120,7 +121,7 @@ class RunningMachine final : public bench::Machine {
   void wait_for_room();
   bool move_on(image::Nanoseconds late_ns);
   bool move_world();
-  bool begin_realtime(std::vector<Refusal>& refusals);
+  bool begin_realtime(std::vector<drivers::Notice>& refusals);
   void after_cycle(image::Nanoseconds late_ns) noexcept;
 
   std::unique_ptr<HeldState> state_;

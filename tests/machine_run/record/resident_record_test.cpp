@@ -32,7 +32,7 @@ class RecordedControl {
             findings_)),
         resident_(running_->control(), machine::MachineState{}, std::string()) {
     running_->watch({scratch.path("trace.csv"), {}, {}});
-    std::vector<gateway::Refusal> refusals;
+    std::vector<drivers::Notice> refusals;
     EXPECT_TRUE(running_->begin(refusals));
   }
   gateway::Resident& resident() { return resident_; }

@@ -240,7 +240,7 @@ TEST_P(MovesByItself, and_step_waits_for_news_while_faults_and_requests_come_fro
   const auto machine =
       gateway::RunningMachine::compose(machine::load(mill_file()), nullptr, GetParam(), findings);
   ASSERT_NE(machine, nullptr);
-  std::vector<gateway::Refusal> refusals;
+  std::vector<drivers::Notice> refusals;
   ASSERT_TRUE(machine->begin(refusals));
   const auto until = [&](const std::function<bool()>& met) {
     for (int n = 0; n < 3000; ++n) {

@@ -34,7 +34,7 @@ class DeskOfAMill : public ::testing::Test {
         resident_(running_->control(), machine::MachineState{}, std::string(), 2.0) {}
   void SetUp() override {
     ASSERT_EQ(server_.bind(), "");
-    std::vector<gateway::Refusal> refusals;
+    std::vector<drivers::Notice> refusals;
     ASSERT_TRUE(running_->begin(refusals));
     desk_.start();
     server_.start();

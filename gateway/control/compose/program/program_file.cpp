@@ -23,8 +23,6 @@ const text::Entry kLikelyEncoding{
     "UTF-8",
     "текст не в UTF-8, похоже на {0}: слова в нём не показать. Преобразуйте: iconv -f {0} -t UTF-8"};
 
-const text::Entry kUnreadable{"cli.cannot-read", "cannot read the file: {0}", "файл не читается: {0}"};
-
 }  // namespace
 
 const text::Entry kUnknownDialect{"cli.unknown-dialect", "dialect '{0}' is not known; known: {1}",
@@ -51,7 +49,7 @@ bool open_program(const machine::MachineConfig& machine, const std::string& path
   if (!known_dialect(out.dialect)) return error(kUnknownDialect, {out.dialect, dialect_names()});
   std::string reason;
   auto content = files::read_file(path, files::kMostOfProgram, reason);
-  if (!content) return error(kUnreadable, {reason});
+  if (!content) return error(files::kCannotRead, {reason});
   if (const int line = files::first_line_not_utf8(*content); line > 0) {
     const std::string likely(files::likely_russian_encoding(*content));
     findings.push_back(
