@@ -9,6 +9,7 @@
 #include "drivers/modbus/line_address.hpp"
 #include "drivers/notice.hpp"
 #include "firmware_if/image/time.hpp"
+#include "firmware_if/modbus/line_counters.hpp"
 #include "firmware_if/modbus/pdu.hpp"
 
 struct _modbus;
@@ -30,19 +31,6 @@ struct LinkSettings {
   /// From the end of a request to the beginning of its answer; what the wire takes comes on top.
   image::Nanoseconds answer_timeout_ns = 100 * image::kMillisecond;
 };
-
-/// What came of a request.
-enum class Heard : std::uint8_t {
-  answer,             ///< one that fits the request, perhaps an exception
-  silence,            ///< nothing in time
-  half,               ///< it began, and did not end in time
-  wrong_transaction,  ///< TCP: an answer to another request
-  wrong_unit,         ///< of another unit than was asked
-  malformed,          ///< checksum, function, length or echo do not fit
-  broken,             ///< the connection has ended, or the device is gone
-  given_up,           ///< whoever waited was told to end
-};
-inline constexpr std::size_t kHeard = 8;
 
 /// Ends waits of a thread from another one.
 class Waker {

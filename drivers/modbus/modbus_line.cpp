@@ -45,7 +45,7 @@ std::unique_ptr<ModbusLine> ModbusLine::open(const LineSettings& settings, const
   std::unique_ptr<ModbusLine> line(new ModbusLine(settings, map, units));
   if (line->link_.serial()) {
     if (!line->link_.open(why)) return nullptr;
-    line->counted_.openings = 1;
+    line->tally_.opened();
     line->linked_ = true;
   }
   line->thread_ = std::thread([l = line.get()] { l->work(); });
@@ -86,16 +86,6 @@ void ModbusLine::Letters::write(std::size_t block, const Data& data, Nanoseconds
   line_.waker_.wake();
 }
 
-LineCounters ModbusLine::counters() const noexcept {
-  LineCounters c;
-  c.openings = counted_.openings;
-  c.failed_openings = counted_.failed_openings;
-  c.requests = counted_.requests;
-  c.exceptions = counted_.exceptions;
-  for (std::size_t h = 0; h < kHeard; ++h) c.heard[h] = counted_.heard[h];
-  return c;
-}
-
 void ModbusLine::work() noexcept {
   pthread_setname_np(pthread_self(), "modbus");
   while (!waker_.ended()) {
@@ -127,11 +117,11 @@ void ModbusLine::open_link(Nanoseconds now) {
   if (now < open_at_ns_) return wait_until(open_at_ns_);
   drivers::Notice why;
   if (link_.open(why)) {
-    ++counted_.openings;
+    tally_.opened();
     linked_ = true;
     idle_since_ns_ = now_ns();
   } else {
-    ++counted_.failed_openings;
+    tally_.not_opened();
     linked_ = false;
     pause_ns_ = std::max(pause_ns_, kFirstPause);
     pause();
@@ -141,11 +131,11 @@ void ModbusLine::open_link(Nanoseconds now) {
 void ModbusLine::transact(const Poller::Next& next) {
   const Request& request = poller_.begin(next);
   Response response;
-  ++counted_.requests;
+  tally_.asked(next.attempt > 0);
   const Heard heard = link_.exchange(poller_.blocks()[next.block].unit, request, response, &waker_);
   const Nanoseconds end = now_ns();
   idle_since_ns_ = end + silence_ns_;
-  count(heard);
+  tally_.heard(heard, heard == Heard::answer && response.exception != Exception::none);
   if (heard == Heard::given_up) return link_.close();  // its answer may still come
   const Outcome outcome =
       heard == Heard::answer ? poller_.answered(response, end) : poller_.unanswered(idle_since_ns_);
@@ -154,7 +144,6 @@ void ModbusLine::transact(const Poller::Next& next) {
     box.known.outcome = outcome;
   else
     ++box.known.faults;
-  if (heard == Heard::answer && response.exception != Exception::none) ++counted_.exceptions;
   box.arrived.put(box.known);
   if (heard == Heard::answer)
     pause_ns_ = 0;
@@ -201,7 +190,7 @@ bool ModbusLine::write_now(std::size_t block, const Data& data) {
   wait_until(idle_since_ns_);
   const Heard heard = link_.exchange(b.unit, request, response, nullptr);
   idle_since_ns_ = now_ns() + silence_ns_;
-  count(heard);
+  tally_.heard(heard);
   if (heard != Heard::answer) link_.close();
   return heard == Heard::answer;
 }
@@ -213,7 +202,5 @@ void ModbusLine::wait_until(Nanoseconds t) noexcept {
                           static_cast<long>(left % image::kSecond)};
   if (ppoll(&woken, 1, &patience, nullptr) > 0) waker_.clear();
 }
-
-void ModbusLine::count(Heard heard) noexcept { ++counted_.heard[static_cast<std::size_t>(heard)]; }
 
 }  // namespace servogate::modbus

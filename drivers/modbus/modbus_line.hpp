@@ -21,21 +21,11 @@ struct LineSettings {
   int stale_after_periods = 3;
 };
 
-/// What happened on a line since it was opened.
-struct LineCounters {
-  std::uint64_t openings = 0;         ///< of the link, the first one, too
-  std::uint64_t failed_openings = 0;  ///< host not reachable, device gone
-  std::uint64_t requests = 0;
-  std::uint64_t exceptions = 0;               ///< answers that are exceptions; also in heard[answer]
-  std::array<std::uint64_t, kHeard> heard{};  ///< by Heard
-  std::uint64_t of(Heard h) const noexcept { return heard[static_cast<std::size_t>(h)]; }
-};
-
 /// A real Modbus line: one thread asks its units in turn, carrying the poller; the cycle takes what came and
 /// leaves what is to be written, never waiting. Units are asked while cycles come: before the first one, and
 /// when none has come for kSilentCycle, nothing is sent, so that the watchdogs of the units see a dead
 /// control. At its end outputs are written once more, with their values of loss.
-class ModbusLine final : public image::CycleDevice {
+class ModbusLine final : public image::CycleDevice, public CountedLine {
  public:
   static constexpr image::Nanoseconds kSilentCycle = image::kSecond;
   /// Between attempts to open a link that does not hold; doubled each time.
@@ -57,8 +47,7 @@ class ModbusLine final : public image::CycleDevice {
   void send(image::ProcessImage& image) noexcept override;
 
   const Map& map() const noexcept { return exchange_.map(); }
-  /// From any thread.
-  LineCounters counters() const noexcept;
+  LineCounters counters() const noexcept override { return tally_.counters(); }
 
  private:
   /// What is known of a block, from the thread to the cycle.
@@ -94,17 +83,13 @@ class ModbusLine final : public image::CycleDevice {
   void take_leave();
   bool write_now(std::size_t block, const Data& data);
   void wait_until(image::Nanoseconds t) noexcept;
-  void count(Heard heard) noexcept;
 
   Exchange exchange_;  ///< the cycle's
   std::vector<Box> boxes_;
   Letters letters_{*this};
   std::atomic<image::Nanoseconds> last_cycle_ns_{-1};
   Waker waker_;
-  struct {
-    std::atomic<std::uint64_t> openings{0}, failed_openings{0}, requests{0}, exceptions{0};
-    std::array<std::atomic<std::uint64_t>, kHeard> heard{};
-  } counted_;
+  LineTally tally_;
   // Of the thread alone, once it runs.
   Link link_;
   Poller poller_;

@@ -87,6 +87,12 @@ inline constexpr text::Entry kNoLine{"machine.no_line", "no [[line]] has the nam
 inline constexpr text::Entry kUnitTwice{"machine.unit_twice",
                                         "unit {0} of line \"{1}\" is that of station \"{2}\" already",
                                         "адрес {0} на линии «{1}» уже занят станцией «{2}»"};
+inline constexpr text::Entry kOneDevice{
+    "machine.one_device",
+    "line \"{0}\" is on the same device as line \"{1}\" in line {2} of the file: units on one wire share "
+    "one [[line]]",
+    "линия «{0}» — на том же устройстве, что и линия «{1}» в строке {2} файла: станции одного провода — на "
+    "одной [[line]]"};
 inline constexpr text::Entry kHysteresisKind{"machine.hysteresis_kind",
                                              "`hysteresis`: channel \"{0}\" is no analog input",
                                              "`hysteresis`: канал «{0}» не является аналоговым входом"};

@@ -126,10 +126,24 @@ void take_channel(MachineConfig& machine, std::size_t s, std::size_t p, Reading&
     point.writer = point.is_input() ? image::Writer::input : image::Writer::plc;
 }
 
+/// Two masters on one wire would take each other's answers.
+void check_line_device(const MachineConfig& machine, std::size_t l, Reading& reading) {
+  const LineConfig& line = machine.lines[l];
+  for (std::size_t i = 0; i < l && !line.url.empty(); ++i) {
+    const LineConfig& other = machine.lines[i];
+    if (!same_bus(other.url, line.url)) continue;
+    const Where there = machine.where("line." + std::to_string(i) + ".url");
+    return reading.error(machine.where("line." + std::to_string(l) + ".url"), finding::kOneDevice,
+                         {line.name, other.name, std::to_string(there.line)});
+  }
+}
+
 void check_points(MachineConfig& machine, Reading& reading) {
   NameSet lines(machine, reading, text::both("line", "линия"));
-  for (std::size_t l = 0; l < machine.lines.size(); ++l)
+  for (std::size_t l = 0; l < machine.lines.size(); ++l) {
     lines.add(machine.lines[l].name, "line." + std::to_string(l) + ".name");
+    check_line_device(machine, l, reading);
+  }
   NameSet stations(machine, reading, text::both("station", "станция"));
   // Points and free symbols share one name space: the PLC and the part program see both.
   NameSet names(machine, reading, text::both("name", "имя"));

@@ -65,6 +65,7 @@ void MockModbusLine::advance_to(Nanoseconds t) {
   if (!started_) {
     started_ = true;
     idle_since_ns_ = t;
+    tally_.opened();
     poller_.start_at(t);
   }
   for (;;) {
@@ -83,10 +84,11 @@ bool MockModbusLine::open(Nanoseconds t) {
   const modbus::Block& b = map().blocks[next->block];
   now_.active = true;
   now_.station = station_of(b.unit);
-  now_.served = now_.answered = false;
+  now_.served = now_.answered = now_.damaged = false;
   now_.arrival_ns = next->start_ns + line_.latency_ns / 2 + LineTime(line_.baud).request(b);
   now_.end_ns = now_.arrival_ns;
   now_.request = poller_.begin(*next);
+  tally_.asked(next->attempt > 0);
   return true;
 }
 
@@ -103,8 +105,8 @@ void MockModbusLine::serve() {
   now_.end_ns = !answered                         ? patience
                 : delay > line_.answer_timeout_ns ? std::max(patience, complete)
                                                   : complete;
-  now_.answered = answered && delay <= line_.answer_timeout_ns &&
-                  !(station.fault() && station.fault()->kind == fault::Kind::corrupt);
+  now_.answered = answered && delay <= line_.answer_timeout_ns;
+  now_.damaged = station.fault() && station.fault()->kind == fault::Kind::corrupt;
   now_.served = true;
 }
 
@@ -112,8 +114,12 @@ void MockModbusLine::close() {
   now_.active = false;
   idle_since_ns_ = now_.end_ns;
   modbus::Response response;
-  const bool good = now_.answered &&
+  const bool good = now_.answered && !now_.damaged &&
                     decode_response(now_.answer.view(), now_.request, response) == modbus::AnswerFault::none;
+  const modbus::Heard heard = good            ? modbus::Heard::answer
+                              : now_.answered ? modbus::Heard::malformed
+                                              : modbus::Heard::silence;
+  tally_.heard(heard, good && response.exception != modbus::Exception::none);
   exchange_.take(good ? poller_.answered(response, now_.end_ns) : poller_.unanswered(now_.end_ns));
 }
 

@@ -8,6 +8,7 @@
 #include "firmware_if/image/cycle_device.hpp"
 #include "firmware_if/image/simulated.hpp"
 #include "firmware_if/modbus/exchange.hpp"
+#include "firmware_if/modbus/line_counters.hpp"
 
 namespace servogate::mock {
 
@@ -25,7 +26,7 @@ struct LineSettings {
 /// A Modbus line in simulated time: one transaction at a time, real PDUs between the poller and its stations.
 /// As Simulated it lets time pass on the line; as CycleDevice it moves finished blocks into packet A and
 /// takes outputs from it, never waiting.
-class MockModbusLine final : public image::CycleDevice, public image::Simulated {
+class MockModbusLine final : public image::CycleDevice, public image::Simulated, public modbus::CountedLine {
  public:
   /// `sources`: of each station in image.sources; empty: 0, 1, 2 ...
   MockModbusLine(LineSettings line, const modbus::Map& map, std::vector<StationSettings> stations,
@@ -36,6 +37,8 @@ class MockModbusLine final : public image::CycleDevice, public image::Simulated 
   /// Takes the outputs from the image; they go out with the block's next transaction. real-time safe.
   void send(image::ProcessImage& image) noexcept override;
   void advance_to(image::Nanoseconds t) override;
+
+  modbus::LineCounters counters() const noexcept override { return tally_.counters(); }
 
   std::size_t stations() const noexcept { return stations_.size(); }
   ModbusStation& station(std::size_t n) { return stations_[n]; }
@@ -63,6 +66,7 @@ class MockModbusLine final : public image::CycleDevice, public image::Simulated 
     image::Nanoseconds end_ns = 0;      ///< answer complete, or the master's patience over
     bool served = false;
     bool answered = false;
+    bool damaged = false;  ///< on its way
     modbus::Request request;
     modbus::Pdu answer;
   };
@@ -77,6 +81,7 @@ class MockModbusLine final : public image::CycleDevice, public image::Simulated 
   modbus::Poller poller_;
   modbus::Exchange exchange_;
   std::vector<ModbusStation> stations_;
+  modbus::LineTally tally_;
   Transaction now_;
   bool started_ = false;
   image::Nanoseconds idle_since_ns_ = 0;

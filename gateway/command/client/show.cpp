@@ -23,6 +23,14 @@ const Entry kFeed{"client.feed", "feed {0} mm/min, override {1} %, tool {2}",
 const Entry kAxes{"client.axes", "axes, in machine coordinates:", "оси, в координатах станка:"};
 const Entry kSpindle{"client.spindle", "  spindle {0} rpm (commanded {1})  {2}",
                      "  шпиндель {0} об/мин (задано {1})  {2}"};
+const Entry kLine{
+    "client.line",
+    "line {0} ({1}): {2} requests, {3} repeated, {4} without an answer in time, {5} wrong "
+    "answers, {6} exceptions, opened {7} times, {8} attempts to open it failed",
+    "линия {0} ({1}): запросов {2}, повторов {3}, без ответа вовремя {4}, неверных ответов {5}, "
+    "исключений {6}, открыта раз: {7}, неудачных попыток открыть: {8}"};
+const Entry kLineUnit{"client.line-unit", "  unit {0} ({1})  {2}, {3} errors",
+                      "  станция {0} ({1})  {2}, ошибок: {3}"};
 const Entry kProgram{"client.program", "program {0}: {1} blocks", "программа {0}: кадров {1}"};
 const Entry kProgramLine{"client.program-line", "program {0}, line {1} of {2}, {3} blocks done",
                          "программа {0}, строка {1} из {2}, выполнено кадров: {3}"};
@@ -64,6 +72,11 @@ constexpr Word kDrives[] = {{"offline", "нет связи с приводом"}
                             {"quick_stop_active", "быстрый останов привода"},
                             {"fault_reaction_active", "привод реагирует на отказ"},
                             {"fault", "отказ привода"}};
+
+constexpr Word kQualities[] = {{"never", "ответов ещё не было"},
+                               {"good", "данные свежие"},
+                               {"stale", "данные устарели"},
+                               {"bad", "связи нет"}};
 
 template <std::size_t N>
 std::string people_read(const Word (&table)[N], const std::string& word) {
@@ -148,6 +161,27 @@ void print_axis(const json& a) {
                   facts.c_str());
 }
 
+/// Lines that are real, and simulated ones on which something went wrong.
+void print_lines(const json& lines) {
+  for (const json& line : lines) {
+    const json c = line.value("counters", json()), units = line.value("units", json::array());
+    if (!c.is_object()) continue;
+    const auto count = [&](const char* key) { return c.value(key, std::uint64_t{0}); };
+    const bool quiet = of(line, "url").starts_with("mock:") &&
+                       count("timeouts") + count("wrong_answers") + count("exceptions") == 0;
+    if (quiet) continue;
+    std::vector<std::string> words{of(line, "name"), of(line, "url")};
+    for (const char* key :
+         {"requests", "repeats", "timeouts", "wrong_answers", "exceptions", "openings", "failed_openings"})
+      words.push_back(std::to_string(count(key)));
+    print_line(say(kLine, words));
+    for (const json& u : units)
+      print_line(say(kLineUnit, {std::to_string(u.value("unit", 0)), of(u, "station"),
+                                 people_read(kQualities, of(u, "quality")),
+                                 std::to_string(u.value("errors", std::uint64_t{0}))}));
+  }
+}
+
 void print_held(const json& status) {
   if (const json& by = status.value("plc_held_by", json()); by.is_string()) print_line(say(kPlcHeld, {by}));
 }
@@ -182,6 +216,7 @@ void print_status(const json& s) {
   for (const json& sp : s.value("spindles", json::array()))
     print_line(say(kSpindle, {fixed(sp.value("actual_rpm", 0.0), 0), fixed(sp.value("command_rpm", 0.0), 0),
                               people_read(kDrives, of(sp, "drive"))}));
+  print_lines(s.value("modbus", json::array()));
   print_held(s);
   print_forced(s.value("forced", json::array()));
 }

@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "firmware_if/canopen/301/emcy.hpp"
-#include "gateway/control/compose/devices/open_devices.hpp"
 #include "gateway/control/compose/plc/compile_beside.hpp"
 #include "gateway/control/compose/plc/logic_options.hpp"
 #include "gateway/control/compose/program/program_model.hpp"
@@ -80,7 +79,7 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
         parts.sources[static_cast<std::size_t>(node.target_index)].place = {static_cast<std::int16_t>(b),
                                                                             node.node};
   }
-  for (const auto& device : c->devices_) parts.devices.push_back(device.get());
+  for (const OpenDevice& device : c->devices_) parts.devices.push_back(device.device.get());
   for (std::size_t s = 0; s < m.stations.size(); ++s)
     parts.sources[s].watched = !m.stations[s].over_bus();  // the loss of a node is said by its bus
   parts.logic = c->logic_.get();
@@ -144,6 +143,12 @@ bool Control::infrastructure(const std::vector<text::Finding>& findings) {
 const CanTransport* Control::shared_bus(std::size_t bus) const noexcept {
   const CanTransport& t = transports_[bus];
   return t.bus != nullptr && t.descriptor >= 0 && t.lockstep == nullptr ? &t : nullptr;
+}
+
+std::optional<modbus::LineCounters> Control::counters(const machine::LineConfig& line) const noexcept {
+  for (const OpenDevice& d : devices_)
+    if (d.line == &line && d.counters != nullptr) return d.counters->counters();
+  return std::nullopt;
 }
 
 std::uint64_t Control::frames_lost(std::size_t bus) const noexcept {

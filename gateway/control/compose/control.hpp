@@ -11,6 +11,7 @@
 #include "gateway/control/compose/alarms/alarm_rooms.hpp"
 #include "gateway/control/compose/can_supplier.hpp"
 #include "gateway/control/compose/can_transport.hpp"
+#include "gateway/control/compose/devices/open_devices.hpp"
 #include "gateway/control/compose/program/program_change.hpp"
 #include "gateway/control/compose/simulated/machine_faults.hpp"
 #include "gateway/control/compose/simulated/world_setup.hpp"
@@ -102,6 +103,8 @@ class Control {
   /// The transport of a bus that somebody else may use at any moment, too; nullptr: a mock bus, and one in
   /// lockstep, whose participants are known before time begins.
   const CanTransport* shared_bus(std::size_t bus) const noexcept;
+  /// What happened on a Modbus line so far; nullopt: it is not open. From any thread.
+  std::optional<modbus::LineCounters> counters(const machine::LineConfig& line) const noexcept;
   /// Frames that the transport of a bus knows to be lost, by bus.
   std::uint64_t frames_lost(std::size_t bus) const noexcept;
 
@@ -119,7 +122,7 @@ class Control {
   std::unique_ptr<AlarmRooms> alarm_rooms_;  ///< outlives the cycle
   std::unique_ptr<mock::World> world_;
   std::unique_ptr<MachineFaults> faults_;
-  std::vector<std::unique_ptr<image::CycleDevice>> devices_;  ///< of no bus, in the order of the file
+  std::vector<OpenDevice> devices_;       ///< of no bus, in the order of the file
   std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
   std::optional<image::Nanoseconds> due_ns_;

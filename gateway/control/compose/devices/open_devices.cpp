@@ -71,26 +71,27 @@ bool check_devices(const machine::LoadResult& loaded, std::vector<text::Finding>
   return good;
 }
 
-std::vector<std::unique_ptr<image::CycleDevice>> open_devices(const machine::LoadResult& loaded,
-                                                              mock::World& world, bool replay,
-                                                              std::vector<text::Finding>& findings) {
-  std::vector<std::unique_ptr<image::CycleDevice>> devices;
+std::vector<OpenDevice> open_devices(const machine::LoadResult& loaded, mock::World& world, bool replay,
+                                     std::vector<text::Finding>& findings) {
+  std::vector<OpenDevice> devices;
   for (const Place& place : places_of(loaded.machine)) {
     const DeviceRow* row = device_row(place.kind, place.url);
     if (row == nullptr) continue;  // said by check_devices()
     if (replay && !row->simulated) {
-      devices.push_back(std::make_unique<ClosedDevice>());
+      devices.push_back({std::make_unique<ClosedDevice>(), place.line, nullptr});
       continue;
     }
     drivers::Notice why;
     const std::string_view rest = std::string_view(place.url).substr(row->scheme.size());
     auto device = row->open({loaded, world, place.station, place.line, rest}, why);
-    if (device != nullptr)
-      devices.push_back(std::move(device));
-    else
-      findings.push_back(
-          finding(loaded.machine, place, kNotOpened,
-                  {text::both(why.str(text::Language::english), why.str(text::Language::russian))}));
+    if (device != nullptr) {
+      const auto* counters = dynamic_cast<const modbus::CountedLine*>(device.get());
+      devices.push_back({std::move(device), place.line, counters});
+      continue;
+    }
+    findings.push_back(
+        finding(loaded.machine, place, kNotOpened,
+                {text::both(why.str(text::Language::english), why.str(text::Language::russian))}));
   }
   return devices;
 }

@@ -6,7 +6,7 @@ namespace servogate::gateway {
 namespace {
 
 /// A device of the world in the cycle: it lives as long as its world does, which time passes in.
-class WorldDevice final : public image::CycleDevice {
+class WorldDevice : public image::CycleDevice {
  public:
   explicit WorldDevice(image::CycleDevice& device) : device_(device) {}
   void open_cycle(image::ProcessImage& image) noexcept override { device_.open_cycle(image); }
@@ -19,11 +19,20 @@ class WorldDevice final : public image::CycleDevice {
   image::CycleDevice& device_;
 };
 
+class WorldLine final : public WorldDevice, public modbus::CountedLine {
+ public:
+  explicit WorldLine(mock::MockModbusLine& line) : WorldDevice(line), line_(line) {}
+  modbus::LineCounters counters() const noexcept override { return line_.counters(); }
+
+ private:
+  const mock::MockModbusLine& line_;
+};
+
 }  // namespace
 
 std::unique_ptr<image::CycleDevice> open_world_device(const DeviceRequest& request, drivers::Notice&) {
   const std::string& station = request.first().name;
-  if (request.line != nullptr) return std::make_unique<WorldDevice>(*request.world.line_of(station));
+  if (request.line != nullptr) return std::make_unique<WorldLine>(*request.world.line_of(station));
   return std::make_unique<WorldDevice>(*request.world.chip(station));
 }
 

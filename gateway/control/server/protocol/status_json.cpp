@@ -132,6 +132,32 @@ json json_of(const std::vector<BusReport>& buses) {
   return list;
 }
 
+json json_of(const ModbusUnitReport& u) {
+  constexpr const char* kQualities[] = {"never", "good", "stale", "bad"};
+  const bool known = u.health.quality != image::Quality::never;
+  return {{"station", u.station},
+          {"unit", u.unit},
+          {"quality", kQualities[static_cast<int>(u.health.quality)]},
+          {"age_s", known ? json(measure(u.age_s)) : json()},
+          {"errors", u.health.errors}};
+}
+
+json json_of(const std::vector<ModbusLineReport>& lines) {
+  json list = json::array();
+  for (const ModbusLineReport& line : lines) {
+    json l = {{"name", line.name}, {"url", line.url}, {"units", json::array()}, {"counters", json()}};
+    for (const ModbusUnitReport& u : line.units) l["units"].push_back(json_of(u));
+    if (line.counters)
+      l["counters"] = {
+          {"requests", line.counters->requests},     {"repeats", line.counters->repeats},
+          {"timeouts", line.counters->timeouts()},   {"wrong_answers", line.counters->wrong()},
+          {"exceptions", line.counters->exceptions}, {"broken", line.counters->of(modbus::Heard::broken)},
+          {"openings", line.counters->openings},     {"failed_openings", line.counters->failed_openings}};
+    list.push_back(std::move(l));
+  }
+  return list;
+}
+
 }  // namespace
 
 json json_of(const std::vector<MissingCondition>& missing) {
@@ -169,6 +195,7 @@ void write(json& answer, const StatusReport& s) {
   for (const AxisReport& a : s.axes) answer["axes"].push_back(json_of(a));
   for (const SpindleReport& r : s.spindles) answer["spindles"].push_back(json_of(r));
   answer["buses"] = json_of(s.buses);
+  answer["modbus"] = json_of(s.modbus);
   answer["alarms"] = list_of(s.alarms, s.language);
   answer["missing"] = json_of(s.missing);
   answer["works"] = json::array();

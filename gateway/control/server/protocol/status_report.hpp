@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware_if/image/process_image.hpp"
+#include "firmware_if/modbus/line_counters.hpp"
 #include "gateway/control/history/event_log.hpp"
 #include "gateway/control/run/words/ready_words.hpp"
 #include "gateway/control/run/words/stop_words.hpp"
@@ -50,6 +51,20 @@ struct BusReport {
   std::vector<BusNodeReport> nodes;
 };
 
+/// A unit of a Modbus line.
+struct ModbusUnitReport {
+  std::string station;
+  int unit = 0;
+  image::IoSource health;
+  double age_s = 0.0;  ///< of its oldest data; without meaning before the first ones
+};
+/// A Modbus line with its units, and what happened on it since the control began.
+struct ModbusLineReport {
+  std::string name, url;
+  std::optional<modbus::LineCounters> counters;
+  std::vector<ModbusUnitReport> units;
+};
+
 struct AlarmRow {
   report::AlarmEntry entry;
   std::string reaction;
@@ -61,7 +76,7 @@ struct WorkReport {
   double for_s = 0.0;
 };
 
-/// State of a running control: modes, program, axes, spindles, buses, alarms, and what waits for whom.
+/// State of a running control: modes, program, axes, spindles, buses, lines, alarms, and what waits for whom.
 struct StatusReport {
   std::string machine, program;
   double time_s = 0.0;
@@ -72,6 +87,7 @@ struct StatusReport {
   std::vector<AxisReport> axes;
   std::vector<SpindleReport> spindles;
   std::vector<BusReport> buses;
+  std::vector<ModbusLineReport> modbus;
   std::vector<AlarmRow> alarms;
   std::vector<MissingCondition> missing;
   std::vector<WorkReport> works;

@@ -75,6 +75,22 @@ std::vector<BusReport> bus_reports(const machine::MachineConfig& m, const image:
   return buses;
 }
 
+std::vector<ModbusLineReport> line_reports(const Control& control, const image::ProcessImage& image) {
+  std::vector<ModbusLineReport> lines;
+  for (const machine::LineConfig& line : control.machine().lines) {
+    ModbusLineReport report{line.name, line.url, control.counters(line), {}};
+    const std::vector<machine::StationConfig>& stations = control.machine().stations;
+    for (std::size_t s = 0; s < stations.size(); ++s) {
+      if (stations[s].kind != machine::StationKind::modbus || stations[s].line != line.name) continue;
+      const image::IoSource& health = image.sources[s];
+      report.units.push_back({stations[s].name, stations[s].unit, health,
+                              static_cast<double>(image.now.t_ns - health.updated_ns) / 1e9});
+    }
+    lines.push_back(std::move(report));
+  }
+  return lines;
+}
+
 std::vector<WorkReport> work_reports(Resident& resident) {
   std::vector<WorkReport> works;
   const auto now = std::chrono::steady_clock::now();
@@ -119,6 +135,7 @@ StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Languag
     status.spindles.push_back(spindle);
   }
   status.buses = bus_reports(m, image);
+  status.modbus = line_reports(resident.control(), image);
   status.alarms = alarm_rows(resident, language);
   status.missing = missing_now(resident, language);
   status.works = work_reports(resident);
