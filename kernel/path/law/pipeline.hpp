@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "kernel/path/law/estimate.hpp"
+#include "kernel/path/law/even_time.hpp"
+#include "kernel/path/law/knot.hpp"
+#include "kernel/path/law/speed_windows.hpp"
+#include "kernel/path/shape/tube_windows.hpp"
+
+namespace servogate::path {
+
+/// Where knots go, in order.
+class KnotSink {
+ public:
+  /// The next knot of a run, the first one at rest at its start.
+  virtual void put(const Knot& knot) = 0;
+  /// The last knot was the rest at the end of the run.
+  virtual void rest() = 0;
+
+ protected:
+  ~KnotSink() = default;
+};
+
+/// Shape and law over one clock: elements of a run in, knots out. The first clock is an estimate; each pass
+/// makes a curve in the tolerance that is smooth in the clock, then the law on it, whose time is the clock of
+/// the next pass. What is put depends on the legs alone, never on when they come; it is final. Memory is
+/// bounded by windows, not by the run. Not real-time safe.
+class Pipeline {
+ public:
+  struct Settings {
+    int axes = 3;
+    std::array<bool, kMaxAxes> rotary{};
+    double reserve = 0.01;  ///< share of the limits that stays for a change of rate
+    int passes = 2;
+  };
+  struct Counts {
+    std::int64_t runs = 0, knots = 0;
+    /// Places that the curve of the last pass could not be brought near enough to by the pairing of place and
+    /// parameter; mostly another pairing keeps the tolerance.
+    std::int64_t released = 0;
+    std::int64_t failed = 0;    ///< windows of the last pass without a law inside of the limits
+    std::int64_t repaired = 0;  ///< windows mended by the judge
+    std::int64_t tube_steps = 0, law_steps = 0;  ///< of Newton's method by knots
+  };
+
+  Pipeline(const Settings& settings, KnotSink& sink);
+
+  /// The next element, from where the one before ends.
+  void add(const Leg& leg);
+  /// The run rests behind the last element; the next one begins another run.
+  void end();
+  /// Plans what can be planned. Call it after some elements, and after end().
+  void work();
+  const Counts& counts() const { return counts_; }
+  /// Legs and knots that are kept now, for tests of memory.
+  std::size_t kept() const;
+
+ private:
+  struct Pass {
+    Pass(const TubeWindows::Settings& t, const SpeedWindows::Settings& s, int axes)
+        : even(axes, 0.0), tube(t), speed(s) {}
+    EvenTime even;  // from the pass before; not of the first
+    TubeWindows tube;
+    SpeedWindows speed;
+    Kept<double> places, beta;
+    Kept<Vector> start, controls;
+  };
+  void begin_run();
+  void work_pass(std::size_t n);
+  void forget();
+  void count(const Pass& pass);
+  void publish();
+  double step_of(const Leg& leg) const;
+
+  Settings settings_;
+  KnotSink& sink_;
+  Counts counts_;
+  Run run_;
+  bool ended_ = false, begun_ = false;
+  ClockEstimate estimate_;
+  std::vector<std::unique_ptr<Pass>> passes_;
+  std::size_t published_ = 0;  // knots
+  LawTime time_;
+};
+
+}  // namespace servogate::path

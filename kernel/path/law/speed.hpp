@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "kernel/path/shape/element.hpp"
+
+namespace servogate::path {
+
+/// What a knot of the curve may not exceed.
+struct KnotBound {
+  double feed = 0.0;     ///< along the axes that count for it, mm/s or degrees/s, > 0; infinite: none
+  bool turning = false;  ///< the rotary axes count for the feed, else the linear ones
+  const std::array<AxisLimits, kMaxAxes>* limits = nullptr;  ///< of the axes, as Config has them
+};
+
+/// The fastest way along a given curve. The curve is a uniform cubic B-spline whose parameter runs by `step`
+/// s an interval; the law is b = (d parameter / dt)^2, a uniform quadratic B-spline `beta` on the same knots:
+/// interval k is made of beta k to k + 2, so that velocity and acceleration are continuous.
+struct SpeedProblem {
+  int axes = 0;                         ///< 1 - kMaxAxes
+  std::array<int, kMaxAxes> axis{};     ///< of the machine, for each axis of the controls
+  std::array<bool, kMaxAxes> rotary{};  ///< by axis of the machine
+  double step = 0.0;                    ///< > 0
+  std::span<const double> controls;     ///< `axes` values each, three more than intervals
+  std::span<const KnotBound> bounds;    ///< one a knot
+  double share = 1.0;                   ///< of the limits that is planned for, 0 - 1
+  std::vector<double> beta;  ///< start, inside of all limits, then solution; two more than intervals
+  int fixed_head = 0, fixed_tail = 0;  ///< beta that are given
+};
+
+/// Solves SpeedProblem by logarithmic barrier and Newton's method with bounded numbers of steps: each iterate
+/// keeps the limits at the knots, and those of jerk in the middle of intervals too. Keeps its working memory
+/// for prepare(), and nothing else. Not real-time safe.
+class SpeedLaw {
+ public:
+  /// Takes up a problem: all of it but beta.
+  void prepare(const SpeedProblem& problem);
+  /// For each knot the largest constant beta around it; then only the first `intervals` stay.
+  void flat_levels(std::vector<double>& levels, int intervals);
+  /// Largest share of a limit at the places looked at, as a ratio of speeds; below 1: inside.
+  double worst(std::span<const double> beta) const;
+  /// False: beta is not inside; it stays what it was.
+  bool solve(SpeedProblem& problem);
+  /// Brings a beta inside that is not, by limits that come closer to it; what is given at the head stays, the
+  /// tail does not. False: none was found, and beta is what it was.
+  bool find_start(SpeedProblem& problem);
+  /// Goes on from a beta that has been solved for wider limits, see tighten().
+  bool solve_again(SpeedProblem& problem);
+  /// Limits of acceleration and jerk in and around an interval count `factor` times as much, >= 1.
+  void tighten(int interval, double factor);
+  /// Time that beta takes, s.
+  double time(std::span<const double> beta) const;
+  int steps() const { return steps_; }
+
+ private:
+  struct Row {
+    double f[3];
+  };
+  void prepare_knot(const SpeedProblem& problem, int k);
+  void prepare_interval(const SpeedProblem& problem, int k);
+  double cost(const std::vector<double>& beta, double mu) const;
+  void derive(double mu);
+  void derive_knot(int k, double mu);
+  void derive_interval(int k, double mu);
+  void derive_time(int k);
+  void derive_jerk(const Row& row, int k, double b, const double* weights, double mu);
+  void add(int k, const double* d, double first, double second);
+  void fix(int i);
+  double direction();
+  bool centre(double mu, int most, double decrement);
+  void scale_limits(double factor);
+  bool descend(double mu, double last);
+
+  int axes_ = 0, intervals_ = 0, fixed_head_ = 0, fixed_tail_ = 0, steps_ = 0;
+  double step_ = 0.0, time_weight_ = 1.0;
+  std::vector<double> d1_, d2_;    // of the curve at knots
+  std::vector<double> cap_;        // of b at knots
+  std::vector<Row> acceleration_;  // by knot and axis
+  std::vector<Row> jerk_;          // by interval, place (start, middle, end) and axis
+  std::vector<double> beta_, trial_, gradient_, h0_, h1_, h2_, move_;
+};
+
+}  // namespace servogate::path

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/path/law/speed_windows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernel/path/law/judge.hpp"
+
+namespace servogate::path {
+namespace {
+
+constexpr double kSlow = 0.04;  // b behind what is known: a fifth of the clock's speed
+constexpr std::size_t kLeastWindow = 256, kFirstWindow = 64, kMargin = 20;
+constexpr double kFeedShare = 0.9999;  // the feed is no limit of an axis and needs no reserve
+constexpr double kLargestExcess = 1.0005;
+constexpr int kRepairs = 6, kSlowings = 6;
+constexpr std::size_t kGlide = 24;
+constexpr std::size_t kAhead = 48;            // knots behind a window that its slow end knows of
+constexpr std::size_t kNear = 16, kMean = 5;  // knots to each side: least of levels, and their mean, twice
+constexpr double kLevelShare = 0.7;
+
+double speed_of(const Leg& leg, int axes) {
+  double v = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i)
+    if (moves(leg, i)) v = std::max(v, (*leg.limits)[i].velocity);
+  return std::min(leg.feed, v);
+}
+
+}  // namespace
+
+void SpeedWindows::clear(double step) {
+  settings_.step = step;
+  counts_ = {};
+  done_ = false;
+  from_ = leg_ = open_ = 0;
+  made_ = 0;
+  rest_.clear();
+}
+
+void SpeedWindows::work(const Run& run, const Kept<double>& places, const Kept<Vector>& controls,
+                        bool complete, Kept<double>& beta) {
+  while (!done_ && window(run, places, controls, complete, beta)) {
+  }
+}
+
+/// Knots in which the fastest leg of the window comes to a stop.
+std::size_t SpeedWindows::overlap(const Run& run, const Kept<double>& places, std::size_t to) const {
+  double most = 0.0;
+  for (std::size_t n = run.leg_at(places[from_], leg_); n < run.end() && run.leg(n).begin <= places[to];
+       ++n) {
+    double a = std::numeric_limits<double>::infinity(), j = a;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(settings_.axes); ++i) {
+      if (!moves(run.leg(n), i)) continue;
+      a = std::min(a, (*run.leg(n).limits)[i].acceleration);
+      j = std::min(j, (*run.leg(n).limits)[i].jerk);
+    }
+    most = std::max(most, speed_of(run.leg(n), settings_.axes) / a + a / j);
+  }
+  return static_cast<std::size_t>(most / settings_.step) + kMargin;
+}
+
+bool SpeedWindows::window(const Run& run, const Kept<double>& places, const Kept<Vector>& controls,
+                          bool complete, Kept<double>& beta) {
+  if (controls.end() < 4) return false;
+  const std::size_t known = controls.end() - 3;  // intervals
+  const std::size_t begun = kFirstWindow << std::min(made_, 8), near = from_ + std::min(kLeastWindow, begun);
+  if (!complete && known < near + 1) return false;
+  const std::size_t over = overlap(run, places, std::min(near, known));
+  const std::size_t size = std::min(std::max(4 * over, kLeastWindow), over + begun);
+  std::size_t to = from_ + size;
+  if (!complete && known < to + over + kAhead + 1) return false;
+  const bool last = complete && known < to + over;
+  if (last) to = known;
+  leg_ = run.leg_at(places[from_], leg_);
+  const std::size_t ahead = std::min(known, to + kAhead);
+  bounds(run, places, ahead, complete ? known : places.end() - 1);
+  pack(controls, ahead);
+  const std::size_t count = to - from_ + 2, commit = last ? count : to - from_ - over + 2;
+  guess(count, to - from_);
+  problem_.fixed_head = from_ > 0 ? 2 : 0;
+  problem_.fixed_tail = last ? 0 : 2;
+  solve(last, commit);
+  ++made_;
+  ++counts_.windows;
+  counts_.steps += law_.steps();
+  counts_.knot_steps += law_.steps() * static_cast<std::int64_t>(to - from_);
+  for (std::size_t i = beta.end() - from_; i < commit; ++i) beta.push_back(problem_.beta[i]);
+  done_ = last;
+  rest_.assign(problem_.beta.begin() + static_cast<std::ptrdiff_t>(commit - 2), problem_.beta.end());
+  if (last) return true;
+  from_ = to - over;
+  open_ = beta.end() - 2;
+  return true;
+}
+
+const std::array<AxisLimits, kMaxAxes>* SpeedWindows::merged(const Run& run, std::size_t first,
+                                                             std::size_t end) {
+  const auto* one = run.leg(first).limits;
+  bool same = true;
+  for (std::size_t n = first; n < end; ++n) same = same && run.leg(n).limits == one;
+  if (same) return one;
+  std::array<AxisLimits, kMaxAxes> least = *one;
+  for (std::size_t n = first; n < end; ++n) {
+    for (std::size_t i = 0; i < kMaxAxes; ++i) {
+      const AxisLimits& other = (*run.leg(n).limits)[i];
+      least[i].velocity = std::min(least[i].velocity, other.velocity);
+      least[i].acceleration = std::min(least[i].acceleration, other.acceleration);
+      least[i].jerk = std::min(least[i].jerk, other.jerk);
+    }
+  }
+  merged_.push_back(least);
+  return &merged_.back();
+}
+
+/// At a knot the least of all legs holds that touch the intervals beside it.
+void SpeedWindows::bounds(const Run& run, const Kept<double>& places, std::size_t to, std::size_t last) {
+  bounds_.clear();
+  merged_.clear();
+  std::size_t leg = leg_;
+  for (std::size_t k = from_; k <= to; ++k) {
+    const double u = places[k], before = k > 0 ? places[k - 1] : 0.0, behind = places[std::min(k + 1, last)];
+    leg = run.leg_at(u, leg);
+    std::size_t first = leg, end = leg + 1;
+    while (first > run.first() && run.leg(first).begin > before) --first;
+    while (end < run.end() && run.leg(end).begin < behind) ++end;
+    KnotBound bound;
+    bound.feed = std::numeric_limits<double>::infinity();
+    bound.turning = run.leg(leg).turning;
+    for (std::size_t n = first; n < end; ++n)
+      if (run.leg(n).turning == bound.turning)
+        bound.feed = std::min(bound.feed, kFeedShare * run.leg(n).feed);
+    bound.limits = merged(run, first, end);
+    bounds_.push_back(bound);
+  }
+}
+
+/// The axes that move in this window.
+void SpeedWindows::pack(const Kept<Vector>& controls, std::size_t to) {
+  problem_.axes = 0;
+  for (int a = 0; a < settings_.axes; ++a) {
+    bool moves = problem_.axes == 0 && a + 1 == settings_.axes;
+    for (std::size_t i = from_ + 1; i < to + 3 && !moves; ++i) moves = controls[i][a] != controls[from_][a];
+    if (moves) problem_.axis[static_cast<std::size_t>(problem_.axes++)] = a;
+  }
+  controls_.clear();
+  for (std::size_t i = from_; i < to + 3; ++i)
+    for (std::size_t a = 0; a < static_cast<std::size_t>(problem_.axes); ++a)
+      controls_.push_back(controls[i][static_cast<std::size_t>(problem_.axis[a])]);
+  problem_.rotary = settings_.rotary;
+  problem_.step = settings_.step;
+  problem_.controls = controls_;
+  problem_.bounds = bounds_;
+  problem_.share = 1.0 - settings_.reserve;
+}
+
+/// What the window before had behind its committed end, and slowly on: a fifth of the clock's speed, or less
+/// where a constant speed must be lower.
+void SpeedWindows::guess(std::size_t count, std::size_t intervals) {
+  law_.prepare(problem_);
+  law_.flat_levels(levels_, static_cast<int>(intervals));
+  const std::size_t n = levels_.size();
+  for (double& level : levels_) level = std::min(kSlow, kLevelShare * level);
+  const auto around = [&](std::size_t i, std::size_t width, auto&& take) {
+    const std::size_t from = i < width ? 0 : i - width, to = std::min(n - 1, i + width);
+    for (std::size_t k = from; k <= to; ++k) take(levels_[k]);
+    return static_cast<double>(to - from + 1);
+  };
+  calm_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    calm_[i] = kSlow;
+    around(i, kNear, [&](double level) { calm_[i] = std::min(calm_[i], level); });
+  }
+  for (int pass = 0; pass < 2; ++pass) {
+    levels_ = calm_;
+    for (std::size_t i = 0; i < n; ++i) {
+      double sum = 0.0;
+      const double all = around(i, kMean, [&](double level) { sum += level; });
+      calm_[i] = sum / all;
+    }
+  }
+  problem_.beta.resize(count);
+  const std::size_t kept = std::min(rest_.size(), count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double own = calm_[std::min(i, n - 1)];
+    if (i < kept) {
+      problem_.beta[i] = rest_[i];
+    } else if (kept == 0) {
+      problem_.beta[i] = own;
+    } else {
+      const double z = std::min(1.0, static_cast<double>(i - kept + 1) / kGlide);
+      problem_.beta[i] = rest_[kept - 1] + z * z * (3.0 - 2.0 * z) * (own - rest_[kept - 1]);
+    }
+  }
+}
+
+void SpeedWindows::solve(bool last, std::size_t commit) {
+  if (!(law_.worst(problem_.beta) < 1.0)) {
+    ++counts_.slowed;
+    if (!law_.find_start(problem_)) {
+      ++counts_.failed;
+      return;
+    }
+  }
+  start_ = problem_.beta;
+  law_.solve(problem_);
+  if (settings_.judged) mend(last ? problem_.beta.size() - 2 : commit - 2);
+}
+
+/// The course between the places that the law looks at: where it exceeds a limit, that limit is tightened.
+void SpeedWindows::mend(std::size_t commit) {
+  for (int round = 0; round < kRepairs; ++round) {
+    judge(problem_, commit, excess_);
+    double most = 1.0;
+    for (std::size_t k = 0; k < excess_.size(); ++k) {
+      if (!(excess_[k] > 1.0)) continue;
+      most = std::max(most, excess_[k]);
+      const std::size_t end = std::min(excess_.size(), k + 2);
+      for (std::size_t i = k > 0 ? k - 1 : 0; i < end; ++i)
+        law_.tighten(static_cast<int>(i), 1.0 + 1.1 * (excess_[k] - 1.0) + 0.0005);
+    }
+    if (most == 1.0) return;
+    ++counts_.repaired;
+    const std::vector<double> now = problem_.beta;
+    if (!slow_down(now, 1.5 * (most - 1.0) + 0.003)) {
+      problem_.beta = start_;
+      if (!(law_.worst(problem_.beta) < 1.0) && !law_.find_start(problem_)) {
+        problem_.beta = now;
+        break;
+      }
+    }
+    law_.solve_again(problem_);
+  }
+  judge(problem_, commit, excess_);
+  for (const double e : excess_)
+    if (e > kLargestExcess) {
+      ++counts_.failed;
+      return;
+    }
+}
+
+/// Scales a law down between its given ends until it is inside again.
+bool SpeedWindows::slow_down(const std::vector<double>& beta, double by) {
+  const std::size_t n = beta.size();
+  for (int q = 0; q < kSlowings; ++q, by *= 2.0) {
+    problem_.beta = beta;
+    const auto head = static_cast<std::size_t>(problem_.fixed_head),
+               tail = static_cast<std::size_t>(problem_.fixed_tail);
+    for (std::size_t i = head; i + tail < n; ++i) {
+      double z = 1.0;
+      if (head > 0) z = std::min(z, static_cast<double>(i - 1) / kGlide);
+      if (tail > 0) z = std::min(z, static_cast<double>(n - i) / kGlide);
+      problem_.beta[i] *= 1.0 - std::min(by, 0.9) * z * z * (3.0 - 2.0 * z);
+    }
+    if (law_.worst(problem_.beta) < 1.0) return true;
+  }
+  return false;
+}
+
+}  // namespace servogate::path

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "kernel/path/shape/kept.hpp"
+#include "kernel/path/shape/piece.hpp"
+
+namespace servogate::path {
+
+/// An element of a run: the programmed geometry as it is, and what the program wants of it.
+struct Leg {
+  Piece piece;             ///< a line or an arc, length > 0
+  double begin = 0.0;      ///< path parameter at its start, from the start of the run
+  double tolerance = 0.0;  ///< largest distance of the set-points from it, > 0
+  bool exact = false;      ///< and 1.5 um at most, as no corner needs more
+  double feed = std::numeric_limits<double>::infinity();  ///< as Element::feed
+  bool turning = false;  ///< its parameter counts degrees: only rotary axes move
+  const std::array<AxisLimits, kMaxAxes>* limits = nullptr;  ///< of the axes, while it is driven
+  double end() const { return begin + piece.length; }
+};
+
+/// An axis that the leg moves.
+inline bool moves(const Leg& leg, std::size_t axis) {
+  const Piece& p = leg.piece;
+  return p.c1[axis] != 0.0 || (p.shape == Piece::Shape::arc && (p.axis1 == axis || p.axis2 == axis));
+}
+
+/// The programmed path from rest to rest as a function of one parameter u, which is the length over all its
+/// legs. Only legs that are still needed are kept. Not real-time safe.
+class Run {
+ public:
+  explicit Run(int axes) : axes_(axes) {}
+
+  void clear() { legs_.clear(); }
+  /// Appends a leg that starts where the last one ends; `begin` is filled here.
+  void append(Leg leg);
+  /// Legs that end at or before `u` may go.
+  void forget_before(double u);
+  bool empty() const { return legs_.empty(); }
+  double length() const { return legs_.empty() ? 0.0 : legs_.back().end(); }
+  int axes() const { return axes_; }
+
+  std::size_t first() const { return legs_.begin(); }
+  std::size_t end() const { return legs_.end(); }
+  const Leg& leg(std::size_t n) const { return legs_[n]; }
+  /// Number of the leg that u lies on, the later one where two meet. `near` is a number to begin at.
+  std::size_t leg_at(double u, std::size_t near) const;
+  Vector at(double u, std::size_t near) const;
+  /// Place near `u`, by at most `reach`, that is reached from it along the path while it comes closer to `x`:
+  /// so the other leg of a fold is not found.
+  double downhill(const Vector& x, double u, double reach, std::size_t near) const;
+  /// Largest distance at u on leg `n`: the tolerance near the ends of the leg, no more than 1.5 um away from
+  /// them.
+  double radius(double u, std::size_t n) const;
+
+ private:
+  double foot(const Vector& x, const Leg& leg, double u) const;
+  int axes_;
+  Kept<Leg> legs_;
+};
+
+}  // namespace servogate::path

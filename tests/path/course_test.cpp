@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shape and law over one clock: whole programs against known answers, judged on what is published.
+#include "tests/path/rig/course.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace servogate::path::test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+RandomProgram program(std::vector<Element> elements) {
+  RandomProgram p;
+  p.config = mill();
+  p.elements = std::move(elements);
+  p.tolerance = 0.01;
+  return p;
+}
+
+RandomProgram collinear(int blocks, double step) {
+  std::vector<Element> e;
+  for (int i = 1; i <= blocks; ++i) e.push_back(line_to(step * i, 0, 0, 100));
+  return program(e);
+}
+
+RandomProgram polygon(int blocks) {
+  std::vector<Element> e;
+  for (int i = 1; i <= blocks; ++i) {
+    const double a = 2 * kPi * i / blocks;
+    e.push_back(line_to(20 - 20 * std::cos(a), 20 * std::sin(a), 0, 100));
+  }
+  return program(e);
+}
+
+RandomProgram zigzag(int blocks) {
+  std::vector<Element> e;
+  for (int i = 1; i <= blocks; ++i) e.push_back(line_to(0.1 * ((i + 1) / 2), 0.1 * (i / 2), 0, 100));
+  return program(e);
+}
+
+TEST(Course, of_a_straight_line_in_a_thousand_blocks_takes_what_one_block_takes) {
+  const RandomProgram p = collinear(1000, 0.1);
+  const Course c = plan(p);
+  EXPECT_EQ(verdict(c, p), "");
+  EXPECT_GE(c.seconds(), 1.2);  // by hand, 100 mm / 100 mm/s + 0.1 s + 0.1 s
+  EXPECT_LE(c.seconds(), 1.21);
+}
+
+TEST(Course, of_a_circle_takes_the_same_as_an_arc_and_as_a_thousand_blocks) {
+  const RandomProgram blocks = polygon(1000), arc = program({arc_to(0, 0, 20, 0, 360, 100)});
+  const Course a = plan(blocks), b = plan(arc);
+  EXPECT_EQ(verdict(a, blocks), "");
+  EXPECT_EQ(verdict(b, arc), "");
+  EXPECT_LE(a.seconds(), 1.47);  // 1.457 if the jerk along the path alone counted
+  EXPECT_LE(b.seconds(), 1.47);
+  EXPECT_GE(b.seconds(), 1.457);
+}
+
+TEST(Course, of_a_zigzag_swings_at_the_limit_of_jerk) {
+  const RandomProgram p = zigzag(200);
+  const Course c = plan(p);
+  EXPECT_EQ(verdict(c, p), "");
+  // Swing less twice the tolerance is sqrt(2) J h^3 / 12: 35 ms a block.
+  EXPECT_GE(c.seconds(), 200 * 0.035);
+  EXPECT_LE(c.seconds(), 200 * 0.0365);
+}
+
+TEST(Course, of_a_bored_circle_stays_within_one_and_a_half_micrometres) {
+  RandomProgram p = program({line_to(20, 0, 0, 50), arc_to(20, 0, 0, 0, 360, 50), line_to(0, 0, 0, 50)});
+  for (Element& e : p.elements) e.transition.tolerance = 0.1;
+  p.tolerance = 0.1;
+  const Course c = plan(p);
+  EXPECT_EQ(verdict(c, p), "");
+  double most = 0.0;
+  for (const Vector& x : sampled(c, p.start, 3, 0.001))
+    if (x[0] < 14.0 && std::hypot(x[0], x[1]) > 15.0)
+      most = std::max(most, std::abs(std::hypot(x[0], x[1]) - 20.0));
+  EXPECT_LE(most, 0.0015);
+}
+
+TEST(Course, does_not_depend_on_when_elements_come) {
+  RandomProgram p = zigzag(150);
+  const RandomProgram line = collinear(300, 0.3);
+  for (Element e : line.elements) {
+    for (int i = 0; i < 3; ++i) e.to[i] += zigzag(150).elements.back().to[i];
+    p.elements.push_back(e);
+  }
+  const Course all = plan(p);
+  EXPECT_EQ(verdict(all, p), "");
+  for (const int portion : {1, 7, 100}) {
+    const Course some = plan(p, portion);
+    ASSERT_EQ(some.runs.size(), all.runs.size());
+    ASSERT_EQ(some.runs[0].size(), all.runs[0].size());
+    for (std::size_t k = 0; k < all.runs[0].size(); ++k) {
+      ASSERT_EQ(some.runs[0][k].t.ns, all.runs[0][k].t.ns) << k;
+      ASSERT_EQ(some.runs[0][k].control, all.runs[0][k].control) << k;
+      ASSERT_EQ(some.runs[0][k].w, all.runs[0][k].w) << k;
+    }
+  }
+}
+
+TEST(Course, of_a_long_program_keeps_no_more_than_its_windows) {
+  const std::size_t some = plan(zigzag(1000), 5).most_kept, many = plan(zigzag(2000), 5).most_kept;
+  EXPECT_LE(many, some + some / 5);
+}
+
+TEST(Course, of_random_programs_keeps_every_limit_the_tolerance_and_the_end_point) {
+  Reached most;
+  double seconds = 0.0;
+  std::int64_t released = 0, repaired = 0;
+  int wrong = 0;
+  for (std::uint64_t seed = 1000; seed < 1040 && wrong < 10; ++seed) {
+    const RandomProgram p = random_program(seed, {2 + static_cast<int>(seed % 11), true, true});
+    const Course c = plan(p);
+    const std::string text = verdict(c, p, &most);
+    if (!text.empty()) {
+      ADD_FAILURE() << "seed " << seed << ": " << text << "(" << p.elements.size() << " elements)";
+      ++wrong;
+    }
+    seconds += c.seconds();
+    released += c.counts.released;
+    repaired += c.counts.repaired;
+  }
+  std::printf(
+      "%.0f s of motion, largest share of a limit: v %.5f a %.5f j %.5f; %lld places released, %lld windows "
+      "repaired\n",
+      seconds, most.velocity, most.acceleration, most.jerk, static_cast<long long>(released),
+      static_cast<long long>(repaired));
+}
+
+TEST(Course, rests_where_the_program_does) {
+  RandomProgram p = program({line_to(10, 0, 0, 50), line_to(10, 10, 0, 50), line_to(0, 10, 0, 50)});
+  p.elements[1].transition.continuation = Continuation::exact_stop;
+  p.elements.push_back(line_to(0, 0, 0, 50));
+  p.elements.back().kind = Element::Kind::rapid;
+  const Course c = plan(p);
+  EXPECT_EQ(verdict(c, p), "");
+  ASSERT_EQ(c.runs.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector& end = p.elements[k + 1].to;
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(c.runs[k].back().control[i], end[i], 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace servogate::path::test
