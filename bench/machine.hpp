@@ -34,9 +34,9 @@ class Machine {
   virtual bool post(const image::Request& request) = 0;
   /// Takes the oldest answer; false: there is none.
   virtual bool take(image::Answer& answer) = 0;
-  /// Gives process 0 a part program after it was proven as `check` proves it. False, and the one before
-  /// stays: an error is among `findings`.
-  virtual bool load(const std::string& program, std::vector<text::Finding>& findings) = 0;
+  /// Gives a process (from 0) a part program after it was proven as `check` proves it. False, and the one
+  /// before stays: an error is among `findings`.
+  virtual bool load(const std::string& program, std::vector<text::Finding>& findings, int process = 0) = 0;
   /// Plays a simulated input: a level (0, 1) or the value of an analog point; nullopt: it follows its axis or
   /// output again. False: `why` says why it cannot, in both languages.
   virtual bool play(const std::string& point, std::optional<double> value, std::string& why) = 0;

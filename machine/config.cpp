@@ -86,6 +86,19 @@ std::size_t MachineConfig::program_axes() const {
       std::count_if(axes.begin(), axes.end(), [](const AxisConfig& a) { return !a.auxiliary; }));
 }
 
+std::uint32_t MachineConfig::axes_of_process(int process) const {
+  std::uint32_t bits = 0;
+  for (std::size_t a = 0; a < program_axes() && a < image::kMaxAxes; ++a)
+    if (axes[a].process == process + 1) bits |= std::uint32_t{1} << a;
+  return bits;
+}
+
+const SpindleConfig* MachineConfig::spindle_of_process(int process) const {
+  const auto found = std::find_if(spindles.begin(), spindles.end(),
+                                  [process](const SpindleConfig& s) { return s.process == process + 1; });
+  return found == spindles.end() ? nullptr : &*found;
+}
+
 std::uint32_t MachineConfig::auxiliary_axes() const {
   std::uint32_t bits = 0;
   for (std::size_t a = 0; a < axes.size() && a < image::kMaxAxes; ++a)

@@ -78,6 +78,7 @@ struct AxisConfig {
   bool diameter = false;   ///< programs and displays show twice the machine coordinate
   bool auxiliary = false;  ///< the PLC moves it, no program and nobody by hand
   std::string drive;       ///< "bus.node"
+  int process = 1;         ///< whose programs move it, from 1
 
   double lead = 0.0;                          ///< mm (degrees) per turn of the screw (output of the gear)
   std::array<std::int64_t, 2> gear = {1, 1};  ///< motor turns : screw turns, exact
@@ -140,6 +141,7 @@ struct AxisConfig {
 struct SpindleConfig {
   std::string name;
   std::string drive;         ///< "bus.node", or empty
+  int process = 1;           ///< whose S, M3, M4, M5 and M19 it obeys, from 1
   std::string speed_output;  ///< analog output point of an inverter; rpm without sign
   std::string cw_output;     ///< output points of its relays
   std::string ccw_output;
@@ -405,6 +407,12 @@ struct MachineConfig {
   std::vector<std::string> unit_words() const;
   /// Axes that programs move; the auxiliary ones stand behind them.
   std::size_t program_axes() const;
+  /// The axes that the programs of a process (from 0) move at first, as bits.
+  std::uint32_t axes_of_process(int process) const;
+  /// The first spindle of a process (from 0), nullptr: it has none.
+  const SpindleConfig* spindle_of_process(int process) const;
+  /// The process (from 0) whose T is the tool in the spindle: that of the first spindle.
+  int tool_process() const { return spindles.empty() ? 0 : spindles.front().process - 1; }
   /// The auxiliary axes as bits.
   std::uint32_t auxiliary_axes() const;
   /// Every name the PLC, the part program and the operator can use: points, free symbols, interface of packet

@@ -35,7 +35,7 @@ struct CsvSink::Impl {
   CsvColumns columns;
   std::FILE* file = nullptr;
   std::string error;
-  std::size_t axes = 0, spindles = 0, signals = 0;
+  std::size_t axes = 0, spindles = 0, signals = 0, further = 0;
   bool sub_microsecond = false;
   std::size_t row_max = 0;
   std::vector<char> buffer;
@@ -84,6 +84,14 @@ char* CsvSink::Impl::write(char* out, const TraceRow& row) const noexcept {
     *out++ = ',';
     *out++ = row.signal(n) ? '1' : '0';
   }
+  for (std::size_t p = 0; p < further; ++p) {
+    *out++ = ',';
+    out = write_fixed(out, row.further[p].feed_mm_s, kFeedDecimals);
+    *out++ = ',';
+    out = write_integer(out, row.further[p].line);
+    *out++ = ',';
+    out = write_integer(out, row.further[p].tool);
+  }
   *out++ = '\n';
   return out;
 }
@@ -108,6 +116,10 @@ std::string CsvSink::header(const TraceLayout& layout, CsvColumns columns) {
     for (const std::string& a : layout.axes) out += "," + field(a + ".error");
   if (columns.signals)
     for (std::size_t n = 0; n < signal_count(layout); ++n) out += "," + field(layout.signals[n].name);
+  for (int p = 2; p <= layout.processes; ++p) {
+    const std::string number = std::to_string(p);
+    out += ",feed" + number + ",line" + number + ",tool" + number;
+  }
   return out;
 }
 
@@ -115,9 +127,10 @@ void CsvSink::begin(const TraceLayout& layout) {
   Impl& i = *impl_;
   i.axes = std::min<std::size_t>(layout.axes.size(), image::kMaxAxes);
   i.spindles = static_cast<std::size_t>(std::clamp(layout.spindles, 0, image::kMaxSpindles));
+  i.further = static_cast<std::size_t>(std::clamp(layout.processes, 1, image::kMaxProcesses) - 1);
   i.signals = i.columns.signals ? signal_count(layout) : 0;
   i.sub_microsecond = layout.period_ns % image::kMicrosecond != 0;
-  i.row_max = 64 + kFixedMax * (1 + 3 * i.axes + 2 * i.spindles) + 2 * i.signals;
+  i.row_max = 64 + kFixedMax * (1 + 3 * i.axes + 2 * i.spindles + 3 * i.further) + 2 * i.signals;
   i.buffer.resize(kChunk + i.row_max);
   i.file = std::fopen(i.path.c_str(), "wb");
   if (i.file == nullptr) i.fail(text::both("cannot create", "не создаётся"));

@@ -30,6 +30,10 @@ void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRo
       std::min<std::size_t>(static_cast<std::size_t>(layout.spindles), row.spindles.size());
   for (std::size_t s = 0; s < spindles; ++s)
     row.spindles[s] = {image.spindles[s].command_rpm, image.spindles[s].actual_rpm};
+  for (int p = 1; p < layout.processes && p < image::kMaxProcesses; ++p) {
+    const image::ProcessStatus& from = image.processes[static_cast<std::size_t>(p)];
+    row.further[static_cast<std::size_t>(p - 1)] = {from.feed_mm_s, from.line, from.tool};
+  }
   row.signals.fill(0);
   const std::size_t signals = std::min<std::size_t>(layout.signals.size(), kMaxTraceSignals);
   for (std::size_t n = 0; n < signals; ++n)

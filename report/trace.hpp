@@ -25,6 +25,7 @@ struct TraceLayout {
   image::Nanoseconds period_ns = image::kMillisecond;
   std::vector<std::string> axes;     ///< letters in the machine file's order, at most image::kMaxAxes
   int spindles = 0;                  ///< at most image::kMaxSpindles
+  int processes = 1;                 ///< at most image::kMaxProcesses
   std::vector<TraceSignal> signals;  ///< at most kMaxTraceSignals; the rest is ignored
 };
 
@@ -44,6 +45,12 @@ struct TraceSpindle {
   double actual_rpm = 0.0;
 };
 
+/// A process beside the first one.
+struct TraceProcess {
+  double feed_mm_s = 0.0;
+  std::int32_t line = 0, tool = 0;
+};
+
 /// One cycle of the machine as plain data.
 struct TraceRow {
   std::int64_t cycle = 0;
@@ -55,13 +62,14 @@ struct TraceRow {
   std::uint32_t alarms = 0;  ///< not acknowledged
   std::array<TraceAxis, image::kMaxAxes> axes{};
   std::array<TraceSpindle, image::kMaxSpindles> spindles{};
-  std::array<std::uint64_t, kMaxTraceSignals / 64> signals{};  ///< bit n = layout signal n
+  std::array<TraceProcess, image::kMaxProcesses - 1> further{};  ///< processes 2 and up
+  std::array<std::uint64_t, kMaxTraceSignals / 64> signals{};    ///< bit n = layout signal n
 
   bool signal(std::size_t n) const noexcept { return ((signals[n / 64] >> (n % 64)) & 1u) != 0; }
 };
 
 /// Fills a row from the image as it stands at the end of a cycle (process 1 gives feed, line, rapid and
-/// tool). real-time safe.
+/// tool; `further` has those of the others). real-time safe.
 void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRow& row) noexcept;
 
 /// Takes rows in order, on the recorder's own thread. Errors are kept, never thrown: a full disk stops a
@@ -83,9 +91,10 @@ struct CsvColumns {
   bool signals = true;          ///< one column of 0 and 1 per signal
 };
 
-/// The trace as CSV: `t,feed,line,X.cmd,X.act,Y.cmd,...,spindle.cmd,spindle.act,X.error,...,<signal>...`, one
-/// row a cycle; t in seconds, feed in mm/s, positions in mm or degrees with 12 decimals, spindles in rpm.
-/// Equal rows give equal bytes.
+/// The trace as CSV:
+/// `t,feed,line,X.cmd,X.act,Y.cmd,...,spindle.cmd,spindle.act,X.error,...,<signal>...,feed2,line2, tool2,...`
+/// (the last of processes 2 and up), one row a cycle; t in seconds, feed in mm/s, positions in mm or degrees
+/// with 12 decimals, spindles in rpm. Equal rows give equal bytes.
 class CsvSink final : public TraceSink {
  public:
   explicit CsvSink(std::string path, CsvColumns columns = {});

@@ -46,8 +46,9 @@ struct AxisImage {
   double distance_to_go = 0.0;
   AxisOwner owner = AxisOwner::none;
   JogEnd jog_end = JogEnd::none;
-  Hand hand;             ///< that began its last jog; meaningful while it jogs
-  bool enabled = false;  ///< drive in Operation enabled and following
+  std::int8_t process = 0;  ///< whose programs move it
+  Hand hand;                ///< that began its last jog; meaningful while it jogs
+  bool enabled = false;     ///< drive in Operation enabled and following
   bool homed = false;
   bool in_position = false;
   bool moving = false;

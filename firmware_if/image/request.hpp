@@ -42,6 +42,8 @@ enum class RequestKind : std::uint8_t {
   /// Axis; value = torque in per cent of the rated one, velocity = its limit, acceleration = ramp in per cent
   /// a second, 0: the axis' own. An auxiliary one, for the PLC alone.
   torque,
+  assign,  ///< axis, process: whose programs move it from now on; at standstill, while no program of either
+           ///< runs
 };
 
 /// Who holds a jog with a finger on the button: one connection, one pendant, the PLC. The dead-man of a

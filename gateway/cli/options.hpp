@@ -35,6 +35,7 @@ struct ClientOptions {
   std::string command;
   std::vector<std::string> arguments;
   std::string socket;
+  int process = 0;       ///< from 1; 0: none was said
   bool history = false;  ///< of `alarms`: what has happened instead
   int last = 100;        ///< events of it
   bool json = false;
@@ -44,12 +45,14 @@ struct ClientOptions {
 
 struct CheckOptions {
   std::string machine, dialect;
+  int process = 1;  ///< that runs the programs
   std::vector<std::string> programs;
   bool json = false;
 };
 
 struct CanonOptions {
   std::string machine, program, dialect;
+  int process = 1;   ///< that runs the program
   bool json = true;  ///< its output is JSON with and without the option
 };
 

@@ -12,12 +12,14 @@ int canon(const CanonOptions& options) {
   if (const int code = check_dialect(options.dialect); code != kDone) return code;
   const machine::LoadResult loaded = machine::load(options.machine);
   if (print_findings(loaded.findings) > 0) return kWrongUse;
+  if (const int code = check_process(loaded.machine, options.process); code != kDone) return code;
   ProgramFile program;
+  program.process = options.process - 1;
   if (const int code = open_program_or_say(loaded.machine, options.program, options.dialect, program);
       code != kDone)
     return code;
   program::Interpreter interpreter(program.dialect, program.model, program_tables(loaded.machine),
-                                   options.program, program.text, program.loader, {});
+                                   options.program, program.text, program.loader, {}, program.process);
   const auto error = program::write_canon(interpreter, program.model, print_line);
   print_findings(interpreter.warnings());
   if (!error) return kDone;

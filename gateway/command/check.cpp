@@ -158,10 +158,11 @@ ProgramErrors check_programs(const CheckOptions& options, const machine::Machine
   const program::Tables tables = program_tables(machine);
   for (const std::string& name : options.programs) {
     ProgramFile program;
+    program.process = options.process - 1;
     std::vector<text::Finding> found;
     nlohmann::json entry{{"program", name}};
     if (open_program(machine, name, options.dialect, program, found)) {
-      const ProgramCheck result = check_program(machine, program, tables, start_after_homing(machine).at,
+      const ProgramCheck result = check_program(machine, program, tables, start_after_homing(machine),
                                                 channel::Forecast::Depth::timed);
       found.insert(found.end(), result.report.findings.begin(), result.report.findings.end());
       order_by_place(found);
@@ -192,6 +193,8 @@ int check(const CheckOptions& options) {
     check_logic(loaded.machine, findings);
     check_devices(loaded, findings);
   }
+  if (loaded.ok())
+    if (const int code = check_process(loaded.machine, options.process); code != kDone) return code;
   const int machine_errors = print_findings(findings);
   nlohmann::json json;
   if (options.json) {

@@ -6,9 +6,21 @@
 
 namespace servogate::gateway::command {
 
+namespace {
+const text::Entry kNoSuchProcess{"cli.no-such-process",
+                                 "there is no process {0}: the machine file has control.processes = {1}",
+                                 "процесса {0} нет: в файле станка control.processes = {1}"};
+}  // namespace
+
 int check_dialect(const std::string& dialect) {
   if (dialect.empty() || known_dialect(dialect)) return kDone;
   complain(kUnknownDialect, {dialect, dialect_names()});
+  return kWrongUse;
+}
+
+int check_process(const machine::MachineConfig& machine, int process) {
+  if (process <= machine.control.processes) return kDone;
+  complain(kNoSuchProcess, {std::to_string(process), std::to_string(machine.control.processes)});
   return kWrongUse;
 }
 

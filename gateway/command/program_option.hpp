@@ -11,5 +11,7 @@ int check_dialect(const std::string& dialect);
 /// open_program() for a command: prints the findings, and gives kDone or kWrongUse.
 int open_program_or_say(const machine::MachineConfig& machine, const std::string& path,
                         const std::string& dialect, ProgramFile& out);
+/// kDone, or kWrongUse after saying that the machine has no such process (from 1).
+int check_process(const machine::MachineConfig& machine, int process);
 
 }  // namespace servogate::gateway::command

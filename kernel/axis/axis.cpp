@@ -15,6 +15,7 @@ void Axis::configure(const AxisConfig& config, int index) {
   *this = Axis{};
   config_ = config;
   index_ = index;
+  assigned_ = config.process;
   scale_ = {config.counts_numerator, config.counts_denominator, config.count_direction, 0, 0.0};
   compensation_.configure(config);
   power_.configure(config.brake);
@@ -336,6 +337,7 @@ void Axis::write_image(image::ProcessImage& image, const PowerSequence::Outputs&
   out.command_velocity = set_.v;
   out.command_acceleration = set_.a;
   out.actual = actual_;
+  out.process = static_cast<std::int8_t>(assigned_);
   out.following_error = following_error_;
   out.distance_to_go = own_motion_                               ? ramp_.target() - set_.x
                        : owner_ == AxisOwner::process && moving_ ? process_.distance_to_go

@@ -57,6 +57,11 @@ class Axis {
   /// stands.
   bool release(image::AxisOwner owner) noexcept;
   image::AxisOwner owner() const noexcept { return owner_; }
+  /// The process whose programs move it, and no other's. real-time safe.
+  int process() const noexcept { return assigned_; }
+  /// Its programs are those of another process from now on; at standstill, which the gate sees to. real-time
+  /// safe.
+  void assign(int process) noexcept { assigned_ = process; }
 
   // -- orders (after the gate); false when the axis may not move now or belongs to somebody else
   /// Operator's wish for drive power; in force while MC.power_on and <axis>.enable permit it. It falls by
@@ -201,6 +206,7 @@ class Axis {
 
   AxisConfig config_;
   int index_ = 0;
+  int assigned_ = 0;  ///< the process whose programs move it
   CountScale scale_;
   Compensation compensation_;
   PowerSequence power_;

@@ -200,6 +200,7 @@ void Feeder::take_orders() {
 void Feeder::begin(const FeederOrder& order) {
   generation_ = order.generation;
   position_ = order.position;
+  elements_.own(order.axes);
   block_by_block_ = order.block_by_block;
   acted_in_block_ = false;
   last_line_ = 0;

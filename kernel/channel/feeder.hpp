@@ -34,6 +34,7 @@ struct FeederOrder {
   bool manual_data = false;      ///< start: the typed block instead of the program
   bool block_by_block = false;   ///< start: STEP mode
   program::Position position{};
+  std::uint32_t axes = 0;  ///< start: the machine axes that its programs move, as bits
 };
 
 /// The queues between feeder (outside) and process (in the cycle).

@@ -117,6 +117,7 @@ std::uint64_t Process::look(const cycle::ProcessContext& c) noexcept {
 }
 
 void Process::interpolate(cycle::ProcessContext& c) noexcept {
+  find_own_axes(c);
   const std::uint64_t entries = look(c);
   apply_at_once(c);
   apply_reaction(c);
@@ -201,6 +202,7 @@ void Process::run_on() noexcept {
 }
 
 bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept {
+  find_own_axes(c);
   if (!acquire(c)) return false;
   path::Vector position{};
   FeederOrder order;
@@ -211,6 +213,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   for (std::size_t i = 0; i < c.axes.size(); ++i) order.position[i] = c.image.axes[i].command;
   for (std::size_t i = 0; i < config_.axes.machine.size(); ++i)
     position[i] = order.position[static_cast<std::size_t>(config_.axes.machine[i])];
+  for (const OwnAxis& own : own_axes()) order.axes |= std::uint32_t{1} << own.machine;
   follower_.set_position(position);
   link_.packets_of(generation_) = c.image.packets;
   link_.orders.push(order);
@@ -247,9 +250,19 @@ void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   release(c);
 }
 
+/// They change between two runs only, by the gate.
+void Process::find_own_axes(const cycle::ProcessContext& c) noexcept {
+  own_count_ = 0;
+  for (std::size_t i = 0; i < config_.axes.machine.size() && i < own_.size(); ++i) {
+    const int a = config_.axes.machine[i];
+    if (c.axes[static_cast<std::size_t>(a)].process() == config_.index)
+      own_[own_count_++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(a)};
+  }
+}
+
 bool Process::acquire(cycle::ProcessContext& c) noexcept {
-  for (const int a : config_.axes.machine)
-    if (!c.axes[static_cast<std::size_t>(a)].acquire(image::AxisOwner::process)) {
+  for (const OwnAxis& own : own_axes())
+    if (!c.axes[own.machine].acquire(image::AxisOwner::process)) {
       release(c);
       return false;
     }
@@ -257,8 +270,7 @@ bool Process::acquire(cycle::ProcessContext& c) noexcept {
 }
 
 void Process::release(cycle::ProcessContext& c) noexcept {
-  for (const int a : config_.axes.machine)
-    c.axes[static_cast<std::size_t>(a)].release(image::AxisOwner::process);
+  for (const OwnAxis& own : own_axes()) c.axes[own.machine].release(image::AxisOwner::process);
 }
 
 // -- motion
@@ -267,8 +279,8 @@ void Process::release(cycle::ProcessContext& c) noexcept {
 void Process::apply_reaction(cycle::ProcessContext& c) noexcept {
   if (!running_ || stopping_) return;
   bool taken = false;
-  for (const int i : config_.axes.machine) {
-    const axis::Axis& a = c.axes[static_cast<std::size_t>(i)];
+  for (const OwnAxis& own : own_axes()) {
+    const axis::Axis& a = c.axes[own.machine];
     taken = taken || a.stopped_by_reaction() || a.letting_go();
   }
   if (c.reaction < Reaction::stop_at_block_end && !taken) return;
@@ -283,9 +295,9 @@ void Process::apply_reaction(cycle::ProcessContext& c) noexcept {
 /// Who took the axes from the program where it was no alarm.
 image::Stop Process::stop_without_alarm(const cycle::ProcessContext& c) const noexcept {
   if (!c.drives_wanted) return {image::StopCause::drives_off, c.drives_asker, -1};
-  for (const int a : config_.axes.machine)
-    if (!c.axes[static_cast<std::size_t>(a)].power_permitted())
-      return {image::StopCause::enable_withdrawn, image::Asker::plc, static_cast<std::int8_t>(a)};
+  for (const OwnAxis& own : own_axes())
+    if (!c.axes[own.machine].power_permitted())
+      return {image::StopCause::enable_withdrawn, image::Asker::plc, static_cast<std::int8_t>(own.machine)};
   return {};
 }
 
@@ -293,7 +305,7 @@ void Process::apply_hold(cycle::ProcessContext& c) noexcept {
   const image::Packets& k = c.image.packets;
   if (k.bit(at(kStopBit, base_))) held_ = running_;  // it goes on when somebody says so
   bool hold = held_ || !k.bit(at(kFeedEnable, base_));
-  for (const int a : config_.axes.machine) hold = hold || !c.axes[static_cast<std::size_t>(a)].feed_enabled();
+  for (const OwnAxis& own : own_axes()) hold = hold || !c.axes[own.machine].feed_enabled();
   if (hold)
     follower_.hold();
   else
@@ -308,8 +320,9 @@ void Process::apply_hold(cycle::ProcessContext& c) noexcept {
 }
 
 void Process::drive_axes(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
-  for (std::size_t i = 0; i < config_.axes.machine.size(); ++i) {
-    axis::Axis& a = c.axes[static_cast<std::size_t>(config_.axes.machine[i])];
+  for (const OwnAxis& own : own_axes()) {
+    axis::Axis& a = c.axes[own.machine];
+    const std::size_t i = own.path;
     if (a.owner() == image::AxisOwner::process)
       a.set_process({sample.position[i], sample.velocity[i], sample.acceleration[i],
                      sample.target[i] - sample.position[i]});
@@ -317,8 +330,9 @@ void Process::drive_axes(const path::Sample& sample, cycle::ProcessContext& c) n
 }
 
 bool Process::in_position(cycle::ProcessContext& c) const noexcept {
-  return std::all_of(config_.axes.machine.begin(), config_.axes.machine.end(),
-                     [&](int a) { return c.axes[static_cast<std::size_t>(a)].in_position(); });
+  const std::span<const OwnAxis> own = own_axes();
+  return std::all_of(own.begin(), own.end(),
+                     [&](const OwnAxis& a) { return c.axes[a.machine].in_position(); });
 }
 
 void Process::at_stop(cycle::ProcessContext& c) noexcept {

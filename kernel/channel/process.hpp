@@ -63,9 +63,16 @@ class Process final : public cycle::ProcessInCycle {
   enum Crossing : std::uint8_t { kTrack, kEvents, kAtOnce, kPrograms, kChanges };
   static_assert(kChanges + 1 == kCrossingsEach);
 
+  /// An axis of the path that this process moves.
+  struct OwnAxis {
+    std::uint8_t path, machine;
+  };
+
   bool start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept;
   void run_on() noexcept;
   void leave(image::ProcessState state, cycle::ProcessContext& c) noexcept;
+  void find_own_axes(const cycle::ProcessContext& c) noexcept;
+  std::span<const OwnAxis> own_axes() const noexcept { return {own_.data(), own_count_}; }
   bool acquire(cycle::ProcessContext& c) noexcept;
   void release(cycle::ProcessContext& c) noexcept;
   std::uint64_t look(const cycle::ProcessContext& c) noexcept;
@@ -112,7 +119,9 @@ class Process final : public cycle::ProcessInCycle {
   std::atomic<std::uint64_t> programs_{0};  ///< loaded so far
   std::atomic<std::uint64_t> changes_{0};
 
-  bool manual_data_ = false;           ///< the run is a typed block
+  bool manual_data_ = false;  ///< the run is a typed block
+  std::array<OwnAxis, path::kMaxAxes> own_{};
+  std::size_t own_count_ = 0;
   bool running_ = false;               ///< a program is under way, held or waiting
   std::atomic<bool> stopping_{false};  ///< it ends as soon as the path is at rest
   image::ProcessState after_stop_ = image::ProcessState::idle;

@@ -144,15 +144,16 @@ image::Wait Process::wait_on_path(const cycle::ProcessContext& c) const noexcept
   const image::Packets& k = c.image.packets;
   if (const image::Wait hold = wait_for_go_on(c); hold.reason != WaitReason::none) return hold;
   if (!k.bit(at(kFeedEnable, base_))) return of(WaitReason::feed_enable, at(kFeedEnable, base_));
-  for (const int a : config_.axes.machine)
-    if (!c.axes[static_cast<std::size_t>(a)].feed_enabled())
-      return of(WaitReason::axis_feed_enable, at(kAxisFeedEnable, image::axis_base(a)), a);
+  for (const OwnAxis& own : own_axes())
+    if (!c.axes[own.machine].feed_enabled())
+      return of(WaitReason::axis_feed_enable, at(kAxisFeedEnable, image::axis_base(own.machine)),
+                own.machine);
   return follower_.override_ratio() <= 0.0 ? of(WaitReason::override_zero) : image::Wait{};
 }
 
 image::Wait Process::wait_for_position(const cycle::ProcessContext& c) const noexcept {
-  for (const int a : config_.axes.machine)
-    if (!c.axes[static_cast<std::size_t>(a)].in_position()) return of(WaitReason::in_position, {}, a);
+  for (const OwnAxis& own : own_axes())
+    if (!c.axes[own.machine].in_position()) return of(WaitReason::in_position, {}, own.machine);
   return {};
 }
 

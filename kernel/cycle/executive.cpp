@@ -206,7 +206,7 @@ void Cycle::collect_events() noexcept {
     }
   };
   for (axis::Axis& a : axes_) {
-    collect(a.events(), a.index(), a.config().process, a.config().drive);
+    collect(a.events(), a.index(), a.process(), a.config().drive);
     a.clear_events();
   }
   for (axis::Spindle& s : spindles_) {

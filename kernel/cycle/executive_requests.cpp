@@ -189,6 +189,9 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     case RequestKind::stop:
     case RequestKind::hold:
       return end_or_hold(request);
+    case RequestKind::assign:
+      axes_[static_cast<std::size_t>(request.axis)].assign(request.process);
+      break;
     case RequestKind::zero:
     case RequestKind::mode:
     case RequestKind::start:

@@ -55,6 +55,10 @@ class AxisCheck {
 
   /// Programs count their axes from the first on; the places of the MC_ blocks lie above the usual packet.
   void auxiliary() {
+    if (has("process") && a_.process > machine_.control.processes)
+      error("process", finding::kNoSuchProcess,
+            {std::to_string(a_.process), std::to_string(machine_.control.processes)});
+    if (a_.auxiliary && has("process")) error("process", finding::kAuxiliaryProcess, {});
     if (!a_.auxiliary && a_.torque_max > 0.0) error("torque_max", finding::kTorqueAuxiliary, {});
     if (!a_.auxiliary) {
       for (std::size_t i = 0; i < index_; ++i)
@@ -319,6 +323,10 @@ void check_spindles(const MachineConfig& machine, Reading& reading) {
   for (std::size_t i = 0; i < machine.spindles.size(); ++i) {
     const SpindleConfig& s = machine.spindles[i];
     const std::string path = "spindle." + std::to_string(i), number = std::to_string(i + 1);
+    if (s.process > machine.control.processes)
+      reading.error(machine.where(path + ".process"), finding::kNoSuchProcess,
+                    {text::both("spindle " + number, "шпиндель " + number), std::to_string(s.process),
+                     std::to_string(machine.control.processes)});
     if (s.drive.empty() == s.speed_output.empty())
       reading.error(machine.where(path), finding::kSpindleSource, {number});
     if (s.max_speed > 0.0 && s.min_speed >= s.max_speed)

@@ -10,6 +10,12 @@ inline constexpr text::Entry kNoAxes{"machine.no_axes", "the machine has no axis
                                      "у станка нет ни одной оси"};
 inline constexpr text::Entry kTooMany{"machine.too_many", "{0} {1}: at most {2} are possible",
                                       "{1}: {0}, возможно не больше {2}"};
+inline constexpr text::Entry kNoSuchProcess{"machine.no_such_process",
+                                            "{0} is of process {1}, and control.processes is {2}",
+                                            "{0} принадлежит процессу {1}, а control.processes равно {2}"};
+inline constexpr text::Entry kAuxiliaryProcess{
+    "machine.auxiliary_process", "{0}: an auxiliary axis has no process: no program moves it",
+    "{0}: у вспомогательной оси нет процесса: программы её не перемещают"};
 inline constexpr text::Entry kAuxiliaryOrder{
     "machine.auxiliary_order", "{0}: axes of programs stand before the auxiliary ones, {1} is auxiliary",
     "{0}: оси программ стоят до вспомогательных, а {1} вспомогательная"};

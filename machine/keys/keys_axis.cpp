@@ -129,6 +129,11 @@ std::span<const Key> axis_keys() {
           "ось перемещает только ПЛК блоками MC_ (магазин, патрон); стоит после осей программ"),
       key<&C::drive>("drive", {.required = true, .refers = Refers::node}, "the drive as \"bus.node\"",
                      "привод в виде \"шина.узел\""),
+      key<&C::process>("process", {.min = 1, .max = image::kMaxProcesses},
+                       "process whose programs move the axis, at most control.processes; at standstill "
+                       "`servogate assign` gives it to another one",
+                       "процесс, программы которого перемещают ось, не больше control.processes; в покое "
+                       "`servogate assign` передаёт её другому"),
       key<&C::lead>("lead", {.unit = Unit::axis_lead, .min = 0.001, .max = 1e5, .required = true},
                     "travel per turn of the screw", "перемещение на оборот винта"),
       key<&C::gear>("gear", {.min = 1, .max = 1e6}, "exact gear ratio, motor turns : screw turns",
@@ -252,6 +257,10 @@ const Section& section_of<SpindleConfig>() {
       key<&C::name>("name", {}, "name for people", "название для людей"),
       key<&C::drive>("drive", {.refers = Refers::node}, "the drive as \"bus.node\"; or `speed_output`",
                      "привод в виде \"шина.узел\"; или `speed_output`"),
+      key<&C::process>("process", {.min = 1, .max = image::kMaxProcesses},
+                       "process whose S, M3, M4, M5 and M19 it obeys, at most control.processes",
+                       "процесс, функциям S, M3, M4, M5 и M19 которого подчиняется шпиндель, не больше "
+                       "control.processes"),
       key<&C::speed_output>(
           "speed_output", {.refers = Refers::analog_output},
           "analog output point of an inverter; its value is the speed in rpm, without sign",

@@ -6,6 +6,7 @@
 
 #include "firmware_if/canopen/301/nmt.hpp"
 #include "tests/canopen_tools/workbench.hpp"
+#include "tests/comes.hpp"
 
 namespace servogate::canopen_tools {
 namespace {
@@ -306,10 +307,13 @@ TEST_F(Workbench, lss_gives_a_device_another_node_id) {
 TEST_F(Workbench, lss_gives_no_node_id_to_several_devices_at_once) {
   drives("5,6");
   for (const char* steps : {"configuration node 7 waiting", "configuration inquire", "node 7"}) {
-    const Ended ended = tool("lss $BUS " + std::string(steps) + " --listen 0.1");
+    Ended ended;
+    // The devices are processes of their own: on a busy computer one of them answers too late.
+    EXPECT_TRUE(tests::comes([&] {
+      ended = tool("lss $BUS " + std::string(steps) + " --listen 0.1");
+      return ended.err_has("2 devices answer (00000000:00010192:00010000:00000005|00000006)");
+    })) << ended.err;
     EXPECT_EQ(ended.code, 1) << steps;
-    EXPECT_TRUE(ended.err_has("2 devices answer (00000000:00010192:00010000:00000005|00000006)"))
-        << ended.err;
     EXPECT_TRUE(ended.err_has("select VENDOR:PRODUCT:REVISION:SERIAL")) << ended.err;
     EXPECT_EQ(ended.out.find("node-ID"), std::string::npos) << ended.out;
   }

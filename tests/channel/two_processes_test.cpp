@@ -85,10 +85,11 @@ class TwoProcesses : public ::testing::Test {
       m.letter = std::string(1, static_cast<char>('X' + a));
       m.rapid = kLimits.velocity;
       model.axes.push_back(m);
-      ProcessConfig& process = configs[static_cast<std::size_t>(c.process)];
-      process.axes.machine.push_back(a);
-      process.path.limits[static_cast<std::size_t>(process.path.axis_count++)] = {
-          kLimits.velocity, kLimits.acceleration, kLimits.jerk};
+      for (ProcessConfig& process : configs) {
+        process.axes.machine.push_back(a);
+        process.path.limits[static_cast<std::size_t>(process.path.axis_count++)] = {
+            kLimits.velocity, kLimits.acceleration, kLimits.jerk};
+      }
     }
     parts.devices = {&drives_, &second_spindle_};
     parts.logic = &logic_;
@@ -205,6 +206,30 @@ TEST_F(TwoProcesses, refuse_a_program_that_names_an_axis_of_the_other_with_its_p
   EXPECT_EQ(
       finding->str(text::Language::english),
       "process.nc:2:8: error: X belongs to another process: its programs move it [channel.foreign-axis]");
+}
+
+TEST_F(TwoProcesses, hand_an_axis_over_at_standstill_and_only_then) {
+  compose("N10 G1 X20 Z-30 F3000\nN20 M30\n", "N10 G1 Z40 F3000\nN20 M30\n");
+  ASSERT_EQ(ask(RequestKind::start, 1), Refusal::none);
+  ASSERT_TRUE(until([&] { return at(2) > 1.0; }));
+  EXPECT_EQ(ask(RequestKind::assign, 0, 0.0, 2), Refusal::program_runs) << "its own program moves it";
+  EXPECT_EQ(ask(RequestKind::assign, 1, 0.0, 0), Refusal::program_runs) << "the new one's program runs";
+  EXPECT_EQ(ask(RequestKind::assign, 7, 0.0, 2), Refusal::no_such_process);
+  ASSERT_TRUE(until([&] { return state(1) == ProcessState::ended; }));
+  ASSERT_EQ(ask(RequestKind::jog_continuous, 1, 1.0, 2), Refusal::none);
+  for (int n = 0; n < 20; ++n) step();
+  EXPECT_EQ(ask(RequestKind::assign, 0, 0.0, 2), Refusal::axis_moves);
+  ASSERT_TRUE(until([&] { return cycle_->axes()[2].standstill(); }));
+  ASSERT_EQ(ask(RequestKind::assign, 0, 0.0, 2), Refusal::none);
+  EXPECT_EQ(cycle_->image().axes[2].process, 0);
+  ASSERT_EQ(ask(RequestKind::mode, 0, static_cast<double>(image::Mode::automatic)), Refusal::none);
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::ended; }));
+  EXPECT_NEAR(at(2), -30.0, 1e-9) << "where the new process' program says";
+  const double before = at(2);
+  ASSERT_EQ(ask(RequestKind::start, 1), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(1) == ProcessState::stopped_by_alarm; }));
+  EXPECT_EQ(at(2), before) << "the old one's no longer moves it";
 }
 
 TEST_F(TwoProcesses, keep_manual_control_of_the_axes_whose_program_does_not_run) {

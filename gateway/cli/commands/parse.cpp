@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "firmware_if/image/process_image.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "gateway/cli/commands/bus_commands.hpp"
 #include "gateway/cli/commands/canopen_commands.hpp"
@@ -24,7 +25,8 @@ struct ClientCommand {
   const char* meaning;
   const char* arguments;  ///< in their order; [OPTIONAL], MANY...
   const char* example;
-  bool waits = false;  ///< takes --wait
+  bool waits = false;       ///< takes --wait
+  bool of_process = false;  ///< takes --process
 };
 
 constexpr ClientCommand kClients[] = {
@@ -38,14 +40,16 @@ constexpr ClientCommand kClients[] = {
      "AXIS DISTANCE", "servogate jog X -1mm", true},
     {"zero", "Gives the present position of an axis a value in the active origin (0 if none is said).",
      "AXIS [VALUE]", "servogate zero X 0"},
-    {"mdi", "Runs one block typed by hand.", "BLOCK...", "servogate mdi \"G0 X10\" --wait", true},
-    {"load", "Loads a part program.", "PROGRAM", "servogate load bracket.nc"},
-    {"start", "Starts the loaded program.", "", "servogate start --wait", true},
-    {"step", "Runs one block.", "", "servogate step", true},
-    {"hold", "Feed hold: stops on the path.", "", "servogate hold"},
-    {"resume", "Goes on after a hold.", "", "servogate resume"},
+    {"mdi", "Runs one block typed by hand.", "BLOCK...", "servogate mdi \"G0 X10\" --wait", true, true},
+    {"load", "Loads a part program.", "PROGRAM", "servogate load bracket.nc", false, true},
+    {"start", "Starts the loaded program.", "", "servogate start --wait", true, true},
+    {"step", "Runs one block.", "", "servogate step", true, true},
+    {"hold", "Feed hold: stops on the path.", "", "servogate hold", false, true},
+    {"resume", "Goes on after a hold.", "", "servogate resume", false, true},
     {"reset", "Ends the program and clears alarms whose cause is gone.", "", "servogate reset"},
-    {"override", "Feed override in per cent, 0 to 150.", "PCT", "servogate override 80"},
+    {"override", "Feed override in per cent, 0 to 150.", "PCT", "servogate override 80", false, true},
+    {"assign", "Gives an axis that stands to a process: its programs move it from now on.", "AXIS",
+     "servogate assign Z --process 2", false, true},
     {"power", "Switches the drives on or off, and waits until they are.", "on|off", "servogate power on",
      true},
     {"input",
@@ -232,10 +236,18 @@ class Commands {
           ->type_name("N")
           ->check(number_within({1.0, 1000.0, text::both("events", "событий"), true}));
     }
+    if (c.of_process)
+      process(app, o.process, "Process, from 1; without it the first one, and `hold` holds all");
     if (!c.waits) return;
     app.add_flag("--wait", o.wait, "Waits until it has ended; exit 1 after an alarm, 3 when it was stopped");
     if (std::string_view(c.name) == "power" || std::string_view(c.name) == "jog")
       app.add_flag("--no-wait", o.no_wait, "Returns as soon as the control has agreed");
+  }
+
+  static void process(CLI::App& app, int& number, const char* meaning) {
+    app.add_option("--process", number, meaning)
+        ->type_name("N")
+        ->check(number_within({1.0, image::kMaxProcesses, "", true}));
   }
 
   /// NAME, [NAME], NAME... or [NAME...]; the words go into the client's arguments in their order.
@@ -264,6 +276,7 @@ class Commands {
     app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
     app.add_option("PROGRAM", o.programs, "Part programs");
     app.add_option("--dialect", o.dialect, "Language of the programs instead of the machine's own");
+    process(app, o.process, "Process that runs the programs, from 1; without it the first one");
     app.add_flag("--json", o.json, "As JSON");
   }
 
@@ -274,6 +287,7 @@ class Commands {
     app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
     app.add_option("PROGRAM", o.program, "Part program")->required();
     app.add_option("--dialect", o.dialect, "Language of the program instead of the machine's own");
+    process(app, o.process, "Process that runs the program, from 1; without it the first one");
     app.add_flag("--json", o.json, "As JSON, which it always is");
   }
 

@@ -49,6 +49,7 @@ json request_of(const ClientOptions& options) {
     if (!comma(what)) complain(kBadNumber, {what, text::both(english, russian)});
     return json();
   };
+  if (options.process > 0) r["process"] = options.process;
   std::string_view rest;
   double value = 0.0;
   if (c == "alarms" && options.history) {
@@ -78,6 +79,8 @@ json request_of(const ClientOptions& options) {
     r["block"] = block;
   } else if (c == "load") {
     r["program"] = std::filesystem::absolute(a[0]).string();
+  } else if (c == "assign") {
+    r["axis"] = a[0];
   } else if (c == "override") {
     if (!parse_number(a[0], value, rest) || (!rest.empty() && rest != "%")) return wrong("PCT (0 to 150)");
     r["value"] = value;

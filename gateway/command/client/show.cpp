@@ -17,6 +17,8 @@ using nlohmann::json;
 using text::Entry;
 
 const Entry kHead{"client.head", "{0}: {1}, {2}{3}, {4} s", "{0}: {1}, {2}{3}, {4} с"};
+const Entry kMachine{"client.machine", "{0}{1}, {2} s", "{0}{1}, {2} с"};
+const Entry kProcessHead{"client.process-head", "process {0}: {1}, {2}", "процесс {0}: {1}, {2}"};
 const Entry kHoming{"client.homing", ", homing", ", идёт выход в ноль"};
 const Entry kFeed{"client.feed", "feed {0} mm/min, override {1} %, tool {2}",
                   "подача {0} мм/мин, коррекция {1} %, инструмент {2}"};
@@ -145,6 +147,32 @@ void print_missing(const json& missing) {
       print_advice("", m);
 }
 
+void print_feed(const json& process) {
+  print_line(
+      say(kFeed, {fixed(process.value("feed_mm_min", 0.0), 0), fixed(process.value("override_pct", 0.0), 0),
+                  std::to_string(process.value("tool", 0))}));
+}
+
+/// One program in the head line, several below it.
+void print_programs(const json& s) {
+  const std::string homing = s.value("homing", false) ? say(kHoming, {}) : std::string();
+  const std::string time = fixed(s.value("time_s", 0.0), 3);
+  const auto mode = [](const json& p) { return people_read(kModes, of(p, "mode")); };
+  const auto state = [](const json& p) { return people_read(kStates, of(p, "state")); };
+  const json processes = s.value("processes", json::array());
+  if (processes.size() < 2) {
+    print_line(say(kHead, {of(s, "machine"), mode(s), state(s), homing, time}));
+    print_program(s);
+    return;
+  }
+  print_line(say(kMachine, {of(s, "machine"), homing, time}));
+  for (const json& p : processes) {
+    print_line(say(kProcessHead, {std::to_string(p.value("process", 0)), mode(p), state(p)}));
+    print_program(p);
+    print_feed(p);
+  }
+}
+
 void print_axis(const json& a) {
   const bool russian = text::user_language() == text::Language::russian;
   const auto words = [&](const char* in_english, const char* in_russian) {
@@ -201,15 +229,10 @@ void print_wait(const json& wait, const std::string& before) {
 }
 
 void print_status(const json& s) {
-  print_line(
-      say(kHead,
-          {of(s, "machine"), people_read(kModes, of(s, "mode")), people_read(kStates, of(s, "state")),
-           s.value("homing", false) ? say(kHoming, {}) : std::string(), fixed(s.value("time_s", 0.0), 3)}));
-  print_program(s);
+  print_programs(s);
   print_processes(s);
   print_missing(s.value("missing", json::array()));
-  print_line(say(kFeed, {fixed(s.value("feed_mm_min", 0.0), 0), fixed(s.value("override_pct", 0.0), 0),
-                         std::to_string(s.value("tool", 0))}));
+  if (s.value("processes", json::array()).size() < 2) print_feed(s);
   const json axes = s.value("axes", json::array());
   if (!axes.empty()) print_line(say(kAxes, {}));
   for (const json& a : axes) print_axis(a);

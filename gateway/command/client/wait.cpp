@@ -111,6 +111,15 @@ class Wait {
   }
   void interrupt();
   json simple(const char* command) const { return {{"cmd", command}, {"language", request_["language"]}}; }
+  /// The status with the process that the request speaks of in the place of the first.
+  json of_process(const json& status) const {
+    const auto process = static_cast<std::size_t>(request_.value("process", 1));
+    const json processes = status.value("processes", json::array());
+    if (process < 2 || process > processes.size()) return status;
+    json own = status;
+    own.update(processes[process - 1]);
+    return own;
+  }
   /// Of those that the PLC moves nobody here waits for anything.
   template <typename Is>
   static bool any_axis(const json& status, Is&& is) {
@@ -305,9 +314,12 @@ void Wait::interrupt() {
       ask(client_, simple("stop"));
       break;
     case Kind::step:
-    case Kind::program:
-      ask(client_, simple(interrupts_done_ == 1 ? "hold" : "stop"));
+    case Kind::program: {
+      json order = simple(interrupts_done_ == 1 ? "hold" : "stop");
+      if (interrupts_done_ == 1 && request_.contains("process")) order["process"] = request_["process"];
+      ask(client_, order);
       break;
+    }
   }
 }
 
@@ -326,12 +338,13 @@ int Wait::run(json& status) {
       interrupt();
       continue;
     }
-    if (!under_way(status)) break;
-    if (too_late(status)) return kAlarm;
-    say_what_is_missing(status);
+    const json own = of_process(status);
+    if (!under_way(own)) break;
+    if (too_late(own)) return kAlarm;
+    say_what_is_missing(own);
   }
   if (code_ == kStopped && status.value("ending", false)) complain(kControlEnds, {});
-  const std::string state = of(status, "state");
+  const std::string state = of(of_process(status), "state");
   const bool own_end = kind_ == Kind::program && (state == "ended" || state == "stopped_by_alarm");
   if (interrupts_done_ == 0 || own_end) return code_;
   if (state == "held") complain(kHeld, {});

@@ -293,7 +293,8 @@ void Control::restore_references(const machine::MachineState& state) {
 }
 
 void Control::restore_tool(const machine::MachineState& state) {
-  cycle_->initial_image().processes[0].tool = static_cast<std::uint16_t>(state.tool_in_spindle);
+  cycle_->initial_image().processes[static_cast<std::size_t>(machine().tool_process())].tool =
+      static_cast<std::uint16_t>(state.tool_in_spindle);
 }
 
 std::vector<text::Finding> Control::restore_retained(const machine::MachineState& state) {

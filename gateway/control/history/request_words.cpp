@@ -18,7 +18,7 @@ using text::Entry;
 /// {0} the axis, {1} the value as `shown` has it.
 struct Row {
   RequestKind kind;
-  enum class Value { none, plain, sign, on_off, percent } shown;
+  enum class Value { none, plain, sign, on_off, percent, process } shown;
   Entry words;
 };
 constexpr Row kRows[] = {
@@ -30,6 +30,9 @@ constexpr Row kRows[] = {
     {RequestKind::zero,
      Row::Value::plain,
      {"history.ask-zero", "set {0} to {1}", "присвоить {0} значение {1}"}},
+    {RequestKind::assign,
+     Row::Value::process,
+     {"history.ask-assign", "give {0} to process {1}", "передать {0} процессу {1}"}},
     {RequestKind::start, Row::Value::none, {"history.ask-start", "start", "пуск"}},
     {RequestKind::step, Row::Value::none, {"history.ask-step", "one block", "один кадр"}},
     {RequestKind::hold, Row::Value::none, {"history.ask-hold", "feed hold", "останов подачи"}},
@@ -61,8 +64,11 @@ const Row* row_of(RequestKind kind) noexcept {
   return found == std::end(kRows) ? nullptr : &*found;
 }
 
-std::string shown(const Row& row, double value) {
+std::string shown(const Row& row, const image::Request& request) {
+  const double value = request.value;
   switch (row.shown) {
+    case Row::Value::process:
+      return std::to_string(request.process + 1);
     case Row::Value::plain:
       return text::number(value, 4);
     case Row::Value::sign:
@@ -87,7 +93,7 @@ Event request_event(const image::Request& request, const image::Answer& answer,
   const auto in = [&](text::Language language) {
     const std::string axis = request.axis >= 0 ? machine.axes[static_cast<std::size_t>(request.axis)].letter
                                                : text::both("all axes", "всех осей");
-    return text::render(row.words, std::array{axis, shown(row, request.value)}, language);
+    return text::render(row.words, std::array{axis, shown(row, request)}, language);
   };
   const auto asker = [&](text::Language language) { return cycle::asker_words(request.asker, language); };
   const auto refusal = [&](text::Language language) {

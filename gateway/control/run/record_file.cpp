@@ -352,6 +352,7 @@ bool RecordReader::read_change(std::string_view bytes) {
     }
     if (head.contains("tables")) {
       if (files_.empty()) return false;
+      files_.back()->process = change.process;
       change.file = files_.back();
       machine::MachineState state;
       for (const machine::StatePart part : kTableParts) {
@@ -368,7 +369,7 @@ bool RecordReader::read_change(std::string_view bytes) {
 }
 
 std::vector<ProgramChange> RecordReader::changes(const machine::MachineConfig& machine) const {
-  for (const std::shared_ptr<ProgramFile>& file : files_) file->model = program_model(machine);
+  for (const std::shared_ptr<ProgramFile>& file : files_) file->model = program_model(machine, file->process);
   return changes_;
 }
 

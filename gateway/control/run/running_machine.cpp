@@ -146,8 +146,10 @@ std::vector<RunningMachine::Lost> RunningMachine::close_files() {
 std::string RunningMachine::keep() {
   if (state_->folder.empty()) return {};
   machine::MachineState& state = state_->state;
-  if (const program::Tables* tables = control_->process(0).feeder().tables(); tables != nullptr)
-    state.tables = *tables;
+  const program::Tables given = state.tables;
+  for (int p = 0; p < machine().control.processes; ++p)
+    if (const program::Tables* tables = control_->process(p).feeder().tables(); tables != nullptr)
+      program::carry_over(given, *tables, state.tables);
   const image::ProcessImage& now = control_->cycle().image();
   const auto axes = control_->cycle().axes();
   for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -155,7 +157,7 @@ std::string RunningMachine::keep() {
     record.valid = now.axes[a].homed;
     record.offset_counts = axes[a].reference_counts();
   }
-  state.tool_in_spindle = now.processes[0].tool;
+  state.tool_in_spindle = now.processes[static_cast<std::size_t>(machine().tool_process())].tool;
   std::string error;
   if (!machine::StateDirectory(state_->folder).save_all(state, error)) return error;
   return keep_retained();
@@ -225,15 +227,16 @@ image::Nanoseconds RunningMachine::cycle_duration_ns() const {
   return control_->cycle().measured() ? control_->cycle().duration_ns() : -1;
 }
 
-bool RunningMachine::load(const std::string& program, std::vector<text::Finding>& findings) {
+bool RunningMachine::load(const std::string& program, std::vector<text::Finding>& findings, int process) {
   auto file = std::make_shared<ProgramFile>();
+  file->process = process;
   if (!open_program(machine(), program, {}, *file, findings)) return false;
   const ProgramCheck check = prove_program(machine(), *file, learned().tables, start_after_homing(machine()),
                                            channel::Forecast::Depth::drivable);
   findings.insert(findings.end(), check.report.findings.begin(), check.report.findings.end());
   for (const text::Finding& f : check.report.findings)
     if (f.severity == text::Severity::error) return false;
-  return control_->change({ProgramChange::Kind::program, 0, std::move(file), learned().tables, {}});
+  return control_->change({ProgramChange::Kind::program, process, std::move(file), learned().tables, {}});
 }
 
 bool RunningMachine::play(const std::string& point, std::optional<double> value, std::string& why) {

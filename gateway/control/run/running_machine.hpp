@@ -94,7 +94,7 @@ class RunningMachine final : public bench::Machine {
   image::Nanoseconds cycle_duration_ns() const override;
   bool post(const image::Request& request) override { return control_->cycle().post(request); }
   bool take(image::Answer& answer) override { return control_->cycle().take_answer(answer); }
-  bool load(const std::string& program, std::vector<text::Finding>& findings) override;
+  bool load(const std::string& program, std::vector<text::Finding>& findings, int process = 0) override;
   bool play(const std::string& point, std::optional<double> value, std::string& why) override;
   bool inject(std::string_view device, const fault::Fault& fault, std::string& why) override {
     return control_->faults().inject(device, fault, why);

@@ -54,6 +54,7 @@ report::TraceLayout trace_layout(const machine::MachineConfig& machine) {
   layout.period_ns = machine.cycle_ns();
   layout.axes = machine.letters();
   layout.spindles = static_cast<int>(machine.spindles.size());
+  layout.processes = machine.control.processes;
   layout.signals = trace_signals(machine);
   return layout;
 }
@@ -128,9 +129,15 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
   r.cycles = cycle.count();
   r.time_s = static_cast<double>(cycle.count() * cycle.period_ns()) / 1e9;
   r.overruns = overruns;
-  r.starved = image.processes[0].starved;
-  r.blocks = image.processes[0].blocks_done;
-  r.finished = image.processes[0].state == image::ProcessState::ended;
+  bool began = false, open = false;
+  for (int p = 0; p < image.process_count; ++p) {
+    const image::ProcessStatus& status = image.processes[static_cast<std::size_t>(p)];
+    r.starved += status.starved;
+    r.blocks += status.blocks_done;
+    began = began || status.run != 0;
+    open = open || (status.run != 0 && status.state != image::ProcessState::ended);
+  }
+  r.finished = began && !open;
   r.virtual_speed = wall_s > 0.0 ? r.time_s / wall_s : 0.0;
   // In both languages: the page has a switch.
   r.alarms = alarm_entries(control_, cycle.alarms().history(), text::Language::english);

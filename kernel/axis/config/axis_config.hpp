@@ -74,7 +74,7 @@ struct BrakeData {
 /// Everything an axis is, as plain data from the machine file. mm or degrees, seconds; a lathe's X is a
 /// radius.
 struct AxisConfig {
-  int process = 0;  ///< whose programs move it, and nobody else's
+  int process = 0;  ///< whose programs move it at first; see Axis::assign()
   bool rotary = false;
   bool auxiliary = false;                ///< the PLC moves it (magazine, chuck); no program, nobody by hand
   std::int64_t counts_numerator = 1000;  ///< exactly numerator / denominator counts make one mm or degree

@@ -14,10 +14,13 @@ bool passes(const program::Command& command) {
 
 }  // namespace
 
-Forecast::Forecast(Depth depth, const path::Config& config, AxisMap axes, const program::Position& start)
+Forecast::Forecast(Depth depth, const path::Config& config, AxisMap axes, const program::Position& start,
+                   std::uint32_t own)
     : config_(config),
       elements_(config, std::move(axes), SpindleAt::halfway),
-      at_(elements_.path_position(start)) {
+      at_(elements_.path_position(start)),
+      stands_(start) {
+  elements_.own(own);
   if (depth == Depth::timed) time_.emplace(config, at_);
 }
 
@@ -35,6 +38,13 @@ std::optional<text::Finding> Forecast::take(const program::Command& command) {
   if (const auto* spindle = std::get_if<program::Spindle>(&command.what)) elements_.take(*spindle);
   if (time_ && !passes(command)) time_->rest();
   return std::nullopt;
+}
+
+int Forecast::foreign_axis(const program::Command& command) {
+  const int axis = elements_.foreign_axis(command, stands_);
+  if (axis >= 0)
+    stands_[static_cast<std::size_t>(axis)] = (*destination(command))[static_cast<std::size_t>(axis)];
+  return axis;
 }
 
 double Forecast::motion_seconds() {

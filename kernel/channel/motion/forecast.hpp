@@ -16,11 +16,16 @@ class Forecast {
     drivable,  ///< whether each element can be driven
     timed,     ///< the path is planned, too: how long it takes
   };
-  Forecast(Depth depth, const path::Config& config, AxisMap axes, const program::Position& start);
+  /// `own`: the machine axes that the program may move, as bits.
+  Forecast(Depth depth, const path::Config& config, AxisMap axes, const program::Position& start,
+           std::uint32_t own = ~std::uint32_t{0});
 
   /// The next command of the program. nullopt: it can be driven; otherwise what keeps it from that (without
   /// its place), and the next command begins where it would have ended.
   std::optional<text::Finding> take(const program::Command& command);
+  /// A machine axis that the command would move although it is another process', -1: none; what follows is
+  /// judged from where it would have moved it.
+  int foreign_axis(const program::Command& command);
   /// Of all motion taken so far at an override of 100 %, s, ramps and corners included, as if it ended here;
   /// 0 unless timed. M, S, T, dwells and waits take their own.
   double motion_seconds();
@@ -31,6 +36,7 @@ class Forecast {
   path::Config config_;
   PathElements elements_;
   path::Vector at_{};
+  program::Position stands_;  ///< of the axes of other processes
   std::optional<path::PathTime> time_;
   double before_s_ = 0.0;  ///< of what lies before the last element that cannot be driven
 };

@@ -25,7 +25,9 @@ path::Transition transition(const program::CornerRule& corner) {
 }  // namespace
 
 PathElements::PathElements(const path::Config& config, AxisMap axes, SpindleAt spindle_at)
-    : config_(config), axes_(std::move(axes)), spindle_at_(spindle_at) {}
+    : config_(config), axes_(std::move(axes)), spindle_at_(spindle_at) {
+  for (const int a : axes_.machine) own_ |= std::uint32_t{1} << a;
+}
 
 path::Vector PathElements::path_position(const program::Position& at) const {
   path::Vector path{};
@@ -35,15 +37,11 @@ path::Vector PathElements::path_position(const program::Position& at) const {
 }
 
 int PathElements::foreign_axis(const program::Command& command, const program::Position& stands) const {
-  const program::Position* to = nullptr;
-  if (const auto* rapid = std::get_if<program::Rapid>(&command.what)) to = &rapid->to;
-  if (const auto* line = std::get_if<program::Line>(&command.what)) to = &line->to;
-  if (const auto* arc = std::get_if<program::Arc>(&command.what)) to = &arc->to;
+  const program::Position* const to = destination(command);
   if (to == nullptr) return -1;
   constexpr double kStands = 1e-9;  // mm or degrees
   for (std::size_t a = 0; a < to->size(); ++a) {
-    const bool own =
-        std::find(axes_.machine.begin(), axes_.machine.end(), static_cast<int>(a)) != axes_.machine.end();
+    const bool own = (own_ >> a & 1u) != 0;
     if (!own && std::abs((*to)[a] - stands[a]) > kStands) return static_cast<int>(a);
   }
   return -1;
@@ -140,11 +138,14 @@ double PathElements::rpm(const path::Element& e, const path::Vector& from) const
   return std::max(surface_rpm(surface_speed_, radius_of(e, from), limit), axes_.spindle_min_rpm);
 }
 
-bool is_motion(const program::Command& command) {
-  return std::holds_alternative<program::Rapid>(command.what) ||
-         std::holds_alternative<program::Line>(command.what) ||
-         std::holds_alternative<program::Arc>(command.what);
+const program::Position* destination(const program::Command& command) {
+  if (const auto* rapid = std::get_if<program::Rapid>(&command.what)) return &rapid->to;
+  if (const auto* line = std::get_if<program::Line>(&command.what)) return &line->to;
+  if (const auto* arc = std::get_if<program::Arc>(&command.what)) return &arc->to;
+  return nullptr;
 }
+
+bool is_motion(const program::Command& command) { return destination(command) != nullptr; }
 
 text::Finding foreign(const std::string& letter) {
   text::Finding finding;

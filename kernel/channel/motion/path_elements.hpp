@@ -12,7 +12,8 @@
 
 namespace servogate::channel {
 
-/// How path axes lie among the machine's, and what an axis order means.
+/// How path axes lie among the machine's, and what an axis order means. The path of a process has the axes of
+/// all of them: those of the others rest on it, so that an axis may be handed over between two runs.
 struct AxisMap {
   std::vector<int> machine;      ///< machine axis of each path axis
   int surface_speed_axis = -1;   ///< machine axis whose position is the radius for G96; -1: none
@@ -34,8 +35,10 @@ class PathElements {
 
   /// The path axes of a machine position.
   path::Vector path_position(const program::Position& at) const;
+  /// The machine axes that the programs move, as bits; without it all axes of the path.
+  void own(std::uint32_t machine_axes) noexcept { own_ = machine_axes; }
   /// A machine axis that a motion command would take away from where it `stands` although it is another
-  /// process'; -1: none. A program's own axes are those of the path.
+  /// process'; -1: none.
   int foreign_axis(const program::Command& command, const program::Position& stands) const;
   /// From here on feeds per revolution are those of this spindle word.
   void take(const program::Spindle& spindle);
@@ -51,12 +54,15 @@ class PathElements {
   path::Config config_;
   AxisMap axes_;
   SpindleAt spindle_at_;
+  std::uint32_t own_ = 0;
   double spindle_rpm_ = 0.0;
   double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0, surface_center_ = 0.0;
 };
 
 /// True for Rapid, Line and Arc.
 bool is_motion(const program::Command& command);
+/// Where one of them ends; nullptr: it is another command.
+const program::Position* destination(const program::Command& command);
 /// Why a motion of an axis of another process is refused; the place is for the caller to fill in.
 text::Finding foreign(const std::string& letter);
 /// What keeps an element with this flaw from being driven; the place is for the caller to fill in.

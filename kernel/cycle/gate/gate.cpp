@@ -58,7 +58,7 @@ constexpr Kinds kJogs{jog_increment, jog_continuous, keep_alive};
 constexpr Kinds kResets{reset, acknowledge};
 constexpr Kinds kProgram{start, step, resume, mode, override_feed};
 constexpr Kinds kPlaces{set_place, force, release_force, logic, logic_scan};
-constexpr Kinds kPanel = kStops | kJogs | kResets | kProgram | Kinds{power, home, zero};
+constexpr Kinds kPanel = kStops | kJogs | kResets | kProgram | Kinds{power, home, zero, assign};
 /// Of the auxiliary axes, the PLC's alone.
 constexpr Kinds kMoves{move_absolute, move_relative, move_velocity, torque};
 constexpr Kinds kAuxiliary = kMoves | Kinds{axis_power, axis_home, axis_stop, axis_reset};
@@ -69,7 +69,7 @@ constexpr Kinds kTakesAway = kStops | Kinds{reset, axis_stop, axis_reset};
 constexpr Kinds kTakesAwayAtZero{power, axis_power, override_feed};
 
 /// What speaks to a process. All else works on a machine that has none (a bench of drives) just as well.
-constexpr Kinds kOfProcess = kProgram | Kinds{hold, zero};
+constexpr Kinds kOfProcess = kProgram | Kinds{hold, zero, assign};
 /// What may bring its mode along.
 constexpr Kinds kWithMode{home, jog_increment, jog_continuous, start, step};
 
@@ -173,9 +173,7 @@ class Decision {
     return true;
   }
   /// The axis is one that the programs of the request's process move.
-  bool of_process(const Axis& a) const noexcept {
-    return !a.config().auxiliary && a.config().process == r_.process;
-  }
+  bool of_process(const Axis& a) const noexcept { return !a.config().auxiliary && a.process() == r_.process; }
   bool power() noexcept;
   bool not_switching_off(const Axis& a) noexcept;
   bool home() noexcept;
@@ -189,6 +187,7 @@ class Decision {
   bool logic_scan() noexcept;
   bool drives_off() noexcept;
   bool zero() noexcept;
+  bool assign() noexcept;
   bool mode() noexcept;
   bool mode_of_request() noexcept;
   image::Mode mode_in_force() const noexcept {
@@ -211,7 +210,7 @@ class Decision {
 };
 
 Answer Decision::run() noexcept {
-  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::torque;
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::assign;
   if (!known)
     refuse(Refusal::unknown_request);
   else if (!may_ask(r_.asker).has(r_.kind))
@@ -238,6 +237,8 @@ bool Decision::decide_kind() noexcept {
       return r_.axis < 0 || axis_known();
     case RequestKind::zero:
       return zero();
+    case RequestKind::assign:
+      return assign();
     case RequestKind::mode:
       return mode();
     case RequestKind::start:
@@ -293,7 +294,7 @@ bool Decision::home() noexcept {
   const bool named = r_.axis >= 0 || r_.value != 0.0;
   if (!no_alarm(Reaction::stop_on_path)) return false;
   for (const Axis& a : c_.axes)
-    if ((mask >> a.index() & 1u) != 0 && !no_program_of(a.config().process)) return false;
+    if ((mask >> a.index() & 1u) != 0 && !no_program_of(a.process())) return false;
   if (!no_homing() || !not_held_by_another()) return false;
   for (const Axis& a : c_.axes) {
     if ((mask >> a.index() & 1u) == 0) continue;
@@ -315,7 +316,7 @@ bool Decision::jog() noexcept {
   const double longest = config.travel_limited ? config.travel_max - config.travel_min : kLargestCoordinate;
   if (!continuous && std::abs(r_.value) > longest)
     return refuse(Refusal::jog_range, r_.axis, r_.value, longest);
-  if (!no_alarm(Reaction::stop_on_path) || !no_program_of(config.process) || !no_homing() ||
+  if (!no_alarm(Reaction::stop_on_path) || !no_program_of(a.process()) || !no_homing() ||
       !not_held_by_another())
     return false;
   if (!ready(a) || !free(a)) return false;
@@ -444,10 +445,20 @@ bool Decision::zero() noexcept {
   if (std::abs(r_.value) > kLargestCoordinate)
     return refuse(Refusal::zero_range, r_.axis, r_.value, kLargestCoordinate);
   const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
-  if (!no_program_of(a.config().process)) return false;
+  if (!no_program_of(a.process())) return false;
   if (!free(a)) return false;
   if (!a.homed()) return refuse(Refusal::not_homed, r_.axis);
   return !a.moving() || refuse(Refusal::axis_moves, r_.axis);
+}
+
+/// Neither process may have a program under way: what it has planned would meet other axes than it began
+/// with.
+bool Decision::assign() noexcept {
+  if (!axis_known()) return false;
+  const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
+  if (!no_program_of(a.process()) || !no_program_of(r_.process)) return false;
+  if (!no_homing() || !not_held_by_another() || !free(a)) return false;
+  return a.standstill() || refuse(Refusal::axis_moves, r_.axis);
 }
 
 bool Decision::mode() noexcept {

@@ -136,7 +136,8 @@ constexpr text::Entry kTexts[] = {
      "это место защищает от движения или включения, его удерживают и освобождают только при останове: "
      "шпинделю {1} задано вращение, или он ещё вращается (`servogate reset` остановит его)"},
     {"gate.too_old",
-     "the request waited for {1} ms before the control could carry it out, and {2} ms is the longest: nothing "
+     "the request waited for {1} ms before the control could carry it out, and {2} ms is the longest: "
+     "nothing "
      "was done; send it again if it is still wanted",
      "запрос ждал {1} мс, прежде чем управление смогло его выполнить, а можно не больше {2} мс: ничего не "
      "сделано; если он ещё нужен, повторите его"},
@@ -191,7 +192,8 @@ constexpr std::string_view kKinds[][2] = {{"none", "нет"},
                                           {"stop an auxiliary axis", "останов вспомогательной оси"},
                                           {"reset an auxiliary axis", "сброс вспомогательной оси"},
                                           {"hold the PLC for single scans", "отдельные сканы ПЛК"},
-                                          {"torque of an auxiliary axis", "момент вспомогательной оси"}};
+                                          {"torque of an auxiliary axis", "момент вспомогательной оси"},
+                                          {"give an axis to a process", "передача оси процессу"}};
 
 template <std::size_t N>
 std::string word(const std::string_view (&table)[N][2], double index, Language language) {

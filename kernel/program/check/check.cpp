@@ -241,9 +241,9 @@ bool CheckReport::good() const {
 
 CheckReport check_program(std::string_view dialect, const MachineModel& machine, const Tables& tables,
                           const std::string& file_name, const std::string& text, const ProgramLoader& loader,
-                          const Position& start, const CommandCheck& also) {
+                          const Position& start, const CommandCheck& also, int process) {
   CheckReport report;
-  Interpreter interpreter(dialect, without_travel(machine), tables, file_name, text, loader, start);
+  Interpreter interpreter(dialect, without_travel(machine), tables, file_name, text, loader, start, process);
   report.findings = interpreter.findings();
   report.of_run = report.findings.size();
   report.blocks = interpreter.block_count();

@@ -58,10 +58,11 @@ using CommandCheck = std::function<std::optional<text::Finding>(const Command&)>
 /// Runs a program to its end without a machine: packets start at zero, own writes take effect in order,
 /// NeedsSync is granted at once, waits are passed; after kDryRunBlocks executed blocks more than it has it
 /// stops with an error. A motion that leaves the travel is found and the run goes on, so that the extents are
-/// those of the whole program. `also` (may be empty) sees each command. Not real-time safe. Never throws on
+/// those of the whole program. `also` (may be empty) sees each command; `process`
+/// (from 0) is that of the interpreter. Not real-time safe. Never throws on
 /// bad programs.
 CheckReport check_program(std::string_view dialect, const MachineModel& machine, const Tables& tables,
                           const std::string& file_name, const std::string& text, const ProgramLoader& loader,
-                          const Position& start, const CommandCheck& also = {});
+                          const Position& start, const CommandCheck& also = {}, int process = 0);
 
 }  // namespace servogate::program

@@ -66,14 +66,14 @@ class RecordedControl {
   bool load(const std::string& path) {
     return tests::comes([&] {
       resident_.read_tables();
-      gateway::Resident::Load load = resident_.begin_load(path, {});
+      gateway::Resident::Load load = resident_.begin_load(0, path, {});
       resident_.read_and_prove(load, {});
       return resident_.finish(load) == gateway::Resident::Load::End::done;
     });
   }
   /// The program goes by what the last run changed.
   void take_tables() {
-    if (auto proof = resident_.take_tables()) {
+    if (auto proof = resident_.take_tables(0)) {
       resident_.prove(*proof, {});
       resident_.proven(*proof);
     }
@@ -195,11 +195,11 @@ TEST(ResidentRecord, of_two_programs_with_a_stop_and_a_typed_block_between_repla
     ASSERT_TRUE(control.ask(RequestKind::stop));
     ASSERT_TRUE(control.until_state(ProcessState::idle));
     control.take_tables();
-    control.resident().set_manual_block("(UOT,0,X2)");
+    control.resident().set_manual_block(0, "(UOT,0,X2)");
     ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::mdi));
     ASSERT_TRUE(control.until_state(ProcessState::ended));
     control.take_tables();
-    control.resident().set_manual_block("G1 X12 Y3 F3000");
+    control.resident().set_manual_block(0, "G1 X12 Y3 F3000");
     ASSERT_TRUE(control.ask(RequestKind::start, 0.0, Mode::mdi));
     ASSERT_TRUE(control.until_state(ProcessState::ended));
     ASSERT_TRUE(control.load(second));

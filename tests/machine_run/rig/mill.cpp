@@ -82,7 +82,7 @@ Mill::Mill(const machine::LoadResult& loaded, std::string_view program, cycle::I
   }
   control_ = &machine_->control();
   judge_ = std::make_unique<LimitJudge>(control_->machine());
-  model_ = gateway::program_model(control_->machine());
+  model_ = gateway::program_model(control_->machine(), 0);
   if (!program_.empty())
     control_->process(0).load([this](const program::Position& start) {
       return program::Interpreter("nc110", model_, {}, "test.nc", program_, {}, start);

@@ -14,7 +14,7 @@ channel::InterpreterFactory interpreter_factory(const ProgramChange& change, Pro
     };
   return [file = change.file, tables = change.tables, loader](const program::Position& start) {
     return program::Interpreter(file->dialect, file->model, tables, file->path.empty() ? "MDI" : file->path,
-                                file->text, loader, start);
+                                file->text, loader, start, file->process);
   };
 }
 

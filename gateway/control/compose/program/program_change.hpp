@@ -22,7 +22,7 @@ struct ProgramChange {
     modes,    ///< MDI has its power-on modes again
   };
   Kind kind = Kind::program;
-  int process = 0;
+  int process = 0;                          ///< from 0
   std::shared_ptr<const ProgramFile> file;  ///< of `program` and `tables`
   program::Tables tables;
   std::string block;

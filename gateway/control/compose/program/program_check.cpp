@@ -56,16 +56,23 @@ Start start_after_homing(const machine::MachineConfig& machine) {
 }
 
 ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramFile& file,
-                           const program::Tables& tables, const program::Position& start,
-                           channel::Forecast::Depth depth, const std::stop_token& stop) {
-  const channel::ProcessConfig process = process_config(machine, 0);
-  channel::Forecast forecast(depth, process.path, process.axes, start);
+                           const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
+                           const std::stop_token& stop) {
+  const channel::ProcessConfig process = process_config(machine, file.process);
+  channel::Forecast forecast(depth, process.path, process.axes, start.at,
+                             start.axes.value_or(machine.axes_of_process(file.process)));
   ProgramCheck check;
-  check.report = program::check_program(file.dialect, file.model, tables, file.path, file.text, file.loader,
-                                        start, [&](const program::Command& c) {
-                                          if (stop.stop_requested()) throw Cancelled{};
-                                          return forecast.take(c);
-                                        });
+  check.report = program::check_program(
+      file.dialect, file.model, tables, file.path, file.text, file.loader, start.at,
+      [&](const program::Command& c) {
+        if (stop.stop_requested()) throw Cancelled{};
+        const std::optional<text::Finding> flaw = forecast.take(c);
+        const int axis = forecast.foreign_axis(c);
+        return axis < 0
+                   ? flaw
+                   : std::optional(channel::foreign(file.model.axes[static_cast<std::size_t>(axis)].letter));
+      },
+      file.process);
   check.motion_s = forecast.motion_seconds();
   return check;
 }
@@ -73,15 +80,15 @@ ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramF
 ProgramCheck prove_program(const machine::MachineConfig& machine, const ProgramFile& file,
                            const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
                            const std::stop_token& stop) {
-  ProgramCheck check = check_program(machine, file, tables, start.at, depth, stop);
+  ProgramCheck check = check_program(machine, file, tables, start, depth, stop);
   std::vector<text::Finding>& findings = check.report.findings;
   const auto of_run = findings.begin() + static_cast<std::ptrdiff_t>(check.report.of_run);
   if (std::none_of(of_run, findings.end(), is_error)) return check;
   for (const std::size_t f : check.report.by_machine) soften(findings[f], kBySignals);
   if (start.known || std::none_of(of_run, findings.end(), is_error)) return check;
   for (const double away : kElsewhere) {
-    program::Position other = start.at;
-    for (std::size_t a = 0; a < machine.program_axes(); ++a) other[a] += away * static_cast<double>(a + 1);
+    Start other = start;
+    for (std::size_t a = 0; a < machine.program_axes(); ++a) other.at[a] += away * static_cast<double>(a + 1);
     const ProgramCheck from_there =
         check_program(machine, file, tables, other, channel::Forecast::Depth::drivable, stop);
     for (auto f = of_run; f != findings.end(); ++f)

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <stop_token>
 
 #include "gateway/control/compose/program/program_file.hpp"
@@ -15,10 +17,11 @@ struct ProgramCheck {
   double seconds() const { return motion_s + report.dwell_seconds; }
 };
 
-/// Where the axes stand when the program begins.
+/// Where the axes stand when the program begins, and which of them it may move.
 struct Start {
   program::Position at{};
-  bool known = false;  ///< false: they may stand elsewhere by then
+  bool known = false;                      ///< false: they may stand elsewhere by then
+  std::optional<std::uint32_t> axes = {};  ///< of the process, as bits; those of the machine file
 };
 /// Where homing leaves the axes; known where it moves all of them.
 Start start_after_homing(const machine::MachineConfig& machine);
@@ -30,8 +33,8 @@ struct Cancelled {};
 /// channel whether its motion can be driven, and for how long. Throws Cancelled soon after `stop` asks for
 /// it. Not real-time safe.
 ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramFile& file,
-                           const program::Tables& tables, const program::Position& start,
-                           channel::Forecast::Depth depth, const std::stop_token& stop = {});
+                           const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
+                           const std::stop_token& stop = {});
 
 /// The same for a program that is about to run: an error stays one only where the machine cannot make a
 /// difference. One that is met after the program has read a signal, or only from some places of the axes,

@@ -57,7 +57,7 @@ bool open_program(const machine::MachineConfig& machine, const std::string& path
   }
   out.path = path;
   out.text = std::move(*content);
-  out.model = program_model(machine);
+  out.model = program_model(machine, out.process);
   out.loader = program_loader(path);
   return true;
 }

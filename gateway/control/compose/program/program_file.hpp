@@ -14,6 +14,7 @@ namespace servogate::gateway {
 struct ProgramFile {
   std::string path;  ///< as it was given; empty: no program, only typed blocks
   std::string dialect, text;
+  int process = 0;  ///< that runs it, from 0
   program::MachineModel model;
   program::ProgramLoader loader;
 };
@@ -25,7 +26,8 @@ bool known_dialect(const std::string& dialect);
 /// Names of all languages, for a message.
 std::string dialect_names();
 
-/// Reads the program and settles its dialect (`dialect`, empty: the machine's own). False: a finding says why
+/// Reads the program for the process `out.process` and settles its dialect (`dialect`, empty: the machine's
+/// own). False: a finding says why
 /// not, `out` is unchanged but for its dialect. The program's own errors are the interpreter's.
 bool open_program(const machine::MachineConfig& machine, const std::string& path, const std::string& dialect,
                   ProgramFile& out, std::vector<text::Finding>& findings);

@@ -10,7 +10,7 @@
 
 namespace servogate::gateway {
 
-program::MachineModel program_model(const machine::MachineConfig& machine) {
+program::MachineModel program_model(const machine::MachineConfig& machine, int process) {
   program::MachineModel model;
   for (const machine::AxisConfig& a : machine.axes) {
     if (a.auxiliary) continue;  // behind all others
@@ -25,10 +25,12 @@ program::MachineModel program_model(const machine::MachineConfig& machine) {
     axis.rapid = a.max_velocity;
     model.axes.push_back(axis);
   }
-  model.spindles = static_cast<int>(machine.spindles.size());
-  if (!machine.spindles.empty()) {
-    model.spindle_min_rpm = machine.spindles[0].min_speed;
-    model.spindle_max_rpm = machine.spindles[0].max_speed;
+  model.spindles =
+      static_cast<int>(std::count_if(machine.spindles.begin(), machine.spindles.end(),
+                                     [process](const auto& s) { return s.process == process + 1; }));
+  if (const machine::SpindleConfig* spindle = machine.spindle_of_process(process); spindle != nullptr) {
+    model.spindle_min_rpm = spindle->min_speed;
+    model.spindle_max_rpm = spindle->max_speed;
   }
   model.tool_places = machine.control.tool_places;
   model.contour_tolerance_mm = machine.control.contour_tolerance;

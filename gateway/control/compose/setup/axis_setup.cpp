@@ -129,6 +129,7 @@ image::Reaction loss_reaction(machine::LossReaction reaction) {
 axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& a) {
   const machine::MachineConfig& m = loaded.machine;
   axis::AxisConfig c;
+  c.process = a.process - 1;
   c.rotary = a.type == machine::AxisType::rotary;
   c.auxiliary = a.auxiliary;
   exact_ratio(a.counts_per_rev, a.gear[0], a.gear[1], a.lead, c.counts_numerator, c.counts_denominator);
@@ -183,6 +184,7 @@ std::int64_t counts_per_motor_turn(const machine::SpindleConfig& s) {
 
 axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& s) {
   axis::SpindleConfig c;
+  c.process = s.process - 1;
   c.drive = drive_place(loaded.machine, s.drive);
   c.inverter = inverter(loaded.machine, s);
   c.encoder = s.has_encoder();
@@ -217,11 +219,12 @@ channel::ProcessConfig process_config(const machine::MachineConfig& m, int index
     c.axes.machine.push_back(i);
     c.path.limits[static_cast<std::size_t>(i)] = {a.max_velocity, a.max_acceleration, a.max_jerk};
     c.path.rotary[static_cast<std::size_t>(i)] = a.type == machine::AxisType::rotary;
-    if (a.diameter) c.axes.surface_speed_axis = i;
+    if (a.diameter && (c.axes.surface_speed_axis < 0 || a.process == index + 1))
+      c.axes.surface_speed_axis = i;
   }
-  if (!m.spindles.empty()) {
-    c.axes.spindle_min_rpm = m.spindles[0].min_speed;
-    c.axes.spindle_max_rpm = m.spindles[0].max_speed;
+  if (const machine::SpindleConfig* spindle = m.spindle_of_process(index); spindle != nullptr) {
+    c.axes.spindle_min_rpm = spindle->min_speed;
+    c.axes.spindle_max_rpm = spindle->max_speed;
   }
   c.handshake_timeout_s = m.plc.handshake_timeout;
   return c;

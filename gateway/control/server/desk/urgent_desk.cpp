@@ -76,6 +76,8 @@ std::optional<Reply> UrgentDesk::take(const Question& question, bool ending) {
   if (!row) return refuse(says::kUnknown, {}, kWrongUse, caller.language);
   image::Request r{.asker = caller.asker, .kind = row->kind, .process = -1, .client = caller.hand().client};
   if (row->kind == RequestKind::power) r.process = 0;
+  if (const auto* hold = std::get_if<ask::Hold>(&question.command))
+    r.process = static_cast<std::int8_t>(hold->process);
   if (const auto* jog = std::get_if<ask::JogStop>(&question.command)) {
     if (jog->axis) {
       FormProblem problem;
@@ -90,7 +92,7 @@ std::optional<Reply> UrgentDesk::take(const Question& question, bool ending) {
   const bool jogs = row->kind == RequestKind::jog_stop;
   pending.said = row->said != nullptr ? row->said
                  : jogs               ? &said_of_jog_stop(image(), r.axis)
-                                      : &said_of_hold();
+                                      : &said_of_hold(r.process);
   if (const auto own = jogs_.find(question.ticket.client); jogs && own != jogs_.end())
     std::erase_if(own->second, [&](const HeldJog& j) { return r.axis < 0 || j.axis == r.axis; });
   pending.asked = Clock::now();
@@ -101,10 +103,11 @@ std::optional<Reply> UrgentDesk::take(const Question& question, bool ending) {
 }
 
 /// What a hold is about to meet.
-const text::Entry& UrgentDesk::said_of_hold() const {
+const text::Entry& UrgentDesk::said_of_hold(int process) const {
   control_.cycle().read(*image_);
   const image::ProcessImage& now = *image_;
   for (int p = 0; p < now.process_count; ++p) {
+    if (process >= 0 && p != process) continue;
     const image::ProcessState state = now.processes[static_cast<std::size_t>(p)].state;
     if (state == image::ProcessState::running || state == image::ProcessState::held ||
         state == image::ProcessState::waiting)

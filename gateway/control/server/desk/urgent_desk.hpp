@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "gateway/control/compose/control.hpp"
-#include "gateway/control/server/resident/work/question.hpp"
 #include "gateway/control/server/protocol/reply.hpp"
+#include "gateway/control/server/resident/work/question.hpp"
 
 namespace servogate::gateway {
 
@@ -60,7 +60,7 @@ class UrgentDesk {
   static std::optional<image::JogEnd> end_of(const HeldJog& jog, const image::AxisImage& axis);
   Reply keep_alive(const ask::KeepAlive& wanted, const Question& question);
   Reply ended(const HeldJog& jog, image::JogEnd end, bool others, text::Language language) const;
-  const text::Entry& said_of_hold() const;
+  const text::Entry& said_of_hold(int process) const;
   std::optional<Reply> answer_of(Pending& pending);
   void stop(int axis, const image::Hand& hand);
   const image::ProcessImage& image();

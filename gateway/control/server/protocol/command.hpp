@@ -6,8 +6,9 @@
 #include <vector>
 
 /// What a client can ask the control for, one type for each command of docs/control-socket.md. Axes are said
-/// by their letters; lengths are as programs write them, in the unit of the axis (a diameter on a diameter
-/// axis).
+/// by their letters, processes by their
+/// number from 0 (JSON: from 1); lengths are as programs write them, in the unit of the axis (a diameter on a
+/// diameter axis).
 namespace servogate::gateway::ask {
 
 // What is looked at.
@@ -49,16 +50,30 @@ struct Zero {
 };
 struct Override {
   double percent = 100.0;
+  int process = 0;
 };
 struct Load {
   std::string program, dialect;  ///< dialect empty: the machine's
+  int process = 0;
 };
-struct Start {};
-struct Step {};
+struct Start {
+  int process = 0;
+};
+struct Step {
+  int process = 0;
+};
 struct Mdi {
   std::string block;
+  int process = 0;
 };
-struct Resume {};
+struct Resume {
+  int process = 0;
+};
+/// Another process' programs move the axis from now on.
+struct Assign {
+  std::string axis;
+  int process = 0;
+};
 struct Reset {};
 struct Acknowledge {};
 /// Plays an input of a simulated station; neither a level nor a number: it follows the world again.
@@ -70,7 +85,9 @@ struct Input {
 // What takes motion or energy away, or keeps a jog alive.
 struct Stop {};
 struct QuickStop {};
-struct Hold {};
+struct Hold {
+  int process = -1;  ///< -1: all, and whatever moves by hand
+};
 struct JogStop {
   std::optional<std::string> axis;  ///< none: all
 };
@@ -104,10 +121,10 @@ struct PlcWatch {
 };
 struct PlcList {};
 
-using Command =
-    std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero, Override,
-                 Load, Start, Step, Mdi, Resume, Reset, Acknowledge, Input, Stop, QuickStop, Hold, JogStop,
-                 KeepAlive, Down, PlcLoad, PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
+using Command = std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero,
+                             Override, Load, Start, Step, Mdi, Resume, Assign, Reset, Acknowledge, Input,
+                             Stop, QuickStop, Hold, JogStop, KeepAlive, Down, PlcLoad, PlcForce, PlcRelease,
+                             PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
 
 template <typename... Kinds>
 bool is_any(const Command& command) noexcept {

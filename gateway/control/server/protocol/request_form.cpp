@@ -47,13 +47,14 @@ constexpr struct {
                {"", "body", kText},         {"", "times", kSwitch},        {"", "stay", kSwitch},
                {"", "files", kList},        {"", "online", kSwitch},       {"", "while_running", kSwitch},
                {"", "bus", kText},          {"", "node", kNumber},         {"", "index", kNumber},
-               {"", "subindex", kNumber},   {"", "scans", kNumber},        {"", "count", kNumber}};
+               {"", "subindex", kNumber},   {"", "scans", kNumber},        {"", "count", kNumber},
+               {"", "process", kNumber}};
 
 /// Without which a request says nothing.
 constexpr struct {
   std::string_view command, key;
-} kNeeded[] = {{"jog", "axis"},     {"jog_continuous", "axis"}, {"zero", "axis"},
-               {"load", "program"}, {"mdi", "block"},           {"input", "point"}};
+} kNeeded[] = {{"jog", "axis"},  {"jog_continuous", "axis"}, {"zero", "axis"},  {"load", "program"},
+               {"mdi", "block"}, {"input", "point"},         {"assign", "axis"}};
 
 std::string what_stands(const json& value) {
   switch (value.type()) {
@@ -202,6 +203,16 @@ class Fields {
     const auto value = large ? -1 : found->get<std::int64_t>();
     return value >= 0 && value <= most ? static_cast<int>(value) : -1;
   }
+  /// From 0, of the field that counts from 1; whether the machine has it is the desk's matter.
+  int process(int otherwise) {
+    if (!request_.contains("process")) return otherwise;
+    const int number = whole("process", image::kMaxProcesses);
+    if (number < 1) {
+      problem_.entry = &says::kNotProcess;
+      problem_.arguments = {std::to_string(image::kMaxProcesses)};
+    }
+    return number - 1;
+  }
   std::variant<std::monostate, bool, double> played(const char* key) {
     const json value = request_.value(key, json());
     if (value.is_boolean()) return value.get<bool>();
@@ -247,15 +258,25 @@ constexpr struct {
      [](Fields& f) -> Command {
        return ask::Zero{f.text("axis"), f.number("value", 0.0), f.text("unit")};
      }},
-    {"override", [](Fields& f) -> Command { return ask::Override{f.needed("value")}; }},
+    {"override",
+     [](Fields& f) -> Command {
+       return ask::Override{f.needed("value"), f.process(0)};
+     }},
     {"load",
      [](Fields& f) -> Command {
-       return ask::Load{f.text("program"), f.text("dialect")};
+       return ask::Load{f.text("program"), f.text("dialect"), f.process(0)};
      }},
-    {"start", [](Fields&) -> Command { return ask::Start{}; }},
-    {"step", [](Fields&) -> Command { return ask::Step{}; }},
-    {"mdi", [](Fields& f) -> Command { return ask::Mdi{f.text("block")}; }},
-    {"resume", [](Fields&) -> Command { return ask::Resume{}; }},
+    {"start", [](Fields& f) -> Command { return ask::Start{f.process(0)}; }},
+    {"step", [](Fields& f) -> Command { return ask::Step{f.process(0)}; }},
+    {"mdi",
+     [](Fields& f) -> Command {
+       return ask::Mdi{f.text("block"), f.process(0)};
+     }},
+    {"resume", [](Fields& f) -> Command { return ask::Resume{f.process(0)}; }},
+    {"assign",
+     [](Fields& f) -> Command {
+       return ask::Assign{f.text("axis"), f.process(0)};
+     }},
     {"reset", [](Fields&) -> Command { return ask::Reset{}; }},
     {"acknowledge", [](Fields&) -> Command { return ask::Acknowledge{}; }},
     {"input",
@@ -264,7 +285,7 @@ constexpr struct {
      }},
     {"stop", [](Fields&) -> Command { return ask::Stop{}; }},
     {"quick_stop", [](Fields&) -> Command { return ask::QuickStop{}; }},
-    {"hold", [](Fields&) -> Command { return ask::Hold{}; }},
+    {"hold", [](Fields& f) -> Command { return ask::Hold{f.process(-1)}; }},
     {"jog_stop", [](Fields& f) -> Command { return ask::JogStop{f.text_if("axis")}; }},
     {"keep_alive", [](Fields& f) -> Command { return ask::KeepAlive{f.text_if("axis")}; }},
     {"down", [](Fields&) -> Command { return ask::Down{}; }},

@@ -20,6 +20,8 @@ namespace servogate::gateway {
 /// One process of a running control: its part of the image, and what that means in words.
 struct ProcessReport {
   image::ProcessStatus status;
+  std::string program;               ///< that is loaded; empty: none
+  int blocks = 0, lines = 0;         ///< of its file
   std::optional<std::string> block;  ///< that was typed and is under way
   std::optional<StopWords> stop;
   std::string file;  ///< of the block in motion; empty: none, or a typed one
@@ -78,9 +80,8 @@ struct WorkReport {
 
 /// State of a running control: modes, program, axes, spindles, buses, lines, alarms, and what waits for whom.
 struct StatusReport {
-  std::string machine, program;
+  std::string machine;
   double time_s = 0.0;
-  int blocks = 0, lines = 0;
   bool homing = false, ending = false;
   std::vector<std::string> homing_left;
   std::vector<ProcessReport> processes;

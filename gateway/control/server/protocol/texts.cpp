@@ -24,6 +24,8 @@ const Entry kNoAxis{"socket.no-axis", "the machine has no axis '{0}'; it has {1}
 const Entry kNotUnit{"socket.not-unit", "'{0}' is not the unit of {1}: it moves in {2}",
                      "«{0}» — не единица оси {1}: её единица — {2}"};
 const Entry kNoNumber{"socket.no-number", "'{0}' must be a number", "«{0}» должно быть числом"};
+const Entry kNotProcess{"socket.not-process", "'process' must be a whole number from 1 to {0}",
+                        "«process» должно быть целым числом от 1 до {0}"};
 const Entry kNotSwitch{"socket.not-switch", "'{0}' must be 1 or 0", "«{0}» должно быть 1 или 0"};
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
                       "цикл не ответил; работает ли он?"};
@@ -93,6 +95,8 @@ const Entry kZero{"said.zero", "{0} is {1} {2} here (origin {3} at {4})",
 const Entry kZeroDiameter{"said.zero-diameter", "{0} is {1} {2} in diameter here (origin {3} at radius {4})",
                           "{0} здесь равна {1} {2} по диаметру (начало {3} на радиусе {4})"};
 const Entry kBlockRuns{"said.block-runs", "the block runs{0}", "кадр выполняется{0}"};
+const Entry kAssigned{"said.assigned", "the programs of process {1} move {0} from now on",
+                      "{0} теперь перемещают программы процесса {1}"};
 const Entry kLoaded{"said.loaded", "{0} is loaded: {1} blocks, {2} warnings",
                     "{0} загружена: кадров {1}, предупреждений {2}"};
 const Entry kStarted{"said.started", "{0} runs", "{0} выполняется"};

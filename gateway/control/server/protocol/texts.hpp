@@ -19,6 +19,7 @@ extern const text::Entry kUnknownAsker;      ///< {0} asker, {1} known ones
 extern const text::Entry kNoAxis;            ///< {0} axis, {1} axes of the machine
 extern const text::Entry kNotUnit;           ///< {0} unit, {1} axis, {2} its unit
 extern const text::Entry kNoNumber;          ///< {0} key
+extern const text::Entry kNotProcess;        ///< {0} the largest possible
 extern const text::Entry kNotSwitch;         ///< {0} key
 extern const text::Entry kNoAnswer;          ///< the cycle stands
 extern const text::Entry kWithdrawn;         ///< the same, and the request was withdrawn
@@ -52,6 +53,7 @@ extern const text::Entry kJogs;         ///< {0} axis, {1} direction
 extern const text::Entry kZero;         ///< {0} axis, {1} value, {2} unit, {3} origin, {4} machine coordinate
 extern const text::Entry kZeroDiameter;  ///< as kZero
 extern const text::Entry kBlockRuns;
+extern const text::Entry kAssigned;     ///< {0} axis, {1} process
 extern const text::Entry kLoaded;       ///< {0} program, {1} blocks, {2} warnings
 extern const text::Entry kStarted;      ///< {0} program
 extern const text::Entry kTypedGoesOn;  ///< {0} block

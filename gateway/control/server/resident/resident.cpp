@@ -24,12 +24,16 @@ Resident::Resident(Control& control, machine::MachineState state, std::string st
       state_path_(std::move(state_path)),
       speed_(speed),
       requests_(control.cycle()) {
-  ProgramFile none;
-  none.dialect = control.machine().control.dialect;
-  none.model = program_model(control.machine());
-  none.loader = program_loader({});
-  file_ = std::make_shared<const ProgramFile>(std::move(none));
-  arm(ProgramChange::Kind::program);
+  seats_.resize(static_cast<std::size_t>(control.machine().control.processes));
+  for (int p = 0; p < processes(); ++p) {
+    ProgramFile none;
+    none.process = p;
+    none.dialect = control.machine().control.dialect;
+    none.model = program_model(control.machine(), p);
+    none.loader = program_loader({});
+    seat(p).file = std::make_shared<const ProgramFile>(std::move(none));
+    arm(p, ProgramChange::Kind::program);
+  }
 }
 
 RequestDesk::Outcome Resident::ask(const image::Request& request, image::Answer& answer, const Asked& asked) {
@@ -48,63 +52,98 @@ void Resident::catch_up() {
     std::this_thread::sleep_for(std::chrono::microseconds(500));
 }
 
-bool Resident::busy() {
-  const image::ProcessState state = image().processes[0].state;
+bool Resident::busy(int process) {
+  const image::ProcessState state = image().processes[static_cast<std::size_t>(process)].state;
   return state == image::ProcessState::running || state == image::ProcessState::held ||
          state == image::ProcessState::waiting;
 }
 
-bool Resident::stopping() const { return control_.process(0).stopping(); }
-
-bool Resident::typed() { return busy() && image_.processes[0].typed; }
-
-bool Resident::steps() { return busy() && image_.processes[0].mode == image::Mode::step; }
-
-/// False: a program is being read just now, nothing was changed.
-bool Resident::arm(ProgramChange::Kind kind) {
-  own_tables_ = false;
-  if (refused_.empty()) return control_.change({kind, 0, file_, state_.tables, {}});
-  // Whoever starts, a start button too, must not find it.
-  auto none = std::make_shared<ProgramFile>(*file_);
-  none->path.clear();
-  none->text.clear();
-  return control_.change({kind, 0, std::move(none), state_.tables, {}});
+bool Resident::busy() {
+  bool any = false;
+  for (int p = 0; p < processes(); ++p) any = busy(p) || any;
+  return any;
 }
 
-std::optional<Resident::Proof> Resident::renew_tables() {
-  // What was proven of the loaded program holds for its tables only.
-  if (!file_->path.empty() && !(state_.tables == proven_)) return Proof{file_, state_.tables, position(), {}};
-  arm(ProgramChange::Kind::tables);
-  return std::nullopt;
+bool Resident::stopping(int process) const { return control_.process(process).stopping(); }
+
+bool Resident::typed(int process) {
+  return busy(process) && image_.processes[static_cast<std::size_t>(process)].typed;
+}
+
+bool Resident::steps(int process) {
+  return busy(process) && image_.processes[static_cast<std::size_t>(process)].mode == image::Mode::step;
+}
+
+/// False: a program is being read just now, nothing was changed.
+bool Resident::arm(int process, ProgramChange::Kind kind) {
+  Seat& s = seat(process);
+  std::shared_ptr<const ProgramFile> file = s.file;
+  if (!s.refused.empty()) {
+    // Whoever starts, a start button too, must not find it.
+    auto none = std::make_shared<ProgramFile>(*s.file);
+    none->path.clear();
+    none->text.clear();
+    file = std::move(none);
+  }
+  if (!control_.change({kind, process, std::move(file), state_.tables, {}})) return false;
+  s.given = state_.tables;
+  return true;
+}
+
+/// What was proven of a loaded program holds for its tables and axes only.
+std::optional<Resident::Proof> Resident::renew(int process) {
+  Proof proof{state_.tables, {}};
+  for (int p = 0; p < processes(); ++p) {
+    Seat& s = seat(p);
+    const bool asked = process < 0 || p == process;
+    if (!s.file->path.empty() && s.proven != state_.tables)
+      proof.programs.push_back({p, s.file, start_of(p), {}});
+    else if (asked || s.given != state_.tables)
+      arm(p, ProgramChange::Kind::tables);
+  }
+  return proof.programs.empty() ? std::nullopt : std::optional(std::move(proof));
+}
+
+std::optional<Resident::Proof> Resident::renew_tables() { return renew(-1); }
+
+std::optional<Resident::Proof> Resident::renew_axes() {
+  for (Seat& s : seats_) s.proven.reset();
+  return renew(-1);
 }
 
 void Resident::prove(Proof& proof, const std::stop_token& stop) const {
-  ProgramCheck check = prove_program(control_.machine(), *proof.file, proof.tables, {proof.at, false},
-                                     channel::Forecast::Depth::drivable, stop);
-  for (text::Finding& f : check.report.findings)
-    if (f.severity == text::Severity::error) proof.errors.push_back(std::move(f));
+  for (Proof::Program& p : proof.programs) {
+    ProgramCheck check = prove_program(control_.machine(), *p.file, proof.tables, p.start,
+                                       channel::Forecast::Depth::drivable, stop);
+    for (text::Finding& f : check.report.findings)
+      if (f.severity == text::Severity::error) p.errors.push_back(std::move(f));
+  }
 }
 
 void Resident::proven(const Proof& proof) {
-  if (proof.file != file_) return;  // another program was loaded meanwhile
-  proven_ = proof.tables;
-  refused_ = proof.errors;
-  if (state_.tables == proven_) arm(ProgramChange::Kind::tables);
+  for (const Proof::Program& p : proof.programs) {
+    Seat& s = seat(p.process);
+    if (p.file != s.file || p.start.axes != start_of(p.process).axes) continue;  // changed meanwhile
+    s.proven = proof.tables;
+    s.refused = p.errors;
+    if (state_.tables == proof.tables) arm(p.process, ProgramChange::Kind::tables);
+  }
 }
 
-Resident::Load Resident::begin_load(std::string path, std::string dialect) {
+Resident::Load Resident::begin_load(int process, std::string path, std::string dialect) {
   Load load;
+  load.process = load.file->process = process;
   load.path = std::move(path);
   load.dialect = std::move(dialect);
   load.tables = state_.tables;
-  load.at = position();
+  load.start = start_of(process);
   return load;
 }
 
 void Resident::read_and_prove(Load& load, const std::stop_token& stop) const {
   load.opened = open_program(control_.machine(), load.path, load.dialect, *load.file, load.findings);
   if (!load.opened) return;
-  ProgramCheck check = prove_program(control_.machine(), *load.file, load.tables, {load.at, false},
+  ProgramCheck check = prove_program(control_.machine(), *load.file, load.tables, load.start,
                                      channel::Forecast::Depth::drivable, stop);
   load.findings.insert(load.findings.end(), check.report.findings.begin(), check.report.findings.end());
   load.blocks = check.report.blocks;
@@ -116,38 +155,53 @@ void Resident::read_and_prove(Load& load, const std::stop_token& stop) const {
 Resident::Load::End Resident::finish(Load& load) {
   if (!load.opened) return Load::End::not_opened;
   read_tables();
-  if (!(state_.tables == load.tables)) return Load::End::other_tables;
+  if (!(state_.tables == load.tables) || load.start.axes != start_of(load.process).axes)
+    return Load::End::other_tables;
   for (const text::Finding& f : load.findings)
     if (f.severity == text::Severity::error) return Load::End::has_errors;
-  std::shared_ptr<const ProgramFile> before = std::exchange(file_, load.file);
-  std::vector<text::Finding> refused_before = std::exchange(refused_, {});
-  const program::Tables proven_before = std::exchange(proven_, state_.tables);
-  if (arm(ProgramChange::Kind::program)) {
-    blocks_ = load.blocks;
-    lines_ = load.lines;
+  Seat& s = seat(load.process);
+  const Seat before = s;
+  s.file = load.file;
+  s.refused.clear();
+  s.proven = state_.tables;
+  if (arm(load.process, ProgramChange::Kind::program)) {
+    s.blocks = load.blocks;
+    s.lines = load.lines;
     return Load::End::done;
   }
-  file_ = std::move(before);  // a program began meanwhile
-  refused_ = std::move(refused_before);
-  proven_ = proven_before;
+  s = before;  // a program began meanwhile
   return Load::End::busy;
 }
 
-void Resident::read_tables() {
-  if (own_tables_) return;
+/// False: its program has not begun, or is still being read and is not to be looked at (`also_read`) yet.
+bool Resident::read_tables_of(int process, bool also_read) {
   const std::scoped_lock lock(control_.reading());
-  const program::Tables* tables = control_.process(0).feeder().tables();
-  if (tables != nullptr && !control_.process(0).feeder().reads()) state_.tables = *tables;
+  const channel::Feeder& feeder = control_.process(process).feeder();
+  const program::Tables* tables = feeder.tables();
+  if (tables == nullptr || (feeder.reads() && !also_read)) return false;
+  Seat& s = seat(process);
+  program::carry_over(s.given, *tables, state_.tables);
+  s.given = *tables;
+  return true;
 }
 
-std::optional<Resident::Proof> Resident::take_tables() {
-  if (!own_tables_) {
-    const std::scoped_lock lock(control_.reading());
-    const program::Tables* tables = control_.process(0).feeder().tables();
-    if (tables == nullptr || control_.process(0).feeder().reads()) return std::nullopt;
-    state_.tables = *tables;
-  }
-  return renew_tables();
+void Resident::read_tables() {
+  for (int p = 0; p < processes(); ++p) read_tables_of(p, false);
+}
+
+std::optional<Resident::Proof> Resident::take_tables(int process) {
+  bool read = false;
+  for (int p = 0; p < processes(); ++p) read = read_tables_of(p, false) || read;
+  return read || seat(process).given != state_.tables ? renew(process) : std::nullopt;
+}
+
+/// Where its axes stand, and which they are.
+Start Resident::start_of(int process) {
+  Start start{position(), false, 0u};
+  for (int a = 0; a < image_.axis_count; ++a)
+    if (image_.axes[static_cast<std::size_t>(a)].process == process) *start.axes |= std::uint32_t{1} << a;
+  if (image_.axis_count == 0) start.axes.reset();  // no cycle yet: as the machine file has them
+  return start;
 }
 
 program::Position Resident::position() {
@@ -160,12 +214,12 @@ program::Position Resident::position() {
   return at;
 }
 
-std::vector<text::Finding> Resident::check_block(const std::string& block) {
+std::vector<text::Finding> Resident::check_block(int process, const std::string& block) {
   const program::Position at = position();
   std::optional<program::Interpreter> trial;
   {
     const std::scoped_lock lock(control_.reading());
-    trial = control_.process(0).manual_interpreter(at);
+    trial = control_.process(process).manual_interpreter(at);
   }
   trial->mdi(block);
   std::optional<text::Finding> failed;
@@ -180,36 +234,36 @@ std::vector<text::Finding> Resident::check_block(const std::string& block) {
   return findings;
 }
 
-void Resident::set_manual_block(const std::string& block) {
-  if (!block.empty()) manual_block_ = block;
-  control_.change({ProgramChange::Kind::block, 0, {}, {}, block});
+void Resident::set_manual_block(int process, const std::string& block) {
+  if (!block.empty()) seat(process).manual_block = block;
+  control_.change({ProgramChange::Kind::block, process, {}, {}, block});
 }
 
-void Resident::forget_modes() { control_.change({ProgramChange::Kind::modes, 0, {}, {}, {}}); }
+void Resident::forget_modes() {
+  for (int p = 0; p < processes(); ++p)
+    if (!busy(p)) control_.change({ProgramChange::Kind::modes, p, {}, {}, {}});
+}
 
 Zeroed Resident::zero(int axis, double value) {
   read_tables();
   const program::Position at = position();
+  const int process = image_.axes[static_cast<std::size_t>(axis)].process;
   std::optional<program::Interpreter> manual;
   {
     const std::scoped_lock lock(control_.reading());
-    manual = control_.process(0).manual_interpreter(at);
+    manual = control_.process(process).manual_interpreter(at);
   }
+  manual->adopt(state_.tables);
   const machine::AxisConfig& a = control_.machine().axes[static_cast<std::size_t>(axis)];
   manual->preset(axis, a.diameter ? value / 2.0 : value);
   state_.tables = manual->tables();
-  own_tables_ = true;
   const int origin = manual->origin(axis);
   return {origin, state_.tables.origins[origin][a.letter]};
 }
 
 std::optional<machine::MachineState> Resident::to_save() {
   if (state_path_.empty()) return std::nullopt;
-  if (!own_tables_) {
-    const std::scoped_lock lock(control_.reading());
-    if (const program::Tables* tables = control_.process(0).feeder().tables(); tables != nullptr)
-      state_.tables = *tables;
-  }
+  for (int p = 0; p < processes(); ++p) read_tables_of(p, true);
   const image::ProcessImage& now = image();
   if (now.axis_count == 0) return std::nullopt;  // no cycle yet: nothing was learned
   cycle::References references;
@@ -219,7 +273,7 @@ std::optional<machine::MachineState> Resident::to_save() {
     record.valid = now.axes[a].homed;
     record.offset_counts = references[a];
   }
-  state_.tool_in_spindle = now.processes[0].tool;
+  state_.tool_in_spindle = now.processes[static_cast<std::size_t>(control_.machine().tool_process())].tool;
   return state_;
 }
 
@@ -255,12 +309,16 @@ std::vector<Work> Resident::look_after() {
   const std::uint32_t now = homed();
   unsaved_ = unsaved_ || (now & ~homed_seen_) != 0;
   homed_seen_ = now;
-  const bool busy_now = busy();
-  const bool ended = busy_seen_ && !busy_now;
-  busy_seen_ = busy_now;
-  if (ended)
-    if (auto proof = take_tables()) works.push_back(prove_later(std::move(*proof)));
-  const bool tool = image().axis_count > 0 && image_.processes[0].tool != state_.tool_in_spindle;
+  bool ended = false;
+  for (int p = 0; p < processes(); ++p) {
+    const bool busy_now = busy(p);
+    const bool ends = std::exchange(seat(p).busy_seen, busy_now) && !busy_now;
+    ended = ended || ends;
+    if (!ends) continue;
+    if (auto proof = take_tables(p)) works.push_back(prove_later(std::move(*proof)));
+  }
+  const auto with_tool = static_cast<std::size_t>(control_.machine().tool_process());
+  const bool tool = image().axis_count > 0 && image_.processes[with_tool].tool != state_.tool_in_spindle;
   unsaved_ = unsaved_ || ended || tool;
   if (unsaved_ && !saving_ && !state_path_.empty()) works.push_back(save_later());
   return works;
@@ -269,7 +327,7 @@ std::vector<Work> Resident::look_after() {
 Work Resident::prove_later(Proof proof) {
   const auto proven = std::make_shared<Proof>(std::move(proof));
   Work work;
-  work.what = "check", work.name = program();
+  work.what = "check", work.name = proven->programs.front().file->path;
   work.run = [this, proven](const std::stop_token& stop) -> Finish {
     prove(*proven, stop);
     return [this, proven]() -> Outcome {

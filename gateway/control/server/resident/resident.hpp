@@ -11,15 +11,16 @@
 #include "gateway/control/compose/program/program_check.hpp"
 #include "gateway/control/history/machine_watch.hpp"
 #include "gateway/control/run/announce.hpp"
+#include "gateway/control/server/resident/request_desk.hpp"
 #include "gateway/control/server/resident/work/outcome.hpp"
 #include "gateway/control/server/resident/work/works.hpp"
-#include "gateway/control/server/resident/request_desk.hpp"
 #include "machine/state/state.hpp"
 
 namespace servogate::gateway {
 
-/// A Control that stays: its program, its learned state, and who speaks to it. Everything here is for one
-/// thread outside the cycle (the desk's) unless it says otherwise; the loop's owner runs the Control itself.
+/// A Control that stays: the programs of its processes, its learned state, and who speaks to it. Everything
+/// here is for one thread outside the cycle (the desk's) unless it says otherwise; the loop's owner runs the
+/// Control itself. Processes count from 0.
 class Resident {
  public:
   /// `speed`: machine seconds per wall-clock second.
@@ -48,50 +49,57 @@ class Resident {
       busy,          ///< a program has begun meanwhile
       other_tables,  ///< the tables with which it was proven have changed meanwhile
     };
+    int process = 0;
     std::string path, dialect;
     program::Tables tables;
-    program::Position at{};
+    Start start;
     std::shared_ptr<ProgramFile> file = std::make_shared<ProgramFile>();
     bool opened = false;
     std::vector<text::Finding> findings;
     int blocks = 0, lines = 0;
   };
-  Load begin_load(std::string path, std::string dialect);
+  Load begin_load(int process, std::string path, std::string dialect);
   /// Reads the program and looks through it with the tables as they were (prove_program). Any thread; throws
   /// Cancelled.
   void read_and_prove(Load& load, const std::stop_token& stop) const;
   /// Loads it unless something is wrong; then the one loaded before stays.
   Load::End finish(Load& load);
 
-  /// The loaded program, to be looked through with other tables.
+  /// Loaded programs, to be looked through with other tables or other axes.
   struct Proof {
-    std::shared_ptr<const ProgramFile> file;
+    struct Program {
+      int process = 0;
+      std::shared_ptr<const ProgramFile> file;
+      Start start;
+      std::vector<text::Finding> errors;
+    };
     program::Tables tables;
-    program::Position at{};
-    std::vector<text::Finding> errors;
+    std::vector<Program> programs;
   };
-  /// Reads what the last run changed in the tables.
+  /// Reads what the last runs changed in the tables: what one process changed, the others get.
   void read_tables();
-  /// The same before the next one starts, and the program goes by them. Where it has to be proven first, only
-  /// behind proven().
-  std::optional<Proof> take_tables();
-  /// The program goes by the tables as they are now; the same.
+  /// The same before the next one starts in this process, and the programs go by them. What has to be proven
+  /// first goes by them only behind proven().
+  std::optional<Proof> take_tables(int process);
+  /// The programs go by the tables as they are now; the same.
   std::optional<Proof> renew_tables();
+  /// The programs have other axes than they were proven with; the same.
+  std::optional<Proof> renew_axes();
   /// Any thread; throws Cancelled.
   void prove(Proof& proof, const std::stop_token& stop) const;
   void proven(const Proof& proof);
 
   /// What this block gives in the present modal state of MDI, before anything moves: warnings, and last the
   /// error that keeps it from running.
-  std::vector<text::Finding> check_block(const std::string& block);
-  /// Errors of the loaded program since its tables (origins, tools) changed behind the load: it is not given
-  /// to the process until they are gone. Empty: none.
-  const std::vector<text::Finding>& refused() const noexcept { return refused_; }
+  std::vector<text::Finding> check_block(int process, const std::string& block);
+  /// Errors of the loaded program since its tables (origins, tools) or axes changed behind the load: it is
+  /// not given to the process until they are gone. Empty: none.
+  const std::vector<text::Finding>& refused(int process) const { return seat(process).refused; }
   /// The block that the next start in MDI mode runs.
-  void set_manual_block(const std::string& block);
+  void set_manual_block(int process, const std::string& block);
   /// The block that was typed last.
-  const std::string& manual_block() const noexcept { return manual_block_; }
-  /// MDI begins with the power-on modes again.
+  const std::string& manual_block(int process) const { return seat(process).manual_block; }
+  /// MDI of all processes begins with the power-on modes again.
   void forget_modes();
 
   /// Gives the present position of an axis a value (as programs write it: a diameter on a diameter axis) in
@@ -109,19 +117,22 @@ class Resident {
   /// The control comes to its end: nothing is begun any more. Any thread.
   void set_ending() noexcept { ending_ = true; }
   bool ending() const noexcept { return ending_; }
+  int processes() const noexcept { return static_cast<int>(seats_.size()); }
   /// A program is under way (running, held or waiting).
+  bool busy(int process);
+  /// In any process.
   bool busy();
   /// It has been ended, and its path is not at rest yet.
-  bool stopping() const;
+  bool stopping(int process) const;
   /// What is under way is a block typed by hand, not the loaded program.
-  bool typed();
+  bool typed(int process);
   /// A program is stepped through block by block.
-  bool steps();
+  bool steps(int process);
   /// Path of the loaded program; empty: none.
-  const std::string& program() const noexcept { return file_->path; }
+  const std::string& program(int process) const { return seat(process).file->path; }
   /// Of the loaded program's file: blocks, and lines.
-  int blocks() const noexcept { return blocks_; }
-  int lines() const noexcept { return lines_; }
+  int blocks(int process) const { return seat(process).blocks; }
+  int lines(int process) const { return seat(process).lines; }
   double speed() const noexcept { return speed_; }
   /// Folder of what is learned; empty: nothing is kept.
   const std::string& state_path() const noexcept { return state_path_; }
@@ -133,7 +144,24 @@ class Resident {
   const cycle::AlarmSnapshot& alarms();
 
  private:
-  bool arm(ProgramChange::Kind kind);
+  /// The program of one process.
+  struct Seat {
+    std::shared_ptr<const ProgramFile> file;
+    std::optional<program::Tables>
+        proven;             ///< with which `file` was last looked through; none: with other axes
+    program::Tables given;  ///< what the process knew when it was last read
+    std::vector<text::Finding> refused;
+    int blocks = 0, lines = 0;
+    std::string manual_block;
+    bool busy_seen = false;
+  };
+  const Seat& seat(int process) const { return seats_[static_cast<std::size_t>(process)]; }
+  Seat& seat(int process) { return seats_[static_cast<std::size_t>(process)]; }
+  bool arm(int process, ProgramChange::Kind kind);
+  bool read_tables_of(int process, bool also_read);
+  /// `process` gets its tables anew even where it has them, -1: all of them.
+  std::optional<Proof> renew(int process);
+  Start start_of(int process);
   void catch_up();
   Work prove_later(Proof proof);
   Work save_later();
@@ -145,14 +173,9 @@ class Resident {
   machine::MachineState state_;
   std::string state_path_;
   double speed_;
-  std::shared_ptr<const ProgramFile> file_;
-  program::Tables proven_;  ///< with which file_ was last looked through
-  std::vector<text::Finding> refused_;
-  int blocks_ = 0, lines_ = 0;
-  std::string manual_block_;
+  std::vector<Seat> seats_;  ///< by process
   std::uint32_t homed_seen_ = 0;
-  bool busy_seen_ = false, unsaved_ = false, saving_ = false;
-  bool own_tables_ = false;  ///< they were changed here, and no process has them yet
+  bool unsaved_ = false, saving_ = false;
   std::atomic<bool> ending_{false};
   RequestDesk requests_;
   image::ProcessImage image_;

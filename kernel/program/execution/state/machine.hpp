@@ -62,6 +62,18 @@ struct Tables {
   bool operator==(const Tables&) const = default;
 };
 
+/// Carries over to `into` what differs between two states of the tables: entries that came, changed or went.
+inline void carry_over(const Tables& before, const Tables& after, Tables& into) {
+  const auto carry = [](const auto& was, const auto& is, auto& entries) {
+    for (const auto& [key, value] : is)
+      if (const auto old = was.find(key); old == was.end() || !(old->second == value)) entries[key] = value;
+    for (const auto& [key, value] : was)
+      if (!is.contains(key)) entries.erase(key);
+  };
+  carry(before.origins, after.origins, into.origins);
+  carry(before.correctors, after.correctors, into.correctors);
+}
+
 /// A power-on mode or value of the machine file that the language cannot take. Its program does not run.
 struct SettingFault {
   int mode = -1;         ///< index in MachineModel::power_on, -1: it is a variable

@@ -31,7 +31,7 @@ std::string signed_number(double value) { return (value > 0.0 ? "+" : "") + text
 Work prove_and(Resident& resident, Resident::Proof proof, Finish then) {
   auto proven = std::make_shared<Resident::Proof>(std::move(proof));
   Work work;
-  work.what = "check", work.name = resident.program();
+  work.what = "check", work.name = proven->programs.front().file->path;
   work.run = [&resident, proven, then = std::move(then)](const std::stop_token& stop) -> Finish {
     resident.prove(*proven, stop);
     return [&resident, proven, then]() -> Outcome {
@@ -77,10 +77,15 @@ class Dispatch {
   }
 
   /// Puts a request to the gate. True: accepted; otherwise `refusal_` holds the answer.
-  /// `mode`: the mode that belongs to it; a refused request leaves the machine in the one it was in.
-  bool ask(RequestKind kind, int axis = -1, double value = 0.0, std::optional<image::Mode> mode = {});
+  /// `mode`: the mode that belongs to it; a refused request leaves the process in the one it was in.
+  /// `process`: -1: that of the axis, the first where there is none.
+  bool ask(RequestKind kind, int axis = -1, double value = 0.0, std::optional<image::Mode> mode = {},
+           int process = -1);
   /// Index of an axis; -1: `refusal_` holds the answer.
   int axis(const std::string& letter);
+  /// The machine has it; false: `refusal_` holds the answer.
+  bool process_known(int process);
+  int process_of(int axis) { return resident_.image().axes[static_cast<std::size_t>(axis)].process; }
   bool unit_is_own(int axis, const std::string& said);
   /// The same request once more, behind the proof of the loaded program with the tables as they are now.
   Outcome behind(Resident::Proof proof);
@@ -102,10 +107,11 @@ class Dispatch {
   Outcome take(const ask::Zero&);
   Outcome take(const ask::Override&);
   Outcome take(const ask::Load&);
-  Outcome take(const ask::Start&) { return begin(false); }
-  Outcome take(const ask::Step&) { return begin(true); }
+  Outcome take(const ask::Start& wanted) { return begin(false, wanted.process); }
+  Outcome take(const ask::Step& wanted) { return begin(true, wanted.process); }
   Outcome take(const ask::Mdi&);
   Outcome take(const ask::Resume&);
+  Outcome take(const ask::Assign&);
   Outcome take(const ask::Reset&) { return reset(true); }
   Outcome take(const ask::Acknowledge&) { return reset(false); }
   Outcome take(const ask::Input&);
@@ -119,11 +125,12 @@ class Dispatch {
   std::string with_findings(const text::Entry& entry, const std::string& program,
                             const std::vector<text::Finding>& findings) const;
   /// What the gate would say: a program is under way.
-  Reply busy() const {
-    const auto why = resident_.stopping() ? cycle::Refusal::program_stopping : cycle::Refusal::program_runs;
+  Reply busy(int process) const {
+    const auto why =
+        resident_.stopping(process) ? cycle::Refusal::program_stopping : cycle::Refusal::program_runs;
     return fail(cycle::refusal_texts()[static_cast<std::size_t>(why)], {}, kAlarm);
   }
-  Outcome begin(bool step);
+  Outcome begin(bool step, int process);
   Outcome reset(bool whole);
   /// To the answer "not powered": each condition that is missing.
   void add_missing(Reply& answer);
@@ -153,11 +160,12 @@ Outcome Dispatch::run() {
       command);
 }
 
-bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image::Mode> mode) {
+bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image::Mode> mode, int process) {
   image::Request r;
   r.asker = question_.caller.asker;
   r.kind = kind;
   r.axis = static_cast<std::int8_t>(axis);
+  r.process = static_cast<std::int8_t>(process >= 0 ? process : axis >= 0 ? process_of(axis) : 0);
   r.value = value;
   r.client = question_.caller.hand().client;
   if (mode) r.mode = static_cast<std::int8_t>(*mode);
@@ -197,6 +205,15 @@ int Dispatch::axis(const std::string& letter) {
   return index;
 }
 
+bool Dispatch::process_known(int process) {
+  if (process >= 0 && process < resident_.processes()) return true;
+  image::Answer answer;
+  answer.refusal = static_cast<std::uint16_t>(cycle::Refusal::no_such_process);
+  answer.value = process;
+  refusal_ = refused_by_gate(answer, machine(), language_);
+  return false;
+}
+
 bool Dispatch::unit_is_own(int axis, const std::string& said) {
   const machine::AxisConfig& a = axis_config(axis);
   if (said.empty() || said == a.unit()) return true;
@@ -210,6 +227,7 @@ Outcome Dispatch::take(const ask::Power&) {
 
 Outcome Dispatch::take(const ask::Home& wanted) {
   std::uint32_t mask = 0;
+  int process = -1;
   std::string names;
   for (const std::string& letter : wanted.axes) {
     const int index = axis(letter);
@@ -217,9 +235,10 @@ Outcome Dispatch::take(const ask::Home& wanted) {
     const std::uint32_t bit = 1u << index;
     if ((mask & bit) != 0) continue;
     mask |= bit;
+    if (process < 0) process = process_of(index);
     names += (names.empty() ? "" : ", ") + axis_config(index).letter;
   }
-  if (!ask(RequestKind::home, -1, mask, image::Mode::home)) return refusal_;
+  if (!ask(RequestKind::home, -1, mask, image::Mode::home, process)) return refusal_;
   return mask == 0 ? good(says::kHomingAll) : good(says::kHoming, {names});
 }
 
@@ -276,7 +295,7 @@ Outcome Dispatch::take(const ask::Zero& wanted) {
 }
 
 Outcome Dispatch::take(const ask::Override& wanted) {
-  if (!ask(RequestKind::override_feed, -1, wanted.percent / 100.0)) return refusal_;
+  if (!ask(RequestKind::override_feed, -1, wanted.percent / 100.0, {}, wanted.process)) return refusal_;
   return good(says::kOverride, {text::number(wanted.percent, 1)});
 }
 
@@ -295,12 +314,14 @@ std::string Dispatch::with_findings(const text::Entry& entry, const std::string&
 
 Outcome Dispatch::take(const ask::Load& wanted) {
   const std::string& program = wanted.program;
-  if (resident_.busy()) {  // first of all what no waiting would mend
+  if (!process_known(wanted.process)) return refusal_;
+  if (resident_.busy(wanted.process)) {  // first of all what no waiting would mend
     const std::string why = files::why_unreadable(program);
-    return why.empty() ? busy() : fail(says::kNotReadable, {program, why}, kWrongUse);
+    return why.empty() ? busy(wanted.process) : fail(says::kNotReadable, {program, why}, kWrongUse);
   }
   resident_.read_tables();
-  const auto load = std::make_shared<Resident::Load>(resident_.begin_load(program, wanted.dialect));
+  const auto load =
+      std::make_shared<Resident::Load>(resident_.begin_load(wanted.process, program, wanted.dialect));
   Resident& resident = resident_;
   Work work;
   work.what = "load", work.name = load->path;
@@ -315,66 +336,83 @@ Outcome Dispatch::take(const ask::Load& wanted) {
 
 Outcome Dispatch::loaded(Resident::Load& load, const ask::Load& wanted) {
   using End = Resident::Load::End;
-  const End end = resident_.busy() ? End::busy : resident_.finish(load);
-  if (end == End::busy) return busy();
+  const End end = resident_.busy(load.process) ? End::busy : resident_.finish(load);
+  if (end == End::busy) return busy(load.process);
   if (end == End::other_tables) return take(wanted);  // the machine has changed them meanwhile
   FoundIn found{load.findings};
   if (end == End::done)
-    return good(says::kLoaded,
-                {load.path, std::to_string(resident_.blocks()), std::to_string(load.findings.size())},
-                std::move(found));
+    return good(
+        says::kLoaded,
+        {load.path, std::to_string(resident_.blocks(load.process)), std::to_string(load.findings.size())},
+        std::move(found));
   Reply refused = fail(says::kNotLoaded, {load.path}, end == End::not_opened ? kWrongUse : kAlarm);
   refused.text = with_findings(says::kNotLoaded, load.path, load.findings);
   refused.content = std::move(found);
   return refused;
 }
 
-Outcome Dispatch::begin(bool step) {
+Outcome Dispatch::begin(bool step, int process) {
+  if (!process_known(process)) return refusal_;
   std::optional<image::Mode> mode;
-  const bool typed = resident_.typed();
-  if (!typed && !resident_.busy()) {
-    if (resident_.program().empty())
+  const bool typed = resident_.typed(process);
+  const std::string program = resident_.program(process);
+  if (!typed && !resident_.busy(process)) {
+    if (program.empty())
       return fail(cycle::refusal_texts()[static_cast<std::size_t>(cycle::Refusal::no_program)], {}, kAlarm);
-    if (auto proof = resident_.take_tables()) return behind(std::move(*proof));
-    if (const auto& wrong = resident_.refused(); !wrong.empty()) {
-      Reply refused = fail(says::kNotStarted, {resident_.program()}, kAlarm);
-      refused.text = with_findings(says::kNotStarted, resident_.program(), wrong);
+    if (auto proof = resident_.take_tables(process)) return behind(std::move(*proof));
+    if (const auto& wrong = resident_.refused(process); !wrong.empty()) {
+      Reply refused = fail(says::kNotStarted, {program}, kAlarm);
+      refused.text = with_findings(says::kNotStarted, program, wrong);
       return refused;
     }
     mode = step ? image::Mode::step : image::Mode::automatic;
-  } else if (!typed && !step && resident_.steps()) {
+  } else if (!typed && !step && resident_.steps(process)) {
     mode = image::Mode::automatic;
   }
   // A wait that began before belongs to the block before.
   const Begun asked{resident_.image().now.seconds()};
-  if (!ask(step ? RequestKind::step : RequestKind::start, -1, 0.0, mode)) return refusal_;
-  if (typed) return good(says::kTypedGoesOn, {resident_.manual_block()}, asked);
-  return step ? good(says::kStepped, {}, asked) : good(says::kStarted, {resident_.program()}, asked);
+  if (!ask(step ? RequestKind::step : RequestKind::start, -1, 0.0, mode, process)) return refusal_;
+  if (typed) return good(says::kTypedGoesOn, {resident_.manual_block(process)}, asked);
+  return step ? good(says::kStepped, {}, asked) : good(says::kStarted, {program}, asked);
 }
 
 Outcome Dispatch::take(const ask::Mdi& wanted) {
   const std::string& block = wanted.block;
   if (block.find_first_not_of(" \t") == std::string::npos) return fail(says::kBlockEmpty, {}, kWrongUse);
   if (block.find_first_of("\r\n") != std::string::npos) return fail(says::kBlocksSeveral, {}, kWrongUse);
-  if (resident_.busy()) return busy();
-  if (auto proof = resident_.take_tables()) return behind(std::move(*proof));
-  const std::vector<text::Finding> findings = resident_.check_block(block);
+  const int process = wanted.process;
+  if (!process_known(process)) return refusal_;
+  if (resident_.busy(process)) return busy(process);
+  if (auto proof = resident_.take_tables(process)) return behind(std::move(*proof));
+  const std::vector<text::Finding> findings = resident_.check_block(process, block);
   if (!findings.empty() && findings.back().severity == text::Severity::error)
     return fail(says::kBlockWrong, {findings.back().str(language_)}, kAlarm);
-  resident_.set_manual_block(block);
-  if (ask(RequestKind::start, -1, 0.0, image::Mode::mdi)) {
+  resident_.set_manual_block(process, block);
+  if (ask(RequestKind::start, -1, 0.0, image::Mode::mdi, process)) {
     std::string words;
     for (const text::Finding& f : findings) words += "\n" + f.str(language_);
     return good(says::kBlockRuns, {words}, FoundIn{findings});
   }
-  resident_.set_manual_block({});  // a start button must not find it later
+  resident_.set_manual_block(process, {});  // a start button must not find it later
   return refusal_;
 }
 
-Outcome Dispatch::take(const ask::Resume&) {
-  const bool typed = resident_.typed();
-  if (!ask(RequestKind::resume)) return refusal_;
-  return typed ? good(says::kTypedGoesOn, {resident_.manual_block()}) : good(says::kResumed);
+Outcome Dispatch::take(const ask::Resume& wanted) {
+  if (!process_known(wanted.process)) return refusal_;
+  const bool typed = resident_.typed(wanted.process);
+  if (!ask(RequestKind::resume, -1, 0.0, {}, wanted.process)) return refusal_;
+  return typed ? good(says::kTypedGoesOn, {resident_.manual_block(wanted.process)}) : good(says::kResumed);
+}
+
+/// What was proven of loaded programs holds for the axes that they had.
+Outcome Dispatch::take(const ask::Assign& wanted) {
+  const int index = axis(wanted.axis);
+  if (index < 0 || !process_known(wanted.process)) return refusal_;
+  if (!ask(RequestKind::assign, index, 0.0, {}, wanted.process)) return refusal_;
+  const Reply done = good(says::kAssigned, {axis_config(index).letter, std::to_string(wanted.process + 1)});
+  auto proof = resident_.renew_axes();
+  if (!proof) return done;
+  return prove_and(resident_, std::move(*proof), [done]() -> Outcome { return done; });
 }
 
 Outcome Dispatch::reset(bool whole) {
@@ -382,7 +420,8 @@ Outcome Dispatch::reset(bool whole) {
   const std::string left = alarms_in_words(resident_, language_);
   const Reply done = left.empty() ? good(says::kReset) : good(says::kResetLeft, {left});
   if (!whole || resident_.busy()) return done;
-  auto proof = resident_.take_tables();
+  resident_.read_tables();
+  auto proof = resident_.renew_tables();
   resident_.forget_modes();
   if (!proof) return done;
   return prove_and(resident_, std::move(*proof), [done]() -> Outcome { return done; });

@@ -39,7 +39,10 @@ ProcessReport process_report(Resident& resident, const image::ProcessImage& imag
   const image::ProcessStatus& p = image.processes[static_cast<std::size_t>(process)];
   ProcessReport report;
   report.status = p;
-  if (p.typed) report.block = resident.manual_block();
+  report.program = resident.program(process);
+  report.blocks = resident.blocks(process);
+  report.lines = resident.lines(process);
+  if (p.typed) report.block = resident.manual_block(process);
   report.stop = stop_words(control, image, process, language);
   report.file = file_in_motion(control, p, process);
   report.message = program_message(control, image, process);
@@ -114,10 +117,7 @@ StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Languag
   const machine::MachineConfig& m = resident.control().machine();
   StatusReport status;
   status.machine = m.name;
-  status.program = resident.program();
   status.time_s = image.now.seconds();
-  status.blocks = resident.blocks();
-  status.lines = resident.lines();
   status.homing = image.homing;
   status.ending = resident.ending();
   status.language = language;
