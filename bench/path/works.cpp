@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace servogate::bench {
 
@@ -131,6 +132,18 @@ Program thread_helix(double feed) {
     const double angle = kTurn * k / kChords;
     p.push_back(
         line(kRadius * (1.0 - std::cos(angle)), kRadius * std::sin(angle), kPitch * k / kChords, feed));
+  }
+  return p;
+}
+
+Program pocket(double feed) {
+  Program p;
+  double x = 0, y = 0;
+  for (int k = 0; k < 10; ++k) {
+    const double a = 60 - 4 * k, b = 40 - 3 * k;
+    for (const auto& [dx, dy] : {std::pair{a, 0.0}, {a, b}, {2.0, b}, {2.0, 2.0}})
+      p.push_back(line(x + dx, y + dy, 0, feed));
+    x += 2, y += 2;
   }
   return p;
 }

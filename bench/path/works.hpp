@@ -31,6 +31,8 @@ Program trochoids(double feed);
 Program engraving(double feed);
 /// A thread milled as a helix of short lines.
 Program thread_helix(double feed);
+/// Lines of 20 to 60 mm with sharp corners.
+Program pocket(double feed);
 /// Rows along a twisted blade, denser where it bends.
 Program impeller(double feed);
 

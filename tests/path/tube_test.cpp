@@ -113,6 +113,21 @@ TEST(Tube, says_which_site_no_curve_can_reach_and_keeps_the_others) {
   EXPECT_LE(beyond, found.released);
 }
 
+TEST(Tube, lets_a_place_slide_along_the_path_where_it_may) {
+  Tube tube;
+  TubeProblem p = corner(1, 20, 0.02, 0.001), q = p;
+  for (std::size_t i = 3; i < p.controls.size() - 3; ++i) p.controls[i] = q.controls[i] += 0.003;
+  for (Site& s : q.sites) {
+    s.at[0] += 0.002 * std::sin(s.interval);
+    s.along[0] = 1.0;
+    s.slide = 0.01;
+  }
+  EXPECT_TRUE(tube.solve(p).inside);
+  EXPECT_TRUE(tube.solve(q).inside);
+  for (const Site& s : p.sites) EXPECT_LT(offset(p, s), 0.001);
+  for (const Site& s : q.sites) EXPECT_LT(offset(q, s), 0.01);
+}
+
 TEST(Tube, gives_the_same_bytes_after_other_problems) {
   Tube used, fresh;
   TubeProblem other = corner(3, 30, 0.03, 0.005), first = corner(3, 20, 0.02, 0.01), second = first;

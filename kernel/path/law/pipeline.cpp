@@ -133,6 +133,7 @@ void Pipeline::forget() {
 void Pipeline::count(const Pass& pass) {
   const bool last = &pass == passes_.back().get();
   if (last) counts_.released += pass.tube.counts().released;
+  if (last) counts_.outside += pass.tube.counts().outside;
   if (last) counts_.failed += pass.speed.counts().failed;
   counts_.repaired += pass.speed.counts().repaired;
   counts_.tube_steps += pass.tube.counts().knot_steps;

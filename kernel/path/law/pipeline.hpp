@@ -40,6 +40,7 @@ class Pipeline {
     /// Places that the curve of the last pass could not be brought near enough to by the pairing of place and
     /// parameter; mostly another pairing keeps the tolerance.
     std::int64_t released = 0;
+    std::int64_t outside = 0;   ///< and where no other one does: the tolerance is broken there
     std::int64_t failed = 0;    ///< windows of the last pass without a law inside of the limits
     std::int64_t repaired = 0;  ///< windows mended by the judge
     std::int64_t tube_steps = 0, law_steps = 0;  ///< of Newton's method by knots

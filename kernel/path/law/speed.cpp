@@ -5,87 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/path/law/speed_places.hpp"
+
 namespace servogate::path {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kLargestCap = 1e8;
-// b at the start, middle and end of an interval, by the beta it is made of.
-constexpr double kAt[3][3] = {{0.5, 0.5, 0.0}, {0.125, 0.75, 0.125}, {0.0, 0.5, 0.5}};
-
 // Barrier: first weight as a share of time by rows, factor, last weight, decrement to stop at.
 constexpr double kFirst = 0.3, kFactor = 0.2, kGap = 0.01, kDecrement = 0.01;
 constexpr int kSteps = 30;
 
-double at(const double (&weights)[3], const double* beta) {
-  return weights[0] * beta[0] + weights[1] * beta[1] + weights[2] * beta[2];
-}
-
-/// b at a knot; the last one has no third beta.
-double at_knot(const double* beta) { return 0.5 * (beta[0] + beta[1]); }
-
 }  // namespace
-
-void SpeedLaw::prepare(const SpeedProblem& p) {
-  axes_ = p.axes;
-  step_ = p.step;
-  intervals_ = static_cast<int>(p.controls.size()) / p.axes - 3;
-  const auto n = static_cast<std::size_t>(intervals_), axes = static_cast<std::size_t>(axes_);
-  cap_.resize(n + 1);
-  d1_.resize((n + 1) * axes);
-  d2_.resize((n + 1) * axes);
-  acceleration_.resize((n + 1) * axes);
-  jerk_.resize(n * 3 * axes);
-  for (int k = 0; k <= intervals_; ++k) prepare_knot(p, k);
-  for (int k = 0; k < intervals_; ++k) prepare_interval(p, k);
-}
-
-void SpeedLaw::prepare_knot(const SpeedProblem& p, int k) {
-  const double i1 = 1.0 / step_, i2 = i1 * i1;
-  const KnotBound& bound = p.bounds[static_cast<std::size_t>(k)];
-  double linear = 0.0, turning = 0.0, cap = kLargestCap;
-  for (int a = 0; a < axes_; ++a) {
-    const int axis = p.axis[static_cast<std::size_t>(a)];
-    const AxisLimits& limits = (*bound.limits)[static_cast<std::size_t>(axis)];
-    const double* c = &p.controls[static_cast<std::size_t>(k * axes_ + a)];
-    const double d1 = 0.5 * i1 * (c[2 * axes_] - c[0]);
-    const double d2 = i2 * (c[2 * axes_] - 2.0 * c[axes_] + c[0]);
-    (p.rotary[static_cast<std::size_t>(axis)] ? turning : linear) += d1 * d1;
-    const double v = p.share * limits.velocity, s = 1.0 / (p.share * limits.acceleration);
-    cap = std::min(cap, v * v / std::max(1e-30, d1 * d1));
-    const auto at = static_cast<std::size_t>(k * axes_ + a);
-    d1_[at] = d1;
-    d2_[at] = d2;
-    acceleration_[at] = {{s * 0.5 * (d2 - d1 * i1), s * 0.5 * (d2 + d1 * i1), 0.0}};
-  }
-  const double along = bound.turning ? turning : linear;
-  if (std::isfinite(bound.feed)) cap = std::min(cap, bound.feed * bound.feed / std::max(1e-30, along));
-  cap_[static_cast<std::size_t>(k)] = cap;
-}
-
-void SpeedLaw::prepare_interval(const SpeedProblem& p, int k) {
-  const double i1 = 1.0 / step_, i2 = i1 * i1, i3 = i2 * i1;
-  for (int a = 0; a < axes_; ++a) {
-    const auto axis = static_cast<std::size_t>(p.axis[static_cast<std::size_t>(a)]);
-    const double least = std::min((*p.bounds[static_cast<std::size_t>(k)].limits)[axis].jerk,
-                                  (*p.bounds[static_cast<std::size_t>(k + 1)].limits)[axis].jerk);
-    const double* c = &p.controls[static_cast<std::size_t>(k * axes_ + a)];
-    const double d3 = i3 * (c[3 * axes_] - 3.0 * c[2 * axes_] + 3.0 * c[axes_] - c[0]);
-    const double s = 1.0 / (p.share * least);
-    const double d1 = d1_[static_cast<std::size_t>(k * axes_ + a)];
-    const double d2 = d2_[static_cast<std::size_t>(k * axes_ + a)];
-    for (int place = 0; place < 3; ++place) {
-      // Jerk by sqrt(b): x''' b + 3/2 x'' b' + 1/2 x' b''.
-      const double f = 0.5 * place, e2 = d2 + f * step_ * d3,
-                   e1 = d1 + f * step_ * (d2 + 0.5 * f * step_ * d3);
-      const double slope[3] = {-(1.0 - f) * i1, (1.0 - 2.0 * f) * i1, f * i1};
-      const double bend[3] = {i2, -2.0 * i2, i2};
-      Row& row = jerk_[static_cast<std::size_t>((k * 3 + place) * axes_ + a)];
-      for (int q = 0; q < 3; ++q)
-        row.f[q] = s * (d3 * kAt[place][q] + 1.5 * e2 * slope[q] + 0.5 * e1 * bend[q]);
-    }
-  }
-}
 
 double SpeedLaw::time(std::span<const double> q) const {
   double sum = 0.0, before = 1.0 / std::sqrt(0.5 * (q[0] + q[1]));
@@ -106,9 +36,14 @@ double SpeedLaw::cost(const std::vector<double>& beta, double mu) const {
     const double room = 1.0 - at_knot(q) / cap_[static_cast<std::size_t>(k)];
     if (!(room > 0.0)) return kInfinite;
     product *= room * q[0];
-    const Row* rows = &acceleration_[static_cast<std::size_t>(k * axes_)];
+    const Row* rows = &acceleration_[static_cast<std::size_t>(2 * k * axes_)];
     for (int a = 0; a < axes_; ++a) {
       const double e = rows[a].f[0] * q[0] + rows[a].f[1] * q[1], r = 1.0 - e * e;
+      if (!(r > 0.0)) return kInfinite;
+      product *= r;
+    }
+    for (int a = axes_; a < 2 * axes_ && k < intervals_; ++a) {
+      const double e = at(rows[a].f, q), r = 1.0 - e * e;
       if (!(r > 0.0)) return kInfinite;
       product *= r;
     }
@@ -128,7 +63,7 @@ double SpeedLaw::cost(const std::vector<double>& beta, double mu) const {
       product = 1.0;
     }
   }
-  return time_weight_ * time(beta) - mu * (logs + std::log(product * beta.back()));
+  return time(beta) - mu * (logs + std::log(product * beta.back()));
 }
 
 double SpeedLaw::worst(std::span<const double> beta) const {
@@ -138,10 +73,12 @@ double SpeedLaw::worst(std::span<const double> beta) const {
     if (!(q[0] > 0.0)) return kInfinite;
     most = std::max(most, 0.5 * (q[0] + q[1]) / cap_[static_cast<std::size_t>(k)]);
     for (int a = 0; a < axes_; ++a) {
-      const Row& row = acceleration_[static_cast<std::size_t>(k * axes_ + a)];
+      const Row& row = acceleration_[static_cast<std::size_t>(2 * k * axes_ + a)];
       most = std::max(most, std::abs(row.f[0] * q[0] + row.f[1] * q[1]));
     }
     if (k == intervals_) break;
+    for (int a = axes_; a < 2 * axes_; ++a)
+      most = std::max(most, std::abs(at(acceleration_[static_cast<std::size_t>(2 * k * axes_ + a)].f, q)));
     const Row* row = &jerk_[static_cast<std::size_t>(k * 3 * axes_)];
     for (const auto& weights : kAt)
       for (int a = 0; a < axes_; ++a, ++row)
@@ -167,7 +104,7 @@ void SpeedLaw::add(int k, const double* d, double first, double second) {
 void SpeedLaw::derive_time(int k) {
   const double* q = &beta_[static_cast<std::size_t>(k)];
   const auto one = [&](int place, double b, double weight) {
-    const double r = time_weight_ * weight / (b * std::sqrt(b));
+    const double r = weight / (b * std::sqrt(b));
     add(k, kAt[place], -0.5 * r, 0.75 * r / b);
   };
   one(0, at_knot(q), (k == 0 || k == intervals_ ? 1.0 : 2.0) * step_ / 6.0);
@@ -182,7 +119,7 @@ void SpeedLaw::derive_knot(int k, double mu) {
   gradient_[i] -= mu / q[0];
   h0_[i] += mu / (q[0] * q[0]);
   for (int a = 0; a < axes_; ++a) {
-    const Row& row = acceleration_[static_cast<std::size_t>(k * axes_ + a)];
+    const Row& row = acceleration_[static_cast<std::size_t>(2 * k * axes_ + a)];
     const double e = row.f[0] * q[0] + row.f[1] * q[1], r = 1.0 / (1.0 - e * e);
     add(k, row.f, 2.0 * mu * e * r, mu * (2.0 * r + 4.0 * e * e * r * r));
   }
@@ -197,6 +134,11 @@ void SpeedLaw::derive_jerk(const Row& row, int k, double b, const double* weight
 }
 
 void SpeedLaw::derive_interval(int k, double mu) {
+  for (int a = axes_; a < 2 * axes_; ++a) {
+    const Row& middle = acceleration_[static_cast<std::size_t>(2 * k * axes_ + a)];
+    const double e = at(middle.f, &beta_[static_cast<std::size_t>(k)]), r = 1.0 / (1.0 - e * e);
+    add(k, middle.f, 2.0 * mu * e * r, mu * (2.0 * r + 4.0 * e * e * r * r));
+  }
   const Row* row = &jerk_[static_cast<std::size_t>(k * 3 * axes_)];
   for (const auto& weights : kAt) {
     const double b = at(weights, &beta_[static_cast<std::size_t>(k)]);
@@ -285,7 +227,7 @@ bool SpeedLaw::centre(double mu, int most, double decrement) {
 }
 
 bool SpeedLaw::descend(double mu, double last) {
-  const double rows = (3.0 * axes_ + axes_ + 2.0) * (intervals_ + 1) + 1.0;
+  const double rows = row_count();
   for (int round = 0; round < 40; ++round, mu *= kFactor) {
     if (!centre(mu, kSteps, kDecrement * mu * static_cast<double>(beta_.size()))) return false;
     if (mu * rows < last * time(beta_)) return true;
@@ -299,78 +241,47 @@ bool SpeedLaw::solve(SpeedProblem& p) {
   steps_ = 0;
   if (!(worst(p.beta) < 1.0)) return false;
   beta_ = p.beta;
-  const double rows = (4.0 * axes_ + 2.0) * (intervals_ + 1);
+  const double rows = row_count();
   descend(kFirst * time(beta_) / rows, kGap);
   p.beta = beta_;
   return true;
 }
 
-void SpeedLaw::flat_levels(std::vector<double>& levels, int intervals) {
-  levels.assign(cap_.begin(), cap_.end());
-  const double ones[3] = {1.0, 1.0, 1.0};
-  for (int k = 0; k <= intervals_; ++k) {
-    double& level = levels[static_cast<std::size_t>(k)];
-    for (int a = 0; a < axes_; ++a) {
-      const Row& row = acceleration_[static_cast<std::size_t>(k * axes_ + a)];
-      level = std::min(level, 1.0 / std::max(1e-12, std::abs(row.f[0] + row.f[1])));
-    }
-    if (k == intervals_) break;
-    double jerk = 1e-12;
-    const Row* row = &jerk_[static_cast<std::size_t>(k * 3 * axes_)];
-    for (int q = 0; q < 3 * axes_; ++q, ++row) jerk = std::max(jerk, std::abs(at(row->f, ones)));
-    const double by_jerk = 1.0 / std::cbrt(jerk * jerk);
-    level = std::min(level, by_jerk);
-    levels[static_cast<std::size_t>(k) + 1] = std::min(levels[static_cast<std::size_t>(k) + 1], by_jerk);
-  }
-  intervals_ = intervals;
-}
-
-void SpeedLaw::scale_limits(double factor) {
-  for (double& cap : cap_) cap *= factor;
-  for (auto* rows : {&acceleration_, &jerk_})
-    for (Row& row : *rows)
-      for (double& f : row.f) f /= factor;
-}
-
-bool SpeedLaw::find_start(SpeedProblem& p) {
-  constexpr int kRounds = 40, kStartSteps = 20;
-  constexpr double kOutside = 1.02, kInside = 0.98, kStartDecrement = 0.01;
+bool SpeedLaw::approach(SpeedProblem& p, const Tightness& wanted) {
+  constexpr int kRounds = 60, kRoundSteps = 6;
+  constexpr double kInside = 0.9995, kNear = 0.9998, kCentred = 3.0;
   fixed_head_ = p.fixed_head;
-  fixed_tail_ = 0;
+  fixed_tail_ = p.fixed_tail;
   beta_ = p.beta;
-  time_weight_ = 0.0;
-  double worst_now = worst(beta_), scaled = 1.0;
-  for (int round = 0; round < kRounds && worst_now >= kInside && std::isfinite(worst_now); ++round) {
-    // The limits are wider than they should be by `scaled`, and the centre of what they allow lies deeper in.
-    scale_limits(kOutside * worst_now / scaled);
-    scaled = kOutside * worst_now;
-    if (!centre(1.0, kStartSteps, kStartDecrement)) break;
-    worst_now = worst(beta_) * scaled;
+  Tightness given = as_they_are(), use, step;
+  const auto each = [&](auto&& f) {
+    for (std::size_t k = 0; k < use.acceleration.size(); ++k)
+      f(step.acceleration[k], given.acceleration[k], use.acceleration[k], wanted.acceleration[k]);
+    for (std::size_t k = 0; k < use.jerk.size(); ++k)
+      f(step.jerk[k], given.jerk[k], use.jerk[k], wanted.jerk[k]);
+    for (std::size_t k = 0; k < use.cap.size(); ++k) f(step.cap[k], given.cap[k], use.cap[k], wanted.cap[k]);
+  };
+  uses(beta_, use);
+  step = as_they_are();
+  each([&](double& by, double& now, double used, double) {
+    now = by = used > kInside ? kInside / used : 1.0;
+  });
+  scale(step);
+  for (int round = 0; round < kRounds; ++round) {
+    const double mu = kCentred * time(beta_) / row_count();
+    centre(mu, kRoundSteps, kDecrement * mu);
+    uses(beta_, use);
+    missing_ = 1.0;
+    each([&](double& by, double& now, double used, double goal) {
+      by = std::max(1.0, std::min(goal / now, kNear / std::max(used, 1e-9)));
+      now *= by;
+      missing_ = std::max(missing_, goal / now);
+    });
+    scale(step);
+    if (missing_ <= 1.0 + 1e-9) break;
   }
-  scale_limits(1.0 / scaled);
-  time_weight_ = 1.0;
-  if (!(worst(beta_) < 1.0)) return false;
   p.beta = beta_;
-  return true;
-}
-
-bool SpeedLaw::solve_again(SpeedProblem& p) {
-  if (!(worst(p.beta) < 1.0)) return false;
-  beta_ = p.beta;
-  const double rows = (4.0 * axes_ + 2.0) * (intervals_ + 1);
-  descend(10.0 * kGap * time(beta_) / rows, 0.5 * kGap);
-  p.beta = beta_;
-  return true;
-}
-
-void SpeedLaw::tighten(int interval, double factor) {
-  for (Row *row = &jerk_[static_cast<std::size_t>(interval * 3 * axes_)], *end = row + 3 * axes_; row != end;
-       ++row)
-    for (double& f : row->f) f *= factor;
-  const double half = 1.0 + 0.5 * (factor - 1.0);
-  for (Row *row = &acceleration_[static_cast<std::size_t>(interval * axes_)], *end = row + 2 * axes_;
-       row != end; ++row)
-    for (double& f : row->f) f *= half;
+  return missing_ <= 1.0 + 1e-9;
 }
 
 }  // namespace servogate::path

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -30,6 +31,18 @@ struct SpeedProblem {
   int fixed_head = 0, fixed_tail = 0;  ///< beta that are given
 };
 
+/// How much of each limit is used, 1: all of it.
+struct Excess {
+  double velocity = 0.0, acceleration = 0.0, jerk = 0.0;
+  double most() const { return std::max({velocity, acceleration, jerk}); }
+};
+
+/// How many times as much limits count, place by place: acceleration at knots and middles (knot, middle, knot
+/// ...), jerk in intervals, b at knots.
+struct Tightness {
+  std::vector<double> acceleration, jerk, cap;
+};
+
 /// Solves SpeedProblem by logarithmic barrier and Newton's method with bounded numbers of steps: each iterate
 /// keeps the limits at the knots, and those of jerk in the middle of intervals too. Keeps its working memory
 /// for prepare(), and nothing else. Not real-time safe.
@@ -37,19 +50,20 @@ class SpeedLaw {
  public:
   /// Takes up a problem: all of it but beta.
   void prepare(const SpeedProblem& problem);
-  /// For each knot the largest constant beta around it; then only the first `intervals` stay.
-  void flat_levels(std::vector<double>& levels, int intervals);
+  /// For each knot the largest constant beta around it, and by how much beta may change to the next with a
+  /// share of the acceleration; then only the first `intervals` stay.
+  void flat_levels(std::vector<double>& levels, std::vector<double>& slopes, int intervals);
   /// Largest share of a limit at the places looked at, as a ratio of speeds; below 1: inside.
   double worst(std::span<const double> beta) const;
   /// False: beta is not inside; it stays what it was.
   bool solve(SpeedProblem& problem);
-  /// Brings a beta inside that is not, by limits that come closer to it; what is given at the head stays, the
-  /// tail does not. False: none was found, and beta is what it was.
-  bool find_start(SpeedProblem& problem);
-  /// Goes on from a beta that has been solved for wider limits, see tighten().
-  bool solve_again(SpeedProblem& problem);
-  /// Limits of acceleration and jerk in and around an interval count `factor` times as much, >= 1.
-  void tighten(int interval, double factor);
+  /// Makes limits count more, and brings beta inside of them and of all others: what it breaks is widened as
+  /// far as it must be, and comes back step by step. What is given stays. False: not all limits came back;
+  /// the widest is missing() too wide.
+  bool approach(SpeedProblem& problem, const Tightness& wanted);
+  double missing() const { return missing_; }
+  /// All limits as they are.
+  Tightness as_they_are() const;
   /// Time that beta takes, s.
   double time(std::span<const double> beta) const;
   int steps() const { return steps_; }
@@ -69,15 +83,17 @@ class SpeedLaw {
   void add(int k, const double* d, double first, double second);
   void fix(int i);
   double direction();
+  double row_count() const { return (5.0 * axes_ + 2.0) * (intervals_ + 1); }
   bool centre(double mu, int most, double decrement);
-  void scale_limits(double factor);
+  void uses(const std::vector<double>& beta, Tightness& out) const;
+  void scale(const Tightness& factors);
   bool descend(double mu, double last);
 
   int axes_ = 0, intervals_ = 0, fixed_head_ = 0, fixed_tail_ = 0, steps_ = 0;
-  double step_ = 0.0, time_weight_ = 1.0;
+  double step_ = 0.0, missing_ = 0.0;
   std::vector<double> d1_, d2_;    // of the curve at knots
   std::vector<double> cap_;        // of b at knots
-  std::vector<Row> acceleration_;  // by knot and axis
+  std::vector<Row> acceleration_;  // by place (knot, middle, knot ...) and axis
   std::vector<Row> jerk_;          // by interval, place (start, middle, end) and axis
   std::vector<double> beta_, trial_, gradient_, h0_, h1_, h2_, move_;
 };

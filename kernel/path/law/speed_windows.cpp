@@ -14,7 +14,7 @@ constexpr double kSlow = 0.04;  // b behind what is known: a fifth of the clock'
 constexpr std::size_t kLeastWindow = 256, kFirstWindow = 64, kMargin = 20;
 constexpr double kFeedShare = 0.9999;  // the feed is no limit of an axis and needs no reserve
 constexpr double kLargestExcess = 1.0005;
-constexpr int kRepairs = 6, kSlowings = 6;
+constexpr int kRepairs = 6;
 constexpr std::size_t kGlide = 24;
 constexpr std::size_t kAhead = 48;            // knots behind a window that its slow end knows of
 constexpr std::size_t kNear = 16, kMean = 5;  // knots to each side: least of levels, and their mean, twice
@@ -158,7 +158,7 @@ void SpeedWindows::pack(const Kept<Vector>& controls, std::size_t to) {
 /// where a constant speed must be lower.
 void SpeedWindows::guess(std::size_t count, std::size_t intervals) {
   law_.prepare(problem_);
-  law_.flat_levels(levels_, static_cast<int>(intervals));
+  law_.flat_levels(levels_, slopes_, static_cast<int>(intervals));
   const std::size_t n = levels_.size();
   for (double& level : levels_) level = std::min(kSlow, kLevelShare * level);
   const auto around = [&](std::size_t i, std::size_t width, auto&& take) {
@@ -171,6 +171,8 @@ void SpeedWindows::guess(std::size_t count, std::size_t intervals) {
     calm_[i] = kSlow;
     around(i, kNear, [&](double level) { calm_[i] = std::min(calm_[i], level); });
   }
+  for (std::size_t i = 1; i < n; ++i) calm_[i] = std::min(calm_[i], calm_[i - 1] + slopes_[i]);
+  for (std::size_t i = n - 1; i-- > 0;) calm_[i] = std::min(calm_[i], calm_[i + 1] + slopes_[i]);
   for (int pass = 0; pass < 2; ++pass) {
     levels_ = calm_;
     for (std::size_t i = 0; i < n; ++i) {
@@ -189,7 +191,8 @@ void SpeedWindows::guess(std::size_t count, std::size_t intervals) {
       problem_.beta[i] = own;
     } else {
       const double z = std::min(1.0, static_cast<double>(i - kept + 1) / kGlide);
-      problem_.beta[i] = rest_[kept - 1] + z * z * (3.0 - 2.0 * z) * (own - rest_[kept - 1]);
+      const double glide = rest_[kept - 1] + z * z * (3.0 - 2.0 * z) * (own - rest_[kept - 1]);
+      problem_.beta[i] = std::min(glide, problem_.beta[i - 1] + slopes_[std::min(i, n - 1)]);
     }
   }
 }
@@ -197,64 +200,45 @@ void SpeedWindows::guess(std::size_t count, std::size_t intervals) {
 void SpeedWindows::solve(bool last, std::size_t commit) {
   if (!(law_.worst(problem_.beta) < 1.0)) {
     ++counts_.slowed;
-    if (!law_.find_start(problem_)) {
-      ++counts_.failed;
-      return;
-    }
+    // What is left is seen by the judge, if this is the last pass.
+    law_.approach(problem_, law_.as_they_are());
   }
-  start_ = problem_.beta;
   law_.solve(problem_);
-  if (settings_.judged) mend(last ? problem_.beta.size() - 2 : commit - 2);
+  // The way on behind what is committed is where the next window begins.
+  if (settings_.judged)
+    mend(last ? problem_.beta.size() - 2 : std::min(problem_.beta.size() - 2, commit - 2 + kGlide));
 }
 
 /// The course between the places that the law looks at: where it exceeds a limit, that limit is tightened.
 void SpeedWindows::mend(std::size_t commit) {
+  const auto exceeds = [](const Excess& e) { return e.most() > 1.0; };
   for (int round = 0; round < kRepairs; ++round) {
     judge(problem_, commit, excess_);
-    double most = 1.0;
-    for (std::size_t k = 0; k < excess_.size(); ++k) {
-      if (!(excess_[k] > 1.0)) continue;
-      most = std::max(most, excess_[k]);
-      const std::size_t end = std::min(excess_.size(), k + 2);
-      for (std::size_t i = k > 0 ? k - 1 : 0; i < end; ++i)
-        law_.tighten(static_cast<int>(i), 1.0 + 1.1 * (excess_[k] - 1.0) + 0.0005);
-    }
-    if (most == 1.0) return;
+    if (std::none_of(excess_.begin(), excess_.end(), exceeds)) return;
     ++counts_.repaired;
-    const std::vector<double> now = problem_.beta;
-    if (!slow_down(now, 1.5 * (most - 1.0) + 0.003)) {
-      problem_.beta = start_;
-      if (!(law_.worst(problem_.beta) < 1.0) && !law_.find_start(problem_)) {
-        problem_.beta = now;
-        break;
-      }
-    }
-    law_.solve_again(problem_);
+    tighten(1.5 + round);
+    law_.solve(problem_);
   }
   judge(problem_, commit, excess_);
-  for (const double e : excess_)
-    if (e > kLargestExcess) {
-      ++counts_.failed;
-      return;
-    }
+  if (std::any_of(excess_.begin(), excess_.end(), [](const Excess& e) { return e.most() > kLargestExcess; }))
+    ++counts_.failed;
 }
 
-/// Scales a law down between its given ends until it is inside again.
-bool SpeedWindows::slow_down(const std::vector<double>& beta, double by) {
-  const std::size_t n = beta.size();
-  for (int q = 0; q < kSlowings; ++q, by *= 2.0) {
-    problem_.beta = beta;
-    const auto head = static_cast<std::size_t>(problem_.fixed_head),
-               tail = static_cast<std::size_t>(problem_.fixed_tail);
-    for (std::size_t i = head; i + tail < n; ++i) {
-      double z = 1.0;
-      if (head > 0) z = std::min(z, static_cast<double>(i - 1) / kGlide);
-      if (tail > 0) z = std::min(z, static_cast<double>(n - i) / kGlide);
-      problem_.beta[i] *= 1.0 - std::min(by, 0.9) * z * z * (3.0 - 2.0 * z);
-    }
-    if (law_.worst(problem_.beta) < 1.0) return true;
+/// What an interval exceeds counts for its neighbours too.
+void SpeedWindows::tighten(double share) {
+  const auto more = [share](double e) { return e > 1.0 ? share * (e - 1.0) + 1.0005 : 1.0; };
+  const auto raise = [](std::vector<double>& places, std::size_t first, std::size_t end, double by) {
+    for (std::size_t k = first; k < std::min(end, places.size()); ++k) places[k] = std::max(places[k], by);
+  };
+  Tightness wanted = law_.as_they_are();
+  for (std::size_t k = 0; k < excess_.size(); ++k) {
+    const Excess& e = excess_[k];
+    const std::size_t before = k > 0 ? k - 1 : 0;
+    raise(wanted.cap, k, k + 2, more(e.velocity) * more(e.velocity));
+    raise(wanted.acceleration, 2 * k, 2 * k + 3, more(e.acceleration));
+    raise(wanted.jerk, before, k + 2, more(e.jerk));
   }
-  return false;
+  law_.approach(problem_, wanted);
 }
 
 }  // namespace servogate::path

@@ -52,7 +52,7 @@ class SpeedWindows {
   void guess(std::size_t count, std::size_t intervals);
   void solve(bool last, std::size_t commit);
   void mend(std::size_t commit);
-  bool slow_down(const std::vector<double>& beta, double by);
+  void tighten(double share);
 
   Settings settings_;
   SpeedLaw law_;
@@ -63,7 +63,8 @@ class SpeedWindows {
   int made_ = 0;
   std::size_t leg_ = 0;
   std::vector<double> rest_;  // beta from from_ on: committed head, and what the window before had behind it
-  std::vector<double> controls_, excess_, start_, levels_, calm_;
+  std::vector<double> controls_, levels_, slopes_, calm_;
+  std::vector<Excess> excess_;
   std::vector<KnotBound> bounds_;
   std::deque<std::array<AxisLimits, kMaxAxes>> merged_;
 };

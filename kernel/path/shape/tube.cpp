@@ -48,6 +48,7 @@ class SolverOf final : public Tube::Solver {
     std::array<double, 4> weight;
     double scale, pull;
     double limit;  // square of the offset that is allowed now
+    double slide;  // what the scale has more along a direction, 0: all directions alike
   };
 
   void take(const TubeProblem& problem);
@@ -58,6 +59,8 @@ class SolverOf final : public Tube::Solver {
   void derive(double mu);
   void derive_jerk();
   void derive_site(std::size_t k, double mu);
+  /// Distance to offset.
+  void scale(std::size_t k, Point& e) const;
   double direction();
   void centre(double mu, double decrement, int most);
   bool shrink(double& before, double& after);
@@ -74,7 +77,7 @@ class SolverOf final : public Tube::Solver {
   std::vector<double> scale_;             // 1 / jerk
   std::vector<double> jerk_, jerk_step_;  // third differences, and those of the step
   std::vector<Place> places_;
-  std::vector<Point> target_, offset_, offset_step_;
+  std::vector<Point> target_, offset_, offset_step_, along_;
   Band<4 * A> hessian_;
   bool flat_ = false;
   int steps_ = 0;
@@ -90,17 +93,36 @@ void SolverOf<A>::take(const TubeProblem& p) {
   for (std::size_t i = 0; i < scale_.size(); ++i) scale_[i] = 1.0 / p.jerk[i];
   places_.resize(p.sites.size());
   target_.resize(p.sites.size());
+  along_.resize(p.sites.size());
   for (std::size_t k = 0; k < p.sites.size(); ++k) {
     const Site& s = p.sites[k];
-    places_[k] = {static_cast<std::size_t>(s.interval), spline_weights(s.share), 1.0 / s.radius,
-                  kCentring * (s.radius / s.pull) * (s.radius / s.pull), s.limit};
-    for (int a = 0; a < A; ++a) target_[k][a] = s.at[a];
+    places_[k] = {static_cast<std::size_t>(s.interval),
+                  spline_weights(s.share),
+                  1.0 / s.radius,
+                  kCentring * (s.radius / s.pull) * (s.radius / s.pull),
+                  s.limit,
+                  s.slide > 0.0 ? 1.0 / s.slide - 1.0 / s.radius : 0.0};
+    for (int a = 0; a < A; ++a) {
+      target_[k][a] = s.at[a];
+      along_[k][a] = s.along[a];
+    }
   }
   jerk_.resize(intervals_ * A);
   jerk_step_.resize(intervals_ * A);
   offset_.resize(places_.size());
   offset_step_.resize(places_.size());
   step_.assign((count_ + 4) * A, 0.0);
+}
+
+template <int A>
+void SolverOf<A>::scale(std::size_t k, Point& e) const {
+  const Place& s = places_[k];
+  double more = 0.0;
+  if (s.slide != 0.0) {
+    for (int a = 0; a < A; ++a) more += e[a] * along_[k][a];
+    more *= s.slide;
+  }
+  for (int a = 0; a < A; ++a) e[a] = e[a] * s.scale + more * along_[k][a];
 }
 
 template <int A>
@@ -113,9 +135,9 @@ void SolverOf<A>::look() {
     const Place& s = places_[k];
     const double* c = &controls_[s.interval * A];
     for (int a = 0; a < A; ++a)
-      offset_[k][a] = (s.weight[0] * c[a] + s.weight[1] * c[A + a] + s.weight[2] * c[2 * A + a] +
-                       s.weight[3] * c[3 * A + a] - target_[k][a]) *
-                      s.scale;
+      offset_[k][a] = s.weight[0] * c[a] + s.weight[1] * c[A + a] + s.weight[2] * c[2 * A + a] +
+                      s.weight[3] * c[3 * A + a] - target_[k][a];
+    scale(k, offset_[k]);
   }
 }
 
@@ -129,9 +151,9 @@ void SolverOf<A>::look_along() {
     const Place& s = places_[k];
     const double* c = &step_[s.interval * A];
     for (int a = 0; a < A; ++a)
-      offset_step_[k][a] = (s.weight[0] * c[a] + s.weight[1] * c[A + a] + s.weight[2] * c[2 * A + a] +
-                            s.weight[3] * c[3 * A + a]) *
-                           s.scale;
+      offset_step_[k][a] = s.weight[0] * c[a] + s.weight[1] * c[A + a] + s.weight[2] * c[2 * A + a] +
+                           s.weight[3] * c[3 * A + a];
+    scale(k, offset_step_[k]);
   }
 }
 
@@ -189,13 +211,16 @@ void SolverOf<A>::derive_jerk() {
 template <int A>
 void SolverOf<A>::derive_site(std::size_t k, double mu) {
   const Place& s = places_[k];
-  const Point& o = offset_[k];
+  // Derivatives by the distance: what the scale does to them it does twice.
+  Point o = offset_[k];
   const double room = s.limit - offset2(k);
-  const double first = (2.0 * mu / room + 2.0 * s.pull) * s.scale;
-  const double outer = 4.0 * mu / (room * room) * s.scale * s.scale, same = first * s.scale;
+  scale(k, o);
+  const double first = 2.0 * mu / room + 2.0 * s.pull, outer = 4.0 * mu / (room * room);
+  const double same = first * s.scale * s.scale, more = first * s.slide * (s.slide + 2.0 * s.scale);
   double block[A][A];
   for (int a = 0; a < A; ++a)
-    for (int b = 0; b < A; ++b) block[a][b] = outer * o[a] * o[b] + (a == b ? same : 0.0);
+    for (int b = 0; b < A; ++b)
+      block[a][b] = outer * o[a] * o[b] + more * along_[k][a] * along_[k][b] + (a == b ? same : 0.0);
   const std::size_t base = s.interval * A;
   for (int q = 0; q < 4; ++q) {
     if (s.weight[q] == 0.0) continue;

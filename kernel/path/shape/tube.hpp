@@ -23,7 +23,9 @@ struct Site {
   double share = 0.0;         ///< of the interval
   Vector at{};                ///< place of the programmed path, axis by axis of the problem
   double radius = 0.0;        ///< largest distance, > 0
-  double pull = 0.0;          ///< the square of distance by this length counts a little in the objective
+  Vector along{};             ///< a unit vector in which the distance may be `slide`, or zero
+  double slide = 0.0;
+  double pull = 0.0;  ///< the square of distance by this length counts a little in the objective
   /// Square of the largest distance that is asked for, as a ratio of `radius`, below or at 1. Larger on
   /// return where the curve could not be brought in ("released").
   double limit = 1.0;

@@ -8,8 +8,10 @@ namespace servogate::path {
 namespace {
 
 constexpr std::size_t kWindow = 256, kFirstWindow = 64, kOverlap = 32;
-constexpr double kSame = 1e-9;         // mm: vertices closer than that are one
-constexpr double kMostNarrowed = 0.3;  // of a radius, by what the curve may bulge between sites
+constexpr double kSame = 1e-9;                         // mm: vertices closer than that are one
+constexpr double kSlideFrom = 0.9, kMostSlide = 0.02;  // of the tolerance; mm
+constexpr double kTurn = 0.3, kMostTurns = 64.0;  // rad of an arc between two sites; parts of an interval
+constexpr double kMostNarrowed = 0.3;             // of a radius, by what the curve may bulge between sites
 
 }  // namespace
 
@@ -38,18 +40,13 @@ bool TubeWindows::window(const Run& run, const Kept<double>& places, bool comple
   if (last) to = known;
   guess(run, places, complete, start, controls, to);
   leg_ = run.leg_at(places[from_], leg_);
-  sites_.clear();
-  site_legs_.clear();
-  site_places_.clear();
   const std::size_t intervals = to - from_;
   sites(run, places, from_ == 0 ? 2 : from_, last ? to - 1 : to);
-  if (!settings_.first) narrow(run, places);
-  pack(intervals, 3, last ? 3 : 0);
-  limits_of_jerk(run, places, intervals);
-  const TubeSolution solution = tube_.solve(problem_);
+  TubeSolution solution = solve(run, places, intervals, last);
+  if (solution.released > 0 && !settings_.first)
+    solution = solve_on_path(run, places, intervals, last, solution);
   ++made_;
   ++counts_.windows;
-  counts_.released += solution.released;
   counts_.steps += solution.steps;
   counts_.knot_steps += solution.steps * static_cast<std::int64_t>(intervals);
   std::vector<Vector>& c = guess_;
@@ -58,6 +55,7 @@ bool TubeWindows::window(const Run& run, const Kept<double>& places, bool comple
     for (int a = 0; a < problem_.axes; ++a)
       c[i][axis_[a]] =
           problem_.controls[i * static_cast<std::size_t>(problem_.axes) + static_cast<std::size_t>(a)];
+  if (solution.released > 0) count_outside(run, places);
   const std::size_t commit = last ? c.size() : intervals - kOverlap + 3;
   for (std::size_t i = controls.end() - from_; i < commit; ++i) controls.push_back(c[i]);
   if (last) {
@@ -73,6 +71,78 @@ bool TubeWindows::window(const Run& run, const Kept<double>& places, bool comple
   blend_.erase(blend_.begin(), blend_.begin() + static_cast<std::ptrdiff_t>(intervals - kOverlap));
   from_ = to - kOverlap;
   return true;
+}
+
+TubeSolution TubeWindows::solve(const Run& run, const Kept<double>& places, std::size_t intervals,
+                                bool last) {
+  if (!settings_.first) narrow(run, places);
+  pack(intervals, 3, last ? 3 : 0);
+  limits_of_jerk(run, places, intervals);
+  return tube_.solve(problem_);
+}
+
+/// From a start on the programmed path; the better one of both stays.
+TubeSolution TubeWindows::solve_on_path(const Run& run, const Kept<double>& places, std::size_t intervals,
+                                        bool last, const TubeSolution& before) {
+  const std::vector<Vector> guess = guess_;
+  const TubeProblem found = problem_;
+  std::size_t leg = leg_;
+  for (std::size_t i = 3; i < (last ? intervals : intervals + 3); ++i) {
+    const double u = places[std::min(from_ + i - 1, places.end() - 1)];
+    leg = run.leg_at(u, leg);
+    guess_[i] = run.at(u, leg);
+  }
+  TubeSolution solution = solve(run, places, intervals, last);
+  solution.steps += before.steps;
+  if (solution.released < before.released) return solution;
+  problem_ = found;
+  guess_ = guess;
+  solution.released = before.released;
+  return solution;
+}
+
+/// Released sites whose places on curve and path are too far from the other one, whatever the pairing.
+void TubeWindows::count_outside(const Run& run, const Kept<double>& places) {
+  constexpr int kPlaces = 16;  // of an interval
+  for (std::size_t n = 0; n < sites_.size(); ++n) {
+    if (!(problem_.sites[n].limit > 1.0)) continue;
+    const Site& s = sites_[n];
+    const auto k = static_cast<std::size_t>(s.interval);
+    const auto distance = [&](const Vector& p, const Vector& q) {
+      double sum = 0.0;
+      for (int a = 0; a < settings_.axes; ++a) sum += (p[a] - q[a]) * (p[a] - q[a]);
+      return std::sqrt(sum);
+    };
+    const auto to_chord = [&](const Vector& p, const Vector& from, const Vector& to) {
+      double along = 0.0, square = 1e-30;
+      for (int a = 0; a < settings_.axes; ++a) {
+        along += (p[a] - from[a]) * (to[a] - from[a]);
+        square += (to[a] - from[a]) * (to[a] - from[a]);
+      }
+      Vector foot = from;
+      for (int a = 0; a < settings_.axes; ++a)
+        foot[a] += std::clamp(along / square, 0.0, 1.0) * (to[a] - from[a]);
+      return distance(p, foot);
+    };
+    const auto curve = [&](std::size_t interval, double share) {
+      const auto w = spline_weights(share);
+      Vector x{};
+      for (int a = 0; a < settings_.axes; ++a)
+        for (std::size_t q = 0; q < 4; ++q) x[a] += w[q] * guess_[interval + q][a];
+      return x;
+    };
+    const Vector x = curve(k, s.share);
+    const double u = site_places_[n], reach = 4.0 * s.pull + places[from_ + k + 1] - places[from_ + k];
+    const double near = run.downhill(x, u, reach, site_legs_[n]);
+    const double there = distance(x, run.at(near, site_legs_[n]));
+    double back = distance(x, s.at);
+    for (std::size_t i = k > 0 ? k - 1 : k; i < std::min(k + 2, guess_.size() - 3); ++i)
+      for (int q = 0; q < kPlaces; ++q)
+        back = std::min(back,
+                        to_chord(s.at, curve(i, q / double{kPlaces}), curve(i, (q + 1) / double{kPlaces})));
+    if (std::max(there, back) > s.radius / settings_.share) ++counts_.outside;
+    ++counts_.released;
+  }
 }
 
 void TubeWindows::guess(const Run& run, const Kept<double>& places, bool complete, const Kept<Vector>& start,
@@ -106,19 +176,45 @@ void TubeWindows::site(const Run& run, std::size_t leg, double u, std::size_t in
   if (u <= run.leg(leg).begin && leg > run.first())
     s.radius = std::min(s.radius, settings_.share * run.leg(leg - 1).tolerance);
   s.pull = run.leg(leg).tolerance;
+  if (s.radius < kSlideFrom * s.pull) slide(run.leg(leg), u, s);
   sites_.push_back(s);
   site_legs_.push_back(leg);
   site_places_.push_back(u);
 }
 
+/// In a tube that is narrower than the tolerance a place may be ahead or behind.
+void TubeWindows::slide(const Leg& leg, double u, Site& s) const {
+  const Vector d1 = evaluate(leg.piece, std::clamp(u - leg.begin, 0.0, leg.piece.length), settings_.axes).d1;
+  const double length = norm(d1, settings_.axes);
+  for (int a = 0; a < settings_.axes; ++a) s.along[a] = d1[a] / length;
+  s.slide = std::max(s.radius, std::min(settings_.share * s.pull, kMostSlide));
+}
+
+/// Sites between `from` and `to` of an arc that turns much in an interval; true: there are some.
+bool TubeWindows::inside_arc(const Run& run, std::size_t leg, double from, double to, std::size_t k,
+                             double u0, double u1) {
+  const Piece& piece = run.leg(leg).piece;
+  if (piece.shape != Piece::Shape::arc) return false;
+  const double turn = std::abs(piece.omega) * (to - from);
+  const int parts = static_cast<int>(std::min(kMostTurns, std::ceil(turn / kTurn)));
+  for (int i = 1; i < parts; ++i) {
+    const double u = from + (to - from) * i / parts;
+    site(run, leg, u, k, (u - u0) / (u1 - u0));
+  }
+  return parts > 1;
+}
+
 /// At each knot, each vertex, and in the middle of an interval without a vertex near it.
 void TubeWindows::sites(const Run& run, const Kept<double>& places, std::size_t first, std::size_t end) {
+  sites_.clear();
+  site_legs_.clear();
+  site_places_.clear();
   std::size_t leg = run.leg_at(places[first], leg_);
   for (std::size_t k = first; k < end; ++k) {
     const double u0 = places[k], u1 = places[k + 1];
     leg = run.leg_at(u0, leg);
     site(run, leg, u0, k, 0.0);
-    bool near_middle = false;
+    bool near_middle = inside_arc(run, leg, u0, std::min(u1, run.leg(leg).end()), k, u0, u1);
     double at = u0;
     for (std::size_t n = leg + 1; n < run.end() && run.leg(n).begin < u1; ++n) {
       const double u = run.leg(n).begin;
@@ -127,6 +223,7 @@ void TubeWindows::sites(const Run& run, const Kept<double>& places, std::size_t 
       const double share = (u - u0) / (u1 - u0);
       near_middle = near_middle || std::abs(share - 0.5) < 0.2;
       site(run, n, u, k, share);
+      near_middle = inside_arc(run, n, u, std::min(u1, run.leg(n).end()), k, u0, u1) || near_middle;
     }
     if (near_middle) continue;
     const double u = 0.5 * (u0 + u1);
@@ -194,19 +291,22 @@ void TubeWindows::pack(std::size_t intervals, std::size_t head, std::size_t tail
     for (int a = 0; a < axes; ++a) problem_.controls.push_back(c[axis_[a]]);
   problem_.sites = sites_;
   for (Site& s : problem_.sites) {
-    const Vector at = s.at;
-    double offset = 0.0;
+    const Vector at = s.at, along = s.along;
+    double offset = 0.0, ahead = 0.0;
     const auto w = spline_weights(s.share);
     for (int a = 0; a < axes; ++a) {
       const auto i = static_cast<std::size_t>(s.interval);
       s.at[a] = at[axis_[a]];
+      s.along[a] = along[axis_[a]];
       double x = -s.at[a];
       for (std::size_t q = 0; q < 4; ++q) x += w[q] * guess_[i + q][axis_[a]];
       offset += x * x;
+      ahead += x * s.along[a];
     }
+    offset /= s.radius * s.radius;
+    if (s.slide > 0.0) offset += ahead * ahead * (1.0 / (s.slide * s.slide) - 1.0 / (s.radius * s.radius));
     // Nothing can move a site of committed controls.
-    if (from_ > 0 && s.interval == 0 && s.share == 0.0)
-      s.limit = std::max(s.limit, 1.001 * offset / (s.radius * s.radius));
+    if (from_ > 0 && s.interval == 0 && s.share == 0.0) s.limit = std::max(s.limit, 1.001 * offset);
   }
 }
 

@@ -18,7 +18,9 @@ class TubeWindows {
     bool first = true;  ///< the clock is an estimate: peaks of jerk mean little, start on the programmed path
   };
   struct Counts {
-    int windows = 0, released = 0;
+    int windows = 0;
+    int released = 0;  ///< places where the pairing does not keep the tolerance
+    int outside = 0;   ///< and no other one does near there
     std::int64_t steps = 0, knot_steps = 0;
   };
 
@@ -41,7 +43,14 @@ class TubeWindows {
   void guess(const Run& run, const Kept<double>& places, bool complete, const Kept<Vector>& start,
              const Kept<Vector>& controls, std::size_t to);
   void sites(const Run& run, const Kept<double>& places, std::size_t first, std::size_t end);
+  bool inside_arc(const Run& run, std::size_t leg, double from, double to, std::size_t k, double u0,
+                  double u1);
   void site(const Run& run, std::size_t leg, double u, std::size_t interval, double share);
+  TubeSolution solve(const Run& run, const Kept<double>& places, std::size_t intervals, bool last);
+  TubeSolution solve_on_path(const Run& run, const Kept<double>& places, std::size_t intervals, bool last,
+                             const TubeSolution& before);
+  void count_outside(const Run& run, const Kept<double>& places);
+  void slide(const Leg& leg, double u, Site& site) const;
   void pack(std::size_t intervals, std::size_t head, std::size_t tail);
   void narrow(const Run& run, const Kept<double>& places);
   double bulge(const Run& run, const Kept<double>& places, std::size_t site, bool across) const;

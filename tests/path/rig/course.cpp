@@ -144,6 +144,7 @@ std::string verdict(const Course& course, const RandomProgram& program, Reached*
   // The way between two samples bulges by an eighth of acceleration times period squared.
   if (!frechet_within(fine, path, program.tolerance + 5e-5, axes))
     fail(text, "leaves the tolerance", program.tolerance);
+  if (course.counts.outside > 0) fail(text, "places outside", static_cast<double>(course.counts.outside));
   if (course.counts.failed > 0)
     fail(text, "windows without a law", static_cast<double>(course.counts.failed));
   return text;
