@@ -46,6 +46,14 @@ RandomProgram zigzag(int blocks) {
   return program(e);
 }
 
+/// Short lines round and round.
+RandomProgram around(int blocks) {
+  std::vector<Element> e;
+  for (int i = 1; i <= blocks; ++i)
+    e.push_back(line_to(60 - 60 * std::cos(i / 150.0), 60 * std::sin(i / 150.0), 0.01 * i, 100));
+  return program(e);
+}
+
 TEST(Course, of_a_straight_line_in_a_thousand_blocks_takes_what_one_block_takes) {
   const RandomProgram p = collinear(1000, 0.1);
   const Course c = plan(p);
@@ -98,17 +106,17 @@ TEST(Course, does_not_depend_on_when_elements_come) {
   for (const int portion : {1, 7, 100}) {
     const Course some = plan(p, portion);
     ASSERT_EQ(some.runs.size(), all.runs.size());
-    ASSERT_EQ(some.runs[0].size(), all.runs[0].size());
-    for (std::size_t k = 0; k < all.runs[0].size(); ++k) {
-      ASSERT_EQ(some.runs[0][k].t.ns, all.runs[0][k].t.ns) << k;
-      ASSERT_EQ(some.runs[0][k].control, all.runs[0][k].control) << k;
-      ASSERT_EQ(some.runs[0][k].w, all.runs[0][k].w) << k;
+    ASSERT_EQ(some.runs[0].knots.size(), all.runs[0].knots.size());
+    for (std::size_t k = 0; k < all.runs[0].knots.size(); ++k) {
+      ASSERT_EQ(some.runs[0].knots[k].t.ns, all.runs[0].knots[k].t.ns) << k;
+      ASSERT_EQ(some.runs[0].knots[k].control, all.runs[0].knots[k].control) << k;
+      ASSERT_EQ(some.runs[0].knots[k].w, all.runs[0].knots[k].w) << k;
     }
   }
 }
 
 TEST(Course, of_a_long_program_keeps_no_more_than_its_windows) {
-  const std::size_t some = plan(zigzag(600), 5).most_kept, many = plan(zigzag(1200), 5).most_kept;
+  const std::size_t some = plan(around(1500), 5).most_kept, many = plan(around(3000), 5).most_kept;
   EXPECT_LE(many, some + some / 5);
 }
 
@@ -158,10 +166,25 @@ TEST(Course, rests_where_the_program_does) {
   p.elements.back().kind = Element::Kind::rapid;
   const Course c = plan(p);
   EXPECT_EQ(verdict(c, p), "");
-  ASSERT_EQ(c.runs.size(), 3u);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector& end = p.elements[k + 1].to;
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(c.runs[k].back().control[i], end[i], 1e-9);
+  EXPECT_EQ(c.counts.runs, 1);   // the corner
+  EXPECT_EQ(c.counts.moves, 2);  // lines from rest to rest have a closed form
+}
+
+TEST(Course, of_long_lines_cruises_in_their_middle_at_no_cost) {
+  RandomProgram p = program({line_to(80, 0, 0, 50), line_to(80, 90, 0, 50), line_to(-500, 91, 3, 50)});
+  const Course c = plan(p);
+  EXPECT_EQ(verdict(c, p), "");
+  ASSERT_EQ(c.runs.size(), 4u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(c.runs[k].cruise.has_value());
+  double cruised = 0.0;
+  for (const Stage& stage : c.runs) cruised += stage.cruise ? stage.cruise->seconds : 0.0;
+  EXPECT_GE(cruised, 0.85 * c.seconds());
+  // Length by feed, the time to speed up and to stop, and what the two corners cost.
+  EXPECT_LE(c.seconds(), (80 + 90 + 580.01) / 50 + 0.15 + 2 * 0.2);
+  for (const int portion : {1, 2}) {
+    const Course some = plan(p, portion);
+    ASSERT_EQ(some.runs.size(), c.runs.size());
+    for (std::size_t k = 0; k < c.runs.size(); ++k) EXPECT_EQ(some.runs[k].seconds(), c.runs[k].seconds());
   }
 }
 

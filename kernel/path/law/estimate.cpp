@@ -16,7 +16,7 @@ constexpr int kLeast = 6, kMean = 3;    // steps to each side: least of them, an
 constexpr std::size_t kEdge = 20;       // steps at the ends of a run whose least is not taken
 constexpr std::size_t kPast = 24;
 constexpr std::size_t kFewest = 12;  // steps of a run
-constexpr double kTrials = 16.0;     // the first window is so much shorter than the full one
+constexpr double kTrials = 2.0;      // the first window is so much shorter than the full one
 constexpr std::size_t kFewestDecided = 64, kBeyond = 16;  // steps in it, and behind them for the means
 
 // y(v) by the root of jerk: the length in which jerk alone reaches v, from rest.
@@ -33,20 +33,16 @@ double time_over(double y0, double y1, double h) {
   return 3.0 * h / kTime * (std::cbrt(y1) - std::cbrt(y0)) / (y1 - y0);
 }
 
-double fastest(const Leg& leg, int axes) {
-  double v = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i)
-    if (moves(leg, i)) v = std::max(v, (*leg.limits)[i].velocity);
-  return std::min(leg.feed, v);
-}
-
 }  // namespace
 
 void ClockEstimate::clear(double step) { *this = ClockEstimate(axes_, step); }
 
 void ClockEstimate::work(const Run& run, bool ended, Kept<double>& places) {
   if (done_ || run.empty()) return;
-  if (places.end() == 0) places.push_back(0.0);
+  if (places.end() == 0) {
+    places.push_back(0.0);
+    begin_y_ = y_of(run.begin_speed());
+  }
   while (window(run, ended)) {
     integrate(run, places);
     if (decided_) return;
@@ -81,7 +77,7 @@ bool ClockEstimate::window(const Run& run, bool ended) {
     const double end = begin_ + trial_, known = end + trial_;
     const bool last = ended && run.length() <= known;
     if (!last && run.length() <= known) return false;
-    const bool full = trial_ >= full_window(run, first, end);
+    const bool full = trial_ >= full_window(run, first, last ? run.length() : end);
     solve(run, last ? run.length() : end, last);
     if (commit(last, full ? 1 : kFewestDecided)) break;
   }
@@ -93,9 +89,11 @@ void ClockEstimate::solve(const Run& run, double end, bool last) {
   origin_ = begin_;
   sample(run, end);
   cap_by_limits();
+  limit_cap_ = cap_;
   const int n = static_cast<int>(at_.size()) - 1;
   for (int h = 1; h < n / 3 && h * spacing_ <= kLargestScale; h = h < 4 ? h + 1 : h * 5 / 4) cap_by_scale(h);
   carry_caps();
+  free_straights(run);
   nodes(run, end, last);
   reach_between();
   raw_steps(end, last);
@@ -178,6 +176,18 @@ void ClockEstimate::carry_caps() {
   }
 }
 
+/// Where a run flies in or out along a line, only the limits count: differences reach far from the corner.
+void ClockEstimate::free_straights(const Run& run) {
+  constexpr double kFree = 0.7;  // of the first and the last leg
+  const bool in = run.begin_speed() > 0.0, out = run.end_speed() > 0.0;
+  for (std::size_t i = 0; i < cap_.size(); ++i) {
+    const double u = origin_ + static_cast<double>(i) * spacing_, length = legs_[i]->piece.length;
+    const bool first = in && legs_[i]->begin == 0.0 && u < kFree * length;
+    const bool last = out && legs_[i]->end() == run.length() && u > run.length() - kFree * length;
+    if (first || last) cap_[i] = limit_cap_[i];
+  }
+}
+
 std::size_t ClockEstimate::sample_at(double u) const {
   const double at = std::max(0.0, (u - origin_) / spacing_);
   return std::min(static_cast<std::size_t>(at), cap_.size() - 2);
@@ -220,10 +230,11 @@ void ClockEstimate::nodes(const Run& run, double end, bool last) {
   for (std::size_t i = 0; i <= n; ++i)
     nodes_.push_back({origin_ + static_cast<double>(i) * spacing_, y_of(cap_[i])});
   nodes_.front().y = begin_y_;
-  nodes_.back() = {end, 0.0};
+  const double out = last ? run.end_speed() : 0.0;
+  nodes_.back() = {end, y_of(out)};
   sharp_corners(run, end);
   if (begin_y_ == 0.0) nodes_around(begin_, 0.0, end);
-  if (last) nodes_around(end, 0.0, end);
+  if (last && out == 0.0) nodes_around(end, 0.0, end);
   std::stable_sort(nodes_.begin(), nodes_.end(), [](const Node& p, const Node& q) { return p.u < q.u; });
   std::size_t kept = 0;
   for (std::size_t i = 1; i < nodes_.size(); ++i) {

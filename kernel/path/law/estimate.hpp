@@ -37,6 +37,7 @@ class ClockEstimate {
   void cap_by_limits();
   void cap_by_scale(int h);
   void carry_caps();
+  void free_straights(const Run& run);
   void nodes(const Run& run, double end, bool last);
   void sharp_corners(const Run& run, double end);
   void nodes_around(double u, double y, double end);
@@ -57,7 +58,7 @@ class ClockEstimate {
   double origin_ = 0.0, spacing_ = 0.0, feed_ = 0.0, free_to_ = 0.0;
   std::vector<Vector> at_;
   std::vector<const Leg*> legs_;
-  std::vector<double> cap_, jerk_root_, acceleration_, time_, old_cap_, steps_, smooth_;
+  std::vector<double> limit_cap_, cap_, jerk_root_, acceleration_, time_, old_cap_, steps_, smooth_;
   double old_origin_ = 0.0, old_spacing_ = 0.0;
   std::vector<Node> nodes_;
   std::vector<double> raw_;

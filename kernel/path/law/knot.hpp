@@ -52,8 +52,8 @@ struct Quintic {
 };
 
 /// What is published of a run, knot by knot: final from the moment it is published. The set-point between
-/// knots m - 1 and m is made of the controls of m - 3 to m; before the first knot of a run stand two of the
-/// same place.
+/// knots m - 1 and m is made of the controls of m - 3 to m; before the first knot of a run stand two
+/// controls that are published with its begin.
 struct Knot {
   LawTime t;           ///< law time since the start of the run
   double w = 0.0;      ///< knots a second at the knot

@@ -57,15 +57,56 @@ void Pipeline::begin_run() {
 void Pipeline::add(const Leg& leg) { run_.append(leg); }
 
 void Pipeline::end() {
+  if (run_.empty()) return;
+  if (!move_instead()) {
+    end_run(0.0);
+    sink_.rest();
+  }
+  run_.clear();
+}
+
+void Pipeline::cruise(const Leg& leg, double speed) {
+  end_run(speed);
+  const int axes = settings_.axes;
+  sink_.cruise({position(leg.piece, 0.0, axes), position(leg.piece, leg.piece.length, axes),
+                leg.piece.length / speed});
+  run_.clear(speed);
+}
+
+void Pipeline::end_run(double speed) {
+  run_.end_at(speed);
   ended_ = true;
   work();
   for (const auto& pass : passes_) count(*pass);
-  run_.clear();
   ended_ = begun_ = false;
 }
 
+/// A single line from rest to rest takes the closed form.
+bool Pipeline::move_instead() {
+  const Leg& leg = run_.leg(run_.end() - 1);
+  if (begun_ || run_.end() - run_.first() != 1 || run_.begin_speed() > 0.0 ||
+      leg.piece.shape != Piece::Shape::line)
+    return false;
+  Box box{leg.feed, HUGE_VAL, HUGE_VAL};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(settings_.axes); ++i) {
+    const double rate = std::abs(leg.piece.c1[i]) / (1.0 - settings_.reserve);
+    if (rate == 0.0) continue;
+    box.velocity = std::min(box.velocity, (*leg.limits)[i].velocity / rate);
+    box.acceleration = std::min(box.acceleration, (*leg.limits)[i].acceleration / rate);
+    box.jerk = std::min(box.jerk, (*leg.limits)[i].jerk / rate);
+  }
+  Move move;
+  move.line = leg.piece;
+  if (!plan(move.profile, {}, {leg.piece.length, box.velocity, 0.0, 0.0}, box)) return false;
+  sink_.move(move);
+  ++counts_.moves;
+  return true;
+}
+
 void Pipeline::work() {
-  if (run_.empty()) return;
+  // One line may be all that there is.
+  if (run_.empty() || (!begun_ && !ended_ && run_.end() - run_.first() == 1 && run_.begin_speed() == 0.0))
+    return;
   if (!begun_) begin_run();
   for (std::size_t n = 0; n < passes_.size(); ++n) work_pass(n);
   publish();
@@ -98,6 +139,7 @@ void Pipeline::publish() {
   if (last.beta.end() < 3) return;
   const double step = last.speed.step(), i1 = 1.0 / step;
   const std::size_t known = last.beta.end() - 1;  // knots
+  if (published_ == 0) sink_.begin(last.controls[0], last.controls[1]);
   for (; published_ < known; ++published_) {
     const std::size_t k = published_;
     if (k > 0) time_ = time_.plus(interval_time({&last.beta[k - 1], 3}, 0, step));
@@ -110,7 +152,6 @@ void Pipeline::publish() {
     sink_.put(knot);
     ++counts_.knots;
   }
-  if (last.speed.done()) sink_.rest();
 }
 
 void Pipeline::forget() {

@@ -6,18 +6,39 @@
 #include "kernel/path/law/estimate.hpp"
 #include "kernel/path/law/even_time.hpp"
 #include "kernel/path/law/knot.hpp"
+#include "kernel/path/law/s_curve.hpp"
 #include "kernel/path/law/speed_windows.hpp"
 #include "kernel/path/shape/tube_windows.hpp"
 
 namespace servogate::path {
 
+/// A straight way at constant speed between two runs.
+struct Cruise {
+  Vector from{}, to{};
+  double seconds = 0.0;
+};
+
+/// A straight way from rest to rest, as fast as it can be.
+struct Move {
+  Piece line;
+  Profile profile;  ///< of the line's parameter
+  /// real-time safe.
+  Vector position(double t, int axes) const noexcept { return path::position(line, profile.at(t).s, axes); }
+};
+
 /// Where knots go, in order.
 class KnotSink {
  public:
-  /// The next knot of a run, the first one at rest at its start.
+  /// A run begins; the two controls before that of its first knot.
+  virtual void begin(const Vector& before_last, const Vector& last) = 0;
+  /// The next knot of the run, the first one at its start.
   virtual void put(const Knot& knot) = 0;
   /// The last knot was the rest at the end of the run.
   virtual void rest() = 0;
+  /// The last knot was where the cruise begins; behind it another run begins.
+  virtual void cruise(const Cruise& cruise) = 0;
+  /// Instead of a run.
+  virtual void move(const Move& move) = 0;
 
  protected:
   ~KnotSink() = default;
@@ -36,7 +57,7 @@ class Pipeline {
     int passes = 2;
   };
   struct Counts {
-    std::int64_t runs = 0, knots = 0;
+    std::int64_t runs = 0, moves = 0, knots = 0;
     /// Places that the curve of the last pass could not be brought near enough to by the pairing of place and
     /// parameter; mostly another pairing keeps the tolerance.
     std::int64_t released = 0;
@@ -52,6 +73,9 @@ class Pipeline {
   void add(const Leg& leg);
   /// The run rests behind the last element; the next one begins another run.
   void end();
+  /// The run goes on along `leg`, a line, at a constant speed of its parameter; the next element begins
+  /// another run, at that speed.
+  void cruise(const Leg& leg, double speed);
   /// Plans what can be planned. Call it after some elements, and after end().
   void work();
   const Counts& counts() const { return counts_; }
@@ -69,6 +93,8 @@ class Pipeline {
     Kept<Vector> start, controls;
   };
   void begin_run();
+  void end_run(double speed);
+  bool move_instead();
   void work_pass(std::size_t n);
   void forget();
   void count(const Pass& pass);

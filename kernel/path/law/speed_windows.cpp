@@ -20,13 +20,6 @@ constexpr std::size_t kAhead = 48;            // knots behind a window that its 
 constexpr std::size_t kNear = 16, kMean = 5;  // knots to each side: least of levels, and their mean, twice
 constexpr double kLevelShare = 0.7;
 
-double speed_of(const Leg& leg, int axes) {
-  double v = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i)
-    if (moves(leg, i)) v = std::max(v, (*leg.limits)[i].velocity);
-  return std::min(leg.feed, v);
-}
-
 }  // namespace
 
 void SpeedWindows::clear(double step) {
@@ -55,7 +48,7 @@ std::size_t SpeedWindows::overlap(const Run& run, const Kept<double>& places, st
       a = std::min(a, (*run.leg(n).limits)[i].acceleration);
       j = std::min(j, (*run.leg(n).limits)[i].jerk);
     }
-    most = std::max(most, speed_of(run.leg(n), settings_.axes) / a + a / j);
+    most = std::max(most, fastest(run.leg(n), settings_.axes) / a + a / j);
   }
   return static_cast<std::size_t>(most / settings_.step) + kMargin;
 }
@@ -78,8 +71,10 @@ bool SpeedWindows::window(const Run& run, const Kept<double>& places, const Kept
   pack(controls, ahead);
   const std::size_t count = to - from_ + 2, commit = last ? count : to - from_ - over + 2;
   guess(count, to - from_);
-  problem_.fixed_head = from_ > 0 ? 2 : 0;
-  problem_.fixed_tail = last ? 0 : 2;
+  if (from_ == 0 && run.begin_speed() > 0.0) fly(false);
+  if (last && run.end_speed() > 0.0) fly(true);
+  problem_.fixed_head = from_ > 0 || run.begin_speed() > 0.0 ? 2 : 0;
+  problem_.fixed_tail = last && run.end_speed() == 0.0 ? 0 : 2;
   solve(last, commit);
   ++made_;
   ++counts_.windows;
@@ -194,6 +189,25 @@ void SpeedWindows::guess(std::size_t count, std::size_t intervals) {
       const double glide = rest_[kept - 1] + z * z * (3.0 - 2.0 * z) * (own - rest_[kept - 1]);
       problem_.beta[i] = std::min(glide, problem_.beta[i - 1] + slopes_[std::min(i, n - 1)]);
     }
+  }
+}
+
+/// The clock's own speed at the begin or the end of a run, and a way from it to the slow guess.
+void SpeedWindows::fly(bool end) {
+  constexpr double kSteepest = 2.0, kEase = 0.2;
+  const std::size_t n = problem_.beta.size();
+  double b = 1.0, step = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double& beta = problem_.beta[end ? n - 1 - i : i];
+    if (i < 2) {
+      beta = 1.0;
+      continue;
+    }
+    const double slope = slopes_[std::min(end ? n - 1 - i : i, slopes_.size() - 1)];
+    step = std::min(kSteepest * slope, step + kEase * slope);
+    b -= step;
+    if (b <= beta) break;
+    beta = b;
   }
 }
 

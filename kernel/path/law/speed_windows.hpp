@@ -50,6 +50,7 @@ class SpeedWindows {
   const std::array<AxisLimits, kMaxAxes>* merged(const Run& run, std::size_t first, std::size_t end);
   void pack(const Kept<Vector>& controls, std::size_t to);
   void guess(std::size_t count, std::size_t intervals);
+  void fly(bool end);
   void solve(bool last, std::size_t commit);
   void mend(std::size_t commit);
   void tighten(double share);

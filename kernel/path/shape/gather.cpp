@@ -2,6 +2,8 @@
 #include "kernel/path/shape/gather.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace servogate::path {
@@ -56,10 +58,43 @@ void Gather::put(const Element& e, const Piece& piece) {
   const double own = goes_on(e) ? e.transition.tolerance : 0.0, begin = open_ ? before_.tolerance : 0.0;
   leg.exact = own == 0.0 && begin == 0.0;
   leg.tolerance = leg.exact ? kUsual : own == 0.0 ? begin : begin == 0.0 ? own : std::min(own, begin);
-  sink_.put(leg);
+  // From rest to rest there is nothing to round.
+  const bool single = !open_ && !goes_on(e);
+  if (single || !put_with_cruise(leg)) sink_.put(leg);
   open_ = true;
   before_ = e.transition;
   last_ = piece;
+}
+
+/// The middle of a long line is driven at its feed: a run before it and one behind it are left to plan.
+bool Gather::put_with_cruise(const Leg& leg) {
+  // Shares of feed and limits that are surely reached; how much longer than the way to speed up the ends are.
+  constexpr double kFeed = 0.999, kVelocity = 0.98, kShare = 0.95, kLonger = 1.3, kMoreSeconds = 0.08;
+  constexpr double kCorner = 1.0, kCornerByTolerance = 40.0, kLeastGain = 0.15;
+  if (leg.piece.shape != Piece::Shape::line) return false;
+  double v = kFeed * leg.feed, a = std::numeric_limits<double>::infinity(), j = a;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(config_.axis_count); ++i) {
+    const double rate = std::abs(leg.piece.c1[i]);
+    if (rate == 0.0) continue;
+    v = std::min(v, kVelocity * (*leg.limits)[i].velocity / rate);
+    a = std::min(a, kShare * (*leg.limits)[i].acceleration / rate);
+    j = std::min(j, kShare * (*leg.limits)[i].jerk / rate);
+  }
+  const double seconds = v >= a * a / j ? v / a + a / j : 2.0 * std::sqrt(v / j);
+  // The estimate of a clock speeds up in its own way.
+  const double clock = std::sqrt(2.0) / 3.0 * v * std::sqrt(v / j) + v * v / (1.4 * a);
+  const double end = kLonger * std::max(0.5 * v * seconds, clock) + kMoreSeconds * v + kCorner +
+                     kCornerByTolerance * leg.tolerance;
+  const double middle = leg.piece.length - 2.0 * end;
+  if (!(middle > kLeastGain * v)) return false;
+  Leg some = leg;
+  some.piece = part(leg.piece, 0.0, end);
+  sink_.put(some);
+  some.piece = part(leg.piece, end, middle);
+  sink_.cruise(some, v);
+  some.piece = part(leg.piece, end + middle, end);
+  sink_.put(some);
+  return true;
 }
 
 void Gather::rest(bool confirm) {

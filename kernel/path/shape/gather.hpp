@@ -8,6 +8,9 @@ namespace servogate::path {
 class RunSink {
  public:
   virtual void put(const Leg& leg) = 0;
+  /// The run goes on along a straight line at a constant speed of its parameter: `leg`; behind it another run
+  /// begins, at that speed.
+  virtual void cruise(const Leg& leg, double speed) = 0;
   /// The run ends behind what was put.
   virtual void rest(bool confirm) = 0;
 
@@ -36,6 +39,7 @@ class Gather {
   bool goes_on(const Element& element) const;
   void put(const Element& element, const Piece& piece);
   void rest(bool confirm);
+  bool put_with_cruise(const Leg& leg);
 
   Config config_;
   RunSink& sink_;

@@ -13,6 +13,13 @@ constexpr double kEnds = 0.5, kEndsByTolerance = 20.0;
 
 }  // namespace
 
+double fastest(const Leg& leg, int axes) {
+  double square = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i)
+    if (moves(leg, i)) square += (*leg.limits)[i].velocity * (*leg.limits)[i].velocity;
+  return std::min(leg.feed, std::sqrt(square));
+}
+
 void Run::append(Leg leg) {
   leg.begin = length();
   legs_.push_back(leg);

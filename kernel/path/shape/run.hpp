@@ -27,13 +27,25 @@ inline bool moves(const Leg& leg, std::size_t axis) {
   return p.c1[axis] != 0.0 || (p.shape == Piece::Shape::arc && (p.axis1 == axis || p.axis2 == axis));
 }
 
+/// No speed of the parameter is higher than this, mm/s or degrees/s.
+double fastest(const Leg& leg, int axes);
+
 /// The programmed path from rest to rest as a function of one parameter u, which is the length over all its
 /// legs. Only legs that are still needed are kept. Not real-time safe.
 class Run {
  public:
   explicit Run(int axes) : axes_(axes) {}
 
-  void clear() { legs_.clear(); }
+  /// A new run, that begins at `speed`; 0: from rest.
+  void clear(double speed = 0.0) {
+    legs_.clear();
+    begin_speed_ = speed;
+    end_speed_ = 0.0;
+  }
+  /// Of the parameter at its begin and its end, where it flies in from and out to a straight line; 0: rest.
+  double begin_speed() const { return begin_speed_; }
+  double end_speed() const { return end_speed_; }
+  void end_at(double speed) { end_speed_ = speed; }
   /// Appends a leg that starts where the last one ends; `begin` is filled here.
   void append(Leg leg);
   /// Legs that end at or before `u` may go.
@@ -58,6 +70,7 @@ class Run {
  private:
   double foot(const Vector& x, const Leg& leg, double u) const;
   int axes_;
+  double begin_speed_ = 0.0, end_speed_ = 0.0;
   Kept<Leg> legs_;
 };
 

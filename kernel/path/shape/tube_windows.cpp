@@ -157,7 +157,8 @@ void TubeWindows::guess(const Run& run, const Kept<double>& places, bool complet
     } else if (k < blend_.size()) {
       guess_.push_back(blend_[k]);
     } else if (i < 3 || (complete && i >= last)) {
-      guess_.push_back(run.at(places[i < 3 ? 0 : last], leg));
+      guess_.push_back(
+          at_end(run, i < 3, static_cast<double>(i) - (i < 3 ? 1.0 : static_cast<double>(last + 1))));
     } else if (!settings_.first) {
       guess_.push_back(start[i]);
     } else {
@@ -165,6 +166,18 @@ void TubeWindows::guess(const Run& run, const Kept<double>& places, bool complet
       guess_.push_back(run.at(places[i - 1], leg));
     }
   }
+}
+
+/// Controls at the begin or the end of a run: all alike at rest, else in even steps along the line, `n` from
+/// the one at the very end.
+Vector TubeWindows::at_end(const Run& run, bool begin, double n) const {
+  const Leg& leg = run.leg(begin ? run.first() : run.end() - 1);
+  const double s = begin ? 0.0 : leg.piece.length, speed = begin ? run.begin_speed() : run.end_speed();
+  Vector x = position(leg.piece, s, settings_.axes);
+  if (speed == 0.0) return x;
+  const Vector d1 = evaluate(leg.piece, s, settings_.axes).d1;
+  for (int a = 0; a < settings_.axes; ++a) x[a] += n * settings_.step * speed * d1[a];
+  return x;
 }
 
 void TubeWindows::site(const Run& run, std::size_t leg, double u, std::size_t interval, double share) {

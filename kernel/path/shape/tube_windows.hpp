@@ -42,6 +42,7 @@ class TubeWindows {
               Kept<Vector>& controls);
   void guess(const Run& run, const Kept<double>& places, bool complete, const Kept<Vector>& start,
              const Kept<Vector>& controls, std::size_t to);
+  Vector at_end(const Run& run, bool begin, double n) const;
   void sites(const Run& run, const Kept<double>& places, std::size_t first, std::size_t end);
   bool inside_arc(const Run& run, std::size_t leg, double from, double to, std::size_t k, double u0,
                   double u1);

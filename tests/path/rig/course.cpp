@@ -16,12 +16,21 @@ class Collector final : public RunSink, public KnotSink {
     settings.rotary = config.rotary;
     settings.reserve = reserve;
     pipeline = std::make_unique<Pipeline>(settings, *this);
-    course.runs.emplace_back();
   }
   void put(const Leg& leg) override { pipeline->add(leg); }
   void rest(bool /*confirm*/) override { pipeline->end(); }
-  void put(const Knot& knot) override { course.runs.back().push_back(knot); }
-  void rest() override { course.runs.emplace_back(); }
+  void cruise(const Leg& leg, double speed) override { pipeline->cruise(leg, speed); }
+  void begin(const Vector& before_last, const Vector& last) override {
+    course.runs.emplace_back();
+    course.runs.back().before = {before_last, last};
+  }
+  void put(const Knot& knot) override { course.runs.back().knots.push_back(knot); }
+  void rest() override {}
+  void cruise(const Cruise& cruise) override { course.runs.back().cruise = cruise; }
+  void move(const Move& move) override {
+    course.runs.emplace_back();
+    course.runs.back().move = move;
+  }
 
   std::unique_ptr<Pipeline> pipeline;
   Course course;
@@ -44,16 +53,25 @@ double spline(double c0, double c1, double c2, double c3, double f) {
   return mix(e2, e3, f);
 }
 
-Vector at(const std::vector<Knot>& run, std::size_t m, double t, int axes) {
+Vector at(const Stage& stage, std::size_t m, double t, int axes) {
+  const std::vector<Knot>& run = stage.knots;
   const Knot &from = run[m - 1], &to = run[m];
   const double length = time_of(to) - time_of(from), s = (t - time_of(from)) / length;
   const double f =
       between(s, from.w * length, from.a * length * length, to.w * length, to.a * length * length);
   const auto control = [&](std::size_t back) -> const Vector& {
-    return run[m >= back ? m - back : 0].control;
+    return m >= back ? run[m - back].control : stage.before[2 + m - back];
   };
   Vector x{};
   for (int i = 0; i < axes; ++i) x[i] = spline(control(3)[i], control(2)[i], control(1)[i], control(0)[i], f);
+  return x;
+}
+
+/// Phases of constant jerk are the planner's; the line is gone along by the length that they give.
+Vector at(const Move& move, double t, int axes) {
+  Vector x{};
+  const double s = move.profile.at(t).s / move.line.length;
+  for (int i = 0; i < axes; ++i) x[i] = move.line.c0[i] + s * (move.line.c5[i] - move.line.c0[i]);
   return x;
 }
 
@@ -65,10 +83,14 @@ void fail(std::string& text, const char* what, double value) {
 
 }  // namespace
 
+double Stage::seconds() const {
+  if (move) return move->profile.duration();
+  return time_of(knots.back()) + (cruise ? cruise->seconds : 0.0);
+}
+
 double Course::seconds() const {
   double sum = 0.0;
-  for (const auto& run : runs)
-    if (!run.empty()) sum += time_of(run.back());
+  for (const Stage& stage : runs) sum += stage.seconds();
   return sum;
 }
 
@@ -84,24 +106,36 @@ Course plan(const RandomProgram& program, int portion, double reserve) {
     collector.course.most_kept = std::max(collector.course.most_kept, collector.pipeline->kept());
   }
   gather.finish();
-  collector.course.runs.pop_back();
   collector.course.counts = collector.pipeline->counts();
   return collector.course;
 }
 
 Polyline sampled(const Course& course, const Vector& start, int axes, double period) {
   Polyline out(4, start);
-  for (const auto& run : course.runs) {
-    if (run.size() < 2) continue;
+  double next = period;  // from the begin of the stage
+  for (const Stage& stage : course.runs) {
+    const double end = stage.seconds(), knots_end = stage.move ? 0.0 : time_of(stage.knots.back());
     std::size_t m = 1;
-    const double end = time_of(run.back());
-    for (std::int64_t n = 1;; ++n) {
-      const double t = static_cast<double>(n) * period;
-      if (t >= end) break;
-      while (time_of(run[m]) < t) ++m;
-      out.push_back(at(run, m, t, axes));
+    for (; next < end; next += period) {
+      if (stage.move) {
+        out.push_back(at(*stage.move, next, axes));
+      } else if (next <= knots_end) {
+        while (time_of(stage.knots[m]) < next) ++m;
+        out.push_back(at(stage, m, next, axes));
+      } else {
+        Vector x{};
+        const double share = (next - knots_end) / stage.cruise->seconds;
+        for (int i = 0; i < axes; ++i)
+          x[i] = stage.cruise->from[i] + share * (stage.cruise->to[i] - stage.cruise->from[i]);
+        out.push_back(x);
+      }
     }
-    for (int q = 0; q < 4; ++q) out.push_back(at(run, run.size() - 1, end, axes));
+    next -= end;
+    if (stage.cruise) continue;
+    next = period;
+    const Vector rest =
+        stage.move ? at(*stage.move, end, axes) : at(stage, stage.knots.size() - 1, end, axes);
+    out.insert(out.end(), 4, rest);
   }
   return out;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +12,18 @@
 
 namespace servogate::path::test {
 
-/// What the planner published of a program: its runs, each as knots.
+/// A run with the two controls before it and the cruise behind it, or a move.
+struct Stage {
+  std::array<Vector, 2> before{};
+  std::vector<Knot> knots;
+  std::optional<Cruise> cruise;  ///< else it ends at rest
+  std::optional<Move> move;      ///< instead of knots
+  double seconds() const;
+};
+
+/// What the planner published of a program.
 struct Course {
-  std::vector<std::vector<Knot>> runs;
+  std::vector<Stage> runs;
   Pipeline::Counts counts;
   std::size_t most_kept = 0;  ///< legs and knots inside of the planner at any time
   double seconds() const;

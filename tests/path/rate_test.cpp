@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// The branch of a law over one clock: holds, overrides below 100 % and the way back, at any time.
+#include "kernel/path/law/rate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "tests/counting/allocations.hpp"
+#include "tests/path/rig/course.hpp"
+#include "tests/property_seed.hpp"
+
+namespace servogate::path::test {
+namespace {
+
+class View final : public CourseView {
+ public:
+  explicit View(const std::vector<Knot>& knots) : knots_(knots) {}
+  const Knot* knot(std::int64_t n) const noexcept override {
+    if (n < 0) return &knots_.front();  // from rest
+    return n < static_cast<std::int64_t>(knots_.size()) ? &knots_[static_cast<std::size_t>(n)] : nullptr;
+  }
+  std::int64_t end() const noexcept override { return static_cast<std::int64_t>(knots_.size()) - 1; }
+
+ private:
+  const std::vector<Knot>& knots_;
+};
+
+RandomProgram walk(int blocks, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> turn(0.0, 0.15);
+  RandomProgram p;
+  p.config = mill();
+  p.tolerance = 0.01;
+  double x = 0, y = 0, z = 0, heading = 0;
+  for (int i = 0; i < blocks; ++i) {
+    heading += turn(random);
+    x += 0.3 * std::cos(heading), y += 0.3 * std::sin(heading), z += 0.02 * turn(random);
+    p.elements.push_back(line_to(x, y, z, 100));
+  }
+  return p;
+}
+
+/// Straight strokes with sharp corners.
+RandomProgram strokes() {
+  RandomProgram p;
+  p.config = mill();
+  p.tolerance = 0.01;
+  double x = 0;
+  for (int letter = 0; letter < 8; ++letter, x += 5)
+    for (const auto& [dx, dy] : {std::pair{1.0, 1.2},
+                                 {2.0, 3.0},
+                                 {2.0, 0.0},
+                                 {2.6, 0.0},
+                                 {2.6, 3.0},
+                                 {4.0, 1.5},
+                                 {2.7, 1.4},
+                                 {5.0, 0.0}})
+      p.elements.push_back(line_to(x + dx, dy, 0, 60));
+  return p;
+}
+
+struct Driven {
+  explicit Driven(const RandomProgram& program) : p(program), course(plan(p)), view(course.runs[0].knots) {
+    limits.axes = p.config.axis_count;
+    limits.limits = p.config.limits;
+    StopHint hint;
+    for (std::int64_t k = 0; k < view.end(); k += 4) hints.push_back(hint = find_stop(view, k, hint, limits));
+  }
+  const StopHint& hint(const RateMotion& motion) const {
+    return hints[std::min(hints.size() - 1, static_cast<std::size_t>((motion.knot() + 3) / 4))];
+  }
+  RandomProgram p;
+  Course course;
+  View view;
+  RateLimits limits;
+  std::vector<StopHint> hints;
+};
+
+TEST(RateChange, ends_where_it_says_and_its_derivatives_are_those_of_its_rate) {
+  for (const auto& [r0, r1] :
+       {std::pair{1.0, 0.0}, {0.0, 1.0}, {1.0, 0.7}, {0.3, 0.9}, {0.0, -1.0}, {-1.0, 0.0}}) {
+    for (const int power : {2, 3}) {
+      const RateChange c{r0, 0.2, r1, 0.5, power};
+      EXPECT_NEAR(c.rate(0), r0, 1e-12);
+      EXPECT_NEAR(c.rate(0.5), r1, 1e-12);
+      EXPECT_NEAR(c.slope(0), 0.2, 1e-12);
+      EXPECT_NEAR(c.slope(0.5), 0.0, 1e-12);
+      for (double t = 0.05; t < 0.48; t += 0.05) {
+        const double h = 1e-5;
+        EXPECT_NEAR(c.slope(t), (c.rate(t + h) - c.rate(t - h)) / (2 * h), 1e-5);
+        EXPECT_NEAR(c.bend(t), (c.slope(t + h) - c.slope(t - h)) / (2 * h), 1e-3);
+        EXPECT_NEAR(c.rate(t), (c.passed(t + h) - c.passed(t - h)) / (2 * h), 1e-6);
+      }
+    }
+  }
+}
+
+TEST(Rate, at_full_rate_gives_the_course_itself_and_never_allocates) {
+  const Driven d(walk(150, 1));
+  RateMotion motion(d.limits);
+  const Polyline points = sampled(d.course, {}, 3, 0.001);
+  std::size_t n = 4;
+  const auto before = servogate::counting::allocations();
+  while (motion.step(d.view, 1.0, {}, 0.001)) {
+    const Vector x = motion.position(d.view);
+    for (int i = 0; i < 3; ++i) ASSERT_NEAR(x[i], points[n][i], 1e-9) << n;
+    ++n;
+  }
+  EXPECT_EQ(servogate::counting::allocations(), before);
+}
+
+TEST(Rate, holds_from_full_rate_begin_at_once_or_at_the_next_hint) {
+  const Driven d(walk(400, 2));
+  std::mt19937_64 random(3);
+  int late = 0, holds = 0;
+  for (int q = 0; q < 60; ++q) {
+    RateMotion motion(d.limits);
+    const int at =
+        std::uniform_int_distribution<int>(50, static_cast<int>(d.course.seconds() * 1000) - 800)(random);
+    for (int n = 0; n < at; ++n) motion.step(d.view, 1.0, {}, 0.001);
+    int waited = 0;
+    while (!motion.changing() && waited < 1000) {
+      motion.step(d.view, 0.0, d.hint(motion), 0.001);
+      waited += motion.changing() ? 0 : 1;
+      EXPECT_LE(motion.places(), RateMotion::kMostPlaces + 64);
+    }
+    EXPECT_LE(waited, 17);
+    late += waited > 0 ? 1 : 0;
+    int cycles = 0;
+    while (motion.changing() && cycles < 3000) motion.step(d.view, 0.0, {}, 0.001), ++cycles;
+    EXPECT_EQ(motion.rate(), 0.0);
+    EXPECT_LE(cycles, 1500);
+    ++holds;
+  }
+  std::printf("%d of %d holds waited for the next hint\n", late, holds);
+}
+
+TEST(Rate, keeps_all_limits_through_random_holds_overrides_and_ways_back) {
+  const std::uint64_t seed = servogate::test::property_seed();
+  std::mt19937_64 random(seed);
+  const std::vector<double> targets = {0.0, 0.0, 1.0, 1.0, 1.0, 0.7, 0.3, -1.0, -0.5};
+  Reached most;
+  int changes = 0, most_places = 0;
+  for (int n = 0; n < 2; ++n) {
+    const Driven d(n % 2 == 0 ? walk(300, static_cast<unsigned>(seed % 1000000) + static_cast<unsigned>(n))
+                              : strokes());
+    RateMotion motion(d.limits);
+    Polyline points(4, Vector{});
+    double target = 1.0;
+    int until = 0, cycle = 0;
+    bool on = true;
+    for (; on && cycle < 60000; ++cycle) {
+      if (cycle == until) {
+        target = cycle < 6000 ? targets[random() % targets.size()] : 1.0;
+        until = cycle + static_cast<int>(20 + random() % 980);
+      }
+      const bool was = motion.changing();
+      on = motion.step(d.view, target, d.hint(motion), 0.001) || motion.rate() < 0.0;
+      changes += !was && motion.changing() ? 1 : 0;
+      most_places = std::max(most_places, motion.places());
+      points.push_back(motion.position(d.view));
+    }
+    EXPECT_FALSE(on) << "did not end";
+    for (int q = 0; q < 4; ++q) points.push_back(motion.position(d.view));
+    const Reached r = reached(points, d.p.config, 0.001);
+    most = {std::max(most.velocity, r.velocity), std::max(most.acceleration, r.acceleration),
+            std::max(most.jerk, r.jerk)};
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(points.back()[i], d.p.elements.back().to[i], 1e-6);
+  }
+  EXPECT_LE(most.velocity, 1.001);
+  EXPECT_LE(most.acceleration, 1.001);
+  EXPECT_LE(most.jerk, 1.001);
+  EXPECT_LE(most_places, RateMotion::kMostPlaces + 64);
+  std::printf("%d changes, largest share of a limit: v %.5f a %.5f j %.5f; at most %d places in a cycle\n",
+              changes, most.velocity, most.acceleration, most.jerk, most_places);
+}
+
+}  // namespace
+}  // namespace servogate::path::test
