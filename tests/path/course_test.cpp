@@ -188,5 +188,66 @@ TEST(Course, of_long_lines_cruises_in_their_middle_at_no_cost) {
   }
 }
 
+/// Takes knots of one run.
+class Taker final : public KnotSink {
+ public:
+  void begin(const Vector& before_last, const Vector& last) override { stage.before = {before_last, last}; }
+  void put(const Knot& knot) override { stage.knots.push_back(knot); }
+  void rest() override {}
+  void cruise(const Cruise&) override {}
+  void move(const Move&) override {}
+  Stage stage;
+};
+
+TEST(Course, keeps_limits_and_tolerances_that_change_along_the_path) {
+  // A circle in chords: three axes alike, then an axis that is slower, then a smaller tolerance.
+  Config config = mill();
+  std::array<AxisLimits, kMaxAxes> slow = config.limits;
+  slow[1] = {40, 200, 2000};
+  Taker taker;
+  Pipeline::Settings settings;
+  settings.axes = 3;
+  Pipeline pipeline(settings, taker);
+  constexpr int kBlocks = 600;
+  Vector at{};
+  Polyline path{at};
+  for (int i = 1; i <= kBlocks; ++i) {
+    const Element e = line_to(30 - 30 * std::cos(i / 100.0), 30 * std::sin(i / 100.0), 0, 100);
+    Leg leg;
+    leg.piece = shape(config, at, e).piece;
+    leg.feed = e.feed;
+    leg.limits = i > 200 && i <= 400 ? &slow : &config.limits;
+    leg.tolerance = i > 500 ? 0.002 : 0.01;
+    pipeline.add(leg);
+    if (i % 10 == 0) pipeline.work();
+    path.push_back(at = e.to);
+  }
+  pipeline.end();
+  EXPECT_EQ(pipeline.counts().failed, 0);
+  EXPECT_EQ(pipeline.counts().outside, 0);
+  Course course;
+  course.runs.push_back(taker.stage);
+  const Polyline points = sampled(course, {}, 3, 0.001);
+  Polyline fine;
+  double slowest = HUGE_VAL;
+  for (std::size_t k = 4; k + 8 < points.size(); ++k) {
+    // The place on the circle says which limits hold; a chord is 0.01 rad.
+    const double angle = std::atan2(points[k][1], 30 - points[k][0]),
+                 turn = angle < 0 ? angle + 2 * kPi : angle;
+    const bool middle = turn > 2.02 && turn < 3.98;
+    const AxisLimits limits = middle ? slow[1] : config.limits[1];
+    const double y0 = points[k - 3][1], y1 = points[k - 2][1], y2 = points[k - 1][1], y3 = points[k][1];
+    EXPECT_LE(std::abs(y3 - y2) * 1e3, 1.001 * limits.velocity) << k;
+    EXPECT_LE(std::abs(y3 - 2 * y2 + y1) * 1e6, 1.001 * limits.acceleration) << k;
+    EXPECT_LE(std::abs(y3 - 3 * y2 + 3 * y1 - y0) * 1e9, 1.001 * limits.jerk) << k;
+    if (middle) slowest = std::min(slowest, std::hypot(points[k][0] - points[k - 1][0], y3 - y2) * 1e3);
+    if (turn > 5.03 && turn < 5.98) fine.push_back(points[k]);
+  }
+  EXPECT_LT(slowest, 45.0);
+  // Chords of a circle: the smaller tolerance is seen as a distance from the circle, with their own sagitta.
+  for (const Vector& x : fine) EXPECT_NEAR(std::hypot(x[0] - 30, x[1]), 30.0 - 0.00019, 0.0021 + 0.00019);
+  EXPECT_TRUE(frechet_within(points, path, 0.01, 3));
+}
+
 }  // namespace
 }  // namespace servogate::path::test

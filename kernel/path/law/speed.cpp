@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Barrier: first weight as a share of time by rows, factor, last weight, decrement to stop at.
-constexpr double kFirst = 0.3, kFactor = 0.2, kGap = 0.01, kDecrement = 0.01;
+constexpr double kFirst = 0.3, kFactor = 0.2, kDecrement = 0.1;
 constexpr int kSteps = 30;
 
 }  // namespace
@@ -87,63 +87,63 @@ double SpeedLaw::worst(std::span<const double> beta) const {
   return beta.back() > 0.0 ? most : kInfinite;
 }
 
-void SpeedLaw::add(int k, const double* d, double first, double second) {
-  const auto i = static_cast<std::size_t>(k);
-  const double x = second * d[0], y = second * d[1], z = second * d[2];
-  gradient_[i] += first * d[0];
-  gradient_[i + 1] += first * d[1];
-  gradient_[i + 2] += first * d[2];
-  h0_[i] += x * d[0];
-  h0_[i + 1] += y * d[1];
-  h0_[i + 2] += z * d[2];
-  h1_[i] += x * d[1];
-  h1_[i + 1] += y * d[2];
-  h2_[i] += x * d[2];
-}
+/// Gradient and second derivatives by three beta that follow each other.
+struct SpeedLaw::Sum {
+  double g[3] = {}, h[6] = {};  // 00 01 02 11 12 22
 
-void SpeedLaw::derive_time(int k) {
-  const double* q = &beta_[static_cast<std::size_t>(k)];
-  const auto one = [&](int place, double b, double weight) {
-    const double r = weight / (b * std::sqrt(b));
-    add(k, kAt[place], -0.5 * r, 0.75 * r / b);
-  };
-  one(0, at_knot(q), (k == 0 || k == intervals_ ? 1.0 : 2.0) * step_ / 6.0);
-  if (k < intervals_) one(1, at(kAt[1], q), 4.0 * step_ / 6.0);
-}
+  void add(const double* d, double first, double second) {
+    const double x = second * d[0], y = second * d[1];
+    for (int i = 0; i < 3; ++i) {
+      g[i] += first * d[i];
+      h[i] += x * d[i];
+    }
+    h[3] += y * d[1];
+    h[4] += y * d[2];
+    h[5] += second * d[2] * d[2];
+  }
+  /// The barrier of 1 - e^2 > 0, where e changes by d.
+  void keep(const double* d, double e, double mu) {
+    const double r = 1.0 / (1.0 - e * e), first = 2.0 * mu * e * r;
+    add(d, first, 2.0 * r * (mu + e * first));
+  }
+};
 
-void SpeedLaw::derive_knot(int k, double mu) {
+void SpeedLaw::derive_at(int k, double mu) {
   const auto i = static_cast<std::size_t>(k);
   const double* q = &beta_[i];
+  Sum sum;
+  const auto time = [&](int place, double b, double weight) {
+    const double r = weight / (b * std::sqrt(b));
+    sum.add(kAt[place], -0.5 * r, 0.75 * r / b);
+  };
+  time(0, at_knot(q), (k == 0 || k == intervals_ ? 1.0 : 2.0) * step_ / 6.0);
   const double s = mu / (cap_[i] - at_knot(q));
-  add(k, kAt[0], s, s * s / mu);
-  gradient_[i] -= mu / q[0];
-  h0_[i] += mu / (q[0] * q[0]);
-  for (int a = 0; a < axes_; ++a) {
-    const Row& row = acceleration_[static_cast<std::size_t>(2 * k * axes_ + a)];
-    const double e = row.f[0] * q[0] + row.f[1] * q[1], r = 1.0 / (1.0 - e * e);
-    add(k, row.f, 2.0 * mu * e * r, mu * (2.0 * r + 4.0 * e * e * r * r));
+  sum.add(kAt[0], s, s * s / mu);
+  const Row* rows = &acceleration_[static_cast<std::size_t>(2 * k * axes_)];
+  for (int a = 0; a < axes_; ++a) sum.keep(rows[a].f, rows[a].f[0] * q[0] + rows[a].f[1] * q[1], mu);
+  if (k < intervals_) {
+    time(1, at(kAt[1], q), 4.0 * step_ / 6.0);
+    for (int a = axes_; a < 2 * axes_; ++a) sum.keep(rows[a].f, at(rows[a].f, q), mu);
+    const Row* row = &jerk_[static_cast<std::size_t>(k * 3 * axes_)];
+    for (const auto& weights : kAt) {
+      const double root = std::sqrt(at(weights, q)), half = 0.5 / root;
+      for (int a = 0; a < axes_; ++a, ++row) {
+        const double f = at(row->f, q), by_root = half * f;
+        const double d[3] = {root * row->f[0] + by_root * weights[0], root * row->f[1] + by_root * weights[1],
+                             root * row->f[2] + by_root * weights[2]};
+        sum.keep(d, f * root, mu);
+      }
+    }
   }
-}
-
-void SpeedLaw::derive_jerk(const Row& row, int k, double b, const double* weights, double mu) {
-  const double root = std::sqrt(b), f = at(row.f, &beta_[static_cast<std::size_t>(k)]), e = f * root;
-  const double r = 1.0 / (1.0 - e * e), by_root = 0.5 * f / root;
-  const double d[3] = {root * row.f[0] + by_root * weights[0], root * row.f[1] + by_root * weights[1],
-                       root * row.f[2] + by_root * weights[2]};
-  add(k, d, 2.0 * mu * e * r, mu * (2.0 * r + 4.0 * e * e * r * r));
-}
-
-void SpeedLaw::derive_interval(int k, double mu) {
-  for (int a = axes_; a < 2 * axes_; ++a) {
-    const Row& middle = acceleration_[static_cast<std::size_t>(2 * k * axes_ + a)];
-    const double e = at(middle.f, &beta_[static_cast<std::size_t>(k)]), r = 1.0 / (1.0 - e * e);
-    add(k, middle.f, 2.0 * mu * e * r, mu * (2.0 * r + 4.0 * e * e * r * r));
-  }
-  const Row* row = &jerk_[static_cast<std::size_t>(k * 3 * axes_)];
-  for (const auto& weights : kAt) {
-    const double b = at(weights, &beta_[static_cast<std::size_t>(k)]);
-    for (int a = 0; a < axes_; ++a, ++row) derive_jerk(*row, k, b, weights, mu);
-  }
+  gradient_[i] += sum.g[0] - mu / q[0];
+  gradient_[i + 1] += sum.g[1];
+  gradient_[i + 2] += sum.g[2];
+  h0_[i] += sum.h[0] + mu / (q[0] * q[0]);
+  h1_[i] += sum.h[1];
+  h2_[i] += sum.h[2];
+  h0_[i + 1] += sum.h[3];
+  h1_[i + 1] += sum.h[4];
+  h0_[i + 2] += sum.h[5];
 }
 
 void SpeedLaw::fix(int i) {
@@ -159,9 +159,7 @@ void SpeedLaw::derive(double mu) {
   const auto size = static_cast<std::size_t>(intervals_) + 4;
   for (auto* v : {&gradient_, &h0_, &h1_, &h2_}) v->assign(size, 0.0);
   for (int k = 0; k <= intervals_; ++k) {
-    derive_time(k);
-    derive_knot(k, mu);
-    if (k < intervals_) derive_interval(k, mu);
+    derive_at(k, mu);
   }
   const auto end = static_cast<std::size_t>(intervals_) + 1;
   gradient_[end] -= mu / beta_[end];
@@ -242,7 +240,7 @@ bool SpeedLaw::solve(SpeedProblem& p) {
   if (!(worst(p.beta) < 1.0)) return false;
   beta_ = p.beta;
   const double rows = row_count();
-  descend(kFirst * time(beta_) / rows, kGap);
+  descend(kFirst * time(beta_) / rows, p.gap);
   p.beta = beta_;
   return true;
 }

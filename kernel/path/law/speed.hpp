@@ -29,6 +29,7 @@ struct SpeedProblem {
   double share = 1.0;                   ///< of the limits that is planned for, 0 - 1
   std::vector<double> beta;  ///< start, inside of all limits, then solution; two more than intervals
   int fixed_head = 0, fixed_tail = 0;  ///< beta that are given
+  double gap = 0.01;                   ///< how near to the optimum, about, as a share of the time
 };
 
 /// How much of each limit is used, 1: all of it.
@@ -76,11 +77,8 @@ class SpeedLaw {
   void prepare_interval(const SpeedProblem& problem, int k);
   double cost(const std::vector<double>& beta, double mu) const;
   void derive(double mu);
-  void derive_knot(int k, double mu);
-  void derive_interval(int k, double mu);
-  void derive_time(int k);
-  void derive_jerk(const Row& row, int k, double b, const double* weights, double mu);
-  void add(int k, const double* d, double first, double second);
+  struct Sum;
+  void derive_at(int k, double mu);
   void fix(int i);
   double direction();
   double row_count() const { return (5.0 * axes_ + 2.0) * (intervals_ + 1); }

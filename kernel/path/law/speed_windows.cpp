@@ -147,6 +147,7 @@ void SpeedWindows::pack(const Kept<Vector>& controls, std::size_t to) {
   problem_.controls = controls_;
   problem_.bounds = bounds_;
   problem_.share = 1.0 - settings_.reserve;
+  problem_.gap = settings_.judged ? 0.01 : 0.03;
 }
 
 /// What the window before had behind its committed end, and slowly on: a fifth of the clock's speed, or less

@@ -222,18 +222,18 @@ void SolverOf<A>::derive_site(std::size_t k, double mu) {
     for (int b = 0; b < A; ++b)
       block[a][b] = outer * o[a] * o[b] + more * along_[k][a] * along_[k][b] + (a == b ? same : 0.0);
   const std::size_t base = s.interval * A;
-  for (int q = 0; q < 4; ++q) {
-    if (s.weight[q] == 0.0) continue;
-    for (int a = 0; a < A; ++a) {
-      const std::size_t column = base + static_cast<std::size_t>(q * A + a);
-      gradient_[column] += first * o[a] * s.weight[q];
-      auto& h = hessian_[column];
-      const double own = s.weight[q] * s.weight[q];
-      for (int b = a; b < A; ++b) h[b - a] += own * block[a][b];
-      for (int r = q + 1; r < 4; ++r) {
-        const double w = s.weight[q] * s.weight[r];
-        for (int b = 0; b < A; ++b) h[(r - q) * A + b - a] += w * block[a][b];
-      }
+  for (int a = 0; a < A; ++a) {
+    // The row of all controls by this axis of one of them; a column takes it from its own place on.
+    double row[4 * A];
+    for (int r = 0; r < 4; ++r)
+      for (int b = 0; b < A; ++b) row[r * A + b] = s.weight[r] * block[a][b];
+    const double slope = first * o[a];
+    for (int q = 0; q < 4; ++q) {
+      const int own = q * A + a;
+      const std::size_t column = base + static_cast<std::size_t>(own);
+      gradient_[column] += slope * s.weight[q];
+      double* h = hessian_[column].data();
+      for (int i = own; i < 4 * A; ++i) h[i - own] += s.weight[q] * row[i];
     }
   }
 }
