@@ -62,6 +62,16 @@ RandomProgram strokes() {
   return p;
 }
 
+/// At the limit of acceleration all the way.
+RandomProgram helix() {
+  RandomProgram p;
+  p.config = mill();
+  p.tolerance = 0.01;
+  for (int i = 1; i <= 900; ++i)
+    p.elements.push_back(line_to(6 - 6 * std::cos(i / 60.0), 6 * std::sin(i / 60.0), 0.004 * i, 100));
+  return p;
+}
+
 struct Driven {
   explicit Driven(const RandomProgram& program) : p(program), course(plan(p)), view(course.runs[0].knots) {
     limits.axes = p.config.axis_count;
@@ -84,15 +94,15 @@ TEST(RateChange, ends_where_it_says_and_its_derivatives_are_those_of_its_rate) {
        {std::pair{1.0, 0.0}, {0.0, 1.0}, {1.0, 0.7}, {0.3, 0.9}, {0.0, -1.0}, {-1.0, 0.0}}) {
     for (const int power : {2, 3}) {
       const RateChange c{r0, 0.2, r1, 0.5, power};
-      EXPECT_NEAR(c.rate(0), r0, 1e-12);
-      EXPECT_NEAR(c.rate(0.5), r1, 1e-12);
-      EXPECT_NEAR(c.slope(0), 0.2, 1e-12);
-      EXPECT_NEAR(c.slope(0.5), 0.0, 1e-12);
+      EXPECT_NEAR(c.at(0).rate, r0, 1e-12);
+      EXPECT_NEAR(c.at(0.5).rate, r1, 1e-12);
+      EXPECT_NEAR(c.at(0).slope, 0.2, 1e-12);
+      EXPECT_NEAR(c.at(0.5).slope, 0.0, 1e-12);
       for (double t = 0.05; t < 0.48; t += 0.05) {
         const double h = 1e-5;
-        EXPECT_NEAR(c.slope(t), (c.rate(t + h) - c.rate(t - h)) / (2 * h), 1e-5);
-        EXPECT_NEAR(c.bend(t), (c.slope(t + h) - c.slope(t - h)) / (2 * h), 1e-3);
-        EXPECT_NEAR(c.rate(t), (c.passed(t + h) - c.passed(t - h)) / (2 * h), 1e-6);
+        EXPECT_NEAR(c.at(t).slope, (c.at(t + h).rate - c.at(t - h).rate) / (2 * h), 1e-5);
+        EXPECT_NEAR(c.at(t).bend, (c.at(t + h).slope - c.at(t - h).slope) / (2 * h), 1e-3);
+        EXPECT_NEAR(c.at(t).rate, (c.at(t + h).passed - c.at(t - h).passed) / (2 * h), 1e-6);
       }
     }
   }
@@ -144,9 +154,9 @@ TEST(Rate, keeps_all_limits_through_random_holds_overrides_and_ways_back) {
   const std::vector<double> targets = {0.0, 0.0, 1.0, 1.0, 1.0, 0.7, 0.3, -1.0, -0.5};
   Reached most;
   int changes = 0, most_places = 0;
-  for (int n = 0; n < 2; ++n) {
-    const Driven d(n % 2 == 0 ? walk(300, static_cast<unsigned>(seed % 1000000) + static_cast<unsigned>(n))
-                              : strokes());
+  for (int n = 0; n < 3; ++n) {
+    const auto walked = static_cast<unsigned>(seed % 1000000);
+    const Driven d(n == 0 ? walk(300, walked) : n == 1 ? strokes() : helix());
     RateMotion motion(d.limits);
     Polyline points(4, Vector{});
     double target = 1.0;

@@ -7,54 +7,41 @@
 namespace servogate::path {
 namespace {
 
-constexpr double kPlace = 0.001;   // s between places that are looked at
+constexpr double kPlace = 0.001, kWidePlace = 0.002,
+                 kGentle = 0.5;    // s between places; wide in changes longer than that
 constexpr double kShare = 0.9997;  // of the limits: what may lie between two places
 constexpr double kShortest = 0.04, kLongest = 6.0, kLonger = 1.18;
 
-double power_of(double z, int n) noexcept {
-  double out = 1.0;
-  for (int i = 0; i < n; ++i) out *= z;
-  return out;
-}
-
 /// The step that goes late, its derivatives and its integral, by the share of time.
 struct Late {
-  int p;
-  double value(double z) const noexcept { return power_of(z, p + 1) * ((p + 2) - (p + 1) * z); }
-  double d1(double z) const noexcept { return (p + 1) * (p + 2) * power_of(z, p) * (1.0 - z); }
-  double d2(double z) const noexcept { return (p + 1) * (p + 2) * power_of(z, p - 1) * (p - (p + 1) * z); }
-  double integral(double z) const noexcept { return power_of(z, p + 2) * (1.0 - (p + 1.0) / (p + 3.0) * z); }
+  double value, d1, d2, integral;
+
+  Late(int p, double z) noexcept {
+    double before = 1.0;  // z^(p - 1)
+    for (int i = 1; i < p; ++i) before *= z;
+    const double zp = before * z, next = p + 1.0, last = p + 2.0;
+    value = zp * z * (last - next * z);
+    d1 = next * last * zp * (1.0 - z);
+    d2 = next * last * before * (p - next * z);
+    integral = zp * z * z * (1.0 - next / (p + 3.0) * z);
+  }
 };
 
 }  // namespace
 
 // Slowing down (in size) late; speeding up is its mirror. What is left of the slope goes with z (1 - z)^3.
-double RateChange::rate(double t) const noexcept {
-  const double z = std::clamp(t / seconds, 0.0, 1.0), y = 1.0 - z, h = r1 - r0;
-  const bool up = std::abs(r1) > std::abs(r0);
-  return r0 + h * (up ? 1.0 - Late{power}.value(y) : Late{power}.value(z)) + slope0 * seconds * z * y * y * y;
-}
-
-double RateChange::slope(double t) const noexcept {
-  const double z = std::clamp(t / seconds, 0.0, 1.0), y = 1.0 - z, h = r1 - r0;
-  const bool up = std::abs(r1) > std::abs(r0);
-  return h * Late{power}.d1(up ? y : z) / seconds + slope0 * y * y * (1.0 - 4.0 * z);
-}
-
-double RateChange::bend(double t) const noexcept {
-  const double z = std::clamp(t / seconds, 0.0, 1.0), y = 1.0 - z, h = r1 - r0;
-  const bool up = std::abs(r1) > std::abs(r0);
-  const double d2 = up ? -Late{power}.d2(y) : Late{power}.d2(z);
-  return h * d2 / (seconds * seconds) - 6.0 * slope0 / seconds * y * (1.0 - 2.0 * z);
-}
-
-double RateChange::passed(double t) const noexcept {
+RateState RateChange::at(double t) const noexcept {
   const double in = std::min(t, seconds), z = in / seconds, y = 1.0 - z, h = r1 - r0;
   const bool up = std::abs(r1) > std::abs(r0);
-  const Late late{power};
-  const double step = up ? z - (late.integral(1.0) - late.integral(y)) : late.integral(z);
-  const double rest = z * z * (0.5 - z * (1.0 - z * (0.75 - 0.2 * z)));
-  return r0 * in + h * seconds * step + slope0 * seconds * seconds * rest + r1 * (t - in);
+  const Late late(power, up ? y : z);
+  const double whole = 1.0 - (power + 1.0) / (power + 3.0);
+  const double step = up ? 1.0 - late.value : late.value, bent = up ? -late.d2 : late.d2;
+  const double passed = up ? z - (whole - late.integral) : late.integral;
+  const double left = z * z * (0.5 - z * (1.0 - z * (0.75 - 0.2 * z)));
+  return {r0 + h * step + slope0 * seconds * z * y * y * y,
+          h * late.d1 / seconds + slope0 * y * y * (1.0 - 4.0 * z),
+          h * bent / (seconds * seconds) - 6.0 * slope0 / seconds * y * (1.0 - 2.0 * z),
+          r0 * in + h * seconds * passed + slope0 * seconds * seconds * left + r1 * (t - in)};
 }
 
 bool CoursePlace::go(const LawTime& t) noexcept {
@@ -81,55 +68,57 @@ bool CoursePlace::stretch(const Knot* (&four)[4]) const noexcept {
   return true;
 }
 
-CoursePoint CoursePlace::at(const LawTime& t, int axes) const noexcept {
-  const Knot* four[4];
-  if (!stretch(four)) return {};
-  const double in = t.since(four[2]->t);
-  CoursePoint out = Stretch(four).at(in, axes);
-  // At rest before the start and behind the end.
-  if (in < 0.0 || in > four[3]->t.since(four[2]->t)) out.d1 = out.d2 = out.d3 = {};
-  return out;
-}
-
 Vector CoursePlace::position(const LawTime& t, int axes) const noexcept {
   const Knot* four[4];
   return stretch(four) ? Stretch(four).position(t.since(four[2]->t), axes) : Vector{};
 }
 
-namespace {
-
-bool keeps(const CoursePoint& p, double r, double slope, double bend, const RateLimits& limits) noexcept {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
-    const AxisLimits& l = limits.limits[i];
-    if (std::abs(p.d1[i] * r) > l.velocity) return false;
-    if (std::abs(p.d2[i] * r * r + p.d1[i] * slope) > kShare * l.acceleration) return false;
-    if (std::abs(p.d3[i] * r * r * r + 3.0 * p.d2[i] * r * slope + p.d1[i] * bend) > kShare * l.jerk)
-      return false;
+bool Interval::take(const CourseView& view, std::int64_t m, int axes) noexcept {
+  const Knot *k0 = view.knot(m - 3), *k1 = view.knot(m - 2), *k2 = view.knot(m - 1), *k3 = view.knot(m);
+  if (k0 == nullptr || k1 == nullptr || k2 == nullptr || k3 == nullptr) return false;
+  m_ = m;
+  begin_ = k2->t;
+  tau_ = Quintic::between(k3->t.since(k2->t), k2->w, k2->a, k3->w, k3->a);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
+    const double p0 = k0->control[i], p1 = k1->control[i], p2 = k2->control[i], p3 = k3->control[i];
+    slope_[i] = 0.5 * (p2 - p0);
+    bend_[i] = p0 - 2.0 * p1 + p2;
+    third_[i] = p3 - 3.0 * p2 + 3.0 * p1 - p0;
   }
   return true;
 }
 
-}  // namespace
+bool Interval::keeps(double in, const RateState& rate, const RateLimits& limits) const noexcept {
+  if (in < 0.0 || in > tau_.seconds) return true;
+  const double s = in / tau_.seconds, f = tau_.at(s), w = tau_.d1(s), w2 = tau_.d2(s), w3 = tau_.d3(s);
+  // The curve's parameter by time, with the rate.
+  const double r = rate.rate, v = w * r, a = w2 * r * r + w * rate.slope;
+  const double j = w3 * r * r * r + 3.0 * w2 * r * rate.slope + w * rate.bend;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
+    const AxisLimits& l = limits.limits[i];
+    const double y2 = bend_[i] + f * third_[i], y1 = slope_[i] + f * (bend_[i] + 0.5 * f * third_[i]);
+    if (std::abs(y1 * v) > l.velocity) return false;
+    if (std::abs(y2 * v * v + y1 * a) > kShare * l.acceleration) return false;
+    if (std::abs(third_[i] * v * v * v + 3.0 * y2 * v * a + y1 * j) > kShare * l.jerk) return false;
+  }
+  return true;
+}
 
-/// Both sides of the knots between two places.
+/// Goes on to another interval; both sides of the knots between.
 bool Verification::keeps_at_knots(const CourseView& view, std::int64_t to, const RateLimits& limits,
-                                  int& places) const noexcept {
-  const std::int64_t low = std::min(before_, to), high = std::max(before_, to);
-  const double p0 = change_.passed(last_), p1 = change_.passed(t_);
-  for (std::int64_t m = low; m < high; ++m) {
-    const Knot* knot = view.knot(m);
+                                  int& places) noexcept {
+  const double p0 = change_.at(last_).passed, p1 = change_.at(t_).passed;
+  while (interval_.knot() != to) {
+    const bool on = to > interval_.knot();
+    const Knot* knot = view.knot(on ? interval_.knot() : interval_.knot() - 1);
     if (knot == nullptr) return false;
     const double there = knot->t.since(from_);
     const double share = p1 != p0 ? std::clamp((there - p0) / (p1 - p0), 0.0, 1.0) : 0.0;
-    const double t = last_ + share * (t_ - last_);
-    for (const std::int64_t side : {m, m + 1}) {
-      if (side < 1) continue;
-      CoursePlace place(view);
-      place.set_knot(side);
-      --places;
-      if (!keeps(place.at(knot->t, limits.axes), change_.rate(t), change_.slope(t), change_.bend(t), limits))
-        return false;
-    }
+    const RateState rate = change_.at(last_ + share * (t_ - last_));
+    places -= 2;
+    if (!interval_.keeps(on ? interval_.seconds() : 0.0, rate, limits)) return false;
+    if (!interval_.take(view, interval_.knot() + (on ? 1 : -1), limits.axes)) return false;
+    if (!interval_.keeps(on ? 0.0 : interval_.seconds(), rate, limits)) return false;
   }
   return true;
 }
@@ -144,18 +133,21 @@ void Verification::begin(const RateChange& change, const LawTime& from, std::int
 Fit Verification::go(const CourseView& view, const RateLimits& limits, int& places) noexcept {
   CoursePlace place(view);
   place.set_knot(before_);
-  for (;; t_ = std::min(t_ + kPlace, change_.seconds)) {
+  if (!interval_.take(view, before_, limits.axes)) return Fit::unpublished;
+  const double next = change_.seconds > kGentle ? kWidePlace : kPlace;
+  for (;; t_ = std::min(t_ + next, change_.seconds)) {
     if (places <= 0) return Fit::open;
-    const double r = change_.rate(t_);
-    if (!(std::abs(r) <= 1.0 + 1e-12)) return Fit::breaks;
+    const RateState s = change_.at(t_);
+    if (!(std::abs(s.rate) <= 1.0 + 1e-12)) return Fit::breaks;
     // A change that does not go through rest does not turn round on the way.
-    if (change_.r0 * change_.r1 >= 0.0 && r * (change_.r0 + change_.r1) < -1e-12) return Fit::breaks;
-    const LawTime at = from_.plus(change_.passed(t_));
+    if (change_.r0 * change_.r1 >= 0.0 && s.rate * (change_.r0 + change_.r1) < -1e-12) return Fit::breaks;
+    const LawTime at = from_.plus(s.passed);
     if (!place.go(at)) return Fit::unpublished;
     --places;
-    if (!keeps(place.at(at, limits.axes), r, change_.slope(t_), change_.bend(t_), limits)) return Fit::breaks;
-    if (t_ > 0.0 && place.knot() != before_ && !keeps_at_knots(view, place.knot(), limits, places))
+    // Both sides of the knots on the way; a place at the very start may lie in the next interval.
+    if (place.knot() != interval_.knot() && !keeps_at_knots(view, place.knot(), limits, places))
       return Fit::breaks;
+    if (!interval_.keeps(at.since(interval_.begin()), s, limits)) return Fit::breaks;
     before_ = place.knot();
     last_ = t_;
     if (t_ >= change_.seconds) return Fit::fits;
@@ -197,9 +189,11 @@ void RateMotion::advance(double period) noexcept {
     time_ = time_.plus(rate_ * period);
     return;
   }
-  time_ = time_.plus(change_.passed(into_ + period) - change_.passed(into_));
+  const double before = change_.at(into_).passed;
   into_ += period;
-  rate_ = change_.rate(into_);
+  const RateState now = change_.at(into_);
+  time_ = time_.plus(now.passed - before);
+  rate_ = now.rate;
   if (into_ < change_.seconds) return;
   active_ = false;
   rate_ = change_.r1;
@@ -213,7 +207,7 @@ void RateMotion::start(const RateChange& change) noexcept {
 }
 
 Fit RateMotion::enter(const CourseView& view, double target, double seconds, int power) noexcept {
-  const double slope = active_ ? change_.slope(into_) : 0.0;
+  const double slope = active_ ? change_.at(into_).slope : 0.0;
   verification_.begin({rate_, slope, target, seconds, power}, time_, knot_);
   const Fit fit = verification_.go(view, limits_, left_);
   if (fit == Fit::fits) start(verification_.change());

@@ -4,6 +4,12 @@
 
 namespace servogate::path {
 
+/// The rate of law time, its derivatives by time.
+struct RateState {
+  double rate = 1.0, slope = 0.0, bend = 0.0;
+  double passed = 0.0;  ///< law time since the change began
+};
+
 /// The branch of a law over one clock: the rate at which law time passes, 1 as planned, 0 at rest, below 0
 /// backwards. A change of the rate from (r0, slope0) to (r1, 0) in `seconds` goes late where it slows down,
 /// as there is little room at full rate, and early where it speeds up. Everything here is real-time safe.
@@ -13,12 +19,8 @@ struct RateChange {
   double seconds = 1.0;  ///< > 0
   int power = 3;         ///< 2 or 3: how late
 
-  /// At `t` seconds from its start, 0 to `seconds`; behind that r1 holds.
-  double rate(double t) const noexcept;
-  double slope(double t) const noexcept;
-  double bend(double t) const noexcept;
-  /// Law time that has passed.
-  double passed(double t) const noexcept;
+  /// `t` seconds from its start, >= 0; behind `seconds` r1 holds.
+  RateState at(double t) const noexcept;
 };
 
 /// Knots of a run that the reader may look at. Numbers count from the start of the run; -2 and -1 are the
@@ -44,7 +46,6 @@ class CoursePlace {
   /// Number of the knot that ends the interval.
   std::int64_t knot() const noexcept { return m_; }
   void set_knot(std::int64_t m) noexcept { m_ = m; }
-  CoursePoint at(const LawTime& t, int axes) const noexcept;
   Vector position(const LawTime& t, int axes) const noexcept;
 
  private:
@@ -59,6 +60,25 @@ struct RateLimits {
   std::array<AxisLimits, kMaxAxes> limits{};
 };
 
+/// The way between two knots, made ready for many looks at its derivatives. real-time safe.
+class Interval {
+ public:
+  /// The one that knot m ends; false: it is not published.
+  bool take(const CourseView& view, std::int64_t m, int axes) noexcept;
+  std::int64_t knot() const noexcept { return m_; }
+  const LawTime& begin() const noexcept { return begin_; }
+  double seconds() const noexcept { return tau_.seconds; }
+  /// The limits hold `in` seconds of law time behind its begin at this rate; before and behind it the course
+  /// rests.
+  bool keeps(double in, const RateState& rate, const RateLimits& limits) const noexcept;
+
+ private:
+  std::int64_t m_ = 0;
+  LawTime begin_;
+  Quintic tau_{};
+  std::array<double, kMaxAxes> slope_{}, bend_{}, third_{};  // of the spline, by axis
+};
+
 enum class Fit : std::uint8_t {
   fits,
   breaks,       ///< a limit, or the rate leaves -1 to 1
@@ -66,8 +86,8 @@ enum class Fit : std::uint8_t {
   open,         ///< more places to look at than were allowed
 };
 
-/// Whether a change that begins at a law time keeps all limits to its end. Looks at a place each millisecond,
-/// and at both sides of each knot that is passed. May go on in a later cycle where it was left.
+/// Whether a change that begins at a law time keeps all limits to its end. Looks at a place each one or two
+/// milliseconds, and at both sides of each knot that is passed. May go on in a later cycle where it was left.
 class Verification {
  public:
   void begin(const RateChange& change, const LawTime& from, std::int64_t near_knot) noexcept;
@@ -77,10 +97,11 @@ class Verification {
 
  private:
   bool keeps_at_knots(const CourseView& view, std::int64_t to, const RateLimits& limits,
-                      int& places) const noexcept;
+                      int& places) noexcept;
   RateChange change_;
   LawTime from_;
   std::int64_t before_ = 1;  // knot of the last place
+  Interval interval_;
   double t_ = 0.0, last_ = 0.0;
 };
 
