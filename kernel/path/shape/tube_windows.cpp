@@ -86,6 +86,7 @@ TubeSolution TubeWindows::solve_on_path(const Run& run, const Kept<double>& plac
                                         bool last, const TubeSolution& before) {
   const std::vector<Vector> guess = guess_;
   const TubeProblem found = problem_;
+  const std::array<int, kMaxAxes> axis = axis_;
   std::size_t leg = leg_;
   for (std::size_t i = 3; i < (last ? intervals : intervals + 3); ++i) {
     const double u = places[std::min(from_ + i - 1, places.end() - 1)];
@@ -96,6 +97,7 @@ TubeSolution TubeWindows::solve_on_path(const Run& run, const Kept<double>& plac
   solution.steps += before.steps;
   if (solution.released < before.released) return solution;
   problem_ = found;
+  axis_ = axis;
   guess_ = guess;
   solution.released = before.released;
   return solution;
