@@ -16,21 +16,4 @@ Vector Stretch::position(double t, int axes) const noexcept {
   return x;
 }
 
-CoursePoint Stretch::at(double t, int axes) const noexcept {
-  const double s = std::clamp(t / tau_.seconds, 0.0, 1.0), f = tau_.at(s);
-  const double w = tau_.d1(s), w2 = tau_.d2(s), w3 = tau_.d3(s);
-  CoursePoint out;
-  out.x = position(t, axes);
-  for (int i = 0; i < axes; ++i) {
-    const double p0 = knots_[0]->control[i], p1 = knots_[1]->control[i], p2 = knots_[2]->control[i],
-                 p3 = knots_[3]->control[i];
-    const double y3 = p3 - 3.0 * p2 + 3.0 * p1 - p0, bend = p0 - 2.0 * p1 + p2;
-    const double y2 = bend + f * y3, y1 = 0.5 * (p2 - p0) + f * (bend + 0.5 * f * y3);
-    out.d1[i] = y1 * w;
-    out.d2[i] = y2 * w * w + y1 * w2;
-    out.d3[i] = y3 * w * w * w + 3.0 * y2 * w * w2 + y1 * w3;
-  }
-  return out;
-}
-
 }  // namespace servogate::path

@@ -62,11 +62,6 @@ struct Knot {
   Vector control{};    ///< of the curve, one to the front
 };
 
-/// Where the curve is at a law time, and its derivatives by law time.
-struct CoursePoint {
-  Vector x{}, d1{}, d2{}, d3{};
-};
-
 /// The way between two knots. real-time safe.
 class Stretch {
  public:
@@ -77,8 +72,6 @@ class Stretch {
   double seconds() const noexcept { return tau_.seconds; }
   /// Position `t` seconds behind the interval's start, over the first `axes`.
   Vector position(double t, int axes) const noexcept;
-  /// With all derivatives, those of this interval at its ends.
-  CoursePoint at(double t, int axes) const noexcept;
 
  private:
   const Knot* knots_[4];

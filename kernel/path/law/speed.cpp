@@ -265,21 +265,22 @@ bool SpeedLaw::approach(SpeedProblem& p, const Tightness& wanted) {
     now = by = used > kInside ? kInside / used : 1.0;
   });
   scale(step);
+  double missing = HUGE_VAL;
   for (int round = 0; round < kRounds; ++round) {
     const double mu = kCentred * time(beta_) / row_count();
     centre(mu, kRoundSteps, kDecrement * mu);
     uses(beta_, use);
-    missing_ = 1.0;
+    missing = 1.0;
     each([&](double& by, double& now, double used, double goal) {
       by = std::max(1.0, std::min(goal / now, kNear / std::max(used, 1e-9)));
       now *= by;
-      missing_ = std::max(missing_, goal / now);
+      missing = std::max(missing, goal / now);
     });
     scale(step);
-    if (missing_ <= 1.0 + 1e-9) break;
+    if (missing <= 1.0 + 1e-9) break;
   }
   p.beta = beta_;
-  return missing_ <= 1.0 + 1e-9;
+  return missing <= 1.0 + 1e-9;
 }
 
 }  // namespace servogate::path

@@ -54,15 +54,13 @@ class SpeedLaw {
   /// For each knot the largest constant beta around it, and by how much beta may change to the next with a
   /// share of the acceleration; then only the first `intervals` stay.
   void flat_levels(std::vector<double>& levels, std::vector<double>& slopes, int intervals);
-  /// Largest share of a limit at the places looked at, as a ratio of speeds; below 1: inside.
+  /// Largest share of a limit at the places looked at; below 1: inside.
   double worst(std::span<const double> beta) const;
   /// False: beta is not inside; it stays what it was.
   bool solve(SpeedProblem& problem);
   /// Makes limits count more, and brings beta inside of them and of all others: what it breaks is widened as
-  /// far as it must be, and comes back step by step. What is given stays. False: not all limits came back;
-  /// the widest is missing() too wide.
+  /// far as it must be, and comes back step by step. What is given stays. False: not all came back.
   bool approach(SpeedProblem& problem, const Tightness& wanted);
-  double missing() const { return missing_; }
   /// All limits as they are.
   Tightness as_they_are() const;
   /// Time that beta takes, s.
@@ -88,7 +86,7 @@ class SpeedLaw {
   bool descend(double mu, double last);
 
   int axes_ = 0, intervals_ = 0, fixed_head_ = 0, fixed_tail_ = 0, steps_ = 0;
-  double step_ = 0.0, missing_ = 0.0;
+  double step_ = 0.0;
   std::vector<double> d1_, d2_;    // of the curve at knots
   std::vector<double> cap_;        // of b at knots
   std::vector<Row> acceleration_;  // by place (knot, middle, knot ...) and axis

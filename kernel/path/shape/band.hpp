@@ -18,10 +18,7 @@ class Band {
   using Column = std::array<double, Width>;
 
   /// All entries zero, for `rows` unknowns.
-  void reset(std::size_t rows) {
-    rows_ = rows;
-    columns_.assign(rows + Width, Column{});
-  }
+  void reset(std::size_t rows) { columns_.assign(rows + Width, Column{}); }
   Column& operator[](std::size_t column) { return columns_[column]; }
 
   /// Solves for rows `first` to `end` - 1, all others being zero. `x` holds the right side, then the
@@ -61,7 +58,6 @@ class Band {
     }
   }
 
-  std::size_t rows_ = 0;
   std::vector<Column> columns_;
 };
 

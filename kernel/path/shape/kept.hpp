@@ -31,7 +31,6 @@ class Kept {
     items_.erase(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(begin_ - base_));
     base_ = begin_;
   }
-  void resize(std::size_t end, const T& item) { items_.resize(end - base_, item); }
 
  private:
   std::vector<T> items_;
