@@ -137,11 +137,18 @@ struct AxisConfig {
   }
 };
 
-/// [[spindle]]: a CANopen drive, or an analog output with relay points.
+/// What the loss of a node or of an inverter makes the machine do, in rising severity.
+enum class LossReaction : std::uint8_t { stop_on_path, stop_axes, stop_and_power_off, quick_stop, power_off };
+
+/// [[spindle]]: a CANopen drive, an inverter on Modbus, or an analog output with relay points.
 struct SpindleConfig {
   std::string name;
-  std::string drive;         ///< "bus.node", or empty
-  int process = 1;           ///< whose S, M3, M4, M5 and M19 it obeys, from 1
+  std::string drive;                                        ///< "bus.node", or empty
+  std::string inverter;                                     ///< station of an inverter on Modbus, or empty
+  double rated_speed = 0.0;                                 ///< rpm of its motor ...
+  double rated_frequency = 0.0;                             ///< ... at this frequency, Hz
+  LossReaction loss_reaction = LossReaction::stop_on_path;  ///< to the loss of the inverter
+  int process = 1;                                          ///< whose S, M3, M4, M5 and M19 it obeys, from 1
   std::string speed_output;  ///< analog output point of an inverter; rpm without sign
   std::string cw_output;     ///< output points of its relays
   std::string ccw_output;
@@ -156,10 +163,13 @@ struct SpindleConfig {
   double orient_angle = 0.0;       ///< degrees, oriented stop
   double orient_speed = 60.0;      ///< rpm
   bool has_encoder() const { return counts_per_rev > 0; }
+  double motor_rpm(double rpm) const {
+    return rpm * static_cast<double>(gear[0]) / static_cast<double>(gear[1]);
+  }
+  /// Hz of an inverter at a speed of the spindle in rpm.
+  double hertz(double rpm) const { return motor_rpm(rpm) / rated_speed * rated_frequency; }
 };
 
-/// What the loss of a node makes the machine do, in rising severity.
-enum class LossReaction : std::uint8_t { stop_on_path, stop_axes, stop_and_power_off, quick_stop, power_off };
 /// When a node gets its program: where 1F56h tells another version, or never, then another one is refused.
 enum class ProgramWhen : std::uint8_t { other_version, never };
 

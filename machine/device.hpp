@@ -10,6 +10,7 @@
 #include "firmware_if/canopen/402/drive_profile.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "machine/config.hpp"
+#include "machine/inverter.hpp"
 
 namespace servogate::machine {
 
@@ -21,7 +22,8 @@ enum class DeviceKind : std::uint8_t {
   modbus_io,
   gpio,
   canopen_io,
-  canopen_encoder
+  canopen_encoder,
+  inverter
 };
 
 /// One mapped object: "6040:00/16" = index, subindex, bits.
@@ -152,6 +154,7 @@ struct DeviceConfig {
   ModbusMap modbus;
   GpioConfig gpio;
   EncoderConfig encoder;
+  InverterMap inverter;
 
   std::string file;  ///< path it was read from
   std::map<std::string, Where, std::less<>> places;
@@ -163,6 +166,8 @@ struct DeviceConfig {
   bool terminals() const { return kind == DeviceKind::canopen_io || kind == DeviceKind::canopen_encoder; }
   /// Text of an error code in the language, empty: unknown.
   std::string_view error_text(std::uint16_t code, text::Language language) const;
+  /// What the required register of an inverter at this address is, empty: unknown.
+  std::string_view required_text(std::uint16_t address, text::Language language) const;
 };
 
 /// Whether a drive has a homing method: by `homing_methods`, without those every one that CiA 402-2

@@ -26,4 +26,16 @@ ModbusChannels modbus_channels(const ModbusMap& layout, ChannelKind kind);
 /// transactions as the protocol permits. Not real-time safe.
 std::vector<modbus::Block> modbus_blocks(const StationConfig& station, const ModbusMap& layout);
 
+/// The registers of an inverter's device file.
+modbus::InverterRegisters inverter_registers(const InverterMap& layout);
+/// What is exchanged with an inverter again and again; places in `inverter` count these blocks. The spindle
+/// is not filled in.
+struct InverterBlocks {
+  std::vector<modbus::Block> blocks;
+  modbus::Inverter inverter;
+};
+InverterBlocks inverter_blocks(const StationConfig& station, const InverterMap& layout);
+/// How often it is looked whether the registers are right that nothing turns without.
+inline constexpr image::Nanoseconds kRequiredPeriod = image::kSecond;
+
 }  // namespace servogate::machine

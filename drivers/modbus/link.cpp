@@ -12,9 +12,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <span>
 #include <system_error>
 
 #include "drivers/clock.hpp"
+#include "drivers/modbus/counted_frame.hpp"
 #include "firmware_if/modbus/line_time.hpp"
 #include "firmware_if/text/system_words.hpp"
 
@@ -167,7 +169,8 @@ void Link::close() noexcept {
 
 Heard Link::exchange(std::uint8_t unit, const Request& request, Response& response, Waker* waker) {
   Pdu pdu;
-  if (!encode(request, pdu)) return Heard::malformed;
+  const bool own = request.coding == Coding::huanyang;
+  if (!encode(request, pdu) || (own && !serial())) return Heard::malformed;
   if (serial()) modbus_flush(modbus_.get());  // what comes unasked is no answer
   if (!ask(unit, pdu)) return Heard::broken;
   const LineTime wire(baud());
@@ -176,7 +179,17 @@ Heard Link::exchange(std::uint8_t unit, const Request& request, Response& respon
                                wire.characters(pdu.size + kFrame) +
                                wire.characters(response_size(request.function, request.count) + kFrame);
   const Heard waited = await(deadline, waker);
-  return waited == Heard::answer ? read(unit, request, deadline, response) : waited;
+  if (waited != Heard::answer) return waited;
+  return own ? read_own(unit, request, deadline, response) : read(unit, request, deadline, response);
+}
+
+Heard Link::read_own(std::uint8_t unit, const Request& request, Nanoseconds deadline, Response& response) {
+  CountedFrame frame;
+  const Heard heard = read_counted_frame(modbus_get_socket(modbus_.get()), deadline, frame);
+  if (heard != Heard::answer) return heard;
+  if (frame.bytes[0] != unit) return Heard::wrong_unit;
+  const std::span<const std::uint8_t> pdu(frame.bytes.data() + 1, frame.size - 3);
+  return decode_response(pdu, request, response) == AnswerFault::none ? Heard::answer : Heard::malformed;
 }
 
 bool Link::ask(std::uint8_t unit, const Pdu& pdu) {

@@ -81,6 +81,8 @@ class Link {
   /// Readable by `deadline`.
   Heard await(image::Nanoseconds deadline, Waker* waker);
   Heard read(std::uint8_t unit, const Request& request, image::Nanoseconds deadline, Response& response);
+  /// The answer to a request that is none of the standard.
+  Heard read_own(std::uint8_t unit, const Request& request, image::Nanoseconds deadline, Response& response);
   bool open_serial(const SerialPort& port, drivers::Notice& why);
   bool open_tcp(const TcpAddress& peer, drivers::Notice& why);
 

@@ -185,7 +185,7 @@ bool ModbusLine::write_now(std::size_t block, const Data& data) {
   drivers::Notice why;
   if (!link_.is_open() && !link_.open(why)) return false;
   const Block& b = poller_.blocks()[block];
-  const Request request{b.function, b.address, b.count, data};
+  const Request request{b.function, b.address, b.count, data, b.coding};
   Response response;
   wait_until(idle_since_ns_);
   const Heard heard = link_.exchange(b.unit, request, response, nullptr);

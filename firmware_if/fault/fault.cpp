@@ -91,6 +91,7 @@ constexpr KindRow kKindRows[kKinds] = {
     {Kind::flash_error, "flash_error", kDrive, takes(code),
      "the next program written to it ends with this error of 1F57h"},
     {Kind::reset, "reset", kDrive, 0, "restarts as after power-on"},
+    {Kind::trip, "trip", kStation, takes(code), "an inverter trips with this code of its own"},
     {Kind::late_cycle, "late_cycle", kControl, takes(Parameter::delay),
      "the next cycle begins so much later, and what it drives lives on meanwhile"},
 };

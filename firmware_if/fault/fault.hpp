@@ -70,6 +70,7 @@ enum class Kind : std::uint8_t {
   under_voltage,
   flash_error,
   reset,
+  trip,
   late_cycle,
 };
 inline constexpr std::size_t kKinds = static_cast<std::size_t>(Kind::late_cycle) + 1;

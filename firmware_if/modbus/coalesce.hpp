@@ -22,11 +22,6 @@ struct Range {
 /// functions and places were named. Not real-time safe.
 std::vector<Block> coalesce(std::span<const Range> ranges, std::uint8_t unit, image::Nanoseconds period_ns);
 
-/// Where an item lies.
-struct Spot {
-  std::size_t block = 0;
-  std::uint16_t offset = 0;
-};
 /// nullopt: no block carries it. Not real-time safe.
 std::optional<Spot> spot_of(std::span<const Block> blocks, Function function, std::uint32_t address);
 

@@ -35,6 +35,11 @@ Exchange::Exchange(Map map, const std::vector<Unit>& units, int stale_after_peri
   }
   for (std::size_t u = 0; u < units.size(); ++u)
     stages_.emplace_back(std::move(rules[u]), units[u].source, std::move(limits[u]));
+  for (const Inverter& inverter : map_.inverters) {
+    inverters_.emplace_back(inverter);
+    for (std::size_t n = 0; n < blocks_.size(); ++n)
+      if (inverters_.back().writes_to(n)) blocks_[n].of_inverter = true;
+  }
 }
 
 void Exchange::take(const Outcome& outcome) noexcept {
@@ -42,6 +47,7 @@ void Exchange::take(const Outcome& outcome) noexcept {
   image::PointStage& stage = stages_[block.unit];
   if (!outcome.good) return stage.fault();
   stage.fresh(block.group, outcome.end_ns);
+  for (InverterControl& inverter : inverters_) inverter.take(outcome);
   if (writes(map_.blocks[outcome.block].function)) return;
   for (const Carried& p : block.points)
     stage.take(p.in_stage, raw_value(map_.blocks[outcome.block], p.point, outcome.data));
@@ -49,12 +55,26 @@ void Exchange::take(const Outcome& outcome) noexcept {
 
 void Exchange::receive(image::ProcessImage& image) noexcept {
   for (image::PointStage& stage : stages_) stage.settle(image);
+  for (InverterControl& inverter : inverters_)
+    inverter.receive(image, quality(inverter.inverter(), image.now.t_ns));
+}
+
+/// That of the worst of its blocks.
+image::Quality Exchange::quality(const Inverter& inverter, image::Nanoseconds t) const noexcept {
+  image::Quality worst = image::Quality::good;
+  for (std::size_t n = 0; n < blocks_.size(); ++n) {
+    if (map_.blocks[n].unit != inverter.unit) continue;
+    const image::Quality q = stages_[blocks_[n].unit].quality(blocks_[n].group, t);
+    if (q == image::Quality::good) continue;
+    if (worst == image::Quality::good || q > worst) worst = q;
+  }
+  return worst;
 }
 
 void Exchange::send(const image::ProcessImage& image, WriteSink& sink) noexcept {
   for (std::size_t n = 0; n < blocks_.size(); ++n) {
     BlockState& block = blocks_[n];
-    if (!writes(map_.blocks[n].function)) continue;
+    if (!writes(map_.blocks[n].function) || block.of_inverter) continue;
     bool changed = !block.armed;
     for (const Carried& p : block.points)
       changed = set_raw_value(map_.blocks[n], p.point, stages_[block.unit].raw(p.in_stage, image.packets),
@@ -64,16 +84,18 @@ void Exchange::send(const image::ProcessImage& image, WriteSink& sink) noexcept 
     block.armed = true;
     sink.write(n, block.data, image.now.t_ns);
   }
+  for (InverterControl& inverter : inverters_) inverter.send(image, sink);
 }
 
 void Exchange::leave(WriteSink& sink) noexcept {
   for (std::size_t n = 0; n < blocks_.size(); ++n) {
     BlockState& block = blocks_[n];
-    if (!block.armed) continue;
+    if (!block.armed || block.of_inverter) continue;
     for (const Carried& p : block.points)
       if (!p.point.rule.hold) set_raw_value(map_.blocks[n], p.point, p.point.rule.loss, block.data);
     sink.write(n, block.data, 0);
   }
+  for (InverterControl& inverter : inverters_) inverter.leave(sink);
 }
 
 }  // namespace servogate::modbus

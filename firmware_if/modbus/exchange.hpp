@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "firmware_if/modbus/inverter_control.hpp"
 #include "firmware_if/modbus/poller.hpp"
 
 namespace servogate::modbus {
@@ -14,8 +15,9 @@ struct Unit {
   int source = -1;
 };
 
-/// The cycle's end of a line: what the poller read into packet A, outputs out of it, age and quality of each
-/// unit, whoever carries the poller. All but the constructor is real-time safe.
+/// The cycle's end of a line: what the poller read into packet A, outputs out of it, inverters as drives of
+/// spindles, age and quality of each unit, whoever carries the poller. All but the constructor is real-time
+/// safe.
 class Exchange {
  public:
   /// Age from which the data of a block count as stale, in periods of the block; as bad after twice that.
@@ -47,11 +49,14 @@ class Exchange {
     std::vector<Carried> points;
     Data data;  ///< written last
     bool armed = false;
+    bool of_inverter = false;  ///< which says what is written
   };
+  image::Quality quality(const Inverter& inverter, image::Nanoseconds t) const noexcept;
 
   Map map_;
   std::vector<image::PointStage> stages_;  ///< of each unit
   std::vector<BlockState> blocks_;
+  std::vector<InverterControl> inverters_;
 };
 
 }  // namespace servogate::modbus

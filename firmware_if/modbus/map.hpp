@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware_if/image/points/point_stage.hpp"
+#include "firmware_if/modbus/inverter.hpp"
 #include "firmware_if/modbus/pdu.hpp"
 
 namespace servogate::modbus {
@@ -16,6 +17,7 @@ struct Block {
   std::uint16_t address = 0;
   std::uint16_t count = 1;
   image::Nanoseconds period_ns = 20 * image::kMillisecond;
+  Coding coding = Coding::standard;
 };
 
 /// How a number lies in the registers of a point; `_hl` = high word first, `_lh` = low word first.
@@ -36,6 +38,7 @@ struct Point {
 struct Map {
   std::vector<Block> blocks;
   std::vector<Point> points;
+  std::vector<Inverter> inverters = {};
 };
 
 /// What is wrong with a map; `index` = block or point.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/modbus/pdu.hpp"
 
+#include "firmware_if/modbus/huanyang.hpp"
+
 namespace servogate::modbus {
 
 namespace {
@@ -77,6 +79,7 @@ Exception decode_multiple(std::span<const std::uint8_t> bytes, Request& out) noe
 }  // namespace
 
 bool encode(const Request& r, Pdu& pdu) noexcept {
+  if (r.coding == Coding::huanyang) return huanyang::encode(r, pdu);
   if (!fits(r.function, r.address, r.count)) return false;
   Writer w(pdu);
   w.byte(static_cast<std::uint8_t>(r.function));
@@ -151,6 +154,7 @@ bool encode(const Response& r, Pdu& pdu) noexcept {
 
 AnswerFault decode_response(std::span<const std::uint8_t> bytes, const Request& asked,
                             Response& out) noexcept {
+  if (asked.coding == Coding::huanyang) return huanyang::decode_response(bytes, asked, out);
   if (bytes.size() < 2) return AnswerFault::too_short;
   out.function = asked.function;
   out.exception = Exception::none;

@@ -33,6 +33,12 @@ enum class Exception : std::uint8_t {
   gateway_target_failed = 11,
 };
 
+/// How a request stands on the wire.
+enum class Coding : std::uint8_t {
+  standard,
+  huanyang,  ///< functions of its own, huanyang.hpp
+};
+
 inline constexpr std::size_t kMaxPdu = 253;  ///< bytes; V1.1b3, section 4.1
 inline constexpr std::uint16_t kMaxReadBits = 2000, kMaxReadWords = 125;
 inline constexpr std::uint16_t kMaxWriteBits = 1968, kMaxWriteWords = 123;
@@ -83,6 +89,7 @@ struct Request {
   std::uint16_t address = 0;  ///< as on the wire, from 0
   std::uint16_t count = 1;
   Data data;
+  Coding coding = Coding::standard;
 };
 
 /// What a server answers: an exception, or the data read; a write echoes address and count.

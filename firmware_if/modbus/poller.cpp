@@ -12,6 +12,8 @@ namespace {
 /// An answer to a read tells its function and how much there is, not from where. Those to multiple writes
 /// carry the address.
 bool answers_alike(const Block& a, const Block& b) noexcept {
+  if (a.coding == Coding::huanyang || b.coding == Coding::huanyang)
+    return false;  // they say of what they are
   return a.unit == b.unit && a.function == b.function && !writes(a.function) &&
          response_size(a.function, a.count) == response_size(b.function, b.count);
 }
@@ -57,6 +59,7 @@ const Request& Poller::begin(const Next& next) noexcept {
   request_.function = block.function;
   request_.address = block.address;
   request_.count = block.count;
+  request_.coding = block.coding;
   if (writes(block.function)) request_.data = state.data;
   state.changed = false;
   if (next.attempt == 0) state.due_ns = std::max(state.due_ns + block.period_ns, next.start_ns);
@@ -79,7 +82,7 @@ Outcome Poller::answered(const Response& response, Nanoseconds end) noexcept {
   const bool written = writes(response.function);
   if (written && state.changed) state.due_ns = std::min(state.due_ns, end);
   Outcome outcome{now_.block, true, Exception::none, end, {}};
-  if (!written) outcome.data = response.data;
+  if (!written || request_.coding == Coding::huanyang) outcome.data = response.data;
   return outcome;
 }
 

@@ -25,7 +25,7 @@ struct Outcome {
   bool good = false;
   Exception exception = Exception::none;  ///< that the unit answered
   image::Nanoseconds end_ns = 0;
-  Data data;  ///< of a good read
+  Data data;  ///< of a good read, and of an answer of a coding whose writes tell something
 };
 
 /// Takes the new content of writing blocks.

@@ -13,8 +13,10 @@ using image::Reaction;
 
 namespace {
 
-constexpr double kSpeedFilter = 0.01;    // s
-constexpr double kPowerAfterStop = 1.0;  // s
+constexpr double kSpeedFilter = 0.01;             // s
+constexpr double kPowerAfterStop = 1.0;           // s
+constexpr double kReadyPatience = 2.0;            // s
+constexpr std::uint16_t kTargetReached = 0x0400;  // CiA 402-2, statusword bit 10
 
 /// Angle difference in -180 ... 180 degrees.
 double wrapped(double degrees) noexcept { return degrees - 360.0 * std::round(degrees / 360.0); }
@@ -32,7 +34,7 @@ void Spindle::configure(const SpindleConfig& config, int index) {
 void Spindle::order(SpindleMode mode, double rpm) noexcept {
   const bool analog = config_.inverter.has_value();
   const bool no_angle = mode == SpindleMode::orient && (analog || !config_.encoder);
-  const bool no_relay = mode == SpindleMode::ccw && analog && !inverter_.reverses();
+  const bool no_relay = mode == SpindleMode::ccw && (analog ? !inverter_.reverses() : !config_.reverses);
   if (no_angle) cannot_ = alarm::kSpindleNoEncoder;
   if (no_relay) cannot_ = alarm::kSpindleNoReverse;
   mode_ = no_angle || no_relay ? SpindleMode::stop : mode;
@@ -64,6 +66,7 @@ void Spindle::read(image::ProcessImage& image) noexcept {
     shared.actual_rpm = actual_rpm_;
     return;
   }
+  watch_source(image);
   const image::DriveFeedback& in = shared.drive;
   if (in.online && drive_.online) {
     // A drive that supplies only one of speed and position leaves the other one standing still.
@@ -91,6 +94,21 @@ void Spindle::read(image::ProcessImage& image) noexcept {
   angle_deg_ = 360.0 * (turns - std::floor(turns));
   shared.actual_rpm = actual_rpm_;
   shared.angle_deg = angle_deg_;
+}
+
+void Spindle::watch_source(const image::ProcessImage& image) noexcept {
+  if (config_.source < 0) return;
+  if (drive_.online) turned_ = std::abs(actual_rpm_) > config_.zero_speed_rpm;
+  seen_lost_ = lost_;
+  lost_ = image.sources[static_cast<std::size_t>(config_.source)].quality >= image::Quality::stale;
+}
+
+/// A drive with a source that is gone or has tripped: nothing turns again unasked.
+void Spindle::give_up() noexcept {
+  if (config_.source < 0) return;
+  if (lost_ && !seen_lost_) events_.add({alarm::kSpindleDriveLost, ordered_rpm_, 0.0});
+  const bool fault = drive_.online && drive_.state == DriveState::fault;
+  if ((lost_ || fault) && mode_ != SpindleMode::stop) order(SpindleMode::stop, 0.0);
 }
 
 /// Speed of the position loop of the oriented stop.
@@ -145,6 +163,7 @@ void Spindle::follow_inverter(image::ProcessImage& image, double& wanted, double
 void Spindle::command(image::ProcessImage& image) noexcept {
   const double dt = image.now.period_s();
   if (cannot_ != 0) events_.add({cannot_, 0.0, 0.0});
+  give_up();
   if (reaction_ >= Reaction::stop_and_power_off) order(SpindleMode::stop, 0.0);
   cannot_ = 0;
   oriented_ = false;
@@ -154,11 +173,13 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   else
     follow_drive(wanted, dt);
   const bool reached = on_ && command_rpm_ == wanted;
-  zero_speed_ = std::abs(actual_rpm_) <= config_.zero_speed_rpm;
+  const bool known = config_.source < 0 || drive_.online || !turned_;
+  zero_speed_ = known && std::abs(actual_rpm_) <= config_.zero_speed_rpm;
   const bool turning = mode_ == SpindleMode::cw || mode_ == SpindleMode::ccw;
   // Of a speed of 0 no share can be kept: it is at speed when it stands.
   const double window = wanted != 0.0 ? config_.at_speed_window * std::abs(wanted) : config_.zero_speed_rpm;
-  at_speed_ = turning && enable_ && reached && std::abs(actual_rpm_ - wanted) <= window;
+  const bool told = !config_.target_bit || wanted == 0.0 || (drive_.statusword & kTargetReached) != 0;
+  at_speed_ = turning && enable_ && reached && told && std::abs(actual_rpm_ - wanted) <= window;
   supervise(dt, enable_ && reached && ordered_speed() != 0.0);
 
   off_s_ = mode_ == SpindleMode::stop && zero_speed_ ? off_s_ + dt : 0.0;
@@ -193,6 +214,13 @@ void Spindle::supervise(double dt, bool speed_due) noexcept {
   if (fault && !reset_pending_ && drive_.online && !raised_fault_) {
     raised_fault_ = true;
     events_.add({alarm::kSpindleDriveFault, 0.0, static_cast<double>(drive_.error_code)});
+  }
+  const bool refuses = config_.source >= 0 && mode_ != SpindleMode::stop && enable_ && drive_.online &&
+                       drive_.state == DriveState::switch_on_disabled;
+  not_ready_s_ = refuses ? not_ready_s_ + dt : 0.0;
+  if (not_ready_s_ > kReadyPatience && !raised_ready_) {
+    raised_ready_ = true;
+    events_.add({alarm::kSpindleNotReady, 0.0, static_cast<double>(drive_.error_code)});
   }
   const bool orient_due = mode_ == SpindleMode::orient && enable_ && !oriented_;
   wait_s_ = (speed_due && !at_speed_) || orient_due ? wait_s_ + dt : 0.0;
@@ -238,11 +266,12 @@ bool Spindle::settled() const noexcept {
 
 bool Spindle::present(image::AlarmNumber number) const noexcept {
   const bool fault = drive_.state == DriveState::fault || drive_.state == DriveState::fault_reaction_active;
+  if (number == alarm::kSpindleDriveLost) return lost_ && !config_.inverter;
   return number == alarm::kSpindleDriveFault && drive_.online && fault && !reset_pending_;
 }
 
 void Spindle::reset() noexcept {
-  raised_fault_ = raised_speed_ = raised_orient_ = false;
+  raised_fault_ = raised_speed_ = raised_orient_ = raised_ready_ = false;
   wait_s_ = 0.0;
   reset_pending_ = drive_.state == DriveState::fault;
   reset_left_s_ = 1.0;

@@ -13,12 +13,13 @@ namespace servogate::axis {
 enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient };
 
 /// A spindle: ramped speed command, at-speed and standstill, oriented stop. Its supplier is a CSV drive in
-/// SpindleImage, or an inverter on outputs of packet A. In each cycle: read(image), react(reaction),
-/// command(image); all real-time safe.
+/// SpindleImage (CiA 402, or an inverter on a line), or an inverter on outputs of packet A. In each cycle:
+/// read(image), react(reaction), command(image); all real-time safe.
 ///
 /// An inverter gives no feedback: at speed is its command, standstill its ramp. Speed and relays go to 0 at
 /// once with the reactions quick stop and power off, without MC.power_on, and when a station of theirs is
-/// lost; then the order is stop, and nothing turns again unasked.
+/// lost; then the order is stop, and nothing turns again unasked. The same order is given when a drive with a
+/// source of its own is lost or in fault; whether that spindle stands is not known then.
 class Spindle {
  public:
   /// `index` is the spindle's place in the image. Not for the cycle.
@@ -56,6 +57,8 @@ class Spindle {
   void follow_drive(double wanted, double dt) noexcept;
   void follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept;
   void write_drive(image::SpindleImage& out) const noexcept;
+  void watch_source(const image::ProcessImage& image) noexcept;
+  void give_up() noexcept;
   double ordered_speed() const noexcept;
   double wanted_rpm() noexcept;
   double orient_rpm() noexcept;
@@ -72,7 +75,11 @@ class Spindle {
   image::DriveFeedback drive_;
   Inverter inverter_;
   bool power_on_ = false;
-  bool lost_ = false;              ///< an output of the inverter
+  bool lost_ = false;         ///< an output of the inverter, or the source of the drive
+  bool seen_lost_ = false;    ///< the same one cycle ago
+  bool turned_ = false;       ///< when its drive was last heard
+  double not_ready_s_ = 0.0;  ///< wanted, and not switched on by what it says itself
+  bool raised_ready_ = false;
   bool on_ = false;                ///< the supplier follows the command
   image::AlarmNumber cannot_ = 0;  ///< why the last order was none for this spindle
   bool enable_ = false;

@@ -179,7 +179,7 @@ void Cycle::run_axes() noexcept {
 
 void Cycle::collect_events() noexcept {
   const auto collect = [this](const axis::Events& events, int axis, int process,
-                              const image::PartPlace& drive_of) {
+                              const image::PartPlace& drive_of, const axis::Spindle* spindle) {
     for (const axis::Event& e : events) {
       image::AlarmRecord r;
       r.number = e.number;
@@ -198,6 +198,11 @@ void Cycle::collect_events() noexcept {
         const axis::AxisConfig& config = axes_[static_cast<std::size_t>(axis)].config();
         if (axis::is_drive_loss(e.number)) r.reaction = config.loss_reaction;
       }
+      if (spindle != nullptr) {
+        r.source = static_cast<std::int16_t>(spindle->config().source);
+        r.detail2 = spindle->index();
+        if (e.number == axis::alarm::kSpindleDriveLost) r.reaction = spindle->config().loss_reaction;
+      }
       const image::ProcessStatus& program = image_.processes[static_cast<std::size_t>(process)];
       r.line = program.line;
       r.file = program.file;
@@ -206,11 +211,11 @@ void Cycle::collect_events() noexcept {
     }
   };
   for (axis::Axis& a : axes_) {
-    collect(a.events(), a.index(), a.process(), a.config().drive);
+    collect(a.events(), a.index(), a.process(), a.config().drive, nullptr);
     a.clear_events();
   }
   for (axis::Spindle& s : spindles_) {
-    collect(s.events(), -1, s.config().process, s.config().drive);
+    collect(s.events(), -1, s.config().process, s.config().drive, &s);
     s.clear_events();
   }
 }

@@ -327,7 +327,7 @@ void check_spindles(const MachineConfig& machine, Reading& reading) {
       reading.error(machine.where(path + ".process"), finding::kNoSuchProcess,
                     {text::both("spindle " + number, "шпиндель " + number), std::to_string(s.process),
                      std::to_string(machine.control.processes)});
-    if (s.drive.empty() == s.speed_output.empty())
+    if (int{s.drive.empty()} + int{s.speed_output.empty()} + int{s.inverter.empty()} != 2)
       reading.error(machine.where(path), finding::kSpindleSource, {number});
     if (s.max_speed > 0.0 && s.min_speed >= s.max_speed)
       reading.error(machine.where(path + ".min_speed"), finding::kSpindleSpeeds,

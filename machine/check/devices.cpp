@@ -160,9 +160,12 @@ class DeviceUse {
       const DeviceConfig* device = loaded_.device(station.device);
       const DeviceKind wanted =
           station.kind == StationKind::modbus ? DeviceKind::modbus_io : DeviceKind::gpio;
-      if (device != nullptr && known(*device) && device->kind != wanted) {
+      const bool inverter =
+          station.kind == StationKind::modbus && device != nullptr && device->kind == DeviceKind::inverter;
+      if (!inverter && device != nullptr && known(*device) && device->kind != wanted) {
         reading_.error(m_.where(path + ".device"), finding::kWrongDevice,
-                       {station.device, kind_name(device->kind), kind_name(wanted)});
+                       {station.device, kind_name(device->kind),
+                        kind_name(wanted) + (station.kind == StationKind::modbus ? ", inverter" : "")});
         continue;
       }
       if (station.kind == StationKind::canopen) continue;  // check_can_stations

@@ -184,9 +184,9 @@ inline constexpr text::Entry kEndlessHoming{"machine.endless_travel",
                                             "{0}: an endless axis has no limit switches",
                                             "{0}: у бесконечной оси не бывает концевых выключателей"};
 // Spindles
-inline constexpr text::Entry kSpindleSource{"machine.spindle_source",
-                                            "spindle {0}: either `drive` or `speed_output` is needed",
-                                            "шпиндель {0}: нужен либо `drive`, либо `speed_output`"};
+inline constexpr text::Entry kSpindleSource{
+    "machine.spindle_source", "spindle {0}: one of `drive`, `inverter` and `speed_output` is needed",
+    "шпиндель {0}: нужно одно из `drive`, `inverter` и `speed_output`"};
 inline constexpr text::Entry kSpindleSpeeds{"machine.spindle_speeds",
                                             "spindle {0}: min_speed {1} is not below max_speed {2}",
                                             "шпиндель {0}: min_speed {1} не меньше max_speed {2}"};

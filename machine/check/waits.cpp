@@ -115,7 +115,7 @@ class Waits {
     image::Nanoseconds round = 0;
     for (const StationConfig& s : m_.stations)
       if (const DeviceConfig* device = of_line(s, line); device != nullptr)
-        for (const modbus::Block& block : modbus_blocks(s, device->modbus))
+        for (const modbus::Block& block : blocks_of(s, *device))
           round += wire.transaction(block, modbus::kAnswerDelay);
     const double takes = static_cast<double>(round) * 1e-9;
     for (std::size_t i = 0; i < m_.stations.size(); ++i) {
@@ -128,6 +128,10 @@ class Waits {
            milliseconds(stale), std::to_string(modbus::kStaleAfterPeriods),
            milliseconds_up(takes / modbus::kStaleAfterPeriods)});
     }
+  }
+  static std::vector<modbus::Block> blocks_of(const StationConfig& s, const DeviceConfig& device) {
+    return device.kind == DeviceKind::inverter ? inverter_blocks(s, device.inverter).blocks
+                                               : modbus_blocks(s, device.modbus);
   }
   /// The device of a station that is polled over this line; nullptr: it is not.
   const DeviceConfig* of_line(const StationConfig& s, const LineConfig& line) const {

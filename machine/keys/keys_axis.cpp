@@ -255,8 +255,23 @@ const Section& section_of<SpindleConfig>() {
   using C = SpindleConfig;
   static const Key keys[] = {
       key<&C::name>("name", {}, "name for people", "название для людей"),
-      key<&C::drive>("drive", {.refers = Refers::node}, "the drive as \"bus.node\"; or `speed_output`",
-                     "привод в виде \"шина.узел\"; или `speed_output`"),
+      key<&C::drive>("drive", {.refers = Refers::node},
+                     "the drive as \"bus.node\"; or `inverter`, or `speed_output`",
+                     "привод в виде \"шина.узел\"; или `inverter`, или `speed_output`"),
+      key<&C::inverter>("inverter", {}, "the station of an inverter on a Modbus line, by name",
+                        "имя станции преобразователя на линии Modbus"),
+      key<&C::rated_speed>("rated_speed", {.unit = Unit::rpm, .min = 0, .max = 200000},
+                           "with `inverter`: speed of the motor at rated_frequency, as on its nameplate",
+                           "при `inverter`: частота вращения двигателя при rated_frequency, с его таблички"),
+      key<&C::rated_frequency>("rated_frequency", {.unit = Unit::hertz, .min = 0, .max = 3000},
+                               "with `inverter`: frequency of the motor, as on its nameplate",
+                               "при `inverter`: частота питания двигателя, с его таблички"),
+      key<&C::loss_reaction>(
+          "loss_reaction", {},
+          "with `inverter`: what its loss makes the machine do: the axes stop together on the path, or more "
+          "severely; the spindle is told to stop in any case",
+          "при `inverter`: что делает станок при его потере: оси останавливаются вместе на траектории или "
+          "строже; шпиндель останавливается в любом случае"),
       key<&C::process>("process", {.min = 1, .max = image::kMaxProcesses},
                        "process whose S, M3, M4, M5 and M19 it obeys, at most control.processes",
                        "процесс, функциям S, M3, M4, M5 и M19 которого подчиняется шпиндель, не больше "

@@ -6,8 +6,8 @@ namespace servogate::machine {
 
 template <>
 std::span<const std::string_view> choices_of<DeviceKind>() {
-  static constexpr std::string_view kNames[] = {"servo", "stepper",    "spindle",        "modbus_io",
-                                                "gpio",  "canopen_io", "canopen_encoder"};
+  static constexpr std::string_view kNames[] = {"servo", "stepper",    "spindle",         "modbus_io",
+                                                "gpio",  "canopen_io", "canopen_encoder", "inverter"};
   return kNames;
 }
 
@@ -314,6 +314,7 @@ const Section& section_of<DeviceConfig>() {
       key<&C::modbus>("modbus", {}, "channels of a Modbus station", "каналы станции Modbus"),
       key<&C::gpio>("gpio", {}, "lines of a GPIO chip", "линии микросхемы GPIO"),
       key<&C::encoder>("encoder", {}, "resolution of an encoder", "разрешение датчика положения"),
+      key<&C::inverter>("inverter", {}, "registers of an inverter", "регистры преобразователя"),
   };
   static const Section section{"device file", "файл устройства", keys, &default_object<C>};
   return section;

@@ -22,6 +22,10 @@ std::span<const std::string_view> choices_of<image::Writer>();
 template <>
 std::span<const std::string_view> choices_of<DeviceKind>();
 template <>
+std::span<const std::string_view> choices_of<LossReaction>();
+template <>
+std::span<const std::string_view> choices_of<InverterProtocol>();
+template <>
 std::span<const std::string_view> choices_of<ConnectionLoss>();
 template <>
 std::span<const std::string_view> choices_of<FaultResetBy>();
@@ -84,6 +88,10 @@ template <>
 const Section& section_of<DeviceError>();
 template <>
 const Section& section_of<ModbusMap>();
+template <>
+const Section& section_of<InverterRequired>();
+template <>
+const Section& section_of<InverterMap>();
 /// The whole device file.
 template <>
 const Section& section_of<DeviceConfig>();

@@ -74,6 +74,7 @@ constexpr Spelling kSpellings[] = {
     {Unit::newton_metre_s_rad, false, "N m s/rad", 1, 1},
     {Unit::counts, false, "counts", 1, 1},
     {Unit::bytes, false, "bytes", 1, 1},
+    {Unit::hertz, false, "Hz", 1, 1},
 };
 
 bool fits(const Spelling& s, Unit unit, AxisUnits axis) {

@@ -26,6 +26,7 @@ enum class Unit : std::uint8_t {
   newton_metre_s_rad,
   counts,
   bytes,
+  hertz,
 };
 /// Which of the axis units are meant; `either` where the axis is named by the same table.
 enum class AxisUnits : std::uint8_t { linear, rotary, either };

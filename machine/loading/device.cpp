@@ -15,6 +15,7 @@
 #include "machine/keys/findings.hpp"
 #include "machine/keys/reader.hpp"
 #include "machine/keys/sections.hpp"
+#include "machine/loading/inverter_device.hpp"
 
 namespace servogate::machine {
 
@@ -42,6 +43,7 @@ class DeviceCheck {
     ip_record();
     if (!d_.places.contains("kind")) return;  // unknown kind: said by the reader
     if (d_.terminals()) terminals();
+    if (d_.kind == DeviceKind::inverter) check_inverter_device(d_, reading_);
     write_only();
     if (!d_.drive()) return;
     modes();

@@ -75,6 +75,7 @@ void check_all(LoadResult& result, Reading& reading) {
   check_control(machine, reading);
   check_safety(machine, reading);
   check_devices(result, reading);
+  check_inverters(result, reading);
   check_bus_times(result, reading);
   check_waits(result, reading);
   check_overrun(result, reading);

@@ -117,7 +117,7 @@ TEST_P(SmallExample, has_no_errors_and_runs_to_its_end) {
 
 INSTANTIATE_TEST_SUITE_P(Newcomer, SmallExample,
                          ::testing::Values("minimal/square.nc", "two-axis-lathe/pin.nc",
-                                           "four-axis-mill/star.nc"));
+                                           "four-axis-mill/star.nc", "retrofit/pocket.nc"));
 
 }  // namespace
 }  // namespace servogate::machine_run

@@ -18,6 +18,7 @@ ModbusStation::ModbusStation(StationSettings settings) : settings_(std::move(set
               inputs_.begin());
   std::copy_n(settings_.initial_analog.begin(), std::min(settings_.initial_analog.size(), analog_in_.size()),
               analog_in_.begin());
+  if (settings_.inverter) inverter_.emplace(*settings_.inverter);
 }
 
 void ModbusStation::add_loopback(const Loopback& wire) {
@@ -28,6 +29,10 @@ void ModbusStation::add_loopback(const Loopback& wire) {
 
 bool ModbusStation::inject(const fault::Fault& fault) {
   if (!fault::row(fault.kind).happens_to(fault::Device::station)) return false;
+  if (fault.kind == fault::Kind::trip) {
+    if (inverter_) inverter_->trip(fault.error_code);
+    return inverter_.has_value();
+  }
   change_fault(fault);
   return true;
 }
@@ -51,6 +56,7 @@ bool ModbusStation::serve(image::Nanoseconds t, const modbus::Pdu& request, modb
   if (has(fault::Kind::silent) || has(fault::Kind::kill)) return false;
   ++served_;
   last_request_ns_ = t;
+  if (inverter_ && !has(fault::Kind::exception)) return inverter_->serve(request, answer);
   modbus::Request asked;
   modbus::Response response;
   response.exception = has(fault::Kind::exception) ? static_cast<Exception>(fault_->exception)
@@ -144,6 +150,7 @@ void ModbusStation::drive(Wire& wire, bool out, image::Nanoseconds t) {
 
 void ModbusStation::advance_to(image::Nanoseconds t) {
   now_ns_ = std::max(now_ns_, t);
+  if (inverter_) inverter_->advance_to(now_ns_);
   if (settings_.watchdog_ns > 0 && !has(fault::Kind::kill) &&
       now_ns_ - last_request_ns_ > settings_.watchdog_ns)
     lose_outputs();
@@ -160,6 +167,7 @@ void ModbusStation::follow(const Wire& wire) {
 }
 
 void ModbusStation::lose_outputs() {
+  if (inverter_) inverter_->fall_silent();
   const auto loss = [](const std::vector<OutputLoss>& list, std::size_t n) {
     return n < list.size() ? list[n] : OutputLoss{};
   };
@@ -171,6 +179,7 @@ void ModbusStation::lose_outputs() {
 }
 
 void ModbusStation::lose_supply() {
+  if (inverter_) inverter_->lose_supply();
   for (std::size_t n = 0; n < coils_.size(); ++n) write_coil(static_cast<std::uint16_t>(n), false, now_ns_);
   std::fill(holding_.begin(), holding_.end(), std::uint16_t{0});
 }

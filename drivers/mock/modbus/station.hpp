@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "drivers/mock/modbus/simulated_inverter.hpp"
 #include "firmware_if/fault/fault.hpp"
 #include "firmware_if/image/time.hpp"
 #include "firmware_if/modbus/pdu.hpp"
@@ -35,6 +36,8 @@ struct StationSettings {
   /// Outputs go to their loss values when no request came for so long; 0: they stay.
   image::Nanoseconds watchdog_ns = 0;
   std::vector<OutputLoss> coil_loss, holding_loss;  ///< missing ones: off
+  /// It is an inverter, which answers instead of inputs and outputs.
+  std::optional<SimulatedInverterSettings> inverter;
 };
 
 /// A wire from an output back to an input. A pulse shorter than the delay is swallowed, as a contactor does.
@@ -55,11 +58,14 @@ class ModbusStation {
   void add_loopback(const Loopback& wire);
   /// Its one fault from now on: silent (no answer), exception (answers every request with it), slow (answers
   /// `delay_ns` later), corrupt (the answer's checksum is wrong), kill (without supply: no answer, its
-  /// outputs are off and stay off until somebody writes them). False, and nothing changed: no fault of a
-  /// station.
+  /// outputs are off and stay off until somebody writes them). An inverter may trip beside it. False, and
+  /// nothing changed: no fault of a station, or a trip of one that is no inverter.
   bool inject(const fault::Fault& fault);
   void clear_fault();
   const std::optional<fault::Fault>& fault() const noexcept { return fault_; }
+
+  /// nullptr: it is none.
+  SimulatedInverter* inverter() noexcept { return inverter_ ? &*inverter_ : nullptr; }
 
   /// Serves one request that was complete at time t. False: no answer will come.
   bool serve(image::Nanoseconds t, const modbus::Pdu& request, modbus::Pdu& answer);
@@ -100,6 +106,7 @@ class ModbusStation {
   void write_coil(std::uint16_t n, bool on, image::Nanoseconds t);
   void drive(Wire& wire, bool output, image::Nanoseconds t);
 
+  std::optional<SimulatedInverter> inverter_;
   StationSettings settings_;
   std::vector<bool> inputs_, held_, coils_;
   std::vector<std::uint16_t> analog_in_, holding_;

@@ -80,6 +80,23 @@ constexpr Word kQualities[] = {{"never", "ответов ещё не было"},
                                {"stale", "данные устарели"},
                                {"bad", "связи нет"}};
 
+/// The same of an inverter on a line.
+struct InverterWord {
+  std::string_view state;
+  Entry words;
+};
+const InverterWord kInverters[] = {
+    {"offline",
+     {"client.inverter-offline", "inverter {0} does not answer", "преобразователь {0} не отвечает"}},
+    {"switch_on_disabled",
+     {"client.inverter-disabled", "inverter {0} may not run", "преобразователю {0} нельзя работать"}},
+    {"ready_to_switch_on", {"client.inverter-ready", "inverter {0} is ready", "преобразователь {0} готов"}},
+    {"fault", {"client.inverter-fault", "inverter {0} has tripped", "авария преобразователя {0}"}}};
+const Entry kInverterOn{"client.inverter-on", "inverter {0} is on", "преобразователь {0} включён"};
+const Entry kOutputs{"client.spindle-outputs", "by output {0}, without feedback",
+                     "по выходу {0}, без обратной связи"};
+const Entry kAtSpeed{"client.at-speed", "{0}, at speed", "{0}, частота достигнута"};
+
 template <std::size_t N>
 std::string people_read(const Word (&table)[N], const std::string& word) {
   if (text::user_language() != text::Language::russian) return word;
@@ -210,6 +227,19 @@ void print_lines(const json& lines) {
   }
 }
 
+/// What turns the spindle, and how it is.
+std::string spindle_words(const json& sp) {
+  const std::string supplier = of(sp, "supplier"), place = of(sp, "place"), drive = of(sp, "drive");
+  std::string words = people_read(kDrives, drive);
+  if (supplier == "outputs") words = say(kOutputs, {place});
+  if (supplier == "inverter") {
+    words = say(kInverterOn, {place});
+    for (const InverterWord& w : kInverters)
+      if (w.state == drive) words = say(w.words, {place});
+  }
+  return supplier != "drive" && sp.value("at_speed", false) ? say(kAtSpeed, {words}) : words;
+}
+
 void print_held(const json& status) {
   if (const json& by = status.value("plc_held_by", json()); by.is_string()) print_line(say(kPlcHeld, {by}));
 }
@@ -238,7 +268,7 @@ void print_status(const json& s) {
   for (const json& a : axes) print_axis(a);
   for (const json& sp : s.value("spindles", json::array()))
     print_line(say(kSpindle, {fixed(sp.value("actual_rpm", 0.0), 0), fixed(sp.value("command_rpm", 0.0), 0),
-                              people_read(kDrives, of(sp, "drive"))}));
+                              spindle_words(sp)}));
   print_lines(s.value("modbus", json::array()));
   print_held(s);
   print_forced(s.value("forced", json::array()));

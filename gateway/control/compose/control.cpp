@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "firmware_if/canopen/301/emcy.hpp"
+#include "gateway/control/compose/alarms/source_names.hpp"
 #include "gateway/control/compose/plc/compile_beside.hpp"
 #include "gateway/control/compose/plc/logic_options.hpp"
 #include "gateway/control/compose/program/program_model.hpp"
@@ -81,7 +82,7 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
   }
   for (const OpenDevice& device : c->devices_) parts.devices.push_back(device.device.get());
   for (std::size_t s = 0; s < m.stations.size(); ++s)
-    parts.sources[s].watched = !m.stations[s].over_bus();  // the loss of a node is said by its bus
+    parts.sources[s].watched = !m.stations[s].over_bus() && !turns_spindle(m, m.stations[s]);
   parts.logic = c->logic_.get();
   for (int p = 0; p < m.control.processes; ++p) {
     c->processes_.push_back(std::make_unique<channel::Process>(process_config(m, p)));
@@ -322,6 +323,8 @@ void Control::open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) n
 
 /// The device file of the drive or part that an alarm is of.
 const machine::DeviceConfig* Control::device_of(const image::AlarmRecord& r) const {
+  if (r.source >= 0 && r.part.device < 0)
+    return loaded_.device(loaded_.machine.stations[static_cast<std::size_t>(r.source)].device);
   const machine::NodeConfig* node = node_of(r.part);
   return node != nullptr ? loaded_.device(node->device) : nullptr;
 }
@@ -363,9 +366,11 @@ image::AlarmNames Control::alarm_names() const {
   names.units = m.unit_words();
   for (const machine::AxisConfig& a : m.axes) names.diameters.push_back(a.diameter);
   for (const machine::BusConfig& b : m.buses) names.devices.push_back(b.name);
-  for (const machine::StationConfig& s : m.stations) names.sources.push_back(s.name);
+  for (const machine::StationConfig& s : m.stations) names.sources.push_back(source_name(m, s));
   names.error_text = [this](const image::AlarmRecord& r, std::uint16_t code, text::Language language) {
     const machine::DeviceConfig* device = device_of(r);
+    if (device != nullptr && device->kind == machine::DeviceKind::inverter)
+      return inverter_words(*device, r.number, code, language);
     const std::string_view own = device != nullptr ? device->error_text(code, language) : std::string_view();
     return own.empty() ? text::render(canopen::error_code_text(code), {}, language) : std::string(own);
   };

@@ -43,7 +43,8 @@ bool spindle_rests(const image::ProcessImage& image, int spindle) noexcept {
 bool spindle_lost(const image::ProcessImage& image, const machine::MachineConfig& machine,
                   int spindle) noexcept {
   const auto n = static_cast<std::size_t>(spindle);
-  return !machine.spindles[n].drive.empty() && !image.spindles[n].drive.online;
+  const machine::SpindleConfig& s = machine.spindles[n];
+  return (!s.drive.empty() || !s.inverter.empty()) && !image.spindles[n].drive.online;
 }
 
 bool spindles_answer(const image::ProcessImage& image, const machine::MachineConfig& machine) noexcept {

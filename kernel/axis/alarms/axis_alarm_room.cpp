@@ -80,9 +80,14 @@ class AxisWords final : public image::AlarmWords {
  public:
   void arguments(const AlarmRecord& r, const AlarmNames& names, Language language,
                  image::AlarmArguments& out) const override {
-    if (of_spindle(r)) out[0] = r.axis > 0 ? "S" + std::to_string(r.axis + 1) : "S";
+    if (of_spindle(r)) out[0] = r.detail2 > 0.0 ? "S" + text::number(r.detail2 + 1.0) : "S";
     if (figures_are_lengths(r.number)) lengths(r, names, language, out);
     const auto report = r.detail.get<image::DriveReport>();
+    if (r.number == alarm::kSpindleNotReady && r.value == 0.0)
+      out[5] =
+          language == Language::russian ? "он не сообщает о готовности" : "it does not tell that it is ready";
+    else if (r.number == alarm::kSpindleNotReady)
+      out[5] = image::error_words(r, static_cast<std::uint16_t>(r.value), names, language);
     if (r.number == alarm::kSpindleDriveFault && (!report || report->error_code == 0))
       out[5] = image::error_words(r, static_cast<std::uint16_t>(r.value), names, language);
     if (r.number == alarm::kDriveRefuses) {

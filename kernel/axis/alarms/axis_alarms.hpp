@@ -45,6 +45,8 @@ inline constexpr AlarmNumber kSpindleDriveFault = 1203;
 inline constexpr AlarmNumber kSpindleNoEncoder = 1204;
 inline constexpr AlarmNumber kSpindleNoReverse = 1205;
 inline constexpr AlarmNumber kSpindleOutputLost = 1206;
+inline constexpr AlarmNumber kSpindleDriveLost = 1207;
+inline constexpr AlarmNumber kSpindleNotReady = 1208;
 
 inline constexpr AlarmNumber kDriveFault = 2001;
 inline constexpr AlarmNumber kDriveRefuses = 2002;

@@ -262,6 +262,23 @@ inline constexpr image::AlarmRow kAxisRows[] = {
      "the station, reset, and start the spindle again.",
      "Посмотрите, остановился ли преобразователь: это зависит от выходов станции. Восстановите станцию, "
      "выполните сброс и снова включите шпиндель."},
+    {alarm::kSpindleDriveLost,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::cause_gone,
+     {"spindle.drive_lost", "{0}: its inverter does not answer ({3}); it was to turn at {2} rpm",
+      "{0}: преобразователь не отвечает ({3}); заданная частота {2} об/мин"},
+     "Look whether the spindle has stopped: without the line the inverter decides that by itself. See to "
+     "supply, "
+     "wiring, address, rate and parity; then reset and start the spindle again.",
+     "Посмотрите, остановился ли шпиндель: без линии это решает сам преобразователь. Проверьте питание, "
+     "проводку, адрес, скорость и чётность; затем выполните сброс и снова включите шпиндель."},
+    {alarm::kSpindleNotReady,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"spindle.not_ready", "{0}: its inverter may not run ({3}): {5}",
+      "{0}: преобразователю нельзя работать ({3}): {5}"},
+     "Set the parameter at the inverter as its device file says, or bring it out of local mode.",
+     "Задайте параметр в преобразователе, как сказано в файле устройства, или снимите местное управление."},
     {alarm::kDriveFault,
      image::Reaction::stop_on_path,
      image::ResetCondition::cause_gone,

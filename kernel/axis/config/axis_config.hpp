@@ -131,6 +131,10 @@ struct SpindleConfig {
   bool encoder = true;       ///< the supplier gives counts; without them no oriented stop
   image::PartPlace drive;
   std::optional<InverterConfig> inverter;  ///< supplies the spindle instead of a drive, without an encoder
+  int source = -1;          ///< image.sources[n] tells whether its drive is there; -1: the drive's bus does
+  bool reverses = true;     ///< its drive can turn counter-clockwise
+  bool target_bit = false;  ///< at speed only where its drive says so, too (statusword bit 10)
+  image::Reaction loss_reaction = image::Reaction::stop_on_path;  ///< of one with a source, or stronger
   std::uint32_t missed_limit = 3;
 };
 

@@ -51,12 +51,22 @@ Bytes with_crc(Bytes frame) {
 }
 
 Units::Units(Wire wire, const std::vector<std::uint8_t>& units) : wire_(wire) {
-  signal(SIGPIPE, SIG_IGN);
   for (const std::uint8_t unit : units) {
     mock::StationSettings settings;
     settings.unit = unit;
     stations_.emplace(unit, mock::ModbusStation(settings));
   }
+  begin();
+}
+
+Units::Units(const mock::StationSettings& unit, Wire wire) : wire_(wire) {
+  counted_ = unit.inverter && unit.inverter->registers.coding == modbus::Coding::huanyang;
+  stations_.emplace(unit.unit, mock::ModbusStation(unit));
+  begin();
+}
+
+void Units::begin() {
+  signal(SIGPIPE, SIG_IGN);
   if (wire_ == Wire::tcp) {
     listen();
   } else {
@@ -213,9 +223,10 @@ bool Units::take_request(Connection& connection, Asked& asked) const {
     size = static_cast<std::size_t>(in[4] << 8 | in[5]);
     asked.transaction = static_cast<std::uint16_t>(in[0] << 8 | in[1]);
   } else {
-    const bool multiple = in[1] == 15 || in[1] == 16;
+    const bool multiple = !counted_ && (in[1] == 15 || in[1] == 16);
     if (multiple && in.size() < 7) return false;
-    size = multiple ? 7u + in[6] : 6u;
+    if (counted_ && in.size() < 3) return false;
+    size = counted_ ? 3u + in[2] : multiple ? 7u + in[6] : 6u;
   }
   if (in.size() < before + size + behind) return false;
   asked.unit = in[before];

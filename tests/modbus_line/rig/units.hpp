@@ -41,6 +41,8 @@ class Units {
   using Bend = std::function<Reply(const Asked&, const Bytes& good)>;
 
   explicit Units(Wire wire, const std::vector<std::uint8_t>& units = {1});
+  /// One unit of this kind; an inverter with requests of its own hears no others.
+  Units(const mock::StationSettings& unit, Wire wire);
   ~Units();
   Units(const Units&) = delete;
   Units& operator=(const Units&) = delete;
@@ -81,7 +83,10 @@ class Units {
   image::Nanoseconds send_due();
   void close_all();
 
+  void begin();
+
   Wire wire_;
+  bool counted_ = false;  ///< requests say themselves how long they are
   std::uint16_t port_ = 0;
   std::string device_;
   int listening_ = -1, slave_ = -1;

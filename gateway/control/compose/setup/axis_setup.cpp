@@ -101,6 +101,22 @@ std::optional<axis::InverterConfig> inverter(const machine::MachineConfig& m,
   return c;
 }
 
+/// What a spindle on an inverter has instead of a drive on a bus.
+void put_inverter(const machine::LoadResult& loaded, const machine::SpindleConfig& s,
+                  axis::SpindleConfig& c) {
+  const std::vector<machine::StationConfig>& stations = loaded.machine.stations;
+  for (std::size_t n = 0; n < stations.size(); ++n) {
+    if (s.inverter.empty() || stations[n].name != s.inverter) continue;
+    c.source = static_cast<int>(n);
+    c.counts_numerator = kInverterCounts;
+    c.loss_reaction = loss_reaction(s.loss_reaction);
+    if (const machine::DeviceConfig* device = loaded.device(stations[n].device); device != nullptr) {
+      c.reverses = device->inverter.reverse >= 0;
+      c.target_bit = device->inverter.at_speed[0] != 0;
+    }
+  }
+}
+
 image::PartPlace drive_place(const machine::MachineConfig& m, std::string_view reference) {
   int bus = -1;
   const machine::NodeConfig* node = m.node(reference, &bus);
@@ -188,6 +204,7 @@ axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const mach
   c.drive = drive_place(loaded.machine, s.drive);
   c.inverter = inverter(loaded.machine, s);
   c.encoder = s.has_encoder();
+  put_inverter(loaded, s, c);
   if (s.has_encoder()) {
     c.counts_numerator = s.counts_per_rev;
     c.counts_denominator = 1;

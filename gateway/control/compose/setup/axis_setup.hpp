@@ -13,6 +13,8 @@ namespace servogate::gateway {
 image::Reaction loss_reaction(machine::LossReaction reaction);
 
 axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::AxisConfig& axis);
+/// Drive counts of a turn of a spindle on an inverter, which has none of its own.
+inline constexpr std::int64_t kInverterCounts = 1'000'000;
 axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& spindle);
 /// Counts of a spindle's encoder in one turn of its motor, to the nearest; 0: no encoder. What a drive calls
 /// a revolution is one of its motor.

@@ -3,6 +3,7 @@
 
 #include "firmware_if/modbus/coalesce.hpp"
 #include "gateway/control/compose/points/point_rules.hpp"
+#include "gateway/control/compose/setup/axis_setup.hpp"
 #include "machine/modbus_blocks.hpp"
 
 namespace servogate::gateway {
@@ -34,11 +35,46 @@ std::vector<LineStation> stations_of_line(const machine::LoadResult& loaded, con
   for (std::size_t s = 0; s < stations.size(); ++s) {
     if (stations[s].kind != machine::StationKind::modbus || stations[s].line != line) continue;
     const machine::DeviceConfig* device = loaded.device(stations[s].device);
-    out.push_back(
-        {&stations[s], device != nullptr ? device->modbus : machine::ModbusMap{}, static_cast<int>(s)});
+    LineStation one{&stations[s], device != nullptr ? device->modbus : machine::ModbusMap{},
+                    static_cast<int>(s)};
+    const std::vector<machine::SpindleConfig>& spindles = loaded.machine.spindles;
+    for (std::size_t n = 0; n < spindles.size(); ++n)
+      if (device != nullptr && device->kind == machine::DeviceKind::inverter &&
+          spindles[n].inverter == stations[s].name) {
+        one.inverter = device;
+        one.spindle = &spindles[n];
+        one.spindle_index = static_cast<int>(n);
+      }
+    out.push_back(one);
   }
   return out;
 }
+
+namespace {
+
+/// The registers of an inverter behind what the line has.
+void add_inverter(const LineStation& s, modbus::Map& map) {
+  machine::InverterBlocks own = machine::inverter_blocks(*s.station, s.inverter->inverter);
+  const std::size_t first = map.blocks.size();
+  modbus::Inverter& i = own.inverter;
+  const auto moved = [first](std::optional<modbus::Spot>& spot) {
+    if (spot) spot->block += first;
+  };
+  i.command += first;
+  i.frequency += first;
+  if (i.reset) *i.reset += first;
+  moved(i.status);
+  moved(i.output);
+  moved(i.fault);
+  for (modbus::Spot& spot : i.required) spot.block += first;
+  i.spindle = s.spindle_index;
+  const double rpm_per_hz = 1.0 / s.spindle->hertz(1.0);
+  i.counts_s_per_hz = rpm_per_hz / 60.0 * static_cast<double>(kInverterCounts);
+  map.blocks.insert(map.blocks.end(), own.blocks.begin(), own.blocks.end());
+  map.inverters.push_back(std::move(i));
+}
+
+}  // namespace
 
 modbus::Map line_map(const std::vector<LineStation>& stations) {
   modbus::Map whole;
@@ -49,6 +85,7 @@ modbus::Map line_map(const std::vector<LineStation>& stations) {
       whole.points.push_back(p);
     }
     whole.blocks.insert(whole.blocks.end(), one.blocks.begin(), one.blocks.end());
+    if (s.inverter != nullptr) add_inverter(s, whole);
   }
   return whole;
 }

@@ -19,6 +19,9 @@ struct LineStation {
   const machine::StationConfig* station = nullptr;
   machine::ModbusMap layout;
   int source = 0;
+  const machine::DeviceConfig* inverter = nullptr;  ///< its device file where it is one
+  const machine::SpindleConfig* spindle = nullptr;  ///< that it turns
+  int spindle_index = 0;
 };
 /// The stations of a line by its name, in the order of the machine file.
 std::vector<LineStation> stations_of_line(const machine::LoadResult& loaded, const std::string& line);

@@ -159,6 +159,10 @@ void MachineFaults::begin(const Target& target, const fault::Fault& fault, image
     lateness_ns_ += fault.delay_ns;
     return;
   }
+  if (fault.kind == Kind::trip) {
+    target.station->inject(fault);
+    return;
+  }
   const bool side_by_side = target.devices == bit(Device::bus);
   if (!side_by_side) end_all(target, fault.kind);
   active_.push_back({target, fault, fault.duration_ns > 0 ? t + fault.duration_ns : 0});

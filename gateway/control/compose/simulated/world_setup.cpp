@@ -7,6 +7,7 @@
 #include "gateway/control/compose/points/point_rules.hpp"
 #include "gateway/control/compose/setup/modbus_setup.hpp"
 #include "gateway/control/compose/simulated/simulated_node.hpp"
+#include "machine/modbus_blocks.hpp"
 
 namespace servogate::gateway {
 
@@ -43,6 +44,17 @@ mock::StationSettings station_settings(const machine::StationConfig& station,
       outputs[n] = {p.hold, static_cast<std::uint16_t>(std::lround(wire))};
   }
   return s;
+}
+
+/// An inverter that reaches its speeds a little sooner than it is told to.
+mock::SimulatedInverterSettings inverter_settings(const LineStation& s) {
+  constexpr double kQuicker = 1.25, kHeadroom = 1.1;
+  mock::SimulatedInverterSettings out;
+  out.registers = machine::inverter_registers(s.inverter->inverter);
+  out.max_hz = kHeadroom * s.spindle->hertz(s.spindle->max_speed);
+  out.ramp_hz_s = kQuicker * s.spindle->hertz(s.spindle->acceleration);
+  out.silence_trip = static_cast<std::uint16_t>(s.inverter->inverter.silence_fault);
+  return out;
 }
 
 class Setup {
@@ -152,6 +164,7 @@ class Setup {
     const machine::StationConfig& station = *line_station.station;
     mock::WorldUnit unit{
         station.name, station_settings(station, line_station.layout), line_station.source, {}};
+    if (line_station.inverter != nullptr) unit.settings.inverter = inverter_settings(line_station);
     for (const machine::PointConfig& p : station.points) {
       unit.points.push_back({p.name, point_rule(p), p.number});
       const double raw = initial(p.name).value_or(0.0);

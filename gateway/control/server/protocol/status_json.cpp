@@ -112,11 +112,16 @@ json json_of(const AxisReport& r) {
 }
 
 json json_of(const SpindleReport& r) {
-  return {{"command_rpm", measure(r.spindle.command_rpm)},
+  constexpr const char* kSuppliers[] = {"drive", "inverter", "outputs"};
+  const bool outputs = r.supplier == SpindleSupplier::outputs;
+  return {{"supplier", kSuppliers[static_cast<int>(r.supplier)]},
+          {"place", r.place},
+          {"running", r.spindle.running},
+          {"command_rpm", measure(r.spindle.command_rpm)},
           {"actual_rpm", measure(r.spindle.actual_rpm)},
           {"at_speed", r.spindle.at_speed},
           {"rests", r.rests ? json(*r.rests) : json()},
-          {"drive", kDriveStates[static_cast<int>(r.spindle.drive.state)]}};
+          {"drive", outputs ? json() : json(kDriveStates[static_cast<int>(r.spindle.drive.state)])}};
 }
 
 /// `nmt_state` is that of CiA 301: 4, 5, 127; null: nothing is heard of the node.

@@ -38,8 +38,12 @@ struct AxisReport {
   std::string jog_end;                   ///< why its last jog ended; empty: it goes on, or there was none
 };
 
+/// What turns a spindle: a drive on a bus, an inverter on a Modbus line, or outputs without feedback.
+enum class SpindleSupplier : std::uint8_t { drive, inverter, outputs };
 struct SpindleReport {
   image::SpindleImage spindle;
+  SpindleSupplier supplier = SpindleSupplier::drive;
+  std::string place;          ///< "can.spindle", "cabinet.vfd", or the point of its speed
   std::optional<bool> rests;  ///< none: its drive does not answer
 };
 

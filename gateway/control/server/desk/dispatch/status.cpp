@@ -78,6 +78,23 @@ std::vector<BusReport> bus_reports(const machine::MachineConfig& m, const image:
   return buses;
 }
 
+/// By what it is turned.
+SpindleReport spindle_report(const machine::MachineConfig& m, std::size_t index) {
+  const machine::SpindleConfig& s = m.spindles[index];
+  SpindleReport report;
+  if (!s.drive.empty()) {
+    report.place = s.drive;
+  } else if (!s.inverter.empty()) {
+    report.supplier = SpindleSupplier::inverter;
+    for (const machine::StationConfig& station : m.stations)
+      if (station.name == s.inverter) report.place = station.line + "." + station.name;
+  } else {
+    report.supplier = SpindleSupplier::outputs;
+    report.place = s.speed_output;
+  }
+  return report;
+}
+
 std::vector<ModbusLineReport> line_reports(const Control& control, const image::ProcessImage& image) {
   std::vector<ModbusLineReport> lines;
   for (const machine::LineConfig& line : control.machine().lines) {
@@ -130,9 +147,10 @@ StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Languag
     status.axes.push_back(axis_report(m.axes[n], image.axes[n], language));
   }
   for (int i = 0; i < image.spindle_count; ++i) {
-    SpindleReport spindle{image.spindles[static_cast<std::size_t>(i)], {}};
+    SpindleReport spindle = spindle_report(m, static_cast<std::size_t>(i));
+    spindle.spindle = image.spindles[static_cast<std::size_t>(i)];
     if (!spindle_lost(image, m, i)) spindle.rests = spindle_rests(image, i);
-    status.spindles.push_back(spindle);
+    status.spindles.push_back(std::move(spindle));
   }
   status.buses = bus_reports(m, image);
   status.modbus = line_reports(resident.control(), image);
