@@ -296,6 +296,13 @@ struct SafetyConfig {
   bool mock_inputs_guard_real_drives = false;
 };
 
+/// [modbus_server]: what panels and SCADA may see over Modbus TCP.
+struct ModbusServerConfig {
+  std::string listen;                ///< "127.0.0.1:1502"; empty: there is no server
+  std::vector<std::string> clients;  ///< addresses of other computers that are served
+  std::vector<std::string> write;    ///< ranges of packet K that may be written: "SK200-SK231"
+};
+
 /// [run]
 struct RunConfig {
   bool allow_start_now = false;  ///< `run --start-now` may move real drives without the operator's start
@@ -384,6 +391,7 @@ struct MachineConfig {
   std::vector<LineConfig> lines;
   std::vector<StationConfig> stations;
   std::vector<SymbolConfig> symbols;
+  ModbusServerConfig modbus_server;
   SimulationConfig simulation;
 
   std::string file;  ///< path as given to load(), the `file` of every finding

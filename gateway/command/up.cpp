@@ -18,6 +18,7 @@
 #include "gateway/control/history/texts.hpp"
 #include "gateway/control/run/running_machine.hpp"
 #include "gateway/control/server/desk/desk.hpp"
+#include "gateway/control/server/modbus/modbus_server.hpp"
 #include "gateway/control/server/resident/resident.hpp"
 #include "gateway/control/server/socket/socket_path.hpp"
 #include "gateway/control/server/socket/socket_server.hpp"
@@ -30,6 +31,7 @@ namespace {
 const text::Entry kListening{"up.listening", "{0} is up; control socket {1}",
                              "{0} работает; сокет управления {1}"};
 const text::Entry kNoSocket{"up.no-socket", "cannot listen on {0}: {1}", "не удаётся слушать {0}: {1}"};
+const text::Entry kModbusListening{"up.modbus-listening", "Modbus TCP on {0}", "Modbus TCP на {0}"};
 const text::Entry kStateLost{"up.state-not-saved", "the state was not saved: {0}",
                              "состояние не сохранено: {0}"};
 
@@ -62,12 +64,27 @@ std::unique_ptr<RunningMachine> compose(const UpOptions& options, const machine:
   return running;
 }
 
+/// Starts the Modbus server of the machine file. False: it cannot, which has been said.
+bool open_modbus(const machine::ModbusServerConfig& config, Desk& desk,
+                 std::unique_ptr<ModbusServer>& server) {
+  if (config.listen.empty()) return true;
+  drivers::Notice why;
+  server = ModbusServer::open(config, desk, why);
+  if (server == nullptr) {
+    complain(*why.entry, why.arguments);
+    return false;
+  }
+  tell(text::render(kModbusListening, std::vector<std::string>{config.listen}, text::user_language()));
+  return true;
+}
+
 /// Until somebody ends it, and everything rests.
-void serve(Desk& desk, SocketServer& server) {
+void serve(Desk& desk, SocketServer& server, std::unique_ptr<ModbusServer>& modbus) {
   while (signals_seen() == 0 && !desk.down_requested())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   desk.shut_down();
   while (!desk.at_rest()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  modbus.reset();
   desk.stop();  // whoever still waits is answered
   server.stop();
 }
@@ -123,6 +140,8 @@ int up(const UpOptions& options) {
   }
   if (!begin(*running)) return kInfrastructure;
   desk.start();
+  std::unique_ptr<ModbusServer> modbus;
+  if (!open_modbus(m.modbus_server, desk, modbus)) return kInfrastructure;
   server->start();
   tell(text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()));
   if (options.json)
@@ -133,7 +152,7 @@ int up(const UpOptions& options) {
                      {"version", report::build_identity().version}});
   history->note(
       history::event("up", history::says::kUp, {m.name, std::string(report::build_identity().version)}, 0.0));
-  serve(desk, *server);
+  serve(desk, *server, modbus);
   const double ended_s = static_cast<double>(resident.image().now.t_ns) * 1e-9;
   history->note(history::event("down", history::says::kDown, {m.name}, ended_s));
   const bool saved = put_away(*running, resident);

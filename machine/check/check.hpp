@@ -36,6 +36,8 @@ void check_waits(const LoadResult& loaded, Reading& reading);
 void check_overrun(const LoadResult& loaded, Reading& reading);
 /// Axes with a brake: whether they fall when the control dies.
 void check_control_death(const LoadResult& loaded, Reading& reading);
+/// Addresses and ranges of the Modbus server.
+void check_modbus_server(const MachineConfig& machine, Reading& reading);
 /// Spindles on inverters on Modbus.
 void check_inverters(const LoadResult& loaded, Reading& reading);
 /// Bus load and speed of motors against the device files.

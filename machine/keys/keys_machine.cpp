@@ -36,6 +36,22 @@ const Section& section_of<ControlConfig>() {
 }
 
 template <>
+const Section& section_of<ModbusServerConfig>() {
+  using C = ModbusServerConfig;
+  static const Key keys[] = {
+      key<&C::listen>("listen", {}, "address and port, \"127.0.0.1:1502\"; empty: no server",
+                      "адрес и порт, \"127.0.0.1:1502\"; пусто: сервера нет"),
+      key<&C::clients>("clients", {}, "addresses of other computers that are served; this one always is",
+                       "адреса других компьютеров, которым он отвечает; этому — всегда"),
+      key<&C::write>("write", {}, "bytes of packet K that may be written: \"SK200-SK231\"; none: read-only",
+                     "байты пакета K, которые можно писать: \"SK200-SK231\"; нет: только чтение"),
+  };
+  static const Section section{"the Modbus TCP server for panels and SCADA",
+                               "сервер Modbus TCP для панелей и SCADA", keys, &default_object<C>};
+  return section;
+}
+
+template <>
 const Section& section_of<RunConfig>() {
   using C = RunConfig;
   static const Key keys[] = {
@@ -247,6 +263,7 @@ const Section& section_of<MachineConfig>() {
       key<&C::lines>("line", {}, "Modbus lines", "линии Modbus"),
       key<&C::stations>("station", {}, "sources of signals", "источники сигналов"),
       key<&C::symbols>("symbol", {}, "free places with names", "именованные свободные адреса"),
+      key<&C::modbus_server>("modbus_server", {}, "the Modbus TCP server", "сервер Modbus TCP"),
       key<&C::simulation>("simulation", {}, "what the mocks do; without effect on what is real",
                           "поведение имитаторов; на настоящее не действует"),
   };

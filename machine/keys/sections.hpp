@@ -59,6 +59,8 @@ const Section& section_of<PlcConfig>();
 template <>
 const Section& section_of<SafetyConfig>();
 template <>
+const Section& section_of<ModbusServerConfig>();
+template <>
 const Section& section_of<RunConfig>();
 template <>
 const Section& section_of<RealtimeConfig>();

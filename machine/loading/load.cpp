@@ -74,6 +74,7 @@ void check_all(LoadResult& result, Reading& reading) {
   check_spindles(machine, reading);
   check_control(machine, reading);
   check_safety(machine, reading);
+  check_modbus_server(machine, reading);
   check_devices(result, reading);
   check_inverters(result, reading);
   check_bus_times(result, reading);

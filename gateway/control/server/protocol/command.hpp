@@ -82,6 +82,12 @@ struct Input {
   std::variant<std::monostate, bool, double> value;
 };
 
+/// Writes a number into a place of packet K, as its operator.
+struct SetPlace {
+  std::string place;  ///< "SK100.IN"
+  double value = 0.0;
+};
+
 // What takes motion or energy away, or keeps a jog alive.
 struct Stop {};
 struct QuickStop {};
@@ -123,8 +129,8 @@ struct PlcList {};
 
 using Command = std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero,
                              Override, Load, Start, Step, Mdi, Resume, Assign, Reset, Acknowledge, Input,
-                             Stop, QuickStop, Hold, JogStop, KeepAlive, Down, PlcLoad, PlcForce, PlcRelease,
-                             PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
+                             SetPlace, Stop, QuickStop, Hold, JogStop, KeepAlive, Down, PlcLoad, PlcForce,
+                             PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
 
 template <typename... Kinds>
 bool is_any(const Command& command) noexcept {

@@ -118,6 +118,8 @@ const Entry kNotJogged{"said.not-jogged", "this axis is not being jogged: there 
                        "эту ось не перемещают вручную: останавливать нечего"};
 const Entry kNothingJogged{"said.nothing-jogged", "no axis is being jogged: there is nothing to stop",
                            "ни одну ось не перемещают вручную: останавливать нечего"};
+const Entry kPlaceSet{"said.place-set", "{0} = {1}", "{0} = {1}"};
+const Entry kNoPlace{"socket.no-place", "'{0}' is no place of packet K", "«{0}» — не адрес пакета K"};
 const Entry kReset{"said.reset", "reset; no alarm is active", "сброс; активных аварий нет"};
 const Entry kResetLeft{"said.reset-left", "reset, but still active: {0}", "сброс, но ещё активны: {0}"};
 const Entry kOverride{"said.override", "feed override {0} %", "коррекция подачи {0} %"};

@@ -59,6 +59,8 @@ extern const text::Entry kStarted;      ///< {0} program
 extern const text::Entry kTypedGoesOn;  ///< {0} block
 extern const text::Entry kStepped, kHeld, kManualStopped, kNothingHeld, kResumed, kStopped, kJogsStopped,
     kNothingJogged, kJogStopped, kNotJogged;
+extern const text::Entry kPlaceSet;  ///< {0} has the value {1}
+extern const text::Entry kNoPlace;   ///< {0} is none
 extern const text::Entry kReset;
 extern const text::Entry kResetLeft;  ///< {0} alarms still active
 extern const text::Entry kOverride;   ///< {0} per cent

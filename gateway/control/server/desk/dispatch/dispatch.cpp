@@ -79,6 +79,7 @@ class Dispatch {
   /// Puts a request to the gate. True: accepted; otherwise `refusal_` holds the answer.
   /// `mode`: the mode that belongs to it; a refused request leaves the process in the one it was in.
   /// `process`: -1: that of the axis, the first where there is none.
+  bool ask(image::Request request);
   bool ask(RequestKind kind, int axis = -1, double value = 0.0, std::optional<image::Mode> mode = {},
            int process = -1);
   /// Index of an axis; -1: `refusal_` holds the answer.
@@ -115,6 +116,7 @@ class Dispatch {
   Outcome take(const ask::Reset&) { return reset(true); }
   Outcome take(const ask::Acknowledge&) { return reset(false); }
   Outcome take(const ask::Input&);
+  Outcome take(const ask::SetPlace&);
 
   template <typename Content>
   static Reply looked(Content content) {
@@ -162,13 +164,17 @@ Outcome Dispatch::run() {
 
 bool Dispatch::ask(RequestKind kind, int axis, double value, std::optional<image::Mode> mode, int process) {
   image::Request r;
-  r.asker = question_.caller.asker;
   r.kind = kind;
   r.axis = static_cast<std::int8_t>(axis);
   r.process = static_cast<std::int8_t>(process >= 0 ? process : axis >= 0 ? process_of(axis) : 0);
   r.value = value;
-  r.client = question_.caller.hand().client;
   if (mode) r.mode = static_cast<std::int8_t>(*mode);
+  return ask(r);
+}
+
+bool Dispatch::ask(image::Request r) {
+  r.asker = question_.caller.asker;
+  r.client = question_.caller.hand().client;
   image::Answer answer;
   switch (resident_.ask(r, answer, question_.asked())) {
     case RequestDesk::Outcome::silent:
@@ -432,6 +438,19 @@ Outcome Dispatch::take(const ask::Input& wanted) {
   if (played.outcome == PlayedInput::Outcome::done) return good(*played.entry, played.arguments);
   return fail(*played.entry, played.arguments,
               played.outcome == PlayedInput::Outcome::wrong ? kWrongUse : kAlarm);
+}
+
+Outcome Dispatch::take(const ask::SetPlace& wanted) {
+  const auto place = image::parse_place(wanted.place);
+  if (!place || place->packet != image::Packet::k) return fail(says::kNoPlace, {wanted.place}, kWrongUse);
+  image::Request r;
+  r.kind = RequestKind::set_place;
+  r.packet = static_cast<std::uint8_t>(place->packet);
+  r.format = static_cast<std::uint8_t>(place->format);
+  r.index = place->index;
+  r.length = static_cast<std::uint8_t>(place->length);
+  r.value = wanted.value;
+  return ask(r) ? good(says::kPlaceSet, {wanted.place, text::number(wanted.value)}) : refusal_;
 }
 
 }  // namespace
