@@ -44,6 +44,7 @@ enum class RequestKind : std::uint8_t {
   torque,
   assign,  ///< axis, process: whose programs move it from now on; at standstill, while no program of either
            ///< runs
+  tables,  ///< origins and tools are changed; index: axes whose present position is taken over, as bits
 };
 
 /// Who holds a jog with a finger on the button: one connection, one pendant, the PLC. The dead-man of a

@@ -14,10 +14,12 @@ namespace servogate::gateway {
 struct RunOptions {
   std::string machine, program, dialect;
   ClockKind clock = ClockKind::unset;
-  std::string trace, report, html, record, can_log, state;
+  std::string trace, report, html, record, can_log, state, tables;
   double override_percent = 100.0;
   std::optional<double> patience_s;  ///< machine time that a program may wait for somebody; 0: for ever
   std::vector<std::string> forces;   ///< NAME=VALUE
+  std::vector<std::string> faults;   ///< as "kill node=2 at=30"
+  std::string script;                ///< file with such lines
   bool quiet = false;
   bool start_now = false;
   bool json = false;
@@ -35,23 +37,30 @@ struct ClientOptions {
   std::string command;
   std::vector<std::string> arguments;
   std::string socket;
-  int process = 0;       ///< from 1; 0: none was said
-  bool history = false;  ///< of `alarms`: what has happened instead
-  int last = 100;        ///< events of it
+  int process = 0;           ///< from 1; 0: none was said
+  std::string from;          ///< of `start`: "N120"; empty: the first block
+  int line = 0;              ///< the same by its line
+  bool interrupted = false;  ///< the same, where it was interrupted
+  double feed = 500.0;       ///< of the way there, mm/min
+  bool yes = false;          ///< without asking
+  bool by_hand = false;      ///< each step of the way waits for start
+  bool history = false;      ///< of `alarms`: what has happened instead
+  int last = 100;            ///< events of it
+  bool watch = false;        ///< of `status`: again and again
   bool json = false;
   bool wait = false;     ///< until what was begun has ended
   bool no_wait = false;  ///< of `power` and `jog`, which wait of themselves
 };
 
 struct CheckOptions {
-  std::string machine, dialect;
+  std::string machine, dialect, tables;
   int process = 1;  ///< that runs the programs
   std::vector<std::string> programs;
   bool json = false;
 };
 
 struct CanonOptions {
-  std::string machine, program, dialect;
+  std::string machine, program, dialect, tables;
   int process = 1;   ///< that runs the program
   bool json = true;  ///< its output is JSON with and without the option
 };
@@ -59,6 +68,12 @@ struct CanonOptions {
 struct ReplayOptions {
   std::string record, trace, against;
   bool json = false;
+};
+
+/// `servogate backup` and `restore`.
+struct BackupOptions {
+  std::string machine, file, state;
+  bool force = false;
 };
 
 /// The parsed command line: the name of the command and its options.
@@ -70,6 +85,7 @@ struct CommandLine {
   CheckOptions check;
   CanonOptions canon;
   ReplayOptions replay;
+  BackupOptions backup;
   PlcCommands plc;
   BusCommands bus;
   bool json = false;               ///< of `version`

@@ -18,8 +18,11 @@ int canon(const CanonOptions& options) {
   if (const int code = open_program_or_say(loaded.machine, options.program, options.dialect, program);
       code != kDone)
     return code;
-  program::Interpreter interpreter(program.dialect, program.model, program_tables(loaded.machine),
-                                   options.program, program.text, program.loader, {}, program.process);
+  std::vector<text::Finding> of_tables;
+  program::Tables tables = program_tables(loaded.machine, options.tables, of_tables);
+  if (print_findings(of_tables) > 0) return kWrongUse;
+  program::Interpreter interpreter(program.dialect, program.model, std::move(tables), options.program,
+                                   program.text, program.loader, {}, program.process);
   const auto error = program::write_canon(interpreter, program.model, print_line);
   print_findings(interpreter.warnings());
   if (!error) return kDone;

@@ -153,9 +153,8 @@ struct ProgramErrors {
 };
 
 ProgramErrors check_programs(const CheckOptions& options, const machine::MachineConfig& machine,
-                             nlohmann::json& json) {
+                             const program::Tables& tables, nlohmann::json& json) {
   ProgramErrors errors;
-  const program::Tables tables = program_tables(machine);
   for (const std::string& name : options.programs) {
     ProgramFile program;
     program.process = options.process - 1;
@@ -189,9 +188,11 @@ int check(const CheckOptions& options) {
   if (const int code = check_dialect(options.dialect); code != kDone) return code;
   const machine::LoadResult loaded = machine::load(options.machine);
   std::vector<text::Finding> findings = loaded.findings;
+  program::Tables tables;
   if (loaded.ok()) {
     check_logic(loaded.machine, findings);
     check_devices(loaded, findings);
+    tables = program_tables(loaded.machine, options.tables, findings);
   }
   if (loaded.ok())
     if (const int code = check_process(loaded.machine, options.process); code != kDone) return code;
@@ -205,7 +206,7 @@ int check(const CheckOptions& options) {
     for (const machine::Consequence& c : machine::consequences(loaded)) print_line(c.str());
   }
   ProgramErrors programs;
-  if (machine_errors == 0) programs = check_programs(options, loaded.machine, json);
+  if (machine_errors == 0) programs = check_programs(options, loaded.machine, tables, json);
   if (options.json) print_exact(json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   if (!loaded.readable || programs.unreadable) return kWrongUse;
   if (!options.json) sum_up(machine_errors + programs.found, warnings_of(findings) + programs.warnings);

@@ -16,6 +16,8 @@ int client(const ClientOptions& options);
 int check(const CheckOptions& options);
 int canon(const CanonOptions& options);
 int replay(const ReplayOptions& options);
+int backup(const BackupOptions& options);
+int restore(const BackupOptions& options);
 int can_bus(const CanBusOptions& options);
 int can_check(const CanCheckOptions& options);
 int can_restart(const CanRestartOptions& options);

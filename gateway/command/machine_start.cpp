@@ -11,10 +11,11 @@ Announce to_standard_error() {
       [](const text::Entry& entry, const std::vector<std::string>& arguments) { complain(entry, arguments); };
 }
 
-std::unique_ptr<HeldState> hold_state(const std::string& folder, int& code) {
+std::unique_ptr<HeldState> hold_state(const std::string& folder, const machine::MachineConfig& machine,
+                                      int& code) {
   drivers::Notice taken;
   std::vector<text::Finding> findings;
-  auto state = HeldState::hold(folder, taken, findings);
+  auto state = HeldState::hold(folder, machine.letters(), taken, findings);
   print_findings(findings);
   if (state != nullptr) return state;
   code = taken.entry != nullptr ? kInfrastructure : kWrongUse;

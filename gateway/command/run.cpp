@@ -15,6 +15,7 @@
 #include "gateway/command/machine_start.hpp"
 #include "gateway/command/outputs.hpp"
 #include "gateway/command/program_option.hpp"
+#include "gateway/command/run_faults.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/control/compose/program/program_check.hpp"
 #include "gateway/control/compose/program/program_file.hpp"
@@ -139,6 +140,7 @@ class Run {
   Control* control_ = nullptr;  ///< machine_'s
   std::unique_ptr<RunServer> server_;
   std::unique_ptr<RunForces> forces_;
+  std::unique_ptr<RunFaults> faults_;
   double estimate_s_ = 0.0;
   long long estimate_blocks_ = 0;
   Clock::time_point begin_;
@@ -157,8 +159,13 @@ class Run {
 int Run::prepare() {
   const machine::MachineConfig& m = loaded_.machine;
   int refused = kDone;
-  state_ = hold_state(options_.state, refused);
+  state_ = hold_state(options_.state, m, refused);
   if (state_ == nullptr) return refused;
+  if (!options_.tables.empty() || options_.state.empty()) {
+    std::vector<text::Finding> of_tables;
+    state_->state.tables = program_tables(m, options_.tables, of_tables);
+    if (print_findings(of_tables) > 0) return kWrongUse;
+  }
   if (!options_.program.empty()) {
     if (const int code = open_program_or_say(m, options_.program, options_.dialect, *program_); code != kDone)
       return code;
@@ -186,6 +193,8 @@ int Run::prepare() {
   const auto forces = force_settings(options_.forces);
   forces_ = std::make_unique<RunForces>(*control_);
   if (!forces || print_findings(forces_->plan(*forces)) > 0) return kWrongUse;
+  faults_ = std::make_unique<RunFaults>(*machine_);
+  if (!faults_->plan(options_.faults, options_.script)) return kWrongUse;
   if (!options_.program.empty())
     control_->change({ProgramChange::Kind::program, 0, program_, machine_->learned().tables, {}});
   return kDone;
@@ -293,6 +302,7 @@ bool Run::loop(OperatorScript& script) {
   // Virtual time is looked at now and then only: a look costs more than a cycle.
   const int each = machine_->moves_by_itself() ? 1 : kFollowedCycles;
   for (int n = 1; !script.done(); ++n) {
+    faults_->poll(machine_->image().now.t_ns);
     machine_->step();
     take_answers(script);
     forces_->poll();

@@ -115,7 +115,7 @@ int up(const UpOptions& options) {
   if (code != kDone) return code;
   std::unique_ptr<history::EventLog> history;  // the last to go
   std::unique_ptr<SocketServer> server;        // its connections end last, after the state's lock
-  auto state = hold_state(folder, code);
+  auto state = hold_state(folder, m, code);
   if (state == nullptr) return code;
   SoleMaster sole_master;
   if (code = sole_master.claim(loaded); code != kDone) return code;
@@ -128,6 +128,7 @@ int up(const UpOptions& options) {
                     clock == ClockKind::virtual_time ? options.speed : 1.0);
   resident.announce_to(to_standard_error());
   resident.keep_history(*history);
+  resident.keep_blocks(running->journal());
   if (clock != ClockKind::virtual_time) resident.requests().set_longest_wait(RequestDesk::kLongestWait);
   const std::string socket = socket_of(options, m);
   count_signals();  // from here on there is something to be put away

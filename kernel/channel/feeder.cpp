@@ -2,6 +2,7 @@
 #include "kernel/channel/feeder.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
 
@@ -134,6 +135,7 @@ Feeder::~Feeder() = default;
 
 void Feeder::load(InterpreterFactory factory) {
   factory_ = std::move(factory);
+  once_ = nullptr;
   interpreter_.reset();
   manual_.reset();
   tables_.reset();
@@ -219,10 +221,12 @@ void Feeder::begin(const FeederOrder& order) {
   if (manual)
     manual->mdi(manual_block_);
   else
-    manual.emplace(factory_(position_));
+    manual.emplace(once_ ? std::exchange(once_, nullptr)(position_) : factory_(position_));
   if (!order.manual_data) manual->set_switches(switches_of(view_, process_));
   interpreter_ = std::move(manual);
-  executed_before_ = interpreter_->executed();
+  executed_before_ = order.manual_data ? interpreter_->executed() : 0;
+  frame_told_ = interpreter_->frame();
+  texts_.add_frame(generation_, 0, frame_told_);
   warned_ = 0;
   raised_.clear();
 }
@@ -233,6 +237,10 @@ void Feeder::read_one() {
   if (const std::vector<std::string>& files = interpreter_->files(); files.size() != files_told_) {
     texts_.set_files(generation_, files);
     files_told_ = files.size();
+  }
+  if (!(interpreter_->frame() == frame_told_)) {
+    frame_told_ = interpreter_->frame();
+    texts_.add_frame(generation_, executed(), frame_told_);
   }
   warn();
   if (const auto* command = std::get_if<program::Command>(&step)) {

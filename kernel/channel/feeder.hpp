@@ -83,6 +83,8 @@ class Feeder {
   /// The interpreter in which the next typed block will run, standing at `at`; a copy. Needs a loaded
   /// program.
   program::Interpreter manual_interpreter(const program::Position& at) const;
+  /// The next run of the program is that of this interpreter; a load takes it back.
+  void begin_next_with(InterpreterFactory once) { once_ = std::move(once); }
   /// MDI begins with the power-on modes again.
   void forget_manual() { manual_.reset(); }
   /// The block that the next start in MDI mode runs.
@@ -134,6 +136,7 @@ class Feeder {
   path::Planner planner_;
   int process_;
   InterpreterFactory factory_;
+  InterpreterFactory once_;  ///< instead, for the next run
   std::string manual_block_;
   std::optional<program::Interpreter> interpreter_;
   std::optional<program::Interpreter> manual_;  ///< modes that MDI left, between two blocks
@@ -152,6 +155,7 @@ class Feeder {
   std::uint64_t orders_read_ = 0;
   ProgramTexts texts_;
   std::size_t files_told_ = 0;
+  program::Frame frame_told_;
   long long executed_before_ = 0;  ///< by the interpreter, typed blocks before this one
   int last_file_ = 0;
   std::size_t warned_ = 0;  ///< of interpreter_'s warnings

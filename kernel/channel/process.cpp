@@ -55,6 +55,11 @@ void Process::renew(InterpreterFactory factory, program::Tables tables) {
   changes_.fetch_add(1, std::memory_order_release);
 }
 
+void Process::restart(InterpreterFactory once) {
+  feeder_.begin_next_with(std::move(once));
+  changes_.fetch_add(1, std::memory_order_release);
+}
+
 void Process::forget_manual() {
   feeder_.forget_manual();
   changes_.fetch_add(1, std::memory_order_release);

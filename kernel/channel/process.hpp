@@ -37,6 +37,8 @@ class Process final : public cycle::ProcessInCycle {
   void load(InterpreterFactory factory, program::Tables tables);
   /// The same program with other tables: what the status shows of the last run stays.
   void renew(InterpreterFactory factory, program::Tables tables);
+  /// The next run of the program begins as this one does, in its middle; the one after as before.
+  void restart(InterpreterFactory once);
   program::Interpreter manual_interpreter(const program::Position& at) const {
     return feeder_.manual_interpreter(at);
   }

@@ -47,6 +47,21 @@ void ProgramTexts::set_files(std::uint32_t run, const std::vector<std::string>& 
   }
 }
 
+void ProgramTexts::add_frame(std::uint32_t run, std::int64_t executed, const program::Frame& frame) {
+  const std::scoped_lock lock(mutex_);
+  frames_.push_back({run, executed, frame});
+  if (frames_.size() > kFramesKept) frames_.pop_front();
+}
+
+std::optional<program::Frame> ProgramTexts::frame(std::uint32_t run, std::int64_t executed) const {
+  const std::scoped_lock lock(mutex_);
+  for (auto f = frames_.rbegin(); f != frames_.rend(); ++f)
+    if (f->run == run && f->executed <= executed) return f->frame;
+  const auto first =
+      std::find_if(frames_.begin(), frames_.end(), [run](const FrameFrom& f) { return f.run == run; });
+  return first == frames_.end() ? std::nullopt : std::optional(first->frame);
+}
+
 std::optional<text::Finding> ProgramTexts::finding(std::int32_t number) const {
   const std::scoped_lock lock(mutex_);
   return at(findings_, findings_gone_, number);

@@ -147,6 +147,7 @@ void Cycle::watch_forces() noexcept {
 Refusal Cycle::carry_out(const Request& request) noexcept {
   switch (request.kind) {
     case RequestKind::none:
+    case RequestKind::tables:
       break;
     case RequestKind::power:
       switch_power(request);

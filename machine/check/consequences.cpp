@@ -6,6 +6,7 @@
 
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/master/sdo_budget.hpp"
+#include "firmware_if/modbus/line_time.hpp"
 #include "firmware_if/text/units.hpp"
 #include "machine/can_channel.hpp"
 #include "machine/check/stops/control_death.hpp"
@@ -49,6 +50,13 @@ constexpr text::Entry kInverter{"consequence.inverter",
                                 "no encoder, so its real speed is not known",
                                 "{0}: {1} об/мин — {2} в регистре {3}, покой — {4}; вращение {5}; датчика "
                                 "нет, поэтому действительная скорость неизвестна"};
+constexpr text::Entry kOnLine{
+    "consequence.inverter_on_line",
+    "{0}: {1} to {2} Hz on the inverter {3}, {4} in its register at full speed; it counts as lost when it "
+    "has "
+    "not been heard for {5} ms",
+    "{0}: {1}–{2} Гц на преобразователе {3}, при полной частоте в его регистре {4}; считается потерянным, "
+    "если не слышен {5} мс"};
 constexpr text::Entry kSpindle{"consequence.spindle",
                                "{0}: {1} to {2} rpm, {3} s to full speed; the motor turns at {4} rpm",
                                "{0}: от {1} до {2} об/мин, {3} с до полной частоты; двигатель {4} об/мин"};
@@ -288,6 +296,22 @@ class Sentences {
          {"motor_rpm", motor},
          {"time_to_full_speed", s.max_speed / s.acceleration}});
     inverter(s, "S" + (index == 0 ? std::string() : std::to_string(index + 1)), who);
+    on_line(s, "S" + (index == 0 ? std::string() : std::to_string(index + 1)), who);
+  }
+
+  void on_line(const SpindleConfig& s, const std::string& subject, const std::string& who) {
+    for (const StationConfig& station : m_.stations) {
+      const DeviceConfig* device = station.name == s.inverter ? loaded_.device(station.device) : nullptr;
+      if (device == nullptr || !(s.rated_speed > 0.0) || !(device->inverter.frequency_unit > 0.0)) continue;
+      const double full = std::round(s.hertz(s.max_speed) / device->inverter.frequency_unit);
+      const double lost = station.period * modbus::kStaleAfterPeriods;
+      say(subject, kOnLine,
+          {who, text::number(s.hertz(s.min_speed), 2), text::number(s.hertz(s.max_speed), 2),
+           station.line + "." + station.name, text::number(full), text::number(lost * 1e3)},
+          {{"frequency_at_max_speed", s.hertz(s.max_speed)},
+           {"register_at_max_speed", full},
+           {"lost_after", lost}});
+    }
   }
 
   void inverter(const SpindleConfig& s, const std::string& subject, const std::string& who) {

@@ -136,21 +136,26 @@ text::Finding loss_of(StatePart part, const std::string& file, const std::string
 }
 
 /// One part from its newest whole generation.
-void load_part(const std::string& file, StatePart part, MachineState& state,
-               std::vector<text::Finding>& findings) {
+void load_part(const std::string& file, StatePart part, const std::vector<std::string>& axes,
+               MachineState& state, std::vector<text::Finding>& findings) {
   const std::string previous = previous_of(file);
   std::vector<text::Finding> problems, of_previous;
   const auto newest = contents(file, problems), older = contents(previous, of_previous);
   const bool file_there = newest || !problems.empty(), previous_there = older || !of_previous.empty();
   if (!file_there && !previous_there) return;
   if (newest) {
-    problems = read_part(*newest, file, part, state);
+    problems = read_part(*newest, file, part, state, axes);
     if (!any_error(problems)) {
       findings.insert(findings.end(), problems.begin(), problems.end());
       return;
     }
   }
-  if (older) of_previous = read_part(*older, previous, part, state);
+  if (file_there && edited_by_people(part)) {
+    findings.insert(findings.end(), problems.begin(), problems.end());
+    if (older) findings.push_back({text::Severity::error, file, 1, 1, &finding::kTableRefused, {previous}});
+    return;
+  }
+  if (older) of_previous = read_part(*older, previous, part, state, axes);
   if (older && !any_error(of_previous)) {
     for (text::Finding& f : problems) f.severity = text::Severity::warning;
     findings.insert(findings.end(), problems.begin(), problems.end());
@@ -214,7 +219,8 @@ bool StateDirectory::Loaded::fell_back() const {
 
 bool StateDirectory::Loaded::ok() const { return !any_error(findings); }
 
-StateDirectory::StateDirectory(std::string path) : path_(std::move(path)) {}
+StateDirectory::StateDirectory(std::string path, std::vector<std::string> axes)
+    : path_(std::move(path)), axes_(std::move(axes)) {}
 
 std::string StateDirectory::file(StatePart part) const {
   return (fs::path(path_) / (std::string(part_name(part)) + ".toml")).string();
@@ -226,9 +232,16 @@ std::string StateDirectory::retained_file(std::int64_t generation) const {
 
 StateDirectory::Loaded StateDirectory::load() const {
   Loaded out;
-  for (const StatePart part : kParts) load_part(file(part), part, out.state, out.findings);
+  for (const StatePart part : kParts) load_part(file(part), part, axes_, out.state, out.findings);
   load_retained({retained_file(0), retained_file(1)}, out.state, out.findings);
   return out;
+}
+
+program::Tables StateDirectory::load_tables(std::vector<text::Finding>& findings) const {
+  MachineState state;
+  for (const StatePart part : {StatePart::origins, StatePart::tools})
+    load_part(file(part), part, axes_, state, findings);
+  return state.tables;
 }
 
 bool StateDirectory::save(const MachineState& state, StatePart part, std::string& error) const {

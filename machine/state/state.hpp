@@ -47,7 +47,8 @@ enum class StatePart : std::uint8_t { origins, tools, homing, counters, gains, r
 /// take turns and carry the number of their generation; the newest whole one counts. Not real-time safe.
 class StateDirectory {
  public:
-  explicit StateDirectory(std::string path);
+  /// `axes`: letters of the machine, which its tables may name; empty: any.
+  explicit StateDirectory(std::string path, std::vector<std::string> axes = {});
 
   struct Loaded {
     MachineState state;
@@ -57,9 +58,12 @@ class StateDirectory {
     /// Something was damaged, and a copy from before is taken.
     bool fell_back() const;
   };
-  /// Reads all parts. A missing folder or file is an empty part and no finding. A file that a person edited
-  /// says `checksum = "none"` and is taken with a warning.
+  /// Reads all parts. A missing folder or file is an empty part and no finding. Origins and tools may be
+  /// edited by people: an edit is taken with a warning, or refused by errors with their places and left as it
+  /// is. Any other part that a person edited says `checksum = "none"` and is taken with a warning.
   Loaded load() const;
+  /// The origins and tools alone; what is wrong with them is added to `findings`.
+  program::Tables load_tables(std::vector<text::Finding>& findings) const;
   /// Writes one part, creating the folder (owner only). False: `error` holds the system's words. Retained
   /// variables go into the copy that state.retained_generation chooses; it must be greater than the one that
   /// load() gave, by one.
@@ -73,12 +77,14 @@ class StateDirectory {
 
  private:
   std::string path_;
+  std::vector<std::string> axes_;
 };
 
 /// The file of one part as text, and back; for tests and for showing.
 std::string write_part(const MachineState& state, StatePart part);
-/// Findings name `file`; on an error the part in `state` is unchanged.
+/// Findings name `file`; on an error the part in `state` is unchanged. `axes` as for
+/// StateDirectory.
 std::vector<text::Finding> read_part(std::string_view text, const std::string& file, StatePart part,
-                                     MachineState& state);
+                                     MachineState& state, const std::vector<std::string>& axes = {});
 
 }  // namespace servogate::machine

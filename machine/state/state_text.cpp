@@ -6,17 +6,14 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "machine/keys/document.hpp"
+#include "machine/state/table_text.hpp"
 
 namespace servogate::machine {
 
-namespace {
-
-// ---- writing
-
-/// A double that TOML reads back as the same bits, with a point so that it stays a float.
-std::string real(double value) {
+std::string toml_real(double value) {
   if (!std::isfinite(value)) return value > 0 ? "inf" : value < 0 ? "-inf" : "nan";
   char buffer[40];
   const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
@@ -25,31 +22,15 @@ std::string real(double value) {
   return out;
 }
 
-std::string reals(const std::map<std::string, double>& values) {
-  std::string out = "{";
-  for (const auto& [name, value] : values)
-    out += (out.size() == 1 ? " " : ", ") + quoted(name) + " = " + real(value);
-  return out + (out.size() == 1 ? "}" : " }");
-}
+namespace {
 
-void write_origins(const MachineState& s, std::string& out) {
-  out += "# number of the origin (UAO): axis = mm\n[origins]\n";
-  for (const auto& [number, axes] : s.tables.origins)
-    out += quoted(std::to_string(number)) + " = " + reals(axes) + "\n";
-}
-
-void write_tools(const MachineState& s, std::string& out) {
-  out += "tool_in_spindle = " + std::to_string(s.tool_in_spindle) + "\n";
-  for (const auto& [number, c] : s.tables.correctors)
-    out += "\n[[corrector]]\nnumber = " + std::to_string(number) + "\nlength = " + reals(c.length) +
-           "\ndiameter = " + real(c.diameter) + "\n";
-}
+// ---- writing
 
 void write_homing(const MachineState& s, std::string& out) {
   for (const auto& [letter, h] : s.homing)
     out += "\n[[axis]]\nletter = " + quoted(letter) + "\nvalid = " + (h.valid ? "true" : "false") +
            "\noffset_counts = " + std::to_string(h.offset_counts) +
-           "\nswitch_to_index = " + real(h.switch_to_index) + "\n";
+           "\nswitch_to_index = " + toml_real(h.switch_to_index) + "\n";
 }
 
 void write_counters(const MachineState& s, std::string& out) {
@@ -59,7 +40,7 @@ void write_counters(const MachineState& s, std::string& out) {
 
 void write_gains(const MachineState& s, std::string& out) {
   out += "[gains]\n";
-  for (const auto& [name, value] : s.gains) out += quoted(name) + " = " + real(value) + "\n";
+  for (const auto& [name, value] : s.gains) out += quoted(name) + " = " + toml_real(value) + "\n";
 }
 
 void write_retained(const MachineState& s, std::string& out) {
@@ -79,9 +60,8 @@ class PartReader {
   void read(const Element& root, StatePart part) {
     switch (part) {
       case StatePart::origins:
-        return origins(root);
       case StatePart::tools:
-        return tools(root);
+        return;  // read_table()
       case StatePart::homing:
         return homing(root);
       case StatePart::counters:
@@ -142,43 +122,6 @@ class PartReader {
     wrong(e == nullptr ? around : *e, name, "a string", "строка");
     return {};
   }
-  std::map<std::string, double> lengths(const Element& e, const std::string& name) {
-    std::map<std::string, double> out;
-    if (e.kind != Element::Kind::table) wrong(e, name, "a table axis = mm", "таблица ось = мм");
-    for (const Element& child : e.children) {
-      if (child.numeric() && std::isfinite(child.number()))
-        out[child.key] = child.number();
-      else
-        wrong(child, name + "." + child.key, "a finite number", "конечное число");
-    }
-    return out;
-  }
-
-  void origins(const Element& root) {
-    state_.tables.origins.clear();
-    const Element* e = table(root, "origins");
-    if (e == nullptr) return;
-    for (const Element& child : e->children) {
-      int number = 0;
-      const auto [end, error] =
-          std::from_chars(child.key.data(), child.key.data() + child.key.size(), number);
-      if (error != std::errc{} || end != child.key.data() + child.key.size())
-        wrong(child, child.key, "a number of an origin", "номер начала отсчёта");
-      else
-        state_.tables.origins[number] = lengths(child, child.key);
-    }
-  }
-  void tools(const Element& root) {
-    state_.tables.correctors.clear();
-    state_.tool_in_spindle = static_cast<std::int32_t>(integer(root, "tool_in_spindle", 0, kMaxInt));
-    for (const Element* e : list(root, "corrector")) {
-      const auto number = static_cast<int>(integer(*e, "number", 0, kMaxInt));
-      program::Tables::Corrector corrector;
-      if (const Element* length = e->find("length")) corrector.length = lengths(*length, "length");
-      corrector.diameter = finite(*e, "diameter");
-      state_.tables.correctors[number] = std::move(corrector);
-    }
-  }
   void homing(const Element& root) {
     state_.homing.clear();
     for (const Element* e : list(root, "axis")) {
@@ -210,7 +153,6 @@ class PartReader {
       state_.retained.push_back({string(*e, "name"), string(*e, "type"), string(*e, "value")});
   }
 
-  static constexpr std::int64_t kMaxInt = std::numeric_limits<int>::max();
   static constexpr std::int64_t kMaxLong = std::numeric_limits<std::int64_t>::max();
   static constexpr std::int64_t kMinLong = std::numeric_limits<std::int64_t>::min();
   const std::string& file_;
@@ -230,23 +172,61 @@ text::Finding at_line(const std::string& file, int line, const text::Entry& entr
   return {text::Severity::error, file, line, 1, &entry, std::move(arguments)};
 }
 
-/// Errors of the head: checksum, schema, part.
-std::vector<text::Finding> check_head(std::string_view whole, const Document& document,
-                                      const std::string& file, StatePart part) {
-  std::vector<text::Finding> out;
+struct Head {
+  std::string said;   ///< the checksum as it stands; empty: there is none
+  std::string found;  ///< of the content
+};
+/// nullopt: the file does not begin with a checksum.
+std::optional<Head> head_of(std::string_view whole) {
   const std::size_t end = whole.find('\n');
   const std::string_view first = whole.substr(0, end);
   if (end == std::string_view::npos || !first.starts_with(kHead) || !first.ends_with('"') ||
       first.size() <= kHead.size())
-    return {at_line(file, 1, finding::kStateHead, {})};
-  const std::string said(first.substr(kHead.size(), first.size() - kHead.size() - 1));
-  const std::string found = checksum_of(whole.substr(end + 1));
-  if (said == "none") {
-    out.push_back(at_line(file, 1, finding::kEdited, {}));
-    out.back().severity = text::Severity::warning;
-  } else if (said != found) {
-    return {at_line(file, 1, finding::kChecksum, {said, found})};
+    return std::nullopt;
+  return Head{std::string(first.substr(kHead.size(), first.size() - kHead.size() - 1)),
+              checksum_of(whole.substr(end + 1))};
+}
+
+/// People may have written behind it.
+bool has_end(std::string_view whole) {
+  for (std::size_t at = whole.find(kTableEnd); at != std::string_view::npos;
+       at = whole.find(kTableEnd, at + 1)) {
+    const std::size_t next = at + kTableEnd.size();
+    if (at > 0 && whole[at - 1] == '\n' && next < whole.size() &&
+        (whole[next] == '\n' || whole[next] == '\r'))
+      return true;
   }
+  return false;
+}
+
+/// What people have written may lack a checksum, or have one that does not fit any more.
+std::vector<text::Finding> check_table_head(std::string_view whole, const std::string& file) {
+  const std::optional<Head> head = head_of(whole);
+  if (!head || head->said == head->found) return {};
+  if (head->said != "none" && !has_end(whole)) return {at_line(file, 1, finding::kTableCut, {})};
+  text::Finding edited = at_line(file, 1, finding::kTableEdited, {});
+  edited.severity = text::Severity::warning;
+  return {edited};
+}
+
+std::vector<text::Finding> check_checksum(std::string_view whole, const std::string& file) {
+  const std::optional<Head> head = head_of(whole);
+  if (!head) return {at_line(file, 1, finding::kStateHead, {})};
+  if (head->said == "none") {
+    text::Finding edited = at_line(file, 1, finding::kEdited, {});
+    edited.severity = text::Severity::warning;
+    return {edited};
+  }
+  if (head->said == head->found) return {};
+  return {at_line(file, 1, finding::kChecksum, {head->said, head->found})};
+}
+
+/// Errors of the head: checksum, schema, part.
+std::vector<text::Finding> check_head(std::string_view whole, const Document& document,
+                                      const std::string& file, StatePart part) {
+  const bool table = edited_by_people(part);
+  std::vector<text::Finding> out = table ? check_table_head(whole, file) : check_checksum(whole, file);
+  if (!out.empty() && out.back().severity == text::Severity::error) return out;
   if (!document.ok()) {
     out.push_back(at_line(file, document.error_at.line, finding::kStateSyntax, {document.error}));
     out.back().column = document.error_at.column;
@@ -257,6 +237,7 @@ std::vector<text::Finding> check_head(std::string_view whole, const Document& do
     out.push_back(at_line(file, schema == nullptr ? 1 : schema->at.line, finding::kStateSchema,
                           {schema == nullptr ? "-" : std::to_string(schema->integer)}));
   const Element* name = document.root.find("part");
+  if (name == nullptr && table) return out;
   if (name == nullptr || name->string != part_name(part))
     out.push_back(at_line(file, name == nullptr ? 1 : name->at.line, finding::kStatePart,
                           {name == nullptr ? "-" : name->string, std::string(part_name(part))}));
@@ -290,10 +271,8 @@ std::string write_part(const MachineState& state, StatePart part) {
   std::string body = "schema = 1\npart = " + quoted(part_name(part)) + "\n";
   switch (part) {
     case StatePart::origins:
-      write_origins(state, body);
-      break;
     case StatePart::tools:
-      write_tools(state, body);
+      body += write_table(state, part);
       break;
     case StatePart::homing:
       write_homing(state, body);
@@ -312,13 +291,14 @@ std::string write_part(const MachineState& state, StatePart part) {
 }
 
 std::vector<text::Finding> read_part(std::string_view text, const std::string& file, StatePart part,
-                                     MachineState& state) {
+                                     MachineState& state, const std::vector<std::string>& axes) {
   const Document document = read_document(text);
   std::vector<text::Finding> findings = check_head(text, document, file, part);
   if (any_error(findings)) return findings;
   MachineState copy = state;
   PartReader reader(file, copy);
   reader.read(document.root, part);
+  if (edited_by_people(part)) reader.findings = read_table(document, file, part, axes, copy);
   findings.insert(findings.end(), reader.findings.begin(), reader.findings.end());
   if (!any_error(findings)) state = std::move(copy);
   return findings;

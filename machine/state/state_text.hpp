@@ -11,6 +11,15 @@ namespace servogate::machine {
 /// "origins", "tools" ...: name of the file and of its `part` key.
 std::string_view part_name(StatePart part);
 
+/// People edit it: what they have written is taken or refused with its place, never replaced by a copy from
+/// before.
+constexpr bool edited_by_people(StatePart part) {
+  return part == StatePart::origins || part == StatePart::tools;
+}
+
+/// A double that TOML reads back as the same bits, with a point so that it stays a float.
+std::string toml_real(double value);
+
 /// CRC-32 of IEEE 802.3.
 std::uint32_t crc32(std::string_view bytes);
 
@@ -47,6 +56,23 @@ inline constexpr text::Entry kStatePart{"state.part", "this file holds `{0}`, no
                                         "этот файл содержит «{0}», а не «{1}»"};
 inline constexpr text::Entry kStateHead{"state.head", "does not begin with checksum = \"...\"",
                                         "не начинается с checksum = \"...\""};
+inline constexpr text::Entry kTableEdited{"state.table_edited",
+                                          "edited since the control wrote it; used as it is",
+                                          "изменён после записи системой управления; взят как есть"};
+inline constexpr text::Entry kTableCut{"state.table_cut",
+                                       "the file is cut off: the line \"# end\" is missing",
+                                       "файл обрезан: нет строки «# end»"};
+inline constexpr text::Entry kTableAxis{"state.table_axis", "the machine has no axis {0}; it has {1}",
+                                        "у станка нет оси {0}; есть {1}"};
+inline constexpr text::Entry kTableTwice{"state.table_twice", "tool {0} stands in the file twice",
+                                         "инструмент {0} записан в файле дважды"};
+/// {0} the generation before.
+inline constexpr text::Entry kTableRefused{
+    "state.table_refused",
+    "this file is not used, and nothing in it was changed: mend it, or go back to what the control wrote "
+    "before: {0}",
+    "файл не используется, и ничего в нём не изменено: исправьте его или вернитесь к записанному раньше: "
+    "{0}"};
 inline constexpr text::Entry kStateValue{"state.value", "`{0}`: {1} is expected", "«{0}»: ожидалось {1}"};
 }  // namespace finding
 

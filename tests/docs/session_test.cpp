@@ -92,6 +92,11 @@ bool matches(const std::vector<std::string>& shown, const std::vector<std::strin
   return r == real.size();
 }
 
+/// Progress in a pipe comes every ten seconds, and so on slow computers only.
+bool is_progress(const std::string& line) {
+  return line.ends_with(" s left") || line.find(", осталось около ") != std::string::npos;
+}
+
 /// A folder like the source tree's top, with what the documents let their reader make.
 class Terminal {
  public:
@@ -133,7 +138,9 @@ class Terminal {
     char buffer[4096];
     for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) out.append(buffer, n);
     pclose(pipe);
-    return lines_of(out);
+    std::vector<std::string> lines = lines_of(out);
+    std::erase_if(lines, is_progress);
+    return lines;
   }
 
  private:

@@ -81,7 +81,7 @@ TEST(Capability, names_correctors_that_the_kept_tool_table_does_not_hold) {
   ASSERT_NE(line, std::string::npos);
   scratch.write("state/tools.toml",
                 "checksum = \"none\"" + tools.substr(line) +
-                    "\n[[corrector]]\nnumber = 1\nlength = { Z = 120.0 }\ndiameter = 0.0\n");
+                    "\n[[tool]]\nnumber = 1\nlength = { Z = 120.0 }\n");
   const Ending run = servogate({"run", kMill, program, "--state", state});
   EXPECT_EQ(run.code, 0) << run.err << read_all(state + "/tools.toml");
   EXPECT_NE(run.err.find(program + ":2:1: warning: the corrector 2 is not in the tool table"),
@@ -101,8 +101,7 @@ TEST(Capability, goes_by_the_kept_origins_and_tools_alike_in_check_canon_and_run
                 "checksum = \"none\"\nschema = 1\npart = \"origins\"\n[origins]\n\"0\" = { X = 285.0 }\n");
   scratch.write("kept/tools.toml",
                 "checksum = \"none\"\nschema = 1\npart = \"tools\"\ntool_in_spindle = "
-                "0\n[[corrector]]\nnumber = 1\nlength = { X "
-                "= 3.5 }\ndiameter = 0.0\n");
+                "0\n[[tool]]\nnumber = 1\nlength = { X = 3.5 }\n");
   const Ending canon = servogate({"canon", mill, inside});
   EXPECT_EQ(canon.code, 0) << canon.err;
   EXPECT_NE(canon.out.find("\"to\":{\"X\":298.5,"), std::string::npos) << canon.out;

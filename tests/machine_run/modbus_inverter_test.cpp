@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kernel/axis/alarms/axis_alarms.hpp"
+#include "machine/consequences.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 
 namespace servogate::machine_run {
@@ -133,6 +134,18 @@ TEST_P(EveryInverter, turns_nothing_before_its_parameters_are_right_and_names_th
   EXPECT_FALSE(mill.inverter().runs());
   EXPECT_NE(mill.first_words().find(first.english), std::string::npos) << mill.first_words();
   EXPECT_EQ(mill.first_words().rfind("S: its inverter may not run (cabinet.vfd): ", 0), 0u);
+}
+
+TEST(VfdMill, is_explained_by_check_in_hertz_and_by_what_stands_in_its_register) {
+  for (const machine::Consequence& c : machine::consequences(mill_with("inverter-modbus")))
+    if (std::string_view(c.entry->id) == "consequence.inverter_on_line") {
+      EXPECT_EQ(
+          c.str(text::Language::english),
+          "main spindle: 0.83 to 100 Hz on the inverter cabinet.vfd, 10000 in its register at full speed; "
+          "it counts as lost when it has not been heard for 150 ms");
+      return;
+    }
+  FAIL() << "it is not explained";
 }
 
 TEST(VfdMill, that_trips_says_why_and_turns_again_only_when_it_is_told_to_after_a_reset) {

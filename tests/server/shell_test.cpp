@@ -221,13 +221,13 @@ TEST(Commands, play_the_world_of_a_mock_machine) {
   ASSERT_TRUE(shell.until([](const json& s) { return s["axes"][0]["on_limit"] == 0; }));
 }
 
-TEST(Commands, show_positions_as_those_of_the_machine_whatever_the_origin) {
+TEST(Commands, show_positions_in_the_coordinates_of_the_program_and_of_the_machine) {
   Shell shell;
   shell.up();
   shell.ready();
   ASSERT_EQ(shell.run({"zero", "X", "5"}).exit, 0);
   const std::string out = shell.run({"status"}).out;
-  EXPECT_TRUE(contains(out, "axes, in machine coordinates:\n  X ")) << out;
+  EXPECT_TRUE(contains(out, "axes: in the program's coordinates, in machine coordinates, to go:\n  X ")) << out;
 }
 
 TEST(Control, listens_for_its_owner_only_and_leaves_nothing_behind) {

@@ -40,6 +40,16 @@ constexpr ClientCommand kClients[] = {
      "AXIS DISTANCE", "servogate jog X -1mm", true},
     {"zero", "Gives the present position of an axis a value in the active origin (0 if none is said).",
      "AXIS [VALUE]", "servogate zero X 0"},
+    {"origin",
+     "Lists and changes the origins: list, set N X100, here N X0 (where the axis stands gets that value), "
+     "clear N, "
+     "undo, import FILE, export FILE.",
+     "ACTION [WORD...]", "servogate origin here 1 X0 Z12.5"},
+    {"tool",
+     "Lists and changes the tools: list, set N length=85 radius=5, here N Z12.5 (touch-off), clear N, undo, "
+     "import "
+     "FILE, export FILE (.csv, .tbl of LinuxCNC).",
+     "ACTION [WORD...]", "servogate tool set 3 length=85 radius=5"},
     {"mdi", "Runs one block typed by hand.", "BLOCK...", "servogate mdi \"G0 X10\" --wait", true, true},
     {"load", "Loads a part program.", "PROGRAM", "servogate load bracket.nc", false, true},
     {"start", "Starts the loaded program.", "", "servogate start --wait", true, true},
@@ -108,6 +118,8 @@ class Commands {
     check();
     canon();
     replay();
+    backup();
+    restore();
     add_plc_commands(app_, line.plc);
     add_bus_commands(app_, line.bus);
     add_canopen_commands(app_, line.bus);
@@ -186,9 +198,16 @@ class Commands {
            "Machine time that a program may wait for somebody; 0: for ever. 60 s where nothing is real")
         ->type_name("SECONDS")
         ->check(number_within({0.0, 1e9, "s"}));
+    app.add_option(
+           "--fault", o.faults,
+           "Fault of something simulated, as \"kill node=2 at=30\", in the words of `sim`; may be repeated")
+        ->type_name("FAULT")
+        ->allow_extra_args(false);
+    app.add_option("--script", o.script, "File with such faults, each line beginning with its time in s");
     app.add_option("--force", o.forces,
                    "NAME=VALUE, holds a variable or place for the whole run, may be repeated")
         ->allow_extra_args(false);
+    tables(app, o.tables);
     app.add_option("--state", o.state, "State directory; without one a virtual run leaves no state behind");
     app.add_flag("--start-now", o.start_now,
                  "Start without the operator's start, where the machine file allows it");
@@ -230,12 +249,15 @@ class Commands {
     }
     app.add_option("--socket", o.socket, "Control socket instead of the default");
     app.add_flag("--json", o.json, "As JSON");
+    if (std::string_view(c.name) == "status")
+      app.add_flag("--watch", o.watch, "Again and again until Ctrl-C; with --json one object a line");
     if (std::string_view(c.name) == "alarms") {
       app.add_flag("--history", o.history, "What has happened and who did what, instead; the newest last");
       app.add_option("--last", o.last, "Events of the history, 1 to 1000; 100 without it")
           ->type_name("N")
           ->check(number_within({1.0, 1000.0, text::both("events", "событий"), true}));
     }
+    if (std::string_view(c.name) == "start") from_the_middle(app, o);
     if (c.of_process)
       process(app, o.process, "Process, from 1; without it the first one, and `hold` holds all");
     if (!c.waits) return;
@@ -244,6 +266,27 @@ class Commands {
       app.add_flag("--no-wait", o.no_wait, "Returns as soon as the control has agreed");
   }
 
+  static void from_the_middle(CLI::App& app, ClientOptions& o) {
+    CLI::Option* from =
+        app.add_option("--from", o.from, "Begins at block N of the program, as N120")->type_name("N");
+    CLI::Option* line = app.add_option("--line", o.line, "Begins at this line of the program's file")
+                            ->type_name("LINE")
+                            ->check(number_within({1.0, 1e8, "", true}));
+    CLI::Option* where =
+        app.add_flag("--interrupted", o.interrupted, "Begins at the block where it was interrupted");
+    from->excludes(line)->excludes(where);
+    line->excludes(where);
+    app.add_option("--feed", o.feed, "Feed of the way to that block in mm/min, 1 to 5000; 500 without it")
+        ->type_name("MM/MIN")
+        ->check(number_within({1.0, 5000.0, "mm/min"}));
+    app.add_flag("--by-step", o.by_hand, "Each step of that way waits for `servogate start`");
+    app.add_flag("--yes", o.yes, "Goes there without asking");
+  }
+  static void tables(CLI::App& app, std::string& folder) {
+    app.add_option("--tables", folder,
+                   "Directory with origins.toml and tools.toml instead of the machine's state directory")
+        ->type_name("DIR");
+  }
   static void process(CLI::App& app, int& number, const char* meaning) {
     app.add_option("--process", number, meaning)
         ->type_name("N")
@@ -276,6 +319,7 @@ class Commands {
     app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
     app.add_option("PROGRAM", o.programs, "Part programs");
     app.add_option("--dialect", o.dialect, "Language of the programs instead of the machine's own");
+    tables(app, o.tables);
     process(app, o.process, "Process that runs the programs, from 1; without it the first one");
     app.add_flag("--json", o.json, "As JSON");
   }
@@ -287,6 +331,7 @@ class Commands {
     app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
     app.add_option("PROGRAM", o.program, "Part program")->required();
     app.add_option("--dialect", o.dialect, "Language of the program instead of the machine's own");
+    tables(app, o.tables);
     process(app, o.process, "Process that runs the program, from 1; without it the first one");
     app.add_flag("--json", o.json, "As JSON, which it always is");
   }
@@ -299,6 +344,32 @@ class Commands {
     app.add_option("--trace", o.trace, "Writes the trace of the replay to this CSV file");
     app.add_option("--against", o.against, "Compares with this trace, byte by byte");
     app.add_flag("--json", o.json, "As JSON");
+  }
+
+  void backup() {
+    BackupOptions& o = line_.backup;
+    CLI::App& app =
+        command("backup",
+                "Writes what the machine has learned into one file: origins, tools, references, PLC values.",
+                "servogate backup machine.toml monday.backup");
+    kept_state(app, o);
+    app.add_option("FILE", o.file, "File that the backup is written to")->required();
+    app.add_flag("--force", o.force, "Replaces a file that is there");
+  }
+
+  void restore() {
+    BackupOptions& o = line_.backup;
+    CLI::App& app = command(
+        "restore", "Puts a backup in the place of what the machine has learned, while its control is down.",
+        "servogate restore machine.toml monday.backup");
+    kept_state(app, o);
+    app.add_option("FILE", o.file, "File that `servogate backup` wrote")->required();
+    app.add_flag("--force", o.force, "Also the backup of a machine with another name");
+  }
+
+  static void kept_state(CLI::App& app, BackupOptions& o) {
+    app.add_option("MACHINE", o.machine, "Machine file (TOML)")->required();
+    app.add_option("--state", o.state, "State directory instead of the machine file's");
   }
 
   void written_down() {

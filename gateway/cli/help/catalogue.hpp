@@ -44,6 +44,20 @@ inline constexpr Translation kCatalogue[] = {
     {"Ends the program and clears alarms whose cause is gone.",
      "Завершает программу и сбрасывает аварии, причина которых устранена."},
     {"Feed override in per cent, 0 to 150.", "Коррекция подачи в процентах, от 0 до 150."},
+    {"Lists and changes the origins: list, set N X100, here N X0 (where the axis stands gets that value), "
+     "clear N, "
+     "undo, import FILE, export FILE.",
+     "Показывает и меняет начала отсчёта: list, set N X100, here N X0 (нынешнее место оси получает это "
+     "значение), "
+     "clear N, undo, import ФАЙЛ, export ФАЙЛ."},
+    {"Lists and changes the tools: list, set N length=85 radius=5, here N Z12.5 (touch-off), clear N, undo, "
+     "import "
+     "FILE, export FILE (.csv, .tbl of LinuxCNC).",
+     "Показывает и меняет инструмент: list, set N length=85 radius=5, here N Z12.5 (касание), clear N, undo, "
+     "import "
+     "ФАЙЛ, export ФАЙЛ (.csv, .tbl из LinuxCNC)."},
+    {"Directory with origins.toml and tools.toml instead of the machine's state directory",
+     "Каталог с origins.toml и tools.toml вместо каталога состояния станка"},
     {"Gives an axis that stands to a process: its programs move it from now on.",
      "Передаёт неподвижную ось процессу: дальше её перемещают его программы."},
     {"Switches the drives on or off, and waits until they are.",
@@ -96,6 +110,27 @@ inline constexpr Translation kCatalogue[] = {
      "Виртуальных секунд на секунду реального времени, от 0.001 до 100000"},
     {"State directory instead of the machine file's", "Каталог состояния вместо указанного в файле станка"},
     {"Control socket instead of the default", "Сокет управления вместо обычного"},
+    {"Writes what the machine has learned into one file: origins, tools, references, PLC values.",
+     "Записывает в один файл всё, что станок узнал: начала, инструмент, привязку осей, величины ПЛК."},
+    {"Puts a backup in the place of what the machine has learned, while its control is down.",
+     "Заменяет накопленное станком состояние копией, пока управление не работает."},
+    {"File that the backup is written to", "Файл, в который записывается копия"},
+    {"File that `servogate backup` wrote", "Файл, записанный командой `servogate backup`"},
+    {"Replaces a file that is there", "Заменить существующий файл"},
+    {"Also the backup of a machine with another name", "Принять и копию станка с другим именем"},
+    {"Again and again until Ctrl-C; with --json one object a line",
+     "Снова и снова до Ctrl-C; с --json по объекту в строке"},
+    {"Fault of something simulated, as \"kill node=2 at=30\", in the words of `sim`; may be repeated",
+     "Неисправность имитации, например \"kill node=2 at=30\", словами `sim`; можно повторять"},
+    {"File with such faults, each line beginning with its time in s",
+     "Файл с такими неисправностями; строка начинается с её времени в с"},
+    {"Begins at block N of the program, as N120", "Начать с кадра N программы, например N120"},
+    {"Begins at this line of the program's file", "Начать с этой строки файла программы"},
+    {"Begins at the block where it was interrupted", "Начать с кадра, на котором программа прервана"},
+    {"Feed of the way to that block in mm/min, 1 to 5000; 500 without it",
+     "Подача на подходе к кадру в мм/мин, от 1 до 5000; без ключа 500"},
+    {"Each step of that way waits for `servogate start`", "Каждый шаг подхода ждёт `servogate start`"},
+    {"Goes there without asking", "Подойти без вопроса"},
     {"Process, from 1; without it the first one, and `hold` holds all",
      "Процесс, от 1; без ключа — первый, а `hold` останавливает все"},
     {"Process that runs the programs, from 1; without it the first one",

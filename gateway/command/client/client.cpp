@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -9,6 +14,7 @@
 #include "gateway/command/client/jog.hpp"
 #include "gateway/command/client/request.hpp"
 #include "gateway/command/client/show.hpp"
+#include "gateway/command/client/tables.hpp"
 #include "gateway/command/client/wait.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
@@ -26,6 +32,9 @@ const text::Entry kOff{"client.off", "the drives are off", "приводы вы�
 const text::Entry kNoAlarms{"client.no-alarms", "no alarm is active", "активных аварий нет"};
 const text::Entry kNotKept{"client.history-not-kept", "the history is not written to the disk: {0}",
                            "история не записывается на диск: {0}"};
+const text::Entry kNeedsYes{"client.needs-yes", "nothing moves: say --yes where nobody can be asked",
+                            "движения нет: добавьте --yes, если спросить некого"};
+const text::Entry kGoThere{"client.go-there", "go there and start? (y/n)", "подойти и начать? (y/n)"};
 const text::Entry kAsked{"client.stopped",
                          "stopped by the operator; the control carries on with what it was asked to do "
                          "(`servogate status` shows it)",
@@ -98,6 +107,10 @@ void show(const ClientOptions& options, const json& request, const Manner& manne
   } else if (options.command == "status" || manner.waits) {
     print_status(reply);
     print_alarms(reply["alarms"]);
+  } else if (request["cmd"] == "restart") {
+    print_line(of(reply, "text"));
+  } else if (request["cmd"] == "tables") {
+    print_table(options, reply);
   } else if (options.command == "alarms" && options.history) {
     print_history(reply);
   } else if (options.command == "alarms") {
@@ -109,6 +122,52 @@ void show(const ClientOptions& options, const json& request, const Manner& manne
   }
 }
 
+/// Shows what a start in the middle would do and asks whether to do it; nullopt: yes, else the exit code.
+std::optional<int> ask_person(SocketClient& connection, json request, bool as_json) {
+  request["plan"] = true;
+  const json plan = ask(connection, request);
+  const int code = plan.value("exit", kInfrastructure);
+  if (as_json) {  // a program asks with --yes, and sees the plan without it
+    print_exact(plan.dump(1, ' ', false, json::error_handler_t::replace));
+    return code;
+  }
+  if (code != kDone) {
+    print_refusal(plan);
+    return code;
+  }
+  print_restart(plan);
+  if (::isatty(STDIN_FILENO) == 0) {
+    complain(kNeedsYes, {});
+    return kWrongUse;
+  }
+  tell(say(kGoThere));
+  std::string answer;
+  for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) answer += static_cast<char>(c);
+  const bool yes = answer == "y" || answer == "yes" || answer == "д" || answer == "да";
+  return yes ? std::nullopt : std::optional<int>(kStopped);
+}
+
+/// Shows the status until somebody has had enough.
+int watch(SocketClient& connection, const json& request, const ClientOptions& options,
+          const std::string& path) {
+  constexpr std::chrono::milliseconds kPeriod{200};
+  const bool screen = !options.json && ::isatty(STDOUT_FILENO) != 0;
+  count_signals();
+  for (bool read = true; read && signals_seen() == 0; std::this_thread::sleep_for(kPeriod)) {
+    json reply = ask(connection, request);
+    if (reply.is_null()) return connection_lost(path);
+    if (options.json) {
+      read = print_line(reply.dump(-1, ' ', false, json::error_handler_t::replace));
+      continue;
+    }
+    if (screen) print_exact("\x1b[H\x1b[2J");
+    print_status(reply);
+    print_alarms(reply["alarms"]);
+    if (!screen) read = print_line("");
+  }
+  return kDone;
+}
+
 }  // namespace
 
 int client(const ClientOptions& options) {
@@ -117,12 +176,17 @@ int client(const ClientOptions& options) {
   std::string path;
   SocketClient connection;
   if (const int found = connect_to_control(options.socket, connection, path); found != kDone) return found;
+  if (options.watch) return watch(connection, request, options, path);
   const Manner manner = manner_of(options, request);
   if (manner.waits)
     count_signals();
   else
     say_when_stopped(kAsked);
-  json reply = ask(connection, request);
+  json reply;
+  if (request["cmd"] == "restart" && !options.yes) {
+    if (const std::optional<int> code = ask_person(connection, request, options.json)) return *code;
+  }
+  reply = ask(connection, request);
   if (reply.is_null()) return connection_lost(path);
   int code = reply.value("exit", kInfrastructure);
   if (code == kDone && manner.waits) {
@@ -130,6 +194,7 @@ int client(const ClientOptions& options) {
     code = manner.jog ? follow_jog(connection, request, reply) : wait_for_end(connection, request, reply);
     if (!reply.is_null()) reply["exit"] = code;
   }
+  if (code == kDone && !options.json && request["cmd"] == "table_export") return write_export(options, reply);
   if (code == kDone && request["cmd"] == "down") wait_until_closed(connection);
   if (reply.is_null()) return connection_lost(path);
   if (options.json)

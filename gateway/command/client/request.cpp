@@ -8,6 +8,7 @@
 #include "firmware_if/text/decimal_comma.hpp"
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/messages.hpp"
+#include "gateway/command/client/tables.hpp"
 
 namespace servogate::gateway::command {
 
@@ -52,6 +53,7 @@ json request_of(const ClientOptions& options) {
   if (options.process > 0) r["process"] = options.process;
   std::string_view rest;
   double value = 0.0;
+  if (is_table_command(options)) return table_request(options, std::move(r));
   if (c == "alarms" && options.history) {
     r["cmd"] = "history";
     r["count"] = options.last;
@@ -79,6 +81,18 @@ json request_of(const ClientOptions& options) {
     r["block"] = block;
   } else if (c == "load") {
     r["program"] = std::filesystem::absolute(a[0]).string();
+  } else if (c == "start" && (!options.from.empty() || options.line > 0 || options.interrupted)) {
+    r["cmd"] = "restart";
+    r["feed"] = options.feed;
+    r["confirm"] = options.by_hand;
+    if (options.line > 0) r["line"] = options.line;
+    if (!options.from.empty()) {
+      std::string_view digits = options.from;
+      if (digits.starts_with('N') || digits.starts_with('n')) digits.remove_prefix(1);
+      if (!parse_number(digits, value, rest) || !rest.empty() || value < 0.0 || value != std::floor(value))
+        return not_a(options.from, "a block, as N120", "кадр вида N120");
+      r["number"] = static_cast<int>(value);
+    }
   } else if (c == "assign") {
     r["axis"] = a[0];
   } else if (c == "override") {

@@ -22,7 +22,20 @@ const Entry kProcessHead{"client.process-head", "process {0}: {1}, {2}", "про
 const Entry kHoming{"client.homing", ", homing", ", идёт выход в ноль"};
 const Entry kFeed{"client.feed", "feed {0} mm/min, override {1} %, tool {2}",
                   "подача {0} мм/мин, коррекция {1} %, инструмент {2}"};
-const Entry kAxes{"client.axes", "axes, in machine coordinates:", "оси, в координатах станка:"};
+const Entry kRestartAt{"client.restart-at", "begins at line {0} of {1}: {2}",
+                       "начало со строки {0} файла {1}: {2}"};
+const Entry kRestartAxis{"client.restart-axis",
+                         "  {0} stands at {1} {3}, the block begins at {2} {3} (machine coordinates)",
+                         "  {0} стоит на {1} {3}, кадр начинается на {2} {3} (в координатах станка)"};
+const Entry kRestartStep{"client.restart-step", "  {0}. {1}", "  {0}. {1}"};
+const Entry kRestartPassed{"client.restart-passed", "not repeated: {0}", "не повторяются: {0}"};
+const Entry kRestartWrites{"client.restart-writes", "not repeated: {0} writes into packets",
+                           "не повторяются записи в пакеты: {0}"};
+const Entry kRestartOld{"client.restart-old",
+                        "the block is that of the disk: up to 100 ms before the power was lost",
+                        "кадр взят с диска: до 100 мс перед отключением питания"};
+const Entry kAxes{"client.axes", "axes: in the program's coordinates, in machine coordinates, to go:",
+                  "оси: в координатах программы, в координатах станка, остаток пути:"};
 const Entry kSpindle{"client.spindle", "  spindle {0} rpm (commanded {1})  {2}",
                      "  шпиндель {0} об/мин (задано {1})  {2}"};
 const Entry kLine{
@@ -136,6 +149,8 @@ void print_program(const json& s) {
     print_line(say(kSubprogramLine, {program, std::to_string(line), file, done}));
   else
     print_line(say(kProgramLine, {program, std::to_string(line), std::to_string(s.value("lines", 0)), done}));
+  if (const std::string text = of(s, "text"); line > 0 && block.empty() && !text.empty())
+    print_line("    " + text);
 }
 
 /// A sentence and below it what to do.
@@ -202,8 +217,10 @@ void print_axis(const json& a) {
   if (a.value("on_limit", 0) != 0) facts += words(", on the hard limit", ", на концевом выключателе");
   const std::string unit = text::in_language(text::unit_words(of(a, "unit"))) +
                            (a.value("diameter", false) ? words(" (diameter)", " (диаметр)") : "");
-  print_formatted("  %-3s %12.4f %s  %s\n", of(a, "letter").c_str(), a.value("position", 0.0), unit.c_str(),
-                  facts.c_str());
+  const json work = a.value("work", json());
+  const std::string in_program = work.is_number() ? fixed(work.get<double>(), 4) : std::string("-");
+  print_formatted("  %-3s %12s %12.4f %12.4f %s  %s\n", of(a, "letter").c_str(), in_program.c_str(),
+                  a.value("position", 0.0), a.value("to_go", 0.0), unit.c_str(), facts.c_str());
 }
 
 /// Lines that are real, and simulated ones on which something went wrong.
@@ -272,6 +289,24 @@ void print_status(const json& s) {
   print_lines(s.value("modbus", json::array()));
   print_held(s);
   print_forced(s.value("forced", json::array()));
+}
+
+void print_restart(const json& plan) {
+  print_line(
+      say(kRestartAt, {std::to_string(plan.value("line", 0)), of(plan, "file"), of(plan, "block_text")}));
+  for (const json& a : plan.value("axes", json::array()))
+    print_line(say(kRestartAxis, {of(a, "letter"), fixed(a.value("stands", 0.0), 3),
+                                  fixed(a.value("begins", 0.0), 3), text::unit_words(of(a, "unit"))}));
+  int n = 0;
+  for (const json& step : plan.value("steps", json::array()))
+    print_line(say(kRestartStep, {std::to_string(++n), step.get<std::string>()}));
+  std::string codes;
+  for (const json& m : plan.value("passed", json::array()))
+    codes += (codes.empty() ? "M" : ", M") + std::to_string(m.get<int>());
+  if (!codes.empty()) print_line(say(kRestartPassed, {codes}));
+  if (const int writes = plan.value("writes", 0); writes > 0)
+    print_line(say(kRestartWrites, {std::to_string(writes)}));
+  if (plan.value("from_disk", false)) print_line(say(kRestartOld, {}));
 }
 
 void print_alarms(const json& alarms) {

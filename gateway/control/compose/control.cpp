@@ -262,8 +262,9 @@ bool Control::read_ahead() {
 bool Control::change(const ProgramChange& change) {
   const std::scoped_lock lock(reading_);
   channel::Process& p = process(change.process);
-  const bool loads =
-      change.kind == ProgramChange::Kind::program || change.kind == ProgramChange::Kind::tables;
+  const bool loads = change.kind == ProgramChange::Kind::program ||
+                     change.kind == ProgramChange::Kind::tables ||
+                     change.kind == ProgramChange::Kind::restart;
   if (loads && p.feeder().reads()) return false;
   // What a record keeps of it lies before what its subprograms are.
   if (change_tap_ != nullptr) change_tap_->take(change);
@@ -273,6 +274,9 @@ bool Control::change(const ProgramChange& change) {
       break;
     case ProgramChange::Kind::tables:
       p.renew(interpreter_factory(change, change_tap_), change.tables);
+      break;
+    case ProgramChange::Kind::restart:
+      p.restart(interpreter_factory(change, change_tap_));
       break;
     case ProgramChange::Kind::block:
       p.set_manual_block(change.block);

@@ -86,8 +86,11 @@ void MachineWatch::look_at_process(const image::ProcessImage& image, int process
   image::ProcessStatus& before = processes_[static_cast<std::size_t>(process)];
   const std::string line = std::to_string(now.line);
   if (now.run != before.run) {
-    const std::string file = control_.process(process).texts().file(now.run, 0);
-    add("program", now.typed ? says::kTyped : says::kStarted, {file});
+    const std::string block = now.typed && typed_ ? typed_(process) : std::string();
+    if (now.typed)
+      add("program", says::kTyped, {block});
+    else
+      add("program", says::kStarted, {control_.process(process).texts().file(now.run, 0)});
     before.state = ProcessState::running;
   }
   if (now.state != before.state) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,7 +17,9 @@ namespace servogate::gateway::history {
 /// references, programs that began, were held, stopped or ended. One thread outside the cycle.
 class MachineWatch {
  public:
-  explicit MachineWatch(Control& control) : control_(control) {}
+  /// `typed`: the block that was typed last for a process.
+  explicit MachineWatch(Control& control, std::function<std::string(int process)> typed = {})
+      : control_(control), typed_(std::move(typed)) {}
 
   /// Compares with the last look; the first one compares with a machine that is off and without alarms.
   std::vector<Event> look(const image::ProcessImage& image, const cycle::AlarmSnapshot& alarms);
@@ -33,6 +36,7 @@ class MachineWatch {
   std::string letter(int axis) const;
 
   Control& control_;
+  std::function<std::string(int)> typed_;
   std::vector<Event> found_;
   double now_s_ = 0.0;
   std::map<std::uint32_t, Alarm> alarms_;  ///< that stand, by sequence

@@ -33,6 +33,9 @@ constexpr Row kRows[] = {
     {RequestKind::assign,
      Row::Value::process,
      {"history.ask-assign", "give {0} to process {1}", "передать {0} процессу {1}"}},
+    {RequestKind::tables,
+     Row::Value::none,
+     {"history.ask-tables", "change origins or tools", "изменить начала или инструмент"}},
     {RequestKind::start, Row::Value::none, {"history.ask-start", "start", "пуск"}},
     {RequestKind::step, Row::Value::none, {"history.ask-step", "one block", "один кадр"}},
     {RequestKind::hold, Row::Value::none, {"history.ask-hold", "feed hold", "останов подачи"}},
@@ -86,6 +89,16 @@ std::string shown(const Row& row, const image::Request& request) {
   return {};
 }
 
+/// Homing names its axes as bits.
+std::string axes_of(const image::Request& request, const machine::MachineConfig& machine) {
+  if (request.axis >= 0) return machine.axes[static_cast<std::size_t>(request.axis)].letter;
+  const auto bits = request.kind == RequestKind::home ? static_cast<std::uint32_t>(request.value) : 0u;
+  std::string list;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a)
+    if ((bits >> a & 1u) != 0) list += (list.empty() ? "" : ", ") + machine.axes[a].letter;
+  return list.empty() ? text::both("all axes", "всех осей") : list;
+}
+
 }  // namespace
 
 bool kept(RequestKind kind) noexcept { return row_of(kind) != nullptr; }
@@ -94,8 +107,7 @@ Event request_event(const image::Request& request, const image::Answer& answer,
                     const machine::MachineConfig& machine, double machine_s) {
   const Row& row = *row_of(request.kind);
   const auto in = [&](text::Language language) {
-    const std::string axis = request.axis >= 0 ? machine.axes[static_cast<std::size_t>(request.axis)].letter
-                                               : text::both("all axes", "всех осей");
+    const std::string axis = axes_of(request, machine);
     return text::render(row.words, std::array{axis, shown(row, request)}, language);
   };
   const auto asker = [&](text::Language language) { return cycle::asker_words(request.asker, language); };

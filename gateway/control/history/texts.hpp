@@ -22,7 +22,8 @@ inline constexpr Entry kHomed{"history.homed", "{0} has its reference", "{0}: н
 inline constexpr Entry kNotHomed{"history.not-homed", "{0} has lost its reference",
                                  "{0}: нулевая точка потеряна"};
 inline constexpr Entry kStarted{"history.started", "{0} was started", "запущено: {0}"};
-inline constexpr Entry kTyped{"history.typed", "a typed block was started", "запущен введённый кадр"};
+inline constexpr Entry kTyped{"history.typed", "a typed block was started: {0}",
+                              "запущен введённый кадр: {0}"};
 inline constexpr Entry kHeld{"history.held", "the program is held in line {0}",
                              "программа приостановлена в строке {0}"};
 inline constexpr Entry kGoesOn{"history.goes-on", "the program goes on in line {0}",

@@ -30,7 +30,7 @@ constexpr std::size_t kChunkHead = 8;  // length, checksum
 // First byte of a chunk: what it holds.
 constexpr char kCycleChunk = 'c', kChangeChunk = 'p', kSubprogramChunk = 's', kLogicChunk = 'l';
 /// Index = ProgramChange::Kind.
-constexpr std::string_view kChangeNames[] = {"program", "tables", "block", "modes"};
+constexpr std::string_view kChangeNames[] = {"program", "tables", "block", "modes", "restart"};
 /// Index = plc::LogicChange::Kind.
 constexpr std::string_view kLogicNames[] = {"load", "force", "release", "release_all"};
 constexpr machine::StatePart kTableParts[] = {machine::StatePart::origins, machine::StatePart::tools};
@@ -137,6 +137,13 @@ void RecordWriter::take(const ProgramChange& change) {
   nlohmann::json head{{"kind", kChangeNames[static_cast<std::size_t>(change.kind)]},
                       {"process", change.process}};
   if (!change.block.empty()) head["block"] = change.block;
+  if (change.restart)
+    head["restart"] = {{"by", static_cast<int>(change.restart->at.by)},
+                       {"value", change.restart->at.value},
+                       {"skip_levels", change.restart->at.switches.skip_levels},
+                       {"dry_run", change.restart->at.switches.dry_run},
+                       {"feed", change.restart->feed_mm_min},
+                       {"confirm", change.restart->confirm}};
   if (loads) {
     head["path"] = change.file->path;
     head["dialect"] = change.file->dialect;
@@ -336,6 +343,15 @@ bool RecordReader::read_change(std::string_view bytes) {
     change.kind = static_cast<ProgramChange::Kind>(name - std::begin(kChangeNames));
     change.process = head.value("process", 0);
     change.block = head.value("block", "");
+    if (const auto restart = head.find("restart"); restart != head.end()) {
+      ProgramRestart& r = change.restart.emplace();
+      r.at.by = static_cast<program::RestartAt::By>(restart->value("by", 0));
+      r.at.value = restart->value("value", std::int64_t{0});
+      r.at.switches.skip_levels = restart->value("skip_levels", std::uint16_t{0});
+      r.at.switches.dry_run = restart->value("dry_run", false);
+      r.feed_mm_min = restart->value("feed", 0.0);
+      r.confirm = restart->value("confirm", false);
+    }
     if (head.value("text", false)) {
       subprograms_ = std::make_shared<std::map<std::string, std::string, std::less<>>>();
       auto file = std::make_shared<ProgramFile>();

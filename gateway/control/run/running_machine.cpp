@@ -27,8 +27,8 @@ const text::Entry kVirtualNeedsMock{
 
 }  // namespace
 
-std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, drivers::Notice& taken,
-                                           std::vector<text::Finding>& findings) {
+std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, const std::vector<std::string>& axes,
+                                           drivers::Notice& taken, std::vector<text::Finding>& findings) {
   auto held = std::make_unique<HeldState>();
   if (folder.empty()) return held;
   held->folder = folder;
@@ -36,7 +36,7 @@ std::unique_ptr<HeldState> HeldState::hold(const std::string& folder, drivers::N
     taken = {&machine::kStateTaken, {folder, why}};
     return nullptr;
   }
-  machine::StateDirectory::Loaded kept = machine::StateDirectory(folder).load();
+  machine::StateDirectory::Loaded kept = machine::StateDirectory(folder, axes).load();
   held->state = std::move(kept.state);
   held->fell_back = kept.fell_back();
   findings.insert(findings.end(), kept.findings.begin(), kept.findings.end());
@@ -82,6 +82,7 @@ RunningMachine::RunningMachine(std::unique_ptr<HeldState> state, const RunSettin
     : state_(std::move(state)),
       settings_(settings),
       control_(std::move(control)),
+      journal_(state_->folder, machine().control.processes),
       keeper_(*control_, state_->folder, state_->state.retained_generation, settings.announce) {
   if (state_->fell_back) {
     image::AlarmRecord r;
@@ -186,6 +187,7 @@ bool RunningMachine::move_on(image::Nanoseconds late_ns) {
 
 /// real-time safe.
 void RunningMachine::after_cycle(image::Nanoseconds late_ns) noexcept {
+  journal_.note(control_->cycle().image());
   if (session_ != nullptr) session_->after_cycle(late_ns);
   if (record_ == nullptr || record_broken_ || !record_->broken()) return;
   record_broken_ = true;

@@ -11,6 +11,7 @@
 #include "gateway/control/compose/control.hpp"
 #include "gateway/control/compose/program/program_check.hpp"
 #include "gateway/control/run/announce.hpp"
+#include "gateway/control/run/block_journal.hpp"
 #include "gateway/control/run/can_log.hpp"
 #include "gateway/control/run/clock_kind.hpp"
 #include "gateway/control/run/record_file.hpp"
@@ -33,8 +34,8 @@ struct HeldState {
 
   /// Takes and reads a folder; empty: none. nullptr: somebody else holds it (`taken`), or one of `findings`
   /// is an error; warnings come with it, too.
-  static std::unique_ptr<HeldState> hold(const std::string& folder, drivers::Notice& taken,
-                                         std::vector<text::Finding>& findings);
+  static std::unique_ptr<HeldState> hold(const std::string& folder, const std::vector<std::string>& axes,
+                                         drivers::Notice& taken, std::vector<text::Finding>& findings);
 };
 
 /// How time passes: as asked, else virtual where the machine file says so and nothing is real. unset: virtual
@@ -107,6 +108,8 @@ class RunningMachine final : public bench::Machine {
   Control& control() noexcept { return *control_; }
   const Control& control() const noexcept { return *control_; }
   const machine::MachineConfig& machine() const noexcept { return control_->machine(); }
+  /// In which blocks the programs are.
+  BlockJournal& journal() noexcept { return journal_; }
   /// What it had learned when it was composed.
   const machine::MachineState& learned() const noexcept { return state_->state; }
   /// It moves in a loop of its own.
@@ -134,6 +137,7 @@ class RunningMachine final : public bench::Machine {
   std::unique_ptr<Session> session_;
   std::unique_ptr<image::ProcessImage> image_;  ///< newest whole one of a machine that moves by itself
   cycle::AlarmSnapshot alarms_;
+  BlockJournal journal_;
   std::atomic<std::int64_t> late_cycles_{0};  ///< of virtual time
   RetainedKeeper keeper_;
   std::unique_ptr<PacedLoop> paced_loop_;

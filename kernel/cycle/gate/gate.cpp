@@ -58,7 +58,7 @@ constexpr Kinds kJogs{jog_increment, jog_continuous, keep_alive};
 constexpr Kinds kResets{reset, acknowledge};
 constexpr Kinds kProgram{start, step, resume, mode, override_feed};
 constexpr Kinds kPlaces{set_place, force, release_force, logic, logic_scan};
-constexpr Kinds kPanel = kStops | kJogs | kResets | kProgram | Kinds{power, home, zero, assign};
+constexpr Kinds kPanel = kStops | kJogs | kResets | kProgram | Kinds{power, home, zero, assign, tables};
 /// Of the auxiliary axes, the PLC's alone.
 constexpr Kinds kMoves{move_absolute, move_relative, move_velocity, torque};
 constexpr Kinds kAuxiliary = kMoves | Kinds{axis_power, axis_home, axis_stop, axis_reset};
@@ -188,6 +188,7 @@ class Decision {
   bool drives_off() noexcept;
   bool zero() noexcept;
   bool assign() noexcept;
+  bool tables() noexcept;
   bool mode() noexcept;
   bool mode_of_request() noexcept;
   image::Mode mode_in_force() const noexcept {
@@ -210,7 +211,7 @@ class Decision {
 };
 
 Answer Decision::run() noexcept {
-  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::assign;
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::tables;
   if (!known)
     refuse(Refusal::unknown_request);
   else if (!may_ask(r_.asker).has(r_.kind))
@@ -239,6 +240,8 @@ bool Decision::decide_kind() noexcept {
       return zero();
     case RequestKind::assign:
       return assign();
+    case RequestKind::tables:
+      return tables();
     case RequestKind::mode:
       return mode();
     case RequestKind::start:
@@ -459,6 +462,18 @@ bool Decision::assign() noexcept {
   if (!no_program_of(a.process()) || !no_program_of(r_.process)) return false;
   if (!no_homing() || !not_held_by_another() || !free(a)) return false;
   return a.standstill() || refuse(Refusal::axis_moves, r_.axis);
+}
+
+/// A program goes by the tables that it began with.
+bool Decision::tables() noexcept {
+  if (!no_program() || !no_homing()) return false;
+  for (const Axis& a : c_.axes) {
+    if ((r_.index >> a.index() & 1u) == 0) continue;
+    if (a.config().auxiliary) return free(a);
+    if (!a.homed()) return refuse(Refusal::not_homed, a.index());
+    if (a.moving()) return refuse(Refusal::axis_moves, a.index());
+  }
+  return true;
 }
 
 bool Decision::mode() noexcept {

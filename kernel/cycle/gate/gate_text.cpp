@@ -193,7 +193,8 @@ constexpr std::string_view kKinds[][2] = {{"none", "нет"},
                                           {"reset an auxiliary axis", "сброс вспомогательной оси"},
                                           {"hold the PLC for single scans", "отдельные сканы ПЛК"},
                                           {"torque of an auxiliary axis", "момент вспомогательной оси"},
-                                          {"give an axis to a process", "передача оси процессу"}};
+                                          {"give an axis to a process", "передача оси процессу"},
+                                          {"change origins or tools", "изменение начал и инструмента"}};
 
 template <std::size_t N>
 std::string word(const std::string_view (&table)[N][2], double index, Language language) {

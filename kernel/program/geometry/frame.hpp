@@ -42,6 +42,7 @@ class Frame {
   double to_machine(const Position& programmed, int axis) const noexcept;
   /// Programmed coordinate of one axis of a machine point.
   double to_programmed(const Position& machine, int axis) const noexcept;
+  friend bool operator==(const Frame&, const Frame&) = default;
   /// Sense of rotation in the plane after mirroring: -1 when turned round.
   int sense(int axis1, int axis2) const noexcept;
 

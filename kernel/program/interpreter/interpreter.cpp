@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/interpreter/interpreter.hpp"
 
+#include <iterator>
 #include <utility>
 
 #include "kernel/program/execution/execution.hpp"
@@ -21,6 +22,8 @@ struct Interpreter::Impl {
   bool known;
   std::string dialect;
   Execution run;
+  std::vector<Command> first = {};  ///< before those of the program, the last one foremost
+  std::optional<text::Finding> refused = {};
 };
 
 Interpreter::Interpreter(std::string_view dialect, MachineModel machine, Tables tables, std::string file_name,
@@ -44,7 +47,11 @@ Step Interpreter::next(const image::Packets& packets, bool synchronised) {
   if (!impl_->known)
     return Error{
         {text::Severity::error, files().front(), 1, 1, &entry(Fault::dialect_unknown), {impl_->dialect}}};
-  return impl_->run.next(packets, synchronised);
+  if (impl_->refused) return Error{*impl_->refused};
+  if (impl_->first.empty()) return impl_->run.next(packets, synchronised);
+  Command command = std::move(impl_->first.back());
+  impl_->first.pop_back();
+  return command;
 }
 
 bool Interpreter::pass_over_error() { return impl_->known && impl_->run.pass_over_error(); }
@@ -81,5 +88,18 @@ void Interpreter::set_switches(const OperatorSwitches& switches) {
 int Interpreter::origin(int axis) const {
   return impl_->run.state().frames.origin[static_cast<std::size_t>(axis)];
 }
+
+double Interpreter::tool_length(int axis) const { return frame().length(axis); }
+
+const Frame& Interpreter::frame() const { return impl_->run.state().frames.frame; }
+
+int Interpreter::depth_axis() const { return impl_->run.state().frames.normal; }
+
+void Interpreter::begin_with(std::vector<Command> commands, std::optional<text::Finding> refused) {
+  impl_->first.assign(std::make_move_iterator(commands.rbegin()), std::make_move_iterator(commands.rend()));
+  impl_->refused = std::move(refused);
+}
+
+int Interpreter::corrector() const { return impl_->run.state().frames.corrector; }
 
 }  // namespace servogate::program

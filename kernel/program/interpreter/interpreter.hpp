@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "firmware_if/text/finding.hpp"
 #include "kernel/program/execution/state/machine.hpp"
 #include "kernel/program/execution/state/step.hpp"
+#include "kernel/program/geometry/frame.hpp"
 #include "kernel/program/reading/loader.hpp"
 
 namespace servogate::program {
@@ -18,6 +20,7 @@ namespace servogate::program {
 struct OperatorSwitches {
   std::uint16_t skip_levels = 0;  ///< bit 0: blocks marked with / are skipped; bit n: those with /n
   bool dry_run = false;           ///< feed motions run at rapid speed
+  friend bool operator==(const OperatorSwitches&, const OperatorSwitches&) = default;
 };
 
 /// The interpreter of one process: a value that can be copied at any time (restart, retrace, look-ahead).
@@ -86,6 +89,17 @@ class Interpreter {
   void set_switches(const OperatorSwitches& switches);
   /// Number of the origin in force of an axis.
   int origin(int axis) const;
+  /// Length of the tool in force along an axis, wear included, mm.
+  double tool_length(int axis) const;
+  /// The way from programmed to machine coordinates that is in force, behind the last command of next().
+  const Frame& frame() const;
+  /// Row of the tool table in force, 0: none.
+  int corrector() const;
+  /// The axis across the plane in force, -1: the machine has none there.
+  int depth_axis() const;
+  /// The next commands come first, then those of the program; next() gives nothing but `refused` where that
+  /// is set. For a program that begins in its middle (restart.hpp).
+  void begin_with(std::vector<Command> commands, std::optional<text::Finding> refused = std::nullopt);
 
  private:
   struct Impl;

@@ -49,6 +49,12 @@ int Process::wait() {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+bool Process::ended() const {
+  if (pid_ <= 0) return true;
+  siginfo_t seen{};
+  return waitid(P_PID, static_cast<id_t>(pid_), &seen, WEXITED | WNOHANG | WNOWAIT) != 0 || seen.si_pid != 0;
+}
+
 void Process::signal(int number) const { kill(pid_, number); }
 
 std::string Process::said() const { return content(file_); }

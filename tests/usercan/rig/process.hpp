@@ -19,6 +19,8 @@ class Process {
   bool says(const std::string& text) const;
   /// Waits for its end; its exit code, -1 when a signal ended it.
   int wait();
+  /// It has come to its end by itself.
+  bool ended() const;
   void signal(int number) const;
   std::string said() const;
   /// For a failure: whether it lives or how it has ended, and what it said.

@@ -3,6 +3,23 @@
 
 namespace servogate::gateway {
 
+namespace {
+
+/// What cannot be told any more gives an error instead of a motion.
+program::Interpreter from_its_middle(program::Interpreter fresh, const ProgramRestart& wanted,
+                                     const program::Position& start) {
+  auto found = program::restart(fresh, wanted.at, image::Packets{});
+  if (const auto* wrong = std::get_if<text::Finding>(&found)) {
+    fresh.begin_with({}, *wrong);
+    return fresh;
+  }
+  auto& point = std::get<program::RestartPoint>(found);
+  point.interpreter.begin_with(program::approach(point, start, wanted.feed_mm_min, wanted.confirm));
+  return std::move(point.interpreter);
+}
+
+}  // namespace
+
 channel::InterpreterFactory interpreter_factory(const ProgramChange& change, ProgramChangeTap* tap) {
   // It shares the file: the program may be replaced while an interpreter of the old one still exists.
   program::ProgramLoader loader = change.file->loader;
@@ -12,9 +29,12 @@ channel::InterpreterFactory interpreter_factory(const ProgramChange& change, Pro
       if (loaded) tap->take_subprogram(name, loaded->text);
       return loaded;
     };
-  return [file = change.file, tables = change.tables, loader](const program::Position& start) {
-    return program::Interpreter(file->dialect, file->model, tables, file->path.empty() ? "MDI" : file->path,
-                                file->text, loader, start, file->process);
+  return [file = change.file, tables = change.tables, loader,
+          restart = change.restart](const program::Position& start) {
+    program::Interpreter interpreter(file->dialect, file->model, tables,
+                                     file->path.empty() ? "MDI" : file->path, file->text, loader, start,
+                                     file->process);
+    return restart ? from_its_middle(std::move(interpreter), *restart, start) : interpreter;
   };
 }
 

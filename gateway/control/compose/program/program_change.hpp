@@ -2,15 +2,24 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "gateway/control/compose/program/program_file.hpp"
 #include "kernel/channel/feeder.hpp"
 #include "kernel/program/interpreter/interpreter.hpp"
+#include "kernel/program/interpreter/restart.hpp"
 #include "plc/logic/logic_change.hpp"
 
 namespace servogate::gateway {
+
+/// A run that begins in the middle of its program.
+struct ProgramRestart {
+  program::RestartAt at;
+  double feed_mm_min = 0.0;  ///< of the way there
+  bool confirm = false;      ///< each step of it waits for the operator's start
+};
 
 /// Something that was changed outside the cycle about what a process will run. Beside the inputs of the
 /// cycles this is all that comes from outside; a record keeps both.
@@ -20,12 +29,14 @@ struct ProgramChange {
     tables,   ///< the same program with other tables
     block,    ///< the next start in MDI mode runs `block`
     modes,    ///< MDI has its power-on modes again
+    restart,  ///< the next run of the program begins in its middle, by `restart`
   };
   Kind kind = Kind::program;
   int process = 0;                          ///< from 0
-  std::shared_ptr<const ProgramFile> file;  ///< of `program` and `tables`
+  std::shared_ptr<const ProgramFile> file;  ///< of `program`, `tables` and `restart`
   program::Tables tables;
   std::string block;
+  std::optional<ProgramRestart> restart = {};
 };
 
 /// Sees what Control::change() carries out, the subprograms that were read for it, and what

@@ -43,8 +43,11 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
   return model;
 }
 
-program::Tables program_tables(const machine::MachineConfig& machine) {
-  return machine::StateDirectory(machine.resolve(machine.run.state)).load().state.tables;
+program::Tables program_tables(const machine::MachineConfig& machine, const std::string& folder,
+                               std::vector<text::Finding>& findings) {
+  const machine::StateDirectory directory(folder.empty() ? machine.resolve(machine.run.state) : folder,
+                                          machine.letters());
+  return directory.load_tables(findings);
 }
 
 program::ProgramLoader program_loader(const std::string& main_program) {

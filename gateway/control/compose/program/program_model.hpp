@@ -12,9 +12,11 @@ namespace servogate::gateway {
 /// write are protected.
 program::MachineModel program_model(const machine::MachineConfig& machine, int process);
 
-/// The origins and tools in force with which it begins, as the machine keeps them: a run holds the same
-/// directory. Empty where the machine has not been used; a damaged state is the running control's matter.
-program::Tables program_tables(const machine::MachineConfig& machine);
+/// The origins and tools with which a program begins: those of a directory, where `folder` is empty the
+/// machine's state directory, which a run holds. Empty where there are none; `findings` say what is wrong
+/// with them and where, and what people have edited.
+program::Tables program_tables(const machine::MachineConfig& machine, const std::string& folder,
+                               std::vector<text::Finding>& findings);
 
 /// Subprograms by name: NAME, NAME.nc, name.nc ... in the folder of the main program.
 program::ProgramLoader program_loader(const std::string& main_program);

@@ -99,26 +99,40 @@ int MachineFaults::endpoint_of(const Target& bus, int node) const {
   return -1;
 }
 
-bool MachineFaults::inject(std::string_view device, const fault::Fault& fault, std::string& why) {
+std::optional<MachineFaults::Wish> MachineFaults::meant(std::string_view device, const fault::Fault& fault,
+                                                        std::string& why) const {
   const auto target = find(device);
   if (!target) {
     why = said(kNothingThere, {std::string(device), names()});
-    return false;
+    return std::nullopt;
   }
   if ((fault::row(fault.kind).devices & target->devices) == 0) {
     why = said(kNotItsKind, {std::string(fault::name_of(fault.kind)), std::string(device),
                              fault::names_for(target->devices)});
-    return false;
+    return std::nullopt;
   }
   fault::Fault meant = fault;
   if (target->devices == bit(Device::bus) && fault.sender > 0) {
     meant.sender = endpoint_of(*target, fault.sender);
     if (meant.sender < 0) {
       why = said(kNoSender, {std::string(device), std::to_string(fault.sender)});
-      return false;
+      return std::nullopt;
     }
   }
-  wish({*target, meant, {}});
+  return Wish{*target, meant, {}};
+}
+
+bool MachineFaults::possible(std::string_view device, const fault::Fault* fault, std::string& why) const {
+  if (fault != nullptr) return meant(device, *fault, why).has_value();
+  if (find(device)) return true;
+  why = said(kNothingThere, {std::string(device), names()});
+  return false;
+}
+
+bool MachineFaults::inject(std::string_view device, const fault::Fault& fault, std::string& why) {
+  auto wished = meant(device, fault, why);
+  if (!wished) return false;
+  wish(std::move(*wished));
   return true;
 }
 

@@ -27,6 +27,8 @@ class MachineFaults {
   /// From any thread; it happens with the next advance_to(). A lasting fault replaces the same kind on the
   /// same device; of a bus several stay side by side. False: `why` says why it cannot, in both languages.
   bool inject(std::string_view device, const fault::Fault& fault, std::string& why);
+  /// The same without doing it; `fault` nullptr: an end. False as above.
+  bool possible(std::string_view device, const fault::Fault* fault, std::string& why) const;
   /// Ends a lasting fault, nullopt: all of the device, in the same way.
   bool clear(std::string_view device, std::optional<fault::Kind> kind, std::string& why);
   /// What is wished and what is over, at time t; before the world goes on to it.
@@ -58,6 +60,7 @@ class MachineFaults {
     fault::Fault fault;
     image::Nanoseconds until = 0;  ///< 0: until cleared
   };
+  std::optional<Wish> meant(std::string_view device, const fault::Fault& fault, std::string& why) const;
   std::optional<Target> find(std::string_view device) const;
   std::optional<Target> find_on_bus(std::string_view device) const;
   std::string names() const;

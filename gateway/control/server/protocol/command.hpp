@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -48,6 +50,33 @@ struct Zero {
   double value = 0.0;
   std::string unit;
 };
+/// Origins and tools, all of both tables.
+struct Tables {};
+enum class Table : std::uint8_t { origin, tool };
+/// Values of a row, or where the machine stands now, made to read so (`here`): axis letters, of a tool also
+/// length (that of the tool axis), wear, wear_X ..., radius, diameter, radius_wear, quadrant.
+struct TableSet {
+  std::optional<Table> table;
+  int number = -1;
+  std::map<std::string, double> values;
+  std::optional<std::string> name;  ///< of a tool
+  bool here = false;
+};
+struct TableClear {
+  std::optional<Table> table;
+  int number = -1;
+};
+/// The tables as they were before the last change from here.
+struct TableUndo {};
+/// Rows of a file: CSV, or a tool table of LinuxCNC.
+struct TableImport {
+  std::optional<Table> table;
+  std::string file;
+};
+struct TableExport {
+  std::optional<Table> table;
+  bool linuxcnc = false;
+};
 struct Override {
   double percent = 100.0;
   int process = 0;
@@ -58,6 +87,14 @@ struct Load {
 };
 struct Start {
   int process = 0;
+};
+/// Starts the loaded program in its middle.
+struct Restart {
+  int process = 0;
+  std::optional<int> line, number;  ///< of the main program; neither: where it was interrupted
+  double feed_mm_min = 500.0;       ///< of the way there
+  bool confirm = false;             ///< each step of it waits for start
+  bool plan = false;                ///< only says what would be done
 };
 struct Step {
   int process = 0;
@@ -127,10 +164,11 @@ struct PlcWatch {
 };
 struct PlcList {};
 
-using Command = std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero,
-                             Override, Load, Start, Step, Mdi, Resume, Assign, Reset, Acknowledge, Input,
-                             SetPlace, Stop, QuickStop, Hold, JogStop, KeepAlive, Down, PlcLoad, PlcForce,
-                             PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
+using Command =
+    std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero, Override,
+                 Load, Start, Restart, Step, Mdi, Resume, Assign, Tables, TableSet, TableClear, TableUndo,
+                 TableImport, TableExport, Reset, Acknowledge, Input, SetPlace, Stop, QuickStop, Hold, JogStop,
+                 KeepAlive, Down, PlcLoad, PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
 
 template <typename... Kinds>
 bool is_any(const Command& command) noexcept {
@@ -144,7 +182,8 @@ inline bool is_urgent(const Command& command) noexcept {
 }
 /// What a control still does for its clients while it comes to its end, beside what is urgent.
 inline bool only_looks(const Command& command) noexcept {
-  return is_any<Status, Buses, Alarms, History, SdoRead, PlcList, PlcWatch, PlcGo>(command);
+  return is_any<Status, Buses, Alarms, History, SdoRead, Tables, TableExport, PlcList, PlcWatch, PlcGo>(
+      command);
 }
 inline bool of_plc(const Command& command) noexcept {
   return is_any<PlcLoad, PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>(command);

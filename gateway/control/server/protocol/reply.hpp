@@ -9,6 +9,8 @@
 #include "gateway/control/run/words/ready_words.hpp"
 #include "gateway/control/server/protocol/plc_reply.hpp"
 #include "gateway/control/server/protocol/status_report.hpp"
+#include "kernel/program/commands/canonical.hpp"
+#include "kernel/program/execution/state/machine.hpp"
 
 namespace servogate::gateway {
 
@@ -43,6 +45,40 @@ struct ObjectRead {
   std::vector<std::uint8_t> data;
 };
 
+/// Origins and tools; lengths are as people see them, a diameter on diameter axes.
+struct TablesReport {
+  struct Axis {
+    std::string letter, unit;
+    bool diameter = false;
+  };
+  program::Tables tables;
+  std::vector<Axis> axes;
+};
+/// A table as a file of another program.
+struct ExportedTable {
+  std::string content;
+};
+
+/// What a start in the middle of a program does, in machine coordinates as people see them.
+struct RestartReport {
+  struct Axis {
+    std::string letter, unit;
+    double stands = 0.0, begins = 0.0;  ///< where it is, and where the block begins
+  };
+  int line = 0;
+  std::int64_t executed = 0;  ///< blocks before it
+  std::string file, text;     ///< of the block
+  std::int32_t tool = 0, corrector = 0;
+  std::optional<program::Spindle> spindle;
+  std::optional<int> coolant;  ///< M code
+  std::vector<int> passed;     ///< M codes that are not repeated
+  int writes = 0;              ///< into the packets, which are not repeated
+  std::vector<Axis> axes;
+  std::vector<std::string> steps;  ///< in words, in their order
+  bool from_disk = false;
+  double asked_s = 0.0;  ///< machine time before the start
+};
+
 /// What a client of the desk is answered.
 struct Reply {
   bool ok = true;
@@ -50,7 +86,8 @@ struct Reply {
   std::string code;  ///< of a refusal, and of the end of a jog: the id of its sentence
   std::string text;  ///< in the client's language; empty: the content says it all
   std::variant<std::monostate, JogBegun, JogState, Zeroed, FoundIn, Begun, ObjectRead, StatusReport,
-               AlarmReport, HistoryReport, HeldBuses, PlcLoaded, PlcValues, PlcBody, PlcSymbols>
+               AlarmReport, HistoryReport, HeldBuses, TablesReport, ExportedTable, RestartReport, PlcLoaded,
+               PlcValues, PlcBody, PlcSymbols>
       content = {};
   /// Of a refusal for want of power: what is missing.
   std::optional<std::vector<MissingCondition>> missing = {};

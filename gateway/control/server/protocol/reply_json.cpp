@@ -74,6 +74,48 @@ void write(json& answer, const Zeroed& zeroed) {
   answer["place"] = zeroed.place;
 }
 void write(json& answer, const FoundIn& found) { answer["findings"] = json_of(found.findings); }
+/// Without what is 0 and need not be said.
+void write(json& answer, const TablesReport& report) {
+  json axes = json::array(), origins = json::array(), tools = json::array();
+  for (const TablesReport::Axis& a : report.axes)
+    axes.push_back({{"letter", a.letter}, {"unit", a.unit}, {"diameter", a.diameter}});
+  for (const auto& [number, values] : report.tables.origins)
+    origins.push_back({{"number", number}, {"values", values}});
+  for (const auto& [number, c] : report.tables.correctors)
+    tools.push_back({{"number", number},
+                     {"name", c.name},
+                     {"length", c.length},
+                     {"wear", c.wear},
+                     {"radius", c.radius},
+                     {"radius_wear", c.radius_wear},
+                     {"quadrant", c.quadrant}});
+  answer.update({{"schema", 1}, {"axes", axes}, {"origins", origins}, {"tools", tools}});
+}
+void write(json& answer, const RestartReport& r) {
+  json axes = json::array(), spindle;
+  for (const RestartReport::Axis& a : r.axes)
+    axes.push_back({{"letter", a.letter}, {"unit", a.unit}, {"stands", a.stands}, {"begins", a.begins}});
+  if (r.spindle)
+    spindle = {{"direction", r.spindle->mode == program::SpindleMode::ccw ? "ccw" : "cw"},
+               {"speed", r.spindle->speed},
+               {"surface_speed", r.spindle->surface_speed}};
+  answer.update({{"schema", 1},
+                 {"line", r.line},
+                 {"executed", r.executed},
+                 {"file", r.file},
+                 {"block_text", r.text},
+                 {"tool", r.tool},
+                 {"corrector", r.corrector},
+                 {"spindle", spindle},
+                 {"coolant", r.coolant ? json(*r.coolant) : json()},
+                 {"passed", r.passed},
+                 {"writes", r.writes},
+                 {"axes", axes},
+                 {"steps", r.steps},
+                 {"from_disk", r.from_disk},
+                 {"asked_s", r.asked_s}});
+}
+void write(json& answer, const ExportedTable& table) { answer["content"] = table.content; }
 void write(json& answer, const Begun& begun) { answer["asked_s"] = begun.asked_s; }
 void write(json& answer, const ObjectRead& object) {
   answer.update({{"status", object.status}, {"abort", object.abort}, {"data", hex(object.data)}});

@@ -21,6 +21,9 @@ bool is_text(const json& v) { return v.is_string() && !has_zero(v); }
 bool is_number(const json& v) { return v.is_number(); }
 bool is_switch(const json& v) { return v.is_boolean(); }
 bool is_list(const json& v) { return v.is_array() && std::all_of(v.begin(), v.end(), is_text); }
+bool is_values(const json& v) {
+  return v.is_object() && std::all_of(v.begin(), v.end(), [](const json& e) { return e.is_number(); });
+}
 bool is_language(const json& v) { return v == "en" || v == "ru"; }
 bool is_played(const json& v) { return v.is_number() || v.is_boolean() || v.is_string(); }
 
@@ -32,6 +35,7 @@ constexpr Type kText{is_text, "a string", "строка"};
 constexpr Type kNumber{is_number, "a number", "число"};
 constexpr Type kSwitch{is_switch, "true or false", "true или false"};
 constexpr Type kList{is_list, "a list of strings", "список строк"};
+constexpr Type kValues{is_values, "an object of numbers", "объект из чисел"};
 constexpr Type kLanguage{is_language, "'en' or 'ru'", "'en' или 'ru'"};
 constexpr Type kPlayed{is_played, "a number, true, false or a string", "число, true, false или строка"};
 
@@ -48,13 +52,16 @@ constexpr struct {
                {"", "files", kList},        {"", "online", kSwitch},       {"", "while_running", kSwitch},
                {"", "bus", kText},          {"", "node", kNumber},         {"", "index", kNumber},
                {"", "subindex", kNumber},   {"", "scans", kNumber},        {"", "count", kNumber},
-               {"", "process", kNumber}};
+               {"", "process", kNumber},    {"", "table", kText},          {"", "number", kNumber},
+               {"", "values", kValues},     {"", "line", kNumber},         {"", "feed", kNumber},
+               {"", "confirm", kSwitch},    {"", "plan", kSwitch},         {"", "file", kText},
+               {"", "form", kText}};
 
 /// Without which a request says nothing.
 constexpr struct {
   std::string_view command, key;
-} kNeeded[] = {{"jog", "axis"},  {"jog_continuous", "axis"}, {"zero", "axis"},  {"load", "program"},
-               {"mdi", "block"}, {"input", "point"},         {"assign", "axis"}};
+} kNeeded[] = {{"jog", "axis"},  {"jog_continuous", "axis"}, {"zero", "axis"},   {"load", "program"},
+               {"mdi", "block"}, {"input", "point"},         {"assign", "axis"}, {"table_import", "file"}};
 
 std::string what_stands(const json& value) {
   switch (value.type()) {
@@ -199,7 +206,7 @@ class Fields {
   int whole(const char* key, std::int64_t most) const {
     const auto found = request_.find(key);
     if (found == request_.end() || !found->is_number_integer()) return -1;
-    const bool large = found->is_number_unsigned() && found->get<std::uint64_t>() > 0xFFFF;
+    const bool large = found->is_number_unsigned() && found->get<std::uint64_t>() > 0x7FFFFFFF;
     const auto value = large ? -1 : found->get<std::int64_t>();
     return value >= 0 && value <= most ? static_cast<int>(value) : -1;
   }
@@ -212,6 +219,24 @@ class Fields {
       problem_.arguments = {std::to_string(image::kMaxProcesses)};
     }
     return number - 1;
+  }
+  /// A whole number, where it is said; -1: it is none.
+  std::optional<int> counted(const char* key) const {
+    return request_.contains(key) ? std::optional(whole(key, 100'000'000)) : std::nullopt;
+  }
+  std::optional<ask::Table> table() {
+    const std::string name = text("table");
+    if (name == "origin") return ask::Table::origin;
+    if (name == "tool") return ask::Table::tool;
+    problem_.entry = &says::kNotTable;
+    problem_.arguments = {name};
+    return std::nullopt;
+  }
+  std::map<std::string, double> values() const {
+    return request_.value("values", std::map<std::string, double>{});
+  }
+  ask::TableSet table_row(bool here) {
+    return {table(), whole("number", 0xFFFF), values(), text_if("name"), here};
   }
   std::variant<std::monostate, bool, double> played(const char* key) {
     const json value = request_.value(key, json());
@@ -267,6 +292,14 @@ constexpr struct {
        return ask::Load{f.text("program"), f.text("dialect"), f.process(0)};
      }},
     {"start", [](Fields& f) -> Command { return ask::Start{f.process(0)}; }},
+    {"restart",
+     [](Fields& f) -> Command {
+       ask::Restart r{f.process(0), f.counted("line"), f.counted("number")};
+       r.feed_mm_min = f.number("feed", r.feed_mm_min);
+       r.confirm = f.is_set("confirm");
+       r.plan = f.is_set("plan");
+       return r;
+     }},
     {"step", [](Fields& f) -> Command { return ask::Step{f.process(0)}; }},
     {"mdi",
      [](Fields& f) -> Command {
@@ -276,6 +309,22 @@ constexpr struct {
     {"assign",
      [](Fields& f) -> Command {
        return ask::Assign{f.text("axis"), f.process(0)};
+     }},
+    {"tables", [](Fields&) -> Command { return ask::Tables{}; }},
+    {"table_set", [](Fields& f) -> Command { return f.table_row(false); }},
+    {"table_here", [](Fields& f) -> Command { return f.table_row(true); }},
+    {"table_clear",
+     [](Fields& f) -> Command {
+       return ask::TableClear{f.table(), f.whole("number", 0xFFFF)};
+     }},
+    {"table_undo", [](Fields&) -> Command { return ask::TableUndo{}; }},
+    {"table_import",
+     [](Fields& f) -> Command {
+       return ask::TableImport{f.table(), f.text("file")};
+     }},
+    {"table_export",
+     [](Fields& f) -> Command {
+       return ask::TableExport{f.table(), f.text("form") == "linuxcnc"};
      }},
     {"reset", [](Fields&) -> Command { return ask::Reset{}; }},
     {"acknowledge", [](Fields&) -> Command { return ask::Acknowledge{}; }},

@@ -24,7 +24,10 @@ struct ProcessReport {
   int blocks = 0, lines = 0;         ///< of its file
   std::optional<std::string> block;  ///< that was typed and is under way
   std::optional<StopWords> stop;
-  std::string file;  ///< of the block in motion; empty: none, or a typed one
+  std::string file;           ///< of the block in motion; empty: none, or a typed one
+  std::string text;           ///< of the block in motion, as it stands in the program; empty: none
+  int corrector = 0;          ///< row of the tool table in force by hand, 0: none
+  double rotation_deg = 0.0;  ///< of the coordinates
   std::string message;
   std::optional<WaitWords> wait;
 };
@@ -34,8 +37,11 @@ struct AxisReport {
   std::string letter, unit;
   bool diameter = false, auxiliary = false;
   double command = 0.0, position = 0.0;  ///< in `unit`, a diameter on a diameter axis
-  image::AxisImage axis;                 ///< in radius
-  std::string jog_end;                   ///< why its last jog ended; empty: it goes on, or there was none
+  double work = 0.0;                     ///< in the coordinates of the program: origin, tool, rotation
+  double to_go = 0.0;                    ///< of the motion under way
+  int origin = -1;        ///< number of the one in force by hand, -1: no program moves the axis
+  image::AxisImage axis;  ///< in radius
+  std::string jog_end;    ///< why its last jog ended; empty: it goes on, or there was none
 };
 
 /// What turns a spindle: a drive on a bus, an inverter on a Modbus line, or outputs without feedback.

@@ -26,6 +26,22 @@ const Entry kNotUnit{"socket.not-unit", "'{0}' is not the unit of {1}: it moves 
 const Entry kNoNumber{"socket.no-number", "'{0}' must be a number", "«{0}» должно быть числом"};
 const Entry kNotProcess{"socket.not-process", "'process' must be a whole number from 1 to {0}",
                         "«process» должно быть целым числом от 1 до {0}"};
+const Entry kNotTable{"socket.not-table", "'table' must be 'origin' or 'tool', and is '{0}'",
+                      "«table» должно быть 'origin' или 'tool', а здесь «{0}»"};
+const Entry kRowRange{"tables.row-range", "a number of {0} is a whole one from {1} to {2}",
+                      "номер {0} — целое число от {1} до {2}"};
+const Entry kRowMissing{"tables.row-missing", "{0} {1} is not in the table; it has {2}",
+                        "{0} {1} нет в таблице; в ней {2}"};
+const Entry kEntryUnknown{"tables.entry-unknown", "'{0}' is no value of {1}; possible are {2}",
+                          "«{0}» — не величина {1}; возможны {2}"};
+const Entry kEntryRange{"tables.entry-range", "{0} = {1} is outside {2} to {3}", "{0} = {1} вне {2} ... {3}"};
+const Entry kEntryHere{"tables.entry-here", "'{0}' has no place that could be touched; give axis letters",
+                       "«{0}» нельзя снять касанием; задайте буквы осей"};
+const Entry kNothingGiven{"tables.nothing-given", "no value was given, as X100 or length=85",
+                          "значения не заданы; например, X100 или length=85"};
+const Entry kNoUndo{"tables.no-undo", "there is no change to undo", "отменять нечего"};
+const Entry kNotImported{"tables.not-imported", "{0} was not imported, and nothing was changed",
+                         "файл {0} не загружен, ничего не изменено"};
 const Entry kNotSwitch{"socket.not-switch", "'{0}' must be 1 or 0", "«{0}» должно быть 1 или 0"};
 const Entry kNoAnswer{"socket.no-answer", "the cycle did not answer; is it running?",
                       "цикл не ответил; работает ли он?"};
@@ -95,6 +111,13 @@ const Entry kZero{"said.zero", "{0} is {1} {2} here (origin {3} at {4})",
 const Entry kZeroDiameter{"said.zero-diameter", "{0} is {1} {2} in diameter here (origin {3} at radius {4})",
                           "{0} здесь равна {1} {2} по диаметру (начало {3} на радиусе {4})"};
 const Entry kBlockRuns{"said.block-runs", "the block runs{0}", "кадр выполняется{0}"};
+const Entry kRowSet{"said.row-set", "{0} {1}: {2}", "{0} {1}: {2}"};
+const Entry kRowCleared{"said.row-cleared", "{0} {1} is no longer in the table",
+                        "{0} {1} больше нет в таблице"};
+const Entry kTablesUndone{"said.tables-undone", "the last change of origins and tools is undone",
+                          "последнее изменение начал и инструмента отменено"};
+const Entry kImported{"said.imported", "{0}: {1} rows are in the table now",
+                      "{0}: строк в таблице теперь {1}"};
 const Entry kAssigned{"said.assigned", "the programs of process {1} move {0} from now on",
                       "{0} теперь перемещают программы процесса {1}"};
 const Entry kLoaded{"said.loaded", "{0} is loaded: {1} blocks, {2} warnings",

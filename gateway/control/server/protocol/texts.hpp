@@ -7,19 +7,28 @@
 namespace servogate::gateway::says {
 
 // refusals; ids begin with "socket."
-extern const text::Entry kBadLine;           ///< {0} the line
-extern const text::Entry kNoObject;          ///< {0} what stands there
-extern const text::Entry kNested;            ///< {0} levels
-extern const text::Entry kRepeated;          ///< field {0}
-extern const text::Entry kWrongType;         ///< {0} key, {1} what it must be, {2} what stands there
-extern const text::Entry kLongLine;          ///< {0} bytes
-extern const text::Entry kFull;              ///< {0} clients
-extern const text::Entry kUnknown;           ///< {0} command
-extern const text::Entry kUnknownAsker;      ///< {0} asker, {1} known ones
-extern const text::Entry kNoAxis;            ///< {0} axis, {1} axes of the machine
-extern const text::Entry kNotUnit;           ///< {0} unit, {1} axis, {2} its unit
-extern const text::Entry kNoNumber;          ///< {0} key
-extern const text::Entry kNotProcess;        ///< {0} the largest possible
+extern const text::Entry kBadLine;       ///< {0} the line
+extern const text::Entry kNoObject;      ///< {0} what stands there
+extern const text::Entry kNested;        ///< {0} levels
+extern const text::Entry kRepeated;      ///< field {0}
+extern const text::Entry kWrongType;     ///< {0} key, {1} what it must be, {2} what stands there
+extern const text::Entry kLongLine;      ///< {0} bytes
+extern const text::Entry kFull;          ///< {0} clients
+extern const text::Entry kUnknown;       ///< {0} command
+extern const text::Entry kUnknownAsker;  ///< {0} asker, {1} known ones
+extern const text::Entry kNoAxis;        ///< {0} axis, {1} axes of the machine
+extern const text::Entry kNotUnit;       ///< {0} unit, {1} axis, {2} its unit
+extern const text::Entry kNoNumber;      ///< {0} key
+extern const text::Entry kNotProcess;    ///< {0} the largest possible
+extern const text::Entry kNotTable;      ///< {0} what was said
+extern const text::Entry kRowRange;      ///< {0} origin or tool, {1} lowest, {2} highest
+extern const text::Entry kRowMissing;    ///< {0} origin or tool, {1} number, {2} those that are there
+extern const text::Entry kEntryUnknown;  ///< {0} name, {1} of what, {2} possible ones
+extern const text::Entry kEntryRange;    ///< {0} name, {1} value, {2} lowest, {3} highest
+extern const text::Entry kEntryHere;     ///< {0} name
+extern const text::Entry kNothingGiven;
+extern const text::Entry kNoUndo;
+extern const text::Entry kNotImported;       ///< {0} file
 extern const text::Entry kNotSwitch;         ///< {0} key
 extern const text::Entry kNoAnswer;          ///< the cycle stands
 extern const text::Entry kWithdrawn;         ///< the same, and the request was withdrawn
@@ -53,6 +62,10 @@ extern const text::Entry kJogs;         ///< {0} axis, {1} direction
 extern const text::Entry kZero;         ///< {0} axis, {1} value, {2} unit, {3} origin, {4} machine coordinate
 extern const text::Entry kZeroDiameter;  ///< as kZero
 extern const text::Entry kBlockRuns;
+extern const text::Entry kRowSet;      ///< {0} origin or tool, {1} number, {2} its values
+extern const text::Entry kRowCleared;  ///< {0}, {1} as before
+extern const text::Entry kTablesUndone;
+extern const text::Entry kImported;     ///< {0} file, {1} rows
 extern const text::Entry kAssigned;     ///< {0} axis, {1} process
 extern const text::Entry kLoaded;       ///< {0} program, {1} blocks, {2} warnings
 extern const text::Entry kStarted;      ///< {0} program

@@ -8,6 +8,7 @@
 
 #include "gateway/control/history/request_words.hpp"
 #include "gateway/control/server/protocol/texts.hpp"
+#include "machine/files/read_file.hpp"
 
 namespace servogate::gateway {
 
@@ -167,6 +168,7 @@ Resident::Load::End Resident::finish(Load& load) {
   if (arm(load.process, ProgramChange::Kind::program)) {
     s.blocks = load.blocks;
     s.lines = load.lines;
+    if (journal_ != nullptr) journal_->loaded(load.process, s.file->path, s.file->dialect);
     return Load::End::done;
   }
   s = before;  // a program began meanwhile
@@ -234,6 +236,52 @@ std::vector<text::Finding> Resident::check_block(int process, const std::string&
   return findings;
 }
 
+/// An interpreter is made for it only when MDI may have changed.
+Resident::Coordinates Resident::coordinates(int process) {
+  Seat& s = seat(process);
+  const bool runs = busy(process);
+  const image::ProcessStatus status = image_.processes[static_cast<std::size_t>(process)];
+  const std::uint64_t now =
+      1 + (control_.process(process).changes() << 33 | std::uint64_t{status.run} << 1 | (runs ? 1u : 0u));
+  if (now != s.read_at && !(runs && status.typed)) {
+    const program::Position at = position();
+    const std::scoped_lock lock(control_.reading());
+    const program::Interpreter manual = control_.process(process).manual_interpreter(at);
+    s.manual.frame = manual.frame();
+    s.manual.corrector = manual.corrector();
+    for (std::size_t a = 0; a < control_.machine().program_axes(); ++a)
+      s.manual.origin[a] = manual.origin(static_cast<int>(a));
+    s.read_at = now;
+  }
+  Coordinates in_force = s.manual;
+  if (!runs) return in_force;
+  if (const auto frame = control_.process(process).texts().frame(status.run, status.blocks_done))
+    in_force.frame = *frame;
+  return in_force;
+}
+
+std::string Resident::line_of(int process, const std::string& file, int line) {
+  Seat& s = seat(process);
+  const std::string* text = &s.file->text;
+  if (file != s.file->path) {
+    if (file != s.shown_file) {
+      std::string ignored;
+      s.shown_file = file;
+      s.shown_text = files::read_file(file, files::kMostOfProgram, ignored).value_or(std::string());
+    }
+    text = &s.shown_text;
+  }
+  std::size_t at = 0;
+  for (int n = 1; n < line && at != std::string::npos; ++n) {
+    at = text->find('\n', at);
+    if (at != std::string::npos) ++at;
+  }
+  if (line < 1 || at == std::string::npos || at >= text->size()) return {};
+  std::string block = text->substr(at, text->find('\n', at) - at);
+  if (!block.empty() && block.back() == '\r') block.pop_back();
+  return block;
+}
+
 void Resident::set_manual_block(int process, const std::string& block) {
   if (!block.empty()) seat(process).manual_block = block;
   control_.change({ProgramChange::Kind::block, process, {}, {}, block});
@@ -244,7 +292,8 @@ void Resident::forget_modes() {
     if (!busy(p)) control_.change({ProgramChange::Kind::modes, p, {}, {}, {}});
 }
 
-Zeroed Resident::zero(int axis, double value) {
+/// The interpreter of MDI in which an axis reads `value` where it stands.
+program::Interpreter Resident::reading(int axis, double value, double& length) {
   read_tables();
   const program::Position at = position();
   const int process = image_.axes[static_cast<std::size_t>(axis)].process;
@@ -254,11 +303,54 @@ Zeroed Resident::zero(int axis, double value) {
     manual = control_.process(process).manual_interpreter(at);
   }
   manual->adopt(state_.tables);
-  const machine::AxisConfig& a = control_.machine().axes[static_cast<std::size_t>(axis)];
-  manual->preset(axis, a.diameter ? value / 2.0 : value);
-  state_.tables = manual->tables();
-  const int origin = manual->origin(axis);
-  return {origin, state_.tables.origins[origin][a.letter]};
+  const auto entry = [&] {
+    const auto& origins = manual->tables().origins;
+    const auto row = origins.find(manual->origin(axis));
+    if (row == origins.end()) return 0.0;
+    const auto found = row->second.find(control_.machine().axes[static_cast<std::size_t>(axis)].letter);
+    return found == row->second.end() ? 0.0 : found->second;
+  };
+  const double before = entry();
+  manual->preset(axis,
+                 control_.machine().axes[static_cast<std::size_t>(axis)].diameter ? value / 2.0 : value);
+  length = manual->tool_length(axis) + entry() - before;
+  return std::move(*manual);
+}
+
+Zeroed Resident::zero(int axis, double value) {
+  double length = 0.0;
+  const program::Interpreter manual = reading(axis, value, length);
+  change_tables(manual.tables());
+  const int origin = manual.origin(axis);
+  return {origin,
+          state_.tables.origins[origin][control_.machine().axes[static_cast<std::size_t>(axis)].letter]};
+}
+
+Resident::Touched Resident::touch(int axis, double value) {
+  Touched touched;
+  const program::Interpreter manual = reading(axis, value, touched.length);
+  const std::string& letter = control_.machine().axes[static_cast<std::size_t>(axis)].letter;
+  touched.origin = manual.tables().origins.at(manual.origin(axis)).at(letter);
+  return touched;
+}
+
+const program::Tables& Resident::tables() {
+  read_tables();
+  return state_.tables;
+}
+
+void Resident::change_tables(program::Tables changed) {
+  constexpr std::size_t kUndoSteps = 50;
+  past_tables_.push_back(std::exchange(state_.tables, std::move(changed)));
+  if (past_tables_.size() > kUndoSteps) past_tables_.erase(past_tables_.begin());
+}
+
+bool Resident::undo_tables() {
+  if (past_tables_.empty()) return false;
+  read_tables();
+  state_.tables = std::move(past_tables_.back());
+  past_tables_.pop_back();
+  return true;
 }
 
 std::optional<machine::MachineState> Resident::to_save() {

@@ -5,12 +5,14 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "gateway/control/compose/control.hpp"
 #include "gateway/control/compose/program/program_check.hpp"
 #include "gateway/control/history/machine_watch.hpp"
 #include "gateway/control/run/announce.hpp"
+#include "gateway/control/run/block_journal.hpp"
 #include "gateway/control/server/resident/request_desk.hpp"
 #include "gateway/control/server/resident/work/outcome.hpp"
 #include "gateway/control/server/resident/work/works.hpp"
@@ -95,6 +97,35 @@ class Resident {
   /// Errors of the loaded program since its tables (origins, tools) or axes changed behind the load: it is
   /// not given to the process until they are gone. Empty: none.
   const std::vector<text::Finding>& refused(int process) const { return seat(process).refused; }
+  /// Coordinates in force: of the block in motion, else those of MDI.
+  struct Coordinates {
+    program::Frame frame;
+    std::array<int, image::kMaxAxes> origin{};  ///< numbers in force in MDI
+    int corrector = 0;                          ///< the same
+  };
+  Coordinates coordinates(int process);
+  /// Text of a line of a program's file; empty: there is none.
+  std::string line_of(int process, const std::string& file, int line);
+  /// Where programs are, for a way back into them; `journal` outlives this.
+  void keep_blocks(BlockJournal& journal) noexcept { journal_ = &journal; }
+  /// nullopt: nothing was interrupted, or nothing is kept.
+  std::optional<BlockJournal::Block> interrupted(int process) const {
+    return journal_ != nullptr ? journal_->interrupted(process) : std::nullopt;
+  }
+  /// A start in the middle of the loaded program: begin_restart(), find(), begin_in_middle().
+  struct RestartSearch {
+    int process = 0;
+    program::RestartAt at;
+    std::shared_ptr<const ProgramFile> file;
+    program::Tables tables;
+    Start start;
+    std::optional<std::variant<program::RestartPoint, text::Finding>> found = std::nullopt;
+  };
+  RestartSearch begin_restart(int process, const program::RestartAt& at);
+  /// Any thread; takes as long as reading the program up to there.
+  static void find(RestartSearch& search);
+  /// The next start of the process begins there. False: its program is being read just now.
+  bool begin_in_middle(const RestartSearch& search, double feed_mm_min, bool confirm);
   /// The block that the next start in MDI mode runs.
   void set_manual_block(int process, const std::string& block);
   /// The block that was typed last.
@@ -105,6 +136,18 @@ class Resident {
   /// Gives the present position of an axis a value (as programs write it: a diameter on a diameter axis) in
   /// the origin in force, after the gate has agreed.
   Zeroed zero(int axis, double value);
+  /// Origins and tools as they are now.
+  const program::Tables& tables();
+  /// Puts others in their place, which undo_tables() takes back; renew_tables() gives them to the programs.
+  void change_tables(program::Tables changed);
+  /// False: nothing was changed since the control began.
+  bool undo_tables();
+  /// What would make the present position of an axis read `value` (as `zero` takes it): the entry of an
+  /// origin with the tool in force, and the length of a tool with the origin in force, mm or degrees.
+  struct Touched {
+    double origin = 0.0, length = 0.0;
+  };
+  Touched touch(int axis, double value);
 
   /// What has been learned (homing, origins, tool); nullopt: nothing yet, or nothing is kept.
   std::optional<machine::MachineState> to_save();
@@ -153,6 +196,9 @@ class Resident {
     std::vector<text::Finding> refused;
     int blocks = 0, lines = 0;
     std::string manual_block;
+    std::uint64_t read_at = 0;  ///< what the coordinates of MDI were read behind
+    Coordinates manual;
+    std::string shown_file, shown_text;  ///< the subprogram whose line was asked for last
     bool busy_seen = false;
   };
   const Seat& seat(int process) const { return seats_[static_cast<std::size_t>(process)]; }
@@ -162,6 +208,7 @@ class Resident {
   /// `process` gets its tables anew even where it has them, -1: all of them.
   std::optional<Proof> renew(int process);
   Start start_of(int process);
+  program::Interpreter reading(int axis, double value, double& length);
   void catch_up();
   Work prove_later(Proof proof);
   Work save_later();
@@ -172,6 +219,7 @@ class Resident {
   Control& control_;
   machine::MachineState state_;
   std::string state_path_;
+  std::vector<program::Tables> past_tables_;  ///< before the changes from here, oldest first
   double speed_;
   std::vector<Seat> seats_;  ///< by process
   std::uint32_t homed_seen_ = 0;
@@ -181,7 +229,8 @@ class Resident {
   image::ProcessImage image_;
   cycle::AlarmSnapshot alarms_;
   history::EventLog* history_ = nullptr;
-  history::MachineWatch watch_{control_};
+  BlockJournal* journal_ = nullptr;
+  history::MachineWatch watch_{control_, [this](int process) { return manual_block(process); }};
   Works works_;
 };
 

@@ -137,7 +137,7 @@ void Frames::use_lengths(int row) {
   const auto entry = correctors.find(row);
   for (int a = 0; a < machine_.axis_count(); ++a) {
     const bool named = row != 0 && entry != correctors.end();
-    state_.frame.set_length(a, named ? entry_of(entry->second.length, machine_.axes[at(a)].letter) : 0.0);
+    state_.frame.set_length(a, named ? entry->second.length_of(machine_.axes[at(a)].letter) : 0.0);
   }
   changed();
 }

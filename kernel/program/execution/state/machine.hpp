@@ -53,12 +53,21 @@ struct MachineModel {
 /// Tables an interpreter reads and, for some words, changes; kept in the state directory by the gateway.
 struct Tables {
   struct Corrector {
+    std::string name;                      ///< for people
     std::map<std::string, double> length;  ///< axis letter to mm
-    double diameter = 0.0;
+    std::map<std::string, double> wear;    ///< axis letter to mm, added to the length
+    double radius = 0.0;                   ///< mm
+    double radius_wear = 0.0;              ///< mm, added to the radius
+    int quadrant = 0;  ///< where the tip of a turning tool points, 1 to 9; 0: no turning tool
+    /// What is in force along an axis, wear included; 0 where the row does not name it.
+    double length_of(const std::string& letter) const {
+      const auto own = length.find(letter), worn = wear.find(letter);
+      return (own == length.end() ? 0.0 : own->second) + (worn == wear.end() ? 0.0 : worn->second);
+    }
     bool operator==(const Corrector&) const = default;
   };
   std::map<int, std::map<std::string, double>> origins;  ///< number to axis letter to mm
-  std::map<int, Corrector> correctors;
+  std::map<int, Corrector> correctors;                   ///< by number; what people call a tool's row
   bool operator==(const Tables&) const = default;
 };
 

@@ -45,6 +45,7 @@ ProcessReport process_report(Resident& resident, const image::ProcessImage& imag
   if (p.typed) report.block = resident.manual_block(process);
   report.stop = stop_words(control, image, process, language);
   report.file = file_in_motion(control, p, process);
+  if (!report.file.empty()) report.text = resident.line_of(process, report.file, p.line);
   report.message = program_message(control, image, process);
   report.wait = wait_words(control, image, process, language);
   return report;
@@ -61,6 +62,7 @@ AxisReport axis_report(const machine::AxisConfig& config, const image::AxisImage
   report.command = a.command * shown;
   report.position = a.actual * shown;
   report.axis = a;
+  report.to_go = a.distance_to_go * shown;
   if (a.jog_end != image::JogEnd::none) report.jog_end = jog_end_words(a.jog_end, config.letter, language);
   return report;
 }
@@ -140,11 +142,24 @@ StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Languag
   status.language = language;
   for (int p = 0; p < image.process_count; ++p)
     status.processes.push_back(process_report(resident, image, p, language));
+  std::vector<Resident::Coordinates> coordinates;
+  for (int p = 0; p < image.process_count; ++p) {
+    coordinates.push_back(resident.coordinates(p));
+    status.processes[static_cast<std::size_t>(p)].corrector = coordinates.back().corrector;
+    status.processes[static_cast<std::size_t>(p)].rotation_deg = coordinates.back().frame.rotation();
+  }
+  program::Position stands{};
+  for (std::size_t a = 0; a < stands.size(); ++a) stands[a] = image.axes[a].actual;
   for (int i = 0; i < image.axis_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
     status.homing = status.homing || image.axes[n].owner == image::AxisOwner::homing;
     if ((image.homing_left >> i & 1u) != 0) status.homing_left.push_back(m.axes[n].letter);
     status.axes.push_back(axis_report(m.axes[n], image.axes[n], language));
+    const auto p = static_cast<std::size_t>(image.axes[n].process);
+    if (m.axes[n].auxiliary || p >= coordinates.size()) continue;
+    status.axes.back().work =
+        coordinates[p].frame.to_programmed(stands, i) * (m.axes[n].diameter ? 2.0 : 1.0);
+    status.axes.back().origin = coordinates[p].origin[n];
   }
   for (int i = 0; i < image.spindle_count; ++i) {
     SpindleReport spindle = spindle_report(m, static_cast<std::size_t>(i));
