@@ -113,10 +113,11 @@ TEST_F(History, of_many_threads_has_whole_lines) {
 TEST(RequestWords, keep_what_people_ask_for_and_neither_keep_alives_nor_the_drudgery_of_a_plc) {
   using image::RequestKind;
   for (const RequestKind kind : {RequestKind::power, RequestKind::start, RequestKind::quick_stop,
-                                 RequestKind::force, RequestKind::jog_continuous, RequestKind::reset})
+                                 RequestKind::force, RequestKind::jog_continuous, RequestKind::reset,
+                                 RequestKind::set_place, RequestKind::assign, RequestKind::tables})
     EXPECT_TRUE(kept(kind));
-  for (const RequestKind kind : {RequestKind::none, RequestKind::keep_alive, RequestKind::set_place,
-                                 RequestKind::move_absolute, RequestKind::torque})
+  for (const RequestKind kind :
+       {RequestKind::none, RequestKind::keep_alive, RequestKind::move_absolute, RequestKind::torque})
     EXPECT_FALSE(kept(kind));
 }
 
