@@ -167,16 +167,21 @@ void ModbusLine::pause() noexcept {
 
 void ModbusLine::take_letters(Nanoseconds now) noexcept {
   for (std::size_t b = 0; b < boxes_.size(); ++b)
-    if (const Data* data = boxes_[b].to_write.take(); data != nullptr) poller_.write(b, *data, now);
+    if (const Data* data = boxes_[b].to_write.take(); data != nullptr) {
+      boxes_[b].wanted = *data;
+      poller_.write(b, *data, now);
+    }
 }
 
-/// Writes what has not gone out yet. Units that are lost are not waited for; others are asked twice.
+/// Writes the newest of every block once more: the poller may hold it, and may not have come to it. Units
+/// that are lost are not waited for; others are asked twice.
 void ModbusLine::take_leave() {
   waker_.clear();
+  take_letters(now_ns());
   if (!linked_) return;
   for (std::size_t b = 0; b < boxes_.size(); ++b) {
-    const Data* data = boxes_[b].to_write.take();
-    if (data == nullptr || poller_.lost(poller_.blocks()[b].unit)) continue;
+    const std::optional<Data>& data = boxes_[b].wanted;
+    if (!data || poller_.lost(poller_.blocks()[b].unit)) continue;
     if (!write_now(b, *data)) write_now(b, *data);
   }
 }

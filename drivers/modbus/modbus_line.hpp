@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -59,6 +60,7 @@ class ModbusLine final : public image::CycleDevice, public CountedLine {
     drivers::Latest<Data> to_write;
     drivers::Latest<Arrived> arrived;
     Arrived known;                   ///< the thread's
+    std::optional<Data> wanted;      ///< the thread's: the newest that is to be written
     std::uint32_t faults_taken = 0;  ///< the cycle's
     image::Nanoseconds taken_ns = 0;
   };

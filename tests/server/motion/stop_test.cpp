@@ -102,7 +102,7 @@ TEST_F(Stopped, status_is_all_in_the_users_language) {
   const std::string out = shell_.run({"status"}, "ru_RU.UTF-8").out;
   for (const char* part :
        {"авто, выполняется", "строка 2 из 3", "подача ", "мм/мин", "инструмент",
-        "оси, в координатах станка:", "привод работает", "выведена в ноль", "движется", "шпиндель 0 об/мин"})
+        "оси: в координатах программы, в координатах станка, остаток пути:", "привод работает", "выведена в ноль", "движется", "шпиндель 0 об/мин"})
     EXPECT_TRUE(contains(out, part)) << part << ": " << out;
   for (const char* english :
        {"auto", "running", "feed", "homed", "moving", "spindle", "operation_enabled", "rpm"})
