@@ -2,14 +2,13 @@
 #include "kernel/cycle/gate/gate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <initializer_list>
 
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
 #include "kernel/cycle/gate/guarded_places.hpp"
 #include "kernel/cycle/gate/interface_places.hpp"
+#include "kernel/cycle/gate/request_kinds.hpp"
 
 namespace servogate::cycle {
 
@@ -22,77 +21,15 @@ using image::ProcessState;
 using image::Reaction;
 using image::Request;
 using image::RequestKind;
+using requests::kBegins;
+using requests::kOfProcess;
+using requests::kStops;
+using requests::kTakesAway;
+using requests::kTakesAwayAtZero;
+using requests::kWithMode;
+using requests::may_ask;
 
 namespace {
-
-/// A set of kinds of requests, however many there come to be.
-class Kinds {
- public:
-  constexpr Kinds(std::initializer_list<RequestKind> kinds) noexcept {
-    for (const RequestKind k : kinds) words_[word(k)] |= bit(k);
-  }
-  constexpr bool has(RequestKind k) const noexcept { return (words_[word(k)] & bit(k)) != 0; }
-  constexpr Kinds operator|(const Kinds& other) const noexcept {
-    Kinds all = *this;
-    for (std::size_t w = 0; w < words_.size(); ++w) all.words_[w] |= other.words_[w];
-    return all;
-  }
-  constexpr Kinds without(RequestKind k) const noexcept {
-    Kinds rest = *this;
-    rest.words_[word(k)] &= ~bit(k);
-    return rest;
-  }
-
- private:
-  static constexpr std::size_t word(RequestKind k) { return static_cast<std::size_t>(k) / 64; }
-  static constexpr std::uint64_t bit(RequestKind k) {
-    return std::uint64_t{1} << (static_cast<unsigned>(k) % 64);
-  }
-  std::array<std::uint64_t, 256 / 64> words_{};  // a kind is one byte
-};
-
-using enum RequestKind;
-
-constexpr Kinds kStops{hold, stop, quick_stop, jog_stop};
-constexpr Kinds kJogs{jog_increment, jog_continuous, keep_alive};
-constexpr Kinds kResets{reset, acknowledge};
-constexpr Kinds kProgram{start, step, resume, mode, override_feed};
-constexpr Kinds kPlaces{set_place, force, release_force, logic, logic_scan};
-constexpr Kinds kPanel = kStops | kJogs | kResets | kProgram | Kinds{power, home, zero, assign, tables};
-/// Of the auxiliary axes, the PLC's alone.
-constexpr Kinds kMoves{move_absolute, move_relative, move_velocity, torque};
-constexpr Kinds kAuxiliary = kMoves | Kinds{axis_power, axis_home, axis_stop, axis_reset};
-constexpr Kinds kBegins = kJogs | kMoves | Kinds{home, start, step, resume, power, axis_power, axis_home};
-
-/// Never too old. Of these kinds a value of 0 only takes away: power off, an override of 0.
-constexpr Kinds kTakesAway = kStops | Kinds{reset, axis_stop, axis_reset};
-constexpr Kinds kTakesAwayAtZero{power, axis_power, override_feed};
-
-/// What speaks to a process. All else works on a machine that has none (a bench of drives) just as well.
-constexpr Kinds kOfProcess = kProgram | Kinds{hold, zero, assign};
-/// What may bring its mode along.
-constexpr Kinds kWithMode{home, jog_increment, jog_continuous, start, step};
-
-/// Who may ask for what at all. Stops are everybody's right.
-constexpr Kinds may_ask(Asker asker) noexcept {
-  switch (asker) {
-    case Asker::command_line:
-    case Asker::page:
-    case Asker::scenario:
-      return kPanel | kPlaces;
-    case Asker::pendant:
-      return kPanel;
-    case Asker::plc:
-      return kPanel.without(zero) | kAuxiliary;
-    case Asker::modbus:
-      return kStops | Kinds{set_place};
-    case Asker::program:
-      return kStops;
-    case Asker::bench:
-      return kStops | kJogs | kResets | kPlaces | Kinds{power, home};
-  }
-  return {};
-}
 
 /// One decision under way: the first refusal stands.
 class Decision {
