@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "firmware_if/text/csv.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "firmware_if/text/system_words.hpp"
 #include "report/decimal.hpp"
@@ -15,14 +16,6 @@ namespace {
 
 constexpr int kPositionDecimals = 12, kFeedDecimals = 9, kErrorDecimals = 9, kSpindleDecimals = 6;
 constexpr std::size_t kChunk = std::size_t{1} << 18;
-
-/// A CSV field: names with a comma, a quote or a line break are quoted. Source: RFC 4180, section 2.
-std::string field(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string out = "\"";
-  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
 
 std::size_t signal_count(const TraceLayout& layout) {
   return std::min<std::size_t>(layout.signals.size(), kMaxTraceSignals);
@@ -107,15 +100,17 @@ CsvSink::~CsvSink() {
 
 std::string CsvSink::header(const TraceLayout& layout, CsvColumns columns) {
   std::string out = "t,feed,line";
-  for (const std::string& a : layout.axes) out += "," + field(a + ".cmd") + "," + field(a + ".act");
+  for (const std::string& a : layout.axes)
+    out += "," + text::csv_field(a + ".cmd") + "," + text::csv_field(a + ".act");
   for (int s = 0; s < layout.spindles; ++s) {
     const std::string name = s == 0 ? "spindle" : "spindle" + std::to_string(s + 1);
     out += "," + name + ".cmd," + name + ".act";
   }
   if (columns.following_error)
-    for (const std::string& a : layout.axes) out += "," + field(a + ".error");
+    for (const std::string& a : layout.axes) out += "," + text::csv_field(a + ".error");
   if (columns.signals)
-    for (std::size_t n = 0; n < signal_count(layout); ++n) out += "," + field(layout.signals[n].name);
+    for (std::size_t n = 0; n < signal_count(layout); ++n)
+      out += "," + text::csv_field(layout.signals[n].name);
   for (int p = 2; p <= layout.processes; ++p) {
     const std::string number = std::to_string(p);
     out += ",feed" + number + ",line" + number + ",tool" + number;

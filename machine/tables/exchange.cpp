@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "firmware_if/text/csv.hpp"
 #include "machine/state/state_text.hpp"
 #include "machine/state/table_text.hpp"
 
@@ -28,13 +29,6 @@ constexpr text::Entry kBadWord{"tables.word", "'{0}' is no word of a LinuxCNC to
 constexpr text::Entry kNoNumber{"tables.no-number", "the line has no T", "в строке нет T"};
 constexpr text::Entry kOnlyTools{"tables.only-tools", "a LinuxCNC tool table has no origins; give a CSV file",
                                  "в таблице инструментов LinuxCNC нет начал отсчёта; нужен файл CSV"};
-
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
 
 std::string number(double value) {
   char digits[40];
@@ -164,9 +158,9 @@ class TableBuilder {
 
 std::string header(TableKind kind, const std::vector<std::string>& axes) {
   std::string out = kind == TableKind::origins ? "origin" : "tool,name,radius,radius_wear,quadrant";
-  for (const std::string& a : axes) out += "," + field(a);
+  for (const std::string& a : axes) out += "," + text::csv_field(a);
   if (kind == TableKind::tools)
-    for (const std::string& a : axes) out += ",wear_" + field(a);
+    for (const std::string& a : axes) out += ",wear_" + text::csv_field(a);
   return out;
 }
 
@@ -301,8 +295,8 @@ std::string to_csv(const program::Tables& tables, TableKind kind, const std::vec
     return out;
   }
   for (const auto& [n, c] : tables.correctors) {
-    out += std::to_string(n) + "," + field(c.name) + "," + number(c.radius) + "," + number(c.radius_wear) +
-           "," + std::to_string(c.quadrant);
+    out += std::to_string(n) + "," + text::csv_field(c.name) + "," + number(c.radius) + "," +
+           number(c.radius_wear) + "," + std::to_string(c.quadrant);
     for (const std::string& a : axes) out += "," + cell(c.length, a);
     for (const std::string& a : axes) out += "," + cell(c.wear, a);
     out += "\r\n";
