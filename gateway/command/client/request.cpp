@@ -9,6 +9,7 @@
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/client/tables.hpp"
+#include "gateway/command/client/texts.hpp"
 
 namespace servogate::gateway::command {
 
@@ -16,9 +17,6 @@ using nlohmann::json;
 
 namespace {
 
-const text::Entry kBadNumber{"client.bad-number", "'{0}' is not {1}", "«{0}» — не {1}"};
-const text::Entry kComma{"client.decimal-comma", "'{0}' has a decimal comma; write {1}",
-                         "в «{0}» десятичная запятая; пишите {1}"};
 const text::Entry kArguments{"client.arguments", "`{0}` takes: {1}", "`{0}` принимает: {1}"};
 
 /// A finite number at the front of `text`; `rest`: what is behind it.

@@ -11,6 +11,7 @@
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
+#include "gateway/command/client/texts.hpp"
 #include "machine/tables/exchange.hpp"
 
 namespace servogate::gateway::command {
@@ -25,9 +26,6 @@ const text::Entry kActions{
     "export FILE",
     "`{0}` принимает: list | set N ЗНАЧЕНИЕ... | here N ОСЬ... | clear N | undo | import "
     "ФАЙЛ | export ФАЙЛ"};
-const text::Entry kBadNumber{"client.bad-number", "'{0}' is not {1}", "«{0}» — не {1}"};
-const text::Entry kComma{"client.decimal-comma", "'{0}' has a decimal comma; write {1}",
-                         "в «{0}» десятичная запятая; пишите {1}"};
 const text::Entry kBadWord{"client.bad-table-word", "'{0}' is no value; written as X100, Z-12.5 or length=85",
                            "«{0}» — не величина; пишется X100, Z-12.5 или length=85"};
 const text::Entry kNoRows{"client.no-rows", "the table of {0} is empty", "таблица пуста: {0}"};
