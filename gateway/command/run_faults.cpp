@@ -84,7 +84,9 @@ bool RunFaults::plan(const std::vector<std::string>& lines, const std::string& s
   return good;
 }
 
-void RunFaults::poll(image::Nanoseconds t_ns) {
+void RunFaults::poll() {
+  if (done_ == due_.size()) return;
+  const image::Nanoseconds t_ns = machine_.image().now.t_ns;
   using Kind = DriveDeed::Kind;
   for (; done_ < due_.size() && due_[done_].at <= t_ns; ++done_) {
     const Due& d = due_[done_];

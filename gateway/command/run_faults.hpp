@@ -15,8 +15,8 @@ class RunFaults {
   explicit RunFaults(RunningMachine& machine) : machine_(machine) {}
   /// False: a line is wrong, or a fault cannot happen to its device, which has been said.
   bool plan(const std::vector<std::string>& lines, const std::string& script);
-  /// Puts in what is due at this time of the machine.
-  void poll(image::Nanoseconds t_ns);
+  /// Puts in what is due now.
+  void poll();
 
  private:
   struct Due {
