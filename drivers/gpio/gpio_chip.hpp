@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "drivers/gpio/chip.hpp"
 #include "drivers/notice.hpp"
 #include "firmware_if/image/cycle_device.hpp"
 #include "firmware_if/image/points/point_rule.hpp"
 
 namespace servogate::gpio {
 
-/// A line of a chip that carries a point: its offset on the chip, as `gpioinfo` counts it.
+/// A point on a line of a chip, by its offset as `gpioinfo` counts it. A digital input or output; or, with
+/// `b_offset`, an encoder of two tracks whose counts are an analog input: a handwheel.
 struct Line {
   std::string name;  ///< of the point
   unsigned offset = 0;
   image::PointRule rule;
+  Bias bias = Bias::as_is;             ///< inputs
+  bool edges = false;                  ///< digital input: each edge with the kernel's time, beside the level
+  std::optional<unsigned> b_offset{};  ///< line of track B; `offset` is that of track A
 };
 
 struct ChipConfig {
@@ -24,14 +30,21 @@ struct ChipConfig {
   int source = -1;          ///< index in image.sources; -1: none
 };
 
-/// Of one direction: what one system call of the kernel carries.
-inline constexpr std::size_t kMostLines = 64;
+/// Since the start.
+struct ChipCounters {
+  std::uint64_t edges = 0;           ///< that the kernel has given
+  std::uint32_t lost = 0;            ///< edges known to be missing
+  std::uint32_t encoder_errors = 0;  ///< transitions that no turning encoder makes
+};
 
 /// A GPIO chip as a device of the cycle. In receive() the levels of all inputs are read by one system call,
 /// so that an emergency stop or a limit switch acts in the cycle in which it is read; in send() all outputs
-/// are written by one, when one of them has changed. A chip that does not answer any more (unplugged), for
-/// reading or for writing, gives its inputs their values of loss, and its source is bad. At its end it writes
-/// the values of loss and lets the lines go; what a line that nobody holds does then is the chip's affair.
+/// are written by one, when one of them has changed. Edges and encoders come from a thread (edge_thread.hpp):
+/// an edge stands in ProcessImage::edges in the cycle of its level or a little later, with the time of its
+/// interrupt, not debounced; a lost one is counted there. A chip that does not answer any more (unplugged),
+/// for reading or for writing, gives its inputs their values of loss (an encoder keeps its counts), and its
+/// source is bad. At its end it writes the values of loss and lets the lines go; what a line that nobody
+/// holds does then is the chip's affair.
 class GpioChip final : public image::CycleDevice {
  public:
   /// Takes the lines; outputs begin at their values of loss. nullptr: `why` says what is wrong and what mends
@@ -41,16 +54,21 @@ class GpioChip final : public image::CycleDevice {
   GpioChip(const GpioChip&) = delete;
   GpioChip& operator=(const GpioChip&) = delete;
 
+  /// real-time safe.
+  void open_cycle(image::ProcessImage& image) noexcept override;
   /// real-time safe but for the one system call.
   void receive(image::ProcessImage& image, image::Notices& notices) noexcept override;
   /// real-time safe but for the one system call.
   void send(image::ProcessImage& image) noexcept override;
 
- private:
-  struct Lines;
-  explicit GpioChip(std::unique_ptr<Lines> lines);
+  /// real-time safe.
+  ChipCounters counters() const noexcept;
 
-  std::unique_ptr<Lines> lines_;
+ private:
+  struct Parts;
+  explicit GpioChip(std::unique_ptr<Parts> parts);
+
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace servogate::gpio

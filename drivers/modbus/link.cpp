@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <modbus/modbus.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -13,7 +12,6 @@
 #include <cerrno>
 #include <cstring>
 #include <span>
-#include <system_error>
 
 #include "drivers/clock.hpp"
 #include "drivers/modbus/counted_frame.hpp"
@@ -71,23 +69,6 @@ std::string words_of_failure(int error) {
 }
 
 }  // namespace
-
-Waker::Waker() : event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
-  if (event_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
-}
-Waker::~Waker() { ::close(event_); }
-void Waker::wake() noexcept {
-  const std::uint64_t one = 1;
-  if (::write(event_, &one, sizeof one) < 0) return;  // the counter is full: it is readable
-}
-void Waker::end() noexcept {
-  ended_.store(true, std::memory_order_release);
-  wake();
-}
-void Waker::clear() noexcept {
-  std::uint64_t told = 0;
-  if (::read(event_, &told, sizeof told) < 0) return;
-}
 
 void Link::Free::operator()(_modbus* m) const noexcept {
   modbus_close(m);
@@ -167,7 +148,7 @@ void Link::close() noexcept {
   modbus_.reset();
 }
 
-Heard Link::exchange(std::uint8_t unit, const Request& request, Response& response, Waker* waker) {
+Heard Link::exchange(std::uint8_t unit, const Request& request, Response& response, drivers::Waker* waker) {
   Pdu pdu;
   const bool own = request.coding == Coding::huanyang;
   if (!encode(request, pdu) || (own && !serial())) return Heard::malformed;
@@ -211,7 +192,7 @@ bool Link::ask(std::uint8_t unit, const Pdu& pdu) {
          static_cast<ssize_t>(size);
 }
 
-Heard Link::await(Nanoseconds deadline, Waker* waker) {
+Heard Link::await(Nanoseconds deadline, drivers::Waker* waker) {
   const int woken = waker != nullptr ? waker->descriptor() : -1;
   pollfd wanted[] = {{modbus_get_socket(modbus_.get()), POLLIN, 0}, {woken, POLLIN, 0}};
   for (;;) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "drivers/modbus/line_address.hpp"
 #include "drivers/notice.hpp"
+#include "drivers/waker.hpp"
 #include "firmware_if/image/time.hpp"
 #include "firmware_if/modbus/line_counters.hpp"
 #include "firmware_if/modbus/pdu.hpp"
@@ -32,26 +32,6 @@ struct LinkSettings {
   image::Nanoseconds answer_timeout_ns = 100 * image::kMillisecond;
 };
 
-/// Ends waits of a thread from another one.
-class Waker {
- public:
-  Waker();
-  ~Waker();
-  Waker(const Waker&) = delete;
-  Waker& operator=(const Waker&) = delete;
-  /// There is something to do. One system call that never waits; from any thread. real-time safe.
-  void wake() noexcept;
-  /// The thread shall end.
-  void end() noexcept;
-  bool ended() const noexcept { return ended_.load(std::memory_order_acquire); }
-  void clear() noexcept;
-  int descriptor() const noexcept { return event_; }
-
- private:
-  int event_;
-  std::atomic<bool> ended_{false};
-};
-
 /// The connection of a master to its line: libmodbus opens it, frames requests and reads answers, and does
 /// nothing by itself: no repeats, no reconnecting. Of one thread; not real-time safe.
 class Link {
@@ -71,7 +51,7 @@ class Link {
 
   /// One request of an open link and its answer. `waker` gives up the wait when it has ended; nullptr: nobody
   /// does.
-  Heard exchange(std::uint8_t unit, const Request& request, Response& response, Waker* waker);
+  Heard exchange(std::uint8_t unit, const Request& request, Response& response, drivers::Waker* waker);
 
  private:
   struct Free {
@@ -79,7 +59,7 @@ class Link {
   };
   bool ask(std::uint8_t unit, const Pdu& pdu);
   /// Readable by `deadline`.
-  Heard await(image::Nanoseconds deadline, Waker* waker);
+  Heard await(image::Nanoseconds deadline, drivers::Waker* waker);
   Heard read(std::uint8_t unit, const Request& request, image::Nanoseconds deadline, Response& response);
   /// The answer to a request that is none of the standard.
   Heard read_own(std::uint8_t unit, const Request& request, image::Nanoseconds deadline, Response& response);

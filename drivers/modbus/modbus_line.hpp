@@ -90,7 +90,7 @@ class ModbusLine final : public image::CycleDevice, public CountedLine {
   std::vector<Box> boxes_;
   Letters letters_{*this};
   std::atomic<image::Nanoseconds> last_cycle_ns_{-1};
-  Waker waker_;
+  drivers::Waker waker_;
   LineTally tally_;
   // Of the thread alone, once it runs.
   Link link_;

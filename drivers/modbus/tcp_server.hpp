@@ -62,7 +62,7 @@ class TcpServer {
   Handler handler_;
   int listening_;
   std::uint16_t port_;
-  Waker waker_;
+  drivers::Waker waker_;
   std::vector<Client> clients_;  ///< of the thread
   std::atomic<std::uint64_t> connections_{0}, refused_{0}, requests_{0}, exceptions_{0}, malformed_{0};
   std::thread thread_;

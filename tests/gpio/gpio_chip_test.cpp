@@ -5,74 +5,15 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <string>
 
 #include "tests/counting/allocations.hpp"
-#include "tests/skip_here.hpp"
+#include "tests/gpio/simulated_chip.hpp"
 
 namespace servogate::gpio {
 namespace {
 
 using image::Quality;
-
-constexpr const char* kHowToRun =
-    "no simulated GPIO chip: tests/lab/lab run build/release/tests/gpio/test_gpio";
-
-image::PointRule rule(const char* place, bool input, bool inverted = false) {
-  image::PointRule r;
-  r.place = *image::parse_place(place);
-  r.input = input;
-  r.inverted = inverted;
-  return r;
-}
-
-std::string output_of(const std::string& command) {
-  std::string text;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return text;
-  char buffer[256];
-  while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) text += buffer;
-  pclose(pipe);
-  return text;
-}
-
-class ChipOfTheKernel : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const char* name = std::getenv("LAB_GPIOCHIP");
-    const char* sysfs = std::getenv("LAB_GPIO_SYSFS");
-    if (name == nullptr || sysfs == nullptr) SKIP_HERE(kHowToRun);
-    chip_ = name;
-    sysfs_ = sysfs;
-  }
-  /// The world at line `n`.
-  void pull(int n, bool up) const {
-    std::ofstream(sysfs_ + "/sim_gpio" + std::to_string(n) + "/pull") << (up ? "pull-up" : "pull-down");
-  }
-  bool level(int n) const {
-    char c = '?';
-    std::ifstream(sysfs_ + "/sim_gpio" + std::to_string(n) + "/value") >> c;
-    return c == '1';
-  }
-  std::unique_ptr<GpioChip> open(std::vector<Line> lines) {
-    return GpioChip::open({chip_, "servogate test", std::move(lines), 0}, why_);
-  }
-  void cycle(GpioChip& chip) {
-    image_->now.t_ns += image::kMillisecond;
-    chip.receive(*image_, notices_);
-    chip.send(*image_);
-  }
-  bool bit(const char* place) const { return image_->packets.bit(*image::parse_place(place)); }
-  void set(const char* place, bool on) { image_->packets.set_bit(*image::parse_place(place), on); }
-
-  std::string chip_, sysfs_;
-  drivers::Notice why_;
-  image::Notices notices_;
-  std::unique_ptr<image::ProcessImage> image_ = std::make_unique<image::ProcessImage>();
-};
 
 TEST_F(ChipOfTheKernel, shows_all_inputs_in_the_cycle_in_which_they_are_read) {
   pull(3, false);
@@ -131,6 +72,60 @@ TEST_F(ChipOfTheKernel, names_the_holder_of_a_line_that_another_program_has) {
   EXPECT_NE(why_.str(text::Language::english).find("held by 'gpiomon'"), std::string::npos) << why_.str();
   output_of("pkill gpiomon || killall gpiomon || busybox killall gpiomon");
   pclose(other);
+}
+
+TEST_F(ChipOfTheKernel, reads_lines_of_every_bias_together_and_sets_their_resistors) {
+  Line up{"up", 16, rule("SA0", true)}, down{"down", 17, rule("SA1", true)},
+      off{"off", 18, rule("SA2", true)};
+  up.bias = Bias::up;
+  down.bias = Bias::down;
+  off.bias = Bias::off;
+  const auto chip = open({up, down, off, {"as it is", 19, rule("SA3", true)}});
+  ASSERT_NE(chip, nullptr) << why_.str();
+  cycle(*chip);
+  EXPECT_TRUE(bit("SA0")) << "nothing but its resistor is at the line";
+  EXPECT_FALSE(bit("SA1"));
+  pull(16, false);
+  pull(17, true);
+  cycle(*chip);
+  EXPECT_FALSE(bit("SA0"));
+  EXPECT_TRUE(bit("SA1"));
+}
+
+TEST_F(ChipOfTheKernel, sets_one_bias_of_all_its_lines_by_the_library) {
+  Line line{"up", 16, rule("SA0", true)};
+  line.bias = Bias::up;
+  const auto chip = open({line});
+  ASSERT_NE(chip, nullptr) << why_.str();
+  cycle(*chip);
+  EXPECT_TRUE(bit("SA0"));
+}
+
+TEST_F(ChipOfTheKernel, that_vanishes_gives_its_values_of_loss_and_keeps_the_counts_of_its_encoder) {
+  const std::string lab = "/sys/kernel/config/gpio-sim/vanishing";
+  output_of("mkdir -p " + lab + "/bank0 && echo 8 > " + lab + "/bank0/num_lines && echo 1 > " + lab +
+            "/live");
+  std::ifstream(lab + "/bank0/chip_name") >> chip_;
+  std::string device;
+  std::ifstream(lab + "/dev_name") >> device;
+  sysfs_ = "/sys/devices/platform/" + device + "/" + chip_;
+  image::PointRule limit = rule("SA0", true, true);
+  limit.loss = 1.0;
+  Line wheel{"wheel", 2, rule("SA40.LI", true)};
+  wheel.b_offset = 3;
+  const auto chip = open({{"limit", 1, limit}, wheel});
+  ASSERT_NE(chip, nullptr) << why_.str();
+  pull(1, true);
+  pull(2, true);
+  for (int n = 0; n < 1'000'000 && number("SA40.LI") != 1.0; ++n) cycle(*chip);
+  EXPECT_FALSE(bit("SA0"));
+  EXPECT_EQ(image_->sources[0].quality, Quality::good);
+  output_of("echo 0 > " + lab + "/live");
+  cycle(*chip);
+  EXPECT_TRUE(bit("SA0")) << "on the limit, as far as anybody can tell";
+  EXPECT_EQ(number("SA40.LI"), 1.0);
+  EXPECT_EQ(image_->sources[0].quality, Quality::bad);
+  output_of("rmdir " + lab + "/bank0 " + lab);
 }
 
 TEST_F(ChipOfTheKernel, has_no_line_behind_its_last) {
