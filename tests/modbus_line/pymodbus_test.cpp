@@ -11,6 +11,8 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <fstream>
 #include <thread>
 
 #include "tests/comes.hpp"
@@ -171,6 +173,30 @@ TEST(Pymodbus, serves_a_line_over_a_serial_device) {
   Counterpart units("rtu", wire.device(1));
   ASSERT_TRUE(units.says("ready"));
   Cycles cycles(rtu(wire.device(0), image::kSecond), {1, 2}, 200 * image::kMillisecond);
+  judge(cycles, units);
+}
+
+/// The laboratory's USB serial pair: LAB_SERIAL is the control's end, LAB_SERIAL_OTHER that of the units, and
+/// LAB_SERIAL_UDC the file by which its plug is pulled and put in again.
+TEST(UsbSerial, serves_a_line_and_is_found_again_after_its_plug_was_pulled) {
+  const char *ours = std::getenv("LAB_SERIAL"), *theirs = std::getenv("LAB_SERIAL_OTHER"),
+             *plug = std::getenv("LAB_SERIAL_UDC");
+  if (ours == nullptr || theirs == nullptr || plug == nullptr)
+    GTEST_SKIP() << "no USB serial pair: tests/lab/lab run tests/lab/modbus-on-usb-serial TEST_MODBUS_LINE";
+  std::string controller;
+  std::ifstream(plug) >> controller;
+  Cycles cycles(rtu(ours, image::kSecond), {1, 2}, 200 * image::kMillisecond);
+  {
+    Counterpart units("rtu", theirs);
+    ASSERT_TRUE(units.says("ready"));
+    judge(cycles, units);
+  }
+  std::ofstream(plug) << "\n";
+  EXPECT_TRUE(cycles.until([&] { return cycles.quality(0) == image::Quality::bad; }));
+  std::ofstream(plug) << controller;
+  ASSERT_TRUE(tests::comes([&] { return access(theirs, R_OK | W_OK) == 0; }));
+  Counterpart units("rtu", theirs);
+  ASSERT_TRUE(units.says("ready"));
   judge(cycles, units);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "tests/comes.hpp"
@@ -272,17 +273,37 @@ TEST(ModbusTcp, ends_at_once_although_a_unit_does_not_answer) {
   SUCCEED() << "an hour has not passed";
 }
 
-TEST(ModbusTcp, many_units_on_a_line_are_all_served) {
+TEST(ModbusTcp, writes_at_its_end_what_the_poller_held_behind_a_unit_that_does_not_answer) {
+  Units units(Units::Wire::tcp, {1, 2});
+  Cycles cycles(tcp(units), {1, 2}, 10 * kSecond);
+  ASSERT_TRUE(cycles.until([&] { return cycles.good(0) && cycles.good(1); }));
+  std::atomic<bool> first{true}, asked{false};
+  units.bend([&](const Asked& request, const Bytes& good) {
+    if (request.function() != kWriteCoils || !first.exchange(false)) return Reply{units.frame(request, good)};
+    asked = true;
+    return Reply{};  // for as long as the control waits: a minute
+  });
+  // Both change in one cycle, and both hold their values at a loss: nothing is written anew at the end for
+  // them.
+  cycles.set_coil(0, 15, true);
+  cycles.set_coil(1, 15, true);
+  ASSERT_TRUE(cycles.until([&] { return asked.load(); }));
+  cycles.end();
+  EXPECT_TRUE(units.output(1, 15));
+  EXPECT_TRUE(units.output(2, 15));
+}
+
+TEST(ModbusTcp, fifty_units_on_a_line_are_all_served) {
   std::vector<std::uint8_t> all;
-  for (std::uint8_t u = 1; u <= 12; ++u) all.push_back(u);
+  for (std::uint8_t u = 1; u <= 50; ++u) all.push_back(u);
   Units units(Units::Wire::tcp, all);
   for (const std::uint8_t u : all)
     units.with(u, [u](mock::ModbusStation& s) { s.set_analog_input(1, 100u + u); });
   Cycles cycles(tcp(units), all, 50 * kMillisecond);
   for (std::size_t u = 0; u < all.size(); ++u) {
-    cycles.set_coil(u, static_cast<int>(u), true);
-    EXPECT_TRUE(cycles.until([&] { return cycles.good(u) && cycles.analog(u, 1) == 100.0 + all[u]; })) << u;
-    EXPECT_TRUE(cycles.until([&] { return units.output(all[u], static_cast<std::uint16_t>(u)); })) << u;
+    cycles.set_coil(u, static_cast<int>(u % 16), true);
+    EXPECT_TRUE(cycles.until([&] { return cycles.analog(u, 1) == 100.0 + all[u]; })) << u;
+    EXPECT_TRUE(cycles.until([&] { return units.output(all[u], static_cast<std::uint16_t>(u % 16)); })) << u;
   }
 }
 

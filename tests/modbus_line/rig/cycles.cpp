@@ -12,10 +12,10 @@ namespace {
 using image::Place;
 
 Place bit(std::size_t unit, int n) {
-  return {image::Packet::a, image::Format::bl, static_cast<std::uint32_t>(64 * unit + n), 1};
+  return {image::Packet::a, image::Format::bl, static_cast<std::uint32_t>(32 * unit + n), 1};
 }
 Place word(std::size_t unit, int n) {
-  return {image::Packet::a, image::Format::in, static_cast<std::uint32_t>(256 + 8 * unit + n), 1};
+  return {image::Packet::a, image::Format::in, static_cast<std::uint32_t>(128 + 6 * unit + n), 1};
 }
 
 }  // namespace
@@ -63,7 +63,8 @@ modbus::LineSettings rtu(const std::string& device, image::Nanoseconds timeout) 
 Cycles::Cycles(const modbus::LineSettings& settings, const std::vector<std::uint8_t>& units,
                image::Nanoseconds period) {
   std::vector<modbus::Unit> sources;
-  for (std::size_t u = 0; u < units.size(); ++u) sources.push_back({units[u], static_cast<int>(u)});
+  for (std::size_t u = 0; u < units.size(); ++u)
+    sources.push_back({units[u], u < image::kMaxSources ? static_cast<int>(u) : -1});
   drivers::Notice why;
   line_ = modbus::ModbusLine::open(settings, map_of(units, period), sources, why);
   EXPECT_NE(line_, nullptr) << why.str(text::Language::english);

@@ -15,8 +15,9 @@ namespace servogate::modbus_line {
 inline constexpr image::Nanoseconds kLong = 60 * image::kSecond, kShort = 30 * image::kMillisecond;
 
 /// Sixteen inputs, sixteen coils, four input registers and two holding registers for each unit, the n-th unit
-/// as source n. Input i of unit n is at bit 64 n + i of packet A, coil i at 64 n + 16 + i, its registers at
-/// the words behind byte 512 + 16 n: four inputs, two outputs. Coil 15 holds its value at a loss.
+/// as source n, as far as there are sources. Input i of unit n is at bit 32 n + i of packet A, coil i at
+/// 32 n + 16 + i, its registers at the words behind byte 256 + 12 n: four inputs, two outputs. Coil 15 holds
+/// its value at a loss.
 modbus::Map map_of(const std::vector<std::uint8_t>& units,
                    image::Nanoseconds period = 5 * image::kMillisecond);
 modbus::LineSettings tcp(const Units& units, image::Nanoseconds timeout = kLong);
