@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -12,20 +12,15 @@
 #include "firmware_if/image/interface_map.hpp"
 #include "firmware_if/image/packets.hpp"
 #include "firmware_if/image/process_image.hpp"
+#include "machine/config_basics.hpp"
+#include "machine/simulation_config.hpp"
+#include "machine/station_config.hpp"
 
 /// The machine file as plain values: what everything else is composed from. One struct a table of the file,
 /// one member a key; defaults are the initialisers here, and validation, JSON schema and reference come from
 /// keys.cpp. Units: mm or degrees (rotary axis), seconds, rpm for spindles; an X in diameter is described as
 /// a radius. Nothing here is real-time safe (strings); the gateway copies what the cycle needs.
 namespace servogate::machine {
-
-/// A place in the machine file, counted from 1; 0 = not known.
-struct Where {
-  int line = 0;
-  int column = 0;
-};
-
-inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 enum class AxisType : std::uint8_t { linear, rotary };
 enum class Direction : std::uint8_t { plus, minus };
@@ -140,6 +135,16 @@ struct AxisConfig {
 /// What the loss of a node or of an inverter makes the machine do, in rising severity.
 enum class LossReaction : std::uint8_t { stop_on_path, stop_axes, stop_and_power_off, quick_stop, power_off };
 
+/// One of `gears` of a spindle.
+struct GearConfig {
+  std::string name;
+  double max_speed = 0.0;                     ///< rpm of the spindle
+  std::array<std::int64_t, 2> gear = {1, 1};  ///< motor turns : spindle turns
+  std::string output;                         ///< output point that engages it; empty: none
+  std::string confirm;                        ///< input point: it is engaged; empty: none tells
+  double ratio() const { return static_cast<double>(gear[0]) / static_cast<double>(gear[1]); }
+};
+
 /// [[spindle]]: a CANopen drive, an inverter on Modbus, or an analog output with relay points.
 struct SpindleConfig {
   std::string name;
@@ -157,16 +162,30 @@ struct SpindleConfig {
   double acceleration = 1000.0;               ///< rpm/s
   std::array<std::int64_t, 2> gear = {1, 1};  ///< motor turns : spindle turns
   std::int64_t counts_per_rev = 0;            ///< encoder counts per turn of the spindle, 0: no encoder
+  std::vector<GearConfig> gears;              ///< slow ones first; empty: the one of `gear`
+  double gear_change_speed = 0.0;             ///< rpm of the spindle while its gear changes; 0: it stands
+  double gear_change_time = 0.5;     ///< s from the outputs to an engaged gear that no input confirms
+  double gear_change_timeout = 5.0;  ///< s to the confirmation of a gear, then an alarm
   Direction direction = Direction::plus;
   double at_speed_window = 5.0;    ///< per cent
   double at_speed_timeout = 10.0;  ///< s from the ramp's end to an alarm, 0: none
   double orient_angle = 0.0;       ///< degrees, oriented stop
   double orient_speed = 60.0;      ///< rpm
   bool has_encoder() const { return counts_per_rev > 0; }
+  /// The gear by which its supplier is told: the only one, or the first of `gears`.
+  const std::array<std::int64_t, 2>& first_gear() const { return gears.empty() ? gear : gears.front().gear; }
   double motor_rpm(double rpm) const {
-    return rpm * static_cast<double>(gear[0]) / static_cast<double>(gear[1]);
+    return rpm * static_cast<double>(first_gear()[0]) / static_cast<double>(first_gear()[1]);
   }
-  /// Hz of an inverter at a speed of the spindle in rpm.
+  /// Of all gears at their largest speeds.
+  double largest_motor_rpm() const {
+    double most = gears.empty() ? motor_rpm(max_speed) : 0.0;
+    for (const GearConfig& g : gears) most = std::max(most, std::min(g.max_speed, max_speed) * g.ratio());
+    return most;
+  }
+  /// Hz of an inverter at its largest motor speed.
+  double largest_hertz() const { return largest_motor_rpm() / rated_speed * rated_frequency; }
+  /// Hz of an inverter at a speed of the spindle in rpm, in the first gear.
   double hertz(double rpm) const { return motor_rpm(rpm) / rated_speed * rated_frequency; }
 };
 
@@ -215,63 +234,6 @@ struct BusConfig {
   bool nothing_real() const { return mock() || lockstep() || simulated; }
 };
 
-enum class StationKind : std::uint8_t { modbus, gpio, drive, canopen };
-enum class ChannelKind : std::uint8_t { di, dq, ai, aq };
-
-/// One of [[station]] points: a wire of the machine with its place in packet A.
-struct PointConfig {
-  std::string name;
-  std::string channel_text;               ///< key `channel`: "di3", "do0", "ai1", "ao0"
-  ChannelKind channel = ChannelKind::di;  ///< taken apart by the loader; its kind is the direction
-  int number = -1;                        ///< -1: the channel could not be read
-  image::Place place;
-  bool inverted = false;
-  double loss =
-      0.0;  ///< value in packet A (input) or on the wire (output) while the station is lost, as written
-  image::Writer writer = image::Writer::plc;  ///< of an output; an input's is `input`
-  bool hold = false;   ///< keeps the last value while the station is lost, instead of `loss`
-  double scale = 1.0;  ///< analog: value in packet A = raw * scale + shift
-  double shift = 0.0;
-  double debounce = 0.0;    ///< s
-  double hysteresis = 0.0;  ///< analog input, in the unit of packet A
-  std::string comment;
-  bool is_input() const { return channel == ChannelKind::di || channel == ChannelKind::ai; }
-  bool is_analog() const { return channel == ChannelKind::ai || channel == ChannelKind::aq; }
-};
-
-/// Of each character on a serial line.
-enum class LineParity : std::uint8_t { none, even, odd };
-
-/// [[line]]: a Modbus line, one wire or one TCP peer, with the stations that name it.
-struct LineConfig {
-  std::string name;
-  std::string url;             ///< "mock:NAME", "tcp:HOST:PORT", "rtu:/dev/..."
-  std::int64_t baud = 115200;  ///< bit/s, of RTU and of a mock
-  /// RTU. Defaults of Modbus over Serial Line V1.02, 2.5.1: even, and 11 bits a character whatever the
-  /// parity.
-  LineParity parity = LineParity::even;
-  int stop_bits = 0;     ///< RTU; 0: what makes 11 bits
-  double timeout = 0.1;  ///< s until an answer is late
-};
-
-/// [[station]]: a Modbus unit, a GPIO chip, the digital inputs and outputs of a drive, or a node of CiA
-/// 401 or CiA 406.
-struct StationConfig {
-  std::string name;
-  StationKind kind = StationKind::gpio;
-  std::string line;      ///< modbus: name of a [[line]]
-  std::string url;       ///< gpio: "mock:NAME", "chip:LABEL"; modbus: that of its line, by the loader
-  std::string node;      ///< drive, canopen: "bus.node"
-  std::string device;    ///< device file without .toml, modbus
-  int unit = 1;          ///< modbus unit identifier
-  double period = 0.02;  ///< s between polls, modbus; GPIO is read every cycle
-  std::vector<PointConfig> points;
-  /// Its points come over a node of a bus.
-  bool over_bus() const { return kind == StationKind::drive || kind == StationKind::canopen; }
-  /// Nothing real is behind it, but for what is behind its bus.
-  bool mock() const { return over_bus() || url.starts_with("mock:"); }
-};
-
 /// [[symbol]]: a free place with a name.
 struct SymbolConfig {
   std::string name;
@@ -315,52 +277,6 @@ struct RunConfig {
 struct RealtimeConfig {
   int cpu = -1;  ///< -1: not bound
   int priority = 80;
-};
-
-/// [[simulation.switch]]: a mock input that follows a simulated axis; TRUE while from <= position <= to.
-struct SimulatedSwitch {
-  std::string point;
-  std::string axis;
-  double from = -kNoLimit;
-  double to = kNoLimit;
-};
-/// [[simulation.loop]]: a mock input that follows an output after a delay.
-struct SimulatedLoop {
-  std::string output;
-  std::string input;
-  bool inverted = false;
-  double delay = 0.0;  ///< s
-};
-/// [[simulation.indexer]]: a turret or magazine on mock inputs: while `output` is on, the next of `inputs` is
-/// TRUE after every `step`, between two of them none for the first half of it.
-struct SimulatedIndexer {
-  std::string output;
-  std::vector<std::string> inputs;
-  double step = 0.5;  ///< s from one position to the next
-};
-/// [[simulation.drive]]: the plant behind a simulated drive. Masses are seen from the motor shaft.
-struct SimulatedDrive {
-  std::string node;                 ///< "bus.node"
-  double start = 0.0;               ///< where the axis stands at power-on, mm from machine zero
-  double zero_mark = 0.0;           ///< counts from machine zero to the nearest zero mark in plus direction
-  double inertia = 0.0;             ///< kg m2, 0: the device file's
-  double friction_coulomb = 0.0;    ///< N m
-  double friction_viscous = 0.0;    ///< N m s/rad
-  double gravity_torque = 0.0;      ///< N m, vertical axis
-  double max_torque = 0.0;          ///< N m, 0: the device file's
-  bool absolute_encoder = false;    ///< false: the encoder reads 0 at power-on wherever the axis stands
-  double end_stop_min = -kNoLimit;  ///< rigid stops, machine coordinates, mm
-  double end_stop_max = kNoLimit;
-};
-/// [simulation]: what the mocks do. Without effect on anything that is not a mock.
-struct SimulationConfig {
-  std::map<std::string, double> initial;  ///< point -> value at start (before `inverted`)
-  std::vector<std::string>
-      operator_closes;  ///< points that the operator of `run` sets: the emergency-stop chain
-  std::vector<SimulatedSwitch> switches;
-  std::vector<SimulatedLoop> loops;
-  std::vector<SimulatedIndexer> indexers;
-  std::vector<SimulatedDrive> drives;
 };
 
 /// [control]

@@ -17,16 +17,6 @@ bool bit(std::uint64_t levels, std::size_t n) noexcept { return (levels >> n & 1
 /// An output while nobody commands it, as the wire has it.
 bool lost_level(const image::PointRule& rule) noexcept { return rule.loss != 0.0; }
 
-/// A counter has no value of loss: a jump of it would be a motion.
-image::PointRule rule_of(const Line& line) {
-  image::PointRule rule = line.rule;
-  if (line.b_offset) {
-    rule.digital = false;
-    rule.hold = true;
-  }
-  return rule;
-}
-
 }  // namespace
 
 /// Points stand in the order: digital inputs, encoders, outputs; lines of the request of inputs in the order:
@@ -48,7 +38,7 @@ struct GpioChip::Parts {
     digital = settings.size();
     settings.insert(settings.end(), tracks.begin(), tracks.end());
     for (const Line& line : config.lines)
-      if (line.rule.input && line.b_offset) rules.push_back(rule_of(line));
+      if (line.rule.input && line.b_offset) rules.push_back(line.rule);
     first_output = rules.size();
     for (const Line& line : config.lines)
       if (!line.rule.input) {

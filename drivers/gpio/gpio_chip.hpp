@@ -13,7 +13,8 @@
 namespace servogate::gpio {
 
 /// A point on a line of a chip, by its offset as `gpioinfo` counts it. A digital input or output; or, with
-/// `b_offset`, an encoder of two tracks whose counts are an analog input: a handwheel.
+/// `b_offset`, an encoder of two tracks whose counts are an analog input: a handwheel. Its rule holds its
+/// value while the chip is lost: a jump of the counts would be a motion.
 struct Line {
   std::string name;  ///< of the point
   unsigned offset = 0;

@@ -29,6 +29,7 @@ void Axis::read(image::ProcessImage& image) noexcept {
   image::AxisImage& shared = image.axes[static_cast<std::size_t>(index_)];
   read_places(image);
   read_feedback(shared.drive, image.now.period_s());
+  read_edges(image);
   supervise_drive();
   supervise_position();
   supervise_switches();
@@ -166,6 +167,7 @@ void Axis::advance_homing(double dt) noexcept {
   homing_.step(ramp_, homing_inputs(dt));
   if (!homing_.take_reference()) return;
   set_machine_position(homing_.captured_counts());
+  if (homing_.missed_edge()) raise(alarm::kHomingNoEdge, 0.0, config_.homing.position);
   check_index_place();
 }
 

@@ -188,6 +188,7 @@ class Axis {
   // axis_supervision.cpp: feedback, switches, limits
   static bool met(bool on, double& free_s, double dt) noexcept;
   void read_places(const image::ProcessImage& image) noexcept;
+  void read_edges(const image::ProcessImage& image) noexcept;
   void read_feedback(const image::DriveFeedback& in, double dt) noexcept;
   void supervise_drive() noexcept;
   void supervise_position() noexcept;
@@ -225,6 +226,7 @@ class Axis {
   bool goal_endless_ = false;  ///< it is a speed
   MotionLimits goal_limits_;
   image::JogEnd jog_end_ = image::JogEnd::none;
+  image::Nanoseconds now_ns_ = 0;
   image::Nanoseconds keep_alive_ns_ = 0;
   double time_scale_ = 1.0;
   bool power_requested_ = false;

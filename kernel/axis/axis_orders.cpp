@@ -142,6 +142,7 @@ bool Axis::torque_reached() const noexcept {
 HomingInputs Axis::homing_inputs(double dt) const noexcept {
   HomingInputs in;
   in.dt = dt;
+  in.now_ns = now_ns_;
   in.home_switch = home_switch_;
   in.limit_plus = limit_plus_;
   in.limit_minus = limit_minus_;

@@ -64,6 +64,17 @@ void Axis::read_places(const image::ProcessImage& image) noexcept {
              static_cast<int>(bit(field(kAxisFields, "jog_minus")));
 }
 
+/// A position that is read in this cycle was latched at the begin of the last one.
+void Axis::read_edges(const image::ProcessImage& image) noexcept {
+  now_ns_ = image.now.t_ns;
+  if (!config_.homing.edges || !homing_.active() || !config_.home_switch) return;
+  if (drive_.online && drive_.missed == 0)
+    homing_.sample(now_ns_ - image.now.period_ns, drive_.position_counts);
+  for (const image::Edge& e : image.edges.list())
+    if (e.place == config_.home_switch->place)
+      homing_.switch_edge(e.level != config_.home_switch->inverted, e.t_ns);
+}
+
 void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
   const std::int64_t before = last_counts_;
   drive_ = in;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
 
@@ -29,6 +30,7 @@ void Spindle::configure(const SpindleConfig& config, int index) {
   index_ = index;
   scale_ = {config.counts_numerator, config.counts_denominator, config.count_direction, 0, 0.0};
   if (config.inverter) inverter_.configure(*config.inverter);
+  gears_.configure(config.gearbox);
 }
 
 void Spindle::order(SpindleMode mode, double rpm) noexcept {
@@ -39,6 +41,10 @@ void Spindle::order(SpindleMode mode, double rpm) noexcept {
   if (no_relay) cannot_ = alarm::kSpindleNoReverse;
   mode_ = no_angle || no_relay ? SpindleMode::stop : mode;
   adjust(rpm);
+  if (mode_ != SpindleMode::stop && (ordered_rpm_ > 0.0 || gear_wish_ > 0)) {
+    gears_.choose(ordered_rpm_, gear_wish_);
+    raised_gear_ = false;
+  }
   wait_s_ = 0.0;
   orienting_ = oriented_ = at_speed_ = false;
   raised_speed_ = raised_orient_ = false;
@@ -59,10 +65,18 @@ void Spindle::read(image::ProcessImage& image) noexcept {
   const double percent = image.packets.number(image::at(field(kSpindleFields, "override"), base));
   override_ratio_ = percent > 0.0 ? std::clamp(percent, 50.0, 125.0) / 100.0 : 1.0;
 
+  const auto wish =
+      static_cast<int>(image.packets.number(image::at(field(kSpindleFields, "gear_wish"), base)));
+  if (wish != gear_wish_ && wish > 0) {
+    gears_.choose(ordered_rpm_, wish);
+    raised_gear_ = false;
+  }
+  gear_wish_ = wish;
+
   const double dt = image.now.period_s();
   image::SpindleImage& shared = image.spindles[static_cast<std::size_t>(index_)];
   if (config_.inverter) {
-    lost_ = inverter_.lost(image);
+    lost_ = inverter_.lost(image) || gears_.lost(image);
     shared.actual_rpm = actual_rpm_;
     return;
   }
@@ -73,7 +87,7 @@ void Spindle::read(image::ProcessImage& image) noexcept {
     const double counts_s = in.velocity_counts_s != 0.0
                                 ? in.velocity_counts_s
                                 : static_cast<double>(in.position_counts - drive_.position_counts) / dt;
-    const double turns_s = scale_.velocity(counts_s);
+    const double turns_s = scale_.velocity(counts_s) / gears_.ratio();
     actual_rpm_ += (turns_s * 60.0 - actual_rpm_) * std::min(1.0, dt / kSpeedFilter);
     if (in.latch_sequence != drive_.latch_sequence && !marked_) {
       scale_.reference_counts = in.latch_counts;
@@ -123,7 +137,8 @@ double Spindle::orient_rpm() noexcept {
 /// Signed speed of the order with its override, whatever the PLC permits.
 double Spindle::ordered_speed() const noexcept {
   if ((mode_ != SpindleMode::cw && mode_ != SpindleMode::ccw) || ordered_rpm_ == 0.0) return 0.0;
-  const double rpm = std::clamp(ordered_rpm_ * override_ratio_, config_.min_rpm, config_.max_rpm);
+  const double most = gears_.max_rpm(config_.max_rpm);
+  const double rpm = std::clamp(ordered_rpm_ * override_ratio_, std::min(config_.min_rpm, most), most);
   return mode_ == SpindleMode::cw ? rpm : -rpm;
 }
 
@@ -131,9 +146,11 @@ double Spindle::wanted_rpm() noexcept {
   if (!enable_ || reaction_ >= Reaction::stop_and_power_off) return 0.0;
   switch (mode_) {
     case SpindleMode::stop:
+      return 0.0;
     case SpindleMode::cw:
     case SpindleMode::ccw:
-      return ordered_speed();
+      if (!gears_.changing()) return ordered_speed();
+      return std::copysign(std::min(gears_.config().change_rpm, ordered_rpm_), ordered_speed());
     case SpindleMode::orient:
       break;
   }
@@ -155,15 +172,36 @@ void Spindle::follow_inverter(image::ProcessImage& image, double& wanted, double
     wanted = 0.0;
   }
   inverter_.advance(wanted, config_.acceleration * dt, !on_, dt);
-  inverter_.write(image);
+  inverter_.write(image, gears_.ratio());
   command_rpm_ = inverter_.command_rpm();
   actual_rpm_ = inverter_.assumed_rpm();
+}
+
+/// Only while the spindle is known to turn slowly, and with the power that is there to see it.
+void Spindle::change_gear(image::ProcessImage& image, double dt) noexcept {
+  if (!gears_.present()) return;
+  const bool was_lost = std::exchange(gear_lost_, gears_.lost(image));
+  const double slowly = std::max(gears_.config().change_rpm * 1.05, config_.zero_speed_rpm);
+  const bool known = config_.inverter ? !lost_ : drive_.online;
+  const bool slow = power_on_ && known && std::abs(actual_rpm_) <= slowly && std::abs(command_rpm_) <= slowly;
+  gears_.step(image, slow, gear_lost_, dt);
+  const bool turns = mode_ == SpindleMode::cw || mode_ == SpindleMode::ccw;
+  if (gears_.failed() && !raised_gear_) {
+    raised_gear_ = true;
+    events_.add({alarm::kSpindleGear, static_cast<double>(gears_.wanted()), actual_rpm_});
+    order(SpindleMode::stop, 0.0);
+  }
+  if (gear_lost_ && !config_.inverter && turns) {
+    if (!was_lost) events_.add({alarm::kSpindleOutputLost, ordered_rpm_, command_rpm_});
+    order(SpindleMode::stop, 0.0);
+  }
 }
 
 void Spindle::command(image::ProcessImage& image) noexcept {
   const double dt = image.now.period_s();
   if (cannot_ != 0) events_.add({cannot_, 0.0, 0.0});
   give_up();
+  change_gear(image, dt);
   if (reaction_ >= Reaction::stop_and_power_off) order(SpindleMode::stop, 0.0);
   cannot_ = 0;
   oriented_ = false;
@@ -179,8 +217,9 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   // Of a speed of 0 no share can be kept: it is at speed when it stands.
   const double window = wanted != 0.0 ? config_.at_speed_window * std::abs(wanted) : config_.zero_speed_rpm;
   const bool told = !config_.target_bit || wanted == 0.0 || (drive_.statusword & kTargetReached) != 0;
-  at_speed_ = turning && enable_ && reached && told && std::abs(actual_rpm_ - wanted) <= window;
-  supervise(dt, enable_ && reached && ordered_speed() != 0.0);
+  const bool in_gear = !gears_.changing();
+  at_speed_ = turning && enable_ && in_gear && reached && told && std::abs(actual_rpm_ - wanted) <= window;
+  supervise(dt, enable_ && in_gear && reached && ordered_speed() != 0.0);
 
   off_s_ = mode_ == SpindleMode::stop && zero_speed_ ? off_s_ + dt : 0.0;
   image::SpindleImage& out = image.spindles[static_cast<std::size_t>(index_)];
@@ -204,7 +243,7 @@ void Spindle::write_drive(image::SpindleImage& out) const noexcept {
   drive.latch_source = image::LatchSource::zero_mark;
   drive.latch_arm = !marked_ && drive_.online;
   drive.position_counts = drive_.position_counts;
-  drive.velocity_counts_s = on_ ? scale_.velocity_counts(command_rpm_ / 60.0) : 0.0;
+  drive.velocity_counts_s = on_ ? scale_.velocity_counts(command_rpm_ / 60.0) * gears_.ratio() : 0.0;
 }
 
 void Spindle::supervise(double dt, bool speed_due) noexcept {
@@ -251,6 +290,9 @@ void Spindle::write_interface(image::ProcessImage& image) const noexcept {
   image.packets.set_number(image::at(field(kSpindleFields, "command"), base),
                            image.spindles[static_cast<std::size_t>(index_)].command_rpm);
   image.packets.set_number(image::at(field(kSpindleFields, "actual"), base), actual_rpm_);
+  if (gears_.present())
+    image.packets.set_number(image::at(field(kSpindleFields, "gear"), base),
+                             gears_.changing() ? 0 : gears_.engaged());
 }
 
 bool Spindle::settled() const noexcept {

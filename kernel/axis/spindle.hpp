@@ -6,6 +6,7 @@
 #include "firmware_if/image/process_image.hpp"
 #include "kernel/axis/alarms/axis_alarms.hpp"
 #include "kernel/axis/config/axis_config.hpp"
+#include "kernel/axis/gears/gearbox.hpp"
 #include "kernel/axis/setpoint/scale.hpp"
 
 namespace servogate::axis {
@@ -20,6 +21,11 @@ enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient };
 /// once with the reactions quick stop and power off, without MC.power_on, and when a station of theirs is
 /// lost; then the order is stop, and nothing turns again unasked. The same order is given when a drive with a
 /// source of its own is lost or in fault; whether that spindle stands is not known then.
+///
+/// With gear ranges an order to turn chooses the gear (the PLC by S.gear_wish, otherwise the slowest that
+/// reaches the speed); another one than that in force brings the spindle to rest, or to its speed for
+/// changing, changes, and then turns. A speed that is only adjusted stays within the gear. A gear that is not
+/// confirmed is a stop and an alarm.
 class Spindle {
  public:
   /// `index` is the spindle's place in the image. Not for the cycle.
@@ -60,6 +66,7 @@ class Spindle {
   void watch_source(const image::ProcessImage& image) noexcept;
   void give_up() noexcept;
   double ordered_speed() const noexcept;
+  void change_gear(image::ProcessImage& image, double dt) noexcept;
   double wanted_rpm() noexcept;
   double orient_rpm() noexcept;
   void supervise(double dt, bool speed_due) noexcept;
@@ -74,6 +81,9 @@ class Spindle {
   image::Reaction reaction_ = image::Reaction::none;
   image::DriveFeedback drive_;
   Inverter inverter_;
+  Gearbox gears_;
+  int gear_wish_ = 0;
+  bool gear_lost_ = false, raised_gear_ = false;
   bool power_on_ = false;
   bool lost_ = false;         ///< an output of the inverter, or the source of the drive
   bool seen_lost_ = false;    ///< the same one cycle ago

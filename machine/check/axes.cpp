@@ -287,7 +287,8 @@ void check_inverter(const MachineConfig& machine, const SpindleConfig& s, const 
   const PointConfig* speed = machine.point(s.speed_output);
   if (speed == nullptr || !speed->is_analog() || speed->scale == 0.0) return;
   const double rest = std::round((0.0 - speed->shift) / speed->scale);
-  const double full = std::round((s.max_speed - speed->shift) / speed->scale);
+  const double most = s.largest_motor_rpm();  // behind gears the output has the speed of the motor
+  const double full = std::round((most - speed->shift) / speed->scale);
   int station = -1;
   machine.point(s.speed_output, &station);
   // A channel of CiA 401 has a sign.
@@ -298,9 +299,9 @@ void check_inverter(const MachineConfig& machine, const SpindleConfig& s, const 
                   {number, s.speed_output, text::number(rest), text::number(full),
                    text::both(text::number(low) + " to " + text::number(high),
                               text::number(low) + " ... " + text::number(high))});
-  if (speed->place.format == image::Format::in && s.max_speed > 32767.0)
+  if (speed->place.format == image::Format::in && most > 32767.0)
     reading.error(machine.where(path + ".max_speed"), finding::kSpindleWord,
-                  {number, text::number(s.max_speed), to_string(speed->place)});
+                  {number, text::number(most), to_string(speed->place)});
 }
 
 }  // namespace

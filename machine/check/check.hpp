@@ -42,5 +42,11 @@ void check_modbus_server(const MachineConfig& machine, Reading& reading);
 void check_inverters(const LoadResult& loaded, Reading& reading);
 /// Bus load and speed of motors against the device files.
 void check_devices(const LoadResult& loaded, Reading& reading);
+/// Channels of stations against their device files.
+void check_station_devices(const LoadResult& loaded, Reading& reading);
+/// What the lines of a GPIO chip can be: edges, biases, encoders; each line for one point.
+void check_gpio_lines(const MachineConfig& machine, Reading& reading);
+/// Gear ranges of spindles.
+void check_gears(const MachineConfig& machine, Reading& reading);
 
 }  // namespace servogate::machine

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "firmware_if/canopen/402/objects.hpp"
-#include "firmware_if/canopen/master/sdo_budget.hpp"
 #include "firmware_if/modbus/line_time.hpp"
 #include "firmware_if/text/units.hpp"
-#include "machine/can_channel.hpp"
+#include "machine/check/bus/slowest.hpp"
 #include "machine/check/stops/control_death.hpp"
 #include "machine/check/stops/overrun.hpp"
 #include "machine/keys/json.hpp"
@@ -60,6 +59,16 @@ constexpr text::Entry kOnLine{
 constexpr text::Entry kSpindle{"consequence.spindle",
                                "{0}: {1} to {2} rpm, {3} s to full speed; the motor turns at {4} rpm",
                                "{0}: от {1} до {2} об/мин, {3} с до полной частоты; двигатель {4} об/мин"};
+constexpr text::Entry kGear{"consequence.gear",
+                            "{0}: gear {1} \"{2}\" up to {3} rpm, with the motor at {4} rpm; {5}",
+                            "{0}: ступень {1} «{2}» до {3} об/мин, двигатель при этом {4} об/мин; {5}"};
+constexpr text::Entry kHomeEdge{"consequence.home_edge",
+                                "home {0}: the edge of the switch comes with its time over {1}; {2} for each "
+                                "0.1 ms that the interrupt is late, at "
+                                "{3}",
+                                "выход в ноль {0}: фронт датчика приходит со своим временем через {1}; {2} "
+                                "на каждые 0,1 мс опоздания прерывания, "
+                                "на {3}"};
 constexpr text::Entry kBus{
     "consequence.bus_load",
     "bus {0}: {1} nodes, load {2} % on average, {3} % if all messages fall into one cycle; both figures "
@@ -94,22 +103,6 @@ constexpr text::Entry kBrake{"consequence.brake",
 constexpr text::Entry kControlDeath{"consequence.control_death",
                                     "{0}: if the control dies at {1}: {2}; {3}; {4}",
                                     "{0}: если управление прекратит работу на {1}: {2}; {3}; {4}"};
-
-/// The greatest n of "every n-th SYNC" of the PDOs that carry one of the objects; 1: none is slower.
-int slowest(const std::vector<PdoConfig>& pdos, const std::vector<int>& objects) {
-  int n = 1;
-  for (const PdoConfig& pdo : pdos)
-    if (pdo.cyclic() && std::any_of(pdo.objects.begin(), pdo.objects.end(), [&](const PdoObject& o) {
-          return std::find(objects.begin(), objects.end(), o.index) != objects.end();
-        }))
-      n = std::max(n, pdo.transmission);
-  return n;
-}
-
-const DeviceConfig* device_of(const LoadResult& loaded, const std::string& reference) {
-  const NodeConfig* node = loaded.machine.node(reference);
-  return node == nullptr ? nullptr : loaded.device(node->device);
-}
 
 class Sentences {
  public:
@@ -277,6 +270,11 @@ class Sentences {
     // Without an index the slow edge is the zero; with one it only has to find the right turn.
     const double v = h.method == HomingMethod::switch_only ? h.slow : h.fast;
     if (v <= 0.0) return;
+    if (m_.point(h.switch_point)->edges && !index) {
+      constexpr double kLate = 1e-4;
+      return say(a.letter, kHomeEdge, {a.letter, "GPIO", uncertainty(v * kLate), speed(v)},
+                 {{"each_0.1_ms", v * kLate}, {"velocity", v}});
+    }
     static constexpr const char* kNames[] = {"Modbus", "GPIO", "CAN", "CAN"};
     say(a.letter, kHome,
         {a.letter, kNames[static_cast<std::size_t>(s.kind)], text::number(period * 1e3),
@@ -287,7 +285,7 @@ class Sentences {
   }
 
   void spindle(const SpindleConfig& s, int index) {
-    const double motor = s.max_speed * static_cast<double>(s.gear[0]) / static_cast<double>(s.gear[1]);
+    const double motor = s.largest_motor_rpm();
     const std::string who = s.name.empty() ? "S" + (index == 0 ? "" : std::to_string(index + 1)) : s.name;
     say("S" + (index == 0 ? std::string() : std::to_string(index + 1)), kSpindle,
         {who, text::number(s.min_speed), text::number(s.max_speed),
@@ -295,20 +293,38 @@ class Sentences {
         {{"max_speed", s.max_speed},
          {"motor_rpm", motor},
          {"time_to_full_speed", s.max_speed / s.acceleration}});
+    gears(s, "S" + (index == 0 ? std::string() : std::to_string(index + 1)), who);
     inverter(s, "S" + (index == 0 ? std::string() : std::to_string(index + 1)), who);
     on_line(s, "S" + (index == 0 ? std::string() : std::to_string(index + 1)), who);
+  }
+
+  void gears(const SpindleConfig& s, const std::string& subject, const std::string& who) {
+    for (std::size_t g = 0; g < s.gears.size(); ++g) {
+      const GearConfig& gear = s.gears[g];
+      const double most = std::min(gear.max_speed, s.max_speed);
+      const std::string change =
+          gear.confirm.empty()
+              ? text::both(
+                    "engaged " + text::number(s.gear_change_time, 2) + " s after its output, by assumption",
+                    "считается включённой через " + text::number(s.gear_change_time, 2) + " с после выхода")
+              : text::both("confirmed by " + gear.confirm, "подтверждается входом " + gear.confirm);
+      say(subject, kGear,
+          {who, std::to_string(g + 1), gear.name, text::number(most), text::number(most * gear.ratio(), 1),
+           change},
+          {{"max_speed", most}, {"motor_rpm", most * gear.ratio()}});
+    }
   }
 
   void on_line(const SpindleConfig& s, const std::string& subject, const std::string& who) {
     for (const StationConfig& station : m_.stations) {
       const DeviceConfig* device = station.name == s.inverter ? loaded_.device(station.device) : nullptr;
       if (device == nullptr || !(s.rated_speed > 0.0) || !(device->inverter.frequency_unit > 0.0)) continue;
-      const double full = std::round(s.hertz(s.max_speed) / device->inverter.frequency_unit);
+      const double full = std::round(s.largest_hertz() / device->inverter.frequency_unit);
       const double lost = station.period * modbus::kStaleAfterPeriods;
       say(subject, kOnLine,
-          {who, text::number(s.hertz(s.min_speed), 2), text::number(s.hertz(s.max_speed), 2),
+          {who, text::number(s.hertz(s.min_speed), 2), text::number(s.largest_hertz(), 2),
            station.line + "." + station.name, text::number(full), text::number(lost * 1e3)},
-          {{"frequency_at_max_speed", s.hertz(s.max_speed)},
+          {{"frequency_at_max_speed", s.largest_hertz()},
            {"register_at_max_speed", full},
            {"lost_after", lost}});
     }
@@ -317,7 +333,7 @@ class Sentences {
   void inverter(const SpindleConfig& s, const std::string& subject, const std::string& who) {
     const PointConfig* p = s.speed_output.empty() ? nullptr : m_.point(s.speed_output);
     if (p == nullptr || p->scale == 0.0) return;
-    const double full = std::round((s.max_speed - p->shift) / p->scale),
+    const double full = std::round((s.largest_motor_rpm() - p->shift) / p->scale),
                  rest = std::round((0.0 - p->shift) / p->scale);
     const std::string ways = s.ccw_output.empty()
                                  ? text::both("clockwise only", "только по часовой стрелке")
@@ -354,108 +370,6 @@ class Sentences {
 
 std::string Consequence::str(text::Language language) const {
   return text::render(*entry, arguments, language);
-}
-
-std::vector<canopen::NodeConfig> planned_nodes(const LoadResult& loaded, const BusConfig& bus) {
-  std::vector<canopen::NodeConfig> out;
-  for (const NodeConfig& node : bus.nodes) {
-    const DeviceConfig* device = loaded.device(node.device);
-    if (device == nullptr) continue;
-    canopen::NodeConfig planned;
-    planned.node = static_cast<canopen::NodeId>(node.id);
-    planned.name = node.name;
-    planned.profile = drive_profile(*device, node, 0);
-    if (device->terminals()) planned.target = canopen::DriveTarget::io;
-    planned.heartbeat_ms = static_cast<std::int32_t>(std::lround(node.heartbeat * 1e3));
-    out.push_back(std::move(planned));
-  }
-  return out;
-}
-
-canopen::SegmentServices planned_services(const BusConfig& bus) {
-  canopen::SegmentServices out;
-  for (const NodeConfig& node : bus.nodes)
-    if (node.heartbeat > 0.0)
-      out.heartbeat_ms =
-          std::min(out.heartbeat_ms, static_cast<std::int32_t>(std::lround(node.heartbeat * 1e3)));
-  out.sync_counter = bus.sync_counter;
-  out.time_ms = static_cast<std::int32_t>(std::lround(bus.time_period * 1e3));
-  return out;
-}
-
-canopen::SegmentLoad segment_load(const LoadResult& loaded, const BusConfig& bus) {
-  return canopen::segment_load(static_cast<std::uint32_t>(bus.bit_rate), loaded.machine.cycle_ns(),
-                               planned_nodes(loaded, bus), planned_services(bus));
-}
-
-double read_every(const LoadResult& loaded, const StationConfig& s) {
-  if (s.kind == StationKind::modbus) return s.period;
-  const DeviceConfig* device = s.over_bus() ? device_of(loaded, s.node) : nullptr;
-  if (device == nullptr) return 0.0;
-  std::vector<int> objects;
-  for (const PointConfig& p : s.points) {
-    if (!p.is_input()) continue;
-    const auto found = channel_object(device->kind, p.channel, p.number);
-    objects.push_back(found ? found->object.index : canopen::object::kDigitalInputs);
-  }
-  return slowest(device->tpdos, objects) * loaded.machine.control.cycle_time;
-}
-
-double brake_command_time(const LoadResult& loaded, const AxisConfig& axis) {
-  const MachineConfig& m = loaded.machine;
-  if (!axis.brake.present()) return 0.0;
-  const double cycle = m.control.cycle_time;
-  if (axis.brake.drive_output) {
-    const DeviceConfig* device = device_of(loaded, axis.drive);
-    return (device == nullptr ? 1 : slowest(device->rpdos, {canopen::object::kDigitalOutputs})) * cycle;
-  }
-  int station = -1;
-  const PointConfig* point = m.point(axis.brake.point, &station);
-  if (point == nullptr) return cycle;
-  const StationConfig& s = m.stations[static_cast<std::size_t>(station)];
-  if (s.kind == StationKind::modbus) return s.period + cycle;
-  const DeviceConfig* device = s.over_bus() ? device_of(loaded, s.node) : nullptr;
-  if (device == nullptr) return cycle;
-  const auto found = channel_object(device->kind, point->channel, point->number);
-  return slowest(device->rpdos, {found ? found->object.index : canopen::object::kDigitalOutputs}) * cycle;
-}
-
-double sdo_round(const LoadResult& loaded, const std::string& reference) {
-  int index = -1;
-  const NodeConfig* node = loaded.machine.node(reference, &index);
-  if (node == nullptr) return 0.0;
-  const BusConfig& bus = loaded.machine.buses[static_cast<std::size_t>(index)];
-  if (bus.bit_rate <= 0) return 0.0;
-  canopen::SegmentConfig segment;
-  segment.cycle_ns = loaded.machine.cycle_ns();
-  segment.nodes = planned_nodes(loaded, bus);
-  const canopen::SegmentServices services = planned_services(bus);
-  segment.heartbeat_ms = services.heartbeat_ms;
-  segment.time_ms = services.time_ms;
-  const bool spindle = std::any_of(loaded.machine.spindles.begin(), loaded.machine.spindles.end(),
-                                   [&](const SpindleConfig& s) { return s.drive == reference; });
-  for (canopen::NodeConfig& planned : segment.nodes) {
-    if (planned.node != node->id) continue;
-    if (spindle) planned.target = canopen::DriveTarget::spindle;
-    return static_cast<double>(
-               canopen::sdo_round_ns(segment, planned, static_cast<std::uint32_t>(bus.bit_rate))) *
-           1e-9;
-  }
-  return 0.0;
-}
-
-double own_motion_lag(const LoadResult& loaded, const AxisConfig& axis) {
-  const NodeConfig* node = loaded.machine.node(axis.drive);
-  const DeviceConfig* device = node == nullptr ? nullptr : loaded.device(node->device);
-  if (device == nullptr || device->behaviour.position_mode != PositionMode::pp ||
-      axis.max_acceleration <= 0.0)
-    return 0.0;
-  // The handshake of a set-point by process data: given, answered, withdrawn, answered.
-  constexpr double kCyclesOfHandshake = 8.0;
-  const double by_sdo = sdo_round(loaded, axis.drive);
-  const double between = by_sdo > 0.0 ? by_sdo : kCyclesOfHandshake * loaded.machine.control.cycle_time;
-  return axis.max_velocity * axis.max_velocity / (2.0 * axis.max_acceleration) +
-         2.0 * axis.max_velocity * between;
 }
 
 std::vector<Consequence> consequences(const LoadResult& loaded) { return Sentences(loaded).all(); }

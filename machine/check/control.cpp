@@ -69,7 +69,7 @@ class StationCheck {
                        finding::kHysteresisKind, {s_.points[i].channel_text});
     if (s_.kind == StationKind::modbus || s_.kind == StationKind::canopen) return;
     for (std::size_t i = 0; i < s_.points.size(); ++i)
-      if (s_.points[i].is_analog())
+      if (s_.points[i].is_analog() && !(s_.kind == StationKind::gpio && s_.points[i].is_encoder()))
         reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".channel"),
                        finding::kAnalogOnGpio, {s_.points[i].channel_text, kind_});
   }

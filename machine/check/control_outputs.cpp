@@ -44,6 +44,8 @@ void claim_control_outputs(MachineConfig& machine, Reading& reading) {
     claim(s.speed_output, path + ".speed_output", "spindle.speed_output");
     claim(s.cw_output, path + ".cw_output", "spindle.cw_output");
     claim(s.ccw_output, path + ".ccw_output", "spindle.ccw_output");
+    for (std::size_t g = 0; g < s.gears.size(); ++g)
+      claim(s.gears[g].output, path + ".gears." + std::to_string(g) + ".output", "spindle.gears.output");
   }
 }
 

@@ -97,8 +97,10 @@ inline constexpr text::Entry kHysteresisKind{"machine.hysteresis_kind",
                                              "`hysteresis`: channel \"{0}\" is no analog input",
                                              "`hysteresis`: канал «{0}» не является аналоговым входом"};
 inline constexpr text::Entry kAnalogOnGpio{"machine.analog_on_gpio",
-                                           "channel \"{0}\": a {1} station has digital channels only",
-                                           "канал «{0}»: у станции вида {1} только дискретные каналы"};
+                                           "channel \"{0}\": a {1} station has digital channels only; a gpio "
+                                           "station counts encoders, too: ai with `b_line`",
+                                           "канал «{0}»: у станции вида {1} только дискретные каналы; "
+                                           "станция gpio ещё считает датчики: ai с `b_line`"};
 // References
 inline constexpr text::Entry kNoSuch{"machine.no_such", "`{0}`: there is no {1} \"{2}\"{3}",
                                      "«{0}»: {1} «{2}» не существует{3}"};

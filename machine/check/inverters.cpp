@@ -57,10 +57,9 @@ class InverterUse {
     if (!fresh) error("inverter", finding::kInverterTwice, {s.inverter, taken->second});
     if (!(s.rated_speed > 0.0) || !(s.rated_frequency > 0.0)) return;
     const double most = 65535.0 * device->inverter.frequency_unit;
-    if (s.hertz(s.max_speed) > most)
-      error(
-          "max_speed", finding::kInverterFrequency,
-          {number_, text::number(s.max_speed), text::number(s.hertz(s.max_speed), 1), text::number(most, 1)});
+    if (s.largest_hertz() > most)
+      error("max_speed", finding::kInverterFrequency,
+            {number_, text::number(s.max_speed), text::number(s.largest_hertz(), 1), text::number(most, 1)});
   }
 
   void station(const StationConfig& s, const std::string& path) {

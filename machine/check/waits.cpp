@@ -101,7 +101,13 @@ class Waits {
     if (m_.plc.sources.empty() || !(s.acceleration > 0.0) || unread("plc.handshake_timeout") ||
         unread(path + "acceleration"))
       return;
-    const double time = s.max_speed / s.acceleration;
+    // To rest from full speed, another gear, and up again.
+    double time = s.max_speed / s.acceleration;
+    if (!s.gears.empty()) {
+      const bool told =
+          std::all_of(s.gears.begin(), s.gears.end(), [](const GearConfig& g) { return !g.confirm.empty(); });
+      time = 2.0 * time + (told ? 0.0 : s.gear_change_time);
+    }
     if (time > m_.plc.handshake_timeout)
       reading_.error(m_.where(path + "acceleration"), finding::kSpindleTooSlow,
                      {number, text::number(s.max_speed), text::number(s.acceleration), seconds(time),

@@ -251,6 +251,30 @@ const Section& section_of<AxisConfig>() {
 }
 
 template <>
+const Section& section_of<GearConfig>() {
+  using C = GearConfig;
+  static const Key keys[] = {
+      key<&C::name>("name", {.required = true}, "name for people", "название для людей"),
+      key<&C::max_speed>(
+          "max_speed", {.unit = Unit::rpm, .min = 0, .max = 200000, .above_min = true, .required = true},
+          "fastest speed of the spindle in this gear", "наибольшая частота вращения шпинделя на ступени"),
+      key<&C::gear>("gear", {.min = 1, .max = 1e6, .required = true},
+                    "exact gear ratio, motor turns : spindle turns",
+                    "точное передаточное отношение, обороты двигателя : обороты шпинделя"),
+      key<&C::output>(
+          "output", {.refers = Refers::digital_output},
+          "output point that engages it and stays on; a gear that a spring engages has none",
+          "выход, который включает ступень и остаётся включённым; у ступени, включаемой пружиной, его нет"),
+      key<&C::confirm>("confirm", {.refers = Refers::digital_input},
+                       "input point: TRUE while it is engaged; without it gear_change_time is waited",
+                       "вход: TRUE, пока ступень включена; без него выжидается gear_change_time"),
+  };
+  static const Section section{"a gear range of the spindle", "ступень редуктора шпинделя", keys,
+                               &default_object<C>};
+  return section;
+}
+
+template <>
 const Section& section_of<SpindleConfig>() {
   using C = SpindleConfig;
   static const Key keys[] = {
@@ -297,6 +321,21 @@ const Section& section_of<SpindleConfig>() {
                             "ramp of the speed", "темп разгона"),
       key<&C::gear>("gear", {.min = 1, .max = 1e6}, "exact gear ratio, motor turns : spindle turns",
                     "точное передаточное отношение, обороты двигателя : обороты шпинделя"),
+      key<&C::gears>(
+          "gears", {},
+          "gear ranges, slow ones first, instead of `gear`; an order to turn engages the slowest that "
+          "reaches the speed, or the one that the PLC wants (S.gear_wish)",
+          "ступени редуктора, медленные первыми, вместо `gear`; приказ вращаться включает самую медленную "
+          "из достаточных или ту, что нужна ПЛК (S.gear_wish)"),
+      key<&C::gear_change_speed>("gear_change_speed", {.unit = Unit::rpm, .min = 0, .max = 1000},
+                                 "the spindle turns so slowly while its gear changes; 0: it stands",
+                                 "частота вращения шпинделя при смене ступени; 0: он стоит"),
+      key<&C::gear_change_time>("gear_change_time", {.unit = Unit::second, .min = 0, .max = 60},
+                                "from the outputs to an engaged gear, where no input confirms it",
+                                "от выходов до включённой ступени, если вход её не подтверждает"),
+      key<&C::gear_change_timeout>("gear_change_timeout", {.unit = Unit::second, .min = 0.1, .max = 60},
+                                   "to the confirmation of a gear, then an alarm",
+                                   "до подтверждения ступени, затем авария"),
       key<&C::counts_per_rev>("counts_per_rev", {.unit = Unit::counts, .min = 0, .max = kMostCounts},
                               "encoder counts per turn of the spindle; 0: no encoder",
                               "дискрет датчика на оборот шпинделя; 0: датчика нет"),

@@ -25,6 +25,11 @@ std::span<const std::string_view> choices_of<LineParity>() {
   return kNames;
 }
 template <>
+std::span<const std::string_view> choices_of<PointBias>() {
+  static constexpr std::string_view kNames[] = {"as_is", "off", "up", "down"};
+  return kNames;
+}
+template <>
 std::span<const std::string_view> choices_of<LossReaction>() {
   static constexpr std::string_view kNames[] = {"stop_on_path", "stop_axes", "stop_and_power_off",
                                                 "quick_stop", "power_off"};
@@ -181,6 +186,22 @@ const Section& section_of<PointConfig>() {
       key<&C::hysteresis>("hysteresis", {.min = 0, .max = kLargestSignal},
                           "analog input: a change smaller than this is not shown, in the unit of packet A",
                           "аналоговый вход: меньшее изменение не показывается, в единицах пакета A"),
+      key<&C::bias>(
+          "bias", {},
+          "gpio input: the resistor of its line inside the chip; as_is: as the board's firmware left it",
+          "вход gpio: резистор линии внутри микросхемы; as_is: как его оставила прошивка платы"),
+      key<&C::edges>(
+          "edges", {},
+          "gpio, di: its edges are taken with the kernel's times; homing then meets the edge of its switch "
+          "between two cycles",
+          "gpio, di: фронты берутся со временем ядра; тогда при выходе в ноль фронт выключателя "
+          "определяется между циклами"),
+      key<&C::b_line>(
+          "b_line", {.min = -1, .max = 4095},
+          "gpio, ai: counts of a handwheel or encoder of two tracks: track A is the line of `channel`, "
+          "track B this one; four counts a period; -1: none",
+          "gpio, ai: отсчёты маховичка или датчика с двумя дорожками: дорожка A — линия `channel`, "
+          "дорожка B — эта; четыре отсчёта на период; -1: нет"),
       key<&C::comment>("comment", {}, "meaning for people", "пояснение для людей"),
   };
   static const Section section{"a wire of the machine", "сигнал станка", keys, &default_object<C>};

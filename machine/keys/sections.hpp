@@ -33,6 +33,8 @@ template <>
 std::span<const std::string_view> choices_of<PositionMode>();
 template <>
 std::span<const std::string_view> choices_of<SpeedMode>();
+template <>
+std::span<const std::string_view> choices_of<PointBias>();
 
 template <>
 const Section& section_of<HomingConfig>();
@@ -40,6 +42,8 @@ template <>
 const Section& section_of<BrakeConfig>();
 template <>
 const Section& section_of<AxisConfig>();
+template <>
+const Section& section_of<GearConfig>();
 template <>
 const Section& section_of<SpindleConfig>();
 template <>

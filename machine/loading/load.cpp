@@ -75,7 +75,10 @@ void check_all(LoadResult& result, Reading& reading) {
   check_control(machine, reading);
   check_safety(machine, reading);
   check_modbus_server(machine, reading);
+  check_gpio_lines(machine, reading);
+  check_gears(machine, reading);
   check_devices(result, reading);
+  check_station_devices(result, reading);
   check_inverters(result, reading);
   check_bus_times(result, reading);
   check_waits(result, reading);

@@ -183,9 +183,22 @@ class Rig {
     image.packets.set_bit(kMinusSwitch.place, !(x <= minus_switch));
     const bool home = x <= home_from && x >= home_to;
     if (home != home_was) bounce_left = bounce_cycles;
+    image.edges.clear();
+    if (home_edges && home != home_was) tell_edge(home, x);
+    x_was = x;
     home_was = home;
     const bool bounced = bounce_left > 0 && (--bounce_left % 3) == 1;
     image.packets.set_bit(kHomeSwitch.place, home != bounced);
+  }
+  /// With the time at which the slide passed the upper end of the switch: it stands at `x` one cycle ago, as
+  /// it is read in this one.
+  void tell_edge(bool home, double x) {
+    const image::Nanoseconds period = image.now.period_ns;
+    const double left = (x - home_from) / (x - x_was);
+    const image::Nanoseconds at =
+        image.now.t_ns - period - static_cast<image::Nanoseconds>(left * static_cast<double>(period));
+    for (int n = 0; n <= 2 * edge_bounces; ++n)
+      image.edges.add({kHomeSwitch.place, home == (n % 2 == 0), at + n * image::kMillisecond / 10});
   }
   void cycle() {
     image.now.number += 1;
@@ -238,6 +251,9 @@ class Rig {
   int bounce_cycles = 0;  ///< after each change of the home switch
   int bounce_left = 0;
   bool home_was = false;
+  bool home_edges = false;  ///< the home switch tells its edges; only its upper end is passed
+  int edge_bounces = 0;     ///< of each of them
+  double x_was = 0.0;
   double plus_switch = 310.0, minus_switch = -310.0, home_from = -250.0, home_to = -1e9;
 };
 

@@ -160,7 +160,7 @@ class Hand {
 TEST_F(EdgesOfTheKernel, of_two_lines_are_the_counts_of_a_handwheel) {
   pull(kTrackA, false);
   pull(kTrackB, false);
-  Line wheel{"wheel", kTrackA, rule("SA40.LI", true)};
+  Line wheel{"wheel", kTrackA, counts("SA40.LI")};
   wheel.b_offset = kTrackB;
   const auto chip = open({wheel, {"limit", kSwitch, rule("SA6", true)}});
   ASSERT_NE(chip, nullptr) << why_.str();
@@ -184,7 +184,7 @@ TEST_F(EdgesOfTheKernel, of_two_lines_are_the_counts_of_a_handwheel) {
 TEST_F(EdgesOfTheKernel, are_counted_at_the_rate_that_this_computer_can_follow) {
   pull(kTrackA, false);
   pull(kTrackB, false);
-  Line wheel{"wheel", kTrackA, rule("SA40.LI", true)};
+  Line wheel{"wheel", kTrackA, counts("SA40.LI")};
   wheel.b_offset = kTrackB;
   const auto chip = open({wheel});
   ASSERT_NE(chip, nullptr) << why_.str();

@@ -111,7 +111,7 @@ TEST_F(ChipOfTheKernel, that_vanishes_gives_its_values_of_loss_and_keeps_the_cou
   sysfs_ = "/sys/devices/platform/" + device + "/" + chip_;
   image::PointRule limit = rule("SA0", true, true);
   limit.loss = 1.0;
-  Line wheel{"wheel", 2, rule("SA40.LI", true)};
+  Line wheel{"wheel", 2, counts("SA40.LI")};
   wheel.b_offset = 3;
   const auto chip = open({{"limit", 1, limit}, wheel});
   ASSERT_NE(chip, nullptr) << why_.str();

@@ -28,6 +28,13 @@ inline image::PointRule rule(const char* place, bool input, bool inverted = fals
   return r;
 }
 
+inline image::PointRule counts(const char* place) {
+  image::PointRule r = rule(place, true);
+  r.digital = false;
+  r.hold = true;
+  return r;
+}
+
 inline std::string output_of(const std::string& command) {
   std::string text;
   FILE* pipe = popen((command + " 2>&1").c_str(), "r");

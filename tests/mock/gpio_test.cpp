@@ -63,6 +63,40 @@ TEST(MockGpio, a_limit_switch_is_on_at_its_place_and_beyond) {
   EXPECT_EQ(at(-304.0), std::pair(false, false));
 }
 
+TEST(MockGpio, tells_when_between_two_steps_a_switch_was_passed) {
+  Slide slide;
+  MockGpio chip(
+      {input("plus", LimitSwitch{0, 10.0, true}, "SA0"), input("home", HomeSwitch{0, 30.0, 5.0}, "SA1")}, {},
+      slide.position());
+  image::ProcessImage image;
+  std::vector<image::Edge> edges;
+  for (int n = 0; n <= 20; ++n) {
+    slide.mm = 4.0 * n;
+    cycle(chip, image, n * kMillisecond);
+    for (const image::Edge& e : image.edges.list()) edges.push_back(e);
+  }
+  ASSERT_EQ(edges.size(), 3u);
+  EXPECT_EQ(edges[0].t_ns, 2'500'000) << "10 mm at 4 mm a step";
+  EXPECT_EQ(edges[1].t_ns, 7'500'000);
+  EXPECT_TRUE(edges[1].level);
+  EXPECT_EQ(edges[2].t_ns, 8'750'000);
+  EXPECT_FALSE(edges[2].level);
+}
+
+TEST(MockGpio, shows_the_counts_of_an_encoder_and_keeps_them_while_it_is_unplugged) {
+  GpioInput wheel = input("wheel", SetCounts{}, "SA40.LI");
+  wheel.rule.digital = false;
+  wheel.rule.hold = true;
+  MockGpio chip({wheel}, {});
+  image::ProcessImage image;
+  chip.set_counts(0, -123'456);
+  cycle(chip, image, kMillisecond);
+  EXPECT_EQ(image.packets.number(place("SA40.LI")), -123'456.0);
+  chip.plug(false);
+  cycle(chip, image, 2 * kMillisecond);
+  EXPECT_EQ(image.packets.number(place("SA40.LI")), -123'456.0);
+}
+
 TEST(MockGpio, a_home_switch_is_on_over_its_width_only) {
   Slide slide;
   MockGpio chip({input("home", HomeSwitch{0, -10.0, 8.0}, "SA2")}, {}, slide.position());

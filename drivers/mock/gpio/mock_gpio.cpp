@@ -2,6 +2,7 @@
 #include "drivers/mock/gpio/mock_gpio.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace servogate::mock {
 
@@ -43,16 +44,35 @@ MockGpio::MockGpio(std::vector<GpioInput> inputs, std::vector<GpioOutput> output
   output_edges_.resize(outputs_.size());
 }
 
-bool MockGpio::contact(const GpioInput& input) const {
+double MockGpio::place_of_axis(const GpioInput& input) const {
+  if (!position_) return std::nan("");
+  if (const auto* limit = std::get_if<LimitSwitch>(&input.source)) return position_(limit->axis);
+  if (const auto* home = std::get_if<HomeSwitch>(&input.source)) return position_(home->axis);
+  return 0.0;
+}
+
+bool MockGpio::contact(const GpioInput& input, double at) {
   if (const auto* set = std::get_if<SetInput>(&input.source)) return set->on;
-  if (!position_) return false;
-  if (const auto* limit = std::get_if<LimitSwitch>(&input.source)) {
-    const double at = position_(limit->axis);
+  if (std::isnan(at)) return false;
+  if (const auto* limit = std::get_if<LimitSwitch>(&input.source))
     return (limit->positive ? at >= limit->mm : at <= limit->mm) != input.rule.inverted;
+  const auto* home = std::get_if<HomeSwitch>(&input.source);
+  return home != nullptr && (at >= home->mm && at <= home->mm + home->width_mm) != input.rule.inverted;
+}
+
+/// When the axis of a switch, on a straight way from where it was, has come to the place that works it.
+image::Nanoseconds MockGpio::crossing(std::size_t n, double at, image::Nanoseconds t) const {
+  const GpioInput& input = inputs_[n];
+  const double from = lines_[n].at;
+  if (!std::isfinite(from) || !std::isfinite(at) || from == at) return t;
+  double place = at;
+  if (const auto* limit = std::get_if<LimitSwitch>(&input.source)) place = limit->mm;
+  if (const auto* home = std::get_if<HomeSwitch>(&input.source)) {
+    const double end = home->mm + home->width_mm;
+    place = (from < home->mm) != (at < home->mm) ? home->mm : end;
   }
-  const auto& home = std::get<HomeSwitch>(input.source);
-  const double at = position_(home.axis);
-  return (at >= home.mm && at <= home.mm + home.width_mm) != input.rule.inverted;
+  const double share = std::clamp((place - from) / (at - from), 0.0, 1.0);
+  return t_ns_ + static_cast<image::Nanoseconds>(share * static_cast<double>(t - t_ns_));
 }
 
 void MockGpio::flip(std::size_t n, bool level, image::Nanoseconds t) {
@@ -86,17 +106,24 @@ void MockGpio::move(std::size_t n, bool wanted, image::Nanoseconds t) {
 }
 
 void MockGpio::advance_to(image::Nanoseconds t) {
-  t_ns_ = std::max(t_ns_, t);
+  t = std::max(t_ns_, t);
   for (std::size_t n = 0; n < lines_.size(); ++n) {
-    const Line& line = lines_[n];
-    const bool wanted = line.forced ? line.forced_level : contact(inputs_[n]);
-    if (!line.settled(wanted)) move(n, wanted, t_ns_);
+    Line& line = lines_[n];
+    const double at = place_of_axis(inputs_[n]);
+    const bool wanted = line.forced ? line.forced_level : contact(inputs_[n], at);
+    if (line.started && !line.forced && wanted != line.contact) move(n, wanted, crossing(n, at, t));
+    if (!line.settled(wanted)) move(n, wanted, t);
+    line.at = at;
   }
+  t_ns_ = t;
 }
 
 void MockGpio::receive(image::ProcessImage& image, image::Notices&) noexcept {
   if (plugged_) {
-    for (std::size_t n = 0; n < lines_.size(); ++n) stage_.take(n, lines_[n].level ? 1.0 : 0.0);
+    for (std::size_t n = 0; n < lines_.size(); ++n) {
+      const auto* encoder = std::get_if<SetCounts>(&inputs_[n].source);
+      stage_.take(n, encoder != nullptr ? encoder->counts : lines_[n].level ? 1.0 : 0.0);
+    }
     stage_.fresh(0, t_ns_);
   } else {
     stage_.lost(0);
@@ -116,6 +143,10 @@ void MockGpio::send(image::ProcessImage& image) noexcept {
 
 int MockGpio::input_index(std::string_view name) const noexcept { return find(inputs_, name); }
 int MockGpio::output_index(std::string_view name) const noexcept { return find(outputs_, name); }
+
+void MockGpio::set_counts(std::size_t n, std::int32_t counts) {
+  if (auto* encoder = std::get_if<SetCounts>(&inputs_[n].source)) encoder->counts = counts;
+}
 
 bool MockGpio::set_input(std::size_t n, bool on) {
   auto* set = n < inputs_.size() ? std::get_if<SetInput>(&inputs_[n].source) : nullptr;

@@ -36,7 +36,11 @@ struct HomeSwitch {
 struct SetInput {
   bool on = false;
 };
-using InputSource = std::variant<SetInput, LimitSwitch, HomeSwitch>;
+/// Counts of an encoder on two lines, which an operator or a test turns.
+struct SetCounts {
+  std::int32_t counts = 0;
+};
+using InputSource = std::variant<SetInput, LimitSwitch, HomeSwitch, SetCounts>;
 
 /// Contact bounce: after a change the line flickers for half of `time_ns` to all of it, by the seed.
 struct Bounce {
@@ -77,6 +81,8 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
   /// Index of a line by name, -1: none.
   int input_index(std::string_view name) const noexcept;
   int output_index(std::string_view name) const noexcept;
+  /// Turns an encoder there; nothing for a line that is none.
+  void set_counts(std::size_t n, std::int32_t counts);
   /// Sets an operator's input; false for a switch that follows an axis.
   bool set_input(std::size_t n, bool on);
   /// Holds a line at a level whatever drives it (a stuck contact), and lets it go.
@@ -100,6 +106,7 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
     bool contact = false;  ///< as driven
     bool level = false;    ///< as seen, with bounce
     bool started = false;
+    double at = 0.0;  ///< where the axis of its switch was at t_ns_
     bool forced = false;
     bool forced_level = false;
     image::Nanoseconds settle_ns = 0;
@@ -110,7 +117,9 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
       return started && wanted == contact && level == contact && next_flip_ns >= settle_ns;
     }
   };
-  bool contact(const GpioInput& input) const;
+  static bool contact(const GpioInput& input, double at);
+  double place_of_axis(const GpioInput& input) const;
+  image::Nanoseconds crossing(std::size_t n, double at, image::Nanoseconds t) const;
   void move(std::size_t n, bool wanted, image::Nanoseconds t);
   void flip(std::size_t n, bool level, image::Nanoseconds t);
 

@@ -68,7 +68,8 @@ MockGpio& World::add_contacts_of_chip(std::vector<GpioInput> inputs, std::vector
   const std::size_t first = inputs_.size();
   for (std::size_t n = 0; n < inputs.size(); ++n) {
     Input input{inputs[n].name, inputs[n].rule, {.number = n}};
-    input.switched = !std::holds_alternative<SetInput>(inputs[n].source);
+    input.switched = std::holds_alternative<LimitSwitch>(inputs[n].source) ||
+                     std::holds_alternative<HomeSwitch>(inputs[n].source);
     inputs_.push_back(std::move(input));
   }
   const std::size_t first_output = outputs_.size();
@@ -229,6 +230,8 @@ void World::set_raw(const Terminal& at, double raw) {
   const auto channel = static_cast<std::uint16_t>(at.number);
   if (at.encoder != nullptr)
     at.encoder->set_position(within(-2147483648.0, 4294967295.0));
+  else if (at.chip != nullptr)
+    at.chip->set_counts(at.number, static_cast<std::int32_t>(within(-2147483648.0, 2147483647.0)));
   else if (at.module != nullptr)
     at.module->set_analogue(static_cast<std::uint8_t>(channel),
                             static_cast<std::int16_t>(within(-32768.0, 32767.0)));

@@ -108,6 +108,8 @@ const InverterWord kInverters[] = {
 const Entry kInverterOn{"client.inverter-on", "inverter {0} is on", "преобразователь {0} включён"};
 const Entry kOutputs{"client.spindle-outputs", "by output {0}, without feedback",
                      "по выходу {0}, без обратной связи"};
+const Entry kInGear{"client.in-gear", "{0}, gear {1}", "{0}, ступень {1}"};
+const Entry kNoGear{"client.no-gear", "{0}, in no gear", "{0}, ступень не включена"};
 const Entry kAtSpeed{"client.at-speed", "{0}, at speed", "{0}, частота достигнута"};
 
 template <std::size_t N>
@@ -254,6 +256,8 @@ std::string spindle_words(const json& sp) {
     for (const InverterWord& w : kInverters)
       if (w.state == drive) words = say(w.words, {place});
   }
+  if (const json& gear = sp.value("gear", json()); gear.is_string())
+    words = gear == "" ? say(kNoGear, {words}) : say(kInGear, {words, gear.get<std::string>()});
   return supplier != "drive" && sp.value("at_speed", false) ? say(kAtSpeed, {words}) : words;
 }
 

@@ -38,6 +38,7 @@ inline constexpr AlarmNumber kHomingInterrupted = 1107;  ///< detail1: image::Jo
 inline constexpr AlarmNumber kHomingIndexNearEdge = 1108;
 inline constexpr AlarmNumber kHomingDriveFailed = 1109;
 inline constexpr AlarmNumber kHomingModeRefused = 1110;
+inline constexpr AlarmNumber kHomingNoEdge = 1111;
 
 inline constexpr AlarmNumber kSpindleNotAtSpeed = 1201;
 inline constexpr AlarmNumber kSpindleOrientTimeout = 1202;
@@ -47,6 +48,7 @@ inline constexpr AlarmNumber kSpindleNoReverse = 1205;
 inline constexpr AlarmNumber kSpindleOutputLost = 1206;
 inline constexpr AlarmNumber kSpindleDriveLost = 1207;
 inline constexpr AlarmNumber kSpindleNotReady = 1208;
+inline constexpr AlarmNumber kSpindleGear = 1209;
 
 inline constexpr AlarmNumber kDriveFault = 2001;
 inline constexpr AlarmNumber kDriveRefuses = 2002;

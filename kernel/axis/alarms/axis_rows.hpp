@@ -218,6 +218,16 @@ inline constexpr image::AlarmRow kAxisRows[] = {
       "{0}: привод не сменил режим между выходом в ноль и csp за {2} с"},
      "See whether the drive has mode hm (6502h), and what it shows in 6061h.",
      "Проверьте, есть ли у привода режим hm (6502h), и что он показывает в 6061h."},
+    {alarm::kHomingNoEdge,
+     image::Reaction::warn,
+     image::ResetCondition::reset,
+     {"homing.no_edge",
+      "{0}: homed by the level of the home switch, which is less exact: no edge with a time came of it",
+      "{0}: выход в ноль по уровню выключателя, менее точно: фронта со временем от него не было"},
+     "Check whether the switch is on its line, and whether the line counts lost edges (a bouncing contact, a "
+     "loose wire); home again.",
+     "Проверьте, на своей ли линии выключатель и не теряет ли линия фронты (дребезг, плохой контакт); "
+     "повторите выход в ноль."},
     {alarm::kSpindleNotAtSpeed,
      image::Reaction::stop_on_path,
      image::ResetCondition::reset,
@@ -279,6 +289,17 @@ inline constexpr image::AlarmRow kAxisRows[] = {
       "{0}: преобразователю нельзя работать ({3}): {5}"},
      "Set the parameter at the inverter as its device file says, or bring it out of local mode.",
      "Задайте параметр в преобразователе, как сказано в файле устройства, или снимите местное управление."},
+    {alarm::kSpindleGear,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"spindle.gear", "{0}: gear {2} is not engaged: its input does not confirm it; the spindle stops",
+      "{0}: ступень {2} не включена: её вход не подтверждает; шпиндель останавливается"},
+     "Look at the gearbox: pressure, valve, position of the fork and its switch (`confirm` of the gear). "
+     "Reset, "
+     "and order the spindle again.",
+     "Проверьте редуктор: давление, клапан, положение вилки и её датчик (`confirm` ступени). Выполните сброс "
+     "и "
+     "снова включите шпиндель."},
     {alarm::kDriveFault,
      image::Reaction::stop_on_path,
      image::ResetCondition::cause_gone,

@@ -7,6 +7,7 @@
 
 #include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/packets.hpp"
+#include "kernel/axis/gears/gearbox.hpp"
 #include "kernel/axis/inverter/inverter.hpp"
 #include "kernel/axis/setpoint/ramp.hpp"
 #include "kernel/axis/torque/torque_control.hpp"
@@ -47,6 +48,7 @@ struct HomingData {
   double drive_limit_time = 0.0;   ///< method drive: so long, in s, it may move into a limit switch: it turns
                                    ///< round there; 0: by a method that has no business there
   int order = 1;                   ///< axes with the same number home together, lower numbers first
+  bool edges = false;              ///< the home switch tells its edges with times: its edge is met by them
 };
 
 /// A point of the pitch table: at `position` the drive has to stand further by this much (mm) for the axis to
@@ -131,6 +133,7 @@ struct SpindleConfig {
   bool encoder = true;       ///< the supplier gives counts; without them no oriented stop
   image::PartPlace drive;
   std::optional<InverterConfig> inverter;  ///< supplies the spindle instead of a drive, without an encoder
+  GearboxConfig gearbox;    ///< its counts are those of the motor, as if the first gear were in force
   int source = -1;          ///< image.sources[n] tells whether its drive is there; -1: the drive's bus does
   bool reverses = true;     ///< its drive can turn counter-clockwise
   bool target_bit = false;  ///< at speed only where its drive says so, too (statusword bit 10)

@@ -21,6 +21,8 @@ void Homing::start(const Ramp& ramp, const HomingInputs& in) noexcept {
   seen_on_ = in.home_switch;
   limit_met_ = stopping_ = reference_pending_ = false;
   moving_ = 0;
+  edge_.reset();
+  missed_edge_ = false;
   begin_x_ = ramp.state().x;
   armed_sequence_ = in.latch_sequence;
   edge_counts_ = captured_ = in.counts;
@@ -120,6 +122,8 @@ void Homing::after_switch_search(Ramp& ramp, const HomingInputs& in) noexcept {
 void Homing::decisive_edge(Ramp& ramp, const HomingInputs& in) noexcept {
   edge_counts_ = captured_ = in.counts;
   armed_sequence_ = in.latch_sequence;
+  // An edge of this cycle may be later than its begin.
+  edge_.decide(in.home_switch, in.now_ns + std::llround(in.dt * 1e9));
   if (data_.method == HomingMethod::switch_only) {
     enter(State::settle, ramp);
   } else {
@@ -127,6 +131,14 @@ void Homing::decisive_edge(Ramp& ramp, const HomingInputs& in) noexcept {
     enter(State::index, ramp);
     moving_ = keep;
   }
+}
+
+/// By now its edge has come, if one comes at all.
+void Homing::meet_edge() noexcept {
+  if (!data_.edges) return;
+  const auto met = edge_.counts();
+  missed_edge_ = !met;
+  if (met) edge_counts_ = *met;
 }
 
 void Homing::step(Ramp& ramp, const HomingInputs& in) noexcept {
@@ -151,6 +163,10 @@ void Homing::step(Ramp& ramp, const HomingInputs& in) noexcept {
       return drive_led(ramp, in);
     case State::settle:
       if (!stop_first(ramp, in)) return;
+      if (data_.method == HomingMethod::switch_only) {
+        meet_edge();
+        captured_ = edge_counts_;
+      }
       reference_pending_ = true;
       return enter(State::final_move, ramp);
     case State::final_move:
@@ -217,6 +233,7 @@ void Homing::leave(Ramp& ramp, const HomingInputs& in) noexcept {
 void Homing::index(Ramp& ramp, const HomingInputs& in) noexcept {
   if (in.latch_sequence != armed_sequence_) {
     captured_ = in.latch_counts;
+    if (data_.method == HomingMethod::switch_and_index) meet_edge();
     enter(State::settle, ramp);
     stop_first(ramp, in);
   } else if (!travel_exceeded(ramp, data_.max_index_travel, alarm::kHomingIndexNotFound)) {

@@ -5,6 +5,7 @@
 #include "firmware_if/image/alarm.hpp"
 #include "kernel/axis/config/axis_config.hpp"
 #include "kernel/axis/homing/drive_led_homing.hpp"
+#include "kernel/axis/homing/switch_edge.hpp"
 #include "kernel/axis/setpoint/ramp.hpp"
 
 namespace servogate::axis {
@@ -12,6 +13,7 @@ namespace servogate::axis {
 /// What homing sees of its axis in one cycle.
 struct HomingInputs {
   double dt = 0.001;
+  image::Nanoseconds now_ns = 0;
   bool home_switch = false;
   bool limit_plus = false;
   bool limit_minus = false;
@@ -49,6 +51,12 @@ class Homing {
   void start(const Ramp& ramp, const HomingInputs& in) noexcept;
   /// One cycle: may give the ramp a new target. Call before Ramp::step. real-time safe.
   void step(Ramp& ramp, const HomingInputs& in) noexcept;
+  /// What edges of the home switch and positions have come, before step(); see SwitchEdge. Of a machine whose
+  /// switch tells its edges (HomingData::edges) the decisive edge is met by them. real-time safe.
+  void switch_edge(bool level, image::Nanoseconds t) noexcept { edge_.edge(level, t); }
+  void sample(image::Nanoseconds t, std::int64_t counts) noexcept { edge_.sample(t, counts); }
+  /// Of the last homing: its switch was met by the level although it should tell its edges.
+  bool missed_edge() const noexcept { return missed_edge_; }
   /// Gives up and stops the ramp; no failure is recorded. real-time safe.
   void abort(Ramp& ramp) noexcept;
 
@@ -91,12 +99,15 @@ class Homing {
   void final_move(Ramp& ramp, const HomingInputs& in) noexcept;
   void after_switch_search(Ramp& ramp, const HomingInputs& in) noexcept;
   void decisive_edge(Ramp& ramp, const HomingInputs& in) noexcept;
+  void meet_edge() noexcept;
   bool travel_exceeded(Ramp& ramp, double limit, image::AlarmNumber number) noexcept;
 
   HomingData data_;
   MotionLimits limits_;
   State state_ = State::idle;
   DriveLedHoming drive_;
+  SwitchEdge edge_;
+  bool missed_edge_ = false;
   bool stopping_ = false;  ///< the condition of the state is met, the ramp comes to rest
   bool seen_on_ = false;
   bool limit_met_ = false;

@@ -47,8 +47,8 @@ void Inverter::advance(double wanted_rpm, double step_rpm, bool cut, double dt) 
   assumed_ = toward(assumed_, command_, step_rpm);
 }
 
-void Inverter::write(image::ProcessImage& image) const noexcept {
-  image.packets.set_number(config_.speed, direction_ != 0 ? std::abs(command_) : 0.0);
+void Inverter::write(image::ProcessImage& image, double ratio) const noexcept {
+  image.packets.set_number(config_.speed, direction_ != 0 ? std::abs(command_) * ratio : 0.0);
   if (config_.cw) image.packets.set_bit(*config_.cw, direction_ > 0);
   if (config_.ccw) image.packets.set_bit(*config_.ccw, direction_ < 0);
 }

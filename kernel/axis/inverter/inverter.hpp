@@ -30,8 +30,8 @@ class Inverter {
   /// One cycle towards `wanted_rpm` (+ clockwise), by at most `step_rpm`. `cut`: speed 0 and both relays off
   /// now.
   void advance(double wanted_rpm, double step_rpm, bool cut, double dt) noexcept;
-  /// Speed and relays into packet A.
-  void write(image::ProcessImage& image) const noexcept;
+  /// Speed, times `ratio` of the gear in force, and relays into packet A.
+  void write(image::ProcessImage& image, double ratio) const noexcept;
   double command_rpm() const noexcept { return command_; }
   double assumed_rpm() const noexcept { return assumed_; }
 

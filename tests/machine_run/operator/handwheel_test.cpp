@@ -272,5 +272,42 @@ TEST(HandwheelBeforeHoming, moves_slowly_and_knows_no_end_of_the_travel_yet) {
   EXPECT_EQ(hand.judge().verdict(), "");
 }
 
+/// The counts come from two lines of the GPIO chip, through the PLC and the same gate.
+TEST(HandwheelOfTwoLines, moves_the_axis_and_does_not_when_its_chip_is_gone) {
+  class Wheel : public Scratch, public Mill {
+   public:
+    Wheel() : Mill(with(*this), {}) {}
+
+   private:
+    static machine::LoadResult with(const Scratch& scratch) {
+      const std::string path = source("examples/mill/machine.toml");
+      std::string text = read_all(path), desk = kDesk;
+      replace(desk, "MC.handwheel1 := counter;", "MC.handwheel1 := wheel;");
+      replace(text, "\"mill.st\"", "\"" + scratch.write("desk.st", desk) + "\"");
+      replace(text, "  { name = \"x_home\"",
+              "  { name = \"wheel\", channel = \"ai11\", b_line = 12, place = \"SA40.LI\" },\n  { name = "
+              "\"x_home\"");
+      return machine::parse(text, path);
+    }
+  } mill;
+  ASSERT_TRUE(mill.make_ready()) << mill.alarm_list();
+  ASSERT_EQ(mill.ask(RequestKind::mode, static_cast<double>(image::Mode::manual)), Refusal::none);
+  image::Packets unused;
+  plc::Engine& engine = mill.control().logic()->engine();
+  ASSERT_TRUE(engine.set_number(unused, *engine.find("selected"), 1.0));
+  mill.run(0.01);
+  const double from = mill.axis("X").command;
+  for (int n = 1; n <= 40; ++n) {
+    mill.control().world().play_input("wheel", {static_cast<double>(-n)});
+    mill.run(0.002);
+  }
+  ASSERT_TRUE(mill.until([&] { return !mill.axis("X").moving; }, 5.0));
+  EXPECT_NEAR(mill.axis("X").command, from - 0.4, 1e-4) << "a hundredth a count, the other way round";
+  mill.control().world().chip("gpio")->plug(false);
+  mill.run(0.5);
+  EXPECT_EQ(mill.image().packets.number(place_of(mill.control(), "wheel")), -40.0);
+  EXPECT_NEAR(mill.axis("X").command, from - 0.4, 1e-4);
+}
+
 }  // namespace
 }  // namespace servogate::machine_run

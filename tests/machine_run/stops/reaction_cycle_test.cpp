@@ -34,7 +34,16 @@ class AtConstantSpeed : public Mill {
       if (r.number == number) return r.cycle;
     return -1;
   }
-  std::int64_t slower_in = -1;
+  /// Cycle in which the point changed after this call; -1: it has not.
+  void look_at(const std::string& point) {
+    looked_at_ = place_of(control(), point);
+    was_ = image().packets.bit(looked_at_);
+    after_cycle = [this, judge = after_cycle] {
+      judge();
+      if (read_in < 0 && image().packets.bit(looked_at_) != was_) read_in = image().now.number;
+    };
+  }
+  std::int64_t slower_in = -1, read_in = -1;
 
  private:
   bool constant() {
@@ -44,6 +53,8 @@ class AtConstantSpeed : public Mill {
     return same;
   }
   double before_ = 0.0, speed_ = 0.0;
+  image::Place looked_at_;
+  bool was_ = false;
 };
 
 struct Case {
@@ -72,6 +83,16 @@ TEST(ReactionCycle, what_a_cycle_reads_slows_the_set_point_of_the_same_cycle) {
           << c.what << (by_program ? ", of a program: " : ", of a jog: ") << mill.alarm_list();
       EXPECT_EQ(mill.judge().verdict(), "") << c.what;
     }
+}
+
+TEST(ReactionCycle, the_limit_switch_and_the_emergency_stop_act_in_the_cycle_in_which_they_are_read) {
+  for (const auto& [point, level] : {std::pair("x_limit_plus", 1.0), std::pair("estop_chain_ok", 0.0)}) {
+    AtConstantSpeed mill(true);
+    mill.look_at(point);
+    play(mill, point, level);
+    ASSERT_TRUE(mill.until([&] { return mill.slower_in >= 0; }, 2.0)) << point << mill.alarm_list();
+    EXPECT_EQ(mill.slower_in, mill.read_in) << point;
+  }
 }
 
 TEST(ReactionCycle, a_limit_switch_of_one_axis_slows_the_other_axes_in_the_same_cycle) {

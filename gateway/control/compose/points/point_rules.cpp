@@ -11,7 +11,7 @@ image::PointRule point_rule(const machine::PointConfig& p) {
   rule.input = p.is_input();
   rule.digital = !p.is_analog();
   rule.inverted = p.inverted;
-  rule.hold = p.hold;
+  rule.hold = p.hold || p.is_encoder();  // a jump of its counts would be a motion
   rule.loss = p.loss;
   rule.scale = p.scale;
   rule.shift = p.shift;

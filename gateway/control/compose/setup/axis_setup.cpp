@@ -38,7 +38,7 @@ bool turns_at_limit(int method) {
          method < 0;
 }
 
-axis::HomingData homing(const machine::AxisConfig& a) {
+axis::HomingData homing(const machine::MachineConfig& m, const machine::AxisConfig& a) {
   axis::HomingData h;
   h.method = method(a.home.method);
   h.direction = sign(a.home.direction);
@@ -56,6 +56,7 @@ axis::HomingData homing(const machine::AxisConfig& a) {
   if (turns_at_limit(a.home.drive_method)) h.drive_limit_time = 2.0 * h.fast / a.homing_acceleration() + 1.0;
   h.timeout_s = a.home.timeout;
   h.order = a.home.order;
+  if (const machine::PointConfig* p = m.point(a.home.switch_point); p != nullptr) h.edges = p->edges;
   h.index_spacing = a.lead * static_cast<double>(a.gear[1]) / static_cast<double>(a.gear[0]);
   return h;
 }
@@ -98,6 +99,25 @@ std::optional<axis::InverterConfig> inverter(const machine::MachineConfig& m,
   c.speed = *speed;
   c.cw = place(s.cw_output);
   c.ccw = place(s.ccw_output);
+  return c;
+}
+
+axis::GearboxConfig gearbox(const machine::MachineConfig& m, const machine::SpindleConfig& s) {
+  axis::GearboxConfig c;
+  c.change_rpm = s.gear_change_speed;
+  c.change_s = s.gear_change_time;
+  c.timeout_s = s.gear_change_timeout;
+  const auto place = [&](const std::string& name) -> std::optional<image::Place> {
+    int station = -1;
+    const machine::PointConfig* p = name.empty() ? nullptr : m.point(name, &station);
+    if (p == nullptr) return std::nullopt;
+    if (station < image::kMaxSources) c.sources |= std::uint32_t{1} << station;
+    return p->place;
+  };
+  // An analog output is told the speed of the motor itself, a drive or an inverter as if in the first gear.
+  const double first = s.speed_output.empty() && !s.gears.empty() ? s.gears.front().ratio() : 1.0;
+  for (const machine::GearConfig& g : s.gears)
+    c.ranges.push_back({g.max_speed, g.ratio() / first, place(g.output), place(g.confirm)});
   return c;
 }
 
@@ -160,7 +180,7 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
   c.in_position_window = a.in_position_window;
   c.in_position_time = a.in_position_time;
   c.in_position_timeout = a.in_position_timeout;
-  c.homing = homing(a);
+  c.homing = homing(m, a);
   c.limit_plus = switch_place(m, a.limit_plus);
   c.limit_minus = switch_place(m, a.limit_minus);
   c.home_switch = switch_place(m, a.home.switch_point);
@@ -194,8 +214,8 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
 }
 
 std::int64_t counts_per_motor_turn(const machine::SpindleConfig& s) {
-  return std::llround(static_cast<double>(s.counts_per_rev) * static_cast<double>(s.gear[1]) /
-                      static_cast<double>(s.gear[0]));
+  return std::llround(static_cast<double>(s.counts_per_rev) * static_cast<double>(s.first_gear()[1]) /
+                      static_cast<double>(s.first_gear()[0]));
 }
 
 axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const machine::SpindleConfig& s) {
@@ -203,6 +223,7 @@ axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const mach
   c.process = s.process - 1;
   c.drive = drive_place(loaded.machine, s.drive);
   c.inverter = inverter(loaded.machine, s);
+  c.gearbox = gearbox(loaded.machine, s);
   c.encoder = s.has_encoder();
   put_inverter(loaded, s, c);
   if (s.has_encoder()) {
@@ -212,7 +233,7 @@ axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const mach
     // The drive counts at its motor.
     const machine::DeviceConfig* device = loaded.device(node->device);
     if (device != nullptr && device->motor.counts_per_rev > 0)
-      exact_ratio(device->motor.counts_per_rev, s.gear[0], s.gear[1], 1.0, c.counts_numerator,
+      exact_ratio(device->motor.counts_per_rev, s.first_gear()[0], s.first_gear()[1], 1.0, c.counts_numerator,
                   c.counts_denominator);
   }
   c.count_direction = sign(s.direction);

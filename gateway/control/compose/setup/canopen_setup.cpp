@@ -44,8 +44,8 @@ canopen::NodeVl vl_of(const machine::SpindleConfig& s, const canopen::DriveProfi
   };
   factor(canopen::object::kVlSetpointFactor, vl.set_point_factor);
   factor(canopen::object::kVlDimensionFactor, vl.dimension_factor);
-  const double per_rpm = static_cast<double>(s.gear[0]) / static_cast<double>(s.gear[1]) / 60.0 *
-                         static_cast<double>(p.counts_per_rev) / std::abs(p.vl_unit_counts_s);
+  const double per_rpm = static_cast<double>(s.first_gear()[0]) / static_cast<double>(s.first_gear()[1]) /
+                         60.0 * static_cast<double>(p.counts_per_rev) / std::abs(p.vl_unit_counts_s);
   vl.least = s.min_speed > 0.0 ? object_value(s.min_speed * per_rpm) : 0;
   vl.most = object_value(std::ceil(s.max_speed * per_rpm));
   double speed = s.acceleration * per_rpm;
@@ -158,8 +158,8 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
         n.target = canopen::DriveTarget::spindle;
         n.target_index = static_cast<int>(s);
         counts = counts_per_motor_turn(m.spindles[s]);
-        ramp_rpm_s = m.spindles[s].acceleration * static_cast<double>(m.spindles[s].gear[0]) /
-                     static_cast<double>(m.spindles[s].gear[1]);
+        ramp_rpm_s = m.spindles[s].acceleration * static_cast<double>(m.spindles[s].first_gear()[0]) /
+                     static_cast<double>(m.spindles[s].first_gear()[1]);
         used = true;
       }
     if (!used && !take_station(loaded, node, reference, n)) continue;

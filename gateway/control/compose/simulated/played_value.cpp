@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "drivers/mock/world/world.hpp"
 
@@ -18,8 +20,12 @@ bool whole_place(const machine::PointConfig& point) { return point.place.format 
 image::NumberRange range_of(const machine::PointConfig& point) {
   if (!point.is_analog()) return {0.0, 1.0};
   const image::NumberRange place = image::number_range(point.place.format);
-  const double end = mock::World::kLargestRegister * point.scale + point.shift;
-  return {std::max(place.min, std::min(point.shift, end)), std::min(place.max, std::max(point.shift, end))};
+  // A register, or the counter of an encoder.
+  const double last =
+      point.is_encoder() ? std::numeric_limits<std::int32_t>::max() : mock::World::kLargestRegister;
+  const double first = point.is_encoder() ? std::numeric_limits<std::int32_t>::min() : 0.0;
+  const double begin = first * point.scale + point.shift, end = last * point.scale + point.shift;
+  return {std::max(place.min, std::min(begin, end)), std::min(place.max, std::max(begin, end))};
 }
 
 std::pair<double, double> next_to(const machine::PointConfig& point, double value) {

@@ -51,7 +51,7 @@ mock::SimulatedInverterSettings inverter_settings(const LineStation& s) {
   constexpr double kQuicker = 1.25, kHeadroom = 1.1;
   mock::SimulatedInverterSettings out;
   out.registers = machine::inverter_registers(s.inverter->inverter);
-  out.max_hz = kHeadroom * s.spindle->hertz(s.spindle->max_speed);
+  out.max_hz = kHeadroom * s.spindle->largest_hertz();
   out.ramp_hz_s = kQuicker * s.spindle->hertz(s.spindle->acceleration);
   out.silence_trip = static_cast<std::uint16_t>(s.inverter->inverter.silence_fault);
   return out;
@@ -120,6 +120,10 @@ class Setup {
     mock::GpioInput input;
     input.name = p.name;
     input.rule = point_rule(p);
+    if (p.is_encoder()) {
+      input.source = mock::SetCounts{static_cast<std::int32_t>(initial(p.name).value_or(0.0))};
+      return input;
+    }
     input.source = mock::SetInput{initial(p.name).value_or(0.0) != 0.0};
     for (const machine::SimulatedSwitch& s : m_.simulation.switches) {
       if (s.point != p.name) continue;

@@ -127,6 +127,7 @@ json json_of(const SpindleReport& r) {
           {"actual_rpm", measure(r.spindle.actual_rpm)},
           {"at_speed", r.spindle.at_speed},
           {"rests", r.rests ? json(*r.rests) : json()},
+          {"gear", !r.gears ? json() : json(r.gear)},
           {"drive", outputs ? json() : json(kDriveStates[static_cast<int>(r.spindle.drive.state)])}};
 }
 

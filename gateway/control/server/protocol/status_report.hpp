@@ -50,6 +50,8 @@ struct SpindleReport {
   image::SpindleImage spindle;
   SpindleSupplier supplier = SpindleSupplier::drive;
   std::string place;          ///< "can.spindle", "cabinet.vfd", or the point of its speed
+  bool gears = false;         ///< it has gear ranges
+  std::string gear;           ///< name of the one in force; empty: none, or it changes
   std::optional<bool> rests;  ///< none: its drive does not answer
 };
 

@@ -81,9 +81,16 @@ std::vector<BusReport> bus_reports(const machine::MachineConfig& m, const image:
 }
 
 /// By what it is turned.
-SpindleReport spindle_report(const machine::MachineConfig& m, std::size_t index) {
+SpindleReport spindle_report(const machine::MachineConfig& m, const image::ProcessImage& image,
+                             std::size_t index) {
   const machine::SpindleConfig& s = m.spindles[index];
   SpindleReport report;
+  report.gears = !s.gears.empty();
+  const image::Place gear =
+      image::at(image::field(image::kSpindleFields, "gear"), image::spindle_base(static_cast<int>(index)));
+  if (const auto number = static_cast<std::size_t>(image.packets.number(gear));
+      number > 0 && number <= s.gears.size())
+    report.gear = s.gears[number - 1].name;
   if (!s.drive.empty()) {
     report.place = s.drive;
   } else if (!s.inverter.empty()) {
@@ -162,7 +169,7 @@ StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Languag
     status.axes.back().origin = coordinates[p].origin[n];
   }
   for (int i = 0; i < image.spindle_count; ++i) {
-    SpindleReport spindle = spindle_report(m, static_cast<std::size_t>(i));
+    SpindleReport spindle = spindle_report(m, image, static_cast<std::size_t>(i));
     spindle.spindle = image.spindles[static_cast<std::size_t>(i)];
     if (!spindle_lost(image, m, i)) spindle.rests = spindle_rests(image, i);
     status.spindles.push_back(std::move(spindle));

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "firmware_if/text/finding.hpp"
+
+/// Findings about lines of GPIO chips and gear ranges.
+namespace servogate::machine::finding {
+
+inline constexpr text::Entry kGpioOnly{"machine.gpio_only", "`{0}`: '{1}' is no {2} of a gpio station",
+                                       "`{0}`: «{1}» — не {2} станции gpio"};
+inline constexpr text::Entry kEncoderKey{
+    "machine.encoder_key",
+    "'{0}' counts an encoder (`b_line`): it has no `{1}`; while the chip is lost its counts stand",
+    "«{0}» считает датчик (`b_line`): `{1}` у него нет; при потере микросхемы счёт остаётся прежним"};
+inline constexpr text::Entry kEncoderPlace{
+    "machine.encoder_place",
+    "'{0}': counts of an encoder go round in 32 bits and need a place of form .LI, not {1}",
+    "«{0}»: отсчёты датчика занимают 32 бита, нужен адрес вида .LI, а не {1}"};
+inline constexpr text::Entry kLineTwice{"machine.line_twice",
+                                        "'{0}': line {1} of this chip is that of '{2}' already",
+                                        "«{0}»: линия {1} этой микросхемы уже занята сигналом «{2}»"};
+inline constexpr text::Entry kGearsAndOne{
+    "machine.gears_and_one",
+    "spindle {0}: `{1}` and `gears` exclude each other: each gear has its own `gear`",
+    "шпиндель {0}: `{1}` и `gears` исключают друг друга: у каждой ступени свой `gear`"};
+inline constexpr text::Entry kGearsEncoder{"machine.gears_encoder",
+                                           "spindle {0}: `{1}` does not go with `gears`: behind a gearbox "
+                                           "the drive counts at its motor, and the angle of the "
+                                           "spindle is not known",
+                                           "шпиндель {0}: `{1}` несовместим с `gears`: за редуктором привод "
+                                           "считает на двигателе, угол шпинделя неизвестен"};
+inline constexpr text::Entry kGearOrder{
+    "machine.gear_order",
+    "spindle {0}: gear \"{1}\" reaches {2} rpm, no more than the gear before it: slow ones first",
+    "шпиндель {0}: ступень «{1}» — до {2} об/мин, не больше предыдущей: сначала медленные"};
+inline constexpr text::Entry kGearsTooSlow{
+    "machine.gears_too_slow", "spindle {0}: max_speed is {1} rpm, and its fastest gear reaches {2} rpm",
+    "шпиндель {0}: max_speed — {1} об/мин, а самая быстрая ступень — до {2} об/мин"};
+inline constexpr text::Entry kGearTwice{"machine.gear_twice", "spindle {0}: two gears have {1}",
+                                        "шпиндель {0}: у двух ступеней {1}"};
+inline constexpr text::Entry kGearsOnly{"machine.gears_only",
+                                        "spindle {0}: `{1}` belongs to a spindle with `gears`",
+                                        "шпиндель {0}: `{1}` бывает только вместе с `gears`"};
+inline constexpr text::Entry kGearNoOutput{
+    "machine.gear_no_output",
+    "spindle {0}: only one gear can be without `output`, the one that engages by itself; \"{1}\" is another",
+    "шпиндель {0}: без `output` может быть только одна ступень, включаемая сама; «{1}» — ещё одна"};
+inline constexpr text::Entry kGearChangeSpeed{
+    "machine.gear_change_speed",
+    "spindle {0}: gear_change_speed {1} rpm is above what its gear \"{2}\" reaches",
+    "шпиндель {0}: gear_change_speed {1} об/мин больше предела ступени «{2}»"};
+
+}  // namespace servogate::machine::finding
