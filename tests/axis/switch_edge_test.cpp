@@ -65,11 +65,12 @@ TEST(SwitchEdge, of_another_change_or_of_a_later_one_is_not_it) {
   edge.edge(true, 10 * kMillisecond);
   edge.decide(false, 40 * kMillisecond);
   EXPECT_FALSE(edge.counts()) << "it led the other way";
-  edge.edge(false, 50 * kMillisecond);
-  EXPECT_FALSE(edge.counts()) << "it came behind the cycle that saw the level";
-  edge.decide(false, 51 * kMillisecond);
-  ASSERT_TRUE(edge.counts());
-  EXPECT_EQ(*edge.counts(), 150);
+  edge.edge(false, 70 * kMillisecond);
+  pass(edge, 61, 120);
+  EXPECT_FALSE(edge.counts()) << "it came long behind the cycle that saw the level";
+  edge.decide(false, 55 * kMillisecond);
+  ASSERT_TRUE(edge.counts()) << "of a cycle that is late";
+  EXPECT_EQ(*edge.counts(), 210);
 }
 
 AxisConfig on_its_switch(bool edges, int release) {

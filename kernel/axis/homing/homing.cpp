@@ -122,8 +122,7 @@ void Homing::after_switch_search(Ramp& ramp, const HomingInputs& in) noexcept {
 void Homing::decisive_edge(Ramp& ramp, const HomingInputs& in) noexcept {
   edge_counts_ = captured_ = in.counts;
   armed_sequence_ = in.latch_sequence;
-  // An edge of this cycle may be later than its begin.
-  edge_.decide(in.home_switch, in.now_ns + std::llround(in.dt * 1e9));
+  edge_.decide(in.home_switch, in.now_ns);
   if (data_.method == HomingMethod::switch_only) {
     enter(State::settle, ramp);
   } else {

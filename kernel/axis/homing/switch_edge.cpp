@@ -38,9 +38,14 @@ std::optional<std::int64_t> SwitchEdge::at(image::Nanoseconds t) const noexcept 
 }
 
 std::optional<std::int64_t> SwitchEdge::counts() const noexcept {
-  for (std::size_t n = 0; n < changed_; ++n)
-    if (changes_[n].begin <= seen_ns_ && changes_[n].level == level_) return changes_[n].counts;
-  return std::nullopt;
+  const Change* found = nullptr;
+  for (std::size_t n = 0; n < changed_; ++n) {
+    const Change& change = changes_[n];
+    if (change.level != level_ || change.begin > seen_ns_ + kLate) continue;
+    found = &change;
+    if (change.begin <= seen_ns_) break;
+  }
+  return found != nullptr ? found->counts : std::nullopt;
 }
 
 }  // namespace servogate::axis

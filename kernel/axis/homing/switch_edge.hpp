@@ -22,7 +22,10 @@ class SwitchEdge {
   /// The axis was at `counts` at the time `t`; times rise.
   void sample(image::Nanoseconds t, std::int64_t counts) noexcept;
   void edge(bool level, image::Nanoseconds t) noexcept;
-  /// The level has been found changed to `level`, at `t` or before.
+  /// A cycle that is late reads a level that is later than its own time by as much as this.
+  static constexpr image::Nanoseconds kLate = 20 * image::kMillisecond;
+
+  /// The level has been found changed to `level` in the cycle of the time `t`.
   void decide(bool level, image::Nanoseconds t) noexcept {
     level_ = level;
     seen_ns_ = t;
