@@ -70,6 +70,12 @@ struct GpioChip::Parts {
     if (outputs != nullptr) outputs->write(loss_levels);
   }
 
+  /// What edges tell of themselves is of the source, too.
+  void count_faults() noexcept {
+    const std::uint32_t faults = edges->lost() + edges->encoder_errors();
+    for (int n = 0; n < kMostFaults && faults_told != faults; ++n, ++faults_told) stage.fault();
+  }
+
   void show_edges(image::ProcessImage& image) noexcept {
     LineEvent event;
     for (std::size_t n = 0; n < image::Edges::kCapacity && edges->take(event); ++n) {
@@ -89,8 +95,9 @@ struct GpioChip::Parts {
   std::unique_ptr<OutputLines> outputs;
   image::PointStage stage;
   CycleTimes times;
-  std::optional<EdgeThread> edges;  ///< ends before the inputs that it reads
-  std::uint32_t lost_told = 0;
+  std::optional<EdgeThread> edges;        ///< ends before the inputs that it reads
+  static constexpr int kMostFaults = 16;  ///< that one cycle takes in
+  std::uint32_t lost_told = 0, faults_told = 0;
   std::uint64_t loss_levels = 0, written = 0;
   bool stale = false;  ///< what stands at the outputs may not be what was written last
 };
@@ -121,6 +128,7 @@ void GpioChip::receive(image::ProcessImage& image, image::Notices&) noexcept {
     if (!read) p.stage.fault();
     p.stage.lost(0);
   }
+  if (p.edges) p.count_faults();
   p.stage.settle(image);
   if (p.edges) p.show_edges(image);
 }

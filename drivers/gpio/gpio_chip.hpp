@@ -42,10 +42,10 @@ struct ChipCounters {
 /// so that an emergency stop or a limit switch acts in the cycle in which it is read; in send() all outputs
 /// are written by one, when one of them has changed. Edges and encoders come from a thread (edge_thread.hpp):
 /// an edge stands in ProcessImage::edges in the cycle of its level or a little later, with the time of its
-/// interrupt, not debounced; a lost one is counted there. A chip that does not answer any more (unplugged),
-/// for reading or for writing, gives its inputs their values of loss (an encoder keeps its counts), and its
-/// source is bad. At its end it writes the values of loss and lets the lines go; what a line that nobody
-/// holds does then is the chip's affair.
+/// interrupt, not debounced; a lost one is counted there and as an error of the source. A chip that does not
+/// answer any more (unplugged), for reading or for writing, gives its inputs their values of loss (an encoder
+/// keeps its counts), and its source is bad. At its end it writes the values of loss and lets the lines go;
+/// what a line that nobody holds does then is the chip's affair.
 class GpioChip final : public image::CycleDevice {
  public:
   /// Takes the lines; outputs begin at their values of loss. nullptr: `why` says what is wrong and what mends

@@ -240,6 +240,7 @@ void Cycle::raise(image::AlarmNumber number) noexcept {
 }
 
 void Cycle::watch_machine() noexcept {
+  watch_sources();  // first: what is lost with a source is a consequence of it
   if (parts_.estop_place && !image_.packets.bit(*parts_.estop_place))
     image_.packets.set_bit(places::kEstopOk, false);
   const bool estop_ok = image_.packets.bit(places::kEstopOk);
@@ -263,6 +264,9 @@ void Cycle::watch_machine() noexcept {
     }
     external_alarm_[p] = number;
   }
+}
+
+void Cycle::watch_sources() noexcept {
   for (std::size_t s = 0; s < source_quality_.size(); ++s) {
     const image::Quality q = image_.sources[s].quality;
     if (q == source_quality_[s]) continue;

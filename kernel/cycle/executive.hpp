@@ -152,6 +152,7 @@ class Cycle {
   void apply(const CycleInputs& in) noexcept;
   void run_logic() noexcept;
   void watch_machine() noexcept;
+  void watch_sources() noexcept;
   void handle_requests() noexcept;
   void handle_plc_requests() noexcept;
   image::Answer handle(const image::Request& request) noexcept;

@@ -8,6 +8,7 @@
 
 #include "gateway/control/compose/devices/device_table.hpp"
 #include "gateway/control/compose/devices/open_devices.hpp"
+#include "kernel/cycle/alarm/alarms.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 #include "tests/machine_run/rig/program.hpp"
 
@@ -68,6 +69,21 @@ TEST(Devices, a_line_whose_host_is_not_there_opens_and_its_stations_are_lost) {
   mill.run(0.5);
   EXPECT_GT(mill.alarms(image::alarm::kSourceBad), 0) << mill.alarm_list();
   EXPECT_EQ(mill.control().world().line_of("panel"), nullptr) << "nothing is simulated in its place";
+}
+
+TEST(Devices, a_chip_that_vanishes_is_the_first_fault_and_what_goes_with_it_its_consequence) {
+  Mill mill("N10 G90 G94 G71\nN20 G1 X100 F3000\nN30 M30\n");
+  ASSERT_TRUE(mill.make_ready() && mill.ask(image::RequestKind::start) == cycle::Refusal::none);
+  mill.run(0.5);
+  mill.control().world().chip("gpio")->plug(false);
+  ASSERT_TRUE(mill.until([&] { return mill.alarms(cycle::alarm::kEmergencyStop) > 0; }, 1.0));
+  const auto history = mill.control().cycle().alarms().history();
+  EXPECT_EQ(history.front().number, image::alarm::kSourceBad);
+  EXPECT_NE(image::render(history.front(), mill.control().alarm_names(), text::Language::english)
+                .find("gpio: lost"),
+            std::string::npos);
+  for (const image::AlarmRecord& r : history) EXPECT_EQ(r.first_fault, history.front().sequence) << r.number;
+  EXPECT_EQ(mill.judge().verdict(), "");
 }
 
 TEST(Devices, a_serial_device_that_is_not_there_is_refused_by_the_computer_with_what_mends_it) {

@@ -46,6 +46,7 @@ const Entry kLine{
     "исключений {6}, открыта раз: {7}, неудачных попыток открыть: {8}"};
 const Entry kLineUnit{"client.line-unit", "  unit {0} ({1})  {2}, {3} errors",
                       "  станция {0} ({1})  {2}, ошибок: {3}"};
+const Entry kChip{"client.chip", "chip {0} ({1})  {2}, {3} errors", "микросхема {0} ({1})  {2}, ошибок: {3}"};
 const Entry kProgram{"client.program", "program {0}: {1} blocks", "программа {0}: кадров {1}"};
 const Entry kProgramLine{"client.program-line", "program {0}, line {1} of {2}, {3} blocks done",
                          "программа {0}, строка {1} из {2}, выполнено кадров: {3}"};
@@ -246,6 +247,16 @@ void print_lines(const json& lines) {
   }
 }
 
+/// Of simulated chips only those that have something to say.
+void print_chips(const json& chips) {
+  for (const json& c : chips) {
+    const auto errors = c.value("errors", std::uint64_t{0});
+    if (of(c, "url").starts_with("mock:") && errors == 0) continue;
+    print_line(say(kChip, {of(c, "station"), of(c, "url"), people_read(kQualities, of(c, "quality")),
+                           std::to_string(errors)}));
+  }
+}
+
 /// What turns the spindle, and how it is.
 std::string spindle_words(const json& sp) {
   const std::string supplier = of(sp, "supplier"), place = of(sp, "place"), drive = of(sp, "drive");
@@ -291,6 +302,7 @@ void print_status(const json& s) {
     print_line(say(kSpindle, {fixed(sp.value("actual_rpm", 0.0), 0), fixed(sp.value("command_rpm", 0.0), 0),
                               spindle_words(sp)}));
   print_lines(s.value("modbus", json::array()));
+  print_chips(s.value("chips", json::array()));
   print_held(s);
   print_forced(s.value("forced", json::array()));
 }

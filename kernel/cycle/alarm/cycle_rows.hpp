@@ -16,10 +16,18 @@ inline constexpr image::AlarmRow kCycleRows[] = {
     {image::alarm::kSourceBad,
      image::Reaction::stop_on_path,
      image::ResetCondition::cause_gone,
-     {"io.bad", "{3}: answers with errors, its last good data are {1} ms old",
-      "{3}: отвечает с ошибками, последние верные данные {1} мс назад"},
-     "Check the addresses of the station in the machine file.",
-     "Проверьте адреса станции в файле станка."},
+     {"io.bad", "{3}: lost, its last good data are {1} ms old",
+      "{3}: потеряна, последние верные данные {1} мс назад"},
+     "See to its supply and its cable. Of a Modbus station, compare address, rate, parity and registers with "
+     "the machine "
+     "file; of a GPIO chip, see whether `gpiodetect` still lists it. A chip that has gone is taken again "
+     "with the next start "
+     "of the control.",
+     "Проверьте питание и кабель. У станции Modbus сравните адрес, скорость, чётность и регистры с файлом "
+     "станка; у "
+     "микросхемы GPIO посмотрите, есть ли она ещё в `gpiodetect`. Пропавшая микросхема берётся снова при "
+     "следующем запуске "
+     "управления."},
     {image::alarm::kExternalAlarm,
      image::Reaction::stop_on_path,
      image::ResetCondition::cause_gone,

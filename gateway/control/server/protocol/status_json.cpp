@@ -148,8 +148,19 @@ json json_of(const std::vector<BusReport>& buses) {
   return list;
 }
 
+constexpr const char* kQualities[] = {"never", "good", "stale", "bad"};
+
+json json_of(const std::vector<ChipReport>& chips) {
+  json list = json::array();
+  for (const ChipReport& c : chips)
+    list.push_back({{"station", c.station},
+                    {"url", c.url},
+                    {"quality", kQualities[static_cast<int>(c.health.quality)]},
+                    {"errors", c.health.errors}});
+  return list;
+}
+
 json json_of(const ModbusUnitReport& u) {
-  constexpr const char* kQualities[] = {"never", "good", "stale", "bad"};
   const bool known = u.health.quality != image::Quality::never;
   return {{"station", u.station},
           {"unit", u.unit},
@@ -209,6 +220,7 @@ void write(json& answer, const StatusReport& s) {
   for (const SpindleReport& r : s.spindles) answer["spindles"].push_back(json_of(r));
   answer["buses"] = json_of(s.buses);
   answer["modbus"] = json_of(s.modbus);
+  answer["chips"] = json_of(s.chips);
   answer["alarms"] = list_of(s.alarms, s.language);
   answer["missing"] = json_of(s.missing);
   answer["works"] = json::array();

@@ -79,6 +79,12 @@ struct ModbusLineReport {
   std::vector<ModbusUnitReport> units;
 };
 
+/// A GPIO chip. Its errors: accesses that failed, edges that were lost, transitions that no encoder makes.
+struct ChipReport {
+  std::string station, url;
+  image::IoSource health;
+};
+
 struct AlarmRow {
   report::AlarmEntry entry;
   std::string reaction;
@@ -101,6 +107,7 @@ struct StatusReport {
   std::vector<SpindleReport> spindles;
   std::vector<BusReport> buses;
   std::vector<ModbusLineReport> modbus;
+  std::vector<ChipReport> chips;
   std::vector<AlarmRow> alarms;
   std::vector<MissingCondition> missing;
   std::vector<WorkReport> works;

@@ -120,6 +120,14 @@ std::vector<ModbusLineReport> line_reports(const Control& control, const image::
   return lines;
 }
 
+std::vector<ChipReport> chip_reports(const machine::MachineConfig& m, const image::ProcessImage& image) {
+  std::vector<ChipReport> chips;
+  for (std::size_t s = 0; s < m.stations.size(); ++s)
+    if (m.stations[s].kind == machine::StationKind::gpio)
+      chips.push_back({m.stations[s].name, m.stations[s].url, image.sources[s]});
+  return chips;
+}
+
 std::vector<WorkReport> work_reports(Resident& resident) {
   std::vector<WorkReport> works;
   const auto now = std::chrono::steady_clock::now();
@@ -176,6 +184,7 @@ StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Languag
   }
   status.buses = bus_reports(m, image);
   status.modbus = line_reports(resident.control(), image);
+  status.chips = chip_reports(m, image);
   status.alarms = alarm_rows(resident, language);
   status.missing = missing_now(resident, language);
   status.works = work_reports(resident);
