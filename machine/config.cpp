@@ -111,6 +111,9 @@ std::vector<image::Symbol> MachineConfig::symbol_table() const {
       control.processes, letters(), static_cast<int>(spindles.size()), auxiliary_axes());
   for (const StationConfig& s : stations)
     for (const PointConfig& p : s.points) out.push_back({p.name, p.place, p.writer, p.comment});
+  // The shipped PLC programs need not know how the machine builder calls it.
+  if (const PointConfig* chain = point(safety.estop); chain != nullptr)
+    out.push_back({"MC.estop_chain", chain->place, chain->writer, chain->comment});
   for (const SymbolConfig& s : symbols) out.push_back({s.name, s.place, s.writer, s.comment});
   return out;
 }

@@ -46,9 +46,8 @@ LoadResult load(const std::string& path);
 /// The same from memory; `path` gives the folder for names in the file and the name in findings.
 LoadResult parse(std::string_view text, const std::string& path);
 
-/// The published JSON schema (docs/machine.schema.json) and reference (docs/machine-file.md) of the machine
-/// file, from the same table of keys that validates it.
+/// The published JSON schema of the machine file (docs/machine.schema.json), from the same table of keys that
+/// validates it.
 std::string json_schema();
-std::string reference_markdown();
 
 }  // namespace servogate::machine

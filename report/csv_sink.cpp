@@ -3,18 +3,21 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 
 #include "firmware_if/text/csv.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "firmware_if/text/system_words.hpp"
 #include "report/decimal.hpp"
 #include "report/trace.hpp"
+#include "report/work_places.hpp"
 
 namespace servogate::report {
 
 namespace {
 
-constexpr int kPositionDecimals = 12, kFeedDecimals = 9, kErrorDecimals = 9, kSpindleDecimals = 6;
+constexpr int kPositionDecimals = 12, kFeedDecimals = 9, kErrorDecimals = 9, kSpindleDecimals = 6,
+              kWorkDecimals = 6;
 constexpr std::size_t kChunk = std::size_t{1} << 18;
 
 std::size_t signal_count(const TraceLayout& layout) {
@@ -29,6 +32,7 @@ struct CsvSink::Impl {
   std::FILE* file = nullptr;
   std::string error;
   std::size_t axes = 0, spindles = 0, signals = 0, further = 0;
+  std::optional<WorkPlaces> places;
   bool sub_microsecond = false;
   std::size_t row_max = 0;
   std::vector<char> buffer;
@@ -85,6 +89,13 @@ char* CsvSink::Impl::write(char* out, const TraceRow& row) const noexcept {
     *out++ = ',';
     out = write_integer(out, row.further[p].tool);
   }
+  for (std::size_t a = 0; a < axes && places; ++a) {
+    *out++ = ',';
+    if (places->known(a))
+      out = write_fixed(out, places->place(a, row), kWorkDecimals);
+    else
+      out = std::copy_n("nan", 3, out);
+  }
   *out++ = '\n';
   return out;
 }
@@ -115,6 +126,8 @@ std::string CsvSink::header(const TraceLayout& layout, CsvColumns columns) {
     const std::string number = std::to_string(p);
     out += ",feed" + number + ",line" + number + ",tool" + number;
   }
+  if (columns.work && layout.frame_of)
+    for (const std::string& a : layout.axes) out += "," + text::csv_field(a + ".work");
   return out;
 }
 
@@ -125,7 +138,8 @@ void CsvSink::begin(const TraceLayout& layout) {
   i.further = static_cast<std::size_t>(std::clamp(layout.processes, 1, image::kMaxProcesses) - 1);
   i.signals = i.columns.signals ? signal_count(layout) : 0;
   i.sub_microsecond = layout.period_ns % image::kMicrosecond != 0;
-  i.row_max = 64 + kFixedMax * (1 + 3 * i.axes + 2 * i.spindles + 3 * i.further) + 2 * i.signals;
+  i.row_max = 64 + kFixedMax * (1 + 4 * i.axes + 2 * i.spindles + 3 * i.further) + 2 * i.signals;
+  if (i.columns.work && layout.frame_of) i.places.emplace(layout);
   i.buffer.resize(kChunk + i.row_max);
   i.file = std::fopen(i.path.c_str(), "wb");
   if (i.file == nullptr) i.fail(text::both("cannot create", "не создаётся"));
@@ -135,6 +149,7 @@ void CsvSink::begin(const TraceLayout& layout) {
 void CsvSink::row(const TraceRow& row) {
   Impl& i = *impl_;
   if (i.used > kChunk) i.flush();
+  if (i.places) i.places->follow(row);
   i.used = static_cast<std::size_t>(i.write(i.buffer.data() + i.used, row) - i.buffer.data());
 }
 

@@ -104,6 +104,22 @@ Json lines_json(const RecordedRun& run) {
   return {{"number", column(number, 1)}, {"first", column(first, 1e-5)}, {"total", column(total, 1e-5)}};
 }
 
+/// Of each axis [offset, share of each axis ...], or null.
+Json frames_json(const RecordedRun& run) {
+  Json out = Json::array();
+  for (const FrameChange& f : run.frames) {
+    Json axes = Json::array();
+    for (const std::optional<WorkAxis>& a : f.axes) {
+      Json map;
+      if (a) map.push_back(a->offset);
+      for (std::size_t n = 0; a && n < run.axes.size(); ++n) map.push_back(a->share[n]);
+      axes.push_back(std::move(map));
+    }
+    out.push_back({{"t", f.t_s}, {"axes", std::move(axes)}});
+  }
+  return out;
+}
+
 Json run_json(const RecordedRun& run) {
   const double moment_s = run.period_s / 8;  // times are those of cycles
   Json out;
@@ -129,6 +145,7 @@ Json run_json(const RecordedRun& run) {
                               {"toggles", column(s.toggles, moment_s)},
                               {"truncated", s.truncated_s}});
   out["lines"] = lines_json(run);
+  out["frames"] = frames_json(run);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,12 @@ struct PathLine {
   /// not off the path.
   std::vector<float> deviation;
   std::vector<std::int32_t> tool;
+};
+
+/// From here on these coordinates are those of the program in motion.
+struct FrameChange {
+  double t_s = 0.0;
+  std::vector<std::optional<WorkAxis>> axes;  ///< none: no program has moved that axis yet
 };
 
 /// On/off signal: the state before cycle 0, and the times at which it turned over.
@@ -67,6 +74,7 @@ struct RecordedRun {
   std::vector<Channel> channels;
   std::vector<CycleStretch> stretches;
   std::vector<SignalTrack> signals;
+  std::vector<FrameChange> frames;  ///< the newest 10 000
   std::map<std::int32_t, LineTime> line_times;
 };
 

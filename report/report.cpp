@@ -31,7 +31,9 @@ const text::Entry kNotBegunFrom{"report.not-begun", "nothing was begun: {0}; ala
                                 "ничего не начато: {0}; авария {1}: {2}"};
 const text::Entry kWaited{"report.waited", "stopped because nothing moved for {0} s any more: {1}",
                           "остановлено: за {0} с ничего не сдвинулось: {1}"};
-const text::Entry kByAlarm{"report.by-alarm", "stopped by alarm {0}: {1}", "остановлено аварией {0}: {1}"};
+const text::Entry kByAlarm{"report.by-alarm", "{0}, at {1} s{2} (alarm {3})",
+                           "{0}, на {1} с{2} (авария {3})"};
+const text::Entry kInLine{"report.in-line", ", in line {0}", ", в строке {0}"};
 const text::Entry kStopped{"report.stopped", "stopped by the operator after {0} blocks",
                            "остановлено оператором после кадров: {0}"};
 const text::Entry kUnfinished{"report.unfinished", "the program did not come to its end: {0} blocks in {1} s",
@@ -220,7 +222,12 @@ Verdict verdict_of(const Report& r, Language language) {
   if (r.wait)
     return {"waited", say(kWaited, {text::number(r.wait->for_s, 1), r.wait->text}), remedy(r.wait->remedy)};
   if (const AlarmEntry* a = stopping(r); a != nullptr)
-    return {"alarm", say(kByAlarm, {std::to_string(a->record.number), a->text}), remedy(a->remedy)};
+    return {
+        "alarm",
+        say(kByAlarm, {a->text, text::number(static_cast<double>(a->record.t_ns) / 1e9, 3),
+                       a->record.line > 0 ? say(kInLine, {std::to_string(a->record.line)}) : std::string(),
+                       std::to_string(a->record.number)}),
+        remedy(a->remedy)};
   if (r.stopped) return {"stopped", say(kStopped, {blocks}), {}};
   return {"unfinished", say(kUnfinished, {blocks, time}), {}};
 }

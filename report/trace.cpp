@@ -19,12 +19,14 @@ void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRo
   row.rapid = image.packets.bit(kRapid);
   row.tool = image.processes[0].tool;
   row.alarms = image.alarms_active;
+  row.run = image.processes[0].run;
+  row.blocks = image.processes[0].blocks_done;
   const std::size_t axes = std::min(layout.axes.size(), row.axes.size());
   for (std::size_t a = 0; a < axes; ++a) {
     const image::AxisImage& from = image.axes[a];
     row.axes[a] = {
         from.command, from.actual, from.following_error, from.command_velocity, from.command_acceleration,
-        from.enabled, from.homed};
+        from.enabled, from.homed,  from.process};
   }
   const std::size_t spindles =
       std::min<std::size_t>(static_cast<std::size_t>(layout.spindles), row.spindles.size());
@@ -32,7 +34,8 @@ void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRo
     row.spindles[s] = {image.spindles[s].command_rpm, image.spindles[s].actual_rpm};
   for (int p = 1; p < layout.processes && p < image::kMaxProcesses; ++p) {
     const image::ProcessStatus& from = image.processes[static_cast<std::size_t>(p)];
-    row.further[static_cast<std::size_t>(p - 1)] = {from.feed_mm_s, from.line, from.tool};
+    row.further[static_cast<std::size_t>(p - 1)] = {from.feed_mm_s, from.line, from.tool, from.run,
+                                                    from.blocks_done};
   }
   row.signals.fill(0);
   const std::size_t signals = std::min<std::size_t>(layout.signals.size(), kMaxTraceSignals);

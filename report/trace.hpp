@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,19 @@ struct TraceSignal {
   image::Place place;  ///< a BL place; any other format counts as on when its number is not 0
 };
 
+/// A coordinate of a program: offset + the sum of share[a] * machine coordinate of axis a; mm or degrees, as
+/// programs write it (a diameter on a diameter axis).
+struct WorkAxis {
+  double offset = 0.0;
+  std::array<double, image::kMaxAxes> share{};
+  friend bool operator==(const WorkAxis&, const WorkAxis&) = default;
+};
+/// By axis of the machine.
+using WorkFrame = std::array<WorkAxis, image::kMaxAxes>;
+/// The frame that a process (from 0) has in a block of a run, image::ProcessStatus::run and blocks_done;
+/// false: not known. Called by the recorder's thread.
+using FrameOf = std::function<bool(int process, std::uint32_t run, std::int64_t blocks, WorkFrame& frame)>;
+
 /// What one row holds; the same for a whole run.
 struct TraceLayout {
   image::Nanoseconds period_ns = image::kMillisecond;
@@ -27,6 +41,7 @@ struct TraceLayout {
   int spindles = 0;                  ///< at most image::kMaxSpindles
   int processes = 1;                 ///< at most image::kMaxProcesses
   std::vector<TraceSignal> signals;  ///< at most kMaxTraceSignals; the rest is ignored
+  FrameOf frame_of;                  ///< none: places in machine coordinates only
 };
 
 /// One axis in one cycle; mm or degrees, seconds.
@@ -39,6 +54,7 @@ struct TraceAxis {
   bool enabled =
       false;           ///< the drive follows; while it does not, the set-point may jump to the measured place
   bool homed = false;  ///< a change means new coordinates, hence a jump that is no motion
+  std::int8_t process = -1;  ///< from 0, whose programs move it; -1: none does
 };
 struct TraceSpindle {
   double command_rpm = 0.0;
@@ -49,6 +65,8 @@ struct TraceSpindle {
 struct TraceProcess {
   double feed_mm_s = 0.0;
   std::int32_t line = 0, tool = 0;
+  std::uint32_t run = 0;    ///< image::ProcessStatus::run
+  std::int64_t blocks = 0;  ///< image::ProcessStatus::blocks_done
 };
 
 /// One cycle of the machine as plain data.
@@ -60,6 +78,8 @@ struct TraceRow {
   bool rapid = false;        ///< the block in motion is a rapid
   std::int32_t tool = 0;     ///< number of the tool in process 1, 0: none
   std::uint32_t alarms = 0;  ///< not acknowledged
+  std::uint32_t run = 0;     ///< of process 1, image::ProcessStatus::run
+  std::int64_t blocks = 0;   ///< of process 1, image::ProcessStatus::blocks_done
   std::array<TraceAxis, image::kMaxAxes> axes{};
   std::array<TraceSpindle, image::kMaxSpindles> spindles{};
   std::array<TraceProcess, image::kMaxProcesses - 1> further{};  ///< processes 2 and up
@@ -89,12 +109,13 @@ class TraceSink {
 struct CsvColumns {
   bool following_error = true;  ///< X.error ...
   bool signals = true;          ///< one column of 0 and 1 per signal
+  bool work = true;             ///< X.work ..., where the layout has frames
 };
 
 /// The trace as CSV:
-/// `t,feed,line,X.cmd,X.act,Y.cmd,...,spindle.cmd,spindle.act,X.error,...,<signal>...,feed2,line2, tool2,...`
-/// (the last of processes 2 and up), one row a cycle; t in seconds, feed in mm/s, positions in mm or degrees
-/// with 12 decimals, spindles in rpm. Equal rows give equal bytes.
+/// `t,feed,line,X.cmd,X.act,Y.cmd,...,spindle.cmd,spindle.act,X.error,...,<signal>...,feed2,line2,tool2,...,
+/// X.work,...` (feed2 ... of processes 2 and up), one row a cycle; t in seconds, feed in mm/s, positions in
+/// mm or degrees with 12 decimals, spindles in rpm. Equal rows give equal bytes.
 class CsvSink final : public TraceSink {
  public:
   explicit CsvSink(std::string path, CsvColumns columns = {});

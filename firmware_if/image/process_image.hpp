@@ -44,6 +44,7 @@ struct AxisImage {
   double actual = 0.0;           ///< measured position read in this cycle
   double following_error = 0.0;  ///< command minus actual compared at equal times
   double distance_to_go = 0.0;
+  double beside = 0.0;  ///< how far it was jogged away from the path of a held program, with its sign
   AxisOwner owner = AxisOwner::none;
   JogEnd jog_end = JogEnd::none;
   std::int8_t process = 0;  ///< whose programs move it

@@ -45,7 +45,22 @@ enum class RequestKind : std::uint8_t {
   assign,  ///< axis, process: whose programs move it from now on; at standstill, while no program of either
            ///< runs
   tables,  ///< origins and tools are changed; index: axes whose present position is taken over, as bits
+  // Beside a program that is held, or waits for the operator:
+  reposition,  ///< the axes that were jogged away return by the way that they went; velocity = feed in mm/s
+               ///< or degrees/s, 0: the axes' jog speed
+  function,  ///< index = image::Function; value = M code, tool number or rpm; packet = number of the
+             ///< process' spindle, format = corrector of the tool
 };
+
+/// What `function` does.
+enum class Function : std::uint8_t {
+  m,
+  tool,
+  spindle_clockwise,         ///< M3, value = rpm
+  spindle_counterclockwise,  ///< M4, value = rpm
+  spindle_stop,              ///< M5
+};
+inline constexpr int kFunctions = static_cast<int>(Function::spindle_stop) + 1;
 
 /// Who holds a jog with a finger on the button: one connection, one pendant, the PLC. The dead-man of a
 /// continuous jog is its hand's alone: nobody else keeps it alive.

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/cli/messages.hpp"
 
+#include <unistd.h>
+
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 #include "gateway/cli/standard_output.hpp"
 
@@ -26,6 +30,25 @@ const text::Entry kLeavesTravel{"cli.leaves-travel", "{0} moves from {1} to {2};
 
 namespace {
 LastError last;
+
+/// Standard error is a terminal that shows colours, and nobody has asked for none (no-color.org).
+bool coloured() {
+  const char* none = std::getenv("NO_COLOR");
+  const char* terminal = std::getenv("TERM");
+  const bool wanted = none == nullptr || *none == '\0';
+  return wanted && terminal != nullptr && std::strcmp(terminal, "dumb") != 0 && ::isatty(STDERR_FILENO) != 0;
+}
+
+/// The place in bold, "error" in red, "warning" in yellow.
+std::string in_colour(const text::Finding& f) {
+  const std::string words = f.str();
+  const bool error = f.severity == text::Severity::error;
+  const std::string mark = error ? ": error: " : ": warning: ";
+  const std::size_t at = words.find(mark);
+  if (at == std::string::npos || !coloured()) return words;
+  return "\x1b[1m" + words.substr(0, at + 2) + (error ? "\x1b[31m" : "\x1b[33m") +
+         mark.substr(2, mark.size() - 3) + "\x1b[0m" + words.substr(at + mark.size() - 1);
+}
 }  // namespace
 
 const LastError& last_error() noexcept { return last; }
@@ -36,7 +59,7 @@ int print_findings(const std::vector<text::Finding>& findings) {
   int errors = 0;
   keep_order();
   for (const text::Finding& f : findings) {
-    std::fprintf(stderr, "%s\n%s", f.str().c_str(), f.excerpt().c_str());
+    std::fprintf(stderr, "%s\n%s", in_colour(f).c_str(), f.excerpt().c_str());
     if (f.severity != text::Severity::error) continue;
     if (errors++ == 0) last = {f.entry == nullptr ? "" : std::string(f.entry->id), f.str()};
   }

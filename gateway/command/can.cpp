@@ -14,6 +14,7 @@
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
+#include "gateway/command/simulated/input_lines.hpp"
 
 namespace servogate::gateway::command {
 
@@ -22,6 +23,12 @@ namespace {
 const text::Entry kServing{"can.serving", "{0}: {1} at {2} bit/s", "{0}: {1}, {2} бит/с"};
 const text::Entry kBadAddress{"can.bad-address", "'{0}' is no address; expected HOST:PORT or unix:PATH",
                               "«{0}» — не адрес; нужен ХОСТ:ПОРТ или unix:ПУТЬ"};
+const text::Entry kNoFaults{
+    "can.no-faults",
+    "{0}: the bus alone has no devices that could fail; give faults to `servogate drive`, `io`, `sim` or "
+    "`up`",
+    "{0}: у самой шины нет устройств, которые могли бы отказать; неисправности принимают `servogate drive`, "
+    "`io`, `sim` и `up`"};
 const text::Entry kUntilWithoutLockstep{"can.until-without-lockstep", "--until needs --lockstep",
                                         "--until требует --lockstep"};
 
@@ -95,8 +102,9 @@ int can_bus(const CanBusOptions& options) {
                      {"address", server->address().str()},
                      {"buses", options.names},
                      {"bit_rate", options.bit_rate}});
-  while (!signals.ended() && server->serve(100 * image::kMillisecond)) {
-  }
+  InputLines input(true);
+  while (!signals.ended() && server->serve(100 * image::kMillisecond))
+    while (const auto line = input.next()) complain(kNoFaults, {*line});
   if (log == nullptr || log->good()) return kDone;
   complain(kCannotWrite, {options.log, text::words_of(errno)});
   return kInfrastructure;

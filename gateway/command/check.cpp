@@ -164,6 +164,9 @@ ProgramErrors check_programs(const CheckOptions& options, const machine::Machine
       const ProgramCheck result = check_program(machine, program, tables, start_after_homing(machine),
                                                 channel::Forecast::Depth::timed);
       found.insert(found.end(), result.report.findings.begin(), result.report.findings.end());
+      explain_power_on(machine, program, found);
+      if (const auto slow = slow_corners(machine, program, tables, start_after_homing(machine), result))
+        found.push_back(*slow);
       order_by_place(found);
       errors.found += print_findings(found);
       errors.warnings += warnings_of(found);

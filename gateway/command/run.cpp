@@ -302,7 +302,7 @@ bool Run::loop(OperatorScript& script) {
   // Virtual time is looked at now and then only: a look costs more than a cycle.
   const int each = machine_->moves_by_itself() ? 1 : kFollowedCycles;
   for (int n = 1; !script.done(); ++n) {
-    faults_->poll();
+    faults_->poll(machine_->image().now.t_ns);
     machine_->step();
     take_answers(script);
     forces_->poll();

@@ -16,9 +16,8 @@ const text::Entry kNoTarget{
     "{0}: укажите, с чем это происходит: node=N узла шины или device=ИМЯ из файла станка"};
 const text::Entry kNoNode{"run.fault-node", "{0}: no bus of the machine file has a node {1}",
                           "{0}: ни на одной шине файла станка нет узла {1}"};
-const text::Entry kNoDeed{"run.fault-deed", "{0}: a run takes faults and `clear` only",
-                          "{0}: прогон принимает только "
-                          "неисправности и `clear`"};
+const text::Entry kNoDeed{"run.fault-deed", "{0}: only faults and `clear` are possible here",
+                          "{0}: здесь возможны только неисправности и `clear`"};
 const text::Entry kNotReadable{"run.script-unreadable", "{0} cannot be read: {1}", "{0} не читается: {1}"};
 const text::Entry kNotDone{"run.fault-not-done", "at {0} s `{1}` could not happen: {2}",
                            "в {0} с «{1}» не произошло: {2}"};
@@ -84,11 +83,24 @@ bool RunFaults::plan(const std::vector<std::string>& lines, const std::string& s
   return good;
 }
 
-void RunFaults::poll() {
-  if (done_ == due_.size()) return;
-  const image::Nanoseconds t_ns = machine_.image().now.t_ns;
+bool RunFaults::take(const std::string& line, image::Nanoseconds now) {
+  if (line.find_first_not_of(" \t\r") == std::string::npos) return true;
+  std::string why;
+  auto deed = parse_deed(line, why);
+  if (!deed) {
+    complain(kWrong, {line, why});
+    return false;
+  }
+  deed->at += now;
+  if (!add(*deed, line)) return false;
+  std::stable_sort(due_.begin() + static_cast<std::ptrdiff_t>(done_), due_.end(),
+                   [](const Due& a, const Due& b) { return a.at < b.at; });
+  return true;
+}
+
+void RunFaults::poll(image::Nanoseconds now) {
   using Kind = DriveDeed::Kind;
-  for (; done_ < due_.size() && due_[done_].at <= t_ns; ++done_) {
+  for (; done_ < due_.size() && due_[done_].at <= now; ++done_) {
     const Due& d = due_[done_];
     std::string why;
     const bool done = d.deed.kind == Kind::fault   ? machine_.inject(d.device, d.deed.fault, why)

@@ -8,15 +8,17 @@
 
 namespace servogate::gateway::command {
 
-/// Faults of what is simulated at times of a run: `--fault "kill node=2 at=30"` and `--script FILE`, in the
-/// words of `sim` and `drive`.
+/// Faults of what a running machine simulates: `--fault "kill node=2 at=30"`, `--script FILE` and lines of
+/// standard input, in the words of `sim` and `drive`.
 class RunFaults {
  public:
   explicit RunFaults(RunningMachine& machine) : machine_(machine) {}
   /// False: a line is wrong, or a fault cannot happen to its device, which has been said.
   bool plan(const std::vector<std::string>& lines, const std::string& script);
-  /// Puts in what is due now.
-  void poll();
+  /// A line of standard input at this machine time, from which its own times count. False: as above.
+  bool take(const std::string& line, image::Nanoseconds now);
+  /// Puts in what is due at this machine time.
+  void poll(image::Nanoseconds now);
 
  private:
   struct Due {

@@ -13,7 +13,9 @@
 #include "gateway/command/commands.hpp"
 #include "gateway/command/machine_start.hpp"
 #include "gateway/command/outputs.hpp"
+#include "gateway/command/run_faults.hpp"
 #include "gateway/command/signals.hpp"
+#include "gateway/command/simulated/input_lines.hpp"
 #include "gateway/control/history/event_log.hpp"
 #include "gateway/control/history/texts.hpp"
 #include "gateway/control/run/running_machine.hpp"
@@ -78,10 +80,18 @@ bool open_modbus(const machine::ModbusServerConfig& config, Desk& desk,
   return true;
 }
 
-/// Until somebody ends it, and everything rests.
-void serve(Desk& desk, SocketServer& server, std::unique_ptr<ModbusServer>& modbus) {
-  while (signals_seen() == 0 && !desk.down_requested())
+/// Until somebody ends it, and everything rests. Lines of standard input are faults of what is simulated.
+void serve(Desk& desk, SocketServer& server, std::unique_ptr<ModbusServer>& modbus, RunningMachine& running) {
+  RunFaults faults(running);
+  InputLines input(true);
+  const auto seen = std::make_unique<image::ProcessImage>();
+  while (signals_seen() == 0 && !desk.down_requested()) {
+    running.control().cycle().read(*seen);
+    while (const auto line = input.next())
+      if (faults.take(*line, seen->now.t_ns)) tell(*line);
+    faults.poll(seen->now.t_ns);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
   desk.shut_down();
   while (!desk.at_rest()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   modbus.reset();
@@ -153,7 +163,7 @@ int up(const UpOptions& options) {
                      {"version", report::build_identity().version}});
   history->note(
       history::event("up", history::says::kUp, {m.name, std::string(report::build_identity().version)}, 0.0));
-  serve(desk, *server, modbus);
+  serve(desk, *server, modbus, *running);
   const double ended_s = static_cast<double>(resident.image().now.t_ns) * 1e-9;
   history->note(history::event("down", history::says::kDown, {m.name}, ended_s));
   const bool saved = put_away(*running, resident);

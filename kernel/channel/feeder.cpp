@@ -221,12 +221,13 @@ void Feeder::begin(const FeederOrder& order) {
   if (manual)
     manual->mdi(manual_block_);
   else
-    manual.emplace(once_ ? std::exchange(once_, nullptr)(position_) : factory_(position_));
+    manual.emplace(once_ ? std::exchange(once_, nullptr)(position_, view_) : factory_(position_));
   if (!order.manual_data) manual->set_switches(switches_of(view_, process_));
   interpreter_ = std::move(manual);
   executed_before_ = order.manual_data ? interpreter_->executed() : 0;
   frame_told_ = interpreter_->frame();
   texts_.add_frame(generation_, 0, frame_told_);
+  published_in_ = -1;
   warned_ = 0;
   raised_.clear();
 }
@@ -240,11 +241,13 @@ void Feeder::read_one() {
   }
   if (!(interpreter_->frame() == frame_told_)) {
     frame_told_ = interpreter_->frame();
-    texts_.add_frame(generation_, executed(), frame_told_);
+    // What was said of a block stays true: behind its first command a frame is the next block's.
+    texts_.add_frame(generation_, published_in_ == executed() ? executed() + 1 : executed(), frame_told_);
   }
   warn();
   if (const auto* command = std::get_if<program::Command>(&step)) {
     accept(*command);
+    published_in_ = executed();
   } else if (const auto* sync = std::get_if<program::NeedsSync>(&step)) {
     program::Command at;
     at.line = sync->line;

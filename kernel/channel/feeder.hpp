@@ -21,6 +21,10 @@ namespace servogate::channel {
 /// Constructs the interpreter of a loaded program for the position at which it starts.
 using InterpreterFactory = std::function<program::Interpreter(const program::Position& start)>;
 
+/// The same for a run that begins in the middle of its program, which depends on the packets at its start.
+using RestartFactory =
+    std::function<program::Interpreter(const program::Position& start, const image::Packets& packets)>;
+
 /// What the cycle tells the feeder.
 struct FeederOrder {
   enum class Kind : std::uint8_t {
@@ -84,7 +88,7 @@ class Feeder {
   /// program.
   program::Interpreter manual_interpreter(const program::Position& at) const;
   /// The next run of the program is that of this interpreter; a load takes it back.
-  void begin_next_with(InterpreterFactory once) { once_ = std::move(once); }
+  void begin_next_with(RestartFactory once) { once_ = std::move(once); }
   /// MDI begins with the power-on modes again.
   void forget_manual() { manual_.reset(); }
   /// The block that the next start in MDI mode runs.
@@ -136,7 +140,7 @@ class Feeder {
   path::Planner planner_;
   int process_;
   InterpreterFactory factory_;
-  InterpreterFactory once_;  ///< instead, for the next run
+  RestartFactory once_;  ///< instead, for the next run
   std::string manual_block_;
   std::optional<program::Interpreter> interpreter_;
   std::optional<program::Interpreter> manual_;  ///< modes that MDI left, between two blocks
@@ -156,6 +160,7 @@ class Feeder {
   ProgramTexts texts_;
   std::size_t files_told_ = 0;
   program::Frame frame_told_;
+  long long published_in_ = -1;    ///< executed() of the last command that was published
   long long executed_before_ = 0;  ///< by the interpreter, typed blocks before this one
   int last_file_ = 0;
   std::size_t warned_ = 0;  ///< of interpreter_'s warnings

@@ -55,7 +55,7 @@ void Process::renew(InterpreterFactory factory, program::Tables tables) {
   changes_.fetch_add(1, std::memory_order_release);
 }
 
-void Process::restart(InterpreterFactory once) {
+void Process::restart(RestartFactory once) {
   feeder_.begin_next_with(std::move(once));
   changes_.fetch_add(1, std::memory_order_release);
 }
@@ -131,7 +131,11 @@ void Process::interpolate(cycle::ProcessContext& c) noexcept {
   if (running_) {
     show_motion(sample, c.image.processes[static_cast<std::size_t>(config_.index)]);
     drive_axes(sample, c);
-    switch (sample.state) {
+    if (sample.feed > 0.0 && !sample.rapid)
+      cutting_.add(row_ != 0 ? row_ : c.image.processes[static_cast<std::size_t>(config_.index)].tool,
+                   seconds(c));
+    if (aside_) work_beside(c);
+    switch (aside_ ? path::FollowerState::held : sample.state) {
       case path::FollowerState::at_stop:
         at_stop(c);
         break;
@@ -161,6 +165,7 @@ bool Process::order(const image::Request& request, cycle::ProcessContext& c) noe
     case RequestKind::resume:
     case RequestKind::step:
       if (running_) {
+        if (aside_ && !come_back(c)) return false;
         held_ = false;
         go_on_ = operator_waits();
       } else if (request.kind != RequestKind::resume) {
@@ -189,6 +194,12 @@ bool Process::order(const image::Request& request, cycle::ProcessContext& c) noe
       break;
     case RequestKind::override_feed:
       override_ = request.value;
+      break;
+    case RequestKind::reposition:
+      way_.begin(request.velocity);
+      break;
+    case RequestKind::function:
+      add_function(request, c);
       break;
     default:
       break;
@@ -229,6 +240,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   status.typed = manual_data_;
   forget_ = false;
   stopping_ = held_ = go_on_ = false;
+  forget_beside();
   stage_ = Stage::none;
   last_speed_ = -1.0;
   state_ = ProcessState::running;
@@ -238,6 +250,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
 
 void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   running_ = stopping_ = held_ = false;
+  forget_beside();
   state_ = state;
   stage_ = Stage::none;
   handshake_.cancel(c.image, base_);
@@ -309,7 +322,7 @@ image::Stop Process::stop_without_alarm(const cycle::ProcessContext& c) const no
 void Process::apply_hold(cycle::ProcessContext& c) noexcept {
   const image::Packets& k = c.image.packets;
   if (k.bit(at(kStopBit, base_))) held_ = running_;  // it goes on when somebody says so
-  bool hold = held_ || !k.bit(at(kFeedEnable, base_));
+  bool hold = held_ || aside_ || !k.bit(at(kFeedEnable, base_));
   for (const OwnAxis& own : own_axes()) hold = hold || !c.axes[own.machine].feed_enabled();
   if (hold)
     follower_.hold();

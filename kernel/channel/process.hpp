@@ -8,6 +8,8 @@
 
 #include "kernel/channel/feeder.hpp"
 #include "kernel/channel/handshake.hpp"
+#include "kernel/channel/motion/cutting_times.hpp"
+#include "kernel/channel/motion/way_back.hpp"
 #include "kernel/cycle/boundary/participants.hpp"
 #include "kernel/path/follower.hpp"
 
@@ -38,7 +40,7 @@ class Process final : public cycle::ProcessInCycle {
   /// The same program with other tables: what the status shows of the last run stays.
   void renew(InterpreterFactory factory, program::Tables tables);
   /// The next run of the program begins as this one does, in its middle; the one after as before.
-  void restart(InterpreterFactory once);
+  void restart(RestartFactory once);
   program::Interpreter manual_interpreter(const program::Position& at) const {
     return feeder_.manual_interpreter(at);
   }
@@ -50,12 +52,16 @@ class Process final : public cycle::ProcessInCycle {
   bool work() { return feeder_.work(); }
   const Feeder& feeder() const noexcept { return feeder_; }
   /// For any thread outside the cycle.
+  const CuttingTimes& cutting() const noexcept { return cutting_; }
+  /// For any thread outside the cycle.
   const ProgramTexts& texts() const noexcept { return feeder_.texts(); }
 
   // -- in the cycle
   void published(std::span<std::uint64_t> counts) const noexcept override;
   void interpolate(cycle::ProcessContext& context) noexcept override;
   bool order(const image::Request& request, cycle::ProcessContext& context) noexcept override;
+  cycle::Beside beside(const cycle::ProcessContext& context) const noexcept override;
+  void leave_path(int axis, cycle::ProcessContext& context) noexcept override;
   bool loaded() const noexcept override { return programs_.load(std::memory_order_acquire) != 0; }
   bool stopping() const noexcept override { return stopping_.load(std::memory_order_relaxed); }
 
@@ -70,8 +76,32 @@ class Process final : public cycle::ProcessInCycle {
     std::uint8_t path, machine;
   };
 
+  static constexpr std::size_t kMostFunctions = 8;  ///< typed beside a held program, under way and to come
+
+  /// What the rest of a held program counts on.
+  struct Held {
+    std::array<double, path::kMaxAxes> place{};  ///< of own_axes(), machine coordinates
+    std::array<axis::SpindleMode, image::kMaxSpindles> mode{};
+    std::array<double, image::kMaxSpindles> rpm{};
+    std::int32_t tool = 0;
+    Event event;  ///< at which the path rests, with its stage
+    Stage stage = Stage::none;
+    double waited_s = 0.0;
+    image::ProcessState state = image::ProcessState::running;
+    std::uint8_t surface_spindle = 0;
+    double surface_speed = 0.0, surface_limit = 0.0, surface_center = 0.0;
+  };
+
   bool start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept;
   void run_on() noexcept;
+  // process_beside.cpp
+  bool rests_for_operator() const noexcept;
+  void step_aside(cycle::ProcessContext& c) noexcept;
+  bool come_back(cycle::ProcessContext& c) noexcept;
+  void add_function(const image::Request& request, cycle::ProcessContext& c) noexcept;
+  void work_beside(cycle::ProcessContext& c) noexcept;
+  void forget_beside() noexcept;
+  void show_beside(cycle::ProcessContext& c) const noexcept;
   void leave(image::ProcessState state, cycle::ProcessContext& c) noexcept;
   void find_own_axes(const cycle::ProcessContext& c) noexcept;
   std::span<const OwnAxis> own_axes() const noexcept { return {own_.data(), own_count_}; }
@@ -136,6 +166,13 @@ class Process final : public cycle::ProcessInCycle {
   Stage stage_ = Stage::none;
   Event event_;
   double waited_s_ = 0.0;
+  bool aside_ = false;  ///< the program is held, and its axes are the operator's
+  WayBack way_;
+  CuttingTimes cutting_;
+  std::int32_t row_ = 0;  ///< of the tool table that cuts; 0: the tool's own
+  Held held_as_;
+  std::array<Event, kMostFunctions> functions_{};  ///< the first is under way
+  std::size_t function_count_ = 0;
   std::uint8_t surface_spindle_ = 0;  ///< of this process, that turns by a cutting speed
   double surface_speed_ = 0.0, surface_limit_ = 0.0, surface_center_ = 0.0;
   double last_speed_ = -1.0;

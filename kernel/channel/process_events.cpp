@@ -90,6 +90,7 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
     case EventKind::tool:
       if (!handshake(HandshakeWord::t, e.code, e.code2, e, c)) return false;
       c.image.processes[static_cast<std::size_t>(config_.index)].tool = static_cast<std::uint16_t>(e.code);
+      row_ = e.code2;
       return true;
     case EventKind::spindle:
       return order_spindle(e, c);
@@ -146,7 +147,7 @@ bool Process::handshake(HandshakeWord word, std::int32_t code, double value, con
     stage_ = Stage::handshaking;
     state_ = ProcessState::waiting;
   }
-  switch (handshake_.step(c.image, base_, held_)) {
+  switch (handshake_.step(c.image, base_, held_ && function_count_ == 0)) {
     case Handshake::State::done:
       return true;
     case Handshake::State::unknown:

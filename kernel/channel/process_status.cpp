@@ -83,6 +83,7 @@ void Process::forget_run(image::ProcessStatus& status) const noexcept {
 
 image::Wait Process::wait(const path::Sample& sample, const cycle::ProcessContext& c) const noexcept {
   if (!running_ || stopping_ || !follower_.at_rest()) return {};
+  if (function_count_ != 0) return wait_at_event(c);
   switch (sample.state) {
     case path::FollowerState::at_event: {
       const image::Wait settling = stage_ == Stage::none ? wait_for_position(c) : image::Wait{};
@@ -164,8 +165,9 @@ void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c)
   image::ProcessStatus& out = c.image.processes[static_cast<std::size_t>(config_.index)];
   const bool before_event = sample.state == path::FollowerState::at_event && stage_ == Stage::none && held_;
   const bool held = running_ && (sample.state == path::FollowerState::held || before_event);
+  show_beside(c);
   out.mode = mode_;
-  out.state = held ? ProcessState::held : state_;
+  out.state = held && function_count_ == 0 ? ProcessState::held : state_;
   out.rapid = running_ && sample.rapid && sample.feed > 0.0;
   image::Wait wait = this->wait(sample, c);
   wait.line = wait.reason == WaitReason::none ? 0 : out.line;

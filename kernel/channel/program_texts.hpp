@@ -31,7 +31,8 @@ class ProgramTexts {
   /// Files that run `run` has met so far, main program first.
   void set_files(std::uint32_t run, const std::vector<std::string>& files);
 
-  /// From block `executed` (as counted in Tag::command) of run `run` on this frame is in force.
+  /// From block `executed` (as counted in Tag::command) of run `run` on this frame is in force; before
+  /// anything of that block is published.
   void add_frame(std::uint32_t run, std::int64_t executed, const program::Frame& frame);
 
   std::optional<text::Finding> finding(std::int32_t number) const;

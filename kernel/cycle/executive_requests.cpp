@@ -87,17 +87,20 @@ image::Answer Cycle::handle(const Request& request) noexcept {
     context.axis_stopping = plc_motion_[static_cast<std::size_t>(request.axis)].stopping();
     context.axis_error_stop = plc_motion_[static_cast<std::size_t>(request.axis)].error_stop();
   }
+  if (const auto p = static_cast<std::size_t>(beside_process(request, axes_)); p < parts_.processes.size())
+    context.beside = parts_.processes[p]->beside(this->context(static_cast<int>(p)));
   context.estop_place = parts_.estop_place ? &*parts_.estop_place : nullptr;
   image::Answer answer = decide(request, context);
   if (answer.refusal != 0) return answer;
-  const image::Mode before = request.mode >= 0 ? image_.processes[process].mode : image::Mode::off;
-  if (request.mode >= 0) change_mode(request.process, static_cast<image::Mode>(request.mode));
+  const bool with_mode = request.mode >= 0 && !keeps_mode(request, context);
+  const image::Mode before = with_mode ? image_.processes[process].mode : image::Mode::off;
+  if (with_mode) change_mode(request.process, static_cast<image::Mode>(request.mode));
   answer.refusal = static_cast<std::uint16_t>(carry_out(request));
   if (answer.refusal == 0) return answer;
   answer.axis = request.axis;
   for (const axis::Axis& a : axes_)
     if (answer.axis < 0 && !a.standstill()) answer.axis = static_cast<std::int8_t>(a.index());
-  if (request.mode >= 0) change_mode(request.process, before);
+  if (with_mode) change_mode(request.process, before);
   return answer;
 }
 
@@ -199,7 +202,10 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     case RequestKind::step:
     case RequestKind::resume:
     case RequestKind::override_feed:
+    case RequestKind::function:
       return order(request.process, request);
+    case RequestKind::reposition:
+      return reposition(request);
   }
   return Refusal::none;
 }
@@ -214,6 +220,11 @@ void Cycle::switch_power(const Request& request) noexcept {
 /// Homing and jogs: whoever asks holds manual control until all stands.
 Refusal Cycle::carry_out_manual(const Request& request) noexcept {
   const auto axis = static_cast<std::size_t>(request.axis < 0 ? 0 : request.axis);
+  const auto process = static_cast<std::size_t>(axes_[axis].process());
+  if (request.kind != RequestKind::home && process < parts_.processes.size()) {
+    ProcessContext c = context(static_cast<int>(process));
+    parts_.processes[process]->leave_path(request.axis, c);
+  }
   const bool begun = request.kind == RequestKind::home ? homing_.start(axes_, homing_mask(request, axes_))
                      : request.kind == RequestKind::jog_increment
                          ? axes_[axis].jog_increment(request.value)
@@ -223,6 +234,15 @@ Refusal Cycle::carry_out_manual(const Request& request) noexcept {
   holder_ = request.asker;
   if (request.axis >= 0) image_.axes[axis].hand = request.hand();
   return Refusal::none;
+}
+
+/// As a jog: whoever asks holds manual control until all stands.
+Refusal Cycle::reposition(const Request& request) noexcept {
+  const Refusal refusal = order(request.process, request);
+  if (refusal != Refusal::none) return refusal;
+  manual_held_ = true;
+  holder_ = request.asker;
+  return refusal;
 }
 
 Refusal Cycle::order(int process, const Request& request) noexcept {

@@ -111,7 +111,7 @@ class Sentences {
   std::vector<Consequence> all() {
     for (const BusConfig& bus : m_.buses) this->bus(bus);
     for (const AxisConfig& a : m_.axes)
-      if (a.lead > 0.0 && a.counts_per_rev > 0 && a.max_velocity > 0.0 && a.max_acceleration > 0.0 &&
+      if (!a.letter.empty() && a.lead > 0.0 && a.counts_per_rev > 0 && a.max_velocity > 0.0 && a.max_acceleration > 0.0 &&
           a.max_jerk > 0.0)
         axis(a);
     emergency_stop();

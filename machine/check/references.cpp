@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <filesystem>
 
 #include "firmware_if/text/nearest.hpp"
@@ -93,7 +94,7 @@ class ReferenceCheck {
       case Refers::device:
         return;  // device files: check_devices
       case Refers::axis:
-        if (machine_.axis_index(value) < 0)
+        if (machine_.axis_index(value) < 0 && all_named())
           reading_.error(at, finding::kNoSuch,
                          {name, text::both("axis", "оси"), value, hint(value, names_.axes)});
         return;
@@ -117,6 +118,11 @@ class ReferenceCheck {
   }
 
  private:
+  /// An axis without a letter is told by itself: it may be the one that is meant.
+  bool all_named() const {
+    return std::none_of(machine_.axes.begin(), machine_.axes.end(),
+                        [](const AxisConfig& a) { return a.letter.empty(); });
+  }
   void point(const Key& key, const std::string& value, Where at, const std::string& name) {
     const PointConfig* p = machine_.point(value);
     const Wanted wanted = wanted_point(key.rule.refers);

@@ -8,6 +8,8 @@ namespace servogate::machine::finding {
 inline constexpr text::Entry kFileMissing{"machine.file_missing", "the file cannot be read: {0}",
                                           "файл не читается: {0}"};
 inline constexpr text::Entry kSyntax{"machine.syntax", "TOML syntax: {0}", "синтаксис TOML: {0}"};
+inline constexpr text::Entry kNoQuotes{"machine.no_quotes", "{0} is text and stands in quotes: \"{0}\"",
+                                       "{0} — текст и пишется в кавычках: \"{0}\""};
 inline constexpr text::Entry kMovedKey{"machine.moved_key", "`{0}` is no key any more: it is now {1}",
                                        "ключа `{0}` больше нет: теперь это {1}"};
 inline constexpr text::Entry kUnknownKey{"machine.unknown_key", "unknown key `{0}`; did you mean `{1}`?",

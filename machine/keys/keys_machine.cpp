@@ -88,8 +88,10 @@ const Section& section_of<SafetyConfig>() {
   using C = SafetyConfig;
   static const Key keys[] = {
       key<&C::estop>("estop", {.refers = Refers::digital_input},
-                     "input point of the emergency-stop chain, 1 = closed; never over Modbus",
-                     "вход цепи аварийного останова, 1 = замкнута; никогда через Modbus"),
+                     "input point of the emergency-stop chain, 1 = closed; never over Modbus; the PLC reads "
+                     "it as `MC.estop_chain`",
+                     "вход цепи аварийного останова, 1 = замкнута; никогда через Modbus; ПЛК читает его как "
+                     "`MC.estop_chain`"),
       key<&C::control_alive>(
           "control_alive", {.refers = Refers::digital_output},
           "output point that the control toggles while it runs in time, for the safety relay",

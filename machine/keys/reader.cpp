@@ -2,6 +2,7 @@
 #include "machine/keys/reader.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <tuple>
 
@@ -63,7 +64,7 @@ std::string expected_name(const Slot& slot) {
                                        "число в " + unit + " или строка с единицей");
     case KeyKind::text:
     case KeyKind::choice:
-      return text::both("a string", "строка");
+      return text::both("a string in quotes", "строка в кавычках");
     case KeyKind::place:
       return text::both("a place like \"SA16\"", "адрес вида \"SA16\"");
     case KeyKind::texts:
@@ -375,9 +376,46 @@ void read_section(const Element& table, const Section& section, void* object, Re
   read_table(table, section, object, {}, AxisUnits::either, reading);
 }
 
+namespace {
+
+std::string lower(std::string word) {
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return word;
+}
+
+/// A word where a value is to stand, as X in `letter = X`; empty: the error at `at` is another one. `column`:
+/// where it begins.
+std::string bare_word(std::string_view text, const Where& at, int& column) {
+  for (int line = 1; line < at.line && !text.empty(); ++line) {
+    const std::size_t end = text.find('\n');
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  text = text.substr(0, text.find('\n'));
+  const std::size_t near =
+      std::min<std::size_t>(static_cast<std::size_t>(std::max(at.column, 1)), text.size());
+  const std::size_t before = near == 0 ? std::string_view::npos : text.find_last_of("=,[{", near - 1);
+  const std::size_t key = text.find_first_not_of(" \t"), equals = text.find('=');
+  const bool named = key != std::string_view::npos && key < equals && text[key] != '[' && text[key] != '#';
+  if (before == std::string_view::npos || equals > before || !named) return {};
+  std::size_t begin = text.find_first_not_of(" \t", before + 1);
+  if (begin == std::string_view::npos || std::isalpha(static_cast<unsigned char>(text[begin])) == 0)
+    return {};
+  const std::size_t end = std::min(text.find_first_of(" \t,]}#\"'=\r", begin), text.size());
+  column = static_cast<int>(begin) + 1;
+  return std::string(text.substr(begin, end - begin));
+}
+
+}  // namespace
+
 bool read_file_text(std::string_view text, const Section& section, void* object, Reading& reading) {
   const Document document = read_document(text);
   if (!document.ok()) {
+    Where at = document.error_at;
+    const std::string word = bare_word(text, document.error_at, at.column);
+    if (!word.empty() && lower(word) != "true" && lower(word) != "false") {
+      reading.error(at, finding::kNoQuotes, {word});
+      return false;
+    }
     reading.error(document.error_at, finding::kSyntax, {document.error});
     return false;
   }

@@ -10,7 +10,27 @@ namespace servogate::machine {
 
 namespace {
 
-std::string english(const std::string& both) { return text::in_language(both, text::Language::english); }
+/// Writes the reference in one language.
+class Reference {
+ public:
+  explicit Reference(text::Language language) : language_(language) {}
+  std::string all();
+
+ private:
+  bool russian() const { return language_ == text::Language::russian; }
+  std::string word(const char* in_english, const char* in_russian) const {
+    return russian() ? in_russian : in_english;
+  }
+  std::string type_of(const Key& key) const;
+  std::string type_cell(const Key& key) const;
+  std::string default_cell(const Key& key, void* defaults) const;
+  void section(const Section& section, const std::string& heading);
+  void sections(const Section& section, const std::string& path, bool list);
+  void units();
+
+  text::Language language_;
+  std::string out_;
+};
 
 /// A cell of a Markdown table.
 std::string cell(std::string_view text) {
@@ -22,54 +42,55 @@ std::string cell(std::string_view text) {
   return out;
 }
 
-std::string type_of(const Key& key) {
+std::string Reference::type_of(const Key& key) const {
   switch (key.kind) {
     case KeyKind::boolean:
-      return "boolean";
+      return word("boolean", "логическое");
     case KeyKind::integer:
     case KeyKind::long_integer:
-      return "integer";
+      return word("integer", "целое");
     case KeyKind::number:
-      return "number";
+      return word("number", "число");
     case KeyKind::text:
-      return "string";
+      return word("string", "строка");
     case KeyKind::choice: {
       std::string out;
       for (std::string_view c : key.choices) out += (out.empty() ? "" : ", ") + ("`" + std::string(c) + "`");
       return out;
     }
     case KeyKind::place:
-      return "place";
+      return word("place", "ячейка");
     case KeyKind::texts:
-      return "list of strings";
+      return word("list of strings", "список строк");
     case KeyKind::numbers:
-      return "table name = number";
+      return word("table name = number", "таблица имя = число");
     case KeyKind::ratio:
-      return "pair of integers";
+      return word("pair of integers", "пара целых");
     case KeyKind::pairs:
-      return "list of pairs";
+      return word("list of pairs", "список пар");
     case KeyKind::table:
-      return "table";
+      return word("table", "таблица");
     case KeyKind::tables:
-      return "list of tables";
+      return word("list of tables", "список таблиц");
   }
   return {};
 }
 
-std::string type_cell(const Key& key) {
+std::string Reference::type_cell(const Key& key) const {
   std::string out = type_of(key);
   const bool ranged = std::isfinite(key.rule.min) || std::isfinite(key.rule.max);
   const std::string unit = unit_name(key.rule.unit, AxisUnits::either);
   if (ranged)
-    out += ", " + english(range_text(key.rule, AxisUnits::either));
+    out += ", " + text::in_language(range_text(key.rule, AxisUnits::either), language_);
   else if (!unit.empty())
     out += ", " + unit;
   return out;
 }
 
-std::string default_cell(const Key& key, void* defaults) {
-  if (key.rule.required) return "**required**";
-  if (key.rule.computed) return "computed";
+std::string Reference::default_cell(const Key& key, void* defaults) const {
+  const std::string none = word("none", "нет");
+  if (key.rule.required) return word("**required**", "**обязателен**");
+  if (key.rule.computed) return word("computed", "вычисляется");
   void* member = key.member(defaults);
   switch (key.kind) {
     case KeyKind::boolean:
@@ -80,51 +101,54 @@ std::string default_cell(const Key& key, void* defaults) {
       return std::to_string(*static_cast<std::int64_t*>(member));
     case KeyKind::number:
       return std::isfinite(*static_cast<double*>(member)) ? text::number(*static_cast<double*>(member), 9)
-                                                          : "none";
+                                                          : none;
     case KeyKind::text:
-      return static_cast<std::string*>(member)->empty() ? "none" : *static_cast<std::string*>(member);
+      return static_cast<std::string*>(member)->empty() ? none : *static_cast<std::string*>(member);
     case KeyKind::choice:
       return std::string(key.choices[*static_cast<std::uint8_t*>(member)]);
     case KeyKind::ratio:
       return "[1, 1]";
     default:
-      return "none";
+      return none;
   }
 }
 
-void write_section(const Section& section, const std::string& heading, std::string& out) {
-  if (!heading.empty()) out += "### " + heading + "\n\n";
-  out += std::string(section.english) + " · " + std::string(section.russian) + "\n\n";
-  out += "| key | type, unit, range | default | meaning | значение |\n|---|---|---|---|---|\n";
+void Reference::section(const Section& section, const std::string& heading) {
+  if (!heading.empty()) out_ += "### " + heading + "\n\n";
+  out_ += std::string(russian() ? section.russian : section.english) + "\n\n";
+  out_ += word("| key | type, unit, range | default | meaning |\n",
+               "| ключ | тип, единица, пределы | без ключа | значение |\n");
+  out_ += "|---|---|---|---|\n";
   for (const Key& key : section.keys)
-    out += "| `" + std::string(key.name) + "` | " + cell(type_cell(key)) + " | " +
-           cell(default_cell(key, section.defaults())) + " | " + cell(key.english) + " | " +
-           cell(key.russian) + " |\n";
-  out += "\n";
+    out_ += "| `" + std::string(key.name) + "` | " + cell(type_cell(key)) + " | " +
+            cell(default_cell(key, section.defaults())) + " | " +
+            cell(russian() ? key.russian : key.english) + " |\n";
+  out_ += "\n";
 }
 
-void write_all(const Section& section, const std::string& path, bool list, std::string& out) {
-  write_section(section, path.empty() ? "" : list ? "`[[" + path + "]]`" : "`[" + path + "]`", out);
+void Reference::sections(const Section& section, const std::string& path, bool list) {
+  this->section(section, path.empty() ? "" : list ? "`[[" + path + "]]`" : "`[" + path + "]`");
   for (const Key& key : section.keys)
     if (key.child != nullptr)
-      write_all(key.child(), path.empty() ? std::string(key.name) : path + "." + std::string(key.name),
-                key.kind == KeyKind::tables, out);
+      sections(key.child(), path.empty() ? std::string(key.name) : path + "." + std::string(key.name),
+               key.kind == KeyKind::tables);
 }
 
-void write_units(std::string& out) {
-  out += "| kept in | spellings |\n|---|---|\n";
+void Reference::units() {
+  out_ += word("| kept in | spellings |\n|---|---|\n", "| единица | написания |\n|---|---|\n");
   for (int u = static_cast<int>(Unit::none) + 1; u <= static_cast<int>(Unit::bytes); ++u) {
     const auto unit = static_cast<Unit>(u);
-    out +=
+    out_ +=
         "| " + unit_name(unit, AxisUnits::either) + " | " + unit_spellings(unit, AxisUnits::either) + " |\n";
   }
-  out += "\n";
+  out_ += "\n";
 }
 
-constexpr std::string_view kIntroduction = R"(# The machine file, all keys
+constexpr const char* kEnglish = R"(# The machine file, all keys
 
 Generated from the table of keys that reads the files (`machine/keys/`); do not edit. The same table gives
 [machine.schema.json](machine.schema.json), which editors with a TOML language server understand.
+[По-русски](ru/machine-file.md).
 
 - A quantity is a number in the unit named here, or a string with a unit: `500`, `"500 mm/s"`, `"0.5 m/s"`. A wrong unit
   is an error. A rotary axis (`type = "rotary"`) has degrees where a linear one has mm.
@@ -136,22 +160,35 @@ Generated from the table of keys that reads the files (`machine/keys/`); do not 
 ## Units
 
 )";
+constexpr const char* kRussian = R"(# Файл станка: все ключи
+
+Создано из таблицы ключей, по которой читаются файлы (`machine/keys/`); не редактируйте. Из той же таблицы —
+[machine.schema.json](../machine.schema.json) для редакторов с поддержкой TOML. [In English](../machine-file.md).
+
+- Величина — число в указанной единице или строка с единицей: `500`, `"500 mm/s"`, `"0.5 m/s"`. Неверная единица — ошибка.
+  У поворотной оси (`type = "rotary"`) градусы там, где у линейной мм.
+- Ось с диаметром описывается в радиусах; диаметр показывают только программы и индикация.
+- Ячейка пишется, как в программах обработки: `SA16` (бит 16 пакета A), `SA16.IN` (слово 16: байты 32 и 33), `SK8.RE`.
+- `[[имя]]` — список: заголовок пишется для каждого элемента.
+- Файл никогда не переписывается; то, что станок узнаёт, хранится в каталоге состояния.
+
+## Единицы
+
+)";
+
+std::string Reference::all() {
+  out_ = word(kEnglish, kRussian);
+  units();
+  out_ += word("## Machine file\n\n", "## Файл станка\n\n");
+  sections(section_of<MachineConfig>(), {}, false);
+  out_ += word("## Device file\n\n", "## Файл устройства\n\n");
+  sections(section_of<DeviceConfig>(), {}, false);
+  while (out_.ends_with("\n\n")) out_.pop_back();
+  return out_;
+}
 
 }  // namespace
 
-std::string markdown_of(const Section& section) {
-  std::string out;
-  write_all(section, {}, false, out);
-  return out;
-}
-
-std::string reference_markdown() {
-  std::string out(kIntroduction);
-  write_units(out);
-  out += "## Machine file\n\n" + markdown_of(section_of<MachineConfig>());
-  out += "## Device file\n\n" + markdown_of(section_of<DeviceConfig>());
-  while (out.ends_with("\n\n")) out.pop_back();
-  return out;
-}
+std::string reference_markdown(text::Language language) { return Reference(language).all(); }
 
 }  // namespace servogate::machine

@@ -49,6 +49,9 @@ void write_tools(const MachineState& s, std::string& out) {
     if (!c.wear.empty()) out += "wear = " + entries(c.wear) + "\n";
     if (c.radius_wear != 0.0) out += "radius_wear = " + toml_real(c.radius_wear) + "\n";
     if (c.quadrant != 0) out += "quadrant = " + std::to_string(c.quadrant) + "\n";
+    if (c.life_min != 0.0) out += "life_min = " + toml_real(c.life_min) + "\n";
+    if (c.used_min != 0.0) out += "used_min = " + toml_real(c.used_min) + "\n";
+    if (c.alternate != 0) out += "alternate = " + std::to_string(c.alternate) + "\n";
   }
 }
 
@@ -145,7 +148,8 @@ class TableReader {
     return out;
   }
   void tool(const Element& row) {
-    known(row, {"number", "name", "length", "radius", "wear", "radius_wear", "quadrant"});
+    known(row, {"number", "name", "length", "radius", "wear", "radius_wear", "quadrant", "life_min",
+                "used_min", "alternate"});
     const Element* number = row.find("number");
     if (number == nullptr) return wrong(row, "number", "a tool's number", "номер инструмента");
     const auto n = static_cast<int>(whole(*number, "number", 0, kMostTool));
@@ -163,6 +167,10 @@ class TableReader {
     if (const Element* e = row.find("radius")) c.radius = length(*e, "radius", true);
     if (const Element* e = row.find("radius_wear")) c.radius_wear = length(*e, "radius_wear");
     if (const Element* e = row.find("quadrant")) c.quadrant = static_cast<int>(whole(*e, "quadrant", 0, 9));
+    if (const Element* e = row.find("life_min")) c.life_min = length(*e, "life_min", true);
+    if (const Element* e = row.find("used_min")) c.used_min = length(*e, "used_min", true);
+    if (const Element* e = row.find("alternate"))
+      c.alternate = static_cast<int>(whole(*e, "alternate", 0, kMostTool));
     state_.tables.correctors[n] = std::move(c);
   }
 

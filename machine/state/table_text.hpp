@@ -13,6 +13,7 @@ namespace servogate::machine {
 /// Range of a number of an origin, of a tool, and the largest magnitude of a length, mm or degrees, that
 /// people may give; programs may have written others.
 inline constexpr int kLastOrigin = 9999, kLastTool = 9999;
+inline constexpr double kLongestLife = 1e6;  ///< min
 inline constexpr double kLongestEntry = 99'999.999;
 
 /// The last line that the control writes into such a file: one that was cut off lacks it.

@@ -157,7 +157,9 @@ class TableBuilder {
 };
 
 std::string header(TableKind kind, const std::vector<std::string>& axes) {
-  std::string out = kind == TableKind::origins ? "origin" : "tool,name,radius,radius_wear,quadrant";
+  std::string out = kind == TableKind::origins
+                        ? "origin"
+                        : "tool,name,radius,radius_wear,quadrant,life_min,used_min,alternate";
   for (const std::string& a : axes) out += "," + text::csv_field(a);
   if (kind == TableKind::tools)
     for (const std::string& a : axes) out += ",wear_" + text::csv_field(a);
@@ -172,6 +174,13 @@ void set_tool_field(TableBuilder& b, program::Tables::Corrector& tool, const std
   }
   if (trimmed(cell.text).empty()) return;
   const bool of_quadrant = column == "quadrant", of_radius = column == "radius";
+  if (column == "life_min" || column == "used_min" || column == "alternate") {
+    const bool of_alternate = column == "alternate";
+    const auto v = b.value(cell, column, 0.0, of_alternate ? kLastTool : kLongestLife, of_alternate);
+    if (v && of_alternate) tool.alternate = static_cast<int>(*v);
+    if (v && !of_alternate) (column == "life_min" ? tool.life_min : tool.used_min) = *v;
+    return;
+  }
   const auto v = b.value(cell, column, of_quadrant || of_radius ? 0.0 : -kLongestEntry,
                          of_quadrant ? 9.0 : kLongestEntry, of_quadrant);
   if (!v) return;
@@ -191,6 +200,7 @@ bool known_column(const TableBuilder& b, const std::string& name) {
   if (b.is_axis(name)) return true;
   if (b.kind() == TableKind::origins) return false;
   return name == "name" || name == "radius" || name == "radius_wear" || name == "quadrant" ||
+         name == "life_min" || name == "used_min" || name == "alternate" ||
          (name.starts_with("wear_") && b.is_axis(name.substr(5)));
 }
 
@@ -282,6 +292,16 @@ void read_linuxcnc(std::string_view text, TableBuilder& b) {
 
 }  // namespace
 
+std::string life_words(double life_min, double used_min, int alternate) {
+  std::string out;
+  if (life_min > 0.0)
+    out = text::both("used for ", "отработал ") + text::number(used_min, 1) + text::both(" of ", " из ") +
+          text::number(life_min, 2) + text::both(" min", " мин");
+  if (alternate != 0)
+    out += (out.empty() ? "" : ", ") + text::both("alternate T", "замена T") + std::to_string(alternate);
+  return out;
+}
+
 bool names_linuxcnc(std::string_view file) { return file.ends_with(".tbl") || file.ends_with(".tool"); }
 
 std::string to_csv(const program::Tables& tables, TableKind kind, const std::vector<std::string>& axes) {
@@ -296,7 +316,8 @@ std::string to_csv(const program::Tables& tables, TableKind kind, const std::vec
   }
   for (const auto& [n, c] : tables.correctors) {
     out += std::to_string(n) + "," + text::csv_field(c.name) + "," + number(c.radius) + "," +
-           number(c.radius_wear) + "," + std::to_string(c.quadrant);
+           number(c.radius_wear) + "," + std::to_string(c.quadrant) + "," + number(c.life_min) + "," +
+           number(c.used_min) + "," + std::to_string(c.alternate);
     for (const std::string& a : axes) out += "," + cell(c.length, a);
     for (const std::string& a : axes) out += "," + cell(c.wear, a);
     out += "\r\n";

@@ -15,8 +15,8 @@ namespace servogate::machine {
 enum class TableKind : std::uint8_t { origins, tools };
 
 /// CSV by RFC 4180 with a header: `origin,X,Y,Z`, or
-/// `tool,name,radius,radius_wear,quadrant,X,Z,wear_X,wear_Z` with one column an axis of the machine. An empty
-/// field is a value that the row does not name.
+/// `tool,name,radius,radius_wear,quadrant,life_min,used_min,alternate,X,Z,wear_X,wear_Z` with one column an
+/// axis of the machine. An empty field is a value that the row does not name.
 std::string to_csv(const program::Tables& tables, TableKind kind, const std::vector<std::string>& axes);
 /// The tools as LinuxCNC keeps them, a line each: `T1 P1 Z+85.000000 D10.000000 Q3 ;face mill`. Wear is added
 /// to the lengths and the radius, since that file has none.
@@ -29,6 +29,8 @@ std::string to_linuxcnc(const program::Tables& tables, const std::vector<std::st
 bool read_exchange(std::string_view text, const std::string& file, TableKind kind,
                    const std::vector<std::string>& axes, program::Tables& tables,
                    std::vector<text::Finding>& findings);
+/// "used for 12.5 of 60 min, alternate T4": the life of a tool in words; empty: it is not limited.
+std::string life_words(double life_min, double used_min, int alternate);
 /// The name of a file is one of LinuxCNC's form.
 bool names_linuxcnc(std::string_view file);
 

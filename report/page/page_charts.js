@@ -12,17 +12,31 @@ function timeRow(parent, kind) {
 /** Pointer and wheel over the time axis: what uPlot does not do by itself. */
 function timeInput(u, plot) {
   let last = null;
+  const fingers = new Map();  // place of each finger on the plot
+  const spread = () => { const [a, b] = [...fingers.values()]; return {at: (a + b) / 2 - u.over.getBoundingClientRect().left, width: Math.max(Math.abs(a - b), 8)}; };
   u.over.addEventListener("pointerdown", e => {
     plot.focus({preventScroll: true});
+    if (e.pointerType === "touch") fingers.set(e.pointerId, e.clientX);
     if (e.shiftKey || e.pointerType === "touch") last = e.clientX;
   });
   u.over.addEventListener("pointermove", e => {
     if (last === null) return;
+    if (fingers.has(e.pointerId) && fingers.size === 2) {
+      const old = spread();
+      fingers.set(e.pointerId, e.clientX);
+      const now = spread(), t = u.posToVal(old.at, "x"), f = old.width / now.width, move = (old.at - now.at) / u.over.clientWidth * (S.t1 - S.t0);
+      setWindow(t - (t - S.t0) * f + move, t + (S.t1 - t) * f + move);
+      return;
+    }
+    if (fingers.has(e.pointerId)) fingers.set(e.pointerId, e.clientX);
     const dt = (last - e.clientX) / u.over.clientWidth * (S.t1 - S.t0);
     last = e.clientX;
     setWindow(S.t0 + dt, S.t1 + dt);
   });
-  for (const type of ["pointerup", "pointercancel", "pointerleave"]) u.over.addEventListener(type, () => { last = null; });
+  for (const type of ["pointerup", "pointercancel", "pointerleave"]) u.over.addEventListener(type, e => {
+    fingers.delete(e.pointerId);
+    last = fingers.size ? [...fingers.values()][0] : null;
+  });
   u.over.addEventListener("dblclick", () => setWindow(RUN.start, RUN.end));
   u.over.addEventListener("wheel", e => {
     if (!e.ctrlKey && !e.metaKey && document.activeElement !== plot) return;

@@ -30,7 +30,7 @@ function axisSwitches() {
 function texts() {
   const R = report();
   document.documentElement.lang = S.lang;
-  for (const e of document.querySelectorAll("[data-t]")) e.textContent = tr(e.dataset.t);
+  for (const e of document.querySelectorAll("[data-t]")) e.textContent = tr(byFinger() && TEXTS[e.dataset.t + "Finger"] ? e.dataset.t + "Finger" : e.dataset.t);
   const clean = R.finished && !R.alarms.length;
   $("state").textContent = tr(R.finished ? "finished" : "unfinished");
   $("state").className = "badge " + (clean ? "good" : "bad");
@@ -38,7 +38,7 @@ function texts() {
   const p = R.provenance, clock = p.clock === "virtual" ? tr("virtual") : p.clock;
   $("sub").textContent = [clock, p.dialect, p.machine && p.machine.path, ("servogate " + p.version + (p.commit ? " (" + p.commit + ")" : "")).trim()].filter(Boolean).join(" · ");
   $("verdict").className = "verdict " + (clean ? "good" : "bad");
-  fill("verdict", R.verdict.text, R.verdict.remedy ? el("div", {class: "note"}, R.verdict.remedy) : null);
+  fill("verdict", sentence(R.verdict.text), R.verdict.remedy ? el("div", {class: "note"}, sentence(R.verdict.remedy)) : null);
   $("forced").textContent = R.forces ? tr("forced") + ": " + R.forces.map(f => f.name + " = " + f.value).join(", ") : "";
   $("dropped").textContent = R.trace_dropped ? tr("dropped", num(R.trace_dropped, 9)) : "";
   if (!RUN) return;
@@ -55,10 +55,16 @@ function texts() {
 function resolution() { if (RUN.line.length) $("resolution").textContent = resolutionWords(timeGrid(() => emit("unpacked"))); }
 function readout() {
   const place = RUN.placeAt(S.cursor), parts = [];
-  for (const a of RUN.axes) {
-    const v = RUN.view.indexOf(a.letter), value = v >= 0 && place ? [place.x, place.y, place.z][v] : RUN.valueAt(a.letter + ".position", S.cursor);
-    parts.push(el("span", {class: "pos", style: `--c:${axisColour(a.letter)}`}, el("b", {}, RUN.shownName(a.letter)), fixed(value * RUN.shownTimes(a.letter), 3)));
-  }
+  const places = RUN.axes.map(a => {
+    const v = RUN.view.indexOf(a.letter);
+    return v >= 0 && place ? [place.x, place.y, place.z][v] : RUN.valueAt(a.letter + ".position", S.cursor);
+  });
+  // As the program writes it; the machine's own coordinate stands beside it, smaller.
+  RUN.axes.forEach((a, i) => {
+    const machine = fixed(places[i] * RUN.shownTimes(a.letter), 3), work = RUN.workAt(i, S.cursor, places);
+    parts.push(el("span", {class: "pos", style: `--c:${axisColour(a.letter)}`, title: tr(work === null ? "machinePlace" : "workPlace")},
+      el("b", {}, RUN.shownName(a.letter)), work === null ? machine : fixed(work, 3), work === null ? null : el("small", {}, machine)));
+  });
   parts.push(el("span", {class: "pos"}, el("b", {}, "F"), num(RUN.valueAt("path.speed", S.cursor), 4) + " " + unit("mm/s")));
   parts.push(el("span", {class: "pos"}, el("b", {}, tr("line")), String(RUN.lineAt(S.cursor) || "–")));
   fill("readout", ...parts);

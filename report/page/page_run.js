@@ -21,6 +21,7 @@ class Run {
     run.signals = [];
     for (const s of d.signals) run.signals.push({name: s.name, initial: s.initial, toggles: await column(s.toggles), truncated: s.truncated});
     const [number, first, total] = [await column(d.lines.number), await column(d.lines.first), await column(d.lines.total)];
+    run.frames = d.frames || [];
     run.lines = new Map([...number].map((line, i) => [line, {first: first[i], total: total[i]}]));
     run.program = new TextDecoder().decode(await inflated(data.program.text)).split(/\r?\n/);
     if (run.program[run.program.length - 1] === "") run.program.pop();
@@ -108,6 +109,11 @@ class Run {
       if (this.wayAt(i, mid) < index - i) low = mid; else high = mid;
     }
     return high;
+  }
+  /** Coordinate of an axis in the program in motion at t, as it writes it, from the machine's places; null: none. */
+  workAt(axis, t, places) {
+    const f = before(this.frames.map(c => c.t), t), map = f < 0 ? null : this.frames[f].axes[axis];
+    return map && map.length ? places.reduce((sum, place, a) => sum + map[a + 1] * place, map[0]) : null;
   }
   signalAt(signal, t) { return ((before(signal.toggles, t) + 1) % 2 === 1) !== signal.initial; }
   /** What the stretch that ends at vertex i is; homing stands for all motion outside the program. */

@@ -58,7 +58,7 @@ function alarms() {
   const head = ["number", "at", "what", "where", "reaction"].map(k => el("th", {}, tr(k)));
   const rows = R.alarms.map(a => {
     const later = a.first_fault && a.first_fault !== a.sequence, root = R.alarms.find(o => o.sequence === a.first_fault);
-    const what = el("td", {}, el("strong", {}, a.text), el("div", {class: "note"}, a.remedy || ""),
+    const what = el("td", {}, el("strong", {}, sentence(a.text)), el("div", {class: "note"}, sentence(a.remedy || "")),
       later ? el("div", {class: "note"}, tr("consequence") + " " + (root ? root.number : a.first_fault)) : null);
     const seek = el("button", {class: "link", onclick: () => setCursor(a.t)}, fixed(a.t, 3) + " " + unit("s"));
     return el("tr", {class: later ? "later" : ""}, el("td", {}, String(a.number)), el("td", {}, seek), what, el("td", {}, alarmPlace(a)), el("td", {}, tr(a.reaction)));

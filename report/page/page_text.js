@@ -44,6 +44,8 @@ const TEXTS = {
   jerk: ["Jerk", "Рывок"],
   error: ["Following error", "Ошибка слежения"],
   noLimit: ["no limit given", "предел не задан"],
+  workPlace: ["in the program's coordinates; small: in the machine's", "в координатах программы; мелко — в координатах станка"],
+  machinePlace: ["in the machine's coordinates", "в координатах станка"],
   path: ["Path", "Траектория"],
   plan: ["Plan", "План"],
   front: ["Front", "Спереди"],
@@ -63,6 +65,10 @@ const TEXTS = {
   travel: ["travel of the machine", "ход станка"],
   hint3: ["Drag to turn · right button or Shift + drag to move · Ctrl + wheel to zoom (plain wheel after a click) · double click to fit · click on a line of the program to see where it cuts",
     "Тянуть — поворот · правая кнопка или Shift + тянуть — сдвиг · Ctrl + колесо — масштаб (после щелчка — просто колесо) · двойной щелчок — вписать · щелчок по строке программы — где она режет"],
+  hint3Finger: ["One finger turns · two fingers move and zoom · tap a line of the program to see where it cuts",
+    "Один палец — поворот · два пальца — сдвиг и масштаб · касание строки программы — где она режет"],
+  hintTimeFinger: ["One finger moves along the time · two fingers zoom · the button “All” shows the whole run",
+    "Один палец — сдвиг по времени · два пальца — масштаб · кнопка «Всё» — весь прогон"],
   everyCycle: ["Every cycle is drawn ({0}).", "Показан каждый такт ({0})."],
   band: ["A band spans the least and the greatest value of each {0}; zoom in to see every cycle.", "Полоса — от наименьшего до наибольшего значения за каждые {0}; увеличьте, чтобы видеть каждый такт."],
   notKept: ["Single cycles of this stretch were not kept: the run was too long.", "Отдельные такты этого участка не сохранены: прогон слишком длинный."],
@@ -146,6 +152,13 @@ function tr(key, ...values) {
   const text = entry ? entry[S.lang === "ru" ? 1 : 0] : key;
   return text.replace(/\{(\d)\}/g, (_, n) => values[+n]);
 }
+/** A sentence as the page shows it: its first letter large, decimal signs of the language. */
+function sentence(text) {
+  const words = S.lang === "ru" ? text.replace(/(^|[\s(])([+\-−]?\d+)\.(\d+)(?=[\s,;:)%]|$)/g, "$1$2,$3") : text;
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+/** What the reader holds: a finger or a mouse. */
+function byFinger() { return window.matchMedia("(pointer: coarse)").matches; }
 function unit(u) { return (S.lang === "ru" ? UNITS_RU : UNITS_EN)[u] || u; }
 /** A number for people: at most `digits` significant ones and three decimals, thin spaces between thousands, comma in Russian. */
 function num(v, digits = 4) {

@@ -6,6 +6,7 @@
 #include "report/record/path_thinning.hpp"
 #include "report/recorded_run.hpp"
 #include "report/statistics.hpp"
+#include "report/work_places.hpp"
 
 namespace servogate::report {
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxLines = 200'000;
 constexpr std::size_t kPerAxis = 5;
+constexpr std::size_t kMaxFrames = 10'000;
 
 template <typename T, typename Merge>
 void halve(std::vector<T>& v, Merge merge) {
@@ -33,6 +35,7 @@ struct RunRecorder::Impl {
   std::vector<AxisStatistics> axes;
   std::vector<float> values;  ///< of the present cycle, in the order of run.series
   std::optional<EveryCycle> every;
+  std::optional<WorkPlaces> places;
   std::vector<double> cycle_values;  ///< of the present cycle, in the order of its channels
   std::uint32_t alarms = 0;
   std::vector<bool> signal_states;
@@ -58,6 +61,7 @@ struct RunRecorder::Impl {
   void follow_path(const TraceRow& row);
   void follow_signals(const TraceRow& row);
   void follow_line(const TraceRow& row);
+  void follow_frame(const TraceRow& row);
 };
 
 void RunRecorder::Impl::name_series() {
@@ -227,6 +231,16 @@ void RunRecorder::Impl::follow_line(const TraceRow& row) {
   line_time->second.total_s += run.period_s;
 }
 
+void RunRecorder::Impl::follow_frame(const TraceRow& row) {
+  if (!places || !places->follow(row)) return;
+  FrameChange change{static_cast<double>(row.t_ns) * 1e-9, {}};
+  for (std::size_t a = 0; a < run.axes.size(); ++a)
+    change.axes.push_back(places->known(a) ? std::optional(places->axis(a)) : std::nullopt);
+  if (!run.frames.empty() && run.frames.back().axes == change.axes) return;
+  if (run.frames.size() >= kMaxFrames) run.frames.erase(run.frames.begin());
+  run.frames.push_back(std::move(change));
+}
+
 RunRecorder::RunRecorder(RunRecorderOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
 RunRecorder::~RunRecorder() = default;
 
@@ -245,6 +259,7 @@ void RunRecorder::begin(const TraceLayout& layout) {
   i.axes.resize(i.run.axes.size());
   for (const TraceSignal& s : i.layout.signals) i.run.signals.push_back({s.name, false, {}, -1.0});
   i.signal_states.resize(i.layout.signals.size());
+  if (i.layout.frame_of) i.places.emplace(i.layout);
   i.name_series();
   i.name_channels();
 }
@@ -261,6 +276,7 @@ void RunRecorder::row(const TraceRow& row) {
   i.follow_path(row);
   i.follow_signals(row);
   i.follow_line(row);
+  i.follow_frame(row);
   i.last_cycle = row.cycle;
   i.started = true;
 }

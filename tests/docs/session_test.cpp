@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the documents show of a terminal is what the terminal shows: every `$ servogate` of them that needs no
 // running control is run, and its lines are compared. `...` stands for any lines. Documents of docs/ru/ show
-// the program in Russian.
+// the program in Russian. Behind `$ servogate up ... --virtual --speed N` the control of the page is there,
+// and its clients are run as well.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,16 +123,28 @@ class Terminal {
     }
   }
   ~Terminal() {
+    if (up_) run("servogate down", "C");
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
   }
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
+  bool up() const { return up_; }
+  /// Starts a control, which goes on, and waits until it answers.
+  void begin(const std::string& command, const std::string& language) {
+    up_ = true;
+    run(command +
+            " --state state > up.log 2>&1 & for n in $(seq 600); do servogate status > /dev/null 2>&1 && "
+            "break; "
+            "sleep 0.1; done",
+        language);
+  }
   std::vector<std::string> run(const std::string& command, const std::string& language) const {
-    const std::string line =
-        "cd '" + folder_.string() + "' && export LANG=" + language + " LC_ALL=" + language + " PATH=\"" +
-        fs::path(tests::program()).parent_path().string() + ":$PATH\" && { " + command + "; } 2>&1";
+    const std::string line = "cd '" + folder_.string() + "' && export XDG_RUNTIME_DIR='" + folder_.string() +
+                             "' LANG=" + language + " LC_ALL=" + language + " PATH=\"" +
+                             fs::path(tests::program()).parent_path().string() + ":$PATH\" && { " + command +
+                             "; } 2>&1";
     std::string out;
     std::FILE* pipe = popen(line.c_str(), "r");
     if (pipe == nullptr) return {};
@@ -145,11 +158,16 @@ class Terminal {
 
  private:
   fs::path folder_;
+  bool up_ = false;
 };
 
+bool starts_control(const std::string& command) {
+  return command.starts_with("servogate up ") && command.find(" --speed ") != std::string::npos;
+}
+
 bool needs_no_control(const std::string& command) {
-  for (const char* begin : {"servogate run ", "servogate check ", "servogate canon ", "servogate replay ",
-                            "servogate plc ", "servogate chek "})
+  for (const char* begin : {"sed -i ", "servogate run ", "servogate check ", "servogate canon ",
+                            "servogate replay ", "servogate plc ", "servogate chek "})
     if (command.starts_with(begin)) return command.find("--realtime") == std::string::npos;
   return false;
 }
@@ -162,15 +180,21 @@ std::string language_of(const std::string& document) {
 constexpr const char* kPages[] = {"docs/command-line.md",     "docs/command-line-tutorial.md",
                                   "docs/plc-tutorial.md",     "docs/first-machine.md",
                                   "docs/trace-and-report.md", "docs/dialects/nc110.md",
+                                  "docs/first-alarm.md",      "docs/machine-tests-in-ci.md",
                                   "docs/ru/first-machine.md", "docs/ru/dialects/nc110.md"};
 
 class Documents : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Documents, show_what_the_program_says) {
-  const Terminal terminal(GetParam());
+  Terminal terminal(GetParam());
   int run = 0;
   for (const Shown& shown : shown_in(GetParam())) {
-    if (!needs_no_control(shown.command)) continue;
+    if (starts_control(shown.command)) {
+      terminal.begin(shown.command, language_of(GetParam()));
+      continue;
+    }
+    const bool of_client = terminal.up() && shown.command.starts_with("servogate ");
+    if (!needs_no_control(shown.command) && !of_client) continue;
     ++run;
     const std::vector<std::string> real = terminal.run(shown.command, language_of(GetParam()));
     std::string text;
@@ -200,8 +224,9 @@ TEST(Documents, with_a_session_are_all_run) {
     if (entry.path().extension() != ".md") continue;
     const std::string document = fs::relative(entry.path(), tree).string();
     const std::vector<Shown> shown = shown_in(document);
-    const bool session =
-        std::any_of(shown.begin(), shown.end(), [](const Shown& s) { return needs_no_control(s.command); });
+    const bool session = std::any_of(shown.begin(), shown.end(), [](const Shown& s) {
+      return needs_no_control(s.command) || starts_control(s.command);
+    });
     EXPECT_EQ(session, std::find(std::begin(kPages), std::end(kPages), document) != std::end(kPages))
         << document;
   }

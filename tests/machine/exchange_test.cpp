@@ -15,7 +15,7 @@ const std::vector<std::string> kAxes{"X", "Z"};
 program::Tables sample() {
   program::Tables t;
   t.origins = {{1, {{"X", 100.5}, {"Z", -2.0}}}, {7, {{"Z", 1.0 / 3.0}}}};
-  t.correctors[3] = {"mill, \"roughing\"", {{"Z", 85.0}}, {{"Z", -0.01}}, 5.0, 0.02, 0};
+  t.correctors[3] = {"mill, \"roughing\"", {{"Z", 85.0}}, {{"Z", -0.01}}, 5.0, 0.02, 0, 60.0, 12.5, 12};
   t.correctors[12] = {"insert", {{"X", 12.5}, {"Z", 40.0}}, {}, 0.4, 0.0, 3};
   return t;
 }
@@ -39,9 +39,9 @@ TEST(Exchange, gives_back_from_csv_what_was_written_into_it) {
 
 TEST(Exchange, writes_csv_with_a_column_an_axis) {
   EXPECT_EQ(to_csv(sample(), TableKind::tools, kAxes),
-            "tool,name,radius,radius_wear,quadrant,X,Z,wear_X,wear_Z\r\n"
-            "3,\"mill, \"\"roughing\"\"\",5,0.02,0,,85,,-0.01\r\n"
-            "12,insert,0.4,0,3,12.5,40,,\r\n");
+            "tool,name,radius,radius_wear,quadrant,life_min,used_min,alternate,X,Z,wear_X,wear_Z\r\n"
+            "3,\"mill, \"\"roughing\"\"\",5,0.02,0,60,12.5,12,,85,,-0.01\r\n"
+            "12,insert,0.4,0,3,0,0,0,12.5,40,,\r\n");
 }
 
 TEST(Exchange, reads_the_tool_table_of_linuxcnc_as_its_documentation_has_it) {

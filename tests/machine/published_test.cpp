@@ -26,7 +26,8 @@ TEST(PublishedFiles, schema_is_what_the_reader_reads) {
   published("docs/machine.schema.json", json_schema());
 }
 TEST(PublishedFiles, reference_is_what_the_reader_reads) {
-  published("docs/machine-file.md", reference_markdown());
+  published("docs/machine-file.md", reference_markdown(text::Language::english));
+  published("docs/ru/machine-file.md", reference_markdown(text::Language::russian));
 }
 
 /// Calls for every key of every nested section.

@@ -405,11 +405,11 @@ class LongRun {
                                 "N10 G90 G94 G71\n(RPT,99)\n(RPT,99)\nN20 G1 X200 Y100 F9000\nN30 X0 "
                                 "Y0\n(ERP)\n(ERP)\nN40 M30\n"),
                   "--virtual", "--trace", trace_, "--report", scratch.path("r.json"), "-q"}) {
-    // The trace grows by more than 250 bytes a cycle; homing is over after some 6000.
+    // The trace grows by more than 250 and less than 500 bytes a cycle; homing is over after some 6000.
     EXPECT_TRUE(tests::comes([&] {
       std::error_code ignored;
       const auto size = std::filesystem::file_size(trace_, ignored);
-      return !ignored && size > 250 * 10000;
+      return !ignored && size > 500 * 8000;
     }));
   }
   Program& program() { return program_; }
@@ -440,7 +440,8 @@ TEST(Run, interrupted_once_stops_on_the_path_within_the_limits_and_writes_everyt
   // Where the power goes, the set-point becomes what the encoder measures, noise included.
   const std::size_t x_act = trace.column("X.act"), y_act = trace.column("Y.act");
   std::size_t off = stop + 1;
-  while (off < n && trace.at(off, x) != trace.at(off, x_act) && trace.at(off, y) != trace.at(off, y_act))
+  // At a corner of the path one of them may be the same by chance.
+  while (off < n && (trace.at(off, x) != trace.at(off, x_act) || trace.at(off, y) != trace.at(off, y_act)))
     ++off;
   EXPECT_GT(off - stop, 1u) << "the power goes when the set-point stands";
   for (std::size_t i = off; i < n; ++i) {

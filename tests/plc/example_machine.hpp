@@ -21,7 +21,10 @@ class ExampleMachine {
     std::stringstream text;
     text << file.rdbuf();
     symbols_ = image::interface_symbols(1, axes, 1);
-    for (const auto& [name, bit] : inputs) add(name, bit, image::Writer::input);
+    for (const auto& [name, bit] : inputs) {
+      add(name, bit, image::Writer::input);
+      if (name == "estop_chain_ok") add("MC.estop_chain", bit, image::Writer::input);  // [safety] estop
+    }
     for (const auto& [name, bit] : outputs) add(name, bit, image::Writer::plc);
     CompileResult result = compile({{source, text.str()}}, symbols_);
     for (const text::Finding& f : result.findings) ADD_FAILURE() << f.str(text::Language::english);

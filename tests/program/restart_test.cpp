@@ -131,9 +131,6 @@ TEST(Restart, is_refused_where_it_cannot_be_told) {
     RestartAt at;
   } rows[] = {{"N10 G0 X1\nN20 M30\n", "the program has no block N50", {RestartAt::By::number, 50}},
               {"N10 G0 X1\nN20 M30\n", "the program has no block line 9", {RestartAt::By::line, 9}},
-              {"N10 (BEQ,SA0,1,A)\nN20 G0 X1\n\"A\"N30 X5\nN40 M30\n",
-               "depends on signals of the machine",
-               {RestartAt::By::number, 30}},
               {"N10 G0 X1000\nN20 X5\nN30 M30\n", "travel", {RestartAt::By::number, 20}}};
   for (const auto& row : rows) {
     const auto result = found(row.text, row.at);
@@ -141,6 +138,18 @@ TEST(Restart, is_refused_where_it_cannot_be_told) {
     const std::string words = std::get<text::Finding>(result).str(text::Language::english);
     EXPECT_NE(words.find(row.said), std::string::npos) << words;
   }
+}
+
+TEST(Restart, takes_signals_of_the_machine_as_they_are_now) {
+  const std::string text = "N10 (BEQ,SA0,1,A)\nN20 G0 X1\n\"A\"N30 Y5\nN40 M30\n";
+  const RestartAt at{RestartAt::By::number, 30};
+  image::Packets packets;
+  const auto without = std::get<RestartPoint>(restart(fresh(text), at, packets));
+  EXPECT_EQ(without.position[0], 1.0);
+  EXPECT_TRUE(without.signals) << "it is said that the result depends on them";
+  packets.set_bit({image::Packet::a, image::Format::bl, 0, 1}, true);
+  EXPECT_EQ(std::get<RestartPoint>(restart(fresh(text), at, packets)).position[0], 0.0);
+  EXPECT_FALSE(std::get<RestartPoint>(found(kPocket, {RestartAt::By::number, 70})).signals);
 }
 
 TEST(Restart, goes_by_the_switches_of_the_operator) {

@@ -50,7 +50,7 @@ TEST_F(RunFaults, that_cannot_happen_are_refused_before_anything_moves) {
               {"kill at=1", "name what it happens to"},
               {"explode node=2", "explode"},
               {"bounce device=can.x at=1", "bounce"},
-              {"load 5 node=1", "a run takes faults and `clear` only"}};
+              {"load 5 node=1", "only faults and `clear` are possible here"}};
   for (const auto& row : rows) {
     const Outcome o = run({"--fault", row.fault});
     EXPECT_EQ(o.exit, 2) << row.fault << o.out << o.err;

@@ -77,6 +77,29 @@ TEST_F(Tables, refuse_what_is_wrong_and_say_what_is_possible) {
   }
 }
 
+TEST_F(Tables, count_the_minutes_of_a_tool_and_give_a_worn_out_one_its_alternate) {
+  begin();
+  good({"tool", "set", "2", "length=30", "life=0.05", "alternate=3"});
+  good({"tool", "set", "3", "length=40"});
+  EXPECT_EQ(good({"tool", "list"}).out,
+            "tool 2: length Z 30 mm, used for 0 of 0.05 min, alternate T3\ntool 3: length Z 40 mm\n");
+  std::ofstream(file("cut.nc")) << "N10 T2.2 M6\nN20 G0 X0\nN30 G1 X60 F600\nN40 X0\nN50 M30\n";
+  good({"load", file("cut.nc")});
+  good({"start", "--wait"});
+  EXPECT_EQ(shell_.status()["tool"], 2);
+  const json tools = shell_.ask({{"cmd", "tables"}})["tools"];
+  EXPECT_NEAR(tools[0]["used_min"].get<double>(), 0.2, 0.02) << "12 s at feed";
+  good({"start", "--wait"});
+  EXPECT_EQ(shell_.status()["tool"], 3) << "the alternate";
+  good({"tool", "set", "2", "alternate=0"});
+  const Outcome refused = run({"start"});
+  EXPECT_EQ(refused.exit, 1);
+  EXPECT_TRUE(contains(refused.err, "T2: the tool is worn out")) << refused.err;
+  good({"tool", "set", "2", "used=0"});
+  good({"start", "--wait"});
+  EXPECT_EQ(shell_.status()["tool"], 2);
+}
+
 TEST_F(Tables, are_touched_off_where_the_axes_stand_and_the_status_shows_both_coordinates) {
   begin();
   good({"mdi", "G0 X40 Y20 Z-10", "--wait"});

@@ -56,6 +56,10 @@ constexpr ClientCommand kClients[] = {
     {"step", "Runs one block.", "", "servogate step", true, true},
     {"hold", "Feed hold: stops on the path.", "", "servogate hold", false, true},
     {"resume", "Goes on after a hold.", "", "servogate resume", false, true},
+    {"return",
+     "Brings axes that were jogged away from a held program back by the way that they went, and waits until "
+     "they stand.",
+     "", "servogate return --feed 300", false, true},
     {"reset", "Ends the program and clears alarms whose cause is gone.", "", "servogate reset"},
     {"override", "Feed override in per cent, 0 to 150.", "PCT", "servogate override 80", false, true},
     {"assign", "Gives an axis that stands to a process: its programs move it from now on.", "AXIS",
@@ -258,6 +262,12 @@ class Commands {
           ->check(number_within({1.0, 1000.0, text::both("events", "событий"), true}));
     }
     if (std::string_view(c.name) == "start") from_the_middle(app, o);
+    if (std::string_view(c.name) == "return") {
+      app.add_option("--feed", o.feed, "Feed of the way back in mm/min, 1 to 5000; the jog speed without it")
+          ->type_name("MM/MIN")
+          ->check(number_within({1.0, 5000.0, "mm/min"}));
+      app.add_flag("--no-wait", o.no_wait, "Returns as soon as the control has agreed");
+    }
     if (c.of_process)
       process(app, o.process, "Process, from 1; without it the first one, and `hold` holds all");
     if (!c.waits) return;

@@ -130,6 +130,11 @@ inline constexpr Translation kCatalogue[] = {
     {"Feed of the way to that block in mm/min, 1 to 5000; 500 without it",
      "Подача на подходе к кадру в мм/мин, от 1 до 5000; без ключа 500"},
     {"Each step of that way waits for `servogate start`", "Каждый шаг подхода ждёт `servogate start`"},
+    {"Brings axes that were jogged away from a held program back by the way that they went, and waits until "
+     "they stand.",
+     "Возвращает оси, отведённые от приостановленной программы, тем же путём и ждёт их останова."},
+    {"Feed of the way back in mm/min, 1 to 5000; the jog speed without it",
+     "Подача на возврате в мм/мин, от 1 до 5000; без ключа — скорость ручного хода"},
     {"Goes there without asking", "Подойти без вопроса"},
     {"Process, from 1; without it the first one, and `hold` holds all",
      "Процесс, от 1; без ключа — первый, а `hold` останавливает все"},

@@ -29,6 +29,11 @@ using nlohmann::json;
 const text::Entry kOn{"client.on", "the drives are on, the brakes open",
                       "приводы включены, тормоза отпущены"};
 const text::Entry kOff{"client.off", "the drives are off", "приводы выключены"};
+const text::Entry kBack{"client.back", "the axes are back on the path: `servogate resume` goes on",
+                        "оси снова на контуре: `servogate resume` продолжит программу"};
+const text::Entry kNotBack{"client.not-back",
+                           "the way back ended before the path: `servogate return` goes on with it",
+                           "возврат прерван до контура: `servogate return` продолжит его"};
 const text::Entry kNoAlarms{"client.no-alarms", "no alarm is active", "активных аварий нет"};
 const text::Entry kNotKept{"client.history-not-kept", "the history is not written to the disk: {0}",
                            "история не записывается на диск: {0}"};
@@ -73,13 +78,20 @@ void print_history(const json& reply) {
 
 /// A client and what its command waits for.
 struct Manner {
-  bool power, jog, waits;
+  bool power, jog, back, waits;
 };
 
 Manner manner_of(const ClientOptions& options, const json& request) {
-  Manner m{options.command == "power", options.command == "jog", false};
-  m.waits = options.wait || request["cmd"] == "jog_continuous" || ((m.power || m.jog) && !options.no_wait);
+  Manner m{options.command == "power", options.command == "jog", options.command == "return", false};
+  m.waits = options.wait || request["cmd"] == "jog_continuous" ||
+            ((m.power || m.jog || m.back) && !options.no_wait);
   return m;
+}
+
+/// An axis was jogged away from a held program.
+bool away(const json& status) {
+  const json axes = status.value("axes", json::array());
+  return std::any_of(axes.begin(), axes.end(), [](const json& a) { return a.value("beside", 0.0) != 0.0; });
 }
 
 /// What a command without --json leaves on its streams.
@@ -103,6 +115,12 @@ void show(const ClientOptions& options, const json& request, const Manner& manne
       for (const json& p : reply.value("processes", json::array()))
         if (const json stop = p.value("stop", json()); stop.is_object())
           print_line(of(stop, "text") + "\n    " + of(stop, "remedy"));
+    print_alarms(reply["alarms"]);
+  } else if (manner.back && manner.waits) {
+    if (code == kDone)
+      print_line(say(kBack));
+    else
+      complain(kNotBack, {});
     print_alarms(reply["alarms"]);
   } else if (options.command == "status" || manner.waits) {
     print_status(reply);
@@ -191,7 +209,10 @@ int client(const ClientOptions& options) {
   int code = reply.value("exit", kInfrastructure);
   if (code == kDone && manner.waits) {
     if (!options.json) tell(of(reply, "text"));
-    code = manner.jog ? follow_jog(connection, request, reply) : wait_for_end(connection, request, reply);
+    json waited = request;
+    if (reply.value("beside", false)) waited["cmd"] = "functions";
+    code = manner.jog ? follow_jog(connection, request, reply) : wait_for_end(connection, waited, reply);
+    if (manner.back && code == kDone && away(reply)) code = kStopped;
     if (!reply.is_null()) reply["exit"] = code;
   }
   if (code == kDone && !options.json && request["cmd"] == "table_export") return write_export(options, reply);

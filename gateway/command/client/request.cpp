@@ -81,7 +81,7 @@ json request_of(const ClientOptions& options) {
     r["program"] = std::filesystem::absolute(a[0]).string();
   } else if (c == "start" && (!options.from.empty() || options.line > 0 || options.interrupted)) {
     r["cmd"] = "restart";
-    r["feed"] = options.feed;
+    if (options.feed) r["feed"] = *options.feed;
     r["confirm"] = options.by_hand;
     if (options.line > 0) r["line"] = options.line;
     if (!options.from.empty()) {
@@ -91,6 +91,8 @@ json request_of(const ClientOptions& options) {
         return not_a(options.from, "a block, as N120", "кадр вида N120");
       r["number"] = static_cast<int>(value);
     }
+  } else if (c == "return" && options.feed) {
+    r["feed"] = *options.feed;
   } else if (c == "assign") {
     r["axis"] = a[0];
   } else if (c == "override") {

@@ -28,9 +28,16 @@ const Entry kRestartAxis{"client.restart-axis",
                          "  {0} stands at {1} {3}, the block begins at {2} {3} (machine coordinates)",
                          "  {0} стоит на {1} {3}, кадр начинается на {2} {3} (в координатах станка)"};
 const Entry kRestartStep{"client.restart-step", "  {0}. {1}", "  {0}. {1}"};
+const Entry kRestartOverlap{"client.restart-overlap",
+                            "the block was interrupted {0} mm behind its beginning: that much is cut again",
+                            "кадр прерван в {0} мм от своего начала: этот участок обрабатывается снова"};
 const Entry kRestartPassed{"client.restart-passed", "not repeated: {0}", "не повторяются: {0}"};
 const Entry kRestartWrites{"client.restart-writes", "not repeated: {0} writes into packets",
                            "не повторяются записи в пакеты: {0}"};
+const Entry kRestartSignals{
+    "client.restart-signals",
+    "the program reads signals of the machine before this block: all of this holds for their present values",
+    "до этого кадра программа читает сигналы станка: всё это верно для их нынешних значений"};
 const Entry kRestartOld{"client.restart-old",
                         "the block is that of the disk: up to 100 ms before the power was lost",
                         "кадр взят с диска: до 100 мс перед отключением питания"};
@@ -217,6 +224,8 @@ void print_axis(const json& a) {
   facts += a.value("homed", false) ? words(", homed", ", выведена в ноль")
                                    : words(", not homed", ", не выведена в ноль");
   if (a.value("moving", false)) facts += words(", moving", ", движется");
+  if (const double beside = a.value("beside", 0.0); beside != 0.0)
+    facts += words(", away from the path by ", ", отведена от контура на ") + fixed(beside, 4);
   if (a.value("on_limit", 0) != 0) facts += words(", on the hard limit", ", на концевом выключателе");
   const std::string unit = text::in_language(text::unit_words(of(a, "unit"))) +
                            (a.value("diameter", false) ? words(" (diameter)", " (диаметр)") : "");
@@ -313,6 +322,8 @@ void print_restart(const json& plan) {
   for (const json& a : plan.value("axes", json::array()))
     print_line(say(kRestartAxis, {of(a, "letter"), fixed(a.value("stands", 0.0), 3),
                                   fixed(a.value("begins", 0.0), 3), text::unit_words(of(a, "unit"))}));
+  if (const json overlap = plan.value("overlap_mm", json()); overlap.is_number())
+    print_line(say(kRestartOverlap, {text::number(overlap.get<double>(), 3)}));
   int n = 0;
   for (const json& step : plan.value("steps", json::array()))
     print_line(say(kRestartStep, {std::to_string(++n), step.get<std::string>()}));
@@ -322,6 +333,7 @@ void print_restart(const json& plan) {
   if (!codes.empty()) print_line(say(kRestartPassed, {codes}));
   if (const int writes = plan.value("writes", 0); writes > 0)
     print_line(say(kRestartWrites, {std::to_string(writes)}));
+  if (plan.value("signals", false)) print_line(say(kRestartSignals, {}));
   if (plan.value("from_disk", false)) print_line(say(kRestartOld, {}));
 }
 

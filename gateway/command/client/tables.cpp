@@ -97,6 +97,7 @@ std::string tool_words(const json& row, const json& axes) {
     add(text::both("wear of the radius ", "износ радиуса ") + text::number(r, 4) + mm);
   if (const int q = row.value("quadrant", 0); q != 0)
     add(text::both("quadrant ", "квадрант ") + std::to_string(q));
+  add(machine::life_words(row.value("life_min", 0.0), row.value("used_min", 0.0), row.value("alternate", 0)));
   return out;
 }
 

@@ -70,13 +70,14 @@ void tell(const text::Entry& entry, const json& wait) {
 }
 
 /// What was asked for, as far as waiting has to tell it apart.
-enum class Kind { power_on, power_off, home, jog, step, program };
+enum class Kind { power_on, power_off, home, jog, step, functions, program };
 
 Kind kind_of(const json& request) {
   const std::string command = request["cmd"];
   if (command == "power") return request["value"] == 0 ? Kind::power_off : Kind::power_on;
   if (command == "home") return Kind::home;
-  if (command.starts_with("jog")) return Kind::jog;
+  if (command.starts_with("jog") || command == "return") return Kind::jog;
+  if (command == "functions") return Kind::functions;
   return command == "step" ? Kind::step : Kind::program;
 }
 
@@ -95,6 +96,7 @@ class Wait {
   bool homing_under_way(const json& status);
   bool jog_under_way(const json& status);
   bool program_under_way(const json& status);
+  bool functions_under_way(const json& status) const;
   bool rests(const json& status) const;
   void say_what_is_missing(const json& status);
   void name_unreachable(const json& status);
@@ -203,6 +205,7 @@ bool Wait::rests(const json& status) const {
 
 /// Once for each wait: that nothing happens because somebody else has to act first.
 void Wait::say_what_is_missing(const json& status) {
+  if (kind_ == Kind::jog || kind_ == Kind::functions) return;  // beside a program that waits
   const json wait = status.value("wait", json());
   if (interrupts_done_ > 0 || !wait.is_object() || of(wait, "remedy").empty()) return;
   const double since_s = wait.value("since_s", 0.0);
@@ -222,6 +225,14 @@ bool Wait::program_under_way(const json& status) {
   if ((state == "idle" || state == "stopped") && !alarm(status))
     code_ = stopped_by_plc(status) ? kAlarm : kStopped;
   return false;
+}
+
+/// Until the held program waits for nobody but the operator again.
+bool Wait::functions_under_way(const json& status) const {
+  const std::string state = of(status, "state");
+  if (interrupts_done_ > 0 || (state != "held" && state != "waiting")) return false;
+  const std::string reason = of(status.value("wait", json::object()), "reason");
+  return reason.empty() || reason.ends_with("_acknowledge");
 }
 
 /// A drive that does not answer may be on.
@@ -260,6 +271,8 @@ bool Wait::under_way(const json& status) {
       return homing_under_way(status);
     case Kind::jog:
       return jog_under_way(status);
+    case Kind::functions:
+      return functions_under_way(status);
     case Kind::step:
     case Kind::program:
       return program_under_way(status);
@@ -308,10 +321,13 @@ void Wait::interrupt() {
       break;
     }
     case Kind::power_off:
+    case Kind::functions:
       break;
     case Kind::home:
-    case Kind::jog:
       ask(client_, simple("stop"));
+      break;
+    case Kind::jog:
+      ask(client_, simple("jog_stop"));  // a program beside which it jogs stays held
       break;
     case Kind::step:
     case Kind::program: {

@@ -350,7 +350,7 @@ int drive(const DriveOptions& options) {
       print_json_line({{"event", "node"}, {"node", d.node_id}, {"bus", plan.url}, {"device", d.name}});
   }
   // Standard input has no place in granted time.
-  DriveDesk desk(std::move(*deeds), transport->lockstep == nullptr, options.json);
+  DriveDesk desk(std::move(*deeds), true, options.json);
   const int code = transport->lockstep != nullptr
                        ? live_in_lockstep(options, plan, *transport->lockstep, desk, signals)
                        : live(options, plan, *transport, desk, signals);

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/command/simulated/drive_desk.hpp"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -111,29 +107,7 @@ std::optional<std::vector<DriveDeed>> read_deeds(const FaultOptions& options, st
 }
 
 DriveDesk::DriveDesk(std::vector<DriveDeed> script, bool listening, bool json)
-    : waiting_(std::move(script)), listening_(listening), json_(json) {
-  // A process in the background of a terminal must not be stopped for having looked at it.
-  if (listening_) std::signal(SIGTTIN, SIG_IGN);
-}
-
-int DriveDesk::descriptor() const {
-  if (!listening_) return -1;
-  const bool elsewhere = isatty(STDIN_FILENO) != 0 && tcgetpgrp(STDIN_FILENO) != getpgrp();
-  return elsewhere ? -1 : STDIN_FILENO;
-}
-
-void DriveDesk::read_input() {
-  pollfd p{descriptor(), POLLIN, 0};
-  while (p.fd >= 0 && poll(&p, 1, 0) > 0) {
-    char bytes[1024];
-    const ssize_t got = read(STDIN_FILENO, bytes, sizeof bytes);
-    if (got <= 0) {
-      listening_ = false;
-      return;
-    }
-    input_.append(bytes, static_cast<std::size_t>(got));
-  }
-}
+    : waiting_(std::move(script)), input_(listening), json_(json) {}
 
 void DriveDesk::take(const std::string& line, image::Nanoseconds since_start,
                      const std::function<bool(const std::string&)>& other) {
@@ -148,9 +122,7 @@ void DriveDesk::take(const std::string& line, image::Nanoseconds since_start,
 
 void DriveDesk::advance(image::Nanoseconds since_start, std::span<mock::SimulatedDrive* const> drives,
                         const std::function<bool(const std::string&)>& other) {
-  if (listening_) read_input();
-  for (std::size_t end = 0; (end = input_.find('\n')) != std::string::npos; input_.erase(0, end + 1))
-    take(input_.substr(0, end), since_start, other);
+  while (const auto line = input_.next()) take(*line, since_start, other);
   while (!waiting_.empty() && waiting_.front().at <= since_start) {
     const DriveDeed deed = waiting_.front();
     waiting_.erase(waiting_.begin());

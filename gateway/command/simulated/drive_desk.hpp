@@ -8,6 +8,7 @@
 
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/command/simulated/fault_line.hpp"
+#include "gateway/command/simulated/input_lines.hpp"
 
 namespace servogate::gateway::command {
 
@@ -29,10 +30,9 @@ class DriveDesk {
   using OnDevice = std::function<bool(const DriveDeed& deed, std::string& why)>;
   void set_devices(OnDevice on_device) { on_device_ = std::move(on_device); }
   /// For poll(2): -1 when standard input is not listened to just now.
-  int descriptor() const;
+  int descriptor() const { return input_.descriptor(); }
 
  private:
-  void read_input();
   void take(const std::string& line, image::Nanoseconds since_start,
             const std::function<bool(const std::string& line)>& other);
   void perform(const DriveDeed& deed, image::Nanoseconds since_start,
@@ -40,8 +40,8 @@ class DriveDesk {
   void perform_on_device(const DriveDeed& deed, image::Nanoseconds since_start);
 
   std::vector<DriveDeed> waiting_;  ///< by time
-  std::string input_;
-  bool listening_, json_;
+  InputLines input_;
+  bool json_;
   OnDevice on_device_;
 };
 

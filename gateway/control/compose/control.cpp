@@ -276,7 +276,7 @@ bool Control::change(const ProgramChange& change) {
       p.renew(interpreter_factory(change, change_tap_), change.tables);
       break;
     case ProgramChange::Kind::restart:
-      p.restart(interpreter_factory(change, change_tap_));
+      p.restart(restart_factory(change, change_tap_));
       break;
     case ProgramChange::Kind::block:
       p.set_manual_block(change.block);

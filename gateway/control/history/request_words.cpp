@@ -18,7 +18,7 @@ using text::Entry;
 /// {0} the axis, {1} the value as `shown` has it.
 struct Row {
   RequestKind kind;
-  enum class Value { none, plain, sign, on_off, percent, process } shown;
+  enum class Value { none, plain, sign, on_off, percent, process, function } shown;
   Entry words;
 };
 constexpr Row kRows[] = {
@@ -36,6 +36,12 @@ constexpr Row kRows[] = {
     {RequestKind::tables,
      Row::Value::none,
      {"history.ask-tables", "change origins or tools", "изменить начала или инструмент"}},
+    {RequestKind::reposition,
+     Row::Value::none,
+     {"history.ask-return", "return to the path", "возврат на контур"}},
+    {RequestKind::function,
+     Row::Value::function,
+     {"history.ask-function", "{1} beside the held program", "{1} при приостановленной программе"}},
     {RequestKind::start, Row::Value::none, {"history.ask-start", "start", "пуск"}},
     {RequestKind::step, Row::Value::none, {"history.ask-step", "one block", "один кадр"}},
     {RequestKind::hold, Row::Value::none, {"history.ask-hold", "feed hold", "останов подачи"}},
@@ -75,6 +81,11 @@ std::string shown(const Row& row, const image::Request& request) {
   switch (row.shown) {
     case Row::Value::process:
       return std::to_string(request.process + 1);
+    case Row::Value::function: {
+      constexpr std::string_view kWords[image::kFunctions] = {"M", "T", "M3 S", "M4 S", "M5"};
+      const std::string word(kWords[std::min<std::size_t>(request.index, image::kFunctions - 1)]);
+      return word == "M5" ? word : word + text::number(value, 4);
+    }
     case Row::Value::plain:
       return text::number(value, 4);
     case Row::Value::sign:

@@ -197,7 +197,7 @@ void BlockJournal::note(const image::ProcessImage& image) noexcept {
     place.executed = std::max(status.blocks_done, place.from);
     place.line = status.line;
     place.file = status.file;
-    for (std::size_t a = 0; a < place.stands.size(); ++a) place.stands[a] = image.axes[a].command;
+    for (std::size_t a = 0; a < place.stands.size(); ++a) place.stands[a] = image.axes[a].command - image.axes[a].beside;
     seat.sequence.fetch_add(1, std::memory_order_release);
   }
 }

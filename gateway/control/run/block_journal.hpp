@@ -23,7 +23,7 @@ class BlockJournal {
     std::string program, dialect;  ///< path and language of the file
     std::int64_t executed = 0;     ///< of the block, counted through loops and subprograms
     int line = 0, file = 0;        ///< of the block in motion, as image::ProcessStatus has them
-    program::Position stands{};    ///< set-points in its last cycle, machine coordinates
+    program::Position stands{};    ///< place on the path in its last cycle, machine coordinates
     bool from_disk = false;        ///< up to 100 ms older than the end
   };
 

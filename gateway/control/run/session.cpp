@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "gateway/control/run/words/alarm_entries.hpp"
@@ -29,6 +30,25 @@ report::RunRecorderOptions picture_options(const machine::MachineConfig& m) {
   if (x >= 0 && z >= 0 && m.axes[static_cast<std::size_t>(x)].diameter) options.view_axes = {z, x, -1};
   for (const machine::AxisConfig& a : m.axes) options.axis_units.emplace_back(a.unit());
   return options;
+}
+
+/// A frame is affine: where it takes the machine's zero and a step along each axis says it all.
+report::WorkFrame work_frame(const machine::MachineConfig& machine, const program::Frame& frame) {
+  report::WorkFrame out;
+  const std::size_t axes = std::min(machine.program_axes(), out.size());
+  for (std::size_t a = 0; a < axes; ++a) {
+    const double shown = machine.axes[a].diameter ? 2.0 : 1.0;
+    const int axis = static_cast<int>(a);
+    const double zero = frame.to_programmed({}, axis);
+    out[a].offset = zero * shown;
+    for (std::size_t b = 0; b < axes; ++b) {
+      program::Position step{};
+      step[b] = 1.0;
+      const double share = frame.to_programmed(step, axis) - zero;
+      out[a].share[b] = std::abs(share) < 1e-12 ? 0.0 : share * shown;
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -77,6 +97,11 @@ Session::Session(Control& control, const Outputs& outputs, bool realtime)
   }
   if (sinks.empty()) return;
   sampled_.signals = layout_.signals;
+  layout_.frame_of = [this](int process, std::uint32_t run, std::int64_t blocks, report::WorkFrame& frame) {
+    const auto found = control_.process(process).texts().frame(run, blocks);
+    if (found) frame = work_frame(control_.machine(), *found);
+    return found.has_value();
+  };
   recorder_ = std::make_unique<report::TraceRecorder>(layout_, std::move(sinks));
 }
 

@@ -28,6 +28,21 @@ struct ProcessContext {
   Notices& notices;
 };
 
+/// What may be done beside a program that is held or waits for the operator, its path at rest.
+struct Beside {
+  bool possible = false;   ///< its axes may be jogged, and functions executed
+  bool away = false;       ///< axes were jogged away from the path: RequestKind::reposition leads back
+  bool returns = false;    ///< they are on the way back
+  bool full = false;       ///< the way has as many legs as are remembered: only its last axis can move on
+  bool functions = false;  ///< a function is under way
+  bool functions_full = false;  ///< no more of them can be kept
+  std::int8_t axis = -1;        ///< of the last leg of the way
+  double distance = 0.0;        ///< of that axis from where the leg begins
+  std::int8_t spindle = -1;  ///< index of a spindle that is not ordered as it was when the program was held
+  double spindle_rpm = 0.0;  ///< as it was then, + clockwise
+  std::int32_t tool = -1;    ///< was in the spindle then, and another one is now; -1: the same
+};
+
 /// A part-program process as the cycle sees it. Everything real-time safe.
 class ProcessInCycle {
  public:
@@ -39,11 +54,16 @@ class ProcessInCycle {
   /// One cycle: handshakes, path, set-points of the axes that the process owns.
   virtual void interpolate(ProcessContext& context) noexcept = 0;
   /// Carries out a request that the gate has let pass (start, step, hold, resume, stop, reset, override,
-  /// mode).
+  /// mode, reposition, function).
   /// False: it cannot start because an axis is not at rest or belongs to somebody else.
   virtual bool order(const image::Request& request, ProcessContext& context) noexcept = 0;
   /// A program is loaded and may be started.
   virtual bool loaded() const noexcept = 0;
+  /// What may be done beside its program at this moment.
+  virtual Beside beside(const ProcessContext&) const noexcept { return {}; }
+  /// The axis is about to be jogged, which the gate has let pass: while a program is held, it leaves the path
+  /// here.
+  virtual void leave_path(int /*axis*/, ProcessContext&) noexcept {}
   /// The program has been ended, and its path is not at rest yet. For any thread.
   virtual bool stopping() const noexcept { return false; }
 };

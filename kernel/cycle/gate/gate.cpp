@@ -115,6 +115,11 @@ class Decision {
   bool not_switching_off(const Axis& a) noexcept;
   bool home() noexcept;
   bool jog() noexcept;
+  bool jog_beside(const Axis& a) noexcept;
+  bool process_stands() noexcept;
+  bool reposition() noexcept;
+  bool function() noexcept;
+  bool as_it_was_held() noexcept;
   bool auxiliary() noexcept;
   bool move(const Axis& a) noexcept;
   bool torque(const Axis& a) noexcept;
@@ -148,7 +153,7 @@ class Decision {
 };
 
 Answer Decision::run() noexcept {
-  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::tables;
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::function;
   if (!known)
     refuse(Refusal::unknown_request);
   else if (!may_ask(r_.asker).has(r_.kind))
@@ -171,6 +176,10 @@ bool Decision::decide_kind() noexcept {
       return jog();
     case RequestKind::keep_alive:
       return keep_alive();
+    case RequestKind::reposition:
+      return reposition();
+    case RequestKind::function:
+      return function();
     case RequestKind::jog_stop:
       return r_.axis < 0 || axis_known();
     case RequestKind::zero:
@@ -256,9 +265,9 @@ bool Decision::jog() noexcept {
   const double longest = config.travel_limited ? config.travel_max - config.travel_min : kLargestCoordinate;
   if (!continuous && std::abs(r_.value) > longest)
     return refuse(Refusal::jog_range, r_.axis, r_.value, longest);
-  if (!no_alarm(Reaction::stop_on_path) || !no_program_of(a.process()) || !no_homing() ||
-      !not_held_by_another())
-    return false;
+  if (!no_alarm(Reaction::stop_on_path)) return false;
+  if (!(c_.beside.possible ? jog_beside(a) : no_program_of(a.process()))) return false;
+  if (!no_homing() || !not_held_by_another()) return false;
   if (!ready(a) || !free(a)) return false;
   const bool forward = r_.value > 0.0;
   // A hand on the other button stops the jog under way, whosever it is; the executive does that.
@@ -270,6 +279,55 @@ bool Decision::jog() noexcept {
   const double limit = forward ? config.travel_max : config.travel_min, x = a.setpoint().x;
   const bool at_limit = forward ? x >= limit - 1e-9 : x <= limit + 1e-9;
   return !at_limit || refuse(Refusal::at_soft_limit, r_.axis, x, limit);
+}
+
+/// One axis at a time, so that the way back is the way out.
+bool Decision::jog_beside(const Axis& a) noexcept {
+  if (c_.beside.functions) return refuse(Refusal::function_runs);
+  if (c_.beside.returns) return refuse(Refusal::axis_moves, c_.beside.axis);
+  for (const Axis& b : c_.axes)
+    if (&b != &a && !b.config().auxiliary && b.process() == a.process() && b.moving())
+      return refuse(Refusal::axis_moves, b.index());
+  const bool another_leg = c_.beside.axis != a.index();
+  return !(another_leg && c_.beside.full) || refuse(Refusal::way_back_full, c_.beside.axis);
+}
+
+/// Beside a held program: nothing that belongs to it is on its way.
+bool Decision::process_stands() noexcept {
+  if (!busy(state(r_.process))) return refuse(Refusal::program_does_not_run, -1, r_.process);
+  if ((c_.stopping >> r_.process & 1u) != 0) return under_way(r_.process);
+  if (!c_.beside.possible) return refuse(Refusal::program_not_held, -1, r_.process);
+  if (c_.beside.returns) return refuse(Refusal::axis_moves, c_.beside.axis);
+  for (const Axis& a : c_.axes)
+    if (of_process(a) && a.moving()) return refuse(Refusal::axis_moves, a.index());
+  return no_homing() && not_held_by_another();
+}
+
+bool Decision::reposition() noexcept {
+  if (r_.velocity < 0.0 || !std::isfinite(r_.velocity)) return refuse(Refusal::bad_value, -1, r_.velocity);
+  if (!no_alarm(Reaction::stop_on_path) || !process_stands()) return false;
+  if (c_.beside.functions) return refuse(Refusal::function_runs);
+  if (!c_.beside.away) return refuse(Refusal::on_path);
+  for (const Axis& a : c_.axes)
+    if (of_process(a) && (!ready(a) || !free(a))) return false;
+  return true;
+}
+
+bool Decision::function() noexcept {
+  if (r_.index >= static_cast<std::uint32_t>(image::kFunctions))
+    return refuse(Refusal::bad_value, -1, r_.index, image::kFunctions - 1);
+  if (r_.value < 0.0) return refuse(Refusal::bad_value, -1, r_.value);
+  if (!no_alarm(Reaction::stop_at_block_end) || !process_stands()) return false;
+  return !c_.beside.functions_full || refuse(Refusal::function_runs);
+}
+
+/// What the rest of the program counts on.
+bool Decision::as_it_was_held() noexcept {
+  const Beside& b = c_.beside;
+  if (b.functions) return refuse(Refusal::function_runs);
+  if (b.away || b.returns) return refuse(Refusal::off_path, b.axis, b.distance);
+  if (b.tool >= 0) return refuse(Refusal::tool_differs, -1, b.tool);
+  return b.spindle < 0 || refuse(Refusal::spindle_differs, -1, b.spindle_rpm);
 }
 
 /// The PLC and its own axes: neither a program nor manual control has to do with them.
@@ -425,6 +483,7 @@ bool Decision::mode_of_request() noexcept {
   if (r_.mode < 0) return true;
   const bool possible = kWithMode.has(r_.kind) && r_.mode <= static_cast<int>(Mode::home);
   if (!possible) return refuse(Refusal::bad_value, -1, r_.mode, static_cast<double>(Mode::home));
+  if (keeps_mode(r_, c_)) return true;
   const bool same = c_.image->processes[static_cast<std::size_t>(r_.process)].mode == mode_in_force();
   return same || runs_on() || (no_program_of(r_.process) && not_held_by_another());
 }
@@ -479,7 +538,7 @@ bool Decision::resume() noexcept {
   if (!no_alarm(Reaction::stop_at_block_end) || !no_homing() || !not_held_by_another()) return false;
   for (const Axis& a : c_.axes)
     if (of_process(a) && a.moving()) return refuse(Refusal::axis_moves, a.index());
-  return true;
+  return as_it_was_held();
 }
 
 /// The chain and what is made of it are shown as they are, whoever asks.
@@ -544,6 +603,16 @@ std::uint32_t homing_mask(const Request& request, std::span<const Axis> axes) no
 
 Answer decide(const Request& request, const GateContext& context) noexcept {
   return Decision(request, context).run();
+}
+
+int beside_process(const Request& request, std::span<const Axis> axes) noexcept {
+  const bool of_axis =
+      requests::kJogs.has(request.kind) && request.axis >= 0 && request.axis < std::ssize(axes);
+  return of_axis ? axes[static_cast<std::size_t>(request.axis)].process() : request.process;
+}
+
+bool keeps_mode(const Request& request, const GateContext& context) noexcept {
+  return requests::kJogs.has(request.kind) && context.beside.possible;
 }
 
 bool moves(RequestKind kind) noexcept { return kBegins.has(kind); }

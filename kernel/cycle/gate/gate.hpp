@@ -11,6 +11,7 @@
 #include "firmware_if/text/finding.hpp"
 #include "kernel/axis/axis.hpp"
 #include "kernel/axis/spindle.hpp"
+#include "kernel/cycle/boundary/participants.hpp"
 
 namespace servogate::cycle {
 
@@ -73,6 +74,13 @@ enum class Refusal : std::uint16_t {
   guard_spindle,  ///< value: index of the spindle that is to turn or still turns
   too_old,        ///< value: how long it lay before a cycle could take it, ms; limit: the longest it may
   client_gone,    ///< whoever asked is not there any more
+  // Beside a held program:
+  function_runs,  ///< a typed function is under way
+  way_back_full,  ///< axis: the last one; the way that the axes went has too many legs to go on with another
+  on_path,        ///< no axis was jogged away
+  off_path,       ///< axis; value: how far it was jogged away
+  spindle_differs,  ///< value: rpm of the spindle when the program was held, + clockwise
+  tool_differs,     ///< value: the tool that was in the spindle then
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis
@@ -97,6 +105,7 @@ struct GateContext {
   bool axis_stopping = false;                 ///< PlcMotion of the request's axis
   bool axis_error_stop = false;               ///< the same
   bool logic_held = false;                    ///< the PLC is held for single scans
+  Beside beside;                              ///< of the process that beside_process() names
   const image::Place* estop_place = nullptr;  ///< emergency-stop chain, nullptr: none is declared
 };
 
@@ -107,6 +116,12 @@ std::uint32_t homing_mask(const image::Request& request, std::span<const axis::A
 /// The one gate to motion: decides on a request, changes nothing. An accepted request (refusal 0) is carried
 /// out by the executive with plain calls to axes and channel. real-time safe.
 image::Answer decide(const image::Request& request, const GateContext& context) noexcept;
+
+/// The process whose held program the request may be beside of: that of the axis of a jog, else the request's
+/// own; it may be out of range. real-time safe.
+int beside_process(const image::Request& request, std::span<const axis::Axis> axes) noexcept;
+/// The request brings a mode along that it does not need: a jog beside a held program. real-time safe.
+bool keeps_mode(const image::Request& request, const GateContext& context) noexcept;
 
 /// The request begins or continues motion, or makes it possible. real-time safe.
 bool moves(image::RequestKind kind) noexcept;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <iterator>
 
 #include "kernel/cycle/gate/gate.hpp"
@@ -143,8 +144,29 @@ constexpr text::Entry kTexts[] = {
      "сделано; если он ещё нужен, повторите его"},
     {"gate.client_gone", "the client that sent the request has gone: nothing was done",
      "клиента, который послал запрос, уже нет: ничего не сделано"},
+    {"gate.function_runs", "a function is under way: wait until the PLC has acknowledged it",
+     "выполняется функция: дождитесь её подтверждения от ПЛК"},
+    {"gate.way_back_full",
+     "the way away from the program has too many turns to be remembered: `servogate return` leads back, or "
+     "go "
+     "on with {0}",
+     "путь от контура имеет слишком много поворотов: `servogate return` вернёт оси, или продолжайте осью "
+     "{0}"},
+    {"gate.on_path", "no axis was jogged away from the program: `servogate resume` goes on",
+     "оси не отводились от контура: `servogate resume` продолжит"},
+    {"gate.off_path", "{0} was jogged away from the program by {1} {3}: `servogate return` first",
+     "{0} отведена от контура на {1} {3}: сначала `servogate return`"},
+    {"gate.spindle_differs",
+     "the spindle is not as it was when the program was held: `servogate mdi \"{1}\"` first",
+     "шпиндель не в том состоянии, в котором программа была приостановлена: сначала `servogate mdi "
+     "\"{1}\"`"},
+    {"gate.tool_differs",
+     "the program was held with tool {1} in the spindle: change it back, or end the program with `servogate "
+     "reset` and go on with `servogate start --interrupted`",
+     "программа приостановлена с инструментом {1} в шпинделе: верните его, или завершите программу командой "
+     "`servogate reset` и продолжите командой `servogate start --interrupted`"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::client_gone) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::tool_differs) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 
@@ -194,7 +216,9 @@ constexpr std::string_view kKinds[][2] = {{"none", "нет"},
                                           {"hold the PLC for single scans", "отдельные сканы ПЛК"},
                                           {"torque of an auxiliary axis", "момент вспомогательной оси"},
                                           {"give an axis to a process", "передача оси процессу"},
-                                          {"change origins or tools", "изменение начал и инструмента"}};
+                                          {"change origins or tools", "изменение начал и инструмента"},
+                                          {"return to the path", "возврат на контур"},
+                                          {"a typed function", "функция, введённая вручную"}};
 
 template <std::size_t N>
 std::string word(const std::string_view (&table)[N][2], double index, Language language) {
@@ -220,6 +244,10 @@ std::string value_words(const image::Answer& answer, Language language) {
       return text::number(answer.value + 1);
     case Refusal::override_range:
       return text::number(answer.value * 100.0, 4);
+    case Refusal::spindle_differs:
+      return answer.value == 0.0
+                 ? "M5"
+                 : (answer.value > 0.0 ? "M3 S" : "M4 S") + text::number(std::abs(answer.value), 4);
     default:
       return text::number(answer.value, 4);
   }

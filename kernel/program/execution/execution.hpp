@@ -143,6 +143,7 @@ class Execution : public ValueSource {
   void spindle_word(const BlockWords& words, const MRule* start, const Word* start_word);
   void end_function(int code, const MRule* rule, int column);
   void tool_words(const BlockWords& words);
+  void replace_worn_out(const Word& word, int chosen);
   void change_tool();
 
   ExecutionData data_;

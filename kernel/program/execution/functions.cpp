@@ -60,10 +60,12 @@ void Execution::tool_words(const BlockWords& words) {
     state_.frames.corrector = numbers_.whole(block_.corrector, "T");
   }
   const auto row = dialect_.corrector;
+  int chosen = 1;
   if (row != nullptr) {
-    const int chosen = words.corrector != nullptr ? numbers_.whole(words.corrector->value, "D") : 1;
+    chosen = words.corrector != nullptr ? numbers_.whole(words.corrector->value, "D") : 1;
     state_.frames.corrector = chosen == 0 || state_.frames.tool == 0 ? 0 : row(state_.frames.tool, chosen);
   }
+  if (words.tool != nullptr) replace_worn_out(word, chosen);
   const int most = static_cast<int>(dialect_.letters[static_cast<unsigned char>(word.letter)].max);
   if (state_.frames.tool > most || (row == nullptr && state_.frames.corrector > most))
     fail(Fault::out_of_range, word.column,
@@ -73,6 +75,23 @@ void Execution::tool_words(const BlockWords& words) {
   if (words.tool != nullptr)
     emit(Tool{state_.frames.tool, state_.frames.corrector, dialect_.tool_change == ToolChange::at_once});
   if (dialect_.tool_change == ToolChange::at_once || words.tool == nullptr) change_tool();
+}
+
+/// A tool whose life is over gives way to its alternate, and that one to its own.
+void Execution::replace_worn_out(const Word& word, int chosen) {
+  constexpr int kMostAlternates = 32;  // they may name one another in a circle
+  auto &tool = state_.frames.tool, &corrector = state_.frames.corrector;
+  const auto& rows = state_.frames.tables->correctors;
+  const int programmed = tool;
+  for (int n = 0; tool != 0; ++n) {
+    const auto row = rows.find(corrector != 0 ? corrector : tool);
+    if (row == rows.end() || !row->second.worn_out()) return;
+    if (row->second.alternate == 0 || n == kMostAlternates)
+      fail(Fault::tool_worn_out, word.column,
+           {std::to_string(programmed), text::number(row->second.life_min, 1)});
+    tool = row->second.alternate;
+    if (corrector != 0) corrector = dialect_.corrector != nullptr ? dialect_.corrector(tool, chosen) : tool;
+  }
 }
 
 void Execution::spindle_word(const BlockWords& words, const MRule* start, const Word* start_word) {

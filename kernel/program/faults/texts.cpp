@@ -171,8 +171,14 @@ constexpr text::Entry kMessages[] = {
      "{0} и {1} исключают друг друга: из группы действует один режим"},
     {"P906", "the mode {0} stands twice", "режим {0} назван дважды"},
     {"P907", "from here on {0} more {1} are not named", "отсюда ещё {0} {1} не названо"},
+    {"P822",
+     "T{0}: the tool is worn out after its life of {1} min, and no alternate is left: replace it and set "
+     "used=0 "
+     "(`servogate tool set {0} used=0`)",
+     "T{0}: инструмент выработал стойкость {1} мин, замены ему нет: смените его и задайте used=0 (`servogate "
+     "tool set {0} used=0`)"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::findings_many) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::tool_worn_out) + 1);
 
 }  // namespace
 

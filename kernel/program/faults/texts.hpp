@@ -123,6 +123,7 @@ enum class Fault : std::uint8_t {
   power_on_excluded,
   power_on_twice,
   findings_many,
+  tool_worn_out,
 };
 
 /// All texts, in the order of Fault.

@@ -93,6 +93,14 @@ double Interpreter::tool_length(int axis) const { return frame().length(axis); }
 
 const Frame& Interpreter::frame() const { return impl_->run.state().frames.frame; }
 
+bool Interpreter::feed_per_revolution() const {
+  return impl_->run.state().modes.feed == Function::feed_revolution;
+}
+
+bool Interpreter::cutting_speed() const {
+  return impl_->run.state().modes.spindle == Function::surface_speed;
+}
+
 int Interpreter::depth_axis() const { return impl_->run.state().frames.normal; }
 
 void Interpreter::begin_with(std::vector<Command> commands, std::optional<text::Finding> refused) {

@@ -93,6 +93,9 @@ class Interpreter {
   double tool_length(int axis) const;
   /// The way from programmed to machine coordinates that is in force, behind the last command of next().
   const Frame& frame() const;
+  /// A feed per revolution is in force (G95), a cutting speed (G96).
+  bool feed_per_revolution() const;
+  bool cutting_speed() const;
   /// Row of the tool table in force, 0: none.
   int corrector() const;
   /// The axis across the plane in force, -1: the machine has none there.

@@ -16,13 +16,6 @@ constexpr double kStands = 1e-6;           ///< mm or degrees
 
 const text::Entry kNotReached{"restart.not-reached", "the program has no block {0} that does anything",
                               "в программе нет кадра {0}, который что-либо выполняет"};
-const text::Entry kBySignals{"restart.by-signals",
-                             "what comes before {0} depends on signals of the machine (the program reads a "
-                             "place of a packet), so what is in "
-                             "force there cannot be computed",
-                             "то, что выполняется до {0}, зависит от сигналов станка (программа читает "
-                             "ячейку пакета), поэтому состояние "
-                             "перед ним вычислить нельзя"};
 const text::Entry kProbes{"restart.probes",
                           "before {0} the program measures: what it found is not known any more",
                           "до {0} программа выполняет измерение: его результат уже неизвестен"};
@@ -125,7 +118,6 @@ std::variant<RestartPoint, text::Finding> restart(const Interpreter& fresh, cons
     if (std::holds_alternative<End>(command.what) || calls > kMostCalls)
       return finding(search, kNotReached, at, command.line);
     if (!survey.take(command)) return finding(search, kProbes, at, command.line);
-    if (search.machine_read()) return finding(search, kBySignals, at, command.line);
   }
   Interpreter before(fresh);
   before.set_switches(at.switches);
@@ -143,6 +135,7 @@ std::variant<RestartPoint, text::Finding> restart(const Interpreter& fresh, cons
   point.corrector = survey.tool.corrector;
   point.passed = std::move(survey.passed);
   point.writes = survey.writes;
+  point.signals = before.machine_read();
   return point;
 }
 

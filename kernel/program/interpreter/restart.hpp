@@ -38,13 +38,14 @@ struct RestartPoint {
   std::optional<MFunction> coolant = std::nullopt;           ///< M7 or M8 (or another of `kCoolant`) in force
   std::int32_t tool = 0, corrector = 0;
   std::vector<MFunction> passed =
-      {};          ///< other functions that the program gave before, the last of each code
-  int writes = 0;  ///< writes into the packets that it made before
+      {};                ///< other functions that the program gave before, the last of each code
+  int writes = 0;        ///< writes into the packets that it made before
+  bool signals = false;  ///< it read packets before, and their present values were taken
 };
 
 /// Runs the program without the machine up to that block. A finding, with its place, says why that cannot be
-/// told: the block is never reached, an error stands before it, or what comes before it depends on signals of
-/// the machine.
+/// told: the block is never reached, an error stands before it, or the program measures before it. What comes
+/// before it may read signals of the machine: they are those of `packets`, at all times.
 std::variant<RestartPoint, text::Finding> restart(const Interpreter& fresh, const RestartAt& at,
                                                   const image::Packets& packets);
 

@@ -80,9 +80,9 @@ TEST(PlcOfAControl, is_watched_by_name_and_beside_its_source_lines) {
   }
   EXPECT_EQ(samples, 3);
   const Outcome source = shell.run({"plc", "watch", "--samples", "1"});
-  EXPECT_TRUE(contains(source.out, "MC.estop_ok := estop_chain_ok;")) << source.out;
-  EXPECT_TRUE(contains(source.out, "| estop_chain_ok = TRUE, MC.estop_ok = TRUE") ||
-              contains(source.out, "| MC.estop_ok = TRUE, estop_chain_ok = TRUE"))
+  EXPECT_TRUE(contains(source.out, "MC.estop_ok := MC.estop_chain;")) << source.out;
+  EXPECT_TRUE(contains(source.out, "| MC.estop_chain = TRUE, MC.estop_ok = TRUE") ||
+              contains(source.out, "| MC.estop_ok = TRUE, MC.estop_chain = TRUE"))
       << source.out;
   const Outcome block = shell.run({"plc", "watch", "--source", "Mill.change", "--samples", "1"});
   EXPECT_TRUE(contains(block.out, "step = Idle")) << block.out;

@@ -7,8 +7,8 @@ namespace {
 
 /// What cannot be told any more gives an error instead of a motion.
 program::Interpreter from_its_middle(program::Interpreter fresh, const ProgramRestart& wanted,
-                                     const program::Position& start) {
-  auto found = program::restart(fresh, wanted.at, image::Packets{});
+                                     const program::Position& start, const image::Packets& packets) {
+  auto found = program::restart(fresh, wanted.at, packets);
   if (const auto* wrong = std::get_if<text::Finding>(&found)) {
     fresh.begin_with({}, *wrong);
     return fresh;
@@ -29,12 +29,16 @@ channel::InterpreterFactory interpreter_factory(const ProgramChange& change, Pro
       if (loaded) tap->take_subprogram(name, loaded->text);
       return loaded;
     };
-  return [file = change.file, tables = change.tables, loader,
-          restart = change.restart](const program::Position& start) {
-    program::Interpreter interpreter(file->dialect, file->model, tables,
-                                     file->path.empty() ? "MDI" : file->path, file->text, loader, start,
-                                     file->process);
-    return restart ? from_its_middle(std::move(interpreter), *restart, start) : interpreter;
+  return [file = change.file, tables = change.tables, loader](const program::Position& start) {
+    return program::Interpreter(file->dialect, file->model, tables, file->path.empty() ? "MDI" : file->path,
+                                file->text, loader, start, file->process);
+  };
+}
+
+channel::RestartFactory restart_factory(const ProgramChange& change, ProgramChangeTap* tap) {
+  return [fresh = interpreter_factory(change, tap), restart = change.restart.value()](
+             const program::Position& start, const image::Packets& packets) {
+    return from_its_middle(fresh(start), restart, start, packets);
   };
 }
 

@@ -52,5 +52,7 @@ class ProgramChangeTap {
 /// Constructs interpreters for a change that loads a program; what they read of subprograms is shown to `tap`
 /// (may be nullptr).
 channel::InterpreterFactory interpreter_factory(const ProgramChange& change, ProgramChangeTap* tap);
+/// The same for a change of the kind restart.
+channel::RestartFactory restart_factory(const ProgramChange& change, ProgramChangeTap* tap);
 
 }  // namespace servogate::gateway

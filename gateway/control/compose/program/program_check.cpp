@@ -2,8 +2,11 @@
 #include "gateway/control/compose/program/program_check.hpp"
 
 #include <algorithm>
+#include <variant>
 
+#include "firmware_if/text/units.hpp"
 #include "gateway/control/compose/setup/axis_setup.hpp"
+#include "kernel/program/faults/texts.hpp"
 
 namespace servogate::gateway {
 
@@ -19,6 +22,22 @@ const text::Entry kByPlace{
     "from the present position of the axes this block gives an error: {0} ({1}); from another position it "
     "may not",
     "с нынешнего положения осей кадр даёт ошибку: {0} ({1}); с другого её может не быть"};
+
+const text::Entry kTurningModes{
+    "program.turning-modes",
+    "programs of this machine begin with {0}, as on a lathe, and no axis is programmed in diameter: give "
+    "power_on = [\"G94\", \"G97\"] in [control], or write {1} into the program",
+    "программы этого станка начинаются с {0}, как на токарном, а осей с диаметром нет: задайте power_on = "
+    "[\"G94\", \"G97\"] в [control] или запишите {1} в программу"};
+const text::Entry kSlowCorners{
+    "program.slow-corners",
+    "{0} of {1} blocks end at rest because ERF is 0: about {2} s, with ERF 0.01 about {3} s (variables = { "
+    "ERF = 0.01, MCD = 2 } in [control], or (ERF=0.01) in the program)",
+    "кадров с остановом в конце из-за ERF = 0: {0} из {1}, около {2} с; при ERF 0.01 около {3} с (variables "
+    "= "
+    "{ ERF = 0.01, MCD = 2 } в [control] или (ERF=0.01) в программе)"};
+constexpr double kUsualError = 0.01, kUsualAngle = 2.0;  ///< ERF in mm and MCD, as the examples have them
+constexpr long long kManyStops = 50;
 
 /// What tells whether an error depends on where the axes stand: odd amounts, mm or degrees, that no program
 /// knows.
@@ -66,6 +85,14 @@ ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramF
       file.dialect, file.model, tables, file.path, file.text, file.loader, start.at,
       [&](const program::Command& c) {
         if (stop.stop_requested()) throw Cancelled{};
+        const program::CornerRule* corner = nullptr;
+        if (const auto* line = std::get_if<program::Line>(&c.what)) corner = &line->corner;
+        if (const auto* arc = std::get_if<program::Arc>(&c.what)) corner = &arc->corner;
+        if (corner != nullptr) {
+          ++check.feed_blocks;
+          const bool stops = corner->transition == program::Transition::exact_stop;
+          if (stops && check.stops++ == 0 && c.file == 0) check.first_stop = c.line;
+        }
         const std::optional<text::Finding> flaw = forecast.take(c);
         const int axis = forecast.foreign_axis(c);
         return axis < 0
@@ -75,6 +102,57 @@ ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramF
       file.process);
   check.motion_s = forecast.motion_seconds();
   return check;
+}
+
+void explain_power_on(const machine::MachineConfig& machine, const ProgramFile& file,
+                      std::vector<text::Finding>& findings) {
+  const auto no_diameter = [](const auto& axis) { return !axis.diameter; };
+  if (!std::all_of(file.model.axes.begin(), file.model.axes.end(), no_diameter)) return;
+  const program::Interpreter begins(file.dialect, file.model, {}, {}, {}, {}, {});
+  const bool feed = begins.feed_per_revolution(), speed = begins.cutting_speed();
+  const text::Entry& of_speed = program::entry(program::Fault::surface_speed_axis);
+  const auto follows = [&](const text::Finding& f) {
+    return (speed && f.entry == &of_speed) ||
+           (feed && f.entry == &program::entry(program::Fault::spindle_stands));
+  };
+  const auto first = std::find_if(findings.begin(), findings.end(), follows);
+  if (!(feed || speed) || first == findings.end()) return;
+  findings.erase(std::remove_if(first + 1, findings.end(), follows), findings.end());
+  const machine::Where where = machine.where("control.power_on");
+  findings.push_back({text::Severity::warning,
+                      machine.file,
+                      where.line,
+                      where.column,
+                      &kTurningModes,
+                      {feed && speed ? "G95, G96"
+                       : feed        ? "G95"
+                                     : "G96",
+                       feed && speed ? "G94 G97"
+                       : feed        ? "G94"
+                                     : "G97"},
+                      {}});
+}
+
+std::optional<text::Finding> slow_corners(const machine::MachineConfig& machine, const ProgramFile& file,
+                                          const program::Tables& tables, const Start& start,
+                                          const ProgramCheck& timed) {
+  if (file.dialect != "nc110" || file.model.variable("ERF", 0.0) > 0.0) return std::nullopt;
+  if (timed.stops < kManyStops || 2 * timed.stops < timed.feed_blocks || !timed.report.finished)
+    return std::nullopt;
+  ProgramFile rounded = file;
+  rounded.model.variables["ERF"] = kUsualError;
+  rounded.model.variables.try_emplace("MCD", kUsualAngle);
+  const ProgramCheck other = check_program(machine, rounded, tables, start, channel::Forecast::Depth::timed);
+  const long long because = timed.stops - other.stops;
+  if (2 * because < timed.stops) return std::nullopt;
+  return text::Finding{text::Severity::warning,
+                       file.path,
+                       std::max(timed.first_stop, 1),
+                       1,
+                       &kSlowCorners,
+                       {std::to_string(because), std::to_string(timed.feed_blocks),
+                        text::number(timed.seconds(), 0), text::number(other.seconds(), 0)},
+                       {}};
 }
 
 ProgramCheck prove_program(const machine::MachineConfig& machine, const ProgramFile& file,

@@ -14,6 +14,9 @@ namespace servogate::gateway {
 struct ProgramCheck {
   program::CheckReport report;  ///< its findings may begin with that of the file's encoding
   double motion_s = 0.0;        ///< of all motion at an override of 100 %; 0 unless timed
+  long long feed_blocks = 0;    ///< elements at feed
+  long long stops = 0;          ///< of them end at rest, whatever follows
+  int first_stop = 0;           ///< line of the first of those, 0: in a subprogram, or there is none
   double seconds() const { return motion_s + report.dwell_seconds; }
 };
 
@@ -35,6 +38,18 @@ struct Cancelled {};
 ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramFile& file,
                            const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
                            const std::stop_token& stop = {});
+
+/// A machine whose programs begin with the modes of a lathe (G95, G96) although no axis has a diameter: says
+/// so once, and leaves of what follows from it the first.
+void explain_power_on(const machine::MachineConfig& machine, const ProgramFile& file,
+                      std::vector<text::Finding>& findings);
+
+/// What is slow for want of a setting: blocks that end at rest because the corner error of the language
+/// (ERF) is 0, with the time that the program takes now and would take with 0.01 mm. nullopt: it is not so.
+/// Takes as long as a timed check.
+std::optional<text::Finding> slow_corners(const machine::MachineConfig& machine, const ProgramFile& file,
+                                          const program::Tables& tables, const Start& start,
+                                          const ProgramCheck& timed);
 
 /// The same for a program that is about to run: an error stays one only where the machine cannot make a
 /// difference. One that is met after the program has read a signal, or only from some places of the axes,

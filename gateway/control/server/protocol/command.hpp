@@ -106,6 +106,11 @@ struct Mdi {
 struct Resume {
   int process = 0;
 };
+/// The axes that were jogged away from a held program return.
+struct Return {
+  int process = 0;
+  std::optional<double> feed_mm_min;  ///< none: the axes' jog speed
+};
 /// Another process' programs move the axis from now on.
 struct Assign {
   std::string axis;
@@ -164,11 +169,11 @@ struct PlcWatch {
 };
 struct PlcList {};
 
-using Command =
-    std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero, Override,
-                 Load, Start, Restart, Step, Mdi, Resume, Assign, Tables, TableSet, TableClear, TableUndo,
-                 TableImport, TableExport, Reset, Acknowledge, Input, SetPlace, Stop, QuickStop, Hold, JogStop,
-                 KeepAlive, Down, PlcLoad, PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
+using Command = std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero,
+                             Override, Load, Start, Restart, Step, Mdi, Resume, Return, Assign, Tables,
+                             TableSet, TableClear, TableUndo, TableImport, TableExport, Reset, Acknowledge,
+                             Input, SetPlace, Stop, QuickStop, Hold, JogStop, KeepAlive, Down, PlcLoad,
+                             PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
 
 template <typename... Kinds>
 bool is_any(const Command& command) noexcept {

@@ -38,6 +38,8 @@ struct FoundIn {
 struct Begun {
   double asked_s = 0.0;  ///< machine time at which that was asked for
 };
+/// Typed functions are executed beside a held program.
+struct FunctionsBegun {};
 /// An object of a node: what came of the SDO transfer.
 struct ObjectRead {
   std::string_view status;  ///< "done", "aborted", "no_answer"
@@ -73,10 +75,12 @@ struct RestartReport {
   std::optional<int> coolant;  ///< M code
   std::vector<int> passed;     ///< M codes that are not repeated
   int writes = 0;              ///< into the packets, which are not repeated
+  bool signals = false;        ///< the program reads packets before: their present values were taken
   std::vector<Axis> axes;
   std::vector<std::string> steps;  ///< in words, in their order
   bool from_disk = false;
-  double asked_s = 0.0;  ///< machine time before the start
+  std::optional<double> overlap_mm;  ///< from where the block begins to where it was interrupted
+  double asked_s = 0.0;              ///< machine time before the start
 };
 
 /// What a client of the desk is answered.
@@ -85,9 +89,9 @@ struct Reply {
   int exit = kDone;  ///< ExitCode
   std::string code;  ///< of a refusal, and of the end of a jog: the id of its sentence
   std::string text;  ///< in the client's language; empty: the content says it all
-  std::variant<std::monostate, JogBegun, JogState, Zeroed, FoundIn, Begun, ObjectRead, StatusReport,
-               AlarmReport, HistoryReport, HeldBuses, TablesReport, ExportedTable, RestartReport, PlcLoaded,
-               PlcValues, PlcBody, PlcSymbols>
+  std::variant<std::monostate, JogBegun, JogState, Zeroed, FoundIn, Begun, FunctionsBegun, ObjectRead,
+               StatusReport, AlarmReport, HistoryReport, HeldBuses, TablesReport, ExportedTable,
+               RestartReport, PlcLoaded, PlcValues, PlcBody, PlcSymbols>
       content = {};
   /// Of a refusal for want of power: what is missing.
   std::optional<std::vector<MissingCondition>> missing = {};

@@ -88,7 +88,10 @@ void write(json& answer, const TablesReport& report) {
                      {"wear", c.wear},
                      {"radius", c.radius},
                      {"radius_wear", c.radius_wear},
-                     {"quadrant", c.quadrant}});
+                     {"quadrant", c.quadrant},
+                     {"life_min", c.life_min},
+                     {"used_min", c.used_min},
+                     {"alternate", c.alternate}});
   answer.update({{"schema", 1}, {"axes", axes}, {"origins", origins}, {"tools", tools}});
 }
 void write(json& answer, const RestartReport& r) {
@@ -110,13 +113,16 @@ void write(json& answer, const RestartReport& r) {
                  {"coolant", r.coolant ? json(*r.coolant) : json()},
                  {"passed", r.passed},
                  {"writes", r.writes},
+                 {"signals", r.signals},
                  {"axes", axes},
                  {"steps", r.steps},
                  {"from_disk", r.from_disk},
+                 {"overlap_mm", r.overlap_mm ? json(*r.overlap_mm) : json()},
                  {"asked_s", r.asked_s}});
 }
 void write(json& answer, const ExportedTable& table) { answer["content"] = table.content; }
 void write(json& answer, const Begun& begun) { answer["asked_s"] = begun.asked_s; }
+void write(json& answer, const FunctionsBegun&) { answer["beside"] = true; }
 void write(json& answer, const ObjectRead& object) {
   answer.update({{"status", object.status}, {"abort", object.abort}, {"data", hex(object.data)}});
 }

@@ -184,6 +184,10 @@ class Fields {
  public:
   Fields(const json& request, FormProblem& problem) : request_(request), problem_(problem) {}
   std::string text(const char* key) const { return request_.value(key, ""); }
+  std::optional<double> number_if(const char* key) {
+    if (!request_.contains(key)) return std::nullopt;
+    return number(key, 0.0);
+  }
   std::optional<std::string> text_if(const char* key) const {
     return request_.contains(key) ? std::optional(text(key)) : std::nullopt;
   }
@@ -306,6 +310,10 @@ constexpr struct {
        return ask::Mdi{f.text("block"), f.process(0)};
      }},
     {"resume", [](Fields& f) -> Command { return ask::Resume{f.process(0)}; }},
+    {"return",
+     [](Fields& f) -> Command {
+       return ask::Return{f.process(0), f.number_if("feed")};
+     }},
     {"assign",
      [](Fields& f) -> Command {
        return ask::Assign{f.text("axis"), f.process(0)};

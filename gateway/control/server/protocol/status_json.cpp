@@ -103,6 +103,7 @@ json json_of(const AxisReport& r) {
           {"position", measure(r.position)},
           {"work", r.axis.process < 0 || r.auxiliary ? json() : json(measure(r.work))},
           {"to_go", measure(r.to_go)},
+          {"beside", measure(r.beside)},
           {"origin", r.origin < 0 ? json() : json(r.origin)},
           {"following_error", measure(a.following_error)},
           {"enabled", a.enabled},

@@ -39,6 +39,7 @@ struct AxisReport {
   double command = 0.0, position = 0.0;  ///< in `unit`, a diameter on a diameter axis
   double work = 0.0;                     ///< in the coordinates of the program: origin, tool, rotation
   double to_go = 0.0;                    ///< of the motion under way
+  double beside = 0.0;                   ///< how far it was jogged away from a held program
   int origin = -1;        ///< number of the one in force by hand, -1: no program moves the axis
   image::AxisImage axis;  ///< in radius
   std::string jog_end;    ///< why its last jog ended; empty: it goes on, or there was none

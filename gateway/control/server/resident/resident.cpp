@@ -71,6 +71,11 @@ bool Resident::typed(int process) {
   return busy(process) && image_.processes[static_cast<std::size_t>(process)].typed;
 }
 
+bool Resident::rests(int process) {
+  const image::ProcessState state = image().processes[static_cast<std::size_t>(process)].state;
+  return state == image::ProcessState::held || state == image::ProcessState::waiting;
+}
+
 bool Resident::steps(int process) {
   return busy(process) && image_.processes[static_cast<std::size_t>(process)].mode == image::Mode::step;
 }
@@ -187,11 +192,24 @@ bool Resident::read_tables_of(int process, bool also_read) {
   return true;
 }
 
+/// What the tools have cut since it was counted last.
+void Resident::count_cutting() {
+  for (int p = 0; p < processes(); ++p)
+    for (const auto& [row, seconds] : control_.process(p).cutting().read()) {
+      double& counted = seat(p).cut_s[row];
+      const double more = seconds - std::exchange(counted, seconds);
+      if (const auto tool = state_.tables.correctors.find(row); tool != state_.tables.correctors.end())
+        tool->second.used_min += more / 60.0;
+    }
+}
+
 void Resident::read_tables() {
+  count_cutting();
   for (int p = 0; p < processes(); ++p) read_tables_of(p, false);
 }
 
 std::optional<Resident::Proof> Resident::take_tables(int process) {
+  count_cutting();
   bool read = false;
   for (int p = 0; p < processes(); ++p) read = read_tables_of(p, false) || read;
   return read || seat(process).given != state_.tables ? renew(process) : std::nullopt;
@@ -216,7 +234,7 @@ program::Position Resident::position() {
   return at;
 }
 
-std::vector<text::Finding> Resident::check_block(int process, const std::string& block) {
+Resident::TriedBlock Resident::try_block(int process, const std::string& block) {
   const program::Position at = position();
   std::optional<program::Interpreter> trial;
   {
@@ -224,16 +242,18 @@ std::vector<text::Finding> Resident::check_block(int process, const std::string&
     trial = control_.process(process).manual_interpreter(at);
   }
   trial->mdi(block);
+  TriedBlock tried;
   std::optional<text::Finding> failed;
   for (int n = 0; n < kBlockPatience; ++n) {
     const program::Step step = trial->next(image_.packets, true);
     if (const auto* error = std::get_if<program::Error>(&step)) failed = error->finding;
     const auto* command = std::get_if<program::Command>(&step);
     if (command == nullptr || std::holds_alternative<program::End>(command->what)) break;
+    tried.commands.push_back(*command);
   }
-  std::vector<text::Finding> findings = trial->warnings();
-  if (failed) findings.push_back(*failed);
-  return findings;
+  tried.findings = trial->warnings();
+  if (failed) tried.findings.push_back(*failed);
+  return tried;
 }
 
 /// An interpreter is made for it only when MDI may have changed.
@@ -355,6 +375,7 @@ bool Resident::undo_tables() {
 
 std::optional<machine::MachineState> Resident::to_save() {
   if (state_path_.empty()) return std::nullopt;
+  count_cutting();
   for (int p = 0; p < processes(); ++p) read_tables_of(p, true);
   const image::ProcessImage& now = image();
   if (now.axis_count == 0) return std::nullopt;  // no cycle yet: nothing was learned

@@ -91,9 +91,13 @@ class Resident {
   void prove(Proof& proof, const std::stop_token& stop) const;
   void proven(const Proof& proof);
 
-  /// What this block gives in the present modal state of MDI, before anything moves: warnings, and last the
-  /// error that keeps it from running.
-  std::vector<text::Finding> check_block(int process, const std::string& block);
+  /// What a block gives in the present modal state of MDI, before anything moves.
+  struct TriedBlock {
+    std::vector<program::Command> commands;
+    std::vector<text::Finding> findings;  ///< warnings, and last the error that keeps it from running
+    bool failed() const { return !findings.empty() && findings.back().severity == text::Severity::error; }
+  };
+  TriedBlock try_block(int process, const std::string& block);
   /// Errors of the loaded program since its tables (origins, tools) or axes changed behind the load: it is
   /// not given to the process until they are gone. Empty: none.
   const std::vector<text::Finding>& refused(int process) const { return seat(process).refused; }
@@ -119,6 +123,7 @@ class Resident {
     std::shared_ptr<const ProgramFile> file;
     program::Tables tables;
     Start start;
+    std::shared_ptr<const image::Packets> packets;  ///< as they were when it was asked for
     std::optional<std::variant<program::RestartPoint, text::Finding>> found = std::nullopt;
   };
   RestartSearch begin_restart(int process, const program::RestartAt& at);
@@ -169,6 +174,8 @@ class Resident {
   bool stopping(int process) const;
   /// What is under way is a block typed by hand, not the loaded program.
   bool typed(int process);
+  /// A program is under way, and is held or waits.
+  bool rests(int process);
   /// A program is stepped through block by block.
   bool steps(int process);
   /// Path of the loaded program; empty: none.
@@ -200,11 +207,13 @@ class Resident {
     Coordinates manual;
     std::string shown_file, shown_text;  ///< the subprogram whose line was asked for last
     bool busy_seen = false;
+    std::map<std::int32_t, double> cut_s;  ///< channel::CuttingTimes as far as it stands in the tables
   };
   const Seat& seat(int process) const { return seats_[static_cast<std::size_t>(process)]; }
   Seat& seat(int process) { return seats_[static_cast<std::size_t>(process)]; }
   bool arm(int process, ProgramChange::Kind kind);
   bool read_tables_of(int process, bool also_read);
+  void count_cutting();
   /// `process` gets its tables anew even where it has them, -1: all of them.
   std::optional<Proof> renew(int process);
   Start start_of(int process);

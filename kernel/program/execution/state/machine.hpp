@@ -58,13 +58,22 @@ struct Tables {
     std::map<std::string, double> wear;    ///< axis letter to mm, added to the length
     double radius = 0.0;                   ///< mm
     double radius_wear = 0.0;              ///< mm, added to the radius
-    int quadrant = 0;  ///< where the tip of a turning tool points, 1 to 9; 0: no turning tool
+    int quadrant = 0;       ///< where the tip of a turning tool points, 1 to 9; 0: no turning tool
+    double life_min = 0.0;  ///< minutes at feed after which the tool is worn out; 0: they are not limited
+    double used_min = 0.0;  ///< minutes at feed so far
+    int alternate = 0;      ///< tool that takes its place when it is worn out; 0: none
+    bool worn_out() const { return life_min > 0.0 && used_min >= life_min; }
     /// What is in force along an axis, wear included; 0 where the row does not name it.
     double length_of(const std::string& letter) const {
       const auto own = length.find(letter), worn = wear.find(letter);
       return (own == length.end() ? 0.0 : own->second) + (worn == wear.end() ? 0.0 : worn->second);
     }
-    bool operator==(const Corrector&) const = default;
+    /// Of minutes only that decides whether the tool is worn out: what programs do depends on no more.
+    bool operator==(const Corrector& o) const {
+      return name == o.name && length == o.length && wear == o.wear && radius == o.radius &&
+             radius_wear == o.radius_wear && quadrant == o.quadrant && life_min == o.life_min &&
+             alternate == o.alternate && worn_out() == o.worn_out();
+    }
   };
   std::map<int, std::map<std::string, double>> origins;  ///< number to axis letter to mm
   std::map<int, Corrector> correctors;                   ///< by number; what people call a tool's row
@@ -80,7 +89,10 @@ inline void carry_over(const Tables& before, const Tables& after, Tables& into) 
       if (!is.contains(key)) entries.erase(key);
   };
   carry(before.origins, after.origins, into.origins);
+  const auto used = into.correctors;  // a program knows the minutes of its beginning
   carry(before.correctors, after.correctors, into.correctors);
+  for (auto& [number, row] : into.correctors)
+    if (const auto old = used.find(number); old != used.end()) row.used_min = old->second.used_min;
 }
 
 /// A power-on mode or value of the machine file that the language cannot take. Its program does not run.

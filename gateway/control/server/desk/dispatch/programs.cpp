@@ -122,11 +122,12 @@ Outcome Dispatch::take(const ask::Mdi& wanted) {
   if (block.find_first_of("\r\n") != std::string::npos) return fail(says::kBlocksSeveral, {}, kWrongUse);
   const int process = wanted.process;
   if (!process_known(process)) return refusal_;
+  if (resident_.rests(process)) return functions(wanted);
   if (resident_.busy(process)) return busy(process);
   if (auto proof = resident_.take_tables(process)) return behind(std::move(*proof));
-  const std::vector<text::Finding> findings = resident_.check_block(process, block);
-  if (!findings.empty() && findings.back().severity == text::Severity::error)
-    return fail(says::kBlockWrong, {findings.back().str(language_)}, kAlarm);
+  const Resident::TriedBlock tried = resident_.try_block(process, block);
+  const std::vector<text::Finding>& findings = tried.findings;
+  if (tried.failed()) return fail(says::kBlockWrong, {findings.back().str(language_)}, kAlarm);
   resident_.set_manual_block(process, block);
   if (ask(RequestKind::start, -1, 0.0, image::Mode::mdi, process)) {
     std::string words;

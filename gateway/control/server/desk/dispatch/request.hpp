@@ -23,7 +23,7 @@ using image::RequestKind;
 Work prove_and(Resident& resident, Resident::Proof proof, Finish then);
 
 /// One request under way: dispatch.cpp has what concerns the machine, programs.cpp what loads and runs
-/// programs, tables.cpp what changes origins and tools.
+/// programs, beside.cpp what is done beside a held one, tables.cpp what changes origins and tools.
 class Dispatch {
  public:
   Dispatch(Resident& resident, PlcDesk& plc, const Question& question)
@@ -80,6 +80,7 @@ class Dispatch {
   Outcome take(const ask::Step& wanted) { return begin(true, wanted.process); }
   Outcome take(const ask::Mdi&);
   Outcome take(const ask::Restart&);
+  Outcome take(const ask::Return&);
   Outcome take(const ask::Resume&);
   Outcome take(const ask::Assign&);
   Outcome take(const ask::Tables&) { return looked(tables_report(resident_)); }
@@ -115,6 +116,11 @@ class Dispatch {
   std::optional<Outcome> not_ready(int process);
   RestartReport report_of(const Resident::RestartSearch& search, const ask::Restart& wanted);
   Outcome begin(bool step, int process);
+  /// A typed block beside a held program.
+  Outcome functions(const ask::Mdi& wanted);
+  /// The request that a command of such a block is, none where it does nothing; else why it may not be.
+  const text::Entry* function_of(const program::Command& command, int process,
+                                 std::optional<image::Request>& request);
   Outcome reset(bool whole);
   /// To the answer "not powered": each condition that is missing.
   void add_missing(Reply& answer);

@@ -92,10 +92,13 @@ RestartReport Dispatch::report_of(const Resident::RestartSearch& search, const a
   if (point.coolant) r.coolant = point.coolant->code;
   for (const program::MFunction& m : point.passed) r.passed.push_back(m.code);
   r.writes = point.writes;
+  r.signals = point.signals;
   const auto block = resident_.interrupted(search.process);
   r.from_disk = block && block->from_disk;
   const image::ProcessImage& now = resident_.image();
   r.asked_s = now.now.seconds();
+  const bool where_interrupted = !wanted.line && !wanted.number && block;
+  double overlap = 0.0;
   std::string plane, depth;
   for (int a = 0; a < static_cast<int>(machine().program_axes()); ++a) {
     const machine::AxisConfig& config = axis_config(a);
@@ -103,6 +106,9 @@ RestartReport Dispatch::report_of(const Resident::RestartSearch& search, const a
     const double shown = config.diameter ? 2.0 : 1.0;
     r.axes.push_back({config.letter, config.unit(), now.axes[static_cast<std::size_t>(a)].command * shown,
                       point.position[static_cast<std::size_t>(a)] * shown});
+    if (where_interrupted && config.type == machine::AxisType::linear)
+      overlap = std::hypot(
+          overlap, block->stands[static_cast<std::size_t>(a)] - point.position[static_cast<std::size_t>(a)]);
     if (std::abs(r.axes.back().stands - r.axes.back().begins) < 1e-6) continue;
     const std::string way = config.letter + " " + text::number(r.axes.back().begins, 4);
     if (a == point.depth_axis)
@@ -110,6 +116,7 @@ RestartReport Dispatch::report_of(const Resident::RestartSearch& search, const a
     else
       plane = joined(plane, way);
   }
+  if (where_interrupted) r.overlap_mm = overlap;
   const auto say = [&](const Entry& entry, const std::vector<std::string>& arguments) {
     r.steps.push_back(text::render(entry, arguments, language_));
   };

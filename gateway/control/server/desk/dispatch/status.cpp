@@ -63,6 +63,7 @@ AxisReport axis_report(const machine::AxisConfig& config, const image::AxisImage
   report.position = a.actual * shown;
   report.axis = a;
   report.to_go = a.distance_to_go * shown;
+  report.beside = a.beside * shown;
   if (a.jog_end != image::JogEnd::none) report.jog_end = jog_end_words(a.jog_end, config.letter, language);
   return report;
 }

@@ -8,6 +8,7 @@
 #include "gateway/control/server/protocol/texts.hpp"
 #include "gateway/control/server/resident/resident.hpp"
 #include "machine/state/table_text.hpp"
+#include "machine/tables/exchange.hpp"
 
 namespace servogate::gateway {
 
@@ -26,7 +27,10 @@ constexpr ToolField kToolFields[] = {{"length", -machine::kLongestEntry, machine
                                      {"radius", 0.0, machine::kLongestEntry, false},
                                      {"diameter", 0.0, machine::kLongestEntry, false},
                                      {"radius_wear", -machine::kLongestEntry, machine::kLongestEntry, false},
-                                     {"quadrant", 0.0, 9.0, true}};
+                                     {"quadrant", 0.0, 9.0, true},
+                                     {"life", 0.0, machine::kLongestLife, false},
+                                     {"used", 0.0, machine::kLongestLife, false},
+                                     {"alternate", 0.0, machine::kLastTool, true}};
 
 std::string upper(std::string letter) {
   for (char& c : letter) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -103,6 +107,12 @@ void set_tool_entry(const MachineConfig& machine, program::Tables::Corrector& to
     tool.radius_wear = value;
   else if (name == "quadrant")
     tool.quadrant = static_cast<int>(value);
+  else if (name == "life")
+    tool.life_min = value;
+  else if (name == "used")
+    tool.used_min = value;
+  else if (name == "alternate")
+    tool.alternate = static_cast<int>(value);
   else if (name == "length")
     tool.length[tool_axis(machine)] = value;
   else if (name == "wear")
@@ -218,6 +228,7 @@ std::string row_words(const MachineConfig& machine, const program::Tables& table
     if (c.radius_wear != 0.0)
       join(out, text::both("wear of the radius ", "износ радиуса ") + text::number(c.radius_wear, 4) + mm);
     if (c.quadrant != 0) join(out, text::both("quadrant ", "квадрант ") + std::to_string(c.quadrant));
+    join(out, machine::life_words(c.life_min, c.used_min, c.alternate));
   }
   return out.empty() ? text::both("nothing set", "ничего не задано") : out;
 }

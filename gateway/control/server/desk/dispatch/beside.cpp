@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Work beside a held program: typed functions, and the way back of axes that were jogged away.
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/text/units.hpp"
+#include "gateway/control/server/desk/dispatch/request.hpp"
+#include "gateway/control/server/protocol/texts.hpp"
+
+namespace servogate::gateway {
+
+namespace {
+
+constexpr double kSlowest = 1.0, kFastest = 5000.0;  ///< mm/min, of the way back
+
+using Entry = text::Entry;
+const Entry kReturns{"said.returns", "the axes return to the path by the way that they went",
+                     "оси возвращаются на контур тем же путём"};
+const Entry kReturnFeed{"return.feed", "the feed of the way back is {0} to {1} mm/min",
+                        "подача на возврате — от {0} до {1} мм/мин"};
+const Entry kFunctionsRun{"said.functions-run", "{0} is executed beside the held program",
+                          "{0} выполняется; программа остаётся приостановленной"};
+const Entry kOnlyFunctions{
+    "beside.only-functions",
+    "a program is held: M, S and T functions can be typed beside it, and this block does more; `servogate "
+    "reset` ends the program, `servogate start --interrupted` goes on with it later",
+    "программа приостановлена: рядом с ней можно вводить только функции M, S и T, а этот кадр делает больше; "
+    "`servogate reset` завершает программу, `servogate start --interrupted` продолжит её позже"};
+const Entry kNoFunction{"beside.no-function",
+                        "a program is held, and this block has no M, S or T function to be executed",
+                        "программа приостановлена, а в кадре нет функций M, S или T"};
+const Entry kNoSpeed{"beside.no-speed", "the spindle needs its speed in the same block, as M3 S1000",
+                     "шпинделю нужна частота в том же кадре, например M3 S1000"};
+const Entry kStands{"beside.spindle-stands", "the spindle stands: M3 or M4 turns it",
+                    "шпиндель стоит: его включает M3 или M4"};
+
+image::Request function(image::Function what, double value) {
+  image::Request r;
+  r.kind = RequestKind::function;
+  r.index = static_cast<std::uint32_t>(what);
+  r.value = value;
+  return r;
+}
+
+}  // namespace
+
+/// A command of a typed block as a request; nullptr with `problem`: it is none.
+const text::Entry* Dispatch::function_of(const program::Command& command, int process,
+                                         std::optional<image::Request>& request) {
+  using Mode = program::SpindleMode;
+  using image::Function;
+  if (const auto* m = std::get_if<program::MFunction>(&command.what)) {
+    request = function(Function::m, m->code);
+  } else if (const auto* tool = std::get_if<program::Tool>(&command.what)) {
+    if (tool->corrector > 255) return &kOnlyFunctions;
+    request = function(Function::tool, tool->number);
+    request->format = static_cast<std::uint8_t>(tool->corrector);
+  } else if (const auto* s = std::get_if<program::Spindle>(&command.what)) {
+    Mode mode = s->mode;
+    if (s->surface_speed || mode == Mode::orient) return &kOnlyFunctions;
+    if (mode == Mode::keep) {
+      const machine::SpindleConfig* spindle = machine().spindle_of_process(process);
+      const double rpm = spindle == nullptr
+                             ? 0.0
+                             : resident_.image()
+                                   .spindles[static_cast<std::size_t>(spindle - machine().spindles.data())]
+                                   .command_rpm;
+      if (rpm == 0.0) return &kStands;
+      mode = rpm > 0.0 ? Mode::cw : Mode::ccw;
+    }
+    if (mode != Mode::stop && s->speed <= 0.0) return &kNoSpeed;
+    request = function(mode == Mode::cw    ? Function::spindle_clockwise
+                       : mode == Mode::ccw ? Function::spindle_counterclockwise
+                                           : Function::spindle_stop,
+                       mode == Mode::stop ? 0.0 : s->speed);
+    request->packet = s->number;
+  } else if (!std::holds_alternative<program::Message>(command.what)) {
+    return &kOnlyFunctions;
+  }
+  return nullptr;
+}
+
+Outcome Dispatch::functions(const ask::Mdi& wanted) {
+  const Resident::TriedBlock tried = resident_.try_block(wanted.process, wanted.block);
+  if (tried.failed()) return fail(says::kBlockWrong, {tried.findings.back().str(language_)}, kAlarm);
+  std::vector<image::Request> requests;
+  for (const program::Command& command : tried.commands) {
+    std::optional<image::Request> request;
+    if (const text::Entry* problem = function_of(command, wanted.process, request))
+      return fail(*problem, {}, kAlarm);
+    if (request) requests.push_back(*request);
+  }
+  if (requests.empty()) return fail(kNoFunction, {}, kAlarm);
+  for (image::Request& r : requests) {
+    r.process = static_cast<std::int8_t>(wanted.process);
+    if (!ask(r)) return refusal_;
+  }
+  return good(kFunctionsRun, {wanted.block}, FunctionsBegun{});
+}
+
+Outcome Dispatch::take(const ask::Return& wanted) {
+  if (!process_known(wanted.process)) return refusal_;
+  if (wanted.feed_mm_min && !(*wanted.feed_mm_min >= kSlowest && *wanted.feed_mm_min <= kFastest))
+    return fail(kReturnFeed, {text::number(kSlowest), text::number(kFastest)}, kWrongUse);
+  image::Request r;
+  r.kind = RequestKind::reposition;
+  r.process = static_cast<std::int8_t>(wanted.process);
+  r.velocity = wanted.feed_mm_min.value_or(0.0) / 60.0;
+  return ask(r) ? good(kReturns) : refusal_;
+}
+
+}  // namespace servogate::gateway
