@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints shape and law over one clock beside today's law, work by work: times, aims, and what planning costs.
+// Prints shape and law over one clock beside the law of spans, work by work: times, aims, and what planning
+// costs.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -119,7 +120,9 @@ void Reader::move(const path::Move& move) {
 }
 
 void row(const Work& work) {
-  const double today = path::estimate(work.config, {}, work.program).seconds;
+  path::Config spans = work.config;
+  spans.law = path::Law::spans;
+  const double today = path::estimate(spans, {}, work.program).seconds;
   Reader reader(work.config);
   path::Gather gather(work.config, reader);
   gather.restart({});
@@ -146,7 +149,7 @@ void row(const Work& work) {
 
 int main() {
   const double full = 2.0 * std::numbers::pi;
-  std::printf("%-30s %8s %8s  %8s %8s  %8s %9s %7s %8s  %s\n", "seconds", "aim", "new", "today", "optimum",
+  std::printf("%-30s %8s %8s  %8s %8s  %8s %9s %7s %8s  %s\n", "seconds", "aim", "course", "spans", "optimum",
               "limits", "blocks/s", "us/knot", "x real", "released / outside / no law");
   row({"mill: circle R20, one arc", mill(), circle(20, 6000), 1.47, 1.461});
   row({"mill: circle R20, 1000 blocks", mill(), polygon(20, 1000, full / 1000, 6000), 1.47, 1.461});

@@ -49,6 +49,11 @@ class OneRun final : public path::RunSink, public path::KnotSink, public path::C
     return n <= end() ? &knots_[static_cast<std::size_t>(n)] : nullptr;
   }
   std::int64_t end() const noexcept override { return static_cast<std::int64_t>(knots_.size()) - 1; }
+  path::StopHint stop_near(std::int64_t n) const noexcept override {
+    return stops.empty() ? path::StopHint{}
+                         : stops[std::min(stops.size() - 1, static_cast<std::size_t>((n + 3) / 4))];
+  }
+  std::vector<path::StopHint> stops;  // each fourth knot
   double seconds() const { return knots_.back().t.since(knots_.front().t); }
 
  private:
@@ -66,13 +71,9 @@ struct Holds {
 };
 
 /// One hold at a random cycle.
-void hold(const OneRun& run, const path::RateLimits& limits, const std::vector<path::StopHint>& hints, int at,
-          Holds& out) {
+void hold(const OneRun& run, const path::RateLimits& limits, int at, Holds& out) {
   path::RateMotion motion(limits);
-  const auto step = [&](double target) {
-    const auto n = static_cast<std::size_t>((motion.knot() + 3) / 4);
-    return motion.step(run, target, hints[std::min(hints.size() - 1, n)], 0.001);
-  };
+  const auto step = [&](double target) { return motion.step(run, target, 0.001); };
   for (int n = 0; n < at; ++n) step(1.0);
   int cycles = 0;
   bool on = true;
@@ -90,19 +91,19 @@ void hold(const OneRun& run, const path::RateLimits& limits, const std::vector<p
 }
 
 void row(const char* name, const path::Config& config, const Program& program, double reserve) {
-  const OneRun run(config, program, reserve);
+  OneRun run(config, program, reserve);
   path::RateLimits limits;
   limits.axes = config.axis_count;
   limits.limits = config.limits;
-  std::vector<path::StopHint> hints;
   const double begin = now();
   for (std::int64_t k = 0; k < run.end(); k += 4)
-    hints.push_back(path::find_stop(run, k, hints.empty() ? path::StopHint{} : hints.back(), limits));
+    run.stops.push_back(
+        path::find_stop(run, k, run.stops.empty() ? path::StopHint{} : run.stops.back(), limits));
   const double hint_cost = (now() - begin) / static_cast<double>(run.end());
   Holds holds;
   std::mt19937_64 random(5);
   std::uniform_int_distribution<int> cycle(20, static_cast<int>(run.seconds() * 1000) - 60);
-  for (int n = 0; n < 300; ++n) hold(run, limits, hints, cycle(random), holds);
+  for (int n = 0; n < 300; ++n) hold(run, limits, cycle(random), holds);
   std::sort(holds.stops.begin(), holds.stops.end());
   const auto share = [&](double s) {
     return holds.stops[static_cast<std::size_t>(s * static_cast<double>(holds.stops.size() - 1))];

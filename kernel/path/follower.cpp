@@ -13,6 +13,8 @@ constexpr int kEntriesPerCycle = 256;   // taken over from the track
 constexpr int kMarkersPerCycle = 16;    // passed at rest
 constexpr int kSpansPerCycle = 16;      // the planner lets no more than four be passed
 constexpr int kPiecesPerCycle = 64;     // and no more than fifty of these
+constexpr int kPiecesLocated = 512;     // of a course, where more are passed the place shown comes late
+constexpr double kKnownAtStart = 0.5;   // s of a course
 constexpr double kSlowestShare = 1e-6;  // of a feed; slower is rest
 constexpr double kSamePlace = 1e-9;     // mm
 
@@ -24,7 +26,12 @@ bool early(const Piece& piece, double s) {
 }  // namespace
 
 Follower::Follower(const Config& config, Track& track)
-    : config_(config), track_(track), window_(track), motion_(config) {}
+    : config_(config),
+      track_(track),
+      window_(track),
+      motion_(config),
+      course_(track),
+      rate_({config.axis_count, config.limits}) {}
 
 void Follower::set_override(double ratio) noexcept {
   const double r = ratio >= kSlowestShare ? std::min(ratio, config_.largest_override) : 0.0;
@@ -37,8 +44,7 @@ void Follower::set_spindle(double revolutions) noexcept {
   if (revolutions == spindle_) return;
   spindle_ = revolutions;
   for (const int n : {0, 1})
-    if (const Span* span = window_.span(n); span != nullptr && follows_spindle(span->terms))
-      motion_.renew();
+    if (const Span* span = window_.span(n); span != nullptr && follows_spindle(span->terms)) motion_.renew();
 }
 
 bool Follower::spindle_stands() const noexcept {
@@ -60,7 +66,9 @@ void Follower::skip_to(const Track::Begin& begin) noexcept {
   taken_ = begin.entry;
   track_.entries.free_below(taken_);
   track_.pieces.free_below(begin.piece);
-  in_span_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
+  track_.knots.free_below(begin.knot);
+  track_.stops.free_below(begin.stop);
+  in_span_ = on_course_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
   dropping_ = true;
   begun_ = begin.piece;
   motion_.rest();
@@ -83,6 +91,8 @@ void Follower::take_entries(std::uint64_t visible) noexcept {
     const Entry& entry = track_.entries[taken_++];
     if (entry.kind == Entry::Kind::revise) {
       if (window_.revise(entry.span) && in_span_) motion_.renew();
+    } else if (entry.kind == Entry::Kind::extend) {
+      if (!window_.extend(entry)) drop_course(entry);
     } else if (!dropping_ || entry.kind == Entry::Kind::restart || window_.anything_staged()) {
       // While dropping, the window holds at most the restart: what comes behind it belongs to the new path.
       window_.stage(entry);
@@ -126,7 +136,8 @@ void Follower::pass_markers() noexcept {
   for (int n = 0; n < kMarkersPerCycle && !wait_stop_ && !wait_event_ && !window_.empty(); ++n) {
     const Entry& entry = window_.front();
     if (dropping_ && entry.kind != Entry::Kind::restart) return drop();
-    if (entry.kind == Entry::Kind::span || !pass_marker(entry)) return;
+    const bool way = entry.kind == Entry::Kind::span || entry.kind == Entry::Kind::course;
+    if (way || !pass_marker(entry)) return;
   }
 }
 
@@ -136,7 +147,38 @@ void Follower::start() noexcept {
   if (const Span* span = window_.span(0); span != nullptr && span->final) {
     enter();
     motion_.begin(window_, wish());
+  } else if (const Entry* course = window_.course(); course != nullptr) {
+    begin_course(*course);
   }
+}
+
+/// Not before some of it is known, or all.
+void Follower::begin_course(const Entry& course) noexcept {
+  course_.take(course);
+  const Knot* guard = course_.knot(course_.guard().knot);
+  const bool enough = course_.guard().knot >= 0 && guard != nullptr && guard->t.since({}) >= kKnownAtStart;
+  if (!course.extent.complete && !enough) return;
+  in_span_ = open_ = on_course_ = true;
+  piece_ = course.span.first_piece;
+  rate_.begin(std::min(rate_wanted(), 1.0));
+}
+
+void Follower::follow_course() noexcept {
+  const bool goes_on = rate_.step(course_, rate_wanted(), config_.period_s);
+  if (rate_.starving() && !rest_asked()) ++starved_;
+  if (!goes_on) return leave_course();
+  track_.knots.free_below(course_.knots_behind(rate_.knot()));
+  track_.stops.free_below(course_.stops_behind(rate_.knot()));
+}
+
+void Follower::leave_course() noexcept {
+  const Track::Begin behind = course_.behind();
+  const bool waits = course_.extent().confirm;
+  window_.pop();
+  arrive(track_.pieces[behind.piece - 1], waits);
+  track_.pieces.free_below(behind.piece);
+  track_.knots.free_below(behind.knot);
+  track_.stops.free_below(behind.stop);
 }
 
 void Follower::enter() noexcept {
@@ -151,22 +193,21 @@ void Follower::leave() noexcept {
     enter();
     motion_.pass(span.length, window_, wish());
   } else {
-    arrive(span);
+    arrive(track_.pieces[span.first_piece + span.pieces - 1], span.stop && span.confirm);
   }
   track_.pieces.free_below(span.first_piece + span.pieces);
 }
 
-/// At rest in the end of a span.
-void Follower::arrive(const Span& span) noexcept {
-  const Piece& last = track_.pieces[span.first_piece + span.pieces - 1];
+/// At rest in the end of a piece.
+void Follower::arrive(const Piece& last, bool waits) noexcept {
   sample_.position = to_axes(config_, servogate::path::position(last, last.length, config_.axis_count));
   sample_.target = to_axes(config_, last.target);
   sample_.tag = last.tag;
   sample_.rapid = last.rapid;
   sample_.distance_to_go = last.rest;
   pass_marks(last.tag.marks, 0.0);
-  wait_stop_ = span.stop && span.confirm;
-  in_span_ = false;
+  wait_stop_ = waits;
+  in_span_ = on_course_ = false;
   motion_.rest();
 }
 
@@ -175,13 +216,23 @@ void Follower::drop_span(const Span& span) noexcept {
   track_.pieces.free_below(begun_);
 }
 
+void Follower::drop_course(const Entry& known) noexcept {
+  course_.take(known);
+  const Track::Begin behind = course_.behind();
+  begun_ = behind.piece;
+  track_.pieces.free_below(begun_);
+  track_.knots.free_below(behind.knot);
+  track_.stops.free_below(behind.stop);
+}
+
 void Follower::drop() noexcept {
   window_.release();
   while (!window_.empty() && window_.front().kind != Entry::Kind::restart) {
     if (window_.span(0) != nullptr) drop_span(front());
+    if (window_.course() != nullptr) drop_course(*window_.course());
     window_.pop();
   }
-  in_span_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
+  in_span_ = on_course_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
   dropping_ = true;
   motion_.rest();
 }
@@ -191,11 +242,11 @@ void Follower::advance() noexcept {
   for (int n = 0; n < kSpansPerCycle && in_span_ && motion_.advance(left, window_); ++n) leave();
 }
 
-void Follower::locate() noexcept {
-  const Span& span = front();
-  const std::uint64_t last = span.first_piece + span.pieces - 1;
-  const double s = motion_.state().s;
-  while (piece_ < last && s > track_.pieces[piece_].start + track_.pieces[piece_].length) ++piece_;
+void Follower::locate(double s) noexcept {
+  const std::uint64_t last =
+      on_course_ ? course_.behind().piece - 1 : front().first_piece + front().pieces - 1;
+  for (int n = 0; n < kPiecesLocated && piece_ < last; ++n, ++piece_)
+    if (s <= track_.pieces[piece_].start + track_.pieces[piece_].length) break;
   track_.pieces.free_below(piece_);
 }
 
@@ -237,30 +288,54 @@ FollowerState Follower::report() const noexcept {
   return rest_asked() ? FollowerState::held : FollowerState::moving;
 }
 
-/// Where the motion is in its span, as the set-point of the axes.
-void Follower::place_on_axes() noexcept {
-  locate();
-  const int n = config_.axis_count;
+/// Speed over the linear axes, or the rotary ones where only they move.
+void Follower::show_feed(const Vector& velocity) noexcept {
+  double linear = 0.0, turning = 0.0;
+  for (int i = 0; i < config_.axis_count; ++i)
+    (config_.rotary[i] ? turning : linear) += velocity[i] * velocity[i];
+  sample_.feed = std::sqrt(linear > 1e-12 * turning ? linear : turning);
+}
+
+void Follower::place_course_on_axes() noexcept {
+  const CoursePoint at = rate_.point(course_);
+  locate(at.place);
+  sample_.position = at.x;
+  sample_.velocity = at.v;
+  sample_.acceleration = at.a;
+  show_feed(at.v);
   const Piece& piece = track_.pieces[piece_];
+  show_piece(std::clamp(at.place - piece.start, 0.0, piece.length), at.speed);
+}
+
+/// Where the motion is in its span, as the set-point of the axes.
+void Follower::place_span_on_axes() noexcept {
+  const int n = config_.axis_count;
   const MotionState& state = motion_.state();
+  locate(state.s);
+  const Piece& piece = track_.pieces[piece_];
   const double s = std::clamp(state.s - piece.start, 0.0, piece.length), v = state.v;
   PathPoint at = evaluate(piece, s, n);
-  double linear = 0.0, turning = 0.0;
-  for (int i = 0; i < n; ++i) {
-    const double along = at.d1[i] * v;
-    (config_.rotary[i] ? turning : linear) += along * along;
-  }
+  Vector along{};
+  for (int i = 0; i < n; ++i) along[i] = at.d1[i] * v;
+  show_feed(along);
   config_.transformation->to_axes(at, n);
   for (int i = 0; i < n; ++i) {
     sample_.position[i] = at.x[i];
     sample_.velocity[i] = at.d1[i] * v;
     sample_.acceleration[i] = at.d2[i] * v * v + at.d1[i] * state.a;
   }
-  sample_.feed = std::sqrt(linear > 1e-12 * turning ? linear : turning);
+  show_piece(s, v);
+}
+
+/// What the piece in motion says, `s` behind its begin at speed v.
+void Follower::show_piece(double s, double v) noexcept {
+  const Piece& piece = track_.pieces[piece_];
   const bool before = early(piece, s);
   sample_.tag = before ? piece.tag_before : piece.tag;
-  if (sample_.tag.marks != marks_)
-    pass_marks(sample_.tag.marks, behind_mark(sample_.tag.marks, s, before) / (v * config_.period_s));
+  if (sample_.tag.marks != marks_) {
+    const double cycle = std::max(v * config_.period_s, kSamePlace);
+    pass_marks(sample_.tag.marks, behind_mark(sample_.tag.marks, s, before) / cycle);
+  }
   sample_.distance_to_go = before ? 0.5 * piece.length - s : piece.rest + piece.length - s;
   if (shown_ == piece_) return;
   shown_ = piece_;
@@ -269,8 +344,10 @@ void Follower::place_on_axes() noexcept {
 }
 
 Sample Follower::sample() noexcept {
-  if (in_span_) {
-    place_on_axes();
+  if (on_course_) {
+    place_course_on_axes();
+  } else if (in_span_) {
+    place_span_on_axes();
   } else {
     sample_.velocity = sample_.acceleration = Vector{};
     sample_.feed = 0.0;
@@ -287,7 +364,10 @@ Sample Follower::step(std::uint64_t visible) noexcept {
   take_entries(visible);
   if (!in_span_) start();
   if (stopping_ && at_rest()) drop();
-  if (in_span_) {
+  if (on_course_) {
+    follow_course();
+    if (!in_span_) pass_markers();
+  } else if (in_span_) {
     const Wish wanted = wish();
     motion_.obey(window_, wanted);
     if (!front().final && !wanted.rest) ++starved_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "kernel/path/law/motion.hpp"
+#include "kernel/path/law/rate.hpp"
 #include "kernel/path/track/window.hpp"
 
 namespace servogate::path {
@@ -74,7 +75,7 @@ class Follower {
   /// path begun.
   bool set_position(const Vector& at) noexcept;
   /// True while neither speed nor acceleration is present.
-  bool at_rest() const noexcept { return motion_.at_rest(); }
+  bool at_rest() const noexcept { return on_course_ ? rate_.at_rest() : motion_.at_rest(); }
   /// The way back: the geometry that was driven, up to the piece in motion, at most to where the path was
   /// begun and at least Config::pieces_behind of it, which the planner leaves alone until the next step().
   Behind behind() const noexcept;
@@ -86,16 +87,24 @@ class Follower {
   bool pass_marker(const Entry& entry) noexcept;
   void drop() noexcept;
   void drop_span(const Span& span) noexcept;
+  void drop_course(const Entry& known) noexcept;
+  void begin_course(const Entry& course) noexcept;
+  void follow_course() noexcept;
+  void leave_course() noexcept;
   void enter() noexcept;
   void leave() noexcept;
   void advance() noexcept;
-  void arrive(const Span& span) noexcept;
+  void arrive(const Piece& last, bool waits) noexcept;
   bool rest_asked() const noexcept { return hold_ || stopping_ || override_ <= 0.0; }
   bool wants_rest() const noexcept { return rest_asked() || spindle_stands(); }
   bool spindle_stands() const noexcept;
   Wish wish() const noexcept { return {wants_rest(), override_, spindle_}; }
-  void locate() noexcept;
-  void place_on_axes() noexcept;
+  double rate_wanted() const noexcept { return wants_rest() ? 0.0 : override_; }
+  void locate(double s) noexcept;
+  void place_span_on_axes() noexcept;
+  void place_course_on_axes() noexcept;
+  void show_feed(const Vector& velocity) noexcept;
+  void show_piece(double s, double v) noexcept;
   void pass_marks(std::uint32_t marks, double beyond) noexcept;
   double behind_mark(std::uint32_t marks, double s, bool early) const noexcept;
   FollowerState report() const noexcept;
@@ -106,9 +115,12 @@ class Follower {
   Track& track_;
   Window window_;
   std::uint64_t taken_ = 0;  ///< entries taken from the track
-  Motion motion_;
+  Motion motion_;            ///< through spans
+  CourseAhead course_;
+  RateMotion rate_;  ///< along a course
 
-  bool in_span_ = false;     ///< the first entry is a span that is being driven
+  bool in_span_ = false;     ///< the first entry is a span or a course that is being driven
+  bool on_course_ = false;   ///< and it is a course
   std::uint64_t piece_ = 0;  ///< number of the piece in motion
   std::uint64_t begun_ = 0;  ///< of the first piece of this path
   std::uint32_t marks_ = 0;  ///< passed or dropped so far

@@ -14,7 +14,7 @@ Config alone(Config config) {
 }  // namespace
 
 PathTime::PathTime(const Config& config, const Vector& start)
-    : config_(alone(config)), track_(config_), planner_(config_, track_) {
+    : config_(alone(config)), track_(config_), planner_(config_, track_, Planner::For::forecast) {
   planner_.restart(start);
 }
 
@@ -34,6 +34,11 @@ void PathTime::take_entries() {
     for (; taken_ < track_.entries.written(); track_.entries.free_below(++taken_)) {
       const Entry& entry = track_.entries[taken_];
       if (entry.kind == Entry::Kind::span) spans_.push_back(entry.span);
+      if (entry.kind == Entry::Kind::extend) {  // from rest to rest: all spans before it are final
+        time_spans();
+        seconds_ += whole_cycles(entry.extent.seconds);
+        continue;
+      }
       if (entry.kind != Entry::Kind::revise || spans_.empty() || entry.span.number < spans_.front().number)
         continue;
       // Numbers of spans run without a gap.
@@ -44,13 +49,17 @@ void PathTime::take_entries() {
   time_spans();
 }
 
+double PathTime::whole_cycles(double seconds) const {
+  return std::ceil(seconds / config_.period_s - 1e-6) * config_.period_s;
+}
+
 void PathTime::time_spans() {
   while (!spans_.empty() && spans_.front().final && (spans_.front().stop || spans_.size() > 1)) {
     const Span span = spans_.front();
     spans_.pop_front();
     way_ += timing_.through(span, span.stop ? nullptr : &spans_.front());
     if (!span.stop) continue;
-    seconds_ += std::ceil(way_ / config_.period_s - 1e-6) * config_.period_s;
+    seconds_ += whole_cycles(way_);
     way_ = 0.0;
   }
 }

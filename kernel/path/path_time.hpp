@@ -26,6 +26,7 @@ class PathTime {
  private:
   void take_entries();
   void time_spans();
+  double whole_cycles(double seconds) const;
 
   Config config_;
   Track track_;

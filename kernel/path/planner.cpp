@@ -1,16 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/path/planner.hpp"
 
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "kernel/path/law/course_planning.hpp"
 #include "kernel/path/law/planning.hpp"
 #include "kernel/path/shape/contour.hpp"
+#include "kernel/path/shape/gather.hpp"
 #include "kernel/path/track/publisher.hpp"
 
 namespace servogate::path {
+namespace {
 
-/// Shape, bound, law and track, one behind the other.
+constexpr std::size_t kUndecided = 64;  // elements by which the law of a run is chosen
+
+/// s in which the elements' speed is changed, at the limits of the axes that move.
+double change_time(const Leg& leg, double v, int axes) {
+  double a = std::numeric_limits<double>::infinity(), j = a;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
+    if (!moves(leg, i)) continue;
+    a = std::min(a, (*leg.limits)[i].acceleration);
+    j = std::min(j, (*leg.limits)[i].jerk);
+  }
+  return v / a + a / j;
+}
+
+}  // namespace
+
+/// Shape, bound, law and track, one behind the other; two laws, chosen from rest to rest.
 struct Planner::Impl final : ContourSink {
-  Impl(const Config& c, Track& track)
-      : config(c), publisher(track), law(c, track.pieces.capacity(), publisher), contour(c, *this) {}
+  Impl(const Config& c, Track& track, For what)
+      : config(c),
+        publisher(track),
+        law(c, track.pieces.capacity(), publisher),
+        contour(c, *this),
+        course(c, what == For::forecast, publisher),
+        gather(c, course) {}
 
   void put(const Piece& piece, const Pace& pace) override { law.append(piece, bound(config, piece, pace)); }
   void rest(bool confirm) override { law.rest(confirm); }
@@ -21,20 +48,145 @@ struct Planner::Impl final : ContourSink {
     entry.event = event;
     entry.tag = tag;
     entry.tag.marks = marks;
-    entry.at = contour.position();
+    entry.at = at;
     entry.span.number = law.last_number();
     entry.span.first_piece = publisher.next().piece;
     publisher.put(entry);
   }
 
+  /// What takes the elements since the last rest.
+  enum class Run : std::uint8_t {
+    none,
+    undecided,  ///< they wait for more of them
+    spans,      ///< the law from span to span
+    course,     ///< the law over one clock
+  };
+  struct Waiting {
+    Element element;
+    Piece piece;
+  };
+
+  bool add(const Element& e);
+  void finish();
+  void forget() {
+    run = Run::none;
+    waiting.clear();
+  }
+  bool suits_course(const Element& e) const;
+  Run suitable() const;
+  bool rests_before(const Element& e, const Piece& piece) const;
+  void wait(const Element& e, const Piece& piece);
+  void decide();
+  void pass_on(const Element& e);
+
   Config config;
   Publisher publisher;
   Planning law;
   Contour contour;
+  CoursePlanning course;
+  Gather gather;
   std::uint32_t marks = 0;
+  Flaw flaw = Flaw::none;
+  Vector at{};  ///< end of the elements added
+  Run run = Run::none;
+  bool rests = false;  ///< behind the elements of Run::spans
+  std::vector<Waiting> waiting;
+  Vector waiting_from{};
 };
 
-Planner::Planner(const Config& config, Track& track) : impl_(std::make_unique<Impl>(config, track)) {}
+/// A feed per revolution follows the spindle, which a course cannot.
+bool Planner::Impl::suits_course(const Element& e) const {
+  return config.law != Law::spans && config.transformation == &identity() && e.kind != Element::Kind::rapid &&
+         e.revolutions == 0.0;
+}
+
+/// The one place where the law is chosen: by the first elements of a run, in which a course gains at each
+/// end of an element, and costs by the time of them.
+Planner::Impl::Run Planner::Impl::suitable() const {
+  constexpr double kGain = 0.5;
+  if (waiting.size() < 2 ||
+      !std::all_of(waiting.begin(), waiting.end(), [&](const Waiting& w) { return suits_course(w.element); }))
+    return Run::spans;
+  if (config.law == Law::course) return Run::course;
+  double time = 0.0, gain = 0.0;
+  for (const Waiting& w : waiting) {
+    Leg leg;
+    leg.piece = w.piece;
+    leg.limits = &config.limits;
+    leg.feed = w.element.feed;
+    const double v = fastest(leg, config.axis_count);
+    time += w.piece.length / v;
+    gain += change_time(leg, v, config.axis_count);
+  }
+  return kGain * gain > time ? Run::course : Run::spans;
+}
+
+bool Planner::Impl::rests_before(const Element& e, const Piece& piece) const {
+  if (run == Run::course) return !suits_course(e) || gather.rests_before(e, piece);
+  if (run == Run::undecided)
+    return rests_between(config, waiting.back().element.transition, waiting.back().piece, e, piece);
+  return run == Run::spans && rests && suits_course(e) && goes_on(e);  // and may go over to a course
+}
+
+void Planner::Impl::wait(const Element& e, const Piece& piece) {
+  if (waiting.empty()) waiting_from = at;
+  waiting.push_back({e, piece});
+  if (waiting.size() >= kUndecided) decide();
+}
+
+void Planner::Impl::decide() {
+  run = suitable();
+  if (run == Run::spans) {
+    contour.restart(waiting_from);
+    law.begin_at(publisher.next().piece, publisher.planned());
+  } else {
+    gather.restart(waiting_from);
+  }
+  for (const Waiting& w : waiting) pass_on(w.element);
+  waiting.clear();
+}
+
+void Planner::Impl::pass_on(const Element& e) {
+  if (run == Run::spans) {
+    contour.add(e);
+    return;
+  }
+  gather.add(e);
+  if (!gather.open()) run = Run::none;
+}
+
+bool Planner::Impl::add(const Element& e) {
+  const Shaped shaped = shape(config, at, e);
+  flaw = shaped.flaw;
+  if (flaw != Flaw::none) return false;
+  const bool moves = shaped.piece.length > 0.0;
+  if (moves && rests_before(e, shaped.piece)) finish();
+  if (run == Run::none) run = Run::undecided;
+  if (run != Run::undecided) {
+    pass_on(e);
+  } else if (moves) {
+    wait(e, shaped.piece);
+    if (run == Run::undecided && !(suits_course(e) && goes_on(e))) decide();
+  } else if (waiting.empty()) {
+    run = Run::none;
+  } else if (!goes_on(e)) {  // it only decides how the element before ends
+    decide();
+    pass_on(e);
+  }
+  if (moves) rests = !goes_on(e);
+  at = e.to;
+  return true;
+}
+
+void Planner::Impl::finish() {
+  if (run == Run::undecided) decide();
+  if (run == Run::spans) contour.finish();
+  if (run == Run::course) gather.finish();
+  run = Run::none;
+}
+
+Planner::Planner(const Config& config, Track& track, For what)
+    : impl_(std::make_unique<Impl>(config, track, what)) {}
 Planner::~Planner() = default;
 
 Track::Begin Planner::restart(const Vector& at) {
@@ -42,6 +194,9 @@ Track::Begin Planner::restart(const Vector& at) {
   const Track::Begin begin = p.publisher.next();
   p.contour.restart(at);
   p.law.restart();
+  p.course.restart();
+  p.forget();
+  p.at = at;
   p.mark(Entry::Kind::restart, 0, {});
   return begin;
 }
@@ -49,25 +204,30 @@ Track::Begin Planner::restart(const Vector& at) {
 bool Planner::add(const Element& element) {
   Element marked = element;
   marked.tag.marks = impl_->marks;
-  return impl_->contour.add(marked);
+  return impl_->add(marked);
 }
 
-Flaw Planner::last_flaw() const { return impl_->contour.last_flaw(); }
+Flaw Planner::last_flaw() const { return impl_->flaw; }
 
 void Planner::add_mark() { ++impl_->marks; }
 
 void Planner::add_event(std::uint32_t id, const Tag& tag) {
-  impl_->contour.finish();
+  impl_->finish();
   impl_->mark(Entry::Kind::event, id, tag);
 }
 
 void Planner::finish() {
-  impl_->contour.finish();
+  impl_->finish();
   impl_->mark(Entry::Kind::finish, 0, {});
 }
 
 bool Planner::wants_more() const { return impl_->publisher.wants_more(); }
-void Planner::work() { impl_->publisher.work(); }
-const Vector& Planner::position() const { return impl_->contour.position(); }
+
+void Planner::work() {
+  impl_->course.work();
+  impl_->publisher.work();
+}
+
+const Vector& Planner::position() const { return impl_->at; }
 
 }  // namespace servogate::path

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -13,8 +14,12 @@ namespace servogate::path {
 /// real-time safe.
 class Planner {
  public:
+  enum class For : std::uint8_t {
+    motion,
+    forecast,  ///< the time is wanted: courses have no pieces, knots and stops, and cannot be followed
+  };
   /// All positions are path coordinates, see Config::transformation.
-  Planner(const Config& config, Track& track);
+  Planner(const Config& config, Track& track, For what = For::motion);
   ~Planner();
   Planner(const Planner&) = delete;
   Planner& operator=(const Planner&) = delete;
@@ -40,8 +45,8 @@ class Planner {
   /// Nothing more for now: what was added runs to rest at its end. add() may go on later.
   void finish();
 
-  /// False while enough is planned ahead (two seconds, or as much as the track holds): call add() when true.
-  /// add() works all the same when false; it only costs memory.
+  /// False while enough is planned ahead (two to four seconds, or as much as the track holds): call add()
+  /// when true. add() works all the same when false; it only costs memory.
   bool wants_more() const;
 
   /// Publishes what is planned and has room in the track. Call it after add() and regularly while

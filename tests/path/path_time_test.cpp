@@ -40,7 +40,8 @@ TEST(PathTime, of_random_programs_is_that_of_the_follower_within_a_hundredth) {
   for (std::uint64_t n = 0; n < 60; ++n) {
     ProgramShape shape;
     shape.elements = n % 3 == 0 ? 200 : 12;
-    const RandomProgram p = random_program(first + n, shape);
+    RandomProgram p = random_program(first + n, shape);
+    p.config.law = n % 10 == 1 ? Law::fitting : Law::spans;
     const Estimate driven = estimate(p.config, p.start, p.elements);
     // Each stop costs a cycle until the follower goes on.
     const double stops = 2.0 * p.config.period_s * static_cast<double>(p.elements.size());

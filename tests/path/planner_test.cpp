@@ -50,7 +50,9 @@ TEST(Planner, a_thousand_collinear_blocks_take_the_time_of_one) {
   for (const double feed : {100.0, 500.0}) {
     Program one{line_to(60, 80, 0, feed)}, many;
     for (int k = 1; k <= 1000; ++k) many.push_back(line_to(0.06 * k, 0.08 * k, 0, feed));
-    EXPECT_NEAR(estimate(mill(), {}, many).seconds, estimate(mill(), {}, one).seconds, 0.0021);
+    const double alone = estimate(mill(), {}, one).seconds;
+    // A course leaves a hundredth of the limits for changes of rate.
+    EXPECT_NEAR(estimate(mill(), {}, many).seconds, alone, 0.01 * alone);
   }
 }
 

@@ -34,7 +34,8 @@ TEST(RandomPrograms, keep_every_limit_the_tolerance_and_the_end_point_whatever_h
   std::size_t cycles = 0;
   for (int k = 0; k < cases() && wrong < 10; ++k) {
     const std::uint64_t seed = base + static_cast<std::uint64_t>(k);
-    const RandomProgram program = random_program(seed, {2 + static_cast<int>(seed % 11), true, true});
+    RandomProgram program = random_program(seed, {2 + static_cast<int>(seed % 11), true, true});
+    program.config.law = k % 32 == 0 ? Law::course : k % 32 == 1 ? Law::fitting : Law::spans;
     const Trip r = run(program, scenario(seed));
     Worst w;
     const std::string text = verdict(r, program, &w);
@@ -78,6 +79,7 @@ TEST(RandomPrograms, of_many_short_blocks_keep_them_too_when_held_over_and_over)
   for (int k = 0; k < cases() / 100 && wrong < 10; ++k) {
     const std::uint64_t seed = base + static_cast<std::uint64_t>(k);
     RandomProgram program = random_program(seed, {120, false, false});
+    program.config.law = k % 4 == 0 ? Law::fitting : Law::spans;
     for (Element& e : program.elements) e.feed = std::max(e.feed, 60.0);  // so that it ends in minutes
     Scenario s = scenario(seed | 3);
     s.disturbed = 4000;

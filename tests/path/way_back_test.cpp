@@ -71,19 +71,19 @@ TEST(WayBack, is_whole_over_the_last_thousand_blocks_and_never_overwritten) {
 }
 
 TEST(WayBack, ends_where_the_path_was_begun) {
-  const std::vector<Element> program = long_program(400);
+  const std::vector<Element> program = long_program(6000);
   Machine m(mill());
   EXPECT_EQ(m.follower.behind().begin, m.follower.behind().end);
   Sample s;
-  while (s.tag.line < 50) s = m.step(program);
-  EXPECT_GT(m.follower.behind().end, 50u);
+  for (int cycle = 0; cycle < 20000 && s.tag.line < 50; ++cycle) s = m.step(program);
+  EXPECT_GE(m.follower.behind().end, 49u);
   m.follower.stop();
-  while (s.state != FollowerState::stopped) s = m.step(program);
+  for (int cycle = 0; cycle < 20000 && s.state != FollowerState::stopped; ++cycle) s = m.step(program);
   EXPECT_EQ(m.follower.behind().begin, m.follower.behind().end) << "of a path that was given up";
   const Vector there = s.position;
   m.planner.restart(there);
   Behind behind;
-  for (int cycle = 0; cycle < 5000 && behind.end < behind.begin + 20; ++cycle) {
+  for (int cycle = 0; cycle < 20000 && behind.end < behind.begin + 20; ++cycle) {
     m.step(program);
     behind = m.follower.behind();
   }

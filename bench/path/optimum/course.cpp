@@ -122,8 +122,10 @@ struct Leg {
 }  // namespace
 
 Shaped shape_of(const path::Config& config, const Program& program) {
-  path::Track track(config);
-  path::Planner planner(config, track);
+  path::Config by_spans = config;
+  by_spans.law = path::Law::spans;
+  path::Track track(by_spans);
+  path::Planner planner(by_spans, track);
   planner.restart({});
   Shaped out;
   Maker maker(config.axis_count, program.front().feed);

@@ -32,8 +32,13 @@ double total(const Shaped& shaped, const Limits& limits, bool with_jerk, bool& s
 
 constexpr double kTolerance = 0.01;
 
+path::Config by_spans(path::Config config) {
+  config.law = path::Law::spans;
+  return config;
+}
+
 void row(const Work& work) {
-  const double today = path::estimate(work.config, {}, work.program).seconds;
+  const double today = path::estimate(by_spans(work.config), {}, work.program).seconds;
   const Shaped shaped = shape_of(work.config, work.program);
   const Limits limits = limits_of(work.config);
   const double feed = work.program.front().feed;

@@ -220,7 +220,8 @@ void ClockEstimate::sharp_corners(const Run& run, double end) {
                     2.0 * room / turn * std::sqrt(limits.acceleration / room)});
     }
     const bool sharp = 1.5 * room / most <= std::min(before.piece.length, after.piece.length);
-    if (sharp && v < feed_) nodes_around(after.begin, y_of(v), end);
+    if (after.corner < feed_) v = sharp ? std::min(v, after.corner) : after.corner;
+    if ((sharp || after.corner < feed_) && v < feed_) nodes_around(after.begin, y_of(v), end);
   }
 }
 

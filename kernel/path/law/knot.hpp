@@ -17,6 +17,11 @@ struct LawTime {
     const double more = seconds * 1e9 + fraction, whole = std::floor(more);
     return {ns + static_cast<std::int64_t>(whole), more - whole};
   }
+  /// The sum of two. real-time safe.
+  LawTime plus(const LawTime& more) const noexcept {
+    const double sum = fraction + more.fraction, whole = std::floor(sum);
+    return {ns + more.ns + static_cast<std::int64_t>(whole), sum - whole};
+  }
   /// Seconds since `earlier`. real-time safe.
   double since(const LawTime& earlier) const noexcept {
     return (static_cast<double>(ns - earlier.ns) + (fraction - earlier.fraction)) * 1e-9;
@@ -55,11 +60,19 @@ struct Quintic {
 /// knots m - 1 and m is made of the controls of m - 3 to m; before the first knot of a run stand two
 /// controls that are published with its begin.
 struct Knot {
-  LawTime t;           ///< law time since the start of the run
-  double w = 0.0;      ///< knots a second at the knot
-  double a = 0.0;      ///< knots a second, a second
-  double place = 0.0;  ///< path parameter of the run that belongs to it
-  Vector control{};    ///< of the curve, one to the front
+  enum class Kind : std::uint8_t {
+    curve,     ///< the curve leads to it from the knot before
+    guide,     ///< only its control counts: one of the two before the first knot of a run
+    straight,  ///< a straight line at constant speed leads to it; `control` is its place
+    join,      ///< first knot of a run behind a straight: that one, two guides, and this, all at one time
+  };
+  Kind kind = Kind::curve;
+  LawTime t;             ///< law time since the start of the run
+  double w = 0.0;        ///< knots a second at the knot
+  double a = 0.0;        ///< knots a second, a second
+  double place = 0.0;    ///< path parameter of the run that belongs to it
+  double planned = 0.0;  ///< running sum of planned times, s; filled by the track
+  Vector control{};      ///< of the curve, one to the front
 };
 
 /// The way between two knots. real-time safe.

@@ -38,6 +38,7 @@ double Pipeline::step_of(const Leg& leg) const {
 
 void Pipeline::begin_run() {
   begun_ = true;
+  broken_ = false;
   ++counts_.runs;
   const double step = step_of(run_.leg(run_.first()));
   estimate_.clear(step);
@@ -71,6 +72,11 @@ void Pipeline::cruise(const Leg& leg, double speed) {
   sink_.cruise({position(leg.piece, 0.0, axes), position(leg.piece, leg.piece.length, axes),
                 leg.piece.length / speed});
   run_.clear(speed);
+}
+
+void Pipeline::abandon() {
+  run_.clear();
+  begun_ = ended_ = broken_ = false;
 }
 
 void Pipeline::end_run(double speed) {
@@ -136,7 +142,8 @@ void Pipeline::work_pass(std::size_t n) {
 
 void Pipeline::publish() {
   const Pass& last = *passes_.back();
-  if (last.beta.end() < 3) return;
+  broken_ = broken_ || last.speed.counts().failed > 0;
+  if (broken_ || last.beta.end() < 3) return;
   const double step = last.speed.step(), i1 = 1.0 / step;
   const std::size_t known = last.beta.end() - 1;  // knots
   if (published_ == 0) sink_.begin(last.controls[0], last.controls[1]);

@@ -76,6 +76,10 @@ class Pipeline {
   /// The run goes on along `leg`, a line, at a constant speed of its parameter; the next element begins
   /// another run, at that speed.
   void cruise(const Leg& leg, double speed);
+  /// Forgets the run in work.
+  void abandon();
+  /// There is no law inside of the limits for what comes next in this run; nothing more of it is put.
+  bool broken() const { return broken_; }
   /// Plans what can be planned. Call it after some elements, and after end().
   void work();
   const Counts& counts() const { return counts_; }
@@ -105,7 +109,7 @@ class Pipeline {
   KnotSink& sink_;
   Counts counts_;
   Run run_;
-  bool ended_ = false, begun_ = false;
+  bool ended_ = false, begun_ = false, broken_ = false;
   ClockEstimate estimate_;
   std::vector<std::unique_ptr<Pass>> passes_;
   std::size_t published_ = 0;  // knots

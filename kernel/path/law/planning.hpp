@@ -20,6 +20,11 @@ class Planning {
   void rest(bool confirm);
   /// Forgets what was not put yet; the path goes on from rest.
   void restart();
+  /// Pieces and times of another law lie before what is appended next.
+  void begin_at(std::uint64_t piece, double planned) {
+    next_piece_ = piece;
+    time_ = planned;
+  }
   /// Number of the last span; markers carry it.
   std::uint64_t last_number() const { return lookahead_.last_number(); }
 

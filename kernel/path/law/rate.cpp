@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace servogate::path {
 namespace {
@@ -10,6 +11,9 @@ namespace {
 constexpr double kPlace = 0.001, kWidePlace = 0.002,
                  kGentle = 0.5;    // s between places; wide in changes longer than that
 constexpr double kShare = 0.9997;  // of the limits: what may lie between two places
+constexpr double kAbove = 0.996;   // the same above full rate
+constexpr int kTry = 6;            // places that a try counts for by itself
+constexpr double kLeastShare = 0.03, kOfStop = 0.6;
 constexpr double kShortest = 0.04, kLongest = 6.0, kLonger = 1.18;
 
 /// The step that goes late, its derivatives and its integral, by the share of time.
@@ -44,33 +48,33 @@ RateState RateChange::at(double t) const noexcept {
           r0 * in + h * seconds * passed + slope0 * seconds * seconds * left + r1 * (t - in)};
 }
 
+std::int64_t begin_of(const CourseView& view, std::int64_t m) noexcept {
+  const Knot* before = view.knot(m - 1);
+  return before != nullptr && before->kind == Knot::Kind::join ? m - 4 : m - 1;
+}
+
+std::int64_t next_of(const CourseView& view, std::int64_t m) noexcept {
+  const Knot* next = view.knot(m + 1);
+  return next != nullptr && next->kind == Knot::Kind::guide ? m + 4 : m + 1;
+}
+
 bool CoursePlace::go(const LawTime& t) noexcept {
   for (;;) {
     const Knot* to = view_->knot(m_);
     if (to == nullptr) return false;
     if (t.since(to->t) > 0.0) {
       if (m_ == view_->end()) return true;
-      ++m_;
+      const std::int64_t next = next_of(*view_, m_);
+      if (view_->knot(next) == nullptr) return false;
+      m_ = next;
       continue;
     }
-    const Knot* from = view_->knot(m_ - 1);
+    const std::int64_t begin = begin_of(*view_, m_);
+    const Knot* from = view_->knot(begin);
     if (from == nullptr) return false;
-    if (t.since(from->t) >= 0.0 || m_ == 1) return true;
-    --m_;
+    if (t.since(from->t) >= 0.0 || begin == 0) return true;
+    m_ = begin;
   }
-}
-
-bool CoursePlace::stretch(const Knot* (&four)[4]) const noexcept {
-  for (std::int64_t q = 0; q < 4; ++q) {
-    four[q] = view_->knot(m_ - 3 + q);
-    if (four[q] == nullptr) return false;
-  }
-  return true;
-}
-
-Vector CoursePlace::position(const LawTime& t, int axes) const noexcept {
-  const Knot* four[4];
-  return stretch(four) ? Stretch(four).position(t.since(four[2]->t), axes) : Vector{};
 }
 
 bool Interval::take(const CourseView& view, std::int64_t m, int axes) noexcept {
@@ -78,14 +82,44 @@ bool Interval::take(const CourseView& view, std::int64_t m, int axes) noexcept {
   if (k0 == nullptr || k1 == nullptr || k2 == nullptr || k3 == nullptr) return false;
   m_ = m;
   begin_ = k2->t;
-  tau_ = Quintic::between(k3->t.since(k2->t), k2->w, k2->a, k3->w, k3->a);
+  place_ = k2->place;
+  way_ = k3->place - k2->place;
+  const double seconds = k3->t.since(k2->t);
+  if (k3->kind == Knot::Kind::straight) {
+    tau_ = {seconds, 1.0, 0.0, 0.0, 0.0, 0.0};
+    bend_ = third_ = {};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
+      start_[i] = (k0->control[i] + 4.0 * k1->control[i] + k2->control[i]) / 6.0;
+      slope_[i] = k3->control[i] - start_[i];
+    }
+    return true;
+  }
+  tau_ = Quintic::between(seconds, k2->w, k2->a, k3->w, k3->a);
   for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
     const double p0 = k0->control[i], p1 = k1->control[i], p2 = k2->control[i], p3 = k3->control[i];
+    start_[i] = (p0 + 4.0 * p1 + p2) / 6.0;
     slope_[i] = 0.5 * (p2 - p0);
     bend_[i] = p0 - 2.0 * p1 + p2;
     third_[i] = p3 - 3.0 * p2 + 3.0 * p1 - p0;
   }
   return true;
+}
+
+CoursePoint Interval::at(double in, double rate, double slope, int axes) const noexcept {
+  CoursePoint out;
+  const double s = std::clamp(in / tau_.seconds, 0.0, 1.0), f = std::clamp(tau_.at(s), 0.0, 1.0);
+  const bool rests = in < 0.0 || in > tau_.seconds;
+  const double w = rests ? 0.0 : tau_.d1(s), v = w * rate;
+  const double a = rests ? 0.0 : tau_.d2(s) * rate * rate + w * slope;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
+    const double y2 = bend_[i] + f * third_[i], y1 = slope_[i] + f * (bend_[i] + 0.5 * f * third_[i]);
+    out.x[i] = start_[i] + f * (slope_[i] + f * (0.5 * bend_[i] + f * third_[i] / 6.0));
+    out.v[i] = y1 * v;
+    out.a[i] = y2 * v * v + y1 * a;
+  }
+  out.place = place_ + f * way_;
+  out.speed = way_ * v;
+  return out;
 }
 
 bool Interval::keeps(double in, const RateState& rate, const RateLimits& limits) const noexcept {
@@ -110,21 +144,24 @@ bool Verification::keeps_at_knots(const CourseView& view, std::int64_t to, const
   const double p0 = change_.at(last_).passed, p1 = change_.at(t_).passed;
   while (interval_.knot() != to) {
     const bool on = to > interval_.knot();
-    const Knot* knot = view.knot(on ? interval_.knot() : interval_.knot() - 1);
+    const std::int64_t begin = begin_of(view, interval_.knot());
+    const Knot* knot = view.knot(on ? interval_.knot() : begin);
     if (knot == nullptr) return false;
     const double there = knot->t.since(from_);
     const double share = p1 != p0 ? std::clamp((there - p0) / (p1 - p0), 0.0, 1.0) : 0.0;
     const RateState rate = change_.at(last_ + share * (t_ - last_));
     places -= 2;
     if (!interval_.keeps(on ? interval_.seconds() : 0.0, rate, limits)) return false;
-    if (!interval_.take(view, interval_.knot() + (on ? 1 : -1), limits.axes)) return false;
+    if (!interval_.take(view, on ? next_of(view, interval_.knot()) : begin, limits.axes)) return false;
     if (!interval_.keeps(on ? 0.0 : interval_.seconds(), rate, limits)) return false;
   }
   return true;
 }
 
-void Verification::begin(const RateChange& change, const LawTime& from, std::int64_t near_knot) noexcept {
+void Verification::begin(const RateChange& change, const LawTime& from, std::int64_t near_knot,
+                         double beyond) noexcept {
   change_ = change;
+  beyond_ = beyond;
   from_ = from;
   before_ = near_knot;
   t_ = last_ = 0.0;
@@ -134,23 +171,37 @@ Fit Verification::go(const CourseView& view, const RateLimits& limits, int& plac
   CoursePlace place(view);
   place.set_knot(before_);
   if (!interval_.take(view, before_, limits.axes)) return Fit::unpublished;
-  const double next = change_.seconds > kGentle ? kWidePlace : kPlace;
+  const double most = std::max({1.0, change_.r0, change_.r1});
+  const double next = change_.seconds > kGentle && most == 1.0 ? kWidePlace : kPlace;
+  RateLimits kept = limits;
+  if (most > 1.0) {  // more may lie between two places
+    for (AxisLimits& axis : kept.limits) {
+      axis.acceleration *= kAbove;
+      axis.jerk *= kAbove;
+    }
+  }
   for (;; t_ = std::min(t_ + next, change_.seconds)) {
     if (places <= 0) return Fit::open;
     const RateState s = change_.at(t_);
-    if (!(std::abs(s.rate) <= 1.0 + 1e-12)) return Fit::breaks;
+    if (!(std::abs(s.rate) <= most + 1e-12)) return Fit::breaks;
     // A change that does not go through rest does not turn round on the way.
     if (change_.r0 * change_.r1 >= 0.0 && s.rate * (change_.r0 + change_.r1) < -1e-12) return Fit::breaks;
     const LawTime at = from_.plus(s.passed);
     if (!place.go(at)) return Fit::unpublished;
     --places;
     // Both sides of the knots on the way; a place at the very start may lie in the next interval.
-    if (place.knot() != interval_.knot() && !keeps_at_knots(view, place.knot(), limits, places))
+    if (place.knot() != interval_.knot() && !keeps_at_knots(view, place.knot(), kept, places))
       return Fit::breaks;
-    if (!interval_.keeps(at.since(interval_.begin()), s, limits)) return Fit::breaks;
+    if (!interval_.keeps(at.since(interval_.begin()), s, kept)) return Fit::breaks;
     before_ = place.knot();
     last_ = t_;
-    if (t_ >= change_.seconds) return Fit::fits;
+    if (t_ < change_.seconds) continue;
+    if (change_.r1 == 0.0 || view.end() >= 0) return Fit::fits;
+    // Who does not come to rest must reach the last stop that is known.
+    const StopHint guard = view.guard();
+    const Knot* stop = view.knot(guard.knot);
+    if (guard.knot < 0 || stop == nullptr) return Fit::unpublished;
+    return stop->t.since(at) >= change_.r1 * beyond_ ? Fit::fits : Fit::unpublished;
   }
 }
 
@@ -184,6 +235,11 @@ StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& be
   return {before.seconds, before.power, -1};
 }
 
+void RateMotion::begin(double rate) noexcept {
+  *this = RateMotion(limits_);
+  rate_ = rate;
+}
+
 void RateMotion::advance(double period) noexcept {
   if (!active_) {
     time_ = time_.plus(rate_ * period);
@@ -204,39 +260,60 @@ void RateMotion::start(const RateChange& change) noexcept {
   into_ = 0.0;
   active_ = true;
   open_ = false;
+  if (change.r1 != 0.0) starving_ = false;
 }
 
-Fit RateMotion::enter(const CourseView& view, double target, double seconds, int power) noexcept {
+Fit RateMotion::enter(const CourseView& view, double target, double seconds, int power,
+                      double period) noexcept {
   const double slope = active_ ? change_.at(into_).slope : 0.0;
-  verification_.begin({rate_, slope, target, seconds, power}, time_, knot_);
+  left_ -= kTry;
+  verification_.begin({rate_, slope, target, seconds, power}, time_, knot_, period);
   const Fit fit = verification_.go(view, limits_, left_);
   if (fit == Fit::fits) start(verification_.change());
   return fit;
 }
 
-/// The hint holds from its knot on, which may be reached in this cycle.
+/// A stop holds from its knot on, which may be reached in this cycle; at a lower rate it takes longer, by the
+/// same way.
 bool RateMotion::stop_at(const CourseView& view, const StopHint& hint, double period) noexcept {
   const Knot* knot = hint.knot >= 0 ? view.knot(hint.knot) : nullptr;
-  if (knot == nullptr) return false;
-  const double until = knot->t.since(time_);
+  if (knot == nullptr || active_ || !(rate_ > 0.0 && rate_ <= 1.0)) return false;
+  const double until = knot->t.since(time_) / rate_;
   if (until < 0.0 || until > period) return false;
   time_ = knot->t;
-  start({1.0, 0.0, 0.0, hint.seconds, hint.power});
+  start({rate_, 0.0, 0.0, hint.seconds / rate_, hint.power});
   advance(period - until);
   return true;
 }
 
-/// First the hint and longer ones; then, cycle by cycle, all lengths from the shortest on.
-void RateMotion::search(const CourseView& view, double target, const StopHint& hint) noexcept {
+bool RateMotion::stop_in_time(const CourseView& view, double target, double period) noexcept {
+  if (active_) return false;
+  if (target == 0.0 && stop_at(view, view.stop_near(knot_), period)) return true;
+  if (view.end() >= 0 || !stop_at(view, view.guard(), period)) return false;
+  starving_ = target != 0.0;
+  return true;
+}
+
+/// First the known stop and longer ones; then, cycle by cycle, all lengths from the shortest on.
+void RateMotion::search(const CourseView& view, double target, double period) noexcept {
+  const StopHint hint = view.stop_near(knot_);
+  // A change by less takes less; where no stop is known, all lengths are tried.
+  const double least =
+      hint.knot < 0 ? kShortest : std::max(kShortest, kOfStop * hint.seconds * std::abs(target - rate_));
+  const auto anew = [&] {
+    next_ = least;
+    power_ = 3;
+  };
   if (searched_for_ != target) {
     searched_for_ = target;
-    next_ = kShortest;
-    power_ = 3;
+    anew();
     open_ = false;
   }
-  if (target == 0.0 && !active_ && rate_ == 1.0 && hint.seconds * 1000.0 < left_) {
+  if (!open_) share_ = 1.0;
+  const double known = hint.seconds / std::max(rate_, 1e-9);
+  if (target == 0.0 && !active_ && hint.knot >= 0 && rate_ > 0.0 && known * 1000.0 < left_) {
     for (const double longer : {1.0, 1.18, 1.4})
-      if (enter(view, target, hint.seconds * longer, longer == 1.4 ? 5 - hint.power : hint.power) ==
+      if (enter(view, target, known * longer, longer == 1.4 ? 5 - hint.power : hint.power, period) ==
           Fit::fits)
         return;
   }
@@ -247,21 +324,93 @@ void RateMotion::search(const CourseView& view, double target, const StopHint& h
     open_ = false;
   }
   while (left_ > 0) {
-    const Fit fit = enter(view, target, next_, power_);
+    const bool alone = left_ == kMostPlaces;
+    const Fit fit = enter(view, share_ * target, next_, power_, period);
     if (fit == Fit::fits) return;
-    // At rest the place does not move, and the next cycle goes on; else it begins again with the shortest.
+    // Longer changes would end behind all that is known, too.
+    if (fit == Fit::unpublished && power_ == 2) {
+      anew();
+      share_ *= 0.5;
+      if (share_ < kLeastShare || share_ * target <= rate_) return;
+      continue;
+    }
+    // The next cycle goes on: at rest, where the place does not move, with the same change; else with its
+    // length, or with the shortest where one cycle is not enough for it.
     open_ = fit == Fit::open && rate_ == 0.0 && !active_;
+    if (fit == Fit::open && !open_ && !alone) return;
     power_ = 5 - power_;
     if (power_ == 3) next_ *= kLonger;
-    if (next_ > kLongest || (fit == Fit::open && !open_)) next_ = kShortest;
+    if (next_ > kLongest || (fit == Fit::open && !open_)) anew();
   }
 }
 
-bool RateMotion::step(const CourseView& view, double target, const StopHint& hint, double period) noexcept {
+/// Up and back again at once; one try a cycle, shorter and longer ones in turn.
+void RateMotion::surge(const CourseView& view, double target, double period) noexcept {
+  constexpr double kShares[] = {1.0, 0.4};
+  constexpr double kLengths[] = {0.1, 0.16, 0.25, 0.4, 0.6};
+  constexpr int kTries = static_cast<int>(std::size(kShares) * std::size(kLengths));
+  const int n = surges_tried_;
+  surges_tried_ = (n + 1) % kTries;
+  const double seconds = kLengths[static_cast<std::size_t>(n) % std::size(kLengths)];
+  const double rate = rate_ + (target - rate_) * kShares[static_cast<std::size_t>(n) / std::size(kLengths)];
+  const RateChange up{rate_, 0.0, rate, seconds, 3}, down{rate, 0.0, 1.0, seconds, 3};
+  Verification way;
+  way.begin(up, time_, knot_, period);
+  if (way.go(view, limits_, left_) != Fit::fits) return;
+  way.begin(down, time_.plus(up.at(seconds).passed), way.knot(), period);
+  if (way.go(view, limits_, left_) != Fit::fits) return;
+  start(up);
+  back_ = down;
+  back_in_ = 0.0;
+  surges_tried_ = n;
+}
+
+/// So much longer at this rate, and back from there.
+void RateMotion::put_off(const CourseView& view, double period) noexcept {
+  constexpr double kMore = 0.016, kFar = 0.04;
+  if (back_in_ > kFar) return;
+  const RateChange on{rate_, 0.0, rate_, kMore, 3};
+  Verification way;
+  way.begin(on, time_.plus(rate_ * back_in_), knot_, period);
+  if (way.go(view, limits_, left_) != Fit::fits) return;
+  const LawTime there = time_.plus(rate_ * (back_in_ + kMore));
+  const std::int64_t knot = way.knot();
+  way.begin(back_, there, knot, period);
+  if (way.go(view, limits_, left_) == Fit::fits) back_in_ += kMore;
+}
+
+/// The way back from above 1 begins in this cycle.
+bool RateMotion::come_back(double period) noexcept {
+  if (active_ || rate_ <= 1.0) return false;
+  if (back_in_ >= period) {
+    back_in_ -= period;
+    return false;
+  }
+  const double until = back_in_;
+  time_ = time_.plus(rate_ * until);
+  start(back_);
+  advance(period - until);
+  return true;
+}
+
+void RateMotion::seek(const CourseView& view, double target, double period) noexcept {
+  const bool above = !active_ && rate_ > 1.0;
+  if (target <= 1.0) {
+    if (target != wanted()) search(view, target, period);
+  } else if (above && target >= rate_) {
+    put_off(view, period);
+    if (target > rate_) surge(view, target, period);
+  } else if (wanted() < 1.0) {
+    search(view, 1.0, period);
+  } else if (!active_ && rate_ == 1.0) {
+    surge(view, target, period);
+  }
+}
+
+bool RateMotion::step(const CourseView& view, double target, double period) noexcept {
   left_ = kMostPlaces;
-  if (target != wanted()) search(view, target, hint);
-  const bool stopping = target == 0.0 && !active_ && rate_ == 1.0;
-  if (!stopping || !stop_at(view, hint, period)) advance(period);
+  seek(view, target, period);
+  if (!come_back(period) && !stop_in_time(view, target, period)) advance(period);
   CoursePlace place(view);
   place.set_knot(knot_);
   place.go(time_);
@@ -272,11 +421,11 @@ bool RateMotion::step(const CourseView& view, double target, const StopHint& hin
   return !(ended || begun);
 }
 
-Vector RateMotion::position(const CourseView& view) const noexcept {
-  CoursePlace place(view);
-  place.set_knot(knot_);
-  place.go(time_);
-  return place.position(time_, limits_.axes);
+CoursePoint RateMotion::point(const CourseView& view) const noexcept {
+  Interval interval;
+  if (!interval.take(view, knot_, limits_.axes)) return {};
+  return interval.at(time_.since(interval.begin()), rate_, active_ ? change_.at(into_).slope : 0.0,
+                     limits_.axes);
 }
 
 }  // namespace servogate::path

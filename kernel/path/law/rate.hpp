@@ -23,33 +23,47 @@ struct RateChange {
   RateState at(double t) const noexcept;
 };
 
-/// Knots of a run that the reader may look at. Numbers count from the start of the run; -2 and -1 are the
-/// controls before it.
+/// A stop from full rate that has been verified from its knot on.
+struct StopHint {
+  double seconds = 0.3;
+  int power = 3;
+  std::int64_t knot = -1;  ///< -1: none was found
+};
+
+/// Knots of a course from rest to rest that the reader may look at. Numbers count from its first knot; -2 and
+/// -1 are the controls before it.
 class CourseView {
  public:
   /// nullptr: not published, or no longer kept. real-time safe.
   virtual const Knot* knot(std::int64_t number) const noexcept = 0;
-  /// Number of the knot that the run rests in; -1: not published yet. real-time safe.
+  /// Number of the knot that the course rests in; -1: not published yet. real-time safe.
   virtual std::int64_t end() const noexcept = 0;
+  /// While the end is not published: the last stop that is. Behind its knot the motion may not go without it.
+  virtual StopHint guard() const noexcept { return {}; }
+  /// The first stop at or behind a knot, or the last one before. real-time safe.
+  virtual StopHint stop_near(std::int64_t /*knot*/) const noexcept { return {}; }
 
  protected:
   ~CourseView() = default;
 };
 
-/// A place in a run that moves along with a law time.
+/// Number of the knot where the interval begins that knot `m` ends. real-time safe.
+std::int64_t begin_of(const CourseView& view, std::int64_t m) noexcept;
+/// Number of the knot that ends the interval behind knot `m`; it need not be published. real-time safe.
+std::int64_t next_of(const CourseView& view, std::int64_t m) noexcept;
+
+/// A place in a course that moves along with a law time.
 class CoursePlace {
  public:
   explicit CoursePlace(const CourseView& view) noexcept : view_(&view) {}
   /// To a law time near the last one; false: it is not published. Before the start and behind the end of a
-  /// run the course rests there.
+  /// course it rests there.
   bool go(const LawTime& t) noexcept;
   /// Number of the knot that ends the interval.
   std::int64_t knot() const noexcept { return m_; }
   void set_knot(std::int64_t m) noexcept { m_ = m; }
-  Vector position(const LawTime& t, int axes) const noexcept;
 
  private:
-  bool stretch(const Knot* (&four)[4]) const noexcept;
   const CourseView* view_;
   std::int64_t m_ = 1;
 };
@@ -58,6 +72,13 @@ class CoursePlace {
 struct RateLimits {
   int axes = 0;
   std::array<AxisLimits, kMaxAxes> limits{};
+};
+
+/// Where the motion is, and how it goes on.
+struct CoursePoint {
+  Vector x{}, v{}, a{};  ///< of the axes
+  double place = 0.0;    ///< path parameter
+  double speed = 0.0;    ///< of the path parameter
 };
 
 /// The way between two knots, made ready for many looks at its derivatives. real-time safe.
@@ -71,17 +92,20 @@ class Interval {
   /// The limits hold `in` seconds of law time behind its begin at this rate; before and behind it the course
   /// rests.
   bool keeps(double in, const RateState& rate, const RateLimits& limits) const noexcept;
+  /// The course `in` seconds behind its begin, with velocity and acceleration at this rate.
+  CoursePoint at(double in, double rate, double slope, int axes) const noexcept;
 
  private:
   std::int64_t m_ = 0;
   LawTime begin_;
   Quintic tau_{};
-  std::array<double, kMaxAxes> slope_{}, bend_{}, third_{};  // of the spline, by axis
+  double place_ = 0.0, way_ = 0.0;
+  Vector start_{}, slope_{}, bend_{}, third_{};  // of the spline at its begin
 };
 
 enum class Fit : std::uint8_t {
   fits,
-  breaks,       ///< a limit, or the rate leaves -1 to 1
+  breaks,       ///< a limit, or the rate leaves -1 to 1, or what it changes between
   unpublished,  ///< it would end behind what is known
   open,         ///< more places to look at than were allowed
 };
@@ -90,10 +114,14 @@ enum class Fit : std::uint8_t {
 /// milliseconds, and at both sides of each knot that is passed. May go on in a later cycle where it was left.
 class Verification {
  public:
-  void begin(const RateChange& change, const LawTime& from, std::int64_t near_knot) noexcept;
+  /// `beyond`: so much longer the rate at its end must hold before the last known stop.
+  void begin(const RateChange& change, const LawTime& from, std::int64_t near_knot,
+             double beyond = 0.0) noexcept;
   /// Counts the places down that it looks at, and stops at 0.
   Fit go(const CourseView& view, const RateLimits& limits, int& places) noexcept;
   const RateChange& change() const noexcept { return change_; }
+  /// Number of the knot that ends the interval where it is.
+  std::int64_t knot() const noexcept { return before_; }
 
  private:
   bool keeps_at_knots(const CourseView& view, std::int64_t to, const RateLimits& limits,
@@ -102,35 +130,36 @@ class Verification {
   LawTime from_;
   std::int64_t before_ = 1;  // knot of the last place
   Interval interval_;
-  double t_ = 0.0, last_ = 0.0;
-};
-
-/// A stop from full rate that has been verified from its knot on.
-struct StopHint {
-  double seconds = 0.3;
-  int power = 3;
-  std::int64_t knot = -1;  ///< -1: none was found
+  double t_ = 0.0, last_ = 0.0, beyond_ = 0.0;
 };
 
 /// The shortest stop at a knot that is found near the one of a knot before. Bounded; for the planner.
 StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& before,
                    const RateLimits& limits);
 
-/// Follows a run at a rate that changes. One cycle looks at no more than so many places of a change.
+/// Follows a course at a rate that changes. One cycle looks at no more than so many places of a change. While
+/// the end of the course is not published, no change is entered that does not end before the last stop that
+/// is, and there the motion stops.
 class RateMotion {
  public:
-  static constexpr int kMostPlaces = 1200;  // a cycle
+  static constexpr int kMostPlaces = 1000;  // a cycle
 
   explicit RateMotion(const RateLimits& limits) noexcept : limits_(limits) {}
-  /// One cycle on: `target` is the rate that is wanted, -1 to 1; `hint`: the stop at the next knot that has
-  /// one. False: the law time has come to the end of the run, or to its start backwards.
-  bool step(const CourseView& view, double target, const StopHint& hint, double period) noexcept;
-  Vector position(const CourseView& view) const noexcept;
+  /// At the start of a course, which rests there: any rate is at once.
+  void begin(double rate) noexcept;
+  /// One cycle on: `target` is the rate that is wanted, -1 to 1, or above where the path allows it: a rate
+  /// above 1 is entered together with a way back to 1, and kept while that can be put off. False: the law
+  /// time has come to the end of the course, or to its start backwards.
+  bool step(const CourseView& view, double target, double period) noexcept;
+  CoursePoint point(const CourseView& view) const noexcept;
   double rate() const noexcept { return rate_; }
   const LawTime& time() const noexcept { return time_; }
   std::int64_t knot() const noexcept { return knot_; }
   /// A change is on its way.
   bool changing() const noexcept { return active_; }
+  bool at_rest() const noexcept { return !active_ && rate_ == 0.0; }
+  /// It stops, or stands, because the course is not published any further.
+  bool starving() const noexcept { return starving_; }
   double wanted() const noexcept { return active_ ? change_.r1 : rate_; }
   /// Looked at in the last cycle.
   int places() const noexcept { return kMostPlaces - left_; }
@@ -138,9 +167,14 @@ class RateMotion {
  private:
   void advance(double period) noexcept;
   void start(const RateChange& change) noexcept;
-  Fit enter(const CourseView& view, double target, double seconds, int power) noexcept;
+  Fit enter(const CourseView& view, double target, double seconds, int power, double period) noexcept;
   bool stop_at(const CourseView& view, const StopHint& hint, double period) noexcept;
-  void search(const CourseView& view, double target, const StopHint& hint) noexcept;
+  bool stop_in_time(const CourseView& view, double target, double period) noexcept;
+  void search(const CourseView& view, double target, double period) noexcept;
+  void seek(const CourseView& view, double target, double period) noexcept;
+  void surge(const CourseView& view, double target, double period) noexcept;
+  void put_off(const CourseView& view, double period) noexcept;
+  bool come_back(double period) noexcept;
 
   RateLimits limits_;
   LawTime time_;
@@ -148,12 +182,16 @@ class RateMotion {
   double rate_ = 1.0;
   RateChange change_;
   double into_ = 0.0;  ///< the change, s
-  bool active_ = false;
+  bool active_ = false, starving_ = false;
   double searched_for_ = 2.0;  ///< target of the search
   double next_ = 0.0;          ///< length to try next
+  double share_ = 1.0;         ///< of the target, where not enough is published for all of it
   int power_ = 3, left_ = kMostPlaces;
   Verification verification_;
-  bool open_ = false;  ///< it goes on, at rest
+  bool open_ = false;     ///< it goes on, at rest
+  RateChange back_;       ///< from above 1
+  double back_in_ = 0.0;  ///< s at the present rate until it begins
+  int surges_tried_ = 0;
 };
 
 }  // namespace servogate::path

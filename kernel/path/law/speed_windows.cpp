@@ -28,6 +28,7 @@ void SpeedWindows::clear(double step) {
   done_ = false;
   from_ = leg_ = open_ = 0;
   made_ = 0;
+  reckoned_ = -1;
   rest_.clear();
 }
 
@@ -59,7 +60,9 @@ bool SpeedWindows::window(const Run& run, const Kept<double>& places, const Kept
   const std::size_t known = controls.end() - 3;  // intervals
   const std::size_t begun = kFirstWindow << std::min(made_, 8), near = from_ + std::min(kLeastWindow, begun);
   if (!complete && known < near + 1) return false;
-  const std::size_t over = overlap(run, places, std::min(near, known));
+  if (reckoned_ != made_) over_ = overlap(run, places, std::min(near, known));
+  reckoned_ = made_;
+  const std::size_t over = over_;
   const std::size_t size = std::min(std::max(4 * over, kLeastWindow), over + begun);
   std::size_t to = from_ + size;
   if (!complete && known < to + over + kAhead + 1) return false;
@@ -122,9 +125,11 @@ void SpeedWindows::bounds(const Run& run, const Kept<double>& places, std::size_
     KnotBound bound;
     bound.feed = std::numeric_limits<double>::infinity();
     bound.turning = run.leg(leg).turning;
-    for (std::size_t n = first; n < end; ++n)
+    for (std::size_t n = first; n < end; ++n) {
       if (run.leg(n).turning == bound.turning)
         bound.feed = std::min(bound.feed, kFeedShare * run.leg(n).feed);
+      if (n > first) bound.feed = std::min(bound.feed, kFeedShare * run.leg(n).corner);
+    }
     bound.limits = merged(run, first, end);
     bounds_.push_back(bound);
   }

@@ -61,7 +61,8 @@ class SpeedWindows {
   Counts counts_;
   bool done_ = false;
   std::size_t from_ = 0, open_ = 0;
-  int made_ = 0;
+  int made_ = 0, reckoned_ = -1;  // windows; the one that over_ belongs to
+  std::size_t over_ = 0;          // knots of overlap
   std::size_t leg_ = 0;
   std::vector<double> rest_;  // beta from from_ on: committed head, and what the window before had behind it
   std::vector<double> controls_, levels_, slopes_, calm_;

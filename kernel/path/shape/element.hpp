@@ -20,6 +20,13 @@ struct AxisLimits {
   double jerk = 0.0;
 };
 
+/// How speed goes over the path; one law from rest to rest.
+enum class Law : std::uint8_t {
+  fitting,  ///< a course where elements take less than half the time of a change of speed, else spans
+  spans,    ///< S-curves from span to span, acceleration zero between them
+  course,   ///< shape and law over one clock, acceleration carried through
+};
+
 class Transformation;
 /// Path coordinates are those of the axes.
 const Transformation& identity() noexcept;
@@ -34,6 +41,9 @@ struct Config {
   std::uint32_t piece_capacity = 8192;  ///< look-ahead in pieces of geometry (about 0.8 kB each), >= 1024
   /// Pieces that stay on the track behind the motion; an element makes three at most.
   std::uint32_t pieces_behind = 3072;
+  /// Of runs that a course can be made for: several elements, feed by time, path coordinates of the axes. A
+  /// course is faster where elements are short; planning it costs by the time that it takes.
+  Law law = Law::fitting;
   const Transformation* transformation = &identity();  ///< axes/; from path coordinates to the axes
 };
 

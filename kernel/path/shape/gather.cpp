@@ -9,7 +9,25 @@
 namespace servogate::path {
 namespace {
 
+constexpr double kSlowestCorner = 0.5;  // mm/s; slower is rest
+constexpr double kWayBack = 170.0 / 180.0 * std::numbers::pi;
+constexpr double kMostBulge = 0.25;  // of the tolerance
+constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kUsual = 0.01;  // mm: what the clock of a run without corners is made for
+
+/// NC-110 G27: the speed at which the corner's form error is what the program allows.
+double corner_speed(const Config& config, const Transition& transition, const Piece& before,
+                    const Piece& next) {
+  if (transition.continuation != Continuation::corner_limited) return kNone;
+  const double s = std::cos(0.5 * turn(before, next, config.axis_count));
+  if (s >= 1.0) return kNone;
+  double a = kNone;
+  const Vector t0 = evaluate(before, before.length, config.axis_count).d1,
+               t1 = evaluate(next, 0.0, config.axis_count).d1;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(config.axis_count); ++i)
+    if (std::abs(t0[i]) + std::abs(t1[i]) > 1e-9) a = std::min(a, config.limits[i].acceleration);
+  return std::sqrt(a * transition.erf * s / (1.0 - s));
+}
 
 }  // namespace
 
@@ -19,16 +37,21 @@ void Gather::restart(const Vector& at) {
   flaw_ = Flaw::none;
 }
 
-bool Gather::goes_on(const Element& e) const {
+bool goes_on(const Element& e) {
   const Transition& t = e.transition;
   return e.kind != Element::Kind::rapid && t.continuation != Continuation::exact_stop && t.tolerance > 0.0 &&
          (t.continuation != Continuation::corner_limited || t.erf > 0.0);
 }
 
-bool Gather::stops_before(const Element& e, const Piece& piece) const {
-  if (e.kind == Element::Kind::rapid) return true;
-  return before_.continuation == Continuation::corner_limited &&
-         turn(last_, piece, config_.axis_count) > before_.max_angle_deg / 180.0 * std::numbers::pi + 1e-9;
+bool rests_between(const Config& config, const Transition& transition, const Piece& before,
+                   const Element& element, const Piece& piece) {
+  if (element.kind == Element::Kind::rapid) return true;
+  const double angle = turn(before, piece, config.axis_count);
+  // A way back on itself reaches its end point.
+  if (angle > kWayBack && std::min(before.length, piece.length) > transition.tolerance) return true;
+  return transition.continuation == Continuation::corner_limited &&
+         (angle > transition.max_angle_deg / 180.0 * std::numbers::pi + 1e-9 ||
+          corner_speed(config, transition, before, piece) < kSlowestCorner);
 }
 
 bool Gather::add(const Element& e) {
@@ -36,7 +59,7 @@ bool Gather::add(const Element& e) {
   flaw_ = shaped.flaw;
   if (flaw_ != Flaw::none) return false;
   const bool moves = shaped.piece.length > 0.0;
-  if (open_ && moves && stops_before(e, shaped.piece)) rest(false);
+  if (moves && rests_before(e, shaped.piece)) rest(false);
   if (moves) {
     put(e, shaped.piece);
     at_ = e.to;
@@ -45,11 +68,20 @@ bool Gather::add(const Element& e) {
   return true;
 }
 
+/// So far a curve is from the chord between its places in two cycles.
+double Gather::bulge() const {
+  double square = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(config_.axis_count); ++i)
+    square += config_.limits[i].acceleration * config_.limits[i].acceleration;
+  return config_.period_s * config_.period_s * std::sqrt(square) / 8.0;
+}
+
 void Gather::put(const Element& e, const Piece& piece) {
   Leg leg;
   leg.piece = piece;
   if (e.kind != Element::Kind::rapid) leg.feed = e.feed;
   leg.limits = &config_.limits;
+  if (open_) leg.corner = corner_speed(config_, before_, last_, piece);
   leg.turning = true;
   for (int i = 0; i < config_.axis_count; ++i)
     if (!config_.rotary[static_cast<std::size_t>(i)] &&
@@ -58,6 +90,7 @@ void Gather::put(const Element& e, const Piece& piece) {
   const double own = goes_on(e) ? e.transition.tolerance : 0.0, begin = open_ ? before_.tolerance : 0.0;
   leg.exact = own == 0.0 && begin == 0.0;
   leg.tolerance = leg.exact ? kUsual : own == 0.0 ? begin : begin == 0.0 ? own : std::min(own, begin);
+  leg.tolerance -= std::min(kMostBulge * leg.tolerance, bulge());
   // From rest to rest there is nothing to round.
   const bool single = !open_ && !goes_on(e);
   if (single || !put_with_cruise(leg)) sink_.put(leg);
@@ -90,6 +123,7 @@ bool Gather::put_with_cruise(const Leg& leg) {
   Leg some = leg;
   some.piece = part(leg.piece, 0.0, end);
   sink_.put(some);
+  some.corner = kNone;
   some.piece = part(leg.piece, end, middle);
   sink_.cruise(some, v);
   some.piece = part(leg.piece, end + middle, end);

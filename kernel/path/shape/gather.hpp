@@ -18,6 +18,13 @@ class RunSink {
   ~RunSink() = default;
 };
 
+/// The path does not rest behind this element by its own transition.
+bool goes_on(const Element& element);
+
+/// And it rests between the two, by their corner.
+bool rests_between(const Config& config, const Transition& transition, const Piece& before,
+                   const Element& element, const Piece& piece);
+
 /// Programmed elements as runs from rest to rest: exact shapes, and rests where the program asks for them.
 /// What happens at corners inside a run is the curve's. Not real-time safe.
 class Gather {
@@ -33,13 +40,17 @@ class Gather {
   void finish() { rest(false); }
   /// End of the elements added so far.
   const Vector& position() const { return at_; }
+  /// The open run does not go on into an element of this shape.
+  bool rests_before(const Element& element, const Piece& piece) const {
+    return open_ && rests_between(config_, before_, last_, element, piece);
+  }
+  bool open() const { return open_; }
 
  private:
-  bool stops_before(const Element& element, const Piece& piece) const;
-  bool goes_on(const Element& element) const;
   void put(const Element& element, const Piece& piece);
   void rest(bool confirm);
   bool put_with_cruise(const Leg& leg);
+  double bulge() const;
 
   Config config_;
   RunSink& sink_;

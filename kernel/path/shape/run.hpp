@@ -16,7 +16,9 @@ struct Leg {
   double tolerance = 0.0;  ///< largest distance of the set-points from it, > 0
   bool exact = false;      ///< and 1.5 um at most, as no corner needs more
   double feed = std::numeric_limits<double>::infinity();  ///< as Element::feed
-  bool turning = false;  ///< its parameter counts degrees: only rotary axes move
+  double corner =
+      std::numeric_limits<double>::infinity();  ///< largest speed where it starts, by a corner rule
+  bool turning = false;                         ///< its parameter counts degrees: only rotary axes move
   const std::array<AxisLimits, kMaxAxes>* limits = nullptr;  ///< of the axes, while it is driven
   double end() const { return begin + piece.length; }
 };

@@ -7,6 +7,8 @@ namespace servogate::path {
 namespace {
 
 constexpr double kPlannedAhead = 2.0;  // s
+// To the last stop that is known; no change of rate takes longer.
+constexpr double kCoursePlannedAhead = 4.0;
 
 }  // namespace
 
@@ -18,25 +20,57 @@ void Publisher::put(const Span& span, bool revised, bool more) {
   if (span.final) final_time_ = std::max(final_time_, span.time);
 }
 
+void Publisher::begin_course() {
+  course_ = {};
+  course_.kind = Entry::Kind::course;
+  course_.span.first_piece = next().piece;
+  course_.first_knot = next().knot;
+  course_.first_stop = next().stop;
+  course_begins_ = final_time_;
+  entries_.push_back(course_);
+}
+
+void Publisher::put(const Knot& knot) {
+  knots_.push_back(knot);
+  knots_.back().planned = course_begins_ + knot.t.since({});
+}
+
+void Publisher::extend(const CourseExtent& extent) {
+  course_.kind = Entry::Kind::extend;
+  course_.extent = extent;
+  final_time_ = course_begins_ + extent.seconds;
+  entries_.push_back(course_);
+}
+
 Track::Begin Publisher::next() const {
-  return {track_.entries.written() + entries_.size(), track_.pieces.written() + pieces_.size()};
+  return {track_.entries.written() + entries_.size(), track_.pieces.written() + pieces_.size(),
+          track_.knots.written() + knots_.size(), track_.stops.written() + stops_.size()};
+}
+
+/// What the entry speaks of can be read.
+bool Publisher::in_track(const Entry& entry) const {
+  if (entry.kind == Entry::Kind::span)
+    return entry.span.first_piece + entry.span.pieces <= track_.pieces.written();
+  return entry.kind != Entry::Kind::extend ||
+         (entry.span.first_piece + entry.extent.pieces <= track_.pieces.written() &&
+          entry.first_knot + entry.extent.knots <= track_.knots.written() &&
+          entry.first_stop + entry.extent.stops <= track_.stops.written());
 }
 
 void Publisher::work() {
   while (!pieces_.empty() && track_.pieces.push(pieces_.front())) pieces_.pop_front();
-  const std::uint64_t there = track_.pieces.written();
-  while (!entries_.empty()) {
-    const Entry& entry = entries_.front();
-    if (entry.kind == Entry::Kind::span && entry.span.first_piece + entry.span.pieces > there) break;
-    if (!track_.entries.push(entry)) break;
+  while (!knots_.empty() && track_.knots.push(knots_.front())) knots_.pop_front();
+  while (!stops_.empty() && track_.stops.push(stops_.front())) stops_.pop_front();
+  while (!entries_.empty() && in_track(entries_.front()) && track_.entries.push(entries_.front()))
     entries_.pop_front();
-  }
 }
 
 bool Publisher::wants_more() const {
   if (!entries_.empty()) return false;
-  const std::uint64_t passed = track_.pieces.freed(), there = track_.pieces.written();
-  return passed >= there || final_time_ - track_.pieces[passed].time < kPlannedAhead;
+  const std::uint64_t passed = track_.pieces.freed(), knot = track_.knots.freed();
+  if (passed >= track_.pieces.written()) return true;
+  if (knot >= track_.knots.written()) return final_time_ - track_.pieces[passed].time < kPlannedAhead;
+  return final_time_ - track_.knots[knot].planned < kCoursePlannedAhead;
 }
 
 }  // namespace servogate::path

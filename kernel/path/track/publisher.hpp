@@ -7,27 +7,39 @@
 namespace servogate::path {
 
 /// The planner's end of the track: keeps what has no room there yet. Not real-time safe.
-class Publisher final : public SpanSink {
+class Publisher final : public SpanSink, public CourseSink {
  public:
   explicit Publisher(Track& track) : track_(track) {}
 
   void put(const Piece& piece) override { pieces_.push_back(piece); }
   void put(const Span& span, bool revised, bool more) override;
+  void begin_course() override;
+  void put(const Knot& knot) override;
+  void put(const StopHint& stop) override { stops_.push_back(stop); }
+  void extend(const CourseExtent& extent) override;
   /// A marker behind all that was put.
   void put(const Entry& marker) { entries_.push_back(marker); }
 
-  /// Numbers of the next entry and piece that are put.
+  /// Numbers of the next entry, piece, knot and stop that are put.
   Track::Begin next() const;
   /// Hands over what has room, pieces before the spans that lie on them.
   void work();
-  /// False while something waits for room, or two seconds lie ahead of the motion.
+  /// False while something waits for room, or some seconds lie ahead of the motion.
   bool wants_more() const;
+  /// Sum of the times of all that is final, s.
+  double planned() const { return final_time_; }
 
  private:
   Track& track_;
+  bool in_track(const Entry& entry) const;
+
   std::deque<Piece> pieces_;
+  std::deque<Knot> knots_;
+  std::deque<StopHint> stops_;
   std::deque<Entry> entries_;
-  double final_time_ = 0.0;  ///< running sum up to the last final span, s
+  Entry course_;                ///< that was begun last
+  double course_begins_ = 0.0;  ///< s
+  double final_time_ = 0.0;     ///< running sum up to the last final span, s
 };
 
 }  // namespace servogate::path

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "kernel/path/law/course.hpp"
 #include "kernel/path/law/span.hpp"
 #include "kernel/path/track/ring.hpp"
 
@@ -10,6 +11,8 @@ struct Entry {
   enum class Kind : std::uint8_t {
     span,     ///< `span`; its pieces are already in Track::pieces
     revise,   ///< span.number has the terms, stop and final of `span` from now on
+    course,   ///< begins with piece span.first_piece and knot first_knot, and rests where it is complete
+    extend,   ///< the last course is known as far as `extent`; pieces and knots are already in the track
     event,    ///< the path rests here; report `event` and wait for release_event()
     finish,   ///< nothing more is to be expected: rest here is no starvation
     restart,  ///< the path goes on at `at` with piece span.first_piece; ends the dropping after a stop
@@ -19,6 +22,8 @@ struct Entry {
   std::uint32_t event = 0;
   Tag tag;  ///< of a marker
   Span span;
+  std::uint64_t first_knot = 0, first_stop = 0;  ///< numbers in Track::knots and Track::stops
+  CourseExtent extent;
   Vector at{};
 };
 
@@ -27,12 +32,17 @@ struct Entry {
 struct Track {
   explicit Track(const Config& config)
       : pieces(config.piece_capacity < 1024 ? 1024 : config.piece_capacity, config.pieces_behind),
+        knots(kKnots),
+        stops(kKnots),
         entries(2 * pieces.capacity()) {}
-  /// Where the entries of a path begin: numbers of its restart entry and of its first piece.
+  static constexpr std::uint32_t kKnots = 8192;  ///< half a minute on a usual machine, a megabyte
+  /// Where the entries of a path begin: numbers of its restart entry, of its first piece, knot and stop.
   struct Begin {
-    std::uint64_t entry = 0, piece = 0;
+    std::uint64_t entry = 0, piece = 0, knot = 0, stop = 0;
   };
   Ring<Piece> pieces;  ///< those that are passed stay readable for a while, as a way back
+  Ring<Knot> knots;
+  Ring<StopHint> stops;
   Ring<Entry> entries;
   /// Count for Follower::step(). real-time safe.
   std::uint64_t visible() const noexcept { return entries.written(); }

@@ -6,6 +6,36 @@
 
 namespace servogate::path {
 
+/// The course in motion as far as the follower may see it. real-time safe.
+class CourseAhead final : public CourseView {
+ public:
+  explicit CourseAhead(const Track& track) noexcept : track_(&track) {}
+
+  /// Takes it up, or sees it further.
+  void take(const Entry& course) noexcept { course_ = &course; }
+  const CourseExtent& extent() const noexcept { return course_->extent; }
+  const Knot* knot(std::int64_t number) const noexcept override {
+    const auto n = static_cast<std::uint64_t>(number + 2);
+    return number >= -2 && n < extent().knots ? &track_->knots[course_->first_knot + n] : nullptr;
+  }
+  std::int64_t end() const noexcept override {
+    return extent().complete ? static_cast<std::int64_t>(extent().knots) - 3 : -1;
+  }
+  StopHint guard() const noexcept override {
+    return extent().stops > 0 ? track_->stops[course_->first_stop + extent().stops - 1] : StopHint{};
+  }
+  StopHint stop_near(std::int64_t knot) const noexcept override;
+  /// What lies so far behind that nobody looks at it: numbers in the rings of the track.
+  std::uint64_t knots_behind(std::int64_t knot) const noexcept;
+  std::uint64_t stops_behind(std::int64_t knot) const noexcept;
+  /// First numbers behind what is known of the course.
+  Track::Begin behind() const noexcept;
+
+ private:
+  const Track* track_;
+  const Entry* course_ = nullptr;
+};
+
 /// The follower's end of the track: entries that were taken over and are not done, in order. Those of a batch
 /// are staged until the last of them is there. The constructor allocates; the rest is real-time safe.
 class Window final : public Ahead {
@@ -17,6 +47,12 @@ class Window final : public Ahead {
   bool anything_staged() const noexcept { return staged_ != first_; }
 
   void stage(const Entry& entry) noexcept;
+  /// The last course is known further. False: there is none.
+  bool extend(const Entry& known) noexcept;
+  /// The first entry, if it is a course.
+  const Entry* course() const noexcept {
+    return !empty() && front().kind == Entry::Kind::course ? &front() : nullptr;
+  }
   /// The span of that number gets its new terms. True when it is the first entry.
   bool revise(const Span& update) noexcept;
   const Entry& front() const noexcept { return slots_[front_]; }
@@ -46,6 +82,7 @@ class Window final : public Ahead {
   std::uint64_t first_ = 0, last_ = 0;  ///< entries in use
   std::uint64_t staged_ = 0;            ///< end of those that wait for the rest of their batch, >= last_
   std::uint64_t front_ = 0;             ///< slot of the first
+  std::uint64_t course_ = 0;            ///< number of the last course, + 1; 0: none
 };
 
 }  // namespace servogate::path

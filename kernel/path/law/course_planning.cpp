@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/path/law/course_planning.hpp"
+
+#include <algorithm>
+
+namespace servogate::path {
+namespace {
+
+constexpr double kWayOfStop = 0.7, kReach = 1.5;  // law time of a stop by its length; so much longer may fit
+constexpr std::int64_t kAgain = 24;               // knots until one that did not fit is looked for again
+
+Pipeline::Settings settings(const Config& config) {
+  Pipeline::Settings s;
+  s.axes = config.axis_count;
+  s.rotary = config.rotary;
+  return s;
+}
+
+}  // namespace
+
+CoursePlanning::CoursePlanning(const Config& config, bool forecast, CourseSink& sink)
+    : config_(config), forecast_(forecast), sink_(sink), pipeline_(settings(config), *this) {
+  limits_.axes = config.axis_count;
+  limits_.limits = config.limits;
+}
+
+void CoursePlanning::restart() {
+  pipeline_.abandon();
+  view_ = {};
+  extent_ = {};
+  pieces_.clear();
+  begun_ = joins_ = false;
+}
+
+void CoursePlanning::place(Leg leg) {
+  if (!begun_) {
+    sink_.begin_course();
+    view_ = {};
+    extent_ = {};
+    base_ = {};
+    length_ = section_ = 0.0;
+    given_ = 0;
+    looked_ = look_at_ = 0;
+    stop_ = {};
+    broken_ = false;
+    begun_ = true;
+  }
+  leg.piece.start = length_;
+  length_ += leg.piece.length;
+  if (!forecast_) pieces_.push_back(leg.piece);
+}
+
+void CoursePlanning::put(const Leg& leg) {
+  place(leg);
+  pipeline_.add(leg);
+}
+
+void CoursePlanning::cruise(const Leg& leg, double speed) {
+  const double behind = length_;
+  place(leg);
+  straight_ = length_ - behind;
+  pipeline_.cruise(leg, speed);
+  broken_ = broken_ || pipeline_.broken();
+  section_ = length_;
+}
+
+void CoursePlanning::rest(bool confirm) {
+  if (!begun_) return;
+  pipeline_.end();
+  broken_ = broken_ || pipeline_.broken();
+  if (broken_ && !forecast_) {  // the motion stops at the last stop that is known, and stays there
+    begun_ = joins_ = false;
+    return;
+  }
+  view_.complete = true;
+  if (!forecast_) find_stops();
+  const Knot& last = *view_.knot(view_.last());
+  extent_.complete = true;
+  extent_.confirm = confirm;
+  extent_.seconds = last.t.since({});
+  give();
+  begun_ = joins_ = false;
+}
+
+void CoursePlanning::begin(const Vector& before_last, const Vector& last) {
+  for (const Vector& control : {before_last, last}) {
+    Knot guide;
+    guide.kind = Knot::Kind::guide;
+    guide.t = base_;
+    guide.control = control;
+    guide.place = section_;
+    append(guide);
+  }
+}
+
+void CoursePlanning::put(const Knot& knot) {
+  Knot next = knot;
+  next.t = base_.plus(knot.t);
+  next.place += section_;
+  if (joins_) next.kind = Knot::Kind::join;
+  joins_ = false;
+  append(next);
+}
+
+void CoursePlanning::cruise(const Cruise& cruise) {
+  broken_ = broken_ || pipeline_.broken();
+  if (broken_) return;
+  Knot straight;
+  const Knot& before = *view_.knot(view_.last());
+  straight.kind = Knot::Kind::straight;
+  straight.t = base_ = before.t.plus(cruise.seconds);
+  straight.place = before.place + straight_;
+  straight.control = cruise.to;
+  append(straight);
+  joins_ = true;
+}
+
+/// Gather makes no run of a single line; as a run it would be planned as a move.
+void CoursePlanning::move(const Move& /*move*/) {}
+
+void CoursePlanning::append(const Knot& knot) {
+  if (broken_) return;
+  view_.knots.push_back(knot);
+  if (forecast_)
+    view_.knots.forget_before(view_.knots.end() - 1);
+  else
+    find_stops();
+}
+
+void CoursePlanning::find_stops() {
+  while (looked_ <= view_.last() && (view_.complete || view_.last() >= look_at_)) {
+    const Knot& at = *view_.knot(looked_);
+    const Knot& last = *view_.knot(view_.last());
+    if (at.kind == Knot::Kind::guide || at.kind == Knot::Kind::join) {
+      ++looked_;
+      continue;
+    }
+    const double known = last.t.since(at.t);
+    if (!view_.complete && known < kReach * kWayOfStop * stop_.seconds) return;
+    const StopHint found = find_stop(view_, looked_, stop_, limits_);
+    if (found.knot < 0 && !view_.complete) {
+      look_at_ = view_.last() + kAgain;
+      return;
+    }
+    if (found.knot >= 0) {
+      stop_ = found;
+      extent_.seconds = at.t.since({});
+      ++extent_.stops;
+      sink_.put(found);
+      give();
+    }
+    looked_ += kStopEvery;
+  }
+}
+
+void CoursePlanning::give() {
+  if (!forecast_) {
+    for (; given_ < view_.knots.end(); ++given_) sink_.put(view_.knots[given_]);
+    extent_.knots = given_;
+    const double place = view_.knot(view_.last())->place;
+    for (; !pieces_.empty() && (extent_.complete || pieces_.front().start <= place); ++extent_.pieces) {
+      sink_.put(pieces_.front());
+      pieces_.pop_front();
+    }
+    view_.knots.forget_before(static_cast<std::size_t>(std::max<std::int64_t>(0, looked_ - 4)));
+  }
+  sink_.extend(extent_);
+}
+
+}  // namespace servogate::path

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <deque>
+
+#include "kernel/path/law/course.hpp"
+#include "kernel/path/law/pipeline.hpp"
+#include "kernel/path/law/rate.hpp"
+#include "kernel/path/shape/gather.hpp"
+
+namespace servogate::path {
+
+/// The law over one clock outside the cycle: takes runs of elements, and gives knots with the stops that are
+/// known on them. A stop is looked for behind each knot of `kStopEvery`, as soon as the knots are there that
+/// it may need, counted in knots: what is given depends on the elements alone. Not real-time safe.
+class CoursePlanning final : public RunSink, private KnotSink {
+ public:
+  /// `forecast`: the time is wanted, and nothing will be driven.
+  CoursePlanning(const Config& config, bool forecast, CourseSink& sink);
+
+  void put(const Leg& leg) override;
+  void cruise(const Leg& leg, double speed) override;
+  void rest(bool confirm) override;
+  /// Plans what can be planned.
+  void work() { pipeline_.work(); }
+  /// Forgets what was not given yet.
+  void restart();
+  const Pipeline::Counts& counts() const { return pipeline_.counts(); }
+
+  static constexpr std::int64_t kStopEvery = 8;  // knots
+
+ private:
+  /// The knots of the course that are kept here.
+  class View final : public CourseView {
+   public:
+    const Knot* knot(std::int64_t n) const noexcept override {
+      const std::int64_t at = n + 2;
+      return at >= static_cast<std::int64_t>(knots.begin()) && at < static_cast<std::int64_t>(knots.end())
+                 ? &knots[static_cast<std::size_t>(at)]
+                 : nullptr;
+    }
+    std::int64_t end() const noexcept override { return complete ? last() : -1; }
+    std::int64_t last() const noexcept { return static_cast<std::int64_t>(knots.end()) - 3; }
+    Kept<Knot> knots;
+    bool complete = false;
+  };
+  void begin(const Vector& before_last, const Vector& last) override;
+  void put(const Knot& knot) override;
+  void rest() override {}
+  void cruise(const Cruise& cruise) override;
+  void move(const Move& move) override;
+  void place(Leg leg);
+  void append(const Knot& knot);
+  void find_stops();
+  void give();
+
+  Config config_;
+  bool forecast_;
+  CourseSink& sink_;
+  RateLimits limits_;
+  Pipeline pipeline_;
+  View view_;
+  CourseExtent extent_;
+  bool begun_ = false;        ///< a course is
+  bool broken_ = false;       ///< and it cannot be driven to its end
+  bool joins_ = false;        ///< the next run begins behind a straight
+  double length_ = 0.0;       ///< of the legs so far
+  double section_ = 0.0;      ///< where the run in work begins
+  double straight_ = 0.0;     ///< length of the straight behind it
+  LawTime base_;              ///< the same as time
+  std::deque<Piece> pieces_;  ///< that no knot given lies on yet
+  std::size_t given_ = 0;     ///< knots
+  std::int64_t looked_ = 0;   ///< knots before this have had their stop looked for
+  std::int64_t look_at_ = 0;  ///< not before this knot is there
+  StopHint stop_;
+};
+
+}  // namespace servogate::path

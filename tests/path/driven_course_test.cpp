@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+// The law over one clock as the follower drives it: holds, overrides, stops, late planning, and which runs
+// it drives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "kernel/path/path_time.hpp"
+#include "tests/path/rig/trip.hpp"
+
+namespace servogate::path::test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+Config course_mill() {
+  Config config = mill();
+  config.law = Law::course;
+  return config;
+}
+
+/// Planner and follower in one loop, as the virtual cycle runs them.
+struct Machine {
+  explicit Machine(const Config& c = course_mill())
+      : config(c), track(c), planner(c, track), follower(c, track) {
+    planner.restart({});
+    trip.samples.emplace_back();
+  }
+  Sample step() {
+    planner.work();
+    last = follower.step(track.visible());
+    trip.samples.push_back(last);
+    return last;
+  }
+  bool until(const std::function<bool(const Sample&)>& condition) {
+    for (int k = 0; k < 100000; ++k)
+      if (condition(step())) return true;
+    return false;
+  }
+  bool until(FollowerState state) {
+    return until([&](const Sample& s) { return s.state == state; });
+  }
+  double most() const { return worst(trip, config).most(); }
+  Config config;
+  Track track;
+  Planner planner;
+  Follower follower;
+  Sample last;
+  Trip trip;
+};
+
+std::vector<Element> circle(int blocks, double feed) {
+  std::vector<Element> e;
+  for (int i = 1; i <= blocks; ++i) {
+    const double a = 2 * kPi * i / blocks;
+    e.push_back(line_to(20 - 20 * std::cos(a), 20 * std::sin(a), 0, feed));
+    e.back().tag.line = i;
+  }
+  return e;
+}
+
+std::vector<Element> wave(int blocks, double feed) {
+  std::vector<Element> e;
+  for (int k = 1; k <= blocks; ++k) e.push_back(line_to(k * 0.3, 3 * std::sin(k * 0.05), 0, feed));
+  return e;
+}
+
+void load(Machine& m, const std::vector<Element>& elements) {
+  for (const Element& e : elements) ASSERT_TRUE(m.planner.add(e));
+  m.planner.finish();
+}
+
+TEST(DrivenCourse, of_a_circle_in_a_thousand_blocks_takes_what_is_known_to_be_the_least) {
+  Config config = mill();
+  const std::vector<Element> blocks = circle(1000, 100);
+  EXPECT_LE(estimate(config, {}, blocks).seconds, 1.475);  // ideal 1.457
+  config.law = Law::spans;
+  EXPECT_GT(estimate(config, {}, blocks).seconds, 1.9);
+}
+
+TEST(DrivenCourse, is_chosen_where_elements_are_short_against_a_change_of_speed) {
+  const auto courses = [](const std::vector<Element>& elements, Config config) {
+    Track track(config);
+    Planner planner(config, track);
+    planner.restart({});
+    for (const Element& e : elements) planner.add(e);
+    planner.finish();
+    planner.work();
+    int n = 0;
+    for (std::uint64_t k = 0; k < track.entries.written(); ++k)
+      n += track.entries[k].kind == Entry::Kind::course ? 1 : 0;
+    return n;
+  };
+  const std::vector<Element> square{line_to(80, 0, 0, 50), line_to(80, 80, 0, 50), line_to(0, 80, 0, 50)};
+  EXPECT_EQ(courses(circle(100, 100), mill()), 1);
+  EXPECT_EQ(courses(square, mill()), 0);
+  EXPECT_EQ(courses(square, course_mill()), 1);
+  EXPECT_EQ(courses({line_to(1, 0, 0, 100)}, course_mill()), 0) << "a line from rest to rest";
+  std::vector<Element> turned = circle(100, 100);
+  for (Element& e : turned) e.revolutions = 10.0;
+  EXPECT_EQ(courses(turned, course_mill()), 0) << "feed per revolution";
+  Config spans = mill();
+  spans.law = Law::spans;
+  EXPECT_EQ(courses(circle(100, 100), spans), 0);
+}
+
+TEST(DrivenCourse, holds_in_the_next_cycle_rests_on_the_path_and_goes_on) {
+  for (const int at : {300, 617, 1001, 1600}) {
+    Machine m;
+    load(m, wave(800, 100));
+    for (int k = 0; k < at; ++k) m.step();
+    const double before = m.last.feed;
+    m.follower.hold();
+    m.step();
+    EXPECT_EQ(m.last.state, FollowerState::holding);
+    int cycles = 1;
+    while (m.step().state == FollowerState::holding) ++cycles;
+    EXPECT_EQ(m.last.state, FollowerState::held);
+    EXPECT_EQ(m.last.feed, 0.0);
+    EXPECT_TRUE(m.follower.at_rest());
+    EXPECT_GT(before, 20.0);
+    EXPECT_LE(cycles, 1200);
+    const Vector there = m.last.position;
+    EXPECT_NEAR(there[1], 3 * std::sin(there[0] / 6), 0.02);
+    for (int k = 0; k < 50; ++k) EXPECT_EQ(m.step().position, there);
+    m.follower.resume();
+    ASSERT_TRUE(m.until(FollowerState::idle));
+    EXPECT_EQ(m.last.starved, 0u);
+    EXPECT_NEAR(m.last.position[0], 240.0, 1e-9);
+    EXPECT_LE(m.most(), 1.001);
+  }
+}
+
+TEST(DrivenCourse, is_held_in_a_cruise_and_before_and_behind_it) {
+  for (int at = 100; at < 4600; at += 190) {
+    Machine m;
+    load(m, {line_to(80, 0, 0, 50), line_to(80, 90, 0, 50), line_to(70, 90, 0, 50)});
+    for (int k = 0; k < at && m.last.state != FollowerState::idle; ++k) m.step();
+    m.follower.hold();
+    for (int k = 0; k < 1500; ++k) m.step();
+    EXPECT_EQ(m.last.feed, 0.0) << at;
+    m.follower.resume();
+    ASSERT_TRUE(m.until(FollowerState::idle)) << at;
+    EXPECT_NEAR(m.last.position[0], 70.0, 1e-9);
+    EXPECT_LE(m.most(), 1.001) << at;
+  }
+}
+
+TEST(DrivenCourse, follows_every_override_where_the_feed_is_what_binds) {
+  Machine m;
+  std::vector<Element> blocks;
+  for (int k = 1; k <= 2000; ++k) blocks.push_back(line_to(0.3 * k, 0, 0, 50));
+  load(m, blocks);
+  for (const double ratio : {1.0, 0.3, 1.5, 0.0, 1.2, 2.0, 0.8}) {
+    m.follower.set_override(ratio);
+    for (int k = 0; k < 1200; ++k) m.step();
+    EXPECT_NEAR(m.last.feed, 50 * std::min(ratio, 1.5), 0.003 * 75) << ratio;
+  }
+  m.follower.set_override(1.0);
+  ASSERT_TRUE(m.until(FollowerState::idle));
+  EXPECT_NEAR(m.last.position[0], 600.0, 1e-9);
+  EXPECT_LE(m.most(), 1.001);
+}
+
+TEST(DrivenCourse, above_a_hundred_per_cent_is_as_fast_as_the_limits_let_it_be) {
+  for (const double ratio : {1.0, 1.5}) {
+    Machine m;
+    m.follower.set_override(ratio);
+    load(m, wave(800, 40));
+    ASSERT_TRUE(m.until(FollowerState::idle));
+    EXPECT_LE(m.most(), 1.001);
+    const double seconds = 0.001 * static_cast<double>(m.trip.samples.size());
+    if (ratio > 1.0)
+      EXPECT_LE(seconds, 5.6);
+    else
+      EXPECT_GE(seconds, 6.4);
+  }
+}
+
+TEST(DrivenCourse, keeps_its_limits_at_any_override_where_everything_binds_by_turns) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    Machine m;
+    std::mt19937_64 random(seed);
+    std::vector<Element> rows;
+    for (int r = 0; r < 4; ++r)
+      for (int i = 0; i < 101; ++i) {
+        const double x = 0.4 * (r % 2 == 0 ? i : 100 - i), z = 0.5 * std::sin(x / 5 + 0.2 * r);
+        rows.push_back(line_to(x, 0.5 * r, z, seed % 2 == 0 ? 60 : 100));
+      }
+    load(m, rows);
+    m.follower.set_override(1.5);
+    for (int k = 0; k < 60000 && (k < 10 || m.last.state != FollowerState::idle); ++k) {
+      if (seed > 2 && random() % 200 == 0)
+        m.follower.set_override(0.1 * static_cast<double>(3 + random() % 13));
+      m.step();
+    }
+    EXPECT_EQ(m.last.state, FollowerState::idle) << seed;
+    EXPECT_LE(m.most(), 1.001) << seed;
+  }
+}
+
+TEST(DrivenCourse, stops_drops_the_rest_and_a_restart_goes_on_from_there) {
+  Machine m;
+  load(m, wave(3000, 100));
+  for (int k = 0; k < 900; ++k) m.step();
+  m.follower.stop();
+  ASSERT_TRUE(m.until(FollowerState::stopped));
+  const Vector there = m.last.position;
+  EXPECT_LE(m.most(), 1.001);
+  m.planner.restart(there);
+  EXPECT_EQ(m.step().state, FollowerState::idle);
+  EXPECT_EQ(m.last.position, there);
+  for (int k = 1; k <= 50; ++k) m.planner.add(line_to(there[0] + 0.2 * k, there[1], 0, 100));
+  m.planner.finish();
+  ASSERT_TRUE(m.until(FollowerState::idle));
+  EXPECT_NEAR(m.last.position[0], there[0] + 10.0, 1e-9);
+  EXPECT_LE(m.most(), 1.001);
+}
+
+TEST(DrivenCourse, slows_down_on_the_path_where_planning_is_late_and_never_leaves_what_is_known) {
+  RandomProgram p;
+  p.config = course_mill();
+  p.tolerance = 0.01;
+  p.elements = wave(2500, 100);
+  for (const int cycles : {3, 6, 12}) {  // for an element that takes three
+    Machine m;
+    std::size_t next = 0;
+    std::vector<std::uint64_t> seen;
+    for (int k = 0; k < 100000 && !m.trip.ended; ++k) {
+      if (k % cycles == 0 && next < p.elements.size()) m.planner.add(p.elements[next++]);
+      if (next == p.elements.size()) m.planner.finish(), ++next;
+      m.step();
+      seen.push_back(m.track.visible());
+      m.trip.ended = next > p.elements.size() && m.last.state == FollowerState::idle;
+    }
+    EXPECT_EQ(verdict(m.trip, p), "") << cycles;
+    if (cycles > 3) {
+      EXPECT_GT(m.last.starved, 100u);
+    }
+
+    Machine again;
+    for (const Element& e : p.elements) again.planner.add(e);
+    again.planner.finish();
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      again.planner.work();
+      ASSERT_EQ(again.follower.step(seen[k]).position, m.trip.samples[k + 1].position) << cycles << ' ' << k;
+    }
+  }
+}
+
+/// Speed of the set-point where it passes nearest to (20, 0), from a line along the first axis to one turned
+/// by `alpha`.
+double speed_at_corner(double alpha, double erf, double max_angle_deg) {
+  Machine m;
+  Element e = line_to(20, 0, 0, 100);
+  e.transition = {Continuation::corner_limited, 0.01, erf, max_angle_deg, false};
+  m.planner.add(e);
+  e.to = {20 + 20 * std::cos(alpha), 20 * std::sin(alpha)};
+  m.planner.add(e);
+  m.planner.finish();
+  double nearest = 1e9, feed = -1;
+  EXPECT_TRUE(m.until([&](const Sample& s) {
+    const double d = std::hypot(s.position[0] - 20, s.position[1]);
+    if (d < nearest) nearest = d, feed = s.feed;
+    return s.state == FollowerState::idle;
+  }));
+  EXPECT_LE(m.most(), 1.001);
+  return feed;
+}
+
+TEST(DrivenCourse, keeps_the_corner_speed_of_the_corner_rule_and_stops_beyond_its_largest_angle) {
+  // v2 = a ERF s / (1 - s), s = cos(alpha / 2): 20 degrees, ERF 0.0001: 2.545 mm/s.
+  const double alpha = 20.0 / 180.0 * kPi, s = std::cos(0.5 * alpha);
+  const double v = std::sqrt(1000 * 0.0001 * s / (1 - s));
+  EXPECT_LE(speed_at_corner(alpha, 0.0001, 180), v * (1 + 1e-3));
+  EXPECT_GE(speed_at_corner(alpha, 0.0001, 180), 0.85 * v);
+  EXPECT_GE(speed_at_corner(alpha, 0.1, 180), 2 * v);
+  EXPECT_LT(speed_at_corner(alpha, 0.1, 15), 0.5);
+}
+
+TEST(DrivenCourse, reaches_the_end_point_of_a_way_back_on_itself) {
+  Machine m;
+  load(m, {line_to(10, 0, 0, 100), line_to(0, 0, 0, 100), line_to(3, 4, 0, 100)});
+  double furthest = 0;
+  ASSERT_TRUE(m.until([&](const Sample& s) {
+    furthest = std::max(furthest, s.position[0]);
+    return s.state == FollowerState::idle;
+  }));
+  EXPECT_NEAR(furthest, 10.0, 1e-6);
+}
+
+TEST(DrivenCourse, shows_each_block_in_turn_and_what_is_left_of_it) {
+  Machine m;
+  load(m, circle(60, 30));
+  int line = 0;
+  ASSERT_TRUE(m.until([&](const Sample& s) {
+    if (s.state == FollowerState::idle) return true;
+    EXPECT_GE(s.tag.line, line);
+    EXPECT_LE(s.tag.line, line + 1);
+    line = std::max(line, s.tag.line);
+    EXPECT_NEAR(s.distance_to_go, std::hypot(s.target[0] - s.position[0], s.target[1] - s.position[1]),
+                0.021);
+    return false;
+  }));
+  EXPECT_EQ(line, 60);
+}
+
+TEST(DrivenCourse, gives_velocity_and_acceleration_of_its_set_points) {
+  Machine m;
+  load(m, circle(400, 100));
+  m.follower.set_override(0.8);
+  for (int k = 0; k < 800; ++k) m.step();
+  const std::vector<Sample>& s = m.trip.samples;
+  for (std::size_t k = 2; k + 1 < s.size(); ++k)
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_NEAR(s[k].velocity[i], (s[k + 1].position[i] - s[k - 1].position[i]) * 500, 0.02) << k;
+      EXPECT_NEAR(s[k].acceleration[i],
+                  (s[k + 1].position[i] - 2 * s[k].position[i] + s[k - 1].position[i]) * 1e6, 6.0)
+          << k;
+    }
+}
+
+TEST(DrivenCourse, has_its_time_told_beforehand) {
+  const Config config = course_mill();
+  const std::vector<Element> blocks = wave(1500, 100);
+  PathTime time(config, {});
+  for (const Element& e : blocks) ASSERT_TRUE(time.add(e));
+  time.rest();
+  EXPECT_NEAR(estimate(config, {}, blocks).seconds, time.seconds(), 0.0021);
+}
+
+}  // namespace
+}  // namespace servogate::path::test
