@@ -165,6 +165,16 @@ std::unique_ptr<Chip> Chip::find(const std::string& name, drivers::Notice& why) 
   return std::unique_ptr<Chip>(new Chip(std::make_unique<Impl>(Impl{name, std::move(chip)})));
 }
 
+bool Chip::free(std::span<const InputSetting> lines, drivers::Notice& why) const {
+  gpiod_line_bulk bulk;
+  return impl_->find_lines(lines, bulk, why);
+}
+
+bool Chip::free(std::span<const OutputSetting> lines, drivers::Notice& why) const {
+  gpiod_line_bulk bulk;
+  return impl_->find_lines(lines, bulk, why);
+}
+
 std::unique_ptr<InputLines> Chip::inputs(std::span<const InputSetting> lines, const std::string& consumer,
                                          drivers::Notice& why) {
   gpiod_line_bulk bulk;

@@ -75,6 +75,9 @@ class Chip {
                                      drivers::Notice& why);
   std::unique_ptr<OutputLines> outputs(std::span<const OutputSetting> lines, const std::string& consumer,
                                        drivers::Notice& why);
+  /// Whether the lines are there and nobody has them; takes none. False: `why` as above.
+  bool free(std::span<const InputSetting> lines, drivers::Notice& why) const;
+  bool free(std::span<const OutputSetting> lines, drivers::Notice& why) const;
 
  private:
   struct Impl;

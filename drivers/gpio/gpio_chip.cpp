@@ -111,6 +111,12 @@ std::unique_ptr<GpioChip> GpioChip::open(const ChipConfig& config, drivers::Noti
   return std::unique_ptr<GpioChip>(new GpioChip(std::move(parts)));
 }
 
+bool GpioChip::available(const ChipConfig& config, drivers::Notice& why) {
+  const Parts parts(config);
+  const auto chip = Chip::find(config.chip, why);
+  return chip != nullptr && chip->free(parts.settings, why) && chip->free(parts.output_settings, why);
+}
+
 void GpioChip::open_cycle(image::ProcessImage& image) noexcept {
   if (parts_->edges) parts_->times.open(drivers::clock_ns(CLOCK_MONOTONIC), image.now.t_ns);
 }

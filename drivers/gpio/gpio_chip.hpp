@@ -51,6 +51,8 @@ class GpioChip final : public image::CycleDevice {
   /// Takes the lines; outputs begin at their values of loss. nullptr: `why` says what is wrong and what mends
   /// it. Not real-time safe.
   static std::unique_ptr<GpioChip> open(const ChipConfig& config, drivers::Notice& why);
+  /// Whether open() would find the chip and its lines free; takes none. Not real-time safe.
+  static bool available(const ChipConfig& config, drivers::Notice& why);
   ~GpioChip() override;
   GpioChip(const GpioChip&) = delete;
   GpioChip& operator=(const GpioChip&) = delete;

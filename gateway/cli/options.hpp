@@ -54,7 +54,8 @@ struct ClientOptions {
 
 struct CheckOptions {
   std::string machine, dialect, tables;
-  int process = 1;  ///< that runs the programs
+  int process = 1;         ///< that runs the programs
+  bool elsewhere = false;  ///< the machine is another computer: its devices are not looked for
   std::vector<std::string> programs;
   bool json = false;
 };

@@ -9,6 +9,7 @@
 #include "gateway/command/commands.hpp"
 #include "gateway/command/program_option.hpp"
 #include "gateway/control/compose/devices/open_devices.hpp"
+#include "gateway/control/compose/open_bus.hpp"
 #include "gateway/control/compose/plc/logic_options.hpp"
 #include "gateway/control/compose/program/program_check.hpp"
 #include "machine/consequences.hpp"
@@ -194,7 +195,11 @@ int check(const CheckOptions& options) {
   program::Tables tables;
   if (loaded.ok()) {
     check_logic(loaded.machine, findings);
-    check_devices(loaded, findings);
+    const bool known = check_devices(loaded, findings);
+    if (known && !options.elsewhere) {
+      probe_buses(loaded.machine, findings);
+      probe_devices(loaded, findings);
+    }
     tables = program_tables(loaded.machine, options.tables, findings);
   }
   if (loaded.ok())

@@ -331,6 +331,8 @@ class Commands {
     app.add_option("--dialect", o.dialect, "Language of the programs instead of the machine's own");
     tables(app, o.tables);
     process(app, o.process, "Process that runs the programs, from 1; without it the first one");
+    app.add_flag("--elsewhere", o.elsewhere,
+                 "The machine is another computer: its buses and devices are not looked for here");
     app.add_flag("--json", o.json, "As JSON");
   }
 

@@ -135,6 +135,8 @@ inline constexpr Translation kCatalogue[] = {
      "Возвращает оси, отведённые от приостановленной программы, тем же путём и ждёт их останова."},
     {"Feed of the way back in mm/min, 1 to 5000; the jog speed without it",
      "Подача на возврате в мм/мин, от 1 до 5000; без ключа — скорость ручного хода"},
+    {"The machine is another computer: its buses and devices are not looked for here",
+     "Станок — другой компьютер: его шины и устройства здесь не проверяются"},
     {"Goes there without asking", "Подойти без вопроса"},
     {"Process, from 1; without it the first one, and `hold` holds all",
      "Процесс, от 1; без ключа — первый, а `hold` останавливает все"},

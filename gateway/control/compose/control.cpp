@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/control/compose/control.hpp"
+#include "gateway/control/compose/open_bus.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -18,14 +19,6 @@
 namespace servogate::gateway {
 
 namespace {
-
-const text::Entry kNoBus{"compose.no-bus", "bus '{0}': {1}", "шина «{0}»: {1}"};
-const text::Entry kPerhapsReal{
-    "compose.perhaps-real",
-    "bus '{0}' is said to be simulated, but a real one may be behind '{1}': leave `simulated` out, and the "
-    "machine waits for its operator",
-    "шина «{0}» объявлена имитацией, но за «{1}» может быть настоящая: уберите `simulated`, и станок будет "
-    "ждать оператора"};
 
 /// Far more than any cycle, and less than anybody waits for a stop.
 constexpr image::Nanoseconds kLongestScan_ns = 500 * image::kMillisecond;
@@ -116,29 +109,17 @@ bool Control::open_buses(std::vector<text::Finding>& findings, bool replay) {
       transports_.back().bus = std::make_unique<SilentBus>(rate);
       continue;
     }
-    std::vector<int> nodes;
-    for (const machine::NodeConfig& node : bus.nodes) nodes.push_back(node.id);
-    drivers::Notice why;
-    auto opened = open_can(bus.url, {rate, false, master_filters(nodes), "control"}, why);
-    const machine::Where where = m.where("bus." + std::to_string(b) + ".url");
-    const auto refuse = [&](const text::Entry& entry, const std::string& text) {
-      findings.push_back(
-          {text::Severity::error, m.file, where.line, where.column, &entry, {bus.name, text}, {}});
-      good = false;
-    };
-    if (!opened)
-      refuse(kNoBus, text::both(why.str(text::Language::english), why.str(text::Language::russian)));
-    else if (bus.nothing_real() && !opened->nothing_real)
-      refuse(kPerhapsReal, bus.url);
-    else
+    if (auto opened = open_bus(m, b, findings))
       transports_.back() = std::move(*opened);
+    else
+      good = false;
   }
   return good;
 }
 
 bool Control::infrastructure(const std::vector<text::Finding>& findings) {
   return std::any_of(findings.begin(), findings.end(),
-                     [](const auto& f) { return f.entry == &kNoBus || device_not_opened(f); });
+                     [](const auto& f) { return bus_not_opened(f) || device_not_opened(f); });
 }
 
 const CanTransport* Control::shared_bus(std::size_t bus) const noexcept {

@@ -19,9 +19,9 @@ const std::string kTcpForm = text::both("tcp:HOST:PORT", "tcp:ХОСТ:ПОРТ"
 const DeviceRow kRows[] = {
     {DeviceKind::line, "mock:", kMockForm, true, not_empty, open_world_device},
     {DeviceKind::line, "tcp:", kTcpForm, false, is_tcp_peer, open_modbus},
-    {DeviceKind::line, "rtu:", "rtu:/dev/...", false, is_serial_device, open_modbus},
+    {DeviceKind::line, "rtu:", "rtu:/dev/...", false, is_serial_device, open_modbus, serial_available},
     {DeviceKind::chip, "mock:", kMockForm, true, not_empty, open_world_device},
-    {DeviceKind::chip, "chip:", kChipForm, false, not_empty, open_gpio_device},
+    {DeviceKind::chip, "chip:", kChipForm, false, not_empty, open_gpio_device, gpio_available},
 };
 
 }  // namespace

@@ -37,6 +37,8 @@ struct DeviceRow {
   /// nullptr: refused by the computer, `why` says what is wrong and what mends it. A device with a thread of
   /// its own starts it here and ends it in its destructor. Not real-time safe.
   std::unique_ptr<image::CycleDevice> (*open)(const DeviceRequest& request, drivers::Notice& why);
+  /// Whether open() would succeed, without a change to anything outside; nullptr: it always does.
+  bool (*available)(const DeviceRequest& request, drivers::Notice& why) = nullptr;
 };
 
 std::span<const DeviceRow> device_rows();

@@ -24,9 +24,7 @@ gpio::Bias bias(machine::PointBias b) {
   return gpio::Bias::as_is;
 }
 
-}  // namespace
-
-std::unique_ptr<image::CycleDevice> open_gpio_device(const DeviceRequest& request, drivers::Notice& why) {
+gpio::ChipConfig chip_config(const DeviceRequest& request) {
   const machine::StationConfig& station = request.first();
   gpio::ChipConfig config;
   config.chip = std::string(request.rest);
@@ -39,7 +37,17 @@ std::unique_ptr<image::CycleDevice> open_gpio_device(const DeviceRequest& reques
     if (p.is_encoder()) line.b_offset = static_cast<unsigned>(p.b_line);
     config.lines.push_back(std::move(line));
   }
-  return gpio::GpioChip::open(config, why);
+  return config;
+}
+
+}  // namespace
+
+bool gpio_available(const DeviceRequest& request, drivers::Notice& why) {
+  return gpio::GpioChip::available(chip_config(request), why);
+}
+
+std::unique_ptr<image::CycleDevice> open_gpio_device(const DeviceRequest& request, drivers::Notice& why) {
+  return gpio::GpioChip::open(chip_config(request), why);
 }
 
 }  // namespace servogate::gateway

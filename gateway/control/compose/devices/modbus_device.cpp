@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/modbus/link.hpp"
 #include "drivers/modbus/modbus_line.hpp"
 #include "gateway/control/compose/setup/modbus_setup.hpp"
 
@@ -49,6 +50,10 @@ std::optional<modbus::LinkSettings> link_settings(const machine::LineConfig& lin
 bool is_tcp_peer(std::string_view rest) { return modbus::parse_tcp(rest).has_value(); }
 
 bool is_serial_device(std::string_view rest) { return rest.size() > 1 && rest.front() == '/'; }
+
+bool serial_available(const DeviceRequest& request, drivers::Notice& why) {
+  return modbus::Link(*link_settings(*request.line)).open(why);
+}
 
 std::unique_ptr<image::CycleDevice> open_modbus(const DeviceRequest& request, drivers::Notice& why) {
   const std::vector<LineStation> stations = stations_of_line(request.loaded, request.line->name);

@@ -13,6 +13,8 @@ std::optional<modbus::LinkSettings> link_settings(const machine::LineConfig& lin
 
 bool is_tcp_peer(std::string_view rest);
 bool is_serial_device(std::string_view rest);
+/// The serial device of the line is there, may be opened and is nobody else's; it is closed again.
+bool serial_available(const DeviceRequest& request, drivers::Notice& why);
 std::unique_ptr<image::CycleDevice> open_modbus(const DeviceRequest& request, drivers::Notice& why);
 
 }  // namespace servogate::gateway

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gateway/control/compose/devices/device_table.hpp"
+#include "gateway/control/compose/simulated/world_setup.hpp"
 
 namespace servogate::gateway {
 
@@ -69,6 +70,21 @@ bool check_devices(const machine::LoadResult& loaded, std::vector<text::Finding>
     good = false;
   }
   return good;
+}
+
+void probe_devices(const machine::LoadResult& loaded, std::vector<text::Finding>& findings) {
+  const auto world = simulated_world(loaded);  // of the simulated ones
+  mock::World nothing;
+  for (const Place& place : places_of(loaded.machine)) {
+    const DeviceRow* row = device_row(place.kind, place.url);
+    if (row == nullptr || row->available == nullptr) continue;
+    drivers::Notice why;
+    const std::string_view rest = std::string_view(place.url).substr(row->scheme.size());
+    if (row->available({loaded, *world, place.station, place.line, rest}, why)) continue;
+    findings.push_back(
+        finding(loaded.machine, place, kNotOpened,
+                {text::both(why.str(text::Language::english), why.str(text::Language::russian))}));
+  }
 }
 
 std::vector<OpenDevice> open_devices(const machine::LoadResult& loaded, mock::World& world, bool replay,

@@ -16,6 +16,10 @@ namespace servogate::gateway {
 /// machine file; `check` and compose() call the same. True: all can be tried.
 bool check_devices(const machine::LoadResult& loaded, std::vector<text::Finding>& findings);
 
+/// What open_devices() would refuse on this computer: a serial device that is not there, a chip whose line
+/// another program holds. Nothing outside is changed.
+void probe_devices(const machine::LoadResult& loaded, std::vector<text::Finding>& findings);
+
 /// A device of the machine file in the cycle.
 struct OpenDevice {
   std::unique_ptr<image::CycleDevice> device;
