@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <iostream>
 #include <thread>
 
@@ -113,11 +114,14 @@ TEST_F(EdgesOfTheKernel, of_a_burst_of_10000_are_told_or_counted_as_lost) {
   Nanoseconds took = 0;
   {
     const Wire wire(sysfs_, kSwitch);
+    std::atomic<bool> over{false};
     std::jthread world([&] {
       for (int n = 0; n < kBurst; ++n) wire.pull(n % 2 == 0);
       took = now() - begin;
+      over = true;
     });
-    while (known(*chip) < kBurst / 2) real_cycle(*chip);
+    // A slow computer merges edges: how many there are to be known nobody can say before.
+    while (!over) real_cycle(*chip);
     world.join();
   }
   // One more edge behind the burst: what was lost before it is known by it.
