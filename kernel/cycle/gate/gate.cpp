@@ -1,156 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel/cycle/gate/gate.hpp"
+#include "kernel/cycle/gate/decision.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "firmware_if/image/interface_map.hpp"
-#include "kernel/cycle/alarm/alarms.hpp"
 #include "kernel/cycle/gate/guarded_places.hpp"
 #include "kernel/cycle/gate/interface_places.hpp"
-#include "kernel/cycle/gate/request_kinds.hpp"
 
 namespace servogate::cycle {
 
-using axis::Axis;
-using image::Answer;
-using image::Asker;
-using image::AxisOwner;
-using image::Mode;
-using image::ProcessState;
-using image::Reaction;
-using image::Request;
-using image::RequestKind;
-using requests::kBegins;
-using requests::kOfProcess;
-using requests::kStops;
-using requests::kTakesAway;
-using requests::kTakesAwayAtZero;
-using requests::kWithMode;
-using requests::may_ask;
-
-namespace {
-
-/// One decision under way: the first refusal stands.
-class Decision {
- public:
-  Decision(const Request& request, const GateContext& context) noexcept : r_(request), c_(context) {
-    answer_.id = request.id;
-  }
-  Answer run() noexcept;
-
- private:
-  bool refuse(Refusal why, int axis = -1, double value = 0.0, double limit = 0.0) noexcept {
-    answer_.refusal = static_cast<std::uint16_t>(why);
-    answer_.axis = static_cast<std::int8_t>(axis);
-    answer_.value = value;
-    answer_.limit = limit;
-    return false;
-  }
-  ProcessState state(int process) const noexcept {
-    return c_.image->processes[static_cast<std::size_t>(process)].state;
-  }
-  static bool busy(ProcessState s) noexcept {
-    return s == ProcessState::running || s == ProcessState::held || s == ProcessState::waiting;
-  }
-  bool axis_known() noexcept {
-    return (r_.axis >= 0 && r_.axis < std::ssize(c_.axes)) || refuse(Refusal::no_such_axis, -1, r_.axis);
-  }
-  bool process_known() noexcept {
-    const bool needed = kOfProcess.has(r_.kind) || r_.mode >= 0 || c_.image->process_count > 0;
-    if (r_.process == -1 && kStops.has(r_.kind)) return true;  // all of them, as many as there are
-    return !needed || (r_.process >= 0 && r_.process < c_.image->process_count) ||
-           refuse(Refusal::no_such_process, -1, r_.process);
-  }
-  bool no_alarm(Reaction from) noexcept {
-    if (c_.reaction < from) return true;
-    if (c_.first_alarm == alarm::kEmergencyStop) return refuse(Refusal::emergency_stop);
-    return refuse(Refusal::alarm_active, -1, c_.first_alarm);
-  }
-  bool no_program() noexcept {
-    for (int p = 0; p < c_.image->process_count; ++p)
-      if (!no_program_of(p)) return false;
-    return true;
-  }
-  bool no_program_of(int process) noexcept {
-    return process >= c_.image->process_count || !busy(state(process)) || under_way(process);
-  }
-  /// What is said of a program that runs, or stops just now.
-  bool under_way(int process) noexcept {
-    const bool stops = (c_.stopping >> process & 1u) != 0;
-    return refuse(stops ? Refusal::program_stopping : Refusal::program_runs, -1, process);
-  }
-  bool no_homing() noexcept { return !c_.homing_runs || refuse(Refusal::homing_runs); }
-  bool not_held_by_another() noexcept {
-    return !c_.manual_held || c_.holder == r_.asker ||
-           refuse(Refusal::manual_held, -1, static_cast<double>(c_.holder));
-  }
-  bool ready(const Axis& a) noexcept {
-    if (a.motion_permitted()) return feed_enabled(a);
-    // While one of them is being switched off, none can be switched on: that comes first.
-    for (const Axis& b : c_.axes)
-      if ((&b == &a || !a.config().auxiliary) && !not_switching_off(b)) return false;
-    return refuse(Refusal::not_powered, a.index());
-  }
-  bool feed_enabled(const Axis& a) noexcept {
-    return a.feed_enabled() || refuse(Refusal::feed_not_enabled, a.index());
-  }
-  bool free(const Axis& a) noexcept {
-    const AxisOwner o = a.owner();
-    const bool own = (o == AxisOwner::plc && r_.asker == Asker::plc) ||
-                     (o == AxisOwner::bench && r_.asker == Asker::bench);
-    if (a.config().auxiliary && r_.asker != Asker::plc)
-      return refuse(Refusal::axis_owned, a.index(), static_cast<double>(AxisOwner::plc));
-    const bool others = o == AxisOwner::plc || o == AxisOwner::bench;
-    return !others || own || refuse(Refusal::axis_owned, a.index(), static_cast<double>(o));
-  }
-  bool all_at_rest() noexcept {
-    for (const Axis& a : c_.axes)
-      if (a.moving()) return refuse(Refusal::axis_moves, a.index());
-    return true;
-  }
-  /// The axis is one that the programs of the request's process move.
-  bool of_process(const Axis& a) const noexcept { return !a.config().auxiliary && a.process() == r_.process; }
-  bool power() noexcept;
-  bool not_switching_off(const Axis& a) noexcept;
-  bool home() noexcept;
-  bool jog() noexcept;
-  bool jog_beside(const Axis& a) noexcept;
-  bool process_stands() noexcept;
-  bool reposition() noexcept;
-  bool function() noexcept;
-  bool as_it_was_held() noexcept;
-  bool auxiliary() noexcept;
-  bool move(const Axis& a) noexcept;
-  bool torque(const Axis& a) noexcept;
-  bool inside_travel(const Axis& a) noexcept;
-  bool in_own_hand(const Axis& a) noexcept;
-  bool keep_alive() noexcept;
-  bool logic_scan() noexcept;
-  bool drives_off() noexcept;
-  bool zero() noexcept;
-  bool assign() noexcept;
-  bool tables() noexcept;
-  bool mode() noexcept;
-  bool mode_of_request() noexcept;
-  image::Mode mode_in_force() const noexcept {
-    return r_.mode >= 0 ? static_cast<Mode>(r_.mode)
-                        : c_.image->processes[static_cast<std::size_t>(r_.process)].mode;
-  }
-  bool start() noexcept;
-  bool step() noexcept;
-  bool runs_on() const noexcept;
-  bool resume() noexcept;
-  bool place(bool write) noexcept;
-  bool not_of_emergency_stop(const image::Place& place) noexcept;
-  bool may_force(const image::Place& place) noexcept;
-  bool at_standstill() noexcept;
-  bool decide_kind() noexcept;
-
-  const Request& r_;
-  const GateContext& c_;
-  Answer answer_;
-};
+namespace decision {
 
 Answer Decision::run() noexcept {
   const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::function;
@@ -279,55 +138,6 @@ bool Decision::jog() noexcept {
   const double limit = forward ? config.travel_max : config.travel_min, x = a.setpoint().x;
   const bool at_limit = forward ? x >= limit - 1e-9 : x <= limit + 1e-9;
   return !at_limit || refuse(Refusal::at_soft_limit, r_.axis, x, limit);
-}
-
-/// One axis at a time, so that the way back is the way out.
-bool Decision::jog_beside(const Axis& a) noexcept {
-  if (c_.beside.functions) return refuse(Refusal::function_runs);
-  if (c_.beside.returns) return refuse(Refusal::axis_moves, c_.beside.axis);
-  for (const Axis& b : c_.axes)
-    if (&b != &a && !b.config().auxiliary && b.process() == a.process() && b.moving())
-      return refuse(Refusal::axis_moves, b.index());
-  const bool another_leg = c_.beside.axis != a.index();
-  return !(another_leg && c_.beside.full) || refuse(Refusal::way_back_full, c_.beside.axis);
-}
-
-/// Beside a held program: nothing that belongs to it is on its way.
-bool Decision::process_stands() noexcept {
-  if (!busy(state(r_.process))) return refuse(Refusal::program_does_not_run, -1, r_.process);
-  if ((c_.stopping >> r_.process & 1u) != 0) return under_way(r_.process);
-  if (!c_.beside.possible) return refuse(Refusal::program_not_held, -1, r_.process);
-  if (c_.beside.returns) return refuse(Refusal::axis_moves, c_.beside.axis);
-  for (const Axis& a : c_.axes)
-    if (of_process(a) && a.moving()) return refuse(Refusal::axis_moves, a.index());
-  return no_homing() && not_held_by_another();
-}
-
-bool Decision::reposition() noexcept {
-  if (r_.velocity < 0.0 || !std::isfinite(r_.velocity)) return refuse(Refusal::bad_value, -1, r_.velocity);
-  if (!no_alarm(Reaction::stop_on_path) || !process_stands()) return false;
-  if (c_.beside.functions) return refuse(Refusal::function_runs);
-  if (!c_.beside.away) return refuse(Refusal::on_path);
-  for (const Axis& a : c_.axes)
-    if (of_process(a) && (!ready(a) || !free(a))) return false;
-  return true;
-}
-
-bool Decision::function() noexcept {
-  if (r_.index >= static_cast<std::uint32_t>(image::kFunctions))
-    return refuse(Refusal::bad_value, -1, r_.index, image::kFunctions - 1);
-  if (r_.value < 0.0) return refuse(Refusal::bad_value, -1, r_.value);
-  if (!no_alarm(Reaction::stop_at_block_end) || !process_stands()) return false;
-  return !c_.beside.functions_full || refuse(Refusal::function_runs);
-}
-
-/// What the rest of the program counts on.
-bool Decision::as_it_was_held() noexcept {
-  const Beside& b = c_.beside;
-  if (b.functions) return refuse(Refusal::function_runs);
-  if (b.away || b.returns) return refuse(Refusal::off_path, b.axis, b.distance);
-  if (b.tool >= 0) return refuse(Refusal::tool_differs, -1, b.tool);
-  return b.spindle < 0 || refuse(Refusal::spindle_differs, -1, b.spindle_rpm);
 }
 
 /// The PLC and its own axes: neither a program nor manual control has to do with them.
@@ -590,7 +400,15 @@ bool Decision::place(bool write) noexcept {
   return !(interface || signal) || refuse(Refusal::place_not_writable, -1, static_cast<double>(first));
 }
 
-}  // namespace
+}  // namespace decision
+
+using axis::Axis;
+using image::Answer;
+using image::Request;
+using image::RequestKind;
+using requests::kBegins;
+using requests::kTakesAway;
+using requests::kTakesAwayAtZero;
 
 std::uint32_t homing_mask(const Request& request, std::span<const Axis> axes) noexcept {
   if (request.axis >= 0) return 1u << request.axis;
@@ -602,7 +420,7 @@ std::uint32_t homing_mask(const Request& request, std::span<const Axis> axes) no
 }
 
 Answer decide(const Request& request, const GateContext& context) noexcept {
-  return Decision(request, context).run();
+  return decision::Decision(request, context).run();
 }
 
 int beside_process(const Request& request, std::span<const Axis> axes) noexcept {

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Requests beside a program that is held or waits for the operator.
+#include <cmath>
+
+#include "kernel/cycle/gate/decision.hpp"
+
+namespace servogate::cycle::decision {
+
+/// One axis at a time, so that the way back is the way out.
+bool Decision::jog_beside(const Axis& a) noexcept {
+  if (c_.beside.functions) return refuse(Refusal::function_runs);
+  if (c_.beside.returns) return refuse(Refusal::axis_moves, c_.beside.axis);
+  for (const Axis& b : c_.axes)
+    if (&b != &a && !b.config().auxiliary && b.process() == a.process() && b.moving())
+      return refuse(Refusal::axis_moves, b.index());
+  const bool another_leg = c_.beside.axis != a.index();
+  return !(another_leg && c_.beside.full) || refuse(Refusal::way_back_full, c_.beside.axis);
+}
+
+/// Beside a held program: nothing that belongs to it is on its way.
+bool Decision::process_stands() noexcept {
+  if (!busy(state(r_.process))) return refuse(Refusal::program_does_not_run, -1, r_.process);
+  if ((c_.stopping >> r_.process & 1u) != 0) return under_way(r_.process);
+  if (!c_.beside.possible) return refuse(Refusal::program_not_held, -1, r_.process);
+  if (c_.beside.returns) return refuse(Refusal::axis_moves, c_.beside.axis);
+  for (const Axis& a : c_.axes)
+    if (of_process(a) && a.moving()) return refuse(Refusal::axis_moves, a.index());
+  return no_homing() && not_held_by_another();
+}
+
+bool Decision::reposition() noexcept {
+  if (r_.velocity < 0.0 || !std::isfinite(r_.velocity)) return refuse(Refusal::bad_value, -1, r_.velocity);
+  if (!no_alarm(Reaction::stop_on_path) || !process_stands()) return false;
+  if (c_.beside.functions) return refuse(Refusal::function_runs);
+  if (!c_.beside.away) return refuse(Refusal::on_path);
+  for (const Axis& a : c_.axes)
+    if (of_process(a) && (!ready(a) || !free(a))) return false;
+  return true;
+}
+
+bool Decision::function() noexcept {
+  if (r_.index >= static_cast<std::uint32_t>(image::kFunctions))
+    return refuse(Refusal::bad_value, -1, r_.index, image::kFunctions - 1);
+  if (r_.value < 0.0) return refuse(Refusal::bad_value, -1, r_.value);
+  if (!no_alarm(Reaction::stop_at_block_end) || !process_stands()) return false;
+  return !c_.beside.functions_full || refuse(Refusal::function_runs);
+}
+
+/// What the rest of the program counts on.
+bool Decision::as_it_was_held() noexcept {
+  const Beside& b = c_.beside;
+  if (b.functions) return refuse(Refusal::function_runs);
+  if (b.away || b.returns) return refuse(Refusal::off_path, b.axis, b.distance);
+  if (b.tool >= 0) return refuse(Refusal::tool_differs, -1, b.tool);
+  return b.spindle < 0 || refuse(Refusal::spindle_differs, -1, b.spindle_rpm);
+}
+
+}  // namespace servogate::cycle::decision
