@@ -11,8 +11,6 @@ namespace servogate::gateway {
 
 namespace {
 
-constexpr double kSlowest = 1.0, kFastest = 5000.0;  ///< mm/min, of the way back
-
 using Entry = text::Entry;
 const Entry kReturns{"said.returns", "the axes return to the path by the way that they went",
                      "оси возвращаются на контур тем же путём"};
@@ -100,8 +98,8 @@ Outcome Dispatch::functions(const ask::Mdi& wanted) {
 
 Outcome Dispatch::take(const ask::Return& wanted) {
   if (!process_known(wanted.process)) return refusal_;
-  if (wanted.feed_mm_min && !(*wanted.feed_mm_min >= kSlowest && *wanted.feed_mm_min <= kFastest))
-    return fail(kReturnFeed, {text::number(kSlowest), text::number(kFastest)}, kWrongUse);
+  if (wanted.feed_mm_min && !(*wanted.feed_mm_min >= kSlowestWay && *wanted.feed_mm_min <= kFastestWay))
+    return fail(kReturnFeed, {text::number(kSlowestWay), text::number(kFastestWay)}, kWrongUse);
   image::Request r;
   r.kind = RequestKind::reposition;
   r.process = static_cast<std::int8_t>(wanted.process);

@@ -19,6 +19,9 @@ namespace servogate::gateway {
 
 using image::RequestKind;
 
+/// mm/min, of the way to a block and of the way back to a held program.
+inline constexpr double kSlowestWay = 1.0, kFastestWay = 5000.0;
+
 /// Proves loaded programs with other tables, and goes on with `then`.
 Work prove_and(Resident& resident, Resident::Proof proof, Finish then);
 

@@ -11,8 +11,6 @@ namespace servogate::gateway {
 
 namespace {
 
-constexpr double kSlowest = 1.0, kFastest = 5000.0;  ///< mm/min, of the way there
-
 using Entry = text::Entry;
 const Entry kNotInterrupted{"restart.not-interrupted",
                             "no program was interrupted: give the block with --from N120 or --line 57",
@@ -50,8 +48,8 @@ Outcome Dispatch::take(const ask::Restart& wanted) {
   const bool bad =
       (wanted.line && wanted.number) || wanted.line.value_or(1) < 1 || wanted.number.value_or(0) < 0;
   if (bad) return fail(kOneWay, {}, kWrongUse);
-  if (!(wanted.feed_mm_min >= kSlowest && wanted.feed_mm_min <= kFastest))
-    return fail(kFeed, {text::number(kSlowest), text::number(kFastest)}, kWrongUse);
+  if (!(wanted.feed_mm_min >= kSlowestWay && wanted.feed_mm_min <= kFastestWay))
+    return fail(kFeed, {text::number(kSlowestWay), text::number(kFastestWay)}, kWrongUse);
   program::RestartAt at;
   if (wanted.line) {
     at = {program::RestartAt::By::line, *wanted.line};
