@@ -79,6 +79,10 @@ class Reader {
     const std::string text = trimmed(line);
     if (text.empty() || text.front() == '#') return;
     if (section_ == "machine") return setting(text);
+    if (section_ == "rows") {
+      for (const auto& row : words_of(text)) case_.rows.push_back(row);
+      return;
+    }
     const std::map<std::string, std::vector<CaseFile::Line>*> lists = {{"expect", &case_.expected},
                                                                        {"contains", &case_.contained},
                                                                        {"motions", &case_.motions},

@@ -22,11 +22,12 @@ struct CaseFile {
   Position start{};
   std::string program;
   std::map<std::string, std::string> subprograms;
-  std::vector<Line> expected;   ///< [expect]: every command, in order
-  std::vector<Line> contained;  ///< [contains]: some of the commands, in order
-  std::vector<Line> motions;    ///< [motions]: every motion, in the short form
-  std::vector<Line> errors;     ///< [error]: the error that ends the run
-  std::vector<Line> findings;   ///< [findings]: all that check finds, in order
+  std::vector<Line> expected;     ///< [expect]: every command, in order
+  std::vector<Line> contained;    ///< [contains]: some of the commands, in order
+  std::vector<Line> motions;      ///< [motions]: every motion, in the short form
+  std::vector<Line> errors;       ///< [error]: the error that ends the run
+  std::vector<Line> findings;     ///< [findings]: all that check finds, in order
+  std::vector<std::string> rows;  ///< [rows]: of the language's checklist, what the case proves
 };
 
 /// Reads a file; throws std::runtime_error with file and line when it is no test.
