@@ -44,6 +44,8 @@ class Machine {
   /// Puts a fault on something simulated, named as in the machine file: a node ("can.x"), a bus ("can"), a
   /// station, an input. False: `why` says why it cannot happen to it, in both languages.
   virtual bool inject(std::string_view device, const fault::Fault& fault, std::string& why) = 0;
+  /// The same without doing it; `fault` nullptr: an end. False as above.
+  virtual bool possible(std::string_view device, const fault::Fault* fault, std::string& why) const = 0;
   /// Ends a lasting fault of a device before its time; nullopt: all of them. False as above.
   virtual bool clear(std::string_view device, std::optional<fault::Kind> kind, std::string& why) = 0;
 

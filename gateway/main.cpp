@@ -33,6 +33,7 @@ int carry_out(const CommandLine& line) {
   if (line.command == "backup") return command::backup(line.backup);
   if (line.command == "restore") return command::restore(line.backup);
   if (line.command == "replay") return command::replay(line.replay);
+  if (line.command == "test") return command::test(line.test);
   if (line.command == "plc run") return command::plc_run(line.plc.run);
   if (line.command == "plc check") return command::plc_check(line.plc.check);
   if (line.command == "plc test") return command::plc_test(line.plc.test);
@@ -64,7 +65,9 @@ int carry_out(const CommandLine& line) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool json = std::any_of(argv + std::min(argc, 1), argv + argc,
+  // `test --json FILE` writes a file, and speaks to people.
+  const bool json = (argc < 2 || std::string_view(argv[1]) != "test") &&
+                    std::any_of(argv + std::min(argc, 1), argv + argc,
                                 [](const char* word) { return std::string_view(word) == "--json"; });
   command::watch_signals(json);
   prepare_streams();

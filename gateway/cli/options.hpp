@@ -6,6 +6,7 @@
 
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/cli/plc_options.hpp"
+#include "gateway/cli/test_options.hpp"
 #include "gateway/control/run/clock_kind.hpp"
 #include "gateway/control/run/exit_code.hpp"
 
@@ -87,6 +88,7 @@ struct CommandLine {
   CanonOptions canon;
   ReplayOptions replay;
   BackupOptions backup;
+  TestOptions test;
   PlcCommands plc;
   BusCommands bus;
   bool json = false;               ///< of `version`

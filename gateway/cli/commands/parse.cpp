@@ -122,6 +122,7 @@ class Commands {
     check();
     canon();
     replay();
+    test();
     backup();
     restore();
     add_plc_commands(app_, line.plc);
@@ -143,10 +144,11 @@ class Commands {
     line_.client.command = line_.command;
     for (std::string& argument : line_.client.arguments) unshield(argument);
     for (std::string& word : line_.bus.sdo.words) unshield(word);
-    line_.run.clock = line_.up.clock = virtual_time_           ? ClockKind::virtual_time
-                                       : realtime_ == "strict" ? ClockKind::realtime
-                                       : realtime_.empty()     ? ClockKind::unset
-                                                               : ClockKind::realtime_best_effort;
+    line_.run.clock = line_.up.clock = line_.test.clock = virtual_time_           ? ClockKind::virtual_time
+                                                          : realtime_ == "strict" ? ClockKind::realtime
+                                                          : realtime_.empty()
+                                                              ? ClockKind::unset
+                                                              : ClockKind::realtime_best_effort;
   }
 
  private:
@@ -356,6 +358,40 @@ class Commands {
     app.add_option("--trace", o.trace, "Writes the trace of the replay to this CSV file");
     app.add_option("--against", o.against, "Compares with this trace, byte by byte");
     app.add_flag("--json", o.json, "As JSON");
+  }
+
+  void test() {
+    TestOptions& o = line_.test;
+    CLI::App& app = command("test", "Tests whole machines by scenario files (*.scenario.toml).",
+                            "servogate test tests/scenarios --junit results.xml");
+    app.add_option("PATH", o.paths, "Scenario files, and directories that are searched for them")
+        ->required()
+        ->type_name("");
+    app.add_option("--jobs", o.jobs, "Scenarios that run side by side; one a core without it")
+        ->type_name("N")
+        ->check(number_within({1.0, 256.0, "", true}));
+    app.add_option("--shard", o.shard, "Every N-th scenario, beginning with the I-th: for several runners")
+        ->type_name("I/N");
+    app.add_option("--tag", o.tags, "Only scenarios with this tag, may be repeated")->type_name("TAG");
+    app.add_option("--name", o.name, "Only scenarios whose name contains this")->type_name("TEXT");
+    app.add_flag("--list", o.list, "Names the scenarios and runs none");
+    app.add_option("--junit", o.junit, "Writes the results to this file as JUnit XML");
+    app.add_option("--json", o.json, "Writes the results to this file as JSON");
+    app.add_flag("--tap", o.tap, "Prints the results as TAP 13");
+    app.add_option("--trace-table", o.trace_table,
+                   "Writes which scenarios verify which requirement to this file");
+    app.add_option("--artifacts", o.artifacts,
+                   "Writes trace and page of each scenario that fails to this folder")
+        ->type_name("DIR");
+    app.add_option("--seed", o.seed,
+                   "Of what scenarios draw by chance; without it a new one, which is printed")
+        ->type_name("S");
+    app.add_flag("--shrink", o.shrink, "Looks for the smallest time line of a random scenario that fails");
+    app.add_flag("--without-faults", o.without_faults,
+                 "Leaves the `fault` steps out: what passes then would not have noticed them");
+    app.add_flag("--real", o.real, "Allows machines with real buses and devices, whose axes then move");
+    app.add_flag("--quiet", o.quiet, "No progress");
+    clock(app);
   }
 
   void backup() {

@@ -11,7 +11,7 @@
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "gateway/command/client/texts.hpp"
+#include "gateway/control/server/protocol/request_words.hpp"
 #include "machine/tables/exchange.hpp"
 
 namespace servogate::gateway::command {

@@ -100,6 +100,9 @@ class RunningMachine final : public bench::Machine {
   bool inject(std::string_view device, const fault::Fault& fault, std::string& why) override {
     return control_->faults().inject(device, fault, why);
   }
+  bool possible(std::string_view device, const fault::Fault* fault, std::string& why) const override {
+    return control_->faults().possible(device, fault, why);
+  }
   bool clear(std::string_view device, std::optional<fault::Kind> kind, std::string& why) override {
     return control_->faults().clear(device, kind, why);
   }

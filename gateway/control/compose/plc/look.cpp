@@ -15,4 +15,11 @@ bool look(plc::Logic& logic, plc::LogicSample& sample, std::chrono::milliseconds
   return true;
 }
 
+bool look(plc::Logic& logic, plc::LogicSample& sample, const std::function<bool()>& step) {
+  logic.ask(sample);
+  while (!logic.filled(sample))
+    if (!step() && logic.take_back()) return false;
+  return true;
+}
+
 }  // namespace servogate::gateway

@@ -124,7 +124,7 @@ const text::Entry& UrgentDesk::said_of_hold(int process) const {
 std::optional<Reply> UrgentDesk::answer_of(Pending& p) {
   if (!p.answer) {
     p.answer = requests_.take(p.id);
-    if (!p.answer && Clock::now() - p.asked < kPatience) return std::nullopt;
+    if (!p.answer && !passed(p.asked, kPatience)) return std::nullopt;
     if (!p.answer) {
       requests_.forget(p.id);
       return refuse(says::kLeftToCycle, {}, kInfrastructure, p.language);
@@ -132,7 +132,7 @@ std::optional<Reply> UrgentDesk::answer_of(Pending& p) {
     p.answered_in = image().now.number;
     p.asked = Clock::now();
   }
-  if (image().now.number == p.answered_in && Clock::now() - p.asked < kCatchUp) return std::nullopt;
+  if (image().now.number == p.answered_in && !passed(p.asked, kCatchUp)) return std::nullopt;
   if (p.answer->refusal == 0) return accept(*p.said, {}, p.language);
   return refused_by_gate(*p.answer, control_.machine(), p.language);
 }

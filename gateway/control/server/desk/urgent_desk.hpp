@@ -18,7 +18,8 @@ namespace servogate::gateway {
 /// one thread at a time.
 class UrgentDesk {
  public:
-  /// `speed`: machine seconds in a second of the wall clock.
+  /// `speed`: machine seconds in a second of the wall clock; 0: whoever asks steps the machine, and nothing
+  /// here looks at the wall clock.
   UrgentDesk(Control& control, RequestDesk& requests, double speed);
   ~UrgentDesk();
 
@@ -57,6 +58,10 @@ class UrgentDesk {
     std::optional<image::Answer> answer;
     std::int64_t answered_in = 0;  ///< cycle of the newest image when the answer came
   };
+  /// So much of the wall clock has passed since then, where it counts.
+  bool passed(std::chrono::steady_clock::time_point since, std::chrono::milliseconds time) const {
+    return speed_ > 0.0 && std::chrono::steady_clock::now() - since >= time;
+  }
   static std::optional<image::JogEnd> end_of(const HeldJog& jog, const image::AxisImage& axis);
   Reply keep_alive(const ask::KeepAlive& wanted, const Question& question);
   Reply ended(const HeldJog& jog, image::JogEnd end, bool others, text::Language language) const;

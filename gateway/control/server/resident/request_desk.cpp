@@ -15,6 +15,12 @@ namespace {
 constexpr std::chrono::seconds kPatienceWithTaken{2};
 }  // namespace
 
+bool RequestDesk::pause() const {
+  if (pause_ != nullptr) return pause_();
+  std::this_thread::sleep_for(std::chrono::microseconds(500));
+  return true;
+}
+
 Stops RequestDesk::stops() const {
   const std::scoped_lock lock(mutex_);
   return stops_;
@@ -140,17 +146,19 @@ RequestDesk::Outcome RequestDesk::ask(image::Request request, image::Answer& ans
 RequestDesk::Outcome RequestDesk::wait(const Post& post, const image::Request& request, image::Answer& answer,
                                        const Asked& asked, Clock::time_point end) {
   const bool always = cycle::never_too_old(request);
-  for (bool open = !always;; std::this_thread::sleep_for(std::chrono::microseconds(500))) {
+  bool goes_on = true;
+  for (bool open = !always;; goes_on = pause()) {
     if (const auto come = take(post.id)) {
       answer = *come;
       return Outcome::answered;
     }
     const bool gone = asked.gone != nullptr && *asked.gone;
-    const bool over = Clock::now() >= end;
+    const bool over = !goes_on || (!stepped() && Clock::now() >= end);
     if (open && (gone || over)) {
       if (withdraw(post))
         return gone ? refused(request, cycle::Refusal::client_gone, answer) : Outcome::silent;
       open = false;
+      if (!goes_on) return Outcome::taken;
       end = Clock::now() + kPatienceWithTaken;
     } else if (over) {
       forget(post.id);

@@ -43,6 +43,14 @@ class RequestDesk {
   /// whose machine knows no wall clock.
   static constexpr std::chrono::milliseconds kLongestWait{100};
   void set_longest_wait(std::chrono::milliseconds limit) { longest_wait_ = limit; }
+  /// What is done while an answer is waited for: whoever waits is the thread that steps the machine, and
+  /// moves it by a cycle; false: it cannot. Then nothing here looks at the wall clock. Before anybody asks;
+  /// without it the waiting thread sleeps.
+  void set_pause(std::function<bool()> pause) { pause_ = std::move(pause); }
+  /// Waits a little, or steps; false: the machine has come to its end.
+  bool pause() const;
+  /// The waiting thread steps the machine.
+  bool stepped() const noexcept { return pause_ != nullptr; }
   /// Hears answers that nobody waits for. Now and then.
   void look_after();
 
@@ -90,6 +98,7 @@ class RequestDesk {
   std::chrono::milliseconds longest_wait_ = kAnyTime;
   std::uint64_t next_id_ = 1;
   std::map<std::uint64_t, std::optional<image::Answer>> awaited_;
+  std::function<bool()> pause_;
   Witness witness_;
   std::map<std::uint64_t, image::Request> witnessed_;  ///< not answered yet
 };

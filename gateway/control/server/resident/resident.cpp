@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <thread>
 #include <utility>
 
 #include "gateway/control/history/request_words.hpp"
@@ -49,8 +48,8 @@ void Resident::catch_up() {
   constexpr std::chrono::seconds kPatience{1};  // a cycle that answers goes on, however long it is
   const auto end = std::chrono::steady_clock::now() + kPatience;
   const std::int64_t before = image().now.number;
-  while (image().now.number == before && std::chrono::steady_clock::now() < end)
-    std::this_thread::sleep_for(std::chrono::microseconds(500));
+  while (image().now.number == before && (requests_.stepped() || std::chrono::steady_clock::now() < end))
+    if (!requests_.pause()) return;
 }
 
 bool Resident::busy(int process) {

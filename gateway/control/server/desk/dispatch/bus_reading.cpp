@@ -15,6 +15,7 @@ using canopen::SdoStatus;
 
 /// The master's own patience with a node, and as much again for its turn.
 constexpr auto kPatience = std::chrono::milliseconds(1500);
+constexpr int kMostSteps = 20'000;  ///< more cycles than the master waits for, whatever their length
 
 CanSupplier* supplier_of(Control& control, const std::string& bus) {
   const auto& buses = control.machine().buses;
@@ -28,13 +29,21 @@ std::string_view name_of(SdoStatus status) {
 }
 
 /// nullopt: another question is under way, or the cycle does not come to it.
-std::optional<ObjectRead> read_object(canopen::ObjectQuestion& question, const ask::SdoRead& wanted) {
+std::optional<ObjectRead> read_object(canopen::ObjectQuestion& question, const ask::SdoRead& wanted,
+                                      const std::function<bool()>& pause) {
   if (!question.ask(static_cast<canopen::NodeId>(wanted.node), static_cast<std::uint16_t>(wanted.index),
                     static_cast<std::uint8_t>(wanted.subindex)))
     return std::nullopt;
   const auto until = std::chrono::steady_clock::now() + kPatience;
-  while (!question.answered() && std::chrono::steady_clock::now() < until)
-    std::this_thread::sleep_for(std::chrono::microseconds(500));
+  int steps = 0;
+  while (!question.answered()) {
+    if (pause != nullptr) {
+      if (!pause() || ++steps > kMostSteps) break;
+    } else {
+      if (std::chrono::steady_clock::now() >= until) break;
+      std::this_thread::sleep_for(std::chrono::microseconds(500));
+    }
+  }
   std::optional<ObjectRead> read;
   if (question.answered()) {
     const auto data = question.data();
@@ -47,7 +56,8 @@ std::optional<ObjectRead> read_object(canopen::ObjectQuestion& question, const a
 
 }  // namespace
 
-Reply sdo_read(Control& control, const ask::SdoRead& wanted, text::Language language) {
+Reply sdo_read(Control& control, const ask::SdoRead& wanted, text::Language language,
+               const std::function<bool()>& pause) {
   CanSupplier* const supplier = supplier_of(control, wanted.bus);
   if (supplier == nullptr || wanted.node < 0 || wanted.index < 0 || wanted.subindex < 0)
     return refuse(says::kNoSuchObject, {}, kWrongUse, language);
@@ -57,7 +67,7 @@ Reply sdo_read(Control& control, const ask::SdoRead& wanted, text::Language lang
     for (const auto& n : nodes) names += (names.empty() ? "" : ", ") + std::to_string(n.node);
     return refuse(says::kForeignNode, {std::to_string(wanted.node), names}, kAlarm, language);
   }
-  std::optional<ObjectRead> read = read_object(supplier->question(), wanted);
+  std::optional<ObjectRead> read = read_object(supplier->question(), wanted, pause);
   if (!read) return refuse(says::kObjectUnanswered, {}, kAlarm, language);
   return accept(says::kObjectRead, {}, language, std::move(*read));
 }

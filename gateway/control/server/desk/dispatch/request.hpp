@@ -71,7 +71,12 @@ class Dispatch {
     const auto count = static_cast<std::size_t>(std::clamp(wanted.count, 0.0, most));
     return looked(history_report(resident_.history(), count, language_));
   }
-  Outcome take(const ask::SdoRead& wanted) { return sdo_read(resident_.control(), wanted, language_); }
+  Outcome take(const ask::SdoRead& wanted) {
+    const RequestDesk& requests = resident_.requests();
+    return sdo_read(resident_.control(), wanted, language_,
+                    requests.stepped() ? std::function<bool()>([&] { return requests.pause(); })
+                                       : std::function<bool()>());
+  }
   Outcome take(const ask::Power&);
   Outcome take(const ask::Home&);
   Outcome take(const ask::Jog&);

@@ -58,6 +58,13 @@ std::optional<std::string> place_text(std::span<const image::Symbol> symbols, co
   return plc::to_json(text, bytes.data());
 }
 
+bool look_at(Resident& resident, plc::LogicSample& sample) {
+  plc::Logic& logic = *resident.control().logic();
+  const RequestDesk& requests = resident.requests();
+  return requests.stepped() ? look(logic, sample, [&] { return requests.pause(); })
+                            : look(logic, sample, kScanPatience);
+}
+
 }  // namespace
 
 /// What forces it: by this name, by another one of the same variable, or of a place that it shares.
@@ -122,7 +129,7 @@ Outcome PlcDesk::take(const ask::PlcWatch& wanted, const Caller& who) {
     else if (!place_text(symbols, *image.types, resident_.image().packets, name))
       return refuse(kNoVariable, {name}, kWrongUse, who.language);
   }
-  if (!look(logic, sample, kScanPatience)) return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
+  if (!look_at(resident_, sample)) return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
   const image::ProcessImage& now = resident_.image();
   PlcValues seen;
   seen.cycle = sample.at.number;
@@ -166,7 +173,7 @@ Outcome PlcDesk::watch_body(const std::string& name, const Caller& who) {
   plc::LogicSample sample;
   for (const WatchedLine& line : body.lines)
     for (const WatchedValue& v : line.values) sample.ranges.push_back({v.address, v.type->size});
-  if (!look(logic, sample, kScanPatience)) return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
+  if (!look_at(resident_, sample)) return refuse(says::kNoAnswer, {}, kInfrastructure, who.language);
   PlcBody seen;
   seen.cycle = sample.at.number;
   seen.time_s = sample.at.seconds();
