@@ -127,7 +127,9 @@ class Reader {
     } else if (name[0] == "origin" && name.size() == 2) {
       case_.tables.origins[std::stoi(name[1])] = axis_values(value);
     } else if (name[0] == "corrector" && name.size() == 2) {
-      case_.tables.correctors[std::stoi(name[1])].length = axis_values(value);
+      auto& corrector = case_.tables.correctors[std::stoi(name[1])];
+      corrector.length = axis_values(value);
+      if (const auto diameter = corrector.length.extract("K")) corrector.radius = diameter.mapped() / 2.0;
     } else if (name[0] == "protected" && name.size() == 2) {
       case_.machine.protected_places.push_back({*image::parse_place(name[1]), value});
     } else if (name.size() == 1) {

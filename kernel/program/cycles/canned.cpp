@@ -23,7 +23,10 @@ void check_levels(Execution& run, Cycle& cycle) {
 }
 
 void go_down(Execution& run, const Cycle& cycle, double to) {
-  run.motion().go(cycle.axis, to, false);
+  if (cycle.lead > 0.0)
+    run.motion().tap(cycle.axis, to, cycle.lead);
+  else
+    run.motion().go(cycle.axis, to, false);
   if (cycle.dwell_s > 0.0) run.motion().dwell(cycle.dwell_s);
 }
 
@@ -74,13 +77,17 @@ void work_hole(Execution& run, Cycle& cycle) {
   else
     cycle.factor != 0.0 ? remove_chips(run, cycle, sign) : break_chips(run, cycle, sign);
   const bool reverses = cycle.at_bottom == Cycle::Spindle::reverses;
-  if (reverses) run.motion().turn_spindle(reversed(mode));
+  const bool by_turns = cycle.lead > 0.0;
+  if (reverses) run.motion().turn_spindle(reversed(mode), by_turns ? cycle.back_share : 1.0);
   if (cycle.at_bottom == Cycle::Spindle::stops && mode != SpindleMode::stop) {
     run.motion().turn_spindle(SpindleMode::stop);
     run.state().motion.spindle = mode;
     cycle.spindle_rests = true;
   }
-  if (cycle.back_at_feed) run.motion().go(cycle.axis, cycle.approach, false);
+  if (by_turns)
+    run.motion().tap(cycle.axis, cycle.approach, cycle.lead);
+  else if (cycle.back_at_feed)
+    run.motion().go(cycle.axis, cycle.approach, false, cycle.back_share);
   if (reverses) run.motion().turn_spindle(mode);
   run.motion().go(cycle.axis, cycle.retreat, true);
 }

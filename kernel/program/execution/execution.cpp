@@ -60,6 +60,8 @@ void Execution::reset() {
   frames_.reset();
   state_.modes.corner = dialect_.corner;
   motion_.end_profile();
+  contour_.settle();
+  state_.profile = ProfileState{};
   state_.motion.cycle = Cycle{};
   BlockWords none;
   for (const GRule& rule : dialect_.g)
@@ -68,6 +70,7 @@ void Execution::reset() {
 }
 
 void Execution::reposition(const Position& at) {
+  contour_.drop();
   frames_.reposition(at);
   motion_.end_profile();
 }
@@ -146,6 +149,11 @@ Step Execution::next(const image::Packets& packets, bool synchronised) {
 Step Execution::stop_with(const ProgramError& error) {
   data_.queue.clear();
   data_.last = Error{finding(error)};
+  state_.profile = ProfileState{};
+  if (state_.contour.held || data_.contour_before)
+    contour_.rescue(data_.contour_before ? ContourState(*data_.contour_before) : state_.contour);
+  data_.contour_before.reset();
+  data_.queue.clear();
   if (data_.before_mdi) state_ = *data_.before_mdi;
   return *data_.last;
 }
@@ -164,7 +172,7 @@ bool Execution::pass_over_error() {
 text::Finding Execution::finding(const ProgramError& error) const {
   text::Finding f;
   f.file = flow_.path(state_.flow.file);
-  f.line = data_.power_on_error ? 1 : flow_.line_number();
+  f.line = data_.power_on_error ? 1 : error.line > 0 ? error.line : flow_.line_number();
   f.column = error.column > 0 ? error.column : data_.power_on_error ? 1 : column_of(block_, -1);
   f.entry = dialect_.own(error.entry);
   f.arguments = error.arguments;
@@ -192,6 +200,7 @@ std::optional<Step> Execution::advance(bool synchronised) {
 
 /// One block. A value when it has to wait for the end of motion.
 std::optional<Step> Execution::read_ahead(bool synchronised) {
+  if (data_.contour_before) data_.contour_before.reset();
   read_block(dialect_, data_.axes, flow_.source().line(data_.line), block_);
   const bool left_out = block_.skip && (state_.skip_levels >> block_.skip_level & 1u) != 0;
   if (block_.kind == BlockKind::empty || left_out) {
@@ -200,11 +209,16 @@ std::optional<Step> Execution::read_ahead(bool synchronised) {
   }
   if (!synchronised && (state_.flow.barrier || data_.view.full() || must_wait()))
     return NeedsSync{flow_.line_number()};
-  if (must_wait()) motion_.end_profile();
+  if (must_wait()) {
+    if (state_.contour.held || state_.profile.open)
+      fail(Fault::contour_waits, static_cast<int>(block_.body) + 1);
+    motion_.end_profile();
+  }
   state_.flow.barrier = false;
   ++state_.flow.line;
   ++state_.executed;
   if (++data_.since_command > kEndless) fail(Fault::endless, 0, {std::to_string(kEndless)});
+  if (contour_.engaged()) data_.contour_before = state_.contour;
   execute();
   return std::nullopt;
 }
@@ -226,6 +240,8 @@ void Execution::execute() {
 }
 
 void Execution::finish(bool rewind) {
+  if (state_.profile.open) fail(Fault::contour_open, 0);
+  contour_.settle();
   emit(End{rewind});
   data_.last = Step(data_.queue.commands.back());
   if (!rewind) return;

@@ -25,7 +25,8 @@ struct ExecutionData {
   int process;
   ProgramFiles files;
   State state;
-  std::optional<State> before_mdi;  ///< while a typed block runs: comes back where that fails
+  std::optional<ContourState> contour_before;  ///< of the block that is executed, where it has one
+  std::optional<State> before_mdi;             ///< while a typed block runs: comes back where that fails
   Block block;
   std::uint32_t line = 0;  ///< of that block
   CommandQueue queue;
@@ -65,6 +66,8 @@ class Execution : public ValueSource {
   Frames& frames() noexcept { return frames_; }
   const Frames& frames() const noexcept { return frames_; }
   Motion& motion() noexcept { return motion_; }
+  Contour& contour() noexcept { return contour_; }
+  const Contour& contour() const noexcept { return contour_; }
   Capability& capability() noexcept { return capability_; }
   const Capability& capability() const noexcept { return capability_; }
   const Numbers& numbers() const noexcept { return numbers_; }
@@ -104,6 +107,8 @@ class Execution : public ValueSource {
   }
   /// Refuses the words of a block that has no motion, but for those that its function takes.
   void refuse_all_but(const BlockWords& words, std::initializer_list<const Word*> taken) const;
+  /// The same, but for axes and F.
+  void refuse_words_but_axes(const BlockWords& words) const;
   /// The end of the main program; `rewind`: modes and frames are as after power-on then.
   void finish(bool rewind);
 
@@ -135,6 +140,9 @@ class Execution : public ValueSource {
   void return_modes(const BlockWords& words, const Modes& before);
   void check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const;
   void run_cycle_block(const BlockWords& words);
+  bool begin_contour(const BlockWords& words, const Modes& before);
+  void refuse_in_contour(const BlockWords& words) const;
+  std::string name_of(Function function) const;
   void refuse_stray_words(const BlockWords& words) const;
 
   // functions.cpp
@@ -156,9 +164,11 @@ class Execution : public ValueSource {
   Frames frames_{dialect_, machine_, data_.axes, state_.frames};
   Capability capability_{dialect_,     machine_,      block_,        flow_,
                          state_.modes, state_.frames, state_.motion, data_.warnings};
-  Output output_{data_.queue, flow_, block_, data_.process};
-  Motion motion_{dialect_,      machine_,      block_,  numbers_,    state_.modes,
-                 state_.frames, state_.motion, frames_, capability_, output_};
+  Output output_{data_.queue, flow_, block_, data_.process, state_};
+  Contour contour_{dialect_, machine_,       flow_,       state_.frames,
+                   frames_,  state_.contour, data_.queue, data_.process};
+  Motion motion_{dialect_,      machine_, block_,      numbers_, state_.modes, state_.frames,
+                 state_.motion, frames_,  capability_, output_,  contour_};
 };
 
 }  // namespace servogate::program

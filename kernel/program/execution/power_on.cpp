@@ -81,7 +81,7 @@ void Execution::power_on_value(const std::string& name, double value) {
   const VariableRule* rule = dialect_.find_variable(name);
   if (rule == nullptr) fail(Fault::variable_unknown, 0, {name});
   if (rule->set == nullptr) fail(Fault::not_executed, 0, {name});
-  rule->set(*this, value, 0);
+  rule->set(*this, value, -1, 0);
 }
 
 }  // namespace servogate::program

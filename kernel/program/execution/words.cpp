@@ -26,6 +26,9 @@ constexpr std::array<Mode, kFunctions> modes_of_functions() {
   set(Function::diameter, Function::radius, &Modes::across);
   set(Function::feed_inverse, Function::feed_revolution, &Modes::feed);
   set(Function::surface_speed, Function::revolutions, &Modes::spindle);
+  set(Function::compensation_off, Function::compensation_right, &Modes::compensation);
+  set(Function::profile_off, Function::profile_on, &Modes::profile);
+  set(Function::thread, Function::thread, &Modes::motion);
   return of;
 }
 constexpr std::array<Mode, kFunctions> kModes = modes_of_functions();
@@ -37,6 +40,7 @@ constexpr std::array<Mode, kFunctions> kModes = modes_of_functions();
 void Execution::run_words() {
   const Modes before = state_.modes;
   const BlockWords words = gather();
+  const bool contour_ends = begin_contour(words, before);
   if (words.cycle != 0 || !state_.motion.cycle.name.empty()) return run_cycle_block(words);
   const bool arc_words = arc_motion(state_.modes.motion) &&
                          (words.centre1 != nullptr || words.centre2 != nullptr || words.radius != nullptr);
@@ -49,7 +53,15 @@ void Execution::run_words() {
   }
   before_motion(words);
   if (words.instead != nullptr) words.instead(*this, words);
-  if (moves) motion_.move(words);
+  if (moves) {
+    if (state_.modes.profile == Function::profile_on || state_.profile.open)
+      dialect_.across(*this, words);
+    else if (state_.modes.motion == Function::thread)
+      dialect_.thread(*this, words);
+    else
+      motion_.move(words);
+  }
+  if (contour_ends) contour_.end();
   if (words.one_shot != 0 && (words.axes > 0 || moves)) return_modes(words, before);
   if (words.then != Function::nothing)
     state_.modes.*kModes[static_cast<std::size_t>(words.then)] = words.then;
@@ -58,6 +70,48 @@ void Execution::run_words() {
     const Word& word = *words.statements[static_cast<std::size_t>(i)];
     word.rule->run(*this, word);
   }
+}
+
+/// Compensation that the block chooses begins with its motion. True: it ends behind it.
+bool Execution::begin_contour(const BlockWords& words, const Modes& before) {
+  const Function was = before.compensation, is = state_.modes.compensation;
+  if (was == is) {
+    if (contour_.engaged()) refuse_in_contour(words);
+    return false;
+  }
+  if (is == Function::compensation_off) return true;
+  const int column = static_cast<int>(block_.body) + 1;
+  if (was != Function::compensation_off || contour_.engaged())
+    fail(Fault::contour_side, column, {name_of(is), name_of(was)});
+  if (words.cycle != 0 || !state_.motion.cycle.name.empty())
+    fail(Fault::contour_excludes, column, {state_.motion.cycle.name});
+  if (frames_.tool_radius() + state_.motion.allowance == 0.0) {
+    Written place = capability_.written(column);
+    capability_.warn(place, Fault::no_radius, {name_of(is)});
+  }
+  contour_.begin(is == Function::compensation_left ? 1 : -1, frames_.tool_radius() + state_.motion.allowance,
+                 column);
+  return false;
+}
+
+/// Inside of a compensated contour stand motions only, and those in its plane.
+void Execution::refuse_in_contour(const BlockWords& words) const {
+  const auto refuse = [&](const Word* word) {
+    if (word != nullptr) fail(Fault::contour_excludes, word->column, {word_text(dialect_, block_, *word)});
+  };
+  if (words.machine_zero)
+    fail(Fault::contour_excludes, static_cast<int>(block_.body) + 1, {name_of(Function::machine_zero)});
+  for (const Word* word : {words.speed, words.tool, words.corrector, words.h, words.cycle_word}) refuse(word);
+  for (const Word* word : words.factor) refuse(word);
+  if (!contour_.compensates()) return;
+  for (int i = 0; i < words.m_count; ++i) refuse(words.m[static_cast<std::size_t>(i)]);
+}
+
+/// "G41": the word of a function.
+std::string Execution::name_of(Function function) const {
+  for (const GRule& rule : dialect_.g)
+    if (rule.function == function) return "G" + std::to_string(rule.number);
+  return {};
 }
 
 /// The dialect's cycle takes the place of the motion; a feed profile ends here.
@@ -162,6 +216,12 @@ void Execution::gather_g(BlockWords& words, const Word& word, std::vector<const 
 }
 
 void Execution::gather_word(BlockWords& words, const Word& word) {
+  if (word.meaning >= Meaning::factor_1 && word.meaning <= Meaning::factor_3) {
+    words.factor[static_cast<std::size_t>(word.meaning) - static_cast<std::size_t>(Meaning::factor_1)] =
+        &word;
+    words.has_factors = true;
+    return;
+  }
   static constexpr std::array<std::pair<Meaning, const Word * BlockWords::*>, 12> kPlaces = {{
       {Meaning::centre_1, &BlockWords::centre1},
       {Meaning::centre_2, &BlockWords::centre2},
@@ -253,6 +313,8 @@ void Execution::take_g(BlockWords& words, const GRule& rule) {
     case Function::plane_12:
     case Function::plane_31:
     case Function::plane_23:
+      if (words.block != nullptr && (contour_.engaged() || state_.contour.shifted()))
+        fail(Fault::contour_excludes, static_cast<int>(block_.body) + 1, {"G" + std::to_string(rule.number)});
       return frames_.select_plane(rule.function, words.block != nullptr, static_cast<int>(block_.body) + 1);
     case Function::work_offset:
       return frames_.use_origin(rule.value, static_cast<int>(block_.body) + 1);
@@ -276,6 +338,14 @@ void Execution::take_g(BlockWords& words, const GRule& rule) {
   }
 }
 
+void Execution::refuse_words_but_axes(const BlockWords& words) const {
+  for (const Word* word :
+       {words.centre1, words.centre2, words.pitch, words.radius, words.radius2, words.time, words.count,
+        words.angle, words.amount, words.factor[0], words.factor[1], words.factor[2]})
+    if (word != nullptr)
+      fail(Fault::word_without_function, word->column, {word_text(dialect_, block_, *word)});
+}
+
 void Execution::refuse_all_but(const BlockWords& words, std::initializer_list<const Word*> taken) const {
   const auto refuse = [&](const Word* word) {
     if (word == nullptr || std::find(taken.begin(), taken.end(), word) != taken.end()) return;
@@ -297,10 +367,13 @@ void Execution::refuse_stray_words(const BlockWords& words) const {
   };
   if (words.radius2 != nullptr)
     fail(Fault::word_twice, words.radius2->column, {std::string(1, words.radius2->letter)});
-  if (!arc)
+  const bool thread = state_.modes.motion == Function::thread && words.axes > 0;
+  if (!arc && !thread)
     for (const Word* word : {words.centre1, words.centre2, words.radius, words.pitch}) refuse(word);
   if (!moves || state_.modes.motion == Function::rapid) refuse(words.time);
   if (!moves) refuse(words.pitch);
+  if (words.has_factors && !moves)
+    for (const Word* word : words.factor) refuse(word);
   if (words.for_instead)
     for (const Word* word : {words.count, words.angle, words.amount}) refuse(word);
 }

@@ -177,8 +177,42 @@ constexpr text::Entry kMessages[] = {
      "(`servogate tool set {0} used=0`)",
      "T{0}: инструмент выработал стойкость {1} мин, замены ему нет: смените его и задайте used=0 (`servogate "
      "tool set {0} used=0`)"},
+    {"P730", "radius compensation begins with a line, not with an arc: move to the contour with G00 or G01",
+     "коррекция на радиус начинается с прямой, а не с дуги: подведите инструмент к контуру G00 или G01"},
+    {"P731", "the first motion behind G40 is a line, not an arc: leave the contour with G00 or G01",
+     "первое перемещение после G40 — прямая, а не дуга: отойдите от контура G00 или G01"},
+    {"P732", "{0} while {1} is active: end the compensation with G40 first",
+     "{0} при активной {1}: сначала завершите коррекцию G40"},
+    {"P733", "profile not congruent: the tool of radius {0} does not fit into the arc of radius {1}",
+     "профиль не конгруэнтен: инструмент радиуса {0} не входит в дугу радиуса {1}"},
+    {"P734",
+     "profile not congruent: the tool of radius {0} does not fit between the elements before and behind "
+     "this one",
+     "профиль не конгруэнтен: инструмент радиуса {0} не входит между соседними элементами этого элемента"},
+    {"P735", "profile not congruent: the tool of radius {0} does not fit into the corner before this element",
+     "профиль не конгруэнтен: инструмент радиуса {0} не входит в угол перед этим элементом"},
+    {"P736", "more than {0} blocks without a motion in the plane stand between two elements of a contour",
+     "между двумя элементами контура стоит больше {0} кадров без перемещения в плоскости"},
+    {"P737", "{0} inside of a compensated contour: end it with G40 first",
+     "{0} внутри контура с коррекцией: сначала завершите его G40"},
+    {"P738",
+     "the block waits for the end of motion inside of a contour whose next element decides where the tool "
+     "goes: put it before the contour or behind it",
+     "кадр ждёт конца перемещения внутри контура, где путь инструмента зависит от следующего элемента: "
+     "поставьте его перед контуром или за ним"},
+    {"P739", "r or b stands in a block of its own between two elements of a contour",
+     "r или b стоит отдельным кадром между двумя элементами контура"},
+    {"P740", "no arc of radius {0} joins the two elements",
+     "никакая дуга радиуса {0} не сопрягает эти два элемента"},
+    {"P741", "a chamfer stands between two lines", "фаска ставится между двумя прямыми"},
+    {"P742", "the chamfer of {0} is longer than the line of {1}", "фаска {0} длиннее прямой {1}"},
+    {"P743", "{0} needs the coordinate of {1} in its block", "{0} требует в кадре координаты {1}"},
+    {"P744", "the program ends inside of a profile", "программа кончается внутри профиля"},
+    {"P745", "the way leads through the protected zone {0}", "путь проходит через защищённую зону {0}"},
+    {"P746", "{0}: the tool in force has no radius in the tool table: it cuts along the programmed path",
+     "{0}: у действующего инструмента в таблице нет радиуса: он режет по запрограммированному пути"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::tool_worn_out) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::no_radius) + 1);
 
 }  // namespace
 

@@ -124,6 +124,23 @@ enum class Fault : std::uint8_t {
   power_on_twice,
   findings_many,
   tool_worn_out,
+  contour_entry_arc,
+  contour_exit_arc,
+  contour_side,
+  contour_inner_arc,
+  contour_reversed,
+  contour_no_joint,
+  contour_behind,
+  contour_excludes,
+  contour_waits,
+  corner_place,
+  corner_none,
+  chamfer_lines,
+  chamfer_long,
+  factor_axis,
+  contour_open,
+  zone,
+  no_radius,
 };
 
 /// All texts, in the order of Fault.
@@ -148,6 +165,7 @@ struct ProgramError {
   const text::Entry* entry;
   int column = 0;
   std::vector<std::string> arguments;
+  int line = 0;  ///< from 1; 0: that of the block which is executed
 };
 [[noreturn]] inline void fail(Fault fault, int column, std::vector<std::string> arguments = {}) {
   throw ProgramError{&entry(fault), column, std::move(arguments)};

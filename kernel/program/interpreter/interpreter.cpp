@@ -24,6 +24,7 @@ struct Interpreter::Impl {
   Execution run;
   std::vector<Command> first = {};  ///< before those of the program, the last one foremost
   std::optional<text::Finding> refused = {};
+  Position position{};  ///< as told last
 };
 
 Interpreter::Interpreter(std::string_view dialect, MachineModel machine, Tables tables, std::string file_name,
@@ -71,7 +72,10 @@ const std::string& Interpreter::path(int file) const { return impl_->run.flow().
 int Interpreter::column(int file, int line, int axis) const {
   return impl_->run.flow().column_at(file, line, axis);
 }
-const Position& Interpreter::position() const { return impl_->run.state().frames.machine; }
+const Position& Interpreter::position() const {
+  impl_->position = impl_->run.contour().position(impl_->run.state().frames.machine);
+  return impl_->position;
+}
 const Tables& Interpreter::tables() const { return *impl_->run.state().frames.tables; }
 int Interpreter::block_count() const { return impl_->run.flow().main_source().blocks(); }
 long long Interpreter::executed() const { return impl_->run.state().executed; }

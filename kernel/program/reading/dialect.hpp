@@ -41,6 +41,9 @@ enum class Meaning : std::uint8_t {
   count,      ///< how often: a word of its own that a call takes
   angle,      ///< of a rotation
   amount,     ///< a number that a function of the block takes
+  factor_1,   ///< share of the tool's radius that is added to the coordinate of the machine's first axis ...
+  factor_2,   ///< ... its second ...
+  factor_3,   ///< ... and its third one
   statement,  ///< more than a number: its WordRule reads and executes it
 };
 
@@ -111,6 +114,12 @@ enum class Function : std::uint8_t {
   surface_speed,
   revolutions,
   cycle,
+  compensation_off,
+  compensation_left,  ///< the tool's centre runs left of the path, seen in its direction
+  compensation_right,
+  profile_off,
+  profile_on,  ///< blocks name geometric elements
+  thread,      ///< motion by the turns of the spindle
   cycle_off,
 };
 inline constexpr std::size_t kFunctions = static_cast<std::size_t>(Function::cycle_off) + 1;
@@ -154,8 +163,8 @@ struct MRule {
 /// A variable of the control that a program assigns. `set` null: not executed in this version.
 struct VariableRule {
   std::string_view name;
-  void (*set)(Execution&, double value, int column);
-  bool indexed = false;
+  void (*set)(Execution&, double value, int index, int column);
+  bool indexed = false;  ///< `index` is the number behind the name, -1: it has none
 };
 
 /// What a round bracket opens: a block of the language's own form where it stands first in it, a comment
@@ -271,6 +280,12 @@ struct Dialect {
   /// cycles.
   void (*cycle)(Execution&, const BlockWords&) = nullptr;
   void (*dwell)(Execution&, const Word&) = nullptr;  ///< of Function::dwell, after the motion
+  /// True for a line that holds what stands between two elements of a contour; null: the language has none.
+  bool (*corner_word)(std::string_view line, std::size_t first) = nullptr;
+  /// Runs a block with axes only while blocks name geometric elements (Function::profile_on).
+  void (*across)(Execution&, const BlockWords&) = nullptr;
+  /// Runs a block of Function::thread.
+  void (*thread)(Execution&, const BlockWords&) = nullptr;
   double (*system)(const Execution&, int number, int column) = nullptr;  ///< a value of the control
   int (*corrector)(int tool, int number) = nullptr;  ///< row of the table; null: the number itself
 

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/program/execution/contour/contour_state.hpp"
 #include "kernel/program/execution/flow/flow.hpp"
 #include "kernel/program/execution/state/step.hpp"
 
@@ -25,16 +26,21 @@ struct CommandQueue {
   }
 };
 
-/// Gives commands with the place they come from.
+/// Gives commands with the place they come from, behind a motion that is kept back.
 class Output {
  public:
-  Output(CommandQueue& queue, const Flow& flow, const Block& block, const int& process)
-      : queue_(queue), flow_(flow), block_(block), process_(process) {}
+  Output(CommandQueue& queue, const Flow& flow, const Block& block, const int& process, State& state)
+      : queue_(queue), flow_(flow), block_(block), process_(process), state_(state) {}
 
   template <typename What>
   void emit(What&& what) {
-    queue_.commands.push_back(
-        Command{flow_.line_number(), flow_.file(), process_, block_.number, std::forward<What>(what)});
+    Command command{flow_.line_number(), flow_.file(), process_, block_.number, std::forward<What>(what)};
+    if (state_.profile.held)
+      state_.profile.behind.emplace_back(std::move(command));
+    else if (state_.contour.held)
+      state_.contour.behind.emplace_back(std::move(command));
+    else
+      queue_.commands.push_back(std::move(command));
   }
 
  private:
@@ -42,6 +48,7 @@ class Output {
   const Flow& flow_;
   const Block& block_;
   const int& process_;
+  State& state_;
 };
 
 }  // namespace servogate::program

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/execution/frames/frames.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "kernel/program/geometry/degrees.hpp"
 
 namespace servogate::program {
 namespace {
@@ -54,6 +58,8 @@ void Frames::reset() {
     state_.field_max[i] = 1e300;
     state_.frame.set_origin(a, origin_of(*state_.tables, 0, machine_.axes[i].letter));
   }
+  state_.zones = {};
+  state_.zones_active = false;
   state_.frame.set_rotation(0.0);
   select_plane(dialect_.plane, false, 0);
 }
@@ -132,7 +138,13 @@ void Frames::use_origin(int number, int column) {
   changed();
 }
 
+double Frames::tool_radius() const {
+  const auto row = state_.tables->correctors.find(state_.active_corrector);
+  return row == state_.tables->correctors.end() ? 0.0 : row->second.radius + row->second.radius_wear;
+}
+
 void Frames::use_lengths(int row) {
+  state_.active_corrector = row;
   const auto& correctors = state_.tables->correctors;
   const auto entry = correctors.find(row);
   for (int a = 0; a < machine_.axis_count(); ++a) {
@@ -153,6 +165,51 @@ void Frames::check_axis(int axis, double value, int column) const {
   if (inside > state_.field_max[at(axis)] + kTravelSlack ||
       inside < state_.field_min[at(axis)] - kTravelSlack)
     refuse_field(a, inside, field, dialect_.terms.field, column);
+}
+
+namespace {
+
+/// True when a straight way enters the inside of a field.
+bool passes(const ProtectedZone& zone, const Frame& frame, const Position& from, const Position& to) {
+  double enters = 0.0, leaves = 1.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double length = frame.length(zone.axis[i]);
+    const double a = from[at(zone.axis[i])] - length, way = to[at(zone.axis[i])] - length - a;
+    const double low = zone.low[i] + kTravelSlack, high = zone.high[i] - kTravelSlack;
+    if (way == 0.0) {
+      if (a <= low || a >= high) return false;
+      continue;
+    }
+    const double one = (low - a) / way, two = (high - a) / way;
+    enters = std::max(enters, std::min(one, two));
+    leaves = std::min(leaves, std::max(one, two));
+  }
+  return enters < leaves;
+}
+
+}  // namespace
+
+void Frames::check_zones(const Position& from, const Position& to, int column) const {
+  for (std::size_t i = 0; i < state_.zones.size(); ++i)
+    if (state_.zones[i].active && passes(state_.zones[i], state_.frame, from, to))
+      fail(Fault::zone, column, {std::to_string(i + 1)});
+}
+
+/// By chords of half a degree, a hundred thousandth of the radius away from the arc.
+void Frames::check_zones(const Position& from, const Arc& arc, int column) const {
+  const auto a1 = at(arc.axis1), a2 = at(arc.axis2);
+  const int parts = static_cast<int>(std::ceil(std::abs(arc.sweep_deg) * 2.0)) + 1;
+  const double x = from[a1] - arc.center1, y = from[a2] - arc.center2;
+  Position last = from;
+  for (int i = 1; i <= parts; ++i) {
+    const double share = static_cast<double>(i) / parts, angle = arc.sweep_deg * share;
+    Position next = from;
+    for (int a = 0; a < machine_.axis_count(); ++a) next[at(a)] += (arc.to[at(a)] - from[at(a)]) * share;
+    next[a1] = arc.center1 + x * cos_deg(angle) - y * sin_deg(angle);
+    next[a2] = arc.center2 + x * sin_deg(angle) + y * cos_deg(angle);
+    check_zones(last, next, column);
+    last = next;
+  }
 }
 
 }  // namespace servogate::program

@@ -25,6 +25,8 @@ class Frames {
   /// A row of the origins for all axes; what it does not name, and row 0 where there is none, is machine
   /// zero.
   void use_origin(int number, int column);
+  /// What the tool in force takes from the path at its side, wear included, mm.
+  double tool_radius() const;
   /// The lengths of a row of the tool table come into force; 0: none.
   void use_lengths(int row);
 
@@ -36,6 +38,10 @@ class Frames {
   void need_plane(int column) const;
   /// Travel and working field. Source: specification A 23 (checked before the motion starts), B 6.3.
   void check_axis(int axis, double value, int column) const;
+  /// Throws where a straight way or an arc passes through an active protected zone. Source: specification
+  /// B 6.5.
+  void check_zones(const Position& from, const Position& to, int column) const;
+  void check_zones(const Position& from, const Arc& arc, int column) const;
 
  private:
   [[noreturn]] void refuse_plane(Function plane, int column) const;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace servogate::program {
@@ -20,10 +22,11 @@ std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 void Motion::move(const BlockWords& words) {
   const bool arcs = modes_.motion != Function::rapid && modes_.motion != Function::line;
   if (arcs) frames_.need_plane(here());
+  if (words.has_factors) check_factors(words);
   const Position to = target_of(words);
   switch (modes_.motion) {
     case Function::rapid:
-      output_.emit(Rapid{to});
+      give(words, Rapid{to}, to);
       break;
     case Function::line:
       line(words, to);
@@ -36,7 +39,77 @@ void Motion::move(const BlockWords& words) {
   at_.machine = to;
 }
 
-/// End of the motion in machine coordinates; the programmed coordinates are kept beside it.
+/// A motion in the order of the program: at once, or by way of the contour.
+template <typename What>
+void Motion::give(const BlockWords& words, What&& what, const Position& to) {
+  const int a1 = at_.axis1, a2 = at_.axis2;
+  if (a1 < 0 || a2 < 0 || contour_.idle()) {
+    if (at_.zones_active) {
+      if constexpr (std::is_same_v<std::decay_t<What>, Arc>)
+        frames_.check_zones(at_.machine, what, here());
+      else
+        frames_.check_zones(at_.machine, to, here());
+    }
+    return output_.emit(std::forward<What>(what));
+  }
+  ContourElement e;
+  e.in_plane = words.axis[at(a1)] != nullptr || words.axis[at(a2)] != nullptr;
+  e.start = {at_.machine[at(a1)], at_.machine[at(a2)]};
+  e.end = {to[at(a1)], to[at(a2)]};
+  e.to = to;
+  e.place = contour_.place(here(), block_.number);
+  if constexpr (std::is_same_v<std::decay_t<What>, Rapid>) {
+    e.rapid = true;
+  } else {
+    e.feed = what.feed;
+    e.corner = what.corner;
+  }
+  if constexpr (std::is_same_v<std::decay_t<What>, Arc>) {
+    e.arc = true;
+    e.centre = {what.center1, what.center2};
+    e.sweep_deg = what.sweep_deg;
+  }
+  contour_.take(std::move(e));
+}
+
+/// Adds a share of the tool's radius to a coordinate of the block; what is reached stays (specification A
+/// 15).
+void Motion::add_factor(const BlockWords& words, int axis) {
+  const Word* word = at(axis) < words.factor.size() ? words.factor[at(axis)] : nullptr;
+  if (word == nullptr) return;
+  const double radius = frames_.tool_radius() + state_.allowance;
+  at_.programmed[at(axis)] += numbers_.resolve(word->value) * radius / std::abs(at_.frame.scale(axis));
+}
+
+/// Each share of the tool's radius stands beside the coordinate of its axis.
+void Motion::check_factors(const BlockWords& words) const {
+  for (std::size_t f = 0; f < words.factor.size(); ++f) {
+    const Word* word = words.factor[f];
+    const bool known = static_cast<int>(f) < machine_.axis_count();
+    if (word == nullptr || (known && words.axis[f] != nullptr && !words.machine_zero)) continue;
+    fail(Fault::factor_axis, word->column,
+         {std::string(1, word->letter), known ? machine_.axes[f].letter : text::both("an axis", "оси")});
+  }
+}
+
+Position Motion::across(const BlockWords& words, Position from) {
+  for (int a = 0; a < machine_.axis_count(); ++a) {
+    const Word* word = words.axis[at(a)];
+    if (word == nullptr) continue;
+    if (a == at_.axis1 || a == at_.axis2)
+      fail(Fault::word_without_function, word->column, {word_text(dialect_, block_, *word)});
+    at_.programmed[at(a)] = numbers_.length(a, word->value);
+    from[at(a)] = at_.frame.to_machine(at_.programmed, a);
+    frames_.check_axis(a, from[at(a)], word->column);
+  }
+  return from;
+}
+
+void Motion::thread(const Thread& thread) {
+  output_.emit(thread);
+  at_.machine = thread.to;
+}
+
 Position Motion::target_of(const BlockWords& words) {
   Position& programmed = at_.programmed;
   Position to = at_.machine;
@@ -51,6 +124,7 @@ Position Motion::target_of(const BlockWords& words) {
       continue;
     }
     programmed[at(a)] = incremental(word->value) ? programmed[at(a)] + value : value;
+    if (words.has_factors) add_factor(words, a);
     if (frame.shift_only())
       to[at(a)] = programmed[at(a)] + frame.shift(a);
     else if (frame.separate(a))
@@ -76,12 +150,14 @@ void Motion::position(const BlockWords& words, int without_axis) {
   BlockWords rest = words;
   if (without_axis >= 0) rest.axis[at(without_axis)] = nullptr;
   const Position to = target_of(rest);
+  if (at_.zones_active) frames_.check_zones(at_.machine, to, here());
+  contour_.settle();
   output_.emit(Rapid{to});
   at_.machine = to;
 }
 
-void Motion::go(int axis, double programmed, bool at_rapid) {
-  if (std::abs(at_.programmed[at(axis)] - programmed) < 1e-9) return;
+/// Where an axis alone goes; others follow where the plane is turned.
+Position Motion::along(int axis, double programmed) {
   at_.programmed[at(axis)] = programmed;
   Position to = at_.machine;
   for (const int a : {axis, at_.axis1, at_.axis2}) {
@@ -89,10 +165,26 @@ void Motion::go(int axis, double programmed, bool at_rapid) {
     to[at(a)] = at_.frame.to_machine(at_.programmed, a);
     frames_.check_axis(a, to[at(a)], column_of(block_, a));
   }
+  if (at_.zones_active) frames_.check_zones(at_.machine, to, here());
+  return to;
+}
+
+void Motion::tap(int axis, double programmed, double lead) {
+  if (std::abs(at_.programmed[at(axis)] - programmed) < 1e-9) return;
+  Thread cut;
+  cut.to = along(axis, programmed);
+  cut.lead = lead;
+  thread(cut);
+}
+
+void Motion::go(int axis, double programmed, bool at_rapid, double share) {
+  if (std::abs(at_.programmed[at(axis)] - programmed) < 1e-9) return;
+  const Position to = along(axis, programmed);
   if (at_rapid) {
     output_.emit(Rapid{to});
   } else {
-    const Line line{to, feed_of(BlockWords{}, 0.0, machine_.rotary(axis)), CornerRule{}};
+    Line line{to, feed_of(BlockWords{}, 0.0, machine_.rotary(axis)), CornerRule{}};
+    line.feed.value *= share;
     capability_.check_line(BlockWords{}, line);
     output_.emit(line);
   }
@@ -112,7 +204,7 @@ void Motion::line(const BlockWords& words, const Position& to) {
   line.feed = feed_of(words, words.time != nullptr ? std::sqrt(square) : 0.0, turns && !linear);
   line.corner = corner_of(words);
   capability_.check_line(words, line);
-  output_.emit(std::move(line));
+  give(words, std::move(line), to);
 }
 
 /// Centre of the arc a block asks for, by its radius or by the words of a centre.
@@ -191,7 +283,7 @@ void Motion::arc(const BlockWords& words, const Position& to) {
   arc.feed = feed_of(words, length, false);
   arc.corner = corner_of(words);
   capability_.check_arc(words, arc, r1, length);
-  output_.emit(std::move(arc));
+  give(words, std::move(arc), to);
 }
 
 /// Centre by its words in machine coordinates: absolute in the origin, or from the start.
@@ -296,11 +388,11 @@ CornerRule Motion::corner_of(const BlockWords& words) const {
   return rule;
 }
 
-void Motion::turn_spindle(SpindleMode mode) {
+void Motion::turn_spindle(SpindleMode mode, double share) {
   state_.spindle = mode;
   Spindle spindle;
   spindle.mode = mode;
-  spindle.speed = modes_.speed;
+  spindle.speed = modes_.speed * share;
   spindle.surface_speed = modes_.cutting;
   if (spindle.surface_speed && capability_.surface_axis() >= 0)
     spindle.center = at_.frame.length(capability_.surface_axis());

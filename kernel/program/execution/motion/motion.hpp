@@ -3,6 +3,7 @@
 #include <string>
 
 #include "kernel/program/execution/capability/capability.hpp"
+#include "kernel/program/execution/contour/contour.hpp"
 #include "kernel/program/execution/flow/output.hpp"
 #include "kernel/program/execution/frames/frames.hpp"
 #include "kernel/program/execution/frames/numbers.hpp"
@@ -15,7 +16,7 @@ class Motion {
  public:
   Motion(const Dialect& dialect, const MachineModel& machine, const Block& block, const Numbers& numbers,
          const Modes& modes, FramesState& at, MotionState& state, Frames& frames, Capability& capability,
-         Output& output)
+         Output& output, Contour& contour)
       : dialect_(dialect),
         machine_(machine),
         block_(block),
@@ -25,7 +26,8 @@ class Motion {
         state_(state),
         frames_(frames),
         capability_(capability),
-        output_(output) {}
+        output_(output),
+        contour_(contour) {}
 
   /// The motion of a block, by the mode in force.
   void move(const BlockWords& words);
@@ -33,16 +35,33 @@ class Motion {
   void position(const BlockWords& words, int without_axis);
   /// One axis to a programmed coordinate, at rapid or at the feed in force; nothing where it stands there
   /// already.
-  void go(int axis, double programmed, bool rapid);
+  /// `share` of that feed.
+  void go(int axis, double programmed, bool rapid, double share = 1.0);
+  /// One axis by the turns of the spindle.
+  void tap(int axis, double programmed, double lead);
   void dwell(double seconds);
-  void turn_spindle(SpindleMode mode);
+  /// Where a block leads the axes across the plane; it names no other. `from`: where they stand.
+  Position across(const BlockWords& words, Position from);
+  /// The feed of a block without a length of its own, and how its motion passes into the next one.
+  Feed feed(const BlockWords& words) { return feed_of(words, 0.0, false); }
+  CornerRule corner_of(const BlockWords& words) const;
+  /// End of a block's motion in machine coordinates; the programmed coordinates are kept beside it.
+  Position target_of(const BlockWords& words);
+  /// A motion by the turns of the spindle.
+  void thread(const Thread& thread);
+  /// With a share of the speed in force.
+  void turn_spindle(SpindleMode mode, double share = 1.0);
   /// F, which stays in force where it is no matter of its block.
   void store_feed(const BlockWords& words);
   /// Ends a continuous profile: what follows is no feed motion.
   void end_profile() noexcept { state_.profile_open = false; }
 
  private:
-  Position target_of(const BlockWords& words);
+  Position along(int axis, double programmed);
+  void add_factor(const BlockWords& words, int axis);
+  void check_factors(const BlockWords& words) const;
+  template <typename What>
+  void give(const BlockWords& words, What&& what, const Position& to);
   void line(const BlockWords& words, const Position& to);
   void arc(const BlockWords& words, const Position& to);
   Point find_centre(const BlockWords& words, Point start, Point end, bool counter_clockwise) const;
@@ -51,7 +70,6 @@ class Motion {
   double helix_turns(const BlockWords& words, const Position& to, double sweep_deg, double radius) const;
   Feed feed_of(const BlockWords& words, double length_mm, bool rotary_only);
   Feed programmed_feed(const BlockWords& words, double length_mm, bool rotary_only);
-  CornerRule corner_of(const BlockWords& words) const;
   bool incremental(const Value& value) const noexcept;
   int here() const noexcept { return static_cast<int>(block_.body) + 1; }
   std::string letter(Meaning meaning) const { return std::string(1, dialect_.letter_of(meaning)); }
@@ -66,6 +84,7 @@ class Motion {
   Frames& frames_;
   Capability& capability_;
   Output& output_;
+  Contour& contour_;
 };
 
 }  // namespace servogate::program

@@ -23,6 +23,8 @@ struct BlockWords {
   const Word *centre1 = nullptr, *centre2 = nullptr, *pitch = nullptr, *radius = nullptr, *radius2 = nullptr;
   const Word *feed = nullptr, *time = nullptr, *speed = nullptr, *tool = nullptr, *h = nullptr;
   const Word *corrector = nullptr, *count = nullptr, *angle = nullptr, *amount = nullptr;
+  std::array<const Word*, 3> factor{};  ///< of the tool's radius, by axis
+  bool has_factors = false;
   bool has_centres = false;                 ///< words of Meaning::centre_of
   bool for_instead = false;                 ///< words that only `instead` can take
   std::array<const Word*, 4> statements{};  ///< those that act at the end of the block

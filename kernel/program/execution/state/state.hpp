@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "kernel/program/commands/canonical.hpp"
+#include "kernel/program/execution/contour/contour_state.hpp"
 #include "kernel/program/execution/state/machine.hpp"
+#include "kernel/program/geometry/elements.hpp"
 #include "kernel/program/geometry/frame.hpp"
 #include "kernel/program/reading/dialect.hpp"
 #include "kernel/program/values/parameters.hpp"
@@ -24,8 +26,10 @@ struct Modes {
   Function feed = Function::feed_minute;
   Function spindle = Function::revolutions;
   Function across = Function::diameter;  ///< how words of a diameter axis count
-  double speed = 0.0;                    ///< S in rpm or, if `cutting`, m/min
-  bool cutting = false;                  ///< what `speed` is, G96 or G97 of the block that set it
+  Function compensation = Function::compensation_off;
+  Function profile = Function::profile_off;
+  double speed = 0.0;    ///< S in rpm or, if `cutting`, m/min
+  bool cutting = false;  ///< what `speed` is, G96 or G97 of the block that set it
 };
 
 /// Where the program stands, and what it has to come back to.
@@ -79,13 +83,22 @@ struct Cycle {
   double step = 0.0;          ///< first one of a deep hole, 0: it is made in one
   double factor = 0.0;        ///< of a step to the one before, 0: chips are broken, not removed
   double min_step = 0.0;
-  double clearance = 0.0;  ///< above the last bottom at which removing chips comes back
-  bool dwells = false;     ///< at the bottom of each step ...
-  double dwell_s = 0.0;    ///< ... so long, as the language counts it at this hole
+  double lead = 0.0;        ///< of a thread that is cut by the turns of the spindle, 0: at the feed in force
+  double back_share = 1.0;  ///< of the speed on the way back from a thread
+  double clearance = 0.0;   ///< above the last bottom at which removing chips comes back
+  bool dwells = false;      ///< at the bottom of each step ...
+  double dwell_s = 0.0;     ///< ... so long, as the language counts it at this hole
   enum class Spindle : std::uint8_t { turns, reverses, stops };
   Spindle at_bottom = Spindle::turns;  ///< reversed until back at `approach`, stopped until the next hole
   Written levels_at;                   ///< the word that gave the levels in force
   bool spindle_rests = false;  ///< stopped at the bottom of a hole, to start again before the next one
+};
+
+/// A field of two axes that no motion enters while it is active; machine coordinates without the tool length.
+struct ProtectedZone {
+  bool defined = false, active = false;
+  std::array<int, 2> axis{};
+  std::array<double, 2> low{}, high{};
 };
 
 /// Coordinates, the frame that leads between them, and the tables behind it.
@@ -101,7 +114,10 @@ struct FramesState {
   int normal = -1;        ///< axis across the plane, -1: none
   std::int32_t tool = 0;  ///< last T word
   std::int32_t corrector = 0;
+  std::int32_t active_corrector = 0;  ///< whose lengths and radius are in force
   std::shared_ptr<const Tables> tables;
+  std::array<ProtectedZone, 3> zones{};
+  bool zones_active = false;
 };
 
 /// What motion goes by beside the modes.
@@ -128,6 +144,10 @@ struct State {
   FlowState flow;
   FramesState frames;
   MotionState motion;
+  ContourState contour;
+  ProfileState profile;
+  GeometricElements elements;
+  std::array<double, 64> own{};   ///< values that the language keeps for itself, by its own numbers
   std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit
   int optional_stop = -1;         ///< -1: left to the operator's switch
   long long executed = 0;

@@ -5,7 +5,9 @@
 #include "kernel/program/languages/nc110/codes/operands.hpp"
 #include "kernel/program/languages/nc110/codes/own_form.hpp"
 #include "kernel/program/languages/nc110/motion/motion.hpp"
+#include "kernel/program/languages/nc110/profile/profile_words.hpp"
 #include "kernel/program/languages/nc110/values/expressions.hpp"
+#include "kernel/program/languages/nc110/values/own.hpp"
 
 namespace servogate::program::nc110 {
 namespace {
@@ -22,17 +24,17 @@ constexpr GRule kG[] = {
     {17, 'b', Function::plane_12, true},
     {18, 'b', Function::plane_31},
     {19, 'b', Function::plane_23},
-    {20, 'd', Function::nothing},
-    {21, 'd', Function::later},
+    {20, 'd', Function::profile_off, true},
+    {21, 'd', Function::profile_on},
     {27, 'c', Function::corner_limited, true},
     {28, 'c', Function::continuous},
     {29, 'c', Function::exact},
-    {33, 'a', Function::later},
-    {34, 'a', Function::later},
+    {33, 'a', Function::thread},
+    {34, 'a', Function::thread},
     {35, 'n', Function::later},
-    {40, 'e', Function::nothing},
-    {41, 'e', Function::later},
-    {42, 'e', Function::later},
+    {40, 'e', Function::compensation_off, true},
+    {41, 'e', Function::compensation_left},
+    {42, 'e', Function::compensation_right},
     {70, 'f', Function::inch},
     {71, 'f', Function::metric, true},
     {72, 'j', Function::later},
@@ -96,31 +98,31 @@ constexpr CodeRule kCodes[] = {
     {"BNE", "ccl", code::branch},
     {"BGE", "ccl", code::branch},
     {"BLE", "ccl", code::branch},
-    {"UAO", "n?a*", code::uao},
-    {"UOT", "nv+", code::uot},
-    {"UIO", "v+", code::uio},
-    {"MIR", "?a*", code::mir},
-    {"URT", "x", code::urt},
-    {"SCF", "?xa*", code::scf},
-    {"RQO", "nv+", code::rqo},
-    {"DPI", "aa", code::dpi},
-    {"DLO", "p+", code::dlo},
+    {"UAO", "n?a*", code::uao, false},
+    {"UOT", "nv+", code::uot, false},
+    {"UIO", "v+", code::uio, false},
+    {"MIR", "?a*", code::mir, false},
+    {"URT", "x", code::urt, false},
+    {"SCF", "?xa*", code::scf, false},
+    {"RQO", "nv+", code::rqo, false},
+    {"DPI", "aa", code::dpi, false},
+    {"DLO", "p+", code::dlo, false},
     {"DIS", "i+", code::dis},
     {"DLY", "x", code::dly},
-    {"WAI", "w", code::wai},
+    {"WAI", "w", code::wai, false},
+    {"DSA", "npp", code::dsa, false},
+    {"ASC", "n", code::asc, false},
+    {"DSC", "n", code::dsc, false},
+    {"RQU", "nnk+", code::rqu, false},
+    {"RQP", "nnk+", code::rqp, false},
+    {"DPT", "xxx", code::dpt},
     // Codes of the language that this version does not execute.
     {"DTL", "", nullptr},
     {"CTL", "", nullptr},
-    {"DSA", "", nullptr},
-    {"ASC", "", nullptr},
-    {"DSC", "", nullptr},
     {"UCG", "", nullptr},
     {"CLG", "", nullptr},
     {"DCG", "", nullptr},
-    {"RQU", "", nullptr},
-    {"RQP", "", nullptr},
     {"TOF", "", nullptr},
-    {"DPT", "", nullptr},
     {"UAV", "", nullptr},
     {"BSP", "", nullptr},
     {"ESP", "", nullptr},
@@ -148,14 +150,14 @@ constexpr VariableRule kVariables[] = {
     {"USB", variable::usb},
     {"USO", variable::uso},
     {"UVR", variable::uvr},
+    {"TIM", variable::tim, true},
+    {"TOT", variable::tot, true},
+    {"RMS", variable::rms},
+    {"RTA", variable::rta},
+    {"RTO", variable::rto},
     // Variables of the language that this version does not execute.
-    {"TIM", nullptr, true},
-    {"TOT", nullptr, true},
     {"RMN", nullptr, true},
-    {"RMS", nullptr},
     {"UGF", nullptr},
-    {"RTA", nullptr},
-    {"RTO", nullptr},
     {"JOG", nullptr},
     {"URL", nullptr},
     {"UCV", nullptr},
@@ -167,15 +169,14 @@ constexpr VariableRule kVariables[] = {
     {"ERR", nullptr},
     {"DAW", nullptr, true},
     {"IOSTA", nullptr},
-    // Geometric elements (GTL).
-    {"o", nullptr, true},
-    {"p", nullptr, true},
-    {"l", nullptr, true},
-    {"c", nullptr, true},
 };
 
 constexpr double kCoordinate = 99999.9999;
 
+constexpr WordRule kElement = {
+    .name = "p, l, c", .when = When::for_motion, .read = read_element, .motion = element};
+constexpr WordRule kCorner = {
+    .name = "r, b", .when = When::for_motion, .read = read_corner, .motion = corner};
 constexpr WordRule kTool = {.name = "T", .meaning = Meaning::tool, .read = read_tool};
 
 constexpr std::array<LetterRule, 128> letters() {
@@ -195,8 +196,11 @@ constexpr std::array<LetterRule, 128> letters() {
   at('t') = {Meaning::block_time, ParameterKind::real, 0.001, 99999.999};
   at('S') = {Meaning::speed, ParameterKind::any, 0, 99999.99};
   at('T') = {.meaning = Meaning::tool, .parameters = ParameterKind::whole, .max = 9999, .rule = &kTool};
-  for (const char c : {'a', 'b', 'c', 'd', 'l', 'm', 'o', 'p', 'r', 's', 'u', 'v', 'w'})
-    at(c) = {Meaning::later, ParameterKind::any, -kCoordinate, kCoordinate};
+  at('u') = {Meaning::factor_1, ParameterKind::real, -kCoordinate, kCoordinate};
+  at('v') = {Meaning::factor_2, ParameterKind::real, -kCoordinate, kCoordinate};
+  at('w') = {Meaning::factor_3, ParameterKind::real, -kCoordinate, kCoordinate};
+  for (const char c : {'p', 'l', 'c', '-'}) at(c) = {.meaning = Meaning::statement, .rule = &kElement};
+  for (const char c : {'r', 'b'}) at(c) = {.meaning = Meaning::statement, .rule = &kCorner};
   return rules;
 }
 
@@ -236,6 +240,10 @@ const Dialect kDialect = {
     .profile = profile,
     .cycle = cycle,
     .dwell = dwell,
+    .corner_word = corner_word,
+    .across = across,
+    .thread = thread,
+    .system = own_value,
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "kernel/program/languages/nc110/codes/operands.hpp"
 #include "kernel/program/languages/nc110/codes/own_form.hpp"
 #include "kernel/program/languages/nc110/faults/texts.hpp"
+#include "kernel/program/languages/nc110/profile/definition.hpp"
 #include "kernel/program/languages/nc110/values/places.hpp"
 
 namespace servogate::program::nc110 {
@@ -72,7 +73,9 @@ void assign_variable(Execution& run, std::string_view line, std::size_t& pos) {
   if (rule->indexed) pos = digits;
   take_equals(line, pos, name);
   const int at = column(pos);
-  rule->set(run, run.evaluate(pos), at);
+  std::size_t number = start + name.size();
+  const int index = rule->indexed ? read_index(line, number) : -1;
+  rule->set(run, run.evaluate(pos), index, at);
 }
 
 void run_assignments(Execution& run) {
@@ -84,6 +87,8 @@ void run_assignments(Execution& run) {
     const std::string_view name = line.substr(pos, end - pos);
     if (name == "E")
       assign_parameter(run, line, pos);
+    else if (defines_element(line, pos))
+      define_element(&run, run.dialect(), run.axes(), run.block(), pos);
     else if (name == "SA" || name == "SK" || name == "SYVAR")
       assign_place(run, line, pos);
     else
@@ -99,6 +104,12 @@ void own_form(Execution& run) {
   if (block.line[block.body] != '(') return run_assignments(run);
   Operands operands;
   read_operands(run.dialect(), run.axes(), block, operands);
+  if (!operands.rule->in_contour) {
+    if (run.state().profile.open)
+      fail(Wrong::profile_open, operands.column, {std::string(operands.rule->name)});
+    if (run.contour().engaged())
+      fail(Fault::contour_excludes, operands.column, {std::string(operands.rule->name)});
+  }
   operands.rule->run(run, operands);
 }
 

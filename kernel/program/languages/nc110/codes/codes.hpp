@@ -32,6 +32,16 @@ void rqo(Execution& run, const Operands& operands);
 void dpi(Execution& run, const Operands& operands);
 void dlo(Execution& run, const Operands& operands);
 
+// zones.cpp; source: specification B 6.5
+void dsa(Execution& run, const Operands& operands);
+void asc(Execution& run, const Operands& operands);
+void dsc(Execution& run, const Operands& operands);
+
+// tools.cpp; source: specification B 9, B 10.1
+void rqu(Execution& run, const Operands& operands);
+void rqp(Execution& run, const Operands& operands);
+void dpt(Execution& run, const Operands& operands);
+
 // signal.cpp; source: specification B 7, B 15.3
 void dis(Execution& run, const Operands& operands);
 void dly(Execution& run, const Operands& operands);
@@ -42,12 +52,17 @@ void wai(Execution& run, const Operands& operands);
 namespace servogate::program::nc110::variable {
 
 // variables.cpp; source: specification A 19, A 13.4
-void tmr(Execution& run, double value, int column);
-void uov(Execution& run, double value, int column);
-void erf(Execution& run, double value, int column);
-void mcd(Execution& run, double value, int column);
-void usb(Execution& run, double value, int column);
-void uso(Execution& run, double value, int column);
-void uvr(Execution& run, double value, int column);
+void tmr(Execution& run, double value, int index, int column);
+void uov(Execution& run, double value, int index, int column);
+void erf(Execution& run, double value, int index, int column);
+void mcd(Execution& run, double value, int index, int column);
+void usb(Execution& run, double value, int index, int column);
+void uso(Execution& run, double value, int index, int column);
+void uvr(Execution& run, double value, int index, int column);
+void tim(Execution& run, double value, int index, int column);
+void tot(Execution& run, double value, int index, int column);
+void rms(Execution& run, double value, int index, int column);
+void rta(Execution& run, double value, int index, int column);
+void rto(Execution& run, double value, int index, int column);
 
 }  // namespace servogate::program::nc110::variable

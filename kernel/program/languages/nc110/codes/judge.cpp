@@ -5,6 +5,7 @@
 #include "kernel/program/languages/nc110/codes/operands.hpp"
 #include "kernel/program/languages/nc110/codes/own_form.hpp"
 #include "kernel/program/languages/nc110/faults/texts.hpp"
+#include "kernel/program/languages/nc110/profile/definition.hpp"
 #include "kernel/program/languages/nc110/values/places.hpp"
 
 namespace servogate::program::nc110 {
@@ -27,6 +28,10 @@ class Reader {
     const std::string_view line = block_.line.substr(0, block_.end);
     for (std::size_t pos = block_.body; pos < line.size(); pos = skip_spaces(line, pos)) {
       const std::size_t start = pos;
+      if (defines_element(line, pos)) {
+        define_element(nullptr, reading_.run.dialect(), reading_.run.axes(), block_, pos);
+        continue;
+      }
       while (pos < line.size() && is_letter(line[pos])) ++pos;
       const std::string_view name = line.substr(start, pos - start);
       const bool place = name == "SA" || name == "SK" || name == "SYVAR";
@@ -89,8 +94,7 @@ class Reader {
       if (read_place(line, pos).format == image::Format::ch) return;
       pos = item.begin;
     }
-    if (line[pos] >= 'a' && line[pos] <= 'z')
-      fail(Fault::not_executed, static_cast<int>(pos) + 1, {std::string(operands_.text(item))});
+    if (names_element(line.substr(pos))) return;
     evaluate(reading_.run.dialect().expressions, line, pos, nullptr);
     if (pos != item.end) fail(Fault::expected, static_cast<int>(pos) + 1, {","});
   }

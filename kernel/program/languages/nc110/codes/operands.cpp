@@ -27,7 +27,8 @@ constexpr struct {
               {'p', "axis with two values", "ось с двумя значениями"},
               {'l', "label", "метка"},
               {'f', "program name", "имя программы"},
-              {'w', "condition", "условие"}};
+              {'w', "condition", "условие"},
+              {'k', "axis or K with value", "ось или K со значением"}};
 
 std::string kind_name(char kind) {
   for (const auto& row : kKinds)
@@ -116,6 +117,15 @@ class OperandReader {
         break;
       case 'p':
         valued(item, true);
+        break;
+      case 'k':
+        if (line_[item.begin] == 'K') {
+          std::size_t pos = item.begin + 1;
+          item.value = value(pos, item.end, "K", ParameterKind::real);
+          if (pos != item.end) unexpected(pos, kind);
+        } else {
+          valued(item, false);
+        }
         break;
       default:
         break;

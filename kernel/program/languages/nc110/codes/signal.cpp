@@ -6,6 +6,7 @@
 #include "kernel/program/languages/nc110/codes/codes.hpp"
 #include "kernel/program/languages/nc110/codes/operands.hpp"
 #include "kernel/program/languages/nc110/faults/texts.hpp"
+#include "kernel/program/languages/nc110/profile/definition.hpp"
 #include "kernel/program/languages/nc110/values/places.hpp"
 
 namespace servogate::program::nc110::code {
@@ -17,6 +18,8 @@ constexpr double kMaxDelay = 32.0;  ///< s, specification B 7.2
 int column(std::size_t offset) { return static_cast<int>(offset) + 1; }
 
 bool names_value(std::string_view text) {
+  for (const std::string_view own : {"TIM", "TOT", "RTA", "RTO"})
+    if (text.starts_with(own)) return true;
   return names_place(text) || (text.size() > 1 && text[0] == 'E' && is_digit(text[1]));
 }
 
@@ -37,8 +40,7 @@ std::string shown(Execution& run, const Operands& operands, const Operand& item)
       return std::string(text) + "=" + run.characters(place, column(item.begin));
     pos = item.begin;
   }
-  if (text.front() >= 'a' && text.front() <= 'z')
-    fail(Fault::not_executed, column(item.begin), {std::string(text)});
+  if (names_element(text)) return shown_element(run, text, column(item.begin));
   const double value = evaluate(run.dialect().expressions, line, pos, &run);
   if (pos != item.end) fail(Fault::expected, column(pos), {","});
   return names_value(text) ? std::string(text) + "=" + text::number(value) : text::number(value);

@@ -5,6 +5,7 @@
 #include "kernel/program/cycles/canned.hpp"
 #include "kernel/program/languages/nc110/faults/texts.hpp"
 #include "kernel/program/languages/nc110/motion/motion.hpp"
+#include "kernel/program/languages/nc110/values/own.hpp"
 
 namespace servogate::program::nc110 {
 namespace {
@@ -49,13 +50,24 @@ void take_levels(const Execution& run, const BlockWords& words, Cycle& cycle) {
     cycle.levels_at = run.capability().written(word->column);
 }
 
+/// K is the pitch of a tap that follows the turns of the spindle; RMS is its way back in per cent.
+void take_lead(const Execution& run, const BlockWords& words, Cycle& cycle) {
+  const double percent = run.state().own[at(Own::rms)];
+  cycle.back_share = percent > 0.0 ? percent / 100.0 : 1.0;
+  if (words.pitch == nullptr) return;
+  cycle.lead = run.numbers().length(cycle.axis, words.pitch->value, false);
+  if (!(cycle.lead > 0.0)) fail(Wrong::thread_lead, words.pitch->column);
+  if (run.machine().spindles == 0) fail(Fault::no_spindle, words.pitch->column, {"G84 K"});
+  if (run.state().modes.cutting || run.state().modes.speed <= 0.0)
+    fail(Wrong::tap_no_speed, words.pitch->column);
+}
+
 void take_pecks(const Execution& run, const BlockWords& words, Cycle& cycle) {
   if (words.cycle != 83) {
-    if (words.cycle == 84 && words.pitch != nullptr)
-      fail(Fault::not_executed, words.pitch->column,
-           {"G84 with " + word_text(run.dialect(), run.block(), *words.pitch)});
-    for (const Word* word : {words.centre1, words.centre2, words.pitch})
+    const bool taps = words.cycle == 84;
+    for (const Word* word : {words.centre1, words.centre2, taps ? nullptr : words.pitch})
       if (word != nullptr) stray(run, *word);
+    if (taps) take_lead(run, words, cycle);
     return;
   }
   if (words.centre1 == nullptr) fail(Wrong::cycle_step_missing, words.cycle_word->column);

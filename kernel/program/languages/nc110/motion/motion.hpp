@@ -7,6 +7,9 @@ namespace servogate::program::nc110 {
 /// Canned cycles G81-G86 and G89 (G84 for a floating holder). Source: specification A 10.
 void cycle(Execution& run, const BlockWords& words);
 
+/// G33, G34. Source: specification A 12.1.
+void thread(Execution& run, const BlockWords& words);
+
 /// TMR in seconds; with G95 it counts revolutions of the spindle.
 double dwell_seconds(const Execution& run);
 /// A dwell of TMR that is asked for at `word` while TMR is 0.

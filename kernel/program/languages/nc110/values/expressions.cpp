@@ -8,6 +8,7 @@
 #include "kernel/program/geometry/degrees.hpp"
 #include "kernel/program/languages/nc110/faults/texts.hpp"
 #include "kernel/program/languages/nc110/values/expressions.hpp"
+#include "kernel/program/languages/nc110/values/own.hpp"
 #include "kernel/program/languages/nc110/values/places.hpp"
 #include "kernel/program/reading/block.hpp"
 
@@ -46,7 +47,53 @@ constexpr FunctionRow kFunctions[] = {
     {"MOD", [](double a, double b) { return b == 0.0 ? std::nan("") : std::fmod(a, b); }, 2},
 };
 
-constexpr std::string_view kLater[] = {"FEL", "FEP", "FEC", "TIM", "TOT", "RMN", "IOSTA", "RTA", "RTO"};
+constexpr std::string_view kLater[] = {"RMN", "IOSTA"};
+
+/// FEL(A,B): a value of a geometric element.
+double of_element(int function, std::string_view line, std::size_t& pos, const ValueSource* source,
+                  int column) {
+  const auto take = [&](char c) {
+    pos = skip_spaces(line, pos);
+    if (pos >= line.size() || line[pos] != c)
+      fail(Fault::expected, static_cast<int>(pos) + 1, {std::string(1, c)});
+    ++pos;
+  };
+  take('(');
+  const double number = evaluate(expressions(), line, pos, source);
+  take(',');
+  const double item = evaluate(expressions(), line, pos, source);
+  take(')');
+  if (source == nullptr) return 1.0;
+  const auto whole = [&](double value, double most) {
+    if (!(value >= 0.0 && value <= most) || value != std::floor(value))
+      fail(Wrong::element_number, column, {text::number(most)});
+    return static_cast<int>(value);
+  };
+  return source->system(kOfElement + function * 100'000 + whole(number, 255) * 10 + whole(item, 9), column);
+}
+
+/// A variable of the language's own: TIM2, RMS.
+bool own_variable(std::string_view name, std::string_view line, std::size_t& pos, const ValueSource* source,
+                  double& value, int column) {
+  if (name == "FEL" || name == "FEP" || name == "FEC") {
+    pos += name.size();
+    value = of_element(name == "FEL" ? 0 : name == "FEP" ? 1 : 2, line, pos, source, column);
+    return true;
+  }
+  const bool time = name == "TIM", sum = name == "TOT";
+  if (!time && !sum && name != "RTA" && name != "RTO") return false;
+  pos += name.size();
+  std::size_t place = at(name == "RTA" ? Own::rta : Own::rto);
+  if (time || sum) {
+    const int index = read_index(line, pos);
+    if (index < 0 || index > kMostTimer)
+      fail(Wrong::timer_index, column, {std::string(name), "0", std::to_string(kMostTimer)});
+    place = at(time ? Own::tim : Own::tot) + static_cast<std::size_t>(index);
+    if (time && index == 0) place = kOfTime;
+  }
+  if (source != nullptr) value = source->system(static_cast<int>(place), column);
+  return true;
+}
 
 /// E parameters and places.
 bool variable(std::string_view line, std::size_t& pos, const ValueSource* source, double& value) {
@@ -61,7 +108,8 @@ bool variable(std::string_view line, std::size_t& pos, const ValueSource* source
     if (source != nullptr) value = source->parameter(index, column);
     return true;
   }
-  if (name != "SA" && name != "SK" && name != "SYVAR") return false;
+  if (name != "SA" && name != "SK" && name != "SYVAR")
+    return own_variable(name, line, pos, source, value, column);
   const image::Place where = read_place(line, pos);
   if (where.format == image::Format::ch) fail(Fault::characters_as_number, column, {image::to_string(where)});
   if (source != nullptr) value = source->place(where, column);
