@@ -62,6 +62,7 @@ void Execution::reset() {
   motion_.end_profile();
   contour_.settle();
   state_.profile = ProfileState{};
+  state_.spline = SplineState{};
   state_.motion.cycle = Cycle{};
   BlockWords none;
   for (const GRule& rule : dialect_.g)
@@ -104,11 +105,17 @@ bool Execution::takes_effect_at_once(const image::Place& place) const {
   return place.packet == image::Packet::v ? block_.sync != Sync::request : block_.sync == Sync::cancel;
 }
 
+/// A curve is given as a whole: nothing has a place between its points.
+void Execution::refuse_in_spline(int column) const {
+  if (state_.spline.phase == SplineState::Phase::points) fail(Fault::contour_waits, column);
+}
+
 void Execution::write(const image::Place& place, double value, int column) {
   check_owner(machine_, place, column);
   const double stored = data_.view.storable(place, value, column);
   const bool at_once = takes_effect_at_once(place);
   if (at_once || must_wait()) data_.view.remember(place, stored, {});
+  if (!at_once) refuse_in_spline(column);
   if (!at_once) motion_.end_profile();
   emit(WritePlace{place, stored, {}, !at_once});
 }
@@ -123,6 +130,7 @@ void Execution::write(const image::Place& place, std::string_view characters, in
   std::string padded(characters);
   padded.resize(place.length, ' ');
   if (at_once || must_wait()) data_.view.remember(place, 0.0, padded);
+  if (!at_once) refuse_in_spline(column);
   if (!at_once) motion_.end_profile();
   emit(WritePlace{place, 0.0, std::move(padded), !at_once});
 }
@@ -150,6 +158,7 @@ Step Execution::stop_with(const ProgramError& error) {
   data_.queue.clear();
   data_.last = Error{finding(error)};
   state_.profile = ProfileState{};
+  state_.spline = SplineState{};
   if (state_.contour.held || data_.contour_before)
     contour_.rescue(data_.contour_before ? ContourState(*data_.contour_before) : state_.contour);
   data_.contour_before.reset();
@@ -210,7 +219,7 @@ std::optional<Step> Execution::read_ahead(bool synchronised) {
   if (!synchronised && (state_.flow.barrier || data_.view.full() || must_wait()))
     return NeedsSync{flow_.line_number()};
   if (must_wait()) {
-    if (state_.contour.held || state_.profile.open)
+    if (state_.contour.held || state_.profile.open || state_.spline.phase == SplineState::Phase::points)
       fail(Fault::contour_waits, static_cast<int>(block_.body) + 1);
     motion_.end_profile();
   }
@@ -240,7 +249,7 @@ void Execution::execute() {
 }
 
 void Execution::finish(bool rewind) {
-  if (state_.profile.open) fail(Fault::contour_open, 0);
+  if (state_.profile.open || state_.spline.phase != SplineState::Phase::none) fail(Fault::contour_open, 0);
   contour_.settle();
   emit(End{rewind});
   data_.last = Step(data_.queue.commands.back());

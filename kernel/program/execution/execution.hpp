@@ -90,6 +90,8 @@ class Execution : public ValueSource {
   double evaluate(std::size_t& pos) const;
   void write(const image::Place& place, double value, int column);
   void write(const image::Place& place, std::string_view characters, int column);
+  /// What the program does from here on depends on the machine.
+  void depends_on_machine() const noexcept { data_.machine_read = true; }
   /// Characters that a write depends on are read from the snapshot.
   void use_snapshot() const noexcept { data_.snapshot_used = true; }
   std::string characters(const image::Place& place, int column) const {
@@ -121,6 +123,7 @@ class Execution : public ValueSource {
   void execute();
   Step stop_with(const ProgramError& error);
   text::Finding finding(const ProgramError& error) const;
+  void refuse_in_spline(int column) const;
   void reset();
 
   // power_on.cpp

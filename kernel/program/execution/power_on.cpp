@@ -26,6 +26,20 @@ bool is_mode(Function function) {
   }
 }
 
+/// True for what a program has to begin.
+bool is_begun(Function function) {
+  switch (function) {
+    case Function::compensation_left:
+    case Function::compensation_right:
+    case Function::profile_on:
+    case Function::thread:
+    case Function::spline:
+      return true;
+    default:
+      return false;
+  }
+}
+
 void check_range(const std::string& name, double value, double min, double max) {
   if (!(value >= min && value <= max))
     fail(Fault::variable_range, 0, {name, text::number(value), text::number(min), text::number(max)});
@@ -63,6 +77,7 @@ void Execution::power_on_mode(std::size_t index) {
   if (rule == nullptr) fail(Fault::power_on_bad, 0, {word});
   if (rule->function == Function::later) fail(Fault::not_executed, 0, {word});
   if (!is_mode(rule->function)) fail(Fault::power_on_for_block, 0, {word});
+  if (is_begun(rule->function)) fail(Fault::power_on_begins, 0, {word});
   for (std::size_t i = 0; i < index; ++i) {
     const GRule* before = mode_of(dialect_, machine_.power_on[i]);
     if (before == rule) fail(Fault::power_on_twice, 0, {word});

@@ -28,7 +28,7 @@ constexpr std::array<Mode, kFunctions> modes_of_functions() {
   set(Function::surface_speed, Function::revolutions, &Modes::spindle);
   set(Function::compensation_off, Function::compensation_right, &Modes::compensation);
   set(Function::profile_off, Function::profile_on, &Modes::profile);
-  set(Function::thread, Function::thread, &Modes::motion);
+  set(Function::thread, Function::spline, &Modes::motion);
   return of;
 }
 constexpr std::array<Mode, kFunctions> kModes = modes_of_functions();
@@ -56,6 +56,8 @@ void Execution::run_words() {
   if (moves) {
     if (state_.modes.profile == Function::profile_on || state_.profile.open)
       dialect_.across(*this, words);
+    else if (state_.modes.motion == Function::spline || state_.spline.phase != SplineState::Phase::none)
+      dialect_.spline(*this, words);
     else if (state_.modes.motion == Function::thread)
       dialect_.thread(*this, words);
     else
@@ -119,6 +121,10 @@ void Execution::run_cycle_block(const BlockWords& words) {
   motion_.end_profile();
   if (words.time != nullptr)
     fail(Fault::word_without_function, words.time->column, {word_text(dialect_, block_, *words.time)});
+  for (const Word* word : {words.count, words.angle, words.amount, words.instead_word, words.factor[0],
+                           words.factor[1], words.factor[2]})
+    if (word != nullptr)
+      fail(Fault::word_without_function, word->column, {word_text(dialect_, block_, *word)});
   motion_.store_feed(words);
   before_motion(words);
   dialect_.cycle(*this, words);

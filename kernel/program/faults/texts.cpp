@@ -22,8 +22,8 @@ constexpr text::Entry kMessages[] = {
     {"P108", "block number {0} has more than {1} digits", "в номере кадра {0} больше {1} цифр"},
     {"P109", "the text has no closing quote", "у текста нет закрывающей кавычки"},
     {"P110", "the block in brackets has no closing bracket", "у кадра в скобках нет закрывающей скобки"},
-    {"P112", "the letter {0} is Cyrillic and only looks like the Latin {1}: write the Latin letter",
-     "буква {0} русская и только похожа на латинскую {1}: напишите латинскую"},
+    {"P112", "the letter {0} is Cyrillic and only looks like the Latin {1}: it is read as {1}",
+     "буква {0} русская и только похожа на латинскую {1}: она читается как {1}"},
     {"P113", "this line ends with CR alone; such ends are taken as line ends",
      "строка кончается одним CR; такие концы приняты за концы строк"},
     {"P201", "the character {0} has no meaning here{1}", "символ {0} здесь не имеет смысла{1}"},
@@ -211,8 +211,10 @@ constexpr text::Entry kMessages[] = {
     {"P745", "the way leads through the protected zone {0}", "путь проходит через защищённую зону {0}"},
     {"P746", "{0}: the tool in force has no radius in the tool table: it cuts along the programmed path",
      "{0}: у действующего инструмента в таблице нет радиуса: он режет по запрограммированному пути"},
+    {"P908", "{0} cannot be in force at power-on: a program begins it",
+     "{0} не может действовать при включении: её начинает программа"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::no_radius) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::power_on_begins) + 1);
 
 }  // namespace
 

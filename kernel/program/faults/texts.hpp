@@ -141,6 +141,7 @@ enum class Fault : std::uint8_t {
   contour_open,
   zone,
   no_radius,
+  power_on_begins,
 };
 
 /// All texts, in the order of Fault.

@@ -35,6 +35,11 @@ class FileReader {
       const auto column = static_cast<int>(source_.line(source_.lone_return()).size()) + 1;
       add(text::Severity::warning, Fault::lone_return, column, {});
     }
+    for (const LookAlike& letter : source_.look_alikes()) {
+      line_ = static_cast<int>(letter.line) + 1;
+      add(text::Severity::warning, Fault::cyrillic, letter.column,
+          {letter.cyrillic, std::string(letter.latin)});
+    }
     for (const auto& twice : source_.duplicates()) {
       line_ = static_cast<int>(twice.line) + 1;
       add(text::Severity::warning, Fault::label_twice,

@@ -16,11 +16,6 @@ bool name_character(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
 bool label_character(char c) { return is_letter(c) || is_digit(c) || static_cast<unsigned char>(c) >= 128; }
 
-/// Cyrillic capitals (UTF-8) that look like Latin ones.
-constexpr std::pair<std::string_view, std::string_view> kLookAlikes[] = {
-    {"А", "A"}, {"В", "B"}, {"Е", "E"}, {"К", "K"}, {"М", "M"}, {"Н", "H"},
-    {"О", "O"}, {"Р", "P"}, {"С", "C"}, {"Т", "T"}, {"У", "Y"}, {"Х", "X"}};
-
 /// One character as it stands in the file, all bytes of a UTF-8 sequence.
 std::string character_at(std::string_view line, std::size_t pos) {
   std::size_t end = pos + 1;
@@ -176,8 +171,6 @@ std::string comma_hint(std::string_view line, std::size_t pos) {
   const char c = line[pos];
   if (!is_letter(c)) {
     const std::string character = character_at(line, pos);
-    for (const auto& [cyrillic, latin] : kLookAlikes)
-      if (character == cyrillic) fail(Fault::cyrillic, column(pos), {character, std::string(latin)});
     fail(Fault::unknown_character, column(pos), {character, comma_hint(line, pos)});
   }
   const std::string run = run_at(line, pos);

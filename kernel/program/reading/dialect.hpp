@@ -120,6 +120,7 @@ enum class Function : std::uint8_t {
   profile_off,
   profile_on,  ///< blocks name geometric elements
   thread,      ///< motion by the turns of the spindle
+  spline,      ///< a curve through points
   cycle_off,
 };
 inline constexpr std::size_t kFunctions = static_cast<std::size_t>(Function::cycle_off) + 1;
@@ -284,6 +285,8 @@ struct Dialect {
   bool (*corner_word)(std::string_view line, std::size_t first) = nullptr;
   /// Runs a block with axes only while blocks name geometric elements (Function::profile_on).
   void (*across)(Execution&, const BlockWords&) = nullptr;
+  /// Runs a motion block while a curve is open, and one of Function::spline.
+  void (*spline)(Execution&, const BlockWords&) = nullptr;
   /// Runs a block of Function::thread.
   void (*thread)(Execution&, const BlockWords&) = nullptr;
   double (*system)(const Execution&, int number, int column) = nullptr;  ///< a value of the control

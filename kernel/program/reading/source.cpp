@@ -30,6 +30,7 @@ Source::Source(const Dialect& dialect, std::string name, std::string text, std::
   const std::size_t end_mark = text_.find_first_of("\x1A", last_of(text_));
   if (end_mark != std::string::npos) text_.erase(end_mark);
   put_line_ends();
+  look_alikes_ = read_look_alikes(dialect.lexis, text_);
   starts_.reserve(text_.size() / 24 + 2);
   starts_.push_back(0);
   const char* const begin = text_.data();

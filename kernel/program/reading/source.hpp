@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/program/reading/look_alikes.hpp"
+
 namespace servogate::program {
 
 struct Dialect;
@@ -56,6 +58,8 @@ class Source {
     std::string_view label;
   };
   const std::vector<Duplicate>& duplicates() const noexcept { return duplicates_; }
+  /// Cyrillic letters that were read as Latin ones; the lines have the Latin ones.
+  const std::vector<LookAlike>& look_alikes() const noexcept { return look_alikes_; }
   /// First line (from 0) that a CR alone ends, as tapes and old computers wrote them; kNone: there is none.
   std::uint32_t lone_return() const noexcept { return lone_return_; }
 
@@ -75,6 +79,7 @@ class Source {
   std::map<std::uint32_t, std::int32_t> definitions_;  ///< line to number
   std::uint32_t start_ = 0;
   std::vector<Duplicate> duplicates_;
+  std::vector<LookAlike> look_alikes_;
   std::uint32_t lone_return_ = kNone;
   int blocks_ = 0;
 };

@@ -84,4 +84,19 @@ struct ProfileState {
   CornerWord corner;
 };
 
+/// A curve through points, all of them kept back until its last direction is known.
+struct SplineState {
+  enum class Phase : std::uint8_t { none, entry, points, left };
+  struct Knot {
+    Position at{};  ///< machine coordinates
+    Feed feed;
+    CornerRule corner;
+    Place place;
+  };
+  Phase phase = Phase::none;
+  int ends = 0;  ///< 1: the first direction is given, 2: the last one, 3: both
+  std::vector<Knot> knots;
+  std::optional<Position> first;  ///< the first direction, of unit length
+};
+
 }  // namespace servogate::program

@@ -146,6 +146,7 @@ struct State {
   MotionState motion;
   ContourState contour;
   ProfileState profile;
+  SplineState spline;
   GeometricElements elements;
   std::array<double, 64> own{};   ///< values that the language keeps for itself, by its own numbers
   std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit

@@ -19,7 +19,7 @@ constexpr GRule kG[] = {
     {2, 'a', Function::arc_cw},
     {3, 'a', Function::arc_ccw},
     {4, 'i', Function::dwell},
-    {6, 'a', Function::later},
+    {6, 'a', Function::spline},
     {9, 'i', Function::exact_once},
     {17, 'b', Function::plane_12, true},
     {18, 'b', Function::plane_31},
@@ -37,9 +37,9 @@ constexpr GRule kG[] = {
     {42, 'e', Function::compensation_right},
     {70, 'f', Function::inch},
     {71, 'f', Function::metric, true},
-    {72, 'j', Function::later},
-    {73, 'j', Function::later},
-    {74, 'j', Function::later},
+    {.number = 72, .group = 'j', .function = Function::own, .motion = probe_point},
+    {.number = 73, .group = 'j', .function = Function::own, .motion = probe_hole},
+    {.number = 74, .group = 'j', .function = Function::own, .motion = probe_deviation},
     {79, 'k', Function::machine_zero},
     {80, 'g', Function::cycle_off, true},
     {81, 'g', Function::cycle},
@@ -116,16 +116,16 @@ constexpr CodeRule kCodes[] = {
     {"RQU", "nnk+", code::rqu, false},
     {"RQP", "nnk+", code::rqp, false},
     {"DPT", "xxx", code::dpt},
+    {"BSP", "aan", code::bsp, false},
+    {"ESP", "", code::esp},
+    {"UCG", "npp?.*", code::graphics},
+    {"CLG", "", code::graphics},
+    {"DCG", "", code::graphics},
     // Codes of the language that this version does not execute.
     {"DTL", "", nullptr},
     {"CTL", "", nullptr},
-    {"UCG", "", nullptr},
-    {"CLG", "", nullptr},
-    {"DCG", "", nullptr},
     {"TOF", "", nullptr},
     {"UAV", "", nullptr},
-    {"BSP", "", nullptr},
-    {"ESP", "", nullptr},
     {"EXE", "", nullptr},
     {"REL", "", nullptr},
     {"SND", "", nullptr},
@@ -177,6 +177,7 @@ constexpr WordRule kElement = {
     .name = "p, l, c", .when = When::for_motion, .read = read_element, .motion = element};
 constexpr WordRule kCorner = {
     .name = "r, b", .when = When::for_motion, .read = read_corner, .motion = corner};
+constexpr WordRule kResult = {.name = "E", .meaning = Meaning::amount, .read = read_result};
 constexpr WordRule kTool = {.name = "T", .meaning = Meaning::tool, .read = read_tool};
 
 constexpr std::array<LetterRule, 128> letters() {
@@ -200,6 +201,7 @@ constexpr std::array<LetterRule, 128> letters() {
   at('v') = {Meaning::factor_2, ParameterKind::real, -kCoordinate, kCoordinate};
   at('w') = {Meaning::factor_3, ParameterKind::real, -kCoordinate, kCoordinate};
   for (const char c : {'p', 'l', 'c', '-'}) at(c) = {.meaning = Meaning::statement, .rule = &kElement};
+  at('E') = {.meaning = Meaning::amount, .max = 9999, .rule = &kResult};
   for (const char c : {'r', 'b'}) at(c) = {.meaning = Meaning::statement, .rule = &kCorner};
   return rules;
 }
@@ -242,6 +244,7 @@ const Dialect kDialect = {
     .dwell = dwell,
     .corner_word = corner_word,
     .across = across,
+    .spline = spline,
     .thread = thread,
     .system = own_value,
 };

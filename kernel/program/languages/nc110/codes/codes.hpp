@@ -32,6 +32,10 @@ void rqo(Execution& run, const Operands& operands);
 void dpi(Execution& run, const Operands& operands);
 void dlo(Execution& run, const Operands& operands);
 
+// motion/spline.cpp; source: specification A 11
+void bsp(Execution& run, const Operands& operands);
+void esp(Execution& run, const Operands& operands);
+
 // zones.cpp; source: specification B 6.5
 void dsa(Execution& run, const Operands& operands);
 void asc(Execution& run, const Operands& operands);
@@ -44,6 +48,8 @@ void dpt(Execution& run, const Operands& operands);
 
 // signal.cpp; source: specification B 7, B 15.3
 void dis(Execution& run, const Operands& operands);
+/// UCG, CLG, DCG: read, and told that they change nothing.
+void graphics(Execution& run, const Operands& operands);
 void dly(Execution& run, const Operands& operands);
 void wai(Execution& run, const Operands& operands);
 

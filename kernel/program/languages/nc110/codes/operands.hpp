@@ -12,9 +12,9 @@ namespace servogate::program::nc110 {
 struct Operands;
 
 /// A three-letter code. `operands` is its signature, one character an operand: n number, x value, a axis, v
-/// axis with a value, p axis with two values, l label, c comparison side, i display item, w wait condition, k
-/// axis or K with a value, f program name; + after it: one or more, * : any number; everything after ? may be
-/// missing. `run` null: not executed in this version.
+/// axis with a value, p axis with two values, l label, c comparison side, i display item, w wait condition, .
+/// anything, k axis or K with a value, f program name; + after it: one or more, * : any number; everything
+/// after ? may be missing. `run` null: not executed in this version.
 struct CodeRule {
   std::string_view name;
   std::string_view operands;

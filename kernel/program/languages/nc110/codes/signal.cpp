@@ -66,6 +66,16 @@ void dis(Execution& run, const Operands& operands) {
   run.emit(Message{std::move(text)});
 }
 
+void graphics(Execution& run, const Operands& operands) {
+  if (operands.count > 0) {
+    const Value& kind = operands.items[0].value;
+    const int number = run.numbers().whole(kind, operands.rule->name);
+    if (number < 1 || number > 3) run.numbers().refuse_range(operands.rule->name, kind, number, "1", "3");
+  }
+  Written place = run.capability().written(operands.column);
+  run.capability().warn(place, entry(Wrong::graphics), {std::string(operands.rule->name)});
+}
+
 void dly(Execution& run, const Operands& operands) {
   const double seconds = run.numbers().resolve(operands.items[0].value);
   if (!(seconds >= 0.0 && seconds <= kMaxDelay))

@@ -104,8 +104,31 @@ constexpr text::Entry kMessages[] = {
     {"P825", "G34 is executed as G33: the manual gives it no rule of its own",
      "G34 выполняется как G33: руководство не даёт ей своих правил"},
     {"P826", "G84 with K needs S in rpm before it", "G84 с K требует заранее S в об/мин"},
+    {"P656",
+     "profile not congruent (4/77): between BSP and ESP stand an entry with G00 or G01, points from G06 on, "
+     "and an exit with G00 or G01",
+     "профиль не конгруэнтен (4/77): между BSP и ESP стоят вход с G00 или G01, точки начиная с G06 и выход "
+     "с G00 или G01"},
+    {"P657", "BSP needs the axes of the plane in force, the abscissa first",
+     "BSP требует осей действующей плоскости, сначала абсциссы"},
+    {"P658", "BSP: the end conditions are a number from 0 to 3", "BSP: условия на концах — число от 0 до 3"},
+    {"P659", "this motion gives the spline its direction, and it does not move",
+     "это перемещение задаёт направление сплайна, но перемещения нет"},
+    {"P660", "the spline has more than {0} points", "в сплайне больше {0} точек"},
+    {"P661", "the point of the spline is the one before it", "точка сплайна совпадает с предыдущей"},
+    {"P662", "{0} between the points of a spline: put it before BSP or behind ESP",
+     "{0} между точками сплайна: поставьте перед BSP или после ESP"},
+    {"P634", "a measurement needs E30 or above, which takes its result",
+     "измерению нужен параметр E30 или выше, который примет результат"},
+    {"P635", "DPT has to tell approach, safety distance and feed before a measurement",
+     "до измерения DPT должен задать путь подвода, запас хода и подачу"},
+    {"P636", "a measurement needs a way to its nominal place", "измерению нужен путь до номинального места"},
+    {"P637", "a measurement takes at most {0} axes", "измерение принимает не более {0} осей"},
+    {"P638", "G73 needs r, the nominal radius, above 0", "G73 требует r — номинального радиуса больше 0"},
+    {"P639", "{0} changes nothing here: the page of a run draws the path by itself",
+     "{0} здесь ничего не меняет: путь рисует страница отчёта о прогоне"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::tap_no_speed) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::graphics) + 1);
 
 }  // namespace
 

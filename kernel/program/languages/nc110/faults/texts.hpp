@@ -73,6 +73,19 @@ enum class Wrong : std::uint8_t {
   thread_ends,
   thread_alias,
   tap_no_speed,
+  spline_motion,
+  spline_plane,
+  spline_ends,
+  spline_direction,
+  spline_long,
+  spline_double,
+  spline_function,
+  probe_result,
+  probe_no_parameters,
+  probe_no_way,
+  probe_axes,
+  probe_radius,
+  graphics,
 };
 
 /// All texts, in the order of Wrong.

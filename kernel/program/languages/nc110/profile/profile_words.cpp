@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/languages/nc110/profile/profile_words.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -341,6 +342,14 @@ void element(Execution& run, const BlockWords& words) {
 
 void read_corner(BlockText& text, Word& word) {
   const std::size_t start = word.column - 1u;
+  const auto measures = [](const Word& g) { return g.g != nullptr && g.g->number == 73; };
+  const auto words = text.block.words.begin();
+  if (text.line[start] == 'r' && std::any_of(words, words + text.block.count, measures)) {
+    word.value = read_value(text, text.line.substr(start, 1));
+    word.meaning = Meaning::angle;
+    word.rule = nullptr;
+    return;
+  }
   word.value = read_value(text, text.line.substr(start, 1));
   if (word.value.bare)
     fail(Fault::value_missing, word.column,
