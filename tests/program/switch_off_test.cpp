@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a row of the NC-110 checklist names can be switched off in the language's tables; then a case that
+// proves the row has to come out otherwise.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kernel/program/execution/execution.hpp"
+#include "kernel/program/languages/nc110/nc110.hpp"
+#include "tests/places/places.hpp"
+#include "tests/program/case_file.hpp"
+
+namespace servogate::program::tests {
+namespace {
+
+constexpr int kMostSteps = 20'000;
+
+/// The language without one of its words: G41, M5, u, TMR or SIN.
+class Language {
+ public:
+  explicit Language(const std::string& without)
+      : dialect_(nc110::dialect()),
+        g_(dialect_.g.begin(), dialect_.g.end()),
+        m_(dialect_.m.begin(), dialect_.m.end()),
+        variables_(dialect_.variables.begin(), dialect_.variables.end()) {
+    const bool number = without.size() > 1 && without[1] >= '0' && without[1] <= '9';
+    for (GRule& rule : g_)
+      if (number && without == "G" + std::to_string(rule.number)) rule.function = Function::later;
+    for (MRule& rule : m_)
+      if (number && without == "M" + std::to_string(rule.code)) rule.action = MAction::later;
+    for (VariableRule& rule : variables_)
+      if (rule.name == without) rule.set = nullptr;
+    for (const FunctionRow& row : dialect_.expressions.functions)
+      if (row.name != without) functions_.push_back(row);
+    if (without.size() == 1) dialect_.letters[static_cast<std::size_t>(without[0])] = {};
+    dialect_.g = g_;
+    dialect_.m = m_;
+    dialect_.variables = variables_;
+    dialect_.expressions.functions = functions_;
+  }
+  const Dialect& dialect() const { return dialect_; }
+
+ private:
+  Dialect dialect_;
+  std::vector<GRule> g_;
+  std::vector<MRule> m_;
+  std::vector<VariableRule> variables_;
+  std::vector<FunctionRow> functions_;
+};
+
+/// All that a case gives: commands, the error, warnings.
+std::string outcome(const CaseFile& c, const Dialect& dialect) {
+  const ProgramLoader loader = [&c](std::string_view name) -> std::optional<LoadedProgram> {
+    const auto at = c.subprograms.find(std::string(name));
+    if (at == c.subprograms.end()) return std::nullopt;
+    return LoadedProgram{at->second};
+  };
+  Execution run(dialect, c.machine, c.tables, c.name, c.program, loader, c.start, 0);
+  std::vector<std::string> letters;
+  for (const auto& axis : c.machine.axes) letters.push_back(axis.letter);
+  std::string out;
+  const image::Packets packets;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Step next = run.next(packets, true);
+    if (const auto* error = std::get_if<Error>(&next)) {
+      out += error->finding.str() + "\n";
+      break;
+    }
+    if (std::holds_alternative<NeedsSync>(next)) continue;
+    const auto& command = std::get<Command>(next);
+    out += to_json(command, letters, run.flow().names()) + "\n";
+    if (std::holds_alternative<End>(command.what)) break;
+  }
+  for (const auto& warning : run.warnings()) out += warning.str() + "\n";
+  return out;
+}
+
+struct Switch {
+  const char* row;
+  const char* word;
+};
+constexpr Switch kSwitches[] = {
+    {"A98", "G0"},    {"A101", "G1"},   {"A108", "G2"},   {"A112", "G3"},   {"A189", "G4"},   {"A106", "G6"},
+    {"A190", "G9"},   {"A115", "G18"},  {"B13", "G20"},   {"A147", "G21"},  {"A138", "G28"},  {"A139", "G29"},
+    {"A120", "G33"},  {"A127", "G34"},  {"A151", "G40"},  {"A149", "G41"},  {"A150", "G42"},  {"A162", "G70"},
+    {"A191", "G72"},  {"A192", "G73"},  {"A193", "G74"},  {"A188", "G79"},  {"A169", "G81"},  {"A170", "G82"},
+    {"A171", "G83"},  {"A174", "G84"},  {"A181", "G85"},  {"A182", "G86"},  {"A183", "G89"},  {"A187", "G91"},
+    {"A194", "G93"},  {"A197", "G96"},  {"A71", "M0"},    {"A72", "M1"},    {"A73", "M2"},    {"A75", "M4"},
+    {"A76", "M5"},    {"A84", "M13"},   {"A86", "M19"},   {"A87", "M30"},   {"A200", "u"},    {"A201", "v"},
+    {"A202", "w"},    {"A160", "b"},    {"A158", "r"},    {"A100", "p"},    {"A68", "t"},     {"A114", "R"},
+    {"A117", "K"},    {"B130", "TMR"},  {"B131", "UOV"},  {"B133", "ERF"},  {"B134", "MCD"},  {"B135", "USB"},
+    {"B138", "USO"},  {"B136", "UVR"},  {"B142", "RMS"},  {"B148", "TIM"},  {"B149", "TOT"},  {"B97", "RTA"},
+    {"B33", "SIN"},   {"B34", "COS"},   {"B35", "TAN"},   {"B36", "ARS"},   {"B37", "ARC"},   {"B38", "ART"},
+    {"B39", "SQR"},   {"B40", "ABS"},   {"B41", "INT"},   {"B42", "NEG"},   {"B43", "MOD"},   {"B12", "-"},
+};
+
+TEST(SwitchedOff, a_word_of_the_language_changes_the_outcome_of_a_case_that_proves_its_row) {
+  std::map<std::string, std::vector<CaseFile>> cases;
+  for (const std::string& path : case_paths(servogate::tests::source_dir() + "/tests/program/nc110")) {
+    const CaseFile c = read_case(path);
+    for (const std::string& row : c.rows) cases[row].push_back(c);
+  }
+  const Language whole("");
+  for (const Switch& off : kSwitches) {
+    const Language language(off.word);
+    bool seen = false;
+    for (const CaseFile& c : cases[off.row])
+      seen = seen || outcome(c, whole.dialect()) != outcome(c, language.dialect());
+    EXPECT_TRUE(seen) << "no case of " << off.row << " sees that " << off.word << " is off";
+  }
+}
+
+}  // namespace
+}  // namespace servogate::program::tests
