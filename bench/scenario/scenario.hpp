@@ -31,7 +31,7 @@ struct Condition {
     alarm,           ///< each of `numbers` is active, or was raised since the watch began
     no_alarm,        ///< no alarm is active but `numbers`
     standstill,      ///< the axes of `names` stand, after at most `value` of way since the watch began
-    path_deviation,  ///< the actual place is within `value` of the path of the set-points
+    path_deviation,  ///< the actual place is within `value` of the path of the set-points since the watch began
     reference,       ///< the signals `names` are within `value` of the file `file` at equal times
     order,           ///< the `parts` have become true one after the other
     all,             ///< of `parts`
@@ -67,6 +67,7 @@ struct Condition {
 struct Do {
   std::string words;
   std::optional<machine::Element> command;
+  std::string folder;  ///< that its paths start from
   bool wait = false;  ///< until what it begins has ended
   /// The gate is to refuse it: empty text: for whatever reason, else the code of the refusal.
   std::optional<std::string> refused;

@@ -10,6 +10,7 @@
 namespace servogate::gateway {
 
 struct TestOptions {
+  std::string session;             ///< a machine file: another program steps it; empty: none
   std::vector<std::string> paths;  ///< files, and directories that are searched through
   int jobs = 0;                    ///< worker processes; 0: one a core
   std::string shard;               ///< "I/N": every N-th scenario, beginning with the I-th

@@ -30,8 +30,10 @@ constexpr KeyRow kKeys[] = {
      "почему он заведомо не проходит: провал засчитывается, успех нет"},
     {Part::file, "skip", Form::text, "why it is not run", "почему он не выполняется"},
     {Part::file, "cases", Form::cases,
-     "tables of parameters: the scenario runs once with each, and \"$name\" stands for its value",
-     "таблицы параметров: сценарий выполняется с каждой, «$имя» заменяется значением"},
+     "tables of parameters: the scenario runs once with each, and \"$speed\" stands for its `speed`; `name` "
+     "is what it is called",
+     "таблицы параметров: сценарий выполняется с каждой, «$speed» заменяется её `speed`; `name` — её "
+     "название"},
     {Part::file, "given", Form::steps, "steps that bring about the beginning; each is waited for",
      "шаги, создающие исходное положение; каждый ожидается до конца"},
     {Part::file, "step", Form::steps, "the steps, in their order", "шаги по порядку"},
@@ -135,8 +137,8 @@ constexpr KeyRow kKeys[] = {
 constexpr WordRow kWords[] = {
     {"ready", "", "alarms reset, drives on, all axes homed that need it: what a shift begins with",
      "аварии сброшены, приводы включены, оси выведены в ноль: начало смены"},
-    {"run", "PROGRAM", "load and start; the path is relative to the scenario's file",
-     "load и start; путь относительно файла сценария"},
+    {"run", "PROGRAM", "load and start; the path is relative to the file that says so",
+     "load и start; путь относительно файла, в котором он указан"},
     {"load", "PROGRAM", "loads a part program", "загружает управляющую программу"},
     {"start", "", "starts the loaded program, or goes on behind M00 and M01",
      "запускает загруженную программу, продолжает после M00 и M01"},

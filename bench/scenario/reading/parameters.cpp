@@ -41,6 +41,13 @@ std::string words_of(const Element& value) {
       return std::to_string(value.integer);
     case Element::Kind::real:
       return text::number(value.real, 6);
+    case Element::Kind::table:
+    case Element::Kind::array: {
+      std::string words;
+      for (const Element& child : value.children)
+        words += (words.empty() ? "" : " ") + (child.key.empty() ? "" : child.key + "=") + words_of(child);
+      return words;
+    }
     default:
       return value.string;
   }

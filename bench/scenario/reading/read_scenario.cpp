@@ -217,8 +217,10 @@ class Reader {
     std::string label;
     for (const auto& [name, value] : parameters) {
       s.parameters.emplace_back(name, words_of(value));
-      label += (label.empty() ? "" : ", ") + name + "=" + words_of(value);
+      if (name != "name") label += (label.empty() ? "" : ", ") + name + "=" + words_of(value);
     }
+    for (const auto& [name, value] : s.parameters)
+      if (name == "name") label = value;
     if (!label.empty()) s.name += " [" + label + "]";
     for (const auto& [from, element] : whole_.given) {
       Element step = element;
@@ -289,12 +291,9 @@ std::vector<Scenario> read_scenarios(const std::string& path, std::string_view t
   return scenarios;
 }
 
-std::optional<Step> read_step(std::string_view toml, std::vector<text::Finding>& findings) {
+std::optional<Step> read_step(const Element& table, std::vector<text::Finding>& findings) {
   Reading reading;
-  machine::Document document = machine::read_document(toml);
-  if (!document.ok()) reading.error(document.error_at, machine::finding::kSyntax, {document.error});
-  Step step;
-  if (document.ok()) step = read_step(document.root, StepKind::step, reading);
+  Step step = read_step(table, StepKind::step, reading);
   const bool wrong = !reading.findings.empty();
   give(reading, findings);
   return wrong ? std::nullopt : std::optional(std::move(step));

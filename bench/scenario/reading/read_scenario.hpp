@@ -16,7 +16,7 @@ namespace servogate::scenario {
 std::vector<Scenario> read_scenarios(const std::string& path, std::string_view text, std::uint64_t seed,
                                      std::vector<text::Finding>& findings);
 
-/// One step as read from a table of its own, as another program hands it in; nullopt: `findings` says why.
-std::optional<Step> read_step(std::string_view toml, std::vector<text::Finding>& findings);
+/// One step from a table of its own, as another program hands it in; nullopt: `findings` says why.
+std::optional<Step> read_step(const machine::Element& table, std::vector<text::Finding>& findings);
 
 }  // namespace servogate::scenario

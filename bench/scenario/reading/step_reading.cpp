@@ -2,6 +2,7 @@
 #include "bench/scenario/reading/step_reading.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "bench/scenario/reading/findings.hpp"
 #include "bench/scenario/reading/parameters.hpp"
@@ -61,6 +62,7 @@ Clear read_clear(const machine::Element& element, machine::Reading& reading) {
 Do read_do(Table& table, StepKind kind, machine::Reading& reading) {
   const machine::Element& element = *table.find("do");
   Do what;
+  what.folder = std::filesystem::path(reading.file).parent_path().string();
   what.either = kind == StepKind::drawn;
   if (element.kind == Kind::table) {
     what.command = element;

@@ -62,6 +62,7 @@ constexpr AxisRow kAxis[] = {
     {"home_switch", "", "", "", kSwitch, [](const AxisImage& a) { return on(a.home_switch); }},
     {"brake_released", "", "", "", kSwitch, [](const AxisImage& a) { return on(a.brake_released); }},
     {"online", "", "", "", kSwitch, [](const AxisImage& a) { return on(a.drive.online); }},
+    {"missed", "", "", "", {}, [](const AxisImage& a) { return static_cast<double>(a.drive.missed); }},
     {"owner", "", "", "", kOwners, [](const AxisImage& a) { return static_cast<double>(a.owner); }},
     {"jog_end", "", "", "", kJogEnds, [](const AxisImage& a) { return static_cast<double>(a.jog_end); }},
     {"drive", "", "", "", kDrives, [](const AxisImage& a) { return static_cast<double>(a.drive.state); }},
@@ -107,6 +108,8 @@ constexpr QuantityRow kQuantities[] = {
     {"X.enabled, X.homed, X.moving, X.in_position, X.online, X.brake_released", "", "on or off",
      "on или off"},
     {"X.limit_plus, X.limit_minus, X.home_switch", "", "on or off", "on или off"},
+    {"X.missed", "", "cycles in a row without fresh process data of the drive",
+     "тактов подряд без свежих данных процесса от привода"},
     {"X.owner", "", "none, process, manual, homing, plc, bench", "none, process, manual, homing, plc, bench"},
     {"X.jog_end", "", "none, arrived, asked, silent, feed, travel, alarm, power",
      "none, arrived, asked, silent, feed, travel, alarm, power"},
@@ -128,6 +131,9 @@ constexpr QuantityRow kQuantities[] = {
     {"alarms", "", "number of alarms that are not acknowledged", "число неподтверждённых аварий"},
     {"panel.quality", "", "of a station, chip or line's device: never, good, stale, bad",
      "станции, чипа или устройства линии: never, good, stale, bad"},
+    {"can.errors, can.load", "%",
+     "error frames and bus-off events of a bus so far; its load over the last second in %",
+     "кадры ошибок и отключения шины; её загрузка за последнюю секунду в %"},
     {"can.x.online", "", "a node of a bus: on or off", "узел шины: on или off"},
 };
 
@@ -278,6 +284,15 @@ std::optional<Signal> Signals::find(std::string_view name) const {
         found = Signal{.words = kQualities, .read = [n](const View& view) {
                          return static_cast<double>(view.image.sources[n].quality);
                        }};
+    for (std::size_t b = 0; !found && b < machine_.buses.size(); ++b) {
+      if (machine_.buses[b].name != owner) continue;
+      if (what == "errors")
+        found = Signal{
+            .read = [b](const View& view) { return static_cast<double>(view.image.segments[b].errors); }};
+      if (what == "load")
+        found = Signal{.unit = "%",
+                       .read = [b](const View& view) { return view.image.segments[b].load * 100.0; }};
+    }
     for (std::size_t b = 0; !found && what == "online" && b < machine_.buses.size(); ++b)
       for (const machine::NodeConfig& node : machine_.buses[b].nodes)
         if (machine_.buses[b].name + "." + node.name == owner)

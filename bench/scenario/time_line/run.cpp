@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <limits>
 #include <memory>
 
 #include "bench/scenario/reading/findings.hpp"
@@ -66,6 +67,9 @@ struct Made {
   std::optional<Watcher> after, condition, until;
 };
 
+}  // namespace
+
+/// The steps of a scenario on a machine.
 class Run {
  public:
   Run(const Scenario& scenario, bench::Machine& machine, Operator& who, const Signals& signals,
@@ -90,6 +94,33 @@ class Run {
     return std::move(outcome_);
   }
 
+  /// One step that nobody knew before; the first one begins the run.
+  Outcome perform_alone(const Step& step) {
+    outcome_ = {};
+    machine::Reading reading;
+    const std::vector<Made> made{made_of(step, reading)};
+    if (!reading.findings.empty()) {
+      outcome_.status = Outcome::Status::impossible;
+      outcome_.findings = std::move(reading.findings);
+      return outcome_;
+    }
+    show(made);
+    try {
+      perform(made.front());
+    } catch (const Over&) {
+      // What has failed is told once.
+      std::erase_if(watches_, [&](const Watch& w) { return w.step->at.line == outcome_.at.line && !w.done; });
+    }
+    outcome_.virtual_s = static_cast<double>(now()) * 1e-9;
+    return outcome_;
+  }
+  void begin() {
+    show({});
+    cycle();
+    began_ = now();
+  }
+  bool advance() { return cycle(); }
+
  private:
   Nanoseconds now() const { return machine_.image().now.t_ns; }
   double since() const { return static_cast<double>(now() - began_) * 1e-9; }
@@ -102,46 +133,48 @@ class Run {
     return alarms_;
   }
 
+  Made made_of(const Step& step, machine::Reading& reading) {
+    const auto make = [&](const Condition& c) {
+      return Watcher::make(c, signals_, scenario_.folder(), reading);
+    };
+    const auto possible = [&](const std::string& device, const fault::Fault* fault) {
+      std::string why;
+      if (!machine_.possible(device, fault, why)) reading.error(step.at, finding::kImpossible, {why});
+    };
+    Made made{&step, {}, {}, {}};
+    if (step.after) made.after = make(*step.after);
+    if (const auto* expect = std::get_if<Expect>(&step.what)) {
+      made.condition = make(expect->condition);
+      if (expect->until) made.until = make(*expect->until);
+    } else if (const auto* what = std::get_if<Do>(&step.what)) {
+      if (const std::string problem = who_.problem(*what); !problem.empty())
+        reading.error(step.at, finding::kImpossible, {problem});
+    } else if (const auto* inject = std::get_if<Inject>(&step.what)) {
+      possible(inject->device, &inject->fault);
+    } else {
+      possible(std::get<Clear>(step.what).device, nullptr);
+    }
+    return made;
+  }
+
+  void show(const std::vector<Made>& steps) {
+    std::vector<Signal> shown;
+    for (const Made& made : steps)
+      for (const auto* watcher : {&made.condition, &made.after, &made.until})
+        if (*watcher) (*watcher)->signals(shown);
+    recent_ = std::make_unique<Recent>(std::move(shown));
+  }
+
   /// Everything that the file names is looked for before anything moves.
   bool prepare() {
     machine::Reading reading;
     reading.file = scenario_.file;
-    const auto make = [&](const Condition& c) {
-      return Watcher::make(c, signals_, scenario_.folder(), reading);
-    };
-    const auto made_of = [&](const Step& step) {
-      Made made{&step, {}, {}, {}};
-      if (step.after) made.after = make(*step.after);
-      if (const auto* expect = std::get_if<Expect>(&step.what)) {
-        made.condition = make(expect->condition);
-        if (expect->until) made.until = make(*expect->until);
-      }
-      if (const auto* what = std::get_if<Do>(&step.what))
-        if (const std::string problem = who_.problem(*what); !problem.empty())
-          reading.error(step.at, finding::kImpossible, {problem});
-      if (const auto* fault = std::get_if<Inject>(&step.what)) {
-        std::string why;
-        if (!machine_.possible(fault->device, &fault->fault, why))
-          reading.error(step.at, finding::kImpossible, {why});
-      }
-      if (const auto* clear = std::get_if<Clear>(&step.what)) {
-        std::string why;
-        if (!machine_.possible(clear->device, nullptr, why))
-          reading.error(step.at, finding::kImpossible, {why});
-      }
-      return made;
-    };
-    for (const Step& step : scenario_.given) given_.push_back(made_of(step));
-    for (const Step& step : scenario_.steps) steps_.push_back(made_of(step));
+    for (const Step& step : scenario_.given) given_.push_back(made_of(step, reading));
+    for (const Step& step : scenario_.steps) steps_.push_back(made_of(step, reading));
     machine::sort_findings(reading.findings);
-    outcome_.findings = reading.findings;
-    if (!outcome_.findings.empty()) return false;
-    std::vector<Signal> shown;
-    for (const Made& made : steps_)
-      for (const auto* watcher : {&made.condition, &made.after, &made.until})
-        if (*watcher) (*watcher)->signals(shown);
-    recent_ = std::make_unique<Recent>(std::move(shown));
-    return true;
+    outcome_.findings = std::move(reading.findings);
+    show(steps_);
+    return outcome_.findings.empty();
   }
 
   [[noreturn]] void fail(const Step& step, std::string message) {
@@ -237,7 +270,11 @@ class Run {
     }
   }
 
-  static std::string words_of_do(const Do& what) { return what.command ? "cmd" : what.words; }
+  static std::string words_of_do(const Do& what) {
+    if (!what.command) return what.words;
+    const machine::Element* const cmd = what.command->find("cmd");
+    return cmd != nullptr ? cmd->string : "cmd";
+  }
 
   void carry_out(const Step& step_of, const Do& what) {
     const std::string words = words_of_do(what);
@@ -256,6 +293,7 @@ class Run {
                            {words, wanted, "\"" + said.text + "\" [" + said.code + "]", seconds(since())}));
       return;
     }
+    if (!said.accepted && !what.either) outcome_.code = said.code;
     if (!said.accepted && !what.either)
       fail(step_of, both(kRefused, {words, said.text, said.code, seconds(since())}));
     if (!what.wait) return;
@@ -329,12 +367,33 @@ class Run {
   std::string waiting_for_;
 };
 
-}  // namespace
-
 Outcome run(const Scenario& scenario, bench::Machine& machine, Operator& who, const Signals& signals,
             const RunManner& manner) {
   if (!scenario.skip.empty()) return {.status = Outcome::Status::skipped, .message = scenario.skip};
   return Run(scenario, machine, who, signals, manner).run();
 }
+
+struct Session::Impl {
+  Scenario scenario;
+  std::deque<Step> steps;  ///< conditions are watched where they are
+  std::unique_ptr<Run> run;
+};
+
+Session::Session(bench::Machine& machine, Operator& who, const Signals& signals)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->scenario.timeout = std::numeric_limits<Nanoseconds>::max();
+  impl_->run = std::make_unique<Run>(impl_->scenario, machine, who, signals, RunManner{});
+  impl_->run->begin();
+}
+
+Session::~Session() = default;
+
+Outcome Session::perform(Step step) {
+  step.at = {static_cast<int>(impl_->steps.size()) + 1, 1};  // its number
+  impl_->steps.push_back(std::move(step));
+  return impl_->run->perform_alone(impl_->steps.back());
+}
+
+bool Session::advance() { return impl_->run->advance(); }
 
 }  // namespace servogate::scenario

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct Outcome {
   double t_s = 0.0;          ///< when, since the beginning (behind `given`)
   double virtual_s = 0.0;    ///< machine time of the whole run
   std::string diagram = {};  ///< the last 50 ms as text
+  std::string code = {};     ///< of the refusal that it failed by; empty: it did not
   std::vector<text::Finding> findings = {};
 };
 
@@ -37,5 +39,23 @@ struct RunManner {
 /// Runs a scenario on a machine that has not made a cycle yet.
 Outcome run(const Scenario& scenario, bench::Machine& machine, Operator& who, const Signals& signals,
             const RunManner& manner);
+
+/// A machine whose steps come one by one, each when the one before is done: for a program that writes its
+/// scenario as it goes.
+class Session {
+ public:
+  /// Makes the first cycle. All outlive it.
+  Session(bench::Machine& machine, Operator& who, const Signals& signals);
+  ~Session();
+  /// Does a step. What it begins to watch (`always`, `until`) is watched in all later ones, and fails the one
+  /// in which it happens.
+  Outcome perform(Step step);
+  /// One cycle with all that is watched; false: the machine has come to its end.
+  bool advance();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace servogate::scenario

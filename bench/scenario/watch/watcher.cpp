@@ -261,6 +261,8 @@ bool Watcher::see_path(const View& view) {
     set[a] = view.image.axes[a].command;
     actual[a] = view.image.axes[a].actual;
   }
+  // The axes lag behind the set-point: what lies between was path before the watch began.
+  if (path_.empty()) path_.push_back(actual);
   double apart = 0.0;
   for (std::size_t a = 0; a < axes && !path_.empty(); ++a) apart += std::abs(set[a] - path_.back()[a]);
   if (path_.empty() || apart > kNewPoint) path_.push_back(set);

@@ -364,9 +364,13 @@ class Commands {
     TestOptions& o = line_.test;
     CLI::App& app = command("test", "Tests whole machines by scenario files (*.scenario.toml).",
                             "servogate test tests/scenarios --junit results.xml");
-    app.add_option("PATH", o.paths, "Scenario files, and directories that are searched for them")
-        ->required()
-        ->type_name("");
+    CLI::Option* paths =
+        app.add_option("PATH", o.paths, "Scenario files, and directories that are searched for them")
+            ->type_name("");
+    app.add_option("--session", o.session,
+                   "Another program steps this machine by lines of JSON on standard input")
+        ->type_name("MACHINE")
+        ->excludes(paths);
     app.add_option("--jobs", o.jobs, "Scenarios that run side by side; one a core without it")
         ->type_name("N")
         ->check(number_within({1.0, 256.0, "", true}));

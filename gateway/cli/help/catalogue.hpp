@@ -114,6 +114,8 @@ inline constexpr Translation kCatalogue[] = {
      "Проверяет станок целиком по файлам сценариев (*.scenario.toml)."},
     {"Scenario files, and directories that are searched for them",
      "Файлы сценариев и каталоги, в которых их искать"},
+    {"Another program steps this machine by lines of JSON on standard input",
+     "Станком управляет по шагам другая программа: строки JSON на стандартном вводе"},
     {"Scenarios that run side by side; one a core without it",
      "Сколько сценариев выполнять одновременно; без параметра по одному на ядро"},
     {"Every N-th scenario, beginning with the I-th: for several runners",

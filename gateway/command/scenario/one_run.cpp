@@ -93,7 +93,7 @@ Outcome run_one(const scenario::Scenario& scenario, const TestOptions& options, 
     if (!Control::infrastructure(findings)) return impossible(std::move(findings));
     return infrastructure(findings.empty() ? std::string() : findings.back().str());
   }
-  DeskOperator who(*machine, scenario.folder());
+  DeskOperator who(*machine);
   const scenario::Signals signals(machine->machine(), machine->control().symbols(), &who.variables());
   const bool shown = !outputs.trace.empty() || !outputs.html.empty() || !outputs.report.empty();
   Session* const session = shown ? &machine->watch(outputs) : nullptr;

@@ -16,6 +16,7 @@
 #include "gateway/command/commands.hpp"
 #include "gateway/command/scenario/one_run.hpp"
 #include "gateway/command/scenario/results.hpp"
+#include "gateway/command/scenario/session.hpp"
 #include "gateway/command/scenario/shrink.hpp"
 #include "gateway/command/scenario/workers.hpp"
 #include "gateway/command/signals.hpp"
@@ -32,6 +33,8 @@ using scenario::Scenario;
 using Status = scenario::Outcome::Status;
 using Clock = std::chrono::steady_clock;
 
+const text::Entry kNoPath{"test.no_path", "name scenario files or directories, or --session MACHINE",
+                          "назовите файлы или каталоги сценариев либо --session СТАНОК"};
 const text::Entry kNone{"test.none", "no scenario found in {0}: their files end in .scenario.toml",
                         "в {0} нет сценариев: их файлы оканчиваются на .scenario.toml"};
 const text::Entry kNoneChosen{"test.none_chosen", "no scenario of {0} has this name, tag and shard",
@@ -354,6 +357,11 @@ class Tests {
 
 }  // namespace
 
-int test(const TestOptions& options) { return Tests(options).run(); }
+int test(const TestOptions& options) {
+  if (!options.session.empty()) return session(options.session);
+  if (!options.paths.empty()) return Tests(options).run();
+  complain(kNoPath, {});
+  return kWrongUse;
+}
 
 }  // namespace servogate::gateway::command

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gateway/control/run/operator_script.hpp"
+#include "gateway/control/run/standstill.hpp"
 #include "gateway/control/server/desk/dispatch/dispatch.hpp"
 #include "gateway/control/server/protocol/texts.hpp"
 
@@ -34,9 +35,8 @@ std::string both(const text::Entry& entry, const std::vector<std::string>& argum
 
 }  // namespace
 
-DeskOperator::DeskOperator(RunningMachine& machine, std::string folder)
+DeskOperator::DeskOperator(RunningMachine& machine)
     : machine_(machine),
-      folder_(std::move(folder)),
       resident_(machine.control(), machine.learned(), {}, 0.0),
       urgent_(machine.control(), resident_.requests(), 0.0),
       variables_(machine.control()) {
@@ -50,7 +50,7 @@ DeskOperator::~DeskOperator() = default;
 
 std::string DeskOperator::problem(const scenario::Do& what) {
   std::string why;
-  const auto deeds = read_sentence(what, folder_, why);
+  const auto deeds = read_sentence(what, why);
   if (!deeds) return why;
   for (const Deed& deed : *deeds) {
     const auto* const command = std::get_if<ask::Command>(&deed);
@@ -207,7 +207,7 @@ Said DeskOperator::carry_out(const scenario::Do& what, const std::function<bool(
   std::string why;
   Said said{false, "scenario.words", {}};
   begun_ = Begun::nothing;
-  if (const auto deeds = read_sentence(what, folder_, why)) {
+  if (const auto deeds = read_sentence(what, why)) {
     for (const Deed& deed : *deeds) {
       said = carry_out(deed);
       if (!said.accepted) break;
@@ -233,7 +233,7 @@ bool DeskOperator::settled() {
     case Begun::power_on:
       return every([](const image::AxisImage& a) { return a.enabled; });
     case Begun::power_off:
-      return every([](const image::AxisImage& a) { return !a.enabled && !a.moving; });
+      return axes_off(image);
     case Begun::home:
       return !image.homing && every([](const image::AxisImage& a) {
         return a.owner != image::AxisOwner::homing && !a.moving;

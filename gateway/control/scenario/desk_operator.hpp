@@ -18,8 +18,7 @@ namespace servogate::gateway {
 /// The operator of a scenario: a client of the desk, on the thread that steps the machine.
 class DeskOperator final : public scenario::Operator {
  public:
-  /// `folder`: that paths in sentences start from.
-  DeskOperator(RunningMachine& machine, std::string folder);
+  explicit DeskOperator(RunningMachine& machine);
   ~DeskOperator() override;
 
   std::string problem(const scenario::Do& what) override;
@@ -51,7 +50,6 @@ class DeskOperator final : public scenario::Operator {
   static Begun begun_by(const ask::Command& command);
 
   RunningMachine& machine_;
-  std::string folder_;
   Resident resident_;
   PlcDesk plc_{resident_};
   UrgentDesk urgent_;

@@ -206,13 +206,13 @@ class Sentence {
 
 }  // namespace
 
-std::optional<std::vector<Deed>> read_sentence(const scenario::Do& what, const std::string& folder,
-                                               std::string& why) {
+std::optional<std::vector<Deed>> read_sentence(const scenario::Do& what, std::string& why) {
   if (what.command) {
     json r = to_json(*what.command);
     r["asker"] = "scenario";
-    if (r.contains("program") && r["program"].is_string()) r["program"] = from_folder(r["program"], folder);
-    if (r.contains("file") && r["file"].is_string()) r["file"] = from_folder(r["file"], folder);
+    if (r.contains("program") && r["program"].is_string())
+      r["program"] = from_folder(r["program"], what.folder);
+    if (r.contains("file") && r["file"].is_string()) r["file"] = from_folder(r["file"], what.folder);
     FormProblem problem;
     if (auto read = read_request(r.dump(), problem)) return std::vector<Deed>{std::move(read->command)};
     why = both(*problem.entry, problem.arguments);
@@ -223,7 +223,7 @@ std::optional<std::vector<Deed>> read_sentence(const scenario::Do& what, const s
     why = both(kQuote, {what.words});
     return std::nullopt;
   }
-  return Sentence(std::move(*words), folder, why).read();
+  return Sentence(std::move(*words), what.folder, why).read();
 }
 
 }  // namespace servogate::gateway

@@ -30,9 +30,7 @@ struct Handwheel {
 using Deed = std::variant<ask::Command, sentence::Ready, sentence::FallSilent, sentence::Wait,
                           sentence::Press, sentence::Handwheel>;
 
-/// Reads a sentence or a command of the control socket; paths start from `folder`. nullopt: `why`, in both
-/// languages.
-std::optional<std::vector<Deed>> read_sentence(const scenario::Do& what, const std::string& folder,
-                                               std::string& why);
+/// Reads a sentence or a command of the control socket. nullopt: `why`, in both languages.
+std::optional<std::vector<Deed>> read_sentence(const scenario::Do& what, std::string& why);
 
 }  // namespace servogate::gateway

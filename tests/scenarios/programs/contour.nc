@@ -1,0 +1,14 @@
+; A contour in X and Y without an end, spindle and coolant on.
+N10 G71 G90 G94 G97 G27
+N20 S2000 M3
+N30 M8
+N40 G0 X0 Y0 Z0
+N50 (RPT,50)
+N60 G1 X100 Y0 F6000
+N70 X100 Y60
+N80 X0 Y60
+N90 X0 Y0
+N100 (ERP)
+N110 M5
+N120 M9
+N130 M30

@@ -1,0 +1,7 @@
+; Rapids in X and Y without an end.
+N10 G71 G90
+N20 (RPT,50)
+N30 G0 X-250 Y-100
+N40 G0 X250 Y100
+N50 (ERP)
+N60 M30
