@@ -21,6 +21,7 @@ struct PlcCheckOptions {
 struct PlcTestOptions {
   std::vector<std::string> files;  ///< tests (.test) and PLC sources
   std::string machine;
+  std::string junit;  ///< file; empty: none
   bool json = false;
 };
 

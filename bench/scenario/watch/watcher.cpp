@@ -256,16 +256,18 @@ bool Watcher::see_standstill(const View& view) {
 
 bool Watcher::see_path(const View& view) {
   Point set{}, actual{};
+  bool follows = true;  // the set-point of an axis without power is its place, and no path
   const std::size_t axes = std::min<std::size_t>(machine_->machine().program_axes(), set.size());
   for (std::size_t a = 0; a < axes; ++a) {
     set[a] = view.image.axes[a].command;
     actual[a] = view.image.axes[a].actual;
+    follows = follows && view.image.axes[a].enabled;
   }
   // The axes lag behind the set-point: what lies between was path before the watch began.
   if (path_.empty()) path_.push_back(actual);
   double apart = 0.0;
   for (std::size_t a = 0; a < axes && !path_.empty(); ++a) apart += std::abs(set[a] - path_.back()[a]);
-  if (path_.empty() || apart > kNewPoint) path_.push_back(set);
+  if (follows && apart > kNewPoint) path_.push_back(set);
   if (path_.size() > kPathPoints) path_.pop_front();
   deviation_ = distance_to(actual, path_.front(), path_.front());
   for (std::size_t n = 1; n < path_.size(); ++n)

@@ -44,6 +44,7 @@ void test(CLI::App& plc, PlcTestOptions& o) {
   app.add_option("FILE", o.files, "Test files (.test), and sources that they need beside their own")
       ->required();
   app.add_option("--machine", o.machine, "Machine file instead of the one that a test names");
+  app.add_option("--junit", o.junit, "Writes the results to this file as JUnit XML");
   app.add_flag("--json", o.json, "As JSON");
 }
 

@@ -8,10 +8,12 @@
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
+#include "gateway/command/junit.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/plc/sources.hpp"
 #include "machine/consequences.hpp"
 #include "machine/files/read_file.hpp"
+#include "report/html.hpp"
 
 namespace servogate::gateway::command {
 
@@ -53,6 +55,7 @@ class Tests {
   const PlcTestOptions& options_;
   std::vector<std::string> tests_, sources_;
   json told_ = json::array();
+  std::vector<JUnitCase> cases_;
   int failed_ = 0;
 };
 
@@ -94,6 +97,15 @@ int Tests::run_file(const std::string& path) {
 
 void Tests::tell(const std::string& path, const testing::Outcome& outcome) {
   if (!outcome.passed()) ++failed_;
+  JUnitCase c;
+  c.classname = c.file = path;
+  c.name = outcome.name;
+  c.line = outcome.line;
+  c.result = outcome.passed() ? JUnitCase::Result::passed : JUnitCase::Result::failed;
+  c.type = "expectation";
+  c.properties = {{"virtual_time", text::number(static_cast<double>(outcome.time_ns) * 1e-9, 3)}};
+  for (const text::Finding& f : outcome.findings) c.message += (c.message.empty() ? "" : "\n") + f.str();
+  cases_.push_back(std::move(c));
   told_.push_back({{"file", path},
                    {"line", outcome.line},
                    {"name", outcome.name},
@@ -121,6 +133,12 @@ int Tests::run() {
     print_line(text::render(kSummary,
                             std::vector<std::string>{std::to_string(told_.size()), std::to_string(failed_)},
                             text::user_language()));
+  if (!options_.junit.empty())
+    if (const std::string error = report::write_file(options_.junit, junit("servogate plc test", cases_));
+        !error.empty()) {
+      complain(kCannotWrite, {options_.junit, error});
+      return kInfrastructure;
+    }
   return code != kDone ? code : failed_ > 0 ? kAlarm : kDone;
 }
 

@@ -5,6 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "gateway/command/junit.hpp"
+
 namespace servogate::gateway::command {
 
 namespace {
@@ -13,77 +15,32 @@ using nlohmann::json;
 using scenario::Scenario;
 using Status = scenario::Outcome::Status;
 
-/// For XML 1.0: what has a meaning there, and the characters that it cannot hold.
-std::string xml(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\n':
-        out += "&#10;";
-        break;
-      case '\t':
-        out += "&#9;";
-        break;
-      default:
-        if (code < 0x20 || code == 0x7F)
-          out += "\\x" + std::string(1, "0123456789ABCDEF"[code >> 4]) + "0123456789ABCDEF"[code & 15];
-        else
-          out += c;
-    }
-  }
-  return out;
-}
-
-std::string attribute(const char* name, const std::string& value) {
-  return std::string(" ") + name + "=\"" + xml(value) + "\"";
-}
-std::string attribute(const char* name, double value) { return attribute(name, text::number(value, 6)); }
-std::string attribute(const char* name, int value) { return attribute(name, std::to_string(value)); }
-
-std::string property(const char* name, const std::string& value) {
-  return "        <property" + attribute("name", std::string(name)) + attribute("value", value) + "/>\n";
-}
-
 std::string class_of(const Scenario& s) {
   constexpr std::string_view kEnding = ".scenario.toml";
   return s.file.ends_with(kEnding) ? s.file.substr(0, s.file.size() - kEnding.size()) : s.file;
 }
 
-std::string testcase(const Scenario& s, const Result& r) {
-  std::string out = "    <testcase" + attribute("classname", class_of(s)) + attribute("name", s.name) +
-                    attribute("file", s.file) + attribute("line", r.line > 0 ? r.line : s.at.line) +
-                    attribute("time", r.wall_s) + ">\n      <properties>\n" +
-                    property("virtual_time", text::number(r.virtual_s, 3));
-  if (s.seed) out += property("seed", std::to_string(*s.seed));
-  for (const std::string& requirement : s.verifies) out += property("requirement", requirement);
-  for (const auto& [name, value] : s.parameters) out += property(name.c_str(), value);
-  out += "      </properties>\n";
-  const std::string rest = (r.diagram.empty() ? "" : r.diagram + "\n") + again(s);
-  if (r.status == Status::failed)
-    out += "      <failure" + attribute("message", r.message) +
-           attribute("type", std::string("expectation")) + ">" + xml(rest) + "</failure>\n";
-  else if (r.status == Status::skipped)
-    out += "      <skipped" + attribute("message", r.message) + "/>\n";
-  else if (r.status != Status::passed)
-    out += "      <error" + attribute("message", r.message) +
-           attribute("type", std::string(name_of(r.status))) + ">" + xml(again(s)) + "</error>\n";
-  std::string attached;
-  for (const std::string& file : r.artifacts) attached += "[[ATTACHMENT|" + file + "]]\n";
-  if (!attached.empty()) out += "      <system-out>" + xml(attached) + "</system-out>\n";
-  return out + "    </testcase>\n";
+JUnitCase junit_case(const Scenario& s, const Result& r) {
+  JUnitCase c;
+  c.classname = class_of(s);
+  c.name = s.name;
+  c.file = s.file;
+  c.line = r.line > 0 ? r.line : s.at.line;
+  c.time_s = r.wall_s;
+  c.result = r.status == Status::passed    ? JUnitCase::Result::passed
+             : r.status == Status::failed  ? JUnitCase::Result::failed
+             : r.status == Status::skipped ? JUnitCase::Result::skipped
+                                           : JUnitCase::Result::error;
+  c.message = r.message;
+  for (const std::string& finding : r.findings) c.message += (c.message.empty() ? "" : "\n") + finding;
+  c.type = r.failed() ? "expectation" : std::string(name_of(r.status));
+  c.body = (r.diagram.empty() ? "" : r.diagram + "\n") + again(s);
+  c.properties.emplace_back("virtual_time", text::number(r.virtual_s, 3));
+  if (s.seed) c.properties.emplace_back("seed", std::to_string(*s.seed));
+  for (const std::string& requirement : s.verifies) c.properties.emplace_back("requirement", requirement);
+  c.properties.insert(c.properties.end(), s.parameters.begin(), s.parameters.end());
+  c.attachments = r.artifacts;
+  return c;
 }
 
 }  // namespace
@@ -107,31 +64,10 @@ std::string again(const Scenario& s) {
 }
 
 std::string to_junit(const Results& all) {
-  std::map<std::string, std::vector<std::size_t>> files;
-  for (std::size_t n = 0; n < all.scenarios.size(); ++n) files[all.scenarios[n].file].push_back(n);
-  const auto counts = [&](const std::vector<std::size_t>& of) {
-    int failed = 0, errors = 0, skipped = 0;
-    double wall = 0.0;
-    for (const std::size_t n : of) {
-      const Result& r = all.results[n];
-      failed += r.failed() ? 1 : 0;
-      skipped += r.status == Status::skipped ? 1 : 0;
-      errors += r.status == Status::impossible || r.status == Status::infrastructure ? 1 : 0;
-      wall += r.wall_s;
-    }
-    return attribute("tests", static_cast<int>(of.size())) + attribute("failures", failed) +
-           attribute("errors", errors) + attribute("skipped", skipped) + attribute("time", wall);
-  };
-  std::vector<std::size_t> every;
-  for (std::size_t n = 0; n < all.scenarios.size(); ++n) every.push_back(n);
-  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" +
-                    attribute("name", std::string("servogate test")) + counts(every) + ">\n";
-  for (const auto& [file, of] : files) {
-    out += "  <testsuite" + attribute("name", file) + attribute("file", file) + counts(of) + ">\n";
-    for (const std::size_t n : of) out += testcase(all.scenarios[n], all.results[n]);
-    out += "  </testsuite>\n";
-  }
-  return out + "</testsuites>\n";
+  std::vector<JUnitCase> cases;
+  for (std::size_t n = 0; n < all.scenarios.size(); ++n)
+    cases.push_back(junit_case(all.scenarios[n], all.results[n]));
+  return junit("servogate test", cases);
 }
 
 std::string to_tap(const Results& all) {
