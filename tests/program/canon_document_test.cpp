@@ -54,7 +54,7 @@ TEST(CanonDocument, shows_what_the_program_really_prints) {
     all += output;
   }
   for (const char* cmd : {"rapid", "line", "arc", "dwell", "spindle", "tool", "m", "h", "message", "write",
-                          "wait", "stop", "end"})
+                          "wait", "stop", "end", "process", "in_position", "spindle_mark"})
     EXPECT_NE(std::string::npos, all.find(std::string("{\"cmd\":\"") + cmd + "\""))
         << cmd << " has no sample";
 }

@@ -130,6 +130,8 @@ class Reader {
       auto& corrector = case_.tables.correctors[std::stoi(name[1])];
       corrector.length = axis_values(value);
       if (const auto diameter = corrector.length.extract("K")) corrector.radius = diameter.mapped() / 2.0;
+    } else if (name[0] == "alternate" && name.size() == 2) {
+      case_.tables.correctors[std::stoi(name[1])].alternate = std::stoi(value);
     } else if (name[0] == "protected" && name.size() == 2) {
       case_.machine.protected_places.push_back({*image::parse_place(name[1]), value});
     } else if (name.size() == 1) {

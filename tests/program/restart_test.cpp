@@ -130,6 +130,9 @@ TEST(Restart, is_refused_where_it_cannot_be_told) {
     const char *text, *said;
     RestartAt at;
   } rows[] = {{"N10 G0 X1\nN20 M30\n", "the program has no block N50", {RestartAt::By::number, 50}},
+              {"N10 (SND,2)\nN20 G0 X1\nN30 M30\n",
+               "starts or waits for other processes",
+               {RestartAt::By::number, 30}},
               {"N10 G0 X1\nN20 M30\n", "the program has no block line 9", {RestartAt::By::line, 9}},
               {"N10 G0 X1000\nN20 X5\nN30 M30\n", "travel", {RestartAt::By::number, 20}}};
   for (const auto& row : rows) {

@@ -163,11 +163,17 @@ text::Finding cannot_drive(path::Flaw flaw) {
 }
 
 std::optional<text::Finding> not_driven(const program::Command& command) {
-  const bool thread = std::holds_alternative<program::Thread>(command.what);
-  if (!thread && !std::holds_alternative<program::Probe>(command.what)) return std::nullopt;
+  const auto is = [&]<typename What>(const What*) { return std::holds_alternative<What>(command.what); };
+  const char* name = is(static_cast<const program::Thread*>(nullptr))         ? "thread"
+                     : is(static_cast<const program::Probe*>(nullptr))        ? "probe"
+                     : is(static_cast<const program::SpindleMark*>(nullptr))  ? "spindle_mark"
+                     : is(static_cast<const program::ProcessOrder*>(nullptr)) ? "process"
+                     : is(static_cast<const program::InPosition*>(nullptr))   ? "in_position"
+                                                                              : nullptr;
+  if (name == nullptr) return std::nullopt;
   text::Finding finding;
   finding.entry = &texts::kNotDriven;
-  finding.arguments = {thread ? "thread" : "probe"};
+  finding.arguments = {name};
   return finding;
 }
 

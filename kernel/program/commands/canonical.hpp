@@ -109,6 +109,28 @@ struct Probe {
   double feed_mm_min = 0.0;
 };
 
+/// The next motion begins when the spindle passes its zero mark.
+struct SpindleMark {};
+/// What one process asks of another, which has a number from 1 (0: the process itself).
+struct ProcessOrder {
+  enum class Action : std::uint8_t {
+    start,    ///< loads `program` into it and starts it
+    release,  ///< unloads the program that asks
+    restart,  ///< ends its wait for this process
+    wait,     ///< waits until it ends the wait
+  };
+  Action action = Action::start;
+  std::int32_t process = 0;
+  std::string program;
+  bool after_motion = false;  ///< when the motion before it has ended, otherwise at once
+};
+/// When an axis counts as in position from here on, mm or degrees; 0: as the machine has it. Axes without
+/// their bit in `axes` keep theirs.
+struct InPosition {
+  Position window{};
+  std::uint32_t axes = 0;
+};
+
 /// End of the main program (M02, M30 or its last line).
 struct End {
   bool rewind = false;
@@ -121,7 +143,7 @@ struct Command {
   int process = 0;
   std::int32_t block = -1;  ///< N number, -1: none
   std::variant<Rapid, Line, Arc, Thread, Dwell, Spindle, Tool, MFunction, HFunction, Message, WritePlace,
-               Wait, Stop, Probe, End>
+               Wait, Stop, Probe, End, SpindleMark, ProcessOrder, InPosition>
       what;
 };
 

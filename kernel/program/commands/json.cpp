@@ -89,6 +89,16 @@ class Writer {
     out_ += ':';
     number(value);
   }
+  void windows(const InPosition& c) {
+    key("window");
+    char separator = '{';
+    for (std::size_t a = 0; a < letters_.size(); ++a) {
+      if ((c.axes >> a & 1u) == 0) continue;
+      axis(separator, a, c.window[a]);
+      separator = ',';
+    }
+    out_ += separator == '{' ? "{}" : "}";
+  }
   void raw(std::string_view text) { out_ += text; }
   const std::string& letter(std::size_t axis) const { return letters_[axis]; }
 
@@ -176,11 +186,21 @@ struct Fields {
     w.field("feed_unit", "mm/min");
   }
   void operator()(const End& c) const { w.flag("rewind", c.rewind); }
+  void operator()(const SpindleMark&) const {}
+  void operator()(const ProcessOrder& c) const {
+    constexpr std::string_view kActions[] = {"start", "release", "restart", "wait"};
+    w.field("action", kActions[static_cast<int>(c.action)]);
+    if (c.process != 0) w.count("of", c.process);
+    if (!c.program.empty()) w.field("program", c.program);
+    w.flag("after_motion", c.after_motion);
+  }
+  void operator()(const InPosition& c) const { w.windows(c); }
 };
 
 /// In the order of Command::what.
-constexpr std::string_view kNames[] = {"rapid", "line",    "arc",   "thread", "dwell", "spindle", "tool", "m",
-                                       "h",     "message", "write", "wait",   "stop",  "probe",   "end"};
+constexpr std::string_view kNames[] = {"rapid", "line",  "arc", "thread",       "dwell",   "spindle",
+                                       "tool",  "m",     "h",   "message",      "write",   "wait",
+                                       "stop",  "probe", "end", "spindle_mark", "process", "in_position"};
 static_assert(std::size(kNames) == std::variant_size_v<decltype(Command::what)>);
 
 }  // namespace

@@ -70,8 +70,18 @@ void Execution::reset() {
   frames_.changed();
 }
 
+/// What a program has to begin ends with it, and where somebody else moves the axes.
+void Execution::end_contour_modes() {
+  state_.profile = ProfileState{};
+  state_.spline = SplineState{};
+  state_.modes.compensation = Function::compensation_off;
+  state_.modes.profile = Function::profile_off;
+  if (state_.modes.motion == Function::spline) state_.modes.motion = Function::rapid;
+}
+
 void Execution::reposition(const Position& at) {
   contour_.drop();
+  end_contour_modes();
   frames_.reposition(at);
   motion_.end_profile();
 }
@@ -251,6 +261,7 @@ void Execution::execute() {
 void Execution::finish(bool rewind) {
   if (state_.profile.open || state_.spline.phase != SplineState::Phase::none) fail(Fault::contour_open, 0);
   contour_.settle();
+  end_contour_modes();
   emit(End{rewind});
   data_.last = Step(data_.queue.commands.back());
   if (!rewind) return;

@@ -74,6 +74,7 @@ class Execution : public ValueSource {
 
   const Dialect& dialect() const noexcept { return dialect_; }
   const MachineModel& machine() const noexcept { return machine_; }
+  int process() const noexcept { return data_.process; }  ///< from 0
   const AxisLetters& axes() const noexcept { return data_.axes; }
   State& state() noexcept { return state_; }
   const State& state() const noexcept { return state_; }
@@ -124,6 +125,7 @@ class Execution : public ValueSource {
   Step stop_with(const ProgramError& error);
   text::Finding finding(const ProgramError& error) const;
   void refuse_in_spline(int column) const;
+  void end_contour_modes();
   void reset();
 
   // power_on.cpp
@@ -145,6 +147,7 @@ class Execution : public ValueSource {
   void run_cycle_block(const BlockWords& words);
   bool begin_contour(const BlockWords& words, const Modes& before);
   void refuse_in_contour(const BlockWords& words) const;
+  void wait_for_mark(const BlockWords& words, bool moves);
   std::string name_of(Function function) const;
   void refuse_stray_words(const BlockWords& words) const;
 

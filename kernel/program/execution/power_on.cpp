@@ -18,6 +18,7 @@ bool is_mode(Function function) {
     case Function::machine_zero:
     case Function::dwell:
     case Function::exact_once:
+    case Function::spindle_mark:
     case Function::own:
     case Function::cycle:
       return false;

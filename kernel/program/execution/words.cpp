@@ -52,6 +52,7 @@ void Execution::run_words() {
     motion_.store_feed(words);
   }
   before_motion(words);
+  if (words.mark_word != nullptr) wait_for_mark(words, moves || words.instead != nullptr);
   if (words.instead != nullptr) words.instead(*this, words);
   if (moves) {
     if (state_.modes.profile == Function::profile_on || state_.profile.open)
@@ -94,6 +95,15 @@ bool Execution::begin_contour(const BlockWords& words, const Modes& before) {
   contour_.begin(is == Function::compensation_left ? 1 : -1, frames_.tool_radius() + state_.motion.allowance,
                  column);
   return false;
+}
+
+/// The motion of the block waits for the zero mark of the spindle (specification A 12.4).
+void Execution::wait_for_mark(const BlockWords& words, bool moves) {
+  const std::string word = word_text(dialect_, block_, *words.mark_word);
+  if (!moves || state_.modes.motion == Function::rapid)
+    fail(Fault::mark_motion, words.mark_word->column, {word});
+  if (state_.motion.spindle == SpindleMode::stop) fail(Fault::mark_spindle, words.mark_word->column, {word});
+  emit(SpindleMark{});
 }
 
 /// Inside of a compensated contour stand motions only, and those in its plane.
@@ -212,6 +222,7 @@ void Execution::gather_g(BlockWords& words, const Word& word, std::vector<const 
   take_g(words, *rule);
   if (rule->function == Function::cycle) words.cycle_word = &word;
   if (rule->function == Function::dwell) words.dwell_word = &word;
+  if (rule->function == Function::spindle_mark) words.mark_word = &word;
   if (rule->function == Function::own) {
     words.instead = rule->motion;
     words.instead_word = &word;

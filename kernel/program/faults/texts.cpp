@@ -213,8 +213,11 @@ constexpr text::Entry kMessages[] = {
      "{0}: у действующего инструмента в таблице нет радиуса: он режет по запрограммированному пути"},
     {"P908", "{0} cannot be in force at power-on: a program begins it",
      "{0} не может действовать при включении: её начинает программа"},
+    {"P747", "{0} needs a motion at the feed in its block", "{0} требует в кадре перемещения с подачей"},
+    {"P748", "{0} waits for the zero mark of a spindle that does not turn: start it first",
+     "{0} ждёт нулевой метки шпинделя, который не вращается: сначала включите его"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::power_on_begins) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::mark_spindle) + 1);
 
 }  // namespace
 

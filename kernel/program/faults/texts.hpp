@@ -142,6 +142,8 @@ enum class Fault : std::uint8_t {
   zone,
   no_radius,
   power_on_begins,
+  mark_motion,
+  mark_spindle,
 };
 
 /// All texts, in the order of Fault.

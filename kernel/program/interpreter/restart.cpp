@@ -20,6 +20,11 @@ const text::Entry kProbes{"restart.probes",
                           "before {0} the program measures: what it found is not known any more",
                           "до {0} программа выполняет измерение: его результат уже неизвестен"};
 
+const text::Entry kProcesses{
+    "restart.processes",
+    "before {0} the program starts or waits for other processes: where they stand is not known",
+    "до {0} программа запускает или ждёт другие процессы: где они находятся, неизвестно"};
+
 std::string words(const RestartAt& at) {
   switch (at.by) {
     case RestartAt::By::line:
@@ -46,7 +51,8 @@ class Survey {
     if (const auto* m = std::get_if<MFunction>(&command.what)) function(*m);
     if (const auto* t = std::get_if<Tool>(&command.what)) tool = *t;
     if (std::holds_alternative<WritePlace>(command.what)) ++writes;
-    return !std::holds_alternative<Probe>(command.what);
+    return !std::holds_alternative<Probe>(command.what) &&
+           !std::holds_alternative<ProcessOrder>(command.what);
   }
 
   std::optional<Spindle> turning;
@@ -117,7 +123,9 @@ std::variant<RestartPoint, text::Finding> restart(const Interpreter& fresh, cons
     }
     if (std::holds_alternative<End>(command.what) || calls > kMostCalls)
       return finding(search, kNotReached, at, command.line);
-    if (!survey.take(command)) return finding(search, kProbes, at, command.line);
+    if (!survey.take(command))
+      return finding(search, std::holds_alternative<Probe>(command.what) ? kProbes : kProcesses, at,
+                     command.line);
   }
   Interpreter before(fresh);
   before.set_switches(at.switches);

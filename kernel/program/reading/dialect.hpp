@@ -108,6 +108,7 @@ enum class Function : std::uint8_t {
   work_offset,  ///< GRule::value: number of the origin
   dwell,
   exact_once,
+  spindle_mark,  ///< the block's motion begins at the zero mark of the spindle
   feed_inverse,
   feed_minute,
   feed_revolution,

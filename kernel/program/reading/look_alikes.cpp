@@ -18,6 +18,9 @@ constexpr std::pair<std::string_view, std::string_view> kLookAlikes[] = {
     {"О", "O"}, {"Р", "P"}, {"С", "C"}, {"Т", "T"}, {"У", "Y"}, {"Х", "X"}};
 
 bool cyrillic(char c) { return c == '\xD0' || c == '\xD1'; }
+bool any_cyrillic(std::string_view text) {
+  return text.find('\xD0') != std::string_view::npos || text.find('\xD1') != std::string_view::npos;
+}
 
 using Labels = std::set<std::string_view>;
 
@@ -124,16 +127,16 @@ std::string_view latin_of(std::string_view cyrillic) {
 
 std::vector<LookAlike> read_look_alikes(const Lexis& lexis, std::string& text) {
   std::vector<LookAlike> told;
-  if (text.find_first_of("\xD0\xD1") == std::string::npos) return told;
+  if (!any_cyrillic(text)) return told;
   Labels labels;
   each_line(text, [&](std::string_view line, std::uint32_t, bool) { collect_label(lexis, line, labels); });
   std::string out;
   out.reserve(text.size());
   each_line(text, [&](std::string_view line, std::uint32_t index, bool last) {
-    if (line.find_first_of("\xD0\xD1") == std::string_view::npos)
-      out.append(line);
-    else
+    if (any_cyrillic(line))
       Line(lexis, labels, line, index, out, told).read();
+    else
+      out.append(line);
     if (!last) out += '\n';
   });
   text = std::move(out);

@@ -47,6 +47,7 @@ Source::Source(const Dialect& dialect, std::string name, std::string text, std::
 
 /// A CR that no LF follows ends a line as well. Those before an LF (CR CR LF, too) belong to it.
 void Source::put_line_ends() {
+  if (text_.find('\r') == std::string::npos) return;
   std::uint32_t line = 0;
   for (std::size_t at = text_.find_first_of("\r\n"); at != std::string::npos;
        at = text_.find_first_of("\r\n", at + 1)) {

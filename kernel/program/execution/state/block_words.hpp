@@ -17,7 +17,7 @@ struct BlockWords {
   void (*instead)(Execution&, const BlockWords&) = nullptr;  ///< takes the place of the motion ...
   const Word* instead_word = nullptr;                        ///< ... and this word asks for it
   int cycle = 0;                                             ///< number of a G word that defines a cycle
-  const Word *cycle_word = nullptr, *dwell_word = nullptr;
+  const Word *cycle_word = nullptr, *dwell_word = nullptr, *mark_word = nullptr;
   int axes = 0;
   std::array<const Word*, image::kMaxAxes> axis{};
   const Word *centre1 = nullptr, *centre2 = nullptr, *pitch = nullptr, *radius = nullptr, *radius2 = nullptr;

@@ -89,10 +89,16 @@ inline void carry_over(const Tables& before, const Tables& after, Tables& into) 
       if (!is.contains(key)) entries.erase(key);
   };
   carry(before.origins, after.origins, into.origins);
-  const auto used = into.correctors;  // a program knows the minutes of its beginning
+  const auto used = into.correctors;  // a program knows the minutes of its beginning ...
   carry(before.correctors, after.correctors, into.correctors);
+  const auto declared = [&](int number) {  // ... unless it says itself that a tool is worn out
+    const auto was = before.correctors.find(number), is = after.correctors.find(number);
+    return was != before.correctors.end() && is != after.correctors.end() &&
+           was->second.used_min != is->second.used_min && is->second.worn_out();
+  };
   for (auto& [number, row] : into.correctors)
-    if (const auto old = used.find(number); old != used.end()) row.used_min = old->second.used_min;
+    if (const auto old = used.find(number); old != used.end() && !declared(number))
+      row.used_min = old->second.used_min;
 }
 
 /// A power-on mode or value of the machine file that the language cannot take. Its program does not run.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string_view>
 
 namespace servogate::program {
 class Execution;
+struct Value;
 }  // namespace servogate::program
 
 namespace servogate::program::nc110 {
+struct Operand;
 struct Operands;
 }  // namespace servogate::program::nc110
 
@@ -21,6 +24,9 @@ void epp(Execution& run, const Operands& operands);
 void bnc(Execution& run, const Operands& operands);
 void branch(Execution& run, const Operands& operands);
 
+/// An operand that names a program; throws ProgramError where it is no name.
+std::string_view program_name(const Operands& operands, const Operand& item);
+
 // frame.cpp; source: specification B 4, B 6
 void uao(Execution& run, const Operands& operands);
 void uot(Execution& run, const Operands& operands);
@@ -31,10 +37,18 @@ void scf(Execution& run, const Operands& operands);
 void rqo(Execution& run, const Operands& operands);
 void dpi(Execution& run, const Operands& operands);
 void dlo(Execution& run, const Operands& operands);
+void dtl(Execution& run, const Operands& operands);
 
 // motion/spline.cpp; source: specification A 11
 void bsp(Execution& run, const Operands& operands);
 void esp(Execution& run, const Operands& operands);
+
+// processes.cpp; source: specification B 15
+void exe(Execution& run, const Operands& operands);
+void rel(Execution& run, const Operands& operands);
+void snd(Execution& run, const Operands& operands);
+/// WAI with the number of a process.
+void wait_for_process(Execution& run, const Operands& operands, const Value& value);
 
 // zones.cpp; source: specification B 6.5
 void dsa(Execution& run, const Operands& operands);
@@ -44,6 +58,7 @@ void dsc(Execution& run, const Operands& operands);
 // tools.cpp; source: specification B 9, B 10.1
 void rqu(Execution& run, const Operands& operands);
 void rqp(Execution& run, const Operands& operands);
+void tof(Execution& run, const Operands& operands);
 void dpt(Execution& run, const Operands& operands);
 
 // signal.cpp; source: specification B 7, B 15.3

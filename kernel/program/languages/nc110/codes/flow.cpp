@@ -80,15 +80,19 @@ void rpt(Execution& run, const Operands& operands) {
 
 void erp(Execution& run, const Operands& operands) { run.flow().end_repeat(operands.column); }
 
-void cls(Execution& run, const Operands& operands) {
-  const Operand& item = operands.items[0];
+std::string_view program_name(const Operands& operands, const Operand& item) {
   std::string_view name = operands.text(item);
   name = name.substr(0, name.find('/'));
   const bool good =
       !name.empty() && name.size() <= kProgramName && is_capital(name[0]) &&
       std::all_of(name.begin(), name.end(), [](char c) { return is_capital(c) || is_digit(c); });
   if (!good) fail(Wrong::program_name, column(item), {std::string(name), std::to_string(kProgramName)});
-  run.flow().call(name, 1, column(item));
+  return name;
+}
+
+void cls(Execution& run, const Operands& operands) {
+  const Operand& item = operands.items[0];
+  run.flow().call(program_name(operands, item), 1, column(item));
 }
 
 void epp(Execution& run, const Operands& operands) {

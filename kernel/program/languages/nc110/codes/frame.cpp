@@ -154,6 +154,20 @@ void dpi(Execution& run, const Operands& operands) {
   run.frames().set_plane(axis1, axis2, normal);
 }
 
+/// In-position windows; 0 brings the machine's own back.
+void dtl(Execution& run, const Operands& operands) {
+  if (run.state().motion.profile_open) fail(Wrong::plane_in_profile, operands.column, {"DTL"});
+  InPosition wanted;
+  for (const Operand& item : operands) {
+    const double window = run.numbers().length(item.axis, item.value, false);
+    if (window < 0.0)
+      run.numbers().refuse_range(letter(run, item.axis), item.value, window, "0", "99999.9999");
+    wanted.window[at(item.axis)] = window;
+    wanted.axes |= 1u << item.axis;
+  }
+  run.emit(wanted);
+}
+
 void dlo(Execution& run, const Operands& operands) {
   for (const Operand& item : operands) {
     const double origin = run.state().frames.frame.origin(item.axis);

@@ -90,8 +90,12 @@ void wai(Execution& run, const Operands& operands) {
   const Operand& item = operands.items[0];
   const std::string_view line = operands.block->line.substr(0, item.end);
   std::size_t pos = item.begin;
-  if (is_digit(line[pos]) || line[pos] == 'E')
-    fail(Fault::not_executed, operands.column, {"WAI," + std::string(operands.text(item))});
+  if (is_digit(line[pos]) || line[pos] == 'E') {
+    BlockText text{run.dialect(), run.axes(), *operands.block, line, pos};
+    const Value process = read_value(text, "WAI");
+    if (text.pos != item.end) fail(Wrong::wait_form, column(text.pos));
+    return wait_for_process(run, operands, process);
+  }
   if (line[pos] != 'S') fail(Wrong::wait_form, column(pos));
   const image::Place place = read_place(line, pos);
   if (place.format != image::Format::bl && place.format != image::Format::by &&

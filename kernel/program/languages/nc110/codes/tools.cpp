@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -39,6 +40,21 @@ void requalify(Execution& run, const Operands& operands, bool wear) {
 
 void rqu(Execution& run, const Operands& operands) { requalify(run, operands, true); }
 void rqp(Execution& run, const Operands& operands) { requalify(run, operands, false); }
+
+/// Declares a tool unfit: as if its life were over.
+void tof(Execution& run, const Operands& operands) {
+  const int number = run.numbers().whole(operands.items[0].value, operands.rule->name);
+  auto tables = std::make_shared<Tables>(*run.state().frames.tables);
+  const auto row = tables->correctors.find(number);
+  if (row == tables->correctors.end())
+    fail(Wrong::corrector_number, operands.items[0].value.column,
+         {std::string(operands.rule->name), std::to_string(number)});
+  constexpr double kShortest = 0.001;  // minutes; a life of 0 means none
+  Tables::Corrector& tool = row->second;
+  if (tool.life_min <= 0.0) tool.life_min = std::max(tool.used_min, kShortest);
+  tool.used_min = std::max(tool.used_min, tool.life_min);
+  run.state().frames.tables = std::move(tables);
+}
 
 /// Approach and safety distance in mm, feed in mm/min.
 void dpt(Execution& run, const Operands& operands) {

@@ -127,8 +127,11 @@ constexpr text::Entry kMessages[] = {
     {"P638", "G73 needs r, the nominal radius, above 0", "G73 требует r — номинального радиуса больше 0"},
     {"P639", "{0} changes nothing here: the page of a run draws the path by itself",
      "{0} здесь ничего не меняет: путь рисует страница отчёта о прогоне"},
+    {"P663", "{0}: a process has a number from 1 to {1}", "{0}: номер процесса — от 1 до {1}"},
+    {"P664", "{0}: process {1} is the one that runs this program",
+     "{0}: процесс {1} сам выполняет эту программу"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::graphics) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::process_own) + 1);
 
 }  // namespace
 

@@ -86,6 +86,8 @@ enum class Wrong : std::uint8_t {
   probe_axes,
   probe_radius,
   graphics,
+  process_number,
+  process_own,
 };
 
 /// All texts, in the order of Wrong.
