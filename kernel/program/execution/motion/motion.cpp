@@ -151,7 +151,7 @@ void Motion::position(const BlockWords& words, int without_axis) {
   if (without_axis >= 0) rest.axis[at(without_axis)] = nullptr;
   const Position to = target_of(rest);
   if (at_.zones_active) frames_.check_zones(at_.machine, to, here());
-  contour_.settle();
+  contour_.drop();
   output_.emit(Rapid{to});
   at_.machine = to;
 }
