@@ -85,7 +85,10 @@ void hold(const OneRun& run, const path::RateLimits& limits, int at, Holds& out)
     out.worst = std::max(out.worst, took);
     ++out.searched;
   }
-  out.late += cycles > 1 ? 1 : 0;
+  // Settled, and begins in the knot of the next known stop.
+  bool late = false;
+  for (; on && motion.rate() == 1.0; ++cycles, late = true) on = step(0.0);
+  out.late += late ? 1 : 0;
   for (; on && motion.changing(); ++cycles) on = step(0.0);
   if (on) out.stops.push_back(0.001 * cycles);
 }
@@ -117,8 +120,9 @@ void row(const char* name, const path::Config& config, const Program& program, d
 
 int main() {
   std::printf(
-      "300 holds from full rate; seconds to standstill, how many began later than the first cycle (16 ms at "
-      "most)\n");
+      "300 holds from full rate, each settled in its first cycle; seconds to standstill, how many began in "
+      "the "
+      "knot of the next known stop (16 ms at most)\n");
   std::printf("%-30s %6s %7s %7s %7s %5s %8s %8s %8s\n", "", "reserve", "p50", "p90", "max", "late",
               "us/knot", "us/cycle", "worst us");
   const double full = 2.0 * std::numbers::pi;

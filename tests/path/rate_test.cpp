@@ -125,30 +125,74 @@ TEST(Rate, at_full_rate_gives_the_course_itself_and_never_allocates) {
   EXPECT_EQ(servogate::counting::allocations(), before);
 }
 
-TEST(Rate, holds_from_full_rate_begin_at_once_or_at_the_next_hint) {
-  const Driven d(walk(400, 2));
-  std::mt19937_64 random(3);
-  int late = 0, holds = 0;
-  for (int q = 0; q < 60; ++q) {
-    RateMotion motion(d.limits);
-    const int at =
-        std::uniform_int_distribution<int>(50, static_cast<int>(d.course.seconds() * 1000) - 800)(random);
-    for (int n = 0; n < at; ++n) motion.step(d.view, 1.0, 0.001);
-    int waited = 0;
-    while (!motion.changing() && waited < 1000) {
-      motion.step(d.view, 0.0, 0.001);
-      waited += motion.changing() ? 0 : 1;
-      EXPECT_LE(motion.places(), RateMotion::kMostPlaces + 64);
-    }
-    EXPECT_LE(waited, 17);
-    late += waited > 0 ? 1 : 0;
-    int cycles = 0;
-    while (motion.changing() && cycles < 3000) motion.step(d.view, 0.0, 0.001), ++cycles;
-    EXPECT_EQ(motion.rate(), 0.0);
-    EXPECT_LE(cycles, 1500);
-    ++holds;
+/// A circle that is driven at the limit of acceleration wherever it is, near the limit of velocity.
+RandomProgram wide_circle() {
+  RandomProgram p;
+  p.config = mill();
+  p.tolerance = 0.01;
+  for (int i = 1; i <= 2500; ++i)
+    p.elements.push_back(line_to(200 - 200 * std::cos(i / 2000.0), 200 * std::sin(i / 2000.0), 0, 500));
+  return p;
+}
+
+std::vector<Driven> hard_paths() {
+  std::vector<Driven> all;
+  for (const RandomProgram& p : {walk(400, 2), helix(), wide_circle()}) all.emplace_back(p);
+  return all;
+}
+
+/// Cycles from a wish until it is on its way.
+int waits(RateMotion& motion, const Driven& d, double wish) {
+  for (int cycle = 0; cycle < 10000; ++cycle) {
+    if (!motion.step(d.view, wish, 0.001) || motion.wanted() == wish) return cycle;
+    EXPECT_LE(motion.places(), RateMotion::kMostPlaces + 64);
   }
-  std::printf("%d of %d holds waited for the next hint\n", late, holds);
+  return 10000;
+}
+
+TEST(Rate, a_hold_or_a_lower_override_from_full_rate_is_settled_in_the_next_cycle_on_any_path) {
+  std::mt19937_64 random(3);
+  int holds = 0, later = 0;
+  for (const Driven& d : hard_paths()) {
+    const int last = static_cast<int>(d.course.seconds() * 1000) - 100;
+    for (int q = 0; q < 60; ++q) {
+      const double wish = q % 3 == 0 ? 0.0 : 0.1 * static_cast<double>(q % 10);
+      RateMotion motion(d.limits);
+      const int at = std::uniform_int_distribution<int>(50, last)(random);
+      for (int n = 0; n < at; ++n) motion.step(d.view, 1.0, 0.001);
+      ASSERT_FALSE(motion.changing());
+      motion.step(d.view, wish, 0.001);
+      EXPECT_TRUE(motion.changing()) << wish << " at " << at;
+      // What was settled and not begun: at its knot.
+      int cycles = 0;
+      while (motion.rate() == 1.0 && motion.step(d.view, wish, 0.001)) ++cycles;
+      EXPECT_LE(cycles, 17) << wish << " at " << at;
+      later += cycles > 1 ? 1 : 0;
+      ++holds;
+    }
+  }
+  std::printf("%d of %d began at the knot of the next known stop\n", later, holds);
+}
+
+TEST(Rate, a_hold_during_a_change_is_on_its_way_within_a_hundred_and_sixty_cycles) {
+  std::mt19937_64 random(4);
+  int longest = 0;
+  for (const Driven& d : hard_paths()) {
+    const int last = static_cast<int>(d.course.seconds() * 1000) - 600;
+    for (int q = 0; q < 60; ++q) {
+      RateMotion motion(d.limits);
+      const int at = std::uniform_int_distribution<int>(50, last)(random);
+      for (int n = 0; n < at; ++n) motion.step(d.view, 1.0, 0.001);
+      for (const double before : {0.0, 0.3, 1.0, 0.6}) {
+        const auto cycles = static_cast<int>(random() % 200);
+        for (int n = 0; n < cycles; ++n) motion.step(d.view, before, 0.001);
+        if (q % 4 == static_cast<int>(10.0 * before) % 4) break;
+      }
+      longest = std::max(longest, waits(motion, d, 0.0));
+    }
+  }
+  EXPECT_LE(longest, 160);
+  std::printf("the longest one waited %d cycles\n", longest);
 }
 
 TEST(Rate, keeps_all_limits_through_random_holds_overrides_and_ways_back) {

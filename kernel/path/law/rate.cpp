@@ -8,8 +8,7 @@
 namespace servogate::path {
 namespace {
 
-constexpr double kPlace = 0.001, kWidePlace = 0.002,
-                 kGentle = 0.5;    // s between places; wide in changes longer than that
+constexpr double kPlace = 0.001;  // s between places; in changes of half a second twice as far, of one thrice
 constexpr double kShare = 0.9997;  // of the limits: what may lie between two places
 constexpr double kAbove = 0.996;   // the same above full rate
 constexpr int kTry = 6;            // places that a try counts for by itself
@@ -172,7 +171,8 @@ Fit Verification::go(const CourseView& view, const RateLimits& limits, int& plac
   place.set_knot(before_);
   if (!interval_.take(view, before_, limits.axes)) return Fit::unpublished;
   const double most = std::max({1.0, change_.r0, change_.r1});
-  const double next = change_.seconds > kGentle && most == 1.0 ? kWidePlace : kPlace;
+  const double wider = most > 1.0 ? 1.0 : change_.seconds > 1.0 ? 3.0 : change_.seconds > 0.5 ? 2.0 : 1.0;
+  const double next = wider * kPlace;
   RateLimits kept = limits;
   if (most > 1.0) {  // more may lie between two places
     for (AxisLimits& axis : kept.limits) {
@@ -273,25 +273,47 @@ Fit RateMotion::enter(const CourseView& view, double target, double seconds, int
   return fit;
 }
 
+/// Seconds until the knot of a stop; below 0: it lies behind, or is not known.
+double RateMotion::until(const CourseView& view, const StopHint& hint) const noexcept {
+  const Knot* knot = hint.knot >= 0 ? view.knot(hint.knot) : nullptr;
+  if (knot == nullptr || active_ || !(rate_ > 0.0 && rate_ <= 1.0)) return -1.0;
+  return knot->t.since(time_) / rate_;
+}
+
 /// A stop holds from its knot on, which may be reached in this cycle; at a lower rate it takes longer, by the
 /// same way.
 bool RateMotion::stop_at(const CourseView& view, const StopHint& hint, double period) noexcept {
-  const Knot* knot = hint.knot >= 0 ? view.knot(hint.knot) : nullptr;
-  if (knot == nullptr || active_ || !(rate_ > 0.0 && rate_ <= 1.0)) return false;
-  const double until = knot->t.since(time_) / rate_;
-  if (until < 0.0 || until > period) return false;
-  time_ = knot->t;
+  const double in = until(view, hint);
+  if (in < 0.0 || in > period) return false;
+  time_ = view.knot(hint.knot)->t;
   start({rate_, 0.0, 0.0, hint.seconds / rate_, hint.power});
-  advance(period - until);
+  advance(period - in);
   return true;
 }
 
 bool RateMotion::stop_in_time(const CourseView& view, double target, double period) noexcept {
+  settled_ = false;
   if (active_) return false;
-  if (target == 0.0 && stop_at(view, view.stop_near(knot_), period)) return true;
+  if (target >= 0.0 && target < rate_) {
+    const StopHint hint = view.stop_near(knot_);
+    if (stop_at(view, hint, period)) return true;
+    settled_ = until(view, hint) > 0.0;
+  }
   if (view.end() >= 0 || !stop_at(view, view.guard(), period)) return false;
   starving_ = target != 0.0;
   return true;
+}
+
+/// A stop like the known one, which begins a little before it, and longer ones.
+bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double period) noexcept {
+  constexpr double kLongerBy[] = {1.0, 1.18, 1.4};
+  const double known = hint.seconds / rate_ + std::max(0.0, until(view, hint));
+  for (const double longer : kLongerBy) {
+    if (left_ <= 0) return false;
+    if (enter(view, 0.0, known * longer, longer == 1.4 ? 5 - hint.power : hint.power, period) == Fit::fits)
+      return true;
+  }
+  return false;
 }
 
 /// First the known stop and longer ones; then, cycle by cycle, all lengths from the shortest on.
@@ -310,13 +332,7 @@ void RateMotion::search(const CourseView& view, double target, double period) no
     open_ = false;
   }
   if (!open_) share_ = 1.0;
-  const double known = hint.seconds / std::max(rate_, 1e-9);
-  if (target == 0.0 && !active_ && hint.knot >= 0 && rate_ > 0.0 && known * 1000.0 < left_) {
-    for (const double longer : {1.0, 1.18, 1.4})
-      if (enter(view, target, known * longer, longer == 1.4 ? 5 - hint.power : hint.power, period) ==
-          Fit::fits)
-        return;
-  }
+  if (target == 0.0 && !active_ && hint.knot >= 0 && rate_ > 0.0 && try_known(view, hint, period)) return;
   if (open_) {
     const Fit fit = verification_.go(view, limits_, left_);
     if (fit == Fit::fits) return start(verification_.change());

@@ -148,15 +148,17 @@ class RateMotion {
   /// At the start of a course, which rests there: any rate is at once.
   void begin(double rate) noexcept;
   /// One cycle on: `target` is the rate that is wanted, -1 to 1, or above where the path allows it: a rate
-  /// above 1 is entered together with a way back to 1, and kept while that can be put off. False: the law
-  /// time has come to the end of the course, or to its start backwards.
+  /// above 1 is entered together with a way back to 1, and kept while that can be put off. A lower rate from
+  /// 1 is settled in the cycle in which it is first wanted: what is not found at once begins as the next
+  /// known stop, out of which the search goes on. False: the law time has come to the end of the course, or
+  /// to its start backwards.
   bool step(const CourseView& view, double target, double period) noexcept;
   CoursePoint point(const CourseView& view) const noexcept;
   double rate() const noexcept { return rate_; }
   const LawTime& time() const noexcept { return time_; }
   std::int64_t knot() const noexcept { return knot_; }
-  /// A change is on its way.
-  bool changing() const noexcept { return active_; }
+  /// A change is on its way, or settled: it begins in the knot of a stop that is known, a few ahead.
+  bool changing() const noexcept { return active_ || settled_; }
   bool at_rest() const noexcept { return !active_ && rate_ == 0.0; }
   /// It stops, or stands, because the course is not published any further.
   bool starving() const noexcept { return starving_; }
@@ -169,7 +171,9 @@ class RateMotion {
   void start(const RateChange& change) noexcept;
   Fit enter(const CourseView& view, double target, double seconds, int power, double period) noexcept;
   bool stop_at(const CourseView& view, const StopHint& hint, double period) noexcept;
+  double until(const CourseView& view, const StopHint& hint) const noexcept;
   bool stop_in_time(const CourseView& view, double target, double period) noexcept;
+  bool try_known(const CourseView& view, const StopHint& hint, double period) noexcept;
   void search(const CourseView& view, double target, double period) noexcept;
   void seek(const CourseView& view, double target, double period) noexcept;
   void surge(const CourseView& view, double target, double period) noexcept;
@@ -182,7 +186,7 @@ class RateMotion {
   double rate_ = 1.0;
   RateChange change_;
   double into_ = 0.0;  ///< the change, s
-  bool active_ = false, starving_ = false;
+  bool active_ = false, starving_ = false, settled_ = false;
   double searched_for_ = 2.0;  ///< target of the search
   double next_ = 0.0;          ///< length to try next
   double share_ = 1.0;         ///< of the target, where not enough is published for all of it
