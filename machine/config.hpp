@@ -286,6 +286,7 @@ struct ControlConfig {
   std::vector<std::string> power_on;        ///< in the dialect's words: "G94", ...
   std::map<std::string, double> variables;  ///< "ERF" -> mm, "MCD" -> 2, ...
   double contour_tolerance = 0.01;          ///< mm
+  double path_reserve = 1.0;                ///< per cent of the axes' limits, for holds and overrides
   int tool_places = 0;                      ///< of the magazine or turret; 0: T is not compared with it
   int processes = 1;
   int k_size = static_cast<int>(image::kPacketKDefaultSize);  ///< bytes of packet K

@@ -7,11 +7,9 @@
 
 namespace servogate::path {
 
-Estimate estimate(const Config& machine, const Vector& start, std::span<const Element> elements,
+Estimate estimate(const Config& config, const Vector& start, std::span<const Element> elements,
                   double override_ratio) {
   constexpr std::int64_t kLongest = 1'000'000'000;  // cycles
-  Config config = machine;
-  config.pieces_behind = 0;
   Track track(config);
   Planner planner(config, track);
   Follower follower(config, track);

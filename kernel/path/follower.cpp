@@ -81,11 +81,6 @@ bool Follower::set_position(const Vector& at) noexcept {
   return true;
 }
 
-Behind Follower::behind() const noexcept {
-  const std::uint64_t end = in_span_ ? piece_ : track_.pieces.freed();
-  return {std::min(end, std::max(begun_, track_.pieces.oldest())), end};
-}
-
 void Follower::take_entries(std::uint64_t visible) noexcept {
   for (int n = 0; n < kEntriesPerCycle && taken_ < visible && !window_.full(); ++n) {
     const Entry& entry = track_.entries[taken_++];
@@ -157,7 +152,8 @@ void Follower::begin_course(const Entry& course) noexcept {
   course_.take(course);
   const Knot* guard = course_.knot(course_.guard().knot);
   const bool enough = course_.guard().knot >= 0 && guard != nullptr && guard->t.since({}) >= kKnownAtStart;
-  if (!course.extent.complete && !enough) return;
+  if (course.extent.broken && course.extent.stops == 0) return leave_broken_course();
+  if (!course.extent.complete && !course.extent.broken && !enough) return;
   in_span_ = open_ = on_course_ = true;
   piece_ = course.span.first_piece;
   rate_.begin(std::min(rate_wanted(), 1.0));
@@ -165,17 +161,33 @@ void Follower::begin_course(const Entry& course) noexcept {
 
 void Follower::follow_course() noexcept {
   const bool goes_on = rate_.step(course_, rate_wanted(), config_.period_s);
-  if (rate_.starving() && !rest_asked()) ++starved_;
+  if (rate_.starving() && !rest_asked() && !course_.extent().broken) ++starved_;
   if (!goes_on) return leave_course();
+  // It rests where its last stop leads to, or before, with too little left to start on.
+  if (course_.extent().broken && !rest_asked() && rate_.at_rest() && (rate_.starving() || rate_.stuck()))
+    return leave_broken_course();
   track_.knots.free_below(course_.knots_behind(rate_.knot()));
   track_.stops.free_below(course_.stops_behind(rate_.knot()));
 }
 
 void Follower::leave_course() noexcept {
-  const Track::Begin behind = course_.behind();
   const bool waits = course_.extent().confirm;
   window_.pop();
-  arrive(track_.pieces[behind.piece - 1], waits);
+  arrive(track_.pieces[course_.behind().piece - 1], waits);
+  free_course();
+}
+
+/// It rests where it is, and what comes next is no motion.
+void Follower::leave_broken_course() noexcept {
+  if (on_course_) sample_.position = rate_.point(course_).x;
+  window_.pop();
+  in_span_ = on_course_ = false;
+  motion_.rest();
+  free_course();
+}
+
+void Follower::free_course() noexcept {
+  const Track::Begin behind = course_.behind();
   track_.pieces.free_below(behind.piece);
   track_.knots.free_below(behind.knot);
   track_.stops.free_below(behind.stop);
@@ -218,11 +230,8 @@ void Follower::drop_span(const Span& span) noexcept {
 
 void Follower::drop_course(const Entry& known) noexcept {
   course_.take(known);
-  const Track::Begin behind = course_.behind();
-  begun_ = behind.piece;
-  track_.pieces.free_below(begun_);
-  track_.knots.free_below(behind.knot);
-  track_.stops.free_below(behind.stop);
+  begun_ = course_.behind().piece;
+  free_course();
 }
 
 void Follower::drop() noexcept {

@@ -34,11 +34,6 @@ struct Sample {
   double passed_at = 0.0;     ///< where in the cycle the last of them was, 0 - 1 (its end)
 };
 
-/// Pieces that lie behind the motion and can still be read, by number in Track::pieces: [begin, end).
-struct Behind {
-  std::uint64_t begin = 0, end = 0;
-};
-
 /// The motion inside the cycle: owns place, speed and acceleration along the path. All functions are
 /// real-time safe (the constructor is not) and are called by one thread, the cycle. A wish given before
 /// step() acts in that step.
@@ -76,9 +71,6 @@ class Follower {
   bool set_position(const Vector& at) noexcept;
   /// True while neither speed nor acceleration is present.
   bool at_rest() const noexcept { return on_course_ ? rate_.at_rest() : motion_.at_rest(); }
-  /// The way back: the geometry that was driven, up to the piece in motion, at most to where the path was
-  /// begun and at least Config::pieces_behind of it, which the planner leaves alone until the next step().
-  Behind behind() const noexcept;
 
  private:
   void take_entries(std::uint64_t visible) noexcept;
@@ -91,6 +83,8 @@ class Follower {
   void begin_course(const Entry& course) noexcept;
   void follow_course() noexcept;
   void leave_course() noexcept;
+  void leave_broken_course() noexcept;
+  void free_course() noexcept;
   void enter() noexcept;
   void leave() noexcept;
   void advance() noexcept;

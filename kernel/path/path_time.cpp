@@ -4,17 +4,8 @@
 #include <cmath>
 
 namespace servogate::path {
-namespace {
-
-Config alone(Config config) {
-  config.pieces_behind = 0;
-  return config;
-}
-
-}  // namespace
-
 PathTime::PathTime(const Config& config, const Vector& start)
-    : config_(alone(config)), track_(config_), planner_(config_, track_, Planner::For::forecast) {
+    : config_(config), track_(config_), planner_(config_, track_, Planner::For::forecast) {
   planner_.restart(start);
 }
 

@@ -27,6 +27,17 @@ double change_time(const Leg& leg, double v, int axes) {
   return v / a + a / j;
 }
 
+/// An arc that needs so much of its axes at its feed that it is a good deal faster as a course.
+bool needs_its_axes(const Leg& leg, double v) {
+  constexpr double kAcceleration = 0.25, kJerk = 0.1;  // of the limits
+  const Piece& p = leg.piece;
+  if (p.shape != Piece::Shape::arc) return false;
+  const AxisLimits &first = (*leg.limits)[p.axis1], &second = (*leg.limits)[p.axis2];
+  const double turning = v * std::abs(p.omega), a = p.radius * turning * turning;
+  return a > kAcceleration * std::min(first.acceleration, second.acceleration) ||
+         a * turning > kJerk * std::min(first.jerk, second.jerk);
+}
+
 }  // namespace
 
 /// Shape, bound, law and track, one behind the other; two laws, chosen from rest to rest.
@@ -101,10 +112,10 @@ bool Planner::Impl::suits_course(const Element& e) const {
 }
 
 /// The one place where the law is chosen: by the first elements of a run, in which a course gains at each
-/// end of an element, and costs by the time of them.
+/// end of an element and along tight arcs, and costs by the time of them.
 Planner::Impl::Run Planner::Impl::suitable() const {
-  constexpr double kGain = 0.5;
-  if (waiting.size() < 2 ||
+  constexpr double kGain = 0.5, kTight = 2.5;
+  if ((waiting.size() < 2 && waiting.front().piece.shape == Piece::Shape::line) ||
       !std::all_of(waiting.begin(), waiting.end(), [&](const Waiting& w) { return suits_course(w.element); }))
     return Run::spans;
   if (config.law == Law::course) return Run::course;
@@ -115,8 +126,9 @@ Planner::Impl::Run Planner::Impl::suitable() const {
     leg.limits = &config.limits;
     leg.feed = w.element.feed;
     const double v = fastest(leg, config.axis_count);
-    time += w.piece.length / v;
-    gain += change_time(leg, v, config.axis_count);
+    const double alone = w.piece.length / v;
+    time += alone;
+    gain += needs_its_axes(leg, v) ? kTight * alone : change_time(leg, v, config.axis_count);
   }
   return kGain * gain > time ? Run::course : Run::spans;
 }
@@ -156,6 +168,8 @@ void Planner::Impl::pass_on(const Element& e) {
 }
 
 bool Planner::Impl::add(const Element& e) {
+  flaw = Flaw::no_law;
+  if (course.broken()) return false;
   const Shaped shaped = shape(config, at, e);
   flaw = shaped.flaw;
   if (flaw != Flaw::none) return false;
@@ -179,7 +193,7 @@ bool Planner::Impl::add(const Element& e) {
 }
 
 void Planner::Impl::finish() {
-  if (run == Run::undecided) decide();
+  if (run == Run::undecided && !course.broken()) decide();
   if (run == Run::spans) contour.finish();
   if (run == Run::course) gather.finish();
   run = Run::none;
@@ -208,6 +222,12 @@ bool Planner::add(const Element& element) {
 }
 
 Flaw Planner::last_flaw() const { return impl_->flaw; }
+
+const Tag* Planner::without_law() const {
+  return impl_->course.broken() ? &impl_->course.broken_at() : nullptr;
+}
+
+void Planner::rest() { impl_->finish(); }
 
 void Planner::add_mark() { ++impl_->marks; }
 

@@ -32,11 +32,18 @@ class Planner {
   /// Appends an element. False: it cannot be driven, last_flaw() says why, and nothing has changed.
   bool add(const Element& element);
   Flaw last_flaw() const;
+  /// The element that no law inside of the limits was found for: the path rests before it, no element is
+  /// taken any more (Flaw::no_law), only events; nullptr: there is none. May be known long after it was
+  /// added, and is known for certain behind rest().
+  const Tag* without_law() const;
 
   /// A mark in the end point of the elements before, which the motion passes without a rest: the follower
   /// counts it in Sample::passed. The corner may be rounded there; its middle counts. Where the path stops,
   /// it is passed when the path goes on.
   void add_mark();
+
+  /// The path comes to rest after the elements before, as at an event.
+  void rest();
 
   /// The path comes to rest after the elements before; the follower reports the event and waits there until
   /// Follower::release_event().

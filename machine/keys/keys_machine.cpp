@@ -20,6 +20,13 @@ const Section& section_of<ControlConfig>() {
                                  {.unit = Unit::mm, .min = 0, .max = 10, .above_min = true},
                                  "greatest distance between set-points and programmed path",
                                  "наибольшее отклонение заданной траектории от программной"),
+      key<&C::path_reserve>(
+          "path_reserve", {.unit = Unit::percent, .min = 0.2, .max = 20},
+          "share of the axes' limits that motion through short blocks leaves for a hold: more of it stops "
+          "sooner "
+          "and takes a little longer",
+          "доля пределов осей, которую движение по коротким кадрам оставляет на останов: чем она больше, тем "
+          "быстрее останов и тем дольше обработка"),
       key<&C::tool_places>("tool_places", {.min = 0, .max = 9999},
                            "places of the magazine or turret, T takes 0 to this number; 0: any T",
                            "мест в магазине или револьверной головке, T — от 0 до этого числа; 0: любой T"),

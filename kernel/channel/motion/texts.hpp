@@ -25,6 +25,12 @@ inline constexpr text::Entry kFlaws[] = {
     {"channel.flaw-radius", "the radius is zero, or differs between start and end by more than 0.01 mm",
      "радиус равен нулю или различается в начале и конце более чем на 0,01 мм"},
     {"channel.flaw-sweep", "the angle does not lead to the end point", "угол не приводит в конечную точку"},
+    {"channel.flaw-no-law",
+     "no speed was found that keeps all limits of the axes here, and the path ends before it; a greater "
+     "tolerance "
+     "of the contour, or a program without steps and folds smaller than it, can be driven",
+     "здесь не найдена скорость, при которой соблюдены все пределы осей, и контур заканчивается раньше; "
+     "помогает больший допуск контура или программа без ступенек и петель меньше него"},
 };
 
 }  // namespace servogate::channel::texts

@@ -13,6 +13,7 @@ Pipeline::Settings settings(const Config& config) {
   Pipeline::Settings s;
   s.axes = config.axis_count;
   s.rotary = config.rotary;
+  s.reserve = config.reserve;
   return s;
 }
 
@@ -29,7 +30,25 @@ void CoursePlanning::restart() {
   view_ = {};
   extent_ = {};
   pieces_.clear();
-  begun_ = joins_ = false;
+  begun_ = joins_ = broken_ = false;
+}
+
+void CoursePlanning::work() {
+  pipeline_.work();
+  look_for_break();
+}
+
+/// The motion stops at the last stop that is known.
+void CoursePlanning::look_for_break() {
+  if (broken_ || !begun_ || !pipeline_.broken()) return;
+  broken_ = true;
+  const Knot* last = view_.knots.end() > 0 ? &view_.knots[view_.knots.end() - 1] : nullptr;
+  const double there = last != nullptr ? last->place : 0.0;
+  for (const Begin& leg : tags_)
+    if (leg.begin <= there) broken_at_ = leg.tag;
+  if (forecast_) return;
+  extent_.broken = true;
+  sink_.extend(extent_);
 }
 
 void CoursePlanning::place(Leg leg) {
@@ -42,33 +61,36 @@ void CoursePlanning::place(Leg leg) {
     given_ = 0;
     looked_ = look_at_ = 0;
     stop_ = {};
-    broken_ = false;
+    tags_.clear();
     begun_ = true;
   }
   leg.piece.start = length_;
+  tags_.push_back({length_, leg.piece.tag});
   length_ += leg.piece.length;
   if (!forecast_) pieces_.push_back(leg.piece);
 }
 
 void CoursePlanning::put(const Leg& leg) {
+  if (broken_) return;
   place(leg);
   pipeline_.add(leg);
 }
 
 void CoursePlanning::cruise(const Leg& leg, double speed) {
+  if (broken_) return;
   const double behind = length_;
   place(leg);
   straight_ = length_ - behind;
   pipeline_.cruise(leg, speed);
-  broken_ = broken_ || pipeline_.broken();
+  look_for_break();
   section_ = length_;
 }
 
 void CoursePlanning::rest(bool confirm) {
-  if (!begun_) return;
+  if (!begun_ || broken_) return;
   pipeline_.end();
-  broken_ = broken_ || pipeline_.broken();
-  if (broken_ && !forecast_) {  // the motion stops at the last stop that is known, and stays there
+  look_for_break();
+  if (broken_) {
     begun_ = joins_ = false;
     return;
   }
@@ -103,7 +125,7 @@ void CoursePlanning::put(const Knot& knot) {
 }
 
 void CoursePlanning::cruise(const Cruise& cruise) {
-  broken_ = broken_ || pipeline_.broken();
+  look_for_break();
   if (broken_) return;
   Knot straight;
   const Knot& before = *view_.knot(view_.last());
@@ -120,6 +142,7 @@ void CoursePlanning::move(const Move& /*move*/) {}
 
 void CoursePlanning::append(const Knot& knot) {
   if (broken_) return;
+  while (tags_.size() > 1 && tags_[1].begin <= knot.place) tags_.pop_front();
   view_.knots.push_back(knot);
   if (forecast_)
     view_.knots.forget_before(view_.knots.end() - 1);

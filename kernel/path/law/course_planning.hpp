@@ -21,7 +21,12 @@ class CoursePlanning final : public RunSink, private KnotSink {
   void cruise(const Leg& leg, double speed) override;
   void rest(bool confirm) override;
   /// Plans what can be planned.
-  void work() { pipeline_.work(); }
+  void work();
+  /// There is no law inside of the limits for what comes next: what was given ends before it, and nothing
+  /// more is, until restart().
+  bool broken() const { return broken_; }
+  /// And this is the element.
+  const Tag& broken_at() const { return broken_at_; }
   /// Forgets what was not given yet.
   void restart();
   const Pipeline::Counts& counts() const { return pipeline_.counts(); }
@@ -50,6 +55,7 @@ class CoursePlanning final : public RunSink, private KnotSink {
   void move(const Move& move) override;
   void place(Leg leg);
   void append(const Knot& knot);
+  void look_for_break();
   void find_stops();
   void give();
 
@@ -60,13 +66,19 @@ class CoursePlanning final : public RunSink, private KnotSink {
   Pipeline pipeline_;
   View view_;
   CourseExtent extent_;
-  bool begun_ = false;        ///< a course is
-  bool broken_ = false;       ///< and it cannot be driven to its end
-  bool joins_ = false;        ///< the next run begins behind a straight
-  double length_ = 0.0;       ///< of the legs so far
-  double section_ = 0.0;      ///< where the run in work begins
-  double straight_ = 0.0;     ///< length of the straight behind it
-  LawTime base_;              ///< the same as time
+  bool begun_ = false;   ///< a course is
+  bool broken_ = false;  ///< and it cannot be driven to its end
+  Tag broken_at_;
+  bool joins_ = false;     ///< the next run begins behind a straight
+  double length_ = 0.0;    ///< of the legs so far
+  double section_ = 0.0;   ///< where the run in work begins
+  double straight_ = 0.0;  ///< length of the straight behind it
+  LawTime base_;           ///< the same as time
+  struct Begin {
+    double begin;
+    Tag tag;
+  };
+  std::deque<Begin> tags_;    ///< of the legs that no knot lies behind yet
   std::deque<Piece> pieces_;  ///< that no knot given lies on yet
   std::size_t given_ = 0;     ///< knots
   std::int64_t looked_ = 0;   ///< knots before this have had their stop looked for

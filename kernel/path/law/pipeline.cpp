@@ -142,8 +142,9 @@ void Pipeline::work_pass(std::size_t n) {
 
 void Pipeline::publish() {
   const Pass& last = *passes_.back();
-  broken_ = broken_ || last.speed.counts().failed > 0;
-  if (broken_ || last.beta.end() < 3) return;
+  if (broken_) return;
+  broken_ = last.speed.counts().failed > 0;
+  if (last.beta.end() < 3) return;
   const double step = last.speed.step(), i1 = 1.0 / step;
   const std::size_t known = last.beta.end() - 1;  // knots
   if (published_ == 0) sink_.begin(last.controls[0], last.controls[1]);

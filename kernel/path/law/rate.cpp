@@ -259,7 +259,7 @@ void RateMotion::start(const RateChange& change) noexcept {
   change_ = change;
   into_ = 0.0;
   active_ = true;
-  open_ = false;
+  open_ = stuck_ = false;
   if (change.r1 != 0.0) starving_ = false;
 }
 
@@ -347,6 +347,7 @@ void RateMotion::search(const CourseView& view, double target, double period) no
     if (fit == Fit::unpublished && power_ == 2) {
       anew();
       share_ *= 0.5;
+      stuck_ = share_ < kLeastShare && rate_ == 0.0;
       if (share_ < kLeastShare || share_ * target <= rate_) return;
       continue;
     }

@@ -163,6 +163,8 @@ class RateMotion {
   /// It stops, or stands, because the course is not published any further.
   bool starving() const noexcept { return starving_; }
   double wanted() const noexcept { return active_ ? change_.r1 : rate_; }
+  /// At rest, and what is known is too short to go on: only once it has tried.
+  bool stuck() const noexcept { return at_rest() && stuck_; }
   /// Looked at in the last cycle.
   int places() const noexcept { return kMostPlaces - left_; }
 
@@ -186,7 +188,7 @@ class RateMotion {
   double rate_ = 1.0;
   RateChange change_;
   double into_ = 0.0;  ///< the change, s
-  bool active_ = false, starving_ = false, settled_ = false;
+  bool active_ = false, starving_ = false, settled_ = false, stuck_ = false;
   double searched_for_ = 2.0;  ///< target of the search
   double next_ = 0.0;          ///< length to try next
   double share_ = 1.0;         ///< of the target, where not enough is published for all of it

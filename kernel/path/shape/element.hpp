@@ -39,8 +39,9 @@ struct Config {
   double period_s = 0.001;              ///< length of a cycle
   double largest_override = 1.5;        ///< feed override never exceeds this ratio
   std::uint32_t piece_capacity = 8192;  ///< look-ahead in pieces of geometry (about 0.8 kB each), >= 1024
-  /// Pieces that stay on the track behind the motion; an element makes three at most.
-  std::uint32_t pieces_behind = 3072;
+  /// Share of the axes' limits that a course leaves for changes of rate, 0.002 to 0.2: more of it stops
+  /// sooner and takes longer.
+  double reserve = 0.01;
   /// Of runs that a course can be made for: several elements, feed by time, path coordinates of the axes. A
   /// course is faster where elements are short; planning it costs by the time that it takes.
   Law law = Law::fitting;

@@ -103,15 +103,18 @@ void Gather::put(const Element& e, const Piece& piece) {
 bool Gather::put_with_cruise(const Leg& leg) {
   // Shares of feed and limits that are surely reached; how much longer than the way to speed up the ends are.
   constexpr double kFeed = 0.999, kVelocity = 0.98, kShare = 0.95, kLonger = 1.3, kMoreSeconds = 0.08;
+  constexpr double kBeside = 0.01;  // of the limits, beside the reserve
   constexpr double kCorner = 1.0, kCornerByTolerance = 40.0, kLeastGain = 0.15;
   if (leg.piece.shape != Piece::Shape::line) return false;
+  const double left = 1.0 - config_.reserve;
+  const double velocity = std::min(kVelocity, left - kBeside), share = std::min(kShare, left - 4.0 * kBeside);
   double v = kFeed * leg.feed, a = std::numeric_limits<double>::infinity(), j = a;
   for (std::size_t i = 0; i < static_cast<std::size_t>(config_.axis_count); ++i) {
     const double rate = std::abs(leg.piece.c1[i]);
     if (rate == 0.0) continue;
-    v = std::min(v, kVelocity * (*leg.limits)[i].velocity / rate);
-    a = std::min(a, kShare * (*leg.limits)[i].acceleration / rate);
-    j = std::min(j, kShare * (*leg.limits)[i].jerk / rate);
+    v = std::min(v, velocity * (*leg.limits)[i].velocity / rate);
+    a = std::min(a, share * (*leg.limits)[i].acceleration / rate);
+    j = std::min(j, share * (*leg.limits)[i].jerk / rate);
   }
   const double seconds = v >= a * a / j ? v / a + a / j : 2.0 * std::sqrt(v / j);
   // The estimate of a clock speeds up in its own way.

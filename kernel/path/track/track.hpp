@@ -31,16 +31,17 @@ struct Entry {
 /// and gives it to the follower: a replay that gives the same numbers gives the same set-points.
 struct Track {
   explicit Track(const Config& config)
-      : pieces(config.piece_capacity < 1024 ? 1024 : config.piece_capacity, config.pieces_behind),
+      : pieces(config.piece_capacity < 1024 ? 1024 : config.piece_capacity, kPassed),
         knots(kKnots),
         stops(kKnots),
         entries(2 * pieces.capacity()) {}
+  static constexpr std::uint32_t kPassed = 64;  ///< pieces that stay readable behind the motion: of one cycle
   static constexpr std::uint32_t kKnots = 8192;  ///< half a minute on a usual machine, a megabyte
   /// Where the entries of a path begin: numbers of its restart entry, of its first piece, knot and stop.
   struct Begin {
     std::uint64_t entry = 0, piece = 0, knot = 0, stop = 0;
   };
-  Ring<Piece> pieces;  ///< those that are passed stay readable for a while, as a way back
+  Ring<Piece> pieces;
   Ring<Knot> knots;
   Ring<StopHint> stops;
   Ring<Entry> entries;

@@ -13,7 +13,6 @@ class Maker {
 
   RandomProgram make() {
     Config& c = out_.config;
-    c.pieces_behind = 64;  // thousands of them are made
     c.axis_count = chance(0.6) ? 3 : 1 + static_cast<int>(uniform(1.0, 8.999));
     const bool equal = chance(0.3);
     for (int i = 0; i < c.axis_count; ++i) {

@@ -251,6 +251,7 @@ channel::ProcessConfig process_config(const machine::MachineConfig& m, int index
   channel::ProcessConfig c;
   c.index = index;
   c.path.period_s = m.control.cycle_time;
+  c.path.reserve = m.control.path_reserve / 100.0;
   c.path.axis_count = std::min<int>(static_cast<int>(m.program_axes()), path::kMaxAxes);
   for (int i = 0; i < c.path.axis_count; ++i) {
     const machine::AxisConfig& a = m.axes[static_cast<std::size_t>(i)];
