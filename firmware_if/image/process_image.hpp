@@ -180,6 +180,9 @@ struct ProcessStatus {
   bool rapid = false;           ///< the block in motion is a rapid
   std::uint16_t tool = 0;
   std::uint32_t starved = 0;  ///< cycles in which planning was late and the path law ran into its rest
+  bool retraced = false;      ///< a held program stands, or moves, back on its path
+  bool retracing = false;     ///< a way along its path, back or forward, is asked for or under way
+  double retraced_mm = 0.0;   ///< path from there to where it was held
 };
 
 /// Everything the machine knows, written only inside Cycle::step() in the order: driver inputs, force, PLC,

@@ -46,10 +46,12 @@ enum class RequestKind : std::uint8_t {
            ///< runs
   tables,  ///< origins and tools are changed; index: axes whose present position is taken over, as bits
   // Beside a program that is held, or waits for the operator:
-  reposition,  ///< the axes that were jogged away return by the way that they went; velocity = feed in mm/s
-               ///< or degrees/s, 0: the axes' jog speed
-  function,  ///< index = image::Function; value = M code, tool number or rpm; packet = number of the
-             ///< process' spindle, format = corrector of the tool
+  reposition,  ///< the axes that were jogged away return by the way that they went, then along the path that
+               ///< was retraced; velocity = feed in mm/s or degrees/s, 0: the axes' jog speed, as programmed
+  retrace,     ///< back along the path: value = so much path in mm (degrees where only rotary axes move), or
+               ///< index = to the begin of so many blocks; velocity = feed as of reposition, 0: as programmed
+  function,    ///< index = image::Function; value = M code, tool number or rpm; packet = number of the
+               ///< process' spindle, format = corrector of the tool
 };
 
 /// What `function` does.

@@ -38,19 +38,20 @@ struct ClientOptions {
   std::string command;
   std::vector<std::string> arguments;
   std::string socket;
-  int process = 0;             ///< from 1; 0: none was said
-  std::string from;            ///< of `start`: "N120"; empty: the first block
-  int line = 0;                ///< the same by its line
-  bool interrupted = false;    ///< the same, where it was interrupted
-  std::optional<double> feed;  ///< of the way there or back, mm/min
-  bool yes = false;            ///< without asking
-  bool by_hand = false;        ///< each step of the way waits for start
-  bool history = false;        ///< of `alarms`: what has happened instead
-  int last = 100;              ///< events of it
-  bool watch = false;          ///< of `status`: again and again
+  int process = 0;                   ///< from 1; 0: none was said
+  std::string from;                  ///< of `start`: "N120"; empty: the first block
+  int line = 0;                      ///< the same by its line
+  bool interrupted = false;          ///< the same, where it was interrupted
+  std::optional<double> feed;        ///< of the way there or back, mm/min
+  std::optional<double> mm, blocks;  ///< of `retrace`
+  bool yes = false;                  ///< without asking
+  bool by_hand = false;              ///< each step of the way waits for start
+  bool history = false;              ///< of `alarms`: what has happened instead
+  int last = 100;                    ///< events of it
+  bool watch = false;                ///< of `status`: again and again
   bool json = false;
   bool wait = false;     ///< until what was begun has ended
-  bool no_wait = false;  ///< of `power`, `jog` and `return`, which wait of themselves
+  bool no_wait = false;  ///< of `power`, `jog`, `return` and `retrace`, which wait of themselves
 };
 
 struct CheckOptions {

@@ -32,6 +32,24 @@ const text::Entry kTimeLine{
     "own for {6} M, S and T",
     "{0}: кадров {1}, около {2} с: движение {3} с ({4} мм на подаче), выдержки {5} с; сверх того время "
     "ПЛК на функции M, S и T ({6})"};
+const text::Entry kSlowHead{
+    "check.slow-head", "where most time is lost (mm/min):", "где теряется больше всего времени (мм/мин):"};
+const text::Entry kSlowLine{"check.slow", "{0}: {1} of F{2}, {3} s lost: {4}",
+                            "{0}: {1} при F{2}, потеря {3} с: {4}"};
+const text::Entry kSlowTimes{"check.slow-times", "{0}, {1} times", "{0}, раз: {1}"};
+const text::Entry kSlowBlock{"check.slow-line", "line {0}", "строка {0}"};
+const text::Entry kSlowSubprogram{"check.slow-subprogram", "line {0} of a subprogram",
+                                  "строка {0} подпрограммы"};
+const text::Entry kSlowBlocks{"check.slow-lines", "lines {0} to {1}", "строки {0}–{1}"};
+/// Index = path::Brake; {0} the axis.
+const text::Entry kBrakes[] = {
+    {"check.slow-rest", "it rests there", "там останов"},
+    {"check.slow-velocity", "velocity of {0}", "скорость {0}"},
+    {"check.slow-acceleration", "acceleration of {0}", "ускорение {0}"},
+    {"check.slow-jerk", "jerk of {0}", "рывок {0}"},
+    {"check.slow-shape", "corners in the tolerance", "углы в пределах допуска"},
+};
+constexpr const char* kBrakeNames[] = {"rest", "velocity", "acceleration", "jerk", "shape"};
 const text::Entry kToolLine{"check.tool", "tool {0} corrector {1}, first in line {2}, called {3} times",
                             "инструмент {0}, корректор {1}, впервые в строке {2}, вызовов: {3}"};
 const text::Entry kNoLogic{
@@ -70,6 +88,24 @@ void check_logic(const machine::MachineConfig& machine, std::vector<text::Findin
   findings.insert(findings.end(), of_logic.begin(), of_logic.end());
 }
 
+/// The axis of a limit; the axes of a path are the first of the machine.
+std::string letter_of(const path::SlowPlace& place, const program::MachineModel& model) {
+  return place.axis < 0 ? std::string() : model.axes[static_cast<std::size_t>(place.axis)].letter;
+}
+
+nlohmann::json json_of(const path::SlowPlace& place, const program::MachineModel& model) {
+  return {{"line", place.first.line},
+          {"file", place.first.file},
+          {"to_line", place.last.line},
+          {"times", place.times},
+          {"seconds", place.seconds},
+          {"lost_s", place.lost},
+          {"slowest_mm_min", 60.0 * place.slowest},
+          {"feed_mm_min", 60.0 * place.feed},
+          {"limit", kBrakeNames[static_cast<std::size_t>(place.brake)]},
+          {"axis", place.axis < 0 ? nlohmann::json() : nlohmann::json(letter_of(place, model))}};
+}
+
 nlohmann::json describe(const ProgramCheck& check, const program::MachineModel& model,
                         const std::string& name) {
   const program::CheckReport& report = check.report;
@@ -88,11 +124,31 @@ nlohmann::json describe(const ProgramCheck& check, const program::MachineModel& 
                                              {"travel_min", report.extents[a].travel_min},
                                              {"travel_max", report.extents[a].travel_max},
                                              {"outside_line", report.extents[a].outside_line}};
+  json["slowest"] = nlohmann::json::array();
+  for (const path::SlowPlace& place : check.slowest) json["slowest"].push_back(json_of(place, model));
   json["tools"] = nlohmann::json::array();
   for (const auto& t : report.tools)
     json["tools"].push_back(
         {{"number", t.number}, {"corrector", t.corrector}, {"line", t.line}, {"calls", t.calls}});
   return json;
+}
+
+/// The table of the slowest places.
+void print_slowest(const ProgramCheck& check, const program::MachineModel& model) {
+  if (check.slowest.empty()) return;
+  print_line("  " + sentence(kSlowHead, {}));
+  for (const path::SlowPlace& place : check.slowest) {
+    const std::string first = std::to_string(place.first.line), last = std::to_string(place.last.line);
+    const bool one = place.first.line == place.last.line || place.first.file != place.last.file;
+    std::string where = place.first.file != 0 ? sentence(kSlowSubprogram, {first})
+                        : one                 ? sentence(kSlowBlock, {first})
+                                              : sentence(kSlowBlocks, {first, last});
+    if (place.times > 1) where = sentence(kSlowTimes, {where, std::to_string(place.times)});
+    print_line("    " + sentence(kSlowLine, {where, text::number(60.0 * place.slowest, 0),
+                                             text::number(60.0 * place.feed, 0), text::number(place.lost, 2),
+                                             sentence(kBrakes[static_cast<std::size_t>(place.brake)],
+                                                      {letter_of(place, model)})}));
+  }
 }
 
 void print_report(const ProgramCheck& check, const program::MachineModel& model, const std::string& name) {
@@ -117,6 +173,7 @@ void print_report(const ProgramCheck& check, const program::MachineModel& model,
   for (const auto& t : report.tools)
     print_line("  " + sentence(kToolLine, {std::to_string(t.number), std::to_string(t.corrector),
                                            std::to_string(t.line), std::to_string(t.calls)}));
+  print_slowest(check, model);
 }
 
 /// As people go through a program: the files in the order of their first finding, each from its top.
@@ -163,7 +220,7 @@ ProgramErrors check_programs(const CheckOptions& options, const machine::Machine
     nlohmann::json entry{{"program", name}};
     if (open_program(machine, name, options.dialect, program, found)) {
       const ProgramCheck result = check_program(machine, program, tables, start_after_homing(machine),
-                                                channel::Forecast::Depth::timed);
+                                                channel::Forecast::Depth::surveyed);
       found.insert(found.end(), result.report.findings.begin(), result.report.findings.end());
       explain_power_on(machine, program, found);
       if (const auto slow = slow_corners(machine, program, tables, start_after_homing(machine), result))

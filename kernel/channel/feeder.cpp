@@ -118,6 +118,12 @@ program::OperatorSwitches switches_of(const image::Packets& packets, int process
   return switches;
 }
 
+/// What was cut before it is not what the machine would cut now.
+bool bars(EventKind kind) {
+  return kind == EventKind::tool || kind == EventKind::spindle || kind == EventKind::m_function ||
+         kind == EventKind::h_function;
+}
+
 bool stops(const program::Command& command) {
   const auto* stop = std::get_if<program::Stop>(&command.what);
   return stop != nullptr && !stop->optional;
@@ -129,6 +135,7 @@ Feeder::Feeder(path::Config config, AxisMap axes, Link& link, int process)
     : elements_(config, std::move(axes), SpindleAt::fastest),
       link_(link),
       planner_(config, link.track),
+      ways_(config, link.way),
       process_(process) {}
 
 Feeder::~Feeder() = default;
@@ -166,6 +173,8 @@ bool Feeder::work() {
     for (; done < kCommandsPerWork && wants_more(); ++done) read_one();
     planner_.work();
   } while (done < kCommandsPerWork && wants_more());
+  ways_.work();
+  if (state_ == State::feeding || state_ == State::syncing) lawless();
   return wants_more();
 }
 
@@ -195,6 +204,9 @@ void Feeder::take_orders() {
       case FeederOrder::Kind::run_on:
         if (order.generation == generation_) block_by_block_ = false;
         break;
+      case FeederOrder::Kind::way:
+        ways_.plan(order.way, elements_.path_position(order.position));
+        break;
     }
   }
 }
@@ -211,6 +223,8 @@ void Feeder::begin(const FeederOrder& order) {
   files_told_ = 0;
   view_ = link_.packets_of(generation_);
   synchronised_ = true;
+  lawless_ = false;
+  ways_.restart();
   link_.begin(generation_, {planner_.restart(elements_.path_position(position_)), link_.events.written(),
                             link_.at_once.written()});
   state_ = State::feeding;
@@ -301,6 +315,20 @@ void Feeder::fail(const text::Finding& finding) {
   end();
 }
 
+/// True: the path ends before its end, at an error that names the block.
+bool Feeder::lawless() {
+  const path::Tag* at = planner_.without_law();
+  if (at == nullptr) return false;
+  if (lawless_) return true;
+  lawless_ = true;
+  program::Command command;
+  command.line = at->line;
+  command.file = at->file;
+  command.block = at->block;
+  fail(placed(cannot_drive(path::Flaw::no_law), command));
+  return true;
+}
+
 void Feeder::end() {
   planner_.finish();
   state_ = State::ended;
@@ -343,11 +371,14 @@ void Feeder::end_block(const program::Command& next) {
 }
 
 void Feeder::push(Event& e, const program::Command& command) {
+  planner_.rest();
+  if (e.kind != EventKind::error && lawless()) return;
   e.id = next_event_++;
   if (next_event_ == 0) next_event_ = 1;
   e.generation = generation_;
   link_.events.push(e);
   planner_.add_event(e.id, tag(command));
+  if (bars(e.kind)) ways_.bar();
 }
 
 void Feeder::accept(const program::Command& command) {
@@ -385,10 +416,14 @@ bool Feeder::move(const program::Command& command) {
     fail(finding);
     return false;
   }
-  path::Element element = elements_.element(command, planner_.position());
+  const path::Vector from = planner_.position();
+  path::Element element = elements_.element(command, from);
   element.tag = tag(command);
-  if (planner_.add(element)) return true;
-  fail(placed(cannot_drive(planner_.last_flaw()), command));
+  if (planner_.add(element)) {
+    ways_.add(element, from);
+    return true;
+  }
+  if (!lawless()) fail(placed(cannot_drive(planner_.last_flaw()), command));
   return false;
 }
 

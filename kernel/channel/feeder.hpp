@@ -12,6 +12,7 @@
 #include "firmware_if/text/finding.hpp"
 #include "kernel/channel/event.hpp"
 #include "kernel/channel/motion/path_elements.hpp"
+#include "kernel/channel/motion/ways.hpp"
 #include "kernel/channel/program_texts.hpp"
 #include "kernel/path/planner.hpp"
 #include "kernel/program/interpreter/interpreter.hpp"
@@ -32,6 +33,7 @@ struct FeederOrder {
     abandon,  ///< drop what is under way; the next order is a start
     sync,     ///< the sync event has been reached; packets stand in Link::packets_of()
     run_on,   ///< no longer block by block
+    way,      ///< along the path from where the held program stands, at `position`
   };
   Kind kind = Kind::start;
   std::uint32_t generation = 0;  ///< of the run it speaks of
@@ -39,12 +41,15 @@ struct FeederOrder {
   bool block_by_block = false;   ///< start: STEP mode
   program::Position position{};
   std::uint32_t axes = 0;  ///< start: the machine axes that its programs move, as bits
+  WayOrder way;
 };
 
 /// The queues between feeder (outside) and process (in the cycle).
 struct Link {
-  explicit Link(const path::Config& config) : track(config), events(4096), at_once(1024), orders(64) {}
+  explicit Link(const path::Config& config)
+      : track(config), way(config), events(4096), at_once(1024), orders(64) {}
   path::Track track;
+  WayLink way;
   path::Ring<Event> events;   ///< executed at rest, in path order
   path::Ring<Event> at_once;  ///< asynchronous writes, warnings
   path::Ring<FeederOrder> orders;
@@ -127,6 +132,7 @@ class Feeder {
   bool is_news(const text::Finding& warning);
   void warn();
   void fail(const text::Finding& finding);
+  bool lawless();
   void end();
   bool move(const program::Command& command);
   void event(EventKind kind, const program::Command& command, Event event);
@@ -138,6 +144,7 @@ class Feeder {
   PathElements elements_;
   Link& link_;
   path::Planner planner_;
+  Ways ways_;
   int process_;
   InterpreterFactory factory_;
   RestartFactory once_;  ///< instead, for the next run
@@ -148,6 +155,7 @@ class Feeder {
   std::optional<program::Tables> tables_;       ///< newer than those in manual_
   State state_ = State::idle;
   bool synchronised_ = false;
+  bool lawless_ = false;  ///< the path cannot be driven any further, which has been said
   bool block_by_block_ = false;
   bool acted_in_block_ = false;
   int last_line_ = 0;

@@ -31,6 +31,7 @@ Process::Process(const ProcessConfig& config)
       link_(config.path),
       feeder_(config.path, config.axes, link_, config.index),
       follower_(config.path, link_.track),
+      back_(WayLink::small(config.path), link_.way.track),
       base_(image::process_base(config.index)) {}
 
 Process::~Process() = default;
@@ -85,6 +86,7 @@ void Process::published(std::span<std::uint64_t> counts) const noexcept {
   counts[kTrack] = since(entries, from.track.entry);
   counts[kEvents] = since(link_.events.written(), from.event);
   counts[kAtOnce] = since(link_.at_once.written(), from.at_once);
+  counts[kWay] = retrace_.moves ? way_published() : 0;
   counts[kPrograms] = programs_.load(std::memory_order_acquire);
   counts[kChanges] = changes();
 }
@@ -104,7 +106,7 @@ std::uint64_t Process::look(const cycle::ProcessContext& c) noexcept {
   std::array<std::uint64_t, kCrossingsEach> seen{};
   published(seen);
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = std::min(seen[i], c.visible[i]);
-  if (started_) seen[kTrack] = seen[kEvents] = seen[kAtOnce] = 0;
+  if (started_) seen[kTrack] = seen[kEvents] = seen[kAtOnce] = seen[kWay] = 0;
   started_ = false;
   if (seen[kPrograms] != programs_seen_ && !running_) {
     forget_run(c.image.processes[static_cast<std::size_t>(config_.index)]);
@@ -130,7 +132,7 @@ void Process::interpolate(cycle::ProcessContext& c) noexcept {
   const path::Sample sample = follower_.step(entries);
   if (running_) {
     show_motion(sample, c.image.processes[static_cast<std::size_t>(config_.index)]);
-    drive_axes(sample, c);
+    if (!aside_) drive_axes(sample, c);
     if (sample.feed > 0.0 && !sample.rapid)
       cutting_.add(row_ != 0 ? row_ : c.image.processes[static_cast<std::size_t>(config_.index)].tool,
                    seconds(c));
@@ -145,7 +147,7 @@ void Process::interpolate(cycle::ProcessContext& c) noexcept {
       default:
         break;
     }
-    if (running_ && stopping_ && follower_.at_rest()) leave(after_stop_, c);
+    if (running_ && stopping_ && follower_.at_rest() && !retrace_.moves) leave(after_stop_, c);
   }
   surface_speed(c);
   write_status(sample, c);
@@ -175,6 +177,8 @@ bool Process::order(const image::Request& request, cycle::ProcessContext& c) noe
       break;
     case RequestKind::hold:
       held_ = running_;
+      retrace_.ends = retrace_.moves;
+      forward_.reset();
       break;
     case RequestKind::stop:
     case RequestKind::reset:
@@ -196,8 +200,13 @@ bool Process::order(const image::Request& request, cycle::ProcessContext& c) noe
       override_ = request.value;
       break;
     case RequestKind::reposition:
+      if (!way_.away()) return go_along(true, request, c);
       way_.begin(request.velocity);
+      forward_.reset();
+      if (retrace_.away) forward_ = request;
       break;
+    case RequestKind::retrace:
+      return go_along(false, request, c);
     case RequestKind::function:
       add_function(request, c);
       break;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "kernel/channel/feeder.hpp"
@@ -68,7 +69,7 @@ class Process final : public cycle::ProcessInCycle {
  private:
   enum class Stage : std::uint8_t { none, entered, handshaking, waiting };
   /// The ways across the real-time line, in the order of published().
-  enum Crossing : std::uint8_t { kTrack, kEvents, kAtOnce, kPrograms, kChanges };
+  enum Crossing : std::uint8_t { kTrack, kEvents, kAtOnce, kWay, kPrograms, kChanges };
   static_assert(kChanges + 1 == kCrossingsEach);
 
   /// An axis of the path that this process moves.
@@ -92,6 +93,20 @@ class Process final : public cycle::ProcessInCycle {
     double surface_speed = 0.0, surface_limit = 0.0, surface_center = 0.0;
   };
 
+  /// Along the path of the held program.
+  struct Retrace {
+    std::uint32_t number = 0;  ///< of the last way
+    bool away = false;         ///< the axes stand back on the path
+    bool moves = false;        ///< a way is asked for or under way, the axes are the process'
+    bool begun = false;        ///< the feeder has begun it
+    bool forward = false;
+    bool ends = false;    ///< it ends as soon as it is at rest
+    double behind = 0.0;  ///< path to where the program was held
+    double feed = 0.0;
+    path::Tag tag;  ///< where it stands
+    double to_go = 0.0;
+  };
+
   bool start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept;
   void run_on() noexcept;
   // process_beside.cpp
@@ -102,6 +117,12 @@ class Process final : public cycle::ProcessInCycle {
   void work_beside(cycle::ProcessContext& c) noexcept;
   void forget_beside() noexcept;
   void show_beside(cycle::ProcessContext& c) const noexcept;
+  // process_retrace.cpp
+  bool go_along(bool forward, const image::Request& request, cycle::ProcessContext& c) noexcept;
+  std::uint64_t way_published() const noexcept;
+  void hold_way(const cycle::ProcessContext& c) noexcept;
+  void follow_way(cycle::ProcessContext& c) noexcept;
+  void end_way(cycle::ProcessContext& c) noexcept;
   void leave(image::ProcessState state, cycle::ProcessContext& c) noexcept;
   void find_own_axes(const cycle::ProcessContext& c) noexcept;
   std::span<const OwnAxis> own_axes() const noexcept { return {own_.data(), own_count_}; }
@@ -145,7 +166,7 @@ class Process final : public cycle::ProcessInCycle {
   ProcessConfig config_;
   Link link_;
   Feeder feeder_;
-  path::Follower follower_;
+  path::Follower follower_, back_;  ///< on the program's path, and on a way along it
   Handshake handshake_;
   std::uint32_t base_;                      ///< of the process' block in K
   std::atomic<std::uint64_t> programs_{0};  ///< loaded so far
@@ -168,6 +189,8 @@ class Process final : public cycle::ProcessInCycle {
   double waited_s_ = 0.0;
   bool aside_ = false;  ///< the program is held, and its axes are the operator's
   WayBack way_;
+  Retrace retrace_;
+  std::optional<image::Request> forward_;  ///< the way forward, as soon as the axes are back on the path
   CuttingTimes cutting_;
   std::int32_t row_ = 0;  ///< of the tool table that cuts; 0: the tool's own
   Held held_as_;
@@ -177,6 +200,7 @@ class Process final : public cycle::ProcessInCycle {
   double surface_speed_ = 0.0, surface_limit_ = 0.0, surface_center_ = 0.0;
   double last_speed_ = -1.0;
   path::Tag shown_;               ///< of the motion that the status has shown
+  double to_go_ = 0.0;            ///< path to the end of its element
   std::uint32_t generation_ = 0;  ///< of the run under way, or the last one
   bool started_ = false;          ///< in this cycle: what is visible still speaks of the run before
   bool forget_ = false;           ///< the run ends by a reset

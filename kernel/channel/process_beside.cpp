@@ -40,7 +40,10 @@ cycle::Beside Process::beside(const cycle::ProcessContext& c) const noexcept {
   b.possible = rests_for_operator();
   if (!b.possible || !aside_) return b;
   b.away = way_.away();
-  b.returns = way_.returns();
+  b.returns = way_.returns() || retrace_.moves;
+  b.retraced = retrace_.away;
+  b.retraced_mm = retrace_.behind;
+  if (retrace_.moves && own_count_ != 0) b.axis = static_cast<std::int8_t>(own_[0].machine);
   b.full = way_.full();
   b.functions = function_count_ != 0;
   b.functions_full = function_count_ == functions_.size();
@@ -74,6 +77,8 @@ void Process::step_aside(cycle::ProcessContext& c) noexcept {
   if (aside_) return;
   aside_ = true;
   way_.clear();
+  retrace_.away = false;
+  forward_.reset();
   Held& h = held_as_;
   const std::span<const OwnAxis> own = own_axes();
   for (std::size_t i = 0; i < own.size(); ++i) h.place[i] = c.axes[own[i].machine].setpoint().x;
@@ -111,6 +116,8 @@ bool Process::come_back(cycle::ProcessContext& c) noexcept {
 void Process::forget_beside() noexcept {
   aside_ = false;
   way_.clear();
+  retrace_.away = retrace_.moves = false;
+  forward_.reset();
   function_count_ = 0;
 }
 
@@ -159,6 +166,12 @@ void Process::add_function(const image::Request& request, cycle::ProcessContext&
 /// One cycle of the typed functions, one behind the other, and of the way back.
 void Process::work_beside(cycle::ProcessContext& c) noexcept {
   way_.step(c.axes);
+  if (forward_ && !way_.returns()) {
+    const image::Request request = *forward_;
+    forward_.reset();
+    if (!way_.away() && !stopping_) go_along(true, request, c);
+  }
+  if (retrace_.moves) follow_way(c);
   if (function_count_ == 0 || stopping_ || !execute(event_, c) || function_count_ == 0) return;
   std::move(functions_.begin() + 1, functions_.begin() + static_cast<std::ptrdiff_t>(function_count_),
             functions_.begin());

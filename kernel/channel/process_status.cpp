@@ -23,6 +23,7 @@ constexpr Place kRunning = field(kProcessFields, "running"), kHeld = field(kProc
 constexpr Place kInPosition = field(kProcessFields, "in_position"), kRapid = field(kProcessFields, "rapid");
 constexpr Place kLine = field(kProcessFields, "line"), kFeed = field(kProcessFields, "feed");
 constexpr Place kOverride = field(kProcessFields, "override"), kStopBit = field(kProcessFields, "stop");
+constexpr Place kRetraced = field(kProcessFields, "retraced");
 constexpr Place kFeedEnable = field(kProcessFields, "feed_enable");
 constexpr Place kReadInEnable = field(kProcessFields, "read_in_enable");
 constexpr Place kAxisFeedEnable = field(image::kAxisFields, "feed_enable");
@@ -56,6 +57,7 @@ image::Wait of(WaitReason reason, Place place = {}, int axis = -1) noexcept {
 /// The newest of what began, a motion or an event, gives the line. A motion begins when its tag appears; that
 /// of the run before stays on the path until then.
 void Process::show_motion(const path::Sample& sample, image::ProcessStatus& status) noexcept {
+  to_go_ = sample.distance_to_go;
   if (sample.tag == shown_) return;
   shown_ = sample.tag;
   if (shown_.command >> 32 != generation_) return;
@@ -84,6 +86,7 @@ void Process::forget_run(image::ProcessStatus& status) const noexcept {
 image::Wait Process::wait(const path::Sample& sample, const cycle::ProcessContext& c) const noexcept {
   if (!running_ || stopping_ || !follower_.at_rest()) return {};
   if (function_count_ != 0) return wait_at_event(c);
+  if (retrace_.moves && back_.waits_for_spindle()) return of(WaitReason::spindle_stands);
   switch (sample.state) {
     case path::FollowerState::at_event: {
       const image::Wait settling = stage_ == Stage::none ? wait_for_position(c) : image::Wait{};
@@ -176,7 +179,18 @@ void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c)
     wait.since_ns = c.image.now.t_ns;
     out.wait = wait;
   }
-  out.feed_mm_s = running_ ? sample.feed : 0.0;
+  out.feed_mm_s = running_ ? sample.feed + retrace_.feed : 0.0;
+  const bool was_retraced = out.retraced;
+  out.retraced = running_ && (retrace_.away || (retrace_.moves && retrace_.begun));
+  out.retracing = running_ && (retrace_.moves || forward_.has_value());
+  out.retraced_mm = out.retraced ? retrace_.behind : 0.0;
+  if (out.retraced && retrace_.begun && retrace_.tag.line != 0) {
+    out.line = retrace_.tag.line;
+    out.file = retrace_.tag.file;
+  } else if (was_retraced && running_) {
+    out.line = shown_.line;
+    out.file = shown_.file;
+  }
   out.override_ratio = follower_.override_ratio();
   out.starved = sample.starved;
   if (sample.starved != starved_ && running_) {
@@ -197,6 +211,7 @@ void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c)
   k.set_bit(at(kHeld, base_), running_ && held_);
   k.set_bit(at(kInPosition, base_), in_position(c));
   k.set_bit(at(kRapid, base_), out.rapid);
+  k.set_bit(at(kRetraced, base_), out.retraced);
   k.set_number(at(kLine, base_), out.line);
   k.set_number(at(kFeed, base_), out.feed_mm_s * 60.0);
   k.set_number(at(kOverride, base_), std::round(out.override_ratio * 100.0));

@@ -160,7 +160,7 @@ class Cycle {
   // rest) makes a late refusal.
   Refusal carry_out(const image::Request& request) noexcept;
   Refusal carry_out_manual(const image::Request& request) noexcept;
-  Refusal reposition(const image::Request& request) noexcept;
+  Refusal along_path(const image::Request& request) noexcept;
   Refusal carry_out_motion(const image::Request& request, axis::Axis& axis) noexcept;
   Refusal order(int process, const image::Request& request) noexcept;
   Refusal end_or_hold(const image::Request& request) noexcept;

@@ -205,7 +205,8 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     case RequestKind::function:
       return order(request.process, request);
     case RequestKind::reposition:
-      return reposition(request);
+    case RequestKind::retrace:
+      return along_path(request);
   }
   return Refusal::none;
 }
@@ -237,7 +238,7 @@ Refusal Cycle::carry_out_manual(const Request& request) noexcept {
 }
 
 /// As a jog: whoever asks holds manual control until all stands.
-Refusal Cycle::reposition(const Request& request) noexcept {
+Refusal Cycle::along_path(const Request& request) noexcept {
   const Refusal refusal = order(request.process, request);
   if (refusal != Refusal::none) return refusal;
   manual_held_ = true;

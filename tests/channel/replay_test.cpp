@@ -53,8 +53,22 @@ struct Recording {
   std::size_t changed_in = 0;  ///< the cycle before which the second program was loaded
 };
 
-/// Three starts: the first given up in motion, then another program, then that once more. The reader reads at
-/// random moments, also between what the cycle looks at and what it does.
+void go_back_and_forward(Rig& rig) {
+  const auto stands = [&] { return !rig.status().retracing && !rig.moving(); };
+  EXPECT_TRUE(rig.until([&] { return rig.x() < -20.0; }, 3.0));
+  rig.ask(RequestKind::hold);
+  EXPECT_TRUE(rig.until([&] { return rig.state() == image::ProcessState::held && stands(); }, 3.0));
+  EXPECT_EQ(rig.ask(RequestKind::retrace, 10.0), cycle::Refusal::none);
+  EXPECT_TRUE(rig.until(stands, 3.0));
+  EXPECT_GT(rig.status().retraced_mm, 9.9);
+  EXPECT_EQ(rig.ask(RequestKind::reposition), cycle::Refusal::none);
+  EXPECT_TRUE(rig.until(stands, 3.0));
+  EXPECT_EQ(rig.ask(RequestKind::resume), cycle::Refusal::none);
+}
+
+/// Three starts: the first given up in motion, then another program, then that once more, led back along its
+/// path and forward again. The reader reads at random moments, also between what the cycle looks at and what
+/// it does.
 Recording recorded(unsigned seed) {
   std::mt19937 random(seed);
   Rig rig(kFirst);
@@ -78,6 +92,7 @@ Recording recorded(unsigned seed) {
   EXPECT_TRUE(rig.until([&] { return rig.ask(RequestKind::start) == cycle::Refusal::none; }, 3.0));
   EXPECT_TRUE(rig.until([&] { return rig.state() == image::ProcessState::ended; }, 20.0)) << rig.alarm_list();
   EXPECT_TRUE(rig.until([&] { return rig.ask(RequestKind::start) == cycle::Refusal::none; }, 3.0));
+  go_back_and_forward(rig);
   EXPECT_TRUE(rig.until([&] { return rig.state() == image::ProcessState::ended; }, 20.0)) << rig.alarm_list();
   EXPECT_EQ(rig.violations(), "");
   rig.cycle->attach(static_cast<cycle::InputTap*>(nullptr));

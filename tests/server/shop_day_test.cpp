@@ -146,6 +146,17 @@ TEST_P(ShopDay, ends_with_the_whole_groove_cut_and_nothing_else) {
   for (std::size_t a = 0; a < 3; ++a)
     EXPECT_NEAR(shell_.status()["axes"][a]["command"].get<double>(), held["axes"][a]["command"].get<double>(),
                 1e-6);
+  // Back along the groove, and forward again.
+  EXPECT_TRUE(contains(good({"retrace", "--mm", "5"}).out, "the axes stand 5 mm back on the path"));
+  EXPECT_TRUE(contains(good({"status"}).out, "back on its path by 5.000 mm"));
+  const Outcome behind = shell_.run({"resume"});
+  EXPECT_EQ(behind.exit, 1);
+  EXPECT_TRUE(contains(behind.err, "went back on its path by 5 mm: `servogate return` leads forward"))
+      << behind.err;
+  EXPECT_TRUE(contains(good({"return"}).out, "back on the path"));
+  for (std::size_t a = 0; a < 3; ++a)
+    EXPECT_NEAR(shell_.status()["axes"][a]["command"].get<double>(), held["axes"][a]["command"].get<double>(),
+                1e-6);
   const Outcome stands = shell_.run({"resume"});
   EXPECT_EQ(stands.exit, 1);
   EXPECT_TRUE(contains(stands.err, "servogate mdi \"M3 S1200\"")) << stands.err;

@@ -71,7 +71,7 @@ TEST(Completion, offers_commands_options_and_their_words_and_leaves_files_to_the
     EXPECT_EQ(e.err, "");
     return e.out;
   };
-  EXPECT_EQ(offered("servogate re", 1), "resume return reset replay restore\n");
+  EXPECT_EQ(offered("servogate re", 1), "resume return retrace reset replay restore\n");
   EXPECT_EQ(offered("servogate can \"\"", 2), "bus check restart --help\n");
   EXPECT_EQ(offered("servogate can bus --li", 3), "--listen\n");
   EXPECT_EQ(offered("servogate run m.toml --v", 3), "--virtual\n");

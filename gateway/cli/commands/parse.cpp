@@ -60,6 +60,11 @@ constexpr ClientCommand kClients[] = {
      "Brings axes that were jogged away from a held program back by the way that they went, and waits until "
      "they stand.",
      "", "servogate return --feed 300", false, true},
+    {"retrace",
+     "Leads the axes of a held program back along its path, and waits until they stand; `servogate return` "
+     "leads "
+     "forward again.",
+     "", "servogate retrace --mm 5", false, true},
     {"reset", "Ends the program and clears alarms whose cause is gone.", "", "servogate reset"},
     {"override", "Feed override in per cent, 0 to 150.", "PCT", "servogate override 80", false, true},
     {"assign", "Gives an axis that stands to a process: its programs move it from now on.", "AXIS",
@@ -266,6 +271,20 @@ class Commands {
     if (std::string_view(c.name) == "start") from_the_middle(app, o);
     if (std::string_view(c.name) == "return") {
       app.add_option("--feed", o.feed, "Feed of the way back in mm/min, 1 to 5000; the jog speed without it")
+          ->type_name("MM/MIN")
+          ->check(number_within({1.0, 5000.0, "mm/min"}));
+      app.add_flag("--no-wait", o.no_wait, "Returns as soon as the control has agreed");
+    }
+    if (std::string_view(c.name) == "retrace") {
+      CLI::Option* mm = app.add_option("--mm", o.mm, "Back by so much path")
+                            ->type_name("MM")
+                            ->check(number_within({1e-3, 1e6, "mm"}));
+      CLI::Option* blocks = app.add_option("--blocks", o.blocks,
+                                           "Back to the begin of so many blocks, the present one included")
+                                ->type_name("N")
+                                ->check(number_within({1.0, 1e6, text::both("blocks", "кадров"), true}));
+      mm->excludes(blocks);
+      app.add_option("--feed", o.feed, "No faster than this in mm/min, 1 to 5000; as programmed without it")
           ->type_name("MM/MIN")
           ->check(number_within({1.0, 5000.0, "mm/min"}));
       app.add_flag("--no-wait", o.no_wait, "Returns as soon as the control has agreed");

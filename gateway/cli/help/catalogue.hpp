@@ -161,6 +161,15 @@ inline constexpr Translation kCatalogue[] = {
     {"Brings axes that were jogged away from a held program back by the way that they went, and waits until "
      "they stand.",
      "Возвращает оси, отведённые от приостановленной программы, тем же путём и ждёт их останова."},
+    {"Leads the axes of a held program back along its path, and waits until they stand; `servogate return` leads "
+     "forward again.",
+     "Ведёт оси приостановленной программы назад по её контуру и ждёт их останова; `servogate return` ведёт "
+     "вперёд."},
+    {"Back by so much path", "Назад по контуру на столько"},
+    {"Back to the begin of so many blocks, the present one included",
+     "Назад к началу стольких кадров, считая нынешний"},
+    {"No faster than this in mm/min, 1 to 5000; as programmed without it",
+     "Не быстрее, мм/мин, от 1 до 5000; без ключа — как в программе"},
     {"Feed of the way back in mm/min, 1 to 5000; the jog speed without it",
      "Подача на возврате в мм/мин, от 1 до 5000; без ключа — скорость ручного хода"},
     {"The machine is another computer: its buses and devices are not looked for here",

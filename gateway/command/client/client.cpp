@@ -34,6 +34,16 @@ const text::Entry kBack{"client.back", "the axes are back on the path: `servogat
 const text::Entry kNotBack{"client.not-back",
                            "the way back ended before the path: `servogate return` goes on with it",
                            "возврат прерван до контура: `servogate return` продолжит его"};
+const text::Entry kRetraced{
+    "client.retraced",
+    "the axes stand {0} mm back on the path: `servogate retrace` goes further, `servogate return` forward",
+    "оси отведены по контуру назад на {0} мм: `servogate retrace` — дальше, `servogate return` — вперёд"};
+const text::Entry kNotRetraced{
+    "client.not-retraced",
+    "the axes stand where the program was held: behind them is the begin of the program or an M, S or T "
+    "function, over which no way leads back",
+    "оси стоят там, где программа приостановлена: позади начало программы или функция M, S или T, за которую "
+    "пути назад нет"};
 const text::Entry kNoAlarms{"client.no-alarms", "no alarm is active", "активных аварий нет"};
 const text::Entry kNotKept{"client.history-not-kept", "the history is not written to the disk: {0}",
                            "история не записывается на диск: {0}"};
@@ -78,13 +88,14 @@ void print_history(const json& reply) {
 
 /// A client and what its command waits for.
 struct Manner {
-  bool power, jog, back, waits;
+  bool power, jog, back, retrace, waits;
 };
 
 Manner manner_of(const ClientOptions& options, const json& request) {
-  Manner m{options.command == "power", options.command == "jog", options.command == "return", false};
+  Manner m{options.command == "power", options.command == "jog", options.command == "return",
+           options.command == "retrace", false};
   m.waits = options.wait || request["cmd"] == "jog_continuous" ||
-            ((m.power || m.jog || m.back) && !options.no_wait);
+            ((m.power || m.jog || m.back || m.retrace) && !options.no_wait);
   return m;
 }
 
@@ -121,6 +132,14 @@ void show(const ClientOptions& options, const json& request, const Manner& manne
       print_line(say(kBack));
     else
       complain(kNotBack, {});
+    print_alarms(reply["alarms"]);
+  } else if (manner.retrace && manner.waits) {
+    const json back = of_process(reply, request).value("retraced_mm", json());
+    if (back.is_number())
+      print_line(text::render(kRetraced, std::vector<std::string>{text::number(back.get<double>(), 3)},
+                              text::user_language()));
+    else
+      complain(kNotRetraced, {});
     print_alarms(reply["alarms"]);
   } else if (options.command == "status" || manner.waits) {
     print_status(reply);

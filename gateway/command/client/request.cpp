@@ -47,7 +47,9 @@ json request_of(const ClientOptions& options) {
   }
   if (c == "start" && (!options.from.empty() || options.line > 0 || options.interrupted))
     return restart(options, std::move(r));
-  if (c == "return" && options.feed) r["feed"] = *options.feed;
+  if ((c == "return" || c == "retrace") && options.feed) r["feed"] = *options.feed;
+  if (options.mm) r["mm"] = *options.mm;
+  if (options.blocks) r["blocks"] = *options.blocks;
   FormProblem problem;
   if (add_words(r, options.arguments, problem)) return r;
   complain(*problem.entry, problem.arguments);

@@ -22,6 +22,8 @@ const Entry kProcessHead{"client.process-head", "process {0}: {1}, {2}", "про
 const Entry kHoming{"client.homing", ", homing", ", идёт выход в ноль"};
 const Entry kFeed{"client.feed", "feed {0} mm/min, override {1} %, tool {2}",
                   "подача {0} мм/мин, коррекция {1} %, инструмент {2}"};
+const Entry kRetraced{"client.stands-back", "back on its path by {0} mm",
+                      "отведена назад по контуру на {0} мм"};
 const Entry kRestartAt{"client.restart-at", "begins at line {0} of {1}: {2}",
                        "начало со строки {0} файла {1}: {2}"};
 const Entry kRestartAxis{"client.restart-axis",
@@ -144,6 +146,8 @@ std::string fixed(double value, int decimals) {
 }
 
 void print_program(const json& s) {
+  if (const json back = s.value("retraced_mm", json()); back.is_number())
+    print_line(say(kRetraced, {fixed(back.get<double>(), 3)}));
   const std::string program = of(s, "program"), file = of(s, "file"), block = of(s, "block");
   const int line = s.value("line", 0);
   if (!block.empty()) {

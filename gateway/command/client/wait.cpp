@@ -76,7 +76,7 @@ Kind kind_of(const json& request) {
   const std::string command = request["cmd"];
   if (command == "power") return request["value"] == 0 ? Kind::power_off : Kind::power_on;
   if (command == "home") return Kind::home;
-  if (command.starts_with("jog") || command == "return") return Kind::jog;
+  if (command.starts_with("jog") || command == "return" || command == "retrace") return Kind::jog;
   if (command == "functions") return Kind::functions;
   return command == "step" ? Kind::step : Kind::program;
 }
@@ -113,15 +113,6 @@ class Wait {
   }
   void interrupt();
   json simple(const char* command) const { return {{"cmd", command}, {"language", request_["language"]}}; }
-  /// The status with the process that the request speaks of in the place of the first.
-  json of_process(const json& status) const {
-    const auto process = static_cast<std::size_t>(request_.value("process", 1));
-    const json processes = status.value("processes", json::array());
-    if (process < 2 || process > processes.size()) return status;
-    json own = status;
-    own.update(processes[process - 1]);
-    return own;
-  }
   /// Of those that the PLC moves nobody here waits for anything.
   template <typename Is>
   static bool any_axis(const json& status, Is&& is) {
@@ -180,7 +171,7 @@ bool Wait::homing_under_way(const json& status) {
 
 /// Until the axes stand, and then until they have settled, as long as that takes an axis.
 bool Wait::jog_under_way(const json& status) {
-  if (any_axis(status, moving)) {
+  if (any_axis(status, moving) || status.value("retracing", false)) {
     stands_since_s_ = -1.0;
     return true;
   }
@@ -326,9 +317,14 @@ void Wait::interrupt() {
     case Kind::home:
       ask(client_, simple("stop"));
       break;
-    case Kind::jog:
-      ask(client_, simple("jog_stop"));  // a program beside which it jogs stays held
+    case Kind::jog: {
+      // A program beside which it jogs stays held; ways along its path are the process' own.
+      const std::string command = request_["cmd"];
+      json order = simple(command == "return" || command == "retrace" ? "hold" : "jog_stop");
+      if (request_.contains("process") && order["cmd"] == "hold") order["process"] = request_["process"];
+      ask(client_, order);
       break;
+    }
     case Kind::step:
     case Kind::program: {
       json order = simple(interrupts_done_ == 1 ? "hold" : "stop");
@@ -354,13 +350,13 @@ int Wait::run(json& status) {
       interrupt();
       continue;
     }
-    const json own = of_process(status);
+    const json own = of_process(status, request_);
     if (!under_way(own)) break;
     if (too_late(own)) return kAlarm;
     say_what_is_missing(own);
   }
   if (code_ == kStopped && status.value("ending", false)) complain(kControlEnds, {});
-  const std::string state = of(of_process(status), "state");
+  const std::string state = of(of_process(status, request_), "state");
   const bool own_end = kind_ == Kind::program && (state == "ended" || state == "stopped_by_alarm");
   if (interrupts_done_ == 0 || own_end) return code_;
   if (state == "held") complain(kHeld, {});
@@ -369,6 +365,15 @@ int Wait::run(json& status) {
 }
 
 }  // namespace
+
+json of_process(const json& status, const json& request) {
+  const auto process = static_cast<std::size_t>(request.value("process", 1));
+  const json processes = status.value("processes", json::array());
+  if (process < 2 || process > processes.size()) return status;
+  json own = status;
+  own.update(processes[process - 1]);
+  return own;
+}
 
 json ask(SocketClient& client, const json& request) {
   std::string answer;

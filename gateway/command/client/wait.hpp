@@ -9,6 +9,9 @@ namespace servogate::gateway::command {
 /// One request, answered; null: the connection is gone.
 nlohmann::json ask(SocketClient& client, const nlohmann::json& request);
 
+/// The status with the process that the request speaks of in the place of the first.
+nlohmann::json of_process(const nlohmann::json& status, const nlohmann::json& request);
+
 /// Waits until what `request` began has ended, and gives the exit code. `status` is its answer and gets the
 /// last status; null: the connection is gone. Ctrl-C stops what moves: a program is held on its path, a
 /// second one ends it; homing and jogs stop; drives that are being switched on are switched off again.

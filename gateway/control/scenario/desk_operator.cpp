@@ -122,7 +122,7 @@ DeskOperator::Begun DeskOperator::begun_by(const ask::Command& command) {
   if (const auto* power = std::get_if<ask::Power>(&command))
     return power->on ? Begun::power_on : Begun::power_off;
   if (ask::is_any<ask::Home>(command)) return Begun::home;
-  if (ask::is_any<ask::Jog, ask::Return>(command)) return Begun::jog;
+  if (ask::is_any<ask::Jog, ask::Return, ask::Retrace>(command)) return Begun::jog;
   if (ask::is_any<ask::Start, ask::Step, ask::Mdi, ask::Restart, ask::Resume>(command)) return Begun::program;
   return Begun::nothing;
 }
@@ -239,6 +239,8 @@ bool DeskOperator::settled() {
         return a.owner != image::AxisOwner::homing && !a.moving;
       });
     case Begun::jog:
+      for (const image::ProcessStatus& p : image.processes)
+        if (p.retracing) return false;
       return every(
           [](const image::AxisImage& a) { return a.owner != image::AxisOwner::manual && !a.moving; });
     case Begun::program: {

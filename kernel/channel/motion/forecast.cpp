@@ -22,13 +22,15 @@ Forecast::Forecast(Depth depth, const path::Config& config, AxisMap axes, const 
       stands_(start) {
   elements_.own(own);
   if (depth == Depth::timed) time_.emplace(config, at_);
+  if (depth == Depth::surveyed) survey_.emplace(config, at_);
 }
 
 std::optional<text::Finding> Forecast::take(const program::Command& command) {
   if (is_motion(command)) {
-    const path::Element element = elements_.element(command, at_);
-    const path::Flaw flaw = time_ ? (time_->add(element) ? path::Flaw::none : time_->last_flaw())
-                                  : path::shape(config_, at_, element).flaw;
+    path::Element element = elements_.element(command, at_);
+    element.tag.line = command.line;
+    element.tag.file = command.file;
+    const path::Flaw flaw = add(element);
     at_ = element.to;
     if (flaw == path::Flaw::none) return std::nullopt;
     begin_anew();
@@ -36,7 +38,7 @@ std::optional<text::Finding> Forecast::take(const program::Command& command) {
   }
   if (auto finding = not_driven(command)) return finding;
   if (const auto* spindle = std::get_if<program::Spindle>(&command.what)) elements_.take(*spindle);
-  if (time_ && !passes(command)) time_->rest();
+  if (!passes(command)) rest();
   return std::nullopt;
 }
 
@@ -47,16 +49,26 @@ int Forecast::foreign_axis(const program::Command& command) {
   return axis;
 }
 
+path::Flaw Forecast::add(const path::Element& element) {
+  if (time_) return time_->add(element) ? path::Flaw::none : time_->last_flaw();
+  if (survey_) return survey_->add(element) ? path::Flaw::none : survey_->last_flaw();
+  return path::shape(config_, at_, element).flaw;
+}
+
+void Forecast::rest() {
+  if (time_) time_->rest();
+  if (survey_) survey_->rest();
+}
+
 double Forecast::motion_seconds() {
-  if (!time_) return 0.0;
-  time_->rest();
-  return before_s_ + time_->seconds();
+  rest();
+  return before_s_ + (time_ ? time_->seconds() : survey_ ? survey_->seconds() : 0.0);
 }
 
 void Forecast::begin_anew() {
-  if (!time_) return;
   before_s_ = motion_seconds();
-  time_.emplace(config_, at_);
+  if (time_) time_.emplace(config_, at_);
+  if (survey_) survey_.emplace(config_, at_);
 }
 
 }  // namespace servogate::channel

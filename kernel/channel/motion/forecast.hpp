@@ -6,6 +6,7 @@
 #include "firmware_if/text/finding.hpp"
 #include "kernel/channel/motion/path_elements.hpp"
 #include "kernel/path/path_time.hpp"
+#include "kernel/path/survey.hpp"
 
 namespace servogate::channel {
 
@@ -15,6 +16,7 @@ class Forecast {
   enum class Depth : std::uint8_t {
     drivable,  ///< whether each element can be driven
     timed,     ///< the path is planned, too: how long it takes
+    surveyed,  ///< and driven cycle by cycle: where it is slow, and why
   };
   /// `own`: the machine axes that the program may move, as bits.
   Forecast(Depth depth, const path::Config& config, AxisMap axes, const program::Position& start,
@@ -27,10 +29,17 @@ class Forecast {
   /// judged from where it would have moved it.
   int foreign_axis(const program::Command& command);
   /// Of all motion taken so far at an override of 100 %, s, ramps and corners included, as if it ended here;
-  /// 0 unless timed. M, S, T, dwells and waits take their own.
+  /// 0 unless timed or surveyed. M, S, T, dwells and waits take their own.
   double motion_seconds();
+  /// Where most time is lost, only if surveyed; since the last element that cannot be driven.
+  std::vector<path::SlowPlace> slowest() const {
+    if (!survey_) return {};
+    return survey_->slowest();
+  }
 
  private:
+  path::Flaw add(const path::Element& element);
+  void rest();
   void begin_anew();
 
   path::Config config_;
@@ -38,6 +47,7 @@ class Forecast {
   path::Vector at_{};
   program::Position stands_;  ///< of the axes of other processes
   std::optional<path::PathTime> time_;
+  std::optional<path::Survey> survey_;
   double before_s_ = 0.0;  ///< of what lies before the last element that cannot be driven
 };
 

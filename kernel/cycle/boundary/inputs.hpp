@@ -13,7 +13,7 @@
 
 namespace servogate::cycle {
 
-inline constexpr int kCrossingsEach = 5;  ///< ways across the real-time line to one process
+inline constexpr int kCrossingsEach = 6;  ///< ways across the real-time line to one process
 inline constexpr int kCrossings = kCrossingsEach * image::kMaxProcesses;
 inline constexpr int kRequestsPerCycle = 16;  ///< requests taken in one cycle; more wait for the next one
 using image::kNoticesPerCycle;

@@ -30,11 +30,13 @@ struct ProcessContext {
 
 /// What may be done beside a program that is held or waits for the operator, its path at rest.
 struct Beside {
-  bool possible = false;   ///< its axes may be jogged, and functions executed
-  bool away = false;       ///< axes were jogged away from the path: RequestKind::reposition leads back
-  bool returns = false;    ///< they are on the way back
-  bool full = false;       ///< the way has as many legs as are remembered: only its last axis can move on
-  bool functions = false;  ///< a function is under way
+  bool possible = false;     ///< its axes may be jogged, and functions executed
+  bool away = false;         ///< axes were jogged away from the path: RequestKind::reposition leads back
+  bool returns = false;      ///< they are on the way back
+  bool full = false;         ///< the way has as many legs as are remembered: only its last axis can move on
+  bool retraced = false;     ///< it stands back on its path: reposition leads forward when no axis is away
+  double retraced_mm = 0.0;  ///< by so much path
+  bool functions = false;    ///< a function is under way
   bool functions_full = false;  ///< no more of them can be kept
   std::int8_t axis = -1;        ///< of the last leg of the way
   double distance = 0.0;        ///< of that axis from where the leg begins
@@ -54,7 +56,7 @@ class ProcessInCycle {
   /// One cycle: handshakes, path, set-points of the axes that the process owns.
   virtual void interpolate(ProcessContext& context) noexcept = 0;
   /// Carries out a request that the gate has let pass (start, step, hold, resume, stop, reset, override,
-  /// mode, reposition, function).
+  /// mode, reposition, retrace, function).
   /// False: it cannot start because an axis is not at rest or belongs to somebody else.
   virtual bool order(const image::Request& request, ProcessContext& context) noexcept = 0;
   /// A program is loaded and may be started.

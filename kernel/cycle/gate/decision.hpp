@@ -112,6 +112,8 @@ class Decision {
   bool jog_beside(const Axis& a) noexcept;
   bool process_stands() noexcept;
   bool reposition() noexcept;
+  bool retrace() noexcept;
+  bool along_path() noexcept;
   bool function() noexcept;
   bool as_it_was_held() noexcept;
   bool auxiliary() noexcept;

@@ -37,6 +37,8 @@ bool Decision::decide_kind() noexcept {
       return keep_alive();
     case RequestKind::reposition:
       return reposition();
+    case RequestKind::retrace:
+      return retrace();
     case RequestKind::function:
       return function();
     case RequestKind::jog_stop:

@@ -79,6 +79,7 @@ enum class Refusal : std::uint16_t {
   way_back_full,  ///< axis: the last one; the way that the axes went has too many legs to go on with another
   on_path,        ///< no axis was jogged away
   off_path,       ///< axis; value: how far it was jogged away
+  retraced,       ///< value: path from where the axes stand to where the program was held, mm (degrees)
   spindle_differs,  ///< value: rpm of the spindle when the program was held, + clockwise
   tool_differs,     ///< value: the tool that was in the spindle then
 };

@@ -28,14 +28,24 @@ bool Decision::process_stands() noexcept {
   return no_homing() && not_held_by_another();
 }
 
-bool Decision::reposition() noexcept {
+/// The axes may go along the way that they came.
+bool Decision::along_path() noexcept {
   if (r_.velocity < 0.0 || !std::isfinite(r_.velocity)) return refuse(Refusal::bad_value, -1, r_.velocity);
   if (!no_alarm(Reaction::stop_on_path) || !process_stands()) return false;
   if (c_.beside.functions) return refuse(Refusal::function_runs);
-  if (!c_.beside.away) return refuse(Refusal::on_path);
   for (const Axis& a : c_.axes)
     if (of_process(a) && (!ready(a) || !free(a))) return false;
   return true;
+}
+
+bool Decision::reposition() noexcept {
+  return along_path() && (c_.beside.away || c_.beside.retraced || refuse(Refusal::on_path));
+}
+
+bool Decision::retrace() noexcept {
+  if (!(r_.value > 0.0) && r_.index == 0) return refuse(Refusal::bad_value, -1, r_.value);
+  if (!along_path()) return false;
+  return !c_.beside.away || refuse(Refusal::off_path, c_.beside.axis, c_.beside.distance);
 }
 
 bool Decision::function() noexcept {
@@ -50,7 +60,9 @@ bool Decision::function() noexcept {
 bool Decision::as_it_was_held() noexcept {
   const Beside& b = c_.beside;
   if (b.functions) return refuse(Refusal::function_runs);
-  if (b.away || b.returns) return refuse(Refusal::off_path, b.axis, b.distance);
+  if (b.away) return refuse(Refusal::off_path, b.axis, b.distance);
+  if (b.returns) return refuse(Refusal::axis_moves, b.axis);
+  if (b.retraced) return refuse(Refusal::retraced, -1, b.retraced_mm);
   if (b.tool >= 0) return refuse(Refusal::tool_differs, -1, b.tool);
   return b.spindle < 0 || refuse(Refusal::spindle_differs, -1, b.spindle_rpm);
 }

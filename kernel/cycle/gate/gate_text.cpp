@@ -152,10 +152,14 @@ constexpr text::Entry kTexts[] = {
      "on with {0}",
      "путь от контура имеет слишком много поворотов: `servogate return` вернёт оси, или продолжайте осью "
      "{0}"},
-    {"gate.on_path", "no axis was jogged away from the program: `servogate resume` goes on",
+    {"gate.on_path", "no axis is away from the path of the program: `servogate resume` goes on",
      "оси не отводились от контура: `servogate resume` продолжит"},
     {"gate.off_path", "{0} was jogged away from the program by {1} {3}: `servogate return` first",
      "{0} отведена от контура на {1} {3}: сначала `servogate return`"},
+    {"gate.retraced",
+     "the program went back on its path by {1} mm: `servogate return` leads forward to where it was held",
+     "программа отведена назад по контуру на {1} мм: `servogate return` вернёт её туда, где она была "
+     "приостановлена"},
     {"gate.spindle_differs",
      "the spindle is not as it was when the program was held: `servogate mdi \"{1}\"` first",
      "шпиндель не в том состоянии, в котором программа была приостановлена: сначала `servogate mdi "

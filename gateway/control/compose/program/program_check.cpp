@@ -101,6 +101,7 @@ ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramF
       },
       file.process);
   check.motion_s = forecast.motion_seconds();
+  check.slowest = forecast.slowest();
   return check;
 }
 

@@ -13,7 +13,8 @@ namespace servogate::gateway {
 /// What a program without its machine comes to.
 struct ProgramCheck {
   program::CheckReport report;  ///< its findings may begin with that of the file's encoding
-  double motion_s = 0.0;        ///< of all motion at an override of 100 %; 0 unless timed
+  double motion_s = 0.0;        ///< of all motion at an override of 100 %; 0 unless timed or surveyed
+  std::vector<path::SlowPlace> slowest;  ///< where most time is lost, only if surveyed
   long long feed_blocks = 0;    ///< elements at feed
   long long stops = 0;          ///< of them end at rest, whatever follows
   int first_stop = 0;           ///< line of the first of those, 0: in a subprogram, or there is none

@@ -111,6 +111,12 @@ struct Return {
   int process = 0;
   std::optional<double> feed_mm_min;  ///< none: the axes' jog speed
 };
+/// The axes of a held program go back along its path: by a length, or to the begin of so many blocks.
+struct Retrace {
+  int process = 0;
+  std::optional<double> mm, blocks;
+  std::optional<double> feed_mm_min;  ///< none: as programmed
+};
 /// Another process' programs move the axis from now on.
 struct Assign {
   std::string axis;
@@ -170,10 +176,10 @@ struct PlcWatch {
 struct PlcList {};
 
 using Command = std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero,
-                             Override, Load, Start, Restart, Step, Mdi, Resume, Return, Assign, Tables,
-                             TableSet, TableClear, TableUndo, TableImport, TableExport, Reset, Acknowledge,
-                             Input, SetPlace, Stop, QuickStop, Hold, JogStop, KeepAlive, Down, PlcLoad,
-                             PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
+                             Override, Load, Start, Restart, Step, Mdi, Resume, Return, Retrace, Assign,
+                             Tables, TableSet, TableClear, TableUndo, TableImport, TableExport, Reset,
+                             Acknowledge, Input, SetPlace, Stop, QuickStop, Hold, JogStop, KeepAlive, Down,
+                             PlcLoad, PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
 
 template <typename... Kinds>
 bool is_any(const Command& command) noexcept {

@@ -314,6 +314,10 @@ constexpr struct {
      [](Fields& f) -> Command {
        return ask::Return{f.process(0), f.number_if("feed")};
      }},
+    {"retrace",
+     [](Fields& f) -> Command {
+       return ask::Retrace{f.process(0), f.number_if("mm"), f.number_if("blocks"), f.number_if("feed")};
+     }},
     {"assign",
      [](Fields& f) -> Command {
        return ask::Assign{f.text("axis"), f.process(0)};

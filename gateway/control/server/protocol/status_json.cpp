@@ -86,6 +86,8 @@ json json_of(const ProcessReport& p) {
           {"wait", p.wait ? json_of(*p.wait) : json()},
           {"feed_mm_min", measure(p.status.feed_mm_s * 60.0)},
           {"override_pct", measure(p.status.override_ratio * 100.0)},
+          {"retraced_mm", p.status.retraced ? json(measure(p.status.retraced_mm)) : json()},
+          {"retracing", p.status.retracing},
           {"tool", p.status.tool}};
 }
 

@@ -14,8 +14,15 @@ namespace {
 using Entry = text::Entry;
 const Entry kReturns{"said.returns", "the axes return to the path by the way that they went",
                      "оси возвращаются на контур тем же путём"};
+constexpr double kFarthestBack = 1e6;  // mm
+constexpr double kMostBlocks = 1e6;
 const Entry kReturnFeed{"return.feed", "the feed of the way back is {0} to {1} mm/min",
                         "подача на возврате — от {0} до {1} мм/мин"};
+const Entry kRetraces{"said.retraces", "the axes go back along the path of the program",
+                      "оси идут назад по контуру программы"};
+const Entry kRetraceBy{
+    "retrace.by", "say how far back: above 0 to {0} mm, or 1 to {1} blocks, and not both",
+    "укажите, на сколько назад: больше 0 и до {0} мм или от 1 до {1} кадров, одно из двух"};
 const Entry kFunctionsRun{"said.functions-run", "{0} is executed beside the held program",
                           "{0} выполняется; программа остаётся приостановленной"};
 const Entry kOnlyFunctions{
@@ -105,6 +112,24 @@ Outcome Dispatch::take(const ask::Return& wanted) {
   r.process = static_cast<std::int8_t>(wanted.process);
   r.velocity = wanted.feed_mm_min.value_or(0.0) / 60.0;
   return ask(r) ? good(kReturns) : refusal_;
+}
+
+Outcome Dispatch::take(const ask::Retrace& wanted) {
+  if (!process_known(wanted.process)) return refusal_;
+  const bool by_way = wanted.mm && *wanted.mm > 0.0 && *wanted.mm <= kFarthestBack;
+  const bool by_blocks = wanted.blocks && *wanted.blocks >= 1.0 && *wanted.blocks <= kMostBlocks &&
+                         *wanted.blocks == std::floor(*wanted.blocks);
+  if (wanted.mm.has_value() == wanted.blocks.has_value() || by_way == by_blocks)
+    return fail(kRetraceBy, {text::number(kFarthestBack), text::number(kMostBlocks)}, kWrongUse);
+  if (wanted.feed_mm_min && !(*wanted.feed_mm_min >= kSlowestWay && *wanted.feed_mm_min <= kFastestWay))
+    return fail(kReturnFeed, {text::number(kSlowestWay), text::number(kFastestWay)}, kWrongUse);
+  image::Request r;
+  r.kind = RequestKind::retrace;
+  r.process = static_cast<std::int8_t>(wanted.process);
+  r.value = wanted.mm.value_or(0.0);
+  r.index = static_cast<std::uint32_t>(wanted.blocks.value_or(0.0));
+  r.velocity = wanted.feed_mm_min.value_or(0.0) / 60.0;
+  return ask(r) ? good(kRetraces) : refusal_;
 }
 
 }  // namespace servogate::gateway

@@ -89,6 +89,7 @@ class Dispatch {
   Outcome take(const ask::Mdi&);
   Outcome take(const ask::Restart&);
   Outcome take(const ask::Return&);
+  Outcome take(const ask::Retrace&);
   Outcome take(const ask::Resume&);
   Outcome take(const ask::Assign&);
   Outcome take(const ask::Tables&) { return looked(tables_report(resident_)); }

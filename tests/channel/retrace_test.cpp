@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+// Along the path of a held program: back, and forward again to where it was held.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "tests/channel/rig.hpp"
+#include "tests/property_seed.hpp"
+
+namespace servogate::channel::test {
+namespace {
+
+using cycle::Refusal;
+using image::ProcessState;
+using image::RequestKind;
+
+using Point = std::array<double, kAxes>;
+
+double apart(const Point& a, const Point& b) {
+  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                   (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+class Retrace : public ::testing::Test {
+ protected:
+  static Point here(const Rig& rig) { return {rig.x(0), rig.x(1), rig.x(2)}; }
+  static void hold(Rig& rig) {
+    ASSERT_EQ(rig.ask(RequestKind::hold), Refusal::none);
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::held && !rig.moving(); }, 3.0));
+    rig.run(0.02);
+  }
+  static Refusal ask(Rig& rig, double mm, std::uint32_t blocks = 0) {
+    image::Request r;
+    r.kind = RequestKind::retrace;
+    r.value = mm;
+    r.index = blocks;
+    return rig.ask(r);
+  }
+  static void stand(Rig& rig) {
+    ASSERT_TRUE(rig.until([&] { return !rig.status().retracing && !rig.moving(); }, 60.0));
+    rig.run(0.02);
+  }
+  static void back(Rig& rig, double mm, std::uint32_t blocks = 0) {
+    ASSERT_EQ(ask(rig, mm, blocks), Refusal::none);
+    stand(rig);
+  }
+  static void forward(Rig& rig) {
+    ASSERT_EQ(rig.ask(RequestKind::reposition), Refusal::none);
+    stand(rig);
+  }
+  /// No place from a cycle on is further than that from the path that was driven before it.
+  static void expect_on_path(const Rig& rig, std::size_t begin, double tolerance) {
+    double most = 0.0;
+    for (std::size_t i = begin; i < rig.path.size(); i += 7) {
+      double least = 1e9;
+      for (std::size_t k = 1; k < begin; ++k) least = std::min(least, apart(rig.path[i], rig.path[k]));
+      most = std::max(most, least);
+    }
+    EXPECT_LE(most, tolerance);
+  }
+};
+
+constexpr const char* kShapes =
+    "N10 S1000 M3\nN20 G1 X20 Y10 F3000\nN30 G2 X40 Y10 I30 J10\nN40 G1 X60 Y10\nN50 X60 Y40\nN60 X0 "
+    "Y40\nN70 "
+    "M30\n";
+
+TEST_F(Retrace, goes_back_along_lines_and_arcs_and_forward_again_to_where_the_program_was_held) {
+  Rig rig(kShapes);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
+  hold(rig);
+  const Point held = here(rig);
+  const std::size_t begin = rig.path.size();
+  back(rig, 50.0);
+  EXPECT_TRUE(rig.status().retraced);
+  EXPECT_NEAR(rig.status().retraced_mm, 50.0, 0.01);
+  EXPECT_EQ(rig.status().line, 3) << "in the arc";
+  EXPECT_EQ(rig.ask(RequestKind::resume), Refusal::retraced);
+  EXPECT_EQ(rig.ask(RequestKind::start), Refusal::retraced) << "the start button, too";
+  forward(rig);
+  EXPECT_FALSE(rig.status().retraced);
+  EXPECT_EQ(rig.status().line, 5);
+  EXPECT_LE(apart(here(rig), held), 1e-9);
+  expect_on_path(rig, begin, 0.06);  // places of two cycles are so far apart
+  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(), 0.0, 1e-9);
+  EXPECT_NEAR(rig.x(1), 40.0, 1e-9);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST_F(Retrace, goes_back_to_the_begin_of_so_many_blocks_and_further_from_there) {
+  Rig rig(kShapes);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
+  hold(rig);
+  const Point held = here(rig);
+  back(rig, 0.0, 1);
+  EXPECT_LE(apart(here(rig), {60, 10, 0}), 1e-6);
+  back(rig, 0.0, 1);
+  EXPECT_LE(apart(here(rig), {40, 10, 0}), 1e-6);
+  back(rig, 0.0, 5);
+  EXPECT_LE(apart(here(rig), {0, 0, 0}), 1e-6) << "no further than the spindle's word";
+  EXPECT_EQ(rig.ask(RequestKind::resume), Refusal::retraced);
+  forward(rig);
+  EXPECT_LE(apart(here(rig), held), 1e-9);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST_F(Retrace, does_not_lead_over_a_tool_or_a_function) {
+  Rig rig("N10 G1 X30 F3000\nN20 M8\nN30 X60\nN40 M30\n");
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x() > 40.0; }));
+  hold(rig);
+  back(rig, 100.0);
+  EXPECT_NEAR(rig.x(), 30.0, 1e-9);
+  back(rig, 100.0);
+  EXPECT_NEAR(rig.x(), 30.0, 1e-9) << "there is nothing behind";
+  forward(rig);
+  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+}
+
+TEST_F(Retrace, ends_at_a_hold_where_it_is_and_goes_on_from_there_both_ways) {
+  Rig rig(kShapes);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
+  hold(rig);
+  const Point held = here(rig);
+  const std::size_t begin = rig.path.size();
+  ASSERT_EQ(ask(rig, 60.0), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.x() < 40.5; }));  // into the arc
+  EXPECT_EQ(ask(rig, 1.0), Refusal::axis_moves) << "it is on its way";
+  EXPECT_EQ(rig.ask(RequestKind::jog_increment, 1.0, 2), Refusal::axis_moves);
+  hold(rig);
+  const double behind = rig.status().retraced_mm;
+  EXPECT_GT(behind, 20.0);
+  EXPECT_LT(behind, 59.0);
+  back(rig, 5.0);
+  EXPECT_NEAR(rig.status().retraced_mm, behind + 5.0, 0.05);
+  ASSERT_EQ(rig.ask(RequestKind::reposition), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.x() > 50.0; }));
+  hold(rig);
+  EXPECT_TRUE(rig.status().retraced);
+  forward(rig);
+  EXPECT_LE(apart(here(rig), held), 1e-9);
+  expect_on_path(rig, begin, 0.06);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST_F(Retrace, lets_its_axes_be_jogged_away_and_return_leads_them_the_whole_way) {
+  Rig rig(kShapes);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
+  hold(rig);
+  const Point held = here(rig);
+  back(rig, 30.0);
+  ASSERT_EQ(rig.ask(RequestKind::jog_increment, 10.0, 2), Refusal::none);
+  stand(rig);
+  EXPECT_EQ(ask(rig, 1.0), Refusal::off_path);
+  forward(rig);
+  EXPECT_LE(apart(here(rig), held), 1e-9);
+  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST_F(Retrace, of_a_thousand_short_blocks_comes_to_where_they_began_and_back) {
+  std::string program = "G1 X1 F1200\n";
+  const auto number = [](double v) { return std::to_string(v); };
+  for (int n = 1; n <= 1200; ++n)
+    program += "X" + number(1 + 10 * std::sin(n * 0.02)) + " Y" + number(10 - 10 * std::cos(n * 0.02)) + "\n";
+  Rig rig(program + "M30\n");
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.status().line > 1100; }, 60.0));
+  hold(rig);
+  const Point held = here(rig);
+  const std::int32_t line = rig.status().line;
+  const std::size_t begin = rig.path.size();
+  back(rig, 0.0, 1050);
+  EXPECT_EQ(rig.status().line, line - 1049);
+  EXPECT_GT(rig.status().retraced_mm, 200.0);
+  expect_on_path(rig, begin, 0.05);
+  forward(rig);
+  EXPECT_LE(apart(here(rig), held), 1e-9);
+  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; }, 60.0)) << rig.alarm_list();
+  EXPECT_EQ(rig.violations(), "");
+}
+
+/// Lines, arcs and runs of short lines in the plane.
+std::string random_path(std::mt19937_64& random) {
+  const auto between = [&random](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  const auto number = [](double v) { return std::to_string(v); };
+  std::string program = "G1 X1 Y0 F" + number(between(600, 9000)) + "\n";
+  double x = 1, y = 0, heading = 0;
+  for (int n = 0; n < 40; ++n) {
+    heading += between(-1.5, 1.5);
+    const double length = between(0.5, 12.0);
+    const int kind = static_cast<int>(random() % 4);
+    for (int k = 0; kind == 0 && k < 30; ++k) {
+      heading += 0.05;
+      program +=
+          "X" + number(x += 0.3 * std::cos(heading)) + " Y" + number(y += 0.3 * std::sin(heading)) + "\n";
+    }
+    if (kind == 0) continue;
+    const double cx = x + length * std::cos(heading), cy = y + length * std::sin(heading);
+    if (kind == 1) {  // half a turn
+      x = 2 * cx - x, y = 2 * cy - y;
+      program += (random() % 2 == 0 ? "G2 X" : "G3 X") + number(x) + " Y" + number(y) + " I" + number(cx) +
+                 " J" + number(cy) + "\nG1\n";
+    } else {
+      x = cx, y = cy;
+      program += "X" + number(x) + " Y" + number(y) + "\n";
+    }
+  }
+  return program + "M30\n";
+}
+
+TEST_F(Retrace, of_random_programs_keeps_limits_and_path_wherever_they_are_held_and_ends_where_they_end) {
+  const std::uint64_t base = servogate::test::property_seed();
+  for (std::uint64_t seed = base; seed < base + 6; ++seed) {
+    std::mt19937_64 random(seed);
+    const std::string program = random_path(random);
+    Rig straight(program), rig(program);
+    ASSERT_TRUE(straight.finish()) << straight.alarm_list();
+    rig.start();
+    for (int n = 0; n < 4; ++n) {
+      rig.run(0.001 * static_cast<double>(100 + random() % 900));
+      if (rig.state() == ProcessState::ended) break;
+      hold(rig);
+      const Point held = here(rig);
+      for (int k = static_cast<int>(random() % 3); k >= 0; --k) {
+        if (random() % 2 == 0)
+          ASSERT_EQ(ask(rig, 0.01 * static_cast<double>(1 + random() % 4000)), Refusal::none);
+        else
+          ASSERT_EQ(ask(rig, 0.0, 1 + static_cast<std::uint32_t>(random() % 20)), Refusal::none);
+        rig.run(0.001 * static_cast<double>(random() % 800));
+        if (rig.status().retracing) hold(rig);
+      }
+      if (rig.status().retraced) forward(rig);
+      ASSERT_LE(apart(here(rig), held), 1e-9) << "seed " << seed;
+      ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
+    }
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+    EXPECT_LE(apart(here(rig), here(straight)), 1e-9) << "seed " << seed;
+    EXPECT_EQ(rig.violations(), "") << "seed " << seed;
+    double most = 0.0;
+    for (std::size_t i = 0; i < rig.path.size(); i += 11) {
+      double least = 1e9;
+      for (const Point& p : straight.path) least = std::min(least, apart(rig.path[i], p));
+      most = std::max(most, least);
+    }
+    EXPECT_LE(most, 0.12) << "seed " << seed << ": tolerances, and half the way of a cycle at F9000";
+  }
+}
+
+TEST_F(Retrace, is_refused_while_a_program_runs_and_without_saying_how_far) {
+  Rig rig(kShapes);
+  EXPECT_EQ(ask(rig, 5.0), Refusal::program_does_not_run);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x() > 30.0; }));
+  EXPECT_EQ(ask(rig, 5.0), Refusal::program_not_held);
+  hold(rig);
+  EXPECT_EQ(ask(rig, 0.0), Refusal::bad_value);
+  EXPECT_EQ(ask(rig, -3.0), Refusal::bad_value);
+}
+
+TEST_F(Retrace, rests_while_the_feed_is_not_enabled_and_ends_with_the_program) {
+  Rig rig(kShapes);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
+  hold(rig);
+  ASSERT_EQ(ask(rig, 60.0), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.x() < 55.0; }));
+  rig.logic.feed_enable = false;
+  ASSERT_TRUE(rig.until([&] { return !rig.moving(); }, 1.0));
+  const Point there = here(rig);
+  rig.run(0.3);
+  EXPECT_EQ(here(rig), there);
+  EXPECT_TRUE(rig.status().retracing);
+  rig.logic.feed_enable = true;
+  ASSERT_TRUE(rig.until([&] { return rig.x() < 50.0; }));
+  ASSERT_EQ(rig.ask(RequestKind::reset), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::idle && !rig.moving(); }, 2.0));
+  EXPECT_FALSE(rig.status().retraced);
+  EXPECT_EQ(rig.violations(), "");
+  rig.run(0.1);
+  rig.start();
+  EXPECT_EQ(rig.started(), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+}
+
+TEST_F(Retrace, stops_with_an_alarm_and_the_program_ends) {
+  Rig rig(kShapes);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
+  hold(rig);
+  ASSERT_EQ(ask(rig, 60.0), Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.x() < 55.0; }));
+  rig.logic.estop_ok = false;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }, 2.0));
+  EXPECT_FALSE(rig.moving());
+  EXPECT_FALSE(rig.status().retraced);
+}
+
+}  // namespace
+}  // namespace servogate::channel::test
