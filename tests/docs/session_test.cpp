@@ -167,7 +167,7 @@ bool starts_control(const std::string& command) {
 
 bool needs_no_control(const std::string& command) {
   for (const char* begin : {"sed -i ", "servogate run ", "servogate check ", "servogate canon ",
-                            "servogate replay ", "servogate plc ", "servogate chek "})
+                            "servogate replay ", "servogate plc ", "servogate test ", "servogate chek "})
     if (command.starts_with(begin)) return command.find("--realtime") == std::string::npos;
   return false;
 }
@@ -177,11 +177,11 @@ std::string language_of(const std::string& document) {
 }
 
 /// Every page that shows a session that can be run.
-constexpr const char* kPages[] = {"docs/command-line.md",     "docs/command-line-tutorial.md",
-                                  "docs/plc-tutorial.md",     "docs/first-machine.md",
-                                  "docs/trace-and-report.md", "docs/dialects/nc110.md",
-                                  "docs/first-alarm.md",      "docs/machine-tests-in-ci.md",
-                                  "docs/ru/first-machine.md", "docs/ru/dialects/nc110.md"};
+constexpr const char* kPages[] = {
+    "docs/command-line.md",  "docs/command-line-tutorial.md", "docs/plc-tutorial.md",
+    "docs/first-machine.md", "docs/trace-and-report.md",      "docs/dialects/nc110.md",
+    "docs/first-alarm.md",   "docs/machine-tests-in-ci.md",   "docs/testing.md",
+    "docs/ru/testing.md",    "docs/ru/first-machine.md",      "docs/ru/dialects/nc110.md"};
 
 class Documents : public ::testing::TestWithParam<const char*> {};
 

@@ -198,6 +198,7 @@ Said DeskOperator::carry_out(const Deed& deed) {
   const Said said = ask(command);
   begun_ = said.accepted ? begun_by(command) : Begun::nothing;
   begun_at_ = now();
+  settled_at_ = -1;
   failure_.clear();
   return said;
 }
@@ -261,7 +262,11 @@ bool DeskOperator::under_way() {
   const image::ProcessImage& image = machine_.image();
   if (now() - begun_at_ < kSettling) return true;
   const bool fault = image.alarms_active > 0 && fault_stands(machine_.alarms());
-  if (!settled() && !(fault && (begun_ == Begun::power_on))) return true;
+  const bool over = settled() || (fault && begun_ == Begun::power_on);
+  if (!over) settled_at_ = -1;
+  if (over && settled_at_ < 0) settled_at_ = now();
+  // A drive may leave the state that it has just reached.
+  if (!over || now() - settled_at_ < kSettling) return true;
   if (fault) {
     const cycle::AlarmSnapshot& alarms = machine_.alarms();
     std::string numbers;

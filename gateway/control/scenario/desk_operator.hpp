@@ -59,6 +59,7 @@ class DeskOperator final : public scenario::Operator {
   std::vector<Pressed> pressed_;
   std::map<std::string, double> counts_;  ///< of handwheels, by their points
   image::Nanoseconds kept_alive_ = 0, looked_ = 0, begun_at_ = 0;
+  image::Nanoseconds settled_at_ = -1;  ///< since when what was begun looks ended; -1: it does not
   Begun begun_ = Begun::nothing;
   std::vector<int> axes_;  ///< of a jog or of homing
   std::uint32_t run_ = 0;  ///< number of the program's run before
