@@ -132,8 +132,8 @@ constexpr QuantityRow kQuantities[] = {
     {"panel.quality", "", "of a station, chip or line's device: never, good, stale, bad",
      "станции, чипа или устройства линии: never, good, stale, bad"},
     {"can.errors, can.load", "%",
-     "error frames and bus-off events of a bus so far; its load over the last second in %",
-     "кадры ошибок и отключения шины; её загрузка за последнюю секунду в %"},
+     "errors that the controller of a bus has counted; its load over the last second in %",
+     "ошибки, подсчитанные контроллером шины; её загрузка за последнюю секунду в %"},
     {"can.x.online", "", "a node of a bus: on or off", "узел шины: on или off"},
 };
 
