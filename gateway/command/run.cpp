@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "firmware_if/text/in_both.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/bus/lost_frames.hpp"
 #include "gateway/command/canopen/bus/sole_master.hpp"
@@ -87,12 +88,6 @@ double seconds_since(Clock::time_point begin) {
 
 std::string say(const text::Entry& entry, const std::vector<std::string>& arguments) {
   return text::render(entry, arguments, text::user_language());
-}
-
-/// A sentence that the page can show in either language.
-std::string twice(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  return text::both(text::render(entry, arguments, text::Language::english),
-                    text::render(entry, arguments, text::Language::russian));
 }
 
 int code_of(OperatorScript::Outcome outcome) {
@@ -381,7 +376,7 @@ int Run::finish(const OperatorScript& script, Session& session,
         reason == image::WaitReason::program_stop || reason == image::WaitReason::optional_stop;
     report.wait = {std::string(w.reason),
                    text::both(w.text, russian.text),
-                   for_operator ? twice(kNoOperator, {}) : text::both(w.remedy, russian.remedy),
+                   for_operator ? text::in_both(kNoOperator, {}) : text::both(w.remedy, russian.remedy),
                    w.file,
                    w.line,
                    patience()};
@@ -421,19 +416,20 @@ std::optional<report::ErrorEntry> Run::not_begun(const OperatorScript& script) c
       return cycle::render(script.refusal(), loaded_.machine.letters(), language,
                            loaded_.machine.unit_words());
     };
-    error = {std::string(kRefused.id),
-             twice(kRefused, {text::both(why(text::Language::english), why(text::Language::russian))})};
+    error = {
+        std::string(kRefused.id),
+        text::in_both(kRefused, {text::both(why(text::Language::english), why(text::Language::russian))})};
   } else if (script.outcome() == OperatorScript::Outcome::alarm && !script.waiting_for().empty()) {
     std::string axes;
     for (const std::string& a : script.waiting_for()) axes += (axes.empty() ? "" : ", ") + a;
     const bool homing = script.came_to() == OperatorScript::Stage::homing;
     const text::Entry& entry = homing ? kNotHomed : kNotReady;
-    error = {std::string(entry.id), twice(entry, {axes})};
+    error = {std::string(entry.id), text::in_both(entry, {axes})};
   } else {
     return std::nullopt;
   }
   for (const MissingCondition& m : missing_)
-    if (m.reason != "alarm") error.text += "\n" + twice(kMissing, {m.text, m.remedy});
+    if (m.reason != "alarm") error.text += "\n" + text::in_both(kMissing, {m.text, m.remedy});
   return error;
 }
 

@@ -9,6 +9,7 @@
 #include "bench/scenario/reading/findings.hpp"
 #include "bench/scenario/time_line/recent.hpp"
 #include "bench/scenario/watch/watcher.hpp"
+#include "firmware_if/text/in_both.hpp"
 
 namespace servogate::scenario {
 
@@ -40,11 +41,6 @@ const text::Entry kXpass{"scenario.unexpected_pass", "expected a failure ({0}), 
 
 /// A run is over: what is left of it is not done.
 struct Over {};
-
-std::string both(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  return text::both(text::render(entry, arguments, text::Language::english),
-                    text::render(entry, arguments, text::Language::russian));
-}
 
 std::string seconds(double s) { return text::number(s, 3); }
 std::string time_words(Nanoseconds t) {
@@ -124,13 +120,12 @@ class Run {
  private:
   Nanoseconds now() const { return machine_.image().now.t_ns; }
   double since() const { return static_cast<double>(now() - began_) * 1e-9; }
-  View view() { return {machine_.image(), alarms()}; }
-  const cycle::AlarmSnapshot& alarms() {
-    // Copying all alarms costs more than a cycle's watching, and most cycles have none.
+  View view() const { return {machine_.image(), alarms_}; }
+  /// Behind a cycle. Copying all alarms costs more than a cycle's watching, and most cycles have none.
+  void read_alarms() {
     const bool any = machine_.image().alarms_active > 0;
     if (any || had_alarms_) alarms_ = machine_.alarms();
     had_alarms_ = any;
-    return alarms_;
   }
 
   Made made_of(const Step& step, machine::Reading& reading) {
@@ -190,6 +185,7 @@ class Run {
   bool cycle() {
     if (!machine_.step()) return false;
     who_.poll();
+    read_alarms();
     const View seen = view();
     recent_->add(seen);
     for (Watch& watch : watches_)
@@ -198,9 +194,9 @@ class Run {
   }
 
   void step(const Step& at) {
-    if (!cycle()) fail(at, both(kEnded, {seconds(since())}));
+    if (!cycle()) fail(at, text::in_both(kEnded, {seconds(since())}));
     if (now() > scenario_.timeout)
-      fail(at, both(kTimeout, {time_words(scenario_.timeout), waiting_for_, seconds(since())}));
+      fail(at, text::in_both(kTimeout, {time_words(scenario_.timeout), waiting_for_, seconds(since())}));
   }
 
   void judge(Watch& watch, const View& seen) {
@@ -215,12 +211,12 @@ class Run {
     }
     if (watch.watcher.see(seen) != expect.never) return;
     const std::string words = words_of(expect.condition), got = got_of(watch.watcher, seen);
-    if (expect.never) fail(*watch.step, both(kHappened, {words, got, seconds(since())}));
+    if (expect.never) fail(*watch.step, text::in_both(kHappened, {words, got, seconds(since())}));
     const std::string span = expect.manner == Expect::Manner::until
                                  ? text::both("until ", "до ") + words_of(*expect.until)
                              : expect.time > 0 ? text::both("for ", "в течение ") + time_words(expect.time)
                                                : text::both("always", "всегда");
-    fail(*watch.step, both(kNotAlways, {words, span, got, seconds(since())}));
+    fail(*watch.step, text::in_both(kNotAlways, {words, span, got, seconds(since())}));
   }
 
   static std::string got_of(const Watcher& watcher, const View& seen) {
@@ -243,7 +239,8 @@ class Run {
     after.begin(view());
     waiting_for_ = words_of(*s.after);
     while (!after.see(view())) {
-      if (!after.lost().empty()) fail(s, both(kNotNow, {words_of(*s.after), after.lost(), seconds(since())}));
+      if (!after.lost().empty())
+        fail(s, text::in_both(kNotNow, {words_of(*s.after), after.lost(), seconds(since())}));
       step(s);
     }
     await_time(s, now() + s.time);
@@ -261,10 +258,11 @@ class Run {
     if (const auto* fault = std::get_if<Inject>(&made.step->what)) {
       std::string why;
       if (!manner_.without_faults && !machine_.inject(fault->device, fault->fault, why))
-        fail(*made.step, both(kNotInjected, {why}));
+        fail(*made.step, text::in_both(kNotInjected, {why}));
     } else if (const auto* clear = std::get_if<Clear>(&made.step->what)) {
       std::string why;
-      if (!machine_.clear(clear->device, clear->kind, why)) fail(*made.step, both(kNotInjected, {why}));
+      if (!machine_.clear(clear->device, clear->kind, why))
+        fail(*made.step, text::in_both(kNotInjected, {why}));
     } else {
       expect(made);
     }
@@ -286,20 +284,20 @@ class Run {
     if (what.refused) {
       const std::string wanted = what.refused->empty() ? "" : " (" + *what.refused + ")";
       if (said.accepted)
-        fail(step_of,
-             both(kNotRefused, {words, wanted, text::both("acceptance", "согласие"), seconds(since())}));
+        fail(step_of, text::in_both(kNotRefused,
+                                    {words, wanted, text::both("acceptance", "согласие"), seconds(since())}));
       if (!what.refused->empty() && said.code != *what.refused)
-        fail(step_of, both(kNotRefused,
-                           {words, wanted, "\"" + said.text + "\" [" + said.code + "]", seconds(since())}));
+        fail(step_of, text::in_both(kNotRefused, {words, wanted, "\"" + said.text + "\" [" + said.code + "]",
+                                                  seconds(since())}));
       return;
     }
     if (!said.accepted && !what.either) outcome_.code = said.code;
     if (!said.accepted && !what.either)
-      fail(step_of, both(kRefused, {words, said.text, said.code, seconds(since())}));
+      fail(step_of, text::in_both(kRefused, {words, said.text, said.code, seconds(since())}));
     if (!what.wait) return;
     while (who_.under_way()) step(step_of);
     if (const std::string failure = who_.failure(); !failure.empty())
-      fail(step_of, both(kNotEnded, {words, failure, seconds(since())}));
+      fail(step_of, text::in_both(kNotEnded, {words, failure, seconds(since())}));
   }
 
   void expect(const Made& made) {
@@ -324,8 +322,8 @@ class Run {
     }
     const std::string got = got_of(watcher, view());
     if (expect.manner == Expect::Manner::within)
-      fail(s, both(kNotWithin, {words, time_words(expect.time), got, seconds(since())}));
-    fail(s, both(kNotNow, {words, got, seconds(since())}));
+      fail(s, text::in_both(kNotWithin, {words, time_words(expect.time), got, seconds(since())}));
+    fail(s, text::in_both(kNotNow, {words, got, seconds(since())}));
   }
 
   /// What is watched for a time, or until something, is watched to its end.
@@ -348,7 +346,7 @@ class Run {
     } else if (outcome_.status == Outcome::Status::passed) {
       outcome_.status = Outcome::Status::failed;
       outcome_.at = scenario_.at;
-      outcome_.message = both(kXpass, {scenario_.expected_failure});
+      outcome_.message = text::in_both(kXpass, {scenario_.expected_failure});
     }
   }
 

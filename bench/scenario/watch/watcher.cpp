@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bench/scenario/reading/findings.hpp"
+#include "firmware_if/text/in_both.hpp"
 
 namespace servogate::scenario {
 
@@ -24,11 +25,6 @@ constexpr std::size_t kPathPoints = 4000;  ///< of the set-points that are remem
 const text::Entry kTooFar{"scenario.too_far", "{0} has moved {1}, further than {2}",
                           "{0}: пройдено {1}, больше чем {2}"};
 const text::Entry kWrongOrder{"scenario.wrong_order", "{0} came before {1}", "{0} раньше, чем {1}"};
-
-std::string both(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  return text::both(text::render(entry, arguments, text::Language::english),
-                    text::render(entry, arguments, text::Language::russian));
-}
 
 /// What a signal is, for a message about a value that it cannot have.
 std::string nature_of(const Signal& signal) {
@@ -246,8 +242,8 @@ bool Watcher::see_standstill(const View& view) {
     moved = moved || axis.moving || step > still;
     if (ways_[n] > limits_[n] && lost_.empty()) {
       const machine::AxisConfig& config = machine_->machine().axes[static_cast<std::size_t>(axes_[n])];
-      lost_ = both(kTooFar, {config.letter, text::number(ways_[n], 3) + " " + config.unit(),
-                             text::number(limits_[n], 3) + " " + config.unit()});
+      lost_ = text::in_both(kTooFar, {config.letter, text::number(ways_[n], 3) + " " + config.unit(),
+                                      text::number(limits_[n], 3) + " " + config.unit()});
     }
   }
   still_ = moved ? 0 : still_ + 1;
@@ -301,7 +297,8 @@ bool Watcher::see_order(const View& view) {
   while (reached_ < parts_.size() && seen[reached_]) ++reached_;
   for (std::size_t n = reached_ + 1; n < parts_.size(); ++n)
     if (seen[n] && lost_.empty())
-      lost_ = both(kWrongOrder, {words_of(*parts_[n].condition_), words_of(*parts_[reached_].condition_)});
+      lost_ = text::in_both(kWrongOrder,
+                            {words_of(*parts_[n].condition_), words_of(*parts_[reached_].condition_)});
   return reached_ == parts_.size();
 }
 

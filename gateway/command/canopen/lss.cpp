@@ -7,6 +7,7 @@
 
 #include "drivers/clock.hpp"
 #include "firmware_if/canopen/305/lss_master.hpp"
+#include "firmware_if/text/in_both.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -59,12 +60,6 @@ const text::Entry kStored{"lss.stored", "stored in the device", "сохране�
 struct Step {
   std::string word, argument;
 };
-
-/// The words in both languages when they stand inside another sentence.
-std::string both_of(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  return text::both(text::render(entry, arguments, text::Language::english),
-                    text::render(entry, arguments, text::Language::russian));
-}
 
 std::string part_words(std::uint32_t part) {
   char text[16];
@@ -170,8 +165,8 @@ class Layers {
     return kAlarm;
   }
   int refuse(const Step& step, std::uint8_t error, std::uint8_t specific) {
-    complain(kRefused, {step.word, both_of(canopen::lss_error_text(master_.result().command, error),
-                                           {std::to_string(error == 255 ? specific : error)})});
+    complain(kRefused, {step.word, text::in_both(canopen::lss_error_text(master_.result().command, error),
+                                                 {std::to_string(error == 255 ? specific : error)})});
     return kAlarm;
   }
   /// Of a setting that all devices in configuration take: none of them may refuse.
@@ -187,7 +182,7 @@ class Layers {
                  json facts = json::object()) {
     facts["devices"] = answers_.size();
     if (answers_.size() < 2) return say(step, entry, arguments, std::move(facts));
-    return say(step, kDevices, {both_of(entry, arguments), std::to_string(answers_.size())},
+    return say(step, kDevices, {text::in_both(entry, arguments), std::to_string(answers_.size())},
                std::move(facts));
   }
 
@@ -278,10 +273,10 @@ class Layers {
     if (const int code = identify(step, id, node); code != kDone) return code;
     json facts = identity_json(id);
     facts["node"] = node == canopen::kUnconfiguredNode ? json() : json(node);
-    return say(
-        step, kInquired,
-        {identity_words(id), node == canopen::kUnconfiguredNode ? both_of(kNone, {}) : std::to_string(node)},
-        facts);
+    return say(step, kInquired,
+               {identity_words(id),
+                node == canopen::kUnconfiguredNode ? text::in_both(kNone, {}) : std::to_string(node)},
+               facts);
   }
   int unconfigured(const Step& step) {
     master_.identify_unconfigured();

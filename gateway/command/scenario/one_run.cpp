@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "firmware_if/text/in_both.hpp"
 #include "gateway/control/run/running_machine.hpp"
 #include "gateway/control/scenario/desk_operator.hpp"
 #include "report/html.hpp"
@@ -19,11 +20,6 @@ const text::Entry kReal{"test.real", "{0} has real buses or devices: a scenario 
 const text::Entry kNoClock{"test.no_clock", "the machine cannot run: {0}", "станок не запустить: {0}"};
 
 constexpr image::Nanoseconds kLongestEnd = 20 * image::kSecond;  ///< until all is off, of machine time
-
-std::string both(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  return text::both(text::render(entry, arguments, text::Language::english),
-                    text::render(entry, arguments, text::Language::russian));
-}
 
 bool any_error(const std::vector<text::Finding>& findings) {
   for (const text::Finding& f : findings)
@@ -85,8 +81,9 @@ Outcome run_one(const scenario::Scenario& scenario, const TestOptions& options, 
   const ClockKind clock = clock_of(loaded.machine, options.clock, refusal);
   if (clock == ClockKind::unset)
     return infrastructure(
-        both(kNoClock, {text::render(*refusal.entry, refusal.arguments, text::user_language())}));
-  if (!loaded.machine.nothing_real() && !options.real) return infrastructure(both(kReal, {scenario.machine}));
+        text::in_both(kNoClock, {text::render(*refusal.entry, refusal.arguments, text::user_language())}));
+  if (!loaded.machine.nothing_real() && !options.real)
+    return infrastructure(text::in_both(kReal, {scenario.machine}));
   std::vector<text::Finding> findings;
   const auto machine = RunningMachine::compose(loaded, nullptr, {.clock = clock}, findings);
   if (machine == nullptr) {

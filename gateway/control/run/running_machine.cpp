@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "firmware_if/text/in_both.hpp"
 #include "gateway/control/compose/simulated/played_input.hpp"
 #include "gateway/control/run/paced_loop.hpp"
 #include "gateway/control/run/realtime_loop.hpp"
@@ -245,8 +246,7 @@ bool RunningMachine::play(const std::string& point, std::optional<double> value,
   const InputWish wish = value ? InputWish(*value) : InputWish();
   const PlayedInput played = play_input(machine(), control_->world(), point, wish);
   if (played.outcome == PlayedInput::Outcome::done) return true;
-  why = text::both(text::render(*played.entry, played.arguments, text::Language::english),
-                   text::render(*played.entry, played.arguments, text::Language::russian));
+  why = text::in_both(*played.entry, played.arguments);
   return false;
 }
 

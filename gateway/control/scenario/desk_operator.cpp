@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "firmware_if/text/in_both.hpp"
 #include "gateway/control/run/operator_script.hpp"
 #include "gateway/control/run/standstill.hpp"
 #include "gateway/control/server/desk/dispatch/dispatch.hpp"
@@ -27,11 +28,6 @@ const text::Entry kEarly{"scenario.ended_early", "the program ended before its e
                          "программа закончилась раньше конца ({0})"};
 const text::Entry kNotHomed{"scenario.not_homed", "{0} is not homed", "ось {0} не выведена в ноль"};
 const text::Entry kOffline{"scenario.offline", "drives that do not answer: {0}", "приводы не отвечают: {0}"};
-
-std::string both(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  return text::both(text::render(entry, arguments, text::Language::english),
-                    text::render(entry, arguments, text::Language::russian));
-}
 
 }  // namespace
 
@@ -61,7 +57,7 @@ std::string DeskOperator::problem(const scenario::Do& what) {
     if (const auto* jog = std::get_if<ask::JogContinuous>(command)) axis = jog->axis;
     if (const auto* zero = std::get_if<ask::Zero>(command)) axis = zero->axis;
     if (!axis.empty() && axis_of(machine_.machine(), axis, problem) < 0)
-      return both(*problem.entry, problem.arguments);
+      return text::in_both(*problem.entry, problem.arguments);
   }
   return {};
 }
@@ -143,7 +139,7 @@ Said DeskOperator::ready() {
       for (std::size_t a = 0; a < machine_.machine().axes.size(); ++a)
         if (!machine_.image().axes[a].drive.online)
           names += (names.empty() ? "" : ", ") + machine_.machine().axes[a].letter;
-      return {false, "scenario.offline", both(kOffline, {names})};
+      return {false, "scenario.offline", text::in_both(kOffline, {names})};
     }
     if (!(*step_)()) return {false, "scenario.ended", {}};
   }
@@ -229,7 +225,6 @@ bool DeskOperator::settled() {
   };
   switch (begun_) {
     case Begun::nothing:
-    case Begun::functions:
       return true;
     case Begun::power_on:
       return every([](const image::AxisImage& a) { return a.enabled; });
@@ -274,14 +269,14 @@ bool DeskOperator::under_way() {
       if (alarms.records[static_cast<std::size_t>(n)].active)
         numbers += (numbers.empty() ? "" : ", ") +
                    std::to_string(alarms.records[static_cast<std::size_t>(n)].number);
-    failure_ = both(kByAlarm, {numbers});
+    failure_ = text::in_both(kByAlarm, {numbers});
   } else if (begun_ == Begun::home) {
     for (const int a : axes_)
       if (!image.axes[static_cast<std::size_t>(a)].homed &&
           machine_.machine().axes[static_cast<std::size_t>(a)].home.method != machine::HomingMethod::none)
-        failure_ = both(kNotHomed, {machine_.machine().axes[static_cast<std::size_t>(a)].letter});
+        failure_ = text::in_both(kNotHomed, {machine_.machine().axes[static_cast<std::size_t>(a)].letter});
   } else if (begun_ == Begun::program && image.processes[0].state == image::ProcessState::stopped) {
-    failure_ = both(kEarly, {"stopped"});
+    failure_ = text::in_both(kEarly, {"stopped"});
   }
   begun_ = Begun::nothing;
   return false;

@@ -34,7 +34,7 @@ class DeskOperator final : public scenario::Operator {
 
  private:
   /// What was begun, and is to end.
-  enum class Begun { nothing, power_on, power_off, home, jog, program, functions };
+  enum class Begun { nothing, power_on, power_off, home, jog, program };
   struct Pressed {
     std::string point;
     image::Nanoseconds until;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/control/scenario/sentences.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "bench/scenario/reading/keys.hpp"
+#include "firmware_if/text/in_both.hpp"
 #include "gateway/control/server/protocol/request_form.hpp"
 #include "gateway/control/server/protocol/request_words.hpp"
 #include "machine/keys/units.hpp"
@@ -20,11 +23,6 @@ const text::Entry kQuote{"scenario.quote", "a quotation mark of `{0}` is not clo
                          "в `{0}` не закрыта кавычка"};
 
 constexpr image::Nanoseconds kPressed = 100 * image::kMillisecond;
-
-std::string both(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  return text::both(text::render(entry, arguments, text::Language::english),
-                    text::render(entry, arguments, text::Language::russian));
-}
 
 /// Words between spaces; what stands between quotation marks is one.
 std::optional<std::vector<std::string>> split(const std::string& sentence) {
@@ -99,8 +97,9 @@ class Sentence {
   }
 
   std::optional<std::vector<Deed>> read() {
-    if (word_ == "ready") return none() ? deeds({sentence::Ready{}}) : std::nullopt;
-    if (word_ == "fall_silent") return none() ? deeds({sentence::FallSilent{}}) : std::nullopt;
+    if (takes_none() && !rest_.empty()) return takes("-");
+    if (word_ == "ready") return deeds({sentence::Ready{}});
+    if (word_ == "fall_silent") return deeds({sentence::FallSilent{}});
     if (word_ == "wait") return wait();
     if (word_ == "press") return press();
     if (word_ == "handwheel") return handwheel();
@@ -111,12 +110,14 @@ class Sentence {
  private:
   static std::optional<std::vector<Deed>> deeds(std::vector<Deed> list) { return list; }
   std::nullopt_t takes(const char* what) {
-    why_ = both(kTakes, {word_, what});
+    why_ = text::in_both(kTakes, {word_, what});
     return std::nullopt;
   }
-  bool none() {
-    if (!rest_.empty()) takes("-");
-    return rest_.empty();
+  /// As the table of the words has it.
+  bool takes_none() const {
+    const auto known = scenario::words();
+    return std::any_of(known.begin(), known.end(),
+                       [&](const scenario::WordRow& w) { return w.name == word_ && w.arguments.empty(); });
   }
   static std::optional<image::Nanoseconds> time(const std::string& words) {
     const auto read = machine::parse_quantity(words, machine::Unit::second, machine::AxisUnits::either);
@@ -186,15 +187,11 @@ class Sentence {
       if (word_ == "set") r["cmd"] = "input";
       if (word_ == "jog" || word_ == "zero") join_from(rest_, 1);
       if (word_ == "override") join_from(rest_, 0);
-      constexpr std::string_view kAlone[] = {"start", "step",       "hold",  "resume",     "return",
-                                             "stop",  "quick_stop", "reset", "acknowledge"};
-      for (const std::string_view alone : kAlone)
-        if (alone == word_ && !none()) return std::nullopt;
       good = add_words(r, rest_, problem);
     }
     if (good)
       if (auto read = read_request(r.dump(), problem)) return deeds({std::move(read->command)});
-    why_ = both(*problem.entry, problem.arguments);
+    why_ = text::in_both(*problem.entry, problem.arguments);
     return std::nullopt;
   }
 
@@ -215,12 +212,12 @@ std::optional<std::vector<Deed>> read_sentence(const scenario::Do& what, std::st
     if (r.contains("file") && r["file"].is_string()) r["file"] = from_folder(r["file"], what.folder);
     FormProblem problem;
     if (auto read = read_request(r.dump(), problem)) return std::vector<Deed>{std::move(read->command)};
-    why = both(*problem.entry, problem.arguments);
+    why = text::in_both(*problem.entry, problem.arguments);
     return std::nullopt;
   }
   auto words = split(what.words);
   if (!words || words->empty()) {
-    why = both(kQuote, {what.words});
+    why = text::in_both(kQuote, {what.words});
     return std::nullopt;
   }
   return Sentence(std::move(*words), what.folder, why).read();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/control/compose/simulated/machine_faults.hpp"
+#include "firmware_if/text/in_both.hpp"
 
 #include <algorithm>
 
@@ -18,11 +19,6 @@ const text::Entry kNotItsKind{"fault.not-its-kind", "'{0}' cannot be put on '{1}
                               "«{0}» не бывает у «{1}»; возможны {2}"};
 const text::Entry kNoSender{"fault.no-sender", "no node of '{0}' has the node-ID {1}",
                             "у «{0}» нет узла с номером {1}"};
-
-std::string said(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  return text::both(text::render(entry, arguments, text::Language::english),
-                    text::render(entry, arguments, text::Language::russian));
-}
 
 /// False: the fault is neither.
 template <class Node>
@@ -103,19 +99,19 @@ std::optional<MachineFaults::Wish> MachineFaults::meant(std::string_view device,
                                                         std::string& why) const {
   const auto target = find(device);
   if (!target) {
-    why = said(kNothingThere, {std::string(device), names()});
+    why = text::in_both(kNothingThere, {std::string(device), names()});
     return std::nullopt;
   }
   if ((fault::row(fault.kind).devices & target->devices) == 0) {
-    why = said(kNotItsKind, {std::string(fault::name_of(fault.kind)), std::string(device),
-                             fault::names_for(target->devices)});
+    why = text::in_both(kNotItsKind, {std::string(fault::name_of(fault.kind)), std::string(device),
+                                      fault::names_for(target->devices)});
     return std::nullopt;
   }
   fault::Fault meant = fault;
   if (target->devices == bit(Device::bus) && fault.sender > 0) {
     meant.sender = endpoint_of(*target, fault.sender);
     if (meant.sender < 0) {
-      why = said(kNoSender, {std::string(device), std::to_string(fault.sender)});
+      why = text::in_both(kNoSender, {std::string(device), std::to_string(fault.sender)});
       return std::nullopt;
     }
   }
@@ -125,7 +121,7 @@ std::optional<MachineFaults::Wish> MachineFaults::meant(std::string_view device,
 bool MachineFaults::possible(std::string_view device, const fault::Fault* fault, std::string& why) const {
   if (fault != nullptr) return meant(device, *fault, why).has_value();
   if (find(device)) return true;
-  why = said(kNothingThere, {std::string(device), names()});
+  why = text::in_both(kNothingThere, {std::string(device), names()});
   return false;
 }
 
@@ -139,7 +135,7 @@ bool MachineFaults::inject(std::string_view device, const fault::Fault& fault, s
 bool MachineFaults::clear(std::string_view device, std::optional<Kind> kind, std::string& why) {
   const auto target = find(device);
   if (!target) {
-    why = said(kNothingThere, {std::string(device), names()});
+    why = text::in_both(kNothingThere, {std::string(device), names()});
     return false;
   }
   wish({*target, {}, kind});
