@@ -32,6 +32,17 @@ class Retrace : public ::testing::Test {
     ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::held && !rig.moving(); }, 3.0));
     rig.run(0.02);
   }
+  /// The program of kShapes is held in the line behind its corner.
+  static void hold_behind_the_arc(Rig& rig) {
+    rig.start();
+    ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
+    hold(rig);
+  }
+  static void go_on_to_the_end(Rig& rig, double patience_s = 30.0) {
+    ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; }, patience_s))
+        << rig.alarm_list();
+  }
   static Refusal ask(Rig& rig, double mm, std::uint32_t blocks = 0) {
     image::Request r;
     r.kind = RequestKind::retrace;
@@ -70,9 +81,7 @@ constexpr const char* kShapes =
 
 TEST_F(Retrace, goes_back_along_lines_and_arcs_and_forward_again_to_where_the_program_was_held) {
   Rig rig(kShapes);
-  rig.start();
-  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
-  hold(rig);
+  hold_behind_the_arc(rig);
   const Point held = here(rig);
   const std::size_t begin = rig.path.size();
   back(rig, 50.0);
@@ -86,8 +95,7 @@ TEST_F(Retrace, goes_back_along_lines_and_arcs_and_forward_again_to_where_the_pr
   EXPECT_EQ(rig.status().line, 5);
   EXPECT_LE(apart(here(rig), held), 1e-9);
   expect_on_path(rig, begin, 0.06);  // places of two cycles are so far apart
-  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
-  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  go_on_to_the_end(rig);
   EXPECT_NEAR(rig.x(), 0.0, 1e-9);
   EXPECT_NEAR(rig.x(1), 40.0, 1e-9);
   EXPECT_EQ(rig.violations(), "");
@@ -95,9 +103,7 @@ TEST_F(Retrace, goes_back_along_lines_and_arcs_and_forward_again_to_where_the_pr
 
 TEST_F(Retrace, goes_back_to_the_begin_of_so_many_blocks_and_further_from_there) {
   Rig rig(kShapes);
-  rig.start();
-  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
-  hold(rig);
+  hold_behind_the_arc(rig);
   const Point held = here(rig);
   back(rig, 0.0, 1);
   EXPECT_LE(apart(here(rig), {60, 10, 0}), 1e-6);
@@ -121,15 +127,12 @@ TEST_F(Retrace, does_not_lead_over_a_tool_or_a_function) {
   back(rig, 100.0);
   EXPECT_NEAR(rig.x(), 30.0, 1e-9) << "there is nothing behind";
   forward(rig);
-  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
-  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  go_on_to_the_end(rig);
 }
 
 TEST_F(Retrace, ends_at_a_hold_where_it_is_and_goes_on_from_there_both_ways) {
   Rig rig(kShapes);
-  rig.start();
-  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
-  hold(rig);
+  hold_behind_the_arc(rig);
   const Point held = here(rig);
   const std::size_t begin = rig.path.size();
   ASSERT_EQ(ask(rig, 60.0), Refusal::none);
@@ -154,9 +157,7 @@ TEST_F(Retrace, ends_at_a_hold_where_it_is_and_goes_on_from_there_both_ways) {
 
 TEST_F(Retrace, lets_its_axes_be_jogged_away_and_return_leads_them_the_whole_way) {
   Rig rig(kShapes);
-  rig.start();
-  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
-  hold(rig);
+  hold_behind_the_arc(rig);
   const Point held = here(rig);
   back(rig, 30.0);
   ASSERT_EQ(rig.ask(RequestKind::jog_increment, 10.0, 2), Refusal::none);
@@ -164,8 +165,7 @@ TEST_F(Retrace, lets_its_axes_be_jogged_away_and_return_leads_them_the_whole_way
   EXPECT_EQ(ask(rig, 1.0), Refusal::off_path);
   forward(rig);
   EXPECT_LE(apart(here(rig), held), 1e-9);
-  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
-  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  go_on_to_the_end(rig);
   EXPECT_EQ(rig.violations(), "");
 }
 
@@ -187,8 +187,7 @@ TEST_F(Retrace, of_a_thousand_short_blocks_comes_to_where_they_began_and_back) {
   expect_on_path(rig, begin, 0.05);
   forward(rig);
   EXPECT_LE(apart(here(rig), held), 1e-9);
-  ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
-  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; }, 60.0)) << rig.alarm_list();
+  go_on_to_the_end(rig, 60.0);
   EXPECT_EQ(rig.violations(), "");
 }
 
@@ -274,9 +273,7 @@ TEST_F(Retrace, is_refused_while_a_program_runs_and_without_saying_how_far) {
 
 TEST_F(Retrace, rests_while_the_feed_is_not_enabled_and_ends_with_the_program) {
   Rig rig(kShapes);
-  rig.start();
-  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
-  hold(rig);
+  hold_behind_the_arc(rig);
   ASSERT_EQ(ask(rig, 60.0), Refusal::none);
   ASSERT_TRUE(rig.until([&] { return rig.x() < 55.0; }));
   rig.logic.feed_enable = false;
@@ -299,9 +296,7 @@ TEST_F(Retrace, rests_while_the_feed_is_not_enabled_and_ends_with_the_program) {
 
 TEST_F(Retrace, stops_with_an_alarm_and_the_program_ends) {
   Rig rig(kShapes);
-  rig.start();
-  ASSERT_TRUE(rig.until([&] { return rig.x(1) > 20.0 && rig.x() > 59.0; }));
-  hold(rig);
+  hold_behind_the_arc(rig);
   ASSERT_EQ(ask(rig, 60.0), Refusal::none);
   ASSERT_TRUE(rig.until([&] { return rig.x() < 55.0; }));
   rig.logic.estop_ok = false;

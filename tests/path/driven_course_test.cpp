@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <random>
 
 #include "kernel/path/law/course_planning.hpp"
 #include "kernel/path/path_time.hpp"
 #include "kernel/path/track/publisher.hpp"
-#include "tests/path/rig/trip.hpp"
+#include "tests/path/rig/driven_path.hpp"
 
 namespace servogate::path::test {
 namespace {
@@ -25,34 +24,8 @@ Config course_mill() {
   return config;
 }
 
-/// Planner and follower in one loop, as the virtual cycle runs them.
-struct Machine {
-  explicit Machine(const Config& c = course_mill())
-      : config(c), track(c), planner(c, track), follower(c, track) {
-    planner.restart({});
-    trip.samples.emplace_back();
-  }
-  Sample step() {
-    planner.work();
-    last = follower.step(track.visible());
-    trip.samples.push_back(last);
-    return last;
-  }
-  bool until(const std::function<bool(const Sample&)>& condition) {
-    for (int k = 0; k < 100000; ++k)
-      if (condition(step())) return true;
-    return false;
-  }
-  bool until(FollowerState state) {
-    return until([&](const Sample& s) { return s.state == state; });
-  }
-  double most() const { return worst(trip, config).most(); }
-  Config config;
-  Track track;
-  Planner planner;
-  Follower follower;
-  Sample last;
-  Trip trip;
+struct Machine : DrivenPath {
+  explicit Machine(const Config& c = course_mill()) : DrivenPath(c) {}
 };
 
 std::vector<Element> circle(int blocks, double feed) {

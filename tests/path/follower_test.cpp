@@ -4,42 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
-#include "kernel/path/planner.hpp"
-#include "tests/path/rig/trip.hpp"
+#include "tests/path/rig/driven_path.hpp"
 
 namespace servogate::path::test {
 namespace {
 
-/// Planner and follower in one loop, as the virtual cycle runs them.
-struct Machine {
-  explicit Machine(const Config& c = mill()) : config(c), track(c), planner(c, track), follower(c, track) {
-    planner.restart({});
-    trip.samples.emplace_back();
-  }
-  Sample step() {
-    planner.work();
-    last = follower.step(track.visible());
-    trip.samples.push_back(last);
-    return last;
-  }
-  /// Steps until the condition holds; false when it does not within 100 s.
-  bool until(const std::function<bool(const Sample&)>& condition) {
-    for (int k = 0; k < 100000; ++k)
-      if (condition(step())) return true;
-    return false;
-  }
-  bool until(FollowerState state) {
-    return until([&](const Sample& s) { return s.state == state; });
-  }
-  Config config;
-  Track track;
-  Planner planner;
-  Follower follower;
-  Sample last;
-  Trip trip;
-};
+using Machine = DrivenPath;
 
 Element stop_at(double x, double y, bool confirm = false) {
   Element e = line_to(x, y, 0, 100);
