@@ -73,6 +73,15 @@ TEST(RandomPrograms, end_after_a_hold_that_rests_a_rounding_error_before_the_end
   }
 }
 
+TEST(RandomPrograms, end_behind_a_long_line_at_the_velocity_of_its_axis) {
+  // The first clock of the run behind the cruise went on faster in a step, and no law was found for it.
+  for (const std::uint64_t seed : {1795664895866841694u}) {
+    RandomProgram program = random_program(seed, {2 + static_cast<int>(seed % 11), true, true});
+    program.config.law = Law::course;
+    EXPECT_EQ(verdict(run(program, scenario(seed)), program), "") << seed;
+  }
+}
+
 TEST(RandomPrograms, of_many_short_blocks_keep_them_too_when_held_over_and_over) {
   const std::uint64_t base = servogate::test::property_seed();
   int wrong = 0;

@@ -105,6 +105,7 @@ bool Gather::put_with_cruise(const Leg& leg) {
   constexpr double kFeed = 0.999, kVelocity = 0.98, kShare = 0.95, kLonger = 1.3, kMoreSeconds = 0.08;
   constexpr double kBeside = 0.01;  // of the limits, beside the reserve
   constexpr double kCorner = 1.0, kCornerByTolerance = 40.0, kLeastGain = 0.15;
+  constexpr double kHardly = 1.001;  // faster than the middle, beside it: the first clock steps no higher
   if (leg.piece.shape != Piece::Shape::line) return false;
   const double left = 1.0 - config_.reserve;
   const double velocity = std::min(kVelocity, left - kBeside), share = std::min(kShare, left - 4.0 * kBeside);
@@ -124,6 +125,7 @@ bool Gather::put_with_cruise(const Leg& leg) {
   const double middle = leg.piece.length - 2.0 * end;
   if (!(middle > kLeastGain * v)) return false;
   Leg some = leg;
+  some.feed = std::min(leg.feed, kHardly * v);
   some.piece = part(leg.piece, 0.0, end);
   sink_.put(some);
   some.corner = kNone;
