@@ -228,7 +228,7 @@ TEST_F(Retrace, of_random_programs_keeps_limits_and_path_wherever_they_are_held_
     std::mt19937_64 random(seed);
     const std::string program = random_path(random);
     Rig straight(program), rig(program);
-    ASSERT_TRUE(straight.finish()) << straight.alarm_list();
+    ASSERT_TRUE(straight.finish(240.0)) << straight.alarm_list();
     rig.start();
     for (int n = 0; n < 4; ++n) {
       rig.run(0.001 * static_cast<double>(100 + random() % 900));
@@ -247,7 +247,7 @@ TEST_F(Retrace, of_random_programs_keeps_limits_and_path_wherever_they_are_held_
       ASSERT_LE(apart(here(rig), held), 1e-9) << "seed " << seed;
       ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
     }
-    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; }, 240.0)) << rig.alarm_list();
     EXPECT_LE(apart(here(rig), here(straight)), 1e-9) << "seed " << seed;
     EXPECT_EQ(rig.violations(), "") << "seed " << seed;
     double most = 0.0;
