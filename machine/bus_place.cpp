@@ -43,11 +43,16 @@ std::string peer_place(std::string_view rest) {
 }
 
 /// Names below /dev/serial/by-id are links.
-std::string serial_place(std::string_view rest) {
+std::string port_of(std::string_view path) {
   std::error_code error;
-  const auto whole = std::filesystem::weakly_canonical(std::filesystem::path(rest), error);
-  return "rtu:" + (error ? std::string(rest) : whole.string());
+  const auto whole = std::filesystem::weakly_canonical(std::filesystem::path(path), error);
+  return error ? std::string(path) : whole.string();
 }
+
+std::string serial_place(std::string_view rest) { return "rtu:" + port_of(rest); }
+
+/// "PATH" or "PATH@BAUD": one port, whatever its speed.
+std::string slcan_place(std::string_view rest) { return "slcan:" + port_of(rest.substr(0, rest.rfind('@'))); }
 
 std::string_view channel_of(std::string_view place) { return place.substr(place.rfind('/') + 1); }
 
@@ -57,7 +62,8 @@ struct Scheme {
 };
 constexpr Scheme kSchemes[] = {{"socketcand:", &served_place}, {"lockstep:", &served_place},
                                {"udp:", &udp_place},           {"tcp:", &peer_place},
-                               {"rtu:", &serial_place},        {"gsusb:", &adapter_place}};
+                               {"rtu:", &serial_place},        {"gsusb:", &adapter_place},
+                               {"slcan:", &slcan_place}};
 
 }  // namespace
 

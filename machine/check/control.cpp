@@ -26,9 +26,9 @@ void check_buses(const MachineConfig& machine, Reading& reading) {
           machine.where(path + ".url"), finding::kBadUrl,
           {"url", bus.url,
            text::both("mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, socketcand:unix:PATH/NAME, "
-                      "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
+                      "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL, slcan:PATH",
                       "mock:ИМЯ, socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, socketcand:unix:ПУТЬ/ИМЯ, "
-                      "lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ")});
+                      "lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ, slcan:ПУТЬ")});
     const bool known = std::any_of(std::begin(kBitRates), std::end(kBitRates),
                                    [&](int k) { return bus.bit_rate == std::int64_t{k} * 1000; });
     if (bus.bit_rate != 0 && !known)

@@ -155,9 +155,9 @@ void check_drive_owners(const MachineConfig& machine, Reading& reading) {
         "spindle." + std::to_string(i) + ".drive");
 }
 
-/// A USB adapter, or a bus server of another computer: servers of simulated buses listen on loopback only.
+/// An adapter, or a bus server of another computer: servers of simulated buses listen on loopback only.
 bool perhaps_real(std::string_view url) {
-  if (url.starts_with("gsusb:")) return true;
+  if (url.starts_with("gsusb:") || url.starts_with("slcan:")) return true;
   constexpr std::string_view kServed = "socketcand:";
   if (!url.starts_with(kServed)) return false;
   const std::string_view host = url.substr(kServed.size());

@@ -135,9 +135,9 @@ const Section& section_of<BusConfig>() {
       key<&C::url>(
           "url", {.required = true},
           "transport: mock:NAME, socketcan:IF, socketcand:HOST:PORT/NAME, socketcand:unix:PATH/NAME, "
-          "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
+          "lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL, slcan:PATH",
           "транспорт: mock:ИМЯ, socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, socketcand:unix:ПУТЬ/ИМЯ, "
-          "lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ"),
+          "lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ, slcan:ПУТЬ"),
       key<&C::bit_rate>("bit_rate", {.unit = Unit::bit_per_s, .min = 10000, .max = 1000000, .required = true},
                         "bit rate of the segment", "скорость сегмента"),
       key<&C::simulated>(

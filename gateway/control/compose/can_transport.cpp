@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "drivers/gsusb/libusb_port.hpp"
+#include "drivers/slcan/slcan_bus.hpp"
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/master/master_claim.hpp"
 
@@ -14,9 +15,9 @@ namespace {
 const text::Entry kNoTransport{
     "can.no-transport",
     "'{0}' is no bus that can be opened here; known: socketcan:IF, socketcand:HOST:PORT/NAME, "
-    "socketcand:unix:PATH/NAME, lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL",
+    "socketcand:unix:PATH/NAME, lockstep:HOST:PORT/NAME, udp:GROUP:PORT, gsusb:SERIAL, slcan:PATH",
     "«{0}» — не шина, которую можно открыть; известны: socketcan:IF, socketcand:ХОСТ:ПОРТ/ИМЯ, "
-    "socketcand:unix:ПУТЬ/ИМЯ, lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ"};
+    "socketcand:unix:ПУТЬ/ИМЯ, lockstep:ХОСТ:ПОРТ/ИМЯ, udp:ГРУППА:ПОРТ, gsusb:СЕРИЙНЫЙ, slcan:ПУТЬ"};
 const text::Entry kMockElsewhere{
     "can.mock-elsewhere", "'{0}' lives inside one control; for several processes: servogate can bus can0",
     "«{0}» живёт внутри одного управления; для нескольких процессов: servogate can bus can0"};
@@ -112,6 +113,21 @@ Opened open_gsusb(std::string_view rest, const CanTransportOptions& options, dri
   return t;
 }
 
+/// "PATH" or "PATH@BAUD".
+Opened open_slcan(std::string_view rest, const CanTransportOptions& options, drivers::Notice& why) {
+  const auto place = slcan::parse_place(rest);
+  if (!place) {
+    why = {&kNoTransport, {"slcan:" + std::string(rest)}};
+    return std::nullopt;
+  }
+  auto bus = slcan::SlcanBus::open({*place, options.bit_rate, options.listen_only}, why);
+  if (bus == nullptr) return std::nullopt;
+  CanTransport t;
+  t.descriptor = bus->descriptor();
+  t.bus = std::move(bus);
+  return t;
+}
+
 struct Scheme {
   std::string_view name;
   Opened (*open)(std::string_view rest, const CanTransportOptions& options, drivers::Notice& why);
@@ -119,7 +135,7 @@ struct Scheme {
 constexpr Scheme kSchemes[] = {
     {"socketcan:", &open_socketcan}, {"socketcand:", &open_socketcand},
     {"lockstep:", &open_lockstep},   {"udp:", &open_udp},
-    {"gsusb:", &open_gsusb},
+    {"gsusb:", &open_gsusb},         {"slcan:", &open_slcan},
 };
 
 }  // namespace

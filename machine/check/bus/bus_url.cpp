@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "drivers/slcan/serial_port.hpp"
 #include "drivers/usercan/address.hpp"
 #include "machine/check/check.hpp"
 
@@ -56,13 +57,17 @@ bool adapter(std::string_view rest) {
   return error == std::errc{} && end == channel.data() + channel.size();
 }
 
+/// "PATH" or "PATH@BAUD".
+bool port(std::string_view rest) { return slcan::parse_place(rest).has_value(); }
+
 struct Scheme {
   std::string_view name;
   bool (*fits)(std::string_view rest);
 };
 constexpr Scheme kSchemes[] = {{"mock:", &any_name},     {"socketcan:", &interface_name},
                                {"socketcand:", &served}, {"lockstep:", &served},
-                               {"udp:", &group},         {"gsusb:", &adapter}};
+                               {"udp:", &group},         {"gsusb:", &adapter},
+                               {"slcan:", &port}};
 
 }  // namespace
 
