@@ -96,7 +96,7 @@ TEST(Check, of_an_axis_without_end_says_so_instead_of_a_travel) {
     text.replace(text.find("360", text.find(line)), 3, "0");
   }
   scratch.write("mill.st", read_all(source("examples/four-axis-mill/mill.st")));
-  const std::string nc = scratch.write("turn.nc", "N10 G90 G94\nN20 G1 A720 F3600\nN30 M30\n");
+  const std::string nc = scratch.write("turn.nc", "N10 G91 G94\nN20 G1 A720 F3600\nN30 M30\n");
   const Ending e = servogate({"check", scratch.write("machine.toml", text), nc});
   EXPECT_TRUE(says(e.out, "  A: 0 to 720 deg, without end\n")) << e.out << e.err;
 }

@@ -141,11 +141,12 @@ class Reader {
     }
   }
 
-  /// "X", "X:diameter" or "C:rotary".
+  /// "X", "X:diameter", "C:rotary" or "C:endless" (rotary).
   static MachineModel::Axis axis(const std::string& text) {
     MachineModel::Axis axis;
     axis.letter = text.substr(0, 1);
-    axis.rotary = text.ends_with(":rotary");
+    axis.endless = text.ends_with(":endless");
+    axis.rotary = text.ends_with(":rotary") || axis.endless;
     axis.diameter = text.ends_with(":diameter");
     axis.travel_min = axis.rotary ? -1e6 : -300.0;
     axis.travel_max = -axis.travel_min;

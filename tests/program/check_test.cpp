@@ -212,7 +212,7 @@ TEST(CheckProgram, finds_all_of_a_file_and_of_its_subprograms) {
     if (name == "SUB") return "G0 X1\nG99\n";
     return std::nullopt;
   };
-  const CheckReport report = check("G0 XX\n(CLS,SUB)\n(UAV,0)\nE30=SIN(\n(BNC,NO)", mill(), loader);
+  const CheckReport report = check("G0 XX\n(CLS,SUB)\nJOG=1\nE30=SIN(\n(BNC,NO)", mill(), loader);
   std::vector<std::string> ids;
   for (const auto& finding : report.findings) ids.emplace_back(finding.entry->id);
   EXPECT_EQ((std::vector<std::string>{"P204", "P901", "P301", "P501", "P211"}), ids);

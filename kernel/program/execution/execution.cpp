@@ -29,14 +29,33 @@ std::vector<std::string> letters_of(const MachineModel& machine) {
   return letters;
 }
 
+/// What the language adds to the machine: virtual axes behind its own, and which axis counts positions.
+MachineModel completed(const Dialect& language, MachineModel model) {
+  if (model.axes.size() > image::kMaxAxes) model.axes.resize(image::kMaxAxes);
+  for (MachineModel::Axis& axis : model.axes)
+    if (!language.index_variable.empty() && axis.rotary)
+      axis.index_positions =
+          static_cast<int>(model.variable((std::string(language.index_variable) + axis.letter).c_str(), 0.0));
+  const AxisLetters letters(letters_of(model));
+  for (const char letter : language.virtual_axes) {
+    if (letters.find(letter) >= 0 || model.axes.size() == image::kMaxAxes) continue;
+    MachineModel::Axis axis;
+    axis.letter = letter;
+    axis.is_virtual = true;
+    model.axes.push_back(axis);
+  }
+  return model;
+}
+
 }  // namespace
 
 ExecutionData::ExecutionData(const Dialect& language, MachineModel model, Tables tables,
                              std::string file_name, std::string text, ProgramLoader loader,
                              const Position& start, int process_)
-    : dialect(&language), axes(letters_of(model)), process(process_) {
-  if (model.axes.size() > image::kMaxAxes) model.axes.resize(image::kMaxAxes);
-  machine = std::make_shared<const MachineModel>(std::move(model));
+    : dialect(&language),
+      machine(std::make_shared<const MachineModel>(completed(language, std::move(model)))),
+      axes(letters_of(*machine)),
+      process(process_) {
   files.loader = std::move(loader);
   files.sources.push_back(std::make_shared<const Source>(language, file_name, std::move(text)));
   files.names.push_back(std::move(file_name));
@@ -44,6 +63,7 @@ ExecutionData::ExecutionData(const Dialect& language, MachineModel model, Tables
   state.frames.tables = std::make_shared<const Tables>(std::move(tables));
   state.frames.machine = start;
   state.frames.frame = Frame(machine->axis_count());
+  end_virtual_axes(*machine, state.virtual_axes);
   state.flow.line = files.sources.front()->start();
 }
 
@@ -64,6 +84,7 @@ void Execution::reset() {
   state_.profile = ProfileState{};
   state_.spline = SplineState{};
   state_.motion.cycle = Cycle{};
+  end_virtual_axes(machine_, state_.virtual_axes);
   BlockWords none;
   for (const GRule& rule : dialect_.g)
     if (rule.at_power_on) take_g(none, rule);
@@ -77,6 +98,7 @@ void Execution::end_contour_modes() {
   state_.modes.compensation = Function::compensation_off;
   state_.modes.profile = Function::profile_off;
   if (state_.modes.motion == Function::spline) state_.modes.motion = Function::rapid;
+  end_virtual_axes(machine_, state_.virtual_axes);
 }
 
 void Execution::reposition(const Position& at) {
@@ -239,6 +261,10 @@ std::optional<Step> Execution::read_ahead(bool synchronised) {
   if (++data_.since_command > kEndless) fail(Fault::endless, 0, {std::to_string(kEndless)});
   if (contour_.engaged()) data_.contour_before = state_.contour;
   execute();
+  if (state_.virtual_axes.kind != VirtualAxes::Kind::none)
+    Followers(machine_, frames_, state_.frames, state_.virtual_axes, flow_.line_number(),
+              static_cast<int>(block_.body) + 1)
+        .lead(data_.queue.commands);
   return std::nullopt;
 }
 

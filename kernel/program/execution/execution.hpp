@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/program/execution/motion/followers.hpp"
 #include "kernel/program/execution/motion/motion.hpp"
 #include "kernel/program/values/expression.hpp"
 #include "kernel/program/values/packet_view.hpp"
@@ -108,6 +109,9 @@ class Execution : public ValueSource {
   void emit(What&& what) {
     output_.emit(std::forward<What>(what));
   }
+  /// Throws for an axis that no block may name now: a virtual one that is not in force, one that follows
+  /// others.
+  void refuse_barred(int axis, int column) const;
   /// Refuses the words of a block that has no motion, but for those that its function takes.
   void refuse_all_but(const BlockWords& words, std::initializer_list<const Word*> taken) const;
   /// The same, but for axes and F.
@@ -132,6 +136,7 @@ class Execution : public ValueSource {
   void apply_power_on();
   void power_on_mode(std::size_t index);
   void power_on_value(const std::string& name, double value);
+  void check_index(const std::string& name, double value) const;
 
   // words.cpp
   void run_words();

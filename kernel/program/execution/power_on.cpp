@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
@@ -90,10 +91,21 @@ void Execution::power_on_mode(std::size_t index) {
   take_g(none, *rule);
 }
 
+/// Positions in a turn of a rotary axis, which the model has taken already.
+void Execution::check_index(const std::string& name, double value) const {
+  constexpr double kMost = 99999.0;
+  const std::string letter = name.substr(dialect_.index_variable.size());
+  const int axis = letter.size() == 1 ? data_.axes.find(letter[0]) : -1;
+  if (axis < 0 || !machine_.rotary(axis) || !(value >= 1.0 && value <= kMost) || value != std::floor(value))
+    fail(Fault::index_count, 0, {name, letter, text::number(kMost)});
+}
+
 void Execution::power_on_value(const std::string& name, double value) {
   const ParameterSet& set = dialect_.parameters;
   if (set.count_max > 0 && name == set.letter) return check_range(name, value, set.count_min, set.count_max);
   if (name == "RESOLUTION") return check_range(name, value, 0.0, 1.0);
+  if (!dialect_.index_variable.empty() && name.starts_with(dialect_.index_variable))
+    return check_index(name, value);
   const VariableRule* rule = dialect_.find_variable(name);
   if (rule == nullptr) fail(Fault::variable_unknown, 0, {name});
   if (rule->set == nullptr) fail(Fault::not_executed, 0, {name});

@@ -173,6 +173,7 @@ BlockWords Execution::gather() {
     if (word.meaning == Meaning::g) continue;
     if (word.value.expression != 0) evaluate_words(word);
     if (word.meaning == Meaning::axis) {
+      refuse_barred(word.axis, word.column);
       words.axis[static_cast<std::size_t>(word.axis)] = &word;
       ++words.axes;
     } else {
@@ -183,6 +184,13 @@ BlockWords Execution::gather() {
     for (std::size_t i = 0; i < block_.count; ++i)
       if (block_.words[i].meaning == Meaning::centre_of) gather_centre(words, block_.words[i]);
   return words;
+}
+
+/// An axis that is not there, or that follows others.
+void Execution::refuse_barred(int axis, int column) const {
+  if ((state_.virtual_axes.barred >> axis & 1u) == 0) return;
+  fail(machine_.is_virtual(axis) ? Fault::axis_missing : Fault::axis_follows, column,
+       {machine_.axes[static_cast<std::size_t>(axis)].letter});
 }
 
 /// What the expressions of a word give takes the place of its number, in the block's order.

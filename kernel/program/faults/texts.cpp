@@ -216,8 +216,20 @@ constexpr text::Entry kMessages[] = {
     {"P747", "{0} needs a motion at the feed in its block", "{0} требует в кадре перемещения с подачей"},
     {"P748", "{0} waits for the zero mark of a spindle that does not turn: start it first",
      "{0} ждёт нулевой метки шпинделя, который не вращается: сначала включите его"},
+    {"P750", "{0} follows other axes now: program those, or end the virtual axes first",
+     "ось {0} сейчас следует за другими: программируйте их или сначала отмените виртуальные оси"},
+    {"P751", "threads and measurements need the axes of the machine: end the virtual axes first",
+     "резьбе и измерению нужны оси станка: сначала отмените виртуальные оси"},
+    {"P752", "a feed per revolution is not possible here: a rotary axis or several axes follow the path",
+     "подача на оборот здесь невозможна: за траекторией следует поворотная ось или несколько осей"},
+    {"P753", "the way comes as near as {0} mm to the centre, the least radius is {1} mm",
+     "путь подходит к центру на {0} мм, наименьший радиус — {1} мм"},
+    {"P754",
+     "{0} is the number of positions in a turn of the axis {1}: a whole number from 1 to {2}, and the "
+     "machine needs this rotary axis",
+     "{0} — число позиций на оборот оси {1}: целое от 1 до {2}; станку нужна эта поворотная ось"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::mark_spindle) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::index_count) + 1);
 
 }  // namespace
 

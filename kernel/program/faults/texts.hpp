@@ -144,6 +144,11 @@ enum class Fault : std::uint8_t {
   power_on_begins,
   mark_motion,
   mark_spindle,
+  axis_follows,
+  virtual_motion,
+  virtual_feed,
+  virtual_radius,
+  index_count,
 };
 
 /// All texts, in the order of Fault.

@@ -259,6 +259,9 @@ struct Dialect {
   int max_m_words;
   int max_repeat_depth;
   int max_call_depth;
+  std::string_view virtual_axes = {};    ///< letters of virtual axes, where the machine has no such axis
+  std::string_view index_variable = {};  ///< and a letter: variable with the positions in a turn of that axis
+  bool sign_is_direction = false;  ///< of an absolute angle on a rotary axis without ends, below 360 degrees
   std::array<LetterRule, 128> letters;
   std::span<const GRule> g;
   const GRule* other_g = nullptr;  ///< G words of other numbers; null: there are none

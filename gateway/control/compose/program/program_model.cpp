@@ -22,7 +22,10 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
       axis.travel_min = a.travel_min;
       axis.travel_max = a.travel_max;
     }
+    axis.endless = a.endless();
     axis.rapid = a.max_velocity;
+    axis.acceleration = a.max_acceleration;
+    axis.jerk = a.max_jerk;
     model.axes.push_back(axis);
   }
   model.spindles =

@@ -24,6 +24,8 @@ void Motion::move(const BlockWords& words) {
   if (arcs) frames_.need_plane(here());
   if (words.has_factors) check_factors(words);
   const Position to = target_of(words);
+  index(to);
+  if (only_indexes(words)) return;
   switch (modes_.motion) {
     case Function::rapid:
       give(words, Rapid{to}, to);
@@ -118,12 +120,15 @@ Position Motion::target_of(const BlockWords& words) {
   for (int a = 0; a < machine_.axis_count(); ++a) {
     const Word* word = words.axis[at(a)];
     if (word == nullptr) continue;
-    const double value = numbers_.length(a, word->value);
+    const double value = machine_.axes[at(a)].index_positions > 0 ? index_angle(a, word->value)
+                                                                  : numbers_.length(a, word->value);
     if (words.machine_zero) {
       to[at(a)] = value + frame.length(a);
       continue;
     }
-    programmed[at(a)] = incremental(word->value) ? programmed[at(a)] + value : value;
+    programmed[at(a)] = incremental(word->value) ? programmed[at(a)] + value
+                        : signs_direction(a)     ? turned_to(a, word->value, value)
+                                                 : value;
     if (words.has_factors) add_factor(words, a);
     if (frame.shift_only())
       to[at(a)] = programmed[at(a)] + frame.shift(a);
@@ -141,6 +146,66 @@ Position Motion::target_of(const BlockWords& words) {
   return to;
 }
 
+/// Positions of an indexing axis as degrees. Source: specification A 17.2.
+double Motion::index_angle(int axis, const Value& value) const {
+  constexpr double kMost = 99999.0;
+  const MachineModel::Axis& a = machine_.axes[at(axis)];
+  const double positions = numbers_.resolve(value);
+  if (positions != std::floor(positions))
+    fail(Fault::whole_number, value.column, {a.letter, text::number(positions)});
+  if (std::abs(positions) > kMost) numbers_.refuse_range(a.letter, value, positions, "-99999", "99999");
+  return positions * 360.0 / a.index_positions;
+}
+
+/// True where the block moves nothing but indexing axes.
+bool Motion::only_indexes(const BlockWords& words) const noexcept {
+  if (!indexes_) return false;
+  int named = 0;
+  for (int a = 0; a < machine_.axis_count(); ++a)
+    if (words.axis[at(a)] != nullptr) {
+      if (machine_.axes[at(a)].index_positions == 0) return false;
+      ++named;
+    }
+  return named > 0;
+}
+
+bool Motion::signs_direction(int axis) const noexcept {
+  const MachineModel::Axis& a = machine_.axes[at(axis)];
+  return dialect_.sign_is_direction && a.rotary && a.endless && a.index_positions == 0;
+}
+
+/// An absolute angle on an axis without ends: its sign, that of 0 too, is the direction. Source:
+/// specification A 17.3.
+double Motion::turned_to(int axis, const Value& value, double angle) const {
+  if (!(std::abs(angle) < 360.0))
+    numbers_.refuse_range(machine_.axes[at(axis)].letter, value, angle, "-359.9999", "359.9999");
+  const double from = at_.programmed[at(axis)];
+  const bool backwards =
+      value.parameter < 0 ? value.negative || angle < 0.0 : std::signbit(numbers_.resolve(value));
+  const auto turn = [](double degrees) {
+    const double part = degrees - 360.0 * std::floor(degrees / 360.0);
+    return part > 360.0 - 1e-7 ? 0.0 : part;  // it stands there
+  };
+  const double way = backwards ? -turn(from - std::abs(angle)) : turn(angle - from);
+  return from + way;
+}
+
+/// The indexing axes turn and stand before anything else of the block moves. False: none turns. Source:
+/// specification A 5.
+bool Motion::index(const Position& to) {
+  if (!indexes_) return false;
+  Position turned = at_.machine;
+  for (int a = 0; a < machine_.axis_count(); ++a)
+    if (machine_.axes[at(a)].index_positions > 0) turned[at(a)] = to[at(a)];
+  if (turned == at_.machine) return false;
+  if (contour_.engaged())
+    fail(Fault::contour_excludes, here(), {text::both("an indexing axis", "делительная ось")});
+  end_profile();
+  output_.emit(Rapid{turned});
+  at_.machine = turned;
+  return true;
+}
+
 bool Motion::incremental(const Value& value) const noexcept {
   if (value.dimension != Dimension::as_modes) return value.dimension == Dimension::incremental;
   return modes_.dimension == Function::incremental;
@@ -150,6 +215,7 @@ void Motion::position(const BlockWords& words, int without_axis) {
   BlockWords rest = words;
   if (without_axis >= 0) rest.axis[at(without_axis)] = nullptr;
   const Position to = target_of(rest);
+  if (index(to) && to == at_.machine) return contour_.drop();
   if (at_.zones_active) frames_.check_zones(at_.machine, to, here());
   contour_.drop();
   output_.emit(Rapid{to});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <string>
 
 #include "kernel/program/execution/capability/capability.hpp"
@@ -27,7 +28,9 @@ class Motion {
         frames_(frames),
         capability_(capability),
         output_(output),
-        contour_(contour) {}
+        contour_(contour),
+        indexes_(std::any_of(machine.axes.begin(), machine.axes.end(),
+                             [](const auto& axis) { return axis.index_positions > 0; })) {}
 
   /// The motion of a block, by the mode in force.
   void move(const BlockWords& words);
@@ -71,6 +74,11 @@ class Motion {
   Feed feed_of(const BlockWords& words, double length_mm, bool rotary_only);
   Feed programmed_feed(const BlockWords& words, double length_mm, bool rotary_only);
   bool incremental(const Value& value) const noexcept;
+  bool index(const Position& to);
+  double index_angle(int axis, const Value& value) const;
+  bool only_indexes(const BlockWords& words) const noexcept;
+  bool signs_direction(int axis) const noexcept;
+  double turned_to(int axis, const Value& value, double angle) const;
   int here() const noexcept { return static_cast<int>(block_.body) + 1; }
   std::string letter(Meaning meaning) const { return std::string(1, dialect_.letter_of(meaning)); }
 
@@ -85,6 +93,7 @@ class Motion {
   Capability& capability_;
   Output& output_;
   Contour& contour_;
+  bool indexes_;  ///< the machine has an indexing axis
 };
 
 }  // namespace servogate::program

@@ -20,6 +20,11 @@ struct MachineModel {
     bool alternative_inch = false;
     double travel_min = -1e9, travel_max = 1e9;  ///< mm or degrees; lathe X as radius
     double rapid = 0.0;                          ///< largest speed, mm/s or degrees/s; 0: not known
+    double acceleration = 0.0;                   ///< mm/s2 or degrees/s2; 0: not known
+    double jerk = 0.0;                           ///< mm/s3 or degrees/s3; 0: not known
+    bool endless = false;                        ///< rotary without ends of travel
+    bool is_virtual = false;  ///< no axis of the machine: programs name it while real ones follow it
+    int index_positions = 0;  ///< programs count positions, so many in a turn; 0: they give degrees
   };
   std::vector<Axis> axes;
   int spindles = 1;
@@ -42,6 +47,13 @@ struct MachineModel {
   std::uint32_t syvar_bytes = image::kSyvarDefaultSize;
 
   int axis_count() const noexcept { return static_cast<int>(axes.size()); }
+  bool is_virtual(int axis) const noexcept { return axes[static_cast<std::size_t>(axis)].is_virtual; }
+  /// Axes that the machine has; virtual ones stand behind them.
+  int real_axes() const noexcept {
+    int count = axis_count();
+    while (count > 0 && is_virtual(count - 1)) --count;
+    return count;
+  }
   bool rotary(int axis) const noexcept { return axes[static_cast<std::size_t>(axis)].rotary; }
   /// A variable by its name, `otherwise` where the machine file does not have it.
   double variable(const char* name, double otherwise) const {

@@ -10,6 +10,7 @@
 #include "kernel/program/commands/canonical.hpp"
 #include "kernel/program/execution/contour/contour_state.hpp"
 #include "kernel/program/execution/state/machine.hpp"
+#include "kernel/program/execution/state/virtual_axes.hpp"
 #include "kernel/program/geometry/elements.hpp"
 #include "kernel/program/geometry/frame.hpp"
 #include "kernel/program/reading/dialect.hpp"
@@ -147,6 +148,7 @@ struct State {
   ContourState contour;
   ProfileState profile;
   SplineState spline;
+  VirtualAxes virtual_axes;
   GeometricElements elements;
   std::array<double, 64> own{};   ///< values that the language keeps for itself, by its own numbers
   std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit

@@ -126,9 +126,9 @@ constexpr CodeRule kCodes[] = {
     {"SND", "n", code::snd, false},
     {"TOF", "n", code::tof},
     {"DTL", "v+", code::dtl, false},
+    {"UAV", "n?.*", code::uav, false},
+    {"CTL", "?.", code::ctl, false},
     // Codes of the language that this version does not execute.
-    {"CTL", "", nullptr},
-    {"UAV", "", nullptr},
     {"OPN", "", nullptr},
     {"DER", "", nullptr},
     {"RED", "", nullptr},
@@ -155,9 +155,10 @@ constexpr VariableRule kVariables[] = {
     {"RMS", variable::rms},
     {"RTA", variable::rta},
     {"RTO", variable::rto},
+    {"UGF", variable::ugf},
+    {"DAW", variable::daw, true},
     // Variables of the language that this version does not execute.
     {"RMN", nullptr, true},
-    {"UGF", nullptr},
     {"JOG", nullptr},
     {"URL", nullptr},
     {"UCV", nullptr},
@@ -167,7 +168,6 @@ constexpr VariableRule kVariables[] = {
     {"VOL", nullptr},
     {"MBR", nullptr},
     {"ERR", nullptr},
-    {"DAW", nullptr, true},
     {"IOSTA", nullptr},
 };
 
@@ -229,6 +229,9 @@ const Dialect kDialect = {
     .max_m_words = 4,
     .max_repeat_depth = 3,
     .max_call_depth = 2,
+    .virtual_axes = "UVW",
+    .index_variable = "INDEX_",
+    .sign_is_direction = true,
     .letters = letters(),
     .g = kG,
     .m = kM,

@@ -110,6 +110,8 @@ void own_form(Execution& run) {
     if (run.contour().engaged())
       fail(Fault::contour_excludes, operands.column, {std::string(operands.rule->name)});
   }
+  for (const Operand& item : operands)
+    if (item.axis >= 0) run.refuse_barred(item.axis, column(item.begin));
   operands.rule->run(run, operands);
 }
 

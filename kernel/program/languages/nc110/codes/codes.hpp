@@ -55,6 +55,10 @@ void dsa(Execution& run, const Operands& operands);
 void asc(Execution& run, const Operands& operands);
 void dsc(Execution& run, const Operands& operands);
 
+// virtual.cpp; source: specification B 13, B 6.4
+void uav(Execution& run, const Operands& operands);
+void ctl(Execution& run, const Operands& operands);
+
 // tools.cpp; source: specification B 9, B 10.1
 void rqu(Execution& run, const Operands& operands);
 void rqp(Execution& run, const Operands& operands);
@@ -85,5 +89,8 @@ void tot(Execution& run, double value, int index, int column);
 void rms(Execution& run, double value, int index, int column);
 void rta(Execution& run, double value, int index, int column);
 void rto(Execution& run, double value, int index, int column);
+// virtual.cpp
+void ugf(Execution& run, double value, int index, int column);
+void daw(Execution& run, double value, int index, int column);
 
 }  // namespace servogate::program::nc110::variable

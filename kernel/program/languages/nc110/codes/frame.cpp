@@ -150,7 +150,7 @@ void dpi(Execution& run, const Operands& operands) {
   if (run.state().motion.profile_open) fail(Wrong::plane_in_profile, operands.column, {"DPI"});
   const int axis1 = operands.items[0].axis, axis2 = operands.items[1].axis;
   int normal = -1;
-  if (run.machine().axis_count() == 3) normal = 3 - axis1 - axis2;
+  if (run.machine().real_axes() == 3 && axis1 < 3 && axis2 < 3) normal = 3 - axis1 - axis2;
   run.frames().set_plane(axis1, axis2, normal);
 }
 

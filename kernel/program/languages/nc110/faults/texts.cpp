@@ -130,8 +130,24 @@ constexpr text::Entry kMessages[] = {
     {"P663", "{0}: a process has a number from 1 to {1}", "{0}: номер процесса — от 1 до {1}"},
     {"P664", "{0}: process {1} is the one that runs this program",
      "{0}: процесс {1} сам выполняет эту программу"},
+    {"P665", "UAV has the modes 0 to 5, not {0}", "у UAV режимы от 0 до 5, а не {0}"},
+    {"P666", "mode {0} of UAV is written {1}", "режим {0} кода UAV записывается {1}"},
+    {"P667", "{0} cannot stand here: a {1} is needed", "{0} здесь стоять не может: нужна {1}"},
+    {"P668", "{0} stands at {1}: bring it to 0 before UAV", "ось {0} стоит в {1}: до UAV приведите её в 0"},
+    {"P669", "the radius of UAV must be above 0", "радиус в UAV должен быть больше 0"},
+    {"P670", "{0}: UAV,3 needs {1} digits here, each from 1 to {2}",
+     "{0}: UAV,3 требует здесь цифр — {1}, каждая от 1 до {2}"},
+    {"P671", "UGF has to tell the angle of the axes before (UAV,5,..)",
+     "до (UAV,5,..) угол осей должен задать UGF"},
+    {"P672",
+     "a machine file has one configuration: run this program on a control whose machine file describes the "
+     "other one",
+     "файл станка описывает одну конфигурацию: запустите эту программу на системе с файлом другой"},
+    {"P673",
+     "the manual gives DAW no format: write the value to the place of an analogue output, as in SK10.RE=E30",
+     "руководство не даёт формата DAW: запишите значение в место аналогового выхода, например SK10.RE=E30"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::process_own) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::analogue_output) + 1);
 
 }  // namespace
 

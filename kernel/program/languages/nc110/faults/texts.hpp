@@ -88,6 +88,15 @@ enum class Wrong : std::uint8_t {
   graphics,
   process_number,
   process_own,
+  virtual_mode,
+  virtual_form,
+  virtual_axis,
+  virtual_zero,
+  virtual_radius_value,
+  parallel_digits,
+  skew_angle,
+  configuration,
+  analogue_output,
 };
 
 /// All texts, in the order of Wrong.

@@ -20,6 +20,7 @@ enum class Own : std::size_t {
   approach,  ///< DPT, mm, mm and mm/min
   safety,
   probe_feed,
+  skew,  ///< UGF, degrees; 0: not told
 };
 constexpr std::size_t at(Own own) { return static_cast<std::size_t>(own); }
 
