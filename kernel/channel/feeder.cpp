@@ -174,7 +174,7 @@ bool Feeder::work() {
     planner_.work();
   } while (done < kCommandsPerWork && wants_more());
   ways_.work();
-  if (state_ == State::feeding || state_ == State::syncing) lawless();
+  warn_of_rest();
   return wants_more();
 }
 
@@ -223,7 +223,6 @@ void Feeder::begin(const FeederOrder& order) {
   files_told_ = 0;
   view_ = link_.packets_of(generation_);
   synchronised_ = true;
-  lawless_ = false;
   ways_.restart();
   link_.begin(generation_, {planner_.restart(elements_.path_position(position_)), link_.events.written(),
                             link_.at_once.written()});
@@ -315,18 +314,20 @@ void Feeder::fail(const text::Finding& finding) {
   end();
 }
 
-/// True: the path ends before its end, at an error that names the block.
-bool Feeder::lawless() {
-  const path::Tag* at = planner_.without_law();
-  if (at == nullptr) return false;
-  if (lawless_) return true;
-  lawless_ = true;
+/// The path comes to rest where its program does not ask for it.
+void Feeder::warn_of_rest() {
+  const std::optional<path::Tag> at = planner_.take_unasked_rest();
+  if (!at || state_ == State::idle) return;
   program::Command command;
   command.line = at->line;
   command.file = at->file;
   command.block = at->block;
-  fail(placed(cannot_drive(path::Flaw::no_law), command));
-  return true;
+  Event e;
+  e.kind = EventKind::warning;
+  e.generation = generation_;
+  e.line = at->line;
+  e.code = texts_.add_finding(placed(rests_inside(), command));
+  link_.at_once.push(e);
 }
 
 void Feeder::end() {
@@ -372,7 +373,6 @@ void Feeder::end_block(const program::Command& next) {
 
 void Feeder::push(Event& e, const program::Command& command) {
   planner_.rest();
-  if (e.kind != EventKind::error && lawless()) return;
   e.id = next_event_++;
   if (next_event_ == 0) next_event_ = 1;
   e.generation = generation_;
@@ -423,7 +423,7 @@ bool Feeder::move(const program::Command& command) {
     ways_.add(element, from);
     return true;
   }
-  if (!lawless()) fail(placed(cannot_drive(planner_.last_flaw()), command));
+  fail(placed(cannot_drive(planner_.last_flaw()), command));
   return false;
 }
 

@@ -132,7 +132,7 @@ class Feeder {
   bool is_news(const text::Finding& warning);
   void warn();
   void fail(const text::Finding& finding);
-  bool lawless();
+  void warn_of_rest();
   void end();
   bool move(const program::Command& command);
   void event(EventKind kind, const program::Command& command, Event event);
@@ -155,7 +155,6 @@ class Feeder {
   std::optional<program::Tables> tables_;       ///< newer than those in manual_
   State state_ = State::idle;
   bool synchronised_ = false;
-  bool lawless_ = false;  ///< the path cannot be driven any further, which has been said
   bool block_by_block_ = false;
   bool acted_in_block_ = false;
   int last_line_ = 0;

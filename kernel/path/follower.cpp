@@ -162,11 +162,10 @@ void Follower::begin_course(const Entry& course) noexcept {
 void Follower::follow_course() noexcept {
   const bool goes_on = rate_.step(course_, rate_wanted(), config_.period_s);
   if (rate_.starving() && !rest_asked() && !course_.extent().broken) ++starved_;
-  if (!goes_on) return leave_course();
-  // It rests where its last stop leads to, or before, with too little left to start on.
-  if (course_.extent().broken && !rest_asked() && rate_.at_rest() && (rate_.starving() || rate_.stuck()))
-    return leave_broken_course();
-  track_.knots.free_below(course_.knots_behind(rate_.knot()));
+  if (!goes_on) return course_.extent().broken ? leave_broken_course() : leave_course();
+  // Should it break, a hold that has gone further comes back to where its last stop leads to.
+  const std::int64_t needed = std::min(rate_.knot(), std::max<std::int64_t>(0, course_.guard().knot));
+  track_.knots.free_below(course_.knots_behind(course_.extent().complete ? rate_.knot() : needed));
   track_.stops.free_below(course_.stops_behind(rate_.knot()));
 }
 
@@ -177,7 +176,7 @@ void Follower::leave_course() noexcept {
   free_course();
 }
 
-/// It rests where it is, and what comes next is no motion.
+/// The path goes on from the place where it rests.
 void Follower::leave_broken_course() noexcept {
   if (on_course_) sample_.position = rate_.point(course_).x;
   window_.pop();
@@ -278,7 +277,7 @@ double Follower::behind_mark(std::uint32_t marks, double s, bool is_early) const
 
 /// `beyond`: share of a cycle since the last of them.
 void Follower::pass_marks(std::uint32_t marks, double beyond) noexcept {
-  if (marks == marks_) return;
+  if (static_cast<std::int32_t>(marks - marks_) <= 0) return;
   sample_.passed += marks - marks_;
   sample_.passed_at = std::clamp(1.0 - beyond, 0.0, 1.0);
   marks_ = marks;

@@ -2,7 +2,9 @@
 #include "kernel/path/planner.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "kernel/path/law/course_planning.hpp"
@@ -36,6 +38,22 @@ bool needs_its_axes(const Leg& leg, double v) {
   const double turning = v * std::abs(p.omega), a = p.radius * turning * turning;
   return a > kAcceleration * std::min(first.acceleration, second.acceleration) ||
          a * turning > kJerk * std::min(first.jerk, second.jerk);
+}
+
+/// The element from the place `s` of its parameter on, for a path that stands beside it.
+std::vector<Element> rest_of(const Element& e, const Piece& piece, double s, int axes) {
+  constexpr double kLittle = 1e-3;  // mm of an arc
+  if (e.kind != Element::Kind::arc || piece.length - s < kLittle) {
+    Element line = e;
+    line.kind = Element::Kind::line;
+    return {line};
+  }
+  Element back = e, arc = e;
+  back.kind = Element::Kind::line;
+  back.to = position(piece, s, axes);
+  back.transition.confirm = false;
+  arc.sweep_deg *= 1.0 - s / piece.length;
+  return {back, arc};
 }
 
 }  // namespace
@@ -76,19 +94,31 @@ struct Planner::Impl final : ContourSink {
     Element element;
     Piece piece;
   };
+  struct OnCourse {
+    Waiting what;
+    double begin;  ///< path parameter of the course
+  };
 
   bool add(const Element& e);
   void finish();
   void forget() {
-    run = Run::none;
+    end_run();
     waiting.clear();
+    unasked_rest.reset();
+  }
+  void end_run() {
+    run = Run::none;
+    fallen = false;
+    on_course.clear();
   }
   bool suits_course(const Element& e) const;
   Run suitable() const;
   bool rests_before(const Element& e, const Piece& piece) const;
   void wait(const Element& e, const Piece& piece);
   void decide();
-  void pass_on(const Element& e);
+  void pass_on(const Element& e, const Piece& piece);
+  void put_on_course(const Element& e, const Piece& piece);
+  bool fall_back();
 
   Config config;
   Publisher publisher;
@@ -103,6 +133,11 @@ struct Planner::Impl final : ContourSink {
   bool rests = false;  ///< behind the elements of Run::spans
   std::vector<Waiting> waiting;
   Vector waiting_from{};
+  std::deque<OnCourse> on_course;  ///< elements that the course may not come to the end of
+  double course_length = 0.0;
+  bool fallen = false;  ///< Run::spans is what is left of a course: it ends where the course would have ended
+  Waiting before;       ///< the last element that moves
+  std::optional<Tag> unasked_rest;
 };
 
 /// A feed per revolution follows the spindle, which a course cannot.
@@ -134,9 +169,10 @@ Planner::Impl::Run Planner::Impl::suitable() const {
 }
 
 bool Planner::Impl::rests_before(const Element& e, const Piece& piece) const {
-  if (run == Run::course) return !suits_course(e) || gather.rests_before(e, piece);
-  if (run == Run::undecided)
-    return rests_between(config, waiting.back().element.transition, waiting.back().piece, e, piece);
+  if (run == Run::course || fallen || run == Run::undecided) {
+    if (run != Run::undecided && !suits_course(e)) return true;
+    return rests_between(config, before.element.transition, before.piece, e, piece);
+  }
   return run == Run::spans && rests && suits_course(e) && goes_on(e);  // and may go over to a course
 }
 
@@ -153,23 +189,58 @@ void Planner::Impl::decide() {
     law.begin_at(publisher.next().piece, publisher.planned());
   } else {
     gather.restart(waiting_from);
+    on_course.clear();
+    course_length = 0.0;
   }
-  for (const Waiting& w : waiting) pass_on(w.element);
+  for (const Waiting& w : waiting) pass_on(w.element, w.piece);
   waiting.clear();
 }
 
-void Planner::Impl::pass_on(const Element& e) {
-  if (run == Run::spans) {
+void Planner::Impl::pass_on(const Element& e, const Piece& piece) {
+  if (run == Run::course) {
+    put_on_course(e, piece);
+    gather.add(e);
+    if (gather.open()) return;
+    if (!fall_back()) return end_run();
+  } else {
     contour.add(e);
-    return;
   }
-  gather.add(e);
-  if (!gather.open()) run = Run::none;
+  if (!fallen || goes_on(e)) return;
+  contour.finish();
+  end_run();
+}
+
+void Planner::Impl::put_on_course(const Element& e, const Piece& piece) {
+  if (piece.length == 0.0 && goes_on(e)) return;  // it changes nothing
+  on_course.push_back({{e, piece}, course_length});
+  course_length += piece.length;
+  while (on_course.size() > 1 && on_course[1].what.piece.length > 0.0 && on_course[1].begin <= course.sure())
+    on_course.pop_front();
+}
+
+/// No law was found for what comes next: behind the place where the course rests the run goes on by spans.
+bool Planner::Impl::fall_back() {
+  if (run != Run::course || !course.broken()) return false;
+  const CoursePlanning::Rest rest = course.rest_place();
+  while (on_course.size() > 1 && on_course[1].what.piece.length > 0.0 && on_course[1].begin <= rest.place)
+    on_course.pop_front();
+  const Waiting first = on_course.front().what;
+  const double s = std::clamp(rest.place - on_course.front().begin, 0.0, first.piece.length);
+  on_course.pop_front();
+  const Vector from = rest.x ? *rest.x : path::position(first.piece, s, config.axis_count);
+  unasked_rest = first.element.tag;
+  course.restart();
+  gather.restart(at);
+  contour.restart(from);
+  law.begin_at(publisher.next().piece, publisher.planned());
+  for (const Element& e : rest_of(first.element, first.piece, s, config.axis_count)) contour.add(e);
+  for (const OnCourse& next : std::exchange(on_course, {})) contour.add(next.what.element);
+  run = Run::spans;
+  fallen = true;
+  return true;
 }
 
 bool Planner::Impl::add(const Element& e) {
-  flaw = Flaw::no_law;
-  if (course.broken()) return false;
   const Shaped shaped = shape(config, at, e);
   flaw = shaped.flaw;
   if (flaw != Flaw::none) return false;
@@ -177,7 +248,7 @@ bool Planner::Impl::add(const Element& e) {
   if (moves && rests_before(e, shaped.piece)) finish();
   if (run == Run::none) run = Run::undecided;
   if (run != Run::undecided) {
-    pass_on(e);
+    pass_on(e, shaped.piece);
   } else if (moves) {
     wait(e, shaped.piece);
     if (run == Run::undecided && !(suits_course(e) && goes_on(e))) decide();
@@ -185,18 +256,20 @@ bool Planner::Impl::add(const Element& e) {
     run = Run::none;
   } else if (!goes_on(e)) {  // it only decides how the element before ends
     decide();
-    pass_on(e);
+    pass_on(e, shaped.piece);
   }
   if (moves) rests = !goes_on(e);
+  if (moves) before = {e, shaped.piece};
   at = e.to;
   return true;
 }
 
 void Planner::Impl::finish() {
-  if (run == Run::undecided && !course.broken()) decide();
-  if (run == Run::spans) contour.finish();
+  if (run == Run::undecided) decide();
   if (run == Run::course) gather.finish();
-  run = Run::none;
+  fall_back();
+  if (run == Run::spans) contour.finish();
+  end_run();
 }
 
 Planner::Planner(const Config& config, Track& track, For what)
@@ -223,9 +296,7 @@ bool Planner::add(const Element& element) {
 
 Flaw Planner::last_flaw() const { return impl_->flaw; }
 
-const Tag* Planner::without_law() const {
-  return impl_->course.broken() ? &impl_->course.broken_at() : nullptr;
-}
+std::optional<Tag> Planner::take_unasked_rest() { return std::exchange(impl_->unasked_rest, std::nullopt); }
 
 void Planner::rest() { impl_->finish(); }
 
@@ -245,6 +316,7 @@ bool Planner::wants_more() const { return impl_->publisher.wants_more(); }
 
 void Planner::work() {
   impl_->course.work();
+  impl_->fall_back();
   impl_->publisher.work();
 }
 

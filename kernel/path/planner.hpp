@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "kernel/path/track/track.hpp"
@@ -32,10 +33,11 @@ class Planner {
   /// Appends an element. False: it cannot be driven, last_flaw() says why, and nothing has changed.
   bool add(const Element& element);
   Flaw last_flaw() const;
-  /// The element that no law inside of the limits was found for: the path rests before it, no element is
-  /// taken any more (Flaw::no_law), only events; nullptr: there is none. May be known long after it was
-  /// added, and is known for certain behind rest().
-  const Tag* without_law() const;
+  /// The element inside of which the path comes to rest although its program does not ask for it, the newest
+  /// one since the last call: no law of a course inside of the limits was found for what comes next, and
+  /// behind that place the run is driven by spans. May be known long after the element was added, and is
+  /// known for certain behind rest().
+  std::optional<Tag> take_unasked_rest();
 
   /// A mark in the end point of the elements before, which the motion passes without a rest: the follower
   /// counts it in Sample::passed. The corner may be rounded there; its middle counts. Where the path stops,

@@ -28,7 +28,7 @@ bool Survey::add(const Element& element) {
   numbered.tag.command = first_ + elements_.size();
   if (!planner_.add(numbered)) return false;
   elements_.push_back({element.tag, element.kind == Element::Kind::rapid ? 0.0 : element.feed});
-  for (planner_.work(); !planner_.wants_more() && planner_.without_law() == nullptr; planner_.work()) step();
+  for (planner_.work(); !planner_.wants_more(); planner_.work()) step();
   return true;
 }
 

@@ -117,6 +117,7 @@ void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
 Rig::Rig(std::string_view program, std::string_view power_on, double handshake_timeout_s, RigKind kind) {
   ProcessConfig config;
   config.path.axis_count = kAxes;
+  if (kind == RigKind::lawless) config.path.reserve = -1.0;
   config.handshake_timeout_s = handshake_timeout_s;
   cycle::CycleParts parts;
   parts.alarms = &tests::alarm_table();

@@ -69,8 +69,9 @@ class TestLogic final : public image::Logic {
   std::array<int, 4> waited_{};
 };
 
-/// What the axes are: X, Y, Z; or X is programmed in diameter and the radius for G96; or Y is a rotary B.
-enum class RigKind { mill, lathe, rotary };
+/// What the axes are: X, Y, Z; or X is programmed in diameter and the radius for G96; or Y is a rotary B; or
+/// X, Y, Z planned at twice their limits, so that no law through short blocks is found that keeps them.
+enum class RigKind { mill, lathe, rotary, lawless };
 
 /// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
 /// 0.

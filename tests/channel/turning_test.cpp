@@ -134,6 +134,27 @@ TEST(Warning, is_one_alarm_a_place_and_leaves_the_path_as_it_is) {
   EXPECT_EQ(plain, told);
 }
 
+TEST(Warning, names_the_block_where_the_path_rests_unasked_and_the_program_comes_to_its_end) {
+  std::string program = "G1 F3600\n";
+  for (int k = 1; k <= 200; ++k) program += "X" + std::to_string(0.3 * k) + "\n";
+  program += "F12000\n";
+  for (int k = 1; k <= 200; ++k)
+    program += "X" + std::to_string(60 + 6 * std::sin(k * 0.05)) + " Y" +
+               std::to_string(6 - 6 * std::cos(k * 0.05)) + "\n";
+  Rig rig(program + "M30\n", "G27", 0.5, RigKind::lawless);
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  EXPECT_EQ(rig.violations(), "");
+  EXPECT_NEAR(rig.x(), 60 + 6 * std::sin(10.0), 1e-4);
+  const image::AlarmRecord* warning = rig.alarm(cycle::alarm::kProgramWarning);
+  ASSERT_NE(warning, nullptr) << rig.alarm_list();
+  EXPECT_GT(warning->line, 100);
+  const auto found = rig.process->feeder().texts().finding(static_cast<std::int32_t>(warning->value));
+  ASSERT_TRUE(found);
+  EXPECT_NE(found->str(text::Language::english).find("warning: the path comes to rest inside this block"),
+            std::string::npos)
+      << found->str(text::Language::english);
+}
+
 TEST(Warning, names_line_and_finding_and_each_speed_once_however_often_it_is_asked_for) {
   Rig rig("N10 S9000 M3\nN20 S9500\nN30 S9000\nM30\n", "G27", 0.5, RigKind::lathe);
   ASSERT_TRUE(rig.finish()) << rig.alarm_list();

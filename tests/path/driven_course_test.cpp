@@ -8,9 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "kernel/path/law/course_planning.hpp"
 #include "kernel/path/path_time.hpp"
-#include "kernel/path/track/publisher.hpp"
 #include "tests/path/rig/driven_path.hpp"
 
 namespace servogate::path::test {
@@ -319,108 +317,6 @@ TEST(DrivenCourse, stops_sooner_and_takes_longer_with_a_greater_reserve) {
     EXPECT_GT(seconds, 1.03 * whole);
     whole = seconds;
     EXPECT_LE(m.most(), 1.001);
-  }
-}
-
-/// Where it is planned at twice the limits of its axes, the judge does not let it be driven.
-TEST(DrivenCourse, without_a_law_for_what_comes_next_says_which_element_it_is_whenever_it_was_added) {
-  Config config = course_mill();
-  config.reserve = -1.0;
-  std::vector<Element> e;
-  for (int k = 1; k <= 600; ++k) e.push_back(line_to(0.3 * k, 0, 0, 60));
-  for (int k = 1; k <= 400; ++k)
-    e.push_back(line_to(180 + 6 * std::sin(k * 0.05), 6 - 6 * std::cos(k * 0.05), 0, 300));
-  std::vector<Vector> rests;
-  for (const std::size_t portion : {std::size_t{1}, e.size()}) {
-    Machine m(config);
-    bool taken = true;
-    for (std::size_t n = 0; n < e.size() && taken; ++n) {
-      e[n].tag.line = static_cast<std::int32_t>(n) + 1;
-      taken = m.planner.add(e[n]);
-      if (n % portion == 0) m.planner.work();
-    }
-    m.planner.rest();
-    ASSERT_NE(m.planner.without_law(), nullptr);
-    EXPECT_GT(m.planner.without_law()->line, 300);
-    EXPECT_FALSE(m.planner.add(line_to(0, 0, 0, 60)));
-    EXPECT_EQ(m.planner.last_flaw(), Flaw::no_law);
-    m.planner.add_event(7, {});
-    ASSERT_TRUE(m.until(FollowerState::at_event));
-    EXPECT_EQ(m.last.starved, 0u) << "it is not late planning";
-    rests.push_back(m.last.position);
-    m.follower.release_event();
-    m.planner.restart(m.last.position);
-    EXPECT_EQ(m.planner.without_law(), nullptr);
-  }
-  EXPECT_EQ(rests[0], rests[1]);
-  EXPECT_GT(rests[0][0], 50.0);
-}
-
-/// Hands a course on up to its 60th stop, and says that there is no law behind it.
-class Breaking final : public CourseSink {
- public:
-  explicit Breaking(Publisher& to) : to_(to) {}
-  void begin_course() override { to_.begin_course(); }
-  void put(const Piece& piece) override {
-    if (!broken_) to_.put(piece);
-  }
-  void put(const Knot& knot) override {
-    if (!broken_) to_.put(knot);
-  }
-  void put(const StopHint& stop) override {
-    if (!broken_) to_.put(stop);
-  }
-  void extend(const CourseExtent& extent) override {
-    if (broken_) return;
-    CourseExtent known = extent;
-    broken_ = known.broken = extent.stops >= 60;
-    known.complete = false;
-    to_.extend(known);
-  }
-
- private:
-  Publisher& to_;
-  bool broken_ = false;
-};
-
-TEST(DrivenCourse, without_a_law_for_what_comes_next_rests_on_the_path_before_it_and_what_is_behind_follows) {
-  for (const int held : {0, 900, 2000}) {
-    const Config config = course_mill();
-    Track track(config);
-    Publisher publisher(track);
-    Breaking breaking(publisher);
-    CoursePlanning course(config, false, breaking);
-    Gather gather(config, course);
-    Follower follower(config, track);
-    Entry marker;
-    marker.kind = Entry::Kind::restart;
-    publisher.put(marker);
-    gather.restart({});
-    for (const Element& e : wave(1200, 100)) gather.add(e);
-    gather.finish();
-    marker.kind = Entry::Kind::event;
-    marker.event = 7;
-    publisher.put(marker);
-    Trip trip;
-    trip.samples.emplace_back();
-    Sample last;
-    for (int k = 0; k < 8000 && last.state != FollowerState::at_event; ++k) {
-      if (k == held) follower.hold();
-      if (k == held + 1500) follower.resume();
-      publisher.work();
-      trip.samples.push_back(last = follower.step(track.visible()));
-    }
-    EXPECT_EQ(last.state, FollowerState::at_event) << held;
-    EXPECT_EQ(last.event, 7u);
-    EXPECT_TRUE(follower.at_rest());
-    EXPECT_EQ(last.starved, 0u) << "it is not late planning";
-    EXPECT_GT(last.position[0], 100.0);
-    EXPECT_LT(last.position[0], 300.0);
-    EXPECT_NEAR(last.position[1], 3 * std::sin(last.position[0] / 6), 0.02);
-    EXPECT_LE(worst(trip, config).most(), 1.001);
-    follower.release_event();
-    publisher.work();
-    EXPECT_EQ(follower.step(track.visible()).state, FollowerState::idle);
   }
 }
 

@@ -154,6 +154,13 @@ text::Finding foreign(const std::string& letter) {
   return finding;
 }
 
+text::Finding rests_inside() {
+  text::Finding finding;
+  finding.severity = text::Severity::warning;
+  finding.entry = &texts::kRestsInside;
+  return finding;
+}
+
 text::Finding cannot_drive(path::Flaw flaw) {
   const text::Entry& why = texts::kFlaws[static_cast<std::size_t>(flaw)];
   text::Finding finding;

@@ -67,6 +67,8 @@ const program::Position* destination(const program::Command& command);
 text::Finding foreign(const std::string& letter);
 /// What keeps an element with this flaw from being driven; the place is for the caller to fill in.
 text::Finding cannot_drive(path::Flaw flaw);
+/// The path rests inside a block, see path::Planner::take_unasked_rest().
+text::Finding rests_inside();
 /// A motion command that no part of the path room knows yet (thread, probe); nullopt: it is none.
 std::optional<text::Finding> not_driven(const program::Command& command);
 

@@ -13,6 +13,18 @@ inline constexpr text::Entry kForeignAxis{
 inline constexpr text::Entry kCannotDrive{"channel.cannot-drive", "this element cannot be driven: {0}",
                                           "этот элемент нельзя отработать: {0}"};
 
+inline constexpr text::Entry kRestsInside{
+    "channel.rests-inside",
+    "the path comes to rest inside this block, and goes on in short moves: no speed was found that keeps all "
+    "limits of the axes through the blocks that follow; a greater tolerance of the contour, or blocks "
+    "without "
+    "steps and folds smaller than it, are driven without this rest",
+    "контур останавливается внутри этого кадра и продолжается короткими перемещениями: для следующих кадров "
+    "не "
+    "найдена скорость, при которой соблюдены все пределы осей; без этой остановки помогает больший допуск "
+    "контура "
+    "или кадры без ступенек и петель меньше него"};
+
 /// Why the path room cannot drive an element, index = path::Flaw.
 inline constexpr text::Entry kFlaws[] = {
     {"channel.flaw-none", "nothing is wrong", "ошибки нет"},
@@ -25,12 +37,6 @@ inline constexpr text::Entry kFlaws[] = {
     {"channel.flaw-radius", "the radius is zero, or differs between start and end by more than 0.01 mm",
      "радиус равен нулю или различается в начале и конце более чем на 0,01 мм"},
     {"channel.flaw-sweep", "the angle does not lead to the end point", "угол не приводит в конечную точку"},
-    {"channel.flaw-no-law",
-     "no speed was found that keeps all limits of the axes here, and the path ends before it; a greater "
-     "tolerance "
-     "of the contour, or a program without steps and folds smaller than it, can be driven",
-     "здесь не найдена скорость, при которой соблюдены все пределы осей, и контур заканчивается раньше; "
-     "помогает больший допуск контура или программа без ступенек и петель меньше него"},
 };
 
 }  // namespace servogate::channel::texts

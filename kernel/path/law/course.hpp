@@ -12,9 +12,12 @@ struct CourseExtent {
   std::uint64_t knots = 0;   ///< with the two before the first
   std::uint64_t stops = 0;   ///< that are known, the newest one last
   bool complete = false;     ///< it rests in the last knot
-  bool broken = false;       ///< it ends with the newest stop: there is no law for what comes next
-  bool confirm = false;      ///< and goes on after Follower::release_stop()
-  double seconds = 0.0;      ///< law time to the newest stop, or to the end
+  /// There is no law for what comes next: it rests where the newest stop leads to, or at its start without
+  /// one.
+  bool broken = false;
+  LawTime rest;          ///< law time of that place
+  bool confirm = false;  ///< it goes on behind its end after Follower::release_stop()
+  double seconds = 0.0;  ///< law time to the newest stop, or time to the rest
 };
 
 /// Where courses go, in order.

@@ -38,16 +38,20 @@ void CoursePlanning::work() {
   look_for_break();
 }
 
-/// The motion stops at the last stop that is known.
+/// The motion stops where the last stop that is known leads to.
 void CoursePlanning::look_for_break() {
   if (broken_ || !begun_ || !pipeline_.broken()) return;
-  broken_ = true;
-  const Knot* last = view_.knots.end() > 0 ? &view_.knots[view_.knots.end() - 1] : nullptr;
-  const double there = last != nullptr ? last->place : 0.0;
-  for (const Begin& leg : tags_)
-    if (leg.begin <= there) broken_at_ = leg.tag;
-  if (forecast_) return;
-  extent_.broken = true;
+  broken_ = extent_.broken = true;
+  rest_ = {sure_, std::nullopt};
+  if (extent_.stops > 0) {
+    const RateChange stop{1.0, 0.0, 0.0, stop_.seconds, stop_.power};
+    extent_.rest = view_.knot(stop_.knot)->t.plus(stop.at(stop_.seconds).passed);
+    extent_.seconds += stop_.seconds;
+    const CoursePoint at = point_at(view_, extent_.rest, std::max<std::int64_t>(1, stop_.knot), limits_.axes);
+    rest_ = {at.place, at.x};
+  } else if (forecast_ && view_.last() >= 0) {
+    extent_.seconds = view_.knot(view_.last())->t.since({});
+  }
   sink_.extend(extent_);
 }
 
@@ -61,11 +65,10 @@ void CoursePlanning::place(Leg leg) {
     given_ = 0;
     looked_ = look_at_ = 0;
     stop_ = {};
-    tags_.clear();
+    sure_ = 0.0;
     begun_ = true;
   }
   leg.piece.start = length_;
-  tags_.push_back({length_, leg.piece.tag});
   length_ += leg.piece.length;
   if (!forecast_) pieces_.push_back(leg.piece);
 }
@@ -90,10 +93,7 @@ void CoursePlanning::rest(bool confirm) {
   if (!begun_ || broken_) return;
   pipeline_.end();
   look_for_break();
-  if (broken_) {
-    begun_ = joins_ = false;
-    return;
-  }
+  if (broken_) return;
   view_.complete = true;
   if (!forecast_) find_stops();
   const Knot& last = *view_.knot(view_.last());
@@ -142,12 +142,10 @@ void CoursePlanning::move(const Move& /*move*/) {}
 
 void CoursePlanning::append(const Knot& knot) {
   if (broken_) return;
-  while (tags_.size() > 1 && tags_[1].begin <= knot.place) tags_.pop_front();
   view_.knots.push_back(knot);
-  if (forecast_)
-    view_.knots.forget_before(view_.knots.end() - 1);
-  else
-    find_stops();
+  if (!forecast_) return find_stops();
+  view_.knots.forget_before(view_.knots.end() - 1);
+  sure_ = knot.place;
 }
 
 void CoursePlanning::find_stops() {
@@ -167,6 +165,7 @@ void CoursePlanning::find_stops() {
     }
     if (found.knot >= 0) {
       stop_ = found;
+      sure_ = at.place;
       extent_.seconds = at.t.since({});
       ++extent_.stops;
       sink_.put(found);
@@ -185,7 +184,8 @@ void CoursePlanning::give() {
       sink_.put(pieces_.front());
       pieces_.pop_front();
     }
-    view_.knots.forget_before(static_cast<std::size_t>(std::max<std::int64_t>(0, looked_ - 4)));
+    const std::int64_t needed = std::min(looked_, std::max<std::int64_t>(0, stop_.knot)) - 4;
+    view_.knots.forget_before(static_cast<std::size_t>(std::max<std::int64_t>(0, needed)));
   }
   sink_.extend(extent_);
 }

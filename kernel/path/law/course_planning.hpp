@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <deque>
+#include <optional>
 
 #include "kernel/path/law/course.hpp"
 #include "kernel/path/law/pipeline.hpp"
@@ -22,11 +23,17 @@ class CoursePlanning final : public RunSink, private KnotSink {
   void rest(bool confirm) override;
   /// Plans what can be planned.
   void work();
-  /// There is no law inside of the limits for what comes next: what was given ends before it, and nothing
-  /// more is, until restart().
+  /// There is no law inside of the limits for what comes next: what was given rests before it, and nothing
+  /// more is given, until restart().
   bool broken() const { return broken_; }
-  /// And this is the element.
-  const Tag& broken_at() const { return broken_at_; }
+  /// Where a broken course rests.
+  struct Rest {
+    double place = 0.0;       ///< path parameter from the start of the course
+    std::optional<Vector> x;  ///< of the axes; not at its start and in a forecast: the programmed place
+  };
+  const Rest& rest_place() const { return rest_; }
+  /// Path parameter that a course which breaks now surely comes to.
+  double sure() const { return sure_; }
   /// Forgets what was not given yet.
   void restart();
   const Pipeline::Counts& counts() const { return pipeline_.counts(); }
@@ -68,17 +75,13 @@ class CoursePlanning final : public RunSink, private KnotSink {
   CourseExtent extent_;
   bool begun_ = false;   ///< a course is
   bool broken_ = false;  ///< and it cannot be driven to its end
-  Tag broken_at_;
-  bool joins_ = false;     ///< the next run begins behind a straight
-  double length_ = 0.0;    ///< of the legs so far
-  double section_ = 0.0;   ///< where the run in work begins
-  double straight_ = 0.0;  ///< length of the straight behind it
-  LawTime base_;           ///< the same as time
-  struct Begin {
-    double begin;
-    Tag tag;
-  };
-  std::deque<Begin> tags_;    ///< of the legs that no knot lies behind yet
+  Rest rest_;
+  double sure_ = 0.0;
+  bool joins_ = false;        ///< the next run begins behind a straight
+  double length_ = 0.0;       ///< of the legs so far
+  double section_ = 0.0;      ///< where the run in work begins
+  double straight_ = 0.0;     ///< length of the straight behind it
+  LawTime base_;              ///< the same as time
   std::deque<Piece> pieces_;  ///< that no knot given lies on yet
   std::size_t given_ = 0;     ///< knots
   std::int64_t looked_ = 0;   ///< knots before this have had their stop looked for

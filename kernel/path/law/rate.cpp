@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace servogate::path {
 namespace {
@@ -11,9 +10,6 @@ namespace {
 constexpr double kPlace = 0.001;  // s between places; in changes of half a second twice as far, of one thrice
 constexpr double kShare = 0.9997;  // of the limits: what may lie between two places
 constexpr double kAbove = 0.996;   // the same above full rate
-constexpr int kTry = 6;            // places that a try counts for by itself
-constexpr double kLeastShare = 0.03, kOfStop = 0.6;
-constexpr double kShortest = 0.04, kLongest = 6.0, kLonger = 1.18;
 
 /// The step that goes late, its derivatives and its integral, by the share of time.
 struct Late {
@@ -35,6 +31,11 @@ struct Late {
 // Slowing down (in size) late; speeding up is its mirror. What is left of the slope goes with z (1 - z)^3.
 RateState RateChange::at(double t) const noexcept {
   const double in = std::min(t, seconds), z = in / seconds, y = 1.0 - z, h = r1 - r0;
+  if (way != 0.0) {
+    const double v = way / seconds, a = v / seconds, j = a / seconds;
+    return {30.0 * v * z * z * y * y, 60.0 * a * z * y * (1.0 - 2.0 * z), 60.0 * j * (1.0 - 6.0 * z * y),
+            way * z * z * z * (10.0 - z * (15.0 - 6.0 * z))};
+  }
   const bool up = std::abs(r1) > std::abs(r0);
   const Late late(power, up ? y : z);
   const double whole = 1.0 - (power + 1.0) / (power + 3.0);
@@ -205,6 +206,14 @@ Fit Verification::go(const CourseView& view, const RateLimits& limits, int& plac
   }
 }
 
+CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near, int axes) noexcept {
+  CoursePlace place(view);
+  place.set_knot(near);
+  Interval interval;
+  if (!place.go(t) || !interval.take(view, place.knot(), axes)) return {};
+  return interval.at(t.since(interval.begin()), 0.0, 0.0, axes);
+}
+
 StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& before,
                    const RateLimits& limits) {
   constexpr int kShorter = 4, kTries = 24, kPlaces = 1 << 20;
@@ -220,7 +229,7 @@ StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& be
   double seconds = before.seconds;
   int power = before.power;
   if (fits(seconds, power)) {
-    for (int n = 0; n < kShorter && seconds * kStep > kShortest; ++n) {
+    for (int n = 0; n < kShorter && seconds * kStep > RateChange::kShortest; ++n) {
       if (!fits(seconds * kStep, power)) {
         if (!fits(seconds * kStep, 5 - power)) break;
         power = 5 - power;
@@ -229,220 +238,10 @@ StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& be
     }
     return {seconds, power, knot};
   }
-  for (int n = 0; n < kTries && seconds < kLongest; ++n, seconds *= kLonger)
+  for (int n = 0; n < kTries && seconds < RateChange::kLongest; ++n, seconds *= RateChange::kLonger)
     for (const int p : {power, 5 - power})
       if (fits(seconds, p)) return {seconds, p, knot};
   return {before.seconds, before.power, -1};
-}
-
-void RateMotion::begin(double rate) noexcept {
-  *this = RateMotion(limits_);
-  rate_ = rate;
-}
-
-void RateMotion::advance(double period) noexcept {
-  if (!active_) {
-    time_ = time_.plus(rate_ * period);
-    return;
-  }
-  const double before = change_.at(into_).passed;
-  into_ += period;
-  const RateState now = change_.at(into_);
-  time_ = time_.plus(now.passed - before);
-  rate_ = now.rate;
-  if (into_ < change_.seconds) return;
-  active_ = false;
-  rate_ = change_.r1;
-}
-
-void RateMotion::start(const RateChange& change) noexcept {
-  change_ = change;
-  into_ = 0.0;
-  active_ = true;
-  open_ = stuck_ = false;
-  if (change.r1 != 0.0) starving_ = false;
-}
-
-Fit RateMotion::enter(const CourseView& view, double target, double seconds, int power,
-                      double period) noexcept {
-  const double slope = active_ ? change_.at(into_).slope : 0.0;
-  left_ -= kTry;
-  verification_.begin({rate_, slope, target, seconds, power}, time_, knot_, period);
-  const Fit fit = verification_.go(view, limits_, left_);
-  if (fit == Fit::fits) start(verification_.change());
-  return fit;
-}
-
-/// Seconds until the knot of a stop; below 0: it lies behind, or is not known.
-double RateMotion::until(const CourseView& view, const StopHint& hint) const noexcept {
-  const Knot* knot = hint.knot >= 0 ? view.knot(hint.knot) : nullptr;
-  if (knot == nullptr || active_ || !(rate_ > 0.0 && rate_ <= 1.0)) return -1.0;
-  return knot->t.since(time_) / rate_;
-}
-
-/// A stop holds from its knot on, which may be reached in this cycle; at a lower rate it takes longer, by the
-/// same way.
-bool RateMotion::stop_at(const CourseView& view, const StopHint& hint, double period) noexcept {
-  const double in = until(view, hint);
-  if (in < 0.0 || in > period) return false;
-  time_ = view.knot(hint.knot)->t;
-  start({rate_, 0.0, 0.0, hint.seconds / rate_, hint.power});
-  advance(period - in);
-  return true;
-}
-
-bool RateMotion::stop_in_time(const CourseView& view, double target, double period) noexcept {
-  settled_ = false;
-  if (active_) return false;
-  if (target >= 0.0 && target < rate_) {
-    const StopHint hint = view.stop_near(knot_);
-    if (stop_at(view, hint, period)) return true;
-    settled_ = until(view, hint) > 0.0;
-  }
-  if (view.end() >= 0 || !stop_at(view, view.guard(), period)) return false;
-  starving_ = target != 0.0;
-  return true;
-}
-
-/// A stop like the known one, which begins a little before it, and longer ones.
-bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double period) noexcept {
-  constexpr double kLongerBy[] = {1.0, 1.18, 1.4};
-  const double known = hint.seconds / rate_ + std::max(0.0, until(view, hint));
-  for (const double longer : kLongerBy) {
-    if (left_ <= 0) return false;
-    if (enter(view, 0.0, known * longer, longer == 1.4 ? 5 - hint.power : hint.power, period) == Fit::fits)
-      return true;
-  }
-  return false;
-}
-
-/// First the known stop and longer ones; then, cycle by cycle, all lengths from the shortest on.
-void RateMotion::search(const CourseView& view, double target, double period) noexcept {
-  const StopHint hint = view.stop_near(knot_);
-  // A change by less takes less; where no stop is known, all lengths are tried.
-  const double least =
-      hint.knot < 0 ? kShortest : std::max(kShortest, kOfStop * hint.seconds * std::abs(target - rate_));
-  const auto anew = [&] {
-    next_ = least;
-    power_ = 3;
-  };
-  if (searched_for_ != target) {
-    searched_for_ = target;
-    anew();
-    open_ = false;
-  }
-  if (!open_) share_ = 1.0;
-  if (target == 0.0 && !active_ && hint.knot >= 0 && rate_ > 0.0 && try_known(view, hint, period)) return;
-  if (open_) {
-    const Fit fit = verification_.go(view, limits_, left_);
-    if (fit == Fit::fits) return start(verification_.change());
-    if (fit == Fit::open) return;
-    open_ = false;
-  }
-  while (left_ > 0) {
-    const bool alone = left_ == kMostPlaces;
-    const Fit fit = enter(view, share_ * target, next_, power_, period);
-    if (fit == Fit::fits) return;
-    // Longer changes would end behind all that is known, too.
-    if (fit == Fit::unpublished && power_ == 2) {
-      anew();
-      share_ *= 0.5;
-      stuck_ = share_ < kLeastShare && rate_ == 0.0;
-      if (share_ < kLeastShare || share_ * target <= rate_) return;
-      continue;
-    }
-    // The next cycle goes on: at rest, where the place does not move, with the same change; else with its
-    // length, or with the shortest where one cycle is not enough for it.
-    open_ = fit == Fit::open && rate_ == 0.0 && !active_;
-    if (fit == Fit::open && !open_ && !alone) return;
-    power_ = 5 - power_;
-    if (power_ == 3) next_ *= kLonger;
-    if (next_ > kLongest || (fit == Fit::open && !open_)) anew();
-  }
-}
-
-/// Up and back again at once; one try a cycle, shorter and longer ones in turn.
-void RateMotion::surge(const CourseView& view, double target, double period) noexcept {
-  constexpr double kShares[] = {1.0, 0.4};
-  constexpr double kLengths[] = {0.1, 0.16, 0.25, 0.4, 0.6};
-  constexpr int kTries = static_cast<int>(std::size(kShares) * std::size(kLengths));
-  const int n = surges_tried_;
-  surges_tried_ = (n + 1) % kTries;
-  const double seconds = kLengths[static_cast<std::size_t>(n) % std::size(kLengths)];
-  const double rate = rate_ + (target - rate_) * kShares[static_cast<std::size_t>(n) / std::size(kLengths)];
-  const RateChange up{rate_, 0.0, rate, seconds, 3}, down{rate, 0.0, 1.0, seconds, 3};
-  Verification way;
-  way.begin(up, time_, knot_, period);
-  if (way.go(view, limits_, left_) != Fit::fits) return;
-  way.begin(down, time_.plus(up.at(seconds).passed), way.knot(), period);
-  if (way.go(view, limits_, left_) != Fit::fits) return;
-  start(up);
-  back_ = down;
-  back_in_ = 0.0;
-  surges_tried_ = n;
-}
-
-/// So much longer at this rate, and back from there.
-void RateMotion::put_off(const CourseView& view, double period) noexcept {
-  constexpr double kMore = 0.016, kFar = 0.04;
-  if (back_in_ > kFar) return;
-  const RateChange on{rate_, 0.0, rate_, kMore, 3};
-  Verification way;
-  way.begin(on, time_.plus(rate_ * back_in_), knot_, period);
-  if (way.go(view, limits_, left_) != Fit::fits) return;
-  const LawTime there = time_.plus(rate_ * (back_in_ + kMore));
-  const std::int64_t knot = way.knot();
-  way.begin(back_, there, knot, period);
-  if (way.go(view, limits_, left_) == Fit::fits) back_in_ += kMore;
-}
-
-/// The way back from above 1 begins in this cycle.
-bool RateMotion::come_back(double period) noexcept {
-  if (active_ || rate_ <= 1.0) return false;
-  if (back_in_ >= period) {
-    back_in_ -= period;
-    return false;
-  }
-  const double until = back_in_;
-  time_ = time_.plus(rate_ * until);
-  start(back_);
-  advance(period - until);
-  return true;
-}
-
-void RateMotion::seek(const CourseView& view, double target, double period) noexcept {
-  const bool above = !active_ && rate_ > 1.0;
-  if (target <= 1.0) {
-    if (target != wanted()) search(view, target, period);
-  } else if (above && target >= rate_) {
-    put_off(view, period);
-    if (target > rate_) surge(view, target, period);
-  } else if (wanted() < 1.0) {
-    search(view, 1.0, period);
-  } else if (!active_ && rate_ == 1.0) {
-    surge(view, target, period);
-  }
-}
-
-bool RateMotion::step(const CourseView& view, double target, double period) noexcept {
-  left_ = kMostPlaces;
-  seek(view, target, period);
-  if (!come_back(period) && !stop_in_time(view, target, period)) advance(period);
-  CoursePlace place(view);
-  place.set_knot(knot_);
-  place.go(time_);
-  knot_ = place.knot();
-  const Knot* last = view.knot(knot_);
-  const bool ended = view.end() == knot_ && last != nullptr && time_.since(last->t) >= 0.0 && rate_ > 0.0;
-  const bool begun = time_.ns <= 0 && rate_ < 0.0;
-  return !(ended || begun);
-}
-
-CoursePoint RateMotion::point(const CourseView& view) const noexcept {
-  Interval interval;
-  if (!interval.take(view, knot_, limits_.axes)) return {};
-  return interval.at(time_.since(interval.begin()), rate_, active_ ? change_.at(into_).slope : 0.0,
-                     limits_.axes);
 }
 
 }  // namespace servogate::path

@@ -18,6 +18,9 @@ struct RateChange {
   double r1 = 0.0;
   double seconds = 1.0;  ///< > 0
   int power = 3;         ///< 2 or 3: how late
+  /// Not 0: instead of all that, from rest to rest over so much law time, backwards if below 0.
+  double way = 0.0;
+  static constexpr double kShortest = 0.04, kLongest = 6.0, kLonger = 1.18;  // s; from length to length
 
   /// `t` seconds from its start, >= 0; behind `seconds` r1 holds.
   RateState at(double t) const noexcept;
@@ -42,6 +45,9 @@ class CourseView {
   virtual StopHint guard() const noexcept { return {}; }
   /// The first stop at or behind a knot, or the last one before. real-time safe.
   virtual StopHint stop_near(std::int64_t /*knot*/) const noexcept { return {}; }
+  /// Where a course rests that does not come to its end: its last stop leads there; nullptr: it is none.
+  /// real-time safe.
+  virtual const LawTime* rests_at() const noexcept { return nullptr; }
 
  protected:
   ~CourseView() = default;
@@ -133,13 +139,17 @@ class Verification {
   double t_ = 0.0, last_ = 0.0, beyond_ = 0.0;
 };
 
+/// The course at rest at a law time; `near`: number of a knot near it. real-time safe.
+CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near, int axes) noexcept;
+
 /// The shortest stop at a knot that is found near the one of a knot before. Bounded; for the planner.
 StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& before,
                    const RateLimits& limits);
 
 /// Follows a course at a rate that changes. One cycle looks at no more than so many places of a change. While
 /// the end of the course is not published, no change is entered that does not end before the last stop that
-/// is, and there the motion stops.
+/// is, and there the motion stops. That is how it comes to where a broken course rests; what a hold has left
+/// of the way there is gone from rest to rest.
 class RateMotion {
  public:
   static constexpr int kMostPlaces = 1000;  // a cycle
@@ -150,8 +160,8 @@ class RateMotion {
   /// One cycle on: `target` is the rate that is wanted, -1 to 1, or above where the path allows it: a rate
   /// above 1 is entered together with a way back to 1, and kept while that can be put off. A lower rate from
   /// 1 is settled in the cycle in which it is first wanted: what is not found at once begins as the next
-  /// known stop, out of which the search goes on. False: the law time has come to the end of the course, or
-  /// to its start backwards.
+  /// known stop, out of which the search goes on. False: the law time has come to the end of the course, to
+  /// its start backwards, or to where it rests if it is broken.
   bool step(const CourseView& view, double target, double period) noexcept;
   CoursePoint point(const CourseView& view) const noexcept;
   double rate() const noexcept { return rate_; }
@@ -162,9 +172,9 @@ class RateMotion {
   bool at_rest() const noexcept { return !active_ && rate_ == 0.0; }
   /// It stops, or stands, because the course is not published any further.
   bool starving() const noexcept { return starving_; }
-  double wanted() const noexcept { return active_ ? change_.r1 : rate_; }
-  /// At rest, and what is known is too short to go on: only once it has tried.
-  bool stuck() const noexcept { return at_rest() && stuck_; }
+  double wanted() const noexcept {
+    return !active_ ? rate_ : change_.way != 0.0 ? searched_for_ : change_.r1;
+  }
   /// Looked at in the last cycle.
   int places() const noexcept { return kMostPlaces - left_; }
 
@@ -177,6 +187,9 @@ class RateMotion {
   bool stop_in_time(const CourseView& view, double target, double period) noexcept;
   bool try_known(const CourseView& view, const StopHint& hint, double period) noexcept;
   void search(const CourseView& view, double target, double period) noexcept;
+  bool near_last_stop(const CourseView& view) const noexcept;
+  void creep(const CourseView& view, double target) noexcept;
+  bool rests_there(const CourseView& view) noexcept;
   void seek(const CourseView& view, double target, double period) noexcept;
   void surge(const CourseView& view, double target, double period) noexcept;
   void put_off(const CourseView& view, double period) noexcept;
@@ -194,9 +207,10 @@ class RateMotion {
   double share_ = 1.0;         ///< of the target, where not enough is published for all of it
   int power_ = 3, left_ = kMostPlaces;
   Verification verification_;
-  bool open_ = false;     ///< it goes on, at rest
-  RateChange back_;       ///< from above 1
-  double back_in_ = 0.0;  ///< s at the present rate until it begins
+  bool open_ = false;      ///< it goes on, at rest
+  bool creeping_ = false;  ///< next_ is the length of a way from rest to rest
+  RateChange back_;        ///< from above 1
+  double back_in_ = 0.0;   ///< s at the present rate until it begins
   int surges_tried_ = 0;
 };
 

@@ -56,7 +56,6 @@ enum class Flaw : std::uint8_t {
   wrong_plane,  ///< axis1, axis2 equal, rotary or beyond axis_count
   radius,       ///< the arc's radius is zero, or start and end radius differ by more than 0.011 mm
   sweep,        ///< the sweep does not lead to the end point
-  no_law,       ///< no speed inside of the axes' limits was found for an element before: the path ends there
 };
 
 /// Whole geometry of an element that starts at `from`; length 0 when nothing moves.

@@ -25,6 +25,9 @@ class CourseAhead final : public CourseView {
     return extent().stops > 0 ? track_->stops[course_->first_stop + extent().stops - 1] : StopHint{};
   }
   StopHint stop_near(std::int64_t knot) const noexcept override;
+  const LawTime* rests_at() const noexcept override {
+    return extent().broken && extent().stops > 0 ? &extent().rest : nullptr;
+  }
   /// What lies so far behind that nobody looks at it: numbers in the rings of the track.
   std::uint64_t knots_behind(std::int64_t knot) const noexcept;
   std::uint64_t stops_behind(std::int64_t knot) const noexcept;
