@@ -67,8 +67,13 @@ constexpr KindRow kKindRows[kKinds] = {
     {Kind::corrupt, "corrupt", kBus | kStation, kFrames,
      "a bit error: error frame and retransmission; of a station a wrong checksum"},
     {Kind::repeat, "repeat", kBus, kFrames, "frames are received twice"},
-    {Kind::unplug, "unplug", kNode | kChip, kFor, "nothing comes from it and nothing reaches it"},
-    {Kind::bus_off, "bus_off", kNode, kFor, "its controller is bus-off, as after 256 transmit errors"},
+    {Kind::foreign, "foreign", kBus, takes(duration, Parameter::delay, id, Parameter::data, count),
+     "a device that does not belong to the machine sends `count` frames, each `delay` behind the one before "
+     "(default: as close as the wire permits)"},
+    {Kind::unplug, "unplug", kNode | kChip | kBus, kFor,
+     "nothing comes from it and nothing reaches it; of a bus the interface of the control is down"},
+    {Kind::bus_off, "bus_off", kNode | kBus, kFor,
+     "its controller is bus-off, as after 256 transmit errors; of a bus that of the control"},
     {Kind::kill, "kill", kDrive | kEncoder | kModule | kStation, kFor,
      "its electronics die: nothing is sent, heard or held, outputs and torque are gone; then it starts as "
      "after "
@@ -76,6 +81,7 @@ constexpr KindRow kKindRows[kKinds] = {
     {Kind::swapped, "swapped", kDrive | kEncoder | kModule, takes(duration, value),
      "another device with its node-ID takes its place, and boots with the product code `value` (1018h:02; 0: "
      "the next one)"},
+    {Kind::edges_lost, "edges_lost", kChip, kFor, "its edges and their times are lost, its levels are right"},
     {Kind::stuck, "stuck", kInput, takes(duration, level), "the point stays at a level, whatever drives it"},
     {Kind::bounce, "bounce", kInput, takes(duration, Parameter::delay, seed),
      "after a change the contact flickers for half of `delay` to all of it"},
@@ -92,6 +98,8 @@ constexpr KindRow kKindRows[kKinds] = {
      "the next program written to it ends with this error of 1F57h"},
     {Kind::reset, "reset", kDrive, 0, "restarts as after power-on"},
     {Kind::trip, "trip", kStation, takes(code), "an inverter trips with this code of its own"},
+    {Kind::parameter, "parameter", kStation, takes(index, value),
+     "somebody sets the parameter `index` of an inverter to `value` at its keypad"},
     {Kind::late_cycle, "late_cycle", kControl, takes(Parameter::delay),
      "the next cycle begins so much later, and what it drives lives on meanwhile"},
 };
@@ -128,6 +136,26 @@ bool set_whole(std::string_view text, std::int64_t min, std::int64_t max, T& out
   return value.has_value();
 }
 
+/// Bytes as pairs of hexadecimal digits, with or without blanks between them.
+bool set_data(std::string_view text, Fault& out) {
+  std::array<std::uint8_t, 8> data{};
+  std::size_t length = 0;
+  while (!text.empty()) {
+    if (text.front() == ' ') {
+      text.remove_prefix(1);
+      continue;
+    }
+    if (text.size() < 2 || length == data.size()) return false;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + 2, data[length], 16);
+    if (error != std::errc{} || end != text.data() + 2) return false;
+    ++length;
+    text.remove_prefix(2);
+  }
+  out.data = data;
+  out.length = static_cast<std::uint8_t>(length);
+  return true;
+}
+
 constexpr std::int64_t kMost32 = 0xFFFF'FFFF;
 constexpr std::int64_t kMostId = 0x1FFF'FFFF;
 using Text = std::string_view;
@@ -138,11 +166,12 @@ constexpr ParameterRow kParameterRows[] = {
     {every, "every", "1 to 4294967295", [](Text v, Fault& f) { return set_whole(v, 1, kMost32, f.every); }},
     {number, "number", "of the PDO, 1 to 4; none: any",
      [](Text v, Fault& f) { return set_whole(v, 1, 4, f.number); }},
-    {value, "value", "bits, counts, or a product code",
+    {value, "value", "bits, counts, a product code or the value of a parameter",
      [](Text v, Fault& f) { return set_whole(v, INT64_MIN, INT64_MAX, f.value); }},
     {code, "code", "error code, 1 to 0xFFFF",
      [](Text v, Fault& f) { return set_whole(v, 1, 0xFFFF, f.error_code); }},
-    {index, "index", "object, 0: any", [](Text v, Fault& f) { return set_whole(v, 0, 0xFFFF, f.index); }},
+    {index, "index", "object, 0: any; address of a parameter",
+     [](Text v, Fault& f) { return set_whole(v, 0, 0xFFFF, f.index); }},
     {abort, "abort", "SDO abort code", [](Text v, Fault& f) { return set_whole(v, 1, kMost32, f.abort); }},
     {state, "state", "of CiA 402, switched_on ...",
      [](Text v, Fault& f) {
@@ -167,6 +196,7 @@ constexpr ParameterRow kParameterRows[] = {
      [](Text v, Fault& f) { return set_whole(v, 1, 255, f.exception); }},
     {level, "level", "0 or 1", [](Text v, Fault& f) { return set_whole(v, 0, 1, f.level); }},
     {seed, "seed", "of the chance", [](Text v, Fault& f) { return set_whole(v, 0, kMost32, f.seed); }},
+    {Parameter::data, "data", "up to 8 bytes in hexadecimal digits: \"40 18 10\" (default: none)", set_data},
 };
 
 template <class Table, class Wanted>

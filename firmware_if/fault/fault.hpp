@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -54,10 +55,12 @@ enum class Kind : std::uint8_t {
   delay,
   corrupt,
   repeat,
+  foreign,
   unplug,
   bus_off,
   kill,
   swapped,
+  edges_lost,
   stuck,
   bounce,
   emcy,
@@ -71,6 +74,7 @@ enum class Kind : std::uint8_t {
   flash_error,
   reset,
   trip,
+  parameter,
   late_cycle,
 };
 inline constexpr std::size_t kKinds = static_cast<std::size_t>(Kind::late_cycle) + 1;
@@ -94,6 +98,7 @@ enum class Parameter : std::uint8_t {
   exception,
   level,
   seed,
+  data,
 };
 
 /// One fault with its parameters; those that its kind does not take are ignored. real-time safe to copy.
@@ -116,6 +121,8 @@ struct Fault {
   std::uint8_t exception = 4;  ///< Modbus V1.1b3, section 7
   bool level = false;
   std::uint64_t seed = 1;
+  std::array<std::uint8_t, 8> data{};
+  std::uint8_t length = 0;  ///< bytes of `data`
   bool operator==(const Fault&) const = default;
 };
 

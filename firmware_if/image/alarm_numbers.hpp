@@ -36,8 +36,6 @@ inline constexpr AlarmNumber kTAckTimeout = 4005;
 inline constexpr AlarmNumber kHAckTimeout = 4006;
 inline constexpr AlarmNumber kStarved = 4007;
 inline constexpr AlarmNumber kWriteRefused = 4009;
-inline constexpr AlarmNumber kAxisNotReady = 4010;
-inline constexpr AlarmNumber kSetpointLimit = 4011;
 inline constexpr AlarmNumber kProgramWarning = 4012;
 
 inline constexpr AlarmNumber kExternalAlarm = 5001;
@@ -49,7 +47,6 @@ inline constexpr AlarmNumber kPlcWatchdog = 5005;
 inline constexpr AlarmNumber kEmergencyStop = 6001;
 inline constexpr AlarmNumber kOverrunLimit = 6002;
 inline constexpr AlarmNumber kOperatorQuickStop = 6003;
-inline constexpr AlarmNumber kRequestsLost = 6004;
 inline constexpr AlarmNumber kGuardForced = 6005;
 inline constexpr AlarmNumber kStateFellBack = 6006;
 inline constexpr AlarmNumber kRecordBroken = 6007;

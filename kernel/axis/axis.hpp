@@ -41,6 +41,8 @@ class Axis {
 
   // -- phases of a cycle
   void read(image::ProcessImage& image) noexcept;
+  /// The next read() comes so much later than a period after the one before. real-time safe.
+  void note_late(double s) noexcept { late_s_ = s; }
   void set_process(const Setpoint& setpoint) noexcept;
   void react(image::Reaction reaction) noexcept { reaction_ = reaction; }
   void command(image::ProcessImage& image) noexcept;
@@ -110,7 +112,8 @@ class Axis {
   }
   /// Position, or speed with its sign, that the last one was to reach.
   double plc_goal() const noexcept { return goal_; }
-  /// Starts homing (method of the configuration); the axis becomes the homing's own until it ends.
+  /// Starts homing (method of the configuration); the axis becomes the homing's own until it ends. False: it
+  /// may not move, or moves. What homing lacks (the reference of an absolute encoder) is an alarm of its own.
   bool home() noexcept;
   /// Stops whatever this axis does by itself (jog, homing), at its limits.
   void stop() noexcept;
@@ -262,6 +265,7 @@ class Axis {
   bool seen_online_ = false;
   bool seen_counts_ = false;
   std::uint32_t last_missed_ = 0;
+  double late_s_ = 0.0;  ///< of the cycle at hand
   std::int64_t last_counts_ = 0;
   double motor_ = 0.0;  ///< drive position in machine units, compensation included
   double actual_ = 0.0;

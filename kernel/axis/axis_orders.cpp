@@ -166,7 +166,7 @@ bool Axis::home() noexcept {
   own_motion_ = true;
   moving_ = homing_.active();
   homing_reported_ = false;
-  return homing_.state() != Homing::State::failed;
+  return true;
 }
 
 void Axis::stop() noexcept {

@@ -14,6 +14,8 @@ using image::DriveState;
 namespace {
 
 constexpr double kVelocityFilter = 0.01;  // s
+/// A way so many times as long as at the greatest speed is a jump: a cycle may be two periods late untold.
+constexpr double kJumpRatio = 3.0;
 /// Where process data may be missing for ever, so many in a row still mean nothing.
 constexpr std::uint32_t kMissedUnjudged = 3;
 constexpr double kOffPathRest = 0.1;  // s
@@ -96,18 +98,19 @@ void Axis::read_feedback(const image::DriveFeedback& in, double dt) noexcept {
   motor_ = scale_.position(in.position_counts);
   if (seen_counts_) {
     double step = scale_.velocity(static_cast<double>(in.position_counts - before));
-    const double permitted =
-        2.0 * config_.limits.velocity * dt * (1.0 + last_missed_) + 20.0 / scale_.per_unit();
+    const double since = dt * (1.0 + last_missed_) + late_s_;
+    const double permitted = kJumpRatio * config_.limits.velocity * since + 20.0 / scale_.per_unit();
     if (std::abs(step) > permitted && homing_.drive_leads()) {
       step = actual_velocity_ * dt;  // the drive counts from its new zero
     } else if (std::abs(step) > permitted) {
       raise(alarm::kEncoderJump, permitted, step);
       drop_reference();
     }
-    const double span = in.missed == 0 ? dt * (1.0 + last_missed_) : dt;
+    const double span = in.missed == 0 ? since : dt;
     actual_velocity_ += (step / span - actual_velocity_) * std::min(1.0, span / kVelocityFilter);
   }
   seen_counts_ = true;
+  late_s_ = 0.0;
   last_missed_ = in.missed;
   actual_standing_ = std::abs(actual_velocity_) <= config_.standstill_velocity;
   const Sent& then = sent(config_.feedback_delay);

@@ -91,7 +91,12 @@ bool Cycle::receive() noexcept {
     capture(inputs_);
     if (tap_ != nullptr) tap_->take(inputs_);
   }
-  for (int i = 0; i < inputs_.notice_count; ++i) raise(inputs_.notices[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < inputs_.notice_count; ++i) {
+    const image::AlarmRecord& notice = inputs_.notices[static_cast<std::size_t>(i)];
+    raise(notice);
+    if (notice.number != alarm::kOverrunLimit) continue;
+    for (axis::Axis& a : axes_) a.note_late(notice.value * 1e-3);
+  }
   notices_.clear();
   force();
   return true;

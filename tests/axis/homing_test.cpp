@@ -160,9 +160,10 @@ TEST(Homing, an_absolute_axis_without_a_kept_reference_says_so_and_with_one_is_h
   config.homing.method = HomingMethod::absolute;
   Rig rig(config);
   ASSERT_TRUE(rig.enable());
-  EXPECT_FALSE(rig.axis.home());
+  EXPECT_TRUE(rig.axis.home());
   rig.run(5);
   EXPECT_TRUE(rig.raised(alarm::kHomingNoReference));
+  EXPECT_FALSE(rig.axis.homed());
   rig.axis.configure(config, 0);
   rig.axis.set_reference(777);
   ASSERT_TRUE(rig.enable());

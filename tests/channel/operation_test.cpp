@@ -57,6 +57,25 @@ TEST(Hold, comes_from_feed_enable_and_from_a_single_axis_just_the_same) {
       [](TestLogic& l) { l.axis_feed_enable[1] = true; });
 }
 
+TEST(Starved, program_slows_down_on_its_path_and_says_so_and_goes_on_when_its_blocks_come) {
+  std::string program = "G1 F6000\n";
+  for (int n = 0; n < 300; ++n) program += "X20\nX0\n";  // more than is planned ahead
+  Rig rig(program + "M30\n");
+  rig.start();
+  rig.run(0.3);
+  bool reads = false;
+  rig.read = [&] {
+    if (reads) rig.process->work();
+  };
+  ASSERT_TRUE(rig.until([&] { return rig.alarms(cycle::alarm::kStarved) > 0; }, 60.0));
+  EXPECT_EQ(rig.state(), ProcessState::running) << "a warning stops nothing";
+  EXPECT_GT(rig.status().starved, 0u);
+  reads = true;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; }, 300.0)) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(), 0.0, 1e-9);
+  EXPECT_EQ(rig.violations(), "");
+}
+
 TEST(Hold, by_the_plcs_stop_ends_with_start_or_resume_and_not_before_the_stop_has_gone) {
   for (const RequestKind go_on : {RequestKind::start, RequestKind::resume}) {
     Rig rig(kLongLine);

@@ -9,7 +9,9 @@ constexpr std::uint32_t kSuspendBits = 8;
 }  // namespace
 
 bool CanSegment::Endpoint::send(const CanFrame& frame) noexcept {
-  if (frame.fd || frame.error || frame.length > 8 || bus_off() || pending_.size() == pending_.capacity()) {
+  const bool down = !connected_ && node_ == nullptr;
+  if (frame.fd || frame.error || frame.length > 8 || down || bus_off() ||
+      pending_.size() == pending_.capacity()) {
     ++segment_.statistics_.refused;
     return false;
   }
@@ -89,6 +91,14 @@ void CanSegment::Endpoint::transmit_error(bool count) noexcept {
   } else if (transmit_errors_ >= kPassive) {
     suspended_until_ = segment_.now_ + segment_.bit_time(image::kIntermissionBits + kSuspendBits);
   }
+}
+
+/// A computer throws away what waits when its interface goes down, so that nothing old moves a drive later.
+void CanSegment::Endpoint::set_connected(bool connected) noexcept {
+  connected_ = connected;
+  if (connected || node_ != nullptr) return;
+  pending_.clear();
+  segment_.waiting_ &= ~bit();
 }
 
 void CanSegment::Endpoint::go_bus_off() noexcept {

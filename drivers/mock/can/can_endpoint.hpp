@@ -75,7 +75,7 @@ class CanSegment::Endpoint final : public image::CanBus {
     due_ = std::max(node_->next_action_ns(), now + 1);
     segment_.node_due_known_ = false;
   }
-  void set_connected(bool connected) noexcept { connected_ = connected; }
+  void set_connected(bool connected) noexcept;
 
  private:
   std::uint64_t bit() const noexcept { return std::uint64_t{1} << number_; }

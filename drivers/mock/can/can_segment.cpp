@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "drivers/mock/can/can_endpoint.hpp"
+#include "drivers/mock/can/foreign_sender.hpp"
 
 namespace servogate::mock {
 namespace {
@@ -238,7 +239,14 @@ const fault::Fault* CanSegment::fault_for(const CanFrame& frame, int sender, boo
   return nullptr;
 }
 
-bool CanSegment::inject(const fault::Fault& fault) noexcept {
+bool CanSegment::inject(const fault::Fault& fault) {
+  if (fault.kind == fault::Kind::foreign) {
+    if (foreign_ == nullptr) {
+      foreign_ = std::make_unique<ForeignSender>();
+      attach(*foreign_, "foreign");
+    }
+    return foreign_->begin(fault, now_) && replan(*foreign_);
+  }
   constexpr fault::Kind kOfWire[] = {fault::Kind::drop, fault::Kind::delay, fault::Kind::corrupt,
                                      fault::Kind::repeat};
   if (std::find(std::begin(kOfWire), std::end(kOfWire), fault.kind) == std::end(kOfWire)) return false;
@@ -251,11 +259,21 @@ bool CanSegment::inject(const fault::Fault& fault) noexcept {
   return true;
 }
 
-void CanSegment::clear_faults() noexcept { faults_.clear(); }
+void CanSegment::clear_faults() noexcept {
+  faults_.clear();
+  if (foreign_ != nullptr) foreign_->end_all();
+}
 void CanSegment::clear(const fault::Fault& fault) noexcept {
+  if (fault.kind == fault::Kind::foreign && foreign_ != nullptr) foreign_->end(fault);
   const auto same = std::find_if(faults_.begin(), faults_.end(),
                                  [&](const ActiveFault& active) { return active.fault == fault; });
   if (same != faults_.end()) faults_.erase(same);
+}
+
+bool CanSegment::replan(const CanNode& node) noexcept {
+  for (auto& e : endpoints_)
+    if (e->node() == &node) e->plan(now_);
+  return true;
 }
 
 void CanSegment::force_bus_off(int endpoint) noexcept {

@@ -41,6 +41,8 @@ class CanNode {
   virtual bool alive() const noexcept { return true; }
 };
 
+class ForeignSender;
+
 /// Sizes and rate of a segment. Memory is taken in the constructor and in attach(), never later.
 struct CanSegmentConfig {
   std::uint32_t bit_rate = 1'000'000;  ///< bit/s
@@ -111,9 +113,10 @@ class CanSegment final : public image::Simulated {
 
   /// Puts a fault on the wire: drop (the frame occupies the bus, and nobody receives it), delay (it is
   /// offered for arbitration later), corrupt (a bit error at three quarters of the frame: error frame, error
-  /// counters, retransmission), repeat (it is received twice). Faults work in the order of injection, at most
-  /// 16 at a time. False: no place, or no fault of a wire.
-  bool inject(const fault::Fault& fault) noexcept;
+  /// counters, retransmission), repeat (it is received twice), foreign (a device that is attached for it
+  /// sends frames). Faults work in the order of injection, at most 16 at a time. False: no place, or no fault
+  /// of a wire. Not real-time safe for foreign.
+  bool inject(const fault::Fault& fault);
   void clear_faults() noexcept;
   /// Takes away the oldest fault that is equal to this one.
   void clear(const fault::Fault& fault) noexcept;
@@ -122,6 +125,7 @@ class CanSegment final : public image::Simulated {
   /// Lets a bus-off endpoint return after 128 times 11 recessive bits.
   void restart(int endpoint) noexcept;
   /// Unplugs an endpoint (false) or plugs it in again; it neither sends, receives nor acknowledges meanwhile.
+  /// A polled one is an interface that goes down: what waits in it is thrown away, and it takes nothing.
   void set_connected(int endpoint, bool connected) noexcept;
   /// One observer; nullptr: none.
   void set_monitor(CanMonitor* monitor) noexcept { monitor_ = monitor; }
@@ -153,6 +157,8 @@ class CanSegment final : public image::Simulated {
   Nanoseconds earliest_start() const noexcept;
   Nanoseconds earliest_node() const noexcept;
   void run_due_nodes() noexcept;
+  /// The node has something to do earlier than it said.
+  bool replan(const CanNode& node) noexcept;
   void start_frame() noexcept;
   void finish_attempt() noexcept;
   void finish_error() noexcept;
@@ -170,6 +176,7 @@ class CanSegment final : public image::Simulated {
   mutable bool node_due_known_ = false;  ///< ... since no node has planned anew
   CanMonitor* monitor_ = nullptr;
   std::vector<ActiveFault> faults_;
+  std::unique_ptr<ForeignSender> foreign_;  ///< on the wire since the first fault of its kind
   CanStatistics statistics_;
   Nanoseconds now_ = 0;
   Nanoseconds bus_free_ = 0;  ///< end of the intermission

@@ -78,7 +78,7 @@ image::Nanoseconds MockGpio::crossing(std::size_t n, double at, image::Nanosecon
 void MockGpio::flip(std::size_t n, bool level, image::Nanoseconds t) {
   lines_[n].level = level;
   ++lines_[n].edges;
-  if (plugged_) stage_.edge(n, level, t);
+  if (plugged_ && !edges_lost_) stage_.edge(n, level, t);
 }
 
 void MockGpio::move(std::size_t n, bool wanted, image::Nanoseconds t) {

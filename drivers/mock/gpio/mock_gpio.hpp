@@ -100,6 +100,8 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
   /// The chip answers (true) or is unplugged: then its points have their values of loss and its quality is
   /// bad.
   void plug(bool plugged) noexcept { plugged_ = plugged; }
+  /// Its edges and their times get lost, levels do not.
+  void lose_edges(bool lost) noexcept { edges_lost_ = lost; }
 
  private:
   struct Line {
@@ -133,6 +135,7 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
   std::vector<std::uint64_t> output_edges_;
   image::Nanoseconds t_ns_ = 0;
   bool plugged_ = true;
+  bool edges_lost_ = false;
 };
 
 }  // namespace servogate::mock

@@ -33,6 +33,10 @@ bool ModbusStation::inject(const fault::Fault& fault) {
     if (inverter_) inverter_->trip(fault.error_code);
     return inverter_.has_value();
   }
+  if (fault.kind == fault::Kind::parameter) {
+    if (inverter_) inverter_->set_register(fault.index, static_cast<std::uint16_t>(fault.value));
+    return inverter_.has_value();
+  }
   change_fault(fault);
   return true;
 }

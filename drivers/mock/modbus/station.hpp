@@ -58,8 +58,9 @@ class ModbusStation {
   void add_loopback(const Loopback& wire);
   /// Its one fault from now on: silent (no answer), exception (answers every request with it), slow (answers
   /// `delay_ns` later), corrupt (the answer's checksum is wrong), kill (without supply: no answer, its
-  /// outputs are off and stay off until somebody writes them). An inverter may trip beside it. False, and
-  /// nothing changed: no fault of a station, or a trip of one that is no inverter.
+  /// outputs are off and stay off until somebody writes them). An inverter may trip, or get another
+  /// parameter, beside it. False, and nothing changed: no fault of a station, or that of an inverter at one
+  /// that is none.
   bool inject(const fault::Fault& fault);
   void clear_fault();
   const std::optional<fault::Fault>& fault() const noexcept { return fault_; }

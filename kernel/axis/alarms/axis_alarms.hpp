@@ -21,7 +21,6 @@ inline constexpr AlarmNumber kEnableWithdrawn = 1010;
 inline constexpr AlarmNumber kBrakeNoTorque = 1011;
 inline constexpr AlarmNumber kBrakeSlips = 1012;
 inline constexpr AlarmNumber kSetpointStep = 1013;
-inline constexpr AlarmNumber kNotHomed = 1014;
 inline constexpr AlarmNumber kOffPath = 1015;
 inline constexpr AlarmNumber kPlaceUnknown = 1016;
 inline constexpr AlarmNumber kFollowingErrorHigh = 1017;

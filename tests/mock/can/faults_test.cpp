@@ -11,6 +11,7 @@ namespace {
 using image::CanState;
 using image::kMicrosecond;
 using image::kMillisecond;
+using image::kSecond;
 
 struct CanFaults : testing::Test {
   CanSegment segment;
@@ -42,6 +43,34 @@ TEST_F(CanFaults, a_dropped_frame_occupies_the_bus_and_reaches_nobody) {
   ASSERT_EQ(got.size(), 2u);
   EXPECT_EQ(got[0].id, 0x185u) << "only the first one was hit";
   EXPECT_EQ(segment.statistics().frames, 3u);
+}
+
+TEST_F(CanFaults, a_foreign_device_sends_as_many_frames_as_it_is_told_to_so_far_apart) {
+  fault::Fault foreign{.kind = fault::Kind::foreign, .delay_ns = 100 * kMillisecond, .id = 0x601, .count = 3};
+  ASSERT_TRUE(fault::find_parameter("data")->set("40 18 10", foreign));
+  ASSERT_TRUE(segment.inject(foreign));
+  const auto got = after(kSecond);
+  ASSERT_EQ(got.size(), 3u);
+  EXPECT_EQ(got[0].id, 0x601u);
+  EXPECT_EQ(got[0].length, 3u);
+  EXPECT_EQ(got[0].data[1], 0x18);
+  EXPECT_EQ(got[2].timestamp_ns - got[0].timestamp_ns, 200 * kMillisecond);
+}
+
+TEST_F(CanFaults, a_foreign_device_of_high_priority_takes_the_whole_wire_until_it_is_cleared) {
+  const fault::Fault flood{.kind = fault::Kind::foreign, .id = 1, .count = 0};
+  ASSERT_TRUE(segment.inject(flood));
+  after(kMillisecond);
+  send(0x185);
+  for (const CanFrame& frame : after(100 * kMillisecond)) EXPECT_EQ(frame.id, 1u);
+  EXPECT_GT(segment.statistics().frames, 1500u) << "frames of 47 bits and their intermission";
+  segment.clear(flood);
+  const auto got = after(kMillisecond);
+  ASSERT_FALSE(got.empty());
+  EXPECT_EQ(got.back().id, 0x185u);
+  const auto sent = segment.statistics().frames;
+  after(kMillisecond);
+  EXPECT_EQ(segment.statistics().frames, sent);
 }
 
 TEST_F(CanFaults, that_do_not_happen_to_a_wire_are_refused) {

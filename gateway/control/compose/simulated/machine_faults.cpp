@@ -41,6 +41,7 @@ std::optional<MachineFaults::Target> MachineFaults::find_on_bus(std::string_view
     Target target;
     target.name = device;
     target.devices = bit(Device::bus);
+    target.endpoint = 0;  // the control's
     target.wire = world_.wire(b);
     if (bus.name == device) return target;
     for (std::size_t n = 0; n < bus.nodes.size(); ++n) {
@@ -169,7 +170,7 @@ void MachineFaults::begin(const Target& target, const fault::Fault& fault, image
     lateness_ns_ += fault.delay_ns;
     return;
   }
-  if (fault.kind == Kind::trip) {
+  if (fault.kind == Kind::trip || fault.kind == Kind::parameter) {
     target.station->inject(fault);
     return;
   }
@@ -207,6 +208,7 @@ void MachineFaults::end_all(const Target& target, std::optional<Kind> kind) {
 }
 
 void MachineFaults::apply(const Target& target, const fault::Fault& fault, bool begins) {
+  if (target.chip != nullptr && fault.kind == Kind::edges_lost) return target.chip->lose_edges(begins);
   if (target.chip != nullptr) return target.chip->plug(!begins);
   if (target.encoder != nullptr && fault.kind == Kind::unreadable)
     return target.encoder->set_unreadable(begins);
