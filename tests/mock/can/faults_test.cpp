@@ -149,12 +149,15 @@ TEST_F(CanFaults, a_bus_off_endpoint_returns_after_128_times_11_recessive_bits) 
   EXPECT_EQ(after(kMillisecond).size(), 1u);
 }
 
-TEST_F(CanFaults, an_unplugged_endpoint_is_down_and_its_frames_wait) {
+TEST_F(CanFaults, an_interface_that_goes_down_throws_away_what_waits_and_takes_nothing_until_it_is_up) {
+  send(6);
   segment.set_connected(segment.number_of(a), false);
   send(7);
   EXPECT_TRUE(after(kMillisecond).empty());
   EXPECT_EQ(a.state(), CanState::down);
   segment.set_connected(segment.number_of(a), true);
+  EXPECT_TRUE(after(kMillisecond).empty()) << "nothing old goes out later";
+  send(8);
   EXPECT_EQ(after(kMillisecond).size(), 1u);
 }
 
