@@ -174,4 +174,9 @@ int connect_to(const Address& address, drivers::Notice& why) {
   return s;
 }
 
+void acknowledge_at_once(int socket) noexcept {
+  const int on = 1;
+  setsockopt(socket, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
+}
+
 }  // namespace servogate::usercan

@@ -29,5 +29,9 @@ Address in_numbers(const Address& address);
 int listen_on(Address& address, drivers::Notice& why);
 /// A connected socket, -1: refused. Not real-time safe.
 int connect_to(const Address& address, drivers::Notice& why);
+/// What has just been read is acknowledged now: a peer that gathers what it sends until then (Nagle) would
+/// wait up to 40 ms otherwise. The kernel forgets it, so it follows every read; of a Unix socket it does
+/// nothing. real-time safe.
+void acknowledge_at_once(int socket) noexcept;
 
 }  // namespace servogate::usercan

@@ -134,6 +134,7 @@ bool SocketcandBus::fill() noexcept {
   if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) disconnect();
   if (got <= 0) return false;
   in_end_ += static_cast<std::size_t>(got);
+  acknowledge_at_once(socket_);
   realtime_ahead_ = drivers::realtime_ahead();
   return true;
 }

@@ -51,6 +51,17 @@ TEST_F(Play, sends_a_whole_log_and_says_how_many_frames_these_were) {
   EXPECT_EQ(said_.out, "10 of 10 frames were played\n");
 }
 
+TEST_F(Play, names_the_error_frames_that_it_cannot_send) {
+  desk_.write(
+      "errors.log",
+      "(1.00) can0 181#3712\n(1.01) can0 20000004#0008000000000000\n(1.02) can0 20000088#0000000000000000\n");
+  const Ended ended = tool("play $BUS errors.log");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.out, "1 of 1 frames were played\n");
+  EXPECT_NE(ended.err.find("error frames of the log were not played"), std::string::npos) << ended.err;
+  EXPECT_EQ(facts("play $BUS errors.log")["error_frames"], 2);
+}
+
 TEST_F(Play, of_what_the_master_sent_leaves_the_drives_own_answers_out_and_names_them) {
   EXPECT_EQ(played("--from master"), (Ids{"000", "000", "080", "202", "601"}));
   EXPECT_EQ(said_.out,

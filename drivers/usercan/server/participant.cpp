@@ -26,6 +26,7 @@ bool Participant::read_socket() {
     if (got == 0) return false;
     if (got < 0) return errno == EAGAIN || errno == EINTR;
     in_.append(bytes.data(), static_cast<std::size_t>(got));
+    acknowledge_at_once(socket_);
   }
   return true;
 }

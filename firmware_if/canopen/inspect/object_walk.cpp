@@ -18,6 +18,12 @@ constexpr int kGap = 8;
 /// SDO and PDO parameters are numbered from the front, so that their areas end early.
 constexpr bool numbered(std::uint16_t index) { return index >= 0x1200 && index < 0x1C00; }
 
+/// Mapping records count the entries in use; those beyond exist for whoever maps anew. CiA 301, 7.5.2.36.
+constexpr bool mapping(std::uint16_t index) {
+  return (index >= 0x1600 && index < 0x1800) || (index >= 0x1A00 && index < 0x1C00);
+}
+constexpr int kMostMapped = 64;
+
 bool missing(const SdoOutcome& outcome) {
   return outcome.abort == AbortCode::object_does_not_exist ||
          outcome.abort == AbortCode::subindex_does_not_exist;
@@ -29,7 +35,8 @@ void walk_subs(SdoAccess& access, NodeId node, ReadObject head, std::vector<Read
   const bool counts = head.outcome.ok() && head.outcome.data.size() == 1 && head.outcome.data[0] > 0;
   // The standards know their variables; some devices answer any sub-index of one.
   const bool variable = known_object(head.index, 0) && !known_object(head.index, 1);
-  const int most = variable ? 0 : head.outcome.ok() ? (counts ? head.outcome.data[0] : 0) : 254;
+  const int used = counts ? head.outcome.data[0] : 0;
+  const int most = variable ? 0 : !head.outcome.ok() ? 254 : mapping(head.index) ? kMostMapped : used;
   std::vector<ReadObject> subs;
   for (int sub = 1; sub <= most && !over(); ++sub) {
     ReadObject one{head.index, static_cast<std::uint8_t>(sub), {}, true};
@@ -39,8 +46,9 @@ void walk_subs(SdoAccess& access, NodeId node, ReadObject head, std::vector<Read
     if (!none) subs.push_back(std::move(one));
     // A number of one byte that is no count: the first sub-index is missing. An array may have holes.
     if (none && sub == 1 && head.index != object::kPredefinedErrorField) break;
+    if (none && sub > used && mapping(head.index)) break;
   }
-  head.record = !subs.empty();
+  head.record = !subs.empty() || head.index == object::kPredefinedErrorField;  // an empty history, too
   if (!missing(head.outcome) || head.record) out.push_back(std::move(head));
   std::move(subs.begin(), subs.end(), std::back_inserter(out));
 }

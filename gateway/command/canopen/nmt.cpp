@@ -79,7 +79,7 @@ std::optional<States> command(ToolBus& bus, int node, const Row& row) {
   if (!bus.send(canopen::nmt_frame(row.command, id))) return std::nullopt;
   States states = watch(bus, node, row, guardable ? kBeforeGuarding_s : kWatch_s);
   if (!states.empty() || !guardable) return states;
-  if (const auto state = guard_once(bus, id)) states[node] = *state;
+  for (const auto& [guarded, state] : guard(bus, std::span(&id, 1))) states[guarded] = state;
   return states;
 }
 

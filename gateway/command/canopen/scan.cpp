@@ -40,6 +40,9 @@ const text::Entry kNobody{"scan.nobody",
 const text::Entry kNode{"scan.node", "node {0}: {1}, {2}, {3}", "узел {0}: {1}, {2}, {3}"};
 const text::Entry kNodeNoObjects{"scan.node-no-objects", "node {0}: {1}, {2}, does not answer SDO",
                                  "узел {0}: {1}, {2}, на SDO не отвечает"};
+const text::Entry kNodeNoType{"scan.node-no-type",
+                              "node {0}: {1}, {2}, answers SDO, but does not tell its device type (1000h)",
+                              "узел {0}: {1}, {2}, на SDO отвечает, но не сообщает тип устройства (1000h)"};
 const text::Entry kIdentity{"scan.identity", "vendor {0}, product {1}, revision {2}, serial number {3}",
                             "производитель {0}, изделие {1}, версия {2}, заводской номер {3}"};
 const text::Entry kModes{"scan.modes", "modes: {0}", "режимы: {0}"};
@@ -114,12 +117,16 @@ void read_facts(SdoAccess& access, int number, Node& node) {
     node.modes = number_of(access, id, object::kSupportedDriveModes, 0);
 }
 
-/// The state of a node that sends no heartbeat.
-void ask_state(ToolBus& bus, int id, Node& node) {
-  const auto number = static_cast<NodeId>(id);
-  if (node.state || !may_guard(bus, number)) return;
-  node.state = guard_once(bus, number);
-  node.guarded = node.state.has_value();
+/// The states of nodes that send no heartbeat.
+void ask_states(ToolBus& bus, Nodes& nodes) {
+  std::vector<NodeId> silent;
+  for (const auto& [id, node] : nodes)
+    if (!bus.over() && node.answers_sdo && !node.state && may_guard(bus, static_cast<NodeId>(id)))
+      silent.push_back(static_cast<NodeId>(id));
+  for (const auto& [id, state] : guard(bus, silent)) {
+    nodes[id].state = state;
+    nodes[id].guarded = true;
+  }
 }
 
 std::string hexadecimal(std::uint32_t value) {
@@ -159,7 +166,8 @@ std::string say(const text::Entry& entry, const std::vector<std::string>& argume
 void print_node(int id, const Node& node) {
   const std::string number = std::to_string(id);
   if (!node.type) {
-    print_line(say(kNodeNoObjects, {number, state_words(node), heartbeat_words(node)}));
+    const text::Entry& entry = node.answers_sdo ? kNodeNoType : kNodeNoObjects;
+    print_line(say(entry, {number, state_words(node), heartbeat_words(node)}));
     return;
   }
   print_line(
@@ -251,8 +259,8 @@ int scan(const ScanOptions& options) {
     if (bus->over()) break;
     if (!node.answers_sdo) continue;
     read_facts(*bus, id, node);
-    ask_state(*bus, id, node);
   }
+  ask_states(*bus, nodes);
   if (bus->over()) return bus->finish(kDone);
   return bus->finish(tell(options, nodes, master, nullptr));
 }

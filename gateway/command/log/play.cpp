@@ -35,6 +35,8 @@ const text::Entry kNoFd{
 const text::Entry kPlayed{"play.played", "{0} of {1} frames were played",
                           "воспроизведено кадров: {0} из {1}"};
 const text::Entry kLeftOut{"play.left-out", "left out: {0}", "пропущено: {0}"};
+const text::Entry kErrors{"play.errors", "{0} error frames of the log were not played: nobody can send one",
+                          "кадры ошибок из журнала не воспроизведены ({0}): послать такой кадр нельзя"};
 const text::Entry kTwoSenders{
     "play.two-senders",
     "{0} came from the bus as well while the log was played: two senders of one identifier disturb each "
@@ -56,6 +58,7 @@ constexpr const char* kWhat = "`play`";
 struct Sorted {
   Log log;
   FrameCount left_out;
+  std::int64_t errors = 0;  ///< error frames, which nobody can send
 };
 
 /// kDone, or the exit code after saying what is wrong with the file.
@@ -73,7 +76,10 @@ int read_log(const std::string& name, const FrameFilter& filter, Sorted& sorted)
       complain(kBadLine, {name, std::to_string(number)});
       return kWrongUse;
     }
-    if (line->frame.error) continue;
+    if (line->frame.error) {
+      ++sorted.errors;
+      continue;
+    }
     if (!filter.passes(line->frame))
       sorted.left_out.add(line->frame);
     else
@@ -139,9 +145,11 @@ void tell(const FrameCount& played, const FrameCount& heard, const Sorted& sorte
     print_json_line({{"played", played.frames()},
                      {"of", all},
                      {"left_out", sorted.left_out.counts()},
+                     {"error_frames", sorted.errors},
                      {"two_senders", heard.counts()}});
   else
     print_line(line);
+  if (sorted.errors > 0) complain(kErrors, {std::to_string(sorted.errors)});
   if (heard.frames() > 0) complain(kTwoSenders, {heard.words()});
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <utility>
 
 namespace servogate::gateway::command {
 
@@ -20,27 +21,36 @@ int InputLines::descriptor() const {
 }
 
 void InputLines::read() {
+  constexpr int kReadsAtOnce = 16;
   pollfd p{descriptor(), POLLIN, 0};
-  while (p.fd >= 0 && poll(&p, 1, 0) > 0) {
+  for (int n = 0; n < kReadsAtOnce && p.fd >= 0 && poll(&p, 1, 0) > 0; ++n) {
     char bytes[1024];
     const ssize_t got = ::read(STDIN_FILENO, bytes, sizeof bytes);
     if (got <= 0) {
       listening_ = false;
       return;
     }
-    input_.append(bytes, static_cast<std::size_t>(got));
+    take({bytes, static_cast<std::size_t>(got)});
+  }
+}
+
+void InputLines::take(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const std::size_t end = bytes.find('\n');
+    const std::string_view part = bytes.substr(0, end);
+    input_.append(part.substr(0, kMostOfLine - input_.size()));
+    if (end == std::string_view::npos) return;
+    lines_.push_back(std::move(input_));
+    input_.clear();
+    bytes.remove_prefix(end + 1);
   }
 }
 
 std::optional<std::string> InputLines::next() {
-  std::size_t end = input_.find('\n');
-  if (end == std::string::npos && listening_) {
-    read();
-    end = input_.find('\n');
-  }
-  if (end == std::string::npos) return std::nullopt;
-  std::string line = input_.substr(0, end);
-  input_.erase(0, end + 1);
+  if (lines_.empty() && listening_) read();
+  if (lines_.empty()) return std::nullopt;
+  std::string line = std::move(lines_.front());
+  lines_.pop_front();
   return line;
 }
 

@@ -60,6 +60,46 @@ Bytes random_value(std::uint16_t type, std::mt19937_64& random) {
   }
 }
 
+/// A device whose objects have sub-indices.
+class Records final : public SdoAccess {
+ public:
+  std::map<std::uint32_t, Bytes> objects;  ///< by index << 8 | subindex
+
+  SdoOutcome read(NodeId, std::uint16_t index, std::uint8_t subindex) override {
+    const auto found = objects.find(std::uint32_t{index} << 8 | subindex);
+    if (found != objects.end()) return {SdoStatus::done, AbortCode::none, found->second};
+    const bool there = objects.contains(std::uint32_t{index} << 8);
+    return {SdoStatus::aborted,
+            there ? AbortCode::subindex_does_not_exist : AbortCode::object_does_not_exist,
+            {}};
+  }
+  SdoOutcome write(NodeId, std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) override { return {}; }
+};
+
+TEST(ObjectWalk, saves_mapping_entries_that_are_not_in_use_for_whoever_maps_anew) {
+  Records device;
+  device.objects[0x1A00'00] = {1};
+  for (std::uint32_t sub = 1; sub <= 8; ++sub)
+    device.objects[0x1A00'00 | sub] = sub == 1 ? Bytes{0x10, 0, 0x41, 0x60} : Bytes(4);
+  std::vector<std::string> not_saved;
+  const Eds saved =
+      saved_configuration(walk(device, 5, {{0x1A00, 0x1A00}}, kNever), nullptr, 5, 500'000, not_saved);
+  const Eds read_back = read_eds(write_dcf(saved), "saved.dcf").eds;
+  ASSERT_TRUE(read_back.objects.contains(0x1A00));
+  EXPECT_EQ(read_back.objects.at(0x1A00).subs.size(), 9u);
+  EXPECT_NE(read_back.find(0x1A00, 8), nullptr);
+}
+
+TEST(ObjectWalk, saves_an_empty_error_history_as_a_record) {
+  Records device;
+  device.objects[0x1003'00] = {0};
+  std::vector<std::string> not_saved;
+  const Eds saved =
+      saved_configuration(walk(device, 5, {{0x1003, 0x1003}}, kNever), nullptr, 5, 500'000, not_saved);
+  EXPECT_EQ(saved.objects.at(0x1003).entry.type, EdsObjectType::record);
+  EXPECT_NE(saved.find(0x1003, 0), nullptr);
+}
+
 TEST(ObjectWalk, finds_no_difference_to_what_it_saved_whatever_the_objects_hold) {
   std::mt19937_64 random(test::property_seed());
   int compared_ever = 0;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/command/canopen/bus/guarding.hpp"
 
+#include <algorithm>
+
+#include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 
 namespace servogate::gateway::command {
@@ -21,19 +24,25 @@ bool may_guard(ToolBus& bus, canopen::NodeId node) {
          number_of(bus, node, object::kLifeTimeFactor, 0).value_or(0) == 0;
 }
 
-std::optional<canopen::NmtState> guard_once(ToolBus& bus, canopen::NodeId node) {
-  image::CanFrame question;
-  question.id = canopen::cob::heartbeat(node);
-  question.remote = true;
-  question.length = 1;
-  std::optional<canopen::NmtState> state;
-  if (!bus.send(question)) return state;
-  bus.listen(50 * image::kMillisecond, [&](const image::CanFrame& frame) {
-    if (frame.id != question.id || frame.remote || frame.extended) return false;
-    state = canopen::parse_heartbeat(frame);
-    return state.has_value();
-  });
-  return state;
+std::map<canopen::NodeId, canopen::NmtState> guard(ToolBus& bus, std::span<const canopen::NodeId> nodes) {
+  std::map<canopen::NodeId, canopen::NmtState> states;
+  const auto hear = [&](const image::CanFrame& frame) {
+    const canopen::CobId id = canopen::classify(frame.id, frame.extended);
+    if (id.service != canopen::Service::heartbeat || frame.remote) return false;
+    if (std::find(nodes.begin(), nodes.end(), id.node) == nodes.end()) return false;
+    if (const auto state = canopen::parse_heartbeat(frame)) states[id.node] = *state;
+    return states.size() == nodes.size();
+  };
+  for (const canopen::NodeId node : nodes) {
+    image::CanFrame question;
+    question.id = canopen::cob::heartbeat(node);
+    question.remote = true;
+    question.length = 1;
+    if (!bus.send(question)) return states;
+    bus.listen(image::kMillisecond, hear);
+  }
+  if (states.size() < nodes.size()) bus.listen(50 * image::kMillisecond, hear);
+  return states;
 }
 
 }  // namespace servogate::gateway::command
