@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "drivers/usercan/address.hpp"
+
 namespace servogate::usercan {
 
 Participant::~Participant() { close(socket_); }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "drivers/clock.hpp"
 #include "firmware_if/canopen/301/words/frame_words.hpp"
