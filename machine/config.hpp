@@ -242,6 +242,13 @@ struct SymbolConfig {
   std::string comment;
 };
 
+/// [[own_code]]
+struct OwnCodeConfig {
+  std::string code;                     ///< "G50", "M77"
+  std::string program;                  ///< file, relative to the machine file
+  std::map<std::string, double> words;  ///< letter -> number of the parameter that takes the word
+};
+
 /// [plc]
 struct PlcConfig {
   std::vector<std::string> sources;    ///< as written; resolve() makes paths of them
@@ -308,6 +315,7 @@ struct MachineConfig {
   std::vector<LineConfig> lines;
   std::vector<StationConfig> stations;
   std::vector<SymbolConfig> symbols;
+  std::vector<OwnCodeConfig> own_codes;
   ModbusServerConfig modbus_server;
   SimulationConfig simulation;
 

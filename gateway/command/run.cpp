@@ -392,7 +392,7 @@ int Run::finish(const OperatorScript& script, Session& session,
     report::HtmlOptions html;
     html.program_name = std::filesystem::path(options_.program).filename().string();
     html.title = loaded_.machine.name + (html.program_name.empty() ? "" : " · " + html.program_name);
-    html.program_text = program_->text;
+    html.program_text = std::string(program_->text.view());
     html.language = text::user_language();
     written(options_.html,
             report::write_file(options_.html, report::to_html(report, *session.picture(), html)));

@@ -198,6 +198,7 @@ void Feeder::take_orders() {
       case FeederOrder::Kind::sync:
         if (order.generation != generation_ || state_ != State::syncing) break;
         view_ = link_.packets_of(generation_);
+        interpreter_->look_at(link_.to_go_of(generation_));
         synchronised_ = true;
         state_ = State::feeding;
         break;
@@ -237,6 +238,7 @@ void Feeder::begin(const FeederOrder& order) {
     manual.emplace(once_ ? std::exchange(once_, nullptr)(position_, view_) : factory_(position_));
   if (!order.manual_data) manual->set_switches(switches_of(view_, process_));
   interpreter_ = std::move(manual);
+  interpreter_->look_at(link_.to_go_of(generation_));
   executed_before_ = order.manual_data ? interpreter_->executed() : 0;
   frame_told_ = interpreter_->frame();
   texts_.add_frame(generation_, 0, frame_told_);

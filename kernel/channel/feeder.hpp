@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware_if/image/process_image.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "kernel/channel/event.hpp"
 #include "kernel/channel/motion/path_elements.hpp"
@@ -58,6 +59,16 @@ struct Link {
   /// so that a new one never writes what the feeder still reads.
   image::Packets& packets_of(std::uint32_t generation) { return packets[generation % packets.size()]; }
   std::array<image::Packets, 4> packets;
+  /// What each axis still had to go then, mm or degrees; written and read as packets_of().
+  program::Position& to_go_of(std::uint32_t generation) { return to_go[generation % to_go.size()]; }
+  std::array<program::Position, 4> to_go{};
+  /// Cycle: both, as they are now. real-time safe.
+  void look(std::uint32_t generation, const image::ProcessImage& image) noexcept {
+    packets_of(generation) = image.packets;
+    for (int a = 0; a < image.axis_count; ++a)
+      to_go_of(generation)[static_cast<std::size_t>(a)] =
+          image.axes[static_cast<std::size_t>(a)].distance_to_go;
+  }
 
   /// Where the queues stood when the feeder began a run: what is published from there on belongs to it.
   struct Begin {

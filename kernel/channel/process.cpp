@@ -240,7 +240,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
     position[i] = order.position[static_cast<std::size_t>(config_.axes.machine[i])];
   for (const OwnAxis& own : own_axes()) order.axes |= std::uint32_t{1} << own.machine;
   follower_.set_position(position);
-  link_.packets_of(generation_) = c.image.packets;
+  link_.look(generation_, c.image);
   link_.orders.push(order);
   running_ = started_ = true;
   image::ProcessStatus& status = c.image.processes[static_cast<std::size_t>(config_.index)];

@@ -112,7 +112,7 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
     case EventKind::warning:
       return true;
     case EventKind::sync: {
-      link_.packets_of(generation_) = c.image.packets;
+      link_.look(generation_, c.image);
       FeederOrder order;
       order.kind = FeederOrder::Kind::sync;
       order.generation = generation_;

@@ -172,14 +172,17 @@ void check_mock_guards(const MachineConfig& machine, Reading& reading) {
 /// The power-on modes and values, as the interpreter of the language will read them.
 void check_settings(const MachineConfig& machine, Reading& reading) {
   program::MachineModel model;
-  for (const AxisConfig& a : machine.axes) model.axes.push_back({.letter = a.letter, .diameter = a.diameter});
+  for (const AxisConfig& a : machine.axes)
+    model.axes.push_back({.letter = a.letter, .rotary = a.type == AxisType::rotary, .diameter = a.diameter});
+  for (const OwnCodeConfig& c : machine.own_codes) model.own_codes.push_back({c.code, c.program, c.words});
   model.power_on = machine.control.power_on;
   model.variables = machine.control.variables;
   const program::Interpreter reader(machine.control.dialect, std::move(model), {}, {}, {}, {}, {});
   for (const program::SettingFault& fault : reader.setting_faults()) {
-    const std::string path =
-        fault.mode >= 0 ? "power_on." + std::to_string(fault.mode) : "variables." + fault.variable;
-    reading.error(machine.where("control." + path), *fault.entry, fault.arguments);
+    const std::string path = fault.own_code >= 0 ? "own_code." + std::to_string(fault.own_code)
+                             : fault.mode >= 0   ? "control.power_on." + std::to_string(fault.mode)
+                                                 : "control.variables." + fault.variable;
+    reading.error(machine.where(path), *fault.entry, fault.arguments);
   }
 }
 

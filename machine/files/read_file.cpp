@@ -39,10 +39,6 @@ std::string not_regular(mode_t mode) {
 
 std::string size_words(std::int64_t bytes) { return text::number(static_cast<double>(bytes) / (1 << 20), 1); }
 
-std::string too_large(std::int64_t most) {
-  return text::both("larger than " + size_words(most) + " MiB", "больше " + size_words(most) + " МиБ");
-}
-
 /// An open file that closes itself; why it is not open otherwise.
 class Opened {
  public:
@@ -72,6 +68,10 @@ class Opened {
 };
 
 }  // namespace
+
+std::string too_large(std::int64_t most) {
+  return text::both("larger than " + size_words(most) + " MiB", "больше " + size_words(most) + " МиБ");
+}
 
 std::optional<std::string> read_file(const std::string& path, std::int64_t most, std::string& error) {
   const Opened file(path);

@@ -16,6 +16,9 @@ inline constexpr std::int64_t kMostOfSettings = std::int64_t{4} << 20;   ///< ma
 inline constexpr std::int64_t kMostOfSource = std::int64_t{16} << 20;    ///< Structured Text
 inline constexpr std::int64_t kMostOfProgram = std::int64_t{256} << 20;  ///< part programs
 
+/// Why a file is not read that has more than `most` bytes, in both languages.
+std::string too_large(std::int64_t most);
+
 /// The whole content of a regular file of at most `most` bytes. nullopt: `error` says why in both languages
 /// (text::both): missing, not permitted, a folder, a pipe or a device, too large. Never waits for a pipe's
 /// other end. Not real-time safe.

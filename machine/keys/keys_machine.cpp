@@ -43,6 +43,23 @@ const Section& section_of<ControlConfig>() {
 }
 
 template <>
+const Section& section_of<OwnCodeConfig>() {
+  using C = OwnCodeConfig;
+  static const Key keys[] = {
+      key<&C::code>("code", {.required = true}, "the word: \"G50\", \"M77\"", "слово: \"G50\", \"M77\""),
+      key<&C::program>("program", {.required = true, .refers = Refers::file}, "program that it calls",
+                       "программа, которую оно вызывает"),
+      key<&C::words>(
+          "words", {},
+          "words of its block, by letter, and the numbers of the parameters that take their values",
+          "слова его кадра по буквам и номера параметров, которые принимают их значения"),
+  };
+  static const Section section{"a G or M word of the machine builder's own",
+                               "собственное слово G или M станкостроителя", keys, &default_object<C>};
+  return section;
+}
+
+template <>
 const Section& section_of<ModbusServerConfig>() {
   using C = ModbusServerConfig;
   static const Key keys[] = {
@@ -272,6 +289,8 @@ const Section& section_of<MachineConfig>() {
       key<&C::lines>("line", {}, "Modbus lines", "линии Modbus"),
       key<&C::stations>("station", {}, "sources of signals", "источники сигналов"),
       key<&C::symbols>("symbol", {}, "free places with names", "именованные свободные адреса"),
+      key<&C::own_codes>("own_code", {}, "G and M words of the machine builder's own",
+                         "собственные слова G и M станкостроителя"),
       key<&C::modbus_server>("modbus_server", {}, "the Modbus TCP server", "сервер Modbus TCP"),
       key<&C::simulation>("simulation", {}, "what the mocks do; without effect on what is real",
                           "поведение имитаторов; на настоящее не действует"),

@@ -48,6 +48,8 @@ void write_tools(const MachineState& s, std::string& out) {
     out += "length = " + entries(c.length) + "\nradius = " + toml_real(c.radius) + "\n";
     if (!c.wear.empty()) out += "wear = " + entries(c.wear) + "\n";
     if (c.radius_wear != 0.0) out += "radius_wear = " + toml_real(c.radius_wear) + "\n";
+    if (!c.wear_limit.empty()) out += "wear_limit = " + entries(c.wear_limit) + "\n";
+    if (c.radius_wear_limit != 0.0) out += "radius_wear_limit = " + toml_real(c.radius_wear_limit) + "\n";
     if (c.quadrant != 0) out += "quadrant = " + std::to_string(c.quadrant) + "\n";
     if (c.life_min != 0.0) out += "life_min = " + toml_real(c.life_min) + "\n";
     if (c.used_min != 0.0) out += "used_min = " + toml_real(c.used_min) + "\n";
@@ -148,8 +150,8 @@ class TableReader {
     return out;
   }
   void tool(const Element& row) {
-    known(row, {"number", "name", "length", "radius", "wear", "radius_wear", "quadrant", "life_min",
-                "used_min", "alternate"});
+    known(row, {"number", "name", "length", "radius", "wear", "radius_wear", "wear_limit",
+                "radius_wear_limit", "quadrant", "life_min", "used_min", "alternate"});
     const Element* number = row.find("number");
     if (number == nullptr) return wrong(row, "number", "a tool's number", "номер инструмента");
     const auto n = static_cast<int>(whole(*number, "number", 0, kMostTool));
@@ -166,6 +168,9 @@ class TableReader {
     if (const Element* e = row.find("wear")) c.wear = by_axis(*e, "wear");
     if (const Element* e = row.find("radius")) c.radius = length(*e, "radius", true);
     if (const Element* e = row.find("radius_wear")) c.radius_wear = length(*e, "radius_wear");
+    if (const Element* e = row.find("wear_limit")) c.wear_limit = by_axis(*e, "wear_limit");
+    if (const Element* e = row.find("radius_wear_limit"))
+      c.radius_wear_limit = length(*e, "radius_wear_limit", true);
     if (const Element* e = row.find("quadrant")) c.quadrant = static_cast<int>(whole(*e, "quadrant", 0, 9));
     if (const Element* e = row.find("life_min")) c.life_min = length(*e, "life_min", true);
     if (const Element* e = row.find("used_min")) c.used_min = length(*e, "used_min", true);

@@ -156,13 +156,17 @@ class TableBuilder {
   bool good_ = true;
 };
 
-std::string header(TableKind kind, const std::vector<std::string>& axes) {
+/// Limits of the wear are columns where a row has one.
+std::string header(TableKind kind, const std::vector<std::string>& axes, bool limits = false) {
   std::string out = kind == TableKind::origins
                         ? "origin"
                         : "tool,name,radius,radius_wear,quadrant,life_min,used_min,alternate";
   for (const std::string& a : axes) out += "," + text::csv_field(a);
   if (kind == TableKind::tools)
     for (const std::string& a : axes) out += ",wear_" + text::csv_field(a);
+  if (limits) out += ",radius_wear_limit";
+  if (limits)
+    for (const std::string& a : axes) out += ",wear_limit_" + text::csv_field(a);
   return out;
 }
 
@@ -181,7 +185,8 @@ void set_tool_field(TableBuilder& b, program::Tables::Corrector& tool, const std
     if (v && !of_alternate) (column == "life_min" ? tool.life_min : tool.used_min) = *v;
     return;
   }
-  const auto v = b.value(cell, column, of_quadrant || of_radius ? 0.0 : -kLongestEntry,
+  const bool of_limit = column == "radius_wear_limit" || column.starts_with("wear_limit_");
+  const auto v = b.value(cell, column, of_quadrant || of_radius || of_limit ? 0.0 : -kLongestEntry,
                          of_quadrant ? 9.0 : kLongestEntry, of_quadrant);
   if (!v) return;
   if (of_quadrant)
@@ -190,6 +195,10 @@ void set_tool_field(TableBuilder& b, program::Tables::Corrector& tool, const std
     tool.radius = *v;
   else if (column == "radius_wear")
     tool.radius_wear = *v;
+  else if (column == "radius_wear_limit")
+    tool.radius_wear_limit = *v;
+  else if (of_limit)
+    tool.wear_limit[column.substr(11)] = *v;
   else if (column.starts_with("wear_"))
     tool.wear[column.substr(5)] = *v;
   else
@@ -200,7 +209,8 @@ bool known_column(const TableBuilder& b, const std::string& name) {
   if (b.is_axis(name)) return true;
   if (b.kind() == TableKind::origins) return false;
   return name == "name" || name == "radius" || name == "radius_wear" || name == "quadrant" ||
-         name == "life_min" || name == "used_min" || name == "alternate" ||
+         name == "life_min" || name == "used_min" || name == "alternate" || name == "radius_wear_limit" ||
+         (name.starts_with("wear_limit_") && b.is_axis(name.substr(11))) ||
          (name.starts_with("wear_") && b.is_axis(name.substr(5)));
 }
 
@@ -305,7 +315,10 @@ std::string life_words(double life_min, double used_min, int alternate) {
 bool names_linuxcnc(std::string_view file) { return file.ends_with(".tbl") || file.ends_with(".tool"); }
 
 std::string to_csv(const program::Tables& tables, TableKind kind, const std::vector<std::string>& axes) {
-  std::string out = header(kind, axes) + "\r\n";
+  const bool limits = std::any_of(tables.correctors.begin(), tables.correctors.end(), [](const auto& row) {
+    return !row.second.wear_limit.empty() || row.second.radius_wear_limit != 0.0;
+  });
+  std::string out = header(kind, axes, limits) + "\r\n";
   if (kind == TableKind::origins) {
     for (const auto& [n, row] : tables.origins) {
       out += std::to_string(n);
@@ -320,6 +333,9 @@ std::string to_csv(const program::Tables& tables, TableKind kind, const std::vec
            number(c.used_min) + "," + std::to_string(c.alternate);
     for (const std::string& a : axes) out += "," + cell(c.length, a);
     for (const std::string& a : axes) out += "," + cell(c.wear, a);
+    if (limits) out += "," + number(c.radius_wear_limit);
+    if (limits)
+      for (const std::string& a : axes) out += "," + cell(c.wear_limit, a);
     out += "\r\n";
   }
   return out;

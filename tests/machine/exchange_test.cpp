@@ -15,13 +15,26 @@ const std::vector<std::string> kAxes{"X", "Z"};
 program::Tables sample() {
   program::Tables t;
   t.origins = {{1, {{"X", 100.5}, {"Z", -2.0}}}, {7, {{"Z", 1.0 / 3.0}}}};
-  t.correctors[3] = {"mill, \"roughing\"", {{"Z", 85.0}}, {{"Z", -0.01}}, 5.0, 0.02, 0, 60.0, 12.5, 12};
-  t.correctors[12] = {"insert", {{"X", 12.5}, {"Z", 40.0}}, {}, 0.4, 0.0, 3};
+  t.correctors[3] = {
+      "mill, \"roughing\"", {{"Z", 85.0}}, {{"Z", -0.01}}, 5.0, 0.02, {}, 0.0, 0, 60.0, 12.5, 12};
+  t.correctors[12] = {"insert", {{"X", 12.5}, {"Z", 40.0}}, {}, 0.4, 0.0, {}, 0.0, 3};
   return t;
 }
 
 std::string lines(const std::vector<text::Finding>& findings) {
   return test::lines_of(findings, text::Language::english);
+}
+
+TEST(Exchange, gives_back_from_csv_the_limits_of_wear_in_columns_of_their_own) {
+  program::Tables tables = sample();
+  tables.correctors[12].wear_limit = {{"X", 0.2}};
+  tables.correctors[12].radius_wear_limit = 0.05;
+  const std::string csv = to_csv(tables, TableKind::tools, kAxes);
+  EXPECT_NE(csv.find("wear_Z,radius_wear_limit,wear_limit_X,wear_limit_Z\r\n"), std::string::npos) << csv;
+  program::Tables read;
+  std::vector<text::Finding> findings;
+  ASSERT_TRUE(read_exchange(csv, "t.csv", TableKind::tools, kAxes, read, findings)) << lines(findings);
+  EXPECT_EQ(read.correctors, tables.correctors);
 }
 
 TEST(Exchange, gives_back_from_csv_what_was_written_into_it) {

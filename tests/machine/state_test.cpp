@@ -30,8 +30,8 @@ MachineState sample() {
   MachineState s;
   s.tables.origins = {
       {0, {{"X", 0.0}, {"Y", -0.1}}}, {1, {{"X", 100.123456789012}, {"Z", 1.0 / 3.0}}}, {12, {}}};
-  s.tables.correctors[1] = {"face \"mill\"", {{"Z", 120.5}}, {{"Z", -0.02}}, 10.0, 0.01, 0};
-  s.tables.correctors[99] = {"", {{"X", -3.25}, {"Z", 1e-9}}, {}, 0.4, 0.0, 3};
+  s.tables.correctors[1] = {"face \"mill\"", {{"Z", 120.5}}, {{"Z", -0.02}}, 10.0, 0.01, {}, 0.0, 0};
+  s.tables.correctors[99] = {"", {{"X", -3.25}, {"Z", 1e-9}}, {}, 0.4, 0.0, {}, 0.0, 3};
   s.homing["X"] = {true, -123456789012345, 3.25};
   s.homing["Z"] = {};
   s.counters = {{"power_on_s", 86400}, {"X.distance_mm", 9007199254740993}, {"parts", 0}};
@@ -60,8 +60,8 @@ MachineState random_state(std::mt19937_64& random) {
     s.tables.origins[static_cast<int>(random() % 100)][name()] = number();
   for (std::size_t i = random() % 4; i > 0; --i)
     s.tables.correctors[static_cast<int>(random() % 300)] = {
-        name(),   {{name(), number()}},           {{name(), number()}}, std::abs(number()),
-        number(), static_cast<int>(random() % 10)};
+        name(),   {{name(), number()}}, {{name(), number()}}, std::abs(number()),
+        number(), {{name(), number()}}, std::abs(number()),   static_cast<int>(random() % 10)};
   for (std::size_t i = random() % 4; i > 0; --i)
     s.homing[name()] = {random() % 2 == 0, static_cast<std::int64_t>(random()), number()};
   for (std::size_t i = random() % 4; i > 0; --i) s.counters[name()] = static_cast<std::int64_t>(random());

@@ -102,7 +102,7 @@ class Reader {
     if (name[0] == "axes") {
       case_.machine.axes.clear();
       for (const auto& letter : words_of(value)) case_.machine.axes.push_back(axis(letter));
-    } else if (name[0] == "travel" || name[0] == "rapid") {
+    } else if (name[0] == "travel" || name[0] == "rapid" || name[0] == "acceleration") {
       limits(name, words_of(value));
     } else if (name[0] == "power_on") {
       case_.machine.power_on = words_of(value);
@@ -130,6 +130,13 @@ class Reader {
       auto& corrector = case_.tables.correctors[std::stoi(name[1])];
       corrector.length = axis_values(value);
       if (const auto diameter = corrector.length.extract("K")) corrector.radius = diameter.mapped() / 2.0;
+    } else if (name[0] == "wear_limit" && name.size() == 2) {
+      auto& corrector = case_.tables.correctors[std::stoi(name[1])];
+      corrector.wear_limit = axis_values(value);
+      if (const auto diameter = corrector.wear_limit.extract("K"))
+        corrector.radius_wear_limit = diameter.mapped() / 2.0;
+    } else if (name[0] == "own" && name.size() == 2) {
+      own_code(name[1], words_of(value));
     } else if (name[0] == "alternate" && name.size() == 2) {
       case_.tables.correctors[std::stoi(name[1])].alternate = std::stoi(value);
     } else if (name[0] == "protected" && name.size() == 2) {
@@ -154,10 +161,22 @@ class Reader {
     return axis;
   }
 
+  /// own G50 = POCKET X100 Y101
+  void own_code(const std::string& code, const std::vector<std::string>& words) {
+    MachineModel::OwnCode row{code, words.at(0), {}};
+    for (std::size_t i = 1; i < words.size(); ++i)
+      row.words[words[i].substr(0, 1)] = std::stod(words[i].substr(1));
+    case_.machine.own_codes.push_back(row);
+  }
+
   void limits(const std::vector<std::string>& name, const std::vector<std::string>& values) {
     for (auto& axis : case_.machine.axes) {
       if (name.size() != 2 || axis.letter != name[1]) continue;
       if (name[0] == "rapid") axis.rapid = std::stod(values.at(0));
+      if (name[0] == "acceleration") {
+        axis.acceleration = std::stod(values.at(0));
+        axis.jerk = std::stod(values.at(1));
+      }
       if (name[0] == "travel") {
         axis.travel_min = std::stod(values.at(0));
         axis.travel_max = std::stod(values.at(1));

@@ -138,6 +138,19 @@ TEST_F(Polar,
   }
 }
 
+TEST(Space, leaves_nothing_behind_for_axes_that_the_machine_does_not_have) {
+  std::string error;
+  const auto commands =
+      commands_of("(UAV,4,XYZ,UVW,0,0,90)\nG0 U10 V20 W5\n(UAV,0)\nX1\n(UAV,4,XYZ,UVW,0,0,0)\nV3\nM30\n",
+                  mill(), {}, error);
+  ASSERT_EQ(error, "");
+  for (const Command& command : commands) {
+    const auto* rapid = std::get_if<Rapid>(&command.what);
+    if (rapid == nullptr) continue;
+    for (std::size_t a = 3; a < rapid->to.size(); ++a) EXPECT_EQ(rapid->to[a], 0.0) << command.line;
+  }
+}
+
 TEST(Space, a_turned_system_keeps_every_length_and_angle) {
   std::mt19937_64 random(servogate::test::property_seed());
   std::uniform_real_distribution<> angle(-180.0, 180.0), place(-90.0, 90.0);

@@ -53,6 +53,15 @@ TEST_F(Tables, are_set_listed_and_cleared_by_number) {
   EXPECT_TRUE(contains(good({"tool", "list"}).out, "end mill"));
 }
 
+TEST_F(Tables, take_lengths_in_inches_and_no_angles) {
+  begin();
+  EXPECT_EQ(good({"origin", "set", "1", "X4in", "Y50mm"}).out, "origin 1: X 101.6 mm, Y 50 mm\n");
+  EXPECT_EQ(good({"tool", "set", "3", "length=2in", "diameter=0.5in", "life=60"}).out,
+            "tool 3: length Z 50.8 mm, radius 6.35 mm, used for 0 of 60 min\n");
+  EXPECT_EQ(run({"tool", "set", "3", "life=60in"}).exit, 2);
+  EXPECT_EQ(run({"origin", "set", "1", "X4ft"}).exit, 2);
+}
+
 TEST_F(Tables, refuse_what_is_wrong_and_say_what_is_possible) {
   begin();
   const struct {

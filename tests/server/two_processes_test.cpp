@@ -98,6 +98,32 @@ TEST_F(TwoProcesses, take_a_typed_block_each_and_wait_for_their_own) {
   EXPECT_EQ(run({"start", "--process", "9"}).exit, 2);
 }
 
+TEST_F(TwoProcesses, see_the_variables_that_the_other_one_writes) {
+  begin();
+  good({"load", write("reads.nc", "(WAI,SYVAR5=7)\n(WAI,SK20=3)\nG1 Y15 F6000\nM30\n"), "--process", "2"});
+  good({"load", write("writes.nc", "G1 X5 F6000\n#SYVAR5=7\nSK20=3\nM30\n")});
+  good({"start", "--process", "2"});
+  ASSERT_TRUE(until_state(2, "waiting"));
+  EXPECT_NEAR(at(1), 0.0, 1e-6);
+  good({"start"});
+  ASSERT_TRUE(until_state(1, "ended"));
+  ASSERT_TRUE(until_state(2, "ended"));
+  EXPECT_NEAR(at(1), 15.0, 1e-6);
+}
+
+TEST_F(TwoProcesses, read_how_far_the_axes_of_the_other_one_still_have_to_go) {
+  begin();
+  good({"load", write("far.nc", "G1 X200 F3000\nM30\n")});
+  good({"load",
+        write("watches.nc", "\"A\"E30=RMN11\n(BEQ,E30,0,A)\n(BGT,E30,100,A)\nG1 Y10 F6000\nM0\nM30\n"),
+        "--process", "2"});
+  good({"start", "--process", "2"});
+  good({"start"});
+  ASSERT_TRUE(shell_.until([](const json& s) { return s["axes"][1]["command"] > 0.0; }));
+  EXPECT_GT(at(0), 99.0) << "Y waited until X had 100 mm to go";
+  ASSERT_TRUE(until_state(1, "ended"));
+}
+
 TEST_F(TwoProcesses, refuse_a_program_with_an_axis_of_the_other_in_check_and_load_alike) {
   const std::string x = write("x.nc", "N10 G1 X20 F600\nN20 M30\n");
   const std::string why = "X belongs to another process";

@@ -58,12 +58,14 @@ bool read_word(const std::string& word, json& request) {
   if (rest.starts_with('+')) rest.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-  if (key.empty() || rest.empty() || error != std::errc{} || end != rest.data() + rest.size() ||
-      !std::isfinite(value)) {
+  const std::string_view unit(end, static_cast<std::size_t>(rest.data() + rest.size() - end));
+  if (key.empty() || rest.empty() || error != std::errc{} ||
+      !(unit.empty() || unit == "mm" || unit == "in") || !std::isfinite(value)) {
     complain(kBadWord, {word});
     return false;
   }
   request["values"][key] = value;
+  if (unit == "in") request["inches"].push_back(key);
   return true;
 }
 
@@ -95,6 +97,9 @@ std::string tool_words(const json& row, const json& axes) {
   add(joined(row["wear"], axes, text::both("wear ", "износ ")));
   if (const double r = row.value("radius_wear", 0.0); r != 0.0)
     add(text::both("wear of the radius ", "износ радиуса ") + text::number(r, 4) + mm);
+  add(joined(row["wear_limit"], axes, text::both("wear at most ", "износ не более ")));
+  if (const double r = row.value("radius_wear_limit", 0.0); r != 0.0)
+    add(text::both("wear of the radius at most ", "износ радиуса не более ") + text::number(r, 4) + mm);
   if (const int q = row.value("quadrant", 0); q != 0)
     add(text::both("quadrant ", "квадрант ") + std::to_string(q));
   add(machine::life_words(row.value("life_min", 0.0), row.value("used_min", 0.0), row.value("alternate", 0)));

@@ -155,7 +155,7 @@ void RecordWriter::take(const ProgramChange& change) {
   head["text"] = new_text;
   std::string chunk =
       kChangeChunk + head.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  if (new_text) chunk += change.file->text;
+  if (new_text) chunk += change.file->text.view();
   if (loads) file_ = change.file;
   loaded_.push_back(std::move(chunk));
 }
@@ -357,7 +357,7 @@ bool RecordReader::read_change(std::string_view bytes) {
       auto file = std::make_shared<ProgramFile>();
       file->path = head.value("path", "");
       file->dialect = head.value("dialect", "");
-      file->text = bytes.substr(end + 1);
+      file->text = std::string(bytes.substr(end + 1));
       file->loader = [texts =
                           subprograms_](std::string_view wanted) -> std::optional<program::LoadedProgram> {
         const auto found = texts->find(wanted);

@@ -240,7 +240,7 @@ bool CheckReport::good() const {
 }
 
 CheckReport check_program(std::string_view dialect, const MachineModel& machine, const Tables& tables,
-                          const std::string& file_name, const std::string& text, const ProgramLoader& loader,
+                          const std::string& file_name, const ProgramText& text, const ProgramLoader& loader,
                           const Position& start, const CommandCheck& also, int process) {
   CheckReport report;
   Interpreter interpreter(dialect, without_travel(machine), tables, file_name, text, loader, start, process);

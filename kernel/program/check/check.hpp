@@ -62,7 +62,7 @@ using CommandCheck = std::function<std::optional<text::Finding>(const Command&)>
 /// (from 0) is that of the interpreter. Not real-time safe. Never throws on
 /// bad programs.
 CheckReport check_program(std::string_view dialect, const MachineModel& machine, const Tables& tables,
-                          const std::string& file_name, const std::string& text, const ProgramLoader& loader,
+                          const std::string& file_name, const ProgramText& text, const ProgramLoader& loader,
                           const Position& start, const CommandCheck& also = {}, int process = 0);
 
 }  // namespace servogate::program

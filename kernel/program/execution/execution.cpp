@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kernel/program/execution/own_codes.hpp"
+
 namespace servogate::program {
 namespace {
 
@@ -49,26 +51,28 @@ MachineModel completed(const Dialect& language, MachineModel model) {
 
 }  // namespace
 
-ExecutionData::ExecutionData(const Dialect& language, MachineModel model, Tables tables,
-                             std::string file_name, std::string text, ProgramLoader loader,
+ExecutionData::ExecutionData(const Dialect& language_, MachineModel model, Tables tables,
+                             std::string file_name, ProgramText text, ProgramLoader loader,
                              const Position& start, int process_)
-    : dialect(&language),
-      machine(std::make_shared<const MachineModel>(completed(language, std::move(model)))),
+    : machine(std::make_shared<const MachineModel>(completed(language_, std::move(model)))),
+      extended(with_own_codes(language_, *machine)),
+      dialect(extended ? extended.get() : &language_),
       axes(letters_of(*machine)),
+      language(&language_),
       process(process_) {
   files.loader = std::move(loader);
-  files.sources.push_back(std::make_shared<const Source>(language, file_name, std::move(text)));
+  files.sources.push_back(std::make_shared<const Source>(*dialect, file_name, std::move(text)));
   files.names.push_back(std::move(file_name));
-  state.parameters = Parameters(language.parameters, parameters_of(language.parameters, *machine));
+  state.parameters = Parameters(dialect->parameters, parameters_of(dialect->parameters, *machine));
   state.frames.tables = std::make_shared<const Tables>(std::move(tables));
   state.frames.machine = start;
   state.frames.frame = Frame(machine->axis_count());
-  end_virtual_axes(*machine, state.virtual_axes);
+  state.virtual_axes = no_virtual_axes(*machine);
   state.flow.line = files.sources.front()->start();
 }
 
 Execution::Execution(const Dialect& dialect, MachineModel machine, Tables tables, std::string file_name,
-                     std::string text, ProgramLoader loader, const Position& start, int process)
+                     ProgramText text, ProgramLoader loader, const Position& start, int process)
     : data_(dialect, std::move(machine), std::move(tables), std::move(file_name), std::move(text),
             std::move(loader), start, process) {
   reset();
@@ -84,7 +88,7 @@ void Execution::reset() {
   state_.profile = ProfileState{};
   state_.spline = SplineState{};
   state_.motion.cycle = Cycle{};
-  end_virtual_axes(machine_, state_.virtual_axes);
+  end_virtual_axes(machine_, state_.virtual_axes, state_.frames.machine);
   BlockWords none;
   for (const GRule& rule : dialect_.g)
     if (rule.at_power_on) take_g(none, rule);
@@ -98,7 +102,7 @@ void Execution::end_contour_modes() {
   state_.modes.compensation = Function::compensation_off;
   state_.modes.profile = Function::profile_off;
   if (state_.modes.motion == Function::spline) state_.modes.motion = Function::rapid;
-  end_virtual_axes(machine_, state_.virtual_axes);
+  end_virtual_axes(machine_, state_.virtual_axes, state_.frames.machine);
 }
 
 void Execution::reposition(const Position& at) {
@@ -106,6 +110,13 @@ void Execution::reposition(const Position& at) {
   end_contour_modes();
   frames_.reposition(at);
   motion_.end_profile();
+}
+
+/// An axis that is not there, or that follows others.
+void Execution::refuse_barred(int axis, int column) const {
+  if ((state_.virtual_axes.barred >> axis & 1u) == 0) return;
+  fail(machine_.is_virtual(axis) ? Fault::axis_missing : Fault::axis_follows, column,
+       {machine_.axes[static_cast<std::size_t>(axis)].letter});
 }
 
 // --- values ---

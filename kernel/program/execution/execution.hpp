@@ -18,11 +18,13 @@ namespace servogate::program {
 /// All that a copy of an execution copies. Each part of an execution works on its own piece of it.
 struct ExecutionData {
   ExecutionData(const Dialect& dialect, MachineModel machine, Tables tables, std::string file_name,
-                std::string text, ProgramLoader loader, const Position& start, int process);
+                ProgramText text, ProgramLoader loader, const Position& start, int process);
 
-  const Dialect* dialect;
   std::shared_ptr<const MachineModel> machine;
+  std::shared_ptr<const Dialect> extended;  ///< with the own codes of the machine, where it has some
+  const Dialect* dialect;
   AxisLetters axes;
+  const Dialect* language;  ///< as it is without them
   int process;
   ProgramFiles files;
   State state;
@@ -37,6 +39,7 @@ struct ExecutionData {
   std::optional<ProgramError> power_on_error;  ///< the first of them
   long long since_command = 0;                 ///< blocks executed
   PacketView view;
+  Position to_go{};  ///< of each axis, see Interpreter::look_at()
   mutable bool snapshot_used = false;
   mutable bool machine_read = false;
   bool want_fresh = false;
@@ -49,7 +52,7 @@ struct ExecutionData {
 class Execution : public ValueSource {
  public:
   Execution(const Dialect& dialect, MachineModel machine, Tables tables, std::string file_name,
-            std::string text, ProgramLoader loader, const Position& start, int process);
+            ProgramText text, ProgramLoader loader, const Position& start, int process);
   Execution(const Execution& other) : ValueSource(), data_(other.data_) {}
   Execution& operator=(const Execution&) = delete;
 
@@ -58,6 +61,12 @@ class Execution : public ValueSource {
   bool pass_over_error();
   void mdi(std::string_view block);
   void reposition(const Position& at);
+  void look_at(const Position& to_go) { data_.to_go = to_go; }
+  /// What an axis still has to go in its block.
+  double to_go(int axis) const noexcept {
+    data_.snapshot_used = data_.machine_read = true;
+    return data_.to_go[static_cast<std::size_t>(axis)];
+  }
   bool machine_read() const noexcept { return data_.machine_read; }
   const std::vector<SettingFault>& setting_faults() const noexcept { return data_.setting_faults; }
   const std::vector<text::Finding>& warnings() const noexcept { return data_.warnings.told; }
@@ -146,6 +155,7 @@ class Execution : public ValueSource {
   void gather_g(BlockWords& words, const Word& word, std::vector<const GRule*>& by_value);
   void gather_centre(BlockWords& words, const Word& word) const;
   void gather_statement(BlockWords& words, const Word& word);
+  void gather_own(BlockWords& words, const Word& word);
   void take_g(BlockWords& words, const GRule& rule);
   void return_modes(const BlockWords& words, const Modes& before);
   void check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
+#include "kernel/program/execution/own_codes.hpp"
 
 namespace servogate::program {
 namespace {
@@ -69,6 +70,14 @@ void Execution::apply_power_on() {
       power_on_value(name, value);
     } catch (const ProgramError& error) {
       keep(-1, name, error);
+    }
+  }
+  for (std::size_t i = 0; i < machine_.own_codes.size(); ++i) {
+    try {
+      check_own_code(*data_.language, state_.parameters, machine_.own_codes[i]);
+    } catch (const ProgramError& error) {
+      keep(-1, {}, error);
+      data_.setting_faults.back().own_code = static_cast<int>(i);
     }
   }
 }

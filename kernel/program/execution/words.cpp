@@ -186,13 +186,6 @@ BlockWords Execution::gather() {
   return words;
 }
 
-/// An axis that is not there, or that follows others.
-void Execution::refuse_barred(int axis, int column) const {
-  if ((state_.virtual_axes.barred >> axis & 1u) == 0) return;
-  fail(machine_.is_virtual(axis) ? Fault::axis_missing : Fault::axis_follows, column,
-       {machine_.axes[static_cast<std::size_t>(axis)].letter});
-}
-
 /// What the expressions of a word give takes the place of its number, in the block's order.
 void Execution::evaluate_words(Word& word) {
   const auto take = [this](Value& value) {
@@ -270,6 +263,8 @@ void Execution::gather_word(BlockWords& words, const Word& word) {
              {"M", std::to_string(code), "0", text::number(rule.max)});
       if (const MRule* known = dialect_.find_m(code); known != nullptr && known->action == MAction::later)
         fail(Fault::not_executed, word.column, {"M" + std::to_string(code)});
+      else if (known != nullptr && known->action == MAction::own)
+        return gather_own(words, word);
       words.m[static_cast<std::size_t>(words.m_count)] = &word;
       words.m_code[static_cast<std::size_t>(words.m_count++)] = code;
       return;

@@ -228,8 +228,16 @@ constexpr text::Entry kMessages[] = {
      "{0} is the number of positions in a turn of the axis {1}: a whole number from 1 to {2}, and the "
      "machine needs this rotary axis",
      "{0} — число позиций на оборот оси {1}: целое от 1 до {2}; станку нужна эта поворотная ось"},
+    {"P909", "{0} is no code that a language could have: G or M and a number from 0 to {1}",
+     "{0} не может быть кодом языка: это G или M и число от 0 до {1}"},
+    {"P910", "{0} is a word of the language already: choose another number",
+     "{0} уже есть в языке: выберите другой номер"},
+    {"P911", "{0}: the word {1} cannot give a parameter: axes, I J K R F and their like can",
+     "{0}: слово {1} не может задавать параметр: могут оси, I J K R F и подобные"},
+    {"P912", "{0} in the block of {1}: beside it stand only the words that its table names",
+     "{0} в кадре с {1}: рядом с ним стоят только слова из его таблицы"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::index_count) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::own_code_alone) + 1);
 
 }  // namespace
 

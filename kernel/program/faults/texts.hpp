@@ -149,6 +149,10 @@ enum class Fault : std::uint8_t {
   virtual_feed,
   virtual_radius,
   index_count,
+  own_code_bad,
+  own_code_taken,
+  own_code_word,
+  own_code_alone,
 };
 
 /// All texts, in the order of Fault.

@@ -28,7 +28,7 @@ struct Interpreter::Impl {
 };
 
 Interpreter::Interpreter(std::string_view dialect, MachineModel machine, Tables tables, std::string file_name,
-                         std::string text, ProgramLoader loader, const Position& start, int process) {
+                         ProgramText text, ProgramLoader loader, const Position& start, int process) {
   const Dialect* found = find_dialect(dialect);
   impl_ = std::make_unique<Impl>(
       Impl{found != nullptr, std::string(dialect),
@@ -80,6 +80,7 @@ const Tables& Interpreter::tables() const { return *impl_->run.state().frames.ta
 int Interpreter::block_count() const { return impl_->run.flow().main_source().blocks(); }
 long long Interpreter::executed() const { return impl_->run.state().executed; }
 bool Interpreter::machine_read() const { return impl_->run.machine_read(); }
+void Interpreter::look_at(const Position& to_go) { impl_->run.look_at(to_go); }
 void Interpreter::mdi(std::string_view block) { impl_->run.mdi(block); }
 void Interpreter::reposition(const Position& at) { impl_->run.reposition(at); }
 void Interpreter::adopt(Tables tables) { impl_->run.frames().adopt(std::move(tables)); }

@@ -13,6 +13,7 @@
 #include "kernel/program/execution/state/step.hpp"
 #include "kernel/program/geometry/frame.hpp"
 #include "kernel/program/reading/loader.hpp"
+#include "kernel/program/reading/program_text.hpp"
 
 namespace servogate::program {
 
@@ -29,7 +30,7 @@ class Interpreter {
   /// Reads the program text whole. Syntax findings come out of next() when the block is reached, and all
   /// together from findings().
   Interpreter(std::string_view dialect, MachineModel machine, Tables tables, std::string file_name,
-              std::string text, ProgramLoader loader, const Position& start, int process = 0);
+              ProgramText text, ProgramLoader loader, const Position& start, int process = 0);
   Interpreter(const Interpreter&);
   Interpreter& operator=(const Interpreter&);
   Interpreter(Interpreter&&) noexcept;
@@ -85,6 +86,9 @@ class Interpreter {
   /// Changes the origin in force of an axis so that the present position is `value` in programmed coordinates
   /// (mm or degrees; of a diameter axis the radius), in the table too.
   void preset(int axis, double value);
+  /// How far each axis of the machine still has to go in its block, mm or degrees, as the packets of the next
+  /// next() are; programs may read it.
+  void look_at(const Position& to_go);
   /// Before the first next(): what the operator has set.
   void set_switches(const OperatorSwitches& switches);
   /// Number of the origin in force of an axis.

@@ -153,6 +153,7 @@ enum class MAction : std::uint8_t {
   tool_change,
   subprogram_end,  ///< not handed to the PLC
   repeat_end,      ///< not handed to the PLC
+  own,             ///< what the machine builder made of it; not handed to the PLC
   later,           ///< an M word of the language that is not executed in this version
 };
 struct MRule {

@@ -18,9 +18,6 @@ constexpr std::pair<std::string_view, std::string_view> kLookAlikes[] = {
     {"О", "O"}, {"Р", "P"}, {"С", "C"}, {"Т", "T"}, {"У", "Y"}, {"Х", "X"}};
 
 bool cyrillic(char c) { return c == '\xD0' || c == '\xD1'; }
-bool any_cyrillic(std::string_view text) {
-  return text.find('\xD0') != std::string_view::npos || text.find('\xD1') != std::string_view::npos;
-}
 
 using Labels = std::set<std::string_view>;
 
@@ -118,6 +115,10 @@ void each_line(std::string_view text, Take take) {
 }
 
 }  // namespace
+
+bool any_cyrillic(std::string_view text) {
+  return text.find('\xD0') != std::string_view::npos || text.find('\xD1') != std::string_view::npos;
+}
 
 std::string_view latin_of(std::string_view cyrillic) {
   for (const auto& [letter, latin] : kLookAlikes)

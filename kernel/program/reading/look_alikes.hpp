@@ -20,6 +20,9 @@ struct LookAlike {
 /// The Latin letter that a Cyrillic one (UTF-8) looks like, empty: none.
 std::string_view latin_of(std::string_view cyrillic);
 
+/// The text has letters of the Cyrillic alphabet.
+bool any_cyrillic(std::string_view text);
+
 /// Puts Latin letters in the place of Cyrillic words that look like them all through, but not into comments,
 /// texts and labels. At most a million are told.
 std::vector<LookAlike> read_look_alikes(const Lexis& lexis, std::string& text);

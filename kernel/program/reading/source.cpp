@@ -18,45 +18,89 @@ std::size_t last_of(std::string_view text) {
   return last == std::string_view::npos ? 0 : last + 1;
 }
 
+constexpr std::size_t kWindow = std::size_t{4} << 20;  ///< bytes of a text that stay in memory together
+
+std::string_view without_end(std::string_view line) {
+  while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
+  return line;
+}
+
+/// The text has Cyrillic letters, or a CR that ends a line alone.
+bool needs_rewriting(std::string_view view, const ProgramText& text) {
+  const auto ahead = static_cast<std::size_t>(view.data() - text.view().data());
+  for (std::size_t from = 0; from < view.size(); from += kWindow) {
+    const std::string_view part = view.substr(from, kWindow);
+    if (any_cyrillic(part)) return true;
+    for (std::size_t at = part.find('\r'); at != std::string_view::npos; at = part.find('\r', at)) {
+      at = std::min(part.find_first_not_of('\r', at), part.size());
+      const std::size_t next = view.find_first_not_of('\r', from + at);
+      if (at < part.size() ? part[at] != '\n' : next == std::string_view::npos || view[next] != '\n')
+        return true;
+    }
+    text.leave(ahead + from, ahead + from + part.size());
+  }
+  return false;
+}
+
 }  // namespace
 
-Source::Source(const Dialect& dialect, std::string name, std::string text, std::string path)
+Source::Source(const Dialect& dialect, std::string name, ProgramText text, std::string path)
     : dialect_(&dialect),
       name_(std::move(name)),
       path_(path.empty() ? name_ : std::move(path)),
-      text_(std::move(text)) {
-  if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
+      text_(std::move(text)),
+      view_(text_.view()) {
+  if (view_.starts_with("\xEF\xBB\xBF")) view_.remove_prefix(3);
   // CP/M and its heirs end a text with 1Ah, and may fill the last record up.
-  const std::size_t end_mark = text_.find_first_of("\x1A", last_of(text_));
-  if (end_mark != std::string::npos) text_.erase(end_mark);
-  put_line_ends();
-  look_alikes_ = read_look_alikes(dialect.lexis, text_);
-  starts_.reserve(text_.size() / 24 + 2);
-  starts_.push_back(0);
-  const char* const begin = text_.data();
-  const char* const end = begin + text_.size();
-  for (const char* p = begin; p < end;) {
-    const void* found = std::memchr(p, '\n', static_cast<std::size_t>(end - p));
-    p = found == nullptr ? end : static_cast<const char*>(found) + 1;
-    starts_.push_back(static_cast<std::uint32_t>(p - begin));
-  }
+  if (const std::size_t end_mark = view_.find_first_of('\x1A', last_of(view_)); end_mark != std::string::npos)
+    view_ = view_.substr(0, end_mark);
+  if (needs_rewriting(view_, text_)) rewrite(std::string(view_));
   if (dialect.lexis.starts_at_tape) start_ = kNone;
   std::vector<std::uint32_t> open;
-  for (std::uint32_t i = 0; i < lines(); ++i) index_line(i, open);
+  marks_.reserve(view_.size() / 24 / kStride + 2);
+  const char* const begin = view_.data();
+  const char* const end = begin + view_.size();
+  for (const char* p = begin; p < end; ++lines_) {
+    const auto offset = static_cast<std::size_t>(p - begin);
+    if (lines_ % kStride == 0) marks_.push_back(static_cast<std::uint32_t>(offset));
+    const void* found = std::memchr(p, '\n', static_cast<std::size_t>(end - p));
+    const char* const last = found == nullptr ? end : static_cast<const char*>(found);
+    index_line(lines_, without_end({p, static_cast<std::size_t>(last - p)}), open);
+    pass(offset);
+    p = found == nullptr ? end : last + 1;
+  }
+}
+
+/// Texts of old computers and with look-alike letters are kept in memory, as they are read.
+void Source::rewrite(std::string text) {
+  put_line_ends(text);
+  look_alikes_ = read_look_alikes(dialect_->lexis, text);
+  text_ = ProgramText(std::move(text));
+  view_ = text_.view();
+}
+
+/// What lies two windows behind a place that is read may leave memory.
+void Source::pass(std::size_t offset) const noexcept {
+  if (!text_.spooled()) return;
+  const std::size_t window = offset / kWindow, before = window_.exchange(window, std::memory_order_relaxed);
+  if (window == before) return;
+  const std::size_t ahead = static_cast<std::size_t>(view_.data() - text_.view().data());
+  if (before + 1 != window) return text_.leave(ahead + before * kWindow, ahead + (before + 1) * kWindow);
+  if (window >= 2) text_.leave(ahead + (window - 2) * kWindow, ahead + (window - 1) * kWindow);
 }
 
 /// A CR that no LF follows ends a line as well. Those before an LF (CR CR LF, too) belong to it.
-void Source::put_line_ends() {
-  if (text_.find('\r') == std::string::npos) return;
+void Source::put_line_ends(std::string& text) {
+  if (text.find('\r') == std::string::npos) return;
   std::uint32_t line = 0;
-  for (std::size_t at = text_.find_first_of("\r\n"); at != std::string::npos;
-       at = text_.find_first_of("\r\n", at + 1)) {
-    const std::size_t next = text_.find_first_not_of('\r', at);
-    if (text_[at] == '\r') {
-      if (next != std::string::npos && text_[next] == '\n') {
+  for (std::size_t at = text.find_first_of("\r\n"); at != std::string::npos;
+       at = text.find_first_of("\r\n", at + 1)) {
+    const std::size_t next = text.find_first_not_of('\r', at);
+    if (text[at] == '\r') {
+      if (next != std::string::npos && text[next] == '\n') {
         at = next;
       } else {
-        text_[at] = '\n';
+        text[at] = '\n';
         if (lone_return_ == kNone) lone_return_ = line;
       }
     }
@@ -65,13 +109,18 @@ void Source::put_line_ends() {
 }
 
 std::string_view Source::line(std::uint32_t index) const noexcept {
-  std::string_view view(text_.data() + starts_[index], starts_[index + 1] - starts_[index]);
-  while (!view.empty() && (view.back() == '\n' || view.back() == '\r')) view.remove_suffix(1);
-  return view;
+  const char* const end = view_.data() + view_.size();
+  const char* at = view_.data() + marks_[index / kStride];
+  const auto line_end = [end](const char* from) {
+    const void* found = std::memchr(from, '\n', static_cast<std::size_t>(end - from));
+    return found == nullptr ? end : static_cast<const char*>(found);
+  };
+  for (std::uint32_t n = index % kStride; n > 0; --n) at = line_end(at) + 1;
+  pass(static_cast<std::size_t>(at - view_.data()));
+  return without_end({at, static_cast<std::size_t>(line_end(at) - at)});
 }
 
-void Source::index_line(std::uint32_t index, std::vector<std::uint32_t>& open) {
-  const std::string_view text = line(index);
+void Source::index_line(std::uint32_t index, std::string_view text, std::vector<std::uint32_t>& open) {
   const Lexis& lexis = dialect_->lexis;
   const std::size_t first = skip_spaces(text, 0);
   if (holds_nothing(lexis, text, first)) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "kernel/program/reading/look_alikes.hpp"
+#include "kernel/program/reading/program_text.hpp"
 
 namespace servogate::program {
 
@@ -21,13 +23,13 @@ class Source {
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   /// `path`: where people find the file, for findings; empty: its name.
-  Source(const Dialect& dialect, std::string name, std::string text, std::string path = {});
+  Source(const Dialect& dialect, std::string name, ProgramText text, std::string path = {});
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
   const std::string& name() const noexcept { return name_; }
   const std::string& path() const noexcept { return path_; }
-  std::uint32_t lines() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
+  std::uint32_t lines() const noexcept { return lines_; }
   /// One line without its line end.
   std::string_view line(std::uint32_t index) const noexcept;
   /// Lines that hold a block (not empty, no comment, no tape mark).
@@ -64,16 +66,22 @@ class Source {
   std::uint32_t lone_return() const noexcept { return lone_return_; }
 
  private:
-  void put_line_ends();
-  void index_line(std::uint32_t index, std::vector<std::uint32_t>& open);
+  static constexpr std::uint32_t kStride = 8;
+  void rewrite(std::string text);
+  void put_line_ends(std::string& text);
+  void index_line(std::uint32_t index, std::string_view text, std::vector<std::uint32_t>& open);
+  void pass(std::size_t offset) const noexcept;
   template <typename Is>
   std::uint32_t find_line(std::uint32_t first, std::uint32_t last, Is is) const;
 
   const Dialect* dialect_;
   std::string name_;
   std::string path_;
-  std::string text_;
-  std::vector<std::uint32_t> starts_;
+  ProgramText text_;
+  std::string_view view_;             ///< of it, what counts
+  std::vector<std::uint32_t> marks_;  ///< offset of every kStride-th line
+  std::uint32_t lines_ = 0;
+  mutable std::atomic<std::size_t> window_{0};  ///< of the text that was looked at last
   std::unordered_map<std::string_view, std::uint32_t> labels_;
   std::unordered_map<std::uint32_t, std::uint32_t> partners_;
   std::map<std::uint32_t, std::int32_t> definitions_;  ///< line to number

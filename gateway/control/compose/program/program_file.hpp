@@ -13,7 +13,8 @@ namespace servogate::gateway {
 /// A part program opened for a machine: everything an interpreter is constructed from but the start position.
 struct ProgramFile {
   std::string path;  ///< as it was given; empty: no program, only typed blocks
-  std::string dialect, text;
+  std::string dialect;
+  program::ProgramText text;
   int process = 0;  ///< that runs it, from 0
   program::MachineModel model;
   program::ProgramLoader loader;

@@ -22,6 +22,7 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
       axis.travel_min = a.travel_min;
       axis.travel_max = a.travel_max;
     }
+    axis.process = a.process - 1;
     axis.endless = a.endless();
     axis.rapid = a.max_velocity;
     axis.acceleration = a.max_acceleration;
@@ -41,6 +42,9 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
   model.syvar_bytes = static_cast<std::uint32_t>(machine.control.syvar_size);
   model.power_on = machine.control.power_on;
   model.variables = machine.control.variables;
+  for (const machine::OwnCodeConfig& c : machine.own_codes)
+    model.own_codes.push_back(
+        {c.code, std::filesystem::absolute(machine.resolve(c.program)).string(), c.words});
   for (const image::Symbol& s : machine.symbol_table())
     if (s.writer != image::Writer::program) model.protected_places.push_back({s.place, s.name});
   return model;

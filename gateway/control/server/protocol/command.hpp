@@ -61,6 +61,7 @@ struct TableSet {
   std::map<std::string, double> values;
   std::optional<std::string> name;  ///< of a tool
   bool here = false;
+  std::vector<std::string> inches;  ///< names of values that are lengths in inches
 };
 struct TableClear {
   std::optional<Table> table;

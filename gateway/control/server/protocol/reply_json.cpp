@@ -88,6 +88,8 @@ void write(json& answer, const TablesReport& report) {
                      {"wear", c.wear},
                      {"radius", c.radius},
                      {"radius_wear", c.radius_wear},
+                     {"wear_limit", c.wear_limit},
+                     {"radius_wear_limit", c.radius_wear_limit},
                      {"quadrant", c.quadrant},
                      {"life_min", c.life_min},
                      {"used_min", c.used_min},

@@ -43,18 +43,43 @@ constexpr Type kPlayed{is_played, "a number, true, false or a string", "числ
 constexpr struct {
   std::string_view command, key;
   const Type& type;
-} kFields[] = {{"", "cmd", kText},          {"", "asker", kText},          {"", "language", kLanguage},
-               {"", "axis", kText},         {"", "axes", kList},           {"", "unit", kText},
-               {"input", "value", kPlayed}, {"plc_force", "value", kText}, {"", "value", kNumber},
-               {"", "block", kText},        {"", "program", kText},        {"", "dialect", kText},
-               {"", "point", kText},        {"", "name", kText},           {"", "names", kList},
-               {"", "body", kText},         {"", "times", kSwitch},        {"", "stay", kSwitch},
-               {"", "files", kList},        {"", "online", kSwitch},       {"", "while_running", kSwitch},
-               {"", "bus", kText},          {"", "node", kNumber},         {"", "index", kNumber},
-               {"", "subindex", kNumber},   {"", "scans", kNumber},        {"", "count", kNumber},
-               {"", "process", kNumber},    {"", "table", kText},          {"", "number", kNumber},
-               {"", "values", kValues},     {"", "line", kNumber},         {"", "feed", kNumber},
-               {"", "confirm", kSwitch},    {"", "plan", kSwitch},         {"", "file", kText},
+} kFields[] = {{"", "cmd", kText},
+               {"", "asker", kText},
+               {"", "language", kLanguage},
+               {"", "axis", kText},
+               {"", "axes", kList},
+               {"", "unit", kText},
+               {"input", "value", kPlayed},
+               {"plc_force", "value", kText},
+               {"", "value", kNumber},
+               {"", "block", kText},
+               {"", "program", kText},
+               {"", "dialect", kText},
+               {"", "point", kText},
+               {"", "name", kText},
+               {"", "names", kList},
+               {"", "body", kText},
+               {"", "times", kSwitch},
+               {"", "stay", kSwitch},
+               {"", "files", kList},
+               {"", "online", kSwitch},
+               {"", "while_running", kSwitch},
+               {"", "bus", kText},
+               {"", "node", kNumber},
+               {"", "index", kNumber},
+               {"", "subindex", kNumber},
+               {"", "scans", kNumber},
+               {"", "count", kNumber},
+               {"", "process", kNumber},
+               {"", "table", kText},
+               {"", "number", kNumber},
+               {"", "values", kValues},
+               {"", "inches", kList},
+               {"", "line", kNumber},
+               {"", "feed", kNumber},
+               {"", "confirm", kSwitch},
+               {"", "plan", kSwitch},
+               {"", "file", kText},
                {"", "form", kText}};
 
 /// Without which a request says nothing.
@@ -240,7 +265,7 @@ class Fields {
     return request_.value("values", std::map<std::string, double>{});
   }
   ask::TableSet table_row(bool here) {
-    return {table(), whole("number", 0xFFFF), values(), text_if("name"), here};
+    return {table(), whole("number", 0xFFFF), values(), text_if("name"), here, list("inches")};
   }
   std::variant<std::monostate, bool, double> played(const char* key) {
     const json value = request_.value(key, json());

@@ -87,7 +87,7 @@ bool Resident::arm(int process, ProgramChange::Kind kind) {
     // Whoever starts, a start button too, must not find it.
     auto none = std::make_shared<ProgramFile>(*s.file);
     none->path.clear();
-    none->text.clear();
+    none->text = {};
     file = std::move(none);
   }
   if (!control_.change({kind, process, std::move(file), state_.tables, {}})) return false;
@@ -152,7 +152,7 @@ void Resident::read_and_prove(Load& load, const std::stop_token& stop) const {
                                      channel::Forecast::Depth::drivable, stop);
   load.findings.insert(load.findings.end(), check.report.findings.begin(), check.report.findings.end());
   load.blocks = check.report.blocks;
-  const std::string& text = load.file->text;
+  const std::string_view text = load.file->text.view();
   load.lines = static_cast<int>(std::count(text.begin(), text.end(), '\n')) +
                (text.empty() || text.back() == '\n' ? 0 : 1);
 }
@@ -281,22 +281,22 @@ Resident::Coordinates Resident::coordinates(int process) {
 
 std::string Resident::line_of(int process, const std::string& file, int line) {
   Seat& s = seat(process);
-  const std::string* text = &s.file->text;
+  std::string_view text = s.file->text.view();
   if (file != s.file->path) {
     if (file != s.shown_file) {
       std::string ignored;
       s.shown_file = file;
       s.shown_text = files::read_file(file, files::kMostOfProgram, ignored).value_or(std::string());
     }
-    text = &s.shown_text;
+    text = s.shown_text;
   }
   std::size_t at = 0;
   for (int n = 1; n < line && at != std::string::npos; ++n) {
-    at = text->find('\n', at);
+    at = text.find('\n', at);
     if (at != std::string::npos) ++at;
   }
-  if (line < 1 || at == std::string::npos || at >= text->size()) return {};
-  std::string block = text->substr(at, text->find('\n', at) - at);
+  if (line < 1 || at == std::string::npos || at >= text.size()) return {};
+  std::string block(text.substr(at, text.find('\n', at) - at));
   if (!block.empty() && block.back() == '\r') block.pop_back();
   return block;
 }

@@ -23,9 +23,15 @@ std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 
 }  // namespace
 
-void end_virtual_axes(const MachineModel& machine, VirtualAxes& axes) {
-  axes = VirtualAxes{};
+VirtualAxes no_virtual_axes(const MachineModel& machine) {
+  VirtualAxes axes;
   for (int a = machine.real_axes(); a < machine.axis_count(); ++a) axes.barred |= 1u << a;
+  return axes;
+}
+
+void end_virtual_axes(const MachineModel& machine, VirtualAxes& axes, Position& at_) {
+  axes = no_virtual_axes(machine);
+  for (int a = machine.real_axes(); a < machine.axis_count(); ++a) at_[at(a)] = 0.0;
 }
 
 Position Followers::Way::place(double share) const {

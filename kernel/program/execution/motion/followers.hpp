@@ -8,7 +8,9 @@
 namespace servogate::program {
 
 /// No virtual axes are in force; no block may name one.
-void end_virtual_axes(const MachineModel& machine, VirtualAxes& axes);
+VirtualAxes no_virtual_axes(const MachineModel& machine);
+/// The same from here on; what the machine does not have stands at 0.
+void end_virtual_axes(const MachineModel& machine, VirtualAxes& axes, Position& at);
 
 /// Leads the followers of virtual axes along the commands of a block: a motion becomes chords in coordinates
 /// of the machine, which leave the programmed path by at most half a micrometre, with the speed along that

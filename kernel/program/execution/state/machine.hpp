@@ -22,6 +22,7 @@ struct MachineModel {
     double rapid = 0.0;                          ///< largest speed, mm/s or degrees/s; 0: not known
     double acceleration = 0.0;                   ///< mm/s2 or degrees/s2; 0: not known
     double jerk = 0.0;                           ///< mm/s3 or degrees/s3; 0: not known
+    int process = 0;                             ///< whose programs move it, from 0
     bool endless = false;                        ///< rotary without ends of travel
     bool is_virtual = false;  ///< no axis of the machine: programs name it while real ones follow it
     int index_positions = 0;  ///< programs count positions, so many in a turn; 0: they give degrees
@@ -36,6 +37,13 @@ struct MachineModel {
   /// its variables by their names.
   std::vector<std::string> power_on;
   std::map<std::string, double> variables;
+  /// A G or M word of the machine builder's own: it calls a program, with words of its block as parameters.
+  struct OwnCode {
+    std::string code;                     ///< "G50", "M77"
+    std::string program;                  ///< as the loader finds it
+    std::map<std::string, double> words;  ///< letter of a word to the number of the parameter that takes it
+  };
+  std::vector<OwnCode> own_codes;
   std::vector<int> synchronous_m;  ///< reserved for dialects that let the machine builder choose
   /// A place that part programs must not write, and the name of who writes it (an input, the control).
   struct Protected {
@@ -65,11 +73,13 @@ struct MachineModel {
 /// Tables an interpreter reads and, for some words, changes; kept in the state directory by the gateway.
 struct Tables {
   struct Corrector {
-    std::string name;                      ///< for people
-    std::map<std::string, double> length;  ///< axis letter to mm
-    std::map<std::string, double> wear;    ///< axis letter to mm, added to the length
-    double radius = 0.0;                   ///< mm
-    double radius_wear = 0.0;              ///< mm, added to the radius
+    std::string name;                          ///< for people
+    std::map<std::string, double> length;      ///< axis letter to mm
+    std::map<std::string, double> wear;        ///< axis letter to mm, added to the length
+    double radius = 0.0;                       ///< mm
+    double radius_wear = 0.0;                  ///< mm, added to the radius
+    std::map<std::string, double> wear_limit;  ///< axis letter to mm: beyond it the tool is worn out
+    double radius_wear_limit = 0.0;            ///< mm; 0: not limited
     int quadrant = 0;       ///< where the tip of a turning tool points, 1 to 9; 0: no turning tool
     double life_min = 0.0;  ///< minutes at feed after which the tool is worn out; 0: they are not limited
     double used_min = 0.0;  ///< minutes at feed so far
@@ -83,7 +93,8 @@ struct Tables {
     /// Of minutes only that decides whether the tool is worn out: what programs do depends on no more.
     bool operator==(const Corrector& o) const {
       return name == o.name && length == o.length && wear == o.wear && radius == o.radius &&
-             radius_wear == o.radius_wear && quadrant == o.quadrant && life_min == o.life_min &&
+             radius_wear == o.radius_wear && wear_limit == o.wear_limit &&
+             radius_wear_limit == o.radius_wear_limit && quadrant == o.quadrant && life_min == o.life_min &&
              alternate == o.alternate && worn_out() == o.worn_out();
     }
   };
@@ -113,12 +124,14 @@ inline void carry_over(const Tables& before, const Tables& after, Tables& into) 
       row.used_min = old->second.used_min;
 }
 
-/// A power-on mode or value of the machine file that the language cannot take. Its program does not run.
+/// A power-on mode, a value or an own code of the machine file that the language cannot take. Its program
+/// does not run.
 struct SettingFault {
-  int mode = -1;         ///< index in MachineModel::power_on, -1: it is a variable
+  int mode = -1;         ///< index in MachineModel::power_on, -1: it is a variable or an own code
   std::string variable;  ///< its name in MachineModel::variables
   const text::Entry* entry = nullptr;
   std::vector<std::string> arguments;
+  int own_code = -1;  ///< index in MachineModel::own_codes
 };
 
 }  // namespace servogate::program

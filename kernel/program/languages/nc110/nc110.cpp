@@ -128,18 +128,17 @@ constexpr CodeRule kCodes[] = {
     {"DTL", "v+", code::dtl, false},
     {"UAV", "n?.*", code::uav, false},
     {"CTL", "?.", code::ctl, false},
-    // Codes of the language that this version does not execute.
-    {"OPN", "", nullptr},
-    {"DER", "", nullptr},
-    {"RED", "", nullptr},
-    {"WRT", "", nullptr},
-    {"CLO", "", nullptr},
-    {"CRE", "", nullptr},
-    {"CAN", "", nullptr},
-    {"INP", "", nullptr},
-    {"SCR", "", nullptr},
-    {"DEF", "", nullptr},
-    {"OUT", "", nullptr},
+    {"OPN", "?.*", code::record_file},
+    {"DER", "?.*", code::record_file},
+    {"RED", "?.*", code::record_file},
+    {"WRT", "?.*", code::record_file},
+    {"CLO", "?.*", code::record_file},
+    {"CRE", "?.*", code::record_file},
+    {"CAN", "?.*", code::record_file},
+    {"INP", "?.*", code::keyboard},
+    {"SCR", "?.*", code::screen},
+    {"DEF", "?.*", code::screen},
+    {"OUT", "?.*", code::screen},
 };
 
 constexpr VariableRule kVariables[] = {
@@ -156,9 +155,10 @@ constexpr VariableRule kVariables[] = {
     {"RTA", variable::rta},
     {"RTO", variable::rto},
     {"UGF", variable::ugf},
+    {"RMN", variable::rmn, true},
+    {"ERR", variable::err},
     {"DAW", variable::daw, true},
     // Variables of the language that this version does not execute.
-    {"RMN", nullptr, true},
     {"JOG", nullptr},
     {"URL", nullptr},
     {"UCV", nullptr},
@@ -167,8 +167,6 @@ constexpr VariableRule kVariables[] = {
     {"UEP", nullptr},
     {"VOL", nullptr},
     {"MBR", nullptr},
-    {"ERR", nullptr},
-    {"IOSTA", nullptr},
 };
 
 constexpr double kCoordinate = 99999.9999;

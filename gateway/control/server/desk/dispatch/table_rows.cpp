@@ -27,6 +27,8 @@ constexpr ToolField kToolFields[] = {{"length", -machine::kLongestEntry, machine
                                      {"radius", 0.0, machine::kLongestEntry, false},
                                      {"diameter", 0.0, machine::kLongestEntry, false},
                                      {"radius_wear", -machine::kLongestEntry, machine::kLongestEntry, false},
+                                     {"wear_limit", 0.0, machine::kLongestEntry, false},
+                                     {"radius_wear_limit", 0.0, machine::kLongestEntry, false},
                                      {"quadrant", 0.0, 9.0, true},
                                      {"life", 0.0, machine::kLongestLife, false},
                                      {"used", 0.0, machine::kLongestLife, false},
@@ -62,6 +64,7 @@ std::string possible(const MachineConfig& machine, ask::Table table) {
   if (table == ask::Table::tool) {
     for (const ToolField& f : kToolFields) list += ", " + std::string(f.name);
     for (const std::string& a : table_axes(machine)) list += ", wear_" + a;
+    for (const std::string& a : table_axes(machine)) list += ", wear_limit_" + a;
   }
   return list;
 }
@@ -83,9 +86,11 @@ bool in_range(const std::string& name, double value, double min, double max, boo
 bool check_entry(const MachineConfig& machine, const ask::TableSet& wanted, const std::string& name,
                  double value, FormProblem& problem) {
   const bool tool = *wanted.table == ask::Table::tool;
-  const bool wear = tool && name.starts_with("wear_");
-  if (axis_of_entry(machine, wear ? name.substr(5) : name) >= 0) {
-    if (wear && wanted.here) return refuse(problem, says::kEntryHere, {name});
+  const bool limit = tool && name.starts_with("wear_limit_"),
+             wear = tool && !limit && name.starts_with("wear_");
+  if (axis_of_entry(machine, name.substr(limit ? 11 : wear ? 5 : 0)) >= 0) {
+    if ((wear || limit) && wanted.here) return refuse(problem, says::kEntryHere, {name});
+    if (limit) return in_range(name, value, 0.0, machine::kLongestEntry, false, problem);
     return in_range(name, value, -machine::kLongestEntry, machine::kLongestEntry, false, problem);
   }
   const auto* field = std::find_if(std::begin(kToolFields), std::end(kToolFields),
@@ -117,6 +122,12 @@ void set_tool_entry(const MachineConfig& machine, program::Tables::Corrector& to
     tool.length[tool_axis(machine)] = value;
   else if (name == "wear")
     tool.wear[tool_axis(machine)] = value;
+  else if (name == "wear_limit")
+    tool.wear_limit[tool_axis(machine)] = value;
+  else if (name == "radius_wear_limit")
+    tool.radius_wear_limit = value;
+  else if (name.starts_with("wear_limit_"))
+    tool.wear_limit[upper(name.substr(11))] = value / shown(machine, axis_of_entry(machine, name.substr(11)));
   else if (name.starts_with("wear_"))
     tool.wear[upper(name.substr(5))] = value / shown(machine, axis_of_entry(machine, name.substr(5)));
   else
@@ -154,6 +165,24 @@ std::vector<std::string> table_axes(const MachineConfig& machine) {
 
 std::string table_word(ask::Table table) {
   return table == ask::Table::origin ? text::both("origin", "начало") : text::both("tool", "инструмент");
+}
+
+bool take_inches(const MachineConfig& machine, ask::TableSet& wanted, FormProblem& problem) {
+  constexpr double kInch = 25.4;
+  for (const std::string& name : wanted.inches) {
+    const auto value = wanted.values.find(name);
+    if (value == wanted.values.end()) continue;
+    const std::size_t last = name.rfind('_');
+    const int axis = axis_of_entry(machine, last == std::string::npos ? name : name.substr(last + 1));
+    const bool whole = name == "quadrant" || name == "life" || name == "used" || name == "alternate";
+    if (whole ||
+        (axis >= 0 && machine.axes[static_cast<std::size_t>(axis)].type == machine::AxisType::rotary))
+      return refuse(problem, says::kNotUnit,
+                    {text::unit_words("in"), name, whole ? "1" : text::unit_words("deg")});
+    value->second *= kInch;
+  }
+  wanted.inches.clear();
+  return true;
 }
 
 bool check_row(const MachineConfig& machine, const ask::TableSet& wanted, FormProblem& problem) {
@@ -227,6 +256,10 @@ std::string row_words(const MachineConfig& machine, const program::Tables& table
     join(out, entry_words(machine, c.wear, text::both("wear ", "износ ")));
     if (c.radius_wear != 0.0)
       join(out, text::both("wear of the radius ", "износ радиуса ") + text::number(c.radius_wear, 4) + mm);
+    join(out, entry_words(machine, c.wear_limit, text::both("wear at most ", "износ не более ")));
+    if (c.radius_wear_limit != 0.0)
+      join(out, text::both("wear of the radius at most ", "износ радиуса не более ") +
+                    text::number(c.radius_wear_limit, 4) + mm);
     if (c.quadrant != 0) join(out, text::both("quadrant ", "квадрант ") + std::to_string(c.quadrant));
     join(out, machine::life_words(c.life_min, c.used_min, c.alternate));
   }
@@ -244,7 +277,7 @@ TablesReport tables_report(Resident& resident) {
     for (auto& [number, row] : report.tables.origins)
       if (const auto entry = row.find(a.letter); entry != row.end()) entry->second *= 2.0;
     for (auto& [number, c] : report.tables.correctors)
-      for (auto* values : {&c.length, &c.wear})
+      for (auto* values : {&c.length, &c.wear, &c.wear_limit})
         if (const auto entry = values->find(a.letter); entry != values->end()) entry->second *= 2.0;
   }
   return report;

@@ -20,6 +20,9 @@ machine::TableKind kind_of(ask::Table table);
 std::vector<std::string> table_axes(const machine::MachineConfig& machine);
 
 /// False: `problem` says what is wrong with the number or a value of the row.
+/// Takes lengths in inches over into millimetres; false: a value is no length, and `problem` says so.
+bool take_inches(const machine::MachineConfig& machine, ask::TableSet& wanted, FormProblem& problem);
+
 bool check_row(const machine::MachineConfig& machine, const ask::TableSet& wanted, FormProblem& problem);
 /// The row is in the table; false: `problem` says which are.
 bool row_known(const program::Tables& tables, ask::Table table, int number, FormProblem& problem);

@@ -38,9 +38,11 @@ bool Dispatch::ask_for_tables(std::uint32_t touched) {
   return ask(r);
 }
 
-Outcome Dispatch::take(const ask::TableSet& wanted) {
+Outcome Dispatch::take(const ask::TableSet& asked) {
   FormProblem problem;
-  if (!check_row(machine(), wanted, problem)) return fail(*problem.entry, problem.arguments, kWrongUse);
+  ask::TableSet wanted = asked;
+  if (!take_inches(machine(), wanted, problem) || !check_row(machine(), wanted, problem))
+    return fail(*problem.entry, problem.arguments, kWrongUse);
   if (!ask_for_tables(touched_axes(machine(), wanted))) return refusal_;
   resident_.change_tables(with_row(resident_, wanted));
   return with_new_tables(

@@ -55,6 +55,11 @@ void dsa(Execution& run, const Operands& operands);
 void asc(Execution& run, const Operands& operands);
 void dsc(Execution& run, const Operands& operands);
 
+// asset.cpp; source: specification B 16
+void record_file(Execution& run, const Operands& operands);
+void keyboard(Execution& run, const Operands& operands);
+void screen(Execution& run, const Operands& operands);
+
 // virtual.cpp; source: specification B 13, B 6.4
 void uav(Execution& run, const Operands& operands);
 void ctl(Execution& run, const Operands& operands);
@@ -89,6 +94,10 @@ void tot(Execution& run, double value, int index, int column);
 void rms(Execution& run, double value, int index, int column);
 void rta(Execution& run, double value, int index, int column);
 void rto(Execution& run, double value, int index, int column);
+// asset.cpp
+void err(Execution& run, double value, int index, int column);
+// variables.cpp
+void rmn(Execution& run, double value, int index, int column);
 // virtual.cpp
 void ugf(Execution& run, double value, int index, int column);
 void daw(Execution& run, double value, int index, int column);

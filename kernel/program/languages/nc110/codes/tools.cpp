@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -11,6 +12,23 @@
 
 namespace servogate::program::nc110::code {
 namespace {
+
+/// As if its life were over.
+void declare_worn_out(Tables::Corrector& tool) {
+  constexpr double kShortest = 0.001;  // minutes; a life of 0 means none
+  if (tool.life_min <= 0.0) tool.life_min = std::max(tool.used_min, kShortest);
+  tool.used_min = std::max(tool.used_min, tool.life_min);
+}
+
+/// The wear has gone beyond a limit of the row.
+bool beyond(const Tables::Corrector& tool) {
+  const auto worn = [&](const auto& limit) {
+    const auto wear = tool.wear.find(limit.first);
+    return wear != tool.wear.end() && limit.second > 0.0 && std::abs(wear->second) > limit.second;
+  };
+  return std::any_of(tool.wear_limit.begin(), tool.wear_limit.end(), worn) ||
+         (tool.radius_wear_limit > 0.0 && std::abs(tool.radius_wear) > tool.radius_wear_limit);
+}
 
 /// Adds to a row of the tool table: to its wear, or to its lengths and radius themselves. K is a diameter, a
 /// value of a diameter axis is halved; no scale.
@@ -33,6 +51,7 @@ void requalify(Execution& run, const Operands& operands, bool wear) {
     const std::string& letter = run.machine().axes[static_cast<std::size_t>(item.axis)].letter;
     (wear ? corrector.wear : corrector.length)[letter] += run.numbers().length(item.axis, item.value);
   }
+  if (wear && beyond(corrector)) declare_worn_out(corrector);
   run.state().frames.tables = std::move(tables);
 }
 
@@ -41,7 +60,7 @@ void requalify(Execution& run, const Operands& operands, bool wear) {
 void rqu(Execution& run, const Operands& operands) { requalify(run, operands, true); }
 void rqp(Execution& run, const Operands& operands) { requalify(run, operands, false); }
 
-/// Declares a tool unfit: as if its life were over.
+/// Declares a tool unfit.
 void tof(Execution& run, const Operands& operands) {
   const int number = run.numbers().whole(operands.items[0].value, operands.rule->name);
   auto tables = std::make_shared<Tables>(*run.state().frames.tables);
@@ -49,10 +68,7 @@ void tof(Execution& run, const Operands& operands) {
   if (row == tables->correctors.end())
     fail(Wrong::corrector_number, operands.items[0].value.column,
          {std::string(operands.rule->name), std::to_string(number)});
-  constexpr double kShortest = 0.001;  // minutes; a life of 0 means none
-  Tables::Corrector& tool = row->second;
-  if (tool.life_min <= 0.0) tool.life_min = std::max(tool.used_min, kShortest);
-  tool.used_min = std::max(tool.used_min, tool.life_min);
+  declare_worn_out(row->second);
   run.state().frames.tables = std::move(tables);
 }
 

@@ -100,4 +100,7 @@ void rto(Execution& run, double value, int, int column) {
   run.state().own[at(Own::rto)] = value * unit(run);
 }
 
+/// The control writes it.
+void rmn(Execution&, double, int, int column) { fail(Wrong::read_only, column, {"RMN"}); }
+
 }  // namespace servogate::program::nc110::variable

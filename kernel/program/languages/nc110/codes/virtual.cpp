@@ -225,11 +225,7 @@ class Definition {
   const Operands& operands_;
   int mode_;
   const FramesState& state_;
-  VirtualAxes axes_ = [this] {
-    VirtualAxes none;
-    end_virtual_axes(run_.machine(), none);
-    return none;
-  }();
+  VirtualAxes axes_ = no_virtual_axes(run_.machine());
 };
 
 }  // namespace
@@ -241,7 +237,7 @@ void uav(Execution& run, const Operands& operands) {
     fail(Wrong::virtual_form, operands.column, {std::to_string(mode), std::string(kForms[mode])});
   run.motion().end_profile();
   State& state = run.state();
-  end_virtual_axes(run.machine(), state.virtual_axes);
+  end_virtual_axes(run.machine(), state.virtual_axes, state.frames.machine);
   run.frames().changed();
   if (mode == 0) return;
   const VirtualAxes axes = Definition(run, operands, mode).read();

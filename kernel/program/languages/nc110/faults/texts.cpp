@@ -146,8 +146,29 @@ constexpr text::Entry kMessages[] = {
     {"P673",
      "the manual gives DAW no format: write the value to the place of an analogue output, as in SK10.RE=E30",
      "руководство не даёт формата DAW: запишите значение в место аналогового выхода, например SK10.RE=E30"},
+    {"P674",
+     "{0}: there are no record files; keep values in places of SYVAR or SK, which the PLC retains and every "
+     "client "
+     "reads and writes",
+     "{0}: файлов записей нет; храните значения в местах SYVAR или SK: ПЛК их сохраняет, а каждый клиент "
+     "читает и "
+     "пишет"},
+    {"P675",
+     "{0}: there is no dialogue; show the question by DIS, wait by WAI for a place of SK, and let the "
+     "operator set it",
+     "{0}: диалога нет; покажите вопрос через DIS, ждите места SK через WAI, а оператор пусть его задаст"},
+    {"P676", "{0}: there is no user screen; show texts and values by DIS, clients show them",
+     "{0}: экрана пользователя нет; показывайте тексты и значения через DIS, их покажут клиенты"},
+    {"P827",
+     "the stroke of {0} mm is too short for the tap: {1} mm/min need {2} mm to accelerate and to brake",
+     "хода {0} мм метчику мало: подаче {1} мм/мин нужно {2} мм на разгон и торможение"},
+    {"P677", "{0}: RMN stands with two digits, the process from 1 to 5 and its axis from 1",
+     "{0}: за RMN стоят две цифры: процесс от 1 до 5 и его ось от 1"},
+    {"P678", "{0}: process {1} has {2} axes", "{0}: осей у процесса {1} — {2}"},
+    {"P679", "{0} is written by the control, a program can only read it",
+     "{0} записывает система, программа может её только читать"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::analogue_output) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::read_only) + 1);
 
 }  // namespace
 

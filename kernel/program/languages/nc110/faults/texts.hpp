@@ -97,6 +97,13 @@ enum class Wrong : std::uint8_t {
   skew_angle,
   configuration,
   analogue_output,
+  record_file,
+  keyboard,
+  screen,
+  tap_short,
+  rest_form,
+  rest_axis,
+  read_only,
 };
 
 /// All texts, in the order of Wrong.

@@ -108,6 +108,23 @@ void define(Execution& run, const BlockWords& words) {
   state.motion.cycle = cycle;
 }
 
+/// A tap has to reach its feed and to stop within its stroke (specification A 10.4).
+void check_stroke(const Execution& run, const Cycle& cycle, int column) {
+  if (cycle.name != "G84" || cycle.lead > 0.0) return;
+  const MachineModel::Axis& axis = run.machine().axes[at(cycle.axis)];
+  const State& state = run.state();
+  if (axis.acceleration <= 0.0 || axis.jerk <= 0.0 || state.modes.feed == Function::feed_inverse) return;
+  const double turns = state.modes.feed == Function::feed_revolution ? state.modes.speed : 1.0;
+  const double v = state.motion.feed * (state.motion.feed_inch ? 25.4 : 1.0) * turns / 60.0;
+  const double reached = axis.acceleration * axis.acceleration / axis.jerk;
+  const double time =
+      v >= reached ? v / axis.acceleration + axis.acceleration / axis.jerk : 2.0 * std::sqrt(v / axis.jerk);
+  const double stroke = std::abs(cycle.approach - cycle.depth), needed = v * time;
+  if (stroke > 0.0 && stroke < needed)
+    fail(Wrong::tap_short, column,
+         {text::number(stroke, 4), text::number(v * 60.0, 2), text::number(needed, 2)});
+}
+
 }  // namespace
 
 void cycle(Execution& run, const BlockWords& words) {
@@ -126,6 +143,7 @@ void cycle(Execution& run, const BlockWords& words) {
   run.motion().position(words, active.axis);
   take_levels(run, words, active);
   if (active.dwells) active.dwell_s = dwell_seconds(run);
+  check_stroke(run, active, column_of(run.block(), -1));
   work_hole(run, active);
 }
 

@@ -47,8 +47,6 @@ constexpr FunctionRow kFunctions[] = {
     {"MOD", [](double a, double b) { return b == 0.0 ? std::nan("") : std::fmod(a, b); }, 2},
 };
 
-constexpr std::string_view kLater[] = {"RMN", "IOSTA"};
-
 /// FEL(A,B): a value of a geometric element.
 double of_element(int function, std::string_view line, std::size_t& pos, const ValueSource* source,
                   int column) {
@@ -78,6 +76,17 @@ bool own_variable(std::string_view name, std::string_view line, std::size_t& pos
   if (name == "FEL" || name == "FEP" || name == "FEC") {
     pos += name.size();
     value = of_element(name == "FEL" ? 0 : name == "FEP" ? 1 : 2, line, pos, source, column);
+    return true;
+  }
+  if (name == "IOSTA") fail(Wrong::record_file, column, {"IOSTA"});
+  if (name == "RMN") {
+    pos += name.size();
+    const std::size_t digits = pos;
+    const int number = read_index(line, pos);
+    if (pos - digits != 2 || number < 11 || number > 59 || number % 10 == 0)
+      fail(Wrong::rest_form, column,
+           {std::string(line.substr(digits - name.size(), pos - digits + name.size()))});
+    if (source != nullptr) value = source->system(kOfRest + number / 10 * 100 + number % 10, column);
     return true;
   }
   const bool time = name == "TIM", sum = name == "TOT";
@@ -119,7 +128,7 @@ bool variable(std::string_view line, std::size_t& pos, const ValueSource* source
 }  // namespace
 
 Expressions expressions() {
-  return {.operators = kOperators, .functions = kFunctions, .later = kLater, .variable = variable};
+  return {.operators = kOperators, .functions = kFunctions, .later = {}, .variable = variable};
 }
 
 ParameterSet parameters() {

@@ -27,6 +27,7 @@ constexpr std::size_t at(Own own) { return static_cast<std::size_t>(own); }
 /// Numbers for ValueSource::system: an own value, or what FEL, FEP and FEC ask for.
 constexpr int kOfElement = 1'000'000;
 constexpr int kOfTime = 10'000;  ///< TIM0
+constexpr int kOfRest = 20'000;  ///< RMN: 100 times the process, and the axis among its own, from 1
 double own_value(const Execution& run, int number, int column);
 
 }  // namespace servogate::program::nc110

@@ -29,6 +29,7 @@ image::Place read_place(std::string_view line, std::size_t& pos) {
 }
 
 bool names_signal(std::string_view text, std::size_t pos) {
+  if (text.find("RMN", pos) != std::string_view::npos) return true;
   bool quoted = false;
   for (std::size_t i = pos; i + 1 < text.size(); ++i) {
     if (text[i] == '"') quoted = !quoted;
