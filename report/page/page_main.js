@@ -3,7 +3,8 @@
 function speedKey() {
   const stops = Array.from({length: 9}, (_, k) => "rgb(" + rampColour(k / 8, isDark()).map(c => Math.round(255 * c)).join(",") + ")").join(","), most = colourMax();
   const scale = S.colour === "deviation" ? num(most * 1000, 3) + " " + unit("µm") : num(most, 3) + " " + unit("mm/s");
-  const keys = S.colour === "tool" ? tools().map((tool, n) => el("span", {class: "key", style: `--c:var(--axis-${n % 8})`}, "T" + tool)) :
+  const named = S.colour === "tool" ? tools().map((tool, n) => ["T" + tool, n % 8]) : S.colour === "bound" ? BOUNDS.map((what, n) => [tr("bound." + what), n]) : null;
+  const keys = named ? named.map(([name, n]) => el("span", {class: "key", style: `--c:var(--axis-${n})`}, name)) :
     [el("span", {}, "0"), el("i", {style: `background:linear-gradient(90deg,${stops})`}), el("span", {}, scale)];
   fill("speed-key", ...keys, el("span", {class: "key dash"}, tr("rapidPath")), el("span", {class: "key dots"}, tr("homingPath")), OTHER ? el("span", {class: "key line"}, tr("otherRun")) : null);
 }
@@ -17,7 +18,7 @@ function filters() {
   $("operation").hidden = OPERATIONS.length < 2;
   fill("operation", el("option", {value: "-1"}, tr("allOperations")), ...OPERATIONS.map((o, i) => el("option", {value: String(i)}, o.name)));
   $("operation").value = String(S.operation);
-  fill("colour", ...["speed", "deviation", ...(all.length > 1 ? ["tool"] : [])].map(key => el("option", {value: key}, tr("colour." + key))));
+  fill("colour", ...["speed", "bound", "deviation", ...(all.length > 1 ? ["tool"] : [])].map(key => el("option", {value: key}, tr("colour." + key))));
   $("colour").value = S.colour;
 }
 function axisSwitches() {
@@ -67,6 +68,7 @@ function readout() {
   });
   parts.push(el("span", {class: "pos"}, el("b", {}, "F"), num(RUN.valueAt("path.speed", S.cursor), 4) + " " + unit("mm/s")));
   parts.push(el("span", {class: "pos"}, el("b", {}, tr("line")), String(RUN.lineAt(S.cursor) || "–")));
+  parts.push(el("span", {class: "pos"}, boundWords(S.cursor).trim()));
   fill("readout", ...parts);
   $("now").textContent = fixed(S.cursor, 3) + " " + unit("s");
   $("slider").value = S.cursor;

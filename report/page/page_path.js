@@ -214,7 +214,7 @@ function pathView(box) {
     setCursor(t);
     const where = RUN.view.map((letter, k) => letter && RUN.shownName(letter) + " " + fixed([place.x, place.y, place.z][k] * RUN.shownTimes(letter), 3)).filter(Boolean);
     tip.textContent = where.join("  ") + "\n" + tr("line") + " " + (p.line[i] || "–") + (p.tool[i] ? " · T" + p.tool[i] : "") + " · " + num(RUN.valueAt("path.speed", t)) + " " +
-      unit("mm/s") + " · " + fixed(t, 3) + " " + unit("s") + "\n" + tr("deviation") + " " + num(p.deviation[i] * 1000, 3) + " " + unit("µm");
+      unit("mm/s") + " · " + fixed(t, 3) + " " + unit("s") + "\n" + tr("deviation") + " " + num(p.deviation[i] * 1000, 3) + " " + unit("µm") + boundWords(t);
     tip.style.left = clamp(x + 14, 4, Math.max(4, box.clientWidth - tip.offsetWidth - 4)) + "px";
     tip.style.top = clamp(y + 16, 4, Math.max(4, box.clientHeight - tip.offsetHeight - 4)) + "px";
   }

@@ -115,6 +115,29 @@ class Run {
     const f = before(this.frames.map(c => c.t), t), map = f < 0 ? null : this.frames[f].axes[axis];
     return map && map.length ? places.reduce((sum, place, a) => sum + map[a + 1] * place, map[0]) : null;
   }
+  /** What keeps the path from being faster at t: an axis near a limit, the feed where the speed is steady, else the tolerance of its corners. */
+  boundAt(t) {
+    const speed = this.valueAt("path.speed", t), step = Math.max(this.bucket, 0.01);
+    if (!(speed > 1e-6)) return {what: "rest", letter: ""};
+    const beside = [t - step, t + step].map(at => this.valueAt("path.speed", clamp(at, this.start, this.end)));
+    const steady = beside.every(v => Math.abs(v - speed) <= 0.002 * speed);
+    let most = steady ? 0.75 : 0.6, found = {what: steady ? "feed" : "tolerance", letter: ""};
+    for (const {letter, report} of this.axes)
+      for (const what of ["velocity", "acceleration", "jerk"]) {
+        const limit = (report.limits || {})[what], share = limit ? Math.abs(this.valueAt(letter + "." + what, t)) / limit : 0;
+        if (share > most) [most, found] = [share, {what, letter}];
+      }
+    return found;
+  }
+  /** What bound longest on the stretch that ends at vertex i. */
+  boundOn(i) {
+    const from = this.path.t[i - 1], to = this.path.t[i], most = 40, n = clamp(Math.ceil((to - from) / this.bucket), 1, most), times = new Map();
+    for (let k = 0; k < n; ++k) {
+      const {what} = this.boundAt(from + (k + 0.5) / n * (to - from));
+      times.set(what, (times.get(what) || 0) + 1);
+    }
+    return [...times].reduce((a, b) => b[1] > a[1] ? b : a)[0];
+  }
   signalAt(signal, t) { return ((before(signal.toggles, t) + 1) % 2 === 1) !== signal.initial; }
   /** What the stretch that ends at vertex i is; homing stands for all motion outside the program. */
   kindOf(i) {

@@ -17,6 +17,7 @@ function chosen(i) {
   return !operation || (line[i] >= operation.from && line[i] <= operation.to);
 }
 function tools() { return [...new Set(RUN.path.tool.filter((tool, i) => tool > 0 && i > 0 && RUN.kindOf(i) === "feed"))].sort((a, b) => a - b); }
+const BOUNDS = ["feed", "velocity", "acceleration", "jerk", "tolerance", "rest"];
 /** Largest value of what colours the feed, of all that is chosen. */
 function colourMax() {
   const {path} = RUN, list = S.colour === "deviation" ? path.deviation : path.speed;
@@ -32,7 +33,16 @@ function colouring() {
     const colours = new Map(tools().map((tool, n) => [tool, rgb(css("--axis-" + n % 8))])), none = rgb(css("--accent"));
     return i => colours.get(path.tool[i]) || none;
   }
+  if (S.colour === "bound") {
+    const colours = new Map(BOUNDS.map((what, n) => [what, rgb(css("--axis-" + n))]));
+    return i => colours.get(RUN.boundOn(i));
+  }
   return i => rampColour((path.speed[i] + path.speed[i - 1]) / 2 / most, dark);
+}
+/** What limits the speed at t, as a line of its own; empty where nothing of the program moves. */
+function boundWords(t) {
+  const {what, letter} = RUN.boundAt(t);
+  return what === "rest" || !RUN.lineAt(t) ? "" : "\n" + tr("bound") + ": " + tr("bound." + what) + (letter && " " + letter);
 }
 /** Ends of the stretches for which keep(i), and their colours: {positions, colours, vertices}. */
 function stretchesOf(run, keep, colour) {

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 
 #include "tests/channel/rig.hpp"
-#include "tests/property_seed.hpp"
 
 namespace servogate::channel::test {
 namespace {
@@ -189,75 +187,6 @@ TEST_F(Retrace, of_a_thousand_short_blocks_comes_to_where_they_began_and_back) {
   EXPECT_LE(apart(here(rig), held), 1e-9);
   go_on_to_the_end(rig, 60.0);
   EXPECT_EQ(rig.violations(), "");
-}
-
-/// Lines, arcs and runs of short lines in the plane.
-std::string random_path(std::mt19937_64& random) {
-  const auto between = [&random](double a, double b) {
-    return std::uniform_real_distribution<double>(a, b)(random);
-  };
-  const auto number = [](double v) { return std::to_string(v); };
-  std::string program = "G1 X1 Y0 F" + number(between(600, 9000)) + "\n";
-  double x = 1, y = 0, heading = 0;
-  for (int n = 0; n < 40; ++n) {
-    heading += between(-1.5, 1.5);
-    const double length = between(0.5, 12.0);
-    const int kind = static_cast<int>(random() % 4);
-    for (int k = 0; kind == 0 && k < 30; ++k) {
-      heading += 0.05;
-      program +=
-          "X" + number(x += 0.3 * std::cos(heading)) + " Y" + number(y += 0.3 * std::sin(heading)) + "\n";
-    }
-    if (kind == 0) continue;
-    const double cx = x + length * std::cos(heading), cy = y + length * std::sin(heading);
-    if (kind == 1) {  // half a turn
-      x = 2 * cx - x, y = 2 * cy - y;
-      program += (random() % 2 == 0 ? "G2 X" : "G3 X") + number(x) + " Y" + number(y) + " I" + number(cx) +
-                 " J" + number(cy) + "\nG1\n";
-    } else {
-      x = cx, y = cy;
-      program += "X" + number(x) + " Y" + number(y) + "\n";
-    }
-  }
-  return program + "M30\n";
-}
-
-TEST_F(Retrace, of_random_programs_keeps_limits_and_path_wherever_they_are_held_and_ends_where_they_end) {
-  const std::uint64_t base = servogate::test::property_seed();
-  for (std::uint64_t seed = base; seed < base + 6; ++seed) {
-    std::mt19937_64 random(seed);
-    const std::string program = random_path(random);
-    Rig straight(program), rig(program);
-    ASSERT_TRUE(straight.finish(240.0)) << straight.alarm_list();
-    rig.start();
-    for (int n = 0; n < 4; ++n) {
-      rig.run(0.001 * static_cast<double>(100 + random() % 900));
-      if (rig.state() == ProcessState::ended) break;
-      hold(rig);
-      const Point held = here(rig);
-      for (int k = static_cast<int>(random() % 3); k >= 0; --k) {
-        if (random() % 2 == 0)
-          ASSERT_EQ(ask(rig, 0.01 * static_cast<double>(1 + random() % 4000)), Refusal::none);
-        else
-          ASSERT_EQ(ask(rig, 0.0, 1 + static_cast<std::uint32_t>(random() % 20)), Refusal::none);
-        rig.run(0.001 * static_cast<double>(random() % 800));
-        if (rig.status().retracing) hold(rig);
-      }
-      if (rig.status().retraced) forward(rig);
-      ASSERT_LE(apart(here(rig), held), 1e-9) << "seed " << seed;
-      ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
-    }
-    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; }, 240.0)) << rig.alarm_list();
-    EXPECT_LE(apart(here(rig), here(straight)), 1e-9) << "seed " << seed;
-    EXPECT_EQ(rig.violations(), "") << "seed " << seed;
-    double most = 0.0;
-    for (std::size_t i = 0; i < rig.path.size(); i += 11) {
-      double least = 1e9;
-      for (const Point& p : straight.path) least = std::min(least, apart(rig.path[i], p));
-      most = std::max(most, least);
-    }
-    EXPECT_LE(most, 0.12) << "seed " << seed << ": tolerances, and half the way of a cycle at F9000";
-  }
 }
 
 TEST_F(Retrace, is_refused_while_a_program_runs_and_without_saying_how_far) {

@@ -111,6 +111,20 @@ TEST(DrivenCourse, holds_in_the_next_cycle_rests_on_the_path_and_goes_on) {
   }
 }
 
+TEST(DrivenCourse, is_held_sooner_at_a_lower_override) {
+  for (const double ratio : {0.01, 0.1, 0.5}) {
+    Machine m;
+    m.follower.set_override(ratio);
+    load(m, wave(800, 100));
+    for (int k = 0; k < 3000; ++k) m.step();
+    m.follower.hold();
+    int cycles = 0;
+    while (m.step().state == FollowerState::holding) ++cycles;
+    EXPECT_LE(cycles, 60 + 700 * std::sqrt(ratio)) << ratio;
+    EXPECT_LE(m.most(), 1.001) << ratio;
+  }
+}
+
 TEST(DrivenCourse, is_held_in_a_cruise_and_before_and_behind_it) {
   for (int at = 100; at < 4600; at += 190) {
     Machine m;
@@ -225,6 +239,26 @@ TEST(DrivenCourse, slows_down_on_the_path_where_planning_is_late_and_never_leave
       again.planner.work();
       ASSERT_EQ(again.follower.step(seen[k]).position, m.trip.samples[k + 1].position) << cycles << ' ' << k;
     }
+  }
+}
+
+TEST(DrivenCourse, begins_when_some_seconds_of_its_motion_are_known_however_slow_it_is) {
+  std::vector<Element> zigzag, line;
+  for (int k = 1; k <= 2000; ++k) {
+    zigzag.push_back(line_to(0.1 * ((k + 1) / 2), 0.1 * (k / 2), 0, 100));  // reaches 3 mm/s
+    line.push_back(line_to(0.1 * k, 0, 0, 20));
+  }
+  for (const std::vector<Element>& elements : {zigzag, line, wave(2000, 100)}) {
+    Machine m;
+    PathTime known(m.config, {});
+    for (std::size_t n = 0; m.last.feed == 0.0; ++n) {
+      ASSERT_LT(n, elements.size());
+      ASSERT_TRUE(m.planner.add(elements[n]));
+      known.add(elements[n]);
+      m.step();
+    }
+    known.rest();
+    EXPECT_LT(known.seconds(), 9.0);
   }
 }
 

@@ -52,7 +52,7 @@ TEST(PathTime, of_random_programs_is_that_of_the_follower_within_a_hundredth) {
 TEST(PathTime, of_more_pieces_than_the_track_holds_is_whole) {
   RandomProgram p;
   p.config = mill();
-  for (int k = 1; k <= 30'000; ++k) p.elements.push_back(line_to(k % 2, 0.01 * k, 0, 100));
+  for (int k = 1; k <= 30'000; ++k) p.elements.push_back(line_to(k % 2, 1e-4 * k, 0, 100));
   EXPECT_NEAR(estimate(p.config, p.start, p.elements).seconds, time_of(p), 1.0);
 }
 

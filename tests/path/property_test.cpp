@@ -13,7 +13,7 @@ namespace {
 
 int cases() {
   if (const char* given = std::getenv("SERVOGATE_PROPERTY_CASES")) return std::atoi(given);
-  return 10000;
+  return 4000;
 }
 
 Scenario scenario(std::uint64_t seed) {

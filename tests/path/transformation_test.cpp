@@ -38,7 +38,7 @@ class Turned final : public Transformation {
 
 TEST(Transformation, the_axes_keep_their_limits_and_the_path_its_tolerance_in_a_turned_frame) {
   const std::uint64_t base = servogate::test::property_seed();
-  for (std::uint64_t seed = base; seed < base + 1500; ++seed) {
+  for (std::uint64_t seed = base; seed < base + 500; ++seed) {
     RandomProgram p = random_program(seed, {2 + static_cast<int>(seed % 11), true, true});
     const Turned turned(0.1 + 0.01 * static_cast<double>(seed % 600));
     p.config.transformation = &turned;

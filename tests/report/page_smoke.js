@@ -157,6 +157,17 @@ function ways(run) {
   }
   check(a.feed + a.rapid + a.homing <= total + 1e-6 && a.feed + a.rapid + a.homing >= 0.98 * total, `ways ${JSON.stringify(a)} of ${total}`);
 }
+/** What limits the speed, as it was put in. */
+function bounds(page, run) {
+  for (const {t, what, letter} of expected.bounds || []) {
+    const found = run.boundAt(t);
+    check(found.what === what && found.letter === letter, `at ${t} the speed is limited by ${found.what} ${found.letter} instead of ${what} ${letter}`);
+  }
+  page.S.colour = "bound";
+  const colour = page.colouring();
+  for (let i = 1; i < run.path.n; ++i) check((colour(i) || []).length === 3, `stretch ${i} has no colour by what limits its speed`);
+  page.S.colour = "speed";
+}
 /** Filters leave exactly what they name; colours follow what they stand for. */
 function filters(page, run) {
   const count = () => page.stretchesOf(run, i => run.kindOf(i) === "feed" && page.chosen(i)).vertices;
@@ -206,6 +217,7 @@ async function main() {
   await cycles(page, run);
   ways(run);
   filters(page, run);
+  bounds(page, run);
   boxes(page, run);
   check(byId("cards").textContent.includes(expected.card), "cards show: " + byId("cards").textContent);
   check(!/NaN|undefined|Infinity/.test(Object.values(ids).filter(n => n !== ids.data).map(n => n.textContent).join(" ")), "the page shows what is no number");

@@ -12,6 +12,9 @@ namespace {
 constexpr double kShortest = 1e-9;  // mm or degrees
 constexpr double kNear = 0.1;       // mm: a place that belongs to an element is no further from it
 constexpr std::uint32_t kEnd = 1;   // the event at the end of a way
+// A tag counts the parts of a way; from where it stands to the path, and from the path to where it ends, are
+// no part of it.
+constexpr std::uint64_t kKinds = 3, kToBegin = 1, kFromEnd = 2;
 
 double distance(const path::Vector& p, const path::Vector& q) {
   double square = 0.0;
@@ -74,12 +77,18 @@ std::optional<Ways::Place> Ways::find(const path::Tag& tag, double to_go, const 
   return found;
 }
 
-/// Where a way was left; its tags count its parts.
-Ways::Place Ways::on_way(const path::Tag& tag, double to_go) const {
+/// Where a way was left; nullopt: that is not near it.
+std::optional<Ways::Place> Ways::on_way(const path::Tag& tag, double to_go, const path::Vector& at) const {
   if (parts_.empty()) return here_;
-  const Part& part = parts_[std::min<std::size_t>(tag.command, parts_.size() - 1)];
-  const double s = part.end > part.begin ? part.end - to_go : part.end + to_go;
-  return {part.element, std::clamp(s, std::min(part.begin, part.end), std::max(part.begin, part.end))};
+  const Part& part = parts_[std::min<std::size_t>(tag.command / kKinds, parts_.size() - 1)];
+  double s = part.end > part.begin ? part.end - to_go : part.end + to_go;
+  if (tag.command % kKinds == kToBegin) s = part.begin;
+  if (tag.command % kKinds == kFromEnd) s = part.end;
+  const path::Piece shape = piece(driven(part.element));
+  s = std::clamp(foot(shape, at, std::clamp(s, 0.0, shape.length), config_.axis_count),
+                 std::min(part.begin, part.end), std::max(part.begin, part.end));
+  if (distance(at, path::position(shape, s, config_.axis_count)) > kNear) return std::nullopt;
+  return Place{part.element, s};
 }
 
 Ways::Place Ways::back(double distance, std::uint32_t blocks) {
@@ -120,14 +129,15 @@ double Ways::behind_home(const Place& place) const {
   return std::max(0.0, sum);
 }
 
-/// The set-points of the program are not on its path, and an arc begins and ends there.
-void Ways::join(const path::Element& like, const path::Vector& to, std::uint64_t part) {
+/// The set-points of the program are not on its path, and a way begins and ends there.
+void Ways::join(const path::Element& like, const path::Vector& to, std::uint64_t tag) {
   path::Element e = like;
   if (distance(planner_.position(), to) <= kShortest) return;
   if (e.kind != path::Element::Kind::rapid) e.kind = path::Element::Kind::line;
   e.to = to;
+  e.transition.continuation = path::Continuation::exact_stop;
   e.transition.confirm = false;
-  e.tag.command = part;
+  e.tag.command = tag;
   planner_.add(e);
 }
 
@@ -135,23 +145,22 @@ void Ways::put(const Part& part, bool last, const path::Vector& at, double feed)
   const Driven& d = driven(part.element);
   const bool is_back = part.end < part.begin;
   const path::Piece shape = piece(d);
-  const std::uint64_t number = static_cast<std::uint64_t>(&part - parts_.data());
+  const std::uint64_t number = kKinds * static_cast<std::uint64_t>(&part - parts_.data());
   path::Element e = d.element;
   if (feed > 0.0) {
     e.feed = e.kind == path::Element::Kind::rapid ? feed : std::min(e.feed, feed);
     if (e.kind == path::Element::Kind::rapid) e.kind = path::Element::Kind::line;
   }
-  const bool arc = e.kind == path::Element::Kind::arc;
-  if (arc && number == 0) join(e, path::position(shape, part.begin, config_.axis_count), number);
+  if (number == 0) join(e, path::position(shape, part.begin, config_.axis_count), number + kToBegin);
   if (is_back && part.end <= 0.0 && part.element > first_)
     e.transition = driven(part.element - 1).element.transition;
   e.transition.confirm = false;
   if (last) e.transition.continuation = path::Continuation::exact_stop;
-  e.to = last && !arc ? at : path::position(shape, part.end, config_.axis_count);
+  e.to = path::position(shape, part.end, config_.axis_count);
   e.sweep_deg *= (part.end - part.begin) / d.length;
   e.tag.command = number;
-  if (std::abs(part.end - part.begin) > kShortest || !arc) planner_.add(e);
-  if (last && arc) join(e, at, number);
+  if (std::abs(part.end - part.begin) > kShortest) planner_.add(e);
+  if (last) join(e, at, number + kFromEnd);
 }
 
 void Ways::plan(const WayOrder& order, const path::Vector& at) {
@@ -161,12 +170,14 @@ void Ways::plan(const WayOrder& order, const path::Vector& at) {
     here_ = home_ = found.value_or(Place{});
     home_at_ = at;
   } else if (known_) {
-    here_ = on_way(order.tag, order.to_go);
+    const std::optional<Place> found = on_way(order.tag, order.to_go, at);
+    known_ = found.has_value();
+    here_ = found.value_or(here_);
   }
   parts_.clear();
   WayLink::Begin begin;
   begin.track = planner_.restart(at);
-  begin.home = true;
+  begin.home = !order.on_way;
   if (known_) {
     const Place end = order.forward ? forward() : back(order.distance, order.blocks);
     const Driven& d = driven(end.element);

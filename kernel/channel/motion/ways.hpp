@@ -92,12 +92,12 @@ class Ways {
   const Driven& driven(std::uint64_t number) const { return driven_[number - first_]; }
   path::Piece piece(const Driven& d) const { return path::shape(config_, d.from, d.element).piece; }
   std::optional<Place> find(const path::Tag& tag, double to_go, const path::Vector& at) const;
-  Place on_way(const path::Tag& tag, double to_go) const;
+  std::optional<Place> on_way(const path::Tag& tag, double to_go, const path::Vector& at) const;
   Place back(double distance, std::uint32_t blocks);
   Place forward();
   double behind_home(const Place& place) const;
   void put(const Part& part, bool last, const path::Vector& at, double feed);
-  void join(const path::Element& like, const path::Vector& to, std::uint64_t part);
+  void join(const path::Element& like, const path::Vector& to, std::uint64_t tag);
 
   path::Config config_;
   WayLink& link_;

@@ -16,7 +16,8 @@ constexpr int kLeast = 6, kMean = 3;    // steps to each side: least of them, an
 constexpr std::size_t kEdge = 20;       // steps at the ends of a run whose least is not taken
 constexpr std::size_t kPast = 24;
 constexpr std::size_t kFewest = 12;  // steps of a run
-constexpr double kTrials = 2.0;      // the first window is so much shorter than the full one
+constexpr double kTrials = 8.0;      // the first window is so much shorter than the full one
+constexpr double kRest = 0.5;        // of a window: less than that behind it belongs to it
 constexpr std::size_t kFewestDecided = 64, kBeyond = 16;  // steps in it, and behind them for the means
 
 // y(v) by the root of jerk: the length in which jerk alone reaches v, from rest.
@@ -49,22 +50,29 @@ void ClockEstimate::work(const Run& run, bool ended, Kept<double>& places) {
   }
 }
 
-/// Length in which a stop from `feed` and all that is looked at on the way are over.
-double ClockEstimate::full_window(const Run& run, std::size_t first, double end) {
-  double a = kInfinite, j = kInfinite;
+/// The fastest feed of the legs between, and the least limits of the axes that they move.
+void ClockEstimate::look_at_limits(const Run& run, std::size_t first, double end) {
+  slowest_ = {kInfinite, kInfinite, kInfinite};
   feed_ = 0.0;
   for (std::size_t k = first; k < run.end() && (k == first || run.leg(k).begin < end); ++k) {
     feed_ = std::max(feed_, fastest(run.leg(k), axes_));
     for (std::size_t i = 0; i < static_cast<std::size_t>(axes_); ++i) {
       if (!moves(run.leg(k), i)) continue;
-      a = std::min(a, (*run.leg(k).limits)[i].acceleration);
-      j = std::min(j, (*run.leg(k).limits)[i].jerk);
+      slowest_.acceleration = std::min(slowest_.acceleration, (*run.leg(k).limits)[i].acceleration);
+      slowest_.jerk = std::min(slowest_.jerk, (*run.leg(k).limits)[i].jerk);
     }
   }
-  const double scales = 3.0 * std::min(kLargestScale, 1.0 + feed_ * a / j);
-  const double reach =
-      feed_ * feed_ / kSlope / a + y_of(feed_) / std::sqrt(j) + scales + 20.0 * feed_ * step_;
-  return reach + std::max(reach, 64.0 * feed_ * step_);
+}
+
+/// Length in which a stop from a speed and all that is looked at on the way are over.
+double ClockEstimate::reach(double v) const {
+  const double a = slowest_.acceleration, j = slowest_.jerk;
+  const double scales = 3.0 * std::min(kLargestScale, 1.0 + v * a / j);
+  return v * v / kSlope / a + y_of(v) / std::sqrt(j) + scales + 20.0 * v * step_;
+}
+
+double ClockEstimate::full_window() const {
+  return reach(feed_) + std::max(reach(feed_), static_cast<double>(kFewestDecided) * feed_ * step_);
 }
 
 /// One window, when all that it looks at is known. A short one is enough where the path is slow: what lies
@@ -72,13 +80,18 @@ double ClockEstimate::full_window(const Run& run, std::size_t first, double end)
 bool ClockEstimate::window(const Run& run, bool ended) {
   if (decided_) return false;
   const std::size_t first = run.leg_at(begin_, run.first());
-  if (trial_ == 0.0) trial_ = full_window(run, first, begin_) / kTrials;
+  if (trial_ == 0.0) {
+    look_at_limits(run, first, begin_);
+    trial_ = full_window() / kTrials;
+  }
   for (;; trial_ *= 2.0) {
-    const double end = begin_ + trial_, known = end + trial_;
+    const double end = begin_ + trial_, known = end + kRest * trial_;
     const bool last = ended && run.length() <= known;
     if (!last && run.length() <= known) return false;
-    const bool full = trial_ >= full_window(run, first, last ? run.length() : end);
+    look_at_limits(run, first, last ? run.length() : end);
+    const bool full = trial_ >= full_window();
     solve(run, last ? run.length() : end, last);
+    if (!last && !full && trial_ < reach(reached_)) continue;
     if (commit(last, full ? 1 : kFewestDecided)) break;
   }
   trial_ = 0.0;
@@ -270,6 +283,9 @@ void ClockEstimate::reach_between() {
     }
     nodes_[i].y = y;
   }
+  double most = 0.0;
+  for (const Node& node : nodes_) most = std::max(most, node.y);
+  reached_ = v_of(most);
   time_.assign(nodes_.size(), 0.0);
   for (std::size_t i = 1; i < nodes_.size(); ++i)
     time_[i] = time_[i - 1] + time_over(nodes_[i - 1].y, nodes_[i].y, nodes_[i].u - nodes_[i - 1].u);

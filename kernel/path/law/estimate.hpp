@@ -31,7 +31,9 @@ class ClockEstimate {
     double u, step;
   };
   bool window(const Run& run, bool ended);
-  double full_window(const Run& run, std::size_t first, double end);
+  void look_at_limits(const Run& run, std::size_t first, double end);
+  double reach(double v) const;
+  double full_window() const;
   void solve(const Run& run, double end, bool last);
   void sample(const Run& run, double end);
   void cap_by_limits();
@@ -55,7 +57,8 @@ class ClockEstimate {
   bool done_ = false, decided_ = false;
   double begin_ = 0.0, begin_y_ = 0.0, trial_ = 0.0;
   // One window.
-  double origin_ = 0.0, spacing_ = 0.0, feed_ = 0.0, free_to_ = 0.0;
+  double origin_ = 0.0, spacing_ = 0.0, feed_ = 0.0, free_to_ = 0.0, reached_ = 0.0;
+  AxisLimits slowest_;
   std::vector<Vector> at_;
   std::vector<const Leg*> legs_;
   std::vector<double> limit_cap_, cap_, jerk_root_, acceleration_, time_, old_cap_, steps_, smooth_;

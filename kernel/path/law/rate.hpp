@@ -208,6 +208,7 @@ class RateMotion {
   int power_ = 3, left_ = kMostPlaces;
   Verification verification_;
   bool open_ = false;      ///< it goes on, at rest
+  bool shorter_ = false;   ///< stops that are shorter than the known one were tried last
   bool creeping_ = false;  ///< next_ is the length of a way from rest to rest
   RateChange back_;        ///< from above 1
   double back_in_ = 0.0;   ///< s at the present rate until it begins

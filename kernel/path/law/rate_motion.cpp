@@ -84,13 +84,16 @@ bool RateMotion::stop_in_time(const CourseView& view, double target, double peri
   return true;
 }
 
-/// A stop like the known one, which begins a little before it, and longer ones.
+/// A stop like the known one, which begins a little before it, and longer ones; from a lower rate shorter
+/// ones in each other cycle, as there is more room.
 bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double period) noexcept {
-  constexpr double kLongerBy[] = {1.0, 1.18, 1.4};
-  const double known = hint.seconds / rate_ + std::max(0.0, until(view, hint));
+  constexpr double kLongerBy[] = {1.0, 1.18, 1.4}, kLower = 0.9;
+  shorter_ = !shorter_ && rate_ < kLower;
+  const double seconds = shorter_ ? std::max(kShortest, hint.seconds * std::sqrt(rate_))
+                                  : hint.seconds / rate_ + std::max(0.0, until(view, hint));
   for (const double longer : kLongerBy) {
     if (left_ <= 0) return false;
-    if (enter(view, 0.0, known * longer, longer == 1.4 ? 5 - hint.power : hint.power, period) == Fit::fits)
+    if (enter(view, 0.0, seconds * longer, longer == 1.4 ? 5 - hint.power : hint.power, period) == Fit::fits)
       return true;
   }
   return false;
@@ -109,7 +112,7 @@ void RateMotion::search(const CourseView& view, double target, double period) no
   if (searched_for_ != target) {
     searched_for_ = target;
     anew();
-    open_ = false;
+    open_ = shorter_ = false;
   }
   if (!open_) share_ = 1.0;
   if (target == 0.0 && !active_ && hint.knot >= 0 && rate_ > 0.0 && try_known(view, hint, period)) return;

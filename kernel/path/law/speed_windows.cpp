@@ -16,8 +16,10 @@ constexpr double kFeedShare = 0.9999;  // the feed is no limit of an axis and ne
 constexpr double kLargestExcess = 1.0005;
 constexpr int kRepairs = 6;
 constexpr std::size_t kGlide = 24;
-constexpr std::size_t kAhead = 48;            // knots behind a window that its slow end knows of
-constexpr std::size_t kNear = 16, kMean = 5;  // knots to each side: least of levels, and their mean, twice
+constexpr std::size_t kRest = 4;    // of the overlap: fewer knots behind a window belong to it
+constexpr std::size_t kAhead = 48;  // knots behind a window that its slow end knows of
+constexpr std::size_t kNear = 16,
+                      kMean = 5;  // knots to each side: least of levels, and their mean, twice
 constexpr double kLevelShare = 0.7;
 
 }  // namespace
@@ -65,8 +67,8 @@ bool SpeedWindows::window(const Run& run, const Kept<double>& places, const Kept
   const std::size_t over = over_;
   const std::size_t size = std::min(std::max(4 * over, kLeastWindow), over + begun);
   std::size_t to = from_ + size;
-  if (!complete && known < to + over + kAhead + 1) return false;
-  const bool last = complete && known < to + over;
+  if (!complete && known < to + std::max(over / kRest, kAhead) + 1) return false;
+  const bool last = complete && known < to + over / kRest;
   if (last) to = known;
   leg_ = run.leg_at(places[from_], leg_);
   const std::size_t ahead = std::min(known, to + kAhead);
@@ -156,8 +158,8 @@ void SpeedWindows::pack(const Kept<Vector>& controls, std::size_t to) {
   problem_.gap = settings_.judged ? 0.01 : 0.03;
 }
 
-/// What the window before had behind its committed end, and slowly on: a fifth of the clock's speed, or less
-/// where a constant speed must be lower.
+/// What the window before had behind its committed end, and slowly on: a fifth
+/// of the clock's speed, or less where a constant speed must be lower.
 void SpeedWindows::guess(std::size_t count, std::size_t intervals) {
   law_.prepare(problem_);
   law_.flat_levels(levels_, slopes_, static_cast<int>(intervals));
@@ -199,22 +201,27 @@ void SpeedWindows::guess(std::size_t count, std::size_t intervals) {
   }
 }
 
-/// The clock's own speed at the begin or the end of a run, and a way from it to the slow guess.
+/// The clock's own speed at the begin or the end of a run, and a way from it to the slow guess with a share
+/// of acceleration and jerk, as far as the window reaches.
 void SpeedWindows::fly(bool end) {
-  constexpr double kSteepest = 2.0, kEase = 0.2;
-  const std::size_t n = problem_.beta.size();
-  double b = 1.0, step = 0.0;
+  constexpr double kShare = 0.4, kSteepest = 1.5,
+                   kMostBent = 6.0;  // of the step that goes with z^2 (3 - 2 z)
+  const std::size_t n = problem_.beta.size(), axes = static_cast<std::size_t>(problem_.axes);
+  const std::size_t at = end ? controls_.size() / axes - 2 : 1;  // the control at the knot
+  double seconds = 0.0;                                          // of the clock
+  for (std::size_t a = 0; a < axes; ++a) {
+    const double v =
+        std::abs(controls_[(at + 1) * axes + a] - controls_[(at - 1) * axes + a]) / (2.0 * settings_.step);
+    const AxisLimits& limits = (*bounds_[end ? n - 2 : 0].limits)[static_cast<std::size_t>(problem_.axis[a])];
+    seconds = std::max({seconds, kSteepest * v / (2.0 * kShare * limits.acceleration),
+                        std::sqrt(kMostBent * v / (2.0 * kShare * limits.jerk))});
+  }
+  const double count = std::max(4.0, std::min(seconds / settings_.step, static_cast<double>(n)));
   for (std::size_t i = 0; i < n; ++i) {
+    const double z = i < 2 ? 0.0 : (static_cast<double>(i) - 1.0) / count;
+    if (z >= 1.0) break;
     double& beta = problem_.beta[end ? n - 1 - i : i];
-    if (i < 2) {
-      beta = 1.0;
-      continue;
-    }
-    const double slope = slopes_[std::min(end ? n - 1 - i : i, slopes_.size() - 1)];
-    step = std::min(kSteepest * slope, step + kEase * slope);
-    b -= step;
-    if (b <= beta) break;
-    beta = b;
+    beta = std::max(beta, 1.0 - (1.0 - kSlow) * z * z * (3.0 - 2.0 * z));
   }
 }
 
@@ -230,7 +237,8 @@ void SpeedWindows::solve(bool last, std::size_t commit) {
     mend(last ? problem_.beta.size() - 2 : std::min(problem_.beta.size() - 2, commit - 2 + kGlide));
 }
 
-/// The course between the places that the law looks at: where it exceeds a limit, that limit is tightened.
+/// The course between the places that the law looks at: where it exceeds a
+/// limit, that limit is tightened.
 void SpeedWindows::mend(std::size_t commit) {
   const auto exceeds = [](const Excess& e) { return e.most() > 1.0; };
   for (int round = 0; round < kRepairs; ++round) {

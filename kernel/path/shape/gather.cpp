@@ -9,9 +9,9 @@
 namespace servogate::path {
 namespace {
 
-constexpr double kSlowestCorner = 0.5;  // mm/s; slower is rest
-constexpr double kWayBack = 170.0 / 180.0 * std::numbers::pi;
-constexpr double kMostBulge = 0.25;  // of the tolerance
+constexpr double kSlowestCorner = 0.5;                         // mm/s; slower is rest
+constexpr double kWayBack = 179.5 / 180.0 * std::numbers::pi;  // rad
+constexpr double kMostBulge = 0.25;                            // of the tolerance
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kUsual = 0.01;  // mm: what the clock of a run without corners is made for
 

@@ -258,17 +258,20 @@ void TubeWindows::narrow(const Run& run, const Kept<double>& places) {
     gap = std::min(gap, 1.0);
     const bool inside = i > 0 && i + 1 < sites_.size() && site_legs_[i - 1] == site_legs_[i] &&
                         site_legs_[i + 1] == site_legs_[i];
-    const double share =
-        1.0 - std::min(kMostNarrowed, gap * gap / 8.0 * bulge(run, places, i, inside) / s.radius);
+    double most = bulge(run, places, i, site_legs_[i], inside);
+    if (i > 0 && site_legs_[i - 1] != site_legs_[i])  // which the curve comes along before a vertex
+      most = std::max(most, bulge(run, places, i, site_legs_[i - 1], false));
+    const double share = 1.0 - std::min(kMostNarrowed, gap * gap / 8.0 * most / s.radius);
     s.limit = share * share;
   }
 }
 
-/// Second difference of the guess near a site, less the programmed path's; `across`: without its part along
-/// it.
-double TubeWindows::bulge(const Run& run, const Kept<double>& places, std::size_t i, bool across) const {
+/// Second difference of the guess near a site, less that of a leg of the programmed path; `across`: without
+/// its part along it.
+double TubeWindows::bulge(const Run& run, const Kept<double>& places, std::size_t i, std::size_t number,
+                          bool across) const {
   const auto k = static_cast<std::size_t>(sites_[i].interval);
-  const Leg& leg = run.leg(site_legs_[i]);
+  const Leg& leg = run.leg(number);
   const double s = std::clamp(site_places_[i] - leg.begin, 0.0, leg.piece.length);
   const double du = places[from_ + k + 1] - places[from_ + k];
   const PathPoint p = evaluate(leg.piece, s, settings_.axes);

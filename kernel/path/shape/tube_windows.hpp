@@ -13,8 +13,8 @@ class TubeWindows {
  public:
   struct Settings {
     int axes = 0;
-    double step = 0.0;    ///< s of a knot interval of the clock
-    double share = 0.99;  ///< of the tolerance
+    double step = 0.0;     ///< s of a knot interval of the clock
+    double share = 0.995;  ///< of the tolerance
     bool first = true;  ///< the clock is an estimate: peaks of jerk mean little, start on the programmed path
   };
   struct Counts {
@@ -54,7 +54,8 @@ class TubeWindows {
   void slide(const Leg& leg, double u, Site& site) const;
   void pack(std::size_t intervals, std::size_t head, std::size_t tail);
   void narrow(const Run& run, const Kept<double>& places);
-  double bulge(const Run& run, const Kept<double>& places, std::size_t site, bool across) const;
+  double bulge(const Run& run, const Kept<double>& places, std::size_t site, std::size_t leg,
+               bool across) const;
   void limits_of_jerk(const Run& run, const Kept<double>& places, std::size_t intervals);
 
   Settings settings_;
