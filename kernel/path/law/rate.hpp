@@ -186,6 +186,7 @@ class RateMotion {
   double until(const CourseView& view, const StopHint& hint) const noexcept;
   bool stop_in_time(const CourseView& view, double target, double period) noexcept;
   bool try_known(const CourseView& view, const StopHint& hint, double period) noexcept;
+  bool level_off(const CourseView& view, double period) noexcept;
   void search(const CourseView& view, double target, double period) noexcept;
   bool near_last_stop(const CourseView& view) const noexcept;
   void creep(const CourseView& view, double target) noexcept;
@@ -209,6 +210,7 @@ class RateMotion {
   Verification verification_;
   bool open_ = false;      ///< it goes on, at rest
   bool shorter_ = false;   ///< stops that are shorter than the known one were tried last
+  bool levels_ = false;    ///< the change in progress leads to a constant rate, from which the search goes on
   bool creeping_ = false;  ///< next_ is the length of a way from rest to rest
   RateChange back_;        ///< from above 1
   double back_in_ = 0.0;   ///< s at the present rate until it begins

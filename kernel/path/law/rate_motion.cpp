@@ -39,7 +39,7 @@ void RateMotion::start(const RateChange& change) noexcept {
   change_ = change;
   into_ = 0.0;
   active_ = true;
-  open_ = stuck_ = creeping_ = false;
+  open_ = stuck_ = creeping_ = levels_ = false;
   if (change.r1 != 0.0) starving_ = false;
 }
 
@@ -99,6 +99,18 @@ bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double 
   return false;
 }
 
+/// Instead of speeding up any further, a constant rate soon: from there what is wanted is found.
+bool RateMotion::level_off(const CourseView& view, double period) noexcept {
+  constexpr double kLengths[] = {0.04, 0.06, 0.1}, kMore = 0.3;
+  const double slope = change_.at(into_).slope;
+  for (const double seconds : kLengths) {
+    if (left_ <= 0) return false;
+    levels_ = enter(view, std::min(1.0, rate_ + kMore * slope * seconds), seconds, 3, period) == Fit::fits;
+    if (levels_) return true;
+  }
+  return false;
+}
+
 /// First the known stop and longer ones; then, cycle by cycle, all lengths from the shortest on.
 void RateMotion::search(const CourseView& view, double target, double period) noexcept {
   const StopHint hint = view.stop_near(knot_);
@@ -113,6 +125,8 @@ void RateMotion::search(const CourseView& view, double target, double period) no
     searched_for_ = target;
     anew();
     open_ = shorter_ = false;
+  } else if (active_ && !levels_ && target < rate_ && change_.r1 > rate_ && level_off(view, period)) {
+    return;
   }
   if (!open_) share_ = 1.0;
   if (target == 0.0 && !active_ && hint.knot >= 0 && rate_ > 0.0 && try_known(view, hint, period)) return;
