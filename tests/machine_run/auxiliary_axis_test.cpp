@@ -409,7 +409,7 @@ TEST(AuxiliaryAxis, moves_beside_a_program_and_is_no_axis_of_it) {
   desk.run(0.2);
   ASSERT_EQ(desk.ask(RequestKind::start), Refusal::none) << "its motion is no obstacle";
   desk.run(1.0);
-  ASSERT_EQ(desk.process().state, ProcessState::running);
+  ASSERT_EQ(desk.process().state, ProcessState::running) << desk.alarm_list();
   ASSERT_EQ(desk.ask(RequestKind::hold), Refusal::none);
   desk.run(0.5);
   EXPECT_EQ(desk.axis("X").command_velocity, 0.0);

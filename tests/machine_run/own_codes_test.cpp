@@ -22,7 +22,7 @@ struct Case {
 };
 const Case kCases[] = {
     {"nc110", "G50", "M77", "E", "", "", ""},
-    {"fenix", "G151", "M177", "(R", ")", "%\n", ""},
+    {"fenix", "G151", "M177", "(R", ")", "%\nG90\n", ""},  // G90 beside a motion counts for its block
     {"sinumerik-808d", "G250", "M277", "=R", "", "", "M17\n"},
 };
 

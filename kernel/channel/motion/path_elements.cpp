@@ -40,9 +40,10 @@ int PathElements::foreign_axis(const program::Command& command, const program::P
   const program::Position* const to = destination(command);
   if (to == nullptr) return -1;
   constexpr double kStands = 1e-9;  // mm or degrees
-  for (std::size_t a = 0; a < to->size(); ++a) {
+  for (const int axis : axes_.machine) {
+    const auto a = static_cast<std::size_t>(axis);
     const bool own = (own_ >> a & 1u) != 0;
-    if (!own && std::abs((*to)[a] - stands[a]) > kStands) return static_cast<int>(a);
+    if (!own && std::abs((*to)[a] - stands[a]) > kStands) return axis;
   }
   return -1;
 }
