@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/gsusb/gsusb_bus.hpp"
 
-#include <pthread.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -9,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "drivers/bus_thread.hpp"
 #include "drivers/clock.hpp"
 #include "firmware_if/text/system_words.hpp"
 
@@ -37,14 +37,6 @@ const text::Entry kSystem{"gsusb.system", "{0}: {1}", "{0}: {1}"};
 
 constexpr std::uint16_t kDevice = 1;  ///< wValue of requests to the whole device
 constexpr std::uint8_t code(Request r) noexcept { return static_cast<std::uint8_t>(r); }
-
-/// A real-time priority below the usual one of the cycle, where the process may have it; else as any thread.
-void prefer_this_thread() noexcept {
-  sched_param priority{};
-  priority.sched_priority = 70;
-  pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
-  pthread_setname_np(pthread_self(), "gsusb");
-}
 
 }  // namespace
 
@@ -151,7 +143,7 @@ std::optional<ControllerState> GsUsbBus::ask_state() {
 }
 
 void GsUsbBus::work() noexcept {
-  prefer_this_thread();
+  drivers::begin_bus_thread("gsusb");
   bool plugged = true;
   while (plugged && !ending_) {
     pump();

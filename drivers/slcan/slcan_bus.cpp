@@ -2,12 +2,11 @@
 #include "drivers/slcan/slcan_bus.hpp"
 
 #include <poll.h>
-#include <pthread.h>
-#include <sched.h>
 #include <termios.h>
 
 #include <algorithm>
 
+#include "drivers/bus_thread.hpp"
 #include "drivers/clock.hpp"
 
 namespace servogate::slcan {
@@ -36,14 +35,6 @@ const text::Entry kNoAnswer{
     "сам не устройство USB, скорость {1} бод (slcan:{0}@БОД)"};
 const text::Entry kRefuses{"slcan.refuses", "the adapter on {0} refuses {1}",
                            "адаптер на {0} отказывается: {1}"};
-
-/// A real-time priority below the usual one of the cycle, where the process may have it; else as any thread.
-void prefer_this_thread() noexcept {
-  sched_param priority{};
-  priority.sched_priority = 70;
-  pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
-  pthread_setname_np(pthread_self(), "slcan");
-}
 
 image::Nanoseconds now_ns() noexcept { return drivers::clock_ns(CLOCK_MONOTONIC); }
 
@@ -166,7 +157,7 @@ bool SlcanBus::receive(image::CanFrame& frame) noexcept {
 }
 
 void SlcanBus::work() noexcept {
-  prefer_this_thread();
+  drivers::begin_bus_thread("slcan");
   while (!wake_.ended()) {
     image::CanFrame frame;
     while (queue_.size() < drivers::SendQueue::kCapacity && outgoing_.try_dequeue(frame)) queue_.push(frame);
