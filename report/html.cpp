@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "firmware_if/text/finding.hpp"
+#include "firmware_if/text/markup.hpp"
 #include "firmware_if/text/system_words.hpp"
 #include "report/page/page_files.hpp"
 #include "report/record/column.hpp"
@@ -162,25 +163,11 @@ std::string listing(std::string_view text) {
   return valid_utf8(std::string(text.substr(0, end))) + (end < text.size() ? "…" : "");
 }
 
-std::string escaped(std::string_view text) {
+std::string escaped(std::string_view words) {
   std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
+  for (const char c : words) {
+    const std::string_view entity = text::entity_of(c);
+    entity.empty() ? out += c : out += entity;
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "firmware_if/text/finding.hpp"
+#include "firmware_if/text/markup.hpp"
 
 namespace servogate::gateway::command {
 
@@ -12,35 +13,18 @@ namespace {
 using Result = JUnitCase::Result;
 
 /// For XML 1.0: what has a meaning there, and the characters that it cannot hold.
-std::string xml(std::string_view text) {
+std::string xml(std::string_view words) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : words) {
     const auto code = static_cast<unsigned char>(c);
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\n':
-        out += "&#10;";
-        break;
-      case '\t':
-        out += "&#9;";
-        break;
-      default:
-        if (code < 0x20 || code == 0x7F)
-          out += std::string("\\x") + "0123456789ABCDEF"[code >> 4] + "0123456789ABCDEF"[code & 15];
-        else
-          out += c;
-    }
+    if (const std::string_view entity = text::entity_of(c); !entity.empty())
+      out += entity;
+    else if (c == '\n' || c == '\t')
+      out += "&#" + std::to_string(code) + ";";
+    else if (code < 0x20 || code == 0x7F)
+      out += std::string("\\x") + "0123456789ABCDEF"[code >> 4] + "0123456789ABCDEF"[code & 15];
+    else
+      out += c;
   }
   return out;
 }
