@@ -10,22 +10,13 @@ namespace servogate::slcan {
 class Relay {
  public:
   explicit Relay(SimulatedAdapter& adapter) : adapter_(adapter) {
-    char name[128];
-    if (openpty(&far_, &near_, name, nullptr, nullptr) != 0) throw std::runtime_error("no pseudo-terminal");
-    termios raw{};
-    tcgetattr(near_, &raw);
-    cfmakeraw(&raw);
-    tcsetattr(near_, TCSANOW, &raw);
-    path_ = name;
     thread_ = std::thread([this] { work(); });
   }
   ~Relay() {
     ending_ = true;
     thread_.join();
-    ::close(near_);
-    ::close(far_);
   }
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return line_.path(); }
 
  private:
   void work() {
@@ -36,12 +27,12 @@ class Relay {
       passed += frames.size();
       for (const std::string& frame : frames) {
         const std::string text = frame + "\r";
-        if (::write(far_, text.data(), text.size()) < 0) return;
+        if (::write(line_.far(), text.data(), text.size()) < 0) return;
       }
-      pollfd ready{far_, POLLIN, 0};
+      pollfd ready{line_.far(), POLLIN, 0};
       if (::poll(&ready, 1, 1) <= 0) continue;
       char bytes[256];
-      const ssize_t n = ::read(far_, bytes, sizeof bytes);
+      const ssize_t n = ::read(line_.far(), bytes, sizeof bytes);
       for (ssize_t i = 0; i < n; ++i) {
         if (bytes[i] != '\r') {
           line += bytes[i];
@@ -54,8 +45,7 @@ class Relay {
   }
 
   SimulatedAdapter& adapter_;
-  int far_ = -1, near_ = -1;
-  std::string path_;
+  PseudoTerminal line_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

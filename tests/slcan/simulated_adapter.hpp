@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <poll.h>
-#include <pty.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <mutex>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include "tests/slcan/pseudo_terminal.hpp"
 
 namespace servogate::slcan {
 
@@ -29,28 +28,20 @@ struct Mood {
 class SimulatedAdapter {
  public:
   explicit SimulatedAdapter(Mood mood = {}) : mood_(mood) {
-    char name[128];
-    if (openpty(&far_, &near_, name, nullptr, nullptr) != 0) throw std::runtime_error("no pseudo-terminal");
-    termios raw{};
-    tcgetattr(near_, &raw);
-    cfmakeraw(&raw);
-    tcsetattr(near_, TCSANOW, &raw);
-    path_ = name;
     thread_ = std::thread([this] { work(); });
   }
   ~SimulatedAdapter() { unplug(); }
 
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return line_.path(); }
   void unplug() {
     ending_ = true;
     if (thread_.joinable()) thread_.join();
-    for (int* end : {&near_, &far_})
-      if (*end >= 0) ::close(std::exchange(*end, -1));
+    line_.close();
   }
   /// Something comes from the bus.
   void say(const std::string& text) {
     for (std::string_view rest = text; !rest.empty();) {
-      const ssize_t n = ::write(far_, rest.data(), rest.size());
+      const ssize_t n = ::write(line_.far(), rest.data(), rest.size());
       if (n > 0) rest.remove_prefix(static_cast<std::size_t>(n));
     }
   }
@@ -76,13 +67,13 @@ class SimulatedAdapter {
   void work() {
     std::string line;
     while (!ending_) {
-      pollfd ready{far_, POLLIN, 0};
+      pollfd ready{line_.far(), POLLIN, 0};
       if (::poll(&ready, 1, 2) <= 0 || held_) {
         if (held_) std::this_thread::yield();
         continue;
       }
       char c = 0;
-      if (::read(far_, &c, 1) != 1) continue;
+      if (::read(line_.far(), &c, 1) != 1) continue;
       if (c != '\r') {
         line += c;
         continue;
@@ -121,8 +112,7 @@ class SimulatedAdapter {
   }
 
   Mood mood_;
-  int far_ = -1, near_ = -1;
-  std::string path_;
+  PseudoTerminal line_;
   std::atomic<bool> ending_{false}, held_{false};
   mutable std::mutex mutex_;
   std::vector<std::string> commands_, frames_;
