@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/pendant/hands.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/image/wheel_way.hpp"
+
+namespace servogate::pendant {
+
+namespace {
+
+constexpr int kMostPending = 10'000;
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+bool moves(Action action) {
+  return action == Action::start_hold || action == Action::home || action == Action::mdi ||
+         action == Action::power;
+}
+
+}  // namespace
+
+const Binding* Hands::binding_of(int button) const noexcept {
+  const Binding* alone = nullptr;
+  for (const Binding& b : layout_->bindings) {
+    if (b.button != button) continue;
+    if (b.with >= 0 && pressed(b.with)) return &b;
+    if (b.with < 0) alone = &b;
+  }
+  return shifted() && (alone == nullptr || alone->action != Action::shift) ? nullptr : alone;
+}
+
+bool Hands::shifted() const noexcept {
+  return std::any_of(layout_->bindings.begin(), layout_->bindings.end(),
+                     [this](const Binding& b) { return b.action == Action::shift && pressed(b.button); });
+}
+
+bool Hands::held() const noexcept {
+  return known_ && view_.released && (rules_->dead_man < 0 || pressed(rules_->dead_man));
+}
+
+bool Hands::permitted(int axis) const noexcept {
+  if (axis < 0 || !held() || axis == blocked_) return false;
+  return view_.axes[at(axis)].jogs && rules_->axes.find(layout_->axes[at(axis)].letter) != std::string::npos;
+}
+
+double Hands::step_length() const noexcept {
+  return step_ < 0 ? 0.0 : std::min(layout_->steps[at(step_)].length, rules_->max_step);
+}
+
+void Hands::drop_pending() noexcept {
+  drop(pending_);
+  pending_ = 0;
+}
+
+void Hands::begin_end(int axis) noexcept {
+  if (axis >= 0) ends_ |= 1u << axis;
+}
+
+void Hands::queue(const Wish& wish) noexcept {
+  if (queued_ < kQueue) queue_[at(queued_++)] = wish;
+}
+
+void Hands::see(const View& view) noexcept {
+  view_ = view;
+  if (wheel_axis_ >= 0 && view.current && !under_way_) {
+    const AxisView& axis = view.axes[at(wheel_axis_)];
+    if (axis.stopped) blocked_ = wheel_axis_;
+    if (!axis.moves) wheel_axis_ = -1;
+  }
+  if (wheel_axis_ >= 0 && !permitted(wheel_axis_)) {
+    begin_end(wheel_axis_);
+    wheel_axis_ = -1;
+  }
+  if (!permitted(selected_)) drop_pending();
+  ring();
+}
+
+/// Which axis wheel and ring mean now: that of the selector, of the button that is held, or of the last one
+/// that was pressed.
+void Hands::select() noexcept {
+  int axis = layout_->axis >= 0 ? now_.axis : chosen_;
+  for (const Binding& b : layout_->bindings)
+    if (b.action == Action::hold_axis && pressed(b.button) && (b.with < 0 || pressed(b.with)))
+      axis = layout_->axis_index(b.axis);
+  if (axis == selected_) return;
+  drop_pending();
+  begin_end(wheel_axis_);
+  wheel_axis_ = blocked_ = -1;
+  ring_armed_ = false;
+  selected_ = axis;
+}
+
+void Hands::press(const Binding& b) noexcept {
+  if (moves(b.action) && !held() && !(b.action == Action::start_hold && view_.running) &&
+      !(b.action == Action::power && view_.powered))
+    return;
+  switch (b.action) {
+    case Action::nothing:
+    case Action::shift:
+    case Action::hold_axis:
+      return;
+    case Action::stop:
+      return queue({WishKind::stop});
+    case Action::hold:
+      return queue({WishKind::hold});
+    case Action::start_hold:
+      return queue({view_.running ? WishKind::hold : view_.held ? WishKind::resume : WishKind::start});
+    case Action::reset:
+      return queue({WishKind::reset});
+    case Action::power:
+      return queue({WishKind::power, -1, view_.powered ? 0.0 : 1.0});
+    case Action::home:
+      return queue({WishKind::home});
+    case Action::zero:
+      if (selected_ >= 0) queue({WishKind::zero, selected_});
+      return;
+    case Action::override_by:
+      return queue({WishKind::override_feed, -1, std::clamp(view_.override_percent + b.value, 0.0, 150.0)});
+    case Action::next_step:
+      step_ = layout_->steps.empty() ? -1 : (step_ + 1) % static_cast<int>(layout_->steps.size());
+      return drop_pending();
+    case Action::coordinates:
+      machine_coordinates_ = !machine_coordinates_;
+      return;
+    case Action::select:
+      chosen_ = layout_->axis_index(b.axis);
+      return;
+    case Action::mdi:
+      return queue({WishKind::mdi, -1, 0.0, &b.text});
+  }
+}
+
+void Hands::take(const Reading& reading) noexcept {
+  const bool first = !known_;
+  const std::uint32_t before = first ? reading.buttons : now_.buttons;
+  const int step = step_, selected = selected_;
+  now_ = reading;
+  known_ = true;
+  if (first && layout_->step < 0) step_ = layout_->steps.empty() ? -1 : 0;
+  const std::uint32_t fresh = reading.buttons & ~before;
+  for (int b = 0; b < static_cast<int>(layout_->buttons.size()); ++b)
+    if ((fresh >> b & 1u) != 0)
+      if (const Binding* binding = binding_of(b)) press(*binding);
+  if (layout_->step >= 0) step_ = reading.step;
+  select();
+  if (!held()) blocked_ = -1;
+  if (step_ != step) drop_pending();
+  if (reading.counts != 0) {
+    const bool same = !first && step_ == step && selected_ == selected;
+    if (same && permitted(selected_) && ring_axis_ < 0 && step_length() > 0.0 &&
+        std::abs(pending_) < kMostPending)
+      pending_ += reading.counts;
+    else
+      drop(reading.counts);
+  }
+  see(view_);
+}
+
+/// The ring jogs while it is held out of its rest.
+void Hands::ring() noexcept {
+  const int range = layout_->ring < 0 || std::abs(now_.ring) < layout_->ring_from ? 0 : now_.ring;
+  const int sign = (range > 0) - (range < 0);
+  if (ring_axis_ >= 0 && (sign != ring_sign_ || selected_ != ring_axis_ || !permitted(ring_axis_))) {
+    begin_end(ring_axis_);
+    ring_axis_ = -1;
+    ring_armed_ = false;
+  }
+  if (sign == 0 && known_) ring_armed_ = true;
+}
+
+void Hands::lost() noexcept {
+  known_ = false;
+  now_ = {};
+  begin_end(wheel_axis_);
+  begin_end(ring_axis_);
+  wheel_axis_ = ring_axis_ = selected_ = chosen_ = blocked_ = -1;
+  ring_armed_ = false;
+  drop_pending();
+  queued_ = 0;
+}
+
+bool Hands::next_jog(Wish& wish) noexcept {
+  if (ring_axis_ < 0 && ring_armed_ && permitted(selected_) && layout_->ring >= 0 &&
+      std::abs(now_.ring) >= layout_->ring_from) {
+    ring_axis_ = selected_;
+    ring_sign_ = now_.ring > 0 ? 1 : -1;
+    wish = {WishKind::jog_on, ring_axis_, static_cast<double>(ring_sign_)};
+    return true;
+  }
+  if (pending_ == 0 || !view_.current || !permitted(selected_)) return false;
+  const AxisView& axis = view_.axes[at(selected_)];
+  const double step = step_length(), way = step * pending_;
+  const double left = axis.moves ? std::copysign(1.0, way) * axis.to_go : 0.0;
+  const double followed = image::wheel_way(way, step, axis.room, left);
+  drop(static_cast<int>(std::lround(std::abs(way - followed) / step)));
+  pending_ = 0;
+  if (followed == 0.0) return false;
+  wheel_axis_ = selected_;
+  wish = {WishKind::jog, wheel_axis_, followed};
+  return true;
+}
+
+bool Hands::next(Wish& wish, image::Nanoseconds now) noexcept {
+  for (int a = 0; a < kMostAxes; ++a) {
+    if ((ends_ >> a & 1u) == 0) continue;
+    ends_ &= ~(1u << a);
+    wish = {WishKind::jog_stop, a};
+    return true;
+  }
+  for (int q = 0; q < queued_; ++q) {
+    if (under_way_ && !is_urgent(queue_[at(q)].kind)) continue;
+    wish = queue_[at(q)];
+    std::move(queue_.begin() + q + 1, queue_.begin() + queued_, queue_.begin() + q);
+    --queued_;
+    under_way_ = under_way_ || !is_urgent(wish.kind);
+    return true;
+  }
+  if (under_way_) return false;
+  if (ring_axis_ >= 0 && now - kept_alive_ >= kKeepAlive) {
+    kept_alive_ = now;
+    wish = {WishKind::keep_alive, ring_axis_};
+    under_way_ = true;
+    return true;
+  }
+  under_way_ = next_jog(wish);
+  if (under_way_ && wish.kind == WishKind::jog_on) kept_alive_ = now;
+  return under_way_;
+}
+
+/// A ring whose jog was refused or has ended is to be let go before it jogs again.
+void Hands::answered(const Wish& wish, bool accepted) noexcept {
+  under_way_ = false;
+  view_.current = false;
+  if (accepted) {
+    // Meanwhile the hand has let go: the end that was asked for may have come before the jog.
+    if (wish.kind == WishKind::jog_on && ring_axis_ != wish.axis) begin_end(wish.axis);
+    if (wish.kind == WishKind::jog && wheel_axis_ != wish.axis) begin_end(wish.axis);
+    return;
+  }
+  if ((wish.kind == WishKind::jog_on || wish.kind == WishKind::keep_alive) && ring_axis_ == wish.axis) {
+    ring_axis_ = -1;
+    ring_armed_ = false;
+  }
+}
+
+}  // namespace servogate::pendant
