@@ -31,7 +31,12 @@ Plant::Plant(const PlantConfig& config, image::Nanoseconds step_ns)
   if (config.counts_per_rev <= 0 || config.inertia_kg_m2 <= 0.0 || config.rated_torque_nm <= 0.0 ||
       step_ns <= 0)
     throw std::invalid_argument("a plant needs counts, inertia, torque and a step above zero");
+  if (config.stribeck_friction_nm < 0.0 || config.stribeck_speed_rad_s <= 0.0 || config.backlash_rad < 0.0 ||
+      config.torque_noise_nm < 0.0)
+    throw std::invalid_argument("a plant needs friction, backlash and noise of no negative size");
   const bool spring = config.stiffness_nm_rad > 0.0 && config.load_inertia_kg_m2 > 0.0;
+  if (config.backlash_rad > 0.0 && !spring)
+    throw std::invalid_argument("backlash needs a load behind a coupling: load inertia and stiffness");
   total_inertia_ = config.inertia_kg_m2 + std::max(0.0, config.load_inertia_kg_m2);
   // A rigid coupling makes one mass of both.
   if (!spring) config_.inertia_kg_m2 = total_inertia_;
@@ -42,7 +47,6 @@ Plant::Plant(const PlantConfig& config, image::Nanoseconds step_ns)
   lag_ = config.current_time_constant_s > 0.0 ? -std::expm1(-h_ / config.current_time_constant_s) : 1.0;
   h_over_j_ = h_ / config_.inertia_kg_m2;
   viscous_divisor_ = 1.0 / (1.0 + h_over_j_ * config.viscous_friction_nm_s);
-  friction_step_ = h_over_j_ * config.coulomb_friction_nm * viscous_divisor_;
   brake_step_ = h_over_j_ * config.brake_torque_nm * viscous_divisor_;
   permille_to_nm_ = config.rated_torque_nm / 1000.0;
   nm_to_permille_ = 1000.0 / config.rated_torque_nm;
@@ -121,6 +125,35 @@ double Plant::cogging() const noexcept {
   return config_.cogging_nm != 0.0 ? config_.cogging_nm * std::sin(counts_ * cogging_per_count_) : 0.0;
 }
 
+double Plant::dry_friction(double omega) const noexcept {
+  if (config_.stribeck_friction_nm == 0.0) return config_.coulomb_friction_nm;
+  const double x = omega / config_.stribeck_speed_rad_s;
+  return config_.coulomb_friction_nm + config_.stribeck_friction_nm * std::exp(-x * x);
+}
+
+/// From motor to load. Within the gap there is none, and where it is closed the faces press and never pull.
+double Plant::coupling_torque() const noexcept {
+  const double twist = (counts_ - load_counts_) * rad_per_count_;
+  const double damping = config_.damping_nm_s * (omega_ - load_omega_);
+  if (config_.backlash_rad == 0.0) return config_.stiffness_nm_rad * twist + damping;
+  const double pressed = std::abs(twist) - 0.5 * config_.backlash_rad;
+  if (pressed <= 0.0) return 0.0;
+  const double side = std::copysign(1.0, twist);
+  return side * std::max(0.0, config_.stiffness_nm_rad * pressed + side * damping);
+}
+
+/// Sum of four even distributions, of standard deviation 1. Source: xorshift64*, Vigna 2016.
+double Plant::noise() noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    noise_state_ ^= noise_state_ >> 12;
+    noise_state_ ^= noise_state_ << 25;
+    noise_state_ ^= noise_state_ >> 27;
+    sum += static_cast<double>((noise_state_ * 0x2545'F491'4F6C'DD1DULL) >> 11) * 0x1p-53 - 0.5;
+  }
+  return std::numbers::sqrt3 * sum;
+}
+
 // Cascade of position (P with velocity fed forward) and velocity (PI with acceleration fed forward).
 double Plant::loop_torque(const canopen::ServoCommand& command) noexcept {
   using Loop = canopen::ServoCommand::Loop;
@@ -156,7 +189,8 @@ void Plant::integrate(double torque_command, bool brake_closed) noexcept {
   torque_ += lag_ * (torque_command - torque_);
   const double load = config_.cogging_nm != 0.0 ? load_torque_ + cogging() : load_torque_;
   const double omega = (omega_ + h_over_j_ * (torque_ - load)) * viscous_divisor_;
-  omega_ = with_dry_friction(omega, friction_step_ + (brake_closed ? brake_step_ : 0.0));
+  omega_ = with_dry_friction(
+      omega, h_over_j_ * dry_friction(omega_) * viscous_divisor_ + (brake_closed ? brake_step_ : 0.0));
   counts_ += omega_ * h_ * counts_per_rad_;
   omega_ = stopped_at_rigid_stops(counts_, omega_);
 }
@@ -164,14 +198,13 @@ void Plant::integrate(double torque_command, bool brake_closed) noexcept {
 // Motor and load by turns, semi-implicitly: energy neither grows nor leaks.
 void Plant::integrate_compliant(double torque_command, bool brake_closed) noexcept {
   const double brake = brake_closed ? sub_over_motor_ * config_.brake_torque_nm : 0.0;
-  const double friction = sub_over_load_ * config_.coulomb_friction_nm * load_viscous_divisor_;
   for (int i = 0; i < substeps_; ++i) {
     torque_ += sub_lag_ * (torque_command - torque_);
-    const double coupling = config_.stiffness_nm_rad * (counts_ - load_counts_) * rad_per_count_ +
-                            config_.damping_nm_s * (omega_ - load_omega_);
+    const double coupling = coupling_torque();
     omega_ = with_dry_friction(omega_ + sub_over_motor_ * (torque_ - coupling - cogging()), brake);
-    load_omega_ = with_dry_friction(
-        (load_omega_ + sub_over_load_ * (coupling - load_torque_)) * load_viscous_divisor_, friction);
+    load_omega_ =
+        with_dry_friction((load_omega_ + sub_over_load_ * (coupling - load_torque_)) * load_viscous_divisor_,
+                          sub_over_load_ * dry_friction(load_omega_) * load_viscous_divisor_);
     counts_ += omega_ * sub_h_ * counts_per_rad_;
     load_counts_ += load_omega_ * sub_h_ * counts_per_rad_;
     load_omega_ = stopped_at_rigid_stops(load_counts_, load_omega_);
@@ -196,7 +229,8 @@ void Plant::measure() noexcept {
   }
   state_.position = whole_counts_ + encoder_error_;
   state_.velocity = omega_ * counts_per_rad_;
-  state_.torque = torque_ * nm_to_permille_;
+  const double off = config_.torque_noise_nm > 0.0 ? config_.torque_noise_nm * noise() : 0.0;
+  state_.torque = (torque_ + off) * nm_to_permille_;
 }
 
 }  // namespace servogate::mock

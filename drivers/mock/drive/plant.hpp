@@ -13,6 +13,10 @@ struct PlantConfig {
   double inertia_kg_m2 = 1.0e-3;          ///< rotor and load; with a compliant coupling the rotor alone
   double coulomb_friction_nm = 0.1;       ///< dry friction, also what holds at rest
   double viscous_friction_nm_s = 5.0e-4;  ///< per rad/s
+  /// Stribeck: what dry friction has more at rest; at speed w it has stribeck * exp(-(w / stribeck_speed)^2)
+  /// more.
+  double stribeck_friction_nm = 0.0;
+  double stribeck_speed_rad_s = 5.0;
   double load_torque_nm = 0.0;     ///< constant, e.g. gravity of a vertical axis; + pulls towards minus
   double rated_torque_nm = 2.4;    ///< 1000 permille of 6071h, 6077h
   double peak_torque_nm = 7.2;     ///< what the power stage can give
@@ -37,6 +41,11 @@ struct PlantConfig {
   double load_inertia_kg_m2 = 0.0;
   double stiffness_nm_rad = 0.0;  ///< of the coupling; 0: rigid
   double damping_nm_s = 0.0;      ///< in the coupling, per rad/s
+  /// Play between motor and load, the whole gap, at the motor shaft; it needs a compliant coupling, which
+  /// works where the gap is closed. Motor and load start in its middle.
+  double backlash_rad = 0.0;
+  /// Standard deviation of what the measured torque is off, bell-shaped, white and the same at every run.
+  double torque_noise_nm = 0.0;
   /// I2t: thermal time constant of the motor, which takes its rated torque for ever; 0: it never gets too
   /// hot.
   double thermal_time_s = 0.0;
@@ -83,6 +92,9 @@ class Plant {
   bool compliant() const noexcept { return substeps_ > 0; }
   bool brake_closed(bool released) noexcept;
   double cogging() const noexcept;
+  double dry_friction(double omega) const noexcept;
+  double coupling_torque() const noexcept;
+  double noise() noexcept;
   double stopped_at_rigid_stops(double& counts, double omega) noexcept;
   void measure() noexcept;
   void find_marks() noexcept;
@@ -91,7 +103,7 @@ class Plant {
   double h_;
   // Derived once.
   double revolutions_per_count_, rad_per_count_, counts_per_rad_;
-  double lag_, h_over_j_, viscous_divisor_, friction_step_, brake_step_;
+  double lag_, h_over_j_, viscous_divisor_, brake_step_;
   double permille_to_nm_, nm_to_permille_, velocity_gain_, integral_step_;
   double stop_min_counts_, stop_max_counts_;
   double total_inertia_, cogging_per_count_, thermal_step_ = 0.0;
@@ -112,6 +124,7 @@ class Plant {
   double brake_moves_ = 0.0;                      ///< s since it was told to change
   std::int64_t mark_below_ = 0, mark_above_ = 0;  ///< zero marks around the shaft, true counts
   std::int64_t encoder_error_ = 0;
+  std::uint64_t noise_state_ = 0x9E37'79B9'7F4A'7C15;
   canopen::ServoState state_;
 };
 

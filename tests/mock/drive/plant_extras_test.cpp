@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a plant has besides a rigid shaft: cogging, a compliant coupling, heat.
+// What a plant has besides a rigid shaft: cogging, a compliant coupling, backlash, Stribeck, noise, heat.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -105,6 +105,93 @@ TEST(PlantExtras, the_rated_torque_never_gets_the_motor_too_hot_and_twice_of_it_
   EXPECT_LE(rated.thermal(), 1.0);
   run(twice, torque(2000), 0.5);
   EXPECT_NEAR(twice.thermal(), 4.0 * (1.0 - std::exp(-0.25)), 0.01);
+}
+
+PlantConfig stribeck() {
+  PlantConfig config = frictionless();
+  config.coulomb_friction_nm = 0.1;
+  config.stribeck_friction_nm = 0.06;
+  config.stribeck_speed_rad_s = 4.0;
+  config.viscous_friction_nm_s = 2e-3;
+  return config;
+}
+
+ServoCommand turn_at(double rad_s, const PlantConfig& config) {
+  ServoCommand c = torque(0);
+  c.loop = ServoCommand::Loop::velocity;
+  c.velocity = rad_s * static_cast<double>(config.counts_per_rev) / (2.0 * std::numbers::pi);
+  return c;
+}
+
+TEST(PlantExtras, a_shaft_with_stribeck_friction_breaks_away_above_all_of_it) {
+  const PlantConfig config = stribeck();
+  Plant held(config, kStep), loose(config, kStep);
+  run(held, torque(0.159 / 2.4 * 1000), 1.0);
+  EXPECT_EQ(held.counts(), 0);
+  run(loose, torque(0.165 / 2.4 * 1000), 2.0);
+  EXPECT_GT(loose.velocity_rad_s(), 4.0);
+}
+
+TEST(PlantExtras, stribeck_friction_falls_with_speed_to_a_bell) {
+  const PlantConfig config = stribeck();
+  for (const double speed : {-20.0, -4.0, -2.0, 2.0, 4.0, 20.0}) {
+    Plant plant(config, kStep);
+    run(plant, turn_at(speed, config), 1.0);
+    const double bell = std::exp(-speed * speed / 16.0);
+    EXPECT_NEAR(plant.torque_nm(), std::copysign(0.1 + 0.06 * bell, speed) + 2e-3 * speed, 1e-5) << speed;
+  }
+}
+
+TEST(PlantExtras, the_motor_moves_by_the_backlash_before_the_load_that_friction_holds) {
+  PlantConfig config = two_masses();
+  config.coulomb_friction_nm = 0.5;  // of the load
+  config.damping_nm_s = 0.5;
+  config.backlash_rad = 0.02;
+  Plant plant(config, kStep);
+  const double rad = 2.0 * std::numbers::pi / static_cast<double>(config.counts_per_rev);
+  double ends[2];
+  for (const int side : {0, 1}) {
+    ServoCommand creep = turn_at(side == 0 ? -0.5 : 0.5, config);
+    creep.torque_limit_positive = creep.torque_limit_negative = 0.1 / 2.4 * 1000;
+    run(plant, creep, 1.0);
+    ends[side] = static_cast<double>(plant.counts()) * rad;
+  }
+  EXPECT_DOUBLE_EQ(plant.revolutions(), 0.0) << "the load has moved";
+  EXPECT_NEAR(ends[1] - ends[0], 0.02 + 2.0 * 0.1 / 500.0, 1e-4);
+}
+
+TEST(PlantExtras, a_gap_pulls_nothing) {
+  PlantConfig config = two_masses();
+  config.damping_nm_s = 5.0;
+  config.backlash_rad = 0.5;
+  Plant plant(config, kStep);
+  run(plant, torque(1000), 0.01);
+  ASSERT_GT(plant.velocity_rad_s(), 5.0);
+  EXPECT_DOUBLE_EQ(plant.revolutions(), 0.0) << "the load moves before the gap is closed";
+}
+
+TEST(PlantExtras, backlash_without_a_coupling_is_refused) {
+  PlantConfig config = frictionless();
+  config.backlash_rad = 0.01;
+  EXPECT_THROW(Plant(config, kStep), std::invalid_argument);
+}
+
+TEST(PlantExtras, noise_is_in_the_measured_torque_alone_and_the_same_in_every_run) {
+  PlantConfig config = frictionless(), quiet = frictionless();
+  config.torque_noise_nm = 0.024;
+  Plant plant(config, kStep), again(config, kStep), still(quiet, kStep);
+  double sum = 0.0, squares = 0.0;
+  constexpr int kSteps = 20'000;
+  for (int i = 0; i < kSteps; ++i) {
+    for (Plant* p : {&plant, &again, &still}) p->step(turn_at(10.0, config));
+    ASSERT_EQ(plant.state().torque, again.state().torque);
+    ASSERT_EQ(plant.counts(), still.counts()) << "noise has moved the shaft";
+    const double off = (plant.state().torque - still.state().torque) * 2.4e-3;
+    sum += off;
+    squares += off * off;
+  }
+  EXPECT_NEAR(sum / kSteps, 0.0, 0.001);
+  EXPECT_NEAR(std::sqrt(squares / kSteps), 0.024, 0.001);
 }
 
 }  // namespace
