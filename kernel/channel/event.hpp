@@ -18,13 +18,17 @@ enum class EventKind : std::uint8_t {
   write,
   wait,
   message,
-  sync,           ///< the interpreter waits for the packets as they are now
-  stop,           ///< M00
-  optional_stop,  ///< M01
-  block_end,      ///< STEP mode: waits for the operator between blocks
-  warning,        ///< at once: the control does something otherwise than the program asks
-  error,          ///< the interpreter found an error in the next block
-  end,            ///< M02, M30 or the last line
+  process_start,    ///< process `number` gets another program; finding `code`: its start is refused
+  process_release,  ///< the program is unloaded when it has ended
+  process_restart,  ///< stands until process `number` waits for this one, which sends it on
+  process_wait,     ///< until process `number` sends it on
+  sync,             ///< the interpreter waits for the packets as they are now
+  stop,             ///< M00
+  optional_stop,    ///< M01
+  block_end,        ///< STEP mode: waits for the operator between blocks
+  warning,          ///< at once: the control does something otherwise than the program asks
+  error,            ///< the interpreter found an error in the next block
+  end,              ///< M02, M30 or the last line
 };
 
 /// path::Tag::command of this room: the run above, and below how many of its blocks have been executed. Equal
@@ -47,7 +51,7 @@ struct Event {
   double value = 0.0;       ///< seconds, speed, value to write or to compare with
   double limit = 0.0;       ///< rpm limit of a surface speed
   double center = 0.0;      ///< where the radius of a surface speed begins
-  std::uint8_t number = 0;  ///< spindle
+  std::uint8_t number = 0;  ///< spindle, or another process, from 0
   program::SpindleMode mode = program::SpindleMode::keep;
   bool flag = false;  ///< surface speed; rewind
   program::Wait::Compare compare = program::Wait::Compare::eq;

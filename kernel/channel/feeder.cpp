@@ -167,6 +167,7 @@ program::Interpreter Feeder::manual_interpreter(const program::Position& at) con
 
 bool Feeder::work() {
   take_orders();
+  supply();
   // The planner wants nothing while it has something to publish: read and publish in turns.
   int done = 0;
   do {
@@ -204,6 +205,9 @@ void Feeder::take_orders() {
         break;
       case FeederOrder::Kind::run_on:
         if (order.generation == generation_) block_by_block_ = false;
+        break;
+      case FeederOrder::Kind::supply:
+        if (order.generation == generation_) supplied_event_ = order.event;
         break;
       case FeederOrder::Kind::way:
         ways_.plan(order.way, elements_.path_position(order.position));
@@ -245,6 +249,8 @@ void Feeder::begin(const FeederOrder& order) {
   published_in_ = -1;
   warned_ = 0;
   raised_.clear();
+  wanted_.clear();
+  supplied_event_ = 0;
 }
 
 void Feeder::read_one() {
@@ -375,7 +381,7 @@ void Feeder::end_block(const program::Command& next) {
 
 void Feeder::push(Event& e, const program::Command& command) {
   planner_.rest();
-  e.id = next_event_++;
+  e.id = last_event_ = next_event_++;
   if (next_event_ == 0) next_event_ = 1;
   e.generation = generation_;
   link_.events.push(e);
@@ -396,6 +402,8 @@ void Feeder::accept(const program::Command& command) {
     move(command);
     return;
   }
+  if (const auto* process = std::get_if<program::ProcessOrder>(&command.what))
+    return order_process(*process, command);
   if (const std::optional<text::Finding> finding = not_driven(command))
     return fail(placed(*finding, command));
   std::optional<ForCycle> order = std::visit(Translation{elements_, texts_, view_}, command.what);

@@ -14,6 +14,7 @@
 #include "kernel/channel/event.hpp"
 #include "kernel/channel/motion/path_elements.hpp"
 #include "kernel/channel/motion/ways.hpp"
+#include "kernel/channel/neighbours.hpp"
 #include "kernel/channel/program_texts.hpp"
 #include "kernel/path/planner.hpp"
 #include "kernel/program/interpreter/interpreter.hpp"
@@ -34,6 +35,7 @@ struct FeederOrder {
     abandon,  ///< drop what is under way; the next order is a start
     sync,     ///< the sync event has been reached; packets stand in Link::packets_of()
     run_on,   ///< no longer block by block
+    supply,   ///< another process is at rest for the program of process_start `event`
     way,      ///< along the path from where the held program stands, at `position`
   };
   Kind kind = Kind::start;
@@ -43,6 +45,7 @@ struct FeederOrder {
   program::Position position{};
   std::uint32_t axes = 0;  ///< start: the machine axes that its programs move, as bits
   WayOrder way;
+  std::uint32_t event = 0;  ///< supply: Event::id
 };
 
 /// The queues between feeder (outside) and process (in the cycle).
@@ -114,6 +117,11 @@ class Feeder {
     return state_ == State::feeding || state_ == State::syncing || orders_read_ < link_.orders.written();
   }
   bool loaded() const noexcept { return static_cast<bool>(factory_); }
+  /// The machine has so many processes, and programs of others come from there. Before the first program.
+  void set_neighbours(int processes, ProgramSupplier supplier) {
+    processes_ = processes;
+    supplier_ = std::move(supplier);
+  }
 
   /// Takes orders, reads ahead as far as the planner wants, publishes. Bounded work a call. True: it is to be
   /// called again soon, there is more to do.
@@ -146,6 +154,8 @@ class Feeder {
   void warn_of_rest();
   void end();
   bool move(const program::Command& command);
+  void order_process(const program::ProcessOrder& order, const program::Command& command);
+  void supply();
   void event(EventKind kind, const program::Command& command, Event event);
   void end_block(const program::Command& next);
   void push(Event& event, const program::Command& command);
@@ -157,6 +167,17 @@ class Feeder {
   path::Planner planner_;
   Ways ways_;
   int process_;
+  int processes_ = 1;
+  ProgramSupplier supplier_;
+  /// A program for another process, from its block to its process_start.
+  struct Wanted {
+    std::uint32_t event = 0;
+    int process = 0;
+    std::string name;
+    text::Finding missing;
+  };
+  std::vector<Wanted> wanted_;
+  std::uint32_t supplied_event_ = 0;  ///< whose process is at rest now; 0: none
   InterpreterFactory factory_;
   RestartFactory once_;  ///< instead, for the next run
   std::string manual_block_;
@@ -172,7 +193,7 @@ class Feeder {
   long long last_executed_ = 0;  ///< blocks executed up to the last command
   image::Packets view_;          ///< packets as the interpreter sees them
   program::Position position_{};
-  std::uint32_t next_event_ = 1;
+  std::uint32_t next_event_ = 1, last_event_ = 0;
   std::uint32_t generation_ = 0;
   std::uint64_t orders_read_ = 0;
   ProgramTexts texts_;

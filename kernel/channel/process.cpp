@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
@@ -32,7 +33,10 @@ Process::Process(const ProcessConfig& config)
       feeder_(config.path, config.axes, link_, config.index),
       follower_(config.path, link_.track),
       back_(WayLink::small(config.path), link_.way.track),
-      base_(image::process_base(config.index)) {}
+      base_(image::process_base(config.index)),
+      meeting_(config.meeting != nullptr ? *config.meeting : alone_) {
+  feeder_.set_neighbours(meeting_.count(), config.supplier);
+}
 
 Process::~Process() = default;
 
@@ -107,12 +111,14 @@ std::uint64_t Process::look(const cycle::ProcessContext& c) noexcept {
   published(seen);
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = std::min(seen[i], c.visible[i]);
   if (started_) seen[kTrack] = seen[kEvents] = seen[kAtOnce] = seen[kWay] = 0;
-  started_ = false;
+  const bool begins = std::exchange(started_, false);
   if (seen[kPrograms] != programs_seen_ && !running_) {
     forget_run(c.image.processes[static_cast<std::size_t>(config_.index)]);
     if (state_ == ProcessState::ended || state_ == ProcessState::stopped) state_ = ProcessState::idle;
   }
   programs_seen_ = seen[kPrograms];
+  if (begins) run_of_programs_ = programs_seen_;
+  meeting_.show_programs(config_.index, programs_seen_);
   events_end_ = events_read_;
   at_once_end_ = at_once_read_;
   if (begin == nullptr) return entries;
@@ -260,6 +266,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
 void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   running_ = stopping_ = held_ = false;
   forget_beside();
+  forget_neighbours();
   state_ = state;
   stage_ = Stage::none;
   handshake_.cancel(c.image, base_);

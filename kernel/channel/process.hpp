@@ -11,6 +11,7 @@
 #include "kernel/channel/handshake.hpp"
 #include "kernel/channel/motion/cutting_times.hpp"
 #include "kernel/channel/motion/way_back.hpp"
+#include "kernel/channel/neighbours.hpp"
 #include "kernel/cycle/boundary/participants.hpp"
 #include "kernel/path/follower.hpp"
 
@@ -22,6 +23,8 @@ struct ProcessConfig {
   AxisMap axes;
   double handshake_timeout_s = 10.0;
   double in_position_timeout_s = 5.0;  ///< of the wait at exact stops, beside the axis' own alarm
+  Meeting* meeting = nullptr;          ///< of all processes, outlives this one; nullptr: it is the only one
+  ProgramSupplier supplier;            ///< of programs for the others
 };
 
 /// One process: the feeder outside the cycle and the follower with its handshakes inside, joined by a Link.
@@ -63,7 +66,13 @@ class Process final : public cycle::ProcessInCycle {
   bool order(const image::Request& request, cycle::ProcessContext& context) noexcept override;
   cycle::Beside beside(const cycle::ProcessContext& context) const noexcept override;
   void leave_path(int axis, cycle::ProcessContext& context) noexcept override;
-  bool loaded() const noexcept override { return programs_.load(std::memory_order_acquire) != 0; }
+  bool loaded() const noexcept override {
+    return programs_.load(std::memory_order_acquire) != released_.load(std::memory_order_relaxed);
+  }
+  /// Its program has unloaded itself. Any thread.
+  bool unloaded() const noexcept { return released_.load(std::memory_order_relaxed) != 0 && !loaded(); }
+  bool wish(image::Request& request) noexcept override;
+  void answered(const image::Answer& answer) noexcept override;
   bool stopping() const noexcept override { return stopping_.load(std::memory_order_relaxed); }
 
  private:
@@ -145,6 +154,10 @@ class Process final : public cycle::ProcessInCycle {
   void at_stop(cycle::ProcessContext& c) noexcept;
   void at_event(std::uint32_t id, cycle::ProcessContext& c) noexcept;
   bool execute(const Event& event, cycle::ProcessContext& c) noexcept;
+  // process_neighbours.cpp
+  bool start_other(const Event& event, cycle::ProcessContext& c) noexcept;
+  bool meet(const Event& event) noexcept;
+  void forget_neighbours() noexcept;
   bool handshake(HandshakeWord word, std::int32_t code, double value, const Event& event,
                  cycle::ProcessContext& c) noexcept;
   bool order_spindle(const Event& event, cycle::ProcessContext& c) noexcept;
@@ -171,8 +184,15 @@ class Process final : public cycle::ProcessInCycle {
   std::uint32_t base_;                      ///< of the process' block in K
   std::atomic<std::uint64_t> programs_{0};  ///< loaded so far
   std::atomic<std::uint64_t> changes_{0};
+  std::atomic<std::uint64_t> released_{0};  ///< of programs_: so many, and its program has unloaded itself
 
-  bool manual_data_ = false;  ///< the run is a typed block
+  Meeting alone_{1};
+  Meeting& meeting_;
+  enum class StartOther : std::uint8_t { none, loading, wished, started, refused };
+  StartOther start_other_ = StartOther::none;
+  std::uint64_t programs_of_other_ = 0;  ///< before it was given another one
+  std::uint64_t run_of_programs_ = 0;    ///< programs_, when the run under way began
+  bool manual_data_ = false;             ///< the run is a typed block
   std::array<OwnAxis, path::kMaxAxes> own_{};
   std::size_t own_count_ = 0;
   bool running_ = false;               ///< a program is under way, held or waiting

@@ -63,7 +63,9 @@ void Process::apply_at_once(cycle::ProcessContext& c) noexcept {
   while (at_once_read_ < at_once_end_) {
     const Event& e = link_.at_once[at_once_read_];
     if (running_) {
-      if (e.kind != EventKind::warning)
+      if (e.kind == EventKind::error)
+        execute(e, c);
+      else if (e.kind != EventKind::warning)
         write_place(e, c.image.packets);
       else if (++warnings <= kWarningsPerCycle)
         raise(cycle::alarm::kProgramWarning, e, e.code, e.code2, c);
@@ -119,6 +121,14 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       link_.orders.push(order);
       return true;
     }
+    case EventKind::process_start:
+      return start_other(e, c);
+    case EventKind::process_release:
+      released_.store(run_of_programs_, std::memory_order_relaxed);
+      return true;
+    case EventKind::process_restart:
+    case EventKind::process_wait:
+      return meet(e);
     case EventKind::optional_stop:
       if (entered && !c.image.packets.bit(image::at(kOptionalStop, base_))) return true;
       return wait_for_operator();

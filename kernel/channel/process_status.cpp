@@ -128,6 +128,15 @@ image::Wait Process::wait_at_event(const cycle::ProcessContext& c) const noexcep
       wait.compare = static_cast<image::Compare>(event_.compare);
       wait.value = event_.value;
       return wait;
+    case EventKind::process_start:
+    case EventKind::process_restart:
+    case EventKind::process_wait:
+      wait = of(WaitReason::signal);
+      wait.code = event_.number + 1;  // in place of a place
+      wait.compare = event_.kind == EventKind::process_wait      ? image::Compare::eq
+                     : event_.kind == EventKind::process_restart ? image::Compare::ne
+                                                                 : image::Compare::lt;
+      return wait;
     case EventKind::dwell:
       wait = of(WaitReason::dwell);
       wait.value = event_.value;

@@ -64,6 +64,8 @@ void Cycle::handle_requests() noexcept {
     queues_->answers.try_enqueue(answer);
   }
   handle_plc_requests();
+  for (ProcessInCycle* process : parts_.processes)
+    if (Request wish; process->wish(wish)) process->answered(handle(wish));
 }
 
 image::Answer Cycle::handle(const Request& request) noexcept {

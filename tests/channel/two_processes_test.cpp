@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two processes of one machine: X, Y and a spindle belong to the first, Z and another spindle to the second.
+// Processes of one machine: X, Y and a spindle belong to the first, Z and another spindle to the second, and
+// nothing to the third.
 #include <gtest/gtest.h>
 
 #include <array>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -33,6 +35,7 @@ class SecondSpindle final : public image::CycleDevice {
   image::DriveCommand told_;
 };
 
+constexpr int kProcesses = 3;
 constexpr image::Place kPermits[] = {field(image::kProcessFields, "feed_enable"),
                                      field(image::kProcessFields, "read_in_enable")};
 constexpr image::Place kStrobes[] = {
@@ -53,8 +56,8 @@ class Permits final : public image::Logic {
       for (const image::Place& place :
            {field(image::kAxisFields, "enable"), field(image::kAxisFields, "feed_enable")})
         k.set_bit(image::at(place, image::axis_base(a)), true);
-    for (int p = 0; p < 2; ++p) {
-      k.set_bit(image::at(field(image::kSpindleFields, "enable"), image::spindle_base(p)), true);
+    for (int p = 0; p < kProcesses; ++p) {
+      if (p < 2) k.set_bit(image::at(field(image::kSpindleFields, "enable"), image::spindle_base(p)), true);
       const std::uint32_t base = image::process_base(p);
       for (const image::Place& place : kPermits) k.set_bit(image::at(place, base), true);
       for (std::size_t w = 0; w < std::size(kStrobes); ++w)
@@ -65,13 +68,14 @@ class Permits final : public image::Logic {
 
 class TwoProcesses : public ::testing::Test {
  protected:
-  void compose(const std::string& first, const std::string& second) {
+  void compose(const std::string& first, const std::string& second, const std::string& third = "M30\n") {
     program::MachineModel model;
     model.power_on = {"G94", "G97", "G90", "G71", "G27"};
     model.variables = {{"ERF", 0.01}, {"MCD", 2}};
     cycle::CycleParts parts;
     parts.alarms = &tests::alarm_table();
-    std::array<ProcessConfig, 2> configs;
+    std::array<ProcessConfig, kProcesses> configs;
+    const std::array texts{first, second, third};
     for (ProcessConfig& config : configs) config.path.axis_count = 0;
     for (int a = 0; a < kAxes; ++a) {
       axis::AxisConfig c;
@@ -97,12 +101,25 @@ class TwoProcesses : public ::testing::Test {
       axis::SpindleConfig& spindle = parts.spindles.emplace_back();
       spindle.process = p;
       spindle.max_rpm = kSpindleMax;
+    }
+    for (int p = 0; p < kProcesses; ++p) {
       ProcessConfig& config = configs[static_cast<std::size_t>(p)];
       config.index = p;
       config.axes.spindle_max_rpm = kSpindleMax;
+      config.meeting = &meeting_;
+      config.supplier = [this, model](int, int to, const std::string& name) {
+        const auto found = programs_.find(name);
+        Process& other = *processes_[static_cast<std::size_t>(to)];
+        if (found == programs_.end()) return Supply::not_found;
+        if (other.feeder().reads()) return Supply::busy;
+        other.load([model, to, text = found->second](const program::Position& at) {
+          return program::Interpreter("nc110", model, {}, "other.nc", text, {}, at, to);
+        });
+        return Supply::given;
+      };
       auto& process = processes_[static_cast<std::size_t>(p)];
       process = std::make_unique<Process>(config);
-      process->load([model, p, text = p == 0 ? first : second](const program::Position& at) {
+      process->load([model, p, text = texts[static_cast<std::size_t>(p)]](const program::Position& at) {
         return program::Interpreter("nc110", model, {}, "process.nc", text, {}, at, p);
       });
       parts.processes.push_back(process.get());
@@ -115,7 +132,7 @@ class TwoProcesses : public ::testing::Test {
         if (!a.motion_permitted()) return false;
       return true;
     }));
-    for (int p = 0; p < 2; ++p)
+    for (int p = 0; p < kProcesses; ++p)
       EXPECT_EQ(ask(RequestKind::mode, p, static_cast<double>(image::Mode::automatic)), Refusal::none);
   }
   void start_both() {
@@ -151,7 +168,22 @@ class TwoProcesses : public ::testing::Test {
   IdealDrives drives_;
   SecondSpindle second_spindle_;
   Permits logic_;
-  std::array<std::unique_ptr<Process>, 2> processes_;
+  double syvar(std::uint32_t byte) const {
+    return cycle_->image().packets.number({image::Packet::v, image::Format::by, byte, 1});
+  }
+  /// The alarm's sentence of a program that was ended by one.
+  std::string error_of(int p) const {
+    for (const image::AlarmRecord& r : cycle_->alarms().history())
+      if (r.process == p)
+        if (const auto finding =
+                processes_[static_cast<std::size_t>(p)]->texts().finding(static_cast<int>(r.value)))
+          return finding->str(text::Language::english);
+    return {};
+  }
+
+  Meeting meeting_{kProcesses};
+  std::map<std::string, std::string> programs_;
+  std::array<std::unique_ptr<Process>, kProcesses> processes_;
   std::unique_ptr<cycle::Cycle> cycle_;
 };
 
@@ -240,6 +272,132 @@ TEST_F(TwoProcesses, keep_manual_control_of_the_axes_whose_program_does_not_run)
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0, 2), Refusal::none) << "Z is not";
   ASSERT_TRUE(until([&] { return !cycle_->image().axes[2].moving && at(2) > 0.9; }));
   EXPECT_EQ(state(0), ProcessState::running);
+}
+
+TEST_F(TwoProcesses, start_a_program_in_the_other_one_which_waits_until_it_is_sent_on) {  // T-MP-01
+  programs_ = {{"S1", "(WAI,1)\nSYVAR20=7\n(REL)\n"}};
+  compose("(EXE,2,S1)\n#(DLY,2)\n#(SND,2)\nM30\n", "M30\n");
+  const double begin = cycle_->image().now.seconds();
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(1) == ProcessState::waiting; }));
+  EXPECT_EQ(cycle_->image().processes[1].wait.code, 1) << "for the first process";
+  ASSERT_TRUE(until([&] { return syvar(20) == 7.0; }));
+  EXPECT_NEAR(cycle_->image().now.seconds() - begin, 2.0, 0.1);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::ended && state(1) == ProcessState::ended; }));
+  EXPECT_TRUE(processes_[1]->unloaded());
+  EXPECT_EQ(ask(RequestKind::start, 1), Refusal::no_program) << "REL has unloaded it";
+  EXPECT_EQ(ask(RequestKind::start, 0), Refusal::none);
+}
+
+TEST_F(TwoProcesses, stand_where_they_send_until_the_other_one_waits) {  // T-MP-02
+  programs_ = {{"S2", "#(DLY,3)\n(WAI,1)\nSYVAR20=7\n"}};
+  compose("(EXE,2,S2)\n(SND,2)\n#SYVAR30=1\nM30\n", "M30\n");
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return cycle_->image().processes[0].wait.code == 2; }));
+  for (int n = 0; n < 1000; ++n) step();
+  EXPECT_EQ(cycle_->image().processes[0].wait.code, 2);
+  EXPECT_EQ(syvar(30), 0.0) << "the sender stands";
+  ASSERT_TRUE(until([&] { return syvar(20) == 7.0 && syvar(30) == 1.0; }));
+  EXPECT_TRUE(until([&] { return state(0) == ProcessState::ended && state(1) == ProcessState::ended; }));
+}
+
+TEST_F(TwoProcesses, send_behind_the_motion_before_it) {  // T-MP-11
+  compose("G1 X20 F1200\n#(SND,2)\nM30\n", "(WAI,1)\nSYVAR20=7\nM30\n");
+  start_both();
+  ASSERT_TRUE(until([&] { return syvar(20) == 7.0; }));
+  EXPECT_NEAR(at(0), 20.0, 1e-9);
+}
+
+TEST_F(TwoProcesses, wait_for_the_one_that_they_name_and_for_no_other) {  // T-MP-04
+  compose("(DLY,1)\nM0\n(SND,2)\nM30\n", "(WAI,1)\nSYVAR20=7\n(WAI,3)\nM30\n", "(SND,2)\nSYVAR30=1\nM30\n");
+  start_both();
+  ASSERT_EQ(ask(RequestKind::start, 2), Refusal::none);
+  ASSERT_TRUE(
+      until([&] { return cycle_->image().processes[0].wait.reason == image::WaitReason::program_stop; }));
+  for (int n = 0; n < 200; ++n) step();
+  EXPECT_EQ(syvar(20), 0.0) << "the third one sends in vain";
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return syvar(20) == 7.0 && syvar(30) == 1.0; }));
+  EXPECT_TRUE(until([&] { return state(1) == ProcessState::ended; }));
+}
+
+TEST_F(TwoProcesses, meet_a_third_one_and_all_go_on_together) {  // T-MP-03
+  compose("(WAI,2)\n(WAI,3)\n(SND,2)\n(SND,3)\nG1 X10 F1000\nM30\n",
+          "(DLY,1)\n(SND,1)\n(WAI,1)\nG1 Z10 F1000\nM30\n", "(SND,1)\n(WAI,1)\nSYVAR20=7\nM30\n");
+  start_both();
+  ASSERT_EQ(ask(RequestKind::start, 2), Refusal::none);
+  for (int n = 0; n < 800; ++n) step();
+  EXPECT_EQ(at(0), 0.0);
+  EXPECT_EQ(at(2), 0.0);
+  EXPECT_EQ(syvar(20), 0.0) << "the second one is not there yet";
+  ASSERT_TRUE(until([&] { return at(2) > 0.0; }));
+  for (int n = 0; n < 100; ++n) step();
+  EXPECT_GT(at(0), 0.0);
+  EXPECT_EQ(syvar(20), 7.0);
+  EXPECT_TRUE(until([&] { return state(0) == ProcessState::ended && state(1) == ProcessState::ended; }));
+}
+
+TEST_F(TwoProcesses, refuse_an_order_to_a_process_that_the_machine_does_not_have) {
+  compose("G1 X5 F1000\n(SND,5)\nM30\n", "M30\n");
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::stopped_by_alarm; }));
+  EXPECT_NE(error_of(0).find(":2:1: error: there is no process 5: this machine has 3 ([control] processes)"),
+            std::string::npos)
+      << error_of(0);
+  EXPECT_NEAR(at(0), 5.0, 1e-9);
+}
+
+TEST_F(TwoProcesses, end_a_wait_by_a_reset_and_wait_anew_in_the_next_run) {
+  compose("(SND,2)\nM30\n", "(WAI,1)\nSYVAR20=7\nM30\n");
+  ASSERT_EQ(ask(RequestKind::start, 1), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(1) == ProcessState::waiting; }));
+  EXPECT_EQ(ask(RequestKind::reset, 1), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(1) == ProcessState::idle; }));
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  for (int n = 0; n < 200; ++n) step();
+  EXPECT_EQ(state(0), ProcessState::waiting) << "nobody waits any more";
+  ASSERT_EQ(ask(RequestKind::start, 1), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::ended && state(1) == ProcessState::ended; }));
+  EXPECT_EQ(syvar(20), 7.0);
+}
+
+TEST_F(TwoProcesses, take_program_after_program_from_the_other_one_a_thousand_times) {  // T-MP-10
+  programs_ = {{"A", "SYVAR1=1\n(SND,1)\n(REL)\n"}, {"B", "SYVAR1=2\n(SND,1)\n(REL)\n"}};
+  compose("(RPT,99)\n(RPT,10)\n(EXE,2,A)\n(WAI,2)\n(EXE,2,B)\n(WAI,2)\n(ERP)\n(ERP)\nM30\n", "M30\n");
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::ended || !cycle_->alarms().history().empty(); }));
+  EXPECT_EQ(state(0), ProcessState::ended) << error_of(0);
+  EXPECT_EQ(syvar(1), 2.0);
+  ASSERT_TRUE(until([&] { return state(1) == ProcessState::ended; }));
+  EXPECT_TRUE(processes_[1]->unloaded());
+  EXPECT_EQ(cycle_->image().processes[1].run, 1980u);
+}
+
+TEST_F(TwoProcesses, end_with_an_error_at_a_program_that_is_missing_or_cannot_be_started) {
+  programs_ = {{"A", "G1 Z5 F1000\nM30\n"}};
+  compose("(EXE,2,NONE)\nG1 X50 F1000\nM30\n", "M30\n");
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::stopped_by_alarm; }));
+  EXPECT_NE(error_of(0).find(":1:"), std::string::npos) << error_of(0);
+  EXPECT_NE(error_of(0).find("there is no program 'NONE' for process 2"), std::string::npos) << error_of(0);
+  EXPECT_EQ(at(0), 0.0);
+}
+
+TEST_F(TwoProcesses, ask_the_gate_for_a_start_and_end_with_its_refusal) {
+  programs_ = {{"A", "G1 Z5 F1000\nM30\n"}};
+  compose("(EXE,2,A)\nG1 X50 F1000\nM30\n", "M30\n");
+  ASSERT_EQ(ask(RequestKind::mode, 1, static_cast<double>(image::Mode::manual)), Refusal::none);
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::ended; })) << error_of(0);
+  ASSERT_TRUE(until([&] { return state(1) == ProcessState::ended; })) << "AUTO comes with the start";
+  EXPECT_NEAR(at(2), 5.0, 1e-9);
+  ASSERT_EQ(ask(RequestKind::jog_continuous, 1, -1.0, 2), Refusal::none);
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::stopped_by_alarm; }));
+  EXPECT_NE(error_of(0).find("process 2 does not start 'A': `servogate start --process 2` says"),
+            std::string::npos)
+      << error_of(0);
+  EXPECT_NEAR(at(0), 50.0, 1e-9) << "nothing behind it";
 }
 
 }  // namespace

@@ -124,6 +124,42 @@ TEST_F(TwoProcesses, read_how_far_the_axes_of_the_other_one_still_have_to_go) {
   ASSERT_TRUE(until_state(1, "ended"));
 }
 
+TEST_F(TwoProcesses, start_programs_in_each_other_and_replay_it_from_the_record) {
+  const std::string record = file("pair.record");
+  shell_.up_file(file("machine.toml"), {"--virtual", "--speed", "20", "--record", record});
+  good({"power", "on"});
+  const std::string second = write("s1.nc", "G1 Y15 F6000\n#(SND,1)\n(WAI,1)\nG1 Y10\n(REL)\n");
+  write("s2.nc", "G1 Y20 F6000\n(REL)\n");
+  const std::string first =
+      write("main.nc", "(EXE,2,S1)\n(WAI,2)\nG1 X5 F6000\nM0\n(SND,2)\n(EXE,2,S2)\nM30\n");
+  good({"load", first});
+  good({"start"});
+  ASSERT_TRUE(until_state(1, "waiting"));
+  ASSERT_TRUE(until_state(2, "waiting"));
+  EXPECT_NEAR(at(1), 15.0, 1e-6);
+  ASSERT_TRUE(shell_.until([&](const json& s) { return s["processes"][1]["program"] == second; }));
+  const std::string words = run({"status"}).out;
+  EXPECT_TRUE(contains(words, "line 3 of s1.nc: the program waits until process 1 sends it on")) << words;
+  ASSERT_TRUE(
+      shell_.until([&](const json& s) { return s["processes"][0]["wait"]["reason"] == "program_stop"; }));
+  good({"start"});
+  ASSERT_TRUE(until_state(1, "ended"));
+  ASSERT_TRUE(shell_.until([&](const json& s) { return s["axes"][1]["command"] == 20.0; }));
+  ASSERT_TRUE(shell_.until([&](const json& s) { return s["processes"][1]["program"] == ""; })) << "unloaded";
+  EXPECT_EQ(run({"start", "--process", "2"}).exit, 1);
+  good({"down"});
+  const std::string trace = file("replay.csv");
+  const Outcome replay = shell_.run({"replay", record, "--trace", trace});
+  EXPECT_EQ(replay.exit, 0) << replay.out << replay.err;
+  std::ifstream rows(trace);
+  std::string header, last;
+  std::getline(rows, header);
+  bool waited = false;
+  for (std::string row; std::getline(rows, row); last = row) waited = waited || contains(row, "15.000");
+  EXPECT_TRUE(waited) << header;
+  EXPECT_TRUE(contains(last, "20.000")) << header << "\n" << last;
+}
+
 TEST_F(TwoProcesses, refuse_a_program_with_an_axis_of_the_other_in_check_and_load_alike) {
   const std::string x = write("x.nc", "N10 G1 X20 F600\nN20 M30\n");
   const std::string why = "X belongs to another process";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "firmware_if/canopen/301/emcy.hpp"
 #include "gateway/control/compose/alarms/source_names.hpp"
@@ -45,12 +46,16 @@ const text::Entry kUnreadable{"compose.plc-unreadable", "cannot read the PLC sou
 }  // namespace
 
 Control::Control(const machine::LoadResult& loaded)
-    : loaded_(loaded), symbols_(loaded_.machine.symbol_table()) {}
+    : loaded_(loaded),
+      symbols_(loaded_.machine.symbol_table()),
+      meeting_(loaded_.machine.control.processes),
+      programs_(static_cast<std::size_t>(loaded_.machine.control.processes)) {}
 Control::~Control() = default;
 
 std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
                                           std::vector<text::Finding>& findings, cycle::InputSource* source) {
   std::unique_ptr<Control> c(new Control(loaded));
+  c->replay_ = source != nullptr;
   const machine::MachineConfig& m = c->loaded_.machine;
   const bool logic = c->compile_logic(findings), devices = check_devices(c->loaded_, findings);
   if (!logic || !devices || !c->open_buses(findings, source != nullptr)) return nullptr;
@@ -78,7 +83,12 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
     parts.sources[s].watched = !m.stations[s].over_bus() && !turns_spindle(m, m.stations[s]);
   parts.logic = c->logic_.get();
   for (int p = 0; p < m.control.processes; ++p) {
-    c->processes_.push_back(std::make_unique<channel::Process>(process_config(m, p)));
+    channel::ProcessConfig config = process_config(m, p);
+    config.meeting = &c->meeting_;
+    config.supplier = [control = c.get()](int from, int to, const std::string& name) {
+      return control->supply(from, to, name);
+    };
+    c->processes_.push_back(std::make_unique<channel::Process>(config));
     parts.processes.push_back(c->processes_.back().get());
   }
   for (const machine::AxisConfig& a : m.axes) parts.axes.push_back(axis_config(c->loaded_, a));
@@ -242,6 +252,41 @@ bool Control::read_ahead() {
 
 bool Control::change(const ProgramChange& change) {
   const std::scoped_lock lock(reading_);
+  return carry_out(change);
+}
+
+std::shared_ptr<const ProgramFile> Control::take_given(int process) {
+  const std::scoped_lock lock(reading_);
+  Program& program = programs_[static_cast<std::size_t>(process)];
+  return std::exchange(program.given, false) ? program.file : nullptr;
+}
+
+/// Called while processes read ahead. In a replay the record makes the change.
+channel::Supply Control::supply(int from, int to, const std::string& name) {
+  const std::shared_ptr<const ProgramFile> caller = programs_[static_cast<std::size_t>(from)].file;
+  if (process(to).feeder().reads()) return channel::Supply::busy;
+  if (caller == nullptr || !caller->loader) return channel::Supply::not_found;
+  std::optional<program::LoadedProgram> loaded = load_for(*caller, name, change_tap_);
+  if (!loaded) return channel::Supply::not_found;
+  if (replay_) return channel::Supply::given;
+  auto file = std::make_shared<ProgramFile>();
+  file->path = loaded->path.empty() ? name : loaded->path;
+  file->dialect = caller->dialect;
+  file->text = program::ProgramText(std::move(loaded->text));
+  file->process = to;
+  file->model = program_model(machine(), to);
+  file->loader = caller->loader;
+  const program::Tables* tables = process(from).feeder().tables();
+  carry_out({ProgramChange::Kind::program,
+             to,
+             std::move(file),
+             tables != nullptr ? *tables : program::Tables{},
+             {}});
+  programs_[static_cast<std::size_t>(to)].given = true;
+  return channel::Supply::given;
+}
+
+bool Control::carry_out(const ProgramChange& change) {
   channel::Process& p = process(change.process);
   const bool loads = change.kind == ProgramChange::Kind::program ||
                      change.kind == ProgramChange::Kind::tables ||
@@ -249,6 +294,7 @@ bool Control::change(const ProgramChange& change) {
   if (loads && p.feeder().reads()) return false;
   // What a record keeps of it lies before what its subprograms are.
   if (change_tap_ != nullptr) change_tap_->take(change);
+  if (change.file != nullptr) programs_[static_cast<std::size_t>(change.process)] = {change.file, false};
   switch (change.kind) {
     case ProgramChange::Kind::program:
       p.load(interpreter_factory(change, change_tap_), change.tables);

@@ -49,6 +49,11 @@ class Control {
   /// Changes what a process will run, and shows it to the tap; any thread outside the cycle. False, and
   /// nothing changed: its program is being read just now.
   bool change(const ProgramChange& change);
+  /// The program that another process' program has given this one since the last call; nullptr: none. Any
+  /// thread outside the cycle.
+  std::shared_ptr<const ProgramFile> take_given(int process);
+  /// Its program has unloaded itself, and none has been loaded since.
+  bool unloaded(int process) const { return processes_[static_cast<std::size_t>(process)]->unloaded(); }
   /// Compiles another PLC program for this machine. Any thread; ended by `stop`, and after kCompilePatience
   /// by an error.
   plc::CompileResult compile(const std::vector<plc::SourceFile>& files, const std::stop_token& stop) const;
@@ -114,6 +119,8 @@ class Control {
   const machine::NodeConfig* node_of(const image::PartPlace& place) const;
   std::unique_ptr<AlarmRooms> alarm_rooms() const;
   bool compile_logic(std::vector<text::Finding>& findings);
+  bool carry_out(const ProgramChange& change);
+  channel::Supply supply(int from, int to, const std::string& name);
   bool open_buses(std::vector<text::Finding>& findings, bool replay);
   void await_grants(image::Nanoseconds t);
 
@@ -129,7 +136,15 @@ class Control {
   image::Nanoseconds world_ahead_ns_ = 0;  ///< what late cycles let the world live longer
   cycle::MonotonicClock stopwatch_;
   std::unique_ptr<plc::Logic> logic_;
+  channel::Meeting meeting_;
   std::vector<std::unique_ptr<channel::Process>> processes_;
+  /// The program of each process, and whether another one gave it.
+  struct Program {
+    std::shared_ptr<const ProgramFile> file;
+    bool given = false;
+  };
+  std::vector<Program> programs_;
+  bool replay_ = false;  ///< what programs load is in the record
   std::mutex reading_;
   ProgramChangeTap* change_tap_ = nullptr;
   std::uint32_t logic_changes_ = 0;

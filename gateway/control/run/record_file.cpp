@@ -177,9 +177,11 @@ void RecordWriter::take(const plc::LogicChange& change) {
   loaded_.push_back(std::move(chunk));
 }
 
-void RecordWriter::take_subprogram(std::string_view name, std::string_view text) {
+/// The process' number, the name, a line end, the text.
+void RecordWriter::take_subprogram(int process, std::string_view name, std::string_view text) {
   const std::scoped_lock lock(loaded_mutex_);
-  loaded_.push_back(kSubprogramChunk + std::string(name) + "\n" + std::string(text));
+  loaded_.push_back(kSubprogramChunk + std::to_string(process) + std::string(name) + "\n" +
+                    std::string(text));
 }
 
 /// Writes what was loaded since the last call, behind the cycles encoded so far.
@@ -300,8 +302,12 @@ bool RecordReader::read_chunk(std::string_view bytes) {
   if (kind == kChangeChunk) return read_change(bytes);
   if (kind == kLogicChunk) return read_logic_change(bytes);
   const std::size_t end = bytes.find('\n');
-  if (kind != kSubprogramChunk || end == std::string_view::npos || !subprograms_) return false;
-  subprograms_->insert_or_assign(std::string(bytes.substr(0, end)), std::string(bytes.substr(end + 1)));
+  if (kind != kSubprogramChunk || end == std::string_view::npos || end < 2) return false;
+  const int process = bytes.front() - '0';
+  if (process < 0 || process >= image::kMaxProcesses || !subprograms_[static_cast<std::size_t>(process)])
+    return false;
+  subprograms_[static_cast<std::size_t>(process)]->insert_or_assign(std::string(bytes.substr(1, end - 1)),
+                                                                    std::string(bytes.substr(end + 1)));
   return true;
 }
 
@@ -353,13 +359,14 @@ bool RecordReader::read_change(std::string_view bytes) {
       r.confirm = restart->value("confirm", false);
     }
     if (head.value("text", false)) {
-      subprograms_ = std::make_shared<std::map<std::string, std::string, std::less<>>>();
+      if (change.process < 0 || change.process >= image::kMaxProcesses) return false;
+      const auto texts = std::make_shared<Texts>();
+      subprograms_[static_cast<std::size_t>(change.process)] = texts;
       auto file = std::make_shared<ProgramFile>();
       file->path = head.value("path", "");
       file->dialect = head.value("dialect", "");
       file->text = std::string(bytes.substr(end + 1));
-      file->loader = [texts =
-                          subprograms_](std::string_view wanted) -> std::optional<program::LoadedProgram> {
+      file->loader = [texts](std::string_view wanted) -> std::optional<program::LoadedProgram> {
         const auto found = texts->find(wanted);
         if (found == texts->end()) return std::nullopt;
         return program::LoadedProgram{found->second};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <atomic>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "firmware_if/image/process_image.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "gateway/control/compose/control.hpp"
 #include "kernel/cycle/boundary/inputs.hpp"
@@ -37,7 +39,7 @@ class RecordWriter final : public cycle::InputTap, public ProgramChangeTap {
   /// Any thread but the cycle's; what take() sees of it later stands behind it in the file.
   void take(const ProgramChange& change) override;
   void take(const plc::LogicChange& change) override;
-  void take_subprogram(std::string_view name, std::string_view text) override;
+  void take_subprogram(int process, std::string_view name, std::string_view text) override;
   /// Blocks until take() is sure to succeed; for virtual time.
   void wait_for_room();
   /// Writes what is queued and closes the file. The error (also: cycles were lost), empty: none.
@@ -99,7 +101,8 @@ class RecordReader final : public cycle::InputSource {
   std::vector<ProgramChange> changes_;
   std::vector<plc::LogicChange> logic_changes_;
   std::vector<std::shared_ptr<ProgramFile>> files_;  ///< of the changes; their models are the machine's
-  std::shared_ptr<std::map<std::string, std::string, std::less<>>> subprograms_;  ///< of the newest file
+  using Texts = std::map<std::string, std::string, std::less<>>;
+  std::array<std::shared_ptr<Texts>, image::kMaxProcesses> subprograms_;  ///< of each process' newest file
   std::unique_ptr<cycle::InputDecoder> decoder_;
   cycle::CycleInputs next_;
   std::int64_t expected_ = 0;  ///< number of the next cycle

@@ -155,6 +155,25 @@ text::Finding foreign(const std::string& letter) {
   return finding;
 }
 
+namespace {
+text::Finding of_process(const text::Entry& entry, int process, std::string other) {
+  text::Finding finding;
+  finding.entry = &entry;
+  finding.arguments = {std::to_string(process), std::move(other)};
+  return finding;
+}
+}  // namespace
+
+text::Finding no_such_process(int process, int processes) {
+  return of_process(texts::kNoSuchProcess, process, std::to_string(processes));
+}
+text::Finding process_not_started(int process, const std::string& program) {
+  return of_process(texts::kProcessNotStarted, process, program);
+}
+text::Finding program_not_found(int process, const std::string& program) {
+  return of_process(texts::kProgramNotFound, process, program);
+}
+
 text::Finding rests_inside() {
   text::Finding finding;
   finding.severity = text::Severity::warning;
@@ -172,12 +191,11 @@ text::Finding cannot_drive(path::Flaw flaw) {
 
 std::optional<text::Finding> not_driven(const program::Command& command) {
   const auto is = [&]<typename What>(const What*) { return std::holds_alternative<What>(command.what); };
-  const char* name = is(static_cast<const program::Thread*>(nullptr))         ? "thread"
-                     : is(static_cast<const program::Probe*>(nullptr))        ? "probe"
-                     : is(static_cast<const program::SpindleMark*>(nullptr))  ? "spindle_mark"
-                     : is(static_cast<const program::ProcessOrder*>(nullptr)) ? "process"
-                     : is(static_cast<const program::InPosition*>(nullptr))   ? "in_position"
-                                                                              : nullptr;
+  const char* name = is(static_cast<const program::Thread*>(nullptr))        ? "thread"
+                     : is(static_cast<const program::Probe*>(nullptr))       ? "probe"
+                     : is(static_cast<const program::SpindleMark*>(nullptr)) ? "spindle_mark"
+                     : is(static_cast<const program::InPosition*>(nullptr))  ? "in_position"
+                                                                             : nullptr;
   if (name == nullptr) return std::nullopt;
   text::Finding finding;
   finding.entry = &texts::kNotDriven;

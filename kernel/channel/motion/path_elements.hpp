@@ -65,6 +65,10 @@ bool is_motion(const program::Command& command);
 const program::Position* destination(const program::Command& command);
 /// Why a motion of an axis of another process is refused; the place is for the caller to fill in.
 text::Finding foreign(const std::string& letter);
+/// Why an order to another process (from 1) is not carried out; the place is for the caller to fill in.
+text::Finding no_such_process(int process, int processes);
+text::Finding process_not_started(int process, const std::string& program);
+text::Finding program_not_found(int process, const std::string& program);
 /// What keeps an element with this flaw from being driven; the place is for the caller to fill in.
 text::Finding cannot_drive(path::Flaw flaw);
 /// The path rests inside a block, see path::Planner::take_unasked_rest().

@@ -7,6 +7,16 @@ namespace servogate::channel::texts {
 inline constexpr text::Entry kNotDriven{"channel.not-driven",
                                         "the command '{0}' cannot be driven by this version",
                                         "команда «{0}» в этой версии не исполняется приводами"};
+inline constexpr text::Entry kNoSuchProcess{
+    "channel.no-such-process", "there is no process {0}: this machine has {1} ([control] processes)",
+    "процесса {0} нет: у этого станка их {1} ([control] processes)"};
+inline constexpr text::Entry kProcessNotStarted{
+    "channel.process-not-started",
+    "process {0} does not start '{1}': `servogate start --process {0}` says what its start lacks",
+    "процесс {0} не пускает «{1}»: чего недостаёт для пуска, говорит `servogate start --process {0}`"};
+inline constexpr text::Entry kProgramNotFound{
+    "channel.program-not-found", "there is no program '{1}' for process {0} in the folder of this program",
+    "программы «{1}» для процесса {0} в папке этой программы нет"};
 inline constexpr text::Entry kForeignAxis{
     "channel.foreign-axis", "{0} belongs to another process: its programs move it",
     "ось {0} принадлежит другому процессу: её перемещают его программы"};

@@ -66,6 +66,10 @@ class ProcessInCycle {
   /// The axis is about to be jogged, which the gate has let pass: while a program is held, it leaves the path
   /// here.
   virtual void leave_path(int /*axis*/, ProcessContext&) noexcept {}
+  /// What its program asks of another process: decided as any request is, before its next cycle, and answered
+  /// at once. True: `request` is set.
+  virtual bool wish(image::Request&) noexcept { return false; }
+  virtual void answered(const image::Answer&) noexcept {}
   /// The program has been ended, and its path is not at rest yet. For any thread.
   virtual bool stopping() const noexcept { return false; }
 };

@@ -74,7 +74,7 @@ constexpr Kinds may_ask(image::Asker asker) noexcept {
     case image::Asker::modbus:
       return kStops | Kinds{set_place};
     case image::Asker::program:
-      return kStops;
+      return kStops | Kinds{start};
     case image::Asker::bench:
       return kStops | kJogs | kResets | kPlaces | Kinds{power, home};
   }

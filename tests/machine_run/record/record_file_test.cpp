@@ -107,7 +107,7 @@ TEST(RecordFile, gives_back_what_was_loaded_with_texts_tables_and_subprograms) {
     using Kind = gateway::ProgramChange::Kind;
     cycle::CycleInputs in;
     writer.take(gateway::ProgramChange{Kind::program, 0, file, {}, {}});
-    writer.take_subprogram("PECK", "N1 G1\nN2\n");
+    writer.take_subprogram(0, "PECK", "N1 G1\nN2\n");
     writer.take(in);
     writer.take(gateway::ProgramChange{Kind::tables, 0, file, tables, {}});
     writer.take(gateway::ProgramChange{Kind::block, 0, {}, {}, "G0 X1 \"2\""});

@@ -20,15 +20,18 @@ program::Interpreter from_its_middle(program::Interpreter fresh, const ProgramRe
 
 }  // namespace
 
+std::optional<program::LoadedProgram> load_for(const ProgramFile& file, std::string_view name,
+                                               ProgramChangeTap* tap) {
+  std::optional<program::LoadedProgram> loaded = file.loader(name);
+  if (loaded && tap != nullptr) tap->take_subprogram(file.process, name, loaded->text);
+  return loaded;
+}
+
 channel::InterpreterFactory interpreter_factory(const ProgramChange& change, ProgramChangeTap* tap) {
   // It shares the file: the program may be replaced while an interpreter of the old one still exists.
   program::ProgramLoader loader = change.file->loader;
   if (tap != nullptr && loader)
-    loader = [file = change.file, tap](std::string_view name) {
-      std::optional<program::LoadedProgram> loaded = file->loader(name);
-      if (loaded) tap->take_subprogram(name, loaded->text);
-      return loaded;
-    };
+    loader = [file = change.file, tap](std::string_view name) { return load_for(*file, name, tap); };
   return [file = change.file, tables = change.tables, loader](const program::Position& start) {
     return program::Interpreter(file->dialect, file->model, tables, file->path.empty() ? "MDI" : file->path,
                                 file->text, loader, start, file->process);

@@ -46,9 +46,12 @@ class ProgramChangeTap {
   virtual ~ProgramChangeTap() = default;
   virtual void take(const ProgramChange& change) = 0;
   virtual void take(const plc::LogicChange& change) = 0;
-  virtual void take_subprogram(std::string_view name, std::string_view text) = 0;
+  virtual void take_subprogram(int process, std::string_view name, std::string_view text) = 0;
 };
 
+/// Another program by its name, as `file` finds it, shown to `tap` (may be nullptr); nullopt: there is none.
+std::optional<program::LoadedProgram> load_for(const ProgramFile& file, std::string_view name,
+                                               ProgramChangeTap* tap);
 /// Constructs interpreters for a change that loads a program; what they read of subprograms is shown to `tap`
 /// (may be nullptr).
 channel::InterpreterFactory interpreter_factory(const ProgramChange& change, ProgramChangeTap* tap);

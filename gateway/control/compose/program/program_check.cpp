@@ -58,6 +58,19 @@ void soften(text::Finding& finding, const text::Entry& why) {
   finding.severity = text::Severity::warning;
 }
 
+/// What keeps an order to another process from being carried out on any day.
+std::optional<text::Finding> not_ordered(const machine::MachineConfig& machine, const ProgramFile& file,
+                                         const program::Command& command) {
+  using Action = program::ProcessOrder::Action;
+  const auto* order = std::get_if<program::ProcessOrder>(&command.what);
+  if (order == nullptr || order->action == Action::release) return std::nullopt;
+  if (order->process > machine.control.processes)
+    return channel::no_such_process(order->process, machine.control.processes);
+  if (order->action == Action::start && !file.loader(order->program))
+    return channel::program_not_found(order->process, order->program);
+  return std::nullopt;
+}
+
 }  // namespace
 
 Start start_after_homing(const machine::MachineConfig& machine) {
@@ -93,6 +106,7 @@ ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramF
           const bool stops = corner->transition == program::Transition::exact_stop;
           if (stops && check.stops++ == 0 && c.file == 0) check.first_stop = c.line;
         }
+        if (auto finding = not_ordered(machine, file, c)) return finding;
         const std::optional<text::Finding> flaw = forecast.take(c);
         const int axis = forecast.foreign_axis(c);
         return axis < 0

@@ -132,6 +132,24 @@ constexpr Entry kUnnamed{
 constexpr std::string_view kCompare[] = {"=", "<>", "<", "<=", ">", ">="};
 constexpr std::string_view kWriters[] = {"nc", "plc", "input", "program"};
 
+/// A wait for another process, which stands in Wait::code from 1 on.
+struct ProcessRow {
+  std::string_view reason;
+  Entry text;
+};
+constexpr ProcessRow kProcessRows[] = {
+    {"process_wait",
+     {"wait.process-wait", "waits until process {0} sends it on", "ждёт, пока её не продолжит процесс {0}"}},
+    {"process_send",
+     {"wait.process-send", "waits until process {0} waits for it",
+      "ждёт, пока процесс {0} не станет её ждать"}},
+    {"process_start",
+     {"wait.process-start", "waits until process {0} is at rest for its next program",
+      "ждёт, пока процесс {0} не освободится для следующей программы"}},
+};
+constexpr Entry kSeeProcess{"wait.see-process", "See in `servogate status` what process {0} does.",
+                            "Что делает процесс {0}, показывает `servogate status`."};
+
 std::string join(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
@@ -165,6 +183,12 @@ bool has_place(WaitReason reason) {
 }
 
 std::string named(const WaitWords& w) { return w.symbol.empty() ? w.place : w.symbol + " (" + w.place + ")"; }
+
+std::string placed(const WaitWords& w, const std::string& happens, text::Language language) {
+  const std::string file = std::filesystem::path(w.file).filename().string();
+  return text::render(w.line > 0 && !file.empty() ? kHere : kSomewhere,
+                      std::array{std::to_string(w.line), file, happens}, language);
+}
 
 /// The place that is waited for, who writes it, and what to do about a signal.
 void describe_place(const machine::MachineConfig& m, const image::ProcessImage& image,
@@ -231,6 +255,17 @@ WaitWords wait_words(Control& control, const image::ProcessImage& image, int pro
   w.since_s = static_cast<double>(wait.since_ns) / 1e9;
   w.for_s = static_cast<double>(image.now.t_ns - wait.since_ns) / 1e9;
   w.word = word_of(wait);
+  if (wait.reason == WaitReason::signal && wait.code > 0) {
+    const ProcessRow& of = kProcessRows[wait.compare == image::Compare::eq   ? 0
+                                        : wait.compare == image::Compare::ne ? 1
+                                                                             : 2];
+    const std::array number{std::to_string(wait.code)};
+    w.reason = of.reason;
+    w.written_by = "program";
+    w.remedy = text::render(kSeeProcess, number, language);
+    w.text = placed(w, text::render(of.text, number, language), language);
+    return w;
+  }
   if (wait.axis >= 0) w.axis = m.axes[static_cast<std::size_t>(wait.axis)].letter;
   if (is_operators(wait.reason)) w.written_by = "operator";
   if (has_place(wait.reason)) describe_place(m, image, wait, language, w);
@@ -242,9 +277,7 @@ WaitWords wait_words(Control& control, const image::ProcessImage& image, int pro
   if (w.remedy.empty())
     w.remedy = text::render(row.remedy, std::array{named(w), std::string(), plc_sources(m), w.word, w.axis},
                             language);
-  const std::string file = std::filesystem::path(w.file).filename().string();
-  w.text = text::render(w.line > 0 && !file.empty() ? kHere : kSomewhere,
-                        std::array{std::to_string(w.line), file, happens}, language);
+  w.text = placed(w, happens, language);
   return w;
 }
 

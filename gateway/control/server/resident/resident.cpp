@@ -16,6 +16,11 @@ namespace {
 constexpr int kAnswerPatience_ms = 2000;
 constexpr int kBlockPatience = 10'000;  ///< commands of a typed block that are looked at before it runs
 
+int lines_of(std::string_view text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n')) +
+         (text.empty() || text.back() == '\n' ? 0 : 1);
+}
+
 }  // namespace
 
 Resident::Resident(Control& control, machine::MachineState state, std::string state_path, double speed)
@@ -26,14 +31,18 @@ Resident::Resident(Control& control, machine::MachineState state, std::string st
       requests_(control.cycle()) {
   seats_.resize(static_cast<std::size_t>(control.machine().control.processes));
   for (int p = 0; p < processes(); ++p) {
-    ProgramFile none;
-    none.process = p;
-    none.dialect = control.machine().control.dialect;
-    none.model = program_model(control.machine(), p);
-    none.loader = program_loader({});
-    seat(p).file = std::make_shared<const ProgramFile>(std::move(none));
+    seat(p).file = no_program(p);
     arm(p, ProgramChange::Kind::program);
   }
+}
+
+std::shared_ptr<const ProgramFile> Resident::no_program(int process) const {
+  auto none = std::make_shared<ProgramFile>();
+  none->process = process;
+  none->dialect = control_.machine().control.dialect;
+  none->model = program_model(control_.machine(), process);
+  none->loader = program_loader({});
+  return none;
 }
 
 RequestDesk::Outcome Resident::ask(const image::Request& request, image::Answer& answer, const Asked& asked) {
@@ -152,9 +161,7 @@ void Resident::read_and_prove(Load& load, const std::stop_token& stop) const {
                                      channel::Forecast::Depth::drivable, stop);
   load.findings.insert(load.findings.end(), check.report.findings.begin(), check.report.findings.end());
   load.blocks = check.report.blocks;
-  const std::string_view text = load.file->text.view();
-  load.lines = static_cast<int>(std::count(text.begin(), text.end(), '\n')) +
-               (text.empty() || text.back() == '\n' ? 0 : 1);
+  load.lines = lines_of(load.file->text.view());
 }
 
 Resident::Load::End Resident::finish(Load& load) {
@@ -421,6 +428,7 @@ std::vector<Work> Resident::look_after() {
   const std::uint32_t now = homed();
   unsaved_ = unsaved_ || (now & ~homed_seen_) != 0;
   homed_seen_ = now;
+  for (int p = 0; p < processes(); ++p) adopt(p);
   bool ended = false;
   for (int p = 0; p < processes(); ++p) {
     const bool busy_now = busy(p);
@@ -434,6 +442,27 @@ std::vector<Work> Resident::look_after() {
   unsaved_ = unsaved_ || ended || tool;
   if (unsaved_ && !saving_ && !state_path_.empty()) works.push_back(save_later());
   return works;
+}
+
+/// What programs have loaded into each other's processes, and unloaded.
+void Resident::adopt(int process) {
+  Seat& s = seat(process);
+  if (const std::shared_ptr<const ProgramFile> given = control_.take_given(process)) {
+    s.file = given;
+    s.refused.clear();
+    s.proven.reset();
+    s.given = state_.tables;
+    const std::string_view text = given->text.view();
+    s.blocks = 0;
+    s.lines = lines_of(text);
+    if (journal_ != nullptr) journal_->loaded(process, s.file->path, s.file->dialect);
+  } else if (control_.unloaded(process) && !busy(process)) {
+    s.file = no_program(process);
+    s.refused.clear();
+    s.proven.reset();
+    s.blocks = s.lines = 0;
+    arm(process, ProgramChange::Kind::program);
+  }
 }
 
 Work Resident::prove_later(Proof proof) {

@@ -212,6 +212,8 @@ class Resident {
   const Seat& seat(int process) const { return seats_[static_cast<std::size_t>(process)]; }
   Seat& seat(int process) { return seats_[static_cast<std::size_t>(process)]; }
   bool arm(int process, ProgramChange::Kind kind);
+  std::shared_ptr<const ProgramFile> no_program(int process) const;
+  void adopt(int process);
   bool read_tables_of(int process, bool also_read);
   void count_cutting();
   /// `process` gets its tables anew even where it has them, -1: all of them.
