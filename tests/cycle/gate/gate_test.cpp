@@ -329,7 +329,9 @@ TEST_F(Gate, decides_on_a_mode_together_with_the_request_that_needs_it) {
 TEST_F(Gate, knows_who_may_ask_for_what) {
   EXPECT_EQ(ask(RequestKind::jog_increment, 0, 1.0, Asker::modbus), Refusal::asker_may_not);
   EXPECT_EQ(english(), "whoever asks here may not ask for `jog`");
-  EXPECT_EQ(ask(RequestKind::start, -1, 0.0, Asker::program), Refusal::asker_may_not);
+  EXPECT_EQ(ask(RequestKind::start, -1, 0.0, Asker::program), Refusal::none) << "in another process";
+  EXPECT_EQ(ask(RequestKind::step, -1, 0.0, Asker::program), Refusal::asker_may_not);
+  EXPECT_EQ(ask(RequestKind::power, -1, 1.0, Asker::program), Refusal::asker_may_not);
   EXPECT_EQ(ask(RequestKind::start, -1, 0.0, Asker::bench), Refusal::asker_may_not);
   EXPECT_EQ(ask_place(RequestKind::force, {}, Asker::pendant), Refusal::asker_may_not);
   EXPECT_EQ(ask_place(RequestKind::force, {}, Asker::plc), Refusal::asker_may_not);
