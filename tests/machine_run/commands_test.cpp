@@ -184,6 +184,16 @@ TEST(Check, says_the_time_that_the_motion_of_a_run_takes_within_a_hundredth) {
   }
 }
 
+TEST(Run, turns_a_shaft_in_the_language_of_a_Fenix_and_leaves_the_axes_where_it_ends) {
+  const Scratch scratch;
+  const Ending ran =
+      servogate({"run", source("examples/fenix-shaft/machine.toml"), source("examples/fenix-shaft/shaft.nc"),
+                 "--tables", source("examples/fenix-shaft/tables"), "--virtual", "--trace",
+                 scratch.path("t.csv"), "-q"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_GT(seconds_of_motion(TraceFile(scratch.path("t.csv")), {"X", "Z"}), 300.0);
+}
+
 TEST(Canon, prints_one_object_a_line_with_command_and_line) {
   const Ending e = servogate({"canon", mill_file(), source("examples/mill/bracket.nc")});
   ASSERT_EQ(e.code, 0) << e.err;

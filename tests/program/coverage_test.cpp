@@ -10,13 +10,22 @@
 #include "tests/places/places.hpp"
 #include "tests/program/case_judge.hpp"
 
-/// docs/coverage/nc110.md: what of the language is proved, made from a run of the cases that name its rows.
+/// docs/coverage/: what of a language is proved, made from a run of the cases that name its rows.
 namespace servogate::program::tests {
 namespace {
 
 const std::string kTree = servogate::tests::source_dir();
-const std::string kRows = kTree + "/tests/program/nc110/rows.txt";
-const std::string kDocument = kTree + "/docs/coverage/nc110.md";
+
+/// A language whose checklist is complete.
+struct Checklist {
+  const char* name;   ///< folder of its cases, and of the page
+  const char* title;  ///< as people write it
+  std::size_t rows;
+};
+constexpr Checklist kChecklists[] = {{"nc110", "NC-110", 284 + 202}, {"fenix", "Fenix", 159}};
+
+std::string folder_of(const Checklist& list) { return kTree + "/tests/program/" + list.name; }
+std::string page_of(const Checklist& list) { return kTree + "/docs/coverage/" + list.name + ".md"; }
 constexpr std::size_t kTestsNamed = 3;
 
 /// One row of the checklist: `A22 | feature | test: FILE Suite.name | waits: WHAT`.
@@ -52,9 +61,9 @@ bool stands(const std::string& test) {
   return false;
 }
 
-std::vector<Row> read_rows() {
+std::vector<Row> read_rows(const Checklist& list) {
   std::vector<Row> rows;
-  std::ifstream in(kRows);
+  std::ifstream in(folder_of(list) + "/rows.txt");
   for (std::string line; std::getline(in, line);) {
     std::istringstream fields(line);
     Row row;
@@ -88,7 +97,7 @@ std::string state_of(const Row& row) {
   return row.waits.empty() ? "pass" : "waits: " + row.waits;
 }
 
-std::string document(const std::vector<Row>& rows) {
+std::string document(const Checklist& list, const std::vector<Row>& rows) {
   std::map<std::string, int> count;
   std::string table;
   for (const Row& row : rows) {
@@ -97,11 +106,14 @@ std::string document(const std::vector<Row>& rows) {
     table += "| " + row.number + " | " + row.feature + " | " + tests_of(row) + " | " + state + " |\n";
   }
   std::string out =
-      "# NC-110: what is proved\n\n"
+      "# " + std::string(list.title) +
+      ": what is proved\n\n"
       "Made by the run of `tests/program` (`SERVOGATE_UPDATE=1 build/release/tests/program/test_program "
-      "--gtest_filter=Coverage.*`);\n"
+      "--gtest_filter=*Coverage.*`);\n"
       "do not edit. A row is a feature of the programmer's manual. A name alone is a file of "
-      "`tests/program/nc110` (without `.test`),\n"
+      "`tests/program/" +
+      list.name +
+      "` (without `.test`),\n"
       "which was run for this page; a path is a test of another room, which that room runs. `fail`: no test "
       "proves the row.\n\n";
   out += "pass " + std::to_string(count["pass"]) + ", waits " + std::to_string(count["wait"]) + ", fail " +
@@ -109,31 +121,36 @@ std::string document(const std::vector<Row>& rows) {
   return out + "| # | feature | test | pass |\n|---|---|---|---|\n" + table;
 }
 
-TEST(Coverage, the_page_says_what_the_cases_prove) {
-  std::vector<Row> rows = read_rows();
-  ASSERT_EQ(rows.size(), 284u + 202u);
+class Coverage : public ::testing::TestWithParam<Checklist> {};
+INSTANTIATE_TEST_SUITE_P(Languages, Coverage, ::testing::ValuesIn(kChecklists),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+TEST_P(Coverage, of_a_language_is_a_page_that_says_what_its_cases_prove) {
+  const Checklist& list = GetParam();
+  std::vector<Row> rows = read_rows(list);
+  ASSERT_EQ(rows.size(), list.rows);
   std::map<std::string, Row*> by_number;
   for (Row& row : rows) by_number[row.number] = &row;
   ASSERT_EQ(by_number.size(), rows.size());
-  const std::string folder = kTree + "/tests/program/nc110";
-  for (const std::string& path : case_paths(folder)) {
+  for (const std::string& path : case_paths(folder_of(list))) {
     const CaseFile c = read_case(path);
     if (c.rows.empty()) continue;
     const bool passes = failures_of(c).empty();
-    const std::string name = std::filesystem::relative(path, folder).replace_extension().string();
+    const std::string name = std::filesystem::relative(path, folder_of(list)).replace_extension().string();
     for (const std::string& number : c.rows) {
       ASSERT_TRUE(by_number.contains(number)) << path << ": no row " << number;
       by_number[number]->tests.push_back(name);
       by_number[number]->passes = by_number[number]->passes && passes;
     }
   }
-  const std::string made = document(rows);
-  if (std::getenv("SERVOGATE_UPDATE") != nullptr) std::ofstream(kDocument) << made;
-  EXPECT_TRUE(made == content_of(kDocument)) << kDocument << ": SERVOGATE_UPDATE=1 writes the page anew";
+  const std::string made = document(list, rows);
+  if (std::getenv("SERVOGATE_UPDATE") != nullptr) std::ofstream(page_of(list)) << made;
+  EXPECT_TRUE(made == content_of(page_of(list)))
+      << page_of(list) << ": SERVOGATE_UPDATE=1 writes the page anew";
 }
 
-TEST(Coverage, tests_of_other_rooms_that_rows_name_stand_in_the_tree) {
-  for (const Row& row : read_rows())
+TEST_P(Coverage, names_tests_of_other_rooms_that_stand_in_the_tree) {
+  for (const Row& row : read_rows(GetParam()))
     EXPECT_TRUE(row.passes) << row.number << ": a test that it names does not stand in its file";
 }
 

@@ -7,6 +7,7 @@
 
 #include "kernel/program/check/canon.hpp"
 #include "kernel/program/faults/texts.hpp"
+#include "kernel/program/languages/fenix/faults.hpp"
 #include "kernel/program/languages/languages.hpp"
 #include "kernel/program/languages/nc110/faults/texts.hpp"
 #include "tests/program/case_file.hpp"
@@ -222,6 +223,7 @@ TEST(Messages, have_both_languages_and_the_same_placeholders) {
   std::set<std::string_view> ids;
   std::vector<text::Entry> all(messages().begin(), messages().end());
   all.insert(all.end(), nc110::messages().begin(), nc110::messages().end());
+  all.insert(all.end(), fenix::messages().begin(), fenix::messages().end());
   for (const text::Entry& message : all) {
     EXPECT_TRUE(ids.insert(message.id).second) << message.id;
     EXPECT_FALSE(message.english.empty()) << message.id;

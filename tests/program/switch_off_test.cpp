@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernel/program/execution/execution.hpp"
+#include "kernel/program/languages/fenix/fenix.hpp"
 #include "kernel/program/languages/nc110/nc110.hpp"
 #include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
@@ -20,8 +21,8 @@ constexpr int kMostSteps = 20'000;
 /// The language without one of its words: G41, M5, u, TMR or SIN.
 class Language {
  public:
-  explicit Language(const std::string& without)
-      : dialect_(nc110::dialect()),
+  Language(const Dialect& base, const std::string& without)
+      : dialect_(base),
         g_(dialect_.g.begin(), dialect_.g.end()),
         m_(dialect_.m.begin(), dialect_.m.end()),
         variables_(dialect_.variables.begin(), dialect_.variables.end()) {
@@ -97,20 +98,42 @@ constexpr Switch kSwitches[] = {
     {"A199", "G35"},
 };
 
-TEST(SwitchedOff, a_word_of_the_language_changes_the_outcome_of_a_case_that_proves_its_row) {
+constexpr Switch kFenixSwitches[] = {
+    {"63", "G0"},    {"64", "G1"},    {"66", "G2"},    {"68", "G3"},    {"71", "G4"},    {"72", "G9"},
+    {"73", "G26"},   {"74", "G27"},   {"75", "G30"},   {"84", "G31"},   {"85", "G32"},   {"78", "G45"},
+    {"79", "G46"},   {"80", "G50"},   {"81", "G54"},   {"82", "G510"},  {"90", "G67"},   {"91", "G68"},
+    {"120", "G70"},  {"121", "G71"},  {"122", "G72"},  {"123", "G73"},  {"124", "G74"},  {"125", "G75"},
+    {"126", "G77"},  {"127", "G78"},  {"130", "G81"},  {"131", "G810"}, {"132", "G811"}, {"133", "G812"},
+    {"134", "G820"}, {"135", "G821"}, {"136", "G822"}, {"137", "G823"}, {"138", "G824"}, {"139", "G825"},
+    {"140", "G826"}, {"92", "G90"},   {"93", "G91"},   {"94", "G94"},   {"96", "G96"},   {"97", "G97"},
+    {"99", "M0"},    {"100", "M2"},   {"101", "M30"},  {"102", "M3"},   {"103", "M4"},   {"104", "M5"},
+    {"108", "M10"},  {"109", "M17"},  {"110", "M19"},  {"111", "M20"},  {"26", "SIN"},   {"27", "COS"},
+    {"29", "ASIN"},  {"30", "ACOS"},  {"31", "ATAN"},  {"32", "LN"},    {"33", "LG"},    {"34", "PW"},
+    {"36", "R"},     {"59", "L"},     {"61", "H"},     {"53", "~"},     {"52", "$"},
+};
+
+void judge(const Dialect& dialect, const std::string& folder, std::span<const Switch> switches) {
   std::map<std::string, std::vector<CaseFile>> cases;
-  for (const std::string& path : case_paths(servogate::tests::source_dir() + "/tests/program/nc110")) {
+  for (const std::string& path : case_paths(servogate::tests::source_dir() + folder)) {
     const CaseFile c = read_case(path);
     for (const std::string& row : c.rows) cases[row].push_back(c);
   }
-  const Language whole("");
-  for (const Switch& off : kSwitches) {
-    const Language language(off.word);
+  const Language whole(dialect, "");
+  for (const Switch& off : switches) {
+    const Language language(dialect, off.word);
     bool seen = false;
     for (const CaseFile& c : cases[off.row])
       seen = seen || outcome(c, whole.dialect()) != outcome(c, language.dialect());
     EXPECT_TRUE(seen) << "no case of " << off.row << " sees that " << off.word << " is off";
   }
+}
+
+TEST(SwitchedOff, a_word_of_the_language_changes_the_outcome_of_a_case_that_proves_its_row) {
+  judge(nc110::dialect(), "/tests/program/nc110", kSwitches);
+}
+
+TEST(SwitchedOff, a_word_of_Fenix_changes_the_outcome_of_a_case_that_proves_its_row) {
+  judge(fenix::dialect(), "/tests/program/fenix", kFenixSwitches);
 }
 
 }  // namespace

@@ -147,8 +147,7 @@ class Execution : public ValueSource {
   void power_on_value(const std::string& name, double value);
   void check_index(const std::string& name, double value) const;
 
-  // words.cpp
-  void run_words();
+  // gather.cpp
   BlockWords gather();
   void evaluate_words(Word& word);
   void gather_word(BlockWords& words, const Word& word);
@@ -156,9 +155,12 @@ class Execution : public ValueSource {
   void gather_centre(BlockWords& words, const Word& word) const;
   void gather_statement(BlockWords& words, const Word& word);
   void gather_own(BlockWords& words, const Word& word);
+  void check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const;
+
+  // words.cpp
+  void run_words();
   void take_g(BlockWords& words, const GRule& rule);
   void return_modes(const BlockWords& words, const Modes& before);
-  void check_parameter_g(const std::vector<const GRule*>& rules, const Word& last) const;
   void run_cycle_block(const BlockWords& words);
   bool begin_contour(const BlockWords& words, const Modes& before);
   void refuse_in_contour(const BlockWords& words) const;

@@ -24,6 +24,14 @@ SpindleMode mode_of(MAction action) {
   }
 }
 
+/// A reversal depends on how the spindle turns; keep: it is none of the spindle's, or it stands.
+SpindleMode ordered(MAction action, SpindleMode now) {
+  if (action != MAction::spindle_reverse) return mode_of(action);
+  return now == SpindleMode::cw    ? SpindleMode::ccw
+         : now == SpindleMode::ccw ? SpindleMode::cw
+                                   : SpindleMode::keep;
+}
+
 }  // namespace
 
 /// T, then the spindle, then the M functions of the class "start of motion" in the order written, then H.
@@ -33,7 +41,9 @@ void Execution::before_motion(const BlockWords& words) {
   const Word* start_word = nullptr;
   for (int i = 0; i < words.m_count; ++i) {
     const MRule* rule = dialect_.find_m(words.m_code[static_cast<std::size_t>(i)]);
-    if (rule == nullptr || rule->after_motion || mode_of(rule->action) == SpindleMode::keep) continue;
+    if (rule == nullptr || rule->after_motion ||
+        ordered(rule->action, state_.motion.spindle) == SpindleMode::keep)
+      continue;
     if (start != nullptr)
       fail(Fault::spindle_conflict, words.m[static_cast<std::size_t>(i)]->column,
            {std::to_string(start->code), std::to_string(rule->code)});
@@ -115,10 +125,12 @@ void Execution::spindle_word(const BlockWords& words, const MRule* start, const 
   if (turns) capability_.check_start(*start_word);
   if (words.speed != nullptr || turns)
     capability_.check_speed(words.speed != nullptr ? *words.speed : *start_word);
-  if (start != nullptr)
-    motion_.turn_spindle(mode_of(start->action));
-  else if (words.speed != nullptr ||
-           (!state_.motion.speed_told && state_.motion.spindle != SpindleMode::stop))
+  if (start != nullptr) {
+    const SpindleMode mode = ordered(start->action, state_.motion.spindle);
+    if (start->action == MAction::spindle_reverse) motion_.turn_spindle(SpindleMode::stop);
+    motion_.turn_spindle(mode);
+  } else if (words.speed != nullptr ||
+             (!state_.motion.speed_told && state_.motion.spindle != SpindleMode::stop))
     motion_.turn_spindle(state_.motion.spindle);
 }
 
@@ -155,7 +167,10 @@ void Execution::end_function(int code, const MRule* rule, int column) {
   if (program_end && !state_.flow.calls.empty())
     fail(Fault::end_in_subprogram, column,
          {std::to_string(code), flow_.names()[static_cast<std::size_t>(flow_.file())]});
-  if (rule->action == MAction::spindle_stop) motion_.turn_spindle(SpindleMode::stop);
+  if (rule->action == MAction::spindle_orient && machine_.spindles == 0)
+    fail(Fault::no_spindle, column, {"M" + std::to_string(code)});
+  if (rule->action == MAction::spindle_stop || rule->action == MAction::spindle_orient)
+    motion_.turn_spindle(mode_of(rule->action));
   emit(MFunction{code, true});
   switch (rule->action) {
     case MAction::stop:

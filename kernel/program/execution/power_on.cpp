@@ -98,6 +98,7 @@ void Execution::power_on_mode(std::size_t index) {
   BlockWords none;
   none.block = &block_;
   take_g(none, *rule);
+  if (rule->take != nullptr) rule->take(*this, none, Word{});
 }
 
 /// Positions in a turn of a rotary axis, which the model has taken already.

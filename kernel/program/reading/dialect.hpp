@@ -102,8 +102,9 @@ enum class Function : std::uint8_t {
   metric,
   absolute,
   incremental,
-  diameter,  ///< words of a diameter axis count as diameters ...
-  radius,    ///< ... or as radii
+  diameter,           ///< words of a diameter axis count as diameters ...
+  diameter_absolute,  ///< ... or only those of absolute dimensions ...
+  radius,             ///< ... or none
   machine_zero,
   work_offset,  ///< GRule::value: number of the origin
   dwell,
@@ -137,6 +138,8 @@ struct GRule {
   Function then = Function::nothing;  ///< mode in force behind the block; nothing: this one
   std::int16_t value = 0;
   void (*motion)(Execution&, const BlockWords&) = nullptr;  ///< of Function::own
+  /// Behind the mode that it sets, with the arguments that only such a word takes; null: nothing.
+  void (*take)(Execution&, BlockWords&, const Word&) = nullptr;
 };
 
 /// What the control itself does with an M word, beside handing it to the PLC.
@@ -150,6 +153,7 @@ enum class MAction : std::uint8_t {
   spindle_ccw,
   spindle_stop,
   spindle_orient,
+  spindle_reverse,  ///< stops it and turns it the other way; nothing where it stands
   tool_change,
   subprogram_end,  ///< not handed to the PLC
   repeat_end,      ///< not handed to the PLC
@@ -253,6 +257,8 @@ struct Dialect {
   Function corner = Function::corner_limited;  ///< at power-on, where no G word says another
   ToolChange tool_change = ToolChange::by_function;
   bool end_returns = false;          ///< the end of the program returns from a subprogram
+  bool origins_exist = false;        ///< all of them, 0 where the table has no row
+  bool standing_is_error = false;    ///< a feed per revolution while the spindle stands; otherwise a warning
   bool subprogram_end_ends = false;  ///< the end of a subprogram ends the main program
   std::size_t max_block_characters;
   std::size_t max_label_characters;

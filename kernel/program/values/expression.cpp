@@ -90,12 +90,28 @@ class Reader {
       const Decimal number = read_decimal(line_, pos_);
       if (number.length == 0) fail(Fault::number_bad, column());
       pos_ += number.length;
-      return number.value;
+      return number.value * power_of_ten();
     }
     double value = 1.0;
     if (c != '\0' && language_.variable(line_, pos_, source_, value)) return value;
     if (!(language_.any_case ? is_letter(c) : is_capital(c))) fail(Fault::expression_expected, column());
     return named();
+  }
+
+  /// What stands behind a number as its power of ten.
+  double power_of_ten() {
+    constexpr int kMost = 300;
+    const std::string_view sign = language_.exponent;
+    if (sign.empty() || pos_ + sign.size() > line_.size()) return 1.0;
+    for (std::size_t i = 0; i < sign.size(); ++i)
+      if (capital(line_[pos_ + i]) != sign[i]) return 1.0;
+    std::size_t at = pos_ + sign.size();
+    const bool minus = at < line_.size() && line_[at] == '-';
+    if (minus || (at < line_.size() && line_[at] == '+')) ++at;
+    const int power = read_index(line_, at);
+    if (power < 0 || power > kMost) fail(Fault::number_bad, column());
+    pos_ = at;
+    return std::pow(10.0, minus ? -power : power);
   }
 
   double named() {

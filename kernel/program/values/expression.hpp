@@ -36,7 +36,8 @@ struct Expressions {
   std::span<const OperatorRow> operators;  ///< a sign that begins with another one stands before it
   std::span<const FunctionRow> functions;
   std::span<const std::string_view> later;  ///< functions and variables that this version does not evaluate
-  bool any_case = false;                    ///< small letters are as capitals in names of functions
+  std::string_view exponent = {};  ///< between a number and its power of ten, as EX in 2EX-1; empty: none
+  bool any_case = false;           ///< small letters are as capitals in names of functions
   /// Reads a variable at `pos` and moves behind it; false: none stands there. `source` null: its form only,
   /// value 1.
   bool (*variable)(std::string_view line, std::size_t& pos, const ValueSource* source, double& value);

@@ -70,18 +70,18 @@ double least_seconds(const Command& command, const Position& from, const Positio
   return 0.5;
 }
 
-std::optional<Plan> plan_of(const program::tests::CaseFile& c, const program::MachineModel& model,
-                            const Position& start) {
+std::optional<Plan> plan_of(const std::string& language, const program::tests::CaseFile& c,
+                            const program::MachineModel& model, const Position& start) {
   const program::ProgramLoader none;
   if (!c.subprograms.empty()) return std::nullopt;
   const program::CheckReport report =
-      program::check_program("nc110", model, {}, "p.nc", c.program, none, start);
+      program::check_program(language, model, {}, "p.nc", c.program, none, start);
   if (!report.findings.empty() || !report.finished) return std::nullopt;
   Plan plan;
   Position at = start;
   double seconds = 0.0;
   bool good = true;
-  program::Interpreter interpreter("nc110", model, {}, "p.nc", c.program, none, start);
+  program::Interpreter interpreter(language, model, {}, "p.nc", c.program, none, start);
   const auto on_command = [&](const Command& command) {
     good = good && !cannot_run(command);
     Position to = at;
@@ -121,7 +121,8 @@ double from_way(const Position& p, const Position& a, const Position& b, std::si
 }
 
 /// How many of the cases ran on this machine.
-int run_all(const std::string& example, const std::string& axes_of_cases, std::set<std::string>& done) {
+int run_all(const std::string& example, const std::string& language, const std::string& axes_of_cases,
+            std::set<std::string>& done) {
   const machine::LoadResult loaded = machine::load(source("examples/" + example + "/machine.toml"));
   Mill mill(loaded, "");
   const program::MachineModel model = gateway::program_model(loaded.machine, 0);
@@ -137,17 +138,17 @@ int run_all(const std::string& example, const std::string& axes_of_cases, std::s
   };
   int count = 0;
   for (const std::string& path :
-       program::tests::case_paths(servogate::tests::source_dir() + "/tests/program/nc110")) {
+       program::tests::case_paths(servogate::tests::source_dir() + "/tests/program/" + language)) {
     const program::tests::CaseFile c = program::tests::read_case(path);
     std::string letters;
     for (const auto& axis : c.machine.axes) letters += axis.letter + (axis.diameter ? "d" : "");
     if (letters != axes_of_cases || !c.errors.empty() || !c.findings.empty() || count == kMostPrograms)
       continue;
     const Position start = here();
-    const auto plan = plan_of(c, model, start);
+    const auto plan = plan_of(language, c, model, start);
     if (!plan) continue;
     mill.control().process(0).load([&](const Position& at) {
-      return program::Interpreter("nc110", model, {}, c.name + ".nc", c.program, {}, at);
+      return program::Interpreter(language, model, {}, c.name + ".nc", c.program, {}, at);
     });
     const auto free = [&] {
       return mill.standing() &&
@@ -184,10 +185,17 @@ int run_all(const std::string& example, const std::string& axes_of_cases, std::s
 
 TEST(ProgramRuns, of_sixty_cases_lead_the_set_points_of_mill_and_lathe_by_every_place_within_the_limits) {
   std::set<std::string> done;
-  const int mill = run_all("mill", "XYZ", done), lathe = run_all("lathe", "XdZ", done);
+  const int mill = run_all("mill", "nc110", "XYZ", done), lathe = run_all("lathe", "nc110", "XdZ", done);
   std::printf("%d programs on the mill, %d on the lathe, %zu different\n", mill, lathe, done.size());
   EXPECT_GE(done.size(), 60u);
   EXPECT_GE(lathe, 6);
+}
+
+TEST(ProgramRuns, of_Fenix_lead_the_set_points_of_its_lathe_by_every_place_within_the_limits) {
+  std::set<std::string> done;
+  const int lathe = run_all("fenix-shaft", "fenix", "XdZ", done);
+  std::printf("%d programs of Fenix\n", lathe);
+  EXPECT_GE(lathe, 10);
 }
 
 }  // namespace

@@ -159,8 +159,10 @@ double Capability::path_speed(const Feed& feed, double length, const Position& t
 void Capability::check_turning(const Feed& feed) {
   const bool turns = motion_.spindle == SpindleMode::cw || motion_.spindle == SpindleMode::ccw;
   if (feed.unit != FeedUnit::mm_per_rev || turns || warnings_.standing_told) return;
+  const int column = static_cast<int>(block_.body) + 1;
+  if (dialect_.standing_is_error) fail(Fault::spindle_stands, column);
   warnings_.standing_told = true;
-  Written place = written(static_cast<int>(block_.body) + 1);
+  Written place = written(column);
   warn(place, Fault::spindle_stands, {});
 }
 

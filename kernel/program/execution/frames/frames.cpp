@@ -125,7 +125,7 @@ void Frames::need_plane(int column) const {
 
 void Frames::use_origin(int number, int column) {
   const auto& origins = state_.tables->origins;
-  if (number != 0 && !origins.contains(number)) {
+  if (number != 0 && !origins.contains(number) && !dialect_.origins_exist) {
     std::string known = "0";
     for (const auto& [other, values] : origins)
       if (other != 0) known += ", " + std::to_string(other);
@@ -144,6 +144,7 @@ double Frames::tool_radius() const {
 }
 
 void Frames::use_lengths(int row) {
+  if (state_.lengths_off) row = 0;
   state_.active_corrector = row;
   const auto& correctors = state_.tables->correctors;
   const auto entry = correctors.find(row);

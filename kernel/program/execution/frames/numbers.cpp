@@ -38,6 +38,12 @@ void Numbers::refuse_range(std::string_view word, const Value& value, double num
   fail(Fault::out_of_range, value.column, {std::move(named), text::number(number), least, most});
 }
 
+bool Numbers::as_diameter(const Value& value) const noexcept {
+  if (modes_.across != Function::diameter_absolute) return modes_.across == Function::diameter;
+  return value.dimension == Dimension::as_modes ? modes_.dimension == Function::absolute
+                                                : value.dimension == Dimension::absolute;
+}
+
 double Numbers::length(int axis, const Value& value, bool halve) const {
   double number = resolve(value);
   const MachineModel::Axis& a = machine_.axes[static_cast<std::size_t>(axis)];
@@ -45,7 +51,7 @@ double Numbers::length(int axis, const Value& value, bool halve) const {
   const double steps = a.rotary ? resolution_ * 10.0 : resolution_;
   if (steps != 0.0) number = std::nearbyint(number * steps) / steps;
   number *= unit_factor(axis);
-  return halve && a.diameter && modes_.across == Function::diameter ? number / 2.0 : number;
+  return halve && a.diameter && as_diameter(value) ? number / 2.0 : number;
 }
 
 }  // namespace servogate::program

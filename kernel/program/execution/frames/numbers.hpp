@@ -27,6 +27,7 @@ class Numbers {
   double unit_factor(int axis) const noexcept;
 
  private:
+  bool as_diameter(const Value& value) const noexcept;
   const Dialect& dialect_;
   const MachineModel& machine_;
   const Modes& modes_;

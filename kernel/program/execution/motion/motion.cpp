@@ -179,18 +179,64 @@ void Motion::tap(int axis, double programmed, double lead) {
   thread(cut);
 }
 
-void Motion::go(int axis, double programmed, bool at_rapid, double share) {
-  if (std::abs(at_.programmed[at(axis)] - programmed) < 1e-9) return;
-  const Position to = along(axis, programmed);
+/// Where several axes go together.
+Position Motion::along(const Position& programmed) {
+  std::array<bool, image::kMaxAxes> moved{};
+  for (int a = 0; a < machine_.axis_count(); ++a) {
+    moved[at(a)] = std::abs(at_.programmed[at(a)] - programmed[at(a)]) >= 1e-9;
+    if (moved[at(a)]) at_.programmed[at(a)] = programmed[at(a)];
+  }
+  bool turned = false;
+  for (int a = 0; a < machine_.axis_count(); ++a) turned = turned || (moved[at(a)] && !at_.frame.separate(a));
+  Position to = at_.machine;
+  for (int a = 0; a < machine_.axis_count(); ++a) {
+    if (!moved[at(a)] && !(turned && (a == at_.axis1 || a == at_.axis2))) continue;
+    to[at(a)] = at_.frame.to_machine(at_.programmed, a);
+    frames_.check_axis(a, to[at(a)], column_of(block_, a));
+  }
+  if (at_.zones_active) frames_.check_zones(at_.machine, to, here());
+  return to;
+}
+
+void Motion::straight(const Position& to, bool at_rapid, double share, bool rotary) {
   if (at_rapid) {
     output_.emit(Rapid{to});
   } else {
-    Line line{to, feed_of(BlockWords{}, 0.0, machine_.rotary(axis)), CornerRule{}};
+    Line line{to, feed_of(BlockWords{}, 0.0, rotary), CornerRule{}};
     line.feed.value *= share;
     capability_.check_line(BlockWords{}, line);
     output_.emit(line);
   }
   at_.machine = to;
+}
+
+void Motion::go(int axis, double programmed, bool at_rapid, double share) {
+  if (std::abs(at_.programmed[at(axis)] - programmed) < 1e-9) return;
+  straight(along(axis, programmed), at_rapid, share, machine_.rotary(axis));
+}
+
+void Motion::go(const Position& programmed, bool at_rapid) {
+  const Position to = along(programmed);
+  if (to != at_.machine) straight(to, at_rapid, 1.0, false);
+}
+
+void Motion::rapid_to(const Position& to) {
+  for (int a = 0; a < machine_.axis_count(); ++a)
+    if (to[at(a)] != at_.machine[at(a)]) frames_.check_axis(a, to[at(a)], column_of(block_, a));
+  if (at_.zones_active) frames_.check_zones(at_.machine, to, here());
+  end_profile();
+  contour_.drop();
+  output_.emit(Rapid{to});
+  at_.machine = to;
+  for (int a = 0; a < machine_.axis_count(); ++a) at_.programmed[at(a)] = at_.frame.to_programmed(to, a);
+}
+
+void Motion::thread(const Position& programmed, double lead, double start_angle_deg) {
+  Thread cut;
+  cut.to = along(programmed);
+  cut.lead = lead;
+  cut.start_angle_deg = start_angle_deg;
+  thread(cut);
 }
 
 void Motion::line(const BlockWords& words, const Position& to) {
@@ -258,7 +304,7 @@ void Motion::store_feed(const BlockWords& words) {
   if (modes_.feed == Function::feed_inverse) return;
   state_.feed = value;
   state_.feed_at = capability_.written(words.feed->column);
-  state_.feed_inch = modes_.unit == Function::inch;
+  state_.feed_inch = modes_.unit == Function::inch && !state_.feed_metric;
 }
 
 /// What the block asks for is checked in a dry run, too.
@@ -311,6 +357,7 @@ void Motion::turn_spindle(SpindleMode mode, double share) {
   spindle.mode = mode;
   spindle.speed = modes_.speed * share;
   spindle.surface_speed = modes_.cutting;
+  if (spindle.surface_speed) spindle.limit_rpm = state_.limit_rpm;
   if (spindle.surface_speed && capability_.surface_axis() >= 0)
     spindle.center = at_.frame.length(capability_.surface_axis());
   output_.emit(spindle);

@@ -40,6 +40,10 @@ class Motion {
   /// already.
   /// `share` of that feed.
   void go(int axis, double programmed, bool rapid, double share = 1.0);
+  /// Axes to programmed coordinates; those that stand there already do not move.
+  void go(const Position& programmed, bool rapid);
+  /// To machine coordinates.
+  void rapid_to(const Position& machine);
   /// One axis by the turns of the spindle.
   void tap(int axis, double programmed, double lead);
   void dwell(double seconds);
@@ -52,6 +56,8 @@ class Motion {
   Position target_of(const BlockWords& words);
   /// A motion by the turns of the spindle.
   void thread(const Thread& thread);
+  /// The same to programmed coordinates.
+  void thread(const Position& programmed, double lead, double start_angle_deg);
   /// With a share of the speed in force.
   void turn_spindle(SpindleMode mode, double share = 1.0);
   /// F, which stays in force where it is no matter of its block.
@@ -61,6 +67,8 @@ class Motion {
 
  private:
   Position along(int axis, double programmed);
+  Position along(const Position& programmed);
+  void straight(const Position& to, bool rapid, double share, bool rotary);
   void add_factor(const BlockWords& words, int axis);
   void check_factors(const BlockWords& words) const;
   template <typename What>

@@ -116,6 +116,7 @@ struct FramesState {
   std::int32_t tool = 0;  ///< last T word
   std::int32_t corrector = 0;
   std::int32_t active_corrector = 0;  ///< whose lengths and radius are in force
+  bool lengths_off = false;           ///< those of no corrector, until the program says otherwise
   std::shared_ptr<const Tables> tables;
   std::array<ProtectedZone, 3> zones{};
   bool zones_active = false;
@@ -125,11 +126,13 @@ struct FramesState {
 struct MotionState {
   double feed = 0.0;  ///< F as programmed, 0: never
   bool feed_inch = false;
+  bool feed_metric = false;  ///< an inch mode in force is one of lengths only
   Written feed_at;
   bool speed_told = true;  ///< the machine knows the speed of `modes`
   Written speed_at;
   SpindleMode spindle = SpindleMode::stop;
-  double dwell = 0.0;  ///< set by a variable, s or revolutions
+  double limit_rpm = 0.0;  ///< of a cutting speed, 0: none
+  double dwell = 0.0;      ///< set by a variable, s or revolutions
   double corner_error_mm = 0.0;
   double max_angle_deg = 0.0;  ///< a sharper corner stops
   double allowance = 0.0;      ///< mm

@@ -112,7 +112,15 @@ double system_value(const Execution& run, int number, int column) {
       return state.frames.programmed[i] * (diameter ? 2.0 : 1.0);
     }
     case 29:
-      return 0.0;  // chips are not broken: G67 is not executed
+      return chips(state).on ? 1.0 : 0.0;
+    case 30:
+      return chips(state).pass;
+    case 31:
+      return chips(state).back;
+    case 32:
+      return chips(state).last ? 1.0 : 0.0;
+    case 33:
+      return chips(state).dwell_s * 1000.0;
     default:
       fail(Fault::not_executed, column, {"$" + std::to_string(number)});
   }

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "kernel/program/cycles/boring.hpp"
 #include "kernel/program/reading/dialect.hpp"
+
+namespace servogate::program {
+struct State;
+}
 
 namespace servogate::program::fenix {
 
@@ -23,6 +28,34 @@ void judge(const Judgement& reading, const Block& block);
 void call_cycle(Execution& run, const BlockWords& words);
 /// G4
 void dwell(Execution& run, const BlockWords& words);
+
+/// Places in State::own.
+enum class Own { breaks, break_last, pass, pass_set, back, dwell, least_rpm };
+
+// angles.cpp; source: specification 7
+void take_line(Execution& run, BlockWords& words, const Word& word);
+void take_arc(Execution& run, BlockWords& words, const Word& word);
+
+// modes.cpp; source: specification 10, 11, 14, 15
+/// As G67 and G68 left them.
+ChipBreaking chips(const State& state);
+void break_chips(Execution& run, BlockWords& words, const Word& word);
+void keep_chips(Execution& run, BlockWords& words, const Word& word);
+void cutting_speed(Execution& run, BlockWords& words, const Word& word);
+void feed_per_minute(Execution& run, BlockWords& words, const Word& word);
+void corrector_on(Execution& run, BlockWords& words, const Word& word);
+void corrector_off(Execution& run, BlockWords& words, const Word& word);
+/// P404, the clearance of cycles in mm, and P2622, by how many per cent the spindle may be off.
+void clearance(Execution& run, double value, int index, int column);
+void deviation(Execution& run, double value, int index, int column);
+/// G30
+void home(Execution& run, const BlockWords& words);
+
+// turning.cpp, holes.cpp, threads.cpp; source: specification 13, 17 to 20
+void turning(Execution& run, const BlockWords& words);
+void holes(Execution& run, const BlockWords& words);
+void thread_once(Execution& run, const BlockWords& words);
+void thread_passes(Execution& run, const BlockWords& words);
 
 // expressions.cpp; source: specification 4
 Expressions expressions();

@@ -78,6 +78,7 @@ Expressions expressions() {
   return {.operators = kOperators,
           .functions = kFunctions,
           .later = kLater,
+          .exponent = "EX",
           .any_case = true,
           .variable = variable};
 }

@@ -27,6 +27,12 @@ void rot(Execution& run, const BlockWords& words);
 void arot(Execution& run, const BlockWords& words);
 
 // expressions.cpp
+/// Behind G70: feeds stay in mm. Behind G700 they are in inch, too.
+void lengths_only(Execution& run, BlockWords& words, const Word& word);
+void with_feeds(Execution& run, BlockWords& words, const Word& word);
+/// Another unit of the feed: F has to be programmed anew.
+void new_feed(Execution& run, BlockWords& words, const Word& word);
+
 Expressions expressions();
 ParameterSet parameters();
 

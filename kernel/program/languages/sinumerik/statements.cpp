@@ -157,6 +157,9 @@ void message(Execution& run, const Word& word) { run.emit(Message{std::string(ru
 void stop_reading_ahead(Execution& run, const Word&) { run.state().flow.barrier = true; }
 
 void diameter(Execution& run, const Word&) { run.state().modes.across = Function::diameter; }
+void diameter_absolute(Execution& run, const Word&) {
+  run.state().modes.across = Function::diameter_absolute;
+}
 void radius(Execution& run, const Word&) { run.state().modes.across = Function::radius; }
 
 constexpr WordRule kWords[] = {
@@ -175,6 +178,7 @@ constexpr WordRule kWords[] = {
     {.name = "STOPRE", .run = stop_reading_ahead},
     {.name = "DIAMON", .run = diameter},
     {.name = "DIAMOF", .run = radius},
+    {.name = "DIAM90", .run = diameter_absolute},
     // Words of the language that this version does not execute.
     {.name = "SCALE"},
     {.name = "ASCALE"},

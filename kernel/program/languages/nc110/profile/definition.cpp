@@ -12,8 +12,6 @@
 namespace servogate::program::nc110 {
 namespace {
 
-constexpr int kMostNumber = 255;
-
 int column(std::size_t offset) { return static_cast<int>(offset) + 1; }
 
 /// What stands between two commas of a definition.
@@ -187,13 +185,6 @@ Point in_frame(const PlaneFrame& frame, Point p) {
   return {frame.origin.x + p.x * c - p.y * s, frame.origin.y + p.x * s + p.y * c};
 }
 
-template <typename T>
-const T& found(const std::map<int, T>& all, char kind, int number, int column) {
-  const auto at = all.find(number);
-  if (at == all.end()) fail(Wrong::element_missing, column, {kind + std::to_string(number)});
-  return at->second;
-}
-
 /// Turns what a definition says into an element.
 class Maker {
  public:
@@ -227,12 +218,11 @@ class Maker {
     return *value;
   }
   double turned(const Part& p, double angle) const {
-    return p.origin ? angle + found(run_.state().elements.origins, 'o', *p.origin, p.column).angle_deg
-                    : angle;
+    return p.origin ? angle + origin_of(run_, *p.origin, p.column).angle_deg : angle;
   }
 
   Point place(const Part& p, Point local) const {
-    return p.origin ? in_frame(found(run_.state().elements.origins, 'o', *p.origin, p.column), local) : local;
+    return p.origin ? in_frame(origin_of(run_, *p.origin, p.column), local) : local;
   }
   Point point_at(const Part& p) const {
     if (p.element == 'p') return point_of(run_, p.number, p.column);
@@ -344,11 +334,6 @@ bool defines_element(std::string_view line, std::size_t pos) {
   return pos + 1 < line.size() && (is_digit(line[pos + 1]) || line[pos + 1] == 'E');
 }
 
-bool names_element(std::string_view text) {
-  return text.size() > 1 && (text[0] == 'o' || text[0] == 'p' || text[0] == 'l' || text[0] == 'c') &&
-         is_digit(text[1]);
-}
-
 void define_element(Execution* run, const Dialect& dialect, const AxisLetters& axes, Block& block,
                     std::size_t& pos) {
   const std::size_t start = pos;
@@ -363,55 +348,6 @@ void define_element(Execution* run, const Dialect& dialect, const AxisLetters& a
   Maker maker(*run, parts);
   maker.make(kind, number);
   if (!maker.understood()) reader.wrong(start);
-}
-
-const Point& point_of(const Execution& run, int number, int column) {
-  return found(run.state().elements.points, 'p', number, column);
-}
-const Directed& line_of(const Execution& run, int number, int column) {
-  return found(run.state().elements.lines, 'l', number, column);
-}
-const Directed& circle_of(const Execution& run, int number, int column) {
-  return found(run.state().elements.circles, 'c', number, column);
-}
-
-double element_value(const Execution& run, char function, int number, int item, int column) {
-  const auto refuse = [&](int most) -> double {
-    fail(Wrong::element_item, column,
-         {std::string("FE") + function, std::to_string(item), std::to_string(most)});
-  };
-  if (function == 'P') {
-    const Point& p = point_of(run, number, column);
-    return item == 1 ? p.x : item == 2 ? p.y : refuse(2);
-  }
-  if (function == 'L') {
-    const Directed& l = line_of(run, number, column);
-    return item == 1 ? l.along.y : item == 2 ? l.along.x : item == 3 ? l.height : refuse(3);
-  }
-  const Directed& c = circle_of(run, number, column);
-  return item == 1 ? c.centre.x : item == 2 ? c.centre.y : item == 3 ? c.radius : refuse(3);
-}
-
-std::string shown_element(const Execution& run, std::string_view name, int column) {
-  std::size_t pos = 1;
-  const int number = read_index(name, pos);
-  if (number < 0 || pos != name.size()) fail(Wrong::element_number, column, {std::to_string(kMostNumber)});
-  const auto part = [](const char* letter, double value) { return letter + text::number(value, 4); };
-  std::string out(name);
-  if (name[0] == 'p') {
-    const Point& p = point_of(run, number, column);
-    return out + "=" + part("X", p.x) + " " + part("Y", p.y);
-  }
-  if (name[0] == 'l') {
-    const Directed& l = line_of(run, number, column);
-    return out + "=" + part("d", l.height) + " " + part("a", angle_of(l));
-  }
-  if (name[0] == 'o') {
-    const PlaneFrame& f = found(run.state().elements.origins, 'o', number, column);
-    return out + "=" + part("X", f.origin.x) + " " + part("Y", f.origin.y) + " " + part("a", f.angle_deg);
-  }
-  const Directed& c = circle_of(run, number, column);
-  return out + "=" + part("I", c.centre.x) + " " + part("J", c.centre.y) + " " + part("r", c.radius);
 }
 
 }  // namespace servogate::program::nc110

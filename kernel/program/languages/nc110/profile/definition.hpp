@@ -9,6 +9,8 @@
 /// Geometric elements: o origins, p points, l lines, c circles. Source: specification A 21, A 22, B 1.
 namespace servogate::program::nc110 {
 
+inline constexpr int kMostNumber = 255;  ///< of an element
+
 /// True where a block defines an element: o, p, l or c, its number and =.
 bool defines_element(std::string_view line, std::size_t pos);
 /// True for the name of an element: p3.
@@ -21,6 +23,7 @@ void define_element(Execution* run, const Dialect& dialect, const AxisLetters& a
 const Point& point_of(const Execution& run, int number, int column);
 const Directed& line_of(const Execution& run, int number, int column);
 const Directed& circle_of(const Execution& run, int number, int column);
+const PlaneFrame& origin_of(const Execution& run, int number, int column);
 
 /// FEL, FEP, FEC: `function` L, P or C. Source: specification B 2.2.
 double element_value(const Execution& run, char function, int number, int item, int column);

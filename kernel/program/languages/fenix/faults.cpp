@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/program/languages/fenix/faults.hpp"
+
+#include <iterator>
+
+namespace servogate::program::fenix {
+namespace {
+
+constexpr text::Entry kMessages[] = {
+    {"P760, 150", "{0}: both ends of the line and its angle are given; give one axis and the angle",
+     "{0}: заданы оба конца прямой и угол; задайте одну ось и угол"},
+    {"P761", "{0}: an angle goes with one axis of the plane", "{0}: угол задаётся с одной осью плоскости"},
+    {"P762", "{0}: under this angle the line never reaches the end of {1}",
+     "{0}: под этим углом прямая не приходит к концу по {1}"},
+    {"P763, 156", "the angle of the arc is {0}; it is above 0 and at most {1} degrees",
+     "угол дуги {0}; он больше 0 и не больше {1} градусов"},
+    {"P764, 153", "both axes of the thread move by {0}: the main one moves farther than the other",
+     "обе оси резьбы проходят {0}: главная проходит больше другой"},
+    {"P765, 153", "S{0} is too fast for this thread: at most {1} rpm",
+     "S{0} слишком много для этой резьбы: не больше {1} об/мин"},
+    {"P766, 153", "a thread has its lead as F in its own block", "шаг резьбы задаётся словом F в её кадре"},
+    {"P767, 154", "G96: the limits {0} and {1} are not 0 or more, the least one first",
+     "G96: пределы {0} и {1} не от 0, меньший первым"},
+    {"P768", "G96: a least speed of {0} rpm is not kept by this version; leave it out",
+     "G96: наименьшую частоту {0} об/мин эта версия не выдерживает; опустите её"},
+    {"P769", "{0}: the argument P{1} is missing", "{0}: нет аргумента P{1}"},
+    {"P770", "{0}: P{1} is {2}; it is {3}", "{0}: P{1} равен {2}; он {3}"},
+    {"P771", "{0} has {1} arguments at most", "{0}: аргументов не больше {1}"},
+    {"P772", "{0}: the step of {1} does not lead to the end", "{0}: шаг {1} не ведёт к концу"},
+    {"P773", "{0}: more than {1} passes", "{0}: больше {1} проходов"},
+    {"P774", "{0} needs {1}", "{0} требует {1}"},
+};
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::cycle_axis) + 1);
+
+}  // namespace
+
+std::span<const text::Entry> messages() { return kMessages; }
+
+const text::Entry& entry(Wrong wrong) { return kMessages[static_cast<std::size_t>(wrong)]; }
+
+}  // namespace servogate::program::fenix
