@@ -12,6 +12,7 @@
 #include "firmware_if/image/interface_map.hpp"
 #include "firmware_if/image/packets.hpp"
 #include "firmware_if/image/process_image.hpp"
+#include "machine/board_config.hpp"
 #include "machine/config_basics.hpp"
 #include "machine/simulation_config.hpp"
 #include "machine/station_config.hpp"
@@ -27,8 +28,6 @@ enum class Direction : std::uint8_t { plus, minus };
 /// How an axis finds its zero. `absolute`: the kept reference of an absolute encoder; `none`: zero where it
 /// is switched on; `drive`: by a method of the drive itself (6098h).
 enum class HomingMethod : std::uint8_t { switch_and_index, switch_only, index, drive, absolute, none };
-/// Which side closes the position loop: `csp` the drive, `csv` the kernel.
-enum class ControlMode : std::uint8_t { csp, csv };
 
 /// [axis.home]
 struct HomingConfig {
@@ -72,15 +71,13 @@ struct AxisConfig {
   AxisType type = AxisType::linear;
   bool diameter = false;   ///< programs and displays show twice the machine coordinate
   bool auxiliary = false;  ///< the PLC moves it, no program and nobody by hand
-  std::string drive;       ///< "bus.node"
+  std::string drive;       ///< "bus.node", or empty: an amplifier on a board
   int process = 1;         ///< whose programs move it, from 1
 
   double lead = 0.0;                          ///< mm (degrees) per turn of the screw (output of the gear)
   std::array<std::int64_t, 2> gear = {1, 1};  ///< motor turns : screw turns, exact
   std::int64_t counts_per_rev = 0;            ///< counts per turn of the motor
   Direction direction = Direction::plus;      ///< minus: rising counts are falling coordinates
-  ControlMode control = ControlMode::csp;
-  double position_gain = 0.0;  ///< 1/s, csv only
 
   double max_velocity = 0.0;      ///< mm/s
   double max_acceleration = 0.0;  ///< mm/s2
@@ -108,6 +105,7 @@ struct AxisConfig {
   double torque_ramp = 0.0;  ///< per cent a second, 0: torque_max in a second
   HomingConfig home;
   BrakeConfig brake;
+  BoardChannelConfig board;
 
   /// What its lengths are in, as files and JSON write it; people read text::unit_words() of it.
   const char* unit() const { return type == AxisType::rotary ? "deg" : "mm"; }

@@ -43,6 +43,15 @@ struct SimulatedDrive {
   double end_stop_min = -kNoLimit;  ///< rigid stops, machine coordinates, mm
   double end_stop_max = kNoLimit;
 };
+/// [[simulation.amplifier]]: the motor and amplifier behind a channel of a simulated board.
+struct SimulatedAmplifier {
+  std::string axis;
+  double start = 0.0;           ///< where the axis stands at power-on, mm from machine zero
+  double zero_mark = 0.0;       ///< counts from machine zero to the nearest zero mark in plus direction
+  double pull_out_speed = 0.0;  ///< rpm beyond which a stepper loses steps; 0: it never does
+  double lag = 0.005;           ///< s, time constant of a speed amplifier
+  double drift = 0.0;           ///< per cent of the full set-point, of a speed amplifier
+};
 /// [simulation]: what the mocks do. Without effect on anything that is not a mock.
 struct SimulationConfig {
   std::map<std::string, double> initial;  ///< point -> value at start (before `inverted`)
@@ -52,6 +61,7 @@ struct SimulationConfig {
   std::vector<SimulatedLoop> loops;
   std::vector<SimulatedIndexer> indexers;
   std::vector<SimulatedDrive> drives;
+  std::vector<SimulatedAmplifier> amplifiers;
 };
 
 }  // namespace servogate::machine

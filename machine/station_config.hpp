@@ -10,7 +10,7 @@
 
 namespace servogate::machine {
 
-enum class StationKind : std::uint8_t { modbus, gpio, drive, canopen };
+enum class StationKind : std::uint8_t { modbus, gpio, drive, canopen, board };
 /// The resistor of a GPIO line inside its chip. `as_is`: as the firmware of the board left it.
 enum class PointBias : std::uint8_t { as_is, off, up, down };
 enum class ChannelKind : std::uint8_t { di, dq, ai, aq };
@@ -32,7 +32,7 @@ struct PointConfig {
   double debounce = 0.0;              ///< s
   double hysteresis = 0.0;            ///< analog input, in the unit of packet A
   PointBias bias = PointBias::as_is;  ///< gpio input
-  bool edges = false;                 ///< gpio, digital input: its edges are told with the kernel's times
+  bool edges = false;                 ///< gpio, board, digital input: its edges are told with their times
   int b_line = -1;  ///< gpio, `ai`: line of track B of an encoder whose track A is the channel; -1: none
   std::string comment;
   bool is_input() const { return channel == ChannelKind::di || channel == ChannelKind::ai; }
@@ -56,17 +56,19 @@ struct LineConfig {
   double timeout = 0.1;  ///< s until an answer is late
 };
 
-/// [[station]]: a Modbus unit, a GPIO chip, the digital inputs and outputs of a drive, or a node of CiA
-/// 401 or CiA 406.
+/// [[station]]: a Modbus unit, a GPIO chip, a USB board, the digital inputs and outputs of a drive, or a node
+/// of CiA 401 or CiA 406.
 struct StationConfig {
   std::string name;
   StationKind kind = StationKind::gpio;
   std::string line;      ///< modbus: name of a [[line]]
-  std::string url;       ///< gpio: "mock:NAME", "chip:LABEL"; modbus: that of its line, by the loader
+  std::string url;       ///< gpio: "mock:NAME", "chip:LABEL"; board: "mock:NAME", "usb:SERIAL"; modbus: that
+                         ///< of its line, by the loader
   std::string node;      ///< drive, canopen: "bus.node"
   std::string device;    ///< device file without .toml, modbus
   int unit = 1;          ///< modbus unit identifier
-  double period = 0.02;  ///< s between polls, modbus; GPIO is read every cycle
+  double period = 0.02;  ///< s between polls, modbus; GPIO and boards are read every cycle
+  double watchdog = 0.02;  ///< s without a command until a board drops everything
   std::vector<PointConfig> points;
   /// Its points come over a node of a bus.
   bool over_bus() const { return kind == StationKind::drive || kind == StationKind::canopen; }

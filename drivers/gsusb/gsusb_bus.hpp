@@ -11,11 +11,14 @@
 
 #include "drivers/gsusb/adapter_clock.hpp"
 #include "drivers/gsusb/protocol.hpp"
-#include "drivers/gsusb/usb_port.hpp"
 #include "drivers/notice.hpp"
 #include "drivers/send_queue.hpp"
+#include "drivers/usb/usb_port.hpp"
 
 namespace servogate::gsusb {
+
+using usb::PortListener;
+using usb::UsbPort;
 
 /// GsUsbBus::open() refused because the adapter's clock does not have the bit rate.
 bool is_no_timing(const drivers::Notice& why) noexcept;

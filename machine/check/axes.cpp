@@ -244,8 +244,6 @@ class AxisCheck {
     if (a_.following_error_stop > 0.0 && a_.in_position_window > a_.following_error_stop)
       error("in_position_window", finding::kWindowBeyondFollowing,
             {length(a_.in_position_window), length(a_.following_error_stop)});
-    if (a_.control == ControlMode::csv) error("control", finding::kNoCsv, {});
-    if (machine_.places.contains(path_ + ".position_gain")) error("position_gain", finding::kNoCsv, {});
     if (a_.lead > 0.0 && a_.counts_per_rev > 0 && a_.in_position_window * a_.counts_per_unit() < 1.0)
       error("in_position_window", finding::kWindowBelowCount,
             {text::number(a_.in_position_window, 9) + " " + text::unit_words(a_.unit()),
@@ -291,9 +289,10 @@ void check_inverter(const MachineConfig& machine, const SpindleConfig& s, const 
   const double full = std::round((most - speed->shift) / speed->scale);
   int station = -1;
   machine.point(s.speed_output, &station);
-  // A channel of CiA 401 has a sign.
-  const bool on_can = machine.stations[static_cast<std::size_t>(station)].kind == StationKind::canopen;
-  const double low = on_can ? -32768.0 : 0.0, high = on_can ? 32767.0 : 65535.0;
+  // A channel of CiA 401 or of a board has a sign.
+  const StationKind kind = machine.stations[static_cast<std::size_t>(station)].kind;
+  const bool is_signed = kind == StationKind::canopen || kind == StationKind::board;
+  const double low = is_signed ? -32768.0 : 0.0, high = is_signed ? 32767.0 : 65535.0;
   if (std::min(rest, full) < low || std::max(rest, full) > high)
     reading.error(machine.where(path + ".speed_output"), finding::kSpindleScale,
                   {number, s.speed_output, text::number(rest), text::number(full),

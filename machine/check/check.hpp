@@ -46,6 +46,8 @@ void check_devices(const LoadResult& loaded, Reading& reading);
 void check_station_devices(const LoadResult& loaded, Reading& reading);
 /// What the lines of a GPIO chip can be: edges, biases, encoders; each line for one point.
 void check_gpio_lines(const MachineConfig& machine, Reading& reading);
+/// Boards, and axes whose amplifier is on one.
+void check_boards(const MachineConfig& machine, Reading& reading);
 /// Gear ranges of spindles.
 void check_gears(const MachineConfig& machine, Reading& reading);
 

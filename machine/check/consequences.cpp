@@ -110,8 +110,8 @@ class Sentences {
   std::vector<Consequence> all() {
     for (const BusConfig& bus : m_.buses) this->bus(bus);
     for (const AxisConfig& a : m_.axes)
-      if (!a.letter.empty() && a.lead > 0.0 && a.counts_per_rev > 0 && a.max_velocity > 0.0 && a.max_acceleration > 0.0 &&
-          a.max_jerk > 0.0)
+      if (!a.letter.empty() && a.lead > 0.0 && a.counts_per_rev > 0 && a.max_velocity > 0.0 &&
+          a.max_acceleration > 0.0 && a.max_jerk > 0.0)
         axis(a);
     emergency_stop();
     for (std::size_t i = 0; i < m_.spindles.size(); ++i) spindle(m_.spindles[i], static_cast<int>(i));
@@ -269,12 +269,13 @@ class Sentences {
     // Without an index the slow edge is the zero; with one it only has to find the right turn.
     const double v = h.method == HomingMethod::switch_only ? h.slow : h.fast;
     if (v <= 0.0) return;
+    static constexpr const char* kNames[] = {"Modbus", "GPIO", "CAN", "CAN", "USB"};
     if (m_.point(h.switch_point)->edges && !index) {
       constexpr double kLate = 1e-4;
-      return say(a.letter, kHomeEdge, {a.letter, "GPIO", uncertainty(v * kLate), speed(v)},
+      return say(a.letter, kHomeEdge,
+                 {a.letter, kNames[static_cast<std::size_t>(s.kind)], uncertainty(v * kLate), speed(v)},
                  {{"each_0.1_ms", v * kLate}, {"velocity", v}});
     }
-    static constexpr const char* kNames[] = {"Modbus", "GPIO", "CAN", "CAN"};
     say(a.letter, kHome,
         {a.letter, kNames[static_cast<std::size_t>(s.kind)], text::number(period * 1e3),
          uncertainty(v * period), speed(v),

@@ -56,7 +56,10 @@ class StationCheck {
     } else {
       not_here("node", s_.node);
     }
-    if (s_.kind == StationKind::gpio) needed("url", s_.url);
+    const bool board = s_.kind == StationKind::board;
+    if (s_.kind == StationKind::gpio || board) needed("url", s_.url);
+    if (board) not_here("device", s_.device);
+    if (!board && machine_.places.contains(path_ + "watchdog")) not_here("watchdog", s_.name);
     if (s_.kind == StationKind::modbus) modbus();
     if (s_.kind != StationKind::modbus) not_here("line", s_.line);
     for (std::size_t i = 0; i < s_.points.size(); ++i)
@@ -67,7 +70,7 @@ class StationCheck {
       if (s_.points[i].hysteresis > 0.0 && s_.points[i].channel != ChannelKind::ai)
         reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".hysteresis"),
                        finding::kHysteresisKind, {s_.points[i].channel_text});
-    if (s_.kind == StationKind::modbus || s_.kind == StationKind::canopen) return;
+    if (s_.kind == StationKind::modbus || s_.kind == StationKind::canopen || board) return;
     for (std::size_t i = 0; i < s_.points.size(); ++i)
       if (s_.points[i].is_analog() && !(s_.kind == StationKind::gpio && s_.points[i].is_encoder()))
         reading_.error(machine_.where(path_ + "points." + std::to_string(i) + ".channel"),
@@ -144,28 +147,45 @@ void check_estop(const MachineConfig& machine, Reading& reading) {
 
 /// A switch that no wire can open does not guard a drive that is real.
 void check_mock_guards(const MachineConfig& machine, Reading& reading) {
-  const auto guard = [&](const std::string& path, const std::string& name, const BusConfig& bus) {
+  const auto guard = [&](const std::string& path, const std::string& name, const std::string& carrier) {
     int station = -1;
     const PointConfig* point = machine.point(name, &station);
-    if (point == nullptr || bus.nothing_real()) return;
+    if (point == nullptr) return;
     const StationConfig& s = machine.stations[static_cast<std::size_t>(station)];
     if (machine.nothing_real(s))
-      reading.error(machine.where(path), finding::kMockGuard, {name, s.name, bus.name});
+      reading.error(machine.where(path), finding::kMockGuard, {name, s.name, carrier});
   };
-  const auto real = std::find_if(machine.buses.begin(), machine.buses.end(),
-                                 [](const BusConfig& b) { return !b.nothing_real(); });
-  if (real == machine.buses.end()) return;
+  // What is real and moves something, empty: nothing.
+  const auto bus_words = [](const BusConfig& b) {
+    return b.nothing_real() ? std::string() : text::both("bus \"" + b.name + "\"", "шина «" + b.name + "»");
+  };
+  const auto board_words = [](const StationConfig& s) {
+    return s.kind != StationKind::board || s.mock()
+               ? std::string()
+               : text::both("board \"" + s.name + "\"", "плата «" + s.name + "»");
+  };
+  std::string real;
+  for (const BusConfig& b : machine.buses)
+    if (real.empty()) real = bus_words(b);
+  for (const StationConfig& s : machine.stations)
+    if (real.empty()) real = board_words(s);
+  if (real.empty()) return;
   if (machine.safety.mock_inputs_guard_real_drives)
     return reading.warning(machine.where("safety.mock_inputs_guard_real_drives"), finding::kMockGuardDeclared,
                            {});
-  guard("safety.estop", machine.safety.estop, *real);
+  guard("safety.estop", machine.safety.estop, real);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const AxisConfig& a = machine.axes[i];
     int bus = -1;
-    if (machine.node(a.drive, &bus) == nullptr) continue;
+    std::string carrier;
+    if (machine.node(a.drive, &bus) != nullptr)
+      carrier = bus_words(machine.buses[static_cast<std::size_t>(bus)]);
+    for (const StationConfig& s : machine.stations)
+      if (s.name == a.board.station) carrier = board_words(s);
+    if (carrier.empty()) continue;
     const std::string path = "axis." + std::to_string(i);
-    guard(path + ".limit_plus", a.limit_plus, machine.buses[static_cast<std::size_t>(bus)]);
-    guard(path + ".limit_minus", a.limit_minus, machine.buses[static_cast<std::size_t>(bus)]);
+    guard(path + ".limit_plus", a.limit_plus, carrier);
+    guard(path + ".limit_minus", a.limit_minus, carrier);
   }
 }
 

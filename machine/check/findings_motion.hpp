@@ -170,10 +170,6 @@ inline constexpr text::Entry kWindowBeyondFollowing{
     "machine.window_beyond_following",
     "{0}: in_position_window {1} is above following_error_stop {2}: an exact stop would not wait at all",
     "{0}: in_position_window {1} больше following_error_stop {2}: точный останов вообще не ждал бы"};
-inline constexpr text::Entry kNoCsv{
-    "machine.no_csv",
-    "{0}: in this version the drive closes the position loop: control = \"csp\", and no position_gain",
-    "{0}: в этой версии контур положения замыкает привод: control = \"csp\", без position_gain"};
 inline constexpr text::Entry kDiameter{"machine.diameter",
                                        "{0}: only a linear axis can be shown as a diameter",
                                        "{0}: в диаметрах показывается только линейная ось"};
@@ -244,9 +240,9 @@ inline constexpr text::Entry kEstopLoss{
     "«{0}»: при потере станции цепь аварийного останова должна читаться как 0 (loss = 0, hold = false)"};
 inline constexpr text::Entry kMockGuard{
     "machine.mock_guards_real_drive",
-    "\"{0}\" is a mock input ({1}) that no wire can open, but bus \"{2}\" is real: name a real input, or, "
+    "\"{0}\" is a mock input ({1}) that no wire can open, but {2} is real: name a real input, or, "
     "for a bench without a machine, set safety.mock_inputs_guard_real_drives = true",
-    "«{0}»: имитируемый вход ({1}), его не разомкнёт никакой провод, а шина «{2}» настоящая: укажите "
+    "«{0}»: имитируемый вход ({1}), его не разомкнёт никакой провод, а {2} — настоящее устройство: укажите "
     "настоящий вход либо, для стенда без станка, safety.mock_inputs_guard_real_drives = true"};
 inline constexpr text::Entry kMockGuardDeclared{
     "machine.mock_guard_declared",

@@ -37,7 +37,7 @@ class LineCheck {
         reading_.error(machine_.where(path + key), finding::kGpioOnly, {key, p.name, what});
     };
     only("bias", here && p.is_input(), text::both("input", "вход"));
-    only("edges", here && p.channel == ChannelKind::di,
+    only("edges", (here || s_.kind == StationKind::board) && p.channel == ChannelKind::di,
          text::both("digital input (di)", "дискретный вход (di)"));
     only("b_line", here && p.channel == ChannelKind::ai, text::both("counter (ai)", "счётчик (ai)"));
   }

@@ -41,6 +41,8 @@ class StationDevices {
  private:
   /// How many channels of a kind a station has, numbered from 0; -1: that is not known.
   static int channels(const StationConfig& station, const DeviceConfig* device, ChannelKind kind) {
+    if (station.kind == StationKind::board)
+      return kind == ChannelKind::di || kind == ChannelKind::dq ? 32 : 4;
     if (station.kind == StationKind::drive) return 32;  // 60FDh and 60FEh have 32 bits
     const bool readable = device != nullptr && kind_known(*device);
     if (!station.device.empty() && !readable) return -1;
@@ -53,8 +55,8 @@ class StationDevices {
 
   void channel(const StationConfig& station, const DeviceConfig* device, const PointConfig& point,
                const std::string& path) {
-    const bool no_analog =
-        station.kind != StationKind::modbus && point.is_analog() && !point.is_encoder();  // said elsewhere
+    const bool no_analog = station.kind != StationKind::modbus && station.kind != StationKind::board &&
+                           point.is_analog() && !point.is_encoder();  // said elsewhere
     const int count = channels(station, device, point.channel);
     if (no_analog || count < 0 || std::max(point.number, point.b_line) < count) return;
     const std::string kind = point.channel_text.substr(0, 2);
@@ -62,9 +64,10 @@ class StationDevices {
     const std::string what = count == 0   ? text::both("no " + kind, "ни одного " + kind)
                              : count == 1 ? text::both(last + " only", "только " + last)
                                           : text::both(kind + "0 to " + last, kind + "0 ... " + last);
-    const std::string who = !station.node.empty() ? station.node
-                            : !station.device.empty()
-                                ? station.device
+    const std::string who = !station.node.empty()     ? station.node
+                            : !station.device.empty() ? station.device
+                            : station.kind == StationKind::board
+                                ? text::both("a board", "плата")
                                 : text::both("a chip without device file", "микросхема без файла устройства");
     reading_.error(m_.where(path), finding::kChannelOutside, {point.channel_text, who, what});
   }

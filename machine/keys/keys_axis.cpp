@@ -21,8 +21,13 @@ std::span<const std::string_view> choices_of<HomingMethod>() {
   return kNames;
 }
 template <>
-std::span<const std::string_view> choices_of<ControlMode>() {
-  static constexpr std::string_view kNames[] = {"csp", "csv"};
+std::span<const std::string_view> choices_of<BoardOutput>() {
+  static constexpr std::string_view kNames[] = {"step", "analog", "pwm"};
+  return kNames;
+}
+template <>
+std::span<const std::string_view> choices_of<BoardFeedback>() {
+  static constexpr std::string_view kNames[] = {"encoder", "steps"};
   return kNames;
 }
 
@@ -112,6 +117,49 @@ const Section& section_of<BrakeConfig>() {
   return section;
 }
 
+template <>
+const Section& section_of<BoardChannelConfig>() {
+  using C = BoardChannelConfig;
+  static const Key keys[] = {
+      key<&C::station>("station", {.required = true}, "station of kind board", "станция вида board"),
+      key<&C::channel>("channel", {.min = 0, .max = 3},
+                       "channel of the board: its set-point outputs, encoder, enable and fault lines",
+                       "канал платы: его выходы задания, датчик, линии разрешения и аварии"),
+      key<&C::output>(
+          "output", {},
+          "what the amplifier takes: step and direction, +-10 V, or PWM; analog and pwm are a speed, "
+          "and the control closes the position loop",
+          "что принимает усилитель: шаг и направление, ±10 В или ШИМ; analog и pwm задают скорость, "
+          "контур положения замыкает управление"),
+      key<&C::feedback>("feedback", {},
+                        "where the position comes from: the encoder of the channel, or the steps put out",
+                        "откуда берётся положение: датчик канала или выданные шаги"),
+      key<&C::steps_per_rev>("steps_per_rev", {.min = 0, .max = kMostCounts, .computed = true},
+                             "step: steps per turn of the motor; counts_per_rev with feedback steps",
+                             "step: шагов на оборот двигателя; при feedback steps — counts_per_rev"),
+      key<&C::step_time>("step_time", {.unit = Unit::second, .min = 0, .max = 0.0002},
+                         "step: shortest time of a step level, high and low",
+                         "step: наименьшая длительность уровня шага, высокого и низкого"),
+      key<&C::full_speed>("full_speed", {.unit = Unit::rpm, .min = 0, .max = 1e6},
+                          "analog, pwm: speed of the motor at the full set-point (10 V, 100 per cent)",
+                          "analog, pwm: скорость двигателя при полном задании (10 В, 100 процентов)"),
+      key<&C::position_gain>(
+          "position_gain", {.unit = Unit::per_s, .min = 0, .max = 1000},
+          "analog, pwm: gain of the position loop: speed for each unit of following error",
+          "analog, pwm: коэффициент контура положения: скорость на единицу рассогласования"),
+      key<&C::offset>("offset", {.unit = Unit::percent, .min = -10, .max = 10},
+                      "analog, pwm: added to the set-point, against the drift of the amplifier",
+                      "analog, pwm: добавка к заданию против дрейфа усилителя"),
+      key<&C::reversed>("reversed", {}, "a positive set-point lowers the counts",
+                        "положительное задание уменьшает счёт"),
+      key<&C::fault_low>("fault_low", {}, "the fault line of the amplifier reports at level 0",
+                         "линия аварии усилителя срабатывает уровнем 0"),
+  };
+  static const Section section{"amplifier of the axis on a USB board", "усилитель оси на плате USB", keys,
+                               &default_object<C>};
+  return section;
+}
+
 namespace {
 std::span<const Key> axis_keys() {
   using C = AxisConfig;
@@ -127,8 +175,9 @@ std::span<const Key> axis_keys() {
           "moved by the MC_ blocks of the PLC alone (magazine, chuck); stands behind the axes of the "
           "programs",
           "ось перемещает только ПЛК блоками MC_ (магазин, патрон); стоит после осей программ"),
-      key<&C::drive>("drive", {.required = true, .refers = Refers::node}, "the drive as \"bus.node\"",
-                     "привод в виде \"шина.узел\""),
+      key<&C::drive>("drive", {.refers = Refers::node},
+                     "the drive as \"bus.node\"; an axis on a board has [axis.board] instead",
+                     "привод в виде \"шина.узел\"; у оси на плате вместо него [axis.board]"),
       key<&C::process>("process", {.min = 1, .max = image::kMaxProcesses},
                        "process whose programs move the axis, at most control.processes; at standstill "
                        "`servogate assign` gives it to another one",
@@ -143,12 +192,6 @@ std::span<const Key> axis_keys() {
                               "drive counts per turn of the motor", "дискрет привода на оборот двигателя"),
       key<&C::direction>("direction", {}, "minus: rising counts are falling coordinates",
                          "minus: растущий счёт означает убывающую координату"),
-      key<&C::control>("control", {},
-                       "who closes the position loop: csp the drive; csv, the kernel, is not in this version",
-                       "кто замыкает контур положения: csp — привод; csv, ядро, в этой версии нет"),
-      key<&C::position_gain>("position_gain", {.unit = Unit::per_s, .min = 0, .max = 1000},
-                             "gain of the kernel's position loop (csv), not in this version",
-                             "коэффициент контура положения ядра (csv), в этой версии нет"),
       key<&C::max_velocity>(
           "max_velocity", {.unit = Unit::axis_velocity, .min = kSlowest, .max = kFastest, .required = true},
           "limit of velocity, also of rapids", "предел скорости, он же скорость ускоренного хода"),
@@ -237,6 +280,7 @@ std::span<const Key> axis_keys() {
                            "наибольшее изменение этого момента, процентов в секунду; torque_max за секунду"),
       key<&C::home>("home", {}, "homing", "выход в ноль"),
       key<&C::brake>("brake", {}, "holding brake", "удерживающий тормоз"),
+      key<&C::board>("board", {}, "amplifier on a USB board", "усилитель на плате USB"),
   };
   return keys;
 }

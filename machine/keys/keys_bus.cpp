@@ -10,7 +10,7 @@ constexpr double kLargestSignal = 1e12;  ///< of an analog point, whatever its u
 
 template <>
 std::span<const std::string_view> choices_of<StationKind>() {
-  static constexpr std::string_view kNames[] = {"modbus", "gpio", "drive", "canopen"};
+  static constexpr std::string_view kNames[] = {"modbus", "gpio", "drive", "canopen", "board"};
   return kNames;
 }
 template <>
@@ -192,9 +192,9 @@ const Section& section_of<PointConfig>() {
           "вход gpio: резистор линии внутри микросхемы; as_is: как его оставила прошивка платы"),
       key<&C::edges>(
           "edges", {},
-          "gpio, di: its edges are taken with the kernel's times; homing then meets the edge of its switch "
+          "gpio, board, di: its edges are taken with their times; homing then meets the edge of its switch "
           "between two cycles",
-          "gpio, di: фронты берутся со временем ядра; тогда при выходе в ноль фронт выключателя "
+          "gpio, board, di: фронты берутся с их временем; тогда при выходе в ноль фронт выключателя "
           "определяется между циклами"),
       key<&C::b_line>(
           "b_line", {.min = -1, .max = 4095},
@@ -239,8 +239,8 @@ const Section& section_of<StationConfig>() {
       key<&C::name>("name", {.required = true}, "name of the station", "имя станции"),
       key<&C::kind>("kind", {.required = true}, "what carries the signals", "чем передаются сигналы"),
       key<&C::line>("line", {}, "modbus: the line that it is on, by name", "modbus: имя линии станции"),
-      key<&C::url>("url", {}, "gpio: the chip: mock:NAME, chip:LABEL",
-                   "gpio: микросхема: mock:ИМЯ, chip:МЕТКА"),
+      key<&C::url>("url", {}, "gpio: the chip: mock:NAME, chip:LABEL; board: mock:NAME, usb:SERIAL, usb:any",
+                   "gpio: микросхема: mock:ИМЯ, chip:МЕТКА; board: mock:ИМЯ, usb:СЕРИЙНЫЙ, usb:any"),
       key<&C::node>("node", {.refers = Refers::node}, "kinds drive and canopen: the node as \"bus.node\"",
                     "виды drive и canopen: узел в виде \"шина.узел\""),
       key<&C::device>("device", {.refers = Refers::device}, "device file, without .toml",
@@ -250,6 +250,9 @@ const Section& section_of<StationConfig>() {
                     "адрес устройства Modbus; 0 — для всех сразу, на него никто не отвечает"),
       key<&C::period>("period", {.unit = Unit::second, .min = 0.001, .max = 10}, "time between polls, modbus",
                       "период опроса, modbus"),
+      key<&C::watchdog>("watchdog", {.unit = Unit::second, .min = 0.002, .max = 1},
+                        "board: without a command for this time it drops its outputs and enables",
+                        "board: без команды в течение этого времени плата снимает выходы и разрешения"),
       key<&C::points>("points", {}, "the signals", "сигналы"),
   };
   static const MovedKey moved[] = {{"timeout", "`timeout` of its [[line]]", "`timeout` в её [[line]]"}};

@@ -251,6 +251,34 @@ const Section& section_of<SimulatedDrive>() {
 }
 
 template <>
+const Section& section_of<SimulatedAmplifier>() {
+  using C = SimulatedAmplifier;
+  static const Key keys[] = {
+      key<&C::axis>("axis", {.required = true, .refers = Refers::axis}, "axis with [axis.board]",
+                    "ось с [axis.board]"),
+      key<&C::start>("start", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
+                     "where the axis stands at power-on, from machine zero",
+                     "положение оси при включении, от нуля станка"),
+      key<&C::zero_mark>("zero_mark", {.min = -kMostCounts, .max = kMostCounts},
+                         "counts from machine zero to the nearest zero mark in plus direction",
+                         "отсчёты от нуля станка до ближайшей нулевой метки в плюс"),
+      key<&C::pull_out_speed>("pull_out_speed", {.unit = Unit::rpm, .min = 0, .max = 1e6},
+                              "step: beyond this speed steps are lost; 0: never",
+                              "step: выше этой скорости шаги теряются; 0: никогда"),
+      key<&C::lag>("lag", {.unit = Unit::second, .min = 0, .max = 1},
+                   "analog, pwm: time constant of the speed loop",
+                   "analog, pwm: постоянная времени контура скорости"),
+      key<&C::drift>("drift", {.unit = Unit::percent, .min = -10, .max = 10},
+                     "analog, pwm: speed at set-point 0, of the full speed",
+                     "analog, pwm: скорость при задании 0, от полной"),
+  };
+  static const Section section{"amplifier and motor behind a channel of a mock board",
+                               "усилитель и двигатель за каналом имитируемой платы", keys,
+                               &default_object<C>};
+  return section;
+}
+
+template <>
 const Section& section_of<SimulationConfig>() {
   using C = SimulationConfig;
   static const Key keys[] = {
@@ -264,6 +292,7 @@ const Section& section_of<SimulationConfig>() {
       key<&C::loops>("loop", {}, "inputs that follow outputs", "входы, следующие за выходами"),
       key<&C::indexers>("indexer", {}, "turrets and magazines", "револьверные головки и магазины"),
       key<&C::drives>("drive", {}, "plants of the simulated drives", "механика имитируемых приводов"),
+      key<&C::amplifiers>("amplifier", {}, "amplifiers of mock boards", "усилители имитируемых плат"),
   };
   static const Section section{"what the mocks do; without effect on anything real",
                                "поведение имитаторов; на настоящие устройства не влияет", keys,

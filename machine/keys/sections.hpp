@@ -14,7 +14,9 @@ std::span<const std::string_view> choices_of<Direction>();
 template <>
 std::span<const std::string_view> choices_of<HomingMethod>();
 template <>
-std::span<const std::string_view> choices_of<ControlMode>();
+std::span<const std::string_view> choices_of<BoardOutput>();
+template <>
+std::span<const std::string_view> choices_of<BoardFeedback>();
 template <>
 std::span<const std::string_view> choices_of<StationKind>();
 template <>
@@ -40,6 +42,8 @@ template <>
 const Section& section_of<HomingConfig>();
 template <>
 const Section& section_of<BrakeConfig>();
+template <>
+const Section& section_of<BoardChannelConfig>();
 template <>
 const Section& section_of<AxisConfig>();
 template <>
@@ -78,6 +82,8 @@ template <>
 const Section& section_of<SimulatedIndexer>();
 template <>
 const Section& section_of<SimulatedDrive>();
+template <>
+const Section& section_of<SimulatedAmplifier>();
 template <>
 const Section& section_of<SimulationConfig>();
 /// The whole machine file.

@@ -76,6 +76,7 @@ void check_all(LoadResult& result, Reading& reading) {
   check_safety(machine, reading);
   check_modbus_server(machine, reading);
   check_gpio_lines(machine, reading);
+  check_boards(machine, reading);
   check_gears(machine, reading);
   check_devices(result, reading);
   check_station_devices(result, reading);

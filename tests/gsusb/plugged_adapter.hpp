@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "drivers/gsusb/usb_port.hpp"
+#include "drivers/gsusb/gsusb_bus.hpp"
 #include "tests/gsusb/simulated_adapter.hpp"
 
 namespace servogate::gsusb {

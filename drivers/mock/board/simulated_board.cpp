@@ -57,6 +57,7 @@ std::span<const std::uint8_t> SimulatedBoard::exchange(std::span<const std::uint
 void SimulatedBoard::set_input(std::size_t number, bool level, image::Nanoseconds t) noexcept {
   if (input(number) == level) return;
   inputs_ ^= 1u << number;
+  if (edges_lost_) return;
   firmware_->note_edge(static_cast<std::uint8_t>(number), level,
                        static_cast<std::uint32_t>(t / image::kMicrosecond));
 }

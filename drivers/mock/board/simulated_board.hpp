@@ -46,6 +46,8 @@ class SimulatedBoard final : public image::Simulated, private board::Hardware {
 
   /// Unplugged, it answers nothing and its watchdog runs; plugged in, it is the one it was.
   void plug(bool plugged) noexcept { plugged_ = plugged; }
+  /// Edges and their times get lost, levels do not.
+  void lose_edges(bool lost) noexcept { edges_lost_ = lost; }
   /// Loses its voltage for a moment: the firmware begins anew, motors stand where they were.
   void restart();
   /// As the message `inject` does. False: there is no such line.
@@ -76,7 +78,7 @@ class SimulatedBoard final : public image::Simulated, private board::Hardware {
   std::uint32_t inputs_ = 0, outputs_ = 0;
   std::array<std::int16_t, board::kAnalog> analog_in_{}, analog_out_{};
   image::Nanoseconds t_ns_ = 0, tick_ns_;
-  bool plugged_ = true;
+  bool plugged_ = true, edges_lost_ = false;
   std::unique_ptr<board::Firmware> firmware_;
   std::array<std::uint8_t, board::kMostBytes> answer_{};
 };

@@ -77,6 +77,7 @@ image::Nanoseconds MockGpio::crossing(std::size_t n, double at, image::Nanosecon
 
 void MockGpio::flip(std::size_t n, bool level, image::Nanoseconds t) {
   lines_[n].level = level;
+  lines_[n].changed_ns = t;
   ++lines_[n].edges;
   if (plugged_ && !edges_lost_) stage_.edge(n, level, t);
 }

@@ -92,6 +92,8 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
   void set_bounce(std::size_t n, const Bounce& bounce);
   /// The contact itself, before inversion, bounce included.
   bool input(std::size_t n) const noexcept { return lines_[n].level; }
+  /// When it changed last, bounces included.
+  image::Nanoseconds changed_ns(std::size_t n) const noexcept { return lines_[n].changed_ns; }
   /// The physical level of an output, after inversion.
   bool output(std::size_t n) const noexcept { return driven_[n]; }
   /// Changes of a line since the start, bounces included.
@@ -113,6 +115,7 @@ class MockGpio final : public image::CycleDevice, public image::Simulated {
     bool forced_level = false;
     image::Nanoseconds settle_ns = 0;
     image::Nanoseconds next_flip_ns = 0;
+    image::Nanoseconds changed_ns = 0;
     std::uint64_t edges = 0;
     /// Seen as driven, and no bounce under way.
     bool settled(bool wanted) const noexcept {

@@ -61,7 +61,35 @@ void World::add_encoder(const std::string& reference, const std::string& name,
   encoders_[reference] = std::move(device);
 }
 
-void World::add_axis(const WorldAxis& axis) { axes_.push_back({axis, drive(axis.drive), 0}); }
+void World::add_axis(const WorldAxis& axis) {
+  const SimulatedBoard* on = board(axis.board);
+  axes_.push_back({axis, drive(axis.drive), on != nullptr ? on->amplifier(axis.channel) : nullptr, 0});
+}
+
+void World::add_board(const std::string& station, const SimulatedBoardConfig& config) {
+  boards_[station] = std::make_unique<SimulatedBoard>(config);
+}
+
+void World::add_board_contacts(const std::string& station, std::vector<NodeContact> inputs,
+                               const std::vector<WorldPoint>& outputs,
+                               const std::vector<std::pair<WorldPoint, double>>& values) {
+  NodeWires wires{nullptr, nullptr, nullptr, board(station)};
+  for (const WorldPoint& p : outputs)
+    outputs_.push_back(
+        {p.name, p.rule, {.board = wires.board, .number = static_cast<std::size_t>(p.channel)}});
+  for (const auto& [point, raw] : values) {
+    inputs_.push_back(
+        {point.name, point.rule, {.board = wires.board, .number = static_cast<std::size_t>(point.channel)}});
+    set_raw(inputs_.back().at, raw);
+  }
+  std::vector<GpioInput> contacts;
+  for (NodeContact& input : inputs) {
+    contacts.push_back(std::move(input.contact));
+    wires.channels.push_back(input.channel);
+  }
+  wires.contacts = &add_contacts_of_chip(std::move(contacts), {}, -1);
+  node_wires_.push_back(std::move(wires));
+}
 
 MockGpio& World::add_contacts_of_chip(std::vector<GpioInput> inputs, std::vector<GpioOutput> outputs,
                                       int source) {
@@ -90,7 +118,7 @@ void World::add_chip(const std::string& station, std::vector<GpioInput> inputs,
 
 void World::add_contacts(const std::string& node, std::vector<NodeContact> inputs,
                          const std::vector<WorldPoint>& outputs) {
-  NodeWires wires{nullptr, drive(node), module(node), {}};
+  NodeWires wires{nullptr, drive(node), module(node)};
   if (wires.drive == nullptr && wires.module == nullptr) return;
   for (const WorldPoint& p : outputs) {
     Output output{p.name, p.rule, {.number = static_cast<std::size_t>(p.channel)}};
@@ -173,6 +201,7 @@ void World::advance_to(image::Nanoseconds t) {
   for (Wire& wire : wires_) carry(wire, t);
   for (const Bus& bus : buses_)
     if (bus.segment != nullptr) bus.segment->advance_to(t);
+  for (const auto& [station, board] : boards_) board->advance_to(t);
   for (const auto& gpio : gpios_) gpio->advance_to(t);
   for (const NodeWires& wires : node_wires_) carry_contacts(wires);
   for (const auto& line : lines_) line->advance_to(t);
@@ -184,6 +213,10 @@ void World::carry_contacts(const NodeWires& wires) {
   for (std::size_t n = 0; n < wires.channels.size(); ++n) {
     const bool on = wires.contacts->input(n);
     const int channel = wires.channels[n];
+    if (wires.board != nullptr) {
+      wires.board->set_input(static_cast<std::size_t>(channel), on, wires.contacts->changed_ns(n));
+      continue;
+    }
     if (wires.module != nullptr) {
       wires.module->set_digital(static_cast<std::uint8_t>(channel), on);
       continue;
@@ -228,7 +261,9 @@ void World::set_level(const Terminal& at, bool level) {
 void World::set_raw(const Terminal& at, double raw) {
   const auto within = [raw](double low, double high) { return std::llround(std::clamp(raw, low, high)); };
   const auto channel = static_cast<std::uint16_t>(at.number);
-  if (at.encoder != nullptr)
+  if (at.board != nullptr)
+    at.board->set_analog_input(at.number, static_cast<std::int16_t>(within(-32767.0, 32767.0)));
+  else if (at.encoder != nullptr)
     at.encoder->set_position(within(-2147483648.0, 4294967295.0));
   else if (at.chip != nullptr)
     at.chip->set_counts(at.number, static_cast<std::int32_t>(within(-2147483648.0, 2147483647.0)));
@@ -240,6 +275,7 @@ void World::set_raw(const Terminal& at, double raw) {
 }
 
 bool World::level(const Terminal& at) {
+  if (at.board != nullptr) return at.board->output(at.number);
   if (at.module != nullptr) return at.module->digital(static_cast<std::uint8_t>(at.number));
   if (at.drive != nullptr) return (at.drive->digital_outputs() >> at.number & 1) != 0;
   return at.chip != nullptr ? at.chip->output(at.number)
@@ -324,6 +360,7 @@ SimulatedEncoder* World::encoder(std::string_view reference) { return found(enco
 ModbusStation* World::modbus(std::string_view station) { return found(units_, station); }
 MockModbusLine* World::line_of(std::string_view station) { return found(line_of_, station); }
 MockGpio* World::chip(std::string_view station) { return found(chips_, station); }
+SimulatedBoard* World::board(std::string_view station) { return found(boards_, station); }
 
 World::Contact World::contact(std::string_view point) {
   for (const Input& i : inputs_)
@@ -341,6 +378,7 @@ double World::axis_position(int axis) const {
   const Axis& a = axes_[static_cast<std::size_t>(axis)];
   const WorldAxis& s = a.settings;
   if (a.drive != nullptr) return a.drive->revolutions() * s.units_per_revolution;
+  if (a.amplifier != nullptr) return a.amplifier->revolutions() * s.units_per_revolution;
   return s.start + static_cast<double>(a.reported_counts) / s.counts_per_revolution * s.units_per_revolution;
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/mock/board/simulated_board.hpp"
 #include "drivers/mock/can/can_segment.hpp"
 #include "drivers/mock/drive/simulated_drive.hpp"
 #include "drivers/mock/gpio/mock_gpio.hpp"
@@ -27,6 +28,8 @@ struct WorldAxis {
   double units_per_revolution = 0.0;   ///< mm or degrees, with the sign of the direction
   double counts_per_revolution = 1.0;  ///< of what is reported
   double start = 0.0;                  ///< mm or degrees, machine coordinates, at power-on
+  std::string board;                   ///< of an axis on a simulated board: its station ...
+  std::size_t channel = 0;             ///< ... and channel
 };
 
 /// A point of a device of the world: its name, how a value becomes a level on the wire, and its channel.
@@ -86,6 +89,12 @@ class World {
   void add_encoder(const std::string& reference, const std::string& name,
                    const SimulatedEncoderConfig& config);
   void add_axis(const WorldAxis& axis);
+  /// A USB board; its axes are added behind it.
+  void add_board(const std::string& station, const SimulatedBoardConfig& config);
+  /// What is wired to a board: contacts, outputs, and analog inputs with their raw values at first.
+  void add_board_contacts(const std::string& station, std::vector<NodeContact> inputs,
+                          const std::vector<WorldPoint>& outputs,
+                          const std::vector<std::pair<WorldPoint, double>>& values);
   /// A GPIO chip. `source`: index in image.sources.
   void add_chip(const std::string& station, std::vector<GpioInput> inputs, std::vector<GpioOutput> outputs,
                 int source);
@@ -135,6 +144,7 @@ class World {
   ModbusStation* modbus(std::string_view station);
   MockModbusLine* line_of(std::string_view station);
   MockGpio* chip(std::string_view station);
+  SimulatedBoard* board(std::string_view station);
   /// The contact behind a digital input.
   struct Contact {
     MockGpio* chip = nullptr;  ///< nullptr: the point has none
@@ -152,7 +162,8 @@ class World {
   };
   struct Axis {
     WorldAxis settings;
-    const SimulatedDrive* drive = nullptr;  ///< nullptr: outside
+    const SimulatedDrive* drive = nullptr;  ///< nullptr: on a board, or outside
+    const Amplifier* amplifier = nullptr;   ///< on a channel of a board
     std::int64_t reported_counts = 0;
   };
   /// Where a point ends: channel `number` of one of these.
@@ -162,6 +173,7 @@ class World {
     SimulatedIoModule* module = nullptr;
     SimulatedEncoder* encoder = nullptr;
     const SimulatedDrive* drive = nullptr;
+    SimulatedBoard* board = nullptr;
     std::size_t number = 0;
   };
   struct Input {
@@ -182,7 +194,8 @@ class World {
     MockGpio* contacts;
     SimulatedDrive* drive;
     SimulatedIoModule* module;
-    std::vector<int> channels;
+    SimulatedBoard* board = nullptr;
+    std::vector<int> channels{};
   };
   struct Turret {
     Indexer indexer;
@@ -220,6 +233,7 @@ class World {
   std::vector<Axis> axes_;
   std::vector<std::unique_ptr<MockGpio>> gpios_;
   std::vector<NodeWires> node_wires_;
+  std::map<std::string, std::unique_ptr<SimulatedBoard>, std::less<>> boards_;  ///< by station
   std::vector<std::unique_ptr<MockModbusLine>> lines_;
   std::map<std::string, MockGpio*, std::less<>> chips_;          ///< by station
   std::map<std::string, ModbusStation*, std::less<>> units_;     ///< by station

@@ -35,8 +35,8 @@ Configuration configuration(const BoardConfig& config);
 
 /// A board as a device of the cycle: one command at the end of each cycle, whose answer is read at the begin
 /// of the next one. Its inputs are of the time at which it took the command; edges have their own. A board
-/// that is silent for longer than its watchdog, has tripped, or is not the one that the machine file wants
-/// gives its inputs their values of loss, its source is bad, and its axes are offline or in fault.
+/// that is silent for longer than half of its watchdog, has tripped, or is not the one that the machine file
+/// wants gives its inputs their values of loss, its source is bad, and its axes are offline or in fault.
 class BoardDevice final : public image::CycleDevice {
  public:
   /// Not real-time safe.

@@ -12,7 +12,7 @@ constexpr image::Nanoseconds kAskAgain = 100 * image::kMillisecond;
 }  // namespace
 
 Session::Session(const Configuration& configuration) noexcept
-    : configuration_(configuration), watchdog_ns_(configuration.watchdog_us * image::kMicrosecond) {}
+    : configuration_(configuration), silence_ns_(configuration.watchdog_us * image::kMicrosecond / 2) {}
 
 void Session::begin() noexcept {
   state_ = SessionState::silent;
@@ -102,7 +102,7 @@ image::Nanoseconds Session::machine_time(std::uint32_t t_us) const noexcept {
 std::size_t Session::next(const Command& command, image::Nanoseconds t,
                           std::span<std::uint8_t> buffer) noexcept {
   if (state_ == SessionState::refused) return 0;
-  if (state_ == SessionState::running && t - heard_ns_ > watchdog_ns_) begin();
+  if (state_ == SessionState::running && t - heard_ns_ > silence_ns_) begin();
   if (state_ == SessionState::running) {
     sent_ns_[++sequence_ % kSent] = t;
     return put({Kind::cycle, sequence_}, command, buffer);

@@ -10,7 +10,7 @@
 namespace servogate::board {
 
 enum class SessionState : std::uint8_t {
-  silent,       ///< nothing was heard of the board yet, or for longer than its watchdog
+  silent,       ///< nothing was heard of the board yet, or for longer than half of its watchdog
   configuring,  ///< it has described itself
   running,      ///< it answers each command
   refused,      ///< it speaks another protocol or cannot do what the machine file wants
@@ -50,7 +50,7 @@ class Session {
   void begin() noexcept;
 
   Configuration configuration_;
-  image::Nanoseconds watchdog_ns_;
+  image::Nanoseconds silence_ns_;  ///< half of the watchdog: axes stop before it takes their power
   SessionState state_ = SessionState::silent;
   Description description_;
   Configured configured_;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "drivers/gsusb/libusb_port.hpp"
+#include "drivers/gsusb/adapters.hpp"
 #include "drivers/slcan/slcan_bus.hpp"
 #include "firmware_if/canopen/301/cob_id.hpp"
 #include "firmware_if/canopen/master/master_claim.hpp"
@@ -102,7 +102,7 @@ Opened open_gsusb(std::string_view rest, const CanTransportOptions& options, dri
       return std::nullopt;
     }
   }
-  auto port = gsusb::open_libusb(config.adapter, why);
+  auto port = usb::open_libusb(gsusb::adapter_kind(), config.adapter, why);
   if (port == nullptr) return std::nullopt;
   auto bus = gsusb::GsUsbBus::open(std::move(port), config, why);
   if (bus == nullptr) return std::nullopt;

@@ -398,7 +398,9 @@ image::AlarmNames Control::alarm_names() const {
   for (const machine::AxisConfig& a : m.axes) names.diameters.push_back(a.diameter);
   for (const machine::BusConfig& b : m.buses) names.devices.push_back(b.name);
   for (const machine::StationConfig& s : m.stations) names.sources.push_back(source_name(m, s));
+  for (const machine::StationConfig& s : m.stations) names.devices.push_back(s.name);  // behind the buses
   names.error_text = [this](const image::AlarmRecord& r, std::uint16_t code, text::Language language) {
+    if (on_board(loaded_.machine, r.part)) return board_words(code, language);
     const machine::DeviceConfig* device = device_of(r);
     if (device != nullptr && device->kind == machine::DeviceKind::inverter)
       return inverter_words(*device, r.number, code, language);
@@ -406,6 +408,7 @@ image::AlarmNames Control::alarm_names() const {
     return own.empty() ? text::render(canopen::error_code_text(code), {}, language) : std::string(own);
   };
   names.part_name = [this](const image::PartPlace& place) {
+    if (on_board(loaded_.machine, place)) return board_channel_name(loaded_.machine, place);
     const machine::NodeConfig* n = node_of(place);
     return n == nullptr ? std::string()
                         : loaded_.machine.buses[static_cast<std::size_t>(place.device)].name + "." + n->name;

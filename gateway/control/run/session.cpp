@@ -8,6 +8,7 @@
 
 #include "gateway/control/run/words/alarm_entries.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
+#include "machine/keys/sections.hpp"
 
 namespace servogate::gateway {
 
@@ -199,7 +200,8 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
   for (const machine::StationConfig& s : m.stations)  // what comes over a segment is in its nodes
     if (!s.over_bus())
       r.provenance.buses.push_back(
-          {s.name, s.url, s.mock(), s.kind == machine::StationKind::modbus ? "modbus" : "gpio"});
+          {s.name, s.url, s.mock(),
+           std::string(machine::choices_of<machine::StationKind>()[static_cast<std::size_t>(s.kind)])});
   for (std::size_t s = 0; s < control_.suppliers().size(); ++s) {
     const canopen::Segment& segment = control_.suppliers()[s]->segment();
     for (std::size_t n = 0; n < segment.config().nodes.size(); ++n) {

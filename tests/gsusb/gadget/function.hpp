@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/gsusb/simulated_adapter.hpp"
+#include "tests/usb_gadget/functionfs.hpp"
 
 struct usb_ctrlrequest;
 
@@ -16,7 +17,6 @@ class GadgetFunction {
  public:
   /// `folder` is where functionfs is mounted. Throws std::system_error.
   GadgetFunction(const std::string& folder, SimulatedAdapter& adapter);
-  ~GadgetFunction();
   GadgetFunction(const GadgetFunction&) = delete;
   GadgetFunction& operator=(const GadgetFunction&) = delete;
 
@@ -34,7 +34,7 @@ class GadgetFunction {
 
   SimulatedAdapter& adapter_;
   std::mutex mutex_;  ///< of adapter_
-  int requests_ = -1, in_ = -1, out_ = -1;
+  gadget::FunctionFs function_;
   std::atomic<bool> ending_{false};
 };
 

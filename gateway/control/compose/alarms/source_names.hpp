@@ -16,4 +16,12 @@ std::string source_name(const machine::MachineConfig& machine, const machine::St
 std::string inverter_words(const machine::DeviceConfig& device, image::AlarmNumber number, std::uint16_t code,
                            text::Language language);
 
+/// The place of an amplifier on a channel of a board: stations count behind the buses.
+image::PartPlace board_place(const machine::MachineConfig& m, const machine::BoardChannelConfig& channel);
+bool on_board(const machine::MachineConfig& m, const image::PartPlace& place);
+/// "cabinet.1": station and channel.
+std::string board_channel_name(const machine::MachineConfig& m, const image::PartPlace& place);
+/// What the error code of such an amplifier means.
+std::string board_words(std::uint16_t code, text::Language language);
+
 }  // namespace servogate::gateway

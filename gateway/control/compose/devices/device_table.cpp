@@ -2,6 +2,7 @@
 #include "gateway/control/compose/devices/device_table.hpp"
 
 #include "firmware_if/text/finding.hpp"
+#include "gateway/control/compose/devices/board_device.hpp"
 #include "gateway/control/compose/devices/gpio_device.hpp"
 #include "gateway/control/compose/devices/modbus_device.hpp"
 #include "gateway/control/compose/devices/world_device.hpp"
@@ -14,6 +15,7 @@ bool not_empty(std::string_view rest) { return !rest.empty(); }
 
 const std::string kChipForm = text::both("chip:LABEL", "chip:МЕТКА");
 const std::string kMockForm = text::both("mock:NAME", "mock:ИМЯ");
+const std::string kUsbForm = text::both("usb:SERIAL, usb:any", "usb:СЕРИЙНЫЙ, usb:any");
 const std::string kTcpForm = text::both("tcp:HOST:PORT", "tcp:ХОСТ:ПОРТ");
 
 const DeviceRow kRows[] = {
@@ -22,6 +24,8 @@ const DeviceRow kRows[] = {
     {DeviceKind::line, "rtu:", "rtu:/dev/...", false, is_serial_device, open_modbus, serial_available},
     {DeviceKind::chip, "mock:", kMockForm, true, not_empty, open_world_device},
     {DeviceKind::chip, "chip:", kChipForm, false, not_empty, open_gpio_device, gpio_available},
+    {DeviceKind::board, "mock:", kMockForm, true, not_empty, open_mock_board},
+    {DeviceKind::board, "usb:", kUsbForm, false, not_empty, open_usb_board, usb_board_available},
 };
 
 }  // namespace

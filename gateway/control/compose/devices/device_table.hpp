@@ -12,15 +12,15 @@
 
 namespace servogate::gateway {
 
-/// What is opened: a Modbus line with its stations, or the GPIO chip of one station.
-enum class DeviceKind { line, chip };
+/// What is opened: a Modbus line with its stations, or the GPIO chip or the board of one station.
+enum class DeviceKind { line, chip, board };
 
 /// One device of the machine file and what its row may use to open it.
 struct DeviceRequest {
   const machine::LoadResult& loaded;
   mock::World& world;       ///< everything simulated, made before
-  std::size_t station = 0;  ///< of the machine file: the chip's, or the first one of the line
-  const machine::LineConfig* line = nullptr;  ///< nullptr: a chip
+  std::size_t station = 0;  ///< of the machine file: the chip's or the board's, or the first one of the line
+  const machine::LineConfig* line = nullptr;  ///< nullptr: a chip or a board
   std::string_view rest;                      ///< of the url, behind the scheme
 
   const machine::StationConfig& first() const { return loaded.machine.stations[station]; }

@@ -28,9 +28,10 @@ std::vector<Place> places_of(const machine::MachineConfig& m) {
   for (std::size_t s = 0; s < m.stations.size(); ++s) {
     const machine::StationConfig& station = m.stations[s];
     if (station.over_bus()) continue;
-    if (station.kind == machine::StationKind::gpio) {
-      places.push_back(
-          {DeviceKind::chip, "station." + std::to_string(s) + ".url", station.name, station.url, s, nullptr});
+    const bool board = station.kind == machine::StationKind::board;
+    if (station.kind == machine::StationKind::gpio || board) {
+      places.push_back({board ? DeviceKind::board : DeviceKind::chip, "station." + std::to_string(s) + ".url",
+                        station.name, station.url, s, nullptr});
       continue;
     }
     int index = -1;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "gateway/control/compose/alarms/source_names.hpp"
 #include "machine/consequences.hpp"
 
 namespace servogate::gateway {
@@ -137,6 +138,16 @@ void put_inverter(const machine::LoadResult& loaded, const machine::SpindleConfi
   }
 }
 
+/// Cycles without an answer of a board: it counts as gone after half of its watchdog, so this is never
+/// reached.
+std::uint32_t missed_limit(const machine::MachineConfig& m, const std::string& board) {
+  constexpr std::uint32_t kFewest = 2;
+  for (const machine::StationConfig& s : m.stations)
+    if (s.name == board)
+      return std::max(kFewest, static_cast<std::uint32_t>(s.watchdog / m.control.cycle_time));
+  return kFewest;
+}
+
 image::PartPlace drive_place(const machine::MachineConfig& m, std::string_view reference) {
   int bus = -1;
   const machine::NodeConfig* node = m.node(reference, &bus);
@@ -210,6 +221,8 @@ axis::AxisConfig axis_config(const machine::LoadResult& loaded, const machine::A
       c.missed_limit = 0;
     c.loss_reaction = loss_reaction(node->loss_reaction);
   }
+  if (a.board.present()) c.drive = board_place(m, a.board);
+  if (a.board.present()) c.missed_limit = missed_limit(m, a.board.station);
   return c;
 }
 

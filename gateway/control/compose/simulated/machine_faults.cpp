@@ -65,8 +65,9 @@ std::optional<MachineFaults::Target> MachineFaults::find(std::string_view device
   target.name = device;
   target.station = world_.modbus(device);
   target.chip = world_.chip(device);
+  target.board = world_.board(device);
   target.devices = target.station != nullptr ? bit(Device::station) : bit(Device::chip);
-  if (target.station != nullptr || target.chip != nullptr) return target;
+  if (target.station != nullptr || target.chip != nullptr || target.board != nullptr) return target;
   target.contact = world_.contact(device);
   target.devices = target.contact.chip != nullptr ? bit(Device::input) : bit(Device::control);
   return target.contact.chip != nullptr || has_control(device) ? std::optional(target) : std::nullopt;
@@ -81,7 +82,9 @@ std::string MachineFaults::names() const {
     for (const machine::NodeConfig& node : bus.nodes) add(bus.name + "." + node.name);
   }
   for (const machine::StationConfig& station : machine_.stations) {
-    if (world_.modbus(station.name) != nullptr || world_.chip(station.name) != nullptr) add(station.name);
+    if (world_.modbus(station.name) != nullptr || world_.chip(station.name) != nullptr ||
+        world_.board(station.name) != nullptr)
+      add(station.name);
     for (const machine::PointConfig& point : station.points)
       if (world_.contact(point.name).chip != nullptr) add(point.name);
   }
@@ -210,6 +213,8 @@ void MachineFaults::end_all(const Target& target, std::optional<Kind> kind) {
 void MachineFaults::apply(const Target& target, const fault::Fault& fault, bool begins) {
   if (target.chip != nullptr && fault.kind == Kind::edges_lost) return target.chip->lose_edges(begins);
   if (target.chip != nullptr) return target.chip->plug(!begins);
+  if (target.board != nullptr && fault.kind == Kind::edges_lost) return target.board->lose_edges(begins);
+  if (target.board != nullptr) return target.board->plug(!begins);
   if (target.encoder != nullptr && fault.kind == Kind::unreadable)
     return target.encoder->set_unreadable(begins);
   if (target.encoder != nullptr && supply_or_swap(*target.encoder, fault, begins)) return;

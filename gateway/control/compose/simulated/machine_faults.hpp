@@ -48,6 +48,7 @@ class MachineFaults {
     mock::SimulatedIoModule* module = nullptr;
     mock::ModbusStation* station = nullptr;
     mock::MockGpio* chip = nullptr;
+    mock::SimulatedBoard* board = nullptr;
     mock::World::Contact contact = {};
   };
   struct Wish {

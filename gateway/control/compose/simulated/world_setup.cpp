@@ -64,6 +64,8 @@ class Setup {
 
   void all() {
     for (const machine::BusConfig& bus : m_.buses) add_bus(bus);
+    for (const machine::StationConfig& station : m_.stations)
+      if (station.kind == machine::StationKind::board && station.mock()) add_board(station);
     for (const machine::AxisConfig& axis : m_.axes) add_axis(axis);
     for (std::size_t s = 0; s < m_.stations.size(); ++s) add_station(m_.stations[s], static_cast<int>(s));
     for (const machine::SimulatedIndexer& indexer : m_.simulation.indexers) add_indexer(indexer);
@@ -103,6 +105,9 @@ class Setup {
     axis.counts_per_revolution = static_cast<double>(std::max<std::int64_t>(1, config.counts_per_rev));
     for (const machine::SimulatedDrive& s : m_.simulation.drives)
       if (s.node == config.drive && !s.absolute_encoder) axis.start = s.start;
+    axis.board = config.board.station;
+    axis.channel = static_cast<std::size_t>(config.board.channel);
+    if (config.board.present()) axis.start = amplifier_of(config).start;
     world_.add_axis(axis);
   }
 
@@ -110,6 +115,7 @@ class Setup {
     if (station.over_bus()) return add_node_wires(station);
     if (!station.mock()) return;
     if (station.kind == machine::StationKind::gpio) return add_chip(station, source);
+    if (station.kind == machine::StationKind::board) return add_board_wires(station);
     // A line stands where its first station does.
     const machine::LineConfig* line = m_.line(station.line);
     if (line != nullptr && stations_of_line(loaded_, line->name).front().station == &station) add_line(*line);
@@ -147,6 +153,54 @@ class Setup {
       else
         outputs.push_back({p.name, point_rule(p)});
     world_.add_chip(station.name, std::move(inputs), std::move(outputs), source);
+  }
+
+  machine::SimulatedAmplifier amplifier_of(const machine::AxisConfig& a) const {
+    for (const machine::SimulatedAmplifier& s : m_.simulation.amplifiers)
+      if (s.axis == a.letter) return s;
+    return {};
+  }
+
+  /// The motor turns as the signs of the machine file say: rising counts are rising coordinates after
+  /// `direction`.
+  void add_board(const machine::StationConfig& station) {
+    constexpr double kTurnsOfMinute = 60.0;
+    mock::SimulatedBoardConfig config;
+    config.serial = station.name;
+    for (const machine::AxisConfig& a : m_.axes) {
+      if (a.board.station != station.name) continue;
+      const machine::SimulatedAmplifier s = amplifier_of(a);
+      mock::AmplifierConfig& amplifier =
+          config.amplifiers[static_cast<std::size_t>(a.board.channel)].emplace();
+      amplifier.counts_per_rev = a.counts_per_rev;
+      if (a.board.output == machine::BoardOutput::step)
+        amplifier.steps_per_rev =
+            a.board.feedback == machine::BoardFeedback::steps ? a.counts_per_rev : a.board.steps_per_rev;
+      amplifier.pull_out = s.pull_out_speed / kTurnsOfMinute;
+      amplifier.full_speed = a.board.full_speed / kTurnsOfMinute;
+      amplifier.lag_s = s.lag;
+      amplifier.drift = s.drift / 100.0;
+      amplifier.reversed = a.board.reversed;
+      if (const double turn = units_per_revolution(a); turn != 0.0) amplifier.start = s.start / turn;
+      amplifier.zero_mark = s.zero_mark / static_cast<double>(std::max<std::int64_t>(1, a.counts_per_rev));
+    }
+    world_.add_board(station.name, config);
+  }
+
+  void add_board_wires(const machine::StationConfig& station) {
+    std::vector<mock::NodeContact> inputs;
+    std::vector<mock::WorldPoint> outputs;
+    std::vector<std::pair<mock::WorldPoint, double>> values;
+    for (const machine::PointConfig& p : station.points) {
+      if (p.number < 0) continue;
+      if (p.channel == machine::ChannelKind::di)
+        inputs.push_back({contact(p), p.number});
+      else if (p.channel == machine::ChannelKind::dq)
+        outputs.push_back({p.name, point_rule(p), p.number});
+      else if (p.channel == machine::ChannelKind::ai)
+        values.push_back({{p.name, point_rule(p), p.number}, initial(p.name).value_or(0.0)});
+    }
+    world_.add_board_contacts(station.name, std::move(inputs), outputs, values);
   }
 
   void add_node_wires(const machine::StationConfig& station) {

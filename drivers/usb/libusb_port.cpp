@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/gsusb/libusb_port.hpp"
+#include "drivers/usb/libusb_port.hpp"
 
 #include <libusb.h>
 #include <poll.h>
@@ -16,46 +16,28 @@
 
 #include "drivers/clock.hpp"
 
-namespace servogate::gsusb {
+namespace servogate::usb {
 namespace {
 
-const text::Entry kNoUsb{"gsusb.no-usb", "this computer has no USB that can be used: {0}",
+const text::Entry kNoUsb{"usb.no-usb", "this computer has no USB that can be used: {0}",
                          "на этом компьютере нет доступного USB: {0}"};
-const text::Entry kNoAdapter{"gsusb.no-adapter", "there is no gs_usb adapter '{0}'; plugged in: {1}",
-                             "нет адаптера gs_usb «{0}»; подключены: {1}"};
-const text::Entry kSeveral{"gsusb.several",
-                           "several gs_usb adapters are plugged in: {0}; say which: gsusb:SERIAL",
-                           "подключено несколько адаптеров gs_usb: {0}; укажите один: gsusb:СЕРИЙНЫЙ"};
+const text::Entry kNoDevice{"usb.no-device", "there is no {0} '{1}'; plugged in: {2}",
+                            "{0} «{1}» не найдено; подключены: {2}"};
+const text::Entry kSeveral{"usb.several", "several devices of the kind {0} are plugged in: {1}; say which: {2}:SERIAL",
+                           "подключено несколько устройств вида «{0}»: {1}; укажите одно: {2}:СЕРИЙНЫЙ"};
 const text::Entry kNoRight{
-    "gsusb.no-right",
-    "the adapter {0} may not be used by this user; a file /etc/udev/rules.d/70-gsusb.rules with the line "
-    "SUBSYSTEM==\"usb\", ATTRS{idVendor}==\"{1}\", ATTRS{idProduct}==\"{2}\", MODE=\"0660\", "
-    "TAG+=\"uaccess\" lets it, after the adapter is plugged in again",
-    "адаптер {0} недоступен этому пользователю; файл /etc/udev/rules.d/70-gsusb.rules со строкой "
-    "SUBSYSTEM==\"usb\", ATTRS{idVendor}==\"{1}\", ATTRS{idProduct}==\"{2}\", MODE=\"0660\", "
+    "usb.no-right",
+    "the {0} {1} may not be used by this user; a file /etc/udev/rules.d/70-servogate-usb.rules with the line "
+    "SUBSYSTEM==\"usb\", ATTRS{idVendor}==\"{2}\", ATTRS{idProduct}==\"{3}\", MODE=\"0660\", "
+    "TAG+=\"uaccess\" lets it, after the device is plugged in again",
+    "{0} {1}: нет доступа у этого пользователя; файл /etc/udev/rules.d/70-servogate-usb.rules со строкой "
+    "SUBSYSTEM==\"usb\", ATTRS{idVendor}==\"{2}\", ATTRS{idProduct}==\"{3}\", MODE=\"0660\", "
     "TAG+=\"uaccess\" даст доступ после нового подключения"};
-const text::Entry kKernelHasIt{
-    "gsusb.kernel-has-it",
-    "the kernel's own driver has the adapter {0}: use its interface, socketcan:can0 (`ip link` names it), or "
-    "take the driver away: sudo modprobe -r gs_usb",
-    "адаптером {0} управляет драйвер ядра: используйте его интерфейс, socketcan:can0 (имя покажет `ip "
-    "link`), "
-    "либо выгрузите драйвер: sudo modprobe -r gs_usb"};
-const text::Entry kBusy{"gsusb.busy", "another program has the adapter {0}",
-                        "адаптер {0} занят другой программой"};
-const text::Entry kOpen{"gsusb.open", "the adapter {0} cannot be opened: {1}",
-                        "адаптер {0} не открывается: {1}"};
+const text::Entry kBusy{"usb.busy", "another program has the {0} {1}", "{0} {1}: занято другой программой"};
+const text::Entry kOpen{"usb.open", "the {0} {1} cannot be opened: {2}", "{0} {1} не открывается: {2}"};
 
-/// Adapters that speak the protocol on interface 0.
-struct Product {
-  std::uint16_t vendor, product;
-};
-constexpr Product kProducts[] = {
-    {0x1D50, 0x606F}, {0x1209, 0x2323}, {0x1CD2, 0x606F}, {0x16D0, 0x10B8}, {0x16D0, 0x0F30},
-};
-constexpr int kInterface = 0;
 /// A request that got no answer is repeated as long as USB 2.0, 9.2.6.1 gives a device: a busy computer, or a
-/// hub that recovers, is no dead adapter.
+/// hub that recovers, is no dead device.
 constexpr unsigned kAnswer_ms = 1500;
 constexpr image::Nanoseconds kPatience = 5 * image::kSecond;
 constexpr auto kRecovery = std::chrono::milliseconds(200);
@@ -84,7 +66,13 @@ Context open_context(int& error) {
   return Context(error == 0 ? context : nullptr);
 }
 
-/// An adapter that is plugged in; `handle` is empty where it may not be opened.
+/// The interface of a device and its in and out bulk pipes; number -1: it has none that fits.
+struct Pipes {
+  int number = -1;
+  std::uint8_t in = 0, out = 0;
+};
+
+/// A device that is plugged in; `handle` is empty where it may not be opened.
 struct Found {
   std::string serial = "?";
   libusb_device_descriptor descriptor{};
@@ -92,17 +80,45 @@ struct Found {
   int error = 0;
 };
 
-std::vector<Found> find(libusb_context* context) {
+Pipes pipes_of(const libusb_interface_descriptor& i) {
+  Pipes pipes;
+  for (int e = 0; e < i.bNumEndpoints; ++e) {
+    if ((i.endpoint[e].bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK) continue;
+    const std::uint8_t address = i.endpoint[e].bEndpointAddress;
+    std::uint8_t& pipe = (address & LIBUSB_ENDPOINT_IN) != 0 ? pipes.in : pipes.out;
+    if (pipe == 0) pipe = address;
+  }
+  if (pipes.in != 0 && pipes.out != 0) pipes.number = i.bInterfaceNumber;
+  return pipes;
+}
+
+Pipes find_pipes(libusb_device* device, const DeviceKind& kind) {
+  libusb_config_descriptor* config = nullptr;
+  Pipes pipes;
+  if (libusb_get_active_config_descriptor(device, &config) != 0) return pipes;
+  for (int n = 0; n < config->bNumInterfaces && pipes.number < 0; ++n) {
+    if (config->interface[n].num_altsetting < 1) continue;
+    const libusb_interface_descriptor& i = config->interface[n].altsetting[0];
+    const InterfaceClass here{i.bInterfaceClass, i.bInterfaceSubClass, i.bInterfaceProtocol};
+    if (kind.interface.code == 0 ? n == 0 : here == kind.interface) pipes = pipes_of(i);
+  }
+  libusb_free_config_descriptor(config);
+  return pipes;
+}
+
+bool fits(libusb_device* device, const libusb_device_descriptor& d, const DeviceKind& kind) {
+  if (kind.interface.code != 0) return find_pipes(device, kind).number >= 0;
+  return std::any_of(kind.products.begin(), kind.products.end(),
+                     [&](const Product& p) { return p.vendor == d.idVendor && p.product == d.idProduct; });
+}
+
+std::vector<Found> find(libusb_context* context, const DeviceKind& kind) {
   std::vector<Found> all;
   libusb_device** list = nullptr;
   const ssize_t count = libusb_get_device_list(context, &list);
   for (ssize_t i = 0; i < count; ++i) {
     Found f;
-    if (libusb_get_device_descriptor(list[i], &f.descriptor) != 0) continue;
-    if (std::none_of(std::begin(kProducts), std::end(kProducts), [&](const Product& p) {
-          return p.vendor == f.descriptor.idVendor && p.product == f.descriptor.idProduct;
-        }))
-      continue;
+    if (libusb_get_device_descriptor(list[i], &f.descriptor) != 0 || !fits(list[i], f.descriptor, kind)) continue;
     libusb_device_handle* handle = nullptr;
     f.error = libusb_open(list[i], &handle);
     if (f.error == 0) {
@@ -131,28 +147,10 @@ std::string hex(std::uint16_t word) {
   return text.data();
 }
 
-/// The in and out bulk pipes of the interface. False: it has not both.
-bool find_pipes(libusb_device* device, std::uint8_t& in, std::uint8_t& out) {
-  libusb_config_descriptor* config = nullptr;
-  if (libusb_get_active_config_descriptor(device, &config) != 0) return false;
-  in = out = 0;
-  if (config->bNumInterfaces > kInterface && config->interface[kInterface].num_altsetting > 0) {
-    const libusb_interface_descriptor& i = config->interface[kInterface].altsetting[0];
-    for (int e = 0; e < i.bNumEndpoints; ++e) {
-      if ((i.endpoint[e].bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK) continue;
-      const std::uint8_t address = i.endpoint[e].bEndpointAddress;
-      std::uint8_t& pipe = (address & LIBUSB_ENDPOINT_IN) != 0 ? in : out;
-      if (pipe == 0) pipe = address;
-    }
-  }
-  libusb_free_config_descriptor(config);
-  return in != 0 && out != 0;
-}
-
 class LibusbPort final : public UsbPort {
  public:
-  LibusbPort(Context context, Handle handle, std::uint8_t in, std::uint8_t out, int wake)
-      : context_(std::move(context)), handle_(std::move(handle)), in_(in), out_(out), wake_(wake) {}
+  LibusbPort(Context context, Handle handle, const Pipes& pipes, int wake)
+      : context_(std::move(context)), handle_(std::move(handle)), pipes_(pipes), wake_(wake) {}
   ~LibusbPort() override;
 
   bool control_out(std::uint8_t request, std::uint16_t value, std::span<const std::uint8_t> data) override {
@@ -198,7 +196,7 @@ class LibusbPort final : public UsbPort {
 
   Context context_;
   Handle handle_;
-  std::uint8_t in_, out_;
+  Pipes pipes_;
   int wake_;
   PortListener* listener_ = nullptr;
   std::array<Buffer, kReads> reads_;
@@ -219,7 +217,7 @@ LibusbPort::~LibusbPort() {
     timeval slice{0, 10'000};
     libusb_handle_events_timeout_completed(context_.get(), &slice, nullptr);
   }
-  libusb_release_interface(handle_.get(), kInterface);
+  libusb_release_interface(handle_.get(), pipes_.number);
   if (under_way_ > 0) {
     // The kernel still owns their memory: better kept than freed under it.
     for (Buffer& b : reads_) (void)b.transfer.release();
@@ -233,7 +231,7 @@ std::size_t LibusbPort::control(std::uint8_t direction, std::uint8_t request, st
   const image::Nanoseconds until = drivers::clock_ns(CLOCK_MONOTONIC) + kPatience;
   int got = 0;
   for (;; std::this_thread::sleep_for(kRecovery)) {
-    got = libusb_control_transfer(handle_.get(), direction, request, value, kInterface, data.data(),
+    got = libusb_control_transfer(handle_.get(), direction, request, value, static_cast<std::uint16_t>(pipes_.number), data.data(),
                                   static_cast<std::uint16_t>(data.size()), kAnswer_ms);
     const bool silent = got == LIBUSB_ERROR_TIMEOUT || got == LIBUSB_ERROR_IO;
     if (!silent || drivers::clock_ns(CLOCK_MONOTONIC) > until) break;
@@ -255,12 +253,12 @@ bool LibusbPort::start(std::size_t bytes, PortListener& listener) {
   for (std::size_t i = 0; i < kSlots; ++i) {
     Buffer& b = writes_[i];
     if (!set_up(b, i)) return false;
-    libusb_fill_bulk_transfer(b.transfer.get(), handle_.get(), out_, b.bytes.data(), 0, &has_written, &b, 0);
+    libusb_fill_bulk_transfer(b.transfer.get(), handle_.get(), pipes_.out, b.bytes.data(), 0, &has_written, &b, 0);
   }
   for (std::size_t i = 0; i < kReads; ++i) {
     Buffer& b = reads_[i];
     if (!set_up(b, i)) return false;
-    libusb_fill_bulk_transfer(b.transfer.get(), handle_.get(), in_, b.bytes.data(),
+    libusb_fill_bulk_transfer(b.transfer.get(), handle_.get(), pipes_.in, b.bytes.data(),
                               static_cast<int>(kReadBytes), &has_read, &b, 0);
     if (!submit(b)) return false;
   }
@@ -328,51 +326,56 @@ bool LibusbPort::serve(image::Nanoseconds at_most) noexcept {
 
 }  // namespace
 
-std::vector<std::string> adapters() {
+std::vector<std::string> serial_numbers(const DeviceKind& kind) {
   std::vector<std::string> serials;
   int error = 0;
   if (const Context context = open_context(error))
-    for (const Found& f : find(context.get())) serials.push_back(f.serial);
+    for (const Found& f : find(context.get(), kind)) serials.push_back(f.serial);
   return serials;
 }
 
-std::unique_ptr<UsbPort> open_libusb(const std::string& serial, drivers::Notice& why) {
+std::unique_ptr<UsbPort> open_libusb(const DeviceKind& kind, const std::string& serial, drivers::Notice& why) {
+  const std::string name(kind.name);
   int error = 0;
   Context context = open_context(error);
   if (!context) {
     why = {&kNoUsb, {libusb_error_name(error)}};
     return nullptr;
   }
-  std::vector<Found> all = find(context.get());
+  std::vector<Found> all = find(context.get(), kind);
   const bool any = serial == "any";
   auto at = std::find_if(all.begin(), all.end(), [&](const Found& f) { return any || f.serial == serial; });
   // One that may not be opened hides its number: it may be the one.
   if (at == all.end()) at = std::find_if(all.begin(), all.end(), [](const Found& f) { return !f.handle; });
   if (at == all.end()) {
-    why = {&kNoAdapter, {serial, names(all)}};
-  } else if (any && all.size() > 1) {
-    why = {&kSeveral, {names(all)}};
-  } else if (!at->handle && at->error == LIBUSB_ERROR_ACCESS) {
-    why = {&kNoRight, {serial, hex(at->descriptor.idVendor), hex(at->descriptor.idProduct)}};
-  } else if (!at->handle) {
-    why = {&kOpen, {serial, libusb_error_name(at->error)}};
-  } else if (libusb_kernel_driver_active(at->handle.get(), kInterface) == 1) {
-    why = {&kKernelHasIt, {at->serial}};
-  } else {
-    Handle handle = std::move(at->handle);
-    const std::string name = at->serial;
-    all.clear();
-    error = libusb_claim_interface(handle.get(), kInterface);
-    std::uint8_t in = 0, out = 0;
-    const int wake = error == 0 && find_pipes(libusb_get_device(handle.get()), in, out)
-                         ? eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)
-                         : -1;
-    if (wake >= 0) return std::make_unique<LibusbPort>(std::move(context), std::move(handle), in, out, wake);
-    why = error == LIBUSB_ERROR_BUSY ? drivers::Notice{&kBusy, {name}}
-                                     : drivers::Notice{&kOpen, {name, libusb_error_name(error)}};
+    why = {&kNoDevice, {name, serial, names(all)}};
+    return nullptr;
   }
+  if (any && all.size() > 1) {
+    why = {&kSeveral, {name, names(all), std::string(kind.scheme)}};
+    return nullptr;
+  }
+  if (!at->handle) {
+    why = at->error == LIBUSB_ERROR_ACCESS
+              ? drivers::Notice{&kNoRight, {name, serial, hex(at->descriptor.idVendor), hex(at->descriptor.idProduct)}}
+              : drivers::Notice{&kOpen, {name, serial, libusb_error_name(at->error)}};
+    return nullptr;
+  }
+  const Pipes pipes = find_pipes(libusb_get_device(at->handle.get()), kind);
+  if (kind.kernel_has_it != nullptr && pipes.number >= 0 &&
+      libusb_kernel_driver_active(at->handle.get(), pipes.number) == 1) {
+    why = {kind.kernel_has_it, {at->serial}};
+    return nullptr;
+  }
+  Handle handle = std::move(at->handle);
+  const std::string number = at->serial;
   all.clear();
+  error = pipes.number >= 0 ? libusb_claim_interface(handle.get(), pipes.number) : LIBUSB_ERROR_NOT_FOUND;
+  const int wake = error == 0 ? eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC) : -1;
+  if (wake >= 0) return std::make_unique<LibusbPort>(std::move(context), std::move(handle), pipes, wake);
+  why = error == LIBUSB_ERROR_BUSY ? drivers::Notice{&kBusy, {name, number}}
+                                   : drivers::Notice{&kOpen, {name, number, libusb_error_name(error)}};
   return nullptr;
 }
 
-}  // namespace servogate::gsusb
+}  // namespace servogate::usb

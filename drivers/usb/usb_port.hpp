@@ -7,27 +7,26 @@
 
 #include "firmware_if/image/time.hpp"
 
-namespace servogate::gsusb {
+namespace servogate::usb {
 
 /// Hears what happened on the pipes of a port, inside of UsbPort::serve().
 class PortListener {
  public:
   virtual ~PortListener() = default;
   virtual void read(std::span<const std::uint8_t> bytes) noexcept = 0;
-  /// The buffer `slot` is free again. `good`: the adapter has taken it.
+  /// The buffer `slot` is free again. `good`: the device has taken it.
   virtual void written(std::size_t slot, bool good) noexcept = 0;
 };
 
-/// An adapter that is plugged in, as bytes: libusb's, or a simulated one. All but wake() belong to one
-/// thread.
+/// A device that is plugged in, as bytes: libusb's, or a simulated one. All but wake() belong to one thread.
 class UsbPort {
  public:
-  /// Frames that are under way to the adapter at once: it has few buffers, and what it has taken leaves in
-  /// the order of taking, not of identifiers.
+  /// Messages that are under way to the device at once: it has few buffers, and what it has taken it treats
+  /// in the order of taking.
   static constexpr std::size_t kSlots = 10;
 
   virtual ~UsbPort() = default;
-  /// Vendor requests to the interface, repeated while the adapter only is silent, for some seconds at most.
+  /// Vendor requests to the interface, repeated while the device only is silent, for some seconds at most.
   /// False: it refused, stayed silent, or is gone. control_in fills the beginning of `data` and says how
   /// much.
   virtual bool control_out(std::uint8_t request, std::uint16_t value, std::span<const std::uint8_t> data) = 0;
@@ -39,10 +38,10 @@ class UsbPort {
   /// Puts bytes on the out pipe from buffer `slot`, which written() gives back. False: they could not be put.
   virtual bool write(std::size_t slot, std::span<const std::uint8_t> bytes) noexcept = 0;
   /// Waits until something happens, wake() is called or the time is over; tells the listener. False: the
-  /// adapter is gone.
+  /// device is gone.
   virtual bool serve(image::Nanoseconds at_most) noexcept = 0;
   /// From any thread. real-time safe (one system call that never waits).
   virtual void wake() noexcept = 0;
 };
 
-}  // namespace servogate::gsusb
+}  // namespace servogate::usb
