@@ -40,6 +40,7 @@ double way_of(const Execution& run, const BlockWords& words, int axis) {
 void line_by_angle(Execution& run, const BlockWords& words) {
   const Arguments arguments(run, words);
   const int column = words.instead_word->column;
+  run.frames().need_plane(column);
   run.refuse_words_but_axes(words);
   run.motion().store_feed(words);
   const int z = run.state().frames.axis1, x = run.state().frames.axis2;
@@ -61,6 +62,7 @@ void line_by_angle(Execution& run, const BlockWords& words) {
 void arc_by_angle(Execution& run, const BlockWords& words) {
   const Arguments arguments(run, words);
   const int column = words.instead_word->column;
+  run.frames().need_plane(column);
   run.motion().store_feed(words);
   const int a1 = run.state().frames.axis1, a2 = run.state().frames.axis2;
   const auto diameter = [](const MachineModel::Axis& axis) { return axis.diameter; };

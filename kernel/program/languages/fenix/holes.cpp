@@ -214,6 +214,7 @@ void widen(Execution& run, const Arguments& arguments, const Row& row, const Bor
 void holes(Execution& run, const BlockWords& words) {
   const Arguments arguments(run, words);
   const Row& row = row_of(static_cast<int>(words.instead_word->value.number));
+  run.frames().need_plane(arguments.column());
   run.refuse_all_but(words, {});
   run.motion().end_profile();
   arguments.at_most(row.most);

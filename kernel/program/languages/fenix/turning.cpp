@@ -51,6 +51,7 @@ double end_of(const Execution& run, const BlockWords& words, int axis) {
 void turning(Execution& run, const BlockWords& words) {
   const Arguments arguments(run, words);
   const Row& row = row_of(static_cast<int>(words.instead_word->value.number));
+  run.frames().need_plane(arguments.column());
   run.refuse_words_but_axes(words);
   run.motion().store_feed(words);
   run.motion().end_profile();
