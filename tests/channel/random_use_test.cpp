@@ -129,6 +129,7 @@ class Hands {
   void act() {
     constexpr int kOverrides[] = {1, 10, 35, 70, 100, 100, 120, 150};
     if (rig_.state() == ProcessState::waiting) {
+      if (rig_.status().mode != image::Mode::step) return;  // it runs on, and waits for no hand
       ++steps;
       if (random_() % 8 == 0) return run_on();
       return ask(RequestKind::step);
