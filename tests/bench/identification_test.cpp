@@ -141,7 +141,10 @@ TEST(CoggingFit, finds_periods_amplitude_and_phase_beside_noise_and_an_uneven_sp
     angle.push_back(a);
     torque.push_back(t + noise(random));
   }
-  const auto fit = fit_cogging({angle, torque, 0.001}, inertia, 0.0);
+  Masses masses;
+  masses.inertia_kg_m2 = inertia;
+  const EvenRun run{angle, torque};
+  const auto fit = fit_cogging(std::span(&run, 1), &masses);
   ASSERT_TRUE(fit);
   EXPECT_EQ(fit->periods, 36);
   EXPECT_NEAR(fit->amplitude_nm, 0.04, 0.04 * 0.06);
@@ -156,9 +159,10 @@ TEST(CoggingFit, claims_none_where_there_is_noise_alone_and_none_of_less_than_a_
     angle.push_back(0.004 * i);
     torque.push_back(0.1 + noise(random));
   }
-  EXPECT_FALSE(fit_cogging({angle, torque, 0.001}, 1e-3, 0.0));
   const std::span<const double> a(angle), t(torque);
-  EXPECT_FALSE(fit_cogging({a.first(1000), t.first(1000), 0.001}, 1e-3, 0.0));
+  const EvenRun whole{a, t}, part{a.first(1000), t.first(1000)};
+  EXPECT_FALSE(fit_cogging(std::span(&whole, 1), nullptr));
+  EXPECT_FALSE(fit_cogging(std::span(&part, 1), nullptr));
 }
 
 TEST(LostMotionFit, parts_backlash_from_twist) {

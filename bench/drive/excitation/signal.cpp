@@ -51,7 +51,9 @@ std::vector<double> multisine(const Signal& s, double h) {
   std::mt19937_64 random(s.seed);
   std::vector<double> once(s.period, 0.0);
   for (std::size_t line = first; line <= last; ++line) {
-    const double phase = kTurn * static_cast<double>(random() >> 11) * 0x1p-53;
+    const double place = static_cast<double>(line - first), count = static_cast<double>(last - first + 1);
+    const double phase = s.seed == 0 ? -0.5 * kTurn * place * (place + 1.0) / count
+                                     : kTurn * static_cast<double>(random() >> 11) * 0x1p-53;
     for (std::size_t i = 0; i < s.period; ++i)
       once[i] += std::sin(kTurn * static_cast<double>(line * i % s.period) / n + phase);
   }

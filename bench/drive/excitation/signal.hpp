@@ -27,7 +27,9 @@ struct Signal {
   double from_hz = 1.0, to_hz = 100.0;
   std::size_t period = 1024;  ///< samples of multisine; prbs has the period 2^order - 1 next to it, held
   int periods = 1;
-  std::uint64_t seed = 1;  ///< phases of multisine, beginning of prbs
+  /// Phases of multisine, beginning of prbs. 0: the phases of Schroeder (IEEE Trans. Inf. Theory 16, 1970),
+  /// which keep the largest value low against the root mean square.
+  std::uint64_t seed = 0;
 };
 
 /// "step", "ramp", "trapezoid", "jerk", "sine", "chirp", "multisine", "prbs".

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/drive/measurement/bench_drive.hpp"
+
+namespace servogate::bench {
+
+/// Inside of which every run stays, at the motor shaft.
+struct Envelope {
+  double travel_min_rad = 0.0, travel_max_rad = 0.0;  ///< from where the drive stands at the start
+  double speed_rad_s = 0.0;
+  double torque_nm = 0.0;
+  double time_s = 0.0;         ///< with torque
+  double following_rad = 0.0;  ///< of the position loop
+};
+
+/// Why a run ended before its end.
+enum class Trip : std::uint8_t {
+  none,
+  travel,
+  speed,
+  torque,
+  time,
+  following,
+  fault,        ///< the drive reports a fault
+  offline,      ///< its process data do not come
+  not_enabled,  ///< it did not reach Operation enabled, or left it
+  ended,        ///< the operator ended it
+  gone,         ///< the bus is gone
+};
+
+/// One cycle as it is kept.
+struct Sample {
+  double time_s = 0.0;
+  Loop loop = Loop::velocity;
+  double set_point = 0.0;
+  double position_rad = 0.0, torque_nm = 0.0;
+  std::uint16_t statusword = 0;
+  std::uint16_t stage = 0;  ///< index in Guard::stages()
+};
+
+/// The only way from a run to its drive. After a trip every step is refused; release() or the destructor
+/// stops the drive by its quick stop and takes its torque.
+class Guard {
+ public:
+  Guard(BenchDrive& drive, const Envelope& envelope);
+  ~Guard();
+  Guard(const Guard&) = delete;
+  Guard& operator=(const Guard&) = delete;
+
+  /// Whether every set-point stays in the envelope; positions from where the drive stood at the start. What
+  /// does not is in trip(), and the guard refuses all steps.
+  bool accepts(Loop loop, std::span<const double> set_points);
+  /// A run that needs so much of the envelope, before it begins.
+  bool accepts_travel(double from_rad, double to_rad);
+
+  /// Power, at rest where it stands; a few seconds at most.
+  bool enable(Loop loop);
+  /// One cycle with this set-point. False: the run is over.
+  bool step(Loop loop, double set_point);
+  /// Changes the speed evenly, then holds it for `hold_s`.
+  bool run_at(double speed_rad_s, double acceleration_rad_s2, double hold_s);
+  /// Stops it and takes the torque. True: the drive has shown that it has none.
+  bool release();
+
+  double period_s() const noexcept { return period_; }
+  const Envelope& envelope() const noexcept { return envelope_; }
+  const DriveAnswer& answer() const noexcept { return answer_; }
+  /// Of the last two answers.
+  double speed_rad_s() const noexcept { return speed_; }
+  Trip trip() const noexcept { return trip_; }
+  double trip_value() const noexcept { return trip_value_; }
+  double trip_limit() const noexcept { return trip_limit_; }
+
+  /// What follows belongs to this stage, for the record and for who watches.
+  void stage(std::string name);
+  const std::vector<std::string>& stages() const noexcept { return stages_; }
+  const std::vector<Sample>& samples() const noexcept { return samples_; }
+  /// Called once a second of the drive's time, and at every stage.
+  std::function<void(const Guard&)> watch;
+
+ private:
+  bool exchange(const DriveAsk& ask);
+  bool fail(Trip trip, double value = 0.0, double limit = 0.0);
+  bool look_at_answer(Loop loop, double set_point);
+  bool look_at_set_point(Loop loop, double set_point);
+
+  BenchDrive& drive_;
+  Envelope envelope_;
+  double period_;
+  DriveAnswer answer_;
+  double speed_ = 0.0, mean_torque_ = 0.0, last_speed_asked_ = 0.0, last_position_asked_ = 0.0;
+  double time_ = 0.0, powered_s_ = 0.0;
+  bool known_ = false, powered_ = false, released_ = true;
+  int offline_cycles_ = 0;
+  Trip trip_ = Trip::none;
+  double trip_value_ = 0.0, trip_limit_ = 0.0;
+  std::vector<std::string> stages_;
+  std::vector<Sample> samples_;
+};
+
+}  // namespace servogate::bench

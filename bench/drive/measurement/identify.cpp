@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/drive/measurement/identify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bench/drive/excitation/signal.hpp"
+
+namespace servogate::bench {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kSettle_s = 0.2;
+/// Share of the friction that holds coupling faces together while torque swings about it.
+constexpr double kOfFriction = 0.22;
+constexpr int kTrials = 2;
+constexpr double kMisfit = 0.12;
+
+double acceleration_of(const IdentifyPlan& plan) { return plan.fast_rad_s / 0.25; }
+
+std::vector<double> speeds_of(const IdentifyPlan& plan) {
+  std::vector<double> out;
+  const int n = std::max(2, plan.speeds);
+  for (int i = 0; i < n; ++i)
+    out.push_back(plan.slow_rad_s *
+                  std::pow(plan.fast_rad_s / plan.slow_rad_s, static_cast<double>(i) / (n - 1)));
+  return out;
+}
+
+/// At the two slowest speeds that make a turn in time, a little more than one is made: cogging needs it.
+double hold_of(const IdentifyPlan& plan, double speed, int& turns) {
+  const double turn = 1.02 * kTurn / speed;
+  if (turns == 2 || turn > plan.turn_s) return plan.hold_s;
+  ++turns;
+  return std::max(plan.hold_s, turn);
+}
+
+double response_time(const IdentifyPlan& plan, double period) {
+  return static_cast<double>(plan.block) * (plan.blocks + 1) * period;
+}
+
+struct EvenSpan {
+  double speed = 0.0;
+  std::size_t from = 0, to = 0;  ///< samples of the guard
+};
+
+struct Arrays {
+  std::vector<double> angle, torque;
+};
+Arrays arrays_of(const Guard& guard, const EvenSpan& span) {
+  Arrays a;
+  for (std::size_t i = span.from; i < span.to; ++i) {
+    a.angle.push_back(guard.samples()[i].position_rad);
+    a.torque.push_back(guard.samples()[i].torque_nm);
+  }
+  return a;
+}
+
+bool run_even_speeds(Guard& guard, const IdentifyPlan& plan, std::vector<EvenSpan>& spans) {
+  int turns[2] = {0, 0};
+  for (const double speed : speeds_of(plan))
+    for (const int side : {0, 1}) {
+      const double signed_speed = side == 0 ? speed : -speed;
+      if (!guard.run_at(signed_speed, acceleration_of(plan), kSettle_s)) return false;
+      EvenSpan span{signed_speed, guard.samples().size(), 0};
+      if (!guard.run_at(signed_speed, acceleration_of(plan), hold_of(plan, speed, turns[side]))) return false;
+      span.to = guard.samples().size();
+      spans.push_back(span);
+    }
+  return guard.run_at(0.0, acceleration_of(plan), 0.05);
+}
+
+/// From the slowest runs that make a turn, four speeds in both directions.
+std::optional<Cogging> cogging_of(const Guard& guard, const std::vector<EvenSpan>& spans,
+                                  const FrictionCurve* friction, const Masses* masses) {
+  constexpr std::size_t kRuns = 8;
+  std::vector<Arrays> arrays;
+  for (const EvenSpan& span : spans) {
+    Arrays a = arrays_of(guard, span);
+    if (arrays.size() < kRuns && a.angle.size() >= 16 && std::abs(a.angle.back() - a.angle.front()) > kTurn)
+      arrays.push_back(std::move(a));
+  }
+  std::vector<EvenRun> runs;
+  for (const Arrays& a : arrays) {
+    const double speed =
+        (a.angle.back() - a.angle.front()) / (static_cast<double>(a.angle.size() - 1) * guard.period_s());
+    const double slope = friction != nullptr
+                             ? (friction->at(1.02 * speed) - friction->at(0.98 * speed)) / (0.04 * speed)
+                             : 0.0;
+    runs.push_back({a.angle, a.torque, guard.period_s(), slope});
+  }
+  return fit_cogging(runs, masses);
+}
+
+std::vector<FrictionPoint> friction_points(const Guard& guard, const std::vector<EvenSpan>& spans,
+                                           const std::optional<Cogging>& cogging) {
+  std::vector<FrictionPoint> points;
+  for (const EvenSpan& span : spans) {
+    const Arrays a = arrays_of(guard, span);
+    const auto n = static_cast<double>(a.torque.size());
+    if (n < 10.0) continue;
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < a.torque.size(); ++i) {
+      const double t = a.torque[i] - (cogging ? cogging->at(a.angle[i]) : 0.0);
+      sum += t;
+      squares += t * t;
+    }
+    const double mean = sum / n, variance = std::max(1e-18, squares / n - mean * mean);
+    // The speed that was, not the one that was asked for.
+    const double speed = (a.angle.back() - a.angle.front()) / ((n - 1.0) * guard.period_s());
+    points.push_back({speed, mean, std::sqrt(variance / n)});
+  }
+  return points;
+}
+
+/// Inertia to a few ten per cent, enough for a slow loop: torque while it accelerated less friction.
+double rough_inertia(const Guard& guard, const IdentifyPlan& plan, const std::vector<EvenSpan>& spans,
+                     const FrictionCurve& friction) {
+  double sum = 0.0;
+  int count = 0;
+  const auto& s = guard.samples();
+  const auto lag = static_cast<std::size_t>(std::ceil(0.01 / guard.period_s()));
+  const double least = 0.3 * acceleration_of(plan);
+  for (std::size_t i = lag; i < spans.back().to; ++i) {
+    const double ask =
+        (s[i].set_point - s[i - lag].set_point) / (static_cast<double>(lag) * guard.period_s());
+    if (i + lag >= s.size() || s[i].loop != Loop::velocity || std::abs(ask) < least) continue;
+    const double speed =
+        (s[i + lag].position_rad - s[i].position_rad) / (static_cast<double>(lag) * guard.period_s());
+    const double before =
+        (s[i].position_rad - s[i - lag].position_rad) / (static_cast<double>(lag) * guard.period_s());
+    const double acceleration = (speed - before) / (static_cast<double>(lag) * guard.period_s());
+    if (std::abs(acceleration) < least || speed * before <= 0.0) continue;
+    sum += (s[i].torque_nm - friction.at(0.5 * (speed + before))) / acceleration;
+    ++count;
+  }
+  return count > 0 ? std::abs(sum / count) : 0.0;
+}
+
+/// Holds a speed by torque, softly: far below what is measured.
+class SoftSpeedLoop {
+ public:
+  SoftSpeedLoop(double inertia, double bandwidth_rad_s, double most_nm, double period)
+      : gain_(inertia * bandwidth_rad_s),
+        integral_gain_(0.25 * gain_ * bandwidth_rad_s),
+        most_(most_nm),
+        period_(period) {}
+  void begin(double torque, double speed) {
+    integral_ = torque;
+    filtered_ = speed;
+  }
+  double torque(double wanted, double speed) {
+    filtered_ += (1.0 - std::exp(-50.0 * period_)) * (speed - filtered_);
+    const double error = wanted - filtered_;
+    integral_ = std::clamp(integral_ + integral_gain_ * error * period_, -most_, most_);
+    return std::clamp(integral_ + gain_ * error, -most_, most_);
+  }
+
+ private:
+  double gain_, integral_gain_, most_, period_, integral_ = 0.0, filtered_ = 0.0;
+};
+
+struct Response {
+  Masses masses;
+  FrequencyResponse response;
+  std::optional<double> command_delay_s;
+  double excitation_nm = 0.0;
+};
+
+bool take_response(Guard& guard, const IdentifyPlan& plan, double inertia, double excitation,
+                   const Identified& out, std::optional<Response>& result) {
+  Signal signal;
+  signal.kind = SignalKind::multisine;
+  signal.from_hz = plan.from_hz;
+  signal.to_hz = std::min(plan.to_hz, 0.4 / guard.period_s());
+  signal.period = plan.block;
+  signal.amplitude = excitation;
+  const std::vector<double> once = samples(signal, guard.period_s());
+  if (once.empty()) return true;
+  if (!guard.run_at(plan.bias_rad_s, acceleration_of(plan), kSettle_s)) return false;
+
+  SoftSpeedLoop loop(inertia, 4.0, 0.9 * guard.envelope().torque_nm, guard.period_s());
+  loop.begin(out.friction.at(plan.bias_rad_s), plan.bias_rad_s);
+  const std::size_t n = plan.block * static_cast<std::size_t>(plan.blocks + 1);
+  const std::size_t first = guard.samples().size();
+  std::vector<double> reference, command;
+  for (std::size_t i = 0; i < n + 2; ++i) {
+    reference.push_back(once[i % once.size()]);
+    const double torque = loop.torque(plan.bias_rad_s, guard.speed_rad_s()) + reference.back();
+    command.push_back(std::clamp(torque, -guard.envelope().torque_nm, guard.envelope().torque_nm));
+    if (!guard.step(Loop::torque, command.back())) return false;
+  }
+  std::vector<double> angle, torque, net;
+  for (std::size_t i = first; i < guard.samples().size(); ++i) {
+    angle.push_back(guard.samples()[i].position_rad);
+    torque.push_back(guard.samples()[i].torque_nm);
+    net.push_back(torque.back() - (out.cogging ? out.cogging->at(angle.back()) : 0.0));
+  }
+  const std::vector<double> speed = slope(angle, guard.period_s());
+  // The first block is for what was before it to die away; speed i is of sample i + 1.
+  const auto cut = [&](const std::vector<double>& v, std::size_t shift) {
+    return std::span(v).subspan(plan.block + shift, plan.block * static_cast<std::size_t>(plan.blocks));
+  };
+  SpectrumSettings settings;
+  settings.period_s = guard.period_s();
+  settings.block = plan.block;
+  Response r;
+  r.excitation_nm = excitation;
+  r.response = frequency_response(cut(reference, 1), cut(net, 1), cut(speed, 0), settings);
+  for (ResponseLine& line : r.response.lines) line.value /= slope_gain(line.hz, guard.period_s());
+  r.command_delay_s =
+      delay_of(frequency_response(cut(reference, 1), cut(command, 1), cut(torque, 1), settings));
+  const auto masses = fit_masses(r.response);
+  if (!masses) return true;
+  r.masses = *masses;
+  result = std::move(r);
+  return true;
+}
+
+/// Presses the motor against a load at rest, with what cogging takes given back: it could hold the motor in
+/// the middle of the gap.
+class Presser {
+ public:
+  /// Of the speed loop on the motor alone, rad/s: slow against the dead time of a bus.
+  static constexpr double kCreepBandwidth = 60.0, kAngleTime_s = 0.03;
+
+  Presser(Guard& guard, const Identified& found, double motor_inertia, double hold_nm)
+      : guard_(guard),
+        found_(found),
+        gain_(kCreepBandwidth * motor_inertia),
+        angle_(guard.answer().position_rad) {
+    // So slow that what the motor carries into the load is less than a third of what holds that.
+    if (found.masses.coupling)
+      creep_ = 0.3 * hold_nm / std::sqrt(found.masses.coupling->stiffness_nm_rad * motor_inertia);
+    creep_ = std::clamp(creep_, 0.02, 1.0);
+    most_ = 0.3 * hold_nm;
+  }
+
+  /// Lets the coupling go slowly, so that it throws the motor nowhere, and creeps in this direction until it
+  /// stands: softly, so that it comes to rest at the load's face.
+  bool touch(double side) {
+    constexpr double kLongest_s = 2.0, kStill_s = 0.06;
+    const double h = guard_.period_s();
+    if (!ramp_to(0.0)) return false;
+    double filtered = 0.0, still = 0.0;
+    for (double t = 0.0; t < kLongest_s && still < kStill_s; t += h) {
+      filtered += 0.3 * (guard_.speed_rad_s() - filtered);
+      torque_ = std::clamp(gain_ * (side * creep_ - filtered), -most_, most_);
+      if (!ask(torque_)) return false;
+      still = std::abs(filtered) < 0.15 * creep_ ? still + h : 0.0;
+    }
+    return true;
+  }
+
+  /// From there to this torque, slowly against any resonance, and waits; where it stands then.
+  bool press(double torque, std::vector<Press>& presses) {
+    constexpr double kWait_s = 0.25, kLook_s = 0.1;
+    const double h = guard_.period_s();
+    if (!ramp_to(torque)) return false;
+    for (double t = 0.0; t < kWait_s; t += h)
+      if (!ask(torque)) return false;
+    double angle = 0.0, count = 0.0;
+    for (double t = 0.0; t < kLook_s; t += h) {
+      if (!ask(torque)) return false;
+      angle += guard_.answer().position_rad;
+      count += 1.0;
+    }
+    presses.push_back({torque, angle / count});
+    return true;
+  }
+
+ private:
+  bool ramp_to(double torque) {
+    constexpr double kRamp_s = 0.2;
+    const double h = guard_.period_s(), from = torque_;
+    for (double t = h; t < kRamp_s; t += h)
+      if (!ask(from + (torque - from) * t / kRamp_s)) return false;
+    torque_ = torque;
+    return true;
+  }
+
+  /// The angle for the cogging is taken slowly: at the motor's resonance on the coupling the way over the bus
+  /// would make a spring of it that swings up.
+  bool ask(double net) {
+    const double most = guard_.envelope().torque_nm;
+    angle_ += (1.0 - std::exp(-guard_.period_s() / kAngleTime_s)) * (guard_.answer().position_rad - angle_);
+    const double cogging = found_.cogging ? found_.cogging->at(angle_) : 0.0;
+    return guard_.step(Loop::torque, std::clamp(net + cogging, -most, most));
+  }
+
+  Guard& guard_;
+  const Identified& found_;
+  double gain_, creep_ = 0.1, most_, torque_ = 0.0, angle_;
+};
+
+/// Friction alone stops it: a stiff speed loop could rattle in the backlash.
+bool coast_to_rest(Guard& guard, double load_nm) {
+  constexpr double kLongest_s = 3.0, kStill_s = 0.1, kStill = 0.1;
+  double still = 0.0, filtered = guard.speed_rad_s();
+  for (double t = 0.0; t < kLongest_s && still < kStill_s; t += guard.period_s()) {
+    if (!guard.step(Loop::torque, load_nm)) return false;
+    filtered += 0.3 * (guard.speed_rad_s() - filtered);
+    still = std::abs(filtered) < kStill ? still + guard.period_s() : 0.0;
+  }
+  return true;
+}
+
+bool take_lost_motion(Guard& guard, Identified& out) {
+  const double hold = out.friction.breakaway_nm() - std::abs(out.friction.load_nm);
+  if (!(hold > 0.0)) return true;
+  const double motor =
+      out.masses.coupling ? out.masses.coupling->motor_inertia_kg_m2 : out.masses.inertia_kg_m2;
+  Presser presser(guard, out, motor, hold);
+  std::vector<Press> presses;
+  for (int round = 0; round < 2; ++round)
+    for (const double side : {1.0, -1.0}) {
+      if (!presser.touch(side)) return false;
+      for (const double share : {0.3, 0.6})
+        if (!presser.press(side * share * hold, presses)) return false;
+    }
+  out.lost_motion = fit_lost_motion(presses);
+  return true;
+}
+
+}  // namespace
+
+Reach reach_of(const IdentifyPlan& plan, double period) {
+  double furthest = 0.0;
+  int turns = 0;
+  for (const double speed : speeds_of(plan))
+    furthest = std::max(furthest, speed * (kSettle_s + hold_of(plan, speed, turns) + 0.25));
+  const double response = plan.bias_rad_s * kTrials * (response_time(plan, period) + kSettle_s + 0.25);
+  return {-0.3 * furthest, 1.2 * std::max(furthest, response)};
+}
+
+std::optional<Identified> identify(Guard& guard, const IdentifyPlan& plan, std::string& why) {
+  Identified out;
+  const Reach reach = reach_of(plan, guard.period_s());
+  if (!guard.accepts_travel(reach.from_rad, reach.to_rad)) return std::nullopt;
+  std::vector<EvenSpan> spans;
+  guard.stage("friction");
+  if (!run_even_speeds(guard, plan, spans)) return std::nullopt;
+  out.cogging = cogging_of(guard, spans, nullptr, nullptr);
+  const auto friction = fit_friction(friction_points(guard, spans, out.cogging));
+  why = "friction";
+  if (!friction) return std::nullopt;
+  out.friction = *friction;
+  const double inertia = rough_inertia(guard, plan, spans, out.friction);
+  why = "inertia";
+  if (!(inertia > 0.0)) return std::nullopt;
+  // Where torque swings more than friction presses, the load comes loose and the response is none of a linear
+  // plant: again with less. With too little of it noise spoils the response; the better one counts.
+  const double friction_there = std::abs(out.friction.at(plan.bias_rad_s) - out.friction.load_nm);
+  double excitation = std::min(plan.torque_nm, kOfFriction * friction_there);
+  std::optional<Response> best;
+  for (int trial = 0; trial < kTrials && (!best || best->masses.misfit > kMisfit);
+       ++trial, excitation *= 0.6) {
+    guard.stage("response");
+    std::optional<Response> response;
+    if (!take_response(guard, plan, inertia, excitation, out, response)) return std::nullopt;
+    if (response && (!best || response->masses.misfit < best->masses.misfit)) best = std::move(response);
+  }
+  why = "masses";
+  if (!best) return std::nullopt;
+  out.masses = best->masses;
+  out.response = std::move(best->response);
+  out.command_delay_s = best->command_delay_s;
+  out.excitation_nm = best->excitation_nm;
+
+  out.cogging = cogging_of(guard, spans, &out.friction, &out.masses);
+  out.friction_points = friction_points(guard, spans, out.cogging);
+  if (const auto again = fit_friction(out.friction_points)) out.friction = *again;
+  if (plan.lost_motion) {
+    guard.stage("lost motion");
+    if (!coast_to_rest(guard, out.friction.load_nm)) return std::nullopt;
+    if (!take_lost_motion(guard, out)) return std::nullopt;
+  }
+  why.clear();
+  return out;
+}
+
+}  // namespace servogate::bench

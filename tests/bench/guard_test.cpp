@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/drive/measurement/guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "tests/bench/plant_on_bench.hpp"
+
+namespace servogate::bench {
+namespace {
+
+constexpr Envelope kEnvelope{-10.0, 10.0, 20.0, 1.0, 5.0, 0.5};
+
+struct Rig {
+  explicit Rig(Envelope envelope = kEnvelope) : drive(mock::PlantConfig{}), guard(drive, envelope) {}
+  PlantOnBench drive;
+  Guard guard;
+};
+
+/// The drive stands and has no torque.
+void expect_off(const Rig& rig) {
+  EXPECT_FALSE(rig.drive.asked.power);
+  EXPECT_LT(std::abs(rig.drive.plant().velocity_rad_s()), 0.1);
+}
+
+TEST(Guard, refuses_set_points_outside_of_the_envelope_before_the_drive_has_power) {
+  const std::vector<double> far = {0.0, 0.01, 11.0}, fast = {0.0, 0.1}, strong = {0.5, 1.1};
+  const std::vector<double> endless(6000, 0.0), senseless = {std::numeric_limits<double>::quiet_NaN()};
+  const auto refusal = [](Loop loop, const std::vector<double>& values) {
+    Rig rig;
+    EXPECT_FALSE(rig.guard.accepts(loop, values));
+    EXPECT_FALSE(rig.guard.enable(loop)) << "a refused run reaches the drive";
+    EXPECT_FALSE(rig.drive.asked.power);
+    return rig.guard.trip();
+  };
+  EXPECT_EQ(refusal(Loop::position, far), Trip::travel);
+  EXPECT_EQ(refusal(Loop::position, fast), Trip::speed) << "0.1 rad in a cycle is 100 rad/s";
+  EXPECT_EQ(refusal(Loop::torque, strong), Trip::torque);
+  EXPECT_EQ(refusal(Loop::velocity, endless), Trip::time);
+  EXPECT_NE(refusal(Loop::velocity, senseless), Trip::none);
+}
+
+TEST(Guard, a_run_that_needs_more_travel_does_not_begin) {
+  Rig rig;
+  EXPECT_TRUE(rig.guard.accepts_travel(-10.0, 10.0));
+  EXPECT_FALSE(rig.guard.accepts_travel(-1.0, 10.5));
+  EXPECT_EQ(rig.guard.trip(), Trip::travel);
+  EXPECT_FALSE(rig.guard.enable(Loop::velocity));
+}
+
+TEST(Guard, stops_at_the_end_of_the_travel_and_takes_the_torque) {
+  Rig rig;
+  ASSERT_TRUE(rig.guard.enable(Loop::velocity));
+  EXPECT_FALSE(rig.guard.run_at(15.0, 100.0, 3.0));
+  EXPECT_EQ(rig.guard.trip(), Trip::travel);
+  EXPECT_FALSE(rig.guard.step(Loop::velocity, 0.0)) << "a run goes on behind its trip";
+  EXPECT_TRUE(rig.guard.release());
+  expect_off(rig);
+  EXPECT_LT(rig.guard.answer().position_rad, 10.5);
+}
+
+TEST(Guard, stops_a_drive_that_runs_away_from_its_torque) {
+  Rig rig({-1000.0, 1000.0, 20.0, 1.0, 5.0, 0.5});
+  ASSERT_TRUE(rig.guard.enable(Loop::torque));
+  while (rig.guard.step(Loop::torque, 0.9)) {
+  }
+  EXPECT_EQ(rig.guard.trip(), Trip::speed);
+  rig.guard.release();
+  expect_off(rig);
+}
+
+TEST(Guard, stops_when_the_position_is_not_followed) {
+  Rig rig({-10.0, 10.0, 20.0, 7.2, 5.0, 0.05});
+  ASSERT_TRUE(rig.guard.enable(Loop::position));
+  double at = 0.0;
+  while (rig.guard.step(Loop::position, at)) at += 0.019;
+  EXPECT_EQ(rig.guard.trip(), Trip::following);
+  rig.guard.release();
+  expect_off(rig);
+}
+
+TEST(Guard, a_fault_a_silent_drive_the_operator_and_the_time_end_a_run) {
+  const auto trip_of = [](const std::function<void(PlantOnBench&)>& happens) {
+    Rig rig;
+    EXPECT_TRUE(rig.guard.enable(Loop::velocity));
+    EXPECT_TRUE(rig.guard.run_at(1.0, 100.0, 0.2));
+    happens(rig.drive);
+    rig.guard.run_at(1.0, 100.0, 8.0);
+    rig.guard.release();
+    EXPECT_FALSE(rig.drive.asked.power);
+    return rig.guard.trip();
+  };
+  EXPECT_EQ(trip_of([](PlantOnBench& d) { d.faulted = true; }), Trip::fault);
+  EXPECT_EQ(trip_of([](PlantOnBench& d) { d.online = false; }), Trip::offline);
+  EXPECT_EQ(trip_of([](PlantOnBench& d) { d.ends = true; }), Trip::ended);
+  EXPECT_EQ(trip_of([](PlantOnBench& d) { d.gone = true; }), Trip::gone);
+  EXPECT_EQ(trip_of([](PlantOnBench&) {}), Trip::time);
+}
+
+TEST(Guard, leaves_the_drive_without_torque_when_it_goes_out_of_scope_in_motion) {
+  PlantOnBench drive((mock::PlantConfig()));
+  {
+    Guard guard(drive, kEnvelope);
+    ASSERT_TRUE(guard.enable(Loop::velocity));
+    ASSERT_TRUE(guard.run_at(10.0, 100.0, 0.1));
+  }
+  EXPECT_FALSE(drive.asked.power);
+  EXPECT_LT(std::abs(drive.plant().velocity_rad_s()), 0.1);
+}
+
+TEST(Guard, keeps_every_cycle_with_its_stage) {
+  Rig rig;
+  ASSERT_TRUE(rig.guard.enable(Loop::velocity));
+  rig.guard.stage("even");
+  ASSERT_TRUE(rig.guard.run_at(2.0, 1000.0, 0.1));
+  const Sample& last = rig.guard.samples().back();
+  EXPECT_EQ(rig.guard.stages()[last.stage], "even");
+  EXPECT_EQ(last.set_point, 2.0);
+  EXPECT_NEAR(rig.guard.speed_rad_s(), 2.0, 0.2);
+}
+
+}  // namespace
+}  // namespace servogate::bench
