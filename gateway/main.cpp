@@ -53,6 +53,8 @@ int carry_out(const CommandLine& line) {
   if (line.command == "modbus read") return command::modbus_read(line.bus.modbus_read);
   if (line.command == "modbus write") return command::modbus_write(line.bus.modbus_write);
   if (line.command == "modbus scan") return command::modbus_scan(line.bus.modbus_scan);
+  if (line.command == "bench run") return command::bench_run(line.bench_run);
+  if (line.command == "bench identify") return command::bench_identify(line.bench_identify);
   if (line.command == "drive") return command::drive(line.bus.drive);
   if (line.command == "io") return command::io(line.bus.io);
   if (line.command == "sim") return command::sim(line.bus.sim);

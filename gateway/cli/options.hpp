@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/cli/bench_options.hpp"
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/cli/plc_options.hpp"
 #include "gateway/cli/test_options.hpp"
@@ -92,6 +93,7 @@ struct CommandLine {
   TestOptions test;
   PlcCommands plc;
   BusCommands bus;
+  BenchOptions bench_run, bench_identify;
   bool json = false;               ///< of `version`
   std::vector<std::string> words;  ///< the whole line, for the report
 };

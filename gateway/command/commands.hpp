@@ -30,6 +30,8 @@ int nmt(const NmtOptions& options);
 int modbus_read(const ModbusOptions& options);
 int modbus_write(const ModbusOptions& options);
 int modbus_scan(const ModbusOptions& options);
+int bench_run(const BenchOptions& options);
+int bench_identify(const BenchOptions& options);
 int drive(const DriveOptions& options);
 int io(const IoOptions& options);
 int sim(const SimOptions& options);

@@ -4,6 +4,7 @@
 
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/text/finding.hpp"
+#include "gateway/cli/commands/bench_commands.hpp"
 #include "gateway/cli/commands/bus_commands.hpp"
 #include "gateway/cli/commands/canopen_commands.hpp"
 #include "gateway/cli/commands/modbus_commands.hpp"
@@ -134,6 +135,7 @@ class Commands {
     add_bus_commands(app_, line.bus);
     add_canopen_commands(app_, line.bus);
     add_modbus_commands(app_, line.bus);
+    add_bench_commands(app_, line.bench_run, line.bench_identify);
     written_down();
     flags_take_no_value(app_);
   }
@@ -144,7 +146,8 @@ class Commands {
   void settle() {
     const CLI::App* chosen = app_.get_subcommands().front();
     line_.command = chosen->get_name();
-    if (line_.command == "plc" || line_.command == "can" || line_.command == "modbus")
+    if (line_.command == "plc" || line_.command == "can" || line_.command == "modbus" ||
+        line_.command == "bench")
       line_.command += " " + chosen->get_subcommands().front()->get_name();
     line_.client.command = line_.command;
     for (std::string& argument : line_.client.arguments) unshield(argument);

@@ -161,7 +161,8 @@ inline constexpr Translation kCatalogue[] = {
     {"Brings axes that were jogged away from a held program back by the way that they went, and waits until "
      "they stand.",
      "Возвращает оси, отведённые от приостановленной программы, тем же путём и ждёт их останова."},
-    {"Leads the axes of a held program back along its path, and waits until they stand; `servogate return` leads "
+    {"Leads the axes of a held program back along its path, and waits until they stand; `servogate return` "
+     "leads "
      "forward again.",
      "Ведёт оси приостановленной программы назад по её контуру и ждёт их останова; `servogate return` ведёт "
      "вперёд."},
@@ -384,6 +385,41 @@ inline constexpr Translation kCatalogue[] = {
     {"Online change: every variable keeps its value, not the retained ones only",
      "Замена на ходу: значение сохраняет каждая переменная, а не только RETAIN"},
     {"Even while a program runs or an axis moves", "Даже когда выполняется программа или движется ось"},
+    {"One drive on the table: turned, measured and identified.",
+     "Один привод на столе: повернуть, измерить, определить параметры."},
+    {"Gives the drive a test signal and says how it followed.",
+     "Подаёт приводу испытательный сигнал и сообщает, как он его отработал."},
+    {"Finds inertia, friction, cogging, resonance and backlash of motor and load.",
+     "Определяет инерцию, трение, зубцовый момент, резонанс и люфт двигателя и нагрузки."},
+    {"Envelope: FROM..TO in revolutions from where the motor stands",
+     "Границы: ОТ..ДО в оборотах от нынешнего положения двигателя"},
+    {"Envelope: greatest speed in rev/s", "Границы: наибольшая скорость, об/с"},
+    {"Envelope: greatest torque in N m", "Границы: наибольший момент, Н·м"},
+    {"Envelope: longest time with power in s", "Границы: наибольшее время под током, с"},
+    {"Envelope: greatest following error in revolutions", "Границы: наибольшая ошибка слежения, об."},
+    {"Directory of the run, made anew", "Каталог прогона, создаётся заново"},
+    {"Period of SYNC in us, 250 to 20000", "Период SYNC в мкс, от 250 до 20000"},
+    {"Counts of 6064h in a revolution, where 608Fh does not say it",
+     "Дискрет 6064h на оборот, если 608Fh не сообщает"},
+    {"Rated torque in N m, where 6076h does not say it", "Номинальный момент в Н·м, если 6076h не сообщает"},
+    {"Lowest frequency in Hz, 0.01 to 2000", "Наименьшая частота в Гц, от 0.01 до 2000"},
+    {"Highest frequency in Hz, 0.01 to 2000", "Наибольшая частота в Гц, от 0.01 до 2000"},
+    {"step, ramp, trapezoid, jerk, sine, chirp, multisine or prbs",
+     "step, ramp, trapezoid, jerk, sine, chirp, multisine или prbs"},
+    {"position, velocity or torque", "position, velocity или torque"},
+    {"Size of the signal in rev, rev/s or N m", "Величина сигнала в об., об/с или Н·м"},
+    {"Added to every value of the signal", "Прибавляется к каждому значению сигнала"},
+    {"Length of the signal in s, 0.01 to 3600", "Длительность сигнала в с, от 0.01 до 3600"},
+    {"Of trapezoid and jerk: speed in rev/s", "Для trapezoid и jerk: скорость, об/с"},
+    {"Of trapezoid and jerk: acceleration in rev/s2", "Для trapezoid и jerk: ускорение, об/с2"},
+    {"Of jerk: jerk in rev/s3", "Для jerk: рывок, об/с3"},
+    {"Of multisine and prbs: samples of a period, 16 to 1000000",
+     "Для multisine и prbs: отсчётов в периоде, от 16 до 1000000"},
+    {"Of multisine and prbs: how many, 1 to 1000", "Для multisine и prbs: число периодов, от 1 до 1000"},
+    {"Slowest speed of the friction curve in rev/s", "Наименьшая скорость кривой трения, об/с"},
+    {"Torque of the frequency response in N m, root mean square",
+     "Момент для частотной характеристики, Н·м, среднеквадратичный"},
+    {"Does not press the motor against the load at rest", "Не прижимать двигатель к неподвижной нагрузке"},
 };
 
 }  // namespace servogate::gateway

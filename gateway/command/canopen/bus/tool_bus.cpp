@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 
 #include "drivers/clock.hpp"
@@ -23,8 +24,6 @@ constexpr std::uint32_t kDefaultBitRate = 1'000'000;
 constexpr std::uint32_t kRepetitions = 1;
 constexpr std::size_t kLargestObject = std::size_t{64} << 20;
 
-image::Nanoseconds now() { return drivers::clock_ns(CLOCK_MONOTONIC); }
-
 }  // namespace
 
 std::unique_ptr<ToolBus> ToolBus::open(const CanopenBusOptions& options, int& code) {
@@ -33,6 +32,7 @@ std::unique_ptr<ToolBus> ToolBus::open(const CanopenBusOptions& options, int& co
   if (!named) return nullptr;
   CanTransportOptions transport_options;
   transport_options.bit_rate = named->bit_rate;
+  transport_options.participant = "tool";
   drivers::Notice why;
   auto opened = open_can(named->url, transport_options, why);
   code = kInfrastructure;
@@ -41,7 +41,10 @@ std::unique_ptr<ToolBus> ToolBus::open(const CanopenBusOptions& options, int& co
     return nullptr;
   }
   code = kDone;
-  return std::unique_ptr<ToolBus>(new ToolBus(named->url, std::move(*opened), options));
+  std::unique_ptr<ToolBus> bus(new ToolBus(named->url, std::move(*opened), options));
+  // Time is not granted before everybody is there.
+  if (bus->transport_.lockstep != nullptr) bus->time_ended_ = !bus->transport_.lockstep->wait_grant();
+  return bus;
 }
 
 ToolBus::ToolBus(std::string url, CanTransport transport, const CanopenBusOptions& options)
@@ -55,7 +58,36 @@ std::uint32_t ToolBus::bit_rate() const noexcept {
   return own != 0 ? own : kDefaultBitRate;
 }
 
-bool ToolBus::over() const { return signals_.ended() || gone(); }
+bool ToolBus::over() const { return (signals_count_ && signals_.ended()) || gone(); }
+
+image::Nanoseconds ToolBus::now() const {
+  return transport_.lockstep != nullptr ? transport_.lockstep->granted() : drivers::clock_ns(CLOCK_MONOTONIC);
+}
+
+/// Until something comes, or a part of the time.
+void ToolBus::pause(image::Nanoseconds until) {
+  if (transport_.lockstep != nullptr) {
+    transport_.lockstep->done(until);
+    time_ended_ = !transport_.lockstep->wait_grant();
+    return;
+  }
+  pollfd p{transport_.descriptor, POLLIN, 0};
+  const image::Nanoseconds nap =
+      std::min(std::max<image::Nanoseconds>(0, until - now()), 50 * image::kMillisecond);
+  const timespec limit{nap / image::kSecond, nap % image::kSecond};
+  ppoll(&p, 1, &limit, nullptr);
+}
+
+bool ToolBus::wait_until(image::Nanoseconds t) {
+  if (transport_.lockstep != nullptr) {
+    while (now() < t && !gone()) pause(t);
+  } else {
+    const timespec until{t / image::kSecond, t % image::kSecond};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+    }
+  }
+  return !gone();
+}
 
 bool ToolBus::listen(image::Nanoseconds at_most, const Handler& handler) {
   const image::Nanoseconds until = now() + at_most;
@@ -63,12 +95,8 @@ bool ToolBus::listen(image::Nanoseconds at_most, const Handler& handler) {
   for (;;) {
     while (transport_.bus->receive(frame))
       if (handler(frame)) return true;
-    const image::Nanoseconds left = until - now();
-    if (left <= 0 || over()) return false;
-    pollfd p{transport_.descriptor, POLLIN, 0};
-    const image::Nanoseconds nap = std::min(left, 50 * image::kMillisecond);
-    const timespec limit{nap / image::kSecond, nap % image::kSecond};
-    ppoll(&p, 1, &limit, nullptr);
+    if (now() >= until || over()) return false;
+    pause(until);
   }
 }
 

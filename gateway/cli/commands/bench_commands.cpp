@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/cli/commands/bench_commands.hpp"
+
+#include "firmware_if/text/finding.hpp"
+#include "gateway/cli/quantities.hpp"
+
+namespace servogate::gateway {
+namespace {
+
+const std::string kRevS = text::both("rev/s", "об/с");
+
+void add_drive(CLI::App& c, BenchOptions& o) {
+  c.add_option("BUS", o.bus, "Url of the bus, or MACHINE.toml#bus")->required();
+  c.add_option("NODE", o.node, "Node-ID, 1 to 127")
+      ->required()
+      ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
+  c.add_option("--travel", o.travel, "Envelope: FROM..TO in revolutions from where the motor stands")
+      ->required()
+      ->type_name("FROM..TO");
+  c.add_option("--speed", o.speed_rev_s, "Envelope: greatest speed in rev/s")
+      ->required()
+      ->type_name("REV/S")
+      ->check(number_within({0.01, 10'000.0, kRevS}));
+  c.add_option("--torque", o.torque_nm, "Envelope: greatest torque in N m")
+      ->required()
+      ->type_name("NM")
+      ->check(number_within({1e-6, 1e5, text::both("N m", "Н·м")}));
+  c.add_option("--time", o.time_s, "Envelope: longest time with power in s")
+      ->type_name("S")
+      ->check(number_within({0.1, 3600.0, text::both("s", "с")}));
+  c.add_option("--following", o.following_rev, "Envelope: greatest following error in revolutions")
+      ->type_name("REV")
+      ->check(number_within({1e-6, 1e4, text::both("rev", "об.")}));
+  c.add_option("--out", o.out, "Directory of the run, made anew")->required()->type_name("DIR");
+  c.add_option("--cycle", o.cycle_us, "Period of SYNC in us, 250 to 20000")
+      ->type_name("US")
+      ->check(number_within({250.0, 20'000.0, text::both("us", "мкс"), true}));
+  c.add_option("--counts", o.counts_per_rev, "Counts of 6064h in a revolution, where 608Fh does not say it")
+      ->type_name("N")
+      ->check(number_within({4.0, 1e9, ""}));
+  c.add_option("--rated-torque", o.rated_torque_nm, "Rated torque in N m, where 6076h does not say it")
+      ->type_name("NM")
+      ->check(number_within({1e-6, 1e5, text::both("N m", "Н·м")}));
+  c.add_option("--bit-rate", o.bit_rate, "Bit rate of the bus in bit/s, 10000 to 1000000")
+      ->type_name("BIT/S")
+      ->check(number_within({10'000.0, 1e6, text::both("bit/s", "бит/с"), true}));
+  c.add_option("--listen", o.listen_s, "How long the bus must show no master before, in s, 0.1 to 60")
+      ->type_name("S")
+      ->check(number_within({0.1, 60.0, text::both("s", "с")}));
+  c.add_flag("--i-may-move", o.may_move, "A drive may move");
+  c.add_flag("--json", o.json, "As JSON");
+}
+
+void add_band(CLI::App& c, BenchOptions& o) {
+  c.add_option("--from", o.from_hz, "Lowest frequency in Hz, 0.01 to 2000")
+      ->type_name("HZ")
+      ->check(number_within({0.01, 2000.0, text::both("Hz", "Гц")}));
+  c.add_option("--to", o.to_hz, "Highest frequency in Hz, 0.01 to 2000")
+      ->type_name("HZ")
+      ->check(number_within({0.01, 2000.0, text::both("Hz", "Гц")}));
+}
+
+void add_run(CLI::App& bench, BenchOptions& o) {
+  CLI::App& c = *bench.add_subcommand("run", "Gives the drive a test signal and says how it followed.");
+  add_drive(c, o);
+  c.add_option("--signal", o.signal, "step, ramp, trapezoid, jerk, sine, chirp, multisine or prbs")
+      ->required()
+      ->check(one_of({"step", "ramp", "trapezoid", "jerk", "sine", "chirp", "multisine", "prbs"}));
+  c.add_option("--loop", o.loop, "position, velocity or torque")
+      ->required()
+      ->check(one_of({"position", "velocity", "torque"}));
+  c.add_option("--amplitude", o.amplitude, "Size of the signal in rev, rev/s or N m")
+      ->type_name("X")
+      ->check(number_within({-1e6, 1e6, ""}));
+  c.add_option("--offset", o.offset, "Added to every value of the signal")
+      ->type_name("X")
+      ->check(number_within({-1e6, 1e6, ""}));
+  c.add_option("--duration", o.duration_s, "Length of the signal in s, 0.01 to 3600")
+      ->type_name("S")
+      ->check(number_within({0.01, 3600.0, text::both("s", "с")}));
+  c.add_option("--move-speed", o.move_speed, "Of trapezoid and jerk: speed in rev/s")
+      ->type_name("REV/S")
+      ->check(number_within({1e-3, 1e4, kRevS}));
+  c.add_option("--acceleration", o.acceleration, "Of trapezoid and jerk: acceleration in rev/s2")
+      ->type_name("REV/S2")
+      ->check(number_within({1e-3, 1e6, text::both("rev/s2", "об/с2")}));
+  c.add_option("--jerk", o.jerk, "Of jerk: jerk in rev/s3")
+      ->type_name("REV/S3")
+      ->check(number_within({1e-3, 1e9, text::both("rev/s3", "об/с3")}));
+  add_band(c, o);
+  c.add_option("--period", o.period, "Of multisine and prbs: samples of a period, 16 to 1000000")
+      ->type_name("N")
+      ->check(number_within({16.0, 1e6, "", true}));
+  c.add_option("--periods", o.periods, "Of multisine and prbs: how many, 1 to 1000")
+      ->type_name("N")
+      ->check(number_within({1.0, 1000.0, "", true}));
+  c.footer(
+      "Example: servogate bench run socketcan:can0 5 --signal step --loop velocity --amplitude 2 --travel "
+      "-1..5 "
+      "--speed 5 --torque 1 --out step1 --i-may-move");
+}
+
+void add_identify(CLI::App& bench, BenchOptions& o) {
+  CLI::App& c = *bench.add_subcommand(
+      "identify", "Finds inertia, friction, cogging, resonance and backlash of motor and load.");
+  add_drive(c, o);
+  o.from_hz = 2.0;
+  o.to_hz = 180.0;
+  add_band(c, o);
+  c.add_option("--slowest", o.slowest_rev_s, "Slowest speed of the friction curve in rev/s")
+      ->type_name("REV/S")
+      ->check(number_within({1e-3, 1e3, kRevS}));
+  c.add_option("--excitation", o.excitation_nm, "Torque of the frequency response in N m, root mean square")
+      ->type_name("NM")
+      ->check(number_within({1e-6, 1e4, text::both("N m", "Н·м")}));
+  c.add_flag("--no-lost-motion", o.no_lost_motion, "Does not press the motor against the load at rest");
+  c.footer(
+      "Example: servogate bench identify socketcan:can0 5 --travel -10..400 --speed 20 --torque 2 --out "
+      "axis1 "
+      "--i-may-move");
+}
+
+}  // namespace
+
+void add_bench_commands(CLI::App& app, BenchOptions& run, BenchOptions& identify) {
+  CLI::App& bench = *app.add_subcommand("bench", "One drive on the table: turned, measured and identified.");
+  bench.require_subcommand(1);
+  add_run(bench, run);
+  add_identify(bench, identify);
+}
+
+}  // namespace servogate::gateway
