@@ -57,22 +57,6 @@ TEST_F(Lockstep, random_plants_in_other_processes_are_identified_within_three_pe
 
 class Bench : public Workbench {};
 
-TEST_F(Bench, a_step_is_kept_in_its_directory_and_leaves_the_drive_off_and_its_torque_limit_as_it_was) {
-  drives("5");
-  const json before = facts("sdo $BUS 5 read 6072")["value"];
-  const json run = facts(
-      "bench run $BUS 5 --signal step --loop velocity --amplitude 2 --duration 0.3 --travel -1..5 --speed 5 "
-      "--torque 1 --listen 0.1 --out step --i-may-move");
-  EXPECT_EQ(run["trip"], "none");
-  EXPECT_EQ(run["off"], true);
-  EXPECT_TRUE(run["figures"].contains("step"));
-  EXPECT_EQ(run["drive"]["serial"], 1 + 4);
-  for (const char* file : {"meta.json", "samples.csv", "report.html", "bus.log"})
-    EXPECT_GT(std::filesystem::file_size(path(std::string("step/") + file)), 100u) << file;
-  EXPECT_EQ(facts("sdo $BUS 5 read 6072")["value"], before);
-  EXPECT_EQ(facts("sdo $BUS 5 read 6041")["value"].get<int>() & 0x6F, 0x40) << "the drive is on";
-}
-
 TEST_F(Bench, what_does_not_fit_into_the_envelope_does_not_move) {
   drives("5");
   const std::string rest = " --speed 5 --torque 1 --listen 0.1 --i-may-move --out ";

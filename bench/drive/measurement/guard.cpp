@@ -66,8 +66,10 @@ bool Guard::exchange(const DriveAsk& ask) {
   const double before = answer_.position_rad;
   const bool goes_on = drive_.cycle(ask, answer_);
   time_ += period_;
+  ++cycles_since_online_;
   if (answer_.online) {
-    speed_ = known_ ? (answer_.position_rad - before) / period_ : 0.0;
+    speed_ = known_ ? (answer_.position_rad - before) / (cycles_since_online_ * period_) : 0.0;
+    cycles_since_online_ = 0;
     known_ = true;
     mean_torque_ += std::min(1.0, period_ / kTorqueMean_s) * (answer_.torque_nm - mean_torque_);
   }

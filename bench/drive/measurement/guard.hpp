@@ -96,7 +96,7 @@ class Guard {
   double speed_ = 0.0, mean_torque_ = 0.0, last_speed_asked_ = 0.0, last_position_asked_ = 0.0;
   double time_ = 0.0, powered_s_ = 0.0;
   bool known_ = false, powered_ = false, released_ = true;
-  int offline_cycles_ = 0;
+  int offline_cycles_ = 0, cycles_since_online_ = 0;
   Trip trip_ = Trip::none;
   double trip_value_ = 0.0, trip_limit_ = 0.0;
   std::vector<std::string> stages_;

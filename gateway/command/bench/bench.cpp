@@ -113,7 +113,7 @@ int finish(const BenchOptions& o, bench::Guard& guard, const BusDrive& drive, js
   return off ? kDone : kAlarm;
 }
 
-int on_drive(const char* command, const BenchOptions& o, bench::Loop loop, Work work) {
+int on_drive(const char* command, const BenchOptions& o, Work work) {
   const auto envelope = envelope_of(o);
   if (!envelope) return kWrongUse;
   int code = kDone;
@@ -140,7 +140,7 @@ int on_drive(const char* command, const BenchOptions& o, bench::Loop loop, Work 
           text::user_language()));
     };
     std::string why;
-    const bool found = guard.enable(loop) && work(o, guard, meta, why);
+    const bool found = work(o, guard, meta, why);
     code = finish(o, guard, *drive, meta, found, why);
   }
   return bus->finish(code);
@@ -209,6 +209,10 @@ bool identify_work(const BenchOptions& o, bench::Guard& guard, json& meta, std::
   plan.from_hz = o.from_hz;
   plan.to_hz = o.to_hz;
   plan.lost_motion = !o.no_lost_motion;
+  // Nothing gets power that does not fit.
+  const bench::Reach reach = bench::reach_of(plan, guard.period_s());
+  if (!guard.accepts_travel(reach.from_rad, reach.to_rad) || !guard.enable(bench::Loop::velocity))
+    return false;
   const auto found = bench::identify(guard, plan, why);
   if (!found) return false;
   put_identified(*found, meta);
@@ -260,7 +264,7 @@ bool run_work(const BenchOptions& o, bench::Guard& guard, json& meta, std::strin
     return false;
   }
   for (double& v : wanted) v += o.offset * unit;
-  if (!guard.accepts(loop, wanted)) return false;
+  if (!guard.accepts(loop, wanted) || !guard.enable(loop)) return false;
   guard.stage(o.signal);
   std::vector<double> actual;
   for (const double v : wanted) {
@@ -277,11 +281,7 @@ bool run_work(const BenchOptions& o, bench::Guard& guard, json& meta, std::strin
 
 }  // namespace
 
-int bench_run(const BenchOptions& options) {
-  return on_drive("bench run", options, loop_of(options), run_work);
-}
-int bench_identify(const BenchOptions& options) {
-  return on_drive("bench identify", options, bench::Loop::velocity, identify_work);
-}
+int bench_run(const BenchOptions& options) { return on_drive("bench run", options, run_work); }
+int bench_identify(const BenchOptions& options) { return on_drive("bench identify", options, identify_work); }
 
 }  // namespace servogate::gateway::command
