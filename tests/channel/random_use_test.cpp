@@ -177,6 +177,8 @@ class Hands {
     }
     if (rig_.status().retraced) {
       ++retraced;
+      // A way back that came to its end by itself may still settle.
+      ASSERT_TRUE(rig_.until([&] { return !rig_.status().retracing && !rig_.moving(); }, 20.0));
       ask(RequestKind::reposition);
       ASSERT_TRUE(rig_.until([&] { return !rig_.status().retracing && !rig_.moving(); }, 200.0));
       rig_.run(0.02);
