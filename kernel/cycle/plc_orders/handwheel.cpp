@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "firmware_if/image/wheel_way.hpp"
 #include "kernel/cycle/gate/gate.hpp"
 
 namespace servogate::cycle {
@@ -50,10 +51,7 @@ double Handwheel::followed(const axis::Axis& axis) const noexcept {
   limits.velocity = std::min(limits.velocity, axis.jog_speed());
   const double room =
       axis::Ramp::stopping_distance({0.0, limits.velocity, 0.0}, limits) + limits.velocity * kLag;
-  const double sign = std::copysign(1.0, way), left = moves_ ? sign * axis.way_left() : 0.0;
-  if (std::abs(way) <= room - left) return way;
-  const double step = std::abs(step_), least = left <= 0.0 ? 1.0 : 0.0;
-  return sign * step * std::max(std::floor((room - left) / step), least);
+  return image::wheel_way(way, step_, room, moves_ ? std::copysign(1.0, way) * axis.way_left() : 0.0);
 }
 
 bool Handwheel::next(image::Request& request, const axis::Axis& axis) noexcept {

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "drivers/notice.hpp"
+#include "drivers/pendant_port.hpp"
+
+namespace servogate::hid {
+
+/// Which HID device.
+struct HidChoice {
+  std::uint16_t vendor = 0, product = 0;
+  std::string serial;  ///< empty: any
+  std::string path;    ///< "/dev/hidraw0"; empty: any
+};
+
+/// A pendant as hidapi finds it. It need not be there: it is looked for every half second until it comes, and
+/// again after it was unplugged, which is told within milliseconds.
+class HidPort final : public drivers::PendantPort {
+ public:
+  /// nullptr: `why` says what is wrong with the computer. Starts a thread. Not real-time safe.
+  static std::unique_ptr<HidPort> open(const HidChoice& choice, drivers::Notice& why);
+  ~HidPort() override;
+  HidPort(const HidPort&) = delete;
+  HidPort& operator=(const HidPort&) = delete;
+
+  void show(std::vector<std::vector<std::uint8_t>> reports) override;
+
+ private:
+  explicit HidPort(HidChoice choice) : choice_(std::move(choice)) {}
+  struct Device;
+  void run();
+  std::unique_ptr<Device> find();
+  bool serve(Device& device);
+
+  const HidChoice choice_;
+  std::string refused_;  ///< what was told last
+  std::mutex mutex_;
+  std::vector<std::vector<std::uint8_t>> shown_;  ///< that waits to be written
+  std::atomic<bool> end_{false};
+  std::thread thread_;
+};
+
+}  // namespace servogate::hid
