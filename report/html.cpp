@@ -163,15 +163,6 @@ std::string listing(std::string_view text) {
   return valid_utf8(std::string(text.substr(0, end))) + (end < text.size() ? "…" : "");
 }
 
-std::string escaped(std::string_view words) {
-  std::string out;
-  for (const char c : words) {
-    const std::string_view entity = text::entity_of(c);
-    entity.empty() ? out += c : out += entity;
-  }
-  return out;
-}
-
 /// JSON that cannot end the script element around it: `<` occurs in strings only.
 std::string embedded(const Json& data) {
   std::string out;
@@ -193,7 +184,7 @@ std::string to_html(const Report& report, const RecordedRun& run, const HtmlOpti
   data["report"] = {{"en", json_of(report, text::Language::english)},
                     {"ru", json_of(report, text::Language::russian)}};
   data["run"] = run_json(run);
-  const std::string title = escaped(valid_utf8(options.title.empty() ? "servogate" : options.title));
+  const std::string title = text::escaped(valid_utf8(options.title.empty() ? "servogate" : options.title));
   std::string out = "<!DOCTYPE html>\n<html lang=\"" + language + "\"><head><meta charset=\"utf-8\">" +
                     "<meta http-equiv=\"Content-Security-Policy\" content=\"" + kPolicy + "\">" +
                     "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">" +
@@ -207,8 +198,8 @@ std::string to_html(const Report& report, const RecordedRun& run, const HtmlOpti
     body.insert(at + before.size(), text);
   };
   put("id=\"title\">", title);
-  put("id=\"program-name\">", escaped(valid_utf8(options.program_name)));
-  put("id=\"notices\">", escaped(kPageNotices));
+  put("id=\"program-name\">", text::escaped(valid_utf8(options.program_name)));
+  put("id=\"notices\">", text::escaped(kPageNotices));
   out += body;
   out += "<script type=\"application/json\" id=\"data\">" + embedded(data) +
          "</script>\n<script id=\"libraries\">\n";

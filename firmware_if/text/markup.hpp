@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
 #include <string_view>
 
 namespace servogate::text {
@@ -19,6 +20,16 @@ constexpr std::string_view entity_of(char c) noexcept {
     default:
       return {};
   }
+}
+
+/// Words as the text of an element. Not real-time safe.
+inline std::string escaped(std::string_view words) {
+  std::string out;
+  for (const char c : words) {
+    const std::string_view entity = entity_of(c);
+    entity.empty() ? out += c : out += entity;
+  }
+  return out;
 }
 
 }  // namespace servogate::text

@@ -19,18 +19,6 @@ constexpr double kWidth = 860.0, kHeight = 220.0, kLeft = 70.0, kBottom = 24.0;
 /// A plot of this many points shows all that its pixels can.
 constexpr std::size_t kColumns = 1500;
 
-std::string escaped(const std::string& words) {
-  std::string out;
-  for (const char c : words) {
-    const std::string_view instead = text::entity_of(c);
-    if (instead.empty())
-      out += c;
-    else
-      out += instead;
-  }
-  return out;
-}
-
 std::string formatted(const char* format, double value) {
   char out[64];
   std::snprintf(out, sizeof out, format, value);
@@ -57,7 +45,7 @@ std::string plot(const std::string& title, const std::vector<Series>& all, bool 
   if (!(y1 > y0)) y1 = y0 + 1.0;
   const auto px = [&](double x) { return kLeft + (place(x) - x0) / (x1 - x0) * (kWidth - kLeft - 8.0); };
   const auto py = [&](double y) { return 8.0 + (y1 - y) / (y1 - y0) * (kHeight - kBottom - 8.0); };
-  std::string out = "<h3>" + escaped(title) +
+  std::string out = "<h3>" + text::escaped(title) +
                     "</h3><svg viewBox='0 0 860 220'><rect x='70' y='8' width='782' height='188'/>";
   const auto label = [&](double x, double y, const char* anchor, double value) {
     out += "<text x='" + formatted("%.0f", x) + "' y='" + formatted("%.0f", y) + "' text-anchor='" + anchor +
@@ -119,8 +107,8 @@ void table(const nlohmann::json& object, const std::string& prefix, std::string&
     if (value.is_object())
       table(value, prefix + key + ".", out);
     else if (!value.is_array())
-      out += "<tr><td>" + escaped(prefix + key) + "</td><td>" +
-             escaped(value.is_string() ? value.get<std::string>() : value.dump()) + "</td></tr>";
+      out += "<tr><td>" + text::escaped(prefix + key) + "</td><td>" +
+             text::escaped(value.is_string() ? value.get<std::string>() : value.dump()) + "</td></tr>";
   }
 }
 
