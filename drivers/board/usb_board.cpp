@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "drivers/bus_thread.hpp"
@@ -13,6 +14,7 @@ namespace servogate::board {
 namespace {
 
 constexpr int kLookAgain_ms = 500;
+constexpr std::chrono::microseconds kBrief{50};
 constexpr image::Nanoseconds kServe = 10 * image::kMillisecond;
 const std::string kName = text::both("servogate board", "плата servogate");
 const text::Entry kNoStart{"board.no-start", "the board {0} was opened, but its pipes do not start: {1}",
@@ -90,8 +92,8 @@ void UsbBoard::pump() noexcept {
 
 void UsbBoard::give_up() noexcept {
   awake_.store(nullptr);
-  while (waking_.load()) {
-  }
+  // Asleep, not spinning: the cycle may have less priority than this thread, and one processor.
+  while (waking_.load()) std::this_thread::sleep_for(kBrief);
   port_.reset();
   Bytes old;
   while (outgoing_.try_dequeue(old)) {
