@@ -326,14 +326,6 @@ bool LibusbPort::serve(image::Nanoseconds at_most) noexcept {
 
 }  // namespace
 
-std::vector<std::string> serial_numbers(const DeviceKind& kind) {
-  std::vector<std::string> serials;
-  int error = 0;
-  if (const Context context = open_context(error))
-    for (const Found& f : find(context.get(), kind)) serials.push_back(f.serial);
-  return serials;
-}
-
 std::unique_ptr<UsbPort> open_libusb(const DeviceKind& kind, const std::string& serial, drivers::Notice& why) {
   const std::string name(kind.name);
   int error = 0;

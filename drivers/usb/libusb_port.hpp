@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "drivers/notice.hpp"
 #include "drivers/usb/usb_port.hpp"
@@ -32,10 +31,6 @@ struct DeviceKind {
   /// program.
   const text::Entry* kernel_has_it = nullptr;
 };
-
-/// Serial numbers of those that are plugged in; "?" for one whose serial number may not be read. Not
-/// real-time safe.
-std::vector<std::string> serial_numbers(const DeviceKind& kind);
 
 /// Opens the device of this serial number, or with "any" the only one. nullptr: there is none, there are
 /// several, the process may not use it, or another driver has it; `why` says what mends it. Not real-time

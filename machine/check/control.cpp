@@ -59,7 +59,8 @@ class StationCheck {
     const bool board = s_.kind == StationKind::board;
     if (s_.kind == StationKind::gpio || board) needed("url", s_.url);
     if (board) not_here("device", s_.device);
-    if (!board && machine_.places.contains(path_ + "watchdog")) not_here("watchdog", s_.name);
+    if (!board && machine_.places.contains(path_ + "watchdog"))
+      reading_.error(machine_.where(path_ + "watchdog"), finding::kKeyNotHere, {"watchdog", kind_});
     if (s_.kind == StationKind::modbus) modbus();
     if (s_.kind != StationKind::modbus) not_here("line", s_.line);
     for (std::size_t i = 0; i < s_.points.size(); ++i)

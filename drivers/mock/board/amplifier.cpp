@@ -28,8 +28,7 @@ void Amplifier::set_step(bool step, bool forward, image::Nanoseconds t) noexcept
 void Amplifier::advance(double dt) noexcept {
   if (config_.steps_per_rev > 0) return;
   if (!enabled_) return;
-  const double wanted =
-      (value_ + config_.drift + load_drift) * config_.full_speed * (config_.reversed ? -1.0 : 1.0);
+  const double wanted = (value_ + config_.drift) * config_.full_speed * (config_.reversed ? -1.0 : 1.0);
   const double before = speed_;
   speed_ += (wanted - speed_) * (config_.lag_s > 0.0 ? 1.0 - std::exp(-dt / config_.lag_s) : 1.0);
   turn_to(revolutions_ + 0.5 * (before + speed_) * dt);

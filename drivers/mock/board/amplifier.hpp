@@ -40,7 +40,6 @@ class Amplifier {
   bool enabled() const noexcept { return enabled_; }
 
   bool fault = false;       ///< its fault output reports
-  double load_drift = 0.0;  ///< played: added to drift
   /// Steps that were not followed.
   std::int64_t lost_steps() const noexcept { return lost_; }
 

@@ -21,7 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-const text::Entry kWhat{"bench.what", "the bench", "стенд"};
 const text::Entry kBadTravel{"bench.travel",
                              "--travel {0}: expected FROM..TO in revolutions with 0 between, as -5..50",
                              "--travel {0}: нужно ОТ..ДО в оборотах, с нулём между ними, например -5..50"};
@@ -122,10 +121,7 @@ int on_drive(const char* command, const BenchOptions& o, Work work) {
   if (holder) return refuse_held(*holder, o.bus, "`bench`");
   const auto bus = ToolBus::open(o, code);
   if (bus == nullptr) return code;
-  const std::string what =
-      text::both(text::render(kWhat, std::vector<std::string>{}, text::Language::english),
-                 text::render(kWhat, std::vector<std::string>{}, text::Language::russian));
-  if (code = may_move(*bus, what, o); code != kDone) return bus->finish(code);
+  if (code = may_move(*bus, text::both("the bench", "стенд"), o); code != kDone) return bus->finish(code);
   if (!make_run_directory(o.out)) return bus->finish(kInfrastructure);
   {
     const auto drive = BusDrive::open(*bus, o, o.out + "/bus.log", code);
