@@ -22,7 +22,8 @@ using nlohmann::json;
 using text::Entry;
 
 constexpr StatePart kParts[] = {StatePart::origins,  StatePart::tools, StatePart::homing,
-                                StatePart::counters, StatePart::gains, StatePart::retained};
+                                StatePart::counters, StatePart::gains, StatePart::records,
+                                StatePart::retained};
 constexpr int kSchema = 1;
 
 const Entry kWritten{"backup.written",

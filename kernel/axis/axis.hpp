@@ -117,6 +117,10 @@ class Axis {
   bool home() noexcept;
   /// Stops whatever this axis does by itself (jog, homing), at its limits.
   void stop() noexcept;
+  /// The window in which the axis counts as in position, mm or degrees, for as long as a program runs: at
+  /// most following_error_limit of the configuration; 0: the configuration's own. real-time safe.
+  void set_in_position_window(double window) noexcept;
+  double in_position_window() const noexcept { return window_ > 0.0 ? window_ : config_.in_position_window; }
   /// Operator's reset: the drive's fault is reset, a reaction's stop is taken back.
   void reset() noexcept;
 
@@ -274,6 +278,7 @@ class Axis {
   double following_limit_ = 0.0;  ///< at the speed of this cycle
   double following_warn_ = 0.0;   ///< the same for the warning
   bool following_warned_ = false;
+  double window_ = 0.0;      ///< in position, of a program; 0: the configuration's
   double rest_s_ = 0.0;      ///< the set-point has stood for so long
   double inside_s_ = 0.0;    ///< and the feedback inside the window for so long
   double brake_mark_ = 0.0;  ///< motor position at which the brake closed

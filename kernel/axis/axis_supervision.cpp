@@ -270,15 +270,19 @@ void Axis::report_path_end(double dt) noexcept {
   if (std::abs(off) > allowed) raise(alarm::kOffPath, path_end_, off);
 }
 
+void Axis::set_in_position_window(double window) noexcept {
+  window_ = std::clamp(window, 0.0, config_.following_error_limit);
+}
+
 void Axis::update_in_position(double dt) noexcept {
   rest_s_ = moving_ && !(homing_.active() && ramp_.done()) ? 0.0 : rest_s_ + dt;
   const double error = set_.x - actual_;
-  const bool inside = held_ && rest_s_ > 0.0 && std::abs(error) <= config_.in_position_window;
+  const bool inside = held_ && rest_s_ > 0.0 && std::abs(error) <= in_position_window();
   inside_s_ = inside ? inside_s_ + dt : 0.0;
   in_position_ = inside && inside_s_ >= config_.in_position_time;
   if (!held_) rest_s_ = 0.0;
   if (held_ && !inside && config_.in_position_timeout > 0.0 && rest_s_ > config_.in_position_timeout)
-    raise(alarm::kInPositionTimeout, config_.in_position_window, error);
+    raise(alarm::kInPositionTimeout, in_position_window(), error);
 }
 
 bool Axis::present(image::AlarmNumber number) const noexcept {

@@ -404,6 +404,8 @@ void Feeder::accept(const program::Command& command) {
   }
   if (const auto* process = std::get_if<program::ProcessOrder>(&command.what))
     return order_process(*process, command);
+  if (const auto* windows = std::get_if<program::InPosition>(&command.what))
+    return set_windows(*windows, command);
   if (const std::optional<text::Finding> finding = not_driven(command))
     return fail(placed(*finding, command));
   std::optional<ForCycle> order = std::visit(Translation{elements_, texts_, view_}, command.what);
@@ -418,12 +420,28 @@ void Feeder::accept(const program::Command& command) {
   if (order->kind == EventKind::end) end();
 }
 
+void Feeder::set_windows(const program::InPosition& windows, const program::Command& command) {
+  if (const int axis = elements_.foreign_axis(command, position_); axis >= 0)
+    return refuse_foreign(axis, command);
+  for (std::uint8_t a = 0; a < image::kMaxAxes; ++a) {
+    if ((windows.axes >> a & 1u) == 0) continue;
+    Event e;
+    e.number = a;
+    e.value = windows.window[a];
+    event(EventKind::window, command, e);
+  }
+}
+
+void Feeder::refuse_foreign(int axis, const program::Command& command) {
+  text::Finding finding =
+      placed(foreign(interpreter_->machine().axes[static_cast<std::size_t>(axis)].letter), command);
+  finding.column = interpreter_->column(command.file, command.line, axis);
+  fail(finding);
+}
+
 bool Feeder::move(const program::Command& command) {
   if (const int axis = elements_.foreign_axis(command, position_); axis >= 0) {
-    text::Finding finding =
-        placed(foreign(interpreter_->machine().axes[static_cast<std::size_t>(axis)].letter), command);
-    finding.column = interpreter_->column(command.file, command.line, axis);
-    fail(finding);
+    refuse_foreign(axis, command);
     return false;
   }
   const path::Vector from = planner_.position();

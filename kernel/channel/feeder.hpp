@@ -154,6 +154,8 @@ class Feeder {
   void warn_of_rest();
   void end();
   bool move(const program::Command& command);
+  void refuse_foreign(int axis, const program::Command& command);
+  void set_windows(const program::InPosition& windows, const program::Command& command);
   void order_process(const program::ProcessOrder& order, const program::Command& command);
   void supply();
   void event(EventKind kind, const program::Command& command, Event event);

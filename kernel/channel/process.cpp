@@ -304,7 +304,10 @@ bool Process::acquire(cycle::ProcessContext& c) noexcept {
 }
 
 void Process::release(cycle::ProcessContext& c) noexcept {
-  for (const OwnAxis& own : own_axes()) c.axes[own.machine].release(image::AxisOwner::process);
+  for (const OwnAxis& own : own_axes()) {
+    c.axes[own.machine].set_in_position_window(0.0);
+    c.axes[own.machine].release(image::AxisOwner::process);
+  }
 }
 
 // -- motion

@@ -121,6 +121,9 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       link_.orders.push(order);
       return true;
     }
+    case EventKind::window:
+      if (axis::Axis& a = c.axes[e.number]; a.process() == config_.index) a.set_in_position_window(e.value);
+      return true;
     case EventKind::process_start:
       return start_other(e, c);
     case EventKind::process_release:

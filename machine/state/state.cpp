@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Those of one file each; the retained variables have two copies.
-constexpr StatePart kParts[] = {StatePart::origins, StatePart::tools, StatePart::homing, StatePart::counters,
-                                StatePart::gains};
+constexpr StatePart kParts[] = {StatePart::origins,  StatePart::tools, StatePart::homing,
+                                StatePart::counters, StatePart::gains, StatePart::records};
 
 /// A file descriptor that closes itself.
 class Descriptor {
@@ -122,7 +122,9 @@ constexpr Loss kLosses[] = {
      "они начнутся с нуля"},
     {StatePart::gains, "the gains that were found are lost", "найденные коэффициенты утрачены",
      "tune again; until then those of the machine file hold",
-     "настройте заново; до этого действуют коэффициенты файла станка"}};
+     "настройте заново; до этого действуют коэффициенты файла станка"},
+    {StatePart::records, "the record files of part programs are lost", "файлы записей программ утрачены",
+     "have the programs create them anew", "дайте программам создать их заново"}};
 
 text::Finding loss_of(StatePart part, const std::string& file, const std::string& other, bool both) {
   const auto& l = *std::find_if(std::begin(kLosses), std::end(kLosses),
@@ -239,7 +241,7 @@ StateDirectory::Loaded StateDirectory::load() const {
 
 program::Tables StateDirectory::load_tables(std::vector<text::Finding>& findings) const {
   MachineState state;
-  for (const StatePart part : {StatePart::origins, StatePart::tools})
+  for (const StatePart part : {StatePart::origins, StatePart::tools, StatePart::records})
     load_part(file(part), part, axes_, state, findings);
   return state.tables;
 }
@@ -259,7 +261,11 @@ bool StateDirectory::save(const MachineState& state, StatePart part, std::string
 bool StateDirectory::save_all(const MachineState& state, std::string& error) const {
   return std::all_of(std::begin(kParts), std::end(kParts), [&](StatePart part) {
     // Without gains there is nothing to save, and damaged ones stay as they are.
-    return (part == StatePart::gains && state.gains.empty()) || save(state, part, error);
+    if (part == StatePart::gains && state.gains.empty()) return true;
+    // Most machines never have a record file.
+    if (part == StatePart::records && state.tables.record_files.empty() && !fs::exists(file(part)))
+      return true;
+    return save(state, part, error);
   });
 }
 

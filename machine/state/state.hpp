@@ -29,7 +29,7 @@ struct RetainedVariable {
 
 /// What the machine learns and the operator enters; the machine file is never rewritten.
 struct MachineState {
-  program::Tables tables;                        ///< origins and correctors; mm
+  program::Tables tables;                        ///< origins and correctors in mm, record files
   std::map<std::string, HomingRecord> homing;    ///< by axis letter
   std::map<std::string, std::int64_t> counters;  ///< "power_on_s", "parts", "X.distance_mm" ...
   std::map<std::string, double> gains;           ///< "X.position_gain" ... found by the bench
@@ -39,7 +39,7 @@ struct MachineState {
 };
 
 /// The parts of the state, one file each: NAME.toml, readable, `schema = 1`, with a checksum in its head.
-enum class StatePart : std::uint8_t { origins, tools, homing, counters, gains, retained };
+enum class StatePart : std::uint8_t { origins, tools, homing, counters, gains, records, retained };
 
 /// A state directory. Files are written whole (temporary file, fsync, rename, fsync of the folder); the
 /// generation before stays as NAME.previous.toml and is taken when the newest is damaged. The retained
@@ -62,7 +62,7 @@ class StateDirectory {
   /// edited by people: an edit is taken with a warning, or refused by errors with their places and left as it
   /// is. Any other part that a person edited says `checksum = "none"` and is taken with a warning.
   Loaded load() const;
-  /// The origins and tools alone; what is wrong with them is added to `findings`.
+  /// The origins, tools and record files alone; what is wrong with them is added to `findings`.
   program::Tables load_tables(std::vector<text::Finding>& findings) const;
   /// Writes one part, creating the folder (owner only). False: `error` holds the system's words. Retained
   /// variables go into the copy that state.retained_generation chooses; it must be greater than the one that

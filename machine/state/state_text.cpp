@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "machine/keys/document.hpp"
+#include "machine/state/record_text.hpp"
 #include "machine/state/table_text.hpp"
 
 namespace servogate::machine {
@@ -62,6 +63,8 @@ class PartReader {
       case StatePart::origins:
       case StatePart::tools:
         return;  // read_table()
+      case StatePart::records:
+        return read_records(root, file_, state_.tables.record_files, findings);
       case StatePart::homing:
         return homing(root);
       case StatePart::counters:
@@ -253,8 +256,8 @@ bool any_error(const std::vector<text::Finding>& findings) {
 }  // namespace
 
 std::string_view part_name(StatePart part) {
-  static constexpr std::string_view kNames[] = {"origins",  "tools", "homing",
-                                                "counters", "gains", "retained"};
+  static constexpr std::string_view kNames[] = {"origins", "tools",   "homing",  "counters",
+                                                "gains",   "records", "retained"};
   return kNames[static_cast<std::size_t>(part)];
 }
 
@@ -282,6 +285,9 @@ std::string write_part(const MachineState& state, StatePart part) {
       break;
     case StatePart::gains:
       write_gains(state, body);
+      break;
+    case StatePart::records:
+      body += write_records(state.tables.record_files);
       break;
     case StatePart::retained:
       write_retained(state, body);

@@ -240,6 +240,14 @@ TEST_F(TwoProcesses, refuse_a_program_that_names_an_axis_of_the_other_with_its_p
       "process.nc:2:8: error: X belongs to another process: its programs move it [channel.foreign-axis]");
 }
 
+TEST_F(TwoProcesses, refuse_a_window_for_an_axis_of_the_other) {
+  compose("M30\n", "G29\n(DTL,Z0.05,Y0.05)\nM30\n");
+  ASSERT_EQ(ask(RequestKind::start, 1), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(1) == ProcessState::stopped_by_alarm; }));
+  EXPECT_TRUE(error_of(1).starts_with("process.nc:2:1: error: Y belongs to another process")) << error_of(1);
+  for (const axis::Axis& a : cycle_->axes()) EXPECT_EQ(a.in_position_window(), 0.002);
+}
+
 TEST_F(TwoProcesses, hand_an_axis_over_at_standstill_and_only_then) {
   compose("N10 G1 X20 Z-30 F3000\nN20 M30\n", "N10 G1 Z40 F3000\nN20 M30\n");
   ASSERT_EQ(ask(RequestKind::start, 1), Refusal::none);

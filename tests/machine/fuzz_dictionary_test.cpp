@@ -54,7 +54,7 @@ std::string dictionary() {
   add_section(section_of<MachineConfig>(), {}, words);
   add_section(section_of<DeviceConfig>(), {}, words);
   for (const StatePart part : {StatePart::origins, StatePart::tools, StatePart::homing, StatePart::counters,
-                               StatePart::gains, StatePart::retained})
+                               StatePart::gains, StatePart::records, StatePart::retained})
     words.insert("\"" + std::string(part_name(part)) + "\"");
   std::string out = "# Made from the table of keys; SERVOGATE_UPDATE=1 test_machine writes it anew.\n";
   for (const std::string& word : words) out += entry(word);

@@ -19,7 +19,8 @@ namespace servogate::machine {
 namespace {
 
 constexpr StatePart kParts[] = {StatePart::origins,  StatePart::tools, StatePart::homing,
-                                StatePart::counters, StatePart::gains, StatePart::retained};
+                                StatePart::counters, StatePart::gains, StatePart::records,
+                                StatePart::retained};
 
 bool same(const MachineState& a, const MachineState& b) {
   return a.tables == b.tables && a.homing == b.homing && a.counters == b.counters && a.gains == b.gains &&
@@ -32,6 +33,10 @@ MachineState sample() {
       {0, {{"X", 0.0}, {"Y", -0.1}}}, {1, {{"X", 100.123456789012}, {"Z", 1.0 / 3.0}}}, {12, {}}};
   s.tables.correctors[1] = {"face \"mill\"", {{"Z", 120.5}}, {{"Z", -0.02}}, 10.0, 0.01, {}, 0.0, 0};
   s.tables.correctors[99] = {"", {{"X", -3.25}, {"Z", 1e-9}}, {}, 0.4, 0.0, {}, 0.0, 3};
+  s.tables.record_files["PTS"] = {
+      {{image::Format::ch, 3}, {image::Format::lr}, {image::Format::in}},
+      20,
+      {{1, {{0.0, "X\xFF\"\n"}, {1.0 / 3.0, ""}, {-7.0, ""}}}, {20, {{0.0, ""}, {1e-300, ""}, {0.0, ""}}}}};
   s.homing["X"] = {true, -123456789012345, 3.25};
   s.homing["Z"] = {};
   s.counters = {{"power_on_s", 86400}, {"X.distance_mm", 9007199254740993}, {"parts", 0}};
@@ -62,6 +67,12 @@ MachineState random_state(std::mt19937_64& random) {
     s.tables.correctors[static_cast<int>(random() % 300)] = {
         name(),   {{name(), number()}}, {{name(), number()}}, std::abs(number()),
         number(), {{name(), number()}}, std::abs(number()),   static_cast<int>(random() % 10)};
+  for (std::size_t i = random() % 4; i > 0; --i) {
+    program::RecordFile& file = s.tables.record_files[name()];
+    file = {{{image::Format::ch, 8}, {image::Format::re}}, 30, {}};
+    for (std::size_t n = random() % 4; n > 0; --n)
+      file.records[1 + static_cast<int>(random() % 30)] = {{0.0, name()}, {number(), ""}};
+  }
   for (std::size_t i = random() % 4; i > 0; --i)
     s.homing[name()] = {random() % 2 == 0, static_cast<std::int64_t>(random()), number()};
   for (std::size_t i = random() % 4; i > 0; --i) s.counters[name()] = static_cast<std::int64_t>(random());

@@ -102,7 +102,8 @@ class Reader {
     if (name[0] == "axes") {
       case_.machine.axes.clear();
       for (const auto& letter : words_of(value)) case_.machine.axes.push_back(axis(letter));
-    } else if (name[0] == "travel" || name[0] == "rapid" || name[0] == "acceleration") {
+    } else if (name[0] == "travel" || name[0] == "rapid" || name[0] == "acceleration" ||
+               name[0] == "window_max") {
       limits(name, words_of(value));
     } else if (name[0] == "power_on") {
       case_.machine.power_on = words_of(value);
@@ -173,6 +174,7 @@ class Reader {
     for (auto& axis : case_.machine.axes) {
       if (name.size() != 2 || axis.letter != name[1]) continue;
       if (name[0] == "rapid") axis.rapid = std::stod(values.at(0));
+      if (name[0] == "window_max") axis.window_max = std::stod(values.at(0));
       if (name[0] == "acceleration") {
         axis.acceleration = std::stod(values.at(0));
         axis.jerk = std::stod(values.at(1));

@@ -115,6 +115,19 @@ TEST(Restart, takes_up_spindle_coolant_plane_and_then_depth) {
   EXPECT_EQ(approach(point, point.position, 300.0, false).size(), 3u) << "no motion where it stands already";
 }
 
+TEST(Restart, brings_the_windows_back_that_the_program_has_set) {
+  const auto result =
+      found("N10 G29\nN20 (DTL,X0.05,Y0.1)\nN30 (DTL,X0)\nN40 G0 X5\nN50 G1 X9 F100\nN60 M30\n",
+            {RestartAt::By::number, 50});
+  const auto& point = std::get<RestartPoint>(result);
+  const std::vector<Command> way = approach(point, point.position, 300.0, true);
+  ASSERT_EQ(way.size(), 1u) << "nothing to be confirmed, nothing moves";
+  const auto& windows = std::get<InPosition>(way[0].what);
+  EXPECT_EQ(windows.axes, 0b11u);
+  EXPECT_EQ(windows.window[0], 0.0);
+  EXPECT_EQ(windows.window[1], 0.1);
+}
+
 TEST(Restart, gives_the_way_first_and_then_the_program) {
   auto result = found(kPocket, {RestartAt::By::number, 70});
   auto& point = std::get<RestartPoint>(result);

@@ -111,6 +111,36 @@ TEST_F(TwoProcesses, see_the_variables_that_the_other_one_writes) {
   EXPECT_NEAR(at(1), 15.0, 1e-6);
 }
 
+TEST_F(TwoProcesses, read_the_records_that_a_program_of_the_other_one_has_written) {
+  const std::string record = file("records.record"), state = file("state");
+  shell_.up_file(file("machine.toml"), {"--virtual", "--speed", "20", "--state", state, "--record", record});
+  good({"power", "on"});
+  const std::string reads = write("reads.nc", "(DER,1,E40)\n(OPN,1,PTS)\n(RED,1,1,2)\nG1 XE40 F6000\nM30\n");
+  const Outcome early = run({"load", reads});
+  EXPECT_EQ(early.exit, 1);
+  EXPECT_TRUE(contains(early.err, "there is no such file")) << early.err;
+  good({"load",
+        write("writes.nc",
+              "(DER,1,E40)\n(CRE,1,PTS,2)\n(OPN,1,PTS,W)\nG1 Y5 F6000\nE40=15.25\n(WRT,1,1,2)\nM30\n"),
+        "--process", "2"});
+  good({"start", "--process", "2"});
+  ASSERT_TRUE(until_state(2, "ended"));
+  good({"load", reads});
+  good({"start", "--wait"});
+  EXPECT_NEAR(at(0), 15.25, 1e-6);
+  good({"down"});
+  std::ifstream kept(state + "/records.toml");
+  const std::string words{std::istreambuf_iterator<char>(kept), {}};
+  EXPECT_TRUE(contains(words, "name = \"PTS\"\ncapacity = 2\nfields = [\"LR\"]\n")) << words;
+  EXPECT_TRUE(contains(words, "{ number = 2, items = [15.25] }")) << words;
+  const std::string trace = file("replay.csv");
+  const Outcome replay = shell_.run({"replay", record, "--trace", trace});
+  EXPECT_EQ(replay.exit, 0) << replay.out << replay.err;
+  std::ifstream rows(trace);
+  const std::string all{std::istreambuf_iterator<char>(rows), {}};
+  EXPECT_TRUE(contains(all, ",15.25")) << "the record holds what was read";
+}
+
 TEST_F(TwoProcesses, read_how_far_the_axes_of_the_other_one_still_have_to_go) {
   begin();
   good({"load", write("far.nc", "G1 X200 F3000\nM30\n")});

@@ -33,10 +33,12 @@ constexpr char kCycleChunk = 'c', kChangeChunk = 'p', kSubprogramChunk = 's', kL
 constexpr std::string_view kChangeNames[] = {"program", "tables", "block", "modes", "restart"};
 /// Index = plc::LogicChange::Kind.
 constexpr std::string_view kLogicNames[] = {"load", "force", "release", "release_all"};
-constexpr machine::StatePart kTableParts[] = {machine::StatePart::origins, machine::StatePart::tools};
+constexpr machine::StatePart kTableParts[] = {machine::StatePart::origins, machine::StatePart::tools,
+                                              machine::StatePart::records};
 constexpr machine::StatePart kParts[] = {machine::StatePart::origins, machine::StatePart::tools,
                                          machine::StatePart::homing,  machine::StatePart::counters,
-                                         machine::StatePart::gains,   machine::StatePart::retained};
+                                         machine::StatePart::gains,   machine::StatePart::records,
+                                         machine::StatePart::retained};
 
 const text::Entry kLost{"record.lost", "{0} cycles could not be kept: the file is too slow",
                         "не записано циклов: {0}; носитель не успевает"};

@@ -44,7 +44,7 @@ std::optional<text::Finding> Forecast::take(const program::Command& command) {
 
 int Forecast::foreign_axis(const program::Command& command) {
   const int axis = elements_.foreign_axis(command, stands_);
-  if (axis >= 0)
+  if (axis >= 0 && destination(command) != nullptr)
     stands_[static_cast<std::size_t>(axis)] = (*destination(command))[static_cast<std::size_t>(axis)];
   return axis;
 }

@@ -2,6 +2,7 @@
 #include "kernel/channel/motion/path_elements.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -37,6 +38,10 @@ path::Vector PathElements::path_position(const program::Position& at) const {
 }
 
 int PathElements::foreign_axis(const program::Command& command, const program::Position& stands) const {
+  if (const auto* windows = std::get_if<program::InPosition>(&command.what)) {
+    const std::uint32_t others = windows->axes & ~own_;
+    return others == 0 ? -1 : std::countr_zero(others);
+  }
   const program::Position* const to = destination(command);
   if (to == nullptr) return -1;
   constexpr double kStands = 1e-9;  // mm or degrees
@@ -194,7 +199,6 @@ std::optional<text::Finding> not_driven(const program::Command& command) {
   const char* name = is(static_cast<const program::Thread*>(nullptr))        ? "thread"
                      : is(static_cast<const program::Probe*>(nullptr))       ? "probe"
                      : is(static_cast<const program::SpindleMark*>(nullptr)) ? "spindle_mark"
-                     : is(static_cast<const program::InPosition*>(nullptr))  ? "in_position"
                                                                              : nullptr;
   if (name == nullptr) return std::nullopt;
   text::Finding finding;

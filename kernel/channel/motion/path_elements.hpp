@@ -37,8 +37,8 @@ class PathElements {
   path::Vector path_position(const program::Position& at) const;
   /// The machine axes that the programs move, as bits; without it all axes of the path.
   void own(std::uint32_t machine_axes) noexcept { own_ = machine_axes; }
-  /// A machine axis that a motion command would take away from where it `stands` although it is another
-  /// process'; -1: none.
+  /// A machine axis that a command would take away from where it `stands`, or whose window it would set,
+  /// although it is another process'; -1: none.
   int foreign_axis(const program::Command& command, const program::Position& stands) const;
   /// From here on feeds per revolution are those of this spindle word.
   void take(const program::Spindle& spindle);

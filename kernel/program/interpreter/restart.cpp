@@ -50,6 +50,7 @@ class Survey {
     if (const auto* s = std::get_if<Spindle>(&command.what)) spindle(*s);
     if (const auto* m = std::get_if<MFunction>(&command.what)) function(*m);
     if (const auto* t = std::get_if<Tool>(&command.what)) tool = *t;
+    if (const auto* w = std::get_if<InPosition>(&command.what)) window(*w);
     if (std::holds_alternative<WritePlace>(command.what)) ++writes;
     return !std::holds_alternative<Probe>(command.what) &&
            !std::holds_alternative<ProcessOrder>(command.what);
@@ -58,10 +59,16 @@ class Survey {
   std::optional<Spindle> turning;
   std::optional<MFunction> spindle_function, coolant;
   Tool tool;
+  InPosition windows;
   std::vector<MFunction> passed;
   int writes = 0;
 
  private:
+  void window(const InPosition& w) {
+    windows.axes |= w.axes;
+    for (std::size_t a = 0; a < w.window.size(); ++a)
+      if ((w.axes >> a & 1u) != 0) windows.window[a] = w.window[a];
+  }
   void spindle(const Spindle& s) {
     if (s.mode == SpindleMode::stop || s.mode == SpindleMode::orient) {
       turning.reset();
@@ -139,6 +146,7 @@ std::variant<RestartPoint, text::Finding> restart(const Interpreter& fresh, cons
   point.spindle = survey.turning;
   point.spindle_function = survey.spindle_function;
   point.coolant = survey.coolant;
+  point.windows = survey.windows;
   point.tool = survey.tool.number;
   point.corrector = survey.tool.corrector;
   point.passed = std::move(survey.passed);
@@ -172,6 +180,7 @@ std::vector<Command> approach(const RestartPoint& point, const Position& stands,
       if (std::abs(a[i] - b[i]) > kStands) return true;
     return false;
   };
+  if (point.windows.axes != 0) add(point.windows);
   if (point.spindle || point.coolant) ask();
   if (point.spindle) add(*point.spindle);
   if (point.spindle && point.spindle_function) add(*point.spindle_function);

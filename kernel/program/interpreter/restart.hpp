@@ -36,6 +36,7 @@ struct RestartPoint {
   std::optional<Spindle> spindle = std::nullopt;             ///< that turns; none: it stands
   std::optional<MFunction> spindle_function = std::nullopt;  ///< M3 or M4, which the PLC was told with it
   std::optional<MFunction> coolant = std::nullopt;           ///< M7 or M8 (or another of `kCoolant`) in force
+  InPosition windows = {};                                   ///< that the program has set
   std::int32_t tool = 0, corrector = 0;
   std::vector<MFunction> passed =
       {};                ///< other functions that the program gave before, the last of each code
@@ -49,9 +50,9 @@ struct RestartPoint {
 std::variant<RestartPoint, text::Finding> restart(const Interpreter& fresh, const RestartAt& at,
                                                   const image::Packets& packets);
 
-/// Commands that take the machine from where it stands to the point, in this order: spindle, coolant, the
-/// axes of the plane, then the depth axis, with an exact stop after each; straight, at `feed_mm_min`.
-/// `confirm`: the program waits for the operator's start before each step.
+/// Commands that take the machine from where it stands to the point, in this order: windows, spindle,
+/// coolant, the axes of the plane, then the depth axis, with an exact stop after each; straight, at
+/// `feed_mm_min`. `confirm`: the program waits for the operator's start before each step.
 std::vector<Command> approach(const RestartPoint& point, const Position& stands, double feed_mm_min,
                               bool confirm);
 

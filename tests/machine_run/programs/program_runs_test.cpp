@@ -47,7 +47,6 @@ bool cannot_run(const Command& command) {
          std::holds_alternative<program::Thread>(command.what) ||
          std::holds_alternative<program::SpindleMark>(command.what) ||
          std::holds_alternative<program::ProcessOrder>(command.what) ||
-         std::holds_alternative<program::InPosition>(command.what) ||
          std::holds_alternative<program::HFunction>(command.what) ||
          std::holds_alternative<program::Spindle>(command.what) ||
          std::holds_alternative<program::Tool>(command.what);

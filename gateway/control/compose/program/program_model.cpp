@@ -27,6 +27,7 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
     axis.rapid = a.max_velocity;
     axis.acceleration = a.max_acceleration;
     axis.jerk = a.max_jerk;
+    axis.window_max = a.following_error_stop;
     model.axes.push_back(axis);
   }
   model.spindles =

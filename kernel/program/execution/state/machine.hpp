@@ -8,6 +8,7 @@
 
 #include "firmware_if/image/packets.hpp"
 #include "firmware_if/text/finding.hpp"
+#include "kernel/program/execution/state/record_files.hpp"
 
 namespace servogate::program {
 
@@ -22,8 +23,9 @@ struct MachineModel {
     double rapid = 0.0;                          ///< largest speed, mm/s or degrees/s; 0: not known
     double acceleration = 0.0;                   ///< mm/s2 or degrees/s2; 0: not known
     double jerk = 0.0;                           ///< mm/s3 or degrees/s3; 0: not known
-    int process = 0;                             ///< whose programs move it, from 0
-    bool endless = false;                        ///< rotary without ends of travel
+    double window_max = 0.0;  ///< largest in-position window of a program, mm or degrees; 0: not known
+    int process = 0;          ///< whose programs move it, from 0
+    bool endless = false;     ///< rotary without ends of travel
     bool is_virtual = false;  ///< no axis of the machine: programs name it while real ones follow it
     int index_positions = 0;  ///< programs count positions, so many in a turn; 0: they give degrees
   };
@@ -100,6 +102,7 @@ struct Tables {
   };
   std::map<int, std::map<std::string, double>> origins;  ///< number to axis letter to mm
   std::map<int, Corrector> correctors;                   ///< by number; what people call a tool's row
+  RecordFiles record_files;
   bool operator==(const Tables&) const = default;
 };
 
@@ -112,6 +115,7 @@ inline void carry_over(const Tables& before, const Tables& after, Tables& into) 
       if (!is.contains(key)) entries.erase(key);
   };
   carry(before.origins, after.origins, into.origins);
+  carry_over(before.record_files, after.record_files, into.record_files);
   const auto used = into.correctors;  // a program knows the minutes of its beginning ...
   carry(before.correctors, after.correctors, into.correctors);
   const auto declared = [&](int number) {  // ... unless it says itself that a tool is worn out

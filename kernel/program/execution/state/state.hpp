@@ -153,6 +153,7 @@ struct State {
   SplineState spline;
   VirtualAxes virtual_axes;
   GeometricElements elements;
+  OpenRecords records;
   std::array<double, 64> own{};   ///< values that the language keeps for itself, by its own numbers
   std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit
   int optional_stop = -1;         ///< -1: left to the operator's switch

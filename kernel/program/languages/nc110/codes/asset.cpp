@@ -3,13 +3,10 @@
 #include "kernel/program/languages/nc110/codes/operands.hpp"
 #include "kernel/program/languages/nc110/faults/texts.hpp"
 
-/// The codes for record files, the keyboard and the screen of the old apparatus: each names what stands for
-/// it (specification B 16).
+/// The codes for the keyboard and the screen of the old apparatus: each names what stands for it
+/// (specification B 16.10).
 namespace servogate::program::nc110::code {
 
-void record_file(Execution&, const Operands& operands) {
-  fail(Wrong::record_file, operands.column, {std::string(operands.rule->name)});
-}
 void keyboard(Execution&, const Operands& operands) {
   fail(Wrong::keyboard, operands.column, {std::string(operands.rule->name)});
 }
@@ -18,9 +15,3 @@ void screen(Execution&, const Operands& operands) {
 }
 
 }  // namespace servogate::program::nc110::code
-
-namespace servogate::program::nc110::variable {
-
-void err(Execution&, double, int, int column) { fail(Wrong::record_file, column, {"ERR"}); }
-
-}  // namespace servogate::program::nc110::variable

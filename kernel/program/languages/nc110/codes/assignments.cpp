@@ -2,6 +2,7 @@
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
+#include "kernel/program/languages/nc110/codes/codes.hpp"
 #include "kernel/program/languages/nc110/codes/operands.hpp"
 #include "kernel/program/languages/nc110/codes/own_form.hpp"
 #include "kernel/program/languages/nc110/faults/texts.hpp"
@@ -117,9 +118,10 @@ void own_form(Execution& run) {
 
 bool own_form_waits(const Block& block) {
   const std::string_view text = block.line.substr(0, block.end);
-  if (text[block.body] == '(')
-    return !text.substr(skip_spaces(text, block.body + 1)).starts_with("WAI") &&
-           names_signal(text, block.body);
+  if (text[block.body] == '(') {
+    const std::string_view code = text.substr(skip_spaces(text, block.body + 1)).substr(0, 3);
+    return code::orders_records(code) || (code != "WAI" && code != "DER" && names_signal(text, block.body));
+  }
   const std::size_t equals = text.find('=', block.body);
   return equals != std::string_view::npos && names_signal(text, equals + 1);
 }

@@ -55,8 +55,12 @@ void dsa(Execution& run, const Operands& operands);
 void asc(Execution& run, const Operands& operands);
 void dsc(Execution& run, const Operands& operands);
 
-// asset.cpp; source: specification B 16
+// records.cpp; source: specification B 16
+void der(Execution& run, const Operands& operands);
 void record_file(Execution& run, const Operands& operands);
+/// An order to record files stands in the block: it comes behind the motion before it.
+bool orders_records(std::string_view code);
+// asset.cpp
 void keyboard(Execution& run, const Operands& operands);
 void screen(Execution& run, const Operands& operands);
 
@@ -94,7 +98,7 @@ void tot(Execution& run, double value, int index, int column);
 void rms(Execution& run, double value, int index, int column);
 void rta(Execution& run, double value, int index, int column);
 void rto(Execution& run, double value, int index, int column);
-// asset.cpp
+// records.cpp
 void err(Execution& run, double value, int index, int column);
 // variables.cpp
 void rmn(Execution& run, double value, int index, int column);

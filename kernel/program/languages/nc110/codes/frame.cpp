@@ -160,8 +160,13 @@ void dtl(Execution& run, const Operands& operands) {
   InPosition wanted;
   for (const Operand& item : operands) {
     const double window = run.numbers().length(item.axis, item.value, false);
+    const int column = static_cast<int>(item.begin) + 1;
+    if (run.machine().is_virtual(item.axis)) fail(Wrong::window_virtual, column, {letter(run, item.axis)});
     if (window < 0.0)
       run.numbers().refuse_range(letter(run, item.axis), item.value, window, "0", "99999.9999");
+    const double most = run.machine().axes[at(item.axis)].window_max;
+    if (most > 0.0 && window > most)
+      fail(Wrong::window_wide, column, {letter(run, item.axis), text::number(window), text::number(most)});
     wanted.window[at(item.axis)] = window;
     wanted.axes |= 1u << item.axis;
   }

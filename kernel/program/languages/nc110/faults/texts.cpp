@@ -146,13 +146,7 @@ constexpr text::Entry kMessages[] = {
     {"P673",
      "the manual gives DAW no format: write the value to the place of an analogue output, as in SK10.RE=E30",
      "руководство не даёт формата DAW: запишите значение в место аналогового выхода, например SK10.RE=E30"},
-    {"P674",
-     "{0}: there are no record files; keep values in places of SYVAR or SK, which the PLC retains and every "
-     "client "
-     "reads and writes",
-     "{0}: файлов записей нет; храните значения в местах SYVAR или SK: ПЛК их сохраняет, а каждый клиент "
-     "читает и "
-     "пишет"},
+    {"P674", "{0}: {2} (input/output error {1})", "{0}: {2} (ошибка ввода/вывода {1})"},
     {"P675",
      "{0}: there is no dialogue; show the question by DIS, wait by WAI for a place of SK, and let the "
      "operator set it",
@@ -167,8 +161,23 @@ constexpr text::Entry kMessages[] = {
     {"P678", "{0}: process {1} has {2} axes", "{0}: осей у процесса {1} — {2}"},
     {"P679", "{0} is written by the control, a program can only read it",
      "{0} записывает система, программа может её только читать"},
+    {"P680", "DTL: {0} is a virtual axis: name the axes of the machine that follow it",
+     "DTL: {0} — виртуальная ось: назовите оси станка, которые за ней следуют"},
+    {"P681",
+     "DTL: the in-position window {1} of {0} is above {2}, its following_error_stop in the machine file: "
+     "write a "
+     "smaller one",
+     "DTL: допуск позиционирования {1} оси {0} больше {2}, её following_error_stop в файле станка: запишите "
+     "меньший"},
+    {"P682", "{0} cannot be a field: write E of the types IN, RE or LR, or a place as .IN, .RE, .LR or .nCH",
+     "{0} не может быть полем: запишите E типов IN, RE или LR либо место как .IN, .RE, .LR или .nCH"},
+    {"P683", "DER: {0} fields, at most {1} are allowed", "DER: полей {0}, допускается не более {1}"},
+    {"P684", "OPN: the access is R or W, not {0}", "OPN: доступ — R или W, а не {0}"},
+    {"P685", "{0}: the structure has a number from 1 to {1}, not {2}",
+     "{0}: номер структуры — от 1 до {1}, а не {2}"},
+    {"P686", "CRE: a file has 1 to {0} records, not {1}", "CRE: в файле от 1 до {0} записей, а не {1}"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::read_only) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::record_count) + 1);
 
 }  // namespace
 

@@ -104,6 +104,13 @@ enum class Wrong : std::uint8_t {
   rest_form,
   rest_axis,
   read_only,
+  window_virtual,
+  window_wide,
+  record_field,
+  record_fields,
+  record_access,
+  record_structure,
+  record_count,
 };
 
 /// All texts, in the order of Wrong.

@@ -78,7 +78,6 @@ bool own_variable(std::string_view name, std::string_view line, std::size_t& pos
     value = of_element(name == "FEL" ? 0 : name == "FEP" ? 1 : 2, line, pos, source, column);
     return true;
   }
-  if (name == "IOSTA") fail(Wrong::record_file, column, {"IOSTA"});
   if (name == "RMN") {
     pos += name.size();
     const std::size_t digits = pos;
@@ -90,9 +89,9 @@ bool own_variable(std::string_view name, std::string_view line, std::size_t& pos
     return true;
   }
   const bool time = name == "TIM", sum = name == "TOT";
-  if (!time && !sum && name != "RTA" && name != "RTO") return false;
+  if (!time && !sum && name != "RTA" && name != "RTO" && name != "IOSTA") return false;
   pos += name.size();
-  std::size_t place = at(name == "RTA" ? Own::rta : Own::rto);
+  std::size_t place = at(name == "RTA" ? Own::rta : name == "RTO" ? Own::rto : Own::iosta);
   if (time || sum) {
     const int index = read_index(line, pos);
     if (index < 0 || index > kMostTimer)

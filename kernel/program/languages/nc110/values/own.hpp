@@ -20,7 +20,9 @@ enum class Own : std::size_t {
   approach,  ///< DPT, mm, mm and mm/min
   safety,
   probe_feed,
-  skew,  ///< UGF, degrees; 0: not told
+  skew,   ///< UGF, degrees; 0: not told
+  err,    ///< 1: the program goes on behind a fault of a record file
+  iosta,  ///< number of that fault, 0: the last order to a record file was carried out
 };
 constexpr std::size_t at(Own own) { return static_cast<std::size_t>(own); }
 
