@@ -2,6 +2,7 @@
 #include "gateway/control/server/desk/dispatch/status.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <span>
 
 #include "gateway/control/run/standstill.hpp"
@@ -51,19 +52,28 @@ ProcessReport process_report(Resident& resident, const image::ProcessImage& imag
   return report;
 }
 
+/// As people read it: an endless axis within its turn, to the last digit that is shown.
+double shown(const machine::AxisConfig& axis, double position) {
+  constexpr double kTurn = 360.0, kHalfDigit = 0.5e-6;
+  if (axis.diameter) return position * 2.0;
+  if (!axis.endless()) return position;
+  const double turn = position - kTurn * std::floor(position / kTurn);
+  return turn < kTurn - kHalfDigit ? turn : 0.0;
+}
+
 AxisReport axis_report(const machine::AxisConfig& config, const image::AxisImage& a,
                        text::Language language) {
-  const double shown = config.diameter ? 2.0 : 1.0;
+  const double across = config.diameter ? 2.0 : 1.0;
   AxisReport report;
   report.letter = config.letter;
   report.unit = config.unit();
   report.diameter = config.diameter;
   report.auxiliary = config.auxiliary;
-  report.command = a.command * shown;
-  report.position = a.actual * shown;
+  report.command = shown(config, a.command);
+  report.position = shown(config, a.actual);
   report.axis = a;
-  report.to_go = a.distance_to_go * shown;
-  report.beside = a.beside * shown;
+  report.to_go = a.distance_to_go * across;
+  report.beside = a.beside * across;
   if (a.jog_end != image::JogEnd::none) report.jog_end = jog_end_words(a.jog_end, config.letter, language);
   return report;
 }
@@ -173,8 +183,7 @@ StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Languag
     status.axes.push_back(axis_report(m.axes[n], image.axes[n], language));
     const auto p = static_cast<std::size_t>(image.axes[n].process);
     if (m.axes[n].auxiliary || p >= coordinates.size()) continue;
-    status.axes.back().work =
-        coordinates[p].frame.to_programmed(stands, i) * (m.axes[n].diameter ? 2.0 : 1.0);
+    status.axes.back().work = shown(m.axes[n], coordinates[p].frame.to_programmed(stands, i));
     status.axes.back().origin = coordinates[p].origin[n];
   }
   for (int i = 0; i < image.spindle_count; ++i) {
