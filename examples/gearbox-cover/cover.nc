@@ -1,11 +1,19 @@
-; GEARBOX COVER 240 x 160 x 28, one setting, seven tools
-; Language NC-110. Machine: examples/mill. Tools: tables/tools.toml of this folder.
+; GEARBOX COVER 240 x 160 x 28, one setting, ten tools
+; Language NC-110. Machine: machine.toml, tools: tables/tools.toml of this folder.
+; LOADER.nc runs in process 2: it brings the blank and takes the cover away.
 ;
 ; Part origin: lower left corner of the cover, top face. The blank lies centred under the
 ; spindle and stands 2 mm above that face.
 ; Holes are written once, as a list or a pattern, and worked by each tool in a subroutine
 ; of blocks (EPP). E30 and E31: levels; E1: counts; E25: angles.
 N10 G71 G90 G94 G97 G27
+N12 (EXE,2,LOADER)
+; The loader has gripped a blank; the table goes under it, and it loads.
+N13 (WAI,2)
+N14 G0 G79 Z0
+N15 G79 X0 Y0
+N16 #(SND,2)
+N17 (WAI,2)
 N20 (UAO,0)
 N30 (UOT,0,X-120,Y-80,Z-40)
 N40 TMR=0.5
@@ -493,5 +501,9 @@ N4420 G0 Z5
 N4430 G0 Z120 M9
 N4440 M5
 N4450 (UAO,0)
+N4451 G0 G79 Z0
+N4452 G79 X0 Y0
+N4453 #(SND,2)
+N4454 (WAI,2)
 N4460 (DIS,"COVER FINISHED")
 N4470 M30
