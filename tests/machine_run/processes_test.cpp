@@ -16,6 +16,8 @@ namespace {
 constexpr std::array<char, 5> kLetters{'X', 'Y', 'Z', 'U', 'V'};
 static_assert(kLetters.size() == image::kMaxProcesses);
 
+constexpr double kDigit = 1e-3;  ///< mm: the trace has counts of the drive
+
 std::string number(std::size_t n) { return std::to_string(n + 1); }
 
 /// Five axes at 2 ms, one for each process.
@@ -81,12 +83,12 @@ TEST(FiveProcesses, are_started_by_one_move_at_once_and_all_meet_again) {
     x_went_on = x_went_on || rows.at(r, columns[0]) < rows.at(r - 1, columns[0]);
     if (!x_went_on) continue;
     for (std::size_t n = 1; n < columns.size(); ++n)
-      ASSERT_NEAR(rows.at(r, columns[n]), 60.0 + 20.0 * static_cast<double>(n), 1e-6)
+      ASSERT_NEAR(rows.at(r, columns[n]), 60.0 + 20.0 * static_cast<double>(n), kDigit)
           << "X waits for " << kLetters[n];
   }
   EXPECT_TRUE(all_at_once);
   EXPECT_TRUE(x_went_on);
-  EXPECT_NEAR(rows.at(rows.rows() - 1, columns[0]), 10.0, 1e-6);
+  EXPECT_NEAR(rows.at(rows.rows() - 1, columns[0]), 10.0, kDigit);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@
 namespace servogate::machine_run {
 namespace {
 
+constexpr double kDigit = 1e-3;  ///< mm: the trace has counts of the drives
+
 const std::string kMachine = source("examples/gearbox-cover/machine.toml"),
                   kTables = source("examples/gearbox-cover/tables");
 
@@ -52,11 +54,11 @@ TEST(GearboxCover, has_its_head_up_and_its_table_still_whenever_the_loader_is_ov
     if (trace.at(r, z) < -49.9 && trace.at(r - 1, z) >= -49.9) ++down;
     if (!over) continue;
     for (const std::size_t axis : {x, y, z})
-      ASSERT_NEAR(trace.at(r, axis), 0.0, 1e-6) << trace.names()[axis] << " at " << trace.at(r, 0) << " s";
+      ASSERT_NEAR(trace.at(r, axis), 0.0, kDigit) << trace.names()[axis] << " at " << trace.at(r, 0) << " s";
   }
   EXPECT_EQ(times_over, 2) << "to bring the blank, and to take the cover away";
   EXPECT_EQ(down, 1) << "between them the part is worked on";
-  EXPECT_NEAR(trace.at(trace.rows() - 1, w), 0.0, 1e-6);
+  EXPECT_NEAR(trace.at(trace.rows() - 1, w), 0.0, kDigit);
 }
 
 }  // namespace
