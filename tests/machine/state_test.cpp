@@ -34,7 +34,7 @@ MachineState sample() {
   s.tables.correctors[1] = {"face \"mill\"", {{"Z", 120.5}}, {{"Z", -0.02}}, 10.0, 0.01, {}, 0.0, 0};
   s.tables.correctors[99] = {"", {{"X", -3.25}, {"Z", 1e-9}}, {}, 0.4, 0.0, {}, 0.0, 3};
   s.tables.record_files["PTS"] = {
-      {{image::Format::ch, 3}, {image::Format::lr}, {image::Format::in}},
+      {{image::Format::ch, 4}, {image::Format::lr}, {image::Format::in}},
       20,
       {{1, {{0.0, "X\xFF\"\n"}, {1.0 / 3.0, ""}, {-7.0, ""}}}, {20, {{0.0, ""}, {1e-300, ""}, {0.0, ""}}}}};
   s.homing["X"] = {true, -123456789012345, 3.25};
