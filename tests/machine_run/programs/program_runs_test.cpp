@@ -194,7 +194,7 @@ TEST(ProgramRuns, of_Fenix_lead_the_set_points_of_its_lathe_by_every_place_withi
   std::set<std::string> done;
   const int lathe = run_all("fenix-shaft", "fenix", "XdZ", done);
   std::printf("%d programs of Fenix\n", lathe);
-  EXPECT_GE(lathe, 10);
+  EXPECT_GE(lathe, 40);
 }
 
 }  // namespace
