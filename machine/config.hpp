@@ -14,6 +14,7 @@
 #include "firmware_if/image/process_image.hpp"
 #include "machine/board_config.hpp"
 #include "machine/config_basics.hpp"
+#include "machine/pendant_config.hpp"
 #include "machine/simulation_config.hpp"
 #include "machine/station_config.hpp"
 
@@ -315,6 +316,7 @@ struct MachineConfig {
   std::vector<SymbolConfig> symbols;
   std::vector<OwnCodeConfig> own_codes;
   ModbusServerConfig modbus_server;
+  std::vector<PendantConfig> pendants;
   SimulationConfig simulation;
 
   std::string file;  ///< path as given to load(), the `file` of every finding

@@ -11,6 +11,7 @@
 #include "firmware_if/text/finding.hpp"
 #include "machine/config.hpp"
 #include "machine/inverter.hpp"
+#include "machine/pendant_device.hpp"
 
 namespace servogate::machine {
 
@@ -23,7 +24,8 @@ enum class DeviceKind : std::uint8_t {
   gpio,
   canopen_io,
   canopen_encoder,
-  inverter
+  inverter,
+  pendant
 };
 
 /// One mapped object: "6040:00/16" = index, subindex, bits.
@@ -155,6 +157,7 @@ struct DeviceConfig {
   GpioConfig gpio;
   EncoderConfig encoder;
   InverterMap inverter;
+  PendantMap pendant;
 
   std::string file;  ///< path it was read from
   std::map<std::string, Where, std::less<>> places;

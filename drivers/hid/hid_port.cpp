@@ -3,6 +3,7 @@
 
 #include <hidapi/hidapi.h>
 #include <pthread.h>
+#include <unistd.h>
 
 #include "firmware_if/text/finding.hpp"
 
@@ -115,6 +116,15 @@ void HidPort::run() {
     }
     if (!end_) put({PendantNews::Kind::unplugged, {}, device->where});
   }
+}
+
+std::vector<HidEntry> hid_devices() {
+  std::vector<HidEntry> out;
+  const List all(hid_enumerate(0, 0));
+  for (const hid_device_info* d = all.get(); d != nullptr; d = d->next)
+    out.push_back({d->vendor_id, d->product_id, d->path, narrow(d->serial_number), narrow(d->product_string),
+                   access(d->path, R_OK | W_OK) == 0});
+  return out;
 }
 
 }  // namespace servogate::hid

@@ -47,4 +47,13 @@ class HidPort final : public drivers::PendantPort {
   std::thread thread_;
 };
 
+/// A HID device of this computer, for a list.
+struct HidEntry {
+  std::uint16_t vendor = 0, product = 0;
+  std::string path, serial, name;
+  bool allowed = false;  ///< this program may open it
+};
+/// In the order in which the system has them. Not real-time safe.
+std::vector<HidEntry> hid_devices();
+
 }  // namespace servogate::hid

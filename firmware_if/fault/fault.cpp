@@ -20,6 +20,8 @@ constexpr unsigned kBus = static_cast<unsigned>(Device::bus);
 constexpr unsigned kNode = static_cast<unsigned>(Device::node);
 constexpr unsigned kModule = static_cast<unsigned>(Device::module);
 constexpr unsigned kControl = static_cast<unsigned>(Device::control);
+constexpr unsigned kPendant = static_cast<unsigned>(Device::pendant);
+constexpr unsigned kButton = static_cast<unsigned>(Device::button);
 
 template <class... P>
 constexpr unsigned takes(P... parameters) {
@@ -64,13 +66,15 @@ constexpr KindRow kKindRows[kKinds] = {
     {Kind::slow, "slow", kStation, takes(duration, Parameter::delay), "answers later"},
     {Kind::drop, "drop", kBus, kFrames, "frames occupy the wire, and nobody receives them"},
     {Kind::delay, "delay", kBus, kFrames | takes(Parameter::delay), "frames are offered later"},
-    {Kind::corrupt, "corrupt", kBus | kStation, kFrames,
-     "a bit error: error frame and retransmission; of a station a wrong checksum"},
+    {Kind::corrupt, "corrupt", kBus | kStation | kPendant, kFrames,
+     "a bit error: error frame and retransmission; of a station a wrong checksum; of a pendant reports of "
+     "bytes "
+     "by chance"},
     {Kind::repeat, "repeat", kBus, kFrames, "frames are received twice"},
     {Kind::foreign, "foreign", kBus, takes(duration, Parameter::delay, id, Parameter::data, count),
      "a device that does not belong to the machine sends `count` frames, each `delay` behind the one before "
      "(default: as close as the wire permits)"},
-    {Kind::unplug, "unplug", kNode | kChip | kBus, kFor,
+    {Kind::unplug, "unplug", kNode | kChip | kBus | kPendant, kFor,
      "nothing comes from it and nothing reaches it; of a bus the interface of the control is down"},
     {Kind::bus_off, "bus_off", kNode | kBus, kFor,
      "its controller is bus-off, as after 256 transmit errors; of a bus that of the control"},
@@ -82,7 +86,8 @@ constexpr KindRow kKindRows[kKinds] = {
      "another device with its node-ID takes its place, and boots with the product code `value` (1018h:02; 0: "
      "the next one)"},
     {Kind::edges_lost, "edges_lost", kChip, kFor, "its edges and their times are lost, its levels are right"},
-    {Kind::stuck, "stuck", kInput, takes(duration, level), "the point stays at a level, whatever drives it"},
+    {Kind::stuck, "stuck", kInput | kButton, takes(duration, level),
+     "the point or the button stays at a level, whatever drives it"},
     {Kind::bounce, "bounce", kInput, takes(duration, Parameter::delay, seed),
      "after a change the contact flickers for half of `delay` to all of it"},
     {Kind::emcy, "emcy", kDrive, takes(code), "sends an emergency and falls into a fault with it"},

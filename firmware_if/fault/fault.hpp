@@ -25,6 +25,8 @@ enum class Device : std::uint16_t {
   node = 64,      ///< the connection of a device to its wire
   module = 128,   ///< a CiA 401 I/O module
   control = 256,  ///< the computer that controls the machine
+  pendant = 512,
+  button = 1024,  ///< of a pendant
 };
 
 /// The first group lasts until its time is over or it is cleared; the second happens once. Meanings, devices

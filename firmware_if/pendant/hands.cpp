@@ -58,8 +58,8 @@ void Hands::begin_end(int axis) noexcept {
   if (axis >= 0) ends_ |= 1u << axis;
 }
 
-void Hands::queue(const Wish& wish) noexcept {
-  if (queued_ < kQueue) queue_[at(queued_++)] = wish;
+void Hands::queue(const Request& request) noexcept {
+  if (queued_ < kQueue) queue_[at(queued_++)] = request;
 }
 
 void Hands::see(const View& view) noexcept {
@@ -102,22 +102,25 @@ void Hands::press(const Binding& b) noexcept {
     case Action::hold_axis:
       return;
     case Action::stop:
-      return queue({WishKind::stop});
+      return queue({RequestKind::stop});
     case Action::hold:
-      return queue({WishKind::hold});
+      return queue({RequestKind::hold});
     case Action::start_hold:
-      return queue({view_.running ? WishKind::hold : view_.held ? WishKind::resume : WishKind::start});
+      return queue({view_.running ? RequestKind::hold
+                    : view_.held  ? RequestKind::resume
+                                  : RequestKind::start});
     case Action::reset:
-      return queue({WishKind::reset});
+      return queue({RequestKind::reset});
     case Action::power:
-      return queue({WishKind::power, -1, view_.powered ? 0.0 : 1.0});
+      return queue({RequestKind::power, -1, view_.powered ? 0.0 : 1.0});
     case Action::home:
-      return queue({WishKind::home});
+      return queue({RequestKind::home});
     case Action::zero:
-      if (selected_ >= 0) queue({WishKind::zero, selected_});
+      if (selected_ >= 0) queue({RequestKind::zero, selected_});
       return;
     case Action::override_by:
-      return queue({WishKind::override_feed, -1, std::clamp(view_.override_percent + b.value, 0.0, 150.0)});
+      return queue(
+          {RequestKind::override_feed, -1, std::clamp(view_.override_percent + b.value, 0.0, 150.0)});
     case Action::next_step:
       step_ = layout_->steps.empty() ? -1 : (step_ + 1) % static_cast<int>(layout_->steps.size());
       return drop_pending();
@@ -128,7 +131,7 @@ void Hands::press(const Binding& b) noexcept {
       chosen_ = layout_->axis_index(b.axis);
       return;
     case Action::mdi:
-      return queue({WishKind::mdi, -1, 0.0, &b.text});
+      return queue({RequestKind::mdi, -1, 0.0, &b.text});
   }
 }
 
@@ -181,12 +184,12 @@ void Hands::lost() noexcept {
   queued_ = 0;
 }
 
-bool Hands::next_jog(Wish& wish) noexcept {
+bool Hands::next_jog(Request& request) noexcept {
   if (ring_axis_ < 0 && ring_armed_ && permitted(selected_) && layout_->ring >= 0 &&
       std::abs(now_.ring) >= layout_->ring_from) {
     ring_axis_ = selected_;
     ring_sign_ = now_.ring > 0 ? 1 : -1;
-    wish = {WishKind::jog_on, ring_axis_, static_cast<double>(ring_sign_)};
+    request = {RequestKind::jog_on, ring_axis_, static_cast<double>(ring_sign_)};
     return true;
   }
   if (pending_ == 0 || !view_.current || !permitted(selected_)) return false;
@@ -198,48 +201,49 @@ bool Hands::next_jog(Wish& wish) noexcept {
   pending_ = 0;
   if (followed == 0.0) return false;
   wheel_axis_ = selected_;
-  wish = {WishKind::jog, wheel_axis_, followed};
+  request = {RequestKind::jog, wheel_axis_, followed};
   return true;
 }
 
-bool Hands::next(Wish& wish, image::Nanoseconds now) noexcept {
+bool Hands::next(Request& request, image::Nanoseconds now) noexcept {
   for (int a = 0; a < kMostAxes; ++a) {
     if ((ends_ >> a & 1u) == 0) continue;
     ends_ &= ~(1u << a);
-    wish = {WishKind::jog_stop, a};
+    request = {RequestKind::jog_stop, a};
     return true;
   }
   for (int q = 0; q < queued_; ++q) {
     if (under_way_ && !is_urgent(queue_[at(q)].kind)) continue;
-    wish = queue_[at(q)];
+    request = queue_[at(q)];
     std::move(queue_.begin() + q + 1, queue_.begin() + queued_, queue_.begin() + q);
     --queued_;
-    under_way_ = under_way_ || !is_urgent(wish.kind);
+    under_way_ = under_way_ || !is_urgent(request.kind);
     return true;
   }
   if (under_way_) return false;
   if (ring_axis_ >= 0 && now - kept_alive_ >= kKeepAlive) {
     kept_alive_ = now;
-    wish = {WishKind::keep_alive, ring_axis_};
+    request = {RequestKind::keep_alive, ring_axis_};
     under_way_ = true;
     return true;
   }
-  under_way_ = next_jog(wish);
-  if (under_way_ && wish.kind == WishKind::jog_on) kept_alive_ = now;
+  under_way_ = next_jog(request);
+  if (under_way_ && request.kind == RequestKind::jog_on) kept_alive_ = now;
   return under_way_;
 }
 
 /// A ring whose jog was refused or has ended is to be let go before it jogs again.
-void Hands::answered(const Wish& wish, bool accepted) noexcept {
+void Hands::answered(const Request& request, bool accepted) noexcept {
   under_way_ = false;
   view_.current = false;
   if (accepted) {
     // Meanwhile the hand has let go: the end that was asked for may have come before the jog.
-    if (wish.kind == WishKind::jog_on && ring_axis_ != wish.axis) begin_end(wish.axis);
-    if (wish.kind == WishKind::jog && wheel_axis_ != wish.axis) begin_end(wish.axis);
+    if (request.kind == RequestKind::jog_on && ring_axis_ != request.axis) begin_end(request.axis);
+    if (request.kind == RequestKind::jog && wheel_axis_ != request.axis) begin_end(request.axis);
     return;
   }
-  if ((wish.kind == WishKind::jog_on || wish.kind == WishKind::keep_alive) && ring_axis_ == wish.axis) {
+  if ((request.kind == RequestKind::jog_on || request.kind == RequestKind::keep_alive) &&
+      ring_axis_ == request.axis) {
     ring_axis_ = -1;
     ring_armed_ = false;
   }

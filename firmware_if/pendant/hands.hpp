@@ -39,7 +39,7 @@ struct View {
   double override_percent = 100.0;
 };
 
-enum class WishKind : std::uint8_t {
+enum class RequestKind : std::uint8_t {
   jog,         ///< axis, value = way
   jog_on,      ///< axis, value = +1 or -1; from then on kept alive
   keep_alive,  ///< axis
@@ -56,17 +56,17 @@ enum class WishKind : std::uint8_t {
   mdi,            ///< text
 };
 /// What is asked of the control. Axes by their index in Layout::axes.
-struct Wish {
-  WishKind kind = WishKind::stop;
+struct Request {
+  RequestKind kind = RequestKind::stop;
   int axis = -1;
   double value = 0.0;
   const std::string* text = nullptr;  ///< of Layout::bindings
 };
 
-/// The hands at one pendant: reports in, wishes out. Layout and rules outlive it. What must not wait (an end
-/// of a jog, a stop) comes before everything else; one other wish at a time is under way. Nothing moves by
-/// what a pendant says first: a button that is pressed, a wheel that has turned and a ring that is held when
-/// it is plugged in do nothing until the hand lets go of them. real-time safe.
+/// The hands at one pendant: reports in, requests out. Layout and rules outlive it. What must not wait (an
+/// end of a jog, a stop) comes before everything else; one other request at a time is under way. Nothing
+/// moves by what a pendant says first: a button that is pressed, a wheel that has turned and a ring that is
+/// held when it is plugged in do nothing until the hand lets go of them. real-time safe.
 class Hands {
  public:
   Hands(const Layout& layout, const Rules& rules) noexcept : layout_(&layout), rules_(&rules) {}
@@ -77,11 +77,11 @@ class Hands {
   /// Unplugged, or what it says cannot be trusted: what it jogs ends.
   void lost() noexcept;
 
-  /// The next wish; false: there is none now. A wish that is_urgent() has no answered().
-  bool next(Wish& wish, image::Nanoseconds now) noexcept;
-  void answered(const Wish& wish, bool accepted) noexcept;
-  static bool is_urgent(WishKind kind) noexcept {
-    return kind == WishKind::jog_stop || kind == WishKind::stop || kind == WishKind::hold;
+  /// The next request; false: there is none now. A request that is_urgent() has no answered().
+  bool next(Request& request, image::Nanoseconds now) noexcept;
+  void answered(const Request& request, bool accepted) noexcept;
+  static bool is_urgent(RequestKind kind) noexcept {
+    return kind == RequestKind::jog_stop || kind == RequestKind::stop || kind == RequestKind::hold;
   }
 
   int selected() const noexcept { return selected_; }
@@ -104,9 +104,9 @@ class Hands {
   void drop(int counts) noexcept { dropped_ += static_cast<std::uint64_t>(counts < 0 ? -counts : counts); }
   void drop_pending() noexcept;
   void begin_end(int axis) noexcept;
-  void queue(const Wish& wish) noexcept;
+  void queue(const Request& request) noexcept;
   void ring() noexcept;
-  bool next_jog(Wish& wish) noexcept;
+  bool next_jog(Request& request) noexcept;
 
   const Layout* layout_;
   const Rules* rules_;
@@ -123,9 +123,9 @@ class Hands {
   int ring_sign_ = 0;
   bool ring_armed_ = false;  ///< it was seen at rest
   image::Nanoseconds kept_alive_ = 0;
-  bool under_way_ = false;  ///< a wish that is not urgent
+  bool under_way_ = false;  ///< a request that is not urgent
   std::uint32_t ends_ = 0;  ///< axes whose jog is to end, as bits
-  std::array<Wish, kQueue> queue_;
+  std::array<Request, kQueue> queue_;
   int queued_ = 0;
   std::uint64_t dropped_ = 0;
 };

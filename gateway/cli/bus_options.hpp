@@ -141,6 +141,14 @@ struct CanCheckOptions : CanopenBusOptions {
   bool detect = false;
 };
 
+/// `servogate pendant list` and `watch`.
+struct PendantOptions {
+  std::string device;  ///< watch
+  std::string url = "hid:any";
+  int count = 0;  ///< reports; 0: until it is ended
+  bool json = false;
+};
+
 /// `servogate modbus read`, `write` and `scan`: a Modbus line by hand.
 struct ModbusOptions {
   std::string line;       ///< url, or MACHINE.toml#line
@@ -174,6 +182,7 @@ struct BusCommands {
   LssOptions lss;
   NmtOptions nmt;
   ModbusOptions modbus_read, modbus_write, modbus_scan;
+  PendantOptions pendant_list, pendant_watch;
 };
 
 }  // namespace servogate::gateway

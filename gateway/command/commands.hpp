@@ -32,6 +32,8 @@ int modbus_write(const ModbusOptions& options);
 int modbus_scan(const ModbusOptions& options);
 int bench_run(const BenchOptions& options);
 int bench_identify(const BenchOptions& options);
+int pendant_list(const PendantOptions& options);
+int pendant_watch(const PendantOptions& options);
 int drive(const DriveOptions& options);
 int io(const IoOptions& options);
 int sim(const SimOptions& options);

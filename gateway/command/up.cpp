@@ -21,6 +21,7 @@
 #include "gateway/control/run/running_machine.hpp"
 #include "gateway/control/server/desk/desk.hpp"
 #include "gateway/control/server/modbus/modbus_server.hpp"
+#include "gateway/control/server/pendant/pendant_client.hpp"
 #include "gateway/control/server/resident/resident.hpp"
 #include "gateway/control/server/socket/socket_path.hpp"
 #include "gateway/control/server/socket/socket_server.hpp"
@@ -80,8 +81,23 @@ bool open_modbus(const machine::ModbusServerConfig& config, Desk& desk,
   return true;
 }
 
+using Pendants = std::vector<std::unique_ptr<PendantClient>>;
+
+/// Starts the clients of the pendants of the machine file. False: one cannot, which has been said.
+bool open_pendants(Control& control, Desk& desk, Pendants& pendants) {
+  for (const machine::PendantConfig& config : control.machine().pendants) {
+    drivers::Notice why;
+    pendants.push_back(PendantClient::open(control, config, desk, to_standard_error(), why));
+    if (pendants.back() != nullptr) continue;
+    complain(*why.entry, why.arguments);
+    return false;
+  }
+  return true;
+}
+
 /// Until somebody ends it, and everything rests. Lines of standard input are faults of what is simulated.
-void serve(Desk& desk, SocketServer& server, std::unique_ptr<ModbusServer>& modbus, RunningMachine& running) {
+void serve(Desk& desk, SocketServer& server, std::unique_ptr<ModbusServer>& modbus, Pendants& pendants,
+           RunningMachine& running) {
   RunFaults faults(running);
   InputLines input(true);
   const auto seen = std::make_unique<image::ProcessImage>();
@@ -95,6 +111,7 @@ void serve(Desk& desk, SocketServer& server, std::unique_ptr<ModbusServer>& modb
   desk.shut_down();
   while (!desk.at_rest()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   modbus.reset();
+  pendants.clear();
   desk.stop();  // whoever still waits is answered
   server.stop();
 }
@@ -153,6 +170,8 @@ int up(const UpOptions& options) {
   desk.start();
   std::unique_ptr<ModbusServer> modbus;
   if (!open_modbus(m.modbus_server, desk, modbus)) return kInfrastructure;
+  Pendants pendants;
+  if (!open_pendants(running->control(), desk, pendants)) return kInfrastructure;
   server->start();
   tell(text::render(kListening, std::vector<std::string>{m.name, socket}, text::user_language()));
   if (options.json)
@@ -163,7 +182,7 @@ int up(const UpOptions& options) {
                      {"version", report::build_identity().version}});
   history->note(
       history::event("up", history::says::kUp, {m.name, std::string(report::build_identity().version)}, 0.0));
-  serve(desk, *server, modbus, *running);
+  serve(desk, *server, modbus, pendants, *running);
   const double ended_s = static_cast<double>(resident.image().now.t_ns) * 1e-9;
   history->note(history::event("down", history::says::kDown, {m.name}, ended_s));
   const bool saved = put_away(*running, resident);

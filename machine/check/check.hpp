@@ -38,6 +38,8 @@ void check_overrun(const LoadResult& loaded, Reading& reading);
 void check_control_death(const LoadResult& loaded, Reading& reading);
 /// Addresses and ranges of the Modbus server.
 void check_modbus_server(const MachineConfig& machine, Reading& reading);
+/// Pendants against their device files and the axes.
+void check_pendants(const LoadResult& loaded, Reading& reading);
 /// Spindles on inverters on Modbus.
 void check_inverters(const LoadResult& loaded, Reading& reading);
 /// Bus load and speed of motors against the device files.

@@ -6,8 +6,9 @@ namespace servogate::machine {
 
 template <>
 std::span<const std::string_view> choices_of<DeviceKind>() {
-  static constexpr std::string_view kNames[] = {"servo", "stepper",    "spindle",         "modbus_io",
-                                                "gpio",  "canopen_io", "canopen_encoder", "inverter"};
+  static constexpr std::string_view kNames[] = {"servo",           "stepper",  "spindle",
+                                                "modbus_io",       "gpio",     "canopen_io",
+                                                "canopen_encoder", "inverter", "pendant"};
   return kNames;
 }
 
@@ -315,6 +316,7 @@ const Section& section_of<DeviceConfig>() {
       key<&C::gpio>("gpio", {}, "lines of a GPIO chip", "линии микросхемы GPIO"),
       key<&C::encoder>("encoder", {}, "resolution of an encoder", "разрешение датчика положения"),
       key<&C::inverter>("inverter", {}, "registers of an inverter", "регистры преобразователя"),
+      key<&C::pendant>("pendant", {}, "reports and display of a pendant", "отчёты и дисплей пульта"),
   };
   static const Section section{"device file", "файл устройства", keys, &default_object<C>};
   return section;

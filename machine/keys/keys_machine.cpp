@@ -321,6 +321,7 @@ const Section& section_of<MachineConfig>() {
       key<&C::own_codes>("own_code", {}, "G and M words of the machine builder's own",
                          "собственные слова G и M станкостроителя"),
       key<&C::modbus_server>("modbus_server", {}, "the Modbus TCP server", "сервер Modbus TCP"),
+      key<&C::pendants>("pendant", {}, "hand-held pendants", "выносные пульты"),
       key<&C::simulation>("simulation", {}, "what the mocks do; without effect on what is real",
                           "поведение имитаторов; на настоящее не действует"),
   };

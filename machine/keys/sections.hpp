@@ -69,6 +69,10 @@ const Section& section_of<SafetyConfig>();
 template <>
 const Section& section_of<ModbusServerConfig>();
 template <>
+const Section& section_of<PendantConfig>();
+template <>
+const Section& section_of<PendantMap>();
+template <>
 const Section& section_of<RunConfig>();
 template <>
 const Section& section_of<RealtimeConfig>();

@@ -17,6 +17,7 @@
 #include "machine/keys/sections.hpp"
 #include "machine/loading/inverter_device.hpp"
 #include "machine/loading/mode_names.hpp"
+#include "machine/loading/pendant_layout.hpp"
 
 namespace servogate::machine {
 
@@ -45,6 +46,7 @@ class DeviceCheck {
     if (!d_.places.contains("kind")) return;  // unknown kind: said by the reader
     if (d_.terminals()) terminals();
     if (d_.kind == DeviceKind::inverter) check_inverter_device(d_, reading_);
+    if (d_.kind == DeviceKind::pendant) check_pendant_device(d_, reading_);
     write_only();
     if (!d_.drive()) return;
     modes();

@@ -32,6 +32,8 @@ std::vector<std::pair<std::string, Where>> device_names(const MachineConfig& mac
           "bus." + std::to_string(b) + ".node." + std::to_string(n) + ".device");
   for (std::size_t s = 0; s < machine.stations.size(); ++s)
     add(machine.stations[s].device, "station." + std::to_string(s) + ".device");
+  for (std::size_t p = 0; p < machine.pendants.size(); ++p)
+    add(machine.pendants[p].device, "pendant." + std::to_string(p) + ".device");
   return out;
 }
 
@@ -75,6 +77,7 @@ void check_all(LoadResult& result, Reading& reading) {
   check_control(machine, reading);
   check_safety(machine, reading);
   check_modbus_server(machine, reading);
+  check_pendants(result, reading);
   check_gpio_lines(machine, reading);
   check_boards(machine, reading);
   check_gears(machine, reading);

@@ -12,10 +12,17 @@
 namespace servogate::fault {
 namespace {
 
-constexpr std::pair<Device, const char*> kDevices[] = {
-    {Device::drive, "drive"},    {Device::encoder, "encoder"},   {Device::station, "Modbus station"},
-    {Device::chip, "GPIO chip"}, {Device::input, "input"},       {Device::bus, "bus"},
-    {Device::node, "node"},      {Device::module, "I/O module"}, {Device::control, "control"}};
+constexpr std::pair<Device, const char*> kDevices[] = {{Device::drive, "drive"},
+                                                       {Device::encoder, "encoder"},
+                                                       {Device::station, "Modbus station"},
+                                                       {Device::chip, "GPIO chip"},
+                                                       {Device::input, "input"},
+                                                       {Device::bus, "bus"},
+                                                       {Device::node, "node"},
+                                                       {Device::module, "I/O module"},
+                                                       {Device::control, "control"},
+                                                       {Device::pendant, "pendant"},
+                                                       {Device::button, "button of a pendant"}};
 
 void append(std::string& list, const std::string& word) { list += (list.empty() ? "" : ", ") + word; }
 

@@ -43,16 +43,17 @@ class Hand {
     report();
   }
   void see() { hands.see(view); }
-  bool next() { return hands.next(wish, now); }
-  /// The next wish is this one, and it is granted.
-  bool asks(WishKind kind) {
+  bool next() { return hands.next(request, now); }
+  /// The next request is this one, and it is granted.
+  bool asks(RequestKind kind) {
     if (!next()) return false;
-    if (!Hands::is_urgent(wish.kind)) answer(true);
-    return wish.kind == kind;
+    if (!Hands::is_urgent(request.kind)) answer(true);
+    return request.kind == kind;
   }
   void answer(bool accepted) {
-    hands.answered(wish, accepted);
-    if (accepted && wish.kind == WishKind::jog) view.axes[static_cast<std::size_t>(wish.axis)].moves = true;
+    hands.answered(request, accepted);
+    if (accepted && request.kind == RequestKind::jog)
+      view.axes[static_cast<std::size_t>(request.axis)].moves = true;
     see();  // a new picture of the machine
   }
 
@@ -64,7 +65,7 @@ class Hand {
   Hands hands{layout_, rules_};
   View view;
   Reading reading;
-  Wish wish;
+  Request request;
   image::Nanoseconds now = 0;
 };
 
@@ -72,9 +73,9 @@ TEST(PendantWheel, AsksForAsManyStepsAsItWasTurned) {
   Hand hand(test::with_selectors());
   hand.turn(3);
   hand.turn(4);
-  ASSERT_TRUE(hand.asks(WishKind::jog));
-  EXPECT_EQ(hand.wish.axis, 0);
-  EXPECT_NEAR(hand.wish.value, 0.07, 1e-12);
+  ASSERT_TRUE(hand.asks(RequestKind::jog));
+  EXPECT_EQ(hand.request.axis, 0);
+  EXPECT_NEAR(hand.request.value, 0.07, 1e-12);
   EXPECT_FALSE(hand.next());
 }
 
@@ -87,8 +88,8 @@ TEST(PendantWheel, WhatItTurnedBeforeItWasPluggedInMovesNothing) {
   view.current = true;
   hands.see(view);
   hands.take({.axis = 0, .step = 1, .counts = 10});
-  Wish wish;
-  EXPECT_FALSE(hands.next(wish, 0));
+  Request request;
+  EXPECT_FALSE(hands.next(request, 0));
   EXPECT_EQ(hands.dropped(), 10u);
 }
 
@@ -129,7 +130,7 @@ TEST(PendantWheel, CountsOfAReportThatChangesTheSelectionAreGone) {
   hand.turn(5);
   EXPECT_FALSE(hand.next());
   hand.turn(1);
-  EXPECT_TRUE(hand.asks(WishKind::jog));
+  EXPECT_TRUE(hand.asks(RequestKind::jog));
 }
 
 TEST(PendantWheel, AStepIsNeverLongerThanTheMachineFilePermits) {
@@ -137,8 +138,8 @@ TEST(PendantWheel, AStepIsNeverLongerThanTheMachineFilePermits) {
   hand.reading.step = 3;  // 1 mm
   hand.report();
   hand.turn(2);
-  ASSERT_TRUE(hand.asks(WishKind::jog));
-  EXPECT_NEAR(hand.wish.value, 0.1, 1e-12);
+  ASSERT_TRUE(hand.asks(RequestKind::jog));
+  EXPECT_NEAR(hand.request.value, 0.1, 1e-12);
 }
 
 TEST(PendantWheel, CountsThatTheAxisCannotFollowAreDroppedAndNotQueued) {
@@ -146,15 +147,15 @@ TEST(PendantWheel, CountsThatTheAxisCannotFollowAreDroppedAndNotQueued) {
   hand.view.axes[0].room = 0.25;
   hand.see();
   hand.turn(100);  // 1 mm
-  ASSERT_TRUE(hand.asks(WishKind::jog));
-  EXPECT_NEAR(hand.wish.value, 0.25, 1e-12);
+  ASSERT_TRUE(hand.asks(RequestKind::jog));
+  EXPECT_NEAR(hand.request.value, 0.25, 1e-12);
   EXPECT_EQ(hand.hands.dropped(), 75u);
   hand.view.axes[0].moves = true;
   hand.view.axes[0].to_go = 0.195;
   hand.see();
   hand.turn(100);
-  ASSERT_TRUE(hand.asks(WishKind::jog));
-  EXPECT_NEAR(hand.wish.value, 0.05, 1e-12);
+  ASSERT_TRUE(hand.asks(RequestKind::jog));
+  EXPECT_NEAR(hand.request.value, 0.05, 1e-12);
   hand.view.axes[0].to_go = 0.0;
   hand.see();
   EXPECT_FALSE(hand.next()) << "what was dropped stays so";
@@ -166,7 +167,7 @@ TEST(PendantWheel, WaitsForAPictureOfTheMachineBehindTheLastAnswer) {
   ASSERT_TRUE(hand.next());
   hand.turn(1);
   EXPECT_FALSE(hand.next()) << "the answer has not come";
-  hand.hands.answered(hand.wish, true);
+  hand.hands.answered(hand.request, true);
   hand.view.current = false;
   hand.see();
   EXPECT_FALSE(hand.next()) << "what the answer did cannot be seen yet";
@@ -178,22 +179,22 @@ TEST(PendantWheel, WaitsForAPictureOfTheMachineBehindTheLastAnswer) {
 TEST(PendantWheel, TheAxisStopsWhenTheSelectorLeavesIt) {
   Hand hand(test::with_selectors());
   hand.turn(5);
-  ASSERT_TRUE(hand.asks(WishKind::jog));
+  ASSERT_TRUE(hand.asks(RequestKind::jog));
   hand.view.axes[0].moves = true;
   hand.see();
   hand.reading.axis = 1;
   hand.report();
-  ASSERT_TRUE(hand.asks(WishKind::jog_stop));
-  EXPECT_EQ(hand.wish.axis, 0);
+  ASSERT_TRUE(hand.asks(RequestKind::jog_stop));
+  EXPECT_EQ(hand.request.axis, 0);
 }
 
 TEST(PendantWheel, TheAxisStopsWhenThePendantIsUnplugged) {
   Hand hand(test::with_selectors());
   hand.turn(5);
-  ASSERT_TRUE(hand.asks(WishKind::jog));
+  ASSERT_TRUE(hand.asks(RequestKind::jog));
   hand.hands.lost();
-  ASSERT_TRUE(hand.asks(WishKind::jog_stop));
-  EXPECT_EQ(hand.wish.axis, 0);
+  ASSERT_TRUE(hand.asks(RequestKind::jog_stop));
+  EXPECT_EQ(hand.request.axis, 0);
   EXPECT_FALSE(hand.next());
 }
 
@@ -201,21 +202,21 @@ TEST(PendantWheel, AJogThatIsGrantedAfterThePendantWasUnpluggedIsEnded) {
   Hand hand(test::with_selectors());
   hand.turn(5);
   ASSERT_TRUE(hand.next());
-  const Wish asked = hand.wish;
+  const Request asked = hand.request;
   hand.hands.lost();
-  ASSERT_TRUE(hand.asks(WishKind::jog_stop));
+  ASSERT_TRUE(hand.asks(RequestKind::jog_stop));
   hand.hands.answered(asked, true);
-  EXPECT_TRUE(hand.asks(WishKind::jog_stop));
+  EXPECT_TRUE(hand.asks(RequestKind::jog_stop));
 }
 
 TEST(PendantWheel, AnAxisThatSomebodyHasStoppedIsToBeSelectedAnew) {
   Hand hand(test::with_selectors());
   hand.turn(5);
-  ASSERT_TRUE(hand.asks(WishKind::jog));
+  ASSERT_TRUE(hand.asks(RequestKind::jog));
   hand.view.axes[0].stopped = true;
   hand.view.axes[0].moves = false;
   hand.see();
-  while (hand.next()) EXPECT_EQ(hand.wish.kind, WishKind::jog_stop);
+  while (hand.next()) EXPECT_EQ(hand.request.kind, RequestKind::jog_stop);
   hand.turn(5);
   EXPECT_FALSE(hand.next());
   hand.view.axes[0].stopped = false;
@@ -224,7 +225,7 @@ TEST(PendantWheel, AnAxisThatSomebodyHasStoppedIsToBeSelectedAnew) {
   hand.reading.axis = 0;
   hand.report();
   hand.turn(1);
-  EXPECT_TRUE(hand.asks(WishKind::jog));
+  EXPECT_TRUE(hand.asks(RequestKind::jog));
 }
 
 TEST(PendantDeadMan, NothingBeginsToMoveWithoutIt) {
@@ -239,9 +240,9 @@ TEST(PendantDeadMan, NothingBeginsToMoveWithoutIt) {
   hand.press("probe");
   EXPECT_FALSE(hand.next()) << "what came before is not made up for";
   hand.turn(1);
-  EXPECT_TRUE(hand.asks(WishKind::jog));
+  EXPECT_TRUE(hand.asks(RequestKind::jog));
   hand.press("start");
-  EXPECT_TRUE(hand.asks(WishKind::start));
+  EXPECT_TRUE(hand.asks(RequestKind::start));
 }
 
 TEST(PendantDeadMan, LettingGoStopsTheAxis) {
@@ -249,21 +250,21 @@ TEST(PendantDeadMan, LettingGoStopsTheAxis) {
   Hand hand(layout, {"XYZ", 1.0, layout.button("probe")});
   hand.press("probe");
   hand.turn(5);
-  ASSERT_TRUE(hand.asks(WishKind::jog));
+  ASSERT_TRUE(hand.asks(RequestKind::jog));
   hand.view.axes[0].moves = true;
   hand.see();
   hand.release("probe");
-  EXPECT_TRUE(hand.asks(WishKind::jog_stop));
+  EXPECT_TRUE(hand.asks(RequestKind::jog_stop));
 }
 
 TEST(PendantDeadMan, TheWiredOneStopsTheAxisToo) {
   Hand hand(test::with_selectors());
   hand.turn(5);
-  ASSERT_TRUE(hand.asks(WishKind::jog));
+  ASSERT_TRUE(hand.asks(RequestKind::jog));
   hand.view.axes[0].moves = true;
   hand.view.released = false;
   hand.see();
-  EXPECT_TRUE(hand.asks(WishKind::jog_stop));
+  EXPECT_TRUE(hand.asks(RequestKind::jog_stop));
   hand.turn(5);
   EXPECT_FALSE(hand.next());
 }
@@ -272,18 +273,18 @@ TEST(PendantDeadMan, AStopNeedsNone) {
   const Layout layout = test::with_selectors();
   Hand hand(layout, {"XYZ", 1.0, layout.button("probe")});
   hand.press("stop");
-  EXPECT_TRUE(hand.asks(WishKind::stop));
+  EXPECT_TRUE(hand.asks(RequestKind::stop));
   hand.view.running = true;
   hand.see();
   hand.press("start");
-  EXPECT_TRUE(hand.asks(WishKind::hold));
+  EXPECT_TRUE(hand.asks(RequestKind::hold));
 }
 
 TEST(PendantButtons, OneIsPressedOnceUntilItIsReleased) {
   Hand hand(test::with_selectors());
   hand.press("reset");
   hand.report();
-  EXPECT_TRUE(hand.asks(WishKind::reset));
+  EXPECT_TRUE(hand.asks(RequestKind::reset));
   hand.report();
   EXPECT_FALSE(hand.next());
 }
@@ -302,7 +303,7 @@ TEST(PendantButtons, AStopOvertakesWhatWaits) {
   ASSERT_TRUE(hand.next());
   hand.press("reset");
   hand.press("stop");
-  EXPECT_TRUE(hand.asks(WishKind::stop));
+  EXPECT_TRUE(hand.asks(RequestKind::stop));
   EXPECT_FALSE(hand.next()) << "homing is not answered yet";
 }
 
@@ -310,8 +311,8 @@ TEST(PendantButtons, AShiftGivesAnotherMeaningOrNone) {
   Hand hand(test::with_selectors());
   hand.press("fn");
   hand.press("macro");
-  ASSERT_TRUE(hand.asks(WishKind::mdi));
-  EXPECT_EQ(*hand.wish.text, "M8");
+  ASSERT_TRUE(hand.asks(RequestKind::mdi));
+  EXPECT_EQ(*hand.request.text, "M8");
   hand.press("start");
   EXPECT_FALSE(hand.next()) << "nothing is bound to Fn and Start";
 }
@@ -324,14 +325,14 @@ TEST(PendantButtons, StartBeginsHoldsAndResumes) {
     hand.release("start");
   };
   press();
-  EXPECT_TRUE(hand.asks(WishKind::start));
+  EXPECT_TRUE(hand.asks(RequestKind::start));
   hand.view.running = true;
   press();
-  EXPECT_TRUE(hand.asks(WishKind::hold));
+  EXPECT_TRUE(hand.asks(RequestKind::hold));
   hand.view.running = false;
   hand.view.held = true;
   press();
-  EXPECT_TRUE(hand.asks(WishKind::resume));
+  EXPECT_TRUE(hand.asks(RequestKind::resume));
 }
 
 TEST(PendantButtons, TheOverrideIsChangedFromWhatItIs) {
@@ -339,14 +340,14 @@ TEST(PendantButtons, TheOverrideIsChangedFromWhatItIs) {
   hand.view.override_percent = 95.0;
   hand.see();
   hand.press("feed_plus");
-  ASSERT_TRUE(hand.asks(WishKind::override_feed));
-  EXPECT_EQ(hand.wish.value, 105.0);
+  ASSERT_TRUE(hand.asks(RequestKind::override_feed));
+  EXPECT_EQ(hand.request.value, 105.0);
   hand.release("feed_plus");
   hand.view.override_percent = 145.0;
   hand.see();
   hand.press("feed_plus");
-  ASSERT_TRUE(hand.asks(WishKind::override_feed));
-  EXPECT_EQ(hand.wish.value, 150.0);
+  ASSERT_TRUE(hand.asks(RequestKind::override_feed));
+  EXPECT_EQ(hand.request.value, 150.0);
 }
 
 TEST(PendantRing, JogsWhileItIsHeldAndIsKeptAlive) {
@@ -354,15 +355,15 @@ TEST(PendantRing, JogsWhileItIsHeldAndIsKeptAlive) {
   hand.press("b1");
   hand.reading.ring = -5;
   hand.report();
-  ASSERT_TRUE(hand.asks(WishKind::jog_on));
-  EXPECT_EQ(hand.wish.value, -1.0);
+  ASSERT_TRUE(hand.asks(RequestKind::jog_on));
+  EXPECT_EQ(hand.request.value, -1.0);
   hand.now += 10 * image::kMillisecond;
   EXPECT_FALSE(hand.next());
   hand.now += 25 * image::kMillisecond;
-  EXPECT_TRUE(hand.asks(WishKind::keep_alive));
+  EXPECT_TRUE(hand.asks(RequestKind::keep_alive));
   hand.reading.ring = 1;
   hand.report();
-  EXPECT_TRUE(hand.asks(WishKind::jog_stop));
+  EXPECT_TRUE(hand.asks(RequestKind::jog_stop));
 }
 
 TEST(PendantRing, DoesNothingWithoutTheButtonOfAnAxis) {
@@ -376,9 +377,9 @@ TEST(PendantRing, DoesNothingWithoutTheButtonOfAnAxis) {
   hand.report();
   hand.reading.ring = 7;
   hand.report();
-  EXPECT_TRUE(hand.asks(WishKind::jog_on));
+  EXPECT_TRUE(hand.asks(RequestKind::jog_on));
   hand.release("b1");
-  EXPECT_TRUE(hand.asks(WishKind::jog_stop));
+  EXPECT_TRUE(hand.asks(RequestKind::jog_stop));
 }
 
 TEST(PendantRing, AJogThatEndedOtherwiseBeginsAnewOnlyBehindItsRest) {
@@ -386,7 +387,7 @@ TEST(PendantRing, AJogThatEndedOtherwiseBeginsAnewOnlyBehindItsRest) {
   hand.press("b1");
   hand.reading.ring = 7;
   hand.report();
-  ASSERT_TRUE(hand.asks(WishKind::jog_on));
+  ASSERT_TRUE(hand.asks(RequestKind::jog_on));
   hand.now += 40 * image::kMillisecond;
   ASSERT_TRUE(hand.next());
   hand.answer(false);
@@ -400,15 +401,15 @@ TEST(PendantRing, AJogThatIsGrantedAfterTheRingWasLetGoIsEnded) {
   hand.reading.ring = 7;
   hand.report();
   ASSERT_TRUE(hand.next());
-  const Wish asked = hand.wish;
+  const Request asked = hand.request;
   hand.reading.ring = 0;
   hand.report();
-  ASSERT_TRUE(hand.asks(WishKind::jog_stop));
+  ASSERT_TRUE(hand.asks(RequestKind::jog_stop));
   hand.hands.answered(asked, true);
-  EXPECT_TRUE(hand.asks(WishKind::jog_stop)) << "the first one may have come before the jog";
+  EXPECT_TRUE(hand.asks(RequestKind::jog_stop)) << "the first one may have come before the jog";
 }
 
-// Whatever a hand does by chance: no wish moves an axis without dead-man, mode and permission, and what is
+// Whatever a hand does by chance: no request moves an axis without dead-man, mode and permission, and what is
 // left of a jog never exceeds what the axis may have to go.
 TEST(PendantWheel, NoHandMovesWhatIsNotPermitted) {
   std::mt19937_64 random(servogate::test::property_seed());
@@ -432,25 +433,26 @@ TEST(PendantWheel, NoHandMovesWhatIsNotPermitted) {
     hand.see();
     hand.report();
     while (hand.next()) {
-      const Wish wish = hand.wish;
-      if (wish.kind == WishKind::jog) {
-        AxisView& axis = hand.view.axes[static_cast<std::size_t>(wish.axis)];
+      const Request request = hand.request;
+      if (request.kind == RequestKind::jog) {
+        AxisView& axis = hand.view.axes[static_cast<std::size_t>(request.axis)];
         ASSERT_TRUE(axis.jogs);
         ASSERT_TRUE(hand.view.released);
         ASSERT_NE(hand.reading.buttons >> rules.dead_man & 1u, 0u);
-        ASSERT_EQ(wish.axis, hand.reading.axis);
-        ASSERT_NE(rules.axes.find(layout.axes[static_cast<std::size_t>(wish.axis)].letter),
+        ASSERT_EQ(request.axis, hand.reading.axis);
+        ASSERT_NE(rules.axes.find(layout.axes[static_cast<std::size_t>(request.axis)].letter),
                   std::string::npos);
-        const bool rested = axis.to_go * wish.value <= 0.0;
-        axis.to_go += wish.value;
+        const bool rested = axis.to_go * request.value <= 0.0;
+        axis.to_go += request.value;
         axis.moves = true;
         if (!rested) {
           ASSERT_LE(std::abs(axis.to_go), 0.3 + 1e-9);
         }
         ASSERT_LE(std::abs(axis.to_go), 0.6 + 1e-9) << "a turn back may add its room to what is left";
       }
-      if (wish.kind == WishKind::jog_stop) hand.view.axes[static_cast<std::size_t>(wish.axis)].to_go = 0.0;
-      if (!Hands::is_urgent(wish.kind)) hand.answer(chance(10) ? false : true);
+      if (request.kind == RequestKind::jog_stop)
+        hand.view.axes[static_cast<std::size_t>(request.axis)].to_go = 0.0;
+      if (!Hands::is_urgent(request.kind)) hand.answer(chance(10) ? false : true);
     }
     for (AxisView& axis : hand.view.axes)
       axis.to_go = std::abs(axis.to_go) < 0.02 ? 0.0 : axis.to_go - std::copysign(0.02, axis.to_go);

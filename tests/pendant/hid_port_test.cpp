@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a port can be judged by without a device.
+// What a port can be judged by without a device; with one: tests/lab/pendant-on-uhid.
 #include "drivers/hid/hid_port.hpp"
 
 #include <gtest/gtest.h>

@@ -26,8 +26,8 @@ class Operator {
   virtual bool under_way() = 0;
   /// After under_way(): why it did not end as asked, in both languages; empty: it did.
   virtual std::string failure() = 0;
-  /// Behind every cycle.
-  virtual void poll() = 0;
+  /// Behind every cycle; `step` as in carry_out(): it may be called, and then this is, too.
+  virtual void poll(const std::function<bool()>& step) = 0;
 };
 
 }  // namespace servogate::scenario

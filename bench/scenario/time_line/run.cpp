@@ -184,7 +184,7 @@ class Run {
   /// One cycle of the machine, and all that looks at it.
   bool cycle() {
     if (!machine_.step()) return false;
-    who_.poll();
+    who_.poll(step_);
     read_alarms();
     const View seen = view();
     recent_->add(seen);
@@ -355,6 +355,7 @@ class Run {
   Operator& who_;
   const Signals& signals_;
   const RunManner manner_;
+  const std::function<bool()> step_ = [this] { return cycle(); };
   Outcome outcome_;
   std::vector<Made> given_, steps_;
   std::deque<Watch> watches_;

@@ -116,6 +116,10 @@ void World::add_chip(const std::string& station, std::vector<GpioInput> inputs,
   chips_[station] = &add_contacts_of_chip(std::move(inputs), std::move(outputs), source);
 }
 
+void World::add_pendant(const std::string& name, pendant::Layout layout) {
+  pendants_.emplace(name, std::make_unique<MockPendant>(std::move(layout)));
+}
+
 void World::add_contacts(const std::string& node, std::vector<NodeContact> inputs,
                          const std::vector<WorldPoint>& outputs) {
   NodeWires wires{nullptr, drive(node), module(node)};
@@ -361,6 +365,7 @@ ModbusStation* World::modbus(std::string_view station) { return found(units_, st
 MockModbusLine* World::line_of(std::string_view station) { return found(line_of_, station); }
 MockGpio* World::chip(std::string_view station) { return found(chips_, station); }
 SimulatedBoard* World::board(std::string_view station) { return found(boards_, station); }
+MockPendant* World::pendant(std::string_view name) { return found(pendants_, name); }
 
 World::Contact World::contact(std::string_view point) {
   for (const Input& i : inputs_)

@@ -18,6 +18,7 @@
 #include "drivers/mock/io/simulated_encoder.hpp"
 #include "drivers/mock/io/simulated_io_module.hpp"
 #include "drivers/mock/modbus/modbus_line.hpp"
+#include "drivers/mock/pendant/mock_pendant.hpp"
 #include "firmware_if/image/points/point_rule.hpp"
 
 namespace servogate::mock {
@@ -105,6 +106,8 @@ class World {
   /// An analog input of a simulated I/O module, or channel 0 of an encoder, its position. `initial`: raw.
   void add_value(const std::string& node, const WorldPoint& point, std::optional<double> initial);
   void add_line(const LineSettings& line, const modbus::Map& map, std::vector<WorldUnit> units);
+  /// `name`: of the machine file.
+  void add_pendant(const std::string& name, pendant::Layout layout);
   /// Points that are not in this world are no error: a loop or a turret with one of them is not made.
   void add_indexer(const WorldIndexer& indexer);
   void add_loop(const WorldLoop& loop);
@@ -145,6 +148,7 @@ class World {
   MockModbusLine* line_of(std::string_view station);
   MockGpio* chip(std::string_view station);
   SimulatedBoard* board(std::string_view station);
+  MockPendant* pendant(std::string_view name);
   /// The contact behind a digital input.
   struct Contact {
     MockGpio* chip = nullptr;  ///< nullptr: the point has none
@@ -238,6 +242,7 @@ class World {
   std::map<std::string, MockGpio*, std::less<>> chips_;          ///< by station
   std::map<std::string, ModbusStation*, std::less<>> units_;     ///< by station
   std::map<std::string, MockModbusLine*, std::less<>> line_of_;  ///< by station
+  std::map<std::string, std::unique_ptr<MockPendant>, std::less<>> pendants_;
   std::vector<Input> inputs_;
   std::vector<Output> outputs_;
   std::vector<Turret> turrets_;

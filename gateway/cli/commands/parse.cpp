@@ -8,6 +8,7 @@
 #include "gateway/cli/commands/bus_commands.hpp"
 #include "gateway/cli/commands/canopen_commands.hpp"
 #include "gateway/cli/commands/modbus_commands.hpp"
+#include "gateway/cli/commands/pendant_commands.hpp"
 #include "gateway/cli/commands/plc_commands.hpp"
 #include "gateway/cli/help/completion.hpp"
 #include "gateway/cli/help/manual_page.hpp"
@@ -136,6 +137,7 @@ class Commands {
     add_canopen_commands(app_, line.bus);
     add_modbus_commands(app_, line.bus);
     add_bench_commands(app_, line.bench_run, line.bench_identify);
+    add_pendant_commands(app_, line.bus);
     written_down();
     flags_take_no_value(app_);
   }
@@ -147,7 +149,7 @@ class Commands {
     const CLI::App* chosen = app_.get_subcommands().front();
     line_.command = chosen->get_name();
     if (line_.command == "plc" || line_.command == "can" || line_.command == "modbus" ||
-        line_.command == "bench")
+        line_.command == "bench" || line_.command == "pendant")
       line_.command += " " + chosen->get_subcommands().front()->get_name();
     line_.client.command = line_.command;
     for (std::string& argument : line_.client.arguments) unshield(argument);
@@ -500,7 +502,7 @@ std::optional<CommandLine> parse_command_line(int argc, char** argv, int& exit_c
   }
   const char* first = argc > 1 ? argv[1] : nullptr;
   if (unknown_command(app, "", first)) return std::nullopt;
-  for (const char* group : {"plc", "can"})
+  for (const char* group : {"plc", "can", "pendant"})
     if (first != nullptr && std::string_view(first) == group &&
         unknown_command(*subcommand(app, group), group + std::string(" "), argc > 2 ? argv[2] : nullptr))
       return std::nullopt;

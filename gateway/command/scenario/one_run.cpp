@@ -39,7 +39,7 @@ void put_to_rest(RunningMachine& machine, DeskOperator& who) {
   };
   const image::Nanoseconds end = machine.image().now.t_ns + kLongestEnd;
   const auto until = [&](auto&& moves) {
-    while (!rests(moves) && machine.image().now.t_ns < end && machine.step()) who.poll();
+    while (!rests(moves) && machine.image().now.t_ns < end && machine.step()) who.poll(step);
   };
   until([](const image::AxisImage& a) { return a.moving; });
   who.ask(ask::Command(ask::Power{false}), text::user_language(), step);

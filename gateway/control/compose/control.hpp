@@ -75,6 +75,8 @@ class Control {
 
   cycle::Cycle& cycle() noexcept { return *cycle_; }
   const machine::MachineConfig& machine() const noexcept { return loaded_.machine; }
+  /// With its device files.
+  const machine::LoadResult& loaded() const noexcept { return loaded_; }
   /// Its symbol table, made once.
   const std::vector<image::Symbol>& symbols() const noexcept { return symbols_; }
   channel::Process& process(int index) { return *processes_[static_cast<std::size_t>(index)]; }

@@ -35,7 +35,8 @@ DeskOperator::DeskOperator(RunningMachine& machine)
     : machine_(machine),
       resident_(machine.control(), machine.learned(), {}, 0.0),
       urgent_(machine.control(), resident_.requests(), 0.0),
-      variables_(machine.control()) {
+      variables_(machine.control()),
+      pendants_(machine.control()) {
   resident_.requests().set_pause([this] { return step_ != nullptr && (*step_)(); });
   resident_.keep_blocks(machine.journal());
   // What clients see is the newest published image.
@@ -62,25 +63,24 @@ std::string DeskOperator::problem(const scenario::Do& what) {
   return {};
 }
 
-Reply DeskOperator::ask(const ask::Command& command, text::Language language,
-                        const std::function<bool()>& step) {
+/// `step` moves the machine while an answer is waited for.
+Reply DeskOperator::carry(Question question, const std::function<bool()>& step) {
   const std::function<bool()>* const outer = std::exchange(step_, &step);
-  Question question;
-  question.ticket = {kClient, 1};
-  question.command = command;
-  question.caller.asker = image::Asker::scenario;
-  question.caller.connection = kClient;
-  question.caller.user = "scenario";
-  question.caller.language = language;
   question.asked_at = resident_.requests().stops();
+  const text::Language language = question.caller.language;
   Reply reply;
-  if (ask::is_any<ask::Down>(command)) {
+  if (ask::is_any<ask::Down>(question.command)) {
     reply = refuse(says::kUnknown, {"down"}, kWrongUse, language);
-  } else if (ask::is_urgent(command)) {
+  } else if (ask::is_urgent(question.command)) {
     std::optional<Reply> given = urgent_.take(question, false);
     while (!given && step()) {
-      auto come = urgent_.look();
-      if (!come.empty()) given = std::move(come.front().second);
+      for (auto& one : urgent_.look()) come_.push_back(std::move(one));
+      std::erase_if(come_, [&](auto& one) {
+        const bool own =
+            one.first.client == question.ticket.client && one.first.question == question.ticket.question;
+        if (own) given = std::move(one.second);
+        return own;
+      });
     }
     reply = given ? std::move(*given) : refuse(says::kNoAnswer, {}, kInfrastructure, language);
   } else {
@@ -88,6 +88,20 @@ Reply DeskOperator::ask(const ask::Command& command, text::Language language,
     while (auto* const work = std::get_if<Work>(&outcome)) outcome = work->run(std::stop_token{})();
     reply = std::move(std::get<Reply>(outcome));
   }
+  step_ = outer;
+  return reply;
+}
+
+Reply DeskOperator::ask(const ask::Command& command, text::Language language,
+                        const std::function<bool()>& step) {
+  Question question;
+  question.ticket = {kClient, 1};
+  question.command = command;
+  question.caller.asker = image::Asker::scenario;
+  question.caller.connection = kClient;
+  question.caller.user = "scenario";
+  question.caller.language = language;
+  Reply reply = carry(std::move(question), step);
   if (const auto* jog = std::get_if<JogBegun>(&reply.content)) {
     std::erase_if(jogs_, [&](const JogBegun& j) { return j.axis == jog->axis; });
     jogs_.push_back(*jog);
@@ -96,7 +110,20 @@ Reply DeskOperator::ask(const ask::Command& command, text::Language language,
     std::erase_if(jogs_, [&](const JogBegun& j) {
       return !stop->axis || machine_.machine().axis_index(*stop->axis) == j.axis;
     });
-  step_ = outer;
+  return reply;
+}
+
+/// A pendant of the machine asks; its jogs live by its own keep-alives.
+Reply DeskOperator::ask_for_pendant(const ask::Command& command, const image::Hand& hand,
+                                    const std::function<bool()>& step) {
+  Question question;
+  question.ticket = {hand.client, 1};
+  question.command = command;
+  question.caller.asker = hand.asker;
+  question.caller.connection = hand.client;
+  question.caller.user = "pendant";
+  Reply reply = carry(std::move(question), step);
+  if (const auto* jog = std::get_if<JogBegun>(&reply.content)) urgent_.begin(hand.client, *jog);
   return reply;
 }
 
@@ -282,8 +309,11 @@ bool DeskOperator::under_way() {
   return false;
 }
 
-void DeskOperator::poll() {
+void DeskOperator::poll(const std::function<bool()>& step) {
   variables_.poll();
+  pendants_.poll(machine_.image(), [&](const ask::Command& command, const image::Hand& hand) {
+    return ask_for_pendant(command, hand, step);
+  });
   const Nanoseconds t = now();
   std::erase_if(pressed_, [&](const Pressed& p) {
     if (t < p.until) return false;

@@ -8,6 +8,7 @@
 #include "bench/scenario/time_line/operator.hpp"
 #include "gateway/control/run/running_machine.hpp"
 #include "gateway/control/scenario/plc_variables.hpp"
+#include "gateway/control/scenario/scenario_pendants.hpp"
 #include "gateway/control/scenario/sentences.hpp"
 #include "gateway/control/server/desk/plc/plc_desk.hpp"
 #include "gateway/control/server/desk/urgent_desk.hpp"
@@ -25,7 +26,7 @@ class DeskOperator final : public scenario::Operator {
   scenario::Said carry_out(const scenario::Do& what, const std::function<bool()>& step) override;
   bool under_way() override;
   std::string failure() override { return failure_; }
-  void poll() override;
+  void poll(const std::function<bool()>& step) override;
 
   PlcVariables& variables() noexcept { return variables_; }
   /// Asks as a client does. `step` as in carry_out().
@@ -40,6 +41,9 @@ class DeskOperator final : public scenario::Operator {
     image::Nanoseconds until;
   };
   scenario::Said done(const Reply& reply) const;
+  Reply carry(Question question, const std::function<bool()>& step);
+  Reply ask_for_pendant(const ask::Command& command, const image::Hand& hand,
+                        const std::function<bool()>& step);
   scenario::Said carry_out(const Deed& deed);
   scenario::Said ready();
   scenario::Said ask(const ask::Command& command);
@@ -54,6 +58,8 @@ class DeskOperator final : public scenario::Operator {
   PlcDesk plc_{resident_};
   UrgentDesk urgent_;
   PlcVariables variables_;
+  ScenarioPendants pendants_;
+  std::vector<std::pair<Ticket, Reply>> come_;   ///< answers to what is urgent, not taken yet
   const std::function<bool()>* step_ = nullptr;  ///< while something is carried out
   std::vector<JogBegun> jogs_;                   ///< whose button is held
   std::vector<Pressed> pressed_;

@@ -61,6 +61,7 @@ std::optional<MachineFaults::Target> MachineFaults::find_on_bus(std::string_view
 
 std::optional<MachineFaults::Target> MachineFaults::find(std::string_view device) const {
   if (auto target = find_on_bus(device)) return target;
+  if (auto target = find_pendant(device)) return target;
   Target target;
   target.name = device;
   target.station = world_.modbus(device);
@@ -71,6 +72,20 @@ std::optional<MachineFaults::Target> MachineFaults::find(std::string_view device
   target.contact = world_.contact(device);
   target.devices = target.contact.chip != nullptr ? bit(Device::input) : bit(Device::control);
   return target.contact.chip != nullptr || has_control(device) ? std::optional(target) : std::nullopt;
+}
+
+/// A simulated pendant, "pendant", or one of its buttons, "pendant.start".
+std::optional<MachineFaults::Target> MachineFaults::find_pendant(std::string_view device) const {
+  const std::size_t dot = device.find('.');
+  Target target;
+  target.name = device;
+  target.pendant = world_.pendant(device.substr(0, dot));
+  if (target.pendant == nullptr) return std::nullopt;
+  target.devices = bit(Device::pendant);
+  if (dot == std::string_view::npos) return target;
+  target.button = device.substr(dot + 1);
+  target.devices = bit(Device::button);
+  return target.pendant->has_button(target.button) ? std::optional(target) : std::nullopt;
 }
 
 std::string MachineFaults::names() const {
@@ -88,6 +103,8 @@ std::string MachineFaults::names() const {
     for (const machine::PointConfig& point : station.points)
       if (world_.contact(point.name).chip != nullptr) add(point.name);
   }
+  for (const machine::PendantConfig& pendant : machine_.pendants)
+    if (world_.pendant(pendant.name) != nullptr) add(pendant.name);
   if (controlled_) add(std::string(kControl));
   return list;
 }
@@ -211,6 +228,11 @@ void MachineFaults::end_all(const Target& target, std::optional<Kind> kind) {
 }
 
 void MachineFaults::apply(const Target& target, const fault::Fault& fault, bool begins) {
+  if (target.pendant != nullptr && fault.kind == Kind::stuck)
+    return begins ? target.pendant->stick(target.button, fault.level)
+                  : target.pendant->release(target.button);
+  if (target.pendant != nullptr)
+    return fault.kind == Kind::unplug ? target.pendant->plug(!begins) : target.pendant->garble(begins);
   if (target.chip != nullptr && fault.kind == Kind::edges_lost) return target.chip->lose_edges(begins);
   if (target.chip != nullptr) return target.chip->plug(!begins);
   if (target.board != nullptr && fault.kind == Kind::edges_lost) return target.board->lose_edges(begins);

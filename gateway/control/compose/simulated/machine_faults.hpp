@@ -49,6 +49,8 @@ class MachineFaults {
     mock::ModbusStation* station = nullptr;
     mock::MockGpio* chip = nullptr;
     mock::SimulatedBoard* board = nullptr;
+    mock::MockPendant* pendant = nullptr;
+    std::string button = {};  ///< of that pendant
     mock::World::Contact contact = {};
   };
   struct Wish {
@@ -64,6 +66,7 @@ class MachineFaults {
   std::optional<Wish> meant(std::string_view device, const fault::Fault& fault, std::string& why) const;
   std::optional<Target> find(std::string_view device) const;
   std::optional<Target> find_on_bus(std::string_view device) const;
+  std::optional<Target> find_pendant(std::string_view device) const;
   std::string names() const;
   bool has_control(std::string_view name) const { return controlled_ && name == kControl; }
   void wish(Wish wish);

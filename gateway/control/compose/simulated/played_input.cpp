@@ -33,6 +33,8 @@ const Entry kFollowsNothing{
     "inputs that an output operates",
     "«{0}» ни за чем не следит: `auto` — для выключателей, которыми управляют оси, и для "
     "входов, которыми управляют выходы"};
+const Entry kNoControl{"input.no-control", "the pendant has no '{0}'; it has {1}",
+                       "у пульта нет «{0}»; есть {1}"};
 const Entry kIs{"input.is", "input {0} is {1}", "вход {0}: {1}"};
 const Entry kFollows{"input.follows", "input {0} follows its axis or its output again",
                      "вход {0} снова следует за осью или за выходом"};
@@ -72,10 +74,36 @@ std::optional<double> value_for(const machine::PointConfig& point, const InputWi
   return wrong(kRange, {point.name, text::number(value), text::number(range.min), text::number(range.max)});
 }
 
+/// Turns the wheel or presses a button of a simulated pendant: "pendant.wheel".
+PlayedInput play_pendant(mock::MockPendant& pendant, const std::string& name, const InputWish& wish) {
+  const std::string control = name.substr(name.find('.') + 1);
+  if (std::holds_alternative<std::monostate>(wish)) return refused(Outcome::wrong, kFollowsNothing, {name});
+  const bool* level = std::get_if<bool>(&wish);
+  const double value = level != nullptr ? (*level ? 1.0 : 0.0) : std::get<double>(wish);
+  switch (pendant.play(control, value)) {
+    case mock::MockPendant::Played::done:
+      return {Outcome::done, &kIs, {name, text::number(value)}, value};
+    case mock::MockPendant::Played::no_such_control: {
+      std::string list;
+      for (const std::string& c : pendant.controls()) list += (list.empty() ? "" : ", ") + c;
+      return refused(Outcome::wrong, kNoControl, {name, list});
+    }
+    case mock::MockPendant::Played::out_of_range:
+      break;
+  }
+  const auto [least, most] = pendant.range(control);
+  return refused(Outcome::wrong, kRange,
+                 {name, text::number(value), text::number(least), text::number(most)});
+}
+
 }  // namespace
 
 PlayedInput play_input(const machine::MachineConfig& machine, mock::World& world, const std::string& name,
                        const InputWish& wish) {
+  const std::size_t dot = name.find('.');
+  if (dot != std::string::npos)
+    if (mock::MockPendant* const pendant = world.pendant(name.substr(0, dot)))
+      return play_pendant(*pendant, name, wish);
   int station = -1;
   const machine::PointConfig* point = machine.point(name, &station);
   if (point == nullptr) return refused(Outcome::wrong, kNoPoint, {name, inputs_of(machine)});

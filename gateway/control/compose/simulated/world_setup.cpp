@@ -7,6 +7,7 @@
 #include "gateway/control/compose/points/point_rules.hpp"
 #include "gateway/control/compose/setup/modbus_setup.hpp"
 #include "gateway/control/compose/simulated/simulated_node.hpp"
+#include "machine/loading/pendant_layout.hpp"
 #include "machine/modbus_blocks.hpp"
 
 namespace servogate::gateway {
@@ -72,6 +73,10 @@ class Setup {
     for (const machine::SimulatedLoop& loop : m_.simulation.loops)
       world_.add_loop({loop.output, loop.input, loop.inverted, nanoseconds(loop.delay)});
     for (const std::string& point : m_.simulation.operator_closes) world_.add_operator_point(point);
+    for (const machine::PendantConfig& pendant : m_.pendants)
+      if (const machine::DeviceConfig* device = loaded_.device(pendant.device);
+          pendant.mock() && device != nullptr)
+        world_.add_pendant(pendant.name, machine::pendant_layout(*device, pendant));
   }
 
  private:

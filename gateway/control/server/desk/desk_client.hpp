@@ -20,14 +20,16 @@ class DeskClient {
   ~DeskClient();
   DeskClient(const DeskClient&) = delete;
 
+  /// Whose jogs are this client's.
+  image::Hand hand() const noexcept { return {caller_.asker, static_cast<std::uint32_t>(number_)}; }
   /// Asks and goes on; the number of the question.
   std::uint64_t ask(ask::Command command);
   /// The answer to a question, once; nullopt: it has not come yet.
   std::optional<Reply> take(std::uint64_t question);
   /// Asks and waits; nullopt: no answer within `patience`.
   std::optional<Reply> ask(ask::Command command, std::chrono::milliseconds patience);
-  /// Snapshots of the machine from now on, instead of those asked for before (Subscriptions). They end with the
-  /// client. Not from `seen`.
+  /// Snapshots of the machine from now on, instead of those asked for before (Subscriptions). They end with
+  /// the client. Not from `seen`.
   void subscribe(std::chrono::milliseconds period, Subscriptions::Seen seen);
 
  private:

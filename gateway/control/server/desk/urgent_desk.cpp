@@ -185,7 +185,7 @@ Reply UrgentDesk::keep_alive(const ask::KeepAlive& wanted, const Question& quest
     }
     if (end || !lives) continue;
     jog.heard = Clock::now();
-    if (jog.heard - jog.told < kOften) continue;
+    if (speed_ > 0.0 && jog.heard - jog.told < kOften) continue;
     jog.told = jog.heard;
     requests_.tell({.asker = jog.hand.asker,
                     .kind = RequestKind::keep_alive,
