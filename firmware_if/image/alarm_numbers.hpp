@@ -27,6 +27,7 @@ inline constexpr AlarmNumber kLeadLost = 2025;
 
 inline constexpr AlarmNumber kSourceStale = 3001;
 inline constexpr AlarmNumber kSourceBad = 3002;
+inline constexpr AlarmNumber kBoardRefused = 3003;
 
 inline constexpr AlarmNumber kProgramError = 4001;
 inline constexpr AlarmNumber kUnknownM = 4002;

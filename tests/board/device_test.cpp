@@ -7,6 +7,8 @@
 #include <functional>
 
 #include "drivers/mock/board/simulated_board.hpp"
+#include "firmware_if/board/master/board_alarms.hpp"
+#include "firmware_if/image/alarms/alarm_text.hpp"
 #include "tests/counting/allocations.hpp"
 
 namespace servogate::board {
@@ -86,6 +88,15 @@ class BoardDeviceTest : public ::testing::Test {
     power_ = true;
     cycles(5);
     for (int a = 0; a < 2; ++a) ASSERT_EQ(feedback(a).state, DriveState::operation_enabled) << a;
+  }
+
+  /// The newest notice in words.
+  std::string said() const {
+    static const image::AlarmTable table{alarm_room()};
+    image::AlarmNames names;
+    names.table = &table;
+    names.sources = {"board"};
+    return image::render(notices_.records().back(), names, text::Language::english);
   }
 
   AmplifierConfig stepper_{.counts_per_rev = kCounts, .steps_per_rev = 1000};
@@ -268,9 +279,53 @@ TEST_F(BoardDeviceTest, what_it_cannot_do_is_refused_and_stays_off) {
   image_.now.period_ns = kPeriod;
   cycles(1100);
   EXPECT_EQ(device_->session().state(), SessionState::refused);
-  EXPECT_EQ(device_->session().configured().result, ConfigureResult::no_such_channel);
-  EXPECT_EQ(device_->session().configured().channel, 2);
+  EXPECT_EQ(device_->session().refused().why, RefusedFor::channel);
+  EXPECT_EQ(device_->session().refused().wanted, 2u);
   EXPECT_EQ(image_.sources[0].quality, image::Quality::bad);
+  ASSERT_EQ(notices_.records().size(), 1u) << "told once";
+  EXPECT_EQ(said(), "board: the board refuses what the machine file asks of it: it has no channel 2");
+  cycles(1100);
+  EXPECT_EQ(notices_.records().size(), 2u) << "asked again after two seconds";
+}
+
+TEST_F(BoardDeviceTest, lines_encoders_and_steps_that_it_does_not_have_are_named) {
+  struct Case {
+    std::function<void(BoardConfig&)> wants;
+    const char* words;
+  };
+  const Case cases[] = {
+      {[](BoardConfig& c) {
+         c.points.push_back({PointKind::input, 20, {bit(0)}, false});
+       },
+       "21 digital inputs are used, it has 16"},
+      {[](BoardConfig& c) {
+         c.points.push_back({PointKind::output, 9, {bit(64)}, false});
+       },
+       "10 digital outputs are used, it has 8"},
+      {[](BoardConfig& c) {
+         c.points.push_back({PointKind::analog_input, 3, {bit(0)}, false});
+       },
+       "4 analog inputs are used, it has 0"},
+      {[](BoardConfig& c) { c.axes.push_back({.axis = 0, .channel = 0}); }, "its channel 0 has no encoder"},
+      {[](BoardConfig& c) { c.step_rate = 50'000; }, "the fastest axis needs 50000 steps/s, it makes 10000"},
+  };
+  for (const Case& each : cases) {
+    BoardConfig config;
+    config.source = 0;
+    each.wants(config);
+    Session session(configuration(config), needs(config));
+    std::array<std::uint8_t, kMostBytes> buffer{};
+    ASSERT_GT(session.next({}, image::kSecond, buffer), 0u);
+    Description has;
+    has.inputs = 16, has.outputs = 8, has.max_step_rate = 10'000;
+    const std::size_t size = put({Kind::description, 1}, has, buffer);
+    session.take({buffer.data(), size}, image::kSecond);
+    EXPECT_EQ(session.state(), SessionState::refused) << each.words;
+    notices_.clear();
+    notices_.add(refused_alarm(session, 0));
+    EXPECT_EQ(said(),
+              std::string("board: the board refuses what the machine file asks of it: ") + each.words);
+  }
 }
 
 TEST_F(BoardDeviceTest, a_cycle_allocates_nothing) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "firmware_if/board/master/board_alarms.hpp"
+
 namespace servogate::board {
 
 namespace {
@@ -38,11 +40,37 @@ Configuration configuration(const BoardConfig& config) {
   return c;
 }
 
+Needs needs(const BoardConfig& config) {
+  Needs n;
+  const auto at_least = [](std::uint8_t& count, std::size_t number) {
+    count = std::max(count, static_cast<std::uint8_t>(number + 1));
+  };
+  for (const BoardPoint& p : config.points) switch (p.kind) {
+      case PointKind::input:
+        at_least(n.inputs, p.number);
+        break;
+      case PointKind::output:
+        at_least(n.outputs, p.number);
+        break;
+      case PointKind::analog_input:
+        at_least(n.analog_inputs, p.number);
+        break;
+      case PointKind::analog_output:
+        at_least(n.analog_outputs, p.number);
+        break;
+    }
+  for (const AxisLinkConfig& a : config.axes)
+    if (a.encoder) n.encoders = static_cast<std::uint8_t>(n.encoders | 1u << a.channel);
+  n.step_rate = config.step_rate;
+  return n;
+}
+
 BoardDevice::BoardDevice(const BoardConfig& config, std::unique_ptr<Port> port)
     : points_(config.points),
       stage_(rules(config), config.source, {{0, kNeverThere}}),
       port_(std::move(port)),
-      session_(configuration(config)) {
+      session_(configuration(config), needs(config)),
+      source_(config.source) {
   for (const AxisLinkConfig& a : config.axes) axes_.emplace_back(a);
   point_of_input_.fill(-1);
   for (std::size_t n = 0; n < points_.size(); ++n)
@@ -54,12 +82,15 @@ BoardDevice::~BoardDevice() {
   port_->write({buffer_.data(), put({Kind::leave, 0}, buffer_)});
 }
 
-void BoardDevice::receive(image::ProcessImage& image, image::Notices&) noexcept {
+void BoardDevice::receive(image::ProcessImage& image, image::Notices& notices) noexcept {
   for (int n = 0; n < kMostAnswers; ++n) {
     const std::size_t size = port_->read(buffer_);
     if (size == 0) break;
     if (session_.take({buffer_.data(), size}, image.now.t_ns)) take_edges(image);
   }
+  const bool refused = session_.state() == SessionState::refused;
+  if (refused && !refused_) notices.add(refused_alarm(session_, source_));
+  refused_ = refused;
   const bool fresh = session_.take_fresh();
   const bool sound = session_.state() == SessionState::running && (session_.status().flags & kTripped) == 0;
   if (sound && fresh)

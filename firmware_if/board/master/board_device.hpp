@@ -27,11 +27,14 @@ struct BoardConfig {
   std::vector<BoardPoint> points;
   std::vector<AxisLinkConfig> axes;
   std::array<ChannelSetting, kChannels> channels{};
-  int source = -1;  ///< index in image.sources; -1: none
+  std::uint32_t step_rate = 0;  ///< steps/s of the fastest axis
+  int source = -1;              ///< index in image.sources; -1: none
 };
 
 /// The configuration that a board gets for this: channels, edges, and outputs at their values of loss.
 Configuration configuration(const BoardConfig& config);
+/// And what it has to have.
+Needs needs(const BoardConfig& config);
 
 /// A board as a device of the cycle: one command at the end of each cycle, whose answer is read at the begin
 /// of the next one. Its inputs are of the time at which it took the command; edges have their own. A board
@@ -62,6 +65,8 @@ class BoardDevice final : public image::CycleDevice {
   std::unique_ptr<Port> port_;
   Session session_;
   std::array<int, kInputs> point_of_input_{};  ///< for edges; -1: none
+  int source_;
+  bool refused_ = false;  ///< and it has been told
   std::uint16_t lost_edges_ = 0;
   std::uint32_t lost_of_session_ = 0;
   std::array<std::uint8_t, kMostBytes> buffer_{};

@@ -8,11 +8,30 @@ namespace servogate::board {
 namespace {
 
 constexpr image::Nanoseconds kAskAgain = 100 * image::kMillisecond;
+constexpr image::Nanoseconds kAskRefused = 2 * image::kSecond;  ///< another firmware may have come
+
+Refused refusal_of(const Configured& c) noexcept {
+  switch (c.result) {
+    case ConfigureResult::done:
+      return {};
+    case ConfigureResult::no_watchdog:
+      return {RefusedFor::watchdog};
+    case ConfigureResult::no_period:
+      return {RefusedFor::period};
+    case ConfigureResult::no_such_channel:
+      return {RefusedFor::channel, c.channel};
+    case ConfigureResult::no_such_output:
+      break;
+  }
+  return {RefusedFor::output, c.channel};
+}
 
 }  // namespace
 
-Session::Session(const Configuration& configuration) noexcept
-    : configuration_(configuration), silence_ns_(configuration.watchdog_us * image::kMicrosecond / 2) {}
+Session::Session(const Configuration& configuration, const Needs& needs) noexcept
+    : configuration_(configuration),
+      needs_(needs),
+      silence_ns_(configuration.watchdog_us * image::kMicrosecond / 2) {}
 
 void Session::begin() noexcept {
   state_ = SessionState::silent;
@@ -56,9 +75,26 @@ void Session::take_description(std::span<const std::uint8_t> body, image::Nanose
   Description d;
   if (state_ != SessionState::silent || !board::take(body, d)) return;
   description_ = d;
-  configured_ = {};
-  state_ = d.protocol == kProtocolVersion ? SessionState::configuring : SessionState::refused;
-  asked_ns_ = t - kAskAgain;
+  refused_ = lack();
+  state_ = refused_.why == RefusedFor::none ? SessionState::configuring : SessionState::refused;
+  asked_ns_ = state_ == SessionState::refused ? t : t - kAskAgain;
+}
+
+/// What the board that has described itself does not have.
+Refused Session::lack() const noexcept {
+  const Description& d = description_;
+  if (d.protocol != kProtocolVersion) return {RefusedFor::protocol, kProtocolVersion, d.protocol};
+  if (needs_.inputs > d.inputs) return {RefusedFor::inputs, needs_.inputs, d.inputs};
+  if (needs_.outputs > d.outputs) return {RefusedFor::outputs, needs_.outputs, d.outputs};
+  if (needs_.analog_inputs > d.analog_inputs)
+    return {RefusedFor::analog_inputs, needs_.analog_inputs, d.analog_inputs};
+  if (needs_.analog_outputs > d.analog_outputs)
+    return {RefusedFor::analog_outputs, needs_.analog_outputs, d.analog_outputs};
+  for (std::uint32_t n = 0; n < kChannels; ++n)
+    if ((needs_.encoders >> n & 1u) != 0 && (d.capabilities[n] & kHasEncoder) == 0)
+      return {RefusedFor::encoder, n};
+  if (needs_.step_rate > d.max_step_rate) return {RefusedFor::step_rate, needs_.step_rate, d.max_step_rate};
+  return {};
 }
 
 void Session::take_configured(const Message& m, image::Nanoseconds t) noexcept {
@@ -66,9 +102,9 @@ void Session::take_configured(const Message& m, image::Nanoseconds t) noexcept {
   if (state_ != SessionState::configuring || m.header.sequence != configure_sequence_ ||
       !board::take(m.body, c))
     return;
-  configured_ = c;
+  refused_ = refusal_of(c);
   state_ = c.result == ConfigureResult::done ? SessionState::running : SessionState::refused;
-  heard_ns_ = t;
+  asked_ns_ = heard_ns_ = t;
   fresh_ = false;
   ahead_known_ = false;
   stamps_ = 0;
@@ -101,7 +137,10 @@ image::Nanoseconds Session::machine_time(std::uint32_t t_us) const noexcept {
 
 std::size_t Session::next(const Command& command, image::Nanoseconds t,
                           std::span<std::uint8_t> buffer) noexcept {
-  if (state_ == SessionState::refused) return 0;
+  if (state_ == SessionState::refused) {
+    if (t - asked_ns_ < kAskRefused) return 0;
+    begin();
+  }
   if (state_ == SessionState::running && t - heard_ns_ > silence_ns_) begin();
   if (state_ == SessionState::running) {
     sent_ns_[++sequence_ % kSent] = t;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/control/compose/alarms/alarm_rooms.hpp"
 
+#include "firmware_if/board/master/board_alarms.hpp"
 #include "kernel/axis/alarms/axis_alarm_room.hpp"
 #include "kernel/cycle/alarm/cycle_alarm_room.hpp"
 
@@ -17,6 +18,7 @@ AlarmRooms::AlarmRooms(canopen::MasterAlarmWords bus, channel::ProgramAlarmWords
              {canopen::master_alarm_rows(), &bus_},
              {channel::program_alarm_rows(), &program_},
              {plc::logic_alarm_rows(), &logic_},
-             cycle::alarm_room()} {}
+             cycle::alarm_room(),
+             board::alarm_room()} {}
 
 }  // namespace servogate::gateway

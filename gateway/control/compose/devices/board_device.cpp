@@ -64,6 +64,9 @@ void add_axis(const machine::AxisConfig& a, std::size_t index, board::BoardConfi
     const std::int64_t common = std::gcd(steps_per_rev(a), a.counts_per_rev);
     link.steps = steps_per_rev(a) / common;
     link.counts = a.counts_per_rev / common;
+    const double fastest = a.max_velocity * a.counts_per_unit() * static_cast<double>(link.steps) /
+                           static_cast<double>(link.counts);
+    config.step_rate = std::max(config.step_rate, static_cast<std::uint32_t>(std::min(4e9, fastest)));
     setting.step_us = static_cast<std::uint8_t>(std::clamp<std::uint32_t>(microseconds(b.step_time), 1, 200));
     setting.stop_rate = static_cast<std::uint32_t>(
         std::min(4e9, link.quick_stop * static_cast<double>(link.steps) / static_cast<double>(link.counts)));
