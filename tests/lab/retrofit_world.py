@@ -83,7 +83,7 @@ def act(words):
 
 
 ids = {n["name"]: n["id"] for n in machine["bus"][0]["node"]}
-slides = {ids[a["drive"].split(".")[1]]: Slide(a) for a in machine["axis"]}
+slides = {ids[a["drive"].split(".")[1]]: Slide(a) for a in machine["axis"] if "drive" in a}
 for name, wire in wires.items():
     if wire.shown is None:
         wire.set(name in ("estop_chain_ok", "door_closed"))
