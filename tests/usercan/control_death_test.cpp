@@ -46,11 +46,12 @@ class Reader {
                                          std::uint32_t{frame.data[7]} << 24);
     return std::nullopt;
   }
-  /// Waits for a fast way down; where it was seen.
-  std::optional<std::int32_t> rapid_down() {
+  /// Waits for a fast way down while the control lives; where it was seen.
+  std::optional<std::int32_t> rapid_down(const Process& control) {
     std::optional<std::int32_t> before;
     const auto end = std::chrono::steady_clock::now() + tests::kPatience;
-    for (image::CanFrame frame; std::chrono::steady_clock::now() < end && wait_for(*bus_, frame);) {
+    for (image::CanFrame frame;
+         std::chrono::steady_clock::now() < end && !control.ended() && wait_for(*bus_, frame);) {
       if (frame.id != canopen::cob::tpdo(1, kZ) || frame.length != 6) continue;
       const auto now = static_cast<std::int32_t>(frame.data[2] | frame.data[3] << 8 | frame.data[4] << 16 |
                                                  std::uint32_t{frame.data[5]} << 24);
@@ -71,13 +72,23 @@ class ControlDeath : public ::testing::TestWithParam<int> {};
 TEST_P(ControlDeath, in_a_rapid_downwards_lets_the_axis_not_fall_and_waking_does_not_move_it) {
   RunningServer server;
   const std::string machine = mill("socketcand:" + server.address().str() + "/can0", patience());
-  const auto living = mill_drives(machine);
+  auto living = mill_drives(machine);
   Reader reader(server.join());
   // At a fifth of the speed: a drive whose process comes 30 ms late does not jump farther than an axis can
-  // (1007).
-  Process run({"run", machine, up_and_down(), "--realtime=best-effort", "--override", "20", "-q"});
-  const auto seen = reader.rapid_down();
-  ASSERT_TRUE(seen.has_value()) << run.said();
+  // (1007). Where the computer stalls for longer, control and drives begin anew.
+  std::optional<Process> control;
+  std::optional<std::int32_t> seen;
+  for (int attempt = 0; attempt < 20 && !seen; ++attempt) {
+    if (attempt > 0) {
+      living.clear();
+      living = mill_drives(machine);
+    }
+    control.emplace(std::vector<std::string>{"run", machine, up_and_down(), "--realtime=best-effort",
+                                             "--override", "20", "-q"});
+    seen = reader.rapid_down(*control);
+  }
+  ASSERT_TRUE(seen.has_value()) << control->said();
+  const Process& run = *control;
   run.signal(GetParam());
   // Its heartbeat of 1 s is missed after three; then the ramp, the brake, and the torque goes.
   ASSERT_TRUE(tests::comes([&] { return reader.in_fault(); }, 100ms));
