@@ -5,6 +5,10 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <condition_variable>
+#include <filesystem>
+#include <utility>
+
 #include "firmware_if/text/finding.hpp"
 
 namespace servogate::hid {
@@ -31,17 +35,79 @@ struct FreeList {
 };
 using List = std::unique_ptr<hid_device_info, FreeList>;
 
+/// hidapi keeps one error text for all threads: whoever lists or opens devices does so alone.
+std::mutex& hidapi() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+struct Close {
+  void operator()(hid_device* d) const noexcept { hid_close(d); }
+};
+using Handle = std::unique_ptr<hid_device, Close>;
+
+/// What a link of udev leads to; the name itself where it leads nowhere yet.
+std::string device_of(const std::string& path) {
+  std::error_code error;
+  const auto real = std::filesystem::canonical(path, error);
+  return error ? path : real.string();
+}
+
 }  // namespace
 
 struct HidPort::Device {
-  struct Close {
-    void operator()(hid_device* d) const noexcept { hid_close(d); }
-  };
-  std::unique_ptr<hid_device, Close> handle;
+  Handle handle;
   std::string where;
 };
 
+/// Writes its display, which may take seconds, so that the hand is read meanwhile.
+class HidPort::Screen {
+ public:
+  explicit Screen(Handle handle) : handle_(std::move(handle)) {
+    if (handle_ != nullptr) thread_ = std::thread([this] { run(); });
+  }
+  ~Screen() {
+    {
+      const std::scoped_lock lock(mutex_);
+      end_ = true;
+    }
+    came_.notify_all();
+    if (thread_.joinable()) thread_.join();
+  }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+  void show(std::vector<std::vector<std::uint8_t>> reports) {
+    const std::scoped_lock lock(mutex_);
+    reports_ = std::move(reports);
+    came_.notify_all();
+  }
+
+ private:
+  void run() {
+    pthread_setname_np(pthread_self(), "hid-display");
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      came_.wait(lock, [this] { return end_ || !reports_.empty(); });
+      if (end_) return;
+      const auto reports = std::exchange(reports_, {});
+      lock.unlock();
+      // A display that does not take them is no reason to do without the hand.
+      for (const auto& report : reports)
+        if (hid_send_feature_report(handle_.get(), report.data(), report.size()) < 0) break;
+      lock.lock();
+    }
+  }
+
+  Handle handle_;
+  std::mutex mutex_;
+  std::condition_variable came_;
+  std::vector<std::vector<std::uint8_t>> reports_;
+  bool end_ = false;
+  std::thread thread_;
+};
+
 std::unique_ptr<HidPort> HidPort::open(const HidChoice& choice, drivers::Notice& why) {
+  const std::scoped_lock lock(hidapi());
   if (hid_init() != 0) {
     why = {&kNoHid, {narrow(hid_error(nullptr))}};
     return nullptr;
@@ -58,24 +124,28 @@ HidPort::~HidPort() {
 
 void HidPort::show(std::vector<std::vector<std::uint8_t>> reports) {
   const std::scoped_lock lock(mutex_);
-  shown_ = std::move(reports);
+  if (screen_ != nullptr) screen_->show(std::move(reports));
 }
 
 std::unique_ptr<HidPort::Device> HidPort::find() {
+  const std::scoped_lock lock(hidapi());
   const List all(hid_enumerate(choice_.vendor, choice_.product));
+  const std::string path = choice_.path.empty() ? std::string() : device_of(choice_.path);
   for (const hid_device_info* d = all.get(); d != nullptr; d = d->next) {
-    if (!choice_.path.empty() && choice_.path != d->path) continue;
+    if (!path.empty() && path != d->path) continue;
     if (!choice_.serial.empty() && choice_.serial != narrow(d->serial_number)) continue;
     if (hid_device* handle = hid_open_path(d->path)) {
       refused_.clear();
       auto device = std::make_unique<Device>();
       device->handle.reset(handle);
       device->where = d->path;
+      auto screen = std::make_unique<Screen>(Handle(hid_open_path(d->path)));
+      const std::scoped_lock shown(mutex_);
+      screen_ = std::move(screen);
       return device;
     }
     const std::string words = std::string(d->path) + ": " + narrow(hid_error(nullptr));
-    if (words != refused_) put({PendantNews::Kind::not_allowed, {}, words});
-    refused_ = words;
+    if (refused_.insert(words).second) put({PendantNews::Kind::not_allowed, {}, words});
   }
   return nullptr;
 }
@@ -91,14 +161,6 @@ bool HidPort::serve(Device& device) {
     news.report.size = static_cast<std::size_t>(got);
     put(std::move(news));
   }
-  std::vector<std::vector<std::uint8_t>> shown;
-  {
-    const std::scoped_lock lock(mutex_);
-    shown.swap(shown_);
-  }
-  // A display that does not take them is no reason to do without the hand: reading says whether it is there.
-  for (const auto& report : shown)
-    if (hid_send_feature_report(device.handle.get(), report.data(), report.size()) < 0) break;
   return true;
 }
 
@@ -115,11 +177,17 @@ void HidPort::run() {
     while (!end_ && serve(*device)) {
     }
     if (!end_) put({PendantNews::Kind::unplugged, {}, device->where});
+    std::unique_ptr<Screen> gone;
+    {
+      const std::scoped_lock lock(mutex_);
+      gone = std::move(screen_);
+    }
   }
 }
 
 std::vector<HidEntry> hid_devices() {
   std::vector<HidEntry> out;
+  const std::scoped_lock lock(hidapi());
   const List all(hid_enumerate(0, 0));
   for (const hid_device_info* d = all.get(); d != nullptr; d = d->next)
     out.push_back({d->vendor_id, d->product_id, d->path, narrow(d->serial_number), narrow(d->product_string),

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,7 +18,7 @@ namespace servogate::hid {
 struct HidChoice {
   std::uint16_t vendor = 0, product = 0;
   std::string serial;  ///< empty: any
-  std::string path;    ///< "/dev/hidraw0"; empty: any
+  std::string path;    ///< "/dev/hidraw0", or a link to one; empty: any
 };
 
 /// A pendant as hidapi finds it. It need not be there: it is looked for every half second until it comes, and
@@ -35,14 +36,15 @@ class HidPort final : public drivers::PendantPort {
  private:
   explicit HidPort(HidChoice choice) : choice_(std::move(choice)) {}
   struct Device;
+  class Screen;
   void run();
   std::unique_ptr<Device> find();
   bool serve(Device& device);
 
   const HidChoice choice_;
-  std::string refused_;  ///< what was told last
+  std::set<std::string> refused_;  ///< what was told since one could be opened
   std::mutex mutex_;
-  std::vector<std::vector<std::uint8_t>> shown_;  ///< that waits to be written
+  std::unique_ptr<Screen> screen_;  ///< of the pendant that is there
   std::atomic<bool> end_{false};
   std::thread thread_;
 };

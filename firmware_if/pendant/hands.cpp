@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware_if/image/wheel_way.hpp"
 
@@ -19,6 +20,17 @@ bool moves(Action action) {
          action == Action::power;
 }
 
+bool begins_motion(const Request& r) {
+  return r.kind == RequestKind::start || r.kind == RequestKind::resume || r.kind == RequestKind::home ||
+         r.kind == RequestKind::mdi || r.kind == RequestKind::power;
+}
+
+/// These mean the same with `shift` held.
+bool always(const Binding* b) {
+  return b != nullptr &&
+         (b->action == Action::shift || b->action == Action::stop || b->action == Action::hold);
+}
+
 }  // namespace
 
 const Binding* Hands::binding_of(int button) const noexcept {
@@ -28,12 +40,14 @@ const Binding* Hands::binding_of(int button) const noexcept {
     if (b.with >= 0 && pressed(b.with)) return &b;
     if (b.with < 0) alone = &b;
   }
-  return shifted() && (alone == nullptr || alone->action != Action::shift) ? nullptr : alone;
+  return shifted() && !always(alone) ? nullptr : alone;
 }
 
 bool Hands::shifted() const noexcept {
-  return std::any_of(layout_->bindings.begin(), layout_->bindings.end(),
-                     [this](const Binding& b) { return b.action == Action::shift && pressed(b.button); });
+  return std::any_of(layout_->bindings.begin(), layout_->bindings.end(), [this](const Binding& b) {
+    // A dead-man that is held all the time cannot change what the others mean.
+    return b.action == Action::shift && b.button != rules_->dead_man && pressed(b.button);
+  });
 }
 
 bool Hands::held() const noexcept {
@@ -42,7 +56,11 @@ bool Hands::held() const noexcept {
 
 bool Hands::permitted(int axis) const noexcept {
   if (axis < 0 || !held() || axis == blocked_) return false;
-  return view_.axes[at(axis)].jogs && rules_->axes.find(layout_->axes[at(axis)].letter) != std::string::npos;
+  return view_.axes[at(axis)].jogs && is_mine(axis);
+}
+
+bool Hands::is_mine(int axis) const noexcept {
+  return axis >= 0 && rules_->axes.find(layout_->axes[at(axis)].letter) != std::string::npos;
 }
 
 double Hands::step_length() const noexcept {
@@ -59,7 +77,13 @@ void Hands::begin_end(int axis) noexcept {
 }
 
 void Hands::queue(const Request& request) noexcept {
-  if (queued_ < kQueue) queue_[at(queued_++)] = request;
+  if (queued_ < kQueue) queue_[at(queued_++)] = {request, pressed_now_};
+}
+
+/// What waits is not carried out behind it.
+void Hands::stop(bool& which) noexcept {
+  which = true;
+  queued_ = 0;
 }
 
 void Hands::see(const View& view) noexcept {
@@ -102,21 +126,21 @@ void Hands::press(const Binding& b) noexcept {
     case Action::hold_axis:
       return;
     case Action::stop:
-      return queue({RequestKind::stop});
+      return stop(stop_);
     case Action::hold:
-      return queue({RequestKind::hold});
+      return stop(hold_);
     case Action::start_hold:
-      return queue({view_.running ? RequestKind::hold
-                    : view_.held  ? RequestKind::resume
-                                  : RequestKind::start});
+      if (view_.running) return stop(hold_);
+      return queue({view_.held ? RequestKind::resume : RequestKind::start});
     case Action::reset:
       return queue({RequestKind::reset});
     case Action::power:
-      return queue({RequestKind::power, -1, view_.powered ? 0.0 : 1.0});
+      if (view_.powered) return stop(power_off_);
+      return queue({RequestKind::power, -1, 1.0});
     case Action::home:
       return queue({RequestKind::home});
     case Action::zero:
-      if (selected_ >= 0) queue({RequestKind::zero, selected_});
+      if (is_mine(selected_)) queue({RequestKind::zero, selected_});
       return;
     case Action::override_by:
       return queue(
@@ -137,15 +161,19 @@ void Hands::press(const Binding& b) noexcept {
 
 void Hands::take(const Reading& reading) noexcept {
   const bool first = !known_;
-  const std::uint32_t before = first ? reading.buttons : now_.buttons;
+  stuck_ = first ? reading.buttons : stuck_ & reading.buttons;
+  const std::uint32_t before = first ? 0 : now_.buttons;
   const int step = step_, selected = selected_;
   now_ = reading;
+  now_.buttons &= ~stuck_;
   known_ = true;
   if (first && layout_->step < 0) step_ = layout_->steps.empty() ? -1 : 0;
-  const std::uint32_t fresh = reading.buttons & ~before;
+  const std::uint32_t fresh = now_.buttons & ~before;
   for (int b = 0; b < static_cast<int>(layout_->buttons.size()); ++b)
-    if ((fresh >> b & 1u) != 0)
+    if ((fresh >> b & 1u) != 0) {
+      pressed_now_ = b;
       if (const Binding* binding = binding_of(b)) press(*binding);
+    }
   if (layout_->step >= 0) step_ = reading.step;
   select();
   if (!held()) blocked_ = -1;
@@ -212,15 +240,29 @@ bool Hands::next(Request& request, image::Nanoseconds now) noexcept {
     request = {RequestKind::jog_stop, a};
     return true;
   }
-  for (int q = 0; q < queued_; ++q) {
-    if (under_way_ && !is_urgent(queue_[at(q)].kind)) continue;
-    request = queue_[at(q)];
-    std::move(queue_.begin() + q + 1, queue_.begin() + queued_, queue_.begin() + q);
-    --queued_;
-    under_way_ = under_way_ || !is_urgent(request.kind);
+  if (std::exchange(stop_, false)) {
+    request = {RequestKind::stop};
+    return true;
+  }
+  if (std::exchange(hold_, false)) {
+    request = {RequestKind::hold};
+    return true;
+  }
+  if (std::exchange(power_off_, false)) {
+    request = {RequestKind::power, -1, 0.0};
     return true;
   }
   if (under_way_) return false;
+  while (queued_ > 0) {
+    const Queued oldest = queue_[0];
+    std::move(queue_.begin() + 1, queue_.begin() + queued_, queue_.begin());
+    --queued_;
+    // The hand has let go of it meanwhile: what was asked for then is not begun now.
+    if (begins_motion(oldest.request) && (!held() || !pressed(oldest.button))) continue;
+    request = oldest.request;
+    under_way_ = true;
+    return true;
+  }
   if (ring_axis_ >= 0 && now - kept_alive_ >= kKeepAlive) {
     kept_alive_ = now;
     request = {RequestKind::keep_alive, ring_axis_};

@@ -66,7 +66,8 @@ struct Request {
 /// The hands at one pendant: reports in, requests out. Layout and rules outlive it. What must not wait (an
 /// end of a jog, a stop) comes before everything else; one other request at a time is under way. Nothing
 /// moves by what a pendant says first: a button that is pressed, a wheel that has turned and a ring that is
-/// held when it is plugged in do nothing until the hand lets go of them. real-time safe.
+/// held when it is plugged in do nothing until the hand lets go of them, and are no dead-man. What begins
+/// motion is asked for only while its button and the dead-man are held. real-time safe.
 class Hands {
  public:
   Hands(const Layout& layout, const Rules& rules) noexcept : layout_(&layout), rules_(&rules) {}
@@ -80,8 +81,10 @@ class Hands {
   /// The next request; false: there is none now. A request that is_urgent() has no answered().
   bool next(Request& request, image::Nanoseconds now) noexcept;
   void answered(const Request& request, bool accepted) noexcept;
-  static bool is_urgent(RequestKind kind) noexcept {
-    return kind == RequestKind::jog_stop || kind == RequestKind::stop || kind == RequestKind::hold;
+  /// Takes motion or energy away.
+  static bool is_urgent(const Request& r) noexcept {
+    return r.kind == RequestKind::jog_stop || r.kind == RequestKind::stop || r.kind == RequestKind::hold ||
+           (r.kind == RequestKind::power && r.value == 0.0);
   }
 
   int selected() const noexcept { return selected_; }
@@ -98,6 +101,7 @@ class Hands {
   bool shifted() const noexcept;
   bool held() const noexcept;
   bool permitted(int axis) const noexcept;
+  bool is_mine(int axis) const noexcept;
   double step_length() const noexcept;
   void press(const Binding& binding) noexcept;
   void select() noexcept;
@@ -105,6 +109,7 @@ class Hands {
   void drop_pending() noexcept;
   void begin_end(int axis) noexcept;
   void queue(const Request& request) noexcept;
+  void stop(bool& which) noexcept;
   void ring() noexcept;
   bool next_jog(Request& request) noexcept;
 
@@ -124,8 +129,16 @@ class Hands {
   bool ring_armed_ = false;  ///< it was seen at rest
   image::Nanoseconds kept_alive_ = 0;
   bool under_way_ = false;  ///< a request that is not urgent
-  std::uint32_t ends_ = 0;  ///< axes whose jog is to end, as bits
-  std::array<Request, kQueue> queue_;
+  bool stop_ = false, hold_ = false,
+       power_off_ = false;   ///< asked for before everything else; a lost pendant keeps them
+  std::uint32_t stuck_ = 0;  ///< buttons that were pressed when it came, and have not been released since
+  int pressed_now_ = -1;     ///< button whose meaning is carried out
+  std::uint32_t ends_ = 0;   ///< axes whose jog is to end, as bits
+  struct Queued {
+    Request request;
+    int button = -1;
+  };
+  std::array<Queued, kQueue> queue_;
   int queued_ = 0;
   std::uint64_t dropped_ = 0;
 };

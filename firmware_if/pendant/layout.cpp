@@ -126,6 +126,8 @@ std::optional<Field> parse_field(std::string_view text) {
   return std::nullopt;
 }
 
+std::string_view action_word(Action action) { return kActions[static_cast<std::size_t>(action)]; }
+
 std::string_view action_words() {
   return "nothing, shift, stop, hold, start_hold, reset, power, home, zero, override_by N, next_step, "
          "coordinates, "

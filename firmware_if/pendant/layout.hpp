@@ -99,6 +99,7 @@ struct Layout {
   int ring_from = 1;   ///< from there on it jogs
   std::vector<Button> buttons;
   std::vector<AxisCode> axes;  ///< X Y Z A B C in rows of the display, without off
+  int axis_off = 0;            ///< code of off
   std::vector<Step> steps;
   std::vector<Binding> bindings;
 
@@ -127,6 +128,8 @@ std::optional<Binding> parse_binding(std::string_view text, const Layout& layout
 
 /// Words of the actions, for people, in the order of Action.
 std::string_view action_words();
+/// The word of one.
+std::string_view action_word(Action action);
 
 /// Gives a chord its new meaning, instead of the one that it has.
 void bind(Layout& layout, const Binding& binding);

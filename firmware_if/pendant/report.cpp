@@ -33,6 +33,12 @@ std::optional<Reading> ReportReader::read(std::span<const std::uint8_t> report) 
   if (report.size() != at(l.report_bytes)) return std::nullopt;
   if (l.report_number != 0 && report[0] != l.report_number) return std::nullopt;
   Reading out;
+  const auto none = [](const auto& positions) {
+    return std::none_of(positions.begin(), positions.end(), [](const auto& p) { return p.code == 0; });
+  };
+  out.asleep = l.axis >= 0 && l.step >= 0 && report[at(l.axis)] == 0 && report[at(l.step)] == 0 &&
+               l.axis_off != 0 && none(l.axes) && none(l.steps);
+  if (out.asleep) return out;
   if (!read_keys(report, out)) return std::nullopt;
   if (l.axis >= 0)
     for (std::size_t a = 0; a < l.axes.size(); ++a)
@@ -67,13 +73,13 @@ ReportWriter::Bytes ReportWriter::write(const Reading& reading) noexcept {
   for (std::size_t b = 0; b < l.buttons.size(); ++b) {
     if ((reading.buttons >> b & 1u) == 0) continue;
     if (key < l.keys.size()) put(l.keys[key++], l.buttons[b].code);
-    word |= 1u << l.buttons[b].code;
+    if (l.bits >= 0) word |= 1u << l.buttons[b].code;
   }
   if (l.bits >= 0) {
     put(l.bits, static_cast<int>(word & 0xFF));
     put(l.bits + 1, static_cast<int>(word >> 8 & 0xFF));
   }
-  if (reading.axis >= 0) put(l.axis, l.axes[at(reading.axis)].code);
+  put(l.axis, reading.axis >= 0 ? l.axes[at(reading.axis)].code : l.axis_off);
   if (reading.step >= 0) put(l.step, l.steps[at(reading.step)].code);
   put(l.ring, reading.ring);
   counter_ = static_cast<std::uint8_t>(counter_ + reading.counts);

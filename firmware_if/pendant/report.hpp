@@ -19,6 +19,7 @@ struct Reading {
   int step = -1;              ///< index in Layout::steps, -1: none, or no selector
   int counts = 0;             ///< of the wheel since the last report
   int ring = 0;               ///< of the spring-loaded ring, - counter-clockwise
+  bool asleep = false;        ///< it has just been switched off: nothing else of this is said
   friend bool operator==(const Reading&, const Reading&) = default;
 };
 
@@ -27,6 +28,8 @@ class ReportReader {
  public:
   explicit ReportReader(const Layout& layout) noexcept : layout_(&layout) {}
 
+  /// A pendant with two selectors, none of which stands anywhere (0), is being switched off; LinuxCNC,
+  /// xhc-whb04b-6/usb.h, "empty package". What it sends next is read as a report and has to be passed over.
   /// nullopt: it is no report of this pendant: its length, its number, or the code of a key that there is
   /// not.
   std::optional<Reading> read(std::span<const std::uint8_t> report) noexcept;

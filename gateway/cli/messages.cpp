@@ -2,6 +2,7 @@
 #include "gateway/cli/messages.hpp"
 
 #include <unistd.h>
+#include <mutex>
 
 #include <cstdio>
 #include <cstdlib>
@@ -30,6 +31,7 @@ const text::Entry kLeavesTravel{"cli.leaves-travel", "{0} moves from {1} to {2};
 
 namespace {
 LastError last;
+std::mutex last_lock;  ///< clients of a running control complain from threads of their own
 
 /// Standard error is a terminal that shows colours, and nobody has asked for none (no-color.org).
 bool coloured() {
@@ -67,9 +69,11 @@ int print_findings(const std::vector<text::Finding>& findings) {
 }
 
 void complain(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  last = {std::string(entry.id), text::render(entry, arguments, text::user_language())};
+  const LastError error{std::string(entry.id), text::render(entry, arguments, text::user_language())};
+  const std::scoped_lock lock(last_lock);
+  last = error;
   keep_order();
-  tell("servogate: " + last.text + " [" + last.code + "]");
+  tell("servogate: " + error.text + " [" + error.code + "]");
 }
 
 }  // namespace servogate::gateway

@@ -173,6 +173,7 @@ int pendant_watch(const PendantOptions& o) {
     complain(*why.entry, why.arguments);
     return kInfrastructure;
   }
+  if (!o.json) say(pendant_says::kLooked, {o.device, o.url});
   pendant::ReportReader reader(layout);
   int reports = 0;
   while (!end.ended()) {

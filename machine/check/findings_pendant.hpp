@@ -39,4 +39,38 @@ inline constexpr text::Entry kPendantNobody{
     "pendant \"{0}\" selects {1}, but may move none of these axes of the machine: {2}",
     "пульт «{0}» выбирает {1}, но ни одну из этих осей станка двигать не может: {2}"};
 
+inline constexpr text::Entry kPendantSame{
+    "machine.pendant_same",
+    "pendants \"{0}\" and \"{1}\" may be the same device: each count would be jogged twice. Tell them apart "
+    "by "
+    "hid:SERIAL",
+    "пульты «{0}» и «{1}» могут быть одним устройством: каждый импульс двигал бы дважды. Различите их через "
+    "hid:СЕРИЙНЫЙ_НОМЕР"};
+inline constexpr text::Entry kPendantDeadManActs{
+    "machine.pendant_dead_man_acts",
+    "`dead_man`: button \"{0}\" means `{1}`, too, which gripping it would ask for. Take the meaning away: "
+    "buttons = [\"{0}: nothing\"]",
+    "`dead_man`: кнопка «{0}» означает ещё и `{1}`, и нажатие вызывало бы это. Уберите назначение: "
+    "buttons = [\"{0}: nothing\"]"};
+inline constexpr text::Entry kPendantDeadManLoss{
+    "machine.pendant_dead_man_loss",
+    "`dead_man_point`: \"{0}\" would stay TRUE while its station is lost. It needs `loss = 0`, and no `hold`",
+    "`dead_man_point`: «{0}» оставался бы TRUE при потере станции. Нужны `loss = 0` и отсутствие `hold`"};
+inline constexpr text::Entry kPendantProcesses{
+    "machine.pendant_processes",
+    "pendant \"{0}\" may move axes of several processes, so its start, hold and blocks would be those of "
+    "process "
+    "{1} only: name the axes of one process in `axes`",
+    "пульт «{0}» двигает оси нескольких процессов, а его пуск, пауза и кадры относились бы только к процессу "
+    "{1}: назовите в `axes` оси одного процесса"};
+inline constexpr text::Entry kPendantTwiceHere{
+    "machine.pendant_twice_here", "`{0}`: \"{1}\" stands there twice", "`{0}`: «{1}» встречается дважды"};
+inline constexpr text::Entry kPendantShared{"machine.pendant_shared", "`{0}` and `{1}` are the same byte {2}",
+                                            "`{0}` и `{1}` — один и тот же байт {2}"};
+inline constexpr text::Entry kPendantLacks{"machine.pendant_lacks", "`{0}` is of no effect without `{1}`",
+                                           "`{0}` не действует без `{1}`"};
+inline constexpr text::Entry kPendantRing{
+    "machine.pendant_ring", "`ring_from` is {0}, but the ring counts to {1} (`ring_range`) only",
+    "`ring_from` равно {0}, но кольцо считает лишь до {1} (`ring_range`)"};
+
 }  // namespace servogate::machine::finding

@@ -2,6 +2,8 @@
 #include "machine/loading/pendant_layout.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 #include "machine/check/findings_pendant.hpp"
 
@@ -27,7 +29,13 @@ void meanings(pendant::Layout& layout, const std::vector<std::string>& texts, co
       text::both("BUTTON: ACTION, or BUTTON + BUTTON: ACTION; actions: ",
                  "КНОПКА: ДЕЙСТВИЕ или КНОПКА + КНОПКА: ДЕЙСТВИЕ; действия: ") +
           std::string(pendant::action_words()),
-      bad, [&layout](const std::string& text) { return pendant::parse_binding(text, layout); },
+      bad,
+      [&layout](const std::string& text) {
+        auto binding = pendant::parse_binding(text, layout);
+        // It selects an axis that the pendant has not.
+        if (binding && binding->axis != 0 && layout.axis_index(binding->axis) < 0) binding.reset();
+        return binding;
+      },
       [&layout](const pendant::Binding& binding) { pendant::bind(layout, binding); });
 }
 
@@ -55,7 +63,10 @@ pendant::Layout pendant_layout(const DeviceConfig& device, const BadText& bad) {
        [&](pendant::Button b) { out.buttons.push_back(std::move(b)); });
   each(m.axes, "pendant.axes", "\"0x11 X\", \"0x06 off\"", bad, pendant::parse_axis,
        [&](const pendant::AxisCode& a) {
-         if (a.letter != 0) out.axes.push_back(a);
+         if (a.letter != 0)
+           out.axes.push_back(a);
+         else
+           out.axis_off = a.code;
        });
   each(m.steps, "pendant.steps", "\"0x0D 0.001\", \"0.001 = 1\"", bad, pendant::parse_step,
        [&](const pendant::Step& s) { out.steps.push_back(s); });
@@ -95,6 +106,25 @@ std::optional<HidPlace> hid_place(std::string_view url) {
   return HidPlace{rest, {}};
 }
 
+/// Tells what stands twice where each stands once. A pendant without an axis selector has no codes of axes.
+template <class Tell>
+void twice(const pendant::Layout& layout, Tell tell) {
+  std::set<std::string> names{"wheel", "ring", "axis", "step"}, letters;
+  std::set<int> codes, places;
+  for (const pendant::Button& b : layout.buttons) {
+    if (!names.insert(b.name).second) tell("buttons", b.name);
+    if (!codes.insert(b.code).second) tell("buttons", std::to_string(b.code));
+  }
+  for (const pendant::AxisCode& a : layout.axes) {
+    if (!letters.insert(std::string(1, a.letter)).second) tell("axes", std::string(1, a.letter));
+    if (layout.axis >= 0 && (a.code == layout.axis_off || !places.insert(a.code).second))
+      tell("axes", std::to_string(a.code));
+  }
+  places.clear();
+  for (const pendant::Step& s : layout.steps)
+    if (s.code >= 0 && !places.insert(s.code).second) tell("steps", std::to_string(s.code));
+}
+
 void check_pendant_device(const DeviceConfig& device, Reading& reading) {
   if (!device.places.contains("pendant"))
     return reading.error(device.where("kind"), finding::kNoPendantTable, {});
@@ -116,6 +146,26 @@ void check_pendant_device(const DeviceConfig& device, Reading& reading) {
   for (const auto& [key, place] : places)
     if (place >= m.report_bytes)
       wrong(key, finding::kPendantPlace, {key, std::to_string(place), std::to_string(m.report_bytes)});
+  for (std::size_t n = 0; n < std::size(places); ++n)
+    for (std::size_t o = n + 1; o < std::size(places); ++o)
+      if (places[n].second >= 0 && places[n].second == places[o].second)
+        wrong(places[o].first, finding::kPendantShared,
+              {places[n].first, places[o].first, std::to_string(places[n].second)});
+  for (const auto& [key, place] : places)
+    if (place == 0 && m.report_number != 0) wrong(key, finding::kPendantShared, {"report_number", key, "0"});
+  const auto lacks = [&](bool wanted, const char* key, const char* missing) {
+    if (wanted) wrong(key, finding::kPendantLacks, {key, missing});
+  };
+  lacks(m.wheel >= 0 && m.wheel_kind == PendantWheel::none, "wheel", "wheel_kind");
+  lacks(m.step >= 0 && std::any_of(layout.steps.begin(), layout.steps.end(),
+                                   [](const pendant::Step& s) { return s.code < 0; }),
+        "step", "steps = [\"CODE LENGTH\"]");
+  lacks(!m.display.empty() && m.display_bytes == 0, "display", "display_bytes");
+  if (m.ring >= 0 && m.ring_from > m.ring_range)
+    wrong("ring_from", finding::kPendantRing, {std::to_string(m.ring_from), std::to_string(m.ring_range)});
+  twice(layout, [&](const char* key, std::string text) {
+    wrong(key, finding::kPendantTwiceHere, {key, std::move(text)});
+  });
   if (layout.buttons.size() > pendant::kMostButtons || layout.axes.size() > pendant::kMostAxes)
     wrong("buttons", finding::kPendantMany,
           {std::to_string(pendant::kMostButtons), std::to_string(pendant::kMostAxes)});

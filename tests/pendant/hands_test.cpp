@@ -47,7 +47,7 @@ class Hand {
   /// The next request is this one, and it is granted.
   bool asks(RequestKind kind) {
     if (!next()) return false;
-    if (!Hands::is_urgent(request.kind)) answer(true);
+    if (!Hands::is_urgent(request)) answer(true);
     return request.kind == kind;
   }
   void answer(bool accepted) {
@@ -452,11 +452,88 @@ TEST(PendantWheel, NoHandMovesWhatIsNotPermitted) {
       }
       if (request.kind == RequestKind::jog_stop)
         hand.view.axes[static_cast<std::size_t>(request.axis)].to_go = 0.0;
-      if (!Hands::is_urgent(request.kind)) hand.answer(chance(10) ? false : true);
+      if (!Hands::is_urgent(request)) hand.answer(chance(10) ? false : true);
     }
     for (AxisView& axis : hand.view.axes)
       axis.to_go = std::abs(axis.to_go) < 0.02 ? 0.0 : axis.to_go - std::copysign(0.02, axis.to_go);
   }
+}
+
+TEST(PendantStop, WorksWhileAnotherButtonShiftsAndWhileADeadManIsHeld) {
+  Hand hand(test::with_selectors());
+  hand.press("fn");
+  hand.press("stop");
+  EXPECT_TRUE(hand.asks(RequestKind::stop));
+}
+
+TEST(PendantStop, IsAskedForThoughMoreWaitsThanThereIsRoomForAndTakesWhatWaitsAway) {
+  Hand hand(test::with_selectors());
+  hand.press("start");
+  ASSERT_TRUE(hand.next());
+  ASSERT_EQ(hand.request.kind, RequestKind::start);  // its answer stays away
+  for (int n = 0; n < 20; ++n) {
+    hand.release("reset");
+    hand.press("reset");
+  }
+  hand.press("stop");
+  EXPECT_TRUE(hand.asks(RequestKind::stop));
+  EXPECT_FALSE(hand.next());
+}
+
+TEST(PendantStop, OutlivesThePlugThatIsPulledBehindIt) {
+  Hand hand(test::with_selectors());
+  hand.press("stop");
+  hand.hands.lost();
+  EXPECT_TRUE(hand.asks(RequestKind::stop));
+}
+
+TEST(PendantStart, IsNotMadeUpForWhenItsButtonHasBeenLetGoMeanwhile) {
+  Hand hand(test::with_selectors());
+  hand.press("reset");
+  ASSERT_TRUE(hand.next());
+  const Request waits = hand.request;
+  hand.press("start");
+  hand.release("start");
+  hand.hands.answered(waits, true);
+  hand.see();
+  EXPECT_FALSE(hand.next());
+}
+
+TEST(PendantStart, IsNotMadeUpForWhenTheDeadManHasBeenLetGoMeanwhile) {
+  const Layout layout = test::with_selectors();
+  Hand hand(layout, {"XYZ", 1.0, layout.button("fn")});
+  hand.press("fn");
+  hand.press("reset");
+  ASSERT_TRUE(hand.next());
+  const Request waits = hand.request;
+  hand.press("start");
+  hand.release("fn");
+  hand.hands.answered(waits, true);
+  hand.see();
+  EXPECT_FALSE(hand.next());
+}
+
+TEST(PendantDeadMan, ThatIsHeldWhenThePendantComesIsNoneUntilItWasReleased) {
+  const Layout layout = test::with_selectors();
+  Hand hand(layout, {"XYZ", 1.0, layout.button("fn")});
+  hand.press("fn");
+  hand.hands.lost();
+  hand.report();
+  hand.turn(3);
+  EXPECT_FALSE(hand.next());
+  hand.release("fn");
+  hand.press("fn");
+  hand.turn(3);
+  EXPECT_TRUE(hand.asks(RequestKind::jog));
+}
+
+TEST(PendantZero, IsOfItsOwnAxesOnly) {
+  Hand hand(test::with_selectors(), {"XY", 1.0, -1});
+  hand.reading.axis = 2;
+  hand.report();
+  hand.press("fn");
+  hand.press("home");
+  EXPECT_FALSE(hand.next());
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ inline Layout with_selectors() {
   l.keys = {2, 3};
   l.step = 4;
   l.axis = 5;
+  l.axis_off = 6;
   l.wheel = 6;
   l.wheel_kind = WheelKind::delta;
   for (const char* b : {"0x01 reset", "0x02 stop", "0x03 start", "0x04 feed_plus", "0x08 home", "0x0C fn",

@@ -73,7 +73,10 @@ bool Session::take(std::span<const std::uint8_t> bytes, image::Nanoseconds t) no
 
 void Session::take_description(std::span<const std::uint8_t> body, image::Nanoseconds t) noexcept {
   Description d;
-  if (state_ != SessionState::silent || !board::take(body, d)) return;
+  if (state_ != SessionState::silent) return;
+  // Of another version only the number in front is known.
+  if (body.size() >= 2) d.protocol = static_cast<std::uint16_t>(body[0] | body[1] << 8);
+  if (d.protocol == kProtocolVersion && !board::take(body, d)) return;
   description_ = d;
   refused_ = lack();
   state_ = refused_.why == RefusedFor::none ? SessionState::configuring : SessionState::refused;

@@ -2,6 +2,7 @@
 #include "gateway/control/server/pendant/pendant_session.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "gateway/control/compose/setup/axis_setup.hpp"
 #include "gateway/control/server/pendant/texts.hpp"
@@ -20,6 +21,8 @@ namespace {
 
 constexpr Nanoseconds kShow = 150 * image::kMillisecond;  ///< between two pictures of the display
 constexpr Nanoseconds kTellAgain = 5 * image::kSecond;    ///< the same thing
+constexpr Nanoseconds kStale =
+    100 * image::kMillisecond;      ///< no newer image: nothing is known to be permitted
 constexpr int kBehindAnAnswer = 2;  ///< pictures: the first one may have been taken before it
 
 /// The braking way at this speed, and what a handwheel may lag behind.
@@ -32,6 +35,14 @@ double room(const axis::AxisConfig& axis, double speed) {
 
 bool runs(image::ProcessState state) {
   return state == image::ProcessState::running || state == image::ProcessState::waiting;
+}
+
+/// It goes on by the operator's start.
+bool waits_for_start(const image::ProcessStatus& p) {
+  const image::WaitReason why = p.wait.reason;
+  return p.state == image::ProcessState::waiting &&
+         (why == image::WaitReason::program_stop || why == image::WaitReason::optional_stop ||
+          why == image::WaitReason::block_end);
 }
 
 bool ended_by_somebody(image::JogEnd end) {
@@ -56,12 +67,14 @@ PendantSession::PendantSession(const machine::LoadResult& loaded, const machine:
     if (axis.index >= 0) {
       const axis::AxisConfig motion =
           gateway::axis_config(loaded, loaded.machine.axes[static_cast<std::size_t>(axis.index)]);
-      if (axes_.empty()) process_ = loaded.machine.axes[static_cast<std::size_t>(axis.index)].process - 1;
+      if (process_ < 0 && rules_.axes.find(a.letter) != std::string::npos)
+        process_ = loaded.machine.axes[static_cast<std::size_t>(axis.index)].process - 1;
       axis.room = room(motion, motion.jog_velocity);
       axis.slow_room = room(motion, std::min(motion.slow_velocity, motion.jog_velocity));
     }
     axes_.push_back(axis);
   }
+  process_ = std::max(process_, 0);
   if (!config.dead_man_point.empty())
     if (const machine::PointConfig* point = loaded.machine.point(config.dead_man_point))
       dead_man_ = point->place;
@@ -77,7 +90,13 @@ const machine::AxisConfig& PendantSession::axis_config(int axis) const {
 }
 
 void PendantSession::take_report(const pendant::ReportWriter::Bytes& report, Nanoseconds now) {
-  if (const auto reading = reader_.read(report.view())) return hands_.take(*reading);
+  if (std::exchange(slept_, false)) return;
+  if (const auto reading = reader_.read(report.view())) {
+    if (!reading->asleep) return hands_.take(*reading);
+    slept_ = true;
+    reader_.restart();
+    return hands_.lost();
+  }
   // What it says is not known, so it says nothing, and what it jogs ends.
   reader_.restart();
   hands_.lost();
@@ -100,6 +119,7 @@ void PendantSession::take_news(Nanoseconds now) {
       case PendantNews::Kind::plugged:
       case PendantNews::Kind::unplugged:
         plugged_ = news.kind == PendantNews::Kind::plugged;
+        slept_ = false;
         reader_.restart();
         hands_.lost();
         if (plugged_)
@@ -111,15 +131,18 @@ void PendantSession::take_news(Nanoseconds now) {
   }
 }
 
-void PendantSession::observe(const image::ProcessImage& image) {
-  if (image.now.number != seen_) ++pictures_;
+void PendantSession::observe(const image::ProcessImage& image, Nanoseconds now) {
+  if (image.now.number != seen_) {
+    ++pictures_;
+    seen_at_ = now;
+  }
   seen_ = image.now.number;
   const image::ProcessStatus& process = image.processes[static_cast<std::size_t>(process_)];
-  view_.running = runs(process.state);
+  view_.running = runs(process.state) && !waits_for_start(process);
   view_.held = process.state == image::ProcessState::held;
   feed_mm_s_ = view_.running ? process.feed_mm_s : 0.0;
   view_.override_percent = process.override_ratio * 100.0;
-  view_.released = !dead_man_ || image.packets.number(*dead_man_) != 0.0;
+  view_.released = now - seen_at_ <= kStale && (!dead_man_ || image.packets.number(*dead_man_) != 0.0);
   view_.alarm = image.alarms_active > 0;
   view_.powered = false;
   view_.current = pictures_ >= kBehindAnAnswer;
@@ -166,7 +189,7 @@ ask::Command PendantSession::command_of(const Request& request) const {
     case RequestKind::power:
       return ask::Power{request.value != 0.0};
     case RequestKind::home:
-      return ask::Home{};
+      return ask::Home{config_.axes};
     case RequestKind::zero:
       return ask::Zero{axis_config(request.axis).letter, 0.0, {}};
     case RequestKind::override_feed:
@@ -185,7 +208,11 @@ void PendantSession::told_refusal(const Reply& reply, Nanoseconds now) {
 }
 
 void PendantSession::take_answers(Nanoseconds now) {
-  std::erase_if(unheard_, [this](std::uint64_t number) { return asks_.answer(number).has_value(); });
+  std::erase_if(urgent_, [this, now](const Question& q) {
+    const auto reply = asks_.answer(q.number);
+    if (reply && !reply->ok && q.request.kind != RequestKind::jog_stop) told_refusal(*reply, now);
+    return reply.has_value();
+  });
   if (question_) {
     if (const auto reply = asks_.answer(question_->number)) {
       const auto* const jog = std::get_if<JogState>(&reply->content);
@@ -205,19 +232,20 @@ void PendantSession::take_answers(Nanoseconds now) {
 
 void PendantSession::step(const image::ProcessImage& image, Nanoseconds now) {
   take_answers(now);
-  observe(image);
+  observe(image, now);
   take_news(now);
   Request request;
   while (hands_.next(request, now)) {
+    const bool urgent = pendant::Hands::is_urgent(request);
     if (request.axis >= 0 && axes_[static_cast<std::size_t>(request.axis)].index < 0) {
-      if (!pendant::Hands::is_urgent(request.kind)) hands_.answered(request, false);
+      if (!urgent) hands_.answered(request, false);
       continue;
     }
-    const std::uint64_t number = asks_.question(command_of(request));
-    if (pendant::Hands::is_urgent(request.kind))
-      unheard_.push_back(number);
+    const Question asked{asks_.question(command_of(request)), request};
+    if (urgent)
+      urgent_.push_back(asked);
     else
-      question_ = {number, request};
+      question_ = asked;
   }
   if (layout_.display_bytes == 0 || !plugged_ || status_ || now - shown_at_ < kShow) return;
   shown_at_ = now;

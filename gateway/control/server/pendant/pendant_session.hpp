@@ -48,7 +48,7 @@ class PendantSession {
   };
   void take_news(image::Nanoseconds now);
   void take_report(const pendant::ReportWriter::Bytes& report, image::Nanoseconds now);
-  void observe(const image::ProcessImage& image);
+  void observe(const image::ProcessImage& image, image::Nanoseconds now);
   void take_answers(image::Nanoseconds now);
   void told_refusal(const Reply& reply, image::Nanoseconds now);
   void show(const StatusReport& status);
@@ -66,15 +66,17 @@ class PendantSession {
   pendant::ReportReader reader_{layout_};
   pendant::Hands hands_{layout_, rules_};
   std::vector<Axis> axes_;  ///< by Layout::axes
-  int process_ = 0;         ///< whose programs it starts, from 0
+  int process_ = -1;        ///< whose programs it starts, from 0
   std::optional<image::Place> dead_man_;
   pendant::View view_;
   double feed_mm_s_ = 0.0;
   bool plugged_ = false;
+  bool slept_ = false;  ///< the next report belongs to its being switched off
   std::optional<Question> question_;
-  std::vector<std::uint64_t> unheard_;  ///< questions whose answers change nothing
-  std::int64_t seen_ = -1;              ///< cycle of the newest image
-  int pictures_ = 0;                    ///< of the machine since the last answer
+  std::vector<Question> urgent_;    ///< whose answers are only said where they refuse
+  std::int64_t seen_ = -1;          ///< cycle of the newest image
+  image::Nanoseconds seen_at_ = 0;  ///< when it came
+  int pictures_ = 0;                ///< of the machine since the last answer
   std::optional<std::uint64_t> status_;
   image::Nanoseconds shown_at_ = 0, garbage_told_at_ = 0, refusal_told_at_ = 0;
   std::string refusal_;

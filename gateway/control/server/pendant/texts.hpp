@@ -13,6 +13,8 @@ inline constexpr text::Entry kWent{
 inline constexpr text::Entry kWaits{"pendant.waits",
                                     "pendant '{0}' ({1}) is waited for; the machine works without it",
                                     "пульт «{0}» ({1}) ожидается; станок работает без него"};
+inline constexpr text::Entry kLooked{"pendant.looked", "{0} ({1}) is waited for; Ctrl+C ends",
+                                     "ожидается {0} ({1}); завершить — Ctrl+C"};
 inline constexpr text::Entry kNotAllowed{
     "pendant.not-allowed",
     "pendant '{0}' may not be opened: {1}. Install 70-servogate.rules for udev and plug it in again",
