@@ -14,7 +14,6 @@ constexpr int kMarkersPerCycle = 16;    // passed at rest
 constexpr int kSpansPerCycle = 16;      // the planner lets no more than four be passed
 constexpr int kPiecesPerCycle = 64;     // and no more than fifty of these
 constexpr int kPiecesLocated = 512;     // of a course, where more are passed the place shown comes late
-constexpr double kKnownAtStart = 0.5;   // s of a course
 constexpr double kSlowestShare = 1e-6;  // of a feed; slower is rest
 constexpr double kSamePlace = 1e-9;     // mm
 
@@ -49,7 +48,7 @@ void Follower::set_spindle(double revolutions) noexcept {
 
 bool Follower::spindle_stands() const noexcept {
   const Span* span = window_.span(0);
-  return span != nullptr && spindle_share(span->terms, spindle_) < kSlowestShare;
+  return (span != nullptr ? spindle_share(span->terms, spindle_) : course_share()) < kSlowestShare;
 }
 
 void Follower::release_event() noexcept {
@@ -147,51 +146,6 @@ void Follower::start() noexcept {
   }
 }
 
-/// Not before some of it is known, or all.
-void Follower::begin_course(const Entry& course) noexcept {
-  course_.take(course);
-  const Knot* guard = course_.knot(course_.guard().knot);
-  const bool enough = course_.guard().knot >= 0 && guard != nullptr && guard->t.since({}) >= kKnownAtStart;
-  if (course.extent.broken && course.extent.stops == 0) return leave_broken_course();
-  if (!course.extent.complete && !course.extent.broken && !enough) return;
-  in_span_ = open_ = on_course_ = true;
-  piece_ = course.span.first_piece;
-  rate_.begin(std::min(rate_wanted(), 1.0));
-}
-
-void Follower::follow_course() noexcept {
-  const bool goes_on = rate_.step(course_, rate_wanted(), config_.period_s);
-  if (rate_.starving() && !rest_asked() && !course_.extent().broken) ++starved_;
-  if (!goes_on) return course_.extent().broken ? leave_broken_course() : leave_course();
-  // Should it break, a hold that has gone further comes back to where its last stop leads to.
-  const std::int64_t needed = std::min(rate_.knot(), std::max<std::int64_t>(0, course_.guard().knot));
-  track_.knots.free_below(course_.knots_behind(course_.extent().complete ? rate_.knot() : needed));
-  track_.stops.free_below(course_.stops_behind(rate_.knot()));
-}
-
-void Follower::leave_course() noexcept {
-  const bool waits = course_.extent().confirm;
-  window_.pop();
-  arrive(track_.pieces[course_.behind().piece - 1], waits);
-  free_course();
-}
-
-/// The path goes on from the place where it rests.
-void Follower::leave_broken_course() noexcept {
-  if (on_course_) sample_.position = rate_.point(course_).x;
-  window_.pop();
-  in_span_ = on_course_ = false;
-  motion_.rest();
-  free_course();
-}
-
-void Follower::free_course() noexcept {
-  const Track::Begin behind = course_.behind();
-  track_.pieces.free_below(behind.piece);
-  track_.knots.free_below(behind.knot);
-  track_.stops.free_below(behind.stop);
-}
-
 void Follower::enter() noexcept {
   in_span_ = open_ = true;
   piece_ = front().first_piece;
@@ -225,12 +179,6 @@ void Follower::arrive(const Piece& last, bool waits) noexcept {
 void Follower::drop_span(const Span& span) noexcept {
   begun_ = span.first_piece + span.pieces;
   track_.pieces.free_below(begun_);
-}
-
-void Follower::drop_course(const Entry& known) noexcept {
-  course_.take(known);
-  begun_ = course_.behind().piece;
-  free_course();
 }
 
 void Follower::drop() noexcept {

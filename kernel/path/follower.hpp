@@ -53,7 +53,8 @@ class Follower {
   double override_ratio() const noexcept { return override_; }
   /// Commanded speed of the spindle, revolutions a second without sign: elements with a feed per revolution
   /// follow it from the next step on, up to Config::largest_override times what they are planned for, and
-  /// rest while it is 0. Below 0, as at the beginning: no such spindle, they are driven as planned.
+  /// rest while it is 0. Below 0, as at the beginning: no such spindle, they are driven as planned. Along a
+  /// course it acts as an override does: on all of it, where limits bind too, and to 0.05 %.
   void set_spindle(double revolutions) noexcept;
   /// The path rests only because the spindle does.
   bool waits_for_spindle() const noexcept { return !rest_asked() && spindle_stands() && at_rest(); }
@@ -93,7 +94,8 @@ class Follower {
   bool wants_rest() const noexcept { return rest_asked() || spindle_stands(); }
   bool spindle_stands() const noexcept;
   Wish wish() const noexcept { return {wants_rest(), override_, spindle_}; }
-  double rate_wanted() const noexcept { return wants_rest() ? 0.0 : override_; }
+  double course_share() const noexcept;
+  double rate_wanted() noexcept;
   void locate(double s) noexcept;
   void place_span_on_axes() noexcept;
   void place_course_on_axes() noexcept;
@@ -123,7 +125,9 @@ class Follower {
   bool wait_stop_ = false, wait_event_ = false, fault_ = false;
   bool open_ = false;  ///< motion has begun and no finish or event was met: rest is starvation
   double override_ = 1.0;
-  double spindle_ = -1.0;  ///< revolutions a second, below 0: as planned
+  double spindle_ = -1.0;        ///< revolutions a second, below 0: as planned
+  double asked_override_ = 1.0;  ///< for which the rate of a course was asked last
+  double share_ = 1.0;           ///< of the spindle, then
   std::uint32_t starved_ = 0;
   Sample sample_;
   std::uint64_t shown_ = ~std::uint64_t{0};  ///< number of the piece whose target the sample shows

@@ -112,6 +112,7 @@ struct Planner::Impl final : ContourSink {
     on_course.clear();
   }
   bool suits_course(const Element& e) const;
+  bool same_feed(const Element& e) const;
   Run suitable() const;
   bool rests_before(const Element& e, const Piece& piece) const;
   void wait(const Element& e, const Piece& piece);
@@ -140,10 +141,13 @@ struct Planner::Impl final : ContourSink {
   std::optional<Tag> unasked_rest;
 };
 
-/// A feed per revolution follows the spindle, which a course cannot.
 bool Planner::Impl::suits_course(const Element& e) const {
-  return config.law != Law::spans && config.transformation == &identity() && e.kind != Element::Kind::rapid &&
-         e.revolutions == 0.0;
+  return config.law != Law::spans && config.transformation == &identity() && e.kind != Element::Kind::rapid;
+}
+
+/// A course is driven by the spindle as a whole, or not at all: it rests between one feed and the other.
+bool Planner::Impl::same_feed(const Element& e) const {
+  return (e.revolutions > 0.0) == (before.element.revolutions > 0.0);
 }
 
 /// The one place where the law is chosen: by the first elements of a run, in which a course gains at each
@@ -170,7 +174,7 @@ Planner::Impl::Run Planner::Impl::suitable() const {
 
 bool Planner::Impl::rests_before(const Element& e, const Piece& piece) const {
   if (run == Run::course || fallen || run == Run::undecided) {
-    if (run != Run::undecided && !suits_course(e)) return true;
+    if (run != Run::undecided && !(suits_course(e) && same_feed(e))) return true;
     return rests_between(config, before.element.transition, before.piece, e, piece);
   }
   return run == Run::spans && rests && suits_course(e) && goes_on(e);  // and may go over to a course
@@ -245,6 +249,7 @@ bool Planner::Impl::add(const Element& e) {
   flaw = shaped.flaw;
   if (flaw != Flaw::none) return false;
   const bool moves = shaped.piece.length > 0.0;
+  if (moves && run == Run::undecided && !same_feed(e)) decide();
   if (moves && rests_before(e, shaped.piece)) finish();
   if (run == Run::none) run = Run::undecided;
   if (run != Run::undecided) {

@@ -60,6 +60,23 @@ TEST(FeedPerRevolution, is_right_along_an_arc_and_where_the_spindle_has_reached_
   EXPECT_EQ(rig.violations(), "");
 }
 
+TEST(FeedPerRevolution, is_right_along_a_contour_of_short_blocks_at_constant_cutting_speed) {
+  std::string program = "S100 M3\nG0 X80 Y0\nG96 S100\nG95 F0.2\n";
+  for (int k = 1; k <= 150; ++k)
+    program += "G1 X" + std::to_string(80 - 0.4 * k) + " Y" + std::to_string(2 * std::sin(0.05 * k)) + "\n";
+  Rig rig(program + "G94 G0 X80\nM30\n", "G27", 0.5, RigKind::lathe);
+  int steady = 0;
+  rig.each = [&] {
+    const double radius = rig.x();
+    if (rig.status().line < 5 || rig.status().line > 154 || radius > 39.0 || radius < 11.0) return;
+    ++steady;
+    EXPECT_NEAR(per_revolution(rig), 0.2, 0.002) << radius;
+  };
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  EXPECT_GT(steady, 5000);
+  EXPECT_EQ(rig.violations(), "");
+}
+
 TEST(FeedPerRevolution, follows_the_ramp_and_the_override_of_the_spindle) {
   Rig rig("S600 M3\nG95 F0.5\nG1 X100\nM30\n", "G27", 0.5, RigKind::lathe);
   rig.start();

@@ -78,7 +78,9 @@ TEST(DrivenCourse, is_chosen_where_elements_are_short_against_a_change_of_speed)
   EXPECT_EQ(courses({line_to(1, 0, 0, 100)}, course_mill()), 0) << "a line from rest to rest";
   std::vector<Element> turned = circle(100, 100);
   for (Element& e : turned) e.revolutions = 10.0;
-  EXPECT_EQ(courses(turned, course_mill()), 0) << "feed per revolution";
+  EXPECT_EQ(courses(turned, mill()), 1) << "feed per revolution";
+  for (std::size_t k = 50; k < turned.size(); ++k) turned[k].revolutions = 0.0;
+  EXPECT_EQ(courses(turned, mill()), 2) << "with a rest where the feed is another";
   Config spans = mill();
   spans.law = Law::spans;
   EXPECT_EQ(courses(circle(100, 100), spans), 0);

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/path/rig/trip.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::path::test {
 namespace {
@@ -103,13 +104,16 @@ TEST(Spindle, that_rests_is_reached_at_rest_from_a_block_with_feed_per_minute) {
   EXPECT_LE(worst(m.trip, mill()).most(), 1.001);
 }
 
-TEST(Spindle, keeps_every_law_of_the_path_while_its_speed_changes_in_every_cycle) {
-  for (std::uint64_t seed = 1; seed <= 80; ++seed) {
+/// A spindle whose speed wanders in every cycle, stops and starts again.
+void wander(std::uint64_t first, int programs, Law law, double share_turned) {
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(programs); ++seed) {
     RandomProgram program = random_program(seed, {8, true, false});
+    program.config.law = law;
     std::mt19937_64 random(seed);
     const auto chance = [&](double p) { return std::uniform_real_distribution<>()(random) < p; };
     for (Element& e : program.elements)
-      if (e.kind != Element::Kind::rapid && chance(0.7)) e.revolutions = kTurns * (chance(0.5) ? 1.0 : 2.0);
+      if (e.kind != Element::Kind::rapid && chance(share_turned))
+        e.revolutions = kTurns * (chance(0.5) ? 1.0 : 2.0);
     Track track(program.config);
     Planner planner(program.config, track);
     Follower follower(program.config, track);
@@ -140,8 +144,18 @@ TEST(Spindle, keeps_every_law_of_the_path_while_its_speed_changes_in_every_cycle
       follower.release_stop();
       trip.ended = finished && trip.samples.back().state == FollowerState::idle;
     }
-    EXPECT_EQ(verdict(trip, program), "") << "seed " << seed;
+    ASSERT_EQ(verdict(trip, program), "") << "seed " << seed;
   }
+}
+
+TEST(Spindle, keeps_every_law_of_the_path_while_its_speed_changes_in_every_cycle) {
+  wander(1, 80, Law::fitting, 0.7);
+}
+
+TEST(Spindle, keeps_every_law_along_courses_while_its_speed_changes_in_every_cycle) {
+  const std::uint64_t seed = servogate::test::property_seed();
+  wander(seed, 40, Law::course, 1.0);
+  wander(seed, 20, Law::course, 0.7);
 }
 
 }  // namespace

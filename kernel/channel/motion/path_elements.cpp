@@ -115,17 +115,29 @@ void PathElements::set_feed(path::Element& e, const path::Vector& from, const pr
       e.feed = feed.value * length / 60.0;
       break;
     case program::FeedUnit::mm_per_rev:
-      e.revolutions = rpm(e, from) / 60.0;
+      e.revolutions = rpm(e, from, spindle_at_) / 60.0;
+      e.surface = surface(e, from);
       e.feed = feed.value * e.revolutions * share;
       break;
   }
 }
 
+path::Surface PathElements::surface(const path::Element& e, const path::Vector& from) const {
+  if (!(surface_speed_ > 0.0) || axes_.surface_speed_axis < 0) return {};
+  path::Surface surface;
+  surface.speed = surface_speed_ * 1000.0 / 60.0;
+  surface.center = surface_center_;
+  surface.most = rpm(e, from, SpindleAt::fastest) / 60.0;
+  surface.least = std::min(surface.most, axes_.spindle_min_rpm / 60.0);
+  surface.axis = static_cast<std::uint8_t>(axes_.surface_speed_axis);
+  return surface;
+}
+
 /// Distance from the spindle's axis that its speed on this element is reckoned with.
-double PathElements::radius_of(const path::Element& e, const path::Vector& from_all) const {
+double PathElements::radius_of(const path::Element& e, const path::Vector& from_all, SpindleAt at) const {
   const auto axis = static_cast<std::size_t>(axes_.surface_speed_axis);
   const double from = from_all[axis] - surface_center_, to = e.to[axis] - surface_center_;
-  if (spindle_at_ == SpindleAt::halfway) return std::abs(0.5 * (from + to));
+  if (at == SpindleAt::halfway) return std::abs(0.5 * (from + to));
   if (e.kind == path::Element::Kind::arc && (axis == e.axis1 || axis == e.axis2)) {
     const bool first = axis == e.axis1;
     const double bulge = std::hypot(from_all[e.axis1] - e.center1, from_all[e.axis2] - e.center2);
@@ -134,14 +146,14 @@ double PathElements::radius_of(const path::Element& e, const path::Vector& from_
   return from * to <= 0.0 ? 0.0 : std::min(std::abs(from), std::abs(to));
 }
 
-double PathElements::rpm(const path::Element& e, const path::Vector& from) const {
+double PathElements::rpm(const path::Element& e, const path::Vector& from, SpindleAt at) const {
   const double high = axes_.spindle_max_rpm > 0.0 ? axes_.spindle_max_rpm : spindle_rpm_;
   if (!(surface_speed_ > 0.0) || axes_.surface_speed_axis < 0)
     return spindle_rpm_ > 0.0 ? std::clamp(spindle_rpm_, std::min(axes_.spindle_min_rpm, high), high) : 0.0;
   const double limit = surface_limit_rpm_ > 0.0 && axes_.spindle_max_rpm > 0.0
                            ? std::min(surface_limit_rpm_, axes_.spindle_max_rpm)
                            : std::max(surface_limit_rpm_, axes_.spindle_max_rpm);
-  return std::max(surface_rpm(surface_speed_, radius_of(e, from), limit), axes_.spindle_min_rpm);
+  return std::max(surface_rpm(surface_speed_, radius_of(e, from, at), limit), axes_.spindle_min_rpm);
 }
 
 const program::Position* destination(const program::Command& command) {

@@ -48,8 +48,9 @@ class PathElements {
  private:
   void set_feed(path::Element& element, const path::Vector& from, const program::Feed& feed,
                 double arc_length) const;
-  double rpm(const path::Element& element, const path::Vector& from) const;
-  double radius_of(const path::Element& element, const path::Vector& from) const;
+  path::Surface surface(const path::Element& element, const path::Vector& from) const;
+  double rpm(const path::Element& element, const path::Vector& from, SpindleAt at) const;
+  double radius_of(const path::Element& element, const path::Vector& from, SpindleAt at) const;
 
   path::Config config_;
   AxisMap axes_;

@@ -133,6 +133,7 @@ void CoursePlanning::cruise(const Cruise& cruise) {
   straight.t = base_ = before.t.plus(cruise.seconds);
   straight.place = before.place + straight_;
   straight.control = cruise.to;
+  straight.turns = before.turns;
   append(straight);
   joins_ = true;
 }

@@ -141,7 +141,7 @@ void ClockEstimate::cap_by_limits() {
   acceleration_.assign(n + 1, 0.0);
   for (std::size_t i = 0; i <= n; ++i) {
     const std::size_t from = std::min(i, n - 1);
-    double v = legs_[i]->feed, a = kUnknown, j = kUnknown;
+    double v = feed_at(*legs_[i], at_[i]), a = kUnknown, j = kUnknown;
     for (int k = 0; k < axes_; ++k) {
       const double rate = std::abs(at_[from + 1][k] - at_[from][k]) / spacing_;
       if (rate < 1e-12) continue;

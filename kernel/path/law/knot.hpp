@@ -71,6 +71,7 @@ struct Knot {
   double w = 0.0;        ///< knots a second at the knot
   double a = 0.0;        ///< knots a second, a second
   double place = 0.0;    ///< path parameter of the run that belongs to it
+  double turns = 0.0;    ///< revolutions a second of the spindle that it is planned for; 0: feed per time
   double planned = 0.0;  ///< running sum of planned times, s; filled by the track
   Vector control{};      ///< of the curve, one to the front
 };

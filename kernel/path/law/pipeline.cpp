@@ -52,6 +52,7 @@ void Pipeline::begin_run() {
     pass->controls.clear();
   }
   published_ = 0;
+  leg_ = run_.first();
   time_ = {};
 }
 
@@ -157,6 +158,8 @@ void Pipeline::publish() {
     knot.a = 0.5 * (last.beta[k + 1] - last.beta[k]) * i1 * i1;
     knot.place = last.places[k];
     knot.control = last.controls[k + 2];
+    leg_ = run_.leg_at(knot.place, leg_);
+    knot.turns = turns_at(run_.leg(leg_), run_.at(knot.place, leg_));
     sink_.put(knot);
     ++counts_.knots;
   }

@@ -113,6 +113,7 @@ class Pipeline {
   ClockEstimate estimate_;
   std::vector<std::unique_ptr<Pass>> passes_;
   std::size_t published_ = 0;  // knots
+  std::size_t leg_ = 0;        // of the last one
   LawTime time_;
 };
 

@@ -170,6 +170,8 @@ class RateMotion {
   /// A change is on its way, or settled: it begins in the knot of a stop that is known, a few ahead.
   bool changing() const noexcept { return active_ || settled_; }
   bool at_rest() const noexcept { return !active_ && rate_ == 0.0; }
+  /// A change is on its way.
+  bool underway() const noexcept { return active_; }
   /// It stops, or stands, because the course is not published any further.
   bool starving() const noexcept { return starving_; }
   double wanted() const noexcept {

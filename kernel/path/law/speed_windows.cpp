@@ -128,9 +128,10 @@ void SpeedWindows::bounds(const Run& run, const Kept<double>& places, std::size_
     KnotBound bound;
     bound.feed = std::numeric_limits<double>::infinity();
     bound.turning = run.leg(leg).turning;
+    const Vector x = run.at(u, leg);
     for (std::size_t n = first; n < end; ++n) {
       if (run.leg(n).turning == bound.turning)
-        bound.feed = std::min(bound.feed, kFeedShare * run.leg(n).feed);
+        bound.feed = std::min(bound.feed, kFeedShare * feed_at(run.leg(n), x));
       if (n > first) bound.feed = std::min(bound.feed, kFeedShare * run.leg(n).corner);
     }
     bound.limits = merged(run, first, end);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "firmware_if/image/process_image.hpp"
 
@@ -42,8 +45,8 @@ struct Config {
   /// Share of the axes' limits that a course leaves for changes of rate, 0.002 to 0.2: more of it stops
   /// sooner and takes longer.
   double reserve = 0.01;
-  /// Of runs that a course can be made for: several elements, feed by time, path coordinates of the axes. A
-  /// course is faster where elements are short; planning it costs by the time that it takes.
+  /// Of runs that a course can be made for: several elements, path coordinates of the axes. A course is
+  /// faster where elements are short; planning it costs by the time that it takes.
   Law law = Law::fitting;
   const Transformation* transformation = &identity();  ///< axes/; from path coordinates to the axes
 };
@@ -74,6 +77,22 @@ struct Transition {
   bool confirm = false;        ///< an exact stop waits for Follower::release_stop() (in-position check)
 };
 
+/// Constant surface speed along an element: the further the tool is from the spindle's axis, the slower it
+/// turns.
+struct Surface {
+  double speed = 0.0;              ///< mm/s at the tool; 0: the spindle turns the same everywhere
+  double center = 0.0;             ///< mm: of the spindle, along `axis`
+  double least = 0.0, most = 0.0;  ///< revolutions a second on this element, > 0
+  std::uint8_t axis = 0;           ///< path axis of the tool's distance
+};
+
+/// Speed of the spindle at a place of an element, revolutions a second. real-time safe.
+inline double turns_at(const Surface& surface, const Vector& x) noexcept {
+  const double around = 2.0 * std::numbers::pi * std::abs(x[surface.axis] - surface.center);
+  const double free = around * surface.most > surface.speed ? surface.speed / around : surface.most;
+  return std::max(surface.least, free);
+}
+
 /// One element of the programmed path, from where the one before ends.
 struct Element {
   enum class Kind : std::uint8_t { line, arc, rapid };
@@ -90,6 +109,7 @@ struct Element {
   /// Feed per revolution: `feed` is that at so many revolutions a second of the spindle, the most that it is
   /// planned for, and it goes with the speed that Follower::set_spindle() tells; 0: feed per time.
   double revolutions = 0.0;
+  Surface surface;  ///< of a feed per revolution; courses follow it from place to place
   Transition transition;
   std::uint8_t limit_set = 0;  ///< reserved: rough, finish, thread
   Tag tag;

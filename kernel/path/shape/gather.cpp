@@ -79,7 +79,15 @@ double Gather::bulge() const {
 void Gather::put(const Element& e, const Piece& piece) {
   Leg leg;
   leg.piece = piece;
-  if (e.kind != Element::Kind::rapid) leg.feed = e.feed;
+  if (e.kind != Element::Kind::rapid) {
+    leg.feed = e.feed;
+    leg.revolutions = e.revolutions;
+  }
+  if (e.revolutions > 0.0 && e.surface.speed > 0.0) {
+    leg.surface = e.surface;
+    leg.revolutions = e.surface.most;
+    leg.feed *= e.surface.most / e.revolutions;
+  }
   leg.limits = &config_.limits;
   if (open_) leg.corner = corner_speed(config_, before_, last_, piece);
   leg.turning = true;
@@ -107,6 +115,7 @@ bool Gather::put_with_cruise(const Leg& leg) {
   constexpr double kCorner = 1.0, kCornerByTolerance = 40.0, kLeastGain = 0.15;
   constexpr double kHardly = 1.001;  // faster than the middle, beside it: the first clock steps no higher
   if (leg.piece.shape != Piece::Shape::line) return false;
+  if (leg.surface.speed > 0.0 && leg.piece.c1[leg.surface.axis] != 0.0) return false;  // no constant speed
   const double left = 1.0 - config_.reserve;
   const double velocity = std::min(kVelocity, left - kBeside), share = std::min(kShare, left - 4.0 * kBeside);
   double v = kFeed * leg.feed, a = std::numeric_limits<double>::infinity(), j = a;

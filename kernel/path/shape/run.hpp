@@ -16,6 +16,8 @@ struct Leg {
   double tolerance = 0.0;  ///< largest distance of the set-points from it, > 0
   bool exact = false;      ///< and 1.5 um at most, as no corner needs more
   double feed = std::numeric_limits<double>::infinity();  ///< as Element::feed
+  double revolutions = 0.0;  ///< as Element::revolutions; the most where `surface` changes it
+  Surface surface;
   double corner =
       std::numeric_limits<double>::infinity();  ///< largest speed where it starts, by a corner rule
   bool turning = false;                         ///< its parameter counts degrees: only rotary axes move
@@ -27,6 +29,15 @@ struct Leg {
 inline bool moves(const Leg& leg, std::size_t axis) {
   const Piece& p = leg.piece;
   return p.c1[axis] != 0.0 || (p.shape == Piece::Shape::arc && (p.axis1 == axis || p.axis2 == axis));
+}
+
+/// Revolutions a second that the leg is planned for at its place `x`; 0: feed per time.
+inline double turns_at(const Leg& leg, const Vector& x) {
+  return leg.surface.speed > 0.0 ? turns_at(leg.surface, x) : leg.revolutions;
+}
+/// Feed at its place `x`.
+inline double feed_at(const Leg& leg, const Vector& x) {
+  return leg.surface.speed > 0.0 ? leg.feed * turns_at(leg.surface, x) / leg.revolutions : leg.feed;
 }
 
 /// No speed of the parameter is higher than this, mm/s or degrees/s.
