@@ -30,7 +30,7 @@ Follower::Follower(const Config& config, Track& track)
       window_(track),
       motion_(config),
       course_(track),
-      rate_({config.axis_count, config.limits}) {}
+      rate_({config.axis_count, config.limits, config.transformation}) {}
 
 void Follower::set_override(double ratio) noexcept {
   const double r = ratio >= kSlowestShare ? std::min(ratio, config_.largest_override) : 0.0;

@@ -30,14 +30,17 @@ double change_time(const Leg& leg, double v, int axes) {
 }
 
 /// An arc that needs so much of its axes at its feed that it is a good deal faster as a course.
-bool needs_its_axes(const Leg& leg, double v) {
+bool needs_its_axes(const Leg& leg, double v, int axes) {
   constexpr double kAcceleration = 0.25, kJerk = 0.1;  // of the limits
   const Piece& p = leg.piece;
   if (p.shape != Piece::Shape::arc) return false;
-  const AxisLimits &first = (*leg.limits)[p.axis1], &second = (*leg.limits)[p.axis2];
   const double turning = v * std::abs(p.omega), a = p.radius * turning * turning;
-  return a > kAcceleration * std::min(first.acceleration, second.acceleration) ||
-         a * turning > kJerk * std::min(first.jerk, second.jerk);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
+    if (leg.axes != 0 ? !moves(leg, i) : i != p.axis1 && i != p.axis2) continue;
+    const AxisLimits& limits = (*leg.limits)[i];
+    if (a > kAcceleration * limits.acceleration || a * turning > kJerk * limits.jerk) return true;
+  }
+  return false;
 }
 
 /// The element from the place `s` of its parameter on, for a path that stands beside it.
@@ -142,7 +145,7 @@ struct Planner::Impl final : ContourSink {
 };
 
 bool Planner::Impl::suits_course(const Element& e) const {
-  return config.law != Law::spans && config.transformation == &identity() && e.kind != Element::Kind::rapid;
+  return config.law != Law::spans && e.kind != Element::Kind::rapid;
 }
 
 /// A course is driven by the spindle as a whole, or not at all: it rests between one feed and the other.
@@ -163,11 +166,13 @@ Planner::Impl::Run Planner::Impl::suitable() const {
     Leg leg;
     leg.piece = w.piece;
     leg.limits = &config.limits;
+    leg.axes = axes_moved(config, w.piece);
     leg.feed = w.element.feed;
     const double v = fastest(leg, config.axis_count);
     const double alone = w.piece.length / v;
     time += alone;
-    gain += needs_its_axes(leg, v) ? kTight * alone : change_time(leg, v, config.axis_count);
+    gain +=
+        needs_its_axes(leg, v, config.axis_count) ? kTight * alone : change_time(leg, v, config.axis_count);
   }
   return kGain * gain > time ? Run::course : Run::spans;
 }

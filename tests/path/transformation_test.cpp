@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/path/rig/trip.hpp"
 #include "tests/property_seed.hpp"
@@ -42,6 +43,7 @@ TEST(Transformation, the_axes_keep_their_limits_and_the_path_its_tolerance_in_a_
     RandomProgram p = random_program(seed, {2 + static_cast<int>(seed % 11), true, true});
     const Turned turned(0.1 + 0.01 * static_cast<double>(seed % 600));
     p.config.transformation = &turned;
+    p.config.law = seed % 4 == 0 ? Law::course : Law::fitting;
     Scenario scenario{seed};
     scenario.overrides = seed % 2 == 0;
     scenario.holds = seed % 3 == 0;
@@ -57,19 +59,34 @@ TEST(Transformation, the_axes_keep_their_limits_and_the_path_its_tolerance_in_a_
 
 TEST(Transformation, the_derivatives_given_out_are_those_of_the_axes) {
   const Turned turned(0.7);
-  RandomProgram p;
-  p.config = mill();
-  p.config.transformation = &turned;
-  p.elements = {arc_to(40, 0, 20, 0, -180, 100), line_to(60, 30, 0, 100)};
-  const Trip trip = run(p, {});
-  const double t = p.config.period_s;
-  for (std::size_t k = 2; k + 1 < trip.samples.size(); ++k) {
-    const Sample &a = trip.samples[k - 1], &b = trip.samples[k], &c = trip.samples[k + 1];
-    for (int i = 0; i < 3; ++i) {
-      ASSERT_NEAR((c.position[i] - a.position[i]) / (2 * t), b.velocity[i], 0.01);
-      ASSERT_NEAR((c.velocity[i] - a.velocity[i]) / (2 * t), b.acceleration[i], 10.0);
+  for (const Law law : {Law::spans, Law::course}) {
+    RandomProgram p;
+    p.config = mill();
+    p.config.law = law;
+    p.config.transformation = &turned;
+    p.elements = {arc_to(40, 0, 20, 0, -180, 100), line_to(60, 30, 0, 100)};
+    const Trip trip = run(p, {});
+    const double t = p.config.period_s;
+    for (std::size_t k = 2; k + 1 < trip.samples.size(); ++k) {
+      const Sample &a = trip.samples[k - 1], &b = trip.samples[k], &c = trip.samples[k + 1];
+      for (int i = 0; i < 3; ++i) {
+        ASSERT_NEAR((c.position[i] - a.position[i]) / (2 * t), b.velocity[i], 0.01);
+        ASSERT_NEAR((c.velocity[i] - a.velocity[i]) / (2 * t), b.acceleration[i], 10.0);
+      }
     }
   }
+}
+
+TEST(Transformation, a_course_takes_the_time_that_it_takes_on_axes_that_are_not_turned) {
+  const Turned turned(0.5 * std::numbers::pi);
+  std::vector<Element> blocks;
+  for (int k = 1; k <= 600; ++k) blocks.push_back(line_to(0.3 * k, 3 * std::sin(k * 0.05), 0, 100));
+  Config config = mill();
+  config.limits[1] = {200, 400, 5000};  // turned by a right angle the other axis is the slow one
+  const double straight = estimate(config, {}, blocks).seconds;
+  std::swap(config.limits[0], config.limits[1]);
+  config.transformation = &turned;
+  EXPECT_NEAR(estimate(config, {}, blocks).seconds, straight, 0.01 * straight);
 }
 
 }  // namespace

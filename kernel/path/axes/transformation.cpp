@@ -15,11 +15,18 @@ constinit const Identity kIdentity;
 
 const Transformation& identity() noexcept { return kIdentity; }
 
-Vector to_axes(const Config& config, const Vector& position) noexcept {
+Vector to_axes(const Transformation& transformation, const Vector& position, int axes) noexcept {
   PathPoint place;
   place.x = position;
-  config.transformation->to_axes(place, config.axis_count);
+  transformation.to_axes(place, axes);
   return place.x;
+}
+
+Vector turned_to_axes(const Transformation& transformation, const Vector& direction, int axes) noexcept {
+  PathPoint place;
+  place.d1 = direction;
+  transformation.to_axes(place, axes);
+  return place.d1;
 }
 
 }  // namespace servogate::path

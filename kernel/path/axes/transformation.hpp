@@ -8,9 +8,10 @@ namespace servogate::path {
 /// hold and that the follower gives out. Planner and follower ask the same object, which outlives both; it
 /// has no state that changes.
 ///
-/// bound/ looks at places along a piece and fills what lies between by rules that hold for affine maps (a
-/// turned or shifted frame, a mirror). A curved one (face, cylinder, tool centre point) needs denser places
-/// there; nothing else in the room minds.
+/// It is an affine map that keeps lengths: a turned or shifted frame, a mirror. Courses take their splines to
+/// the axes with it, and bound/ fills what lies between the places that it looks at by rules that hold for
+/// such maps. A curved one (face, cylinder, tool centre point) needs knots fitted on the axes, and denser
+/// places in bound/.
 class Transformation {
  public:
   virtual ~Transformation() = default;
@@ -20,6 +21,11 @@ class Transformation {
 };
 
 /// The axes of the position alone. real-time safe.
-Vector to_axes(const Config& config, const Vector& position) noexcept;
+Vector to_axes(const Transformation& transformation, const Vector& position, int axes) noexcept;
+inline Vector to_axes(const Config& config, const Vector& position) noexcept {
+  return to_axes(*config.transformation, position, config.axis_count);
+}
+/// The axes of a direction. real-time safe.
+Vector turned_to_axes(const Transformation& transformation, const Vector& direction, int axes) noexcept;
 
 }  // namespace servogate::path

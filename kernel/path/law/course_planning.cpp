@@ -14,6 +14,7 @@ Pipeline::Settings settings(const Config& config) {
   s.axes = config.axis_count;
   s.rotary = config.rotary;
   s.reserve = config.reserve;
+  s.transformation = config.transformation;
   return s;
 }
 
@@ -23,6 +24,7 @@ CoursePlanning::CoursePlanning(const Config& config, bool forecast, CourseSink& 
     : config_(config), forecast_(forecast), sink_(sink), pipeline_(settings(config), *this) {
   limits_.axes = config.axis_count;
   limits_.limits = config.limits;
+  limits_.transformation = config.transformation;
 }
 
 void CoursePlanning::restart() {
@@ -47,7 +49,8 @@ void CoursePlanning::look_for_break() {
     const RateChange stop{1.0, 0.0, 0.0, stop_.seconds, stop_.power};
     extent_.rest = view_.knot(stop_.knot)->t.plus(stop.at(stop_.seconds).passed);
     extent_.seconds += stop_.seconds;
-    const CoursePoint at = point_at(view_, extent_.rest, std::max<std::int64_t>(1, stop_.knot), limits_.axes);
+    const CoursePoint at =
+        point_at(view_, extent_.rest, std::max<std::int64_t>(1, stop_.knot), {limits_.axes, {}});
     rest_ = {at.place, at.x};
   } else if (forecast_ && view_.last() >= 0) {
     extent_.seconds = view_.knot(view_.last())->t.since({});

@@ -29,7 +29,7 @@ class CoursePlanning final : public RunSink, private KnotSink {
   /// Where a broken course rests.
   struct Rest {
     double place = 0.0;       ///< path parameter from the start of the course
-    std::optional<Vector> x;  ///< of the axes; not at its start and in a forecast: the programmed place
+    std::optional<Vector> x;  ///< path coordinates; not at its start and in a forecast: the programmed place
   };
   const Rest& rest_place() const { return rest_; }
   /// Path parameter that a course which breaks now surely comes to.

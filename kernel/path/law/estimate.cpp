@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/path/axes/transformation.hpp"
+
 namespace servogate::path {
 namespace {
 
@@ -36,7 +38,7 @@ double time_over(double y0, double y1, double h) {
 
 }  // namespace
 
-void ClockEstimate::clear(double step) { *this = ClockEstimate(axes_, step); }
+void ClockEstimate::clear(double step) { *this = ClockEstimate(axes_, *transformation_, step); }
 
 void ClockEstimate::work(const Run& run, bool ended, Kept<double>& places) {
   if (done_ || run.empty()) return;
@@ -124,12 +126,15 @@ void ClockEstimate::sample(const Run& run, double end) {
   spacing_ = (end - begin_) / static_cast<double>(n);
   at_.resize(n + 1);
   legs_.resize(n + 1);
+  feeds_.resize(n + 1);
   std::size_t leg = first;
   for (std::size_t i = 0; i <= n; ++i) {
     const double u = std::min(end, begin_ + static_cast<double>(i) * spacing_);
     leg = run.leg_at(u, leg);
     legs_[i] = &run.leg(leg);
     at_[i] = run.at(u, leg);
+    feeds_[i] = feed_at(*legs_[i], at_[i]);
+    if (transformation_ != &identity()) at_[i] = to_axes(*transformation_, at_[i], axes_);
   }
 }
 
@@ -141,7 +146,7 @@ void ClockEstimate::cap_by_limits() {
   acceleration_.assign(n + 1, 0.0);
   for (std::size_t i = 0; i <= n; ++i) {
     const std::size_t from = std::min(i, n - 1);
-    double v = feed_at(*legs_[i], at_[i]), a = kUnknown, j = kUnknown;
+    double v = feeds_[i], a = kUnknown, j = kUnknown;
     for (int k = 0; k < axes_; ++k) {
       const double rate = std::abs(at_[from + 1][k] - at_[from][k]) / spacing_;
       if (rate < 1e-12) continue;
@@ -221,8 +226,9 @@ void ClockEstimate::sharp_corners(const Run& run, double end) {
     if (after.begin >= end) break;
     if (after.begin <= begin_) continue;
     const double room = 2.5 * std::min(before.tolerance, after.tolerance);
-    const Vector t0 = evaluate(before.piece, before.piece.length, axes_).d1;
-    const Vector t1 = evaluate(after.piece, 0.0, axes_).d1;
+    const Vector t0 =
+        turned_to_axes(*transformation_, evaluate(before.piece, before.piece.length, axes_).d1, axes_);
+    const Vector t1 = turned_to_axes(*transformation_, evaluate(after.piece, 0.0, axes_).d1, axes_);
     double most = 1e-9, v = feed_;
     for (int i = 0; i < axes_; ++i) {
       const double turn = std::abs(t1[i] - t0[i]);

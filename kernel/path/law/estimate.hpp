@@ -14,7 +14,8 @@ namespace servogate::path {
 class ClockEstimate {
  public:
   /// `step`: s between places.
-  ClockEstimate(int axes, double step) : axes_(axes), step_(step) {}
+  ClockEstimate(int axes, const Transformation& transformation, double step)
+      : axes_(axes), transformation_(&transformation), step_(step) {}
   void clear(double step);
   /// Appends places for all of the run that can be decided now; `ended`: it rests behind its last leg. The
   /// first place is 0; the last one, when it is done, the run's length.
@@ -53,14 +54,16 @@ class ClockEstimate {
   std::size_t sample_at(double u) const;
 
   int axes_;
+  const Transformation* transformation_;
   double step_;
   bool done_ = false, decided_ = false;
   double begin_ = 0.0, begin_y_ = 0.0, trial_ = 0.0;
   // One window.
   double origin_ = 0.0, spacing_ = 0.0, feed_ = 0.0, free_to_ = 0.0, reached_ = 0.0;
   AxisLimits slowest_;
-  std::vector<Vector> at_;
+  std::vector<Vector> at_;  // of the axes
   std::vector<const Leg*> legs_;
+  std::vector<double> feeds_;
   std::vector<double> limit_cap_, cap_, jerk_root_, acceleration_, time_, old_cap_, steps_, smooth_;
   double old_origin_ = 0.0, old_spacing_ = 0.0;
   std::vector<Node> nodes_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/path/axes/transformation.hpp"
 #include "kernel/path/law/judge.hpp"
 
 namespace servogate::path {
@@ -15,7 +16,10 @@ constexpr double kStep = 0.4, kUnit = 0.001, kShortest = 0.001, kLongest = 0.008
 }  // namespace
 
 Pipeline::Pipeline(const Settings& settings, KnotSink& sink)
-    : settings_(settings), sink_(sink), run_(settings.axes), estimate_(settings.axes, kUnit) {
+    : settings_(settings),
+      sink_(sink),
+      run_(settings.axes),
+      estimate_(settings.axes, *settings.transformation, kUnit) {
   for (int n = 0; n < settings.passes; ++n) {
     TubeWindows::Settings t;
     t.axes = settings.axes;
@@ -24,6 +28,7 @@ Pipeline::Pipeline(const Settings& settings, KnotSink& sink)
     s.axes = settings.axes;
     s.rotary = settings.rotary;
     s.reserve = settings.reserve;
+    s.transformation = settings.transformation;
     s.judged = n + 1 == settings.passes;
     passes_.push_back(std::make_unique<Pass>(t, s, settings.axes));
   }
@@ -95,8 +100,9 @@ bool Pipeline::move_instead() {
       leg.piece.shape != Piece::Shape::line)
     return false;
   Box box{leg.feed, HUGE_VAL, HUGE_VAL};
+  const Vector along = turned_to_axes(*settings_.transformation, leg.piece.c1, settings_.axes);
   for (std::size_t i = 0; i < static_cast<std::size_t>(settings_.axes); ++i) {
-    const double rate = std::abs(leg.piece.c1[i]) / (1.0 - settings_.reserve);
+    const double rate = std::abs(along[i]) / (1.0 - settings_.reserve);
     if (rate == 0.0) continue;
     box.velocity = std::min(box.velocity, (*leg.limits)[i].velocity / rate);
     box.acceleration = std::min(box.acceleration, (*leg.limits)[i].acceleration / rate);

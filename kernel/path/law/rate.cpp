@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/path/axes/transformation.hpp"
+
 namespace servogate::path {
 namespace {
 
@@ -77,7 +79,19 @@ bool CoursePlace::go(const LawTime& t) noexcept {
   }
 }
 
-bool Interval::take(const CourseView& view, std::int64_t m, int axes) noexcept {
+/// An affine map takes the spline to the axes by its derivatives.
+void Interval::turn(const RateLimits& limits) noexcept {
+  if (limits.transformation == &identity()) return;
+  PathPoint begin{start_, slope_, bend_, third_};
+  limits.transformation->to_axes(begin, limits.axes);
+  start_ = begin.x;
+  slope_ = begin.d1;
+  bend_ = begin.d2;
+  third_ = begin.d3;
+}
+
+bool Interval::take(const CourseView& view, std::int64_t m, const RateLimits& limits) noexcept {
+  const int axes = limits.axes;
   const Knot *k0 = view.knot(m - 3), *k1 = view.knot(m - 2), *k2 = view.knot(m - 1), *k3 = view.knot(m);
   if (k0 == nullptr || k1 == nullptr || k2 == nullptr || k3 == nullptr) return false;
   m_ = m;
@@ -92,6 +106,7 @@ bool Interval::take(const CourseView& view, std::int64_t m, int axes) noexcept {
       start_[i] = (k0->control[i] + 4.0 * k1->control[i] + k2->control[i]) / 6.0;
       slope_[i] = k3->control[i] - start_[i];
     }
+    turn(limits);
     return true;
   }
   tau_ = Quintic::between(seconds, k2->w, k2->a, k3->w, k3->a);
@@ -102,6 +117,7 @@ bool Interval::take(const CourseView& view, std::int64_t m, int axes) noexcept {
     bend_[i] = p0 - 2.0 * p1 + p2;
     third_[i] = p3 - 3.0 * p2 + 3.0 * p1 - p0;
   }
+  turn(limits);
   return true;
 }
 
@@ -152,7 +168,7 @@ bool Verification::keeps_at_knots(const CourseView& view, std::int64_t to, const
     const RateState rate = change_.at(last_ + share * (t_ - last_));
     places -= 2;
     if (!interval_.keeps(on ? interval_.seconds() : 0.0, rate, limits)) return false;
-    if (!interval_.take(view, on ? next_of(view, interval_.knot()) : begin, limits.axes)) return false;
+    if (!interval_.take(view, on ? next_of(view, interval_.knot()) : begin, limits)) return false;
     if (!interval_.keeps(on ? 0.0 : interval_.seconds(), rate, limits)) return false;
   }
   return true;
@@ -170,7 +186,7 @@ void Verification::begin(const RateChange& change, const LawTime& from, std::int
 Fit Verification::go(const CourseView& view, const RateLimits& limits, int& places) noexcept {
   CoursePlace place(view);
   place.set_knot(before_);
-  if (!interval_.take(view, before_, limits.axes)) return Fit::unpublished;
+  if (!interval_.take(view, before_, limits)) return Fit::unpublished;
   const double most = std::max({1.0, change_.r0, change_.r1});
   const double wider = most > 1.0 ? 1.0 : change_.seconds > 1.0 ? 3.0 : change_.seconds > 0.5 ? 2.0 : 1.0;
   const double next = wider * kPlace;
@@ -206,12 +222,13 @@ Fit Verification::go(const CourseView& view, const RateLimits& limits, int& plac
   }
 }
 
-CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near, int axes) noexcept {
+CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near,
+                     const RateLimits& limits) noexcept {
   CoursePlace place(view);
   place.set_knot(near);
   Interval interval;
-  if (!place.go(t) || !interval.take(view, place.knot(), axes)) return {};
-  return interval.at(t.since(interval.begin()), 0.0, 0.0, axes);
+  if (!place.go(t) || !interval.take(view, place.knot(), limits)) return {};
+  return interval.at(t.since(interval.begin()), 0.0, 0.0, limits.axes);
 }
 
 StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& before,

@@ -78,6 +78,7 @@ class CoursePlace {
 struct RateLimits {
   int axes = 0;
   std::array<AxisLimits, kMaxAxes> limits{};
+  const Transformation* transformation = &identity();  ///< from the knots' coordinates to the axes
 };
 
 /// Where the motion is, and how it goes on.
@@ -91,7 +92,7 @@ struct CoursePoint {
 class Interval {
  public:
   /// The one that knot m ends; false: it is not published.
-  bool take(const CourseView& view, std::int64_t m, int axes) noexcept;
+  bool take(const CourseView& view, std::int64_t m, const RateLimits& limits) noexcept;
   std::int64_t knot() const noexcept { return m_; }
   const LawTime& begin() const noexcept { return begin_; }
   double seconds() const noexcept { return tau_.seconds; }
@@ -102,11 +103,12 @@ class Interval {
   CoursePoint at(double in, double rate, double slope, int axes) const noexcept;
 
  private:
+  void turn(const RateLimits& limits) noexcept;
   std::int64_t m_ = 0;
   LawTime begin_;
   Quintic tau_{};
   double place_ = 0.0, way_ = 0.0;
-  Vector start_{}, slope_{}, bend_{}, third_{};  // of the spline at its begin
+  Vector start_{}, slope_{}, bend_{}, third_{};  // of the spline at its begin, on the axes
 };
 
 enum class Fit : std::uint8_t {
@@ -140,7 +142,8 @@ class Verification {
 };
 
 /// The course at rest at a law time; `near`: number of a knot near it. real-time safe.
-CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near, int axes) noexcept;
+CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near,
+                     const RateLimits& limits) noexcept;
 
 /// The shortest stop at a knot that is found near the one of a knot before. Bounded; for the planner.
 StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& before,

@@ -276,7 +276,7 @@ bool RateMotion::step(const CourseView& view, double target, double period) noex
 
 CoursePoint RateMotion::point(const CourseView& view) const noexcept {
   Interval interval;
-  if (!interval.take(view, knot_, limits_.axes)) return {};
+  if (!interval.take(view, knot_, limits_)) return {};
   return interval.at(time_.since(interval.begin()), rate_, active_ ? change_.at(into_).slope : 0.0,
                      limits_.axes);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/path/axes/transformation.hpp"
 #include "kernel/path/law/judge.hpp"
 
 namespace servogate::path {
@@ -141,16 +142,20 @@ void SpeedWindows::bounds(const Run& run, const Kept<double>& places, std::size_
 
 /// The axes that move in this window.
 void SpeedWindows::pack(const Kept<Vector>& controls, std::size_t to) {
+  on_axes_.clear();
+  const bool same = settings_.transformation == &identity();
+  for (std::size_t i = from_; i < to + 3; ++i)
+    on_axes_.push_back(same ? controls[i] : to_axes(*settings_.transformation, controls[i], settings_.axes));
   problem_.axes = 0;
   for (int a = 0; a < settings_.axes; ++a) {
     bool moves = problem_.axes == 0 && a + 1 == settings_.axes;
-    for (std::size_t i = from_ + 1; i < to + 3 && !moves; ++i) moves = controls[i][a] != controls[from_][a];
+    for (std::size_t i = 1; i < on_axes_.size() && !moves; ++i) moves = on_axes_[i][a] != on_axes_[0][a];
     if (moves) problem_.axis[static_cast<std::size_t>(problem_.axes++)] = a;
   }
   controls_.clear();
-  for (std::size_t i = from_; i < to + 3; ++i)
+  for (const Vector& control : on_axes_)
     for (std::size_t a = 0; a < static_cast<std::size_t>(problem_.axes); ++a)
-      controls_.push_back(controls[i][static_cast<std::size_t>(problem_.axis[a])]);
+      controls_.push_back(control[static_cast<std::size_t>(problem_.axis[a])]);
   problem_.rotary = settings_.rotary;
   problem_.step = settings_.step;
   problem_.controls = controls_;

@@ -18,7 +18,8 @@ class SpeedWindows {
     std::array<bool, kMaxAxes> rotary{};
     double step = 0.0;      ///< s of a knot interval of the clock
     double reserve = 0.01;  ///< share of the limits that is not planned for
-    bool judged = false;    ///< the course as published is looked at, and mended where it exceeds a limit
+    const Transformation* transformation = &identity();
+    bool judged = false;  ///< the course as published is looked at, and mended where it exceeds a limit
   };
   struct Counts {
     int windows = 0, repaired = 0;
@@ -65,6 +66,7 @@ class SpeedWindows {
   std::size_t over_ = 0;          // knots of overlap
   std::size_t leg_ = 0;
   std::vector<double> rest_;  // beta from from_ on: committed head, and what the window before had behind it
+  std::vector<Vector> on_axes_;
   std::vector<double> controls_, levels_, slopes_, calm_;
   std::vector<Excess> excess_;
   std::vector<KnotBound> bounds_;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "kernel/path/axes/transformation.hpp"
+
 namespace servogate::path {
 namespace {
 
@@ -22,8 +24,11 @@ double corner_speed(const Config& config, const Transition& transition, const Pi
   const double s = std::cos(0.5 * turn(before, next, config.axis_count));
   if (s >= 1.0) return kNone;
   double a = kNone;
-  const Vector t0 = evaluate(before, before.length, config.axis_count).d1,
-               t1 = evaluate(next, 0.0, config.axis_count).d1;
+  const auto direction = [&](const Piece& piece, double place) {
+    return turned_to_axes(*config.transformation, evaluate(piece, place, config.axis_count).d1,
+                          config.axis_count);
+  };
+  const Vector t0 = direction(before, before.length), t1 = direction(next, 0.0);
   for (std::size_t i = 0; i < static_cast<std::size_t>(config.axis_count); ++i)
     if (std::abs(t0[i]) + std::abs(t1[i]) > 1e-9) a = std::min(a, config.limits[i].acceleration);
   return std::sqrt(a * transition.erf * s / (1.0 - s));
@@ -89,6 +94,7 @@ void Gather::put(const Element& e, const Piece& piece) {
     leg.feed *= e.surface.most / e.revolutions;
   }
   leg.limits = &config_.limits;
+  leg.axes = axes_moved(config_, piece);
   if (open_) leg.corner = corner_speed(config_, before_, last_, piece);
   leg.turning = true;
   for (int i = 0; i < config_.axis_count; ++i)
@@ -118,9 +124,10 @@ bool Gather::put_with_cruise(const Leg& leg) {
   if (leg.surface.speed > 0.0 && leg.piece.c1[leg.surface.axis] != 0.0) return false;  // no constant speed
   const double left = 1.0 - config_.reserve;
   const double velocity = std::min(kVelocity, left - kBeside), share = std::min(kShare, left - 4.0 * kBeside);
+  const Vector along = turned_to_axes(*config_.transformation, leg.piece.c1, config_.axis_count);
   double v = kFeed * leg.feed, a = std::numeric_limits<double>::infinity(), j = a;
   for (std::size_t i = 0; i < static_cast<std::size_t>(config_.axis_count); ++i) {
-    const double rate = std::abs(leg.piece.c1[i]);
+    const double rate = std::abs(along[i]);
     if (rate == 0.0) continue;
     v = std::min(v, velocity * (*leg.limits)[i].velocity / rate);
     a = std::min(a, share * (*leg.limits)[i].acceleration / rate);

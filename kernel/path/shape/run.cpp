@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/path/axes/transformation.hpp"
+
 namespace servogate::path {
 namespace {
 
@@ -18,6 +20,20 @@ double fastest(const Leg& leg, int axes) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i)
     if (moves(leg, i)) square += (*leg.limits)[i].velocity * (*leg.limits)[i].velocity;
   return std::min(leg.feed, std::sqrt(square));
+}
+
+std::uint32_t axes_moved(const Config& config, const Piece& piece) {
+  if (config.transformation == &identity()) return 0;
+  std::uint32_t moved = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(config.axis_count); ++i) {
+    if (!moves(piece, i)) continue;
+    Vector unit{};
+    unit[i] = 1.0;
+    const Vector turned = turned_to_axes(*config.transformation, unit, config.axis_count);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(config.axis_count); ++k)
+      if (std::abs(turned[k]) > 1e-9) moved |= 1u << k;
+  }
+  return moved;
 }
 
 void Run::append(Leg leg) {

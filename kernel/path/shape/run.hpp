@@ -20,16 +20,22 @@ struct Leg {
   Surface surface;
   double corner =
       std::numeric_limits<double>::infinity();  ///< largest speed where it starts, by a corner rule
-  bool turning = false;                         ///< its parameter counts degrees: only rotary axes move
+  std::uint32_t axes = 0;  ///< bits of the axes that it moves through a transformation; 0: its coordinates
+  bool turning = false;    ///< its parameter counts degrees: only rotary axes move
   const std::array<AxisLimits, kMaxAxes>* limits = nullptr;  ///< of the axes, while it is driven
   double end() const { return begin + piece.length; }
 };
 
+inline bool moves(const Piece& p, std::size_t coordinate) {
+  return p.c1[coordinate] != 0.0 ||
+         (p.shape == Piece::Shape::arc && (p.axis1 == coordinate || p.axis2 == coordinate));
+}
 /// An axis that the leg moves.
 inline bool moves(const Leg& leg, std::size_t axis) {
-  const Piece& p = leg.piece;
-  return p.c1[axis] != 0.0 || (p.shape == Piece::Shape::arc && (p.axis1 == axis || p.axis2 == axis));
+  return leg.axes != 0 ? (leg.axes >> axis & 1u) != 0 : moves(leg.piece, axis);
 }
+/// Bits of the axes that a piece moves; 0: the identity, its coordinates.
+std::uint32_t axes_moved(const Config& config, const Piece& piece);
 
 /// Revolutions a second that the leg is planned for at its place `x`; 0: feed per time.
 inline double turns_at(const Leg& leg, const Vector& x) {
