@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <numbers>
 #include <random>
+#include <string>
 
 #include "tests/channel/rig.hpp"
 #include "tests/property_seed.hpp"
@@ -356,6 +359,37 @@ TEST(Fault, of_following_names_the_axis_and_stops_the_rest) {
   ASSERT_NE(a, nullptr) << rig.alarm_list();
   EXPECT_EQ(a->axis, 0);
   EXPECT_GT(std::abs(a->value), a->limit);
+}
+
+/// Seconds from when the machine loses its leave to move until it rests, `after` ms behind a change of the
+/// override along short blocks, which are driven as a course.
+double seconds_to_rest(int after, const std::function<void(Rig&)>& lose) {
+  std::string program = "G1 F12000\n";  // at the acceleration of the axes
+  for (int k = 1; k <= 400; ++k) {
+    const double a = 2 * std::numbers::pi * k / 200;
+    program += "X" + std::to_string(40 - 40 * std::cos(a)) + " Y" + std::to_string(40 * std::sin(a)) + "\n";
+  }
+  Rig rig(program + "M30\n");
+  rig.start();
+  EXPECT_TRUE(rig.until([&] { return rig.x() > 30.0; }));
+  EXPECT_GT(rig.status().feed_mm_s, 150.0);
+  EXPECT_EQ(rig.ask(RequestKind::override_feed, 0.2), Refusal::none);
+  rig.run(0.001 * after);
+  lose(rig);
+  const double began = rig.now();
+  EXPECT_TRUE(rig.until([&] { return !rig.moving(); }, 5.0));
+  EXPECT_EQ(rig.violations(), "");
+  return rig.now() - began;
+}
+
+TEST(EmergencyStop, along_a_course_never_waits_for_a_change_of_rate) {
+  // By the limits of one axis 200 mm/s take 0.3 s; a hold on this path takes a second.
+  const double stop = kLimits.velocity * 0.4 / kLimits.acceleration + kLimits.acceleration / kLimits.jerk;
+  for (const int after : {0, 5, 60, 150, 300}) {
+    EXPECT_LE(seconds_to_rest(after, [](Rig& rig) { rig.logic.estop_ok = false; }), stop + 0.13) << after;
+    EXPECT_LE(seconds_to_rest(after, [](Rig& rig) { rig.logic.power_on = false; }), stop + 0.13) << after;
+  }
+  EXPECT_GE(seconds_to_rest(0, [](Rig& rig) { rig.ask(RequestKind::hold); }), stop + 0.13);
 }
 
 TEST(EmergencyStop, during_motion_ramps_down_takes_the_power_at_rest_and_gives_it_back_only_when_asked) {

@@ -94,6 +94,47 @@ TEST(Course, of_a_bored_circle_stays_within_one_and_a_half_micrometres) {
   EXPECT_LE(most, 0.0015);
 }
 
+/// A helix between two lines; whole turns about (0, 0), radius 20, `rise` a turn.
+RandomProgram helix(double tolerance, double rise) {
+  Element turns = arc_to(20, 0, 0, 0, 720, 80);
+  turns.to[2] = 2 * rise;
+  Element out = line_to(100, 0, 2 * rise, 80);
+  RandomProgram p = program({line_to(20, 0, 0, 80), turns, out});
+  for (Element& e : p.elements) e.transition.tolerance = tolerance;
+  p.tolerance = tolerance;
+  return p;
+}
+
+TEST(Course, of_arcs_helices_and_lines_is_exact_away_from_their_ends_whatever_the_tolerance) {
+  for (const double tolerance : {0.01, 0.1, 0.5})
+    for (const double rise : {0.0, 5.0}) {
+      const RandomProgram p = helix(tolerance, rise);
+      const Course c = plan(p);
+      EXPECT_EQ(verdict(c, p), "");
+      const double away = 1 + 41 * tolerance;  // from an end, where the tolerance is not used any more
+      double angle = 0.0, most = 0.0, on_line = 0.0;
+      int looked = 0;
+      Vector before{};
+      for (const Vector& x : sampled(c, p.start, 3, 0.001)) {
+        const double radius = std::hypot(x[0], x[1]);
+        if (radius > 15.0) {
+          const double turn =
+              std::atan2(x[1] * before[0] - x[0] * before[1], x[0] * before[0] + x[1] * before[1]);
+          angle = std::hypot(before[0], before[1]) > 15.0 ? angle + turn : std::atan2(x[1], x[0]);
+        }
+        before = x;
+        if (radius > 15.0 && 20 * angle > away && 20 * (4 * kPi - angle) > away) {
+          ++looked;
+          most = std::max(most, std::hypot(radius - 20.0, x[2] - rise * angle / (2 * kPi)));
+        }
+        if (x[0] > 20.0 + away && x[0] < 100.0 - away) on_line = std::max(on_line, std::abs(x[1]));
+      }
+      EXPECT_GT(looked, 1000);
+      EXPECT_LE(most, 0.0015) << tolerance << ' ' << rise;
+      EXPECT_LE(on_line, 0.0015) << tolerance << ' ' << rise;
+    }
+}
+
 TEST(Course, does_not_depend_on_when_elements_come) {
   RandomProgram p = zigzag(150);
   const RandomProgram line = collinear(300, 0.3);

@@ -10,6 +10,7 @@
 
 #include "kernel/path/path_time.hpp"
 #include "tests/path/rig/driven_path.hpp"
+#include "tests/property_seed.hpp"
 
 namespace servogate::path::test {
 namespace {
@@ -353,6 +354,22 @@ TEST(DrivenCourse, stops_sooner_and_takes_longer_with_a_greater_reserve) {
     EXPECT_GT(seconds, 1.03 * whole);
     whole = seconds;
     EXPECT_LE(m.most(), 1.001);
+  }
+}
+
+TEST(DrivenCourse, takes_no_longer_than_spans_by_more_than_the_reserve) {
+  const std::uint64_t base = servogate::test::property_seed();
+  for (std::uint64_t seed = base; seed < base + 20; ++seed) {
+    RandomProgram p = random_program(seed, {seed % 3 == 0 ? 80 : 8, true, true});
+    const auto seconds = [&](Law law) {
+      p.config.law = law;
+      PathTime time(p.config, p.start);
+      for (const Element& e : p.elements) EXPECT_TRUE(time.add(e));
+      time.rest();
+      return time.seconds();
+    };
+    const double spans = seconds(Law::spans);
+    EXPECT_LE(seconds(Law::fitting), spans * (1.0 + p.config.reserve) + 0.01) << seed;
   }
 }
 
