@@ -56,8 +56,9 @@ const text::Entry kGaveUp{"run.gave-up",
                           "ждать, задаёт --patience)"};
 const text::Entry kDone1{"run.done", "done: {0} blocks in {1} s of machine time",
                          "готово: кадров {0}, машинное время {1} с"};
-const text::Entry kProgress{"run.progress", "{0} of about {1} blocks, {2} s, about {3} s left",
-                            "кадров {0} примерно из {1}, {2} с, осталось около {3} с"};
+const text::Entry kProgress{"run.progress", "{0} of about {1} blocks, {2} s",
+                            "кадров {0} примерно из {1}, {2} с"};
+const text::Entry kProgressLeft{"run.progress-left", ", about {0} s left", ", осталось около {0} с"};
 const text::Entry kStoppedEarly{"run.stopped-early",
                                 "stopped by the operator before the first block; the drives are off",
                                 "остановлено оператором до первого кадра; приводы выключены"};
@@ -136,8 +137,8 @@ class Run {
   std::unique_ptr<RunServer> server_;
   std::unique_ptr<RunForces> forces_;
   std::unique_ptr<RunFaults> faults_;
-  double estimate_s_ = 0.0;
-  long long estimate_blocks_ = 0;
+  double first_block_s_ = 0.0;  ///< machine time when the first blocks were found done
+  std::int64_t estimate_blocks_ = 0;
   Clock::time_point begin_;
   double wall_s_ = 0.0;
   double last_progress_ = 0.0;
@@ -166,11 +167,10 @@ int Run::prepare() {
       return code;
     const ProgramFile& p = *program_;
     const ProgramCheck check =
-        prove_program(m, p, state_->state.tables, start_after_homing(m), channel::Forecast::Depth::timed);
+        prove_program(m, p, state_->state.tables, start_after_homing(m), channel::Forecast::Depth::drivable);
     print_findings(check.report.findings);
     std::copy_if(check.report.findings.begin(), check.report.findings.end(), std::back_inserter(wrong_),
                  [](const text::Finding& f) { return f.severity == text::Severity::error; });
-    estimate_s_ = check.seconds();
     estimate_blocks_ = check.report.executed;
   }
   if (const int code = sole_master_.claim(loaded_); code != kDone) return code;
@@ -335,10 +335,15 @@ void Run::progress(const image::ProcessImage& image) {
   if (estimate_blocks_ == 0 || wall - last_progress_ < (terminal ? kProgressPause_s : kLogPause_s)) return;
   last_progress_ = wall;
   const std::int64_t done = image.processes[0].blocks_done;
-  const double part = static_cast<double>(done) / static_cast<double>(estimate_blocks_);
-  const std::string line = say(kProgress, {std::to_string(done), std::to_string(estimate_blocks_),
-                                           text::number(image.now.seconds(), 1),
-                                           text::number(std::max(0.0, estimate_s_ * (1.0 - part)), 0)});
+  const double now = image.now.seconds();
+  if (first_block_s_ == 0.0 && done > 0) first_block_s_ = now;
+  const std::string of = std::to_string(estimate_blocks_);
+  std::string line = say(kProgress, {std::to_string(done), of, text::number(now, 1)});
+  // As the blocks so far; the path is planned only as it is driven.
+  if (done > 0 && now > first_block_s_) {
+    const double left = static_cast<double>(std::max(estimate_blocks_ - done, std::int64_t{0}));
+    line += say(kProgressLeft, {text::number((now - first_block_s_) * left / static_cast<double>(done), 0)});
+  }
   std::fprintf(stderr, terminal ? "\r%s   " : "%s\n", line.c_str());
   line_open_ = terminal;
 }
