@@ -117,6 +117,8 @@ std::unique_ptr<HidPort> HidPort::open(const HidChoice& choice, drivers::Notice&
   return port;
 }
 
+HidPort::HidPort(HidChoice choice) : choice_(std::move(choice)) {}
+
 HidPort::~HidPort() {
   end_ = true;
   thread_.join();

@@ -34,7 +34,7 @@ class HidPort final : public drivers::PendantPort {
   void show(std::vector<std::vector<std::uint8_t>> reports) override;
 
  private:
-  explicit HidPort(HidChoice choice) : choice_(std::move(choice)) {}
+  explicit HidPort(HidChoice choice);
   struct Device;
   class Screen;
   void run();

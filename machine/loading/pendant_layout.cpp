@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "machine/check/findings_pendant.hpp"
 
@@ -109,7 +110,11 @@ std::optional<HidPlace> hid_place(std::string_view url) {
 /// Tells what stands twice where each stands once. A pendant without an axis selector has no codes of axes.
 template <class Tell>
 void twice(const pendant::Layout& layout, Tell tell) {
-  std::set<std::string> names{"wheel", "ring", "axis", "step"}, letters;
+  std::set<std::string> names, letters;
+  // What a simulated pendant is turned by has names, too.
+  for (const auto& [place, name] : {std::pair(layout.wheel, "wheel"), std::pair(layout.ring, "ring"),
+                                    std::pair(layout.axis, "axis"), std::pair(layout.step, "step")})
+    if (place >= 0) names.insert(name);
   std::set<int> codes, places;
   for (const pendant::Button& b : layout.buttons) {
     if (!names.insert(b.name).second) tell("buttons", b.name);

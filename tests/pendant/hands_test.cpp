@@ -319,20 +319,19 @@ TEST(PendantButtons, AShiftGivesAnotherMeaningOrNone) {
 
 TEST(PendantButtons, StartBeginsHoldsAndResumes) {
   Hand hand(test::with_selectors());
-  const auto press = [&hand] {
+  const auto press_asks = [&hand](RequestKind kind) {
     hand.see();
     hand.press("start");
+    const bool asked = hand.asks(kind);
     hand.release("start");
+    return asked;
   };
-  press();
-  EXPECT_TRUE(hand.asks(RequestKind::start));
+  EXPECT_TRUE(press_asks(RequestKind::start));
   hand.view.running = true;
-  press();
-  EXPECT_TRUE(hand.asks(RequestKind::hold));
+  EXPECT_TRUE(press_asks(RequestKind::hold));
   hand.view.running = false;
   hand.view.held = true;
-  press();
-  EXPECT_TRUE(hand.asks(RequestKind::resume));
+  EXPECT_TRUE(press_asks(RequestKind::resume));
 }
 
 TEST(PendantButtons, TheOverrideIsChangedFromWhatItIs) {

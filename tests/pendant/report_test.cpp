@@ -54,12 +54,19 @@ TEST(PendantReport, WhatIsNoReportOfThisPendantIsRefused) {
   EXPECT_FALSE(reader.read(Bytes{4, 0, 0x77, 0, 0x0e, 0x11, 1, 0})) << "a key that there is not";
 }
 
-TEST(PendantReport, ASelectorInAPlaceThatNobodyKnowsIsOff) {
+TEST(PendantReport, IsAsleepWhenNoSelectorStandsAnywhereWhateverElseItSays) {
   const Layout layout = test::with_selectors();
   ReportReader reader(layout);
   const auto asleep = reader.read(Bytes{4, 0, 0, 0, 0, 0, 0, 0});
   ASSERT_TRUE(asleep);
-  EXPECT_EQ(*asleep, Reading{});
+  EXPECT_TRUE(asleep->asleep);
+  EXPECT_TRUE(reader.read(Bytes{4, 0, 0x77, 3, 0, 0, 9, 0})->asleep) << "keys that there are not";
+  EXPECT_FALSE(reader.read(Bytes{4, 0, 0, 0, 0x1b, 0x06, 0, 0})->asleep);
+}
+
+TEST(PendantReport, ASelectorInAPlaceThatNobodyKnowsIsOff) {
+  const Layout layout = test::with_selectors();
+  ReportReader reader(layout);
   EXPECT_EQ(reader.read(Bytes{4, 0, 0, 0, 0x1b, 0x06, 0, 0})->axis, -1);
 }
 
