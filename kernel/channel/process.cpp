@@ -265,6 +265,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
 
 void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   running_ = stopping_ = held_ = false;
+  for (const OwnAxis& own : own_axes()) c.axes[own.machine].set_in_position_window(0.0);
   forget_beside();
   forget_neighbours();
   state_ = state;
@@ -304,10 +305,7 @@ bool Process::acquire(cycle::ProcessContext& c) noexcept {
 }
 
 void Process::release(cycle::ProcessContext& c) noexcept {
-  for (const OwnAxis& own : own_axes()) {
-    c.axes[own.machine].set_in_position_window(0.0);
-    c.axes[own.machine].release(image::AxisOwner::process);
-  }
+  for (const OwnAxis& own : own_axes()) c.axes[own.machine].release(image::AxisOwner::process);
 }
 
 // -- motion

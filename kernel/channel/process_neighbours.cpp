@@ -13,6 +13,11 @@ bool under_way(ProcessState s) noexcept {
   return s == ProcessState::running || s == ProcessState::held || s == ProcessState::waiting;
 }
 
+/// Nobody is working in it by hand. Off: nothing was asked of it yet.
+bool runs_programs(image::Mode mode) noexcept {
+  return mode == image::Mode::automatic || mode == image::Mode::off;
+}
+
 }  // namespace
 
 /// Waits until the other process is at rest, has it given the program, and asks the gate to start it.
@@ -26,7 +31,8 @@ bool Process::start_other(const Event& e, cycle::ProcessContext& c) noexcept {
   state_ = ProcessState::waiting;
   switch (start_other_) {
     case StartOther::none: {
-      if (under_way(c.image.processes[e.number].state)) return false;
+      if (held_ || under_way(c.image.processes[e.number].state)) return false;
+      if (!runs_programs(c.image.processes[e.number].mode)) return ends(e.code);
       programs_of_other_ = meeting_.programs(e.number);
       FeederOrder order;
       order.kind = FeederOrder::Kind::supply;
@@ -40,7 +46,7 @@ bool Process::start_other(const Event& e, cycle::ProcessContext& c) noexcept {
       if (meeting_.programs(e.number) != programs_of_other_) start_other_ = StartOther::wished;
       return false;
     case StartOther::wished:
-      return false;
+      return runs_programs(c.image.processes[e.number].mode) ? false : ends(e.code);
     case StartOther::started:
       start_other_ = StartOther::none;
       return true;
@@ -51,7 +57,8 @@ bool Process::start_other(const Event& e, cycle::ProcessContext& c) noexcept {
 }
 
 bool Process::wish(image::Request& request) noexcept {
-  if (start_other_ != StartOther::wished) return false;
+  // What is held begins nothing, in no process.
+  if (held_ || start_other_ != StartOther::wished) return false;
   request.asker = image::Asker::program;
   request.kind = image::RequestKind::start;
   request.process = static_cast<std::int8_t>(event_.number);
@@ -66,6 +73,7 @@ void Process::answered(const image::Answer& answer) noexcept {
 bool Process::meet(const Event& e) noexcept {
   stage_ = Stage::waiting;
   state_ = ProcessState::waiting;
+  if (held_) return false;
   return e.kind == EventKind::process_wait ? meeting_.wait(config_.index, e.number)
                                            : meeting_.send(config_.index, e.number);
 }

@@ -122,6 +122,8 @@ class RecordReader {
       const std::vector<Element>& items = list(record, "items");
       if (items.size() != out.fields.size())
         return wrong(record, "items", "an item for each field", "значение для каждого поля");
+      if (out.records.contains(number))
+        return wrong(record, "number", "a number of its own", "собственный номер");
       RecordFile::Record& row = out.records[number];
       for (std::size_t n = 0; n < items.size(); ++n) row.push_back(item(items[n], out.fields[n]));
     }

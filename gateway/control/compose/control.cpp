@@ -261,6 +261,11 @@ std::shared_ptr<const ProgramFile> Control::take_given(int process) {
   return std::exchange(program.given, false) ? program.file : nullptr;
 }
 
+std::optional<program::Tables> Control::given_tables(int process) {
+  const std::scoped_lock lock(reading_);
+  return programs_[static_cast<std::size_t>(process)].tables;
+}
+
 /// Called while processes read ahead. In a replay the record makes the change.
 channel::Supply Control::supply(int from, int to, const std::string& name) {
   const std::shared_ptr<const ProgramFile> caller = programs_[static_cast<std::size_t>(from)].file;
@@ -277,12 +282,10 @@ channel::Supply Control::supply(int from, int to, const std::string& name) {
   file->model = program_model(machine(), to);
   file->loader = caller->loader;
   const program::Tables* tables = process(from).feeder().tables();
-  carry_out({ProgramChange::Kind::program,
-             to,
-             std::move(file),
-             tables != nullptr ? *tables : program::Tables{},
-             {}});
+  program::Tables as_they_stand = tables != nullptr ? *tables : program::Tables{};
+  carry_out({ProgramChange::Kind::program, to, std::move(file), as_they_stand, {}});
   programs_[static_cast<std::size_t>(to)].given = true;
+  programs_[static_cast<std::size_t>(to)].tables = std::move(as_they_stand);
   return channel::Supply::given;
 }
 
@@ -294,12 +297,13 @@ bool Control::carry_out(const ProgramChange& change) {
   if (loads && p.feeder().reads()) return false;
   // What a record keeps of it lies before what its subprograms are.
   if (change_tap_ != nullptr) change_tap_->take(change);
-  if (change.file != nullptr) programs_[static_cast<std::size_t>(change.process)] = {change.file, false};
+  if (change.file != nullptr) programs_[static_cast<std::size_t>(change.process)] = {change.file, false, {}};
   switch (change.kind) {
     case ProgramChange::Kind::program:
       p.load(interpreter_factory(change, change_tap_), change.tables);
       break;
     case ProgramChange::Kind::tables:
+      programs_[static_cast<std::size_t>(change.process)].tables.reset();
       p.renew(interpreter_factory(change, change_tap_), change.tables);
       break;
     case ProgramChange::Kind::restart:

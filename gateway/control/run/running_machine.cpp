@@ -151,7 +151,7 @@ std::string RunningMachine::keep() {
   const program::Tables given = state.tables;
   for (int p = 0; p < machine().control.processes; ++p)
     if (const program::Tables* tables = control_->process(p).feeder().tables(); tables != nullptr)
-      program::carry_over(given, *tables, state.tables);
+      program::carry_over(control_->given_tables(p).value_or(given), *tables, state.tables);
   const image::ProcessImage& now = control_->cycle().image();
   const auto axes = control_->cycle().axes();
   for (std::size_t a = 0; a < axes.size(); ++a) {

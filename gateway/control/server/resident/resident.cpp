@@ -451,7 +451,7 @@ void Resident::adopt(int process) {
     s.file = given;
     s.refused.clear();
     s.proven.reset();
-    s.given = state_.tables;
+    s.given = control_.given_tables(process).value_or(state_.tables);
     const std::string_view text = given->text.view();
     s.blocks = 0;
     s.lines = lines_of(text);

@@ -67,6 +67,8 @@ inline void carry_over(const RecordFiles& before, const RecordFiles& after, Reco
       if (const auto same = was->second.records.find(number);
           same == was->second.records.end() || same->second != record)
         old->second.records[number] = record;
+    for (const auto& [number, record] : was->second.records)
+      if (!is.records.contains(number)) old->second.records.erase(number);
   }
   for (const auto& [name, file] : before)
     if (!after.contains(name)) into.erase(name);
