@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "kernel/channel/for_cycle.hpp"
 
 namespace servogate::channel {
 
@@ -12,92 +13,6 @@ namespace {
 
 constexpr int kCommandsPerWork = 64;
 constexpr std::uint32_t kSpareEvents = 8;
-
-/// What the cycle is to do for a command.
-struct ForCycle {
-  EventKind kind;
-  Event event;
-  bool at_once = false;  ///< not in the order of the path
-};
-
-/// A command as an event, its place left to the feeder; nullopt: nothing is to be done in the cycle.
-class Translation {
- public:
-  using Result = std::optional<ForCycle>;
-  /// `view`: what the interpreter sees of its own writes.
-  Translation(PathElements& elements, ProgramTexts& texts, image::Packets& view)
-      : elements_(elements), texts_(texts), view_(view) {}
-
-  template <class Motion>
-  Result operator()(const Motion&) const {
-    return std::nullopt;
-  }
-  Result operator()(const program::Dwell& d) const {
-    ForCycle order{EventKind::dwell, {}};
-    order.event.value = d.seconds;
-    return order;
-  }
-  Result operator()(const program::Spindle& s) const {
-    elements_.take(s);
-    ForCycle order{EventKind::spindle, {}};
-    order.event.value = s.speed;
-    order.event.limit = s.limit_rpm;
-    order.event.center = s.center;
-    order.event.number = s.number;
-    order.event.mode = s.mode;
-    order.event.flag = s.surface_speed;
-    return order;
-  }
-  Result operator()(const program::Tool& t) const {
-    if (t.activate) return std::nullopt;
-    ForCycle order = coded(EventKind::tool, t.number);
-    order.event.code2 = t.corrector;
-    return order;
-  }
-  Result operator()(const program::MFunction& m) const { return coded(EventKind::m_function, m.code); }
-  Result operator()(const program::HFunction& h) const { return coded(EventKind::h_function, h.code); }
-  Result operator()(const program::Message& m) const {
-    return coded(EventKind::message, texts_.add_message(m.text));
-  }
-  Result operator()(const program::WritePlace& w) const {
-    ForCycle order{EventKind::write, {}, !w.synchronous};
-    Event& e = order.event;
-    e.place = w.place;
-    e.value = w.value;
-    e.length = static_cast<std::uint8_t>(std::min(w.characters.size(), e.characters.size()));
-    std::copy_n(w.characters.begin(), e.length, e.characters.begin());
-    if (e.length != 0)
-      view_.set_characters(w.place, w.characters);
-    else
-      view_.set_number(w.place, w.value);
-    return order;
-  }
-  Result operator()(const program::Wait& w) const {
-    ForCycle order{EventKind::wait, {}};
-    order.event.place = w.place;
-    order.event.value = w.value;
-    order.event.compare = w.compare;
-    return order;
-  }
-  Result operator()(const program::Stop& s) const {
-    return ForCycle{s.optional ? EventKind::optional_stop : EventKind::stop, {}};
-  }
-  Result operator()(const program::End& end_of_program) const {
-    ForCycle order{EventKind::end, {}};
-    order.event.flag = end_of_program.rewind;
-    return order;
-  }
-
- private:
-  static ForCycle coded(EventKind kind, std::int32_t code) {
-    ForCycle order{kind, {}};
-    order.event.code = code;
-    return order;
-  }
-  PathElements& elements_;
-  ProgramTexts& texts_;
-  image::Packets& view_;
-};
 
 /// Something has been done when it is through: STEP stops behind it. A programmed stop waits by itself.
 bool acts(const program::Command& command) {
@@ -408,7 +323,7 @@ void Feeder::accept(const program::Command& command) {
     return set_windows(*windows, command);
   if (const std::optional<text::Finding> finding = not_driven(command))
     return fail(placed(*finding, command));
-  std::optional<ForCycle> order = std::visit(Translation{elements_, texts_, view_}, command.what);
+  std::optional<ForCycle> order = for_cycle(command, elements_, texts_, view_);
   if (!order) return;
   if (order->at_once) {
     order->event.kind = order->kind;
