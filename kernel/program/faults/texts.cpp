@@ -236,8 +236,10 @@ constexpr text::Entry kMessages[] = {
      "{0}: слово {1} не может задавать параметр: могут оси, I J K R F и подобные"},
     {"P912", "{0} in the block of {1}: beside it stand only the words that its table names",
      "{0} в кадре с {1}: рядом с ним стоят только слова из его таблицы"},
+    {"P755", "{0}: corner {1} does not fit between the parts of the contour beside it",
+     "{0}: угол {1} не помещается между соседними участками контура"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::own_code_alone) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::cycle_corner) + 1);
 
 }  // namespace
 

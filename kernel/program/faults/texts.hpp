@@ -153,6 +153,7 @@ enum class Fault : std::uint8_t {
   own_code_taken,
   own_code_word,
   own_code_alone,
+  cycle_corner,
 };
 
 /// All texts, in the order of Fault.

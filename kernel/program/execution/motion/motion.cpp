@@ -220,6 +220,32 @@ void Motion::go(const Position& programmed, bool at_rapid) {
   if (to != at_.machine) straight(to, at_rapid, 1.0, false);
 }
 
+void Motion::go_round(const Position& programmed, const Position& centre, double sweep_deg) {
+  const int a1 = at_.axis1, a2 = at_.axis2;
+  const Frame& frame = at_.frame;
+  if (std::abs(frame.scale(a1)) != std::abs(frame.scale(a2)))
+    fail(Fault::arc_scaled, here(), {machine_.axes[at(a1)].letter, machine_.axes[at(a2)].letter});
+  const Point start{at_.machine[at(a1)], at_.machine[at(a2)]};
+  Arc arc;
+  arc.to = along(programmed);
+  arc.axis1 = static_cast<std::uint8_t>(a1);
+  arc.axis2 = static_cast<std::uint8_t>(a2);
+  arc.center1 = frame.to_machine(centre, a1);
+  arc.center2 = frame.to_machine(centre, a2);
+  arc.sweep_deg = frame.sense(a1, a2) > 0 ? sweep_deg : -sweep_deg;
+  if (at_.zones_active) frames_.check_zones(at_.machine, arc, here());
+  const Point end{arc.to[at(a1)], arc.to[at(a2)]}, middle{arc.center1, arc.center2};
+  const Box box = extent(start, end, middle, arc.sweep_deg);
+  for (const double x : {box.low.x, box.high.x}) frames_.check_axis(a1, x, column_of(block_, a1));
+  for (const double y : {box.low.y, box.high.y}) frames_.check_axis(a2, y, column_of(block_, a2));
+  const double radius = std::hypot(start.x - middle.x, start.y - middle.y);
+  const double length = helix_length(arc, radius);
+  arc.feed = feed_of(BlockWords{}, length, false);
+  capability_.check_arc(BlockWords{}, arc, radius, length);
+  output_.emit(arc);
+  at_.machine = arc.to;
+}
+
 void Motion::rapid_to(const Position& to) {
   for (int a = 0; a < machine_.axis_count(); ++a)
     if (to[at(a)] != at_.machine[at(a)]) frames_.check_axis(a, to[at(a)], column_of(block_, a));

@@ -42,6 +42,9 @@ class Motion {
   void go(int axis, double programmed, bool rapid, double share = 1.0);
   /// Axes to programmed coordinates; those that stand there already do not move.
   void go(const Position& programmed, bool rapid);
+  /// Round a programmed centre in the plane at the feed in force; `sweep_deg` + from its first axis to its
+  /// second in programmed coordinates.
+  void go_round(const Position& programmed, const Position& centre, double sweep_deg);
   /// To machine coordinates.
   void rapid_to(const Position& machine);
   /// One axis by the turns of the spindle.

@@ -29,8 +29,10 @@ constexpr text::Entry kMessages[] = {
     {"P772", "{0}: the step of {1} does not lead to the end", "{0}: шаг {1} не ведёт к концу"},
     {"P773", "{0}: more than {1} passes", "{0}: больше {1} проходов"},
     {"P774", "{0} needs {1}", "{0} требует {1}"},
+    {"P775", "{0} has no contour: give one by G852 before it",
+     "{0}: контура нет; задайте его перед этим функцией G852"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::cycle_axis) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::contour_missing) + 1);
 
 }  // namespace
 

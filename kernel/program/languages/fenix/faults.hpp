@@ -26,6 +26,7 @@ enum class Wrong {
   step,
   passes,
   cycle_axis,
+  contour_missing,
 };
 
 std::span<const text::Entry> messages();

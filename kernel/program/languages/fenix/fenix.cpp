@@ -45,8 +45,10 @@ constexpr auto rules() {
   add({.number = 68, .group = '6', .function = Function::nothing, .take = keep_chips});
   for (const std::uint16_t cycle : {81, 810, 811, 812, 820, 821, 822, 823, 824, 825, 826})
     add({.number = cycle, .group = 'c', .function = Function::own, .motion = holes});
-  for (const std::uint16_t later : {851, 852, 853, 855})
-    add({.number = later, .group = 'c', .function = Function::later});
+  add({.number = 851, .group = 'c', .function = Function::own, .motion = profile_corners});
+  add({.number = 852, .group = 'c', .function = Function::own, .motion = profile_contour});
+  for (const std::uint16_t cycle : {853, 855})
+    add({.number = cycle, .group = 'c', .function = Function::own, .motion = profile});
   add({.number = 90, .group = '7', .function = Function::absolute, .one_shot_with_motion = true});
   add({.number = 91,
        .group = '7',

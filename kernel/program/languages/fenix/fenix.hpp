@@ -30,7 +30,19 @@ void call_cycle(Execution& run, const BlockWords& words);
 void dwell(Execution& run, const BlockWords& words);
 
 /// Places in State::own.
-enum class Own { breaks, break_last, pass, pass_set, back, dwell, least_rpm };
+enum class Own {
+  breaks,
+  break_last,
+  pass,
+  pass_set,
+  back,
+  dwell,
+  least_rpm,
+  corners,                 ///< arguments of G851, NaN: a gap
+  contour = corners + 16,  ///< of G852
+  corners_set = contour + 12,
+  contour_set,
+};
 
 // angles.cpp; source: specification 7
 void take_line(Execution& run, BlockWords& words, const Word& word);
@@ -51,9 +63,14 @@ void deviation(Execution& run, double value, int index, int column);
 /// G30
 void home(Execution& run, const BlockWords& words);
 
-// turning.cpp, holes.cpp, threads.cpp; source: specification 13, 17 to 20
+// turning.cpp, holes.cpp, profiles.cpp, threads.cpp; source: specification 13, 17 to 21
 void turning(Execution& run, const BlockWords& words);
 void holes(Execution& run, const BlockWords& words);
+/// G851 and G852 store, until a cycle of another group forgets it; G853 and G855 work.
+void profile_corners(Execution& run, const BlockWords& words);
+void profile_contour(Execution& run, const BlockWords& words);
+void profile(Execution& run, const BlockWords& words);
+void forget_profile(State& state);
 void thread_once(Execution& run, const BlockWords& words);
 void thread_passes(Execution& run, const BlockWords& words);
 

@@ -217,6 +217,7 @@ void holes(Execution& run, const BlockWords& words) {
   run.frames().need_plane(arguments.column());
   run.refuse_all_but(words, {});
   run.motion().end_profile();
+  forget_profile(run.state());
   arguments.at_most(row.most);
   Boring hole = hole_of(run, arguments, row);
   hole.only_down = row.number == 81;

@@ -86,6 +86,7 @@ void cut(Execution& run, const Thread1& thread, double across, double shift, dou
 }  // namespace
 
 void thread_once(Execution& run, const BlockWords& words) {
+  forget_profile(run.state());
   const Arguments arguments(run, words);
   run.frames().need_plane(arguments.column());
   run.refuse_words_but_axes(words);
@@ -100,6 +101,7 @@ void thread_once(Execution& run, const BlockWords& words) {
 
 /// Passes of equal depth along the flank; each start of a thread with several has all of them.
 void thread_passes(Execution& run, const BlockWords& words) {
+  forget_profile(run.state());
   const Arguments arguments(run, words);
   run.frames().need_plane(arguments.column());
   run.refuse_words_but_axes(words);

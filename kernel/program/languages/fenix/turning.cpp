@@ -55,6 +55,7 @@ void turning(Execution& run, const BlockWords& words) {
   run.refuse_words_but_axes(words);
   run.motion().store_feed(words);
   run.motion().end_profile();
+  forget_profile(run.state());
   arguments.at_most(row.kind == Kind::once || row.kind == Kind::rough ? 2 : 1);
   const FramesState& frames = run.state().frames;
   Turning cycle;
